@@ -1,0 +1,3 @@
+//! The `lockstep2d` command.
+
+fn main() {}

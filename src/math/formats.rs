@@ -1,0 +1,215 @@
+//! The number formats, one alias for each quantity, and the operations that move between them.
+//!
+//! Every operation here rounds once, to nearest (ties towards +infinity), and saturates instead of wrapping,
+//! in every build profile. The binary point of the result is inferred from its type, so the compiler checks
+//! the scales: `let s: Separation = mul(length, unit);` cannot be off by a shift.
+//!
+//! The ranges were settled with a floating-point probe over the benchmark scenes; `docs/DESIGN.md` has the
+//! largest value seen of each quantity.
+
+use fixed::types::extra::{LeEqU32, U18, U20, U21, U22, U24, U27, U30, U32};
+use fixed::{FixedI32, FixedI64};
+
+/// World position in metres and every public scalar: ±2.1e9, resolution 0.23 nm.
+pub type Fx = FixedI64<U32>;
+/// A vertex about its shape's own centre, or a lever arm, in metres: ±512, resolution 0.24 µm.
+pub type Length = FixedI32<U22>;
+/// A speed in m/s: linear velocity, `u = k w`, and the impulse of a row as a speed: ±1024, resolution 4.8e-7.
+pub type Speed = FixedI32<U21>;
+/// Displacement within one step, and the separation of a contact, in metres: ±16, resolution 7.5 nm.
+pub type Step = FixedI32<U27>;
+/// Component of a unit vector, sine, cosine, mass fraction or gain: ±2, resolution 9.3e-10.
+pub type Unit = FixedI32<U30>;
+/// Lever ratio `e = c / k`: ±128, resolution 6e-8.
+pub type Ratio = FixedI32<U24>;
+/// Rate at which a constraint error is turned into speed, in 1/s: ±8192, resolution 3.8e-6.
+pub type Rate = FixedI32<U18>;
+/// Friction limit of a tangent row for each unit of its normal row, `mu Dt / Dn`: ±2048, resolution 9.5e-7.
+pub type Grip = FixedI32<U20>;
+
+/// `x / 2^shift`, rounded to nearest, ties towards +infinity. `shift` may be 0.
+#[inline]
+#[must_use]
+pub const fn round_shift(x: i64, shift: u32) -> i64 {
+    // Adding the last dropped bit, rather than one half, cannot overflow.
+    if shift == 0 { x } else { (x >> shift) + ((x >> (shift - 1)) & 1) }
+}
+
+/// [`round_shift`] for 128-bit intermediates.
+#[inline]
+#[must_use]
+pub const fn round_shift_wide(x: i128, shift: u32) -> i128 {
+    if shift == 0 { x } else { (x >> shift) + ((x >> (shift - 1)) & 1) }
+}
+
+/// The nearest `i32`.
+#[inline]
+#[must_use]
+#[expect(clippy::cast_possible_truncation, reason = "clamped to the range of i32 first")]
+pub const fn saturate(x: i64) -> i32 {
+    if x > i32::MAX as i64 {
+        i32::MAX
+    } else if x < i32::MIN as i64 {
+        i32::MIN
+    } else {
+        x as i32
+    }
+}
+
+/// The nearest `i64`.
+#[inline]
+#[must_use]
+#[expect(clippy::cast_possible_truncation, reason = "clamped to the range of i64 first")]
+pub const fn saturate_wide(x: i128) -> i64 {
+    if x > i64::MAX as i128 {
+        i64::MAX
+    } else if x < i64::MIN as i128 {
+        i64::MIN
+    } else {
+        x as i64
+    }
+}
+
+/// `n / d` rounded to nearest, halves away from zero. `d` must not be 0.
+#[inline]
+#[must_use]
+pub const fn div_round(n: i128, d: i128) -> i128 {
+    let (n, d) = if d < 0 { (-n, -d) } else { (n, d) };
+    if n < 0 { (n - d / 2) / d } else { (n + d / 2) / d }
+}
+
+/// A fixed-point product with a result format of the caller's choice: `a b`, rounded once, saturated.
+#[inline]
+#[must_use]
+pub fn mul<A: LeEqU32, B: LeEqU32, C: LeEqU32>(a: FixedI32<A>, b: FixedI32<B>) -> FixedI32<C> {
+    FixedI32::from_bits(saturate(round_shift(
+        i64::from(a.to_bits()) * i64::from(b.to_bits()),
+        const { shift::<A, B, C>() },
+    )))
+}
+
+/// `a x + b y`, rounded once, saturated: a dot product of parts.
+#[inline]
+#[must_use]
+pub fn mul_add<A: LeEqU32, B: LeEqU32, C: LeEqU32>(
+    a: FixedI32<A>,
+    x: FixedI32<B>,
+    b: FixedI32<A>,
+    y: FixedI32<B>,
+) -> FixedI32<C> {
+    let ax = i64::from(a.to_bits()) * i64::from(x.to_bits());
+    let by = i64::from(b.to_bits()) * i64::from(y.to_bits());
+    FixedI32::from_bits(saturate(round_shift(ax.saturating_add(by), const { shift::<A, B, C>() })))
+}
+
+/// Bits to drop from a product of formats `A` and `B` to reach format `C`.
+const fn shift<A: LeEqU32, B: LeEqU32, C: LeEqU32>() -> u32 {
+    let product = A::U32 + B::U32;
+    assert!(product >= C::U32, "the product has fewer fraction bits than the result");
+    product - C::U32
+}
+
+/// The same value in another 32-bit format: rounded, saturated.
+#[inline]
+#[must_use]
+pub fn convert<A: LeEqU32, B: LeEqU32>(a: FixedI32<A>) -> FixedI32<B> {
+    let bits = i64::from(a.to_bits());
+    FixedI32::from_bits(saturate(if A::U32 > B::U32 {
+        round_shift(bits, A::U32 - B::U32)
+    } else {
+        bits << (B::U32 - A::U32)
+    }))
+}
+
+/// A world quantity in a 32-bit format: rounded, saturated.
+#[inline]
+#[must_use]
+pub fn narrow<A: LeEqU32>(a: Fx) -> FixedI32<A> {
+    FixedI32::from_bits(saturate(round_shift(a.to_bits(), 32 - A::U32)))
+}
+
+/// A 32-bit quantity as a world quantity: exact.
+#[inline]
+#[must_use]
+pub fn widen<A: LeEqU32>(a: FixedI32<A>) -> Fx {
+    Fx::from_bits(i64::from(a.to_bits()) << (32 - A::U32))
+}
+
+/// `a b`, rounded to nearest, saturated.
+#[inline]
+#[must_use]
+pub const fn fx_mul(a: Fx, b: Fx) -> Fx {
+    Fx::from_bits(saturate_wide(round_shift_wide(a.to_bits() as i128 * b.to_bits() as i128, 32)))
+}
+
+/// `a / b`, rounded to nearest, saturated; `None` when `b` is 0.
+#[inline]
+#[must_use]
+pub const fn fx_div(a: Fx, b: Fx) -> Option<Fx> {
+    if b.to_bits() == 0 {
+        return None;
+    }
+    Some(Fx::from_bits(saturate_wide(div_round((a.to_bits() as i128) << 32, b.to_bits() as i128))))
+}
+
+/// `numerator / denominator` as a world quantity, rounded to nearest. The denominator must not be 0.
+#[inline]
+#[must_use]
+pub const fn ratio(numerator: i64, denominator: i64) -> Fx {
+    assert!(denominator != 0, "a ratio needs a denominator");
+    Fx::from_bits(saturate_wide(div_round((numerator as i128) << 32, denominator as i128)))
+}
+
+/// A fixed-point constant from a decimal literal or a fraction, evaluated at compile time without floats.
+///
+/// ```
+/// use lockstep2d::{fx, math::Fx};
+/// assert_eq!(fx!(0.5) + fx!(-2), Fx::lit("-1.5"));
+/// assert_eq!(fx!(1 / 4), fx!(0.25));
+/// ```
+#[macro_export]
+macro_rules! fx {
+    ($value:literal) => {
+        const { $crate::math::Fx::lit(stringify!($value)) }
+    };
+    ($numerator:literal / $denominator:literal) => {
+        const { $crate::math::ratio($numerator, $denominator) }
+    };
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rounds_to_nearest_on_both_sides_of_zero() {
+        let cases = [(5, 1, 3), (-5, 1, -2), (7, 2, 2), (-7, 2, -2), (-6, 2, -1), (6, 2, 2), (9, 0, 9)];
+        for (x, shift, expected) in cases {
+            assert_eq!(round_shift(x, shift), expected, "{x} >> {shift}");
+            assert_eq!(round_shift_wide(x.into(), shift), expected.into());
+        }
+        assert_eq!(div_round(7, 2), 4);
+        assert_eq!(div_round(-7, 2), -4);
+        assert_eq!(div_round(7, -3), -2);
+    }
+
+    #[test]
+    fn saturates_instead_of_wrapping() {
+        let big = Speed::MAX;
+        let product: Speed = mul(big, Ratio::MAX);
+        assert_eq!(product, Speed::MAX);
+        let product: Speed = mul(big, Ratio::MIN);
+        assert_eq!(product, Speed::MIN);
+        assert_eq!(narrow::<U27>(Fx::from_num(1000)), Step::MAX);
+        assert_eq!(fx_mul(Fx::MAX, Fx::MIN), Fx::MIN);
+        assert_eq!(fx_div(Fx::MAX, fx!(0.25)), Some(Fx::MAX));
+        assert_eq!(fx_div(Fx::MAX, Fx::ZERO), None);
+    }
+
+    #[test]
+    fn literals_are_exact_to_half_a_unit() {
+        assert_eq!(fx!(0.1).to_bits(), 429_496_730);
+        assert_eq!(fx!(1 / 3).to_bits(), 1_431_655_765);
+        assert_eq!(fx!(-1.5).to_bits(), -(3 << 31));
+    }
+}

@@ -1,0 +1,185 @@
+//! A 2D vector over any of the formats.
+
+use core::ops::{Add, AddAssign, Neg, Sub, SubAssign};
+
+use fixed::types::extra::LeEqU32;
+use fixed::{FixedI32, FixedI64};
+use serde::{Deserialize, Serialize};
+
+use super::formats::{
+    Fx, Unit, convert, fx_mul, mul, mul_add, narrow, round_shift_wide, saturate_wide, widen,
+};
+
+/// A vector or a point. Sums and differences saturate.
+///
+/// ```
+/// use lockstep2d::{fx, math::Vec2};
+/// let a = Vec2::new(fx!(3), fx!(4));
+/// assert_eq!(a.length(), fx!(5));
+/// assert_eq!(a - Vec2::new(fx!(3), fx!(0)), Vec2::new(fx!(0), fx!(4)));
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub struct Vec2<T> {
+    /// Horizontal component, growing to the right.
+    pub x: T,
+    /// Vertical component, growing upwards.
+    pub y: T,
+}
+
+impl<T> Vec2<T> {
+    /// A vector from its components.
+    #[inline]
+    pub const fn new(x: T, y: T) -> Self {
+        Vec2 { x, y }
+    }
+}
+
+macro_rules! componentwise {
+    ($fixed:ident: $bound:ident) => {
+        impl<F: $bound> Add for Vec2<$fixed<F>> {
+            type Output = Self;
+            #[inline]
+            fn add(self, other: Self) -> Self {
+                Vec2::new(self.x.saturating_add(other.x), self.y.saturating_add(other.y))
+            }
+        }
+        impl<F: $bound> Sub for Vec2<$fixed<F>> {
+            type Output = Self;
+            #[inline]
+            fn sub(self, other: Self) -> Self {
+                Vec2::new(self.x.saturating_sub(other.x), self.y.saturating_sub(other.y))
+            }
+        }
+        impl<F: $bound> Neg for Vec2<$fixed<F>> {
+            type Output = Self;
+            #[inline]
+            fn neg(self) -> Self {
+                Vec2::new(self.x.saturating_neg(), self.y.saturating_neg())
+            }
+        }
+        impl<F: $bound> AddAssign for Vec2<$fixed<F>> {
+            #[inline]
+            fn add_assign(&mut self, other: Self) {
+                *self = *self + other;
+            }
+        }
+        impl<F: $bound> SubAssign for Vec2<$fixed<F>> {
+            #[inline]
+            fn sub_assign(&mut self, other: Self) {
+                *self = *self - other;
+            }
+        }
+        impl<F: $bound> Vec2<$fixed<F>> {
+            /// The zero vector.
+            pub const ZERO: Self = Vec2::new($fixed::ZERO, $fixed::ZERO);
+
+            /// The vector turned a quarter turn counter-clockwise: `(-y, x)`.
+            #[inline]
+            #[must_use]
+            pub fn perp(self) -> Self {
+                Vec2::new(self.y.saturating_neg(), self.x)
+            }
+
+            /// The smaller of each component.
+            #[inline]
+            #[must_use]
+            pub fn min(self, other: Self) -> Self {
+                Vec2::new(self.x.min(other.x), self.y.min(other.y))
+            }
+
+            /// The larger of each component.
+            #[inline]
+            #[must_use]
+            pub fn max(self, other: Self) -> Self {
+                Vec2::new(self.x.max(other.x), self.y.max(other.y))
+            }
+        }
+    };
+}
+
+use fixed::types::extra::LeEqU64;
+componentwise!(FixedI32: LeEqU32);
+componentwise!(FixedI64: LeEqU64);
+
+impl<A: LeEqU32> Vec2<FixedI32<A>> {
+    /// `self . other`, rounded once into the format of the result.
+    #[inline]
+    #[must_use]
+    pub fn dot<B: LeEqU32, C: LeEqU32>(self, other: Vec2<FixedI32<B>>) -> FixedI32<C> {
+        mul_add(self.x, other.x, self.y, other.y)
+    }
+
+    /// `self x other = x1 y2 - y1 x2`, rounded once into the format of the result.
+    #[inline]
+    #[must_use]
+    pub fn cross<B: LeEqU32, C: LeEqU32>(self, other: Vec2<FixedI32<B>>) -> FixedI32<C> {
+        mul_add(self.x, other.y, self.y.saturating_neg(), other.x)
+    }
+
+    /// `self s`, rounded once into the format of the result.
+    #[inline]
+    #[must_use]
+    pub fn scale<B: LeEqU32, C: LeEqU32>(self, s: FixedI32<B>) -> Vec2<FixedI32<C>> {
+        Vec2::new(mul(self.x, s), mul(self.y, s))
+    }
+
+    /// The same vector in another 32-bit format: rounded, saturated.
+    #[inline]
+    #[must_use]
+    pub fn convert<B: LeEqU32>(self) -> Vec2<FixedI32<B>> {
+        Vec2::new(convert(self.x), convert(self.y))
+    }
+
+    /// The same vector in world format: exact.
+    #[inline]
+    #[must_use]
+    pub fn widen(self) -> Vec2<Fx> {
+        Vec2::new(widen(self.x), widen(self.y))
+    }
+}
+
+impl Vec2<Fx> {
+    /// The same vector in a 32-bit format: rounded, saturated.
+    #[inline]
+    #[must_use]
+    pub fn narrow<A: LeEqU32>(self) -> Vec2<FixedI32<A>> {
+        Vec2::new(narrow(self.x), narrow(self.y))
+    }
+
+    /// `self . other`, rounded once, saturated.
+    #[inline]
+    #[must_use]
+    pub const fn dot(self, other: Self) -> Fx {
+        sum_of_products(self.x, other.x, self.y, other.y, 1)
+    }
+
+    /// `self x other = x1 y2 - y1 x2`, rounded once, saturated.
+    #[inline]
+    #[must_use]
+    pub const fn cross(self, other: Self) -> Fx {
+        sum_of_products(self.x, other.y, self.y, other.x, -1)
+    }
+
+    /// `self s`, rounded once, saturated.
+    #[inline]
+    #[must_use]
+    pub const fn scale(self, s: Fx) -> Self {
+        Vec2::new(fx_mul(self.x, s), fx_mul(self.y, s))
+    }
+}
+
+/// `a x + sign b y`, rounded once, saturated.
+const fn sum_of_products(a: Fx, x: Fx, b: Fx, y: Fx, sign: i128) -> Fx {
+    let ax = a.to_bits() as i128 * x.to_bits() as i128;
+    let by = b.to_bits() as i128 * y.to_bits() as i128;
+    // Two products of 64-bit numbers stay within 127 bits, but for the corner where all four are `i64::MIN`.
+    Fx::from_bits(saturate_wide(round_shift_wide(ax.saturating_add(sign * by), 32)))
+}
+
+/// The unit vectors along the axes.
+impl Vec2<Unit> {
+    /// `(1, 0)`.
+    pub const X: Self = Vec2::new(Unit::ONE, Unit::ZERO);
+    /// `(0, 1)`.
+    pub const Y: Self = Vec2::new(Unit::ZERO, Unit::ONE);
+}

@@ -1,0 +1,1 @@
+//! Replay files: recording, reading and verifying.
