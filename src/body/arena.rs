@@ -1,0 +1,235 @@
+//! Generational storage: handles stay valid while other values come and go, and never resolve to a successor.
+//!
+//! The free list is part of the state, because it decides which handle the next value gets.
+
+use alloc::vec::Vec;
+use core::marker::PhantomData;
+
+use serde::{Deserialize, Serialize};
+
+/// A generational handle: a slot and how often it has been reused.
+pub(crate) trait Handle: Copy + Eq {
+    fn from_parts(index: u32, generation: u32) -> Self;
+    fn slot(self) -> u32;
+    fn generation(self) -> u32;
+}
+
+macro_rules! define_handle {
+    ($(#[$doc:meta])* $name:ident) => {
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+        pub struct $name {
+            index: u32,
+            generation: u32,
+        }
+
+        impl $name {
+            /// The slot that the value lives in: small, dense and reused. An index for a game's side tables.
+            #[must_use]
+            pub const fn index(self) -> u32 {
+                self.index
+            }
+
+            /// How many values have lived in this slot before.
+            #[must_use]
+            pub const fn generation(self) -> u32 {
+                self.generation
+            }
+        }
+
+        impl Handle for $name {
+            fn from_parts(index: u32, generation: u32) -> Self {
+                $name { index, generation }
+            }
+            fn slot(self) -> u32 {
+                self.index
+            }
+            fn generation(self) -> u32 {
+                self.generation
+            }
+        }
+
+        impl core::fmt::Display for $name {
+            fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+                write!(f, "{}v{}", self.index, self.generation)
+            }
+        }
+    };
+}
+
+define_handle! {
+    /// Names a body. Stays valid until that body is despawned, and never names another one.
+    BodyId
+}
+define_handle! {
+    /// Names a shape. Stays valid until that shape or its body is removed.
+    ShapeId
+}
+define_handle! {
+    /// Names a joint. Stays valid until that joint or one of its bodies is removed.
+    JointId
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct Slot<T> {
+    generation: u32,
+    value: Option<T>,
+}
+
+/// Values behind generational handles, iterated in slot order.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(bound(serialize = "T: Serialize", deserialize = "T: Deserialize<'de>"))]
+pub(crate) struct Arena<T, H> {
+    slots: Vec<Slot<T>>,
+    /// Vacant slots, last freed on top.
+    free: Vec<u32>,
+    #[serde(skip)]
+    handle: PhantomData<fn() -> H>,
+}
+
+impl<T, H> Default for Arena<T, H> {
+    fn default() -> Self {
+        Arena { slots: Vec::new(), free: Vec::new(), handle: PhantomData }
+    }
+}
+
+impl<T, H: Handle> Arena<T, H> {
+    /// One more than the largest slot ever used.
+    pub(crate) fn slot_count(&self) -> usize {
+        self.slots.len()
+    }
+
+    /// Number of values.
+    pub(crate) fn len(&self) -> usize {
+        self.slots.iter().filter(|slot| slot.value.is_some()).count()
+    }
+
+    /// Stores a value in the most recently freed slot, or in a new one.
+    pub(crate) fn insert(&mut self, value: T) -> H {
+        let handle = self.next_handle();
+        match self.free.pop() {
+            Some(index) => self.slots[index as usize].value = Some(value),
+            None => self.slots.push(Slot { generation: 0, value: Some(value) }),
+        }
+        handle
+    }
+
+    /// The handle that [`Arena::insert`] is going to give.
+    pub(crate) fn next_handle(&self) -> H {
+        match self.free.last() {
+            Some(&index) => H::from_parts(index, self.slots[index as usize].generation),
+            None => H::from_parts(u32::try_from(self.slots.len()).expect("fewer than 2^32 slots"), 0),
+        }
+    }
+
+    /// Takes a value out. Its handle never resolves again.
+    pub(crate) fn remove(&mut self, handle: H) -> Option<T> {
+        self.get(handle)?;
+        let slot = &mut self.slots[handle.slot() as usize];
+        let value = slot.value.take();
+        // A slot whose generations are used up is retired, not wrapped: an old handle must never resolve.
+        if slot.generation < u32::MAX {
+            slot.generation += 1;
+            self.free.push(handle.slot());
+        }
+        value
+    }
+
+    pub(crate) fn get(&self, handle: H) -> Option<&T> {
+        let slot = self.slots.get(handle.slot() as usize)?;
+        if slot.generation == handle.generation() { slot.value.as_ref() } else { None }
+    }
+
+    pub(crate) fn get_mut(&mut self, handle: H) -> Option<&mut T> {
+        let slot = self.slots.get_mut(handle.slot() as usize)?;
+        if slot.generation == handle.generation() { slot.value.as_mut() } else { None }
+    }
+
+    /// The value in an occupied slot.
+    ///
+    /// # Panics
+    /// If the slot is vacant: internal slot numbers never outlive their value.
+    #[inline]
+    pub(crate) fn at(&self, slot: u32) -> &T {
+        self.slots[slot as usize].value.as_ref().expect("an occupied slot")
+    }
+
+    /// The value in an occupied slot, to change.
+    ///
+    /// # Panics
+    /// If the slot is vacant: internal slot numbers never outlive their value.
+    #[inline]
+    pub(crate) fn at_mut(&mut self, slot: u32) -> &mut T {
+        self.slots[slot as usize].value.as_mut().expect("an occupied slot")
+    }
+
+    /// The value in a slot, if it is occupied.
+    pub(crate) fn get_slot(&self, slot: u32) -> Option<&T> {
+        self.slots.get(slot as usize)?.value.as_ref()
+    }
+
+    /// The handle of an occupied slot.
+    pub(crate) fn handle_at(&self, slot: u32) -> H {
+        H::from_parts(slot, self.slots[slot as usize].generation)
+    }
+
+    /// All values in slot order.
+    pub(crate) fn iter(&self) -> impl Iterator<Item = (H, &T)> {
+        self.slots.iter().zip(0u32..).filter_map(|(slot, index)| {
+            slot.value.as_ref().map(|value| (H::from_parts(index, slot.generation), value))
+        })
+    }
+
+    /// All values in slot order, to change.
+    pub(crate) fn iter_mut(&mut self) -> impl Iterator<Item = (H, &mut T)> {
+        self.slots.iter_mut().zip(0u32..).filter_map(|(slot, index)| {
+            let generation = slot.generation;
+            slot.value.as_mut().map(|value| (H::from_parts(index, generation), value))
+        })
+    }
+
+    /// Whether the free list names exactly the vacant slots that are not retired, each once.
+    pub(crate) fn is_consistent(&self) -> bool {
+        let mut listed = alloc::vec![false; self.slots.len()];
+        let all_vacant = self.free.iter().all(|&index| {
+            let fresh = listed.get_mut(index as usize).is_some_and(|seen| !core::mem::replace(seen, true));
+            fresh && self.slots[index as usize].value.is_none()
+        });
+        let none_lost = self.slots.iter().zip(listed).all(|(slot, listed)| {
+            listed || slot.value.is_some() || slot.generation == u32::MAX
+        });
+        all_vacant && none_lost
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_handle_never_resolves_to_a_successor() {
+        let mut arena: Arena<u32, BodyId> = Arena::default();
+        let first = arena.insert(1);
+        let second = arena.insert(2);
+        assert_eq!(arena.remove(first), Some(1));
+        assert_eq!(arena.remove(first), None);
+        let third = arena.insert(3);
+        assert_eq!(third.index(), first.index(), "the slot is reused");
+        assert_eq!(arena.get(first), None);
+        assert_eq!(arena.get(second), Some(&2));
+        assert_eq!(arena.get(third), Some(&3));
+        assert!(arena.is_consistent());
+    }
+
+    #[test]
+    fn a_slot_whose_generations_are_used_up_is_retired() {
+        let mut arena: Arena<u32, BodyId> = Arena::default();
+        let _ = arena.insert(1);
+        arena.slots[0].generation = u32::MAX;
+        let last = arena.handle_at(0);
+        assert_eq!(arena.remove(last), Some(1));
+        assert_eq!(arena.get(last), None);
+        assert_eq!(arena.insert(2).index(), 1, "a new slot");
+        assert!(arena.is_consistent());
+    }
+}

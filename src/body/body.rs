@@ -1,0 +1,418 @@
+//! Bodies: pose, velocity, mass and the forces waiting for the next tick.
+
+use alloc::vec::Vec;
+
+use serde::{Deserialize, Serialize};
+
+use super::arena::ShapeId;
+use super::error::WorldError;
+use super::mass::{MassProperties, MassSource};
+use super::shape::WORLD_EXTENT_MAX;
+use crate::fx;
+use crate::math::{
+    Angle, Fx, Length, Rot, Speed, Transform, Vec2, div_round, fx_mul, narrow, saturate, saturate_wide, widen,
+};
+
+/// What moves a body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum BodyKind {
+    /// Nothing: ground and walls.
+    Fixed,
+    /// Its velocity alone: lifts and doors. It pushes dynamic bodies and nothing pushes it.
+    Kinematic,
+    /// Forces, contacts and joints.
+    Dynamic,
+}
+
+/// What to spawn.
+///
+/// ```
+/// use lockstep2d::{body::BodyDef, fx};
+/// let ball = BodyDef::dynamic().position(fx!(0), fx!(10)).velocity(fx!(2), fx!(0));
+/// let ground = BodyDef::fixed();
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct BodyDef {
+    /// What moves it.
+    pub kind: BodyKind,
+    /// Its origin in the world, in metres.
+    pub position: Vec2<Fx>,
+    /// Its rotation.
+    pub angle: Angle,
+    /// Velocity of its centre of mass in m/s.
+    pub velocity: Vec2<Fx>,
+    /// Angular velocity in rad/s, counter-clockwise.
+    pub angular_velocity: Fx,
+    /// Where its mass comes from, if it is dynamic.
+    pub mass: MassSource,
+    /// Rate at which its velocity decays, per second, 0 to 1000.
+    pub linear_damping: Fx,
+    /// Rate at which its angular velocity decays, per second, 0 to 1000.
+    pub angular_damping: Fx,
+    /// How much of the world's gravity it feels, ±1000.
+    pub gravity_scale: Fx,
+    /// Not used by the engine, but part of the state and its hash.
+    pub user_data: u64,
+}
+
+impl BodyDef {
+    /// A body of some kind at rest at the origin.
+    #[must_use]
+    pub const fn new(kind: BodyKind) -> Self {
+        BodyDef {
+            kind,
+            position: Vec2::new(Fx::ZERO, Fx::ZERO),
+            angle: Angle::ZERO,
+            velocity: Vec2::new(Fx::ZERO, Fx::ZERO),
+            angular_velocity: Fx::ZERO,
+            mass: MassSource::Shapes,
+            linear_damping: Fx::ZERO,
+            angular_damping: Fx::ZERO,
+            gravity_scale: Fx::ONE,
+            user_data: 0,
+        }
+    }
+
+    /// A body that does not move.
+    #[must_use]
+    pub const fn fixed() -> Self {
+        Self::new(BodyKind::Fixed)
+    }
+
+    /// A body that only its velocity moves.
+    #[must_use]
+    pub const fn kinematic() -> Self {
+        Self::new(BodyKind::Kinematic)
+    }
+
+    /// A body that forces, contacts and joints move.
+    #[must_use]
+    pub const fn dynamic() -> Self {
+        Self::new(BodyKind::Dynamic)
+    }
+
+    /// Sets the origin in the world, in metres.
+    #[must_use]
+    pub const fn position(mut self, x: Fx, y: Fx) -> Self {
+        self.position = Vec2::new(x, y);
+        self
+    }
+
+    /// Sets the rotation.
+    #[must_use]
+    pub const fn angle(mut self, angle: Angle) -> Self {
+        self.angle = angle;
+        self
+    }
+
+    /// Sets the velocity of the centre of mass, in m/s.
+    #[must_use]
+    pub const fn velocity(mut self, x: Fx, y: Fx) -> Self {
+        self.velocity = Vec2::new(x, y);
+        self
+    }
+
+    /// Sets the angular velocity in rad/s, counter-clockwise.
+    #[must_use]
+    pub const fn angular_velocity(mut self, omega: Fx) -> Self {
+        self.angular_velocity = omega;
+        self
+    }
+
+    /// Sets where the mass comes from.
+    #[must_use]
+    pub const fn mass(mut self, mass: MassSource) -> Self {
+        self.mass = mass;
+        self
+    }
+
+    /// Sets how fast the velocity decays, per second.
+    #[must_use]
+    pub const fn linear_damping(mut self, rate: Fx) -> Self {
+        self.linear_damping = rate;
+        self
+    }
+
+    /// Sets how fast the angular velocity decays, per second.
+    #[must_use]
+    pub const fn angular_damping(mut self, rate: Fx) -> Self {
+        self.angular_damping = rate;
+        self
+    }
+
+    /// Sets how much of the world's gravity it feels.
+    #[must_use]
+    pub const fn gravity_scale(mut self, scale: Fx) -> Self {
+        self.gravity_scale = scale;
+        self
+    }
+
+    /// Sets the user data.
+    #[must_use]
+    pub const fn user_data(mut self, user_data: u64) -> Self {
+        self.user_data = user_data;
+        self
+    }
+
+    /// Checks everything but mass and speed, which depend on shapes and on the world.
+    pub(crate) fn validate(&self) -> Result<(), WorldError> {
+        check_position(self.position)?;
+        for damping in [self.linear_damping, self.angular_damping] {
+            if !(Fx::ZERO..=fx!(1000)).contains(&damping) {
+                return Err(WorldError::DampingOutOfRange { value: damping });
+            }
+        }
+        if !(fx!(-1000)..=fx!(1000)).contains(&self.gravity_scale) {
+            return Err(WorldError::DampingOutOfRange { value: self.gravity_scale });
+        }
+        Ok(())
+    }
+}
+
+/// Checks that a position is inside the world.
+pub(crate) fn check_position(position: Vec2<Fx>) -> Result<(), WorldError> {
+    for value in [position.x, position.y] {
+        if !(-WORLD_EXTENT_MAX..=WORLD_EXTENT_MAX).contains(&value) {
+            return Err(WorldError::PositionOutOfRange { value });
+        }
+    }
+    Ok(())
+}
+
+/// A body in the world.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Body {
+    pub(crate) kind: BodyKind,
+    /// Centre of mass in the world.
+    pub(crate) centre: Vec2<Fx>,
+    pub(crate) angle: Angle,
+    /// Of the centre of mass.
+    pub(crate) velocity: Vec2<Speed>,
+    /// `u = k w`.
+    pub(crate) spin: Speed,
+    /// In N, until the end of the next tick.
+    pub(crate) force: Vec2<Fx>,
+    /// About the centre of mass in N m, until the end of the next tick.
+    pub(crate) torque: Fx,
+    pub(crate) mass_source: MassSource,
+    pub(crate) mass: MassProperties,
+    pub(crate) linear_damping: Fx,
+    pub(crate) angular_damping: Fx,
+    pub(crate) gravity_scale: Fx,
+    /// In order of attachment.
+    pub(crate) shapes: Vec<ShapeId>,
+    pub(crate) user_data: u64,
+}
+
+impl Body {
+    /// A body without shapes yet.
+    pub(crate) fn new(def: &BodyDef, mass: MassProperties) -> Self {
+        let mut body = Body {
+            kind: def.kind,
+            centre: def.position,
+            angle: def.angle,
+            velocity: def.velocity.narrow(),
+            spin: Speed::ZERO,
+            force: Vec2::ZERO,
+            torque: Fx::ZERO,
+            mass_source: def.mass,
+            mass,
+            linear_damping: def.linear_damping,
+            angular_damping: def.angular_damping,
+            gravity_scale: def.gravity_scale,
+            shapes: Vec::new(),
+            user_data: def.user_data,
+        };
+        body.set_angular_velocity(def.angular_velocity);
+        body.set_transform(def.position, def.angle);
+        body
+    }
+
+    /// What moves it.
+    #[must_use]
+    pub const fn kind(&self) -> BodyKind {
+        self.kind
+    }
+
+    /// Whether forces, contacts and joints move it.
+    #[must_use]
+    pub const fn is_dynamic(&self) -> bool {
+        matches!(self.kind, BodyKind::Dynamic)
+    }
+
+    /// Its origin in the world, in metres.
+    #[must_use]
+    pub fn position(&self) -> Vec2<Fx> {
+        self.centre - self.rotation().apply_wide(self.mass.centre)
+    }
+
+    /// Its centre of mass in the world, in metres.
+    #[must_use]
+    pub const fn centre_of_mass(&self) -> Vec2<Fx> {
+        self.centre
+    }
+
+    /// Its centre of mass in its own frame, in metres.
+    #[must_use]
+    pub const fn local_centre_of_mass(&self) -> Vec2<Fx> {
+        self.mass.centre
+    }
+
+    /// Its rotation.
+    #[must_use]
+    pub const fn angle(&self) -> Angle {
+        self.angle
+    }
+
+    /// Cosine and sine of its rotation.
+    #[must_use]
+    pub fn rotation(&self) -> Rot {
+        Rot::from_angle(self.angle)
+    }
+
+    /// From its frame to the world.
+    #[must_use]
+    pub fn transform(&self) -> Transform {
+        Transform::new(self.position(), self.rotation())
+    }
+
+    /// Velocity of its centre of mass in m/s.
+    #[must_use]
+    pub fn velocity(&self) -> Vec2<Fx> {
+        self.velocity.widen()
+    }
+
+    /// Angular velocity in rad/s, counter-clockwise.
+    #[must_use]
+    pub fn angular_velocity(&self) -> Fx {
+        divide(widen(self.spin), self.mass.gyration)
+    }
+
+    /// Velocity in m/s of the point of the body that is at a world point.
+    #[must_use]
+    pub fn velocity_at(&self, point: Vec2<Fx>) -> Vec2<Fx> {
+        self.velocity() + (point - self.centre).perp().scale(self.angular_velocity())
+    }
+
+    /// Mass in kg; 0 unless it is dynamic.
+    #[must_use]
+    pub const fn mass(&self) -> Fx {
+        self.mass.mass
+    }
+
+    /// Moment of inertia about its centre of mass in kg m²; 0 unless it is dynamic.
+    #[must_use]
+    pub fn inertia(&self) -> Fx {
+        fx_mul(fx_mul(self.mass.mass, self.mass.gyration), self.mass.gyration)
+    }
+
+    /// Radius of gyration in metres, `sqrt(inertia / mass)`.
+    #[must_use]
+    pub const fn radius_of_gyration(&self) -> Fx {
+        self.mass.gyration
+    }
+
+    /// Kinetic energy in J.
+    #[must_use]
+    pub fn kinetic_energy(&self) -> Fx {
+        let v = self.velocity();
+        let u = widen(self.spin);
+        let squared = v.dot(v).saturating_add(fx_mul(u, u));
+        fx_mul(self.mass.mass, squared) / 2
+    }
+
+    /// Its shapes in order of attachment.
+    #[must_use]
+    pub fn shapes(&self) -> &[ShapeId] {
+        &self.shapes
+    }
+
+    /// Rate at which its velocity decays, per second.
+    #[must_use]
+    pub const fn linear_damping(&self) -> Fx {
+        self.linear_damping
+    }
+
+    /// Rate at which its angular velocity decays, per second.
+    #[must_use]
+    pub const fn angular_damping(&self) -> Fx {
+        self.angular_damping
+    }
+
+    /// How much of the world's gravity it feels.
+    #[must_use]
+    pub const fn gravity_scale(&self) -> Fx {
+        self.gravity_scale
+    }
+
+    /// The game's own number.
+    #[must_use]
+    pub const fn user_data(&self) -> u64 {
+        self.user_data
+    }
+
+    /// The lever arm in world axes from the centre of mass to a point of its frame, in metres.
+    pub(crate) fn arm(&self, rotation: Rot, local: Vec2<Fx>) -> Vec2<Length> {
+        rotation.apply_wide(local - self.mass.centre).narrow()
+    }
+
+    pub(crate) fn set_transform(&mut self, position: Vec2<Fx>, angle: Angle) {
+        self.angle = angle;
+        self.centre = position + self.rotation().apply_wide(self.mass.centre);
+    }
+
+    pub(crate) fn set_angular_velocity(&mut self, omega: Fx) {
+        self.spin = narrow(fx_mul(omega, self.mass.gyration));
+    }
+
+    /// Changes the mass, keeping pose, angular velocity and the velocity of the material.
+    pub(crate) fn set_mass(&mut self, mass: MassProperties) {
+        let (position, angle, omega) = (self.position(), self.angle, self.angular_velocity());
+        let old_centre = self.centre;
+        self.mass = mass;
+        self.set_transform(position, angle);
+        self.set_angular_velocity(omega);
+        let moved = (self.centre - old_centre).perp().scale(omega);
+        self.velocity = (self.velocity() + moved).narrow();
+    }
+
+    /// Adds a force in N at a world point until the end of the next tick.
+    pub(crate) fn apply_force(&mut self, force: Vec2<Fx>, point: Vec2<Fx>) {
+        self.force += force;
+        self.torque = self.torque.saturating_add((point - self.centre).cross(force));
+    }
+
+    /// Changes velocity at once by an impulse in N s at a world point: `dv = P / m`, `du = r x P / (m k)`.
+    pub(crate) fn apply_impulse(&mut self, impulse: Vec2<Fx>, point: Vec2<Fx>) {
+        let dv = |p: Fx| narrow::<fixed::types::extra::U21>(divide(p, self.mass.mass));
+        self.velocity += Vec2::new(dv(impulse.x), dv(impulse.y));
+        self.apply_angular_impulse((point - self.centre).cross(impulse));
+    }
+
+    /// Changes angular velocity at once by an angular impulse in N m s.
+    pub(crate) fn apply_angular_impulse(&mut self, impulse: Fx) {
+        self.spin = self.spin.saturating_add(narrow(divide(divide(impulse, self.mass.mass), self.mass.gyration)));
+    }
+
+    /// Change of velocity in one sub-step by the applied force, and of `u` by the torque, at `rate` sub-steps
+    /// per second: `dv = F / (m rate)`, `du = torque / (m k rate)`.
+    pub(crate) fn acceleration_step(&self, rate: u32) -> (Vec2<Speed>, Speed) {
+        let dv = |force: Fx| over_mass(force, self.mass.mass, rate);
+        let du = divide(self.torque, self.mass.gyration);
+        (Vec2::new(dv(self.force.x), dv(self.force.y)), over_mass(du, self.mass.mass, rate))
+    }
+}
+
+/// `a / b` of world quantities, rounded, saturated; 0 for a body without mass.
+fn divide(a: Fx, b: Fx) -> Fx {
+    crate::math::fx_div(a, b).unwrap_or(Fx::ZERO)
+}
+
+/// `force / (mass rate)` as a speed.
+fn over_mass(force: Fx, mass: Fx, rate: u32) -> Speed {
+    if force == Fx::ZERO || mass == Fx::ZERO {
+        return Speed::ZERO;
+    }
+    let bits = div_round(i128::from(force.to_bits()) << 21, i128::from(mass.to_bits()) * i128::from(rate));
+    Speed::from_bits(saturate(saturate_wide(bits)))
+}

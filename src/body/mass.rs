@@ -1,0 +1,266 @@
+//! Mass, centre of mass and radius of gyration from shapes and densities.
+//!
+//! The radius of gyration `k = sqrt(I / m)` takes the place of the moment of inertia everywhere: with `u = k w`
+//! linear and angular velocity are both speeds of the same mass (`docs/DESIGN.md`, rows). For a polygon about
+//! the origin, with `c_i = v_i x v_(i+1)` (D. Eberly, "Polyhedral Mass Properties", 2D case):
+//!
+//! ```text
+//! A    = 1/2 sum c_i
+//! m c  = 1/3 sum c_i (v_i + v_(i+1)) / (2 A)
+//! k^2  = 1/6 sum c_i (v_i.v_i + v_i.v_(i+1) + v_(i+1).v_(i+1)) / (2 A)
+//! ```
+//!
+//! All sums are exact integers; each quotient is rounded once.
+
+use serde::{Deserialize, Serialize};
+
+use super::error::WorldError;
+use super::polygon::Polygon;
+use super::shape::{Geometry, ShapeDef};
+use crate::fx;
+use crate::math::{Fx, PI, Reciprocal, Vec2, div_round, fx_mul, saturate_wide};
+
+/// Limits of a dynamic body's mass in kg.
+const MASS: core::ops::RangeInclusive<Fx> = fx!(0.00001)..=fx!(1073741824);
+/// Limits of a dynamic body's radius of gyration in metres.
+const GYRATION: core::ops::RangeInclusive<Fx> = fx!(0.002)..=fx!(512);
+
+/// Where a dynamic body's mass comes from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum MassSource {
+    /// From the area and density of its shapes.
+    #[default]
+    Shapes,
+    /// Given, whatever the shapes are.
+    Given {
+        /// Mass in kg, 1e-5 to 2^30.
+        mass: Fx,
+        /// Centre of mass in the body's frame, in metres, within ±256.
+        centre: Vec2<Fx>,
+        /// Radius of gyration about the centre of mass in metres, 0.002 to 512: `sqrt(inertia / mass)`.
+        gyration: Fx,
+    },
+}
+
+/// How a body resists being moved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct MassProperties {
+    /// Mass in kg; 0 for a body that no force moves.
+    pub(crate) mass: Fx,
+    /// Centre of mass in the body's frame.
+    pub(crate) centre: Vec2<Fx>,
+    /// Radius of gyration in metres. For a body that no force moves, any convenient length.
+    pub(crate) gyration: Fx,
+    /// `1 / gyration`.
+    pub(crate) inverse_gyration: Reciprocal,
+}
+
+impl MassProperties {
+    /// The properties of a body that no force moves. Its `k` is at least the reach of its shapes, so that the
+    /// lever ratio of any contact is at most about 1.
+    pub(crate) fn immovable<'a>(shapes: impl Iterator<Item = &'a ShapeDef>) -> Self {
+        let reach = shapes.fold(Fx::ONE, |reach, shape| {
+            let bounds = shape.geometry.local_bounds().translated(shape.offset);
+            let corner = bounds.upper.max(-bounds.lower);
+            reach.max(corner.x.saturating_add(corner.y))
+        });
+        Self::new(Fx::ZERO, Vec2::ZERO, reach.min(*GYRATION.end()))
+    }
+
+    /// The properties of a dynamic body.
+    pub(crate) fn dynamic<'a>(
+        source: MassSource,
+        shapes: impl Iterator<Item = &'a ShapeDef> + Clone,
+    ) -> Result<Self, WorldError> {
+        let properties = match source {
+            MassSource::Given { mass, centre, gyration } => {
+                for value in [centre.x, centre.y] {
+                    if !(-super::OFFSET_MAX..=super::OFFSET_MAX).contains(&value) {
+                        return Err(WorldError::OffsetOutOfRange { value });
+                    }
+                }
+                check_gyration(gyration)?;
+                Self::new(mass, centre, gyration)
+            }
+            MassSource::Shapes => Self::from_parts(shapes.map(Part::of_shape))?,
+        };
+        if !MASS.contains(&properties.mass) {
+            return Err(WorldError::MassOutOfRange { value: properties.mass });
+        }
+        Ok(properties)
+    }
+
+    fn new(mass: Fx, centre: Vec2<Fx>, gyration: Fx) -> Self {
+        MassProperties { mass, centre, gyration, inverse_gyration: Reciprocal::of(gyration) }
+    }
+
+    /// Sums the parts about their common centre (parallel axis theorem).
+    fn from_parts(parts: impl Iterator<Item = Part> + Clone) -> Result<Self, WorldError> {
+        let mass: i128 = parts.clone().map(|part| i128::from(part.mass.to_bits())).sum();
+        let total = Fx::from_bits(saturate_wide(mass));
+        if !MASS.contains(&total) {
+            return Err(WorldError::MassOutOfRange { value: total });
+        }
+        let weighted = |coordinate: fn(&Part) -> Fx| {
+            let sum: i128 = parts
+                .clone()
+                .map(|part| i128::from(part.mass.to_bits()) * i128::from(coordinate(&part).to_bits()))
+                .sum();
+            Fx::from_bits(saturate_wide(div_round(sum, mass)))
+        };
+        let centre = Vec2::new(weighted(|part| part.centre.x), weighted(|part| part.centre.y));
+        // 44 fraction bits: two lengths multiplied. Mass has at most 62 bits and k² + d² 63, well within 128.
+        let moment: i128 = parts
+            .map(|part| {
+                let arm = part.centre - centre;
+                let (x, y) = (i128::from(arm.x.to_bits()), i128::from(arm.y.to_bits()));
+                i128::from(part.mass.to_bits()) * (part.gyration_squared + ((x * x + y * y) >> 20))
+            })
+            .sum();
+        let gyration_squared = div_round(moment, mass).unsigned_abs();
+        let bits = (gyration_squared << 20).isqrt();
+        let gyration = Fx::from_bits(i64::try_from(bits).unwrap_or(i64::MAX));
+        check_gyration(gyration)?;
+        Ok(Self::new(total, centre, gyration))
+    }
+}
+
+fn check_gyration(gyration: Fx) -> Result<(), WorldError> {
+    let inside = GYRATION.contains(&gyration);
+    if inside { Ok(()) } else { Err(WorldError::GyrationOutOfRange { value: gyration }) }
+}
+
+/// One shape's share of a body's mass.
+struct Part {
+    mass: Fx,
+    /// In the body's frame.
+    centre: Vec2<Fx>,
+    /// About its own centre of mass, in m², with 44 fraction bits.
+    gyration_squared: i128,
+}
+
+impl Part {
+    fn of_shape(shape: &ShapeDef) -> Part {
+        match &shape.geometry {
+            Geometry::Circle { radius } => {
+                let area = fx_mul(PI, fx_mul(*radius, *radius));
+                let r = i128::from(radius.to_bits());
+                // k^2 = r^2 / 2
+                let part = Part { mass: fx_mul(area, shape.density), centre: shape.offset, gyration_squared: 0 };
+                Part { gyration_squared: (r * r) >> 21, ..part }
+            }
+            Geometry::Segment { .. } => Part { mass: Fx::ZERO, centre: shape.offset, gyration_squared: 0 },
+            Geometry::Polygon(polygon) => Part::of_polygon(polygon, shape),
+        }
+    }
+
+    fn of_polygon(polygon: &Polygon, shape: &ShapeDef) -> Part {
+        let (points, count) = outline(polygon);
+        let points = &points[..count];
+        // Raw units of `Length`: 22 fraction bits each, so 44 in the area, 66 and 88 in the moments.
+        let (mut area, mut first_x, mut first_y, mut second) = (0i128, 0i128, 0i128, 0i128);
+        for (i, &(x1, y1)) in points.iter().enumerate() {
+            let (x2, y2) = points[(i + 1) % count];
+            let cross = x1 * y2 - y1 * x2;
+            area += cross;
+            first_x += cross * (x1 + x2);
+            first_y += cross * (y1 + y2);
+            second += cross * (x1 * x1 + x1 * x2 + x2 * x2 + y1 * y1 + y1 * y2 + y2 * y2);
+        }
+        let centre_of = |first: i128| div_round(first << 10, 3 * area);
+        let (x, y) = (centre_of(first_x), centre_of(first_y));
+        let about_origin = div_round(second, 6 * area);
+        let gyration_squared = (about_origin - ((x * x + y * y) >> 20)).max(0);
+        let centre = Vec2::new(Fx::from_bits(saturate_wide(x)), Fx::from_bits(saturate_wide(y)));
+        let area = Fx::from_bits(saturate_wide(area >> 13));
+        Part { mass: fx_mul(area, shape.density), centre: shape.offset + centre, gyration_squared }
+    }
+}
+
+/// The outline that stands for a polygon's mass, in raw units of `Length`: a rounded corner at distance `r` is
+/// replaced by the point at distance `r` on its bisector. For a box of half extent `h` the area is short by less
+/// than `2.1 h r + r²`, exact without a radius.
+fn outline(polygon: &Polygon) -> ([(i128, i128); 8], usize) {
+    let vertices = polygon.vertices();
+    let normals = polygon.normals();
+    let count = vertices.len();
+    let mut points = [(0, 0); 8];
+    for i in 0..count {
+        let (before, after) = (normals[(i + count - 1) % count], normals[i]);
+        // Halved, because the sum of two unit vectors does not fit their format.
+        let half = |a: crate::math::Unit, b: crate::math::Unit| crate::math::Unit::from_bits((a.to_bits() >> 1) + (b.to_bits() >> 1));
+        let bisector = Vec2::new(half(before.x, after.x), half(before.y, after.y)).normalized().unwrap_or(after);
+        let corner = vertices[i] + bisector.scale(polygon.radius());
+        points[i] = (corner.x.to_bits().into(), corner.y.to_bits().into());
+    }
+    (points, count)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn close(a: Fx, b: Fx) {
+        assert!((a - b).abs() < fx!(0.00001), "{a} is not {b}");
+    }
+
+    fn dynamic(shapes: &[ShapeDef]) -> Result<MassProperties, WorldError> {
+        MassProperties::dynamic(MassSource::Shapes, shapes.iter())
+    }
+
+    #[test]
+    fn textbook_shapes_have_textbook_masses() {
+        let rectangle = ShapeDef::new(Polygon::rectangle(fx!(1), fx!(0.5)).unwrap()).density(fx!(3));
+        let properties = dynamic(&[rectangle]).unwrap();
+        close(properties.mass, fx!(6));
+        // k^2 = (w^2 + h^2) / 12 = 5 / 12
+        close(fx_mul(properties.gyration, properties.gyration), fx!(5 / 12));
+
+        let disc = ShapeDef::new(Geometry::circle(fx!(2)).unwrap()).offset(fx!(1), fx!(-1));
+        let properties = dynamic(&[disc]).unwrap();
+        close(properties.mass, fx_mul(fx!(4), PI));
+        close(fx_mul(properties.gyration, properties.gyration), fx!(2));
+        assert_eq!(properties.centre, disc.offset);
+
+        let corner = Vec2::new;
+        let triangle = Polygon::new(&[corner(fx!(0), fx!(0)), corner(fx!(3), fx!(0)), corner(fx!(0), fx!(3))]).unwrap();
+        let properties = dynamic(&[ShapeDef::new(triangle)]).unwrap();
+        close(properties.mass, fx!(4.5));
+        close(properties.centre.x, fx!(1));
+        close(properties.centre.y, fx!(1));
+        // k^2 = (a^2 + b^2) / 18 = 1
+        close(properties.gyration, fx!(1));
+    }
+
+    #[test]
+    fn two_halves_weigh_like_the_whole() {
+        let half = |x| ShapeDef::new(Polygon::rectangle(fx!(0.5), fx!(0.5)).unwrap()).offset(x, fx!(4));
+        let halves = dynamic(&[half(fx!(-0.5)), half(fx!(0.5))]).unwrap();
+        let whole = ShapeDef::new(Polygon::rectangle(fx!(1), fx!(0.5)).unwrap()).offset(fx!(0), fx!(4));
+        let whole = dynamic(&[whole]).unwrap();
+        close(halves.mass, whole.mass);
+        close(halves.gyration, whole.gyration);
+        close(halves.centre.y, whole.centre.y);
+    }
+
+    #[test]
+    fn small_and_large_bodies_keep_their_proportions() {
+        for half in [fx!(0.005), fx!(0.05), fx!(5), fx!(100)] {
+            let square = ShapeDef::new(Polygon::square(half).unwrap());
+            let gyration = dynamic(&[square]).unwrap().gyration;
+            // k = 2 h / sqrt(6)
+            let expected = fx_mul(half, fx!(0.816496580928));
+            let error = (gyration - expected).abs();
+            assert!(error <= fx_mul(expected, fx!(0.0001)), "half {half}: {gyration} is not {expected}");
+        }
+    }
+
+    #[test]
+    fn weightless_and_overweight_bodies_are_refused() {
+        let line = ShapeDef::new(Geometry::segment(Vec2::ZERO, Vec2::new(fx!(1), fx!(0))).unwrap());
+        assert!(matches!(dynamic(&[line]), Err(WorldError::MassOutOfRange { .. })));
+        assert!(matches!(dynamic(&[]), Err(WorldError::MassOutOfRange { .. })));
+        let lead = ShapeDef::new(Polygon::square(fx!(100)).unwrap()).density(fx!(100000));
+        assert!(matches!(dynamic(&[lead]), Err(WorldError::MassOutOfRange { .. })));
+    }
+}

@@ -1,0 +1,120 @@
+//! Surface properties and how those of two touching shapes combine.
+
+use serde::{Deserialize, Serialize};
+
+use crate::fx;
+use crate::math::{Fx, fx_mul};
+
+/// How two values of a surface property become one. Where two shapes disagree, the later of the two rules in
+/// this list is used.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+pub enum Mixing {
+    /// `(a + b) / 2`.
+    Average,
+    /// `sqrt(a b)`.
+    GeometricMean,
+    /// The smaller value.
+    Minimum,
+    /// `a b`.
+    Product,
+    /// The larger value.
+    Maximum,
+}
+
+impl Mixing {
+    fn mix(self, a: Fx, b: Fx) -> Fx {
+        match self {
+            Mixing::Average => Fx::from_bits((a.to_bits() >> 1) + (b.to_bits() >> 1)),
+            Mixing::GeometricMean if a == b => a,
+            Mixing::GeometricMean => geometric_mean(a, b),
+            Mixing::Minimum => a.min(b),
+            Mixing::Product => fx_mul(a, b),
+            Mixing::Maximum => a.max(b),
+        }
+    }
+}
+
+/// `sqrt(a b)` of two values that are not negative, rounded down: the square root of 64 fraction bits has 32.
+fn geometric_mean(a: Fx, b: Fx) -> Fx {
+    let product = u128::from(a.to_bits().unsigned_abs()) * u128::from(b.to_bits().unsigned_abs());
+    Fx::from_bits(i64::try_from(product.isqrt()).expect("the mean of two Fx is an Fx"))
+}
+
+/// Surface properties of a shape.
+///
+/// ```
+/// use lockstep2d::{fx, body::Material};
+/// let ice = Material { friction: fx!(0.05), ..Material::default() };
+/// assert!(ice.is_valid());
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Material {
+    /// Coulomb friction coefficient, 0 to 16.
+    pub friction: Fx,
+    /// How the friction of two shapes combines.
+    pub friction_mixing: Mixing,
+    /// Fraction of the approach speed that a bounce returns, 0 to 1.
+    pub restitution: Fx,
+    /// How the restitution of two shapes combines.
+    pub restitution_mixing: Mixing,
+}
+
+impl Default for Material {
+    /// Friction 0.6 mixed as the geometric mean, no restitution, mixed as the maximum.
+    fn default() -> Self {
+        Material {
+            friction: fx!(0.6),
+            friction_mixing: Mixing::GeometricMean,
+            restitution: Fx::ZERO,
+            restitution_mixing: Mixing::Maximum,
+        }
+    }
+}
+
+impl Material {
+    /// The largest friction coefficient.
+    pub const FRICTION_MAX: Fx = fx!(16);
+
+    /// Whether friction and restitution are in range.
+    #[must_use]
+    pub fn is_valid(&self) -> bool {
+        let Material { friction, friction_mixing: _, restitution, restitution_mixing: _ } = *self;
+        (Fx::ZERO..=Self::FRICTION_MAX).contains(&friction) && (Fx::ZERO..=Fx::ONE).contains(&restitution)
+    }
+
+    /// The friction between two surfaces.
+    #[must_use]
+    pub fn mixed_friction(&self, other: &Material) -> Fx {
+        self.friction_mixing.max(other.friction_mixing).mix(self.friction, other.friction)
+    }
+
+    /// The restitution between two surfaces.
+    #[must_use]
+    pub fn mixed_restitution(&self, other: &Material) -> Fx {
+        self.restitution_mixing.max(other.restitution_mixing).mix(self.restitution, other.restitution)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn mixing_follows_each_rule_and_the_later_rule_wins() {
+        let (a, b) = (fx!(0.25), fx!(1));
+        let expected = [
+            (Mixing::Average, fx!(0.625)),
+            (Mixing::GeometricMean, fx!(0.5)),
+            (Mixing::Minimum, fx!(0.25)),
+            (Mixing::Product, fx!(0.25)),
+            (Mixing::Maximum, fx!(1)),
+        ];
+        for (rule, value) in expected {
+            assert_eq!(rule.mix(a, b), value, "{rule:?}");
+            assert_eq!(rule.mix(b, a), value, "{rule:?} is symmetric");
+        }
+        let average = Material { friction: a, friction_mixing: Mixing::Average, ..Material::default() };
+        let maximum = Material { friction: b, friction_mixing: Mixing::Maximum, ..Material::default() };
+        assert_eq!(average.mixed_friction(&maximum), b);
+    }
+}

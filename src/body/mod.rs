@@ -1,0 +1,22 @@
+//! Bodies, shapes and what they are made of, behind generational handles.
+
+mod arena;
+#[expect(clippy::module_inception, reason = "the file that holds `Body`")]
+mod body;
+mod error;
+mod filter;
+mod mass;
+mod material;
+mod polygon;
+mod shape;
+
+pub(crate) use arena::{Arena, Handle};
+pub use arena::{BodyId, JointId, ShapeId};
+pub use body::{Body, BodyDef, BodyKind};
+pub(crate) use body::check_position;
+pub use error::{GeometryError, WorldError};
+pub use filter::Filter;
+pub use mass::{MassProperties, MassSource};
+pub use material::{Material, Mixing};
+pub use polygon::{POLYGON_VERTICES_MAX, Polygon, SHAPE_EXTENT_MAX};
+pub use shape::{DENSITY_MAX, Geometry, OFFSET_MAX, Shape, ShapeDef, WORLD_EXTENT_MAX};

@@ -1,0 +1,320 @@
+//! Convex polygons of 3 to 8 vertices, optionally rounded.
+
+use alloc::vec::Vec;
+
+use serde::{Deserialize, Serialize};
+
+use super::error::GeometryError;
+use crate::math::{Angle, Fx, Length, Rot, Unit, Vec2};
+
+/// The largest number of vertices of a polygon.
+pub const POLYGON_VERTICES_MAX: usize = 8;
+
+/// A shape may reach this far from its centre on each axis of its own frame, radius included, in metres: turned
+/// by any angle it stays within 170 m, and twice that, the largest distance between the centres of two shapes
+/// that touch, is within the range of [`Length`].
+pub const SHAPE_EXTENT_MAX: Fx = crate::fx!(120);
+
+/// Edges shorter than this, in metres, have no reliable direction: about a thousand units of [`Length`].
+const EDGE_MIN: Fx = crate::fx!(0.0005);
+
+/// A convex polygon, counter-clockwise, about its shape's own centre. With a radius its corners and edges are
+/// rounded outwards by it.
+///
+/// ```
+/// use lockstep2d::{body::Polygon, fx, math::Vec2};
+/// let crate_ = Polygon::rectangle(fx!(0.5), fx!(0.25))?;
+/// let kite = Polygon::hull(&[
+///     Vec2::new(fx!(0), fx!(1)),
+///     Vec2::new(fx!(-0.5), fx!(0)),
+///     Vec2::new(fx!(0), fx!(-0.5)),
+///     Vec2::new(fx!(0.5), fx!(0)),
+/// ])?;
+/// assert_eq!((crate_.vertices().len(), kite.vertices().len()), (4, 4));
+/// # Ok::<(), lockstep2d::body::GeometryError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(into = "Repr", try_from = "Repr")]
+pub struct Polygon {
+    count: u8,
+    vertices: [Vec2<Length>; POLYGON_VERTICES_MAX],
+    /// `normals[i]` points out of the edge from vertex `i` to the next one.
+    normals: [Vec2<Unit>; POLYGON_VERTICES_MAX],
+    radius: Length,
+}
+
+/// What is stored of a polygon. Normals follow from it, so that no file can hold wrong ones.
+#[derive(Serialize, Deserialize)]
+struct Repr {
+    vertices: Vec<Vec2<Length>>,
+    radius: Length,
+}
+
+impl From<Polygon> for Repr {
+    fn from(polygon: Polygon) -> Self {
+        Repr { vertices: polygon.vertices().to_vec(), radius: polygon.radius }
+    }
+}
+
+impl TryFrom<Repr> for Polygon {
+    type Error = GeometryError;
+    fn try_from(repr: Repr) -> Result<Self, GeometryError> {
+        Polygon::from_vertices(&repr.vertices)?.rounded(repr.radius.into())
+    }
+}
+
+impl Polygon {
+    /// A polygon from its vertices in counter-clockwise order, in metres from the shape's centre.
+    ///
+    /// # Errors
+    /// When the vertices are not 3 to 8, out of range, closer than 0.5 mm, clockwise, collinear or not convex.
+    pub fn new(vertices: &[Vec2<Fx>]) -> Result<Self, GeometryError> {
+        for &vertex in vertices {
+            check_vertex(vertex)?;
+        }
+        let narrow: Vec<Vec2<Length>> = vertices.iter().map(|vertex| vertex.narrow()).collect();
+        Self::from_vertices(&narrow)
+    }
+
+    /// The convex hull of some points. Points inside it or on its edges are left out.
+    ///
+    /// # Errors
+    /// When a point is out of range, or the hull has no area or more than 8 vertices.
+    pub fn hull(points: &[Vec2<Fx>]) -> Result<Self, GeometryError> {
+        for &point in points {
+            check_vertex(point)?;
+        }
+        let mut sorted: Vec<Vec2<Length>> = points.iter().map(|point| point.narrow()).collect();
+        sorted.sort_unstable_by_key(|point| (point.x, point.y));
+        sorted.dedup();
+        Self::from_vertices(&monotone_chain(&sorted))
+    }
+
+    /// A rectangle about the shape's centre from its half extents, in metres.
+    ///
+    /// # Errors
+    /// When a half extent is out of range.
+    pub fn rectangle(half_width: Fx, half_height: Fx) -> Result<Self, GeometryError> {
+        let (x, y) = (half_width, half_height);
+        if x <= Fx::ZERO || y <= Fx::ZERO {
+            return Err(GeometryError::SizeOutOfRange { value: x.min(y) });
+        }
+        let corner = |x, y| Vec2::new(x, y);
+        Self::new(&[corner(-x, -y), corner(x, -y), corner(x, y), corner(-x, y)])
+    }
+
+    /// A square about the shape's centre from its half extent, in metres.
+    ///
+    /// # Errors
+    /// When the half extent is out of range.
+    pub fn square(half_extent: Fx) -> Result<Self, GeometryError> {
+        Self::rectangle(half_extent, half_extent)
+    }
+
+    /// A regular polygon with its first vertex to the right of the centre.
+    ///
+    /// # Errors
+    /// When there are not 3 to 8 vertices or the radius is out of range.
+    pub fn regular(vertex_count: u32, radius: Fx) -> Result<Self, GeometryError> {
+        if !(3..=8).contains(&vertex_count) {
+            return Err(GeometryError::VertexCount { count: u64::from(vertex_count) });
+        }
+        let points: Vec<_> = (0..u64::from(vertex_count))
+            .map(|i| {
+                let turn = (i << 32) / u64::from(vertex_count);
+                let angle = Angle::from_bits(u32::try_from(turn).expect("less than a turn"));
+                Rot::from_angle(angle).apply_wide(Vec2::new(radius, Fx::ZERO))
+            })
+            .collect();
+        Self::new(&points)
+    }
+
+    /// The polygon turned about the shape's centre.
+    ///
+    /// # Errors
+    /// When a vertex leaves the range.
+    pub fn rotated(&self, angle: Angle) -> Result<Self, GeometryError> {
+        let rotation = Rot::from_angle(angle);
+        self.mapped(|vertex| rotation.apply_wide(vertex))
+    }
+
+    /// The polygon moved relative to the shape's centre.
+    ///
+    /// # Errors
+    /// When a vertex leaves the range.
+    pub fn translated(&self, by: Vec2<Fx>) -> Result<Self, GeometryError> {
+        self.mapped(|vertex| vertex + by)
+    }
+
+    fn mapped(&self, map: impl Fn(Vec2<Fx>) -> Vec2<Fx>) -> Result<Self, GeometryError> {
+        let points: Vec<_> = self.vertices().iter().map(|vertex| map(vertex.widen())).collect();
+        Self::new(&points)?.rounded(self.radius.into())
+    }
+
+    /// The polygon with its outline moved outwards by `radius` metres.
+    ///
+    /// # Errors
+    /// When the radius is negative, or the outline reaches further than 120 m on some axis.
+    pub fn rounded(mut self, radius: Fx) -> Result<Self, GeometryError> {
+        let reach = self.vertices().iter().fold(Fx::ZERO, |reach, vertex| {
+            let vertex = vertex.widen();
+            reach.max(vertex.x.saturating_abs()).max(vertex.y.saturating_abs())
+        });
+        if radius < Fx::ZERO || reach.saturating_add(radius) > SHAPE_EXTENT_MAX {
+            return Err(GeometryError::SizeOutOfRange { value: radius });
+        }
+        self.radius = crate::math::narrow(radius);
+        Ok(self)
+    }
+
+    /// The vertices, counter-clockwise.
+    #[must_use]
+    pub fn vertices(&self) -> &[Vec2<Length>] {
+        &self.vertices[..usize::from(self.count)]
+    }
+
+    /// The outward normals; `normals()[i]` belongs to the edge from vertex `i` to the next one.
+    #[must_use]
+    pub fn normals(&self) -> &[Vec2<Unit>] {
+        &self.normals[..usize::from(self.count)]
+    }
+
+    /// The rounding radius in metres.
+    #[must_use]
+    pub const fn radius(&self) -> Length {
+        self.radius
+    }
+
+    fn from_vertices(points: &[Vec2<Length>]) -> Result<Self, GeometryError> {
+        let count = points.len();
+        if !(3..=POLYGON_VERTICES_MAX).contains(&count) {
+            return Err(GeometryError::VertexCount { count: count as u64 });
+        }
+        let mut vertices = [Vec2::ZERO; POLYGON_VERTICES_MAX];
+        let mut normals = [Vec2::ZERO; POLYGON_VERTICES_MAX];
+        for (i, &point) in points.iter().enumerate() {
+            check_vertex(point.widen())?;
+            let next = points[(i + 1) % count];
+            let edge = next - point;
+            if edge.widen().length() < EDGE_MIN {
+                return Err(GeometryError::ShortEdge { vertex: i as u64 });
+            }
+            // Convex means: every other vertex lies strictly to the left of this edge. Testing all of them, not
+            // only the next corner, also refuses star shapes that wind around twice.
+            let strictly_left = |&other: &Vec2<Length>| {
+                other == point || other == next || wide_cross(edge, other - point) > 0
+            };
+            if !points.iter().all(strictly_left) {
+                return Err(GeometryError::NotConvex { vertex: i as u64 });
+            }
+            vertices[i] = point;
+            normals[i] = -edge.perp().normalized().ok_or(GeometryError::ShortEdge { vertex: i as u64 })?;
+        }
+        #[expect(clippy::cast_possible_truncation, reason = "at most 8, checked above")]
+        Ok(Polygon { count: count as u8, vertices, normals, radius: Length::ZERO })
+    }
+}
+
+fn check_vertex(vertex: Vec2<Fx>) -> Result<(), GeometryError> {
+    let range = -SHAPE_EXTENT_MAX..=SHAPE_EXTENT_MAX;
+    for value in [vertex.x, vertex.y] {
+        if !range.contains(&value) {
+            return Err(GeometryError::SizeOutOfRange { value });
+        }
+    }
+    Ok(())
+}
+
+/// The exact cross product of two differences of vertices.
+fn wide_cross(a: Vec2<Length>, b: Vec2<Length>) -> i128 {
+    i128::from(a.x.to_bits()) * i128::from(b.y.to_bits()) - i128::from(a.y.to_bits()) * i128::from(b.x.to_bits())
+}
+
+/// Andrew's monotone chain: the hull of sorted, distinct points, counter-clockwise from the leftmost.
+fn monotone_chain(sorted: &[Vec2<Length>]) -> Vec<Vec2<Length>> {
+    let mut hull = half_hull(sorted.iter());
+    let upper = half_hull(sorted.iter().rev());
+    hull.pop();
+    hull.extend(upper);
+    hull.pop();
+    hull
+}
+
+fn half_hull<'a>(points: impl Iterator<Item = &'a Vec2<Length>>) -> Vec<Vec2<Length>> {
+    let mut chain: Vec<Vec2<Length>> = Vec::new();
+    for &point in points {
+        while let [.., a, b] = chain[..] {
+            if wide_cross(b - a, point - a) > 0 {
+                break;
+            }
+            chain.pop();
+        }
+        chain.push(point);
+    }
+    chain
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fx;
+    use crate::math::Rng;
+
+    fn point(x: i32, y: i32) -> Vec2<Fx> {
+        Vec2::new(x.into(), y.into())
+    }
+
+    #[test]
+    fn bad_outlines_are_refused_with_the_reason() {
+        let new = |points: &[(i32, i32)]| {
+            Polygon::new(&points.iter().map(|&(x, y)| point(x, y)).collect::<Vec<_>>())
+        };
+        assert_eq!(new(&[(0, 0), (1, 0)]), Err(GeometryError::VertexCount { count: 2 }));
+        assert_eq!(new(&[(0, 0); 9]), Err(GeometryError::VertexCount { count: 9 }));
+        let clockwise = [(0, 0), (0, 1), (1, 0)];
+        assert!(matches!(new(&clockwise), Err(GeometryError::NotConvex { .. })));
+        let collinear = [(0, 0), (1, 0), (2, 0)];
+        assert!(matches!(new(&collinear), Err(GeometryError::NotConvex { .. })));
+        let concave = [(0, 0), (4, 0), (1, 1), (0, 4)];
+        assert!(matches!(new(&concave), Err(GeometryError::NotConvex { .. })));
+        let pentagram = [(0, 10), (-6, -8), (9, 3), (-9, 3), (6, -8)];
+        assert!(matches!(new(&pentagram), Err(GeometryError::NotConvex { .. })));
+        let doubled = [(0, 0), (0, 0), (1, 0), (0, 1)];
+        assert!(matches!(new(&doubled), Err(GeometryError::ShortEdge { .. })));
+        assert!(matches!(new(&[(0, 0), (121, 0), (0, 1)]), Err(GeometryError::SizeOutOfRange { .. })));
+        assert!(Polygon::rectangle(fx!(0), fx!(1)).is_err());
+        assert!(Polygon::rectangle(fx!(-1), fx!(1)).is_err());
+    }
+
+    #[test]
+    fn a_hull_is_the_smallest_convex_polygon_around_the_points() {
+        let mut rng = Rng::new(7);
+        let mut built = 0;
+        for _ in 0..2000 {
+            let points: Vec<_> = (0..rng.below(12) + 3)
+                .map(|_| Vec2::new(rng.range(fx!(-5), fx!(5)), rng.range(fx!(-5), fx!(5))))
+                .collect();
+            let Ok(hull) = Polygon::hull(&points) else { continue };
+            built += 1;
+            for &vertex in hull.vertices() {
+                assert!(points.iter().any(|point| point.narrow() == vertex), "made of the points");
+            }
+            for (&vertex, &normal) in hull.vertices().iter().zip(hull.normals()) {
+                for point in &points {
+                    let outside: Length = (point.narrow() - vertex).dot(normal);
+                    assert!(outside <= Length::from_bits(2), "{outside} outside");
+                }
+            }
+        }
+        assert!(built > 1500, "only {built} hulls");
+    }
+
+    #[test]
+    fn stored_bytes_are_checked_like_any_other_input() {
+        let square = Polygon::square(fx!(1)).unwrap().rounded(fx!(0.25)).unwrap();
+        let bytes = crate::codec::encode(&square);
+        assert_eq!(crate::codec::decode::<Polygon>(&bytes), Ok(square));
+        let concave = Repr { vertices: [(0, 0), (4, 0), (1, 1), (0, 4)].map(|(x, y)| point(x, y).narrow()).to_vec(), radius: Length::ZERO };
+        assert!(crate::codec::decode::<Polygon>(&crate::codec::encode(&concave)).is_err());
+    }
+}

@@ -1,0 +1,273 @@
+//! Shapes: geometry attached to a body, with material and filter.
+
+use serde::{Deserialize, Serialize};
+
+use super::arena::BodyId;
+use super::error::{GeometryError, WorldError};
+use super::filter::Filter;
+use super::material::Material;
+use super::polygon::{Polygon, SHAPE_EXTENT_MAX};
+use crate::fx;
+use crate::math::{Aabb, Fx, Vec2};
+
+/// Coordinates in the world stay within ± this many metres, so that sums of a few of them cannot overflow.
+pub const WORLD_EXTENT_MAX: Fx = fx!(1073741824);
+
+/// A shape's offset from the origin of a body that can move, in metres: with [`SHAPE_EXTENT_MAX`] on top, lever
+/// arms stay within the range of `Length`.
+pub const OFFSET_MAX: Fx = fx!(256);
+
+/// The largest density in kg/m².
+pub const DENSITY_MAX: Fx = fx!(1048576);
+
+/// The shortest circle radius and segment length in metres.
+const SIZE_MIN: Fx = fx!(0.002);
+
+/// What a shape looks like, about its own centre.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Geometry {
+    /// A disc about the shape's centre.
+    Circle {
+        /// 0.002 to 120 m.
+        radius: Fx,
+    },
+    /// A line between two points, solid from both sides. It has no area, and so no mass. Segments do not collide
+    /// with each other. May be as long as the world.
+    Segment {
+        /// One end, in metres from the shape's centre.
+        a: Vec2<Fx>,
+        /// The other end.
+        b: Vec2<Fx>,
+    },
+    /// A convex polygon, optionally rounded.
+    Polygon(Polygon),
+}
+
+impl From<Polygon> for Geometry {
+    fn from(polygon: Polygon) -> Self {
+        Geometry::Polygon(polygon)
+    }
+}
+
+impl Geometry {
+    /// A circle from its radius in metres.
+    ///
+    /// # Errors
+    /// When the radius is not within 0.002 to 120 m.
+    pub fn circle(radius: Fx) -> Result<Self, GeometryError> {
+        let circle = Geometry::Circle { radius };
+        circle.validate().map(|()| circle)
+    }
+
+    /// A segment from its ends, in metres from the shape's centre.
+    ///
+    /// # Errors
+    /// When it is shorter than 2 mm or leaves the world.
+    pub fn segment(a: Vec2<Fx>, b: Vec2<Fx>) -> Result<Self, GeometryError> {
+        let segment = Geometry::Segment { a, b };
+        segment.validate().map(|()| segment)
+    }
+
+    /// Checks sizes. A [`Polygon`] is valid by construction.
+    pub(crate) fn validate(&self) -> Result<(), GeometryError> {
+        match *self {
+            Geometry::Circle { radius } => {
+                if !(SIZE_MIN..=SHAPE_EXTENT_MAX).contains(&radius) {
+                    return Err(GeometryError::SizeOutOfRange { value: radius });
+                }
+            }
+            Geometry::Segment { a, b } => {
+                let far = [a.x, a.y, b.x, b.y].into_iter().find(|c| c.unsigned_abs() > WORLD_EXTENT_MAX.unsigned_abs());
+                if let Some(value) = far {
+                    return Err(GeometryError::SizeOutOfRange { value });
+                }
+                let length = a.distance(b);
+                if length < SIZE_MIN {
+                    return Err(GeometryError::SizeOutOfRange { value: length });
+                }
+            }
+            Geometry::Polygon(_) => {}
+        }
+        Ok(())
+    }
+
+    /// The box around the geometry about its own centre, unrotated.
+    pub(crate) fn local_bounds(&self) -> Aabb {
+        match self {
+            Geometry::Circle { radius } => Aabb::new(Vec2::ZERO, Vec2::ZERO).expanded(*radius),
+            Geometry::Segment { a, b } => Aabb::new(a.min(*b), a.max(*b)),
+            Geometry::Polygon(polygon) => {
+                let points = polygon.vertices().iter().map(|vertex| vertex.widen());
+                let bounds = Aabb::from_points(points).unwrap_or(Aabb::new(Vec2::ZERO, Vec2::ZERO));
+                bounds.expanded(polygon.radius().into())
+            }
+        }
+    }
+}
+
+/// What to attach to a body.
+///
+/// ```
+/// use lockstep2d::{body::{Geometry, ShapeDef}, fx};
+/// let ball = ShapeDef::new(Geometry::circle(fx!(0.5))?).density(fx!(2)).friction(fx!(0.3));
+/// # Ok::<(), lockstep2d::body::GeometryError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ShapeDef {
+    /// What it looks like.
+    pub geometry: Geometry,
+    /// The shape's centre, in metres from the body's origin, in the body's frame.
+    pub offset: Vec2<Fx>,
+    /// Mass for each area, in kg/m².
+    pub density: Fx,
+    /// Friction and restitution.
+    pub material: Material,
+    /// What it collides with.
+    pub filter: Filter,
+    /// Not used by the engine, but part of the state and its hash.
+    pub user_data: u64,
+}
+
+impl ShapeDef {
+    /// A shape at the body's origin with density 1 and the default material and filter.
+    #[must_use]
+    pub fn new(geometry: impl Into<Geometry>) -> Self {
+        ShapeDef {
+            geometry: geometry.into(),
+            offset: Vec2::ZERO,
+            density: Fx::ONE,
+            material: Material::default(),
+            filter: Filter::default(),
+            user_data: 0,
+        }
+    }
+
+    /// Sets the centre in the body's frame, in metres.
+    #[must_use]
+    pub fn offset(mut self, x: Fx, y: Fx) -> Self {
+        self.offset = Vec2::new(x, y);
+        self
+    }
+
+    /// Sets the density in kg/m², 0 to 2^20.
+    #[must_use]
+    pub fn density(mut self, density: Fx) -> Self {
+        self.density = density;
+        self
+    }
+
+    /// Sets the friction coefficient, 0 to 16.
+    #[must_use]
+    pub fn friction(mut self, friction: Fx) -> Self {
+        self.material.friction = friction;
+        self
+    }
+
+    /// Sets the restitution, 0 to 1.
+    #[must_use]
+    pub fn restitution(mut self, restitution: Fx) -> Self {
+        self.material.restitution = restitution;
+        self
+    }
+
+    /// Sets the filter.
+    #[must_use]
+    pub fn filter(mut self, filter: Filter) -> Self {
+        self.filter = filter;
+        self
+    }
+
+    /// Sets the user data.
+    #[must_use]
+    pub fn user_data(mut self, user_data: u64) -> Self {
+        self.user_data = user_data;
+        self
+    }
+
+    /// Checks everything that does not depend on the body. `offset_max` does: see [`OFFSET_MAX`].
+    pub(crate) fn validate(&self, offset_max: Fx) -> Result<(), WorldError> {
+        let ShapeDef { geometry, offset, density, material, filter: _, user_data: _ } = self;
+        geometry.validate()?;
+        check_reach(geometry, *offset, offset_max)?;
+        if !(Fx::ZERO..=DENSITY_MAX).contains(density) {
+            return Err(WorldError::DensityOutOfRange { value: *density });
+        }
+        if !material.is_valid() {
+            return Err(WorldError::MaterialOutOfRange);
+        }
+        Ok(())
+    }
+}
+
+/// Checks that the centre of a shape, and the ends of a segment, are within `offset_max` of the body's origin.
+fn check_reach(geometry: &Geometry, offset: Vec2<Fx>, offset_max: Fx) -> Result<(), WorldError> {
+    let check = |value: Fx| {
+        let inside = (-offset_max..=offset_max).contains(&value);
+        if inside { Ok(()) } else { Err(WorldError::OffsetOutOfRange { value }) }
+    };
+    let points = match *geometry {
+        Geometry::Segment { a, b } => [offset, offset + a, offset + b],
+        Geometry::Circle { .. } | Geometry::Polygon(_) => [offset; 3],
+    };
+    points.into_iter().try_for_each(|point| check(point.x).and(check(point.y)))
+}
+
+/// A shape in the world.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Shape {
+    pub(crate) body: BodyId,
+    pub(crate) def: ShapeDef,
+    /// The box that the broad phase sees: it contains the shape and where it may get within the tick, with a
+    /// margin so that it seldom changes. It decides which pairs exist, so it is state.
+    pub(crate) fat: Aabb,
+}
+
+impl Shape {
+    /// The body it is attached to.
+    #[must_use]
+    pub const fn body(&self) -> BodyId {
+        self.body
+    }
+
+    /// Its geometry about its own centre.
+    #[must_use]
+    pub const fn geometry(&self) -> &Geometry {
+        &self.def.geometry
+    }
+
+    /// Its centre in the body's frame, in metres.
+    #[must_use]
+    pub const fn offset(&self) -> Vec2<Fx> {
+        self.def.offset
+    }
+
+    /// Its density in kg/m².
+    #[must_use]
+    pub const fn density(&self) -> Fx {
+        self.def.density
+    }
+
+    /// Its surface.
+    #[must_use]
+    pub const fn material(&self) -> &Material {
+        &self.def.material
+    }
+
+    /// What it collides with.
+    #[must_use]
+    pub const fn filter(&self) -> &Filter {
+        &self.def.filter
+    }
+
+    /// The game's own number.
+    #[must_use]
+    pub const fn user_data(&self) -> u64 {
+        self.def.user_data
+    }
+
+    /// The box that the broad phase sees, in world coordinates.
+    #[must_use]
+    pub const fn fat_aabb(&self) -> Aabb {
+        self.fat
+    }
+}

@@ -1,0 +1,19 @@
+//! Two circles: `separation = |d| - r_a - r_b` along `d / |d|`.
+
+use super::manifold::{Feature, Manifold, ManifoldPoint};
+use crate::math::{Length, Vec2, convert};
+
+/// `d` is the vector from the centre of A to the centre of B.
+pub(crate) fn collide(radius_a: Length, radius_b: Length, d: Vec2<Length>, margin: Length) -> Manifold {
+    let distance = d.length();
+    let separation = distance.saturating_sub(radius_a).saturating_sub(radius_b);
+    if separation > margin {
+        return Manifold::NONE;
+    }
+    // Concentric circles have no direction of their own: up is as good as any, and the same everywhere.
+    let normal = d.normalized().unwrap_or(Vec2::Y);
+    let middle = radius_a.saturating_add(separation / 2);
+    let point =
+        ManifoldPoint { anchor: normal.scale(middle), separation: convert(separation), feature: Feature::SINGLE };
+    Manifold::single(normal, point)
+}

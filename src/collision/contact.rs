@@ -1,0 +1,90 @@
+//! Contacts: what is remembered of a pair of shapes from tick to tick.
+
+use alloc::vec::Vec;
+
+use serde::{Deserialize, Serialize};
+
+use super::broad_phase::Pair;
+use super::manifold::Feature;
+use crate::math::Speed;
+
+/// A pair of shapes whose fat boxes overlap.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct Contact {
+    /// Shape slots, the smaller first. Contacts are sorted by them.
+    pub(crate) shapes: Pair,
+    /// Whether the shapes touch, as the events last said.
+    pub(crate) touching: bool,
+    /// How many points have impulses.
+    pub(crate) count: u8,
+    pub(crate) points: [PointImpulse; 2],
+}
+
+/// The impulse of a contact point, to start the next tick from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct PointImpulse {
+    pub(crate) feature: u16,
+    /// `p = L / D`, the impulse times `mA + mB`: it does not depend on the lever arms.
+    pub(crate) normal: Speed,
+    /// The same along the tangent.
+    pub(crate) tangent: Speed,
+}
+
+impl Contact {
+    fn new(shapes: Pair) -> Self {
+        Contact { shapes, touching: false, count: 0, points: [PointImpulse::default(); 2] }
+    }
+
+    /// The points that have impulses.
+    pub(crate) fn points(&self) -> &[PointImpulse] {
+        &self.points[..usize::from(self.count.min(2))]
+    }
+
+    /// The impulse carried over for a feature, if it was there in the last tick.
+    pub(crate) fn impulse_of(&self, feature: Feature) -> Option<PointImpulse> {
+        self.points().iter().copied().find(|point| point.feature == feature.0)
+    }
+
+    /// Forgets the impulses.
+    pub(crate) fn clear_points(&mut self) {
+        self.count = 0;
+        self.points = [PointImpulse::default(); 2];
+    }
+
+    /// Remembers the impulse of a point.
+    pub(crate) fn push_point(&mut self, point: PointImpulse) {
+        self.points[usize::from(self.count)] = point;
+        self.count += 1;
+    }
+}
+
+/// Brings the contacts in line with the pairs of this tick, both sorted: contacts whose pair is gone are moved
+/// to `ended`, new pairs get a contact without impulses.
+pub(crate) fn match_pairs(contacts: &mut Vec<Contact>, pairs: &[Pair], merged: &mut Vec<Contact>, ended: &mut Vec<Contact>) {
+    merged.clear();
+    let mut old = contacts.iter().copied().peekable();
+    for &pair in pairs {
+        while let Some(gone) = old.next_if(|contact| contact.shapes < pair) {
+            ended.push(gone);
+        }
+        merged.push(old.next_if(|contact| contact.shapes == pair).unwrap_or_else(|| Contact::new(pair)));
+    }
+    ended.extend(old);
+    core::mem::swap(contacts, merged);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pairs_that_stay_keep_their_impulses() {
+        let mut kept = Contact::new((1, 2));
+        kept.push_point(PointImpulse { feature: 3, normal: Speed::ONE, tangent: Speed::ZERO });
+        let mut contacts = alloc::vec![Contact::new((0, 5)), kept, Contact::new((2, 3))];
+        let (mut merged, mut ended) = (Vec::new(), Vec::new());
+        match_pairs(&mut contacts, &[(0, 1), (1, 2), (4, 9)], &mut merged, &mut ended);
+        assert_eq!(contacts, [Contact::new((0, 1)), kept, Contact::new((4, 9))]);
+        assert_eq!(ended, [Contact::new((0, 5)), Contact::new((2, 3))]);
+    }
+}

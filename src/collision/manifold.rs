@@ -1,0 +1,109 @@
+//! What a pair of shapes has in contact: a normal and up to two points.
+
+use crate::math::{Fx, Length, Step, Unit, Vec2};
+
+/// Identifies a contact point across ticks, so that its impulse can be carried over: the pair (vertex of A,
+/// vertex of B) of the matched ends, whichever shape the reference edge belongs to and wherever it was clipped.
+///
+/// Identities that encode the clipping as well change while a pile settles; every change loses a warm start and
+/// the pile sinks (`docs/DESIGN.md` has the figures).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Feature(pub(crate) u16);
+
+impl Feature {
+    /// The only point of a contact with a circle.
+    pub(crate) const SINGLE: Feature = Feature(0);
+
+    pub(crate) fn of_vertices(a: usize, b: usize) -> Self {
+        let byte = |i: usize| u16::try_from(i).expect("at most 8 vertices");
+        Feature(byte(a) << 8 | byte(b))
+    }
+
+    fn swapped(self) -> Self {
+        Feature(self.0.rotate_left(8))
+    }
+}
+
+/// A point where two shapes touch or are about to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ManifoldPoint {
+    /// Half-way between the two surfaces, in metres from the manifold's origin, in world axes.
+    pub anchor: Vec2<Length>,
+    /// Distance between the surfaces along the normal in metres, negative where they overlap.
+    pub separation: Step,
+    /// Which features meet.
+    pub feature: Feature,
+}
+
+/// The contact between shape A and shape B.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Manifold {
+    /// Unit vector from A to B.
+    pub normal: Vec2<Unit>,
+    /// The world position that anchors are measured from: the centre of one of the shapes.
+    pub origin: Vec2<Fx>,
+    points: [ManifoldPoint; 2],
+    count: u8,
+}
+
+impl Manifold {
+    const NO_POINT: ManifoldPoint =
+        ManifoldPoint { anchor: Vec2::ZERO, separation: Step::ZERO, feature: Feature::SINGLE };
+
+    /// No contact.
+    pub(crate) const NONE: Self = Self::new(Vec2::Y);
+
+    pub(crate) const fn new(normal: Vec2<Unit>) -> Self {
+        Manifold { normal, origin: Vec2::new(Fx::ZERO, Fx::ZERO), points: [Self::NO_POINT; 2], count: 0 }
+    }
+
+    /// A contact with one point.
+    pub(crate) fn single(normal: Vec2<Unit>, point: ManifoldPoint) -> Self {
+        let mut manifold = Self::new(normal);
+        manifold.push(point);
+        manifold
+    }
+
+    /// The points, none to two.
+    #[must_use]
+    pub fn points(&self) -> &[ManifoldPoint] {
+        &self.points[..usize::from(self.count)]
+    }
+
+    pub(crate) fn push(&mut self, point: ManifoldPoint) {
+        self.points[usize::from(self.count)] = point;
+        self.count += 1;
+    }
+
+    /// Keeps the points that pass a test.
+    pub(crate) fn retain(&mut self, keep: impl Fn(&ManifoldPoint) -> bool) {
+        let all = *self;
+        self.count = 0;
+        for &point in all.points().iter().filter(|point| keep(point)) {
+            self.push(point);
+        }
+    }
+
+    /// The same contact with the roles of the shapes exchanged.
+    pub(crate) fn swapped(mut self) -> Self {
+        self.normal = -self.normal;
+        for point in &mut self.points[..usize::from(self.count)] {
+            point.feature = point.feature.swapped();
+        }
+        self
+    }
+
+    /// The same contact with its anchors moved.
+    pub(crate) fn translated(mut self, by: Vec2<Length>) -> Self {
+        for point in &mut self.points[..usize::from(self.count)] {
+            point.anchor += by;
+        }
+        self
+    }
+
+    /// The same contact with its anchors measured from another world position.
+    pub(crate) fn about(mut self, origin: Vec2<Fx>) -> Self {
+        self.origin = origin;
+        self
+    }
+}

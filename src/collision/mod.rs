@@ -1,0 +1,21 @@
+//! Collision detection: broad phase, narrow phase and what contacts remember. It reads bodies and returns
+//! contacts; it never changes a body.
+
+mod broad_phase;
+mod circle_circle;
+mod circle_hull;
+mod contact;
+mod hull_hull;
+mod manifold;
+mod narrow_phase;
+mod pose;
+mod segment;
+mod sweep_and_prune;
+
+pub use broad_phase::BroadPhaseKind;
+pub(crate) use broad_phase::{BroadPhase, Pair, Proxy};
+pub(crate) use contact::{Contact, PointImpulse, match_pairs};
+pub(crate) use hull_hull::{AxisHint, SatCounters};
+pub use manifold::{Feature, Manifold, ManifoldPoint};
+pub(crate) use narrow_phase::{collide, collide_outlines};
+pub(crate) use pose::{Outline, PosedShape};

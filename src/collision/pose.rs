@@ -1,0 +1,105 @@
+//! Shapes posed in world axes: each shape is rotated once in a tick, so that its pairs only translate.
+
+use crate::body::{Body, Geometry, POLYGON_VERTICES_MAX, Polygon, ShapeDef};
+use crate::math::{Aabb, Fx, Length, Rot, Unit, Vec2, narrow};
+
+/// A shape in the world: its outline in world axes about its own centre.
+#[derive(Clone, Debug)]
+pub(crate) struct PosedShape {
+    /// The shape's centre in the world.
+    pub(crate) centre: Vec2<Fx>,
+    /// The smallest box around the shape, in the world.
+    pub(crate) bounds: Aabb,
+    pub(crate) outline: Outline,
+}
+
+/// An outline about the shape's centre, in world axes.
+#[derive(Clone, Debug)]
+pub(crate) enum Outline {
+    Circle { radius: Length },
+    Segment { a: Vec2<Fx>, b: Vec2<Fx> },
+    Polygon(Hull),
+}
+
+/// A convex outline in 32-bit coordinates: a polygon, or a segment seen as a polygon with two sides.
+#[derive(Clone, Debug)]
+pub(crate) struct Hull {
+    count: usize,
+    vertices: [Vec2<Length>; POLYGON_VERTICES_MAX],
+    normals: [Vec2<Unit>; POLYGON_VERTICES_MAX],
+    pub(crate) radius: Length,
+}
+
+impl Hull {
+    pub(crate) fn vertices(&self) -> &[Vec2<Length>] {
+        &self.vertices[..self.count]
+    }
+
+    /// `normals()[i]` points out of the edge from vertex `i` to the next.
+    pub(crate) fn normals(&self) -> &[Vec2<Unit>] {
+        &self.normals[..self.count]
+    }
+
+    /// The index of the vertex after `i`, counter-clockwise.
+    pub(crate) fn next(&self, i: usize) -> usize {
+        if i + 1 == self.count { 0 } else { i + 1 }
+    }
+
+    /// A segment: one edge there and one back, with opposite normals.
+    pub(crate) fn segment(a: Vec2<Length>, b: Vec2<Length>, direction: Vec2<Unit>) -> Self {
+        let mut hull = Hull { count: 2, ..Self::empty() };
+        hull.vertices[..2].copy_from_slice(&[a, b]);
+        hull.normals[..2].copy_from_slice(&[-direction.perp(), direction.perp()]);
+        hull
+    }
+
+    pub(crate) fn rotated(polygon: &Polygon, rotation: Rot) -> Self {
+        let mut hull = Hull { count: polygon.vertices().len(), radius: polygon.radius(), ..Self::empty() };
+        for (i, (&vertex, &normal)) in polygon.vertices().iter().zip(polygon.normals()).enumerate() {
+            hull.vertices[i] = rotation.apply(vertex);
+            hull.normals[i] = rotation.apply(normal);
+        }
+        hull
+    }
+
+    const fn empty() -> Self {
+        Hull {
+            count: 0,
+            vertices: [Vec2::ZERO; POLYGON_VERTICES_MAX],
+            normals: [Vec2::ZERO; POLYGON_VERTICES_MAX],
+            radius: Length::ZERO,
+        }
+    }
+
+    fn bounds(&self) -> Aabb {
+        let first = self.vertices[0];
+        let (lower, upper) = self
+            .vertices()
+            .iter()
+            .fold((first, first), |(lower, upper), &vertex| (lower.min(vertex), upper.max(vertex)));
+        Aabb::new(lower.widen(), upper.widen()).expanded(self.radius.into())
+    }
+}
+
+impl PosedShape {
+    /// Poses a shape of `body`, whose rotation is passed in because its shapes share it.
+    pub(crate) fn new(shape: &ShapeDef, body: &Body, rotation: Rot) -> Self {
+        let centre = body.centre_of_mass() + rotation.apply_wide(shape.offset - body.local_centre_of_mass());
+        let (outline, bounds) = match &shape.geometry {
+            Geometry::Circle { radius } => {
+                let bounds = Aabb::new(Vec2::ZERO, Vec2::ZERO).expanded(*radius);
+                (Outline::Circle { radius: narrow(*radius) }, bounds)
+            }
+            Geometry::Segment { a, b } => {
+                let (a, b) = (rotation.apply_wide(*a), rotation.apply_wide(*b));
+                (Outline::Segment { a, b }, Aabb::new(a.min(b), a.max(b)))
+            }
+            Geometry::Polygon(polygon) => {
+                let hull = Hull::rotated(polygon, rotation);
+                let bounds = hull.bounds();
+                (Outline::Polygon(hull), bounds)
+            }
+        };
+        PosedShape { centre, bounds: bounds.translated(centre), outline }
+    }
+}

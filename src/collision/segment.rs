@@ -1,0 +1,70 @@
+//! Segments may be as long as the world: before they meet a shape they are clipped, in 64 bits, to a window
+//! around it, and become a two-sided outline in 32-bit coordinates about that shape's centre.
+
+use super::pose::Hull;
+use crate::fx;
+use crate::math::{Fx, Vec2, div_round, saturate_wide};
+
+/// Half the side of the window in metres: more than any shape's reach of 170 m with the margin of a fast one,
+/// and small enough that coordinates about the shape's centre, and the edge itself, fit `Length`.
+const WINDOW: Fx = fx!(200);
+
+/// The segment from `a` to `b`, given about the other shape's centre, as an outline about it; `None` when it
+/// passes the window by.
+pub(crate) fn near_hull(a: Vec2<Fx>, b: Vec2<Fx>) -> Option<Hull> {
+    let direction = (b - a).normalized()?;
+    let (mut p, mut q) = (a, b);
+    for sign in [1, -1] {
+        for axis in [|v: Vec2<Fx>| v.x, |v: Vec2<Fx>| v.y] {
+            (p, q) = clip_to_half_plane(p, q, |v| i128::from(axis(v).to_bits()) * sign - i128::from(WINDOW.to_bits()))?;
+        }
+    }
+    Some(Hull::segment(p.narrow(), q.narrow(), direction))
+}
+
+/// The part of a segment where `outside` is not positive. `outside` is linear.
+fn clip_to_half_plane(
+    p: Vec2<Fx>,
+    q: Vec2<Fx>,
+    outside: impl Fn(Vec2<Fx>) -> i128,
+) -> Option<(Vec2<Fx>, Vec2<Fx>)> {
+    let (at_p, at_q) = (outside(p), outside(q));
+    match (at_p > 0, at_q > 0) {
+        (true, true) => None,
+        (true, false) => Some((crossing(p, q, at_p, at_q), q)),
+        (false, true) => Some((p, crossing(q, p, at_q, at_p))),
+        (false, false) => Some((p, q)),
+    }
+}
+
+/// Where the segment from `p` to `q` crosses zero, `at_p > 0 >= at_q`.
+fn crossing(p: Vec2<Fx>, q: Vec2<Fx>, at_p: i128, at_q: i128) -> Vec2<Fx> {
+    // Coordinates are below 2^63 and so are differences within the world: the product has at most 127 bits.
+    let part = |p: Fx, q: Fx| {
+        let moved = div_round((i128::from(q.to_bits()) - i128::from(p.to_bits())) * at_p, at_p - at_q);
+        Fx::from_bits(saturate_wide(i128::from(p.to_bits()) + moved))
+    };
+    Vec2::new(part(p.x, q.x), part(p.y, q.y))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Length;
+
+    #[test]
+    fn a_long_segment_is_cut_on_its_own_line() {
+        let a = Vec2::new(fx!(-1000000000), fx!(-500000000));
+        let b = Vec2::new(fx!(1000000000), fx!(500000000));
+        let hull = near_hull(a, b).unwrap();
+        let expected = [Vec2::new(-200, -100), Vec2::new(200, 100)].map(|v| Vec2::new(Length::from_num(v.x), Length::from_num(v.y)));
+        assert_eq!(hull.vertices(), expected);
+    }
+
+    #[test]
+    fn a_short_segment_is_kept_and_a_distant_one_dropped() {
+        let near = near_hull(Vec2::new(fx!(1), fx!(2)), Vec2::new(fx!(3), fx!(2))).unwrap();
+        assert_eq!(near.vertices()[1].x, Length::from_num(3));
+        assert!(near_hull(Vec2::new(fx!(-900), fx!(201)), Vec2::new(fx!(900), fx!(201))).is_none());
+    }
+}

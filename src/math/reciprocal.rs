@@ -1,0 +1,110 @@
+//! `1 / x` with 31 significant bits whatever the size of `x`.
+//!
+//! A fixed binary point would give the reciprocal of a 500 m radius 15 bits and overflow at 2 mm; a mantissa and
+//! a shift serve both, and a multiplication by them is one widening 32-bit product on any machine.
+
+use fixed::FixedI32;
+use fixed::types::extra::LeEqU32;
+use serde::{Deserialize, Serialize};
+
+use super::formats::{Fx, div_round, round_shift, saturate};
+
+/// The reciprocal of a positive number: `mantissa / 2^shift`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Reciprocal {
+    /// 0, or 2^30 to 2^31 - 1.
+    mantissa: i32,
+    /// 0 to 63.
+    shift: u32,
+}
+
+impl Reciprocal {
+    /// The reciprocal of infinity.
+    pub const ZERO: Self = Reciprocal { mantissa: 0, shift: 0 };
+
+    /// `1 / x`, to a relative 2^-31. `x` must be positive and below 2^30.
+    ///
+    /// # Panics
+    /// If `x` is not positive, or 2^30 and more.
+    #[must_use]
+    pub const fn of(x: Fx) -> Self {
+        let bits = x.to_bits();
+        assert!(bits > 0 && bits < 1 << 62, "the reciprocal of a positive number below 2^30");
+        // 2^(width-1) <= bits < 2^width, so 2^(width+30) / bits is above 2^30 and at most 2^31.
+        let width = 64 - bits.leading_zeros();
+        let quotient = div_round(1 << (width + 30), bits as i128);
+        let mantissa = if quotient > i32::MAX as i128 { i32::MAX } else { quotient as i32 };
+        Reciprocal { mantissa, shift: width + 30 - 32 }
+    }
+
+    /// The reciprocal of a positive integer.
+    ///
+    /// # Panics
+    /// If `n` is not positive, or 2^30 and more.
+    #[must_use]
+    pub const fn of_integer(n: u32) -> Self {
+        Self::of(Fx::from_bits((n as i64) << 32))
+    }
+
+    /// `a / x`, rounded once, saturated.
+    #[inline]
+    #[must_use]
+    pub fn mul<A: LeEqU32, B: LeEqU32>(self, a: FixedI32<A>) -> FixedI32<B> {
+        let product = i64::from(a.to_bits()) * i64::from(self.mantissa);
+        let shift = i64::from(self.shift) + i64::from(A::U32) - i64::from(B::U32);
+        FixedI32::from_bits(match u32::try_from(shift) {
+            Ok(shift) if shift < 63 => saturate(round_shift(product, shift)),
+            Ok(_) => 0,
+            Err(_) => saturate(product.saturating_mul(1 << (-shift).min(62))),
+        })
+    }
+
+    /// `a / x` exactly: the product and its number of fraction bits beyond those of `a`.
+    #[inline]
+    pub(crate) fn mul_exact<A: LeEqU32>(self, a: FixedI32<A>) -> (i64, u32) {
+        (i64::from(a.to_bits()) * i64::from(self.mantissa), self.shift)
+    }
+
+    /// Whether this is a reciprocal that [`Reciprocal::of`] could have made.
+    pub(crate) const fn is_valid(self) -> bool {
+        let zero = self.mantissa == 0 && self.shift == 0;
+        zero || (self.mantissa >= 1 << 30 && self.shift < 64)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fx;
+    use crate::math::{Length, Ratio, Speed, Step};
+
+    #[test]
+    fn divides_to_31_significant_bits() {
+        let one_metre: Length = Length::ONE;
+        let ratio: Ratio = Reciprocal::of(fx!(0.01)).mul(one_metre);
+        assert!(ratio.to_bits().abs_diff(100 << 24) <= 1);
+        let step: Step = Reciprocal::of_integer(240).mul(Speed::from_num(120));
+        assert_eq!(step, Step::from_num(1) / 2);
+        let tiny: Ratio = Reciprocal::of(fx!(512)).mul(one_metre);
+        assert_eq!(tiny, Ratio::ONE / 512);
+        let saturated: Ratio = Reciprocal::of(fx!(0.002)).mul(one_metre);
+        assert_eq!(saturated, Ratio::MAX);
+    }
+
+    #[test]
+    fn powers_of_two_and_their_neighbours_are_right() {
+        for exponent in 0..61 {
+            for bits in [(1i64 << exponent) - 1, 1 << exponent, (1 << exponent) + 1] {
+                if bits < 1 {
+                    continue;
+                }
+                let Reciprocal { mantissa, shift } = Reciprocal::of(Fx::from_bits(bits));
+                assert!(mantissa >= 1 << 30, "{bits}");
+                // mantissa / 2^shift = 2^32 / bits, so the product is 2^(shift+32) to a relative 2^-30.
+                let product = i128::from(mantissa) * i128::from(bits);
+                let error = (product - (1i128 << (shift + 32))).abs();
+                assert!(error <= product >> 30, "{bits}: {error}");
+            }
+        }
+    }
+}

@@ -1,0 +1,63 @@
+//! What the kernels see of a body: its velocity and how far it has come within the tick.
+
+use super::limits::{Faults, SPEED_MAX};
+use crate::body::Body;
+use crate::math::{Angle, Reciprocal, Speed, Step, Vec2, round_shift_wide};
+
+/// A body in the solver. Bodies that nothing moves have mass fraction 0 in every row, so that they are read and
+/// written like the others and never change.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct SolverBody {
+    pub(crate) velocity: Vec2<Speed>,
+    /// `u = k w`.
+    pub(crate) spin: Speed,
+    /// Displacement of the centre of mass since the start of the tick.
+    pub(crate) shift: Vec2<Step>,
+    /// `k dtheta` since the start of the tick.
+    pub(crate) turn: Step,
+}
+
+impl SolverBody {
+    pub(crate) fn of(body: &Body) -> Self {
+        SolverBody { velocity: body.velocity, spin: body.spin, ..Self::default() }
+    }
+
+    /// Keeps every component of the velocity within [`SPEED_MAX`].
+    #[inline]
+    pub(crate) fn clamp(&mut self, faults: &mut Faults) {
+        let mut clamp = |speed: &mut Speed| {
+            let within = (*speed).clamp(-SPEED_MAX, SPEED_MAX);
+            *faults += u32::from(within != *speed);
+            *speed = within;
+        };
+        clamp(&mut self.velocity.x);
+        clamp(&mut self.velocity.y);
+        clamp(&mut self.spin);
+    }
+
+    /// Two different bodies of a slice, to change both.
+    #[inline]
+    pub(crate) fn pair(bodies: &mut [SolverBody], a: u32, b: u32) -> (&mut SolverBody, &mut SolverBody) {
+        let (a, b) = (a as usize, b as usize);
+        assert!(a != b, "a constraint is between two bodies");
+        if a < b {
+            let (front, back) = bodies.split_at_mut(b);
+            (&mut front[a], &mut back[0])
+        } else {
+            let (front, back) = bodies.split_at_mut(a);
+            (&mut back[0], &mut front[b])
+        }
+    }
+}
+
+/// The angle after a turn: `dtheta = turn / k`, kept in 128 bits until it is a fraction of a turn. It wraps: a
+/// small body may spin more than once in a tick.
+pub(crate) fn turned(angle: Angle, turn: Step, inverse_gyration: Reciprocal) -> Angle {
+    /// `1 / (2 pi)` with 63 fraction bits.
+    const INVERSE_TAU: i128 = 1_467_945_251_641_000_613;
+    let (product, extra) = inverse_gyration.mul_exact(turn);
+    let turns = round_shift_wide(i128::from(product) * INVERSE_TAU, extra + 27 + 63 - 32);
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "angles wrap")]
+    let bits = turns as u32;
+    angle + Angle::from_bits(bits)
+}

@@ -1,0 +1,190 @@
+//! The row kernel: removes relative velocity along one direction between two bodies.
+//!
+//! With lever arms `c = r x n`, inverse masses `m` and radii of gyration `k` of bodies A and B, and angular
+//! velocity carried as the speed `u = k w` (E. Catto, "Iterative Dynamics with Temporal Coherence", 2005, in
+//! units in which every coefficient is bounded):
+//!
+//! ```text
+//! e = c / k                                            lever ratio
+//! aA = mA / (mA + mB),  aB = 1 - aA                    mass fractions, 0 for a body that nothing moves
+//! D  = aA (1 + eA^2) + aB (1 + eB^2)                   1 or more
+//! g  = a / D,  f = g e                                 gains, at most 1 and 1/2
+//!
+//! vn = n.(vB - vA) + eB uB - eA uA
+//! d  = clamp(-massScale (vn + bias) - impulseScale L, -512, 512)
+//! L' = clamp(L + d, lo, hi),  d = L' - L
+//! vA -= gA d n,  uA -= fA d,  vB += gB d n,  uB += fB d
+//! ```
+//!
+//! `L` is the accumulated impulse divided by the effective mass: a speed. No sum of two clamped values leaves its
+//! type; every clamp that bites is counted as a fault.
+
+use super::body::SolverBody;
+use super::limits::{Faults, IMPULSE_MAX, STEP_MAX};
+use super::softness::Softness;
+use crate::body::Body;
+use crate::math::{Length, Ratio, Reciprocal, Speed, Step, Unit, Vec2, mul, round_shift, saturate};
+
+/// The mass fractions of a pair of bodies: how a push is shared.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct MassFractions {
+    pub(crate) a: Unit,
+    pub(crate) b: Unit,
+}
+
+impl MassFractions {
+    /// `mA / (mA + mB)` of the inverse masses is `MB / (MA + MB)` of the masses.
+    pub(crate) fn of(a: &Body, b: &Body) -> Self {
+        match (a.is_dynamic(), b.is_dynamic()) {
+            (true, true) => {
+                let (mass_a, mass_b) = (a.mass().to_bits().unsigned_abs(), b.mass().to_bits().unsigned_abs());
+                // Masses are below 2^62. Dropping all but 32 bits of the sum leaves room for 30 more.
+                let excess = (64 - (mass_a + mass_b).leading_zeros()).saturating_sub(32);
+                let (mass_a, mass_b) = (mass_a >> excess, mass_b >> excess);
+                let bits = (mass_b << 30) / (mass_a + mass_b);
+                let a = Unit::from_bits(i32::try_from(bits).unwrap_or(1 << 30));
+                MassFractions { a, b: Unit::ONE - a }
+            }
+            (true, false) => MassFractions { a: Unit::ONE, b: Unit::ZERO },
+            (false, true) => MassFractions { a: Unit::ZERO, b: Unit::ONE },
+            (false, false) => MassFractions { a: Unit::ZERO, b: Unit::ZERO },
+        }
+    }
+}
+
+/// One body's end of a row: where it is pushed, and how easily it turns.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Lever {
+    /// From the centre of mass to the point.
+    pub(crate) arm: Vec2<Length>,
+    pub(crate) inverse_gyration: Reciprocal,
+}
+
+/// The constant part of a row.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Row {
+    n: Vec2<Unit>,
+    e_a: Ratio,
+    e_b: Ratio,
+    g_a: Unit,
+    g_b: Unit,
+    f_a: Unit,
+    f_b: Unit,
+}
+
+/// `D` of a row, with 30 fraction bits: 1 to 16 130.
+pub(crate) type Denominator = i64;
+
+impl Row {
+    pub(crate) fn prepare(n: Vec2<Unit>, a: Lever, b: Lever, fractions: MassFractions) -> (Row, Denominator) {
+        let ratio = |lever: Lever| -> Ratio {
+            let c: Length = lever.arm.cross(n);
+            lever.inverse_gyration.mul(c)
+        };
+        let (e_a, e_b) = (ratio(a), ratio(b));
+        let turning = |fraction: Unit, e: Ratio| {
+            let weighted: Ratio = mul(fraction, e);
+            i64::from(weighted.to_bits()) * i64::from(e.to_bits())
+        };
+        let moving = i64::from(fractions.a.to_bits()) + i64::from(fractions.b.to_bits());
+        let denominator = moving + round_shift(turning(fractions.a, e_a) + turning(fractions.b, e_b), 18);
+        let gain = |fraction: Unit| Unit::from_bits(saturate((i64::from(fraction.to_bits()) << 30) / denominator.max(1)));
+        let (g_a, g_b) = (gain(fractions.a), gain(fractions.b));
+        (Row { n, e_a, e_b, g_a, g_b, f_a: mul(g_a, e_a), f_b: mul(g_b, e_b) }, denominator)
+    }
+
+    /// Relative velocity of B from A along the row.
+    #[inline]
+    pub(crate) fn velocity(&self, a: &SolverBody, b: &SolverBody, faults: &mut Faults) -> Speed {
+        let bits = self.along(b.velocity.x - a.velocity.x, b.velocity.y - a.velocity.y, a.spin, b.spin);
+        let vn = saturate(bits);
+        *faults += u32::from(i64::from(vn) != bits);
+        Speed::from_bits(vn)
+    }
+
+    /// How far B has moved away from A along the row since the start of the tick. Not saturated: the caller adds
+    /// the initial separation first.
+    #[inline]
+    pub(crate) fn displacement(&self, a: &SolverBody, b: &SolverBody) -> i64 {
+        let x = b.shift.x.saturating_sub(a.shift.x);
+        let y = b.shift.y.saturating_sub(a.shift.y);
+        self.along(x, y, a.turn, b.turn)
+    }
+
+    /// `n.d + eB tB - eA tA` in the format of its arguments: the one dot product of the kernel. The linear part
+    /// drops 6 bits to the scale of the angular part before the sum is rounded once.
+    #[inline]
+    fn along<F: fixed::types::extra::LeEqU32>(
+        &self,
+        x: fixed::FixedI32<F>,
+        y: fixed::FixedI32<F>,
+        turn_a: fixed::FixedI32<F>,
+        turn_b: fixed::FixedI32<F>,
+    ) -> i64 {
+        let linear = i64::from(self.n.x.to_bits()) * i64::from(x.to_bits())
+            + i64::from(self.n.y.to_bits()) * i64::from(y.to_bits());
+        let angular = i64::from(self.e_b.to_bits()) * i64::from(turn_b.to_bits())
+            - i64::from(self.e_a.to_bits()) * i64::from(turn_a.to_bits());
+        round_shift(round_shift(linear, 6) + angular, 24)
+    }
+
+    /// Changes the velocities by an impulse `d`.
+    #[inline]
+    pub(crate) fn apply(&self, d: Speed, a: &mut SolverBody, b: &mut SolverBody, faults: &mut Faults) {
+        let (d_a, d_b): (Speed, Speed) = (mul(self.g_a, d), mul(self.g_b, d));
+        a.velocity.x -= mul::<_, _, fixed::types::extra::U21>(self.n.x, d_a);
+        a.velocity.y -= mul::<_, _, fixed::types::extra::U21>(self.n.y, d_a);
+        a.spin -= mul::<_, _, fixed::types::extra::U21>(self.f_a, d);
+        b.velocity.x += mul::<_, _, fixed::types::extra::U21>(self.n.x, d_b);
+        b.velocity.y += mul::<_, _, fixed::types::extra::U21>(self.n.y, d_b);
+        b.spin += mul::<_, _, fixed::types::extra::U21>(self.f_b, d);
+        a.clamp(faults);
+        b.clamp(faults);
+    }
+
+    /// Solves the row for one iteration. `lambda` is the accumulated `L`, kept within `lo..=hi`.
+    #[inline]
+    #[expect(clippy::too_many_arguments, reason = "the quantities of the equation above, all 32-bit numbers")]
+    pub(crate) fn solve(
+        &self,
+        a: &mut SolverBody,
+        b: &mut SolverBody,
+        bias: Speed,
+        softness: &Softness,
+        (lo, hi): (Speed, Speed),
+        lambda: &mut Speed,
+        faults: &mut Faults,
+    ) {
+        let vn = self.velocity(a, b, faults);
+        let d = softness.impulse(vn, bias, *lambda, faults);
+        let wanted = i64::from(lambda.to_bits()) + i64::from(d.to_bits());
+        let bounded = wanted.clamp(lo.to_bits().into(), hi.to_bits().into());
+        let within = bounded.clamp(-i64::from(IMPULSE_MAX.to_bits()), IMPULSE_MAX.to_bits().into());
+        *faults += u32::from(within != bounded);
+        let next = Speed::from_bits(saturate(within));
+        let d = next - *lambda;
+        *lambda = next;
+        self.apply(d, a, b, faults);
+    }
+}
+
+/// An accumulated impulse `p = L / D`, carried over as `L` for another `D`.
+pub(crate) fn lambda_of(p: Speed, denominator: Denominator, faults: &mut Faults) -> Speed {
+    let bits = crate::math::round_shift_wide(i128::from(p.to_bits()) * i128::from(denominator), 30);
+    let limit = i128::from(STEP_MAX.to_bits());
+    let within = bits.clamp(-limit, limit);
+    *faults += u32::from(within != bits);
+    Speed::from_bits(saturate(crate::math::saturate_wide(within)))
+}
+
+/// `p = L / D`: the impulse times `mA + mB`, which does not depend on the lever arms.
+pub(crate) fn impulse_of(lambda: Speed, denominator: Denominator) -> Speed {
+    let bits = crate::math::div_round(i128::from(lambda.to_bits()) << 30, denominator.max(1).into());
+    Speed::from_bits(saturate(crate::math::saturate_wide(bits)))
+}
+
+/// A separation after the bodies have moved: `C0 + J.dx`, saturated.
+#[inline]
+pub(crate) fn separation(initial: Step, displacement: i64) -> Step {
+    Step::from_bits(saturate(i64::from(initial.to_bits()) + displacement))
+}

@@ -1,0 +1,155 @@
+//! How the one solver behaves: data, not code.
+
+use serde::{Deserialize, Serialize};
+
+use super::softness::Softness;
+use crate::fx;
+use crate::math::{Fx, Rate, Speed, Step, Vec2, narrow};
+
+/// How contacts remove overlap.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum ContactTuning {
+    /// As stiff damped springs, with a relax pass that takes the push-out velocity away again.
+    Soft {
+        /// Stiffness in Hz, at most an eighth of the sub-step rate; doubled against bodies that nothing moves.
+        hertz: Fx,
+        /// Damping ratio, 0 to 100.
+        damping_ratio: Fx,
+        /// Largest speed at which overlap is pushed out, in m/s.
+        push_speed: Fx,
+    },
+    /// By a share of the overlap beyond a slop in every sub-step (J. Baumgarte, 1972). Simpler and bouncier.
+    Baumgarte {
+        /// Share of the overlap removed in a sub-step, 0 to 1.
+        share: Fx,
+        /// Overlap that is left alone, in metres, so that contacts do not flicker.
+        slop: Fx,
+        /// Largest speed at which overlap is pushed out, in m/s.
+        push_speed: Fx,
+    },
+}
+
+/// How the solver runs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct SolverSettings {
+    /// Sub-steps in a tick, 1 to 64. Ticks per second times sub-steps is 60 to 4000.
+    pub sub_steps: u32,
+    /// Iterations in a sub-step, 1 to 16. More sub-steps do more than more iterations.
+    pub iterations: u32,
+    /// How contacts remove overlap.
+    pub contact: ContactTuning,
+    /// Stiffness of joints in Hz, at most a quarter of the sub-step rate.
+    pub joint_hertz: Fx,
+    /// Damping ratio of joints, 0 to 100.
+    pub joint_damping_ratio: Fx,
+    /// Approach speed in m/s below which nothing bounces.
+    pub restitution_threshold: Fx,
+    /// Speed limit in m/s, also of the radius of gyration times the angular velocity; at most 400.
+    pub speed_max: Fx,
+}
+
+impl Default for SolverSettings {
+    fn default() -> Self {
+        SolverSettings {
+            sub_steps: 4,
+            iterations: 1,
+            contact: ContactTuning::Soft { hertz: fx!(30), damping_ratio: fx!(10), push_speed: fx!(3) },
+            joint_hertz: fx!(60),
+            joint_damping_ratio: fx!(2),
+            restitution_threshold: fx!(1),
+            speed_max: fx!(400),
+        }
+    }
+}
+
+impl SolverSettings {
+    /// The name of a setting that is out of range, for a world of `tick_rate` ticks per second.
+    pub(crate) fn first_invalid(&self, tick_rate: u32) -> Option<&'static str> {
+        let SolverSettings {
+            sub_steps,
+            iterations,
+            contact,
+            joint_hertz,
+            joint_damping_ratio,
+            restitution_threshold,
+            speed_max,
+        } = *self;
+        let ratio = fx!(0)..=fx!(100);
+        let speed = fx!(0)..=fx!(400);
+        let checks = [
+            ((1..=64).contains(&sub_steps), "sub_steps"),
+            ((60..=4000).contains(&tick_rate.saturating_mul(sub_steps)), "tick_rate x sub_steps"),
+            ((1..=16).contains(&iterations), "iterations"),
+            ((fx!(1)..=fx!(1000)).contains(&joint_hertz), "joint_hertz"),
+            (ratio.contains(&joint_damping_ratio), "joint_damping_ratio"),
+            (speed.contains(&restitution_threshold), "restitution_threshold"),
+            ((fx!(1)..=fx!(400)).contains(&speed_max), "speed_max"),
+            match contact {
+                ContactTuning::Soft { hertz, damping_ratio, push_speed } => {
+                    let valid = (fx!(1)..=fx!(1000)).contains(&hertz) && ratio.contains(&damping_ratio);
+                    (valid && speed.contains(&push_speed), "contact")
+                }
+                ContactTuning::Baumgarte { share, slop, push_speed } => {
+                    let valid = (fx!(0)..=fx!(1)).contains(&share) && (fx!(0)..=fx!(1)).contains(&slop);
+                    (valid && speed.contains(&push_speed), "contact")
+                }
+            },
+        ];
+        checks.into_iter().find(|(valid, _)| !valid).map(|(_, name)| name)
+    }
+}
+
+/// The settings in kernel formats, for one tick.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Tuning {
+    /// Sub-steps per second.
+    pub(crate) rate: u32,
+    /// Of contacts between two dynamic bodies, and of those with a body that nothing moves.
+    pub(crate) contact: Softness,
+    pub(crate) contact_immovable: Softness,
+    pub(crate) slop: Step,
+    pub(crate) push_speed: Speed,
+    pub(crate) joint: Softness,
+    pub(crate) relax: bool,
+    pub(crate) restitution_threshold: Speed,
+    pub(crate) speed_max: Speed,
+    /// Change of velocity by gravity in a sub-step.
+    pub(crate) gravity_step: Vec2<Fx>,
+}
+
+impl Tuning {
+    pub(crate) fn new(settings: &SolverSettings, gravity: Vec2<Fx>, tick_rate: u32) -> Self {
+        let rate = tick_rate * settings.sub_steps;
+        let at_most = |hertz: Fx, share: i64| hertz.min(Fx::from_num(rate) / share);
+        let (contact, contact_immovable, slop, push_speed, relax) = match settings.contact {
+            ContactTuning::Soft { hertz, damping_ratio, push_speed } => {
+                let hertz = at_most(hertz, 8);
+                let soft = |hertz| Softness::spring(hertz, damping_ratio, rate);
+                (soft(hertz), soft(hertz * 2), Fx::ZERO, push_speed, true)
+            }
+            ContactTuning::Baumgarte { share, slop, push_speed } => {
+                let bias_rate: Rate = narrow(fx_rate(share, rate));
+                let rigid = Softness::rigid_with_rate(bias_rate);
+                (rigid, rigid, slop, push_speed, false)
+            }
+        };
+        let over_rate = |g: Fx| Fx::from_bits(crate::math::saturate_wide(crate::math::div_round(g.to_bits().into(), rate.into())));
+        Tuning {
+            rate,
+            contact,
+            contact_immovable,
+            slop: narrow(slop),
+            push_speed: narrow(push_speed),
+            joint: Softness::spring(at_most(settings.joint_hertz, 4), settings.joint_damping_ratio, rate),
+            relax,
+            restitution_threshold: narrow(settings.restitution_threshold),
+            speed_max: narrow(settings.speed_max),
+            gravity_step: Vec2::new(over_rate(gravity.x), over_rate(gravity.y)),
+        }
+    }
+}
+
+/// `share` in every sub-step, as a rate per second.
+fn fx_rate(share: Fx, rate: u32) -> Fx {
+    crate::math::fx_mul(share, Fx::from_num(rate))
+}

@@ -1,0 +1,69 @@
+//! Soft constraints: a spring and damper that stays stable at any stiffness (E. Catto, "Soft Constraints", GDC
+//! 2011, and Solver2D), as three numbers.
+//!
+//! ```text
+//! omega = 2 pi hertz,  a1 = 2 zeta + h omega,  a2 = h omega a1,  a3 = 1 / (1 + a2)
+//! biasRate = omega / a1,  massScale = a2 a3,  impulseScale = a3
+//! ```
+
+use super::limits::{Faults, STEP_MAX};
+use crate::math::{Fx, Rate, Speed, TAU, Unit, fx_div, fx_mul, narrow, round_shift, saturate};
+
+/// How a constraint error and an accumulated impulse turn into an impulse.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Softness {
+    pub(crate) bias_rate: Rate,
+    mass_scale: Unit,
+    impulse_scale: Unit,
+}
+
+impl Softness {
+    /// Solves the velocity exactly and leaves the error alone.
+    pub(crate) const RIGID: Self =
+        Softness { bias_rate: Rate::ZERO, mass_scale: Unit::ONE, impulse_scale: Unit::ZERO };
+
+    /// Solves the velocity exactly and removes the error at a rate per second.
+    pub(crate) const fn rigid_with_rate(bias_rate: Rate) -> Self {
+        Softness { bias_rate, ..Self::RIGID }
+    }
+
+    /// A spring of `hertz` and `damping_ratio`, solved `rate` times a second.
+    pub(crate) fn spring(hertz: Fx, damping_ratio: Fx, rate: u32) -> Self {
+        let omega = fx_mul(TAU, hertz);
+        let h_omega = omega / i64::from(rate);
+        let a1 = (damping_ratio * 2).saturating_add(h_omega);
+        let a2 = fx_mul(h_omega, a1);
+        let a3 = fx_div(Fx::ONE, Fx::ONE.saturating_add(a2)).unwrap_or(Fx::ONE);
+        let bias_rate = fx_div(omega, a1).unwrap_or(Fx::ZERO);
+        Softness { bias_rate: narrow(bias_rate), mass_scale: narrow(fx_mul(a2, a3)), impulse_scale: narrow(a3) }
+    }
+
+    /// `-massScale (v + bias) - impulseScale L`, clamped.
+    #[inline]
+    pub(crate) fn impulse(&self, v: Speed, bias: Speed, lambda: Speed, faults: &mut Faults) -> Speed {
+        let error = i64::from(v.to_bits()) + i64::from(bias.to_bits());
+        let wide = i64::from(self.mass_scale.to_bits()) * error
+            + i64::from(self.impulse_scale.to_bits()) * i64::from(lambda.to_bits());
+        let limit = i64::from(STEP_MAX.to_bits());
+        let wanted = round_shift(-wide, 30);
+        let within = wanted.clamp(-limit, limit);
+        *faults += u32::from(within != wanted);
+        Speed::from_bits(saturate(within))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fx;
+
+    #[test]
+    fn coefficients_match_the_formula() {
+        // 30 Hz, damping ratio 10, 240 solves per second: omega = 188.4956, h omega = 0.785398.
+        let soft = Softness::spring(fx!(30), fx!(10), 240);
+        let close = |a: Fx, b: Fx| assert!((a - b).abs() < fx!(0.0001), "{a} is not {b}");
+        close(soft.bias_rate.into(), fx!(9.06873));
+        close(soft.mass_scale.into(), fx!(0.942276));
+        close(soft.impulse_scale.into(), fx!(0.057724));
+    }
+}
