@@ -186,7 +186,7 @@ mod tests {
         let cases = [(5, 1, 3), (-5, 1, -2), (7, 2, 2), (-7, 2, -2), (-6, 2, -1), (6, 2, 2), (9, 0, 9)];
         for (x, shift, expected) in cases {
             assert_eq!(round_shift(x, shift), expected, "{x} >> {shift}");
-            assert_eq!(round_shift_wide(x.into(), shift), expected.into());
+            assert_eq!(round_shift_wide(i128::from(x), shift), i128::from(expected));
         }
         assert_eq!(div_round(7, 2), 4);
         assert_eq!(div_round(-7, 2), -4);
