@@ -1,0 +1,128 @@
+//! Axis-aligned boxes. Comparisons and unions are exact; sums saturate at the edge of the world.
+
+use serde::{Deserialize, Serialize};
+
+use super::formats::Fx;
+use super::vec2::Vec2;
+
+/// An axis-aligned bounding box in metres. Its borders belong to it: boxes that touch overlap.
+///
+/// ```
+/// use lockstep2d::{fx, math::{Aabb, Vec2}};
+/// let unit = Aabb::new(Vec2::new(fx!(0), fx!(0)), Vec2::new(fx!(1), fx!(1)));
+/// let moved = unit.translated(Vec2::new(fx!(1), fx!(0)));
+/// assert!(unit.overlaps(moved) && !unit.contains(moved));
+/// assert!(unit.swept(Vec2::new(fx!(1), fx!(0))).contains(moved));
+/// assert_eq!(unit.union(moved).centre(), Vec2::new(fx!(1), fx!(0.5)));
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub struct Aabb {
+    /// The corner with the smallest coordinates.
+    pub lower: Vec2<Fx>,
+    /// The corner with the largest coordinates.
+    pub upper: Vec2<Fx>,
+}
+
+impl Aabb {
+    /// A box from its lower and upper corner, taken as given: see [`is_valid`](Self::is_valid).
+    #[inline]
+    #[must_use]
+    pub const fn new(lower: Vec2<Fx>, upper: Vec2<Fx>) -> Self {
+        Aabb { lower, upper }
+    }
+
+    /// The smallest box around some points; `None` when there are none.
+    #[must_use]
+    pub fn from_points(points: impl IntoIterator<Item = Vec2<Fx>>) -> Option<Self> {
+        points.into_iter().map(|point| Aabb::new(point, point)).reduce(Self::union)
+    }
+
+    /// Whether the lower corner is nowhere above the upper one. The methods below expect this of their boxes.
+    #[inline]
+    #[must_use]
+    pub fn is_valid(self) -> bool {
+        self.lower.x <= self.upper.x && self.lower.y <= self.upper.y
+    }
+
+    /// Whether the boxes share a point.
+    #[inline]
+    #[must_use]
+    pub fn overlaps(self, other: Self) -> bool {
+        // `&` rather than `&&`: four comparisons are cheaper than one mispredicted branch.
+        (self.lower.x <= other.upper.x)
+            & (other.lower.x <= self.upper.x)
+            & (self.lower.y <= other.upper.y)
+            & (other.lower.y <= self.upper.y)
+    }
+
+    /// Whether the other box lies inside this one.
+    #[inline]
+    #[must_use]
+    pub fn contains(self, other: Self) -> bool {
+        (self.lower.x <= other.lower.x)
+            & (self.lower.y <= other.lower.y)
+            & (other.upper.x <= self.upper.x)
+            & (other.upper.y <= self.upper.y)
+    }
+
+    /// Whether the point lies inside the box.
+    #[inline]
+    #[must_use]
+    pub fn contains_point(self, point: Vec2<Fx>) -> bool {
+        self.contains(Aabb::new(point, point))
+    }
+
+    /// The smallest box around both.
+    #[inline]
+    #[must_use]
+    pub fn union(self, other: Self) -> Self {
+        Aabb::new(self.lower.min(other.lower), self.upper.max(other.upper))
+    }
+
+    /// The box grown by a margin in metres on all sides, saturated. A negative margin shrinks it, and can leave
+    /// it invalid.
+    #[inline]
+    #[must_use]
+    pub fn expanded(self, margin: Fx) -> Self {
+        let margin = Vec2::new(margin, margin);
+        Aabb::new(self.lower - margin, self.upper + margin)
+    }
+
+    /// The box moved by an offset in metres, saturated.
+    #[inline]
+    #[must_use]
+    pub fn translated(self, offset: Vec2<Fx>) -> Self {
+        Aabb::new(self.lower + offset, self.upper + offset)
+    }
+
+    /// The smallest box around the box at both ends of a displacement in metres, saturated.
+    #[inline]
+    #[must_use]
+    pub fn swept(self, displacement: Vec2<Fx>) -> Self {
+        Aabb::new(
+            self.lower + displacement.min(<Vec2<Fx>>::ZERO),
+            self.upper + displacement.max(<Vec2<Fx>>::ZERO),
+        )
+    }
+
+    /// The centre in metres, rounded down.
+    #[inline]
+    #[must_use]
+    pub fn centre(self) -> Vec2<Fx> {
+        Vec2::new(midpoint(self.lower.x, self.upper.x), midpoint(self.lower.y, self.upper.y))
+    }
+
+    /// Half the width and height in metres, rounded up: centre and extents cover the box.
+    #[inline]
+    #[must_use]
+    pub fn extents(self) -> Vec2<Fx> {
+        self.upper - self.centre()
+    }
+}
+
+/// `floor((a + b) / 2)` without the carry.
+#[inline]
+const fn midpoint(a: Fx, b: Fx) -> Fx {
+    let (a, b) = (a.to_bits(), b.to_bits());
+    Fx::from_bits((a & b) + ((a ^ b) >> 1))
+}
