@@ -5,8 +5,16 @@ extern crate alloc;
 #[cfg(test)]
 extern crate std;
 
+pub mod body;
 pub mod codec;
+pub mod collision;
 pub mod hash;
 pub mod lockstep;
 pub mod math;
 pub mod replay;
+pub mod solver;
+pub mod world;
+
+/// Names the arithmetic of the engine. It changes whenever the same inputs give another state, and replays and
+/// snapshots carry it: one made with other semantics is refused, not misread.
+pub const SEMANTICS: u32 = 1;

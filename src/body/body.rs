@@ -13,6 +13,9 @@ use crate::math::{
     Angle, Fx, Length, Rot, Speed, Transform, Vec2, div_round, fx_mul, narrow, saturate, saturate_wide, widen,
 };
 
+/// Largest component of a velocity in m/s, also of `u = k w`: the difference of two fits [`Speed`].
+pub(crate) const SPEED_MAX: Speed = Speed::lit("511");
+
 /// What moves a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum BodyKind {
@@ -374,6 +377,20 @@ impl Body {
         self.set_angular_velocity(omega);
         let moved = (self.centre - old_centre).perp().scale(omega);
         self.velocity = (self.velocity() + moved).narrow();
+        self.clamp_velocity();
+    }
+
+    /// Forgets its velocity.
+    pub(crate) fn stop(&mut self) {
+        self.velocity = Vec2::ZERO;
+        self.spin = Speed::ZERO;
+    }
+
+    /// Keeps every component of the velocity within [`SPEED_MAX`], where the kernels need it.
+    fn clamp_velocity(&mut self) {
+        let clamp = |speed: Speed| speed.clamp(-SPEED_MAX, SPEED_MAX);
+        self.velocity = Vec2::new(clamp(self.velocity.x), clamp(self.velocity.y));
+        self.spin = clamp(self.spin);
     }
 
     /// Adds a force in N at a world point until the end of the next tick.
@@ -392,6 +409,7 @@ impl Body {
     /// Changes angular velocity at once by an angular impulse in N m s.
     pub(crate) fn apply_angular_impulse(&mut self, impulse: Fx) {
         self.spin = self.spin.saturating_add(narrow(divide(divide(impulse, self.mass.mass), self.mass.gyration)));
+        self.clamp_velocity();
     }
 
     /// Change of velocity in one sub-step by the applied force, and of `u` by the torque, at `rate` sub-steps

@@ -13,7 +13,7 @@ mod shape;
 pub(crate) use arena::{Arena, Handle};
 pub use arena::{BodyId, JointId, ShapeId};
 pub use body::{Body, BodyDef, BodyKind};
-pub(crate) use body::check_position;
+pub(crate) use body::{SPEED_MAX, check_position};
 pub use error::{GeometryError, WorldError};
 pub use filter::Filter;
 pub use mass::{MassProperties, MassSource};

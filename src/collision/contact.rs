@@ -58,18 +58,29 @@ impl Contact {
     }
 }
 
-/// Brings the contacts in line with the pairs of this tick, both sorted: contacts whose pair is gone are moved
-/// to `ended`, new pairs get a contact without impulses.
-pub(crate) fn match_pairs(contacts: &mut Vec<Contact>, pairs: &[Pair], merged: &mut Vec<Contact>, ended: &mut Vec<Contact>) {
+/// Brings the contacts in line with the pairs of this tick, both sorted. New pairs get a contact without impulses;
+/// contacts whose pair is gone are moved to `ended`. `sources` says for each contact where it was before,
+/// `u32::MAX` for a new one.
+pub(crate) fn match_pairs(
+    contacts: &mut Vec<Contact>,
+    pairs: &[Pair],
+    merged: &mut Vec<Contact>,
+    sources: &mut Vec<u32>,
+    ended: &mut Vec<Contact>,
+) {
     merged.clear();
-    let mut old = contacts.iter().copied().peekable();
+    sources.clear();
+    let mut old = contacts.iter().copied().zip(0u32..).peekable();
     for &pair in pairs {
-        while let Some(gone) = old.next_if(|contact| contact.shapes < pair) {
+        while let Some((gone, _)) = old.next_if(|(contact, _)| contact.shapes < pair) {
             ended.push(gone);
         }
-        merged.push(old.next_if(|contact| contact.shapes == pair).unwrap_or_else(|| Contact::new(pair)));
+        let same = old.next_if(|(contact, _)| contact.shapes == pair);
+        let (contact, source) = same.unwrap_or((Contact::new(pair), u32::MAX));
+        merged.push(contact);
+        sources.push(source);
     }
-    ended.extend(old);
+    ended.extend(old.map(|(gone, _)| gone));
     core::mem::swap(contacts, merged);
 }
 
@@ -82,8 +93,9 @@ mod tests {
         let mut kept = Contact::new((1, 2));
         kept.push_point(PointImpulse { feature: 3, normal: Speed::ONE, tangent: Speed::ZERO });
         let mut contacts = alloc::vec![Contact::new((0, 5)), kept, Contact::new((2, 3))];
-        let (mut merged, mut ended) = (Vec::new(), Vec::new());
-        match_pairs(&mut contacts, &[(0, 1), (1, 2), (4, 9)], &mut merged, &mut ended);
+        let (mut merged, mut sources, mut ended) = (Vec::new(), Vec::new(), Vec::new());
+        match_pairs(&mut contacts, &[(0, 1), (1, 2), (4, 9)], &mut merged, &mut sources, &mut ended);
+        assert_eq!(sources, [u32::MAX, 1, u32::MAX]);
         assert_eq!(contacts, [Contact::new((0, 1)), kept, Contact::new((4, 9))]);
         assert_eq!(ended, [Contact::new((0, 5)), Contact::new((2, 3))]);
     }

@@ -1,12 +1,11 @@
 //! The clamps of the kernels, chosen so that no sum of two clamped values leaves its 32-bit format.
 
+pub(crate) use crate::body::SPEED_MAX;
 use crate::math::Speed;
 
 /// How often a clamp changed a result. Part of the hashed state, and 0 as long as physics makes sense.
 pub(crate) type Faults = u32;
 
-/// Largest component of a velocity, in m/s: a difference of two fits [`Speed`].
-pub(crate) const SPEED_MAX: Speed = Speed::lit("511");
 /// Largest change of an impulse in one update, and the largest warm start, in m/s.
 pub(crate) const STEP_MAX: Speed = Speed::lit("512");
 /// Largest accumulated impulse, in m/s.

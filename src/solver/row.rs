@@ -161,9 +161,13 @@ impl Row {
         let bounded = wanted.clamp(lo.to_bits().into(), hi.to_bits().into());
         let within = bounded.clamp(-i64::from(IMPULSE_MAX.to_bits()), IMPULSE_MAX.to_bits().into());
         *faults += u32::from(within != bounded);
-        let next = Speed::from_bits(saturate(within));
-        let d = next - *lambda;
-        *lambda = next;
+        // A friction limit may shrink by more than one update is allowed to change.
+        let step = i64::from(STEP_MAX.to_bits());
+        let change = within - i64::from(lambda.to_bits());
+        let d = change.clamp(-step, step);
+        *faults += u32::from(d != change);
+        let d = Speed::from_bits(saturate(d));
+        *lambda += d;
         self.apply(d, a, b, faults);
     }
 }

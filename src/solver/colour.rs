@@ -1,0 +1,131 @@
+//! Colours: groups of constraints of which no two touch the same dynamic body, so that inside a group the order
+//! cannot matter. That makes a scalar, a wide and a threaded solver give the same bits.
+//!
+//! Constraints are coloured greedily in the order of a hash of what they join: in sorted order the sweep always
+//! runs the same way and a pyramid sways by 0.1 to 0.4 m, in hashed order by 0.006 m.
+
+use alloc::vec::Vec;
+
+/// More colours than this would be nearly empty: what does not fit (a drum touched by hundreds of boxes) is one
+/// serial list after them, in its own order.
+const COLOURS_MAX: usize = 24;
+
+const BUCKETS: usize = 256;
+
+/// A constraint to be coloured: its key for the order, and the dynamic bodies it touches.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Node {
+    pub(crate) key: u64,
+    pub(crate) body_a: Option<u32>,
+    pub(crate) body_b: Option<u32>,
+}
+
+/// Scratch of the colouring.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Colouring {
+    /// For each body, the colours of its constraints so far, one bit each.
+    used: Vec<u32>,
+    hashed: Vec<u32>,
+    colours: Vec<u8>,
+    order: Vec<u32>,
+}
+
+impl Colouring {
+    /// The order in which to solve: indices into `nodes`, colour by colour, the overflow last.
+    pub(crate) fn order(&mut self, nodes: &[Node], body_slots: usize) -> &[u32] {
+        self.used.clear();
+        self.used.resize(body_slots, 0);
+        counting_sort(nodes.len(), BUCKETS, |i| usize::from(bucket_of(nodes[i].key)), &mut self.hashed);
+
+        self.colours.clear();
+        self.colours.resize(nodes.len(), 0);
+        for &index in &self.hashed {
+            let node = nodes[index as usize];
+            let bodies = [node.body_a, node.body_b].into_iter().flatten();
+            let taken = bodies.clone().fold(0, |taken, body| taken | self.used[body as usize]);
+            let colour = taken.trailing_ones().min(COLOURS_MAX as u32);
+            for body in bodies {
+                self.used[body as usize] |= 1 << colour;
+            }
+            self.colours[index as usize] = colour_byte(colour);
+        }
+        let colours = &self.colours;
+        counting_sort(nodes.len(), COLOURS_MAX + 1, |i| usize::from(colours[i]), &mut self.order);
+        &self.order
+    }
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "at most COLOURS_MAX")]
+fn colour_byte(colour: u32) -> u8 {
+    colour as u8
+}
+
+/// The top bits of a multiplicative hash (D. Knuth, The Art of Computer Programming 3, 6.4).
+#[expect(clippy::cast_possible_truncation, reason = "the top 8 bits")]
+fn bucket_of(key: u64) -> u8 {
+    (key.wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 56) as u8
+}
+
+/// The indices `0..count`, stably sorted by bucket.
+#[expect(clippy::cast_possible_truncation, reason = "constraints are counted in 32 bits")]
+fn counting_sort(count: usize, buckets: usize, bucket_of: impl Fn(usize) -> usize, sorted: &mut Vec<u32>) {
+    let mut starts = [0u32; BUCKETS + 1];
+    assert!(buckets <= BUCKETS, "at most 256 buckets");
+    for i in 0..count {
+        starts[bucket_of(i) + 1] += 1;
+    }
+    for i in 0..buckets {
+        starts[i + 1] += starts[i];
+    }
+    sorted.clear();
+    sorted.resize(count, 0);
+    for i in 0..count {
+        let start = &mut starts[bucket_of(i)];
+        sorted[*start as usize] = i as u32;
+        *start += 1;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Rng;
+
+    #[test]
+    fn no_colour_holds_a_body_twice_and_nothing_is_lost() {
+        let mut rng = Rng::new(11);
+        for bodies in [2u32, 10, 300] {
+            // Body 0 is a hub, so that the overflow list is used too.
+            let nodes: Vec<Node> = (0..400)
+                .map(|key| {
+                    let a = if key % 3 == 0 { 0 } else { rng.below(bodies) };
+                    let b = (a + 1 + rng.below(bodies - 1)) % bodies;
+                    let fixed = key % 7 == 0;
+                    Node { key, body_a: Some(a), body_b: if fixed { None } else { Some(b) } }
+                })
+                .collect();
+            let mut colouring = Colouring::default();
+            let order = colouring.order(&nodes, bodies as usize).to_vec();
+            let mut seen = order.clone();
+            seen.sort_unstable();
+            assert!(seen.iter().copied().eq(0..400));
+            let mut last = 0;
+            let mut in_colour = std::collections::BTreeSet::new();
+            for index in order {
+                let colour = colouring.colours[index as usize];
+                assert!(colour >= last, "colours run in order");
+                if colour > last {
+                    in_colour.clear();
+                    last = colour;
+                }
+                if usize::from(colour) < COLOURS_MAX {
+                    let node = nodes[index as usize];
+                    for body in [node.body_a, node.body_b].into_iter().flatten() {
+                        assert!(in_colour.insert(body), "body {body} twice in colour {colour}");
+                    }
+                }
+            }
+            assert_eq!(usize::from(last), COLOURS_MAX, "the hub overflows");
+        }
+    }
+}

@@ -1,0 +1,236 @@
+//! Contacts as rows: one along the normal and one along the tangent for each point.
+//!
+//! Siblings in this folder have the same functions in the same order: `prepare`, `warm_start`, `solve`, `store`.
+
+use super::body::SolverBody;
+use super::limits::{Faults, IMPULSE_MAX};
+use super::row::{Denominator, Lever, MassFractions, Row, impulse_of, lambda_of, separation};
+use super::settings::Tuning;
+use super::softness::Softness;
+use crate::body::Body;
+use crate::collision::{Contact, Manifold, ManifoldPoint, PointImpulse};
+use crate::math::{Fx, Grip, Rate, Speed, Step, Unit, Vec2, mul, narrow, saturate};
+
+/// Whether a pass removes position errors or only velocity errors.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Pass {
+    /// Removes position errors by velocity.
+    Bias,
+    /// Takes the velocity away again that removing position errors has left.
+    Relax,
+}
+
+/// A pair of touching shapes, for one tick.
+#[derive(Clone, Debug)]
+pub(crate) struct ContactConstraint {
+    body_a: u32,
+    body_b: u32,
+    softness: Softness,
+    restitution: Unit,
+    count: u8,
+    points: [ContactPoint; 2],
+}
+
+#[derive(Clone, Debug)]
+struct ContactPoint {
+    normal: Row,
+    tangent: Row,
+    /// At the start of the tick.
+    separation: Step,
+    /// Friction limit for each unit of `normal_lambda`: `mu Dt / Dn`.
+    grip: Grip,
+    normal_lambda: Speed,
+    tangent_lambda: Speed,
+    /// Relative normal velocity at the start of the tick, for restitution.
+    approach: Speed,
+    /// Whether the shapes have pushed each other in this tick, for restitution.
+    pushed: bool,
+    normal_denominator: Denominator,
+    tangent_denominator: Denominator,
+    feature: u16,
+}
+
+/// The surface that two shapes have in common.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Surface {
+    pub(crate) friction: Fx,
+    pub(crate) restitution: Fx,
+}
+
+/// How the impulses of the last tick were carried over.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct WarmStarts {
+    /// Points in contact.
+    pub(crate) points: u32,
+    /// Points that were there in the last tick.
+    pub(crate) kept: u32,
+    /// Points with an impulse in the last tick that are gone, although the shapes still touch.
+    pub(crate) lost: u32,
+}
+
+impl ContactConstraint {
+    #[expect(clippy::too_many_arguments, reason = "what a contact is made of")]
+    pub(crate) fn prepare(
+        manifold: &Manifold,
+        memory: &Contact,
+        surface: Surface,
+        (slot_a, a): (u32, &Body),
+        (slot_b, b): (u32, &Body),
+        solver_bodies: &[SolverBody],
+        tuning: &Tuning,
+        warm: &mut WarmStarts,
+        faults: &mut Faults,
+    ) -> Self {
+        let fractions = MassFractions::of(a, b);
+        let to_a = (manifold.origin - a.centre_of_mass()).narrow();
+        let to_b = (manifold.origin - b.centre_of_mass()).narrow();
+        let velocities = (&solver_bodies[slot_a as usize], &solver_bodies[slot_b as usize]);
+        let mut point = |point: &ManifoldPoint| {
+            let lever_a = Lever { arm: point.anchor + to_a, inverse_gyration: a.mass.inverse_gyration };
+            let lever_b = Lever { arm: point.anchor + to_b, inverse_gyration: b.mass.inverse_gyration };
+            let (normal, normal_denominator) = Row::prepare(manifold.normal, lever_a, lever_b, fractions);
+            let (tangent, tangent_denominator) = Row::prepare(manifold.normal.perp(), lever_a, lever_b, fractions);
+            let carried = memory.impulse_of(point.feature);
+            warm.points += 1;
+            warm.kept += u32::from(carried.is_some());
+            let carried = carried.unwrap_or_default();
+            ContactPoint {
+                normal,
+                tangent,
+                separation: point.separation,
+                grip: grip(surface.friction, tangent_denominator, normal_denominator),
+                normal_lambda: lambda_of(carried.normal, normal_denominator, faults),
+                tangent_lambda: lambda_of(carried.tangent, tangent_denominator, faults),
+                approach: normal.velocity(velocities.0, velocities.1, faults),
+                pushed: false,
+                normal_denominator,
+                tangent_denominator,
+                feature: point.feature.0,
+            }
+        };
+        let points = manifold.points();
+        let first = point(&points[0]);
+        let second = points.get(1).map_or_else(|| first.clone(), point);
+        let still_there = |old: &PointImpulse| points.iter().any(|point| point.feature.0 == old.feature);
+        let lost = memory.points().iter().filter(|old| old.normal > 0 && !still_there(old)).count();
+        warm.lost += u32::try_from(lost).expect("at most 2 points");
+        let immovable = !(a.is_dynamic() && b.is_dynamic());
+        ContactConstraint {
+            body_a: slot_a,
+            body_b: slot_b,
+            softness: if immovable { tuning.contact_immovable } else { tuning.contact },
+            restitution: narrow(surface.restitution),
+            count: if points.len() == 2 { 2 } else { 1 },
+            points: [first, second],
+        }
+    }
+
+    pub(crate) fn warm_start(&self, bodies: &mut [SolverBody], faults: &mut Faults) {
+        let (a, b) = SolverBody::pair(bodies, self.body_a, self.body_b);
+        for point in &self.points[..usize::from(self.count)] {
+            point.normal.apply(point.normal_lambda, a, b, faults);
+            point.tangent.apply(point.tangent_lambda, a, b, faults);
+        }
+    }
+
+    pub(crate) fn solve(&mut self, pass: Pass, tuning: &Tuning, bodies: &mut [SolverBody], faults: &mut Faults) {
+        let (a, b) = SolverBody::pair(bodies, self.body_a, self.body_b);
+        for point in &mut self.points[..usize::from(self.count)] {
+            let separation = separation(point.separation, point.normal.displacement(a, b));
+            let (bias, softness) = bias_of(separation, pass, &self.softness, tuning);
+            point.normal.solve(a, b, bias, &softness, (Speed::ZERO, IMPULSE_MAX), &mut point.normal_lambda, faults);
+            point.pushed |= point.normal_lambda > 0;
+        }
+        for point in &mut self.points[..usize::from(self.count)] {
+            let limit: Speed = mul(point.grip, point.normal_lambda);
+            let limit = limit.min(IMPULSE_MAX);
+            let bounds = (-limit, limit);
+            point.tangent.solve(a, b, Speed::ZERO, &Softness::RIGID, bounds, &mut point.tangent_lambda, faults);
+        }
+    }
+
+    /// Once in a tick, after the sub-steps: what approached faster than the threshold and was pushed, leaves.
+    pub(crate) fn apply_restitution(&mut self, tuning: &Tuning, bodies: &mut [SolverBody], faults: &mut Faults) {
+        if self.restitution == Unit::ZERO {
+            return;
+        }
+        let (a, b) = SolverBody::pair(bodies, self.body_a, self.body_b);
+        for point in &mut self.points[..usize::from(self.count)] {
+            if point.approach > -tuning.restitution_threshold || !point.pushed {
+                continue;
+            }
+            let bounce: Speed = mul(self.restitution, point.approach);
+            let bounds = (Speed::ZERO, IMPULSE_MAX);
+            point.normal.solve(a, b, bounce, &Softness::RIGID, bounds, &mut point.normal_lambda, faults);
+        }
+    }
+
+    pub(crate) fn store(&self, memory: &mut Contact) {
+        memory.clear_points();
+        for point in &self.points[..usize::from(self.count)] {
+            memory.push_point(PointImpulse {
+                feature: point.feature,
+                normal: impulse_of(point.normal_lambda, point.normal_denominator),
+                tangent: impulse_of(point.tangent_lambda, point.tangent_denominator),
+            });
+        }
+    }
+}
+
+/// The velocity that a separation asks for, and how softly.
+#[inline]
+fn bias_of(separation: Step, pass: Pass, softness: &Softness, tuning: &Tuning) -> (Speed, Softness) {
+    if separation > 0 {
+        // Speculative: the gap may close within this sub-step, but not more. `s / h`, saturated: a gap too wide
+        // for the format is too wide to close.
+        let per_second = i64::from(separation.to_bits()) * i64::from(tuning.rate);
+        return (Speed::from_bits(saturate(crate::math::round_shift(per_second, 6))), Softness::RIGID);
+    }
+    match pass {
+        Pass::Relax => (Speed::ZERO, Softness::RIGID),
+        Pass::Bias => {
+            let overlap = separation.saturating_add(tuning.slop).min(Step::ZERO);
+            let bias = mul::<_, _, fixed::types::extra::U21>(overlap, softness.bias_rate).max(-tuning.push_speed);
+            (bias, *softness)
+        }
+    }
+}
+
+/// `mu Dt / Dn`, saturated.
+fn grip(friction: Fx, tangent: Denominator, normal: Denominator) -> Grip {
+    // Denominators have at most 45 bits, so 18 more fit.
+    let ratio = (tangent << 18) / (normal >> 2).max(1);
+    let friction: Grip = narrow(friction);
+    Grip::from_bits(saturate(i64::from(saturate(ratio)) * i64::from(friction.to_bits()) >> 20))
+}
+
+/// A check of `bias_of`'s formats: 27 + 18 fraction bits are more than a speed's 21.
+const _: () = assert!(Step::FRAC_NBITS + Rate::FRAC_NBITS >= Speed::FRAC_NBITS);
+/// A tangent is a quarter turn from its normal.
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fx;
+
+    #[test]
+    fn grip_is_friction_times_the_ratio_of_denominators() {
+        let one = 1i64 << 30;
+        assert_eq!(grip(fx!(0.5), one, one), Grip::lit("0.5"));
+        assert_eq!(grip(fx!(0.5), 4 * one, one), Grip::lit("2"));
+        assert_eq!(grip(fx!(0.5), one, 4 * one), Grip::lit("0.125"));
+        assert_eq!(grip(fx!(16), 16130 * one, one), Grip::MAX, "saturated, not wrapped");
+    }
+
+    #[test]
+    fn a_gap_may_close_within_the_sub_step_and_an_overlap_is_pushed_out_slowly() {
+        let tuning = Tuning::new(&super::super::SolverSettings::default(), Vec2::ZERO, 60);
+        let (bias, _) = bias_of(Step::lit("0.01"), Pass::Bias, &tuning.contact, &tuning);
+        assert!((bias - Speed::lit("2.4")).abs() < Speed::lit("0.00001"), "{bias}: 1 cm in 1/240 s");
+        let (bias, _) = bias_of(Step::lit("-0.01"), Pass::Bias, &tuning.contact, &tuning);
+        assert!((bias + Speed::lit("0.0906873")).abs() < Speed::lit("0.00001"), "{bias}");
+        let (bias, _) = bias_of(Step::lit("-5"), Pass::Bias, &tuning.contact, &tuning);
+        assert_eq!(bias, -Speed::lit("3"));
+        let (bias, _) = bias_of(Step::lit("-5"), Pass::Relax, &tuning.contact, &tuning);
+        assert_eq!(bias, Speed::ZERO);
+    }
+}

@@ -1,0 +1,95 @@
+//! Semi-implicit Euler: velocities first, then displacements from the new velocities.
+
+use super::body::SolverBody;
+use super::limits::Faults;
+use super::settings::Tuning;
+use crate::body::{Body, BodyKind};
+use crate::math::{Fx, Reciprocal, Speed, Step, Unit, Vec2, fx_div, fx_mul, mul, narrow};
+
+/// A body that moves, and what changes its velocity in every sub-step of the tick.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Mover {
+    slot: u32,
+    dynamic: bool,
+    /// By gravity and applied force.
+    velocity_step: Vec2<Speed>,
+    /// By applied torque.
+    spin_step: Speed,
+    /// What damping leaves of the velocity: `1 / (1 + h c)`, the implicit step, stable for any rate `c`.
+    linear_factor: Unit,
+    angular_factor: Unit,
+}
+
+impl Mover {
+    pub(crate) fn prepare(slot: u32, body: &Body, tuning: &Tuning) -> Option<Self> {
+        let mut mover = Mover {
+            slot,
+            dynamic: false,
+            velocity_step: Vec2::ZERO,
+            spin_step: Speed::ZERO,
+            linear_factor: Unit::ONE,
+            angular_factor: Unit::ONE,
+        };
+        match body.kind() {
+            BodyKind::Fixed => return None,
+            BodyKind::Kinematic => {}
+            BodyKind::Dynamic => {
+                let (force_step, spin_step) = body.acceleration_step(tuning.rate);
+                let gravity = |step: Fx| if body.gravity_scale() == Fx::ONE { narrow(step) } else { narrow(fx_mul(step, body.gravity_scale())) };
+                mover.dynamic = true;
+                mover.velocity_step = Vec2::new(gravity(tuning.gravity_step.x), gravity(tuning.gravity_step.y)) + force_step;
+                mover.spin_step = spin_step;
+                mover.linear_factor = damping_factor(body.linear_damping(), tuning.rate);
+                mover.angular_factor = damping_factor(body.angular_damping(), tuning.rate);
+            }
+        }
+        Some(mover)
+    }
+
+    /// `v' = (v + h F / m) / (1 + h c)`, within the world's speed limit.
+    pub(crate) fn integrate_velocity(&self, bodies: &mut [SolverBody], speed_max: Speed, faults: &mut Faults) {
+        if !self.dynamic {
+            return;
+        }
+        let body = &mut bodies[self.slot as usize];
+        body.velocity += self.velocity_step;
+        body.spin = body.spin.saturating_add(self.spin_step);
+        if self.linear_factor != Unit::ONE {
+            body.velocity = body.velocity.scale(self.linear_factor);
+        }
+        if self.angular_factor != Unit::ONE {
+            body.spin = mul(body.spin, self.angular_factor);
+        }
+        limit_speed(&mut body.velocity, speed_max, faults);
+        let spin = body.spin.clamp(-speed_max, speed_max);
+        *faults += u32::from(spin != body.spin);
+        body.spin = spin;
+    }
+
+    /// `x' = x + h v'`.
+    pub(crate) fn integrate_displacement(&self, bodies: &mut [SolverBody], h: Reciprocal) {
+        let body = &mut bodies[self.slot as usize];
+        let step = |speed: Speed| -> Step { h.mul(speed) };
+        body.shift += Vec2::new(step(body.velocity.x), step(body.velocity.y));
+        body.turn = body.turn.saturating_add(step(body.spin));
+    }
+}
+
+fn damping_factor(damping: Fx, rate: u32) -> Unit {
+    if damping == Fx::ZERO {
+        return Unit::ONE;
+    }
+    narrow(fx_div(Fx::ONE, Fx::ONE + damping / i64::from(rate)).unwrap_or(Fx::ONE))
+}
+
+/// Shortens a velocity to the limit. Its components are within ±1024, so its square fits 64 bits.
+fn limit_speed(velocity: &mut Vec2<Speed>, speed_max: Speed, faults: &mut Faults) {
+    let square = |speed: Speed| i64::from(speed.to_bits()) * i64::from(speed.to_bits());
+    if square(velocity.x).saturating_add(square(velocity.y)) <= square(speed_max) {
+        return;
+    }
+    *faults += 1;
+    if let Some(direction) = velocity.normalized() {
+        *velocity = direction.scale(speed_max);
+    }
+}

@@ -1,0 +1,180 @@
+//! The point block: pins a point of body A to a point of body B, both directions at once.
+//!
+//! In world axes, with `e = (-r_y, r_x) / k` of each body and the mass fractions `a`:
+//!
+//! ```text
+//! K   = I + aA eA eA^T + aB eB eB^T
+//! det = 1 + aA |eA|^2 + aB |eB|^2 + aA aB (eA x eB)^2           (no cancellation)
+//! G   = K^-1 = [K22 -K12; -K12 K11] / det                       (0 < Gii <= 1, |G12| <= 1/2)
+//! GA  = aA G,  GB = aB G,  fA = aA G eA,  fB = aB G eB          (every entry of f <= 1/2)
+//!
+//! vr  = vB - vA + eB uB - eA uA
+//! d   = clamp(-massScale (vr + bias) - impulseScale L, -512, 512)
+//! L'  = clamp(L + d, -1023, 1023),  d = L' - L
+//! vA -= GA d,  uA -= fA.d,  vB += GB d,  uB += fB.d
+//! ```
+//!
+//! `L = K p` is the relative velocity of the anchors that the impulse makes; `p = G L`, the impulse times
+//! `mA + mB`, is what lasts. Two scalar rows instead of the block gain energy in a swinging chain.
+
+use super::body::SolverBody;
+use super::limits::{Faults, IMPULSE_MAX, STEP_MAX};
+use super::row::MassFractions;
+use super::softness::Softness;
+use crate::math::{Length, Ratio, Reciprocal, Speed, Unit, Vec2, mul, round_shift, round_shift_wide, saturate, saturate_wide};
+
+/// A symmetric 2x2 matrix.
+#[derive(Clone, Copy, Debug, Default)]
+struct Symmetric<T> {
+    m11: T,
+    m12: T,
+    m22: T,
+}
+
+impl Symmetric<Unit> {
+    fn apply(&self, v: Vec2<Speed>) -> Vec2<Speed> {
+        Vec2::new(
+            crate::math::mul_add(self.m11, v.x, self.m12, v.y),
+            crate::math::mul_add(self.m12, v.x, self.m22, v.y),
+        )
+    }
+
+    fn apply_ratio(&self, e: Vec2<Ratio>) -> Vec2<Unit> {
+        Vec2::new(
+            crate::math::mul_add(self.m11, e.x, self.m12, e.y),
+            crate::math::mul_add(self.m12, e.x, self.m22, e.y),
+        )
+    }
+
+    fn scale(&self, fraction: Unit) -> Self {
+        Symmetric { m11: mul(self.m11, fraction), m12: mul(self.m12, fraction), m22: mul(self.m22, fraction) }
+    }
+}
+
+/// The block at one pose of its bodies.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct PointBlock {
+    e_a: Vec2<Ratio>,
+    e_b: Vec2<Ratio>,
+    /// 30 fraction bits; up to 16 130.
+    k: Symmetric<i64>,
+    g: Symmetric<Unit>,
+    g_a: Symmetric<Unit>,
+    g_b: Symmetric<Unit>,
+    f_a: Vec2<Unit>,
+    f_b: Vec2<Unit>,
+}
+
+/// One body's end of a block.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Arm {
+    pub(crate) arm: Vec2<Length>,
+    pub(crate) inverse_gyration: Reciprocal,
+}
+
+impl PointBlock {
+    pub(crate) fn new(a: Arm, b: Arm, fractions: MassFractions) -> Self {
+        let ratios = |end: Arm| -> Vec2<Ratio> {
+            let perp = end.arm.perp();
+            Vec2::new(end.inverse_gyration.mul(perp.x), end.inverse_gyration.mul(perp.y))
+        };
+        let (e_a, e_b) = (ratios(a), ratios(b));
+        let (w_a, w_b): (Vec2<Ratio>, Vec2<Ratio>) = (e_a.scale(fractions.a), e_b.scale(fractions.b));
+        let product = |a: Ratio, b: Ratio| i64::from(a.to_bits()) * i64::from(b.to_bits());
+        // Each product has 48 fraction bits and at most 62 bits; the fractions add up to 1, so the sums fit too.
+        let sum = |a: i64, b: i64| round_shift(a.saturating_add(b), 18);
+        let xx = sum(product(w_a.x, e_a.x), product(w_b.x, e_b.x));
+        let xy = sum(product(w_a.x, e_a.y), product(w_b.x, e_b.y));
+        let yy = sum(product(w_a.y, e_a.y), product(w_b.y, e_b.y));
+        let cross = |p: Vec2<Ratio>, q: Vec2<Ratio>| {
+            round_shift(product(p.x, q.y).saturating_sub(product(p.y, q.x)), 18)
+        };
+        let both = i128::from(cross(w_a, e_b)) * i128::from(cross(e_a, w_b));
+        let one = 1i64 << 30;
+        let det = one + xx + yy + saturate_wide(round_shift_wide(both, 30));
+        let k = Symmetric { m11: one + xx, m12: xy, m22: one + yy };
+        let g = inverse(&k, det);
+        let (g_a, g_b) = (g.scale(fractions.a), g.scale(fractions.b));
+        PointBlock { e_a, e_b, k, g, g_a, g_b, f_a: g_a.apply_ratio(e_a), f_b: g_b.apply_ratio(e_b) }
+    }
+
+    /// `L = K p`, clamped like any warm start.
+    pub(crate) fn lambda_of(&self, p: Vec2<Speed>, faults: &mut Faults) -> Vec2<Speed> {
+        let dot = |a: i64, x: Speed, b: i64, y: Speed| {
+            i128::from(a) * i128::from(x.to_bits()) + i128::from(b) * i128::from(y.to_bits())
+        };
+        let mut clamp = |wide: i128| {
+            let limit = i128::from(STEP_MAX.to_bits());
+            let wanted = round_shift_wide(wide, 30);
+            let within = wanted.clamp(-limit, limit);
+            *faults += u32::from(within != wanted);
+            Speed::from_bits(saturate(saturate_wide(within)))
+        };
+        let Symmetric { m11, m12, m22 } = self.k;
+        Vec2::new(clamp(dot(m11, p.x, m12, p.y)), clamp(dot(m12, p.x, m22, p.y)))
+    }
+
+    /// `p = G L`.
+    pub(crate) fn impulse_of(&self, lambda: Vec2<Speed>) -> Vec2<Speed> {
+        self.g.apply(lambda)
+    }
+
+    /// Changes the velocities by an impulse `d`.
+    #[inline]
+    pub(crate) fn apply(&self, d: Vec2<Speed>, a: &mut SolverBody, b: &mut SolverBody, faults: &mut Faults) {
+        // Both sums are within ±1022, because either term is within the clamps.
+        a.velocity -= self.g_a.apply(d);
+        a.spin -= self.f_a.dot::<_, fixed::types::extra::U21>(d);
+        b.velocity += self.g_b.apply(d);
+        b.spin += self.f_b.dot::<_, fixed::types::extra::U21>(d);
+        a.clamp(faults);
+        b.clamp(faults);
+    }
+
+    /// Solves the block for one iteration. `lambda` is the accumulated `L`.
+    #[inline]
+    pub(crate) fn solve(
+        &self,
+        a: &mut SolverBody,
+        b: &mut SolverBody,
+        bias: Vec2<Speed>,
+        softness: &Softness,
+        lambda: &mut Vec2<Speed>,
+        faults: &mut Faults,
+    ) {
+        let along = |e_a: Ratio, e_b: Ratio, dv: Speed, faults: &mut Faults| {
+            let angular = i64::from(e_b.to_bits()) * i64::from(b.spin.to_bits())
+                - i64::from(e_a.to_bits()) * i64::from(a.spin.to_bits());
+            let wide = i64::from(dv.to_bits()) + round_shift(angular, 24);
+            let within = saturate(wide);
+            *faults += u32::from(i64::from(within) != wide);
+            Speed::from_bits(within)
+        };
+        let vr_x = along(self.e_a.x, self.e_b.x, b.velocity.x - a.velocity.x, faults);
+        let vr_y = along(self.e_a.y, self.e_b.y, b.velocity.y - a.velocity.y, faults);
+        let d_x = softness.impulse(vr_x, bias.x, lambda.x, faults);
+        let d_y = softness.impulse(vr_y, bias.y, lambda.y, faults);
+        let next = Vec2::new(accumulate(lambda.x, d_x, faults), accumulate(lambda.y, d_y, faults));
+        let d = next - *lambda;
+        *lambda = next;
+        self.apply(d, a, b, faults);
+    }
+}
+
+/// `clamp(L + d, -1023, 1023)`.
+fn accumulate(lambda: Speed, d: Speed, faults: &mut Faults) -> Speed {
+    let limit = i64::from(IMPULSE_MAX.to_bits());
+    let wanted = i64::from(lambda.to_bits()) + i64::from(d.to_bits());
+    let within = wanted.clamp(-limit, limit);
+    *faults += u32::from(within != wanted);
+    Speed::from_bits(saturate(within))
+}
+
+/// `[K22 -K12; -K12 K11] / det` with one division. Everything has 30 fraction bits.
+fn inverse(k: &Symmetric<i64>, det: i64) -> Symmetric<Unit> {
+    // Normalise the determinant to 32 bits: its reciprocal then has 31, and products fit 64.
+    let excess = (64 - det.leading_zeros()).saturating_sub(32);
+    let reciprocal = (1i64 << 62) / (det >> excess);
+    let entry = |value: i64| Unit::from_bits(saturate(round_shift((value >> excess) * reciprocal, 32)));
+    Symmetric { m11: entry(k.m22), m12: entry(-k.m12), m22: entry(k.m11) }
+}

@@ -1,0 +1,135 @@
+//! Saving and restoring: in memory for rollback, as bytes for files and networks.
+
+use alloc::vec::Vec;
+use core::fmt;
+
+use super::World;
+use super::scratch::Scratch;
+use super::state::State;
+use super::validate::Violation;
+use crate::SEMANTICS;
+use crate::codec::{self, DecodeError};
+use crate::hash::StateHash;
+
+/// A copy of a world's state, for [`World::restore`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct Snapshot(State);
+
+/// Starts the bytes of a world.
+const MAGIC: [u8; 8] = *b"LS2DWRLD";
+/// Version of the layout of these bytes.
+const FORMAT: u32 = 1;
+/// Magic, format, semantics, length.
+const HEADER_LEN: usize = 8 + 4 + 4 + 8;
+/// The hash at the end.
+const HASH_LEN: usize = 16;
+
+/// Bytes from which no world can be made.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum SnapshotError {
+    /// They do not start like a world's bytes.
+    NotASnapshot,
+    /// The layout is of another version.
+    Format {
+        /// The version found.
+        found: u32,
+    },
+    /// They were made by an engine with other semantics, and could not continue bit-identically.
+    Semantics {
+        /// The semantics id found.
+        found: u32,
+    },
+    /// There are fewer or more bytes than announced.
+    Length {
+        /// How many bytes the header announces, itself included.
+        announced: u64,
+        /// How many there are.
+        found: u64,
+    },
+    /// The hash at the end does not belong to the bytes before it.
+    Hash,
+    /// The state does not decode.
+    Decode(DecodeError),
+    /// The state decodes but breaks an invariant.
+    Invalid(Violation),
+}
+
+impl fmt::Display for SnapshotError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            SnapshotError::NotASnapshot => write!(f, "not the bytes of a world"),
+            SnapshotError::Format { found } => write!(f, "format version {found}, this engine reads {FORMAT}"),
+            SnapshotError::Semantics { found } => {
+                write!(f, "made with semantics {found}, this engine has {SEMANTICS}")
+            }
+            SnapshotError::Length { announced, found } => write!(f, "{found} bytes where {announced} are announced"),
+            SnapshotError::Hash => write!(f, "the hash does not match the bytes"),
+            SnapshotError::Decode(error) => error.fmt(f),
+            SnapshotError::Invalid(violation) => write!(f, "an impossible state: {violation}"),
+        }
+    }
+}
+
+impl core::error::Error for SnapshotError {}
+
+impl World {
+    /// A copy of the state.
+    #[must_use]
+    pub fn save(&self) -> Snapshot {
+        Snapshot(self.state.clone())
+    }
+
+    /// Returns to a saved state. What follows is bit-identical to what followed the save.
+    pub fn restore(&mut self, snapshot: &Snapshot) {
+        self.state.clone_from(&snapshot.0);
+        self.scratch = Scratch::new(self.scratch.broad_phase_kind);
+    }
+
+    /// The state as portable bytes: header, canonical encoding, hash. `docs/FORMAT.md` has the layout.
+    #[must_use]
+    pub fn to_bytes(&self) -> Vec<u8> {
+        let mut bytes = Vec::new();
+        bytes.extend_from_slice(&MAGIC);
+        bytes.extend_from_slice(&FORMAT.to_le_bytes());
+        bytes.extend_from_slice(&SEMANTICS.to_le_bytes());
+        bytes.extend_from_slice(&[0; 8]);
+        codec::encode_into(&self.state, &mut bytes);
+        let length = (bytes.len() - HEADER_LEN) as u64;
+        bytes[HEADER_LEN - 8..HEADER_LEN].copy_from_slice(&length.to_le_bytes());
+        let hash = StateHash::of_bytes(&bytes);
+        bytes.extend_from_slice(&hash.0.to_le_bytes());
+        bytes
+    }
+
+    /// The world that [`World::to_bytes`] has written.
+    ///
+    /// # Errors
+    /// [`SnapshotError`] for any other bytes. Nothing is believed before it is checked: memory is bounded by the
+    /// number of bytes, and an impossible state is refused.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, SnapshotError> {
+        let header: &[u8; HEADER_LEN] = bytes.first_chunk().ok_or(SnapshotError::NotASnapshot)?;
+        let number = |at: usize| u32::from_le_bytes([header[at], header[at + 1], header[at + 2], header[at + 3]]);
+        if header[..8] != MAGIC {
+            return Err(SnapshotError::NotASnapshot);
+        }
+        if number(8) != FORMAT {
+            return Err(SnapshotError::Format { found: number(8) });
+        }
+        if number(12) != SEMANTICS {
+            return Err(SnapshotError::Semantics { found: number(12) });
+        }
+        let length = u64::from(number(16)) | u64::from(number(20)) << 32;
+        let announced = length.saturating_add((HEADER_LEN + HASH_LEN) as u64);
+        if announced != bytes.len() as u64 {
+            return Err(SnapshotError::Length { announced, found: bytes.len() as u64 });
+        }
+        let (covered, hash) = bytes.split_at(bytes.len() - HASH_LEN);
+        if StateHash::of_bytes(covered).0.to_le_bytes() != *hash {
+            return Err(SnapshotError::Hash);
+        }
+        let state: State = codec::decode(&covered[HEADER_LEN..]).map_err(SnapshotError::Decode)?;
+        let world = World { state, scratch: Scratch::new(Default::default()) };
+        world.validate().map_err(SnapshotError::Invalid)?;
+        Ok(world)
+    }
+}

@@ -1,0 +1,91 @@
+//! The state hash, and the digests it is made of: what a report of a divergence is built from.
+
+use alloc::vec::Vec;
+use core::fmt;
+
+use super::World;
+use super::state::State;
+use crate::body::BodyId;
+use crate::hash::StateHash;
+
+/// A part of the state with a digest of its own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Section {
+    /// Settings, tick and fault count.
+    World,
+    /// Bodies and their free list.
+    Bodies,
+    /// Shapes, their fat boxes and their free list.
+    Shapes,
+    /// Joints, their impulses and their free list.
+    Joints,
+    /// Contacts and their impulses.
+    Contacts,
+    /// Random numbers.
+    Random,
+}
+
+impl fmt::Display for Section {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Section::World => "world",
+            Section::Bodies => "bodies",
+            Section::Shapes => "shapes",
+            Section::Joints => "joints",
+            Section::Contacts => "contacts",
+            Section::Random => "random",
+        })
+    }
+}
+
+/// The digests of a world's sections, in order. Two worlds that differ, differ in one of them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct WorldDigest {
+    /// The digest of each section.
+    pub sections: [(Section, StateHash); 6],
+}
+
+impl WorldDigest {
+    /// The hash of the whole state.
+    #[must_use]
+    pub fn state_hash(&self) -> StateHash {
+        StateHash::of_digests(self.sections.map(|(_, digest)| digest))
+    }
+
+    /// The sections in which two worlds differ.
+    #[must_use]
+    pub fn differing(&self, other: &WorldDigest) -> Vec<Section> {
+        let pairs = self.sections.iter().zip(&other.sections);
+        pairs.filter(|(a, b)| a != b).map(|((section, _), _)| *section).collect()
+    }
+}
+
+impl World {
+    /// The hash of everything that influences the future.
+    #[must_use]
+    pub fn state_hash(&self) -> StateHash {
+        self.digest().state_hash()
+    }
+
+    /// The digest of each section of the state.
+    #[must_use]
+    pub fn digest(&self) -> WorldDigest {
+        // Destructured, so that a new field does not compile until it has a section.
+        let State { config, tick, faults, bodies, shapes, joints, contacts, removed_contacts, rng } = &self.state;
+        WorldDigest {
+            sections: [
+                (Section::World, StateHash::of(&(config, tick, faults))),
+                (Section::Bodies, StateHash::of(bodies)),
+                (Section::Shapes, StateHash::of(shapes)),
+                (Section::Joints, StateHash::of(joints)),
+                (Section::Contacts, StateHash::of(&(contacts, removed_contacts))),
+                (Section::Random, StateHash::of(rng)),
+            ],
+        }
+    }
+
+    /// The digest of each body, in slot order.
+    pub fn body_digests(&self) -> impl Iterator<Item = (BodyId, StateHash)> {
+        self.state.bodies.iter().map(|(id, body)| (id, StateHash::of(body)))
+    }
+}

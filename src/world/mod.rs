@@ -1,0 +1,197 @@
+//! The world: bodies, shapes and joints that advance together, tick by tick.
+
+mod bytes;
+mod change;
+mod command;
+mod config;
+mod digest;
+mod events;
+mod scratch;
+mod state;
+mod stats;
+mod step;
+mod timestep;
+mod validate;
+
+pub use bytes::{Snapshot, SnapshotError};
+pub use command::{Command, Outcome};
+pub use config::Config;
+pub use digest::{Section, WorldDigest};
+pub use events::{ContactEvent, Events};
+pub use stats::StepStats;
+pub use timestep::FixedTimestep;
+pub use validate::Violation;
+
+use crate::body::{Body, BodyId, JointId, Shape, ShapeId, WorldError};
+use crate::collision::{BroadPhaseKind, Manifold};
+use crate::math::{Fx, Rng, Vec2};
+use crate::solver::Joint;
+use scratch::Scratch;
+use state::State;
+
+/// A physics world.
+///
+/// Everything that influences the future is its state, which is what [`World::state_hash`], [`World::save`] and
+/// [`World::to_bytes`] see. The same changes in the same order give the same hash after every tick, on every
+/// machine.
+///
+/// ```
+/// use lockstep2d::{body::{BodyDef, Geometry, Polygon, ShapeDef}, fx, world::{Config, World}};
+///
+/// let mut world = World::new(Config::default())?;
+/// let floor = ShapeDef::new(Polygon::rectangle(fx!(20), fx!(1))?);
+/// world.spawn(&BodyDef::fixed().position(fx!(0), fx!(-1)), &[floor])?;
+/// let ball = ShapeDef::new(Geometry::circle(fx!(0.5))?);
+/// let ball = world.spawn(&BodyDef::dynamic().position(fx!(0), fx!(10)), &[ball])?;
+/// for _ in 0..300 {
+///     world.step();
+/// }
+/// let height = world.body(ball).expect("still there").position().y;
+/// assert!((height - fx!(0.5)).abs() < fx!(0.001));
+/// # Ok::<(), lockstep2d::body::WorldError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct World {
+    state: State,
+    scratch: Scratch,
+}
+
+impl Default for World {
+    /// An empty world with the default settings.
+    fn default() -> Self {
+        World { state: State::new(Config::default()), scratch: Scratch::new(BroadPhaseKind::default()) }
+    }
+}
+
+impl World {
+    /// An empty world.
+    ///
+    /// # Errors
+    /// [`WorldError::Setting`] when a setting is out of range.
+    pub fn new(config: Config) -> Result<Self, WorldError> {
+        config.validate()?;
+        Ok(World { state: State::new(config), scratch: Scratch::new(BroadPhaseKind::default()) })
+    }
+
+    /// The settings.
+    #[must_use]
+    pub const fn config(&self) -> &Config {
+        &self.state.config
+    }
+
+    /// Ticks since the world was made.
+    #[must_use]
+    pub const fn tick(&self) -> u64 {
+        self.state.tick
+    }
+
+    /// How often a clamp of the solver has changed a result since the world was made. It never goes back to 0,
+    /// and is 0 as long as speeds, impulses and displacements stay in their ranges.
+    #[must_use]
+    pub const fn faults(&self) -> u64 {
+        self.state.faults
+    }
+
+    /// A body, while it is in the world.
+    #[must_use]
+    pub fn body(&self, id: BodyId) -> Option<&Body> {
+        self.state.bodies.get(id)
+    }
+
+    /// A shape, while it is in the world.
+    #[must_use]
+    pub fn shape(&self, id: ShapeId) -> Option<&Shape> {
+        self.state.shapes.get(id)
+    }
+
+    /// A joint, while it is in the world.
+    #[must_use]
+    pub fn joint(&self, id: JointId) -> Option<&Joint> {
+        self.state.joints.get(id)
+    }
+
+    /// All bodies in slot order.
+    pub fn bodies(&self) -> impl Iterator<Item = (BodyId, &Body)> {
+        self.state.bodies.iter()
+    }
+
+    /// All shapes in slot order.
+    pub fn shapes(&self) -> impl Iterator<Item = (ShapeId, &Shape)> {
+        self.state.shapes.iter()
+    }
+
+    /// All joints in slot order.
+    pub fn joints(&self) -> impl Iterator<Item = (JointId, &Joint)> {
+        self.state.joints.iter()
+    }
+
+    /// Number of bodies.
+    #[must_use]
+    pub fn body_count(&self) -> usize {
+        self.state.bodies.len()
+    }
+
+    /// Number of pairs of shapes near each other: what the next tick's cost depends on, with bodies and joints.
+    #[must_use]
+    pub fn pair_count(&self) -> usize {
+        self.state.contacts.len()
+    }
+
+    /// The contacts of the last tick that had points, sorted by pair. Empty before the first tick and after
+    /// [`World::restore`], since manifolds are found anew in every tick.
+    pub fn contacts(&self) -> impl Iterator<Item = ContactView<'_>> {
+        self.state.contacts.iter().zip(&self.scratch.manifolds).filter_map(|(contact, manifold)| {
+            let ContactEvent { shape_a, shape_b } = self.state.contact_event(contact);
+            let view = ContactView { shape_a, shape_b, touching: contact.touching, manifold };
+            (!manifold.points().is_empty()).then_some(view)
+        })
+    }
+
+    /// What happened in the last tick.
+    #[must_use]
+    pub const fn events(&self) -> &Events {
+        &self.scratch.events
+    }
+
+    /// Counters of the last tick.
+    #[must_use]
+    pub const fn stats(&self) -> &StepStats {
+        &self.scratch.stats
+    }
+
+    /// The world's random numbers: part of the state, so that a rollback rolls them back too.
+    pub fn rng(&mut self) -> &mut Rng {
+        &mut self.state.rng
+    }
+
+    /// Drops every cache. No hash changes by it: the next tick only takes longer.
+    pub fn clear_scratch(&mut self) {
+        self.scratch = Scratch::new(self.scratch.broad_phase_kind);
+    }
+
+    /// Chooses how overlapping pairs are found. No hash changes by it.
+    pub fn set_broad_phase(&mut self, kind: BroadPhaseKind) {
+        self.scratch = Scratch::new(kind);
+    }
+
+    /// Where the anchors of a revolute joint are in the world, A's first.
+    #[must_use]
+    pub fn joint_anchors(&self, id: JointId) -> Option<(Vec2<Fx>, Vec2<Fx>)> {
+        let crate::solver::JointDef::Revolute(def) = self.joint(id)?.def();
+        let (a, b) = (self.body(def.body_a)?, self.body(def.body_b)?);
+        Some((a.transform().apply(def.anchor_a), b.transform().apply(def.anchor_b)))
+    }
+}
+
+/// Two shapes in contact.
+#[derive(Clone, Copy, Debug)]
+pub struct ContactView<'a> {
+    /// The shape in the smaller slot.
+    pub shape_a: ShapeId,
+    /// The other shape.
+    pub shape_b: ShapeId,
+    /// Whether they touch, or are only about to.
+    pub touching: bool,
+    /// Normal and points.
+    pub manifold: &'a Manifold,
+}

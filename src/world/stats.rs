@@ -1,0 +1,22 @@
+//! Counters of the last tick, for tuning and tests. They are not part of the state.
+
+/// What the last tick did.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct StepStats {
+    /// Pairs of shapes whose fat boxes overlap.
+    pub pairs: u32,
+    /// Pairs with contact points.
+    pub contacts: u32,
+    /// Contact points.
+    pub points: u32,
+    /// Contact points that continue one of the tick before, and its impulse.
+    pub points_kept: u32,
+    /// Contact points that pushed in the tick before and are gone, although their shapes still have contact.
+    pub points_lost: u32,
+    /// Pairs of polygons whose separating axis of the tick before was still one.
+    pub axis_hits: u32,
+    /// Pairs of polygons that needed the whole test.
+    pub axis_searches: u32,
+    /// Clamps that changed a result.
+    pub faults: u32,
+}

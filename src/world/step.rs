@@ -1,0 +1,268 @@
+//! One tick, as the algorithm reads.
+
+use super::World;
+use super::scratch::Scratch;
+use super::state::State;
+use super::stats::StepStats;
+use crate::body::{Body, BodyKind, Handle, WORLD_EXTENT_MAX};
+use crate::collision::{Manifold, Outline, Pair, PosedShape, Proxy, collide, margin_for, match_pairs};
+use crate::math::{Fx, Length, Vec2, fx_mul, narrow, widen};
+use crate::solver::{SolverBody, Surface, TouchingPair, Tuning, turned};
+
+impl World {
+    /// Advances the world by one tick of `1 / tick_rate` seconds.
+    pub fn step(&mut self) {
+        let World { state, scratch } = self;
+        let settings = state.config.solver;
+        let tuning = Tuning::new(&settings, state.config.gravity, state.config.tick_rate);
+
+        scratch.ensure_poses(state);
+        if refit_boxes(state, scratch) | core::mem::take(&mut scratch.pairs_changed) {
+            update_pairs(state, scratch);
+        }
+        find_manifolds(state, scratch);
+        report_events(state, scratch);
+
+        scratch.solver.prepare_bodies(&state.bodies, &tuning);
+        scratch.solver.prepare_joints(&state.joints, &state.bodies);
+        let Scratch { solver, touching, manifolds, .. } = scratch;
+        solver.prepare_contacts(touching, manifolds, &state.contacts, &state.bodies, &tuning);
+        for _ in 0..settings.sub_steps {
+            solver.sub_step(settings.iterations, &tuning);
+        }
+        solver.apply_restitution(&tuning);
+        solver.store_impulses(&mut state.contacts, &mut state.joints);
+
+        finalise_poses(state, scratch);
+        count(state, scratch);
+        state.tick += 1;
+    }
+}
+
+/// Gives every shape that may leave its fat box within the tick a new one. Says whether any changed.
+fn refit_boxes(state: &mut State, scratch: &Scratch) -> bool {
+    let State { bodies, shapes, config, .. } = state;
+    let mut changed = false;
+    for (_, body) in bodies.iter().filter(|(_, body)| body.kind() != BodyKind::Fixed) {
+        let motion = Motion::of(body, config.tick_rate);
+        for &id in body.shapes() {
+            let posed = scratch.posed(id.slot());
+            let reach = motion.turn_reach(posed, body).saturating_add(config.speculative_distance);
+            let needed = posed.bounds.expanded(reach).swept(motion.shift);
+            let fat = &mut shapes.at_mut(id.slot()).fat;
+            // A box that a fast shape has left behind would find pairs for ever, so it shrinks as well.
+            let roomy = needed.expanded(config.fat_margin.saturating_mul_int(4));
+            if !fat.contains(needed) || !roomy.contains(*fat) {
+                *fat = needed.expanded(config.fat_margin);
+                changed = true;
+            }
+        }
+    }
+    changed
+}
+
+/// Bounds of how far a body can come in a tick at its present velocity.
+struct Motion {
+    shift: Vec2<Fx>,
+    /// In radians.
+    turn: Fx,
+}
+
+impl Motion {
+    fn of(body: &Body, tick_rate: u32) -> Self {
+        let rate = i64::from(tick_rate);
+        let velocity = body.velocity();
+        Motion {
+            shift: Vec2::new(velocity.x / rate, velocity.y / rate),
+            turn: body.angular_velocity().saturating_abs() / rate,
+        }
+    }
+
+    /// How far any point of a shape moves because its body turns: at most arm times angle, and at most from one
+    /// side to the other.
+    fn turn_reach(&self, posed: &PosedShape, body: &Body) -> Fx {
+        if self.turn < Fx::DELTA * 64 {
+            return Fx::ZERO;
+        }
+        let offset = posed.bounds.centre() - body.centre_of_mass();
+        if matches!(posed.outline, Outline::Circle { .. }) && offset == Vec2::ZERO {
+            return Fx::ZERO;
+        }
+        let half = posed.bounds.extents();
+        let reach = half.x.saturating_add(half.y).saturating_add(offset.x.saturating_abs()).saturating_add(offset.y.saturating_abs());
+        fx_mul(reach, self.turn.min(Fx::ONE.saturating_mul_int(2)))
+    }
+}
+
+/// Broad phase: brings the contacts in line with the pairs of fat boxes.
+fn update_pairs(state: &mut State, scratch: &mut Scratch) {
+    let Scratch { broad_phase, proxies, pairs, joined, merged, ended, sources, hints, old_hints, .. } = scratch;
+    proxies.clear();
+    proxies.extend(state.shapes.iter().map(|(id, shape)| Proxy { slot: id.slot(), fat: shape.fat }));
+    joined.clear();
+    let keeping_apart = state.joints.iter().filter(|(_, joint)| !joint.def().collide_connected());
+    joined.extend(keeping_apart.map(|(_, joint)| {
+        let (a, b) = joint.def().bodies();
+        (a.slot().min(b.slot()), a.slot().max(b.slot()))
+    }));
+    joined.sort_unstable();
+    broad_phase.pairs(proxies, |pair| may_collide(state, joined, pair), pairs);
+    match_pairs(&mut state.contacts, pairs, merged, sources, ended);
+
+    core::mem::swap(hints, old_hints);
+    hints.clear();
+    let hint_of = |&source: &u32| old_hints.get(source as usize).copied().unwrap_or_default();
+    hints.extend(sources.iter().map(hint_of));
+}
+
+/// Whether two shapes may have a contact: they are of different bodies, one of which is dynamic, no joint keeps
+/// these apart, and their filters accept each other.
+pub(super) fn may_collide(state: &State, joined: &[Pair], (a, b): Pair) -> bool {
+    let (shape_a, shape_b) = (state.shapes.at(a), state.shapes.at(b));
+    let (slot_a, slot_b) = (shape_a.body().slot(), shape_b.body().slot());
+    if slot_a == slot_b || !shape_a.filter().accepts(shape_b.filter()) {
+        return false;
+    }
+    let (body_a, body_b) = (state.bodies.at(slot_a), state.bodies.at(slot_b));
+    let moved = body_a.is_dynamic() || body_b.is_dynamic();
+    moved && joined.binary_search(&(slot_a.min(slot_b), slot_a.max(slot_b))).is_err()
+}
+
+/// Narrow phase: a manifold for every contact, and the list of those that have points.
+fn find_manifolds(state: &State, scratch: &mut Scratch) {
+    scratch.hints.resize(state.contacts.len(), Default::default());
+    scratch.manifolds.clear();
+    scratch.touching.clear();
+    scratch.sat = Default::default();
+    for (index, contact) in (0u32..).zip(&state.contacts) {
+        let (a, b) = contact.shapes;
+        let (posed_a, posed_b) = (scratch.posed(a), scratch.posed(b));
+        let (shape_a, shape_b) = (state.shapes.at(a), state.shapes.at(b));
+        let (slot_a, slot_b) = (shape_a.body().slot(), shape_b.body().slot());
+        let (body_a, body_b) = (state.bodies.at(slot_a), state.bodies.at(slot_b));
+        let approach = Approach::new(state, (body_a, posed_a), (body_b, posed_b));
+        let hint = &mut scratch.hints[index as usize];
+        let mut manifold = collide(posed_a, posed_b, approach.margin, hint, &mut scratch.sat);
+        approach.keep_reachable(&mut manifold);
+        if !manifold.points().is_empty() {
+            let (material_a, material_b) = (shape_a.material(), shape_b.material());
+            let surface = Surface {
+                friction: material_a.mixed_friction(material_b),
+                restitution: material_a.mixed_restitution(material_b),
+            };
+            scratch.touching.push(TouchingPair { contact: index, bodies: (slot_a, slot_b), surface });
+        }
+        scratch.manifolds.push(manifold);
+    }
+}
+
+/// How two bodies approach: it decides how far ahead their contact has to look.
+struct Approach<'a> {
+    a: &'a Body,
+    b: &'a Body,
+    tick_rate: u32,
+    speculative: Length,
+    margin: Length,
+}
+
+impl<'a> Approach<'a> {
+    fn new(state: &State, (a, posed_a): (&'a Body, &PosedShape), (b, posed_b): (&'a Body, &PosedShape)) -> Self {
+        let tick_rate = state.config.tick_rate;
+        let (motion_a, motion_b) = (Motion::of(a, tick_rate), Motion::of(b, tick_rate));
+        let shift = motion_b.shift - motion_a.shift;
+        let turn = motion_a.turn_reach(posed_a, a).saturating_add(motion_b.turn_reach(posed_b, b));
+        let closing = shift.x.saturating_abs().saturating_add(shift.y.saturating_abs()).saturating_add(turn);
+        let speculative: Length = narrow(state.config.speculative_distance);
+        Approach { a, b, tick_rate, speculative, margin: margin_for(speculative, closing) }
+    }
+
+    /// Drops the points that the bodies, at their present velocities, will not reach within the tick: shapes that
+    /// pass by at speed must not catch on each other.
+    fn keep_reachable(&self, manifold: &mut Manifold) {
+        if self.margin == self.speculative {
+            return;
+        }
+        let normal = manifold.normal.widen();
+        let origin = manifold.origin;
+        manifold.retain(|point| {
+            if widen(point.separation) <= widen(self.speculative) {
+                return true;
+            }
+            let place = origin + point.anchor.widen();
+            let vn = (self.b.velocity_at(place) - self.a.velocity_at(place)).dot(normal);
+            let closing = -vn / i64::from(self.tick_rate);
+            widen(point.separation) <= closing.saturating_add(widen(self.speculative))
+        });
+    }
+}
+
+/// Turns changes of touching into events.
+fn report_events(state: &mut State, scratch: &mut Scratch) {
+    let Scratch { events, manifolds, ended, .. } = scratch;
+    events.clear();
+    events.contact_end.append(&mut state.removed_contacts);
+    let gone = ended.iter().filter(|contact| contact.touching);
+    events.contact_end.extend(gone.map(|contact| state.contact_event(contact)));
+    ended.clear();
+    let apart = state.config.speculative_distance;
+    let mut contacts = core::mem::take(&mut state.contacts);
+    for (contact, manifold) in contacts.iter_mut().zip(manifolds.iter()) {
+        let nearest = manifold.points().iter().map(|point| widen(point.separation)).min();
+        match nearest {
+            Some(separation) if !contact.touching && separation <= apart / 4 => {
+                contact.touching = true;
+                events.contact_begin.push(state.contact_event(contact));
+            }
+            Some(separation) if separation <= apart => {}
+            _ if contact.touching => {
+                contact.touching = false;
+                events.contact_end.push(state.contact_event(contact));
+            }
+            _ => {}
+        }
+        if nearest.is_none() {
+            contact.clear_points();
+        }
+    }
+    state.contacts = contacts;
+    events.contact_end.sort_unstable();
+}
+
+/// Moves the bodies to where the solver has brought them.
+fn finalise_poses(state: &mut State, scratch: &mut Scratch) {
+    let mut faults = 0;
+    for (id, body) in state.bodies.iter_mut().filter(|(_, body)| body.kind() != BodyKind::Fixed) {
+        let SolverBody { velocity, spin, shift, turn } = scratch.solver.bodies[id.slot() as usize];
+        body.velocity = velocity;
+        body.spin = spin;
+        body.force = Vec2::ZERO;
+        body.torque = Fx::ZERO;
+        let centre = body.centre + shift.widen();
+        body.centre = centre.max(Vec2::new(-WORLD_EXTENT_MAX, -WORLD_EXTENT_MAX)).min(Vec2::new(WORLD_EXTENT_MAX, WORLD_EXTENT_MAX));
+        faults += u32::from(body.centre != centre);
+        body.angle = turned(body.angle, turn, body.mass.inverse_gyration);
+    }
+    scratch.solver.faults += faults;
+    for (id, body) in state.bodies.iter() {
+        let SolverBody { shift, turn, .. } = scratch.solver.bodies[id.slot() as usize];
+        if shift != Vec2::ZERO || turn != 0 {
+            scratch.pose_body(state, body);
+        }
+    }
+}
+
+fn count(state: &mut State, scratch: &mut Scratch) {
+    let Scratch { solver, sat, stats, touching, .. } = scratch;
+    state.faults = state.faults.saturating_add(solver.faults.into());
+    let count = |length: usize| u32::try_from(length).unwrap_or(u32::MAX);
+    *stats = StepStats {
+        pairs: count(state.contacts.len()),
+        contacts: count(touching.len()),
+        points: solver.warm_starts.points,
+        points_kept: solver.warm_starts.kept,
+        points_lost: solver.warm_starts.lost,
+        axis_hits: sat.hint_hits,
+        axis_searches: sat.searches,
+        faults: solver.faults,
+    };
+}

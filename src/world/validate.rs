@@ -1,0 +1,143 @@
+//! The invariants of the state, checked one by one: in tests after every tick, and of every state that comes from
+//! outside.
+
+use alloc::format;
+use alloc::string::String;
+use alloc::vec::Vec;
+use core::fmt;
+
+use super::World;
+use super::change::{mass_of, offset_max};
+use super::state::State;
+use crate::body::{Body, BodyId, BodyKind, Handle, SPEED_MAX, WORLD_EXTENT_MAX};
+use crate::math::{Fx, Vec2};
+
+/// A broken invariant.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Violation {
+    /// What is wrong, and where.
+    pub what: String,
+}
+
+impl fmt::Display for Violation {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.what)
+    }
+}
+
+impl core::error::Error for Violation {}
+
+fn check(holds: bool, what: impl FnOnce() -> String) -> Result<(), Violation> {
+    if holds { Ok(()) } else { Err(Violation { what: what() }) }
+}
+
+impl World {
+    /// Checks every invariant of the state.
+    ///
+    /// # Errors
+    /// The first [`Violation`]. A world that was changed only through its methods has none.
+    pub fn validate(&self) -> Result<(), Violation> {
+        let state = &self.state;
+        state.config.validate().map_err(|error| Violation { what: format!("{error}") })?;
+        let State { bodies, shapes, joints, config, .. } = state;
+        check(bodies.is_consistent(), || "the free list of bodies".into())?;
+        check(shapes.is_consistent(), || "the free list of shapes".into())?;
+        check(joints.is_consistent(), || "the free list of joints".into())?;
+        check(bodies.len() <= config.body_limit as usize, || "more bodies than allowed".into())?;
+        check(shapes.len() <= config.shape_limit as usize, || "more shapes than allowed".into())?;
+        check(joints.len() <= config.joint_limit as usize, || "more joints than allowed".into())?;
+        for (id, body) in bodies.iter() {
+            check_body(state, id, body)?;
+        }
+        check_shapes(state)?;
+        check_joints(state)?;
+        check_contacts(state)?;
+        check(state.rng.is_valid(), || "the random number generator".into())
+    }
+}
+
+fn check_body(state: &State, id: BodyId, body: &Body) -> Result<(), Violation> {
+    let at = |what: &str| format!("body {id}: {what}");
+    let inside = |v: Vec2<Fx>| {
+        let range = -WORLD_EXTENT_MAX..=WORLD_EXTENT_MAX;
+        range.contains(&v.x) && range.contains(&v.y)
+    };
+    // The centre of mass may be outside the origin's range by the distance between the two.
+    let reach = Vec2::new(crate::body::OFFSET_MAX * 2, crate::body::OFFSET_MAX * 2);
+    check(inside(body.centre.max(-body.centre) - reach), || at("outside the world"))?;
+    let speed = -SPEED_MAX..=SPEED_MAX;
+    let slow = [body.velocity.x, body.velocity.y, body.spin].iter().all(|v| speed.contains(v));
+    check(slow, || at("faster than the kernels allow"))?;
+    let at_rest = body.velocity == Vec2::ZERO && body.spin == 0;
+    check(body.kind != BodyKind::Fixed || at_rest, || at("fixed and moving"))?;
+    let free = body.force == Vec2::ZERO && body.torque == Fx::ZERO;
+    check(body.is_dynamic() || free, || at("a force on a body that is not dynamic"))?;
+    let zero = Vec2::new(Fx::ZERO, Fx::ZERO);
+    let rates = crate::body::BodyDef {
+        linear_damping: body.linear_damping,
+        angular_damping: body.angular_damping,
+        gravity_scale: body.gravity_scale,
+        position: zero,
+        ..crate::body::BodyDef::fixed()
+    };
+    rates.validate().map_err(|error| Violation { what: at(&format!("{error}")) })?;
+    for (i, shape) in body.shapes.iter().enumerate() {
+        let known = state.shapes.get(*shape).is_some_and(|shape| shape.body == id);
+        check(known, || at(&format!("lists shape {shape}, which is not its own")))?;
+        check(!body.shapes[..i].contains(shape), || at(&format!("lists shape {shape} twice")))?;
+    }
+    let shapes = body.shapes.iter().map(|shape| &state.shapes.at(shape.slot()).def);
+    let mass = mass_of(body.kind, body.mass_source, shapes).map_err(|error| Violation { what: at(&format!("{error}")) })?;
+    check(mass == body.mass, || at("mass does not follow from its shapes"))
+}
+
+fn check_shapes(state: &State) -> Result<(), Violation> {
+    let listed: usize = state.bodies.iter().map(|(_, body)| body.shapes.len()).sum();
+    check(listed == state.shapes.len(), || "a shape without a body".into())?;
+    for (id, shape) in state.shapes.iter() {
+        let body = state.bodies.get(shape.body).ok_or_else(|| Violation { what: format!("shape {id}: no body") })?;
+        let valid = shape.def.validate(offset_max(body.kind()));
+        valid.map_err(|error| Violation { what: format!("shape {id}: {error}") })?;
+        check(shape.fat.is_valid(), || format!("shape {id}: a fat box with its corners exchanged"))?;
+    }
+    Ok(())
+}
+
+fn check_joints(state: &State) -> Result<(), Violation> {
+    for (id, joint) in state.joints.iter() {
+        joint.def.validate().map_err(|error| Violation { what: format!("joint {id}: {error}") })?;
+        let (a, b) = joint.def.bodies();
+        let dynamic = |body: BodyId| state.bodies.get(body).map(Body::is_dynamic);
+        let held = matches!((dynamic(a), dynamic(b)), (Some(a), Some(b)) if a || b);
+        check(held, || format!("joint {id}: its bodies"))?;
+        let limit = crate::solver::IMPULSE_MAX;
+        let bounded = [joint.impulse.x, joint.impulse.y].iter().all(|p| (-limit..=limit).contains(p));
+        check(bounded, || format!("joint {id}: its impulse"))?;
+    }
+    Ok(())
+}
+
+fn check_contacts(state: &State) -> Result<(), Violation> {
+    let pairs: Vec<_> = state.contacts.iter().map(|contact| contact.shapes).collect();
+    check(pairs.is_sorted_by(|a, b| a < b), || "contacts are not sorted by pair".into())?;
+    for contact in &state.contacts {
+        let (a, b) = contact.shapes;
+        let at = |what: &str| format!("contact of shapes {a} and {b}: {what}");
+        check(a < b, || at("out of order"))?;
+        let (Some(shape_a), Some(shape_b)) = (state.shapes.get_slot(a), state.shapes.get_slot(b)) else {
+            return Err(Violation { what: at("a shape is gone") });
+        };
+        check(shape_a.body != shape_b.body, || at("of the same body"))?;
+        let dynamic = |body: BodyId| state.bodies.get(body).is_some_and(Body::is_dynamic);
+        check(dynamic(shape_a.body) || dynamic(shape_b.body), || at("of bodies that nothing moves"))?;
+        check(contact.count <= 2, || at("more than 2 points"))?;
+        let limit = crate::solver::IMPULSE_MAX;
+        for point in contact.points() {
+            let pushes = point.normal >= 0 && point.normal <= limit;
+            check(pushes && (-limit..=limit).contains(&point.tangent), || at("an impossible impulse"))?;
+        }
+        let unused = &contact.points[usize::from(contact.count)..];
+        check(unused.iter().all(|point| *point == Default::default()), || at("an impulse of no point"))?;
+    }
+    Ok(())
+}
