@@ -70,12 +70,23 @@ pub const fn saturate_wide(x: i128) -> i64 {
     }
 }
 
-/// `n / d` rounded to nearest, halves away from zero. `d` must not be 0.
+/// `n / d` rounded to nearest, halves away from zero, saturated. `d` must not be 0.
 #[inline]
 #[must_use]
+#[expect(clippy::cast_possible_wrap, reason = "compared with the largest first")]
 pub const fn div_round(n: i128, d: i128) -> i128 {
-    let (n, d) = if d < 0 { (-n, -d) } else { (n, d) };
-    if n < 0 { (n - d / 2) / d } else { (n + d / 2) / d }
+    let negative = (n < 0) != (d < 0);
+    let (n, d) = (n.unsigned_abs(), d.unsigned_abs());
+    let floor = n / d;
+    let remainder = n - floor * d;
+    // Comparing what is left, rather than adding d / 2 to n, cannot overflow.
+    let quotient = if remainder >= d - remainder { floor + 1 } else { floor };
+    match (quotient > i128::MAX as u128, negative) {
+        (true, true) => i128::MIN,
+        (true, false) => i128::MAX,
+        (false, true) => -(quotient as i128),
+        (false, false) => quotient as i128,
+    }
 }
 
 /// A fixed-point product with a result format of the caller's choice: `a b`, rounded once, saturated.
@@ -191,6 +202,10 @@ mod tests {
         assert_eq!(div_round(7, 2), 4);
         assert_eq!(div_round(-7, 2), -4);
         assert_eq!(div_round(7, -3), -2);
+        assert_eq!(div_round(i128::MAX, i128::MAX - 1), 1);
+        assert_eq!(div_round(i128::MIN, -1), i128::MAX);
+        assert_eq!(div_round(i128::MIN, 1), i128::MIN);
+        assert_eq!(div_round(i128::MIN, i128::MAX), -1);
     }
 
     #[test]

@@ -6,11 +6,15 @@
 mod aabb;
 mod angle;
 mod formats;
+mod geometry;
+mod mat2;
+mod rng;
 mod root;
 mod rot;
 mod transform;
 mod trig;
 mod vec2;
+mod wide;
 
 pub use aabb::Aabb;
 pub use angle::{Angle, DEGREE, PI, TAU};
@@ -18,6 +22,11 @@ pub use formats::{
     Fx, Grip, Length, Rate, Ratio, Speed, Step, Unit, convert, div_round, fx_div, fx_mul, mul, mul_add,
     narrow, ratio, round_shift, round_shift_wide, saturate, saturate_wide, widen,
 };
+pub use geometry::{
+    Orientation, closest_point_on_segment, orientation, point_in_polygon, segment_intersection,
+};
+pub use mat2::Mat2;
+pub use rng::Rng;
 pub use root::{hypot, sqrt};
 pub use rot::Rot;
 pub use transform::Transform;

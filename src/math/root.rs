@@ -199,3 +199,6 @@ const fn saturated(bits: u128) -> Fx {
 const fn high_half(x: u128) -> u64 {
     (x >> 64) as u64
 }
+
+#[cfg(test)]
+mod tests;

@@ -166,6 +166,13 @@ impl Vec2<Fx> {
     pub const fn scale(self, s: Fx) -> Self {
         Vec2::new(fx_mul(self.x, s), fx_mul(self.y, s))
     }
+
+    /// `self + (other - self) t`, rounded once, saturated. A `t` outside 0 to 1 extrapolates.
+    #[inline]
+    #[must_use]
+    pub const fn lerp(self, other: Self, t: Unit) -> Self {
+        Vec2::new(interpolate(self.x, other.x, t), interpolate(self.y, other.y, t))
+    }
 }
 
 /// `a x + sign b y`, rounded once, saturated.
@@ -176,10 +183,43 @@ const fn sum_of_products(a: Fx, x: Fx, b: Fx, y: Fx, sign: i128) -> Fx {
     Fx::from_bits(saturate_wide(round_shift_wide(ax.saturating_add(sign * by), 32)))
 }
 
+/// `a (1 - t) + b t`, rounded once, saturated. The 128-bit sum has no difference that could overflow.
+const fn interpolate(a: Fx, b: Fx, t: Unit) -> Fx {
+    let t = t.to_bits() as i128;
+    let sum = a.to_bits() as i128 * ((1 << Unit::FRAC_NBITS) - t) + b.to_bits() as i128 * t;
+    Fx::from_bits(saturate_wide(round_shift_wide(sum, Unit::FRAC_NBITS)))
+}
+
 /// The unit vectors along the axes.
 impl Vec2<Unit> {
     /// `(1, 0)`.
     pub const X: Self = Vec2::new(Unit::ONE, Unit::ZERO);
     /// `(0, 1)`.
     pub const Y: Self = Vec2::new(Unit::ZERO, Unit::ONE);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fx;
+
+    #[test]
+    fn sums_saturate() {
+        let corner = Vec2::new(Fx::MAX, Fx::MIN);
+        assert_eq!(corner + corner, corner);
+        assert_eq!(-corner, Vec2::new(Fx::from_bits(-i64::MAX), Fx::MAX));
+        assert_eq!(corner.dot(corner), Fx::MAX);
+        assert_eq!(corner.cross(corner.perp()), Fx::MAX);
+        let corner = Vec2::new(Unit::MIN, Unit::MIN);
+        assert_eq!(corner.dot::<_, fixed::types::extra::U30>(corner), Unit::MAX);
+    }
+
+    #[test]
+    fn lerp_meets_both_ends_at_any_distance() {
+        let (a, b) = (Vec2::new(Fx::MIN, fx!(1)), Vec2::new(Fx::MAX, fx!(3)));
+        assert_eq!(a.lerp(b, Unit::ZERO), a);
+        assert_eq!(a.lerp(b, Unit::ONE), b);
+        assert_eq!(a.lerp(b, Unit::lit("0.5")), Vec2::new(Fx::ZERO, fx!(2)));
+        assert_eq!(b.lerp(a, Unit::lit("-0.5")), Vec2::new(Fx::MAX, fx!(4)));
+    }
 }

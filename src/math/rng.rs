@@ -1,0 +1,222 @@
+//! Random numbers that are part of the simulated state.
+//!
+//! PCG-XSH-RR 64/32 (M. O'Neill, "PCG: A Family of Simple Fast Space-Efficient Statistically Good Algorithms for
+//! Random Number Generation", 2014): `s <- 6364136223846793005 s + i`, with an output permutation of the old `s`.
+//! 16 bytes of state, period 2^64, and 2^63 independent streams. Chosen over xoshiro256** for half the state to
+//! snapshot and hash. Not for secrets.
+//!
+//! Bounded numbers are unbiased (D. Lemire, "Fast Random Integer Generation in an Interval", 2019), so they may
+//! draw more than once; how often depends on the state alone.
+
+use serde::{Deserialize, Serialize};
+
+use super::angle::Angle;
+use super::formats::Fx;
+
+/// A random number generator. Keep it in the game state, so that it rolls back and is hashed with it.
+///
+/// ```
+/// use lockstep2d::{fx, math::Rng};
+/// let mut rng = Rng::new(2024);
+/// let mut again = rng.clone();
+/// let height = rng.range(fx!(1), fx!(2.5));
+/// assert!(fx!(1) <= height && height < fx!(2.5));
+/// assert_eq!(again.range(fx!(1), fx!(2.5)), height);
+/// ```
+// Not `Copy`: drawing from an unnoticed copy repeats numbers.
+#[derive(Clone, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub struct Rng {
+    state: u64,
+    increment: u64,
+}
+
+impl Rng {
+    /// A generator on the stream the reference implementation uses by default.
+    #[must_use]
+    pub const fn new(seed: u64) -> Self {
+        Self::with_stream(seed, 721_347_520_444_481_703)
+    }
+
+    /// One of 2^63 independent generators for each seed: the top bit of `stream` is ignored.
+    #[must_use]
+    pub const fn with_stream(seed: u64, stream: u64) -> Self {
+        let mut rng = Rng { state: 0, increment: (stream << 1) | 1 };
+        rng.step();
+        rng.state = rng.state.wrapping_add(seed);
+        rng.step();
+        rng
+    }
+
+    /// A uniform 32-bit number.
+    #[inline]
+    pub const fn next_u32(&mut self) -> u32 {
+        let state = self.state;
+        self.step();
+        // The top five bits say how far to turn 32 of the best others.
+        low_half(((state >> 18) ^ state) >> 27).rotate_right((state >> 59) as u32)
+    }
+
+    /// A uniform 64-bit number: two draws, the first is the upper half.
+    #[inline]
+    pub const fn next_u64(&mut self) -> u64 {
+        let high = self.next_u32() as u64;
+        high << 32 | self.next_u32() as u64
+    }
+
+    /// A uniform number from 0 to below `bound`; 0 for the bound 0.
+    #[inline]
+    pub const fn below(&mut self, bound: u32) -> u32 {
+        let mut product = self.next_u32() as u64 * bound as u64;
+        if low_half(product) < bound {
+            // The lowest `2^32 mod bound` fractions would make some results likelier than others.
+            let unfair = bound.wrapping_neg() % bound;
+            while low_half(product) < unfair {
+                product = self.next_u32() as u64 * bound as u64;
+            }
+        }
+        (product >> 32) as u32
+    }
+
+    /// [`below`](Self::below) with a 64-bit bound.
+    #[inline]
+    #[expect(clippy::cast_possible_truncation, reason = "the halves of a product")]
+    pub const fn below_u64(&mut self, bound: u64) -> u64 {
+        let mut product = self.next_u64() as u128 * bound as u128;
+        if (product as u64) < bound {
+            let unfair = bound.wrapping_neg() % bound;
+            while (product as u64) < unfair {
+                product = self.next_u64() as u128 * bound as u128;
+            }
+        }
+        (product >> 64) as u64
+    }
+
+    /// A uniform number from `low` to below `high`, in steps of 2^-32; `low` when there is none.
+    #[inline]
+    pub const fn range(&mut self, low: Fx, high: Fx) -> Fx {
+        let (low, high) = (low.to_bits(), high.to_bits());
+        let span = if low < high { low.abs_diff(high) } else { 0 };
+        // The sum stays below `high`; it wraps only on the way, when the span is over half the range of `Fx`.
+        Fx::from_bits(low.wrapping_add_unsigned(self.below_u64(span)))
+    }
+
+    /// A uniform angle.
+    #[inline]
+    pub const fn angle(&mut self) -> Angle {
+        Angle::from_bits(self.next_u32())
+    }
+
+    /// True in `numerator` of `denominator` cases on average; with a denominator of 0, never.
+    #[inline]
+    pub const fn chance(&mut self, numerator: u32, denominator: u32) -> bool {
+        self.below(denominator) < numerator && denominator != 0
+    }
+
+    /// Puts the items into a random order, each order equally likely (Fisher and Yates).
+    #[expect(clippy::cast_possible_truncation, reason = "below an index, hence an index")]
+    pub fn shuffle<T>(&mut self, items: &mut [T]) {
+        for last in (1..items.len()).rev() {
+            // Always 64 bits, so that pointer width does not change what is drawn.
+            let chosen = self.below_u64(last as u64 + 1) as usize;
+            items.swap(last, chosen);
+        }
+    }
+
+    /// The next state. Deserialising may bring an even increment, which would shorten the period.
+    #[inline]
+    const fn step(&mut self) {
+        self.state = self.state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(self.increment | 1);
+    }
+}
+
+#[inline]
+#[expect(clippy::cast_possible_truncation, reason = "the lower half is asked for")]
+const fn low_half(x: u64) -> u32 {
+    x as u32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fx;
+    use alloc::vec::Vec;
+
+    #[test]
+    fn follows_the_reference_implementation() {
+        // The first round of `pcg32-demo` in the reference implementation: pcg32_srandom(42, 54).
+        let mut rng = Rng::with_stream(42, 54);
+        let reference = [0xa15c_02b7, 0x7b47_f409, 0xba1d_3330, 0x83d2_f293, 0xbfa4_784b, 0xcbed_606e];
+        assert_eq!(reference.map(|_| rng.next_u32()), reference);
+    }
+
+    #[test]
+    fn every_remainder_is_equally_likely() {
+        let mut rng = Rng::new(1);
+        // The first bound rejects nearly half of the draws; without that, results below 2^30 would be twice as likely.
+        for (bound, buckets) in [(3 << 30, 3), (6, 6), (1000, 10)] {
+            let mut counts = [0_i64; 10];
+            for _ in 0..60_000 {
+                let bucket = rng.below(bound) / (bound / buckets);
+                counts[bucket as usize] += 1;
+            }
+            let expected = 60_000 / i64::from(buckets);
+            let counts = &counts[..buckets as usize];
+            // Five standard deviations of a bucket are below 5 sqrt(expected).
+            assert!(counts.iter().all(|n| (n - expected).pow(2) < 25 * expected), "{bound}: {counts:?}");
+        }
+    }
+
+    #[test]
+    fn ranges_are_half_open_and_reach_their_ends() {
+        let mut rng = Rng::new(2);
+        let low = fx!(-1);
+        let high = Fx::from_bits(low.to_bits() + 3);
+        let drawn: Vec<i64> = (0..200).map(|_| rng.range(low, high).to_bits() - low.to_bits()).collect();
+        assert!((0..3).all(|step| drawn.contains(&step)) && drawn.iter().all(|&step| (0..3).contains(&step)));
+        assert_eq!(rng.range(high, low), high);
+        assert_eq!(rng.range(low, low), low);
+        let wide: Vec<Fx> = (0..100).map(|_| rng.range(Fx::MIN, Fx::MAX)).collect();
+        assert!(
+            wide.iter().any(|x| *x < fx!(-1_000_000_000)) && wide.iter().any(|x| *x > fx!(1_000_000_000))
+        );
+    }
+
+    #[test]
+    fn bounds_without_numbers_are_harmless() {
+        let mut rng = Rng::new(3);
+        assert_eq!(rng.below(0), 0);
+        assert_eq!(rng.below(1), 0);
+        assert_eq!(rng.below_u64(0), 0);
+        assert!(!rng.chance(1, 0) && !rng.chance(0, 5) && rng.chance(5, 5));
+    }
+
+    #[test]
+    fn shuffles_reach_every_order() {
+        let mut rng = Rng::new(4);
+        let mut counts = [0_i32; 6];
+        for _ in 0..6000 {
+            let mut items = [0, 1, 2];
+            rng.shuffle(&mut items);
+            let order: usize = items[0] * 2 + usize::from(items[1] > items[2]);
+            counts[order] += 1;
+        }
+        assert!(counts.iter().all(|n| (n - 1000).abs() < 150), "{counts:?}");
+    }
+
+    /// Computed by a second implementation in Python. Changing any of these numbers breaks replays.
+    #[test]
+    fn golden() {
+        let mut rng = Rng::new(5);
+        let mut items: Vec<u32> = (0..8).collect();
+        rng.shuffle(&mut items);
+        let drawn = (
+            rng.next_u64(),
+            rng.below(100),
+            rng.range(fx!(-1), fx!(1)).to_bits(),
+            rng.angle().to_bits(),
+            rng.chance(1, 2),
+        );
+        assert_eq!(items, [4, 3, 6, 2, 7, 5, 1, 0]);
+        assert_eq!(drawn, (15_387_767_790_010_577_869, 1, -751_192_307, 1_891_896_190, true));
+    }
+}

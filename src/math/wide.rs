@@ -1,0 +1,217 @@
+//! Exact integers for geometric predicates.
+//!
+//! The difference of two coordinates has 65 bits, a cross product of differences 131, and a point along a segment
+//! needs the product of both: this module has just the operations for that, so that no predicate rounds
+//! anywhere in the world. Magnitude and sign are kept apart, so that a difference fits a `u64` and a product of two a `u128`.
+
+use core::cmp::Ordering;
+
+use super::formats::Fx;
+use super::vec2::Vec2;
+
+/// An unsigned integer of 256 bits, `2^128 high + low`. The derived order is numeric.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct Wide {
+    high: u128,
+    low: u128,
+}
+
+impl Wide {
+    const ZERO: Self = Wide { high: 0, low: 0 };
+
+    /// The sum, which must fit.
+    fn plus(self, other: Self) -> Self {
+        let (low, carry) = self.low.overflowing_add(other.low);
+        Wide { high: self.high + other.high + u128::from(carry), low }
+    }
+
+    /// The difference, which must not be negative.
+    fn minus(self, other: Self) -> Self {
+        let (low, borrow) = self.low.overflowing_sub(other.low);
+        Wide { high: self.high - other.high - u128::from(borrow), low }
+    }
+}
+
+/// An integer as its sign and magnitude. Zero is never negative.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Signed {
+    negative: bool,
+    magnitude: Wide,
+}
+
+impl Signed {
+    /// How the number compares with zero.
+    pub(super) fn sign(self) -> Ordering {
+        match (self.magnitude == Wide::ZERO, self.negative) {
+            (true, _) => Ordering::Equal,
+            (false, true) => Ordering::Less,
+            (false, false) => Ordering::Greater,
+        }
+    }
+}
+
+/// The exact vector between two points, in units of 2^-32 m.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Difference {
+    x: Part,
+    y: Part,
+}
+
+/// One component: 65 bits as sign and magnitude.
+#[derive(Clone, Copy, Debug)]
+struct Part {
+    negative: bool,
+    magnitude: u64,
+}
+
+impl Difference {
+    /// `to - from`.
+    pub(super) fn new(from: Vec2<Fx>, to: Vec2<Fx>) -> Self {
+        let part =
+            |from: Fx, to: Fx| Part { negative: to < from, magnitude: to.to_bits().abs_diff(from.to_bits()) };
+        Difference { x: part(from.x, to.x), y: part(from.y, to.y) }
+    }
+
+    /// `self x other`.
+    pub(super) fn cross(self, other: Self) -> Signed {
+        let minus_x = Part { negative: !other.x.negative, ..other.x };
+        sum_of_products(self.x, other.y, self.y, minus_x)
+    }
+
+    /// `self . other`.
+    pub(super) fn dot(self, other: Self) -> Signed {
+        sum_of_products(self.x, other.x, self.y, other.y)
+    }
+
+    /// `|x| + |y|`, which grows along any line.
+    pub(super) fn manhattan(self) -> u128 {
+        u128::from(self.x.magnitude) + u128::from(self.y.magnitude)
+    }
+}
+
+/// `a x + b y`.
+fn sum_of_products(a: Part, x: Part, b: Part, y: Part) -> Signed {
+    let product = |p: Part, q: Part| Signed {
+        negative: p.negative != q.negative,
+        magnitude: Wide { high: 0, low: u128::from(p.magnitude) * u128::from(q.magnitude) },
+    };
+    let (first, second) = (product(a, x), product(b, y));
+    let (larger, smaller) =
+        if first.magnitude < second.magnitude { (second, first) } else { (first, second) };
+    let magnitude = if larger.negative == smaller.negative {
+        larger.magnitude.plus(smaller.magnitude)
+    } else {
+        larger.magnitude.minus(smaller.magnitude)
+    };
+    Signed { negative: larger.negative && magnitude != Wide::ZERO, magnitude }
+}
+
+/// `origin + along numerator / denominator`, each component rounded to nearest, ties towards +infinity, so that the
+/// point does not depend on which end of the segment is called its origin. `None` if the fraction is not between
+/// 0 and 1.
+pub(super) fn point_at(
+    origin: Vec2<Fx>,
+    along: Difference,
+    numerator: Signed,
+    denominator: Signed,
+) -> Option<Vec2<Fx>> {
+    if denominator.magnitude == Wide::ZERO
+        || numerator.magnitude > denominator.magnitude
+        || (numerator.magnitude != Wide::ZERO && numerator.negative != denominator.negative)
+    {
+        return None;
+    }
+    let component = |origin: Fx, part: Part| {
+        let (floor, position) = scaled(part.magnitude, numerator.magnitude, denominator.magnitude);
+        let forward = match position {
+            Ordering::Less => floor,
+            Ordering::Equal => floor + u64::from(!part.negative),
+            Ordering::Greater => floor + 1,
+        };
+        let bits = origin.to_bits();
+        // The point lies between two others, so the sum ends in range even where the offset has 64 bits.
+        Fx::from_bits(if part.negative {
+            bits.wrapping_sub_unsigned(forward)
+        } else {
+            bits.wrapping_add_unsigned(forward)
+        })
+    };
+    Some(Vec2::new(component(origin.x, along.x), component(origin.y, along.y)))
+}
+
+/// `floor(x numerator / denominator)` for a fraction of at most 1, and how the rest compares with one half.
+#[expect(clippy::cast_possible_truncation, reason = "at most x")]
+fn scaled(x: u64, numerator: Wide, denominator: Wide) -> (u64, Ordering) {
+    // Points less than a kilometre apart take this branch.
+    if numerator.high == 0 && denominator.high == 0 {
+        if let Some(product) = numerator.low.checked_mul(u128::from(x)) {
+            let quotient = product / denominator.low;
+            let rest = product - quotient * denominator.low;
+            return (quotient as u64, rest.cmp(&(denominator.low - rest)));
+        }
+    }
+    // Multiply and divide bit by bit, from the top of x: `rest < denominator < 2^130` throughout.
+    let (mut quotient, mut rest) = (0_u64, Wide::ZERO);
+    for bit in (0..64).rev() {
+        quotient <<= 1;
+        rest = rest.plus(rest);
+        if x >> bit & 1 == 1 {
+            rest = rest.plus(numerator);
+        }
+        while rest >= denominator {
+            rest = rest.minus(denominator);
+            quotient += 1;
+        }
+    }
+    (quotient, rest.cmp(&denominator.minus(rest)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Rng;
+
+    fn wide(low: u128) -> Wide {
+        Wide { high: 0, low }
+    }
+
+    #[test]
+    fn carries_cross_the_halves() {
+        let top = wide(u128::MAX);
+        let sum = top.plus(wide(1));
+        assert_eq!(sum, Wide { high: 1, low: 0 });
+        assert_eq!(sum.minus(wide(1)), top);
+        assert!(sum > top);
+    }
+
+    /// Both branches of [`scaled`] on the same fractions: a common factor of 2^64 forces the slow one.
+    #[test]
+    fn long_division_agrees_with_the_short_one() {
+        let mut rng = Rng::new(1);
+        for _ in 0..2000 {
+            let denominator = u128::from(rng.next_u64() >> (rng.below(63))) + 1;
+            let numerator = u128::from(rng.next_u64()) % (denominator + 1);
+            let x = rng.next_u64() >> rng.below(64);
+            let long = |n: u128| Wide { high: n >> 64, low: n << 64 };
+            assert_eq!(
+                scaled(x, wide(numerator), wide(denominator)),
+                scaled(x, long(numerator), long(denominator)),
+                "{x} {numerator} / {denominator}"
+            );
+        }
+    }
+
+    #[test]
+    fn the_widest_differences_are_exact() {
+        let corner = |x: Fx, y: Fx| Vec2::new(x, y);
+        let diagonal = Difference::new(corner(Fx::MIN, Fx::MIN), corner(Fx::MAX, Fx::MAX));
+        let side = u128::from(u64::MAX);
+        let square = diagonal.dot(diagonal);
+        assert_eq!(square.magnitude, wide(side * side).plus(wide(side * side)));
+        assert_eq!(diagonal.cross(diagonal).sign(), Ordering::Equal);
+        let other = Difference::new(corner(Fx::MIN, Fx::MAX), corner(Fx::MAX, Fx::MIN));
+        assert_eq!(diagonal.cross(other).sign(), Ordering::Less);
+        assert_eq!(other.cross(diagonal).magnitude, square.magnitude);
+        assert_eq!(diagonal.dot(other).sign(), Ordering::Equal);
+    }
+}
