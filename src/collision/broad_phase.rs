@@ -55,7 +55,7 @@ impl BroadPhase {
 fn brute_force(proxies: &[Proxy], accept: impl Fn(Pair) -> bool, pairs: &mut Vec<Pair>) {
     for (i, a) in proxies.iter().enumerate() {
         for b in &proxies[i + 1..] {
-            if a.fat.overlaps(&b.fat) && accept((a.slot, b.slot)) {
+            if a.fat.overlaps(b.fat) && accept((a.slot, b.slot)) {
                 pairs.push((a.slot, b.slot));
             }
         }

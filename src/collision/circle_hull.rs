@@ -3,6 +3,8 @@
 //! The centre is inside (the nearest face pushes it out, so that it is never pushed through), beside a face, or
 //! in the region of a corner.
 
+use fixed::types::extra::U27;
+
 use super::manifold::{Feature, Manifold, ManifoldPoint};
 use super::pose::Hull;
 use crate::math::{Length, Step, Unit, Vec2, convert};
@@ -28,7 +30,7 @@ pub(crate) fn collide(hull: &Hull, radius: Length, centre: Vec2<Length>, margin:
         _ => (face_normal, face_separation),
     };
     let separation = distance.saturating_sub(convert(radius.saturating_add(hull.radius)));
-    if separation > convert(margin) {
+    if separation > convert::<_, U27>(margin) {
         return Manifold::NONE;
     }
     // The circle's surface is `radius` before its centre; half-way back to the hull's is another half separation.

@@ -5,6 +5,8 @@
 //! overlap the closest features may be two corners, which no face normal sees: that case has its own normal, so
 //! that a box falling past the corner of another does not catch on it.
 
+use fixed::types::extra::U27;
+
 use super::manifold::{Feature, Manifold, ManifoldPoint};
 use super::pose::Hull;
 use crate::math::{Length, Step, Unit, Vec2, convert};
@@ -198,7 +200,7 @@ impl Clip {
     fn push(&self, manifold: &mut Manifold, a: usize, b: usize, position: Vec2<Length>, distance: Step) {
         let (radius_a, radius_b): (Step, Step) = (convert(self.radius_a), convert(self.radius_b));
         let separation = distance.saturating_sub(radius_a.saturating_add(radius_b));
-        if separation > convert(self.margin) {
+        if separation > convert::<_, U27>(self.margin) {
             return;
         }
         // A's surface is at `radius_a` along the normal and B's at `distance - radius_b`: half-way between them,

@@ -5,11 +5,19 @@ use super::manifold::Manifold;
 use super::pose::{Hull, Outline, PosedShape};
 use super::{circle_circle, circle_hull, hull_hull, segment};
 use crate::fx;
-use crate::math::{Fx, Length, Vec2, widen};
+use crate::math::{Fx, Length, Vec2, narrow, widen};
 
 /// Boxes further apart than the margin by more than this, in metres, are rejected without a closer look. The
 /// slack covers the rounding of vertices, so that the reject never decides what the closer look would not.
 const REJECT_SLACK: Fx = fx!(0.0001);
+
+/// Largest distance in metres that contacts look ahead: what a separation can hold.
+const MARGIN_MAX: Length = Length::lit("15");
+
+/// The margin for two shapes that may approach each other by `closing` metres in the tick.
+pub(crate) fn margin_for(speculative: Length, closing: Fx) -> Length {
+    speculative.saturating_add(narrow(closing)).min(MARGIN_MAX)
+}
 
 /// The contact of two posed shapes whose surfaces are at most `margin` metres apart.
 pub(crate) fn collide(
@@ -19,7 +27,7 @@ pub(crate) fn collide(
     hint: &mut AxisHint,
     counters: &mut SatCounters,
 ) -> Manifold {
-    if !a.bounds.expanded(widen(margin).saturating_add(REJECT_SLACK)).overlaps(&b.bounds) {
+    if !a.bounds.expanded(widen(margin).saturating_add(REJECT_SLACK)).overlaps(b.bounds) {
         return Manifold::NONE;
     }
     collide_outlines(a, b, margin, hint, counters)

@@ -8,6 +8,7 @@ mod angle;
 mod formats;
 mod geometry;
 mod mat2;
+mod reciprocal;
 mod rng;
 mod root;
 mod rot;
@@ -26,6 +27,7 @@ pub use geometry::{
     Orientation, closest_point_on_segment, orientation, point_in_polygon, segment_intersection,
 };
 pub use mat2::Mat2;
+pub use reciprocal::Reciprocal;
 pub use rng::Rng;
 pub use root::{hypot, sqrt};
 pub use rot::Rot;

@@ -2,8 +2,9 @@
 
 use core::ops::{Add, AddAssign, Neg, Sub, SubAssign};
 
+use fixed::FixedI32;
+use fixed::traits::Fixed;
 use fixed::types::extra::LeEqU32;
-use fixed::{FixedI32, FixedI64};
 use serde::{Deserialize, Serialize};
 
 use super::formats::{
@@ -34,72 +35,69 @@ impl<T> Vec2<T> {
     }
 }
 
-macro_rules! componentwise {
-    ($fixed:ident: $bound:ident) => {
-        impl<F: $bound> Add for Vec2<$fixed<F>> {
-            type Output = Self;
-            #[inline]
-            fn add(self, other: Self) -> Self {
-                Vec2::new(self.x.saturating_add(other.x), self.y.saturating_add(other.y))
-            }
-        }
-        impl<F: $bound> Sub for Vec2<$fixed<F>> {
-            type Output = Self;
-            #[inline]
-            fn sub(self, other: Self) -> Self {
-                Vec2::new(self.x.saturating_sub(other.x), self.y.saturating_sub(other.y))
-            }
-        }
-        impl<F: $bound> Neg for Vec2<$fixed<F>> {
-            type Output = Self;
-            #[inline]
-            fn neg(self) -> Self {
-                Vec2::new(self.x.saturating_neg(), self.y.saturating_neg())
-            }
-        }
-        impl<F: $bound> AddAssign for Vec2<$fixed<F>> {
-            #[inline]
-            fn add_assign(&mut self, other: Self) {
-                *self = *self + other;
-            }
-        }
-        impl<F: $bound> SubAssign for Vec2<$fixed<F>> {
-            #[inline]
-            fn sub_assign(&mut self, other: Self) {
-                *self = *self - other;
-            }
-        }
-        impl<F: $bound> Vec2<$fixed<F>> {
-            /// The zero vector.
-            pub const ZERO: Self = Vec2::new($fixed::ZERO, $fixed::ZERO);
-
-            /// The vector turned a quarter turn counter-clockwise: `(-y, x)`.
-            #[inline]
-            #[must_use]
-            pub fn perp(self) -> Self {
-                Vec2::new(self.y.saturating_neg(), self.x)
-            }
-
-            /// The smaller of each component.
-            #[inline]
-            #[must_use]
-            pub fn min(self, other: Self) -> Self {
-                Vec2::new(self.x.min(other.x), self.y.min(other.y))
-            }
-
-            /// The larger of each component.
-            #[inline]
-            #[must_use]
-            pub fn max(self, other: Self) -> Self {
-                Vec2::new(self.x.max(other.x), self.y.max(other.y))
-            }
-        }
-    };
+impl<T: Fixed> Add for Vec2<T> {
+    type Output = Self;
+    #[inline]
+    fn add(self, other: Self) -> Self {
+        Vec2::new(self.x.saturating_add(other.x), self.y.saturating_add(other.y))
+    }
 }
 
-use fixed::types::extra::LeEqU64;
-componentwise!(FixedI32: LeEqU32);
-componentwise!(FixedI64: LeEqU64);
+impl<T: Fixed> Sub for Vec2<T> {
+    type Output = Self;
+    #[inline]
+    fn sub(self, other: Self) -> Self {
+        Vec2::new(self.x.saturating_sub(other.x), self.y.saturating_sub(other.y))
+    }
+}
+
+impl<T: Fixed> Neg for Vec2<T> {
+    type Output = Self;
+    #[inline]
+    fn neg(self) -> Self {
+        Vec2::new(self.x.saturating_neg(), self.y.saturating_neg())
+    }
+}
+
+impl<T: Fixed> AddAssign for Vec2<T> {
+    #[inline]
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
+impl<T: Fixed> SubAssign for Vec2<T> {
+    #[inline]
+    fn sub_assign(&mut self, other: Self) {
+        *self = *self - other;
+    }
+}
+
+impl<T: Fixed> Vec2<T> {
+    /// The zero vector.
+    pub const ZERO: Self = Vec2::new(T::ZERO, T::ZERO);
+
+    /// The vector turned a quarter turn counter-clockwise: `(-y, x)`.
+    #[inline]
+    #[must_use]
+    pub fn perp(self) -> Self {
+        Vec2::new(self.y.saturating_neg(), self.x)
+    }
+
+    /// The smaller of each component.
+    #[inline]
+    #[must_use]
+    pub fn min(self, other: Self) -> Self {
+        Vec2::new(Ord::min(self.x, other.x), Ord::min(self.y, other.y))
+    }
+
+    /// The larger of each component.
+    #[inline]
+    #[must_use]
+    pub fn max(self, other: Self) -> Self {
+        Vec2::new(Ord::max(self.x, other.x), Ord::max(self.y, other.y))
+    }
+}
 
 impl<A: LeEqU32> Vec2<FixedI32<A>> {
     /// `self . other`, rounded once into the format of the result.

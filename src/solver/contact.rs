@@ -9,7 +9,7 @@ use super::settings::Tuning;
 use super::softness::Softness;
 use crate::body::Body;
 use crate::collision::{Contact, Manifold, ManifoldPoint, PointImpulse};
-use crate::math::{Fx, Grip, Rate, Speed, Step, Unit, Vec2, mul, narrow, saturate};
+use crate::math::{Fx, Grip, Rate, Speed, Step, Unit, mul, narrow, saturate};
 
 /// Whether a pass removes position errors or only velocity errors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -206,11 +206,12 @@ fn grip(friction: Fx, tangent: Denominator, normal: Denominator) -> Grip {
 
 /// A check of `bias_of`'s formats: 27 + 18 fraction bits are more than a speed's 21.
 const _: () = assert!(Step::FRAC_NBITS + Rate::FRAC_NBITS >= Speed::FRAC_NBITS);
-/// A tangent is a quarter turn from its normal.
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::fx;
+    use crate::math::Vec2;
 
     #[test]
     fn grip_is_friction_times_the_ratio_of_denominators() {

@@ -219,14 +219,13 @@ impl World {
 
     /// Adds a shape that has been checked.
     fn insert_shape(&mut self, body: BodyId, def: &ShapeDef) -> ShapeId {
-        let slots_before = self.state.shapes.slot_count();
         let owner = self.state.bodies.at_mut(body.slot());
         let fat = fat_box(def, owner, self.state.config.fat_margin);
         let id = self.state.shapes.insert(Shape { body, def: *def, fat });
         owner.shapes.push(id);
-        self.scratch.shape_added(id, slots_before);
+        self.scratch.pairs_changed = true;
         // The centre of mass may have moved with it.
-        self.scratch.pose_body(&self.state, self.state.bodies.at(body.slot()));
+        self.scratch.poses.pose_body(&self.state, self.state.bodies.at(body.slot()));
         id
     }
 
@@ -237,7 +236,7 @@ impl World {
             let shape = self.state.shapes.at_mut(shape.slot());
             shape.fat = fat_box(&shape.def, body, self.state.config.fat_margin);
         }
-        self.scratch.pose_body(&self.state, body);
+        self.scratch.poses.pose_body(&self.state, body);
         self.scratch.pairs_changed = true;
     }
 

@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 use super::events::Events;
 use super::state::State;
 use super::stats::StepStats;
-use crate::body::{Handle, ShapeId};
+use crate::body::{Body, Handle};
 use crate::collision::{AxisHint, BroadPhase, BroadPhaseKind, Contact, Manifold, Pair, PosedShape, Proxy, SatCounters};
 use crate::solver::{Solver, TouchingPair};
 
@@ -14,8 +14,7 @@ use crate::solver::{Solver, TouchingPair};
 pub(crate) struct Scratch {
     pub(crate) broad_phase_kind: BroadPhaseKind,
     pub(crate) broad_phase: BroadPhase,
-    /// For each shape slot, the shape in world axes; empty when they have to be posed anew.
-    pub(crate) posed: Vec<Option<PosedShape>>,
+    pub(crate) poses: Poses,
     /// Whether the pairs may have changed for another reason than a fat box.
     pub(crate) pairs_changed: bool,
     pub(crate) proxies: Vec<Proxy>,
@@ -43,7 +42,7 @@ impl Scratch {
         Scratch {
             broad_phase_kind: kind,
             broad_phase: BroadPhase::new(kind),
-            posed: Vec::new(),
+            poses: Poses::default(),
             pairs_changed: true,
             proxies: Vec::new(),
             pairs: Vec::new(),
@@ -62,30 +61,6 @@ impl Scratch {
         }
     }
 
-    /// Poses every shape, if that has not been done since the caches were dropped.
-    pub(crate) fn ensure_poses(&mut self, state: &State) {
-        if self.posed.len() == state.shapes.slot_count() {
-            return;
-        }
-        self.posed.clear();
-        self.posed.resize_with(state.shapes.slot_count(), || None);
-        for (_, body) in state.bodies.iter() {
-            self.pose_body(state, body);
-        }
-    }
-
-    /// Poses the shapes of a body anew.
-    pub(crate) fn pose_body(&mut self, state: &State, body: &crate::body::Body) {
-        if self.posed.len() != state.shapes.slot_count() {
-            return;
-        }
-        let rotation = body.rotation();
-        for &id in &body.shapes {
-            let shape = state.shapes.at(id.slot());
-            self.posed[id.slot() as usize] = Some(PosedShape::new(&shape.def, body, rotation));
-        }
-    }
-
     /// Drops what is found by a contact's place in the state, because places have changed.
     pub(crate) fn forget_contacts(&mut self) {
         self.manifolds.clear();
@@ -93,17 +68,42 @@ impl Scratch {
         self.touching.clear();
         self.pairs_changed = true;
     }
+}
 
-    /// The shape in an occupied slot, posed.
-    pub(crate) fn posed(&self, slot: u32) -> &PosedShape {
-        self.posed[slot as usize].as_ref().expect("every shape is posed before the tick")
+/// Shapes in world axes, by slot. Either all shapes are there, or none are and [`Poses::ensure`] has to be called.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Poses {
+    shapes: Vec<Option<PosedShape>>,
+    complete: bool,
+}
+
+impl Poses {
+    /// Poses every shape, if that has not been done since the caches were dropped.
+    pub(crate) fn ensure(&mut self, state: &State) {
+        if self.complete {
+            return;
+        }
+        self.complete = true;
+        for (_, body) in state.bodies.iter() {
+            self.pose_body(state, body);
+        }
     }
 
-    /// Makes room for a new shape slot. Poses that were not up to date stay so.
-    pub(crate) fn shape_added(&mut self, id: ShapeId, slots_before: usize) {
-        if self.posed.len() == slots_before && id.slot() as usize == slots_before {
-            self.posed.push(None);
+    /// Poses the shapes of a body anew, after it has been moved or has got another shape.
+    pub(crate) fn pose_body(&mut self, state: &State, body: &Body) {
+        if !self.complete {
+            return;
         }
-        self.pairs_changed = true;
+        self.shapes.resize_with(state.shapes.slot_count(), || None);
+        let rotation = body.rotation();
+        for &id in body.shapes() {
+            let shape = state.shapes.at(id.slot());
+            self.shapes[id.slot() as usize] = Some(PosedShape::new(&shape.def, body, rotation));
+        }
+    }
+
+    /// The shape in an occupied slot.
+    pub(crate) fn at(&self, slot: u32) -> &PosedShape {
+        self.shapes[slot as usize].as_ref().expect("every shape is posed before the tick")
     }
 }

@@ -16,7 +16,7 @@ impl World {
         let settings = state.config.solver;
         let tuning = Tuning::new(&settings, state.config.gravity, state.config.tick_rate);
 
-        scratch.ensure_poses(state);
+        scratch.poses.ensure(state);
         if refit_boxes(state, scratch) | core::mem::take(&mut scratch.pairs_changed) {
             update_pairs(state, scratch);
         }
@@ -46,7 +46,7 @@ fn refit_boxes(state: &mut State, scratch: &Scratch) -> bool {
     for (_, body) in bodies.iter().filter(|(_, body)| body.kind() != BodyKind::Fixed) {
         let motion = Motion::of(body, config.tick_rate);
         for &id in body.shapes() {
-            let posed = scratch.posed(id.slot());
+            let posed = scratch.poses.at(id.slot());
             let reach = motion.turn_reach(posed, body).saturating_add(config.speculative_distance);
             let needed = posed.bounds.expanded(reach).swept(motion.shift);
             let fat = &mut shapes.at_mut(id.slot()).fat;
@@ -136,7 +136,7 @@ fn find_manifolds(state: &State, scratch: &mut Scratch) {
     scratch.sat = Default::default();
     for (index, contact) in (0u32..).zip(&state.contacts) {
         let (a, b) = contact.shapes;
-        let (posed_a, posed_b) = (scratch.posed(a), scratch.posed(b));
+        let (posed_a, posed_b) = (scratch.poses.at(a), scratch.poses.at(b));
         let (shape_a, shape_b) = (state.shapes.at(a), state.shapes.at(b));
         let (slot_a, slot_b) = (shape_a.body().slot(), shape_b.body().slot());
         let (body_a, body_b) = (state.bodies.at(slot_a), state.bodies.at(slot_b));
@@ -246,7 +246,7 @@ fn finalise_poses(state: &mut State, scratch: &mut Scratch) {
     for (id, body) in state.bodies.iter() {
         let SolverBody { shift, turn, .. } = scratch.solver.bodies[id.slot() as usize];
         if shift != Vec2::ZERO || turn != 0 {
-            scratch.pose_body(state, body);
+            scratch.poses.pose_body(state, body);
         }
     }
 }
