@@ -19,7 +19,8 @@ fn hash_after(ticks: u64) -> StateHash {
 
 #[test]
 fn a_recording_matches() {
-    for (ticks, interval) in [(0, 10), (1, 10), (9, 10), (10, 10), (11, 10), (100, 1), (1000, 60), (7, 3600)] {
+    for (ticks, interval) in [(0, 10), (1, 10), (9, 10), (10, 10), (11, 10), (100, 1), (1000, 60), (7, 3600)]
+    {
         let file = record(ticks, interval, inputs_at);
         let expected = Verdict::Match { ticks, hash: hash_after(ticks) };
         assert_eq!(verdict(&file), expected, "{ticks} ticks, a checkpoint every {interval}");

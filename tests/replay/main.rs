@@ -1,8 +1,13 @@
 //! Replay files as a stranger sees them: through the public API and `docs/FORMAT.md` only.
 
+#![expect(clippy::unwrap_used, reason = "what goes wrong in a helper fails the test")]
+
 mod counter;
 mod forge;
 mod format;
+mod hostile;
+mod limits;
+mod recorder;
 
 use lockstep2d::replay::{Limits, Recording, Verdict, verify};
 
