@@ -87,11 +87,15 @@ pub fn decode<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, DecodeError> {
     const MEDIUM: usize = 1 << 20;
     // bincode allocates the announced length of a string before it looks whether the bytes are there, unless
     // that exceeds a limit. The limit is part of the type, hence the steps.
-    match bytes.len() {
-        0..=SMALL => decode_within::<T, SMALL>(bytes),
-        ..=MEDIUM => decode_within::<T, MEDIUM>(bytes),
-        ..=DECODE_BYTES_MAX => decode_within::<T, DECODE_BYTES_MAX>(bytes),
-        count => Err(DecodeError::TooLong { count: count as u64 }),
+    let count = bytes.len();
+    if count <= SMALL {
+        decode_within::<T, SMALL>(bytes)
+    } else if count <= MEDIUM {
+        decode_within::<T, MEDIUM>(bytes)
+    } else if count <= DECODE_BYTES_MAX {
+        decode_within::<T, DECODE_BYTES_MAX>(bytes)
+    } else {
+        Err(DecodeError::TooLong { count: count as u64 })
     }
 }
 

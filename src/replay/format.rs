@@ -40,12 +40,10 @@ pub(super) const BLOCK_BYTES_MAX: u32 = 16 << 20;
 /// Largest setup a recorder writes: a generous level.
 pub(super) const SETUP_BYTES_MAX: u32 = 16 << 20;
 
-/// The kinds of blocks. A reader of version 1 refuses every other, and `KEYFRAME` too: it is set aside for saved
-/// states to seek by, which version 1 does not write.
+/// The kinds of blocks. A reader of version 1 refuses every other, and 2 too, which is set aside for keyframes:
+/// saved states to seek by, which version 1 does not write.
 pub(super) mod kind {
     pub(in crate::replay) const INPUTS: u8 = 1;
-    #[cfg(test)]
-    pub(in crate::replay) const KEYFRAME: u8 = 2;
     pub(in crate::replay) const TRAILER: u8 = 3;
 }
 
