@@ -2,9 +2,9 @@
 //! no recorder writes is refused for the right reason.
 
 use lockstep2d::hash::StateHash;
-use lockstep2d::replay::{ClaimDifference, FORMAT_VERSION, Flaw, Mismatch, Verdict};
+use lockstep2d::replay::{ClaimDifference, FORMAT_VERSION, Flaw, Limits, Mismatch, Playback, Step, Verdict};
 
-use crate::counter::inputs_at;
+use crate::counter::{Counter, inputs_at};
 use crate::forge::{CHAIN, Forged, INPUTS, KEYFRAME, TRAILER, forge};
 use crate::{record, verdict};
 
@@ -256,4 +256,18 @@ fn a_file_of_another_program_is_unverifiable() {
     assert_eq!(with(16, 4), Mismatch::Rules { file, here: here.clone() });
     let file = rules("dounter", 3);
     assert_eq!(with(40, u32::from_le_bytes(*b"doun")), Mismatch::Rules { file, here });
+}
+
+#[test]
+fn a_verdict_is_final() {
+    let file = forge(&original(), |forged| forged.payload(1)[2] ^= 1);
+    let mut playback = Playback::<Counter>::open(&file, &Limits::default()).unwrap();
+    let diverged = Verdict::Diverged { last_equal: Some(10), first_different: 20 };
+    for tick in 1..20 {
+        assert_eq!(playback.step(), Ok(Step::Ticked), "tick {tick}");
+    }
+    for _ in 0..3 {
+        assert_eq!(playback.step(), Err(diverged.clone()));
+    }
+    assert_eq!(playback.conclude(), diverged);
 }
