@@ -5,7 +5,7 @@
 use alloc::vec::Vec;
 use core::fmt;
 
-use bincode::config::{Configuration, Fixint, LittleEndian};
+use bincode::config::{Configuration, Fixint, Limit, LittleEndian};
 use serde::{Serialize, de::DeserializeOwned};
 
 type Layout = Configuration<LittleEndian, Fixint>;
@@ -25,6 +25,11 @@ pub enum DecodeError {
         /// How many bytes are left over.
         count: u64,
     },
+    /// There are more bytes than [`decode`] accepts.
+    TooLong {
+        /// How many.
+        count: u64,
+    },
 }
 
 impl fmt::Display for DecodeError {
@@ -32,6 +37,9 @@ impl fmt::Display for DecodeError {
         match self {
             DecodeError::Invalid { why } => write!(f, "not a valid encoding: {why}"),
             DecodeError::TrailingBytes { count } => write!(f, "{count} bytes after the end of the value"),
+            DecodeError::TooLong { count } => {
+                write!(f, "{count} bytes, at most {DECODE_BYTES_MAX} are decoded")
+            }
         }
     }
 }
@@ -62,16 +70,63 @@ pub fn encode<T: Serialize + ?Sized>(value: &T) -> Vec<u8> {
     bytes
 }
 
+/// Most bytes that [`decode`] accepts: 256 MiB.
+pub const DECODE_BYTES_MAX: usize = 256 << 20;
+
 /// The value whose canonical bytes these are, all of them.
 ///
-/// Memory is bounded by the number of bytes: a length prefix is never believed beyond what is there.
+/// A length prefix is not believed: what is allocated for a string is at most the next larger of 4 KiB, 1 MiB and
+/// 256 MiB above the number of bytes that there are, and for a list of values a small multiple of that number.
+/// Two kinds of types defeat this and must not be decoded from a stranger's bytes: lists of values that take no
+/// bytes, whose length nothing bounds, and types that contain themselves, whose depth nothing bounds.
 ///
 /// # Errors
 /// [`DecodeError`] when the bytes are not exactly one such value.
 pub fn decode<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, DecodeError> {
-    match bincode::serde::decode_from_slice(bytes, LAYOUT) {
+    const SMALL: usize = 4 << 10;
+    const MEDIUM: usize = 1 << 20;
+    // bincode allocates the announced length of a string before it looks whether the bytes are there, unless
+    // that exceeds a limit. The limit is part of the type, hence the steps.
+    let count = bytes.len();
+    if count <= SMALL {
+        decode_within::<T, SMALL>(bytes)
+    } else if count <= MEDIUM {
+        decode_within::<T, MEDIUM>(bytes)
+    } else if count <= DECODE_BYTES_MAX {
+        decode_within::<T, DECODE_BYTES_MAX>(bytes)
+    } else {
+        Err(DecodeError::TooLong { count: count as u64 })
+    }
+}
+
+fn decode_within<T: DeserializeOwned, const LIMIT: usize>(bytes: &[u8]) -> Result<T, DecodeError> {
+    let layout: Configuration<LittleEndian, Fixint, Limit<LIMIT>> = LAYOUT.with_limit::<LIMIT>();
+    match bincode::serde::decode_from_slice(bytes, layout) {
         Ok((value, used)) if used == bytes.len() => Ok(value),
         Ok((_, used)) => Err(DecodeError::TrailingBytes { count: (bytes.len() - used) as u64 }),
         Err(error) => Err(DecodeError::Invalid { why: alloc::format!("{error}") }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use alloc::string::String;
+
+    use super::*;
+
+    #[test]
+    fn values_come_back_at_every_length() {
+        for length in [0, 1, 4087, 4088, 4089, (1 << 20) - 8, (1 << 20) - 7, 3 << 20] {
+            let text = "x".repeat(length);
+            assert_eq!(decode::<String>(&encode(&text)), Ok(text), "a string of {length} bytes");
+        }
+    }
+
+    #[test]
+    fn a_string_that_is_not_there_is_not_allocated() {
+        for length in [1, 1 << 20, 1 << 40, u64::MAX] {
+            let decoded = decode::<String>(&length.to_le_bytes());
+            assert!(matches!(decoded, Err(DecodeError::Invalid { .. })), "a string of {length} bytes");
+        }
     }
 }

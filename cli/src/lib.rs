@@ -1,1 +1,51 @@
 //! The command-line tools as a library: a game gets them for its own rules in one line of `main`.
+//!
+//! ```no_run
+//! # mod my_game {
+//! #     use lockstep2d::{hash::StateHash, lockstep::{Game, RulesId, SetupError}};
+//! #     pub struct MyGame;
+//! #     impl Game for MyGame {
+//! #         type Setup = ();
+//! #         type Input = ();
+//! #         type Save = ();
+//! #         const RULES: RulesId = RulesId { name: "my game", version: 1 };
+//! #         fn new(_: &()) -> Result<Self, SetupError> { Ok(MyGame) }
+//! #         fn players(&self) -> u32 { 1 }
+//! #         fn tick_rate(&self) -> u32 { 60 }
+//! #         fn step(&mut self, _: &[()]) {}
+//! #         fn state_hash(&self) -> StateHash { StateHash(0) }
+//! #         fn save(&self) {}
+//! #         fn load(&mut self, _: &()) {}
+//! #         fn work(&self, _: &[()]) -> u64 { 1 }
+//! #     }
+//! # }
+//! # use my_game::MyGame;
+//! fn main() -> std::process::ExitCode {
+//!     lockstep2d_cli::run::<MyGame>()
+//! }
+//! ```
+//!
+//! That gives `verify`. A game that has scenes to record and pictures to draw says so to a [`Tool`], which then has
+//! `scenes`, `record` and `export` as well.
+
+mod commands;
+mod console;
+mod error;
+mod exit;
+mod files;
+mod scenes;
+mod tool;
+
+use std::process::ExitCode;
+
+use lockstep2d::lockstep::Game;
+
+pub use exit::Exit;
+pub use scenes::{Catalogue, Scene, SceneInfo, Script};
+pub use tool::Tool;
+
+/// The tools for a game without scenes: `verify`, with the arguments of this process.
+#[must_use]
+pub fn run<G: Game>() -> ExitCode {
+    Tool::<G>::new().run()
+}

@@ -195,9 +195,11 @@ impl<T, H: Handle> Arena<T, H> {
             let fresh = listed.get_mut(index as usize).is_some_and(|seen| !core::mem::replace(seen, true));
             fresh && self.slots[index as usize].value.is_none()
         });
-        let none_lost = self.slots.iter().zip(listed).all(|(slot, listed)| {
-            listed || slot.value.is_some() || slot.generation == u32::MAX
-        });
+        let none_lost = self
+            .slots
+            .iter()
+            .zip(listed)
+            .all(|(slot, listed)| listed || slot.value.is_some() || slot.generation == u32::MAX);
         all_vacant && none_lost
     }
 }

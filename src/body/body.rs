@@ -10,7 +10,7 @@ use super::mass::{MassProperties, MassSource};
 use super::shape::WORLD_EXTENT_MAX;
 use crate::fx;
 use crate::math::{
-    Angle, Fx, Length, Rot, Speed, Transform, Vec2, div_round, fx_mul, narrow, saturate, saturate_wide, widen,
+    Angle, Fx, Rot, Speed, Transform, Vec2, div_round, fx_mul, narrow, saturate, saturate_wide, widen,
 };
 
 /// Largest component of a velocity in m/s, also of `u = k w`: the difference of two fits [`Speed`].
@@ -354,11 +354,6 @@ impl Body {
         self.user_data
     }
 
-    /// The lever arm in world axes from the centre of mass to a point of its frame, in metres.
-    pub(crate) fn arm(&self, rotation: Rot, local: Vec2<Fx>) -> Vec2<Length> {
-        rotation.apply_wide(local - self.mass.centre).narrow()
-    }
-
     pub(crate) fn set_transform(&mut self, position: Vec2<Fx>, angle: Angle) {
         self.angle = angle;
         self.centre = position + self.rotation().apply_wide(self.mass.centre);
@@ -408,7 +403,8 @@ impl Body {
 
     /// Changes angular velocity at once by an angular impulse in N m s.
     pub(crate) fn apply_angular_impulse(&mut self, impulse: Fx) {
-        self.spin = self.spin.saturating_add(narrow(divide(divide(impulse, self.mass.mass), self.mass.gyration)));
+        self.spin =
+            self.spin.saturating_add(narrow(divide(divide(impulse, self.mass.mass), self.mass.gyration)));
         self.clamp_velocity();
     }
 

@@ -40,7 +40,9 @@ impl fmt::Display for GeometryError {
             GeometryError::NotConvex { vertex } => {
                 write!(f, "not convex and counter-clockwise at the edge from vertex {vertex}")
             }
-            GeometryError::SizeOutOfRange { value } => write!(f, "a size or coordinate of {value} m is out of range"),
+            GeometryError::SizeOutOfRange { value } => {
+                write!(f, "a size or coordinate of {value} m is out of range")
+            }
         }
     }
 }
@@ -129,17 +131,24 @@ impl fmt::Display for WorldError {
             WorldError::StaleShape(id) => write!(f, "no shape {id}"),
             WorldError::StaleJoint(id) => write!(f, "no joint {id}"),
             WorldError::PositionOutOfRange { value } => write!(f, "position {value} m is beyond 2^30 m"),
-            WorldError::OffsetOutOfRange { value } => write!(f, "a shape offset of {value} m is out of range"),
+            WorldError::OffsetOutOfRange { value } => {
+                write!(f, "a shape offset of {value} m is out of range")
+            }
             WorldError::SpeedOutOfRange { value } => write!(f, "speed {value} is above the world's limit"),
             WorldError::DensityOutOfRange { value } => write!(f, "density {value} kg/m² is out of range"),
             WorldError::MaterialOutOfRange => write!(f, "friction is 0 to 16 and restitution 0 to 1"),
             WorldError::MassOutOfRange { value } => {
-                write!(f, "a dynamic body's mass is 1e-5 to 2^30 kg, not {value}: give a shape area and density")
+                write!(
+                    f,
+                    "a dynamic body's mass is 1e-5 to 2^30 kg, not {value}: give a shape area and density"
+                )
             }
             WorldError::GyrationOutOfRange { value } => {
                 write!(f, "a dynamic body's radius of gyration is 0.002 to 512 m, not {value}")
             }
-            WorldError::DampingOutOfRange { value } => write!(f, "damping or gravity scale {value} is out of range"),
+            WorldError::DampingOutOfRange { value } => {
+                write!(f, "damping or gravity scale {value} is out of range")
+            }
             WorldError::JointToItself(id) => write!(f, "a joint between body {id} and itself"),
             WorldError::JointWithoutDynamicBody => write!(f, "neither body of the joint is dynamic"),
             WorldError::Setting { name } => write!(f, "the world setting `{name}` is out of range"),

@@ -146,7 +146,8 @@ impl Part {
                 let area = fx_mul(PI, fx_mul(*radius, *radius));
                 let r = i128::from(radius.to_bits());
                 // k^2 = r^2 / 2
-                let part = Part { mass: fx_mul(area, shape.density), centre: shape.offset, gyration_squared: 0 };
+                let part =
+                    Part { mass: fx_mul(area, shape.density), centre: shape.offset, gyration_squared: 0 };
                 Part { gyration_squared: (r * r) >> 21, ..part }
             }
             Geometry::Segment { .. } => Part { mass: Fx::ZERO, centre: shape.offset, gyration_squared: 0 },
@@ -188,8 +189,11 @@ fn outline(polygon: &Polygon) -> ([(i128, i128); 8], usize) {
     for i in 0..count {
         let (before, after) = (normals[(i + count - 1) % count], normals[i]);
         // Halved, because the sum of two unit vectors does not fit their format.
-        let half = |a: crate::math::Unit, b: crate::math::Unit| crate::math::Unit::from_bits((a.to_bits() >> 1) + (b.to_bits() >> 1));
-        let bisector = Vec2::new(half(before.x, after.x), half(before.y, after.y)).normalized().unwrap_or(after);
+        let half = |a: crate::math::Unit, b: crate::math::Unit| {
+            crate::math::Unit::from_bits((a.to_bits() >> 1) + (b.to_bits() >> 1))
+        };
+        let bisector =
+            Vec2::new(half(before.x, after.x), half(before.y, after.y)).normalized().unwrap_or(after);
         let corner = vertices[i] + bisector.scale(polygon.radius());
         points[i] = (corner.x.to_bits().into(), corner.y.to_bits().into());
     }
@@ -223,7 +227,8 @@ mod tests {
         assert_eq!(properties.centre, disc.offset);
 
         let corner = Vec2::new;
-        let triangle = Polygon::new(&[corner(fx!(0), fx!(0)), corner(fx!(3), fx!(0)), corner(fx!(0), fx!(3))]).unwrap();
+        let triangle =
+            Polygon::new(&[corner(fx!(0), fx!(0)), corner(fx!(3), fx!(0)), corner(fx!(0), fx!(3))]).unwrap();
         let properties = dynamic(&[ShapeDef::new(triangle)]).unwrap();
         close(properties.mass, fx!(4.5));
         close(properties.centre.x, fx!(1));

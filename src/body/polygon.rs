@@ -227,7 +227,8 @@ fn check_vertex(vertex: Vec2<Fx>) -> Result<(), GeometryError> {
 
 /// The exact cross product of two differences of vertices.
 fn wide_cross(a: Vec2<Length>, b: Vec2<Length>) -> i128 {
-    i128::from(a.x.to_bits()) * i128::from(b.y.to_bits()) - i128::from(a.y.to_bits()) * i128::from(b.x.to_bits())
+    i128::from(a.x.to_bits()) * i128::from(b.y.to_bits())
+        - i128::from(a.y.to_bits()) * i128::from(b.x.to_bits())
 }
 
 /// Andrew's monotone chain: the hull of sorted, distinct points, counter-clockwise from the leftmost.
@@ -314,7 +315,10 @@ mod tests {
         let square = Polygon::square(fx!(1)).unwrap().rounded(fx!(0.25)).unwrap();
         let bytes = crate::codec::encode(&square);
         assert_eq!(crate::codec::decode::<Polygon>(&bytes), Ok(square));
-        let concave = Repr { vertices: [(0, 0), (4, 0), (1, 1), (0, 4)].map(|(x, y)| point(x, y).narrow()).to_vec(), radius: Length::ZERO };
+        let concave = Repr {
+            vertices: [(0, 0), (4, 0), (1, 1), (0, 4)].map(|(x, y)| point(x, y).narrow()).to_vec(),
+            radius: Length::ZERO,
+        };
         assert!(crate::codec::decode::<Polygon>(&crate::codec::encode(&concave)).is_err());
     }
 }

@@ -77,7 +77,9 @@ impl Geometry {
                 }
             }
             Geometry::Segment { a, b } => {
-                let far = [a.x, a.y, b.x, b.y].into_iter().find(|c| c.unsigned_abs() > WORLD_EXTENT_MAX.unsigned_abs());
+                let far = [a.x, a.y, b.x, b.y]
+                    .into_iter()
+                    .find(|c| c.unsigned_abs() > WORLD_EXTENT_MAX.unsigned_abs());
                 if let Some(value) = far {
                     return Err(GeometryError::SizeOutOfRange { value });
                 }

@@ -13,7 +13,10 @@ pub(crate) fn collide(radius_a: Length, radius_b: Length, d: Vec2<Length>, margi
     // Concentric circles have no direction of their own: up is as good as any, and the same everywhere.
     let normal = d.normalized().unwrap_or(Vec2::Y);
     let middle = radius_a.saturating_add(separation / 2);
-    let point =
-        ManifoldPoint { anchor: normal.scale(middle), separation: convert(separation), feature: Feature::SINGLE };
+    let point = ManifoldPoint {
+        anchor: normal.scale(middle),
+        separation: convert(separation),
+        feature: Feature::SINGLE,
+    };
     Manifold::single(normal, point)
 }

@@ -21,7 +21,13 @@ pub(crate) fn collide(hull: &Hull, radius: Length, centre: Vec2<Length>, margin:
     let tangent = face_normal.perp();
     let before: Length = (centre - v1).dot(tangent);
     let after: Length = (centre - v2).dot(tangent);
-    let corner = if before < 0 { Some(v1) } else if after > 0 { Some(v2) } else { None };
+    let corner = if before < 0 {
+        Some(v1)
+    } else if after > 0 {
+        Some(v2)
+    } else {
+        None
+    };
     let (normal, distance) = match corner {
         Some(vertex) if face_separation > 0 => {
             let d = centre - vertex;

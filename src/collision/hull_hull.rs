@@ -116,7 +116,8 @@ fn clip(a: &Hull, b: &Hull, d: Vec2<Length>, face: Face, margin: Length) -> Mani
     let normal = a.normals()[face.edge];
     let v1 = a.vertices()[face.edge];
     let tangent = normal.perp();
-    let end = |vertex: usize, position: Vec2<Length>| End { vertex, position, along: (position - v1).dot(tangent) };
+    let end =
+        |vertex: usize, position: Vec2<Length>| End { vertex, position, along: (position - v1).dot(tangent) };
     let end_of_a = |vertex: usize| end(vertex, a.vertices()[vertex]);
     let end_of_b = |vertex: usize| end(vertex, b.vertices()[vertex] + d);
     let (first, last) = (end_of_a(face.edge), end_of_a(a.next(face.edge)));
@@ -150,7 +151,8 @@ fn clip(a: &Hull, b: &Hull, d: Vec2<Length>, face: Face, margin: Length) -> Mani
 /// The edge whose normal is most opposed to `normal`.
 fn incident_edge(b: &Hull, normal: Vec2<Unit>) -> usize {
     let opposed = |n: &Vec2<Unit>| {
-        i64::from(n.x.to_bits()) * i64::from(normal.x.to_bits()) + i64::from(n.y.to_bits()) * i64::from(normal.y.to_bits())
+        i64::from(n.x.to_bits()) * i64::from(normal.x.to_bits())
+            + i64::from(n.y.to_bits()) * i64::from(normal.y.to_bits())
     };
     let (edge, _) = b.normals().iter().enumerate().min_by_key(|(_, n)| opposed(n)).unwrap_or((0, &Vec2::Y));
     edge

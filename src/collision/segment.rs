@@ -16,7 +16,9 @@ pub(crate) fn near_hull(a: Vec2<Fx>, b: Vec2<Fx>) -> Option<Hull> {
     let (mut p, mut q) = (a, b);
     for sign in [1, -1] {
         for axis in [|v: Vec2<Fx>| v.x, |v: Vec2<Fx>| v.y] {
-            (p, q) = clip_to_half_plane(p, q, |v| i128::from(axis(v).to_bits()) * sign - i128::from(WINDOW.to_bits()))?;
+            (p, q) = clip_to_half_plane(p, q, |v| {
+                i128::from(axis(v).to_bits()) * sign - i128::from(WINDOW.to_bits())
+            })?;
         }
     }
     Some(Hull::segment(p.narrow(), q.narrow(), direction))
@@ -57,7 +59,8 @@ mod tests {
         let a = Vec2::new(fx!(-1000000000), fx!(-500000000));
         let b = Vec2::new(fx!(1000000000), fx!(500000000));
         let hull = near_hull(a, b).unwrap();
-        let expected = [Vec2::new(-200, -100), Vec2::new(200, 100)].map(|v| Vec2::new(Length::from_num(v.x), Length::from_num(v.y)));
+        let expected = [Vec2::new(-200, -100), Vec2::new(200, 100)]
+            .map(|v| Vec2::new(Length::from_num(v.x), Length::from_num(v.y)));
         assert_eq!(hull.vertices(), expected);
     }
 

@@ -123,12 +123,20 @@ impl Interval {
         let (lower, upper) = (proxy.fat.lower, proxy.fat.upper);
         let slot = proxy.slot;
         match axis {
-            Axis::X => {
-                Interval { lower: lower.x, upper: upper.x, across_lower: lower.y, across_upper: upper.y, slot }
-            }
-            Axis::Y => {
-                Interval { lower: lower.y, upper: upper.y, across_lower: lower.x, across_upper: upper.x, slot }
-            }
+            Axis::X => Interval {
+                lower: lower.x,
+                upper: upper.x,
+                across_lower: lower.y,
+                across_upper: upper.y,
+                slot,
+            },
+            Axis::Y => Interval {
+                lower: lower.y,
+                upper: upper.y,
+                across_lower: lower.x,
+                across_upper: upper.x,
+                slot,
+            },
         }
     }
 

@@ -1,6 +1,7 @@
 //! [`Game`]: rules that advance in ticks from encoded inputs.
 
 use alloc::string::String;
+use alloc::vec::Vec;
 use core::fmt;
 
 use serde::{Serialize, de::DeserializeOwned};
@@ -74,4 +75,12 @@ pub trait Game: Sized {
     /// An upper bound of the cost of the next tick in work units, so that a verifier can limit what a stranger's
     /// file makes it compute. The sandbox counts bodies, contacts and joints, times sub-steps.
     fn work(&self, inputs: &[Self::Input]) -> u64;
+
+    /// What the game reports of itself at the end of a replay, such as a score or a time: at most 256 values with
+    /// different names of 1 to 64 bytes.
+    ///
+    /// A replay states them where they are read without playing it; a verifier compares them with its own.
+    fn claims(&self) -> Vec<(String, i64)> {
+        Vec::new()
+    }
 }

@@ -1,5 +1,8 @@
 //! What makes a simulation a lockstep game: [`Game`], the seam that every tool is generic over.
 
 mod game;
+mod input_log;
 
 pub use game::{Game, RulesId, SetupError};
+pub(crate) use input_log::decode_inputs;
+pub use input_log::{EncodedInputs, InputError, InputLog};

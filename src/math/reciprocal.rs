@@ -64,12 +64,6 @@ impl Reciprocal {
     pub(crate) fn mul_exact<A: LeEqU32>(self, a: FixedI32<A>) -> (i64, u32) {
         (i64::from(a.to_bits()) * i64::from(self.mantissa), self.shift)
     }
-
-    /// Whether this is a reciprocal that [`Reciprocal::of`] could have made.
-    pub(crate) const fn is_valid(self) -> bool {
-        let zero = self.mantissa == 0 && self.shift == 0;
-        zero || (self.mantissa >= 1 << 30 && self.shift < 64)
-    }
 }
 
 #[cfg(test)]

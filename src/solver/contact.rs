@@ -89,7 +89,8 @@ impl ContactConstraint {
             let lever_a = Lever { arm: point.anchor + to_a, inverse_gyration: a.mass.inverse_gyration };
             let lever_b = Lever { arm: point.anchor + to_b, inverse_gyration: b.mass.inverse_gyration };
             let (normal, normal_denominator) = Row::prepare(manifold.normal, lever_a, lever_b, fractions);
-            let (tangent, tangent_denominator) = Row::prepare(manifold.normal.perp(), lever_a, lever_b, fractions);
+            let (tangent, tangent_denominator) =
+                Row::prepare(manifold.normal.perp(), lever_a, lever_b, fractions);
             let carried = memory.impulse_of(point.feature);
             warm.points += 1;
             warm.kept += u32::from(carried.is_some());
@@ -133,24 +134,51 @@ impl ContactConstraint {
         }
     }
 
-    pub(crate) fn solve(&mut self, pass: Pass, tuning: &Tuning, bodies: &mut [SolverBody], faults: &mut Faults) {
+    pub(crate) fn solve(
+        &mut self,
+        pass: Pass,
+        tuning: &Tuning,
+        bodies: &mut [SolverBody],
+        faults: &mut Faults,
+    ) {
         let (a, b) = SolverBody::pair(bodies, self.body_a, self.body_b);
         for point in &mut self.points[..usize::from(self.count)] {
             let separation = separation(point.separation, point.normal.displacement(a, b));
             let (bias, softness) = bias_of(separation, pass, &self.softness, tuning);
-            point.normal.solve(a, b, bias, &softness, (Speed::ZERO, IMPULSE_MAX), &mut point.normal_lambda, faults);
+            point.normal.solve(
+                a,
+                b,
+                bias,
+                &softness,
+                (Speed::ZERO, IMPULSE_MAX),
+                &mut point.normal_lambda,
+                faults,
+            );
             point.pushed |= point.normal_lambda > 0;
         }
         for point in &mut self.points[..usize::from(self.count)] {
             let limit: Speed = mul(point.grip, point.normal_lambda);
             let limit = limit.min(IMPULSE_MAX);
             let bounds = (-limit, limit);
-            point.tangent.solve(a, b, Speed::ZERO, &Softness::RIGID, bounds, &mut point.tangent_lambda, faults);
+            point.tangent.solve(
+                a,
+                b,
+                Speed::ZERO,
+                &Softness::RIGID,
+                bounds,
+                &mut point.tangent_lambda,
+                faults,
+            );
         }
     }
 
     /// Once in a tick, after the sub-steps: what approached faster than the threshold and was pushed, leaves.
-    pub(crate) fn apply_restitution(&mut self, tuning: &Tuning, bodies: &mut [SolverBody], faults: &mut Faults) {
+    pub(crate) fn apply_restitution(
+        &mut self,
+        tuning: &Tuning,
+        bodies: &mut [SolverBody],
+        faults: &mut Faults,
+    ) {
         if self.restitution == Unit::ZERO {
             return;
         }
@@ -190,7 +218,8 @@ fn bias_of(separation: Step, pass: Pass, softness: &Softness, tuning: &Tuning) -
         Pass::Relax => (Speed::ZERO, Softness::RIGID),
         Pass::Bias => {
             let overlap = separation.saturating_add(tuning.slop).min(Step::ZERO);
-            let bias = mul::<_, _, fixed::types::extra::U21>(overlap, softness.bias_rate).max(-tuning.push_speed);
+            let bias =
+                mul::<_, _, fixed::types::extra::U21>(overlap, softness.bias_rate).max(-tuning.push_speed);
             (bias, *softness)
         }
     }

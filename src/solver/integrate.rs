@@ -35,9 +35,16 @@ impl Mover {
             BodyKind::Kinematic => {}
             BodyKind::Dynamic => {
                 let (force_step, spin_step) = body.acceleration_step(tuning.rate);
-                let gravity = |step: Fx| if body.gravity_scale() == Fx::ONE { narrow(step) } else { narrow(fx_mul(step, body.gravity_scale())) };
+                let gravity = |step: Fx| {
+                    if body.gravity_scale() == Fx::ONE {
+                        narrow(step)
+                    } else {
+                        narrow(fx_mul(step, body.gravity_scale()))
+                    }
+                };
                 mover.dynamic = true;
-                mover.velocity_step = Vec2::new(gravity(tuning.gravity_step.x), gravity(tuning.gravity_step.y)) + force_step;
+                mover.velocity_step =
+                    Vec2::new(gravity(tuning.gravity_step.x), gravity(tuning.gravity_step.y)) + force_step;
                 mover.spin_step = spin_step;
                 mover.linear_factor = damping_factor(body.linear_damping(), tuning.rate);
                 mover.angular_factor = damping_factor(body.angular_damping(), tuning.rate);
@@ -47,7 +54,12 @@ impl Mover {
     }
 
     /// `v' = (v + h F / m) / (1 + h c)`, within the world's speed limit.
-    pub(crate) fn integrate_velocity(&self, bodies: &mut [SolverBody], speed_max: Speed, faults: &mut Faults) {
+    pub(crate) fn integrate_velocity(
+        &self,
+        bodies: &mut [SolverBody],
+        speed_max: Speed,
+        faults: &mut Faults,
+    ) {
         if !self.dynamic {
             return;
         }

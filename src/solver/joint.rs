@@ -110,13 +110,13 @@ impl JointDef {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Joint {
     pub(crate) def: JointDef,
-    /// `p = G L`, the impulse times `mA + mB`, in world axes.
-    pub(crate) impulse: Vec2<Speed>,
+    /// `L`, the relative velocity of the anchors that the last impulse made, in world axes.
+    pub(crate) lambda: Vec2<Speed>,
 }
 
 impl Joint {
     pub(crate) fn new(def: JointDef) -> Self {
-        Joint { def, impulse: Vec2::ZERO }
+        Joint { def, lambda: Vec2::ZERO }
     }
 
     /// What it was defined as.

@@ -27,9 +27,8 @@ pub use joint::{Joint, JointDef, RevoluteDef};
 use limits::Faults;
 pub(crate) use limits::IMPULSE_MAX;
 use revolute::RevoluteConstraint;
-pub use settings::{ContactTuning, SolverSettings};
 pub(crate) use settings::Tuning;
-use softness::Softness;
+pub use settings::{ContactTuning, SolverSettings};
 
 use crate::body::{Arena, Body, BodyId, JointId};
 use crate::collision::{Contact, Manifold};
@@ -112,6 +111,7 @@ impl Solver {
             let (a, b) = (a.index(), b.index());
             self.joints.push(RevoluteConstraint::prepare(id, joint, (a, bodies.at(a)), (b, bodies.at(b))));
         }
+        self.refresh_joints();
     }
 
     /// Makes a constraint of every touching pair, in the order in which they are solved.
@@ -147,11 +147,13 @@ impl Solver {
         }
     }
 
-    /// One sub-step, as the design has it: refresh joints, integrate velocities, warm start, solve with bias,
-    /// integrate displacements, refresh joints, relax without bias.
+    /// One sub-step: aim joints, integrate velocities, warm start, solve with bias, integrate displacements,
+    /// refresh joints, relax without bias.
     pub(crate) fn sub_step(&mut self, iterations: u32, tuning: &Tuning) {
         let h = Reciprocal::of_integer(tuning.rate);
-        self.refresh_joints();
+        for joint in &mut self.joints {
+            joint.aim(&self.bodies, h, tuning);
+        }
         for mover in &self.movers {
             mover.integrate_velocity(&mut self.bodies, tuning.speed_max, &mut self.faults);
         }
@@ -173,10 +175,11 @@ impl Solver {
     fn refresh_joints(&mut self) {
         for body in &self.jointed {
             let turn = self.bodies[body.slot as usize].turn;
-            self.rotations[body.slot as usize] = Rot::from_angle(turned(body.angle, turn, body.inverse_gyration));
+            self.rotations[body.slot as usize] =
+                Rot::from_angle(turned(body.angle, turn, body.inverse_gyration));
         }
         for joint in &mut self.joints {
-            joint.refresh(&self.bodies, &self.rotations, &mut self.faults);
+            joint.refresh(&self.bodies, &self.rotations);
         }
     }
 
@@ -190,12 +193,8 @@ impl Solver {
     }
 
     fn solve(&mut self, pass: Pass, tuning: &Tuning) {
-        let softness = match pass {
-            Pass::Bias => tuning.joint,
-            Pass::Relax => Softness::RIGID,
-        };
         for joint in &mut self.joints {
-            joint.solve(&softness, &mut self.bodies, &mut self.faults);
+            joint.solve(pass, tuning, &mut self.bodies, &mut self.faults);
         }
         for contact in &mut self.contacts {
             contact.solve(pass, tuning, &mut self.bodies, &mut self.faults);

@@ -1,16 +1,18 @@
-//! The hinge: a point block that is refreshed twice in each sub-step, arms and gains together.
+//! The hinge: a point block that is refreshed after every displacement, arms and gains together.
 //!
-//! Gains older than their arms over-correct and explode at long arms; one refresh in a sub-step costs a spinning
-//! rod its energy, and none opens a grid of joints (`docs/DESIGN.md` has the figures).
+//! Gains older than their arms over-correct and explode at long arms, and arms kept for the tick blow a grid of
+//! joints up (`docs/DESIGN.md` has the figures).
 
 use super::body::SolverBody;
+use super::contact::Pass;
 use super::joint::{Joint, JointDef};
 use super::limits::Faults;
 use super::point_block::{Arm, PointBlock};
 use super::row::MassFractions;
+use super::settings::Tuning;
 use super::softness::Softness;
 use crate::body::{Body, JointId};
-use crate::math::{Fx, Length, Reciprocal, Rot, Speed, Step, Vec2, mul, round_shift, saturate};
+use crate::math::{Fx, Length, Ratio, Reciprocal, Rot, Speed, Step, Unit, Vec2, mul, round_shift, saturate};
 
 /// A hinge, for one tick.
 #[derive(Clone, Debug)]
@@ -29,13 +31,19 @@ pub(crate) struct RevoluteConstraint {
     block: PointBlock,
     /// How far the anchors are apart, at the last refresh.
     gap: Vec2<Step>,
+    /// `L`, in world axes.
     lambda: Vec2<Speed>,
-    /// `p = G L` between refreshes.
-    impulse: Vec2<Speed>,
+    /// Lever ratios for the solve pass.
+    ratios_ahead: (Vec2<Ratio>, Vec2<Ratio>),
 }
 
 impl RevoluteConstraint {
-    pub(crate) fn prepare(id: JointId, joint: &Joint, (slot_a, a): (u32, &Body), (slot_b, b): (u32, &Body)) -> Self {
+    pub(crate) fn prepare(
+        id: JointId,
+        joint: &Joint,
+        (slot_a, a): (u32, &Body),
+        (slot_b, b): (u32, &Body),
+    ) -> Self {
         let JointDef::Revolute(def) = &joint.def;
         RevoluteConstraint {
             joint: id,
@@ -49,13 +57,13 @@ impl RevoluteConstraint {
             between: b.centre_of_mass() - a.centre_of_mass(),
             block: PointBlock::default(),
             gap: Vec2::ZERO,
-            lambda: Vec2::ZERO,
-            impulse: joint.impulse,
+            lambda: joint.lambda,
+            ratios_ahead: Default::default(),
         }
     }
 
-    /// Arms, gains and gap at the present pose. The impulse stays, its effect `L = K p` changes.
-    pub(crate) fn refresh(&mut self, bodies: &[SolverBody], rotations: &[Rot], faults: &mut Faults) {
+    /// Arms, gains and gap at the present pose.
+    pub(crate) fn refresh(&mut self, bodies: &[SolverBody], rotations: &[Rot]) {
         let (a, b) = (self.body_a as usize, self.body_b as usize);
         let arm_a = WideArm::rotated(rotations[a], self.local_a);
         let arm_b = WideArm::rotated(rotations[b], self.local_b);
@@ -69,7 +77,16 @@ impl RevoluteConstraint {
             Arm { arm: arm_b.narrow(), inverse_gyration: self.inverse_gyration_b },
             self.fractions,
         );
-        self.lambda = self.block.lambda_of(self.impulse, faults);
+    }
+
+    /// Looks ahead along the turn of the coming sub-step, at the velocities that the last one has left.
+    pub(crate) fn aim(&mut self, bodies: &[SolverBody], h: Reciprocal, tuning: &Tuning) {
+        let turn = |body: u32, inverse_gyration: Reciprocal| -> Unit {
+            let step: Step = h.mul(bodies[body as usize].spin);
+            inverse_gyration.mul(step)
+        };
+        let turns = (turn(self.body_a, self.inverse_gyration_a), turn(self.body_b, self.inverse_gyration_b));
+        self.ratios_ahead = self.block.ratios_ahead(turns, tuning.joint_stretch);
     }
 
     pub(crate) fn warm_start(&self, bodies: &mut [SolverBody], faults: &mut Faults) {
@@ -77,16 +94,25 @@ impl RevoluteConstraint {
         self.block.apply(self.lambda, a, b, faults);
     }
 
-    /// Removes the relative velocity of the anchors, and with a soft `softness` their gap.
-    pub(crate) fn solve(&mut self, softness: &Softness, bodies: &mut [SolverBody], faults: &mut Faults) {
+    /// Removes the relative velocity of the anchors and, in the bias pass, their gap.
+    pub(crate) fn solve(
+        &mut self,
+        pass: Pass,
+        tuning: &Tuning,
+        bodies: &mut [SolverBody],
+        faults: &mut Faults,
+    ) {
+        let (softness, ratios) = match pass {
+            Pass::Bias => (&tuning.joint, self.ratios_ahead),
+            Pass::Relax => (&Softness::RIGID, self.block.ratios()),
+        };
         let bias = Vec2::new(mul(self.gap.x, softness.bias_rate), mul(self.gap.y, softness.bias_rate));
         let (a, b) = SolverBody::pair(bodies, self.body_a, self.body_b);
-        self.block.solve(a, b, bias, softness, &mut self.lambda, faults);
-        self.impulse = self.block.impulse_of(self.lambda);
+        self.block.solve(a, b, ratios, bias, softness, &mut self.lambda, faults);
     }
 
     pub(crate) fn store(&self, joint: &mut Joint) {
-        joint.impulse = self.impulse;
+        joint.lambda = self.lambda;
     }
 }
 
@@ -114,6 +140,9 @@ impl WideArm {
 /// `C = xB - xA + rB - rA` on one axis: exact until it is rounded once.
 fn gap(between: Fx, moved: Step, arms: i64) -> Step {
     // 20 bits fewer than the arms' 52 are the 32 of a world coordinate.
-    let wide = between.to_bits().saturating_add(i64::from(moved.to_bits()) << 5).saturating_add(round_shift(arms, 20));
+    let wide = between
+        .to_bits()
+        .saturating_add(i64::from(moved.to_bits()) << 5)
+        .saturating_add(round_shift(arms, 20));
     Step::from_bits(saturate(round_shift(wide, 5)))
 }

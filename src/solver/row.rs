@@ -88,7 +88,9 @@ impl Row {
         };
         let moving = i64::from(fractions.a.to_bits()) + i64::from(fractions.b.to_bits());
         let denominator = moving + round_shift(turning(fractions.a, e_a) + turning(fractions.b, e_b), 18);
-        let gain = |fraction: Unit| Unit::from_bits(saturate((i64::from(fraction.to_bits()) << 30) / denominator.max(1)));
+        let gain = |fraction: Unit| {
+            Unit::from_bits(saturate((i64::from(fraction.to_bits()) << 30) / denominator.max(1)))
+        };
         let (g_a, g_b) = (gain(fractions.a), gain(fractions.b));
         (Row { n, e_a, e_b, g_a, g_b, f_a: mul(g_a, e_a), f_b: mul(g_b, e_b) }, denominator)
     }

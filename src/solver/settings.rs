@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::softness::Softness;
 use crate::fx;
-use crate::math::{Fx, Rate, Speed, Step, Vec2, narrow};
+use crate::math::{Fx, Rate, Speed, Step, Unit, Vec2, narrow};
 
 /// How contacts remove overlap.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -110,6 +110,8 @@ pub(crate) struct Tuning {
     pub(crate) slop: Step,
     pub(crate) push_speed: Speed,
     pub(crate) joint: Softness,
+    /// `M` of [`super::point_block`].
+    pub(crate) joint_stretch: Unit,
     pub(crate) relax: bool,
     pub(crate) restitution_threshold: Speed,
     pub(crate) speed_max: Speed,
@@ -133,14 +135,18 @@ impl Tuning {
                 (rigid, rigid, slop, push_speed, false)
             }
         };
-        let over_rate = |g: Fx| Fx::from_bits(crate::math::saturate_wide(crate::math::div_round(g.to_bits().into(), rate.into())));
+        let joint = Softness::spring(at_most(settings.joint_hertz, 4), settings.joint_damping_ratio, rate);
+        let over_rate = |g: Fx| {
+            Fx::from_bits(crate::math::saturate_wide(crate::math::div_round(g.to_bits().into(), rate.into())))
+        };
         Tuning {
             rate,
             contact,
             contact_immovable,
             slop: narrow(slop),
             push_speed: narrow(push_speed),
-            joint: Softness::spring(at_most(settings.joint_hertz, 4), settings.joint_damping_ratio, rate),
+            joint,
+            joint_stretch: joint.stretch(),
             relax,
             restitution_threshold: narrow(settings.restitution_threshold),
             speed_max: narrow(settings.speed_max),

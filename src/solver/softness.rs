@@ -7,6 +7,7 @@
 //! ```
 
 use super::limits::{Faults, STEP_MAX};
+use crate::fx;
 use crate::math::{Fx, Rate, Speed, TAU, Unit, fx_div, fx_mul, narrow, round_shift, saturate};
 
 /// How a constraint error and an accumulated impulse turn into an impulse.
@@ -35,7 +36,20 @@ impl Softness {
         let a2 = fx_mul(h_omega, a1);
         let a3 = fx_div(Fx::ONE, Fx::ONE.saturating_add(a2)).unwrap_or(Fx::ONE);
         let bias_rate = fx_div(omega, a1).unwrap_or(Fx::ZERO);
-        Softness { bias_rate: narrow(bias_rate), mass_scale: narrow(fx_mul(a2, a3)), impulse_scale: narrow(a3) }
+        Softness {
+            bias_rate: narrow(bias_rate),
+            mass_scale: narrow(fx_mul(a2, a3)),
+            impulse_scale: narrow(a3),
+        }
+    }
+
+    /// `1 + 0.6 impulseScale / massScale`, at most 1.9: how much further a joint looks ahead so that its softness
+    /// gives way to only 0.4 of the centrifugal force. 0.5 leaves a gap of 8.4 mm on a rod with its anchor 40
+    /// radii of gyration away at 20 rad/s, 0.6 leaves 6.9 mm; at 1 chains of free bodies gain energy.
+    pub(crate) fn stretch(&self) -> Unit {
+        let (impulse, mass) = (Fx::from(self.impulse_scale), Fx::from(self.mass_scale));
+        let give = fx_mul(fx!(0.6), fx_div(impulse, mass).unwrap_or(Fx::ZERO));
+        narrow(Fx::ONE.saturating_add(give.min(fx!(0.9))))
     }
 
     /// `-massScale (v + bias) - impulseScale L`, clamped.
@@ -55,7 +69,6 @@ impl Softness {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fx;
 
     #[test]
     fn coefficients_match_the_formula() {

@@ -58,11 +58,15 @@ impl fmt::Display for SnapshotError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             SnapshotError::NotASnapshot => write!(f, "not the bytes of a world"),
-            SnapshotError::Format { found } => write!(f, "format version {found}, this engine reads {FORMAT}"),
+            SnapshotError::Format { found } => {
+                write!(f, "format version {found}, this engine reads {FORMAT}")
+            }
             SnapshotError::Semantics { found } => {
                 write!(f, "made with semantics {found}, this engine has {SEMANTICS}")
             }
-            SnapshotError::Length { announced, found } => write!(f, "{found} bytes where {announced} are announced"),
+            SnapshotError::Length { announced, found } => {
+                write!(f, "{found} bytes where {announced} are announced")
+            }
             SnapshotError::Hash => write!(f, "the hash does not match the bytes"),
             SnapshotError::Decode(error) => error.fmt(f),
             SnapshotError::Invalid(violation) => write!(f, "an impossible state: {violation}"),
@@ -108,7 +112,8 @@ impl World {
     /// number of bytes, and an impossible state is refused.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, SnapshotError> {
         let header: &[u8; HEADER_LEN] = bytes.first_chunk().ok_or(SnapshotError::NotASnapshot)?;
-        let number = |at: usize| u32::from_le_bytes([header[at], header[at + 1], header[at + 2], header[at + 3]]);
+        let number =
+            |at: usize| u32::from_le_bytes([header[at], header[at + 1], header[at + 2], header[at + 3]]);
         if header[..8] != MAGIC {
             return Err(SnapshotError::NotASnapshot);
         }

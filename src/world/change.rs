@@ -99,9 +99,8 @@ impl World {
         check_room(self.state.joints.len(), 1, self.state.config.joint_limit, "joints")?;
         def.validate()?;
         let (a, b) = def.bodies();
-        let dynamic = |id: BodyId| {
-            self.state.bodies.get(id).map(Body::is_dynamic).ok_or(WorldError::StaleBody(id))
-        };
+        let dynamic =
+            |id: BodyId| self.state.bodies.get(id).map(Body::is_dynamic).ok_or(WorldError::StaleBody(id));
         if !(dynamic(a)? | dynamic(b)?) {
             return Err(WorldError::JointWithoutDynamicBody);
         }
@@ -143,7 +142,12 @@ impl World {
     ///
     /// # Errors
     /// When the handle is stale or the body is not dynamic.
-    pub fn apply_impulse(&mut self, id: BodyId, impulse: Vec2<Fx>, point: Vec2<Fx>) -> Result<(), WorldError> {
+    pub fn apply_impulse(
+        &mut self,
+        id: BodyId,
+        impulse: Vec2<Fx>,
+        point: Vec2<Fx>,
+    ) -> Result<(), WorldError> {
         self.dynamic_body(id)?.apply_impulse(impulse, point);
         Ok(())
     }

@@ -132,7 +132,9 @@ impl World {
             Command::ApplyForce { body, force, point } => {
                 self.apply_force(*body, *force, *point).map(|()| Outcome::Done)
             }
-            Command::ApplyTorque { body, torque } => self.apply_torque(*body, *torque).map(|()| Outcome::Done),
+            Command::ApplyTorque { body, torque } => {
+                self.apply_torque(*body, *torque).map(|()| Outcome::Done)
+            }
             Command::ApplyImpulse { body, impulse, point } => {
                 self.apply_impulse(*body, *impulse, *point).map(|()| Outcome::Done)
             }

@@ -71,7 +71,8 @@ impl World {
     #[must_use]
     pub fn digest(&self) -> WorldDigest {
         // Destructured, so that a new field does not compile until it has a section.
-        let State { config, tick, faults, bodies, shapes, joints, contacts, removed_contacts, rng } = &self.state;
+        let State { config, tick, faults, bodies, shapes, joints, contacts, removed_contacts, rng } =
+            &self.state;
         WorldDigest {
             sections: [
                 (Section::World, StateHash::of(&(config, tick, faults))),

@@ -6,7 +6,9 @@ use super::events::Events;
 use super::state::State;
 use super::stats::StepStats;
 use crate::body::{Body, Handle};
-use crate::collision::{AxisHint, BroadPhase, BroadPhaseKind, Contact, Manifold, Pair, PosedShape, Proxy, SatCounters};
+use crate::collision::{
+    AxisHint, BroadPhase, BroadPhaseKind, Contact, Manifold, Pair, PosedShape, Proxy, SatCounters,
+};
 use crate::solver::{Solver, TouchingPair};
 
 /// Caches, buffers and results of the last tick.

@@ -89,14 +89,19 @@ impl Motion {
             return Fx::ZERO;
         }
         let half = posed.bounds.extents();
-        let reach = half.x.saturating_add(half.y).saturating_add(offset.x.saturating_abs()).saturating_add(offset.y.saturating_abs());
+        let reach = half
+            .x
+            .saturating_add(half.y)
+            .saturating_add(offset.x.saturating_abs())
+            .saturating_add(offset.y.saturating_abs());
         fx_mul(reach, self.turn.min(Fx::ONE.saturating_mul_int(2)))
     }
 }
 
 /// Broad phase: brings the contacts in line with the pairs of fat boxes.
 fn update_pairs(state: &mut State, scratch: &mut Scratch) {
-    let Scratch { broad_phase, proxies, pairs, joined, merged, ended, sources, hints, old_hints, .. } = scratch;
+    let Scratch { broad_phase, proxies, pairs, joined, merged, ended, sources, hints, old_hints, .. } =
+        scratch;
     proxies.clear();
     proxies.extend(state.shapes.iter().map(|(id, shape)| Proxy { slot: id.slot(), fat: shape.fat }));
     joined.clear();
@@ -166,7 +171,11 @@ struct Approach<'a> {
 }
 
 impl<'a> Approach<'a> {
-    fn new(state: &State, (a, posed_a): (&'a Body, &PosedShape), (b, posed_b): (&'a Body, &PosedShape)) -> Self {
+    fn new(
+        state: &State,
+        (a, posed_a): (&'a Body, &PosedShape),
+        (b, posed_b): (&'a Body, &PosedShape),
+    ) -> Self {
         let tick_rate = state.config.tick_rate;
         let (motion_a, motion_b) = (Motion::of(a, tick_rate), Motion::of(b, tick_rate));
         let shift = motion_b.shift - motion_a.shift;
@@ -238,7 +247,9 @@ fn finalise_poses(state: &mut State, scratch: &mut Scratch) {
         body.force = Vec2::ZERO;
         body.torque = Fx::ZERO;
         let centre = body.centre + shift.widen();
-        body.centre = centre.max(Vec2::new(-WORLD_EXTENT_MAX, -WORLD_EXTENT_MAX)).min(Vec2::new(WORLD_EXTENT_MAX, WORLD_EXTENT_MAX));
+        body.centre = centre
+            .max(Vec2::new(-WORLD_EXTENT_MAX, -WORLD_EXTENT_MAX))
+            .min(Vec2::new(WORLD_EXTENT_MAX, WORLD_EXTENT_MAX));
         faults += u32::from(body.centre != centre);
         body.angle = turned(body.angle, turn, body.mass.inverse_gyration);
     }

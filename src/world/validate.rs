@@ -86,7 +86,8 @@ fn check_body(state: &State, id: BodyId, body: &Body) -> Result<(), Violation> {
         check(!body.shapes[..i].contains(shape), || at(&format!("lists shape {shape} twice")))?;
     }
     let shapes = body.shapes.iter().map(|shape| &state.shapes.at(shape.slot()).def);
-    let mass = mass_of(body.kind, body.mass_source, shapes).map_err(|error| Violation { what: at(&format!("{error}")) })?;
+    let mass = mass_of(body.kind, body.mass_source, shapes)
+        .map_err(|error| Violation { what: at(&format!("{error}")) })?;
     check(mass == body.mass, || at("mass does not follow from its shapes"))
 }
 
@@ -94,7 +95,8 @@ fn check_shapes(state: &State) -> Result<(), Violation> {
     let listed: usize = state.bodies.iter().map(|(_, body)| body.shapes.len()).sum();
     check(listed == state.shapes.len(), || "a shape without a body".into())?;
     for (id, shape) in state.shapes.iter() {
-        let body = state.bodies.get(shape.body).ok_or_else(|| Violation { what: format!("shape {id}: no body") })?;
+        let body =
+            state.bodies.get(shape.body).ok_or_else(|| Violation { what: format!("shape {id}: no body") })?;
         let valid = shape.def.validate(offset_max(body.kind()));
         valid.map_err(|error| Violation { what: format!("shape {id}: {error}") })?;
         check(shape.fat.is_valid(), || format!("shape {id}: a fat box with its corners exchanged"))?;
@@ -110,7 +112,7 @@ fn check_joints(state: &State) -> Result<(), Violation> {
         let held = matches!((dynamic(a), dynamic(b)), (Some(a), Some(b)) if a || b);
         check(held, || format!("joint {id}: its bodies"))?;
         let limit = crate::solver::IMPULSE_MAX;
-        let bounded = [joint.impulse.x, joint.impulse.y].iter().all(|p| (-limit..=limit).contains(p));
+        let bounded = [joint.lambda.x, joint.lambda.y].iter().all(|p| (-limit..=limit).contains(p));
         check(bounded, || format!("joint {id}: its impulse"))?;
     }
     Ok(())

@@ -1,0 +1,14 @@
+//! The commands, one file each, with the same functions in the same order: `command` describes its arguments,
+//! `arguments` takes them from what clap matched, `run` does it.
+
+pub(crate) mod export;
+pub(crate) mod record;
+pub(crate) mod scenes;
+pub(crate) mod verify;
+
+use clap::{ArgMatches, FromArgMatches};
+
+/// The arguments that were matched against the same type's description.
+fn from_matches<T: FromArgMatches>(matches: &ArgMatches) -> T {
+    T::from_arg_matches(matches).expect("clap matched what this type describes")
+}

@@ -1,0 +1,72 @@
+//! `record`: plays a scene and writes its replay.
+
+use std::fs::File;
+use std::io::Write;
+use std::path::PathBuf;
+
+use clap::{ArgMatches, Args, Command};
+use lockstep2d::hash::StateHash;
+use lockstep2d::lockstep::Game;
+use lockstep2d::replay::{CHECKPOINT_INTERVAL, Recording};
+
+use crate::console::Console;
+use crate::error::CommandError;
+use crate::exit::Exit;
+use crate::scenes::{Catalogue, Scene};
+
+pub(crate) const NAME: &str = "record";
+
+/// Play a scene and write its replay
+#[derive(Args, Debug)]
+pub(crate) struct Arguments {
+    /// The name of the scene, as `scenes` lists it
+    scene: String,
+    /// For how many ticks; every scene has a number of its own
+    #[arg(long)]
+    ticks: Option<u64>,
+    /// What random choices of the scene begin with
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+    /// The file to write
+    #[arg(short, long, value_name = "FILE")]
+    output: PathBuf,
+}
+
+pub(crate) fn command() -> Command {
+    Arguments::augment_args(Command::new(NAME))
+}
+
+pub(crate) fn arguments(matches: &ArgMatches) -> Arguments {
+    super::from_matches(matches)
+}
+
+pub(crate) fn run<G: Game>(
+    arguments: &Arguments,
+    catalogue: &dyn Catalogue<G>,
+    console: &mut Console<'_>,
+) -> Result<Exit, CommandError> {
+    let Some(scene) = catalogue.open(&arguments.scene, arguments.seed) else {
+        let known = catalogue.scenes().into_iter().map(|scene| scene.name).collect();
+        return Err(CommandError::UnknownScene { name: arguments.scene.clone(), known });
+    };
+    let ticks = arguments.ticks.unwrap_or(scene.ticks);
+    let hash = write(scene, ticks, &arguments.output)?;
+    let file = arguments.output.display();
+    console.line(format_args!("{file}: recorded {ticks} ticks, final hash {hash}"))?;
+    Ok(Exit::Success)
+}
+
+/// Appends to the file as the game runs, so that a game that is interrupted leaves a valid beginning.
+fn write<G: Game>(mut scene: Scene<G>, ticks: u64, path: &PathBuf) -> Result<StateHash, CommandError> {
+    let write_error = |error| CommandError::Write { path: path.clone(), error };
+    let mut recording = Recording::<G>::start(&scene.setup, CHECKPOINT_INTERVAL)?;
+    let mut file = File::create(path).map_err(write_error)?;
+    for tick in 0..ticks {
+        let inputs = (scene.script)(tick, recording.game());
+        recording.step(&inputs)?;
+        file.write_all(&recording.take_bytes()).map_err(write_error)?;
+    }
+    let hash = recording.game().state_hash();
+    file.write_all(&recording.finish()?).map_err(write_error)?;
+    Ok(hash)
+}

@@ -1,0 +1,36 @@
+//! Where a command writes: results to one stream, messages to the other.
+
+use std::fmt;
+use std::io::Write;
+
+use anstyle::{AnsiColor, Style};
+
+use crate::error::CommandError;
+
+pub(crate) const GOOD: Style = AnsiColor::Green.on_default().bold();
+pub(crate) const DOUBTFUL: Style = AnsiColor::Yellow.on_default().bold();
+pub(crate) const BAD: Style = AnsiColor::Red.on_default().bold();
+
+/// The two streams of a command. Both get colours; what is no terminal strips them.
+pub(crate) struct Console<'a> {
+    pub(crate) out: &'a mut dyn Write,
+    pub(crate) err: &'a mut dyn Write,
+}
+
+impl Console<'_> {
+    /// Writes a line of results.
+    pub(crate) fn line(&mut self, line: impl fmt::Display) -> Result<(), CommandError> {
+        writeln!(self.out, "{line}").map_err(CommandError::Output)
+    }
+
+    /// Writes a line that is no result, such as a summary beside machine-readable output.
+    pub(crate) fn note(&mut self, note: impl fmt::Display) {
+        // When not even messages can be written, there is nowhere left to say so.
+        let _ = writeln!(self.err, "{note}");
+    }
+
+    /// Writes a message on something that went wrong.
+    pub(crate) fn error(&mut self, error: impl fmt::Display) {
+        self.note(format_args!("{BAD}error:{BAD:#} {error}"));
+    }
+}

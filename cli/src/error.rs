@@ -1,0 +1,67 @@
+//! [`CommandError`]: why a command had to stop.
+
+use std::fmt;
+use std::io;
+use std::path::PathBuf;
+
+use lockstep2d::replay::{RecordError, Verdict};
+
+use crate::exit::Exit;
+
+/// Why a command had to stop.
+#[derive(Debug)]
+pub(crate) enum CommandError {
+    /// Our own output cannot be written.
+    Output(io::Error),
+    /// A file cannot be read.
+    Read { path: PathBuf, error: io::Error },
+    /// A file cannot be written.
+    Write { path: PathBuf, error: io::Error },
+    /// There is no such scene.
+    UnknownScene { name: String, known: Vec<&'static str> },
+    /// The scene cannot be recorded.
+    Record(RecordError),
+    /// A replay ends before the tick that was asked for.
+    NoSuchTick { path: PathBuf, tick: u64, ticks: u64 },
+    /// A replay cannot be played as far as was asked for.
+    Replay { path: PathBuf, verdict: Verdict },
+}
+
+impl CommandError {
+    /// How a command that stops for this ends.
+    pub(crate) fn exit(&self) -> Exit {
+        match self {
+            CommandError::Replay { .. } => Exit::NoMatch,
+            _ => Exit::Trouble,
+        }
+    }
+
+    /// Whether whoever read our output has gone, as `head` does, and nobody is left to tell.
+    pub(crate) fn is_reader_gone(&self) -> bool {
+        matches!(self, CommandError::Output(error) if error.kind() == io::ErrorKind::BrokenPipe)
+    }
+}
+
+impl fmt::Display for CommandError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            CommandError::Output(error) => write!(f, "cannot write the output: {error}"),
+            CommandError::Read { path, error } => write!(f, "cannot read {}: {error}", path.display()),
+            CommandError::Write { path, error } => write!(f, "cannot write {}: {error}", path.display()),
+            CommandError::UnknownScene { name, known } => {
+                write!(f, "there is no scene {name:?}; there are {}", known.join(", "))
+            }
+            CommandError::Record(error) => write!(f, "cannot record: {error}"),
+            CommandError::NoSuchTick { path, tick, ticks } => {
+                write!(f, "{} has {ticks} ticks, there is no tick {tick}", path.display())
+            }
+            CommandError::Replay { path, verdict } => write!(f, "{}: {verdict}", path.display()),
+        }
+    }
+}
+
+impl From<RecordError> for CommandError {
+    fn from(error: RecordError) -> Self {
+        CommandError::Record(error)
+    }
+}

@@ -1,0 +1,32 @@
+//! [`Exit`]: how a command ended.
+
+use std::process::ExitCode;
+
+/// How a command ended, as scripts see it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Exit {
+    /// Done; all files match. Exit code 0.
+    Success,
+    /// A file does not match. Exit code 1.
+    NoMatch,
+    /// Wrong usage, a path that cannot be read or written, or nothing to do. Exit code 2.
+    Trouble,
+}
+
+impl Exit {
+    /// The exit code of the process.
+    #[must_use]
+    pub fn code(self) -> u8 {
+        match self {
+            Exit::Success => 0,
+            Exit::NoMatch => 1,
+            Exit::Trouble => 2,
+        }
+    }
+}
+
+impl From<Exit> for ExitCode {
+    fn from(exit: Exit) -> Self {
+        exit.code().into()
+    }
+}

@@ -1,0 +1,101 @@
+//! The tools of a game that is not ours, end to end: arguments in, files, output and exit codes out.
+#![expect(clippy::unwrap_used, reason = "what goes wrong in a helper fails the test")]
+
+#[path = "../../../tests/replay/counter.rs"]
+mod counter;
+
+mod binary;
+mod export;
+mod record;
+mod verify;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use lockstep2d::replay::Recording;
+use lockstep2d_cli::{Catalogue, Exit, Scene, SceneInfo, Tool};
+
+use counter::{Counter, Setup, inputs_at, setup};
+
+/// What a command did.
+struct Outcome {
+    exit: Exit,
+    out: String,
+    err: String,
+}
+
+/// Runs the tools of the counter without a terminal.
+fn run(arguments: &[&str]) -> Outcome {
+    let tool =
+        Tool::new().with_scenes(Scenes).with_svg(|game: &Counter| format!("<svg>{}</svg>\n", game.sum));
+    run_tool(&tool, arguments)
+}
+
+fn run_tool(tool: &Tool<Counter>, arguments: &[&str]) -> Outcome {
+    let (mut out, mut err) = (anstream::StripStream::new(Vec::new()), anstream::StripStream::new(Vec::new()));
+    let arguments = ["counter"].into_iter().chain(arguments.iter().copied());
+    let exit = tool.run_with(arguments, &mut out, &mut err);
+    let text = |bytes| String::from_utf8(bytes).unwrap();
+    Outcome { exit, out: text(out.into_inner()), err: text(err.into_inner()) }
+}
+
+/// The scenes of the counter.
+struct Scenes;
+
+impl Catalogue<Counter> for Scenes {
+    fn scenes(&self) -> Vec<SceneInfo> {
+        vec![
+            SceneInfo { name: "waves", about: "the sum goes up and down", ticks: 100 },
+            SceneInfo { name: "bad", about: "cannot start", ticks: 1 },
+        ]
+    }
+
+    fn open(&self, name: &str, seed: u64) -> Option<Scene<Counter>> {
+        let label = seed.to_string();
+        let setup = match name {
+            "waves" => Setup { label, ..setup() },
+            "bad" => Setup { start: 2000, label },
+            _ => return None,
+        };
+        Some(Scene { setup, ticks: 100, script: Box::new(|tick, _| inputs_at(tick).to_vec()) })
+    }
+}
+
+/// A replay of the counter.
+fn replay(ticks: u64) -> Vec<u8> {
+    let mut recording = Recording::<Counter>::start(&setup(), 10).unwrap();
+    for tick in 0..ticks {
+        recording.step(&inputs_at(tick)).unwrap();
+    }
+    recording.finish().unwrap()
+}
+
+/// A folder of its own for a test, gone with the value.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(test: &str) -> Self {
+        let path = std::env::temp_dir().join(format!("lockstep2d-{}-{test}", std::process::id()));
+        fs::create_dir_all(&path).unwrap();
+        Folder(path)
+    }
+
+    /// The path of something in it.
+    fn path(&self, name: &str) -> String {
+        self.0.join(name).to_str().unwrap().to_string()
+    }
+
+    /// Writes a file in it, and the folders on the way.
+    fn write(&self, name: &str, bytes: &[u8]) -> String {
+        let path = self.path(name);
+        fs::create_dir_all(Path::new(&path).parent().unwrap()).unwrap();
+        fs::write(&path, bytes).unwrap();
+        path
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}

@@ -1,0 +1,241 @@
+//! `verify`: a line per file, a summary, the exit code.
+
+use lockstep2d::hash::StateHash;
+use lockstep2d::lockstep::{Game, RulesId, SetupError};
+use lockstep2d::replay::{Limits, Recorder, Recording};
+use lockstep2d_cli::{Exit, Tool};
+use serde_json::{Value, json};
+
+use crate::counter::{Counter, Input, Setup, inputs_at, setup};
+use crate::{Folder, replay, run, run_tool};
+
+/// The lines of JSON that `verify --json` prints, and how it ends.
+fn verify_json(paths: &[&str]) -> (Vec<Value>, Exit) {
+    let arguments: Vec<&str> = [&["verify", "--json"], paths].concat();
+    let outcome = run(&arguments);
+    (outcome.out.lines().map(|line| serde_json::from_str(line).unwrap()).collect(), outcome.exit)
+}
+
+#[test]
+fn a_match_is_a_line_a_summary_and_success() {
+    let folder = Folder::new("match");
+    let file = folder.write("good.replay", &replay(35));
+    let outcome = run(&["verify", &file]);
+    let lines: Vec<&str> = outcome.out.lines().collect();
+    assert_eq!(lines.len(), 2);
+    assert!(lines[0].starts_with(&format!("{file}: match: 35 ticks, final hash ")), "{}", lines[0]);
+    assert!(lines[1].starts_with("1 of 1 files match; 35 ticks in "), "{}", lines[1]);
+    assert!(lines[1].ends_with(" ticks per second"), "{}", lines[1]);
+    assert_eq!((outcome.exit, outcome.err.as_str()), (Exit::Success, ""));
+}
+
+#[test]
+fn a_folder_is_searched_at_any_depth_in_order() {
+    let folder = Folder::new("folder");
+    let good = replay(5);
+    for name in ["b.replay", "a/z.replay", "c.replay", "a/b/x.replay"] {
+        folder.write(name, &good);
+    }
+    folder.write("readme.md", b"not a replay, and not asked for");
+    folder.write("a/replay", b"neither is this");
+    let (lines, exit) = verify_json(&[&folder.path("")]);
+    let files: Vec<&str> = lines.iter().map(|line| line["file"].as_str().unwrap()).collect();
+    let expected = ["a/b/x.replay", "a/z.replay", "b.replay", "c.replay"].map(|name| folder.path(name));
+    assert_eq!(files, expected);
+    assert_eq!(exit, Exit::Success);
+}
+
+#[test]
+fn a_file_that_is_named_is_verified_whatever_its_name() {
+    let folder = Folder::new("named");
+    let file = folder.write("upload.bin", &replay(5));
+    assert_eq!(run(&["verify", &file]).exit, Exit::Success);
+}
+
+#[test]
+fn every_verdict_has_its_json() {
+    let folder = Folder::new("json");
+    let good = replay(35);
+    let hash = {
+        let (lines, _) = verify_json(&[&folder.write("match", &good)]);
+        lines[0]["hash"].as_str().unwrap().to_string()
+    };
+    assert_eq!((hash.len(), hash.to_lowercase()), (32, hash.clone()));
+
+    let json_of = |name: &str, bytes: &[u8], expected_exit| {
+        let file = folder.write(name, bytes);
+        let (mut lines, exit) = verify_json(&[&file]);
+        assert_eq!((lines.len(), exit), (1, expected_exit), "{name}");
+        let mut line = lines.remove(0);
+        assert_eq!(line.as_object_mut().unwrap().remove("file"), Some(json!(file)));
+        line
+    };
+    let expected = json!({"verdict": "match", "ticks": 35, "hash": hash});
+    assert_eq!(json_of("match", &good, Exit::Success), expected);
+
+    let mut cut = json_of("incomplete", &good[..good.len() - 1], Exit::NoMatch);
+    assert_eq!(cut["hash"].take(), json!(hash));
+    assert_eq!(cut, json!({"verdict": "incomplete", "ticks": 35, "hash": null}));
+
+    let expected = json!({
+        "verdict": "malformed", "ticks": 0, "hash": null,
+        "offset": 0, "why": "this is no replay file",
+    });
+    assert_eq!(json_of("malformed", b"not a replay", Exit::NoMatch), expected);
+
+    let mut other_format = good.clone();
+    other_format[8] = 2;
+    let why = "made in version 2 of the file format, this program reads 1";
+    let expected = json!({"verdict": "unverifiable", "ticks": 0, "hash": null, "why": why});
+    assert_eq!(json_of("unverifiable", &other_format, Exit::NoMatch), expected);
+
+    let mut huge_setup = good.clone();
+    huge_setup[36..40].fill(0xff);
+    let expected = json!({
+        "verdict": "limit_exceeded", "ticks": 0, "hash": null,
+        "limit": "setup_bytes", "value": u32::MAX, "max": Limits::default().setup_bytes,
+    });
+    assert_eq!(json_of("limit_exceeded", &huge_setup, Exit::NoMatch), expected);
+}
+
+#[test]
+fn a_file_that_diverges_says_where() {
+    // A recorder that is given the hash of another state stands for a machine that computed something else.
+    let folder = Folder::new("diverged");
+    let (mut recorder, mut game) = Recorder::<Counter>::start(&setup(), 2).unwrap();
+    for tick in 0..6 {
+        let inputs = recorder.record(&inputs_at(tick)).unwrap().to_vec();
+        game.step(&inputs);
+        game.sum += i64::from(tick == 3);
+        recorder.checkpoint(game.state_hash());
+    }
+    let file = folder.write("diverged", &recorder.finish(&game).unwrap());
+    let (lines, exit) = verify_json(&[&file]);
+    let expected = json!({
+        "file": file, "verdict": "diverged", "ticks": 4, "hash": null,
+        "last_equal": 2, "first_different": 4,
+    });
+    assert_eq!((lines, exit), (vec![expected], Exit::NoMatch));
+    let outcome = run(&["verify", &file]);
+    assert!(outcome.out.contains("diverged: equal at tick 2, different at tick 4"), "{}", outcome.out);
+}
+
+/// A counter that lies about its sum, and is the counter in everything else.
+struct Liar(Counter);
+
+impl Game for Liar {
+    type Setup = Setup;
+    type Input = Input;
+    type Save = Counter;
+
+    const RULES: RulesId = Counter::RULES;
+
+    fn new(setup: &Setup) -> Result<Self, SetupError> {
+        Counter::new(setup).map(Liar)
+    }
+
+    fn players(&self) -> u32 {
+        self.0.players()
+    }
+
+    fn tick_rate(&self) -> u32 {
+        self.0.tick_rate()
+    }
+
+    fn step(&mut self, inputs: &[Input]) {
+        self.0.step(inputs);
+    }
+
+    fn state_hash(&self) -> StateHash {
+        self.0.state_hash()
+    }
+
+    fn save(&self) -> Counter {
+        self.0.save()
+    }
+
+    fn load(&mut self, save: &Counter) {
+        self.0.load(save);
+    }
+
+    fn work(&self, inputs: &[Input]) -> u64 {
+        self.0.work(inputs)
+    }
+
+    fn claims(&self) -> Vec<(String, i64)> {
+        vec![("half".into(), self.0.sum / 2), ("sum".into(), 1_000_000)]
+    }
+}
+
+#[test]
+fn a_wrong_claim_says_which() {
+    let folder = Folder::new("claim");
+    let recording = Recording::<Liar>::start(&setup(), 60).unwrap();
+    let hash = recording.game().state_hash();
+    let file = folder.write("boast", &recording.finish().unwrap());
+    let expected = json!({
+        "file": file, "verdict": "claim_mismatch", "ticks": 0, "hash": hash.to_string(),
+        "claim": "sum", "claimed": 1_000_000, "actual": 5,
+    });
+    assert_eq!(verify_json(&[&file]), (vec![expected], Exit::NoMatch));
+}
+
+#[test]
+fn one_bad_file_is_enough_and_hides_no_other() {
+    let folder = Folder::new("mixed");
+    let good = replay(5);
+    folder.write("a.replay", &good);
+    folder.write("b.replay", &good[..good.len() / 2]);
+    folder.write("c.replay", &good);
+    let outcome = run(&["verify", &folder.path("")]);
+    assert_eq!(outcome.out.lines().count(), 4);
+    assert!(outcome.out.contains("2 of 3 files match"), "{}", outcome.out);
+    assert_eq!(outcome.exit, Exit::NoMatch);
+}
+
+#[test]
+fn what_cannot_be_read_is_trouble_and_hides_no_other() {
+    let folder = Folder::new("unreadable");
+    let bad = folder.write("bad", b"no replay");
+    let good = folder.write("good", &replay(5));
+    let missing = folder.path("missing.replay");
+    let outcome = run(&["verify", &missing, &bad, &good]);
+    assert_eq!(outcome.exit, Exit::Trouble);
+    assert!(outcome.err.starts_with(&format!("error: cannot read {missing}: ")), "{}", outcome.err);
+    assert_eq!(outcome.out.lines().count(), 3, "the other two, and the summary");
+
+    let (lines, exit) = verify_json(&[&missing, &good]);
+    assert_eq!((lines.len(), exit), (1, Exit::Trouble));
+}
+
+#[test]
+fn nothing_to_verify_is_trouble() {
+    let folder = Folder::new("nothing");
+    folder.write("readme.md", b"no replay");
+    let outcome = run(&["verify", &folder.path("")]);
+    assert_eq!((outcome.exit, outcome.out.as_str()), (Exit::Trouble, ""));
+    assert!(outcome.err.contains("nothing to verify"), "{}", outcome.err);
+}
+
+#[test]
+fn a_file_is_read_no_further_than_its_limit() {
+    let folder = Folder::new("limit");
+    let file = folder.write("long", &replay(1000));
+    let limits = Limits { file_bytes: 100, ..Limits::default() };
+    let outcome = run_tool(&Tool::new().with_limits(limits), &["verify", &file]);
+    assert!(outcome.out.contains("limit exceeded: 101 bytes of the file, at most 100"), "{}", outcome.out);
+    assert_eq!(outcome.exit, Exit::NoMatch);
+}
+
+#[cfg(unix)]
+#[test]
+fn links_that_lead_in_circles_are_not_followed() {
+    let folder = Folder::new("links");
+    let file = folder.write("a/good.replay", &replay(5));
+    std::os::unix::fs::symlink(folder.path("a"), folder.path("a/circle")).unwrap();
+    std::os::unix::fs::symlink(&file, folder.path("linked.replay")).unwrap();
+    let (lines, exit) = verify_json(&[&folder.path("")]);
+    let files: Vec<&str> = lines.iter().map(|line| line["file"].as_str().unwrap()).collect();
+    assert_eq!(files, [file, folder.path("linked.replay")]);
+    assert_eq!(exit, Exit::Success);
+}

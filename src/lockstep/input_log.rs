@@ -1,0 +1,231 @@
+//! [`InputLog`]: every tick's inputs in memory, and the bytes that inputs have.
+
+use alloc::vec::Vec;
+use core::fmt;
+
+use serde::{Serialize, de::DeserializeOwned};
+
+use crate::codec;
+
+/// Why inputs cannot be logged.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum InputError {
+    /// Not one input for each player.
+    Count {
+        /// Number of players.
+        players: u32,
+        /// Number of inputs.
+        inputs: u64,
+    },
+    /// The bytes are not the canonical encoding of one input for each player.
+    NotCanonical,
+}
+
+impl fmt::Display for InputError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            InputError::Count { players, inputs } => write!(f, "{inputs} inputs for {players} players"),
+            InputError::NotCanonical => write!(f, "the inputs do not survive encoding and decoding"),
+        }
+    }
+}
+
+impl core::error::Error for InputError {}
+
+/// The inputs of all players for one tick, as bytes and as they come back from the bytes.
+///
+/// A type may lose something in its encoding. What is simulated is always the decoded value, so that the peer or
+/// the verifier who only ever sees bytes simulates the same.
+#[derive(Clone, Debug)]
+pub struct EncodedInputs<I> {
+    bytes: Vec<u8>,
+    inputs: Vec<I>,
+}
+
+impl<I: Serialize + DeserializeOwned> EncodedInputs<I> {
+    /// Encodes the inputs of all players and decodes them again.
+    ///
+    /// # Errors
+    /// [`InputError`] when there is not one for each player, or they do not come back.
+    pub fn new(inputs: &[I], players: u32) -> Result<Self, InputError> {
+        let count = inputs.len() as u64;
+        if count != u64::from(players) {
+            return Err(InputError::Count { players, inputs: count });
+        }
+        let bytes = encode_inputs(inputs);
+        let inputs = decode_inputs(&bytes, players)?;
+        Ok(EncodedInputs { bytes, inputs })
+    }
+
+    /// The canonical bytes of every player's input, one after the other.
+    #[must_use]
+    pub fn bytes(&self) -> &[u8] {
+        &self.bytes
+    }
+
+    /// The inputs, to step a game with.
+    #[must_use]
+    pub fn inputs(&self) -> &[I] {
+        &self.inputs
+    }
+}
+
+/// The canonical bytes of every player's input, one after the other.
+fn encode_inputs<I: Serialize>(inputs: &[I]) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    for input in inputs {
+        codec::encode_into(input, &mut bytes);
+    }
+    bytes
+}
+
+/// The inputs of `players` players from their canonical bytes.
+pub(crate) fn decode_inputs<I>(bytes: &[u8], players: u32) -> Result<Vec<I>, InputError>
+where
+    I: Serialize + DeserializeOwned,
+{
+    // With its length in front it is the canonical encoding of a list.
+    let mut list = u64::from(players).to_le_bytes().to_vec();
+    list.extend_from_slice(bytes);
+    let inputs: Vec<I> = codec::decode(&list).map_err(|_| InputError::NotCanonical)?;
+    if encode_inputs(&inputs) == bytes { Ok(inputs) } else { Err(InputError::NotCanonical) }
+}
+
+/// The inputs of every tick so far, in memory; ticks in a row with the same inputs are kept once.
+///
+/// ```
+/// use lockstep2d::lockstep::InputLog;
+///
+/// let mut log = InputLog::<u8>::new(2);
+/// log.push(&[1, 0])?;
+/// log.push(&[1, 0])?;
+/// log.truncate(1); // a rollback: tick 1 was mispredicted
+/// log.push(&[1, 7])?;
+/// assert_eq!(log.get(1), Some(&[1, 7][..]));
+/// # Ok::<(), lockstep2d::lockstep::InputError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct InputLog<I> {
+    players: u32,
+    runs: Vec<LoggedRun<I>>,
+}
+
+#[derive(Clone, Debug)]
+struct LoggedRun<I> {
+    /// The tick after the last of the run.
+    end: u64,
+    inputs: EncodedInputs<I>,
+}
+
+impl<I: Serialize + DeserializeOwned> InputLog<I> {
+    /// An empty log for some number of players.
+    #[must_use]
+    pub fn new(players: u32) -> Self {
+        InputLog { players, runs: Vec::new() }
+    }
+
+    /// How many ticks are logged.
+    #[must_use]
+    pub fn ticks(&self) -> u64 {
+        self.runs.last().map_or(0, |run| run.end)
+    }
+
+    /// How many runs they make.
+    #[must_use]
+    pub fn runs(&self) -> usize {
+        self.runs.len()
+    }
+
+    /// Logs the inputs of the next tick and returns those to step the game with: encoded and decoded again.
+    ///
+    /// # Errors
+    /// [`InputError`] when they cannot be logged; the log is as it was.
+    pub fn push(&mut self, inputs: &[I]) -> Result<&[I], InputError> {
+        let inputs = EncodedInputs::new(inputs, self.players)?;
+        let end = self.ticks() + 1;
+        match self.runs.last_mut() {
+            Some(run) if run.inputs.bytes() == inputs.bytes() => run.end = end,
+            _ => self.runs.push(LoggedRun { end, inputs }),
+        }
+        Ok(self.runs.last().map_or(&[], |run| run.inputs.inputs()))
+    }
+
+    /// The inputs of tick number `tick`, counted from 0.
+    #[must_use]
+    pub fn get(&self, tick: u64) -> Option<&[I]> {
+        let index = self.runs.partition_point(|run| run.end <= tick);
+        self.runs.get(index).map(|run| run.inputs.inputs())
+    }
+
+    /// Forgets all but the first `ticks` ticks.
+    pub fn truncate(&mut self, ticks: u64) {
+        let keep = self.runs.partition_point(|run| run.end <= ticks);
+        let start = keep.checked_sub(1).map_or(0, |before| self.runs[before].end);
+        if let Some(run) = self.runs.get_mut(keep) {
+            run.end = ticks;
+        }
+        self.runs.truncate(if start < ticks { keep + 1 } else { keep });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn log_of(values: &[u8]) -> InputLog<u8> {
+        let mut log = InputLog::new(1);
+        for value in values {
+            assert_eq!(log.push(&[*value]), Ok(&[*value][..]));
+        }
+        log
+    }
+
+    fn values_of(log: &InputLog<u8>) -> Vec<u8> {
+        assert_eq!(log.get(log.ticks()), None, "one tick too far");
+        (0..log.ticks()).map(|tick| log.get(tick).expect("a logged tick")[0]).collect()
+    }
+
+    #[test]
+    fn a_log_gives_back_every_tick() {
+        let values = [1, 1, 1, 2, 1, 1, 3, 3];
+        let log = log_of(&values);
+        assert_eq!(values_of(&log), values);
+        assert_eq!(log.runs(), 4);
+        assert!(values_of(&InputLog::new(1)).is_empty());
+    }
+
+    #[test]
+    fn a_log_cut_anywhere_is_the_log_of_fewer_ticks() {
+        let values = [1, 1, 1, 2, 1, 1, 3, 3];
+        for ticks in 0..=values.len() + 2 {
+            let kept = &values[..ticks.min(values.len())];
+            let mut log = log_of(&values);
+            log.truncate(ticks as u64);
+            assert_eq!(values_of(&log), kept, "after a cut to {ticks}");
+            assert_eq!(log.runs(), log_of(kept).runs(), "after a cut to {ticks}");
+            assert_eq!(log.push(&[9]), Ok(&[9][..]));
+            assert_eq!(log.ticks(), kept.len() as u64 + 1);
+        }
+    }
+
+    #[test]
+    fn a_log_takes_one_input_for_each_player() {
+        let mut log = InputLog::<u8>::new(2);
+        assert_eq!(log.push(&[1]), Err(InputError::Count { players: 2, inputs: 1 }));
+        assert_eq!(log.ticks(), 0);
+    }
+
+    #[test]
+    fn only_canonical_bytes_are_inputs() {
+        assert_eq!(decode_inputs::<(u8, bool)>(&[5, 1, 6, 0], 2), Ok(alloc::vec![(5, true), (6, false)]));
+        for bad in [&[5, 1, 6][..], &[5, 1, 6, 0, 0], &[5, 1, 6, 2], &[]] {
+            assert_eq!(decode_inputs::<(u8, bool)>(bad, 2), Err(InputError::NotCanonical), "{bad:?}");
+        }
+        // A set that is out of order decodes, but nobody encodes it so.
+        type Set = alloc::collections::BTreeSet<u8>;
+        let sorted = [2, 0, 0, 0, 0, 0, 0, 0, 3, 4];
+        assert_eq!(decode_inputs::<Set>(&sorted, 1), Ok(alloc::vec![Set::from([3, 4])]));
+        let unsorted = [2, 0, 0, 0, 0, 0, 0, 0, 4, 3];
+        assert_eq!(decode_inputs::<Set>(&unsorted, 1), Err(InputError::NotCanonical));
+    }
+}

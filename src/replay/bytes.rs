@@ -1,0 +1,125 @@
+//! Reading and writing the format's numbers: little-endian, and LEB128 for those that are mostly small.
+
+use alloc::vec::Vec;
+
+use super::flaw::Flaw;
+use super::reader::ReadError;
+
+/// Reads fields one after the other and knows where in the file it is.
+#[derive(Clone, Debug)]
+pub(super) struct Cursor<'a> {
+    rest: &'a [u8],
+    offset: u64,
+}
+
+impl<'a> Cursor<'a> {
+    /// A cursor over a part of the file that begins at `offset`.
+    pub(super) fn new(bytes: &'a [u8], offset: u64) -> Self {
+        Cursor { rest: bytes, offset }
+    }
+
+    /// Where in the file the next byte is.
+    pub(super) fn offset(&self) -> u64 {
+        self.offset
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.rest.is_empty()
+    }
+
+    /// The next `count` bytes, or `None` when there are not as many.
+    pub(super) fn take(&mut self, count: usize) -> Option<&'a [u8]> {
+        let (taken, rest) = self.rest.split_at_checked(count)?;
+        self.rest = rest;
+        self.offset += count as u64;
+        Some(taken)
+    }
+
+    pub(super) fn array<const N: usize>(&mut self) -> Option<[u8; N]> {
+        let (taken, rest) = self.rest.split_first_chunk::<N>()?;
+        self.rest = rest;
+        self.offset += N as u64;
+        Some(*taken)
+    }
+
+    pub(super) fn u32(&mut self) -> Option<u32> {
+        self.array().map(u32::from_le_bytes)
+    }
+
+    pub(super) fn u64(&mut self) -> Option<u64> {
+        self.array().map(u64::from_le_bytes)
+    }
+
+    pub(super) fn u128(&mut self) -> Option<u128> {
+        self.array().map(u128::from_le_bytes)
+    }
+
+    pub(super) fn i64(&mut self) -> Option<i64> {
+        self.array().map(i64::from_le_bytes)
+    }
+
+    /// A number in LEB128, in its one shortest form, which keeps the encoding of a log unique.
+    pub(super) fn varint(&mut self) -> Result<u32, ReadError> {
+        let start = self.offset;
+        let mut value: u64 = 0;
+        // Five groups of seven bits hold every u32.
+        for shift in [0, 7, 14, 21, 28] {
+            let [byte] = self.array().ok_or(ReadError::Malformed { offset: start, flaw: Flaw::BlockCut })?;
+            value |= u64::from(byte & 0x7f) << shift;
+            if byte & 0x80 == 0 {
+                let is_shortest = byte != 0 || shift == 0;
+                return match u32::try_from(value) {
+                    Ok(value) if is_shortest => Ok(value),
+                    _ => Err(ReadError::Malformed { offset: start, flaw: Flaw::Number }),
+                };
+            }
+        }
+        Err(ReadError::Malformed { offset: start, flaw: Flaw::Number })
+    }
+}
+
+/// Appends a number in LEB128.
+pub(super) fn put_varint(mut value: u32, bytes: &mut Vec<u8>) {
+    loop {
+        let [low, ..] = (value & 0x7f).to_le_bytes();
+        value >>= 7;
+        if value == 0 {
+            bytes.push(low);
+            return;
+        }
+        bytes.push(low | 0x80);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn varints_come_back() {
+        for value in [0, 1, 127, 128, 300, 16_383, 16_384, 1 << 21, (1 << 28) - 1, 1 << 28, u32::MAX] {
+            let mut bytes = Vec::new();
+            put_varint(value, &mut bytes);
+            let mut cursor = Cursor::new(&bytes, 0);
+            assert_eq!(cursor.varint(), Ok(value));
+            assert!(cursor.is_empty(), "{value} has bytes left over");
+        }
+        let mut bytes = Vec::new();
+        put_varint(300, &mut bytes);
+        assert_eq!(bytes, [0xac, 0x02], "low group first");
+    }
+
+    #[test]
+    fn a_varint_has_one_form() {
+        let number = Err(ReadError::Malformed { offset: 7, flaw: Flaw::Number });
+        for padded in [&[0x80, 0x00][..], &[0xff, 0x80, 0x00]] {
+            assert_eq!(Cursor::new(padded, 7).varint(), number, "{padded:?} is longer than it need be");
+        }
+        for over in [&[0xff, 0xff, 0xff, 0xff, 0x10][..], &[0xff, 0xff, 0xff, 0xff, 0xff, 0x01]] {
+            assert_eq!(Cursor::new(over, 7).varint(), number, "{over:?} is more than a u32");
+        }
+        let cut = Err(ReadError::Malformed { offset: 7, flaw: Flaw::BlockCut });
+        assert_eq!(Cursor::new(&[0xff, 0xff], 7).varint(), cut);
+        assert_eq!(Cursor::new(&[], 7).varint(), cut);
+    }
+}

@@ -1,0 +1,151 @@
+//! The header: which game, started how.
+
+use alloc::vec::Vec;
+
+use super::bytes::Cursor;
+use super::flaw::Flaw;
+use super::format::{FORMAT_VERSION, MAGIC, PLAYERS_MAX, RULES_NAME_BYTES_MAX, checksum};
+use super::limits::{Limit, Limits};
+use super::reader::ReadError;
+use crate::hash::StateHash;
+
+/// What a replay says before its first tick.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Header<'a> {
+    /// The engine's semantics, [`SEMANTICS`](crate::SEMANTICS) for this one.
+    pub semantics: u32,
+    /// The version of the game's rules.
+    pub rules_version: u32,
+    /// Number of players.
+    pub players: u32,
+    /// Ticks per second.
+    pub tick_rate: u32,
+    /// Ticks in every block of inputs but the last, which may have fewer.
+    pub checkpoint_interval: u32,
+    /// The name of the game's rules.
+    pub rules_name: &'a str,
+    /// The canonical bytes of the game's setup.
+    pub setup: &'a [u8],
+}
+
+/// Offsets of the fields that a verdict may point at.
+pub(super) mod offset {
+    pub(in crate::replay) const PLAYERS: u64 = 20;
+    pub(in crate::replay) const TICK_RATE: u64 = 24;
+    pub(in crate::replay) const CHECKPOINT_INTERVAL: u64 = 28;
+    pub(in crate::replay) const RULES_NAME_LENGTH: u64 = 32;
+    pub(in crate::replay) const RULES_NAME: u64 = 40;
+}
+
+/// A header read from a file, with what the rest of the file starts from.
+#[derive(Clone, Debug)]
+pub(super) struct ReadHeader<'a> {
+    pub(super) header: Header<'a>,
+    /// The checkpoint before the first tick.
+    pub(super) start: StateHash,
+    pub(super) inputs_digest: StateHash,
+    pub(super) chain: StateHash,
+    /// Bytes of the header, its checksum among them.
+    pub(super) length: usize,
+}
+
+impl<'a> Header<'a> {
+    /// Where in the file the setup's bytes begin.
+    pub(super) fn setup_offset(&self) -> u64 {
+        offset::RULES_NAME + self.rules_name.len() as u64
+    }
+
+    /// The header's bytes up to the start checkpoint, which needs their digest.
+    ///
+    /// The caller has checked that the name and the setup are not too long.
+    pub(super) fn encode(&self) -> Vec<u8> {
+        let Header { semantics, rules_version, players, tick_rate, checkpoint_interval, rules_name, setup } =
+            *self;
+        let length = |bytes: &[u8]| u32::try_from(bytes.len()).expect("a length that was checked");
+        let numbers = [
+            FORMAT_VERSION,
+            semantics,
+            rules_version,
+            players,
+            tick_rate,
+            checkpoint_interval,
+            length(rules_name.as_bytes()),
+            length(setup),
+        ];
+        let mut bytes = MAGIC.to_vec();
+        bytes.extend(numbers.iter().flat_map(|number| number.to_le_bytes()));
+        bytes.extend_from_slice(rules_name.as_bytes());
+        bytes.extend_from_slice(setup);
+        bytes
+    }
+
+    /// Reads the header at the beginning of a file.
+    pub(super) fn read(file: &'a [u8], limits: &Limits) -> Result<ReadHeader<'a>, ReadError> {
+        let malformed = |offset, flaw| Err(ReadError::Malformed { offset, flaw });
+        let cut = || ReadError::Malformed { offset: file.len() as u64, flaw: Flaw::HeaderCut };
+        let mut cursor = Cursor::new(file, 0);
+
+        if cursor.array().ok_or_else(cut)? != MAGIC {
+            return malformed(0, Flaw::Magic);
+        }
+        let version = cursor.u32().ok_or_else(cut)?;
+        if version != FORMAT_VERSION {
+            return Err(ReadError::OtherFormat { version });
+        }
+        let semantics = cursor.u32().ok_or_else(cut)?;
+        let rules_version = cursor.u32().ok_or_else(cut)?;
+        let players = cursor.u32().ok_or_else(cut)?;
+        let tick_rate = cursor.u32().ok_or_else(cut)?;
+        let checkpoint_interval = cursor.u32().ok_or_else(cut)?;
+        let name_length = cursor.u32().ok_or_else(cut)?;
+        let setup_length = cursor.u32().ok_or_else(cut)?;
+        if name_length == 0 || name_length > RULES_NAME_BYTES_MAX {
+            return malformed(offset::RULES_NAME_LENGTH, Flaw::RulesName);
+        }
+        Limit::SetupBytes.check(setup_length, limits.setup_bytes)?;
+
+        let name = take(&mut cursor, name_length).ok_or_else(cut)?;
+        let setup = take(&mut cursor, setup_length).ok_or_else(cut)?;
+        let inputs_digest = StateHash::of_bytes(before(file, &cursor));
+        let start = StateHash(cursor.u128().ok_or_else(cut)?);
+        let chain = StateHash::of_bytes(before(file, &cursor));
+        let checksum_offset = cursor.offset();
+        if cursor.array().ok_or_else(cut)? != checksum(chain) {
+            return malformed(checksum_offset, Flaw::HeaderChecksum);
+        }
+
+        let Ok(rules_name) = core::str::from_utf8(name) else {
+            return malformed(offset::RULES_NAME, Flaw::RulesName);
+        };
+        let length = before(file, &cursor).len();
+        let header =
+            Header { semantics, rules_version, players, tick_rate, checkpoint_interval, rules_name, setup };
+        header.check(limits)?;
+        Ok(ReadHeader { header, start, inputs_digest, chain, length })
+    }
+
+    fn check(&self, limits: &Limits) -> Result<(), ReadError> {
+        let malformed = |offset, flaw| Err(ReadError::Malformed { offset, flaw });
+        if self.players > PLAYERS_MAX {
+            return malformed(offset::PLAYERS, Flaw::Players { count: self.players });
+        }
+        if self.tick_rate == 0 {
+            return malformed(offset::TICK_RATE, Flaw::TickRate);
+        }
+        if self.checkpoint_interval == 0 {
+            return malformed(offset::CHECKPOINT_INTERVAL, Flaw::CheckpointInterval);
+        }
+        Limit::Players.check(self.players, limits.players)?;
+        Limit::BlockTicks.check(self.checkpoint_interval, limits.block_ticks)
+    }
+}
+
+fn take<'a>(cursor: &mut Cursor<'a>, count: u32) -> Option<&'a [u8]> {
+    cursor.take(usize::try_from(count).ok()?)
+}
+
+/// The bytes of the file that the cursor has passed.
+fn before<'a>(file: &'a [u8], cursor: &Cursor<'_>) -> &'a [u8] {
+    let passed = usize::try_from(cursor.offset()).expect("an offset inside a slice");
+    &file[..passed]
+}

@@ -1,0 +1,316 @@
+//! [`Recorder`]: writes a replay as the game runs.
+
+use alloc::string::String;
+use alloc::vec::Vec;
+use core::fmt;
+use core::marker::PhantomData;
+
+use super::bytes::put_varint;
+use super::format::{
+    BLOCK_BYTES_MAX, BLOCK_HEAD_BYTES, BLOCK_TICKS_MAX, CLAIM_NAME_BYTES_MAX, CLAIMS_MAX, HASH_BYTES,
+    PLAYERS_MAX, RULES_NAME_BYTES_MAX, SETUP_BYTES_MAX, checkpoint_hash, checksum, kind, link,
+};
+use super::header::Header;
+use super::runs::Run;
+use crate::codec;
+use crate::hash::StateHash;
+use crate::lockstep::{EncodedInputs, Game, InputError};
+
+/// A good checkpoint interval: one second at 60 Hz. Shorter costs bytes (29 per block), longer loses more in a
+/// crash and finds a divergence less exactly.
+pub const CHECKPOINT_INTERVAL: u32 = 60;
+
+/// Most bytes of a number in LEB128.
+const VARINT_BYTES_MAX: usize = 5;
+
+/// Why something cannot be recorded. The recorder is as it was before.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum RecordError {
+    /// The name of the rules is empty or too long.
+    RulesName,
+    /// The game has more players than a replay can hold.
+    Players {
+        /// How many.
+        count: u32,
+    },
+    /// The game's tick rate is zero.
+    TickRate,
+    /// The checkpoint interval is zero or too long.
+    CheckpointInterval {
+        /// The interval in ticks.
+        ticks: u32,
+    },
+    /// The setup does not survive encoding and decoding.
+    Setup,
+    /// The game cannot start from the setup.
+    SetupRefused {
+        /// The game's reason.
+        why: String,
+    },
+    /// The encoded setup is too long.
+    SetupLength {
+        /// Its length in bytes.
+        bytes: u64,
+    },
+    /// The inputs cannot be recorded.
+    Inputs(InputError),
+    /// The inputs of this block are too long together.
+    BlockLength {
+        /// Their length in bytes.
+        bytes: u64,
+    },
+    /// A block is full, and its checkpoint was not given.
+    CheckpointDue,
+    /// Two claims have the same name, or a name is empty or too long, or there are too many.
+    Claims,
+}
+
+impl fmt::Display for RecordError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            RecordError::RulesName => {
+                write!(f, "the name of the rules is not 1 to {RULES_NAME_BYTES_MAX} bytes long")
+            }
+            RecordError::Players { count } => {
+                write!(f, "{count} players, at most {PLAYERS_MAX} are possible")
+            }
+            RecordError::TickRate => write!(f, "a tick rate of zero"),
+            RecordError::CheckpointInterval { ticks } => {
+                write!(f, "a checkpoint interval of {ticks} ticks, possible are 1 to {BLOCK_TICKS_MAX}")
+            }
+            RecordError::Setup => write!(f, "the setup is another one after encoding and decoding"),
+            RecordError::SetupRefused { why } => write!(f, "the setup cannot start a game: {why}"),
+            RecordError::SetupLength { bytes } => {
+                write!(f, "a setup of {bytes} bytes, at most {SETUP_BYTES_MAX} are possible")
+            }
+            RecordError::Inputs(error) => write!(f, "{error}"),
+            RecordError::BlockLength { bytes } => {
+                write!(f, "a block of {bytes} bytes, at most {BLOCK_BYTES_MAX} are possible")
+            }
+            RecordError::CheckpointDue => write!(f, "the block is full and waits for its checkpoint"),
+            RecordError::Claims => write!(
+                f,
+                "at most {CLAIMS_MAX} claims with different names of 1 to {CLAIM_NAME_BYTES_MAX} bytes are possible"
+            ),
+        }
+    }
+}
+
+impl core::error::Error for RecordError {}
+
+/// Writes the replay of a game that someone else steps; [`Recording`](super::Recording) does both.
+///
+/// Finished bytes are fetched with [`Recorder::take_bytes`], to be appended to a file at any time: after the
+/// header and after every block they are a valid prefix. In a game with rollback, record confirmed ticks only.
+pub struct Recorder<G: Game> {
+    players: u32,
+    checkpoint_interval: u32,
+    /// Header and whole blocks that were not yet taken.
+    finished: Vec<u8>,
+    chain: StateHash,
+    inputs_digest: StateHash,
+    /// The encoded runs of the block at hand, but for the last.
+    runs: Vec<u8>,
+    last_run: Option<(EncodedInputs<G::Input>, u32)>,
+    block_ticks: u32,
+    ticks: u64,
+    game: PhantomData<fn(&G)>,
+}
+
+impl<G: Game> Recorder<G> {
+    /// Starts the game that `setup` describes, and its replay.
+    ///
+    /// The game is made from the setup as a verifier will decode it.
+    ///
+    /// # Errors
+    /// [`RecordError`] when the setup starts no game, or none that a replay can hold.
+    pub fn start(setup: &G::Setup, checkpoint_interval: u32) -> Result<(Self, G), RecordError> {
+        let setup = codec::encode(setup);
+        let (game, header) = first_state::<G>(&setup, checkpoint_interval)?;
+
+        let mut finished = header.encode();
+        let inputs_digest = StateHash::of_bytes(&finished);
+        let start = checkpoint_hash(game.state_hash(), inputs_digest);
+        finished.extend_from_slice(&start.0.to_le_bytes());
+        let chain = StateHash::of_bytes(&finished);
+        finished.extend_from_slice(&checksum(chain));
+
+        let recorder = Recorder {
+            players: header.players,
+            checkpoint_interval,
+            finished,
+            chain,
+            inputs_digest,
+            runs: Vec::new(),
+            last_run: None,
+            block_ticks: 0,
+            ticks: 0,
+            game: PhantomData,
+        };
+        Ok((recorder, game))
+    }
+
+    /// How many ticks have been recorded.
+    #[must_use]
+    pub fn ticks(&self) -> u64 {
+        self.ticks
+    }
+
+    /// Records the inputs of the next tick and returns those to step the game with: encoded and decoded again, as
+    /// a verifier will see them.
+    ///
+    /// # Errors
+    /// [`RecordError`] when they cannot be recorded; then the tick must not be played.
+    pub fn record(&mut self, inputs: &[G::Input]) -> Result<&[G::Input], RecordError> {
+        if self.is_checkpoint_due() {
+            return Err(RecordError::CheckpointDue);
+        }
+        let encoded = EncodedInputs::new(inputs, self.players).map_err(RecordError::Inputs)?;
+        let (run, ticks) = match self.last_run.take() {
+            Some((run, ticks)) if run.bytes() == encoded.bytes() => (run, ticks),
+            previous => {
+                let bytes = self.block_length_with(&encoded, previous.as_ref());
+                if bytes > BLOCK_BYTES_MAX as usize {
+                    self.last_run = previous;
+                    return Err(RecordError::BlockLength { bytes: bytes as u64 });
+                }
+                if let Some((run, ticks)) = previous {
+                    Run::write(ticks, run.bytes(), &mut self.runs);
+                }
+                (encoded, 0)
+            }
+        };
+        self.block_ticks += 1;
+        self.ticks += 1;
+        let (run, _) = self.last_run.insert((run, ticks + 1));
+        Ok(run.inputs())
+    }
+
+    /// Whether the block is full, so that [`Recorder::checkpoint`] must be called before the next tick.
+    #[must_use]
+    pub fn is_checkpoint_due(&self) -> bool {
+        self.block_ticks == self.checkpoint_interval
+    }
+
+    /// Finishes a full block with the state hash after its last tick. Without a full block, nothing happens.
+    pub fn checkpoint(&mut self, state: StateHash) {
+        if self.is_checkpoint_due() {
+            self.finish_block(state);
+        }
+    }
+
+    /// The bytes that are finished, to be appended to the file; they are handed out once.
+    #[must_use]
+    pub fn take_bytes(&mut self) -> Vec<u8> {
+        core::mem::take(&mut self.finished)
+    }
+
+    /// Writes the last block and the trailer, and returns all bytes that were not yet taken.
+    ///
+    /// # Errors
+    /// [`RecordError::Claims`] when the game's claims cannot be recorded.
+    pub fn finish(mut self, game: &G) -> Result<Vec<u8>, RecordError> {
+        let claims = encode_claims(game.claims())?;
+        let state = game.state_hash();
+        if self.block_ticks > 0 {
+            self.finish_block(state);
+        }
+        let mut payload = Vec::new();
+        payload.extend_from_slice(&self.ticks.to_le_bytes());
+        payload.extend_from_slice(&state.0.to_le_bytes());
+        payload.extend_from_slice(&self.chain.0.to_le_bytes());
+        payload.extend_from_slice(&claims);
+        self.append_block(kind::TRAILER, &payload);
+        Ok(self.finished)
+    }
+
+    /// Bytes of the payload, at most, if a run of these inputs is added.
+    fn block_length_with(
+        &self,
+        added: &EncodedInputs<G::Input>,
+        previous: Option<&(EncodedInputs<G::Input>, u32)>,
+    ) -> usize {
+        let run_length = |encoded: &EncodedInputs<G::Input>| encoded.bytes().len() + 2 * VARINT_BYTES_MAX;
+        let previous = previous.map_or(0, |(encoded, _)| run_length(encoded));
+        self.runs.len() + previous + run_length(added) + HASH_BYTES
+    }
+
+    fn finish_block(&mut self, state: StateHash) {
+        let mut payload = core::mem::take(&mut self.runs);
+        if let Some((run, ticks)) = self.last_run.take() {
+            Run::write(ticks, run.bytes(), &mut payload);
+        }
+        self.block_ticks = 0;
+        self.inputs_digest = link(self.inputs_digest, &payload);
+        let checkpoint = checkpoint_hash(state, self.inputs_digest);
+        payload.extend_from_slice(&checkpoint.0.to_le_bytes());
+        self.append_block(kind::INPUTS, &payload);
+    }
+
+    fn append_block(&mut self, kind: u8, payload: &[u8]) {
+        let length = u32::try_from(payload.len()).expect("a length that was checked");
+        let mut block = Vec::with_capacity(BLOCK_HEAD_BYTES + payload.len());
+        block.extend_from_slice(&length.to_le_bytes());
+        block.push(kind);
+        block.extend_from_slice(payload);
+        self.chain = link(self.chain, &block);
+        self.finished.extend_from_slice(&block);
+        self.finished.extend_from_slice(&checksum(self.chain));
+    }
+}
+
+/// The game before its first tick, and the header of its replay.
+fn first_state<G: Game>(setup: &[u8], checkpoint_interval: u32) -> Result<(G, Header<'_>), RecordError> {
+    let rules_name = G::RULES.name;
+    if rules_name.is_empty() || rules_name.len() > RULES_NAME_BYTES_MAX as usize {
+        return Err(RecordError::RulesName);
+    }
+    if checkpoint_interval == 0 || checkpoint_interval > BLOCK_TICKS_MAX {
+        return Err(RecordError::CheckpointInterval { ticks: checkpoint_interval });
+    }
+    if setup.len() > SETUP_BYTES_MAX as usize {
+        return Err(RecordError::SetupLength { bytes: setup.len() as u64 });
+    }
+    let decoded: G::Setup = codec::decode(setup).map_err(|_| RecordError::Setup)?;
+    if codec::encode(&decoded) != setup {
+        return Err(RecordError::Setup);
+    }
+    let game = G::new(&decoded).map_err(|error| RecordError::SetupRefused { why: error.why })?;
+    let (players, tick_rate) = (game.players(), game.tick_rate());
+    if players > PLAYERS_MAX {
+        return Err(RecordError::Players { count: players });
+    }
+    if tick_rate == 0 {
+        return Err(RecordError::TickRate);
+    }
+    let header = Header {
+        semantics: crate::SEMANTICS,
+        rules_version: G::RULES.version,
+        players,
+        tick_rate,
+        checkpoint_interval,
+        rules_name,
+        setup,
+    };
+    Ok((game, header))
+}
+
+/// The claims as a trailer holds them, in ascending order of their names.
+fn encode_claims(mut claims: Vec<(String, i64)>) -> Result<Vec<u8>, RecordError> {
+    claims.sort();
+    let are_distinct = claims.windows(2).all(|pair| pair[0].0 != pair[1].0);
+    let are_named =
+        claims.iter().all(|(name, _)| !name.is_empty() && name.len() <= CLAIM_NAME_BYTES_MAX as usize);
+    let count = u32::try_from(claims.len()).unwrap_or(u32::MAX);
+    if count > CLAIMS_MAX || !are_distinct || !are_named {
+        return Err(RecordError::Claims);
+    }
+    let mut bytes = Vec::new();
+    put_varint(count, &mut bytes);
+    for (name, value) in &claims {
+        put_varint(u32::try_from(name.len()).unwrap_or(u32::MAX), &mut bytes);
+        bytes.extend_from_slice(name.as_bytes());
+        bytes.extend_from_slice(&value.to_le_bytes());
+    }
+    Ok(bytes)
+}

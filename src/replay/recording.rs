@@ -1,0 +1,71 @@
+//! [`Recording`]: a game and its recorder, stepped together.
+
+use alloc::vec::Vec;
+
+use super::recorder::{RecordError, Recorder};
+use crate::lockstep::Game;
+
+/// A game that is recorded as it runs.
+///
+/// ```text
+/// let mut recording = Recording::<MyGame>::start(&setup, CHECKPOINT_INTERVAL)?;
+/// while playing {
+///     recording.step(&inputs)?;
+///     file.write_all(&recording.take_bytes())?;
+/// }
+/// file.write_all(&recording.finish()?)?;
+/// ```
+pub struct Recording<G: Game> {
+    game: G,
+    recorder: Recorder<G>,
+}
+
+impl<G: Game> Recording<G> {
+    /// Starts the game that `setup` describes, with a checkpoint every `checkpoint_interval` ticks.
+    ///
+    /// # Errors
+    /// [`RecordError`] when the setup starts no game, or none that a replay can hold.
+    pub fn start(setup: &G::Setup, checkpoint_interval: u32) -> Result<Self, RecordError> {
+        let (recorder, game) = Recorder::start(setup, checkpoint_interval)?;
+        Ok(Recording { game, recorder })
+    }
+
+    /// The game as of now.
+    #[must_use]
+    pub fn game(&self) -> &G {
+        &self.game
+    }
+
+    /// How many ticks have been played.
+    #[must_use]
+    pub fn ticks(&self) -> u64 {
+        self.recorder.ticks()
+    }
+
+    /// Plays one tick with the inputs as a verifier will decode them.
+    ///
+    /// # Errors
+    /// [`RecordError`] when the inputs cannot be recorded; then the tick is not played.
+    pub fn step(&mut self, inputs: &[G::Input]) -> Result<(), RecordError> {
+        let inputs = self.recorder.record(inputs)?;
+        self.game.step(inputs);
+        if self.recorder.is_checkpoint_due() {
+            self.recorder.checkpoint(self.game.state_hash());
+        }
+        Ok(())
+    }
+
+    /// The bytes that are finished, to be appended to the file; they are handed out once.
+    #[must_use]
+    pub fn take_bytes(&mut self) -> Vec<u8> {
+        self.recorder.take_bytes()
+    }
+
+    /// Ends the replay and returns all bytes that were not yet taken.
+    ///
+    /// # Errors
+    /// [`RecordError::Claims`] when the game's claims cannot be recorded.
+    pub fn finish(self) -> Result<Vec<u8>, RecordError> {
+        self.recorder.finish(&self.game)
+    }
+}

@@ -1,0 +1,101 @@
+//! The runs of a block: ticks in a row with the same inputs.
+
+use alloc::vec::Vec;
+
+use super::bytes::{Cursor, put_varint};
+use super::flaw::Flaw;
+use super::reader::ReadError;
+
+/// Some ticks in a row with the same inputs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Run<'a> {
+    /// How many ticks, at least one.
+    pub ticks: u32,
+    /// The canonical bytes of every player's input for one tick, in player order.
+    pub encoded: &'a [u8],
+    /// Where in the file the run begins.
+    pub offset: u64,
+}
+
+impl Run<'_> {
+    /// Appends the run as a block holds it.
+    pub(super) fn write(ticks: u32, encoded: &[u8], bytes: &mut Vec<u8>) {
+        put_varint(ticks, bytes);
+        put_varint(u32::try_from(encoded.len()).expect("a length that was checked"), bytes);
+        bytes.extend_from_slice(encoded);
+    }
+}
+
+/// Reads the runs of a block one after the other, refusing what could have been written in another way.
+#[derive(Clone, Debug)]
+pub struct Runs<'a> {
+    cursor: Cursor<'a>,
+    previous: Option<&'a [u8]>,
+}
+
+impl<'a> Runs<'a> {
+    pub(super) fn new(bytes: &'a [u8], offset: u64) -> Self {
+        Runs { cursor: Cursor::new(bytes, offset), previous: None }
+    }
+
+    /// The next run, or `None` at the end of the block.
+    ///
+    /// # Errors
+    /// [`ReadError::Malformed`] for bytes that no recorder writes. A block from a [`Reader`](super::Reader) has
+    /// none.
+    pub fn next_run(&mut self) -> Result<Option<Run<'a>>, ReadError> {
+        if self.cursor.is_empty() {
+            return Ok(None);
+        }
+        let offset = self.cursor.offset();
+        let malformed = |flaw| ReadError::Malformed { offset, flaw };
+        let ticks = self.cursor.varint()?;
+        if ticks == 0 {
+            return Err(malformed(Flaw::EmptyRun));
+        }
+        let length = self.cursor.varint()?;
+        let encoded = usize::try_from(length).ok().and_then(|length| self.cursor.take(length));
+        let encoded = encoded.ok_or(malformed(Flaw::BlockCut))?;
+        if self.previous == Some(encoded) {
+            return Err(malformed(Flaw::SplitRun));
+        }
+        self.previous = Some(encoded);
+        Ok(Some(Run { ticks, encoded, offset }))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn all(bytes: &[u8]) -> Result<Vec<(u32, Vec<u8>)>, ReadError> {
+        let mut runs = Runs::new(bytes, 100);
+        let mut list = Vec::new();
+        while let Some(run) = runs.next_run()? {
+            list.push((run.ticks, run.encoded.to_vec()));
+        }
+        Ok(list)
+    }
+
+    #[test]
+    fn runs_come_back() {
+        let written = [(1, b"ab".to_vec()), (300, b"".to_vec()), (2, b"ab".to_vec())];
+        let mut bytes = Vec::new();
+        for (ticks, encoded) in &written {
+            Run::write(*ticks, encoded, &mut bytes);
+        }
+        assert_eq!(all(&bytes), Ok(written.to_vec()));
+        assert_eq!(all(&[]), Ok(Vec::new()));
+    }
+
+    #[test]
+    fn only_the_shortest_form_is_read() {
+        let malformed = |offset, flaw| Err(ReadError::Malformed { offset, flaw });
+        assert_eq!(all(&[1, 1, 7, 0, 1, 8]), malformed(103, Flaw::EmptyRun));
+        assert_eq!(all(&[1, 1, 7, 2, 1, 7]), malformed(103, Flaw::SplitRun));
+        assert_eq!(all(&[1, 2, 7]), malformed(100, Flaw::BlockCut));
+        assert_eq!(all(&[1]), malformed(101, Flaw::BlockCut));
+        assert_eq!(all(&[1, 0xff, 0xff, 0xff, 0xff, 0x0f, 7]), malformed(100, Flaw::BlockCut));
+        assert_eq!(all(&[0x81, 0x00, 1, 7]), malformed(100, Flaw::Number));
+    }
+}

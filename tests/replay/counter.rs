@@ -1,0 +1,99 @@
+//! A game small enough to see through: two players add to a sum.
+
+use lockstep2d::hash::StateHash;
+use lockstep2d::lockstep::{Game, RulesId, SetupError};
+use serde::{Deserialize, Serialize};
+
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct Setup {
+    /// The sum at the start, at most 1000.
+    pub(crate) start: i32,
+    /// Ignored by the rules.
+    pub(crate) label: String,
+}
+
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct Input {
+    pub(crate) add: i8,
+    /// Ignored by the rules.
+    pub(crate) wink: bool,
+    /// Lost in the encoding.
+    #[serde(skip)]
+    pub(crate) mood: u8,
+}
+
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub(crate) struct Counter {
+    pub(crate) sum: i64,
+    pub(crate) tick: u64,
+    /// Moods that were ever seen: 0, unless a game is stepped with inputs that were not decoded.
+    pub(crate) moods: u64,
+}
+
+pub(crate) const PLAYERS: u32 = 2;
+
+impl Game for Counter {
+    type Setup = Setup;
+    type Input = Input;
+    type Save = Counter;
+
+    const RULES: RulesId = RulesId { name: "counter", version: 3 };
+
+    fn new(setup: &Setup) -> Result<Self, SetupError> {
+        if setup.start > 1000 {
+            return Err(SetupError { why: "the sum starts above 1000".into() });
+        }
+        Ok(Counter { sum: setup.start.into(), tick: 0, moods: 0 })
+    }
+
+    fn players(&self) -> u32 {
+        PLAYERS
+    }
+
+    fn tick_rate(&self) -> u32 {
+        60
+    }
+
+    fn step(&mut self, inputs: &[Input]) {
+        self.sum += inputs.iter().map(|input| i64::from(input.add)).sum::<i64>();
+        self.moods += inputs.iter().map(|input| u64::from(input.mood)).sum::<u64>();
+        self.tick += 1;
+    }
+
+    fn state_hash(&self) -> StateHash {
+        StateHash::of(self)
+    }
+
+    fn save(&self) -> Counter {
+        self.clone()
+    }
+
+    fn load(&mut self, save: &Counter) {
+        *self = save.clone();
+    }
+
+    /// One unit, and one for each step that is added.
+    fn work(&self, inputs: &[Input]) -> u64 {
+        1 + inputs.iter().map(|input| u64::from(input.add.unsigned_abs())).sum::<u64>()
+    }
+
+    fn claims(&self) -> Vec<(String, i64)> {
+        vec![("sum".into(), self.sum), ("half".into(), self.sum / 2)]
+    }
+}
+
+pub(crate) fn setup() -> Setup {
+    Setup { start: 5, label: "a".into() }
+}
+
+pub(crate) fn add(first: i8, second: i8) -> [Input; 2] {
+    [Input { add: first, ..Input::default() }, Input { add: second, ..Input::default() }]
+}
+
+/// Inputs that change now and then, and hold in between.
+pub(crate) fn inputs_at(tick: u64) -> [Input; 2] {
+    let step = i8::try_from(tick / 5 % 7).unwrap() - 3;
+    let mut inputs = add(step, 1);
+    inputs[1].wink = tick % 11 == 4;
+    inputs
+}

@@ -1,0 +1,131 @@
+//! What a stranger's file may cost: each limit holds exactly, and memory follows the file, not its length fields.
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+
+use lockstep2d::replay::{Limit, Limits, Verdict, verify};
+
+use crate::counter::{Counter, add, inputs_at};
+use crate::forge::{Forged, forge};
+use crate::record;
+
+fn verdict(file: &[u8], limits: &Limits) -> Verdict {
+    verify::<Counter>(file, limits)
+}
+
+/// The file matches when the limit is what it needs, and exceeds it by one when it is one less.
+fn assert_exact(file: &[u8], limit: Limit, needed: u64, set: impl Fn(&mut Limits, u64)) {
+    let mut limits = Limits::default();
+    set(&mut limits, needed);
+    assert!(verdict(file, &limits).is_match(), "{}: {}", limit.name(), verdict(file, &limits));
+    set(&mut limits, needed - 1);
+    let expected = Verdict::LimitExceeded { limit, value: needed, max: needed - 1 };
+    assert_eq!(verdict(file, &limits), expected);
+}
+
+#[test]
+fn each_limit_is_exact() {
+    let narrow = |value: u64| u32::try_from(value).unwrap();
+    // 35 ticks of |3| + |1| + 1 units.
+    let file = record(35, 10, |_| add(-3, 1));
+    let length = file.len() as u64;
+    assert_exact(&file, Limit::FileBytes, length, |limits, max| limits.file_bytes = max);
+    assert_exact(&file, Limit::SetupBytes, 13, |limits, max| limits.setup_bytes = narrow(max));
+    assert_exact(&file, Limit::Players, 2, |limits, max| limits.players = narrow(max));
+    assert_exact(&file, Limit::BlockTicks, 10, |limits, max| limits.block_ticks = narrow(max));
+    assert_exact(&file, Limit::Ticks, 35, |limits, max| limits.ticks = max);
+    assert_exact(&file, Limit::TickWork, 5, |limits, max| limits.tick_work = max);
+    assert_exact(&file, Limit::TotalWork, 175, |limits, max| limits.total_work = max);
+    let trailer = 24 + 16 + 1 + 13 + 12;
+    assert_exact(&file, Limit::BlockBytes, trailer, |limits, max| limits.block_bytes = narrow(max));
+}
+
+#[test]
+fn limits_come_before_the_rest_of_the_file() {
+    // A length beyond the limit is refused even where the file ends at once.
+    let file = record(35, 10, inputs_at);
+    let head = 40 + 7 + 13 + 16 + 8;
+    let mut cut = file[..head].to_vec();
+    cut.extend([0xff, 0xff, 0xff, 0xff, 1]);
+    let (value, max) = (u64::from(u32::MAX), u64::from(Limits::default().block_bytes));
+    let limit = Limit::BlockBytes;
+    assert_eq!(verdict(&cut, &Limits::default()), Verdict::LimitExceeded { limit, value, max });
+    let mut huge_setup = file[..40].to_vec();
+    huge_setup[36..40].fill(0xff);
+    let (limit, max) = (Limit::SetupBytes, u64::from(Limits::default().setup_bytes));
+    assert_eq!(verdict(&huge_setup, &Limits::default()), Verdict::LimitExceeded { limit, value, max });
+}
+
+/// Counts the bytes that this thread holds, and the most it ever held.
+struct Counting;
+
+thread_local! {
+    static HELD: Cell<usize> = const { Cell::new(0) };
+    static MOST: Cell<usize> = const { Cell::new(0) };
+}
+
+#[expect(
+    unsafe_code,
+    reason = "an allocator is unsafe by nature; this one only counts what the system's does"
+)]
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        let held = HELD.get().wrapping_add(layout.size());
+        HELD.set(held);
+        MOST.set(MOST.get().max(held));
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        HELD.set(HELD.get().wrapping_sub(layout.size()));
+        unsafe { System.dealloc(pointer, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+/// The most bytes that `work` held at a time.
+fn most_held(work: impl FnOnce()) -> usize {
+    let before = HELD.get();
+    MOST.set(before);
+    work();
+    MOST.get() - before
+}
+
+#[test]
+fn memory_follows_the_file_and_not_its_length_fields() {
+    let file = record(35, 10, inputs_at);
+    assert!(most_held(|| drop(vec![0_u8; 5000])) >= 5000, "the counter counts");
+    let bound = 16 * 1024;
+    let honest = most_held(|| assert!(verdict(&file, &Limits::default()).is_match()));
+    assert!(honest < bound, "an honest file of {} bytes took {honest}", file.len());
+    let assert_small = |damaged: &[u8], what: &str| {
+        let took = most_held(|| drop(verdict(damaged, &Limits::default())));
+        assert!(took < bound, "{took} bytes for {what}");
+    };
+    // Any four bytes made a huge number, with the checksums as they were and repaired.
+    for high in [0x7f, 0x3f, 0x00] {
+        let huge = [0xff, 0xff, 0xff, high];
+        for at in 0..file.len() - 4 {
+            let mut damaged = file.clone();
+            damaged[at..at + 4].copy_from_slice(&huge);
+            assert_small(&damaged, &format!("a number at byte {at}"));
+        }
+        let intact = Forged::take_apart(&file);
+        for index in 0..intact.blocks.len() {
+            for at in 0..intact.blocks[index].1.len() - 4 {
+                let mut forged = intact.clone();
+                forged.payload(index)[at..at + 4].copy_from_slice(&huge);
+                assert_small(&forged.put_together(), &format!("a number in block {index} at {at}"));
+            }
+        }
+    }
+    let setup = 40 + "counter".len();
+    for length in [1 << 20, 1 << 40, i64::MAX as u64, u64::MAX] {
+        let damaged = forge(&file, |forged| {
+            forged.header[setup + 4..setup + 12].copy_from_slice(&length.to_le_bytes());
+        });
+        assert_small(&damaged, &format!("a string that claims {length} bytes"));
+    }
+}

@@ -1,0 +1,28 @@
+//! Replay files as a stranger sees them: through the public API and `docs/FORMAT.md` only.
+
+#![expect(clippy::unwrap_used, reason = "what goes wrong in a helper fails the test")]
+
+mod counter;
+mod forge;
+mod format;
+mod hostile;
+mod limits;
+mod recorder;
+mod setups;
+
+use lockstep2d::replay::{Limits, Recording, Verdict, verify};
+
+use counter::{Counter, Input};
+
+/// Records a game of the counter.
+fn record(ticks: u64, interval: u32, inputs_at: impl Fn(u64) -> [Input; 2]) -> Vec<u8> {
+    let mut recording = Recording::<Counter>::start(&counter::setup(), interval).unwrap();
+    for tick in 0..ticks {
+        recording.step(&inputs_at(tick)).unwrap();
+    }
+    recording.finish().unwrap()
+}
+
+fn verdict(file: &[u8]) -> Verdict {
+    verify::<Counter>(file, &Limits::default())
+}
