@@ -12,6 +12,7 @@ pub mod hash;
 pub mod lockstep;
 pub mod math;
 pub mod replay;
+pub mod scenes;
 pub mod solver;
 pub mod world;
 

@@ -2,7 +2,9 @@
 
 mod game;
 mod input_log;
+mod sandbox;
 
 pub use game::{Game, RulesId, SetupError};
 pub(crate) use input_log::decode_inputs;
 pub use input_log::{EncodedInputs, InputError, InputLog};
+pub use sandbox::{Sandbox, SandboxSetup};

@@ -1,0 +1,100 @@
+//! Builds a setup command by command. Commands name bodies by handles, so each is carried out on a world of the
+//! builder's own to learn them.
+
+use alloc::vec::Vec;
+
+use crate::body::{BodyDef, BodyId, JointId, Polygon, ShapeDef, WorldError};
+use crate::fx;
+use crate::lockstep::SandboxSetup;
+use crate::math::{Fx, Vec2};
+use crate::solver::JointDef;
+use crate::world::{Command, Config, Outcome, World};
+
+/// A setup in the making.
+///
+/// ```
+/// use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, fx, scenes::Builder, world::Config};
+/// let mut scene = Builder::new(Config::default());
+/// let plank = ShapeDef::new(Polygon::rectangle(fx!(2), fx!(0.1))?);
+/// scene.spawn(BodyDef::dynamic(), &[plank])?;
+/// let setup = scene.finish();
+/// assert_eq!(setup.commands.len(), 1);
+/// # Ok::<(), lockstep2d::body::WorldError>(())
+/// ```
+#[derive(Debug)]
+pub struct Builder {
+    setup: SandboxSetup,
+    world: World,
+}
+
+impl Builder {
+    /// An empty setup. Invalid settings are reported when a game is made of it.
+    #[must_use]
+    pub fn new(config: Config) -> Self {
+        let world = World::new(config).unwrap_or_default();
+        Builder { setup: SandboxSetup { config, commands: Vec::new() }, world }
+    }
+
+    /// Adds any command.
+    ///
+    /// # Errors
+    /// When the world refuses it.
+    pub fn command(&mut self, command: Command) -> Result<Outcome, WorldError> {
+        let outcome = self.world.execute(&command)?;
+        self.setup.commands.push(command);
+        Ok(outcome)
+    }
+
+    /// Adds a body.
+    ///
+    /// # Errors
+    /// When the world refuses it.
+    pub fn spawn(&mut self, body: BodyDef, shapes: &[ShapeDef]) -> Result<BodyId, WorldError> {
+        match self.command(Command::Spawn { body, shapes: shapes.to_vec() })? {
+            Outcome::Body(id) => Ok(id),
+            other => unreachable!("a spawned body, not {other:?}"),
+        }
+    }
+
+    /// Adds a joint.
+    ///
+    /// # Errors
+    /// When the world refuses it.
+    pub fn joint(&mut self, joint: impl Into<JointDef>) -> Result<JointId, WorldError> {
+        match self.command(Command::AddJoint { joint: joint.into() })? {
+            Outcome::Joint(id) => Ok(id),
+            other => unreachable!("a joint, not {other:?}"),
+        }
+    }
+
+    /// The setup.
+    #[must_use]
+    pub fn finish(self) -> SandboxSetup {
+        self.setup
+    }
+}
+
+/// The scenes of this crate are valid: a failure is a programmer's error, found by the test that builds them all.
+pub(super) fn build(
+    config: Config,
+    fill: impl FnOnce(&mut Builder) -> Result<(), WorldError>,
+) -> SandboxSetup {
+    let mut builder = Builder::new(config);
+    fill(&mut builder).expect("the scenes of this crate are valid");
+    builder.finish()
+}
+
+/// A rectangle from half extents.
+pub(super) fn rectangle(half_width: Fx, half_height: Fx) -> Result<ShapeDef, WorldError> {
+    Ok(ShapeDef::new(Polygon::rectangle(half_width, half_height)?))
+}
+
+/// A fixed floor whose top is at height 0.
+pub(super) fn floor(scene: &mut Builder, half_width: Fx) -> Result<BodyId, WorldError> {
+    scene.spawn(BodyDef::fixed().position(fx!(0), fx!(-1)), &[rectangle(half_width, fx!(1))?])
+}
+
+/// Settings without gravity.
+pub(super) fn weightless() -> Config {
+    Config { gravity: Vec2::ZERO, ..Config::default() }
+}

@@ -1,0 +1,92 @@
+//! A turning drum, and bodies that come and go: what never comes to rest.
+
+use alloc::vec;
+use alloc::vec::Vec;
+
+use super::Scene;
+use super::builder::{build, floor, rectangle};
+use super::piles::random_polygon;
+use crate::body::{BodyDef, Geometry, Polygon, ShapeDef, WorldError};
+use crate::fx;
+use crate::lockstep::Sandbox;
+use crate::math::{Angle, Fx, Rng, Rot, Vec2, fx_mul};
+use crate::world::{Command, Config};
+
+pub(super) const DRUM: Scene =
+    Scene::new("drum", 600, "a drum with paddles churns 400 boxes, discs and polygons", |seed| {
+        build(Config::default(), |scene| {
+            let drum = BodyDef::kinematic().position(fx!(0), fx!(10)).angular_velocity(fx!(0.6));
+            scene.spawn(drum, &drum_shapes()?)?;
+            let mut rng = Rng::new(seed);
+            for i in 0..400 {
+                let (column, row) = (i % 20, i / 20);
+                let x = fx_mul(Fx::from_num(column) - fx!(9.5), fx!(0.62)) + rng.range(fx!(-0.05), fx!(0.05));
+                let y = fx_mul(Fx::from_num(row), fx!(0.62)) + fx!(4.2);
+                let shape = match i % 3 {
+                    0 => rectangle(fx!(0.25), fx!(0.2))?,
+                    1 => ShapeDef::new(Geometry::circle(fx!(0.25))?).restitution(fx!(0.2)),
+                    _ => ShapeDef::new(Polygon::regular(5, fx!(0.25))?.rounded(fx!(0.02))?),
+                };
+                scene.spawn(BodyDef::dynamic().position(x, y), &[shape])?;
+            }
+            Ok(())
+        })
+    });
+
+/// A ring of 36 plates between 10 and 11 m, 10 degrees and one of overlap each, and 4 paddles inside.
+fn drum_shapes() -> Result<Vec<ShapeDef>, WorldError> {
+    let corner = |degrees: Fx, radius: Fx| {
+        Rot::from_angle(Angle::from_degrees(degrees)).apply_wide(Vec2::new(radius, Fx::ZERO))
+    };
+    let plate = |from: Fx, to: Fx, inner: Fx, outer: Fx| {
+        Polygon::hull(&[corner(from, inner), corner(from, outer), corner(to, outer), corner(to, inner)])
+            .map(ShapeDef::new)
+    };
+    let mut shapes = Vec::new();
+    for i in 0..36 {
+        let from = Fx::from_num(10 * i);
+        shapes.push(plate(from, from + fx!(11), fx!(10), fx!(11))?);
+        if i % 9 == 0 {
+            shapes.push(plate(from, from + fx!(2), fx!(8.5), fx!(10.2))?);
+        }
+    }
+    Ok(shapes)
+}
+
+pub(super) const SPAWNING: Scene = Scene {
+    name: "spawning",
+    about: "bodies come, are kicked and go again, all by commands",
+    ticks: 600,
+    setup: |_| {
+        build(Config::default(), |scene| {
+            floor(scene, fx!(10))?;
+            Ok(())
+        })
+    },
+    script: spawn_kick_despawn,
+};
+
+/// Every 6th tick a body falls in; once there are 40, one is removed; every 50th tick the first is kicked.
+fn spawn_kick_despawn(tick: u64, game: &Sandbox) -> Vec<Command> {
+    let mut rng = Rng::new(tick);
+    let dynamic: Vec<_> = game.world().bodies().filter(|(_, body)| body.is_dynamic()).collect();
+    let mut commands = vec![];
+    if tick % 6 == 0 {
+        let body = BodyDef::dynamic().position(rng.range(fx!(-6), fx!(6)), fx!(8)).angle(rng.angle());
+        let shape = match rng.below(3) {
+            0 => ShapeDef::new(random_polygon(&mut rng)),
+            _ => Geometry::circle(rng.range(fx!(0.2), fx!(0.6)))
+                .map_or_else(|_| ShapeDef::new(random_polygon(&mut rng)), ShapeDef::new),
+        };
+        commands.push(Command::Spawn { body, shapes: vec![shape] });
+    }
+    if tick % 6 == 3 && dynamic.len() >= 40 {
+        let victim = dynamic[rng.below(40) as usize].0;
+        commands.push(Command::Despawn { body: victim });
+    }
+    if let (0, Some((id, body))) = (tick % 50, dynamic.first()) {
+        let impulse = Vec2::new(rng.range(fx!(-4), fx!(4)), fx!(6)).scale(body.mass());
+        commands.push(Command::ApplyImpulse { body: *id, impulse, point: body.centre_of_mass() });
+    }
+    commands
+}

@@ -1,0 +1,80 @@
+//! Scenes as plain data, built once and shared by tests, replays, examples and benchmarks.
+
+mod builder;
+mod drum;
+mod elementary;
+mod joints;
+mod piles;
+
+use alloc::vec::Vec;
+
+pub use builder::Builder;
+
+use crate::lockstep::{Sandbox, SandboxSetup};
+use crate::world::Command;
+
+/// A scene: a setup, and what a player does in it.
+#[derive(Clone, Copy, Debug)]
+pub struct Scene {
+    /// Its name, also of its replay.
+    pub name: &'static str,
+    /// What it shows, in a line.
+    pub about: &'static str,
+    /// How long it is, in ticks.
+    pub ticks: u64,
+    setup: fn(seed: u64) -> SandboxSetup,
+    script: fn(tick: u64, game: &Sandbox) -> Vec<Command>,
+}
+
+impl Scene {
+    /// A scene in which nobody does anything.
+    const fn new(
+        name: &'static str,
+        ticks: u64,
+        about: &'static str,
+        setup: fn(u64) -> SandboxSetup,
+    ) -> Self {
+        Scene { name, about, ticks, setup, script: |_, _| Vec::new() }
+    }
+
+    /// The scene of a name.
+    #[must_use]
+    pub fn find(name: &str) -> Option<&'static Scene> {
+        ALL.iter().find(|scene| scene.name == name)
+    }
+
+    /// What it starts from. Only scenes that are random depend on the seed.
+    #[must_use]
+    pub fn setup(&self, seed: u64) -> SandboxSetup {
+        (self.setup)(seed)
+    }
+
+    /// What the player does in a tick, given the game before it.
+    #[must_use]
+    pub fn commands(&self, tick: u64, game: &Sandbox) -> Vec<Command> {
+        (self.script)(tick, game)
+    }
+}
+
+/// Every scene.
+pub const ALL: &[Scene] = &[
+    elementary::FREE_FALL,
+    elementary::BOUNCING_BALL,
+    elementary::HEAD_ON,
+    elementary::OBLIQUE,
+    elementary::SLOPE,
+    elementary::BALL_IN_BOX,
+    piles::BOX_STACK,
+    piles::HEAVY_ON_LIGHT,
+    piles::PYRAMID,
+    piles::LARGE_PYRAMID,
+    piles::MANY_PYRAMIDS,
+    piles::HUNDRED_POLYGONS,
+    drum::DRUM,
+    drum::SPAWNING,
+    joints::PENDULUM,
+    joints::SPINNING_ROD,
+    joints::LONG_ARM,
+    joints::CHAIN,
+    joints::JOINT_GRID,
+];
