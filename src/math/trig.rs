@@ -15,21 +15,24 @@
 /// A quarter turn in units of 2^-32 turn.
 const QUARTER: u32 = 1 << 30;
 
-/// Sine of `angle` (2^-32 turn) in units of 2^-30.
+/// Sine of `angle` (2^-32 turn) in units of 2^-30. Without branches: bodies point anywhere, so none could be predicted.
 #[inline]
 pub(super) const fn sine(angle: u32) -> i32 {
-    let magnitude = sine_of_half_turn(signed(angle).unsigned_abs());
-    if signed(angle) < 0 { -magnitude } else { magnitude }
+    let angle = signed(angle);
+    // x and half a turn minus x have the same sine.
+    let folded = QUARTER - angle.unsigned_abs().abs_diff(QUARTER);
+    let minus = angle >> 31; // all bits of a negative angle
+    (sine_of_quarter_turn(folded) ^ minus) - minus
 }
 
-/// Sine of an angle from 0 to one half turn, `0 <= angle <= 2^31`, in units of 2^-30.
+/// Sine of an angle from 0 to one quarter turn, `0 <= angle <= 2^30`, in units of 2^-30.
 #[inline]
-const fn sine_of_half_turn(angle: u32) -> i32 {
+const fn sine_of_quarter_turn(angle: u32) -> i32 {
     /// Units of 2^-33, 2^-32, 2^-35, 2^-39, 2^-44, 2^-48: each product below just fits 64 bits. All but the last
     /// contain one half, so that dropping bits rounds.
     const C: [u64; 6] =
         [13_493_037_702, 2_774_394_650, 2_738_216_371, 2_573_744_741, 2_818_456_289, 961_408_605];
-    let x = (if angle > QUARTER { 2 * QUARTER - angle } else { angle }) as u64;
+    let x = angle as u64;
     let z = (x * x + (1 << 27)) >> 28; // units of 2^-32
     let mut sum = C[4] - ((z * C[5]) >> 36);
     sum = C[3] - ((z * sum) >> 37);
