@@ -1,8 +1,8 @@
 //! Square roots, lengths and unit vectors.
 //!
-//! Lengths are the integer square root of an exact sum of squares, rounded to nearest: there is no error beyond the
-//! half unit of the result. Unit vectors are `v y` with `y = 1 / |v|` from Newton's iteration
-//! `y <- y (3 - n y^2) / 2`, which needs no division; each component is within 0.76 units of 2^-30, whatever the
+//! Lengths are the integer square root of an exact sum of squares, rounded to nearest: there is no error
+//! beyond the half unit of the result. Unit vectors are `v y` with `y = 1 / |v|` from Newton's iteration `y
+//! <- y (3 - n y^2) / 2`, which needs no division; each component is within 0.76 units of 2^-30, whatever the
 //! length of `v`, and vectors along an axis are exact.
 
 use fixed::FixedI32;
@@ -61,7 +61,8 @@ impl Vec2<Fx> {
         if (x | y) >> 63 != 0 { Fx::MAX } else { saturated(sqrt_rounded_wide(sum_of_squares_wide(x, y))) }
     }
 
-    /// The vector of length 1 in the same direction, each component within 0.76 units of 2^-30; `None` for zero.
+    /// The vector of length 1 in the same direction, each component within 0.76 units of 2^-30; `None` for
+    /// zero.
     #[inline]
     #[must_use]
     pub const fn normalized(self) -> Option<Vec2<Unit>> {
@@ -100,15 +101,16 @@ impl<A: LeEqU32> Vec2<FixedI32<A>> {
         ))))
     }
 
-    /// The vector of length 1 in the same direction, each component within 0.76 units of 2^-30; `None` for zero.
+    /// The vector of length 1 in the same direction, each component within 0.76 units of 2^-30; `None` for
+    /// zero.
     #[inline]
     #[must_use]
     pub fn normalized(self) -> Option<Vec2<Unit>> {
         self.normalized_with_length().map(|(direction, _)| direction)
     }
 
-    /// [`normalized`](Self::normalized) and [`length`](Self::length) at once, for little more than the former;
-    /// `None` for zero.
+    /// [`normalized`](Self::normalized) and [`length`](Self::length) at once, for little more than the
+    /// former; `None` for zero.
     #[inline]
     #[must_use]
     pub fn normalized_with_length(self) -> Option<(Vec2<Unit>, FixedI32<A>)> {
@@ -138,13 +140,14 @@ const fn polar(x: i32, y: i32) -> Option<(Vec2<Unit>, i32)> {
 /// `sqrt(n)` rounded to nearest, from `2^63 / sqrt(n 2^shift)` within 0.51.
 #[inline]
 const fn root_from_inverse(n: u64, shift: u32, inverse: u64) -> u64 {
-    // m / sqrt(m) for m = n 2^shift. The error of the inverse makes at most 0.51 here, rounding another half: the
-    // nearest root is at most one away.
+    // m / sqrt(m) for m = n 2^shift. The error of the inverse makes at most 0.51 here, rounding another half:
+    // the nearest root is at most one away.
     let m = n << shift;
     let product = (m >> 32) * inverse + (((m & 0xffff_ffff) * inverse) >> 32); // sqrt(m) in units of 2^-31
     let drop = 31 + shift / 2;
     let root = (product + (1 << (drop - 1))) >> drop;
-    // n is an integer, so it is nearest to a root when (root - 1/2)^2 < n < (root + 1/2)^2, without the quarters.
+    // n is an integer, so it is nearest to a root when (root - 1/2)^2 < n < (root + 1/2)^2, without the
+    // quarters.
     let root = if root * root - root >= n { root - 1 } else { root };
     if root * root + root < n { root + 1 } else { root }
 }
@@ -158,8 +161,8 @@ const fn unit(magnitude: u64, negative: bool) -> Unit {
 
 /// `2^63 / sqrt(n)` within 0.51, for `n >= 2^62`.
 ///
-/// With `m = n / 2^64` this is `1 / sqrt(m)` between 1 and 2. A parabola starts with a relative error of 2.4e-2;
-/// each step makes `1.5 e^2` of an error `e`: 8.7e-4, 1.2e-6, 2e-12.
+/// With `m = n / 2^64` this is `1 / sqrt(m)` between 1 and 2. A parabola starts with a relative error of
+/// 2.4e-2; each step makes `1.5 e^2` of an error `e`: 8.7e-4, 1.2e-6, 2e-12.
 #[inline]
 #[expect(
     clippy::cast_possible_wrap,
@@ -174,7 +177,8 @@ const fn inverse_root(n: u64) -> u64 {
     y = (y * ((3 << 30) - ((((y * y) >> 30) * m) >> 32))) >> 31;
     y = (y * ((3 << 30) - ((((y * y) >> 30) * m) >> 32))) >> 31;
 
-    // The last step keeps the residual `1 - m y^2`, which is small, and so survives modulo 2^64: the one is 2^76.
+    // The last step keeps the residual `1 - m y^2`, which is small, and so survives modulo 2^64: the one is
+    // 2^76.
     let root = m * y + (((n & 0xffff_ffff) * y) >> 32); // m y in units of 2^-62
     let residual = (root >> 16).wrapping_mul(y).wrapping_neg() as i64; // units of 2^-76
     let correction = (y as i64 * (residual >> 32) + (1 << 43)) >> 44; // y residual / 2 in units of 2^-31
@@ -198,7 +202,8 @@ const fn sum_of_squares_wide(x: u64, y: u64) -> u128 {
 #[inline]
 const fn sqrt_rounded(n: u64) -> u64 {
     let root = n.isqrt();
-    // n is an integer, so it lies above (root + 1/2)^2 = root^2 + root + 1/4 exactly when it exceeds the first two terms.
+    // n is an integer, so it lies above (root + 1/2)^2 = root^2 + root + 1/4 exactly when it exceeds the
+    // first two terms.
     if n - root * root > root { root + 1 } else { root }
 }
 

@@ -1,4 +1,5 @@
-//! Roots against the squares on either side, unit vectors against a long division and an integer root with 33 more bits.
+//! Roots against the squares on either side, unit vectors against a long division and an integer root with 33
+//! more bits.
 
 use super::*;
 use crate::fx;
