@@ -79,8 +79,8 @@ impl Aabb {
         Aabb::new(self.lower.min(other.lower), self.upper.max(other.upper))
     }
 
-    /// The box grown by a margin in metres on all sides, saturated. A negative margin shrinks it, and can leave
-    /// it invalid.
+    /// The box grown by a margin in metres on all sides, saturated. A negative margin shrinks it, and can
+    /// leave it invalid.
     #[inline]
     #[must_use]
     pub fn expanded(self, margin: Fx) -> Self {

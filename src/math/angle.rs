@@ -1,11 +1,11 @@
 //! Angles as a fraction of a turn.
 //!
-//! `turns = bits / 2^32`: addition wraps as the circle does, so a rotation never drifts out of range, needs no
-//! renormalising, and the angle between two bodies is a subtraction (against an `atan2` per joint for a
+//! `turns = bits / 2^32`: addition wraps as the circle does, so a rotation never drifts out of range, needs
+//! no renormalising, and the angle between two bodies is a subtraction (against an `atan2` per joint for a
 //! rotation stored as a complex number).
 //!
-//! Resolution 2^-32 turn = 1.46e-9 rad. Sine and cosine are within 0.8 units of 2^-30, the direction of a vector
-//! within 0.7 units of 2^-32 turn.
+//! Resolution 2^-32 turn = 1.46e-9 rad. Sine and cosine are within 0.8 units of 2^-30, the direction of a
+//! vector within 0.7 units of 2^-32 turn.
 
 use core::ops::{Add, AddAssign, Neg, Sub, SubAssign};
 
@@ -140,8 +140,8 @@ impl Angle {
         (self.sin(), self.cos())
     }
 
-    /// The direction of a vector, within 0.7 units of 2^-32 turn; exact on the axes and the diagonals. The zero
-    /// vector has direction [`Angle::ZERO`].
+    /// The direction of a vector, within 0.7 units of 2^-32 turn; exact on the axes and the diagonals. The
+    /// zero vector has direction [`Angle::ZERO`].
     #[inline]
     #[must_use]
     pub const fn of(vector: Vec2<Fx>) -> Self {
@@ -250,7 +250,8 @@ mod tests {
             let angle = rng.angle();
             let (sin, cos) = angle.sin_cos();
             let apart = (Angle::of(Vec2::new(cos, sin).widen()) - angle).to_turns();
-            // 0.79 sqrt 2 units of 2^-30 across the direction are 0.71 units of 2^-32 turn; plus 0.68 and rounding.
+            // 0.79 sqrt 2 units of 2^-30 across the direction are 0.71 units of 2^-32 turn; plus 0.68 and
+            // rounding.
             assert!(apart.abs().to_bits() <= 1, "{angle:?} {apart}");
         }
     }

@@ -1,9 +1,9 @@
 //! Exact planar predicates: on which side, inside or outside, crossing or not.
 //!
-//! All follow from the sign of `(b - a) x (c - a)`, computed without rounding for any coordinates of the world, so
-//! neighbouring answers never contradict each other (J. R. Shewchuk, "Adaptive Precision Floating-Point
-//! Arithmetic and Fast Robust Geometric Predicates", 1997, has what goes wrong otherwise). Only points that are
-//! returned are rounded: once, to nearest, ties towards +infinity.
+//! All follow from the sign of `(b - a) x (c - a)`, computed without rounding for any coordinates of the
+//! world, so neighbouring answers never contradict each other (J. R. Shewchuk, "Adaptive Precision
+//! Floating-Point Arithmetic and Fast Robust Geometric Predicates", 1997, has what goes wrong otherwise).
+//! Only points that are returned are rounded: once, to nearest, ties towards +infinity.
 
 use super::formats::Fx;
 use super::vec2::Vec2;
@@ -38,15 +38,16 @@ pub fn orientation(a: Vec2<Fx>, b: Vec2<Fx>, c: Vec2<Fx>) -> Orientation {
     }
 }
 
-/// Whether a point lies in a simple polygon, convex or not, wound either way: exact. Its border and its corners
-/// belong to it. Fewer than three corners are a segment, a point or nothing.
+/// Whether a point lies in a simple polygon, convex or not, wound either way: exact. Its border and its
+/// corners belong to it. Fewer than three corners are a segment, a point or nothing.
 ///
-/// Counts the edges that a ray to the right crosses. An edge has its lower end and not its upper one, so a ray
-/// through a corner counts it once where the border passes, and twice or never where it turns back.
+/// Counts the edges that a ray to the right crosses. An edge has its lower end and not its upper one, so a
+/// ray through a corner counts it once where the border passes, and twice or never where it turns back.
 ///
 /// ```
 /// use lockstep2d::{fx, math::{Vec2, point_in_polygon}};
-/// let corners = [(fx!(0), fx!(0)), (fx!(4), fx!(0)), (fx!(1), fx!(1)), (fx!(0), fx!(4))].map(|(x, y)| Vec2::new(x, y));
+/// let corners = [(fx!(0), fx!(0)), (fx!(4), fx!(0)), (fx!(1), fx!(1)), (fx!(0), fx!(4))];
+/// let corners = corners.map(|(x, y)| Vec2::new(x, y));
 /// assert!(point_in_polygon(&corners, Vec2::new(fx!(1), fx!(1))));
 /// assert!(!point_in_polygon(&corners, Vec2::new(fx!(2), fx!(2))));
 /// ```
@@ -73,8 +74,8 @@ pub fn point_in_polygon(corners: &[Vec2<Fx>], point: Vec2<Fx>) -> bool {
 }
 
 /// Where two segments meet, ends included: `None` exactly when they share no point. The point is rounded to
-/// nearest, and the same whichever segment comes first and whichever way each runs; but if they overlap along a
-/// line, it is the first shared point on the way from `a0` to `a1`.
+/// nearest, and the same whichever segment comes first and whichever way each runs; but if they overlap along
+/// a line, it is the first shared point on the way from `a0` to `a1`.
 ///
 /// ```
 /// use lockstep2d::{fx, math::{Vec2, segment_intersection}};

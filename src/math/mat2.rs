@@ -120,7 +120,8 @@ mod tests {
             if m.determinant().abs() < fx!(0.5) {
                 continue;
             }
-            // Half a unit in each entry of the inverse meets |M v| <= 128; half a unit in M v meets entries <= 16.
+            // Half a unit in each entry of the inverse meets |M v| <= 128; half a unit in M v meets entries
+            // <= 16.
             let there = m.inverse().unwrap().apply(m.apply(v)) - v;
             assert!(
                 there.x.abs().to_bits() <= 145 && there.y.abs().to_bits() <= 145,

@@ -1,12 +1,12 @@
 //! Random numbers that are part of the simulated state.
 //!
-//! PCG-XSH-RR 64/32 (M. O'Neill, "PCG: A Family of Simple Fast Space-Efficient Statistically Good Algorithms for
-//! Random Number Generation", 2014): `s <- 6364136223846793005 s + i`, with an output permutation of the old `s`.
-//! 16 bytes of state, period 2^64, and 2^63 independent streams. Chosen over xoshiro256** for half the state to
-//! snapshot and hash. Not for secrets.
+//! PCG-XSH-RR 64/32 (M. O'Neill, "PCG: A Family of Simple Fast Space-Efficient Statistically Good Algorithms
+//! for Random Number Generation", 2014): `s <- 6364136223846793005 s + i`, with an output permutation of the
+//! old `s`. 16 bytes of state, period 2^64, and 2^63 independent streams. Chosen over xoshiro256** for half
+//! the state to snapshot and hash. Not for secrets.
 //!
-//! Bounded numbers are unbiased (D. Lemire, "Fast Random Integer Generation in an Interval", 2019), so they may
-//! draw more than once; how often depends on the state alone.
+//! Bounded numbers are unbiased (D. Lemire, "Fast Random Integer Generation in an Interval", 2019), so they
+//! may draw more than once; how often depends on the state alone.
 
 use serde::{Deserialize, Serialize};
 
@@ -152,7 +152,8 @@ mod tests {
     #[test]
     fn every_remainder_is_equally_likely() {
         let mut rng = Rng::new(1);
-        // The first bound rejects nearly half of the draws; without that, results below 2^30 would be twice as likely.
+        // The first bound rejects nearly half of the draws; without that, results below 2^30 would be twice
+        // as likely.
         for (bound, buckets) in [(3 << 30, 3), (6, 6), (1000, 10)] {
             let mut counts = [0_i64; 10];
             for _ in 0..60_000 {

@@ -1,8 +1,8 @@
 //! Square roots, lengths and unit vectors.
 //!
-//! Lengths are the integer square root of an exact sum of squares, rounded to nearest: there is no error beyond the
-//! half unit of the result. Unit vectors are `v y` with `y = 1 / |v|` from Newton's iteration
-//! `y <- y (3 - n y^2) / 2`, which needs no division; each component is within 0.76 units of 2^-30, whatever the
+//! Lengths are the integer square root of an exact sum of squares, rounded to nearest: there is no error
+//! beyond the half unit of the result. Unit vectors are `v y` with `y = 1 / |v|` from Newton's iteration `y
+//! <- y (3 - n y^2) / 2`, which needs no division; each component is within 0.76 units of 2^-30, whatever the
 //! length of `v`, and vectors along an axis are exact.
 
 use fixed::FixedI32;
@@ -61,7 +61,8 @@ impl Vec2<Fx> {
         if (x | y) >> 63 != 0 { Fx::MAX } else { saturated(sqrt_rounded_wide(sum_of_squares_wide(x, y))) }
     }
 
-    /// The vector of length 1 in the same direction, each component within 0.76 units of 2^-30; `None` for zero.
+    /// The vector of length 1 in the same direction, each component within 0.76 units of 2^-30; `None` for
+    /// zero.
     #[inline]
     #[must_use]
     pub const fn normalized(self) -> Option<Vec2<Unit>> {
@@ -94,27 +95,33 @@ impl<A: LeEqU32> Vec2<FixedI32<A>> {
     #[inline]
     #[must_use]
     pub fn length(self) -> FixedI32<A> {
-        FixedI32::from_bits(root_saturated(sum_of_squares(self.x.to_bits(), self.y.to_bits())))
+        FixedI32::from_bits(saturated_narrow(sqrt_rounded(sum_of_squares(
+            self.x.to_bits(),
+            self.y.to_bits(),
+        ))))
     }
 
-    /// The vector of length 1 in the same direction, each component within 0.76 units of 2^-30; `None` for zero.
+    /// The vector of length 1 in the same direction, each component within 0.76 units of 2^-30; `None` for
+    /// zero.
     #[inline]
     #[must_use]
     pub fn normalized(self) -> Option<Vec2<Unit>> {
-        normalized_bits(self.x.to_bits(), self.y.to_bits())
+        self.normalized_with_length().map(|(direction, _)| direction)
     }
 
-    /// [`normalized`](Self::normalized) and [`length`](Self::length) at once; `None` for zero.
+    /// [`normalized`](Self::normalized) and [`length`](Self::length) at once, for little more than the
+    /// former; `None` for zero.
     #[inline]
     #[must_use]
     pub fn normalized_with_length(self) -> Option<(Vec2<Unit>, FixedI32<A>)> {
-        self.normalized().map(|direction| (direction, self.length()))
+        let (direction, length) = polar(self.x.to_bits(), self.y.to_bits())?;
+        Some((direction, FixedI32::from_bits(length)))
     }
 }
 
-/// `(x, y) / |(x, y)|` with 64-bit products only.
+/// `(x, y) / |(x, y)|` and `|(x, y)|` with 64-bit products only.
 #[inline]
-const fn normalized_bits(x: i32, y: i32) -> Option<Vec2<Unit>> {
+const fn polar(x: i32, y: i32) -> Option<(Vec2<Unit>, i32)> {
     let sum = sum_of_squares(x, y);
     if sum == 0 {
         return None;
@@ -124,7 +131,25 @@ const fn normalized_bits(x: i32, y: i32) -> Option<Vec2<Unit>> {
     let scale = inverse_root(sum << shift);
     let x_part = ((x.unsigned_abs() as u64) << (shift / 2)) * scale;
     let y_part = ((y.unsigned_abs() as u64) << (shift / 2)) * scale;
-    Some(Vec2::new(unit(x_part, x < 0), unit(y_part, y < 0)))
+    Some((
+        Vec2::new(unit(x_part, x < 0), unit(y_part, y < 0)),
+        saturated_narrow(root_from_inverse(sum, shift, scale)),
+    ))
+}
+
+/// `sqrt(n)` rounded to nearest, from `2^63 / sqrt(n 2^shift)` within 0.51.
+#[inline]
+const fn root_from_inverse(n: u64, shift: u32, inverse: u64) -> u64 {
+    // m / sqrt(m) for m = n 2^shift. The error of the inverse makes at most 0.51 here, rounding another half:
+    // the nearest root is at most one away.
+    let m = n << shift;
+    let product = (m >> 32) * inverse + (((m & 0xffff_ffff) * inverse) >> 32); // sqrt(m) in units of 2^-31
+    let drop = 31 + shift / 2;
+    let root = (product + (1 << (drop - 1))) >> drop;
+    // n is an integer, so it is nearest to a root when (root - 1/2)^2 < n < (root + 1/2)^2, without the
+    // quarters.
+    let root = if root * root - root >= n { root - 1 } else { root };
+    if root * root + root < n { root + 1 } else { root }
 }
 
 /// A component from its magnitude in units of 2^-63 (at most 1 and an error far below the final rounding).
@@ -136,8 +161,8 @@ const fn unit(magnitude: u64, negative: bool) -> Unit {
 
 /// `2^63 / sqrt(n)` within 0.51, for `n >= 2^62`.
 ///
-/// With `m = n / 2^64` this is `1 / sqrt(m)` between 1 and 2. A parabola starts with a relative error of 2.4e-2;
-/// each step makes `1.5 e^2` of an error `e`: 8.7e-4, 1.2e-6, 2e-12.
+/// With `m = n / 2^64` this is `1 / sqrt(m)` between 1 and 2. A parabola starts with a relative error of
+/// 2.4e-2; each step makes `1.5 e^2` of an error `e`: 8.7e-4, 1.2e-6, 2e-12.
 #[inline]
 #[expect(
     clippy::cast_possible_wrap,
@@ -152,7 +177,8 @@ const fn inverse_root(n: u64) -> u64 {
     y = (y * ((3 << 30) - ((((y * y) >> 30) * m) >> 32))) >> 31;
     y = (y * ((3 << 30) - ((((y * y) >> 30) * m) >> 32))) >> 31;
 
-    // The last step keeps the residual `1 - m y^2`, which is small, and so survives modulo 2^64: the one is 2^76.
+    // The last step keeps the residual `1 - m y^2`, which is small, and so survives modulo 2^64: the one is
+    // 2^76.
     let root = m * y + (((n & 0xffff_ffff) * y) >> 32); // m y in units of 2^-62
     let residual = (root >> 16).wrapping_mul(y).wrapping_neg() as i64; // units of 2^-76
     let correction = (y as i64 * (residual >> 32) + (1 << 43)) >> 44; // y residual / 2 in units of 2^-31
@@ -172,14 +198,13 @@ const fn sum_of_squares_wide(x: u64, y: u64) -> u128 {
     x as u128 * x as u128 + y as u128 * y as u128
 }
 
-/// `sqrt(n)` rounded to nearest, the largest `i32` if that is less.
+/// `sqrt(n)` rounded to nearest.
 #[inline]
-#[expect(clippy::cast_possible_truncation, reason = "compared with the largest first")]
-const fn root_saturated(n: u64) -> i32 {
+const fn sqrt_rounded(n: u64) -> u64 {
     let root = n.isqrt();
-    // n is an integer, so it lies above (root + 1/2)^2 = root^2 + root + 1/4 exactly when it exceeds the first two terms.
-    let root = if n - root * root > root { root + 1 } else { root };
-    if root > i32::MAX as u64 { i32::MAX } else { root as i32 }
+    // n is an integer, so it lies above (root + 1/2)^2 = root^2 + root + 1/4 exactly when it exceeds the
+    // first two terms.
+    if n - root * root > root { root + 1 } else { root }
 }
 
 /// `sqrt(n)` rounded to nearest.
@@ -193,6 +218,13 @@ const fn sqrt_rounded_wide(n: u128) -> u128 {
 #[expect(clippy::cast_possible_truncation, reason = "compared with the largest first")]
 const fn saturated(bits: u128) -> Fx {
     if bits > i64::MAX as u128 { Fx::MAX } else { Fx::from_bits(bits as i64) }
+}
+
+/// The nearest `i32` to a magnitude.
+#[inline]
+#[expect(clippy::cast_possible_truncation, reason = "compared with the largest first")]
+const fn saturated_narrow(bits: u64) -> i32 {
+    if bits > i32::MAX as u64 { i32::MAX } else { bits as i32 }
 }
 
 /// The upper 64 bits.

@@ -1,7 +1,8 @@
 //! A rotation as the cosine and sine of its angle: `R v = (c x - s y, s x + c y)`.
 //!
 //! Derived from an [`Angle`], never integrated: the state is the angle, so the length of `(c, s)` is 1 within
-//! two units of 2^-30 and does not drift. Each component of a result is a sum of two exact products, rounded once.
+//! two units of 2^-30 and does not drift. Each component of a result is a sum of two exact products, rounded
+//! once.
 
 use fixed::FixedI32;
 use fixed::types::extra::LeEqU32;
@@ -135,7 +136,8 @@ mod tests {
             assert!(apart.x.abs() <= Length::DELTA && apart.y.abs() <= Length::DELTA, "{turn:?} {v:?}");
             assert!((wide.x - Fx::from_num(turn.apply(v).x)).abs() <= narrow_half());
             let back = turn.apply_inverse(turn.apply(v)) - v;
-            // 1.4 units of rounding, and cos^2 + sin^2 is off by at most 2.24 units of 2^-30: for 300 m 2.7 units.
+            // 1.4 units of rounding, and cos^2 + sin^2 is off by at most 2.24 units of 2^-30: for 300 m 2.7
+            // units.
             assert!(back.x.abs().to_bits() <= 4 && back.y.abs().to_bits() <= 4, "{turn:?} {v:?} {back:?}");
         }
     }

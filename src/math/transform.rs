@@ -66,7 +66,8 @@ mod tests {
             let there = Transform::new(far, rotation).apply(point);
             assert_eq!(there - far, rotation.apply_wide(point));
             let back = Transform::new(far, rotation).apply_inverse(there) - point;
-            // cos^2 + sin^2 is off by at most 2.24 units of 2^-30: for 100 m 896 units of 2^-32, and rounding.
+            // cos^2 + sin^2 is off by at most 2.24 units of 2^-30: for 100 m 896 units of 2^-32, and
+            // rounding.
             assert!(back.x.abs().to_bits() <= 898 && back.y.abs().to_bits() <= 898, "{back:?}");
         }
     }

@@ -1,8 +1,9 @@
 //! Exact integers for geometric predicates.
 //!
-//! The difference of two coordinates has 65 bits, a cross product of differences 131, and a point along a segment
-//! needs the product of both: this module has just the operations for that, so that no predicate rounds
-//! anywhere in the world. Magnitude and sign are kept apart, so that a difference fits a `u64` and a product of two a `u128`.
+//! The difference of two coordinates has 65 bits, a cross product of differences 131, and a point along a
+//! segment needs the product of both: this module has just the operations for that, so that no predicate
+//! rounds anywhere in the world. Magnitude and sign are kept apart, so that a difference fits a `u64` and a
+//! product of two a `u128`.
 
 use core::cmp::Ordering;
 
@@ -106,9 +107,9 @@ fn sum_of_products(a: Part, x: Part, b: Part, y: Part) -> Signed {
     Signed { negative: larger.negative && magnitude != Wide::ZERO, magnitude }
 }
 
-/// `origin + along numerator / denominator`, each component rounded to nearest, ties towards +infinity, so that the
-/// point does not depend on which end of the segment is called its origin. `None` if the fraction is not between
-/// 0 and 1.
+/// `origin + along numerator / denominator`, each component rounded to nearest, ties towards +infinity, so
+/// that the point does not depend on which end of the segment is called its origin. `None` if the fraction is
+/// not between 0 and 1.
 pub(super) fn point_at(
     origin: Vec2<Fx>,
     along: Difference,

@@ -1,5 +1,6 @@
-//! Every predicate against rational arithmetic on a small grid, where touching, crossing at corners and overlapping are
-//! common; then the same figures enlarged and moved to the edge of the world, where a product has 130 bits.
+//! Every predicate against rational arithmetic on a small grid, where touching, crossing at corners and
+//! overlapping are common; then the same figures enlarged and moved to the edge of the world, where a product
+//! has 130 bits.
 
 use super::*;
 use crate::fx;

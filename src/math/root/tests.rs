@@ -1,4 +1,5 @@
-//! Roots against the squares on either side, unit vectors against a long division and an integer root with 33 more bits.
+//! Roots against the squares on either side, unit vectors against a long division and an integer root with 33
+//! more bits.
 
 use super::*;
 use crate::fx;
@@ -130,6 +131,21 @@ fn the_inverse_root_is_within_its_bound() {
 }
 
 #[test]
+fn the_root_from_the_inverse_is_nearest_where_rounding_turns() {
+    let mut rng = Rng::new(6);
+    for _ in 0..50_000 {
+        let root = (rng.next_u64() >> (33 + rng.below(31))).max(1);
+        // root^2 + root still rounds down to root, and one more rounds up.
+        for n in [root * root, root * root + root, root * root + root + 1] {
+            let shift = n.leading_zeros() & !1;
+            let found = root_from_inverse(n, shift, inverse_root(n << shift));
+            assert_eq!(found, sqrt_rounded(n), "{n}");
+            assert!(is_nearest_root(found.into(), n.into()), "{n}");
+        }
+    }
+}
+
+#[test]
 fn vectors_along_the_axes_are_exact() {
     for bits in EXTREMES.into_iter().filter(|&bits| bits != 0) {
         let v = Vec2::new(Fx::from_bits(bits), Fx::ZERO);
@@ -150,7 +166,11 @@ fn narrow_lengths_are_nearest_or_saturated() {
         let sum = u128::from(x.unsigned_abs()).pow(2) + u128::from(y.unsigned_abs()).pow(2);
         let length = u128::try_from(v.length().to_bits()).expect("a length is not negative");
         assert!(is_nearest_root(length, sum) || (v.length() == Speed::MAX && sum > length * length), "{v:?}");
-        assert_eq!(v.normalized_with_length().map(|(_, length)| length), (sum > 0).then(|| v.length()));
+        assert_eq!(
+            v.normalized_with_length().map(|(_, length)| length),
+            (sum > 0).then(|| v.length()),
+            "{v:?}"
+        );
     };
     for _ in 0..20_000 {
         let mut part = || {
