@@ -16,6 +16,9 @@ use crate::math::{Length, Step, Unit, Vec2, convert};
 /// but anchors would jump. The same distance tells apart polygons that are disjoint from those that touch.
 const TOLERANCE: Step = Step::lit("0.0005");
 
+/// [`TOLERANCE`] with the 52 fraction bits of a product of a length and a unit vector.
+const TOLERANCE_WIDE: i64 = (TOLERANCE.to_bits() as i64) << 25;
+
 /// The face that separated a pair in the last tick. Trying it first changes no result: any axis with a gap
 /// beyond the margin proves that there is no contact.
 #[derive(Clone, Copy, Debug, Default)]
@@ -70,7 +73,10 @@ pub(crate) fn collide(
         *hint = AxisHint { on_b: true, edge: small(face_b.edge) };
         return Manifold::NONE;
     }
-    if face_b.separation > face_a.separation + (i64::from(TOLERANCE.to_bits()) << 25) {
+    // Outlines that are apart need the true best face, which is next to the nearest corner.
+    let touching = face_a.separation.max(face_b.separation) <= TOLERANCE_WIDE;
+    let preference = if touching { TOLERANCE_WIDE } else { 0 };
+    if face_b.separation > face_a.separation + preference {
         clip(b, a, -d, face_b, margin).swapped().translated(d)
     } else {
         clip(a, b, d, face_a, margin)
@@ -127,25 +133,41 @@ fn clip(a: &Hull, b: &Hull, d: Vec2<Length>, face: Face, margin: Length) -> Mani
     let (upper, lower) = (end_of_b(incident), end_of_b(b.next(incident)));
 
     let context = Clip { normal, v1, radius_a: a.radius, radius_b: b.radius, margin };
-    let apart = face.separation > i64::from(TOLERANCE.to_bits()) << 25;
-    let corner = if upper.along < first.along {
-        Some((first, upper))
-    } else if lower.along > last.along {
-        Some((last, lower))
-    } else {
-        None
-    };
-    match corner {
-        Some((vertex_a, vertex_b)) if apart => context.corner(vertex_a, vertex_b),
-        // Outlines that overlap deeply may have no incident edge beside the face. Their deepest corner still
-        // pushes them apart.
-        Some((vertex_a, vertex_b)) => context.face([(vertex_a, vertex_b, vertex_b.position)].into_iter()),
-        None => {
-            let low = clip_end(lower, upper, first.along);
-            let high = clip_end(upper, lower, last.along);
-            context.face([(first, lower, low), (last, upper, high)].into_iter())
-        }
+    let apart = face.separation > TOLERANCE_WIDE;
+    if let Some((vertex_a, vertex_b)) = nearest_corners(first, last, upper, lower).filter(|_| apart) {
+        return context.corner(vertex_a, vertex_b);
     }
+    // Outlines that overlap deeply may have no incident edge beside the face. Their deepest corner still pushes
+    // them apart.
+    if upper.along < first.along {
+        return context.face([(first, upper, upper.position)].into_iter());
+    }
+    if lower.along > last.along {
+        return context.face([(last, lower, lower.position)].into_iter());
+    }
+    let low = clip_end(lower, upper, first.along);
+    let high = clip_end(upper, lower, last.along);
+    context.face([(first, lower, low), (last, upper, high)].into_iter())
+}
+
+/// The corners that are nearest to each other, if those are what is nearest of two edges that are apart: each lies
+/// beyond the end of the other edge.
+fn nearest_corners(first: End, last: End, upper: End, lower: End) -> Option<(End, End)> {
+    let raw = |length: Length| i64::from(length.to_bits());
+    let beyond_incident = |a: End, b: End, other: End| {
+        let (outward, edge) = (a.position - b.position, other.position - b.position);
+        // Coordinates differ by less than 512 m, so each product has at most 62 bits.
+        raw(outward.x) * raw(edge.x) + raw(outward.y) * raw(edge.y) < 0
+    };
+    [(upper, lower), (lower, upper)].into_iter().find_map(|(b, other)| {
+        if b.along < first.along && beyond_incident(first, b, other) {
+            Some((first, b))
+        } else if b.along > last.along && beyond_incident(last, b, other) {
+            Some((last, b))
+        } else {
+            None
+        }
+    })
 }
 
 /// The edge whose normal is most opposed to `normal`.
