@@ -142,3 +142,22 @@ fn a_ball_deep_inside_a_large_block_leaves_by_the_nearest_face() {
     let x = world.body(ball).unwrap().position().x;
     assert!(x > fx!(70), "pushed to {x}");
 }
+
+#[test]
+fn a_joint_impulse_at_its_limit_is_no_overflow() {
+    // What accumulates over several updates of at most 512 m/s is applied at once when the next sub-step starts.
+    let mut world = World::default();
+    let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).unwrap());
+    let post = world.spawn(&BodyDef::fixed(), &[]).unwrap();
+    for heavy in [1, 1_000_000] {
+        let mass = MassSource::Given { mass: Fx::from(heavy), centre: Vec2::ZERO, gyration: fx!(0.01) };
+        let body = BodyDef::dynamic().position(fx!(1000), fx!(1000)).mass(mass);
+        let body = world.spawn(&body, &[ball]).unwrap();
+        let hinge = lockstep2d::solver::RevoluteDef::new(post, body).anchor_b(fx!(0.01), fx!(0.01));
+        world.add_joint(&hinge.into()).unwrap();
+    }
+    for _ in 0..120 {
+        world.step();
+        world.validate().unwrap();
+    }
+}
