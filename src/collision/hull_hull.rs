@@ -5,11 +5,10 @@
 //! overlap the closest features may be two corners, which no face normal sees: that case has its own normal, so
 //! that a box falling past the corner of another does not catch on it.
 
-use fixed::types::extra::U27;
-
+use super::circle_hull::{distance_along, step_bits};
 use super::manifold::{Feature, Manifold, ManifoldPoint};
 use super::pose::Hull;
-use crate::math::{Length, Step, Unit, Vec2, convert};
+use crate::math::{Length, Step, Unit, Vec2, round_shift_wide, saturate, saturate_wide};
 
 /// B's best face must beat A's by this much, in metres, to become the reference: 0.5 mm keeps the choice from
 /// flickering between two equal faces. Impulses survive a flicker, since features do not depend on the choice,
@@ -206,7 +205,7 @@ impl Clip {
     fn face(&self, ends: impl Iterator<Item = (End, End, Vec2<Length>)>) -> Manifold {
         let mut manifold = Manifold::new(self.normal);
         for (end_a, end_b, position) in ends {
-            let above_face: Step = (position - self.v1).dot(self.normal);
+            let above_face = distance_along(self.normal, position - self.v1);
             self.push(&mut manifold, end_a.vertex, end_b.vertex, position, above_face);
         }
         manifold
@@ -216,21 +215,28 @@ impl Clip {
     fn corner(&self, a: End, b: End) -> Manifold {
         let d = b.position - a.position;
         let mut manifold = Manifold::new(d.normalized().unwrap_or(self.normal));
-        self.push(&mut manifold, a.vertex, b.vertex, b.position, convert(d.length()));
+        self.push(&mut manifold, a.vertex, b.vertex, b.position, step_bits(d.length()));
         manifold
     }
 
     /// Adds the contact at a point of B's outline at a distance from A's, radii not counted, if it is near enough.
-    fn push(&self, manifold: &mut Manifold, a: usize, b: usize, position: Vec2<Length>, distance: Step) {
-        let (radius_a, radius_b): (Step, Step) = (convert(self.radius_a), convert(self.radius_b));
-        let separation = distance.saturating_sub(radius_a.saturating_add(radius_b));
-        if separation > convert::<_, U27>(self.margin) {
+    /// The distance is in units of `Step` and does not saturate: that of large rounded shapes exceeds the type.
+    fn push(&self, manifold: &mut Manifold, a: usize, b: usize, position: Vec2<Length>, distance: i64) {
+        let (radius_a, radius_b) = (step_bits(self.radius_a), step_bits(self.radius_b));
+        let separation = distance - (radius_a + radius_b);
+        if separation > step_bits(self.margin) {
             return;
         }
+        let separation = Step::from_bits(saturate(separation));
         // A's surface is at `radius_a` along the normal and B's at `distance - radius_b`: half-way between them,
         // seen from `position` at `distance`.
-        let to_middle = radius_a.saturating_sub(radius_b).saturating_sub(distance) / 2;
-        let anchor = position + manifold.normal.scale(to_middle);
+        let to_middle = (radius_a - radius_b - distance) / 2;
+        let along = |n: Unit| -> Length {
+            let wide = i128::from(n.to_bits()) * i128::from(to_middle);
+            let extra = Unit::FRAC_NBITS + Step::FRAC_NBITS - Length::FRAC_NBITS;
+            Length::from_bits(saturate(saturate_wide(round_shift_wide(wide, extra))))
+        };
+        let anchor = position + Vec2::new(along(manifold.normal.x), along(manifold.normal.y));
         manifold.push(ManifoldPoint { anchor, separation, feature: Feature::of_vertices(a, b) });
     }
 }
