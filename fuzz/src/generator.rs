@@ -1,6 +1,7 @@
 //! Scenes and what is done to them: settings, and commands for a world as it is at the moment.
 //!
-//! Most bodies are small and close together, so that most of them really touch.
+//! Three of four scenes are ordinary ones ([`crate::calm`]). The others, made here, are wild: everything may be at
+//! or beyond its limits. Most bodies are small and close together, so that most of them really touch.
 
 use lockstep2d::body::{BodyDef, BodyId, BodyKind, JointId, MassSource, ShapeDef, ShapeId, WORLD_EXTENT_MAX};
 use lockstep2d::math::{Fx, Rng, Vec2};
@@ -8,8 +9,8 @@ use lockstep2d::solver::{ContactTuning, JointDef, RevoluteDef, SolverSettings};
 use lockstep2d::world::{Command, Config, World};
 use lockstep2d::{codec, fx};
 
-use crate::shapes;
 use crate::source::Source;
+use crate::{calm, shapes};
 
 /// Generates commands, and remembers handles that have gone stale.
 pub struct Generator {
@@ -20,8 +21,14 @@ pub struct Generator {
     joints: Vec<JointId>,
 }
 
-/// Settings, mostly valid ones.
+/// Decides whether the scene is an ordinary one, and its settings, mostly valid ones.
 pub fn config(source: &mut Source<'_>) -> Config {
+    let calm = !source.one_in(4);
+    source.set_calm(calm);
+    if calm { calm::config(source) } else { wild_config(source) }
+}
+
+fn wild_config(source: &mut Source<'_>) -> Config {
     let tick_rate = source.pick(&[60, 60, 30, 10, 120, 250, 1000, 20]);
     let sub_steps = source.pick(&[4, 4, 2, 8, 64, 16, 6, 1]);
     let contact = match source.below(3) {
@@ -64,6 +71,7 @@ pub fn config(source: &mut Source<'_>) -> Config {
         config.body_limit = source.byte().into();
         config.shape_limit = source.byte().into();
         config.joint_limit = source.byte().into();
+        config.pair_limit = source.byte().into();
     }
     config
 }
@@ -80,6 +88,10 @@ impl Generator {
     /// What the scene starts with: mostly a floor and a heap of bodies.
     pub fn setup(&mut self, source: &mut Source<'_>) -> Vec<Command> {
         let mut commands = Vec::new();
+        if source.is_calm() {
+            calm::setup(source, self.middle, &mut commands);
+            return commands;
+        }
         if !source.one_in(4) {
             let floor = ShapeDef::new(lockstep2d::body::Geometry::Segment {
                 a: Vec2::new(fx!(-8), source.thousandths(-100, 1000)),
@@ -95,6 +107,13 @@ impl Generator {
     /// Commands for a tick.
     pub fn tick(&mut self, source: &mut Source<'_>, world: &World) -> Vec<Command> {
         let mut commands = Vec::new();
+        if source.is_calm() {
+            for _ in 0..source.pick(&[0, 0, 1, 0, 0, 2]) {
+                let body = self.body(source, world);
+                calm::command(source, world, self.middle, body, &mut commands);
+            }
+            return commands;
+        }
         for _ in 0..source.pick(&[0, 1, 0, 2, 0, 3, 5]) {
             self.command(source, world, &mut commands);
         }
@@ -224,7 +243,7 @@ impl Generator {
     }
 }
 
-fn spawn(body: BodyDef, shapes: &[ShapeDef]) -> Command {
+pub(crate) fn spawn(body: BodyDef, shapes: &[ShapeDef]) -> Command {
     Command::Spawn { body, shapes: shapes.to_vec() }
 }
 
@@ -243,10 +262,10 @@ fn handle<H: Copy + serde_handle::Handle>(source: &mut Source<'_>, present: &[H]
 }
 
 /// Handles from bytes, as they come in a file.
-mod serde_handle {
+pub(crate) mod serde_handle {
     use super::{BodyId, JointId, ShapeId, codec};
 
-    pub(super) trait Handle {
+    pub(crate) trait Handle {
         fn of_bytes(bytes: u64) -> Self;
     }
 
@@ -267,5 +286,5 @@ mod serde_handle {
 pub fn cost(world: &World) -> u64 {
     let solver = world.config().solver;
     let rounds = u64::from(solver.sub_steps) * u64::from(solver.iterations);
-    (world.pair_count() as u64 + world.joints().count() as u64 + world.body_count() as u64) * (rounds + 2)
+    (world.pair_count() as u64 + world.joint_count() as u64 + world.body_count() as u64) * (rounds + 2)
 }

@@ -2,9 +2,11 @@
 //! replays and a counting allocator. `README.md` says how to run them.
 
 pub mod allocations;
+pub mod calm;
 pub mod forge;
 pub mod generator;
 pub mod lockstep;
+pub mod mirror;
 pub mod shapes;
 pub mod snapshots;
 pub mod source;

@@ -28,6 +28,57 @@ pub fn shape(source: &mut Source<'_>) -> ShapeDef {
     def
 }
 
+/// A shape of an ordinary scene: 0.2 to 1 m, about as dense as the others.
+pub fn calm_shape(source: &mut Source<'_>) -> ShapeDef {
+    let geometry = match source.below(8) {
+        0..=2 => {
+            let half = (source.thousandths(100, 500), source.thousandths(100, 500));
+            Polygon::rectangle(half.0, half.1).ok()
+        }
+        3 => Polygon::regular(3 + source.below(6) as u32, source.thousandths(150, 500)).ok(),
+        4 => {
+            let mut point = || Vec2::new(source.thousandths(-500, 500), source.thousandths(-500, 500));
+            let points = [point(), point(), point(), point(), point(), point()];
+            Polygon::hull(&points).ok().filter(is_plump)
+        }
+        5 => Polygon::square(source.thousandths(100, 400))
+            .and_then(|square| square.rounded(source.thousandths(1, 100)))
+            .ok(),
+        _ => None,
+    };
+    let radius = source.thousandths(100, 500);
+    let mut def = ShapeDef::new(geometry.map_or(Geometry::Circle { radius }, Geometry::Polygon));
+    if source.one_in(4) {
+        def.density = source.thousandths(500, 2000);
+    }
+    if source.one_in(3) {
+        def.material.friction = source.thousandths(0, 1500);
+        def.material.restitution = source.thousandths(0, 600);
+    }
+    def
+}
+
+/// Whether a polygon is no needle.
+fn is_plump(polygon: &Polygon) -> bool {
+    let half = half_extents(&ShapeDef::new(*polygon));
+    half.x > lockstep2d::fx!(0.1) && half.y > lockstep2d::fx!(0.1)
+}
+
+/// How far a shape reaches from its body's origin, on each axis.
+#[must_use]
+pub fn half_extents(shape: &ShapeDef) -> Vec2<Fx> {
+    let reach = match &shape.geometry {
+        Geometry::Circle { radius } => Vec2::new(*radius, *radius),
+        Geometry::Segment { a, b } => a.max(-*a).max(*b).max(-*b),
+        Geometry::Polygon(polygon) => {
+            let radius: Fx = polygon.radius().into();
+            let reach = |reach: Vec2<Fx>, v: &Vec2<Length>| reach.max(v.widen()).max(-v.widen());
+            polygon.vertices().iter().fold(Vec2::ZERO, reach) + Vec2::new(radius, radius)
+        }
+    };
+    reach + shape.offset.max(-shape.offset)
+}
+
 fn material(source: &mut Source<'_>) -> Material {
     let rules = [Mixing::Average, Mixing::GeometricMean, Mixing::Minimum, Mixing::Product, Mixing::Maximum];
     Material {

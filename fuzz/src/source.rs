@@ -5,7 +5,10 @@ use arbitrary::Unstructured;
 use lockstep2d::math::{Angle, Fx, Vec2};
 
 /// Bytes turned into decisions.
-pub struct Source<'a>(Unstructured<'a>);
+pub struct Source<'a> {
+    bytes: Unstructured<'a>,
+    calm: bool,
+}
 
 /// Numbers at and around which formats and limits end.
 const EDGES: [i64; 24] = [
@@ -39,34 +42,45 @@ impl<'a> Source<'a> {
     /// Decisions from some bytes.
     #[must_use]
     pub fn new(bytes: &'a [u8]) -> Self {
-        Source(Unstructured::new(bytes))
+        Source { bytes: Unstructured::new(bytes), calm: false }
+    }
+
+    /// Whether [`Source::mostly`] keeps away from edges from now on.
+    pub fn set_calm(&mut self, calm: bool) {
+        self.calm = calm;
+    }
+
+    /// Whether it does.
+    #[must_use]
+    pub fn is_calm(&self) -> bool {
+        self.calm
     }
 
     /// Whether no bytes are left.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.0.is_empty()
+        self.bytes.is_empty()
     }
 
     /// All bytes that are left.
     #[must_use]
     pub fn rest(self) -> &'a [u8] {
-        self.0.take_rest()
+        self.bytes.take_rest()
     }
 
     /// A byte.
     pub fn byte(&mut self) -> u8 {
-        self.0.arbitrary().unwrap_or(0)
+        self.bytes.arbitrary().unwrap_or(0)
     }
 
     /// 64 bits.
     pub fn word(&mut self) -> u64 {
-        self.0.arbitrary().unwrap_or(0)
+        self.bytes.arbitrary().unwrap_or(0)
     }
 
     /// A number below `bound`, 0 when that is 0.
     pub fn below(&mut self, bound: usize) -> usize {
-        self.0.int_in_range(0..=bound.saturating_sub(1)).unwrap_or(0)
+        self.bytes.int_in_range(0..=bound.saturating_sub(1)).unwrap_or(0)
     }
 
     /// True once in `n` times, and never when the bytes have ended.
@@ -81,7 +95,7 @@ impl<'a> Source<'a> {
 
     /// A number from `low` to `high`, both in thousandths.
     pub fn thousandths(&mut self, low: i64, high: i64) -> Fx {
-        let value = self.0.int_in_range(low..=high).unwrap_or(low);
+        let value = self.bytes.int_in_range(low..=high).unwrap_or(low);
         lockstep2d::math::ratio(value, 1000)
     }
 
@@ -95,9 +109,23 @@ impl<'a> Source<'a> {
         Fx::from_bits(bits)
     }
 
-    /// Mostly a number from `low` to `high` thousandths, sometimes an edge.
+    /// A number from `low` to `high`, often one of the two or next to it.
+    pub fn within(&mut self, low: i64, high: i64) -> i64 {
+        match self.below(8) {
+            0 => self.bytes.int_in_range(low..=high).unwrap_or(low),
+            1 => low,
+            2 => high,
+            3 => low.saturating_add(1).min(high),
+            4 => high.saturating_sub(1).max(low),
+            5 => 0.clamp(low, high),
+            6 => self.edge().to_bits().clamp(low, high),
+            _ => ((self.word() as i64) >> self.below(64)).clamp(low, high),
+        }
+    }
+
+    /// Mostly a number from `low` to `high` thousandths, sometimes an edge unless the source is calm.
     pub fn mostly(&mut self, low: i64, high: i64) -> Fx {
-        if self.one_in(24) { self.edge() } else { self.thousandths(low, high) }
+        if !self.calm && self.one_in(24) { self.edge() } else { self.thousandths(low, high) }
     }
 
     /// A vector of such numbers.
@@ -110,7 +138,7 @@ impl<'a> Source<'a> {
         match self.below(3) {
             0 => Angle::from_bits((self.byte() as u32 & 3) << 30),
             1 => Angle::from_bits(u32::from(self.byte()) << 24),
-            _ => Angle::from_bits(self.0.arbitrary().unwrap_or(0)),
+            _ => Angle::from_bits(self.bytes.arbitrary().unwrap_or(0)),
         }
     }
 }

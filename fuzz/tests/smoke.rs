@@ -22,6 +22,9 @@ fn scenes_run_the_same_in_every_way_and_touch_a_lot() {
         done += seen.done;
         refused += seen.refused;
         faulty += u64::from(seen.faults > 0);
+        if seen.calm && seen.faults > 0 {
+            println!("calm faults {}", seen.faults);
+        }
         touched_runs += u64::from(seen.touching > 100);
     }
     println!(

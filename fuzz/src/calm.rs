@@ -1,0 +1,206 @@
+//! Ordinary scenes: moderate sizes, masses and speeds; piles, containers, drums and chains, in which much touches
+//! and nothing should reach a clamp.
+
+use lockstep2d::body::{BodyDef, BodyId, BodyKind, Geometry, ShapeDef};
+use lockstep2d::fx;
+use lockstep2d::math::{Fx, Rng, Vec2, fx_mul};
+use lockstep2d::solver::{ContactTuning, RevoluteDef};
+use lockstep2d::world::{Command, Config, World};
+
+use crate::generator::{serde_handle::Handle, spawn};
+use crate::shapes::{calm_shape, half_extents};
+use crate::source::Source;
+
+/// Where the floor is, below the middle of the scene.
+const FLOOR: Fx = fx!(-1);
+
+/// Settings that a game would choose.
+pub fn config(source: &mut Source<'_>) -> Config {
+    let mut config = Config { tick_rate: source.pick(&[60, 60, 60, 30, 120]), ..Config::default() };
+    config.solver.sub_steps = source.pick(&[4, 4, 4, 8, 2]);
+    if source.one_in(4) {
+        config.solver.contact = ContactTuning::Baumgarte {
+            share: source.thousandths(100, 300),
+            slop: source.thousandths(2, 10),
+            push_speed: source.thousandths(1000, 5000),
+        };
+    }
+    if source.one_in(8) {
+        config.solver.iterations = 2;
+    }
+    if source.one_in(8) {
+        config.gravity = Vec2::new(source.thousandths(-5000, 5000), source.thousandths(-15_000, 5000));
+    }
+    config
+}
+
+/// Something to stand on, and one or two things on it.
+pub fn setup(source: &mut Source<'_>, middle: Vec2<Fx>, commands: &mut Vec<Command>) {
+    ground(source, middle, commands);
+    for _ in 0..source.pick(&[1, 2, 1]) {
+        if source.one_in(4) {
+            chain(source, middle, commands);
+        } else {
+            pile(source, middle, commands);
+        }
+    }
+}
+
+fn line(a: (Fx, Fx), b: (Fx, Fx)) -> ShapeDef {
+    ShapeDef::new(Geometry::Segment { a: Vec2::new(a.0, a.1), b: Vec2::new(b.0, b.1) })
+}
+
+fn rectangle(half: (Fx, Fx), x: Fx, y: Fx) -> ShapeDef {
+    ShapeDef::new(lockstep2d::body::Polygon::rectangle(half.0, half.1).expect("a valid size")).offset(x, y)
+}
+
+fn ground(source: &mut Source<'_>, middle: Vec2<Fx>, commands: &mut Vec<Command>) {
+    let at = middle + Vec2::new(Fx::ZERO, FLOOR);
+    let fixed = BodyDef::fixed().position(at.x, at.y);
+    commands.push(match source.below(5) {
+        0 => spawn(fixed, &[line((fx!(-8), fx!(0)), (fx!(8), fx!(0)))]),
+        1 => spawn(fixed, &[rectangle((fx!(10), fx!(0.5)), fx!(0), fx!(-0.5))]),
+        2 => {
+            let wall = (fx!(0.25), fx!(4));
+            let floor = rectangle((fx!(3), fx!(0.5)), fx!(0), fx!(-0.5));
+            spawn(fixed, &[floor, rectangle(wall, fx!(-3), fx!(3)), rectangle(wall, fx!(3), fx!(3))])
+        }
+        3 => {
+            let slope = source.thousandths(-1000, 1000);
+            spawn(fixed, &[line((fx!(-8), slope), (fx!(0), fx!(0))), line((fx!(0), fx!(0)), (fx!(8), slope))])
+        }
+        _ => {
+            // A drum: four walls that turn about the point three metres above the floor.
+            let (lying, standing) = ((fx!(4), fx!(0.25)), (fx!(0.25), fx!(4)));
+            let walls = [
+                rectangle(lying, fx!(0), fx!(-3.25)),
+                rectangle(lying, fx!(0), fx!(3.25)),
+                rectangle(standing, fx!(-3.75), fx!(0)),
+                rectangle(standing, fx!(3.75), fx!(0)),
+            ];
+            let drum = BodyDef::kinematic().position(at.x, at.y + fx!(3));
+            spawn(drum.angular_velocity(source.thousandths(-1500, 1500)), &walls)
+        }
+    });
+}
+
+/// Equal bodies in rows, next to each other or a little apart.
+fn pile(source: &mut Source<'_>, middle: Vec2<Fx>, commands: &mut Vec<Command>) {
+    let shape = calm_shape(source);
+    let count = source.pick(&[10, 6, 15, 20, 4, 28]);
+    let columns = source.pick(&[4, 2, 3, 1, 6, 5]);
+    let gap = source.pick(&[fx!(0), fx!(0.01), fx!(-0.005), fx!(0.1)]);
+    let mut rng = Rng::new(source.byte().into());
+    let wobble = source.pick(&[fx!(0), fx!(0.01), fx!(0.05)]);
+    let turned = source.one_in(4);
+    let mut half = half_extents(&shape);
+    if turned {
+        half = Vec2::new(half.x + half.y, half.x + half.y);
+    }
+    let corner =
+        middle + Vec2::new(source.thousandths(-2000, 0), FLOOR + source.pick(&[fx!(0), fx!(0.5), fx!(2)]));
+    for index in 0..count {
+        let (column, row) = (Fx::from(index % columns), Fx::from(index / columns));
+        let x = fx_mul(column, half.x * 2 + gap) + rng.range(-wobble, wobble.max(Fx::DELTA));
+        let y = half.y + fx_mul(row, half.y * 2 + gap);
+        let mut body = BodyDef::dynamic().position(corner.x + x, corner.y + y);
+        if turned {
+            body = body.angle(rng.angle());
+        }
+        commands.push(spawn(body, &[shape]));
+    }
+}
+
+/// Bodies hinged to each other, the first one perhaps to the ground.
+fn chain(source: &mut Source<'_>, middle: Vec2<Fx>, commands: &mut Vec<Command>) {
+    let slot = |commands: &[Command]| {
+        let spawned = commands.iter().filter(|command| matches!(command, Command::Spawn { .. })).count();
+        BodyId::of_bytes(spawned as u64)
+    };
+    let shape = calm_shape(source);
+    let half = half_extents(&shape);
+    let start = middle + Vec2::new(source.thousandths(-3000, 0), source.thousandths(0, 3000));
+    let mut before = None;
+    if !source.one_in(4) {
+        before = Some((slot(commands), Vec2::ZERO));
+        commands.push(spawn(BodyDef::fixed().position(start.x, start.y), &[]));
+    }
+    for link in 0..source.pick(&[5i32, 2, 10, 3]) {
+        let body = slot(commands);
+        let x = start.x + fx_mul(half.x, Fx::from(2 * link + 1));
+        commands.push(spawn(BodyDef::dynamic().position(x, start.y), &[shape]));
+        if let Some((other, anchor)) = before {
+            let joint =
+                RevoluteDef::new(other, body).anchor_a(anchor.x, anchor.y).anchor_b(-half.x, Fx::ZERO);
+            commands.push(Command::AddJoint { joint: joint.into() });
+        }
+        before = Some((body, Vec2::new(half.x, Fx::ZERO)));
+    }
+}
+
+/// A moderate change.
+pub fn command(
+    source: &mut Source<'_>,
+    world: &World,
+    middle: Vec2<Fx>,
+    body: BodyId,
+    commands: &mut Vec<Command>,
+) {
+    let (mass, centre) =
+        world.body(body).map_or((Fx::ONE, middle), |body| (body.mass(), body.centre_of_mass()));
+    let vector = |source: &mut Source<'_>, reach: i64| {
+        Vec2::new(source.thousandths(-reach, reach), source.thousandths(-reach, reach))
+    };
+    let above = middle + Vec2::new(source.thousandths(-2000, 2000), source.thousandths(1000, 4000));
+    commands.push(match source.below(14) {
+        0..=2 => {
+            let kind =
+                source.pick(&[BodyKind::Dynamic, BodyKind::Dynamic, BodyKind::Dynamic, BodyKind::Kinematic]);
+            let body = BodyDef::new(kind).position(above.x, above.y).angle(source.angle());
+            let velocity = vector(source, 4000);
+            spawn(body.velocity(velocity.x, velocity.y), &[calm_shape(source)])
+        }
+        3 => Command::Despawn { body },
+        4 => {
+            let mut shape = calm_shape(source);
+            shape.offset = vector(source, 300);
+            Command::AddShape { body, shape }
+        }
+        5 => match world.body(body).and_then(|body| body.shapes().first()) {
+            Some(&shape) => Command::RemoveShape { shape },
+            None => return,
+        },
+        6 => {
+            // Where two bodies are next to each other, at the point between them.
+            let Some((other, there)) = world.bodies().find(|(id, _)| id.index() > body.index()) else {
+                return;
+            };
+            let Some(here) = world.body(body) else { return };
+            let between = (centre + there.centre_of_mass()).scale(fx!(0.5));
+            let anchor = |body: &lockstep2d::body::Body| body.transform().apply_inverse(between);
+            let (a, b) = (anchor(here), anchor(there));
+            let mut joint = RevoluteDef::new(body, other).anchor_a(a.x, a.y).anchor_b(b.x, b.y);
+            joint.collide_connected = source.one_in(2);
+            Command::AddJoint { joint: joint.into() }
+        }
+        7 => match world.joints().nth(source.below(world.joint_count())) {
+            Some((joint, _)) => Command::RemoveJoint { joint },
+            None => return,
+        },
+        8 => {
+            let force = vector(source, 20_000).scale(mass);
+            Command::ApplyForce { body, force, point: centre + vector(source, 200) }
+        }
+        9 => Command::ApplyTorque { body, torque: fx_mul(mass, source.thousandths(-2000, 2000)) },
+        10 => {
+            let impulse = vector(source, 3000).scale(mass);
+            Command::ApplyImpulse { body, impulse, point: centre + vector(source, 200) }
+        }
+        11 => {
+            let velocity = vector(source, 5000);
+            Command::SetVelocity { body, velocity, angular_velocity: source.thousandths(-5000, 5000) }
+        }
+        12 => Command::SetTransform { body, position: above, angle: source.angle() },
+        _ => Command::SetGravity { gravity: vector(source, 12_000) },
+    });
+}
