@@ -62,10 +62,10 @@ fn small_scene(source: &mut Source<'_>) -> (World, Generator) {
 }
 
 fn mutate_state(source: &mut Source<'_>, snapshot: &mut Vec<u8>) {
-    let end = snapshot.len() - HASH_BYTES;
-    if source.one_in(32) {
+    if source.one_in(32) || snapshot.len() < HEADER_BYTES + HASH_BYTES {
         return mutate(source, snapshot);
     }
+    let end = snapshot.len() - HASH_BYTES;
     let mut state = snapshot[HEADER_BYTES..end].to_vec();
     mutate(source, &mut state);
     snapshot.splice(HEADER_BYTES..end, state);
