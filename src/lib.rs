@@ -8,6 +8,7 @@ extern crate std;
 pub mod body;
 pub mod codec;
 pub mod collision;
+pub mod draw;
 pub mod hash;
 pub mod lockstep;
 pub mod math;

@@ -33,6 +33,7 @@ mod console;
 mod error;
 mod exit;
 mod files;
+mod sandbox;
 mod scenes;
 mod tool;
 
@@ -41,6 +42,7 @@ use std::process::ExitCode;
 use lockstep2d::lockstep::Game;
 
 pub use exit::Exit;
+pub use sandbox::SandboxScenes;
 pub use scenes::{Catalogue, Scene, SceneInfo, Script};
 pub use tool::Tool;
 

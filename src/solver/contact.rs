@@ -20,6 +20,21 @@ pub(crate) enum Pass {
     Relax,
 }
 
+/// Which of a contact's two points is solved first. It alternates from sub-step to sub-step: the first one turns
+/// the body a little, and always the same way it makes a stack of ten boxes sway by 4.7 mm while it settles instead
+/// of 0.05 mm.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Sweep {
+    Forward,
+    Backward,
+}
+
+impl Sweep {
+    pub(crate) const fn of_sub_step(index: u64) -> Self {
+        if index % 2 == 0 { Sweep::Forward } else { Sweep::Backward }
+    }
+}
+
 /// A pair of touching shapes, for one tick.
 #[derive(Clone, Debug)]
 pub(crate) struct ContactConstraint {
@@ -41,7 +56,7 @@ struct ContactPoint {
     grip: Grip,
     normal_lambda: Speed,
     tangent_lambda: Speed,
-    /// Relative normal velocity at the start of the tick, for restitution.
+    /// Relative normal velocity when the shapes first pushed each other in this tick, for restitution.
     approach: Speed,
     /// Whether the shapes have pushed each other in this tick, for restitution.
     pushed: bool,
@@ -76,7 +91,6 @@ impl ContactConstraint {
         surface: Surface,
         (slot_a, a): (u32, &Body),
         (slot_b, b): (u32, &Body),
-        solver_bodies: &[SolverBody],
         tuning: &Tuning,
         warm: &mut WarmStarts,
         faults: &mut Faults,
@@ -84,7 +98,6 @@ impl ContactConstraint {
         let fractions = MassFractions::of(a, b);
         let to_a = (manifold.origin - a.centre_of_mass()).narrow();
         let to_b = (manifold.origin - b.centre_of_mass()).narrow();
-        let velocities = (&solver_bodies[slot_a as usize], &solver_bodies[slot_b as usize]);
         let mut point = |point: &ManifoldPoint| {
             let lever_a = Lever { arm: point.anchor + to_a, inverse_gyration: a.mass.inverse_gyration };
             let lever_b = Lever { arm: point.anchor + to_b, inverse_gyration: b.mass.inverse_gyration };
@@ -102,7 +115,7 @@ impl ContactConstraint {
                 grip: grip(surface.friction, tangent_denominator, normal_denominator),
                 normal_lambda: lambda_of(carried.normal, normal_denominator, faults),
                 tangent_lambda: lambda_of(carried.tangent, tangent_denominator, faults),
-                approach: normal.velocity(velocities.0, velocities.1, faults),
+                approach: Speed::ZERO,
                 pushed: false,
                 normal_denominator,
                 tangent_denominator,
@@ -134,41 +147,38 @@ impl ContactConstraint {
         }
     }
 
+    /// Remembers how fast shapes that bounce approach, until they push each other: before the solver stops them.
+    pub(crate) fn observe_approach(&mut self, bodies: &[SolverBody], faults: &mut Faults) {
+        if self.restitution == Unit::ZERO {
+            return;
+        }
+        let (a, b) = (&bodies[self.body_a as usize], &bodies[self.body_b as usize]);
+        for point in self.points[..usize::from(self.count)].iter_mut().filter(|point| !point.pushed) {
+            point.approach = point.normal.velocity(a, b, faults);
+        }
+    }
+
     pub(crate) fn solve(
         &mut self,
         pass: Pass,
+        sweep: Sweep,
         tuning: &Tuning,
         bodies: &mut [SolverBody],
         faults: &mut Faults,
     ) {
         let (a, b) = SolverBody::pair(bodies, self.body_a, self.body_b);
-        for point in &mut self.points[..usize::from(self.count)] {
-            let separation = separation(point.separation, point.normal.displacement(a, b));
-            let (bias, softness) = bias_of(separation, pass, &self.softness, tuning);
-            point.normal.solve(
-                a,
-                b,
-                bias,
-                &softness,
-                (Speed::ZERO, IMPULSE_MAX),
-                &mut point.normal_lambda,
-                faults,
-            );
-            point.pushed |= point.normal_lambda > 0;
+        let softness = self.softness;
+        let points = &mut self.points[..usize::from(self.count)];
+        let mut solve_normal =
+            |point: &mut ContactPoint| point.solve_normal(a, b, pass, &softness, tuning, faults);
+        match sweep {
+            Sweep::Forward => points.iter_mut().for_each(&mut solve_normal),
+            Sweep::Backward => points.iter_mut().rev().for_each(&mut solve_normal),
         }
-        for point in &mut self.points[..usize::from(self.count)] {
-            let limit: Speed = mul(point.grip, point.normal_lambda);
-            let limit = limit.min(IMPULSE_MAX);
-            let bounds = (-limit, limit);
-            point.tangent.solve(
-                a,
-                b,
-                Speed::ZERO,
-                &Softness::RIGID,
-                bounds,
-                &mut point.tangent_lambda,
-                faults,
-            );
+        let mut solve_tangent = |point: &mut ContactPoint| point.solve_tangent(a, b, faults);
+        match sweep {
+            Sweep::Forward => points.iter_mut().for_each(&mut solve_tangent),
+            Sweep::Backward => points.iter_mut().rev().for_each(&mut solve_tangent),
         }
     }
 
@@ -202,6 +212,35 @@ impl ContactConstraint {
                 tangent: impulse_of(point.tangent_lambda, point.tangent_denominator),
             });
         }
+    }
+}
+
+impl ContactPoint {
+    /// The bodies may touch here but not overlap.
+    #[inline]
+    fn solve_normal(
+        &mut self,
+        a: &mut SolverBody,
+        b: &mut SolverBody,
+        pass: Pass,
+        softness: &Softness,
+        tuning: &Tuning,
+        faults: &mut Faults,
+    ) {
+        let separation = separation(self.separation, self.normal.displacement(a, b));
+        let (bias, softness) = bias_of(separation, pass, softness, tuning);
+        let bounds = (Speed::ZERO, IMPULSE_MAX);
+        self.normal.solve(a, b, bias, &softness, bounds, &mut self.normal_lambda, faults);
+        self.pushed |= self.normal_lambda > 0;
+    }
+
+    /// Coulomb: friction stops sliding, as far as it reaches.
+    #[inline]
+    fn solve_tangent(&mut self, a: &mut SolverBody, b: &mut SolverBody, faults: &mut Faults) {
+        let limit: Speed = mul(self.grip, self.normal_lambda);
+        let limit = limit.min(IMPULSE_MAX);
+        let (bias, bounds) = (Speed::ZERO, (-limit, limit));
+        self.tangent.solve(a, b, bias, &Softness::RIGID, bounds, &mut self.tangent_lambda, faults);
     }
 }
 

@@ -20,6 +20,7 @@ use alloc::vec::Vec;
 
 pub(crate) use body::{SolverBody, turned};
 use colour::{Colouring, Node};
+pub(crate) use contact::Sweep;
 use contact::{ContactConstraint, Pass};
 pub(crate) use contact::{Surface, WarmStarts};
 use integrate::Mover;
@@ -139,7 +140,6 @@ impl Solver {
                 surface,
                 (a, bodies.at(a)),
                 (b, bodies.at(b)),
-                &self.bodies,
                 tuning,
                 &mut self.warm_starts,
                 &mut self.faults,
@@ -149,7 +149,7 @@ impl Solver {
 
     /// One sub-step: aim joints, integrate velocities, warm start, solve with bias, integrate displacements,
     /// refresh joints, relax without bias.
-    pub(crate) fn sub_step(&mut self, iterations: u32, tuning: &Tuning) {
+    pub(crate) fn sub_step(&mut self, sweep: Sweep, iterations: u32, tuning: &Tuning) {
         let h = Reciprocal::of_integer(tuning.rate);
         for joint in &mut self.joints {
             joint.aim(&self.bodies, h, tuning);
@@ -157,9 +157,12 @@ impl Solver {
         for mover in &self.movers {
             mover.integrate_velocity(&mut self.bodies, tuning.speed_max, &mut self.faults);
         }
+        for contact in &mut self.contacts {
+            contact.observe_approach(&self.bodies, &mut self.faults);
+        }
         self.warm_start();
         for _ in 0..iterations {
-            self.solve(Pass::Bias, tuning);
+            self.solve(Pass::Bias, sweep, tuning);
         }
         for mover in &self.movers {
             mover.integrate_displacement(&mut self.bodies, h);
@@ -167,7 +170,7 @@ impl Solver {
         self.refresh_joints();
         if tuning.relax {
             for _ in 0..iterations {
-                self.solve(Pass::Relax, tuning);
+                self.solve(Pass::Relax, sweep, tuning);
             }
         }
     }
@@ -192,12 +195,12 @@ impl Solver {
         }
     }
 
-    fn solve(&mut self, pass: Pass, tuning: &Tuning) {
+    fn solve(&mut self, pass: Pass, sweep: Sweep, tuning: &Tuning) {
         for joint in &mut self.joints {
             joint.solve(pass, tuning, &mut self.bodies, &mut self.faults);
         }
         for contact in &mut self.contacts {
-            contact.solve(pass, tuning, &mut self.bodies, &mut self.faults);
+            contact.solve(pass, sweep, tuning, &mut self.bodies, &mut self.faults);
         }
     }
 

@@ -7,7 +7,7 @@ use super::stats::StepStats;
 use crate::body::{Body, BodyKind, Handle, WORLD_EXTENT_MAX};
 use crate::collision::{Manifold, Outline, Pair, PosedShape, Proxy, collide, margin_for, match_pairs};
 use crate::math::{Fx, Length, Vec2, fx_mul, narrow, widen};
-use crate::solver::{SolverBody, Surface, TouchingPair, Tuning, turned};
+use crate::solver::{SolverBody, Surface, Sweep, TouchingPair, Tuning, turned};
 
 impl World {
     /// Advances the world by one tick of `1 / tick_rate` seconds.
@@ -27,8 +27,9 @@ impl World {
         scratch.solver.prepare_joints(&state.joints, &state.bodies);
         let Scratch { solver, touching, manifolds, .. } = scratch;
         solver.prepare_contacts(touching, manifolds, &state.contacts, &state.bodies, &tuning);
-        for _ in 0..settings.sub_steps {
-            solver.sub_step(settings.iterations, &tuning);
+        for index in 0..settings.sub_steps {
+            let sweep = Sweep::of_sub_step(state.tick * u64::from(settings.sub_steps) + u64::from(index));
+            solver.sub_step(sweep, settings.iterations, &tuning);
         }
         solver.apply_restitution(&tuning);
         solver.store_impulses(&mut state.contacts, &mut state.joints);

@@ -1,0 +1,102 @@
+//! The part of a world that is worth seeing.
+
+use alloc::vec::Vec;
+
+use crate::body::{Body, BodyKind};
+use crate::collision::PosedShape;
+use crate::fx;
+use crate::math::{Aabb, Fx, Vec2};
+use crate::world::World;
+
+/// Bodies within four times this distance of the others belong to the scene, in metres.
+const SCENE_REACH_MIN: Fx = fx!(16);
+/// Ground is looked for within so many sizes of what moves, unless that is further than [`GROUND_REACH`].
+const GROUND_SIZES: i64 = 12;
+/// Ground is looked for at least this far from a scene that is as large, in metres: a ball is worth less without
+/// the floor that it falls to, but one can no longer see it beside a floor that is further away.
+const GROUND_REACH: Fx = fx!(16);
+/// Without anything that moves, only fixed shapes up to this size count, in metres.
+const FIXED_SIZE_MAX: Fx = fx!(512);
+
+/// The window around all bodies that can move, their joints, and the ground near them, with a margin.
+///
+/// A body far away from all others is left out, since it would make the rest too small to see. Of fixed shapes
+/// that are larger than the scene only the nearest part is shown. Bodies count as they are now, so the window
+/// moves with them.
+#[must_use]
+pub fn fit(world: &World) -> Aabb {
+    let moving = world.bodies().filter(|(_, body)| body.kind() != BodyKind::Fixed);
+    let moving: Vec<Aabb> = moving.map(|(_, body)| bounds_of(world, body)).collect();
+    let window = match scene_of(moving) {
+        Some(scene) => with_surroundings(world, scene),
+        None => fixed_boxes(world)
+            .filter(|aabb| longest_side(*aabb) <= FIXED_SIZE_MAX)
+            .reduce(Aabb::union)
+            .unwrap_or_default(),
+    };
+    let side = longest_side(window);
+    // An empty world, or a single point in it.
+    if side == Fx::ZERO { window.expanded(fx!(5)) } else { window.expanded(side / 12) }
+}
+
+/// The box around a body's shapes, or its centre if it has none.
+fn bounds_of(world: &World, body: &Body) -> Aabb {
+    let rotation = body.rotation();
+    let shapes = body.shapes().iter().filter_map(|&id| world.shape(id));
+    let boxes = shapes.map(|shape| PosedShape::new(&shape.def, body, rotation).bounds);
+    let centre = body.centre_of_mass();
+    boxes.reduce(Aabb::union).unwrap_or(Aabb::new(centre, centre))
+}
+
+/// The box around those that belong together. In the order of their distance from the median, the first one that
+/// is four times as far away as any before it does not, nor does anything behind it.
+fn scene_of(mut boxes: Vec<Aabb>) -> Option<Aabb> {
+    let middle = |component: fn(Vec2<Fx>) -> Fx| {
+        let mut values: Vec<Fx> = boxes.iter().map(|aabb| component(aabb.centre())).collect();
+        values.sort_unstable();
+        values.get(values.len() / 2).copied()
+    };
+    let middle = Vec2::new(middle(|centre| centre.x)?, middle(|centre| centre.y)?);
+    let distance = |aabb: &Aabb| {
+        let from_middle = aabb.centre() - middle;
+        from_middle.x.saturating_abs().max(from_middle.y.saturating_abs())
+    };
+    boxes.sort_by_key(distance);
+    let mut reach = SCENE_REACH_MIN;
+    let near = boxes.into_iter().take_while(|aabb| {
+        let near = distance(aabb) <= reach.saturating_mul_int(4);
+        reach = reach.max(distance(aabb));
+        near
+    });
+    near.reduce(Aabb::union)
+}
+
+/// The box around a scene, the anchors that hold it and the ground that it stands on.
+fn with_surroundings(world: &World, scene: Aabb) -> Aabb {
+    let side = longest_side(scene);
+    let reach = side.saturating_mul_int(GROUND_SIZES).min(side.max(GROUND_REACH));
+    let surroundings = scene.expanded(reach);
+    let anchors = world.joints().filter_map(|(id, _)| world.joint_anchors(id));
+    let anchors = anchors.flat_map(|(a, b)| [a, b]).map(|anchor| Aabb::new(anchor, anchor));
+    let ground = fixed_boxes(world).map(|aabb| {
+        if longest_side(aabb) <= reach {
+            return aabb;
+        }
+        let nearest = scene.centre().max(aabb.lower).min(aabb.upper);
+        Aabb::new(nearest, nearest)
+    });
+    anchors.chain(ground).filter(|&aabb| surroundings.overlaps(aabb)).fold(scene, Aabb::union)
+}
+
+/// The boxes of all shapes of fixed bodies.
+fn fixed_boxes(world: &World) -> impl Iterator<Item = Aabb> {
+    world.shapes().filter_map(|(_, shape)| {
+        let body = world.body(shape.body()).filter(|body| body.kind() == BodyKind::Fixed)?;
+        Some(PosedShape::new(&shape.def, body, body.rotation()).bounds)
+    })
+}
+
+fn longest_side(aabb: Aabb) -> Fx {
+    let sides = aabb.upper - aabb.lower;
+    sides.x.max(sides.y)
+}

@@ -1,0 +1,44 @@
+//! Pictures of a world: plain primitives for any renderer, and an SVG of a tick.
+//!
+//! [`primitives`] says *what* there is to see, in world coordinates and with a meaning ([`Style`]) instead of a
+//! colour, so that a window, a browser and the SVG here show the same things. [`svg`] is one such renderer.
+//! Drawing reads a world and cannot change it.
+//!
+//! Contacts are those that the last tick has solved: they were found before the bodies moved, so that at a fast
+//! body they lag behind the outline by the motion of one tick. Directly after [`World::restore`],
+//! [`World::from_bytes`] or the removal of a shape there are none until the next tick.
+//!
+//! Even here nothing is a float: the same world gives the same text on every machine, so that two pictures can
+//! be compared with `diff`.
+//!
+//! ```
+//! use lockstep2d::{body::{BodyDef, Geometry, ShapeDef}, fx, world::World};
+//! use lockstep2d::draw::{self, Form, Layers, View};
+//!
+//! let mut world = World::default();
+//! let ball = ShapeDef::new(Geometry::circle(fx!(0.5))?);
+//! world.spawn(&BodyDef::dynamic().position(fx!(0), fx!(10)), &[ball])?;
+//! let outlines = draw::primitives(&world, Layers { outlines: true, ..Layers::NONE });
+//! // The circle, and a radius that shows how it is turned.
+//! assert!(matches!(outlines[..], [
+//!     draw::Primitive { form: Form::Circle { .. }, .. },
+//!     draw::Primitive { form: Form::Line { .. }, .. },
+//! ]));
+//! assert!(draw::svg(&world, &View::default()).starts_with("<svg "));
+//! # Ok::<(), lockstep2d::body::WorldError>(())
+//! ```
+//!
+//! [`World::restore`]: crate::world::World::restore
+//! [`World::from_bytes`]: crate::world::World::from_bytes
+
+mod fit;
+mod path;
+mod primitives;
+mod screen;
+mod svg;
+mod view;
+
+pub use fit::fit;
+pub use primitives::{Form, Layers, Primitive, Proximity, Style, Subject, primitives};
+pub use svg::svg;
+pub use view::{Frame, View};

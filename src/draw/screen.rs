@@ -1,0 +1,150 @@
+//! From the world to the picture: `p = (x - centre) pixels / metres`, with y turned over.
+//!
+//! In whole hundredths of a pixel: no screen shows less, and integers print alike everywhere. The scale is a
+//! fraction of two integers because as one number it would have no digits left for a window as wide as the world.
+
+use core::fmt;
+
+use crate::fx;
+use crate::math::{Aabb, Fx, Vec2, div_round, saturate_wide, segment_intersection};
+
+/// The narrowest window, in metres. In a narrower one the largest shapes (120 m) get coordinates of more than
+/// 2^23 pixels, from where on common renderers (cairo) overflow.
+const WINDOW_MIN: Fx = fx!(0.02);
+
+/// A coordinate or length in hundredths of a pixel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct Pixel(pub(super) i64);
+
+impl fmt::Display for Pixel {
+    /// Without zeros at the end: most of a large picture are its numbers.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let hundredths = self.0.unsigned_abs();
+        let (whole, rest) = (hundredths / 100, hundredths % 100);
+        if self.0 < 0 {
+            f.write_str("-")?;
+        }
+        match (rest, rest % 10) {
+            (0, _) => write!(f, "{whole}"),
+            (_, 0) => write!(f, "{whole}.{}", rest / 10),
+            _ => write!(f, "{whole}.{rest:02}"),
+        }
+    }
+}
+
+/// A window of the world on an area of pixels.
+pub(super) struct Screen {
+    /// What is in the middle.
+    centre: Vec2<Fx>,
+    /// In whole pixels.
+    size: (u32, u32),
+    /// So many pixels ...
+    pixels: i128,
+    /// ... are so many units of [`Fx`].
+    units: i128,
+    /// What can be seen and a little more: what is cut off at its border is cut off outside of the picture.
+    pub(super) seen: Aabb,
+}
+
+impl Screen {
+    /// Shows a window as large as it fits into `size` pixels.
+    pub(super) fn new(window: Aabb, size: (u32, u32)) -> Self {
+        let window = Aabb::new(window.lower.min(window.upper), window.lower.max(window.upper));
+        let units = |lower: Fx, upper: Fx| {
+            (i128::from(upper.to_bits()) - i128::from(lower.to_bits())).max(WINDOW_MIN.to_bits().into())
+        };
+        let (width, height) = (units(window.lower.x, window.upper.x), units(window.lower.y, window.upper.y));
+        let (pixels_x, pixels_y) = (i128::from(size.0), i128::from(size.1));
+        let wide = width * pixels_y >= height * pixels_x;
+        let (pixels, units) = if wide { (pixels_x, width) } else { (pixels_y, height) };
+        // Half of the area, and 16 pixels for strokes.
+        let reach = |size: i128| Fx::from_bits(saturate_wide((size / 2 + 16) * units / pixels + 1));
+        let reach = Vec2::new(reach(pixels_x), reach(pixels_y));
+        let centre = window.centre();
+        Screen { centre, size, pixels, units, seen: Aabb::new(centre - reach, centre + reach) }
+    }
+
+    /// Where a world position is.
+    pub(super) fn place(&self, point: Vec2<Fx>) -> (Pixel, Pixel) {
+        let from = |value: Fx, centre: Fx| i128::from(value.to_bits()) - i128::from(centre.to_bits());
+        let x = self.scaled(from(point.x, self.centre.x));
+        let y = self.scaled(from(point.y, self.centre.y));
+        let middle = |size: u32| i64::from(size) * 50;
+        (Pixel(middle(self.size.0).saturating_add(x)), Pixel(middle(self.size.1).saturating_sub(y)))
+    }
+
+    /// How long a length in metres is.
+    pub(super) fn length(&self, length: Fx) -> Pixel {
+        Pixel(self.scaled(length.to_bits().into()))
+    }
+
+    fn scaled(&self, units: i128) -> i64 {
+        saturate_wide(div_round(units * self.pixels * 100, self.units))
+    }
+
+    /// The part of a line that can be seen.
+    pub(super) fn clipped(&self, from: Vec2<Fx>, to: Vec2<Fx>) -> Option<(Vec2<Fx>, Vec2<Fx>)> {
+        let Aabb { lower, upper } = self.seen;
+        if self.seen.contains_point(from) && self.seen.contains_point(to) {
+            return Some((from, to));
+        }
+        let corners = [lower, Vec2::new(upper.x, lower.y), upper, Vec2::new(lower.x, upper.y)];
+        let borders = (0..4).map(|i| (corners[i], corners[(i + 1) % 4]));
+        let crossings = borders.filter_map(|(start, end)| segment_intersection(from, to, start, end));
+        let ends = [from, to].into_iter().filter(|&end| self.seen.contains_point(end));
+        // Through a corner, both borders give the same point; two different ones are the ends of what is seen.
+        let mut points = ends.chain(crossings);
+        let first = points.next()?;
+        Some((first, points.max_by_key(|&point| first.distance(point))?))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use alloc::string::ToString;
+
+    fn screen(half: Fx) -> Screen {
+        let corner = Vec2::new(half, half);
+        Screen::new(Aabb::new(-corner, corner), (1000, 500))
+    }
+
+    #[test]
+    fn hundredths_print_without_zeros_at_the_end() {
+        let cases = [(0, "0"), (-5, "-0.05"), (150, "1.5"), (-1234, "-12.34"), (200, "2"), (1001, "10.01")];
+        for (hundredths, text) in cases {
+            assert_eq!(Pixel(hundredths).to_string(), text);
+        }
+    }
+
+    #[test]
+    fn the_window_is_in_the_middle_and_upright() {
+        let screen = screen(fx!(5));
+        assert_eq!(screen.place(Vec2::ZERO), (Pixel(50_000), Pixel(25_000)));
+        assert_eq!(screen.place(Vec2::new(fx!(1), fx!(5))), (Pixel(55_000), Pixel(0)));
+        assert_eq!(screen.length(fx!(0.5)), Pixel(2500));
+        assert!(screen.seen.contains_point(Vec2::new(fx!(10), fx!(-5))), "as wide as the area");
+    }
+
+    #[test]
+    fn the_widest_and_the_narrowest_window_have_a_scale() {
+        let all = screen(Fx::MAX);
+        assert_eq!(all.place(Vec2::new(Fx::MAX, Fx::MAX)).1, Pixel(0));
+        let point = screen(Fx::ZERO);
+        assert_eq!(point.length(WINDOW_MIN), Pixel(50_000));
+    }
+
+    #[test]
+    fn lines_end_a_little_outside() {
+        let screen = screen(fx!(5));
+        let across = |y: Fx| (Vec2::new(fx!(-1000000000), y), Vec2::new(fx!(1000000000), y));
+        let (west, east) = across(fx!(-1));
+        let (from, to) = screen.clipped(west, east).unwrap();
+        assert_eq!((from.y, to.y), (fx!(-1), fx!(-1)));
+        assert_eq!((from.x.min(to.x), from.x.max(to.x)), (screen.seen.lower.x, screen.seen.upper.x));
+        let (west, east) = across(fx!(6));
+        assert_eq!(screen.clipped(west, east), None);
+        let inside = (Vec2::new(fx!(1), fx!(2)), Vec2::new(fx!(3), fx!(4)));
+        assert_eq!(screen.clipped(inside.0, inside.1), Some(inside));
+    }
+}

@@ -1,0 +1,244 @@
+//! Pictures show what is there, look the same every time, and change nothing.
+
+use lockstep2d::body::{BodyDef, BodyKind, Geometry, Polygon, ShapeDef, WorldError};
+use lockstep2d::draw::{
+    Form, Frame, Layers, Primitive, Proximity, Style, Subject, View, fit, primitives, svg,
+};
+use lockstep2d::fx;
+use lockstep2d::math::{Aabb, Angle, Fx, Vec2};
+use lockstep2d::solver::RevoluteDef;
+use lockstep2d::world::World;
+
+const GROUND_TOP: Fx = fx!(0);
+
+/// A ground, a box at rest on it, a pendulum, and a lift: after a second the box has two contact points.
+fn scene() -> World {
+    build_scene().expect("a valid scene")
+}
+
+fn build_scene() -> Result<World, WorldError> {
+    let mut world = World::default();
+    let slab = ShapeDef::new(Polygon::rectangle(fx!(100), fx!(1))?);
+    world.spawn(&BodyDef::fixed().position(fx!(0), fx!(-1)), &[slab])?;
+    let crate_ = ShapeDef::new(Polygon::square(fx!(0.5))?);
+    world.spawn(&BodyDef::dynamic().position(fx!(0), fx!(0.5)), &[crate_])?;
+    let post = world.spawn(&BodyDef::fixed().position(fx!(3), fx!(4)), &[])?;
+    let bob = ShapeDef::new(Geometry::circle(fx!(0.25))?);
+    let bob = world.spawn(&BodyDef::dynamic().position(fx!(4.5), fx!(4)), &[bob])?;
+    world.add_joint(&RevoluteDef::new(post, bob).anchor_b(fx!(-1.5), fx!(0)).into())?;
+    let lift = ShapeDef::new(Polygon::rectangle(fx!(0.5), fx!(0.1))?.rounded(fx!(0.1))?);
+    let lift_def = BodyDef::kinematic().position(fx!(-3), fx!(1)).velocity(fx!(0), fx!(1));
+    world.spawn(&lift_def, &[lift])?;
+    for _ in 0..60 {
+        world.step();
+    }
+    Ok(world)
+}
+
+fn count(found: &[Primitive], style: Style) -> usize {
+    found.iter().filter(|primitive| primitive.style == style).count()
+}
+
+#[test]
+fn every_layer_has_its_primitives() {
+    let found = primitives(&scene(), Layers::ALL);
+    let expected = [
+        (Style::Outline(BodyKind::Fixed), 1),
+        // A box, and a circle with its radius.
+        (Style::Outline(BodyKind::Dynamic), 3),
+        (Style::Outline(BodyKind::Kinematic), 1),
+        (Style::FatBox, 4),
+        (Style::ContactPoint(Proximity::Touching), 2),
+        (Style::ContactPoint(Proximity::Speculative), 0),
+        (Style::ContactNormal(Proximity::Touching), 2),
+        (Style::ContactNormal(Proximity::Speculative), 0),
+        // The post is fixed.
+        (Style::JointArm, 1),
+        (Style::JointAnchor, 2),
+        (Style::JointGap, 1),
+        (Style::CentreOfMass, 3),
+    ];
+    for (style, expected) in expected {
+        assert_eq!(count(&found, style), expected, "{style:?}");
+    }
+    assert!(count(&found, Style::Velocity) >= 2, "bob and lift move");
+}
+
+#[test]
+fn a_layer_that_is_off_shows_nothing() {
+    let world = scene();
+    assert_eq!(primitives(&world, Layers::NONE), []);
+    assert_eq!(count(&primitives(&world, Layers::default()), Style::Velocity), 0);
+    let points = primitives(&world, Layers { contact_points: true, ..Layers::NONE });
+    assert_eq!(count(&points, Style::ContactPoint(Proximity::Touching)), points.len());
+}
+
+#[test]
+fn primitives_are_where_the_world_is() {
+    let world = scene();
+    let found = primitives(&world, Layers::ALL);
+    for Primitive { style, subject, form } in &found {
+        match (style, form) {
+            (Style::ContactPoint(_), Form::Point(place)) => {
+                assert!((place.y - GROUND_TOP).abs() < fx!(0.005), "{place:?}");
+                assert!((place.x.abs() - fx!(0.5)).abs() < fx!(0.005), "{place:?}");
+            }
+            (Style::ContactNormal(_), Form::Direction { direction, .. }) => {
+                assert!(direction.y > Fx::lit("0.999"), "from the ground up: {direction:?}");
+            }
+            (Style::JointGap, Form::Line { from, to }) => assert!(from.distance(*to) < fx!(0.01)),
+            (Style::CentreOfMass, Form::Point(place)) => {
+                let Subject::Body(id) = *subject else { panic!("{subject:?}") };
+                assert_eq!(*place, world.body(id).unwrap().centre_of_mass());
+            }
+            (Style::Outline(_), Form::Line { from, to }) => {
+                let radius = from.distance(*to);
+                assert!((radius - fx!(0.25)).abs() < fx!(0.0001), "the bob's: {radius}");
+            }
+            _ => {}
+        }
+    }
+}
+
+#[test]
+fn a_point_that_only_may_touch_is_told_apart() {
+    let mut world = World::default();
+    let floor = Geometry::segment(Vec2::new(fx!(-5), fx!(0)), Vec2::new(fx!(5), fx!(0))).unwrap();
+    world.spawn(&BodyDef::fixed(), &[ShapeDef::new(floor)]).unwrap();
+    let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).unwrap());
+    let falling = BodyDef::dynamic().position(fx!(0), fx!(0.75)).velocity(fx!(0), fx!(-30));
+    world.spawn(&falling, &[ball]).unwrap();
+    world.step();
+    let found = primitives(&world, Layers::ALL);
+    assert_eq!(count(&found, Style::ContactPoint(Proximity::Speculative)), 1);
+    assert_eq!(count(&found, Style::ContactNormal(Proximity::Speculative)), 1);
+    assert_eq!(count(&found, Style::ContactPoint(Proximity::Touching)), 0);
+}
+
+#[test]
+fn drawing_changes_nothing_and_repeats_exactly() {
+    let world = scene();
+    let before = (world.state_hash(), world.to_bytes());
+    let view = View { layers: Layers::ALL, ..View::default() };
+    let picture = svg(&world, &view);
+    assert_eq!((world.state_hash(), world.to_bytes()), before);
+    assert_eq!(svg(&world, &view), picture);
+    assert_eq!(svg(&scene(), &view), picture);
+    assert!(picture.contains(&world.state_hash().to_string()));
+}
+
+#[test]
+fn after_a_restore_contacts_are_missing_until_the_next_tick() {
+    let mut world = scene();
+    let snapshot = world.save();
+    world.restore(&snapshot);
+    let found = primitives(&world, Layers::ALL);
+    assert_eq!(count(&found, Style::ContactPoint(Proximity::Touching)), 0);
+    assert_eq!(count(&found, Style::FatBox), 4);
+    world.step();
+    let found = primitives(&world, Layers::ALL);
+    assert_eq!(count(&found, Style::ContactPoint(Proximity::Touching)), 2);
+}
+
+#[test]
+fn pictures_are_well_formed_for_any_view() {
+    let world = scene();
+    let corner = |size: Fx| Aabb::new(Vec2::new(-size, -size), Vec2::new(size, size));
+    let frames =
+        [fx!(0), fx!(0.001), fx!(1), fx!(1000), Fx::MAX, fx!(-3)].map(|size| Frame::Window(corner(size)));
+    for frame in frames.into_iter().chain([Frame::Fit]) {
+        for (width, height) in [(0, 0), (960, 720), (u32::MAX, 100)] {
+            let title = "<&\"' \u{1} ünïcode".to_string();
+            let view = View { width, height, frame, layers: Layers::ALL, title };
+            check_well_formed(&svg(&world, &view));
+        }
+    }
+    let picture = svg(&world, &View { title: "<b>&".into(), ..View::default() });
+    assert!(picture.contains("&lt;b&gt;&amp;") && !picture.contains("<b>"));
+    check_well_formed(&svg(&World::default(), &View::default()));
+}
+
+#[test]
+fn a_picture_has_an_element_for_each_body_and_style() {
+    let view = View { layers: Layers::ALL, ..View::default() };
+    let picture = svg(&scene(), &view);
+    assert_eq!(picture.matches("<title>body ").count(), 4);
+    // Four outlines, fat boxes, arm, velocity, centres, anchors, gap, normals, points, and the scale bar.
+    assert_eq!(picture.matches("<path ").count(), 4 + 8 + 1);
+    assert!(picture.len() < 5000, "{} bytes", picture.len());
+}
+
+#[test]
+fn what_cannot_be_seen_is_left_out() {
+    let far = Aabb::new(Vec2::new(fx!(500), fx!(500)), Vec2::new(fx!(501), fx!(501)));
+    let picture = svg(&scene(), &View { frame: Frame::Window(far), ..View::default() });
+    assert_eq!(picture.matches("<path ").count(), 1, "only the scale bar");
+}
+
+#[test]
+fn the_fit_holds_what_matters() {
+    let mut world = scene();
+    let window = fit(&world);
+    for (_, body) in world.bodies().filter(|(_, body)| body.kind() != BodyKind::Fixed) {
+        assert!(window.contains_point(body.centre_of_mass()));
+    }
+    assert!(window.contains_point(Vec2::new(fx!(3), fx!(4))), "the pivot of the pendulum");
+    assert!(window.upper.x - window.lower.x < fx!(15), "not the whole ground: {window:?}");
+
+    let runaway = ShapeDef::new(Geometry::circle(fx!(1)).unwrap());
+    world.spawn(&BodyDef::dynamic().position(fx!(0), fx!(-1000000)), &[runaway]).unwrap();
+    assert_eq!(fit(&world), window);
+}
+
+#[test]
+fn the_fit_shows_the_ground_below_what_falls() {
+    let mut world = World::default();
+    let slope = Geometry::segment(Vec2::new(fx!(-1000000), fx!(0)), Vec2::new(fx!(1000000), fx!(0))).unwrap();
+    world.spawn(&BodyDef::fixed(), &[ShapeDef::new(slope)]).unwrap();
+    assert!(fit(&world).contains_point(Vec2::ZERO));
+    let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).unwrap());
+    let def = BodyDef::dynamic().position(fx!(70), fx!(9)).angle(Angle::EIGHTH);
+    world.spawn(&def, &[ball]).unwrap();
+    let window = fit(&world);
+    assert!(window.contains_point(Vec2::new(fx!(70), fx!(0))), "{window:?}");
+    assert!(window.upper.y < fx!(12), "{window:?}");
+}
+
+/// Tags are closed in order, attributes are quoted, and text has no raw markup.
+fn check_well_formed(document: &str) {
+    let mut open: Vec<&str> = Vec::new();
+    let mut rest = document;
+    let mut roots = 0;
+    while let Some(start) = rest.find('<') {
+        check_text(&rest[..start]);
+        let end = start + rest[start..].find('>').expect("a tag ends");
+        let tag = &rest[start + 1..end];
+        rest = &rest[end + 1..];
+        if let Some(name) = tag.strip_prefix('/') {
+            assert_eq!(open.pop(), Some(name), "closed in order");
+            continue;
+        }
+        let empty = tag.ends_with('/');
+        let tag = tag.trim_end_matches('/');
+        let (name, attributes) = tag.split_once(' ').unwrap_or((tag, ""));
+        assert!(name.chars().all(|c| c.is_ascii_lowercase()), "{name}");
+        assert_eq!(attributes.matches('"').count() % 2, 0, "{tag}");
+        for attribute in attributes.split_inclusive("\" ") {
+            let (key, value) = attribute.trim_end().split_once('=').unwrap_or((attribute, "\"\""));
+            assert!(!key.contains('"') && value.starts_with('"'), "{tag}");
+        }
+        roots += usize::from(open.is_empty());
+        if !empty {
+            open.push(name);
+        }
+    }
+    assert!(open.is_empty() && roots == 1 && rest.trim().is_empty(), "one element holds all");
+}
+
+fn check_text(text: &str) {
+    for (place, _) in text.match_indices('&') {
+        let known = ["&lt;", "&gt;", "&amp;"].iter().any(|entity| text[place..].starts_with(entity));
+        assert!(known, "{text}");
+    }
+    assert!(!text.chars().any(|c| c < ' ' && c != '\n'), "{text:?}");
+}
