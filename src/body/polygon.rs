@@ -201,10 +201,11 @@ impl Polygon {
             }
             // Convex means: every other vertex lies strictly to the left of this edge. Testing all of them, not
             // only the next corner, also refuses star shapes that wind around twice.
-            let strictly_left = |&other: &Vec2<Length>| {
-                other == point || other == next || wide_cross(edge, other - point) > 0
+            // Its own ends are told by their place: an outline that comes back to one of them is refused too.
+            let strictly_left = |(j, &other): (usize, &Vec2<Length>)| {
+                j == i || j == (i + 1) % count || wide_cross(edge, other - point) > 0
             };
-            if !points.iter().all(strictly_left) {
+            if !points.iter().enumerate().all(strictly_left) {
                 return Err(GeometryError::NotConvex { vertex: i as u64 });
             }
             vertices[i] = point;

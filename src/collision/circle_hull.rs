@@ -3,17 +3,15 @@
 //! The centre is inside (the nearest face pushes it out, so that it is never pushed through), beside a face, or
 //! in the region of a corner.
 
-use fixed::types::extra::U27;
-
 use super::manifold::{Feature, Manifold, ManifoldPoint};
 use super::pose::Hull;
-use crate::math::{Length, Step, Unit, Vec2, convert};
+use crate::math::{Length, Step, Unit, Vec2, convert, round_shift, saturate};
 
 /// A is the hull, B the circle with its centre at `centre` from the hull's.
 pub(crate) fn collide(hull: &Hull, radius: Length, centre: Vec2<Length>, margin: Length) -> Manifold {
-    let (edge, face_separation) = nearest_face(hull, centre);
-    let reach: Step = convert(margin.saturating_add(radius).saturating_add(hull.radius));
-    if face_separation > reach {
+    let radii = step_bits(radius) + step_bits(hull.radius);
+    let (edge, face_distance) = nearest_face(hull, centre);
+    if face_distance - radii > step_bits(margin) {
         return Manifold::NONE;
     }
     let (v1, v2) = (hull.vertices()[edge], hull.vertices()[hull.next(edge)]);
@@ -29,35 +27,45 @@ pub(crate) fn collide(hull: &Hull, radius: Length, centre: Vec2<Length>, margin:
         None
     };
     let (normal, distance) = match corner {
-        Some(vertex) if face_separation > 0 => {
+        Some(vertex) if face_distance > 0 => {
             let d = centre - vertex;
-            (d.normalized().unwrap_or(face_normal), convert(d.length()))
+            (d.normalized().unwrap_or(face_normal), step_bits(d.length()))
         }
-        _ => (face_normal, face_separation),
+        _ => (face_normal, face_distance),
     };
-    let separation = distance.saturating_sub(convert(radius.saturating_add(hull.radius)));
-    if separation > convert::<_, U27>(margin) {
+    if distance - radii > step_bits(margin) {
         return Manifold::NONE;
     }
+    let separation = Step::from_bits(saturate(distance - radii));
     // The circle's surface is `radius` before its centre; half-way back to the hull's is another half separation.
     let back: Length = radius.saturating_add(convert(separation / 2));
     let anchor = centre - normal.scale(back);
     Manifold::single(normal, ManifoldPoint { anchor, separation, feature: Feature::SINGLE })
 }
 
-/// The face with the largest distance to a point, and that distance: negative for a point inside.
-fn nearest_face(hull: &Hull, point: Vec2<Length>) -> (usize, Step) {
-    let mut best = (0, Step::MIN);
+/// The face with the largest distance to a point, and that distance: negative for a point inside. In units of
+/// `Step` that do not saturate: of a large shape only the difference of distance and radius fits the type.
+fn nearest_face(hull: &Hull, point: Vec2<Length>) -> (usize, i64) {
+    let mut best = (0, i64::MIN);
     for (i, (&vertex, &normal)) in hull.vertices().iter().zip(hull.normals()).enumerate() {
-        let separation = distance_along(normal, point - vertex);
-        if separation > best.1 {
-            best = (i, separation);
+        let distance = distance_along(normal, point - vertex);
+        if distance > best.1 {
+            best = (i, distance);
         }
     }
     best
 }
 
-/// `n . d` with the resolution of a separation.
-fn distance_along(n: Vec2<Unit>, d: Vec2<Length>) -> Step {
-    d.dot(n)
+/// `n . d` in units of `Step`, not saturated.
+pub(super) fn distance_along(n: Vec2<Unit>, d: Vec2<Length>) -> i64 {
+    let product = |a: Unit, b: Length| i64::from(a.to_bits()) * i64::from(b.to_bits());
+    round_shift(
+        product(n.x, d.x) + product(n.y, d.y),
+        Unit::FRAC_NBITS + Length::FRAC_NBITS - Step::FRAC_NBITS,
+    )
+}
+
+/// A length in units of `Step`, not saturated.
+pub(super) fn step_bits(length: Length) -> i64 {
+    i64::from(length.to_bits()) << (Step::FRAC_NBITS - Length::FRAC_NBITS)
 }

@@ -5,16 +5,18 @@
 //! overlap the closest features may be two corners, which no face normal sees: that case has its own normal, so
 //! that a box falling past the corner of another does not catch on it.
 
-use fixed::types::extra::U27;
-
+use super::circle_hull::{distance_along, step_bits};
 use super::manifold::{Feature, Manifold, ManifoldPoint};
 use super::pose::Hull;
-use crate::math::{Length, Step, Unit, Vec2, convert};
+use crate::math::{Length, Step, Unit, Vec2, round_shift_wide, saturate, saturate_wide};
 
 /// B's best face must beat A's by this much, in metres, to become the reference: 0.5 mm keeps the choice from
 /// flickering between two equal faces. Impulses survive a flicker, since features do not depend on the choice,
 /// but anchors would jump. The same distance tells apart polygons that are disjoint from those that touch.
 const TOLERANCE: Step = Step::lit("0.0005");
+
+/// [`TOLERANCE`] with the 52 fraction bits of a product of a length and a unit vector.
+const TOLERANCE_WIDE: i64 = (TOLERANCE.to_bits() as i64) << 25;
 
 /// The face that separated a pair in the last tick. Trying it first changes no result: any axis with a gap
 /// beyond the margin proves that there is no contact.
@@ -70,7 +72,10 @@ pub(crate) fn collide(
         *hint = AxisHint { on_b: true, edge: small(face_b.edge) };
         return Manifold::NONE;
     }
-    if face_b.separation > face_a.separation + (i64::from(TOLERANCE.to_bits()) << 25) {
+    // Outlines that are apart need the true best face, which is next to the nearest corner.
+    let touching = face_a.separation.max(face_b.separation) <= TOLERANCE_WIDE;
+    let preference = if touching { TOLERANCE_WIDE } else { 0 };
+    if face_b.separation > face_a.separation + preference {
         clip(b, a, -d, face_b, margin).swapped().translated(d)
     } else {
         clip(a, b, d, face_a, margin)
@@ -127,25 +132,41 @@ fn clip(a: &Hull, b: &Hull, d: Vec2<Length>, face: Face, margin: Length) -> Mani
     let (upper, lower) = (end_of_b(incident), end_of_b(b.next(incident)));
 
     let context = Clip { normal, v1, radius_a: a.radius, radius_b: b.radius, margin };
-    let apart = face.separation > i64::from(TOLERANCE.to_bits()) << 25;
-    let corner = if upper.along < first.along {
-        Some((first, upper))
-    } else if lower.along > last.along {
-        Some((last, lower))
-    } else {
-        None
-    };
-    match corner {
-        Some((vertex_a, vertex_b)) if apart => context.corner(vertex_a, vertex_b),
-        // Outlines that overlap deeply may have no incident edge beside the face. Their deepest corner still
-        // pushes them apart.
-        Some((vertex_a, vertex_b)) => context.face([(vertex_a, vertex_b, vertex_b.position)].into_iter()),
-        None => {
-            let low = clip_end(lower, upper, first.along);
-            let high = clip_end(upper, lower, last.along);
-            context.face([(first, lower, low), (last, upper, high)].into_iter())
-        }
+    let apart = face.separation > TOLERANCE_WIDE;
+    if let Some((vertex_a, vertex_b)) = nearest_corners(first, last, upper, lower).filter(|_| apart) {
+        return context.corner(vertex_a, vertex_b);
     }
+    // Outlines that overlap deeply may have no incident edge beside the face. Their deepest corner still pushes
+    // them apart.
+    if upper.along < first.along {
+        return context.face([(first, upper, upper.position)].into_iter());
+    }
+    if lower.along > last.along {
+        return context.face([(last, lower, lower.position)].into_iter());
+    }
+    let low = clip_end(lower, upper, first.along);
+    let high = clip_end(upper, lower, last.along);
+    context.face([(first, lower, low), (last, upper, high)].into_iter())
+}
+
+/// The corners that are nearest to each other, if those are what is nearest of two edges that are apart: each lies
+/// beyond the end of the other edge.
+fn nearest_corners(first: End, last: End, upper: End, lower: End) -> Option<(End, End)> {
+    let raw = |length: Length| i64::from(length.to_bits());
+    let beyond_incident = |a: End, b: End, other: End| {
+        let (outward, edge) = (a.position - b.position, other.position - b.position);
+        // Coordinates differ by less than 512 m, so each product has at most 62 bits.
+        raw(outward.x) * raw(edge.x) + raw(outward.y) * raw(edge.y) < 0
+    };
+    [(upper, lower), (lower, upper)].into_iter().find_map(|(b, other)| {
+        if b.along < first.along && beyond_incident(first, b, other) {
+            Some((first, b))
+        } else if b.along > last.along && beyond_incident(last, b, other) {
+            Some((last, b))
+        } else {
+            None
+        }
+    })
 }
 
 /// The edge whose normal is most opposed to `normal`.
@@ -184,7 +205,7 @@ impl Clip {
     fn face(&self, ends: impl Iterator<Item = (End, End, Vec2<Length>)>) -> Manifold {
         let mut manifold = Manifold::new(self.normal);
         for (end_a, end_b, position) in ends {
-            let above_face: Step = (position - self.v1).dot(self.normal);
+            let above_face = distance_along(self.normal, position - self.v1);
             self.push(&mut manifold, end_a.vertex, end_b.vertex, position, above_face);
         }
         manifold
@@ -194,21 +215,28 @@ impl Clip {
     fn corner(&self, a: End, b: End) -> Manifold {
         let d = b.position - a.position;
         let mut manifold = Manifold::new(d.normalized().unwrap_or(self.normal));
-        self.push(&mut manifold, a.vertex, b.vertex, b.position, convert(d.length()));
+        self.push(&mut manifold, a.vertex, b.vertex, b.position, step_bits(d.length()));
         manifold
     }
 
     /// Adds the contact at a point of B's outline at a distance from A's, radii not counted, if it is near enough.
-    fn push(&self, manifold: &mut Manifold, a: usize, b: usize, position: Vec2<Length>, distance: Step) {
-        let (radius_a, radius_b): (Step, Step) = (convert(self.radius_a), convert(self.radius_b));
-        let separation = distance.saturating_sub(radius_a.saturating_add(radius_b));
-        if separation > convert::<_, U27>(self.margin) {
+    /// The distance is in units of `Step` and does not saturate: that of large rounded shapes exceeds the type.
+    fn push(&self, manifold: &mut Manifold, a: usize, b: usize, position: Vec2<Length>, distance: i64) {
+        let (radius_a, radius_b) = (step_bits(self.radius_a), step_bits(self.radius_b));
+        let separation = distance - (radius_a + radius_b);
+        if separation > step_bits(self.margin) {
             return;
         }
+        let separation = Step::from_bits(saturate(separation));
         // A's surface is at `radius_a` along the normal and B's at `distance - radius_b`: half-way between them,
         // seen from `position` at `distance`.
-        let to_middle = radius_a.saturating_sub(radius_b).saturating_sub(distance) / 2;
-        let anchor = position + manifold.normal.scale(to_middle);
+        let to_middle = (radius_a - radius_b - distance) / 2;
+        let along = |n: Unit| -> Length {
+            let wide = i128::from(n.to_bits()) * i128::from(to_middle);
+            let extra = Unit::FRAC_NBITS + Step::FRAC_NBITS - Length::FRAC_NBITS;
+            Length::from_bits(saturate(saturate_wide(round_shift_wide(wide, extra))))
+        };
+        let anchor = position + Vec2::new(along(manifold.normal.x), along(manifold.normal.y));
         manifold.push(ManifoldPoint { anchor, separation, feature: Feature::of_vertices(a, b) });
     }
 }

@@ -102,8 +102,7 @@ impl Manifold {
     }
 
     /// The same contact with its anchors measured from another world position.
-    pub(crate) fn about(mut self, origin: Vec2<Fx>) -> Self {
-        self.origin = origin;
-        self
+    pub(crate) fn about(self, origin: Vec2<Fx>) -> Self {
+        if self.count == 0 { Self::NONE } else { Manifold { origin, ..self } }
     }
 }

@@ -17,5 +17,5 @@ pub(crate) use broad_phase::{BroadPhase, Pair, Proxy};
 pub(crate) use contact::{Contact, PointImpulse, match_pairs};
 pub(crate) use hull_hull::{AxisHint, SatCounters};
 pub use manifold::{Feature, Manifold, ManifoldPoint};
-pub(crate) use narrow_phase::{collide, collide_outlines, margin_for};
+pub(crate) use narrow_phase::{collide, margin_for};
 pub(crate) use pose::{Outline, PosedShape};

@@ -3,7 +3,7 @@
 //! Siblings in this folder have the same functions in the same order: `prepare`, `warm_start`, `solve`, `store`.
 
 use super::body::SolverBody;
-use super::limits::{Faults, IMPULSE_MAX};
+use super::limits::{Faults, IMPULSE_MAX, clamp_warm_start};
 use super::row::{Denominator, Lever, MassFractions, Row, impulse_of, lambda_of, separation};
 use super::settings::Tuning;
 use super::softness::Softness;
@@ -139,9 +139,11 @@ impl ContactConstraint {
         }
     }
 
-    pub(crate) fn warm_start(&self, bodies: &mut [SolverBody], faults: &mut Faults) {
+    pub(crate) fn warm_start(&mut self, bodies: &mut [SolverBody], faults: &mut Faults) {
         let (a, b) = SolverBody::pair(bodies, self.body_a, self.body_b);
-        for point in &self.points[..usize::from(self.count)] {
+        for point in &mut self.points[..usize::from(self.count)] {
+            clamp_warm_start(&mut point.normal_lambda, faults);
+            clamp_warm_start(&mut point.tangent_lambda, faults);
             point.normal.apply(point.normal_lambda, a, b, faults);
             point.tangent.apply(point.tangent_lambda, a, b, faults);
         }

@@ -10,3 +10,12 @@ pub(crate) type Faults = u32;
 pub(crate) const STEP_MAX: Speed = Speed::lit("512");
 /// Largest accumulated impulse, in m/s.
 pub(crate) const IMPULSE_MAX: Speed = Speed::lit("1023");
+
+/// Keeps an impulse that has accumulated over several sub-steps, each within [`STEP_MAX`], within it as a whole:
+/// it is applied at once, to a velocity of up to [`SPEED_MAX`].
+#[inline]
+pub(crate) fn clamp_warm_start(lambda: &mut Speed, faults: &mut Faults) {
+    let within = (*lambda).clamp(-STEP_MAX, STEP_MAX);
+    *faults += u32::from(within != *lambda);
+    *lambda = within;
+}

@@ -187,10 +187,10 @@ impl Solver {
     }
 
     fn warm_start(&mut self) {
-        for joint in &self.joints {
+        for joint in &mut self.joints {
             joint.warm_start(&mut self.bodies, &mut self.faults);
         }
-        for contact in &self.contacts {
+        for contact in &mut self.contacts {
             contact.warm_start(&mut self.bodies, &mut self.faults);
         }
     }

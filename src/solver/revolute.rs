@@ -6,7 +6,7 @@
 use super::body::SolverBody;
 use super::contact::Pass;
 use super::joint::{Joint, JointDef};
-use super::limits::Faults;
+use super::limits::{Faults, clamp_warm_start};
 use super::point_block::{Arm, PointBlock};
 use super::row::MassFractions;
 use super::settings::Tuning;
@@ -89,7 +89,9 @@ impl RevoluteConstraint {
         self.ratios_ahead = self.block.ratios_ahead(turns, tuning.joint_stretch);
     }
 
-    pub(crate) fn warm_start(&self, bodies: &mut [SolverBody], faults: &mut Faults) {
+    pub(crate) fn warm_start(&mut self, bodies: &mut [SolverBody], faults: &mut Faults) {
+        clamp_warm_start(&mut self.lambda.x, faults);
+        clamp_warm_start(&mut self.lambda.y, faults);
         let (a, b) = SolverBody::pair(bodies, self.body_a, self.body_b);
         self.block.apply(self.lambda, a, b, faults);
     }

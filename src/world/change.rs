@@ -87,6 +87,8 @@ impl World {
         let owner = self.state.bodies.at_mut(body.slot());
         owner.shapes.retain(|&other| other != id);
         owner.set_mass(mass);
+        // The centre of mass has moved, and with it, by a rounding, the places of the other shapes.
+        self.scratch.poses.pose_body(&self.state, self.state.bodies.at(body.slot()));
         Ok(())
     }
 

@@ -36,7 +36,8 @@ impl World {
 
         finalise_poses(state, scratch);
         count(state, scratch);
-        state.tick += 1;
+        // A count that a stranger's snapshot may start anywhere.
+        state.tick = state.tick.wrapping_add(1);
     }
 }
 
@@ -257,7 +258,8 @@ fn finalise_poses(state: &mut State, scratch: &mut Scratch) {
     scratch.solver.faults += faults;
     for (id, body) in state.bodies.iter() {
         let SolverBody { shift, turn, .. } = scratch.solver.bodies[id.slot() as usize];
-        if shift != Vec2::ZERO || turn != 0 {
+        // A body at rest outside the world is put back too.
+        if shift != Vec2::ZERO || turn != 0 || faults > 0 {
             scratch.poses.pose_body(state, body);
         }
     }

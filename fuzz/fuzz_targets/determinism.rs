@@ -1,0 +1,7 @@
+//! Arbitrary scenes and commands: five ways to run them, one course of hashes. See `lockstep`.
+#![no_main]
+
+use libfuzzer_sys::fuzz_target;
+use lockstep2d_fuzz::lockstep;
+
+fuzz_target!(|bytes: &[u8]| lockstep::count(lockstep::run(bytes)));

@@ -1,0 +1,107 @@
+//! A forger: takes a replay apart by `docs/FORMAT.md`, changes it and puts it together again with all checksums
+//! and the chain hash repaired.
+
+use lockstep2d::hash::StateHash;
+
+use crate::source::Source;
+
+const TRAILER: u8 = 3;
+/// Where the trailer's payload holds the chain hash.
+const CHAIN: std::ops::Range<usize> = 24..40;
+
+/// The parts of a replay, without checksums.
+#[derive(Clone, Debug)]
+pub struct Forged {
+    header: Vec<u8>,
+    blocks: Vec<(u8, Vec<u8>)>,
+}
+
+impl Forged {
+    /// Takes apart a replay that a recorder has written.
+    ///
+    /// # Panics
+    /// For any other bytes.
+    #[must_use]
+    pub fn take_apart(file: &[u8]) -> Self {
+        let u32_at = |at: usize| u32::from_le_bytes(file[at..at + 4].try_into().expect("4 bytes")) as usize;
+        let mut at = 40 + u32_at(32) + u32_at(36) + 16;
+        let header = file[..at].to_vec();
+        at += 8;
+        let mut blocks = Vec::new();
+        while at < file.len() {
+            let length = u32_at(at);
+            blocks.push((file[at + 4], file[at + 5..at + 5 + length].to_vec()));
+            at += 5 + length + 8;
+        }
+        Forged { header, blocks }
+    }
+
+    /// The file with every checksum and the chain hash repaired.
+    #[must_use]
+    pub fn put_together(&self) -> Vec<u8> {
+        let mut file = self.header.clone();
+        let mut chain = StateHash::of_bytes(&file).0;
+        file.extend(&chain.to_le_bytes()[..8]);
+        for (kind, payload) in &self.blocks {
+            let mut block = (payload.len() as u32).to_le_bytes().to_vec();
+            block.push(*kind);
+            block.extend(payload);
+            if *kind == TRAILER && payload.len() >= CHAIN.end {
+                block[5..][CHAIN].copy_from_slice(&chain.to_le_bytes());
+            }
+            let block_hash = StateHash::of_bytes(&block).0;
+            chain = StateHash::of_bytes(&[chain.to_le_bytes(), block_hash.to_le_bytes()].concat()).0;
+            file.extend(&block);
+            file.extend(&chain.to_le_bytes()[..8]);
+        }
+        file
+    }
+
+    /// Changes one thing.
+    pub fn change(&mut self, source: &mut Source<'_>) {
+        let index = source.below(self.blocks.len());
+        match source.below(8) {
+            0 => mutate(source, &mut self.header),
+            1 | 2 if !self.blocks.is_empty() => mutate(source, &mut self.blocks[index].1),
+            3 if !self.blocks.is_empty() => drop(self.blocks.remove(index)),
+            4 if !self.blocks.is_empty() && self.blocks.len() < 50 => {
+                let copy = self.blocks[index].clone();
+                self.blocks.push(copy);
+            }
+            5 if !self.blocks.is_empty() => {
+                let other = source.below(self.blocks.len());
+                self.blocks.swap(index, other);
+            }
+            6 if !self.blocks.is_empty() => self.blocks[index].0 = source.byte() % 5,
+            _ => {
+                let payload = (0..source.below(40)).map(|_| source.byte()).collect();
+                self.blocks.insert(index, (1 + source.byte() % 3, payload));
+            }
+        }
+    }
+}
+
+/// Changes, adds, removes or copies a few bytes.
+pub fn mutate(source: &mut Source<'_>, bytes: &mut Vec<u8>) {
+    let at = source.below(bytes.len());
+    match source.below(7) {
+        _ if bytes.is_empty() => bytes.push(source.byte()),
+        0 => bytes[at] ^= 1 << source.below(8),
+        1 => bytes[at] = source.byte(),
+        2 => {
+            // A number at an edge of its range, as wide as any field.
+            let number = source.edge().to_bits().to_le_bytes();
+            let width = source.pick(&[8, 4, 2]).min(bytes.len() - at);
+            bytes[at..at + width].copy_from_slice(&number[..width]);
+        }
+        3 => bytes.truncate(at),
+        4 => bytes.insert(at, source.byte()),
+        5 => drop(bytes.remove(at)),
+        _ => {
+            let (from, width) = (source.below(bytes.len()), source.below(32));
+            let copy = bytes[from..(from + width).min(bytes.len())].to_vec();
+            let end = (at + copy.len()).min(bytes.len());
+            bytes[at..end].copy_from_slice(&copy[..end - at]);
+        }
+    }
+}

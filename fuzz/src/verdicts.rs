@@ -1,0 +1,85 @@
+//! Replays that no recorder has written, and replays of hostile players that one has.
+
+use lockstep2d::lockstep::{Sandbox, SandboxSetup};
+use lockstep2d::replay::{Limits, Recording, Verdict, verify};
+use lockstep2d::world::World;
+
+use crate::forge::{Forged, mutate};
+use crate::generator::{self, Generator};
+use crate::source::Source;
+
+/// What a fuzzed file may cost: well below a second.
+#[must_use]
+pub fn limits() -> Limits {
+    Limits {
+        file_bytes: 64 << 10,
+        setup_bytes: 32 << 10,
+        players: 4,
+        block_bytes: 32 << 10,
+        block_ticks: 600,
+        ticks: 600,
+        tick_work: 40_000,
+        total_work: 400_000,
+    }
+}
+
+/// Verifies what the bytes describe.
+///
+/// # Panics
+/// When a file that was changed is a `Match`, or one that was not is not.
+pub fn run(bytes: &[u8]) -> Verdict {
+    let mut source = Source::new(bytes);
+    let way = source.below(8);
+    if way == 7 {
+        return verify::<Sandbox>(source.rest(), &limits());
+    }
+    let original = record(&mut source);
+    let mut file = original.clone();
+    match way {
+        0 | 1 => mutate(&mut source, &mut file),
+        2..=5 => {
+            let mut forged = Forged::take_apart(&original);
+            for _ in 0..=source.below(3) {
+                forged.change(&mut source);
+            }
+            file = forged.put_together();
+        }
+        _ => {}
+    }
+    let verdict = verify::<Sandbox>(&file, &limits());
+    if file == original {
+        let good = matches!(verdict, Verdict::Match { .. } | Verdict::LimitExceeded { .. });
+        assert!(good, "a recorder's own file: {verdict}");
+    } else {
+        assert!(!verdict.is_match(), "a changed file is a match");
+    }
+    verdict
+}
+
+/// The replay of a small scene.
+fn record(source: &mut Source<'_>) -> Vec<u8> {
+    let config = generator::config(source);
+    let config = World::new(config).map(|_| config).unwrap_or_default();
+    let mut generator = Generator::new(source);
+    // A setup is refused as a whole, so commands that fail are left out of it.
+    let mut world = World::new(config).expect("checked");
+    let mut commands = generator.setup(source);
+    commands.retain(|command| world.execute(command).is_ok());
+    commands.truncate(24);
+    let setup = SandboxSetup { config, commands };
+    let interval = 1 + source.below(9) as u32;
+    let mut recording = Recording::<Sandbox>::start(&setup, interval).expect("a valid setup");
+    let mut inputs = Vec::new();
+    let mut cost = 0;
+    for _ in 0..source.below(20) {
+        if source.one_in(2) {
+            inputs = generator.tick(source, recording.game().world());
+        }
+        recording.step(std::slice::from_ref(&inputs)).expect("inputs that can be recorded");
+        cost += generator::cost(recording.game().world());
+        if cost > 50_000 {
+            break;
+        }
+    }
+    recording.finish().expect("no claims")
+}

@@ -1,0 +1,38 @@
+//! What tests share: the committed constants.
+#![allow(dead_code, reason = "each test binary uses a part")]
+
+use std::path::PathBuf;
+
+/// The seed of the golden scenes.
+pub const SEED: u64 = 1;
+
+/// The hash of a scene after some ticks, for the present semantics.
+pub struct Golden {
+    pub scene: String,
+    pub ticks: u64,
+    pub hash: String,
+}
+
+/// The lines of `tests/goldens.txt` that belong to the present semantics: semantics, scene, ticks, hash.
+pub fn goldens() -> Vec<Golden> {
+    let text = std::fs::read_to_string(root().join("tests/goldens.txt")).expect("tests/goldens.txt");
+    let semantics = lockstep2d::SEMANTICS.to_string();
+    let lines = text.lines().filter(|line| !line.starts_with('#') && !line.is_empty());
+    lines
+        .map(|line| line.split_whitespace().collect::<Vec<_>>())
+        .filter(|words| words[0] == semantics)
+        .map(|words| match words[..] {
+            [_, scene, ticks, hash] => Golden {
+                scene: scene.to_owned(),
+                ticks: ticks.parse().expect("a number of ticks"),
+                hash: hash.to_owned(),
+            },
+            _ => panic!("four words, not {words:?}"),
+        })
+        .collect()
+}
+
+/// The folder of the workspace.
+pub fn root() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+}

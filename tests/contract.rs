@@ -1,0 +1,139 @@
+//! The contract of determinism, for every scene: two runs, a restore from bytes at every 10th tick, dropped caches
+//! and another broad phase give the same hash after every tick; and that hash is the one in `tests/goldens.txt`,
+//! in every build profile and on every machine.
+
+mod common;
+
+use common::{Golden, goldens};
+use lockstep2d::collision::BroadPhaseKind;
+use lockstep2d::hash::StateHash;
+use lockstep2d::lockstep::{Game, Sandbox};
+use lockstep2d::scenes::{self, Scene};
+use lockstep2d::world::{Events, World};
+
+/// What a run shows from outside after every tick.
+struct Trace {
+    hashes: Vec<StateHash>,
+    events: Vec<Events>,
+}
+
+/// Runs a scene; `disturb` may do before each tick whatever must not change a thing.
+fn trace(scene: &Scene, ticks: u64, mut disturb: impl FnMut(u64, &mut Sandbox)) -> Trace {
+    let mut game = Sandbox::new(&scene.setup(common::SEED)).expect("the scenes of this crate are valid");
+    let mut trace = Trace { hashes: vec![game.state_hash()], events: vec![] };
+    for tick in 0..ticks {
+        disturb(tick, &mut game);
+        let commands = scene.commands(tick, &game);
+        game.step(&[commands]);
+        trace.hashes.push(game.state_hash());
+        trace.events.push(game.world().events().clone());
+    }
+    assert_eq!(game.world().validate(), Ok(()), "{}", scene.name);
+    assert_eq!(game.world().faults(), 0, "{}", scene.name);
+    trace
+}
+
+fn assert_same(scene: &Scene, what: &str, trace: &Trace, reference: &Trace) {
+    let pairs = trace.hashes.iter().zip(&reference.hashes);
+    let differing = pairs.enumerate().find(|(_, (a, b))| a != b).map(|(tick, _)| tick);
+    assert_eq!(differing, None, "{}: {what} changes the hash after this tick", scene.name);
+    let pairs = trace.events.iter().zip(&reference.events);
+    let differing = pairs.enumerate().find(|(_, (a, b))| a != b).map(|(tick, _)| tick + 1);
+    assert_eq!(differing, None, "{}: {what} changes the events of this tick", scene.name);
+}
+
+/// Whole scenes if they are small, the beginning of large ones.
+fn each_scene(mut hold: impl FnMut(&Scene, u64, &Trace)) {
+    for golden in goldens() {
+        let scene = Scene::find(&golden.scene).expect("a golden of a scene");
+        let ticks = golden.ticks.min(200);
+        hold(scene, ticks, &trace(scene, ticks, |_, _| {}));
+    }
+}
+
+#[test]
+fn two_runs_agree() {
+    each_scene(|scene, ticks, reference| assert_same(scene, "a second run", &trace(scene, ticks, |_, _| {}), reference));
+}
+
+#[test]
+fn restoring_from_bytes_continues_bit_identically() {
+    each_scene(|scene, ticks, reference| {
+        let through_bytes = |tick: u64, game: &mut Sandbox| {
+            if tick % 10 == 0 {
+                let bytes = game.world().to_bytes();
+                let world = World::from_bytes(&bytes).expect("its own bytes");
+                assert_eq!(world.to_bytes(), bytes, "{}: one state has one encoding", scene.name);
+                *game.world_mut() = world;
+            }
+        };
+        assert_same(scene, "a restore from bytes", &trace(scene, ticks, through_bytes), reference);
+    });
+}
+
+#[test]
+fn rolling_back_and_forth_changes_nothing() {
+    each_scene(|scene, ticks, reference| {
+        let back_and_forth = |tick: u64, game: &mut Sandbox| {
+            if tick % 7 == 0 {
+                let save = game.save();
+                for ahead in 0..3 {
+                    let commands = scene.commands(tick + ahead, game);
+                    game.step(&[commands]);
+                }
+                game.load(&save);
+            }
+        };
+        assert_same(scene, "a rollback", &trace(scene, ticks, back_and_forth), reference);
+    });
+}
+
+#[test]
+fn scratch_may_be_cleared_before_any_tick() {
+    each_scene(|scene, ticks, reference| {
+        let clear = |tick: u64, game: &mut Sandbox| {
+            if tick % 3 == 0 {
+                game.world_mut().clear_scratch();
+            }
+        };
+        assert_same(scene, "cleared scratch", &trace(scene, ticks, clear), reference);
+    });
+}
+
+#[test]
+fn the_broad_phase_makes_no_difference() {
+    each_scene(|scene, ticks, reference| {
+        // Brute force compares each shape with each: a few ticks of the largest scenes are enough.
+        let ticks = if scene.setup(common::SEED).commands.len() > 4000 { 5 } else { ticks };
+        let brute_force = |tick: u64, game: &mut Sandbox| {
+            if tick == 0 {
+                game.world_mut().set_broad_phase(BroadPhaseKind::BruteForce);
+            }
+        };
+        assert_same(scene, "brute force", &trace(scene, ticks, brute_force), reference);
+    });
+}
+
+/// "Run twice and compare" finds no mistake that is made twice: a committed constant does.
+#[test]
+fn every_scene_ends_in_its_golden() {
+    let scenes: Vec<&str> = scenes::ALL.iter().map(|scene| scene.name).collect();
+    let goldens = goldens();
+    let listed: Vec<&str> = goldens.iter().map(|golden| golden.scene.as_str()).collect();
+    assert_eq!(listed, scenes, "tests/goldens.txt lists every scene once, in their order");
+    let mut wrong = Vec::new();
+    for Golden { scene: name, ticks, hash } in &goldens {
+        let scene = Scene::find(name).expect("listed");
+        let end = trace(scene, *ticks, |_, _| {}).hashes.pop().expect("at least one");
+        if end.to_string() != *hash {
+            wrong.push(format!("{} {name} {ticks} {end}", lockstep2d::SEMANTICS));
+        }
+    }
+    assert!(
+        wrong.is_empty(),
+        "the arithmetic has changed. If that is meant: raise lockstep2d::SEMANTICS, add these lines to \
+         tests/goldens.txt, record replays/ anew (`cargo run --release -- record`), and say \"hashes change: yes\" \
+         in CHANGELOG.md.\n{}",
+        wrong.join("\n")
+    );
+}

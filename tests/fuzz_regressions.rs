@@ -1,0 +1,165 @@
+//! One test for each finding of a fuzz target (`fuzz/`), by its smallest case.
+//!
+//! Each of them is a promise about outside data: a typed error or a world that goes on, never a panic, and
+//! caches that never decide anything.
+
+use lockstep2d::body::{BodyDef, Geometry, MassSource, Polygon, ShapeDef, WORLD_EXTENT_MAX};
+use lockstep2d::lockstep::{Game, Sandbox, SandboxSetup};
+use lockstep2d::math::{Angle, Fx, Vec2};
+use lockstep2d::world::{Command, Config, World};
+use lockstep2d::{codec, fx};
+
+fn weightless() -> World {
+    World::new(Config { gravity: Vec2::ZERO, ..Config::default() }).unwrap()
+}
+
+/// Steps a world and a copy of it without caches, and compares them after every tick.
+fn caches_decide_nothing(world: &mut World, ticks: u64) {
+    let mut bare = world.clone();
+    for _ in 0..ticks {
+        bare.clear_scratch();
+        bare.step();
+        world.step();
+        let differing = world.digest().differing(&bare.digest());
+        assert!(differing.is_empty(), "tick {}: {differing:?} depend on caches", world.tick());
+    }
+}
+
+#[test]
+fn an_outline_that_goes_back_on_itself_is_refused() {
+    // Every vertex is an end of every edge, so none was ever found on the wrong side of one; the mass was then
+    // divided by an area of zero.
+    let there_and_back = [(0, 0), (1, 0), (0, 0), (1, 0)].map(|(x, y)| Vec2::new(Fx::from(x), Fx::from(y)));
+    assert!(Polygon::new(&there_and_back).is_err());
+}
+
+#[test]
+fn an_outline_that_goes_round_twice_is_refused() {
+    let twice = [(0, 0), (1, 0), (0, 1), (0, 0), (1, 0), (0, 1)];
+    let twice = twice.map(|(x, y)| Vec2::new(Fx::from(x), Fx::from(y)));
+    assert!(Polygon::new(&twice).is_err());
+}
+
+#[test]
+fn a_body_put_back_inside_the_world_takes_its_shapes_along() {
+    // The centre of mass is outside the world and is clamped, although the body does not move.
+    let mut world = weightless();
+    let mass = MassSource::Given { mass: fx!(1), centre: Vec2::new(fx!(10), fx!(0)), gyration: fx!(1) };
+    let body = BodyDef::dynamic().position(WORLD_EXTENT_MAX, fx!(0)).mass(mass);
+    world.spawn(&body, &[ShapeDef::new(Geometry::circle(fx!(1)).unwrap())]).unwrap();
+    caches_decide_nothing(&mut world, 3);
+}
+
+#[test]
+fn a_removed_shape_moves_the_others_as_their_caches_say() {
+    // The centre of mass moves, and with it, by a rounding, the place of the shapes that stay.
+    let mut world = weightless();
+    for turn in 1..40 {
+        let ball = |x, y| ShapeDef::new(Geometry::circle(fx!(0.3)).unwrap()).offset(x, y);
+        let shapes = [ball(fx!(0.1), fx!(0.7)), ball(fx!(1.3), fx!(0.2)), ball(fx!(-0.9), fx!(-0.35))];
+        let body = BodyDef::dynamic().angle(Angle::from_bits(turn * 91_234_567)).velocity(fx!(50), fx!(3));
+        let body = world.spawn(&body, &shapes).unwrap();
+        world.step();
+        let first = world.body(body).unwrap().shapes()[0];
+        world.remove_shape(first).unwrap();
+        caches_decide_nothing(&mut world, 3);
+        world.despawn(body).unwrap();
+    }
+}
+
+#[test]
+fn bodies_without_shapes_are_work() {
+    let spawn = Command::Spawn { body: BodyDef::fixed(), shapes: Vec::new() };
+    let setup = SandboxSetup { config: Config::default(), commands: vec![spawn; 1000] };
+    let game = Sandbox::new(&setup).unwrap();
+    assert!(game.work(&[Vec::new()]) >= 1000, "{}", game.work(&[Vec::new()]));
+}
+
+#[test]
+fn many_shapes_at_one_point_are_work_before_their_first_tick() {
+    let ball = ShapeDef::new(Geometry::circle(fx!(1)).unwrap());
+    let spawn = Command::Spawn { body: BodyDef::dynamic(), shapes: vec![ball] };
+    let setup = SandboxSetup { config: Config::default(), commands: vec![spawn; 400] };
+    let mut game = Sandbox::new(&setup).unwrap();
+    let announced = game.work(&[Vec::new()]);
+    game.step(&[Vec::new()]);
+    let pairs = game.world().pair_count() as u64;
+    assert!(announced >= pairs, "{announced} work units for {pairs} pairs");
+}
+
+#[test]
+fn the_last_tick_of_all_is_followed_by_no_panic() {
+    let world = World::default();
+    let mut bytes = world.to_bytes();
+    let config = codec::encode(world.config()).len();
+    let at = 24 + config;
+    bytes[at..at + 8].copy_from_slice(&u64::MAX.to_le_bytes());
+    let end = bytes.len() - 16;
+    let hash = lockstep2d::hash::StateHash::of_bytes(&bytes[..end]);
+    bytes[end..].copy_from_slice(&hash.0.to_le_bytes());
+    if let Ok(mut world) = World::from_bytes(&bytes) {
+        world.step();
+    }
+}
+
+#[test]
+fn a_large_ball_is_pushed_out_of_the_floor() {
+    // Distances of more than 16 m saturate, the radius as well, and their difference said "just touching".
+    let mut world = weightless();
+    let floor = ShapeDef::new(Polygon::rectangle(fx!(100), fx!(50)).unwrap());
+    world.spawn(&BodyDef::fixed().position(fx!(0), fx!(-50)), &[floor]).unwrap();
+    let ball = ShapeDef::new(Geometry::circle(fx!(40)).unwrap());
+    let ball = world.spawn(&BodyDef::dynamic().position(fx!(0), fx!(35)), &[ball]).unwrap();
+    for _ in 0..300 {
+        world.step();
+    }
+    let height = world.body(ball).unwrap().position().y;
+    assert!(height > fx!(39), "still at {height}");
+}
+
+#[test]
+fn a_large_ball_beside_a_corner_does_not_touch_it() {
+    let mut world = weightless();
+    let block = ShapeDef::new(Polygon::square(fx!(10)).unwrap());
+    world.spawn(&BodyDef::fixed().position(fx!(-10), fx!(-10)), &[block]).unwrap();
+    let ball = ShapeDef::new(Geometry::circle(fx!(50)).unwrap());
+    // 63 m from the corner, although the boxes overlap.
+    world.spawn(&BodyDef::dynamic().position(fx!(45), fx!(45)), &[ball]).unwrap();
+    world.step();
+    assert!(world.events().contact_begin.is_empty(), "13 m apart");
+}
+
+#[test]
+fn a_ball_deep_inside_a_large_block_leaves_by_the_nearest_face() {
+    let mut world = weightless();
+    let block = ShapeDef::new(Polygon::square(fx!(100)).unwrap());
+    world.spawn(&BodyDef::fixed(), &[block]).unwrap();
+    let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).unwrap());
+    let ball = world.spawn(&BodyDef::dynamic().position(fx!(70), fx!(0)), &[ball]).unwrap();
+    for _ in 0..60 {
+        world.step();
+    }
+    let x = world.body(ball).unwrap().position().x;
+    assert!(x > fx!(70), "pushed to {x}");
+}
+
+#[test]
+fn impulses_that_grow_over_sub_steps_are_no_overflow() {
+    // What accumulates over several updates of at most 512 m/s is applied at once when the next sub-step starts.
+    // Balls at one point, where each pushes all others, in gravity that only the speed limit stops.
+    let gravity = Vec2::new(fx!(0), fx!(-100000));
+    let mut world = World::new(Config { gravity, tick_rate: 20, ..Config::default() }).unwrap();
+    let floor = ShapeDef::new(Polygon::rectangle(fx!(20), fx!(1)).unwrap());
+    world.spawn(&BodyDef::fixed().position(fx!(0), fx!(-1)), &[floor]).unwrap();
+    let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).unwrap());
+    for i in 0..40 {
+        let mass = if i % 2 == 0 { fx!(1000) } else { fx!(1) };
+        let mass = MassSource::Given { mass, centre: Vec2::ZERO, gyration: fx!(0.3) };
+        let body = BodyDef::dynamic().position(fx!(0), Fx::from(i) / 10).mass(mass);
+        world.spawn(&body, &[ball]).unwrap();
+    }
+    for _ in 0..60 {
+        world.step();
+        world.validate().unwrap();
+    }
+}

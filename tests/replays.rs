@@ -1,0 +1,53 @@
+//! The committed replays verify, end in the committed constants, and are what the scenes still record.
+
+mod common;
+
+use lockstep2d::lockstep::Sandbox;
+use lockstep2d::replay::{CHECKPOINT_INTERVAL, Limits, Recording, Verdict, verify};
+use lockstep2d::scenes::Scene;
+
+fn replays() -> Vec<(String, Vec<u8>)> {
+    let folder = std::fs::read_dir(common::root().join("replays")).expect("replays/");
+    let mut replays: Vec<_> = folder
+        .map(|entry| entry.expect("readable").path())
+        .filter(|path| path.extension().is_some_and(|extension| extension == "replay"))
+        .map(|path| {
+            let name = path.file_stem().expect("a name").to_string_lossy().into_owned();
+            (name, std::fs::read(&path).expect("readable"))
+        })
+        .collect();
+    replays.sort();
+    replays
+}
+
+#[test]
+fn every_replay_matches_and_ends_in_its_golden() {
+    let goldens = common::goldens();
+    let replays = replays();
+    assert!(replays.len() >= 10, "only {} replays", replays.len());
+    for (name, bytes) in replays {
+        let golden = goldens.iter().find(|golden| golden.scene == name).expect("a golden for each replay");
+        match verify::<Sandbox>(&bytes, &Limits::default()) {
+            Verdict::Match { ticks, hash } => {
+                assert_eq!((ticks, hash.to_string()), (golden.ticks, golden.hash.clone()), "{name}");
+            }
+            other => panic!("{name}: {other}"),
+        }
+    }
+}
+
+/// Recording a scene anew gives the committed file byte for byte, so replays and scenes cannot drift apart.
+#[test]
+fn every_replay_is_what_its_scene_records() {
+    for (name, bytes) in replays() {
+        let scene = Scene::find(&name).expect("a scene for each replay");
+        let mut recording =
+            Recording::<Sandbox>::start(&scene.setup(common::SEED), CHECKPOINT_INTERVAL).expect("valid");
+        for tick in 0..scene.ticks {
+            let commands = scene.commands(tick, recording.game());
+            recording.step(&[commands]).expect("small inputs");
+        }
+        let recorded = recording.finish().expect("the end");
+        assert!(recorded == bytes, "{name}: the recording differs from replays/{name}.replay");
+    }
+}
