@@ -47,7 +47,9 @@ impl Churn {
     }
 
     fn join(&mut self) {
-        let pick = |rng: &mut Rng, alive: &[BodyId]| alive[rng.below(u32::try_from(alive.len()).expect("few")) as usize];
+        let pick = |rng: &mut Rng, alive: &[BodyId]| {
+            alive[rng.below(u32::try_from(alive.len()).expect("few")) as usize]
+        };
         let (a, b) = (pick(&mut self.rng, &self.alive), pick(&mut self.rng, &self.alive));
         match self.world.add_joint(&RevoluteDef::new(a, b).into()) {
             Ok(id) => self.joints.push(id),
@@ -72,10 +74,12 @@ impl Churn {
             assert_eq!(self.world.despawn(*id), Err(WorldError::StaleBody(*id)));
         }
         let (world, joints) = (&self.world, &self.joints);
-        let held = |id: &JointId| world.joint(*id).is_none_or(|joint| {
-            let (a, b) = joint.def().bodies();
-            world.body(a).is_some() && world.body(b).is_some()
-        });
+        let held = |id: &JointId| {
+            world.joint(*id).is_none_or(|joint| {
+                let (a, b) = joint.def().bodies();
+                world.body(a).is_some() && world.body(b).is_some()
+            })
+        };
         assert!(joints.iter().all(held), "a joint has outlived a body");
     }
 }

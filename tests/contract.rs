@@ -53,7 +53,9 @@ fn each_scene(mut hold: impl FnMut(&Scene, u64, &Trace)) {
 
 #[test]
 fn two_runs_agree() {
-    each_scene(|scene, ticks, reference| assert_same(scene, "a second run", &trace(scene, ticks, |_, _| {}), reference));
+    each_scene(|scene, ticks, reference| {
+        assert_same(scene, "a second run", &trace(scene, ticks, |_, _| {}), reference)
+    });
 }
 
 #[test]

@@ -57,7 +57,8 @@ fn spawn(body: BodyDef, shape: ShapeDef) -> Command {
 #[test]
 fn shapes_out_of_range_are_refused() {
     let point = Vec2::new;
-    let concave = [point(fx!(0), fx!(0)), point(fx!(4), fx!(0)), point(fx!(1), fx!(1)), point(fx!(0), fx!(4))];
+    let concave =
+        [point(fx!(0), fx!(0)), point(fx!(4), fx!(0)), point(fx!(1), fx!(1)), point(fx!(0), fx!(4))];
     assert!(matches!(Polygon::new(&concave), Err(GeometryError::NotConvex { .. })));
     let line = [point(fx!(0), fx!(0)), point(fx!(1), fx!(1)), point(fx!(2), fx!(2))];
     assert!(matches!(Polygon::new(&line), Err(GeometryError::NotConvex { .. })));
@@ -162,9 +163,13 @@ fn what_a_body_cannot_do_is_refused() {
     stage.refuses(Command::AddJoint { joint: long.into() }, |error| {
         matches!(error, WorldError::OffsetOutOfRange { .. })
     });
-    stage.refuses(Command::SetGravity { gravity: velocity }, |error| matches!(error, WorldError::Setting { .. }));
+    stage.refuses(Command::SetGravity { gravity: velocity }, |error| {
+        matches!(error, WorldError::Setting { .. })
+    });
     let only = stage.world.body(ball).expect("there").shapes()[0];
-    stage.refuses(Command::RemoveShape { shape: only }, |error| matches!(error, WorldError::MassOutOfRange { .. }));
+    stage.refuses(Command::RemoveShape { shape: only }, |error| {
+        matches!(error, WorldError::MassOutOfRange { .. })
+    });
 }
 
 #[test]
@@ -193,7 +198,10 @@ fn settings_out_of_range_are_named() {
         ("sub_steps", Config { solver: SolverSettings { sub_steps: 0, ..solver }, ..Config::default() }),
         ("tick_rate x sub_steps", Config { tick_rate: 1000, ..Config::default() }),
         ("contact", Config { solver: SolverSettings { contact: soft, ..solver }, ..Config::default() }),
-        ("speed_max", Config { solver: SolverSettings { speed_max: fx!(401), ..solver }, ..Config::default() }),
+        (
+            "speed_max",
+            Config { solver: SolverSettings { speed_max: fx!(401), ..solver }, ..Config::default() },
+        ),
     ];
     for (name, mut config) in cases {
         if name == "tick_rate x sub_steps" {
@@ -209,7 +217,8 @@ fn valid_extremes_are_accepted() {
     let edge = fx!(1073741824);
     let far = BodyDef::dynamic().position(edge, -edge).velocity(fx!(400), fx!(0));
     world.spawn(&far, &[ball()]).expect("the edge of the world");
-    let line = Geometry::segment(Vec2::new(-edge, fx!(0)), Vec2::new(edge, fx!(0))).expect("as long as the world");
+    let line =
+        Geometry::segment(Vec2::new(-edge, fx!(0)), Vec2::new(edge, fx!(0))).expect("as long as the world");
     world.spawn(&BodyDef::fixed(), &[ShapeDef::new(line)]).expect("valid");
     let everything = Filter { category: u64::MAX, mask: u64::MAX, group: i32::MIN };
     let rough = Material { friction: fx!(16), restitution: fx!(1), ..Material::default() };
