@@ -10,7 +10,7 @@ use lockstep2d::world::{Command, Config, World};
 use lockstep2d::{codec, fx};
 
 fn weightless() -> World {
-    World::new(Config { gravity: Vec2::ZERO, ..Config::default() }).unwrap()
+    World::new(Config { gravity: Vec2::ZERO, ..Config::default() }).expect("valid")
 }
 
 /// Steps a world and a copy of it without caches, and compares them after every tick.

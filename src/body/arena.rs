@@ -83,13 +83,15 @@ pub(crate) struct Arena<T, H> {
     slots: Vec<Slot<T>>,
     /// Vacant slots, last freed on top.
     free: Vec<u32>,
+    /// Slots whose generations are used up.
+    retired: u32,
     #[serde(skip)]
     handle: PhantomData<fn() -> H>,
 }
 
 impl<T, H> Default for Arena<T, H> {
     fn default() -> Self {
-        Arena { slots: Vec::new(), free: Vec::new(), handle: PhantomData }
+        Arena { slots: Vec::new(), free: Vec::new(), retired: 0, handle: PhantomData }
     }
 }
 
@@ -101,7 +103,7 @@ impl<T, H: Handle> Arena<T, H> {
 
     /// Number of values.
     pub(crate) fn len(&self) -> usize {
-        self.slots.iter().filter(|slot| slot.value.is_some()).count()
+        self.slots.len() - self.free.len() - self.retired as usize
     }
 
     /// Stores a value in the most recently freed slot, or in a new one.
@@ -131,6 +133,8 @@ impl<T, H: Handle> Arena<T, H> {
         if slot.generation < u32::MAX {
             slot.generation += 1;
             self.free.push(handle.slot());
+        } else {
+            self.retired += 1;
         }
         value
     }
@@ -195,12 +199,10 @@ impl<T, H: Handle> Arena<T, H> {
             let fresh = listed.get_mut(index as usize).is_some_and(|seen| !core::mem::replace(seen, true));
             fresh && self.slots[index as usize].value.is_none()
         });
-        let none_lost = self
-            .slots
-            .iter()
-            .zip(listed)
-            .all(|(slot, listed)| listed || slot.value.is_some() || slot.generation == u32::MAX);
-        all_vacant && none_lost
+        let mut retired = 0;
+        let unlisted = self.slots.iter().zip(listed).filter(|(slot, listed)| slot.value.is_none() && !listed);
+        let all_used_up = unlisted.inspect(|_| retired += 1).all(|(slot, _)| slot.generation == u32::MAX);
+        all_vacant && all_used_up && retired == self.retired
     }
 }
 

@@ -41,22 +41,64 @@ impl BroadPhase {
         }
     }
 
-    /// All pairs of overlapping boxes that `accept` wants, sorted. `proxies` are in slot order.
-    pub(crate) fn pairs(&mut self, proxies: &[Proxy], accept: impl Fn(Pair) -> bool, pairs: &mut Vec<Pair>) {
+    /// All pairs of overlapping boxes that `accept` wants, sorted; of more than `limit`, the smallest. Says whether
+    /// any were left out. `proxies` are in slot order.
+    pub(crate) fn pairs(
+        &mut self,
+        proxies: &[Proxy],
+        accept: impl Fn(Pair) -> bool,
+        limit: usize,
+        pairs: &mut Vec<Pair>,
+    ) -> bool {
         pairs.clear();
+        let mut found = SmallestPairs { pairs, limit, overflowed: false };
+        let accepted = |pair: Pair| {
+            if accept(pair) {
+                found.push(pair);
+            }
+        };
         match self {
-            BroadPhase::SweepAndPrune(sweep) => sweep.pairs(proxies, accept, pairs),
-            BroadPhase::BruteForce => brute_force(proxies, accept, pairs),
+            BroadPhase::SweepAndPrune(sweep) => sweep.each_pair(proxies, accepted),
+            BroadPhase::BruteForce => each_pair(proxies, accepted),
         }
-        pairs.sort_unstable();
+        found.finish()
     }
 }
 
-fn brute_force(proxies: &[Proxy], accept: impl Fn(Pair) -> bool, pairs: &mut Vec<Pair>) {
+/// Keeps the smallest pairs in bounded memory, in whatever order they are found.
+struct SmallestPairs<'a> {
+    pairs: &'a mut Vec<Pair>,
+    limit: usize,
+    overflowed: bool,
+}
+
+impl SmallestPairs<'_> {
+    fn push(&mut self, pair: Pair) {
+        self.pairs.push(pair);
+        // Twice the limit, so that the sort is paid for by as many pushes.
+        if self.pairs.len() >= self.limit.saturating_mul(2).max(64) {
+            self.trim();
+        }
+    }
+
+    fn trim(&mut self) {
+        self.pairs.sort_unstable();
+        self.overflowed |= self.pairs.len() > self.limit;
+        self.pairs.truncate(self.limit);
+    }
+
+    fn finish(mut self) -> bool {
+        self.trim();
+        self.overflowed
+    }
+}
+
+/// Brute force.
+fn each_pair(proxies: &[Proxy], mut found: impl FnMut(Pair)) {
     for (i, a) in proxies.iter().enumerate() {
         for b in &proxies[i + 1..] {
-            if a.fat.overlaps(b.fat) && accept((a.slot, b.slot)) {
-                pairs.push((a.slot, b.slot));
+            if a.fat.overlaps(b.fat) {
+                found((a.slot, b.slot));
             }
         }
     }
@@ -76,7 +118,7 @@ mod tests {
         let mut oracle = BroadPhase::new(BroadPhaseKind::BruteForce);
         let mut boxes: Vec<Option<Aabb>> = alloc::vec![None; 120];
         let (mut found, mut expected, mut total) = (Vec::new(), Vec::new(), 0);
-        for _ in 0..300 {
+        for round in 0..300 {
             for slot in &mut boxes {
                 match (rng.below(20), &slot) {
                     (0, _) => *slot = None,
@@ -95,9 +137,11 @@ mod tests {
             let proxies: Vec<Proxy> =
                 boxes.iter().zip(0..).filter_map(|(fat, slot)| fat.map(|fat| Proxy { slot, fat })).collect();
             let accept = |(a, b): Pair| (a + b) % 7 != 0;
-            sweep.pairs(&proxies, accept, &mut found);
-            oracle.pairs(&proxies, accept, &mut expected);
+            let limit = if round % 3 == 0 { 10 } else { 1000 };
+            let overflowed = sweep.pairs(&proxies, accept, limit, &mut found);
+            assert_eq!(oracle.pairs(&proxies, accept, limit, &mut expected), overflowed);
             assert_eq!(found, expected);
+            assert!(found.len() <= limit && found.is_sorted());
             total += found.len();
         }
         assert!(total > 1000, "only {total} pairs");

@@ -36,11 +36,11 @@ struct Interval {
 }
 
 impl SweepAndPrune {
-    pub(crate) fn pairs(&mut self, proxies: &[Proxy], accept: impl Fn(Pair) -> bool, pairs: &mut Vec<Pair>) {
+    pub(crate) fn each_pair(&mut self, proxies: &[Proxy], found: impl FnMut(Pair)) {
         self.choose_axis(proxies);
         self.refresh_order(proxies);
         self.sort();
-        self.sweep(accept, pairs);
+        self.sweep(found);
     }
 
     /// Sweeps along the axis on which the boxes are spread out more.
@@ -103,15 +103,12 @@ impl SweepAndPrune {
         self.order.extend(self.sorted.iter().map(|interval| interval.slot));
     }
 
-    fn sweep(&self, accept: impl Fn(Pair) -> bool, pairs: &mut Vec<Pair>) {
+    fn sweep(&self, mut found: impl FnMut(Pair)) {
         for (i, a) in self.sorted.iter().enumerate() {
             let rest = self.sorted[i + 1..].iter().take_while(|b| b.lower <= a.upper);
             for b in rest {
                 if b.across_lower <= a.across_upper && a.across_lower <= b.across_upper {
-                    let pair = if a.slot < b.slot { (a.slot, b.slot) } else { (b.slot, a.slot) };
-                    if accept(pair) {
-                        pairs.push(pair);
-                    }
+                    found((a.slot.min(b.slot), a.slot.max(b.slot)));
                 }
             }
         }

@@ -101,8 +101,9 @@ impl Game for Sandbox {
         self.refused = *refused;
     }
 
-    /// Bodies, pairs and joints times what is done for each in a tick; and the square of the number of shapes,
-    /// because the broad phase of a scene made for it compares each with each.
+    /// Bodies, pairs and joints times what is done for each in a tick. Shapes that have just been put on top of
+    /// each other make pairs that are not there yet: as many as the world allows, in the worst case, for which
+    /// the broad phase compares each with each.
     fn work(&self, inputs: &[Vec<Command>]) -> u64 {
         let count = |n: usize| u64::try_from(n).unwrap_or(u64::MAX);
         let world = &self.world;
@@ -111,11 +112,14 @@ impl Game for Sandbox {
             Command::Spawn { shapes, .. } => shapes.len(),
             _ => 0,
         });
-        let shapes = count(world.shapes().count()).saturating_add(count(spawned.sum()));
+        let shapes = count(world.shape_count()).saturating_add(count(spawned.sum()));
+        let bodies = count(world.body_count()).saturating_add(commands);
         let solver = world.config().solver;
         let rounds = u64::from(solver.sub_steps) * u64::from(solver.iterations);
-        let constraints = count(world.pair_count()).saturating_add(count(world.joints().count()));
-        let solved = (shapes.saturating_add(constraints)).saturating_mul(rounds);
-        solved.saturating_add(commands).saturating_add(shapes.saturating_mul(shapes) / 64)
+        let constraints = count(world.pair_count()).saturating_add(count(world.joint_count()));
+        let solved = bodies.saturating_add(shapes).saturating_add(constraints).saturating_mul(rounds);
+        let compared = shapes.saturating_mul(shapes);
+        let possible_pairs = (compared / 2).min(world.config().pair_limit.into());
+        solved.saturating_add(possible_pairs).saturating_add(compared / 64)
     }
 }

@@ -30,7 +30,8 @@ impl Reciprocal {
         // 2^(width-1) <= bits < 2^width, so 2^(width+30) / bits is above 2^30 and at most 2^31.
         let width = 64 - bits.leading_zeros();
         let quotient = div_round(1 << (width + 30), bits as i128);
-        let mantissa = if quotient > i32::MAX as i128 { i32::MAX } else { quotient as i32 };
+        // 2^31 itself, for a power of two, becomes 2^31 - 1.
+        let mantissa = saturate(super::formats::saturate_wide(quotient));
         Reciprocal { mantissa, shift: width + 30 - 32 }
     }
 
@@ -46,7 +47,7 @@ impl Reciprocal {
     /// `a / x`, rounded once, saturated.
     #[inline]
     #[must_use]
-    pub fn mul<A: LeEqU32, B: LeEqU32>(self, a: FixedI32<A>) -> FixedI32<B> {
+    pub fn times<A: LeEqU32, B: LeEqU32>(self, a: FixedI32<A>) -> FixedI32<B> {
         let product = i64::from(a.to_bits()) * i64::from(self.mantissa);
         let shift = i64::from(self.shift) + i64::from(A::U32) - i64::from(B::U32);
         FixedI32::from_bits(match u32::try_from(shift) {
@@ -58,7 +59,7 @@ impl Reciprocal {
 
     /// `a / x` exactly: the product and its number of fraction bits beyond those of `a`.
     #[inline]
-    pub(crate) fn mul_exact<A: LeEqU32>(self, a: FixedI32<A>) -> (i64, u32) {
+    pub(crate) fn times_exact<A: LeEqU32>(self, a: FixedI32<A>) -> (i64, u32) {
         (i64::from(a.to_bits()) * i64::from(self.mantissa), self.shift)
     }
 }
@@ -72,13 +73,13 @@ mod tests {
     #[test]
     fn divides_to_31_significant_bits() {
         let one_metre: Length = Length::ONE;
-        let ratio: Ratio = Reciprocal::of(fx!(0.015625)).mul(one_metre);
+        let ratio: Ratio = Reciprocal::of(fx!(0.015625)).times(one_metre);
         assert_eq!(ratio, Ratio::from_num(64));
-        let step: Step = Reciprocal::of_integer(240).mul(Speed::from_num(120));
+        let step: Step = Reciprocal::of_integer(240).times(Speed::from_num(120));
         assert_eq!(step, Step::from_num(1) / 2);
-        let tiny: Ratio = Reciprocal::of(fx!(512)).mul(one_metre);
+        let tiny: Ratio = Reciprocal::of(fx!(512)).times(one_metre);
         assert_eq!(tiny, Ratio::ONE / 512);
-        let saturated: Ratio = Reciprocal::of(fx!(0.002)).mul(one_metre);
+        let saturated: Ratio = Reciprocal::of(fx!(0.002)).times(one_metre);
         assert_eq!(saturated, Ratio::MAX);
     }
 

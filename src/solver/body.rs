@@ -27,7 +27,7 @@ impl SolverBody {
     pub(crate) fn clamp(&mut self, faults: &mut Faults) {
         let mut clamp = |speed: &mut Speed| {
             let within = (*speed).clamp(-SPEED_MAX, SPEED_MAX);
-            *faults += u32::from(within != *speed);
+            *faults += u64::from(within != *speed);
             *speed = within;
         };
         clamp(&mut self.velocity.x);
@@ -55,7 +55,7 @@ impl SolverBody {
 pub(crate) fn turned(angle: Angle, turn: Step, inverse_gyration: Reciprocal) -> Angle {
     /// `1 / (2 pi)` with 63 fraction bits.
     const INVERSE_TAU: i128 = 1_467_945_251_641_000_613;
-    let (product, extra) = inverse_gyration.mul_exact(turn);
+    let (product, extra) = inverse_gyration.times_exact(turn);
     let turns = round_shift_wide(i128::from(product) * INVERSE_TAU, extra + 27 + 63 - 32);
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "angles wrap")]
     let bits = turns as u32;

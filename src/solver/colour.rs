@@ -8,7 +8,7 @@ use alloc::vec::Vec;
 
 /// More colours than this would be nearly empty: what does not fit (a drum touched by hundreds of boxes) is one
 /// serial list after them, in its own order.
-const COLOURS_MAX: usize = 24;
+const COLOURS_MAX: u8 = 24;
 
 const BUCKETS: usize = 256;
 
@@ -43,14 +43,19 @@ impl Colouring {
             let node = nodes[index as usize];
             let bodies = [node.body_a, node.body_b].into_iter().flatten();
             let taken = bodies.clone().fold(0, |taken, body| taken | self.used[body as usize]);
-            let colour = taken.trailing_ones().min(COLOURS_MAX as u32);
+            let colour = taken.trailing_ones().min(COLOURS_MAX.into());
             for body in bodies {
                 self.used[body as usize] |= 1 << colour;
             }
             self.colours[index as usize] = colour_byte(colour);
         }
         let colours = &self.colours;
-        counting_sort(nodes.len(), COLOURS_MAX + 1, |i| usize::from(colours[i]), &mut self.order);
+        counting_sort(
+            nodes.len(),
+            usize::from(COLOURS_MAX) + 1,
+            |i| usize::from(colours[i]),
+            &mut self.order,
+        );
         &self.order
     }
 }
@@ -61,7 +66,6 @@ fn colour_byte(colour: u32) -> u8 {
 }
 
 /// The top bits of a multiplicative hash (D. Knuth, The Art of Computer Programming 3, 6.4).
-#[expect(clippy::cast_possible_truncation, reason = "the top 8 bits")]
 fn bucket_of(key: u64) -> u8 {
     (key.wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 56) as u8
 }
@@ -118,14 +122,14 @@ mod tests {
                     in_colour.clear();
                     last = colour;
                 }
-                if usize::from(colour) < COLOURS_MAX {
+                if colour < COLOURS_MAX {
                     let node = nodes[index as usize];
                     for body in [node.body_a, node.body_b].into_iter().flatten() {
                         assert!(in_colour.insert(body), "body {body} twice in colour {colour}");
                     }
                 }
             }
-            assert_eq!(usize::from(last), COLOURS_MAX, "the hub overflows");
+            assert_eq!(last, COLOURS_MAX, "the hub overflows");
         }
     }
 }

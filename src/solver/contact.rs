@@ -271,7 +271,7 @@ fn grip(friction: Fx, tangent: Denominator, normal: Denominator) -> Grip {
     // Denominators have at most 45 bits, so 18 more fit.
     let ratio = (tangent << 18) / (normal >> 2).max(1);
     let friction: Grip = narrow(friction);
-    Grip::from_bits(saturate(i64::from(saturate(ratio)) * i64::from(friction.to_bits()) >> 20))
+    Grip::from_bits(saturate((i64::from(saturate(ratio)) * i64::from(friction.to_bits())) >> 20))
 }
 
 /// A check of `bias_of`'s formats: 27 + 18 fraction bits are more than a speed's 21.

@@ -74,14 +74,14 @@ impl Mover {
         }
         limit_speed(&mut body.velocity, speed_max, faults);
         let spin = body.spin.clamp(-speed_max, speed_max);
-        *faults += u32::from(spin != body.spin);
+        *faults += u64::from(spin != body.spin);
         body.spin = spin;
     }
 
     /// `x' = x + h v'`.
     pub(crate) fn integrate_displacement(&self, bodies: &mut [SolverBody], h: Reciprocal) {
         let body = &mut bodies[self.slot as usize];
-        let step = |speed: Speed| -> Step { h.mul(speed) };
+        let step = |speed: Speed| -> Step { h.times(speed) };
         body.shift += Vec2::new(step(body.velocity.x), step(body.velocity.y));
         body.turn = body.turn.saturating_add(step(body.spin));
     }

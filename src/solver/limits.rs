@@ -4,7 +4,7 @@ pub(crate) use crate::body::SPEED_MAX;
 use crate::math::Speed;
 
 /// How often a clamp changed a result. Part of the hashed state, and 0 as long as physics makes sense.
-pub(crate) type Faults = u32;
+pub(crate) type Faults = u64;
 
 /// Largest change of an impulse in one update, and the largest warm start, in m/s.
 pub(crate) const STEP_MAX: Speed = Speed::lit("512");
@@ -16,6 +16,6 @@ pub(crate) const IMPULSE_MAX: Speed = Speed::lit("1023");
 #[inline]
 pub(crate) fn clamp_warm_start(lambda: &mut Speed, faults: &mut Faults) {
     let within = (*lambda).clamp(-STEP_MAX, STEP_MAX);
-    *faults += u32::from(within != *lambda);
+    *faults += u64::from(within != *lambda);
     *lambda = within;
 }

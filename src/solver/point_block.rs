@@ -92,7 +92,7 @@ impl PointBlock {
     pub(crate) fn new(a: Arm, b: Arm, fractions: MassFractions) -> Self {
         let ratios = |end: Arm| -> Vec2<Ratio> {
             let perp = end.arm.perp();
-            Vec2::new(end.inverse_gyration.mul(perp.x), end.inverse_gyration.mul(perp.y))
+            Vec2::new(end.inverse_gyration.times(perp.x), end.inverse_gyration.times(perp.y))
         };
         let (e_a, e_b) = (ratios(a), ratios(b));
         let (w_a, w_b): (Vec2<Ratio>, Vec2<Ratio>) = (e_a.scale(fractions.a), e_b.scale(fractions.b));
@@ -159,7 +159,7 @@ impl PointBlock {
                 - i64::from(e_a.to_bits()) * i64::from(a.spin.to_bits());
             let wide = i64::from(dv.to_bits()) + round_shift(angular, 24);
             let within = saturate(wide);
-            *faults += u32::from(i64::from(within) != wide);
+            *faults += u64::from(i64::from(within) != wide);
             Speed::from_bits(within)
         };
         let vr_x = along(e_a.x, e_b.x, b.velocity.x - a.velocity.x, faults);
@@ -190,7 +190,7 @@ fn accumulate(lambda: Speed, d: Speed, faults: &mut Faults) -> Speed {
     let limit = i64::from(IMPULSE_MAX.to_bits());
     let wanted = i64::from(lambda.to_bits()) + i64::from(d.to_bits());
     let within = wanted.clamp(-limit, limit);
-    *faults += u32::from(within != wanted);
+    *faults += u64::from(within != wanted);
     Speed::from_bits(saturate(within))
 }
 

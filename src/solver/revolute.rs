@@ -82,8 +82,8 @@ impl RevoluteConstraint {
     /// Looks ahead along the turn of the coming sub-step, at the velocities that the last one has left.
     pub(crate) fn aim(&mut self, bodies: &[SolverBody], h: Reciprocal, tuning: &Tuning) {
         let turn = |body: u32, inverse_gyration: Reciprocal| -> Unit {
-            let step: Step = h.mul(bodies[body as usize].spin);
-            inverse_gyration.mul(step)
+            let step: Step = h.times(bodies[body as usize].spin);
+            inverse_gyration.times(step)
         };
         let turns = (turn(self.body_a, self.inverse_gyration_a), turn(self.body_b, self.inverse_gyration_b));
         self.ratios_ahead = self.block.ratios_ahead(turns, tuning.joint_stretch);

@@ -79,7 +79,7 @@ impl Row {
     pub(crate) fn prepare(n: Vec2<Unit>, a: Lever, b: Lever, fractions: MassFractions) -> (Row, Denominator) {
         let ratio = |lever: Lever| -> Ratio {
             let c: Length = lever.arm.cross(n);
-            lever.inverse_gyration.mul(c)
+            lever.inverse_gyration.times(c)
         };
         let (e_a, e_b) = (ratio(a), ratio(b));
         let turning = |fraction: Unit, e: Ratio| {
@@ -100,7 +100,7 @@ impl Row {
     pub(crate) fn velocity(&self, a: &SolverBody, b: &SolverBody, faults: &mut Faults) -> Speed {
         let bits = self.along(b.velocity.x - a.velocity.x, b.velocity.y - a.velocity.y, a.spin, b.spin);
         let vn = saturate(bits);
-        *faults += u32::from(i64::from(vn) != bits);
+        *faults += u64::from(i64::from(vn) != bits);
         Speed::from_bits(vn)
     }
 
@@ -162,12 +162,12 @@ impl Row {
         let wanted = i64::from(lambda.to_bits()) + i64::from(d.to_bits());
         let bounded = wanted.clamp(lo.to_bits().into(), hi.to_bits().into());
         let within = bounded.clamp(-i64::from(IMPULSE_MAX.to_bits()), IMPULSE_MAX.to_bits().into());
-        *faults += u32::from(within != bounded);
+        *faults += u64::from(within != bounded);
         // A friction limit may shrink by more than one update is allowed to change.
         let step = i64::from(STEP_MAX.to_bits());
         let change = within - i64::from(lambda.to_bits());
         let d = change.clamp(-step, step);
-        *faults += u32::from(d != change);
+        *faults += u64::from(d != change);
         let d = Speed::from_bits(saturate(d));
         *lambda += d;
         self.apply(d, a, b, faults);
@@ -179,7 +179,7 @@ pub(crate) fn lambda_of(p: Speed, denominator: Denominator, faults: &mut Faults)
     let bits = crate::math::round_shift_wide(i128::from(p.to_bits()) * i128::from(denominator), 30);
     let limit = i128::from(STEP_MAX.to_bits());
     let within = bits.clamp(-limit, limit);
-    *faults += u32::from(within != bits);
+    *faults += u64::from(within != bits);
     Speed::from_bits(saturate(crate::math::saturate_wide(within)))
 }
 

@@ -61,7 +61,7 @@ impl Softness {
         let limit = i64::from(STEP_MAX.to_bits());
         let wanted = round_shift(-wide, 30);
         let within = wanted.clamp(-limit, limit);
-        *faults += u32::from(within != wanted);
+        *faults += u64::from(within != wanted);
         Speed::from_bits(saturate(within))
     }
 }

@@ -35,6 +35,10 @@ pub struct Config {
     pub shape_limit: u32,
     /// Most joints the world may hold, at most 2^20.
     pub joint_limit: u32,
+    /// Most pairs of near shapes that are looked at in a tick, at most 2^20. Of more, those in the smallest slots
+    /// are taken and the tick counts as faulty: a bound on time and memory for worlds that come from strangers,
+    /// where every shape may lie on every other.
+    pub pair_limit: u32,
 }
 
 impl Default for Config {
@@ -49,6 +53,7 @@ impl Default for Config {
             body_limit: 1 << 20,
             shape_limit: 1 << 20,
             joint_limit: 1 << 20,
+            pair_limit: 1 << 18,
         }
     }
 }
@@ -68,6 +73,7 @@ impl Config {
             body_limit,
             shape_limit,
             joint_limit,
+            pair_limit,
         } = *self;
         let checks = [
             ((10..=1000).contains(&tick_rate), "tick_rate"),
@@ -77,6 +83,7 @@ impl Config {
             (body_limit <= 1 << 20, "body_limit"),
             (shape_limit <= 1 << 20, "shape_limit"),
             (joint_limit <= 1 << 20, "joint_limit"),
+            (pair_limit <= 1 << 20, "pair_limit"),
         ];
         let invalid = checks.into_iter().find(|(valid, _)| !valid).map(|(_, name)| name);
         match invalid.or_else(|| solver.first_invalid(tick_rate)) {

@@ -71,15 +71,25 @@ impl World {
     #[must_use]
     pub fn digest(&self) -> WorldDigest {
         // Destructured, so that a new field does not compile until it has a section.
-        let State { config, tick, faults, bodies, shapes, joints, contacts, removed_contacts, rng } =
-            &self.state;
+        let State {
+            config,
+            tick,
+            faults,
+            bodies,
+            shapes,
+            joints,
+            contacts,
+            pairs_left_out,
+            removed_contacts,
+            rng,
+        } = &self.state;
         WorldDigest {
             sections: [
                 (Section::World, StateHash::of(&(config, tick, faults))),
                 (Section::Bodies, StateHash::of(bodies)),
                 (Section::Shapes, StateHash::of(shapes)),
                 (Section::Joints, StateHash::of(joints)),
-                (Section::Contacts, StateHash::of(&(contacts, removed_contacts))),
+                (Section::Contacts, StateHash::of(&(contacts, pairs_left_out, removed_contacts))),
                 (Section::Random, StateHash::of(rng)),
             ],
         }

@@ -131,14 +131,26 @@ impl World {
         self.state.bodies.len()
     }
 
+    /// Number of shapes.
+    #[must_use]
+    pub fn shape_count(&self) -> usize {
+        self.state.shapes.len()
+    }
+
+    /// Number of joints.
+    #[must_use]
+    pub fn joint_count(&self) -> usize {
+        self.state.joints.len()
+    }
+
     /// Number of pairs of shapes near each other: what the next tick's cost depends on, with bodies and joints.
     #[must_use]
     pub fn pair_count(&self) -> usize {
         self.state.contacts.len()
     }
 
-    /// The contacts of the last tick that had points, sorted by pair. Empty before the first tick and after
-    /// [`World::restore`], since manifolds are found anew in every tick.
+    /// The contacts of the last tick that had points, sorted by pair, as they were found at its start. Empty until
+    /// the next tick after a restore or the removal of a shape or body, since manifolds are not state.
     pub fn contacts(&self) -> impl Iterator<Item = ContactView<'_>> {
         self.state.contacts.iter().zip(&self.scratch.manifolds).filter_map(|(contact, manifold)| {
             let ContactEvent { shape_a, shape_b } = self.state.contact_event(contact);

@@ -25,6 +25,8 @@ pub(crate) struct State {
     pub(crate) joints: Arena<Joint, JointId>,
     /// Sorted by pair.
     pub(crate) contacts: Vec<Contact>,
+    /// Whether there are more pairs than [`Config::pair_limit`].
+    pub(crate) pairs_left_out: bool,
     /// Contacts that ended because a shape was removed since the last tick, for the events of the next one.
     pub(crate) removed_contacts: Vec<ContactEvent>,
     pub(crate) rng: Rng,
@@ -40,6 +42,7 @@ impl State {
             shapes: Arena::default(),
             joints: Arena::default(),
             contacts: Vec::new(),
+            pairs_left_out: false,
             removed_contacts: Vec::new(),
             rng: Rng::new(0),
         }

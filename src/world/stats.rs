@@ -18,5 +18,5 @@ pub struct StepStats {
     /// Pairs of polygons that needed the whole test.
     pub axis_searches: u32,
     /// Clamps that changed a result.
-    pub faults: u32,
+    pub faults: u64,
 }

@@ -28,7 +28,9 @@ impl World {
         let Scratch { solver, touching, manifolds, .. } = scratch;
         solver.prepare_contacts(touching, manifolds, &state.contacts, &state.bodies, &tuning);
         for index in 0..settings.sub_steps {
-            let sweep = Sweep::of_sub_step(state.tick * u64::from(settings.sub_steps) + u64::from(index));
+            let sweep = Sweep::of_sub_step(
+                state.tick.wrapping_mul(settings.sub_steps.into()).wrapping_add(index.into()),
+            );
             solver.sub_step(sweep, settings.iterations, &tuning);
         }
         solver.apply_restitution(&tuning);
@@ -113,7 +115,8 @@ fn update_pairs(state: &mut State, scratch: &mut Scratch) {
         (a.slot().min(b.slot()), a.slot().max(b.slot()))
     }));
     joined.sort_unstable();
-    broad_phase.pairs(proxies, |pair| may_collide(state, joined, pair), pairs);
+    let limit = state.config.pair_limit as usize;
+    state.pairs_left_out = broad_phase.pairs(proxies, |pair| may_collide(state, joined, pair), limit, pairs);
     match_pairs(&mut state.contacts, pairs, merged, sources, ended);
 
     core::mem::swap(hints, old_hints);
@@ -252,7 +255,7 @@ fn finalise_poses(state: &mut State, scratch: &mut Scratch) {
         body.centre = centre
             .max(Vec2::new(-WORLD_EXTENT_MAX, -WORLD_EXTENT_MAX))
             .min(Vec2::new(WORLD_EXTENT_MAX, WORLD_EXTENT_MAX));
-        faults += u32::from(body.centre != centre);
+        faults += u64::from(body.centre != centre);
         body.angle = turned(body.angle, turn, body.mass.inverse_gyration);
     }
     scratch.solver.faults += faults;
@@ -267,7 +270,8 @@ fn finalise_poses(state: &mut State, scratch: &mut Scratch) {
 
 fn count(state: &mut State, scratch: &mut Scratch) {
     let Scratch { solver, sat, stats, touching, .. } = scratch;
-    state.faults = state.faults.saturating_add(solver.faults.into());
+    let faults = solver.faults + u64::from(state.pairs_left_out);
+    state.faults = state.faults.saturating_add(faults);
     let count = |length: usize| u32::try_from(length).unwrap_or(u32::MAX);
     *stats = StepStats {
         pairs: count(state.contacts.len()),
@@ -277,6 +281,6 @@ fn count(state: &mut State, scratch: &mut Scratch) {
         points_lost: solver.warm_starts.lost,
         axis_hits: sat.hint_hits,
         axis_searches: sat.searches,
-        faults: solver.faults,
+        faults,
     };
 }

@@ -62,7 +62,7 @@ fn check_body(state: &State, id: BodyId, body: &Body) -> Result<(), Violation> {
         range.contains(&v.x) && range.contains(&v.y)
     };
     // The centre of mass may be outside the origin's range by the distance between the two.
-    let reach = Vec2::new(crate::body::OFFSET_MAX * 2, crate::body::OFFSET_MAX * 2);
+    let reach = Vec2::new(crate::body::OFFSET_MAX * 4, crate::body::OFFSET_MAX * 4);
     check(inside(body.centre.max(-body.centre) - reach), || at("outside the world"))?;
     let speed = -SPEED_MAX..=SPEED_MAX;
     let slow = [body.velocity.x, body.velocity.y, body.spin].iter().all(|v| speed.contains(v));

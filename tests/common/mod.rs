@@ -4,17 +4,17 @@
 use std::path::PathBuf;
 
 /// The seed of the golden scenes.
-pub const SEED: u64 = 1;
+pub(crate) const SEED: u64 = 1;
 
 /// The hash of a scene after some ticks, for the present semantics.
-pub struct Golden {
-    pub scene: String,
-    pub ticks: u64,
-    pub hash: String,
+pub(crate) struct Golden {
+    pub(crate) scene: String,
+    pub(crate) ticks: u64,
+    pub(crate) hash: String,
 }
 
 /// The lines of `tests/goldens.txt` that belong to the present semantics: semantics, scene, ticks, hash.
-pub fn goldens() -> Vec<Golden> {
+pub(crate) fn goldens() -> Vec<Golden> {
     let text = std::fs::read_to_string(root().join("tests/goldens.txt")).expect("tests/goldens.txt");
     let semantics = lockstep2d::SEMANTICS.to_string();
     let lines = text.lines().filter(|line| !line.starts_with('#') && !line.is_empty());
@@ -33,6 +33,6 @@ pub fn goldens() -> Vec<Golden> {
 }
 
 /// The folder of the workspace.
-pub fn root() -> PathBuf {
+pub(crate) fn root() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR"))
 }
