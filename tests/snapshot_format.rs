@@ -108,7 +108,7 @@ impl<'a> Reader<'a> {
         }
         self.fx("speculative distance");
         self.fx("fat margin");
-        for name in ["body limit", "shape limit", "joint limit"] {
+        for name in ["body limit", "shape limit", "joint limit", "pair limit"] {
             self.u32(name);
         }
     }
@@ -123,6 +123,7 @@ impl<'a> Reader<'a> {
         for _ in 0..self.count(&format!("free {name} slots")) {
             self.u32("free slot");
         }
+        self.u32(&format!("{name} slots used up"));
     }
 
     fn body(&mut self) {
@@ -203,6 +204,7 @@ impl<'a> Reader<'a> {
                 self.fixed("tangential impulse", 1, 4, 21);
             }
         }
+        self.u8("pairs were left out");
         for _ in 0..self.count("contacts that ended by removal") {
             self.handle("shape A");
             self.handle("shape B");
@@ -255,7 +257,8 @@ fn decimal(bits: i64, fraction_bits: u32) -> String {
 
 /// A ball that is pinned where it rests on a line, and the free slots that a removed triangle has left.
 fn example() -> Result<World, WorldError> {
-    let config = Config { body_limit: 100, shape_limit: 100, joint_limit: 100, ..Config::default() };
+    let config =
+        Config { body_limit: 100, shape_limit: 100, joint_limit: 100, pair_limit: 100, ..Config::default() };
     let mut world = World::new(config)?;
     let line = Geometry::segment(Vec2::new(fx!(-2), fx!(0)), Vec2::new(fx!(2), fx!(0)))?;
     let ground = world.spawn(&BodyDef::fixed(), &[ShapeDef::new(line)])?;
@@ -459,7 +462,7 @@ fn the_bytes_of_a_setup_are_those_of_the_document() {
     let config = Config { solver, fat_margin: fx!(0.5), speculative_distance: fx!(0.5), ..Config::default() };
     let setup = SandboxSetup { config, commands: vec![Command::SetGravity { gravity: Vec2::ZERO }] };
     let settings = w().u32(4).u32(1).u32(1).fx(&[1, 2, 6]).fx(&[120, 4, 2, 800]);
-    let limits = w().u32(1 << 20).u32(1 << 20).u32(1 << 20);
+    let limits = w().u32(1 << 20).u32(1 << 20).u32(1 << 20).u32(1 << 18);
     let expected = w().u32(60).fx(&[0, -20]).then(settings).fx(&[1, 1]).then(limits);
     assert_eq!(encode(&setup), expected.u64(1).u32(12).fx(&[0, 0]).0);
 }
