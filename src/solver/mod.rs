@@ -164,7 +164,7 @@ impl Solver {
             self.solve(Pass::Bias, Sweep::of(index, iteration), tuning);
         }
         for mover in &self.movers {
-            mover.integrate_displacement(&mut self.bodies, h);
+            mover.integrate_displacement(&mut self.bodies, h, &mut self.faults);
         }
         self.refresh_joints();
         if tuning.relax {
