@@ -3,6 +3,7 @@
 mod arena;
 #[expect(clippy::module_inception, reason = "the file that holds `Body`")]
 mod body;
+mod body_def;
 mod error;
 mod filter;
 mod mass;
@@ -12,8 +13,10 @@ mod shape;
 
 pub(crate) use arena::{Arena, Handle};
 pub use arena::{BodyId, JointId, ShapeId};
-pub use body::{Body, BodyDef, BodyKind};
-pub(crate) use body::{SPEED_MAX, check_position};
+pub use body::Body;
+pub(crate) use body::SPEED_MAX;
+pub(crate) use body_def::check_position;
+pub use body_def::{BodyDef, BodyKind};
 pub use error::{GeometryError, WorldError};
 pub use filter::Filter;
 pub use mass::{MassProperties, MassSource};

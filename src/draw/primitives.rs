@@ -170,7 +170,7 @@ pub fn primitives(world: &World, layers: Layers) -> Vec<Primitive> {
     }
     if layers.contact_points || layers.contact_normals {
         // The threshold at which a contact event begins.
-        let touching_distance = world.config().speculative_distance / 4;
+        let touching_distance = world.config().touching_distance();
         for contact in world.contacts() {
             add_contact(&contact, touching_distance, layers, &mut found);
         }

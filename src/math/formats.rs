@@ -31,15 +31,15 @@ pub type Grip = FixedI32<U20>;
 #[inline]
 #[must_use]
 pub const fn round_shift(x: i64, shift: u32) -> i64 {
-    // Adding the last dropped bit, rather than one half, cannot overflow.
-    if shift == 0 { x } else { (x >> shift) + ((x >> (shift - 1)) & 1) }
+    // Dropping all but one bit before one half is added cannot overflow.
+    if shift == 0 { x } else { ((x >> (shift - 1)) + 1) >> 1 }
 }
 
 /// [`round_shift`] for 128-bit intermediates.
 #[inline]
 #[must_use]
 pub const fn round_shift_wide(x: i128, shift: u32) -> i128 {
-    if shift == 0 { x } else { (x >> shift) + ((x >> (shift - 1)) & 1) }
+    if shift == 0 { x } else { ((x >> (shift - 1)) + 1) >> 1 }
 }
 
 /// The nearest `i32`.

@@ -22,17 +22,24 @@ impl SolverBody {
         SolverBody { velocity: body.velocity, spin: body.spin, ..Self::default() }
     }
 
-    /// Keeps every component of the velocity within [`SPEED_MAX`].
+    /// Sets the velocity, every component kept within [`SPEED_MAX`].
     #[inline]
-    pub(crate) fn clamp(&mut self, faults: &mut Faults) {
-        let mut clamp = |speed: &mut Speed| {
+    pub(crate) fn set_velocity(&mut self, x: Speed, y: Speed, spin: Speed, faults: &mut Faults) {
+        self.velocity = Vec2::new(x, y);
+        self.spin = spin;
+        // One branch that is never taken, instead of three clamps.
+        if x.abs().max(y.abs()).max(spin.abs()) > SPEED_MAX {
+            self.clamp(faults);
+        }
+    }
+
+    #[cold]
+    fn clamp(&mut self, faults: &mut Faults) {
+        for speed in [&mut self.velocity.x, &mut self.velocity.y, &mut self.spin] {
             let within = (*speed).clamp(-SPEED_MAX, SPEED_MAX);
             *faults += u64::from(within != *speed);
             *speed = within;
-        };
-        clamp(&mut self.velocity.x);
-        clamp(&mut self.velocity.y);
-        clamp(&mut self.spin);
+        }
     }
 
     /// Two different bodies of a slice, to change both.

@@ -1,6 +1,6 @@
 //! The solver: sequential impulses over rows and point blocks, in sub-steps, in a fixed order.
 //!
-//! One kernel ([`row`]) solves whatever acts along a direction, another ([`point_block`]) what pins two points
+//! One kernel (`row`) solves whatever acts along a direction, another (`point_block`) what pins two points
 //! together. Contacts and joints only prepare them, so that a wide kernel can take the place of a scalar one
 //! without touching a constraint.
 
@@ -20,8 +20,7 @@ use alloc::vec::Vec;
 
 pub(crate) use body::{SolverBody, turned};
 use colour::{Colouring, Node};
-pub(crate) use contact::Sweep;
-use contact::{ContactConstraint, Pass};
+use contact::{ContactConstraint, Pass, Sweep};
 pub(crate) use contact::{Surface, WarmStarts};
 use integrate::Mover;
 pub use joint::{Joint, JointDef, RevoluteDef};
@@ -148,8 +147,8 @@ impl Solver {
     }
 
     /// One sub-step: aim joints, integrate velocities, warm start, solve with bias, integrate displacements,
-    /// refresh joints, relax without bias.
-    pub(crate) fn sub_step(&mut self, sweep: Sweep, iterations: u32, tuning: &Tuning) {
+    /// refresh joints, relax without bias. `index` counts the sub-steps since the world was made.
+    pub(crate) fn sub_step(&mut self, index: u64, tuning: &Tuning) {
         let h = Reciprocal::of_integer(tuning.rate);
         for joint in &mut self.joints {
             joint.aim(&self.bodies, h, tuning);
@@ -161,16 +160,16 @@ impl Solver {
             contact.observe_approach(&self.bodies, &mut self.faults);
         }
         self.warm_start();
-        for _ in 0..iterations {
-            self.solve(Pass::Bias, sweep, tuning);
+        for iteration in 0..tuning.iterations {
+            self.solve(Pass::Bias, Sweep::of(index, iteration), tuning);
         }
         for mover in &self.movers {
-            mover.integrate_displacement(&mut self.bodies, h);
+            mover.integrate_displacement(&mut self.bodies, h, &mut self.faults);
         }
         self.refresh_joints();
         if tuning.relax {
-            for _ in 0..iterations {
-                self.solve(Pass::Relax, sweep, tuning);
+            for iteration in 0..tuning.iterations {
+                self.solve(Pass::Relax, Sweep::of(index, iteration), tuning);
             }
         }
     }

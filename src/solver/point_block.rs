@@ -117,13 +117,10 @@ impl PointBlock {
     /// Changes the velocities by an impulse `d`.
     #[inline]
     pub(crate) fn apply(&self, d: Vec2<Speed>, a: &mut SolverBody, b: &mut SolverBody, faults: &mut Faults) {
-        // Both sums are within ±1022, because either term is within the clamps.
-        a.velocity -= self.g_a.apply(d);
-        a.spin -= self.f_a.dot::<_, fixed::types::extra::U21>(d);
-        b.velocity += self.g_b.apply(d);
-        b.spin += self.f_b.dot::<_, fixed::types::extra::U21>(d);
-        a.clamp(faults);
-        b.clamp(faults);
+        // A change of up to 512 on both axes may add up to 768: these sums saturate before they are clamped.
+        let (v_a, v_b) = (a.velocity - self.g_a.apply(d), b.velocity + self.g_b.apply(d));
+        a.set_velocity(v_a.x, v_a.y, a.spin.saturating_sub(self.f_a.dot(d)), faults);
+        b.set_velocity(v_b.x, v_b.y, b.spin.saturating_add(self.f_b.dot(d)), faults);
     }
 
     /// The lever ratios at this pose.

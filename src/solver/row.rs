@@ -52,6 +52,14 @@ impl MassFractions {
     }
 }
 
+/// `f x` of a fraction, a gain or a component of a unit vector: never larger than `x`, so it needs no clamp.
+#[inline]
+#[expect(clippy::cast_possible_truncation, reason = "at most the speed itself")]
+fn part(fraction: Unit, speed: Speed) -> Speed {
+    let product = i64::from(fraction.to_bits()) * i64::from(speed.to_bits());
+    Speed::from_bits(round_shift(product, 30) as i32)
+}
+
 /// One body's end of a row: where it is pushed, and how easily it turns.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Lever {
@@ -98,50 +106,53 @@ impl Row {
     /// Relative velocity of B from A along the row.
     #[inline]
     pub(crate) fn velocity(&self, a: &SolverBody, b: &SolverBody, faults: &mut Faults) -> Speed {
-        let bits = self.along(b.velocity.x - a.velocity.x, b.velocity.y - a.velocity.y, a.spin, b.spin);
+        let difference = |a: Speed, b: Speed| i64::from(b.to_bits()) - i64::from(a.to_bits());
+        let x = difference(a.velocity.x, b.velocity.x);
+        let y = difference(a.velocity.y, b.velocity.y);
+        let bits = self.along(x, y, a.spin.to_bits(), b.spin.to_bits());
         let vn = saturate(bits);
         *faults += u64::from(i64::from(vn) != bits);
         Speed::from_bits(vn)
     }
 
-    /// How far B has moved away from A along the row since the start of the tick. Not saturated: the caller adds
-    /// the initial separation first.
+    /// How far B has moved away from A along the row since the start of the tick, in units of [`Step`]. Not
+    /// saturated: the caller adds the initial separation first.
     #[inline]
     pub(crate) fn displacement(&self, a: &SolverBody, b: &SolverBody) -> i64 {
-        let x = b.shift.x.saturating_sub(a.shift.x);
-        let y = b.shift.y.saturating_sub(a.shift.y);
-        self.along(x, y, a.turn, b.turn)
+        let difference = |a: Step, b: Step| i64::from(b.to_bits()) - i64::from(a.to_bits());
+        let x = difference(a.shift.x, b.shift.x);
+        let y = difference(a.shift.y, b.shift.y);
+        self.along(x, y, a.turn.to_bits(), b.turn.to_bits())
     }
 
     /// `n.d + eB tB - eA tA` in the format of its arguments: the one dot product of the kernel. The linear part
-    /// drops 6 bits to the scale of the angular part before the sum is rounded once.
+    /// drops 6 bits to the scale of the angular part before the sum is rounded once. Differences have 33 bits, so
+    /// with a unit vector their dot product stays below 2^63.
     #[inline]
-    fn along<F: fixed::types::extra::LeEqU32>(
-        &self,
-        x: fixed::FixedI32<F>,
-        y: fixed::FixedI32<F>,
-        turn_a: fixed::FixedI32<F>,
-        turn_b: fixed::FixedI32<F>,
-    ) -> i64 {
-        let linear = i64::from(self.n.x.to_bits()) * i64::from(x.to_bits())
-            + i64::from(self.n.y.to_bits()) * i64::from(y.to_bits());
-        let angular = i64::from(self.e_b.to_bits()) * i64::from(turn_b.to_bits())
-            - i64::from(self.e_a.to_bits()) * i64::from(turn_a.to_bits());
+    fn along(&self, x: i64, y: i64, turn_a: i32, turn_b: i32) -> i64 {
+        let linear = i64::from(self.n.x.to_bits()) * x + i64::from(self.n.y.to_bits()) * y;
+        let angular = i64::from(self.e_b.to_bits()) * i64::from(turn_b)
+            - i64::from(self.e_a.to_bits()) * i64::from(turn_a);
         round_shift(round_shift(linear, 6) + angular, 24)
     }
 
-    /// Changes the velocities by an impulse `d`.
+    /// Changes the velocities by an impulse `d` of at most [`STEP_MAX`].
     #[inline]
     pub(crate) fn apply(&self, d: Speed, a: &mut SolverBody, b: &mut SolverBody, faults: &mut Faults) {
-        let (d_a, d_b): (Speed, Speed) = (mul(self.g_a, d), mul(self.g_b, d));
-        a.velocity.x -= mul::<_, _, fixed::types::extra::U21>(self.n.x, d_a);
-        a.velocity.y -= mul::<_, _, fixed::types::extra::U21>(self.n.y, d_a);
-        a.spin -= mul::<_, _, fixed::types::extra::U21>(self.f_a, d);
-        b.velocity.x += mul::<_, _, fixed::types::extra::U21>(self.n.x, d_b);
-        b.velocity.y += mul::<_, _, fixed::types::extra::U21>(self.n.y, d_b);
-        b.spin += mul::<_, _, fixed::types::extra::U21>(self.f_b, d);
-        a.clamp(faults);
-        b.clamp(faults);
+        let (d_a, d_b) = (part(self.g_a, d), part(self.g_b, d));
+        // Velocities are within 511 and changes within 512: no sum leaves the format.
+        a.set_velocity(
+            a.velocity.x - part(self.n.x, d_a),
+            a.velocity.y - part(self.n.y, d_a),
+            a.spin - part(self.f_a, d),
+            faults,
+        );
+        b.set_velocity(
+            b.velocity.x + part(self.n.x, d_b),
+            b.velocity.y + part(self.n.y, d_b),
+            b.spin + part(self.f_b, d),
+            faults,
+        );
     }
 
     /// Solves the row for one iteration. `lambda` is the accumulated `L`, kept within `lo..=hi`.

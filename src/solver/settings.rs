@@ -104,6 +104,7 @@ impl SolverSettings {
 pub(crate) struct Tuning {
     /// Sub-steps per second.
     pub(crate) rate: u32,
+    pub(crate) iterations: u32,
     /// Of contacts between two dynamic bodies, and of those with a body that nothing moves.
     pub(crate) contact: Softness,
     pub(crate) contact_immovable: Softness,
@@ -141,6 +142,7 @@ impl Tuning {
         };
         Tuning {
             rate,
+            iterations: settings.iterations,
             contact,
             contact_immovable,
             slop: narrow(slop),

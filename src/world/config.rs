@@ -59,6 +59,13 @@ impl Default for Config {
 }
 
 impl Config {
+    /// Shapes nearer than this, in metres, begin to touch: a quarter of the speculative distance, so that a
+    /// contact that wobbles does not begin and end in turn.
+    #[must_use]
+    pub fn touching_distance(&self) -> Fx {
+        self.speculative_distance / 4
+    }
+
     /// Checks every setting.
     ///
     /// # Errors

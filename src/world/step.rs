@@ -7,7 +7,7 @@ use super::stats::StepStats;
 use crate::body::{Body, BodyKind, Handle, WORLD_EXTENT_MAX};
 use crate::collision::{Manifold, Outline, Pair, PosedShape, Proxy, collide, margin_for, match_pairs};
 use crate::math::{Fx, Length, Vec2, fx_mul, narrow, widen};
-use crate::solver::{SolverBody, Surface, Sweep, TouchingPair, Tuning, turned};
+use crate::solver::{SolverBody, Surface, TouchingPair, Tuning, turned};
 
 impl World {
     /// Advances the world by one tick of `1 / tick_rate` seconds.
@@ -28,10 +28,10 @@ impl World {
         let Scratch { solver, touching, manifolds, .. } = scratch;
         solver.prepare_contacts(touching, manifolds, &state.contacts, &state.bodies, &tuning);
         for index in 0..settings.sub_steps {
-            let sweep = Sweep::of_sub_step(
+            solver.sub_step(
                 state.tick.wrapping_mul(settings.sub_steps.into()).wrapping_add(index.into()),
+                &tuning,
             );
-            solver.sub_step(sweep, settings.iterations, &tuning);
         }
         solver.apply_restitution(&tuning);
         solver.store_impulses(&mut state.contacts, &mut state.joints);
@@ -223,7 +223,7 @@ fn report_events(state: &mut State, scratch: &mut Scratch) {
     for (contact, manifold) in contacts.iter_mut().zip(manifolds.iter()) {
         let nearest = manifold.points().iter().map(|point| widen(point.separation)).min();
         match nearest {
-            Some(separation) if !contact.touching && separation <= apart / 4 => {
+            Some(separation) if !contact.touching && separation <= state.config.touching_distance() => {
                 contact.touching = true;
                 events.contact_begin.push(state.contact_event(contact));
             }

@@ -53,3 +53,26 @@ fn a_box_rests_on_one_of_a_hundredth_of_its_mass() {
     assert!(heights[0] > fx!(0.48) && heights[1] > fx!(1.44), "at {heights:?} m");
     assert!(speed_max(world) < fx!(0.0001), "{} m/s", speed_max(world));
 }
+
+/// The other way to remove overlap stands too: a share of it beyond a slop, in every sub-step.
+#[test]
+fn a_stack_stands_on_baumgarte_contacts() {
+    use lockstep2d::lockstep::{Game, Sandbox};
+    use lockstep2d::scenes::Scene;
+    use lockstep2d::solver::ContactTuning;
+    for (sub_steps, iterations) in [(4, 1), (1, 8)] {
+        let mut setup = Scene::find("box_stack").expect("there").setup(1);
+        setup.config.solver.contact =
+            ContactTuning::Baumgarte { share: fx!(0.2), slop: fx!(0.005), push_speed: fx!(3) };
+        setup.config.solver.sub_steps = sub_steps;
+        setup.config.solver.iterations = iterations;
+        let mut game = Sandbox::new(&setup).expect("valid");
+        run(&mut game, 1200, |_, _| {});
+        let world = game.world();
+        let (_, top) = world.bodies().last().expect("boxes");
+        let place = top.position();
+        assert!(place.x.abs() < fx!(0.005) && place.y > fx!(9.4) && place.y < fx!(9.5), "top at {place:?}");
+        assert!(speed_max(world) < fx!(0.001), "{} m/s", speed_max(world));
+        assert!(deepest(world) < fx!(0.012), "{} m deep", deepest(world));
+    }
+}

@@ -1,0 +1,175 @@
+//! What to spawn: a body's definition, as a builder.
+
+use serde::{Deserialize, Serialize};
+
+use super::error::WorldError;
+use super::mass::MassSource;
+use super::shape::WORLD_EXTENT_MAX;
+use crate::fx;
+use crate::math::{Angle, Fx, Vec2};
+
+/// What moves a body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum BodyKind {
+    /// Nothing: ground and walls.
+    Fixed,
+    /// Its velocity alone: lifts and doors. It pushes dynamic bodies and nothing pushes it.
+    Kinematic,
+    /// Forces, contacts and joints.
+    Dynamic,
+}
+
+/// What to spawn.
+///
+/// ```
+/// use lockstep2d::{body::BodyDef, fx};
+/// let ball = BodyDef::dynamic().position(fx!(0), fx!(10)).velocity(fx!(2), fx!(0));
+/// let ground = BodyDef::fixed();
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct BodyDef {
+    /// What moves it.
+    pub kind: BodyKind,
+    /// Its origin in the world, in metres.
+    pub position: Vec2<Fx>,
+    /// Its rotation.
+    pub angle: Angle,
+    /// Velocity of its centre of mass in m/s.
+    pub velocity: Vec2<Fx>,
+    /// Angular velocity in rad/s, counter-clockwise.
+    pub angular_velocity: Fx,
+    /// Where its mass comes from, if it is dynamic.
+    pub mass: MassSource,
+    /// Rate at which its velocity decays, per second, 0 to 1000.
+    pub linear_damping: Fx,
+    /// Rate at which its angular velocity decays, per second, 0 to 1000.
+    pub angular_damping: Fx,
+    /// How much of the world's gravity it feels, ±1000.
+    pub gravity_scale: Fx,
+    /// Not used by the engine, but part of the state and its hash.
+    pub user_data: u64,
+}
+
+impl BodyDef {
+    /// A body of some kind at rest at the origin.
+    #[must_use]
+    pub const fn new(kind: BodyKind) -> Self {
+        BodyDef {
+            kind,
+            position: Vec2::new(Fx::ZERO, Fx::ZERO),
+            angle: Angle::ZERO,
+            velocity: Vec2::new(Fx::ZERO, Fx::ZERO),
+            angular_velocity: Fx::ZERO,
+            mass: MassSource::Shapes,
+            linear_damping: Fx::ZERO,
+            angular_damping: Fx::ZERO,
+            gravity_scale: Fx::ONE,
+            user_data: 0,
+        }
+    }
+
+    /// A body that does not move.
+    #[must_use]
+    pub const fn fixed() -> Self {
+        Self::new(BodyKind::Fixed)
+    }
+
+    /// A body that only its velocity moves.
+    #[must_use]
+    pub const fn kinematic() -> Self {
+        Self::new(BodyKind::Kinematic)
+    }
+
+    /// A body that forces, contacts and joints move.
+    #[must_use]
+    pub const fn dynamic() -> Self {
+        Self::new(BodyKind::Dynamic)
+    }
+
+    /// Sets the origin in the world, in metres.
+    #[must_use]
+    pub const fn position(mut self, x: Fx, y: Fx) -> Self {
+        self.position = Vec2::new(x, y);
+        self
+    }
+
+    /// Sets the rotation.
+    #[must_use]
+    pub const fn angle(mut self, angle: Angle) -> Self {
+        self.angle = angle;
+        self
+    }
+
+    /// Sets the velocity of the centre of mass, in m/s.
+    #[must_use]
+    pub const fn velocity(mut self, x: Fx, y: Fx) -> Self {
+        self.velocity = Vec2::new(x, y);
+        self
+    }
+
+    /// Sets the angular velocity in rad/s, counter-clockwise.
+    #[must_use]
+    pub const fn angular_velocity(mut self, omega: Fx) -> Self {
+        self.angular_velocity = omega;
+        self
+    }
+
+    /// Sets where the mass comes from.
+    #[must_use]
+    pub const fn mass(mut self, mass: MassSource) -> Self {
+        self.mass = mass;
+        self
+    }
+
+    /// Sets how fast the velocity decays, per second.
+    #[must_use]
+    pub const fn linear_damping(mut self, rate: Fx) -> Self {
+        self.linear_damping = rate;
+        self
+    }
+
+    /// Sets how fast the angular velocity decays, per second.
+    #[must_use]
+    pub const fn angular_damping(mut self, rate: Fx) -> Self {
+        self.angular_damping = rate;
+        self
+    }
+
+    /// Sets how much of the world's gravity it feels.
+    #[must_use]
+    pub const fn gravity_scale(mut self, scale: Fx) -> Self {
+        self.gravity_scale = scale;
+        self
+    }
+
+    /// Sets the user data.
+    #[must_use]
+    pub const fn user_data(mut self, user_data: u64) -> Self {
+        self.user_data = user_data;
+        self
+    }
+
+    /// Checks everything but mass and speed, which depend on shapes and on the world.
+    pub(crate) fn validate(&self) -> Result<(), WorldError> {
+        check_position(self.position)?;
+        for damping in [self.linear_damping, self.angular_damping] {
+            if !(Fx::ZERO..=fx!(1000)).contains(&damping) {
+                return Err(WorldError::DampingOutOfRange { value: damping });
+            }
+        }
+        if !(fx!(-1000)..=fx!(1000)).contains(&self.gravity_scale) {
+            return Err(WorldError::DampingOutOfRange { value: self.gravity_scale });
+        }
+        Ok(())
+    }
+}
+
+/// Checks that a position is inside the world.
+pub(crate) fn check_position(position: Vec2<Fx>) -> Result<(), WorldError> {
+    for value in [position.x, position.y] {
+        if !(-WORLD_EXTENT_MAX..=WORLD_EXTENT_MAX).contains(&value) {
+            return Err(WorldError::PositionOutOfRange { value });
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,154 @@
+//! Rules of the code base that no lint checks, each with a canary that breaks it.
+
+mod source;
+
+use source::{Source, Token, files, tokens};
+
+/// Longest file of the library, in lines: what does not fit is two things.
+const LINES_MAX: usize = 400;
+
+/// Words that have no place in the library, and why.
+const BANNED: &[(&str, &str)] = &[
+    ("f32", "floating point differs between machines"),
+    ("f64", "floating point differs between machines"),
+    ("HashMap", "its order is random"),
+    ("HashSet", "its order is random"),
+    ("Instant", "time is passed in"),
+    ("SystemTime", "time is passed in"),
+    ("unsafe", "nothing here needs it"),
+    ("todo", "finish it"),
+    ("unimplemented", "finish it"),
+    ("dbg", "a library does not print"),
+    ("print", "a library does not print"),
+    ("println", "a library does not print"),
+    ("eprint", "a library does not print"),
+    ("eprintln", "a library does not print"),
+];
+
+/// Words that `src/draw` may use: pictures are not simulated.
+const ALLOWED_IN_DRAW: &[&str] = &["f32", "f64"];
+
+/// Where the state is defined.
+const STATE_FOLDERS: &[&str] = &["src/body/", "src/collision/", "src/solver/", "src/world/"];
+
+/// Folders at the root of somebody's machine.
+const MACHINE_FOLDERS: &[&str] = &["home", "root", "Users", "tmp", "mnt", "opt", "srv", "var", "work"];
+
+fn fails(files: &[Source], rule: impl Fn(&Source) -> Vec<String>) -> Vec<String> {
+    let named = |file: &Source| rule(file).into_iter().map(|what| format!("{}:{what}", file.path)).collect();
+    files.iter().flat_map::<Vec<String>, _>(named).collect()
+}
+
+fn check(files: &[Source], rule: impl Fn(&Source) -> Vec<String>) {
+    assert!(!files.is_empty(), "no files were found");
+    let wrong = fails(files, rule);
+    assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
+}
+
+fn canary(path: &str, text: &str, rule: impl Fn(&Source) -> Vec<String>) -> usize {
+    fails(&[Source { path: path.into(), text: text.into() }], rule).len()
+}
+
+fn too_long(file: &Source) -> Vec<String> {
+    let lines = file.text.lines().count();
+    if lines > LINES_MAX { vec![format!("{lines}: at most {LINES_MAX} lines")] } else { Vec::new() }
+}
+
+fn banned_words(file: &Source) -> Vec<String> {
+    let allowed: &[&str] = if file.path.starts_with("src/draw") { ALLOWED_IN_DRAW } else { &[] };
+    let why = |token: &Token| {
+        let (word, why) = BANNED.iter().find(|(word, _)| *word == token.text)?;
+        (!allowed.contains(word)).then(|| format!("{}: {word}: {why}", token.line))
+    };
+    tokens(&file.text).iter().filter_map(why).collect()
+}
+
+/// `usize` in a type that derives its encoding, whose width is then that of the machine.
+fn machine_width_in_state(file: &Source) -> Vec<String> {
+    let tokens = tokens(&file.text);
+    let mut wrong = Vec::new();
+    for at in 0..tokens.len() {
+        if tokens[at].text != "derive" {
+            continue;
+        }
+        let is = |word: &'static str| move |token: &&Token| token.text == word;
+        let list = tokens[at..].iter().take_while(|token| token.text != ")");
+        if list.filter(is("Serialize")).count() == 0 {
+            continue;
+        }
+        // The item ends with the brace that closes it, or with a semicolon if it has none.
+        let mut depth = 0;
+        let item = tokens[at..].iter().skip_while(|token| token.text != "]").skip(1).take_while(|token| {
+            depth += i32::from(matches!(token.text.as_str(), "{" | "(" | "["));
+            depth -= i32::from(matches!(token.text.as_str(), "}" | ")" | "]"));
+            depth > 0 || !matches!(token.text.as_str(), "}" | ";")
+        });
+        let sized = item.filter(|token| matches!(token.text.as_str(), "usize" | "isize"));
+        wrong.extend(sized.map(|token| format!("{}: {} in encoded state", token.line, token.text)));
+    }
+    wrong
+}
+
+fn machine_paths(file: &Source) -> Vec<String> {
+    let mut wrong = Vec::new();
+    for (line, text) in (1..).zip(file.text.lines()) {
+        for folder in MACHINE_FOLDERS {
+            let path = format!("/{folder}/");
+            let starts =
+                |at: usize| !text[..at].ends_with(|c: char| c.is_alphanumeric() || "._-/}*".contains(c));
+            if text.match_indices(&path).any(|(at, _)| starts(at)) {
+                wrong.push(format!("{line}: a path of one machine, {path}"));
+            }
+        }
+    }
+    wrong
+}
+
+#[test]
+fn files_are_short() {
+    check(&files("src", &["rs"]), too_long);
+    assert_eq!(canary("src/a.rs", &"\n".repeat(LINES_MAX), too_long), 0);
+    assert_eq!(canary("src/a.rs", &"\n".repeat(LINES_MAX + 1), too_long), 1);
+}
+
+#[test]
+fn nothing_in_the_library_differs_between_machines_or_prints() {
+    check(&files("src", &["rs"]), banned_words);
+    assert_eq!(
+        canary("src/a.rs", "let x: f32 = 0.5;\nlet m = std::collections::HashMap::new();", banned_words),
+        2
+    );
+    assert_eq!(
+        canary("src/a.rs", "// an f32, unsafe\n/* f64 /* f64 */ f64 */ let s = \"f64\";", banned_words),
+        0
+    );
+    assert_eq!(canary("src/a.rs", "unsafe { dbg!(1) }", banned_words), 2);
+    assert_eq!(canary("src/draw/svg.rs", "fn f(x: f64) { println!() }", banned_words), 1);
+}
+
+#[test]
+fn state_has_the_same_width_everywhere() {
+    let state = files("src", &["rs"]).into_iter();
+    let state: Vec<_> =
+        state.filter(|file| STATE_FOLDERS.iter().any(|folder| file.path.starts_with(folder))).collect();
+    check(&state, machine_width_in_state);
+    let derived = "#[derive(Clone, Serialize)]\npub struct A<'a> {\n  b: &'a [u8],\n  c: [usize; 2],\n}";
+    assert_eq!(canary("src/body/a.rs", derived, machine_width_in_state), 1);
+    assert_eq!(
+        canary("src/body/a.rs", "#[derive(Serialize)] struct A([u8; 2], usize);", machine_width_in_state),
+        1
+    );
+    let other =
+        "#[derive(Serialize)] struct A { b: u8 }\n#[derive(Clone)] struct B { c: usize }\nfn f(n: usize) {}";
+    assert_eq!(canary("src/body/a.rs", other, machine_width_in_state), 0);
+}
+
+#[test]
+fn nothing_names_a_folder_of_one_machine() {
+    for folder in ["src", "cli", "tests", "docs", ".ci"] {
+        check(&files(folder, &["rs", "toml", "md", ""]), machine_paths);
+    }
+    let path = |folder: &str| format!("read(\"/{folder}/me/a.replay\")");
+    assert_eq!(canary("src/a.rs", &path("home"), machine_paths), 1);
+    assert_eq!(canary("docs/A.md", "replays/home/a and https://example.org/home/", machine_paths), 0);
+}
