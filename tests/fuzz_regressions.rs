@@ -163,3 +163,29 @@ fn impulses_that_grow_over_sub_steps_are_no_overflow() {
         world.validate().unwrap();
     }
 }
+
+#[test]
+fn turns_and_levers_at_their_limits_are_no_overflow() {
+    // Bodies that spin about far-away centres and part: nothing stops them within the tick, and how far they have
+    // come is the sum of two products that filled 63 bits each, and of a third one.
+    let sides = [1i64, -1];
+    for (arm_a, arm_b, turn_a, turn_b) in sides
+        .into_iter()
+        .flat_map(|a| sides.map(|b| (a, b)))
+        .flat_map(|(a, b)| sides.into_iter().flat_map(move |c| sides.map(|d| (a, b, c, d))))
+    {
+        let mut config = Config { gravity: Vec2::ZERO, tick_rate: 10, ..Config::default() };
+        config.solver.sub_steps = 6;
+        let mut world = World::new(config).unwrap();
+        for (x, arm, turn) in [(-1, arm_a, turn_a), (1, arm_b, turn_b)] {
+            let box_ = ShapeDef::new(Polygon::square(fx!(0.5)).unwrap()).friction(fx!(0));
+            let centre = Vec2::new(fx!(0), fx!(200) * arm);
+            let mass = MassSource::Given { mass: fx!(1), centre, gyration: fx!(0.002) };
+            let body = BodyDef::dynamic().position(fx!(0.5) * x, fx!(0)).velocity(fx!(20) * x, fx!(0));
+            world.spawn(&body.mass(mass).angular_velocity(fx!(199000) * turn), &[box_]).unwrap();
+        }
+        for _ in 0..3 {
+            world.step();
+        }
+    }
+}

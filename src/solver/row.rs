@@ -80,14 +80,19 @@ pub(crate) struct Row {
     f_b: Unit,
 }
 
-/// `D` of a row, with 30 fraction bits: 1 to 16 130.
+/// Largest lever ratio. Two of them times the largest turns still leave 2^57 of 64 bits for the linear part of
+/// [`Row::along`].
+const RATIO_MAX: Ratio = Ratio::lit("126");
+
+/// `D` of a row, with 30 fraction bits: 1 to 15 877.
 pub(crate) type Denominator = i64;
 
 impl Row {
     pub(crate) fn prepare(n: Vec2<Unit>, a: Lever, b: Lever, fractions: MassFractions) -> (Row, Denominator) {
         let ratio = |lever: Lever| -> Ratio {
             let c: Length = lever.arm.cross(n);
-            lever.inverse_gyration.times(c)
+            let e: Ratio = lever.inverse_gyration.times(c);
+            e.clamp(-RATIO_MAX, RATIO_MAX)
         };
         let (e_a, e_b) = (ratio(a), ratio(b));
         let turning = |fraction: Unit, e: Ratio| {
