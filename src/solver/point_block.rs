@@ -36,7 +36,7 @@ use fixed::types::extra::U30;
 
 use super::body::SolverBody;
 use super::limits::{Faults, IMPULSE_MAX};
-use super::row::MassFractions;
+use super::row::{MassFractions, turning};
 use super::softness::Softness;
 use crate::math::{
     Length, Ratio, Reciprocal, Speed, Unit, Vec2, mul, round_shift, round_shift_wide, saturate, saturate_wide,
@@ -95,19 +95,17 @@ impl PointBlock {
             Vec2::new(end.inverse_gyration.times(perp.x), end.inverse_gyration.times(perp.y))
         };
         let (e_a, e_b) = (ratios(a), ratios(b));
-        let (w_a, w_b): (Vec2<Ratio>, Vec2<Ratio>) = (e_a.scale(fractions.a), e_b.scale(fractions.b));
-        let product = |a: Ratio, b: Ratio| i64::from(a.to_bits()) * i64::from(b.to_bits());
-        // Each product has 48 fraction bits and at most 62 bits; the fractions add up to 1, so the sums fit too.
-        let sum = |a: i64, b: i64| round_shift(a.saturating_add(b), 18);
-        let xx = sum(product(w_a.x, e_a.x), product(w_b.x, e_b.x));
-        let xy = sum(product(w_a.x, e_a.y), product(w_b.x, e_b.y));
-        let yy = sum(product(w_a.y, e_a.y), product(w_b.y, e_b.y));
-        let cross = |p: Vec2<Ratio>, q: Vec2<Ratio>| {
-            round_shift(product(p.x, q.y).saturating_sub(product(p.y, q.x)), 18)
+        let sum = |i: fn(Vec2<Ratio>) -> Ratio, j: fn(Vec2<Ratio>) -> Ratio| {
+            turning(fractions.a, i(e_a), j(e_a)) + turning(fractions.b, i(e_b), j(e_b))
         };
-        let both = i128::from(cross(w_a, e_b)) * i128::from(cross(e_a, w_b));
+        let (xx, xy, yy) = (sum(|e| e.x, |e| e.x), sum(|e| e.x, |e| e.y), sum(|e| e.y, |e| e.y));
+        let product = |a: Ratio, b: Ratio| i128::from(a.to_bits()) * i128::from(b.to_bits());
+        // 24 fraction bits of `eA x eB` and of each fraction are enough: the term is never the smallest.
+        let cross = round_shift_wide(product(e_a.x, e_b.y) - product(e_a.y, e_b.x), 24);
+        let shares = product_of_fractions(fractions);
+        let both = round_shift_wide(cross * cross, 24) * shares;
         let one = 1i64 << 30;
-        let det = one + xx + yy + saturate_wide(round_shift_wide(both, 30));
+        let det = one + xx + yy + saturate_wide(round_shift_wide(both, 24));
         let k = Symmetric { m11: one + xx, m12: xy, m22: one + yy };
         let g = inverse(&k, det);
         let (g_a, g_b) = (g.scale(fractions.a), g.scale(fractions.b));
@@ -170,6 +168,11 @@ impl PointBlock {
     }
 }
 
+/// `aA aB` with 30 fraction bits.
+fn product_of_fractions(fractions: MassFractions) -> i128 {
+    i128::from(mul::<_, _, U30>(fractions.a, fractions.b).to_bits())
+}
+
 /// Beyond a quarter of a radian the third order is no better than the second, and feeds energy to chains that one
 /// iteration does not solve.
 const TURN_MAX: Unit = Unit::lit("0.25");
@@ -198,4 +201,64 @@ fn inverse(k: &Symmetric<i64>, det: i64) -> Symmetric<Unit> {
     let reciprocal = (1i64 << 62) / (det >> excess);
     let entry = |value: i64| Unit::from_bits(saturate(round_shift((value >> excess) * reciprocal, 32)));
     Symmetric { m11: entry(k.m22), m12: entry(-k.m12), m22: entry(k.m11) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fx;
+    use crate::math::{Fx, Rng, Rot, narrow};
+
+    /// One update leaves the anchors at rest against each other but for rounding. With arms of up to 16 radii of
+    /// gyration on both sides they start at up to 330 m/s, and 6e-5 m/s is two parts in ten million of that.
+    #[test]
+    fn an_update_brings_the_anchors_to_rest() {
+        let mut rng = Rng::new(8);
+        let (mut faults, mut worst) = (0, 0);
+        for _ in 0..100_000 {
+            let mut arm = || {
+                let gyration = rng.range(fx!(0.05), fx!(10));
+                let reach = crate::math::fx_mul(gyration, rng.range(fx!(0), fx!(16)));
+                let arm = Rot::from_angle(rng.angle()).apply_wide(Vec2::new(reach, Fx::ZERO)).narrow();
+                Arm { arm, inverse_gyration: Reciprocal::of(gyration) }
+            };
+            let (a, b) = (arm(), arm());
+            let share: Unit = narrow(rng.range(fx!(0), fx!(1)));
+            let fractions = match rng.below(3) {
+                0 => MassFractions { a: Unit::ZERO, b: Unit::ONE },
+                _ => MassFractions { a: share, b: Unit::ONE - share },
+            };
+            let block = PointBlock::new(a, b, fractions);
+            let mut body = || {
+                let mut speed = || narrow(rng.range(fx!(-10), fx!(10)));
+                SolverBody { velocity: Vec2::new(speed(), speed()), spin: speed(), ..SolverBody::default() }
+            };
+            let (mut a, mut b) = (body(), body());
+            let mut lambda = Vec2::ZERO;
+            block.solve(
+                &mut a,
+                &mut b,
+                block.ratios(),
+                Vec2::ZERO,
+                &Softness::RIGID,
+                &mut lambda,
+                &mut faults,
+            );
+            // A second update finds what the first has left.
+            let before = lambda;
+            block.solve(
+                &mut a,
+                &mut b,
+                block.ratios(),
+                Vec2::ZERO,
+                &Softness::RIGID,
+                &mut lambda,
+                &mut faults,
+            );
+            let left = lambda - before;
+            worst = worst.max(left.x.to_bits().abs()).max(left.y.to_bits().abs());
+        }
+        assert_eq!(faults, 0);
+        assert!(worst <= 128, "{worst} units left");
+    }
 }
