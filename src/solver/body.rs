@@ -27,8 +27,10 @@ impl SolverBody {
     pub(crate) fn set_velocity(&mut self, x: Speed, y: Speed, spin: Speed, faults: &mut Faults) {
         self.velocity = Vec2::new(x, y);
         self.spin = spin;
-        // One branch that is never taken, instead of three clamps.
-        if x.abs().max(y.abs()).max(spin.abs()) > SPEED_MAX {
+        // One branch that is never taken, instead of three clamps. Sums that have saturated may be the smallest
+        // number, whose magnitude has no sign to spare.
+        let fastest = x.unsigned_abs().max(y.unsigned_abs()).max(spin.unsigned_abs());
+        if fastest > SPEED_MAX.unsigned_abs() {
             self.clamp(faults);
         }
     }
@@ -67,4 +69,18 @@ pub(crate) fn turned(angle: Angle, turn: Step, inverse_gyration: Reciprocal) -> 
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "angles wrap")]
     let bits = turns as u32;
     angle + Angle::from_bits(bits)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_velocity_at_either_end_of_its_format_is_clamped() {
+        for (end, limit) in [(Speed::MIN, -SPEED_MAX), (Speed::MAX, SPEED_MAX)] {
+            let (mut body, mut faults) = (SolverBody::default(), 0);
+            body.set_velocity(end, end, end, &mut faults);
+            assert_eq!((body.velocity, body.spin, faults), (Vec2::new(limit, limit), limit, 3));
+        }
+    }
 }
