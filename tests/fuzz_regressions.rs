@@ -180,7 +180,7 @@ fn turns_and_levers_at_their_limits_are_no_overflow() {
         let mut world = World::new(config).unwrap();
         for (x, arm, turn) in [(-1, arm_a, turn_a), (1, arm_b, turn_b)] {
             let box_ = ShapeDef::new(Polygon::square(fx!(0.5)).unwrap()).friction(fx!(0));
-            let centre = Vec2::new(fx!(0), fx!(200) * arm);
+            let centre = Vec2::new(fx!(0), fx!(128) * arm);
             let mass = MassSource::Given { mass: fx!(1), centre, gyration: fx!(0.002) };
             let body = BodyDef::dynamic().position(fx!(0.5) * x, fx!(0)).velocity(fx!(20) * x, fx!(0));
             world.spawn(&body.mass(mass).angular_velocity(fx!(199000) * turn), &[box_]).unwrap();
@@ -207,4 +207,59 @@ fn joints_that_pull_with_all_they_have_leave_no_velocity_at_the_end_of_its_forma
             world.validate().unwrap();
         }
     }
+}
+
+/// The bytes of a world after an edit, with the hash at the end repaired.
+fn forged(world: &World, edit: impl FnOnce(&mut Vec<u8>)) -> Vec<u8> {
+    let mut bytes = world.to_bytes();
+    edit(&mut bytes);
+    let end = bytes.len() - 16;
+    let hash = lockstep2d::hash::StateHash::of_bytes(&bytes[..end]);
+    bytes[end..].copy_from_slice(&hash.0.to_le_bytes());
+    bytes
+}
+
+/// Overwrites the first place where a number stands.
+fn overwrite(bytes: &mut [u8], old: Fx, new: Fx) {
+    let old = old.to_bits().to_le_bytes();
+    let at = bytes.windows(8).position(|window| window == old).expect("the number is there");
+    bytes[at..at + 8].copy_from_slice(&new.to_bits().to_le_bytes());
+}
+
+#[test]
+fn a_snapshot_with_an_impossible_shape_is_refused_before_its_mass_is_summed() {
+    let mut world = weightless();
+    let ball =
+        ShapeDef::new(Geometry::circle(fx!(0.5)).unwrap()).offset(fx!(3.25), fx!(0)).density(fx!(7.125));
+    world.spawn(&BodyDef::dynamic(), &[ball, ball]).unwrap();
+    for (old, new) in [(fx!(3.25), Fx::MAX), (fx!(3.25), Fx::MIN), (fx!(7.125), Fx::MAX)] {
+        assert!(World::from_bytes(&forged(&world, |bytes| overwrite(bytes, old, new))).is_err());
+    }
+}
+
+#[test]
+fn a_snapshot_that_hides_the_floor_from_the_broad_phase_is_refused() {
+    let mut world = weightless();
+    let floor = ShapeDef::new(Polygon::rectangle(fx!(20), fx!(1.5)).unwrap());
+    let id = world.spawn(&BodyDef::fixed(), &[floor]).unwrap();
+    let shape = world.body(id).unwrap().shapes()[0];
+    let lower = world.shape(shape).unwrap().fat_aabb().lower.x;
+    assert!(World::from_bytes(&forged(&world, |bytes| overwrite(bytes, lower, lower - fx!(100)))).is_err());
+    assert!(World::from_bytes(&forged(&world, |_| ())).is_ok());
+}
+
+#[test]
+fn many_shapes_added_in_one_tick_are_work() {
+    let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).unwrap());
+    let setup = SandboxSetup {
+        config: Config::default(),
+        commands: vec![Command::Spawn { body: BodyDef::dynamic(), shapes: vec![ball] }],
+    };
+    let game = Sandbox::new(&setup).unwrap();
+    let body = game.world().bodies().next().unwrap().0;
+    let commands = vec![Command::AddShape { body, shape: ball }; 2000];
+    assert!(game.work(&[commands]) > 10_000_000);
+    let mut setup = setup;
+    setup.commands.extend(vec![Command::AddShape { body, shape: ball }; 20_000]);
+    assert!(Sandbox::new(&setup).is_err());
 }

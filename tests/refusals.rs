@@ -97,7 +97,7 @@ fn bodies_out_of_range_are_refused() {
     stage.refuses(spawn(BodyDef::dynamic(), ball().restitution(fx!(1.1))), material);
     let damping = |error: &WorldError| matches!(error, WorldError::DampingOutOfRange { .. });
     stage.refuses(spawn(BodyDef::dynamic().linear_damping(fx!(-1)), ball()), damping);
-    stage.refuses(spawn(BodyDef::dynamic().gravity_scale(Fx::MAX), ball()), damping);
+    stage.refuses(spawn(BodyDef::dynamic().angular_damping(fx!(1001)), ball()), damping);
 
     let given = |mass, gyration| MassSource::Given { mass, centre: Vec2::ZERO, gyration };
     stage.refuses(spawn(BodyDef::dynamic().mass(given(fx!(0), fx!(1))), ball()), is_mass);
@@ -228,4 +228,32 @@ fn valid_extremes_are_accepted() {
         world.step();
         assert_eq!(world.validate(), Ok(()));
     }
+}
+
+#[test]
+fn a_body_that_reaches_too_far_or_would_spin_too_fast_is_refused() {
+    let mut stage = Stage::new();
+    let ball = stage.ball;
+    let reach = |error: &WorldError| matches!(error, WorldError::OffsetOutOfRange { .. });
+    let plank = ShapeDef::new(Polygon::rectangle(fx!(100), fx!(1)).expect("valid"));
+    stage.refuses(spawn(BodyDef::dynamic(), plank.offset(fx!(60), fx!(0))), reach);
+    stage.refuses(Command::AddShape { body: ball, shape: plank.offset(fx!(0), fx!(128)) }, reach);
+    // 50 rad/s are 18 m/s of a ball of 0.35 m radius of gyration, but far too fast with a heavy arm of 30 m.
+    stage.world.set_velocity(ball, Vec2::ZERO, fx!(50)).expect("valid");
+    let arm = self::ball().offset(fx!(60), fx!(0)).density(fx!(1));
+    stage.refuses(Command::AddShape { body: ball, shape: arm }, |error| {
+        matches!(error, WorldError::SpeedOutOfRange { .. })
+    });
+    stage.refuses(spawn(BodyDef::dynamic().gravity_scale(Fx::MIN), self::ball()), |error| {
+        matches!(error, WorldError::GravityScaleOutOfRange { .. })
+    });
+}
+
+/// A kinematic body keeps its angular velocity whatever is attached to it.
+#[test]
+fn a_shape_does_not_change_how_a_kinematic_body_turns() {
+    let mut stage = Stage::new();
+    stage.world.set_velocity(stage.lift, Vec2::ZERO, fx!(10)).expect("valid");
+    stage.world.add_shape(stage.lift, &ball().offset(fx!(60), fx!(60))).expect("valid");
+    assert_eq!(stage.world.body(stage.lift).expect("there").angular_velocity(), fx!(10));
 }

@@ -98,7 +98,7 @@ const SPEED_MAX: i64 = 511 << 21;
 const IMPULSE_MAX: i64 = 1023 << 21;
 /// How far away a centre of mass may be, in raw units of `Fx`.
 const CENTRE_MAX: i64 = ((1 << 30) + 1024) << 32;
-const OFFSET_MAX: i64 = 256 << 32;
+const REACH_MAX: i64 = 256 << 32;
 
 impl<T> Arena<T> {
     /// The slot number of some value.
@@ -259,7 +259,7 @@ impl State {
             12 => {
                 body.mass_source = MassSource::Given {
                     mass: Fx::from_bits(source.within(42_950, 1 << 62)),
-                    centre: vector(pair(source, -OFFSET_MAX, OFFSET_MAX)),
+                    centre: vector(pair(source, -REACH_MAX, REACH_MAX)),
                     gyration: Fx::from_bits(source.within(8_589_935, 512 << 32)),
                 };
                 return self.weigh(index);
@@ -296,7 +296,7 @@ impl State {
         match source.below(7) {
             0 => shape.def = fresh,
             1 => shape.def.geometry = fresh.geometry,
-            2 => shape.def.offset = vector(pair(source, -OFFSET_MAX, OFFSET_MAX)),
+            2 => shape.def.offset = vector(pair(source, -REACH_MAX, REACH_MAX)),
             3 => shape.def.density = Fx::from_bits(source.within(0, 1 << 52)),
             4 => shape.def.material = fresh.material,
             5 => {
@@ -353,8 +353,8 @@ impl State {
         let JointDef::Revolute(def) = &mut joint.def;
         match source.below(4) {
             0 => joint.lambda = (speed(source, IMPULSE_MAX), speed(source, IMPULSE_MAX)),
-            1 => def.anchor_a = vector(pair(source, -OFFSET_MAX, OFFSET_MAX)),
-            2 => def.anchor_b = vector(pair(source, -OFFSET_MAX, OFFSET_MAX)),
+            1 => def.anchor_a = vector(pair(source, -REACH_MAX, REACH_MAX)),
+            2 => def.anchor_b = vector(pair(source, -REACH_MAX, REACH_MAX)),
             _ => def.collide_connected = !def.collide_connected,
         }
         Some(())

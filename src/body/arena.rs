@@ -3,9 +3,11 @@
 //! The free list is part of the state, because it decides which handle the next value gets.
 
 use alloc::vec::Vec;
+use core::fmt;
 use core::marker::PhantomData;
 
-use serde::{Deserialize, Serialize};
+use serde::de::{SeqAccess, Visitor};
+use serde::{Deserialize, Deserializer, Serialize};
 
 /// A generational handle: a slot and how often it has been reused.
 pub(crate) trait Handle: Copy + Eq {
@@ -80,6 +82,7 @@ struct Slot<T> {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(bound(serialize = "T: Serialize", deserialize = "T: Deserialize<'de>"))]
 pub(crate) struct Arena<T, H> {
+    #[serde(deserialize_with = "slots_within_limit")]
     slots: Vec<Slot<T>>,
     /// Vacant slots, last freed on top.
     free: Vec<u32>,
@@ -87,6 +90,37 @@ pub(crate) struct Arena<T, H> {
     retired: u32,
     #[serde(skip)]
     handle: PhantomData<fn() -> H>,
+}
+
+/// Most slots of an arena that is decoded, well above what a world may hold. A vacant slot takes 5 bytes in a file
+/// and hundreds in memory, so a file's length alone does not bound what it makes us allocate.
+const DECODED_SLOTS_MAX: usize = 1 << 21;
+
+fn slots_within_limit<'de, T, D>(deserializer: D) -> Result<Vec<Slot<T>>, D::Error>
+where
+    T: Deserialize<'de>,
+    D: Deserializer<'de>,
+{
+    struct Slots<T>(PhantomData<T>);
+    impl<'de, T: Deserialize<'de>> Visitor<'de> for Slots<T> {
+        type Value = Vec<Slot<T>>;
+
+        fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+            write!(f, "at most {DECODED_SLOTS_MAX} slots")
+        }
+
+        fn visit_seq<A: SeqAccess<'de>>(self, mut sequence: A) -> Result<Self::Value, A::Error> {
+            let mut slots = Vec::new();
+            while let Some(slot) = sequence.next_element()? {
+                if slots.len() == DECODED_SLOTS_MAX {
+                    return Err(serde::de::Error::invalid_length(slots.len() + 1, &self));
+                }
+                slots.push(slot);
+            }
+            Ok(slots)
+        }
+    }
+    deserializer.deserialize_seq(Slots(PhantomData))
 }
 
 impl<T, H> Default for Arena<T, H> {

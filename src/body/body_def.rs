@@ -158,7 +158,7 @@ impl BodyDef {
             }
         }
         if !(fx!(-1000)..=fx!(1000)).contains(&self.gravity_scale) {
-            return Err(WorldError::DampingOutOfRange { value: self.gravity_scale });
+            return Err(WorldError::GravityScaleOutOfRange { value: self.gravity_scale });
         }
         Ok(())
     }

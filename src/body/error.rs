@@ -1,4 +1,4 @@
-//! Errors of the body layer.
+//! Errors of geometry, and of changes to a world.
 
 use core::fmt;
 
@@ -65,7 +65,8 @@ pub enum WorldError {
         /// The coordinate in metres.
         value: Fx,
     },
-    /// A shape's offset is further than 256 m from its movable body's origin, or 2^30 m from a fixed one's.
+    /// A shape or anchor is further than 128 m from its movable body's origin on some axis, or 2^30 m from a fixed
+    /// one's.
     OffsetOutOfRange {
         /// The coordinate in metres.
         value: Fx,
@@ -92,9 +93,14 @@ pub enum WorldError {
         /// The radius in metres.
         value: Fx,
     },
-    /// A damping rate or gravity scale is out of range: damping 0 to 1000 per second, scale ±1000.
+    /// A damping rate is not within 0 to 1000 per second.
     DampingOutOfRange {
-        /// The value asked for.
+        /// The rate asked for.
+        value: Fx,
+    },
+    /// A gravity scale is not within ±1000.
+    GravityScaleOutOfRange {
+        /// The scale asked for.
         value: Fx,
     },
     /// A joint between a body and itself.
@@ -132,7 +138,7 @@ impl fmt::Display for WorldError {
             WorldError::StaleJoint(id) => write!(f, "no joint {id}"),
             WorldError::PositionOutOfRange { value } => write!(f, "position {value} m is beyond 2^30 m"),
             WorldError::OffsetOutOfRange { value } => {
-                write!(f, "a shape offset of {value} m is out of range")
+                write!(f, "a shape or anchor reaches {value} m from its body's origin")
             }
             WorldError::SpeedOutOfRange { value } => write!(f, "speed {value} is above the world's limit"),
             WorldError::DensityOutOfRange { value } => write!(f, "density {value} kg/m² is out of range"),
@@ -147,7 +153,10 @@ impl fmt::Display for WorldError {
                 write!(f, "a dynamic body's radius of gyration is 0.002 to 512 m, not {value}")
             }
             WorldError::DampingOutOfRange { value } => {
-                write!(f, "damping or gravity scale {value} is out of range")
+                write!(f, "damping is 0 to 1000 per second, not {value}")
+            }
+            WorldError::GravityScaleOutOfRange { value } => {
+                write!(f, "gravity scale is within ±1000, not {value}")
             }
             WorldError::JointToItself(id) => write!(f, "a joint between body {id} and itself"),
             WorldError::JointWithoutDynamicBody => write!(f, "neither body of the joint is dynamic"),

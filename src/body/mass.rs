@@ -35,7 +35,7 @@ pub enum MassSource {
     Given {
         /// Mass in kg, 1e-5 to 2^30.
         mass: Fx,
-        /// Centre of mass in the body's frame, in metres, within ±256.
+        /// Centre of mass in the body's frame, in metres, within ±128.
         centre: Vec2<Fx>,
         /// Radius of gyration about the centre of mass in metres, 0.002 to 512: `sqrt(inertia / mass)`.
         gyration: Fx,
@@ -56,15 +56,10 @@ pub struct MassProperties {
 }
 
 impl MassProperties {
-    /// The properties of a body that no force moves. Its `k` is at least the reach of its shapes, so that the
-    /// lever ratio of any contact is at most about 1.
-    pub(crate) fn immovable<'a>(shapes: impl Iterator<Item = &'a ShapeDef>) -> Self {
-        let reach = shapes.fold(Fx::ONE, |reach, shape| {
-            let bounds = shape.geometry.local_bounds().translated(shape.offset);
-            let corner = bounds.upper.max(-bounds.lower);
-            reach.max(corner.x.saturating_add(corner.y))
-        });
-        Self::new(Fx::ZERO, Vec2::ZERO, reach.min(*GYRATION.end()))
+    /// The properties of a body that no force moves. Its `k` is any convenient length: 4 m lets it turn at
+    /// 100 rad/s within a speed limit of 400 m/s, and keeps the lever ratio of the longest arm below 91.
+    pub(crate) fn immovable() -> Self {
+        Self::new(Fx::ZERO, Vec2::ZERO, fx!(4))
     }
 
     /// The properties of a dynamic body.
@@ -75,7 +70,7 @@ impl MassProperties {
         let properties = match source {
             MassSource::Given { mass, centre, gyration } => {
                 for value in [centre.x, centre.y] {
-                    if !(-super::OFFSET_MAX..=super::OFFSET_MAX).contains(&value) {
+                    if !(-super::REACH_MAX..=super::REACH_MAX).contains(&value) {
                         return Err(WorldError::OffsetOutOfRange { value });
                     }
                 }

@@ -22,4 +22,4 @@ pub use filter::Filter;
 pub use mass::{MassProperties, MassSource};
 pub use material::{Material, Mixing};
 pub use polygon::{POLYGON_VERTICES_MAX, Polygon, SHAPE_EXTENT_MAX};
-pub use shape::{DENSITY_MAX, Geometry, OFFSET_MAX, Shape, ShapeDef, WORLD_EXTENT_MAX};
+pub use shape::{DENSITY_MAX, Geometry, REACH_MAX, SHAPES_PER_BODY_MAX, Shape, ShapeDef, WORLD_EXTENT_MAX};

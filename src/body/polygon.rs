@@ -11,9 +11,9 @@ use crate::math::{Angle, Fx, Length, Rot, Unit, Vec2};
 pub const POLYGON_VERTICES_MAX: usize = 8;
 
 /// A shape may reach this far from its centre on each axis of its own frame, radius included, in metres: turned
-/// by any angle it stays within 170 m, and twice that, the largest distance between the centres of two shapes
-/// that touch, is within the range of [`Length`].
-pub const SHAPE_EXTENT_MAX: Fx = crate::fx!(120);
+/// by any angle it stays within 156 m. A vertex of one shape from that of another whose boxes are at most 15 m apart is
+/// three times that and 15 m away, which is within the range of [`Length`].
+pub const SHAPE_EXTENT_MAX: Fx = crate::fx!(110);
 
 /// Edges shorter than this, in metres, have no reliable direction: about a thousand units of [`Length`].
 const EDGE_MIN: Fx = crate::fx!(0.0005);
@@ -154,7 +154,7 @@ impl Polygon {
     /// The polygon with its outline moved outwards by `radius` metres.
     ///
     /// # Errors
-    /// When the radius is negative, or the outline reaches further than 120 m on some axis.
+    /// When the radius is negative, or the outline reaches further than 110 m on some axis.
     pub fn rounded(mut self, radius: Fx) -> Result<Self, GeometryError> {
         let reach = self.vertices().iter().fold(Fx::ZERO, |reach, vertex| {
             let vertex = vertex.widen();

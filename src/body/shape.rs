@@ -13,9 +13,13 @@ use crate::math::{Aabb, Fx, Vec2};
 /// Coordinates in the world stay within ± this many metres, so that sums of a few of them cannot overflow.
 pub const WORLD_EXTENT_MAX: Fx = fx!(1073741824);
 
-/// A shape's offset from the origin of a body that can move, in metres: with [`SHAPE_EXTENT_MAX`] on top, lever
-/// arms stay within the range of `Length`.
-pub const OFFSET_MAX: Fx = fx!(256);
+/// How far a shape of a body that can move, and an anchor of a joint, may be from the body's origin on each axis of
+/// its frame, in metres. The centre of mass is among them, so lever arms are at most 363 m long however the body is
+/// turned, and fit `Length`.
+pub const REACH_MAX: Fx = fx!(128);
+
+/// Most shapes of one body: changes to a body cost time for each of its shapes.
+pub const SHAPES_PER_BODY_MAX: u32 = 4096;
 
 /// The largest density in kg/m².
 pub const DENSITY_MAX: Fx = fx!(1048576);
@@ -28,7 +32,7 @@ const SIZE_MIN: Fx = fx!(0.002);
 pub enum Geometry {
     /// A disc about the shape's centre.
     Circle {
-        /// 0.002 to 120 m.
+        /// 0.002 to 110 m.
         radius: Fx,
     },
     /// A line between two points, solid from both sides. It has no area, and so no mass. Segments do not collide
@@ -53,7 +57,7 @@ impl Geometry {
     /// A circle from its radius in metres.
     ///
     /// # Errors
-    /// When the radius is not within 0.002 to 120 m.
+    /// When the radius is not within 0.002 to 110 m.
     pub fn circle(radius: Fx) -> Result<Self, GeometryError> {
         let circle = Geometry::Circle { radius };
         circle.validate().map(|()| circle)
@@ -186,11 +190,11 @@ impl ShapeDef {
         self
     }
 
-    /// Checks everything that does not depend on the body. `offset_max` does: see [`OFFSET_MAX`].
-    pub(crate) fn validate(&self, offset_max: Fx) -> Result<(), WorldError> {
+    /// Checks everything that does not depend on the body. `reach_max` does: see [`REACH_MAX`].
+    pub(crate) fn validate(&self, reach_max: Fx) -> Result<(), WorldError> {
         let ShapeDef { geometry, offset, density, material, filter: _, user_data: _ } = self;
         geometry.validate()?;
-        check_reach(geometry, *offset, offset_max)?;
+        check_reach(geometry, *offset, reach_max)?;
         if !(Fx::ZERO..=DENSITY_MAX).contains(density) {
             return Err(WorldError::DensityOutOfRange { value: *density });
         }
@@ -201,17 +205,14 @@ impl ShapeDef {
     }
 }
 
-/// Checks that the centre of a shape, and the ends of a segment, are within `offset_max` of the body's origin.
-fn check_reach(geometry: &Geometry, offset: Vec2<Fx>, offset_max: Fx) -> Result<(), WorldError> {
-    let check = |value: Fx| {
-        let inside = (-offset_max..=offset_max).contains(&value);
-        if inside { Ok(()) } else { Err(WorldError::OffsetOutOfRange { value }) }
-    };
-    let points = match *geometry {
-        Geometry::Segment { a, b } => [offset, offset + a, offset + b],
-        Geometry::Circle { .. } | Geometry::Polygon(_) => [offset; 3],
-    };
-    points.into_iter().try_for_each(|point| check(point.x).and(check(point.y)))
+/// Checks that a shape is within `reach_max` of the body's origin on each axis.
+fn check_reach(geometry: &Geometry, offset: Vec2<Fx>, reach_max: Fx) -> Result<(), WorldError> {
+    let bounds = geometry.local_bounds().translated(offset);
+    let corners = [offset.x, offset.y, bounds.lower.x, bounds.lower.y, bounds.upper.x, bounds.upper.y];
+    match corners.into_iter().find(|corner| !(-reach_max..=reach_max).contains(corner)) {
+        Some(value) => Err(WorldError::OffsetOutOfRange { value }),
+        None => Ok(()),
+    }
 }
 
 /// A shape in the world.

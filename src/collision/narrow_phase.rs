@@ -93,7 +93,7 @@ mod tests {
 
     fn posed(geometry: Geometry, position: Vec2<Fx>, angle: Angle) -> PosedShape {
         let def = BodyDef::fixed().position(position.x, position.y).angle(angle);
-        let body = Body::new(&def, MassProperties::immovable(core::iter::empty()));
+        let body = Body::new(&def, MassProperties::immovable());
         PosedShape::new(&ShapeDef::new(geometry), &body, body.rotation())
     }
 

@@ -6,6 +6,7 @@ use alloc::vec::Vec;
 use serde::{Deserialize, Serialize};
 
 use super::{Game, RulesId, SetupError};
+use crate::body::BodyId;
 use crate::hash::StateHash;
 use crate::world::{Command, Config, Snapshot, World};
 
@@ -26,6 +27,9 @@ pub struct Sandbox {
     refused: u64,
 }
 
+/// Most work units of a setup's commands: some two seconds. A million bodies of one shape take 12 million.
+const SETUP_WORK_MAX: u64 = 100_000_000;
+
 /// How a sandbox begins.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SandboxSetup {
@@ -42,7 +46,8 @@ impl Sandbox {
         &self.world
     }
 
-    /// The world, to change what is no state: caches and the broad phase.
+    /// The world, to change what is no state: caches and the broad phase. Any other change is not in the log of
+    /// inputs, and a replay of it diverges.
     pub fn world_mut(&mut self) -> &mut World {
         &mut self.world
     }
@@ -64,7 +69,14 @@ impl Game for Sandbox {
     /// A setup is refused if its settings or any of its commands are: unlike a player's, they are not guesses.
     fn new(setup: &SandboxSetup) -> Result<Self, SetupError> {
         let mut world = World::new(setup.config).map_err(|error| SetupError { why: format!("{error}") })?;
+        let mut work = 0u64;
         for (index, command) in setup.commands.iter().enumerate() {
+            work = work.saturating_add(command_work(&world, command));
+            if work > SETUP_WORK_MAX {
+                return Err(SetupError {
+                    why: format!("command {index}: too much work before the first tick"),
+                });
+            }
             let refused = |error| SetupError { why: format!("command {index}: {error}") };
             world.execute(command).map_err(refused)?;
         }
@@ -105,21 +117,51 @@ impl Game for Sandbox {
     /// each other make pairs that are not there yet: as many as the world allows, in the worst case, for which
     /// the broad phase compares each with each.
     fn work(&self, inputs: &[Vec<Command>]) -> u64 {
-        let count = |n: usize| u64::try_from(n).unwrap_or(u64::MAX);
         let world = &self.world;
-        let commands = count(inputs.iter().map(Vec::len).sum());
-        let spawned = inputs.iter().flatten().map(|command| match command {
-            Command::Spawn { shapes, .. } => shapes.len(),
-            _ => 0,
-        });
-        let shapes = count(world.shape_count()).saturating_add(count(spawned.sum()));
-        let bodies = count(world.body_count()).saturating_add(commands);
+        let commands = inputs.iter().flatten();
+        let added: u64 = commands.clone().map(shapes_added).sum();
+        let changes: u64 = commands.clone().map(|command| command_work(world, command)).sum();
+        // Each shape that a body gets makes the next one dearer.
+        let grown =
+            count(commands.clone().filter(|command| matches!(command, Command::AddShape { .. })).count());
+        let changes = changes.saturating_add(grown.saturating_mul(grown) * 4);
+        let spawned = count(commands.filter(|command| matches!(command, Command::Spawn { .. })).count());
+        let shapes = count(world.shape_count()).saturating_add(added);
+        let bodies = count(world.body_count()).saturating_add(spawned);
+        let constraints = count(world.pair_count()).saturating_add(count(world.joint_count()));
         let solver = world.config().solver;
         let rounds = u64::from(solver.sub_steps) * u64::from(solver.iterations);
-        let constraints = count(world.pair_count()).saturating_add(count(world.joint_count()));
         let solved = bodies.saturating_add(shapes).saturating_add(constraints).saturating_mul(rounds);
         let compared = shapes.saturating_mul(shapes);
         let possible_pairs = (compared / 2).min(world.config().pair_limit.into());
-        solved.saturating_add(possible_pairs).saturating_add(compared / 64)
+        solved.saturating_add(changes).saturating_add(possible_pairs).saturating_add(compared / 64)
+    }
+}
+
+fn count(n: usize) -> u64 {
+    u64::try_from(n).unwrap_or(u64::MAX)
+}
+
+fn shapes_added(command: &Command) -> u64 {
+    match command {
+        Command::Spawn { shapes, .. } => count(shapes.len()),
+        Command::AddShape { .. } => 1,
+        _ => 0,
+    }
+}
+
+/// What a command looks through: the shapes of its body, and for removals all contacts and joints.
+fn command_work(world: &World, command: &Command) -> u64 {
+    let shapes_of = |body: BodyId| 4 * count(world.body(body).map_or(0, |body| body.shapes().len()));
+    let removal = || count(world.pair_count()).saturating_add(count(world.joint_count()));
+    match command {
+        Command::Spawn { shapes, .. } => 4 + 8 * count(shapes.len()),
+        Command::Despawn { body } => 1 + shapes_of(*body) + removal(),
+        Command::AddShape { body, .. } => 8 + shapes_of(*body),
+        Command::RemoveShape { shape } => {
+            1 + removal() + world.shape(*shape).map_or(0, |shape| shapes_of(shape.body()))
+        }
+        Command::SetTransform { body, .. } => 4 + shapes_of(*body),
+        _ => 1,
     }
 }

@@ -58,7 +58,7 @@ struct ContactPoint {
     tangent_lambda: Speed,
     /// Relative normal velocity when the shapes first pushed each other in this tick, for restitution.
     approach: Speed,
-    /// Whether the shapes have pushed each other in this tick, for restitution.
+    /// Whether the shapes have pushed each other in this tick.
     pushed: bool,
     normal_denominator: Denominator,
     tangent_denominator: Denominator,
@@ -203,6 +203,11 @@ impl ContactConstraint {
             let bounds = (Speed::ZERO, IMPULSE_MAX);
             point.normal.solve(a, b, bounce, &Softness::RIGID, bounds, &mut point.normal_lambda, faults);
         }
+    }
+
+    /// Whether the shapes have pushed each other in this tick.
+    pub(crate) fn has_pushed(&self) -> bool {
+        self.points[..usize::from(self.count)].iter().any(|point| point.pushed)
     }
 
     pub(crate) fn store(&self, memory: &mut Contact) {

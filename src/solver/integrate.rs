@@ -54,12 +54,7 @@ impl Mover {
     }
 
     /// `v' = (v + h F / m) / (1 + h c)`, within the world's speed limit.
-    pub(crate) fn integrate_velocity(
-        &self,
-        bodies: &mut [SolverBody],
-        speed_max: Speed,
-        faults: &mut Faults,
-    ) {
+    pub(crate) fn integrate_velocity(&self, bodies: &mut [SolverBody], speed_max: Speed) {
         if !self.dynamic {
             return;
         }
@@ -72,10 +67,8 @@ impl Mover {
         if self.angular_factor != Unit::ONE {
             body.spin = mul(body.spin, self.angular_factor);
         }
-        limit_speed(&mut body.velocity, speed_max, faults);
-        let spin = body.spin.clamp(-speed_max, speed_max);
-        *faults += u64::from(spin != body.spin);
-        body.spin = spin;
+        limit_speed(&mut body.velocity, speed_max);
+        body.spin = body.spin.clamp(-speed_max, speed_max);
     }
 
     /// `x' = x + h v'`.
@@ -111,13 +104,12 @@ fn damping_factor(damping: Fx, rate: u32) -> Unit {
     narrow(fx_div(Fx::ONE, Fx::ONE + damping / i64::from(rate)).unwrap_or(Fx::ONE))
 }
 
-/// Shortens a velocity to the limit. Its components are within ±1024, so its square fits 64 bits.
-fn limit_speed(velocity: &mut Vec2<Speed>, speed_max: Speed, faults: &mut Faults) {
+/// Shortens a velocity to the limit, which is a setting and so no fault. Its components are within ±1024, so its square fits 64 bits.
+fn limit_speed(velocity: &mut Vec2<Speed>, speed_max: Speed) {
     let square = |speed: Speed| i64::from(speed.to_bits()) * i64::from(speed.to_bits());
     if square(velocity.x).saturating_add(square(velocity.y)) <= square(speed_max) {
         return;
     }
-    *faults += 1;
     if let Some(direction) = velocity.normalized() {
         *velocity = direction.scale(speed_max);
     }

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::body::{BodyId, OFFSET_MAX, WorldError};
+use crate::body::{BodyId, REACH_MAX, WorldError};
 use crate::math::{Fx, Speed, Vec2};
 
 /// What to connect two bodies with.
@@ -36,9 +36,9 @@ pub struct RevoluteDef {
     pub body_a: BodyId,
     /// The other body.
     pub body_b: BodyId,
-    /// The pinned point in A's frame, in metres, within ±256.
+    /// The pinned point in A's frame, in metres, within ±128.
     pub anchor_a: Vec2<Fx>,
-    /// The pinned point in B's frame, in metres, within ±256.
+    /// The pinned point in B's frame, in metres, within ±128.
     pub anchor_b: Vec2<Fx>,
     /// Whether the two bodies collide with each other.
     pub collide_connected: bool,
@@ -98,7 +98,7 @@ impl JointDef {
             return Err(WorldError::JointToItself(def.body_a));
         }
         for value in [def.anchor_a.x, def.anchor_a.y, def.anchor_b.x, def.anchor_b.y] {
-            if !(-OFFSET_MAX..=OFFSET_MAX).contains(&value) {
+            if !(-REACH_MAX..=REACH_MAX).contains(&value) {
                 return Err(WorldError::OffsetOutOfRange { value });
             }
         }

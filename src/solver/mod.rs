@@ -45,6 +45,8 @@ pub(crate) struct Solver {
     contacts: Vec<ContactConstraint>,
     /// For each constraint in `contacts`, the index of its contact in the state.
     contact_indices: Vec<u32>,
+    /// For each contact in the state, whether its shapes have pushed each other in this tick.
+    pub(crate) pushed: Vec<bool>,
     nodes: Vec<Node>,
     colouring: Colouring,
     pub(crate) warm_starts: WarmStarts,
@@ -59,7 +61,7 @@ struct JointedBody {
     inverse_gyration: Reciprocal,
 }
 
-/// A contact to solve: where it is in the state, its manifold, and the slots of its bodies.
+/// A contact to solve: where it is in the state, the slots of its bodies, and their common surface.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TouchingPair {
     pub(crate) contact: u32,
@@ -154,7 +156,7 @@ impl Solver {
             joint.aim(&self.bodies, h, tuning);
         }
         for mover in &self.movers {
-            mover.integrate_velocity(&mut self.bodies, tuning.speed_max, &mut self.faults);
+            mover.integrate_velocity(&mut self.bodies, tuning.speed_max);
         }
         for contact in &mut self.contacts {
             contact.observe_approach(&self.bodies, &mut self.faults);
@@ -210,12 +212,15 @@ impl Solver {
     }
 
     /// Keeps the impulses for the next tick.
-    pub(crate) fn store_impulses(&self, contacts: &mut [Contact], joints: &mut Arena<Joint, JointId>) {
+    pub(crate) fn store_impulses(&mut self, contacts: &mut [Contact], joints: &mut Arena<Joint, JointId>) {
         for constraint in &self.joints {
             constraint.store(joints.at_mut(constraint.joint.index()));
         }
+        self.pushed.clear();
+        self.pushed.resize(contacts.len(), false);
         for (constraint, &index) in self.contacts.iter().zip(&self.contact_indices) {
             constraint.store(&mut contacts[index as usize]);
+            self.pushed[index as usize] = constraint.has_pushed();
         }
     }
 }

@@ -5,8 +5,8 @@ use alloc::vec::Vec;
 use super::World;
 use super::config::check_gravity;
 use crate::body::{
-    Body, BodyDef, BodyId, BodyKind, Handle, JointId, MassProperties, OFFSET_MAX, Shape, ShapeDef, ShapeId,
-    WORLD_EXTENT_MAX, WorldError, check_position,
+    Body, BodyDef, BodyId, BodyKind, Handle, JointId, MassProperties, MassSource, REACH_MAX,
+    SHAPES_PER_BODY_MAX, Shape, ShapeDef, ShapeId, WORLD_EXTENT_MAX, WorldError, check_position,
 };
 use crate::collision::PosedShape;
 use crate::math::{Angle, Fx, Vec2, fx_mul};
@@ -21,9 +21,10 @@ impl World {
         let config = self.state.config;
         check_room(self.state.bodies.len(), 1, config.body_limit, "bodies")?;
         check_room(self.state.shapes.len(), shapes.len(), config.shape_limit, "shapes")?;
+        check_shapes_of_body(shapes.len())?;
         body.validate()?;
         for shape in shapes {
-            shape.validate(offset_max(body.kind))?;
+            shape.validate(reach_max(body.kind))?;
         }
         let mass = mass_of(body.kind, body.mass, shapes.iter())?;
         self.check_velocity(body.velocity, body.angular_velocity, mass.gyration)?;
@@ -35,6 +36,7 @@ impl World {
         for shape in shapes {
             self.insert_shape(id, shape);
         }
+        self.scratch.poses.pose_body(&self.state, self.state.bodies.at(id.slot()));
         Ok(id)
     }
 
@@ -65,11 +67,16 @@ impl World {
     pub fn add_shape(&mut self, body: BodyId, shape: &ShapeDef) -> Result<ShapeId, WorldError> {
         check_room(self.state.shapes.len(), 1, self.state.config.shape_limit, "shapes")?;
         let owner = self.state.bodies.get(body).ok_or(WorldError::StaleBody(body))?;
-        shape.validate(offset_max(owner.kind()))?;
+        shape.validate(reach_max(owner.kind()))?;
+        check_shapes_of_body(owner.shapes.len() + 1)?;
         let shapes = self.shape_defs(owner).chain([shape]);
         let mass = mass_of(owner.kind(), owner.mass_source, shapes)?;
+        self.check_spin(owner, &mass)?;
         self.state.bodies.at_mut(body.slot()).set_mass(mass);
-        Ok(self.insert_shape(body, shape))
+        let id = self.insert_shape(body, shape);
+        // The centre of mass may have moved, and with it, by a rounding, the places of the other shapes.
+        self.scratch.poses.pose_body(&self.state, self.state.bodies.at(body.slot()));
+        Ok(id)
     }
 
     /// Removes a shape. Unless the body's mass was given, it follows from the remaining shapes.
@@ -83,6 +90,7 @@ impl World {
         let rest = owner.shapes.iter().filter(|&&other| other != id);
         let rest = rest.map(|other| &self.state.shapes.at(other.slot()).def);
         let mass = mass_of(owner.kind(), owner.mass_source, rest)?;
+        self.check_spin(owner, &mass)?;
         self.forget_shapes(&[id]);
         let owner = self.state.bodies.at_mut(body.slot());
         owner.shapes.retain(|&other| other != id);
@@ -223,15 +231,18 @@ impl World {
         Ok(())
     }
 
-    /// Adds a shape that has been checked.
+    /// Checks that a body may keep its angular velocity with another mass.
+    fn check_spin(&self, body: &Body, mass: &MassProperties) -> Result<(), WorldError> {
+        self.check_velocity(Vec2::ZERO, body.angular_velocity(), mass.gyration)
+    }
+
+    /// Adds a shape that has been checked. It has to be posed afterwards.
     fn insert_shape(&mut self, body: BodyId, def: &ShapeDef) -> ShapeId {
         let owner = self.state.bodies.at_mut(body.slot());
         let fat = fat_box(def, owner, self.state.config.fat_margin);
         let id = self.state.shapes.insert(Shape { body, def: *def, fat });
         owner.shapes.push(id);
         self.scratch.pairs_changed = true;
-        // The centre of mass may have moved with it.
-        self.scratch.poses.pose_body(&self.state, self.state.bodies.at(body.slot()));
         id
     }
 
@@ -263,26 +274,36 @@ impl World {
 }
 
 /// Offsets on bodies that can move make lever arms, which have less range than positions.
-pub(super) fn offset_max(kind: BodyKind) -> Fx {
+pub(super) fn reach_max(kind: BodyKind) -> Fx {
     match kind {
         BodyKind::Fixed => WORLD_EXTENT_MAX,
-        BodyKind::Kinematic | BodyKind::Dynamic => OFFSET_MAX,
+        BodyKind::Kinematic | BodyKind::Dynamic => REACH_MAX,
     }
 }
 
 pub(super) fn mass_of<'a>(
     kind: BodyKind,
-    source: crate::body::MassSource,
+    source: MassSource,
     shapes: impl Iterator<Item = &'a ShapeDef> + Clone,
 ) -> Result<MassProperties, WorldError> {
     match kind {
         BodyKind::Dynamic => MassProperties::dynamic(source, shapes),
-        BodyKind::Fixed | BodyKind::Kinematic => Ok(MassProperties::immovable(shapes)),
+        BodyKind::Fixed | BodyKind::Kinematic => {
+            // A given mass waits for the body to become dynamic, and has to be possible.
+            if matches!(source, MassSource::Given { .. }) {
+                MassProperties::dynamic(source, shapes)?;
+            }
+            Ok(MassProperties::immovable())
+        }
     }
 }
 
-fn fat_box(shape: &ShapeDef, body: &Body, margin: Fx) -> crate::math::Aabb {
+pub(super) fn fat_box(shape: &ShapeDef, body: &Body, margin: Fx) -> crate::math::Aabb {
     PosedShape::new(shape, body, body.rotation()).bounds.expanded(margin)
+}
+
+fn check_shapes_of_body(count: usize) -> Result<(), WorldError> {
+    check_room(count, 0, SHAPES_PER_BODY_MAX, "shapes of one body")
 }
 
 fn check_room(count: usize, more: usize, limit: u32, what: &'static str) -> Result<(), WorldError> {

@@ -18,9 +18,9 @@ pub struct ContactEvent {
 /// The events of the last tick. Each list is sorted by the handles of its shapes, A first.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Events {
-    /// Pairs that came within a quarter of the speculative distance.
+    /// Pairs that came within [`super::Config::touching_distance`], or pushed each other since the last tick.
     pub contact_begin: Vec<ContactEvent>,
-    /// Pairs that moved further apart than the speculative distance, or lost a shape. At the time of the event
+    /// Pairs that moved further apart than [`super::Config::speculative_distance`], or lost a shape. At the time of the event
     /// a removed shape's handle does not resolve any more.
     pub contact_end: Vec<ContactEvent>,
 }

@@ -21,7 +21,6 @@ impl World {
             update_pairs(state, scratch);
         }
         find_manifolds(state, scratch);
-        report_events(state, scratch);
 
         scratch.solver.prepare_bodies(&state.bodies, &tuning);
         scratch.solver.prepare_joints(&state.joints, &state.bodies);
@@ -36,6 +35,7 @@ impl World {
         solver.apply_restitution(&tuning);
         solver.store_impulses(&mut state.contacts, &mut state.joints);
 
+        report_events(state, scratch);
         finalise_poses(state, scratch);
         count(state, scratch);
         // A count that a stranger's snapshot may start anywhere.
@@ -210,31 +210,27 @@ impl<'a> Approach<'a> {
     }
 }
 
-/// Turns changes of touching into events.
+/// Turns changes of touching into events. A pair touches if it is near at the start of the tick, or if the solver
+/// has pushed it apart since: a fast bounce may begin and end between two ticks.
 fn report_events(state: &mut State, scratch: &mut Scratch) {
-    let Scratch { events, manifolds, ended, .. } = scratch;
+    let Scratch { events, manifolds, ended, solver, .. } = scratch;
     events.clear();
     events.contact_end.append(&mut state.removed_contacts);
     let gone = ended.iter().filter(|contact| contact.touching);
     events.contact_end.extend(gone.map(|contact| state.contact_event(contact)));
     ended.clear();
-    let apart = state.config.speculative_distance;
+    let (near, apart) = (state.config.touching_distance(), state.config.speculative_distance);
     let mut contacts = core::mem::take(&mut state.contacts);
-    for (contact, manifold) in contacts.iter_mut().zip(manifolds.iter()) {
-        let nearest = manifold.points().iter().map(|point| widen(point.separation)).min();
-        match nearest {
-            Some(separation) if !contact.touching && separation <= state.config.touching_distance() => {
-                contact.touching = true;
-                events.contact_begin.push(state.contact_event(contact));
-            }
-            Some(separation) if separation <= apart => {}
-            _ if contact.touching => {
-                contact.touching = false;
-                events.contact_end.push(state.contact_event(contact));
-            }
-            _ => {}
+    for (index, (contact, manifold)) in contacts.iter_mut().zip(manifolds.iter()).enumerate() {
+        let separation = manifold.points().iter().map(|point| widen(point.separation)).min();
+        let within = |distance: Fx| separation.is_some_and(|separation| separation <= distance);
+        let touching = solver.pushed[index] || within(if contact.touching { apart } else { near });
+        if touching != contact.touching {
+            contact.touching = touching;
+            let list = if touching { &mut events.contact_begin } else { &mut events.contact_end };
+            list.push(state.contact_event(contact));
         }
-        if nearest.is_none() {
+        if separation.is_none() {
             contact.clear_points();
         }
     }

@@ -7,9 +7,9 @@ use alloc::vec::Vec;
 use core::fmt;
 
 use super::World;
-use super::change::{mass_of, offset_max};
+use super::change::{fat_box, mass_of, reach_max};
 use super::state::State;
-use crate::body::{Body, BodyId, BodyKind, Handle, SPEED_MAX, WORLD_EXTENT_MAX};
+use crate::body::{Body, BodyId, BodyKind, Handle, SHAPES_PER_BODY_MAX, SPEED_MAX, WORLD_EXTENT_MAX};
 use crate::math::{Fx, Vec2};
 
 /// A broken invariant.
@@ -46,10 +46,10 @@ impl World {
         check(bodies.len() <= config.body_limit as usize, || "more bodies than allowed".into())?;
         check(shapes.len() <= config.shape_limit as usize, || "more shapes than allowed".into())?;
         check(joints.len() <= config.joint_limit as usize, || "more joints than allowed".into())?;
+        check_shapes(state)?;
         for (id, body) in bodies.iter() {
             check_body(state, id, body)?;
         }
-        check_shapes(state)?;
         check_joints(state)?;
         check_contacts(state)
     }
@@ -62,7 +62,7 @@ fn check_body(state: &State, id: BodyId, body: &Body) -> Result<(), Violation> {
         range.contains(&v.x) && range.contains(&v.y)
     };
     // The centre of mass may be outside the origin's range by the distance between the two.
-    let reach = Vec2::new(crate::body::OFFSET_MAX * 4, crate::body::OFFSET_MAX * 4);
+    let reach = Vec2::new(crate::body::REACH_MAX * 8, crate::body::REACH_MAX * 8);
     check(inside(body.centre.max(-body.centre) - reach), || at("outside the world"))?;
     let speed = -SPEED_MAX..=SPEED_MAX;
     let slow = [body.velocity.x, body.velocity.y, body.spin].iter().all(|v| speed.contains(v));
@@ -80,26 +80,33 @@ fn check_body(state: &State, id: BodyId, body: &Body) -> Result<(), Violation> {
         ..crate::body::BodyDef::fixed()
     };
     rates.validate().map_err(|error| Violation { what: at(&format!("{error}")) })?;
-    for (i, shape) in body.shapes.iter().enumerate() {
-        let known = state.shapes.get(*shape).is_some_and(|shape| shape.body == id);
-        check(known, || at(&format!("lists shape {shape}, which is not its own")))?;
-        check(!body.shapes[..i].contains(shape), || at(&format!("lists shape {shape} twice")))?;
-    }
     let shapes = body.shapes.iter().map(|shape| &state.shapes.at(shape.slot()).def);
     let mass = mass_of(body.kind, body.mass_source, shapes)
         .map_err(|error| Violation { what: at(&format!("{error}")) })?;
     check(mass == body.mass, || at("mass does not follow from its shapes"))
 }
 
+/// Every shape is valid and on the list of its body, once. Before the bodies, whose masses are sums over shapes.
 fn check_shapes(state: &State) -> Result<(), Violation> {
-    let listed: usize = state.bodies.iter().map(|(_, body)| body.shapes.len()).sum();
-    check(listed == state.shapes.len(), || "a shape without a body".into())?;
+    let mut listed = alloc::vec![false; state.shapes.slot_count()];
+    for (id, body) in state.bodies.iter() {
+        check(body.shapes.len() <= SHAPES_PER_BODY_MAX as usize, || format!("body {id}: too many shapes"))?;
+        for shape in &body.shapes {
+            let own = state.shapes.get(*shape).is_some_and(|shape| shape.body == id);
+            let first = own && !core::mem::replace(&mut listed[shape.slot() as usize], true);
+            check(first, || format!("body {id}: lists shape {shape}, which is not its own, or twice"))?;
+        }
+    }
     for (id, shape) in state.shapes.iter() {
-        let body =
-            state.bodies.get(shape.body).ok_or_else(|| Violation { what: format!("shape {id}: no body") })?;
-        let valid = shape.def.validate(offset_max(body.kind()));
+        check(listed[id.slot() as usize], || format!("shape {id}: not on the list of its body"))?;
+        let body = state.bodies.at(shape.body.slot());
+        let valid = shape.def.validate(reach_max(body.kind()));
         valid.map_err(|error| Violation { what: format!("shape {id}: {error}") })?;
         check(shape.fat.is_valid(), || format!("shape {id}: a fat box with its corners exchanged"))?;
+        let expected = || fat_box(&shape.def, body, state.config.fat_margin);
+        check(body.kind() != BodyKind::Fixed || shape.fat == expected(), || {
+            format!("shape {id}: the fat box of a fixed shape is somewhere else")
+        })?;
     }
     Ok(())
 }
