@@ -24,7 +24,7 @@ pub struct Config {
     /// How the solver runs.
     pub solver: SolverSettings,
     /// Shapes this near to each other, in metres, already have contact points; 0.001 to 1. Larger margins follow
-    /// from speed, so that nothing slow enough for [`SolverSettings::speed_max`] is missed within a tick.
+    /// from the speeds at the start of the tick.
     pub speculative_distance: Fx,
     /// How much larger than needed the boxes of the broad phase are made, in metres, 0.001 to 10: larger ones
     /// change less often but give more pairs.
