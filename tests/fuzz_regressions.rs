@@ -175,8 +175,8 @@ fn turns_and_levers_at_their_limits_are_no_overflow() {
         .flat_map(|a| sides.map(|b| (a, b)))
         .flat_map(|(a, b)| sides.into_iter().flat_map(move |c| sides.map(|d| (a, b, c, d))))
     {
-        let mut config = Config { gravity: Vec2::ZERO, tick_rate: 10, ..Config::default() };
-        config.solver.sub_steps = 6;
+        let mut config = Config { gravity: Vec2::ZERO, tick_rate: 27, ..Config::default() };
+        config.solver.sub_steps = 3;
         let mut world = World::new(config).unwrap();
         for (x, arm, turn) in [(-1, arm_a, turn_a), (1, arm_b, turn_b)] {
             let box_ = ShapeDef::new(Polygon::square(fx!(0.5)).unwrap()).friction(fx!(0));

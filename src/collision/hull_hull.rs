@@ -133,19 +133,28 @@ fn clip(a: &Hull, b: &Hull, d: Vec2<Length>, face: Face, margin: Length) -> Mani
 
     let context = Clip { normal, v1, radius_a: a.radius, radius_b: b.radius, margin };
     let apart = face.separation > TOLERANCE_WIDE;
-    if let Some((vertex_a, vertex_b)) = nearest_corners(first, last, upper, lower).filter(|_| apart) {
-        return context.corner(vertex_a, vertex_b);
-    }
-    // Outlines that overlap deeply may have no incident edge beside the face. Their deepest corner still pushes
-    // them apart.
-    if upper.along < first.along {
-        return context.face([(first, upper, upper.position)].into_iter());
-    }
-    if lower.along > last.along {
-        return context.face([(last, lower, lower.position)].into_iter());
+    let corners = nearest_corners(first, last, upper, lower).filter(|_| apart);
+    if upper.along < first.along || lower.along > last.along {
+        // Outlines that overlap deeply may have no incident edge beside the face. Their deepest corner still pushes
+        // them apart.
+        let beside = if upper.along < first.along { (first, upper) } else { (last, lower) };
+        return match corners {
+            Some((vertex_a, vertex_b)) => context.corner(vertex_a, vertex_b),
+            None => context.face([(beside.0, beside.1, beside.1.position)].into_iter()),
+        };
     }
     let low = clip_end(lower, upper, first.along);
     let high = clip_end(upper, lower, last.along);
+    if let Some((vertex_a, vertex_b)) = corners {
+        // Rounded edges that are nearly parallel are nearest at a corner too, but rest on both ends: there the
+        // corners are no nearer than the clipped edge, nor further than the face.
+        let distance = step_bits((vertex_b.position - vertex_a.position).length());
+        let height = |end: Vec2<Length>| distance_along(normal, end - v1);
+        let spread = (height(low).min(height(high)) - distance).max(distance - (face.separation >> 25));
+        if spread > i64::from(TOLERANCE.to_bits()) {
+            return context.corner(vertex_a, vertex_b);
+        }
+    }
     context.face([(first, lower, low), (last, upper, high)].into_iter())
 }
 

@@ -65,6 +65,18 @@ struct ContactPoint {
     feature: u16,
 }
 
+/// Two points that bounce are solved against each other until both leave as they should. After one round the first
+/// leaves too fast: a tall box dropped flat gained a third of its energy, and spun. A round takes away at least 3/4
+/// of what is wrong for boxes of up to 1 to 3.
+const RESTITUTION_ITERATIONS: u32 = 12;
+
+/// Rounds in which the two points of a contact are solved against each other, and the change below which the second
+/// leaves the first alone, in m/s. At an impact one round turns the body: ten boxes that fall on each other from 5 or
+/// 10 mm then sway by 12 mm, and with up to four rounds by 1 mm. Where piles rest the first round is mostly enough: a
+/// pyramid of 5050 boxes costs a tenth more.
+const NORMAL_ROUNDS_MAX: u32 = 4;
+const SETTLED: Speed = Speed::lit("0.005");
+
 /// The surface that two shapes have in common.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Surface {
@@ -173,9 +185,18 @@ impl ContactConstraint {
         let points = &mut self.points[..usize::from(self.count)];
         let mut solve_normal =
             |point: &mut ContactPoint| point.solve_normal(a, b, pass, &softness, tuning, faults);
-        match sweep {
-            Sweep::Forward => points.iter_mut().for_each(&mut solve_normal),
-            Sweep::Backward => points.iter_mut().rev().for_each(&mut solve_normal),
+        match (sweep, &mut *points) {
+            (Sweep::Forward, [first, second]) | (Sweep::Backward, [second, first]) => {
+                for _ in 0..NORMAL_ROUNDS_MAX {
+                    solve_normal(first);
+                    if solve_normal(second).abs() < SETTLED {
+                        break;
+                    }
+                }
+            }
+            (_, points) => points.iter_mut().for_each(|point| {
+                solve_normal(point);
+            }),
         }
         let mut solve_tangent = |point: &mut ContactPoint| point.solve_tangent(a, b, faults);
         match sweep {
@@ -195,13 +216,17 @@ impl ContactConstraint {
             return;
         }
         let (a, b) = SolverBody::pair(bodies, self.body_a, self.body_b);
-        for point in &mut self.points[..usize::from(self.count)] {
-            if point.approach > -tuning.restitution_threshold || !point.pushed {
-                continue;
+        let restitution = self.restitution;
+        let points = &mut self.points[..usize::from(self.count)];
+        for _ in 0..if points.len() == 2 { RESTITUTION_ITERATIONS } else { 1 } {
+            for point in points.iter_mut() {
+                if point.pushed && point.approach <= -tuning.restitution_threshold {
+                    let bounce: Speed = mul(restitution, point.approach);
+                    let bounds = (Speed::ZERO, IMPULSE_MAX);
+                    let lambda = &mut point.normal_lambda;
+                    point.normal.solve(a, b, bounce, &Softness::RIGID, bounds, lambda, faults);
+                }
             }
-            let bounce: Speed = mul(self.restitution, point.approach);
-            let bounds = (Speed::ZERO, IMPULSE_MAX);
-            point.normal.solve(a, b, bounce, &Softness::RIGID, bounds, &mut point.normal_lambda, faults);
         }
     }
 
@@ -223,7 +248,7 @@ impl ContactConstraint {
 }
 
 impl ContactPoint {
-    /// The bodies may touch here but not overlap.
+    /// The bodies may touch here but not overlap. Returns the change of impulse.
     #[inline]
     fn solve_normal(
         &mut self,
@@ -233,12 +258,18 @@ impl ContactPoint {
         softness: &Softness,
         tuning: &Tuning,
         faults: &mut Faults,
-    ) {
+    ) -> Speed {
         let separation = separation(self.separation, self.normal.displacement(a, b));
+        // A gap that the bias pass has not closed is left to the next sub-step: to slow an approach down before it
+        // arrives, and to bounce there, would make a ball rebound from above the floor.
+        if pass == Pass::Relax && separation > 0 && self.normal_lambda == 0 {
+            return Speed::ZERO;
+        }
         let (bias, softness) = bias_of(separation, pass, softness, tuning);
         let bounds = (Speed::ZERO, IMPULSE_MAX);
-        self.normal.solve(a, b, bias, &softness, bounds, &mut self.normal_lambda, faults);
+        let d = self.normal.solve(a, b, bias, &softness, bounds, &mut self.normal_lambda, faults);
         self.pushed |= self.normal_lambda > 0;
+        d
     }
 
     /// Coulomb: friction stops sliding, as far as it reaches.

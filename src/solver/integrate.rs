@@ -4,7 +4,7 @@ use super::body::SolverBody;
 use super::limits::Faults;
 use super::settings::Tuning;
 use crate::body::{Body, BodyKind};
-use crate::math::{Fx, Reciprocal, Speed, Step, Unit, Vec2, fx_div, fx_mul, mul, narrow};
+use crate::math::{Fx, Speed, Step, Unit, Vec2, fx_div, fx_mul, narrow, saturate};
 
 /// A body that moves, and what changes its velocity in every sub-step of the tick.
 #[derive(Clone, Copy, Debug)]
@@ -62,39 +62,47 @@ impl Mover {
         body.velocity += self.velocity_step;
         body.spin = body.spin.saturating_add(self.spin_step);
         if self.linear_factor != Unit::ONE {
-            body.velocity = body.velocity.scale(self.linear_factor);
+            body.velocity = Vec2::new(
+                towards_rest(body.velocity.x, self.linear_factor),
+                towards_rest(body.velocity.y, self.linear_factor),
+            );
         }
         if self.angular_factor != Unit::ONE {
-            body.spin = mul(body.spin, self.angular_factor);
+            body.spin = towards_rest(body.spin, self.angular_factor);
         }
         limit_speed(&mut body.velocity, speed_max);
         body.spin = body.spin.clamp(-speed_max, speed_max);
     }
 
-    /// `x' = x + h v'`.
-    pub(crate) fn integrate_displacement(
-        &self,
-        bodies: &mut [SolverBody],
-        h: Reciprocal,
-        faults: &mut Faults,
-    ) {
+    /// `x' = x + h v'`, with `rate` sub-steps per second.
+    pub(crate) fn integrate_displacement(&self, bodies: &mut [SolverBody], rate: u32, faults: &mut Faults) {
         let body = &mut bodies[self.slot as usize];
-        let mut advance = |distance: &mut Step, speed: Speed| {
-            let (sum, overflow) = distance.overflowing_add(h.times(speed));
-            // More than 16 m in a tick: 400 m/s below 25 ticks per second.
-            *faults += u64::from(overflow);
-            *distance = if !overflow {
-                sum
-            } else if speed > 0 {
-                Step::MAX
-            } else {
-                Step::MIN
-            };
+        let mut advance = |sum: &mut Step, speed: Speed| {
+            let step = distance(speed, rate);
+            // The speed limit keeps sums within the format, unless impulses exceed it at less than 32 Hz.
+            *faults += u64::from(sum.checked_add(step).is_none());
+            *sum = sum.saturating_add(step);
         };
         advance(&mut body.shift.x, body.velocity.x);
         advance(&mut body.shift.y, body.velocity.y);
         advance(&mut body.turn, body.spin);
     }
+}
+
+/// `v / rate`, rounded to nearest, ties towards +infinity: no time step is ever rounded.
+#[inline]
+#[expect(clippy::cast_possible_truncation, reason = "at most 512 m/s in a sixtieth of a second")]
+fn distance(speed: Speed, rate: u32) -> Step {
+    let rate = i64::from(rate);
+    // A distance has 6 more fraction bits than a speed.
+    let doubled = (i64::from(speed.to_bits()) << 7) + rate;
+    Step::from_bits(doubled.div_euclid(2 * rate) as i32)
+}
+
+/// A damped speed, rounded towards 0: rounded to nearest it would creep on for ever.
+fn towards_rest(speed: Speed, factor: Unit) -> Speed {
+    let product = i64::from(speed.to_bits()) * i64::from(factor.to_bits());
+    Speed::from_bits(saturate(product / (1 << 30)))
 }
 
 fn damping_factor(damping: Fx, rate: u32) -> Unit {
@@ -104,7 +112,8 @@ fn damping_factor(damping: Fx, rate: u32) -> Unit {
     narrow(fx_div(Fx::ONE, Fx::ONE + damping / i64::from(rate)).unwrap_or(Fx::ONE))
 }
 
-/// Shortens a velocity to the limit, which is a setting and so no fault. Its components are within ±1024, so its square fits 64 bits.
+/// Shortens a velocity to the limit, which is a setting and so no fault. Its components are within ±1024, so its
+/// square fits 64 bits.
 fn limit_speed(velocity: &mut Vec2<Speed>, speed_max: Speed) {
     let square = |speed: Speed| i64::from(speed.to_bits()) * i64::from(speed.to_bits());
     if square(velocity.x).saturating_add(square(velocity.y)) <= square(speed_max) {

@@ -28,7 +28,7 @@ use limits::Faults;
 pub(crate) use limits::IMPULSE_MAX;
 use revolute::RevoluteConstraint;
 pub(crate) use settings::Tuning;
-pub use settings::{ContactTuning, SolverSettings};
+pub use settings::{ContactTuning, DISTANCE_MAX, SolverSettings};
 
 use crate::body::{Arena, Body, BodyId, JointId};
 use crate::collision::{Contact, Manifold};
@@ -166,7 +166,7 @@ impl Solver {
             self.solve(Pass::Bias, Sweep::of(index, iteration), tuning);
         }
         for mover in &self.movers {
-            mover.integrate_displacement(&mut self.bodies, h, &mut self.faults);
+            mover.integrate_displacement(&mut self.bodies, tuning.rate, &mut self.faults);
         }
         self.refresh_joints();
         if tuning.relax {

@@ -167,7 +167,8 @@ impl Row {
         );
     }
 
-    /// Solves the row for one iteration. `lambda` is the accumulated `L`, kept within `lo..=hi`.
+    /// Solves the row for one iteration. `lambda` is the accumulated `L`, kept within `lo..=hi`; the change `d` is
+    /// returned.
     #[inline]
     #[expect(clippy::too_many_arguments, reason = "the quantities of the equation above, all 32-bit numbers")]
     pub(crate) fn solve(
@@ -179,7 +180,7 @@ impl Row {
         (lo, hi): (Speed, Speed),
         lambda: &mut Speed,
         faults: &mut Faults,
-    ) {
+    ) -> Speed {
         let vn = self.velocity(a, b, faults);
         let d = softness.impulse(vn, bias, *lambda, faults);
         let wanted = i64::from(lambda.to_bits()) + i64::from(d.to_bits());
@@ -194,6 +195,7 @@ impl Row {
         let d = Speed::from_bits(saturate(d));
         *lambda += d;
         self.apply(d, a, b, faults);
+        d
     }
 }
 

@@ -29,6 +29,9 @@ pub enum ContactTuning {
     },
 }
 
+/// Farthest that a body can move in a tick on each axis, in metres: what a displacement can hold.
+pub const DISTANCE_MAX: Fx = fx!(15);
+
 /// How the solver runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SolverSettings {
@@ -44,7 +47,8 @@ pub struct SolverSettings {
     pub joint_damping_ratio: Fx,
     /// Approach speed in m/s below which nothing bounces.
     pub restitution_threshold: Fx,
-    /// Speed limit in m/s, also of the radius of gyration times the angular velocity; at most 400.
+    /// Speed limit in m/s, also of the radius of gyration times the angular velocity; at most 400. Below 27 ticks per
+    /// second the limit is lower: [`DISTANCE_MAX`] in a tick.
     pub speed_max: Fx,
 }
 
@@ -63,6 +67,11 @@ impl Default for SolverSettings {
 }
 
 impl SolverSettings {
+    /// The speed limit in a world of `tick_rate` ticks per second.
+    pub(crate) fn speed_limit(&self, tick_rate: u32) -> Fx {
+        self.speed_max.min(DISTANCE_MAX * i64::from(tick_rate))
+    }
+
     /// The name of a setting that is out of range, for a world of `tick_rate` ticks per second.
     pub(crate) fn first_invalid(&self, tick_rate: u32) -> Option<&'static str> {
         let SolverSettings {
@@ -151,7 +160,7 @@ impl Tuning {
             joint_stretch: joint.stretch(),
             relax,
             restitution_threshold: narrow(settings.restitution_threshold),
-            speed_max: narrow(settings.speed_max),
+            speed_max: narrow(settings.speed_limit(tick_rate)),
             gravity_step: Vec2::new(over_rate(gravity.x), over_rate(gravity.y)),
         }
     }

@@ -222,7 +222,7 @@ impl World {
     }
 
     fn check_velocity(&self, velocity: Vec2<Fx>, angular: Fx, gyration: Fx) -> Result<(), WorldError> {
-        let limit = self.state.config.solver.speed_max;
+        let limit = self.state.config.solver.speed_limit(self.state.config.tick_rate);
         for value in [velocity.length(), fx_mul(angular.saturating_abs(), gyration)] {
             if value > limit {
                 return Err(WorldError::SpeedOutOfRange { value });

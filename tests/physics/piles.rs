@@ -76,3 +76,35 @@ fn a_stack_stands_on_baumgarte_contacts() {
         assert!(deepest(world) < fx!(0.012), "{} m deep", deepest(world));
     }
 }
+
+/// Boxes that fall a little onto each other, and rounded ones, stand as straight.
+#[test]
+fn stacks_stand_that_are_not_built_exactly() {
+    use lockstep2d::body::{BodyDef, Polygon, ShapeDef};
+    use lockstep2d::world::World;
+    let square = |half: Fx, radius: Fx| {
+        ShapeDef::new(Polygon::square(half).and_then(|square| square.rounded(radius)).expect("valid"))
+    };
+    for (shape, gap) in [
+        (square(fx!(0.5), fx!(0)), fx!(0.001)),
+        (square(fx!(0.5), fx!(0)), fx!(0.01)),
+        (square(fx!(0.4), fx!(0.1)), fx!(0)),
+        (square(fx!(0.45), fx!(0.05)), fx!(0.005)),
+        (square(fx!(0.49), fx!(0.01)), fx!(0)),
+    ] {
+        let mut world = World::default();
+        let floor = ShapeDef::new(Polygon::rectangle(fx!(20), fx!(1)).expect("valid"));
+        world.spawn(&BodyDef::fixed().position(fx!(0), fx!(-1)), &[floor]).expect("valid");
+        for i in 0..10 {
+            let y = fx!(0.5) + gap + (fx!(1) + gap) * i;
+            world.spawn(&BodyDef::dynamic().position(fx!(0), y), &[shape]).expect("valid");
+        }
+        for tick in 0..3600 {
+            world.step();
+            let (_, top) = world.bodies().last().expect("boxes");
+            assert!(top.position().x.abs() < fx!(0.001), "gap {gap}, tick {tick}: {} m", top.position().x);
+        }
+        assert!(speed_max(&world) < fx!(0.0001));
+        assert_eq!(world.faults(), 0);
+    }
+}
