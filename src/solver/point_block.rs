@@ -36,11 +36,9 @@ use fixed::types::extra::U30;
 
 use super::body::SolverBody;
 use super::limits::{Faults, IMPULSE_MAX};
-use super::row::{MassFractions, turning};
+use super::row::{Lever, MassFractions, turning};
 use super::softness::Softness;
-use crate::math::{
-    Length, Ratio, Reciprocal, Speed, Unit, Vec2, mul, round_shift, round_shift_wide, saturate, saturate_wide,
-};
+use crate::math::{Ratio, Speed, Unit, Vec2, mul, round_shift, round_shift_wide, saturate, saturate_wide};
 
 /// A symmetric 2x2 matrix.
 #[derive(Clone, Copy, Debug, Default)]
@@ -81,16 +79,9 @@ pub(crate) struct PointBlock {
     f_b: Vec2<Unit>,
 }
 
-/// One body's end of a block.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Arm {
-    pub(crate) arm: Vec2<Length>,
-    pub(crate) inverse_gyration: Reciprocal,
-}
-
 impl PointBlock {
-    pub(crate) fn new(a: Arm, b: Arm, fractions: MassFractions) -> Self {
-        let ratios = |end: Arm| -> Vec2<Ratio> {
+    pub(crate) fn new(a: Lever, b: Lever, fractions: MassFractions) -> Self {
+        let ratios = |end: Lever| -> Vec2<Ratio> {
             let perp = end.arm.perp();
             Vec2::new(end.inverse_gyration.times(perp.x), end.inverse_gyration.times(perp.y))
         };
@@ -207,7 +198,7 @@ fn inverse(k: &Symmetric<i64>, det: i64) -> Symmetric<Unit> {
 mod tests {
     use super::*;
     use crate::fx;
-    use crate::math::{Fx, Rng, Rot, narrow};
+    use crate::math::{Fx, Reciprocal, Rng, Rot, narrow};
 
     /// One update leaves the anchors at rest against each other but for rounding. With arms of up to 16 radii of
     /// gyration on both sides they start at up to 330 m/s, and 6e-5 m/s is two parts in ten million of that.
@@ -220,7 +211,7 @@ mod tests {
                 let gyration = rng.range(fx!(0.05), fx!(10));
                 let reach = crate::math::fx_mul(gyration, rng.range(fx!(0), fx!(16)));
                 let arm = Rot::from_angle(rng.angle()).apply_wide(Vec2::new(reach, Fx::ZERO)).narrow();
-                Arm { arm, inverse_gyration: Reciprocal::of(gyration) }
+                Lever { arm, inverse_gyration: Reciprocal::of(gyration) }
             };
             let (a, b) = (arm(), arm());
             let share: Unit = narrow(rng.range(fx!(0), fx!(1)));

@@ -7,8 +7,8 @@ use super::body::SolverBody;
 use super::contact::Pass;
 use super::joint::{Joint, JointDef};
 use super::limits::{Faults, clamp_warm_start};
-use super::point_block::{Arm, PointBlock};
-use super::row::MassFractions;
+use super::point_block::PointBlock;
+use super::row::{Lever, MassFractions};
 use super::settings::Tuning;
 use super::softness::Softness;
 use crate::body::{Body, JointId};
@@ -73,8 +73,8 @@ impl RevoluteConstraint {
             gap(self.between.y, moved.y, arm_b.y - arm_a.y),
         );
         self.block = PointBlock::new(
-            Arm { arm: arm_a.narrow(), inverse_gyration: self.inverse_gyration_a },
-            Arm { arm: arm_b.narrow(), inverse_gyration: self.inverse_gyration_b },
+            Lever { arm: arm_a.narrow(), inverse_gyration: self.inverse_gyration_a },
+            Lever { arm: arm_b.narrow(), inverse_gyration: self.inverse_gyration_b },
             self.fractions,
         );
     }

@@ -71,7 +71,7 @@ fn part(fraction: Unit, speed: Speed) -> Speed {
     Speed::from_bits(round_shift(product, 30) as i32)
 }
 
-/// One body's end of a row: where it is pushed, and how easily it turns.
+/// One body's end of a row or block: where it is pushed, and how easily it turns.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Lever {
     /// From the centre of mass to the point.

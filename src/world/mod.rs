@@ -6,6 +6,7 @@ mod command;
 mod config;
 mod digest;
 mod events;
+mod look_ahead;
 mod scratch;
 mod state;
 mod stats;
