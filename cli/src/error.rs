@@ -8,6 +8,8 @@ use lockstep2d::replay::{RecordError, Verdict};
 
 use crate::exit::Exit;
 
+use crate::files::Shown;
+
 /// Why a command had to stop.
 #[derive(Debug)]
 pub(crate) enum CommandError {
@@ -46,16 +48,16 @@ impl fmt::Display for CommandError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             CommandError::Output(error) => write!(f, "cannot write the output: {error}"),
-            CommandError::Read { path, error } => write!(f, "cannot read {}: {error}", path.display()),
-            CommandError::Write { path, error } => write!(f, "cannot write {}: {error}", path.display()),
+            CommandError::Read { path, error } => write!(f, "cannot read {}: {error}", Shown(path)),
+            CommandError::Write { path, error } => write!(f, "cannot write {}: {error}", Shown(path)),
             CommandError::UnknownScene { name, known } => {
                 write!(f, "there is no scene {name:?}; there are {}", known.join(", "))
             }
             CommandError::Record(error) => write!(f, "cannot record: {error}"),
             CommandError::NoSuchTick { path, tick, ticks } => {
-                write!(f, "{} has {ticks} ticks, there is no tick {tick}", path.display())
+                write!(f, "{} has {ticks} ticks, there is no tick {tick}", Shown(path))
             }
-            CommandError::Replay { path, verdict } => write!(f, "{}: {verdict}", path.display()),
+            CommandError::Replay { path, verdict } => write!(f, "{}: {verdict}", Shown(path)),
         }
     }
 }

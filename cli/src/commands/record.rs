@@ -12,6 +12,7 @@ use lockstep2d::replay::{CHECKPOINT_INTERVAL, Recording};
 use crate::console::Console;
 use crate::error::CommandError;
 use crate::exit::Exit;
+use crate::files::Shown;
 use crate::scenes::{Catalogue, Scene};
 
 pub(crate) const NAME: &str = "record";
@@ -51,7 +52,7 @@ pub(crate) fn run<G: Game>(
     };
     let ticks = arguments.ticks.unwrap_or(scene.ticks);
     let hash = write(scene, ticks, &arguments.output)?;
-    let file = arguments.output.display();
+    let file = Shown(&arguments.output);
     console.line(format_args!("{file}: recorded {ticks} ticks, final hash {hash}"))?;
     Ok(Exit::Success)
 }

@@ -11,7 +11,7 @@ use lockstep2d::replay::{Limits, Verdict};
 use crate::console::{BAD, Console, DOUBTFUL, GOOD};
 use crate::error::CommandError;
 use crate::exit::Exit;
-use crate::files;
+use crate::files::{self, Shown};
 
 mod json;
 
@@ -53,7 +53,7 @@ pub(crate) fn run<G: Game>(
             }
             Ok(files) if files.is_empty() => {
                 let extension = files::EXTENSION;
-                console.error(format_args!("{}: nothing to verify, no *.{extension} here", path.display()));
+                console.error(format_args!("{}: nothing to verify, no *.{extension} here", Shown(path)));
                 exit = Exit::Trouble;
             }
             Ok(files) => {
@@ -118,7 +118,7 @@ impl fmt::Display for Line<'_> {
         };
         let text = self.verdict.to_string();
         let (word, rest) = text.split_once(':').unwrap_or((&text, ""));
-        write!(f, "{}: {style}{word}{style:#}:{rest}", self.file.display())
+        write!(f, "{}: {style}{word}{style:#}:{rest}", Shown(self.file))
     }
 }
 
