@@ -92,9 +92,9 @@ pub(crate) struct Arena<T, H> {
     handle: PhantomData<fn() -> H>,
 }
 
-/// Most slots of an arena that is decoded, well above what a world may hold. A vacant slot takes 5 bytes in a file
+/// Most slots of an arena that is decoded: what a world may hold, and some used-up ones. A vacant slot takes 5 bytes in a file
 /// and hundreds in memory, so a file's length alone does not bound what it makes us allocate.
-const DECODED_SLOTS_MAX: usize = 1 << 21;
+const DECODED_SLOTS_MAX: usize = (1 << 20) + (1 << 12);
 
 fn slots_within_limit<'de, T, D>(deserializer: D) -> Result<Vec<Slot<T>>, D::Error>
 where
