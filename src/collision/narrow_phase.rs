@@ -8,8 +8,9 @@ use crate::fx;
 use crate::math::{Fx, Length, Vec2, narrow, widen};
 
 /// Boxes further apart than the margin by more than this, in metres, are rejected without a closer look. The
-/// slack covers the rounding of vertices, so that the reject never decides what the closer look would not.
-const REJECT_SLACK: Fx = fx!(0.0001);
+/// slack covers the rounding of vertices and the half millimetre by which nearly parallel edges count as nearer than
+/// they are, so that the reject does not decide what the closer look would not.
+const REJECT_SLACK: Fx = fx!(0.001);
 
 /// Largest distance in metres that contacts look ahead: what a separation can hold.
 const MARGIN_MAX: Length = Length::lit("15");

@@ -39,6 +39,9 @@ use crate::math::{Angle, Reciprocal, Rot};
 pub(crate) struct Solver {
     pub(crate) bodies: Vec<SolverBody>,
     movers: Vec<Mover>,
+    joint_ids: Vec<JointId>,
+    /// For each body slot, whether the body is in `jointed`.
+    has_joint: Vec<bool>,
     jointed: Vec<JointedBody>,
     rotations: Vec<Rot>,
     joints: Vec<RevoluteConstraint>,
@@ -92,13 +95,15 @@ impl Solver {
         if joints.len() == 0 {
             return;
         }
-        let ids: Vec<JointId> = joints.iter().map(|(id, _)| id).collect();
+        self.joint_ids.clear();
+        self.joint_ids.extend(joints.iter().map(|(id, _)| id));
         self.rotations.resize(bodies.slot_count(), Rot::IDENTITY);
-        let mut seen = alloc::vec![false; bodies.slot_count()];
+        self.has_joint.clear();
+        self.has_joint.resize(bodies.slot_count(), false);
         for (id, joint) in joints.iter() {
             let (a, b) = joint.def.bodies();
             for slot in [a.index(), b.index()] {
-                if !core::mem::replace(&mut seen[slot as usize], true) {
+                if !core::mem::replace(&mut self.has_joint[slot as usize], true) {
                     let body = bodies.at(slot);
                     let inverse_gyration = body.mass.inverse_gyration;
                     self.jointed.push(JointedBody { slot, angle: body.angle(), inverse_gyration });
@@ -107,7 +112,7 @@ impl Solver {
             self.nodes.push(node(id.index().into(), bodies, a.index(), b.index()));
         }
         for &index in self.colouring.order(&self.nodes, bodies.slot_count()) {
-            let id = ids[index as usize];
+            let id = self.joint_ids[index as usize];
             let joint = joints.at(id.index());
             let (a, b) = joint.def.bodies();
             let (a, b) = (a.index(), b.index());
