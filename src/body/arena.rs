@@ -68,6 +68,10 @@ define_handle! {
     ShapeId
 }
 define_handle! {
+    /// Names a sleeping island. Stays valid until the island wakes.
+    IslandId
+}
+define_handle! {
     /// Names a joint. Stays valid until that joint or one of its bodies is removed.
     JointId
 }

@@ -4,15 +4,24 @@ use alloc::vec::Vec;
 
 use serde::{Deserialize, Serialize};
 
-use super::arena::ShapeId;
+use super::arena::{IslandId, ShapeId};
 use super::body_def::{BodyDef, BodyKind};
 use super::mass::{MassProperties, MassSource};
+use super::settings::BodySettings;
 use crate::math::{
-    Angle, Fx, Rot, Speed, Transform, Vec2, div_round, fx_mul, narrow, saturate, saturate_wide, widen,
+    Angle, Fx, Reciprocal, Rot, Speed, Transform, Vec2, div_round, fx_mul, narrow, saturate, saturate_wide,
+    widen,
 };
 
 /// Largest component of a velocity in m/s, also of `u = k w`: the difference of two fits [`Speed`].
 pub(crate) const SPEED_MAX: Speed = Speed::lit("511");
+
+/// A centre of mass in the world, and a rotation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct Pose {
+    pub(crate) centre: Vec2<Fx>,
+    pub(crate) angle: Angle,
+}
 
 /// A body in the world.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -31,9 +40,14 @@ pub struct Body {
     pub(crate) torque: Fx,
     pub(crate) mass_source: MassSource,
     pub(crate) mass: MassProperties,
-    pub(crate) linear_damping: Fx,
-    pub(crate) angular_damping: Fx,
-    pub(crate) gravity_scale: Fx,
+    pub(crate) settings: BodySettings,
+    pub(crate) enabled: bool,
+    /// For how many ticks it has been slow enough to sleep.
+    pub(crate) rest_ticks: u32,
+    /// The sleeping island it belongs to, unless it is awake.
+    pub(crate) island: Option<IslandId>,
+    /// Where the coming tick takes it, if it is kinematic and has been told so.
+    pub(crate) target: Option<Pose>,
     /// In order of attachment.
     pub(crate) shapes: Vec<ShapeId>,
     pub(crate) user_data: u64,
@@ -52,9 +66,11 @@ impl Body {
             torque: Fx::ZERO,
             mass_source: def.mass,
             mass,
-            linear_damping: def.linear_damping,
-            angular_damping: def.angular_damping,
-            gravity_scale: def.gravity_scale,
+            settings: def.settings,
+            enabled: def.enabled,
+            rest_ticks: 0,
+            island: None,
+            target: None,
             shapes: Vec::new(),
             user_data: def.user_data,
         };
@@ -162,22 +178,43 @@ impl Body {
         &self.shapes
     }
 
-    /// Rate at which its velocity decays, per second.
+    /// How it takes part in the simulation.
     #[must_use]
-    pub const fn linear_damping(&self) -> Fx {
-        self.linear_damping
+    pub const fn settings(&self) -> &BodySettings {
+        &self.settings
     }
 
-    /// Rate at which its angular velocity decays, per second.
+    /// Whether it takes part at all.
     #[must_use]
-    pub const fn angular_damping(&self) -> Fx {
-        self.angular_damping
+    pub const fn is_enabled(&self) -> bool {
+        self.enabled
     }
 
-    /// How much of the world's gravity it feels.
+    /// Whether it sleeps: at rest, and of no cost until something wakes it.
     #[must_use]
-    pub const fn gravity_scale(&self) -> Fx {
-        self.gravity_scale
+    pub const fn is_asleep(&self) -> bool {
+        self.island.is_some()
+    }
+
+    /// The island that it sleeps in, if it sleeps.
+    #[must_use]
+    pub const fn island(&self) -> Option<IslandId> {
+        self.island
+    }
+
+    /// Whether something may happen to it or by it: pairs of shapes of which neither body is active are not looked
+    /// at.
+    pub(crate) fn is_active(&self) -> bool {
+        match self.kind {
+            BodyKind::Fixed => false,
+            BodyKind::Kinematic => self.is_moving(),
+            BodyKind::Dynamic => self.enabled && self.island.is_none(),
+        }
+    }
+
+    /// Whether it has a velocity.
+    pub(crate) fn is_moving(&self) -> bool {
+        self.velocity != Vec2::ZERO || self.spin != 0
     }
 
     /// The game's own number.
@@ -192,7 +229,7 @@ impl Body {
     }
 
     pub(crate) fn set_angular_velocity(&mut self, omega: Fx) {
-        self.spin = narrow(fx_mul(omega, self.mass.gyration));
+        self.spin = if self.turns() { narrow(fx_mul(omega, self.mass.gyration)) } else { Speed::ZERO };
     }
 
     /// Changes the mass, keeping pose, angular velocity and the velocity of the material.
@@ -205,6 +242,11 @@ impl Body {
         let moved = (self.centre - old_centre).perp().scale(omega);
         self.velocity = (self.velocity() + moved).narrow();
         self.clamp_velocity();
+    }
+
+    /// Whether its rotation is free.
+    pub(crate) fn turns(&self) -> bool {
+        self.mass.inverse_gyration != Reciprocal::ZERO
     }
 
     /// Forgets its velocity.
@@ -235,8 +277,10 @@ impl Body {
 
     /// Changes angular velocity at once by an angular impulse in N m s.
     pub(crate) fn apply_angular_impulse(&mut self, impulse: Fx) {
-        self.spin =
-            self.spin.saturating_add(narrow(divide(divide(impulse, self.mass.mass), self.mass.gyration)));
+        if self.turns() {
+            let du = narrow(divide(divide(impulse, self.mass.mass), self.mass.gyration));
+            self.spin = self.spin.saturating_add(du);
+        }
         self.clamp_velocity();
     }
 
@@ -244,7 +288,7 @@ impl Body {
     /// per second: `dv = F / (m rate)`, `du = torque / (m k rate)`.
     pub(crate) fn acceleration_step(&self, rate: u32) -> (Vec2<Speed>, Speed) {
         let dv = |force: Fx| over_mass(force, self.mass.mass, rate);
-        let du = divide(self.torque, self.mass.gyration);
+        let du = if self.turns() { divide(self.torque, self.mass.gyration) } else { Fx::ZERO };
         (Vec2::new(dv(self.force.x), dv(self.force.y)), over_mass(du, self.mass.mass, rate))
     }
 }

@@ -4,8 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use super::error::WorldError;
 use super::mass::MassSource;
+use super::settings::{BodySettings, Continuous};
 use super::shape::WORLD_EXTENT_MAX;
-use crate::fx;
 use crate::math::{Angle, Fx, Vec2};
 
 /// What moves a body.
@@ -40,12 +40,12 @@ pub struct BodyDef {
     pub angular_velocity: Fx,
     /// Where its mass comes from, if it is dynamic.
     pub mass: MassSource,
-    /// Rate at which its velocity decays, per second, 0 to 1000.
-    pub linear_damping: Fx,
-    /// Rate at which its angular velocity decays, per second, 0 to 1000.
-    pub angular_damping: Fx,
-    /// How much of the world's gravity it feels, ±1000.
-    pub gravity_scale: Fx,
+    /// How it takes part in the simulation.
+    pub settings: BodySettings,
+    /// Whether it takes part at all: a disabled body keeps its place, and nothing touches it.
+    pub enabled: bool,
+    /// Whether it starts asleep. Only dynamic bodies sleep.
+    pub asleep: bool,
     /// Not used by the engine, but part of the state and its hash.
     pub user_data: u64,
 }
@@ -61,9 +61,9 @@ impl BodyDef {
             velocity: Vec2::new(Fx::ZERO, Fx::ZERO),
             angular_velocity: Fx::ZERO,
             mass: MassSource::Shapes,
-            linear_damping: Fx::ZERO,
-            angular_damping: Fx::ZERO,
-            gravity_scale: Fx::ONE,
+            settings: BodySettings::new(),
+            enabled: true,
+            asleep: false,
             user_data: 0,
         }
     }
@@ -124,21 +124,83 @@ impl BodyDef {
     /// Sets how fast the velocity decays, per second.
     #[must_use]
     pub const fn linear_damping(mut self, rate: Fx) -> Self {
-        self.linear_damping = rate;
+        self.settings.linear_damping = rate;
         self
     }
 
     /// Sets how fast the angular velocity decays, per second.
     #[must_use]
     pub const fn angular_damping(mut self, rate: Fx) -> Self {
-        self.angular_damping = rate;
+        self.settings.angular_damping = rate;
         self
     }
 
     /// Sets how much of the world's gravity it feels.
     #[must_use]
     pub const fn gravity_scale(mut self, scale: Fx) -> Self {
-        self.gravity_scale = scale;
+        self.settings.gravity_scale = scale;
+        self
+    }
+
+    /// Keeps it from turning.
+    #[must_use]
+    pub const fn lock_rotation(mut self) -> Self {
+        self.settings.locks.rotation = true;
+        self
+    }
+
+    /// Keeps it from moving along the world's x axis.
+    #[must_use]
+    pub const fn lock_x(mut self) -> Self {
+        self.settings.locks.x = true;
+        self
+    }
+
+    /// Keeps it from moving along the world's y axis.
+    #[must_use]
+    pub const fn lock_y(mut self) -> Self {
+        self.settings.locks.y = true;
+        self
+    }
+
+    /// Sets what it is swept against.
+    #[must_use]
+    pub const fn continuous(mut self, continuous: Continuous) -> Self {
+        self.settings.continuous = continuous;
+        self
+    }
+
+    /// Sweeps it against all other bodies, so that it passes through none of them.
+    #[must_use]
+    pub const fn bullet(self) -> Self {
+        self.continuous(Continuous::Bullet)
+    }
+
+    /// Keeps it from falling asleep.
+    #[must_use]
+    pub const fn never_sleeps(mut self) -> Self {
+        self.settings.may_sleep = false;
+        self
+    }
+
+    /// Sets the speed below which it grows sleepy, in m/s.
+    #[must_use]
+    pub const fn sleep_speed(mut self, speed: Fx) -> Self {
+        self.settings.sleep_speed = speed;
+        self
+    }
+
+    /// Starts it asleep: it costs nothing until something touches it.
+    #[must_use]
+    pub const fn asleep(mut self) -> Self {
+        self.asleep = true;
+        self
+    }
+
+    /// Starts it disabled.
+    #[must_use]
+    pub const fn disabled(mut self) -> Self {
+        self.enabled = false;
         self
     }
 
@@ -152,15 +214,7 @@ impl BodyDef {
     /// Checks everything but mass and speed, which depend on shapes and on the world.
     pub(crate) fn validate(&self) -> Result<(), WorldError> {
         check_position(self.position)?;
-        for damping in [self.linear_damping, self.angular_damping] {
-            if !(Fx::ZERO..=fx!(1000)).contains(&damping) {
-                return Err(WorldError::DampingOutOfRange { value: damping });
-            }
-        }
-        if !(fx!(-1000)..=fx!(1000)).contains(&self.gravity_scale) {
-            return Err(WorldError::GravityScaleOutOfRange { value: self.gravity_scale });
-        }
-        Ok(())
+        self.settings.validate()
     }
 }
 

@@ -107,6 +107,8 @@ pub enum WorldError {
     JointToItself(BodyId),
     /// Neither body of a joint is dynamic, so nothing could move.
     JointWithoutDynamicBody,
+    /// A joint stays between its bodies as long as it lives.
+    JointOfOtherBodies(JointId),
     /// A world setting is out of range.
     Setting {
         /// Which one.
@@ -160,6 +162,7 @@ impl fmt::Display for WorldError {
             }
             WorldError::JointToItself(id) => write!(f, "a joint between body {id} and itself"),
             WorldError::JointWithoutDynamicBody => write!(f, "neither body of the joint is dynamic"),
+            WorldError::JointOfOtherBodies(id) => write!(f, "joint {id} is between other bodies"),
             WorldError::Setting { name } => write!(f, "the world setting `{name}` is out of range"),
             WorldError::Full { what, limit } => write!(f, "the world already holds {limit} {what}"),
             WorldError::WrongKind(id) => write!(f, "body {id} is not of a kind that can do this"),

@@ -85,6 +85,11 @@ impl MassProperties {
         Ok(properties)
     }
 
+    /// The same for a body that does not turn.
+    pub(crate) fn without_rotation(self) -> Self {
+        MassProperties { inverse_gyration: Reciprocal::ZERO, ..self }
+    }
+
     fn new(mass: Fx, centre: Vec2<Fx>, gyration: Fx) -> Self {
         MassProperties { mass, centre, gyration, inverse_gyration: Reciprocal::of(gyration) }
     }

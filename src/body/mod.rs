@@ -9,12 +9,13 @@ mod filter;
 mod mass;
 mod material;
 mod polygon;
+mod settings;
 mod shape;
 
 pub(crate) use arena::{Arena, Handle};
-pub use arena::{BodyId, JointId, ShapeId};
+pub use arena::{BodyId, IslandId, JointId, ShapeId};
 pub use body::Body;
-pub(crate) use body::SPEED_MAX;
+pub(crate) use body::{Pose, SPEED_MAX};
 pub(crate) use body_def::check_position;
 pub use body_def::{BodyDef, BodyKind};
 pub use error::{GeometryError, WorldError};
@@ -22,4 +23,7 @@ pub use filter::Filter;
 pub use mass::{MassProperties, MassSource};
 pub use material::{Material, Mixing};
 pub use polygon::{POLYGON_VERTICES_MAX, Polygon, SHAPE_EXTENT_MAX};
-pub use shape::{DENSITY_MAX, Geometry, REACH_MAX, SHAPES_PER_BODY_MAX, Shape, ShapeDef, WORLD_EXTENT_MAX};
+pub use settings::{BodySettings, Continuous, MotionLocks};
+pub use shape::{
+    DENSITY_MAX, EventSwitches, Geometry, REACH_MAX, SHAPES_PER_BODY_MAX, Shape, ShapeDef, WORLD_EXTENT_MAX,
+};

@@ -111,6 +111,24 @@ impl Geometry {
     }
 }
 
+/// Which events a shape takes part in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub struct EventSwitches {
+    /// Beginning and end of contacts; of a pair of shapes, either one's is enough.
+    pub contact: bool,
+    /// Hits: contacts that begin faster than [`crate::world::Config::hit_speed`]; of a pair, either one's is enough.
+    pub hit: bool,
+    /// Being noticed by sensors.
+    pub sensor: bool,
+}
+
+impl Default for EventSwitches {
+    /// All but hits.
+    fn default() -> Self {
+        EventSwitches { contact: true, hit: false, sensor: true }
+    }
+}
+
 /// What to attach to a body.
 ///
 /// ```
@@ -130,6 +148,11 @@ pub struct ShapeDef {
     pub material: Material,
     /// What it collides with.
     pub filter: Filter,
+    /// Whether it only notices what it overlaps, and touches nothing. Sensors do not notice each other, and sensors
+    /// of fixed bodies do not notice fixed bodies.
+    pub sensor: bool,
+    /// Which events it takes part in.
+    pub events: EventSwitches,
     /// Not used by the engine, but part of the state and its hash.
     pub user_data: u64,
 }
@@ -144,6 +167,8 @@ impl ShapeDef {
             density: Fx::ONE,
             material: Material::default(),
             filter: Filter::default(),
+            sensor: false,
+            events: EventSwitches::default(),
             user_data: 0,
         }
     }
@@ -183,6 +208,20 @@ impl ShapeDef {
         self
     }
 
+    /// Makes it a sensor.
+    #[must_use]
+    pub fn sensor(mut self) -> Self {
+        self.sensor = true;
+        self
+    }
+
+    /// Sets which events it takes part in.
+    #[must_use]
+    pub fn events(mut self, events: EventSwitches) -> Self {
+        self.events = events;
+        self
+    }
+
     /// Sets the user data.
     #[must_use]
     pub fn user_data(mut self, user_data: u64) -> Self {
@@ -192,7 +231,8 @@ impl ShapeDef {
 
     /// Checks everything that does not depend on the body. `reach_max` does: see [`REACH_MAX`].
     pub(crate) fn validate(&self, reach_max: Fx) -> Result<(), WorldError> {
-        let ShapeDef { geometry, offset, density, material, filter: _, user_data: _ } = self;
+        let ShapeDef { geometry, offset, density, material, filter: _, sensor: _, events: _, user_data: _ } =
+            self;
         geometry.validate()?;
         check_reach(geometry, *offset, reach_max)?;
         if !(Fx::ZERO..=DENSITY_MAX).contains(density) {
@@ -230,6 +270,18 @@ impl Shape {
     #[must_use]
     pub const fn body(&self) -> BodyId {
         self.body
+    }
+
+    /// What it was defined as, with all later changes.
+    #[must_use]
+    pub const fn def(&self) -> &ShapeDef {
+        &self.def
+    }
+
+    /// Whether it is a sensor.
+    #[must_use]
+    pub const fn is_sensor(&self) -> bool {
+        self.def.sensor
     }
 
     /// Its geometry about its own centre.

@@ -1,7 +1,5 @@
 //! Contacts: what is remembered of a pair of shapes from tick to tick.
 
-use alloc::vec::Vec;
-
 use serde::{Deserialize, Serialize};
 
 use super::broad_phase::Pair;
@@ -31,7 +29,7 @@ pub(crate) struct PointImpulse {
 }
 
 impl Contact {
-    fn new(shapes: Pair) -> Self {
+    pub(crate) fn new(shapes: Pair) -> Self {
         Contact { shapes, touching: false, count: 0, points: [PointImpulse::default(); 2] }
     }
 
@@ -55,48 +53,5 @@ impl Contact {
     pub(crate) fn push_point(&mut self, point: PointImpulse) {
         self.points[usize::from(self.count)] = point;
         self.count += 1;
-    }
-}
-
-/// Brings the contacts in line with the pairs of this tick, both sorted. New pairs get a contact without impulses;
-/// contacts whose pair is gone are moved to `ended`. `sources` says for each contact where it was before,
-/// `u32::MAX` for a new one.
-pub(crate) fn match_pairs(
-    contacts: &mut Vec<Contact>,
-    pairs: &[Pair],
-    merged: &mut Vec<Contact>,
-    sources: &mut Vec<u32>,
-    ended: &mut Vec<Contact>,
-) {
-    merged.clear();
-    sources.clear();
-    let mut old = contacts.iter().copied().zip(0u32..).peekable();
-    for &pair in pairs {
-        while let Some((gone, _)) = old.next_if(|(contact, _)| contact.shapes < pair) {
-            ended.push(gone);
-        }
-        let same = old.next_if(|(contact, _)| contact.shapes == pair);
-        let (contact, source) = same.unwrap_or((Contact::new(pair), u32::MAX));
-        merged.push(contact);
-        sources.push(source);
-    }
-    ended.extend(old.map(|(gone, _)| gone));
-    core::mem::swap(contacts, merged);
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn pairs_that_stay_keep_their_impulses() {
-        let mut kept = Contact::new((1, 2));
-        kept.push_point(PointImpulse { feature: 3, normal: Speed::ONE, tangent: Speed::ZERO });
-        let mut contacts = alloc::vec![Contact::new((0, 5)), kept, Contact::new((2, 3))];
-        let (mut merged, mut sources, mut ended) = (Vec::new(), Vec::new(), Vec::new());
-        match_pairs(&mut contacts, &[(0, 1), (1, 2), (4, 9)], &mut merged, &mut sources, &mut ended);
-        assert_eq!(sources, [u32::MAX, 1, u32::MAX]);
-        assert_eq!(contacts, [Contact::new((0, 1)), kept, Contact::new((4, 9))]);
-        assert_eq!(ended, [Contact::new((0, 5)), Contact::new((2, 3))]);
     }
 }

@@ -10,11 +10,10 @@ mod manifold;
 mod narrow_phase;
 mod pose;
 mod segment;
-mod sweep_and_prune;
 
 pub use broad_phase::BroadPhaseKind;
-pub(crate) use broad_phase::{BroadPhase, Pair, Proxy};
-pub(crate) use contact::{Contact, PointImpulse, match_pairs};
+pub(crate) use broad_phase::{BroadPhase, Moved, Pair};
+pub(crate) use contact::{Contact, PointImpulse};
 pub(crate) use hull_hull::{AxisHint, SatCounters};
 pub use manifold::{Feature, Manifold, ManifoldPoint};
 pub(crate) use narrow_phase::{collide, margin_for};

@@ -19,6 +19,9 @@ pub struct Reciprocal {
 }
 
 impl Reciprocal {
+    /// The reciprocal of a length without end: what does not turn has this for its radius of gyration.
+    pub const ZERO: Self = Reciprocal { mantissa: 0, shift: 0 };
+
     /// `1 / x`, to a relative 2^-31. `x` must be at least 2^-30 and below 2^30.
     ///
     /// # Panics

@@ -3,14 +3,15 @@
 use super::body::SolverBody;
 use super::limits::Faults;
 use super::settings::Tuning;
-use crate::body::{Body, BodyKind};
+use crate::body::{Body, BodyKind, MotionLocks};
 use crate::math::{Fx, Speed, Step, Unit, Vec2, fx_div, fx_mul, narrow, saturate};
 
 /// A body that moves, and what changes its velocity in every sub-step of the tick.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Mover {
-    slot: u32,
+    index: u32,
     dynamic: bool,
+    locks: MotionLocks,
     /// By gravity and applied force.
     velocity_step: Vec2<Speed>,
     /// By applied torque.
@@ -21,10 +22,11 @@ pub(crate) struct Mover {
 }
 
 impl Mover {
-    pub(crate) fn prepare(slot: u32, body: &Body, tuning: &Tuning) -> Option<Self> {
+    pub(crate) fn prepare(index: u32, body: &Body, tuning: &Tuning) -> Option<Self> {
         let mut mover = Mover {
-            slot,
+            index,
             dynamic: false,
+            locks: MotionLocks::default(),
             velocity_step: Vec2::ZERO,
             spin_step: Speed::ZERO,
             linear_factor: Unit::ONE,
@@ -36,18 +38,19 @@ impl Mover {
             BodyKind::Dynamic => {
                 let (force_step, spin_step) = body.acceleration_step(tuning.rate);
                 let gravity = |step: Fx| {
-                    if body.gravity_scale() == Fx::ONE {
+                    if body.settings().gravity_scale == Fx::ONE {
                         narrow(step)
                     } else {
-                        narrow(fx_mul(step, body.gravity_scale()))
+                        narrow(fx_mul(step, body.settings().gravity_scale))
                     }
                 };
                 mover.dynamic = true;
+                mover.locks = body.settings().locks;
                 mover.velocity_step =
                     Vec2::new(gravity(tuning.gravity_step.x), gravity(tuning.gravity_step.y)) + force_step;
                 mover.spin_step = spin_step;
-                mover.linear_factor = damping_factor(body.linear_damping(), tuning.rate);
-                mover.angular_factor = damping_factor(body.angular_damping(), tuning.rate);
+                mover.linear_factor = damping_factor(body.settings().linear_damping, tuning.rate);
+                mover.angular_factor = damping_factor(body.settings().angular_damping, tuning.rate);
             }
         }
         Some(mover)
@@ -58,7 +61,7 @@ impl Mover {
         if !self.dynamic {
             return;
         }
-        let body = &mut bodies[self.slot as usize];
+        let body = &mut bodies[self.index as usize];
         body.velocity += self.velocity_step;
         body.spin = body.spin.saturating_add(self.spin_step);
         if self.linear_factor != Unit::ONE {
@@ -70,13 +73,25 @@ impl Mover {
         if self.angular_factor != Unit::ONE {
             body.spin = towards_rest(body.spin, self.angular_factor);
         }
+        self.hold_locked_axes(body);
         limit_speed(&mut body.velocity, speed_max);
         body.spin = body.spin.clamp(-speed_max, speed_max);
     }
 
+    /// Takes away what impulses have put along locked axes. Rotation is locked by a reciprocal gyration of 0.
+    fn hold_locked_axes(&self, body: &mut SolverBody) {
+        if self.locks.x {
+            body.velocity.x = Speed::ZERO;
+        }
+        if self.locks.y {
+            body.velocity.y = Speed::ZERO;
+        }
+    }
+
     /// `x' = x + h v'`, with `rate` sub-steps per second.
     pub(crate) fn integrate_displacement(&self, bodies: &mut [SolverBody], rate: u32, faults: &mut Faults) {
-        let body = &mut bodies[self.slot as usize];
+        let body = &mut bodies[self.index as usize];
+        self.hold_locked_axes(body);
         let mut advance = |sum: &mut Step, speed: Speed| {
             let step = distance(speed, rate);
             // The speed limit keeps sums within the format, unless impulses exceed it at less than 32 Hz.

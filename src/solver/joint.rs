@@ -124,4 +124,14 @@ impl Joint {
     pub const fn def(&self) -> &JointDef {
         &self.def
     }
+
+    /// Takes another definition.
+    pub(crate) fn redefine(&mut self, def: JointDef) {
+        self.def = def;
+    }
+
+    /// Whether the solver has to do with it.
+    pub(crate) fn is_solved(&self) -> bool {
+        true
+    }
 }

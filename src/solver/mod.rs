@@ -34,13 +34,21 @@ use crate::body::{Arena, Body, BodyId, JointId};
 use crate::collision::{Contact, Manifold};
 use crate::math::{Angle, Reciprocal, Rot};
 
+/// The index of the body that stands for all those that nothing moves. Their mass fraction is 0, so that it never
+/// changes.
+const GROUND: u32 = 0;
+
 /// The working memory of the solver. Nothing in it outlives a tick, but its allocations do.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Solver {
-    pub(crate) bodies: Vec<SolverBody>,
+    /// The ground, which stands for all bodies that nothing moves, and then the bodies of the tick.
+    bodies: Vec<SolverBody>,
+    /// For each body slot, where its body is in `bodies`: 0 if nothing moves it.
+    indices: Vec<u32>,
+    /// The slots of the bodies of the tick.
+    slots: Vec<u32>,
     movers: Vec<Mover>,
-    joint_ids: Vec<JointId>,
-    /// For each body slot, whether the body is in `jointed`.
+    /// For each body, whether it is in `jointed`.
     has_joint: Vec<bool>,
     jointed: Vec<JointedBody>,
     rotations: Vec<Rot>,
@@ -59,7 +67,7 @@ pub(crate) struct Solver {
 /// A body with joints, whose rotation is needed at every refresh.
 #[derive(Clone, Copy, Debug)]
 struct JointedBody {
-    slot: u32,
+    index: u32,
     angle: Angle,
     inverse_gyration: Reciprocal,
 }
@@ -73,50 +81,84 @@ pub(crate) struct TouchingPair {
 }
 
 impl Solver {
-    /// Copies what the kernels need out of the state.
-    pub(crate) fn prepare_bodies(&mut self, bodies: &Arena<Body, BodyId>, tuning: &Tuning) {
+    /// Copies what the kernels need of the bodies in the given slots out of the state.
+    pub(crate) fn prepare_bodies(&mut self, bodies: &Arena<Body, BodyId>, slots: &[u32], tuning: &Tuning) {
         self.faults = 0;
         self.warm_starts = WarmStarts::default();
-        self.bodies.clear();
-        self.bodies.resize(bodies.slot_count(), SolverBody::default());
+        for &slot in &self.slots {
+            self.indices[slot as usize] = GROUND;
+        }
+        self.indices.resize(bodies.slot_count(), GROUND);
+        self.slots.clear();
+        self.slots.extend_from_slice(slots);
         self.movers.clear();
-        for (id, body) in bodies.iter() {
-            self.bodies[id.index() as usize] = SolverBody::of(body);
-            self.movers.extend(Mover::prepare(id.index(), body, tuning));
+        self.bodies.clear();
+        self.bodies.push(SolverBody::default());
+        for (&slot, index) in slots.iter().zip(1u32..) {
+            let body = bodies.at(slot);
+            self.indices[slot as usize] = index;
+            self.bodies.push(SolverBody::of(body));
+            self.movers.extend(Mover::prepare(index, body, tuning));
         }
     }
 
+    /// Where the body of a slot is among the bodies of the tick, from 1; 0 if nothing moves it.
+    pub(crate) fn index_of(&self, slot: u32) -> u32 {
+        self.indices[slot as usize]
+    }
+
+    /// The same for a body with a joint: it does not share the ground's place, because joints see how it is turned.
+    fn own_index_of(&mut self, slot: u32) -> u32 {
+        if self.indices[slot as usize] == GROUND {
+            self.indices[slot as usize] = u32::try_from(self.bodies.len()).expect("fewer than 2^32 bodies");
+            self.slots.push(slot);
+            self.bodies.push(SolverBody::default());
+            self.has_joint.push(false);
+        }
+        self.indices[slot as usize]
+    }
+
+    /// The body of a slot, as the tick has left it.
+    pub(crate) fn body(&self, slot: u32) -> &SolverBody {
+        &self.bodies[self.index_of(slot) as usize]
+    }
+
     /// Makes a constraint of every joint, in the order in which they are solved.
-    pub(crate) fn prepare_joints(&mut self, joints: &Arena<Joint, JointId>, bodies: &Arena<Body, BodyId>) {
+    pub(crate) fn prepare_joints(
+        &mut self,
+        joints: &Arena<Joint, JointId>,
+        slots: &[u32],
+        bodies: &Arena<Body, BodyId>,
+    ) {
         self.joints.clear();
         self.jointed.clear();
-        self.rotations.clear();
         self.nodes.clear();
-        if joints.len() == 0 {
-            return;
-        }
-        self.joint_ids.clear();
-        self.joint_ids.extend(joints.iter().map(|(id, _)| id));
-        self.rotations.resize(bodies.slot_count(), Rot::IDENTITY);
         self.has_joint.clear();
-        self.has_joint.resize(bodies.slot_count(), false);
-        for (id, joint) in joints.iter() {
-            let (a, b) = joint.def.bodies();
+        self.has_joint.resize(self.bodies.len(), false);
+        for &joint in slots {
+            let (a, b) = joints.at(joint).def.bodies();
             for slot in [a.index(), b.index()] {
-                if !core::mem::replace(&mut self.has_joint[slot as usize], true) {
-                    let body = bodies.at(slot);
+                let (index, body) = (self.own_index_of(slot), bodies.at(slot));
+                if !core::mem::replace(&mut self.has_joint[index as usize], true) {
                     let inverse_gyration = body.mass.inverse_gyration;
-                    self.jointed.push(JointedBody { slot, angle: body.angle(), inverse_gyration });
+                    self.jointed.push(JointedBody { index, angle: body.angle(), inverse_gyration });
                 }
             }
-            self.nodes.push(node(id.index().into(), bodies, a.index(), b.index()));
+            self.nodes.push(self.node(joint.into(), bodies, a.index(), b.index()));
         }
-        for &index in self.colouring.order(&self.nodes, bodies.slot_count()) {
-            let id = self.joint_ids[index as usize];
+        self.rotations.resize(self.bodies.len(), Rot::IDENTITY);
+        for &index in self.colouring.order(&self.nodes, self.bodies.len()) {
+            let id = joints.handle_at(slots[index as usize]);
             let joint = joints.at(id.index());
             let (a, b) = joint.def.bodies();
             let (a, b) = (a.index(), b.index());
-            self.joints.push(RevoluteConstraint::prepare(id, joint, (a, bodies.at(a)), (b, bodies.at(b))));
+            let ends = (self.indices[a as usize], self.indices[b as usize]);
+            self.joints.push(RevoluteConstraint::prepare(
+                id,
+                joint,
+                (ends.0, bodies.at(a)),
+                (ends.1, bodies.at(b)),
+            ));
         }
         self.refresh_joints();
     }
@@ -131,21 +173,22 @@ impl Solver {
         tuning: &Tuning,
     ) {
         self.nodes.clear();
-        self.nodes.extend(pairs.iter().map(|pair| {
+        for pair in pairs {
             let shapes = contacts[pair.contact as usize].shapes;
-            node(u64::from(shapes.0) << 32 | u64::from(shapes.1), bodies, pair.bodies.0, pair.bodies.1)
-        }));
+            let key = u64::from(shapes.0) << 32 | u64::from(shapes.1);
+            self.nodes.push(self.node(key, bodies, pair.bodies.0, pair.bodies.1));
+        }
         self.contacts.clear();
         self.contact_indices.clear();
-        for &index in self.colouring.order(&self.nodes, bodies.slot_count()) {
+        for &index in self.colouring.order(&self.nodes, self.bodies.len()) {
             let TouchingPair { contact, bodies: (a, b), surface } = pairs[index as usize];
             self.contact_indices.push(contact);
             self.contacts.push(ContactConstraint::prepare(
                 &manifolds[contact as usize],
                 &contacts[contact as usize],
                 surface,
-                (a, bodies.at(a)),
-                (b, bodies.at(b)),
+                (self.indices[a as usize], bodies.at(a)),
+                (self.indices[b as usize], bodies.at(b)),
                 tuning,
                 &mut self.warm_starts,
                 &mut self.faults,
@@ -183,8 +226,8 @@ impl Solver {
 
     fn refresh_joints(&mut self) {
         for body in &self.jointed {
-            let turn = self.bodies[body.slot as usize].turn;
-            self.rotations[body.slot as usize] =
+            let turn = self.bodies[body.index as usize].turn;
+            self.rotations[body.index as usize] =
                 Rot::from_angle(turned(body.angle, turn, body.inverse_gyration));
         }
         for joint in &mut self.joints {
@@ -228,9 +271,9 @@ impl Solver {
             self.pushed[index as usize] = constraint.has_pushed();
         }
     }
-}
 
-fn node(key: u64, bodies: &Arena<Body, BodyId>, a: u32, b: u32) -> Node {
-    let dynamic = |slot: u32| bodies.at(slot).is_dynamic().then_some(slot);
-    Node { key, body_a: dynamic(a), body_b: dynamic(b) }
+    fn node(&self, key: u64, bodies: &Arena<Body, BodyId>, a: u32, b: u32) -> Node {
+        let dynamic = |slot: u32| bodies.at(slot).is_dynamic().then(|| self.index_of(slot));
+        Node { key, body_a: dynamic(a), body_b: dynamic(b) }
+    }
 }

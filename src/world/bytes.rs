@@ -4,7 +4,6 @@ use alloc::vec::Vec;
 use core::fmt;
 
 use super::World;
-use super::scratch::Scratch;
 use super::state::State;
 use super::validate::Violation;
 use crate::SEMANTICS;
@@ -86,7 +85,7 @@ impl World {
     /// Returns to a saved state. What follows is bit-identical to what followed the save.
     pub fn restore(&mut self, snapshot: &Snapshot) {
         self.state.clone_from(&snapshot.0);
-        self.scratch = Scratch::new(self.scratch.broad_phase_kind);
+        self.clear_scratch();
     }
 
     /// The state as portable bytes: header, canonical encoding, hash. `docs/FORMAT.md` has the layout.
@@ -133,8 +132,7 @@ impl World {
             return Err(SnapshotError::Hash);
         }
         let state: State = codec::decode(&covered[HEADER_LEN..]).map_err(SnapshotError::Decode)?;
-        let world = World { state, scratch: Scratch::new(Default::default()) };
-        world.validate().map_err(SnapshotError::Invalid)?;
-        Ok(world)
+        state.validate().map_err(SnapshotError::Invalid)?;
+        Ok(World::of(state, Default::default()))
     }
 }

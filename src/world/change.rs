@@ -3,13 +3,14 @@
 use alloc::vec::Vec;
 
 use super::World;
-use super::config::check_gravity;
+use super::islands;
+use super::state::{Island, State};
 use crate::body::{
-    Body, BodyDef, BodyId, BodyKind, Handle, JointId, MassProperties, MassSource, REACH_MAX,
-    SHAPES_PER_BODY_MAX, Shape, ShapeDef, ShapeId, WORLD_EXTENT_MAX, WorldError, check_position,
+    Body, BodyDef, BodyId, BodyKind, BodySettings, Handle, JointId, MassProperties, MassSource, REACH_MAX,
+    SHAPES_PER_BODY_MAX, Shape, ShapeDef, ShapeId, WORLD_EXTENT_MAX, WorldError,
 };
-use crate::collision::PosedShape;
-use crate::math::{Angle, Fx, Vec2, fx_mul};
+use crate::collision::{Contact, PosedShape};
+use crate::math::{Fx, Vec2, fx_mul};
 use crate::solver::{Joint, JointDef};
 
 impl World {
@@ -26,17 +27,25 @@ impl World {
         for shape in shapes {
             shape.validate(reach_max(body.kind))?;
         }
-        let mass = mass_of(body.kind, body.mass, shapes.iter())?;
+        let mass = mass_of(body.kind, body.mass, &body.settings, shapes.iter())?;
         self.check_velocity(body.velocity, body.angular_velocity, mass.gyration)?;
+        let asleep = body.asleep && body.enabled && body.kind == BodyKind::Dynamic && config.sleeping;
         let mut body = Body::new(body, mass);
-        if body.kind() == BodyKind::Fixed {
+        if asleep || body.kind() == BodyKind::Fixed {
             body.stop();
         }
         let id = self.state.bodies.insert(body);
         for shape in shapes {
             self.insert_shape(id, shape);
         }
-        self.scratch.poses.pose_body(&self.state, self.state.bodies.at(id.slot()));
+        if asleep {
+            let island = self.state.islands.insert(Island { bodies: alloc::vec![id.slot()] });
+            self.state.bodies.at_mut(id.slot()).island = Some(island);
+        }
+        self.placed(id.slot());
+        if !self.state.bodies.at(id.slot()).is_dynamic() {
+            islands::disturb(&mut self.state, &mut self.scratch, id.slot());
+        }
         Ok(id)
     }
 
@@ -55,8 +64,10 @@ impl World {
         for joint in joints {
             self.remove_joint(joint)?;
         }
+        islands::disturb(&mut self.state, &mut self.scratch, id.slot());
         self.forget_shapes(&shapes);
         self.state.bodies.remove(id);
+        self.scratch.roster.invalidate();
         Ok(())
     }
 
@@ -70,12 +81,14 @@ impl World {
         shape.validate(reach_max(owner.kind()))?;
         check_shapes_of_body(owner.shapes.len() + 1)?;
         let shapes = self.shape_defs(owner).chain([shape]);
-        let mass = mass_of(owner.kind(), owner.mass_source, shapes)?;
+        let mass = mass_of(owner.kind(), owner.mass_source, &owner.settings, shapes)?;
         self.check_spin(owner, &mass)?;
+        islands::wake_body(&mut self.state, &mut self.scratch, body.slot());
         self.state.bodies.at_mut(body.slot()).set_mass(mass);
         let id = self.insert_shape(body, shape);
         // The centre of mass may have moved, and with it, by a rounding, the places of the other shapes.
-        self.scratch.poses.pose_body(&self.state, self.state.bodies.at(body.slot()));
+        self.placed(body.slot());
+        islands::disturb(&mut self.state, &mut self.scratch, body.slot());
         Ok(id)
     }
 
@@ -89,14 +102,15 @@ impl World {
         let owner = self.state.bodies.at(body.slot());
         let rest = owner.shapes.iter().filter(|&&other| other != id);
         let rest = rest.map(|other| &self.state.shapes.at(other.slot()).def);
-        let mass = mass_of(owner.kind(), owner.mass_source, rest)?;
+        let mass = mass_of(owner.kind(), owner.mass_source, &owner.settings, rest)?;
         self.check_spin(owner, &mass)?;
+        islands::disturb(&mut self.state, &mut self.scratch, body.slot());
         self.forget_shapes(&[id]);
         let owner = self.state.bodies.at_mut(body.slot());
         owner.shapes.retain(|&other| other != id);
         owner.set_mass(mass);
         // The centre of mass has moved, and with it, by a rounding, the places of the other shapes.
-        self.scratch.poses.pose_body(&self.state, self.state.bodies.at(body.slot()));
+        self.placed(body.slot());
         Ok(())
     }
 
@@ -114,8 +128,26 @@ impl World {
         if !(dynamic(a)? | dynamic(b)?) {
             return Err(WorldError::JointWithoutDynamicBody);
         }
-        self.scratch.pairs_changed = true;
-        Ok(self.state.joints.insert(Joint::new(*def)))
+        let id = self.state.joints.insert(Joint::new(*def));
+        self.rejoined([a, b]);
+        Ok(id)
+    }
+
+    /// Changes anything about a joint but its bodies: read [`Joint::def`], change a copy, and pass it here. Its
+    /// impulses are kept if it stays of the same kind. Wakes its bodies.
+    ///
+    /// # Errors
+    /// When the handle is stale, the bodies are others, or a value is out of range.
+    pub fn set_joint(&mut self, id: JointId, def: &JointDef) -> Result<(), WorldError> {
+        let joint = self.state.joints.get_mut(id).ok_or(WorldError::StaleJoint(id))?;
+        def.validate()?;
+        let (a, b) = joint.def.bodies();
+        if (a, b) != def.bodies() {
+            return Err(WorldError::JointOfOtherBodies(id));
+        }
+        joint.redefine(*def);
+        self.rejoined([a, b]);
+        Ok(())
     }
 
     /// Removes a joint.
@@ -123,105 +155,22 @@ impl World {
     /// # Errors
     /// [`WorldError::StaleJoint`] when it is not in the world.
     pub fn remove_joint(&mut self, id: JointId) -> Result<(), WorldError> {
-        self.state.joints.remove(id).ok_or(WorldError::StaleJoint(id))?;
-        self.scratch.pairs_changed = true;
+        let joint = self.state.joints.remove(id).ok_or(WorldError::StaleJoint(id))?;
+        let (a, b) = joint.def.bodies();
+        self.rejoined([a, b]);
         Ok(())
     }
 
-    /// Pushes a dynamic body with a force in N at a world point during the next tick. Forces add up, and are
-    /// gone after the tick.
-    ///
-    /// # Errors
-    /// When the handle is stale or the body is not dynamic.
-    pub fn apply_force(&mut self, id: BodyId, force: Vec2<Fx>, point: Vec2<Fx>) -> Result<(), WorldError> {
-        self.dynamic_body(id)?.apply_force(force, point);
-        Ok(())
-    }
-
-    /// Turns a dynamic body with a torque in N m during the next tick.
-    ///
-    /// # Errors
-    /// When the handle is stale or the body is not dynamic.
-    pub fn apply_torque(&mut self, id: BodyId, torque: Fx) -> Result<(), WorldError> {
-        let body = self.dynamic_body(id)?;
-        body.torque = body.torque.saturating_add(torque);
-        Ok(())
-    }
-
-    /// Changes a dynamic body's velocity at once by an impulse in N s at a world point.
-    ///
-    /// # Errors
-    /// When the handle is stale or the body is not dynamic.
-    pub fn apply_impulse(
-        &mut self,
-        id: BodyId,
-        impulse: Vec2<Fx>,
-        point: Vec2<Fx>,
-    ) -> Result<(), WorldError> {
-        self.dynamic_body(id)?.apply_impulse(impulse, point);
-        Ok(())
-    }
-
-    /// Changes a dynamic body's angular velocity at once by an angular impulse in N m s.
-    ///
-    /// # Errors
-    /// When the handle is stale or the body is not dynamic.
-    pub fn apply_angular_impulse(&mut self, id: BodyId, impulse: Fx) -> Result<(), WorldError> {
-        self.dynamic_body(id)?.apply_angular_impulse(impulse);
-        Ok(())
-    }
-
-    /// Sets the velocity of a body's centre of mass in m/s and its angular velocity in rad/s.
-    ///
-    /// # Errors
-    /// When the handle is stale, the body is fixed, or a speed is above [`crate::solver::SolverSettings::speed_max`].
-    pub fn set_velocity(&mut self, id: BodyId, velocity: Vec2<Fx>, angular: Fx) -> Result<(), WorldError> {
-        let body = self.state.bodies.get(id).ok_or(WorldError::StaleBody(id))?;
-        if body.kind() == BodyKind::Fixed {
-            return Err(WorldError::WrongKind(id));
-        }
-        self.check_velocity(velocity, angular, body.radius_of_gyration())?;
-        let body = self.state.bodies.at_mut(id.slot());
-        body.velocity = velocity.narrow();
-        body.set_angular_velocity(angular);
-        Ok(())
-    }
-
-    /// Moves a body's origin to a position, turned to an angle, without regard to what is in between. Its
-    /// contacts and joints keep their impulses if they last.
-    ///
-    /// # Errors
-    /// When the handle is stale or the position out of range.
-    pub fn set_transform(&mut self, id: BodyId, position: Vec2<Fx>, angle: Angle) -> Result<(), WorldError> {
-        check_position(position)?;
-        let body = self.state.bodies.get_mut(id).ok_or(WorldError::StaleBody(id))?;
-        body.set_transform(position, angle);
-        self.place_shapes(id);
-        Ok(())
-    }
-
-    /// Changes the world's gravity, in m/s².
-    ///
-    /// # Errors
-    /// [`WorldError::Setting`] when it is not within ±100 000.
-    pub fn set_gravity(&mut self, gravity: Vec2<Fx>) -> Result<(), WorldError> {
-        if !check_gravity(gravity) {
-            return Err(WorldError::Setting { name: "gravity" });
-        }
-        self.state.config.gravity = gravity;
-        Ok(())
-    }
-
-    fn shape_defs<'a>(&'a self, body: &'a Body) -> impl Iterator<Item = &'a ShapeDef> + Clone {
+    pub(super) fn shape_defs<'a>(&'a self, body: &'a Body) -> impl Iterator<Item = &'a ShapeDef> + Clone {
         body.shapes.iter().map(|id| &self.state.shapes.at(id.slot()).def)
     }
 
-    fn dynamic_body(&mut self, id: BodyId) -> Result<&mut Body, WorldError> {
-        let body = self.state.bodies.get_mut(id).ok_or(WorldError::StaleBody(id))?;
-        if body.is_dynamic() { Ok(body) } else { Err(WorldError::WrongKind(id)) }
-    }
-
-    fn check_velocity(&self, velocity: Vec2<Fx>, angular: Fx, gyration: Fx) -> Result<(), WorldError> {
+    pub(super) fn check_velocity(
+        &self,
+        velocity: Vec2<Fx>,
+        angular: Fx,
+        gyration: Fx,
+    ) -> Result<(), WorldError> {
         let limit = self.state.config.solver.speed_limit(self.state.config.tick_rate);
         for value in [velocity.length(), fx_mul(angular.saturating_abs(), gyration)] {
             if value > limit {
@@ -232,7 +181,7 @@ impl World {
     }
 
     /// Checks that a body may keep its angular velocity with another mass.
-    fn check_spin(&self, body: &Body, mass: &MassProperties) -> Result<(), WorldError> {
+    pub(super) fn check_spin(&self, body: &Body, mass: &MassProperties) -> Result<(), WorldError> {
         self.check_velocity(Vec2::ZERO, body.angular_velocity(), mass.gyration)
     }
 
@@ -242,34 +191,63 @@ impl World {
         let fat = fat_box(def, owner, self.state.config.fat_margin);
         let id = self.state.shapes.insert(Shape { body, def: *def, fat });
         owner.shapes.push(id);
-        self.scratch.pairs_changed = true;
         id
     }
 
     /// Gives the shapes of a body that has been moved new boxes.
-    fn place_shapes(&mut self, id: BodyId) {
-        let body = self.state.bodies.at(id.slot());
+    pub(super) fn replace(&mut self, slot: u32) {
+        let body = self.state.bodies.at(slot);
         for shape in &body.shapes {
             let shape = self.state.shapes.at_mut(shape.slot());
             shape.fat = fat_box(&shape.def, body, self.state.config.fat_margin);
         }
-        self.scratch.poses.pose_body(&self.state, body);
-        self.scratch.pairs_changed = true;
+        self.placed(slot);
+    }
+
+    /// Brings the caches in line with a body that has come or been moved.
+    pub(super) fn placed(&mut self, slot: u32) {
+        let body = self.state.bodies.at(slot);
+        self.scratch.place(&self.state, body);
+        self.scratch.changes.body(body);
+        self.scratch.roster.invalidate();
+    }
+
+    /// Wakes bodies whose joints have changed, and lets their contacts be looked at anew.
+    pub(super) fn rejoined(&mut self, bodies: [BodyId; 2]) {
+        for id in bodies {
+            islands::wake_body(&mut self.state, &mut self.scratch, id.slot());
+            self.scratch.changes.body(self.state.bodies.at(id.slot()));
+        }
+        self.scratch.changes.rules = true;
+        self.scratch.joined_stale = true;
+        self.scratch.roster.invalidate();
     }
 
     /// Removes shapes from everything but their body.
     fn forget_shapes(&mut self, ids: &[ShapeId]) {
-        let gone = |slot: u32| ids.iter().any(|id| id.slot() == slot);
-        let ends = |shapes: (u32, u32)| gone(shapes.0) || gone(shapes.1);
-        let touching = self.state.contacts.iter().filter(|contact| contact.touching && ends(contact.shapes));
-        let removed: Vec<_> = touching.map(|contact| self.state.contact_event(contact)).collect();
-        self.state.removed_contacts.extend(removed);
-        // Manifolds and hints are found by the contact's place, which moves.
-        self.state.contacts.retain(|contact| !ends(contact.shapes));
-        self.scratch.forget_contacts();
+        self.forget_contacts(ids);
         for &id in ids {
+            self.scratch.broad_phase.remove(id.slot());
             self.state.shapes.remove(id);
         }
+    }
+
+    /// Ends the contacts of shapes that are about to be removed or changed.
+    pub(super) fn forget_contacts(&mut self, ids: &[ShapeId]) {
+        let mut slots: Vec<u32> = ids.iter().map(|id| id.slot()).collect();
+        slots.sort_unstable();
+        let ends = |contact: &Contact| {
+            let (a, b) = contact.shapes;
+            slots.binary_search(&a).is_ok() || slots.binary_search(&b).is_ok()
+        };
+        let State { contacts, resting, .. } = &self.state;
+        let touching = contacts.iter().chain(resting).filter(|contact| contact.touching && ends(contact));
+        let removed: Vec<_> = touching.filter_map(|contact| self.state.reported(contact)).collect();
+        self.state.removed_contacts.extend(removed);
+        // Manifolds and hints are found by the contact's place, which moves.
+        self.state.contacts.retain(|contact| !ends(contact));
+        self.state.resting.retain(|contact| !ends(contact));
+        self.scratch.forget_contacts();
     }
 }
 
@@ -284,18 +262,20 @@ pub(super) fn reach_max(kind: BodyKind) -> Fx {
 pub(super) fn mass_of<'a>(
     kind: BodyKind,
     source: MassSource,
+    settings: &BodySettings,
     shapes: impl Iterator<Item = &'a ShapeDef> + Clone,
 ) -> Result<MassProperties, WorldError> {
-    match kind {
-        BodyKind::Dynamic => MassProperties::dynamic(source, shapes),
+    let mass = match kind {
+        BodyKind::Dynamic => MassProperties::dynamic(source, shapes)?,
         BodyKind::Fixed | BodyKind::Kinematic => {
             // A given mass waits for the body to become dynamic, and has to be possible.
             if matches!(source, MassSource::Given { .. }) {
                 MassProperties::dynamic(source, shapes)?;
             }
-            Ok(MassProperties::immovable())
+            MassProperties::immovable()
         }
-    }
+    };
+    Ok(if settings.locks.rotation { mass.without_rotation() } else { mass })
 }
 
 pub(super) fn fat_box(shape: &ShapeDef, body: &Body, margin: Fx) -> crate::math::Aabb {

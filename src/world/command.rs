@@ -4,8 +4,10 @@ use alloc::vec::Vec;
 
 use serde::{Deserialize, Serialize};
 
-use super::World;
-use crate::body::{BodyDef, BodyId, JointId, ShapeDef, ShapeId, WorldError};
+use super::{Explosion, World};
+use crate::body::{
+    BodyDef, BodyId, BodyKind, BodySettings, JointId, MassSource, ShapeDef, ShapeId, WorldError,
+};
 use crate::math::{Angle, Fx, Vec2};
 use crate::solver::JointDef;
 
@@ -101,6 +103,82 @@ pub enum Command {
         /// In m/s².
         gravity: Vec2<Fx>,
     },
+    /// [`World::move_to`].
+    MoveTo {
+        /// The kinematic body.
+        body: BodyId,
+        /// Of its origin, in metres.
+        position: Vec2<Fx>,
+        /// Its rotation.
+        angle: Angle,
+    },
+    /// [`World::set_body`].
+    SetBody {
+        /// The body.
+        body: BodyId,
+        /// How it takes part from now on.
+        settings: BodySettings,
+    },
+    /// [`World::set_kind`].
+    SetKind {
+        /// The body.
+        body: BodyId,
+        /// What moves it from now on.
+        kind: BodyKind,
+    },
+    /// [`World::set_mass`].
+    SetMass {
+        /// The body.
+        body: BodyId,
+        /// Where its mass comes from.
+        mass: MassSource,
+    },
+    /// [`World::set_user_data`].
+    SetUserData {
+        /// The body.
+        body: BodyId,
+        /// The game's own number.
+        user_data: u64,
+    },
+    /// [`World::enable`].
+    Enable {
+        /// The body.
+        body: BodyId,
+    },
+    /// [`World::disable`].
+    Disable {
+        /// The body.
+        body: BodyId,
+    },
+    /// [`World::wake`].
+    Wake {
+        /// The body.
+        body: BodyId,
+    },
+    /// [`World::sleep`].
+    Sleep {
+        /// The body.
+        body: BodyId,
+    },
+    /// [`World::set_shape`].
+    SetShape {
+        /// The shape to change.
+        shape: ShapeId,
+        /// What it is from now on.
+        def: ShapeDef,
+    },
+    /// [`World::set_joint`].
+    SetJoint {
+        /// The joint to change.
+        joint: JointId,
+        /// What it is from now on.
+        def: JointDef,
+    },
+    /// [`World::explode`].
+    Explode {
+        /// The explosion.
+        explosion: Explosion,
+    },
 }
 
 /// What a command has made.
@@ -122,32 +200,35 @@ impl World {
     /// # Errors
     /// Those of the method that the command names. The world is then as it was.
     pub fn execute(&mut self, command: &Command) -> Result<Outcome, WorldError> {
-        match command {
-            Command::Spawn { body, shapes } => self.spawn(body, shapes).map(Outcome::Body),
-            Command::Despawn { body } => self.despawn(*body).map(|()| Outcome::Done),
-            Command::AddShape { body, shape } => self.add_shape(*body, shape).map(Outcome::Shape),
-            Command::RemoveShape { shape } => self.remove_shape(*shape).map(|()| Outcome::Done),
-            Command::AddJoint { joint } => self.add_joint(joint).map(Outcome::Joint),
-            Command::RemoveJoint { joint } => self.remove_joint(*joint).map(|()| Outcome::Done),
-            Command::ApplyForce { body, force, point } => {
-                self.apply_force(*body, *force, *point).map(|()| Outcome::Done)
-            }
-            Command::ApplyTorque { body, torque } => {
-                self.apply_torque(*body, *torque).map(|()| Outcome::Done)
-            }
-            Command::ApplyImpulse { body, impulse, point } => {
-                self.apply_impulse(*body, *impulse, *point).map(|()| Outcome::Done)
-            }
-            Command::ApplyAngularImpulse { body, impulse } => {
-                self.apply_angular_impulse(*body, *impulse).map(|()| Outcome::Done)
-            }
+        match *command {
+            Command::Spawn { ref body, ref shapes } => return self.spawn(body, shapes).map(Outcome::Body),
+            Command::AddShape { body, ref shape } => return self.add_shape(body, shape).map(Outcome::Shape),
+            Command::AddJoint { ref joint } => return self.add_joint(joint).map(Outcome::Joint),
+            Command::Despawn { body } => self.despawn(body),
+            Command::RemoveShape { shape } => self.remove_shape(shape),
+            Command::RemoveJoint { joint } => self.remove_joint(joint),
+            Command::ApplyForce { body, force, point } => self.apply_force(body, force, point),
+            Command::ApplyTorque { body, torque } => self.apply_torque(body, torque),
+            Command::ApplyImpulse { body, impulse, point } => self.apply_impulse(body, impulse, point),
+            Command::ApplyAngularImpulse { body, impulse } => self.apply_angular_impulse(body, impulse),
             Command::SetVelocity { body, velocity, angular_velocity } => {
-                self.set_velocity(*body, *velocity, *angular_velocity).map(|()| Outcome::Done)
+                self.set_velocity(body, velocity, angular_velocity)
             }
-            Command::SetTransform { body, position, angle } => {
-                self.set_transform(*body, *position, *angle).map(|()| Outcome::Done)
-            }
-            Command::SetGravity { gravity } => self.set_gravity(*gravity).map(|()| Outcome::Done),
+            Command::SetTransform { body, position, angle } => self.set_transform(body, position, angle),
+            Command::SetGravity { gravity } => self.set_gravity(gravity),
+            Command::MoveTo { body, position, angle } => self.move_to(body, position, angle),
+            Command::SetBody { body, ref settings } => self.set_body(body, settings),
+            Command::SetKind { body, kind } => self.set_kind(body, kind),
+            Command::SetMass { body, mass } => self.set_mass(body, mass),
+            Command::SetUserData { body, user_data } => self.set_user_data(body, user_data),
+            Command::Enable { body } => self.enable(body),
+            Command::Disable { body } => self.disable(body),
+            Command::Wake { body } => self.wake(body),
+            Command::Sleep { body } => self.sleep(body),
+            Command::SetShape { shape, ref def } => self.set_shape(shape, def),
+            Command::SetJoint { joint, ref def } => self.set_joint(joint, def),
+            Command::Explode { ref explosion } => self.explode(explosion),
         }
+        .map(|()| Outcome::Done)
     }
 }

@@ -29,6 +29,12 @@ pub struct Config {
     /// How much larger than needed the boxes of the broad phase are made, in metres, 0.001 to 10: larger ones
     /// change less often but give more pairs.
     pub fat_margin: Fx,
+    /// Whether bodies at rest fall asleep.
+    pub sleeping: bool,
+    /// Whether fast bodies are swept against what they might pass through; see [`crate::body::Continuous`].
+    pub continuous: bool,
+    /// Approach speed in m/s from which a contact is a hit, 0 to 400.
+    pub hit_speed: Fx,
     /// Most bodies the world may hold, at most 2^20.
     pub body_limit: u32,
     /// Most shapes the world may hold, at most 2^20.
@@ -50,6 +56,9 @@ impl Default for Config {
             solver: SolverSettings::default(),
             speculative_distance: fx!(0.02),
             fat_margin: fx!(0.1),
+            sleeping: true,
+            continuous: true,
+            hit_speed: fx!(1),
             body_limit: 1 << 20,
             shape_limit: 1 << 20,
             joint_limit: 1 << 20,
@@ -66,6 +75,12 @@ impl Config {
         self.speculative_distance / 4
     }
 
+    /// For how many ticks a body has to be slow before it sleeps: half a second.
+    #[must_use]
+    pub const fn ticks_to_sleep(&self) -> u32 {
+        self.tick_rate.div_ceil(2)
+    }
+
     /// Checks every setting.
     ///
     /// # Errors
@@ -77,6 +92,9 @@ impl Config {
             ref solver,
             speculative_distance,
             fat_margin,
+            sleeping: _,
+            continuous: _,
+            hit_speed,
             body_limit,
             shape_limit,
             joint_limit,
@@ -87,6 +105,7 @@ impl Config {
             (check_gravity(gravity), "gravity"),
             ((fx!(0.001)..=fx!(1)).contains(&speculative_distance), "speculative_distance"),
             ((fx!(0.001)..=fx!(10)).contains(&fat_margin), "fat_margin"),
+            ((fx!(0)..=fx!(400)).contains(&hit_speed), "hit_speed"),
             (body_limit <= 1 << 20, "body_limit"),
             (shape_limit <= 1 << 20, "shape_limit"),
             (joint_limit <= 1 << 20, "joint_limit"),

@@ -19,8 +19,10 @@ pub enum Section {
     Shapes,
     /// Joints, their impulses and their free list.
     Joints,
-    /// Contacts and their impulses.
+    /// Contacts and their impulses, also of what sleeps.
     Contacts,
+    /// What sleeps, and together with what.
+    Islands,
     /// Random numbers.
     Random,
 }
@@ -33,6 +35,7 @@ impl fmt::Display for Section {
             Section::Shapes => "shapes",
             Section::Joints => "joints",
             Section::Contacts => "contacts",
+            Section::Islands => "islands",
             Section::Random => "random",
         })
     }
@@ -42,7 +45,7 @@ impl fmt::Display for Section {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WorldDigest {
     /// The digest of each section.
-    pub sections: [(Section, StateHash); 6],
+    pub sections: [(Section, StateHash); 7],
 }
 
 impl WorldDigest {
@@ -78,7 +81,9 @@ impl World {
             bodies,
             shapes,
             joints,
+            islands,
             contacts,
+            resting,
             pairs_left_out,
             removed_contacts,
             rng,
@@ -89,7 +94,8 @@ impl World {
                 (Section::Bodies, StateHash::of(bodies)),
                 (Section::Shapes, StateHash::of(shapes)),
                 (Section::Joints, StateHash::of(joints)),
-                (Section::Contacts, StateHash::of(&(contacts, pairs_left_out, removed_contacts))),
+                (Section::Contacts, StateHash::of(&(contacts, resting, pairs_left_out, removed_contacts))),
+                (Section::Islands, StateHash::of(islands)),
                 (Section::Random, StateHash::of(rng)),
             ],
         }

@@ -1,12 +1,17 @@
 //! The world: bodies, shapes and joints that advance together, tick by tick.
 
+mod adjust;
 mod bytes;
 mod change;
 mod command;
 mod config;
+mod contacts;
 mod digest;
 mod events;
+mod islands;
 mod look_ahead;
+mod pairs;
+mod push;
 mod scratch;
 mod state;
 mod stats;
@@ -18,12 +23,13 @@ pub use bytes::{Snapshot, SnapshotError};
 pub use command::{Command, Outcome};
 pub use config::Config;
 pub use digest::{Section, WorldDigest};
-pub use events::{ContactEvent, Events};
-pub use stats::StepStats;
+pub use events::{ContactEvent, Events, HitEvent, JointEvent, MoveEvent, SensorEvent};
+pub use push::Explosion;
+pub use stats::{Phase, StepStats};
 pub use timestep::FixedTimestep;
 pub use validate::Violation;
 
-use crate::body::{Body, BodyId, JointId, Shape, ShapeId, WorldError};
+use crate::body::{Body, BodyId, BodyKind, JointId, Shape, ShapeId, WorldError};
 use crate::collision::{BroadPhaseKind, Manifold};
 use crate::math::{Fx, Rng, Vec2};
 use crate::solver::Joint;
@@ -60,7 +66,7 @@ pub struct World {
 impl Default for World {
     /// An empty world with the default settings.
     fn default() -> Self {
-        World { state: State::new(Config::default()), scratch: Scratch::new(BroadPhaseKind::default()) }
+        World::of(State::new(Config::default()), BroadPhaseKind::default())
     }
 }
 
@@ -71,7 +77,12 @@ impl World {
     /// [`WorldError::Setting`] when a setting is out of range.
     pub fn new(config: Config) -> Result<Self, WorldError> {
         config.validate()?;
-        Ok(World { state: State::new(config), scratch: Scratch::new(BroadPhaseKind::default()) })
+        Ok(World::of(State::new(config), BroadPhaseKind::default()))
+    }
+
+    fn of(state: State, broad_phase: BroadPhaseKind) -> Self {
+        let scratch = Scratch::new(broad_phase, &state);
+        World { state, scratch }
     }
 
     /// The settings.
@@ -144,7 +155,14 @@ impl World {
         self.state.joints.len()
     }
 
-    /// Number of pairs of shapes near each other: what the next tick's cost depends on, with bodies and joints.
+    /// Number of bodies that are simulated: those awake, and kinematic ones.
+    #[must_use]
+    pub fn awake_body_count(&self) -> usize {
+        let works = |body: &Body| body.enabled && body.kind() != BodyKind::Fixed && !body.is_asleep();
+        self.state.bodies.iter().filter(|(_, body)| works(body)).count()
+    }
+
+    /// Number of pairs of shapes near each other, one of them awake: what the next tick's cost depends on, with bodies and joints.
     #[must_use]
     pub fn pair_count(&self) -> usize {
         self.state.contacts.len()
@@ -179,12 +197,12 @@ impl World {
 
     /// Drops every cache. No hash changes by it: the next tick only takes longer.
     pub fn clear_scratch(&mut self) {
-        self.scratch = Scratch::new(self.scratch.broad_phase_kind);
+        self.set_broad_phase(self.scratch.broad_phase.kind());
     }
 
     /// Chooses how overlapping pairs are found. No hash changes by it.
     pub fn set_broad_phase(&mut self, kind: BroadPhaseKind) {
-        self.scratch = Scratch::new(kind);
+        self.scratch = Scratch::new(kind, &self.state);
     }
 
     /// Where the anchors of a revolute joint are in the world, A's first.

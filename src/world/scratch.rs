@@ -3,63 +3,120 @@
 use alloc::vec::Vec;
 
 use super::events::Events;
+use super::islands::{Roster, UnionFind};
 use super::state::State;
 use super::stats::StepStats;
 use crate::body::{Body, Handle};
 use crate::collision::{
-    AxisHint, BroadPhase, BroadPhaseKind, Contact, Manifold, Pair, PosedShape, Proxy, SatCounters,
+    AxisHint, BroadPhase, BroadPhaseKind, Contact, Manifold, Pair, PosedShape, SatCounters,
 };
 use crate::solver::{Solver, TouchingPair};
 
 /// Caches, buffers and results of the last tick.
 #[derive(Clone, Debug)]
 pub(crate) struct Scratch {
-    pub(crate) broad_phase_kind: BroadPhaseKind,
     pub(crate) broad_phase: BroadPhase,
     pub(crate) poses: Poses,
-    /// Whether the pairs may have changed for another reason than a fat box.
-    pub(crate) pairs_changed: bool,
-    pub(crate) proxies: Vec<Proxy>,
+    /// What has changed since the last look at the pairs.
+    pub(crate) changes: Changes,
+    pub(crate) roster: Roster,
+    pub(crate) union: UnionFind,
     pub(crate) pairs: Vec<Pair>,
-    /// Pairs of body slots whose joint keeps them from colliding, sorted.
+    /// Pairs of body slots whose joint keeps them from colliding, sorted; and whether joints have changed since.
     pub(crate) joined: Vec<Pair>,
+    pub(crate) joined_stale: bool,
+    pub(crate) fresh: Vec<Contact>,
     pub(crate) merged: Vec<Contact>,
     pub(crate) ended: Vec<Contact>,
     /// For each contact, the axis that separated it in the last tick.
     pub(crate) hints: Vec<AxisHint>,
-    pub(crate) old_hints: Vec<AxisHint>,
-    /// For each contact, where it was in the last tick; `u32::MAX` if it is new.
-    pub(crate) sources: Vec<u32>,
+    pub(crate) old_hints: Vec<(Pair, AxisHint)>,
     /// For each contact, its manifold in the last tick.
     pub(crate) manifolds: Vec<Manifold>,
     pub(crate) touching: Vec<TouchingPair>,
+    /// Approaches that become hits if the shapes push each other in this tick.
+    pub(crate) approaches: Vec<Approaching>,
     pub(crate) sat: SatCounters,
     pub(crate) solver: Solver,
     pub(crate) events: Events,
     pub(crate) stats: StepStats,
 }
 
+/// A contact that approaches fast enough to be a hit.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Approaching {
+    pub(crate) contact: u32,
+    pub(crate) event: super::events::HitEvent,
+}
+
+/// Where pairs may have come or gone since the last look at them.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Changes {
+    /// Anywhere: the caches are new.
+    pub(crate) everything: bool,
+    /// Resting contacts may have an active body again.
+    pub(crate) woken: bool,
+    /// Pairs that might touch may not do so any more.
+    pub(crate) rules: bool,
+    /// Slots of shapes with another fat box, or whose body has begun or ceased to be active.
+    pub(crate) shapes: Vec<u32>,
+}
+
+impl Changes {
+    pub(crate) fn any(&self) -> bool {
+        self.everything || self.woken || self.rules || !self.shapes.is_empty()
+    }
+
+    pub(crate) fn clear(&mut self) {
+        let Changes { everything, woken, rules, shapes } = self;
+        (*everything, *woken, *rules) = (false, false, false);
+        shapes.clear();
+    }
+
+    /// The shapes of a body have another fat box, or another reason to have other pairs.
+    pub(crate) fn body(&mut self, body: &Body) {
+        self.shapes.extend(body.shapes().iter().map(|id| id.slot()));
+    }
+}
+
 impl Scratch {
-    pub(crate) fn new(kind: BroadPhaseKind) -> Self {
-        Scratch {
-            broad_phase_kind: kind,
+    /// The caches of a state.
+    pub(crate) fn new(kind: BroadPhaseKind, state: &State) -> Self {
+        let mut scratch = Scratch {
             broad_phase: BroadPhase::new(kind),
             poses: Poses::default(),
-            pairs_changed: true,
-            proxies: Vec::new(),
+            changes: Changes { everything: true, ..Changes::default() },
+            roster: Roster::default(),
+            union: UnionFind::default(),
             pairs: Vec::new(),
             joined: Vec::new(),
+            joined_stale: true,
+            fresh: Vec::new(),
             merged: Vec::new(),
             ended: Vec::new(),
             hints: Vec::new(),
             old_hints: Vec::new(),
-            sources: Vec::new(),
             manifolds: Vec::new(),
             touching: Vec::new(),
+            approaches: Vec::new(),
             sat: SatCounters::default(),
             solver: Solver::default(),
             events: Events::default(),
             stats: StepStats::default(),
+        };
+        for (_, body) in state.bodies.iter() {
+            scratch.place(state, body);
+        }
+        scratch
+    }
+
+    /// Brings the caches in line with the place of a body's shapes.
+    pub(crate) fn place(&mut self, state: &State, body: &Body) {
+        self.poses.pose_body(state, body);
+        if body.enabled {
+            for id in body.shapes() {
+                self.broad_phase.set(id.slot(), state.shapes.at(id.slot()).fat);
+            }
         }
     }
 
@@ -68,35 +125,21 @@ impl Scratch {
         self.manifolds.clear();
         self.hints.clear();
         self.touching.clear();
-        self.pairs_changed = true;
     }
 }
 
-/// Shapes in world axes, by slot. Either all shapes are there, or none are and [`Poses::ensure`] has to be called.
+/// Shapes in world axes, by slot.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Poses {
     shapes: Vec<Option<PosedShape>>,
-    complete: bool,
 }
 
 impl Poses {
-    /// Poses every shape, if that has not been done since the caches were dropped.
-    pub(crate) fn ensure(&mut self, state: &State) {
-        if self.complete {
-            return;
-        }
-        self.complete = true;
-        for (_, body) in state.bodies.iter() {
-            self.pose_body(state, body);
-        }
-    }
-
     /// Poses the shapes of a body anew, after it has been moved or has got another shape.
     pub(crate) fn pose_body(&mut self, state: &State, body: &Body) {
-        if !self.complete {
-            return;
+        if self.shapes.len() < state.shapes.slot_count() {
+            self.shapes.resize_with(state.shapes.slot_count(), || None);
         }
-        self.shapes.resize_with(state.shapes.slot_count(), || None);
         let rotation = body.rotation();
         for &id in body.shapes() {
             let shape = state.shapes.at(id.slot());
@@ -106,6 +149,6 @@ impl Poses {
 
     /// The shape in an occupied slot.
     pub(crate) fn at(&self, slot: u32) -> &PosedShape {
-        self.shapes[slot as usize].as_ref().expect("every shape is posed before the tick")
+        self.shapes[slot as usize].as_ref().expect("every shape is posed when it is placed")
     }
 }

@@ -1,8 +1,33 @@
 //! Counters of the last tick, for tuning and tests. They are not part of the state.
 
+/// The phases of a tick, in order; see [`super::World::step_observed`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[non_exhaustive]
+pub enum Phase {
+    /// Fat boxes, pairs of them, and what they wake.
+    BroadPhase,
+    /// Manifolds.
+    NarrowPhase,
+    /// Constraints.
+    Prepare,
+    /// Sub-steps and restitution.
+    Solve,
+    /// Contact events, poses, sweeps of fast bodies.
+    Finalise,
+    /// Islands that fall asleep.
+    Sleep,
+    /// Events and counters.
+    Report,
+}
+
 /// What the last tick did.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct StepStats {
+    /// Bodies that were simulated: those awake, and kinematic ones.
+    pub bodies: u32,
+    /// Joints that were solved.
+    pub joints: u32,
     /// Pairs of shapes whose fat boxes overlap.
     pub pairs: u32,
     /// Pairs with contact points.

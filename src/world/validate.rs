@@ -10,6 +10,7 @@ use super::World;
 use super::change::{fat_box, mass_of, reach_max};
 use super::state::State;
 use crate::body::{Body, BodyId, BodyKind, Handle, SHAPES_PER_BODY_MAX, SPEED_MAX, WORLD_EXTENT_MAX};
+use crate::collision::Contact;
 use crate::math::{Fx, Vec2};
 
 /// A broken invariant.
@@ -37,7 +38,13 @@ impl World {
     /// # Errors
     /// The first [`Violation`]. A world that was changed only through its methods has none.
     pub fn validate(&self) -> Result<(), Violation> {
-        let state = &self.state;
+        self.state.validate()
+    }
+}
+
+impl State {
+    pub(super) fn validate(&self) -> Result<(), Violation> {
+        let state = self;
         state.config.validate().map_err(|error| Violation { what: format!("{error}") })?;
         let State { bodies, shapes, joints, config, .. } = state;
         check(bodies.is_consistent(), || "the free list of bodies".into())?;
@@ -50,8 +57,14 @@ impl World {
         for (id, body) in bodies.iter() {
             check_body(state, id, body)?;
         }
+        check_islands(state)?;
         check_joints(state)?;
-        check_contacts(state)
+        check_contacts(state, &state.contacts)?;
+        check_contacts(state, &state.resting)?;
+        let resting = |contact: &Contact| {
+            state.resting.binary_search_by_key(&contact.shapes, |other| other.shapes).is_ok()
+        };
+        check(!state.contacts.iter().any(resting), || "a contact that rests and does not".into())
     }
 }
 
@@ -71,17 +84,13 @@ fn check_body(state: &State, id: BodyId, body: &Body) -> Result<(), Violation> {
     check(body.kind != BodyKind::Fixed || at_rest, || at("fixed and moving"))?;
     let free = body.force == Vec2::ZERO && body.torque == Fx::ZERO;
     check(body.is_dynamic() || free, || at("a force on a body that is not dynamic"))?;
-    let zero = Vec2::new(Fx::ZERO, Fx::ZERO);
-    let rates = crate::body::BodyDef {
-        linear_damping: body.linear_damping,
-        angular_damping: body.angular_damping,
-        gravity_scale: body.gravity_scale,
-        position: zero,
-        ..crate::body::BodyDef::fixed()
-    };
-    rates.validate().map_err(|error| Violation { what: at(&format!("{error}")) })?;
+    body.settings.validate().map_err(|error| Violation { what: at(&format!("{error}")) })?;
+    check(body.rest_ticks <= state.config.ticks_to_sleep(), || at("too sleepy to be awake"))?;
+    check(body.target.is_none() || body.kind == BodyKind::Kinematic, || {
+        at("a target without being kinematic")
+    })?;
     let shapes = body.shapes.iter().map(|shape| &state.shapes.at(shape.slot()).def);
-    let mass = mass_of(body.kind, body.mass_source, shapes)
+    let mass = mass_of(body.kind, body.mass_source, &body.settings, shapes)
         .map_err(|error| Violation { what: at(&format!("{error}")) })?;
     check(mass == body.mass, || at("mass does not follow from its shapes"))
 }
@@ -111,6 +120,29 @@ fn check_shapes(state: &State) -> Result<(), Violation> {
     Ok(())
 }
 
+/// Every sleeping body is at rest and on the list of its island, and nobody else is.
+fn check_islands(state: &State) -> Result<(), Violation> {
+    check(state.islands.is_consistent(), || "the free list of islands".into())?;
+    let mut listed = 0;
+    for (id, island) in state.islands.iter() {
+        check(!island.bodies.is_empty(), || format!("island {id}: nobody there"))?;
+        check(island.bodies.is_sorted_by(|a, b| a < b), || format!("island {id}: out of order"))?;
+        for &slot in &island.bodies {
+            let own = state.bodies.get_slot(slot).is_some_and(|body| body.island == Some(id));
+            check(own, || format!("island {id}: body slot {slot} is not its own"))?;
+        }
+        listed += island.bodies.len();
+    }
+    let sleeping: Vec<_> = state.bodies.iter().filter(|(_, body)| body.is_asleep()).collect();
+    check(sleeping.len() == listed, || "a body sleeps in an island that does not know it".into())?;
+    for (id, body) in sleeping {
+        let able = body.is_dynamic() && body.enabled && state.config.sleeping;
+        let still = !body.is_moving() && body.force == Vec2::ZERO && body.torque == Fx::ZERO;
+        check(able && still && body.rest_ticks == 0, || format!("body {id}: asleep and not at rest"))?;
+    }
+    Ok(())
+}
+
 fn check_joints(state: &State) -> Result<(), Violation> {
     for (id, joint) in state.joints.iter() {
         joint.def.validate().map_err(|error| Violation { what: format!("joint {id}: {error}") })?;
@@ -118,6 +150,10 @@ fn check_joints(state: &State) -> Result<(), Violation> {
         let dynamic = |body: BodyId| state.bodies.get(body).map(Body::is_dynamic);
         let held = matches!((dynamic(a), dynamic(b)), (Some(a), Some(b)) if a || b);
         check(held, || format!("joint {id}: its bodies"))?;
+        let (body_a, body_b) = (state.bodies.at(a.slot()), state.bodies.at(b.slot()));
+        let both = body_a.is_dynamic() && body_b.is_dynamic() && body_a.enabled && body_b.enabled;
+        let together = !joint.is_solved() || !both || body_a.is_asleep() == body_b.is_asleep();
+        check(together, || format!("joint {id}: one of its bodies sleeps"))?;
         let limit = crate::solver::IMPULSE_MAX;
         let bounded = [joint.lambda.x, joint.lambda.y].iter().all(|p| (-limit..=limit).contains(p));
         check(bounded, || format!("joint {id}: its impulse"))?;
@@ -125,10 +161,10 @@ fn check_joints(state: &State) -> Result<(), Violation> {
     Ok(())
 }
 
-fn check_contacts(state: &State) -> Result<(), Violation> {
-    let pairs: Vec<_> = state.contacts.iter().map(|contact| contact.shapes).collect();
+fn check_contacts(state: &State, contacts: &[Contact]) -> Result<(), Violation> {
+    let pairs: Vec<_> = contacts.iter().map(|contact| contact.shapes).collect();
     check(pairs.is_sorted_by(|a, b| a < b), || "contacts are not sorted by pair".into())?;
-    for contact in &state.contacts {
+    for contact in contacts {
         let (a, b) = contact.shapes;
         let at = |what: &str| format!("contact of shapes {a} and {b}: {what}");
         check(a < b, || at("out of order"))?;
@@ -136,8 +172,11 @@ fn check_contacts(state: &State) -> Result<(), Violation> {
             return Err(Violation { what: at("a shape is gone") });
         };
         check(shape_a.body != shape_b.body, || at("of the same body"))?;
-        let dynamic = |body: BodyId| state.bodies.get(body).is_some_and(Body::is_dynamic);
-        check(dynamic(shape_a.body) || dynamic(shape_b.body), || at("of bodies that nothing moves"))?;
+        let (body_a, body_b) = state.bodies_of(contact.shapes);
+        check(body_a.enabled && body_b.enabled, || at("of a disabled body"))?;
+        let solid = state.sensor_of(contact.shapes).is_none();
+        check(!solid || body_a.is_dynamic() || body_b.is_dynamic(), || at("of bodies that nothing moves"))?;
+        check(solid || contact.count == 0, || at("a sensor that pushes"))?;
         check(contact.count <= 2, || at("more than 2 points"))?;
         let limit = crate::solver::IMPULSE_MAX;
         for point in contact.points() {

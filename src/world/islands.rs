@@ -1,0 +1,305 @@
+//! Sleeping: bodies that rest, and everything they are in contact with or joined to, stop together and cost nothing
+//! until something wakes them.
+//!
+//! A body is sleepy once it has been slower than its `sleep_speed` for half a second. An island is what contacts and
+//! joints between dynamic bodies connect; it falls asleep when all its bodies are sleepy. It wakes as a whole:
+//! - when an active body comes into contact with one of its bodies,
+//! - when a force, an impulse, a velocity, another place or another property is given to one of its bodies,
+//! - when a joint is added to or removed from one of its bodies,
+//! - when a body or a shape that touches or overlaps its boxes is moved by hand, changed or removed,
+//! - when gravity changes.
+//!
+//! Bodies that touch a kinematic body which moves do not grow sleepy.
+
+use alloc::vec::Vec;
+use core::ops::ControlFlow;
+
+use super::pairs;
+use super::scratch::Scratch;
+use super::state::{Island, State};
+use crate::body::{Body, BodyKind, Handle, IslandId};
+use crate::collision::Contact;
+use crate::math::{Speed, narrow};
+
+/// The bodies and joints that a tick has to do with, in slot order.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Roster {
+    /// Dynamic bodies that are awake, and kinematic ones.
+    pub(crate) bodies: Vec<u32>,
+    /// Joints of which a body is awake.
+    pub(crate) joints: Vec<u32>,
+    current: bool,
+}
+
+impl Roster {
+    /// Says that bodies or joints have come, gone, woken or fallen asleep.
+    pub(crate) fn invalidate(&mut self) {
+        self.current = false;
+    }
+
+    pub(crate) fn refresh(&mut self, state: &State) {
+        if core::mem::replace(&mut self.current, true) {
+            return;
+        }
+        self.bodies.clear();
+        self.bodies.extend(state.bodies.iter().filter(|(_, body)| works(body)).map(|(id, _)| id.slot()));
+        self.joints.clear();
+        self.joints.extend(state.joints.iter().filter_map(|(id, joint)| {
+            let (a, b) = joint.def().bodies();
+            let (a, b) = (state.bodies.at(a.slot()), state.bodies.at(b.slot()));
+            let held = a.enabled && b.enabled && joint.is_solved();
+            (held && (is_awake(a) || is_awake(b))).then_some(id.slot())
+        }));
+    }
+}
+
+/// Whether a body takes part in every tick.
+fn works(body: &Body) -> bool {
+    body.enabled && body.kind() != BodyKind::Fixed && !body.is_asleep()
+}
+
+/// Whether a body is dynamic and simulated.
+fn is_awake(body: &Body) -> bool {
+    body.is_dynamic() && body.enabled && !body.is_asleep()
+}
+
+/// Disjoint sets of body slots (R. Tarjan, "Efficiency of a Good But Not Linear Set Union Algorithm", 1975). Only
+/// which bodies end up together is used, and that does not depend on the order of unions.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct UnionFind {
+    parents: Vec<u32>,
+    /// For each root, whether a body of its set cannot sleep yet.
+    restless: Vec<bool>,
+}
+
+impl UnionFind {
+    /// Each body for itself.
+    fn reset(&mut self, slots: &[u32], slot_count: usize) {
+        self.parents.resize(slot_count, 0);
+        self.restless.resize(slot_count, false);
+        for &slot in slots {
+            self.parents[slot as usize] = slot;
+        }
+    }
+
+    fn root(&mut self, mut slot: u32) -> u32 {
+        while self.parents[slot as usize] != slot {
+            let grandparent = self.parents[self.parents[slot as usize] as usize];
+            self.parents[slot as usize] = grandparent;
+            slot = grandparent;
+        }
+        slot
+    }
+
+    /// The smallest slot of a set is its root.
+    fn unite(&mut self, a: u32, b: u32) {
+        let (a, b) = (self.root(a), self.root(b));
+        self.parents[a.max(b) as usize] = a.min(b);
+    }
+}
+
+/// Wakes an island. Its contacts are looked at again when the pairs are next updated.
+pub(super) fn wake(state: &mut State, scratch: &mut Scratch, island: IslandId) {
+    let Some(island) = state.islands.remove(island) else { return };
+    for slot in island.bodies {
+        let body = state.bodies.at_mut(slot);
+        body.island = None;
+        body.rest_ticks = 0;
+        scratch.changes.body(body);
+    }
+    scratch.changes.woken = true;
+    scratch.roster.invalidate();
+}
+
+/// Wakes what active bodies have come into contact with, and what that is in contact with in turn.
+pub(super) fn wake_touched(state: &mut State, scratch: &mut Scratch) {
+    while state.islands.len() > 0 {
+        let mut touched = core::mem::take(&mut scratch.fresh);
+        touched.clear();
+        touched.extend(state.contacts.iter().filter(|contact| has_sleeper(state, contact)));
+        let mut woken = false;
+        for contact in &touched {
+            // Another contact may have woken it already.
+            let (a, b) = state.bodies_of(contact.shapes);
+            let Some(island) = a.island.or(b.island) else { continue };
+            if super::contacts::touch(state, scratch, contact) {
+                wake(state, scratch, island);
+                woken = true;
+            }
+        }
+        scratch.fresh = touched;
+        if !woken {
+            break;
+        }
+        pairs::update(state, scratch);
+    }
+}
+
+fn has_sleeper(state: &State, contact: &Contact) -> bool {
+    let (a, b) = state.bodies_of(contact.shapes);
+    (a.is_asleep() || b.is_asleep()) && state.sensor_of(contact.shapes).is_none()
+}
+
+/// Counts for how long bodies have been at rest, and lets islands of sleepy bodies fall asleep.
+pub(super) fn fall_asleep(state: &mut State, scratch: &mut Scratch) {
+    if !state.config.sleeping {
+        return;
+    }
+    let limit = state.config.ticks_to_sleep();
+    keep_awake_on_moving_ground(state, scratch);
+    let mut any_sleepy = false;
+    for &slot in &scratch.roster.bodies {
+        let body = state.bodies.at_mut(slot);
+        if body.is_dynamic() {
+            body.rest_ticks = if is_slow(body) { body.rest_ticks.saturating_add(1).min(limit) } else { 0 };
+        }
+        any_sleepy |= body.rest_ticks == limit;
+    }
+    if any_sleepy {
+        connect(state, scratch);
+        put_to_sleep(state, scratch, |body| body.rest_ticks == limit);
+    }
+}
+
+/// Puts a body to sleep, and all that it is in contact with or joined to.
+pub(super) fn force_sleep(state: &mut State, scratch: &mut Scratch, slot: u32) {
+    scratch.roster.refresh(state);
+    connect(state, scratch);
+    let root = scratch.union.root(slot);
+    for &other in &scratch.roster.bodies {
+        // Not a count that a body reaches by itself: it marks those that are meant.
+        if scratch.union.root(other) == root {
+            state.bodies.at_mut(other).rest_ticks = u32::MAX;
+        }
+    }
+    put_to_sleep(state, scratch, |body| body.rest_ticks == u32::MAX);
+}
+
+fn keep_awake_on_moving_ground(state: &mut State, scratch: &Scratch) {
+    let State { bodies, .. } = state;
+    for pair in &scratch.touching {
+        for (ground, other) in [pair.bodies, (pair.bodies.1, pair.bodies.0)] {
+            if bodies.at(ground).kind() == BodyKind::Kinematic && bodies.at(ground).is_moving() {
+                bodies.at_mut(other).rest_ticks = 0;
+            }
+        }
+    }
+}
+
+fn is_slow(body: &Body) -> bool {
+    let limit: Speed = narrow(body.settings.sleep_speed);
+    let square = |speed: Speed| i64::from(speed.to_bits()) * i64::from(speed.to_bits());
+    let linear = square(body.velocity.x) + square(body.velocity.y);
+    // Twice the speed at the radius of gyration is about that of the outline. Speeds are within ±512 m/s, so the
+    // squares have at most 62 bits.
+    let angular = square(body.spin).saturating_mul(4);
+    body.settings.may_sleep && linear.max(angular) < square(limit)
+}
+
+/// Unites the bodies of every contact and joint.
+fn connect(state: &State, scratch: &mut Scratch) {
+    let Scratch { roster, union, .. } = scratch;
+    union.reset(&roster.bodies, state.bodies.slot_count());
+    let mut unite = |a: u32, b: u32| {
+        if is_awake(state.bodies.at(a)) && is_awake(state.bodies.at(b)) {
+            union.unite(a, b);
+        }
+    };
+    for contact in state.contacts.iter().filter(|contact| contact.count > 0) {
+        let (a, b) = contact.shapes;
+        unite(state.shapes.at(a).body().slot(), state.shapes.at(b).body().slot());
+    }
+    for &joint in &roster.joints {
+        let (a, b) = state.joints.at(joint).def().bodies();
+        unite(a.slot(), b.slot());
+    }
+}
+
+/// Makes an island of every set of bodies that are all sleepy.
+fn put_to_sleep(state: &mut State, scratch: &mut Scratch, sleepy: impl Fn(&Body) -> bool) {
+    let Scratch { roster, union, .. } = scratch;
+    for &slot in &roster.bodies {
+        union.restless[slot as usize] = false;
+    }
+    for &slot in &roster.bodies {
+        let root = union.root(slot);
+        union.restless[root as usize] |= !sleepy(state.bodies.at(slot));
+    }
+    let mut asleep = false;
+    for &slot in &roster.bodies {
+        let root = union.root(slot);
+        if union.restless[root as usize] {
+            continue;
+        }
+        // Slots are in order and the root is the smallest: its island is there before the others come.
+        let island = match state.bodies.at(root).island {
+            Some(island) => island,
+            None => state.islands.insert(Island { bodies: Vec::new() }),
+        };
+        state.islands.at_mut(island.slot()).bodies.push(slot);
+        let body = state.bodies.at_mut(slot);
+        body.island = Some(island);
+        body.rest_ticks = 0;
+        body.stop();
+        asleep = true;
+    }
+    if asleep {
+        scratch.roster.invalidate();
+        rest_contacts(state, scratch);
+    }
+}
+
+/// Wakes the island of a body, and lets the body itself begin to rest anew.
+pub(super) fn wake_body(state: &mut State, scratch: &mut Scratch, slot: u32) {
+    state.bodies.at_mut(slot).rest_ticks = 0;
+    if let Some(island) = state.bodies.at(slot).island {
+        wake(state, scratch, island);
+    }
+}
+
+/// Wakes a body and everything whose boxes overlap its own: it is about to change, or has just changed.
+pub(super) fn disturb(state: &mut State, scratch: &mut Scratch, slot: u32) {
+    wake_body(state, scratch, slot);
+    if state.islands.len() == 0 {
+        return;
+    }
+    let mut neighbours = Vec::new();
+    for id in state.bodies.at(slot).shapes() {
+        scratch.broad_phase.each_overlap(state.shapes.at(id.slot()).fat, |other| {
+            let body = state.shapes.at(other).body().slot();
+            if state.bodies.at(body).is_asleep() {
+                neighbours.push(body);
+            }
+            ControlFlow::Continue(())
+        });
+    }
+    // The broad phase finds them in any order.
+    neighbours.sort_unstable();
+    for body in neighbours {
+        wake_body(state, scratch, body);
+    }
+}
+
+/// Sets the contacts aside of which no body is active any more, with their manifolds.
+fn rest_contacts(state: &mut State, scratch: &mut Scratch) {
+    let Scratch { manifolds, hints, fresh, merged, .. } = scratch;
+    let mut contacts = core::mem::take(&mut state.contacts);
+    fresh.clear();
+    let mut kept = 0;
+    for index in 0..contacts.len() {
+        let (a, b) = state.bodies_of(contacts[index].shapes);
+        if a.is_active() || b.is_active() {
+            contacts.swap(kept, index);
+            manifolds.swap(kept, index);
+            hints.swap(kept, index);
+            kept += 1;
+        } else {
+            fresh.push(contacts[index]);
+        }
+    }
+    contacts.truncate(kept);
+    manifolds.truncate(kept);
+    hints.truncate(kept);
+    state.contacts = contacts;
+    pairs::merge(&mut state.resting, fresh, merged);
+}
