@@ -1,67 +1,215 @@
-//! The broad phase: which fat boxes overlap. The pairs are a function of the boxes alone, so that every
-//! implementation returns the same sorted list, and the structure behind it is a cache.
+//! The broad phase: which fat boxes overlap. What is found is a function of the boxes alone, so that every
+//! implementation returns the same pairs, sorted, and the structure behind it is a cache.
 
 use alloc::vec::Vec;
+use core::ops::ControlFlow;
 
+use super::box_list::BoxList;
+use super::search::{Along, Near, Overlap, Search};
 use super::sweep_and_prune::SweepAndPrune;
-use crate::math::Aabb;
+use super::tree::Tree;
+use crate::math::{Aabb, Fx, Unit, Vec2};
+
+#[cfg(test)]
+mod tests;
 
 /// A pair of shape slots, the smaller one first.
 pub(crate) type Pair = (u32, u32);
 
-/// A shape slot and its fat box.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Proxy {
-    pub(crate) slot: u32,
-    pub(crate) fat: Aabb,
-}
-
-/// How overlapping pairs are found. The choice changes how fast, never which.
+/// How boxes are found: overlapping pairs in a tick, and whatever a query may hit. The choice changes how fast,
+/// never which.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum BroadPhaseKind {
-    /// Incremental sweep and prune: fast while boxes move little.
+    /// A balanced tree of boxes: cost grows with what moves, and queries are fast.
     #[default]
+    Tree,
+    /// Incremental sweep and prune: fast while most boxes move, and little. Queries look at every box.
     SweepAndPrune,
     /// Every box against every other: the oracle of the rest.
     BruteForce,
 }
 
-/// The broad phase in use.
+/// Whose pairs are wanted.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Moved<'a> {
+    /// Those of every box.
+    All,
+    /// Those with an end in one of these slots, which may repeat or be vacant.
+    Slots(&'a [u32]),
+}
+
+/// The boxes, in the structure of the chosen kind.
 #[derive(Clone, Debug)]
-pub(crate) enum BroadPhase {
+pub(crate) struct BroadPhase {
+    structure: Structure,
+    moved: MovedSet,
+}
+
+#[derive(Clone, Debug)]
+enum Structure {
+    Tree(Tree),
     SweepAndPrune(SweepAndPrune),
-    BruteForce,
+    BruteForce(BoxList),
 }
 
 impl BroadPhase {
     pub(crate) fn new(kind: BroadPhaseKind) -> Self {
-        match kind {
-            BroadPhaseKind::SweepAndPrune => BroadPhase::SweepAndPrune(SweepAndPrune::default()),
-            BroadPhaseKind::BruteForce => BroadPhase::BruteForce,
+        let structure = match kind {
+            BroadPhaseKind::Tree => Structure::Tree(Tree::default()),
+            BroadPhaseKind::SweepAndPrune => Structure::SweepAndPrune(SweepAndPrune::default()),
+            BroadPhaseKind::BruteForce => Structure::BruteForce(BoxList::default()),
+        };
+        BroadPhase { structure, moved: MovedSet::default() }
+    }
+
+    pub(crate) fn kind(&self) -> BroadPhaseKind {
+        match self.structure {
+            Structure::Tree(_) => BroadPhaseKind::Tree,
+            Structure::SweepAndPrune(_) => BroadPhaseKind::SweepAndPrune,
+            Structure::BruteForce(_) => BroadPhaseKind::BruteForce,
         }
     }
 
-    /// All pairs of overlapping boxes that `accept` wants, sorted; of more than `limit`, the smallest. Says whether
-    /// any were left out. `proxies` are in slot order.
+    /// How many boxes there are.
+    pub(crate) fn len(&self) -> usize {
+        match &self.structure {
+            Structure::Tree(tree) => tree.len(),
+            Structure::SweepAndPrune(sweep) => sweep.boxes().len(),
+            Structure::BruteForce(boxes) => boxes.len(),
+        }
+    }
+
+    /// Inserts the box of a slot, or moves it there.
+    pub(crate) fn set(&mut self, slot: u32, fat: Aabb) {
+        match &mut self.structure {
+            Structure::Tree(tree) => tree.set(slot, fat),
+            Structure::SweepAndPrune(sweep) => sweep.set(slot, fat),
+            Structure::BruteForce(boxes) => boxes.set(slot, fat),
+        }
+    }
+
+    /// Removes the box of a slot, if there is one.
+    pub(crate) fn remove(&mut self, slot: u32) {
+        match &mut self.structure {
+            Structure::Tree(tree) => tree.remove(slot),
+            Structure::SweepAndPrune(sweep) => sweep.remove(slot),
+            Structure::BruteForce(boxes) => boxes.remove(slot),
+        }
+    }
+
+    /// Replaces all boxes: cheaper than setting each. Of a slot that comes twice, the last box stays.
+    pub(crate) fn refill(&mut self, boxes: impl IntoIterator<Item = (u32, Aabb)>) {
+        match &mut self.structure {
+            Structure::Tree(tree) => tree.refill(boxes),
+            _ => {
+                *self = BroadPhase::new(self.kind());
+                boxes.into_iter().for_each(|(slot, fat)| self.set(slot, fat));
+            }
+        }
+    }
+
+    /// All pairs of overlapping boxes with an end that has moved that `accept` wants, sorted; of more than `limit`,
+    /// the smallest. Says whether any were left out.
     pub(crate) fn pairs(
         &mut self,
-        proxies: &[Proxy],
+        moved: Moved<'_>,
         accept: impl Fn(Pair) -> bool,
         limit: usize,
         pairs: &mut Vec<Pair>,
     ) -> bool {
         pairs.clear();
-        let mut found = SmallestPairs { pairs, limit, overflowed: false };
-        let accepted = |pair: Pair| {
+        let mut smallest = SmallestPairs { pairs, limit, overflowed: false };
+        let mut found = |pair: Pair| {
             if accept(pair) {
-                found.push(pair);
+                smallest.push(pair);
             }
         };
-        match self {
-            BroadPhase::SweepAndPrune(sweep) => sweep.each_pair(proxies, accepted),
-            BroadPhase::BruteForce => each_pair(proxies, accepted),
+        let BroadPhase { structure, moved: set } = self;
+        match moved {
+            Moved::All => match structure {
+                Structure::Tree(tree) => tree.each_pair(found),
+                Structure::SweepAndPrune(sweep) => sweep.each_pair(found),
+                Structure::BruteForce(boxes) => boxes.each_pair(found),
+            },
+            Moved::Slots(slots) => {
+                set.replace(slots);
+                let found_moved = |(a, b): Pair| {
+                    if set.has(a) || set.has(b) {
+                        found((a, b));
+                    }
+                };
+                match structure {
+                    Structure::Tree(tree) => set.slots.iter().for_each(|&a| {
+                        // A pair of two that have moved is found from both ends.
+                        tree.each_overlap_of(a, |b| {
+                            if b > a || !set.has(b) {
+                                found((a.min(b), a.max(b)));
+                            }
+                        });
+                    }),
+                    Structure::SweepAndPrune(sweep) => sweep.each_pair(found_moved),
+                    Structure::BruteForce(boxes) => boxes.each_pair(found_moved),
+                }
+            }
         }
-        found.finish()
+        smallest.finish()
+    }
+
+    /// Calls `visit` with every slot whose box overlaps the area, in no particular order, until it breaks.
+    #[cfg_attr(not(test), expect(dead_code, reason = "for queries"))]
+    pub(crate) fn each_overlap(&self, area: Aabb, visit: impl FnMut(u32) -> ControlFlow<()>) {
+        self.search(Overlap { area, visit });
+    }
+
+    /// Calls `visit` with every slot whose box the area touches when it moves along the translation, nearer ones
+    /// rather earlier, and perhaps with some that it only just misses. It returns the largest fraction of the
+    /// translation that is still of interest; 0 ends the search.
+    #[cfg_attr(not(test), expect(dead_code, reason = "for queries"))]
+    pub(crate) fn each_along(&self, area: Aabb, translation: Vec2<Fx>, visit: impl FnMut(u32) -> Unit) {
+        self.search(Along::new(area, translation, visit));
+    }
+
+    /// Calls `visit` with every slot whose box is within the radius of the point, nearer ones rather earlier. It
+    /// returns the radius that is still of interest; a negative one ends the search.
+    #[cfg_attr(not(test), expect(dead_code, reason = "for queries"))]
+    pub(crate) fn each_near(&self, point: Vec2<Fx>, radius: Fx, visit: impl FnMut(u32) -> Fx) {
+        self.search(Near { point, radius, visit });
+    }
+
+    fn search(&self, mut search: impl Search) {
+        let _ended_early = match &self.structure {
+            Structure::Tree(tree) => tree.search(&mut search),
+            Structure::SweepAndPrune(sweep) => sweep.boxes().search(&mut search),
+            Structure::BruteForce(boxes) => boxes.search(&mut search),
+        };
+    }
+}
+
+/// Slots as a list without duplicates and as marks.
+#[derive(Clone, Debug, Default)]
+struct MovedSet {
+    slots: Vec<u32>,
+    marks: Vec<bool>,
+}
+
+impl MovedSet {
+    fn replace(&mut self, slots: &[u32]) {
+        for &slot in &self.slots {
+            self.marks[slot as usize] = false;
+        }
+        self.slots.clear();
+        self.slots.extend(slots);
+        self.slots.sort_unstable();
+        self.slots.dedup();
+        let end = self.slots.last().map_or(0, |&last| last as usize + 1);
+        self.marks.resize(end.max(self.marks.len()), false);
+        for &slot in &self.slots {
+            self.marks[slot as usize] = true;
+        }
+    }
+
+    fn has(&self, slot: u32) -> bool {
+        self.marks.get(slot as usize).is_some_and(|&mark| mark)
     }
 }
 
@@ -90,60 +238,5 @@ impl SmallestPairs<'_> {
     fn finish(mut self) -> bool {
         self.trim();
         self.overflowed
-    }
-}
-
-/// Brute force.
-fn each_pair(proxies: &[Proxy], mut found: impl FnMut(Pair)) {
-    for (i, a) in proxies.iter().enumerate() {
-        for b in &proxies[i + 1..] {
-            if a.fat.overlaps(b.fat) {
-                found((a.slot, b.slot));
-            }
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::fx;
-    use crate::math::{Rng, Vec2};
-
-    /// Boxes come, go and move; the sweep keeps its order from call to call, brute force has none to keep.
-    #[test]
-    fn both_find_the_same_pairs_while_boxes_move() {
-        let mut rng = Rng::new(3);
-        let mut sweep = BroadPhase::new(BroadPhaseKind::SweepAndPrune);
-        let mut oracle = BroadPhase::new(BroadPhaseKind::BruteForce);
-        let mut boxes: Vec<Option<Aabb>> = alloc::vec![None; 120];
-        let (mut found, mut expected, mut total) = (Vec::new(), Vec::new(), 0);
-        for round in 0..300 {
-            for slot in &mut boxes {
-                match (rng.below(20), &slot) {
-                    (0, _) => *slot = None,
-                    (1, None) => {
-                        let lower = Vec2::new(rng.range(fx!(-9), fx!(9)), rng.range(fx!(-30), fx!(30)));
-                        let size = Vec2::new(rng.range(fx!(0), fx!(4)), rng.range(fx!(0), fx!(4)));
-                        *slot = Some(Aabb::new(lower, lower + size));
-                    }
-                    (2..8, Some(aabb)) => {
-                        let step = Vec2::new(rng.range(fx!(-1), fx!(1)), rng.range(fx!(-1), fx!(1)));
-                        *slot = Some(aabb.translated(step));
-                    }
-                    _ => {}
-                }
-            }
-            let proxies: Vec<Proxy> =
-                boxes.iter().zip(0..).filter_map(|(fat, slot)| fat.map(|fat| Proxy { slot, fat })).collect();
-            let accept = |(a, b): Pair| (a + b) % 7 != 0;
-            let limit = if round % 3 == 0 { 10 } else { 1000 };
-            let overflowed = sweep.pairs(&proxies, accept, limit, &mut found);
-            assert_eq!(oracle.pairs(&proxies, accept, limit, &mut expected), overflowed);
-            assert_eq!(found, expected);
-            assert!(found.len() <= limit && found.is_sorted());
-            total += found.len();
-        }
-        assert!(total > 1000, "only {total} pairs");
     }
 }

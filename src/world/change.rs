@@ -268,6 +268,7 @@ impl World {
         self.state.contacts.retain(|contact| !ends(contact.shapes));
         self.scratch.forget_contacts();
         for &id in ids {
+            self.scratch.broad_phase.remove(id.slot());
             self.state.shapes.remove(id);
         }
     }

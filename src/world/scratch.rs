@@ -7,7 +7,7 @@ use super::state::State;
 use super::stats::StepStats;
 use crate::body::{Body, Handle};
 use crate::collision::{
-    AxisHint, BroadPhase, BroadPhaseKind, Contact, Manifold, Pair, PosedShape, Proxy, SatCounters,
+    AxisHint, BroadPhase, BroadPhaseKind, Contact, Manifold, Pair, PosedShape, SatCounters,
 };
 use crate::solver::{Solver, TouchingPair};
 
@@ -19,7 +19,6 @@ pub(crate) struct Scratch {
     pub(crate) poses: Poses,
     /// Whether the pairs may have changed for another reason than a fat box.
     pub(crate) pairs_changed: bool,
-    pub(crate) proxies: Vec<Proxy>,
     pub(crate) pairs: Vec<Pair>,
     /// Pairs of body slots whose joint keeps them from colliding, sorted.
     pub(crate) joined: Vec<Pair>,
@@ -46,7 +45,6 @@ impl Scratch {
             broad_phase: BroadPhase::new(kind),
             poses: Poses::default(),
             pairs_changed: true,
-            proxies: Vec::new(),
             pairs: Vec::new(),
             joined: Vec::new(),
             merged: Vec::new(),

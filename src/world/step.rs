@@ -6,7 +6,7 @@ use super::scratch::Scratch;
 use super::state::State;
 use super::stats::StepStats;
 use crate::body::{BodyKind, Handle, WORLD_EXTENT_MAX};
-use crate::collision::{Pair, Proxy, collide, match_pairs};
+use crate::collision::{Moved, Pair, collide, match_pairs};
 use crate::math::{Fx, Vec2, widen};
 use crate::solver::{SolverBody, Surface, TouchingPair, Tuning, turned};
 
@@ -68,10 +68,13 @@ fn refit_boxes(state: &mut State, scratch: &Scratch) -> bool {
 
 /// Broad phase: brings the contacts in line with the pairs of fat boxes.
 fn update_pairs(state: &mut State, scratch: &mut Scratch) {
-    let Scratch { broad_phase, proxies, pairs, joined, merged, ended, sources, hints, old_hints, .. } =
-        scratch;
-    proxies.clear();
-    proxies.extend(state.shapes.iter().map(|(id, shape)| Proxy { slot: id.slot(), fat: shape.fat }));
+    let Scratch { broad_phase, pairs, joined, merged, ended, sources, hints, old_hints, .. } = scratch;
+    if broad_phase.len() == 0 {
+        broad_phase.refill(state.shapes.iter().map(|(id, shape)| (id.slot(), shape.fat)));
+    }
+    for (id, shape) in state.shapes.iter() {
+        broad_phase.set(id.slot(), shape.fat);
+    }
     joined.clear();
     let keeping_apart = state.joints.iter().filter(|(_, joint)| !joint.def().collide_connected());
     joined.extend(keeping_apart.map(|(_, joint)| {
@@ -80,7 +83,8 @@ fn update_pairs(state: &mut State, scratch: &mut Scratch) {
     }));
     joined.sort_unstable();
     let limit = state.config.pair_limit as usize;
-    state.pairs_left_out = broad_phase.pairs(proxies, |pair| may_collide(state, joined, pair), limit, pairs);
+    state.pairs_left_out =
+        broad_phase.pairs(Moved::All, |pair| may_collide(state, joined, pair), limit, pairs);
     match_pairs(&mut state.contacts, pairs, merged, sources, ended);
 
     core::mem::swap(hints, old_hints);
