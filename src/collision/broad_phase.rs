@@ -1,57 +1,115 @@
-//! stub
-use crate::math::Aabb;
+//! The broad phase: which fat boxes overlap. What is found is a function of the boxes alone, so that every
+//! implementation returns the same pairs, sorted, and the structure behind it is a cache.
+
 use alloc::vec::Vec;
 use core::ops::ControlFlow;
+
+use super::box_list::BoxList;
+use super::search::{Along, Near, Overlap, Search};
+use super::sweep_and_prune::SweepAndPrune;
+use super::tree::Tree;
+use crate::math::{Aabb, Fx, Unit, Vec2};
+
+#[cfg(test)]
+mod tests;
+
 /// A pair of shape slots, the smaller one first.
 pub(crate) type Pair = (u32, u32);
-/// kinds
+
+/// How boxes are found: overlapping pairs in a tick, and whatever a query may hit. The choice changes how fast,
+/// never which.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum BroadPhaseKind {
-    /// tree
+    /// A balanced tree of boxes: cost grows with what moves, and queries are fast.
     #[default]
     Tree,
-    /// sap
+    /// Incremental sweep and prune: fast while most boxes move, and little. Queries look at every box.
     SweepAndPrune,
-    /// brute
+    /// Every box against every other: the oracle of the rest.
     BruteForce,
 }
+
+/// Whose pairs are wanted.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Moved<'a> {
+    /// Those of every box.
     All,
+    /// Those with an end in one of these slots, which may repeat or be vacant.
     Slots(&'a [u32]),
 }
+
+/// The boxes, in the structure of the chosen kind.
 #[derive(Clone, Debug)]
 pub(crate) struct BroadPhase {
-    kind: BroadPhaseKind,
-    boxes: Vec<Option<Aabb>>,
+    structure: Structure,
+    moved: MovedSet,
 }
+
+#[derive(Clone, Debug)]
+enum Structure {
+    Tree(Tree),
+    SweepAndPrune(SweepAndPrune),
+    BruteForce(BoxList),
+}
+
 impl BroadPhase {
     pub(crate) fn new(kind: BroadPhaseKind) -> Self {
-        BroadPhase { kind, boxes: Vec::new() }
+        let structure = match kind {
+            BroadPhaseKind::Tree => Structure::Tree(Tree::default()),
+            BroadPhaseKind::SweepAndPrune => Structure::SweepAndPrune(SweepAndPrune::default()),
+            BroadPhaseKind::BruteForce => Structure::BruteForce(BoxList::default()),
+        };
+        BroadPhase { structure, moved: MovedSet::default() }
     }
+
     pub(crate) fn kind(&self) -> BroadPhaseKind {
-        self.kind
+        match self.structure {
+            Structure::Tree(_) => BroadPhaseKind::Tree,
+            Structure::SweepAndPrune(_) => BroadPhaseKind::SweepAndPrune,
+            Structure::BruteForce(_) => BroadPhaseKind::BruteForce,
+        }
     }
+
+    /// How many boxes there are.
+    pub(crate) fn len(&self) -> usize {
+        match &self.structure {
+            Structure::Tree(tree) => tree.len(),
+            Structure::SweepAndPrune(sweep) => sweep.boxes().len(),
+            Structure::BruteForce(boxes) => boxes.len(),
+        }
+    }
+
+    /// Inserts the box of a slot, or moves it there.
     pub(crate) fn set(&mut self, slot: u32, fat: Aabb) {
-        if self.boxes.len() <= slot as usize {
-            self.boxes.resize(slot as usize + 1, None);
+        match &mut self.structure {
+            Structure::Tree(tree) => tree.set(slot, fat),
+            Structure::SweepAndPrune(sweep) => sweep.set(slot, fat),
+            Structure::BruteForce(boxes) => boxes.set(slot, fat),
         }
-        self.boxes[slot as usize] = Some(fat);
     }
+
+    /// Removes the box of a slot, if there is one.
     pub(crate) fn remove(&mut self, slot: u32) {
-        if let Some(b) = self.boxes.get_mut(slot as usize) {
-            *b = None;
+        match &mut self.structure {
+            Structure::Tree(tree) => tree.remove(slot),
+            Structure::SweepAndPrune(sweep) => sweep.remove(slot),
+            Structure::BruteForce(boxes) => boxes.remove(slot),
         }
     }
-    pub(crate) fn each_overlap(&self, area: Aabb, mut visit: impl FnMut(u32) -> ControlFlow<()>) {
-        for (b, i) in self.boxes.iter().zip(0u32..) {
-            if let Some(b) = b {
-                if b.overlaps(area) && visit(i).is_break() {
-                    return;
-                }
+
+    /// Replaces all boxes: cheaper than setting each. Of a slot that comes twice, the last box stays.
+    pub(crate) fn refill(&mut self, boxes: impl IntoIterator<Item = (u32, Aabb)>) {
+        match &mut self.structure {
+            Structure::Tree(tree) => tree.refill(boxes),
+            _ => {
+                *self = BroadPhase::new(self.kind());
+                boxes.into_iter().for_each(|(slot, fat)| self.set(slot, fat));
             }
         }
     }
+
+    /// All pairs of overlapping boxes with an end that has moved that `accept` wants, sorted; of more than `limit`,
+    /// the smallest. Says whether any were left out.
     pub(crate) fn pairs(
         &mut self,
         moved: Moved<'_>,
@@ -60,29 +118,125 @@ impl BroadPhase {
         pairs: &mut Vec<Pair>,
     ) -> bool {
         pairs.clear();
-        let mut m = alloc::vec![matches!(moved, Moved::All); self.boxes.len()];
-        if let Moved::Slots(slots) = moved {
-            for &s in slots {
-                if let Some(x) = m.get_mut(s as usize) {
-                    *x = true;
-                }
+        let mut smallest = SmallestPairs { pairs, limit, overflowed: false };
+        let mut found = |pair: Pair| {
+            if accept(pair) {
+                smallest.push(pair);
             }
-        }
-        for i in 0..self.boxes.len() {
-            for j in i + 1..self.boxes.len() {
-                if !(m[i] || m[j]) {
-                    continue;
-                }
-                if let (Some(a), Some(b)) = (self.boxes[i], self.boxes[j]) {
-                    let p = (i as u32, j as u32);
-                    if a.overlaps(b) && accept(p) {
-                        pairs.push(p);
+        };
+        let BroadPhase { structure, moved: set } = self;
+        match moved {
+            Moved::All => match structure {
+                Structure::Tree(tree) => tree.each_pair(found),
+                Structure::SweepAndPrune(sweep) => sweep.each_pair(found),
+                Structure::BruteForce(boxes) => boxes.each_pair(found),
+            },
+            Moved::Slots(slots) => {
+                set.replace(slots);
+                let found_moved = |(a, b): Pair| {
+                    if set.has(a) || set.has(b) {
+                        found((a, b));
                     }
+                };
+                match structure {
+                    Structure::Tree(tree) => set.slots.iter().for_each(|&a| {
+                        // A pair of two that have moved is found from both ends.
+                        tree.each_overlap_of(a, |b| {
+                            if b > a || !set.has(b) {
+                                found((a.min(b), a.max(b)));
+                            }
+                        });
+                    }),
+                    Structure::SweepAndPrune(sweep) => sweep.each_pair(found_moved),
+                    Structure::BruteForce(boxes) => boxes.each_pair(found_moved),
                 }
             }
         }
-        let over = pairs.len() > limit;
-        pairs.truncate(limit);
-        over
+        smallest.finish()
+    }
+
+    /// Calls `visit` with every slot whose box overlaps the area, in no particular order, until it breaks.
+    #[cfg_attr(not(test), expect(dead_code, reason = "for queries"))]
+    pub(crate) fn each_overlap(&self, area: Aabb, visit: impl FnMut(u32) -> ControlFlow<()>) {
+        self.search(Overlap { area, visit });
+    }
+
+    /// Calls `visit` with every slot whose box the area touches when it moves along the translation, nearer ones
+    /// rather earlier, and perhaps with some that it only just misses. It returns the largest fraction of the
+    /// translation that is still of interest; 0 ends the search.
+    #[cfg_attr(not(test), expect(dead_code, reason = "for queries"))]
+    pub(crate) fn each_along(&self, area: Aabb, translation: Vec2<Fx>, visit: impl FnMut(u32) -> Unit) {
+        self.search(Along::new(area, translation, visit));
+    }
+
+    /// Calls `visit` with every slot whose box is within the radius of the point, nearer ones rather earlier. It
+    /// returns the radius that is still of interest; a negative one ends the search.
+    #[cfg_attr(not(test), expect(dead_code, reason = "for queries"))]
+    pub(crate) fn each_near(&self, point: Vec2<Fx>, radius: Fx, visit: impl FnMut(u32) -> Fx) {
+        self.search(Near { point, radius, visit });
+    }
+
+    fn search(&self, mut search: impl Search) {
+        let _ended_early = match &self.structure {
+            Structure::Tree(tree) => tree.search(&mut search),
+            Structure::SweepAndPrune(sweep) => sweep.boxes().search(&mut search),
+            Structure::BruteForce(boxes) => boxes.search(&mut search),
+        };
+    }
+}
+
+/// Slots as a list without duplicates and as marks.
+#[derive(Clone, Debug, Default)]
+struct MovedSet {
+    slots: Vec<u32>,
+    marks: Vec<bool>,
+}
+
+impl MovedSet {
+    fn replace(&mut self, slots: &[u32]) {
+        for &slot in &self.slots {
+            self.marks[slot as usize] = false;
+        }
+        self.slots.clear();
+        self.slots.extend(slots);
+        self.slots.sort_unstable();
+        self.slots.dedup();
+        let end = self.slots.last().map_or(0, |&last| last as usize + 1);
+        self.marks.resize(end.max(self.marks.len()), false);
+        for &slot in &self.slots {
+            self.marks[slot as usize] = true;
+        }
+    }
+
+    fn has(&self, slot: u32) -> bool {
+        self.marks.get(slot as usize).is_some_and(|&mark| mark)
+    }
+}
+
+/// Keeps the smallest pairs in bounded memory, in whatever order they are found.
+struct SmallestPairs<'a> {
+    pairs: &'a mut Vec<Pair>,
+    limit: usize,
+    overflowed: bool,
+}
+
+impl SmallestPairs<'_> {
+    fn push(&mut self, pair: Pair) {
+        self.pairs.push(pair);
+        // Twice the limit, so that the sort is paid for by as many pushes.
+        if self.pairs.len() >= self.limit.saturating_mul(2).max(64) {
+            self.trim();
+        }
+    }
+
+    fn trim(&mut self) {
+        self.pairs.sort_unstable();
+        self.overflowed |= self.pairs.len() > self.limit;
+        self.pairs.truncate(self.limit);
+    }
+
+    fn finish(mut self) -> bool {
+        self.trim();
+        self.overflowed
     }
 }

@@ -1,6 +1,7 @@
 //! Collision detection: broad phase, narrow phase and what contacts remember. It reads bodies and returns
 //! contacts; it never changes a body.
 
+mod box_list;
 mod broad_phase;
 mod circle_circle;
 mod circle_hull;
@@ -9,7 +10,10 @@ mod hull_hull;
 mod manifold;
 mod narrow_phase;
 mod pose;
+mod search;
 mod segment;
+mod sweep_and_prune;
+mod tree;
 
 pub use broad_phase::BroadPhaseKind;
 pub(crate) use broad_phase::{BroadPhase, Moved, Pair};

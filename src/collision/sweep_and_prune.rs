@@ -4,8 +4,9 @@
 
 use alloc::vec::Vec;
 
-use super::broad_phase::{Pair, Proxy};
-use crate::math::Fx;
+use super::box_list::BoxList;
+use super::broad_phase::Pair;
+use crate::math::{Aabb, Fx};
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Axis {
@@ -14,14 +15,17 @@ enum Axis {
     Y,
 }
 
-/// The order found in the last tick: a cache.
+/// The order found in the last sweep: a cache.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SweepAndPrune {
     axis: Axis,
-    /// Slots in the order of their boxes' lower ends.
+    boxes: BoxList,
+    /// Slots in the order of their boxes' lower ends, then newcomers.
     order: Vec<u32>,
-    /// Index into the proxies for each slot, `u32::MAX` for none.
-    index_of: Vec<u32>,
+    /// For each slot, whether it is in the order. A removed one stays there until the next sweep.
+    ordered: Vec<bool>,
+    /// How many slots have been appended since the last sweep.
+    newcomers: usize,
     /// The boxes in order, for the sweep.
     sorted: Vec<Interval>,
 }
@@ -36,56 +40,61 @@ struct Interval {
 }
 
 impl SweepAndPrune {
-    pub(crate) fn each_pair(&mut self, proxies: &[Proxy], found: impl FnMut(Pair)) {
-        self.choose_axis(proxies);
-        self.refresh_order(proxies);
+    pub(crate) fn boxes(&self) -> &BoxList {
+        &self.boxes
+    }
+
+    pub(crate) fn set(&mut self, slot: u32, fat: Aabb) {
+        self.boxes.set(slot, fat);
+        let index = slot as usize;
+        self.ordered.resize(self.ordered.len().max(index + 1), false);
+        if !core::mem::replace(&mut self.ordered[index], true) {
+            self.order.push(slot);
+            self.newcomers += 1;
+        }
+    }
+
+    pub(crate) fn remove(&mut self, slot: u32) {
+        self.boxes.remove(slot);
+    }
+
+    pub(crate) fn each_pair(&mut self, found: impl FnMut(Pair)) {
+        let axis = self.best_axis();
+        let turned = core::mem::replace(&mut self.axis, axis) != axis;
+        self.copy_boxes();
+        // The old order says nothing about the other axis, and many newcomers at once are in none: an insertion
+        // sort would be quadratic.
+        if turned || self.newcomers > 64 {
+            self.sorted.sort_unstable_by_key(Interval::key);
+        }
+        self.newcomers = 0;
         self.sort();
         self.sweep(found);
     }
 
-    /// Sweeps along the axis on which the boxes are spread out more.
-    fn choose_axis(&mut self, proxies: &[Proxy]) {
-        let mean = |value: fn(&Proxy) -> Fx| {
-            let sum: i128 = proxies.iter().map(|proxy| i128::from(value(proxy).to_bits())).sum();
-            sum / (proxies.len().max(1) as i128)
+    /// The axis on which the boxes are spread out more.
+    fn best_axis(&self) -> Axis {
+        let mean = |value: fn(Aabb) -> Fx| {
+            let sum: i128 = self.boxes.iter().map(|(_, fat)| i128::from(value(fat).to_bits())).sum();
+            sum / (self.boxes.len().max(1) as i128)
         };
-        let spread = |value: fn(&Proxy) -> Fx| {
+        let spread = |value: fn(Aabb) -> Fx| {
             let mean = mean(value);
-            let distance = |proxy: &Proxy| (i128::from(value(proxy).to_bits()) - mean).unsigned_abs();
-            proxies.iter().map(distance).sum::<u128>()
+            let distance = |(_, fat): (u32, Aabb)| (i128::from(value(fat).to_bits()) - mean).unsigned_abs();
+            self.boxes.iter().map(distance).sum::<u128>()
         };
-        let (x, y) = (spread(|proxy| proxy.fat.lower.x), spread(|proxy| proxy.fat.lower.y));
-        let axis = if y > x { Axis::Y } else { Axis::X };
-        if axis != self.axis {
-            // The old order says nothing about the other axis, and an insertion sort from it would be quadratic.
-            self.axis = axis;
-            self.order.clear();
-        }
+        let (x, y) = (spread(|fat| fat.lower.x), spread(|fat| fat.lower.y));
+        if y > x { Axis::Y } else { Axis::X }
     }
 
-    /// Drops slots that are gone, appends new ones, and copies the boxes in the order of the last tick.
-    fn refresh_order(&mut self, proxies: &[Proxy]) {
-        self.index_of.clear();
-        let slot_count = proxies.last().map_or(0, |last| last.slot as usize + 1);
-        self.index_of.resize(slot_count, u32::MAX);
-        for (proxy, index) in proxies.iter().zip(0u32..) {
-            self.index_of[proxy.slot as usize] = index;
-        }
+    /// Copies the boxes in the order of the last sweep, without those that are gone.
+    fn copy_boxes(&mut self) {
         self.sorted.clear();
         for &slot in &self.order {
-            if let Some(&index) = self.index_of.get(slot as usize) {
-                if index != u32::MAX {
-                    self.sorted.push(Interval::of(self.axis, &proxies[index as usize]));
-                    self.index_of[slot as usize] = u32::MAX;
-                }
+            match self.boxes.get(slot) {
+                Some(fat) => self.sorted.push(Interval::of(self.axis, slot, fat)),
+                None => self.ordered[slot as usize] = false,
             }
-        }
-        let kept = self.sorted.len();
-        let fresh = proxies.iter().filter(|proxy| self.index_of[proxy.slot as usize] != u32::MAX);
-        self.sorted.extend(fresh.map(|proxy| Interval::of(self.axis, proxy)));
-        // Many newcomers at once would make the insertion sort quadratic.
-        if self.sorted.len() - kept > 64 {
-            self.sorted.sort_unstable_by_key(Interval::key);
         }
     }
 
@@ -116,9 +125,8 @@ impl SweepAndPrune {
 }
 
 impl Interval {
-    fn of(axis: Axis, proxy: &Proxy) -> Self {
-        let (lower, upper) = (proxy.fat.lower, proxy.fat.upper);
-        let slot = proxy.slot;
+    fn of(axis: Axis, slot: u32, fat: Aabb) -> Self {
+        let Aabb { lower, upper } = fat;
         match axis {
             Axis::X => Interval {
                 lower: lower.x,

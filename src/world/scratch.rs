@@ -105,8 +105,10 @@ impl Scratch {
             stats: StepStats::default(),
         };
         for (_, body) in state.bodies.iter() {
-            scratch.place(state, body);
+            scratch.poses.pose_body(state, body);
         }
+        let enabled = state.shapes.iter().filter(|(_, shape)| state.bodies.at(shape.body().slot()).enabled);
+        scratch.broad_phase.refill(enabled.map(|(id, shape)| (id.slot(), shape.fat)));
         scratch
     }
 

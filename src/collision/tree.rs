@@ -1,0 +1,319 @@
+//! A dynamic tree of boxes. Every box is a leaf, and an inner node has the box around its two children, so that a
+//! search leaves out whatever is below a box that it does not reach.
+//!
+//! The cost of a tree is the sum of its perimeters, to which the number of visits by a random search is
+//! proportional (J. Goldsmith, J. Salmon, 1987). A new leaf descends greedily to where it adds the least, and on the way
+//! back up, a child changes places with its sibling's child if that makes the perimeters smaller, as in Box2D v3.
+//! Neither bounds the height: when boxes that somebody has thought out make it more than the logarithm warrants, the
+//! tree is built anew.
+
+use alloc::vec::Vec;
+use core::ops::ControlFlow;
+
+use super::broad_phase::Pair;
+use super::search::{Overlap, Search};
+use crate::math::Aabb;
+
+mod rebuild;
+#[cfg(test)]
+mod tests;
+
+/// No node.
+const NONE: u32 = u32::MAX;
+
+/// More than [`height_limit`] of any number of boxes: one node waits on each level of a search, and one more.
+const STACK_LEN: usize = 96;
+
+/// The boxes of slots: a cache.
+#[derive(Clone, Debug)]
+pub(crate) struct Tree {
+    nodes: Vec<Node>,
+    root: u32,
+    /// The first vacant node; its parent is the next one.
+    vacant: u32,
+    /// The leaf of each slot, or none.
+    leaves: Vec<u32>,
+    len: u32,
+    /// Pairs of nodes that are still to be compared.
+    stack: Vec<Pair>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Node {
+    aabb: Aabb,
+    parent: u32,
+    /// 0 for a leaf.
+    height: u32,
+    /// Of a leaf, its slot and nothing.
+    children: [u32; 2],
+}
+
+impl Default for Tree {
+    fn default() -> Self {
+        Tree { nodes: Vec::new(), root: NONE, vacant: NONE, leaves: Vec::new(), len: 0, stack: Vec::new() }
+    }
+}
+
+impl Tree {
+    pub(crate) fn len(&self) -> usize {
+        self.len as usize
+    }
+
+    /// Inserts or moves a box.
+    pub(crate) fn set(&mut self, slot: u32, fat: Aabb) {
+        match self.leaf_of(slot) {
+            Some(leaf) if self.at(leaf).aabb == fat => {}
+            Some(leaf) => {
+                self.unlink(leaf);
+                self.at_mut(leaf).aabb = fat;
+                self.link(leaf);
+            }
+            None => {
+                let leaf = self.allocate(Node::leaf(slot, fat));
+                self.leaves.resize(self.leaves.len().max(slot as usize + 1), NONE);
+                self.leaves[slot as usize] = leaf;
+                self.len += 1;
+                self.link(leaf);
+            }
+        }
+    }
+
+    pub(crate) fn remove(&mut self, slot: u32) {
+        if let Some(leaf) = self.leaf_of(slot) {
+            self.unlink(leaf);
+            self.free(leaf);
+            self.leaves[slot as usize] = NONE;
+            self.len -= 1;
+        }
+    }
+
+    /// Calls `found` with every pair of overlapping boxes once: the tree against itself.
+    pub(crate) fn each_pair(&mut self, mut found: impl FnMut(Pair)) {
+        let mut stack = core::mem::take(&mut self.stack);
+        stack.clear();
+        if self.root != NONE {
+            stack.push((self.root, self.root));
+        }
+        while let Some((a, b)) = stack.pop() {
+            let (node_a, node_b) = (self.at(a), self.at(b));
+            let ([a0, a1], [b0, b1]) = (node_a.children, node_b.children);
+            if a == b {
+                if !node_a.is_leaf() {
+                    stack.extend([(a0, a0), (a1, a1), (a0, a1)]);
+                }
+            } else if node_a.aabb.overlaps(node_b.aabb) {
+                match (node_a.is_leaf(), node_b.is_leaf()) {
+                    (true, true) => found((a0.min(b0), a0.max(b0))),
+                    (false, false) => stack.extend([(a0, b0), (a0, b1), (a1, b0), (a1, b1)]),
+                    (true, false) => stack.extend([(a, b0), (a, b1)]),
+                    (false, true) => stack.extend([(a0, b), (a1, b)]),
+                }
+            }
+        }
+        self.stack = stack;
+    }
+
+    /// Calls `found` with every slot whose box overlaps that of a slot, itself included.
+    pub(crate) fn each_overlap_of(&self, slot: u32, mut found: impl FnMut(u32)) {
+        if let Some(leaf) = self.leaf_of(slot) {
+            let area = self.at(leaf).aabb;
+            let visit = |slot| {
+                found(slot);
+                ControlFlow::Continue(())
+            };
+            let _never_breaks = self.search(&mut Overlap { area, visit });
+        }
+    }
+
+    pub(crate) fn search(&self, search: &mut impl Search) -> ControlFlow<()> {
+        let mut stack = [self.root; STACK_LEN];
+        let mut waiting = usize::from(self.root != NONE);
+        while waiting > 0 {
+            waiting -= 1;
+            let node = self.at(stack[waiting]);
+            if !search.reaches(node.aabb) {
+                continue;
+            }
+            let [a, b] = node.children;
+            if node.is_leaf() {
+                search.visit(a)?;
+            } else {
+                let a_first = search.prefers(self.at(a).aabb, self.at(b).aabb);
+                (stack[waiting], stack[waiting + 1]) = if a_first { (b, a) } else { (a, b) };
+                waiting += 2;
+            }
+        }
+        ControlFlow::Continue(())
+    }
+
+    /// Puts a leaf into the tree.
+    fn link(&mut self, leaf: u32) {
+        if self.root == NONE {
+            self.root = leaf;
+            return;
+        }
+        let sibling = self.best_sibling(self.at(leaf).aabb);
+        let grandparent = self.at(sibling).parent;
+        let parent = self.allocate(Node { children: [sibling, leaf], ..*self.at(sibling) });
+        self.replace_child(grandparent, sibling, parent);
+        self.at_mut(sibling).parent = parent;
+        self.at_mut(leaf).parent = parent;
+        self.repair(parent);
+        if self.at(self.root).height > height_limit(self.len) {
+            self.rebuild();
+        }
+    }
+
+    /// Takes a leaf out of the tree: its sibling moves up.
+    fn unlink(&mut self, leaf: u32) {
+        let parent = self.at(leaf).parent;
+        if parent == NONE {
+            self.root = NONE;
+            return;
+        }
+        let Node { children: [a, b], parent: grandparent, .. } = *self.at(parent);
+        let sibling = if a == leaf { b } else { a };
+        self.replace_child(grandparent, parent, sibling);
+        self.at_mut(sibling).parent = grandparent;
+        self.at_mut(leaf).parent = NONE;
+        self.free(parent);
+        self.repair(grandparent);
+    }
+
+    /// The node beside which a new leaf adds least to the perimeters: those of a new parent around both, and what
+    /// the ancestors grow by. Descends to the child with the smaller bound while that promises better.
+    fn best_sibling(&self, fat: Aabb) -> u32 {
+        let own = perimeter(fat);
+        let mut at = self.root;
+        let mut grown = 0_u64;
+        let mut around = perimeter(self.at(at).aabb.union(fat));
+        let (mut best, mut best_cost) = (at, around);
+        while !self.at(at).is_leaf() {
+            grown = grown.saturating_add(around - perimeter(self.at(at).aabb));
+            let options = self.at(at).children.map(|child| {
+                let node = self.at(child);
+                let around = perimeter(node.aabb.union(fat));
+                let cost = grown.saturating_add(around);
+                // Deeper down, at least the leaf itself and what the child grows by are added.
+                let bound = cost.saturating_sub(perimeter(node.aabb).saturating_sub(own));
+                (if node.is_leaf() { cost } else { bound }, node.height, child, around)
+            });
+            // Of equals the lower one, so that boxes on top of each other make a bush and not a chain.
+            let (bound, _, child, child_around) = options[0].min(options[1]);
+            if bound > best_cost {
+                break;
+            }
+            (at, around) = (child, child_around);
+            let cost = grown.saturating_add(around);
+            if cost <= best_cost {
+                (best, best_cost) = (at, cost);
+            }
+        }
+        best
+    }
+
+    /// Brings boxes and heights up to date from a node to the root.
+    fn repair(&mut self, mut at: u32) {
+        while at != NONE {
+            self.refit(at);
+            self.rotate(at);
+            at = self.at(at).parent;
+        }
+    }
+
+    /// Box and height of an inner node from its children.
+    fn refit(&mut self, at: u32) {
+        let [a, b] = self.at(at).children.map(|child| *self.at(child));
+        let node = self.at_mut(at);
+        node.aabb = a.aabb.union(b.aabb);
+        node.height = 1 + a.height.max(b.height);
+    }
+
+    /// Exchanges a child with a child of its sibling, if that makes the sibling smaller: the box of the node itself
+    /// stays the same.
+    fn rotate(&mut self, at: u32) {
+        let [a, b] = self.at(at).children;
+        let (mut best_gain, mut best) = (0, None);
+        for (child, sibling) in [(a, b), (b, a)] {
+            if self.at(sibling).is_leaf() {
+                continue;
+            }
+            let [c, d] = self.at(sibling).children;
+            for (up, stays) in [(c, d), (d, c)] {
+                let smaller = self.at(child).aabb.union(self.at(stays).aabb);
+                let gain = perimeter(self.at(sibling).aabb).saturating_sub(perimeter(smaller));
+                if gain > best_gain {
+                    (best_gain, best) = (gain, Some((child, sibling, up)));
+                }
+            }
+        }
+        let Some((child, sibling, up)) = best else { return };
+        self.replace_child(at, child, up);
+        self.replace_child(sibling, up, child);
+        self.at_mut(up).parent = at;
+        self.at_mut(child).parent = sibling;
+        self.refit(sibling);
+        self.refit(at);
+    }
+
+    /// Puts another node where a child was, or at the root. The other's link to its parent is left to the caller.
+    fn replace_child(&mut self, parent: u32, old: u32, new: u32) {
+        if parent == NONE {
+            self.root = new;
+        } else {
+            let [first, second] = &mut self.at_mut(parent).children;
+            *(if *first == old { first } else { second }) = new;
+        }
+    }
+
+    fn leaf_of(&self, slot: u32) -> Option<u32> {
+        self.leaves.get(slot as usize).copied().filter(|&leaf| leaf != NONE)
+    }
+
+    fn at(&self, index: u32) -> &Node {
+        &self.nodes[index as usize]
+    }
+
+    fn at_mut(&mut self, index: u32) -> &mut Node {
+        &mut self.nodes[index as usize]
+    }
+
+    fn allocate(&mut self, node: Node) -> u32 {
+        let index = self.vacant;
+        if index == NONE {
+            self.nodes.push(node);
+            return u32::try_from(self.nodes.len() - 1).expect("fewer than 2^31 shapes");
+        }
+        self.vacant = self.at(index).parent;
+        *self.at_mut(index) = node;
+        index
+    }
+
+    fn free(&mut self, index: u32) {
+        self.at_mut(index).parent = self.vacant;
+        self.vacant = index;
+    }
+}
+
+impl Node {
+    fn leaf(slot: u32, aabb: Aabb) -> Self {
+        Node { aabb, parent: NONE, height: 0, children: [slot, NONE] }
+    }
+
+    fn is_leaf(&self) -> bool {
+        self.height == 0
+    }
+}
+
+/// Half the perimeter in units of 2^-30 m: two of the widest boxes in the world still add up in 64 bits.
+fn perimeter(aabb: Aabb) -> u64 {
+    let Aabb { lower, upper } = aabb;
+    (upper.x.to_bits().abs_diff(lower.x.to_bits()) >> 2)
+        + (upper.y.to_bits().abs_diff(lower.y.to_bits()) >> 2)
+}
+
+/// The height above which a tree is built anew: far more than boxes that come as they may ever reach, and so far
+/// above that of a new tree that many must come before the next.
+fn height_limit(len: u32) -> u32 {
+    2 * len.max(1).ilog2() + 16
+}

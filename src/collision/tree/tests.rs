@@ -1,0 +1,120 @@
+//! The tree is sound after whatever happens to it, and no order of boxes makes it deep.
+
+use super::*;
+use crate::fx;
+use crate::math::{Fx, Rng, Vec2};
+
+impl Tree {
+    /// Panics unless links, boxes, heights and the free list are as they should be. Returns the height.
+    pub(crate) fn validate(&self) -> u32 {
+        let mut reached = 0;
+        let mut stack = Vec::new();
+        if self.root != NONE {
+            assert_eq!(self.at(self.root).parent, NONE, "the root has no parent");
+            stack.push(self.root);
+        }
+        while let Some(index) = stack.pop() {
+            reached += 1;
+            let node = self.at(index);
+            if node.is_leaf() {
+                assert_eq!(self.leaf_of(node.children[0]), Some(index), "a slot knows its leaf");
+                continue;
+            }
+            let [a, b] = node.children.map(|child| self.at(child));
+            assert_eq!(node.aabb, a.aabb.union(b.aabb), "the box around the children");
+            assert_eq!(node.height, 1 + a.height.max(b.height));
+            for child in node.children {
+                assert_eq!(self.at(child).parent, index, "a child knows its parent");
+                stack.push(child);
+            }
+        }
+        let leaves = self.leaves.iter().filter(|&&leaf| leaf != NONE).count();
+        assert_eq!(leaves, self.len());
+        assert_eq!(reached, (2 * leaves).saturating_sub(1), "every leaf hangs in the tree");
+        let mut vacant = 0;
+        let mut at = self.vacant;
+        while at != NONE {
+            vacant += 1;
+            at = self.at(at).parent;
+        }
+        assert_eq!(reached + vacant, self.nodes.len(), "every node is in use or vacant");
+        let height = if self.root == NONE { 0 } else { self.at(self.root).height };
+        assert!((height as usize) < STACK_LEN - 1);
+        height
+    }
+}
+
+fn square(x: Fx, y: Fx, half: Fx) -> Aabb {
+    let corner = Vec2::new(x, y);
+    Aabb::new(corner, corner).expanded(half)
+}
+
+#[test]
+fn the_stack_holds_a_search_of_the_highest_tree() {
+    assert!((height_limit(u32::MAX) as usize) < STACK_LEN - 1);
+}
+
+#[test]
+fn it_stays_sound_while_boxes_come_go_and_move() {
+    let mut rng = Rng::new(1);
+    let mut tree = Tree::default();
+    for round in 0..20_000 {
+        let slot = rng.below(100);
+        let fat = square(rng.range(fx!(-9), fx!(9)), rng.range(fx!(-9), fx!(9)), rng.range(fx!(0), fx!(1)));
+        match rng.below(if round % 2000 < 1000 { 2 } else { 4 }) {
+            0 => tree.set(slot, fat),
+            _ if round == 10_000 => tree.refill((0..50).map(|slot| (slot % 40, fat))),
+            _ => tree.remove(slot),
+        }
+        tree.validate();
+        assert!(tree.leaf_of(slot).is_none_or(|leaf| tree.at(leaf).children[0] == slot));
+    }
+    (0..100).for_each(|slot| tree.remove(slot));
+    assert_eq!((tree.validate(), tree.len(), tree.root), (0, 0, NONE));
+}
+
+#[test]
+fn orders_that_could_make_a_chain_do_not() {
+    let whole = |x: u32| Fx::from_num(x);
+    let doubled = |x: u32| Fx::from_bits(1 << (x % 63));
+    let cases: [(&str, &dyn Fn(u32) -> Aabb); 7] = [
+        ("on top of each other", &|_| square(fx!(3), fx!(4), fx!(1))),
+        ("points on top of each other", &|_| square(fx!(3), fx!(4), fx!(0))),
+        ("sorted", &|i| square(whole(i), fx!(0), fx!(1))),
+        ("sorted backwards", &|i| square(-whole(i), whole(i), fx!(0))),
+        ("one inside the other", &|i| square(fx!(0), fx!(0), whole(1000 - i))),
+        ("one around the other", &|i| square(fx!(0), fx!(0), whole(i))),
+        ("each twice as far as the last", &|i| square(doubled(i), doubled(i / 63), fx!(0))),
+    ];
+    for (name, fat) in cases {
+        let mut tree = Tree::default();
+        for slot in 0..1000 {
+            tree.set(slot, fat(slot));
+        }
+        let height = tree.validate();
+        assert!(height <= height_limit(1000), "{name}: {height}");
+        for slot in 0..1000 {
+            tree.set(slot, fat(slot).translated(Vec2::new(fx!(0), fx!(0.5))));
+        }
+        let moved = tree.validate();
+        assert!(moved <= height_limit(1000), "{name}: {moved}");
+        tree.rebuild();
+        assert_eq!(tree.validate(), 10, "{name}: the logarithm of 1000");
+        for slot in 0..999 {
+            tree.remove(slot);
+        }
+        assert_eq!(tree.validate(), 0);
+    }
+}
+
+/// A city of boxes in random order: as good as it gets is 14.
+#[test]
+fn ordinary_boxes_make_a_low_tree() {
+    let mut rng = Rng::new(2);
+    let mut tree = Tree::default();
+    for slot in 0..10_000 {
+        tree.set(slot, square(rng.range(fx!(-300), fx!(300)), rng.range(fx!(0), fx!(60)), fx!(0.5)));
+    }
+    let height = tree.validate();
+    assert!(height <= 24, "{height}");
+}
