@@ -249,6 +249,16 @@ impl Body {
         self.mass.inverse_gyration != Reciprocal::ZERO
     }
 
+    /// Takes away what impulses have put along locked axes.
+    pub(crate) fn hold_locked_axes(&mut self) {
+        if self.settings.locks.x {
+            self.velocity.x = Speed::ZERO;
+        }
+        if self.settings.locks.y {
+            self.velocity.y = Speed::ZERO;
+        }
+    }
+
     /// Forgets its velocity.
     pub(crate) fn stop(&mut self) {
         self.velocity = Vec2::ZERO;

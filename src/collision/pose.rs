@@ -85,7 +85,12 @@ impl PosedShape {
     /// Poses a shape of `body`, whose rotation is passed in because its shapes share it.
     pub(crate) fn new(shape: &ShapeDef, body: &Body, rotation: Rot) -> Self {
         let centre = body.centre_of_mass() + rotation.apply_wide(shape.offset - body.local_centre_of_mass());
-        let (outline, bounds) = match &shape.geometry {
+        Self::of_geometry(&shape.geometry, centre, rotation)
+    }
+
+    /// Poses a geometry with its centre somewhere in the world.
+    pub(crate) fn of_geometry(geometry: &Geometry, centre: Vec2<Fx>, rotation: Rot) -> Self {
+        let (outline, bounds) = match geometry {
             Geometry::Circle { radius } => {
                 let bounds = Aabb::new(Vec2::ZERO, Vec2::ZERO).expanded(*radius);
                 (Outline::Circle { radius: narrow(*radius) }, bounds)

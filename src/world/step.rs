@@ -97,29 +97,56 @@ fn refit_boxes(state: &mut State, scratch: &mut Scratch) {
 
 /// Moves the bodies to where the solver has brought them.
 fn finalise_poses(state: &mut State, scratch: &mut Scratch) {
-    for &slot in &scratch.roster.bodies {
-        let SolverBody { velocity, spin, shift, turn } = *scratch.solver.body(slot);
-        let body = state.bodies.at_mut(slot);
-        body.velocity = velocity;
-        body.spin = spin;
-        body.force = Vec2::ZERO;
-        body.torque = Fx::ZERO;
-        let mut pose = Pose {
-            centre: body.centre + shift.widen(),
-            angle: turned(body.angle, turn, body.mass.inverse_gyration),
-        };
-        if let Some(target) = body.target.take() {
-            pose = target;
-            body.stop();
-            scratch.changes.body(body);
-        }
-        let edge = Vec2::new(WORLD_EXTENT_MAX, WORLD_EXTENT_MAX);
-        let inside = pose.centre.max(-edge).min(edge);
-        scratch.solver.faults += u64::from(inside != pose.centre);
-        let moved = (body.centre, body.angle) != (inside, pose.angle);
-        (body.centre, body.angle) = (inside, pose.angle);
-        if moved {
-            scratch.poses.pose_body(state, state.bodies.at(slot));
+    let roster = core::mem::take(&mut scratch.roster.bodies);
+    for &slot in &roster {
+        let pose = finalise_body(state, scratch, slot);
+        move_body(state, scratch, slot, pose);
+    }
+    scratch.roster.bodies = roster;
+}
+
+/// Takes over what the solver has found out about a body, and returns where it goes.
+fn finalise_body(state: &mut State, scratch: &mut Scratch, slot: u32) -> Pose {
+    let SolverBody { velocity, spin, shift, turn } = *scratch.solver.body(slot);
+    let body = state.bodies.at_mut(slot);
+    body.velocity = velocity;
+    body.spin = spin;
+    body.hold_locked_axes();
+    body.force = Vec2::ZERO;
+    body.torque = Fx::ZERO;
+    if let Some(target) = body.target.take() {
+        body.stop();
+        // It is not active any more, unless the game gives it another target.
+        scratch.changes.body(body);
+        return target;
+    }
+    let centre = body.centre + shift.widen();
+    let edge = Vec2::new(WORLD_EXTENT_MAX, WORLD_EXTENT_MAX);
+    let inside = centre.max(-edge).min(edge);
+    scratch.solver.faults += u64::from(inside != centre);
+    Pose { centre: inside, angle: turned(body.angle, turn, body.mass.inverse_gyration) }
+}
+
+/// Moves a body, its shapes and, where they leave them, their boxes.
+fn move_body(state: &mut State, scratch: &mut Scratch, slot: u32, pose: Pose) {
+    let body = state.bodies.at_mut(slot);
+    if (body.centre, body.angle) != (pose.centre, pose.angle) {
+        (body.centre, body.angle) = (pose.centre, pose.angle);
+        scratch.poses.pose_body(state, state.bodies.at(slot));
+        cover_shapes(state, scratch, slot);
+    }
+}
+
+/// Gives shapes that have left their fat box new ones, so that queries find them where they are.
+fn cover_shapes(state: &mut State, scratch: &mut Scratch, slot: u32) {
+    let State { bodies, shapes, config, .. } = state;
+    for id in bodies.at(slot).shapes() {
+        let bounds = scratch.poses.at(id.slot()).bounds;
+        let fat = &mut shapes.at_mut(id.slot()).fat;
+        if !fat.contains(bounds) {
+            *fat = bounds.expanded(config.fat_margin);
+            scratch.broad_phase.set(id.slot(), *fat);
+            scratch.changes.shapes.push(id.slot());
         }
     }
 }
