@@ -83,6 +83,15 @@ impl JointDef {
         }
     }
 
+    /// The same between other bodies.
+    #[must_use]
+    pub const fn between(mut self, a: BodyId, b: BodyId) -> Self {
+        let JointDef::Revolute(def) = &mut self;
+        def.body_a = a;
+        def.body_b = b;
+        self
+    }
+
     /// Whether the two bodies collide with each other.
     #[must_use]
     pub const fn collide_connected(&self) -> bool {

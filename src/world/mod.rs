@@ -20,6 +20,7 @@ mod timestep;
 mod validate;
 
 pub use bytes::{Snapshot, SnapshotError};
+pub use change::Place;
 pub use command::{Command, Outcome};
 pub use config::Config;
 pub use digest::{Section, WorldDigest};
