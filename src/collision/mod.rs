@@ -5,12 +5,17 @@ mod broad_phase;
 mod circle_circle;
 mod circle_hull;
 mod contact;
+mod core;
+mod distance;
 mod hull_hull;
 mod manifold;
 mod narrow_phase;
 mod pose;
+mod ray;
 mod segment;
+mod shape_cast;
 mod sweep_and_prune;
+mod time_of_impact;
 
 pub use broad_phase::BroadPhaseKind;
 pub(crate) use broad_phase::{BroadPhase, Pair, Proxy};
