@@ -13,15 +13,21 @@ const WINDOW: Fx = fx!(200);
 /// passes the window by.
 pub(crate) fn near_hull(a: Vec2<Fx>, b: Vec2<Fx>) -> Option<Hull> {
     let direction = (b - a).normalized()?;
+    let (p, q) = clip(a, b, WINDOW)?;
+    Some(Hull::segment(p.narrow(), q.narrow(), direction))
+}
+
+/// The part of a segment in a square about the origin; `None` when it passes by.
+pub(super) fn clip(a: Vec2<Fx>, b: Vec2<Fx>, half_side: Fx) -> Option<(Vec2<Fx>, Vec2<Fx>)> {
     let (mut p, mut q) = (a, b);
     for sign in [1, -1] {
         for axis in [|v: Vec2<Fx>| v.x, |v: Vec2<Fx>| v.y] {
             (p, q) = clip_to_half_plane(p, q, |v| {
-                i128::from(axis(v).to_bits()) * sign - i128::from(WINDOW.to_bits())
+                i128::from(axis(v).to_bits()) * sign - i128::from(half_side.to_bits())
             })?;
         }
     }
-    Some(Hull::segment(p.narrow(), q.narrow(), direction))
+    Some((p, q))
 }
 
 /// The part of a segment where `outside` is not positive. `outside` is linear.
