@@ -20,16 +20,15 @@ mod sweep_and_prune;
 mod time_of_impact;
 mod tree;
 
-
 pub use broad_phase::BroadPhaseKind;
 pub(crate) use broad_phase::{BroadPhase, Moved, Pair};
 pub(crate) use contact::{Contact, PointImpulse};
+pub(crate) use core::Core;
+pub(crate) use distance::{distance, overlap};
 pub(crate) use hull_hull::{AxisHint, SatCounters};
 pub use manifold::{Feature, Manifold, ManifoldPoint};
 pub(crate) use narrow_phase::{collide, margin_for};
 pub(crate) use pose::{Outline, PosedShape};
-pub(crate) use core::Core;
-pub(crate) use distance::{distance, overlap};
 pub(crate) use ray::{cast_ray, contains_point};
 pub(crate) use shape_cast::cast_shape;
-pub(crate) use time_of_impact::{Sweep, TimeOfImpact, time_of_impact};
+pub(crate) use time_of_impact::{Sweep, TimeOfImpact, inner_radius, time_of_impact};

@@ -140,8 +140,8 @@ fn target_of_contact(a: &Core, b: &Core, separation: Fx) -> Option<Fx> {
     (start > deepest).then(|| (start + deepest) / 2)
 }
 
-/// The radius of a disc inside the shape.
-fn inner_radius(core: &Core) -> Fx {
+/// The radius of a disc inside the shape, in metres.
+pub(crate) fn inner_radius(core: &Core) -> Fx {
     let points = core.points();
     let count = i64::try_from(points.len()).unwrap_or(1);
     let sum = points.iter().fold(Vec2::ZERO, |sum, &point| sum + point);

@@ -18,7 +18,8 @@ mod softness;
 
 use alloc::vec::Vec;
 
-pub(crate) use body::{SolverBody, turned};
+use body::turned;
+pub(crate) use body::{SolverBody, turn_of};
 use colour::{Colouring, Node};
 use contact::{ContactConstraint, Pass, Sweep};
 pub(crate) use contact::{Surface, WarmStarts};

@@ -6,6 +6,7 @@ mod change;
 mod command;
 mod config;
 mod contacts;
+mod continuous;
 mod digest;
 mod events;
 mod islands;

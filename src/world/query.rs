@@ -236,18 +236,14 @@ impl World {
     /// The shape nearest to a point within a distance in metres, and where. A point inside a shape has a negative
     /// distance from it.
     #[must_use]
-    pub fn closest(
-        &self,
-        point: Vec2<Fx>,
-        within: Fx,
-        filter: QueryFilter,
-    ) -> Option<(ShapeId, Proximity)> {
+    pub fn closest(&self, point: Vec2<Fx>, within: Fx, filter: QueryFilter) -> Option<(ShapeId, Proximity)> {
         let here = Core::point(Vec2::ZERO);
         let mut closest: Option<(ShapeId, Proximity)> = None;
         self.scratch.broad_phase.each_near(point, within, |slot| {
             if let Some(shape) = self.seen(slot, filter) {
                 let found = proximity(&here, &Core::of(self.scratch.poses.at(slot), point), point);
-                let nearer = |best: &(ShapeId, Proximity)| (found.distance, shape) < (best.1.distance, best.0);
+                let nearer =
+                    |best: &(ShapeId, Proximity)| (found.distance, shape) < (best.1.distance, best.0);
                 if found.distance <= within && closest.as_ref().is_none_or(nearer) {
                     closest = Some((shape, found));
                 }
@@ -319,7 +315,8 @@ impl World {
     /// The handle of a shape, if a query sees it.
     fn seen(&self, slot: u32, filter: QueryFilter) -> Option<ShapeId> {
         let shape = self.state.shapes.at(slot);
-        let accepted = shape.filter().mask & filter.category != 0 && shape.filter().category & filter.mask != 0;
+        let accepted =
+            shape.filter().mask & filter.category != 0 && shape.filter().category & filter.mask != 0;
         let wanted = (filter.sensors || !shape.is_sensor()) && filter.except != Some(shape.body());
         (accepted && wanted).then(|| self.state.shapes.handle_at(slot))
     }

@@ -2,6 +2,7 @@
 //! `replays/` are frozen only after these hold.
 
 mod collisions;
+mod continuous;
 mod free_fall;
 mod joints;
 mod piles;
