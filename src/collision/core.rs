@@ -12,10 +12,15 @@ use fixed::types::extra::U28;
 
 use super::pose::{Outline, PosedShape};
 use crate::body::POLYGON_VERTICES_MAX;
+use crate::fx;
 use crate::math::{Fx, Rot, Unit, Vec2, div_round, round_shift, round_shift_wide, saturate_wide};
 
 /// A coordinate in metres with 28 fraction bits.
 pub(crate) type Grid = FixedI64<U28>;
+
+/// The largest radius of a core in metres: more than that of any shape. Products of a radius and a cross product of
+/// the world fit 128 bits.
+pub(crate) const RADIUS_MAX: Fx = fx!(512);
 
 /// Bits by which a world coordinate is finer than the grid.
 const FINER: u32 = Fx::FRAC_NBITS - Grid::FRAC_NBITS;
@@ -51,9 +56,10 @@ impl Core {
         Core::from_points([centre], radius)
     }
 
-    /// From the vertices of a convex outline, counter-clockwise: 1 to 8; any further are left out.
+    /// From the vertices of a convex outline, counter-clockwise: 1 to 8; any further are left out. The radius is
+    /// limited to 0 to [`RADIUS_MAX`].
     pub(crate) fn from_points(points: impl IntoIterator<Item = Vec2<Fx>>, radius: Fx) -> Self {
-        let radius = Grid::from_bits(round_shift(radius.to_bits(), FINER));
+        let radius = Grid::from_bits(round_shift(radius.clamp(Fx::ZERO, RADIUS_MAX).to_bits(), FINER));
         let mut core = Core { count: 0, points: [Vec2::ZERO; POLYGON_VERTICES_MAX], radius };
         for (slot, point) in core.points.iter_mut().zip(points) {
             *slot = to_grid(point);
@@ -86,6 +92,20 @@ impl Core {
     /// The largest distance of a point of the hull from the origin, without the radius.
     pub(crate) fn reach(&self) -> Grid {
         self.points().iter().map(|&point| length(point)).max().unwrap_or(Grid::ZERO)
+    }
+
+    /// The radius of a disc inside the shape, about the mean of its vertices; 0 for a segment.
+    pub(crate) fn inner_radius(&self) -> Fx {
+        let points = self.points();
+        let count = i64::try_from(points.len()).unwrap_or(1);
+        let sum = points.iter().fold(Vec2::ZERO, |sum, &point| sum + point);
+        let mean = Vec2::new(sum.x / count, sum.y / count);
+        let inside = |(p, q): (Vec2<Grid>, Vec2<Grid>)| {
+            let edge = q - p;
+            Some(height(cross(edge, mean - p), scaled_along(direction(edge)?, edge)))
+        };
+        let inside = edges(points).filter_map(inside).min().unwrap_or(Grid::ZERO);
+        to_fx(self.radius + inside.max(Grid::ZERO))
     }
 }
 
@@ -212,7 +232,6 @@ pub(super) mod samples {
 
     use super::*;
     use crate::body::Polygon;
-    use crate::fx;
     use crate::math::Rng;
     use alloc::vec::Vec;
 
@@ -249,7 +268,7 @@ pub(super) mod samples {
         core(rng).moved(to_grid(vector(rng, spread)))
     }
 
-    /// The same core far from the origin.
+    /// The points as world vectors.
     pub(in crate::collision) fn world_points(core: &Core) -> Vec<Vec2<Fx>> {
         core.points().iter().map(|&point| from_grid(point)).collect()
     }
@@ -259,7 +278,6 @@ pub(super) mod samples {
 mod tests {
     use super::*;
     use crate::body::{Body, BodyDef, Geometry, MassProperties, Polygon, ShapeDef};
-    use crate::fx;
     use crate::math::Angle;
 
     fn core_of(geometry: Geometry, origin: Vec2<Fx>) -> Core {

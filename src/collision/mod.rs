@@ -31,4 +31,4 @@ pub(crate) use narrow_phase::{collide, margin_for};
 pub(crate) use pose::{Outline, PosedShape};
 pub(crate) use ray::{cast_ray, contains_point};
 pub(crate) use shape_cast::cast_shape;
-pub(crate) use time_of_impact::{Sweep, TimeOfImpact, inner_radius, time_of_impact};
+pub(crate) use time_of_impact::{Sweep, TimeOfImpact, time_of_impact};

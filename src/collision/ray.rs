@@ -191,6 +191,32 @@ mod tests {
         );
     }
 
+    /// Through corners and along edges too, a ray into a shape hits it.
+    #[test]
+    fn no_ray_slips_into_a_shape() {
+        let mut rng = Rng::new(3);
+        let mut rays = 0;
+        for _ in 0..20_000 {
+            let shape = samples::core(&mut rng);
+            let points = samples::world_points(&shape);
+            let (first, last) = (points[0], points[points.len() - 1]);
+            for (through, onwards) in
+                [(first, last - first), (last, first - last), (last, samples::vector(&mut rng, fx!(1)))]
+            {
+                let origin = through - onwards.scale(rng.range(fx!(0.5), fx!(3)));
+                if contains_point(&shape, origin) {
+                    continue;
+                }
+                rays += 1;
+                assert!(
+                    cast_ray(&shape, origin, through - origin).is_some(),
+                    "{shape:?} {origin:?} {through:?}"
+                );
+            }
+        }
+        assert!(rays > 20_000, "{rays}");
+    }
+
     #[test]
     fn a_ray_across_the_world_is_as_exact_as_a_short_one() {
         let mut rng = Rng::new(2);

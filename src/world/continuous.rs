@@ -13,7 +13,7 @@ use super::scratch::Scratch;
 use super::state::State;
 use super::step::move_body;
 use crate::body::{Body, Continuous, Handle, Pose};
-use crate::collision::{Core, Sweep, TimeOfImpact, inner_radius, time_of_impact};
+use crate::collision::{Core, Sweep, TimeOfImpact, time_of_impact};
 use crate::fx;
 use crate::math::{Angle, Fx, fx_mul};
 
@@ -44,7 +44,7 @@ pub(super) fn sweep_of(state: &State, scratch: &Scratch, slot: u32, end: Pose, t
             .fold(Fx::ZERO, Fx::saturating_add);
         let motion = shift.length().saturating_add(fx_mul(radians.saturating_abs(), reach));
         // The radius inside a shape is at most that inside its box: most bodies are slow enough to tell at a glance.
-        !shape.is_sensor() && motion > fx!(0.0005) && motion > inner_radius(&Core::of(posed, body.centre)) / 2
+        !shape.is_sensor() && motion > fx!(0.0005) && motion > Core::of(posed, body.centre).inner_radius() / 2
     });
     fast.then(|| Swept { slot, sweep: Sweep { start: body.centre, end: end.centre, turn }, end })
 }
@@ -81,7 +81,7 @@ fn first_impact(state: &State, scratch: &Scratch, swept: &Swept) -> Fx {
         let posed = scratch.poses.at(id.slot());
         let core = Core::of(posed, body.centre);
         // Half as deep as it would have to be for its centre to be on the surface, but not more than 5 mm.
-        let target = -(inner_radius(&core) / 4).min(fx!(0.005));
+        let target = -(core.inner_radius() / 4).min(fx!(0.005));
         let reach = if swept.sweep.turn == 0 { Fx::ZERO } else { posed.bounds.extents().length() };
         let area = posed.bounds.expanded(reach).swept(swept.sweep.end - swept.sweep.start);
         scratch.broad_phase.each_overlap(area, |other| {
