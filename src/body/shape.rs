@@ -45,6 +45,15 @@ pub enum Geometry {
     },
     /// A convex polygon, optionally rounded.
     Polygon(Polygon),
+    /// Everything within a radius of the line between two points: a pill, or a stick with round ends.
+    Capsule {
+        /// The centre of one round end, in metres from the shape's centre.
+        a: Vec2<Fx>,
+        /// The centre of the other, at least 2 mm away.
+        b: Vec2<Fx>,
+        /// 0.002 m or more. The capsule reaches at most 110 m from the shape's centre on each axis.
+        radius: Fx,
+    },
 }
 
 impl From<Polygon> for Geometry {
@@ -72,6 +81,15 @@ impl Geometry {
         segment.validate().map(|()| segment)
     }
 
+    /// A capsule from the centres of its round ends, in metres from the shape's centre, and its radius.
+    ///
+    /// # Errors
+    /// When the centres are closer than 2 mm, the radius is below 2 mm, or it reaches further than 110 m on some axis.
+    pub fn capsule(a: Vec2<Fx>, b: Vec2<Fx>, radius: Fx) -> Result<Self, GeometryError> {
+        let capsule = Geometry::Capsule { a, b, radius };
+        capsule.validate().map(|()| capsule)
+    }
+
     /// Checks sizes. A [`Polygon`] is valid by construction.
     pub(crate) fn validate(&self) -> Result<(), GeometryError> {
         match *self {
@@ -81,18 +99,17 @@ impl Geometry {
                 }
             }
             Geometry::Segment { a, b } => {
-                let far = [a.x, a.y, b.x, b.y]
-                    .into_iter()
-                    .find(|c| c.unsigned_abs() > WORLD_EXTENT_MAX.unsigned_abs());
-                if let Some(value) = far {
-                    return Err(GeometryError::SizeOutOfRange { value });
-                }
-                let length = a.distance(b);
-                if length < SIZE_MIN {
-                    return Err(GeometryError::SizeOutOfRange { value: length });
-                }
+                check_within(&[a, b], WORLD_EXTENT_MAX)?;
+                check_length(a, b)?;
             }
             Geometry::Polygon(_) => {}
+            Geometry::Capsule { a, b, radius } => {
+                if !(SIZE_MIN..=SHAPE_EXTENT_MAX).contains(&radius) {
+                    return Err(GeometryError::SizeOutOfRange { value: radius });
+                }
+                check_within(&[a, b], SHAPE_EXTENT_MAX - radius)?;
+                check_length(a, b)?;
+            }
         }
         Ok(())
     }
@@ -107,8 +124,24 @@ impl Geometry {
                 let bounds = Aabb::from_points(points).unwrap_or(Aabb::new(Vec2::ZERO, Vec2::ZERO));
                 bounds.expanded(polygon.radius().into())
             }
+            Geometry::Capsule { a, b, radius } => Aabb::new(a.min(*b), a.max(*b)).expanded(*radius),
         }
     }
+}
+
+/// Checks that points are within `extent` of the shape's centre on each axis.
+fn check_within(points: &[Vec2<Fx>], extent: Fx) -> Result<(), GeometryError> {
+    let coordinates = points.iter().flat_map(|point| [point.x, point.y]);
+    match coordinates.into_iter().find(|c| c.unsigned_abs() > extent.unsigned_abs()) {
+        Some(value) => Err(GeometryError::SizeOutOfRange { value }),
+        None => Ok(()),
+    }
+}
+
+/// Checks that a line is long enough to have a direction.
+fn check_length(a: Vec2<Fx>, b: Vec2<Fx>) -> Result<(), GeometryError> {
+    let length = a.distance(b);
+    if length < SIZE_MIN { Err(GeometryError::SizeOutOfRange { value: length }) } else { Ok(()) }
 }
 
 /// What to attach to a body.

@@ -72,14 +72,27 @@ pub(crate) fn collide(
         *hint = AxisHint { on_b: true, edge: small(face_b.edge) };
         return Manifold::NONE;
     }
+    let apart = face_a.separation.max(face_b.separation) > TOLERANCE_WIDE
+        || beyond_an_end(a, b, d)
+        || beyond_an_end(b, a, -d);
     // Outlines that are apart need the true best face, which is next to the nearest corner.
-    let touching = face_a.separation.max(face_b.separation) <= TOLERANCE_WIDE;
-    let preference = if touching { TOLERANCE_WIDE } else { 0 };
+    let preference = if apart { 0 } else { TOLERANCE_WIDE };
     if face_b.separation > face_a.separation + preference {
-        clip(b, a, -d, face_b, margin).swapped().translated(d)
+        clip(b, a, -d, face_b, apart, margin).swapped().translated(d)
     } else {
-        clip(a, b, d, face_a, margin)
+        clip(a, b, d, face_a, apart, margin)
     }
+}
+
+/// Whether `b` lies beyond an end of `a`, which has two sides and no face there: of two capsules end to end no face
+/// tells that they are apart.
+fn beyond_an_end(a: &Hull, b: &Hull, d: Vec2<Length>) -> bool {
+    let &[start, end] = a.vertices() else { return false };
+    let t = a.normals()[0].perp();
+    let (x, y) = (i64::from(t.x.to_bits()), i64::from(t.y.to_bits()));
+    let along = |v: Vec2<Length>| x * i64::from(v.x.to_bits()) + y * i64::from(v.y.to_bits());
+    let of_b = |from: Vec2<Length>| b.vertices().iter().map(move |&vertex| along(vertex) + along(d - from));
+    of_b(start).all(|along| along < -TOLERANCE_WIDE) || of_b(end).all(|along| along > TOLERANCE_WIDE)
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "at most 8 edges")]
@@ -117,7 +130,7 @@ struct End {
 }
 
 /// Clips the incident edge of `b` against a face of `a`. Positions are about the centre of `a`.
-fn clip(a: &Hull, b: &Hull, d: Vec2<Length>, face: Face, margin: Length) -> Manifold {
+fn clip(a: &Hull, b: &Hull, d: Vec2<Length>, face: Face, apart: bool, margin: Length) -> Manifold {
     let normal = a.normals()[face.edge];
     let v1 = a.vertices()[face.edge];
     let tangent = normal.perp();
@@ -132,7 +145,6 @@ fn clip(a: &Hull, b: &Hull, d: Vec2<Length>, face: Face, margin: Length) -> Mani
     let (upper, lower) = (end_of_b(incident), end_of_b(b.next(incident)));
 
     let context = Clip { normal, v1, radius_a: a.radius, radius_b: b.radius, margin };
-    let apart = face.separation > TOLERANCE_WIDE;
     let corners = nearest_corners(first, last, upper, lower).filter(|_| apart);
     if upper.along < first.along || lower.along > last.along {
         // Outlines that overlap deeply may have no incident edge beside the face. Their deepest corner still pushes

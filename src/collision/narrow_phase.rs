@@ -103,9 +103,10 @@ mod tests {
             let mut coordinate = || rng.range(fx!(-1), fx!(1));
             let points: Vec<_> = (0..7).map(|_| Vec2::new(coordinate(), coordinate())).collect();
             let radius = rng.range(fx!(0), fx!(0.3));
-            let geometry = match rng.below(5) {
+            let geometry = match rng.below(6) {
                 0 => Geometry::circle(radius + fx!(0.1)).ok(),
                 1 => Geometry::segment(points[0], points[1]).ok(),
+                4 => Geometry::capsule(points[0], points[1], radius).ok(),
                 2 => Polygon::rectangle(radius + fx!(0.1), fx!(0.3)).ok().map(Geometry::from),
                 3 => Polygon::hull(&points).ok().map(Geometry::from),
                 _ => Polygon::hull(&points).and_then(|hull| hull.rounded(radius)).ok().map(Geometry::from),
@@ -202,6 +203,33 @@ mod tests {
             }
         }
         assert!(compared > 5_000 && none > 10_000, "{compared} compared, {none} without contact");
+    }
+
+    /// No face tells capsules and circles on one line apart: only the distance of their ends does.
+    #[test]
+    fn shapes_in_line_are_apart_and_pushed_along_the_line() {
+        let pill =
+            || Geometry::capsule(Vec2::new(fx!(-1), fx!(0)), Vec2::new(fx!(1), fx!(0)), fx!(0.5)).unwrap();
+        let stick = Geometry::segment(Vec2::new(fx!(-1.5), fx!(0)), Vec2::new(fx!(1.5), fx!(0))).unwrap();
+        let ball = Geometry::circle(fx!(1.5)).unwrap();
+        for (other, angle) in [
+            (pill(), Angle::ZERO),
+            (pill(), Angle::from_degrees(fx!(180))),
+            (pill(), Angle::from_degrees(fx!(0.01))),
+            (stick, Angle::ZERO),
+            (ball, Angle::ZERO),
+        ] {
+            for gap in [fx!(-0.3), fx!(0), fx!(0.04)] {
+                let a = posed(pill(), Vec2::new(fx!(7), fx!(2)), Angle::ZERO);
+                let b = posed(other, Vec2::new(fx!(10) + gap, fx!(2)), angle);
+                let margin = narrow(fx!(0.05));
+                let found = collide(&a, &b, margin, &mut AxisHint::default(), &mut SatCounters::default());
+                assert_eq!(found.points().len(), 1, "{other:?}, gap {gap}");
+                assert!(found.normal.x > Length::lit("0.999"), "{:?}", found.normal);
+                let error = widen(found.points()[0].separation) - gap;
+                assert!(error.abs() < fx!(0.00001), "{error}");
+            }
+        }
     }
 
     /// Exchanging the shapes exchanges the roles and nothing else, as long as no tie is broken by order.

@@ -21,7 +21,7 @@ pub(crate) enum Outline {
     Polygon(Hull),
 }
 
-/// A convex outline in 32-bit coordinates: a polygon, or a segment seen as a polygon with two sides.
+/// A convex outline in 32-bit coordinates: a polygon, or a segment or capsule seen as a polygon with two sides.
 #[derive(Clone, Debug)]
 pub(crate) struct Hull {
     count: usize,
@@ -51,6 +51,12 @@ impl Hull {
         hull.vertices[..2].copy_from_slice(&[a, b]);
         hull.normals[..2].copy_from_slice(&[-direction.perp(), direction.perp()]);
         hull
+    }
+
+    /// A capsule: a segment with a radius. One that is long enough to be valid has a direction.
+    fn capsule(a: Vec2<Fx>, b: Vec2<Fx>, radius: Length) -> Self {
+        let direction = (b - a).normalized().unwrap_or(Vec2::X);
+        Hull { radius, ..Hull::segment(a.narrow(), b.narrow(), direction) }
     }
 
     pub(crate) fn rotated(polygon: &Polygon, rotation: Rot) -> Self {
@@ -96,6 +102,12 @@ impl PosedShape {
             }
             Geometry::Polygon(polygon) => {
                 let hull = Hull::rotated(polygon, rotation);
+                let bounds = hull.bounds();
+                (Outline::Polygon(hull), bounds)
+            }
+            Geometry::Capsule { a, b, radius } => {
+                let (a, b) = (rotation.apply_wide(*a), rotation.apply_wide(*b));
+                let hull = Hull::capsule(a, b, narrow(*radius));
                 let bounds = hull.bounds();
                 (Outline::Polygon(hull), bounds)
             }

@@ -1,6 +1,7 @@
 //! Physics against theory. Each file holds one kind of motion and says what theory predicts; the goldens under
 //! `replays/` are frozen only after these hold.
 
+mod capsule;
 mod collisions;
 mod free_fall;
 mod joints;
