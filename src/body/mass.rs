@@ -145,7 +145,9 @@ impl Part {
                     Part { mass: fx_mul(area, shape.density), centre: shape.offset, gyration_squared: 0 };
                 Part { gyration_squared: (r * r) >> 21, ..part }
             }
-            Geometry::Segment { .. } => Part { mass: Fx::ZERO, centre: shape.offset, gyration_squared: 0 },
+            Geometry::Segment { .. } | Geometry::Link { .. } => {
+                Part { mass: Fx::ZERO, centre: shape.offset, gyration_squared: 0 }
+            }
             Geometry::Polygon(polygon) => Part::of_polygon(polygon, shape),
             Geometry::Capsule { a, b, radius } => Part::of_capsule(*a, *b, *radius, shape),
         }

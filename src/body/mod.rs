@@ -4,6 +4,7 @@ mod arena;
 #[expect(clippy::module_inception, reason = "the file that holds `Body`")]
 mod body;
 mod body_def;
+mod chain;
 mod error;
 mod filter;
 mod mass;
@@ -17,9 +18,12 @@ pub use body::Body;
 pub(crate) use body::SPEED_MAX;
 pub(crate) use body_def::check_position;
 pub use body_def::{BodyDef, BodyKind};
+pub use chain::Chain;
 pub use error::{GeometryError, WorldError};
 pub use filter::Filter;
 pub use mass::{MassProperties, MassSource};
 pub use material::{Material, Mixing};
 pub use polygon::{POLYGON_VERTICES_MAX, Polygon, SHAPE_EXTENT_MAX};
-pub use shape::{DENSITY_MAX, Geometry, REACH_MAX, SHAPES_PER_BODY_MAX, Shape, ShapeDef, WORLD_EXTENT_MAX};
+pub use shape::{
+    DENSITY_MAX, Geometry, REACH_MAX, SHAPES_PER_BODY_MAX, Shape, ShapeDef, Sides, WORLD_EXTENT_MAX,
+};

@@ -54,6 +54,31 @@ pub enum Geometry {
         /// 0.002 m or more. The capsule reaches at most 110 m from the shape's centre on each axis.
         radius: Fx,
     },
+    /// A line between two points that is part of a chain: see [`Chain`](super::Chain), which makes them. Like a
+    /// segment it has no area, does not collide with lines, and may be as long as the world. Where it has a
+    /// neighbour it pushes only in directions that the chain as a whole allows.
+    Link {
+        /// One end, in metres from the shape's centre.
+        a: Vec2<Fx>,
+        /// The other end.
+        b: Vec2<Fx>,
+        /// The other end of the neighbour that ends at `a`.
+        before: Option<Vec2<Fx>>,
+        /// The other end of the neighbour that starts at `b`.
+        after: Option<Vec2<Fx>>,
+        /// From where it is solid.
+        sides: Sides,
+    },
+}
+
+/// From which sides a link is solid.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum Sides {
+    /// From both.
+    #[default]
+    Both,
+    /// Only from the right as one looks from `a` to `b`. What has its centre on the left passes.
+    Right,
 }
 
 impl From<Polygon> for Geometry {
@@ -110,6 +135,13 @@ impl Geometry {
                 check_within(&[a, b], SHAPE_EXTENT_MAX - radius)?;
                 check_length(a, b)?;
             }
+            Geometry::Link { a, b, before, after, sides: _ } => {
+                let (first, last) = (before.unwrap_or(a), after.unwrap_or(b));
+                check_within(&[first, a, b, last], WORLD_EXTENT_MAX)?;
+                check_length(a, b)?;
+                before.map_or(Ok(()), |before| check_length(before, a))?;
+                after.map_or(Ok(()), |after| check_length(b, after))?;
+            }
         }
         Ok(())
     }
@@ -118,7 +150,7 @@ impl Geometry {
     pub(crate) fn local_bounds(&self) -> Aabb {
         match self {
             Geometry::Circle { radius } => Aabb::new(Vec2::ZERO, Vec2::ZERO).expanded(*radius),
-            Geometry::Segment { a, b } => Aabb::new(a.min(*b), a.max(*b)),
+            Geometry::Segment { a, b } | Geometry::Link { a, b, .. } => Aabb::new(a.min(*b), a.max(*b)),
             Geometry::Polygon(polygon) => {
                 let points = polygon.vertices().iter().map(|vertex| vertex.widen());
                 let bounds = Aabb::from_points(points).unwrap_or(Aabb::new(Vec2::ZERO, Vec2::ZERO));

@@ -16,7 +16,7 @@ use crate::math::{Length, Step, Unit, Vec2, round_shift_wide, saturate, saturate
 const TOLERANCE: Step = Step::lit("0.0005");
 
 /// [`TOLERANCE`] with the 52 fraction bits of a product of a length and a unit vector.
-const TOLERANCE_WIDE: i64 = (TOLERANCE.to_bits() as i64) << 25;
+pub(super) const TOLERANCE_WIDE: i64 = (TOLERANCE.to_bits() as i64) << 25;
 
 /// The face that separated a pair in the last tick. Trying it first changes no result: any axis with a gap
 /// beyond the margin proves that there is no contact.
@@ -34,10 +34,10 @@ pub(crate) struct SatCounters {
 }
 
 #[derive(Clone, Copy)]
-struct Face {
-    edge: usize,
+pub(super) struct Face {
+    pub(super) edge: usize,
     /// Of the other outline's vertices from the face, without radii: 52 fraction bits.
-    separation: i64,
+    pub(super) separation: i64,
 }
 
 /// `d` is the vector from the centre of A to the centre of B.
@@ -72,9 +72,7 @@ pub(crate) fn collide(
         *hint = AxisHint { on_b: true, edge: small(face_b.edge) };
         return Manifold::NONE;
     }
-    let apart = face_a.separation.max(face_b.separation) > TOLERANCE_WIDE
-        || beyond_an_end(a, b, d)
-        || beyond_an_end(b, a, -d);
+    let apart = are_apart(a, b, d, face_a, face_b);
     // Outlines that are apart need the true best face, which is next to the nearest corner.
     let preference = if apart { 0 } else { TOLERANCE_WIDE };
     if face_b.separation > face_a.separation + preference {
@@ -82,6 +80,13 @@ pub(crate) fn collide(
     } else {
         clip(a, b, d, face_a, apart, margin)
     }
+}
+
+/// Whether two outlines do not touch, radii not counted, told by the best face of each.
+pub(super) fn are_apart(a: &Hull, b: &Hull, d: Vec2<Length>, face_a: Face, face_b: Face) -> bool {
+    face_a.separation.max(face_b.separation) > TOLERANCE_WIDE
+        || beyond_an_end(a, b, d)
+        || beyond_an_end(b, a, -d)
 }
 
 /// Whether `b` lies beyond an end of `a`, which has two sides and no face there: of two capsules end to end no face
@@ -101,7 +106,7 @@ fn small(edge: usize) -> u8 {
 }
 
 /// The face of `a` that is furthest from `b`.
-fn best_face(a: &Hull, b: &Hull, d: Vec2<Length>) -> Face {
+pub(super) fn best_face(a: &Hull, b: &Hull, d: Vec2<Length>) -> Face {
     let mut best = Face { edge: 0, separation: i64::MIN };
     for edge in 0..a.vertices().len() {
         let separation = face_separation(a, edge, b, d);
@@ -113,12 +118,16 @@ fn best_face(a: &Hull, b: &Hull, d: Vec2<Length>) -> Face {
 }
 
 /// Smallest distance of the vertices of `b` from a face of `a`, with 52 fraction bits.
-fn face_separation(a: &Hull, edge: usize, b: &Hull, d: Vec2<Length>) -> i64 {
-    let n = a.normals()[edge];
+pub(super) fn face_separation(a: &Hull, edge: usize, b: &Hull, d: Vec2<Length>) -> i64 {
+    plane_separation(a.normals()[edge], a.vertices()[edge], b, d)
+}
+
+/// Smallest distance of the vertices of `b` from the line through a point across `n`, with 52 fraction bits.
+pub(super) fn plane_separation(n: Vec2<Unit>, point: Vec2<Length>, b: &Hull, d: Vec2<Length>) -> i64 {
     let (x, y) = (i64::from(n.x.to_bits()), i64::from(n.y.to_bits()));
     let dot = |v: Vec2<Length>| x * i64::from(v.x.to_bits()) + y * i64::from(v.y.to_bits());
     let support = b.vertices().iter().map(|&vertex| dot(vertex)).min().unwrap_or(0);
-    support + dot(d - a.vertices()[edge])
+    support + dot(d - point)
 }
 
 /// One end of an edge: its vertex, and where it is along the reference edge.
@@ -130,7 +139,7 @@ struct End {
 }
 
 /// Clips the incident edge of `b` against a face of `a`. Positions are about the centre of `a`.
-fn clip(a: &Hull, b: &Hull, d: Vec2<Length>, face: Face, apart: bool, margin: Length) -> Manifold {
+pub(super) fn clip(a: &Hull, b: &Hull, d: Vec2<Length>, face: Face, apart: bool, margin: Length) -> Manifold {
     let normal = a.normals()[face.edge];
     let v1 = a.vertices()[face.edge];
     let tangent = normal.perp();

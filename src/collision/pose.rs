@@ -1,5 +1,6 @@
 //! Shapes posed in world axes: each shape is rotated once in a tick, so that its pairs only translate.
 
+use super::link::Link;
 use crate::body::{Body, Geometry, POLYGON_VERTICES_MAX, Polygon, ShapeDef};
 use crate::math::{Aabb, Fx, Length, Rot, Unit, Vec2, narrow};
 
@@ -19,6 +20,7 @@ pub(crate) enum Outline {
     Circle { radius: Length },
     Segment { a: Vec2<Fx>, b: Vec2<Fx> },
     Polygon(Hull),
+    Link(Link),
 }
 
 /// A convex outline in 32-bit coordinates: a polygon, or a segment or capsule seen as a polygon with two sides.
@@ -43,6 +45,13 @@ impl Hull {
     /// The index of the vertex after `i`, counter-clockwise.
     pub(crate) fn next(&self, i: usize) -> usize {
         if i + 1 == self.count { 0 } else { i + 1 }
+    }
+
+    /// The mean of the vertices, about the shape's centre: a place inside.
+    pub(crate) fn middle(&self) -> Vec2<Fx> {
+        let sum = self.vertices().iter().fold(Vec2::ZERO, |sum, vertex| sum + vertex.widen());
+        let count = i64::try_from(self.count).expect("at most 8 vertices");
+        Vec2::new(sum.x / count, sum.y / count)
     }
 
     /// A segment: one edge there and one back, with opposite normals.
@@ -99,6 +108,11 @@ impl PosedShape {
             Geometry::Segment { a, b } => {
                 let (a, b) = (rotation.apply_wide(*a), rotation.apply_wide(*b));
                 (Outline::Segment { a, b }, Aabb::new(a.min(b), a.max(b)))
+            }
+            Geometry::Link { a, b, before, after, sides } => {
+                let link = Link { a: *a, b: *b, before: *before, after: *after, sides: *sides };
+                let link = link.mapped(|point| rotation.apply_wide(point));
+                (Outline::Link(link), Aabb::new(link.a.min(link.b), link.a.max(link.b)))
             }
             Geometry::Polygon(polygon) => {
                 let hull = Hull::rotated(polygon, rotation);

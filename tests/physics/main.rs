@@ -2,6 +2,7 @@
 //! `replays/` are frozen only after these hold.
 
 mod capsule;
+mod chain;
 mod collisions;
 mod free_fall;
 mod joints;
