@@ -86,7 +86,9 @@ enum Turn {
 enum Verdict {
     /// It pushes along it.
     Own,
-    /// A neighbour does, or nobody may.
+    /// The chain allows it, and a neighbour pushes along it.
+    Neighbour,
+    /// It does not come from this link.
     Leave,
     /// It pushes along its own normal instead.
     Snap,
@@ -145,7 +147,8 @@ impl Facing {
         match end {
             End::Free if self.one_sided && own < 0 => Verdict::Leave,
             End::Free => Verdict::Own,
-            End::Joined { turn: Turn::Flat | Turn::Concave, .. } => Verdict::Snap,
+            End::Joined { turn: Turn::Flat | Turn::Concave, .. } if own > 0 => Verdict::Snap,
+            End::Joined { turn: Turn::Flat | Turn::Concave, .. } => Verdict::Leave,
             End::Joined { turn: Turn::Convex, direction } => {
                 let other = -direction.perp();
                 let beyond: Unit = other.cross(n);
@@ -153,7 +156,11 @@ impl Facing {
                 let within = beyond.to_bits() * outwards >= -ANGLE_TOLERANCE.to_bits();
                 // The link that starts at the vertex has the middle.
                 let ours = if outwards == 1 { own >= nearer_to_other } else { own > nearer_to_other };
-                if within && ours { Verdict::Own } else { Verdict::Leave }
+                match (within, ours) {
+                    (true, true) => Verdict::Own,
+                    (true, false) => Verdict::Neighbour,
+                    (false, _) => Verdict::Leave,
+                }
             }
         }
     }
@@ -209,34 +216,42 @@ impl Facing {
     pub(crate) fn collide_hull(&self, b: &Hull, margin: Length) -> Manifold {
         let a = &self.hull;
         let reach = i64::from(margin.saturating_add(b.radius).to_bits()) << 30;
-        let face = Face { edge: 0, separation: hull_hull::face_separation(a, 0, b, Vec2::ZERO) };
+        let face_a = hull_hull::best_face(a, b, Vec2::ZERO);
         let face_b = hull_hull::best_face(b, a, Vec2::ZERO);
-        if face.separation > reach || face_b.separation > reach {
+        if face_a.separation > reach || face_b.separation > reach {
             return Manifold::NONE;
         }
-        if hull_hull::are_apart(a, b, Vec2::ZERO, face, face_b) {
-            self.collide_apart(b, (face, face_b), margin)
+        if hull_hull::are_apart(a, b, Vec2::ZERO, face_a, face_b) {
+            self.collide_apart(b, (face_a, face_b), margin)
         } else {
-            self.collide_overlapping(b, face, margin)
+            self.collide_overlapping(b, margin)
         }
     }
 
+    /// The face that the shape is in front of.
+    fn face(&self, b: &Hull) -> Face {
+        Face { edge: 0, separation: hull_hull::face_separation(&self.hull, 0, b, Vec2::ZERO) }
+    }
+
     /// The nearest features, if the chain allows their normal.
-    fn collide_apart(&self, b: &Hull, (face, face_b): (Face, Face), margin: Length) -> Manifold {
+    fn collide_apart(&self, b: &Hull, (face_a, face_b): (Face, Face), margin: Length) -> Manifold {
         let a = &self.hull;
-        let found = if face_b.separation > face.separation {
+        let found = if face_b.separation > face_a.separation {
             hull_hull::clip(b, a, Vec2::ZERO, face_b, true, margin).swapped()
+        } else if face_a.edge == 0 {
+            hull_hull::clip(a, b, Vec2::ZERO, face_a, true, margin)
         } else {
-            hull_hull::clip(a, b, Vec2::ZERO, face, true, margin)
+            // Behind the link, and in front of its neighbour.
+            return Manifold::NONE;
         };
         if found.points().is_empty() {
             return Manifold::NONE;
         }
         match self.judge(found.normal) {
             Verdict::Own => found,
-            Verdict::Leave => Manifold::NONE,
+            Verdict::Neighbour | Verdict::Leave => Manifold::NONE,
             Verdict::Snap => {
-                let mut found = hull_hull::clip(a, b, Vec2::ZERO, face, false, margin);
+                let mut found = hull_hull::clip(a, b, Vec2::ZERO, self.face(b), false, margin);
                 // Beyond the end of the link its line only bounds what may yet come.
                 found.retain(|point| point.separation > 0 || self.is_beside(point.anchor, b.radius));
                 found
@@ -253,15 +268,24 @@ impl Facing {
     }
 
     /// The face of least overlap among those that the chain allows.
-    fn collide_overlapping(&self, b: &Hull, face: Face, margin: Length) -> Manifold {
+    fn collide_overlapping(&self, b: &Hull, margin: Length) -> Manifold {
         let a = &self.hull;
-        let ours = |edge: &usize| matches!(self.judge(-b.normals()[*edge]), Verdict::Own);
-        let of_b = (0..b.vertices().len())
-            .filter(ours)
-            .map(|edge| Face { edge, separation: hull_hull::face_separation(b, edge, a, Vec2::ZERO) })
-            .max_by_key(|face| face.separation);
-        if let Some(face_b) = of_b.filter(|of_b| of_b.separation > face.separation + TOLERANCE_WIDE) {
-            return hull_hull::clip(b, a, Vec2::ZERO, face_b, false, margin).swapped();
+        let face = self.face(b);
+        let judged = |edge: usize| {
+            let face_b = Face { edge, separation: hull_hull::face_separation(b, edge, a, Vec2::ZERO) };
+            match self.judge(-b.normals()[edge]) {
+                Verdict::Own => Some((face_b, true)),
+                Verdict::Neighbour => Some((face_b, false)),
+                Verdict::Leave | Verdict::Snap => None,
+            }
+        };
+        let best = (0..b.vertices().len()).filter_map(judged).max_by_key(|(face_b, _)| face_b.separation);
+        match best.filter(|(face_b, _)| face_b.separation > face.separation + TOLERANCE_WIDE) {
+            Some((face_b, true)) => {
+                return hull_hull::clip(b, a, Vec2::ZERO, face_b, false, margin).swapped();
+            }
+            Some((_, false)) => return Manifold::NONE,
+            None => {}
         }
         if self.neighbour_separation(b) > face.separation {
             return Manifold::NONE;
