@@ -15,7 +15,10 @@ use crate::math::{Length, Step, Unit, Vec2, round_shift_wide, saturate, saturate
 /// but anchors would jump. The same distance tells apart polygons that are disjoint from those that touch.
 const TOLERANCE: Step = Step::lit("0.0005");
 
-/// [`TOLERANCE`] with the 52 fraction bits of a product of a length and a unit vector.
+/// The fraction bits of a product of a length and a unit vector: of the separation from a face.
+pub(super) const FACE_BITS: u32 = Unit::FRAC_NBITS + Length::FRAC_NBITS;
+
+/// [`TOLERANCE`] with [`FACE_BITS`] fraction bits.
 pub(super) const TOLERANCE_WIDE: i64 = (TOLERANCE.to_bits() as i64) << 25;
 
 /// The face that separated a pair in the last tick. Trying it first changes no result: any axis with a gap

@@ -129,7 +129,7 @@ impl Facing {
             hull: Hull::segment(p.narrow(), q.narrow(), direction),
             direction,
             normal: -direction.perp(),
-            start: end(before, |before, own| turn(before, own)),
+            start: end(before, turn),
             end: end(after, |after, own| turn(own, after)),
             one_sided: link.sides == Sides::Right,
         })

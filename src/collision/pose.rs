@@ -47,6 +47,16 @@ impl Hull {
         if i + 1 == self.count { 0 } else { i + 1 }
     }
 
+    /// A circle: a point with a radius, and no face.
+    pub(crate) fn point(radius: Length) -> Self {
+        Hull { count: 1, radius, ..Self::empty() }
+    }
+
+    /// How many faces it has.
+    pub(crate) fn faces(&self) -> usize {
+        if self.count < 2 { 0 } else { self.count }
+    }
+
     /// The mean of the vertices, about the shape's centre: a place inside.
     pub(crate) fn middle(&self) -> Vec2<Fx> {
         let sum = self.vertices().iter().fold(Vec2::ZERO, |sum, vertex| sum + vertex.widen());

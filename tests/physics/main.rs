@@ -8,6 +8,7 @@ mod free_fall;
 mod joints;
 mod piles;
 mod rebound;
+mod seams;
 mod slope;
 
 use lockstep2d::lockstep::{Game, Sandbox};
