@@ -57,7 +57,7 @@ pub(super) struct Approach<'a> {
 }
 
 /// Shapes that move against each other by less than this in a tick, in metres, do not pass by.
-const PASSAGE_MIN: Fx = fx!(0.0005);
+const PASSAGE_MIN: Fx = fx!(0.0001);
 
 impl<'a> Approach<'a> {
     pub(super) fn new(
@@ -101,7 +101,11 @@ impl<'a> Approach<'a> {
         // A point that is not reached does nothing, so only one that is decides.
         let reached = manifold.points().iter().filter(|point| {
             let separation = widen(point.separation);
-            separation >= -self.slack && closing(point) > separation.max(PASSAGE_MIN)
+            let closing = closing(point);
+            // A quarter more: a gap that just closes acts too.
+            separation >= -self.slack
+                && closing > PASSAGE_MIN
+                && closing.saturating_add(closing / 4) > separation
         });
         if reached.map(closing).max().is_some_and(|closing| self.passes_by(closing)) {
             manifold.retain(|_| false);
