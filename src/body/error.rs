@@ -23,6 +23,18 @@ pub enum GeometryError {
         /// The first vertex of an edge with another vertex on its wrong side.
         vertex: u64,
     },
+    /// A chain has at least 2 points, 3 if it is closed, and at most 4096 links.
+    ChainLength {
+        /// How many points there were.
+        points: u64,
+    },
+    /// A chain has no materials, one for all links, or one for each.
+    MaterialCount {
+        /// How many links there are.
+        links: u64,
+        /// How many materials there were.
+        materials: u64,
+    },
     /// A coordinate, radius or length is too small or too large.
     SizeOutOfRange {
         /// The value in metres.
@@ -39,6 +51,15 @@ impl fmt::Display for GeometryError {
             }
             GeometryError::NotConvex { vertex } => {
                 write!(f, "not convex and counter-clockwise at the edge from vertex {vertex}")
+            }
+            GeometryError::ChainLength { points } => {
+                write!(
+                    f,
+                    "a chain has 2 points or more, 3 if it is closed, and at most 4096 links: not {points} points"
+                )
+            }
+            GeometryError::MaterialCount { links, materials } => {
+                write!(f, "{materials} materials for the {links} links of a chain")
             }
             GeometryError::SizeOutOfRange { value } => {
                 write!(f, "a size or coordinate of {value} m is out of range")

@@ -10,6 +10,7 @@
 use fixed::FixedI64;
 use fixed::types::extra::U28;
 
+use super::link::Link;
 use super::pose::{Outline, PosedShape};
 use crate::body::POLYGON_VERTICES_MAX;
 use crate::fx;
@@ -39,7 +40,9 @@ impl Core {
         let centre = shape.centre - origin;
         match &shape.outline {
             Outline::Circle { radius } => Core::disc(centre, (*radius).into()),
-            Outline::Segment { a, b } => Core::from_points([centre + *a, centre + *b], Fx::ZERO),
+            Outline::Segment { a, b } | Outline::Link(Link { a, b, .. }) => {
+                Core::from_points([centre + *a, centre + *b], Fx::ZERO)
+            }
             Outline::Polygon(hull) => {
                 let vertices = hull.vertices().iter().map(|vertex| centre + vertex.widen());
                 Core::from_points(vertices, hull.radius.into())

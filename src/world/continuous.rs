@@ -86,8 +86,10 @@ fn first_impact(state: &State, scratch: &Scratch, swept: &Swept) -> Fx {
         let area = posed.bounds.expanded(reach).swept(swept.sweep.end - swept.sweep.start);
         scratch.broad_phase.each_overlap(area, |other| {
             let obstacle = state.body_of(other);
-            if stops(body, obstacle) && may_stop(state, scratch, id.slot(), other) {
-                let there = Core::of(scratch.poses.at(other), obstacle.centre);
+            let posed_other = scratch.poses.at(other);
+            let solid = posed_other.is_solid_from(posed.centre);
+            if solid && stops(body, obstacle) && may_stop(state, scratch, id.slot(), other) {
+                let there = Core::of(posed_other, obstacle.centre);
                 let fixed = Sweep::fixed(obstacle.centre);
                 match time_of_impact((&there, &fixed), (&core, &swept.sweep), target) {
                     TimeOfImpact::Hit { fraction } => first = first.min(fraction),

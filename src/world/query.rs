@@ -134,7 +134,8 @@ impl Probe {
 }
 
 impl World {
-    /// The first shape that a ray meets from a point along a translation, in metres.
+    /// The first shape that a ray meets from a point along a translation, in metres. Links that are solid from one side
+    /// let rays from the other side through.
     ///
     /// ```
     /// use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, fx, math::Vec2, world::World};
@@ -191,8 +192,9 @@ impl World {
         let area = posed.bounds.expanded(crate::fx!(0.001));
         let mut closest: Option<CastHit> = None;
         self.scratch.broad_phase.each_along(area, translation, |slot| {
-            if let Some(shape) = self.seen(slot, filter) {
-                let other = Core::of(self.scratch.poses.at(slot), origin);
+            let posed = self.scratch.poses.at(slot);
+            if let Some(shape) = self.seen(slot, filter).filter(|_| posed.is_solid_from(origin)) {
+                let other = Core::of(posed, origin);
                 if let Some(hit) = cast_shape(&other, &moving, translation) {
                     if closest.is_none_or(|best| (hit.fraction, shape) < (best.fraction, best.shape)) {
                         let point = origin + hit.point;
@@ -282,8 +284,9 @@ impl World {
     ) {
         let mut interest = Unit::ONE;
         self.scratch.broad_phase.each_along(Aabb::new(origin, origin), translation, |slot| {
-            if let Some(shape) = self.seen(slot, filter) {
-                let core = Core::of(self.scratch.poses.at(slot), origin);
+            let posed = self.scratch.poses.at(slot);
+            if let Some(shape) = self.seen(slot, filter).filter(|_| posed.is_solid_from(origin)) {
+                let core = Core::of(posed, origin);
                 if let Some(hit) = cast_ray(&core, Vec2::ZERO, translation) {
                     let (fraction, point, normal) = (hit.fraction, origin + hit.point, hit.normal);
                     interest = visit(RayHit { shape, fraction, point, normal });

@@ -1,12 +1,15 @@
 //! Physics against theory. Each file holds one kind of motion and says what theory predicts; the goldens under
 //! `replays/` are frozen only after these hold.
 
+mod capsule;
+mod chain;
 mod collisions;
 mod continuous;
 mod free_fall;
 mod joints;
 mod piles;
 mod rebound;
+mod seams;
 mod slope;
 
 use lockstep2d::lockstep::{Game, Sandbox};
