@@ -9,7 +9,7 @@ use super::pairs;
 use super::scratch::Scratch;
 use super::state::State;
 use super::stats::{Phase, StepStats};
-use crate::body::{Handle, Pose, WORLD_EXTENT_MAX};
+use crate::body::{BodyKind, Handle, Pose, WORLD_EXTENT_MAX};
 use crate::math::{Fx, Vec2};
 use crate::solver::{SolverBody, Tuning, turned};
 
@@ -90,6 +90,8 @@ fn refit_boxes(state: &mut State, scratch: &mut Scratch) {
                 *fat = needed.expanded(config.fat_margin);
                 scratch.broad_phase.set(id.slot(), *fat);
                 scratch.changes.shapes.push(id.slot());
+                // The box of a kinematic body that has stopped leaves what it rests on.
+                scratch.changes.resting |= !body.is_active();
             }
         }
     }
@@ -114,10 +116,12 @@ fn finalise_body(state: &mut State, scratch: &mut Scratch, slot: u32) -> Pose {
     body.hold_locked_axes();
     body.force = Vec2::ZERO;
     body.torque = Fx::ZERO;
+    if body.kind() == BodyKind::Kinematic && !body.is_moving() && body.rest_ticks == 0 {
+        body.rest_ticks = 1;
+        scratch.changes.body(body);
+    }
     if let Some(target) = body.target.take() {
         body.stop();
-        // It is not active any more, unless the game gives it another target.
-        scratch.changes.body(body);
         return target;
     }
     let centre = body.centre + shift.widen();
