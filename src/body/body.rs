@@ -42,7 +42,7 @@ pub struct Body {
     pub(crate) mass: MassProperties,
     pub(crate) settings: BodySettings,
     pub(crate) enabled: bool,
-    /// For how many ticks it has been slow enough to sleep.
+    /// For how many ticks it has been slow enough to sleep, or has been at rest if it is kinematic, up to 1.
     pub(crate) rest_ticks: u32,
     /// The sleeping island it belongs to, unless it is awake.
     pub(crate) island: Option<IslandId>,
@@ -75,6 +75,7 @@ impl Body {
             user_data: def.user_data,
         };
         body.set_angular_velocity(def.angular_velocity);
+        body.hold_locked_axes();
         body.set_transform(def.position, def.angle);
         body
     }
@@ -203,11 +204,11 @@ impl Body {
     }
 
     /// Whether something may happen to it or by it: pairs of shapes of which neither body is active are not looked
-    /// at.
+    /// at. A kinematic body is active for one more tick after it has come to rest, in which it is seen where it is.
     pub(crate) fn is_active(&self) -> bool {
         match self.kind {
             BodyKind::Fixed => false,
-            BodyKind::Kinematic => self.is_moving(),
+            BodyKind::Kinematic => self.rest_ticks == 0 || self.is_moving(),
             BodyKind::Dynamic => self.enabled && self.island.is_none(),
         }
     }
@@ -249,14 +250,22 @@ impl Body {
         self.mass.inverse_gyration != Reciprocal::ZERO
     }
 
-    /// Takes away what impulses have put along locked axes.
+    /// Takes away what impulses have put along locked axes, and stays there if it is told to go somewhere.
     pub(crate) fn hold_locked_axes(&mut self) {
-        if self.settings.locks.x {
+        let (turns, locks) = (self.turns(), self.settings.locks);
+        let mut target = self.target.unwrap_or(Pose { centre: self.centre, angle: self.angle });
+        if locks.x {
             self.velocity.x = Speed::ZERO;
+            target.centre.x = self.centre.x;
         }
-        if self.settings.locks.y {
+        if locks.y {
             self.velocity.y = Speed::ZERO;
+            target.centre.y = self.centre.y;
         }
+        if !turns {
+            target.angle = self.angle;
+        }
+        self.target = self.target.map(|_| target);
     }
 
     /// Forgets its velocity.
@@ -270,6 +279,7 @@ impl Body {
         let clamp = |speed: Speed| speed.clamp(-SPEED_MAX, SPEED_MAX);
         self.velocity = Vec2::new(clamp(self.velocity.x), clamp(self.velocity.y));
         self.spin = clamp(self.spin);
+        self.hold_locked_axes();
     }
 
     /// Adds a force in N at a world point until the end of the next tick.

@@ -25,6 +25,7 @@ impl World {
         let body = self.state.bodies.at_mut(id.slot());
         body.settings = *settings;
         body.set_mass(mass);
+        body.hold_locked_axes();
         self.placed(id.slot());
         Ok(())
     }
@@ -77,6 +78,7 @@ impl World {
             }
         }
         islands::disturb(&mut self.state, &mut self.scratch, id.slot());
+        self.wake_joined(id);
         let body = self.state.bodies.at_mut(id.slot());
         body.kind = kind;
         body.target = None;
@@ -161,8 +163,8 @@ impl World {
     }
 
     /// Changes anything about a shape: read [`crate::body::Shape::def`], change a copy, and pass it here. Unless the
-    /// body's mass was given, it follows from its shapes anew. A shape that becomes or ceases to be a sensor ends its
-    /// contacts; otherwise they last as long as the shapes touch.
+    /// body's mass was given, it follows from its shapes anew. A shape that becomes or ceases to be a sensor, or to have
+    /// contact events, ends its contacts; otherwise they last as long as the shapes touch.
     ///
     /// # Errors
     /// When the handle is stale, a value is out of range, or a dynamic body would be left without mass.
@@ -177,7 +179,8 @@ impl World {
             .map(|other| if *other == id { def } else { &self.state.shapes.at(other.slot()).def });
         let mass = mass_of(owner.kind(), owner.mass_source, &owner.settings, with)?;
         self.check_spin(owner, &mass)?;
-        let other_role = shape.def.sensor != def.sensor;
+        // Who was told that a contact began is told that it ended.
+        let other_role = (shape.def.sensor, shape.def.events.contact) != (def.sensor, def.events.contact);
         islands::disturb(&mut self.state, &mut self.scratch, slot);
         if other_role {
             self.forget_contacts(&[id]);
@@ -232,12 +235,18 @@ impl World {
         for island in islands {
             islands::wake(&mut self.state, &mut self.scratch, island);
         }
+        for (_, body) in self.state.bodies.iter_mut().filter(|(_, body)| body.is_dynamic()) {
+            body.rest_ticks = 0;
+        }
         self.state.config.gravity = gravity;
         Ok(())
     }
 
     /// Wakes what is joined to a body.
-    fn wake_joined(&mut self, id: BodyId) {
+    pub(super) fn wake_joined(&mut self, id: BodyId) {
+        if self.state.islands.len() == 0 {
+            return;
+        }
         let joined: alloc::vec::Vec<BodyId> = self
             .state
             .joints

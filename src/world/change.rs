@@ -264,6 +264,7 @@ impl World {
             shape.fat = fat_box(&shape.def, body, self.state.config.fat_margin);
         }
         self.placed(slot);
+        self.scratch.changes.resting = true;
     }
 
     /// Brings the caches in line with a body that has come or been moved.

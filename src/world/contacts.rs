@@ -2,10 +2,10 @@
 
 use super::events::{ContactEvent, Events, HitEvent, SensorEvent};
 use super::look_ahead::Approach;
-use super::scratch::{Approaching, Scratch};
+use super::scratch::{Approaching, Poses, Scratch};
 use super::state::{Reported, Side, State};
 use crate::body::Handle;
-use crate::collision::{AxisHint, Contact, Manifold, SatCounters, collide};
+use crate::collision::{AxisHint, Contact, Manifold, Pair, SatCounters, collide};
 use crate::math::{Fx, Length, widen};
 use crate::solver::{Surface, TouchingPair};
 
@@ -18,7 +18,7 @@ pub(super) fn find_manifolds(state: &State, scratch: &mut Scratch) {
     scratch.sat = SatCounters::default();
     for (index, contact) in (0u32..).zip(&state.contacts) {
         let hint = &mut scratch.hints[index as usize];
-        let manifold = manifold_of(state, &scratch.poses, contact, hint, &mut scratch.sat);
+        let manifold = manifold_of(state, &scratch.poses, contact.shapes, hint, &mut scratch.sat);
         if !manifold.points().is_empty() && state.sensor_of(contact.shapes).is_none() {
             scratch.touching.push(touching_pair(state, index, contact));
             scratch.approaches.extend(approaching(state, index, contact, &manifold));
@@ -28,25 +28,23 @@ pub(super) fn find_manifolds(state: &State, scratch: &mut Scratch) {
 }
 
 /// Whether two shapes have contact, or come so near within the tick that they have to be solved together.
-pub(super) fn touch(state: &State, scratch: &mut Scratch, contact: &Contact) -> bool {
-    let manifold =
-        manifold_of(state, &scratch.poses, contact, &mut AxisHint::default(), &mut SatCounters::default());
+pub(super) fn touch(state: &State, poses: &Poses, pair: Pair) -> bool {
+    let manifold = manifold_of(state, poses, pair, &mut AxisHint::default(), &mut SatCounters::default());
     !manifold.points().is_empty()
 }
 
 fn manifold_of(
     state: &State,
-    poses: &super::scratch::Poses,
-    contact: &Contact,
+    poses: &Poses,
+    (a, b): Pair,
     hint: &mut AxisHint,
     counters: &mut SatCounters,
 ) -> Manifold {
-    let (a, b) = contact.shapes;
     let (posed_a, posed_b) = (poses.at(a), poses.at(b));
-    if state.sensor_of(contact.shapes).is_some() {
+    if state.sensor_of((a, b)).is_some() {
         return collide(posed_a, posed_b, Length::ZERO, hint, counters);
     }
-    let (body_a, body_b) = state.bodies_of(contact.shapes);
+    let (body_a, body_b) = state.bodies_of((a, b));
     let approach = Approach::new(state, (body_a, posed_a), (body_b, posed_b));
     let mut manifold = collide(posed_a, posed_b, approach.margin, hint, counters);
     approach.keep_reachable(&mut manifold);

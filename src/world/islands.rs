@@ -19,7 +19,7 @@ use super::scratch::Scratch;
 use super::state::{Island, State};
 use crate::body::{Body, BodyKind, Handle, IslandId};
 use crate::collision::Contact;
-use crate::math::{Speed, Step, narrow};
+use crate::math::{Fx, Speed, Step, Vec2, narrow};
 use crate::solver::SolverBody;
 
 /// The bodies and joints that a tick has to do with, in slot order.
@@ -108,37 +108,37 @@ pub(super) fn wake(state: &mut State, scratch: &mut Scratch, island: IslandId) {
         body.rest_ticks = 0;
         scratch.changes.body(body);
     }
-    scratch.changes.woken = true;
+    scratch.changes.resting = true;
     scratch.roster.invalidate();
 }
 
-/// Wakes what active bodies have come into contact with, and what that is in contact with in turn.
+/// Wakes what active bodies have come into contact with, and what that is in contact with in turn: wave after wave,
+/// each of which looks only at the pairs of those that the one before has woken.
 pub(super) fn wake_touched(state: &mut State, scratch: &mut Scratch) {
-    while state.islands.len() > 0 {
-        let mut touched = core::mem::take(&mut scratch.fresh);
-        touched.clear();
-        touched.extend(state.contacts.iter().filter(|contact| has_sleeper(state, contact)));
-        let mut woken = false;
-        for contact in &touched {
-            // Another contact may have woken it already.
-            let (a, b) = state.bodies_of(contact.shapes);
+    if state.islands.len() == 0 {
+        return;
+    }
+    let has_sleeper = |contact: &&Contact| {
+        let (a, b) = state.bodies_of(contact.shapes);
+        (a.is_asleep() || b.is_asleep()) && state.sensor_of(contact.shapes).is_none()
+    };
+    scratch.pairs.clear();
+    scratch.pairs.extend(state.contacts.iter().filter(has_sleeper).map(|contact| contact.shapes));
+    while !scratch.pairs.is_empty() {
+        let first_change = scratch.changes.shapes.len();
+        let wave = core::mem::take(&mut scratch.pairs);
+        for &pair in &wave {
+            // Another pair may have woken it already.
+            let (a, b) = state.bodies_of(pair);
             let Some(island) = a.island.or(b.island) else { continue };
-            if super::contacts::touch(state, scratch, contact) {
+            if super::contacts::touch(state, &scratch.poses, pair) {
                 wake(state, scratch, island);
-                woken = true;
             }
         }
-        scratch.fresh = touched;
-        if !woken {
-            break;
-        }
-        pairs::update(state, scratch);
+        scratch.pairs = wave;
+        pairs::find_sleepers(state, scratch, first_change);
     }
-}
-
-fn has_sleeper(state: &State, contact: &Contact) -> bool {
-    let (a, b) = state.bodies_of(contact.shapes);
-    (a.is_asleep() || b.is_asleep()) && state.sensor_of(contact.shapes).is_none()
+    pairs::update(state, scratch);
 }
 
 /// Counts for how long bodies have been at rest, and lets islands of sleepy bodies fall asleep.
@@ -148,6 +148,7 @@ pub(super) fn fall_asleep(state: &mut State, scratch: &mut Scratch) {
     }
     let limit = state.config.ticks_to_sleep();
     keep_awake_on_moving_ground(state, scratch);
+    keep_awake_on_moving_anchors(state, scratch);
     let mut any_sleepy = false;
     for &slot in &scratch.roster.bodies {
         let body = state.bodies.at_mut(slot);
@@ -155,10 +156,12 @@ pub(super) fn fall_asleep(state: &mut State, scratch: &mut Scratch) {
             let slow = is_slow(body, scratch.solver.body(slot), state.config.tick_rate);
             body.rest_ticks = if slow { body.rest_ticks.saturating_add(1).min(limit) } else { 0 };
         }
-        any_sleepy |= body.rest_ticks == limit;
+        any_sleepy |= body.is_dynamic() && body.rest_ticks == limit;
     }
     if any_sleepy {
-        connect(state, scratch);
+        scratch.union.reset(&scratch.roster.bodies, state.bodies.slot_count());
+        unite_joined(state, scratch);
+        unite_touching(state, scratch, &state.contacts);
         put_to_sleep(state, scratch, |body| body.rest_ticks == limit);
     }
 }
@@ -166,7 +169,11 @@ pub(super) fn fall_asleep(state: &mut State, scratch: &mut Scratch) {
 /// Puts a body to sleep, and all that it is in contact with or joined to.
 pub(super) fn force_sleep(state: &mut State, scratch: &mut Scratch, slot: u32) {
     scratch.roster.refresh(state);
-    connect(state, scratch);
+    scratch.union.reset(&scratch.roster.bodies, state.bodies.slot_count());
+    unite_joined(state, scratch);
+    unite_touching(state, scratch, &state.contacts);
+    // What has been woken since the last tick still has its contacts there.
+    unite_touching(state, scratch, &state.resting);
     let root = scratch.union.root(slot);
     for &other in &scratch.roster.bodies {
         // Not a count that a body reaches by itself: it marks those that are meant.
@@ -178,12 +185,29 @@ pub(super) fn force_sleep(state: &mut State, scratch: &mut Scratch, slot: u32) {
 }
 
 fn keep_awake_on_moving_ground(state: &mut State, scratch: &Scratch) {
-    let State { bodies, .. } = state;
     for pair in &scratch.touching {
-        for (ground, other) in [pair.bodies, (pair.bodies.1, pair.bodies.0)] {
-            if bodies.at(ground).kind() == BodyKind::Kinematic && bodies.at(ground).is_moving() {
-                bodies.at_mut(other).rest_ticks = 0;
-            }
+        keep_awake(state, scratch, pair.bodies);
+    }
+}
+
+/// What hangs from a body that moves does not rest either.
+fn keep_awake_on_moving_anchors(state: &mut State, scratch: &Scratch) {
+    for &joint in &scratch.roster.joints {
+        let (a, b) = state.joints.at(joint).def().bodies();
+        keep_awake(state, scratch, (a.slot(), b.slot()));
+    }
+}
+
+fn keep_awake(state: &mut State, scratch: &Scratch, (a, b): (u32, u32)) {
+    let bodies = &mut state.bodies;
+    for (ground, other) in [(a, b), (b, a)] {
+        // One that is moved to a place has already stopped there.
+        let moved = || {
+            let solved = scratch.solver.body(ground);
+            solved.velocity != Vec2::ZERO || solved.spin != 0
+        };
+        if bodies.at(ground).kind() == BodyKind::Kinematic && moved() {
+            bodies.at_mut(other).rest_ticks = 0;
         }
     }
 }
@@ -203,22 +227,26 @@ fn is_slow(body: &Body, solved: &SolverBody, tick_rate: u32) -> bool {
         && fastest(d.x.to_bits(), d.y.to_bits(), solved.turn.to_bits()) < square(reach.to_bits())
 }
 
-/// Unites the bodies of every contact and joint.
-fn connect(state: &State, scratch: &mut Scratch) {
+/// Unites the bodies of every joint.
+fn unite_joined(state: &State, scratch: &mut Scratch) {
     let Scratch { roster, union, .. } = scratch;
-    union.reset(&roster.bodies, state.bodies.slot_count());
-    let mut unite = |a: u32, b: u32| {
-        if is_awake(state.bodies.at(a)) && is_awake(state.bodies.at(b)) {
-            union.unite(a, b);
-        }
-    };
-    for contact in state.contacts.iter().filter(|contact| contact.count > 0) {
-        let (a, b) = contact.shapes;
-        unite(state.shapes.at(a).body().slot(), state.shapes.at(b).body().slot());
-    }
     for &joint in &roster.joints {
         let (a, b) = state.joints.at(joint).def().bodies();
-        unite(a.slot(), b.slot());
+        unite(state, union, a.slot(), b.slot());
+    }
+}
+
+/// Unites the bodies of every contact.
+fn unite_touching(state: &State, scratch: &mut Scratch, contacts: &[Contact]) {
+    for contact in contacts.iter().filter(|contact| contact.count > 0) {
+        let (a, b) = contact.shapes;
+        unite(state, &mut scratch.union, state.shapes.at(a).body().slot(), state.shapes.at(b).body().slot());
+    }
+}
+
+fn unite(state: &State, union: &mut UnionFind, a: u32, b: u32) {
+    if is_awake(state.bodies.at(a)) && is_awake(state.bodies.at(b)) {
+        union.unite(a, b);
     }
 }
 
@@ -248,6 +276,7 @@ fn put_to_sleep(state: &mut State, scratch: &mut Scratch, sleepy: impl Fn(&Body)
         body.island = Some(island);
         body.rest_ticks = 0;
         body.stop();
+        (body.force, body.torque) = (Vec2::ZERO, Fx::ZERO);
         asleep = true;
     }
     if asleep {
@@ -258,23 +287,27 @@ fn put_to_sleep(state: &mut State, scratch: &mut Scratch, sleepy: impl Fn(&Body)
 
 /// Wakes the island of a body, and lets the body itself begin to rest anew.
 pub(super) fn wake_body(state: &mut State, scratch: &mut Scratch, slot: u32) {
-    state.bodies.at_mut(slot).rest_ticks = 0;
-    if let Some(island) = state.bodies.at(slot).island {
-        wake(state, scratch, island);
+    let body = state.bodies.at_mut(slot);
+    let was_active = body.is_active();
+    body.rest_ticks = 0;
+    match body.island {
+        Some(island) => wake(state, scratch, island),
+        None if body.is_active() && !was_active => {
+            scratch.changes.body(body);
+            scratch.changes.resting = true;
+        }
+        None => {}
     }
 }
 
 /// Wakes a body and everything whose boxes overlap its own: it is about to change, or has just changed.
 pub(super) fn disturb(state: &mut State, scratch: &mut Scratch, slot: u32) {
     wake_body(state, scratch, slot);
-    if state.islands.len() == 0 {
-        return;
-    }
     let mut neighbours = Vec::new();
     for id in state.bodies.at(slot).shapes() {
         scratch.broad_phase.each_overlap(state.shapes.at(id.slot()).fat, |other| {
             let body = state.shapes.at(other).body().slot();
-            if state.bodies.at(body).is_asleep() {
+            if !state.bodies.at(body).is_active() {
                 neighbours.push(body);
             }
             ControlFlow::Continue(())
@@ -289,7 +322,12 @@ pub(super) fn disturb(state: &mut State, scratch: &mut Scratch, slot: u32) {
 
 /// Sets the contacts aside of which no body is active any more, with their manifolds.
 fn rest_contacts(state: &mut State, scratch: &mut Scratch) {
+    if scratch.manifolds.len() != state.contacts.len() {
+        // There are none since a restore, or since a contact was removed.
+        scratch.forget_contacts();
+    }
     let Scratch { manifolds, hints, fresh, merged, .. } = scratch;
+    let has_manifolds = !manifolds.is_empty();
     let mut contacts = core::mem::take(&mut state.contacts);
     fresh.clear();
     let mut kept = 0;
@@ -297,8 +335,10 @@ fn rest_contacts(state: &mut State, scratch: &mut Scratch) {
         let (a, b) = state.bodies_of(contacts[index].shapes);
         if a.is_active() || b.is_active() {
             contacts.swap(kept, index);
-            manifolds.swap(kept, index);
-            hints.swap(kept, index);
+            if has_manifolds {
+                manifolds.swap(kept, index);
+                hints.swap(kept, index);
+            }
             kept += 1;
         } else {
             fresh.push(contacts[index]);

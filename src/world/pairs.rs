@@ -12,8 +12,8 @@ use crate::collision::{AxisHint, Contact, Moved, Pair};
 
 /// Brings the contacts in line with the fat boxes. Contacts of pairs that have parted go to `scratch.ended`.
 pub(super) fn update(state: &mut State, scratch: &mut Scratch) {
-    let changes = &scratch.changes;
-    if !changes.any() {
+    // Pairs that were left out come in as soon as there is room, whatever has made it.
+    if !(scratch.changes.any() || state.pairs_left_out) {
         return;
     }
     remember_hints(state, scratch);
@@ -25,24 +25,46 @@ pub(super) fn update(state: &mut State, scratch: &mut Scratch) {
     scratch.changes.clear();
 }
 
-/// Contacts of bodies that have woken, or have begun to move, are looked at again.
+/// Contacts of bodies that have woken, or have begun to move, are looked at again, and so are those that end
+/// although nothing is active: a sensor's, of a kinematic body that was moved by hand.
 fn wake_resting(state: &mut State, scratch: &mut Scratch) {
-    let State { resting, contacts, bodies, shapes, .. } = state;
-    if resting.is_empty() || !(scratch.changes.everything || scratch.changes.woken) {
+    if state.resting.is_empty() || !(scratch.changes.everything || scratch.changes.resting) {
         return;
     }
-    let active = |slot: u32| bodies.at(shapes.at(slot).body().slot()).is_active();
-    let woken = &mut scratch.fresh;
+    let mut resting = core::mem::take(&mut state.resting);
+    let Scratch { fresh: woken, joined, merged, .. } = scratch;
     woken.clear();
     resting.retain(|contact| {
-        let (a, b) = contact.shapes;
-        let wakes = active(a) || active(b);
+        let (a, b) = state.bodies_of(contact.shapes);
+        let wakes = match a.is_dynamic() || b.is_dynamic() {
+            true => a.is_active() || b.is_active(),
+            false => a.is_active() || b.is_active() || !is_near(state, joined, contact.shapes),
+        };
         if wakes {
             woken.push(*contact);
         }
         !wakes
     });
-    merge(contacts, woken, &mut scratch.merged);
+    state.resting = resting;
+    merge(&mut state.contacts, woken, merged);
+}
+
+fn is_near(state: &State, joined: &[Pair], (a, b): Pair) -> bool {
+    state.shapes.at(a).fat.overlaps(state.shapes.at(b).fat) && may_touch(state, joined, (a, b))
+}
+
+/// Finds the pairs of a sleeping body and one that is not, of which one of these shapes is an end, and that may push
+/// each other.
+pub(super) fn find_sleepers(state: &State, scratch: &mut Scratch, first_change: usize) {
+    let Scratch { broad_phase, changes, pairs, joined, .. } = scratch;
+    let moved = Moved::Slots(&changes.shapes[first_change..]);
+    let wanted = |pair: Pair| {
+        let (a, b) = state.bodies_of(pair);
+        a.is_asleep() != b.is_asleep()
+            && state.sensor_of(pair).is_none()
+            && may_touch(state, joined, pair)
+    };
+    broad_phase.pairs(moved, wanted, state.config.pair_limit as usize, pairs);
 }
 
 /// Takes out the contacts whose boxes have parted, and those that nothing moves any more.

@@ -81,11 +81,14 @@ impl World {
         self.check_velocity(velocity, angular, body.radius_of_gyration())?;
         islands::wake_body(&mut self.state, &mut self.scratch, id.slot());
         let body = self.state.bodies.at_mut(id.slot());
+        let was_moving = body.is_moving();
         body.target = None;
         body.velocity = velocity.narrow();
         body.set_angular_velocity(angular);
-        // A kinematic body that begins or ceases to move has other pairs.
-        self.scratch.changes.body(self.state.bodies.at(id.slot()));
+        body.hold_locked_axes();
+        if !body.is_dynamic() && body.is_moving() && !was_moving {
+            self.wake_joined(id);
+        }
         Ok(())
     }
 
@@ -111,8 +114,8 @@ impl World {
         self.set_velocity(id, velocity, angular)?;
         let body = self.state.bodies.at_mut(id.slot());
         if body.is_moving() {
-            let angle = if body.turns() { angle } else { body.angle };
             body.target = Some(Pose { centre: there.centre, angle });
+            body.hold_locked_axes();
         }
         Ok(())
     }
@@ -126,6 +129,7 @@ impl World {
         check_position(position)?;
         self.state.bodies.get(id).ok_or(WorldError::StaleBody(id))?;
         islands::disturb(&mut self.state, &mut self.scratch, id.slot());
+        self.wake_joined(id);
         let body = self.state.bodies.at_mut(id.slot());
         body.target = None;
         body.set_transform(position, angle);

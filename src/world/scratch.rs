@@ -57,8 +57,8 @@ pub(crate) struct Approaching {
 pub(crate) struct Changes {
     /// Anywhere: the caches are new.
     pub(crate) everything: bool,
-    /// Resting contacts may have an active body again.
-    pub(crate) woken: bool,
+    /// Resting contacts may have an active body again, or may have ended.
+    pub(crate) resting: bool,
     /// Pairs that might touch may not do so any more.
     pub(crate) rules: bool,
     /// Slots of shapes with another fat box, or whose body has begun or ceased to be active.
@@ -67,12 +67,12 @@ pub(crate) struct Changes {
 
 impl Changes {
     pub(crate) fn any(&self) -> bool {
-        self.everything || self.woken || self.rules || !self.shapes.is_empty()
+        self.everything || self.resting || self.rules || !self.shapes.is_empty()
     }
 
     pub(crate) fn clear(&mut self) {
-        let Changes { everything, woken, rules, shapes } = self;
-        (*everything, *woken, *rules) = (false, false, false);
+        let Changes { everything, resting, rules, shapes } = self;
+        (*everything, *resting, *rules) = (false, false, false);
         shapes.clear();
     }
 

@@ -10,7 +10,7 @@ use super::pairs;
 use super::scratch::Scratch;
 use super::state::State;
 use super::stats::{Phase, StepStats};
-use crate::body::{Handle, Pose, WORLD_EXTENT_MAX};
+use crate::body::{BodyKind, Handle, Pose, WORLD_EXTENT_MAX};
 use crate::math::{Angle, Fx, Vec2};
 use crate::solver::{SolverBody, Tuning, turn_of};
 
@@ -91,6 +91,8 @@ fn refit_boxes(state: &mut State, scratch: &mut Scratch) {
                 *fat = needed.expanded(config.fat_margin);
                 scratch.broad_phase.set(id.slot(), *fat);
                 scratch.changes.shapes.push(id.slot());
+                // The box of a kinematic body that has stopped leaves what it rests on.
+                scratch.changes.resting |= !body.is_active();
             }
         }
     }
@@ -124,11 +126,13 @@ fn finalise_body(state: &mut State, scratch: &mut Scratch, slot: u32) -> (Pose, 
     body.hold_locked_axes();
     body.force = Vec2::ZERO;
     body.torque = Fx::ZERO;
+    if body.kind() == BodyKind::Kinematic && !body.is_moving() && body.rest_ticks == 0 {
+        body.rest_ticks = 1;
+        scratch.changes.body(body);
+    }
     let turn = turn_of(turn, body.mass.inverse_gyration);
     if let Some(target) = body.target.take() {
         body.stop();
-        // It is not active any more, unless the game gives it another target.
-        scratch.changes.body(body);
         return (target, turn);
     }
     let centre = body.centre + shift.widen();

@@ -9,7 +9,7 @@ use core::fmt;
 use super::World;
 use super::change::{fat_box, mass_of, reach_max};
 use super::state::State;
-use crate::body::{Body, BodyId, BodyKind, Handle, SHAPES_PER_BODY_MAX, SPEED_MAX, WORLD_EXTENT_MAX};
+use crate::body::{Body, BodyId, BodyKind, Handle, Pose, SHAPES_PER_BODY_MAX, SPEED_MAX, WORLD_EXTENT_MAX};
 use crate::collision::Contact;
 use crate::math::{Fx, Vec2};
 
@@ -85,10 +85,17 @@ fn check_body(state: &State, id: BodyId, body: &Body) -> Result<(), Violation> {
     let free = body.force == Vec2::ZERO && body.torque == Fx::ZERO;
     check(body.is_dynamic() || free, || at("a force on a body that is not dynamic"))?;
     body.settings.validate().map_err(|error| Violation { what: at(&format!("{error}")) })?;
-    check(body.rest_ticks <= state.config.ticks_to_sleep(), || at("too sleepy to be awake"))?;
-    check(body.target.is_none() || body.kind == BodyKind::Kinematic, || {
-        at("a target without being kinematic")
-    })?;
+    let sleepiest = match body.kind {
+        BodyKind::Fixed => 0,
+        BodyKind::Kinematic => 1,
+        BodyKind::Dynamic => state.config.ticks_to_sleep(),
+    };
+    check(body.rest_ticks <= sleepiest, || at("too sleepy to be awake"))?;
+    let locks = body.settings.locks;
+    let held = !(locks.x && body.velocity.x != 0 || locks.y && body.velocity.y != 0);
+    check(held, || at("moves along a locked axis"))?;
+    let reachable = |target: Pose| body.kind == BodyKind::Kinematic && inside(target.centre);
+    check(body.target.is_none_or(reachable), || at("a target that it cannot have"))?;
     let shapes = body.shapes.iter().map(|shape| &state.shapes.at(shape.slot()).def);
     let mass = mass_of(body.kind, body.mass_source, &body.settings, shapes)
         .map_err(|error| Violation { what: at(&format!("{error}")) })?;
@@ -152,8 +159,8 @@ fn check_joints(state: &State) -> Result<(), Violation> {
         check(held, || format!("joint {id}: its bodies"))?;
         let (body_a, body_b) = (state.bodies.at(a.slot()), state.bodies.at(b.slot()));
         let both = body_a.is_dynamic() && body_b.is_dynamic() && body_a.enabled && body_b.enabled;
-        let together = !joint.is_solved() || !both || body_a.is_asleep() == body_b.is_asleep();
-        check(together, || format!("joint {id}: one of its bodies sleeps"))?;
+        let together = !joint.is_solved() || !both || body_a.island == body_b.island;
+        check(together, || format!("joint {id}: its bodies do not sleep together"))?;
         let limit = crate::solver::IMPULSE_MAX;
         let bounded = [joint.lambda.x, joint.lambda.y].iter().all(|p| (-limit..=limit).contains(p));
         check(bounded, || format!("joint {id}: its impulse"))?;
@@ -175,7 +182,6 @@ fn check_contacts(state: &State, contacts: &[Contact]) -> Result<(), Violation> 
         let (body_a, body_b) = state.bodies_of(contact.shapes);
         check(body_a.enabled && body_b.enabled, || at("of a disabled body"))?;
         let solid = state.sensor_of(contact.shapes).is_none();
-        check(!solid || body_a.is_dynamic() || body_b.is_dynamic(), || at("of bodies that nothing moves"))?;
         check(solid || contact.count == 0, || at("a sensor that pushes"))?;
         check(contact.count <= 2, || at("more than 2 points"))?;
         let limit = crate::solver::IMPULSE_MAX;
