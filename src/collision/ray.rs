@@ -28,7 +28,10 @@ pub(crate) fn cast_ray(shape: &Core, origin: Vec2<Fx>, translation: Vec2<Fx>) ->
     if contains_point(shape, origin) {
         return Some(RayHit { fraction: Fx::ZERO, point: origin, normal: Vec2::ZERO });
     }
-    let (origin, translation) = (to_grid(origin), to_grid(translation));
+    // Both ends are on the grid, so that the end of one ray is the beginning of the next.
+    let end = to_grid(origin + translation);
+    let origin = to_grid(origin);
+    let translation = end - origin;
     let (fraction, normal) = entry(shape.points(), shape.radius, origin, translation)?;
     let point = from_grid(origin + fraction.of(translation));
     Some(RayHit { fraction: fraction.to_fx(), point, normal })
