@@ -237,6 +237,40 @@ mod tests {
     }
 
     #[test]
+    fn large_shapes_are_hit_within_a_micrometre() {
+        let mut rng = Rng::new(4);
+        let mut hits = 0;
+        for _ in 0..20_000 {
+            let shape = samples::large(&mut rng);
+            let origin = samples::vector(&mut rng, fx!(300));
+            let translation = samples::vector(&mut rng, fx!(100)) - origin;
+            let Some(hit) = cast_ray(&shape, origin, translation) else { continue };
+            hits += 1;
+            let surface = distance(&shape, &Core::point(hit.point)).distance;
+            assert!(hit.fraction == 0 || surface.abs() < fx!(0.0000003), "{surface:?} {hit:?} {shape:?}");
+        }
+        assert!(hits > 5_000, "{hits}");
+    }
+
+    #[test]
+    fn nothing_overflows_at_the_edge_of_the_world() {
+        let ends = [Fx::MIN, fx!(-1073741824), fx!(0), fx!(1073741824), Fx::MAX];
+        let corners = || ends.into_iter().flat_map(|x| ends.map(|y| Vec2::new(x, y)));
+        for p in corners() {
+            for q in corners() {
+                for radius in [fx!(0), fx!(110), Fx::MAX] {
+                    let shape = Core::from_points([p, q], radius);
+                    for origin in corners() {
+                        for translation in corners() {
+                            cast_ray(&shape, origin, translation);
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
     fn segments_are_hit_from_both_sides_and_at_their_ends() {
         let wall = Core::from_points([Vec2::new(fx!(1), fx!(-1)), Vec2::new(fx!(1), fx!(1))], Fx::ZERO);
         let hit = |x, y, dx, dy| {
