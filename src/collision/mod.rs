@@ -20,7 +20,7 @@ mod time_of_impact;
 pub use broad_phase::BroadPhaseKind;
 pub(crate) use broad_phase::{BroadPhase, Pair, Proxy};
 pub(crate) use contact::{Contact, PointImpulse, match_pairs};
-pub(crate) use core::Core;
+pub(crate) use core::{Core, to_grid};
 pub(crate) use distance::{Distance, distance, overlap};
 pub(crate) use hull_hull::{AxisHint, SatCounters};
 pub use manifold::{Feature, Manifold, ManifoldPoint};

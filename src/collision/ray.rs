@@ -254,7 +254,7 @@ mod tests {
 
     #[test]
     fn nothing_overflows_at_the_edge_of_the_world() {
-        let ends = [Fx::MIN, fx!(-1073741824), fx!(0), fx!(1073741824), Fx::MAX];
+        let ends = [Fx::MIN, fx!(-1073741824), fx!(1073741824), Fx::MAX];
         let corners = || ends.into_iter().flat_map(|x| ends.map(|y| Vec2::new(x, y)));
         for p in corners() {
             for q in corners() {
