@@ -11,7 +11,6 @@ mod integrate;
 mod joint;
 mod limits;
 mod point_block;
-mod revolute;
 mod row;
 mod settings;
 mod softness;
@@ -23,28 +22,26 @@ use colour::{Colouring, Node};
 use contact::{ContactConstraint, Pass, Sweep};
 pub(crate) use contact::{Surface, WarmStarts};
 use integrate::Mover;
-pub use joint::{Joint, JointDef, RevoluteDef};
+use joint::JointSet;
+pub use joint::{
+    Distance, Drive, Joint, JointDef, JointFrame, JointKind, Limit, LinearDrive, Motor, Prismatic, Pull,
+    Revolute, Soft, Spring, Threshold, ThresholdAction, Weld, Wheel,
+};
 use limits::Faults;
 pub(crate) use limits::IMPULSE_MAX;
-use revolute::RevoluteConstraint;
 pub(crate) use settings::Tuning;
 pub use settings::{ContactTuning, DISTANCE_MAX, SolverSettings};
 
 use crate::body::{Arena, Body, BodyId, JointId};
 use crate::collision::{Contact, Manifold};
-use crate::math::{Angle, Reciprocal, Rot};
+use crate::math::Reciprocal;
 
 /// The working memory of the solver. Nothing in it outlives a tick, but its allocations do.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Solver {
     pub(crate) bodies: Vec<SolverBody>,
     movers: Vec<Mover>,
-    joint_ids: Vec<JointId>,
-    /// For each body slot, whether the body is in `jointed`.
-    has_joint: Vec<bool>,
-    jointed: Vec<JointedBody>,
-    rotations: Vec<Rot>,
-    joints: Vec<RevoluteConstraint>,
+    joints: JointSet,
     contacts: Vec<ContactConstraint>,
     /// For each constraint in `contacts`, the index of its contact in the state.
     contact_indices: Vec<u32>,
@@ -54,14 +51,6 @@ pub(crate) struct Solver {
     colouring: Colouring,
     pub(crate) warm_starts: WarmStarts,
     pub(crate) faults: Faults,
-}
-
-/// A body with joints, whose rotation is needed at every refresh.
-#[derive(Clone, Copy, Debug)]
-struct JointedBody {
-    slot: u32,
-    angle: Angle,
-    inverse_gyration: Reciprocal,
 }
 
 /// A contact to solve: where it is in the state, the slots of its bodies, and their common surface.
@@ -87,38 +76,14 @@ impl Solver {
     }
 
     /// Makes a constraint of every joint, in the order in which they are solved.
-    pub(crate) fn prepare_joints(&mut self, joints: &Arena<Joint, JointId>, bodies: &Arena<Body, BodyId>) {
-        self.joints.clear();
-        self.jointed.clear();
-        self.rotations.clear();
-        self.nodes.clear();
-        if joints.len() == 0 {
-            return;
-        }
-        self.joint_ids.clear();
-        self.joint_ids.extend(joints.iter().map(|(id, _)| id));
-        self.rotations.resize(bodies.slot_count(), Rot::IDENTITY);
-        self.has_joint.clear();
-        self.has_joint.resize(bodies.slot_count(), false);
-        for (id, joint) in joints.iter() {
-            let (a, b) = joint.def.bodies();
-            for slot in [a.index(), b.index()] {
-                if !core::mem::replace(&mut self.has_joint[slot as usize], true) {
-                    let body = bodies.at(slot);
-                    let inverse_gyration = body.mass.inverse_gyration;
-                    self.jointed.push(JointedBody { slot, angle: body.angle(), inverse_gyration });
-                }
-            }
-            self.nodes.push(node(id.index().into(), bodies, a.index(), b.index()));
-        }
-        for &index in self.colouring.order(&self.nodes, bodies.slot_count()) {
-            let id = self.joint_ids[index as usize];
-            let joint = joints.at(id.index());
-            let (a, b) = joint.def.bodies();
-            let (a, b) = (a.index(), b.index());
-            self.joints.push(RevoluteConstraint::prepare(id, joint, (a, bodies.at(a)), (b, bodies.at(b))));
-        }
-        self.refresh_joints();
+    pub(crate) fn prepare_joints(
+        &mut self,
+        joints: &Arena<Joint, JointId>,
+        bodies: &Arena<Body, BodyId>,
+        tuning: &Tuning,
+    ) {
+        self.joints.prepare(joints, bodies, tuning, &mut self.nodes, &mut self.colouring);
+        self.joints.refresh(&self.bodies, tuning);
     }
 
     /// Makes a constraint of every touching pair, in the order in which they are solved.
@@ -157,9 +122,7 @@ impl Solver {
     /// refresh joints, relax without bias. `index` counts the sub-steps since the world was made.
     pub(crate) fn sub_step(&mut self, index: u64, tuning: &Tuning) {
         let h = Reciprocal::of_integer(tuning.rate);
-        for joint in &mut self.joints {
-            joint.aim(&self.bodies, h, tuning);
-        }
+        self.joints.aim(&self.bodies, h, tuning);
         for mover in &self.movers {
             mover.integrate_velocity(&mut self.bodies, tuning.speed_max);
         }
@@ -173,7 +136,7 @@ impl Solver {
         for mover in &self.movers {
             mover.integrate_displacement(&mut self.bodies, tuning.rate, &mut self.faults);
         }
-        self.refresh_joints();
+        self.joints.refresh(&self.bodies, tuning);
         if tuning.relax {
             for iteration in 0..tuning.iterations {
                 self.solve(Pass::Relax, Sweep::of(index, iteration), tuning);
@@ -181,30 +144,15 @@ impl Solver {
         }
     }
 
-    fn refresh_joints(&mut self) {
-        for body in &self.jointed {
-            let turn = self.bodies[body.slot as usize].turn;
-            self.rotations[body.slot as usize] =
-                Rot::from_angle(turned(body.angle, turn, body.inverse_gyration));
-        }
-        for joint in &mut self.joints {
-            joint.refresh(&self.bodies, &self.rotations);
-        }
-    }
-
     fn warm_start(&mut self) {
-        for joint in &mut self.joints {
-            joint.warm_start(&mut self.bodies, &mut self.faults);
-        }
+        self.joints.warm_start(&mut self.bodies, &mut self.faults);
         for contact in &mut self.contacts {
             contact.warm_start(&mut self.bodies, &mut self.faults);
         }
     }
 
     fn solve(&mut self, pass: Pass, sweep: Sweep, tuning: &Tuning) {
-        for joint in &mut self.joints {
-            joint.solve(pass, tuning, &mut self.bodies, &mut self.faults);
-        }
+        self.joints.solve(pass, tuning, &mut self.bodies, &mut self.faults);
         for contact in &mut self.contacts {
             contact.solve(pass, sweep, tuning, &mut self.bodies, &mut self.faults);
         }
@@ -218,9 +166,7 @@ impl Solver {
 
     /// Keeps the impulses for the next tick.
     pub(crate) fn store_impulses(&mut self, contacts: &mut [Contact], joints: &mut Arena<Joint, JointId>) {
-        for constraint in &self.joints {
-            constraint.store(joints.at_mut(constraint.joint.index()));
-        }
+        self.joints.store(joints);
         self.pushed.clear();
         self.pushed.resize(contacts.len(), false);
         for (constraint, &index) in self.contacts.iter().zip(&self.contact_indices) {

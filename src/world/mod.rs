@@ -6,6 +6,7 @@ mod command;
 mod config;
 mod digest;
 mod events;
+mod joint_view;
 mod look_ahead;
 mod scratch;
 mod state;
@@ -25,7 +26,7 @@ pub use validate::Violation;
 
 use crate::body::{Body, BodyId, JointId, Shape, ShapeId, WorldError};
 use crate::collision::{BroadPhaseKind, Manifold};
-use crate::math::{Fx, Rng, Vec2};
+
 use crate::solver::Joint;
 use scratch::Scratch;
 use state::State;
@@ -185,14 +186,6 @@ impl World {
     /// Chooses how overlapping pairs are found. No hash changes by it.
     pub fn set_broad_phase(&mut self, kind: BroadPhaseKind) {
         self.scratch = Scratch::new(kind);
-    }
-
-    /// Where the anchors of a revolute joint are in the world, A's first.
-    #[must_use]
-    pub fn joint_anchors(&self, id: JointId) -> Option<(Vec2<Fx>, Vec2<Fx>)> {
-        let crate::solver::JointDef::Revolute(def) = self.joint(id)?.def();
-        let (a, b) = (self.body(def.body_a)?, self.body(def.body_b)?);
-        Some((a.transform().apply(def.anchor_a), b.transform().apply(def.anchor_b)))
     }
 }
 

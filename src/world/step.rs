@@ -24,7 +24,7 @@ impl World {
         find_manifolds(state, scratch);
 
         scratch.solver.prepare_bodies(&state.bodies, &tuning);
-        scratch.solver.prepare_joints(&state.joints, &state.bodies);
+        scratch.solver.prepare_joints(&state.joints, &state.bodies, &tuning);
         let Scratch { solver, touching, manifolds, .. } = scratch;
         solver.prepare_contacts(touching, manifolds, &state.contacts, &state.bodies, &tuning);
         for index in 0..settings.sub_steps {
@@ -73,7 +73,7 @@ fn update_pairs(state: &mut State, scratch: &mut Scratch) {
     proxies.clear();
     proxies.extend(state.shapes.iter().map(|(id, shape)| Proxy { slot: id.slot(), fat: shape.fat }));
     joined.clear();
-    let keeping_apart = state.joints.iter().filter(|(_, joint)| !joint.def().collide_connected());
+    let keeping_apart = state.joints.iter().filter(|(_, joint)| !joint.def().collide_connected);
     joined.extend(keeping_apart.map(|(_, joint)| {
         let (a, b) = joint.def().bodies();
         (a.slot().min(b.slot()), a.slot().max(b.slot()))

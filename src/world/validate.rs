@@ -119,7 +119,7 @@ fn check_joints(state: &State) -> Result<(), Violation> {
         let held = matches!((dynamic(a), dynamic(b)), (Some(a), Some(b)) if a || b);
         check(held, || format!("joint {id}: its bodies"))?;
         let limit = crate::solver::IMPULSE_MAX;
-        let bounded = [joint.lambda.x, joint.lambda.y].iter().all(|p| (-limit..=limit).contains(p));
+        let bounded = joint.impulses.0.iter().all(|p| (-limit..=limit).contains(p));
         check(bounded, || format!("joint {id}: its impulse"))?;
     }
     Ok(())
