@@ -145,6 +145,11 @@ impl Row {
         (Row { e_a, e_b, f_a, f_b, ..Row::NONE }, denominator, s)
     }
 
+    /// Of a row on the angle: the shares of its velocity that A and B take. They add up to 1, unless neither turns.
+    pub(crate) fn shares(&self) -> (Unit, Unit) {
+        (mul(self.f_a, self.e_a), mul(self.f_b, self.e_b))
+    }
+
     /// A row along which nothing moves.
     pub(crate) const NONE: Self = Row {
         n: Vec2::new(Unit::ZERO, Unit::ZERO),

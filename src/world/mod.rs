@@ -26,7 +26,7 @@ pub use validate::Violation;
 
 use crate::body::{Body, BodyId, JointId, Shape, ShapeId, WorldError};
 use crate::collision::{BroadPhaseKind, Manifold};
-
+use crate::math::Rng;
 use crate::solver::Joint;
 use scratch::Scratch;
 use state::State;

@@ -3,6 +3,11 @@
 
 mod collisions;
 mod free_fall;
+mod joint_bench;
+mod joint_holds;
+mod joint_limits;
+mod joint_motors;
+mod joint_springs;
 mod joints;
 mod piles;
 mod rebound;

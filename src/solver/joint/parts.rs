@@ -28,6 +28,8 @@ pub(super) enum Direction {
     Along,
     /// How far B's anchor is along the y axis of A's frame.
     Across,
+    /// The same where a push does not turn the bodies against each other, for joints that hold the angle too.
+    AcrossBalanced,
     /// How far the anchors are apart.
     Apart,
 }
@@ -82,6 +84,11 @@ impl Parts<'_> {
     /// Keeps the anchors on each other.
     pub(super) fn pin(&mut self) {
         self.point(slot::HOLD, PointTask::Pin);
+    }
+
+    /// Keeps the anchors on each other, in a joint that holds the angle too.
+    pub(super) fn glue(&mut self) {
+        self.point(slot::HOLD, PointTask::Glue);
     }
 
     /// Pulls the anchors onto each other, with a largest force.

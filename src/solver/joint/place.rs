@@ -81,12 +81,35 @@ impl Ends {
         }
     }
 
+    /// Where else the ends may be held if the angle is held too: a push there does not turn the bodies against each
+    /// other, so that angle and point are solved one after the other without disturbing each other. With the vector `c`
+    /// from A's centre to B's, and A's share `sA = iA / (iA + iB)` of the inverse inertias, that place is `-sA c` from
+    /// B's centre. It has moved apart by `gap + theta x` from the anchor.
+    pub(super) fn balanced(&self, place: &Place, turned: &[Turned]) -> Place {
+        let Measure { row, position, .. } = self.measure_angle(turned);
+        let (share_a, _) = row.shares();
+        let (arm_a, arm_b) = (place.lever_a.arm.widen(), place.lever_b.arm.widen());
+        let between = arm_a + place.gap - arm_b;
+        let arm = -between.scale(share_a.into());
+        // To first order: the angle is small, or about to be.
+        let gap = place.gap + (arm - arm_b).perp().scale(position.clamp(-Fx::ONE, Fx::ONE));
+        Place {
+            lever_a: Lever { arm: (between + arm - gap).narrow(), ..place.lever_a },
+            lever_b: Lever { arm: arm.narrow(), ..place.lever_b },
+            gap,
+            ..*place
+        }
+    }
+
     /// What a row along a direction measures at a place.
     pub(super) fn measure(&self, direction: Direction, place: &Place, turned: &[Turned]) -> Measure {
         match direction {
             Direction::Angle => self.measure_angle(turned),
             Direction::Along => self.measure_axis(self.axis, place, turned),
             Direction::Across => self.measure_axis(self.axis.perp(), place, turned),
+            Direction::AcrossBalanced => {
+                self.measure_axis(self.axis.perp(), &self.balanced(place, turned), turned)
+            }
             Direction::Apart => {
                 // Anchors on each other are as far apart in any direction.
                 let n = place.gap.normalized().unwrap_or(self.axis);

@@ -63,6 +63,6 @@ impl Prismatic {
         parts.drive(Direction::Along, self.motor);
         parts.limit(Direction::Along, self.limit);
         parts.hold(slot::HOLD, Direction::Angle, Fx::ZERO);
-        parts.hold(slot::HOLD + 1, Direction::Across, Fx::ZERO);
+        parts.hold(slot::HOLD + 1, Direction::AcrossBalanced, Fx::ZERO);
     }
 }

@@ -125,6 +125,7 @@ impl JointRow {
         b: &mut SolverBody,
         faults: &mut Faults,
     ) {
+        let vn = self.row.velocity(a, b, faults);
         let (softness, bias, push) = match (&self.task, pass) {
             (RowTask::Spring { softness, .. }, Pass::Bias) => (softness, Speed::ZERO, self.bias),
             (RowTask::Spring { .. }, Pass::Relax) => return,
@@ -132,14 +133,14 @@ impl JointRow {
             (RowTask::Lower { .. } | RowTask::Upper { .. }, Pass::Relax) if self.open && self.lambda == 0 => {
                 return;
             }
+            // A gap so wide that `L` would fall below 0 asks for no more than that.
             (RowTask::Lower { .. } | RowTask::Upper { .. }, _) if self.open => {
-                (&Softness::RIGID, self.bias, Speed::ZERO)
+                (&Softness::RIGID, self.bias.min(self.lambda.saturating_sub(vn)), Speed::ZERO)
             }
             (RowTask::Drive { .. }, _) => (&Softness::RIGID, self.bias, Speed::ZERO),
             (_, Pass::Bias) => (&tuning.joint, self.bias, Speed::ZERO),
             (_, Pass::Relax) => (&Softness::RIGID, Speed::ZERO, Speed::ZERO),
         };
-        let vn = self.row.velocity(a, b, faults);
         let d = softness.impulse(vn, bias, self.lambda, faults).saturating_sub(push);
         self.row.accumulate(d, self.bounds, &mut self.lambda, a, b, faults);
     }

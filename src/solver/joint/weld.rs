@@ -49,6 +49,7 @@ impl Weld {
         }
         match self.linear {
             Some(soft) => parts.pull(slot::HOLD, soft, Fx::MAX),
+            None if self.angular.is_none() => parts.glue(),
             None => parts.pin(),
         }
     }
