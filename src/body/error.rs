@@ -130,6 +130,11 @@ pub enum WorldError {
     JointWithoutDynamicBody,
     /// A joint stays between its bodies as long as it lives.
     JointOfOtherBodies(JointId),
+    /// Something of a joint is out of range.
+    JointOutOfRange {
+        /// What.
+        what: &'static str,
+    },
     /// A world setting is out of range.
     Setting {
         /// Which one.
@@ -184,6 +189,7 @@ impl fmt::Display for WorldError {
             WorldError::JointToItself(id) => write!(f, "a joint between body {id} and itself"),
             WorldError::JointWithoutDynamicBody => write!(f, "neither body of the joint is dynamic"),
             WorldError::JointOfOtherBodies(id) => write!(f, "joint {id} is between other bodies"),
+            WorldError::JointOutOfRange { what } => write!(f, "the {what} of a joint is out of range"),
             WorldError::Setting { name } => write!(f, "the world setting `{name}` is out of range"),
             WorldError::Full { what, limit } => write!(f, "the world already holds {limit} {what}"),
             WorldError::WrongKind(id) => write!(f, "body {id} is not of a kind that can do this"),

@@ -10,6 +10,7 @@ mod continuous;
 mod digest;
 mod events;
 mod islands;
+mod joint_view;
 mod look_ahead;
 mod pairs;
 mod push;
@@ -35,7 +36,7 @@ pub use validate::Violation;
 
 use crate::body::{Body, BodyId, BodyKind, JointId, Shape, ShapeId, WorldError};
 use crate::collision::{BroadPhaseKind, Manifold};
-use crate::math::{Fx, Rng, Vec2};
+use crate::math::Rng;
 use crate::solver::Joint;
 use scratch::Scratch;
 use state::State;
@@ -207,14 +208,6 @@ impl World {
     /// Chooses how overlapping pairs are found. No hash changes by it.
     pub fn set_broad_phase(&mut self, kind: BroadPhaseKind) {
         self.scratch = Scratch::new(kind, &self.state);
-    }
-
-    /// Where the anchors of a revolute joint are in the world, A's first.
-    #[must_use]
-    pub fn joint_anchors(&self, id: JointId) -> Option<(Vec2<Fx>, Vec2<Fx>)> {
-        let crate::solver::JointDef::Revolute(def) = self.joint(id)?.def();
-        let (a, b) = (self.body(def.body_a)?, self.body(def.body_b)?);
-        Some((a.transform().apply(def.anchor_a), b.transform().apply(def.anchor_b)))
     }
 }
 

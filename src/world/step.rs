@@ -46,7 +46,7 @@ impl World {
         begin(Phase::Prepare);
         let Scratch { solver, roster, touching, manifolds, .. } = scratch;
         solver.prepare_bodies(&state.bodies, &roster.bodies, &tuning);
-        solver.prepare_joints(&state.joints, &roster.joints, &state.bodies);
+        solver.prepare_joints(&state.joints, &roster.joints, &state.bodies, &tuning);
         solver.prepare_contacts(touching, manifolds, &state.contacts, &state.bodies, &tuning);
 
         begin(Phase::Solve);

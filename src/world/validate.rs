@@ -162,7 +162,7 @@ fn check_joints(state: &State) -> Result<(), Violation> {
         let together = !joint.is_solved() || !both || body_a.island == body_b.island;
         check(together, || format!("joint {id}: its bodies do not sleep together"))?;
         let limit = crate::solver::IMPULSE_MAX;
-        let bounded = [joint.lambda.x, joint.lambda.y].iter().all(|p| (-limit..=limit).contains(p));
+        let bounded = joint.impulses.0.iter().all(|p| (-limit..=limit).contains(p));
         check(bounded, || format!("joint {id}: its impulse"))?;
     }
     Ok(())
