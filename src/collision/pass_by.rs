@@ -27,8 +27,8 @@ pub(crate) struct Passage {
     pub(crate) turn: Length,
     /// Overlap that is left to the next tick.
     pub(crate) slack: Length,
-    /// How much deeper an overlap within the slack may become.
-    pub(crate) deepening: Length,
+    /// How much nearer they may come on the axis: what falls on a face does not pass it by.
+    pub(crate) approach: Length,
 }
 
 /// Whether a face of one of the shapes keeps them apart through the whole passage, but for the slack.
@@ -65,6 +65,6 @@ fn some_face_parts(a: &Hull, b: &Hull, d: Vec2<Length>, passage: &Passage) -> bo
         let before = round_shift(face_separation(a, edge, b, d), FACE_BITS - Step::FRAC_NBITS) - radii;
         let moved = distance_along(a.normals()[edge], passage.shift);
         let after = before + moved - step_bits(passage.turn);
-        before >= slack && after >= slack && (after >= 0 || -moved <= step_bits(passage.deepening))
+        before >= slack && after >= slack && -moved <= step_bits(passage.approach)
     })
 }

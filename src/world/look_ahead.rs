@@ -122,7 +122,7 @@ impl<'a> Approach<'a> {
             shift: Vec2::new(velocity.x / rate, velocity.y / rate).narrow(),
             turn: narrow(turn),
             slack: narrow(self.slack),
-            deepening: narrow(closing / 8),
+            approach: narrow(closing / 8),
         };
         pass_by(self.posed_a, self.posed_b, &passage)
     }
