@@ -241,6 +241,20 @@ impl ShapeDef {
         self
     }
 
+    /// Sets the rolling resistance, 0 to 1: see [`Material::rolling_resistance`].
+    #[must_use]
+    pub fn rolling_resistance(mut self, resistance: Fx) -> Self {
+        self.material.rolling_resistance = resistance;
+        self
+    }
+
+    /// Sets how fast the surface runs, clockwise, in m/s: see [`Material::surface_speed`].
+    #[must_use]
+    pub fn surface_speed(mut self, speed: Fx) -> Self {
+        self.material.surface_speed = speed;
+        self
+    }
+
     /// Sets the filter.
     #[must_use]
     pub fn filter(mut self, filter: Filter) -> Self {

@@ -18,6 +18,8 @@ pub(crate) struct Contact {
     /// How many points have impulses.
     pub(crate) count: u8,
     pub(crate) points: [PointImpulse; 2],
+    /// The angular impulse against rolling, times `(mA + mB) / s`: see `solver/rolling.rs`.
+    pub(crate) rolling: Speed,
 }
 
 /// The impulse of a contact point, to start the next tick from.
@@ -32,7 +34,13 @@ pub(crate) struct PointImpulse {
 
 impl Contact {
     fn new(shapes: Pair) -> Self {
-        Contact { shapes, touching: false, count: 0, points: [PointImpulse::default(); 2] }
+        Contact {
+            shapes,
+            touching: false,
+            count: 0,
+            points: [PointImpulse::default(); 2],
+            rolling: Speed::ZERO,
+        }
     }
 
     /// The points that have impulses.
@@ -49,6 +57,7 @@ impl Contact {
     pub(crate) fn clear_points(&mut self) {
         self.count = 0;
         self.points = [PointImpulse::default(); 2];
+        self.rolling = Speed::ZERO;
     }
 
     /// Remembers the impulse of a point.

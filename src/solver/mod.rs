@@ -12,6 +12,7 @@ mod joint;
 mod limits;
 mod point_block;
 mod revolute;
+mod rolling;
 mod row;
 mod settings;
 mod softness;

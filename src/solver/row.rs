@@ -23,9 +23,11 @@ use super::body::SolverBody;
 use super::limits::{Faults, IMPULSE_MAX, STEP_MAX};
 use super::softness::Softness;
 use crate::body::Body;
+use fixed::types::extra::U24;
+
 use crate::math::{
-    Length, Ratio, Reciprocal, Speed, Step, Unit, Vec2, mul, round_shift, round_shift_wide, saturate,
-    saturate_wide,
+    Length, Ratio, Reciprocal, Speed, Step, Unit, Vec2, div_round, mul, round_shift, round_shift_wide,
+    saturate, saturate_wide,
 };
 
 /// The mass fractions of a pair of bodies: how a push is shared.
@@ -113,6 +115,24 @@ impl Row {
         };
         let (g_a, g_b) = (gain(fractions.a), gain(fractions.b));
         (Row { n, e_a, e_b, g_a, g_b, f_a: mul(g_a, e_a), f_b: mul(g_b, e_b) }, denominator)
+    }
+
+    /// A row that acts on rotation alone: `vn = scale (wB - wA)`. With `scale` not below the radius of gyration of a
+    /// body that turns, no gain exceeds 1.
+    pub(crate) fn angular(
+        scale: Length,
+        (inverse_a, inverse_b): (Reciprocal, Reciprocal),
+        fractions: MassFractions,
+    ) -> (Row, Denominator) {
+        let ratio = |inverse: Reciprocal| inverse.times::<_, U24>(scale).min(RATIO_MAX);
+        let (e_a, e_b) = (ratio(inverse_a), ratio(inverse_b));
+        let denominator = turning(fractions.a, e_a, e_a) + turning(fractions.b, e_b, e_b);
+        let gain = |fraction: Unit, e: Ratio| {
+            let wide = i128::from(fraction.to_bits()) * i128::from(e.to_bits()) << 6;
+            Unit::from_bits(saturate(saturate_wide(div_round(wide, denominator.max(1).into()))))
+        };
+        let (f_a, f_b) = (gain(fractions.a, e_a), gain(fractions.b, e_b));
+        (Row { n: Vec2::ZERO, e_a, e_b, g_a: Unit::ZERO, g_b: Unit::ZERO, f_a, f_b }, denominator)
     }
 
     /// Relative velocity of B from A along the row.
@@ -210,7 +230,7 @@ pub(crate) fn lambda_of(p: Speed, denominator: Denominator, faults: &mut Faults)
 
 /// `p = L / D`: the impulse times `mA + mB`, which does not depend on the lever arms.
 pub(crate) fn impulse_of(lambda: Speed, denominator: Denominator) -> Speed {
-    let bits = crate::math::div_round(i128::from(lambda.to_bits()) << 30, denominator.max(1).into());
+    let bits = div_round(i128::from(lambda.to_bits()) << 30, denominator.max(1).into());
     Speed::from_bits(saturate(saturate_wide(bits)))
 }
 

@@ -119,11 +119,10 @@ fn find_manifolds(state: &State, scratch: &mut Scratch) {
         let mut manifold = collide(posed_a, posed_b, approach.margin, hint, &mut scratch.sat);
         approach.keep_reachable(&mut manifold);
         if !manifold.points().is_empty() {
-            let (material_a, material_b) = (shape_a.material(), shape_b.material());
-            let surface = Surface {
-                friction: material_a.mixed_friction(material_b),
-                restitution: material_a.mixed_restitution(material_b),
-            };
+            let surface = Surface::between(
+                (shape_a.material(), posed_a.outline.radius()),
+                (shape_b.material(), posed_b.outline.radius()),
+            );
             scratch.touching.push(TouchingPair { contact: index, bodies: (slot_a, slot_b), surface });
         }
         scratch.manifolds.push(manifold);

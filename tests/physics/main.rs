@@ -10,6 +10,7 @@ mod piles;
 mod rebound;
 mod seams;
 mod slope;
+mod surface;
 
 use lockstep2d::lockstep::{Game, Sandbox};
 use lockstep2d::math::{Fx, fx_mul};
