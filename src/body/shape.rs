@@ -8,7 +8,7 @@ use super::filter::Filter;
 use super::material::Material;
 use super::polygon::{Polygon, SHAPE_EXTENT_MAX};
 use crate::fx;
-use crate::math::{Aabb, Fx, Vec2};
+use crate::math::{Aabb, Angle, Fx, Vec2};
 
 /// Coordinates in the world stay within ± this many metres, so that sums of a few of them cannot overflow.
 pub const WORLD_EXTENT_MAX: Fx = fx!(1073741824);
@@ -195,6 +195,16 @@ pub struct ShapeDef {
     pub material: Material,
     /// What it collides with.
     pub filter: Filter,
+    /// Lets things pass through in one direction: the direction in the body's frame, 90 degrees for up. `None` for an
+    /// ordinary shape.
+    ///
+    /// What touches the shape is stopped if the contact's normal, from this shape to the other, is within 60 degrees
+    /// of the direction, and passes otherwise: from above it is a floor, from below and from the sides it is not
+    /// there. What passes goes on passing until it is apart or has come through but for a quarter of the world's
+    /// speculative distance, so what turns round half-way falls back. A pair that passes does not touch.
+    pub one_way: Option<Angle>,
+    /// Whether it only notices what overlaps it, and pushes nothing.
+    pub sensor: bool,
     /// Not used by the engine, but part of the state and its hash.
     pub user_data: u64,
 }
@@ -209,6 +219,8 @@ impl ShapeDef {
             density: Fx::ONE,
             material: Material::default(),
             filter: Filter::default(),
+            one_way: None,
+            sensor: false,
             user_data: 0,
         }
     }
@@ -262,6 +274,20 @@ impl ShapeDef {
         self
     }
 
+    /// Lets things pass through in one direction, given in the body's frame: see [`one_way`](Self::one_way).
+    #[must_use]
+    pub fn one_way(mut self, direction: Angle) -> Self {
+        self.one_way = Some(direction);
+        self
+    }
+
+    /// Makes it notice what overlaps it without pushing.
+    #[must_use]
+    pub fn sensor(mut self) -> Self {
+        self.sensor = true;
+        self
+    }
+
     /// Sets the user data.
     #[must_use]
     pub fn user_data(mut self, user_data: u64) -> Self {
@@ -271,7 +297,8 @@ impl ShapeDef {
 
     /// Checks everything that does not depend on the body. `reach_max` does: see [`REACH_MAX`].
     pub(crate) fn validate(&self, reach_max: Fx) -> Result<(), WorldError> {
-        let ShapeDef { geometry, offset, density, material, filter: _, user_data: _ } = self;
+        let ShapeDef { geometry, offset, density, material, filter: _, one_way: _, sensor: _, user_data: _ } =
+            self;
         geometry.validate()?;
         check_reach(geometry, *offset, reach_max)?;
         if !(Fx::ZERO..=DENSITY_MAX).contains(density) {
@@ -339,6 +366,18 @@ impl Shape {
     #[must_use]
     pub const fn filter(&self) -> &Filter {
         &self.def.filter
+    }
+
+    /// The direction in the body's frame into which things pass through, of a one-way shape.
+    #[must_use]
+    pub const fn one_way(&self) -> Option<Angle> {
+        self.def.one_way
+    }
+
+    /// Whether it only notices what overlaps it.
+    #[must_use]
+    pub const fn is_sensor(&self) -> bool {
+        self.def.sensor
     }
 
     /// The game's own number.

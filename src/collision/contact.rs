@@ -15,6 +15,8 @@ pub(crate) struct Contact {
     pub(crate) shapes: Pair,
     /// Whether the shapes touch, as the events last said.
     pub(crate) touching: bool,
+    /// Whether one of the shapes lets the other pass: see `one_way.rs`.
+    pub(crate) passing: bool,
     /// How many points have impulses.
     pub(crate) count: u8,
     pub(crate) points: [PointImpulse; 2],
@@ -37,6 +39,7 @@ impl Contact {
         Contact {
             shapes,
             touching: false,
+            passing: false,
             count: 0,
             points: [PointImpulse::default(); 2],
             rolling: Speed::ZERO,

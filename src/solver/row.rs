@@ -128,7 +128,7 @@ impl Row {
         let (e_a, e_b) = (ratio(inverse_a), ratio(inverse_b));
         let denominator = turning(fractions.a, e_a, e_a) + turning(fractions.b, e_b, e_b);
         let gain = |fraction: Unit, e: Ratio| {
-            let wide = i128::from(fraction.to_bits()) * i128::from(e.to_bits()) << 6;
+            let wide = (i128::from(fraction.to_bits()) * i128::from(e.to_bits())) << 6;
             Unit::from_bits(saturate(saturate_wide(div_round(wide, denominator.max(1).into()))))
         };
         let (f_a, f_b) = (gain(fractions.a, e_a), gain(fractions.b, e_b));

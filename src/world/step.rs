@@ -6,7 +6,7 @@ use super::scratch::Scratch;
 use super::state::State;
 use super::stats::StepStats;
 use crate::body::{BodyKind, Handle, WORLD_EXTENT_MAX};
-use crate::collision::{Pair, Proxy, collide, match_pairs};
+use crate::collision::{Manifold, Pair, Proxy, collide, match_pairs};
 use crate::math::{Fx, Vec2, widen};
 use crate::solver::{SolverBody, Surface, TouchingPair, Tuning, turned};
 
@@ -103,12 +103,13 @@ pub(super) fn may_collide(state: &State, joined: &[Pair], (a, b): Pair) -> bool 
 }
 
 /// Narrow phase: a manifold for every contact, and the list of those that have points.
-fn find_manifolds(state: &State, scratch: &mut Scratch) {
+fn find_manifolds(state: &mut State, scratch: &mut Scratch) {
     scratch.hints.resize(state.contacts.len(), Default::default());
     scratch.manifolds.clear();
     scratch.touching.clear();
     scratch.sat = Default::default();
-    for (index, contact) in (0u32..).zip(&state.contacts) {
+    let mut contacts = core::mem::take(&mut state.contacts);
+    for (index, contact) in (0u32..).zip(&mut contacts) {
         let (a, b) = contact.shapes;
         let (posed_a, posed_b) = (scratch.poses.at(a), scratch.poses.at(b));
         let (shape_a, shape_b) = (state.shapes.at(a), state.shapes.at(b));
@@ -117,6 +118,10 @@ fn find_manifolds(state: &State, scratch: &mut Scratch) {
         let approach = Approach::new(state, (body_a, posed_a), (body_b, posed_b));
         let hint = &mut scratch.hints[index as usize];
         let mut manifold = collide(posed_a, posed_b, approach.margin, hint, &mut scratch.sat);
+        contact.passing = approach.lets_pass((shape_a, shape_b), &manifold, contact.passing);
+        if contact.passing {
+            manifold = Manifold::NONE;
+        }
         approach.keep_reachable(&mut manifold);
         if !manifold.points().is_empty() {
             let surface = Surface::between(
@@ -127,6 +132,7 @@ fn find_manifolds(state: &State, scratch: &mut Scratch) {
         }
         scratch.manifolds.push(manifold);
     }
+    state.contacts = contacts;
 }
 
 /// Turns changes of touching into events. A pair touches if it is near at the start of the tick, or if the solver

@@ -6,6 +6,7 @@ mod chain;
 mod collisions;
 mod free_fall;
 mod joints;
+mod one_way;
 mod piles;
 mod rebound;
 mod seams;
