@@ -7,6 +7,7 @@ mod body_def;
 mod chain;
 mod error;
 mod filter;
+mod geometry;
 mod mass;
 mod material;
 mod polygon;
@@ -21,9 +22,8 @@ pub use body_def::{BodyDef, BodyKind};
 pub use chain::Chain;
 pub use error::{GeometryError, WorldError};
 pub use filter::Filter;
+pub use geometry::{Geometry, Sides};
 pub use mass::{MassProperties, MassSource};
 pub use material::{Material, Mixing};
 pub use polygon::{POLYGON_VERTICES_MAX, Polygon, SHAPE_EXTENT_MAX};
-pub use shape::{
-    DENSITY_MAX, Geometry, REACH_MAX, SHAPES_PER_BODY_MAX, Shape, ShapeDef, Sides, WORLD_EXTENT_MAX,
-};
+pub use shape::{DENSITY_MAX, REACH_MAX, SHAPES_PER_BODY_MAX, Shape, ShapeDef, WORLD_EXTENT_MAX};
