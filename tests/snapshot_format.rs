@@ -391,6 +391,7 @@ fn the_bytes_of_commands_are_those_of_the_document() {
         friction_mixing: Mixing::Minimum,
         restitution: fx!(1),
         restitution_mixing: Mixing::Product,
+        ..Material::default()
     };
     let filter = Filter { category: 4, mask: 5, group: -6 };
     let corners = [Vec2::new(fx!(0), fx!(0)), Vec2::new(fx!(2), fx!(0)), Vec2::new(fx!(0), fx!(2))];

@@ -102,7 +102,8 @@ pub enum WorldError {
         /// The density in kg/m².
         value: Fx,
     },
-    /// Friction is not within 0 to 16, or restitution not within 0 to 1.
+    /// Friction is not within 0 to 16, restitution or rolling resistance not within 0 to 1, or a surface speed not
+    /// within ±400 m/s.
     MaterialOutOfRange,
     /// A dynamic body's mass is not within 10 mg to 2^30 kg: it has no shape with area and density, or too much.
     MassOutOfRange {
@@ -170,7 +171,10 @@ impl fmt::Display for WorldError {
             }
             WorldError::SpeedOutOfRange { value } => write!(f, "speed {value} is above the world's limit"),
             WorldError::DensityOutOfRange { value } => write!(f, "density {value} kg/m² is out of range"),
-            WorldError::MaterialOutOfRange => write!(f, "friction is 0 to 16 and restitution 0 to 1"),
+            WorldError::MaterialOutOfRange => write!(
+                f,
+                "friction is 0 to 16, restitution and rolling resistance are 0 to 1, and surface speed is within ±400 m/s"
+            ),
             WorldError::MassOutOfRange { value } => {
                 write!(
                     f,

@@ -12,6 +12,7 @@ mod integrate;
 mod joint;
 mod limits;
 mod point_block;
+mod rolling;
 mod row;
 mod settings;
 mod softness;

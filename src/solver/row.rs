@@ -24,8 +24,8 @@ use super::limits::{Faults, IMPULSE_MAX, STEP_MAX};
 use super::softness::Softness;
 use crate::body::Body;
 use crate::math::{
-    Length, Ratio, Reciprocal, Speed, Step, Unit, Vec2, mul, round_shift, round_shift_wide, saturate,
-    saturate_wide,
+    Length, Ratio, Reciprocal, Speed, Step, Unit, Vec2, div_round, mul, round_shift, round_shift_wide,
+    saturate, saturate_wide,
 };
 
 /// The mass fractions of a pair of bodies: how a push is shared.
@@ -297,7 +297,7 @@ pub(crate) fn lambda_of(p: Speed, denominator: Denominator, faults: &mut Faults)
 
 /// `p = L / D`: the impulse times `mA + mB`, which does not depend on the lever arms.
 pub(crate) fn impulse_of(lambda: Speed, denominator: Denominator) -> Speed {
-    let bits = crate::math::div_round(i128::from(lambda.to_bits()) << 30, denominator.max(1).into());
+    let bits = div_round(i128::from(lambda.to_bits()) << 30, denominator.max(1).into());
     Speed::from_bits(saturate(saturate_wide(bits)))
 }
 

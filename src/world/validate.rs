@@ -189,6 +189,7 @@ fn check_contacts(state: &State, contacts: &[Contact]) -> Result<(), Violation> 
             let pushes = point.normal >= 0 && point.normal <= limit;
             check(pushes && (-limit..=limit).contains(&point.tangent), || at("an impossible impulse"))?;
         }
+        check((-limit..=limit).contains(&contact.rolling), || at("an impossible impulse against rolling"))?;
         let unused = &contact.points[usize::from(contact.count)..];
         check(unused.iter().all(|point| *point == Default::default()), || at("an impulse of no point"))?;
     }

@@ -12,10 +12,12 @@ mod joint_limits;
 mod joint_motors;
 mod joint_springs;
 mod joints;
+mod one_way;
 mod piles;
 mod rebound;
 mod seams;
 mod slope;
+mod surface;
 
 use lockstep2d::lockstep::{Game, Sandbox};
 use lockstep2d::math::{Fx, fx_mul};
