@@ -425,7 +425,7 @@ fn the_bytes_of_commands_are_those_of_the_document() {
         (Command::AddShape { body, shape: polygon }, w().u32(2).then(id()).then(polygon_bytes())),
         (Command::RemoveShape { shape }, w().u32(3).then(shape_id())),
         (
-            Command::AddJoint { joint: hinge.into() },
+            Command::AddJoint { joint: hinge },
             w().u32(4).u32(0).u32(0).u32(0).then(id()).fx(&[2, 4, 6, 8]).u8(1),
         ),
         (Command::RemoveJoint { joint }, w().u32(5).u32(0).u32(0)),

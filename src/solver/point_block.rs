@@ -295,4 +295,34 @@ mod tests {
         assert_eq!(faults, 0);
         assert!(worst <= 128, "{worst} units left");
     }
+
+    /// However far it is asked to go, from rest an impulse changes momentum by no more than its bound.
+    #[test]
+    fn an_impulse_of_limited_length_is_no_longer() {
+        let mut rng = Rng::new(9);
+        let mut faults = 0;
+        for _ in 0..20_000 {
+            let mut lever = || {
+                let mut side = || rng.range(fx!(-3), fx!(3));
+                let arm = Vec2::new(side(), side()).narrow();
+                Lever { arm, inverse_gyration: Reciprocal::of(rng.range(fx!(0.3), fx!(3))) }
+            };
+            let (a, b) = (lever(), lever());
+            let share: Unit = narrow(rng.range(fx!(0), fx!(0.9)));
+            let block = PointBlock::new(a, b, MassFractions { a: share, b: Unit::ONE - share });
+            let mut speed = |most: Fx| -> Speed { narrow(rng.range(Fx::ZERO, most)) };
+            let bias = Vec2::new(speed(fx!(20)), -speed(fx!(20)));
+            let most = speed(fx!(3));
+            let (mut a, mut b) = (SolverBody::default(), SolverBody::default());
+            let mut lambda = Vec2::ZERO;
+            for _ in 0..3 {
+                let biases = (bias, Vec2::ZERO);
+                block.solve_within(&mut a, &mut b, biases, &Softness::RIGID, most, &mut lambda, &mut faults);
+            }
+            // p = (vB - vA) / (aA + aB), whatever the shares.
+            let p = (b.velocity - a.velocity).widen().length();
+            assert!(p <= Fx::from(most) + fx!(0.00001), "{p} of {most}");
+        }
+        assert_eq!(faults, 0);
+    }
 }

@@ -19,6 +19,8 @@
 //! `L` is the accumulated impulse divided by the effective mass: a speed. No sum of two clamped values leaves its
 //! type; every clamp that bites is counted as a fault.
 
+mod angular;
+
 use super::body::SolverBody;
 use super::limits::{Faults, IMPULSE_MAX, STEP_MAX};
 use super::softness::Softness;
@@ -113,41 +115,6 @@ impl Row {
         };
         let (g_a, g_b) = (gain(fractions.a), gain(fractions.b));
         (Row { n, e_a, e_b, g_a, g_b, f_a: mul(g_a, e_a), f_b: mul(g_b, e_b) }, denominator)
-    }
-
-    /// A row on the angle: `vn = s (w_b - w_a)` with `e = s / k`, and without linear part. `s` is a length of the
-    /// row's own, which is returned: the one that makes `D = aA eA^2 + aB eB^2` about 1,
-    ///
-    /// ```text
-    /// s^2 = 1 / (aA / kA^2 + aB / kB^2),  so that  f = a e / D <= sqrt(a)
-    /// ```
-    ///
-    /// but for rounding, and bodies of which the heavier is more than a hundred times easier to turn at its rim. `D` and
-    /// `s` are 0 when neither body turns.
-    pub(crate) fn angular(
-        a: Reciprocal,
-        b: Reciprocal,
-        fractions: MassFractions,
-    ) -> (Row, Denominator, Length) {
-        let s = angular_scale((a, fractions.a), (b, fractions.b));
-        let ratio = |inverse_gyration: Reciprocal| -> Ratio {
-            inverse_gyration.times::<_, fixed::types::extra::U24>(s).min(RATIO_MAX)
-        };
-        let (e_a, e_b) = (ratio(a), ratio(b));
-        let denominator = turning(fractions.a, e_a, e_a) + turning(fractions.b, e_b, e_b);
-        let gain = |fraction: Unit, e: Ratio| {
-            // 54 fraction bits over 30, and the rounding of a gain that is mostly 1.
-            let product = i64::from(fraction.to_bits()) * i64::from(e.to_bits());
-            let quotient = crate::math::div_round(i128::from(product) << 6, denominator.max(1).into());
-            Unit::from_bits(saturate(saturate_wide(quotient)))
-        };
-        let (f_a, f_b) = (gain(fractions.a, e_a), gain(fractions.b, e_b));
-        (Row { e_a, e_b, f_a, f_b, ..Row::NONE }, denominator, s)
-    }
-
-    /// Of a row on the angle: the shares of its velocity that A and B take. They add up to 1, unless neither turns.
-    pub(crate) fn shares(&self) -> (Unit, Unit) {
-        (mul(self.f_a, self.e_a), mul(self.f_b, self.e_b))
     }
 
     /// A row along which nothing moves.
@@ -263,27 +230,6 @@ impl Row {
         self.apply(d, a, b, faults);
         d
     }
-}
-
-/// `1 / sqrt(aA / kA^2 + aB / kB^2)`, at most a hundred radii of gyration of a body that turns. It only sets the units
-/// of a row, so it need not be exact.
-fn angular_scale(a: (Reciprocal, Unit), b: (Reciprocal, Unit)) -> Length {
-    // 1 / k with 21 fraction bits, so 72 in the sum.
-    let inverse = |(inverse_gyration, fraction): (Reciprocal, Unit)| -> Speed {
-        if fraction == 0 { Speed::ZERO } else { inverse_gyration.times(Unit::ONE) }
-    };
-    let square = |end: (Reciprocal, Unit)| {
-        let inverse = u128::from(inverse(end).to_bits().unsigned_abs());
-        inverse * inverse * u128::from(end.1.to_bits().unsigned_abs())
-    };
-    let sum = square(a) + square(b);
-    if sum == 0 {
-        return Length::ZERO;
-    }
-    // 126 fraction bits over 72 are 54, their root has 27, and a length 22.
-    let root = ((1 << 126) / sum).isqrt() >> 5;
-    let most = (100u128 << 43) / u128::from(inverse(a).max(inverse(b)).to_bits().unsigned_abs());
-    Length::from_bits(i32::try_from(root.min(most)).unwrap_or(i32::MAX))
 }
 
 /// An accumulated impulse `p = L / D`, carried over as `L` for another `D`.

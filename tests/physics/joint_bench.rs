@@ -67,3 +67,15 @@ impl Bench {
 pub(crate) fn close(found: Fx, expected: Fx, within: Fx, what: &str) {
     assert!((found - expected).abs() <= within, "{what}: {found}, not {expected}");
 }
+
+/// What a joint moves of two masses or inertias: `1 / (1 / a + 1 / b)`.
+pub(crate) fn reduced(a: Fx, b: Fx) -> Fx {
+    lockstep2d::math::fx_div(lockstep2d::math::fx_mul(a, b), a + b).expect("positive")
+}
+
+/// Grounds for B, with what a joint moves of its 2 kg and of its 0.5 kg m² on each.
+pub(crate) fn grounds() -> [(Ground, Fx, Fx); 3] {
+    // A has a radius of gyration of 0.4 m.
+    let free = |mass: Fx| (Ground::Free(mass), reduced(fx!(2), mass), reduced(fx!(0.5), mass * 4 / 25));
+    [(Ground::Fixed, fx!(2), fx!(0.5)), free(fx!(0.02)), free(fx!(200))]
+}

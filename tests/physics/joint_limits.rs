@@ -6,19 +6,20 @@ use lockstep2d::math::{Angle, Fx, TAU, Vec2};
 use lockstep2d::solver::{Distance, JointDef, JointKind, Prismatic, Revolute, Wheel};
 use lockstep2d::world::World;
 
-use crate::joint_bench::{Bench, Ground, close};
+use crate::joint_bench::{Bench, Ground, close, grounds};
 
-/// Drives a joint up and then down, and looks whether it goes to both ends and no further.
+/// Drives a joint up and then down, with an acceleration of 300 m/s² or rad/s², and looks whether it goes to both ends
+/// and no further.
 fn stays(
-    kind: impl Fn(Fx) -> JointKind,
+    kind: impl Fn(Fx, Fx, Fx) -> JointKind,
     place: Vec2<Fx>,
     (lower, upper): (Fx, Fx),
     at: impl Fn(&World, JointId) -> Fx,
 ) {
-    for ground in [Ground::Fixed, Ground::Free(fx!(0.02)), Ground::Free(fx!(200))] {
+    for (ground, mass, inertia) in grounds() {
         for (speed, end) in [(fx!(5), upper), (fx!(-5), lower)] {
             let mut bench = Bench::new(ground, fx!(0), place, fx!(0));
-            let joint = bench.join(JointDef::new(bench.a, bench.b, kind(speed)));
+            let joint = bench.join(JointDef::new(bench.a, bench.b, kind(speed, mass * 300, inertia * 300)));
             let slack = (upper - lower) / 100;
             bench.run(300, |tick, world| {
                 let x = at(world, joint);
@@ -32,30 +33,31 @@ fn stays(
 #[test]
 fn a_hinge_stops_at_its_limits() {
     let angle = |world: &World, id| world.joint_angle(id).expect("there");
-    let near = Vec2::ZERO;
-    let kind = |speed| Revolute::new().limit(fx!(-0.5), fx!(0.75)).motor(speed, fx!(20)).into();
-    stays(kind, near, (fx!(-0.5), fx!(0.75)), angle);
-    // More than a turn either way.
-    let kind = |speed| Revolute::new().limit(fx!(-9), fx!(8)).motor(speed, fx!(20)).into();
-    stays(kind, near, (fx!(-9), fx!(8)), angle);
+    // The second is more than a turn either way.
+    for (lower, upper) in [(fx!(-0.5), fx!(0.75)), (fx!(-9), fx!(8))] {
+        let kind = |speed, _, torque| Revolute::new().limit(lower, upper).motor(speed, torque).into();
+        stays(kind, Vec2::ZERO, (lower, upper), angle);
+    }
 }
 
 #[test]
 fn a_slider_and_a_suspension_stop_at_their_limits() {
     let translation = |world: &World, id: JointId| world.joint_translation(id).expect("there").x;
-    let place = Vec2::new(fx!(1), fx!(0));
-    let kind = |speed| Prismatic::new().limit(fx!(0.5), fx!(2)).motor(speed, fx!(50)).into();
-    stays(kind, place, (fx!(0.5), fx!(2)), translation);
+    let (place, range) = (Vec2::new(fx!(1), fx!(0)), (fx!(0.5), fx!(2)));
+    let kind = |speed, force, _| Prismatic::new().limit(range.0, range.1).motor(speed, force).into();
+    stays(kind, place, range, translation);
     // A spring takes the place of the motor, from 10 m away.
-    let kind = |speed: Fx| Wheel::new().limit(fx!(0.5), fx!(2)).spring(fx!(1), fx!(0.1), speed * 2).into();
-    stays(kind, place, (fx!(0.5), fx!(2)), translation);
+    let kind =
+        |speed: Fx, _, _| Wheel::new().limit(range.0, range.1).spring(fx!(1), fx!(0.1), speed * 2).into();
+    stays(kind, place, range, translation);
 }
 
 #[test]
 fn a_distance_stops_at_its_limits() {
     let length = |world: &World, id| world.joint_length(id).expect("there");
-    let kind = |speed| Distance::new().limit(fx!(1), fx!(3)).motor(speed, fx!(50)).into();
-    stays(kind, Vec2::new(fx!(1.2), fx!(1.6)), (fx!(1), fx!(3)), length);
+    let range = (fx!(1), fx!(3));
+    let kind = |speed, force, _| Distance::new().limit(range.0, range.1).motor(speed, force).into();
+    stays(kind, Vec2::new(fx!(1.2), fx!(1.6)), range, length);
 }
 
 /// A rod of 2 kg falls from the horizontal onto a stop below, again and again: limit and hinge hold.
@@ -68,7 +70,8 @@ fn a_limit_bears_a_falling_rod() {
     bench.run(300, |_, world| {
         lowest = lowest.min(world.joint_angle(joint).expect("there"));
         let gap = world.joint_length(joint).expect("there");
-        assert!(gap < fx!(0.01), "gap {gap} m");
+        // When it hits the stop at 8 m/s: limit and hinge are solved one after the other.
+        assert!(gap < fx!(0.03), "gap {gap} m");
     });
     assert!(lowest > fx!(-1.02), "{lowest} rad");
     let (force, torque) = bench.world.joint_force(joint).expect("there");

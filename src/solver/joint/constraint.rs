@@ -138,11 +138,7 @@ impl JointSet {
         for joint in &self.joints {
             let place = joint.ends.place(bodies, &self.turned);
             for point in joint.points.of(&mut self.points) {
-                if point.is_balanced() {
-                    point.refresh(&joint.ends.balanced(&place, &self.turned), tuning);
-                } else {
-                    point.refresh(&place, tuning);
-                }
+                point.refresh(&place, tuning);
             }
             let mut last = None;
             for row in joint.rows.of(&mut self.rows) {

@@ -86,11 +86,6 @@ impl Parts<'_> {
         self.point(slot::HOLD, PointTask::Pin);
     }
 
-    /// Keeps the anchors on each other, in a joint that holds the angle too.
-    pub(super) fn glue(&mut self) {
-        self.point(slot::HOLD, PointTask::Glue);
-    }
-
     /// Pulls the anchors onto each other, with a largest force.
     pub(super) fn pull(&mut self, slot: u8, soft: Soft, max_force: Fx) {
         let softness = Softness::spring(soft.hertz, soft.damping_ratio, self.rate);

@@ -7,7 +7,7 @@ use super::parts::Direction;
 use super::row::Measure;
 use super::state::{Joint, radians};
 use crate::body::Body;
-use crate::math::{Fx, Length, Reciprocal, Rot, Unit, Vec2, round_shift, saturate};
+use crate::math::{Angle, Fx, Length, Reciprocal, Rot, Unit, Vec2, round_shift, saturate};
 
 /// How a body with joints is turned, at the last refresh.
 #[derive(Clone, Copy, Debug, Default)]
@@ -84,15 +84,16 @@ impl Ends {
     /// Where else the ends may be held if the angle is held too: a push there does not turn the bodies against each
     /// other, so that angle and point are solved one after the other without disturbing each other. With the vector `c`
     /// from A's centre to B's, and A's share `sA = iA / (iA + iB)` of the inverse inertias, that place is `-sA c` from
-    /// B's centre. It has moved apart by `gap + theta x` from the anchor.
-    pub(super) fn balanced(&self, place: &Place, turned: &[Turned]) -> Place {
-        let Measure { row, position, .. } = self.measure_angle(turned);
-        let (share_a, _) = row.shares();
+    /// B's centre.
+    fn balanced(&self, place: &Place, turned: &[Turned]) -> Place {
+        let (share_a, _) = self.measure_angle(turned).row.shares();
         let (arm_a, arm_b) = (place.lever_a.arm.widen(), place.lever_b.arm.widen());
         let between = arm_a + place.gap - arm_b;
         let arm = -between.scale(share_a.into());
-        // To first order: the angle is small, or about to be.
-        let gap = place.gap + (arm - arm_b).perp().scale(position.clamp(-Fx::ONE, Fx::ONE));
+        // From the anchor to there, as B has it, and as A does.
+        let (to_b, apart) = (arm - arm_b, Angle::from_turns(Fx::from_bits(self.turns(turned))));
+        let to_a = Rot::from_angle(-apart).apply_wide(to_b);
+        let gap = place.gap + to_b - to_a;
         Place {
             lever_a: Lever { arm: (between + arm - gap).narrow(), ..place.lever_a },
             lever_b: Lever { arm: arm.narrow(), ..place.lever_b },

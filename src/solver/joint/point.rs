@@ -14,8 +14,6 @@ use crate::math::{Ratio, Speed, Step, Unit, Vec2, mul};
 pub(super) enum PointTask {
     /// Keeps the anchors on each other.
     Pin,
-    /// The same, where a push does not turn the bodies against each other: for joints that hold the angle too.
-    Glue,
     /// Pulls them onto each other, with impulses times `mA + mB` of a largest size. In the bias pass only, as for rows.
     Spring { softness: Softness, max: Speed },
     /// Brings their relative velocity to another, with impulses times `mA + mB` of a largest size.
@@ -46,7 +44,7 @@ impl JointPoint {
     pub(super) fn refresh(&mut self, place: &Place, tuning: &Tuning) {
         self.block = PointBlock::new(place.lever_a, place.lever_b, place.fractions);
         self.bias = match &self.task {
-            PointTask::Pin | PointTask::Glue => {
+            PointTask::Pin => {
                 let gap: Vec2<Step> = place.gap.narrow();
                 Vec2::new(mul(gap.x, tuning.joint.bias_rate), mul(gap.y, tuning.joint.bias_rate))
             }
@@ -55,11 +53,6 @@ impl JointPoint {
             }
             PointTask::Drive { velocity, .. } => -*velocity,
         };
-    }
-
-    /// Whether it is held where a push does not turn the bodies against each other.
-    pub(super) fn is_balanced(&self) -> bool {
-        matches!(self.task, PointTask::Glue)
     }
 
     /// Looks ahead along the turns of the bodies in the coming sub-step.
@@ -83,10 +76,10 @@ impl JointPoint {
     ) {
         let lambda = &mut self.lambda;
         match (&self.task, pass) {
-            (PointTask::Pin | PointTask::Glue, Pass::Bias) => {
+            (PointTask::Pin, Pass::Bias) => {
                 self.block.solve(a, b, self.ratios_ahead, self.bias, &tuning.joint, lambda, faults);
             }
-            (PointTask::Pin | PointTask::Glue, Pass::Relax) => {
+            (PointTask::Pin, Pass::Relax) => {
                 let ratios = self.block.ratios();
                 self.block.solve(a, b, ratios, Vec2::ZERO, &Softness::RIGID, lambda, faults);
             }

@@ -2,7 +2,8 @@
 //!
 //! With the axis `n` fixed in A and `d` from A's anchor to B's, the rows along the axis have the Jacobian
 //! `n.(v_b - v_a) + (r_b x n) w_b - ((d + r_a) x n) w_a` (E. Catto, Box2D). What holds it are two rows: one on the angle,
-//! and one across the axis.
+//! and one across the axis. The latter acts where it does not turn the bodies against each other: at B's anchor, the two
+//! disturb each other, and a slider with a mass ratio of 100 turns three to ten times as far.
 
 use serde::{Deserialize, Serialize};
 
