@@ -17,7 +17,7 @@ fn a_box_that_does_not_turn_takes_the_whole_momentum() {
     let shape = square(fx!(1)).restitution(fx!(1)).friction(fx!(0));
     let target = spawn(&mut world, BodyDef::dynamic().lock_rotation(), shape);
     let radius = fx!(0.5);
-    let ball = ball(radius).restitution(fx!(1)).friction(fx!(0)).density(fx!(4 / 0.785398163397));
+    let ball = ball(radius).restitution(fx!(1)).friction(fx!(0)).density(fx!(5.09295817894));
     let thrown = BodyDef::dynamic().position(fx!(-3), fx!(0.8)).velocity(fx!(5), fx!(0));
     let thrown = spawn(&mut world, thrown, ball);
     run(&mut world, 90);
@@ -34,7 +34,7 @@ fn a_box_that_does_not_turn_takes_the_whole_momentum() {
 fn a_box_that_turns_takes_less() {
     let mut world = weightless();
     let target = spawn(&mut world, BodyDef::dynamic(), square(fx!(1)).restitution(fx!(1)).friction(fx!(0)));
-    let ball = ball(fx!(0.5)).restitution(fx!(1)).friction(fx!(0)).density(fx!(4 / 0.785398163397));
+    let ball = ball(fx!(0.5)).restitution(fx!(1)).friction(fx!(0)).density(fx!(5.09295817894));
     let thrown = BodyDef::dynamic().position(fx!(-3), fx!(0.8)).velocity(fx!(5), fx!(0));
     spawn(&mut world, thrown, ball);
     run(&mut world, 60);
