@@ -5,7 +5,7 @@ use lockstep2d::body::{
 };
 use lockstep2d::fx;
 use lockstep2d::math::{Angle, Fx, Vec2};
-use lockstep2d::solver::{ContactTuning, RevoluteDef, SolverSettings};
+use lockstep2d::solver::{ContactTuning, JointDef, Revolute, SolverSettings};
 use lockstep2d::world::{Command, Config, World};
 
 fn ball() -> ShapeDef {
@@ -124,10 +124,11 @@ fn stale_handles_are_refused() {
     stage.refuses(Command::SetVelocity { body: gone, velocity: zero, angular_velocity: fx!(0) }, stale);
     stage.refuses(Command::SetTransform { body: gone, position: zero, angle: Angle::ZERO }, stale);
     let ball = stage.ball;
-    stage.refuses(Command::AddJoint { joint: RevoluteDef::new(ball, gone).into() }, stale);
-    stage.refuses(Command::AddJoint { joint: RevoluteDef::new(gone, ball).into() }, stale);
+    stage.refuses(Command::AddJoint { joint: JointDef::new(ball, gone, Revolute::new()) }, stale);
+    stage.refuses(Command::AddJoint { joint: JointDef::new(gone, ball, Revolute::new()) }, stale);
 
-    let joint = stage.world.add_joint(&RevoluteDef::new(stage.ball, stage.floor).into()).expect("valid");
+    let joint =
+        stage.world.add_joint(&JointDef::new(stage.ball, stage.floor, Revolute::new())).expect("valid");
     stage.world.remove_joint(joint).expect("there");
     stage.refuses(Command::RemoveJoint { joint }, |error| matches!(error, WorldError::StaleJoint(_)));
     let shape = stage.world.add_shape(stage.ball, &self::ball()).expect("valid");
@@ -153,13 +154,13 @@ fn what_a_body_cannot_do_is_refused() {
     stage.refuses(Command::SetVelocity { body: ball, velocity, angular_velocity: fx!(0) }, fast);
     let far = |error: &WorldError| matches!(error, WorldError::PositionOutOfRange { .. });
     stage.refuses(Command::SetTransform { body: ball, position: velocity, angle: Angle::ZERO }, far);
-    stage.refuses(Command::AddJoint { joint: RevoluteDef::new(ball, ball).into() }, |error| {
+    stage.refuses(Command::AddJoint { joint: JointDef::new(ball, ball, Revolute::new()) }, |error| {
         matches!(error, WorldError::JointToItself(_))
     });
-    stage.refuses(Command::AddJoint { joint: RevoluteDef::new(floor, lift).into() }, |error| {
+    stage.refuses(Command::AddJoint { joint: JointDef::new(floor, lift, Revolute::new()) }, |error| {
         matches!(error, WorldError::JointWithoutDynamicBody)
     });
-    let long = RevoluteDef::new(floor, ball).anchor_a(fx!(300), fx!(0));
+    let long = JointDef::new(floor, ball, Revolute::new()).anchor_a(fx!(300), fx!(0));
     stage.refuses(Command::AddJoint { joint: long.into() }, |error| {
         matches!(error, WorldError::OffsetOutOfRange { .. })
     });
@@ -181,8 +182,8 @@ fn a_full_world_refuses_more() {
     assert_eq!(too_many, Err(WorldError::Full { what: "shapes", limit: 3 }));
     let b = world.spawn(&BodyDef::dynamic(), &[ball()]).expect("room");
     assert_eq!(world.spawn(&BodyDef::fixed(), &[]), Err(WorldError::Full { what: "bodies", limit: 2 }));
-    world.add_joint(&RevoluteDef::new(a, b).into()).expect("room");
-    let second = world.add_joint(&RevoluteDef::new(a, b).into());
+    world.add_joint(&JointDef::new(a, b, Revolute::new())).expect("room");
+    let second = world.add_joint(&JointDef::new(a, b, Revolute::new()));
     assert_eq!(second, Err(WorldError::Full { what: "joints", limit: 1 }));
 }
 

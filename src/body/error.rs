@@ -23,6 +23,18 @@ pub enum GeometryError {
         /// The first vertex of an edge with another vertex on its wrong side.
         vertex: u64,
     },
+    /// A chain has at least 2 points, 3 if it is closed, and at most 4096 links.
+    ChainLength {
+        /// How many points there were.
+        points: u64,
+    },
+    /// A chain has no materials, one for all links, or one for each.
+    MaterialCount {
+        /// How many links there are.
+        links: u64,
+        /// How many materials there were.
+        materials: u64,
+    },
     /// A coordinate, radius or length is too small or too large.
     SizeOutOfRange {
         /// The value in metres.
@@ -39,6 +51,15 @@ impl fmt::Display for GeometryError {
             }
             GeometryError::NotConvex { vertex } => {
                 write!(f, "not convex and counter-clockwise at the edge from vertex {vertex}")
+            }
+            GeometryError::ChainLength { points } => {
+                write!(
+                    f,
+                    "a chain has 2 points or more, 3 if it is closed, and at most 4096 links: not {points} points"
+                )
+            }
+            GeometryError::MaterialCount { links, materials } => {
+                write!(f, "{materials} materials for the {links} links of a chain")
             }
             GeometryError::SizeOutOfRange { value } => {
                 write!(f, "a size or coordinate of {value} m is out of range")
@@ -81,7 +102,8 @@ pub enum WorldError {
         /// The density in kg/m².
         value: Fx,
     },
-    /// Friction is not within 0 to 16, or restitution not within 0 to 1.
+    /// Friction is not within 0 to 16, restitution or rolling resistance not within 0 to 1, or a surface speed not
+    /// within ±400 m/s.
     MaterialOutOfRange,
     /// A dynamic body's mass is not within 10 mg to 2^30 kg: it has no shape with area and density, or too much.
     MassOutOfRange {
@@ -109,6 +131,11 @@ pub enum WorldError {
     JointWithoutDynamicBody,
     /// A joint stays between its bodies as long as it lives.
     JointOfOtherBodies(JointId),
+    /// Something of a joint is out of range.
+    JointOutOfRange {
+        /// What.
+        what: &'static str,
+    },
     /// A world setting is out of range.
     Setting {
         /// Which one.
@@ -144,7 +171,10 @@ impl fmt::Display for WorldError {
             }
             WorldError::SpeedOutOfRange { value } => write!(f, "speed {value} is above the world's limit"),
             WorldError::DensityOutOfRange { value } => write!(f, "density {value} kg/m² is out of range"),
-            WorldError::MaterialOutOfRange => write!(f, "friction is 0 to 16 and restitution 0 to 1"),
+            WorldError::MaterialOutOfRange => write!(
+                f,
+                "friction is 0 to 16, restitution and rolling resistance are 0 to 1, and surface speed is within ±400 m/s"
+            ),
             WorldError::MassOutOfRange { value } => {
                 write!(
                     f,
@@ -163,6 +193,7 @@ impl fmt::Display for WorldError {
             WorldError::JointToItself(id) => write!(f, "a joint between body {id} and itself"),
             WorldError::JointWithoutDynamicBody => write!(f, "neither body of the joint is dynamic"),
             WorldError::JointOfOtherBodies(id) => write!(f, "joint {id} is between other bodies"),
+            WorldError::JointOutOfRange { what } => write!(f, "the {what} of a joint is out of range"),
             WorldError::Setting { name } => write!(f, "the world setting `{name}` is out of range"),
             WorldError::Full { what, limit } => write!(f, "the world already holds {limit} {what}"),
             WorldError::WrongKind(id) => write!(f, "body {id} is not of a kind that can do this"),

@@ -15,10 +15,11 @@
 use serde::{Deserialize, Serialize};
 
 use super::error::WorldError;
+use super::geometry::Geometry;
 use super::polygon::Polygon;
-use super::shape::{Geometry, ShapeDef};
+use super::shape::ShapeDef;
 use crate::fx;
-use crate::math::{Fx, PI, Reciprocal, Vec2, div_round, fx_mul, saturate_wide};
+use crate::math::{Fx, PI, Reciprocal, Unit, Vec2, div_round, fx_mul, saturate_wide};
 
 /// Limits of a dynamic body's mass in kg.
 const MASS: core::ops::RangeInclusive<Fx> = fx!(0.00001)..=fx!(1073741824);
@@ -150,9 +151,33 @@ impl Part {
                     Part { mass: fx_mul(area, shape.density), centre: shape.offset, gyration_squared: 0 };
                 Part { gyration_squared: (r * r) >> 21, ..part }
             }
-            Geometry::Segment { .. } => Part { mass: Fx::ZERO, centre: shape.offset, gyration_squared: 0 },
+            Geometry::Segment { .. } | Geometry::Link { .. } => {
+                Part { mass: Fx::ZERO, centre: shape.offset, gyration_squared: 0 }
+            }
             Geometry::Polygon(polygon) => Part::of_polygon(polygon, shape),
+            Geometry::Capsule { a, b, radius } => Part::of_capsule(*a, *b, *radius, shape),
         }
+    }
+
+    /// A rectangle of `l` by `2 r` and two half discs with their centres of mass at `4 r / (3 pi)` from its ends:
+    ///
+    /// ```text
+    /// A     = 2 r l + pi r^2
+    /// k^2 A = 2 r l (l^2 + 4 r^2) / 12 + pi r^2 (r^2 / 2 + l^2 / 4 + 4 r l / (3 pi))
+    /// ```
+    fn of_capsule(a: Vec2<Fx>, b: Vec2<Fx>, radius: Fx, shape: &ShapeDef) -> Part {
+        let (r, l) = (radius, a.distance(b));
+        let (rr, rl, ll) = (fx_mul(r, r), fx_mul(r, l), fx_mul(l, l));
+        let (rectangle, disc) = (rl * 2, fx_mul(PI, rr));
+        let area = rectangle + disc;
+        let of_rectangle = (ll + rr * 4) / 12;
+        let of_disc = rr / 2 + ll / 4 + fx_mul(rl, fx!(0.424413181578));
+        // Weights and squares of lengths, each with 32 fraction bits; the mean has 44.
+        let product = |weight: Fx, square: Fx| i128::from(weight.to_bits()) * i128::from(square.to_bits());
+        let moment = product(rectangle, of_rectangle) + product(disc, of_disc);
+        let gyration_squared = div_round(moment << 12, area.to_bits().max(1).into());
+        let centre = shape.offset + a.lerp(b, Unit::lit("0.5"));
+        Part { mass: fx_mul(area, shape.density), centre, gyration_squared }
     }
 
     fn of_polygon(polygon: &Polygon, shape: &ShapeDef) -> Part {
@@ -225,6 +250,15 @@ mod tests {
         close(properties.mass, fx_mul(fx!(4), PI));
         close(fx_mul(properties.gyration, properties.gyration), fx!(2));
         assert_eq!(properties.centre, disc.offset);
+
+        let pill =
+            Geometry::capsule(Vec2::new(fx!(-1), fx!(3)), Vec2::new(fx!(3), fx!(3)), fx!(0.5)).unwrap();
+        let properties = dynamic(&[ShapeDef::new(pill).density(fx!(2))]).unwrap();
+        close(properties.mass, fx!(8) + PI / 2);
+        close(properties.centre.x, fx!(1));
+        close(properties.centre.y, fx!(3));
+        // (4 (16 + 1) / 12 + pi/4 (1/8 + 4 + 8 / (3 pi))) / (4 + pi/4)
+        close(fx_mul(properties.gyration, properties.gyration), fx!(2.000481555));
 
         let corner = Vec2::new;
         let triangle =

@@ -20,7 +20,7 @@ pub(crate) type Pair = (u32, u32);
 /// never which.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum BroadPhaseKind {
-    /// A balanced tree of boxes: cost grows with what moves, and queries are fast.
+    /// A balanced tree of boxes: the cost grows with what moves, and queries are fast.
     #[default]
     Tree,
     /// Incremental sweep and prune: fast while most boxes move, and little. Queries look at every box.
@@ -139,14 +139,18 @@ impl BroadPhase {
                     }
                 };
                 match structure {
-                    Structure::Tree(tree) => set.slots.iter().for_each(|&a| {
-                        // A pair of two that have moved is found from both ends.
-                        tree.each_overlap_of(a, |b| {
-                            if b > a || !set.has(b) {
-                                found((a.min(b), a.max(b)));
-                            }
-                        });
-                    }),
+                    // To compare a tree with itself is worth four times as many searches.
+                    Structure::Tree(tree) if set.slots.len() < tree.len() / 4 => {
+                        for &a in &set.slots {
+                            // A pair of two that have moved is met from both ends.
+                            tree.each_overlap_of(a, |b| {
+                                if b > a || (b < a && !set.has(b)) {
+                                    found((a.min(b), a.max(b)));
+                                }
+                            });
+                        }
+                    }
+                    Structure::Tree(tree) => tree.each_pair(found_moved),
                     Structure::SweepAndPrune(sweep) => sweep.each_pair(found_moved),
                     Structure::BruteForce(boxes) => boxes.each_pair(found_moved),
                 }
@@ -156,7 +160,6 @@ impl BroadPhase {
     }
 
     /// Calls `visit` with every slot whose box overlaps the area, in no particular order, until it breaks.
-    #[cfg_attr(not(test), expect(dead_code, reason = "for queries"))]
     pub(crate) fn each_overlap(&self, area: Aabb, visit: impl FnMut(u32) -> ControlFlow<()>) {
         self.search(Overlap { area, visit });
     }
@@ -164,14 +167,12 @@ impl BroadPhase {
     /// Calls `visit` with every slot whose box the area touches when it moves along the translation, nearer ones
     /// rather earlier, and perhaps with some that it only just misses. It returns the largest fraction of the
     /// translation that is still of interest; 0 ends the search.
-    #[cfg_attr(not(test), expect(dead_code, reason = "for queries"))]
     pub(crate) fn each_along(&self, area: Aabb, translation: Vec2<Fx>, visit: impl FnMut(u32) -> Unit) {
         self.search(Along::new(area, translation, visit));
     }
 
     /// Calls `visit` with every slot whose box is within the radius of the point, nearer ones rather earlier. It
     /// returns the radius that is still of interest; a negative one ends the search.
-    #[cfg_attr(not(test), expect(dead_code, reason = "for queries"))]
     pub(crate) fn each_near(&self, point: Vec2<Fx>, radius: Fx, visit: impl FnMut(u32) -> Fx) {
         self.search(Near { point, radius, visit });
     }

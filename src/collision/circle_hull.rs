@@ -1,4 +1,4 @@
-//! A circle against a convex outline: a polygon, or a segment as a polygon with two sides.
+//! A circle against a convex outline: a polygon, or a segment or capsule as a polygon with two sides.
 //!
 //! The centre is inside (the nearest face pushes it out, so that it is never pushed through), beside a face, or
 //! in the region of a corner.
@@ -27,7 +27,8 @@ pub(crate) fn collide(hull: &Hull, radius: Length, centre: Vec2<Length>, margin:
         None
     };
     let (normal, distance) = match corner {
-        Some(vertex) if face_distance > 0 => {
+        // On the line of a segment and beyond its end the distance is 0 from both faces.
+        Some(vertex) if face_distance >= 0 => {
             let d = centre - vertex;
             (d.normalized().unwrap_or(face_normal), step_bits(d.length()))
         }

@@ -15,8 +15,11 @@ use crate::math::{Length, Step, Unit, Vec2, round_shift_wide, saturate, saturate
 /// but anchors would jump. The same distance tells apart polygons that are disjoint from those that touch.
 const TOLERANCE: Step = Step::lit("0.0005");
 
-/// [`TOLERANCE`] with the 52 fraction bits of a product of a length and a unit vector.
-const TOLERANCE_WIDE: i64 = (TOLERANCE.to_bits() as i64) << 25;
+/// The fraction bits of a product of a length and a unit vector: of the separation from a face.
+pub(super) const FACE_BITS: u32 = Unit::FRAC_NBITS + Length::FRAC_NBITS;
+
+/// [`TOLERANCE`] with [`FACE_BITS`] fraction bits.
+pub(super) const TOLERANCE_WIDE: i64 = (TOLERANCE.to_bits() as i64) << 25;
 
 /// The face that separated a pair in the last tick. Trying it first changes no result: any axis with a gap
 /// beyond the margin proves that there is no contact.
@@ -34,10 +37,10 @@ pub(crate) struct SatCounters {
 }
 
 #[derive(Clone, Copy)]
-struct Face {
-    edge: usize,
+pub(super) struct Face {
+    pub(super) edge: usize,
     /// Of the other outline's vertices from the face, without radii: 52 fraction bits.
-    separation: i64,
+    pub(super) separation: i64,
 }
 
 /// `d` is the vector from the centre of A to the centre of B.
@@ -72,14 +75,32 @@ pub(crate) fn collide(
         *hint = AxisHint { on_b: true, edge: small(face_b.edge) };
         return Manifold::NONE;
     }
+    let apart = are_apart(a, b, d, face_a, face_b);
     // Outlines that are apart need the true best face, which is next to the nearest corner.
-    let touching = face_a.separation.max(face_b.separation) <= TOLERANCE_WIDE;
-    let preference = if touching { TOLERANCE_WIDE } else { 0 };
+    let preference = if apart { 0 } else { TOLERANCE_WIDE };
     if face_b.separation > face_a.separation + preference {
-        clip(b, a, -d, face_b, margin).swapped().translated(d)
+        clip(b, a, -d, face_b, apart, margin).swapped().translated(d)
     } else {
-        clip(a, b, d, face_a, margin)
+        clip(a, b, d, face_a, apart, margin)
     }
+}
+
+/// Whether two outlines do not touch, radii not counted, told by the best face of each.
+pub(super) fn are_apart(a: &Hull, b: &Hull, d: Vec2<Length>, face_a: Face, face_b: Face) -> bool {
+    face_a.separation.max(face_b.separation) > TOLERANCE_WIDE
+        || beyond_an_end(a, b, d)
+        || beyond_an_end(b, a, -d)
+}
+
+/// Whether `b` lies beyond an end of `a`, which has two sides and no face there: of two capsules end to end no face
+/// tells that they are apart.
+fn beyond_an_end(a: &Hull, b: &Hull, d: Vec2<Length>) -> bool {
+    let &[start, end] = a.vertices() else { return false };
+    let t = a.normals()[0].perp();
+    let (x, y) = (i64::from(t.x.to_bits()), i64::from(t.y.to_bits()));
+    let along = |v: Vec2<Length>| x * i64::from(v.x.to_bits()) + y * i64::from(v.y.to_bits());
+    let of_b = |from: Vec2<Length>| b.vertices().iter().map(move |&vertex| along(vertex) + along(d - from));
+    of_b(start).all(|along| along < -TOLERANCE_WIDE) || of_b(end).all(|along| along > TOLERANCE_WIDE)
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "at most 8 edges")]
@@ -88,7 +109,7 @@ fn small(edge: usize) -> u8 {
 }
 
 /// The face of `a` that is furthest from `b`.
-fn best_face(a: &Hull, b: &Hull, d: Vec2<Length>) -> Face {
+pub(super) fn best_face(a: &Hull, b: &Hull, d: Vec2<Length>) -> Face {
     let mut best = Face { edge: 0, separation: i64::MIN };
     for edge in 0..a.vertices().len() {
         let separation = face_separation(a, edge, b, d);
@@ -100,12 +121,16 @@ fn best_face(a: &Hull, b: &Hull, d: Vec2<Length>) -> Face {
 }
 
 /// Smallest distance of the vertices of `b` from a face of `a`, with 52 fraction bits.
-fn face_separation(a: &Hull, edge: usize, b: &Hull, d: Vec2<Length>) -> i64 {
-    let n = a.normals()[edge];
+pub(super) fn face_separation(a: &Hull, edge: usize, b: &Hull, d: Vec2<Length>) -> i64 {
+    plane_separation(a.normals()[edge], a.vertices()[edge], b, d)
+}
+
+/// Smallest distance of the vertices of `b` from the line through a point across `n`, with 52 fraction bits.
+pub(super) fn plane_separation(n: Vec2<Unit>, point: Vec2<Length>, b: &Hull, d: Vec2<Length>) -> i64 {
     let (x, y) = (i64::from(n.x.to_bits()), i64::from(n.y.to_bits()));
     let dot = |v: Vec2<Length>| x * i64::from(v.x.to_bits()) + y * i64::from(v.y.to_bits());
     let support = b.vertices().iter().map(|&vertex| dot(vertex)).min().unwrap_or(0);
-    support + dot(d - a.vertices()[edge])
+    support + dot(d - point)
 }
 
 /// One end of an edge: its vertex, and where it is along the reference edge.
@@ -117,7 +142,7 @@ struct End {
 }
 
 /// Clips the incident edge of `b` against a face of `a`. Positions are about the centre of `a`.
-fn clip(a: &Hull, b: &Hull, d: Vec2<Length>, face: Face, margin: Length) -> Manifold {
+pub(super) fn clip(a: &Hull, b: &Hull, d: Vec2<Length>, face: Face, apart: bool, margin: Length) -> Manifold {
     let normal = a.normals()[face.edge];
     let v1 = a.vertices()[face.edge];
     let tangent = normal.perp();
@@ -132,7 +157,6 @@ fn clip(a: &Hull, b: &Hull, d: Vec2<Length>, face: Face, margin: Length) -> Mani
     let (upper, lower) = (end_of_b(incident), end_of_b(b.next(incident)));
 
     let context = Clip { normal, v1, radius_a: a.radius, radius_b: b.radius, margin };
-    let apart = face.separation > TOLERANCE_WIDE;
     let corners = nearest_corners(first, last, upper, lower).filter(|_| apart);
     if upper.along < first.along || lower.along > last.along {
         // Outlines that overlap deeply may have no incident edge beside the face. Their deepest corner still pushes

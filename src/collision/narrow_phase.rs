@@ -1,6 +1,7 @@
 //! The narrow phase: every pair of outlines, listed.
 
 use super::hull_hull::{AxisHint, SatCounters};
+use super::link::Facing;
 use super::manifold::Manifold;
 use super::pose::{Hull, Outline, PosedShape};
 use super::{circle_circle, circle_hull, hull_hull, segment};
@@ -42,7 +43,7 @@ fn collide_outlines(
     hint: &mut AxisHint,
     counters: &mut SatCounters,
 ) -> Manifold {
-    use Outline::{Circle, Polygon, Segment};
+    use Outline::{Circle, Link, Polygon, Segment};
     let d: Vec2<Length> = (b.centre - a.centre).narrow();
     // Each manifold is found about the centre of one shape: A's, unless only B has a centre near the contact.
     match (&a.outline, &b.outline) {
@@ -72,8 +73,24 @@ fn collide_outlines(
             let Some(hull_b) = segment_about(b, a) else { return Manifold::NONE };
             hull_hull::collide(hull_a, &hull_b, Vec2::ZERO, margin, hint, counters).about(a.centre)
         }
+        (Link(_), Circle { radius }) => {
+            let Some(facing) = link_facing(a, b, Vec2::ZERO) else { return Manifold::NONE };
+            facing.collide_circle(*radius, margin).about(b.centre)
+        }
+        (Circle { radius }, Link(_)) => {
+            let Some(facing) = link_facing(b, a, Vec2::ZERO) else { return Manifold::NONE };
+            facing.collide_circle(*radius, margin).swapped().about(a.centre)
+        }
+        (Link(_), Polygon(hull_b)) => {
+            let Some(facing) = link_facing(a, b, hull_b.middle()) else { return Manifold::NONE };
+            facing.collide_hull(hull_b, margin).about(b.centre)
+        }
+        (Polygon(hull_a), Link(_)) => {
+            let Some(facing) = link_facing(b, a, hull_a.middle()) else { return Manifold::NONE };
+            facing.collide_hull(hull_a, margin).swapped().about(a.centre)
+        }
         // Two lines have no inside: nothing tells on which side one should be.
-        (Segment { .. }, Segment { .. }) => Manifold::NONE,
+        (Segment { .. } | Link(_), Segment { .. } | Link(_)) => Manifold::NONE,
     }
 }
 
@@ -84,11 +101,19 @@ fn segment_about(segment: &PosedShape, other: &PosedShape) -> Option<Hull> {
     segment::near_hull(from_other + a, from_other + b)
 }
 
+/// The link about the centre of the other shape, as it faces a place in that.
+fn link_facing(link: &PosedShape, other: &PosedShape, place: Vec2<Fx>) -> Option<Facing> {
+    let Outline::Link(posed) = link.outline else { return None };
+    let from_other = link.centre - other.centre;
+    Facing::new(&posed.mapped(|point| from_other + point), place)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::body::{Body, BodyDef, Geometry, MassProperties, Polygon, ShapeDef};
     use crate::collision::SatCounters;
+    use crate::collision::link::Link;
     use crate::math::{Angle, Rng, closest_point_on_segment};
     use alloc::vec::Vec;
 
@@ -103,9 +128,10 @@ mod tests {
             let mut coordinate = || rng.range(fx!(-1), fx!(1));
             let points: Vec<_> = (0..7).map(|_| Vec2::new(coordinate(), coordinate())).collect();
             let radius = rng.range(fx!(0), fx!(0.3));
-            let geometry = match rng.below(5) {
+            let geometry = match rng.below(6) {
                 0 => Geometry::circle(radius + fx!(0.1)).ok(),
                 1 => Geometry::segment(points[0], points[1]).ok(),
+                4 => Geometry::capsule(points[0], points[1], radius).ok(),
                 2 => Polygon::rectangle(radius + fx!(0.1), fx!(0.3)).ok().map(Geometry::from),
                 3 => Polygon::hull(&points).ok().map(Geometry::from),
                 _ => Polygon::hull(&points).and_then(|hull| hull.rounded(radius)).ok().map(Geometry::from),
@@ -147,7 +173,9 @@ mod tests {
     fn corners(shape: &PosedShape) -> (Vec<Vec2<Fx>>, Fx) {
         match &shape.outline {
             Outline::Circle { radius } => (alloc::vec![shape.centre], widen(*radius)),
-            Outline::Segment { a, b } => (alloc::vec![shape.centre + *a, shape.centre + *b], Fx::ZERO),
+            Outline::Segment { a, b } | Outline::Link(Link { a, b, .. }) => {
+                (alloc::vec![shape.centre + *a, shape.centre + *b], Fx::ZERO)
+            }
             Outline::Polygon(hull) => {
                 let vertices = hull.vertices().iter().map(|vertex| shape.centre + vertex.widen());
                 (vertices.collect(), widen(hull.radius))
@@ -202,6 +230,33 @@ mod tests {
             }
         }
         assert!(compared > 5_000 && none > 10_000, "{compared} compared, {none} without contact");
+    }
+
+    /// No face tells capsules and circles on one line apart: only the distance of their ends does.
+    #[test]
+    fn shapes_in_line_are_apart_and_pushed_along_the_line() {
+        let pill =
+            || Geometry::capsule(Vec2::new(fx!(-1), fx!(0)), Vec2::new(fx!(1), fx!(0)), fx!(0.5)).unwrap();
+        let stick = Geometry::segment(Vec2::new(fx!(-1.5), fx!(0)), Vec2::new(fx!(1.5), fx!(0))).unwrap();
+        let ball = Geometry::circle(fx!(1.5)).unwrap();
+        for (other, angle) in [
+            (pill(), Angle::ZERO),
+            (pill(), Angle::from_degrees(fx!(180))),
+            (pill(), Angle::from_degrees(fx!(0.01))),
+            (stick, Angle::ZERO),
+            (ball, Angle::ZERO),
+        ] {
+            for gap in [fx!(-0.3), fx!(0), fx!(0.04)] {
+                let a = posed(pill(), Vec2::new(fx!(7), fx!(2)), Angle::ZERO);
+                let b = posed(other, Vec2::new(fx!(10) + gap, fx!(2)), angle);
+                let margin = narrow(fx!(0.05));
+                let found = collide(&a, &b, margin, &mut AxisHint::default(), &mut SatCounters::default());
+                assert_eq!(found.points().len(), 1, "{other:?}, gap {gap}");
+                assert!(found.normal.x > Length::lit("0.999"), "{:?}", found.normal);
+                let error = widen(found.points()[0].separation) - gap;
+                assert!(error.abs() < fx!(0.00001), "{error}");
+            }
+        }
     }
 
     /// Exchanging the shapes exchanges the roles and nothing else, as long as no tie is broken by order.

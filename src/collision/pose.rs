@@ -1,7 +1,8 @@
 //! Shapes posed in world axes: each shape is rotated once in a tick, so that its pairs only translate.
 
+use super::link::Link;
 use crate::body::{Body, Geometry, POLYGON_VERTICES_MAX, Polygon, ShapeDef};
-use crate::math::{Aabb, Fx, Length, Rot, Unit, Vec2, narrow};
+use crate::math::{Aabb, Fx, Length, Rot, Unit, Vec2, narrow, widen};
 
 /// A shape in the world: its outline in world axes about its own centre.
 #[derive(Clone, Debug)]
@@ -19,9 +20,21 @@ pub(crate) enum Outline {
     Circle { radius: Length },
     Segment { a: Vec2<Fx>, b: Vec2<Fx> },
     Polygon(Hull),
+    Link(Link),
 }
 
-/// A convex outline in 32-bit coordinates: a polygon, or a segment seen as a polygon with two sides.
+impl Outline {
+    /// How far the surface is from the vertices, in metres: 0 where corners are sharp.
+    pub(crate) fn radius(&self) -> Fx {
+        match self {
+            Outline::Circle { radius } => widen(*radius),
+            Outline::Polygon(hull) => widen(hull.radius),
+            Outline::Segment { .. } | Outline::Link(_) => Fx::ZERO,
+        }
+    }
+}
+
+/// A convex outline in 32-bit coordinates: a polygon, or a segment or capsule seen as a polygon with two sides.
 #[derive(Clone, Debug)]
 pub(crate) struct Hull {
     count: usize,
@@ -45,12 +58,35 @@ impl Hull {
         if i + 1 == self.count { 0 } else { i + 1 }
     }
 
+    /// A circle: a point with a radius, and no face.
+    pub(crate) fn point(radius: Length) -> Self {
+        Hull { count: 1, radius, ..Self::empty() }
+    }
+
+    /// How many faces it has.
+    pub(crate) fn faces(&self) -> usize {
+        if self.count < 2 { 0 } else { self.count }
+    }
+
+    /// The mean of the vertices, about the shape's centre: a place inside.
+    pub(crate) fn middle(&self) -> Vec2<Fx> {
+        let sum = self.vertices().iter().fold(Vec2::ZERO, |sum, vertex| sum + vertex.widen());
+        let count = i64::try_from(self.count).expect("at most 8 vertices");
+        Vec2::new(sum.x / count, sum.y / count)
+    }
+
     /// A segment: one edge there and one back, with opposite normals.
     pub(crate) fn segment(a: Vec2<Length>, b: Vec2<Length>, direction: Vec2<Unit>) -> Self {
         let mut hull = Hull { count: 2, ..Self::empty() };
         hull.vertices[..2].copy_from_slice(&[a, b]);
         hull.normals[..2].copy_from_slice(&[-direction.perp(), direction.perp()]);
         hull
+    }
+
+    /// A capsule: a segment with a radius. One that is long enough to be valid has a direction.
+    fn capsule(a: Vec2<Fx>, b: Vec2<Fx>, radius: Length) -> Self {
+        let direction = (b - a).normalized().unwrap_or(Vec2::X);
+        Hull { radius, ..Hull::segment(a.narrow(), b.narrow(), direction) }
     }
 
     pub(crate) fn rotated(polygon: &Polygon, rotation: Rot) -> Self {
@@ -88,6 +124,14 @@ impl PosedShape {
         Self::of_geometry(&shape.geometry, centre, rotation)
     }
 
+    /// Whether something at a place in the world meets the shape, or passes from its open side.
+    pub(crate) fn is_solid_from(&self, place: Vec2<Fx>) -> bool {
+        match &self.outline {
+            Outline::Link(link) => link.is_solid_from(place - self.centre),
+            _ => true,
+        }
+    }
+
     /// Poses a geometry with its centre somewhere in the world.
     pub(crate) fn of_geometry(geometry: &Geometry, centre: Vec2<Fx>, rotation: Rot) -> Self {
         let (outline, bounds) = match geometry {
@@ -99,8 +143,19 @@ impl PosedShape {
                 let (a, b) = (rotation.apply_wide(*a), rotation.apply_wide(*b));
                 (Outline::Segment { a, b }, Aabb::new(a.min(b), a.max(b)))
             }
+            Geometry::Link { a, b, before, after, sides } => {
+                let link = Link { a: *a, b: *b, before: *before, after: *after, sides: *sides };
+                let link = link.mapped(|point| rotation.apply_wide(point));
+                (Outline::Link(link), Aabb::new(link.a.min(link.b), link.a.max(link.b)))
+            }
             Geometry::Polygon(polygon) => {
                 let hull = Hull::rotated(polygon, rotation);
+                let bounds = hull.bounds();
+                (Outline::Polygon(hull), bounds)
+            }
+            Geometry::Capsule { a, b, radius } => {
+                let (a, b) = (rotation.apply_wide(*a), rotation.apply_wide(*b));
+                let hull = Hull::capsule(a, b, narrow(*radius));
                 let bounds = hull.bounds();
                 (Outline::Polygon(hull), bounds)
             }

@@ -3,7 +3,7 @@
 
 use super::pose::Hull;
 use crate::fx;
-use crate::math::{Fx, Vec2, div_round, saturate_wide};
+use crate::math::{Fx, Orientation, Vec2, div_round, orientation, saturate_wide};
 
 /// Half the side of the window in metres: more than any shape's reach of 170 m with the margin of a fast one,
 /// and small enough that coordinates about the shape's centre, and the edge itself, fit `Length`.
@@ -13,15 +13,31 @@ const WINDOW: Fx = fx!(200);
 /// passes the window by.
 pub(crate) fn near_hull(a: Vec2<Fx>, b: Vec2<Fx>) -> Option<Hull> {
     let direction = (b - a).normalized()?;
+    let (p, q) = clipped_to_window(a, b)?;
+    Some(Hull::segment(p.narrow(), q.narrow(), direction))
+}
+
+/// Whether a place is on the right of the line from `a` to `b`, or on it: exact.
+pub(crate) fn right_of(a: Vec2<Fx>, b: Vec2<Fx>, place: Vec2<Fx>) -> bool {
+    orientation(a, b, place) != Orientation::CounterClockwise
+}
+
+/// The part of a segment that is in the window.
+pub(crate) fn clipped_to_window(a: Vec2<Fx>, b: Vec2<Fx>) -> Option<(Vec2<Fx>, Vec2<Fx>)> {
+    clip(a, b, WINDOW)
+}
+
+/// The part of a segment in a square about the origin; `None` when it passes by.
+pub(super) fn clip(a: Vec2<Fx>, b: Vec2<Fx>, half_side: Fx) -> Option<(Vec2<Fx>, Vec2<Fx>)> {
     let (mut p, mut q) = (a, b);
     for sign in [1, -1] {
         for axis in [|v: Vec2<Fx>| v.x, |v: Vec2<Fx>| v.y] {
             (p, q) = clip_to_half_plane(p, q, |v| {
-                i128::from(axis(v).to_bits()) * sign - i128::from(WINDOW.to_bits())
+                i128::from(axis(v).to_bits()) * sign - i128::from(half_side.to_bits())
             })?;
         }
     }
-    Some(Hull::segment(p.narrow(), q.narrow(), direction))
+    Some((p, q))
 }
 
 /// The part of a segment where `outside` is not positive. `outside` is linear.

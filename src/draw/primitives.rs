@@ -3,7 +3,7 @@
 use alloc::vec::Vec;
 
 use crate::body::{Body, BodyId, BodyKind, JointId, ShapeId};
-use crate::collision::{ManifoldPoint, Outline, PosedShape};
+use crate::collision::{Link, ManifoldPoint, Outline, PosedShape};
 use crate::fx;
 use crate::math::{Aabb, Fx, Unit, Vec2, fx_mul, widen};
 use crate::world::{ContactView, World};
@@ -152,7 +152,7 @@ pub enum Form {
         /// Its radius.
         radius: Fx,
     },
-    /// A convex polygon.
+    /// A convex polygon, or a line with a radius if it has two vertices.
     Polygon {
         /// Counter-clockwise.
         vertices: Vec<Vec2<Fx>>,
@@ -224,7 +224,9 @@ fn add_outlines(world: &World, (id, body): (BodyId, &Body), found: &mut Vec<Prim
                 let to = centre + rotation.apply_wide(Vec2::new(radius, Fx::ZERO));
                 add(Form::Line { from: centre, to });
             }
-            Outline::Segment { a, b } => add(Form::Line { from: centre + a, to: centre + b }),
+            Outline::Segment { a, b } | Outline::Link(Link { a, b, .. }) => {
+                add(Form::Line { from: centre + a, to: centre + b })
+            }
             Outline::Polygon(hull) => {
                 let vertices = hull.vertices().iter().map(|vertex| centre + vertex.widen()).collect();
                 add(Form::Polygon { vertices, radius: widen(hull.radius) });

@@ -125,7 +125,7 @@ impl Game for Sandbox {
         let grown =
             count(commands.clone().filter(|command| matches!(command, Command::AddShape { .. })).count());
         let changes = changes.saturating_add(grown.saturating_mul(grown) * 4);
-        let spawned = count(commands.filter(|command| matches!(command, Command::Spawn { .. })).count());
+        let spawned: u64 = commands.map(bodies_added).sum();
         let shapes = count(world.shape_count()).saturating_add(added);
         let bodies = count(world.body_count()).saturating_add(spawned);
         let constraints = count(world.pair_count()).saturating_add(count(world.joint_count()));
@@ -145,7 +145,16 @@ fn count(n: usize) -> u64 {
 fn shapes_added(command: &Command) -> u64 {
     match command {
         Command::Spawn { shapes, .. } => count(shapes.len()),
+        Command::SpawnEach { shapes, places, .. } => count(shapes.len()).saturating_mul(count(places.len())),
         Command::AddShape { .. } => 1,
+        _ => 0,
+    }
+}
+
+fn bodies_added(command: &Command) -> u64 {
+    match command {
+        Command::Spawn { .. } => 1,
+        Command::SpawnEach { places, .. } => count(places.len()),
         _ => 0,
     }
 }
@@ -154,14 +163,24 @@ fn shapes_added(command: &Command) -> u64 {
 fn command_work(world: &World, command: &Command) -> u64 {
     let shapes_of = |body: BodyId| 4 * count(world.body(body).map_or(0, |body| body.shapes().len()));
     let removal = || count(world.pair_count()).saturating_add(count(world.joint_count()));
+    let shapes_beside = |shape| world.shape(shape).map_or(0, |shape| shapes_of(shape.body()));
+    let everything = || count(world.body_count()).saturating_add(removal());
     match command {
-        Command::Spawn { shapes, .. } => 4 + 8 * count(shapes.len()),
-        Command::Despawn { body } => 1 + shapes_of(*body) + removal(),
-        Command::AddShape { body, .. } => 8 + shapes_of(*body),
-        Command::RemoveShape { shape } => {
-            1 + removal() + world.shape(*shape).map_or(0, |shape| shapes_of(shape.body()))
+        Command::Spawn { .. } | Command::SpawnEach { .. } => {
+            (4 * bodies_added(command)).saturating_add(shapes_added(command).saturating_mul(8))
         }
-        Command::SetTransform { body, .. } => 4 + shapes_of(*body),
+        Command::AddJointEach { ends, .. } => 1 + 4 * count(ends.len()),
+        Command::Despawn { body } | Command::Disable { body } | Command::Enable { body } => {
+            1 + shapes_of(*body) + removal()
+        }
+        Command::AddShape { body, .. } => 8 + shapes_of(*body),
+        Command::RemoveShape { shape } => 1 + removal() + shapes_beside(*shape),
+        Command::SetShape { shape, .. } => 8 + removal() + shapes_beside(*shape),
+        Command::SetKind { body, .. } => 4 + shapes_of(*body) + removal(),
+        Command::SetTransform { body, .. }
+        | Command::SetBody { body, .. }
+        | Command::SetMass { body, .. } => 4 + shapes_of(*body),
+        Command::Sleep { .. } | Command::SetGravity { .. } | Command::Explode { .. } => 1 + everything(),
         _ => 1,
     }
 }

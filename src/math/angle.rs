@@ -62,6 +62,18 @@ impl Angle {
         self.0
     }
 
+    /// A part of a rotation given in units of 2^-32 turns, which may be more than a turn.
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "angles wrap")]
+    pub(crate) const fn from_wide_turns(turns: i64, fraction: Fx) -> Self {
+        let part = super::formats::round_shift_wide(turns as i128 * fraction.to_bits() as i128, 32);
+        Self::from_bits(part as u32)
+    }
+
+    /// Units of 2^-32 turns in radians.
+    pub(crate) const fn turns_to_radians(turns: i64) -> Fx {
+        super::formats::fx_mul(Fx::from_bits(turns), TAU)
+    }
+
     /// An angle from turns: exact, whole turns are dropped.
     #[inline]
     #[must_use]

@@ -8,7 +8,7 @@ use crate::fx;
 use crate::lockstep::SandboxSetup;
 use crate::math::{Fx, Vec2};
 use crate::solver::JointDef;
-use crate::world::{Command, Config, Outcome, World};
+use crate::world::{Command, Config, Outcome, Place, World};
 
 /// A setup in the making.
 ///
@@ -64,6 +64,38 @@ impl Builder {
         match self.command(Command::AddJoint { joint: joint.into() })? {
             Outcome::Joint(id) => Ok(id),
             other => unreachable!("a joint, not {other:?}"),
+        }
+    }
+
+    /// Adds a body of the same definition at every place, unturned.
+    ///
+    /// # Errors
+    /// When the world refuses one.
+    pub fn spawn_each(
+        &mut self,
+        body: BodyDef,
+        shapes: &[ShapeDef],
+        positions: impl IntoIterator<Item = Vec2<Fx>>,
+    ) -> Result<Vec<BodyId>, WorldError> {
+        let places = positions.into_iter().map(|position| Place { position, angle: body.angle }).collect();
+        match self.command(Command::SpawnEach { body, shapes: shapes.to_vec(), places })? {
+            Outcome::Bodies(ids) => Ok(ids),
+            other => unreachable!("spawned bodies, not {other:?}"),
+        }
+    }
+
+    /// Adds a joint of the same definition between every pair of bodies.
+    ///
+    /// # Errors
+    /// When the world refuses one.
+    pub fn joint_each(
+        &mut self,
+        joint: impl Into<JointDef>,
+        ends: Vec<(BodyId, BodyId)>,
+    ) -> Result<Vec<JointId>, WorldError> {
+        match self.command(Command::AddJointEach { joint: joint.into(), ends })? {
+            Outcome::Joints(ids) => Ok(ids),
+            other => unreachable!("joints, not {other:?}"),
         }
     }
 

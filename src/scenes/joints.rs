@@ -7,7 +7,7 @@ use super::builder::{build, rectangle, weightless};
 use crate::body::{BodyDef, Filter, Geometry, MassSource, ShapeDef};
 use crate::fx;
 use crate::math::{Angle, Fx, Rot, Vec2, fx_mul};
-use crate::solver::RevoluteDef;
+use crate::solver::{JointDef, Revolute};
 use crate::world::Config;
 
 /// A shape that collides with nothing.
@@ -24,7 +24,7 @@ pub(super) const PENDULUM: Scene =
             let rod = rectangle(fx!(0.02), fx!(0.5))?.density(fx!(25));
             let body = BodyDef::dynamic().position(hanging.x, hanging.y).angle(angle);
             let rod = scene.spawn(body, &[ghost(rod)])?;
-            scene.joint(RevoluteDef::new(pivot, rod).anchor_b(fx!(0), fx!(0.5)))?;
+            scene.joint(JointDef::new(pivot, rod, Revolute::new()).anchor_b(fx!(0), fx!(0.5)))?;
             Ok(())
         })
     });
@@ -50,7 +50,7 @@ fn rod(arm: Fx) -> crate::lockstep::SandboxSetup {
         let mass = MassSource::Given { mass: fx!(1), centre: Vec2::ZERO, gyration: fx!(0.288675134595) };
         let body = BodyDef::dynamic().position(arm, fx!(0)).velocity(fx!(0), fx_mul(omega, arm));
         let rod = scene.spawn(body.angular_velocity(omega).mass(mass), &[ghost(shape)])?;
-        scene.joint(RevoluteDef::new(pivot, rod).anchor_b(-arm, fx!(0)))?;
+        scene.joint(JointDef::new(pivot, rod, Revolute::new()).anchor_b(-arm, fx!(0)))?;
         Ok(())
     })
 }
@@ -65,14 +65,20 @@ pub(super) const CHAIN: Scene =
                 let x = Fx::from_num(i) + fx!(0.5);
                 let body = scene.spawn(BodyDef::dynamic().position(x, fx!(0)), &[link])?;
                 scene.joint(
-                    RevoluteDef::new(last, body).anchor_a(anchor, fx!(0)).anchor_b(fx!(-0.5), fx!(0)),
+                    JointDef::new(last, body, Revolute::new())
+                        .anchor_a(anchor, fx!(0))
+                        .anchor_b(fx!(-0.5), fx!(0)),
                 )?;
                 (last, anchor) = (body, fx!(0.5));
             }
             // A link weighs 0.25 kg, and this 25: a square of 2.5 m, pinned at its edge.
             let weight = ghost(rectangle(fx!(2.5), fx!(2.5))?);
             let body = scene.spawn(BodyDef::dynamic().position(fx!(102.5), fx!(0)), &[weight])?;
-            scene.joint(RevoluteDef::new(last, body).anchor_a(anchor, fx!(0)).anchor_b(fx!(-2.5), fx!(0)))?;
+            scene.joint(
+                JointDef::new(last, body, Revolute::new())
+                    .anchor_a(anchor, fx!(0))
+                    .anchor_b(fx!(-2.5), fx!(0)),
+            )?;
             Ok(())
         })
     });
@@ -90,14 +96,14 @@ pub(super) const JOINT_GRID: Scene =
                     let body = scene.spawn(body.position(Fx::from_num(k), Fx::from_num(-i)), &[disc])?;
                     if i > 0 {
                         let above = ids[ids.len() - 1];
-                        let joint = RevoluteDef::new(above, body);
+                        let joint = JointDef::new(above, body, Revolute::new());
                         scene.joint(joint.anchor_a(fx!(0), fx!(-0.5)).anchor_b(fx!(0), fx!(0.5)))?;
                     }
                     // Two held discs side by side have nothing to join.
                     let left_held = i == 0 && (48..=53).contains(&k);
                     if k > 0 && !left_held {
                         let left = ids[ids.len() - 100];
-                        let joint = RevoluteDef::new(left, body);
+                        let joint = JointDef::new(left, body, Revolute::new());
                         scene.joint(joint.anchor_a(fx!(0.5), fx!(0)).anchor_b(fx!(-0.5), fx!(0)))?;
                     }
                     ids.push(body);

@@ -2,7 +2,7 @@
 
 use super::limits::{Faults, SPEED_MAX};
 use crate::body::Body;
-use crate::math::{Angle, Reciprocal, Speed, Step, Vec2, round_shift_wide};
+use crate::math::{Reciprocal, Speed, Step, Vec2, round_shift_wide, saturate_wide};
 
 /// A body in the solver. Bodies that nothing moves have mass fraction 0 in every row, so that they are read and
 /// written like the others and never change.
@@ -44,6 +44,11 @@ impl SolverBody {
         }
     }
 
+    /// The velocities the other way.
+    pub(crate) fn reversed(&self) -> Self {
+        SolverBody { velocity: -self.velocity, spin: self.spin.saturating_neg(), ..*self }
+    }
+
     /// Two different bodies of a slice, to change both.
     #[inline]
     pub(crate) fn pair(bodies: &mut [SolverBody], a: u32, b: u32) -> (&mut SolverBody, &mut SolverBody) {
@@ -59,16 +64,13 @@ impl SolverBody {
     }
 }
 
-/// The angle after a turn: `dtheta = turn / k`, kept in 128 bits until it is a fraction of a turn. It wraps: a
-/// small body may spin more than once in a tick.
-pub(crate) fn turned(angle: Angle, turn: Step, inverse_gyration: Reciprocal) -> Angle {
+/// How far a body turns: `dtheta = turn / k`, in units of 2^-32 turns. It may be more than a turn: a small body may
+/// spin more than once in a tick.
+pub(crate) fn turn_of(turn: Step, inverse_gyration: Reciprocal) -> i64 {
     /// `1 / (2 pi)` with 63 fraction bits.
     const INVERSE_TAU: i128 = 1_467_945_251_641_000_613;
     let (product, extra) = inverse_gyration.times_exact(turn);
-    let turns = round_shift_wide(i128::from(product) * INVERSE_TAU, extra + 27 + 63 - 32);
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "angles wrap")]
-    let bits = turns as u32;
-    angle + Angle::from_bits(bits)
+    saturate_wide(round_shift_wide(i128::from(product) * INVERSE_TAU, extra + 27 + 63 - 32))
 }
 
 #[cfg(test)]

@@ -24,8 +24,8 @@ use super::limits::{Faults, IMPULSE_MAX, STEP_MAX};
 use super::softness::Softness;
 use crate::body::Body;
 use crate::math::{
-    Length, Ratio, Reciprocal, Speed, Step, Unit, Vec2, mul, round_shift, round_shift_wide, saturate,
-    saturate_wide,
+    Length, Ratio, Reciprocal, Speed, Step, Unit, Vec2, div_round, mul, round_shift, round_shift_wide,
+    saturate, saturate_wide,
 };
 
 /// The mass fractions of a pair of bodies: how a push is shared.
@@ -115,6 +115,58 @@ impl Row {
         (Row { n, e_a, e_b, g_a, g_b, f_a: mul(g_a, e_a), f_b: mul(g_b, e_b) }, denominator)
     }
 
+    /// A row on the angle: `vn = s (w_b - w_a)` with `e = s / k`, and without linear part. `s` is a length of the
+    /// row's own, which is returned: the one that makes `D = aA eA^2 + aB eB^2` about 1,
+    ///
+    /// ```text
+    /// s^2 = 1 / (aA / kA^2 + aB / kB^2),  so that  f = a e / D <= sqrt(a)
+    /// ```
+    ///
+    /// but for rounding, and bodies of which the heavier is more than a hundred times easier to turn at its rim. `D` and
+    /// `s` are 0 when neither body turns.
+    pub(crate) fn angular(
+        a: Reciprocal,
+        b: Reciprocal,
+        fractions: MassFractions,
+    ) -> (Row, Denominator, Length) {
+        let s = angular_scale((a, fractions.a), (b, fractions.b));
+        let ratio = |inverse_gyration: Reciprocal| -> Ratio {
+            inverse_gyration.times::<_, fixed::types::extra::U24>(s).min(RATIO_MAX)
+        };
+        let (e_a, e_b) = (ratio(a), ratio(b));
+        let denominator = turning(fractions.a, e_a, e_a) + turning(fractions.b, e_b, e_b);
+        let gain = |fraction: Unit, e: Ratio| {
+            // 54 fraction bits over 30, and the rounding of a gain that is mostly 1.
+            let product = i64::from(fraction.to_bits()) * i64::from(e.to_bits());
+            let quotient = crate::math::div_round(i128::from(product) << 6, denominator.max(1).into());
+            Unit::from_bits(saturate(saturate_wide(quotient)))
+        };
+        let (f_a, f_b) = (gain(fractions.a, e_a), gain(fractions.b, e_b));
+        (Row { e_a, e_b, f_a, f_b, ..Row::NONE }, denominator, s)
+    }
+
+    /// Of a row on the angle: the shares of its velocity that A and B take. They add up to 1, unless neither turns.
+    pub(crate) fn shares(&self) -> (Unit, Unit) {
+        (mul(self.f_a, self.e_a), mul(self.f_b, self.e_b))
+    }
+
+    /// A row along which nothing moves.
+    pub(crate) const NONE: Self = Row {
+        n: Vec2::new(Unit::ZERO, Unit::ZERO),
+        e_a: Ratio::ZERO,
+        e_b: Ratio::ZERO,
+        g_a: Unit::ZERO,
+        g_b: Unit::ZERO,
+        f_a: Unit::ZERO,
+        f_b: Unit::ZERO,
+    };
+
+    /// The row that measures the other way.
+    pub(crate) fn reversed(&self) -> Self {
+        let Row { n, e_a, e_b, g_a, g_b, f_a, f_b } = *self;
+        Row { n: -n, e_a: -e_a, e_b: -e_b, g_a, g_b, f_a: -f_a, f_b: -f_b }
+    }
+
     /// Relative velocity of B from A along the row.
     #[inline]
     pub(crate) fn velocity(&self, a: &SolverBody, b: &SolverBody, faults: &mut Faults) -> Speed {
@@ -177,12 +229,26 @@ impl Row {
         b: &mut SolverBody,
         bias: Speed,
         softness: &Softness,
-        (lo, hi): (Speed, Speed),
+        bounds: (Speed, Speed),
         lambda: &mut Speed,
         faults: &mut Faults,
     ) -> Speed {
         let vn = self.velocity(a, b, faults);
         let d = softness.impulse(vn, bias, *lambda, faults);
+        self.accumulate(d, bounds, lambda, a, b, faults)
+    }
+
+    /// Adds an impulse to what has accumulated, as far as the bounds allow, and returns what was added.
+    #[inline]
+    pub(crate) fn accumulate(
+        &self,
+        d: Speed,
+        (lo, hi): (Speed, Speed),
+        lambda: &mut Speed,
+        a: &mut SolverBody,
+        b: &mut SolverBody,
+        faults: &mut Faults,
+    ) -> Speed {
         let wanted = i64::from(lambda.to_bits()) + i64::from(d.to_bits());
         let bounded = wanted.clamp(lo.to_bits().into(), hi.to_bits().into());
         let within = bounded.clamp(-i64::from(IMPULSE_MAX.to_bits()), IMPULSE_MAX.to_bits().into());
@@ -199,6 +265,27 @@ impl Row {
     }
 }
 
+/// `1 / sqrt(aA / kA^2 + aB / kB^2)`, at most a hundred radii of gyration of a body that turns. It only sets the units
+/// of a row, so it need not be exact.
+fn angular_scale(a: (Reciprocal, Unit), b: (Reciprocal, Unit)) -> Length {
+    // 1 / k with 21 fraction bits, so 72 in the sum.
+    let inverse = |(inverse_gyration, fraction): (Reciprocal, Unit)| -> Speed {
+        if fraction == 0 { Speed::ZERO } else { inverse_gyration.times(Unit::ONE) }
+    };
+    let square = |end: (Reciprocal, Unit)| {
+        let inverse = u128::from(inverse(end).to_bits().unsigned_abs());
+        inverse * inverse * u128::from(end.1.to_bits().unsigned_abs())
+    };
+    let sum = square(a) + square(b);
+    if sum == 0 {
+        return Length::ZERO;
+    }
+    // 126 fraction bits over 72 are 54, their root has 27, and a length 22.
+    let root = ((1 << 126) / sum).isqrt() >> 5;
+    let most = (100u128 << 43) / u128::from(inverse(a).max(inverse(b)).to_bits().unsigned_abs());
+    Length::from_bits(i32::try_from(root.min(most)).unwrap_or(i32::MAX))
+}
+
 /// An accumulated impulse `p = L / D`, carried over as `L` for another `D`.
 pub(crate) fn lambda_of(p: Speed, denominator: Denominator, faults: &mut Faults) -> Speed {
     let bits = round_shift_wide(i128::from(p.to_bits()) * i128::from(denominator), 30);
@@ -210,7 +297,7 @@ pub(crate) fn lambda_of(p: Speed, denominator: Denominator, faults: &mut Faults)
 
 /// `p = L / D`: the impulse times `mA + mB`, which does not depend on the lever arms.
 pub(crate) fn impulse_of(lambda: Speed, denominator: Denominator) -> Speed {
-    let bits = crate::math::div_round(i128::from(lambda.to_bits()) << 30, denominator.max(1).into());
+    let bits = div_round(i128::from(lambda.to_bits()) << 30, denominator.max(1).into());
     Speed::from_bits(saturate(saturate_wide(bits)))
 }
 

@@ -2,16 +2,27 @@
 
 use alloc::vec::Vec;
 
+use serde::{Deserialize, Serialize};
+
 use super::World;
 use super::islands;
 use super::state::{Island, State};
 use crate::body::{
     Body, BodyDef, BodyId, BodyKind, BodySettings, Handle, JointId, MassProperties, MassSource, REACH_MAX,
-    SHAPES_PER_BODY_MAX, Shape, ShapeDef, ShapeId, WORLD_EXTENT_MAX, WorldError,
+    SHAPES_PER_BODY_MAX, Shape, ShapeDef, ShapeId, WORLD_EXTENT_MAX, WorldError, check_position,
 };
 use crate::collision::{Contact, PosedShape};
-use crate::math::{Fx, Vec2, fx_mul};
+use crate::math::{Angle, Fx, Vec2, fx_mul};
 use crate::solver::{Joint, JointDef};
+
+/// Where to put a body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Place {
+    /// Of its origin in the world, in metres.
+    pub position: Vec2<Fx>,
+    /// Its rotation.
+    pub angle: Angle,
+}
 
 impl World {
     /// Adds a body with its shapes.
@@ -47,6 +58,32 @@ impl World {
             islands::disturb(&mut self.state, &mut self.scratch, id.slot());
         }
         Ok(id)
+    }
+
+    /// Adds a body of the same definition at every place: shorter to record than as many spawns.
+    ///
+    /// # Errors
+    /// Those of [`World::spawn`]; none of the bodies is then added.
+    pub fn spawn_each(
+        &mut self,
+        body: &BodyDef,
+        shapes: &[ShapeDef],
+        places: &[Place],
+    ) -> Result<Vec<BodyId>, WorldError> {
+        let config = self.state.config;
+        check_room(self.state.bodies.len(), places.len(), config.body_limit, "bodies")?;
+        let wanted = shapes.len().saturating_mul(places.len());
+        check_room(self.state.shapes.len(), wanted, config.shape_limit, "shapes")?;
+        for place in places {
+            check_position(place.position)?;
+        }
+        // Whatever else may be wrong is wrong with the first one too.
+        places
+            .iter()
+            .map(|place| {
+                self.spawn(&BodyDef { position: place.position, angle: place.angle, ..*body }, shapes)
+            })
+            .collect()
     }
 
     /// Removes a body with its shapes and joints.
@@ -121,16 +158,41 @@ impl World {
     /// world is full.
     pub fn add_joint(&mut self, def: &JointDef) -> Result<JointId, WorldError> {
         check_room(self.state.joints.len(), 1, self.state.config.joint_limit, "joints")?;
+        self.check_joint(def)?;
+        Ok(self.insert_joint(*def))
+    }
+
+    fn check_joint(&self, def: &JointDef) -> Result<(), WorldError> {
         def.validate()?;
         let (a, b) = def.bodies();
         let dynamic =
             |id: BodyId| self.state.bodies.get(id).map(Body::is_dynamic).ok_or(WorldError::StaleBody(id));
-        if !(dynamic(a)? | dynamic(b)?) {
-            return Err(WorldError::JointWithoutDynamicBody);
-        }
-        let id = self.state.joints.insert(Joint::new(*def));
+        if dynamic(a)? | dynamic(b)? { Ok(()) } else { Err(WorldError::JointWithoutDynamicBody) }
+    }
+
+    /// Adds a joint that has been checked.
+    fn insert_joint(&mut self, def: JointDef) -> JointId {
+        let (a, b) = def.bodies();
+        let id = self.state.joints.insert(Joint::new(def));
         self.rejoined([a, b]);
-        Ok(id)
+        id
+    }
+
+    /// Adds a joint of the same definition between every pair of bodies: shorter to record than as many joints.
+    ///
+    /// # Errors
+    /// Those of [`World::add_joint`]; none of the joints is then added.
+    pub fn add_joint_each(
+        &mut self,
+        def: &JointDef,
+        ends: &[(BodyId, BodyId)],
+    ) -> Result<Vec<JointId>, WorldError> {
+        check_room(self.state.joints.len(), ends.len(), self.state.config.joint_limit, "joints")?;
+        let defs = || ends.iter().map(|&(a, b)| def.between(a, b));
+        for def in defs() {
+            self.check_joint(&def)?;
+        }
+        Ok(defs().map(|def| self.insert_joint(def)).collect())
     }
 
     /// Changes anything about a joint but its bodies: read [`Joint::def`], change a copy, and pass it here. Its

@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 
 use serde::{Deserialize, Serialize};
 
-use super::{Explosion, World};
+use super::{Explosion, Place, World};
 use crate::body::{
     BodyDef, BodyId, BodyKind, BodySettings, JointId, MassSource, ShapeDef, ShapeId, WorldError,
 };
@@ -20,6 +20,15 @@ pub enum Command {
         body: BodyDef,
         /// Its shapes.
         shapes: Vec<ShapeDef>,
+    },
+    /// [`World::spawn_each`].
+    SpawnEach {
+        /// The bodies; their own place is not used.
+        body: BodyDef,
+        /// The shapes of each.
+        shapes: Vec<ShapeDef>,
+        /// Where they are put.
+        places: Vec<Place>,
     },
     /// [`World::despawn`].
     Despawn {
@@ -42,6 +51,13 @@ pub enum Command {
     AddJoint {
         /// The joint.
         joint: JointDef,
+    },
+    /// [`World::add_joint_each`].
+    AddJointEach {
+        /// The joints; its own bodies are not used.
+        joint: JointDef,
+        /// The bodies of each.
+        ends: Vec<(BodyId, BodyId)>,
     },
     /// [`World::remove_joint`].
     RemoveJoint {
@@ -182,7 +198,7 @@ pub enum Command {
 }
 
 /// What a command has made.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Outcome {
     /// Nothing new.
     Done,
@@ -192,6 +208,10 @@ pub enum Outcome {
     Shape(ShapeId),
     /// A joint.
     Joint(JointId),
+    /// A body for each place.
+    Bodies(Vec<BodyId>),
+    /// A joint for each pair of bodies.
+    Joints(Vec<JointId>),
 }
 
 impl World {
@@ -202,6 +222,12 @@ impl World {
     pub fn execute(&mut self, command: &Command) -> Result<Outcome, WorldError> {
         match *command {
             Command::Spawn { ref body, ref shapes } => return self.spawn(body, shapes).map(Outcome::Body),
+            Command::SpawnEach { ref body, ref shapes, ref places } => {
+                return self.spawn_each(body, shapes, places).map(Outcome::Bodies);
+            }
+            Command::AddJointEach { ref joint, ref ends } => {
+                return self.add_joint_each(joint, ends).map(Outcome::Joints);
+            }
             Command::AddShape { body, ref shape } => return self.add_shape(body, shape).map(Outcome::Shape),
             Command::AddJoint { ref joint } => return self.add_joint(joint).map(Outcome::Joint),
             Command::Despawn { body } => self.despawn(body),

@@ -19,7 +19,8 @@ use super::scratch::Scratch;
 use super::state::{Island, State};
 use crate::body::{Body, BodyKind, Handle, IslandId};
 use crate::collision::Contact;
-use crate::math::{Fx, Speed, Vec2, narrow};
+use crate::math::{Fx, Speed, Step, Vec2, narrow};
+use crate::solver::SolverBody;
 
 /// The bodies and joints that a tick has to do with, in slot order.
 #[derive(Clone, Debug, Default)]
@@ -152,7 +153,8 @@ pub(super) fn fall_asleep(state: &mut State, scratch: &mut Scratch) {
     for &slot in &scratch.roster.bodies {
         let body = state.bodies.at_mut(slot);
         if body.is_dynamic() {
-            body.rest_ticks = if is_slow(body) { body.rest_ticks.saturating_add(1).min(limit) } else { 0 };
+            let slow = is_slow(body, scratch.solver.body(slot), state.config.tick_rate);
+            body.rest_ticks = if slow { body.rest_ticks.saturating_add(1).min(limit) } else { 0 };
         }
         any_sleepy |= body.is_dynamic() && body.rest_ticks == limit;
     }
@@ -210,14 +212,19 @@ fn keep_awake(state: &mut State, scratch: &Scratch, (a, b): (u32, u32)) {
     }
 }
 
-fn is_slow(body: &Body) -> bool {
-    let limit: Speed = narrow(body.settings.sleep_speed);
-    let square = |speed: Speed| i64::from(speed.to_bits()) * i64::from(speed.to_bits());
-    let linear = square(body.velocity.x) + square(body.velocity.y);
+/// Whether a body was slow in this tick. Both its velocity and how far it came count: overlap is pushed out without
+/// a velocity that lasts.
+fn is_slow(body: &Body, solved: &SolverBody, tick_rate: u32) -> bool {
+    let square = |x: i32| i64::from(x) * i64::from(x);
     // Twice the speed at the radius of gyration is about that of the outline. Speeds are within ±512 m/s, so the
     // squares have at most 62 bits.
-    let angular = square(body.spin).saturating_mul(4);
-    body.settings.may_sleep && linear.max(angular) < square(limit)
+    let fastest = |x: i32, y: i32, turn: i32| (square(x) + square(y)).max(square(turn).saturating_mul(4));
+    let limit: Speed = narrow(body.settings.sleep_speed);
+    let reach: Step = narrow(body.settings.sleep_speed / i64::from(tick_rate));
+    let (v, d) = (body.velocity, solved.shift);
+    body.settings.may_sleep
+        && fastest(v.x.to_bits(), v.y.to_bits(), body.spin.to_bits()) < square(limit.to_bits())
+        && fastest(d.x.to_bits(), d.y.to_bits(), solved.turn.to_bits()) < square(reach.to_bits())
 }
 
 /// Unites the bodies of every joint.

@@ -6,12 +6,15 @@ mod change;
 mod command;
 mod config;
 mod contacts;
+mod continuous;
 mod digest;
 mod events;
 mod islands;
+mod joint_view;
 mod look_ahead;
 mod pairs;
 mod push;
+mod query;
 mod scratch;
 mod state;
 mod stats;
@@ -20,18 +23,20 @@ mod timestep;
 mod validate;
 
 pub use bytes::{Snapshot, SnapshotError};
+pub use change::Place;
 pub use command::{Command, Outcome};
 pub use config::Config;
 pub use digest::{Section, WorldDigest};
 pub use events::{ContactEvent, Events, HitEvent, JointEvent, MoveEvent, SensorEvent};
 pub use push::Explosion;
+pub use query::{CastHit, Probe, Proximity, QueryFilter, RayHit};
 pub use stats::{Phase, StepStats};
 pub use timestep::FixedTimestep;
 pub use validate::Violation;
 
 use crate::body::{Body, BodyId, BodyKind, JointId, Shape, ShapeId, WorldError};
 use crate::collision::{BroadPhaseKind, Manifold};
-use crate::math::{Fx, Rng, Vec2};
+use crate::math::Rng;
 use crate::solver::Joint;
 use scratch::Scratch;
 use state::State;
@@ -203,14 +208,6 @@ impl World {
     /// Chooses how overlapping pairs are found. No hash changes by it.
     pub fn set_broad_phase(&mut self, kind: BroadPhaseKind) {
         self.scratch = Scratch::new(kind, &self.state);
-    }
-
-    /// Where the anchors of a revolute joint are in the world, A's first.
-    #[must_use]
-    pub fn joint_anchors(&self, id: JointId) -> Option<(Vec2<Fx>, Vec2<Fx>)> {
-        let crate::solver::JointDef::Revolute(def) = self.joint(id)?.def();
-        let (a, b) = (self.body(def.body_a)?, self.body(def.body_b)?);
-        Some((a.transform().apply(def.anchor_a), b.transform().apply(def.anchor_b)))
     }
 }
 

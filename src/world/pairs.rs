@@ -60,9 +60,7 @@ pub(super) fn find_sleepers(state: &State, scratch: &mut Scratch, first_change: 
     let moved = Moved::Slots(&changes.shapes[first_change..]);
     let wanted = |pair: Pair| {
         let (a, b) = state.bodies_of(pair);
-        a.is_asleep() != b.is_asleep()
-            && state.sensor_of(pair).is_none()
-            && may_touch(state, joined, pair)
+        a.is_asleep() != b.is_asleep() && state.sensor_of(pair).is_none() && may_touch(state, joined, pair)
     };
     broad_phase.pairs(moved, wanted, state.config.pair_limit as usize, pairs);
 }
@@ -140,7 +138,7 @@ fn refresh_joined(state: &State, scratch: &mut Scratch) {
     if !core::mem::take(&mut scratch.joined_stale) {
         return;
     }
-    let keeping_apart = state.joints.iter().filter(|(_, joint)| !joint.def().collide_connected());
+    let keeping_apart = state.joints.iter().filter(|(_, joint)| !joint.def().collide_connected);
     scratch.joined.clear();
     scratch.joined.extend(keeping_apart.map(|(_, joint)| {
         let (a, b) = joint.def().bodies();

@@ -2,6 +2,7 @@
 
 use alloc::vec::Vec;
 
+use super::continuous::Swept;
 use super::events::Events;
 use super::islands::{Roster, UnionFind};
 use super::state::State;
@@ -21,6 +22,8 @@ pub(crate) struct Scratch {
     pub(crate) changes: Changes,
     pub(crate) roster: Roster,
     pub(crate) union: UnionFind,
+    /// The fast bodies of the tick.
+    pub(crate) swept: Vec<Swept>,
     pub(crate) pairs: Vec<Pair>,
     /// Pairs of body slots whose joint keeps them from colliding, sorted; and whether joints have changed since.
     pub(crate) joined: Vec<Pair>,
@@ -88,6 +91,7 @@ impl Scratch {
             changes: Changes { everything: true, ..Changes::default() },
             roster: Roster::default(),
             union: UnionFind::default(),
+            swept: Vec::new(),
             pairs: Vec::new(),
             joined: Vec::new(),
             joined_stale: true,

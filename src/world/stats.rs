@@ -42,6 +42,8 @@ pub struct StepStats {
     pub axis_hits: u32,
     /// Pairs of polygons that needed the whole test.
     pub axis_searches: u32,
+    /// Fast bodies that were stopped on their way; see [`crate::body::Continuous`].
+    pub impacts: u32,
     /// Clamps that changed a result.
     pub faults: u64,
 }

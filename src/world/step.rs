@@ -2,6 +2,7 @@
 
 use super::World;
 use super::contacts;
+use super::continuous;
 use super::events::MoveEvent;
 use super::islands;
 use super::look_ahead::Motion;
@@ -10,8 +11,8 @@ use super::scratch::Scratch;
 use super::state::State;
 use super::stats::{Phase, StepStats};
 use crate::body::{BodyKind, Handle, Pose, WORLD_EXTENT_MAX};
-use crate::math::{Fx, Vec2};
-use crate::solver::{SolverBody, Tuning, turned};
+use crate::math::{Angle, Fx, Vec2};
+use crate::solver::{SolverBody, Tuning, turn_of};
 
 impl World {
     /// Advances the world by one tick of `1 / tick_rate` seconds.
@@ -45,7 +46,7 @@ impl World {
         begin(Phase::Prepare);
         let Scratch { solver, roster, touching, manifolds, .. } = scratch;
         solver.prepare_bodies(&state.bodies, &roster.bodies, &tuning);
-        solver.prepare_joints(&state.joints, &roster.joints, &state.bodies);
+        solver.prepare_joints(&state.joints, &roster.joints, &state.bodies, &tuning);
         solver.prepare_contacts(touching, manifolds, &state.contacts, &state.bodies, &tuning);
 
         begin(Phase::Solve);
@@ -97,18 +98,27 @@ fn refit_boxes(state: &mut State, scratch: &mut Scratch) {
     }
 }
 
-/// Moves the bodies to where the solver has brought them.
+/// Moves the bodies to where the solver has brought them, or fast ones as far as nothing stops them.
 fn finalise_poses(state: &mut State, scratch: &mut Scratch) {
     let roster = core::mem::take(&mut scratch.roster.bodies);
+    let mut swept = core::mem::take(&mut scratch.swept);
+    swept.clear();
+    scratch.stats.impacts = 0;
     for &slot in &roster {
-        let pose = finalise_body(state, scratch, slot);
-        move_body(state, scratch, slot, pose);
+        let (pose, turn) = finalise_body(state, scratch, slot);
+        match continuous::sweep_of(state, scratch, slot, pose, turn) {
+            Some(fast) => swept.push(fast),
+            None => move_body(state, scratch, slot, pose),
+        }
     }
+    continuous::sweep(state, scratch, &swept);
+    scratch.swept = swept;
     scratch.roster.bodies = roster;
 }
 
-/// Takes over what the solver has found out about a body, and returns where it goes.
-fn finalise_body(state: &mut State, scratch: &mut Scratch, slot: u32) -> Pose {
+/// Takes over what the solver has found out about a body. Returns where it goes, and how far it turns in units of
+/// 2^-32 turns.
+fn finalise_body(state: &mut State, scratch: &mut Scratch, slot: u32) -> (Pose, i64) {
     let SolverBody { velocity, spin, shift, turn } = *scratch.solver.body(slot);
     let body = state.bodies.at_mut(slot);
     body.velocity = velocity;
@@ -120,19 +130,20 @@ fn finalise_body(state: &mut State, scratch: &mut Scratch, slot: u32) -> Pose {
         body.rest_ticks = 1;
         scratch.changes.body(body);
     }
+    let turn = turn_of(turn, body.mass.inverse_gyration);
     if let Some(target) = body.target.take() {
         body.stop();
-        return target;
+        return (target, turn);
     }
     let centre = body.centre + shift.widen();
     let edge = Vec2::new(WORLD_EXTENT_MAX, WORLD_EXTENT_MAX);
     let inside = centre.max(-edge).min(edge);
     scratch.solver.faults += u64::from(inside != centre);
-    Pose { centre: inside, angle: turned(body.angle, turn, body.mass.inverse_gyration) }
+    (Pose { centre: inside, angle: body.angle + Angle::from_wide_turns(turn, Fx::ONE) }, turn)
 }
 
 /// Moves a body, its shapes and, where they leave them, their boxes.
-fn move_body(state: &mut State, scratch: &mut Scratch, slot: u32, pose: Pose) {
+pub(super) fn move_body(state: &mut State, scratch: &mut Scratch, slot: u32, pose: Pose) {
     let body = state.bodies.at_mut(slot);
     if (body.centre, body.angle) != (pose.centre, pose.angle) {
         (body.centre, body.angle) = (pose.centre, pose.angle);
@@ -183,6 +194,7 @@ fn count(state: &mut State, scratch: &mut Scratch) {
         points_lost: solver.warm_starts.lost,
         axis_hits: sat.hint_hits,
         axis_searches: sat.searches,
+        impacts: stats.impacts,
         faults,
     };
 }

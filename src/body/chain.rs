@@ -1,0 +1,154 @@
+//! Chains: smooth outlines of any length for grounds and walls.
+
+use alloc::vec::Vec;
+
+use super::error::GeometryError;
+use super::filter::Filter;
+use super::geometry::{Geometry, Sides};
+use super::material::Material;
+use super::shape::{SHAPES_PER_BODY_MAX, ShapeDef};
+use crate::math::{Fx, Vec2};
+
+/// A line through points, made of a [`Geometry::Link`] for each stretch. Links know their neighbours, so that what
+/// slides or rolls over the chain feels no seam between them.
+///
+/// ```
+/// use lockstep2d::{body::{BodyDef, Chain}, fx, math::Vec2, world::World};
+/// let points = [(fx!(-50), fx!(2)), (fx!(-10), fx!(0)), (fx!(10), fx!(0)), (fx!(50), fx!(3))];
+/// let ground = Chain::new(&points.map(|(x, y)| Vec2::new(x, y))).links()?;
+/// let mut world = World::default();
+/// world.spawn(&BodyDef::fixed(), &ground)?;
+/// assert_eq!(ground.len(), 3);
+/// # Ok::<(), lockstep2d::body::WorldError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Chain<'a> {
+    points: &'a [Vec2<Fx>],
+    materials: &'a [Material],
+    closed: bool,
+    sides: Sides,
+    filter: Filter,
+}
+
+impl<'a> Chain<'a> {
+    /// A chain that is open and solid from both sides, through points in metres from the body's origin, in its frame.
+    #[must_use]
+    pub fn new(points: &'a [Vec2<Fx>]) -> Self {
+        Chain { points, materials: &[], closed: false, sides: Sides::Both, filter: Filter::default() }
+    }
+
+    /// Connects the last point with the first.
+    #[must_use]
+    pub fn closed(mut self) -> Self {
+        self.closed = true;
+        self
+    }
+
+    /// Makes it solid only from its right as one walks along the points: a closed chain in counter-clockwise order
+    /// from outside, a ground from above if its points run from right to left. Whatever has its centre on the
+    /// other side passes.
+    #[must_use]
+    pub fn one_sided(mut self) -> Self {
+        self.sides = Sides::Right;
+        self
+    }
+
+    /// Sets the materials: one for all links, or one for each.
+    #[must_use]
+    pub fn materials(mut self, materials: &'a [Material]) -> Self {
+        self.materials = materials;
+        self
+    }
+
+    /// Sets the filter of all links.
+    #[must_use]
+    pub fn filter(mut self, filter: Filter) -> Self {
+        self.filter = filter;
+        self
+    }
+
+    /// The links, as shapes of a body.
+    ///
+    /// # Errors
+    /// [`GeometryError::ChainLength`] unless there are at least 2 points, or 3 of a closed chain, and at most 4096
+    /// links; [`GeometryError::MaterialCount`] unless there are none, one, or one material for each link;
+    /// [`GeometryError::SizeOutOfRange`] when neighbouring points are closer than 2 mm, or a point outside of the
+    /// world.
+    pub fn links(&self) -> Result<Vec<ShapeDef>, GeometryError> {
+        let points = self.points;
+        let count = if self.closed { points.len() } else { points.len().saturating_sub(1) };
+        if count < if self.closed { 3 } else { 1 } || count > SHAPES_PER_BODY_MAX as usize {
+            return Err(GeometryError::ChainLength { points: points.len() as u64 });
+        }
+        if self.materials.len() > 1 && self.materials.len() != count {
+            return Err(GeometryError::MaterialCount {
+                links: count as u64,
+                materials: self.materials.len() as u64,
+            });
+        }
+        (0..count).map(|index| self.link(index)).collect()
+    }
+
+    fn link(&self, index: usize) -> Result<ShapeDef, GeometryError> {
+        let points = self.points;
+        let count = points.len();
+        let at = |index: usize| {
+            let within = index.checked_rem(count).filter(|_| self.closed || index < count)?;
+            points.get(within).copied()
+        };
+        let before = match index.checked_sub(1) {
+            Some(before) => at(before),
+            None => at(count - 1).filter(|_| self.closed),
+        };
+        let (Some(a), Some(b)) = (at(index), at(index + 1)) else {
+            return Err(GeometryError::ChainLength { points: count as u64 });
+        };
+        let geometry = Geometry::Link { a, b, before, after: at(index + 2), sides: self.sides };
+        geometry.validate()?;
+        let default = Material::default();
+        let material = self.materials.get(index).or(self.materials.first()).unwrap_or(&default);
+        Ok(ShapeDef { material: *material, filter: self.filter, ..ShapeDef::new(geometry) })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fx;
+
+    fn point(x: i32, y: i32) -> Vec2<Fx> {
+        Vec2::new(x.into(), y.into())
+    }
+
+    fn neighbours(shape: &ShapeDef) -> (Option<Vec2<Fx>>, Option<Vec2<Fx>>) {
+        match shape.geometry {
+            Geometry::Link { before, after, .. } => (before, after),
+            _ => unreachable!("chains are made of links"),
+        }
+    }
+
+    #[test]
+    fn links_know_their_neighbours() {
+        let points = [point(0, 0), point(1, 0), point(2, 1)];
+        let open = Chain::new(&points).links().unwrap();
+        let found: Vec<_> = open.iter().map(neighbours).collect();
+        assert_eq!(found, [(None, Some(points[2])), (Some(points[0]), None)]);
+        let closed = Chain::new(&points).closed().links().unwrap();
+        let found: Vec<_> = closed.iter().map(neighbours).collect();
+        let [a, b, c] = points.map(Some);
+        assert_eq!(found, [(c, c), (a, a), (b, b)]);
+    }
+
+    #[test]
+    fn bad_chains_are_refused_with_the_reason() {
+        let points = [point(0, 0), point(1, 0), point(1, 0), point(2, 0)];
+        let length = |chain: &Chain<'_>| matches!(chain.links(), Err(GeometryError::ChainLength { .. }));
+        assert!(length(&Chain::new(&points[..0])) && length(&Chain::new(&points[..1])));
+        assert!(length(&Chain::new(&points[..2]).closed()) && length(&Chain::new(&[]).closed()));
+        assert!(length(&Chain::new(&alloc::vec![point(0, 0); 5000])));
+        assert!(matches!(Chain::new(&points).links(), Err(GeometryError::SizeOutOfRange { .. })));
+        let ice = Material { friction: fx!(0), ..Material::default() };
+        let short = Chain::new(&points[..2]).materials(&[ice, ice]).links();
+        assert!(matches!(short, Err(GeometryError::MaterialCount { links: 1, materials: 2 })));
+    }
+}

@@ -1,0 +1,326 @@
+//! A shape as queries see it: a convex *core* of 1 to 8 points, widened by a radius.
+//!
+//! A circle is a point with a radius, a segment two points without one, a capsule two points with one, and a
+//! polygon its vertices, with a radius if it is rounded.
+//!
+//! Points are on a grid of 2^-28 m (3.7 nm). The grid is coarser than that of the world so that the sign of every
+//! product of two differences is exact in 128 bits, for points anywhere in the world: coordinates have at most
+//! 2^60 units, differences of differences 2^62, and a sum of two products 2^125.
+
+use fixed::FixedI64;
+use fixed::types::extra::U28;
+
+use super::link::Link;
+use super::pose::{Outline, PosedShape};
+use crate::body::POLYGON_VERTICES_MAX;
+use crate::fx;
+use crate::math::{Fx, Rot, Unit, Vec2, div_round, round_shift, round_shift_wide, saturate_wide};
+
+/// A coordinate in metres with 28 fraction bits.
+pub(crate) type Grid = FixedI64<U28>;
+
+/// The largest radius of a core in metres: more than that of any shape. Products of a radius and a cross product of
+/// the world fit 128 bits.
+pub(crate) const RADIUS_MAX: Fx = fx!(512);
+
+/// Bits by which a world coordinate is finer than the grid.
+const FINER: u32 = Fx::FRAC_NBITS - Grid::FRAC_NBITS;
+
+/// The points within `radius` of the hull of some points.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Core {
+    count: usize,
+    points: [Vec2<Grid>; POLYGON_VERTICES_MAX],
+    pub(crate) radius: Grid,
+}
+
+impl Core {
+    /// A shape in world axes about `origin`. Queries on two cores need the same origin; near them is best.
+    pub(crate) fn of(shape: &PosedShape, origin: Vec2<Fx>) -> Self {
+        let centre = shape.centre - origin;
+        match &shape.outline {
+            Outline::Circle { radius } => Core::disc(centre, (*radius).into()),
+            Outline::Segment { a, b } | Outline::Link(Link { a, b, .. }) => {
+                Core::from_points([centre + *a, centre + *b], Fx::ZERO)
+            }
+            Outline::Polygon(hull) => {
+                let vertices = hull.vertices().iter().map(|vertex| centre + vertex.widen());
+                Core::from_points(vertices, hull.radius.into())
+            }
+        }
+    }
+
+    /// A point, for queries such as the distance from it.
+    pub(crate) fn point(at: Vec2<Fx>) -> Self {
+        Core::disc(at, Fx::ZERO)
+    }
+
+    pub(crate) fn disc(centre: Vec2<Fx>, radius: Fx) -> Self {
+        Core::from_points([centre], radius)
+    }
+
+    /// From the vertices of a convex outline, counter-clockwise: 1 to 8; any further are left out. The radius is
+    /// limited to 0 to [`RADIUS_MAX`].
+    pub(crate) fn from_points(points: impl IntoIterator<Item = Vec2<Fx>>, radius: Fx) -> Self {
+        let radius = Grid::from_bits(round_shift(radius.clamp(Fx::ZERO, RADIUS_MAX).to_bits(), FINER));
+        let mut core = Core { count: 0, points: [Vec2::ZERO; POLYGON_VERTICES_MAX], radius };
+        for (slot, point) in core.points.iter_mut().zip(points) {
+            *slot = to_grid(point);
+            core.count += 1;
+        }
+        core
+    }
+
+    pub(crate) fn points(&self) -> &[Vec2<Grid>] {
+        &self.points[..self.count]
+    }
+
+    /// The core moved by a vector.
+    pub(crate) fn moved(&self, by: Vec2<Grid>) -> Self {
+        self.mapped(|point| point + by)
+    }
+
+    /// The core turned about its origin.
+    pub(crate) fn rotated(&self, rotation: Rot) -> Self {
+        self.mapped(|point| from_raw(rotation.apply_wide(raw(point))))
+    }
+
+    fn mapped(mut self, map: impl Fn(Vec2<Grid>) -> Vec2<Grid>) -> Self {
+        for point in &mut self.points[..self.count] {
+            *point = map(*point);
+        }
+        self
+    }
+
+    /// The largest distance of a point of the hull from the origin, without the radius.
+    pub(crate) fn reach(&self) -> Grid {
+        self.points().iter().map(|&point| length(point)).max().unwrap_or(Grid::ZERO)
+    }
+
+    /// The radius of a disc inside the shape, about the mean of its vertices; 0 for a segment.
+    pub(crate) fn inner_radius(&self) -> Fx {
+        let points = self.points();
+        let count = i64::try_from(points.len()).unwrap_or(1);
+        let sum = points.iter().fold(Vec2::ZERO, |sum, &point| sum + point);
+        let mean = Vec2::new(sum.x / count, sum.y / count);
+        let inside = |(p, q): (Vec2<Grid>, Vec2<Grid>)| {
+            let edge = q - p;
+            Some(height(cross(edge, mean - p), scaled_along(direction(edge)?, edge)))
+        };
+        let inside = edges(points).filter_map(inside).min().unwrap_or(Grid::ZERO);
+        to_fx(self.radius + inside.max(Grid::ZERO))
+    }
+}
+
+/// The edges of an outline, counter-clockwise. Two points have an edge there and one back, a point has none.
+pub(super) fn edges(points: &[Vec2<Grid>]) -> impl Iterator<Item = (Vec2<Grid>, Vec2<Grid>)> {
+    let next = points.iter().cycle().skip(1);
+    points.iter().zip(next).filter(|_| points.len() > 1).map(|(&p, &q)| (p, q))
+}
+
+/// To the nearest point of the grid.
+pub(crate) fn to_grid(v: Vec2<Fx>) -> Vec2<Grid> {
+    let component = |x: Fx| Grid::from_bits(round_shift(x.to_bits(), FINER));
+    Vec2::new(component(v.x), component(v.y))
+}
+
+/// A point of the grid as a world vector: exact, saturated.
+pub(crate) fn from_grid(v: Vec2<Grid>) -> Vec2<Fx> {
+    Vec2::new(to_fx(v.x), to_fx(v.y))
+}
+
+/// A length as a world quantity: exact, saturated.
+pub(crate) fn to_fx(x: Grid) -> Fx {
+    Fx::from_bits(saturate_wide(i128::from(x.to_bits()) << FINER))
+}
+
+/// The same bits as a world vector, for operations that do not depend on the unit.
+fn raw(v: Vec2<Grid>) -> Vec2<Fx> {
+    Vec2::new(Fx::from_bits(v.x.to_bits()), Fx::from_bits(v.y.to_bits()))
+}
+
+fn from_raw(v: Vec2<Fx>) -> Vec2<Grid> {
+    Vec2::new(Grid::from_bits(v.x.to_bits()), Grid::from_bits(v.y.to_bits()))
+}
+
+/// `a . b`: exact, in units of 2^-56 m².
+pub(super) fn dot(a: Vec2<Grid>, b: Vec2<Grid>) -> i128 {
+    product(a.x, b.x) + product(a.y, b.y)
+}
+
+/// `a x b`: exact, in units of 2^-56 m².
+pub(super) fn cross(a: Vec2<Grid>, b: Vec2<Grid>) -> i128 {
+    product(a.x, b.y) - product(a.y, b.x)
+}
+
+fn product(a: Grid, b: Grid) -> i128 {
+    i128::from(a.to_bits()) * i128::from(b.to_bits())
+}
+
+/// The length, rounded to nearest.
+pub(super) fn length(v: Vec2<Grid>) -> Grid {
+    Grid::from_bits(raw(v).length().to_bits())
+}
+
+/// The unit vector; `None` for zero.
+pub(super) fn direction(v: Vec2<Grid>) -> Option<Vec2<Unit>> {
+    raw(v).normalized()
+}
+
+/// `n . v` for a unit vector, rounded.
+pub(super) fn along(n: Vec2<Unit>, v: Vec2<Grid>) -> Grid {
+    Grid::from_bits(saturate_wide(round_shift_wide(scaled_along(n, v), Unit::FRAC_NBITS)))
+}
+
+/// `n . v` in units of 2^-58 m: with the direction of `v` its length, to a relative 1.5e-9.
+pub(super) fn scaled_along(n: Vec2<Unit>, v: Vec2<Grid>) -> i128 {
+    let product = |n: Unit, x: Grid| i128::from(n.to_bits()) * i128::from(x.to_bits());
+    product(n.x, v.x) + product(n.y, v.y)
+}
+
+/// `n s`, rounded.
+pub(super) fn scaled(n: Vec2<Unit>, s: Grid) -> Vec2<Grid> {
+    let part = |n: Unit| {
+        let product = i128::from(n.to_bits()) * i128::from(s.to_bits());
+        Grid::from_bits(saturate_wide(round_shift_wide(product, Unit::FRAC_NBITS)))
+    };
+    Vec2::new(part(n.x), part(n.y))
+}
+
+/// `cross / scaled_length`: the distance that belongs to a cross product with a vector whose length
+/// [`scaled_along`] has found.
+pub(super) fn height(cross: i128, scaled_length: i128) -> Grid {
+    // Beyond 2^97 the height is more than that of anything near the vector, and a few bits less do not matter.
+    let bits = if cross.unsigned_abs() >> 97 == 0 {
+        div_round(cross << Unit::FRAC_NBITS, scaled_length)
+    } else {
+        div_round(cross, (scaled_length >> Unit::FRAC_NBITS).max(1))
+    };
+    Grid::from_bits(saturate_wide(bits))
+}
+
+/// A fraction from 0 to 1 in units of 2^-62: fine enough to find a point on a line across the world.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct Fraction(i64);
+
+impl Fraction {
+    const FRAC_NBITS: u32 = 62;
+    const ONE: i64 = 1 << Self::FRAC_NBITS;
+
+    /// `numerator / denominator`, rounded down, for `0 <= numerator <= denominator != 0`.
+    pub(super) fn ratio(numerator: i128, denominator: i128) -> Self {
+        let excess = (i128::BITS - denominator.leading_zeros()).saturating_sub(u64::BITS);
+        let quotient = ((numerator >> excess) << Self::FRAC_NBITS) / (denominator >> excess).max(1);
+        Fraction(saturate_wide(quotient).clamp(0, Self::ONE))
+    }
+
+    /// `v` times the fraction, rounded.
+    pub(super) fn of(self, v: Vec2<Grid>) -> Vec2<Grid> {
+        let part = |x: Grid| {
+            let product = i128::from(x.to_bits()) * i128::from(self.0);
+            Grid::from_bits(saturate_wide(round_shift_wide(product, Self::FRAC_NBITS)))
+        };
+        Vec2::new(part(v.x), part(v.y))
+    }
+
+    /// Rounded down to 32 bits.
+    pub(super) fn to_fx(self) -> Fx {
+        Fx::from_bits(self.0 >> (Self::FRAC_NBITS - Fx::FRAC_NBITS))
+    }
+}
+
+#[cfg(test)]
+pub(super) mod samples {
+    //! Random cores for the tests of queries.
+
+    use super::*;
+    use crate::body::Polygon;
+    use crate::math::Rng;
+    use alloc::vec::Vec;
+
+    pub(in crate::collision) fn vector(rng: &mut Rng, size: Fx) -> Vec2<Fx> {
+        Vec2::new(rng.range(-size, size), rng.range(-size, size))
+    }
+
+    /// A point, segment, capsule, disc or polygon, rounded or not, about its own centre.
+    pub(in crate::collision) fn core(rng: &mut Rng) -> Core {
+        loop {
+            let points: Vec<_> = (0..7).map(|_| vector(rng, fx!(1))).collect();
+            let radius = if rng.chance(1, 2) { Fx::ZERO } else { rng.range(fx!(0.01), fx!(0.4)) };
+            let count = rng.below(5);
+            match count {
+                0 => return Core::disc(points[0], radius),
+                1 => return Core::from_points([points[0], points[1]], radius),
+                _ => {}
+            }
+            let polygon = match count {
+                2 => Polygon::rectangle(radius + fx!(0.1), fx!(0.3)),
+                3 => Polygon::hull(&points[..3]),
+                _ => Polygon::hull(&points),
+            };
+            if let Ok(polygon) = polygon {
+                let turn = Rot::from_angle(rng.angle());
+                let vertices = polygon.vertices().iter().map(|vertex| vertex.widen());
+                return Core::from_points(vertices, radius).rotated(turn);
+            }
+        }
+    }
+
+    /// The same as large as shapes get: up to 110 m from the centre.
+    pub(in crate::collision) fn large(rng: &mut Rng) -> Core {
+        let core = core(rng);
+        let points: Vec<_> = world_points(&core).into_iter().map(|point| point.scale(fx!(75))).collect();
+        Core::from_points(points, to_fx(core.radius) * 75)
+    }
+
+    /// One to place near another.
+    pub(in crate::collision) fn placed(rng: &mut Rng, spread: Fx) -> Core {
+        core(rng).moved(to_grid(vector(rng, spread)))
+    }
+
+    /// The points as world vectors.
+    pub(in crate::collision) fn world_points(core: &Core) -> Vec<Vec2<Fx>> {
+        core.points().iter().map(|&point| from_grid(point)).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::body::{Body, BodyDef, Geometry, MassProperties, Polygon, ShapeDef};
+    use crate::math::Angle;
+
+    fn core_of(geometry: Geometry, origin: Vec2<Fx>) -> Core {
+        let def = BodyDef::fixed().position(fx!(1000000003), fx!(-7)).angle(Angle::QUARTER);
+        let body = Body::new(&def, MassProperties::immovable());
+        Core::of(&PosedShape::new(&ShapeDef::new(geometry), &body, body.rotation()), origin)
+    }
+
+    #[test]
+    fn shapes_become_points_and_a_radius() {
+        let origin = Vec2::new(fx!(1000000000), fx!(-7));
+        let point = |x, y| to_grid(Vec2::new(x, y));
+        let disc = core_of(Geometry::circle(fx!(2)).unwrap(), origin);
+        assert_eq!((disc.points(), disc.radius), (&[point(fx!(3), fx!(0))][..], Grid::from_num(2)));
+        let ends = [Vec2::new(fx!(0), fx!(0)), Vec2::new(fx!(4), fx!(0))];
+        let segment = core_of(Geometry::segment(ends[0], ends[1]).unwrap(), origin);
+        assert_eq!(segment.points(), [point(fx!(3), fx!(0)), point(fx!(3), fx!(4))]);
+        let rounded = Polygon::rectangle(fx!(2), fx!(1)).unwrap().rounded(fx!(0.5)).unwrap();
+        let polygon = core_of(rounded.into(), origin);
+        assert_eq!((polygon.points().len(), polygon.radius), (4, Grid::from_num(0.5)));
+        assert_eq!(polygon.points()[0], point(fx!(4), fx!(-2)));
+        assert_eq!(edges(polygon.points()).count(), 4);
+        assert_eq!((edges(segment.points()).count(), edges(disc.points()).count()), (2, 0));
+    }
+
+    #[test]
+    fn fractions_find_points_across_the_world() {
+        let end = to_grid(Vec2::new(fx!(2147483647), fx!(-2147483647)));
+        let near = to_grid(Vec2::new(fx!(1234567.5), fx!(-1234567.5)));
+        let fraction = Fraction::ratio(dot(near, end), dot(end, end));
+        let apart = fraction.of(end) - near;
+        assert!(apart.x.abs().to_bits() <= 1 && apart.y.abs().to_bits() <= 1, "{apart:?}");
+        assert_eq!(Fraction::ratio(5, 5).to_fx(), Fx::ONE);
+        assert_eq!(Fraction::ratio(0, 5).of(end), Vec2::ZERO);
+    }
+}

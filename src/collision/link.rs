@@ -1,0 +1,323 @@
+//! A link of a chain against a circle or a convex outline.
+//!
+//! A link alone pushes a shape that slides over its end back or up. What the chain as a whole may do at a vertex is
+//! decided by its neighbours (D. Gregorius and E. Catto call the same region of directions the Gauss map):
+//!
+//! ```text
+//! convex vertex    normals turn from one link's to the other's; each link has those nearer to its own
+//! flat or concave  there are only the two links' normals: the link pushes along its own
+//! free end         every direction
+//! ```
+//!
+//! So each place beside a chain belongs to one link, but for the inside of a concave vertex, which both bound.
+
+use super::circle_hull::{distance_along, step_bits};
+use super::hull_hull::{self, Face, TOLERANCE_WIDE};
+use super::manifold::{Feature, Manifold, ManifoldPoint};
+use super::pose::Hull;
+use super::segment::{clipped_to_window, right_of};
+use crate::body::Sides;
+use crate::math::{Fx, Length, Orientation, Step, Unit, Vec2, convert, orientation, saturate};
+
+/// Normals are told apart from here on, as the sine of the angle between them. Vertices that turn by less than this
+/// (0.6 degrees) count as flat.
+const ANGLE_TOLERANCE: Unit = Unit::lit("0.01");
+
+/// As the sine of an angle: a face that differs less from the link's own is the link's own. Wider, a rounded box that
+/// slides along would be pushed back a little at every vertex.
+const PARALLEL: Unit = Unit::lit("0.0002");
+
+/// A link in world axes, about the centre of the shape that it belongs to or meets.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Link {
+    pub(crate) a: Vec2<Fx>,
+    pub(crate) b: Vec2<Fx>,
+    pub(crate) before: Option<Vec2<Fx>>,
+    pub(crate) after: Option<Vec2<Fx>>,
+    pub(crate) sides: Sides,
+}
+
+impl Link {
+    pub(crate) fn mapped(self, map: impl Fn(Vec2<Fx>) -> Vec2<Fx>) -> Self {
+        let Link { a, b, before, after, sides } = self;
+        Link { a: map(a), b: map(b), before: before.map(&map), after: after.map(&map), sides }
+    }
+
+    fn reversed(self) -> Self {
+        let Link { a, b, before, after, sides } = self;
+        Link { a: b, b: a, before: after, after: before, sides }
+    }
+
+    /// Whether something at a place meets the link, or passes from its open side.
+    pub(crate) fn is_solid_from(&self, place: Vec2<Fx>) -> bool {
+        self.sides == Sides::Both || self.has_on_right(place)
+    }
+
+    /// Whether a place is on the right of the chain, as far as this link and its neighbours tell.
+    fn has_on_right(&self, place: Vec2<Fx>) -> bool {
+        let Link { a, b, before, after, .. } = *self;
+        let own = right_of(a, b, place);
+        let direction = b - a;
+        // Signs alone matter, and a saturated product keeps its sign.
+        let (corner, neighbour) = if (place - a).dot(direction) < 0 {
+            (before.map(|before| [before, a, b]), before.map(|before| (before, a)))
+        } else if (place - b).dot(direction) > 0 {
+            (after.map(|after| [a, b, after]), after.map(|after| (b, after)))
+        } else {
+            (None, None)
+        };
+        let (Some([p, q, r]), Some((from, to))) = (corner, neighbour) else { return own };
+        let other = right_of(from, to, place);
+        if orientation(p, q, r) == Orientation::CounterClockwise { own || other } else { own && other }
+    }
+}
+
+/// What is at an end of a link.
+#[derive(Clone, Copy, Debug)]
+enum End {
+    Free,
+    Joined { direction: Vec2<Unit>, turn: Turn },
+}
+
+/// How the chain turns at a vertex, as seen from the side of the shape.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Turn {
+    Convex,
+    Flat,
+    Concave,
+}
+
+/// What a link does with a normal.
+enum Verdict {
+    /// It pushes along it.
+    Own,
+    /// The chain allows it, and a neighbour pushes along it.
+    Neighbour,
+    /// It does not come from this link.
+    Leave,
+    /// It pushes along its own normal instead.
+    Snap,
+}
+
+/// A link about the centre of the shape that it meets, which is on its right.
+pub(crate) struct Facing {
+    /// The link as a hull: edge 0 faces the shape.
+    hull: Hull,
+    direction: Vec2<Unit>,
+    normal: Vec2<Unit>,
+    start: End,
+    end: End,
+    one_sided: bool,
+}
+
+impl Facing {
+    /// The link, given about the other shape's centre, as it faces `place` in that shape. `None` if it is far away
+    /// or not solid from this side.
+    pub(crate) fn new(link: &Link, place: Vec2<Fx>) -> Option<Self> {
+        let link = match (link.has_on_right(place), link.sides) {
+            (true, _) => *link,
+            (false, Sides::Both) => link.reversed(),
+            (false, Sides::Right) => return None,
+        };
+        let (p, q) = clipped_to_window(link.a, link.b)?;
+        let direction = (link.b - link.a).normalized()?;
+        let end = |neighbour: Option<Vec2<Unit>>, turn: fn(Vec2<Unit>, Vec2<Unit>) -> Turn| match neighbour {
+            // A chain that goes back on itself ends there.
+            Some(other) if other != -direction => {
+                End::Joined { direction: other, turn: turn(other, direction) }
+            }
+            _ => End::Free,
+        };
+        let before = link.before.and_then(|before| (link.a - before).normalized());
+        let after = link.after.and_then(|after| (after - link.b).normalized());
+        Some(Facing {
+            hull: Hull::segment(p.narrow(), q.narrow(), direction),
+            direction,
+            normal: -direction.perp(),
+            start: end(before, turn),
+            end: end(after, |after, own| turn(own, after)),
+            one_sided: link.sides == Sides::Right,
+        })
+    }
+
+    /// What to do with a normal that the shape and the link would have if they were alone.
+    fn judge(&self, n: Vec2<Unit>) -> Verdict {
+        let own: Unit = self.normal.dot(n);
+        let across: Unit = self.normal.cross(n);
+        if own > 0 && across.abs() <= PARALLEL {
+            return Verdict::Own;
+        }
+        // Towards the start normals turn clockwise from the link's own, towards the end counter-clockwise.
+        let (end, outwards) = if across < 0 { (self.start, 1) } else { (self.end, -1) };
+        match end {
+            End::Free if self.one_sided && own < 0 => Verdict::Leave,
+            End::Free => Verdict::Own,
+            End::Joined { turn: Turn::Flat | Turn::Concave, .. } if own > 0 => Verdict::Snap,
+            End::Joined { turn: Turn::Flat | Turn::Concave, .. } => Verdict::Leave,
+            End::Joined { turn: Turn::Convex, direction } => {
+                let other = -direction.perp();
+                let beyond: Unit = other.cross(n);
+                let nearer_to_other: Unit = other.dot(n);
+                let within = beyond.to_bits() * outwards >= -ANGLE_TOLERANCE.to_bits();
+                // The link that starts at the vertex has the middle.
+                let ours = if outwards == 1 { own >= nearer_to_other } else { own > nearer_to_other };
+                match (within, ours) {
+                    (true, true) => Verdict::Own,
+                    (true, false) => Verdict::Neighbour,
+                    (false, _) => Verdict::Leave,
+                }
+            }
+        }
+    }
+
+    /// How far the neighbour's face at a convex vertex is from a hull about the origin; it bounds the shape too.
+    fn neighbour_separation(&self, b: &Hull) -> i64 {
+        let [start, end] = [(self.start, 0), (self.end, 1)].map(|(end, vertex)| match end {
+            End::Joined { turn: Turn::Convex, direction } => {
+                let normal = -direction.perp();
+                hull_hull::plane_separation(normal, self.hull.vertices()[vertex], b, Vec2::ZERO)
+            }
+            _ => i64::MIN,
+        });
+        start.max(end)
+    }
+
+    /// The contact with a circle about the origin. Its centre is beside the link, or belongs to the vertex at which
+    /// the link starts.
+    pub(crate) fn collide_circle(&self, radius: Length, margin: Length) -> Manifold {
+        let (a, b) = (self.hull.vertices()[0], self.hull.vertices()[1]);
+        let past = |vertex: Vec2<Length>, direction: Vec2<Unit>| -> Length { (-vertex).dot(direction) };
+        let at = |vertex: Vec2<Length>| {
+            let distance = step_bits(vertex.length());
+            single((-vertex).normalized().unwrap_or(self.normal), distance, radius, margin)
+        };
+        let beside = || single(self.normal, distance_along(self.normal, -a), radius, margin);
+        // Inside a concave vertex the other link is nearer, but a fast circle may reach this one within the tick.
+        let ahead = |vertex: Vec2<Length>| {
+            let near = step_bits(vertex.length()) - step_bits(radius) <= step_bits(margin);
+            let contact = beside();
+            let apart = contact.points().iter().all(|point| point.separation > 0);
+            if near && apart { contact } else { Manifold::NONE }
+        };
+        if past(a, self.direction) < 0 {
+            match self.start {
+                End::Free => at(a),
+                End::Joined { direction, .. } if past(a, direction) >= 0 => at(a),
+                End::Joined { turn: Turn::Concave, .. } => ahead(a),
+                End::Joined { .. } => Manifold::NONE,
+            }
+        } else if past(b, self.direction) >= 0 {
+            match self.end {
+                End::Free => at(b),
+                End::Joined { turn: Turn::Concave, .. } => ahead(b),
+                End::Joined { .. } => Manifold::NONE,
+            }
+        } else {
+            beside()
+        }
+    }
+
+    /// The contact with a hull about the origin.
+    pub(crate) fn collide_hull(&self, b: &Hull, margin: Length) -> Manifold {
+        let a = &self.hull;
+        let reach = i64::from(margin.saturating_add(b.radius).to_bits()) << 30;
+        let face_a = hull_hull::best_face(a, b, Vec2::ZERO);
+        let face_b = hull_hull::best_face(b, a, Vec2::ZERO);
+        if face_a.separation > reach || face_b.separation > reach {
+            return Manifold::NONE;
+        }
+        if hull_hull::are_apart(a, b, Vec2::ZERO, face_a, face_b) {
+            self.collide_apart(b, (face_a, face_b), margin)
+        } else {
+            self.collide_overlapping(b, margin)
+        }
+    }
+
+    /// The face that the shape is in front of.
+    fn face(&self, b: &Hull) -> Face {
+        Face { edge: 0, separation: hull_hull::face_separation(&self.hull, 0, b, Vec2::ZERO) }
+    }
+
+    /// The nearest features, if the chain allows their normal.
+    fn collide_apart(&self, b: &Hull, (face_a, face_b): (Face, Face), margin: Length) -> Manifold {
+        let a = &self.hull;
+        let found = if face_b.separation > face_a.separation {
+            hull_hull::clip(b, a, Vec2::ZERO, face_b, true, margin).swapped()
+        } else if face_a.edge == 0 {
+            hull_hull::clip(a, b, Vec2::ZERO, face_a, true, margin)
+        } else {
+            // Behind the link, and in front of its neighbour.
+            return Manifold::NONE;
+        };
+        if found.points().is_empty() {
+            return Manifold::NONE;
+        }
+        match self.judge(found.normal) {
+            Verdict::Own => found,
+            Verdict::Neighbour | Verdict::Leave => Manifold::NONE,
+            Verdict::Snap => {
+                let mut found = hull_hull::clip(a, b, Vec2::ZERO, self.face(b), false, margin);
+                // Beyond the end of the link its line only bounds what may yet come.
+                found.retain(|point| point.separation > 0 || self.is_beside(point.anchor, b.radius));
+                found
+            }
+        }
+    }
+
+    /// Whether a place is beside the link, and not beyond its ends by more than a vertex that counts as flat makes
+    /// up for.
+    fn is_beside(&self, place: Vec2<Length>, radius: Length) -> bool {
+        let slack: Length = (radius / 64).saturating_add(Length::lit("0.0005"));
+        let past = |vertex: Vec2<Length>| -> Length { (place - vertex).dot(self.direction) };
+        past(self.hull.vertices()[0]) >= -slack && past(self.hull.vertices()[1]) <= slack
+    }
+
+    /// The face of least overlap among those that the chain allows.
+    fn collide_overlapping(&self, b: &Hull, margin: Length) -> Manifold {
+        let a = &self.hull;
+        let face = self.face(b);
+        let judged = |edge: usize| {
+            let face_b = Face { edge, separation: hull_hull::face_separation(b, edge, a, Vec2::ZERO) };
+            match self.judge(-b.normals()[edge]) {
+                Verdict::Own => Some((face_b, true)),
+                Verdict::Neighbour => Some((face_b, false)),
+                Verdict::Leave | Verdict::Snap => None,
+            }
+        };
+        let best = (0..b.vertices().len()).filter_map(judged).max_by_key(|(face_b, _)| face_b.separation);
+        match best.filter(|(face_b, _)| face_b.separation > face.separation + TOLERANCE_WIDE) {
+            Some((face_b, true)) => {
+                return hull_hull::clip(b, a, Vec2::ZERO, face_b, false, margin).swapped();
+            }
+            Some((_, false)) => return Manifold::NONE,
+            None => {}
+        }
+        if self.neighbour_separation(b) > face.separation {
+            return Manifold::NONE;
+        }
+        hull_hull::clip(a, b, Vec2::ZERO, face, false, margin)
+    }
+}
+
+/// How a chain turns from one link to the next, as seen from its right.
+fn turn(from: Vec2<Unit>, to: Vec2<Unit>) -> Turn {
+    let sine: Unit = from.cross(to);
+    let cosine: Unit = from.dot(to);
+    match sine {
+        _ if sine >= ANGLE_TOLERANCE || (cosine < 0 && sine > 0) => Turn::Convex,
+        _ if sine < 0 => Turn::Concave,
+        _ => Turn::Flat,
+    }
+}
+
+/// The contact of a circle about the origin with something at a distance along a normal.
+fn single(normal: Vec2<Unit>, distance: i64, radius: Length, margin: Length) -> Manifold {
+    let separation = distance - step_bits(radius);
+    if separation > step_bits(margin) {
+        return Manifold::NONE;
+    }
+    let separation = Step::from_bits(saturate(separation));
+    let back: Length = radius.saturating_add(convert(separation / 2));
+    let anchor = -normal.scale(back);
+    Manifold::single(normal, ManifoldPoint { anchor, separation, feature: Feature::SINGLE })
+}

@@ -1,0 +1,288 @@
+//! Where a ray enters a shape: `o + t d` for the smallest `t` from 0 to 1.
+//!
+//! The outline of a convex core with a radius `r` is made of its edges, moved out by `r`, and of circles about its
+//! vertices. With outward edges `e` from `p` a ray crosses the moved line where `e x (o + t d - p) = -r |e|`, and it
+//! enters a circle about `p` half a chord before its nearest point. Each `t` is a quotient of exact products: the
+//! only approximations are `|e|` and `|d|`, which multiply no more than the radius, to a relative 1.5e-9. So rays
+//! and segments may be as long as the world.
+
+use super::core::{Core, Fraction, Grid, along, cross, direction, dot, edges, from_grid, height};
+use super::core::{scaled_along, to_grid};
+use super::distance::overlap;
+use crate::math::{Fx, Unit, Vec2};
+
+/// Where a ray hits a shape.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct RayHit {
+    /// Of the ray's translation, 0 to 1, rounded down to 2^-32: of a ray of 2^30 m that is 0.25 m.
+    pub(crate) fraction: Fx,
+    /// Where, about the origin of the core: within 1 µm of the surface, however long the ray.
+    pub(crate) point: Vec2<Fx>,
+    /// Out of the surface. Zero if the ray starts inside the shape or on its border.
+    pub(crate) normal: Vec2<Unit>,
+}
+
+/// Where the ray from `origin` to `origin + translation` first meets a shape. Segments are hit from both sides, and
+/// at their end if the ray runs along them.
+pub(crate) fn cast_ray(shape: &Core, origin: Vec2<Fx>, translation: Vec2<Fx>) -> Option<RayHit> {
+    if contains_point(shape, origin) {
+        return Some(RayHit { fraction: Fx::ZERO, point: origin, normal: Vec2::ZERO });
+    }
+    // Both ends are on the grid, so that the end of one ray is the beginning of the next.
+    let end = to_grid(origin + translation);
+    let origin = to_grid(origin);
+    let translation = end - origin;
+    let (fraction, normal) = entry(shape.points(), shape.radius, origin, translation)?;
+    let point = from_grid(origin + fraction.of(translation));
+    Some(RayHit { fraction: fraction.to_fx(), point, normal })
+}
+
+/// Whether a point is in a shape or on its border.
+pub(crate) fn contains_point(shape: &Core, point: Vec2<Fx>) -> bool {
+    overlap(shape, &Core::point(point))
+}
+
+/// Where a ray from outside enters the points within `radius` of the hull of `points`, and the normal there.
+pub(super) fn entry(
+    points: &[Vec2<Grid>],
+    radius: Grid,
+    o: Vec2<Grid>,
+    d: Vec2<Grid>,
+) -> Option<(Fraction, Vec2<Unit>)> {
+    let forward = direction(d)?;
+    // A ray enters something convex once: a face that it hits is where.
+    if let Some(found) = edges(points).find_map(|(p, q)| enter_face(p, q, radius, o, d)) {
+        return Some(found);
+    }
+    // Without a radius there are no circles, but a ray along a segment, or to a point, meets its end.
+    if radius == 0 && points.len() > 2 {
+        return None;
+    }
+    let fraction = points.iter().filter_map(|&p| enter_circle(p, radius, o, d, forward)).min()?;
+    let hit = o + fraction.of(d);
+    let from = points.iter().min_by_key(|&&p| dot(hit - p, hit - p)).map(|&p| hit - p)?;
+    let normal = if radius == 0 { None } else { direction(from) };
+    Some((fraction, normal.unwrap_or(-forward)))
+}
+
+/// Where a ray enters through the face from `p` to `q`, moved out by `radius`.
+fn enter_face(
+    p: Vec2<Grid>,
+    q: Vec2<Grid>,
+    radius: Grid,
+    o: Vec2<Grid>,
+    d: Vec2<Grid>,
+) -> Option<(Fraction, Vec2<Unit>)> {
+    let e = q - p;
+    let inwards = cross(e, d);
+    if inwards <= 0 {
+        return None;
+    }
+    let tangent = direction(e)?;
+    let way = -cross(e, o - p) - times_length(radius, e, tangent);
+    if way < 0 || way > inwards {
+        return None;
+    }
+    let fraction = Fraction::ratio(way, inwards);
+    let on_face = if radius == 0 {
+        // Exact, so that no ray slips through a corner.
+        (0..=inwards).contains(&cross(o - p, d))
+    } else {
+        // Near its ends the face and the circle about them agree.
+        (0..=dot(e, e)).contains(&dot(e, o + fraction.of(d) - p))
+    };
+    on_face.then_some((fraction, -tangent.perp()))
+}
+
+/// Where a ray enters the circle about `p`. `forward` is its direction.
+fn enter_circle(
+    p: Vec2<Grid>,
+    radius: Grid,
+    o: Vec2<Grid>,
+    d: Vec2<Grid>,
+    forward: Vec2<Unit>,
+) -> Option<Fraction> {
+    let from_centre = o - p;
+    let (before, beside) = (-dot(from_centre, d), cross(from_centre, d).abs());
+    if before < 0 || beside > times_length(radius, d, forward) {
+        return None;
+    }
+    let (r, h) = (radius.to_bits(), height(beside, scaled_along(forward, d)).to_bits());
+    let half_chord = (i128::from(r - h) * i128::from(r + h)).max(0).isqrt();
+    let way = before - ((half_chord * (scaled_along(forward, d) >> 8)) >> (Unit::FRAC_NBITS - 8));
+    let whole = dot(d, d);
+    // From a point inside by a rounding error the way is negative.
+    (way <= whole).then(|| Fraction::ratio(way.max(0), whole))
+}
+
+/// `radius |v|` in units of 2^-56 m². The shift keeps the product within 128 bits.
+fn times_length(radius: Grid, v: Vec2<Grid>, direction: Vec2<Unit>) -> i128 {
+    ((scaled_along(direction, v) >> 8) * i128::from(radius.to_bits())) >> (Unit::FRAC_NBITS - 8)
+}
+
+/// How far `translation` approaches something whose outward normal is known, in metres; negative when it leaves.
+pub(super) fn approach(normal: Vec2<Unit>, translation: Vec2<Grid>) -> Grid {
+    -along(normal, translation)
+}
+
+#[cfg(test)]
+mod tests {
+    //! Against sphere tracing: a point that goes on by its distance from the shape never passes the surface.
+
+    use super::super::core::samples;
+    use super::super::distance::distance;
+    use super::*;
+    use crate::fx;
+    use crate::math::{Rng, fx_div, fx_mul};
+
+    /// How far along a ray of length 1 to 30 m the surface is: within about 2e-7 m, or `None`.
+    /// Rays that pass within `skip` of the surface without reaching it are undecided.
+    fn trace(shape: &Core, origin: Vec2<Fx>, translation: Vec2<Fx>) -> Result<Option<Fx>, ()> {
+        let length = translation.length();
+        let (mut way, mut nearest) = (Fx::ZERO, Fx::MAX);
+        for _ in 0..2000 {
+            let at = origin + translation.scale(fx_div(way, length).unwrap());
+            let gap = distance(shape, &Core::point(at)).distance;
+            nearest = nearest.min(gap);
+            if gap < fx!(0.0000002) {
+                return Ok(Some(way));
+            }
+            way += gap;
+            if way > length {
+                return if nearest < fx!(0.000002) { Err(()) } else { Ok(None) };
+            }
+        }
+        Err(())
+    }
+
+    #[test]
+    fn rays_hit_what_sphere_tracing_hits() {
+        let mut rng = Rng::new(1);
+        let (mut hits, mut misses, mut grazing, mut inside) = (0, 0, 0, 0);
+        for _ in 0..30_000 {
+            let shape = samples::core(&mut rng);
+            let origin = samples::vector(&mut rng, fx!(4));
+            let aim = samples::vector(&mut rng, fx!(1.2));
+            let translation = (aim - origin).scale(rng.range(fx!(0.5), fx!(3)));
+            let found = cast_ray(&shape, origin, translation);
+            if contains_point(&shape, origin) {
+                inside += 1;
+                let hit = found.expect("starts inside");
+                assert_eq!((hit.fraction, hit.point, hit.normal), (Fx::ZERO, origin, Vec2::ZERO));
+                continue;
+            }
+            match (trace(&shape, origin, translation), found) {
+                (Ok(None), None) => misses += 1,
+                (Ok(Some(way)), Some(hit)) => {
+                    hits += 1;
+                    // A ray at a flat angle needs longer for the last 2e-7 m.
+                    let found = fx_mul(hit.fraction, translation.length());
+                    let steep = -translation.normalized().unwrap().widen().dot(hit.normal.widen());
+                    assert!(steep >= 0, "{hit:?} {shape:?}");
+                    let error = fx_mul((found - way).abs(), steep);
+                    assert!(error < fx!(0.000001), "{found} {way} {steep} {shape:?} {origin:?}");
+                    let surface = distance(&shape, &Core::point(hit.point));
+                    assert!(surface.distance.abs() < fx!(0.0000001), "{surface:?} {hit:?} {shape:?}");
+                }
+                (Err(()), _) => grazing += 1,
+                (traced, found) => panic!("{traced:?} {found:?} {shape:?} {origin:?} {translation:?}"),
+            }
+        }
+        assert!(
+            hits > 8_000 && misses > 5_000 && inside > 200 && grazing < 1_500,
+            "{hits} {misses} {inside} {grazing}"
+        );
+    }
+
+    /// Through corners and along edges too, a ray into a shape hits it.
+    #[test]
+    fn no_ray_slips_into_a_shape() {
+        let mut rng = Rng::new(3);
+        let mut rays = 0;
+        for _ in 0..20_000 {
+            let shape = samples::core(&mut rng);
+            let points = samples::world_points(&shape);
+            let (first, last) = (points[0], points[points.len() - 1]);
+            for (through, onwards) in
+                [(first, last - first), (last, first - last), (last, samples::vector(&mut rng, fx!(1)))]
+            {
+                let origin = through - onwards.scale(rng.range(fx!(0.5), fx!(3)));
+                if contains_point(&shape, origin) {
+                    continue;
+                }
+                rays += 1;
+                assert!(
+                    cast_ray(&shape, origin, through - origin).is_some(),
+                    "{shape:?} {origin:?} {through:?}"
+                );
+            }
+        }
+        assert!(rays > 20_000, "{rays}");
+    }
+
+    #[test]
+    fn a_ray_across_the_world_is_as_exact_as_a_short_one() {
+        let mut rng = Rng::new(2);
+        let mut hits = 0;
+        for _ in 0..10_000 {
+            let shape = samples::core(&mut rng);
+            let far = samples::vector(&mut rng, fx!(1073741823));
+            let aim = samples::vector(&mut rng, fx!(0.5));
+            let Some(hit) = cast_ray(&shape, far, aim - far + (aim - far)) else { continue };
+            hits += 1;
+            let surface = distance(&shape, &Core::point(hit.point));
+            assert!(surface.distance.abs() < fx!(0.0000001), "{surface:?} {hit:?} {shape:?}");
+        }
+        assert!(hits > 5_000, "{hits}");
+    }
+
+    #[test]
+    fn large_shapes_are_hit_within_a_micrometre() {
+        let mut rng = Rng::new(4);
+        let mut hits = 0;
+        for _ in 0..20_000 {
+            let shape = samples::large(&mut rng);
+            let origin = samples::vector(&mut rng, fx!(300));
+            let translation = samples::vector(&mut rng, fx!(100)) - origin;
+            let Some(hit) = cast_ray(&shape, origin, translation) else { continue };
+            hits += 1;
+            let surface = distance(&shape, &Core::point(hit.point)).distance;
+            assert!(hit.fraction == 0 || surface.abs() < fx!(0.0000003), "{surface:?} {hit:?} {shape:?}");
+        }
+        assert!(hits > 5_000, "{hits}");
+    }
+
+    #[test]
+    fn nothing_overflows_at_the_edge_of_the_world() {
+        let ends = [Fx::MIN, fx!(-1073741824), fx!(1073741824), Fx::MAX];
+        let corners = || ends.into_iter().flat_map(|x| ends.map(|y| Vec2::new(x, y)));
+        for p in corners() {
+            for q in corners() {
+                for radius in [fx!(0), fx!(110), Fx::MAX] {
+                    let shape = Core::from_points([p, q], radius);
+                    for origin in corners() {
+                        for translation in corners() {
+                            cast_ray(&shape, origin, translation);
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn segments_are_hit_from_both_sides_and_at_their_ends() {
+        let wall = Core::from_points([Vec2::new(fx!(1), fx!(-1)), Vec2::new(fx!(1), fx!(1))], Fx::ZERO);
+        let hit = |x, y, dx, dy| {
+            let hit = cast_ray(&wall, Vec2::new(x, y), Vec2::new(dx, dy))?;
+            Some((hit.fraction, hit.normal))
+        };
+        assert_eq!(hit(fx!(0), fx!(0), fx!(2), fx!(0)), Some((fx!(0.5), -Vec2::X)));
+        assert_eq!(hit(fx!(2), fx!(0), fx!(-4), fx!(0)), Some((fx!(0.25), Vec2::X)));
+        assert_eq!(hit(fx!(0), fx!(1), fx!(2), fx!(0)), Some((fx!(0.5), -Vec2::X)));
+        assert_eq!(hit(fx!(0), fx!(1) + Fx::DELTA * 16, fx!(2), fx!(0)), None);
+        assert_eq!(hit(fx!(1), fx!(3), fx!(0), fx!(-4)), Some((fx!(0.5), Vec2::Y)));
+        assert_eq!(hit(fx!(0), fx!(0), fx!(0), fx!(0)), None);
+        assert_eq!(hit(fx!(0), fx!(0), fx!(0.5), fx!(0)), None);
+    }
+}

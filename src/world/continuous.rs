@@ -1,0 +1,121 @@
+//! Continuous collision: fast bodies are swept from where they were to where the solver has brought them, and stop
+//! where they first come too deep into something that they might pass through.
+//!
+//! Speculative contacts already stop most of what is fast; this catches what they cannot foresee, such as turning
+//! rods and speed gained within the tick. A body that is stopped keeps its velocity and goes on in the next tick,
+//! when the contact is there from the start. It loses the rest of its movement, so that time seems to stand still for
+//! it for part of a tick.
+
+use alloc::vec::Vec;
+
+use super::pairs::may_touch;
+use super::scratch::Scratch;
+use super::state::State;
+use super::step::move_body;
+use crate::body::{Body, Continuous, Handle, Pose};
+use crate::collision::{Core, Sweep, TimeOfImpact, time_of_impact};
+use crate::fx;
+use crate::math::{Angle, Fx, fx_mul};
+
+/// A body that has not been moved yet, because it may have moved too far.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Swept {
+    slot: u32,
+    sweep: Sweep,
+    end: Pose,
+}
+
+/// The sweep of a body, if it moves so far that it may pass through something: more than half of the radius inside its
+/// smallest shape, or of the reach of one that turns.
+pub(super) fn sweep_of(state: &State, scratch: &Scratch, slot: u32, end: Pose, turn: i64) -> Option<Swept> {
+    let body = state.bodies.at(slot);
+    if !state.config.continuous || !body.is_dynamic() || body.settings.continuous == Continuous::Off {
+        return None;
+    }
+    let shift = end.centre - body.centre;
+    let radians = Angle::turns_to_radians(turn);
+    let fast = body.shapes().iter().any(|id| {
+        let shape = state.shapes.at(id.slot());
+        let posed = scratch.poses.at(id.slot());
+        let away = posed.bounds.centre() - body.centre;
+        let half = posed.bounds.extents();
+        let reach = [half.x, half.y, away.x.saturating_abs(), away.y.saturating_abs()]
+            .into_iter()
+            .fold(Fx::ZERO, Fx::saturating_add);
+        let motion = shift.length().saturating_add(fx_mul(radians.saturating_abs(), reach));
+        // The radius inside a shape is at most that inside its box: most bodies are slow enough to tell at a glance.
+        !shape.is_sensor() && motion > fx!(0.0005) && motion > Core::of(posed, body.centre).inner_radius() / 2
+    });
+    fast.then(|| Swept { slot, sweep: Sweep { start: body.centre, end: end.centre, turn }, end })
+}
+
+/// Moves fast bodies as far as they can go: first those that only what cannot be moved stops, then the bullets, in slot
+/// order. Everything else is where it will be.
+pub(super) fn sweep(state: &mut State, scratch: &mut Scratch, swept: &[Swept]) {
+    let is_bullet =
+        |state: &State, swept: &Swept| state.bodies.at(swept.slot).settings.continuous == Continuous::Bullet;
+    let (bullets, others): (Vec<&Swept>, Vec<&Swept>) =
+        swept.iter().partition(|swept| is_bullet(state, swept));
+    for swept in others.into_iter().chain(bullets) {
+        let fraction = first_impact(state, scratch, swept);
+        let pose = if fraction == Fx::ONE { swept.end } else { pose_at(state, swept, fraction) };
+        scratch.stats.impacts += u32::from(fraction != Fx::ONE);
+        move_body(state, scratch, swept.slot, pose);
+    }
+}
+
+fn pose_at(state: &State, swept: &Swept, fraction: Fx) -> Pose {
+    let Sweep { start, end, turn } = swept.sweep;
+    let angle = state.bodies.at(swept.slot).angle + Angle::from_wide_turns(turn, fraction);
+    Pose { centre: start + (end - start).scale(fraction), angle }
+}
+
+/// How much of its movement a body can make.
+fn first_impact(state: &State, scratch: &Scratch, swept: &Swept) -> Fx {
+    let body = state.bodies.at(swept.slot);
+    let mut first = Fx::ONE;
+    for id in body.shapes() {
+        if state.shapes.at(id.slot()).is_sensor() {
+            continue;
+        }
+        let posed = scratch.poses.at(id.slot());
+        let core = Core::of(posed, body.centre);
+        // Half as deep as it would have to be for its centre to be on the surface, but not more than 5 mm.
+        let target = -(core.inner_radius() / 4).min(fx!(0.005));
+        let reach = if swept.sweep.turn == 0 { Fx::ZERO } else { posed.bounds.extents().length() };
+        let area = posed.bounds.expanded(reach).swept(swept.sweep.end - swept.sweep.start);
+        scratch.broad_phase.each_overlap(area, |other| {
+            let obstacle = state.body_of(other);
+            let posed_other = scratch.poses.at(other);
+            let solid = posed_other.is_solid_from(posed.centre);
+            if solid && stops(body, obstacle) && may_stop(state, scratch, id.slot(), other) {
+                let there = Core::of(posed_other, obstacle.centre);
+                let fixed = Sweep::fixed(obstacle.centre);
+                match time_of_impact((&there, &fixed), (&core, &swept.sweep), target) {
+                    TimeOfImpact::Hit { fraction } => first = first.min(fraction),
+                    // Never so late that something may have been passed, but a body has to go on.
+                    TimeOfImpact::Failed { fraction } if fraction > Fx::ZERO => first = first.min(fraction),
+                    _ => {}
+                }
+            }
+            core::ops::ControlFlow::Continue(())
+        });
+    }
+    first
+}
+
+/// Whether a body is swept against another.
+fn stops(body: &Body, obstacle: &Body) -> bool {
+    let bullet = |body: &Body| body.settings.continuous == Continuous::Bullet;
+    !obstacle.is_dynamic() || (bullet(body) && !bullet(obstacle))
+}
+
+fn may_stop(state: &State, scratch: &Scratch, a: u32, b: u32) -> bool {
+    let pair = (a.min(b), a.max(b));
+    // Whether a one-way shape lets the other pass was decided at the start of the tick.
+    let passing = || {
+        let known = state.contacts.binary_search_by_key(&pair, |contact| contact.shapes);
+        known.is_ok_and(|index| state.contacts[index].passing)
+    };
+    !state.shapes.at(b).is_sensor() && may_touch(state, &scratch.joined, pair) && !passing()
+}

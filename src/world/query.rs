@@ -1,0 +1,342 @@
+//! What is where: questions about the shapes of a world, between ticks. They change nothing, see every enabled body as
+//! it is at the moment, and allocate nothing but lists of results.
+//!
+//! The order of results is part of the contract: along a ray or a cast by fraction, and where two are equal by slot;
+//! everywhere else in slot order.
+
+use alloc::vec::Vec;
+use core::ops::ControlFlow;
+
+use super::World;
+use crate::body::{BodyId, Geometry, GeometryError, Handle, ShapeId};
+use crate::collision::{Core, PosedShape, contains_point, distance, overlap};
+use crate::collision::{cast_ray, cast_shape};
+use crate::math::{Aabb, Angle, Fx, Rot, Unit, Vec2};
+
+/// Which shapes a query sees: those whose filter and the query's accept each other.
+///
+/// ```
+/// use lockstep2d::world::QueryFilter;
+/// let solid = QueryFilter::default();
+/// let walls_only = QueryFilter { mask: 0b10, ..QueryFilter::default() };
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct QueryFilter {
+    /// The categories that the query belongs to.
+    pub category: u64,
+    /// The categories that it sees.
+    pub mask: u64,
+    /// Whether it sees sensors too.
+    pub sensors: bool,
+    /// A body that it does not see: usually the one that asks.
+    pub except: Option<BodyId>,
+}
+
+impl Default for QueryFilter {
+    /// Everything but sensors.
+    fn default() -> Self {
+        QueryFilter { category: u64::MAX, mask: u64::MAX, sensors: false, except: None }
+    }
+}
+
+impl QueryFilter {
+    /// The same, without a body.
+    #[must_use]
+    pub const fn except(mut self, body: BodyId) -> Self {
+        self.except = Some(body);
+        self
+    }
+}
+
+/// Where a ray meets a shape.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RayHit {
+    /// The shape.
+    pub shape: ShapeId,
+    /// How far along the ray, 0 to 1.
+    pub fraction: Fx,
+    /// Where in the world, in metres.
+    pub point: Vec2<Fx>,
+    /// Out of the surface. Zero if the ray starts inside the shape.
+    pub normal: Vec2<Unit>,
+}
+
+/// Where a moving shape meets another.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CastHit {
+    /// The shape that it meets.
+    pub shape: ShapeId,
+    /// How far along the translation, 0 to 1.
+    pub fraction: Fx,
+    /// The movement up to there, in metres.
+    pub travelled: Vec2<Fx>,
+    /// Where on the surface that it meets, in the world, in metres.
+    pub point: Vec2<Fx>,
+    /// Out of that surface.
+    pub normal: Vec2<Unit>,
+}
+
+/// The nearest points of two shapes, or of a shape and a point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Proximity {
+    /// Distance in metres between the surfaces; negative where they overlap: how far they have to move apart.
+    pub distance: Fx,
+    /// On the first surface, in the world, in metres.
+    pub point_a: Vec2<Fx>,
+    /// On the second.
+    pub point_b: Vec2<Fx>,
+    /// From the first to the second.
+    pub normal: Vec2<Unit>,
+}
+
+/// A shape for a query: a geometry at a place.
+#[derive(Clone, Copy, Debug)]
+pub struct Probe {
+    posed_at: Vec2<Fx>,
+    geometry: Geometry,
+    rotation: Rot,
+}
+
+impl Probe {
+    /// A geometry with its centre at a position, in metres.
+    ///
+    /// # Errors
+    /// [`GeometryError`] when its size is out of range.
+    pub fn new(geometry: impl Into<Geometry>, position: Vec2<Fx>) -> Result<Self, GeometryError> {
+        let geometry = geometry.into();
+        geometry.validate()?;
+        Ok(Probe { posed_at: position, geometry, rotation: Rot::IDENTITY })
+    }
+
+    /// Turns it by an angle.
+    #[must_use]
+    pub fn turned(mut self, angle: Angle) -> Self {
+        self.rotation = Rot::from_angle(angle);
+        self
+    }
+
+    /// The same somewhere else.
+    #[must_use]
+    pub fn at(mut self, position: Vec2<Fx>) -> Self {
+        self.posed_at = position;
+        self
+    }
+
+    /// Its centre.
+    #[must_use]
+    pub const fn position(&self) -> Vec2<Fx> {
+        self.posed_at
+    }
+
+    pub(super) fn posed(&self) -> PosedShape {
+        PosedShape::of_geometry(&self.geometry, self.posed_at, self.rotation)
+    }
+}
+
+impl World {
+    /// The first shape that a ray meets from a point along a translation, in metres. Links that are solid from one side
+    /// let rays from the other side through.
+    ///
+    /// ```
+    /// use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, fx, math::Vec2, world::World};
+    /// let mut world = World::default();
+    /// let wall = ShapeDef::new(Polygon::rectangle(fx!(1), fx!(1))?);
+    /// world.spawn(&BodyDef::fixed().position(fx!(5), fx!(0)), &[wall])?;
+    /// let (eye, sight) = (Vec2::new(fx!(0), fx!(0)), Vec2::new(fx!(8), fx!(0)));
+    /// let hit = world.cast_ray(eye, sight, Default::default()).expect("a wall");
+    /// assert_eq!((hit.fraction, hit.point.x), (fx!(0.5), fx!(4)));
+    /// # Ok::<(), lockstep2d::body::WorldError>(())
+    /// ```
+    #[must_use]
+    pub fn cast_ray(&self, origin: Vec2<Fx>, translation: Vec2<Fx>, filter: QueryFilter) -> Option<RayHit> {
+        let mut closest: Option<RayHit> = None;
+        self.each_hit(origin, translation, filter, |hit| {
+            if closest.is_none_or(|best| (hit.fraction, hit.shape) < (best.fraction, best.shape)) {
+                closest = Some(hit);
+            }
+            closest.map_or(Unit::ONE, |best| rounded_up(best.fraction))
+        });
+        closest
+    }
+
+    /// Every shape that a ray meets, in the order of the ray.
+    #[must_use]
+    pub fn cast_ray_all(&self, origin: Vec2<Fx>, translation: Vec2<Fx>, filter: QueryFilter) -> Vec<RayHit> {
+        let mut hits = Vec::new();
+        self.each_hit(origin, translation, filter, |hit| {
+            hits.push(hit);
+            Unit::ONE
+        });
+        hits.sort_unstable_by_key(|hit| (hit.fraction, hit.shape));
+        hits
+    }
+
+    /// Whether a ray meets anything: for lines of sight.
+    #[must_use]
+    pub fn cast_ray_any(&self, origin: Vec2<Fx>, translation: Vec2<Fx>, filter: QueryFilter) -> bool {
+        let mut any = false;
+        self.each_hit(origin, translation, filter, |_| {
+            any = true;
+            Unit::ZERO
+        });
+        any
+    }
+
+    /// The first shape that a probe meets as it moves along a translation without turning. It stops a tenth of a
+    /// millimetre before it touches; what it touches already stops it only if it moves into it.
+    #[must_use]
+    pub fn cast_shape(&self, probe: &Probe, translation: Vec2<Fx>, filter: QueryFilter) -> Option<CastHit> {
+        let posed = probe.posed();
+        let origin = probe.posed_at;
+        let moving = Core::of(&posed, origin);
+        let area = posed.bounds.expanded(crate::fx!(0.001));
+        let mut closest: Option<CastHit> = None;
+        self.scratch.broad_phase.each_along(area, translation, |slot| {
+            let posed = self.scratch.poses.at(slot);
+            if let Some(shape) = self.seen(slot, filter).filter(|_| posed.is_solid_from(origin)) {
+                let other = Core::of(posed, origin);
+                if let Some(hit) = cast_shape(&other, &moving, translation) {
+                    if closest.is_none_or(|best| (hit.fraction, shape) < (best.fraction, best.shape)) {
+                        let point = origin + hit.point;
+                        let (fraction, travelled, normal) = (hit.fraction, hit.travelled, hit.normal);
+                        closest = Some(CastHit { shape, fraction, travelled, point, normal });
+                    }
+                }
+            }
+            closest.map_or(Unit::ONE, |best| rounded_up(best.fraction))
+        });
+        closest
+    }
+
+    /// Every shape that overlaps a box, borders included.
+    #[must_use]
+    pub fn overlap_box(&self, area: Aabb, filter: QueryFilter) -> Vec<ShapeId> {
+        let origin = area.centre();
+        let (lower, upper) = (area.lower - origin, area.upper - origin);
+        let corners = [lower, Vec2::new(upper.x, lower.y), upper, Vec2::new(lower.x, upper.y)];
+        let core = Core::from_points(corners, Fx::ZERO);
+        self.overlapping(area, filter, |posed| overlap(&Core::of(posed, origin), &core))
+    }
+
+    /// Every shape that overlaps a probe, borders included.
+    #[must_use]
+    pub fn overlap_shape(&self, probe: &Probe, filter: QueryFilter) -> Vec<ShapeId> {
+        let posed = probe.posed();
+        let origin = probe.posed_at;
+        let core = Core::of(&posed, origin);
+        self.overlapping(posed.bounds, filter, |other| overlap(&Core::of(other, origin), &core))
+    }
+
+    /// Every shape that a point is in, borders included.
+    #[must_use]
+    pub fn overlap_point(&self, point: Vec2<Fx>, filter: QueryFilter) -> Vec<ShapeId> {
+        self.overlapping(Aabb::new(point, point), filter, |posed| {
+            contains_point(&Core::of(posed, point), Vec2::ZERO)
+        })
+    }
+
+    /// The shape nearest to a point within a distance in metres, and where. A point inside a shape has a negative
+    /// distance from it.
+    #[must_use]
+    pub fn closest(&self, point: Vec2<Fx>, within: Fx, filter: QueryFilter) -> Option<(ShapeId, Proximity)> {
+        let here = Core::point(Vec2::ZERO);
+        let mut closest: Option<(ShapeId, Proximity)> = None;
+        self.scratch.broad_phase.each_near(point, within, |slot| {
+            if let Some(shape) = self.seen(slot, filter) {
+                let found = proximity(&here, &Core::of(self.scratch.poses.at(slot), point), point);
+                let nearer =
+                    |best: &(ShapeId, Proximity)| (found.distance, shape) < (best.1.distance, best.0);
+                if found.distance <= within && closest.as_ref().is_none_or(nearer) {
+                    closest = Some((shape, found));
+                }
+            }
+            // A shape that the point is inside of is not the last word: it may be deeper inside another.
+            closest.map_or(within, |(_, best)| best.distance.max(Fx::ZERO))
+        });
+        closest
+    }
+
+    /// The distance of two shapes, and where they are nearest; `None` if one is gone.
+    #[must_use]
+    pub fn distance(&self, a: ShapeId, b: ShapeId) -> Option<Proximity> {
+        let (_, _) = (self.state.shapes.get(a)?, self.state.shapes.get(b)?);
+        let (posed_a, posed_b) = (self.scratch.poses.at(a.slot()), self.scratch.poses.at(b.slot()));
+        let origin = posed_a.centre;
+        Some(proximity(&Core::of(posed_a, origin), &Core::of(posed_b, origin), origin))
+    }
+
+    /// The distance of a probe from a shape, and where they are nearest, the probe's point first; `None` if the shape
+    /// is gone.
+    #[must_use]
+    pub fn probe_distance(&self, probe: &Probe, shape: ShapeId) -> Option<Proximity> {
+        self.state.shapes.get(shape)?;
+        let origin = probe.posed_at;
+        let other = Core::of(self.scratch.poses.at(shape.slot()), origin);
+        Some(proximity(&Core::of(&probe.posed(), origin), &other, origin))
+    }
+
+    fn each_hit(
+        &self,
+        origin: Vec2<Fx>,
+        translation: Vec2<Fx>,
+        filter: QueryFilter,
+        mut visit: impl FnMut(RayHit) -> Unit,
+    ) {
+        let mut interest = Unit::ONE;
+        self.scratch.broad_phase.each_along(Aabb::new(origin, origin), translation, |slot| {
+            let posed = self.scratch.poses.at(slot);
+            if let Some(shape) = self.seen(slot, filter).filter(|_| posed.is_solid_from(origin)) {
+                let core = Core::of(posed, origin);
+                if let Some(hit) = cast_ray(&core, Vec2::ZERO, translation) {
+                    let (fraction, point, normal) = (hit.fraction, origin + hit.point, hit.normal);
+                    interest = visit(RayHit { shape, fraction, point, normal });
+                }
+            }
+            interest
+        });
+    }
+
+    fn overlapping(
+        &self,
+        area: Aabb,
+        filter: QueryFilter,
+        overlaps: impl Fn(&PosedShape) -> bool,
+    ) -> Vec<ShapeId> {
+        let mut found = Vec::new();
+        self.scratch.broad_phase.each_overlap(area, |slot| {
+            if let Some(shape) = self.seen(slot, filter) {
+                if overlaps(self.scratch.poses.at(slot)) {
+                    found.push(shape);
+                }
+            }
+            ControlFlow::Continue(())
+        });
+        found.sort_unstable();
+        found
+    }
+
+    /// The handle of a shape, if a query sees it.
+    fn seen(&self, slot: u32, filter: QueryFilter) -> Option<ShapeId> {
+        let shape = self.state.shapes.at(slot);
+        let accepted =
+            shape.filter().mask & filter.category != 0 && shape.filter().category & filter.mask != 0;
+        let wanted = (filter.sensors || !shape.is_sensor()) && filter.except != Some(shape.body());
+        (accepted && wanted).then(|| self.state.shapes.handle_at(slot))
+    }
+}
+
+/// The distance of two cores about an origin, in the world.
+fn proximity(a: &Core, b: &Core, origin: Vec2<Fx>) -> Proximity {
+    let found = distance(a, b);
+    Proximity {
+        distance: found.distance,
+        point_a: origin + found.point_a,
+        point_b: origin + found.point_b,
+        normal: found.normal,
+    }
+}
+
+/// A fraction in the format of the broad phase: not less than it was, so that nothing equal is missed.
+fn rounded_up(fraction: Fx) -> Unit {
+    Unit::from_bits(crate::math::saturate((fraction.to_bits() >> 2) + 1)).min(Unit::ONE)
+}
