@@ -19,6 +19,7 @@ mod scratch;
 mod state;
 mod stats;
 mod step;
+mod stress;
 mod timestep;
 mod validate;
 

@@ -10,6 +10,7 @@ use super::pairs;
 use super::scratch::Scratch;
 use super::state::State;
 use super::stats::{Phase, StepStats};
+use super::stress;
 use crate::body::{BodyKind, Handle, Pose, WORLD_EXTENT_MAX};
 use crate::math::{Angle, Fx, Vec2};
 use crate::solver::{SolverBody, Tuning, turn_of};
@@ -62,6 +63,7 @@ impl World {
         begin(Phase::Finalise);
         contacts::report(state, scratch);
         finalise_poses(state, scratch);
+        stress::report(state, scratch, &tuning);
 
         begin(Phase::Sleep);
         islands::fall_asleep(state, scratch);

@@ -1,12 +1,14 @@
 //! A source of random changes to a small and crowded world: of every kind, valid and not.
 
 use lockstep2d::body::{
-    BodyDef, BodyId, BodyKind, BodySettings, Continuous, EventSwitches, Filter, JointId, MassSource, Material,
-    MotionLocks, ShapeDef, ShapeId,
+    BodyDef, BodyId, BodyKind, BodySettings, Continuous, EventSwitches, Filter, JointId, MassSource,
+    Material, MotionLocks, ShapeDef, ShapeId,
 };
 use lockstep2d::fx;
 use lockstep2d::math::{Angle, Fx, Rng, Vec2};
-use lockstep2d::solver::{JointDef, RevoluteDef};
+use lockstep2d::solver::{
+    Distance, JointDef, JointKind, Motor, Prismatic, Revolute, Threshold, ThresholdAction, Weld, Wheel,
+};
 use lockstep2d::world::{Command, Config, Explosion, World};
 
 use super::{ball, rectangle, square};
@@ -180,8 +182,7 @@ impl Churn {
 
     fn settings(&mut self) -> BodySettings {
         let rng = &mut self.rng;
-        let locks =
-            MotionLocks { x: rng.chance(1, 12), y: rng.chance(1, 12), rotation: rng.chance(1, 8) };
+        let locks = MotionLocks { x: rng.chance(1, 12), y: rng.chance(1, 12), rotation: rng.chance(1, 8) };
         BodySettings {
             locks,
             linear_damping: if rng.chance(1, 4) { rng.range(fx!(0), fx!(2)) } else { Fx::ZERO },
@@ -238,14 +239,33 @@ impl Churn {
         let (pose_a, pose_b) = (world.body(a)?.transform(), world.body(b)?.transform());
         // Where B is, so that nothing is torn.
         let anchor = pose_a.apply_inverse(pose_b.apply(Vec2::ZERO));
-        let def = RevoluteDef::new(a, b).anchor_a(anchor.x, anchor.y);
-        Some(if self.rng.chance(1, 2) { def.into() } else { def.colliding().into() })
+        let kind: JointKind = match self.rng.below(9) {
+            0 => Revolute::new().into(),
+            1 => Revolute::new().limit(fx!(-1), fx!(1)).motor(fx!(3), fx!(5)).into(),
+            2 => Revolute::new().spring(fx!(2), fx!(0.5), fx!(0)).into(),
+            3 => Prismatic::new().limit(fx!(-1), fx!(1)).into(),
+            4 => Distance::new().spring(fx!(3), fx!(0.3), fx!(0.5)).into(),
+            5 => Weld::rigid().into(),
+            6 => Wheel::new().spring(fx!(4), fx!(0.7), fx!(0)).motor(fx!(5), fx!(2)).into(),
+            7 => Motor::new().into(),
+            _ => JointKind::Filter,
+        };
+        let action = if self.rng.chance(1, 2) { ThresholdAction::Event } else { ThresholdAction::Break };
+        let threshold = Threshold { force: Some(self.rng.range(fx!(1), fx!(200))), torque: None, action };
+        let mut def = JointDef::new(a, b, kind).anchor_a(anchor.x, anchor.y);
+        if self.rng.chance(1, 2) {
+            def = def.threshold(threshold);
+        }
+        Some(if self.rng.chance(1, 2) { def } else { def.colliding() })
     }
 
     fn changed_joint(&mut self, world: &World, joint: JointId) -> Option<JointDef> {
-        #[allow(irrefutable_let_patterns, reason = "there are going to be more kinds")]
-        let JointDef::Revolute(mut def) = *world.joint(joint)?.def() else { return None };
-        def.collide_connected = !def.collide_connected;
-        Some(def.into())
+        let mut def = *world.joint(joint)?.def();
+        match self.rng.below(3) {
+            0 => def.collide_connected = !def.collide_connected,
+            1 => def.kind = JointKind::Filter,
+            _ => def.kind = Revolute::new().motor(fx!(-2), fx!(3)).into(),
+        }
+        Some(def)
     }
 }
