@@ -3,8 +3,11 @@
 mod builder;
 mod drum;
 mod elementary;
+mod game;
 mod joints;
+mod machines;
 mod piles;
+mod yards;
 
 use alloc::vec::Vec;
 
@@ -77,4 +80,9 @@ pub const ALL: &[Scene] = &[
     joints::LONG_ARM,
     joints::CHAIN,
     joints::JOINT_GRID,
+    yards::SMASH,
+    machines::WASHER,
+    yards::JUNKYARD,
+    yards::COMPOUNDS,
+    game::GAME,
 ];
