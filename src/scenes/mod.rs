@@ -7,6 +7,8 @@ mod game;
 mod joints;
 mod machines;
 mod piles;
+mod ragdoll;
+mod rain;
 mod yards;
 
 use alloc::vec::Vec;
@@ -80,9 +82,14 @@ pub const ALL: &[Scene] = &[
     joints::LONG_ARM,
     joints::CHAIN,
     joints::JOINT_GRID,
+    rain::RAIN,
     yards::SMASH,
+    machines::SPINNER,
+    machines::TUMBLER,
     machines::WASHER,
     yards::JUNKYARD,
     yards::COMPOUNDS,
+    ragdoll::RAGDOLL,
+    joints::BRIDGE,
     game::GAME,
 ];
