@@ -1,4 +1,4 @@
-//! Ragdolls: eleven capsules, held together by hinges with limits, friction and springs (E. Catto, Box2D's "human").
+//! Ragdolls: eleven capsules, held together by hinges with limits, friction and springs (Box2D's "human").
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -15,8 +15,8 @@ use crate::world::Config;
 const GROUND: u64 = 1;
 const RAGDOLL_CATEGORY: u64 = 2;
 
-/// A part of a ragdoll: a vertical capsule, and the hinge that it hangs by. Heights are in metres above the place of the
-/// ragdoll.
+/// A part of a ragdoll: a vertical capsule, and the hinge that it hangs by. Heights are in metres above the place of
+/// the ragdoll.
 pub(super) struct Bone {
     /// Which bone it is joined to.
     pub(super) parent: usize,

@@ -56,8 +56,8 @@ fn mark(ragdoll: u32, bone: usize) -> u64 {
     u64::from(ragdoll) * BONES.len() as u64 + bone as u64 + 1
 }
 
-/// The ragdolls of a column in their places, disabled and without joints. Handles of new bodies are known a tick
-/// later, and that is when [`release`] can name them.
+/// The ragdolls of a column in their places, disabled and without joints. Handles of new bodies are known a tick later,
+/// and that is when [`release`] can name them.
 fn announce(column: u32) -> Result<Vec<Command>, WorldError> {
     let mut commands = Vec::new();
     for (ragdoll, i) in ragdolls(column).zip(0..) {

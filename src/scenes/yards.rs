@@ -76,7 +76,7 @@ fn golden_pentagon() -> Result<Polygon, WorldError> {
     let mut points = Vec::new();
     for _ in 0..5 {
         points.push(Rot::from_angle(angle).apply_wide(Vec2::new(fx!(0.25), fx!(0))));
-        angle = angle + step;
+        angle += step;
     }
     Ok(Polygon::hull(&points)?)
 }
