@@ -3,8 +3,13 @@
 mod builder;
 mod drum;
 mod elementary;
+mod game;
 mod joints;
+mod machines;
 mod piles;
+mod ragdoll;
+mod rain;
+mod yards;
 
 use alloc::vec::Vec;
 
@@ -77,4 +82,14 @@ pub const ALL: &[Scene] = &[
     joints::LONG_ARM,
     joints::CHAIN,
     joints::JOINT_GRID,
+    rain::RAIN,
+    yards::SMASH,
+    machines::SPINNER,
+    machines::TUMBLER,
+    machines::WASHER,
+    yards::JUNKYARD,
+    yards::COMPOUNDS,
+    ragdoll::RAGDOLL,
+    joints::BRIDGE,
+    game::GAME,
 ];
