@@ -4,12 +4,13 @@
 use lockstep2d::body::{BodyDef, BodyId, BodyKind, Geometry, ShapeDef};
 use lockstep2d::fx;
 use lockstep2d::math::{Fx, Rng, Vec2, fx_mul};
-use lockstep2d::solver::{ContactTuning, RevoluteDef};
-use lockstep2d::world::{Command, Config, World};
+use lockstep2d::solver::{ContactTuning, JointDef};
+use lockstep2d::world::{Command, Config, Explosion, Place, World};
 
 use crate::generator::{serde_handle::Handle, spawn};
-use crate::shapes::{calm_shape, half_extents};
+use crate::shapes::{calm_chain, calm_shape, half_extents};
 use crate::source::Source;
+use crate::{joints, settings};
 
 /// Where the floor is, below the middle of the scene.
 const FLOOR: Fx = fx!(-1);
@@ -28,6 +29,8 @@ pub fn config(source: &mut Source<'_>) -> Config {
     if source.one_in(8) {
         config.solver.iterations = 2;
     }
+    config.sleeping = !source.one_in(8);
+    config.continuous = !source.one_in(8);
     if source.one_in(8) {
         config.gravity = Vec2::new(source.thousandths(-5000, 5000), source.thousandths(-15_000, 5000));
     }
@@ -57,7 +60,9 @@ fn rectangle(half: (Fx, Fx), x: Fx, y: Fx) -> ShapeDef {
 fn ground(source: &mut Source<'_>, middle: Vec2<Fx>, commands: &mut Vec<Command>) {
     let at = middle + Vec2::new(Fx::ZERO, FLOOR);
     let fixed = BodyDef::fixed().position(at.x, at.y);
-    commands.push(match source.below(5) {
+    commands.push(match source.below(7) {
+        5 => spawn(fixed, &calm_chain(source)),
+        6 => spawn(fixed, &belt(source)),
         0 => spawn(fixed, &[line((fx!(-8), fx!(0)), (fx!(8), fx!(0)))]),
         1 => spawn(fixed, &[rectangle((fx!(10), fx!(0.5)), fx!(0), fx!(-0.5))]),
         2 => {
@@ -84,6 +89,17 @@ fn ground(source: &mut Source<'_>, middle: Vec2<Fx>, commands: &mut Vec<Command>
     });
 }
 
+/// A floor whose surface runs, a platform that lets things pass from below, and a sensor around both.
+fn belt(source: &mut Source<'_>) -> [ShapeDef; 3] {
+    let floor = rectangle((fx!(8), fx!(0.5)), fx!(0), fx!(-0.5));
+    let platform = rectangle((fx!(1.5), fx!(0.1)), source.thousandths(-2000, 2000), fx!(1.5));
+    [
+        floor.surface_speed(source.thousandths(-3000, 3000)),
+        platform.one_way(lockstep2d::math::Angle::from_bits(1 << 30)),
+        rectangle((fx!(3), fx!(2)), fx!(0), fx!(1)).sensor(),
+    ]
+}
+
 /// Equal bodies in rows, next to each other or a little apart.
 fn pile(source: &mut Source<'_>, middle: Vec2<Fx>, commands: &mut Vec<Command>) {
     let shape = calm_shape(source);
@@ -99,6 +115,7 @@ fn pile(source: &mut Source<'_>, middle: Vec2<Fx>, commands: &mut Vec<Command>) 
     }
     let corner =
         middle + Vec2::new(source.thousandths(-2000, 0), FLOOR + source.pick(&[fx!(0), fx!(0.5), fx!(2)]));
+    let asleep = source.one_in(6);
     for index in 0..count {
         let (column, row) = (Fx::from(index % columns), Fx::from(index / columns));
         let x = fx_mul(column, half.x * 2 + gap) + rng.range(-wobble, wobble.max(Fx::DELTA));
@@ -107,6 +124,7 @@ fn pile(source: &mut Source<'_>, middle: Vec2<Fx>, commands: &mut Vec<Command>) 
         if turned {
             body = body.angle(rng.angle());
         }
+        body.asleep = asleep;
         commands.push(spawn(body, &[shape]));
     }
 }
@@ -120,6 +138,7 @@ fn chain(source: &mut Source<'_>, middle: Vec2<Fx>, commands: &mut Vec<Command>)
     let shape = calm_shape(source);
     let half = half_extents(&shape);
     let start = middle + Vec2::new(source.thousandths(-3000, 0), source.thousandths(0, 3000));
+    let kind = joints::calm_kind(source);
     let mut before = None;
     if !source.one_in(4) {
         before = Some((slot(commands), Vec2::ZERO));
@@ -131,8 +150,8 @@ fn chain(source: &mut Source<'_>, middle: Vec2<Fx>, commands: &mut Vec<Command>)
         commands.push(spawn(BodyDef::dynamic().position(x, start.y), &[shape]));
         if let Some((other, anchor)) = before {
             let joint =
-                RevoluteDef::new(other, body).anchor_a(anchor.x, anchor.y).anchor_b(-half.x, Fx::ZERO);
-            commands.push(Command::AddJoint { joint: joint.into() });
+                JointDef::new(other, body, kind).anchor_a(anchor.x, anchor.y).anchor_b(-half.x, Fx::ZERO);
+            commands.push(Command::AddJoint { joint });
         }
         before = Some((body, Vec2::new(half.x, Fx::ZERO)));
     }
@@ -152,11 +171,12 @@ pub fn command(
         Vec2::new(source.thousandths(-reach, reach), source.thousandths(-reach, reach))
     };
     let above = middle + Vec2::new(source.thousandths(-2000, 2000), source.thousandths(1000, 4000));
-    commands.push(match source.below(14) {
+    commands.push(match source.below(32) {
         0..=2 => {
             let kind =
                 source.pick(&[BodyKind::Dynamic, BodyKind::Dynamic, BodyKind::Dynamic, BodyKind::Kinematic]);
-            let body = BodyDef::new(kind).position(above.x, above.y).angle(source.angle());
+            let mut body = BodyDef::new(kind).position(above.x, above.y).angle(source.angle());
+            body.settings = settings::calm_settings(source);
             let velocity = vector(source, 4000);
             spawn(body.velocity(velocity.x, velocity.y), &[calm_shape(source)])
         }
@@ -170,37 +190,85 @@ pub fn command(
             Some(&shape) => Command::RemoveShape { shape },
             None => return,
         },
-        6 => {
-            // Where two bodies are next to each other, at the point between them.
-            let Some((other, there)) = world.bodies().find(|(id, _)| id.index() > body.index()) else {
-                return;
-            };
-            let Some(here) = world.body(body) else { return };
-            let between = (centre + there.centre_of_mass()).scale(fx!(0.5));
-            let anchor = |body: &lockstep2d::body::Body| body.transform().apply_inverse(between);
-            let (a, b) = (anchor(here), anchor(there));
-            let mut joint = RevoluteDef::new(body, other).anchor_a(a.x, a.y).anchor_b(b.x, b.y);
-            joint.collide_connected = source.one_in(2);
-            Command::AddJoint { joint: joint.into() }
-        }
-        7 => match world.joints().nth(source.below(world.joint_count())) {
+        6..=8 => match neighbours(source, world, body) {
+            Some(joint) => Command::AddJoint { joint },
+            None => return,
+        },
+        9 => match world.joints().nth(source.below(world.joint_count())) {
             Some((joint, _)) => Command::RemoveJoint { joint },
             None => return,
         },
-        8 => {
+        10 => {
             let force = vector(source, 20_000).scale(mass);
             Command::ApplyForce { body, force, point: centre + vector(source, 200) }
         }
-        9 => Command::ApplyTorque { body, torque: fx_mul(mass, source.thousandths(-2000, 2000)) },
-        10 => {
+        11 => Command::ApplyTorque { body, torque: fx_mul(mass, source.thousandths(-2000, 2000)) },
+        12 => {
             let impulse = vector(source, 3000).scale(mass);
             Command::ApplyImpulse { body, impulse, point: centre + vector(source, 200) }
         }
-        11 => {
+        13 => {
             let velocity = vector(source, 5000);
             Command::SetVelocity { body, velocity, angular_velocity: source.thousandths(-5000, 5000) }
         }
-        12 => Command::SetTransform { body, position: above, angle: source.angle() },
-        _ => Command::SetGravity { gravity: vector(source, 12_000) },
+        14 => Command::SetTransform { body, position: above, angle: source.angle() },
+        15 => Command::SetGravity { gravity: vector(source, 12_000) },
+        16 => {
+            let impulse_per_length = source.thousandths(-3000, 3000);
+            Command::Explode { explosion: Explosion::new(middle + vector(source, 2000), impulse_per_length) }
+        }
+        _ => return change(source, world, body, commands),
+    });
+}
+
+/// A joint between a body and the next one, at the point between them.
+fn neighbours(source: &mut Source<'_>, world: &World, body: BodyId) -> Option<JointDef> {
+    let (other, there) = world.bodies().find(|(id, _)| id.index() > body.index())?;
+    let here = world.body(body)?;
+    let between = (here.centre_of_mass() + there.centre_of_mass()).scale(fx!(0.5));
+    let anchor = |body: &lockstep2d::body::Body| body.transform().apply_inverse(between);
+    let (a, b) = (anchor(here), anchor(there));
+    let mut joint =
+        JointDef::new(body, other, joints::calm_kind(source)).anchor_a(a.x, a.y).anchor_b(b.x, b.y);
+    // So that what holds the angle has nothing to correct.
+    joint.frame_b.angle = here.angle() - there.angle();
+    Some(joints::finish(source, joint))
+}
+
+/// Another way of taking part in the simulation.
+fn change(source: &mut Source<'_>, world: &World, body: BodyId, commands: &mut Vec<Command>) {
+    let here = world.body(body).map_or(Vec2::ZERO, |body| body.position());
+    let some_shape = world.body(body).and_then(|body| body.shapes().first());
+    let some_joint = world.joints().nth(source.below(world.joint_count()));
+    commands.push(match source.below(14) {
+        0 => Command::Sleep { body },
+        1 => Command::Wake { body },
+        2 => Command::Disable { body },
+        3 | 4 => Command::Enable { body },
+        5 => Command::SetBody { body, settings: settings::calm_settings(source) },
+        6 => Command::SetKind { body, kind: settings::kind(source) },
+        7 => Command::SetMass { body, mass: settings::calm_mass(source) },
+        8 => Command::SetUserData { body, user_data: source.byte().into() },
+        9 | 10 => {
+            let offset = Vec2::new(source.thousandths(-100, 100), source.thousandths(-100, 100));
+            Command::MoveTo { body, position: here + offset, angle: lockstep2d::math::Angle::ZERO }
+        }
+        11 => match some_shape {
+            Some(&shape) => Command::SetShape { shape, def: calm_shape(source) },
+            None => return,
+        },
+        12 => match some_joint {
+            Some((joint, old)) => Command::SetJoint { joint, def: joints::finish(source, *old.def()) },
+            None => return,
+        },
+        _ => {
+            let count = 1 + source.below(4);
+            let place = |index: usize| Place {
+                position: here + Vec2::new(Fx::from_num(index), fx!(2)),
+                angle: lockstep2d::math::Angle::ZERO,
+            };
+            let places = (0..count).map(place).collect();
+            Command::SpawnEach { body: BodyDef::dynamic(), shapes: vec![calm_shape(source)], places }
+        }
     });
 }

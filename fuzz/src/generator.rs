@@ -3,14 +3,14 @@
 //! Three of four scenes are ordinary ones ([`crate::calm`]). The others, made here, are wild: everything may be at
 //! or beyond its limits. Most bodies are small and close together, so that most of them really touch.
 
-use lockstep2d::body::{BodyDef, BodyId, BodyKind, JointId, MassSource, ShapeDef, ShapeId, WORLD_EXTENT_MAX};
+use lockstep2d::body::{BodyDef, BodyId, JointId, ShapeDef, ShapeId, WORLD_EXTENT_MAX};
 use lockstep2d::math::{Fx, Rng, Vec2};
-use lockstep2d::solver::{ContactTuning, JointDef, RevoluteDef, SolverSettings};
-use lockstep2d::world::{Command, Config, World};
+use lockstep2d::solver::{ContactTuning, JointDef, SolverSettings};
+use lockstep2d::world::{Command, Config, Explosion, Place, World};
 use lockstep2d::{codec, fx};
 
 use crate::source::Source;
-use crate::{calm, shapes};
+use crate::{calm, joints, settings, shapes};
 
 /// Generates commands, and remembers handles that have gone stale.
 pub struct Generator {
@@ -67,6 +67,11 @@ fn wild_config(source: &mut Source<'_>) -> Config {
         config.solver.restitution_threshold = source.mostly(0, 2000);
         config.solver.speed_max = source.mostly(1000, 400_000);
     }
+    config.sleeping = !source.one_in(6);
+    config.continuous = !source.one_in(6);
+    if source.one_in(3) {
+        config.hit_speed = source.mostly(0, 3000);
+    }
     if source.one_in(16) {
         config.body_limit = source.byte().into();
         config.shape_limit = source.byte().into();
@@ -94,13 +99,18 @@ impl Generator {
             calm::setup(source, self.middle, &mut commands);
             return commands;
         }
-        if !source.one_in(4) {
-            let floor = ShapeDef::new(lockstep2d::body::Geometry::Segment {
-                a: Vec2::new(fx!(-8), source.thousandths(-100, 1000)),
-                b: Vec2::new(fx!(8), fx!(0)),
-            });
-            let position = self.middle + Vec2::new(fx!(0), fx!(-1));
-            commands.push(spawn(BodyDef::fixed().position(position.x, position.y), &[floor]));
+        let position = self.middle + Vec2::new(fx!(0), fx!(-1));
+        let fixed = BodyDef::fixed().position(position.x, position.y);
+        match source.below(5) {
+            0..=2 => {
+                let floor = ShapeDef::new(lockstep2d::body::Geometry::Segment {
+                    a: Vec2::new(fx!(-8), source.thousandths(-100, 1000)),
+                    b: Vec2::new(fx!(8), fx!(0)),
+                });
+                commands.push(spawn(fixed, &[floor]));
+            }
+            3 => commands.push(spawn(fixed, &shapes::chain(source))),
+            _ => {}
         }
         self.heap(source, &mut commands);
         commands
@@ -124,41 +134,76 @@ impl Generator {
 
     fn command(&mut self, source: &mut Source<'_>, world: &World, commands: &mut Vec<Command>) {
         let body = self.body(source, world);
-        let place = |generator: &Self, source: &mut Source<'_>| {
-            if source.one_in(12) { source.mostly_vec(-5000, 5000) } else { generator.near(source, 3000) }
-        };
-        commands.push(match source.below(17) {
+        commands.push(match source.below(36) {
             0 | 1 => self.spawned(source),
             2 => return self.heap(source, commands),
             3 => Command::Despawn { body },
             4 => Command::AddShape { body, shape: shapes::shape(source) },
             5 => Command::RemoveShape { shape: self.shape(source, world) },
-            6 | 7 => Command::AddJoint { joint: self.joint_def(source, world) },
-            8 => Command::RemoveJoint { joint: self.joint(source, world) },
-            9 => Command::ApplyForce {
-                body,
-                force: source.mostly_vec(-200_000, 200_000),
-                point: place(self, source),
-            },
-            10 => Command::ApplyTorque { body, torque: source.mostly(-200_000, 200_000) },
-            11 => Command::ApplyImpulse {
-                body,
-                impulse: source.mostly_vec(-20_000, 20_000),
-                point: place(self, source),
-            },
-            12 => Command::ApplyAngularImpulse { body, impulse: source.mostly(-20_000, 20_000) },
-            13 | 14 => Command::SetVelocity {
-                body,
-                velocity: if source.one_in(4) {
-                    source.mostly_vec(-400_000, 400_000)
-                } else {
-                    source.mostly_vec(-10_000, 10_000)
-                },
-                angular_velocity: source.mostly(-40_000, 40_000),
-            },
-            15 => Command::SetTransform { body, position: place(self, source), angle: source.angle() },
-            _ => Command::SetGravity { gravity: source.mostly_vec(-30_000, 30_000) },
+            6..=8 => Command::AddJoint { joint: self.joint_def(source, world) },
+            9 => Command::RemoveJoint { joint: self.joint(source, world) },
+            10..=17 => self.push(source, body),
+            18 => Command::SetGravity { gravity: source.mostly_vec(-30_000, 30_000) },
+            19 | 20 => {
+                // What a kinematic body can reach within a tick.
+                let here = world.body(body).map_or(self.middle, |body| body.position());
+                let reach = if source.one_in(6) { 20_000 } else { 300 };
+                let position = here + source.mostly_vec(-reach, reach);
+                Command::MoveTo { body, position, angle: source.angle() }
+            }
+            21 => Command::SetBody { body, settings: settings::settings(source) },
+            22 => Command::SetKind { body, kind: settings::kind(source) },
+            23 => Command::SetMass { body, mass: settings::mass(source) },
+            24 => Command::SetUserData { body, user_data: source.word() },
+            25 => Command::Disable { body },
+            26 => Command::Enable { body },
+            27 => Command::Wake { body },
+            28 | 29 => Command::Sleep { body },
+            30 | 31 => {
+                let shape = self.shape(source, world);
+                Command::SetShape { shape, def: altered_shape(source, world, shape) }
+            }
+            32 => self.altered_joint(source, world),
+            33 => Command::Explode { explosion: self.explosion(source) },
+            34 => self.spawned_each(source),
+            _ => self.joined_each(source, world),
         });
+    }
+
+    /// Forces, velocities and places.
+    fn push(&self, source: &mut Source<'_>, body: BodyId) -> Command {
+        let place = |source: &mut Source<'_>| {
+            if source.one_in(12) { source.mostly_vec(-5000, 5000) } else { self.near(source, 3000) }
+        };
+        match source.below(8) {
+            0 => {
+                let force = source.mostly_vec(-200_000, 200_000);
+                Command::ApplyForce { body, force, point: place(source) }
+            }
+            1 => Command::ApplyTorque { body, torque: source.mostly(-200_000, 200_000) },
+            2 => {
+                let impulse = source.mostly_vec(-20_000, 20_000);
+                Command::ApplyImpulse { body, impulse, point: place(source) }
+            }
+            3 => Command::ApplyAngularImpulse { body, impulse: source.mostly(-20_000, 20_000) },
+            4 | 5 => {
+                let reach = source.pick(&[10_000, 10_000, 10_000, 400_000]);
+                let velocity = source.mostly_vec(-reach, reach);
+                Command::SetVelocity { body, velocity, angular_velocity: source.mostly(-40_000, 40_000) }
+            }
+            _ => Command::SetTransform { body, position: place(source), angle: source.angle() },
+        }
+    }
+
+    fn explosion(&self, source: &mut Source<'_>) -> Explosion {
+        let centre = if source.one_in(12) { source.mostly_vec(-5000, 5000) } else { self.near(source, 3000) };
+        Explosion {
+            centre,
+            radius: source.mostly(0, 5000),
+            falloff: source.mostly(0, 5000),
+            impulse_per_length: source.mostly(-50_000, 50_000),
+            mask: source.pick(&[u64::MAX, u64::MAX, 1, 2, 0]),
+        }
     }
 
     fn near(&self, source: &mut Source<'_>, reach: i64) -> Vec2<Fx> {
@@ -168,6 +213,7 @@ impl Generator {
     /// Many bodies of a kind at once, for few bytes: at one point, or scattered around it.
     fn heap(&self, source: &mut Source<'_>, commands: &mut Vec<Command>) {
         let count = source.pick(&[5, 12, 20, 8, 3, 40, 1, 80]);
+        let asleep = source.one_in(6);
         let mut rng = Rng::new(source.byte().into());
         let shape = shapes::shape(source);
         let spread = source.pick(&[fx!(2), fx!(1), fx!(0), fx!(0.01)]);
@@ -179,14 +225,13 @@ impl Generator {
             if spread > Fx::ONE {
                 def = def.angle(angle);
             }
+            def.asleep = asleep;
             commands.push(spawn(def, &[shape]));
         }
     }
 
-    fn spawned(&self, source: &mut Source<'_>) -> Command {
-        let kinds =
-            [BodyKind::Dynamic, BodyKind::Dynamic, BodyKind::Dynamic, BodyKind::Kinematic, BodyKind::Fixed];
-        let mut body = BodyDef::new(source.pick(&kinds));
+    fn body_def(&self, source: &mut Source<'_>) -> BodyDef {
+        let mut body = BodyDef::new(settings::kind(source));
         body.position =
             if source.one_in(16) { source.mostly_vec(-3000, 3000) } else { self.near(source, 2000) };
         body.angle = source.angle();
@@ -197,35 +242,63 @@ impl Generator {
         if source.one_in(6) {
             body.velocity.x = source.pick(&[fx!(400), fx!(-400), fx!(399.9)]);
         }
-        if source.one_in(6) {
-            body.linear_damping = source.mostly(0, 10_000);
-            body.angular_damping = source.mostly(0, 10_000);
-            body.gravity_scale = source.mostly(-2000, 2000);
+        if source.one_in(3) {
+            body.settings = settings::settings(source);
         }
         if source.one_in(5) {
-            let masses = [fx!(1), fx!(0.00001), fx!(1073741824), fx!(1000), fx!(0.01)];
-            let radii = [fx!(0.3), fx!(0.002), fx!(512), fx!(0.05)];
-            body.mass = MassSource::Given {
-                mass: if source.one_in(8) { source.edge() } else { source.pick(&masses) },
-                centre: if source.one_in(3) { source.mostly_vec(-2000, 2000) } else { Vec2::ZERO },
-                gyration: if source.one_in(8) { source.edge() } else { source.pick(&radii) },
-            };
+            body.mass = settings::mass(source);
+        }
+        body.enabled = !source.one_in(16);
+        body.asleep = source.one_in(8);
+        body
+    }
+
+    fn shapes_of_a_body(source: &mut Source<'_>) -> Vec<ShapeDef> {
+        if source.one_in(12) {
+            return shapes::chain(source);
         }
         let count = source.pick(&[1, 1, 2, 1, 3, 0, 6]);
-        let shapes: Vec<_> = (0..count).map(|_| shapes::shape(source)).collect();
-        spawn(body, &shapes)
+        (0..count).map(|_| shapes::shape(source)).collect()
+    }
+
+    fn spawned(&self, source: &mut Source<'_>) -> Command {
+        Command::Spawn { body: self.body_def(source), shapes: Self::shapes_of_a_body(source) }
+    }
+
+    fn spawned_each(&self, source: &mut Source<'_>) -> Command {
+        let (body, shapes) = (self.body_def(source), Self::shapes_of_a_body(source));
+        let place = |source: &mut Source<'_>| {
+            let position = if source.one_in(16) { source.mostly_vec(0, 0) } else { self.near(source, 3000) };
+            Place { position, angle: source.angle() }
+        };
+        let places = (0..source.below(8)).map(|_| place(source)).collect();
+        Command::SpawnEach { body, shapes, places }
     }
 
     fn joint_def(&mut self, source: &mut Source<'_>, world: &World) -> JointDef {
         let (a, b) = (self.body(source, world), self.body(source, world));
-        let anchor = |source: &mut Source<'_>| match source.below(4) {
-            0 => Vec2::ZERO,
-            1 | 2 => source.mostly_vec(-800, 800),
-            _ => source.mostly_vec(-256_000, 256_000),
-        };
-        let (anchor_a, anchor_b) = (anchor(source), anchor(source));
-        let collide_connected = source.one_in(2);
-        RevoluteDef { body_a: a, body_b: b, anchor_a, anchor_b, collide_connected }.into()
+        joints::joint(source, a, b)
+    }
+
+    fn joined_each(&mut self, source: &mut Source<'_>, world: &World) -> Command {
+        let joint = self.joint_def(source, world);
+        let count = source.below(5);
+        let ends = (0..count).map(|_| (self.body(source, world), self.body(source, world))).collect();
+        Command::AddJointEach { joint, ends }
+    }
+
+    /// Something else about a joint: rarely its bodies, which is refused.
+    fn altered_joint(&mut self, source: &mut Source<'_>, world: &World) -> Command {
+        let joint = self.joint(source, world);
+        let mut def = self.joint_def(source, world);
+        if let Some(old) = world.joint(joint).filter(|_| !source.one_in(8)) {
+            let (a, b) = old.def().bodies();
+            def = def.between(a, b);
+            if source.one_in(2) {
+                def = joints::finish(source, *old.def());
+            }
+        }
+        Command::SetJoint { joint, def }
     }
 
     /// Mostly a body that is there, sometimes one that has been, sometimes one that never was.
@@ -243,6 +316,23 @@ impl Generator {
         let present: Vec<JointId> = world.joints().map(|(id, _)| id).collect();
         handle(source, &present, &mut self.joints)
     }
+}
+
+/// A shape of which one thing is different, or all.
+fn altered_shape(source: &mut Source<'_>, world: &World, shape: ShapeId) -> ShapeDef {
+    let fresh = shapes::shape(source);
+    let Some(mut def) = world.shape(shape).map(|shape| *shape.def()) else { return fresh };
+    match source.below(8) {
+        0 => def.geometry = fresh.geometry,
+        1 => def.offset = fresh.offset,
+        2 => def.density = fresh.density,
+        3 => def.material = fresh.material,
+        4 => def.filter = fresh.filter,
+        5 => def.one_way = def.one_way.is_none().then(|| source.angle()),
+        6 => (def.sensor, def.events) = (!def.sensor, fresh.events),
+        _ => def = fresh,
+    }
+    def
 }
 
 pub(crate) fn spawn(body: BodyDef, shapes: &[ShapeDef]) -> Command {

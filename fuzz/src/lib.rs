@@ -2,11 +2,15 @@
 //! replays and a counting allocator. `README.md` says how to run them.
 
 pub mod allocations;
+pub mod broad_phases;
 pub mod calm;
 pub mod forge;
 pub mod generator;
+pub mod joints;
 pub mod lockstep;
 pub mod mirror;
+pub mod questions;
+pub mod settings;
 pub mod shapes;
 pub mod snapshots;
 pub mod source;

@@ -1,5 +1,5 @@
-//! One scene run in five ways that must not differ: as it is, through bytes, without caches, with another broad
-//! phase, and rolled back.
+//! One scene run in six ways that must not differ: as it is, through bytes, without caches, with the other broad
+//! phases, and rolled back.
 
 use std::sync::Mutex;
 
@@ -26,6 +26,12 @@ pub struct Seen {
     pub refused: u64,
     /// Clamps of the solver.
     pub faults: u64,
+    /// Bodies that fell asleep.
+    pub slept: u64,
+    /// Shapes that sensors noticed.
+    pub noticed: u64,
+    /// Hits, and joints above their threshold.
+    pub hits: u64,
     /// Whether the scene is an ordinary one, which should have none.
     pub calm: bool,
 }
@@ -35,6 +41,7 @@ struct Variants {
     plain: World,
     through_bytes: World,
     uncached: World,
+    sweep_and_prune: World,
     brute_force: World,
 }
 
@@ -48,7 +55,10 @@ pub fn run(bytes: &[u8]) -> Seen {
     let plain = World::new(config).unwrap_or_default();
     let mut brute_force = plain.clone();
     brute_force.set_broad_phase(BroadPhaseKind::BruteForce);
-    let mut variants = Variants { through_bytes: plain.clone(), uncached: plain.clone(), brute_force, plain };
+    let mut sweep_and_prune = plain.clone();
+    sweep_and_prune.set_broad_phase(BroadPhaseKind::SweepAndPrune);
+    let (through_bytes, uncached) = (plain.clone(), plain.clone());
+    let mut variants = Variants { plain, through_bytes, uncached, sweep_and_prune, brute_force };
     let mut generator = Generator::new(&mut source);
     let ticks = 60 + source.below(61);
     let rollback_at = source.below(ticks);
@@ -72,6 +82,10 @@ pub fn run(bytes: &[u8]) -> Seen {
         }
         seen.ticks += 1;
         seen.touching += variants.plain.contacts().filter(|contact| contact.touching).count() as u64;
+        let events = variants.plain.events();
+        seen.slept += events.moved.iter().filter(|event| event.fell_asleep).count() as u64;
+        seen.noticed += events.sensor_begin.len() as u64;
+        seen.hits += (events.hits.len() + events.joints.len()) as u64;
         cost += generator::cost(&variants.plain);
         if cost > COST_MAX {
             break;
@@ -86,11 +100,12 @@ pub fn run(bytes: &[u8]) -> Seen {
 }
 
 impl Variants {
-    fn each(&mut self) -> [(&'static str, &mut World); 4] {
+    fn each(&mut self) -> [(&'static str, &mut World); 5] {
         [
             ("plain", &mut self.plain),
             ("through bytes", &mut self.through_bytes),
             ("uncached", &mut self.uncached),
+            ("sweep and prune", &mut self.sweep_and_prune),
             ("brute force", &mut self.brute_force),
         ]
     }
@@ -173,8 +188,13 @@ fn check(world: &World, after: &dyn std::fmt::Debug) {
         world.contacts().map(|contact| (contact.shape_a.index(), contact.shape_b.index())).collect();
     assert!(pairs.is_sorted_by(|a, b| a < b), "contacts are not sorted");
     assert!(pairs.iter().all(|(a, b)| a < b), "a contact is the wrong way round");
-    let Events { contact_begin, contact_end } = world.events();
-    assert!(contact_begin.is_sorted() && contact_end.is_sorted(), "events are not sorted");
+    let events = world.events();
+    let sorted = events.contact_begin.is_sorted() && events.contact_end.is_sorted();
+    assert!(sorted, "contact events are not sorted");
+    let sorted = events.sensor_begin.is_sorted() && events.sensor_end.is_sorted();
+    assert!(sorted, "sensor events are not sorted");
+    assert!(events.moved.is_sorted_by_key(|event| event.body.index()), "movements are not sorted");
+    assert!(events.joints.is_sorted_by_key(|event| event.joint.index()), "joint events are not sorted");
 }
 
 static TOTAL: Mutex<Total> =

@@ -1,6 +1,6 @@
 //! Shapes: mostly 0.1 to 2 m, sometimes at the limits, sometimes beyond them.
 
-use lockstep2d::body::{Filter, Geometry, Material, Mixing, Polygon, ShapeDef};
+use lockstep2d::body::{Chain, EventSwitches, Filter, Geometry, Material, Mixing, Polygon, ShapeDef, Sides};
 use lockstep2d::codec;
 use lockstep2d::math::{Fx, Length, Vec2};
 
@@ -25,12 +25,33 @@ pub fn shape(source: &mut Source<'_>) -> ShapeDef {
             group: source.pick(&[0, 1, -1, i32::MIN, i32::MAX]),
         };
     }
+    role(source, &mut def);
     def
+}
+
+/// Makes few shapes sensors or one-way, and lets many tell of hits.
+fn role(source: &mut Source<'_>, def: &mut ShapeDef) {
+    match source.below(12) {
+        0 | 1 => def.events.hit = true,
+        2 => {
+            let (contact, hit, sensor) = (source.one_in(2), source.one_in(2), source.one_in(2));
+            def.events = EventSwitches { contact, hit, sensor };
+        }
+        3 => def.sensor = true,
+        4 => def.one_way = Some(source.angle()),
+        _ => {}
+    }
 }
 
 /// A shape of an ordinary scene: 0.2 to 1 m, about as dense as the others.
 pub fn calm_shape(source: &mut Source<'_>) -> ShapeDef {
-    let geometry = match source.below(8) {
+    let geometry = match source.below(10) {
+        8 | 9 => {
+            let half = source.thousandths(50, 400);
+            let (a, b) = (Vec2::new(-half, Fx::ZERO), Vec2::new(half, Fx::ZERO));
+            let radius = source.thousandths(100, 300);
+            return calm_surface(source, Geometry::Capsule { a, b, radius });
+        }
         0..=2 => {
             let half = (source.thousandths(100, 500), source.thousandths(100, 500));
             Polygon::rectangle(half.0, half.1).ok()
@@ -47,7 +68,11 @@ pub fn calm_shape(source: &mut Source<'_>) -> ShapeDef {
         _ => None,
     };
     let radius = source.thousandths(100, 500);
-    let mut def = ShapeDef::new(geometry.map_or(Geometry::Circle { radius }, Geometry::Polygon));
+    calm_surface(source, geometry.map_or(Geometry::Circle { radius }, Geometry::Polygon))
+}
+
+fn calm_surface(source: &mut Source<'_>, geometry: Geometry) -> ShapeDef {
+    let mut def = ShapeDef::new(geometry);
     if source.one_in(4) {
         def.density = source.thousandths(500, 2000);
     }
@@ -55,7 +80,49 @@ pub fn calm_shape(source: &mut Source<'_>) -> ShapeDef {
         def.material.friction = source.thousandths(0, 1500);
         def.material.restitution = source.thousandths(0, 600);
     }
+    if source.one_in(6) {
+        def.material.rolling_resistance = source.thousandths(0, 300);
+        def.material.surface_speed = source.thousandths(-3000, 3000);
+    }
+    if source.one_in(3) {
+        role(source, &mut def);
+    }
     def
+}
+
+/// A chain as it is for grounds: the links between points at even distances, 8 m to either side.
+pub fn calm_chain(source: &mut Source<'_>) -> Vec<ShapeDef> {
+    let stretches = source.pick(&[8, 4, 16, 1, 2]);
+    let point = |source: &mut Source<'_>, index: i64| {
+        let x = lockstep2d::math::ratio(index * 16, stretches) - lockstep2d::fx!(8);
+        Vec2::new(x, source.thousandths(-300, 300))
+    };
+    let mut points: Vec<_> = (0..=stretches).map(|index| point(source, index)).collect();
+    // One-sided grounds are solid from above if they run from right to left.
+    let one_sided = source.one_in(3);
+    if one_sided {
+        points.reverse();
+    }
+    let chain = Chain::new(&points);
+    let chain = if one_sided { chain.one_sided() } else { chain };
+    chain.links().expect("points that are apart")
+}
+
+/// A chain of any points, or nothing.
+pub fn chain(source: &mut Source<'_>) -> Vec<ShapeDef> {
+    let points: Vec<_> = (0..2 + source.below(10)).map(|_| source.mostly_vec(-4000, 4000)).collect();
+    let materials = [material(source)];
+    let mut chain = Chain::new(&points);
+    if source.one_in(2) {
+        chain = chain.closed();
+    }
+    if source.one_in(2) {
+        chain = chain.one_sided();
+    }
+    if source.one_in(4) {
+        chain = chain.materials(&materials);
+    }
+    chain.links().unwrap_or_default()
 }
 
 /// Whether a polygon is no needle.
@@ -69,7 +136,8 @@ fn is_plump(polygon: &Polygon) -> bool {
 pub fn half_extents(shape: &ShapeDef) -> Vec2<Fx> {
     let reach = match &shape.geometry {
         Geometry::Circle { radius } => Vec2::new(*radius, *radius),
-        Geometry::Segment { a, b } => a.max(-*a).max(*b).max(-*b),
+        Geometry::Segment { a, b } | Geometry::Link { a, b, .. } => a.max(-*a).max(*b).max(-*b),
+        Geometry::Capsule { a, b, radius } => a.max(-*a).max(*b).max(-*b) + Vec2::new(*radius, *radius),
         Geometry::Polygon(polygon) => {
             let radius: Fx = polygon.radius().into();
             let reach = |reach: Vec2<Fx>, v: &Vec2<Length>| reach.max(v.widen()).max(-v.widen());
@@ -86,11 +154,14 @@ fn material(source: &mut Source<'_>) -> Material {
         friction_mixing: source.pick(&rules),
         restitution: source.mostly(0, 1000),
         restitution_mixing: source.pick(&rules),
+        rolling_resistance: if source.one_in(2) { source.mostly(0, 1000) } else { Fx::ZERO },
+        surface_speed: if source.one_in(2) { source.mostly(-400_000, 400_000) } else { Fx::ZERO },
     }
 }
 
-fn geometry(source: &mut Source<'_>) -> Geometry {
-    match source.below(12) {
+/// A geometry, valid or not.
+pub fn geometry(source: &mut Source<'_>) -> Geometry {
+    match source.below(16) {
         0..=2 => Geometry::Circle { radius: source.mostly(50, 1000) },
         3..=5 => {
             let half = (source.thousandths(50, 1000), source.thousandths(50, 1000));
@@ -106,8 +177,25 @@ fn geometry(source: &mut Source<'_>) -> Geometry {
         }
         9 => Geometry::Segment { a: source.mostly_vec(-3000, 0), b: source.mostly_vec(0, 3000) },
         10 => extreme(source),
-        _ => stored_polygon(source).map_or(fallback(), Geometry::Polygon),
+        11 => stored_polygon(source).map_or(fallback(), Geometry::Polygon),
+        12 | 13 => {
+            let (a, b) = (source.mostly_vec(-1000, 0), source.mostly_vec(0, 1000));
+            Geometry::Capsule { a, b, radius: source.mostly(2, 1000) }
+        }
+        _ => link(source),
     }
+}
+
+/// A link with any neighbours or none, folded back on itself as well.
+fn link(source: &mut Source<'_>) -> Geometry {
+    let (a, b) = (source.mostly_vec(-3000, 0), source.mostly_vec(0, 3000));
+    let neighbour = |source: &mut Source<'_>, other: Vec2<Fx>| match source.below(4) {
+        0 => None,
+        1 => Some(other),
+        _ => Some(source.mostly_vec(-4000, 4000)),
+    };
+    let (before, after) = (neighbour(source, b), neighbour(source, a));
+    Geometry::Link { a, b, before, after, sides: source.pick(&[Sides::Both, Sides::Right]) }
 }
 
 fn fallback() -> Geometry {
@@ -123,17 +211,30 @@ fn rounded(source: &mut Source<'_>, polygon: Option<Polygon>) -> Geometry {
 fn extreme(source: &mut Source<'_>) -> Geometry {
     let size = |source: &mut Source<'_>| source.pick(&[2, 3, 120_000, 119_999, 100_000, 17_000, 1, 64_000]);
     let length = |thousandths: i64| lockstep2d::math::ratio(thousandths, 1000);
-    match source.below(4) {
+    let far_end = |source: &mut Source<'_>| {
+        let far = source.pick(&[1, 1_000_000, 1_000_000_000]);
+        let coordinate = |source: &mut Source<'_>| source.thousandths(-1000, 1000).saturating_mul_int(far);
+        Vec2::new(coordinate(source), coordinate(source))
+    };
+    match source.below(6) {
         0 => Geometry::Circle { radius: length(size(source)) },
         1 => {
             let (x, y) = (length(size(source)), length(size(source)));
             rounded(source, Polygon::rectangle(x, y).ok())
         }
         2 => {
-            let far = source.pick(&[1, 1_000_000, 1_000_000_000]);
-            let end = |source: &mut Source<'_>| source.thousandths(-1000, 1000).saturating_mul_int(far);
-            let a = Vec2::new(end(source), end(source));
-            Geometry::Segment { a, b: Vec2::new(end(source), end(source)) }
+            let a = far_end(source);
+            Geometry::Segment { a, b: far_end(source) }
+        }
+        3 => {
+            let ends = (Some(far_end(source)), far_end(source), far_end(source), Some(far_end(source)));
+            let (before, a, b, after) = ends;
+            Geometry::Link { a, b, before, after, sides: source.pick(&[Sides::Both, Sides::Right]) }
+        }
+        4 => {
+            let end = |source: &mut Source<'_>| Vec2::new(length(size(source)), -length(size(source)));
+            let (a, b) = (end(source), -end(source));
+            Geometry::Capsule { a, b, radius: length(size(source)) }
         }
         _ => {
             let tip = Vec2::new(length(size(source)), Fx::from_bits(i64::from(source.byte()) << 10));

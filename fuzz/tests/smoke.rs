@@ -2,7 +2,7 @@
 //! their scenes are full of contacts.
 
 use lockstep2d::math::Rng;
-use lockstep2d_fuzz::{lockstep, snapshots, verdicts};
+use lockstep2d_fuzz::{broad_phases, lockstep, questions, snapshots, verdicts};
 
 fn random_inputs(count: u64) -> impl Iterator<Item = Vec<u8>> {
     (0..count).map(|seed| {
@@ -14,7 +14,7 @@ fn random_inputs(count: u64) -> impl Iterator<Item = Vec<u8>> {
 #[test]
 fn scenes_run_the_same_in_every_way_and_touch_a_lot() {
     let (mut touching, mut ticks, mut done, mut refused, mut faulty) = (0, 0, 0, 0, 0);
-    let mut touched_runs = 0;
+    let (mut touched_runs, mut slept, mut noticed, mut hits, mut calm) = (0, 0, 0, 0, [0; 2]);
     for input in random_inputs(300) {
         let seen = lockstep::run(&input);
         touching += seen.touching;
@@ -22,13 +22,18 @@ fn scenes_run_the_same_in_every_way_and_touch_a_lot() {
         done += seen.done;
         refused += seen.refused;
         faulty += u64::from(seen.faults > 0);
-        if seen.calm && seen.faults > 0 {
-            println!("calm faults {}", seen.faults);
-        }
+        slept += seen.slept;
+        noticed += seen.noticed;
+        hits += seen.hits;
+        calm[usize::from(seen.calm && seen.faults > 0)] += u64::from(seen.calm);
         touched_runs += u64::from(seen.touching > 100);
     }
     println!(
-        "{ticks} ticks, {touching} touching, {touched_runs} runs with >100, {done} done, {refused} refused, {faulty} runs with faults"
+        "{ticks} ticks, {touching} touching, {touched_runs} runs with >100, {done} done, {refused} refused, {faulty} runs with faults; calm ones without and with: {calm:?}; {slept} fell asleep, {noticed} noticed, {hits} hits"
+    );
+    assert!(
+        slept > 300 && noticed > 300 && hits > 300,
+        "{slept} fell asleep, {noticed} noticed, {hits} hits"
     );
     assert!(touching > 300 * 500, "only {touching} touching contacts");
 }
@@ -48,4 +53,18 @@ fn changed_replays_never_match() {
     }
     println!("{names:?}");
     assert!(names.len() >= 4, "{names:?}");
+}
+
+#[test]
+fn queries_tell_the_truth() {
+    let answers: u64 = random_inputs(200).map(|input| questions::run(&input)).sum();
+    println!("{answers} answers");
+    assert!(answers > 200 * 10, "only {answers} answers");
+}
+
+#[test]
+fn broad_phases_find_the_same() {
+    let pairs: u64 = random_inputs(200).map(|input| broad_phases::run(&input)).sum();
+    println!("{pairs} pairs");
+    assert!(pairs > 200 * 500, "only {pairs} pairs");
 }

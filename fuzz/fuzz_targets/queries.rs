@@ -1,0 +1,9 @@
+//! Queries of changing worlds, against brute force and against distances. See `questions`.
+#![no_main]
+
+use libfuzzer_sys::fuzz_target;
+use lockstep2d_fuzz::questions;
+
+fuzz_target!(|bytes: &[u8]| {
+    questions::run(bytes);
+});

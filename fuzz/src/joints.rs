@@ -1,0 +1,150 @@
+//! Joints of every kind: mostly with moderate limits, drives and springs, sometimes beyond what is allowed.
+
+use lockstep2d::body::BodyId;
+use lockstep2d::fx;
+use lockstep2d::math::{Fx, Vec2};
+use lockstep2d::solver::{
+    Distance, Drive, JointDef, JointKind, Limit, LinearDrive, Motor, Prismatic, Pull, Revolute, Soft, Spring,
+    Threshold, ThresholdAction, Weld, Wheel,
+};
+
+use crate::source::Source;
+
+/// A joint between two bodies, valid or not.
+pub fn joint(source: &mut Source<'_>, a: BodyId, b: BodyId) -> JointDef {
+    let mut def = JointDef::new(a, b, kind(source));
+    let anchor = |source: &mut Source<'_>| match source.below(4) {
+        0 => Vec2::ZERO,
+        1 | 2 => source.mostly_vec(-800, 800),
+        _ => source.mostly_vec(-128_000, 128_000),
+    };
+    (def.frame_a.anchor, def.frame_b.anchor) = (anchor(source), anchor(source));
+    if source.one_in(3) {
+        (def.frame_a.angle, def.frame_b.angle) = (source.angle(), source.angle());
+    }
+    finish(source, def)
+}
+
+/// What has nothing to do with the kind: thresholds, and whether the bodies collide.
+pub fn finish(source: &mut Source<'_>, mut def: JointDef) -> JointDef {
+    def.collide_connected = source.one_in(2);
+    if source.one_in(4) {
+        let most = |source: &mut Source<'_>| source.one_in(2).then(|| source.mostly(0, 500_000));
+        let action = source.pick(&[ThresholdAction::Event, ThresholdAction::Break]);
+        def.threshold = Threshold { force: most(source), torque: most(source), action };
+    }
+    if source.one_in(8) {
+        def.user_data = source.word();
+    }
+    def
+}
+
+/// What joins them.
+pub fn kind(source: &mut Source<'_>) -> JointKind {
+    match source.below(9) {
+        0 | 1 => Revolute { limit: limit(source), motor: drive(source), spring: spring(source) }.into(),
+        2 => Prismatic { limit: limit(source), motor: drive(source), spring: spring(source) }.into(),
+        3 | 4 => distance(source).into(),
+        5 => Weld { linear: soft(source), angular: soft(source) }.into(),
+        6 => Wheel { limit: limit(source), motor: drive(source), spring: spring(source) }.into(),
+        7 => motor(source).into(),
+        _ => JointKind::Filter,
+    }
+}
+
+fn limit(source: &mut Source<'_>) -> Option<Limit> {
+    source.one_in(3).then(|| {
+        let lower = source.mostly(-2000, 1000);
+        let upper =
+            if source.one_in(8) { source.mostly(-2000, 2000) } else { lower + source.mostly(0, 3000) };
+        Limit { lower, upper }
+    })
+}
+
+/// A force or torque up to which something pushes.
+fn most(source: &mut Source<'_>) -> Fx {
+    match source.below(4) {
+        0 => Fx::MAX,
+        1 => Fx::ZERO,
+        _ => source.mostly(0, 100_000),
+    }
+}
+
+fn drive(source: &mut Source<'_>) -> Option<Drive> {
+    source.one_in(3).then(|| Drive { speed: source.mostly(-10_000, 10_000), max: most(source) })
+}
+
+fn soft(source: &mut Source<'_>) -> Option<Soft> {
+    source.one_in(2).then(|| a_soft(source))
+}
+
+fn a_soft(source: &mut Source<'_>) -> Soft {
+    let hertz = if source.is_calm() { source.thousandths(500, 10_000) } else { source.mostly(1, 1_000_000) };
+    Soft { hertz, damping_ratio: source.mostly(0, 2000) }
+}
+
+fn spring(source: &mut Source<'_>) -> Option<Spring> {
+    source.one_in(3).then(|| {
+        let Soft { hertz, damping_ratio } = a_soft(source);
+        Spring { hertz, damping_ratio, target: source.mostly(-1000, 1000) }
+    })
+}
+
+fn distance(source: &mut Source<'_>) -> Distance {
+    let positive = |mut limit: Limit| {
+        limit.lower = limit.lower.max(Fx::ZERO);
+        limit.upper = limit.upper.max(limit.lower);
+        limit
+    };
+    let mut joint = Distance::new();
+    if source.one_in(3) {
+        joint.rod = Some(source.mostly(1, 2000));
+    }
+    joint.limit = limit(source).map(positive);
+    joint.motor = drive(source);
+    joint.spring = spring(source);
+    if let Some(spring) = &mut joint.spring {
+        spring.target = spring.target.saturating_abs();
+        if source.one_in(2) {
+            let (lower, upper) = (most(source).saturating_neg(), most(source));
+            joint.spring_force = Some(Limit { lower, upper });
+        }
+    }
+    joint
+}
+
+fn motor(source: &mut Source<'_>) -> Motor {
+    let pull =
+        |source: &mut Source<'_>| source.one_in(2).then(|| Pull { soft: a_soft(source), max: most(source) });
+    let mut joint = Motor { linear_spring: pull(source), angular_spring: pull(source), ..Motor::new() };
+    joint.angular = drive(source);
+    if source.one_in(3) {
+        let velocity = source.mostly_vec(-10_000, 10_000);
+        joint.linear = Some(LinearDrive { velocity, max_force: most(source) });
+    }
+    joint
+}
+
+/// A joint of bodies that are next to each other, with anchors at one point. Each kind holds or moves them gently.
+pub fn calm_kind(source: &mut Source<'_>) -> JointKind {
+    let strength = source.thousandths(1000, 20_000);
+    let speed = source.thousandths(-3000, 3000);
+    let (hertz, damping) = (source.thousandths(500, 6000), source.thousandths(100, 1500));
+    match source.below(12) {
+        0 | 1 => Revolute::new().into(),
+        2 => Revolute::new().limit(fx!(-0.5), fx!(0.7)).into(),
+        3 => Revolute::new().motor(speed, strength).into(),
+        4 => Revolute::new().spring(hertz, damping, fx!(0)).into(),
+        5 => Prismatic::new().limit(fx!(-0.5), fx!(0.5)).motor(speed, strength).into(),
+        6 => Wheel::new()
+            .spring(hertz, damping, fx!(0))
+            .limit(fx!(-0.3), fx!(0.3))
+            .motor(speed, strength)
+            .into(),
+        7 => Weld::rigid().into(),
+        8 => Weld::rigid().linear(hertz, damping).angular(hertz, damping).into(),
+        9 => Distance::rope(fx!(0.6)).into(),
+        10 => Distance::new().spring(hertz, damping, fx!(0.4)).into(),
+        _ => Motor::new().linear(Vec2::ZERO, strength).angular(fx!(0), strength).into(),
+    }
+}

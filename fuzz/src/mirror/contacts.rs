@@ -1,0 +1,93 @@
+//! Contacts, those that rest, and those that have ended.
+
+use serde::{Deserialize, Serialize};
+
+use super::{Handle, IMPULSE_MAX, State, speed};
+use crate::source::Source;
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+struct Point {
+    feature: u16,
+    normal: i32,
+    tangent: i32,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Contact {
+    pub(super) shapes: (u32, u32),
+    touching: bool,
+    passing: bool,
+    count: u8,
+    points: [Point; 2],
+    rolling: i32,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Reported {
+    shapes: (Handle, Handle),
+    sensor: Option<Side>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+enum Side {
+    A,
+    B,
+}
+
+impl State {
+    pub(super) fn alter_contact(&mut self, source: &mut Source<'_>) -> Option<()> {
+        let rests = source.one_in(3);
+        if source.one_in(6) {
+            return self.alter_resting(source);
+        }
+        let (a, b) = (self.shapes.pick(source)? as u32, self.shapes.pick(source)? as u32);
+        let contacts = if rests { &mut self.resting } else { &mut self.contacts };
+        let at = source.below(contacts.len());
+        match source.below(8) {
+            0 => {
+                let shapes = (a.min(b), a.max(b));
+                let at = contacts.binary_search_by_key(&shapes, |contact| contact.shapes).err()?;
+                let (touching, passing) = (source.one_in(2), source.one_in(4));
+                let points = Default::default();
+                let contact = Contact { shapes, touching, passing, count: 0, points, rolling: 0 };
+                contacts.insert(at, contact);
+            }
+            _ if contacts.is_empty() => return None,
+            1 => drop(contacts.remove(at)),
+            2 => contacts[at].touching = !contacts[at].touching,
+            3 => contacts[at].passing = !contacts[at].passing,
+            4 => contacts[at].rolling = speed(source, IMPULSE_MAX),
+            _ => {
+                let contact = &mut contacts[at];
+                contact.count = source.byte() % 3;
+                contact.points = Default::default();
+                for point in &mut contact.points[..contact.count.into()] {
+                    let feature = if source.one_in(2) { source.word() as u16 } else { source.byte().into() };
+                    let normal = source.within(0, IMPULSE_MAX) as i32;
+                    *point = Point { feature, normal, tangent: speed(source, IMPULSE_MAX) };
+                }
+            }
+        }
+        Some(())
+    }
+
+    /// A contact that rests although it should not, or that does not although it should.
+    fn alter_resting(&mut self, source: &mut Source<'_>) -> Option<()> {
+        let (from, to) = match source.one_in(2) {
+            true => (&mut self.contacts, &mut self.resting),
+            false => (&mut self.resting, &mut self.contacts),
+        };
+        let at = source.below(from.len());
+        let moved = (!from.is_empty()).then(|| from.remove(at))?;
+        let at = to.binary_search_by_key(&moved.shapes, |contact| contact.shapes).err()?;
+        to.insert(at, moved);
+        Some(())
+    }
+
+    pub(super) fn alter_removed(&mut self, source: &mut Source<'_>) {
+        let a = self.shapes.pick(source).map_or((source.byte().into(), 0), |a| self.shapes.handle(a));
+        let b = (source.below(300) as u32, source.within(0, u32::MAX.into()) as u32);
+        let sensor = source.pick(&[None, Some(Side::A), Some(Side::B)]);
+        self.removed_contacts.push(Reported { shapes: (a, b), sensor });
+    }
+}

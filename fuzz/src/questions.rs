@@ -1,0 +1,286 @@
+//! Queries against what they promise: the broad phase decides nothing, however long it has followed a changing world,
+//! and in ordinary scenes every answer agrees with the distances of all shapes, one by one.
+
+use lockstep2d::body::{Geometry, Polygon, ShapeId};
+use lockstep2d::collision::BroadPhaseKind;
+use lockstep2d::fx;
+use lockstep2d::math::{Aabb, Fx, Vec2};
+use lockstep2d::world::{Probe, QueryFilter, World};
+
+use crate::generator::{self, Generator};
+use crate::shapes;
+use crate::source::Source;
+
+/// Most work of a run, as [`generator::cost`] counts it.
+const COST_MAX: u64 = 60_000;
+/// What two ways to a point may differ by, in metres.
+const TOLERANCE: Fx = fx!(0.005);
+
+/// Asks about the scene that the bytes describe. Says how many answers were not empty.
+///
+/// # Panics
+/// When an answer is wrong.
+pub fn run(bytes: &[u8]) -> u64 {
+    let mut source = Source::new(bytes);
+    let config = generator::config(&mut source);
+    let mut world = World::new(config).unwrap_or_default();
+    let mut sweep = world.clone();
+    sweep.set_broad_phase(BroadPhaseKind::SweepAndPrune);
+    let mut generator = Generator::new(&mut source);
+    let (mut answers, mut cost) = (0, 0);
+    let mut commands = generator.setup(&mut source);
+    for _ in 0..4 + source.below(28) {
+        for command in &commands {
+            assert_eq!(world.execute(command), sweep.execute(command), "{command:?}");
+        }
+        // Between commands and the next tick as well as after it.
+        if source.one_in(3) {
+            answers += ask(&mut source, &world, &sweep);
+        }
+        world.step();
+        sweep.step();
+        answers += ask(&mut source, &world, &sweep);
+        cost += generator::cost(&world);
+        if cost > COST_MAX {
+            break;
+        }
+        commands = generator.tick(&mut source, &world);
+    }
+    answers
+}
+
+/// One world with its caches as they have become, and with others.
+struct Asked<'a> {
+    world: &'a World,
+    sweep: &'a World,
+    brute_force: World,
+    filter: QueryFilter,
+    /// Whether sizes and places are such that rounding is small.
+    ordinary: bool,
+}
+
+fn ask(source: &mut Source<'_>, world: &World, sweep: &World) -> u64 {
+    let mut brute_force = world.clone();
+    brute_force.set_broad_phase(BroadPhaseKind::BruteForce);
+    let mut asked =
+        Asked { world, sweep, brute_force, filter: QueryFilter::default(), ordinary: source.is_calm() };
+    let mut answers = 0;
+    for _ in 0..1 + source.below(4) {
+        asked.filter = filter(source, world);
+        answers += u64::from(match source.below(8) {
+            0 | 1 => asked.rays(source),
+            2 | 3 => asked.casts(source),
+            4 => asked.points(source),
+            5 => asked.boxes(source),
+            6 => asked.probes(source),
+            _ => asked.closest(source),
+        });
+    }
+    answers
+}
+
+fn filter(source: &mut Source<'_>, world: &World) -> QueryFilter {
+    let mut filter = QueryFilter::default();
+    if source.one_in(4) {
+        filter.category = source.pick(&[u64::MAX, 1, 2, 0]);
+        filter.mask = source.pick(&[u64::MAX, 1, 2, 0]);
+        filter.except = world.bodies().nth(source.below(world.body_count())).map(|(id, _)| id);
+    }
+    filter.sensors = source.one_in(2);
+    filter
+}
+
+impl Asked<'_> {
+    /// The same answer from all three.
+    fn same<A: PartialEq + std::fmt::Debug>(&self, ask: impl Fn(&World) -> A) -> A {
+        let answer = ask(self.world);
+        assert_eq!(answer, ask(&self.brute_force), "by the tree, and by brute force");
+        assert_eq!(answer, ask(self.sweep), "by the tree, and by sweep and prune");
+        answer
+    }
+
+    /// What a query sees, by the book.
+    fn seen(&self) -> impl Iterator<Item = ShapeId> {
+        self.world.shapes().filter_map(|(id, shape)| {
+            let (filter, own) = (self.filter, shape.filter());
+            let accepted = own.mask & filter.category != 0 && own.category & filter.mask != 0;
+            let wanted = (filter.sensors || !shape.is_sensor()) && filter.except != Some(shape.body());
+            let enabled = self.world.body(shape.body()).is_some_and(|body| body.is_enabled());
+            (accepted && wanted && enabled).then_some(id)
+        })
+    }
+
+    /// Somewhere: mostly near a shape.
+    fn place(&self, source: &mut Source<'_>) -> Vec2<Fx> {
+        if !self.ordinary && source.one_in(6) {
+            return Vec2::new(source.edge(), source.edge());
+        }
+        let some = self.world.shapes().nth(source.below(self.world.shape_count()));
+        let body = some.and_then(|(_, shape)| self.world.body(shape.body()));
+        let offset = Vec2::new(source.mostly(-2000, 2000), source.mostly(-2000, 2000));
+        body.map_or(Vec2::ZERO, |body| body.position()) + offset
+    }
+
+    fn way(&self, source: &mut Source<'_>) -> Vec2<Fx> {
+        let reach = source.pick(&[5000, 1000, 20_000, 0]);
+        if self.ordinary {
+            Vec2::new(source.thousandths(-reach, reach), source.thousandths(-reach, reach))
+        } else {
+            source.mostly_vec(-reach, reach)
+        }
+    }
+
+    fn probe(&self, source: &mut Source<'_>) -> Option<Probe> {
+        let shape = if self.ordinary { shapes::calm_shape(source) } else { shapes::shape(source) };
+        Some(Probe::new(shape.geometry, self.place(source)).ok()?.turned(source.angle()))
+    }
+
+    /// How far a point is from a shape.
+    fn distance(&self, point: Vec2<Fx>, shape: ShapeId) -> Fx {
+        let radius = fx!(0.002);
+        let probe = Probe::new(Geometry::Circle { radius }, point).expect("a valid size");
+        self.world.probe_distance(&probe, shape).expect("a shape that is there").distance + radius
+    }
+
+    /// Everything that is in is found, and nothing that is out.
+    fn check_found(&self, found: &[ShapeId], distance: impl Fn(ShapeId) -> Fx) {
+        assert!(found.is_sorted_by(|a, b| a < b), "not in slot order");
+        if self.ordinary {
+            for shape in self.seen() {
+                let (away, is_found) = (distance(shape), found.contains(&shape));
+                assert!(away <= TOLERANCE || !is_found, "{shape} is found, {away} m away");
+                assert!(away >= -TOLERANCE || is_found, "{shape} is not found, {away} m away");
+            }
+        }
+        let seen: Vec<_> = self.seen().collect();
+        assert!(found.iter().all(|shape| seen.contains(shape)), "what the filter does not see");
+    }
+
+    fn points(&self, source: &mut Source<'_>) -> bool {
+        let point = self.place(source);
+        let found = self.same(|world| world.overlap_point(point, self.filter));
+        self.check_found(&found, |shape| self.distance(point, shape));
+        !found.is_empty()
+    }
+
+    fn probes(&self, source: &mut Source<'_>) -> bool {
+        let Some(probe) = self.probe(source) else { return false };
+        let found = self.same(|world| world.overlap_shape(&probe, self.filter));
+        let distance = |shape| self.world.probe_distance(&probe, shape).expect("it is there").distance;
+        self.check_found(&found, distance);
+        let (a, b) = (source.below(self.world.shape_count()), source.below(self.world.shape_count()));
+        let shape = |nth| self.world.shapes().nth(nth).map(|(id, _)| id);
+        if let (Some(a), Some(b)) = (shape(a), shape(b)) {
+            let there = self.same(|world| world.distance(a, b)).expect("both are there");
+            let back = self.same(|world| world.distance(b, a)).expect("both are there");
+            let difference = there.distance.saturating_sub(back.distance).saturating_abs();
+            assert!(!self.ordinary || difference <= TOLERANCE, "{there:?} and back {back:?}");
+        }
+        !found.is_empty()
+    }
+
+    fn boxes(&self, source: &mut Source<'_>) -> bool {
+        let (a, b) = (self.place(source), self.place(source));
+        let area = if source.one_in(16) { Aabb::new(a, b) } else { Aabb::new(a.min(b), a.max(b)) };
+        let found = self.same(|world| world.overlap_box(area, self.filter));
+        let half = (area.upper - area.lower).scale(fx!(0.5));
+        let probe = Polygon::rectangle(half.x, half.y).ok();
+        if let Some(probe) = probe.and_then(|probe| Probe::new(probe, area.centre()).ok()) {
+            let distance = |shape| self.world.probe_distance(&probe, shape).expect("it is there").distance;
+            self.check_found(&found, distance);
+        }
+        !found.is_empty()
+    }
+
+    fn closest(&self, source: &mut Source<'_>) -> bool {
+        let (point, within) = (self.place(source), source.mostly(0, 5000));
+        let found = self.same(|world| world.closest(point, within, self.filter));
+        if self.ordinary {
+            let least = self.seen().map(|shape| self.distance(point, shape)).min();
+            match (&found, least) {
+                (Some((_, found)), Some(least)) => {
+                    let error = (found.distance - least).abs();
+                    assert!(error <= TOLERANCE, "{} m away, not {least}", found.distance);
+                }
+                (Some(found), None) => panic!("{found:?}, where nothing is"),
+                (None, least) => {
+                    let far = least.is_none_or(|least| least >= within - TOLERANCE);
+                    assert!(far, "nothing within {within} m, yet {least:?}");
+                }
+            }
+        }
+        found.is_some()
+    }
+
+    fn rays(&self, source: &mut Source<'_>) -> bool {
+        let (origin, way) = (self.place(source), self.way(source));
+        let hits = self.same(|world| world.cast_ray_all(origin, way, self.filter));
+        let first = self.same(|world| world.cast_ray(origin, way, self.filter));
+        assert_eq!(first, hits.first().copied(), "the first of all");
+        assert_eq!(self.same(|world| world.cast_ray_any(origin, way, self.filter)), first.is_some());
+        assert!(hits.is_sorted_by_key(|hit| (hit.fraction, hit.shape)), "not in the order of the ray");
+        let seen: Vec<_> = self.seen().collect();
+        for hit in &hits {
+            assert!(seen.contains(&hit.shape) && (Fx::ZERO..=Fx::ONE).contains(&hit.fraction), "{hit:?}");
+            let away = self.distance(hit.point, hit.shape);
+            let good = away.abs() <= TOLERANCE || hit.fraction == 0 && away <= TOLERANCE;
+            assert!(!self.ordinary || good, "{hit:?} is {away} m away from the shape");
+        }
+        if self.ordinary {
+            for (fraction, shape) in
+                self.samples(|step| origin + way.scale(step), |point, shape| self.distance(point, shape))
+            {
+                let hit = hits.iter().find(|hit| hit.shape == shape);
+                assert!(
+                    hit.is_some_and(|hit| hit.fraction <= fraction),
+                    "{shape} at {fraction}, not {hit:?}"
+                );
+            }
+        }
+        first.is_some()
+    }
+
+    fn casts(&self, source: &mut Source<'_>) -> bool {
+        let Some(probe) = self.probe(source) else { return false };
+        let way = self.way(source);
+        let hit = self.same(|world| world.cast_shape(&probe, way, self.filter));
+        if let Some(hit) = hit {
+            assert!(self.seen().any(|shape| shape == hit.shape), "what the filter does not see");
+            assert!((Fx::ZERO..=Fx::ONE).contains(&hit.fraction), "{hit:?}");
+        }
+        if !self.ordinary {
+            return hit.is_some();
+        }
+        let at = |step| probe.position() + way.scale(step);
+        let distance = |point, shape| {
+            let there = self.world.probe_distance(&probe.at(point), shape);
+            there.expect("a shape that is there").distance
+        };
+        if let Some(hit) = hit {
+            let away = distance(probe.position() + hit.travelled, hit.shape);
+            let touched_before = distance(probe.position(), hit.shape) <= TOLERANCE;
+            assert!(away.abs() <= TOLERANCE || touched_before, "{hit:?} stops {away} m before the shape");
+        }
+        let touched_before = |shape| distance(probe.position(), shape) <= TOLERANCE;
+        for (fraction, shape) in self.samples(at, distance).filter(|(_, shape)| !touched_before(*shape)) {
+            assert!(hit.is_some_and(|hit| hit.fraction <= fraction), "{shape} at {fraction}, not {hit:?}");
+        }
+        hit.is_some()
+    }
+
+    /// Where something that moves is well inside of a shape, in sixteen places of its way. Links may let it pass.
+    fn samples<'a>(
+        &'a self,
+        at: impl Fn(Fx) -> Vec2<Fx> + 'a,
+        distance: impl Fn(Vec2<Fx>, ShapeId) -> Fx + 'a,
+    ) -> impl Iterator<Item = (Fx, ShapeId)> + 'a {
+        let link = |id: ShapeId| {
+            self.world.shape(id).is_some_and(|shape| matches!(shape.geometry(), Geometry::Link { .. }))
+        };
+        self.seen().filter(move |&shape| !link(shape)).flat_map(move |shape| {
+            let inside = |fraction: &Fx| distance(at(*fraction), shape) < -TOLERANCE;
+            let steps = (0..=16).map(|step| lockstep2d::math::ratio(step, 16));
+            steps.filter(inside).map(|fraction| (fraction, shape)).collect::<Vec<_>>()
+        })
+    }
+}
