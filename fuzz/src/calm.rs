@@ -116,6 +116,8 @@ fn pile(source: &mut Source<'_>, middle: Vec2<Fx>, commands: &mut Vec<Command>) 
     let corner =
         middle + Vec2::new(source.thousandths(-2000, 0), FLOOR + source.pick(&[fx!(0), fx!(0.5), fx!(2)]));
     let asleep = source.one_in(6);
+    // Half a second of rest is much of a short scene.
+    let sleep_speed = source.pick(&[fx!(0.05), fx!(0.5), fx!(2)]);
     for index in 0..count {
         let (column, row) = (Fx::from(index % columns), Fx::from(index / columns));
         let x = fx_mul(column, half.x * 2 + gap) + rng.range(-wobble, wobble.max(Fx::DELTA));
@@ -125,6 +127,7 @@ fn pile(source: &mut Source<'_>, middle: Vec2<Fx>, commands: &mut Vec<Command>) 
             body = body.angle(rng.angle());
         }
         body.asleep = asleep;
+        body.settings.sleep_speed = sleep_speed;
         commands.push(spawn(body, &[shape]));
     }
 }

@@ -16,6 +16,8 @@ use crate::{calm, joints, settings, shapes};
 pub struct Generator {
     /// What the scene is built around.
     middle: Vec2<Fx>,
+    /// Whether nobody does anything for most of the time, so that much falls asleep.
+    lulls: bool,
     bodies: Vec<BodyId>,
     shapes: Vec<ShapeId>,
     joints: Vec<JointId>,
@@ -89,7 +91,8 @@ impl Generator {
         let places = [Fx::ZERO, Fx::ZERO, Fx::ZERO, fx!(1000000000), edge, -edge];
         let far = source.pick(if source.is_calm() { &places[..4] } else { &places });
         let middle = Vec2::new(far, if source.one_in(2) { far } else { Fx::ZERO });
-        Generator { middle, bodies: Vec::new(), shapes: Vec::new(), joints: Vec::new() }
+        let lulls = source.one_in(2);
+        Generator { middle, lulls, bodies: Vec::new(), shapes: Vec::new(), joints: Vec::new() }
     }
 
     /// What the scene starts with: mostly a floor and a heap of bodies.
@@ -119,6 +122,9 @@ impl Generator {
     /// Commands for a tick.
     pub fn tick(&mut self, source: &mut Source<'_>, world: &World) -> Vec<Command> {
         let mut commands = Vec::new();
+        if self.lulls && world.tick() % 64 >= 12 {
+            return commands;
+        }
         if source.is_calm() {
             for _ in 0..source.pick(&[0, 0, 1, 0, 0, 2]) {
                 let body = self.body(source, world);
