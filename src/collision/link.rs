@@ -316,3 +316,6 @@ fn single(normal: Vec2<Unit>, distance: i64, radius: Length, margin: Length) -> 
     let anchor = -normal.scale(back);
     Manifold::single(normal, ManifoldPoint { anchor, separation, feature: Feature::SINGLE })
 }
+
+#[cfg(test)]
+mod tests;
