@@ -84,7 +84,7 @@ fn random_line(rng: &mut Rng) -> Vec<Vec2<Fx>> {
         let length = rng.range(fx!(0.05), fx!(1));
         let step = crate::math::Rot::from_angle(heading).apply_wide(Vec2::new(length, fx!(0)));
         points.push(points[points.len() - 1] + step);
-        heading = heading + Angle::from_degrees(rng.range(fx!(-50), fx!(50)));
+        heading += Angle::from_degrees(rng.range(fx!(-50), fx!(50)));
     }
     points
 }
