@@ -27,6 +27,8 @@ pub(crate) struct JointSet {
     /// For each body slot.
     turned: Vec<Turned>,
     joints: Vec<JointConstraint>,
+    /// For each of them what every pass needs, so that the passes read little memory.
+    links: Vec<Link>,
     /// Of all joints in turn: a plain hinge has none.
     rows: Vec<JointRow>,
     points: Vec<JointPoint>,
@@ -43,22 +45,32 @@ struct JointedBody {
 #[derive(Clone, Debug)]
 struct JointConstraint {
     joint: JointId,
-    rows: Share,
-    points: Share,
     ends: Ends,
 }
 
-/// A part of a list.
+/// The bodies of a joint, and how many rows and points are its own.
 #[derive(Clone, Copy, Debug)]
-struct Share {
-    start: u32,
-    end: u32,
+struct Link {
+    body_a: u32,
+    body_b: u32,
+    rows: u16,
+    points: u16,
 }
 
-impl Share {
+/// Goes through the rows and points of one joint after the other.
+struct Walk<'a> {
+    rows: &'a mut [JointRow],
+    points: &'a mut [JointPoint],
+}
+
+impl<'a> Walk<'a> {
     #[inline]
-    fn of<T>(self, list: &mut [T]) -> &mut [T] {
-        &mut list[self.start as usize..self.end as usize]
+    fn next(&mut self, link: &Link) -> (&'a mut [JointRow], &'a mut [JointPoint]) {
+        let (rows, rest) = core::mem::take(&mut self.rows).split_at_mut(link.rows.into());
+        self.rows = rest;
+        let (points, rest) = core::mem::take(&mut self.points).split_at_mut(link.points.into());
+        self.points = rest;
+        (rows, points)
     }
 }
 
@@ -106,12 +118,13 @@ impl JointSet {
         self.bodies.clear();
         self.turned.clear();
         self.joints.clear();
+        self.links.clear();
         self.rows.clear();
         self.points.clear();
     }
 
     fn push(&mut self, id: JointId, joint: &Joint, a: (u32, &Body), b: (u32, &Body), tuning: &Tuning) {
-        let starts = (count(&self.rows), count(&self.points));
+        let (rows, points) = (self.rows.len(), self.points.len());
         let mut parts = Parts {
             rows: &mut self.rows,
             points: &mut self.points,
@@ -128,9 +141,9 @@ impl JointSet {
             JointKind::Motor(kind) => kind.prepare(&mut parts),
             JointKind::Filter => {}
         }
-        let rows = Share { start: starts.0, end: count(&self.rows) };
-        let points = Share { start: starts.1, end: count(&self.points) };
-        self.joints.push(JointConstraint { joint: id, rows, points, ends: Ends::prepare(joint, a, b) });
+        let (rows, points) = (count(self.rows.len() - rows), count(self.points.len() - points));
+        self.links.push(Link { body_a: a.0, body_b: b.0, rows, points });
+        self.joints.push(JointConstraint { joint: id, ends: Ends::prepare(joint, a, b) });
     }
 
     /// Arms, gains and gaps at the present pose.
@@ -138,15 +151,17 @@ impl JointSet {
         for body in &self.bodies {
             let turns = turns(bodies[body.slot as usize].turn, body.inverse_gyration);
             let rotation = Rot::from_angle(body.angle + Angle::from_turns(Fx::from_bits(turns)));
-            self.turned[body.slot as usize] = Turned { rotation, turns };
+            self.turned[body.slot as usize] = Turned { rotation, turns, ahead: Unit::ZERO };
         }
-        for joint in &self.joints {
+        let mut walk = Walk { rows: &mut self.rows, points: &mut self.points };
+        for (joint, link) in self.joints.iter().zip(&self.links) {
+            let (rows, points) = walk.next(link);
             let place = joint.ends.place(bodies, &self.turned);
-            for point in joint.points.of(&mut self.points) {
+            for point in points {
                 point.refresh(&place, tuning);
             }
             let mut last = None;
-            for row in joint.rows.of(&mut self.rows) {
+            for row in rows {
                 let measure = match last {
                     Some((direction, measure)) if direction == row.direction => measure,
                     _ => joint.ends.measure(row.direction, &place, &self.turned),
@@ -159,29 +174,28 @@ impl JointSet {
 
     /// Looks ahead along the turns of the coming sub-step, at the velocities that the last one has left.
     pub(crate) fn aim(&mut self, bodies: &[SolverBody], h: Reciprocal, tuning: &Tuning) {
-        for joint in &self.joints {
-            let turn = |body: u32, inverse_gyration: Reciprocal| -> Unit {
-                let step: Step = h.times(bodies[body as usize].spin);
-                inverse_gyration.times(step)
-            };
-            let ends = &joint.ends;
-            let turns =
-                (turn(ends.body_a, ends.inverse_gyration_a), turn(ends.body_b, ends.inverse_gyration_b));
-            for point in joint.points.of(&mut self.points) {
+        for body in &self.bodies {
+            let step: Step = h.times(bodies[body.slot as usize].spin);
+            self.turned[body.slot as usize].ahead = body.inverse_gyration.times(step);
+        }
+        let mut walk = Walk { rows: &mut self.rows, points: &mut self.points };
+        for link in &self.links {
+            let ahead = |slot: u32| self.turned[slot as usize].ahead;
+            let turns = (ahead(link.body_a), ahead(link.body_b));
+            let (_, points) = walk.next(link);
+            for point in points {
                 point.aim(turns, tuning);
             }
         }
     }
 
     pub(crate) fn warm_start(&mut self, bodies: &mut [SolverBody], faults: &mut Faults) {
-        for joint in &self.joints {
-            let (a, b) = SolverBody::pair(bodies, joint.ends.body_a, joint.ends.body_b);
-            for row in joint.rows.of(&mut self.rows) {
-                row.warm_start(a, b, faults);
-            }
-            for point in joint.points.of(&mut self.points) {
-                point.warm_start(a, b, faults);
-            }
+        let mut walk = Walk { rows: &mut self.rows, points: &mut self.points };
+        for link in &self.links {
+            let (a, b) = SolverBody::pair(bodies, link.body_a, link.body_b);
+            let (rows, points) = walk.next(link);
+            rows.iter_mut().for_each(|row| row.warm_start(a, b, faults));
+            points.iter_mut().for_each(|point| point.warm_start(a, b, faults));
         }
     }
 
@@ -192,27 +206,27 @@ impl JointSet {
         bodies: &mut [SolverBody],
         faults: &mut Faults,
     ) {
-        for joint in &self.joints {
-            let (a, b) = SolverBody::pair(bodies, joint.ends.body_a, joint.ends.body_b);
-            for row in joint.rows.of(&mut self.rows) {
-                row.solve(pass, tuning, a, b, faults);
-            }
-            for point in joint.points.of(&mut self.points) {
-                point.solve(pass, tuning, a, b, faults);
-            }
+        let mut walk = Walk { rows: &mut self.rows, points: &mut self.points };
+        for link in &self.links {
+            let (a, b) = SolverBody::pair(bodies, link.body_a, link.body_b);
+            let (rows, points) = walk.next(link);
+            rows.iter_mut().for_each(|row| row.solve(pass, tuning, a, b, faults));
+            points.iter_mut().for_each(|point| point.solve(pass, tuning, a, b, faults));
         }
     }
 
     /// Keeps impulses and turns for the next tick.
     pub(crate) fn store(&mut self, joints: &mut Arena<Joint, JointId>) {
-        for constraint in &self.joints {
+        let mut walk = Walk { rows: &mut self.rows, points: &mut self.points };
+        for (constraint, link) in self.joints.iter().zip(&self.links) {
             let joint = joints.at_mut(constraint.joint.index());
             joint.turns = constraint.ends.turns(&self.turned);
             joint.impulses = JointImpulses::default();
-            for row in constraint.rows.of(&mut self.rows) {
+            let (rows, points) = walk.next(link);
+            for row in rows {
                 joint.impulses.0[usize::from(row.slot)] = row.lambda;
             }
-            for point in constraint.points.of(&mut self.points) {
+            for point in points {
                 joint.impulses.set_point(point.slot, point.lambda);
             }
         }
@@ -244,6 +258,6 @@ impl JointSet {
     }
 }
 
-fn count<T>(list: &[T]) -> u32 {
-    u32::try_from(list.len()).expect("parts of joints are counted in 32 bits")
+fn count(parts: usize) -> u16 {
+    u16::try_from(parts).expect("a joint has a handful of parts")
 }
