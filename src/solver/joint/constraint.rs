@@ -17,17 +17,27 @@ use super::state::{Joint, JointImpulses};
 use crate::body::{Arena, Body, BodyId, Handle, JointId};
 use crate::math::{Angle, Fx, Reciprocal, Rot, Step, Unit, Vec2, fx_mul, widen};
 
-/// All joints, for one tick, in the order in which they are solved.
+/// All joints, for one tick.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct JointSet {
-    ids: Vec<JointId>,
     /// For each body slot, whether the body is in `bodies`.
     has_joint: Vec<bool>,
     bodies: Vec<JointedBody>,
     /// For each body slot.
     turned: Vec<Turned>,
+    /// In the order of the state, which is read once and from front to back: joints are large.
+    drafts: JointList,
+    /// For each of the drafts, how many rows and points come before its own.
+    starts: Vec<(u32, u32)>,
+    /// In the order in which they are solved.
+    list: JointList,
+}
+
+/// Joints one after the other.
+#[derive(Clone, Debug, Default)]
+struct JointList {
     joints: Vec<JointConstraint>,
-    /// For each of them what every pass needs, so that the passes read little memory.
+    /// For each joint what every pass needs, so that the passes read little memory.
     links: Vec<Link>,
     /// Of all joints in turn: a plain hinge has none.
     rows: Vec<JointRow>,
@@ -42,7 +52,7 @@ struct JointedBody {
     inverse_gyration: Reciprocal,
 }
 
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug)]
 struct JointConstraint {
     joint: JointId,
     ends: Ends,
@@ -57,66 +67,29 @@ struct Link {
     points: u16,
 }
 
-/// Goes through the rows and points of one joint after the other.
+/// Goes through joints with their rows and points.
 struct Walk<'a> {
+    links: core::slice::Iter<'a, Link>,
     rows: &'a mut [JointRow],
     points: &'a mut [JointPoint],
 }
 
-impl<'a> Walk<'a> {
+impl<'a> Iterator for Walk<'a> {
+    type Item = (&'a Link, &'a mut [JointRow], &'a mut [JointPoint]);
+
     #[inline]
-    fn next(&mut self, link: &Link) -> (&'a mut [JointRow], &'a mut [JointPoint]) {
+    fn next(&mut self) -> Option<Self::Item> {
+        let link = self.links.next()?;
         let (rows, rest) = core::mem::take(&mut self.rows).split_at_mut(link.rows.into());
         self.rows = rest;
         let (points, rest) = core::mem::take(&mut self.points).split_at_mut(link.points.into());
         self.points = rest;
-        (rows, points)
+        Some((link, rows, points))
     }
 }
 
-impl JointSet {
-    /// Makes a constraint of every joint that is one, in the order in which they are solved.
-    pub(crate) fn prepare(
-        &mut self,
-        joints: &Arena<Joint, JointId>,
-        bodies: &Arena<Body, BodyId>,
-        tuning: &Tuning,
-        nodes: &mut Vec<Node>,
-        colouring: &mut Colouring,
-    ) {
-        self.clear();
-        if joints.len() == 0 {
-            return;
-        }
-        nodes.clear();
-        self.turned.resize(bodies.slot_count(), Turned::default());
-        self.has_joint.clear();
-        self.has_joint.resize(bodies.slot_count(), false);
-        for (id, joint) in joints.iter().filter(|(_, joint)| joint.def.kind != JointKind::Filter) {
-            self.ids.push(id);
-            let (a, b) = joint.def.bodies();
-            for slot in [a.index(), b.index()] {
-                if !core::mem::replace(&mut self.has_joint[slot as usize], true) {
-                    let body = bodies.at(slot);
-                    let inverse_gyration = body.mass.inverse_gyration;
-                    self.bodies.push(JointedBody { slot, angle: body.angle(), inverse_gyration });
-                }
-            }
-            nodes.push(node(id.index().into(), bodies, a.index(), b.index()));
-        }
-        for &index in colouring.order(nodes, bodies.slot_count()) {
-            let id = self.ids[index as usize];
-            let joint = joints.at(id.index());
-            let (a, b) = joint.def.bodies();
-            let (a, b) = (a.index(), b.index());
-            self.push(id, joint, (a, bodies.at(a)), (b, bodies.at(b)), tuning);
-        }
-    }
-
+impl JointList {
     fn clear(&mut self) {
-        self.ids.clear();
-        self.bodies.clear();
-        self.turned.clear();
         self.joints.clear();
         self.links.clear();
         self.rows.clear();
@@ -141,9 +114,64 @@ impl JointSet {
             JointKind::Motor(kind) => kind.prepare(&mut parts),
             JointKind::Filter => {}
         }
-        let (rows, points) = (count(self.rows.len() - rows), count(self.points.len() - points));
+        let (rows, points) = (share(&self.rows, rows), share(&self.points, points));
         self.links.push(Link { body_a: a.0, body_b: b.0, rows, points });
         self.joints.push(JointConstraint { joint: id, ends: Ends::prepare(joint, a, b) });
+    }
+
+    /// Appends a joint of another list, whose rows and points start there.
+    fn copy(&mut self, other: &Self, index: usize, (rows, points): (u32, u32)) {
+        let link = other.links[index];
+        let (rows, points) = (rows as usize, points as usize);
+        self.joints.push(other.joints[index]);
+        self.links.push(link);
+        self.rows.extend_from_slice(&other.rows[rows..rows + usize::from(link.rows)]);
+        self.points.extend_from_slice(&other.points[points..points + usize::from(link.points)]);
+    }
+
+    fn walk(&mut self) -> Walk<'_> {
+        Walk { links: self.links.iter(), rows: &mut self.rows, points: &mut self.points }
+    }
+}
+
+impl JointSet {
+    /// Makes a constraint of every joint that is one, in the order in which they are solved.
+    pub(crate) fn prepare(
+        &mut self,
+        joints: &Arena<Joint, JointId>,
+        bodies: &Arena<Body, BodyId>,
+        tuning: &Tuning,
+        nodes: &mut Vec<Node>,
+        colouring: &mut Colouring,
+    ) {
+        self.bodies.clear();
+        self.turned.clear();
+        self.starts.clear();
+        self.drafts.clear();
+        self.list.clear();
+        if joints.len() == 0 {
+            return;
+        }
+        nodes.clear();
+        self.turned.resize(bodies.slot_count(), Turned::default());
+        self.has_joint.clear();
+        self.has_joint.resize(bodies.slot_count(), false);
+        for (id, joint) in joints.iter().filter(|(_, joint)| !matches!(joint.def.kind, JointKind::Filter)) {
+            let (a, b) = joint.def.bodies();
+            let (a, b) = ((a.index(), bodies.at(a.index())), (b.index(), bodies.at(b.index())));
+            for (slot, body) in [a, b] {
+                if !core::mem::replace(&mut self.has_joint[slot as usize], true) {
+                    let inverse_gyration = body.mass.inverse_gyration;
+                    self.bodies.push(JointedBody { slot, angle: body.angle(), inverse_gyration });
+                }
+            }
+            nodes.push(node(id.index().into(), bodies, a.0, b.0));
+            self.starts.push((count(&self.drafts.rows), count(&self.drafts.points)));
+            self.drafts.push(id, joint, a, b, tuning);
+        }
+        for &index in colouring.order(nodes, bodies.slot_count()) {
+            self.list.copy(&self.drafts, index as usize, self.starts[index as usize]);
+        }
     }
 
     /// Arms, gains and gaps at the present pose.
@@ -153,9 +181,9 @@ impl JointSet {
             let rotation = Rot::from_angle(body.angle + Angle::from_turns(Fx::from_bits(turns)));
             self.turned[body.slot as usize] = Turned { rotation, turns, ahead: Unit::ZERO };
         }
-        let mut walk = Walk { rows: &mut self.rows, points: &mut self.points };
-        for (joint, link) in self.joints.iter().zip(&self.links) {
-            let (rows, points) = walk.next(link);
+        let JointList { joints, links, rows, points } = &mut self.list;
+        let walk = Walk { links: links.iter(), rows, points };
+        for (joint, (_, rows, points)) in joints.iter().zip(walk) {
             let place = joint.ends.place(bodies, &self.turned);
             for point in points {
                 point.refresh(&place, tuning);
@@ -178,11 +206,9 @@ impl JointSet {
             let step: Step = h.times(bodies[body.slot as usize].spin);
             self.turned[body.slot as usize].ahead = body.inverse_gyration.times(step);
         }
-        let mut walk = Walk { rows: &mut self.rows, points: &mut self.points };
-        for link in &self.links {
+        for (link, _, points) in self.list.walk() {
             let ahead = |slot: u32| self.turned[slot as usize].ahead;
             let turns = (ahead(link.body_a), ahead(link.body_b));
-            let (_, points) = walk.next(link);
             for point in points {
                 point.aim(turns, tuning);
             }
@@ -190,10 +216,8 @@ impl JointSet {
     }
 
     pub(crate) fn warm_start(&mut self, bodies: &mut [SolverBody], faults: &mut Faults) {
-        let mut walk = Walk { rows: &mut self.rows, points: &mut self.points };
-        for link in &self.links {
+        for (link, rows, points) in self.list.walk() {
             let (a, b) = SolverBody::pair(bodies, link.body_a, link.body_b);
-            let (rows, points) = walk.next(link);
             rows.iter_mut().for_each(|row| row.warm_start(a, b, faults));
             points.iter_mut().for_each(|point| point.warm_start(a, b, faults));
         }
@@ -206,10 +230,8 @@ impl JointSet {
         bodies: &mut [SolverBody],
         faults: &mut Faults,
     ) {
-        let mut walk = Walk { rows: &mut self.rows, points: &mut self.points };
-        for link in &self.links {
+        for (link, rows, points) in self.list.walk() {
             let (a, b) = SolverBody::pair(bodies, link.body_a, link.body_b);
-            let (rows, points) = walk.next(link);
             rows.iter_mut().for_each(|row| row.solve(pass, tuning, a, b, faults));
             points.iter_mut().for_each(|point| point.solve(pass, tuning, a, b, faults));
         }
@@ -217,12 +239,12 @@ impl JointSet {
 
     /// Keeps impulses and turns for the next tick.
     pub(crate) fn store(&mut self, joints: &mut Arena<Joint, JointId>) {
-        let mut walk = Walk { rows: &mut self.rows, points: &mut self.points };
-        for (constraint, link) in self.joints.iter().zip(&self.links) {
+        let JointList { joints: constraints, links, rows, points } = &mut self.list;
+        let walk = Walk { links: links.iter(), rows, points };
+        for (constraint, (_, rows, points)) in constraints.iter().zip(walk) {
             let joint = joints.at_mut(constraint.joint.index());
             joint.turns = constraint.ends.turns(&self.turned);
             joint.impulses = JointImpulses::default();
-            let (rows, points) = walk.next(link);
             for row in rows {
                 joint.impulses.0[usize::from(row.slot)] = row.lambda;
             }
@@ -240,11 +262,11 @@ impl JointSet {
             let inverse_gyration = body.mass.inverse_gyration;
             set.bodies.push(JointedBody { slot, angle: body.angle(), inverse_gyration });
         }
-        set.push(JointId::from_parts(0, 0), joint, (0, a), (1, b), tuning);
+        set.list.push(JointId::from_parts(0, 0), joint, (0, a), (1, b), tuning);
         let mut bodies = [SolverBody::default(); 2];
         set.refresh(&bodies, tuning);
         set.warm_start(&mut bodies, &mut 0);
-        let place = set.joints[0].ends.place(&bodies, &set.turned);
+        let place = set.list.joints[0].ends.place(&bodies, &set.turned);
         // The lighter one shows more of it.
         let (body, moved, arm) = if a.is_dynamic() && (!b.is_dynamic() || a.mass() < b.mass()) {
             (a, bodies[0].reversed(), place.lever_a.arm)
@@ -258,6 +280,11 @@ impl JointSet {
     }
 }
 
-fn count(parts: usize) -> u16 {
-    u16::try_from(parts).expect("a joint has a handful of parts")
+fn count<T>(parts: &[T]) -> u32 {
+    u32::try_from(parts.len()).expect("parts are counted in 32 bits")
+}
+
+/// How many there are more than there were.
+fn share<T>(parts: &[T], before: usize) -> u16 {
+    u16::try_from(parts.len() - before).expect("a joint has a handful of parts")
 }
