@@ -5,7 +5,7 @@ use lockstep2d::body::{
 };
 use lockstep2d::fx;
 use lockstep2d::math::{Angle, Fx, Vec2};
-use lockstep2d::solver::RevoluteDef;
+use lockstep2d::solver::{JointDef, Revolute};
 use lockstep2d::world::{Command, Config, World};
 
 use super::{ball, rectangle, run, shape_of, spawn, square, weightless, world_with_floor};
@@ -66,7 +66,10 @@ fn a_body_changes_its_kind_and_back() {
     run(&mut world, 10);
     let held = world.body(id).expect("there").position();
     world.set_kind(id, BodyKind::Dynamic).expect("valid");
-    assert_eq!((world.body(id).expect("there").mass(), world.body(id).expect("there").position()), (fx!(1), held));
+    assert_eq!(
+        (world.body(id).expect("there").mass(), world.body(id).expect("there").position()),
+        (fx!(1), held)
+    );
     run(&mut world, 120);
     assert!(world.body(id).expect("there").position().y < fx!(1), "it has fallen onto the floor");
     // What the floor held falls with it when it becomes a body like any other.
@@ -83,7 +86,11 @@ fn a_body_changes_its_kind_and_back() {
 #[test]
 fn a_disabled_body_is_not_there_until_it_is_enabled() {
     let (mut world, _) = world_with_floor();
-    let id = spawn(&mut world, BodyDef::dynamic().position(fx!(0), fx!(2)).velocity(fx!(1), fx!(0)), square(fx!(0.5)));
+    let id = spawn(
+        &mut world,
+        BodyDef::dynamic().position(fx!(0), fx!(2)).velocity(fx!(1), fx!(0)),
+        square(fx!(0.5)),
+    );
     world.disable(id).expect("there");
     world.disable(id).expect("nothing to do");
     let place = world.body(id).expect("there").position();
@@ -110,7 +117,7 @@ fn a_joint_to_a_disabled_body_does_not_pull() {
     let mut world = World::default();
     let post = world.spawn(&BodyDef::fixed(), &[]).expect("valid");
     let bob = spawn(&mut world, BodyDef::dynamic().position(fx!(0), fx!(-1)), ball(fx!(0.3)));
-    world.add_joint(&RevoluteDef::new(post, bob).anchor_b(fx!(0), fx!(1)).into()).expect("valid");
+    world.add_joint(&JointDef::new(post, bob, Revolute::new()).anchor_b(fx!(0), fx!(1))).expect("valid");
     run(&mut world, 60);
     close(world.body(bob).expect("there").position().y, fx!(-1));
     world.disable(post).expect("there");
@@ -191,7 +198,9 @@ impl Stage {
         let gone_shape = shape_of(&world, gone);
         world.despawn(gone).expect("there");
         let ball = spawn(&mut world, BodyDef::dynamic().position(fx!(0), fx!(0.5)), ball(fx!(0.5)));
-        world.add_joint(&RevoluteDef::new(floor, ball).anchor_a(fx!(0), fx!(1.5)).into()).expect("valid");
+        world
+            .add_joint(&JointDef::new(floor, ball, Revolute::new()).anchor_a(fx!(0), fx!(1.5)))
+            .expect("valid");
         run(&mut world, 10);
         Stage { world, floor, lift, ball, gone, gone_shape }
     }
@@ -283,7 +292,8 @@ fn kinds_that_a_body_cannot_have_are_refused() {
     let mut stage = Stage::new(Config::default());
     let (body, dynamic) = (stage.ball, BodyKind::Dynamic);
     for kind in [BodyKind::Fixed, BodyKind::Kinematic] {
-        stage.refuses(&Command::SetKind { body, kind }, |error| *error == WorldError::JointWithoutDynamicBody);
+        stage
+            .refuses(&Command::SetKind { body, kind }, |error| *error == WorldError::JointWithoutDynamicBody);
     }
     let bare = stage.world.spawn(&BodyDef::fixed(), &[]).expect("valid");
     stage.refuses(&Command::SetKind { body: bare, kind: dynamic }, |error| {

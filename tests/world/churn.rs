@@ -1,15 +1,15 @@
 //! A source of random changes to a small and crowded world: of every kind, valid and not.
 
 use lockstep2d::body::{
-    BodyDef, BodyId, BodyKind, BodySettings, Continuous, EventSwitches, Filter, JointId, MassSource, Material,
-    MotionLocks, ShapeDef, ShapeId,
+    BodyDef, BodyId, BodyKind, BodySettings, Continuous, EventSwitches, Filter, JointId, MassSource,
+    Material, MotionLocks, ShapeDef, ShapeId,
 };
 use lockstep2d::fx;
 use lockstep2d::math::{Angle, Fx, Rng, Vec2};
-use lockstep2d::solver::{JointDef, RevoluteDef};
+use lockstep2d::solver::{Distance, JointDef, JointKind, Motor, Prismatic, Revolute, Weld, Wheel};
 use lockstep2d::world::{Command, Config, Explosion, World};
 
-use super::{ball, rectangle, square};
+use super::{ball, capsule, rectangle, square};
 
 /// Random commands for a world.
 #[derive(Clone)]
@@ -114,6 +114,7 @@ impl Churn {
         let (velocity, angular_velocity) = match self.rng.below(3) {
             0 => (Vec2::ZERO, Fx::ZERO),
             1 => (self.vector(fx!(0.04)), Fx::ZERO),
+            _ if self.rng.chance(1, 6) => (self.vector(fx!(40)), self.signed(fx!(30))),
             _ => (self.vector(fx!(4)), self.signed(fx!(3))),
         };
         Some(Command::SetVelocity { body, velocity, angular_velocity })
@@ -180,8 +181,7 @@ impl Churn {
 
     fn settings(&mut self) -> BodySettings {
         let rng = &mut self.rng;
-        let locks =
-            MotionLocks { x: rng.chance(1, 12), y: rng.chance(1, 12), rotation: rng.chance(1, 8) };
+        let locks = MotionLocks { x: rng.chance(1, 12), y: rng.chance(1, 12), rotation: rng.chance(1, 8) };
         BodySettings {
             locks,
             linear_damping: if rng.chance(1, 4) { rng.range(fx!(0), fx!(2)) } else { Fx::ZERO },
@@ -207,6 +207,7 @@ impl Churn {
         let half = self.rng.range(fx!(0.15), fx!(0.5));
         let shape = match self.rng.below(4) {
             0 => ball(half),
+            1 if self.rng.chance(1, 2) => capsule(half, fx!(0.15)),
             1 => rectangle(half, fx!(0.2)),
             _ => square(half),
         };
@@ -216,7 +217,7 @@ impl Churn {
     /// Something about a shape is different, or nothing.
     fn changed_shape(&mut self, mut def: ShapeDef) -> ShapeDef {
         let rng = &mut self.rng;
-        match rng.below(12) {
+        match rng.below(13) {
             0 => def.sensor = !def.sensor,
             1 => def.filter = Filter { category: 1 << rng.below(2), mask: rng.below(4).into(), group: 0 },
             2 => def.filter.group = [-1, 0, 1][rng.below(3) as usize],
@@ -228,6 +229,7 @@ impl Churn {
             5 => def.geometry = ball(rng.range(fx!(0.1), fx!(0.4))).geometry,
             6 => def.geometry = square(rng.range(fx!(0.1), fx!(0.4))).geometry,
             7 => def.offset = self.vector(fx!(0.4)),
+            8 => def.one_way = rng.chance(1, 2).then_some(Angle::ZERO),
             _ => def.events.hit = true,
         }
         def
@@ -238,14 +240,31 @@ impl Churn {
         let (pose_a, pose_b) = (world.body(a)?.transform(), world.body(b)?.transform());
         // Where B is, so that nothing is torn.
         let anchor = pose_a.apply_inverse(pose_b.apply(Vec2::ZERO));
-        let def = RevoluteDef::new(a, b).anchor_a(anchor.x, anchor.y);
-        Some(if self.rng.chance(1, 2) { def.into() } else { def.colliding().into() })
+        let def = JointDef::new(a, b, self.joint_kind()).anchor_a(anchor.x, anchor.y);
+        Some(if self.rng.chance(1, 2) { def } else { def.colliding() })
+    }
+
+    fn joint_kind(&mut self) -> JointKind {
+        let (speed, most) = (self.signed(fx!(2)), self.rng.range(fx!(0), fx!(20)));
+        match self.rng.below(9) {
+            0 => Prismatic::new().limit(fx!(-0.5), fx!(0.5)).motor(speed, most).into(),
+            1 => Distance::rod(fx!(1)).into(),
+            2 => Weld::default().into(),
+            3 => Wheel::new().into(),
+            4 => Motor::new().into(),
+            5 => JointKind::Filter,
+            6 => Revolute::new().limit(fx!(-0.5), fx!(0.5)).motor(speed, most).into(),
+            _ => Revolute::new().into(),
+        }
     }
 
     fn changed_joint(&mut self, world: &World, joint: JointId) -> Option<JointDef> {
-        #[allow(irrefutable_let_patterns, reason = "there are going to be more kinds")]
-        let JointDef::Revolute(mut def) = *world.joint(joint)?.def() else { return None };
-        def.collide_connected = !def.collide_connected;
-        Some(def.into())
+        let mut def = *world.joint(joint)?.def();
+        match self.rng.below(3) {
+            0 => def.collide_connected = !def.collide_connected,
+            1 => def.kind = self.joint_kind(),
+            _ => def.frame_b.anchor = self.vector(fx!(0.2)),
+        }
+        Some(def)
     }
 }

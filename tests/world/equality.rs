@@ -20,8 +20,7 @@ enum Way {
     RolledBack,
 }
 
-const OTHERS: [Way; 5] =
-    [Way::BruteForce, Way::SweepAndPrune, Way::Cleared, Way::Bytes, Way::RolledBack];
+const OTHERS: [Way; 5] = [Way::BruteForce, Way::SweepAndPrune, Way::Cleared, Way::Bytes, Way::RolledBack];
 
 impl Way {
     fn begin(self, world: &World) -> World {

@@ -100,7 +100,8 @@ fn a_ball_comes_back_from_a_locked_axis() {
 #[test]
 fn kinematic_bodies_keep_to_their_locks() {
     let mut world = weightless();
-    let rail = BodyDef::kinematic().lock_y().lock_rotation().velocity(fx!(1), fx!(1)).angular_velocity(fx!(1));
+    let rail =
+        BodyDef::kinematic().lock_y().lock_rotation().velocity(fx!(1), fx!(1)).angular_velocity(fx!(1));
     let rail = spawn(&mut world, rail, rectangle(fx!(1), fx!(0.2)));
     run(&mut world, 60);
     world.move_to(rail, Vec2::new(fx!(1.5), fx!(0.5)), Angle::from_bits(1 << 29)).expect("valid");

@@ -60,7 +60,9 @@ fn a_visitor_that_passes_through_is_noticed_and_not_touched() {
 #[test]
 fn a_moving_sensor_notices_all_kinds() {
     for kind in [BodyDef::kinematic(), BodyDef::dynamic().mass(mass())] {
-        for visitor in [BodyDef::fixed(), BodyDef::kinematic(), BodyDef::dynamic(), BodyDef::dynamic().asleep()] {
+        for visitor in
+            [BodyDef::fixed(), BodyDef::kinematic(), BodyDef::dynamic(), BodyDef::dynamic().asleep()]
+        {
             let mut world = weightless();
             let visitor = spawn(&mut world, visitor, ball(fx!(0.25)));
             let sensor = kind.position(fx!(-3), fx!(0)).velocity(fx!(4), fx!(0));
@@ -159,7 +161,9 @@ fn whatever_is_removed_ends_a_visit_once() {
     ends(|world, sensor, _| world.disable(sensor).expect("there"));
     ends(|world, _, visitor| world.disable(visitor).expect("there"));
     ends(|world, sensor, _| world.remove_shape(shape_of(world, sensor)).expect("there"));
-    ends(|world, sensor, _| world.set_transform(sensor, Vec2::new(fx!(30), fx!(30)), Angle::ZERO).expect("valid"));
+    ends(|world, sensor, _| {
+        world.set_transform(sensor, Vec2::new(fx!(30), fx!(30)), Angle::ZERO).expect("valid")
+    });
     ends(|world, sensor, _| {
         let nothing = Filter { mask: 0, ..Filter::default() };
         world.set_filter(shape_of(world, sensor), nothing).expect("valid");

@@ -3,7 +3,7 @@
 use lockstep2d::body::{BodyDef, BodyId, BodySettings, Filter};
 use lockstep2d::fx;
 use lockstep2d::math::{Angle, Fx, Vec2};
-use lockstep2d::solver::RevoluteDef;
+use lockstep2d::solver::{JointDef, Revolute};
 use lockstep2d::world::{Config, Section, World};
 
 use super::{ball, is_asleep, rectangle, run, shape_of, spawn, square, world_with_floor};
@@ -89,7 +89,9 @@ fn pushing_wakes() {
 #[test]
 fn joining_and_parting_wakes() {
     let world = wakes(|world, floor, [.., top]| {
-        world.add_joint(&RevoluteDef::new(floor, top).anchor_a(fx!(0), fx!(3.5)).into()).expect("valid");
+        world
+            .add_joint(&JointDef::new(floor, top, Revolute::new()).anchor_a(fx!(0), fx!(3.5)))
+            .expect("valid");
     });
     let joint = world.joints().next().expect("one").0;
     let mut world = world;
@@ -188,7 +190,9 @@ fn what_hangs_from_a_body_wakes_when_it_moves() {
         let mut world = World::default();
         let anchor = world.spawn(&anchor, &[]).expect("valid");
         let bob = spawn(&mut world, BodyDef::dynamic().position(fx!(0), fx!(-2)), ball(fx!(0.3)));
-        world.add_joint(&RevoluteDef::new(anchor, bob).anchor_b(fx!(0), fx!(2)).into()).expect("valid");
+        world
+            .add_joint(&JointDef::new(anchor, bob, Revolute::new()).anchor_b(fx!(0), fx!(2)))
+            .expect("valid");
         run(&mut world, 60);
         assert!(is_asleep(&world, bob));
         (world, anchor, bob)
