@@ -8,9 +8,9 @@
 //! s(t) = s(0) + m.v t
 //! ```
 //!
-//! so an axis on which they are apart at the start and at the end of a tick keeps them apart all the time (J. Eckstein
-//! and E. Schömer, "Dynamic Collision Detection in Virtual Reality Applications", 1999, have the same test for two
-//! polyhedra). The axes tried are the faces of both.
+//! so an axis on which they are apart at the start and at the end of a tick keeps them apart all the time (D. Eberly,
+//! "Intersection of Convex Objects: The Method of Separating Axes", 2001, for moving objects). The axes tried are the
+//! faces of both.
 
 use super::circle_hull::{distance_along, step_bits};
 use super::hull_hull::{FACE_BITS, face_separation};

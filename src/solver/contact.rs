@@ -2,6 +2,8 @@
 //!
 //! Siblings in this folder have the same functions in the same order: `prepare`, `warm_start`, `solve`, `store`.
 
+use alloc::boxed::Box;
+
 use super::body::SolverBody;
 use super::limits::{Faults, IMPULSE_MAX, clamp_warm_start};
 use super::rolling::Rolling;
@@ -45,7 +47,8 @@ pub(crate) struct ContactConstraint {
     restitution: Unit,
     /// How fast the surfaces move against each other by themselves, against the tangent.
     surface_speed: Speed,
-    rolling: Option<Rolling>,
+    /// Few surfaces resist rolling, and the others should not carry a row for it through the caches.
+    rolling: Option<Box<Rolling>>,
     count: u8,
     points: [ContactPoint; 2],
 }
@@ -162,7 +165,8 @@ impl ContactConstraint {
         let lost = memory.points().iter().filter(|old| old.normal > 0 && !still_there(old)).count();
         warm.lost += u32::try_from(lost).expect("at most 2 points");
         let normals = [first.normal_denominator, second.normal_denominator];
-        let rolling = Rolling::prepare(&surface, (a, b), fractions, normals, memory.rolling, faults);
+        let rolling =
+            Rolling::prepare(&surface, (a, b), fractions, normals, memory.rolling, faults).map(Box::new);
         let immovable = !(a.is_dynamic() && b.is_dynamic());
         ContactConstraint {
             body_a: slot_a,
@@ -270,7 +274,7 @@ impl ContactConstraint {
 
     pub(crate) fn store(&self, memory: &mut Contact) {
         memory.clear_points();
-        memory.rolling = self.rolling.as_ref().map_or(Speed::ZERO, Rolling::store);
+        memory.rolling = self.rolling.as_ref().map_or(Speed::ZERO, |rolling| rolling.store());
         for point in &self.points[..usize::from(self.count)] {
             memory.push_point(PointImpulse {
                 feature: point.feature,

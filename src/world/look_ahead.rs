@@ -49,6 +49,8 @@ pub(super) struct Approach<'a> {
     b: &'a Body,
     tick_rate: u32,
     speculative: Length,
+    /// Bound of the way by which any two points of the shapes approach each other in the tick, in metres.
+    closing: Fx,
     pub(super) margin: Length,
     posed_a: &'a PosedShape,
     posed_b: &'a PosedShape,
@@ -77,7 +79,7 @@ impl<'a> Approach<'a> {
         };
         let slack = state.config.touching_distance().min(size(posed_a)).min(size(posed_b));
         let margin = margin_for(speculative, closing);
-        Approach { a, b, tick_rate, speculative, margin, posed_a, posed_b, slack }
+        Approach { a, b, tick_rate, speculative, closing, margin, posed_a, posed_b, slack }
     }
 
     /// Drops the points that the bodies, at their present velocities, will not reach within the tick: shapes that
@@ -98,6 +100,9 @@ impl<'a> Approach<'a> {
             separation <= widen(self.speculative)
                 || separation <= closing(point).saturating_add(widen(self.speculative))
         });
+        if self.closing <= PASSAGE_MIN {
+            return;
+        }
         // A point that is not reached does nothing, so only one that is decides.
         let reached = manifold.points().iter().filter(|point| {
             let separation = widen(point.separation);
