@@ -55,8 +55,8 @@ pub fn kind(source: &mut Source<'_>) -> JointKind {
 fn limit(source: &mut Source<'_>) -> Option<Limit> {
     source.one_in(3).then(|| {
         let lower = source.mostly(-2000, 1000);
-        let upper =
-            if source.one_in(8) { source.mostly(-2000, 2000) } else { lower + source.mostly(0, 3000) };
+        let width = source.mostly(0, 3000);
+        let upper = if source.one_in(8) { width } else { lower.saturating_add(width) };
         Limit { lower, upper }
     })
 }

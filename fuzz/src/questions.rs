@@ -139,7 +139,11 @@ impl Asked<'_> {
     fn distance(&self, point: Vec2<Fx>, shape: ShapeId) -> Fx {
         let radius = fx!(0.002);
         let probe = Probe::new(Geometry::Circle { radius }, point).expect("a valid size");
-        self.world.probe_distance(&probe, shape).expect("a shape that is there").distance + radius
+        self.world
+            .probe_distance(&probe, shape)
+            .expect("a shape that is there")
+            .distance
+            .saturating_add(radius)
     }
 
     /// Everything that is in is found, and nothing that is out.

@@ -17,7 +17,7 @@ pub struct Snapshot(State);
 /// Starts the bytes of a world.
 const MAGIC: [u8; 8] = *b"LS2DWRLD";
 /// Version of the layout of these bytes.
-const FORMAT: u32 = 1;
+const FORMAT: u32 = 2;
 /// Magic, format, semantics, length.
 const HEADER_LEN: usize = 8 + 4 + 4 + 8;
 /// The hash at the end.

@@ -1,0 +1,91 @@
+//! The bytes of a world and of commands are those of `docs/FORMAT.md`: read here without the engine's decoder, by
+//! what the document says alone.
+
+mod commands;
+mod reader;
+
+use lockstep2d::body::{BodyDef, Geometry, Polygon, ShapeDef, WorldError};
+use lockstep2d::fx;
+use lockstep2d::hash::StateHash;
+use lockstep2d::lockstep::{Game, Sandbox};
+use lockstep2d::math::Vec2;
+use lockstep2d::solver::{JointDef, Revolute};
+use lockstep2d::world::{Config, World};
+
+use reader::Reader;
+
+/// A ball that is pinned where it rests on a line, a capsule that sleeps there, and the used slots of a triangle that is
+/// gone.
+fn example() -> Result<World, WorldError> {
+    let config =
+        Config { body_limit: 100, shape_limit: 100, joint_limit: 100, pair_limit: 100, ..Config::default() };
+    let mut world = World::new(config)?;
+    let line = Geometry::segment(Vec2::new(fx!(-2), fx!(0)), Vec2::new(fx!(2), fx!(0)))?;
+    let ground = world.spawn(&BodyDef::fixed(), &[ShapeDef::new(line)])?;
+    let triangle = ShapeDef::new(Polygon::regular(3, fx!(1))?);
+    let removed = world.spawn(&BodyDef::dynamic(), &[triangle])?;
+    let ball = ShapeDef::new(Geometry::circle(fx!(0.5))?).user_data(7);
+    let ball = world.spawn(&BodyDef::dynamic().position(fx!(1), fx!(0.5)), &[ball])?;
+    world.despawn(removed)?;
+    let hinge = Revolute::new().limit(fx!(-1), fx!(1));
+    world.add_joint(&JointDef::new(ground, ball, hinge).anchor_a(fx!(1), fx!(0.5)).colliding())?;
+    let pill = Geometry::capsule(Vec2::new(fx!(-0.5), fx!(0)), Vec2::new(fx!(0.5), fx!(0)), fx!(0.25))?;
+    let sleeper = BodyDef::dynamic().position(fx!(-1), fx!(0.25)).asleep();
+    world.spawn(&sleeper, &[ShapeDef::new(pill)])?;
+    world.step();
+    world.step();
+    Ok(world)
+}
+
+#[test]
+fn the_bytes_of_a_world_are_those_of_the_document() {
+    let world = example().expect("a valid world");
+    let bytes = world.to_bytes();
+    let mut reader = Reader::new(&bytes);
+    reader.world();
+    let document = include_str!("../../docs/FORMAT.md");
+    let (_, rest) = document.split_once("```hex world\n").expect("an example in the document");
+    let (documented, _) = rest.split_once("```").expect("an end of the example");
+    assert!(
+        documented == reader.listing,
+        "the example in docs/FORMAT.md is no longer what is written. If the layout was meant to change, raise the \
+         format version of snapshots; if the arithmetic was, raise SEMANTICS; then put this there:\n{}",
+        reader.listing
+    );
+    assert_eq!(World::from_bytes(&bytes).map(|world| world.state_hash()), Ok(world.state_hash()));
+}
+
+#[test]
+fn the_state_hash_is_made_of_the_sections_bytes() {
+    let mut scenes: Vec<World> = vec![example().expect("a valid world")];
+    for name in ["hundred_polygons", "chain", "game", "ragdoll"] {
+        let scene = lockstep2d::scenes::Scene::find(name).expect("a scene");
+        let mut game = Sandbox::new(&scene.setup(1)).expect("a valid scene");
+        for tick in 0..90 {
+            game.step(&[scene.commands(tick, &game)]);
+        }
+        let refused = StateHash::of_bytes(&game.refused().to_le_bytes());
+        let expected = hash_of_hashes(&[game.world().state_hash(), refused]);
+        assert_eq!(game.state_hash(), expected, "the sandbox binds its count of refused commands");
+        scenes.push(game.world().clone());
+    }
+    for world in scenes {
+        let bytes = world.to_bytes();
+        let mut reader = Reader::new(&bytes);
+        let mut sections = reader.world();
+        // In the bytes, islands come before contacts.
+        sections.sort_by_key(|(section, _)| *section);
+        let digests: Vec<_> = sections
+            .into_iter()
+            .map(|(section, range)| (section, StateHash::of_bytes(&bytes[range])))
+            .collect();
+        assert_eq!(digests, world.digest().sections);
+        let hashes: Vec<_> = digests.into_iter().map(|(_, digest)| digest).collect();
+        assert_eq!(world.state_hash(), hash_of_hashes(&hashes));
+    }
+}
+
+fn hash_of_hashes(hashes: &[StateHash]) -> StateHash {
+    let bytes: Vec<u8> = hashes.iter().flat_map(|hash| hash.0.to_le_bytes()).collect();
+    StateHash::of_bytes(&bytes)
+}
