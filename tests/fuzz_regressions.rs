@@ -7,7 +7,7 @@ use lockstep2d::body::{BodyDef, Geometry, MassSource, Polygon, ShapeDef, WORLD_E
 use lockstep2d::lockstep::{Game, Sandbox, SandboxSetup};
 use lockstep2d::math::{Angle, Fx, Vec2};
 use lockstep2d::solver::{JointDef, Revolute};
-use lockstep2d::world::{Command, Config, World};
+use lockstep2d::world::{Command, Config, Place, World};
 use lockstep2d::{codec, fx};
 
 fn weightless() -> World {
@@ -262,4 +262,27 @@ fn many_shapes_added_in_one_tick_are_work() {
     let mut setup = setup;
     setup.commands.extend(vec![Command::AddShape { body, shape: ball }; 20_000]);
     assert!(Sandbox::new(&setup).is_err());
+}
+
+#[test]
+fn many_fixed_shapes_at_one_point_wake_nobody_for_long() {
+    // Each looked at all before it for somebody to wake, and remembered those that never sleep: a minute for 20 000.
+    let places = vec![Place { position: Vec2::ZERO, angle: Angle::ZERO }; 50_000];
+    let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).unwrap());
+    let spawn = Command::SpawnEach { body: BodyDef::fixed(), shapes: vec![ball], places };
+    let game = Sandbox::new(&SandboxSetup { config: Config::default(), commands: vec![spawn] });
+    assert_eq!(game.unwrap().world().body_count(), 50_000);
+}
+
+#[test]
+fn a_shape_that_comes_wakes_who_lies_where_it_comes() {
+    // Only the new shape is looked at, not all that its body has.
+    let mut world = World::default();
+    let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).unwrap());
+    let ground = world.spawn(&BodyDef::fixed(), &[ball]).unwrap();
+    let [near, far] = [fx!(10), fx!(20)].map(|x| BodyDef::dynamic().position(x, fx!(0)).asleep());
+    let (near, far) = (world.spawn(&near, &[ball]).unwrap(), world.spawn(&far, &[ball]).unwrap());
+    world.add_shape(ground, &ball.offset(fx!(10), fx!(0.5))).unwrap();
+    let sleeps = |body| world.body(body).unwrap().is_asleep();
+    assert!(!sleeps(near) && sleeps(far));
 }

@@ -126,7 +126,7 @@ impl World {
         let id = self.insert_shape(body, shape);
         // The centre of mass may have moved, and with it, by a rounding, the places of the other shapes.
         self.placed(body.slot());
-        islands::disturb(&mut self.state, &mut self.scratch, body.slot());
+        islands::disturb_around(&mut self.state, &mut self.scratch, id.slot());
         Ok(id)
     }
 
@@ -273,6 +273,7 @@ impl World {
         let body = self.state.bodies.at(slot);
         self.scratch.place(&self.state, body);
         self.scratch.changes.body(body);
+        self.scratch.kinematic |= body.kind() == BodyKind::Kinematic;
         self.scratch.roster.invalidate();
     }
 

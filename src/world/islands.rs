@@ -303,16 +303,28 @@ pub(super) fn wake_body(state: &mut State, scratch: &mut Scratch, slot: u32) {
 /// Wakes a body and everything whose boxes overlap its own: it is about to change, or has just changed.
 pub(super) fn disturb(state: &mut State, scratch: &mut Scratch, slot: u32) {
     wake_body(state, scratch, slot);
-    let mut neighbours = Vec::new();
-    for id in state.bodies.at(slot).shapes() {
-        scratch.broad_phase.each_overlap(state.shapes.at(id.slot()).fat, |other| {
-            let body = state.shapes.at(other).body().slot();
-            if !state.bodies.at(body).is_active() {
-                neighbours.push(body);
-            }
-            ControlFlow::Continue(())
-        });
+    for index in 0..state.bodies.at(slot).shapes().len() {
+        let shape = state.bodies.at(slot).shapes()[index];
+        disturb_around(state, scratch, shape.slot());
     }
+}
+
+/// Wakes everything whose boxes overlap that of a shape.
+pub(super) fn disturb_around(state: &mut State, scratch: &mut Scratch, shape: u32) {
+    // Only who sleeps and kinematic bodies at rest can be woken. Many shapes may lie here, and most worlds that are
+    // being set up have neither.
+    if state.islands.len() == 0 && !scratch.kinematic {
+        return;
+    }
+    let mut neighbours = Vec::new();
+    scratch.broad_phase.each_overlap(state.shapes.at(shape).fat, |other| {
+        let slot = state.shapes.at(other).body().slot();
+        let body = state.bodies.at(slot);
+        if body.kind() != BodyKind::Fixed && !body.is_active() {
+            neighbours.push(slot);
+        }
+        ControlFlow::Continue(())
+    });
     // The broad phase finds them in any order.
     neighbours.sort_unstable();
     for body in neighbours {

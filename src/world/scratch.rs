@@ -7,7 +7,7 @@ use super::events::Events;
 use super::islands::{Roster, UnionFind};
 use super::state::State;
 use super::stats::StepStats;
-use crate::body::{Body, Handle};
+use crate::body::{Body, BodyKind, Handle};
 use crate::collision::{
     AxisHint, BroadPhase, BroadPhaseKind, Contact, Manifold, Pair, PosedShape, SatCounters,
 };
@@ -21,6 +21,8 @@ pub(crate) struct Scratch {
     /// What has changed since the last look at the pairs.
     pub(crate) changes: Changes,
     pub(crate) roster: Roster,
+    /// Whether there may be kinematic bodies.
+    pub(crate) kinematic: bool,
     pub(crate) union: UnionFind,
     /// The fast bodies of the tick.
     pub(crate) swept: Vec<Swept>,
@@ -90,6 +92,7 @@ impl Scratch {
             poses: Poses::default(),
             changes: Changes { everything: true, ..Changes::default() },
             roster: Roster::default(),
+            kinematic: state.bodies.iter().any(|(_, body)| body.kind() == BodyKind::Kinematic),
             union: UnionFind::default(),
             swept: Vec::new(),
             pairs: Vec::new(),

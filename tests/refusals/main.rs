@@ -1,7 +1,10 @@
 //! Bad input gets a typed error and leaves the world as it was.
 
+mod changes;
+
 use lockstep2d::body::{
-    BodyDef, BodyKind, Filter, Geometry, GeometryError, MassSource, Material, Polygon, ShapeDef, WorldError,
+    BodyDef, BodyKind, Chain, Filter, Geometry, GeometryError, MassSource, Material, Polygon, ShapeDef,
+    WorldError,
 };
 use lockstep2d::fx;
 use lockstep2d::math::{Angle, Fx, Vec2};
@@ -65,6 +68,12 @@ fn shapes_out_of_range_are_refused() {
     assert!(matches!(Polygon::new(&concave), Err(GeometryError::NotConvex { .. })));
     let line = [point(fx!(0), fx!(0)), point(fx!(1), fx!(1)), point(fx!(2), fx!(2))];
     assert!(matches!(Polygon::new(&line), Err(GeometryError::NotConvex { .. })));
+    let close = [point(fx!(0), fx!(0)), point(fx!(1), fx!(0)), point(fx!(1), fx!(0.0001))];
+    assert!(matches!(Polygon::new(&close), Err(GeometryError::ShortEdge { vertex: 1 })));
+    assert!(matches!(Chain::new(&line[..1]).links(), Err(GeometryError::ChainLength { points: 1 })));
+    let two = [Material::default(); 2];
+    let uneven = Chain::new(&line[..2]).materials(&two).links();
+    assert!(matches!(uneven, Err(GeometryError::MaterialCount { links: 1, materials: 2 })));
     assert!(matches!(Polygon::hull(&line), Err(GeometryError::VertexCount { .. })));
     assert!(matches!(Polygon::hull(&[]), Err(GeometryError::VertexCount { count: 0 })));
     assert!(matches!(Geometry::circle(fx!(0)), Err(GeometryError::SizeOutOfRange { .. })));
@@ -93,7 +102,7 @@ fn bodies_out_of_range_are_refused() {
     stage.refuses(spawn(BodyDef::dynamic().velocity(fx!(300), fx!(300)), ball()), fast);
     stage.refuses(spawn(BodyDef::dynamic().angular_velocity(Fx::MIN), ball()), fast);
     let offset = |error: &WorldError| matches!(error, WorldError::OffsetOutOfRange { .. });
-    stage.refuses(spawn(BodyDef::dynamic(), ball().offset(fx!(257), fx!(0))), offset);
+    stage.refuses(spawn(BodyDef::dynamic(), ball().offset(fx!(129), fx!(0))), offset);
     stage.refuses(spawn(BodyDef::fixed(), ball().offset(Fx::MIN, fx!(0))), offset);
     let material = |error: &WorldError| matches!(error, WorldError::MaterialOutOfRange);
     stage.refuses(spawn(BodyDef::dynamic(), ball().friction(fx!(-0.1))), material);
@@ -228,6 +237,27 @@ fn settings_out_of_range_are_named() {
         ("body_limit", Config { body_limit: u32::MAX, ..Config::default() }),
         ("sub_steps", Config { solver: SolverSettings { sub_steps: 0, ..solver }, ..Config::default() }),
         ("tick_rate x sub_steps", Config { tick_rate: 1000, ..Config::default() }),
+        ("speculative_distance", Config { speculative_distance: fx!(2), ..Config::default() }),
+        ("hit_speed", Config { hit_speed: fx!(-1), ..Config::default() }),
+        ("shape_limit", Config { shape_limit: u32::MAX, ..Config::default() }),
+        ("joint_limit", Config { joint_limit: u32::MAX, ..Config::default() }),
+        ("pair_limit", Config { pair_limit: u32::MAX, ..Config::default() }),
+        ("iterations", Config { solver: SolverSettings { iterations: 0, ..solver }, ..Config::default() }),
+        (
+            "joint_hertz",
+            Config { solver: SolverSettings { joint_hertz: Fx::MAX, ..solver }, ..Config::default() },
+        ),
+        (
+            "joint_damping_ratio",
+            Config { solver: SolverSettings { joint_damping_ratio: Fx::MIN, ..solver }, ..Config::default() },
+        ),
+        (
+            "restitution_threshold",
+            Config {
+                solver: SolverSettings { restitution_threshold: Fx::MIN, ..solver },
+                ..Config::default()
+            },
+        ),
         ("contact", Config { solver: SolverSettings { contact: soft, ..solver }, ..Config::default() }),
         (
             "speed_max",
