@@ -156,7 +156,6 @@ impl BroadPhase {
     }
 
     /// Calls `visit` with every slot whose box overlaps the area, in no particular order, until it breaks.
-    #[cfg_attr(not(test), expect(dead_code, reason = "for queries"))]
     pub(crate) fn each_overlap(&self, area: Aabb, visit: impl FnMut(u32) -> ControlFlow<()>) {
         self.search(Overlap { area, visit });
     }
@@ -164,14 +163,12 @@ impl BroadPhase {
     /// Calls `visit` with every slot whose box the area touches when it moves along the translation, nearer ones
     /// rather earlier, and perhaps with some that it only just misses. It returns the largest fraction of the
     /// translation that is still of interest; 0 ends the search.
-    #[cfg_attr(not(test), expect(dead_code, reason = "for queries"))]
     pub(crate) fn each_along(&self, area: Aabb, translation: Vec2<Fx>, visit: impl FnMut(u32) -> Unit) {
         self.search(Along::new(area, translation, visit));
     }
 
     /// Calls `visit` with every slot whose box is within the radius of the point, nearer ones rather earlier. It
     /// returns the radius that is still of interest; a negative one ends the search.
-    #[cfg_attr(not(test), expect(dead_code, reason = "for queries"))]
     pub(crate) fn each_near(&self, point: Vec2<Fx>, radius: Fx, visit: impl FnMut(u32) -> Fx) {
         self.search(Near { point, radius, visit });
     }

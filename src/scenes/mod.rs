@@ -1,6 +1,7 @@
 //! Scenes as plain data, built once and shared by tests, replays, examples and benchmarks.
 
 mod builder;
+mod character;
 mod drum;
 mod elementary;
 mod joints;
@@ -77,4 +78,5 @@ pub const ALL: &[Scene] = &[
     joints::LONG_ARM,
     joints::CHAIN,
     joints::JOINT_GRID,
+    character::CHARACTER,
 ];

@@ -60,9 +60,7 @@ pub(super) fn find_sleepers(state: &State, scratch: &mut Scratch, first_change: 
     let moved = Moved::Slots(&changes.shapes[first_change..]);
     let wanted = |pair: Pair| {
         let (a, b) = state.bodies_of(pair);
-        a.is_asleep() != b.is_asleep()
-            && state.sensor_of(pair).is_none()
-            && may_touch(state, joined, pair)
+        a.is_asleep() != b.is_asleep() && state.sensor_of(pair).is_none() && may_touch(state, joined, pair)
     };
     broad_phase.pairs(moved, wanted, state.config.pair_limit as usize, pairs);
 }
