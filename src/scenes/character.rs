@@ -58,8 +58,8 @@ fn play(tick: u64, game: &Sandbox) -> Option<Vec<Command>> {
     let mover = Mover::new(pill().ok()?).ok()?.step_height(fx!(0.3)).snap_distance(fx!(0.3));
     let filter = QueryFilter::default().except(id);
     let mut state = recall(body);
-    let planes = world.collide_mover(&mover.probe(state.position), fx!(0.001), filter);
-    if state.velocity.y == 0 {
+    if body.user_data() & ON_GROUND != 0 {
+        let planes = world.collide_mover(&mover.probe(state.position), fx!(0.3), filter);
         state.ground = planes.into_iter().max_by_key(|plane| plane.normal.y);
     }
 
@@ -71,14 +71,18 @@ fn play(tick: u64, game: &Sandbox) -> Option<Vec<Command>> {
     Some(remember(id, world.move_character(&mover, &state, filter).state).into())
 }
 
-/// The character, from the body and the speed upwards that it carries.
+/// A bit of the body's user data; the others are the speed upwards, whose last bit does not matter.
+const ON_GROUND: u64 = 1;
+
+/// The character, from the body and what it carries.
 fn recall(body: &Body) -> MoverState {
-    let upwards = Fx::from_bits(i64::from_ne_bytes(body.user_data().to_ne_bytes()));
+    let upwards = Fx::from_ne_bytes((body.user_data() & !ON_GROUND).to_ne_bytes());
     MoverState { velocity: Vec2::new(Fx::ZERO, upwards), ..MoverState::at(body.position()) }
 }
 
 fn remember(body: BodyId, state: MoverState) -> [Command; 2] {
-    let user_data = u64::from_ne_bytes(state.velocity.y.to_ne_bytes());
+    let upwards = u64::from_ne_bytes(state.velocity.y.to_ne_bytes());
+    let user_data = (upwards & !ON_GROUND) | u64::from(state.is_on_ground());
     [
         Command::MoveTo { body, position: state.position, angle: Angle::ZERO },
         Command::SetUserData { body, user_data },
