@@ -181,6 +181,23 @@ fn jumps_end_at_ceilings_and_pass_platforms_from_below() {
     assert!(state.is_on_ground() && (state.position.y - fx!(2.2001)).abs() < fx!(0.00001), "{state:?}");
 }
 
+#[test]
+fn one_way_shapes_are_jumped_through_and_stood_upon() {
+    let mut world = chain(&[(fx!(-20), fx!(0)), (fx!(20), fx!(0))]);
+    let slab = ShapeDef::new(Polygon::rectangle(fx!(2), fx!(0.25)).expect("valid")).one_way(Angle::QUARTER);
+    world.spawn(&BodyDef::fixed().position(fx!(0), fx!(1.5)), &[slab]).expect("valid");
+    let mut state = MoverState::at(at(fx!(0), fx!(0.7001)));
+    // 3 m/s are not enough: it turns round within the slab, and falls back.
+    for (speed, end) in [(fx!(3), fx!(0.7001)), (fx!(8), fx!(2.4501))] {
+        state.velocity.y = speed;
+        for _ in 0..150 {
+            state.velocity.y -= fx!(1 / 6);
+            state = world.move_character(&pill(), &state, QueryFilter::default()).state;
+        }
+        assert!(state.is_on_ground() && (state.position.y - end).abs() < fx!(0.00001), "{state:?}");
+    }
+}
+
 /// Random levels of boxes, circles, capsules and lines, random walks: no shape is ever entered.
 #[test]
 fn random_walks_enter_nothing() {

@@ -4,7 +4,7 @@
 use lockstep2d::body::{BodyDef, BodyId, Geometry, JointId, Polygon, ShapeDef, ShapeId, WorldError};
 use lockstep2d::fx;
 use lockstep2d::math::Rng;
-use lockstep2d::solver::RevoluteDef;
+use lockstep2d::solver::{JointDef, Revolute};
 use lockstep2d::world::World;
 
 /// A world under churn, with every handle it ever gave.
@@ -51,7 +51,7 @@ impl Churn {
             alive[rng.below(u32::try_from(alive.len()).expect("few")) as usize]
         };
         let (a, b) = (pick(&mut self.rng, &self.alive), pick(&mut self.rng, &self.alive));
-        match self.world.add_joint(&RevoluteDef::new(a, b).into()) {
+        match self.world.add_joint(&JointDef::new(a, b, Revolute::new())) {
             Ok(id) => self.joints.push(id),
             Err(error) => assert_eq!(error, WorldError::JointToItself(a)),
         }

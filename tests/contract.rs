@@ -115,7 +115,8 @@ fn scratch_may_be_cleared_before_any_tick() {
 fn the_broad_phase_makes_no_difference() {
     each_scene(|scene, ticks, reference| {
         // Brute force compares each shape with each: a few ticks of the largest scenes are enough.
-        let ticks = if scene.setup(common::SEED).commands.len() > 4000 { 5 } else { ticks };
+        let start = Sandbox::new(&scene.setup(common::SEED)).expect("the scenes of this crate are valid");
+        let ticks = if start.world().shape_count() > 2000 { 5 } else { ticks };
         let brute_force = |tick: u64, game: &mut Sandbox| {
             if tick == 0 {
                 game.world_mut().set_broad_phase(BroadPhaseKind::BruteForce);

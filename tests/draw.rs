@@ -6,7 +6,7 @@ use lockstep2d::draw::{
 };
 use lockstep2d::fx;
 use lockstep2d::math::{Aabb, Angle, Fx, Vec2};
-use lockstep2d::solver::RevoluteDef;
+use lockstep2d::solver::{JointDef, Revolute};
 use lockstep2d::world::World;
 
 const GROUND_TOP: Fx = fx!(0);
@@ -25,7 +25,7 @@ fn build_scene() -> Result<World, WorldError> {
     let post = world.spawn(&BodyDef::fixed().position(fx!(3), fx!(4)), &[])?;
     let bob = ShapeDef::new(Geometry::circle(fx!(0.25))?);
     let bob = world.spawn(&BodyDef::dynamic().position(fx!(4.5), fx!(4)), &[bob])?;
-    world.add_joint(&RevoluteDef::new(post, bob).anchor_b(fx!(-1.5), fx!(0)).into())?;
+    world.add_joint(&JointDef::new(post, bob, Revolute::new()).anchor_b(fx!(-1.5), fx!(0)))?;
     let lift = ShapeDef::new(Polygon::rectangle(fx!(0.5), fx!(0.1))?.rounded(fx!(0.1))?);
     let lift_def = BodyDef::kinematic().position(fx!(-3), fx!(1)).velocity(fx!(0), fx!(1));
     world.spawn(&lift_def, &[lift])?;

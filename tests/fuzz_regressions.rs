@@ -6,7 +6,7 @@
 use lockstep2d::body::{BodyDef, Geometry, MassSource, Polygon, ShapeDef, WORLD_EXTENT_MAX};
 use lockstep2d::lockstep::{Game, Sandbox, SandboxSetup};
 use lockstep2d::math::{Angle, Fx, Vec2};
-use lockstep2d::solver::RevoluteDef;
+use lockstep2d::solver::{JointDef, Revolute};
 use lockstep2d::world::{Command, Config, World};
 use lockstep2d::{codec, fx};
 
@@ -201,7 +201,7 @@ fn joints_that_pull_with_all_they_have_leave_no_velocity_at_the_end_of_its_forma
         let mass = MassSource::Given { mass: fx!(1), centre: Vec2::ZERO, gyration: fx!(0.4) };
         let body = BodyDef::dynamic().position(fx!(400), fx!(400)).angle(Angle::from_bits(turn << 26));
         let body = world.spawn(&body.velocity(fx!(-280), fx!(-280)).mass(mass), &[]).unwrap();
-        world.add_joint(&RevoluteDef::new(post, body).anchor_b(fx!(4), fx!(0)).into()).unwrap();
+        world.add_joint(&JointDef::new(post, body, Revolute::new()).anchor_b(fx!(4), fx!(0))).unwrap();
         for _ in 0..20 {
             world.step();
             world.validate().unwrap();

@@ -5,7 +5,10 @@ use lockstep2d::body::{
 };
 use lockstep2d::fx;
 use lockstep2d::math::{Angle, Fx, Vec2};
-use lockstep2d::solver::{ContactTuning, RevoluteDef, SolverSettings};
+use lockstep2d::solver::{
+    ContactTuning, Distance, JointDef, JointKind, Limit, Motor, Prismatic, Revolute, SolverSettings,
+    Threshold, Weld, Wheel,
+};
 use lockstep2d::world::{Command, Config, World};
 
 fn ball() -> ShapeDef {
@@ -36,7 +39,7 @@ impl Stage {
     }
 
     /// The command is refused with this error, the world keeps its hash, and goes on like one that was not asked.
-    fn refuses(&mut self, command: Command, matches: fn(&WorldError) -> bool) {
+    fn refuses(&mut self, command: Command, matches: impl Fn(&WorldError) -> bool) {
         let before = self.world.state_hash();
         let mut unasked = self.world.clone();
         let error = self.world.execute(&command).expect_err("refused");
@@ -124,10 +127,11 @@ fn stale_handles_are_refused() {
     stage.refuses(Command::SetVelocity { body: gone, velocity: zero, angular_velocity: fx!(0) }, stale);
     stage.refuses(Command::SetTransform { body: gone, position: zero, angle: Angle::ZERO }, stale);
     let ball = stage.ball;
-    stage.refuses(Command::AddJoint { joint: RevoluteDef::new(ball, gone).into() }, stale);
-    stage.refuses(Command::AddJoint { joint: RevoluteDef::new(gone, ball).into() }, stale);
+    stage.refuses(Command::AddJoint { joint: JointDef::new(ball, gone, Revolute::new()) }, stale);
+    stage.refuses(Command::AddJoint { joint: JointDef::new(gone, ball, Revolute::new()) }, stale);
 
-    let joint = stage.world.add_joint(&RevoluteDef::new(stage.ball, stage.floor).into()).expect("valid");
+    let joint =
+        stage.world.add_joint(&JointDef::new(stage.ball, stage.floor, Revolute::new())).expect("valid");
     stage.world.remove_joint(joint).expect("there");
     stage.refuses(Command::RemoveJoint { joint }, |error| matches!(error, WorldError::StaleJoint(_)));
     let shape = stage.world.add_shape(stage.ball, &self::ball()).expect("valid");
@@ -153,16 +157,17 @@ fn what_a_body_cannot_do_is_refused() {
     stage.refuses(Command::SetVelocity { body: ball, velocity, angular_velocity: fx!(0) }, fast);
     let far = |error: &WorldError| matches!(error, WorldError::PositionOutOfRange { .. });
     stage.refuses(Command::SetTransform { body: ball, position: velocity, angle: Angle::ZERO }, far);
-    stage.refuses(Command::AddJoint { joint: RevoluteDef::new(ball, ball).into() }, |error| {
+    stage.refuses(Command::AddJoint { joint: JointDef::new(ball, ball, Revolute::new()) }, |error| {
         matches!(error, WorldError::JointToItself(_))
     });
-    stage.refuses(Command::AddJoint { joint: RevoluteDef::new(floor, lift).into() }, |error| {
+    stage.refuses(Command::AddJoint { joint: JointDef::new(floor, lift, Revolute::new()) }, |error| {
         matches!(error, WorldError::JointWithoutDynamicBody)
     });
-    let long = RevoluteDef::new(floor, ball).anchor_a(fx!(300), fx!(0));
-    stage.refuses(Command::AddJoint { joint: long.into() }, |error| {
+    let long = JointDef::new(floor, ball, Revolute::new()).anchor_a(fx!(300), fx!(0));
+    stage.refuses(Command::AddJoint { joint: long }, |error| {
         matches!(error, WorldError::OffsetOutOfRange { .. })
     });
+    refuses_impossible_joints(&mut stage);
     stage.refuses(Command::SetGravity { gravity: velocity }, |error| {
         matches!(error, WorldError::Setting { .. })
     });
@@ -170,6 +175,32 @@ fn what_a_body_cannot_do_is_refused() {
     stage.refuses(Command::RemoveShape { shape: only }, |error| {
         matches!(error, WorldError::MassOutOfRange { .. })
     });
+}
+
+fn refuses_impossible_joints(stage: &mut Stage) {
+    let (one, two) = (fx!(1), fx!(2));
+    let pushes = Distance { spring_force: Some(Limit { lower: one, upper: two }), ..Distance::new() };
+    let kinds: [(JointKind, &str); 12] = [
+        (Revolute::new().limit(two, one).into(), "limit"),
+        (Revolute::new().spring(fx!(0), one, one).into(), "spring"),
+        (Revolute::new().spring(one, fx!(-1), one).into(), "spring"),
+        (Prismatic::new().motor(one, fx!(-1)).into(), "motor"),
+        (Wheel::new().motor(Fx::MAX, one).into(), "motor"),
+        (Distance::rod(fx!(0)).into(), "length"),
+        (Distance::rope(fx!(-1)).into(), "limit"),
+        (Distance::new().spring(one, one, fx!(-1)).into(), "spring"),
+        (pushes.into(), "spring force"),
+        (Weld::rigid().angular(fx!(1001), one).into(), "spring"),
+        (Motor::new().linear(Vec2::new(one, Fx::MIN), one).into(), "motor"),
+        (Motor::new().linear_spring(one, one, fx!(-1)).into(), "spring"),
+    ];
+    for (kind, what) in kinds {
+        let joint = JointDef::new(stage.floor, stage.ball, kind);
+        stage.refuses(Command::AddJoint { joint }, |error| *error == WorldError::JointOutOfRange { what });
+    }
+    let threshold = Threshold { force: Some(fx!(-1)), ..Threshold::NONE };
+    let joint = JointDef::new(stage.floor, stage.ball, JointKind::Filter).threshold(threshold);
+    stage.refuses(Command::AddJoint { joint }, |error| matches!(error, WorldError::JointOutOfRange { .. }));
 }
 
 #[test]
@@ -181,8 +212,8 @@ fn a_full_world_refuses_more() {
     assert_eq!(too_many, Err(WorldError::Full { what: "shapes", limit: 3 }));
     let b = world.spawn(&BodyDef::dynamic(), &[ball()]).expect("room");
     assert_eq!(world.spawn(&BodyDef::fixed(), &[]), Err(WorldError::Full { what: "bodies", limit: 2 }));
-    world.add_joint(&RevoluteDef::new(a, b).into()).expect("room");
-    let second = world.add_joint(&RevoluteDef::new(a, b).into());
+    world.add_joint(&JointDef::new(a, b, Revolute::new())).expect("room");
+    let second = world.add_joint(&JointDef::new(a, b, Revolute::new()));
     assert_eq!(second, Err(WorldError::Full { what: "joints", limit: 1 }));
 }
 

@@ -13,7 +13,7 @@ use lockstep2d::fx;
 use lockstep2d::hash::StateHash;
 use lockstep2d::lockstep::{Game, Sandbox, SandboxSetup};
 use lockstep2d::math::{Angle, Vec2};
-use lockstep2d::solver::{ContactTuning, RevoluteDef, SolverSettings};
+use lockstep2d::solver::{ContactTuning, JointDef, Revolute, SolverSettings};
 use lockstep2d::world::{Command, Config, Section, World};
 
 /// Reads a world's bytes from front to back and writes down what each of them is.
@@ -267,7 +267,7 @@ fn example() -> Result<World, WorldError> {
     let ball = ShapeDef::new(Geometry::circle(fx!(0.5))?).user_data(7);
     let ball = world.spawn(&BodyDef::dynamic().position(fx!(1), fx!(0.5)), &[ball])?;
     world.despawn(removed)?;
-    world.add_joint(&RevoluteDef::new(ground, ball).anchor_a(fx!(1), fx!(0.5)).colliding().into())?;
+    world.add_joint(&JointDef::new(ground, ball, Revolute::new()).anchor_a(fx!(1), fx!(0.5)).colliding())?;
     world.step();
     world.step();
     Ok(world)
@@ -377,7 +377,7 @@ fn handles() -> Result<(BodyId, ShapeId, JointId, BodyId), WorldError> {
     let first = world.spawn(&BodyDef::dynamic(), &[ball])?;
     world.despawn(first)?;
     let body = world.spawn(&BodyDef::dynamic(), &[ball])?;
-    let joint = world.add_joint(&RevoluteDef::new(other, body).into())?;
+    let joint = world.add_joint(&JointDef::new(other, body, Revolute::new()))?;
     let shape = world.body(body).expect("just spawned").shapes()[0];
     Ok((body, shape, joint, other))
 }
@@ -391,6 +391,7 @@ fn the_bytes_of_commands_are_those_of_the_document() {
         friction_mixing: Mixing::Minimum,
         restitution: fx!(1),
         restitution_mixing: Mixing::Product,
+        ..Material::default()
     };
     let filter = Filter { category: 4, mask: 5, group: -6 };
     let corners = [Vec2::new(fx!(0), fx!(0)), Vec2::new(fx!(2), fx!(0)), Vec2::new(fx!(0), fx!(2))];
@@ -408,7 +409,10 @@ fn the_bytes_of_commands_are_those_of_the_document() {
     let def = def.velocity(fx!(1), fx!(2)).angular_velocity(fx!(3)).linear_damping(fx!(4)).user_data(8);
     let def_bytes =
         w().u32(1).fx(&[10, 12]).u32(7).fx(&[2, 4, 6]).u32(1).fx(&[4, 2, -1, 1]).fx(&[8, 0, 2]).u64(8);
-    let hinge = RevoluteDef::new(other, body).anchor_a(fx!(1), fx!(2)).anchor_b(fx!(3), fx!(4)).colliding();
+    let hinge = JointDef::new(other, body, Revolute::new())
+        .anchor_a(fx!(1), fx!(2))
+        .anchor_b(fx!(3), fx!(4))
+        .colliding();
 
     let id = || w().u32(1).u32(1);
     let shape_id = || w().u32(0).u32(1);
@@ -421,7 +425,7 @@ fn the_bytes_of_commands_are_those_of_the_document() {
         (Command::AddShape { body, shape: polygon }, w().u32(2).then(id()).then(polygon_bytes())),
         (Command::RemoveShape { shape }, w().u32(3).then(shape_id())),
         (
-            Command::AddJoint { joint: hinge.into() },
+            Command::AddJoint { joint: hinge },
             w().u32(4).u32(0).u32(0).u32(0).then(id()).fx(&[2, 4, 6, 8]).u8(1),
         ),
         (Command::RemoveJoint { joint }, w().u32(5).u32(0).u32(0)),

@@ -4,8 +4,9 @@ use alloc::vec::Vec;
 
 use super::error::GeometryError;
 use super::filter::Filter;
+use super::geometry::{Geometry, Sides};
 use super::material::Material;
-use super::shape::{Geometry, SHAPES_PER_BODY_MAX, ShapeDef, Sides};
+use super::shape::{SHAPES_PER_BODY_MAX, ShapeDef};
 use crate::math::{Fx, Vec2};
 
 /// A line through points, made of a [`Geometry::Link`] for each stretch. Links know their neighbours, so that what

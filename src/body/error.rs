@@ -102,7 +102,8 @@ pub enum WorldError {
         /// The density in kg/m².
         value: Fx,
     },
-    /// Friction is not within 0 to 16, or restitution not within 0 to 1.
+    /// Friction is not within 0 to 16, restitution or rolling resistance not within 0 to 1, or a surface speed not
+    /// within ±400 m/s.
     MaterialOutOfRange,
     /// A dynamic body's mass is not within 10 mg to 2^30 kg: it has no shape with area and density, or too much.
     MassOutOfRange {
@@ -130,6 +131,11 @@ pub enum WorldError {
     JointWithoutDynamicBody,
     /// A joint stays between its bodies as long as it lives.
     JointOfOtherBodies(JointId),
+    /// Something of a joint is out of range.
+    JointOutOfRange {
+        /// What.
+        what: &'static str,
+    },
     /// A world setting is out of range.
     Setting {
         /// Which one.
@@ -165,7 +171,10 @@ impl fmt::Display for WorldError {
             }
             WorldError::SpeedOutOfRange { value } => write!(f, "speed {value} is above the world's limit"),
             WorldError::DensityOutOfRange { value } => write!(f, "density {value} kg/m² is out of range"),
-            WorldError::MaterialOutOfRange => write!(f, "friction is 0 to 16 and restitution 0 to 1"),
+            WorldError::MaterialOutOfRange => write!(
+                f,
+                "friction is 0 to 16, restitution and rolling resistance are 0 to 1, and surface speed is within ±400 m/s"
+            ),
             WorldError::MassOutOfRange { value } => {
                 write!(
                     f,
@@ -184,6 +193,7 @@ impl fmt::Display for WorldError {
             WorldError::JointToItself(id) => write!(f, "a joint between body {id} and itself"),
             WorldError::JointWithoutDynamicBody => write!(f, "neither body of the joint is dynamic"),
             WorldError::JointOfOtherBodies(id) => write!(f, "joint {id} is between other bodies"),
+            WorldError::JointOutOfRange { what } => write!(f, "the {what} of a joint is out of range"),
             WorldError::Setting { name } => write!(f, "the world setting `{name}` is out of range"),
             WorldError::Full { what, limit } => write!(f, "the world already holds {limit} {what}"),
             WorldError::WrongKind(id) => write!(f, "body {id} is not of a kind that can do this"),

@@ -15,8 +15,9 @@
 use serde::{Deserialize, Serialize};
 
 use super::error::WorldError;
+use super::geometry::Geometry;
 use super::polygon::Polygon;
-use super::shape::{Geometry, ShapeDef};
+use super::shape::ShapeDef;
 use crate::fx;
 use crate::math::{Fx, PI, Reciprocal, Unit, Vec2, div_round, fx_mul, saturate_wide};
 

@@ -57,16 +57,27 @@ pub struct Material {
     pub restitution: Fx,
     /// How the restitution of two shapes combines.
     pub restitution_mixing: Mixing,
+    /// How much a round shape resists rolling, 0 to 1: the distance by which the ground pushes back before its axle,
+    /// as a share of its radius. Of two shapes the larger value counts, and the larger radius: that of a circle or
+    /// capsule, or by which a polygon is rounded. A wheel that only rolls on level ground loses
+    /// `rolling_resistance g / (1 + k^2 / r^2)` of speed per second.
+    pub rolling_resistance: Fx,
+    /// How fast the surface runs around the shape, clockwise, in m/s, ±400: the upper side of a conveyor belt carries
+    /// things to the right with its speed. The speeds of two shapes add up.
+    pub surface_speed: Fx,
 }
 
 impl Default for Material {
-    /// Friction 0.6 mixed as the geometric mean, no restitution, mixed as the maximum.
+    /// Friction 0.6 mixed as the geometric mean, no restitution, mixed as the maximum, a surface at rest that does not
+    /// resist rolling.
     fn default() -> Self {
         Material {
             friction: fx!(0.6),
             friction_mixing: Mixing::GeometricMean,
             restitution: Fx::ZERO,
             restitution_mixing: Mixing::Maximum,
+            rolling_resistance: Fx::ZERO,
+            surface_speed: Fx::ZERO,
         }
     }
 }
@@ -75,11 +86,25 @@ impl Material {
     /// The largest friction coefficient.
     pub const FRICTION_MAX: Fx = fx!(16);
 
-    /// Whether friction and restitution are in range.
+    /// The fastest surface in m/s, in either direction.
+    pub const SURFACE_SPEED_MAX: Fx = fx!(400);
+
+    /// Whether all properties are in range.
     #[must_use]
     pub fn is_valid(&self) -> bool {
-        let Material { friction, friction_mixing: _, restitution, restitution_mixing: _ } = *self;
-        (Fx::ZERO..=Self::FRICTION_MAX).contains(&friction) && (Fx::ZERO..=Fx::ONE).contains(&restitution)
+        let Material {
+            friction,
+            friction_mixing: _,
+            restitution,
+            restitution_mixing: _,
+            rolling_resistance,
+            surface_speed,
+        } = *self;
+        let fraction = Fx::ZERO..=Fx::ONE;
+        (Fx::ZERO..=Self::FRICTION_MAX).contains(&friction)
+            && fraction.contains(&restitution)
+            && fraction.contains(&rolling_resistance)
+            && (-Self::SURFACE_SPEED_MAX..=Self::SURFACE_SPEED_MAX).contains(&surface_speed)
     }
 
     /// The friction between two surfaces.

@@ -6,7 +6,9 @@ mod body;
 mod body_def;
 mod chain;
 mod error;
+mod event_switches;
 mod filter;
+mod geometry;
 mod mass;
 mod material;
 mod polygon;
@@ -21,12 +23,11 @@ pub(crate) use body_def::check_position;
 pub use body_def::{BodyDef, BodyKind};
 pub use chain::Chain;
 pub use error::{GeometryError, WorldError};
+pub use event_switches::EventSwitches;
 pub use filter::Filter;
+pub use geometry::{Geometry, Sides};
 pub use mass::{MassProperties, MassSource};
 pub use material::{Material, Mixing};
 pub use polygon::{POLYGON_VERTICES_MAX, Polygon, SHAPE_EXTENT_MAX};
 pub use settings::{BodySettings, Continuous, MotionLocks};
-pub use shape::{
-    DENSITY_MAX, EventSwitches, Geometry, REACH_MAX, SHAPES_PER_BODY_MAX, Shape, ShapeDef, Sides,
-    WORLD_EXTENT_MAX,
-};
+pub use shape::{DENSITY_MAX, REACH_MAX, SHAPES_PER_BODY_MAX, Shape, ShapeDef, WORLD_EXTENT_MAX};

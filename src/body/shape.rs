@@ -3,12 +3,13 @@
 use serde::{Deserialize, Serialize};
 
 use super::arena::BodyId;
-use super::error::{GeometryError, WorldError};
+use super::error::WorldError;
+use super::event_switches::EventSwitches;
 use super::filter::Filter;
+use super::geometry::Geometry;
 use super::material::Material;
-use super::polygon::{Polygon, SHAPE_EXTENT_MAX};
 use crate::fx;
-use crate::math::{Aabb, Fx, Vec2};
+use crate::math::{Aabb, Angle, Fx, Vec2};
 
 /// Coordinates in the world stay within ± this many metres, so that sums of a few of them cannot overflow.
 pub const WORLD_EXTENT_MAX: Fx = fx!(1073741824);
@@ -23,176 +24,6 @@ pub const SHAPES_PER_BODY_MAX: u32 = 4096;
 
 /// The largest density in kg/m².
 pub const DENSITY_MAX: Fx = fx!(1048576);
-
-/// The shortest circle radius and segment length in metres.
-const SIZE_MIN: Fx = fx!(0.002);
-
-/// What a shape looks like, about its own centre.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Geometry {
-    /// A disc about the shape's centre.
-    Circle {
-        /// 0.002 to 110 m.
-        radius: Fx,
-    },
-    /// A line between two points, solid from both sides. It has no area, and so no mass. Segments do not collide
-    /// with each other. May be as long as the world.
-    Segment {
-        /// One end, in metres from the shape's centre.
-        a: Vec2<Fx>,
-        /// The other end.
-        b: Vec2<Fx>,
-    },
-    /// A convex polygon, optionally rounded.
-    Polygon(Polygon),
-    /// Everything within a radius of the line between two points: a pill, or a stick with round ends.
-    Capsule {
-        /// The centre of one round end, in metres from the shape's centre.
-        a: Vec2<Fx>,
-        /// The centre of the other, at least 2 mm away.
-        b: Vec2<Fx>,
-        /// 0.002 m or more. The capsule reaches at most 110 m from the shape's centre on each axis.
-        radius: Fx,
-    },
-    /// A line between two points that is part of a chain: see [`Chain`](super::Chain), which makes them. Like a
-    /// segment it has no area, does not collide with lines, and may be as long as the world. Where it has a
-    /// neighbour it pushes only in directions that the chain as a whole allows.
-    Link {
-        /// One end, in metres from the shape's centre.
-        a: Vec2<Fx>,
-        /// The other end.
-        b: Vec2<Fx>,
-        /// The other end of the neighbour that ends at `a`.
-        before: Option<Vec2<Fx>>,
-        /// The other end of the neighbour that starts at `b`.
-        after: Option<Vec2<Fx>>,
-        /// From where it is solid.
-        sides: Sides,
-    },
-}
-
-/// From which sides a link is solid.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
-pub enum Sides {
-    /// From both.
-    #[default]
-    Both,
-    /// Only from the right as one looks from `a` to `b`. What has its centre on the left passes.
-    Right,
-}
-
-impl From<Polygon> for Geometry {
-    fn from(polygon: Polygon) -> Self {
-        Geometry::Polygon(polygon)
-    }
-}
-
-impl Geometry {
-    /// A circle from its radius in metres.
-    ///
-    /// # Errors
-    /// When the radius is not within 0.002 to 110 m.
-    pub fn circle(radius: Fx) -> Result<Self, GeometryError> {
-        let circle = Geometry::Circle { radius };
-        circle.validate().map(|()| circle)
-    }
-
-    /// A segment from its ends, in metres from the shape's centre.
-    ///
-    /// # Errors
-    /// When it is shorter than 2 mm or leaves the world.
-    pub fn segment(a: Vec2<Fx>, b: Vec2<Fx>) -> Result<Self, GeometryError> {
-        let segment = Geometry::Segment { a, b };
-        segment.validate().map(|()| segment)
-    }
-
-    /// A capsule from the centres of its round ends, in metres from the shape's centre, and its radius.
-    ///
-    /// # Errors
-    /// When the centres are closer than 2 mm, the radius is below 2 mm, or it reaches further than 110 m on some axis.
-    pub fn capsule(a: Vec2<Fx>, b: Vec2<Fx>, radius: Fx) -> Result<Self, GeometryError> {
-        let capsule = Geometry::Capsule { a, b, radius };
-        capsule.validate().map(|()| capsule)
-    }
-
-    /// Checks sizes. A [`Polygon`] is valid by construction.
-    pub(crate) fn validate(&self) -> Result<(), GeometryError> {
-        match *self {
-            Geometry::Circle { radius } => {
-                if !(SIZE_MIN..=SHAPE_EXTENT_MAX).contains(&radius) {
-                    return Err(GeometryError::SizeOutOfRange { value: radius });
-                }
-            }
-            Geometry::Segment { a, b } => {
-                check_within(&[a, b], WORLD_EXTENT_MAX)?;
-                check_length(a, b)?;
-            }
-            Geometry::Polygon(_) => {}
-            Geometry::Capsule { a, b, radius } => {
-                if !(SIZE_MIN..=SHAPE_EXTENT_MAX).contains(&radius) {
-                    return Err(GeometryError::SizeOutOfRange { value: radius });
-                }
-                check_within(&[a, b], SHAPE_EXTENT_MAX - radius)?;
-                check_length(a, b)?;
-            }
-            Geometry::Link { a, b, before, after, sides: _ } => {
-                let (first, last) = (before.unwrap_or(a), after.unwrap_or(b));
-                check_within(&[first, a, b, last], WORLD_EXTENT_MAX)?;
-                check_length(a, b)?;
-                before.map_or(Ok(()), |before| check_length(before, a))?;
-                after.map_or(Ok(()), |after| check_length(b, after))?;
-            }
-        }
-        Ok(())
-    }
-
-    /// The box around the geometry about its own centre, unrotated.
-    pub(crate) fn local_bounds(&self) -> Aabb {
-        match self {
-            Geometry::Circle { radius } => Aabb::new(Vec2::ZERO, Vec2::ZERO).expanded(*radius),
-            Geometry::Segment { a, b } | Geometry::Link { a, b, .. } => Aabb::new(a.min(*b), a.max(*b)),
-            Geometry::Polygon(polygon) => {
-                let points = polygon.vertices().iter().map(|vertex| vertex.widen());
-                let bounds = Aabb::from_points(points).unwrap_or(Aabb::new(Vec2::ZERO, Vec2::ZERO));
-                bounds.expanded(polygon.radius().into())
-            }
-            Geometry::Capsule { a, b, radius } => Aabb::new(a.min(*b), a.max(*b)).expanded(*radius),
-        }
-    }
-}
-
-/// Which events a shape takes part in.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
-pub struct EventSwitches {
-    /// Beginning and end of contacts; of a pair of shapes, either one's is enough.
-    pub contact: bool,
-    /// Hits: contacts that begin faster than [`crate::world::Config::hit_speed`]; of a pair, either one's is enough.
-    pub hit: bool,
-    /// Being noticed by sensors.
-    pub sensor: bool,
-}
-
-impl Default for EventSwitches {
-    /// All but hits.
-    fn default() -> Self {
-        EventSwitches { contact: true, hit: false, sensor: true }
-    }
-}
-
-/// Checks that points are within `extent` of the shape's centre on each axis.
-fn check_within(points: &[Vec2<Fx>], extent: Fx) -> Result<(), GeometryError> {
-    let coordinates = points.iter().flat_map(|point| [point.x, point.y]);
-    match coordinates.into_iter().find(|c| c.unsigned_abs() > extent.unsigned_abs()) {
-        Some(value) => Err(GeometryError::SizeOutOfRange { value }),
-        None => Ok(()),
-    }
-}
-
-/// Checks that a line is long enough to have a direction.
-fn check_length(a: Vec2<Fx>, b: Vec2<Fx>) -> Result<(), GeometryError> {
-    let length = a.distance(b);
-    if length < SIZE_MIN { Err(GeometryError::SizeOutOfRange { value: length }) } else { Ok(()) }
-}
 
 /// What to attach to a body.
 ///
@@ -213,6 +44,14 @@ pub struct ShapeDef {
     pub material: Material,
     /// What it collides with.
     pub filter: Filter,
+    /// Lets things pass through in one direction: the direction in the body's frame, 90 degrees for up. `None` for an
+    /// ordinary shape.
+    ///
+    /// What touches the shape is stopped if the contact's normal, from this shape to the other, is within 60 degrees
+    /// of the direction, and passes otherwise: from above it is a floor, from below and from the sides it is not
+    /// there. What passes goes on passing until it is apart or has come through but for a quarter of the world's
+    /// speculative distance, so what turns round half-way falls back. A pair that passes does not touch.
+    pub one_way: Option<Angle>,
     /// Whether it only notices what it overlaps, and touches nothing. Sensors do not notice each other, and sensors
     /// of fixed bodies do not notice fixed bodies.
     pub sensor: bool,
@@ -232,6 +71,7 @@ impl ShapeDef {
             density: Fx::ONE,
             material: Material::default(),
             filter: Filter::default(),
+            one_way: None,
             sensor: false,
             events: EventSwitches::default(),
             user_data: 0,
@@ -266,6 +106,20 @@ impl ShapeDef {
         self
     }
 
+    /// Sets the rolling resistance, 0 to 1: see [`Material::rolling_resistance`].
+    #[must_use]
+    pub fn rolling_resistance(mut self, resistance: Fx) -> Self {
+        self.material.rolling_resistance = resistance;
+        self
+    }
+
+    /// Sets how fast the surface runs, clockwise, in m/s: see [`Material::surface_speed`].
+    #[must_use]
+    pub fn surface_speed(mut self, speed: Fx) -> Self {
+        self.material.surface_speed = speed;
+        self
+    }
+
     /// Sets the filter.
     #[must_use]
     pub fn filter(mut self, filter: Filter) -> Self {
@@ -273,7 +127,14 @@ impl ShapeDef {
         self
     }
 
-    /// Makes it a sensor.
+    /// Lets things pass through in one direction, given in the body's frame: see [`one_way`](Self::one_way).
+    #[must_use]
+    pub fn one_way(mut self, direction: Angle) -> Self {
+        self.one_way = Some(direction);
+        self
+    }
+
+    /// Makes it notice what overlaps it without pushing.
     #[must_use]
     pub fn sensor(mut self) -> Self {
         self.sensor = true;
@@ -296,8 +157,17 @@ impl ShapeDef {
 
     /// Checks everything that does not depend on the body. `reach_max` does: see [`REACH_MAX`].
     pub(crate) fn validate(&self, reach_max: Fx) -> Result<(), WorldError> {
-        let ShapeDef { geometry, offset, density, material, filter: _, sensor: _, events: _, user_data: _ } =
-            self;
+        let ShapeDef {
+            geometry,
+            offset,
+            density,
+            material,
+            filter: _,
+            one_way: _,
+            sensor: _,
+            events: _,
+            user_data: _,
+        } = self;
         geometry.validate()?;
         check_reach(geometry, *offset, reach_max)?;
         if !(Fx::ZERO..=DENSITY_MAX).contains(density) {
@@ -343,12 +213,6 @@ impl Shape {
         &self.def
     }
 
-    /// Whether it is a sensor.
-    #[must_use]
-    pub const fn is_sensor(&self) -> bool {
-        self.def.sensor
-    }
-
     /// Its geometry about its own centre.
     #[must_use]
     pub const fn geometry(&self) -> &Geometry {
@@ -377,6 +241,18 @@ impl Shape {
     #[must_use]
     pub const fn filter(&self) -> &Filter {
         &self.def.filter
+    }
+
+    /// The direction in the body's frame into which things pass through, of a one-way shape.
+    #[must_use]
+    pub const fn one_way(&self) -> Option<Angle> {
+        self.def.one_way
+    }
+
+    /// Whether it only notices what overlaps it.
+    #[must_use]
+    pub const fn is_sensor(&self) -> bool {
+        self.def.sensor
     }
 
     /// The game's own number.

@@ -13,9 +13,13 @@ pub(crate) struct Contact {
     pub(crate) shapes: Pair,
     /// Whether the shapes touch, as the events last said.
     pub(crate) touching: bool,
+    /// Whether one of the shapes lets the other pass: see `one_way.rs`.
+    pub(crate) passing: bool,
     /// How many points have impulses.
     pub(crate) count: u8,
     pub(crate) points: [PointImpulse; 2],
+    /// The angular impulse against rolling, times `(mA + mB) / s`: see `solver/rolling.rs`.
+    pub(crate) rolling: Speed,
 }
 
 /// The impulse of a contact point, to start the next tick from.
@@ -30,7 +34,14 @@ pub(crate) struct PointImpulse {
 
 impl Contact {
     pub(crate) fn new(shapes: Pair) -> Self {
-        Contact { shapes, touching: false, count: 0, points: [PointImpulse::default(); 2] }
+        Contact {
+            shapes,
+            touching: false,
+            passing: false,
+            count: 0,
+            points: [PointImpulse::default(); 2],
+            rolling: Speed::ZERO,
+        }
     }
 
     /// The points that have impulses.
@@ -47,6 +58,7 @@ impl Contact {
     pub(crate) fn clear_points(&mut self) {
         self.count = 0;
         self.points = [PointImpulse::default(); 2];
+        self.rolling = Speed::ZERO;
     }
 
     /// Remembers the impulse of a point.

@@ -297,6 +297,13 @@ pub(super) mod samples {
         }
     }
 
+    /// The same as large as shapes get: up to 110 m from the centre.
+    pub(in crate::collision) fn large(rng: &mut Rng) -> Core {
+        let core = core(rng);
+        let points: Vec<_> = world_points(&core).into_iter().map(|point| point.scale(fx!(75))).collect();
+        Core::from_points(points, to_fx(core.radius) * 75)
+    }
+
     /// One to place near another.
     pub(in crate::collision) fn placed(rng: &mut Rng, spread: Fx) -> Core {
         core(rng).moved(to_grid(vector(rng, spread)))

@@ -1,7 +1,7 @@
 //! A link of a chain against a circle or a convex outline.
 //!
 //! A link alone pushes a shape that slides over its end back or up. What the chain as a whole may do at a vertex is
-//! decided by its neighbours (D. Gregorius and E. Catto call the same region of directions the Gauss map):
+//! decided by its neighbours (E. Catto, chain segments of Box2D 3, from the same Gauss map of the outline):
 //!
 //! ```text
 //! convex vertex    normals turn from one link's to the other's; each link has those nearer to its own
@@ -321,3 +321,6 @@ fn single(normal: Vec2<Unit>, distance: i64, radius: Length, margin: Length) -> 
     let anchor = -normal.scale(back);
     Manifold::single(normal, ManifoldPoint { anchor, separation, feature: Feature::SINGLE })
 }
+
+#[cfg(test)]
+mod tests;

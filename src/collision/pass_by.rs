@@ -8,15 +8,15 @@
 //! s(t) = s(0) + m.v t
 //! ```
 //!
-//! so an axis on which they are apart at the start and at the end of a tick keeps them apart all the time (J. Eckstein
-//! and E. Schömer, "Dynamic Collision Detection in Virtual Reality Applications", 1999, have the same test for two
-//! polyhedra). The axes tried are the faces of both.
+//! so an axis on which they are apart at the start and at the end of a tick keeps them apart all the time (D. Eberly,
+//! "Intersection of Convex Objects: The Method of Separating Axes", 2001, for moving objects). The axes tried are the
+//! faces of both.
 
 use super::circle_hull::{distance_along, step_bits};
 use super::hull_hull::{FACE_BITS, face_separation};
 use super::pose::{Hull, Outline, PosedShape};
 use super::segment;
-use crate::math::{Fx, Length, Step, Vec2, round_shift};
+use crate::math::{Fx, Length, Step, Unit, Vec2, round_shift};
 
 /// How two shapes move against each other within a tick.
 #[derive(Clone, Copy, Debug)]
@@ -27,8 +27,8 @@ pub(crate) struct Passage {
     pub(crate) turn: Length,
     /// Overlap that is left to the next tick.
     pub(crate) slack: Length,
-    /// How much deeper an overlap within the slack may become.
-    pub(crate) deepening: Length,
+    /// How much nearer they may come on the axis: what falls on a face does not pass it by.
+    pub(crate) approach: Length,
 }
 
 /// Whether a face of one of the shapes keeps them apart through the whole passage, but for the slack.
@@ -60,11 +60,25 @@ fn hull_about(shape: &PosedShape, other: &PosedShape) -> Option<Hull> {
 /// `d` is the vector from the centre of A to that of B.
 fn some_face_parts(a: &Hull, b: &Hull, d: Vec2<Length>, passage: &Passage) -> bool {
     let radii = step_bits(a.radius) + step_bits(b.radius);
-    let slack = -step_bits(passage.slack);
     (0..a.faces()).any(|edge| {
+        // Of what is thin on this axis the slack must not be all.
+        let widths =
+            [a, b].map(|hull| width(hull, a.normals()[edge]) / 4).into_iter().filter(|&width| width > 0);
+        let slack = -widths.fold(step_bits(passage.slack), i64::min);
         let before = round_shift(face_separation(a, edge, b, d), FACE_BITS - Step::FRAC_NBITS) - radii;
         let moved = distance_along(a.normals()[edge], passage.shift);
         let after = before + moved - step_bits(passage.turn);
-        before >= slack && after >= slack && (after >= 0 || -moved <= step_bits(passage.deepening))
+        before >= slack && after >= slack && -moved <= step_bits(passage.approach)
     })
+}
+
+/// How wide an outline is on an axis, in units of `Step`: 0 for a line across it.
+fn width(hull: &Hull, n: Vec2<Unit>) -> i64 {
+    let along = |&vertex: &Vec2<Length>| distance_along(n, vertex);
+    let (lower, upper) = hull
+        .vertices()
+        .iter()
+        .map(along)
+        .fold((i64::MAX, i64::MIN), |(lower, upper), at| (lower.min(at), upper.max(at)));
+    upper - lower + 2 * step_bits(hull.radius)
 }

@@ -2,7 +2,7 @@
 
 use super::link::Link;
 use crate::body::{Body, Geometry, POLYGON_VERTICES_MAX, Polygon, ShapeDef};
-use crate::math::{Aabb, Fx, Length, Rot, Unit, Vec2, narrow};
+use crate::math::{Aabb, Fx, Length, Rot, Unit, Vec2, narrow, widen};
 
 /// A shape in the world: its outline in world axes about its own centre.
 #[derive(Clone, Debug)]
@@ -21,6 +21,17 @@ pub(crate) enum Outline {
     Segment { a: Vec2<Fx>, b: Vec2<Fx> },
     Polygon(Hull),
     Link(Link),
+}
+
+impl Outline {
+    /// How far the surface is from the vertices, in metres: 0 where corners are sharp.
+    pub(crate) fn radius(&self) -> Fx {
+        match self {
+            Outline::Circle { radius } => widen(*radius),
+            Outline::Polygon(hull) => widen(hull.radius),
+            Outline::Segment { .. } | Outline::Link(_) => Fx::ZERO,
+        }
+    }
 }
 
 /// A convex outline in 32-bit coordinates: a polygon, or a segment or capsule seen as a polygon with two sides.

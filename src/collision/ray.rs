@@ -31,7 +31,10 @@ pub(crate) fn cast_ray(shape: &Core, origin: Vec2<Fx>, translation: Vec2<Fx>) ->
         let (fraction, order) = (Fx::ZERO, Fraction::ZERO);
         return Some(RayHit { fraction, order, point: origin, normal: Vec2::ZERO });
     }
-    let (origin, translation) = (to_grid(origin), to_grid(translation));
+    // Both ends are on the grid, so that the end of one ray is the beginning of the next.
+    let end = to_grid(origin + translation);
+    let origin = to_grid(origin);
+    let translation = end - origin;
     let (fraction, normal) = entry(shape.points(), shape.radius, origin, translation)?;
     let point = from_grid(origin + fraction.of(translation));
     Some(RayHit { fraction: fraction.to_fx(), order: fraction, point, normal })
@@ -234,6 +237,40 @@ mod tests {
             assert!(surface.distance.abs() < fx!(0.0000001), "{surface:?} {hit:?} {shape:?}");
         }
         assert!(hits > 5_000, "{hits}");
+    }
+
+    #[test]
+    fn large_shapes_are_hit_within_a_micrometre() {
+        let mut rng = Rng::new(4);
+        let mut hits = 0;
+        for _ in 0..20_000 {
+            let shape = samples::large(&mut rng);
+            let origin = samples::vector(&mut rng, fx!(300));
+            let translation = samples::vector(&mut rng, fx!(100)) - origin;
+            let Some(hit) = cast_ray(&shape, origin, translation) else { continue };
+            hits += 1;
+            let surface = distance(&shape, &Core::point(hit.point)).distance;
+            assert!(hit.fraction == 0 || surface.abs() < fx!(0.0000003), "{surface:?} {hit:?} {shape:?}");
+        }
+        assert!(hits > 5_000, "{hits}");
+    }
+
+    #[test]
+    fn nothing_overflows_at_the_edge_of_the_world() {
+        let ends = [Fx::MIN, fx!(-1073741824), fx!(1073741824), Fx::MAX];
+        let corners = || ends.into_iter().flat_map(|x| ends.map(|y| Vec2::new(x, y)));
+        for p in corners() {
+            for q in corners() {
+                for radius in [fx!(0), fx!(110), Fx::MAX] {
+                    let shape = Core::from_points([p, q], radius);
+                    for origin in corners() {
+                        for translation in corners() {
+                            cast_ray(&shape, origin, translation);
+                        }
+                    }
+                }
+            }
+        }
     }
 
     #[test]

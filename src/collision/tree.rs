@@ -4,8 +4,9 @@
 //! The cost of a tree is the sum of its perimeters, to which the number of visits by a random search is
 //! proportional (J. Goldsmith, J. Salmon, 1987). A new leaf descends greedily to where it adds the least, and on the way
 //! back up, a child changes places with its sibling's child if that makes the perimeters smaller, as in Box2D v3.
-//! Neither bounds the height: when boxes that somebody has thought out make it more than the logarithm warrants, the
-//! tree is built anew.
+//! Neither bounds the height, and boxes inside of each other would make a chain. So heights of siblings differ by at
+//! most [`IMBALANCE_MAX`]: a relaxed AVL tree (G. Adelson-Velsky, E. Landis, 1962), in which an insertion or a removal
+//! changes heights by one and one exchange on each level repairs it.
 
 use alloc::vec::Vec;
 use core::ops::ControlFlow;
@@ -21,8 +22,12 @@ mod tests;
 /// No node.
 const NONE: u32 = u32::MAX;
 
-/// More than [`height_limit`] of any number of boxes: one node waits on each level of a search, and one more.
-const STACK_LEN: usize = 96;
+/// By how much the heights of two siblings may differ: so much that a long ground may stay near the root, where the
+/// perimeters want it. With 4, the pairs of 10 000 boxes on top of some such grounds take several times as long.
+const IMBALANCE_MAX: u32 = 16;
+
+/// One node waits on each level of a search, and one more: enough for 2^31 boxes, see the test.
+const STACK_LEN: usize = 192;
 
 /// The boxes of slots: a cache.
 #[derive(Clone, Debug)]
@@ -63,6 +68,10 @@ impl Tree {
     pub(crate) fn set(&mut self, slot: u32, fat: Aabb) {
         match self.leaf_of(slot) {
             Some(leaf) if self.at(leaf).aabb == fat => {}
+            Some(leaf) if self.stays_near(leaf, fat) => {
+                self.at_mut(leaf).aabb = fat;
+                self.repair(self.at(leaf).parent);
+            }
             Some(leaf) => {
                 self.unlink(leaf);
                 self.at_mut(leaf).aabb = fat;
@@ -159,9 +168,6 @@ impl Tree {
         self.at_mut(sibling).parent = parent;
         self.at_mut(leaf).parent = parent;
         self.repair(parent);
-        if self.at(self.root).height > height_limit(self.len) {
-            self.rebuild();
-        }
     }
 
     /// Takes a leaf out of the tree: its sibling moves up.
@@ -181,7 +187,8 @@ impl Tree {
     }
 
     /// The node beside which a new leaf adds least to the perimeters: those of a new parent around both, and what
-    /// the ancestors grow by. Descends to the child with the smaller bound while that promises better.
+    /// the ancestors grow by. Descends to the child with the smaller bound while that promises better, and until the
+    /// node is low enough to be a leaf's sibling.
     fn best_sibling(&self, fat: Aabb) -> u32 {
         let own = perimeter(fat);
         let mut at = self.root;
@@ -200,24 +207,38 @@ impl Tree {
             });
             // Of equals the lower one, so that boxes on top of each other make a bush and not a chain.
             let (bound, _, child, child_around) = options[0].min(options[1]);
-            if bound > best_cost {
+            if bound > best_cost && self.at(best).height <= IMBALANCE_MAX {
                 break;
             }
             (at, around) = (child, child_around);
             let cost = grown.saturating_add(around);
-            if cost <= best_cost {
+            if cost <= best_cost || self.at(best).height > IMBALANCE_MAX {
                 (best, best_cost) = (at, cost);
             }
         }
         best
     }
 
-    /// Brings boxes and heights up to date from a node to the root.
+    /// Whether a leaf may keep its place with a new box: no ancestor above a small neighbourhood grows.
+    fn stays_near(&self, leaf: u32, fat: Aabb) -> bool {
+        let parent_of = |&at: &u32| Some(self.at(at).parent).filter(|&parent| parent != NONE);
+        // Lower, and most boxes that move have to be inserted anew; higher, and the tree wears out.
+        let neighbourhood = core::iter::successors(Some(leaf), parent_of).nth(4);
+        neighbourhood.is_some_and(|at| self.at(at).aabb.contains(fat))
+    }
+
+    /// Brings boxes and heights up to date from a node upwards, until they are.
     fn repair(&mut self, mut at: u32) {
         while at != NONE {
+            let Node { aabb, height, parent, .. } = *self.at(at);
             self.refit(at);
-            self.rotate(at);
-            at = self.at(at).parent;
+            self.balance(at);
+            self.tighten(at, height);
+            let node = self.at(at);
+            if (node.aabb, node.height) == (aabb, height) {
+                break;
+            }
+            at = parent;
         }
     }
 
@@ -229,9 +250,20 @@ impl Tree {
         node.height = 1 + a.height.max(b.height);
     }
 
+    /// If one child is too high, its higher child moves up in exchange for the other child.
+    fn balance(&mut self, at: u32) {
+        let [a, b] = self.at(at).children;
+        let (low, high) = if self.at(a).height < self.at(b).height { (a, b) } else { (b, a) };
+        if self.at(high).height - self.at(low).height > IMBALANCE_MAX {
+            let [c, d] = self.at(high).children;
+            let up = if self.at(c).height > self.at(d).height { c } else { d };
+            self.exchange(at, low, high, up);
+        }
+    }
+
     /// Exchanges a child with a child of its sibling, if that makes the sibling smaller: the box of the node itself
-    /// stays the same.
-    fn rotate(&mut self, at: u32) {
+    /// stays the same. The height may differ by one from what it was, which the ancestors can put right.
+    fn tighten(&mut self, at: u32, height_before: u32) {
         let [a, b] = self.at(at).children;
         let (mut best_gain, mut best) = (0, None);
         for (child, sibling) in [(a, b), (b, a)] {
@@ -242,12 +274,28 @@ impl Tree {
             for (up, stays) in [(c, d), (d, c)] {
                 let smaller = self.at(child).aabb.union(self.at(stays).aabb);
                 let gain = perimeter(self.at(sibling).aabb).saturating_sub(perimeter(smaller));
-                if gain > best_gain {
+                if gain > best_gain && self.stays_balanced([up, child, stays], height_before) {
                     (best_gain, best) = (gain, Some((child, sibling, up)));
                 }
             }
         }
-        let Some((child, sibling, up)) = best else { return };
+        if let Some((child, sibling, up)) = best {
+            self.exchange(at, child, sibling, up);
+        }
+    }
+
+    /// Whether a node may have the first of three as a child and the other two as grandchildren.
+    fn stays_balanced(&self, three: [u32; 3], height_before: u32) -> bool {
+        let [up, a, b] = three.map(|index| self.at(index).height);
+        let sibling = 1 + a.max(b);
+        let height = 1 + up.max(sibling);
+        a.abs_diff(b) <= IMBALANCE_MAX
+            && up.abs_diff(sibling) <= IMBALANCE_MAX
+            && height.abs_diff(height_before) <= 1
+    }
+
+    /// Exchanges a child of a node with a child of the other one.
+    fn exchange(&mut self, at: u32, child: u32, sibling: u32, up: u32) {
         self.replace_child(at, child, up);
         self.replace_child(sibling, up, child);
         self.at_mut(up).parent = at;
@@ -310,10 +358,4 @@ fn perimeter(aabb: Aabb) -> u64 {
     let Aabb { lower, upper } = aabb;
     (upper.x.to_bits().abs_diff(lower.x.to_bits()) >> 2)
         + (upper.y.to_bits().abs_diff(lower.y.to_bits()) >> 2)
-}
-
-/// The height above which a tree is built anew: far more than boxes that come as they may ever reach, and so far
-/// above that of a new tree that many must come before the next.
-fn height_limit(len: u32) -> u32 {
-    2 * len.max(1).ilog2() + 16
 }

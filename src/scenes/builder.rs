@@ -130,3 +130,8 @@ pub(super) fn floor(scene: &mut Builder, half_width: Fx) -> Result<BodyId, World
 pub(super) fn weightless() -> Config {
     Config { gravity: Vec2::ZERO, ..Config::default() }
 }
+
+/// Settings of scenes that measure work: nothing falls asleep.
+pub(super) fn sleepless() -> Config {
+    Config { sleeping: false, ..Config::default() }
+}

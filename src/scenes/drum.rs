@@ -35,22 +35,25 @@ pub(super) const DRUM: Scene =
 
 /// A ring of 36 plates between 10 and 11 m, 10 degrees and one of overlap each, and 4 paddles inside.
 fn drum_shapes() -> Result<Vec<ShapeDef>, WorldError> {
-    let corner = |degrees: Fx, radius: Fx| {
-        Rot::from_angle(Angle::from_degrees(degrees)).apply_wide(Vec2::new(radius, Fx::ZERO))
-    };
-    let plate = |from: Fx, to: Fx, inner: Fx, outer: Fx| {
-        Polygon::hull(&[corner(from, inner), corner(from, outer), corner(to, outer), corner(to, inner)])
-            .map(ShapeDef::new)
-    };
     let mut shapes = Vec::new();
     for i in 0..36 {
         let from = Fx::from_num(10 * i);
-        shapes.push(plate(from, from + fx!(11), fx!(10), fx!(11))?);
+        shapes.push(plate((from, from + fx!(11)), (fx!(10), fx!(11)))?);
         if i % 9 == 0 {
-            shapes.push(plate(from, from + fx!(2), fx!(8.5), fx!(10.2))?);
+            shapes.push(plate((from, from + fx!(2)), (fx!(8.5), fx!(10.2)))?);
         }
     }
     Ok(shapes)
+}
+
+/// A piece of a ring, from one angle in degrees to another, between two radii, with straight sides.
+pub(super) fn plate(degrees: (Fx, Fx), radii: (Fx, Fx)) -> Result<ShapeDef, WorldError> {
+    let corner = |degrees: Fx, radius: Fx| {
+        Rot::from_angle(Angle::from_degrees(degrees)).apply_wide(Vec2::new(radius, Fx::ZERO))
+    };
+    let ((from, to), (inner, outer)) = (degrees, radii);
+    let corners = [corner(from, inner), corner(from, outer), corner(to, outer), corner(to, inner)];
+    Ok(ShapeDef::new(Polygon::hull(&corners)?))
 }
 
 pub(super) const SPAWNING: Scene = Scene {

@@ -3,11 +3,11 @@
 use alloc::vec::Vec;
 
 use super::Scene;
-use super::builder::{build, rectangle, weightless};
-use crate::body::{BodyDef, Filter, Geometry, MassSource, ShapeDef};
+use super::builder::{Builder, build, rectangle, sleepless, weightless};
+use crate::body::{BodyDef, BodyId, Filter, Geometry, MassSource, ShapeDef, WorldError};
 use crate::fx;
 use crate::math::{Angle, Fx, Rot, Vec2, fx_mul};
-use crate::solver::RevoluteDef;
+use crate::solver::{JointDef, Revolute};
 use crate::world::Config;
 
 /// A shape that collides with nothing.
@@ -24,7 +24,7 @@ pub(super) const PENDULUM: Scene =
             let rod = rectangle(fx!(0.02), fx!(0.5))?.density(fx!(25));
             let body = BodyDef::dynamic().position(hanging.x, hanging.y).angle(angle);
             let rod = scene.spawn(body, &[ghost(rod)])?;
-            scene.joint(RevoluteDef::new(pivot, rod).anchor_b(fx!(0), fx!(0.5)))?;
+            scene.joint(JointDef::new(pivot, rod, Revolute::new()).anchor_b(fx!(0), fx!(0.5)))?;
             Ok(())
         })
     });
@@ -50,7 +50,7 @@ fn rod(arm: Fx) -> crate::lockstep::SandboxSetup {
         let mass = MassSource::Given { mass: fx!(1), centre: Vec2::ZERO, gyration: fx!(0.288675134595) };
         let body = BodyDef::dynamic().position(arm, fx!(0)).velocity(fx!(0), fx_mul(omega, arm));
         let rod = scene.spawn(body.angular_velocity(omega).mass(mass), &[ghost(shape)])?;
-        scene.joint(RevoluteDef::new(pivot, rod).anchor_b(-arm, fx!(0)))?;
+        scene.joint(JointDef::new(pivot, rod, Revolute::new()).anchor_b(-arm, fx!(0)))?;
         Ok(())
     })
 }
@@ -58,51 +58,79 @@ fn rod(arm: Fx) -> crate::lockstep::SandboxSetup {
 pub(super) const CHAIN: Scene =
     Scene::new("chain", 900, "100 links with a hundredfold weight at the end, released horizontally", |_| {
         build(Config::default(), |scene| {
-            let mut last = scene.spawn(BodyDef::fixed(), &[])?;
+            let anchor = scene.spawn(BodyDef::fixed(), &[])?;
             let link = ghost(rectangle(fx!(0.5), fx!(0.125))?);
-            let mut anchor = fx!(0);
-            for i in 0..100 {
-                let x = Fx::from_num(i) + fx!(0.5);
-                let body = scene.spawn(BodyDef::dynamic().position(x, fx!(0)), &[link])?;
-                scene.joint(
-                    RevoluteDef::new(last, body).anchor_a(anchor, fx!(0)).anchor_b(fx!(-0.5), fx!(0)),
-                )?;
-                (last, anchor) = (body, fx!(0.5));
-            }
+            let last = row(scene, anchor, link, fx!(0), 100)?;
             // A link weighs 0.25 kg, and this 25: a square of 2.5 m, pinned at its edge.
             let weight = ghost(rectangle(fx!(2.5), fx!(2.5))?);
             let body = scene.spawn(BodyDef::dynamic().position(fx!(102.5), fx!(0)), &[weight])?;
-            scene.joint(RevoluteDef::new(last, body).anchor_a(anchor, fx!(0)).anchor_b(fx!(-2.5), fx!(0)))?;
+            scene.joint(pin(last, body).anchor_a(fx!(0.5), fx!(0)).anchor_b(fx!(-2.5), fx!(0)))?;
             Ok(())
         })
     });
 
-pub(super) const JOINT_GRID: Scene =
-    Scene::new("joint_grid", 500, "a cloth of 100 x 100 discs and 19 800 hinges hangs from seven", |_| {
+pub(super) const BRIDGE: Scene =
+    Scene::new("bridge", 900, "ten boxes fall on a bridge of 50 planks between two posts", |_| {
         build(Config::default(), |scene| {
-            let filter = Filter { category: 2, mask: !2, group: 0 };
-            let disc = ShapeDef::new(Geometry::circle(fx!(0.4))?).filter(filter);
-            let mut ids = Vec::new();
-            for k in 0..100 {
-                for i in 0..100 {
-                    let held = i == 0 && (47..=53).contains(&k);
-                    let body = if held { BodyDef::fixed() } else { BodyDef::dynamic() };
-                    let body = scene.spawn(body.position(Fx::from_num(k), Fx::from_num(-i)), &[disc])?;
-                    if i > 0 {
-                        let above = ids[ids.len() - 1];
-                        let joint = RevoluteDef::new(above, body);
-                        scene.joint(joint.anchor_a(fx!(0), fx!(-0.5)).anchor_b(fx!(0), fx!(0.5)))?;
-                    }
-                    // Two held discs side by side have nothing to join.
-                    let left_held = i == 0 && (48..=53).contains(&k);
-                    if k > 0 && !left_held {
-                        let left = ids[ids.len() - 100];
-                        let joint = RevoluteDef::new(left, body);
-                        scene.joint(joint.anchor_a(fx!(0.5), fx!(0)).anchor_b(fx!(-0.5), fx!(0)))?;
-                    }
-                    ids.push(body);
-                }
-            }
+            let post = |x| Ok::<_, WorldError>([rectangle(fx!(0.5), fx!(1))?.offset(x, fx!(0))]);
+            let left = scene.spawn(BodyDef::fixed().position(fx!(-25), fx!(0)), &post(fx!(-0.5))?)?;
+            let right = scene.spawn(BodyDef::fixed().position(fx!(25), fx!(0)), &post(fx!(0.5))?)?;
+            let last = row(scene, left, rectangle(fx!(0.5), fx!(0.125))?, fx!(-25), 50)?;
+            scene.joint(pin(last, right).anchor_a(fx!(0.5), fx!(0)))?;
+            let places = (0..10).map(|i| Vec2::new(Fx::from_num(4 * i - 18), fx!(2)));
+            scene.spawn_each(BodyDef::dynamic(), &[rectangle(fx!(0.5), fx!(0.5))?], places)?;
             Ok(())
         })
     });
+
+/// A hinge between the origins of two bodies.
+fn pin(a: BodyId, b: BodyId) -> JointDef {
+    JointDef::new(a, b, Revolute::new())
+}
+
+/// Pieces of a metre in a row, the first pinned to the origin of a body at `x`. Returns the last one.
+fn row(scene: &mut Builder, start: BodyId, piece: ShapeDef, x: Fx, count: i32) -> Result<BodyId, WorldError> {
+    let places = (0..count).map(|i| Vec2::new(x + Fx::from_num(i) + fx!(0.5), fx!(0)));
+    let pieces = scene.spawn_each(BodyDef::dynamic(), &[piece], places)?;
+    let (first, last) = (pieces[0], pieces[pieces.len() - 1]);
+    scene.joint(pin(start, first).anchor_b(fx!(-0.5), fx!(0)))?;
+    let joint = pin(first, last).anchor_a(fx!(0.5), fx!(0)).anchor_b(fx!(-0.5), fx!(0));
+    scene.joint_each(joint, neighbours(&pieces))?;
+    Ok(last)
+}
+
+/// Each with the next one.
+fn neighbours(ids: &[BodyId]) -> Vec<(BodyId, BodyId)> {
+    ids.windows(2).map(|pair| (pair[0], pair[1])).collect()
+}
+
+pub(super) const JOINT_GRID: Scene =
+    Scene::new("joint_grid", 500, "a cloth of 100 x 100 discs and 19 800 hinges hangs from seven", |_| {
+        build(sleepless(), fill_grid)
+    });
+
+fn fill_grid(scene: &mut Builder) -> Result<(), WorldError> {
+    let filter = Filter { category: 2, mask: !2, group: 0 };
+    let disc = ShapeDef::new(Geometry::circle(fx!(0.4))?).filter(filter);
+    let place = |k: i32, i: i32| Vec2::new(Fx::from_num(k), Fx::from_num(-i));
+    let is_held = |k: i32| (47..=53).contains(&k);
+    let mut columns: Vec<Vec<BodyId>> = Vec::new();
+    for k in 0..100 {
+        let top = if is_held(k) { BodyDef::fixed() } else { BodyDef::dynamic() };
+        let mut column = scene.spawn_each(top, &[disc], [place(k, 0)])?;
+        column.extend(scene.spawn_each(BodyDef::dynamic(), &[disc], (1..100).map(|i| place(k, i)))?);
+        columns.push(column);
+    }
+    let down: Vec<_> = columns.iter().flat_map(|column| neighbours(column)).collect();
+    let joint = pin(down[0].0, down[0].1).anchor_a(fx!(0), fx!(-0.5)).anchor_b(fx!(0), fx!(0.5));
+    scene.joint_each(joint, down)?;
+    let mut across = Vec::new();
+    for (k, pair) in (1..).zip(columns.windows(2)) {
+        // Two held discs side by side have nothing to join.
+        let from = usize::from(is_held(k) && is_held(k - 1));
+        across.extend(pair[0].iter().copied().zip(pair[1].iter().copied()).skip(from));
+    }
+    let joint = pin(across[0].0, across[0].1).anchor_a(fx!(0.5), fx!(0)).anchor_b(fx!(-0.5), fx!(0));
+    scene.joint_each(joint, across)?;
+    Ok(())
+}

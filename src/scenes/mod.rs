@@ -4,8 +4,13 @@ mod builder;
 mod character;
 mod drum;
 mod elementary;
+mod game;
 mod joints;
+mod machines;
 mod piles;
+mod ragdoll;
+mod rain;
+mod yards;
 
 use alloc::vec::Vec;
 
@@ -79,4 +84,14 @@ pub const ALL: &[Scene] = &[
     joints::CHAIN,
     joints::JOINT_GRID,
     character::CHARACTER,
+    rain::RAIN,
+    yards::SMASH,
+    machines::SPINNER,
+    machines::TUMBLER,
+    machines::WASHER,
+    yards::JUNKYARD,
+    yards::COMPOUNDS,
+    ragdoll::RAGDOLL,
+    joints::BRIDGE,
+    game::GAME,
 ];

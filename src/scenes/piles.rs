@@ -1,7 +1,7 @@
 //! Stacks, pyramids and heaps: what the solver has to hold up.
 
 use super::Scene;
-use super::builder::{Builder, build, floor, rectangle};
+use super::builder::{Builder, build, floor, rectangle, sleepless};
 use crate::body::{BodyDef, Geometry, Polygon, ShapeDef, WorldError};
 use crate::fx;
 use crate::math::{Fx, Rng, Vec2};
@@ -41,47 +41,41 @@ pub(super) const PYRAMID: Scene =
 
 pub(super) const LARGE_PYRAMID: Scene =
     Scene::new("large_pyramid", 500, "a pyramid of 5050 boxes stands", |_| {
-        build(Config::default(), |scene| {
+        build(sleepless(), |scene| {
             floor(scene, fx!(100))?;
             pyramid(scene, 100)
         })
     });
 
-/// Unit boxes in rows: `x = (i + 1) / 2 + (j - i) - base / 2`, `y = (2 i + 1) / 2`.
 fn pyramid(scene: &mut Builder, base: i32) -> Result<(), WorldError> {
-    let square = rectangle(fx!(0.5), fx!(0.5))?;
-    for i in 0..base {
-        let y = Fx::from_num(2 * i + 1) / 2;
-        for j in i..base {
-            let x = Fx::from_num(i + 1) / 2 + Fx::from_num(j - i) - Fx::from_num(base) / 2;
-            scene.spawn(BodyDef::dynamic().position(x, y), &[square])?;
-        }
-    }
+    let left = Vec2::new(-Fx::from_num(base) / 2, fx!(0));
+    scene.spawn_each(BodyDef::dynamic(), &[rectangle(fx!(0.5), fx!(0.5))?], pyramid_places(left, base))?;
     Ok(())
+}
+
+/// Of unit boxes in rows, from the left end of the lowest: `x = (i + 1) / 2 + (j - i)`, `y = (2 i + 1) / 2`.
+fn pyramid_places(left: Vec2<Fx>, base: i32) -> impl Iterator<Item = Vec2<Fx>> {
+    let place = move |i: i32, j: i32| {
+        left + Vec2::new(Fx::from_num(i + 1) / 2 + Fx::from_num(j - i), Fx::from_num(2 * i + 1) / 2)
+    };
+    (0..base).flat_map(move |i| (i..base).map(move |j| place(i, j)))
 }
 
 pub(super) const MANY_PYRAMIDS: Scene =
     Scene::new("many_pyramids", 200, "400 pyramids of 55 boxes on 20 shelves", |_| {
-        build(Config::default(), |scene| {
+        build(sleepless(), |scene| {
             let shelf = |row: i32| {
                 let y = Fx::from_num(11 * row);
                 Geometry::segment(Vec2::new(fx!(-110), y), Vec2::new(fx!(110), y)).map(ShapeDef::new)
             };
             let shelves = (0..20).map(shelf).collect::<Result<alloc::vec::Vec<_>, _>>()?;
             scene.spawn(BodyDef::fixed(), &shelves)?;
-            let square = rectangle(fx!(0.5), fx!(0.5))?;
-            for row in 0..20 {
-                for column in 0..20 {
-                    let centre = Fx::from_num(-110 + 11 * column + 1);
-                    for i in 0..10 {
-                        let y = Fx::from_num(2 * i + 1) / 2 + Fx::from_num(11 * row);
-                        for j in i..10 {
-                            let x = Fx::from_num(i + 1) / 2 + Fx::from_num(j - i) + centre - fx!(0.5);
-                            scene.spawn(BodyDef::dynamic().position(x, y), &[square])?;
-                        }
-                    }
-                }
-            }
+            let left = |row: i32, column: i32| {
+                Vec2::new(Fx::from_num(11 * column) - fx!(109.5), Fx::from_num(11 * row))
+            };
+            let corners = (0..20).flat_map(|row| (0..20).map(move |column| left(row, column)));
+            let places = corners.flat_map(|left| pyramid_places(left, 10));
+            scene.spawn_each(BodyDef::dynamic(), &[rectangle(fx!(0.5), fx!(0.5))?], places)?;
             Ok(())
         })
     });

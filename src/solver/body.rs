@@ -2,7 +2,7 @@
 
 use super::limits::{Faults, SPEED_MAX};
 use crate::body::Body;
-use crate::math::{Angle, Reciprocal, Speed, Step, Vec2, round_shift_wide, saturate_wide};
+use crate::math::{Reciprocal, Speed, Step, Vec2, round_shift_wide, saturate_wide};
 
 /// A body in the solver. Bodies that nothing moves have mass fraction 0 in every row, so that they are read and
 /// written like the others and never change.
@@ -44,6 +44,11 @@ impl SolverBody {
         }
     }
 
+    /// The velocities the other way.
+    pub(crate) fn reversed(&self) -> Self {
+        SolverBody { velocity: -self.velocity, spin: self.spin.saturating_neg(), ..*self }
+    }
+
     /// Two different bodies of a slice, to change both.
     #[inline]
     pub(crate) fn pair(bodies: &mut [SolverBody], a: u32, b: u32) -> (&mut SolverBody, &mut SolverBody) {
@@ -66,11 +71,6 @@ pub(crate) fn turn_of(turn: Step, inverse_gyration: Reciprocal) -> i64 {
     const INVERSE_TAU: i128 = 1_467_945_251_641_000_613;
     let (product, extra) = inverse_gyration.times_exact(turn);
     saturate_wide(round_shift_wide(i128::from(product) * INVERSE_TAU, extra + 27 + 63 - 32))
-}
-
-/// The angle after a turn. It wraps.
-pub(crate) fn turned(angle: Angle, turn: Step, inverse_gyration: Reciprocal) -> Angle {
-    angle + Angle::from_wide_turns(turn_of(turn, inverse_gyration), crate::math::Fx::ONE)
 }
 
 #[cfg(test)]

@@ -2,14 +2,17 @@
 //!
 //! Siblings in this folder have the same functions in the same order: `prepare`, `warm_start`, `solve`, `store`.
 
+use alloc::boxed::Box;
+
 use super::body::SolverBody;
 use super::limits::{Faults, IMPULSE_MAX, clamp_warm_start};
+use super::rolling::Rolling;
 use super::row::{Denominator, Lever, MassFractions, Row, impulse_of, lambda_of, separation};
 use super::settings::Tuning;
 use super::softness::Softness;
-use crate::body::Body;
+use crate::body::{Body, Material};
 use crate::collision::{Contact, Manifold, ManifoldPoint, PointImpulse};
-use crate::math::{Fx, Grip, Rate, Speed, Step, Unit, mul, narrow, saturate};
+use crate::math::{Fx, Grip, Rate, Speed, Step, Unit, fx_mul, mul, narrow, saturate};
 
 /// Whether a pass removes position errors or only velocity errors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,6 +45,10 @@ pub(crate) struct ContactConstraint {
     body_b: u32,
     softness: Softness,
     restitution: Unit,
+    /// How fast the surfaces move against each other by themselves, against the tangent.
+    surface_speed: Speed,
+    /// Few surfaces resist rolling, and the others should not carry a row for it through the caches.
+    rolling: Option<Box<Rolling>>,
     count: u8,
     points: [ContactPoint; 2],
 }
@@ -82,6 +89,23 @@ const SETTLED: Speed = Speed::lit("0.005");
 pub(crate) struct Surface {
     pub(crate) friction: Fx,
     pub(crate) restitution: Fx,
+    /// In metres: the largest torque for each unit of normal force.
+    pub(crate) rolling_resistance: Fx,
+    /// In m/s.
+    pub(crate) surface_speed: Fx,
+}
+
+impl Surface {
+    /// What two materials have in common, on shapes that are rounded by a radius in metres.
+    pub(crate) fn between((a, radius_a): (&Material, Fx), (b, radius_b): (&Material, Fx)) -> Self {
+        let resistance = a.rolling_resistance.max(b.rolling_resistance);
+        Surface {
+            friction: a.mixed_friction(b),
+            restitution: a.mixed_restitution(b),
+            rolling_resistance: fx_mul(resistance, radius_a.max(radius_b)),
+            surface_speed: a.surface_speed.saturating_add(b.surface_speed),
+        }
+    }
 }
 
 /// How the impulses of the last tick were carried over.
@@ -140,12 +164,17 @@ impl ContactConstraint {
         let still_there = |old: &PointImpulse| points.iter().any(|point| point.feature.0 == old.feature);
         let lost = memory.points().iter().filter(|old| old.normal > 0 && !still_there(old)).count();
         warm.lost += u32::try_from(lost).expect("at most 2 points");
+        let normals = [first.normal_denominator, second.normal_denominator];
+        let rolling =
+            Rolling::prepare(&surface, (a, b), fractions, normals, memory.rolling, faults).map(Box::new);
         let immovable = !(a.is_dynamic() && b.is_dynamic());
         ContactConstraint {
             body_a: slot_a,
             body_b: slot_b,
             softness: if immovable { tuning.contact_immovable } else { tuning.contact },
             restitution: narrow(surface.restitution),
+            surface_speed: narrow(surface.surface_speed),
+            rolling,
             count: if points.len() == 2 { 2 } else { 1 },
             points: [first, second],
         }
@@ -158,6 +187,9 @@ impl ContactConstraint {
             clamp_warm_start(&mut point.tangent_lambda, faults);
             point.normal.apply(point.normal_lambda, a, b, faults);
             point.tangent.apply(point.tangent_lambda, a, b, faults);
+        }
+        if let Some(rolling) = &mut self.rolling {
+            rolling.warm_start(a, b, faults);
         }
     }
 
@@ -198,7 +230,12 @@ impl ContactConstraint {
                 solve_normal(point);
             }),
         }
-        let mut solve_tangent = |point: &mut ContactPoint| point.solve_tangent(a, b, faults);
+        if let Some(rolling) = &mut self.rolling {
+            let second = points.get(1).map_or(Speed::ZERO, |point| point.normal_lambda);
+            rolling.solve(a, b, [points[0].normal_lambda, second], faults);
+        }
+        let surface_speed = self.surface_speed;
+        let mut solve_tangent = |point: &mut ContactPoint| point.solve_tangent(a, b, surface_speed, faults);
         match sweep {
             Sweep::Forward => points.iter_mut().for_each(&mut solve_tangent),
             Sweep::Backward => points.iter_mut().rev().for_each(&mut solve_tangent),
@@ -237,6 +274,7 @@ impl ContactConstraint {
 
     pub(crate) fn store(&self, memory: &mut Contact) {
         memory.clear_points();
+        memory.rolling = self.rolling.as_ref().map_or(Speed::ZERO, |rolling| rolling.store());
         for point in &self.points[..usize::from(self.count)] {
             memory.push_point(PointImpulse {
                 feature: point.feature,
@@ -274,11 +312,17 @@ impl ContactPoint {
 
     /// Coulomb: friction stops sliding, as far as it reaches.
     #[inline]
-    fn solve_tangent(&mut self, a: &mut SolverBody, b: &mut SolverBody, faults: &mut Faults) {
+    fn solve_tangent(
+        &mut self,
+        a: &mut SolverBody,
+        b: &mut SolverBody,
+        surface_speed: Speed,
+        faults: &mut Faults,
+    ) {
         let limit: Speed = mul(self.grip, self.normal_lambda);
         let limit = limit.min(IMPULSE_MAX);
-        let (bias, bounds) = (Speed::ZERO, (-limit, limit));
-        self.tangent.solve(a, b, bias, &Softness::RIGID, bounds, &mut self.tangent_lambda, faults);
+        let bounds = (-limit, limit);
+        self.tangent.solve(a, b, surface_speed, &Softness::RIGID, bounds, &mut self.tangent_lambda, faults);
     }
 }
 
@@ -303,7 +347,7 @@ fn bias_of(separation: Step, pass: Pass, softness: &Softness, tuning: &Tuning) -
 }
 
 /// `mu Dt / Dn`, saturated.
-fn grip(friction: Fx, tangent: Denominator, normal: Denominator) -> Grip {
+pub(super) fn grip(friction: Fx, tangent: Denominator, normal: Denominator) -> Grip {
     // Denominators have at most 45 bits, so 18 more fit.
     let ratio = (tangent << 18) / (normal >> 2).max(1);
     let friction: Grip = narrow(friction);

@@ -35,7 +35,7 @@
 use fixed::types::extra::U30;
 
 use super::body::SolverBody;
-use super::limits::{Faults, IMPULSE_MAX};
+use super::limits::{Faults, IMPULSE_MAX, clamp_warm_start};
 use super::row::{Lever, MassFractions, turning};
 use super::softness::Softness;
 use crate::math::{Ratio, Speed, Unit, Vec2, mul, round_shift, round_shift_wide, saturate, saturate_wide};
@@ -134,12 +134,74 @@ impl PointBlock {
         &self,
         a: &mut SolverBody,
         b: &mut SolverBody,
-        (e_a, e_b): (Vec2<Ratio>, Vec2<Ratio>),
+        ratios: (Vec2<Ratio>, Vec2<Ratio>),
         bias: Vec2<Speed>,
         softness: &Softness,
         lambda: &mut Vec2<Speed>,
         faults: &mut Faults,
     ) {
+        let vr = self.velocity(a, b, ratios, faults);
+        let d_x = softness.impulse(vr.x, bias.x, lambda.x, faults);
+        let d_y = softness.impulse(vr.y, bias.y, lambda.y, faults);
+        let next = Vec2::new(accumulate(lambda.x, d_x, faults), accumulate(lambda.y, d_y, faults));
+        let d = next - *lambda;
+        *lambda = next;
+        self.apply(d, a, b, faults);
+    }
+
+    /// Solves the block with an impulse of at most a length: `|p| <= p_max`, where `p = G L` is the impulse times
+    /// `mA + mB`. Besides the bias it takes a push, which is not scaled by the softness.
+    #[inline]
+    #[expect(clippy::too_many_arguments, reason = "the quantities of the equations above")]
+    pub(crate) fn solve_within(
+        &self,
+        a: &mut SolverBody,
+        b: &mut SolverBody,
+        (bias, push): (Vec2<Speed>, Vec2<Speed>),
+        softness: &Softness,
+        p_max: Speed,
+        lambda: &mut Vec2<Speed>,
+        faults: &mut Faults,
+    ) {
+        let vr = self.velocity(a, b, self.ratios(), faults);
+        let d_x = softness.impulse(vr.x, bias.x, lambda.x, faults).saturating_sub(push.x);
+        let d_y = softness.impulse(vr.y, bias.y, lambda.y, faults).saturating_sub(push.y);
+        let next = Vec2::new(accumulate(lambda.x, d_x, faults), accumulate(lambda.y, d_y, faults));
+        let next = self.shortened(next, p_max);
+        let mut d = next - *lambda;
+        clamp_warm_start(&mut d.x, faults);
+        clamp_warm_start(&mut d.y, faults);
+        *lambda += d;
+        self.apply(d, a, b, faults);
+    }
+
+    /// `L` with `|G L|` at most `p_max`, in the same direction.
+    fn shortened(&self, lambda: Vec2<Speed>, p_max: Speed) -> Vec2<Speed> {
+        // The mass fractions add up to 1.
+        let p = self.g_a.apply(lambda) + self.g_b.apply(lambda);
+        let square = |speed: Speed| u64::from(speed.unsigned_abs().to_bits()).pow(2);
+        let length = (square(p.x) + square(p.y)).isqrt();
+        let most = u64::from(p_max.unsigned_abs().to_bits());
+        if length <= most {
+            return lambda;
+        }
+        let part = |speed: Speed| {
+            let bits =
+                crate::math::div_round(i128::from(speed.to_bits()) * i128::from(most), i128::from(length));
+            Speed::from_bits(saturate(saturate_wide(bits)))
+        };
+        Vec2::new(part(lambda.x), part(lambda.y))
+    }
+
+    /// `vr` with the lever ratios that measure it.
+    #[inline]
+    fn velocity(
+        &self,
+        a: &SolverBody,
+        b: &SolverBody,
+        (e_a, e_b): (Vec2<Ratio>, Vec2<Ratio>),
+        faults: &mut Faults,
+    ) -> Vec2<Speed> {
         let along = |e_a: Ratio, e_b: Ratio, dv: Speed, faults: &mut Faults| {
             let angular = i64::from(e_b.to_bits()) * i64::from(b.spin.to_bits())
                 - i64::from(e_a.to_bits()) * i64::from(a.spin.to_bits());
@@ -148,14 +210,9 @@ impl PointBlock {
             *faults += u64::from(i64::from(within) != wide);
             Speed::from_bits(within)
         };
-        let vr_x = along(e_a.x, e_b.x, b.velocity.x - a.velocity.x, faults);
-        let vr_y = along(e_a.y, e_b.y, b.velocity.y - a.velocity.y, faults);
-        let d_x = softness.impulse(vr_x, bias.x, lambda.x, faults);
-        let d_y = softness.impulse(vr_y, bias.y, lambda.y, faults);
-        let next = Vec2::new(accumulate(lambda.x, d_x, faults), accumulate(lambda.y, d_y, faults));
-        let d = next - *lambda;
-        *lambda = next;
-        self.apply(d, a, b, faults);
+        let x = along(e_a.x, e_b.x, b.velocity.x - a.velocity.x, faults);
+        let y = along(e_a.y, e_b.y, b.velocity.y - a.velocity.y, faults);
+        Vec2::new(x, y)
     }
 }
 
@@ -237,5 +294,35 @@ mod tests {
         }
         assert_eq!(faults, 0);
         assert!(worst <= 128, "{worst} units left");
+    }
+
+    /// However far it is asked to go, from rest an impulse changes momentum by no more than its bound.
+    #[test]
+    fn an_impulse_of_limited_length_is_no_longer() {
+        let mut rng = Rng::new(9);
+        let mut faults = 0;
+        for _ in 0..20_000 {
+            let mut lever = || {
+                let mut side = || rng.range(fx!(-3), fx!(3));
+                let arm = Vec2::new(side(), side()).narrow();
+                Lever { arm, inverse_gyration: Reciprocal::of(rng.range(fx!(0.3), fx!(3))) }
+            };
+            let (a, b) = (lever(), lever());
+            let share: Unit = narrow(rng.range(fx!(0), fx!(0.9)));
+            let block = PointBlock::new(a, b, MassFractions { a: share, b: Unit::ONE - share });
+            let mut speed = |most: Fx| -> Speed { narrow(rng.range(Fx::ZERO, most)) };
+            let bias = Vec2::new(speed(fx!(20)), -speed(fx!(20)));
+            let most = speed(fx!(3));
+            let (mut a, mut b) = (SolverBody::default(), SolverBody::default());
+            let mut lambda = Vec2::ZERO;
+            for _ in 0..3 {
+                let biases = (bias, Vec2::ZERO);
+                block.solve_within(&mut a, &mut b, biases, &Softness::RIGID, most, &mut lambda, &mut faults);
+            }
+            // p = (vB - vA) / (aA + aB), whatever the shares.
+            let p = (b.velocity - a.velocity).widen().length();
+            assert!(p <= Fx::from(most) + fx!(0.00001), "{p} of {most}");
+        }
+        assert_eq!(faults, 0);
     }
 }

@@ -19,13 +19,15 @@
 //! `L` is the accumulated impulse divided by the effective mass: a speed. No sum of two clamped values leaves its
 //! type; every clamp that bites is counted as a fault.
 
+mod angular;
+
 use super::body::SolverBody;
 use super::limits::{Faults, IMPULSE_MAX, STEP_MAX};
 use super::softness::Softness;
 use crate::body::Body;
 use crate::math::{
-    Length, Ratio, Reciprocal, Speed, Step, Unit, Vec2, mul, round_shift, round_shift_wide, saturate,
-    saturate_wide,
+    Length, Ratio, Reciprocal, Speed, Step, Unit, Vec2, div_round, mul, round_shift, round_shift_wide,
+    saturate, saturate_wide,
 };
 
 /// The mass fractions of a pair of bodies: how a push is shared.
@@ -115,6 +117,23 @@ impl Row {
         (Row { n, e_a, e_b, g_a, g_b, f_a: mul(g_a, e_a), f_b: mul(g_b, e_b) }, denominator)
     }
 
+    /// A row along which nothing moves.
+    pub(crate) const NONE: Self = Row {
+        n: Vec2::new(Unit::ZERO, Unit::ZERO),
+        e_a: Ratio::ZERO,
+        e_b: Ratio::ZERO,
+        g_a: Unit::ZERO,
+        g_b: Unit::ZERO,
+        f_a: Unit::ZERO,
+        f_b: Unit::ZERO,
+    };
+
+    /// The row that measures the other way.
+    pub(crate) fn reversed(&self) -> Self {
+        let Row { n, e_a, e_b, g_a, g_b, f_a, f_b } = *self;
+        Row { n: -n, e_a: -e_a, e_b: -e_b, g_a, g_b, f_a: -f_a, f_b: -f_b }
+    }
+
     /// Relative velocity of B from A along the row.
     #[inline]
     pub(crate) fn velocity(&self, a: &SolverBody, b: &SolverBody, faults: &mut Faults) -> Speed {
@@ -177,12 +196,26 @@ impl Row {
         b: &mut SolverBody,
         bias: Speed,
         softness: &Softness,
-        (lo, hi): (Speed, Speed),
+        bounds: (Speed, Speed),
         lambda: &mut Speed,
         faults: &mut Faults,
     ) -> Speed {
         let vn = self.velocity(a, b, faults);
         let d = softness.impulse(vn, bias, *lambda, faults);
+        self.accumulate(d, bounds, lambda, a, b, faults)
+    }
+
+    /// Adds an impulse to what has accumulated, as far as the bounds allow, and returns what was added.
+    #[inline]
+    pub(crate) fn accumulate(
+        &self,
+        d: Speed,
+        (lo, hi): (Speed, Speed),
+        lambda: &mut Speed,
+        a: &mut SolverBody,
+        b: &mut SolverBody,
+        faults: &mut Faults,
+    ) -> Speed {
         let wanted = i64::from(lambda.to_bits()) + i64::from(d.to_bits());
         let bounded = wanted.clamp(lo.to_bits().into(), hi.to_bits().into());
         let within = bounded.clamp(-i64::from(IMPULSE_MAX.to_bits()), IMPULSE_MAX.to_bits().into());
@@ -210,7 +243,7 @@ pub(crate) fn lambda_of(p: Speed, denominator: Denominator, faults: &mut Faults)
 
 /// `p = L / D`: the impulse times `mA + mB`, which does not depend on the lever arms.
 pub(crate) fn impulse_of(lambda: Speed, denominator: Denominator) -> Speed {
-    let bits = crate::math::div_round(i128::from(lambda.to_bits()) << 30, denominator.max(1).into());
+    let bits = div_round(i128::from(lambda.to_bits()) << 30, denominator.max(1).into());
     Speed::from_bits(saturate(saturate_wide(bits)))
 }
 

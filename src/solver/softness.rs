@@ -52,6 +52,12 @@ impl Softness {
         narrow(Fx::ONE.saturating_add(give.min(fx!(0.9))))
     }
 
+    /// The part of a spring's impulse that comes from its stretch, reversed: `massScale biasRate x`, which is about
+    /// `h omega^2 x`. The rate alone times a long stretch would leave the format.
+    pub(crate) fn push(&self, stretch: Fx) -> Speed {
+        narrow(fx_mul(fx_mul(stretch, self.bias_rate.into()), self.mass_scale.into()))
+    }
+
     /// `-massScale (v + bias) - impulseScale L`, clamped.
     #[inline]
     pub(crate) fn impulse(&self, v: Speed, bias: Speed, lambda: Speed, faults: &mut Faults) -> Speed {

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::World;
 use super::islands;
 use super::state::{Island, State};
+use super::stress;
 use crate::body::{
     Body, BodyDef, BodyId, BodyKind, BodySettings, Handle, JointId, MassProperties, MassSource, REACH_MAX,
     SHAPES_PER_BODY_MAX, Shape, ShapeDef, ShapeId, WORLD_EXTENT_MAX, WorldError, check_position,
@@ -275,15 +276,8 @@ impl World {
         self.scratch.roster.invalidate();
     }
 
-    /// Wakes bodies whose joints have changed, and lets their contacts be looked at anew.
-    pub(super) fn rejoined(&mut self, bodies: [BodyId; 2]) {
-        for id in bodies {
-            islands::wake_body(&mut self.state, &mut self.scratch, id.slot());
-            self.scratch.changes.body(self.state.bodies.at(id.slot()));
-        }
-        self.scratch.changes.rules = true;
-        self.scratch.joined_stale = true;
-        self.scratch.roster.invalidate();
+    fn rejoined(&mut self, bodies: [BodyId; 2]) {
+        stress::rejoined(&mut self.state, &mut self.scratch, bodies);
     }
 
     /// Removes shapes from everything but their body.

@@ -16,10 +16,10 @@ use super::World;
 use super::mover_planes::{MoverPlane, clipped, solve_planes};
 use super::probe::Probe;
 use super::query::QueryFilter;
-use crate::body::{Geometry, GeometryError, Sides};
-use crate::collision::{Outline, PosedShape, SKIN, distance};
+use crate::body::{Geometry, GeometryError, ShapeId, Sides};
+use crate::collision::{Core, SKIN, distance};
 use crate::fx;
-use crate::math::{Angle, Fx, Unit, Vec2, fx_div};
+use crate::math::{Angle, Fx, Rot, Unit, Vec2, fx_div};
 
 /// How often a move is turned in a tick, and how often a character is pushed out of what overlaps it.
 const TURNS_MAX: u32 = 8;
@@ -200,7 +200,8 @@ impl Walk<'_> {
     fn push_out(&mut self) {
         for _ in 0..TURNS_MAX {
             let mut planes = self.world.collide_mover(&self.probe, Fx::ZERO, self.filter);
-            planes.retain(|plane| plane.separation < Fx::ZERO && !self.is_one_sided(plane));
+            planes
+                .retain(|plane| plane.separation < Fx::ZERO && !self.passes(plane.shape, plane.normal, true));
             if planes.is_empty() {
                 return;
             }
@@ -317,10 +318,10 @@ impl Walk<'_> {
 
     /// How far the character gets, and what is there.
     fn cast(&self, translation: Vec2<Fx>) -> Option<(Vec2<Fx>, MoverPlane)> {
-        let hit = self.world.first_along(&self.probe, translation, self.filter, |posed, [other, own]| {
-            // What is solid from one side holds nothing that is still on its way through.
-            !is_one_sided(posed) || distance(other, own).distance >= Fx::ZERO
-        })?;
+        let stops = |shape, normal, [other, own]: [&Core; 2]| {
+            !self.passes(shape, normal, distance(other, own).distance < Fx::ZERO)
+        };
+        let hit = self.world.first_along(&self.probe, translation, self.filter, stops)?;
         let (push_limit, push) = (Fx::MAX, Fx::ZERO);
         let (shape, normal, separation, point) = (hit.shape, hit.normal, SKIN, hit.point);
         Some((hit.travelled, MoverPlane { shape, normal, separation, point, push_limit, push }))
@@ -330,12 +331,15 @@ impl Walk<'_> {
         self.probe = self.probe.at(self.probe.position() + by);
     }
 
-    fn is_one_sided(&self, plane: &MoverPlane) -> bool {
-        let shape = self.world.shape(plane.shape);
-        shape.is_some_and(|shape| matches!(shape.geometry(), Geometry::Link { sides: Sides::Right, .. }))
+    /// Whether the character goes through a shape that is solid from one side, on which it is not; which it is not
+    /// either before it has left it.
+    fn passes(&self, id: ShapeId, normal: Vec2<Unit>, overlaps: bool) -> bool {
+        let Some(shape) = self.world.shape(id) else { return true };
+        let one_sided = matches!(shape.geometry(), Geometry::Link { sides: Sides::Right, .. });
+        let leaves = shape.one_way().zip(self.world.body(shape.body())).map(|(direction, body)| {
+            let upright: Unit = Rot::from_angle(body.angle() + direction).apply(Vec2::X).dot(normal);
+            upright < Unit::lit("0.5")
+        });
+        overlaps && (one_sided || leaves.is_some()) || leaves == Some(true)
     }
-}
-
-fn is_one_sided(posed: &PosedShape) -> bool {
-    matches!(&posed.outline, Outline::Link(link) if link.sides == Sides::Right)
 }

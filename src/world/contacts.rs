@@ -10,36 +10,42 @@ use crate::math::{Fx, Length, widen};
 use crate::solver::{Surface, TouchingPair};
 
 /// Narrow phase: a manifold for every contact, and the list of those that the solver has to deal with.
-pub(super) fn find_manifolds(state: &State, scratch: &mut Scratch) {
+pub(super) fn find_manifolds(state: &mut State, scratch: &mut Scratch) {
     scratch.hints.resize(state.contacts.len(), AxisHint::default());
     scratch.manifolds.clear();
     scratch.touching.clear();
     scratch.approaches.clear();
     scratch.sat = SatCounters::default();
-    for (index, contact) in (0u32..).zip(&state.contacts) {
+    let mut contacts = core::mem::take(&mut state.contacts);
+    for (index, contact) in (0u32..).zip(&mut contacts) {
         let hint = &mut scratch.hints[index as usize];
-        let manifold = manifold_of(state, &scratch.poses, contact.shapes, hint, &mut scratch.sat);
+        let manifold = manifold_of(state, &scratch.poses, contact, hint, &mut scratch.sat);
         if !manifold.points().is_empty() && state.sensor_of(contact.shapes).is_none() {
-            scratch.touching.push(touching_pair(state, index, contact));
+            scratch.touching.push(touching_pair(state, &scratch.poses, index, contact));
             scratch.approaches.extend(approaching(state, index, contact, &manifold));
         }
         scratch.manifolds.push(manifold);
     }
+    state.contacts = contacts;
 }
 
 /// Whether two shapes have contact, or come so near within the tick that they have to be solved together.
 pub(super) fn touch(state: &State, poses: &Poses, pair: Pair) -> bool {
-    let manifold = manifold_of(state, poses, pair, &mut AxisHint::default(), &mut SatCounters::default());
+    let known = state.contacts.binary_search_by_key(&pair, |contact| contact.shapes);
+    let mut contact = known.map_or(Contact::new(pair), |index| state.contacts[index]);
+    let manifold =
+        manifold_of(state, poses, &mut contact, &mut AxisHint::default(), &mut SatCounters::default());
     !manifold.points().is_empty()
 }
 
 fn manifold_of(
     state: &State,
     poses: &Poses,
-    (a, b): Pair,
+    contact: &mut Contact,
     hint: &mut AxisHint,
     counters: &mut SatCounters,
 ) -> Manifold {
+    let (a, b) = contact.shapes;
     let (posed_a, posed_b) = (poses.at(a), poses.at(b));
     if state.sensor_of((a, b)).is_some() {
         return collide(posed_a, posed_b, Length::ZERO, hint, counters);
@@ -47,17 +53,22 @@ fn manifold_of(
     let (body_a, body_b) = state.bodies_of((a, b));
     let approach = Approach::new(state, (body_a, posed_a), (body_b, posed_b));
     let mut manifold = collide(posed_a, posed_b, approach.margin, hint, counters);
+    contact.passing =
+        approach.lets_pass((state.shapes.at(a), state.shapes.at(b)), &manifold, contact.passing);
+    if contact.passing {
+        return Manifold::NONE;
+    }
     approach.keep_reachable(&mut manifold);
     manifold
 }
 
-fn touching_pair(state: &State, index: u32, contact: &Contact) -> TouchingPair {
+fn touching_pair(state: &State, poses: &Poses, index: u32, contact: &Contact) -> TouchingPair {
     let (shape_a, shape_b) = (state.shapes.at(contact.shapes.0), state.shapes.at(contact.shapes.1));
-    let (material_a, material_b) = (shape_a.material(), shape_b.material());
-    let surface = Surface {
-        friction: material_a.mixed_friction(material_b),
-        restitution: material_a.mixed_restitution(material_b),
-    };
+    let radius = |slot: u32| poses.at(slot).outline.radius();
+    let surface = Surface::between(
+        (shape_a.material(), radius(contact.shapes.0)),
+        (shape_b.material(), radius(contact.shapes.1)),
+    );
     TouchingPair { contact: index, bodies: (shape_a.body().slot(), shape_b.body().slot()), surface }
 }
 

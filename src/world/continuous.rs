@@ -111,5 +111,11 @@ fn stops(body: &Body, obstacle: &Body) -> bool {
 }
 
 fn may_stop(state: &State, scratch: &Scratch, a: u32, b: u32) -> bool {
-    !state.shapes.at(b).is_sensor() && may_touch(state, &scratch.joined, (a.min(b), a.max(b)))
+    let pair = (a.min(b), a.max(b));
+    // Whether a one-way shape lets the other pass was decided at the start of the tick.
+    let passing = || {
+        let known = state.contacts.binary_search_by_key(&pair, |contact| contact.shapes);
+        known.is_ok_and(|index| state.contacts[index].passing)
+    };
+    !state.shapes.at(b).is_sensor() && may_touch(state, &scratch.joined, pair) && !passing()
 }

@@ -1,10 +1,10 @@
 //! How far ahead a tick has to look: what a body's velocity can do within it.
 
 use super::state::State;
-use crate::body::Body;
-use crate::collision::{Manifold, ManifoldPoint, Outline, Passage, PosedShape, margin_for, pass_by};
+use crate::body::{Body, Shape};
+use crate::collision::{Manifold, ManifoldPoint, OneWay, Outline, Passage, PosedShape, margin_for, pass_by};
 use crate::fx;
-use crate::math::{Fx, Length, Vec2, fx_mul, narrow, widen};
+use crate::math::{Fx, Length, Rot, Vec2, fx_mul, narrow, widen};
 
 /// Bounds of how far a body can come in a tick at its present velocity.
 pub(super) struct Motion {
@@ -49,6 +49,8 @@ pub(super) struct Approach<'a> {
     b: &'a Body,
     tick_rate: u32,
     speculative: Length,
+    /// Bound of the way by which any two points of the shapes approach each other in the tick, in metres.
+    closing: Fx,
     pub(super) margin: Length,
     posed_a: &'a PosedShape,
     posed_b: &'a PosedShape,
@@ -77,7 +79,7 @@ impl<'a> Approach<'a> {
         };
         let slack = state.config.touching_distance().min(size(posed_a)).min(size(posed_b));
         let margin = margin_for(speculative, closing);
-        Approach { a, b, tick_rate, speculative, margin, posed_a, posed_b, slack }
+        Approach { a, b, tick_rate, speculative, closing, margin, posed_a, posed_b, slack }
     }
 
     /// Drops the points that the bodies, at their present velocities, will not reach within the tick: shapes that
@@ -98,6 +100,9 @@ impl<'a> Approach<'a> {
             separation <= widen(self.speculative)
                 || separation <= closing(point).saturating_add(widen(self.speculative))
         });
+        if self.closing <= PASSAGE_MIN {
+            return;
+        }
         // A point that is not reached does nothing, so only one that is decides.
         let reached = manifold.points().iter().filter(|point| {
             let separation = widen(point.separation);
@@ -112,6 +117,19 @@ impl<'a> Approach<'a> {
         }
     }
 
+    /// Whether one of the shapes lets the other pass through it.
+    pub(super) fn lets_pass(&self, (a, b): (&Shape, &Shape), manifold: &Manifold, was_passing: bool) -> bool {
+        let one_way = |shape: &Shape, body: &Body, posed: &'a PosedShape| {
+            let direction =
+                shape.one_way().map(|angle| Rot::from_angle(body.angle() + angle).apply(Vec2::X))?;
+            Some(OneWay { shape: posed, direction })
+        };
+        one_way(a, self.a, self.posed_a)
+            .is_some_and(|a| a.lets_pass(self.posed_b, manifold, was_passing, self.slack))
+            || one_way(b, self.b, self.posed_b)
+                .is_some_and(|b| b.lets_pass(self.posed_a, &manifold.swapped(), was_passing, self.slack))
+    }
+
     /// Whether the shapes pass by each other, within the slack, although a contact closes by some way in the tick.
     fn passes_by(&self, closing: Fx) -> bool {
         let (a, b) = (Motion::of(self.a, self.tick_rate), Motion::of(self.b, self.tick_rate));
@@ -122,7 +140,7 @@ impl<'a> Approach<'a> {
             shift: Vec2::new(velocity.x / rate, velocity.y / rate).narrow(),
             turn: narrow(turn),
             slack: narrow(self.slack),
-            deepening: narrow(closing / 8),
+            approach: narrow(closing / 8),
         };
         pass_by(self.posed_a, self.posed_b, &passage)
     }

@@ -12,6 +12,7 @@ mod digest;
 mod events;
 mod explosion;
 mod islands;
+mod joint_view;
 mod look_ahead;
 mod mover_planes;
 mod pairs;
@@ -22,6 +23,7 @@ mod scratch;
 mod state;
 mod stats;
 mod step;
+mod stress;
 mod timestep;
 mod validate;
 
@@ -42,7 +44,7 @@ pub use validate::Violation;
 
 use crate::body::{Body, BodyId, BodyKind, JointId, Shape, ShapeId, WorldError};
 use crate::collision::{BroadPhaseKind, Manifold};
-use crate::math::{Fx, Rng, Vec2};
+use crate::math::Rng;
 use crate::solver::Joint;
 use scratch::Scratch;
 use state::State;
@@ -214,14 +216,6 @@ impl World {
     /// Chooses how overlapping pairs are found. No hash changes by it.
     pub fn set_broad_phase(&mut self, kind: BroadPhaseKind) {
         self.scratch = Scratch::new(kind, &self.state);
-    }
-
-    /// Where the anchors of a revolute joint are in the world, A's first.
-    #[must_use]
-    pub fn joint_anchors(&self, id: JointId) -> Option<(Vec2<Fx>, Vec2<Fx>)> {
-        let crate::solver::JointDef::Revolute(def) = self.joint(id)?.def();
-        let (a, b) = (self.body(def.body_a)?, self.body(def.body_b)?);
-        Some((a.transform().apply(def.anchor_a), b.transform().apply(def.anchor_b)))
     }
 }
 

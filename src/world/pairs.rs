@@ -138,7 +138,7 @@ fn refresh_joined(state: &State, scratch: &mut Scratch) {
     if !core::mem::take(&mut scratch.joined_stale) {
         return;
     }
-    let keeping_apart = state.joints.iter().filter(|(_, joint)| !joint.def().collide_connected());
+    let keeping_apart = state.joints.iter().filter(|(_, joint)| !joint.def().collide_connected);
     scratch.joined.clear();
     scratch.joined.extend(keeping_apart.map(|(_, joint)| {
         let (a, b) = joint.def().bodies();

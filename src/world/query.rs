@@ -95,7 +95,7 @@ pub struct Proximity {
 
 impl World {
     /// The first shape that a ray meets from a point along a translation, in metres. Links that are solid from one side
-    /// let rays from the other side through.
+    /// let rays from the other side through; one-way shapes let none.
     ///
     /// ```
     /// use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, fx, math::Vec2, world::World};
@@ -142,20 +142,21 @@ impl World {
     }
 
     /// The first shape that a probe meets as it moves along a translation without turning. It stops a tenth of a
-    /// millimetre before it touches; what it touches already stops it only if it moves into it.
+    /// millimetre before it touches; what it touches already stops it only if it moves into it. Links that are solid from
+    /// one side are met from there: by probes whose middle is on it.
     #[must_use]
     pub fn cast_shape(&self, probe: &Probe, translation: Vec2<Fx>, filter: QueryFilter) -> Option<CastHit> {
-        self.first_along(probe, translation, filter, |_, _| true)
+        self.first_along(probe, translation, filter, |_, _, _| true)
     }
 
-    /// The first shape that a probe meets among those that `accept`, which gets it also as a core about the probe's
-    /// position, together with the probe's.
+    /// The first shape that a probe meets among those that `accept`, which gets the normal there, and where they start
+    /// as cores about the probe's position, the other shape's first.
     pub(super) fn first_along(
         &self,
         probe: &Probe,
         translation: Vec2<Fx>,
         filter: QueryFilter,
-        accept: impl Fn(&PosedShape, [&Core; 2]) -> bool,
+        accept: impl Fn(ShapeId, Vec2<Unit>, [&Core; 2]) -> bool,
     ) -> Option<CastHit> {
         let posed = probe.posed();
         let origin = probe.position();
@@ -170,7 +171,8 @@ impl World {
                 return interest;
             };
             let other = Core::of(posed, origin);
-            let found = cast_shape(&other, &moving, translation).filter(|_| accept(posed, [&other, &moving]));
+            let found = cast_shape(&other, &moving, translation)
+                .filter(|hit| accept(shape, hit.normal, [&other, &moving]));
             if let Some(ShapeHit { fraction, order, travelled, point, normal }) = found {
                 let hit = CastHit { shape, fraction, travelled, point: origin + point, normal };
                 let best = earlier(closest, Ordered { order, hit }, shape, |best| best.shape);

@@ -10,6 +10,7 @@ use super::pairs;
 use super::scratch::Scratch;
 use super::state::State;
 use super::stats::{Phase, StepStats};
+use super::stress;
 use crate::body::{BodyKind, Handle, Pose, WORLD_EXTENT_MAX};
 use crate::math::{Angle, Fx, Vec2};
 use crate::solver::{SolverBody, Tuning, turn_of};
@@ -46,7 +47,7 @@ impl World {
         begin(Phase::Prepare);
         let Scratch { solver, roster, touching, manifolds, .. } = scratch;
         solver.prepare_bodies(&state.bodies, &roster.bodies, &tuning);
-        solver.prepare_joints(&state.joints, &roster.joints, &state.bodies);
+        solver.prepare_joints(&state.joints, &roster.joints, &state.bodies, &tuning);
         solver.prepare_contacts(touching, manifolds, &state.contacts, &state.bodies, &tuning);
 
         begin(Phase::Solve);
@@ -62,6 +63,7 @@ impl World {
         begin(Phase::Finalise);
         contacts::report(state, scratch);
         finalise_poses(state, scratch);
+        stress::report(state, scratch, &tuning);
 
         begin(Phase::Sleep);
         islands::fall_asleep(state, scratch);

@@ -162,7 +162,7 @@ fn check_joints(state: &State) -> Result<(), Violation> {
         let together = !joint.is_solved() || !both || body_a.island == body_b.island;
         check(together, || format!("joint {id}: its bodies do not sleep together"))?;
         let limit = crate::solver::IMPULSE_MAX;
-        let bounded = [joint.lambda.x, joint.lambda.y].iter().all(|p| (-limit..=limit).contains(p));
+        let bounded = joint.impulses.0.iter().all(|p| (-limit..=limit).contains(p));
         check(bounded, || format!("joint {id}: its impulse"))?;
     }
     Ok(())
@@ -189,6 +189,7 @@ fn check_contacts(state: &State, contacts: &[Contact]) -> Result<(), Violation> 
             let pushes = point.normal >= 0 && point.normal <= limit;
             check(pushes && (-limit..=limit).contains(&point.tangent), || at("an impossible impulse"))?;
         }
+        check((-limit..=limit).contains(&contact.rolling), || at("an impossible impulse against rolling"))?;
         let unused = &contact.points[usize::from(contact.count)..];
         check(unused.iter().all(|point| *point == Default::default()), || at("an impulse of no point"))?;
     }

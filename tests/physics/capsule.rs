@@ -25,10 +25,13 @@ fn a_capsule_lies_on_two_points_and_rests() {
     let mut world = World::default();
     floor(&mut world);
     let body = fall(&mut world, fx!(0), fx!(1.5), Angle::from_degrees(fx!(20)), pill(fx!(0.8), fx!(0.25)));
+    // Of a body that sleeps there are no contacts, so the last ones count.
+    let mut points = Vec::new();
     for _ in 0..600 {
         world.step();
+        let counts: Vec<_> = world.contacts().map(|contact| contact.manifold.points().len()).collect();
+        points = if counts.is_empty() { points } else { counts };
     }
-    let points: Vec<_> = world.contacts().map(|contact| contact.manifold.points().len()).collect();
     assert_eq!(points, [2]);
     let body = world.body(body).expect("still there");
     assert!((body.position().y - fx!(0.25)).abs() < fx!(0.002), "at {:?}", body.position());

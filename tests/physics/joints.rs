@@ -50,7 +50,7 @@ fn spinning_rod_with_arm(arm: Fx) -> lockstep2d::lockstep::Sandbox {
                 body.position.x = arm;
                 body.velocity.y = fx_mul(body.angular_velocity, arm);
             }
-            Command::AddJoint { joint: lockstep2d::solver::JointDef::Revolute(def) } => def.anchor_b.x = -arm,
+            Command::AddJoint { joint } => joint.frame_b.anchor.x = -arm,
             _ => {}
         }
     }

@@ -80,3 +80,29 @@ fn everything_slides_over_flush_blocks() {
         }
     }
 }
+
+/// Thin plates on a floor still run into each other, and so does a box into a step that is no seam.
+#[test]
+fn thin_plates_and_low_steps_are_not_passed_by() {
+    let mut world = World::default();
+    let floor = ShapeDef::new(Polygon::rectangle(fx!(50), fx!(1)).expect("valid")).friction(fx!(0));
+    let step = ShapeDef::new(Polygon::rectangle(fx!(1), fx!(0.01)).expect("valid"));
+    let step = step.offset(fx!(-20), fx!(1.01));
+    world.spawn(&BodyDef::fixed().position(fx!(0), fx!(-1)), &[floor, step]).expect("valid");
+    let plate = ShapeDef::new(Polygon::rectangle(fx!(0.2), fx!(0.003)).expect("valid")).friction(fx!(0));
+    let slide = |world: &mut World, shape, x, y, speed| {
+        let def = BodyDef::dynamic().position(x, y).velocity(speed, fx!(0));
+        world.spawn(&def, &[shape]).expect("valid")
+    };
+    let first = slide(&mut world, plate, fx!(0), fx!(0.003), fx!(2));
+    let second = slide(&mut world, plate, fx!(3), fx!(0.003), fx!(0));
+    let square = ShapeDef::new(Polygon::square(fx!(0.5)).expect("valid")).friction(fx!(0));
+    let third = slide(&mut world, square, fx!(-15), fx!(0.5), fx!(-2));
+    for _ in 0..180 {
+        world.step();
+    }
+    let velocity = |id| world.body(id).expect("there").velocity();
+    assert!(velocity(first).distance(velocity(second)) < fx!(0.1), "{:?}", velocity(second));
+    assert!((velocity(second).x - fx!(1)).abs() < fx!(0.05), "{:?}", velocity(second));
+    assert!(world.body(third).expect("there").position().x > fx!(-18.51), "stopped by a step of 2 cm");
+}

@@ -1,0 +1,161 @@
+//! Geometry: what shapes look like, with its ranges and bounds.
+
+use serde::{Deserialize, Serialize};
+
+use super::error::GeometryError;
+use super::polygon::{Polygon, SHAPE_EXTENT_MAX};
+use super::shape::WORLD_EXTENT_MAX;
+use crate::fx;
+use crate::math::{Aabb, Fx, Vec2};
+
+/// The shortest circle radius and segment length in metres.
+const SIZE_MIN: Fx = fx!(0.002);
+
+/// What a shape looks like, about its own centre.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Geometry {
+    /// A disc about the shape's centre.
+    Circle {
+        /// 0.002 to 110 m.
+        radius: Fx,
+    },
+    /// A line between two points, solid from both sides. It has no area, and so no mass. Segments do not collide
+    /// with each other. May be as long as the world.
+    Segment {
+        /// One end, in metres from the shape's centre.
+        a: Vec2<Fx>,
+        /// The other end.
+        b: Vec2<Fx>,
+    },
+    /// A convex polygon, optionally rounded.
+    Polygon(Polygon),
+    /// Everything within a radius of the line between two points: a pill, or a stick with round ends.
+    Capsule {
+        /// The centre of one round end, in metres from the shape's centre.
+        a: Vec2<Fx>,
+        /// The centre of the other, at least 2 mm away.
+        b: Vec2<Fx>,
+        /// 0.002 m or more. The capsule reaches at most 110 m from the shape's centre on each axis.
+        radius: Fx,
+    },
+    /// A line between two points that is part of a chain: see [`Chain`](super::Chain), which makes them. Like a
+    /// segment it has no area, does not collide with lines, and may be as long as the world. Where it has a
+    /// neighbour it pushes only in directions that the chain as a whole allows.
+    Link {
+        /// One end, in metres from the shape's centre.
+        a: Vec2<Fx>,
+        /// The other end.
+        b: Vec2<Fx>,
+        /// The other end of the neighbour that ends at `a`.
+        before: Option<Vec2<Fx>>,
+        /// The other end of the neighbour that starts at `b`.
+        after: Option<Vec2<Fx>>,
+        /// From where it is solid.
+        sides: Sides,
+    },
+}
+
+/// From which sides a link is solid.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum Sides {
+    /// From both.
+    #[default]
+    Both,
+    /// Only from the right as one looks from `a` to `b`. What has its centre on the left passes.
+    Right,
+}
+
+impl From<Polygon> for Geometry {
+    fn from(polygon: Polygon) -> Self {
+        Geometry::Polygon(polygon)
+    }
+}
+
+impl Geometry {
+    /// A circle from its radius in metres.
+    ///
+    /// # Errors
+    /// When the radius is not within 0.002 to 110 m.
+    pub fn circle(radius: Fx) -> Result<Self, GeometryError> {
+        let circle = Geometry::Circle { radius };
+        circle.validate().map(|()| circle)
+    }
+
+    /// A segment from its ends, in metres from the shape's centre.
+    ///
+    /// # Errors
+    /// When it is shorter than 2 mm or leaves the world.
+    pub fn segment(a: Vec2<Fx>, b: Vec2<Fx>) -> Result<Self, GeometryError> {
+        let segment = Geometry::Segment { a, b };
+        segment.validate().map(|()| segment)
+    }
+
+    /// A capsule from the centres of its round ends, in metres from the shape's centre, and its radius.
+    ///
+    /// # Errors
+    /// When the centres are closer than 2 mm, the radius is below 2 mm, or it reaches further than 110 m on some axis.
+    pub fn capsule(a: Vec2<Fx>, b: Vec2<Fx>, radius: Fx) -> Result<Self, GeometryError> {
+        let capsule = Geometry::Capsule { a, b, radius };
+        capsule.validate().map(|()| capsule)
+    }
+
+    /// Checks sizes. A [`Polygon`] is valid by construction.
+    pub(crate) fn validate(&self) -> Result<(), GeometryError> {
+        match *self {
+            Geometry::Circle { radius } => {
+                if !(SIZE_MIN..=SHAPE_EXTENT_MAX).contains(&radius) {
+                    return Err(GeometryError::SizeOutOfRange { value: radius });
+                }
+            }
+            Geometry::Segment { a, b } => {
+                check_within(&[a, b], WORLD_EXTENT_MAX)?;
+                check_length(a, b)?;
+            }
+            Geometry::Polygon(_) => {}
+            Geometry::Capsule { a, b, radius } => {
+                if !(SIZE_MIN..=SHAPE_EXTENT_MAX).contains(&radius) {
+                    return Err(GeometryError::SizeOutOfRange { value: radius });
+                }
+                check_within(&[a, b], SHAPE_EXTENT_MAX - radius)?;
+                check_length(a, b)?;
+            }
+            Geometry::Link { a, b, before, after, sides: _ } => {
+                let (first, last) = (before.unwrap_or(a), after.unwrap_or(b));
+                check_within(&[first, a, b, last], WORLD_EXTENT_MAX)?;
+                check_length(a, b)?;
+                before.map_or(Ok(()), |before| check_length(before, a))?;
+                after.map_or(Ok(()), |after| check_length(b, after))?;
+            }
+        }
+        Ok(())
+    }
+
+    /// The box around the geometry about its own centre, unrotated.
+    pub(crate) fn local_bounds(&self) -> Aabb {
+        match self {
+            Geometry::Circle { radius } => Aabb::new(Vec2::ZERO, Vec2::ZERO).expanded(*radius),
+            Geometry::Segment { a, b } | Geometry::Link { a, b, .. } => Aabb::new(a.min(*b), a.max(*b)),
+            Geometry::Polygon(polygon) => {
+                let points = polygon.vertices().iter().map(|vertex| vertex.widen());
+                let bounds = Aabb::from_points(points).unwrap_or(Aabb::new(Vec2::ZERO, Vec2::ZERO));
+                bounds.expanded(polygon.radius().into())
+            }
+            Geometry::Capsule { a, b, radius } => Aabb::new(a.min(*b), a.max(*b)).expanded(*radius),
+        }
+    }
+}
+
+/// Checks that points are within `extent` of the shape's centre on each axis.
+fn check_within(points: &[Vec2<Fx>], extent: Fx) -> Result<(), GeometryError> {
+    let coordinates = points.iter().flat_map(|point| [point.x, point.y]);
+    match coordinates.into_iter().find(|c| c.unsigned_abs() > extent.unsigned_abs()) {
+        Some(value) => Err(GeometryError::SizeOutOfRange { value }),
+        None => Ok(()),
+    }
+}
+
+/// Checks that a line is long enough to have a direction.
+fn check_length(a: Vec2<Fx>, b: Vec2<Fx>) -> Result<(), GeometryError> {
+    let length = a.distance(b);
+    if length < SIZE_MIN { Err(GeometryError::SizeOutOfRange { value: length }) } else { Ok(()) }
+}

@@ -1,0 +1,111 @@
+//! Yards full of debris that something ploughs through or that falls in from above.
+
+use alloc::vec;
+use alloc::vec::Vec;
+
+use super::Scene;
+use super::builder::{Builder, build, rectangle, weightless};
+use crate::body::{BodyDef, BodyKind, Geometry, Polygon, ShapeDef, WorldError};
+use crate::fx;
+use crate::lockstep::Sandbox;
+use crate::math::{Angle, Fx, Rot, Vec2, fx_mul, widen};
+use crate::world::{Command, Config};
+
+pub(super) const SMASH: Scene =
+    Scene::new("smash", 300, "a heavy box hits a block of 9600 that sleep, without gravity", |_| {
+        build(weightless(), |scene| {
+            let ram = rectangle(fx!(4), fx!(4))?.density(fx!(8));
+            scene.spawn(BodyDef::dynamic().position(fx!(-20), fx!(0)).velocity(fx!(40), fx!(0)), &[ram])?;
+            let (origin, apart) = (Vec2::new(fx!(30), fx!(-16)), Vec2::new(fx!(0.4), fx!(0.4)));
+            let square = rectangle(fx!(0.2), fx!(0.2))?;
+            scene.spawn_each(BodyDef::dynamic().asleep(), &[square], grid(120, 80, origin, apart))?;
+            Ok(())
+        })
+    });
+
+/// Places in columns from left to right, each from the bottom up.
+pub(super) fn grid(
+    columns: i32,
+    rows: i32,
+    origin: Vec2<Fx>,
+    apart: Vec2<Fx>,
+) -> impl Iterator<Item = Vec2<Fx>> {
+    let place = move |column: i32, row: i32| {
+        origin + Vec2::new(apart.x.saturating_mul_int(column.into()), apart.y.saturating_mul_int(row.into()))
+    };
+    (0..columns).flat_map(move |column| (0..rows).map(move |row| place(column, row)))
+}
+
+/// Every other place to the right, the ones between to the left.
+fn staggered(places: impl Iterator<Item = Vec2<Fx>>, first: Fx) -> impl Iterator<Item = Vec2<Fx>> {
+    places
+        .enumerate()
+        .map(move |(index, place)| place + Vec2::new(if index % 2 == 0 { first } else { -first }, Fx::ZERO))
+}
+
+/// A ground of boxes that overlap a little, and walls of such boxes at its ends.
+fn yard(half_width: i32, wall_height: i32) -> Result<Vec<ShapeDef>, WorldError> {
+    let (flat, upright) = (rectangle(fx!(0.55), fx!(0.5))?, rectangle(fx!(0.5), fx!(0.55))?);
+    let ground = (-half_width..=half_width).map(|x| flat.offset(Fx::from_num(x), fx!(0)));
+    let wall = |x: i32| (1..=wall_height).map(move |y| upright.offset(Fx::from_num(x), Fx::from_num(y)));
+    Ok(ground.chain(wall(-half_width)).chain(wall(half_width)).collect())
+}
+
+pub(super) const JUNKYARD: Scene = Scene {
+    name: "junkyard",
+    about: "8000 pentagons rain into a yard, where a pusher goes to and fro",
+    ticks: 800,
+    setup: |_| build(Config::default(), fill_junkyard),
+    script: push_junk,
+};
+
+fn fill_junkyard(scene: &mut Builder) -> Result<(), WorldError> {
+    scene.spawn(BodyDef::fixed(), &yard(80, 50)?)?;
+    let (origin, apart) = (Vec2::new(fx!(-75), fx!(15)), Vec2::new(fx!(0.75), fx!(1)));
+    let places = staggered(grid(200, 40, origin, apart), fx!(-0.1));
+    scene.spawn_each(BodyDef::dynamic(), &[ShapeDef::new(golden_pentagon()?)], places)?;
+    scene.spawn(BodyDef::kinematic(), &[rectangle(fx!(2), fx!(4))?.offset(fx!(0), fx!(4))])?;
+    Ok(())
+}
+
+/// Five points on a circle, each a golden angle after the one before: an irregular pentagon.
+fn golden_pentagon() -> Result<Polygon, WorldError> {
+    // pi (sqrt(5) - 1)
+    let step = Angle::from_radians(fx!(3.883222077451));
+    let mut angle = Angle::ZERO;
+    let mut points = Vec::new();
+    for _ in 0..5 {
+        points.push(Rot::from_angle(angle).apply_wide(Vec2::new(fx!(0.25), fx!(0))));
+        angle += step;
+    }
+    Ok(Polygon::hull(&points)?)
+}
+
+/// The pusher is at `60 sin(t / 5)` metres.
+fn push_junk(tick: u64, game: &Sandbox) -> Vec<Command> {
+    let pusher = game.world().bodies().find(|(_, body)| body.kind() == BodyKind::Kinematic);
+    let Some((body, _)) = pusher else { return vec![] };
+    // 300 ticks are 5 s, and so one radian.
+    let phase = Angle::from_radians(crate::math::ratio(i64::try_from(tick).unwrap_or(i64::MAX), 300));
+    let position = Vec2::new(fx_mul(fx!(60), widen(phase.sin())), fx!(0));
+    vec![Command::MoveTo { body, position, angle: Angle::ZERO }]
+}
+
+pub(super) const COMPOUNDS: Scene =
+    Scene::new("compounds", 500, "3000 arrowheads, each of two triangles, fall into a yard", |_| {
+        build(Config::default(), |scene| {
+            let mut ground = yard(40, 100)?;
+            let below = Geometry::segment(Vec2::new(fx!(-800), fx!(-80)), Vec2::new(fx!(800), fx!(-80)))?;
+            ground.push(ShapeDef::new(below));
+            scene.spawn(BodyDef::fixed(), &ground)?;
+            let half = |side: Fx| {
+                let points = [(-side, fx!(0)), (side / 2, fx!(1)), (fx!(0), fx!(2))];
+                Polygon::hull(&points.map(|(x, y)| Vec2::new(x, y)))
+                    .map(|half| ShapeDef::new(half).friction(fx!(0.5)))
+            };
+            let (origin, apart) = (Vec2::new(fx!(-19), fx!(5.575)), Vec2::new(fx!(2), fx!(2.25)));
+            let places = staggered(grid(20, 150, origin, apart), fx!(0.25));
+            scene.spawn_each(BodyDef::dynamic(), &[half(fx!(1))?, half(fx!(-1))?], places)?;
+            Ok(())
+        })
+    });

@@ -1,0 +1,217 @@
+//! Joints as a user defines them.
+
+use serde::{Deserialize, Serialize};
+
+use super::{Distance, Motor, Prismatic, Revolute, Weld, Wheel};
+use crate::body::{BodyId, REACH_MAX, WorldError};
+use crate::math::{Angle, Fx, Vec2};
+
+/// What to connect two bodies with, and where.
+///
+/// Each body has a frame that belongs to the joint: an anchor and an angle. A joint says how B's frame may move in A's.
+///
+/// ```
+/// use lockstep2d::{body::BodyDef, fx, solver::{JointDef, Revolute}, world::World};
+/// # use lockstep2d::body::{Polygon, ShapeDef};
+/// let mut world = World::default();
+/// let post = world.spawn(&BodyDef::fixed(), &[])?;
+/// let plank = ShapeDef::new(Polygon::rectangle(fx!(1), fx!(0.1))?);
+/// let gate = world.spawn(&BodyDef::dynamic().position(fx!(1), fx!(0)), &[plank])?;
+/// let hinge = Revolute::new().limit(fx!(-0.5), fx!(1.5)).motor(fx!(2), fx!(40));
+/// world.add_joint(&JointDef::new(post, gate, hinge).anchor_b(fx!(-1), fx!(0)))?;
+/// # Ok::<(), lockstep2d::body::WorldError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct JointDef {
+    /// One body.
+    pub body_a: BodyId,
+    /// The other body.
+    pub body_b: BodyId,
+    /// The joint's frame in A's frame.
+    pub frame_a: JointFrame,
+    /// The joint's frame in B's frame.
+    pub frame_b: JointFrame,
+    /// Whether the two bodies collide with each other.
+    pub collide_connected: bool,
+    /// How the frames may move against each other.
+    pub kind: JointKind,
+    /// What is too much for it.
+    pub threshold: Threshold,
+    /// Not used by the engine, but part of the state and its hash.
+    pub user_data: u64,
+}
+
+/// A joint's end on a body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct JointFrame {
+    /// Its origin in the body's frame, in metres, within ±128 on each axis.
+    pub anchor: Vec2<Fx>,
+    /// Its rotation in the body's frame. Sliding joints slide along the x axis of A's frame.
+    pub angle: Angle,
+}
+
+/// How two frames may move against each other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum JointKind {
+    /// They share their origin: a hinge.
+    Revolute(Revolute),
+    /// B slides along A's x axis and does not turn: a lift, a drawer.
+    Prismatic(Prismatic),
+    /// Their origins keep a distance: a rod, a rope, a spring.
+    Distance(Distance),
+    /// They coincide: glue, rigid or soft.
+    Weld(Weld),
+    /// B slides along A's x axis and turns: a wheel on its suspension.
+    Wheel(Wheel),
+    /// They are driven with limited force: friction from above, dragging with a pointer.
+    Motor(Motor),
+    /// They are free. Only keeps the bodies from colliding, unless [`JointDef::colliding`].
+    Filter,
+}
+
+/// How much a joint bears.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Threshold {
+    /// In N, 0 or more; `None` for any force.
+    pub force: Option<Fx>,
+    /// In N m, 0 or more; `None` for any torque.
+    pub torque: Option<Fx>,
+    /// What happens beyond.
+    pub action: ThresholdAction,
+}
+
+/// What happens to a joint that bears more than its threshold.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum ThresholdAction {
+    /// The world reports it.
+    Event,
+    /// The world reports it and removes the joint.
+    Break,
+}
+
+impl Threshold {
+    /// Bears anything.
+    pub const NONE: Self = Threshold { force: None, torque: None, action: ThresholdAction::Event };
+}
+
+impl JointFrame {
+    /// The frame of the body itself.
+    pub const ORIGIN: Self = JointFrame { anchor: Vec2::new(Fx::ZERO, Fx::ZERO), angle: Angle::ZERO };
+}
+
+impl JointDef {
+    /// A joint between the origins of two bodies, which then do not collide with each other.
+    #[must_use]
+    pub fn new(body_a: BodyId, body_b: BodyId, kind: impl Into<JointKind>) -> Self {
+        JointDef {
+            body_a,
+            body_b,
+            frame_a: JointFrame::ORIGIN,
+            frame_b: JointFrame::ORIGIN,
+            collide_connected: false,
+            kind: kind.into(),
+            threshold: Threshold::NONE,
+            user_data: 0,
+        }
+    }
+
+    /// Sets the anchor in A's frame, in metres.
+    #[must_use]
+    pub const fn anchor_a(mut self, x: Fx, y: Fx) -> Self {
+        self.frame_a.anchor = Vec2::new(x, y);
+        self
+    }
+
+    /// Sets the anchor in B's frame, in metres.
+    #[must_use]
+    pub const fn anchor_b(mut self, x: Fx, y: Fx) -> Self {
+        self.frame_b.anchor = Vec2::new(x, y);
+        self
+    }
+
+    /// Sets the angle of the joint's frame in A's frame: the direction of the axis of joints that slide.
+    #[must_use]
+    pub const fn angle_a(mut self, angle: Angle) -> Self {
+        self.frame_a.angle = angle;
+        self
+    }
+
+    /// Sets the angle of the joint's frame in B's frame.
+    #[must_use]
+    pub const fn angle_b(mut self, angle: Angle) -> Self {
+        self.frame_b.angle = angle;
+        self
+    }
+
+    /// Lets the two bodies collide with each other.
+    #[must_use]
+    pub const fn colliding(mut self) -> Self {
+        self.collide_connected = true;
+        self
+    }
+
+    /// Sets how much it bears.
+    #[must_use]
+    pub const fn threshold(mut self, threshold: Threshold) -> Self {
+        self.threshold = threshold;
+        self
+    }
+
+    /// Sets the game's own number.
+    #[must_use]
+    pub const fn user_data(mut self, user_data: u64) -> Self {
+        self.user_data = user_data;
+        self
+    }
+
+    /// The same between other bodies.
+    #[must_use]
+    pub const fn between(mut self, a: BodyId, b: BodyId) -> Self {
+        (self.body_a, self.body_b) = (a, b);
+        self
+    }
+
+    /// The two bodies, A first.
+    #[must_use]
+    pub const fn bodies(&self) -> (BodyId, BodyId) {
+        (self.body_a, self.body_b)
+    }
+
+    /// Checks what does not depend on the world.
+    pub(crate) fn validate(&self) -> Result<(), WorldError> {
+        if self.body_a == self.body_b {
+            return Err(WorldError::JointToItself(self.body_a));
+        }
+        let (a, b) = (self.frame_a.anchor, self.frame_b.anchor);
+        for value in [a.x, a.y, b.x, b.y] {
+            if !(-REACH_MAX..=REACH_MAX).contains(&value) {
+                return Err(WorldError::OffsetOutOfRange { value });
+            }
+        }
+        let Threshold { force, torque, action: _ } = self.threshold;
+        if [force, torque].into_iter().flatten().any(|most| most < Fx::ZERO) {
+            return Err(WorldError::JointOutOfRange { what: "threshold" });
+        }
+        match &self.kind {
+            JointKind::Revolute(kind) => kind.validate(),
+            JointKind::Prismatic(kind) => kind.validate(),
+            JointKind::Distance(kind) => kind.validate(),
+            JointKind::Weld(kind) => kind.validate(),
+            JointKind::Wheel(kind) => kind.validate(),
+            JointKind::Motor(kind) => kind.validate(),
+            JointKind::Filter => Ok(()),
+        }
+    }
+}
+
+macro_rules! into_kind {
+    ($($name:ident)*) => {
+        $(impl From<$name> for JointKind {
+            fn from(kind: $name) -> Self {
+                JointKind::$name(kind)
+            }
+        })*
+    };
+}
+
+into_kind!(Revolute Prismatic Distance Weld Wheel Motor);

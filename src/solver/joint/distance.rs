@@ -1,0 +1,98 @@
+//! The distance: one direction, from anchor to anchor, with the Jacobian `n.(v_b - v_a) + (r_b x n) w_b - (r_a x n) w_a`.
+
+use serde::{Deserialize, Serialize};
+
+use super::options::{Drive, Limit, Spring, check, is_sane};
+use super::parts::{Direction, Parts, slot};
+use crate::body::WorldError;
+use crate::fx;
+use crate::math::Fx;
+
+/// A rod, a rope, a spring, or a spring between stops.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Distance {
+    /// A length in metres that is held rigidly, from 0.001 up.
+    pub rod: Option<Fx>,
+    /// Range of the length in metres, 0 or more.
+    pub limit: Option<Limit>,
+    /// Goes for a speed in m/s, of growing apart, with up to a force in N.
+    pub motor: Option<Drive>,
+    /// Goes for a length in metres, 0 or more.
+    pub spring: Option<Spring>,
+    /// Least and largest force of the spring in N, positive apart: `lower` 0 only pushes, `upper` 0 only pulls.
+    pub spring_force: Option<Limit>,
+}
+
+/// Shorter rods have no direction.
+const ROD_MIN: Fx = fx!(0.001);
+
+impl Distance {
+    /// Nothing yet: any length.
+    #[must_use]
+    pub const fn new() -> Self {
+        Distance { rod: None, limit: None, motor: None, spring: None, spring_force: None }
+    }
+
+    /// Keeps a length in metres.
+    #[must_use]
+    pub const fn rod(length: Fx) -> Self {
+        Distance { rod: Some(length), ..Self::new() }
+    }
+
+    /// Keeps a length in metres from being exceeded.
+    #[must_use]
+    pub const fn rope(length: Fx) -> Self {
+        Self::new().limit(Fx::ZERO, length)
+    }
+
+    /// Sets the range of the length in metres.
+    #[must_use]
+    pub const fn limit(mut self, lower: Fx, upper: Fx) -> Self {
+        self.limit = Some(Limit { lower, upper });
+        self
+    }
+
+    /// Sets a speed in m/s to grow apart with, and the largest force in N.
+    #[must_use]
+    pub const fn motor(mut self, speed: Fx, max_force: Fx) -> Self {
+        self.motor = Some(Drive { speed, max: max_force });
+        self
+    }
+
+    /// Sets a length in metres to swing about, with a frequency in Hz.
+    #[must_use]
+    pub const fn spring(mut self, hertz: Fx, damping_ratio: Fx, length: Fx) -> Self {
+        self.spring = Some(Spring { hertz, damping_ratio, target: length });
+        self
+    }
+
+    /// Sets the least and the largest force of the spring in N, positive apart.
+    #[must_use]
+    pub const fn spring_force(mut self, lower: Fx, upper: Fx) -> Self {
+        self.spring_force = Some(Limit { lower, upper });
+        self
+    }
+
+    pub(super) fn validate(&self) -> Result<(), WorldError> {
+        check(self.rod.is_none_or(|length| length >= ROD_MIN && is_sane(length)), "length")?;
+        Limit::check(self.limit)?;
+        check(self.limit.is_none_or(|limit| limit.lower >= Fx::ZERO), "limit")?;
+        Drive::check(self.motor)?;
+        Spring::check(self.spring)?;
+        check(self.spring.is_none_or(|spring| spring.target >= Fx::ZERO), "spring")?;
+        check(
+            self.spring_force.is_none_or(|force| force.lower <= Fx::ZERO && Fx::ZERO <= force.upper),
+            "spring force",
+        )
+    }
+
+    pub(super) fn prepare(&self, parts: &mut Parts<'_>) {
+        let force = self.spring_force.unwrap_or(Limit { lower: Fx::MIN, upper: Fx::MAX });
+        parts.spring_within(Direction::Apart, self.spring, force);
+        parts.drive(Direction::Apart, self.motor);
+        parts.limit(Direction::Apart, self.limit);
+        if let Some(length) = self.rod {
+            parts.hold(slot::HOLD, Direction::Apart, length);
+        }
+    }
+}

@@ -1,0 +1,107 @@
+//! The motor: drives and springs with limited force on the angle and on the anchors, and nothing rigid.
+//!
+//! A force of limited magnitude in any direction bounds the length of a point block's impulse `p = G L`.
+
+use serde::{Deserialize, Serialize};
+
+use super::options::{Drive, Limit, Soft, check, is_sane};
+use super::parts::{Direction, Parts, slot};
+use crate::body::WorldError;
+use crate::math::{Fx, Vec2};
+
+/// Moves B's frame against A's with limited force and torque.
+///
+/// Towards speed 0 it is friction against A, as on a table seen from above. With springs it pulls the frames onto each
+/// other: with the pointer as A, a kinematic or fixed body that is moved, it drags B.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Motor {
+    /// Goes for a velocity of B's anchor against A's.
+    pub linear: Option<LinearDrive>,
+    /// Goes for an angular velocity in rad/s with up to a torque in N m.
+    pub angular: Option<Drive>,
+    /// Pulls the anchors onto each other, with up to a force in N.
+    pub linear_spring: Option<Pull>,
+    /// Turns the frames parallel, with up to a torque in N m.
+    pub angular_spring: Option<Pull>,
+}
+
+/// A motor in both directions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct LinearDrive {
+    /// In m/s along the axes of the world, within ±2^20.
+    pub velocity: Vec2<Fx>,
+    /// Largest force in N, 0 or more; [`Fx::MAX`] is without bound.
+    pub max_force: Fx,
+}
+
+/// A spring of limited strength.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Pull {
+    /// Frequency and damping.
+    pub soft: Soft,
+    /// Largest force in N or torque in N m, 0 or more; [`Fx::MAX`] is without bound.
+    pub max: Fx,
+}
+
+impl Motor {
+    /// Does nothing yet.
+    #[must_use]
+    pub const fn new() -> Self {
+        Motor { linear: None, angular: None, linear_spring: None, angular_spring: None }
+    }
+
+    /// Sets a velocity in m/s to go for, along the axes of the world, and the largest force in N.
+    #[must_use]
+    pub const fn linear(mut self, velocity: Vec2<Fx>, max_force: Fx) -> Self {
+        self.linear = Some(LinearDrive { velocity, max_force });
+        self
+    }
+
+    /// Sets an angular velocity in rad/s to go for, and the largest torque in N m.
+    #[must_use]
+    pub const fn angular(mut self, speed: Fx, max_torque: Fx) -> Self {
+        self.angular = Some(Drive { speed, max: max_torque });
+        self
+    }
+
+    /// Sets a spring between the anchors, with a frequency in Hz and a largest force in N.
+    #[must_use]
+    pub const fn linear_spring(mut self, hertz: Fx, damping_ratio: Fx, max_force: Fx) -> Self {
+        self.linear_spring = Some(Pull { soft: Soft { hertz, damping_ratio }, max: max_force });
+        self
+    }
+
+    /// Sets a spring between the angles, with a frequency in Hz and a largest torque in N m.
+    #[must_use]
+    pub const fn angular_spring(mut self, hertz: Fx, damping_ratio: Fx, max_torque: Fx) -> Self {
+        self.angular_spring = Some(Pull { soft: Soft { hertz, damping_ratio }, max: max_torque });
+        self
+    }
+
+    pub(super) fn validate(&self) -> Result<(), WorldError> {
+        let drive = |drive: LinearDrive| {
+            is_sane(drive.velocity.x) && is_sane(drive.velocity.y) && drive.max_force >= Fx::ZERO
+        };
+        check(self.linear.is_none_or(drive), "motor")?;
+        Drive::check(self.angular)?;
+        for pull in [self.linear_spring, self.angular_spring] {
+            Soft::check(pull.map(|pull| pull.soft))?;
+            check(pull.is_none_or(|pull| pull.max >= Fx::ZERO), "spring")?;
+        }
+        Ok(())
+    }
+
+    pub(super) fn prepare(&self, parts: &mut Parts<'_>) {
+        if let Some(Pull { soft, max }) = self.angular_spring {
+            let range = Limit { lower: max.saturating_neg(), upper: max };
+            parts.spring_within(Direction::Angle, Some(soft.towards(Fx::ZERO)), range);
+        }
+        parts.drive(Direction::Angle, self.angular);
+        if let Some(Pull { soft, max }) = self.linear_spring {
+            parts.pull(slot::LIMIT, soft, max);
+        }
+        if let Some(LinearDrive { velocity, max_force }) = self.linear {
+            parts.push(velocity, max_force);
+        }
+    }
+}

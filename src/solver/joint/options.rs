@@ -1,0 +1,101 @@
+//! What joints may have: limits, drives and springs.
+
+use serde::{Deserialize, Serialize};
+
+use crate::body::WorldError;
+use crate::fx;
+use crate::math::Fx;
+
+/// Largest limit, target or speed of a joint: kernels saturate long before.
+const SIZE_MAX: Fx = fx!(1048576);
+/// Largest frequency of a spring in Hz, and largest damping ratio.
+const HERTZ_MAX: Fx = fx!(1000);
+const DAMPING_RATIO_MAX: Fx = fx!(100);
+
+/// A range that a joint may not leave: radians or metres, within ±2^20, the lower end not above the upper one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Limit {
+    /// The lower end.
+    pub lower: Fx,
+    /// The upper end.
+    pub upper: Fx,
+}
+
+/// A motor: goes for a speed with what force or torque it has. At speed 0 it is friction.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Drive {
+    /// Of B against A in rad/s or m/s, within ±2^20.
+    pub speed: Fx,
+    /// Largest torque in N m or force in N, 0 or more; [`Fx::MAX`] is without bound.
+    pub max: Fx,
+}
+
+/// A damped spring with a target.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Spring {
+    /// Frequency without damping in Hz, above 0, up to 1000. The time step makes springs above a tenth of the sub-step
+    /// rate softer than that.
+    pub hertz: Fx,
+    /// Damping ratio, 0 to 100: 1 stops without swinging over.
+    pub damping_ratio: Fx,
+    /// Where it is at rest, in rad or m, within ±2^20.
+    pub target: Fx,
+}
+
+/// How a joint gives way instead of holding rigidly.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Soft {
+    /// Frequency without damping in Hz, above 0, up to 1000.
+    pub hertz: Fx,
+    /// Damping ratio, 0 to 100.
+    pub damping_ratio: Fx,
+}
+
+impl Soft {
+    /// As a spring towards a target.
+    pub(crate) const fn towards(self, target: Fx) -> Spring {
+        Spring { hertz: self.hertz, damping_ratio: self.damping_ratio, target }
+    }
+}
+
+/// Checks that what a joint has is in range, or names it.
+pub(super) fn check(in_range: bool, what: &'static str) -> Result<(), WorldError> {
+    if in_range { Ok(()) } else { Err(WorldError::JointOutOfRange { what }) }
+}
+
+/// Whether a length, an angle or a speed is not absurd.
+pub(super) fn is_sane(value: Fx) -> bool {
+    (-SIZE_MAX..=SIZE_MAX).contains(&value)
+}
+
+impl Limit {
+    pub(super) fn check(limit: Option<Self>) -> Result<(), WorldError> {
+        let valid = |limit: Limit| limit.lower <= limit.upper && is_sane(limit.lower) && is_sane(limit.upper);
+        check(limit.is_none_or(valid), "limit")
+    }
+}
+
+impl Drive {
+    pub(super) fn check(drive: Option<Self>) -> Result<(), WorldError> {
+        check(drive.is_none_or(|drive| is_sane(drive.speed) && drive.max >= Fx::ZERO), "motor")
+    }
+}
+
+impl Soft {
+    pub(super) fn check(soft: Option<Self>) -> Result<(), WorldError> {
+        let valid = |soft: Soft| {
+            soft.hertz > Fx::ZERO
+                && soft.hertz <= HERTZ_MAX
+                && (Fx::ZERO..=DAMPING_RATIO_MAX).contains(&soft.damping_ratio)
+        };
+        check(soft.is_none_or(valid), "spring")
+    }
+}
+
+impl Spring {
+    pub(super) fn check(spring: Option<Self>) -> Result<(), WorldError> {
+        let soft = |Spring { hertz, damping_ratio, .. }| Soft { hertz, damping_ratio };
+        Soft::check(spring.map(soft))?;
+        check(spring.is_none_or(|spring| is_sane(spring.target)), "spring")
+    }
+}

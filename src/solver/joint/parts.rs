@@ -1,0 +1,117 @@
+//! The parts of a joint, as its kind lists them.
+
+use alloc::vec::Vec;
+
+use super::super::softness::Softness;
+use super::options::{Drive, Limit, Soft, Spring};
+use super::point::{JointPoint, PointTask};
+use super::row::{JointRow, RowTask};
+use super::state::JointImpulses;
+use crate::math::{Fx, Vec2, fx_div};
+
+/// Where the impulses of rows and points are kept in a joint's state, whatever parts it has. A point has two slots.
+pub(super) mod slot {
+    pub(in super::super) const SPRING: u8 = 0;
+    pub(in super::super) const DRIVE: u8 = 1;
+    /// The lower limit, and then the upper one.
+    pub(in super::super) const LIMIT: u8 = 2;
+    /// What holds the joint together: a point, or up to two rows.
+    pub(in super::super) const HOLD: u8 = 4;
+}
+
+/// What a row of a joint measures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Direction {
+    /// The angle of B's frame in A's.
+    Angle,
+    /// How far B's anchor is along the x axis of A's frame.
+    Along,
+    /// How far B's anchor is along the y axis of A's frame.
+    Across,
+    /// The same where a push does not turn the bodies against each other, for joints that hold the angle too.
+    AcrossBalanced,
+    /// How far the anchors are apart.
+    Apart,
+}
+
+/// Collects the parts of one joint.
+pub(super) struct Parts<'a> {
+    pub(super) rows: &'a mut Vec<JointRow>,
+    pub(super) points: &'a mut Vec<JointPoint>,
+    pub(super) impulses: &'a JointImpulses,
+    /// Of the two bodies, in kg; 0 for one that nothing moves.
+    pub(super) masses: (Fx, Fx),
+    /// Sub-steps per second.
+    pub(super) rate: u32,
+}
+
+impl Parts<'_> {
+    /// A spring, if there is one.
+    pub(super) fn spring(&mut self, direction: Direction, spring: Option<Spring>) {
+        self.spring_within(direction, spring, Limit { lower: Fx::MIN, upper: Fx::MAX });
+    }
+
+    /// A spring with a least and a largest force or torque, if there is one.
+    pub(super) fn spring_within(&mut self, direction: Direction, spring: Option<Spring>, force: Limit) {
+        if let Some(Spring { hertz, damping_ratio, target }) = spring {
+            let softness = Softness::spring(hertz, damping_ratio, self.rate);
+            let (lower, upper) = (self.impulse(force.lower), self.impulse(force.upper));
+            self.row(slot::SPRING, direction, RowTask::Spring { softness, target, lower, upper });
+        }
+    }
+
+    /// A motor, if there is one.
+    pub(super) fn drive(&mut self, direction: Direction, drive: Option<Drive>) {
+        if let Some(Drive { speed, max }) = drive {
+            let task = RowTask::Drive { speed, max: self.impulse(max) };
+            self.row(slot::DRIVE, direction, task);
+        }
+    }
+
+    /// A lower and an upper limit, if there is one.
+    pub(super) fn limit(&mut self, direction: Direction, limit: Option<Limit>) {
+        if let Some(Limit { lower, upper }) = limit {
+            self.row(slot::LIMIT, direction, RowTask::Lower { bound: lower });
+            self.row(slot::LIMIT + 1, direction, RowTask::Upper { bound: upper });
+        }
+    }
+
+    /// What must not change.
+    pub(super) fn hold(&mut self, slot: u8, direction: Direction, target: Fx) {
+        self.row(slot, direction, RowTask::Hold { target });
+    }
+
+    /// Keeps the anchors on each other.
+    pub(super) fn pin(&mut self) {
+        self.point(slot::HOLD, PointTask::Pin);
+    }
+
+    /// Pulls the anchors onto each other, with a largest force.
+    pub(super) fn pull(&mut self, slot: u8, soft: Soft, max_force: Fx) {
+        let softness = Softness::spring(soft.hertz, soft.damping_ratio, self.rate);
+        let max = crate::math::narrow(self.impulse(max_force));
+        self.point(slot, PointTask::Spring { softness, max });
+    }
+
+    /// Pushes the anchors to a velocity against each other, with a largest force.
+    pub(super) fn push(&mut self, velocity: Vec2<Fx>, max_force: Fx) {
+        let max = crate::math::narrow(self.impulse(max_force));
+        self.point(slot::HOLD, PointTask::Drive { velocity: velocity.narrow(), max });
+    }
+
+    fn row(&mut self, slot: u8, direction: Direction, task: RowTask) {
+        let lambda = self.impulses.0[usize::from(slot)];
+        self.rows.push(JointRow::new(slot, direction, task, lambda));
+    }
+
+    fn point(&mut self, slot: u8, task: PointTask) {
+        self.points.push(JointPoint::new(slot, task, self.impulses.point(slot)));
+    }
+
+    /// The impulse of a force in a sub-step times `mA + mB`, the inverse masses: in m/s, or m²/s of a torque.
+    fn impulse(&self, force: Fx) -> Fx {
+        let over = |mass: Fx| fx_div(force, mass).unwrap_or(Fx::ZERO);
+        let per_second = over(self.masses.0).saturating_add(over(self.masses.1));
+        fx_div(per_second, Fx::from_num(self.rate)).unwrap_or(Fx::ZERO)
+    }
+}

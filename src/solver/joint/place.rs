@@ -1,0 +1,168 @@
+//! Where the ends of a joint are, and what its rows measure there.
+
+use super::super::body::SolverBody;
+use super::super::row::{Lever, MassFractions, Row};
+use super::def::JointDef;
+use super::parts::Direction;
+use super::row::Measure;
+use super::state::{Joint, radians};
+use crate::body::Body;
+use crate::math::{Angle, Fx, Length, Reciprocal, Rot, Unit, Vec2, round_shift, saturate};
+
+/// How a body with joints is turned, at the last refresh.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Turned {
+    pub(super) rotation: Rot,
+    /// Since the start of the tick, in units of 2^-32 turn.
+    pub(super) turns: i64,
+}
+
+/// The ends of a joint, for one tick.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Ends {
+    pub(super) body_a: u32,
+    pub(super) body_b: u32,
+    /// Anchors from the centres of mass, in the frames of the bodies.
+    local_a: Vec2<Length>,
+    local_b: Vec2<Length>,
+    pub(super) inverse_gyration_a: Reciprocal,
+    pub(super) inverse_gyration_b: Reciprocal,
+    fractions: MassFractions,
+    /// Centre of mass of B from that of A at the start of the tick.
+    between: Vec2<Fx>,
+    /// The x axis of A's frame of the joint, in the frame of A.
+    axis: Vec2<Unit>,
+    /// The angle of the joint at the start of the tick, in units of 2^-32 turn.
+    turns: i64,
+}
+
+impl Ends {
+    pub(super) fn prepare(joint: &Joint, (slot_a, a): (u32, &Body), (slot_b, b): (u32, &Body)) -> Self {
+        let JointDef { frame_a, frame_b, .. } = &joint.def;
+        let axis = Rot::from_angle(frame_a.angle);
+        Ends {
+            body_a: slot_a,
+            body_b: slot_b,
+            local_a: (frame_a.anchor - a.local_centre_of_mass()).narrow(),
+            local_b: (frame_b.anchor - b.local_centre_of_mass()).narrow(),
+            inverse_gyration_a: a.mass.inverse_gyration,
+            inverse_gyration_b: b.mass.inverse_gyration,
+            fractions: MassFractions::of(a, b),
+            between: b.centre_of_mass() - a.centre_of_mass(),
+            axis: Vec2::new(axis.cos, axis.sin),
+            turns: joint.turns(a.angle(), b.angle()),
+        }
+    }
+
+    /// The angle of the joint, in units of 2^-32 turn.
+    pub(super) fn turns(&self, turned: &[Turned]) -> i64 {
+        let (a, b) = (&turned[self.body_a as usize], &turned[self.body_b as usize]);
+        self.turns.wrapping_add(b.turns).wrapping_sub(a.turns)
+    }
+
+    /// Where the ends are at the present pose.
+    pub(super) fn place(&self, bodies: &[SolverBody], turned: &[Turned]) -> Place {
+        let (a, b) = (self.body_a as usize, self.body_b as usize);
+        let arm_a = WideArm::rotated(turned[a].rotation, self.local_a);
+        let arm_b = WideArm::rotated(turned[b].rotation, self.local_b);
+        let moved = (bodies[b].shift - bodies[a].shift).widen();
+        // Exact until it is rounded once: 20 bits fewer than the arms' 52 are the 32 of a world coordinate.
+        let gap = |between: Fx, moved: Fx, arms: i64| {
+            between.saturating_add(moved).saturating_add(Fx::from_bits(round_shift(arms, 20)))
+        };
+        Place {
+            lever_a: Lever { arm: arm_a.narrow(), inverse_gyration: self.inverse_gyration_a },
+            lever_b: Lever { arm: arm_b.narrow(), inverse_gyration: self.inverse_gyration_b },
+            fractions: self.fractions,
+            gap: Vec2::new(
+                gap(self.between.x, moved.x, arm_b.x - arm_a.x),
+                gap(self.between.y, moved.y, arm_b.y - arm_a.y),
+            ),
+        }
+    }
+
+    /// Where else the ends may be held if the angle is held too: a push there does not turn the bodies against each
+    /// other, so that angle and point are solved one after the other without disturbing each other. With the vector `c`
+    /// from A's centre to B's, and A's share `sA = iA / (iA + iB)` of the inverse inertias, that place is `-sA c` from
+    /// B's centre.
+    fn balanced(&self, place: &Place, turned: &[Turned]) -> Place {
+        let (share_a, _) = self.measure_angle(turned).row.shares();
+        let (arm_a, arm_b) = (place.lever_a.arm.widen(), place.lever_b.arm.widen());
+        let between = arm_a + place.gap - arm_b;
+        let arm = -between.scale(share_a.into());
+        // From the anchor to there, as B has it, and as A does.
+        let (to_b, apart) = (arm - arm_b, Angle::from_turns(Fx::from_bits(self.turns(turned))));
+        let to_a = Rot::from_angle(-apart).apply_wide(to_b);
+        let gap = place.gap + to_b - to_a;
+        Place {
+            lever_a: Lever { arm: (between + arm - gap).narrow(), ..place.lever_a },
+            lever_b: Lever { arm: arm.narrow(), ..place.lever_b },
+            gap,
+            ..*place
+        }
+    }
+
+    /// What a row along a direction measures at a place.
+    pub(super) fn measure(&self, direction: Direction, place: &Place, turned: &[Turned]) -> Measure {
+        match direction {
+            Direction::Angle => self.measure_angle(turned),
+            Direction::Along => self.measure_axis(self.axis, place, turned),
+            Direction::Across => self.measure_axis(self.axis.perp(), place, turned),
+            Direction::AcrossBalanced => {
+                self.measure_axis(self.axis.perp(), &self.balanced(place, turned), turned)
+            }
+            Direction::Apart => {
+                // Anchors on each other are as far apart in any direction.
+                let n = place.gap.normalized().unwrap_or(self.axis);
+                let (row, denominator) = Row::prepare(n, place.lever_a, place.lever_b, place.fractions);
+                Measure { row, denominator, position: place.gap.length(), scale: Fx::ONE }
+            }
+        }
+    }
+
+    /// An axis that turns with A moves a point of B against A even at its own place: A's arm reaches to B's anchor.
+    fn measure_axis(&self, axis: Vec2<Unit>, place: &Place, turned: &[Turned]) -> Measure {
+        let n = turned[self.body_a as usize].rotation.apply(axis);
+        let arm = place.lever_a.arm + place.gap.narrow();
+        let (row, denominator) =
+            Row::prepare(n, Lever { arm, ..place.lever_a }, place.lever_b, place.fractions);
+        Measure { row, denominator, position: place.gap.dot(n.widen()), scale: Fx::ONE }
+    }
+
+    fn measure_angle(&self, turned: &[Turned]) -> Measure {
+        let (row, denominator, scale) =
+            Row::angular(self.inverse_gyration_a, self.inverse_gyration_b, self.fractions);
+        Measure { row, denominator, position: radians(self.turns(turned)), scale: scale.into() }
+    }
+}
+
+/// Where the ends of a joint are at one pose.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Place {
+    pub(super) lever_a: Lever,
+    pub(super) lever_b: Lever,
+    pub(super) fractions: MassFractions,
+    /// From A's anchor to B's.
+    pub(super) gap: Vec2<Fx>,
+}
+
+/// A rotated arm before it is rounded: 52 fraction bits. The gap is the small difference of two long arms, so
+/// they are subtracted first.
+#[derive(Clone, Copy)]
+struct WideArm {
+    x: i64,
+    y: i64,
+}
+
+impl WideArm {
+    fn rotated(rotation: Rot, local: Vec2<Length>) -> Self {
+        let (c, s) = (i64::from(rotation.cos.to_bits()), i64::from(rotation.sin.to_bits()));
+        let (x, y) = (i64::from(local.x.to_bits()), i64::from(local.y.to_bits()));
+        WideArm { x: c * x - s * y, y: s * x + c * y }
+    }
+
+    fn narrow(self) -> Vec2<Length> {
+        let narrow = |wide: i64| Length::from_bits(saturate(round_shift(wide, 30)));
+        Vec2::new(narrow(self.x), narrow(self.y))
+    }
+}

@@ -1,0 +1,69 @@
+//! The slider: B moves along A's x axis and does not turn.
+//!
+//! With the axis `n` fixed in A and `d` from A's anchor to B's, the rows along the axis have the Jacobian
+//! `n.(v_b - v_a) + (r_b x n) w_b - ((d + r_a) x n) w_a` (E. Catto, Box2D). What holds it are two rows: one on the angle,
+//! and one across the axis. The latter acts where it does not turn the bodies against each other: at B's anchor, the two
+//! disturb each other, and a slider with a mass ratio of 100 turns three to ten times as far.
+
+use serde::{Deserialize, Serialize};
+
+use super::options::{Drive, Limit, Spring};
+use super::parts::{Direction, Parts, slot};
+use crate::body::WorldError;
+use crate::math::Fx;
+
+/// A slider: B's anchor stays on the x axis of A's frame, and B's frame parallel to A's.
+///
+/// The translation of the joint is how far B's anchor is along that axis, in metres.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Prismatic {
+    /// Range of the translation in metres.
+    pub limit: Option<Limit>,
+    /// Goes for a speed in m/s with up to a force in N.
+    pub motor: Option<Drive>,
+    /// Goes for a translation in metres.
+    pub spring: Option<Spring>,
+}
+
+impl Prismatic {
+    /// A slider without friction or end.
+    #[must_use]
+    pub const fn new() -> Self {
+        Prismatic { limit: None, motor: None, spring: None }
+    }
+
+    /// Sets the range of the translation in metres.
+    #[must_use]
+    pub const fn limit(mut self, lower: Fx, upper: Fx) -> Self {
+        self.limit = Some(Limit { lower, upper });
+        self
+    }
+
+    /// Sets a speed in m/s to go for, and the largest force in N.
+    #[must_use]
+    pub const fn motor(mut self, speed: Fx, max_force: Fx) -> Self {
+        self.motor = Some(Drive { speed, max: max_force });
+        self
+    }
+
+    /// Sets a translation in metres to swing about, with a frequency in Hz.
+    #[must_use]
+    pub const fn spring(mut self, hertz: Fx, damping_ratio: Fx, target: Fx) -> Self {
+        self.spring = Some(Spring { hertz, damping_ratio, target });
+        self
+    }
+
+    pub(super) fn validate(&self) -> Result<(), WorldError> {
+        Limit::check(self.limit)?;
+        Drive::check(self.motor)?;
+        Spring::check(self.spring)
+    }
+
+    pub(super) fn prepare(&self, parts: &mut Parts<'_>) {
+        parts.spring(Direction::Along, self.spring);
+        parts.drive(Direction::Along, self.motor);
+        parts.limit(Direction::Along, self.limit);
+        parts.hold(slot::HOLD, Direction::Angle, Fx::ZERO);
+        parts.hold(slot::HOLD + 1, Direction::AcrossBalanced, Fx::ZERO);
+    }
+}

@@ -1,0 +1,68 @@
+//! The hinge: a point block that is refreshed after every displacement, arms and gains together.
+//!
+//! Gains older than their arms over-correct and explode at long arms, and arms kept for the tick blow a grid of
+//! joints up (`docs/DESIGN.md` has the figures). Spring, motor and limits are rows on the angle, with the Jacobian
+//! `w_b - w_a`.
+
+use serde::{Deserialize, Serialize};
+
+use super::options::{Drive, Limit, Spring};
+use super::parts::{Direction, Parts};
+use crate::body::WorldError;
+use crate::math::Fx;
+
+/// A hinge: pins A's anchor to B's.
+///
+/// The angle of the joint is that of B's frame in A's, in radians, counter-clockwise. It counts turns, so a limit may be
+/// wider than one.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Revolute {
+    /// Range of the angle in radians.
+    pub limit: Option<Limit>,
+    /// Goes for an angular velocity in rad/s with up to a torque in N m.
+    pub motor: Option<Drive>,
+    /// Goes for an angle in radians.
+    pub spring: Option<Spring>,
+}
+
+impl Revolute {
+    /// A hinge that turns freely.
+    #[must_use]
+    pub const fn new() -> Self {
+        Revolute { limit: None, motor: None, spring: None }
+    }
+
+    /// Sets the range of the angle in radians.
+    #[must_use]
+    pub const fn limit(mut self, lower: Fx, upper: Fx) -> Self {
+        self.limit = Some(Limit { lower, upper });
+        self
+    }
+
+    /// Sets an angular velocity in rad/s to go for, and the largest torque in N m.
+    #[must_use]
+    pub const fn motor(mut self, speed: Fx, max_torque: Fx) -> Self {
+        self.motor = Some(Drive { speed, max: max_torque });
+        self
+    }
+
+    /// Sets an angle in radians to swing about, with a frequency in Hz.
+    #[must_use]
+    pub const fn spring(mut self, hertz: Fx, damping_ratio: Fx, target: Fx) -> Self {
+        self.spring = Some(Spring { hertz, damping_ratio, target });
+        self
+    }
+
+    pub(super) fn validate(&self) -> Result<(), WorldError> {
+        Limit::check(self.limit)?;
+        Drive::check(self.motor)?;
+        Spring::check(self.spring)
+    }
+
+    pub(super) fn prepare(&self, parts: &mut Parts<'_>) {
+        parts.spring(Direction::Angle, self.spring);
+        parts.drive(Direction::Angle, self.motor);
+        parts.limit(Direction::Angle, self.limit);
+        parts.pin();
+    }
+}

@@ -1,0 +1,157 @@
+//! A joint's scalar rows: springs, motors, limits, and what holds.
+//!
+//! With the position `x` along a direction, `x` and speeds of an angle being multiplied by the length `s` of the row:
+//!
+//! ```text
+//! spring   d = -massScale (vn + biasRate (x - target)) - impulseScale L      bias pass only
+//! motor    d = -(vn - speed),  |L| <= F h (mA + mB) D                        (over s: torque)
+//! limit    d = -massScale (vn + biasRate C) - impulseScale L,  L >= 0        C = x - lower or upper - x
+//!          d = -(vn + C / h)                                                 while C > 0
+//! hold     as a limit that is reached, with L of either sign
+//! ```
+//!
+//! `L` is an effective speed, and the impulse that it stands for is `L / ((mA + mB) D)`, times `s` for an angle.
+//!
+//! **Springs are not solved in the relax pass.** In the bias pass a soft row is the implicit step of a damped spring
+//! whatever it starts from: `L' = -massScale (v + biasRate x)`. Solved again after the displacement, the same row takes
+//! another `massScale biasRate h` of the velocity away, so that light springs die early.
+
+use super::super::body::SolverBody;
+use super::super::contact::Pass;
+use super::super::limits::{Faults, IMPULSE_MAX, clamp_warm_start};
+use super::super::row::{Denominator, Row};
+use super::super::settings::Tuning;
+use super::super::softness::Softness;
+use super::parts::Direction;
+use crate::math::{Fx, Speed, fx_div, fx_mul, narrow, saturate_wide};
+
+/// What a row is for.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum RowTask {
+    /// Brings the position to a target, with impulses times `mA + mB` within a range.
+    Spring { softness: Softness, target: Fx, lower: Fx, upper: Fx },
+    /// Brings the velocity to a speed, with impulses times `mA + mB` of a largest size.
+    Drive { speed: Fx, max: Fx },
+    /// Keeps the position from falling below a bound.
+    Lower { bound: Fx },
+    /// Keeps the position from rising above a bound.
+    Upper { bound: Fx },
+    /// Keeps the position on a target.
+    Hold { target: Fx },
+}
+
+/// A direction at one pose of the bodies.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Measure {
+    pub(super) row: Row,
+    pub(super) denominator: Denominator,
+    /// In m or rad.
+    pub(super) position: Fx,
+    /// Length of the row's speeds for each of the position's: 1, or `s` for an angle.
+    pub(super) scale: Fx,
+}
+
+/// A row of a joint, for one tick.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct JointRow {
+    pub(super) slot: u8,
+    pub(super) direction: Direction,
+    task: RowTask,
+    pub(super) row: Row,
+    /// A speed that is asked for against the row: of a spring, the part that comes from its stretch.
+    bias: Speed,
+    /// Whether a limit is not reached.
+    open: bool,
+    bounds: (Speed, Speed),
+    pub(super) lambda: Speed,
+}
+
+impl JointRow {
+    pub(super) fn new(slot: u8, direction: Direction, task: RowTask, lambda: Speed) -> Self {
+        let bounds = (Speed::ZERO, Speed::ZERO);
+        JointRow { slot, direction, task, row: Row::NONE, bias: Speed::ZERO, open: false, bounds, lambda }
+    }
+
+    /// Jacobian, gains, bias and bounds at the present pose.
+    pub(super) fn refresh(&mut self, measure: &Measure, tuning: &Tuning) {
+        let Measure { row, denominator, position, scale } = *measure;
+        self.row = row;
+        self.bounds = (-IMPULSE_MAX, IMPULSE_MAX);
+        let metres = |x: Fx| fx_mul(x, scale);
+        let soft_bias = |gap: Fx| narrow(fx_mul(metres(gap), tuning.joint.bias_rate.into()));
+        match self.task {
+            RowTask::Spring { softness, target, lower, upper } => {
+                self.bias = softness.push(metres(position.saturating_sub(target)));
+                self.bounds = (measure.lambda(lower), measure.lambda(upper));
+            }
+            RowTask::Drive { speed, max } => {
+                self.bias = -narrow::<fixed::types::extra::U21>(metres(speed)).max(-Speed::MAX);
+                let max = measure.lambda(max);
+                self.bounds = (-max, max);
+            }
+            RowTask::Hold { target } => self.bias = soft_bias(position.saturating_sub(target)),
+            RowTask::Lower { bound } => self.refresh_limit(position.saturating_sub(bound), measure, tuning),
+            RowTask::Upper { bound } => {
+                self.row = row.reversed();
+                self.refresh_limit(bound.saturating_sub(position), measure, tuning);
+            }
+        }
+        if denominator == 0 {
+            // Nothing can move this way.
+            self.bounds = (Speed::ZERO, Speed::ZERO);
+        }
+    }
+
+    /// `gap` is what is left before the limit.
+    fn refresh_limit(&mut self, gap: Fx, measure: &Measure, tuning: &Tuning) {
+        let gap = fx_mul(gap, measure.scale);
+        self.open = gap > Fx::ZERO;
+        let rate = if self.open { Fx::from_num(tuning.rate) } else { tuning.joint.bias_rate.into() };
+        self.bias = narrow(fx_mul(gap, rate));
+        self.bounds = (Speed::ZERO, IMPULSE_MAX);
+    }
+
+    pub(super) fn warm_start(&mut self, a: &mut SolverBody, b: &mut SolverBody, faults: &mut Faults) {
+        clamp_warm_start(&mut self.lambda, faults);
+        self.lambda = self.lambda.clamp(self.bounds.0, self.bounds.1);
+        self.row.apply(self.lambda, a, b, faults);
+    }
+
+    pub(super) fn solve(
+        &mut self,
+        pass: Pass,
+        tuning: &Tuning,
+        a: &mut SolverBody,
+        b: &mut SolverBody,
+        faults: &mut Faults,
+    ) {
+        let vn = self.row.velocity(a, b, faults);
+        let (softness, bias, push) = match (&self.task, pass) {
+            (RowTask::Spring { softness, .. }, Pass::Bias) => (softness, Speed::ZERO, self.bias),
+            (RowTask::Spring { .. }, Pass::Relax) => return,
+            // As between shapes: a gap that the bias pass has not closed is left to the next sub-step.
+            (RowTask::Lower { .. } | RowTask::Upper { .. }, Pass::Relax) if self.open && self.lambda == 0 => {
+                return;
+            }
+            // A gap so wide that `L` would fall below 0 asks for no more than that.
+            (RowTask::Lower { .. } | RowTask::Upper { .. }, _) if self.open => {
+                (&Softness::RIGID, self.bias.min(self.lambda.saturating_sub(vn)), Speed::ZERO)
+            }
+            (RowTask::Drive { .. }, _) => (&Softness::RIGID, self.bias, Speed::ZERO),
+            (_, Pass::Bias) => (&tuning.joint, self.bias, Speed::ZERO),
+            (_, Pass::Relax) => (&Softness::RIGID, Speed::ZERO, Speed::ZERO),
+        };
+        let d = softness.impulse(vn, bias, self.lambda, faults).saturating_sub(push);
+        self.row.accumulate(d, self.bounds, &mut self.lambda, a, b, faults);
+    }
+}
+
+impl Measure {
+    /// `L` of an impulse times `mA + mB`, within what can be accumulated.
+    fn lambda(&self, impulse: Fx) -> Speed {
+        // The denominator has 30 fraction bits.
+        let denominator = Fx::from_bits(saturate_wide(i128::from(self.denominator) << 2));
+        let lambda = fx_div(fx_mul(impulse, denominator), self.scale).unwrap_or(Fx::ZERO);
+        narrow::<fixed::types::extra::U21>(lambda).clamp(-IMPULSE_MAX, IMPULSE_MAX)
+    }
+}

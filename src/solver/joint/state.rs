@@ -1,0 +1,94 @@
+//! Joints as the state keeps them.
+
+use serde::{Deserialize, Serialize};
+
+use super::super::settings::Tuning;
+use super::constraint::JointSet;
+use super::def::{JointDef, JointKind};
+use crate::body::Body;
+use crate::math::{Angle, Fx, Rot, Speed, TAU, Vec2, fx_mul};
+
+/// A joint in the world.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Joint {
+    pub(crate) def: JointDef,
+    pub(crate) impulses: JointImpulses,
+    /// The angle of B's frame in A's when it was last looked at, in units of 2^-32 turn: which turn it is in.
+    pub(crate) turns: i64,
+}
+
+/// The impulses of the last sub-step, to start the next from: `L` of each row and point, by the slots of
+/// [`super::parts::slot`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct JointImpulses(pub(crate) [Speed; 6]);
+
+impl JointImpulses {
+    /// Of the point in a slot and the next one.
+    pub(super) fn point(&self, slot: u8) -> Vec2<Speed> {
+        let slot = usize::from(slot);
+        Vec2::new(self.0[slot], self.0[slot + 1])
+    }
+
+    pub(super) fn set_point(&mut self, slot: u8, lambda: Vec2<Speed>) {
+        let slot = usize::from(slot);
+        [self.0[slot], self.0[slot + 1]] = [lambda.x, lambda.y];
+    }
+}
+
+impl Joint {
+    pub(crate) fn new(def: JointDef) -> Self {
+        Joint { def, impulses: JointImpulses::default(), turns: 0 }
+    }
+
+    /// Takes another definition. Impulses mean the same as long as the kind is the same.
+    pub(crate) fn redefine(&mut self, def: JointDef) {
+        if core::mem::discriminant(&def.kind) != core::mem::discriminant(&self.def.kind) {
+            self.impulses = JointImpulses::default();
+        }
+        self.def = def;
+    }
+
+    /// Whether the solver has to do with it.
+    pub(crate) fn is_solved(&self) -> bool {
+        self.def.kind != JointKind::Filter
+    }
+
+    /// What it was defined as, with all later changes.
+    #[must_use]
+    pub const fn def(&self) -> &JointDef {
+        &self.def
+    }
+
+    /// The angle of B's frame in A's in units of 2^-32 turn: of all that are a whole number of turns apart, the nearest
+    /// to the last one.
+    pub(crate) fn turns(&self, a: Angle, b: Angle) -> i64 {
+        let now = (b + self.def.frame_b.angle) - (a + self.def.frame_a.angle);
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "whole turns are dropped"
+        )]
+        let last = Angle::from_bits(self.turns as u32);
+        self.turns.wrapping_add((now - last).to_turns().to_bits())
+    }
+
+    /// The angle of B's frame in A's in radians, with all its turns.
+    pub(crate) fn angle(&self, a: &Body, b: &Body) -> Fx {
+        radians(self.turns(a.angle(), b.angle()))
+    }
+
+    /// The axes of A's frame of the joint in the world.
+    pub(crate) fn axes(&self, a: &Body) -> Rot {
+        Rot::from_angle(a.angle() + self.def.frame_a.angle)
+    }
+
+    /// The force in N and the torque in N m about B's anchor that the joint has last exerted on B.
+    pub(crate) fn reaction(&self, a: &Body, b: &Body, tuning: &Tuning) -> (Vec2<Fx>, Fx) {
+        JointSet::reaction(self, a, b, tuning)
+    }
+}
+
+/// Units of 2^-32 turn in radians.
+pub(super) fn radians(turns: i64) -> Fx {
+    fx_mul(Fx::from_bits(turns), TAU)
+}

@@ -1,0 +1,58 @@
+//! The weld: a row on the angle and a point block at the anchors, each rigid or a spring.
+//!
+//! Held where a push does not turn the bodies, as a slider is, a plank on a wall sags a fifth as far. But the anchors of a
+//! loaded chain then open four times as wide, and a weld of 1 cm that carries a hundredfold weight gains energy.
+
+use serde::{Deserialize, Serialize};
+
+use super::options::Soft;
+use super::parts::{Direction, Parts, slot};
+use crate::body::WorldError;
+use crate::math::Fx;
+
+/// Glue: B's frame stays on A's.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Weld {
+    /// How the anchors give way; `None` is rigid.
+    pub linear: Option<Soft>,
+    /// How the angle gives way; `None` is rigid.
+    pub angular: Option<Soft>,
+}
+
+impl Weld {
+    /// A rigid weld: as rigid as the solver is.
+    #[must_use]
+    pub const fn rigid() -> Self {
+        Weld { linear: None, angular: None }
+    }
+
+    /// Lets the anchors swing apart, with a frequency in Hz.
+    #[must_use]
+    pub const fn linear(mut self, hertz: Fx, damping_ratio: Fx) -> Self {
+        self.linear = Some(Soft { hertz, damping_ratio });
+        self
+    }
+
+    /// Lets the angle swing, with a frequency in Hz.
+    #[must_use]
+    pub const fn angular(mut self, hertz: Fx, damping_ratio: Fx) -> Self {
+        self.angular = Some(Soft { hertz, damping_ratio });
+        self
+    }
+
+    pub(super) fn validate(&self) -> Result<(), WorldError> {
+        Soft::check(self.linear)?;
+        Soft::check(self.angular)
+    }
+
+    pub(super) fn prepare(&self, parts: &mut Parts<'_>) {
+        match self.angular {
+            Some(soft) => parts.spring(Direction::Angle, Some(soft.towards(Fx::ZERO))),
+            None => parts.hold(slot::SPRING, Direction::Angle, Fx::ZERO),
+        }
+        match self.linear {
+            Some(soft) => parts.pull(slot::HOLD, soft, Fx::MAX),
+            None => parts.pin(),
+        }
+    }
+}

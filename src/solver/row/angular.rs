@@ -1,0 +1,128 @@
+//! Rows on the angle between two bodies: `vn = s (w_b - w_a)`, with `e = s / k` and without linear part.
+//!
+//! `s` is a length of the row's own. The one that makes `D = aA eA^2 + aB eB^2` about 1 keeps every coefficient small,
+//! whatever the masses and radii of gyration:
+//!
+//! ```text
+//! s^2 = 1 / (aA / kA^2 + aB / kB^2),  so that  f = a e / D <= sqrt(a) <= 1  and  e <= 1 / sqrt(a)
+//! ```
+//!
+//! `e` is held at 100: it is more only if one body is 10 000 times as heavy as the other and turns more easily
+//! nevertheless. An angular impulse `P` is `L = P (mA + mB) D / s`, with inverse masses.
+
+use super::{Denominator, MassFractions, RATIO_MAX, Row, turning};
+use crate::math::{Length, Ratio, Reciprocal, Speed, Unit, div_round, mul, saturate, saturate_wide};
+
+impl Row {
+    /// The row between two bodies, its denominator and `s`. The latter two are 0 when neither body turns.
+    pub(crate) fn angular(
+        a: Reciprocal,
+        b: Reciprocal,
+        fractions: MassFractions,
+    ) -> (Row, Denominator, Length) {
+        let s = angular_scale((a, fractions.a), (b, fractions.b));
+        let ratio = |inverse_gyration: Reciprocal| -> Ratio {
+            inverse_gyration.times::<_, fixed::types::extra::U24>(s).min(RATIO_MAX)
+        };
+        let (e_a, e_b) = (ratio(a), ratio(b));
+        let denominator = turning(fractions.a, e_a, e_a) + turning(fractions.b, e_b, e_b);
+        let gain = |fraction: Unit, e: Ratio| {
+            // 54 fraction bits over 30, and the rounding of a gain that is mostly 1.
+            let product = i64::from(fraction.to_bits()) * i64::from(e.to_bits());
+            let quotient = div_round(i128::from(product) << 6, denominator.max(1).into());
+            Unit::from_bits(saturate(saturate_wide(quotient)))
+        };
+        let (f_a, f_b) = (gain(fractions.a, e_a), gain(fractions.b, e_b));
+        (Row { e_a, e_b, f_a, f_b, ..Row::NONE }, denominator, s)
+    }
+
+    /// Of a row on the angle: the shares of its velocity that A and B take. They add up to 1, unless neither turns.
+    pub(crate) fn shares(&self) -> (Unit, Unit) {
+        (mul(self.f_a, self.e_a), mul(self.f_b, self.e_b))
+    }
+}
+
+/// `1 / sqrt(aA / kA^2 + aB / kB^2)`, at most a hundred radii of gyration of a body that turns. It only sets the units
+/// of a row, so it need not be exact.
+fn angular_scale(a: (Reciprocal, Unit), b: (Reciprocal, Unit)) -> Length {
+    // 1 / k with 21 fraction bits, so 72 in the sum.
+    let inverse = |(inverse_gyration, fraction): (Reciprocal, Unit)| -> Speed {
+        if fraction == 0 { Speed::ZERO } else { inverse_gyration.times(Unit::ONE) }
+    };
+    let square = |end: (Reciprocal, Unit)| {
+        let inverse = u128::from(inverse(end).to_bits().unsigned_abs());
+        inverse * inverse * u128::from(end.1.to_bits().unsigned_abs())
+    };
+    let sum = square(a) + square(b);
+    if sum == 0 {
+        return Length::ZERO;
+    }
+    // 126 fraction bits over 72 are 54, their root has 27, and a length 22.
+    let root = ((1 << 126) / sum).isqrt() >> 5;
+    let most = (100u128 << 43) / u128::from(inverse(a).max(inverse(b)).to_bits().unsigned_abs());
+    Length::from_bits(i32::try_from(root.min(most)).unwrap_or(i32::MAX))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fx;
+    use crate::math::{Fx, Rng, Vec2, fx_div, fx_mul, narrow, widen};
+    use crate::solver::body::SolverBody;
+    use crate::solver::limits::IMPULSE_MAX;
+    use crate::solver::softness::Softness;
+
+    /// Masses from 1:1 to 1:10 000 either way, radii of gyration from 1 cm to 50 m, and bodies that do not turn: one
+    /// update leaves no relative angular velocity, and `mA kA duA = -mB kB duB`.
+    #[test]
+    fn an_update_removes_the_relative_angular_velocity_and_keeps_momentum() {
+        let mut rng = Rng::new(7);
+        let (mut faults, mut worst) = (0, 0);
+        for _ in 0..100_000 {
+            let share: Unit = match rng.below(4) {
+                0 => Unit::ZERO,
+                1 => narrow(rng.range(fx!(0), fx!(1))),
+                2 => narrow(rng.range(fx!(0.0001), fx!(0.001))),
+                _ => Unit::ONE - narrow::<fixed::types::extra::U30>(rng.range(fx!(0.0001), fx!(0.001))),
+            };
+            let fractions = MassFractions { a: share, b: Unit::ONE - share };
+            let mut gyration = || match rng.below(3) {
+                0 => rng.range(fx!(0.01), fx!(0.1)),
+                1 => rng.range(fx!(0.1), fx!(5)),
+                _ => rng.range(fx!(5), fx!(50)),
+            };
+            let (k_a, k_b) = (gyration(), gyration());
+            let turns_a = rng.below(10) > 0;
+            let inverse_a = if turns_a { Reciprocal::of(k_a) } else { Reciprocal::default() };
+            let (row, denominator, s) = Row::angular(inverse_a, Reciprocal::of(k_b), fractions);
+            if denominator == 0 {
+                assert!(s == 0 && fractions.b == 0);
+                continue;
+            }
+            // As fast as bodies turn: up to 20 rad/s, at up to 20 m/s and 200 of the row's.
+            let mut spin = |k: Fx, e: Ratio| {
+                let omega = rng.range(fx!(-20), fx!(20));
+                let most = fx_div(fx!(200), widen(e)).unwrap_or(fx!(20)).min(fx!(20));
+                SolverBody { spin: narrow(fx_mul(omega, k).clamp(-most, most)), ..SolverBody::default() }
+            };
+            let (mut a, mut b) = (spin(k_a, row.e_a), spin(k_b, row.e_b));
+            let (u_a, u_b) = (a.spin, b.spin);
+            let bounds = (-IMPULSE_MAX, IMPULSE_MAX);
+            let mut lambda = Speed::ZERO;
+            row.solve(&mut a, &mut b, Speed::ZERO, &Softness::RIGID, bounds, &mut lambda, &mut faults);
+            let left = row.velocity(&a, &b, &mut faults).to_bits().abs();
+            let size = 1 + row.e_a.max(row.e_b).to_bits() / Ratio::ONE.to_bits();
+            worst = worst.max(left / size);
+            assert_eq!((a.velocity, b.velocity), (Vec2::ZERO, Vec2::ZERO));
+            if turns_a {
+                let gained = fx_mul(fx_mul(fractions.b.into(), k_a), widen(a.spin - u_a));
+                let lost = fx_mul(fx_mul(fractions.a.into(), k_b), widen(b.spin - u_b));
+                assert!((gained + lost).abs() < fx!(0.0001), "{gained} and {lost}");
+            } else {
+                assert_eq!(a.spin, u_a);
+            }
+        }
+        assert_eq!(faults, 0);
+        assert!(worst <= 8, "{worst} units left");
+    }
+}

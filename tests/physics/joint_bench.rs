@@ -1,0 +1,81 @@
+//! A bench for joints: bodies of a given mass without shapes, and one joint to look at.
+
+use lockstep2d::body::{BodyDef, BodyId, JointId, MassSource};
+use lockstep2d::fx;
+use lockstep2d::math::{Angle, Fx, Vec2};
+use lockstep2d::solver::JointDef;
+use lockstep2d::world::{Config, World};
+
+pub(crate) struct Bench {
+    pub(crate) world: World,
+    pub(crate) a: BodyId,
+    pub(crate) b: BodyId,
+}
+
+/// What holds the other end of a joint.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Ground {
+    Fixed,
+    /// A body of some mass in kg.
+    Free(Fx),
+}
+
+/// Sub-steps per second of the default settings.
+pub(crate) const RATE: i64 = 240;
+
+impl Bench {
+    /// A in the origin, and B of 2 kg and a radius of gyration of 0.5 m at a place and angle.
+    pub(crate) fn new(ground: Ground, gravity: Fx, place: Vec2<Fx>, angle: Fx) -> Self {
+        Self::with_mass(ground, gravity, (fx!(2), fx!(0.5)), place, angle)
+    }
+
+    pub(crate) fn with_mass(
+        ground: Ground,
+        gravity: Fx,
+        (mass, gyration): (Fx, Fx),
+        place: Vec2<Fx>,
+        angle: Fx,
+    ) -> Self {
+        let config = Config { gravity: Vec2::new(fx!(0), gravity), ..Config::default() };
+        let mut world = World::new(config).expect("valid");
+        let given = |mass, gyration| MassSource::Given { mass, centre: Vec2::ZERO, gyration };
+        let a = match ground {
+            Ground::Fixed => BodyDef::fixed(),
+            Ground::Free(mass) => BodyDef::dynamic().mass(given(mass, fx!(0.4))),
+        };
+        let a = world.spawn(&a, &[]).expect("valid");
+        let b = BodyDef::dynamic().mass(given(mass, gyration)).position(place.x, place.y);
+        let b = world.spawn(&b.angle(Angle::from_radians(angle)), &[]).expect("valid");
+        Bench { world, a, b }
+    }
+
+    pub(crate) fn join(&mut self, def: JointDef) -> JointId {
+        self.world.add_joint(&def).expect("valid")
+    }
+
+    /// Steps, and checks that nothing was clamped.
+    pub(crate) fn run(&mut self, ticks: u64, mut look: impl FnMut(u64, &World)) {
+        for tick in 0..ticks {
+            self.world.step();
+            look(tick, &self.world);
+        }
+        assert_eq!(self.world.validate(), Ok(()));
+        assert_eq!(self.world.faults(), 0, "a clamp of the solver has changed a result");
+    }
+}
+
+pub(crate) fn close(found: Fx, expected: Fx, within: Fx, what: &str) {
+    assert!((found - expected).abs() <= within, "{what}: {found}, not {expected}");
+}
+
+/// What a joint moves of two masses or inertias: `1 / (1 / a + 1 / b)`.
+pub(crate) fn reduced(a: Fx, b: Fx) -> Fx {
+    lockstep2d::math::fx_div(lockstep2d::math::fx_mul(a, b), a + b).expect("positive")
+}
+
+/// Grounds for B, with what a joint moves of its 2 kg and of its 0.5 kg m² on each.
+pub(crate) fn grounds() -> [(Ground, Fx, Fx); 3] {
+    // A has a radius of gyration of 0.4 m.
+    let free = |mass: Fx| (Ground::Free(mass), reduced(fx!(2), mass), reduced(fx!(0.5), mass * 4 / 25));
+    [(Ground::Fixed, fx!(2), fx!(0.5)), free(fx!(0.02)), free(fx!(200))]
+}

@@ -1,0 +1,125 @@
+//! Limits hold within a hundredth of their range, whatever drives a joint against them.
+
+use lockstep2d::body::JointId;
+use lockstep2d::fx;
+use lockstep2d::math::{Angle, Fx, TAU, Vec2};
+use lockstep2d::solver::{Distance, JointDef, JointKind, Prismatic, Revolute, Wheel};
+use lockstep2d::world::World;
+
+use crate::joint_bench::{Bench, Ground, close, grounds};
+
+/// Drives a joint up and then down, with an acceleration of 300 m/s² or rad/s², and looks whether it goes to both ends
+/// and no further.
+fn stays(
+    kind: impl Fn(Fx, Fx, Fx) -> JointKind,
+    place: Vec2<Fx>,
+    (lower, upper): (Fx, Fx),
+    at: impl Fn(&World, JointId) -> Fx,
+) {
+    for (ground, mass, inertia) in grounds() {
+        for (speed, end) in [(fx!(5), upper), (fx!(-5), lower)] {
+            let mut bench = Bench::new(ground, fx!(0), place, fx!(0));
+            let joint = bench.join(JointDef::new(bench.a, bench.b, kind(speed, mass * 300, inertia * 300)));
+            let slack = (upper - lower) / 100;
+            bench.run(300, |tick, world| {
+                let x = at(world, joint);
+                assert!(lower - slack <= x && x <= upper + slack, "{ground:?}, tick {tick}: {x}");
+            });
+            close(at(&bench.world, joint), end, slack, "driven to its end");
+        }
+    }
+}
+
+#[test]
+fn a_hinge_stops_at_its_limits() {
+    let angle = |world: &World, id| world.joint_angle(id).expect("there");
+    // The second is more than a turn either way.
+    for (lower, upper) in [(fx!(-0.5), fx!(0.75)), (fx!(-9), fx!(8))] {
+        let kind = |speed, _, torque| Revolute::new().limit(lower, upper).motor(speed, torque).into();
+        stays(kind, Vec2::ZERO, (lower, upper), angle);
+    }
+}
+
+#[test]
+fn a_slider_and_a_suspension_stop_at_their_limits() {
+    let translation = |world: &World, id: JointId| world.joint_translation(id).expect("there").x;
+    let (place, range) = (Vec2::new(fx!(1), fx!(0)), (fx!(0.5), fx!(2)));
+    let kind = |speed, force, _| Prismatic::new().limit(range.0, range.1).motor(speed, force).into();
+    stays(kind, place, range, translation);
+    // A spring takes the place of the motor, from 10 m away.
+    let kind =
+        |speed: Fx, _, _| Wheel::new().limit(range.0, range.1).spring(fx!(1), fx!(0.1), speed * 2).into();
+    stays(kind, place, range, translation);
+}
+
+#[test]
+fn a_distance_stops_at_its_limits() {
+    let length = |world: &World, id| world.joint_length(id).expect("there");
+    let range = (fx!(1), fx!(3));
+    let kind = |speed, force, _| Distance::new().limit(range.0, range.1).motor(speed, force).into();
+    stays(kind, Vec2::new(fx!(1.2), fx!(1.6)), range, length);
+}
+
+/// A rod of 2 kg falls from the horizontal onto a stop below, again and again: limit and hinge hold.
+#[test]
+fn a_limit_bears_a_falling_rod() {
+    let mut bench = Bench::new(Ground::Fixed, fx!(-10), Vec2::new(fx!(2), fx!(0)), fx!(0));
+    let def = JointDef::new(bench.a, bench.b, Revolute::new().limit(fx!(-1), fx!(1)));
+    let joint = bench.join(def.anchor_b(fx!(-2), fx!(0)));
+    let mut lowest = fx!(0);
+    bench.run(300, |_, world| {
+        lowest = lowest.min(world.joint_angle(joint).expect("there"));
+        let gap = world.joint_length(joint).expect("there");
+        // When it hits the stop at 8 m/s: limit and hinge are solved one after the other.
+        assert!(gap < fx!(0.03), "gap {gap} m");
+    });
+    assert!(lowest > fx!(-1.02), "{lowest} rad");
+    let (force, torque) = bench.world.joint_force(joint).expect("there");
+    // At rest the hinge carries the weight, 20 N, and the stop its torque, 20 N times 2 m cos 1.
+    close(force.y, fx!(20), fx!(0.2), "N");
+    close(torque, fx!(21.612), fx!(0.3), "N m");
+}
+
+/// A rope of 3 m: free fall until it is taut, and then no further.
+#[test]
+fn a_rope_is_slack_and_then_taut() {
+    let mut bench = Bench::new(Ground::Fixed, fx!(-10), Vec2::new(fx!(0), fx!(-1)), fx!(0));
+    let joint = bench.join(JointDef::new(bench.a, bench.b, Distance::rope(fx!(3))));
+    let (b, mut longest) = (bench.b, fx!(0));
+    bench.run(240, |tick, world| {
+        let body = world.body(b).expect("there");
+        if tick < 36 {
+            assert!(
+                body.velocity().y < fx!(-0.16) * i64::try_from(tick + 1).expect("few"),
+                "tick {tick}: slack"
+            );
+        }
+        longest = longest.max(world.joint_length(joint).expect("there"));
+    });
+    assert!(longest < fx!(3.03), "{longest} m");
+    close(bench.world.joint_length(joint).expect("there"), fx!(3), fx!(0.005), "m of rope");
+    close(bench.world.joint_force(joint).expect("there").0.y, fx!(20), fx!(0.2), "N");
+}
+
+#[test]
+fn the_angle_of_a_hinge_counts_turns() {
+    let mut bench = Bench::new(Ground::Free(fx!(3)), fx!(0), Vec2::ZERO, fx!(0));
+    let kind = Revolute::new().motor(fx!(30), fx!(1000));
+    let joint = bench.join(JointDef::new(bench.a, bench.b, kind).angle_a(Angle::QUARTER));
+    let turns = TAU * 10;
+    let mut ticks = 0;
+    while bench.world.joint_angle(joint).expect("there") < turns {
+        bench.run(1, |_, _| {});
+        ticks += 1;
+        assert!(ticks < 200);
+    }
+    // A quarter turn behind, at 0.5 rad in a tick.
+    close(fx!(0.5) * ticks, turns + TAU / 4, fx!(1), "rad");
+    // And back, to a limit that is 9 turns away.
+    let mut bench = Bench::new(Ground::Fixed, fx!(0), Vec2::ZERO, fx!(0));
+    let nine = TAU * 9;
+    let kind = Revolute::new().limit(-nine, nine).spring(fx!(0.5), fx!(1), -nine * 2);
+    let joint = bench.join(JointDef::new(bench.a, bench.b, kind));
+    bench.run(600, |_, _| {});
+    close(bench.world.joint_angle(joint).expect("there"), -nine, nine / 100, "rad");
+}

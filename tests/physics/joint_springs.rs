@@ -1,0 +1,124 @@
+//! Springs follow the implicit step of a damped oscillator, sub-step by sub-step:
+//! `v' = (v - h omega^2 x) / (1 + 2 zeta h omega + h^2 omega^2)`, `x' = x + h v'`.
+
+use lockstep2d::body::JointId;
+use lockstep2d::fx;
+use lockstep2d::math::{Angle, Fx, TAU, Vec2, fx_div, fx_mul};
+use lockstep2d::solver::{Distance, JointDef, JointKind, Motor, Prismatic, Revolute, Weld, Wheel};
+use lockstep2d::world::World;
+
+use crate::joint_bench::{Bench, Ground, RATE};
+
+/// The recurrence, a tick of four sub-steps at a time.
+struct Oscillator {
+    x: Fx,
+    v: Fx,
+    hertz: Fx,
+    damping_ratio: Fx,
+}
+
+impl Oscillator {
+    fn tick(&mut self) -> Fx {
+        let h_omega = fx_mul(TAU, self.hertz) / RATE;
+        let damping = Fx::ONE + fx_mul(self.damping_ratio * 2, h_omega) + fx_mul(h_omega, h_omega);
+        for _ in 0..4 {
+            let pull = fx_mul(fx_mul(h_omega, h_omega), self.x) * RATE;
+            self.v = fx_div(self.v - pull, damping).expect("more than 1");
+            self.x += self.v / RATE;
+        }
+        self.x
+    }
+}
+
+/// Follows a stretch of 0.5 for three periods and more.
+fn follows(
+    kind: impl Fn(Fx, Fx) -> JointKind,
+    place: Vec2<Fx>,
+    angle: Fx,
+    stretch: impl Fn(&World, JointId) -> Fx,
+) {
+    for ground in [Ground::Fixed, Ground::Free(fx!(0.7)), Ground::Free(fx!(40))] {
+        for (hertz, damping_ratio) in [
+            (fx!(1), fx!(0.1)),
+            (fx!(1), fx!(1)),
+            (fx!(2), fx!(0.5)),
+            (fx!(3), fx!(0)),
+            (fx!(5), fx!(0.1)),
+            (fx!(5), fx!(0.7)),
+        ] {
+            let mut bench = Bench::new(ground, fx!(0), place, angle);
+            let joint = bench.join(JointDef::new(bench.a, bench.b, kind(hertz, damping_ratio)));
+            let x = stretch(&bench.world, joint);
+            assert!((x.abs() - fx!(0.5)).abs() < fx!(0.0001), "starts at {x}");
+            let mut theory = Oscillator { x, v: fx!(0), hertz, damping_ratio };
+            let mut worst = fx!(0);
+            bench.run(200, |_, world| worst = worst.max((stretch(world, joint) - theory.tick()).abs()));
+            assert!(worst < fx!(0.01), "{ground:?}, {hertz} Hz, ratio {damping_ratio}: {worst} off");
+        }
+    }
+}
+
+const NEAR: Vec2<Fx> = Vec2::new(fx!(0), fx!(0));
+
+#[test]
+fn a_distance_spring_swings_as_theory_says() {
+    let kind = |hertz, ratio| Distance::new().spring(hertz, ratio, fx!(2)).into();
+    let stretch = |world: &World, id| world.joint_length(id).expect("there") - fx!(2);
+    follows(kind, Vec2::new(fx!(1.5), fx!(2)), fx!(0), stretch);
+}
+
+#[test]
+fn a_slider_on_a_spring_swings_as_theory_says() {
+    let kind = |hertz, ratio| Prismatic::new().spring(hertz, ratio, fx!(1)).into();
+    let stretch = |world: &World, id| world.joint_translation(id).expect("there").x - fx!(1);
+    follows(kind, Vec2::new(fx!(1.5), fx!(0)), fx!(0), stretch);
+}
+
+#[test]
+fn a_suspension_swings_as_theory_says() {
+    let kind = |hertz, ratio| Wheel::new().spring(hertz, ratio, fx!(1)).motor(fx!(1), fx!(0.1)).into();
+    let stretch = |world: &World, id| world.joint_translation(id).expect("there").x - fx!(1);
+    follows(kind, Vec2::new(fx!(0.5), fx!(0)), fx!(0), stretch);
+}
+
+#[test]
+fn a_hinge_on_a_spring_swings_as_theory_says() {
+    let kind = |hertz, ratio| Revolute::new().spring(hertz, ratio, fx!(0.2)).into();
+    let stretch = |world: &World, id| world.joint_angle(id).expect("there") - fx!(0.2);
+    follows(kind, NEAR, fx!(-0.3), stretch);
+}
+
+#[test]
+fn a_soft_weld_swings_as_theory_says() {
+    let angle = |world: &World, id| world.joint_angle(id).expect("there");
+    follows(|hertz, ratio| Weld::rigid().angular(hertz, ratio).into(), NEAR, fx!(0.5), angle);
+    let apart = |world: &World, id| world.joint_translation(id).expect("there").y;
+    let place = Vec2::new(fx!(0), fx!(0.5));
+    follows(|hertz, ratio| Weld::rigid().linear(hertz, ratio).into(), place, fx!(0), apart);
+}
+
+#[test]
+fn a_motor_pulls_its_frames_together_as_theory_says() {
+    let angle = |world: &World, id| world.joint_angle(id).expect("there");
+    let kind = |hertz, ratio| Motor::new().angular_spring(hertz, ratio, Fx::MAX).into();
+    follows(kind, NEAR, fx!(-0.5), angle);
+    let apart = |world: &World, id| world.joint_translation(id).expect("there").y;
+    let kind = |hertz, ratio| Motor::new().linear_spring(hertz, ratio, Fx::MAX).into();
+    follows(kind, Vec2::new(fx!(0), fx!(0.5)), fx!(0), apart);
+}
+
+/// With the anchor away from the centre the point gives way by turning too: at rest it has come all the way.
+#[test]
+fn a_spring_on_an_arm_comes_to_rest_where_it_pulls() {
+    let mut bench = Bench::new(Ground::Fixed, fx!(0), Vec2::new(fx!(3), fx!(1)), fx!(1));
+    let kind =
+        Motor::new().linear_spring(fx!(4), fx!(0.7), fx!(100)).angular_spring(fx!(4), fx!(0.7), fx!(100));
+    let def = JointDef::new(bench.a, bench.b, kind).anchor_b(fx!(0.5), fx!(0.25)).angle_a(Angle::EIGHTH);
+    let joint = bench.join(def);
+    bench.run(600, |_, _| {});
+    let (length, angle) = (bench.world.joint_length(joint), bench.world.joint_angle(joint));
+    assert!(
+        length.expect("there") < fx!(0.001) && angle.expect("there").abs() < fx!(0.001),
+        "{length:?} {angle:?}"
+    );
+}

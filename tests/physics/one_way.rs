@@ -1,0 +1,160 @@
+//! One-way platforms: a floor from above, nothing from below.
+
+use lockstep2d::body::{BodyDef, BodyId, Geometry, Polygon, ShapeDef};
+use lockstep2d::fx;
+use lockstep2d::math::{Angle, Fx, Vec2};
+use lockstep2d::world::World;
+
+fn up() -> Angle {
+    Angle::from_degrees(fx!(90))
+}
+
+/// Platforms with their tops at height 0.
+fn platforms() -> [ShapeDef; 3] {
+    let slab =
+        |half: Fx| ShapeDef::new(Polygon::rectangle(fx!(4), half).expect("valid")).offset(fx!(0), -half);
+    let end = Vec2::new(fx!(4), fx!(0));
+    let line = ShapeDef::new(Geometry::segment(-end, end).expect("valid"));
+    [slab(fx!(0.1)), slab(fx!(0.6)), line].map(|shape| shape.one_way(up()))
+}
+
+fn movers() -> [(&'static str, ShapeDef); 3] {
+    let end = Vec2::new(fx!(0), fx!(0.25));
+    [
+        ("ball", ShapeDef::new(Geometry::circle(fx!(0.5)).expect("valid"))),
+        ("box", ShapeDef::new(Polygon::square(fx!(0.5)).expect("valid"))),
+        ("pill", ShapeDef::new(Geometry::capsule(-end, end, fx!(0.25)).expect("valid"))),
+    ]
+}
+
+fn spawn(world: &mut World, shape: ShapeDef, y: Fx, speed: Fx) -> BodyId {
+    world.spawn(&BodyDef::dynamic().position(fx!(0.3), y).velocity(fx!(0), speed), &[shape]).expect("valid")
+}
+
+fn height(world: &World, body: BodyId) -> Fx {
+    world.body(body).expect("there").position().y
+}
+
+/// Jumps from 3 m below with enough speed to get through (10 m/s reach 5 m), or half-way.
+#[test]
+fn what_jumps_through_lands_and_what_turns_round_half_way_falls_back() {
+    for platform in platforms() {
+        for (name, shape) in movers() {
+            // From -3 m, 7.7 m/s come up to 0 m: the middle is then level with the top.
+            for (speed, lands) in [(fx!(10), true), (fx!(30), true), (fx!(7.75), false), (fx!(6.9), false)] {
+                let mut world = World::default();
+                world.spawn(&BodyDef::fixed(), &[platform]).expect("valid");
+                let body = spawn(&mut world, shape, fx!(-3), speed);
+                let mut below = fx!(0);
+                for _ in 0..600 {
+                    world.step();
+                    below = below.max(height(&world, body));
+                }
+                let y = height(&world, body);
+                let rests = (y - fx!(0.5)).abs() < fx!(0.01);
+                let what = format!(
+                    "{name} at {speed} m/s on {:?}: came to {below} m, is at {y} m",
+                    platform.geometry
+                );
+                assert!(if lands { rests } else { y < fx!(-50) }, "{what}");
+                assert_eq!(world.faults(), 0);
+            }
+        }
+    }
+}
+
+#[test]
+fn what_goes_through_is_not_slowed_down() {
+    for platform in platforms() {
+        for (name, shape) in movers() {
+            let way = |platform: Option<ShapeDef>| {
+                let mut world = World::default();
+                if let Some(platform) = platform {
+                    world.spawn(&BodyDef::fixed(), &[platform]).expect("valid");
+                }
+                let body = spawn(&mut world, shape, fx!(-3), fx!(12));
+                for _ in 0..60 {
+                    world.step();
+                }
+                height(&world, body)
+            };
+            assert_eq!(way(Some(platform)), way(None), "{name} on {:?}", platform.geometry);
+        }
+    }
+}
+
+#[test]
+fn it_holds_what_falls_on_it_and_a_pile_on_top() {
+    for platform in platforms() {
+        let mut world = World::default();
+        world.spawn(&BodyDef::fixed(), &[platform]).expect("valid");
+        let square = ShapeDef::new(Polygon::square(fx!(0.5)).expect("valid"));
+        let bodies: Vec<_> =
+            (0..5i32).map(|i| spawn(&mut world, square, fx!(1) + Fx::from_num(i), fx!(-5))).collect();
+        for _ in 0..900 {
+            world.step();
+        }
+        for (i, &body) in (0i32..).zip(&bodies) {
+            let y = height(&world, body);
+            assert!((y - fx!(0.5) - Fx::from_num(i)).abs() < fx!(0.03), "box {i} is at {y} m");
+        }
+    }
+}
+
+/// A box that slides from one platform to the next stays on top.
+#[test]
+fn flush_platforms_carry_over_their_seams() {
+    for (name, shape) in movers() {
+        let mut world = World::default();
+        let slab = ShapeDef::new(Polygon::rectangle(fx!(0.5), fx!(0.1)).expect("valid")).one_way(up());
+        let slabs: Vec<_> = (0..100i32).map(|i| slab.offset(Fx::from_num(i) - fx!(5), fx!(-0.1))).collect();
+        world.spawn(&BodyDef::fixed(), &slabs).expect("valid");
+        let def = BodyDef::dynamic().position(fx!(0), fx!(0.5)).velocity(fx!(5), fx!(0));
+        let body = world.spawn(&def, &[shape.friction(fx!(0))]).expect("valid");
+        for _ in 0..900 {
+            world.step();
+            let y = height(&world, body);
+            assert!((y - fx!(0.5)).abs() < fx!(0.01) || name == "pill", "{name} is at {y} m");
+        }
+        assert!(height(&world, body) > fx!(0.2), "{name}");
+    }
+}
+
+/// The direction turns with the body: a door that opens to the left.
+#[test]
+fn the_direction_belongs_to_the_body() {
+    let platform = platforms()[0];
+    for (speed, passes) in [(fx!(-5), true), (fx!(5), false)] {
+        let mut world = World::new(lockstep2d::world::Config { gravity: Vec2::ZERO, ..Default::default() })
+            .expect("valid");
+        world.spawn(&BodyDef::fixed().angle(up()), &[platform]).expect("valid");
+        let def = BodyDef::dynamic().position(-speed, fx!(0)).velocity(speed, fx!(0));
+        let body = world.spawn(&def, &[movers()[0].1]).expect("valid");
+        for _ in 0..180 {
+            world.step();
+        }
+        let x = world.body(body).expect("there").position().x;
+        assert_eq!(x < fx!(-1) && speed < 0, passes, "at {x} m");
+        assert!(passes || x < fx!(-0.4), "at {x} m");
+    }
+}
+
+/// A restored world knows what is passing.
+#[test]
+fn passing_survives_a_snapshot() {
+    let mut world = World::default();
+    world.spawn(&BodyDef::fixed(), &[platforms()[0]]).expect("valid");
+    let body = spawn(&mut world, movers()[1].1, fx!(-3), fx!(7.75));
+    for _ in 0..46 {
+        world.step();
+    }
+    let y = height(&world, body);
+    assert!(y > fx!(-0.3), "half-way through, at {y} m");
+    let mut restored = World::from_bytes(&world.to_bytes()).expect("its own bytes");
+    for _ in 0..60 {
+        world.step();
+        restored.step();
+        assert_eq!(world.state_hash(), restored.state_hash());
+    }
+    assert!(height(&restored, body) < fx!(-1));
+}

@@ -1,0 +1,170 @@
+//! Whatever is done to the caches, and whichever broad phase finds the pairs, nobody sees a difference: six worlds get
+//! the same changes, and after every tick have the same hash and have told the same events.
+
+use lockstep2d::collision::BroadPhaseKind;
+use lockstep2d::world::{Command, ContactEvent, Events, SensorEvent, World};
+use std::collections::BTreeSet;
+
+use super::churn::Churn;
+
+/// What is done to a world between its ticks that must not matter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Way {
+    BruteForce,
+    SweepAndPrune,
+    /// All caches are dropped before every tick and after every command.
+    Cleared,
+    /// It is written and read before every tick.
+    Bytes,
+    /// It is saved, goes astray for three ticks, and is restored.
+    RolledBack,
+}
+
+const OTHERS: [Way; 5] = [Way::BruteForce, Way::SweepAndPrune, Way::Cleared, Way::Bytes, Way::RolledBack];
+
+impl Way {
+    fn begin(self, world: &World) -> World {
+        let mut world = world.clone();
+        match self {
+            Way::BruteForce => world.set_broad_phase(BroadPhaseKind::BruteForce),
+            Way::SweepAndPrune => world.set_broad_phase(BroadPhaseKind::SweepAndPrune),
+            _ => {}
+        }
+        world
+    }
+
+    fn disturb(self, world: &mut World, churn: &Churn) {
+        match self {
+            Way::BruteForce | Way::SweepAndPrune => {}
+            Way::Cleared => world.clear_scratch(),
+            Way::Bytes => *world = World::from_bytes(&world.to_bytes()).expect("its own bytes"),
+            Way::RolledBack => {
+                let saved = world.save();
+                let mut astray = churn.clone();
+                for _ in 0..3 {
+                    for command in astray.commands(world) {
+                        let _refused_or_not = world.execute(&command);
+                    }
+                    world.step();
+                }
+                world.restore(&saved);
+            }
+        }
+    }
+
+    fn execute(self, world: &mut World, command: &Command) {
+        let _refused_as_by_the_first_world = world.execute(command);
+        if self == Way::Cleared {
+            world.clear_scratch();
+        }
+    }
+}
+
+/// What has begun and not ended.
+#[derive(Default)]
+struct Open {
+    contacts: BTreeSet<ContactEvent>,
+    visits: BTreeSet<SensorEvent>,
+}
+
+impl Open {
+    fn follow(&mut self, events: &Events) {
+        for event in &events.contact_end {
+            assert!(self.contacts.remove(event), "{event:?} ends without having begun");
+        }
+        for event in &events.contact_begin {
+            assert!(self.contacts.insert(*event), "{event:?} begins twice");
+        }
+        for event in &events.sensor_end {
+            assert!(self.visits.remove(event), "{event:?} ends without having begun");
+        }
+        for event in &events.sensor_begin {
+            assert!(self.visits.insert(*event), "{event:?} begins twice");
+        }
+    }
+
+    /// Nothing stays open between shapes that are gone.
+    fn check(&self, world: &World) {
+        let ends = self.contacts.iter().flat_map(|event| [event.shape_a, event.shape_b]);
+        let ends = ends.chain(self.visits.iter().flat_map(|event| [event.sensor, event.visitor]));
+        ends.for_each(|shape| assert!(world.shape(shape).is_some(), "shape {shape} has left something open"));
+    }
+}
+
+/// Executes a command on the first world: the invariants hold after it, and a refused one changes nothing.
+fn execute_checked(world: &mut World, command: &Command) {
+    let before = world.state_hash();
+    let refused = world.execute(command).is_err();
+    assert_eq!(world.validate(), Ok(()), "{command:?}");
+    assert!(!refused || world.state_hash() == before, "{command:?} was refused and has changed the world");
+}
+
+/// How much has happened, so that the test does not pass because nothing did.
+#[derive(Debug, Default)]
+struct Seen {
+    slept: usize,
+    woken: usize,
+    visits: usize,
+    contacts: usize,
+    hits: usize,
+}
+
+fn churn(seed: u64, ticks: u32, seen: &mut Seen) {
+    let mut churn = Churn::new(seed);
+    let mut first = churn.world();
+    let mut others = OTHERS.map(|way| (way, way.begin(&first)));
+    let mut open = Open::default();
+    for tick in 0..ticks {
+        for (way, world) in &mut others {
+            way.disturb(world, &churn);
+        }
+        for command in churn.commands(&first) {
+            execute_checked(&mut first, &command);
+            others.iter_mut().for_each(|(way, world)| way.execute(world, &command));
+        }
+        let sleepers = |world: &World| world.bodies().filter(|(_, body)| body.is_asleep()).count();
+        let before = sleepers(&first);
+        first.step();
+        assert_eq!(first.validate(), Ok(()), "seed {seed}, tick {tick}");
+        for (way, world) in &mut others {
+            world.step();
+            let differing = first.digest().differing(&world.digest());
+            assert!(differing.is_empty(), "seed {seed}, tick {tick}, {way:?}: {differing:?} differ");
+            assert_eq!(first.events(), world.events(), "seed {seed}, tick {tick}, {way:?}");
+        }
+        let events = first.events();
+        open.follow(events);
+        open.check(&first);
+        seen.slept += events.moved.iter().filter(|event| event.fell_asleep).count();
+        seen.woken += before.saturating_sub(sleepers(&first));
+        seen.visits += events.sensor_begin.len();
+        seen.contacts += events.contact_begin.len();
+        seen.hits += events.hits.len();
+    }
+}
+
+#[test]
+fn nothing_that_is_done_to_the_caches_is_seen() {
+    let mut seen = Seen::default();
+    for seed in 0..30 {
+        churn(seed, 300, &mut seen);
+    }
+    let Seen { slept, woken, visits, contacts, hits } = seen;
+    assert!(slept > 500 && woken > 100 && visits > 500 && contacts > 2000 && hits > 1000, "{seen:?}");
+}
+
+/// The same for as long as one likes: `SEEDS=1000..3000 cargo test --test world -- --ignored many`.
+#[test]
+#[ignore = "takes minutes"]
+fn nothing_that_is_done_to_the_caches_is_seen_with_many_seeds() {
+    let seeds = std::env::var("SEEDS").unwrap_or("1000..2000".into());
+    let (from, to) = seeds.split_once("..").expect("from..to");
+    let (from, to): (u64, u64) = (from.parse().expect("a number"), to.parse().expect("a number"));
+    let mut seen = Seen::default();
+    for seed in from..to {
+        if std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| churn(seed, 300, &mut seen))).is_err() {
+            println!("seed {seed} fails");
+        }
+    }
+    println!("{seen:?}");
+}

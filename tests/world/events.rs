@@ -1,0 +1,143 @@
+//! Events: hits, contacts and moves, in the documented order, and again whenever a tick is simulated again.
+
+use lockstep2d::body::{BodyDef, EventSwitches, ShapeDef};
+use lockstep2d::fx;
+use lockstep2d::math::{Angle, Fx, Vec2};
+use lockstep2d::world::{Config, ContactEvent, HitEvent, World};
+
+use super::{ball, rectangle, run, shape_of, spawn, square, weightless, world_with_floor};
+
+fn hitting(shape: ShapeDef) -> ShapeDef {
+    shape.events(EventSwitches { hit: true, ..EventSwitches::default() })
+}
+
+/// All hits of some ticks.
+fn hits(world: &mut World, ticks: u32) -> Vec<HitEvent> {
+    let mut hits = Vec::new();
+    for _ in 0..ticks {
+        run(world, 1);
+        hits.extend(&world.events().hits);
+    }
+    hits
+}
+
+#[test]
+fn a_hit_tells_where_how_fast_and_which_way() {
+    let mut world = weightless();
+    let left = BodyDef::dynamic().position(fx!(-2), fx!(0)).velocity(fx!(6), fx!(0));
+    let left = spawn(&mut world, left, hitting(ball(fx!(0.5))).restitution(fx!(1)));
+    let right = BodyDef::dynamic().position(fx!(2), fx!(0)).velocity(fx!(-3), fx!(0));
+    let right = spawn(&mut world, right, ball(fx!(0.5)).restitution(fx!(1)));
+    let told = hits(&mut world, 120);
+    assert_eq!(told.len(), 1, "{told:?}");
+    let hit = told[0];
+    assert_eq!((hit.shape_a, hit.shape_b), (shape_of(&world, left), shape_of(&world, right)));
+    assert!((hit.approach_speed - fx!(9)).abs() < fx!(0.0001), "{}", hit.approach_speed);
+    assert!(hit.normal.x > fx!(0.9999) && hit.normal.y.abs() < fx!(0.001), "{:?}", hit.normal);
+    // They meet after 3 m at 9 m/s, when the left one has come 2 m: at x = 0.5, give or take a tick.
+    assert!((hit.point.x - fx!(0.5)).abs() < fx!(0.2) && hit.point.y.abs() < fx!(0.01), "{:?}", hit.point);
+}
+
+#[test]
+fn a_hit_on_a_moving_wall_counts_the_wall_and_only_the_normal() {
+    let mut world = weightless();
+    spawn(&mut world, BodyDef::kinematic().velocity(fx!(0), fx!(2)), rectangle(fx!(50), fx!(0.5)));
+    let thrown = BodyDef::dynamic().position(fx!(0), fx!(4)).velocity(fx!(7), fx!(-3));
+    spawn(&mut world, thrown, hitting(ball(fx!(0.5))));
+    let told = hits(&mut world, 60);
+    assert_eq!(told.len(), 1);
+    assert!((told[0].approach_speed - fx!(5)).abs() < fx!(0.001), "{}", told[0].approach_speed);
+    assert!(told[0].normal.y > fx!(0.9999), "from the wall, which is A: {:?}", told[0].normal);
+}
+
+#[test]
+fn slow_or_unwanted_hits_are_not_told() {
+    let thrown = |speed: Fx, shape: ShapeDef, hit_speed: Fx| {
+        let config = Config { gravity: Vec2::ZERO, hit_speed, ..Config::default() };
+        let mut world = World::new(config).expect("valid");
+        spawn(&mut world, BodyDef::fixed(), rectangle(fx!(5), fx!(1)));
+        spawn(&mut world, BodyDef::dynamic().position(fx!(0), fx!(2)).velocity(fx!(0), -speed), shape);
+        hits(&mut world, 120).len()
+    };
+    assert_eq!(thrown(fx!(2), hitting(ball(fx!(0.5))), fx!(1)), 1);
+    assert_eq!(thrown(fx!(2), ball(fx!(0.5)), fx!(1)), 0, "switched off by default");
+    assert_eq!(thrown(fx!(2), hitting(ball(fx!(0.5))), fx!(2.1)), 0, "below the world's threshold");
+    assert_eq!(thrown(fx!(0.9), hitting(ball(fx!(0.5))), fx!(1)), 0);
+}
+
+#[test]
+fn contact_events_may_be_switched_off_and_on() {
+    let silent = EventSwitches { contact: false, ..EventSwitches::default() };
+    let landing = |floor: ShapeDef, shape: ShapeDef| {
+        let mut world = World::default();
+        spawn(&mut world, BodyDef::fixed().position(fx!(0), fx!(-1)), floor);
+        let id = spawn(&mut world, BodyDef::dynamic().position(fx!(0), fx!(0.6)), shape);
+        let mut told = 0;
+        for _ in 0..60 {
+            run(&mut world, 1);
+            told += world.events().contact_begin.len();
+        }
+        (world, id, told)
+    };
+    let (floor, shape) = (rectangle(fx!(5), fx!(1)), square(fx!(0.5)));
+    assert_eq!(landing(floor, shape).2, 1);
+    assert_eq!(landing(floor.events(silent), shape).2, 1, "one of them is enough");
+    assert_eq!(landing(floor, shape.events(silent)).2, 1);
+    let (mut world, id, told) = landing(floor.events(silent), shape.events(silent));
+    assert_eq!(told, 0);
+
+    // Switched on, a contact that lasts begins; switched off, it ends.
+    let id = shape_of(&world, id);
+    world.set_shape(id, &shape).expect("valid");
+    run(&mut world, 1);
+    assert_eq!((world.events().contact_begin.len(), world.events().contact_end.len()), (1, 0));
+    world.set_shape(id, &shape.events(silent)).expect("valid");
+    run(&mut world, 1);
+    assert_eq!((world.events().contact_begin.len(), world.events().contact_end.len()), (0, 1));
+}
+
+#[test]
+fn moves_are_told_in_slot_order_of_what_moved() {
+    let (mut world, floor) = world_with_floor();
+    let falling = spawn(&mut world, BodyDef::dynamic().position(fx!(0), fx!(9)), ball(fx!(0.5)));
+    let still = spawn(&mut world, BodyDef::kinematic().position(fx!(5), fx!(9)), ball(fx!(0.5)));
+    let turning = BodyDef::kinematic().position(fx!(9), fx!(9)).angular_velocity(fx!(1));
+    let turning = spawn(&mut world, turning, ball(fx!(0.5)));
+    run(&mut world, 3);
+    let told: Vec<_> = world.events().moved.iter().map(|event| event.body).collect();
+    assert_eq!(told, [falling, turning]);
+    for event in &world.events().moved {
+        let body = world.body(event.body).expect("there");
+        assert_eq!((event.position, event.angle, event.fell_asleep), (body.position(), body.angle(), false));
+    }
+    world.move_to(still, Vec2::new(fx!(5.1), fx!(9)), Angle::ZERO).expect("valid");
+    run(&mut world, 1);
+    assert_eq!(world.events().moved[1].body, still);
+    assert_eq!(world.events().moved[1].position, Vec2::new(fx!(5.1), fx!(9)));
+    assert!(world.events().moved.iter().all(|event| event.body != floor));
+}
+
+#[test]
+fn lists_are_sorted_and_the_same_when_simulated_again() {
+    let (mut world, _) = world_with_floor();
+    for i in 0..40 {
+        let (x, y) = (Fx::from_num(i % 8) - fx!(4), Fx::from_num(i / 8) * fx!(1.3) + fx!(1));
+        let def = BodyDef::dynamic().position(x, y).velocity(fx!(0), fx!(-3));
+        let id = spawn(&mut world, def, hitting(ball(fx!(0.45))));
+        world.add_shape(id, &square(fx!(0.6)).sensor().density(fx!(0))).expect("valid");
+    }
+    for _ in 0..60 {
+        let before = world.save();
+        run(&mut world, 1);
+        let told = world.events().clone();
+        assert!(told.contact_begin.is_sorted() && told.contact_end.is_sorted());
+        assert!(told.sensor_begin.is_sorted() && told.sensor_end.is_sorted());
+        let pair = |hit: &HitEvent| ContactEvent { shape_a: hit.shape_a, shape_b: hit.shape_b };
+        assert!(told.hits.is_sorted_by_key(pair) && told.moved.is_sorted_by_key(|event| event.body));
+        let after = world.state_hash();
+        world.restore(&before);
+        assert_eq!(world.events().moved.len(), 0, "a restored world has no last tick");
+        run(&mut world, 1);
+        assert_eq!((world.events(), world.state_hash()), (&told, after));
+    }
+}

@@ -1,0 +1,59 @@
+//! The world as its user sees it: sleep, sensors, events, and changes at run time. Each file holds one of them.
+
+mod adjust;
+mod churn;
+mod equality;
+mod events;
+mod locks;
+mod sensors;
+mod sleeping;
+
+use lockstep2d::body::{BodyDef, BodyId, Geometry, Polygon, ShapeDef, ShapeId};
+use lockstep2d::fx;
+use lockstep2d::math::{Fx, Vec2};
+use lockstep2d::world::{Config, World};
+
+fn square(half: Fx) -> ShapeDef {
+    ShapeDef::new(Polygon::square(half).expect("valid"))
+}
+
+fn rectangle(half_width: Fx, half_height: Fx) -> ShapeDef {
+    ShapeDef::new(Polygon::rectangle(half_width, half_height).expect("valid"))
+}
+
+fn ball(radius: Fx) -> ShapeDef {
+    ShapeDef::new(Geometry::circle(radius).expect("valid"))
+}
+
+/// A world with a fixed floor whose surface is at height 0.
+fn world_with_floor() -> (World, BodyId) {
+    let mut world = World::default();
+    let floor = BodyDef::fixed().position(fx!(0), fx!(-1));
+    let floor = world.spawn(&floor, &[rectangle(fx!(50), fx!(1))]).expect("valid");
+    (world, floor)
+}
+
+/// A world in which nothing falls.
+fn weightless() -> World {
+    World::new(Config { gravity: Vec2::ZERO, ..Config::default() }).expect("valid")
+}
+
+fn spawn(world: &mut World, def: BodyDef, shape: ShapeDef) -> BodyId {
+    world.spawn(&def, &[shape]).expect("valid")
+}
+
+fn shape_of(world: &World, body: BodyId) -> ShapeId {
+    world.body(body).expect("there").shapes()[0]
+}
+
+fn is_asleep(world: &World, body: BodyId) -> bool {
+    world.body(body).expect("there").is_asleep()
+}
+
+/// Steps, checking the invariants after every tick.
+fn run(world: &mut World, ticks: u32) {
+    for _ in 0..ticks {
+        world.step();
+        assert_eq!(world.validate(), Ok(()));
+    }
+}
