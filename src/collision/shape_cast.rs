@@ -117,7 +117,7 @@ fn is_before(u: Vec2<Grid>, v: Vec2<Grid>) -> bool {
 mod tests {
     //! Against steps of the distance, which never pass a contact.
 
-    use super::super::core::{samples, to_fx};
+    use super::super::core::samples;
     use super::*;
     use crate::math::{Rng, fx_div, fx_mul};
 

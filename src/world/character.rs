@@ -226,7 +226,7 @@ impl Walk<'_> {
             }
             let Some((travelled, plane)) = self.cast(left) else { return self.advance(left) };
             self.advance(travelled);
-            left = left - travelled;
+            left -= travelled;
             let surface = self.surface(&plane);
             self.surfaces.push((surface, plane));
             let n = plane.normal.widen();
