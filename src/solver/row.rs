@@ -201,34 +201,44 @@ impl Row {
         faults: &mut Faults,
     ) -> Speed {
         let vn = self.velocity(a, b, faults);
-        let d = softness.impulse(vn, bias, *lambda, faults);
-        self.accumulate(d, bounds, lambda, a, b, faults)
+        self.accumulate(softness.wanted(vn, bias, *lambda), bounds, lambda, a, b, faults)
     }
 
-    /// Adds an impulse to what has accumulated, as far as the bounds allow, and returns what was added.
+    /// Adds an impulse in units of [`Speed`] to what has accumulated, as far as the bounds allow, and returns what was
+    /// added.
     #[inline]
     pub(crate) fn accumulate(
         &self,
-        d: Speed,
+        d: i64,
         (lo, hi): (Speed, Speed),
         lambda: &mut Speed,
         a: &mut SolverBody,
         b: &mut SolverBody,
         faults: &mut Faults,
     ) -> Speed {
-        let wanted = i64::from(lambda.to_bits()) + i64::from(d.to_bits());
+        let wanted = i64::from(lambda.to_bits()) + d;
         let bounded = wanted.clamp(lo.to_bits().into(), hi.to_bits().into());
         let within = bounded.clamp(-i64::from(IMPULSE_MAX.to_bits()), IMPULSE_MAX.to_bits().into());
         *faults += u64::from(within != bounded);
-        // A friction limit may shrink by more than one update is allowed to change.
-        let step = i64::from(STEP_MAX.to_bits());
-        let change = within - i64::from(lambda.to_bits());
-        let d = change.clamp(-step, step);
-        *faults += u64::from(d != change);
-        let d = Speed::from_bits(saturate(d));
-        *lambda += d;
-        self.apply(d, a, b, faults);
-        d
+        let d = within - i64::from(lambda.to_bits());
+        *lambda = Speed::from_bits(saturate(within));
+        if d.unsigned_abs() <= u64::from(STEP_MAX.to_bits().unsigned_abs()) {
+            self.apply(Speed::from_bits(saturate(d)), a, b, faults);
+        } else {
+            self.apply_in_steps(d, a, b, faults);
+        }
+        Speed::from_bits(saturate(d))
+    }
+
+    /// A friction limit may shrink, and what was pushed may come free, by more than one update is allowed to change.
+    #[cold]
+    fn apply_in_steps(&self, mut d: i64, a: &mut SolverBody, b: &mut SolverBody, faults: &mut Faults) {
+        let limit = i64::from(STEP_MAX.to_bits());
+        while d != 0 {
+            let step = d.clamp(-limit, limit);
+            self.apply(Speed::from_bits(saturate(step)), a, b, faults);
+            d -= step;
+        }
     }
 }
 

@@ -58,14 +58,20 @@ impl Softness {
         narrow(fx_mul(fx_mul(stretch, self.bias_rate.into()), self.mass_scale.into()))
     }
 
-    /// `-massScale (v + bias) - impulseScale L`, clamped.
+    /// `-massScale (v + bias) - impulseScale L` in units of [`Speed`], which it may exceed fourfold.
     #[inline]
-    pub(crate) fn impulse(&self, v: Speed, bias: Speed, lambda: Speed, faults: &mut Faults) -> Speed {
+    pub(crate) fn wanted(&self, v: Speed, bias: Speed, lambda: Speed) -> i64 {
         let error = i64::from(v.to_bits()) + i64::from(bias.to_bits());
         let wide = i64::from(self.mass_scale.to_bits()) * error
             + i64::from(self.impulse_scale.to_bits()) * i64::from(lambda.to_bits());
+        round_shift(-wide, 30)
+    }
+
+    /// The same, clamped to what one update may change.
+    #[inline]
+    pub(crate) fn impulse(&self, v: Speed, bias: Speed, lambda: Speed, faults: &mut Faults) -> Speed {
+        let wanted = self.wanted(v, bias, lambda);
         let limit = i64::from(STEP_MAX.to_bits());
-        let wanted = round_shift(-wide, 30);
         let within = wanted.clamp(-limit, limit);
         *faults += u64::from(within != wanted);
         Speed::from_bits(saturate(within))

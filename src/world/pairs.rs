@@ -36,10 +36,7 @@ fn wake_resting(state: &mut State, scratch: &mut Scratch) {
     woken.clear();
     resting.retain(|contact| {
         let (a, b) = state.bodies_of(contact.shapes);
-        let wakes = match a.is_dynamic() || b.is_dynamic() {
-            true => a.is_active() || b.is_active(),
-            false => a.is_active() || b.is_active() || !is_near(state, joined, contact.shapes),
-        };
+        let wakes = a.is_active() || b.is_active() || !is_near(state, joined, contact.shapes);
         if wakes {
             woken.push(*contact);
         }

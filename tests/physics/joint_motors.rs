@@ -96,8 +96,11 @@ fn dragging_with_less_than_friction_does_not_move_a_box() {
         let body = bench.world.spawn(&BodyDef::dynamic().position(fx!(0), fx!(1)), &[shape]).expect("valid");
         bench.run(60, |_, _| {});
         let kind = Motor::new().linear_spring(fx!(5), fx!(1), force);
-        bench.join(JointDef::new(bench.a, body, kind).anchor_a(fx!(6), fx!(1)));
-        bench.run(120, |_, _| {});
+        let joint = bench.join(JointDef::new(bench.a, body, kind).anchor_a(fx!(6), fx!(1)));
+        bench.run(120, |tick, world| {
+            let (exerted, _) = world.joint_force(joint).expect("there");
+            assert!(exerted.length() <= force + fx!(0.05), "tick {tick}: {} N", exerted.length());
+        });
         let x = bench.world.body(body).expect("there").position().x;
         if moves {
             // 4 N on 4 kg, more or less: 1 m/s² for 2 s.

@@ -11,7 +11,7 @@ use lockstep2d::solver::{
 };
 use lockstep2d::world::{Command, Config, Explosion, World};
 
-use super::{ball, rectangle, square};
+use super::{ball, capsule, rectangle, square};
 
 /// Random commands for a world.
 #[derive(Clone)]
@@ -116,6 +116,7 @@ impl Churn {
         let (velocity, angular_velocity) = match self.rng.below(3) {
             0 => (Vec2::ZERO, Fx::ZERO),
             1 => (self.vector(fx!(0.04)), Fx::ZERO),
+            _ if self.rng.chance(1, 6) => (self.vector(fx!(40)), self.signed(fx!(30))),
             _ => (self.vector(fx!(4)), self.signed(fx!(3))),
         };
         Some(Command::SetVelocity { body, velocity, angular_velocity })
@@ -208,6 +209,7 @@ impl Churn {
         let half = self.rng.range(fx!(0.15), fx!(0.5));
         let shape = match self.rng.below(4) {
             0 => ball(half),
+            1 if self.rng.chance(1, 2) => capsule(half, fx!(0.15)),
             1 => rectangle(half, fx!(0.2)),
             _ => square(half),
         };
@@ -217,7 +219,7 @@ impl Churn {
     /// Something about a shape is different, or nothing.
     fn changed_shape(&mut self, mut def: ShapeDef) -> ShapeDef {
         let rng = &mut self.rng;
-        match rng.below(12) {
+        match rng.below(13) {
             0 => def.sensor = !def.sensor,
             1 => def.filter = Filter { category: 1 << rng.below(2), mask: rng.below(4).into(), group: 0 },
             2 => def.filter.group = [-1, 0, 1][rng.below(3) as usize],
@@ -229,6 +231,7 @@ impl Churn {
             5 => def.geometry = ball(rng.range(fx!(0.1), fx!(0.4))).geometry,
             6 => def.geometry = square(rng.range(fx!(0.1), fx!(0.4))).geometry,
             7 => def.offset = self.vector(fx!(0.4)),
+            8 => def.one_way = rng.chance(1, 2).then_some(Angle::ZERO),
             _ => def.events.hit = true,
         }
         def
@@ -239,32 +242,35 @@ impl Churn {
         let (pose_a, pose_b) = (world.body(a)?.transform(), world.body(b)?.transform());
         // Where B is, so that nothing is torn.
         let anchor = pose_a.apply_inverse(pose_b.apply(Vec2::ZERO));
-        let kind: JointKind = match self.rng.below(9) {
-            0 => Revolute::new().into(),
-            1 => Revolute::new().limit(fx!(-1), fx!(1)).motor(fx!(3), fx!(5)).into(),
-            2 => Revolute::new().spring(fx!(2), fx!(0.5), fx!(0)).into(),
-            3 => Prismatic::new().limit(fx!(-1), fx!(1)).into(),
-            4 => Distance::new().spring(fx!(3), fx!(0.3), fx!(0.5)).into(),
-            5 => Weld::rigid().into(),
-            6 => Wheel::new().spring(fx!(4), fx!(0.7), fx!(0)).motor(fx!(5), fx!(2)).into(),
-            7 => Motor::new().into(),
-            _ => JointKind::Filter,
-        };
-        let action = if self.rng.chance(1, 2) { ThresholdAction::Event } else { ThresholdAction::Break };
-        let threshold = Threshold { force: Some(self.rng.range(fx!(1), fx!(200))), torque: None, action };
-        let mut def = JointDef::new(a, b, kind).anchor_a(anchor.x, anchor.y);
-        if self.rng.chance(1, 2) {
-            def = def.threshold(threshold);
+        let mut def = JointDef::new(a, b, self.joint_kind()).anchor_a(anchor.x, anchor.y);
+        if self.rng.chance(1, 3) {
+            let action = if self.rng.chance(1, 2) { ThresholdAction::Event } else { ThresholdAction::Break };
+            let force = Some(self.rng.range(fx!(1), fx!(200)));
+            def = def.threshold(Threshold { force, torque: Some(fx!(100)), action });
         }
         Some(if self.rng.chance(1, 2) { def } else { def.colliding() })
+    }
+
+    fn joint_kind(&mut self) -> JointKind {
+        let (speed, most) = (self.signed(fx!(2)), self.rng.range(fx!(0), fx!(20)));
+        match self.rng.below(9) {
+            0 => Prismatic::new().limit(fx!(-0.5), fx!(0.5)).motor(speed, most).into(),
+            1 => Distance::rod(fx!(1)).into(),
+            2 => Weld::default().into(),
+            3 => Wheel::new().into(),
+            4 => Motor::new().into(),
+            5 => JointKind::Filter,
+            6 => Revolute::new().limit(fx!(-0.5), fx!(0.5)).motor(speed, most).into(),
+            _ => Revolute::new().into(),
+        }
     }
 
     fn changed_joint(&mut self, world: &World, joint: JointId) -> Option<JointDef> {
         let mut def = *world.joint(joint)?.def();
         match self.rng.below(3) {
             0 => def.collide_connected = !def.collide_connected,
-            1 => def.kind = JointKind::Filter,
-            _ => def.kind = Revolute::new().motor(fx!(-2), fx!(3)).into(),
+            1 => def.kind = self.joint_kind(),
+            _ => def.frame_b.anchor = self.vector(fx!(0.2)),
         }
         Some(def)
     }

@@ -150,7 +150,7 @@ fn nothing_that_is_done_to_the_caches_is_seen() {
         churn(seed, 300, &mut seen);
     }
     let Seen { slept, woken, visits, contacts, hits } = seen;
-    assert!(slept > 500 && woken > 100 && visits > 500 && contacts > 2000 && hits > 1000, "{seen:?}");
+    assert!(slept > 300 && woken > 80 && visits > 400 && contacts > 1500 && hits > 400, "{seen:?}");
 }
 
 /// The same for as long as one likes: `SEEDS=1000..3000 cargo test --test world -- --ignored many`.

@@ -25,6 +25,11 @@ fn ball(radius: Fx) -> ShapeDef {
     ShapeDef::new(Geometry::circle(radius).expect("valid"))
 }
 
+fn capsule(half_length: Fx, radius: Fx) -> ShapeDef {
+    let (a, b) = (Vec2::new(-half_length, Fx::ZERO), Vec2::new(half_length, Fx::ZERO));
+    ShapeDef::new(Geometry::capsule(a, b, radius).expect("valid"))
+}
+
 /// A world with a fixed floor whose surface is at height 0.
 fn world_with_floor() -> (World, BodyId) {
     let mut world = World::default();

@@ -17,7 +17,7 @@ use super::state::{Joint, JointImpulses};
 use crate::body::{Arena, Body, BodyId, Handle, JointId};
 use crate::math::{Angle, Fx, Reciprocal, Rot, Step, Unit, Vec2, fx_mul, widen};
 
-/// All joints, for one tick, in the order in which they are solved.
+/// All joints, for one tick.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct JointSet {
     /// For each body of the tick, whether it is in `bodies`.
@@ -25,7 +25,20 @@ pub(crate) struct JointSet {
     bodies: Vec<JointedBody>,
     /// For each body of the tick.
     turned: Vec<Turned>,
+    /// In the order of the state, which is read once and from front to back: joints are large.
+    drafts: JointList,
+    /// For each of the drafts, how many rows and points come before its own.
+    starts: Vec<(u32, u32)>,
+    /// In the order in which they are solved.
+    list: JointList,
+}
+
+/// Joints one after the other.
+#[derive(Clone, Debug, Default)]
+struct JointList {
     joints: Vec<JointConstraint>,
+    /// For each joint what every pass needs, so that the passes read little memory.
+    links: Vec<Link>,
     /// Of all joints in turn: a plain hinge has none.
     rows: Vec<JointRow>,
     points: Vec<JointPoint>,
@@ -39,74 +52,52 @@ struct JointedBody {
     inverse_gyration: Reciprocal,
 }
 
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug)]
 struct JointConstraint {
     joint: JointId,
-    rows: Share,
-    points: Share,
     ends: Ends,
 }
 
-/// A part of a list.
+/// The bodies of a joint, and how many rows and points are its own.
 #[derive(Clone, Copy, Debug)]
-struct Share {
-    start: u32,
-    end: u32,
+struct Link {
+    body_a: u32,
+    body_b: u32,
+    rows: u16,
+    points: u16,
 }
 
-impl Share {
+/// Goes through joints with their rows and points.
+struct Walk<'a> {
+    links: core::slice::Iter<'a, Link>,
+    rows: &'a mut [JointRow],
+    points: &'a mut [JointPoint],
+}
+
+impl<'a> Iterator for Walk<'a> {
+    type Item = (&'a Link, &'a mut [JointRow], &'a mut [JointPoint]);
+
     #[inline]
-    fn of<T>(self, list: &mut [T]) -> &mut [T] {
-        &mut list[self.start as usize..self.end as usize]
+    fn next(&mut self) -> Option<Self::Item> {
+        let link = self.links.next()?;
+        let (rows, rest) = core::mem::take(&mut self.rows).split_at_mut(link.rows.into());
+        self.rows = rest;
+        let (points, rest) = core::mem::take(&mut self.points).split_at_mut(link.points.into());
+        self.points = rest;
+        Some((link, rows, points))
     }
 }
 
-impl JointSet {
-    /// Makes a constraint of every joint that is one, in the order in which they are solved.
-    pub(crate) fn prepare(
-        &mut self,
-        (joints, slots): (&Arena<Joint, JointId>, &[u32]),
-        (bodies, list): (&Arena<Body, BodyId>, &mut BodyList),
-        tuning: &Tuning,
-        nodes: &mut Vec<Node>,
-        colouring: &mut Colouring,
-    ) {
-        self.clear();
-        nodes.clear();
-        self.has_joint.clear();
-        for &slot in slots {
-            let (a, b) = joints.at(slot).def.bodies();
-            for body in [a.index(), b.index()] {
-                let index = list.own_index_of(body);
-                self.has_joint.resize(list.len(), false);
-                if !core::mem::replace(&mut self.has_joint[index as usize], true) {
-                    let body = bodies.at(body);
-                    let inverse_gyration = body.mass.inverse_gyration;
-                    self.bodies.push(JointedBody { index, angle: body.angle(), inverse_gyration });
-                }
-            }
-            nodes.push(list.node(slot.into(), bodies, a.index(), b.index()));
-        }
-        self.turned.resize(list.len(), Turned::default());
-        for &index in colouring.order(nodes, list.len()) {
-            let id = joints.handle_at(slots[index as usize]);
-            let joint = joints.at(id.index());
-            let (a, b) = joint.def.bodies();
-            let ends = [a, b].map(|body| (list.index_of(body.index()), bodies.at(body.index())));
-            self.push(id, joint, ends[0], ends[1], tuning);
-        }
-    }
-
+impl JointList {
     fn clear(&mut self) {
-        self.bodies.clear();
-        self.turned.clear();
         self.joints.clear();
+        self.links.clear();
         self.rows.clear();
         self.points.clear();
     }
 
     fn push(&mut self, id: JointId, joint: &Joint, a: (u32, &Body), b: (u32, &Body), tuning: &Tuning) {
-        let starts = (count(&self.rows), count(&self.points));
+        let (rows, points) = (self.rows.len(), self.points.len());
         let mut parts = Parts {
             rows: &mut self.rows,
             points: &mut self.points,
@@ -123,9 +114,62 @@ impl JointSet {
             JointKind::Motor(kind) => kind.prepare(&mut parts),
             JointKind::Filter => {}
         }
-        let rows = Share { start: starts.0, end: count(&self.rows) };
-        let points = Share { start: starts.1, end: count(&self.points) };
-        self.joints.push(JointConstraint { joint: id, rows, points, ends: Ends::prepare(joint, a, b) });
+        let (rows, points) = (share(&self.rows, rows), share(&self.points, points));
+        self.links.push(Link { body_a: a.0, body_b: b.0, rows, points });
+        self.joints.push(JointConstraint { joint: id, ends: Ends::prepare(joint, a, b) });
+    }
+
+    /// Appends a joint of another list, whose rows and points start there.
+    fn copy(&mut self, other: &Self, index: usize, (rows, points): (u32, u32)) {
+        let link = other.links[index];
+        let (rows, points) = (rows as usize, points as usize);
+        self.joints.push(other.joints[index]);
+        self.links.push(link);
+        self.rows.extend_from_slice(&other.rows[rows..rows + usize::from(link.rows)]);
+        self.points.extend_from_slice(&other.points[points..points + usize::from(link.points)]);
+    }
+
+    fn walk(&mut self) -> Walk<'_> {
+        Walk { links: self.links.iter(), rows: &mut self.rows, points: &mut self.points }
+    }
+}
+
+impl JointSet {
+    /// Makes a constraint of every joint that is one, in the order in which they are solved.
+    pub(crate) fn prepare(
+        &mut self,
+        (joints, slots): (&Arena<Joint, JointId>, &[u32]),
+        (bodies, list): (&Arena<Body, BodyId>, &mut BodyList),
+        tuning: &Tuning,
+        nodes: &mut Vec<Node>,
+        colouring: &mut Colouring,
+    ) {
+        self.bodies.clear();
+        self.turned.clear();
+        self.starts.clear();
+        self.drafts.clear();
+        self.list.clear();
+        nodes.clear();
+        self.has_joint.clear();
+        for &slot in slots {
+            let joint = joints.at(slot);
+            let (a, b) = joint.def.bodies();
+            let ends = [a, b].map(|id| (list.own_index_of(id.index()), bodies.at(id.index())));
+            self.has_joint.resize(list.len(), false);
+            for (index, body) in ends {
+                if !core::mem::replace(&mut self.has_joint[index as usize], true) {
+                    let inverse_gyration = body.mass.inverse_gyration;
+                    self.bodies.push(JointedBody { index, angle: body.angle(), inverse_gyration });
+                }
+            }
+            nodes.push(list.node(slot.into(), bodies, a.index(), b.index()));
+            self.starts.push((count(&self.drafts.rows), count(&self.drafts.points)));
+            self.drafts.push(joints.handle_at(slot), joint, ends[0], ends[1], tuning);
+        }
+        self.turned.resize(list.len(), Turned::default());
+        for &index in colouring.order(nodes, list.len()) {
+            self.list.copy(&self.drafts, index as usize, self.starts[index as usize]);
+        }
     }
 
     /// Arms, gains and gaps at the present pose.
@@ -133,15 +177,17 @@ impl JointSet {
         for body in &self.bodies {
             let turns = turn_of(bodies[body.index as usize].turn, body.inverse_gyration);
             let rotation = Rot::from_angle(body.angle + Angle::from_turns(Fx::from_bits(turns)));
-            self.turned[body.index as usize] = Turned { rotation, turns };
+            self.turned[body.index as usize] = Turned { rotation, turns, ahead: Unit::ZERO };
         }
-        for joint in &self.joints {
+        let JointList { joints, links, rows, points } = &mut self.list;
+        let walk = Walk { links: links.iter(), rows, points };
+        for (joint, (_, rows, points)) in joints.iter().zip(walk) {
             let place = joint.ends.place(bodies, &self.turned);
-            for point in joint.points.of(&mut self.points) {
+            for point in points {
                 point.refresh(&place, tuning);
             }
             let mut last = None;
-            for row in joint.rows.of(&mut self.rows) {
+            for row in rows {
                 let measure = match last {
                     Some((direction, measure)) if direction == row.direction => measure,
                     _ => joint.ends.measure(row.direction, &place, &self.turned),
@@ -154,29 +200,24 @@ impl JointSet {
 
     /// Looks ahead along the turns of the coming sub-step, at the velocities that the last one has left.
     pub(crate) fn aim(&mut self, bodies: &[SolverBody], h: Reciprocal, tuning: &Tuning) {
-        for joint in &self.joints {
-            let turn = |body: u32, inverse_gyration: Reciprocal| -> Unit {
-                let step: Step = h.times(bodies[body as usize].spin);
-                inverse_gyration.times(step)
-            };
-            let ends = &joint.ends;
-            let turns =
-                (turn(ends.body_a, ends.inverse_gyration_a), turn(ends.body_b, ends.inverse_gyration_b));
-            for point in joint.points.of(&mut self.points) {
+        for body in &self.bodies {
+            let step: Step = h.times(bodies[body.index as usize].spin);
+            self.turned[body.index as usize].ahead = body.inverse_gyration.times(step);
+        }
+        for (link, _, points) in self.list.walk() {
+            let ahead = |slot: u32| self.turned[slot as usize].ahead;
+            let turns = (ahead(link.body_a), ahead(link.body_b));
+            for point in points {
                 point.aim(turns, tuning);
             }
         }
     }
 
     pub(crate) fn warm_start(&mut self, bodies: &mut [SolverBody], faults: &mut Faults) {
-        for joint in &self.joints {
-            let (a, b) = SolverBody::pair(bodies, joint.ends.body_a, joint.ends.body_b);
-            for row in joint.rows.of(&mut self.rows) {
-                row.warm_start(a, b, faults);
-            }
-            for point in joint.points.of(&mut self.points) {
-                point.warm_start(a, b, faults);
-            }
+        for (link, rows, points) in self.list.walk() {
+            let (a, b) = SolverBody::pair(bodies, link.body_a, link.body_b);
+            rows.iter_mut().for_each(|row| row.warm_start(a, b, faults));
+            points.iter_mut().for_each(|point| point.warm_start(a, b, faults));
         }
     }
 
@@ -187,27 +228,25 @@ impl JointSet {
         bodies: &mut [SolverBody],
         faults: &mut Faults,
     ) {
-        for joint in &self.joints {
-            let (a, b) = SolverBody::pair(bodies, joint.ends.body_a, joint.ends.body_b);
-            for row in joint.rows.of(&mut self.rows) {
-                row.solve(pass, tuning, a, b, faults);
-            }
-            for point in joint.points.of(&mut self.points) {
-                point.solve(pass, tuning, a, b, faults);
-            }
+        for (link, rows, points) in self.list.walk() {
+            let (a, b) = SolverBody::pair(bodies, link.body_a, link.body_b);
+            rows.iter_mut().for_each(|row| row.solve(pass, tuning, a, b, faults));
+            points.iter_mut().for_each(|point| point.solve(pass, tuning, a, b, faults));
         }
     }
 
     /// Keeps impulses and turns for the next tick.
     pub(crate) fn store(&mut self, joints: &mut Arena<Joint, JointId>) {
-        for constraint in &self.joints {
+        let JointList { joints: constraints, links, rows, points } = &mut self.list;
+        let walk = Walk { links: links.iter(), rows, points };
+        for (constraint, (_, rows, points)) in constraints.iter().zip(walk) {
             let joint = joints.at_mut(constraint.joint.index());
             joint.turns = constraint.ends.turns(&self.turned);
             joint.impulses = JointImpulses::default();
-            for row in constraint.rows.of(&mut self.rows) {
+            for row in rows {
                 joint.impulses.0[usize::from(row.slot)] = row.lambda;
             }
-            for point in constraint.points.of(&mut self.points) {
+            for point in points {
                 joint.impulses.set_point(point.slot, point.lambda);
             }
         }
@@ -221,11 +260,11 @@ impl JointSet {
             let inverse_gyration = body.mass.inverse_gyration;
             set.bodies.push(JointedBody { index, angle: body.angle(), inverse_gyration });
         }
-        set.push(JointId::from_parts(0, 0), joint, (0, a), (1, b), tuning);
+        set.list.push(JointId::from_parts(0, 0), joint, (0, a), (1, b), tuning);
         let mut bodies = [SolverBody::default(); 2];
         set.refresh(&bodies, tuning);
         set.warm_start(&mut bodies, &mut 0);
-        let place = set.joints[0].ends.place(&bodies, &set.turned);
+        let place = set.list.joints[0].ends.place(&bodies, &set.turned);
         // The lighter one shows more of it.
         let (body, moved, arm) = if a.is_dynamic() && (!b.is_dynamic() || a.mass() < b.mass()) {
             (a, bodies[0].reversed(), place.lever_a.arm)
@@ -239,6 +278,11 @@ impl JointSet {
     }
 }
 
-fn count<T>(list: &[T]) -> u32 {
-    u32::try_from(list.len()).expect("parts of joints are counted in 32 bits")
+fn count<T>(parts: &[T]) -> u32 {
+    u32::try_from(parts.len()).expect("parts are counted in 32 bits")
+}
+
+/// How many there are more than there were.
+fn share<T>(parts: &[T], before: usize) -> u16 {
+    u16::try_from(parts.len() - before).expect("a joint has a handful of parts")
 }

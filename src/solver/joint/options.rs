@@ -13,6 +13,9 @@ const HERTZ_MAX: Fx = fx!(1000);
 const DAMPING_RATIO_MAX: Fx = fx!(100);
 
 /// A range that a joint may not leave: radians or metres, within ±2^20, the lower end not above the upper one.
+///
+/// As rigid as joints are: an acceleration `a` beyond the end presses it in by `a / (2 pi f)^2`, with the
+/// [joint stiffness](crate::solver::SolverSettings::joint_hertz) `f`, at most a quarter of the sub-step rate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Limit {
     /// The lower end.
@@ -30,7 +33,8 @@ pub struct Drive {
     pub max: Fx,
 }
 
-/// A damped spring with a target.
+/// A damped spring with a target. Its frequency is that of bodies that nothing else holds: a body that a hinge makes turn
+/// about a point away from its centre of mass swings more slowly.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Spring {
     /// Frequency without damping in Hz, above 0, up to 1000. The time step makes springs above a tenth of the sub-step

@@ -15,18 +15,20 @@ pub(super) struct Turned {
     pub(super) rotation: Rot,
     /// Since the start of the tick, in units of 2^-32 turn.
     pub(super) turns: i64,
+    /// By how much it will turn in the coming sub-step, in radians.
+    pub(super) ahead: Unit,
 }
 
 /// The ends of a joint, for one tick.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Ends {
-    pub(super) body_a: u32,
-    pub(super) body_b: u32,
+    body_a: u32,
+    body_b: u32,
     /// Anchors from the centres of mass, in the frames of the bodies.
     local_a: Vec2<Length>,
     local_b: Vec2<Length>,
-    pub(super) inverse_gyration_a: Reciprocal,
-    pub(super) inverse_gyration_b: Reciprocal,
+    inverse_gyration_a: Reciprocal,
+    inverse_gyration_b: Reciprocal,
     fractions: MassFractions,
     /// Centre of mass of B from that of A at the start of the tick.
     between: Vec2<Fx>,
@@ -61,6 +63,7 @@ impl Ends {
     }
 
     /// Where the ends are at the present pose.
+    #[inline]
     pub(super) fn place(&self, bodies: &[SolverBody], turned: &[Turned]) -> Place {
         let (a, b) = (self.body_a as usize, self.body_b as usize);
         let arm_a = WideArm::rotated(turned[a].rotation, self.local_a);

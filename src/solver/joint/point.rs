@@ -41,6 +41,7 @@ impl JointPoint {
     }
 
     /// Arms, gains and gap at the present pose.
+    #[inline]
     pub(super) fn refresh(&mut self, place: &Place, tuning: &Tuning) {
         self.block = PointBlock::new(place.lever_a, place.lever_b, place.fractions);
         self.bias = match &self.task {
@@ -56,16 +57,19 @@ impl JointPoint {
     }
 
     /// Looks ahead along the turns of the bodies in the coming sub-step.
+    #[inline]
     pub(super) fn aim(&mut self, turns: (Unit, Unit), tuning: &Tuning) {
         self.ratios_ahead = self.block.ratios_ahead(turns, tuning.joint_stretch);
     }
 
+    #[inline]
     pub(super) fn warm_start(&mut self, a: &mut SolverBody, b: &mut SolverBody, faults: &mut Faults) {
         clamp_warm_start(&mut self.lambda.x, faults);
         clamp_warm_start(&mut self.lambda.y, faults);
         self.block.apply(self.lambda, a, b, faults);
     }
 
+    #[inline]
     pub(super) fn solve(
         &mut self,
         pass: Pass,

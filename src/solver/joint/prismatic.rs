@@ -14,7 +14,8 @@ use crate::math::Fx;
 
 /// A slider: B's anchor stays on the x axis of A's frame, and B's frame parallel to A's.
 ///
-/// The translation of the joint is how far B's anchor is along that axis, in metres.
+/// The translation of the joint is how far B's anchor is along that axis, in metres. It should stay within a hundred radii
+/// of gyration of either body: levers longer than that are cut off.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Prismatic {
     /// Range of the translation in metres.

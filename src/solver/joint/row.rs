@@ -141,7 +141,7 @@ impl JointRow {
             (_, Pass::Bias) => (&tuning.joint, self.bias, Speed::ZERO),
             (_, Pass::Relax) => (&Softness::RIGID, Speed::ZERO, Speed::ZERO),
         };
-        let d = softness.impulse(vn, bias, self.lambda, faults).saturating_sub(push);
+        let d = softness.wanted(vn, bias, self.lambda) - i64::from(push.to_bits());
         self.row.accumulate(d, self.bounds, &mut self.lambda, a, b, faults);
     }
 }

@@ -30,7 +30,8 @@ impl Row {
             // 54 fraction bits over 30, and the rounding of a gain that is mostly 1.
             let product = i64::from(fraction.to_bits()) * i64::from(e.to_bits());
             let quotient = div_round(i128::from(product) << 6, denominator.max(1).into());
-            Unit::from_bits(saturate(saturate_wide(quotient)))
+            // No change of velocity may be larger than `L`: only impossible bodies get here.
+            Unit::from_bits(saturate(saturate_wide(quotient))).min(Unit::ONE)
         };
         let (f_a, f_b) = (gain(fractions.a, e_a), gain(fractions.b, e_b));
         (Row { e_a, e_b, f_a, f_b, ..Row::NONE }, denominator, s)
