@@ -10,6 +10,8 @@ mod machines;
 mod piles;
 mod ragdoll;
 mod rain;
+#[cfg(test)]
+mod tests;
 mod yards;
 
 use alloc::vec::Vec;
