@@ -37,15 +37,15 @@ pub(crate) struct Core {
 impl Core {
     /// A shape in world axes about `origin`. Queries on two cores need the same origin; near them is best.
     pub(crate) fn of(shape: &PosedShape, origin: Vec2<Fx>) -> Self {
-        let centre = shape.centre - origin;
+        let place = |offset| place(shape.centre, offset, origin);
         match &shape.outline {
-            Outline::Circle { radius } => Core::disc(centre, (*radius).into()),
+            Outline::Circle { radius } => Core::from_grid_points([place(Vec2::ZERO)], (*radius).into()),
             Outline::Segment { a, b } | Outline::Link(Link { a, b, .. }) => {
-                Core::from_points([centre + *a, centre + *b], Fx::ZERO)
+                Core::from_grid_points([place(*a), place(*b)], Fx::ZERO)
             }
             Outline::Polygon(hull) => {
-                let vertices = hull.vertices().iter().map(|vertex| centre + vertex.widen());
-                Core::from_points(vertices, hull.radius.into())
+                let vertices = hull.vertices().iter().map(|vertex| place(vertex.widen()));
+                Core::from_grid_points(vertices, hull.radius.into())
             }
         }
     }
@@ -62,10 +62,14 @@ impl Core {
     /// From the vertices of a convex outline, counter-clockwise: 1 to 8; any further are left out. The radius is
     /// limited to 0 to [`RADIUS_MAX`].
     pub(crate) fn from_points(points: impl IntoIterator<Item = Vec2<Fx>>, radius: Fx) -> Self {
+        Core::from_grid_points(points.into_iter().map(to_grid), radius)
+    }
+
+    fn from_grid_points(points: impl IntoIterator<Item = Vec2<Grid>>, radius: Fx) -> Self {
         let radius = Grid::from_bits(round_shift(radius.clamp(Fx::ZERO, RADIUS_MAX).to_bits(), FINER));
         let mut core = Core { count: 0, points: [Vec2::ZERO; POLYGON_VERTICES_MAX], radius };
         for (slot, point) in core.points.iter_mut().zip(points) {
-            *slot = to_grid(point);
+            *slot = point;
             core.count += 1;
         }
         core
@@ -97,12 +101,29 @@ impl Core {
         self.points().iter().map(|&point| length(point)).max().unwrap_or(Grid::ZERO)
     }
 
+    /// The mean of the vertices: a place inside.
+    pub(crate) fn middle(&self) -> Vec2<Fx> {
+        from_grid(self.mean())
+    }
+
+    fn mean(&self) -> Vec2<Grid> {
+        let points = self.points();
+        let count = i64::try_from(points.len()).unwrap_or(1);
+        // Divided first: the sum of 8 may be more than the grid holds.
+        points.iter().fold(Vec2::ZERO, |sum, &point| sum + Vec2::new(point.x / count, point.y / count))
+    }
+
+    /// How wide the shape is along a direction, in metres.
+    pub(crate) fn extent(&self, direction: Vec2<Unit>) -> Fx {
+        let along = self.points().iter().map(|&point| along(direction, point));
+        let (least, most) = along.fold((Grid::MAX, Grid::MIN), |(a, b), x| (a.min(x), b.max(x)));
+        to_fx(most.saturating_sub(least).saturating_add(self.radius + self.radius))
+    }
+
     /// The radius of a disc inside the shape, about the mean of its vertices; 0 for a segment.
     pub(crate) fn inner_radius(&self) -> Fx {
         let points = self.points();
-        let count = i64::try_from(points.len()).unwrap_or(1);
-        let sum = points.iter().fold(Vec2::ZERO, |sum, &point| sum + point);
-        let mean = Vec2::new(sum.x / count, sum.y / count);
+        let mean = self.mean();
         let inside = |(p, q): (Vec2<Grid>, Vec2<Grid>)| {
             let edge = q - p;
             Some(height(cross(edge, mean - p), scaled_along(direction(edge)?, edge)))
@@ -116,6 +137,15 @@ impl Core {
 pub(super) fn edges(points: &[Vec2<Grid>]) -> impl Iterator<Item = (Vec2<Grid>, Vec2<Grid>)> {
     let next = points.iter().cycle().skip(1);
     points.iter().zip(next).filter(|_| points.len() > 1).map(|(&p, &q)| (p, q))
+}
+
+/// `centre + offset - origin`, to the nearest point of the grid: nothing saturates, however far away the origin is.
+fn place(centre: Vec2<Fx>, offset: Vec2<Fx>, origin: Vec2<Fx>) -> Vec2<Grid> {
+    let component = |centre: Fx, offset: Fx, origin: Fx| {
+        let sum = i128::from(centre.to_bits()) + i128::from(offset.to_bits()) - i128::from(origin.to_bits());
+        Grid::from_bits(saturate_wide(round_shift_wide(sum, FINER)))
+    };
+    Vec2::new(component(centre.x, offset.x, origin.x), component(centre.y, offset.y, origin.y))
 }
 
 /// To the nearest point of the grid.
@@ -204,6 +234,7 @@ pub(super) fn height(cross: i128, scaled_length: i128) -> Grid {
 pub(crate) struct Fraction(i64);
 
 impl Fraction {
+    pub(crate) const ZERO: Self = Fraction(0);
     const FRAC_NBITS: u32 = 62;
     const ONE: i64 = 1 << Self::FRAC_NBITS;
 

@@ -16,6 +16,8 @@ use crate::math::{Fx, Unit, Vec2};
 pub(crate) struct RayHit {
     /// Of the ray's translation, 0 to 1, rounded down to 2^-32: of a ray of 2^30 m that is 0.25 m.
     pub(crate) fraction: Fx,
+    /// The same, fine enough to say which of two hits is the first.
+    pub(crate) order: Fraction,
     /// Where, about the origin of the core: within 1 µm of the surface, however long the ray.
     pub(crate) point: Vec2<Fx>,
     /// Out of the surface. Zero if the ray starts inside the shape or on its border.
@@ -26,7 +28,8 @@ pub(crate) struct RayHit {
 /// at their end if the ray runs along them.
 pub(crate) fn cast_ray(shape: &Core, origin: Vec2<Fx>, translation: Vec2<Fx>) -> Option<RayHit> {
     if contains_point(shape, origin) {
-        return Some(RayHit { fraction: Fx::ZERO, point: origin, normal: Vec2::ZERO });
+        let (fraction, order) = (Fx::ZERO, Fraction::ZERO);
+        return Some(RayHit { fraction, order, point: origin, normal: Vec2::ZERO });
     }
     // Both ends are on the grid, so that the end of one ray is the beginning of the next.
     let end = to_grid(origin + translation);
@@ -34,7 +37,7 @@ pub(crate) fn cast_ray(shape: &Core, origin: Vec2<Fx>, translation: Vec2<Fx>) ->
     let translation = end - origin;
     let (fraction, normal) = entry(shape.points(), shape.radius, origin, translation)?;
     let point = from_grid(origin + fraction.of(translation));
-    Some(RayHit { fraction: fraction.to_fx(), point, normal })
+    Some(RayHit { fraction: fraction.to_fx(), order: fraction, point, normal })
 }
 
 /// Whether a point is in a shape or on its border.

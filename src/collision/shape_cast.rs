@@ -7,7 +7,7 @@
 //! movement that is let through comes deeper than where it began, since along the normal the separation of convex
 //! shapes does not shrink.
 
-use super::core::{Core, Grid, cross, from_grid, to_grid};
+use super::core::{Core, Fraction, Grid, cross, from_grid, to_grid};
 use super::distance::distance;
 use super::ray::{approach, entry};
 use crate::body::POLYGON_VERTICES_MAX;
@@ -28,6 +28,8 @@ const SLIDING: u32 = 24;
 pub(crate) struct ShapeHit {
     /// Of the translation, 0 to 1, rounded down to 2^-32.
     pub(crate) fraction: Fx,
+    /// The same, fine enough to say which of two hits is the first.
+    pub(crate) order: Fraction,
     /// The movement up to there: exact where the fraction of a long translation is not.
     pub(crate) travelled: Vec2<Fx>,
     /// The nearest point on the surface of A, about the origin of the cores.
@@ -46,7 +48,8 @@ pub(crate) fn cast_shape(a: &Core, b: &Core, translation: Vec2<Fx>) -> Option<Sh
         let sliding = (reach >> SLIDING) + (Grid::ONE >> SLIDING);
         let touches = approach(start.normal, translation) > sliding;
         let (point, normal) = (start.point_a, start.normal);
-        return touches.then_some(ShapeHit { fraction: Fx::ZERO, travelled: Vec2::ZERO, point, normal });
+        let (fraction, order, travelled) = (Fx::ZERO, Fraction::ZERO, Vec2::ZERO);
+        return touches.then_some(ShapeHit { fraction, order, travelled, point, normal });
     }
     let radius = a.radius + b.radius + to_grid(Vec2::new(SKIN, SKIN)).x;
     let (points, count) = difference(a.points(), b.points());
@@ -55,6 +58,7 @@ pub(crate) fn cast_shape(a: &Core, b: &Core, translation: Vec2<Fx>) -> Option<Sh
     let hit = distance(a, &b.moved(travelled));
     Some(ShapeHit {
         fraction: fraction.to_fx(),
+        order: fraction,
         travelled: from_grid(travelled),
         point: hit.point_a,
         normal: hit.normal,

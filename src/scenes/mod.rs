@@ -1,6 +1,7 @@
 //! Scenes as plain data, built once and shared by tests, replays, examples and benchmarks.
 
 mod builder;
+mod character;
 mod drum;
 mod elementary;
 mod game;
@@ -9,6 +10,8 @@ mod machines;
 mod piles;
 mod ragdoll;
 mod rain;
+#[cfg(test)]
+mod tests;
 mod yards;
 
 use alloc::vec::Vec;
@@ -82,6 +85,7 @@ pub const ALL: &[Scene] = &[
     joints::LONG_ARM,
     joints::CHAIN,
     joints::JOINT_GRID,
+    character::CHARACTER,
     rain::RAIN,
     yards::SMASH,
     machines::SPINNER,

@@ -31,7 +31,7 @@ pub(crate) struct Colouring {
 }
 
 impl Colouring {
-    /// The order in which to solve: indices into `nodes`, colour by colour, the overflow last.
+    /// The order in which to solve: indices into `nodes`, the overflow first and then colour by colour.
     pub(crate) fn order(&mut self, nodes: &[Node], body_slots: usize) -> &[u32] {
         self.used.clear();
         self.used.resize(body_slots, 0);
@@ -53,10 +53,15 @@ impl Colouring {
         counting_sort(
             nodes.len(),
             usize::from(COLOURS_MAX) + 1,
-            |i| usize::from(colours[i]),
+            |i| if colours[i] == COLOURS_MAX { 0 } else { usize::from(colours[i]) + 1 },
             &mut self.order,
         );
         &self.order
+    }
+
+    /// How many of the last order did not fit into a colour.
+    pub(crate) fn overflow(&self) -> usize {
+        self.colours.iter().filter(|&&colour| colour == COLOURS_MAX).count()
     }
 }
 

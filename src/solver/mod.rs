@@ -46,6 +46,8 @@ pub(crate) struct Solver {
     movers: Vec<Mover>,
     joints: JointSet,
     contacts: Vec<ContactConstraint>,
+    /// How many of them come before the joints: those that fit no colour, because their body has too many.
+    serial_contacts: usize,
     /// For each constraint in `contacts`, the index of its contact in the state.
     contact_indices: Vec<u32>,
     /// For each contact in the state, whether its shapes have pushed each other in this tick.
@@ -126,6 +128,7 @@ impl Solver {
                 &mut self.faults,
             ));
         }
+        self.serial_contacts = self.colouring.overflow();
     }
 
     /// One sub-step: aim joints, integrate velocities, warm start, solve with bias, integrate displacements,
@@ -162,9 +165,14 @@ impl Solver {
     }
 
     fn solve(&mut self, pass: Pass, sweep: Sweep, tuning: &Tuning) {
-        self.joints.solve(pass, tuning, &mut self.list.bodies, &mut self.faults);
-        for contact in &mut self.contacts {
-            contact.solve(pass, sweep, tuning, &mut self.list.bodies, &mut self.faults);
+        let Solver { list, contacts, joints, faults, .. } = self;
+        let (serial, coloured) = contacts.split_at_mut(self.serial_contacts);
+        for contact in serial {
+            contact.solve(pass, sweep, tuning, &mut list.bodies, faults);
+        }
+        joints.solve(pass, tuning, &mut list.bodies, faults);
+        for contact in coloured {
+            contact.solve(pass, sweep, tuning, &mut list.bodies, faults);
         }
     }
 

@@ -3,7 +3,7 @@
 use super::World;
 use super::islands;
 use crate::body::{Body, BodyId, BodyKind, Handle, Pose, WorldError, check_position};
-use crate::math::{Angle, Fx, Vec2, fx_mul};
+use crate::math::{Angle, Fx, Vec2};
 
 impl World {
     /// Pushes a dynamic body with a force in N at a world point during the next tick. Forces add up, and are
@@ -146,66 +146,5 @@ impl World {
         }
         islands::wake_body(&mut self.state, &mut self.scratch, id.slot());
         Ok(self.state.bodies.at_mut(id.slot()))
-    }
-}
-
-impl World {
-    /// explode
-    pub fn explode(&mut self, explosion: &Explosion) -> Result<(), WorldError> {
-        explosion.validate()
-    }
-}
-
-/// A push away from a point, on every dynamic body near it.
-///
-/// ```
-/// use lockstep2d::{fx, math::Vec2, world::{Explosion, World}};
-/// let mut world = World::default();
-/// let at = Vec2::new(fx!(0), fx!(1));
-/// world.explode(&Explosion { radius: fx!(3), ..Explosion::new(at, fx!(10)) })?;
-/// # Ok::<(), lockstep2d::body::WorldError>(())
-/// ```
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-pub struct Explosion {
-    /// Where, in the world, in metres.
-    pub centre: Vec2<Fx>,
-    /// Distance in metres up to which it has its full strength, 0 to 1000.
-    pub radius: Fx,
-    /// Distance in metres beyond the radius within which it fades to nothing, 0 to 1000.
-    pub falloff: Fx,
-    /// Impulse in N s for each metre of a shape that faces the centre, ±2^20; a negative one pulls.
-    pub impulse_per_length: Fx,
-    /// Categories of shapes that it pushes.
-    pub mask: u64,
-}
-
-impl Explosion {
-    /// An explosion of 1 m radius that fades over another metre and pushes everything.
-    #[must_use]
-    pub const fn new(centre: Vec2<Fx>, impulse_per_length: Fx) -> Self {
-        Explosion { centre, radius: Fx::ONE, falloff: Fx::ONE, impulse_per_length, mask: u64::MAX }
-    }
-
-    pub(super) fn validate(&self) -> Result<(), WorldError> {
-        check_position(self.centre)?;
-        let distance = Fx::ZERO..=crate::fx!(1000);
-        let strength = crate::fx!(-1048576)..=crate::fx!(1048576);
-        let valid = distance.contains(&self.radius)
-            && distance.contains(&self.falloff)
-            && strength.contains(&self.impulse_per_length);
-        if valid { Ok(()) } else { Err(WorldError::Setting { name: "explosion" }) }
-    }
-
-    /// The impulse for each metre at a distance from the centre.
-    pub(super) fn at_distance(&self, distance: Fx) -> Fx {
-        let beyond = distance - self.radius;
-        if beyond <= Fx::ZERO {
-            return self.impulse_per_length;
-        }
-        if beyond >= self.falloff {
-            return Fx::ZERO;
-        }
-        let left = crate::math::fx_div(self.falloff - beyond, self.falloff).unwrap_or(Fx::ZERO);
-        fx_mul(self.impulse_per_length, left)
     }
 }

@@ -8,10 +8,14 @@ use alloc::vec::Vec;
 use core::ops::ControlFlow;
 
 use super::World;
-use crate::body::{BodyId, Geometry, GeometryError, Handle, ShapeId};
-use crate::collision::{Core, PosedShape, contains_point, distance, overlap};
-use crate::collision::{cast_ray, cast_shape};
-use crate::math::{Aabb, Angle, Fx, Rot, Unit, Vec2};
+use super::probe::Probe;
+use crate::body::{BodyId, Handle, ShapeId};
+use crate::collision::{Core, Fraction, PosedShape, ShapeHit};
+use crate::collision::{cast_ray, cast_shape, contains_point, distance, overlap};
+use crate::math::{Aabb, Fx, Unit, Vec2};
+
+/// How far outside of a box its shape may be found, in metres, by the rounding of the grid that queries calculate on.
+const SLACK: Fx = crate::fx!(0.000001);
 
 /// Which shapes a query sees: those whose filter and the query's accept each other.
 ///
@@ -89,53 +93,9 @@ pub struct Proximity {
     pub normal: Vec2<Unit>,
 }
 
-/// A shape for a query: a geometry at a place.
-#[derive(Clone, Copy, Debug)]
-pub struct Probe {
-    posed_at: Vec2<Fx>,
-    geometry: Geometry,
-    rotation: Rot,
-}
-
-impl Probe {
-    /// A geometry with its centre at a position, in metres.
-    ///
-    /// # Errors
-    /// [`GeometryError`] when its size is out of range.
-    pub fn new(geometry: impl Into<Geometry>, position: Vec2<Fx>) -> Result<Self, GeometryError> {
-        let geometry = geometry.into();
-        geometry.validate()?;
-        Ok(Probe { posed_at: position, geometry, rotation: Rot::IDENTITY })
-    }
-
-    /// Turns it by an angle.
-    #[must_use]
-    pub fn turned(mut self, angle: Angle) -> Self {
-        self.rotation = Rot::from_angle(angle);
-        self
-    }
-
-    /// The same somewhere else.
-    #[must_use]
-    pub fn at(mut self, position: Vec2<Fx>) -> Self {
-        self.posed_at = position;
-        self
-    }
-
-    /// Its centre.
-    #[must_use]
-    pub const fn position(&self) -> Vec2<Fx> {
-        self.posed_at
-    }
-
-    pub(super) fn posed(&self) -> PosedShape {
-        PosedShape::of_geometry(&self.geometry, self.posed_at, self.rotation)
-    }
-}
-
 impl World {
     /// The first shape that a ray meets from a point along a translation, in metres. Links that are solid from one side
-    /// let rays from the other side through.
+    /// let rays from the other side through; one-way shapes let none.
     ///
     /// ```
     /// use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, fx, math::Vec2, world::World};
@@ -149,14 +109,13 @@ impl World {
     /// ```
     #[must_use]
     pub fn cast_ray(&self, origin: Vec2<Fx>, translation: Vec2<Fx>, filter: QueryFilter) -> Option<RayHit> {
-        let mut closest: Option<RayHit> = None;
-        self.each_hit(origin, translation, filter, |hit| {
-            if closest.is_none_or(|best| (hit.fraction, hit.shape) < (best.fraction, best.shape)) {
-                closest = Some(hit);
-            }
-            closest.map_or(Unit::ONE, |best| rounded_up(best.fraction))
+        let mut closest: Option<Ordered<RayHit>> = None;
+        self.each_hit(origin, translation, filter, |found| {
+            let best = earlier(closest, found, found.hit.shape, |best| best.shape);
+            closest = Some(best);
+            rounded_up(best.hit.fraction)
         });
-        closest
+        closest.map(|found| found.hit)
     }
 
     /// Every shape that a ray meets, in the order of the ray.
@@ -167,8 +126,8 @@ impl World {
             hits.push(hit);
             Unit::ONE
         });
-        hits.sort_unstable_by_key(|hit| (hit.fraction, hit.shape));
-        hits
+        hits.sort_unstable_by_key(|found: &Ordered<RayHit>| (found.order, found.hit.shape));
+        hits.into_iter().map(|found| found.hit).collect()
     }
 
     /// Whether a ray meets anything: for lines of sight.
@@ -183,34 +142,54 @@ impl World {
     }
 
     /// The first shape that a probe meets as it moves along a translation without turning. It stops a tenth of a
-    /// millimetre before it touches; what it touches already stops it only if it moves into it.
+    /// millimetre before it touches; what it touches already stops it only if it moves into it. Links that are solid from
+    /// one side are met from there: by probes whose middle is on it.
     #[must_use]
     pub fn cast_shape(&self, probe: &Probe, translation: Vec2<Fx>, filter: QueryFilter) -> Option<CastHit> {
-        let posed = probe.posed();
-        let origin = probe.posed_at;
-        let moving = Core::of(&posed, origin);
-        let area = posed.bounds.expanded(crate::fx!(0.001));
-        let mut closest: Option<CastHit> = None;
-        self.scratch.broad_phase.each_along(area, translation, |slot| {
-            let posed = self.scratch.poses.at(slot);
-            if let Some(shape) = self.seen(slot, filter).filter(|_| posed.is_solid_from(origin)) {
-                let other = Core::of(posed, origin);
-                if let Some(hit) = cast_shape(&other, &moving, translation) {
-                    if closest.is_none_or(|best| (hit.fraction, shape) < (best.fraction, best.shape)) {
-                        let point = origin + hit.point;
-                        let (fraction, travelled, normal) = (hit.fraction, hit.travelled, hit.normal);
-                        closest = Some(CastHit { shape, fraction, travelled, point, normal });
-                    }
-                }
-            }
-            closest.map_or(Unit::ONE, |best| rounded_up(best.fraction))
-        });
-        closest
+        self.first_along(probe, translation, filter, |_, _, _| true)
     }
 
-    /// Every shape that overlaps a box, borders included.
+    /// The first shape that a probe meets among those that `accept`, which gets the normal there, and where they start
+    /// as cores about the probe's position, the other shape's first.
+    pub(super) fn first_along(
+        &self,
+        probe: &Probe,
+        translation: Vec2<Fx>,
+        filter: QueryFilter,
+        accept: impl Fn(ShapeId, Vec2<Unit>, [&Core; 2]) -> bool,
+    ) -> Option<CastHit> {
+        let posed = probe.posed();
+        let origin = probe.position();
+        let moving = Core::of(&posed, origin);
+        let middle = origin + moving.middle();
+        let area = posed.bounds.expanded(crate::fx!(0.001));
+        let mut closest: Option<Ordered<CastHit>> = None;
+        let mut interest = Unit::ONE;
+        self.scratch.broad_phase.each_along(area, translation, |slot| {
+            let posed = self.scratch.poses.at(slot);
+            let Some(shape) = self.seen(slot, filter).filter(|_| posed.is_solid_from(middle)) else {
+                return interest;
+            };
+            let other = Core::of(posed, origin);
+            let found = cast_shape(&other, &moving, translation)
+                .filter(|hit| accept(shape, hit.normal, [&other, &moving]));
+            if let Some(ShapeHit { fraction, order, travelled, point, normal }) = found {
+                let hit = CastHit { shape, fraction, travelled, point: origin + point, normal };
+                let best = earlier(closest, Ordered { order, hit }, shape, |best| best.shape);
+                closest = Some(best);
+                interest = rounded_up(best.hit.fraction);
+            }
+            interest
+        });
+        closest.map(|found| found.hit)
+    }
+
+    /// Every shape that overlaps a box, borders included; none if the box is not valid.
     #[must_use]
     pub fn overlap_box(&self, area: Aabb, filter: QueryFilter) -> Vec<ShapeId> {
+        if !area.is_valid() {
+            return Vec::new();
+        }
         let origin = area.centre();
         let (lower, upper) = (area.lower - origin, area.upper - origin);
         let corners = [lower, Vec2::new(upper.x, lower.y), upper, Vec2::new(lower.x, upper.y)];
@@ -222,7 +201,7 @@ impl World {
     #[must_use]
     pub fn overlap_shape(&self, probe: &Probe, filter: QueryFilter) -> Vec<ShapeId> {
         let posed = probe.posed();
-        let origin = probe.posed_at;
+        let origin = probe.position();
         let core = Core::of(&posed, origin);
         self.overlapping(posed.bounds, filter, |other| overlap(&Core::of(other, origin), &core))
     }
@@ -235,13 +214,16 @@ impl World {
         })
     }
 
-    /// The shape nearest to a point within a distance in metres, and where. A point inside a shape has a negative
-    /// distance from it.
+    /// The shape nearest to a point within a distance in metres, and where: the point first. A point inside a shape
+    /// has a negative distance from it. Nothing is within a negative distance, and everything within the largest.
     #[must_use]
     pub fn closest(&self, point: Vec2<Fx>, within: Fx, filter: QueryFilter) -> Option<(ShapeId, Proximity)> {
+        if within < Fx::ZERO {
+            return None;
+        }
         let here = Core::point(Vec2::ZERO);
         let mut closest: Option<(ShapeId, Proximity)> = None;
-        self.scratch.broad_phase.each_near(point, within, |slot| {
+        self.scratch.broad_phase.each_near(point, within.saturating_add(SLACK), |slot| {
             if let Some(shape) = self.seen(slot, filter) {
                 let found = proximity(&here, &Core::of(self.scratch.poses.at(slot), point), point);
                 let nearer =
@@ -251,7 +233,7 @@ impl World {
                 }
             }
             // A shape that the point is inside of is not the last word: it may be deeper inside another.
-            closest.map_or(within, |(_, best)| best.distance.max(Fx::ZERO))
+            closest.map_or(within, |(_, best)| best.distance.max(Fx::ZERO)).saturating_add(SLACK)
         });
         closest
     }
@@ -270,7 +252,7 @@ impl World {
     #[must_use]
     pub fn probe_distance(&self, probe: &Probe, shape: ShapeId) -> Option<Proximity> {
         self.state.shapes.get(shape)?;
-        let origin = probe.posed_at;
+        let origin = probe.position();
         let other = Core::of(self.scratch.poses.at(shape.slot()), origin);
         Some(proximity(&Core::of(&probe.posed(), origin), &other, origin))
     }
@@ -280,16 +262,18 @@ impl World {
         origin: Vec2<Fx>,
         translation: Vec2<Fx>,
         filter: QueryFilter,
-        mut visit: impl FnMut(RayHit) -> Unit,
+        mut visit: impl FnMut(Ordered<RayHit>) -> Unit,
     ) {
         let mut interest = Unit::ONE;
-        self.scratch.broad_phase.each_along(Aabb::new(origin, origin), translation, |slot| {
+        let area = Aabb::new(origin, origin).expanded(SLACK);
+        self.scratch.broad_phase.each_along(area, translation, |slot| {
             let posed = self.scratch.poses.at(slot);
             if let Some(shape) = self.seen(slot, filter).filter(|_| posed.is_solid_from(origin)) {
                 let core = Core::of(posed, origin);
                 if let Some(hit) = cast_ray(&core, Vec2::ZERO, translation) {
                     let (fraction, point, normal) = (hit.fraction, origin + hit.point, hit.normal);
-                    interest = visit(RayHit { shape, fraction, point, normal });
+                    let (order, hit) = (hit.order, RayHit { shape, fraction, point, normal });
+                    interest = visit(Ordered { order, hit });
                 }
             }
             interest
@@ -303,16 +287,28 @@ impl World {
         overlaps: impl Fn(&PosedShape) -> bool,
     ) -> Vec<ShapeId> {
         let mut found = Vec::new();
-        self.scratch.broad_phase.each_overlap(area, |slot| {
-            if let Some(shape) = self.seen(slot, filter) {
-                if overlaps(self.scratch.poses.at(slot)) {
-                    found.push(shape);
-                }
+        self.each_overlapping(area, filter, |shape, posed| {
+            if overlaps(posed) {
+                found.push(shape);
             }
-            ControlFlow::Continue(())
         });
         found.sort_unstable();
         found
+    }
+
+    /// Calls `visit` with every shape whose box overlaps an area, and perhaps with some more, in no order.
+    pub(super) fn each_overlapping(
+        &self,
+        area: Aabb,
+        filter: QueryFilter,
+        mut visit: impl FnMut(ShapeId, &PosedShape),
+    ) {
+        self.scratch.broad_phase.each_overlap(area.expanded(SLACK), |slot| {
+            if let Some(shape) = self.seen(slot, filter) {
+                visit(shape, self.scratch.poses.at(slot));
+            }
+            ControlFlow::Continue(())
+        });
     }
 
     /// The handle of a shape, if a query sees it.
@@ -325,8 +321,25 @@ impl World {
     }
 }
 
+/// A hit and when it comes, to more digits than its fraction has.
+#[derive(Clone, Copy)]
+struct Ordered<H> {
+    order: Fraction,
+    hit: H,
+}
+
+/// The earlier hit; of equal ones that on the smaller slot.
+fn earlier<H: Copy>(
+    best: Option<Ordered<H>>,
+    found: Ordered<H>,
+    shape: ShapeId,
+    shape_of: impl Fn(&H) -> ShapeId,
+) -> Ordered<H> {
+    best.filter(|best| (best.order, shape_of(&best.hit)) <= (found.order, shape)).unwrap_or(found)
+}
+
 /// The distance of two cores about an origin, in the world.
-fn proximity(a: &Core, b: &Core, origin: Vec2<Fx>) -> Proximity {
+pub(super) fn proximity(a: &Core, b: &Core, origin: Vec2<Fx>) -> Proximity {
     let found = distance(a, b);
     Proximity {
         distance: found.distance,

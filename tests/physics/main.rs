@@ -12,6 +12,7 @@ mod joint_limits;
 mod joint_motors;
 mod joint_springs;
 mod joints;
+mod machines;
 mod one_way;
 mod piles;
 mod rebound;

@@ -30,7 +30,7 @@ impl Row {
             // 54 fraction bits over 30, and the rounding of a gain that is mostly 1.
             let product = i64::from(fraction.to_bits()) * i64::from(e.to_bits());
             let quotient = div_round(i128::from(product) << 6, denominator.max(1).into());
-            // No change of velocity may be larger than `L`: only impossible bodies get here.
+            // No change of velocity may be larger than `L`: only impossible bodies exceed it.
             Unit::from_bits(saturate(saturate_wide(quotient))).min(Unit::ONE)
         };
         let (f_a, f_b) = (gain(fractions.a, e_a), gain(fractions.b, e_b));
@@ -58,8 +58,10 @@ fn angular_scale(a: (Reciprocal, Unit), b: (Reciprocal, Unit)) -> Length {
     if sum == 0 {
         return Length::ZERO;
     }
-    // 126 fraction bits over 72 are 54, their root has 27, and a length 22.
+    // 126 fraction bits over 72 are 54, their root has 27, and a length 22. More than it is rounded by, so
+    // that `f` is not above 1.
     let root = ((1 << 126) / sum).isqrt() >> 5;
+    let root = root + (root >> 14) + 1;
     let most = (100u128 << 43) / u128::from(inverse(a).max(inverse(b)).to_bits().unsigned_abs());
     Length::from_bits(i32::try_from(root.min(most)).unwrap_or(i32::MAX))
 }

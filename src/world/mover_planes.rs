@@ -1,0 +1,325 @@
+//! Movement against planes: what a shape that the game moves touches, seen as half-planes, and the movement that they
+//! leave over.
+//!
+//! ```text
+//! minimise |x - target|²   subject to   s_i + n_i . x >= 0
+//! ```
+//!
+//! In two dimensions that is a matter of few divisions. A limit of a push makes a plane soft, something that is stepped
+//! into a little; then planes push along their normals in turn until nothing moves any more, where each push so far may
+//! be taken back but never becomes a pull (C. Hildreth, "A Quadratic Programming Procedure", 1957), as in Box2D v3's
+//! `b2SolvePlanes`.
+
+use alloc::vec::Vec;
+
+use serde::{Deserialize, Serialize};
+
+use super::World;
+use super::probe::Probe;
+use super::query::{Proximity, QueryFilter, proximity};
+use crate::body::ShapeId;
+use crate::collision::Core;
+use crate::fx;
+use crate::math::{Fx, Unit, Vec2, fx_div};
+
+/// Rounds of pushes.
+const ITERATIONS_MAX: u32 = 64;
+
+/// Sum of all pushes of a round in metres below which the planes are solved.
+const TOLERANCE: Fx = fx!(0.000001);
+
+/// The sine of the angle between planes below which they count as parallel.
+const PARALLEL: Fx = fx!(0.000001);
+
+/// A surface near a mover, as a plane.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct MoverPlane {
+    /// Whose surface.
+    pub shape: ShapeId,
+    /// Out of it, towards the mover.
+    pub normal: Vec2<Unit>,
+    /// Distance in metres of the mover from it; negative where they overlap.
+    pub separation: Fx,
+    /// Where on the surface, in the world, in metres.
+    pub point: Vec2<Fx>,
+    /// How far it pushes at most, in metres: [`Fx::MAX`] if it is rigid.
+    pub push_limit: Fx,
+    /// How far the solution has been pushed along the normal, in metres, if the plane has had a part in it: a result of
+    /// [`solve_planes`].
+    pub push: Fx,
+}
+
+impl World {
+    /// Every shape within a distance in metres of a probe, as a plane, in slot order. Links that are solid from one
+    /// side are left out on the other. Nothing is within a negative distance.
+    ///
+    /// ```
+    /// use lockstep2d::body::{BodyDef, Geometry, Polygon, ShapeDef};
+    /// use lockstep2d::world::{Probe, World, clip_velocity, solve_planes};
+    /// use lockstep2d::{fx, math::Vec2};
+    /// let mut world = World::default();
+    /// let floor = ShapeDef::new(Polygon::rectangle(fx!(9), fx!(1))?);
+    /// world.spawn(&BodyDef::fixed().position(fx!(0), fx!(-1)), &[floor])?;
+    ///
+    /// let ball = Probe::new(Geometry::circle(fx!(0.5))?, Vec2::new(fx!(0), fx!(0.75)))?;
+    /// let mut planes = world.collide_mover(&ball, fx!(1), Default::default());
+    /// let translation = solve_planes(Vec2::new(fx!(1), fx!(-1)), &mut planes);
+    /// assert_eq!(translation, Vec2::new(fx!(1), fx!(-0.25)));
+    /// let velocity = clip_velocity(Vec2::new(fx!(3), fx!(-5)), &planes);
+    /// assert_eq!(velocity, Vec2::new(fx!(3), fx!(0)));
+    /// # Ok::<(), lockstep2d::body::WorldError>(())
+    /// ```
+    #[must_use]
+    pub fn collide_mover(&self, probe: &Probe, within: Fx, filter: QueryFilter) -> Vec<MoverPlane> {
+        let posed = probe.posed();
+        let origin = probe.position();
+        let core = Core::of(&posed, origin);
+        let middle = origin + core.middle();
+        let mut planes: Vec<MoverPlane> = Vec::new();
+        if within < Fx::ZERO {
+            return planes;
+        }
+        self.each_overlapping(posed.bounds.expanded(within), filter, |shape, other| {
+            let Proximity { distance, normal, point_a, .. } =
+                proximity(&Core::of(other, origin), &core, origin);
+            if distance <= within && other.is_solid_from(middle) {
+                let (separation, point) = (distance, point_a);
+                let (push_limit, push) = (Fx::MAX, Fx::ZERO);
+                planes.push(MoverPlane { shape, normal, separation, point, push_limit, push });
+            }
+        });
+        planes.sort_unstable_by_key(|plane| plane.shape);
+        planes
+    }
+}
+
+/// The translation nearest to a wanted one, in metres, that stays outside of all planes; each plane's `push` says what
+/// it has done.
+///
+/// Among rigid planes that leave room the answer is exact but for rounding. Where some are soft, or there is no room, the
+/// planes push in turn: a round leaves `(n . m)²` of the error of two planes with normals `n` and `m`, and 64 rounds are
+/// enough where they are 25 degrees or more apart; in a sharp corner, or between walls, it ends somewhere between them.
+/// So what follows is a cast along the result, as [`World::move_character`] does.
+#[must_use]
+pub fn solve_planes(wanted: Vec2<Fx>, planes: &mut [MoverPlane]) -> Vec2<Fx> {
+    match nearest_outside(wanted, planes) {
+        Some(translation) => {
+            let out = translation - wanted;
+            for plane in planes {
+                let reached = plane.height(translation) <= TOLERANCE;
+                let push = plane.normal.widen().dot(out).max(Fx::ZERO);
+                plane.push = if reached { push } else { Fx::ZERO };
+            }
+            translation
+        }
+        None => pushed_in_turn(wanted, planes),
+    }
+}
+
+impl MoverPlane {
+    /// Separation after a translation.
+    fn height(&self, translation: Vec2<Fx>) -> Fx {
+        self.separation.saturating_add(self.normal.widen().dot(translation))
+    }
+}
+
+/// The nearest point outside of rigid planes, plane by plane: where the point so far is behind the next one, the new
+/// one is on it (R. Seidel, "Small-Dimensional Linear Programming and Convex Hulls Made Easy", 1991). `None` where there
+/// is none.
+fn nearest_outside(wanted: Vec2<Fx>, planes: &[MoverPlane]) -> Option<Vec2<Fx>> {
+    if planes.iter().any(|plane| plane.push_limit != Fx::MAX) {
+        return None;
+    }
+    let mut nearest = wanted;
+    for (i, plane) in planes.iter().enumerate() {
+        if plane.height(nearest) >= Fx::ZERO {
+            continue;
+        }
+        // Points of the plane are p + t d.
+        let n = plane.normal.widen();
+        let (p, d) = (wanted - n.scale(plane.height(wanted)), n.perp());
+        let (mut t_min, mut t_max) = (Fx::MIN, Fx::MAX);
+        for other in &planes[..i] {
+            let (height, slope) = (other.height(p), other.normal.widen().dot(d));
+            if slope.abs() < PARALLEL {
+                if height < -TOLERANCE {
+                    return None;
+                }
+                continue;
+            }
+            let t = fx_div(height.saturating_neg(), slope)?;
+            (t_min, t_max) = if slope > 0 { (t_min.max(t), t_max) } else { (t_min, t_max.min(t)) };
+        }
+        if t_min > t_max {
+            return None;
+        }
+        nearest = p + d.scale(Fx::ZERO.clamp(t_min, t_max));
+    }
+    Some(nearest)
+}
+
+/// Where planes push by turns, each within its limit.
+fn pushed_in_turn(wanted: Vec2<Fx>, planes: &mut [MoverPlane]) -> Vec2<Fx> {
+    let mut translation = wanted;
+    for plane in &mut *planes {
+        plane.push = Fx::ZERO;
+    }
+    for _ in 0..ITERATIONS_MAX {
+        let mut moved = Fx::ZERO;
+        for plane in &mut *planes {
+            let wanted = plane.push.saturating_sub(plane.height(translation));
+            let push = wanted.min(plane.push_limit).max(Fx::ZERO);
+            let change = push - plane.push;
+            plane.push = push;
+            translation += plane.normal.widen().scale(change);
+            moved = moved.saturating_add(change.saturating_abs());
+        }
+        if moved < TOLERANCE {
+            break;
+        }
+    }
+    translation
+}
+
+/// The velocity nearest to a given one that leaves or follows every rigid plane that has pushed. Unlike Box2D's
+/// `b2ClipVector` it does not depend on the order of the planes.
+#[must_use]
+pub fn clip_velocity(velocity: Vec2<Fx>, planes: &[MoverPlane]) -> Vec2<Fx> {
+    let rigid = planes.iter().filter(|plane| plane.push > Fx::ZERO && plane.push_limit == Fx::MAX);
+    clipped(velocity, rigid.map(|plane| plane.normal))
+}
+
+/// The vector nearest to `v` that is against none of the normals. They bound a cone, so it is `v` itself, its
+/// projection on one of the cone's two borders, or nothing.
+pub(super) fn clipped(v: Vec2<Fx>, normals: impl Iterator<Item = Vec2<Unit>> + Clone) -> Vec2<Fx> {
+    // What is left of a vector along the normal it was projected across: the rounding of the normal.
+    let size = v.x.saturating_abs().max(v.y.saturating_abs());
+    let rounding = (size >> 26_u32) + Fx::DELTA * 4;
+    let is_free = |w: Vec2<Fx>| normals.clone().all(|n| n.widen().dot(w) >= -rounding);
+    if is_free(v) {
+        return v;
+    }
+    let across = |n: Vec2<Unit>| v - n.widen().scale(n.widen().dot(v));
+    let against = normals.clone().filter(|n| n.widen().dot(v) < -rounding);
+    against.map(across).filter(|&w| is_free(w)).max_by_key(|w| w.length()).unwrap_or(Vec2::ZERO)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::body::Handle;
+    use crate::math::{Angle, Rng, Rot};
+
+    fn plane(normal: Vec2<Unit>, separation: Fx) -> MoverPlane {
+        let (shape, point) = (ShapeId::from_parts(0, 0), Vec2::ZERO);
+        MoverPlane { shape, normal, separation, point, push_limit: Fx::MAX, push: Fx::ZERO }
+    }
+
+    /// The nearest point outside of all planes: the target, its projection on one plane, or where two meet.
+    fn nearest(target: Vec2<Fx>, planes: &[MoverPlane], slack: Fx) -> Option<Vec2<Fx>> {
+        let height = |plane: &MoverPlane, x: Vec2<Fx>| plane.separation + plane.normal.widen().dot(x);
+        let mut candidates = alloc::vec![target];
+        for p in planes {
+            candidates.push(target - p.normal.widen().scale(height(p, target)));
+            for q in planes {
+                let (n, m) = (p.normal.widen(), q.normal.widen());
+                let meet = crate::math::Mat2::new(n.x, n.y, m.x, m.y);
+                if meet.determinant().abs() > fx!(0.00001) {
+                    let inverse = meet.inverse().expect("not parallel");
+                    candidates.push(inverse.apply(Vec2::new(-p.separation, -q.separation)));
+                }
+            }
+        }
+        let outside = |x: &Vec2<Fx>| planes.iter().all(|plane| height(plane, *x) >= -slack);
+        candidates.into_iter().filter(outside).min_by_key(|x| x.distance(target))
+    }
+
+    /// Normals within 120 degrees of each other, at least `apart` degrees from one to the next.
+    fn fan(rng: &mut Rng, count: u32, apart: i64) -> Vec<Vec2<Unit>> {
+        let mut turn = rng.angle();
+        let mut normals = Vec::new();
+        for _ in 0..count {
+            normals.push(Rot::from_angle(turn).apply(Vec2::X));
+            turn += Angle::from_degrees(Fx::from_num(apart) + rng.range(fx!(0), fx!(25)));
+        }
+        normals
+    }
+
+    #[test]
+    fn the_solved_translation_is_the_nearest_one_outside() {
+        let mut rng = Rng::new(1);
+        let (mut worst, mut exact) = (Fx::ZERO, 0);
+        for _ in 0..5000 {
+            let count = 1 + rng.below(5);
+            let mut planes: Vec<_> =
+                fan(&mut rng, count, 1).iter().map(|&n| plane(n, rng.range(fx!(-0.1), fx!(0.5)))).collect();
+            let target = Vec2::new(rng.range(fx!(-1), fx!(1)), rng.range(fx!(-1), fx!(1)));
+            let found = solve_planes(target, &mut planes);
+            let least = planes.iter().map(|plane| plane.height(found)).min().expect("planes");
+            assert!(least > fx!(-0.0000001), "{least} {target:?} {planes:?}");
+            // What the oracle lets pass by its slack is as far away as planes are parallel.
+            let expected = nearest(target, &planes, fx!(0.00000001)).expect("there is room");
+            worst = worst.max(found.distance(target) - expected.distance(target));
+            assert!(worst < fx!(0.000001), "{found:?} {expected:?} {target:?} {planes:?}");
+            exact += 1;
+        }
+        assert_eq!(exact, 5000);
+    }
+
+    /// Rigid planes, and the same with a limit that no push reaches.
+    #[test]
+    fn planes_that_push_in_turn_get_there_too() {
+        let mut rng = Rng::new(2);
+        for _ in 0..5000 {
+            let mut planes: Vec<_> =
+                fan(&mut rng, 2, 25).iter().map(|&n| plane(n, rng.range(fx!(-0.1), fx!(0.5)))).collect();
+            let target = Vec2::new(rng.range(fx!(-1), fx!(1)), rng.range(fx!(-1), fx!(1)));
+            let exact = solve_planes(target, &mut planes);
+            planes.iter_mut().for_each(|plane| plane.push_limit = fx!(100));
+            let found = solve_planes(target, &mut planes);
+            assert!(found.distance(exact) < fx!(0.00002), "{found:?} {exact:?} {target:?} {planes:?}");
+        }
+    }
+
+    #[test]
+    fn a_clipped_velocity_is_the_nearest_that_is_free() {
+        let mut rng = Rng::new(3);
+        for _ in 0..5000 {
+            let mut normals = fan(&mut rng, 3, 5);
+            let velocity = Vec2::new(rng.range(fx!(-9), fx!(9)), rng.range(fx!(-9), fx!(9)));
+            let found = clipped(velocity, normals.iter().copied());
+            let still: Vec<_> = normals.iter().map(|&n| plane(n, Fx::ZERO)).collect();
+            let expected = nearest(velocity, &still, fx!(0.000001)).expect("zero is free");
+            let further = found.distance(velocity) - expected.distance(velocity);
+            assert!(further.abs() < fx!(0.00001), "{found:?} {expected:?} {still:?}");
+            assert!(still.iter().all(|plane| plane.height(found) > fx!(-0.000001)), "{found:?} {still:?}");
+            normals.reverse();
+            assert_eq!(clipped(velocity, normals.iter().copied()), found);
+        }
+    }
+
+    #[test]
+    fn soft_planes_give_way() {
+        let mut planes = [plane(Vec2::Y, Fx::ZERO)];
+        planes[0].push_limit = fx!(0.25);
+        assert_eq!(solve_planes(Vec2::new(fx!(1), fx!(-1)), &mut planes), Vec2::new(fx!(1), fx!(-0.75)));
+        assert_eq!(planes[0].push, fx!(0.25));
+        let velocity = Vec2::new(fx!(1), fx!(-1));
+        assert_eq!(clip_velocity(velocity, &planes), velocity);
+    }
+
+    #[test]
+    fn extreme_planes_do_not_panic() {
+        let extremes = [Fx::MIN, Fx::MAX, Fx::ZERO, -Fx::DELTA];
+        for a in extremes {
+            for b in extremes {
+                for limit in extremes {
+                    let mut planes = [plane(Vec2::X, a), plane(-Vec2::X, b), plane(Vec2::Y, a)];
+                    planes[1].push_limit = limit;
+                    let _ = solve_planes(Vec2::new(b, a), &mut planes);
+                    let _ = clip_velocity(Vec2::new(b, a), &planes);
+                }
+            }
+        }
+    }
+}

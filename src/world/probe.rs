@@ -1,0 +1,61 @@
+//! Shapes that are not in the world, to ask what they would meet.
+
+use crate::body::{Geometry, GeometryError};
+use crate::collision::PosedShape;
+use crate::math::{Angle, Fx, Rot, Vec2};
+
+/// A shape for a query: a geometry at a place.
+///
+/// ```
+/// use lockstep2d::{body::Polygon, fx, math::{Angle, Vec2}, world::Probe};
+/// let crate_ = Probe::new(Polygon::square(fx!(0.5))?, Vec2::new(fx!(3), fx!(1)))?.turned(Angle::EIGHTH);
+/// assert_eq!(crate_.at(Vec2::ZERO).position(), Vec2::ZERO);
+/// # Ok::<(), lockstep2d::body::GeometryError>(())
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Probe {
+    position: Vec2<Fx>,
+    geometry: Geometry,
+    rotation: Rot,
+}
+
+impl Probe {
+    /// A geometry with its centre at a position, in metres.
+    ///
+    /// # Errors
+    /// [`GeometryError`] when its size is out of range.
+    pub fn new(geometry: impl Into<Geometry>, position: Vec2<Fx>) -> Result<Self, GeometryError> {
+        let geometry = geometry.into();
+        geometry.validate()?;
+        Ok(Probe { position, geometry, rotation: Rot::IDENTITY })
+    }
+
+    /// A geometry that has been checked.
+    pub(super) const fn of(geometry: Geometry, position: Vec2<Fx>) -> Self {
+        Probe { position, geometry, rotation: Rot::IDENTITY }
+    }
+
+    /// Turns it by an angle.
+    #[must_use]
+    pub fn turned(mut self, angle: Angle) -> Self {
+        self.rotation = Rot::from_angle(angle);
+        self
+    }
+
+    /// The same somewhere else.
+    #[must_use]
+    pub fn at(mut self, position: Vec2<Fx>) -> Self {
+        self.position = position;
+        self
+    }
+
+    /// Its centre.
+    #[must_use]
+    pub const fn position(&self) -> Vec2<Fx> {
+        self.position
+    }
+
+    pub(super) fn posed(&self) -> PosedShape {
+        PosedShape::of_geometry(&self.geometry, self.position, self.rotation)
+    }
+}

@@ -1,0 +1,79 @@
+//! What is joined stays joined, what rests falls asleep, and what is in a box stays there, within 1.2 times what
+//! Box2D 3.2 shows in the same scenes.
+
+use lockstep2d::body::Body;
+use lockstep2d::fx;
+use lockstep2d::lockstep::{Game, Sandbox};
+use lockstep2d::math::{Fx, Vec2};
+use lockstep2d::scenes::Scene;
+use lockstep2d::world::World;
+
+use super::{deepest, joint_gap, open, speed_max};
+
+/// Plays a scene with its script, and looks at the world after every tick.
+fn play(name: &str, ticks: u64, mut look: impl FnMut(u64, &World)) -> Sandbox {
+    let scene = Scene::find(name).expect("a scene");
+    let mut game = open(name);
+    for tick in 0..ticks {
+        let commands = scene.commands(tick, &game);
+        game.step(&[commands]);
+        look(tick, game.world());
+    }
+    assert_eq!((game.world().validate(), game.world().faults(), game.refused()), (Ok(()), 0, 0));
+    game
+}
+
+fn dynamic(world: &World) -> impl Iterator<Item = &Body> {
+    world.bodies().map(|(_, body)| body).filter(|body| body.is_dynamic())
+}
+
+#[test]
+fn a_ragdoll_falls_asleep_in_one_piece() {
+    let game = play("ragdoll", 400, |tick, world| {
+        assert!(joint_gap(world) <= fx!(0.08), "tick {tick}: gap {} m", joint_gap(world));
+        assert!(deepest(world) <= fx!(0.006), "tick {tick}: overlap {} m", deepest(world));
+    });
+    assert_eq!(game.world().awake_body_count(), 0);
+    assert!(dynamic(game.world()).all(|body| body.position().y > fx!(0)));
+    assert!(joint_gap(game.world()) <= fx!(0.001), "gap {} m", joint_gap(game.world()));
+}
+
+#[test]
+fn a_bridge_of_50_planks_bears_ten_boxes() {
+    let game = play("bridge", 900, |tick, world| {
+        assert!(joint_gap(world) <= fx!(0.0586), "tick {tick}: gap {} m", joint_gap(world));
+        assert!(speed_max(world) <= fx!(16.6), "tick {tick}: {} m/s", speed_max(world));
+        assert!(deepest(world) <= fx!(0.22), "tick {tick}: overlap {} m", deepest(world));
+    });
+    // Ten boxes stretch it so that it sags by 4 m.
+    assert!(dynamic(game.world()).all(|body| body.position().y > fx!(-6)));
+    assert!(deepest(game.world()) <= fx!(0.004), "overlap {} m", deepest(game.world()));
+}
+
+#[test]
+fn what_is_shaken_stays_in_its_box() {
+    let game = play("game", 900, |tick, world| {
+        assert!(speed_max(world) <= fx!(28), "tick {tick}: {} m/s", speed_max(world));
+    });
+    let inside = |centre: Vec2<Fx>| centre.y > fx!(0) && centre.x.abs() < fx!(10);
+    assert_eq!(dynamic(game.world()).filter(|body| !inside(body.centre_of_mass())).count(), 0);
+}
+
+#[test]
+fn nothing_leaves_a_turning_box() {
+    let game = play("tumbler", 300, |tick, world| {
+        assert!(speed_max(world) <= fx!(20), "tick {tick}: {} m/s", speed_max(world));
+        assert!(deepest(world) <= fx!(0.28), "tick {tick}: overlap {} m", deepest(world));
+        assert!(joint_gap(world) <= fx!(0.001), "tick {tick}: gap {} m", joint_gap(world));
+    });
+    let container = dynamic(game.world()).next().expect("the first");
+    // 125 degrees after 5 s at 25 degrees per second.
+    let angle = container.angle().to_degrees();
+    assert!((angle - fx!(125)).abs() < fx!(0.5), "{angle} degrees");
+    let inside = |body: &Body| {
+        let from = body.centre_of_mass() - container.position();
+        let local = container.rotation().apply_inverse_wide(from);
+        local.x.abs().max(local.y.abs()) < fx!(9.5)
+    };
+    assert_eq!(dynamic(game.world()).skip(1).filter(|body| !inside(body)).count(), 0);
+}
