@@ -5,7 +5,7 @@ use lockstep2d::body::{Geometry, Polygon, ShapeId};
 use lockstep2d::collision::BroadPhaseKind;
 use lockstep2d::fx;
 use lockstep2d::math::{Aabb, Fx, Vec2};
-use lockstep2d::world::{Probe, QueryFilter, World};
+use lockstep2d::world::{Mover, MoverState, Probe, QueryFilter, World, clip_velocity, solve_planes};
 
 use crate::generator::{self, Generator};
 use crate::shapes;
@@ -67,12 +67,14 @@ fn ask(source: &mut Source<'_>, world: &World, sweep: &World) -> u64 {
     let mut answers = 0;
     for _ in 0..1 + source.below(4) {
         asked.filter = filter(source, world);
-        answers += u64::from(match source.below(8) {
+        answers += u64::from(match source.below(10) {
             0 | 1 => asked.rays(source),
             2 | 3 => asked.casts(source),
             4 => asked.points(source),
             5 => asked.boxes(source),
             6 => asked.probes(source),
+            7 => asked.planes(source),
+            8 => asked.walks(source),
             _ => asked.closest(source),
         });
     }
@@ -270,6 +272,43 @@ impl Asked<'_> {
             assert!(hit.is_some_and(|hit| hit.fraction <= fraction), "{shape} at {fraction}, not {hit:?}");
         }
         hit.is_some()
+    }
+
+    /// What a mover meets, and what comes of it with planes as soft and as far away as they may be.
+    fn planes(&self, source: &mut Source<'_>) -> bool {
+        let Some(probe) = self.probe(source) else { return false };
+        let within = source.mostly(0, 2000);
+        let mut planes = self.same(|world| world.collide_mover(&probe, within, self.filter));
+        assert!(planes.is_sorted_by_key(|plane| plane.shape), "not in slot order");
+        for plane in &mut planes {
+            if source.one_in(4) {
+                plane.push_limit = source.mostly(0, 1000);
+            }
+            if !self.ordinary && source.one_in(6) {
+                plane.separation = source.edge();
+            }
+        }
+        let (wanted, velocity) = (self.way(source), self.way(source));
+        let _moved = solve_planes(wanted, &mut planes);
+        let _left = clip_velocity(velocity, &planes);
+        !planes.is_empty()
+    }
+
+    /// A character that walks for a few ticks.
+    fn walks(&self, source: &mut Source<'_>) -> bool {
+        let shape = if self.ordinary { shapes::calm_shape(source) } else { shapes::shape(source) };
+        let Ok(mover) = Mover::new(shape.geometry) else { return false };
+        let mover = mover.slope_max(source.angle()).step_height(source.mostly(0, 500));
+        let mover = mover.snap_distance(source.mostly(0, 500));
+        let mut state = MoverState::at(self.place(source));
+        let mut met = false;
+        for _ in 0..1 + source.below(4) {
+            state.velocity = self.way(source);
+            let moved = self.same(|world| world.move_character(&mover, &state, self.filter));
+            met |= !moved.met.is_empty();
+            state = moved.state;
+        }
+        met
     }
 
     /// Where something that moves is well inside of a shape, in sixteen places of its way. Links may let it pass.
