@@ -286,3 +286,27 @@ fn a_shape_that_comes_wakes_who_lies_where_it_comes() {
     let sleeps = |body| world.body(body).unwrap().is_asleep();
     assert!(!sleeps(near) && sleeps(far));
 }
+
+#[test]
+fn kinematic_bodies_that_start_to_move_are_work() {
+    // Each looks through all joints for sleepers that are joined to it.
+    let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).unwrap());
+    let mut setup = SandboxSetup { config: Config::default(), commands: Vec::new() };
+    for kind in [BodyDef::kinematic(), BodyDef::dynamic().asleep()] {
+        setup.commands.push(Command::Spawn { body: kind, shapes: vec![ball] });
+    }
+    let bodies: Vec<_> = Sandbox::new(&setup).unwrap().world().bodies().map(|(id, _)| id).collect();
+    let joint = JointDef::new(bodies[0], bodies[1], Revolute::new());
+    setup.commands.push(Command::AddJointEach { joint, ends: vec![(bodies[0], bodies[1]); 10_000] });
+    let game = Sandbox::new(&setup).unwrap();
+    let (body, position, angle) = (bodies[0], Vec2::ZERO, Angle::ZERO);
+    let velocity = Vec2::new(fx!(1), fx!(0));
+    for command in [
+        Command::SetVelocity { body, velocity, angular_velocity: fx!(0) },
+        Command::SetTransform { body, position, angle },
+        Command::MoveTo { body, position, angle },
+    ] {
+        let idle = game.work(&[Vec::new()]);
+        assert!(game.work(&[vec![command.clone(); 100]]) > idle + 1_000_000, "{command:?}");
+    }
+}

@@ -6,7 +6,7 @@ use alloc::vec::Vec;
 use serde::{Deserialize, Serialize};
 
 use super::{Game, RulesId, SetupError};
-use crate::body::BodyId;
+use crate::body::{BodyId, BodyKind};
 use crate::hash::StateHash;
 use crate::world::{Command, Config, Snapshot, World};
 
@@ -159,6 +159,10 @@ fn bodies_added(command: &Command) -> u64 {
     }
 }
 
+fn is_kinematic(world: &World, body: BodyId) -> bool {
+    world.body(body).is_some_and(|body| body.kind() == BodyKind::Kinematic)
+}
+
 /// What a command looks through: the shapes of its body, and for removals all contacts and joints.
 fn command_work(world: &World, command: &Command) -> u64 {
     let shapes_of = |body: BodyId| 4 * count(world.body(body).map_or(0, |body| body.shapes().len()));
@@ -177,9 +181,12 @@ fn command_work(world: &World, command: &Command) -> u64 {
         Command::RemoveShape { shape } => 1 + removal() + shapes_beside(*shape),
         Command::SetShape { shape, .. } => 8 + removal() + shapes_beside(*shape),
         Command::SetKind { body, .. } => 4 + shapes_of(*body) + removal(),
-        Command::SetTransform { body, .. }
-        | Command::SetBody { body, .. }
-        | Command::SetMass { body, .. } => 4 + shapes_of(*body),
+        Command::SetBody { body, .. } | Command::SetMass { body, .. } => 4 + shapes_of(*body),
+        // What is joined to it may have to be woken.
+        Command::SetTransform { body, .. } => 4 + shapes_of(*body) + count(world.joint_count()),
+        Command::SetVelocity { body, .. } | Command::MoveTo { body, .. } if is_kinematic(world, *body) => {
+            1 + count(world.joint_count())
+        }
         Command::Sleep { .. } | Command::SetGravity { .. } | Command::Explode { .. } => 1 + everything(),
         _ => 1,
     }

@@ -8,6 +8,7 @@ mod format;
 mod hostile;
 mod limits;
 mod recorder;
+mod sandbox;
 mod setups;
 
 use lockstep2d::replay::{Limits, Recording, Verdict, verify};
