@@ -25,10 +25,10 @@ pub struct MotionLocks {
 pub enum Continuous {
     /// Nothing: cheap, for debris.
     Off,
-    /// Fixed and kinematic bodies, where they are at the end of the tick.
+    /// Fixed bodies. Kinematic ones are left out: what they carry along is fast too, and must not be held back.
     #[default]
-    Immovable,
-    /// All bodies that are not bullets themselves.
+    Fixed,
+    /// All bodies that are not bullets themselves, where they are at the end of the tick.
     Bullet,
 }
 
@@ -53,7 +53,7 @@ pub struct BodySettings {
 }
 
 impl Default for BodySettings {
-    /// No damping and no locks; swept against what cannot be moved; sleeps below 0.05 m/s.
+    /// No damping and no locks; swept against fixed bodies; sleeps below 0.05 m/s.
     fn default() -> Self {
         Self::new()
     }
@@ -66,7 +66,7 @@ impl BodySettings {
             angular_damping: Fx::ZERO,
             gravity_scale: Fx::ONE,
             locks: MotionLocks { x: false, y: false, rotation: false },
-            continuous: Continuous::Immovable,
+            continuous: Continuous::Fixed,
             may_sleep: true,
             sleep_speed: fx!(0.05),
         }

@@ -70,15 +70,6 @@ impl BroadPhase {
         }
     }
 
-    /// How many boxes there are.
-    pub(crate) fn len(&self) -> usize {
-        match &self.structure {
-            Structure::Tree(tree) => tree.len(),
-            Structure::SweepAndPrune(sweep) => sweep.boxes().len(),
-            Structure::BruteForce(boxes) => boxes.len(),
-        }
-    }
-
     /// Inserts the box of a slot, or moves it there.
     pub(crate) fn set(&mut self, slot: u32, fat: Aabb) {
         match &mut self.structure {

@@ -5,7 +5,7 @@
 use alloc::boxed::Box;
 
 use super::body::SolverBody;
-use super::limits::{Faults, IMPULSE_MAX, clamp_warm_start};
+use super::limits::{Faults, IMPULSE_MAX};
 use super::rolling::Rolling;
 use super::row::{Denominator, Lever, MassFractions, Row, impulse_of, lambda_of, separation};
 use super::settings::Tuning;
@@ -120,7 +120,6 @@ pub(crate) struct WarmStarts {
 }
 
 impl ContactConstraint {
-    #[expect(clippy::too_many_arguments, reason = "what a contact is made of")]
     pub(crate) fn prepare(
         manifold: &Manifold,
         memory: &Contact,
@@ -129,7 +128,6 @@ impl ContactConstraint {
         (slot_b, b): (u32, &Body),
         tuning: &Tuning,
         warm: &mut WarmStarts,
-        faults: &mut Faults,
     ) -> Self {
         let fractions = MassFractions::of(a, b);
         let to_a = (manifold.origin - a.centre_of_mass()).narrow();
@@ -149,8 +147,8 @@ impl ContactConstraint {
                 tangent,
                 separation: point.separation,
                 grip: grip(surface.friction, tangent_denominator, normal_denominator),
-                normal_lambda: lambda_of(carried.normal, normal_denominator, faults),
-                tangent_lambda: lambda_of(carried.tangent, tangent_denominator, faults),
+                normal_lambda: lambda_of(carried.normal, normal_denominator),
+                tangent_lambda: lambda_of(carried.tangent, tangent_denominator),
                 approach: Speed::ZERO,
                 pushed: false,
                 normal_denominator,
@@ -165,8 +163,7 @@ impl ContactConstraint {
         let lost = memory.points().iter().filter(|old| old.normal > 0 && !still_there(old)).count();
         warm.lost += u32::try_from(lost).expect("at most 2 points");
         let normals = [first.normal_denominator, second.normal_denominator];
-        let rolling =
-            Rolling::prepare(&surface, (a, b), fractions, normals, memory.rolling, faults).map(Box::new);
+        let rolling = Rolling::prepare(&surface, (a, b), fractions, normals, memory.rolling).map(Box::new);
         let immovable = !(a.is_dynamic() && b.is_dynamic());
         ContactConstraint {
             body_a: slot_a,
@@ -183,8 +180,6 @@ impl ContactConstraint {
     pub(crate) fn warm_start(&mut self, bodies: &mut [SolverBody], faults: &mut Faults) {
         let (a, b) = SolverBody::pair(bodies, self.body_a, self.body_b);
         for point in &mut self.points[..usize::from(self.count)] {
-            clamp_warm_start(&mut point.normal_lambda, faults);
-            clamp_warm_start(&mut point.tangent_lambda, faults);
             point.normal.apply(point.normal_lambda, a, b, faults);
             point.tangent.apply(point.tangent_lambda, a, b, faults);
         }

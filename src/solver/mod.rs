@@ -39,6 +39,11 @@ use crate::body::{Arena, Body, BodyId, JointId};
 use crate::collision::{Contact, Manifold};
 use crate::math::Reciprocal;
 
+/// How many times as often everything is solved in a tick in which most contact points are new: without impulses of
+/// the tick before, one round in a sub-step leaves piles restless (the 20 x 20 pyramids of 55 boxes at 0.27 m/s and
+/// 5.8 mm deep in their first ticks, instead of 0.05 m/s and 1.5 mm).
+const COLD_ROUNDS: u32 = 4;
+
 /// The working memory of the solver. Nothing in it outlives a tick, but its allocations do.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Solver {
@@ -125,7 +130,6 @@ impl Solver {
                 (self.list.index_of(b), bodies.at(b)),
                 tuning,
                 &mut self.warm_starts,
-                &mut self.faults,
             ));
         }
         self.serial_contacts = self.colouring.overflow();
@@ -143,7 +147,8 @@ impl Solver {
             contact.observe_approach(&self.list.bodies, &mut self.faults);
         }
         self.warm_start();
-        for iteration in 0..tuning.iterations {
+        let iterations = tuning.iterations * if self.is_cold() { COLD_ROUNDS } else { 1 };
+        for iteration in 0..iterations {
             self.solve(Pass::Bias, Sweep::of(index, iteration), tuning);
         }
         for mover in &self.movers {
@@ -151,10 +156,16 @@ impl Solver {
         }
         self.joints.refresh(&self.list.bodies, tuning);
         if tuning.relax {
-            for iteration in 0..tuning.iterations {
+            for iteration in 0..iterations {
                 self.solve(Pass::Relax, Sweep::of(index, iteration), tuning);
             }
         }
+    }
+
+    /// Whether most contact points have no impulses to start from.
+    fn is_cold(&self) -> bool {
+        let WarmStarts { points, kept, .. } = self.warm_starts;
+        kept < points / 2
     }
 
     fn warm_start(&mut self) {

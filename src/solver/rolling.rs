@@ -11,7 +11,7 @@
 
 use super::body::SolverBody;
 use super::contact::{Surface, grip};
-use super::limits::{Faults, IMPULSE_MAX, clamp_warm_start};
+use super::limits::{Faults, IMPULSE_MAX};
 use super::row::{Denominator, MassFractions, Row, impulse_of, lambda_of};
 use super::softness::Softness;
 use crate::body::Body;
@@ -36,7 +36,6 @@ impl Rolling {
         fractions: MassFractions,
         normals: [Denominator; 2],
         carried: Speed,
-        faults: &mut Faults,
     ) -> Option<Self> {
         if surface.rolling_resistance == Fx::ZERO {
             return None;
@@ -46,11 +45,10 @@ impl Rolling {
         // Neither body turns if there is no scale.
         let length = fx_div(surface.rolling_resistance, scale.into())?;
         let grips = normals.map(|normal| grip(length, denominator, normal));
-        Some(Rolling { row, denominator, grips, lambda: lambda_of(carried, denominator, faults) })
+        Some(Rolling { row, denominator, grips, lambda: lambda_of(carried, denominator) })
     }
 
     pub(super) fn warm_start(&mut self, a: &mut SolverBody, b: &mut SolverBody, faults: &mut Faults) {
-        clamp_warm_start(&mut self.lambda, faults);
         self.row.apply(self.lambda, a, b, faults);
     }
 

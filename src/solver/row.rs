@@ -169,7 +169,7 @@ impl Row {
 
     /// Changes the velocities by an impulse `d` of at most [`STEP_MAX`].
     #[inline]
-    pub(crate) fn apply(&self, d: Speed, a: &mut SolverBody, b: &mut SolverBody, faults: &mut Faults) {
+    fn apply_step(&self, d: Speed, a: &mut SolverBody, b: &mut SolverBody, faults: &mut Faults) {
         let (d_a, d_b) = (part(self.g_a, d), part(self.g_b, d));
         // Velocities are within 511 and changes within 512: no sum leaves the format.
         a.set_velocity(
@@ -222,33 +222,42 @@ impl Row {
         *faults += u64::from(within != bounded);
         let d = within - i64::from(lambda.to_bits());
         *lambda = Speed::from_bits(saturate(within));
-        if d.unsigned_abs() <= u64::from(STEP_MAX.to_bits().unsigned_abs()) {
-            self.apply(Speed::from_bits(saturate(d)), a, b, faults);
-        } else {
-            self.apply_in_steps(d, a, b, faults);
-        }
+        self.apply_wide(d, a, b, faults);
         Speed::from_bits(saturate(d))
     }
 
-    /// A friction limit may shrink, and what was pushed may come free, by more than one update is allowed to change.
+    /// Changes the velocities by an impulse.
+    #[inline]
+    pub(crate) fn apply(&self, d: Speed, a: &mut SolverBody, b: &mut SolverBody, faults: &mut Faults) {
+        self.apply_wide(d.to_bits().into(), a, b, faults);
+    }
+
+    /// The same in units of [`Speed`]: between two accumulated impulses there may be twice as much as fits the type.
+    #[inline]
+    fn apply_wide(&self, d: i64, a: &mut SolverBody, b: &mut SolverBody, faults: &mut Faults) {
+        if d.unsigned_abs() <= u64::from(STEP_MAX.to_bits().unsigned_abs()) {
+            self.apply_step(Speed::from_bits(saturate(d)), a, b, faults);
+        } else {
+            self.apply_in_steps(d, a, b, faults);
+        }
+    }
+
+    /// A friction limit may shrink, and what was pushed may come free, by more than a velocity has room for.
     #[cold]
     fn apply_in_steps(&self, mut d: i64, a: &mut SolverBody, b: &mut SolverBody, faults: &mut Faults) {
         let limit = i64::from(STEP_MAX.to_bits());
         while d != 0 {
             let step = d.clamp(-limit, limit);
-            self.apply(Speed::from_bits(saturate(step)), a, b, faults);
+            self.apply_step(Speed::from_bits(saturate(step)), a, b, faults);
             d -= step;
         }
     }
 }
 
-/// An accumulated impulse `p = L / D`, carried over as `L` for another `D`.
-pub(crate) fn lambda_of(p: Speed, denominator: Denominator, faults: &mut Faults) -> Speed {
+/// An accumulated impulse `p = L / D`, carried over as `L` for another `D`: a guess, so that to clamp it is no fault.
+pub(crate) fn lambda_of(p: Speed, denominator: Denominator) -> Speed {
     let bits = round_shift_wide(i128::from(p.to_bits()) * i128::from(denominator), 30);
-    let limit = i128::from(STEP_MAX.to_bits());
-    let within = bits.clamp(-limit, limit);
-    *faults += u64::from(within != bits);
-    Speed::from_bits(saturate(saturate_wide(within)))
+    Speed::from_bits(saturate(saturate_wide(bits))).clamp(-IMPULSE_MAX, IMPULSE_MAX)
 }
 
 /// `p = L / D`: the impulse times `mA + mB`, which does not depend on the lever arms.

@@ -12,7 +12,7 @@ use super::pairs::may_touch;
 use super::scratch::Scratch;
 use super::state::State;
 use super::step::move_body;
-use crate::body::{Body, Continuous, Handle, Pose};
+use crate::body::{Body, BodyKind, Continuous, Handle, Pose};
 use crate::collision::{Core, Sweep, TimeOfImpact, time_of_impact};
 use crate::fx;
 use crate::math::{Angle, Fx, fx_mul};
@@ -46,10 +46,10 @@ pub(super) fn sweep_of(state: &State, scratch: &Scratch, slot: u32, end: Pose, t
         // The radius inside a shape is at most that inside its box: most bodies are slow enough to tell at a glance.
         !shape.is_sensor() && motion > fx!(0.0005) && motion > Core::of(posed, body.centre).inner_radius() / 2
     });
-    fast.then(|| Swept { slot, sweep: Sweep { start: body.centre, end: end.centre, turn }, end })
+    fast.then_some(Swept { slot, sweep: Sweep { start: body.centre, end: end.centre, turn }, end })
 }
 
-/// Moves fast bodies as far as they can go: first those that only what cannot be moved stops, then the bullets, in slot
+/// Moves fast bodies as far as they can go: first those that only fixed bodies stop, then the bullets, in slot
 /// order. Everything else is where it will be.
 pub(super) fn sweep(state: &mut State, scratch: &mut Scratch, swept: &[Swept]) {
     let is_bullet =
@@ -107,7 +107,7 @@ fn first_impact(state: &State, scratch: &Scratch, swept: &Swept) -> Fx {
 /// Whether a body is swept against another.
 fn stops(body: &Body, obstacle: &Body) -> bool {
     let bullet = |body: &Body| body.settings.continuous == Continuous::Bullet;
-    !obstacle.is_dynamic() || (bullet(body) && !bullet(obstacle))
+    obstacle.kind() == BodyKind::Fixed || (bullet(body) && !bullet(obstacle))
 }
 
 fn may_stop(state: &State, scratch: &Scratch, a: u32, b: u32) -> bool {

@@ -189,7 +189,7 @@ impl Churn {
             linear_damping: if rng.chance(1, 4) { rng.range(fx!(0), fx!(2)) } else { Fx::ZERO },
             may_sleep: !rng.chance(1, 12),
             sleep_speed: [fx!(0.05), fx!(0.05), fx!(0.5)][rng.below(3) as usize],
-            continuous: if rng.chance(1, 8) { Continuous::Bullet } else { Continuous::Immovable },
+            continuous: if rng.chance(1, 8) { Continuous::Bullet } else { Continuous::Fixed },
             ..BodySettings::default()
         }
     }

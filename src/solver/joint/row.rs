@@ -18,7 +18,7 @@
 
 use super::super::body::SolverBody;
 use super::super::contact::Pass;
-use super::super::limits::{Faults, IMPULSE_MAX, clamp_warm_start};
+use super::super::limits::{Faults, IMPULSE_MAX};
 use super::super::row::{Denominator, Row};
 use super::super::settings::Tuning;
 use super::super::softness::Softness;
@@ -112,7 +112,6 @@ impl JointRow {
     }
 
     pub(super) fn warm_start(&mut self, a: &mut SolverBody, b: &mut SolverBody, faults: &mut Faults) {
-        clamp_warm_start(&mut self.lambda, faults);
         self.lambda = self.lambda.clamp(self.bounds.0, self.bounds.1);
         self.row.apply(self.lambda, a, b, faults);
     }
