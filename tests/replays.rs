@@ -24,7 +24,7 @@ fn replays() -> Vec<(String, Vec<u8>)> {
 fn every_replay_matches_and_ends_in_its_golden() {
     let goldens = common::goldens();
     let replays = replays();
-    assert!(replays.len() >= 10, "only {} replays", replays.len());
+    assert_eq!(replays.len(), goldens.len(), "a replay for each golden");
     for (name, bytes) in replays {
         let golden = goldens.iter().find(|golden| golden.scene == name).expect("a golden for each replay");
         match verify::<Sandbox>(&bytes, &Limits::default()) {
@@ -43,7 +43,7 @@ fn every_replay_is_what_its_scene_records() {
         let scene = Scene::find(&name).expect("a scene for each replay");
         let mut recording =
             Recording::<Sandbox>::start(&scene.setup(common::SEED), CHECKPOINT_INTERVAL).expect("valid");
-        for tick in 0..scene.ticks {
+        for tick in 0..scene.golden_ticks {
             let commands = scene.commands(tick, recording.game());
             recording.step(&[commands]).expect("small inputs");
         }

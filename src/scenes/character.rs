@@ -15,6 +15,7 @@ pub(super) const CHARACTER: Scene = Scene {
     name: "character",
     about: "a pill walks, runs against a wall, climbs, takes steps and jumps, moved by queries alone",
     ticks: 900,
+    golden_ticks: 900,
     setup: |_| {
         build(Config::default(), |scene| {
             scene.spawn(BodyDef::kinematic().position(fx!(-5), fx!(2)), &[ShapeDef::new(pill()?)])?;

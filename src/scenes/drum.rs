@@ -31,7 +31,8 @@ pub(super) const DRUM: Scene =
             }
             Ok(())
         })
-    });
+    })
+    .golden(300);
 
 /// A ring of 36 plates between 10 and 11 m, 10 degrees and one of overlap each, and 4 paddles inside.
 fn drum_shapes() -> Result<Vec<ShapeDef>, WorldError> {
@@ -60,6 +61,7 @@ pub(super) const SPAWNING: Scene = Scene {
     name: "spawning",
     about: "bodies come, are kicked and go again, all by commands",
     ticks: 600,
+    golden_ticks: 600,
     setup: |_| {
         build(Config::default(), |scene| {
             floor(scene, fx!(10))?;

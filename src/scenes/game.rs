@@ -16,6 +16,7 @@ pub(super) const GAME: Scene = Scene {
     name: "game",
     about: "100 random polygons and 50 discs in a box that someone shakes",
     ticks: 900,
+    golden_ticks: 400,
     setup: |seed| {
         build(Config::default(), |scene| {
             let mut rng = Rng::new(seed);

@@ -67,7 +67,8 @@ pub(super) const CHAIN: Scene =
             scene.joint(pin(last, body).anchor_a(fx!(0.5), fx!(0)).anchor_b(fx!(-2.5), fx!(0)))?;
             Ok(())
         })
-    });
+    })
+    .golden(400);
 
 pub(super) const BRIDGE: Scene =
     Scene::new("bridge", 900, "ten boxes fall on a bridge of 50 planks between two posts", |_| {
@@ -81,7 +82,8 @@ pub(super) const BRIDGE: Scene =
             scene.spawn_each(BodyDef::dynamic(), &[rectangle(fx!(0.5), fx!(0.5))?], places)?;
             Ok(())
         })
-    });
+    })
+    .golden(300);
 
 /// A hinge between the origins of two bodies.
 fn pin(a: BodyId, b: BodyId) -> JointDef {
@@ -107,7 +109,8 @@ fn neighbours(ids: &[BodyId]) -> Vec<(BodyId, BodyId)> {
 pub(super) const JOINT_GRID: Scene =
     Scene::new("joint_grid", 500, "a cloth of 100 x 100 discs and 19 800 hinges hangs from seven", |_| {
         build(sleepless(), fill_grid)
-    });
+    })
+    .golden(50);
 
 fn fill_grid(scene: &mut Builder) -> Result<(), WorldError> {
     let filter = Filter { category: 2, mask: !2, group: 0 };

@@ -38,7 +38,8 @@ pub(super) const SPINNER: Scene = Scene::new(
             fill_ring(scene)
         })
     },
-);
+)
+.golden(20);
 
 /// In rows of 92 from the bottom up, in turn a capsule, a disc and a square.
 fn fill_ring(scene: &mut Builder) -> Result<(), WorldError> {
@@ -73,7 +74,8 @@ pub(super) const TUMBLER: Scene =
             scene.spawn_each(BodyDef::dynamic(), &[square], grid(45, 45, origin, apart))?;
             Ok(())
         })
-    });
+    })
+    .golden(150);
 
 pub(super) const WASHER: Scene =
     Scene::new("washer", 500, "a drum with paddles washes 8100 boxes that report their hits", |_| {
@@ -87,7 +89,8 @@ pub(super) const WASHER: Scene =
             scene.spawn_each(BodyDef::dynamic(), &[square], grid(90, 90, origin, apart))?;
             Ok(())
         })
-    });
+    })
+    .golden(20);
 
 /// A ring of 36 plates between 16 and 18 m that overlap by a degree at both ends, and 4 paddles inside.
 fn washer_shapes() -> Result<Vec<ShapeDef>, WorldError> {

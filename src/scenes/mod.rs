@@ -30,6 +30,8 @@ pub struct Scene {
     pub about: &'static str,
     /// How long it is, in ticks.
     pub ticks: u64,
+    /// How long its golden replay is, in ticks: so that it is verified in a second or two.
+    pub golden_ticks: u64,
     setup: fn(seed: u64) -> SandboxSetup,
     script: fn(tick: u64, game: &Sandbox) -> Vec<Command>,
 }
@@ -42,7 +44,12 @@ impl Scene {
         about: &'static str,
         setup: fn(u64) -> SandboxSetup,
     ) -> Self {
-        Scene { name, about, ticks, setup, script: |_, _| Vec::new() }
+        Scene { name, about, ticks, golden_ticks: ticks, setup, script: |_, _| Vec::new() }
+    }
+
+    /// The same with a shorter golden.
+    const fn golden(self, ticks: u64) -> Self {
+        Scene { golden_ticks: ticks, ..self }
     }
 
     /// The scene of a name.

@@ -37,7 +37,8 @@ pub(super) const PYRAMID: Scene =
             floor(scene, fx!(40))?;
             pyramid(scene, 30)
         })
-    });
+    })
+    .golden(300);
 
 pub(super) const LARGE_PYRAMID: Scene =
     Scene::new("large_pyramid", 500, "a pyramid of 5050 boxes stands", |_| {
@@ -45,7 +46,8 @@ pub(super) const LARGE_PYRAMID: Scene =
             floor(scene, fx!(100))?;
             pyramid(scene, 100)
         })
-    });
+    })
+    .golden(40);
 
 fn pyramid(scene: &mut Builder, base: i32) -> Result<(), WorldError> {
     let left = Vec2::new(-Fx::from_num(base) / 2, fx!(0));
@@ -78,7 +80,8 @@ pub(super) const MANY_PYRAMIDS: Scene =
             scene.spawn_each(BodyDef::dynamic(), &[rectangle(fx!(0.5), fx!(0.5))?], places)?;
             Ok(())
         })
-    });
+    })
+    .golden(12);
 
 pub(super) const HUNDRED_POLYGONS: Scene =
     Scene::new("hundred_polygons", 600, "100 random convex polygons fall into a box", |seed| {
@@ -96,7 +99,8 @@ pub(super) const HUNDRED_POLYGONS: Scene =
             }
             Ok(())
         })
-    });
+    })
+    .golden(400);
 
 /// A convex polygon of 3 to 8 corners between 0.3 and 0.9 m from its centre, one in three rounded.
 pub(super) fn random_polygon(rng: &mut Rng) -> Polygon {

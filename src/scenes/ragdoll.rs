@@ -181,4 +181,5 @@ pub(super) const RAGDOLL: Scene =
             }
             Ok(())
         })
-    });
+    })
+    .golden(240);

@@ -24,6 +24,7 @@ pub(super) const RAIN: Scene = Scene {
     name: "rain",
     about: "25 ragdolls come every 8 ticks, and from the 41st time on as many go",
     ticks: 1000,
+    golden_ticks: 60,
     setup: |_| {
         build(Config::default(), |scene| {
             let tile = rectangle(fx!(0.25), fx!(0.25))?;

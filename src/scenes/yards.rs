@@ -21,7 +21,8 @@ pub(super) const SMASH: Scene =
             scene.spawn_each(BodyDef::dynamic().asleep(), &[square], grid(120, 80, origin, apart))?;
             Ok(())
         })
-    });
+    })
+    .golden(90);
 
 /// Places in columns from left to right, each from the bottom up.
 pub(super) fn grid(
@@ -55,6 +56,7 @@ pub(super) const JUNKYARD: Scene = Scene {
     name: "junkyard",
     about: "8000 pentagons rain into a yard, where a pusher goes to and fro",
     ticks: 800,
+    golden_ticks: 40,
     setup: |_| build(Config::default(), fill_junkyard),
     script: push_junk,
 };
@@ -108,4 +110,5 @@ pub(super) const COMPOUNDS: Scene =
             scene.spawn_each(BodyDef::dynamic(), &[half(fx!(1))?, half(fx!(-1))?], places)?;
             Ok(())
         })
-    });
+    })
+    .golden(60);
