@@ -1,8 +1,8 @@
 //! Mass, centre of mass and radius of gyration from shapes and densities.
 //!
 //! The radius of gyration `k = sqrt(I / m)` takes the place of the moment of inertia everywhere: with `u = k w`
-//! linear and angular velocity are both speeds of the same mass (`docs/DESIGN.md`, rows). The parts of a body are
-//! summed by the parallel axis theorem:
+//! linear and angular velocity are both speeds of the same mass (`docs/DESIGN.md`, rows). The parts of a body
+//! are summed by the parallel axis theorem:
 //!
 //! ```text
 //! m     = sum m_i
@@ -242,6 +242,16 @@ mod tests {
         close(properties.centre.y, fx!(1));
         // k^2 = (a^2 + b^2) / 18 = 1
         close(properties.gyration, fx!(1));
+    }
+
+    #[test]
+    fn a_rounded_rail_weighs_its_core_its_sides_and_four_quarter_discs() {
+        let rail = Polygon::rectangle(fx!(0.4), fx!(20)).unwrap().rounded(fx!(0.2)).unwrap();
+        let properties = dynamic(&[ShapeDef::new(rail).density(fx!(3)).offset(fx!(1), fx!(2))]).unwrap();
+        // 3 (0.8 * 40 + 0.2 * 81.6 + 0.04 pi); 0.2 in `Length` is off by 5e-8, and so is 0.4.
+        let expected = fx!(144.96) + fx_mul(fx!(0.12), PI);
+        assert!((properties.mass - expected).abs() < fx!(0.0001), "{}", properties.mass);
+        assert_eq!(properties.centre, Vec2::new(fx!(1), fx!(2)));
     }
 
     #[test]

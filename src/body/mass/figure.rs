@@ -1,16 +1,17 @@
 //! Area, centre and radius of gyration of a rounded convex polygon.
 //!
-//! For the core about the origin, with `c_i = v_i x v_(i+1)` (D. Eberly, "Polyhedral Mass Properties", 2D case):
+//! For the core about the origin, with `c_i = v_i x v_(i+1)` (D. Eberly, "Polyhedral Mass Properties", 2D
+//! case):
 //!
 //! ```text
-//! A    = 1/2 sum c_i
-//! A c  = 1/3 sum c_i (v_i + v_(i+1)) / 2
-//! A k² = 1/6 sum c_i (v_i.v_i + v_i.v_(i+1) + v_(i+1).v_(i+1)) / 2
+//! A            = 1/2 sum c_i
+//! A c          = 1/3 sum c_i (v_i + v_(i+1)) / 2
+//! A (k² + c.c) = 1/6 sum c_i (v_i.v_i + v_i.v_(i+1) + v_(i+1).v_(i+1)) / 2
 //! ```
 //!
-//! A radius `r` adds a rectangle `r` wide to every edge and a sector to every vertex. With `v_i` about the core's
-//! centre, `l_i` the length of the edge from `v_i` to the next vertex, `a_i = r theta_i` the arc about `v_i`, and
-//! `l = sum l_i`, `a = sum a_i`:
+//! A radius `r` adds a rectangle `r` wide to every edge and a sector to every vertex. With `v_i` about the
+//! core's centre, `l_i` the length of the edge from `v_i` to the next vertex, `a_i = r theta_i` the arc about
+//! `v_i`, and `l = sum l_i`, `a = sum a_i`:
 //!
 //! ```text
 //! 2 A' = 2 A + r (2 l + a)
@@ -21,17 +22,18 @@
 //! k'²  = J / A' - |m / A'|²
 //! ```
 //!
-//! The first line is J. Steiner's formula (1840). No normal and no bisector is left in it: the outward half of a
-//! rectangle's first moment is `r² l_i n_i / 2`, and `l_i n_i` is the edge turned by a quarter, so that they cancel
-//! round the outline; so do the sectors', `r³ (n_i - n_(i-1)) / 3` turned by a quarter. The mixed terms of the second
-//! moment are `r² c_i` and `2/3 r³ v_i x (n_i - n_(i-1))`, whose sums are `2 r² A` and `2/3 r³ l`.
+//! The first line is J. Steiner's formula (1840). Neither normals nor bisectors are left: the first moment of a
+//! rectangle has `r² l_i n_i / 2` across its edge, where `l_i n_i` is the edge turned by a quarter, and that of
+//! a sector about its vertex is `r³ (n_i - n_(i-1)) / 3` turned by a quarter. Both cancel round the outline. The
+//! mixed terms of the second moment are `r² c_i` and `2/3 r³ v_i x (n_i - n_(i-1))`, with sums `2 r² A` and
+//! `2/3 r³ l`; the rectangles' own `1/3 r³ l` makes the latter `r³ l`.
 
 use crate::math::{Angle, Fx, Length, Vec2, div_round, fx_mul, round_shift_wide};
 
 /// A figure of uniform density.
 ///
-/// No sum overflows: a figure reaches 110 m, so `2 A` is below 2^17 m², `|v|` below 2^9 m and `2 J` below 2^30 m⁴,
-/// with 44, 32 and 88 fraction bits.
+/// No sum overflows: a figure reaches 110 m, so `2 A` is below 2^17 m², `|v|` below 2^9 m and `2 J` below
+/// 2^30 m⁴, with 44, 32 and 88 fraction bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Figure {
     /// Twice the area in m², with 44 fraction bits.
@@ -79,7 +81,7 @@ impl Figure {
             edges += edge;
             arcs += arc;
 
-            let ((x1, y1), (x2, y2)) = (self.from_centre(vertex), self.from_centre(after));
+            let ((x1, y1), (x2, y2)) = (self.about_centre(vertex), self.about_centre(after));
             first_x += edge * (x1 + x2) + arc * x1;
             first_y += edge * (y1 + y2) + arc * y1;
             let of_vertex = x1 * x1 + y1 * y1;
@@ -115,7 +117,7 @@ impl Figure {
         self.gyration_squared
     }
 
-    fn from_centre(&self, vertex: Vec2<Length>) -> (i128, i128) {
+    fn about_centre(&self, vertex: Vec2<Length>) -> (i128, i128) {
         let vertex = vertex.widen();
         (i128::from(vertex.x.to_bits()) - self.centre.0, i128::from(vertex.y.to_bits()) - self.centre.1)
     }

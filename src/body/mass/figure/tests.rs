@@ -38,8 +38,8 @@ fn random_rounded_hull(rng: &mut Rng, extent: Fx) -> Option<Polygon> {
     Polygon::hull(&points).ok()?.rounded(rng.range(fx!(0.002), extent)).ok()
 }
 
-/// Twice the area and the square of the radius of gyration of a rectangle of half extents `a` and `b`, rounded by
-/// `r`, each in units of `unit`. The rectangle, four rectangles on its sides, and four quarter discs.
+/// Twice the area and the square of the radius of gyration of a rectangle of half extents `a` and `b`, rounded
+/// by `r`, each in units of `unit`. The rectangle, four rectangles on its sides, and four quarter discs.
 fn rounded_rectangle(a: i128, b: i128, r: i128, unit: Fx) -> (i128, i128) {
     /// A convergent of pi, right to 17 digits.
     const PI_NUMERATOR: i128 = 1_068_966_896;
@@ -92,7 +92,7 @@ fn a_triangle_in_a_large_radius_is_nearly_a_disc() {
     let triangle = Polygon::new(&points).unwrap().rounded(fx!(100)).unwrap();
     let actual = figure(&triangle);
     // The perimeter is 3.4 mm, so the area is larger by 0.34 m² of 31416 m².
-    close(actual.doubled_area, i128::from(PI.to_bits()) * 20000 << 12, 50_000);
+    close(actual.doubled_area, i128::from(PI.to_bits() * 20000) << 12, 50_000);
     close(actual.gyration_squared, 5000 * ONE, 50_000);
     near(actual.centre, (0, 0), fx!(0.001));
 }
@@ -134,7 +134,7 @@ fn symmetric_shapes_keep_their_centre() {
     assert!((x - y).abs() <= 1, "{x} {y}");
 }
 
-/// The outline with 4096 chords to a turn, whose sectors are short by 4e-7.
+/// The outline with 4096 chords to a turn, whose sectors are short by 4e-7. Its points are rounded to 2.4e-7 m.
 fn fine_outline(polygon: &Polygon) -> Vec<Vec2<Length>> {
     let (vertices, normals) = (polygon.vertices(), polygon.normals());
     let count = vertices.len();
@@ -158,7 +158,7 @@ fn a_polygon_along_the_outline_has_the_same_mass() {
     let mut rng = Rng::new(3);
     let mut compared = 0;
     for round in 0..300 {
-        let extent = [fx!(0.5), fx!(5), fx!(50)][round % 3];
+        let extent = [fx!(5), fx!(15), fx!(50)][round % 3];
         let Some(polygon) = random_rounded_hull(&mut rng, extent) else { continue };
         compared += 1;
         let (actual, expected) = (figure(&polygon), Figure::of_polygon(&fine_outline(&polygon)));
@@ -207,7 +207,7 @@ fn counted_grid_points_agree() {
             }
         }
         let actual = figure(&polygon);
-        close(actual.doubled_area, 2 * count << 32, 1000);
+        close(actual.doubled_area, count << 33, 1000);
         let centre = (div_round(first_x << 26, count), div_round(first_y << 26, count));
         near(actual.centre, centre, fx!(0.004));
         let squared = div_round(second << 32, count) - ((centre.0 * centre.0 + centre.1 * centre.1) >> 20);
