@@ -7,7 +7,7 @@ use lockstep2d::draw::{
 use lockstep2d::fx;
 use lockstep2d::math::{Aabb, Angle, Fx, Vec2};
 use lockstep2d::solver::{JointDef, Revolute};
-use lockstep2d::world::World;
+use lockstep2d::world::{Config, World};
 
 const GROUND_TOP: Fx = fx!(0);
 
@@ -17,7 +17,7 @@ fn scene() -> World {
 }
 
 fn build_scene() -> Result<World, WorldError> {
-    let mut world = World::default();
+    let mut world = World::new(Config { sleeping: false, ..Config::default() })?;
     let slab = ShapeDef::new(Polygon::rectangle(fx!(100), fx!(1))?);
     world.spawn(&BodyDef::fixed().position(fx!(0), fx!(-1)), &[slab])?;
     let crate_ = ShapeDef::new(Polygon::square(fx!(0.5))?);

@@ -310,3 +310,30 @@ fn kinematic_bodies_that_start_to_move_are_work() {
         assert!(game.work(&[vec![command.clone(); 100]]) > idle + 1_000_000, "{command:?}");
     }
 }
+
+#[test]
+fn contacts_that_have_parted_do_not_rest() {
+    // Whoever is pushed out of an overlap leaves its box within the tick. Told to sleep then, before anybody has looked
+    // at the pairs again, it took contacts along that had parted: they rested until the caches were dropped.
+    let mut rng = lockstep2d::math::Rng::new(1);
+    for _ in 0..40 {
+        let gravity = Vec2::new(fx!(25), fx!(-40));
+        let mut config = Config { gravity, tick_rate: 10, ..Config::default() };
+        config.solver.sub_steps = 6;
+        let mut world = World::new(config).unwrap();
+        let line = Geometry::segment(Vec2::new(fx!(-8), fx!(0)), Vec2::new(fx!(8), fx!(-1))).unwrap();
+        world.spawn(&BodyDef::fixed(), &[ShapeDef::new(line)]).unwrap();
+        let (a, b) = (Vec2::new(fx!(-0.53), fx!(-0.53)), Vec2::new(fx!(0.453), fx!(0.083)));
+        let pill = ShapeDef::new(Geometry::capsule(a, b, fx!(0.493)).unwrap()).offset(fx!(-0.8), fx!(0.662));
+        for _ in 0..12 {
+            let (x, y) = (rng.range(fx!(-2), fx!(2)), rng.range(fx!(-1), fx!(2)));
+            world.spawn(&BodyDef::dynamic().position(x, y).angle(rng.angle()), &[pill]).unwrap();
+        }
+        for _ in 0..3 {
+            world.step();
+        }
+        let first = world.bodies().nth(1).unwrap().0;
+        world.sleep(first).unwrap();
+        caches_decide_nothing(&mut world, 2);
+    }
+}

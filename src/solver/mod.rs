@@ -43,6 +43,8 @@ use crate::math::Reciprocal;
 /// the tick before, one round in a sub-step leaves piles restless (the 20 x 20 pyramids of 55 boxes at 0.27 m/s and
 /// 5.8 mm deep in their first ticks, instead of 0.05 m/s and 1.5 mm).
 const COLD_ROUNDS: u32 = 4;
+/// With fewer points than this nothing rests on much else, and a few new ones are a landing, not a pile.
+const COLD_POINTS: u32 = 256;
 
 /// The working memory of the solver. Nothing in it outlives a tick, but its allocations do.
 #[derive(Clone, Debug, Default)]
@@ -165,7 +167,7 @@ impl Solver {
     /// Whether most contact points have no impulses to start from.
     fn is_cold(&self) -> bool {
         let WarmStarts { points, kept, .. } = self.warm_starts;
-        kept < points / 2
+        points >= COLD_POINTS && kept < points / 2
     }
 
     fn warm_start(&mut self) {

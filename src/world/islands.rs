@@ -281,6 +281,8 @@ fn put_to_sleep(state: &mut State, scratch: &mut Scratch, sleepy: impl Fn(&Body)
     }
     if asleep {
         scratch.roster.invalidate();
+        // Boxes may have parted since the pairs were looked at.
+        scratch.changes.resting = true;
         rest_contacts(state, scratch);
     }
 }

@@ -36,7 +36,8 @@ impl Bench {
         place: Vec2<Fx>,
         angle: Fx,
     ) -> Self {
-        let config = Config { gravity: Vec2::new(fx!(0), gravity), ..Config::default() };
+        // What creeps to its target would fall asleep on the way.
+        let config = Config { gravity: Vec2::new(fx!(0), gravity), sleeping: false, ..Config::default() };
         let mut world = World::new(config).expect("valid");
         let given = |mass, gyration| MassSource::Given { mass, centre: Vec2::ZERO, gyration };
         let a = match ground {
