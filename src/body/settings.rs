@@ -28,7 +28,7 @@ pub enum Continuous {
     /// Fixed bodies. Kinematic ones are left out: what they carry along is fast too, and must not be held back.
     #[default]
     Fixed,
-    /// All bodies that are not bullets themselves, where they are at the end of the tick.
+    /// All bodies that are not bullets themselves.
     Bullet,
 }
 

@@ -18,6 +18,11 @@ use super::pose::{Hull, Outline, PosedShape};
 use super::segment;
 use crate::math::{Fx, Length, Step, Unit, Vec2, round_shift};
 
+/// The cosine beyond which a face is one that the shapes lie on: nothing but rounding.
+const SAME: Unit = Unit::lit("0.999999");
+/// And beyond which a face is parallel to that: 25 degrees.
+const OWN: Unit = Unit::lit("0.9");
+
 /// How two shapes move against each other within a tick.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Passage {
@@ -29,11 +34,38 @@ pub(crate) struct Passage {
     pub(crate) slack: Length,
     /// How much nearer they may come on the axis: what falls on a face does not pass it by.
     pub(crate) approach: Length,
+    /// Of the contact, either way round.
+    pub(crate) normal: Vec2<Unit>,
+    /// Faces of which the normal has a larger cosine with the contact's are the contact's own. A shape does not pass by
+    /// the face that it lies on, however it turns there; a corner has no face of its own.
+    own: Unit,
+}
+
+impl Passage {
+    /// A passage at a contact with a normal.
+    pub(crate) fn new(
+        shift: Vec2<Length>,
+        turn: Length,
+        slack: Length,
+        approach: Length,
+        normal: Vec2<Unit>,
+    ) -> Self {
+        Passage { shift, turn, slack, approach, normal, own: Unit::ONE }
+    }
+}
+
+/// Without sign.
+fn cosine(a: Vec2<Unit>, b: Vec2<Unit>) -> Unit {
+    let cosine: Unit = a.dot(b);
+    cosine.saturating_abs()
 }
 
 /// Whether a face of one of the shapes keeps them apart through the whole passage, but for the slack.
 pub(crate) fn pass_by(a: &PosedShape, b: &PosedShape, passage: &Passage) -> bool {
     let (Some(hull_a), Some(hull_b)) = (hull_about(a, b), hull_about(b, a)) else { return false };
+    let mut faces = [&hull_a, &hull_b].into_iter().flat_map(|hull| &hull.normals()[..hull.faces()]);
+    let on_face = faces.any(|face| cosine(*face, passage.normal) > SAME);
+    let passage = &Passage { own: if on_face { OWN } else { Unit::ONE }, ..*passage };
     let d = (origin(b, a) - origin(a, b)).narrow();
     let back = Passage { shift: -passage.shift, ..*passage };
     some_face_parts(&hull_a, &hull_b, d, passage) || some_face_parts(&hull_b, &hull_a, -d, &back)
@@ -61,6 +93,9 @@ fn hull_about(shape: &PosedShape, other: &PosedShape) -> Option<Hull> {
 fn some_face_parts(a: &Hull, b: &Hull, d: Vec2<Length>, passage: &Passage) -> bool {
     let radii = step_bits(a.radius) + step_bits(b.radius);
     (0..a.faces()).any(|edge| {
+        if cosine(a.normals()[edge], passage.normal) > passage.own {
+            return false;
+        }
         // Of what is thin on this axis the slack must not be all.
         let widths =
             [a, b].map(|hull| width(hull, a.normals()[edge]) / 4).into_iter().filter(|&width| width > 0);

@@ -15,7 +15,7 @@ use super::step::move_body;
 use crate::body::{Body, BodyKind, Continuous, Handle, Pose};
 use crate::collision::{Core, Sweep, TimeOfImpact, time_of_impact};
 use crate::fx;
-use crate::math::{Angle, Fx, fx_mul};
+use crate::math::{Angle, Fx, Rot, fx_mul};
 
 /// A body that has not been moved yet, because it may have moved too far.
 #[derive(Clone, Copy, Debug)]
@@ -89,9 +89,8 @@ fn first_impact(state: &State, scratch: &Scratch, swept: &Swept) -> Fx {
             let posed_other = scratch.poses.at(other);
             let solid = posed_other.is_solid_from(posed.centre);
             if solid && stops(body, obstacle) && may_stop(state, scratch, id.slot(), other) {
-                let there = Core::of(posed_other, obstacle.centre);
-                let fixed = Sweep::fixed(obstacle.centre);
-                match time_of_impact((&there, &fixed), (&core, &swept.sweep), target) {
+                let (there, movement) = obstacle_of(state, scratch, other);
+                match time_of_impact((&there, &movement), (&core, &swept.sweep), target) {
                     TimeOfImpact::Hit { fraction } => first = first.min(fraction),
                     // Never so late that something may have been passed, but a body has to go on.
                     TimeOfImpact::Failed { fraction } if fraction > Fx::ZERO => first = first.min(fraction),
@@ -102,6 +101,21 @@ fn first_impact(state: &State, scratch: &Scratch, swept: &Swept) -> Fx {
         });
     }
     first
+}
+
+/// A shape as it was posed at the start of the tick about its body's centre, and the movement of that body.
+fn obstacle_of(state: &State, scratch: &Scratch, shape: u32) -> (Core, Sweep) {
+    let body = state.body_of(shape);
+    let core = Core::of(scratch.poses.at(shape), body.centre);
+    let slot = state.shapes.at(shape).body().slot();
+    let Ok(index) = scratch.roster.bodies.binary_search(&slot) else {
+        return (core, Sweep::fixed(body.centre));
+    };
+    let start = scratch.starts[index];
+    // The shorter way round: what turns more than half a turn in a tick is not seen to.
+    let turn = (body.angle - start.angle).to_turns().to_bits();
+    let core = core.rotated(Rot::from_angle(start.angle - body.angle));
+    (core, Sweep { start: start.centre, end: body.centre, turn })
 }
 
 /// Whether a body is swept against another.

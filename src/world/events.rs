@@ -70,7 +70,7 @@ pub struct JointEvent {
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Events {
-    /// Bodies that moved or fell asleep, in slot order.
+    /// Bodies that moved within the tick or fell asleep, in slot order; not those that were moved by hand.
     pub moved: Vec<MoveEvent>,
     /// Pairs that came within [`super::Config::touching_distance`], or pushed each other since the last tick. Sorted
     /// by their handles, A first, like all lists of pairs.

@@ -216,9 +216,9 @@ fn keep_awake(state: &mut State, scratch: &Scratch, (a, b): (u32, u32)) {
 /// a velocity that lasts.
 fn is_slow(body: &Body, solved: &SolverBody, tick_rate: u32) -> bool {
     let square = |x: i32| i64::from(x) * i64::from(x);
-    // Twice the speed at the radius of gyration is about that of the outline. Speeds are within ±512 m/s, so the
-    // squares have at most 62 bits.
-    let fastest = |x: i32, y: i32, turn: i32| (square(x) + square(y)).max(square(turn).saturating_mul(4));
+    // Twice the speed at the radius of gyration is about that of the outline. Displacements may have saturated.
+    let fastest =
+        |x: i32, y: i32, turn: i32| square(x).saturating_add(square(y)).max(square(turn).saturating_mul(4));
     let limit: Speed = narrow(body.settings.sleep_speed);
     let reach: Step = narrow(body.settings.sleep_speed / i64::from(tick_rate));
     let (v, d) = (body.velocity, solved.shift);

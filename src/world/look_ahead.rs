@@ -4,7 +4,7 @@ use super::state::State;
 use crate::body::{Body, Shape};
 use crate::collision::{Manifold, ManifoldPoint, OneWay, Outline, Passage, PosedShape, margin_for, pass_by};
 use crate::fx;
-use crate::math::{Fx, Length, Rot, Vec2, fx_mul, narrow, widen};
+use crate::math::{Fx, Length, Rot, Unit, Vec2, fx_mul, narrow, widen};
 
 /// Bounds of how far a body can come in a tick at its present velocity.
 pub(super) struct Motion {
@@ -112,7 +112,7 @@ impl<'a> Approach<'a> {
                 && closing > PASSAGE_MIN
                 && closing.saturating_add(closing / 4) > separation
         });
-        if reached.map(closing).max().is_some_and(|closing| self.passes_by(closing)) {
+        if reached.map(closing).max().is_some_and(|closing| self.passes_by(manifold.normal, closing)) {
             manifold.retain(|_| false);
         }
     }
@@ -131,17 +131,13 @@ impl<'a> Approach<'a> {
     }
 
     /// Whether the shapes pass by each other, within the slack, although a contact closes by some way in the tick.
-    fn passes_by(&self, closing: Fx) -> bool {
+    fn passes_by(&self, normal: Vec2<Unit>, closing: Fx) -> bool {
         let (a, b) = (Motion::of(self.a, self.tick_rate), Motion::of(self.b, self.tick_rate));
         let rate = i64::from(self.tick_rate);
         let velocity = self.b.velocity_at(self.posed_b.centre) - self.a.velocity_at(self.posed_a.centre);
         let turn = a.turn_reach(self.posed_a, self.a).saturating_add(b.turn_reach(self.posed_b, self.b));
-        let passage = Passage {
-            shift: Vec2::new(velocity.x / rate, velocity.y / rate).narrow(),
-            turn: narrow(turn),
-            slack: narrow(self.slack),
-            approach: narrow(closing / 8),
-        };
+        let shift = Vec2::new(velocity.x / rate, velocity.y / rate).narrow();
+        let passage = Passage::new(shift, narrow(turn), narrow(self.slack), narrow(closing / 8), normal);
         pass_by(self.posed_a, self.posed_b, &passage)
     }
 }

@@ -10,7 +10,7 @@ impl World {
     /// gone after the tick.
     ///
     /// # Errors
-    /// When the handle is stale or the body is not dynamic.
+    /// When the handle is stale, or the body is not dynamic or is disabled.
     pub fn apply_force(&mut self, id: BodyId, force: Vec2<Fx>, point: Vec2<Fx>) -> Result<(), WorldError> {
         self.dynamic_body(id)?.apply_force(force, point);
         Ok(())
@@ -19,7 +19,7 @@ impl World {
     /// Pushes a dynamic body with a force in N at its centre of mass during the next tick.
     ///
     /// # Errors
-    /// When the handle is stale or the body is not dynamic.
+    /// When the handle is stale, or the body is not dynamic or is disabled.
     pub fn apply_force_to_centre(&mut self, id: BodyId, force: Vec2<Fx>) -> Result<(), WorldError> {
         let body = self.dynamic_body(id)?;
         body.apply_force(force, body.centre);
@@ -29,7 +29,7 @@ impl World {
     /// Turns a dynamic body with a torque in N m during the next tick.
     ///
     /// # Errors
-    /// When the handle is stale or the body is not dynamic.
+    /// When the handle is stale, or the body is not dynamic or is disabled.
     pub fn apply_torque(&mut self, id: BodyId, torque: Fx) -> Result<(), WorldError> {
         let body = self.dynamic_body(id)?;
         body.torque = body.torque.saturating_add(torque);
@@ -39,7 +39,7 @@ impl World {
     /// Changes a dynamic body's velocity at once by an impulse in N s at a world point.
     ///
     /// # Errors
-    /// When the handle is stale or the body is not dynamic.
+    /// When the handle is stale, or the body is not dynamic or is disabled.
     pub fn apply_impulse(
         &mut self,
         id: BodyId,
@@ -53,7 +53,7 @@ impl World {
     /// Changes a dynamic body's velocity at once by an impulse in N s at its centre of mass.
     ///
     /// # Errors
-    /// When the handle is stale or the body is not dynamic.
+    /// When the handle is stale, or the body is not dynamic or is disabled.
     pub fn apply_impulse_to_centre(&mut self, id: BodyId, impulse: Vec2<Fx>) -> Result<(), WorldError> {
         let body = self.dynamic_body(id)?;
         body.apply_impulse(impulse, body.centre);
@@ -63,7 +63,7 @@ impl World {
     /// Changes a dynamic body's angular velocity at once by an angular impulse in N m s.
     ///
     /// # Errors
-    /// When the handle is stale or the body is not dynamic.
+    /// When the handle is stale, or the body is not dynamic or is disabled.
     pub fn apply_angular_impulse(&mut self, id: BodyId, impulse: Fx) -> Result<(), WorldError> {
         self.dynamic_body(id)?.apply_angular_impulse(impulse);
         Ok(())

@@ -238,20 +238,20 @@ impl World {
         closest
     }
 
-    /// The distance of two shapes, and where they are nearest; `None` if one is gone.
+    /// The distance of two shapes, and where they are nearest; `None` if one is gone or disabled.
     #[must_use]
     pub fn distance(&self, a: ShapeId, b: ShapeId) -> Option<Proximity> {
-        let (_, _) = (self.state.shapes.get(a)?, self.state.shapes.get(b)?);
+        (self.is_there(a) && self.is_there(b)).then_some(())?;
         let (posed_a, posed_b) = (self.scratch.poses.at(a.slot()), self.scratch.poses.at(b.slot()));
         let origin = posed_a.centre;
         Some(proximity(&Core::of(posed_a, origin), &Core::of(posed_b, origin), origin))
     }
 
     /// The distance of a probe from a shape, and where they are nearest, the probe's point first; `None` if the shape
-    /// is gone.
+    /// is gone or disabled.
     #[must_use]
     pub fn probe_distance(&self, probe: &Probe, shape: ShapeId) -> Option<Proximity> {
-        self.state.shapes.get(shape)?;
+        self.is_there(shape).then_some(())?;
         let origin = probe.position();
         let other = Core::of(self.scratch.poses.at(shape.slot()), origin);
         Some(proximity(&Core::of(&probe.posed(), origin), &other, origin))
@@ -309,6 +309,11 @@ impl World {
             }
             ControlFlow::Continue(())
         });
+    }
+
+    /// Whether a shape is in the world, on an enabled body.
+    fn is_there(&self, id: ShapeId) -> bool {
+        self.state.shapes.get(id).is_some() && self.state.body_of(id.slot()).enabled
     }
 
     /// The handle of a shape, if a query sees it.

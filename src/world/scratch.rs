@@ -7,7 +7,7 @@ use super::events::Events;
 use super::islands::{Roster, UnionFind};
 use super::state::State;
 use super::stats::StepStats;
-use crate::body::{Body, BodyKind, Handle};
+use crate::body::{Body, BodyKind, Handle, Pose};
 use crate::collision::{
     AxisHint, BroadPhase, BroadPhaseKind, Contact, Manifold, Pair, PosedShape, SatCounters,
 };
@@ -24,6 +24,8 @@ pub(crate) struct Scratch {
     /// Whether there may be kinematic bodies.
     pub(crate) kinematic: bool,
     pub(crate) union: UnionFind,
+    /// Where the bodies of the roster were at the start of the tick.
+    pub(crate) starts: Vec<Pose>,
     /// The fast bodies of the tick.
     pub(crate) swept: Vec<Swept>,
     pub(crate) pairs: Vec<Pair>,
@@ -94,6 +96,7 @@ impl Scratch {
             roster: Roster::default(),
             kinematic: state.bodies.iter().any(|(_, body)| body.kind() == BodyKind::Kinematic),
             union: UnionFind::default(),
+            starts: Vec::new(),
             swept: Vec::new(),
             pairs: Vec::new(),
             joined: Vec::new(),

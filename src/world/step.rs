@@ -106,6 +106,10 @@ fn finalise_poses(state: &mut State, scratch: &mut Scratch) {
     let mut swept = core::mem::take(&mut scratch.swept);
     swept.clear();
     scratch.stats.impacts = 0;
+    let pose_of =
+        |&slot: &u32| Pose { centre: state.bodies.at(slot).centre, angle: state.bodies.at(slot).angle };
+    scratch.starts.clear();
+    scratch.starts.extend(roster.iter().map(pose_of));
     for &slot in &roster {
         let (pose, turn) = finalise_body(state, scratch, slot);
         match continuous::sweep_of(state, scratch, slot, pose, turn) {
@@ -113,9 +117,9 @@ fn finalise_poses(state: &mut State, scratch: &mut Scratch) {
             None => move_body(state, scratch, slot, pose),
         }
     }
+    scratch.roster.bodies = roster;
     continuous::sweep(state, scratch, &swept);
     scratch.swept = swept;
-    scratch.roster.bodies = roster;
 }
 
 /// Takes over what the solver has found out about a body. Returns where it goes, and how far it turns in units of
