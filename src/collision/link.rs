@@ -67,13 +67,14 @@ impl Link {
             (None, None)
         };
         let (Some([p, q, r]), Some((from, to))) = (corner, neighbour) else { return own };
+        let other = right_of(from, to, place);
+        if orientation(p, q, r) == Orientation::CounterClockwise {
+            return own || other;
+        }
         // Beyond the neighbour's own stretch its line says nothing about the chain.
         let stretch = to - from;
-        if (place - from).dot(stretch) < 0 || (place - to).dot(stretch) > 0 {
-            return own;
-        }
-        let other = right_of(from, to, place);
-        if orientation(p, q, r) == Orientation::CounterClockwise { own || other } else { own && other }
+        let beside = (place - from).dot(stretch) >= 0 && (place - to).dot(stretch) <= 0;
+        own && (other || !beside)
     }
 }
 

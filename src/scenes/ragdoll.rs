@@ -182,4 +182,4 @@ pub(super) const RAGDOLL: Scene =
             Ok(())
         })
     })
-    .golden(240);
+    .golden(320);
