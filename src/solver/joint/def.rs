@@ -70,6 +70,9 @@ pub enum JointKind {
 }
 
 /// How much a joint bears.
+///
+/// It is compared with what the joint bore in the last sub-step of a tick. In the first tick of a joint that has to
+/// carry a load at once this may be a third more than the load: it has no impulse yet to start from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Threshold {
     /// In N, 0 or more; `None` for any force.
