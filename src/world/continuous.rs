@@ -12,10 +12,10 @@ use super::pairs::may_touch;
 use super::scratch::Scratch;
 use super::state::State;
 use super::step::move_body;
-use crate::body::{Body, BodyKind, Continuous, Handle, Pose};
+use crate::body::{Body, BodyKind, Continuous, Handle, Pose, WORLD_EXTENT_MAX};
 use crate::collision::{Core, Sweep, TimeOfImpact, time_of_impact};
 use crate::fx;
-use crate::math::{Angle, Fx, Rot, fx_mul};
+use crate::math::{Angle, Fx, Rot, Vec2, fx_mul};
 
 /// A body that has not been moved yet, because it may have moved too far.
 #[derive(Clone, Copy, Debug)]
@@ -57,23 +57,39 @@ pub(super) fn sweep(state: &mut State, scratch: &mut Scratch, swept: &[Swept]) {
     let (bullets, others): (Vec<&Swept>, Vec<&Swept>) =
         swept.iter().partition(|swept| is_bullet(state, swept));
     for swept in others.into_iter().chain(bullets) {
-        let fraction = first_impact(state, scratch, swept);
-        let pose = if fraction == Fx::ONE { swept.end } else { pose_at(state, swept, fraction) };
-        scratch.stats.impacts += u32::from(fraction != Fx::ONE);
+        let impact = first_impact(state, scratch, swept);
+        let pose = impact.map_or(swept.end, |impact| pose_after(state, scratch, swept, impact));
+        scratch.stats.impacts += u32::from(impact.is_some());
         move_body(state, scratch, swept.slot, pose);
     }
 }
 
-fn pose_at(state: &State, swept: &Swept, fraction: Fx) -> Pose {
-    let Sweep { start, end, turn } = swept.sweep;
-    let angle = state.bodies.at(swept.slot).angle + Angle::from_wide_turns(turn, fraction);
-    Pose { centre: start + (end - start).scale(fraction), angle }
+/// What stops a body, and at which fraction of the tick. Of two at the same time, the one in the smaller slot.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct Impact {
+    fraction: Fx,
+    /// The shape that it meets.
+    obstacle: u32,
 }
 
-/// How much of its movement a body can make.
-fn first_impact(state: &State, scratch: &Scratch, swept: &Swept) -> Fx {
+/// Where an impact leaves a body: where it is met, and from there along with what is kinematic, which does not wait for
+/// it. A dynamic obstacle has moved because of the impact.
+fn pose_after(state: &State, scratch: &Scratch, swept: &Swept, impact: Impact) -> Pose {
+    let Sweep { start, end, turn } = swept.sweep;
+    let angle = state.bodies.at(swept.slot).angle + Angle::from_wide_turns(turn, impact.fraction);
+    let mut centre = start + (end - start).scale(impact.fraction);
+    if state.body_of(impact.obstacle).kind() == BodyKind::Kinematic {
+        let (_, obstacle) = obstacle_of(state, scratch, impact.obstacle);
+        centre += (obstacle.end - obstacle.start).scale(Fx::ONE - impact.fraction);
+    }
+    let edge = Vec2::new(WORLD_EXTENT_MAX, WORLD_EXTENT_MAX);
+    Pose { centre: centre.max(-edge).min(edge), angle }
+}
+
+/// What first stops a body on its way.
+fn first_impact(state: &State, scratch: &Scratch, swept: &Swept) -> Option<Impact> {
     let body = state.bodies.at(swept.slot);
-    let mut first = Fx::ONE;
+    let mut first: Option<Impact> = None;
     for id in body.shapes() {
         if state.shapes.at(id.slot()).is_sensor() {
             continue;
@@ -90,12 +106,14 @@ fn first_impact(state: &State, scratch: &Scratch, swept: &Swept) -> Fx {
             let solid = posed_other.is_solid_from(posed.centre);
             if solid && stops(body, obstacle) && may_stop(state, scratch, id.slot(), other) {
                 let (there, movement) = obstacle_of(state, scratch, other);
-                match time_of_impact((&there, &movement), (&core, &swept.sweep), target) {
-                    TimeOfImpact::Hit { fraction } => first = first.min(fraction),
+                let fraction = match time_of_impact((&there, &movement), (&core, &swept.sweep), target) {
+                    TimeOfImpact::Hit { fraction } => Some(fraction),
                     // Never so late that something may have been passed, but a body has to go on.
-                    TimeOfImpact::Failed { fraction } if fraction > Fx::ZERO => first = first.min(fraction),
-                    _ => {}
-                }
+                    TimeOfImpact::Failed { fraction } => Some(fraction).filter(|&fraction| fraction > 0),
+                    TimeOfImpact::Separated | TimeOfImpact::Overlapped => None,
+                };
+                let impact = fraction.map(|fraction| Impact { fraction, obstacle: other });
+                first = first.into_iter().chain(impact).min();
             }
             core::ops::ControlFlow::Continue(())
         });

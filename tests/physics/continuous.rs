@@ -9,6 +9,7 @@ use lockstep2d::world::{Config, World};
 fn small(kind: u32) -> ShapeDef {
     let geometry = match kind {
         0 => Geometry::circle(fx!(0.025)),
+        1 => Geometry::capsule(Vec2::new(fx!(0), fx!(-0.0125)), Vec2::new(fx!(0), fx!(0.0125)), fx!(0.0125)),
         _ => Polygon::square(fx!(0.025)).map(Geometry::from),
     };
     ShapeDef::new(geometry.expect("valid"))
@@ -39,7 +40,7 @@ fn five_centimetres_at_400_metres_per_second_never_pass_one_centimetre() {
         let down = Rot::from_angle(angle + course).apply_wide(Vec2::new(fx!(0), fx!(-399.9)));
         let body = BodyDef::dynamic().position(place.x, place.y).angle(rng.angle()).velocity(down.x, down.y);
         let spin = rng.range(fx!(-100), fx!(100));
-        let body = world.spawn(&body.angular_velocity(spin), &[small(round % 2)]).expect("valid");
+        let body = world.spawn(&body.angular_velocity(spin), &[small(round % 3)]).expect("valid");
         for tick in 0..20 {
             world.step();
             let there = world.body(body).expect("alive").position();
@@ -87,5 +88,24 @@ fn a_bullet_does_not_pass_a_thin_body() {
     for _ in 0..10 {
         world.step();
         assert!(world.body(bullet).expect("alive").position().x < fx!(3.5));
+    }
+}
+
+#[test]
+fn a_bullet_does_not_pass_a_plate_that_comes_towards_it() {
+    for kind in 0..3 {
+        for speed in [fx!(1), fx!(5), fx!(20)] {
+            let mut world = weightless();
+            let plate = ShapeDef::new(Polygon::rectangle(fx!(0.005), fx!(5)).expect("valid"));
+            let def = BodyDef::kinematic().position(fx!(5), fx!(0)).velocity(-speed, fx!(0));
+            let plate = world.spawn(&def, &[plate]).expect("valid");
+            let bullet = BodyDef::dynamic().velocity(fx!(390), fx!(3)).bullet();
+            let bullet = world.spawn(&bullet, &[small(kind)]).expect("valid");
+            for tick in 0..30 {
+                world.step();
+                let x = |body| world.body(body).expect("alive").position().x;
+                assert!(x(bullet) < x(plate), "shape {kind}, {speed} m/s, tick {tick}");
+            }
+        }
     }
 }
