@@ -337,3 +337,20 @@ fn contacts_that_have_parted_do_not_rest() {
         caches_decide_nothing(&mut world, 2);
     }
 }
+
+#[test]
+fn a_body_that_a_joint_drags_out_of_range_is_not_slow() {
+    // At 30 Hz or less a displacement may saturate on both axes, and the sum of their squares overflowed.
+    for tick_rate in [10, 20, 30] {
+        let mut config = Config { tick_rate, ..Config::default() };
+        config.solver.sub_steps = (60 / tick_rate).max(4);
+        let mut world = World::new(config).unwrap();
+        let pin = world.spawn(&BodyDef::fixed(), &[]).unwrap();
+        let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).unwrap());
+        let def = BodyDef::dynamic().position(fx!(40), fx!(40)).lock_rotation();
+        let ball = world.spawn(&def, &[ball]).unwrap();
+        world.add_joint(&JointDef::new(pin, ball, Revolute::new())).unwrap();
+        caches_decide_nothing(&mut world, 20);
+        assert_eq!(world.validate(), Ok(()));
+    }
+}

@@ -1,6 +1,6 @@
 //! What slides or rolls over a chain feels no seam, whatever its shape and speed.
 
-use lockstep2d::body::{BodyDef, BodyId, Chain, Geometry, Polygon, ShapeDef};
+use lockstep2d::body::{BodyDef, BodyId, Chain, Geometry, MassSource, Polygon, ShapeDef};
 use lockstep2d::fx;
 use lockstep2d::math::{Angle, Fx, Rng, Rot, Vec2, fx_mul};
 use lockstep2d::world::{Config, World};
@@ -204,6 +204,35 @@ fn corners_are_solid() {
             let bottom = if place.x.abs() < fx!(5) { fx!(-5) } else { fx!(0) };
             assert!(place.x.abs() > fx!(19) || place.y > bottom + height(name) / 2, "{name} at {place:?}");
             assert!(deepest < fx!(0.15), "{name}: {deepest} m deep");
+        }
+    }
+}
+
+/// Beyond a neighbour's far end its line says nothing: a plank over a crest, with its end across the next valley,
+/// rests on the valley's far side, and a ray that clears the crest meets it.
+#[test]
+fn what_reaches_over_a_crest_meets_the_far_side() {
+    let points = [(20, -10), (4, 1), (0, -1), (-10, 1), (-30, 1)]
+        .map(|(x, y): (i32, i32)| Vec2::new(Fx::from_num(x), Fx::from_num(y)));
+    for chain in [Chain::new(&points), Chain::new(&points).one_sided()] {
+        let mut world = World::default();
+        world.spawn(&BodyDef::fixed(), &chain.links().expect("valid")).expect("valid");
+        let (eye, sight) = (Vec2::new(fx!(12), fx!(3)), Vec2::new(fx!(-17), fx!(-4)));
+        let hit = world.cast_ray(eye, sight, Default::default()).expect("the far side");
+        assert!((hit.point.x + fx!(2.7)).abs() < fx!(0.01), "{hit:?}");
+
+        let plank = ShapeDef::new(Polygon::rectangle(fx!(12), fx!(0.1)).expect("valid"));
+        let centre = Vec2::new(fx!(-9.6), fx!(0));
+        let mass = MassSource::Given { mass: fx!(5), centre, gyration: fx!(7) };
+        let plank = world
+            .spawn(&BodyDef::dynamic().position(fx!(5.5), fx!(1.3)).mass(mass), &[plank])
+            .expect("valid");
+        for _ in 0..180 {
+            world.step();
+            let tip = world.body(plank).expect("there").transform().apply(Vec2::new(fx!(-12), fx!(-0.1)));
+            // The far side from (0, -1) to (-10, 1).
+            let ground = fx!(-1) - tip.x / 5;
+            assert!(tip.y > ground - fx!(0.05), "the tip is at {tip:?}");
         }
     }
 }
