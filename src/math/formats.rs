@@ -7,7 +7,7 @@
 //! The ranges were settled with a floating-point probe over the benchmark scenes; `docs/DESIGN.md` has the
 //! largest value seen of each quantity.
 
-use fixed::types::extra::{LeEqU32, U18, U20, U21, U22, U24, U27, U30, U32};
+use fixed::types::extra::{LeEqU32, U18, U20, U21, U22, U24, U26, U27, U30, U32};
 use fixed::{FixedI32, FixedI64};
 
 /// World position in metres and every public scalar: ±2.1e9, resolution 0.23 nm.
@@ -18,6 +18,9 @@ pub type Length = FixedI32<U22>;
 pub type Speed = FixedI32<U21>;
 /// Displacement within one step, and the separation of a contact, in metres: ±16, resolution 7.5 nm.
 pub type Step = FixedI32<U27>;
+/// How far a body has come within a tick, in metres: ±32, resolution 15 nm. It is kept within ±16, so that the
+/// difference of two fits.
+pub type Shift = FixedI32<U26>;
 /// Component of a unit vector, sine, cosine, mass fraction or gain: ±2, resolution 9.3e-10.
 pub type Unit = FixedI32<U30>;
 /// Lever ratio `e = c / k`: ±128, resolution 6e-8.

@@ -20,7 +20,7 @@ mod wide;
 pub use aabb::Aabb;
 pub use angle::{Angle, DEGREE, PI, TAU};
 pub use formats::{
-    Fx, Grip, Length, Rate, Ratio, Speed, Step, Unit, convert, div_round, fx_div, fx_mul, mul, mul_add,
+    Fx, Grip, Length, Rate, Ratio, Shift, Speed, Step, Unit, convert, div_round, fx_div, fx_mul, mul, mul_add,
     narrow, ratio, round_shift, round_shift_wide, saturate, saturate_wide, widen,
 };
 pub use geometry::{

@@ -20,6 +20,7 @@ use super::formats::{
 /// assert_eq!(a - Vec2::new(fx!(3), fx!(0)), Vec2::new(fx!(0), fx!(4)));
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[repr(C)]
 pub struct Vec2<T> {
     /// Horizontal component, growing to the right.
     pub x: T,

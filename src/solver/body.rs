@@ -2,24 +2,38 @@
 
 use super::limits::{Faults, SPEED_MAX};
 use crate::body::Body;
-use crate::math::{Reciprocal, Speed, Step, Vec2, round_shift_wide, saturate_wide};
+use crate::math::{Reciprocal, Shift, Speed, Vec2, round_shift_wide, saturate_wide};
 
 /// A body in the solver. Bodies that nothing moves have mass fraction 0 in every row, so that they are read and
 /// written like the others and never change.
+///
+/// Two halves of 16 bytes, which wide kernels load as a whole.
 #[derive(Clone, Copy, Debug, Default)]
+#[repr(C, align(32))]
 pub(crate) struct SolverBody {
     pub(crate) velocity: Vec2<Speed>,
     /// `u = k w`.
     pub(crate) spin: Speed,
+    pub(super) velocity_padding: i32,
     /// Displacement of the centre of mass since the start of the tick.
-    pub(crate) shift: Vec2<Step>,
+    pub(crate) shift: Vec2<Shift>,
     /// `k dtheta` since the start of the tick.
-    pub(crate) turn: Step,
+    pub(crate) turn: Shift,
+    pub(super) shift_padding: i32,
 }
+
+const _: () = assert!(size_of::<SolverBody>() == 32, "two halves of 16 bytes");
 
 impl SolverBody {
     pub(crate) fn of(body: &Body) -> Self {
         SolverBody { velocity: body.velocity, spin: body.spin, ..Self::default() }
+    }
+
+    /// Sets the velocity, which is in range.
+    #[inline(always)]
+    pub(super) fn set_motion(&mut self, x: i32, y: i32, spin: i32) {
+        self.velocity = Vec2::new(Speed::from_bits(x), Speed::from_bits(y));
+        self.spin = Speed::from_bits(spin);
     }
 
     /// Sets the velocity, every component kept within [`SPEED_MAX`].
@@ -44,6 +58,24 @@ impl SolverBody {
         }
     }
 
+    /// Velocity, spin and padding: 16 bytes, aligned to 32.
+    #[inline(always)]
+    pub(super) fn velocity_bits(&self) -> *const i32 {
+        core::ptr::from_ref(self).cast()
+    }
+
+    /// The same to change them.
+    #[inline(always)]
+    pub(super) fn velocity_bits_mut(&mut self) -> *mut i32 {
+        core::ptr::from_mut(self).cast()
+    }
+
+    /// Shift, turn and padding: 16 bytes, aligned to 16.
+    #[inline(always)]
+    pub(super) fn shift_bits(&self) -> *const i32 {
+        self.velocity_bits().wrapping_add(4)
+    }
+
     /// The velocities the other way.
     pub(crate) fn reversed(&self) -> Self {
         SolverBody { velocity: -self.velocity, spin: self.spin.saturating_neg(), ..*self }
@@ -66,11 +98,11 @@ impl SolverBody {
 
 /// How far a body turns: `dtheta = turn / k`, in units of 2^-32 turns. It may be more than a turn: a small body may
 /// spin more than once in a tick.
-pub(crate) fn turn_of(turn: Step, inverse_gyration: Reciprocal) -> i64 {
+pub(crate) fn turn_of(turn: Shift, inverse_gyration: Reciprocal) -> i64 {
     /// `1 / (2 pi)` with 63 fraction bits.
     const INVERSE_TAU: i128 = 1_467_945_251_641_000_613;
     let (product, extra) = inverse_gyration.times_exact(turn);
-    saturate_wide(round_shift_wide(i128::from(product) * INVERSE_TAU, extra + 27 + 63 - 32))
+    saturate_wide(round_shift_wide(i128::from(product) * INVERSE_TAU, extra + Shift::FRAC_NBITS + 63 - 32))
 }
 
 #[cfg(test)]

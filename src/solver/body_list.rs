@@ -3,12 +3,12 @@
 use alloc::vec::Vec;
 
 use super::body::SolverBody;
-use super::colour::Node;
+use super::colour::{Node, Size};
 use crate::body::{Arena, Body, BodyId};
 
 /// The index of the body that stands for all those that nothing moves. Their mass fraction is 0, so that it never
 /// changes.
-const GROUND: u32 = 0;
+pub(super) const GROUND: u32 = 0;
 
 /// Bodies in the order of their slots, after the ground.
 #[derive(Clone, Debug, Default)]
@@ -64,8 +64,8 @@ impl BodyList {
     }
 
     /// A constraint between the bodies of two slots, to be coloured.
-    pub(super) fn node(&self, key: u64, bodies: &Arena<Body, BodyId>, a: u32, b: u32) -> Node {
+    pub(super) fn node(&self, key: u64, bodies: &Arena<Body, BodyId>, (a, b): (u32, u32), size: Size) -> Node {
         let dynamic = |slot: u32| bodies.at(slot).is_dynamic().then(|| self.index_of(slot));
-        Node { key, body_a: dynamic(a), body_b: dynamic(b) }
+        Node { key, body_a: dynamic(a), body_b: dynamic(b), size }
     }
 }

@@ -18,7 +18,27 @@ pub(crate) struct Node {
     pub(crate) key: u64,
     pub(crate) body_a: Option<u32>,
     pub(crate) body_b: Option<u32>,
+    /// Constraints of one colour that are of the same size are solved together.
+    pub(crate) size: Size,
 }
+
+/// How much there is to solve.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Size {
+    Large,
+    Small,
+}
+
+/// Constraints to be solved at a time.
+pub(crate) enum Group<'a> {
+    /// One after the other.
+    Serial(&'a [u32]),
+    /// In any order: no two of them touch the same dynamic body.
+    Coloured(&'a [u32]),
+}
+
+/// Places in the order: the overflow, then the large and the small ones of each colour.
+const PLACES: usize = 2 * COLOURS_MAX as usize + 1;
 
 /// Scratch of the colouring.
 #[derive(Clone, Debug, Default)]
@@ -28,6 +48,8 @@ pub(crate) struct Colouring {
     hashed: Vec<u32>,
     colours: Vec<u8>,
     order: Vec<u32>,
+    /// For each place in the order, where it ends.
+    ends: Vec<u32>,
 }
 
 impl Colouring {
@@ -50,19 +72,28 @@ impl Colouring {
             self.colours[index as usize] = colour_byte(colour);
         }
         let colours = &self.colours;
-        counting_sort(
-            nodes.len(),
-            usize::from(COLOURS_MAX) + 1,
-            |i| if colours[i] == COLOURS_MAX { 0 } else { usize::from(colours[i]) + 1 },
-            &mut self.order,
-        );
+        let place_of = |i: usize| match colours[i] {
+            COLOURS_MAX => 0,
+            colour => 2 * usize::from(colour) + if nodes[i].size == Size::Large { 1 } else { 2 },
+        };
+        counting_sort(nodes.len(), PLACES, place_of, &mut self.order);
+        self.ends.clear();
+        self.ends.resize(PLACES, 0);
+        (0..nodes.len()).for_each(|i| self.ends[place_of(i)] += 1);
+        (1..PLACES).for_each(|place| self.ends[place] += self.ends[place - 1]);
         &self.order
     }
 
-    /// How many of the last order did not fit into a colour.
-    pub(crate) fn overflow(&self) -> usize {
-        self.colours.iter().filter(|&&colour| colour == COLOURS_MAX).count()
+    /// The last order, in the groups in which it may be solved.
+    pub(crate) fn groups(&self) -> impl Iterator<Item = Group<'_>> {
+        let starts = core::iter::once(0).chain(self.ends.iter().copied());
+        let places = starts.zip(&self.ends).map(|(start, &end)| &self.order[start as usize..end as usize]);
+        places.enumerate().map(|(place, indices)| match place {
+            0 => Group::Serial(indices),
+            _ => Group::Coloured(indices),
+        })
     }
+
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "at most COLOURS_MAX")]
@@ -110,7 +141,8 @@ mod tests {
                     let a = if key % 3 == 0 { 0 } else { rng.below(bodies) };
                     let b = (a + 1 + rng.below(bodies - 1)) % bodies;
                     let fixed = key % 7 == 0;
-                    Node { key, body_a: Some(a), body_b: if fixed { None } else { Some(b) } }
+                    let size = if key % 2 == 0 { Size::Large } else { Size::Small };
+                    Node { key, body_a: Some(a), body_b: if fixed { None } else { Some(b) }, size }
                 })
                 .collect();
             let mut colouring = Colouring::default();
@@ -118,23 +150,28 @@ mod tests {
             let mut seen = order.clone();
             seen.sort_unstable();
             assert!(seen.iter().copied().eq(0..400));
-            let overflow = colouring.overflow();
-            assert!(overflow > 0, "the hub overflows");
-            assert!(order[..overflow].iter().all(|&i| colouring.colours[i as usize] == COLOURS_MAX));
-            let mut last = 0;
-            let mut in_colour = std::collections::BTreeSet::new();
-            for &index in &order[overflow..] {
-                let colour = colouring.colours[index as usize];
-                assert!(colour >= last && colour < COLOURS_MAX, "colours run in order");
-                if colour > last {
-                    in_colour.clear();
-                    last = colour;
-                }
-                let node = nodes[index as usize];
-                for body in [node.body_a, node.body_b].into_iter().flatten() {
-                    assert!(in_colour.insert(body), "body {body} twice in colour {colour}");
-                }
+            let mut solved = Vec::new();
+            for group in colouring.groups() {
+                let indices = match group {
+                    Group::Serial(indices) => {
+                        assert!(!indices.is_empty(), "the hub overflows");
+                        assert!(indices.iter().all(|&i| colouring.colours[i as usize] == COLOURS_MAX));
+                        indices
+                    }
+                    Group::Coloured(indices) => {
+                        let mut bodies = std::collections::BTreeSet::new();
+                        for node in indices.iter().map(|&i| nodes[i as usize]) {
+                            assert_eq!(node.size, nodes[indices[0] as usize].size);
+                            for body in [node.body_a, node.body_b].into_iter().flatten() {
+                                assert!(bodies.insert(body), "body {body} twice in a colour");
+                            }
+                        }
+                        indices
+                    }
+                };
+                solved.extend_from_slice(indices);
             }
+            assert_eq!(solved, order, "groups follow the order");
         }
     }
 }

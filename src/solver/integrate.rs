@@ -4,7 +4,10 @@ use super::body::SolverBody;
 use super::limits::Faults;
 use super::settings::Tuning;
 use crate::body::{Body, BodyKind, MotionLocks};
-use crate::math::{Fx, Speed, Step, Unit, Vec2, fx_div, fx_mul, narrow, saturate};
+use crate::math::{Fx, Shift, Speed, Unit, Vec2, fx_div, fx_mul, narrow, saturate};
+
+/// How far a body comes in a tick, at most.
+const SHIFT_MAX: Shift = Shift::lit("15.999");
 
 /// A body that moves, and what changes its velocity in every sub-step of the tick.
 #[derive(Clone, Copy, Debug)]
@@ -92,11 +95,11 @@ impl Mover {
     pub(crate) fn integrate_displacement(&self, bodies: &mut [SolverBody], rate: u32, faults: &mut Faults) {
         let body = &mut bodies[self.index as usize];
         self.hold_locked_axes(body);
-        let mut advance = |sum: &mut Step, speed: Speed| {
-            let step = distance(speed, rate);
-            // The speed limit keeps sums within the format, unless impulses exceed it at less than 32 Hz.
-            *faults += u64::from(sum.checked_add(step).is_none());
-            *sum = sum.saturating_add(step);
+        let mut advance = |sum: &mut Shift, speed: Speed| {
+            // Each is below 32, and so is the sum unless impulses exceed the speed limit at less than 32 Hz.
+            let wanted = sum.saturating_add(distance(speed, rate));
+            *sum = wanted.clamp(-SHIFT_MAX, SHIFT_MAX);
+            *faults += u64::from(*sum != wanted);
         };
         advance(&mut body.shift.x, body.velocity.x);
         advance(&mut body.shift.y, body.velocity.y);
@@ -107,11 +110,11 @@ impl Mover {
 /// `v / rate`, rounded to nearest, ties towards +infinity: no time step is ever rounded.
 #[inline]
 #[expect(clippy::cast_possible_truncation, reason = "at most 512 m/s in a sixtieth of a second")]
-fn distance(speed: Speed, rate: u32) -> Step {
+fn distance(speed: Speed, rate: u32) -> Shift {
     let rate = i64::from(rate);
-    // A distance has 6 more fraction bits than a speed.
-    let doubled = (i64::from(speed.to_bits()) << 7) + rate;
-    Step::from_bits(doubled.div_euclid(2 * rate) as i32)
+    // A distance has 5 more fraction bits than a speed.
+    let doubled = (i64::from(speed.to_bits()) << 6) + rate;
+    Shift::from_bits(doubled.div_euclid(2 * rate) as i32)
 }
 
 /// A damped speed, rounded towards 0: rounded to nearest it would creep on for ever.

@@ -10,9 +10,9 @@ mod colour;
 mod contact;
 mod integrate;
 mod joint;
+mod lanes;
 mod limits;
 mod point_block;
-mod rolling;
 mod row;
 mod settings;
 mod softness;
@@ -21,8 +21,8 @@ use alloc::vec::Vec;
 
 pub(crate) use body::{SolverBody, turn_of};
 use body_list::BodyList;
-use colour::{Colouring, Node};
-use contact::{ContactConstraint, Pass, Sweep};
+use colour::{Colouring, Node, Size};
+use contact::{ContactEnd, ContactSet, Pass, Sweep, Task};
 pub(crate) use contact::{Surface, WarmStarts};
 use integrate::Mover;
 use joint::JointSet;
@@ -30,6 +30,8 @@ pub use joint::{
     Distance, Drive, Joint, JointDef, JointFrame, JointKind, Limit, LinearDrive, Motor, Prismatic, Pull,
     Revolute, Soft, Spring, Threshold, ThresholdAction, Weld, Wheel,
 };
+pub use lanes::Backend;
+pub(crate) use lanes::Machine;
 use limits::Faults;
 pub(crate) use limits::IMPULSE_MAX;
 pub(crate) use settings::Tuning;
@@ -52,15 +54,12 @@ pub(crate) struct Solver {
     list: BodyList,
     movers: Vec<Mover>,
     joints: JointSet,
-    contacts: Vec<ContactConstraint>,
-    /// How many of them come before the joints: those that fit no colour, because their body has too many.
-    serial_contacts: usize,
-    /// For each constraint in `contacts`, the index of its contact in the state.
-    contact_indices: Vec<u32>,
+    contacts: ContactSet,
     /// For each contact in the state, whether its shapes have pushed each other in this tick.
     pub(crate) pushed: Vec<bool>,
     nodes: Vec<Node>,
     colouring: Colouring,
+    pub(crate) machine: Machine,
     pub(crate) warm_starts: WarmStarts,
     pub(crate) faults: Faults,
 }
@@ -113,28 +112,18 @@ impl Solver {
         bodies: &Arena<Body, BodyId>,
         tuning: &Tuning,
     ) {
-        self.nodes.clear();
+        let Solver { list, nodes, colouring, contacts: set, warm_starts, .. } = self;
+        nodes.clear();
         for pair in pairs {
             let shapes = contacts[pair.contact as usize].shapes;
             let key = u64::from(shapes.0) << 32 | u64::from(shapes.1);
-            self.nodes.push(self.list.node(key, bodies, pair.bodies.0, pair.bodies.1));
+            let single = manifolds[pair.contact as usize].points().len() == 1;
+            let size = if single { Size::Small } else { Size::Large };
+            nodes.push(list.node(key, bodies, pair.bodies, size));
         }
-        self.contacts.clear();
-        self.contact_indices.clear();
-        for &index in self.colouring.order(&self.nodes, self.list.len()) {
-            let TouchingPair { contact, bodies: (a, b), surface } = pairs[index as usize];
-            self.contact_indices.push(contact);
-            self.contacts.push(ContactConstraint::prepare(
-                &manifolds[contact as usize],
-                &contacts[contact as usize],
-                surface,
-                (self.list.index_of(a), bodies.at(a)),
-                (self.list.index_of(b), bodies.at(b)),
-                tuning,
-                &mut self.warm_starts,
-            ));
-        }
-        self.serial_contacts = self.colouring.overflow();
+        colouring.order(nodes, list.len());
+        let end = |slot: u32| ContactEnd { index: list.index_of(slot), body: bodies.at(slot) };
+        set.prepare(colouring, pairs, (manifolds, contacts), end, tuning, warm_starts);
     }
 
     /// One sub-step: aim joints, integrate velocities, warm start, solve with bias, integrate displacements,
@@ -145,10 +134,7 @@ impl Solver {
         for mover in &self.movers {
             mover.integrate_velocity(&mut self.list.bodies, tuning.speed_max);
         }
-        for contact in &mut self.contacts {
-            contact.observe_approach(&self.list.bodies, &mut self.faults);
-        }
-        self.warm_start();
+        self.warm_start(tuning);
         let iterations = tuning.iterations * if self.is_cold() { COLD_ROUNDS } else { 1 };
         for iteration in 0..iterations {
             self.solve(Pass::Bias, Sweep::of(index, iteration), tuning);
@@ -161,6 +147,9 @@ impl Solver {
             for iteration in 0..iterations {
                 self.solve(Pass::Relax, Sweep::of(index, iteration), tuning);
             }
+        } else {
+            self.perform_coloured(Task::Measure, tuning);
+            self.perform_serial(Task::Measure, tuning);
         }
     }
 
@@ -170,39 +159,36 @@ impl Solver {
         points >= COLD_POINTS && kept < points / 2
     }
 
-    fn warm_start(&mut self) {
+    fn warm_start(&mut self, tuning: &Tuning) {
         self.joints.warm_start(&mut self.list.bodies, &mut self.faults);
-        for contact in &mut self.contacts {
-            contact.warm_start(&mut self.list.bodies, &mut self.faults);
-        }
+        self.perform_serial(Task::WarmStart, tuning);
+        self.perform_coloured(Task::WarmStart, tuning);
     }
 
     fn solve(&mut self, pass: Pass, sweep: Sweep, tuning: &Tuning) {
-        let Solver { list, contacts, joints, faults, .. } = self;
-        let (serial, coloured) = contacts.split_at_mut(self.serial_contacts);
-        for contact in serial {
-            contact.solve(pass, sweep, tuning, &mut list.bodies, faults);
-        }
-        joints.solve(pass, tuning, &mut list.bodies, faults);
-        for contact in coloured {
-            contact.solve(pass, sweep, tuning, &mut list.bodies, faults);
-        }
+        let task = Task::Solve(pass, sweep);
+        self.perform_serial(task, tuning);
+        self.joints.solve(pass, tuning, &mut self.list.bodies, &mut self.faults);
+        self.perform_coloured(task, tuning);
+    }
+
+    fn perform_serial(&mut self, task: Task, tuning: &Tuning) {
+        self.contacts.perform_serial(task, tuning, &mut self.list.bodies, &mut self.faults);
+    }
+
+    fn perform_coloured(&mut self, task: Task, tuning: &Tuning) {
+        let Solver { contacts, machine, list, faults, .. } = self;
+        contacts.perform_coloured(task, *machine, tuning, &mut list.bodies, faults);
     }
 
     pub(crate) fn apply_restitution(&mut self, tuning: &Tuning) {
-        for contact in &mut self.contacts {
-            contact.apply_restitution(tuning, &mut self.list.bodies, &mut self.faults);
-        }
+        self.perform_serial(Task::Restitution, tuning);
+        self.perform_coloured(Task::Restitution, tuning);
     }
 
     /// Keeps the impulses for the next tick.
     pub(crate) fn store_impulses(&mut self, contacts: &mut [Contact], joints: &mut Arena<Joint, JointId>) {
         self.joints.store(joints);
-        self.pushed.clear();
-        self.pushed.resize(contacts.len(), false);
-        for (constraint, &index) in self.contacts.iter().zip(&self.contact_indices) {
-            constraint.store(&mut contacts[index as usize]);
-            self.pushed[index as usize] = constraint.has_pushed();
-        }
+        self.contacts.store(contacts, &mut self.pushed);
     }
 }

@@ -26,7 +26,7 @@ use super::limits::{Faults, IMPULSE_MAX, STEP_MAX};
 use super::softness::Softness;
 use crate::body::Body;
 use crate::math::{
-    Length, Ratio, Reciprocal, Speed, Step, Unit, Vec2, div_round, mul, round_shift, round_shift_wide,
+    Length, Ratio, Reciprocal, Speed, Unit, Vec2, div_round, mul, round_shift, round_shift_wide,
     saturate, saturate_wide,
 };
 
@@ -95,7 +95,7 @@ pub(crate) struct Row {
 
 /// Largest lever ratio. Two of them times the largest turns still leave 2^57 of 64 bits for the linear part of
 /// [`Row::along`].
-const RATIO_MAX: Ratio = Ratio::lit("126");
+pub(super) const RATIO_MAX: Ratio = Ratio::lit("126");
 
 /// `D` of a row, with 30 fraction bits: 1 to 15 877.
 pub(crate) type Denominator = i64;
@@ -128,6 +128,11 @@ impl Row {
         f_b: Unit::ZERO,
     };
 
+    /// Lever ratios and angular gains of A and B.
+    pub(super) fn turning_parts(&self) -> ([Ratio; 2], [Unit; 2]) {
+        ([self.e_a, self.e_b], [self.f_a, self.f_b])
+    }
+
     /// The row that measures the other way.
     pub(crate) fn reversed(&self) -> Self {
         let Row { n, e_a, e_b, g_a, g_b, f_a, f_b } = *self;
@@ -144,16 +149,6 @@ impl Row {
         let vn = saturate(bits);
         *faults += u64::from(i64::from(vn) != bits);
         Speed::from_bits(vn)
-    }
-
-    /// How far B has moved away from A along the row since the start of the tick, in units of [`Step`]. Not
-    /// saturated: the caller adds the initial separation first.
-    #[inline]
-    pub(crate) fn displacement(&self, a: &SolverBody, b: &SolverBody) -> i64 {
-        let difference = |a: Step, b: Step| i64::from(b.to_bits()) - i64::from(a.to_bits());
-        let x = difference(a.shift.x, b.shift.x);
-        let y = difference(a.shift.y, b.shift.y);
-        self.along(x, y, a.turn.to_bits(), b.turn.to_bits())
     }
 
     /// `n.d + eB tB - eA tA` in the format of its arguments: the one dot product of the kernel. The linear part
@@ -188,7 +183,7 @@ impl Row {
 
     /// Solves the row for one iteration. `lambda` is the accumulated `L`, kept within `lo..=hi`; the change `d` is
     /// returned.
-    #[inline]
+    #[cfg(test)]
     #[expect(clippy::too_many_arguments, reason = "the quantities of the equation above, all 32-bit numbers")]
     pub(crate) fn solve(
         &self,
@@ -264,12 +259,6 @@ pub(crate) fn lambda_of(p: Speed, denominator: Denominator) -> Speed {
 pub(crate) fn impulse_of(lambda: Speed, denominator: Denominator) -> Speed {
     let bits = div_round(i128::from(lambda.to_bits()) << 30, denominator.max(1).into());
     Speed::from_bits(saturate(saturate_wide(bits)))
-}
-
-/// A separation after the bodies have moved: `C0 + J.dx`, saturated.
-#[inline]
-pub(crate) fn separation(initial: Step, displacement: i64) -> Step {
-    Step::from_bits(saturate(i64::from(initial.to_bits()) + displacement))
 }
 
 #[cfg(test)]

@@ -14,8 +14,8 @@ use crate::math::{Fx, Rate, Speed, TAU, Unit, fx_div, fx_mul, narrow, round_shif
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Softness {
     pub(crate) bias_rate: Rate,
-    mass_scale: Unit,
-    impulse_scale: Unit,
+    pub(super) mass_scale: Unit,
+    pub(super) impulse_scale: Unit,
 }
 
 impl Softness {
@@ -36,11 +36,9 @@ impl Softness {
         let a2 = fx_mul(h_omega, a1);
         let a3 = fx_div(Fx::ONE, Fx::ONE.saturating_add(a2)).unwrap_or(Fx::ONE);
         let bias_rate = fx_div(omega, a1).unwrap_or(Fx::ZERO);
-        Softness {
-            bias_rate: narrow(bias_rate),
-            mass_scale: narrow(fx_mul(a2, a3)),
-            impulse_scale: narrow(a3),
-        }
+        // They add up to 1 to the last bit, so that no kernel exceeds what it takes the mean of.
+        let impulse_scale = narrow(a3);
+        Softness { bias_rate: narrow(bias_rate), mass_scale: Unit::ONE - impulse_scale, impulse_scale }
     }
 
     /// `1 + 0.6 impulseScale / massScale`, at most 1.9: how much further a joint looks ahead so that its softness

@@ -19,7 +19,7 @@ use super::scratch::Scratch;
 use super::state::{Island, State};
 use crate::body::{Body, BodyKind, Handle, IslandId};
 use crate::collision::Contact;
-use crate::math::{Fx, Speed, Step, Vec2, narrow};
+use crate::math::{Fx, Shift, Speed, Vec2, narrow};
 use crate::solver::SolverBody;
 
 /// The bodies and joints that a tick has to do with, in slot order.
@@ -220,7 +220,7 @@ fn is_slow(body: &Body, solved: &SolverBody, tick_rate: u32) -> bool {
     let fastest =
         |x: i32, y: i32, turn: i32| square(x).saturating_add(square(y)).max(square(turn).saturating_mul(4));
     let limit: Speed = narrow(body.settings.sleep_speed);
-    let reach: Step = narrow(body.settings.sleep_speed / i64::from(tick_rate));
+    let reach: Shift = narrow(body.settings.sleep_speed / i64::from(tick_rate));
     let (v, d) = (body.velocity, solved.shift);
     body.settings.may_sleep
         && fastest(v.x.to_bits(), v.y.to_bits(), body.spin.to_bits()) < square(limit.to_bits())

@@ -45,7 +45,7 @@ pub use validate::Violation;
 use crate::body::{Body, BodyId, BodyKind, JointId, Shape, ShapeId, WorldError};
 use crate::collision::{BroadPhaseKind, Manifold};
 use crate::math::Rng;
-use crate::solver::Joint;
+use crate::solver::{Backend, Joint, Machine};
 use scratch::Scratch;
 use state::State;
 
@@ -215,7 +215,22 @@ impl World {
 
     /// Chooses how overlapping pairs are found. No hash changes by it.
     pub fn set_broad_phase(&mut self, kind: BroadPhaseKind) {
+        let machine = self.scratch.solver.machine;
         self.scratch = Scratch::new(kind, &self.state);
+        self.scratch.solver.machine = machine;
+    }
+
+    /// How the solver computes: the best way that this machine has, unless [`World::set_backend`] chose another.
+    #[must_use]
+    pub fn backend(&self) -> Backend {
+        self.scratch.solver.machine.backend()
+    }
+
+    /// Chooses how the solver computes. No hash changes by it. Returns whether this machine can; if not, nothing
+    /// changes.
+    pub fn set_backend(&mut self, backend: Backend) -> bool {
+        let machine = Machine::new(backend);
+        machine.inspect(|&machine| self.scratch.solver.machine = machine).is_some()
     }
 }
 

@@ -125,7 +125,7 @@ fn finalise_poses(state: &mut State, scratch: &mut Scratch) {
 /// Takes over what the solver has found out about a body. Returns where it goes, and how far it turns in units of
 /// 2^-32 turns.
 fn finalise_body(state: &mut State, scratch: &mut Scratch, slot: u32) -> (Pose, i64) {
-    let SolverBody { velocity, spin, shift, turn } = *scratch.solver.body(slot);
+    let SolverBody { velocity, spin, shift, turn, .. } = *scratch.solver.body(slot);
     let body = state.bodies.at_mut(slot);
     body.velocity = velocity;
     body.spin = spin;

@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 
 use super::super::body::{SolverBody, turn_of};
 use super::super::body_list::BodyList;
-use super::super::colour::{Colouring, Node};
+use super::super::colour::{Colouring, Node, Size};
 use super::super::contact::Pass;
 use super::super::limits::Faults;
 use super::super::settings::Tuning;
@@ -162,7 +162,7 @@ impl JointSet {
                     self.bodies.push(JointedBody { index, angle: body.angle(), inverse_gyration });
                 }
             }
-            nodes.push(list.node(slot.into(), bodies, a.index(), b.index()));
+            nodes.push(list.node(slot.into(), bodies, (a.index(), b.index()), Size::Large));
             self.starts.push((count(&self.drafts.rows), count(&self.drafts.points)));
             self.drafts.push(joints.handle_at(slot), joint, ends[0], ends[1], tuning);
         }

@@ -1,0 +1,445 @@
+//! The contact kernel, for any number of lanes: warm start, solve, restitution.
+//!
+//! ```text
+//! J  = (-n, -eA, n, eB)                                  both rows of a point have this form
+//! vn = J v,    s = s0 + J dx
+//! w  = massScale (vn + bias) + impulseScale L,           L' = clamp(L - w, lo, hi),   d = L' - L
+//! vA -= gA d n,  uA -= fA d,  vB += gB d n,  uB += fB d
+//! ```
+//!
+//! with the gains of `row.rs`. Differences of two velocities fit because each is below 512; a sum that may not fit
+//! saturates. What is below 0 in lanes that have no contact is never looked at: their gains are 0.
+
+use super::super::body::SolverBody;
+use super::super::lanes::{Ints, Lanes, Motion};
+use super::super::limits::{Faults, IMPULSE_MAX, SPEED_MAX};
+use super::super::settings::Tuning;
+use super::batch::{Batch, Point, Row};
+use super::rolling::RollingRows;
+use super::{NORMAL_ROUNDS_MAX, Pass, RESTITUTION_ITERATIONS, SETTLED, Sweep, TANGENT_MAX};
+use crate::math::{Rate, Ratio, Shift, Speed, Unit};
+
+/// The constants of a tick.
+#[derive(Clone, Copy)]
+pub(super) struct Constants {
+    /// Sub-steps per second, in the format of [`Rate`].
+    rate: i32,
+    /// The widest gap or overlap whose speed fits.
+    separation_max: i32,
+    slop: i32,
+    push_speed: i32,
+    restitution_threshold: i32,
+}
+
+impl Constants {
+    #[expect(clippy::cast_possible_truncation, reason = "a rate is at most 4000")]
+    pub(super) fn new(tuning: &Tuning) -> Self {
+        let widest = (1023i64 << Shift::FRAC_NBITS) / i64::from(tuning.rate);
+        Constants {
+            rate: (i64::from(tuning.rate) << Rate::FRAC_NBITS) as i32,
+            separation_max: widest.min(i64::from(i32::MAX)) as i32,
+            slop: crate::math::convert::<_, fixed::types::extra::U26>(tuning.slop).to_bits(),
+            push_speed: tuning.push_speed.to_bits(),
+            restitution_threshold: tuning.restitution_threshold.to_bits(),
+        }
+    }
+}
+
+/// The bodies of a batch, while it is solved.
+struct Pair<L: Lanes<N>, const N: usize> {
+    a: Motion<L::Int>,
+    b: Motion<L::Int>,
+}
+
+impl<L: Lanes<N>, const N: usize> Pair<L, N> {
+    #[inline(always)]
+    fn load(bodies: &[SolverBody], batch: &Batch<N>) -> Self {
+        let [a, b] = &batch.bodies;
+        Pair { a: L::velocities(bodies, a), b: L::velocities(bodies, b) }
+    }
+
+    #[inline(always)]
+    fn store(self, bodies: &mut [SolverBody], batch: &Batch<N>) {
+        let [a, b] = &batch.changed;
+        L::set_velocities(bodies, a, self.a);
+        L::set_velocities(bodies, b, self.b);
+    }
+
+    /// `J v`.
+    #[inline(always)]
+    fn along(&self, n: [L::Int; 2], row: &Row<N>) -> L::Wide {
+        along::<L, N>(&self.a, &self.b, n, row)
+    }
+
+    /// `J v` as a speed. A lane in which it does not fit is a fault.
+    #[inline(always)]
+    fn velocity(&self, n: [L::Int; 2], row: &Row<N>, faults: &mut Faults) -> L::Int {
+        let (vn, out) = L::narrow_saturating::<{ Ratio::FRAC_NBITS as i32 }>(self.along(n, row));
+        if L::any(out) {
+            *faults += u64::from(L::count(out));
+        }
+        vn
+    }
+
+    /// Changes the velocities by impulses `d`.
+    #[inline(always)]
+    fn apply(&mut self, row: &Row<N>, d: L::Int, faults: &mut Faults) {
+        if L::any(L::negative(L::add(d, L::splat(HALF)))) {
+            self.apply_in_steps(row, d, faults);
+        } else {
+            self.apply_step(row, d, faults);
+        }
+    }
+
+    /// Of impulses below 512: no sum leaves the format.
+    #[inline(always)]
+    fn apply_step(&mut self, row: &Row<N>, d: L::Int, faults: &mut Faults) {
+        let Motion { x, y, turn } = self.a;
+        let a = Motion {
+            x: L::sub(x, part::<L, N>(&row.a[0], d)),
+            y: L::sub(y, part::<L, N>(&row.a[1], d)),
+            turn: L::sub(turn, part::<L, N>(&row.a[2], d)),
+        };
+        let Motion { x, y, turn } = self.b;
+        let b = Motion {
+            x: L::add(x, part::<L, N>(&row.b[0], d)),
+            y: L::add(y, part::<L, N>(&row.b[1], d)),
+            turn: L::add(turn, part::<L, N>(&row.b[2], d)),
+        };
+        (self.a, self.b) = (a, b);
+        if L::any(L::negative(L::or(beyond::<L, N>(a), beyond::<L, N>(b)))) {
+            self.clamp(faults);
+        }
+    }
+
+    /// A friction limit may shrink, and what was pushed may come free, by more than a velocity has room for.
+    #[cold]
+    fn apply_in_steps(&mut self, row: &Row<N>, mut d: L::Int, faults: &mut Faults) {
+        let limit = L::splat(HALF - 1);
+        for _ in 0..3 {
+            let step = L::min(L::max(d, L::sub(L::splat(0), limit)), limit);
+            self.apply_step(row, step, faults);
+            d = L::sub(d, step);
+        }
+    }
+
+    #[cold]
+    fn clamp(&mut self, faults: &mut Faults) {
+        let limit = L::splat(SPEED_MAX.to_bits());
+        for body in [&mut self.a, &mut self.b] {
+            for speed in [&mut body.x, &mut body.y, &mut body.turn] {
+                let within = L::min(L::max(*speed, L::sub(L::splat(0), limit)), limit);
+                let differs = L::either(L::greater(within, *speed), L::greater(*speed, within));
+                *faults += u64::from(L::count(differs));
+                *speed = within;
+            }
+        }
+    }
+}
+
+/// 512 as a speed: half of what the format holds.
+const HALF: i32 = 1 << 30;
+
+/// Negative where a component is not within ±[`HALF`]: then the sum of both is negative, or wraps to become so.
+#[inline(always)]
+fn beyond<L: Lanes<N>, const N: usize>(v: Motion<L::Int>) -> L::Int {
+    let half = L::splat(HALF);
+    L::or(L::or(L::add(v.x, half), L::add(v.y, half)), L::add(v.turn, half))
+}
+
+/// What an impulse changes.
+#[inline(always)]
+fn part<L: Lanes<N>, const N: usize>(gain: &Ints<N>, d: L::Int) -> L::Int {
+    L::narrow::<{ Unit::FRAC_NBITS as i32 }>(L::mul(L::load(gain), d))
+}
+
+/// `n.(b - a) + eB uB - eA uA`, with 24 more fraction bits.
+#[inline(always)]
+fn along<L: Lanes<N>, const N: usize>(
+    a: &Motion<L::Int>,
+    b: &Motion<L::Int>,
+    [x, y]: [L::Int; 2],
+    row: &Row<N>,
+) -> L::Wide {
+    let linear = L::add_wide(L::mul(x, L::sub(b.x, a.x)), L::mul(y, L::sub(b.y, a.y)));
+    let angular = L::sub_wide(L::mul(L::load(&row.e_b), b.turn), L::mul(L::load(&row.e_a), a.turn));
+    L::add_wide(linear, angular)
+}
+
+/// The normal and the tangent of a batch.
+#[inline(always)]
+fn directions<L: Lanes<N>, const N: usize>(batch: &Batch<N>) -> ([L::Int; 2], [L::Int; 2]) {
+    let (x, y) = (L::load(&batch.n_x), L::load(&batch.n_y));
+    ([x, y], [L::sub(L::splat(0), y), x])
+}
+
+#[inline(always)]
+fn clamp<L: Lanes<N>, const N: usize>(value: L::Int, limit: L::Int) -> L::Int {
+    L::min(L::max(value, L::sub(L::splat(0), limit)), limit)
+}
+
+/// Applies the impulses that were carried over. Of what bounces it also remembers how fast it approaches, until it is
+/// pushed: before the solver stops it.
+#[inline(always)]
+pub(super) fn warm_start<L: Lanes<N>, const N: usize>(
+    batch: &mut Batch<N>,
+    rolling: &[RollingRows<N>],
+    bodies: &mut [SolverBody],
+    faults: &mut Faults,
+) {
+    let mut pair = Pair::<L, N>::load(bodies, batch);
+    let (n, _) = directions::<L, N>(batch);
+    for point in &mut batch.points[..batch.count] {
+        if batch.bounces {
+            let vn = pair.velocity(n, &point.normal, faults);
+            let pushed = L::negative(L::load(&point.pushed));
+            L::store(L::select(pushed, L::load(&point.approach), vn), &mut point.approach);
+        }
+        pair.apply(&point.normal, L::load(&point.normal_lambda), faults);
+        pair.apply(&point.tangent, L::load(&point.tangent_lambda), faults);
+    }
+    if let Some(place) = batch.rolling {
+        let rolling = &rolling[place as usize];
+        pair.apply(&rolling.row, L::load(&rolling.lambda), faults);
+    }
+    pair.store(bodies, batch);
+}
+
+/// One iteration over all rows of a batch.
+#[inline(always)]
+pub(super) fn solve<L: Lanes<N>, const N: usize>(
+    batch: &mut Batch<N>,
+    rolling: &mut [RollingRows<N>],
+    (pass, sweep): (Pass, Sweep),
+    constants: &Constants,
+    bodies: &mut [SolverBody],
+    faults: &mut Faults,
+) {
+    let mut pair = Pair::<L, N>::load(bodies, batch);
+    let (n, t) = directions::<L, N>(batch);
+    if pass == Pass::Relax {
+        measure::<L, N>(batch, bodies);
+    }
+    let context = Context::<L, N>::new(batch, pass, constants);
+    let (first, second) = match (sweep, batch.count) {
+        (Sweep::Backward, 2) => (1, 0),
+        _ => (0, 1),
+    };
+    if batch.count == 2 {
+        let mut unsettled = L::greater(L::splat(1), L::splat(0));
+        for _ in 0..NORMAL_ROUNDS_MAX {
+            context.solve_normal(&mut batch.points[first], n, unsettled, &mut pair, faults);
+            let d = context.solve_normal(&mut batch.points[second], n, unsettled, &mut pair, faults);
+            let settled = L::splat(SETTLED.to_bits() - 1);
+            let moved = L::either(L::greater(d, settled), L::greater(L::sub(L::splat(0), settled), d));
+            unsettled = L::both(unsettled, moved);
+            if !L::any(unsettled) {
+                break;
+            }
+        }
+    } else {
+        let all = L::greater(L::splat(1), L::splat(0));
+        context.solve_normal(&mut batch.points[0], n, all, &mut pair, faults);
+    }
+    if let Some(place) = batch.rolling {
+        solve_rolling::<L, N>(&mut rolling[place as usize], &batch.points, &mut pair, faults);
+    }
+    let surface_speed = L::load(&batch.surface_speed);
+    solve_tangent::<L, N>(&mut batch.points[first], t, surface_speed, &mut pair, faults);
+    if batch.count == 2 {
+        solve_tangent::<L, N>(&mut batch.points[second], t, surface_speed, &mut pair, faults);
+    }
+    pair.store(bodies, batch);
+}
+
+/// Finds the separations where the bodies are now.
+#[inline(always)]
+pub(super) fn measure<L: Lanes<N>, const N: usize>(batch: &mut Batch<N>, bodies: &[SolverBody]) {
+    let (n, _) = directions::<L, N>(batch);
+    let (a, b) = (L::shifts(bodies, &batch.bodies[0]), L::shifts(bodies, &batch.bodies[1]));
+    for point in &mut batch.points[..batch.count] {
+        let moved = along::<L, N>(&a, &b, n, &point.normal);
+        let (moved, _) = L::narrow_saturating::<{ Ratio::FRAC_NBITS as i32 }>(moved);
+        L::store(L::add_saturating(L::load(&point.first_separation), moved), &mut point.separation);
+    }
+}
+
+/// What the normal rows of a batch have in common in a pass.
+struct Context<L: Lanes<N>, const N: usize> {
+    pass: Pass,
+    rate: L::Int,
+    separation_max: L::Int,
+    slop: L::Int,
+    push_speed: L::Int,
+    bias_rate: L::Int,
+    mass_scale: L::Int,
+    impulse_scale: L::Int,
+}
+
+impl<L: Lanes<N>, const N: usize> Context<L, N> {
+    #[inline(always)]
+    fn new(batch: &Batch<N>, pass: Pass, constants: &Constants) -> Self {
+        let &Constants { rate, separation_max, slop, push_speed, .. } = constants;
+        Context {
+            pass,
+            rate: L::splat(rate),
+            separation_max: L::splat(separation_max),
+            slop: L::splat(slop),
+            push_speed: L::splat(-push_speed),
+            bias_rate: L::load(&batch.bias_rate),
+            mass_scale: L::load(&batch.mass_scale),
+            impulse_scale: L::load(&batch.impulse_scale),
+        }
+    }
+
+    /// The bodies may touch here but not overlap. Returns the change of impulse. Lanes that are not `active` keep
+    /// theirs.
+    #[inline(always)]
+    fn solve_normal(
+        &self,
+        point: &mut Point<N>,
+        n: [L::Int; 2],
+        active: L::Mask,
+        pair: &mut Pair<L, N>,
+        faults: &mut Faults,
+    ) -> L::Int {
+        let vn = pair.velocity(n, &point.normal, faults);
+        let old = L::load(&point.normal_lambda);
+        let separation = L::load(&point.separation);
+        let gap = L::greater(separation, L::splat(0));
+        let (w, frozen) = match self.pass {
+            Pass::Bias => {
+                let error = L::add_saturating(vn, self.bias(separation, gap));
+                let mass_scale = L::select(gap, L::splat(Unit::ONE.to_bits()), self.mass_scale);
+                let impulse_scale = L::select(gap, L::splat(0), self.impulse_scale);
+                let wide = L::add_wide(L::mul(mass_scale, error), L::mul(impulse_scale, old));
+                (L::narrow::<{ Unit::FRAC_NBITS as i32 }>(wide), None)
+            }
+            // A gap that the bias pass has not closed is left to the next sub-step: to slow an approach down before
+            // it arrives, and to bounce there, would make a ball rebound from above the floor.
+            Pass::Relax => {
+                let speed = L::select(gap, self.speed_of(separation, self.rate), L::splat(0));
+                let untouched = L::both(gap, L::greater(L::splat(1), old));
+                (L::add_saturating(vn, speed), Some(untouched))
+            }
+        };
+        let wanted = L::max(L::sub_saturating(old, w), L::splat(0));
+        let over = L::greater(wanted, L::splat(IMPULSE_MAX.to_bits()));
+        if L::any(over) {
+            *faults += u64::from(L::count(over));
+        }
+        let new = L::min(wanted, L::load(&point.normal_max));
+        let new = frozen.map_or(new, |frozen| L::select(frozen, old, new));
+        let new = L::select(active, new, old);
+        L::store(new, &mut point.normal_lambda);
+        let pushed = L::to_int(L::greater(new, L::splat(0)));
+        L::store(L::or(L::load(&point.pushed), pushed), &mut point.pushed);
+        let d = L::sub(new, old);
+        pair.apply(&point.normal, d, faults);
+        d
+    }
+
+    /// The velocity that a separation asks for: a gap may close within this sub-step, but not more; an overlap is pushed
+    /// out slowly.
+    #[inline(always)]
+    fn bias(&self, separation: L::Int, gap: L::Mask) -> L::Int {
+        let overlap = L::min(L::add_saturating(separation, self.slop), L::splat(0));
+        let distance = L::select(gap, separation, overlap);
+        L::max(self.speed_of(distance, L::select(gap, self.rate, self.bias_rate)), self.push_speed)
+    }
+
+    #[inline(always)]
+    fn speed_of(&self, distance: L::Int, rate: L::Int) -> L::Int {
+        const EXTRA: i32 = (Shift::FRAC_NBITS + Rate::FRAC_NBITS - Speed::FRAC_NBITS) as i32;
+        L::narrow::<EXTRA>(L::mul(clamp::<L, N>(distance, self.separation_max), rate))
+    }
+}
+
+/// Coulomb: friction stops sliding, as far as it reaches.
+#[inline(always)]
+fn solve_tangent<L: Lanes<N>, const N: usize>(
+    point: &mut Point<N>,
+    t: [L::Int; 2],
+    surface_speed: L::Int,
+    pair: &mut Pair<L, N>,
+    faults: &mut Faults,
+) {
+    let vt = L::add_saturating(pair.velocity(t, &point.tangent, faults), surface_speed);
+    let limit = limit::<L, N>(&point.grip, &point.normal_lambda);
+    let old = L::load(&point.tangent_lambda);
+    let new = clamp::<L, N>(L::sub_saturating(old, vt), limit);
+    L::store(new, &mut point.tangent_lambda);
+    pair.apply(&point.tangent, L::sub(new, old), faults);
+}
+
+/// What a normal impulse lets a row do that it limits.
+#[inline(always)]
+fn limit<L: Lanes<N>, const N: usize>(grip: &Ints<N>, normal_lambda: &Ints<N>) -> L::Int {
+    let wide = L::mul(L::load(grip), L::load(normal_lambda));
+    let (limit, _) = L::narrow_saturating::<{ crate::math::Grip::FRAC_NBITS as i32 }>(wide);
+    L::min(limit, L::splat(TANGENT_MAX.to_bits()))
+}
+
+#[inline(always)]
+fn solve_rolling<L: Lanes<N>, const N: usize>(
+    rolling: &mut RollingRows<N>,
+    points: &[Point<N>; 2],
+    pair: &mut Pair<L, N>,
+    faults: &mut Faults,
+) {
+    let still = [L::splat(0); 2];
+    let vn = pair.velocity(still, &rolling.row, faults);
+    let first = limit::<L, N>(&rolling.grips[0], &points[0].normal_lambda);
+    let second = limit::<L, N>(&rolling.grips[1], &points[1].normal_lambda);
+    let limit = L::min(L::add_saturating(first, second), L::splat(TANGENT_MAX.to_bits()));
+    let old = L::load(&rolling.lambda);
+    let new = clamp::<L, N>(L::sub_saturating(old, vn), limit);
+    L::store(new, &mut rolling.lambda);
+    pair.apply(&rolling.row, L::sub(new, old), faults);
+}
+
+/// Once in a tick, after the sub-steps: what approached faster than the threshold and was pushed, leaves.
+#[inline(always)]
+pub(super) fn apply_restitution<L: Lanes<N>, const N: usize>(
+    batch: &mut Batch<N>,
+    constants: &Constants,
+    bodies: &mut [SolverBody],
+    faults: &mut Faults,
+) {
+    let restitution = L::load(&batch.restitution);
+    let (n, _) = directions::<L, N>(batch);
+    let masks = [
+        bounces::<L, N>(&batch.points[0], restitution, constants),
+        bounces::<L, N>(&batch.points[1], restitution, constants),
+    ];
+    if !L::any(L::either(masks[0], masks[1])) {
+        return;
+    }
+    let mut pair = Pair::<L, N>::load(bodies, batch);
+    for _ in 0..if batch.count == 2 { RESTITUTION_ITERATIONS } else { 1 } {
+        for (point, &mask) in batch.points.iter_mut().zip(&masks).take(batch.count) {
+            let bounce = L::mul(restitution, L::load(&point.approach));
+            let bounce = L::narrow::<{ Unit::FRAC_NBITS as i32 }>(bounce);
+            let error = L::add_saturating(pair.velocity(n, &point.normal, faults), bounce);
+            let old = L::load(&point.normal_lambda);
+            let wanted = L::max(L::sub_saturating(old, error), L::splat(0));
+            let new = L::select(mask, L::min(wanted, L::load(&point.normal_max)), old);
+            L::store(new, &mut point.normal_lambda);
+            pair.apply(&point.normal, L::sub(new, old), faults);
+        }
+    }
+    pair.store(bodies, batch);
+}
+
+/// Whether a point approached fast enough, and was pushed.
+#[inline(always)]
+fn bounces<L: Lanes<N>, const N: usize>(
+    point: &Point<N>,
+    restitution: L::Int,
+    constants: &Constants,
+) -> L::Mask {
+    let threshold = L::splat(1 - constants.restitution_threshold);
+    let fast = L::greater(threshold, L::load(&point.approach));
+    let pushed = L::negative(L::load(&point.pushed));
+    L::both(L::both(fast, pushed), L::greater(restitution, L::splat(0)))
+}

@@ -1,0 +1,292 @@
+//! Eight lanes in vectors of 256 bits. A product of eight is two vectors: those of the even and of the odd lanes.
+#![expect(unsafe_code, reason = "vendor intrinsics")]
+
+use core::arch::x86_64::*;
+
+use super::super::body::SolverBody;
+use super::super::body_list::GROUND;
+use super::{Ints, Kernel, Lanes, Motion, WIDTH};
+
+/// The processor's AVX2 instructions. Only a [`super::Machine`] that has them runs kernels with it: every `unsafe`
+/// here is an instruction that is there then.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Avx2;
+
+impl Avx2 {
+    /// Runs a kernel on a processor that has been asked.
+    pub(super) fn run(kernel: impl Kernel<WIDTH>) {
+        #[target_feature(enable = "avx2")]
+        unsafe fn compiled(kernel: impl Kernel<WIDTH>) {
+            kernel.run::<Avx2>();
+        }
+        // SAFETY: see `Avx2`.
+        unsafe { compiled(kernel) }
+    }
+}
+
+#[derive(Clone, Copy)]
+pub(super) struct Products {
+    even: __m256i,
+    odd: __m256i,
+}
+
+/// Even lanes from one vector, odd ones from another.
+#[inline(always)]
+fn interleave(even: __m256i, odd: __m256i) -> __m256i {
+    // SAFETY: see `Avx2`.
+    unsafe { _mm256_blend_epi32::<0b1010_1010>(even, odd) }
+}
+
+impl Lanes<WIDTH> for Avx2 {
+    type Int = __m256i;
+    type Wide = Products;
+    type Mask = __m256i;
+
+    #[inline(always)]
+    fn load(from: &Ints<WIDTH>) -> __m256i {
+        // SAFETY: see `Avx2`; 32 bytes, aligned to 32.
+        unsafe { _mm256_load_si256(from.0.as_ptr().cast()) }
+    }
+
+    #[inline(always)]
+    fn store(value: __m256i, to: &mut Ints<WIDTH>) {
+        // SAFETY: see `Avx2`; 32 bytes, aligned to 32.
+        unsafe { _mm256_store_si256(to.0.as_mut_ptr().cast(), value) }
+    }
+
+    #[inline(always)]
+    fn splat(value: i32) -> __m256i {
+        // SAFETY: see `Avx2`.
+        unsafe { _mm256_set1_epi32(value) }
+    }
+
+    #[inline(always)]
+    fn add(a: __m256i, b: __m256i) -> __m256i {
+        // SAFETY: see `Avx2`.
+        unsafe { _mm256_add_epi32(a, b) }
+    }
+
+    #[inline(always)]
+    fn sub(a: __m256i, b: __m256i) -> __m256i {
+        // SAFETY: see `Avx2`.
+        unsafe { _mm256_sub_epi32(a, b) }
+    }
+
+    #[inline(always)]
+    fn add_saturating(a: __m256i, b: __m256i) -> __m256i {
+        // SAFETY: see `Avx2`. It overflows where both signs differ from that of the sum.
+        unsafe {
+            let sum = _mm256_add_epi32(a, b);
+            let overflows = _mm256_and_si256(_mm256_xor_si256(a, sum), _mm256_xor_si256(b, sum));
+            limited(sum, overflows, a)
+        }
+    }
+
+    #[inline(always)]
+    fn sub_saturating(a: __m256i, b: __m256i) -> __m256i {
+        // SAFETY: see `Avx2`. It overflows where the signs differ and that of the difference is not the first's.
+        unsafe {
+            let difference = _mm256_sub_epi32(a, b);
+            let overflows = _mm256_and_si256(_mm256_xor_si256(a, b), _mm256_xor_si256(a, difference));
+            limited(difference, overflows, a)
+        }
+    }
+
+    #[inline(always)]
+    fn min(a: __m256i, b: __m256i) -> __m256i {
+        // SAFETY: see `Avx2`.
+        unsafe { _mm256_min_epi32(a, b) }
+    }
+
+    #[inline(always)]
+    fn max(a: __m256i, b: __m256i) -> __m256i {
+        // SAFETY: see `Avx2`.
+        unsafe { _mm256_max_epi32(a, b) }
+    }
+
+    #[inline(always)]
+    fn or(a: __m256i, b: __m256i) -> __m256i {
+        // SAFETY: see `Avx2`.
+        unsafe { _mm256_or_si256(a, b) }
+    }
+
+    #[inline(always)]
+    fn greater(a: __m256i, b: __m256i) -> __m256i {
+        // SAFETY: see `Avx2`.
+        unsafe { _mm256_cmpgt_epi32(a, b) }
+    }
+
+    #[inline(always)]
+    fn both(a: __m256i, b: __m256i) -> __m256i {
+        // SAFETY: see `Avx2`.
+        unsafe { _mm256_and_si256(a, b) }
+    }
+
+    #[inline(always)]
+    fn either(a: __m256i, b: __m256i) -> __m256i {
+        // SAFETY: see `Avx2`.
+        unsafe { _mm256_or_si256(a, b) }
+    }
+
+    #[inline(always)]
+    fn any(mask: __m256i) -> bool {
+        // SAFETY: see `Avx2`.
+        unsafe { _mm256_movemask_epi8(mask) != 0 }
+    }
+
+    #[inline(always)]
+    fn count(mask: __m256i) -> u32 {
+        // SAFETY: see `Avx2`.
+        unsafe { _mm256_movemask_ps(_mm256_castsi256_ps(mask)).count_ones() }
+    }
+
+    #[inline(always)]
+    fn select(mask: __m256i, yes: __m256i, no: __m256i) -> __m256i {
+        // SAFETY: see `Avx2`.
+        unsafe { _mm256_blendv_epi8(no, yes, mask) }
+    }
+
+    #[inline(always)]
+    fn to_int(mask: __m256i) -> __m256i {
+        mask
+    }
+
+    #[inline(always)]
+    fn negative(a: __m256i) -> __m256i {
+        // SAFETY: see `Avx2`.
+        unsafe { _mm256_srai_epi32::<31>(a) }
+    }
+
+    #[inline(always)]
+    fn mul(a: __m256i, b: __m256i) -> Products {
+        // SAFETY: see `Avx2`. It multiplies the even lanes.
+        unsafe {
+            let odd = |v| _mm256_srli_epi64::<32>(v);
+            Products { even: _mm256_mul_epi32(a, b), odd: _mm256_mul_epi32(odd(a), odd(b)) }
+        }
+    }
+
+    #[inline(always)]
+    fn add_wide(a: Products, b: Products) -> Products {
+        // SAFETY: see `Avx2`.
+        unsafe {
+            Products { even: _mm256_add_epi64(a.even, b.even), odd: _mm256_add_epi64(a.odd, b.odd) }
+        }
+    }
+
+    #[inline(always)]
+    fn sub_wide(a: Products, b: Products) -> Products {
+        // SAFETY: see `Avx2`.
+        unsafe {
+            Products { even: _mm256_sub_epi64(a.even, b.even), odd: _mm256_sub_epi64(a.odd, b.odd) }
+        }
+    }
+
+    #[inline(always)]
+    fn narrow<const SHIFT: i32>(a: Products) -> __m256i {
+        let a = rounded::<SHIFT>(a);
+        shifted::<SHIFT>(a)
+    }
+
+    #[inline(always)]
+    fn narrow_saturating<const SHIFT: i32>(a: Products) -> (__m256i, __m256i) {
+        let a = rounded::<SHIFT>(a);
+        let low = shifted::<SHIFT>(a);
+        // SAFETY: see `Avx2`. It fits if all bits above those kept equal the highest that is.
+        unsafe {
+            let high = interleave(_mm256_srli_epi64::<32>(a.even), a.odd);
+            let above = _mm256_sra_epi32(high, _mm_cvtsi32_si128(SHIFT - 1));
+            let fits = _mm256_cmpeq_epi32(above, _mm256_srai_epi32::<31>(low));
+            let limit = _mm256_xor_si256(_mm256_srai_epi32::<31>(high), _mm256_set1_epi32(i32::MAX));
+            let out = _mm256_xor_si256(fits, _mm256_set1_epi32(-1));
+            (_mm256_blendv_epi8(limit, low, fits), out)
+        }
+    }
+
+    #[inline(always)]
+    fn velocities(bodies: &[SolverBody], at: &[u32; WIDTH]) -> Motion<__m256i> {
+        // SAFETY: see `Avx2`; the first 16 bytes of a body.
+        let row = |lane: usize| unsafe { _mm_load_si128(bodies[at[lane] as usize].velocity_bits().cast()) };
+        transposed([row(0), row(1), row(2), row(3), row(4), row(5), row(6), row(7)])
+    }
+
+    #[inline(always)]
+    fn shifts(bodies: &[SolverBody], at: &[u32; WIDTH]) -> Motion<__m256i> {
+        // SAFETY: see `Avx2`; the last 16 bytes of a body.
+        let row = |lane: usize| unsafe { _mm_load_si128(bodies[at[lane] as usize].shift_bits().cast()) };
+        transposed([row(0), row(1), row(2), row(3), row(4), row(5), row(6), row(7)])
+    }
+
+    #[inline(always)]
+    fn set_velocities(bodies: &mut [SolverBody], at: &[u32; WIDTH], v: Motion<__m256i>) {
+        // SAFETY: see `Avx2`; the first 16 bytes of a body.
+        unsafe {
+            let zero = _mm256_setzero_si256();
+            let (xy_low, xy_high) = (_mm256_unpacklo_epi32(v.x, v.y), _mm256_unpackhi_epi32(v.x, v.y));
+            let (t_low, t_high) = (_mm256_unpacklo_epi32(v.turn, zero), _mm256_unpackhi_epi32(v.turn, zero));
+            let pairs = [
+                _mm256_unpacklo_epi64(xy_low, t_low),
+                _mm256_unpackhi_epi64(xy_low, t_low),
+                _mm256_unpacklo_epi64(xy_high, t_high),
+                _mm256_unpackhi_epi64(xy_high, t_high),
+            ];
+            for (lane, &pair) in pairs.iter().enumerate() {
+                let (low, high) = (_mm256_castsi256_si128(pair), _mm256_extracti128_si256::<1>(pair));
+                for (at, velocity) in [(at[lane], low), (at[lane + 4], high)] {
+                    if at != GROUND {
+                        _mm_store_si128(bodies[at as usize].velocity_bits_mut().cast(), velocity);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// A result, or the limit on the side of `sign` where it overflows.
+#[inline(always)]
+fn limited(result: __m256i, overflows: __m256i, sign: __m256i) -> __m256i {
+    // SAFETY: see `Avx2`.
+    unsafe {
+        let limit = _mm256_xor_si256(_mm256_srai_epi32::<31>(sign), _mm256_set1_epi32(i32::MAX));
+        let lanes = |v| _mm256_castsi256_ps(v);
+        // By the sign of a lane.
+        _mm256_castps_si256(_mm256_blendv_ps(lanes(result), lanes(limit), lanes(overflows)))
+    }
+}
+
+#[inline(always)]
+fn rounded<const SHIFT: i32>(a: Products) -> Products {
+    // SAFETY: see `Avx2`.
+    unsafe {
+        let half = _mm256_set1_epi64x(1 << (SHIFT - 1));
+        Products { even: _mm256_add_epi64(a.even, half), odd: _mm256_add_epi64(a.odd, half) }
+    }
+}
+
+/// The 32 bits above the lowest `SHIFT`: a logical shift brings the same ones there as an arithmetic one.
+#[inline(always)]
+fn shifted<const SHIFT: i32>(a: Products) -> __m256i {
+    // SAFETY: see `Avx2`.
+    unsafe {
+        let even = _mm256_srl_epi64(a.even, _mm_cvtsi32_si128(SHIFT));
+        let odd = _mm256_sll_epi64(a.odd, _mm_cvtsi32_si128(32 - SHIFT));
+        interleave(even, odd)
+    }
+}
+
+/// From four numbers of each body to the first three of all.
+#[inline(always)]
+fn transposed(rows: [__m128i; WIDTH]) -> Motion<__m256i> {
+    // SAFETY: see `Avx2`.
+    unsafe {
+        let pair = |lane: usize| _mm256_inserti128_si256::<1>(_mm256_castsi128_si256(rows[lane]), rows[lane + 4]);
+        let (r0, r1, r2, r3) = (pair(0), pair(1), pair(2), pair(3));
+        let (xy_01, xy_23) = (_mm256_unpacklo_epi32(r0, r1), _mm256_unpacklo_epi32(r2, r3));
+        let (t_01, t_23) = (_mm256_unpackhi_epi32(r0, r1), _mm256_unpackhi_epi32(r2, r3));
+        Motion {
+            x: _mm256_unpacklo_epi64(xy_01, xy_23),
+            y: _mm256_unpackhi_epi64(xy_01, xy_23),
+            turn: _mm256_unpacklo_epi64(t_01, t_23),
+        }
+    }
+}

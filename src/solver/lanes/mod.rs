@@ -1,0 +1,172 @@
+//! Several rows at a time: the integer operations that the wide kernels are written in.
+//!
+//! A kernel is one generic function over [`Lanes`]; a backend is one implementation of it. `Scalar<1>` solves a row
+//! alone, the others eight rows that have no body in common, in which no lane looks at another: so every backend gives
+//! the same bits, and the scalar one is the oracle of the rest. Only 32-bit numbers and their 64-bit products occur,
+//! because the widening multiplication 32 x 32 -> 64 is what all processors have (`vpmuldq`, `smull`, `i64x2.extmul`).
+
+#[cfg(target_arch = "x86_64")]
+mod avx2;
+mod scalar;
+#[cfg(test)]
+mod tests;
+
+#[cfg(target_arch = "x86_64")]
+use avx2::Avx2;
+pub(super) use scalar::Scalar;
+
+use super::body::SolverBody;
+
+/// How many rows a wide kernel solves at a time, on every machine.
+pub(super) const WIDTH: usize = 8;
+
+/// A number for each of `N` rows, aligned for the widest load.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(32))]
+pub(super) struct Ints<const N: usize>(pub(super) [i32; N]);
+
+impl<const N: usize> Ints<N> {
+    pub(super) const ZERO: Self = Ints([0; N]);
+}
+
+/// The three components of a motion: along x, along y, and turning.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Motion<T> {
+    pub(super) x: T,
+    pub(super) y: T,
+    pub(super) turn: T,
+}
+
+/// `N` lanes of 32-bit integers. Sums and differences wrap unless they are named otherwise.
+pub(super) trait Lanes<const N: usize>: Copy {
+    type Int: Copy;
+    /// Products.
+    type Wide: Copy;
+    /// A truth value for each lane.
+    type Mask: Copy;
+
+    fn load(from: &Ints<N>) -> Self::Int;
+    fn store(value: Self::Int, to: &mut Ints<N>);
+    fn splat(value: i32) -> Self::Int;
+
+    fn add(a: Self::Int, b: Self::Int) -> Self::Int;
+    fn sub(a: Self::Int, b: Self::Int) -> Self::Int;
+    fn add_saturating(a: Self::Int, b: Self::Int) -> Self::Int;
+    fn sub_saturating(a: Self::Int, b: Self::Int) -> Self::Int;
+    fn min(a: Self::Int, b: Self::Int) -> Self::Int;
+    fn max(a: Self::Int, b: Self::Int) -> Self::Int;
+    fn or(a: Self::Int, b: Self::Int) -> Self::Int;
+
+    /// `a > b`.
+    fn greater(a: Self::Int, b: Self::Int) -> Self::Mask;
+    fn both(a: Self::Mask, b: Self::Mask) -> Self::Mask;
+    fn either(a: Self::Mask, b: Self::Mask) -> Self::Mask;
+    fn any(mask: Self::Mask) -> bool;
+    /// In how many lanes it is true.
+    fn count(mask: Self::Mask) -> u32;
+    fn select(mask: Self::Mask, yes: Self::Int, no: Self::Int) -> Self::Int;
+    /// -1 where it is true, 0 where it is not.
+    fn to_int(mask: Self::Mask) -> Self::Int;
+    /// Whether a number is negative.
+    fn negative(a: Self::Int) -> Self::Mask;
+
+    /// The exact product.
+    fn mul(a: Self::Int, b: Self::Int) -> Self::Wide;
+    fn add_wide(a: Self::Wide, b: Self::Wide) -> Self::Wide;
+    fn sub_wide(a: Self::Wide, b: Self::Wide) -> Self::Wide;
+    /// `a / 2^SHIFT`, rounded to nearest, ties towards +infinity, of a number that then fits 32 bits. `SHIFT` is 1 to
+    /// 32.
+    fn narrow<const SHIFT: i32>(a: Self::Wide) -> Self::Int;
+    /// The same of any number below 2^62, saturated, and where it was. `SHIFT` is 1 to 31.
+    fn narrow_saturating<const SHIFT: i32>(a: Self::Wide) -> (Self::Int, Self::Mask);
+
+    /// The velocities of bodies.
+    fn velocities(bodies: &[SolverBody], at: &[u32; N]) -> Motion<Self::Int>;
+    /// How far bodies have come in the tick.
+    fn shifts(bodies: &[SolverBody], at: &[u32; N]) -> Motion<Self::Int>;
+    /// Sets the velocities of bodies, but for those at [`super::body_list::GROUND`].
+    fn set_velocities(bodies: &mut [SolverBody], at: &[u32; N], velocities: Motion<Self::Int>);
+}
+
+/// What can be done with any lanes.
+pub(super) trait Kernel<const N: usize> {
+    /// Must be `#[inline(always)]`, and so must whatever it calls with lanes: only then is it compiled for the
+    /// instructions of its backend.
+    fn run<L: Lanes<N>>(self);
+}
+
+/// A backend that this machine has.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Machine(Backend);
+
+impl Machine {
+    /// `None` if the machine does not have it.
+    pub(crate) fn new(backend: Backend) -> Option<Self> {
+        Backend::available().find(|&available| available == backend).map(Machine)
+    }
+
+    pub(crate) const fn backend(self) -> Backend {
+        self.0
+    }
+
+    /// Runs a kernel.
+    #[inline]
+    pub(super) fn run(self, kernel: impl Kernel<WIDTH>) {
+        match self.0 {
+            Backend::Scalar => kernel.run::<Scalar<WIDTH>>(),
+            #[cfg(target_arch = "x86_64")]
+            Backend::Avx2 => Avx2::run(kernel),
+        }
+    }
+}
+
+impl Default for Machine {
+    fn default() -> Self {
+        Machine(Backend::best())
+    }
+}
+
+/// How the solver computes. It changes how fast, never what.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Backend {
+    /// In plain integers: everywhere.
+    Scalar,
+    /// In vectors of 256 bits: most x86-64 processors since 2013.
+    #[cfg(target_arch = "x86_64")]
+    Avx2,
+}
+
+impl Backend {
+    /// Every backend that this machine can run, the best one last. Without the feature `std` only what the program was
+    /// compiled for is known.
+    pub fn available() -> impl Iterator<Item = Backend> {
+        [Some(Backend::Scalar), Backend::vectors()].into_iter().flatten()
+    }
+
+    /// The best backend of this machine.
+    #[must_use]
+    pub fn best() -> Self {
+        Backend::available().last().unwrap_or(Backend::Scalar)
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    fn vectors() -> Option<Self> {
+        #[cfg(feature = "std")]
+        let has = std::arch::is_x86_feature_detected!("avx2");
+        #[cfg(not(feature = "std"))]
+        let has = cfg!(target_feature = "avx2");
+        has.then_some(Backend::Avx2)
+    }
+
+    #[cfg(not(target_arch = "x86_64"))]
+    const fn vectors() -> Option<Self> {
+        None
+    }
+}
+
+impl Default for Backend {
+    fn default() -> Self {
+        Backend::best()
+    }
+}

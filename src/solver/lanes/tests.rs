@@ -1,0 +1,81 @@
+//! Every backend against plain integers, on numbers of all sizes.
+
+use super::*;
+use crate::math::Rng;
+
+/// Small numbers, large ones, and the ends of the format.
+fn random(rng: &mut Rng) -> i32 {
+    match rng.below(8) {
+        0 => i32::MIN,
+        1 => i32::MAX,
+        2 => 0,
+        _ => i32::from_le_bytes(rng.next_u32().to_le_bytes()) >> rng.below(31),
+    }
+}
+
+fn randoms(rng: &mut Rng) -> Ints<WIDTH> {
+    Ints(core::array::from_fn(|_| random(rng)))
+}
+
+/// All operations on the same numbers, as plain integers.
+struct Operations<'a> {
+    a: Ints<WIDTH>,
+    b: Ints<WIDTH>,
+    results: &'a mut std::vec::Vec<[i32; WIDTH]>,
+}
+
+impl Kernel<WIDTH> for Operations<'_> {
+    #[inline(always)]
+    fn run<L: Lanes<WIDTH>>(self) {
+        let (a, b) = (L::load(&self.a), L::load(&self.b));
+        let mut keep = |value: L::Int| {
+            let mut ints = Ints::ZERO;
+            L::store(value, &mut ints);
+            self.results.push(ints.0);
+        };
+        for value in [L::add(a, b), L::sub(a, b), L::add_saturating(a, b), L::sub_saturating(a, b)] {
+            keep(value);
+        }
+        for value in [L::min(a, b), L::max(a, b), L::or(a, b), L::splat(7)] {
+            keep(value);
+        }
+        let (greater, negative) = (L::greater(a, b), L::negative(a));
+        for mask in [greater, negative, L::both(greater, negative), L::either(greater, negative)] {
+            keep(L::select(mask, a, b));
+            keep(L::to_int(mask));
+            keep(L::splat(i32::try_from(L::count(mask)).unwrap()));
+            keep(L::splat(i32::from(L::any(mask))));
+        }
+        // Sums of products stay below 2^62, as they do in the kernels.
+        let quarter = L::narrow::<2>(L::mul(L::splat(1), b));
+        let products = [L::mul(a, quarter), L::add_wide(L::mul(a, quarter), L::mul(quarter, quarter))];
+        for wide in products.into_iter().chain([L::sub_wide(L::mul(quarter, quarter), L::mul(a, quarter))]) {
+            let (rounded, out) = L::narrow_saturating::<24>(wide);
+            keep(rounded);
+            keep(L::to_int(out));
+            let (rounded, out) = L::narrow_saturating::<31>(wide);
+            keep(rounded);
+            keep(L::to_int(out));
+            keep(L::narrow::<32>(wide));
+        }
+        // What fits.
+        keep(L::narrow::<30>(L::mul(quarter, L::splat(1 << 30))));
+    }
+}
+
+#[test]
+fn every_backend_computes_what_plain_integers_do() {
+    let mut rng = Rng::new(1);
+    for _ in 0..20_000 {
+        let (a, b) = (randoms(&mut rng), randoms(&mut rng));
+        let results = Backend::available().map(|backend| {
+            let mut results = std::vec::Vec::new();
+            let machine = Machine::new(backend).expect("available");
+            assert_eq!(machine.backend(), backend);
+            machine.run(Operations { a, b, results: &mut results });
+            results
+        });
+        let results: std::vec::Vec<_> = results.collect();
+        assert!(results.iter().all(|result| *result == results[0]), "{a:?} {b:?}: {results:?}");
+    }
+}
