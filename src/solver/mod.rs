@@ -160,6 +160,8 @@ impl Solver {
     }
 
     fn warm_start(&mut self, tuning: &Tuning) {
+        self.perform_serial(Task::Observe, tuning);
+        self.perform_coloured(Task::Observe, tuning);
         self.joints.warm_start(&mut self.list.bodies, &mut self.faults);
         self.perform_serial(Task::WarmStart, tuning);
         self.perform_coloured(Task::WarmStart, tuning);

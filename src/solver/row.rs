@@ -23,6 +23,7 @@ mod angular;
 
 use super::body::SolverBody;
 use super::limits::{Faults, IMPULSE_MAX, STEP_MAX};
+#[cfg(test)]
 use super::softness::Softness;
 use crate::body::Body;
 use crate::math::{

@@ -2,7 +2,7 @@
 
 use lockstep2d::body::BodyId;
 use lockstep2d::fx;
-use lockstep2d::math::{Fx, Speed, Step, Vec2, div_round, narrow};
+use lockstep2d::math::{Fx, Shift, Speed, Vec2, div_round, narrow};
 use lockstep2d::world::{Config, World};
 
 use crate::{open, run};
@@ -17,9 +17,9 @@ fn ten_seconds_equal_the_recurrence_exactly() {
     let mut game = open("free_fall");
     let body = only_body(game.world());
     let step_of = |v: Speed| {
-        // v / 240 with 6 more fraction bits than a speed has.
-        let bits = div_round(i128::from(v.to_bits()) << 6, 240);
-        Step::from_bits(bits.try_into().expect("a small step"))
+        // v / 240 with 5 more fraction bits than a speed has.
+        let bits = div_round(i128::from(v.to_bits()) << 5, 240);
+        Shift::from_bits(bits.try_into().expect("a small step"))
     };
     let gh: Speed = narrow(fx!(-10) / 240);
     let (mut v, mut x) = (Speed::ZERO, Fx::ZERO);

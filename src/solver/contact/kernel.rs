@@ -178,23 +178,33 @@ fn clamp<L: Lanes<N>, const N: usize>(value: L::Int, limit: L::Int) -> L::Int {
     L::min(L::max(value, L::sub(L::splat(0), limit)), limit)
 }
 
-/// Applies the impulses that were carried over. Of what bounces it also remembers how fast it approaches, until it is
-/// pushed: before the solver stops it.
+/// Remembers how fast shapes that bounce approach, until they push each other: before anything has been solved, since
+/// the impulses of one contact alone would be an approach to another.
+#[inline(always)]
+pub(super) fn observe<L: Lanes<N>, const N: usize>(
+    batch: &mut Batch<N>,
+    bodies: &[SolverBody],
+    faults: &mut Faults,
+) {
+    let pair = Pair::<L, N>::load(bodies, batch);
+    let (n, _) = directions::<L, N>(batch);
+    for point in &mut batch.points[..batch.count] {
+        let vn = pair.velocity(n, &point.normal, faults);
+        let pushed = L::negative(L::load(&point.pushed));
+        L::store(L::select(pushed, L::load(&point.approach), vn), &mut point.approach);
+    }
+}
+
+/// Applies the impulses that were carried over.
 #[inline(always)]
 pub(super) fn warm_start<L: Lanes<N>, const N: usize>(
-    batch: &mut Batch<N>,
+    batch: &Batch<N>,
     rolling: &[RollingRows<N>],
     bodies: &mut [SolverBody],
     faults: &mut Faults,
 ) {
     let mut pair = Pair::<L, N>::load(bodies, batch);
-    let (n, _) = directions::<L, N>(batch);
-    for point in &mut batch.points[..batch.count] {
-        if batch.bounces {
-            let vn = pair.velocity(n, &point.normal, faults);
-            let pushed = L::negative(L::load(&point.pushed));
-            L::store(L::select(pushed, L::load(&point.approach), vn), &mut point.approach);
-        }
+    for point in &batch.points[..batch.count] {
         pair.apply(&point.normal, L::load(&point.normal_lambda), faults);
         pair.apply(&point.tangent, L::load(&point.tangent_lambda), faults);
     }

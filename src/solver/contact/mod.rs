@@ -124,6 +124,8 @@ impl<const N: usize> Default for Batches<N> {
 /// What is done to all batches in turn.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Task {
+    /// Remember how fast what bounces approaches.
+    Observe,
     WarmStart,
     Solve(Pass, Sweep),
     /// Find the separations anew, where no relax pass does it.
@@ -180,6 +182,11 @@ impl<const N: usize> Kernel<N> for Perform<'_, N> {
     fn run<L: Lanes<N>>(self) {
         let Perform { batches: Batches { batches, rolling, .. }, task, constants, bodies, faults } = self;
         match task {
+            Task::Observe => {
+                for batch in batches.iter_mut().filter(|batch| batch.bounces) {
+                    kernel::observe::<L, N>(batch, bodies, faults);
+                }
+            }
             Task::WarmStart => {
                 for batch in batches {
                     kernel::warm_start::<L, N>(batch, rolling, bodies, faults);
