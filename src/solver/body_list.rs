@@ -5,6 +5,7 @@ use alloc::vec::Vec;
 use super::body::SolverBody;
 use super::colour::{Node, Size};
 use crate::body::{Arena, Body, BodyId};
+use crate::math::{Fx, Length, Reciprocal, Vec2};
 
 /// The index of the body that stands for all those that nothing moves. Their mass fraction is 0, so that it never
 /// changes.
@@ -14,10 +15,38 @@ pub(super) const GROUND: u32 = 0;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct BodyList {
     pub(super) bodies: Vec<SolverBody>,
+    /// What contacts are made of, for each of them.
+    facts: Vec<BodyFacts>,
     /// For each body slot, where its body is in `bodies`: 0 if nothing moves it.
     indices: Vec<u32>,
     /// The slots that have an index.
     slots: Vec<u32>,
+}
+
+/// What does not change within a tick.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct BodyFacts {
+    centre: Vec2<Fx>,
+    /// 0 if no impulse moves it.
+    pub(super) mass: Fx,
+    pub(super) inverse_gyration: Reciprocal,
+}
+
+impl BodyFacts {
+    const GROUND: Self = BodyFacts { centre: Vec2::ZERO, mass: Fx::ZERO, inverse_gyration: Reciprocal::ZERO };
+
+    fn of(body: &Body) -> Self {
+        BodyFacts {
+            centre: body.centre_of_mass(),
+            mass: if body.is_dynamic() { body.mass() } else { Fx::ZERO },
+            inverse_gyration: body.mass.inverse_gyration,
+        }
+    }
+
+    /// From the centre of mass to a place; of what does not turn, anything.
+    pub(super) fn to_centre(&self, place: Vec2<Fx>) -> Vec2<Length> {
+        (place - self.centre).narrow()
+    }
 }
 
 impl BodyList {
@@ -30,15 +59,19 @@ impl BodyList {
         self.slots.clear();
         self.bodies.clear();
         self.bodies.push(SolverBody::default());
+        self.facts.clear();
+        self.facts.push(BodyFacts::GROUND);
         for &slot in slots {
-            self.push(slot, SolverBody::of(bodies.at(slot)));
+            let body = bodies.at(slot);
+            self.push(slot, SolverBody::of(body), BodyFacts::of(body));
         }
     }
 
-    fn push(&mut self, slot: u32, body: SolverBody) {
+    fn push(&mut self, slot: u32, body: SolverBody, facts: BodyFacts) {
         self.indices[slot as usize] = u32::try_from(self.bodies.len()).expect("fewer than 2^32 bodies");
         self.slots.push(slot);
         self.bodies.push(body);
+        self.facts.push(facts);
     }
 
     pub(super) fn len(&self) -> usize {
@@ -53,9 +86,14 @@ impl BodyList {
     /// The same for a body with a joint: it does not share the ground's place, because joints see how it is turned.
     pub(super) fn own_index_of(&mut self, slot: u32) -> u32 {
         if self.index_of(slot) == GROUND {
-            self.push(slot, SolverBody::default());
+            self.push(slot, SolverBody::default(), BodyFacts::GROUND);
         }
         self.index_of(slot)
+    }
+
+    /// The constants of the body at an index.
+    pub(super) fn facts(&self, index: u32) -> &BodyFacts {
+        &self.facts[index as usize]
     }
 
     /// The body of a slot.

@@ -21,8 +21,8 @@ use alloc::vec::Vec;
 
 pub(crate) use body::{SolverBody, turn_of};
 use body_list::BodyList;
-use colour::{Colouring, Node, Size};
-use contact::{ContactEnd, ContactSet, Pass, Sweep, Task};
+use colour::{Colouring, Node};
+use contact::{ContactSet, Pass, Sweep, Task};
 pub(crate) use contact::{Surface, WarmStarts};
 use integrate::Mover;
 use joint::JointSet;
@@ -109,21 +109,11 @@ impl Solver {
         pairs: &[TouchingPair],
         manifolds: &[Manifold],
         contacts: &[Contact],
-        bodies: &Arena<Body, BodyId>,
         tuning: &Tuning,
     ) {
-        let Solver { list, nodes, colouring, contacts: set, warm_starts, .. } = self;
-        nodes.clear();
-        for pair in pairs {
-            let shapes = contacts[pair.contact as usize].shapes;
-            let key = u64::from(shapes.0) << 32 | u64::from(shapes.1);
-            let single = manifolds[pair.contact as usize].points().len() == 1;
-            let size = if single { Size::Small } else { Size::Large };
-            nodes.push(list.node(key, bodies, pair.bodies, size));
-        }
-        colouring.order(nodes, list.len());
-        let end = |slot: u32| ContactEnd { index: list.index_of(slot), body: bodies.at(slot) };
-        set.prepare(colouring, pairs, (manifolds, contacts), end, tuning, warm_starts);
+        let Solver { list, nodes, colouring, contacts: set, machine, warm_starts, .. } = self;
+        let source = (manifolds, contacts);
+        set.prepare(pairs, source, list, (nodes, colouring), *machine, tuning, warm_starts);
     }
 
     /// One sub-step: aim joints, integrate velocities, warm start, solve with bias, integrate displacements,

@@ -27,7 +27,7 @@ use super::limits::{Faults, IMPULSE_MAX, STEP_MAX};
 use super::softness::Softness;
 use crate::body::Body;
 use crate::math::{
-    Length, Ratio, Reciprocal, Speed, Unit, Vec2, div_round, mul, round_shift, round_shift_wide,
+    Fx, Length, Ratio, Reciprocal, Speed, Unit, Vec2, div_round, mul, round_shift, round_shift_wide,
     saturate, saturate_wide,
 };
 
@@ -41,9 +41,15 @@ pub(crate) struct MassFractions {
 impl MassFractions {
     /// `mA / (mA + mB)` of the inverse masses is `MB / (MA + MB)` of the masses.
     pub(crate) fn of(a: &Body, b: &Body) -> Self {
-        match (a.is_dynamic(), b.is_dynamic()) {
+        let mass = |body: &Body| if body.is_dynamic() { body.mass() } else { Fx::ZERO };
+        Self::of_masses(mass(a), mass(b))
+    }
+
+    /// Of the masses in kg: 0 for a body that nothing moves.
+    pub(crate) fn of_masses(a: Fx, b: Fx) -> Self {
+        match (a > 0, b > 0) {
             (true, true) => {
-                let (mass_a, mass_b) = (a.mass().to_bits().unsigned_abs(), b.mass().to_bits().unsigned_abs());
+                let (mass_a, mass_b) = (a.to_bits().unsigned_abs(), b.to_bits().unsigned_abs());
                 // Masses are below 2^62. Dropping all but 32 bits of the sum leaves room for 30 more.
                 let excess = (64 - (mass_a + mass_b).leading_zeros()).saturating_sub(32);
                 let (mass_a, mass_b) = (mass_a >> excess, mass_b >> excess);

@@ -4,6 +4,7 @@
 //! back. The contacts of bodies that have too many to be coloured are solved one by one, before all others.
 
 mod batch;
+mod input;
 mod kernel;
 mod prepare;
 mod rolling;
@@ -19,8 +20,8 @@ use crate::collision::Contact;
 use crate::math::{Fx, Speed, fx_mul};
 use batch::Batch;
 use kernel::Constants;
-pub(super) use prepare::ContactEnd;
-use prepare::Record;
+use input::Input;
+use prepare::Records;
 use rolling::RollingRows;
 
 /// Whether a pass removes position errors or only velocity errors.
@@ -104,6 +105,8 @@ pub(super) struct ContactSet {
     serial: Batches<1>,
     /// The others, colour by colour.
     coloured: Batches<WIDTH>,
+    /// What they are made of, in the order of the state.
+    inputs: Vec<Input>,
 }
 
 /// Batches of contacts in the order in which they are solved.
@@ -111,8 +114,8 @@ pub(super) struct ContactSet {
 struct Batches<const N: usize> {
     batches: Vec<Batch<N>>,
     rolling: Vec<RollingRows<N>>,
-    /// For each lane of each batch, what its contact is to be told afterwards.
-    records: Vec<[Record; N]>,
+    /// For each batch, where its results belong.
+    records: Vec<Records<N>>,
 }
 
 impl<const N: usize> Default for Batches<N> {
@@ -222,16 +225,15 @@ impl<const N: usize> Kernel<N> for Perform<'_, N> {
 impl<const N: usize> Batches<N> {
     fn store(&self, contacts: &mut [Contact], pushed: &mut [bool]) {
         for (batch, records) in self.batches.iter().zip(&self.records) {
-            for (lane, record) in records.iter().enumerate() {
-                let Some(index) = record.contact() else { continue };
+            for (lane, index, count) in records.lanes() {
                 let memory = &mut contacts[index];
                 memory.clear_points();
                 if let Some(place) = batch.rolling {
                     memory.rolling = self.rolling[place as usize].impulse(lane);
                 }
-                for (point, i) in batch.points.iter().zip(0..record.count()) {
+                for (i, point) in batch.points.iter().take(count).enumerate() {
                     let lambdas = (point.normal_lambda.0[lane], point.tangent_lambda.0[lane]);
-                    memory.push_point(record.impulse(i, lambdas));
+                    memory.push_point(records.impulse(lane, i, lambdas));
                     pushed[index] |= point.pushed.0[lane] != 0;
                 }
             }

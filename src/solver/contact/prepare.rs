@@ -1,113 +1,114 @@
-//! Fills batches: what the kernels need of a contact, in the order in which they solve it.
+//! Fills batches: the rows of eight contacts at a time, in the order in which they are solved.
+//!
+//! ```text
+//! D = aA (1 + eA^2) + aB (1 + eB^2),   g = a / D,   f = g e,   grip = mu Dt / Dn,   L = p D
+//! ```
 
 use alloc::vec::Vec;
 
-use super::super::body_list::GROUND;
-use super::super::colour::{Colouring, Group};
-use super::super::lanes::WIDTH;
-use super::super::limits::IMPULSE_MAX;
-use super::super::row::{Denominator, Lever, MassFractions, turning};
-use super::super::settings::Tuning;
 use super::super::TouchingPair;
-use super::batch::{Batch, Point, Row};
+use super::super::body_list::BodyList;
+use super::super::colour::{Colouring, Group, Node};
+use super::super::lanes::{Ints, Kernel, Lanes, Machine, Scalar, WIDTH};
+use super::super::limits::IMPULSE_MAX;
+use super::super::settings::Tuning;
+use super::batch::{Batch, Row};
+use super::input::Input;
 use super::rolling::RollingRows;
-use super::{Batches, ContactSet, Surface, TANGENT_MAX, WarmStarts};
-use crate::body::Body;
-use crate::collision::{Contact, Manifold, ManifoldPoint, PointImpulse};
-use crate::math::{
-    Fx, Grip, Length, Ratio, Shift, Speed, Unit, Vec2, convert, mul, narrow, round_shift_wide, saturate, saturate_wide,
-};
+use super::{Batches, ContactSet, TANGENT_MAX, WarmStarts};
+use crate::collision::{Contact, Manifold, PointImpulse};
+use crate::math::{Fx, Grip, Ratio, Speed, Unit, mul, narrow, round_shift_wide, saturate, saturate_wide};
 
-/// A body at one end of a contact.
-#[derive(Clone, Copy)]
-pub(in crate::solver) struct ContactEnd<'a> {
-    /// Where the kernels find it.
-    pub(in crate::solver) index: u32,
-    pub(in crate::solver) body: &'a Body,
-}
-
-/// What it takes to bring the impulses of a lane back to its contact.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Record {
-    /// [`NO_CONTACT`] for a lane that is not used.
-    contact: u32,
-    count: u8,
-    features: [u16; 2],
+/// What it takes to bring the impulses of a batch back to its contacts.
+#[derive(Clone, Debug)]
+pub(super) struct Records<const N: usize> {
+    /// How many lanes are used.
+    len: u32,
+    contacts: [u32; N],
+    counts: [u8; N],
+    features: [[u16; 2]; N],
     /// `1 / D` of the normal and the tangent of each point.
-    inverse_denominators: [[Unit; 2]; 2],
+    inverses: [[Ints<N>; 2]; 2],
 }
 
-const NO_CONTACT: u32 = u32::MAX;
-
-impl Record {
-    const NONE: Self = Record {
-        contact: NO_CONTACT,
-        count: 0,
-        features: [0; 2],
-        inverse_denominators: [[Unit::ZERO; 2]; 2],
+impl<const N: usize> Records<N> {
+    const NONE: Self = Records {
+        len: 0,
+        contacts: [0; N],
+        counts: [0; N],
+        features: [[0; 2]; N],
+        inverses: [[Ints::ZERO; 2]; 2],
     };
 
-    /// The index of the contact, unless the lane is empty.
-    pub(super) fn contact(&self) -> Option<usize> {
-        (self.contact != NO_CONTACT).then_some(self.contact as usize)
-    }
-
-    pub(super) fn count(&self) -> usize {
-        self.count.into()
+    /// The lanes that are used, each with the index of its contact and its number of points.
+    pub(super) fn lanes(&self) -> impl Iterator<Item = (usize, usize, usize)> {
+        let lanes = self.contacts.iter().zip(&self.counts).take(self.len as usize);
+        lanes.enumerate().map(|(lane, (&contact, &count))| (lane, contact as usize, count.into()))
     }
 
     /// What is kept of the impulses of a point: `p = L / D`.
-    pub(super) fn impulse(&self, point: usize, (normal, tangent): (i32, i32)) -> PointImpulse {
-        let [inverse_normal, inverse_tangent] = self.inverse_denominators[point];
+    pub(super) fn impulse(&self, lane: usize, point: usize, (normal, tangent): (i32, i32)) -> PointImpulse {
+        let inverse = |row: usize| Unit::from_bits(self.inverses[point][row].0[lane]);
         PointImpulse {
-            feature: self.features[point],
-            normal: mul(inverse_normal, Speed::from_bits(normal)),
-            tangent: mul(inverse_tangent, Speed::from_bits(tangent)),
+            feature: self.features[lane][point],
+            normal: mul(inverse(0), Speed::from_bits(normal)),
+            tangent: mul(inverse(1), Speed::from_bits(tangent)),
         }
     }
 }
 
 impl ContactSet {
-    /// Takes the contacts of a tick, in the order of their colours.
-    pub(in crate::solver) fn prepare<'a>(
+    /// Takes the contacts of a tick, and sorts them into colours.
+    #[expect(clippy::too_many_arguments, reason = "what a contact is made of lies in several places")]
+    pub(in crate::solver) fn prepare(
         &mut self,
-        colouring: &Colouring,
         pairs: &[TouchingPair],
         (manifolds, contacts): (&[Manifold], &[Contact]),
-        end: impl Fn(u32) -> ContactEnd<'a>,
+        list: &BodyList,
+        (nodes, colouring): (&mut Vec<Node>, &mut Colouring),
+        machine: Machine,
         tuning: &Tuning,
         warm: &mut WarmStarts,
     ) {
-        let Self { serial, coloured } = self;
-        serial.clear();
-        coloured.clear();
-        let source = |index: u32| {
-            let TouchingPair { contact, bodies: (a, b), surface } = pairs[index as usize];
-            let (manifold, memory) = (&manifolds[contact as usize], &contacts[contact as usize]);
-            Source { contact, manifold, memory, surface, a: end(a), b: end(b), tuning }
-        };
-        for group in colouring.groups() {
-            match group {
-                Group::Serial(indices) => {
-                    indices.iter().for_each(|&index| serial.push(&[index], source, warm));
-                }
-                Group::Coloured(indices) => {
-                    indices.chunks(WIDTH).for_each(|chunk| coloured.push(chunk, source, warm));
-                }
-            }
+        let Self { serial, coloured, inputs } = self;
+        inputs.clear();
+        nodes.clear();
+        for pair in pairs {
+            let (manifold, memory) = (&manifolds[pair.contact as usize], &contacts[pair.contact as usize]);
+            let input = Input::new(pair, manifold, memory, list, warm);
+            nodes.push(input.node(memory.shapes));
+            inputs.push(input);
         }
+        colouring.order(nodes, list.len());
+        Fill { batches: serial, inputs, colouring, tuning }.run::<Scalar<1>>();
+        machine.run(Fill { batches: coloured, inputs, colouring, tuning });
     }
 }
 
-/// A contact, before it is prepared.
-struct Source<'a> {
-    contact: u32,
-    manifold: &'a Manifold,
-    memory: &'a Contact,
-    surface: Surface,
-    a: ContactEnd<'a>,
-    b: ContactEnd<'a>,
+/// Fills the batches of `N` contacts.
+struct Fill<'a, const N: usize> {
+    batches: &'a mut Batches<N>,
+    inputs: &'a [Input],
+    colouring: &'a Colouring,
     tuning: &'a Tuning,
+}
+
+impl<const N: usize> Kernel<N> for Fill<'_, N> {
+    #[inline(always)]
+    fn run<L: Lanes<N>>(self) {
+        let Fill { batches, inputs, colouring, tuning } = self;
+        batches.clear();
+        for group in colouring.groups() {
+            let indices = match group {
+                Group::Serial(indices) if N == 1 => indices,
+                Group::Coloured(indices) if N == WIDTH => indices,
+                _ => continue,
+            };
+            for chunk in indices.chunks(N) {
+                batches.push::<L>(inputs, chunk, tuning);
+            }
+        }
+    }
 }
 
 impl<const N: usize> Batches<N> {
@@ -119,154 +120,180 @@ impl<const N: usize> Batches<N> {
     }
 
     /// Adds a batch of up to `N` contacts.
-    fn push<'a>(&mut self, indices: &[u32], source: impl Fn(u32) -> Source<'a>, warm: &mut WarmStarts) {
+    #[inline(always)]
+    fn push<L: Lanes<N>>(&mut self, inputs: &[Input], indices: &[u32], tuning: &Tuning) {
         let Batches { batches, rolling, records } = self;
         batches.push(Batch::NONE);
-        records.push([Record::NONE; N]);
+        records.push(Records::NONE);
         let (Some(batch), Some(records)) = (batches.last_mut(), records.last_mut()) else { return };
-        for (lane, (record, &index)) in records.iter_mut().zip(indices).enumerate() {
-            *record = source(index).fill(batch, lane, rolling, warm);
+        let mut gathered = Gathered::NONE;
+        for (lane, &index) in indices.iter().enumerate() {
+            gathered.take(&inputs[index as usize], lane, batch, records, tuning);
+        }
+        gathered.fill::<L>(batch, records);
+        let resists = |&&index: &&u32| inputs[index as usize].rolling_resistance > 0;
+        if indices.iter().any(|index| resists(&index)) {
+            batch.rolling = Some(u32::try_from(rolling.len()).expect("fewer than 2^32 contacts"));
+            let mut rows = RollingRows::NONE;
+            for (lane, index) in indices.iter().enumerate().filter(|(_, index)| resists(index)) {
+                let inverses = [0, 1].map(|point| Unit::from_bits(records.inverses[point][0].0[lane]));
+                rows.fill(lane, &inputs[*index as usize], inverses);
+            }
+            rolling.push(rows);
         }
     }
 }
 
-impl Source<'_> {
-    fn fill<const N: usize>(
-        &self,
-        batch: &mut Batch<N>,
+/// What the rows of a batch are made of, lane by lane.
+struct Gathered<const N: usize> {
+    fractions: [Ints<N>; 2],
+    friction: Ints<N>,
+    /// For each point, the impulses of the last tick: along the normal and along the tangent.
+    carried: [[Ints<N>; 2]; 2],
+}
+
+impl<const N: usize> Gathered<N> {
+    const NONE: Self = Gathered {
+        fractions: [Ints::ZERO; 2],
+        friction: Ints::ZERO,
+        carried: [[Ints::ZERO; 2]; 2],
+    };
+
+    /// Puts a contact into a lane.
+    #[inline(always)]
+    fn take(
+        &mut self,
+        input: &Input,
         lane: usize,
-        rolling: &mut Vec<RollingRows<N>>,
-        warm: &mut WarmStarts,
-    ) -> Record {
-        let &Source { manifold, memory, surface, a, b, tuning, .. } = self;
-        let fractions = MassFractions::of(a.body, b.body);
-        let ends = [(a, fractions.a), (b, fractions.b)];
-        let softness = match ends.iter().any(|&(_, fraction)| fraction == 0) {
-            true => tuning.contact_immovable,
-            false => tuning.contact,
-        };
-        for (side, (end, fraction)) in ends.into_iter().enumerate() {
-            batch.bodies[side][lane] = end.index;
-            batch.changed[side][lane] = if fraction == 0 { GROUND } else { end.index };
+        batch: &mut Batch<N>,
+        records: &mut Records<N>,
+        tuning: &Tuning,
+    ) {
+        self.fractions[0].0[lane] = input.fractions.a.to_bits();
+        self.fractions[1].0[lane] = input.fractions.b.to_bits();
+        self.friction.0[lane] = input.friction;
+        for side in 0..2 {
+            batch.bodies[side][lane] = input.bodies[side];
+            batch.changed[side][lane] = input.changed(side);
         }
-        let n: Vec2<Ratio> = manifold.normal.convert();
-        batch.n_x.0[lane] = n.x.to_bits();
-        batch.n_y.0[lane] = n.y.to_bits();
+        let softness = input.softness(tuning);
+        batch.n_x.0[lane] = input.n.x.to_bits();
+        batch.n_y.0[lane] = input.n.y.to_bits();
         batch.bias_rate.0[lane] = softness.bias_rate.to_bits();
         batch.mass_scale.0[lane] = softness.mass_scale.to_bits();
         batch.impulse_scale.0[lane] = softness.impulse_scale.to_bits();
-        batch.surface_speed.0[lane] = narrow::<fixed::types::extra::U21>(surface.surface_speed).to_bits();
-        batch.restitution.0[lane] = narrow::<fixed::types::extra::U30>(surface.restitution).to_bits();
-        batch.bounces |= surface.restitution > 0;
-
-        let points = manifold.points();
-        batch.count = batch.count.max(points.len());
-        let mut record = Record { contact: self.contact, ..Record::NONE };
-        let mut inverse_normals = [Unit::ZERO; 2];
-        for (i, point) in points.iter().enumerate() {
-            let carried = memory.impulse_of(point.feature);
-            warm.points += 1;
-            warm.kept += u32::from(carried.is_some());
-            record.count += 1;
-            record.features[i] = point.feature.0;
-            let inverses =
-                self.fill_point(&mut batch.points[i], lane, n, point, fractions, carried.unwrap_or_default());
-            record.inverse_denominators[i] = inverses;
-            inverse_normals[i] = inverses[0];
+        batch.surface_speed.0[lane] = input.surface_speed.to_bits();
+        batch.restitution.0[lane] = input.restitution.to_bits();
+        batch.bounces |= input.restitution > 0;
+        batch.count = batch.count.max(input.count.into());
+        records.len += 1;
+        records.contacts[lane] = input.contact;
+        records.counts[lane] = input.count;
+        records.features[lane] = input.features;
+        for (i, from) in input.points.iter().take(input.count.into()).enumerate() {
+            let point = &mut batch.points[i];
+            for (row, e) in [(&mut point.normal, from.normal), (&mut point.tangent, from.tangent)] {
+                row.e_a.0[lane] = e[0].to_bits();
+                row.e_b.0[lane] = e[1].to_bits();
+            }
+            point.first_separation.0[lane] = from.separation.to_bits();
+            point.separation.0[lane] = from.separation.to_bits();
+            point.normal_max.0[lane] = IMPULSE_MAX.to_bits();
+            self.carried[i][0].0[lane] = from.carried[0].to_bits();
+            self.carried[i][1].0[lane] = from.carried[1].to_bits();
         }
-        let still_there = |old: &PointImpulse| points.iter().any(|point| point.feature.0 == old.feature);
-        let lost = memory.points().iter().filter(|old| old.normal > 0 && !still_there(old)).count();
-        warm.lost += u32::try_from(lost).expect("at most 2 points");
-        if surface.rolling_resistance > 0 {
-            self.fill_rolling(batch, lane, rolling, fractions, inverse_normals);
-        }
-        record
     }
 
-    /// Returns `1 / D` of both rows.
-    fn fill_point<const N: usize>(
-        &self,
-        point: &mut Point<N>,
-        lane: usize,
-        n: Vec2<Ratio>,
-        from: &ManifoldPoint,
-        fractions: MassFractions,
-        carried: PointImpulse,
-    ) -> [Unit; 2] {
-        let lever = |end: ContactEnd<'_>| {
-            let to_end = (self.manifold.origin - end.body.centre_of_mass()).narrow();
-            Lever { arm: from.anchor + to_end, inverse_gyration: end.body.mass.inverse_gyration }
-        };
-        let levers = [lever(self.a), lever(self.b)];
-        let normal = fill_row(&mut point.normal, lane, n, levers, fractions);
-        let tangent = fill_row(&mut point.tangent, lane, n.perp(), levers, fractions);
-        let separation: Shift = convert(from.separation);
-        point.first_separation.0[lane] = separation.to_bits();
-        point.separation.0[lane] = separation.to_bits();
-        let ratio = round_shift_wide(i128::from(tangent.0) * i128::from(normal.1.to_bits()), 30);
-        point.grip.0[lane] = grip(self.surface.friction, saturate_wide(ratio)).to_bits();
-        point.normal_max.0[lane] = IMPULSE_MAX.to_bits();
-        let lambda = |p: Speed, denominator: Denominator, limit: Speed| {
-            let bits = round_shift_wide(i128::from(p.to_bits()) * i128::from(denominator), 30);
-            saturate(saturate_wide(bits)).clamp(-limit.to_bits(), limit.to_bits())
-        };
-        // A guess, so that to clamp it is no fault.
-        point.normal_lambda.0[lane] = lambda(carried.normal, normal.0, IMPULSE_MAX).max(0);
-        point.tangent_lambda.0[lane] = lambda(carried.tangent, tangent.0, TANGENT_MAX);
-        [normal.1, tangent.1]
-    }
-
-    fn fill_rolling<const N: usize>(
-        &self,
-        batch: &mut Batch<N>,
-        lane: usize,
-        rolling: &mut Vec<RollingRows<N>>,
-        fractions: MassFractions,
-        inverse_normals: [Unit; 2],
-    ) {
-        let gyrations = [self.a, self.b].map(|end| end.body.mass.inverse_gyration);
-        let place = *batch.rolling.get_or_insert_with(|| {
-            rolling.push(RollingRows::NONE);
-            u32::try_from(rolling.len() - 1).expect("fewer than 2^32 contacts")
-        });
-        let (resistance, carried) = (self.surface.rolling_resistance, self.memory.rolling);
-        rolling[place as usize].fill(lane, gyrations, fractions, resistance, inverse_normals, carried);
+    /// Makes the rows of what has been gathered.
+    #[inline(always)]
+    fn fill<L: Lanes<N>>(&self, batch: &mut Batch<N>, records: &mut Records<N>) {
+        let (x, y) = (L::load(&batch.n_x), L::load(&batch.n_y));
+        let minus_y = L::sub(L::splat(0), y);
+        let fractions = [L::load(&self.fractions[0]), L::load(&self.fractions[1])];
+        for i in 0..batch.count {
+            let (point, [normal_inverses, tangent_inverses]) = (&mut batch.points[i], &mut records.inverses[i]);
+            let normal = fill_row::<L, N>(&mut point.normal, [x, y], fractions, normal_inverses);
+            let tangent = fill_row::<L, N>(&mut point.tangent, [minus_y, x], fractions, tangent_inverses);
+            for lane in 0..N {
+                let ratio = i128::from(tangent[lane]) * i128::from(normal_inverses.0[lane]);
+                let ratio = saturate_wide(round_shift_wide(ratio, 30));
+                let friction = i64::from(self.friction.0[lane]);
+                point.grip.0[lane] = grip_of(friction, ratio).to_bits();
+                let [normal_p, tangent_p] = self.carried[i].each_ref().map(|carried| carried.0[lane]);
+                // A guess, so that to clamp it is no fault.
+                point.normal_lambda.0[lane] = carried(normal_p, normal[lane], IMPULSE_MAX).max(0);
+                point.tangent_lambda.0[lane] = carried(tangent_p, tangent[lane], TANGENT_MAX);
+            }
+        }
     }
 }
 
-/// Fills a lane of a row. Returns its denominator, with 30 fraction bits, and the reciprocal of that.
-fn fill_row<const N: usize>(
+/// `p D`, as far as a limit.
+#[inline(always)]
+fn carried(p: i32, denominator: i64, limit: Speed) -> i32 {
+    let bits = round_shift_wide(i128::from(p) * i128::from(denominator), 30);
+    saturate(saturate_wide(bits)).clamp(-limit.to_bits(), limit.to_bits())
+}
+
+/// Makes the gains of a row from its lever ratios. Returns its denominators, with 30 fraction bits.
+#[inline(always)]
+fn fill_row<L: Lanes<N>, const N: usize>(
     row: &mut Row<N>,
-    lane: usize,
-    n: Vec2<Ratio>,
-    [a, b]: [Lever; 2],
-    fractions: MassFractions,
-) -> (Denominator, Unit) {
-    let (e_a, e_b) = (lever_ratio(a, n), lever_ratio(b, n));
-    row.e_a.0[lane] = e_a.to_bits();
-    row.e_b.0[lane] = e_b.to_bits();
-    let one = i64::from(fractions.a.to_bits()) + i64::from(fractions.b.to_bits());
-    let denominator = (one + turning(fractions.a, e_a, e_a) + turning(fractions.b, e_b, e_b)).max(1 << 29);
-    let inverse = Unit::from_bits(saturate((1i64 << 60) / denominator));
-    for (gains, fraction, e) in [(&mut row.a, fractions.a, e_a), (&mut row.b, fractions.b, e_b)] {
-        let g: Unit = mul(fraction, inverse);
-        for (gain, direction) in gains.iter_mut().zip([n.x, n.y, e]) {
-            gain.0[lane] = mul::<_, _, fixed::types::extra::U30>(g, direction).to_bits();
-        }
+    n: [L::Int; 2],
+    fractions: [L::Int; 2],
+    inverses: &mut Ints<N>,
+) -> [i64; N] {
+    const RATIO: i32 = Ratio::FRAC_NBITS as i32;
+    const UNIT: i32 = Unit::FRAC_NBITS as i32;
+    let (e_a, e_b) = (L::load(&row.e_a), L::load(&row.e_b));
+    // Ratios and their products with a fraction have 24 fraction bits, and their squares 48.
+    let ae = L::narrow::<UNIT>(L::mul(fractions[0], e_a));
+    let be = L::narrow::<UNIT>(L::mul(fractions[1], e_b));
+    let squares = L::add_wide(L::mul(ae, e_a), L::mul(be, e_b));
+    let ones = L::mul(L::add(fractions[0], fractions[1]), L::splat(1 << 18));
+    let denominators = L::to_array(L::add_wide(squares, ones)).map(|wide| wide >> 18);
+    for (inverse, &denominator) in inverses.0.iter_mut().zip(&denominators) {
+        *inverse = reciprocal(denominator);
     }
-    (denominator, inverse)
+    let inverse = L::load(inverses);
+    for (gains, fraction, e) in [(&mut row.a, fractions[0], e_a), (&mut row.b, fractions[1], e_b)] {
+        let g = L::narrow::<UNIT>(L::mul(fraction, inverse));
+        L::store(L::narrow::<RATIO>(L::mul(g, n[0])), &mut gains[0]);
+        L::store(L::narrow::<RATIO>(L::mul(g, n[1])), &mut gains[1]);
+        L::store(L::narrow::<RATIO>(L::mul(g, e)), &mut gains[2]);
+    }
+    denominators
 }
 
-/// `e = c / k`.
-fn lever_ratio(lever: Lever, n: Vec2<Ratio>) -> Ratio {
-    let c: Length = lever.arm.cross(n);
-    let e: Ratio = lever.inverse_gyration.times(c);
-    e.clamp(-super::super::row::RATIO_MAX, super::super::row::RATIO_MAX)
+/// `1 / D`, both with 30 fraction bits; of a lane without a contact, whose fractions are 0, anything.
+#[inline(always)]
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "D is 1 or more, so it is at most 1")]
+fn reciprocal(denominator: i64) -> i32 {
+    ((1u64 << 60) / denominator.max(1 << 30) as u64) as i32
 }
 
 /// `mu r`, with `r = Dt / Dn` with 30 fraction bits, saturated.
-pub(in crate::solver) fn grip(friction: Fx, ratio: i64) -> Grip {
-    let friction: Grip = narrow(friction);
-    let wide = i128::from(friction.to_bits()) * i128::from(ratio);
+pub(super) fn grip(friction: Fx, ratio: i64) -> Grip {
+    grip_of(narrow::<fixed::types::extra::U20>(friction).to_bits().into(), ratio)
+}
+
+#[inline(always)]
+fn grip_of(friction: i64, ratio: i64) -> Grip {
+    let wide = i128::from(friction) * i128::from(ratio);
     Grip::from_bits(saturate(saturate_wide(round_shift_wide(wide, 30))))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fx;
+
+    #[test]
+    fn grip_is_friction_times_the_ratio_of_denominators() {
+        let one = 1i64 << 30;
+        assert_eq!(grip(fx!(0.5), one), Grip::lit("0.5"));
+        assert_eq!(grip(fx!(0.5), 4 * one), Grip::lit("2"));
+        assert_eq!(grip(fx!(0.5), one / 4), Grip::lit("0.125"));
+        assert_eq!(grip(fx!(16), 16130 * one), Grip::MAX, "saturated, not wrapped");
+    }
 }

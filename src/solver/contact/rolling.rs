@@ -11,11 +11,12 @@
 //! ```
 
 use super::super::lanes::Ints;
-use super::super::row::{Denominator, MassFractions, Row as ScalarRow, impulse_of, lambda_of};
+use super::super::row::{Denominator, Row as ScalarRow, impulse_of, lambda_of};
 use super::TANGENT_MAX;
 use super::batch::Row;
+use super::input::Input;
 use super::prepare::grip;
-use crate::math::{Fx, Reciprocal, Speed, fx_div, round_shift_wide, saturate_wide};
+use crate::math::{Speed, Unit, fx_div, round_shift_wide, saturate_wide};
 
 /// The rolling rows of a batch. Few surfaces resist rolling, and the others should not carry rows for it through the
 /// caches.
@@ -37,20 +38,17 @@ impl<const N: usize> RollingRows<N> {
         denominators: [0; N],
     };
 
-    /// `normals` are the reciprocals of the points' denominators, 0 for a missing one; `carried` is the impulse of the
-    /// last tick.
+    /// `inverse_normals` are the reciprocals of the points' denominators, 0 for a missing one.
     pub(super) fn fill(
         &mut self,
         lane: usize,
-        [a, b]: [Reciprocal; 2],
-        fractions: MassFractions,
-        resistance: Fx,
-        inverse_normals: [crate::math::Unit; 2],
-        carried: Speed,
+        input: &Input,
+        inverse_normals: [Unit; 2],
     ) {
+        let &Input { gyrations: [a, b], fractions, rolling_resistance, rolling, .. } = input;
         let (row, denominator, scale) = ScalarRow::angular(a, b, fractions);
         // Neither body turns if there is no scale.
-        let Some(length) = fx_div(resistance, scale.into()) else { return };
+        let Some(length) = fx_div(rolling_resistance, scale.into()) else { return };
         let (e, f) = row.turning_parts();
         (self.row.e_a.0[lane], self.row.e_b.0[lane]) = (e[0].to_bits(), e[1].to_bits());
         (self.row.a[2].0[lane], self.row.b[2].0[lane]) = (f[0].to_bits(), f[1].to_bits());
@@ -58,7 +56,7 @@ impl<const N: usize> RollingRows<N> {
             let ratio = round_shift_wide(i128::from(denominator) * i128::from(inverse.to_bits()), 30);
             grips.0[lane] = grip(length, saturate_wide(ratio)).to_bits();
         }
-        self.lambda.0[lane] = lambda_of(carried, denominator).clamp(-TANGENT_MAX, TANGENT_MAX).to_bits();
+        self.lambda.0[lane] = lambda_of(rolling, denominator).clamp(-TANGENT_MAX, TANGENT_MAX).to_bits();
         self.denominators[lane] = denominator;
     }
 

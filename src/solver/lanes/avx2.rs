@@ -204,6 +204,17 @@ impl Lanes<WIDTH> for Avx2 {
     }
 
     #[inline(always)]
+    fn to_array(a: Products) -> [i64; WIDTH] {
+        let (mut even, mut odd) = ([0i64; 4], [0i64; 4]);
+        // SAFETY: see `Avx2`; 32 bytes each.
+        unsafe {
+            _mm256_storeu_si256(even.as_mut_ptr().cast(), a.even);
+            _mm256_storeu_si256(odd.as_mut_ptr().cast(), a.odd);
+        }
+        [even[0], odd[0], even[1], odd[1], even[2], odd[2], even[3], odd[3]]
+    }
+
+    #[inline(always)]
     fn velocities(bodies: &[SolverBody], at: &[u32; WIDTH]) -> Motion<__m256i> {
         // SAFETY: see `Avx2`; the first 16 bytes of a body.
         let row = |lane: usize| unsafe { _mm_load_si128(bodies[at[lane] as usize].velocity_bits().cast()) };

@@ -80,6 +80,8 @@ pub(super) trait Lanes<const N: usize>: Copy {
     /// The same of any number below 2^62, saturated, and where it was. `SHIFT` is 1 to 31.
     fn narrow_saturating<const SHIFT: i32>(a: Self::Wide) -> (Self::Int, Self::Mask);
 
+    fn to_array(a: Self::Wide) -> [i64; N];
+
     /// The velocities of bodies.
     fn velocities(bodies: &[SolverBody], at: &[u32; N]) -> Motion<Self::Int>;
     /// How far bodies have come in the tick.

@@ -138,6 +138,11 @@ impl<const N: usize> Lanes<N> for Scalar<N> {
     }
 
     #[inline(always)]
+    fn to_array(a: [i64; N]) -> [i64; N] {
+        a
+    }
+
+    #[inline(always)]
     fn velocities(bodies: &[SolverBody], at: &[u32; N]) -> Motion<[i32; N]> {
         let bodies = at.map(|at| &bodies[at as usize]);
         Motion {

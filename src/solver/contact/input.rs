@@ -1,0 +1,140 @@
+//! What is known of a contact before its rows are made: taken from the state in the order in which it lies there, so
+//! that only this compact copy is read in the order of colours.
+
+use super::super::TouchingPair;
+use super::super::body_list::{BodyFacts, BodyList, GROUND};
+use super::super::colour::{Node, Size};
+use super::super::row::{Lever, MassFractions, RATIO_MAX};
+use super::super::settings::Tuning;
+use super::super::softness::Softness;
+use super::{Surface, WarmStarts};
+use crate::collision::{Contact, Manifold, ManifoldPoint, PointImpulse};
+use crate::math::{Fx, Length, Ratio, Reciprocal, Shift, Speed, Unit, Vec2, convert, narrow};
+
+/// A contact with its lever ratios.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+pub(super) struct Input {
+    pub(super) bodies: [u32; 2],
+    pub(super) contact: u32,
+    pub(super) count: u8,
+    pub(super) immovable: bool,
+    pub(super) features: [u16; 2],
+    pub(super) n: Vec2<Ratio>,
+    pub(super) fractions: MassFractions,
+    pub(super) friction: i32,
+    pub(super) points: [InputPoint; 2],
+    pub(super) restitution: Unit,
+    pub(super) surface_speed: Speed,
+    pub(super) rolling_resistance: Fx,
+    pub(super) rolling: Speed,
+    pub(super) gyrations: [Reciprocal; 2],
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct InputPoint {
+    /// Of A and B, along the normal and along the tangent.
+    pub(super) normal: [Ratio; 2],
+    pub(super) tangent: [Ratio; 2],
+    pub(super) separation: Shift,
+    /// What the last tick has left: `p = L / D`.
+    pub(super) carried: [Speed; 2],
+}
+
+impl Input {
+    pub(super) fn new(
+        pair: &TouchingPair,
+        manifold: &Manifold,
+        memory: &Contact,
+        list: &BodyList,
+        warm: &mut WarmStarts,
+    ) -> Self {
+        let bodies = [list.index_of(pair.bodies.0), list.index_of(pair.bodies.1)];
+        let ends = bodies.map(|index| list.facts(index));
+        let fractions = MassFractions::of_masses(ends[0].mass, ends[1].mass);
+        let Surface { friction, restitution, rolling_resistance, surface_speed } = pair.surface;
+        let n: Vec2<Ratio> = manifold.normal.convert();
+        let points = manifold.points();
+        let mut input = Input {
+            bodies,
+            contact: pair.contact,
+            count: 0,
+            immovable: fractions.a == 0 || fractions.b == 0,
+            features: [0; 2],
+            n,
+            fractions,
+            friction: narrow::<fixed::types::extra::U20>(friction).to_bits(),
+            points: [InputPoint::default(); 2],
+            restitution: narrow(restitution),
+            surface_speed: narrow(surface_speed),
+            rolling_resistance,
+            rolling: memory.rolling,
+            gyrations: ends.map(|end| end.inverse_gyration),
+        };
+        let to_ends = ends.map(|end| end.to_centre(manifold.origin));
+        for (i, point) in points.iter().enumerate() {
+            let carried = memory.impulse_of(point.feature);
+            warm.points += 1;
+            warm.kept += u32::from(carried.is_some());
+            input.count += 1;
+            input.features[i] = point.feature.0;
+            input.points[i] = InputPoint::new(point, n, ends, to_ends, carried.unwrap_or_default());
+        }
+        let still_there = |old: &PointImpulse| points.iter().any(|point| point.feature.0 == old.feature);
+        for old in memory.points() {
+            warm.lost += u32::from(old.normal > 0 && !still_there(old));
+        }
+        input
+    }
+
+    /// The contact, to be coloured.
+    pub(super) fn node(&self, shapes: (u32, u32)) -> Node {
+        let changed = |side: usize| Some(self.changed(side)).filter(|&index| index != GROUND);
+        Node {
+            key: u64::from(shapes.0) << 32 | u64::from(shapes.1),
+            body_a: changed(0),
+            body_b: changed(1),
+            size: if self.count == 1 { Size::Small } else { Size::Large },
+        }
+    }
+
+    /// The place of the body on a side: the ground if no impulse changes it.
+    pub(super) fn changed(&self, side: usize) -> u32 {
+        let fraction = if side == 0 { self.fractions.a } else { self.fractions.b };
+        if fraction == 0 { GROUND } else { self.bodies[side] }
+    }
+
+    pub(super) fn softness<'a>(&self, tuning: &'a Tuning) -> &'a Softness {
+        if self.immovable { &tuning.contact_immovable } else { &tuning.contact }
+    }
+}
+
+impl InputPoint {
+    fn new(
+        point: &ManifoldPoint,
+        n: Vec2<Ratio>,
+        ends: [&BodyFacts; 2],
+        to_ends: [Vec2<Length>; 2],
+        carried: PointImpulse,
+    ) -> Self {
+        let lever = |side: usize| Lever {
+            arm: point.anchor + to_ends[side],
+            inverse_gyration: ends[side].inverse_gyration,
+        };
+        let (a, b) = (lever(0), lever(1));
+        let t = n.perp();
+        InputPoint {
+            normal: [lever_ratio(a, n), lever_ratio(b, n)],
+            tangent: [lever_ratio(a, t), lever_ratio(b, t)],
+            separation: convert(point.separation),
+            carried: [carried.normal, carried.tangent],
+        }
+    }
+}
+
+/// `e = c / k`.
+fn lever_ratio(lever: Lever, n: Vec2<Ratio>) -> Ratio {
+    let c: Length = lever.arm.cross(n);
+    let e: Ratio = lever.inverse_gyration.times(c);
+    e.clamp(-RATIO_MAX, RATIO_MAX)
+}
