@@ -60,6 +60,15 @@ impl Reciprocal {
         })
     }
 
+    /// `a / x` from a number of fraction bits to another, rounded to nearest. `|a|` must be below 2^32, and the result is
+    /// not saturated.
+    #[inline]
+    pub(crate) fn times_wide(self, a: i64, from: u32, to: u32) -> i64 {
+        let shift = (self.shift + from).saturating_sub(to);
+        debug_assert!(self.mantissa == 0 || self.shift + from >= to, "the reciprocal of a tiny number");
+        round_shift(a * i64::from(self.mantissa), shift.min(63))
+    }
+
     /// `a / x` exactly: the product and its number of fraction bits beyond those of `a`.
     #[inline]
     pub(crate) fn times_exact<A: LeEqU32>(self, a: FixedI32<A>) -> (i64, u32) {

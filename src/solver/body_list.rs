@@ -3,9 +3,10 @@
 use alloc::vec::Vec;
 
 use super::body::SolverBody;
+use super::row::RATIO_MAX;
 use super::colour::{Node, Size};
 use crate::body::{Arena, Body, BodyId};
-use crate::math::{Fx, Length, Reciprocal, Vec2};
+use crate::math::{Fx, Length, Ratio, Reciprocal, Vec2, round_shift, saturate};
 
 /// The index of the body that stands for all those that nothing moves. Their mass fraction is 0, so that it never
 /// changes.
@@ -41,6 +42,18 @@ impl BodyFacts {
             mass: if body.is_dynamic() { body.mass() } else { Fx::ZERO },
             inverse_gyration: body.mass.inverse_gyration,
         }
+    }
+
+    /// `e = c / k` of an arm across a direction, at most [`RATIO_MAX`].
+    #[inline]
+    pub(super) fn lever_ratio(&self, arm: Vec2<Length>, n: Vec2<Ratio>) -> Ratio {
+        let wide = |a: i32| i64::from(a);
+        let (x, y) = (wide(arm.x.to_bits()), wide(arm.y.to_bits()));
+        // An arm is below 2^31.5, so its product with a mantissa is below 2^63.
+        let c = round_shift(x * wide(n.y.to_bits()) - y * wide(n.x.to_bits()), Ratio::FRAC_NBITS);
+        let e = self.inverse_gyration.times_wide(c, Length::FRAC_NBITS, Ratio::FRAC_NBITS);
+        let limit = wide(RATIO_MAX.to_bits());
+        Ratio::from_bits(saturate(e.clamp(-limit, limit)))
     }
 
     /// From the centre of mass to a place; of what does not turn, anything.
@@ -103,7 +116,7 @@ impl BodyList {
 
     /// A constraint between the bodies of two slots, to be coloured.
     pub(super) fn node(&self, key: u64, bodies: &Arena<Body, BodyId>, (a, b): (u32, u32), size: Size) -> Node {
-        let dynamic = |slot: u32| bodies.at(slot).is_dynamic().then(|| self.index_of(slot));
-        Node { key, body_a: dynamic(a), body_b: dynamic(b), size }
+        let changed = |slot: u32| if bodies.at(slot).is_dynamic() { self.index_of(slot) } else { GROUND };
+        Node::new(key, [changed(a), changed(b)], size)
     }
 }

@@ -6,20 +6,30 @@
 
 use alloc::vec::Vec;
 
+use super::body_list::GROUND;
+
 /// More colours than this would be nearly empty: what does not fit (a drum touched by hundreds of boxes) is one
 /// serial list before them, in its own order.
 const COLOURS_MAX: u8 = 24;
 
 const BUCKETS: usize = 256;
 
-/// A constraint to be coloured: its key for the order, and the dynamic bodies it touches.
+/// A constraint to be coloured.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Node {
-    pub(crate) key: u64,
-    pub(crate) body_a: Option<u32>,
-    pub(crate) body_b: Option<u32>,
+    /// Its bucket in the order in which constraints are coloured.
+    bucket: u8,
     /// Constraints of one colour that are of the same size are solved together.
-    pub(crate) size: Size,
+    size: Size,
+    /// The bodies that it changes: [`GROUND`] for one that it does not.
+    bodies: [u32; 2],
+}
+
+impl Node {
+    /// The key stands for what the constraint joins.
+    pub(crate) fn new(key: u64, bodies: [u32; 2], size: Size) -> Self {
+        Node { bucket: bucket_of(key), size, bodies }
+    }
 }
 
 /// How much there is to solve.
@@ -37,16 +47,14 @@ pub(crate) enum Group<'a> {
     Coloured(&'a [u32]),
 }
 
-/// Places in the order: the overflow, then the large and the small ones of each colour.
-const PLACES: usize = 2 * COLOURS_MAX as usize + 1;
-
 /// Scratch of the colouring.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Colouring {
     /// For each body, the colours of its constraints so far, one bit each.
     used: Vec<u32>,
     hashed: Vec<u32>,
-    colours: Vec<u8>,
+    /// For each constraint, its place in the order.
+    places: Vec<u8>,
     order: Vec<u32>,
     /// For each place in the order, where it ends.
     ends: Vec<u32>,
@@ -55,33 +63,24 @@ pub(crate) struct Colouring {
 impl Colouring {
     /// The order in which to solve: indices into `nodes`, the overflow first and then colour by colour.
     pub(crate) fn order(&mut self, nodes: &[Node], body_slots: usize) -> &[u32] {
-        self.used.clear();
-        self.used.resize(body_slots, 0);
-        counting_sort(nodes.len(), BUCKETS, |i| usize::from(bucket_of(nodes[i].key)), &mut self.hashed);
-
-        self.colours.clear();
-        self.colours.resize(nodes.len(), 0);
-        for &index in &self.hashed {
-            let node = nodes[index as usize];
-            let bodies = [node.body_a, node.body_b].into_iter().flatten();
-            let taken = bodies.clone().fold(0, |taken, body| taken | self.used[body as usize]);
+        let Colouring { used, hashed, places, order, ends } = self;
+        used.clear();
+        used.resize(body_slots, 0);
+        counting_sort(nodes.len(), |i| nodes[i].bucket, hashed, ends);
+        places.clear();
+        places.resize(nodes.len(), 0);
+        for &index in hashed.iter() {
+            let Node { bodies: [a, b], size, .. } = nodes[index as usize];
+            let taken = used[a as usize] | used[b as usize];
             let colour = taken.trailing_ones().min(COLOURS_MAX.into());
-            for body in bodies {
-                self.used[body as usize] |= 1 << colour;
-            }
-            self.colours[index as usize] = colour_byte(colour);
+            used[a as usize] |= 1 << colour;
+            used[b as usize] |= 1 << colour;
+            // What does not change has no colour.
+            used[GROUND as usize] = 0;
+            places[index as usize] = place_of(colour, size);
         }
-        let colours = &self.colours;
-        let place_of = |i: usize| match colours[i] {
-            COLOURS_MAX => 0,
-            colour => 2 * usize::from(colour) + if nodes[i].size == Size::Large { 1 } else { 2 },
-        };
-        counting_sort(nodes.len(), PLACES, place_of, &mut self.order);
-        self.ends.clear();
-        self.ends.resize(PLACES, 0);
-        (0..nodes.len()).for_each(|i| self.ends[place_of(i)] += 1);
-        (1..PLACES).for_each(|place| self.ends[place] += self.ends[place - 1]);
-        &self.order
+        counting_sort(nodes.len(), |i| places[i], order, ends);
+        order
     }
 
     /// The last order, in the groups in which it may be solved.
@@ -93,12 +92,15 @@ impl Colouring {
             _ => Group::Coloured(indices),
         })
     }
-
 }
 
+/// The overflow comes first, then the large and the small constraints of each colour.
 #[expect(clippy::cast_possible_truncation, reason = "at most COLOURS_MAX")]
-fn colour_byte(colour: u32) -> u8 {
-    colour as u8
+fn place_of(colour: u32, size: Size) -> u8 {
+    match colour as u8 {
+        COLOURS_MAX => 0,
+        colour => 2 * colour + if size == Size::Large { 1 } else { 2 },
+    }
 }
 
 /// The top bits of a multiplicative hash (D. Knuth, The Art of Computer Programming 3, 6.4).
@@ -106,23 +108,24 @@ fn bucket_of(key: u64) -> u8 {
     (key.wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 56) as u8
 }
 
-/// The indices `0..count`, stably sorted by bucket.
+/// The indices `0..count`, stably sorted by bucket, and where each bucket ends.
 #[expect(clippy::cast_possible_truncation, reason = "constraints are counted in 32 bits")]
-fn counting_sort(count: usize, buckets: usize, bucket_of: impl Fn(usize) -> usize, sorted: &mut Vec<u32>) {
-    let mut starts = [0u32; BUCKETS + 1];
-    assert!(buckets <= BUCKETS, "at most 256 buckets");
+fn counting_sort(count: usize, bucket_of: impl Fn(usize) -> u8, sorted: &mut Vec<u32>, ends: &mut Vec<u32>) {
+    ends.clear();
+    ends.resize(BUCKETS, 0);
     for i in 0..count {
-        starts[bucket_of(i) + 1] += 1;
+        ends[usize::from(bucket_of(i))] += 1;
     }
-    for i in 0..buckets {
-        starts[i + 1] += starts[i];
+    let mut start = 0;
+    for end in ends.iter_mut() {
+        start += core::mem::replace(end, start);
     }
     sorted.clear();
     sorted.resize(count, 0);
     for i in 0..count {
-        let start = &mut starts[bucket_of(i)];
-        sorted[*start as usize] = i as u32;
-        *start += 1;
+        let place = &mut ends[usize::from(bucket_of(i))];
+        sorted[*place as usize] = i as u32;
+        *place += 1;
     }
 }
 
@@ -142,11 +145,11 @@ mod tests {
                     let b = (a + 1 + rng.below(bodies - 1)) % bodies;
                     let fixed = key % 7 == 0;
                     let size = if key % 2 == 0 { Size::Large } else { Size::Small };
-                    Node { key, body_a: Some(a), body_b: if fixed { None } else { Some(b) }, size }
+                    Node::new(key, [a + 1, if fixed { GROUND } else { b + 1 }], size)
                 })
                 .collect();
             let mut colouring = Colouring::default();
-            let order = colouring.order(&nodes, bodies as usize).to_vec();
+            let order = colouring.order(&nodes, bodies as usize + 1).to_vec();
             let mut seen = order.clone();
             seen.sort_unstable();
             assert!(seen.iter().copied().eq(0..400));
@@ -155,14 +158,14 @@ mod tests {
                 let indices = match group {
                     Group::Serial(indices) => {
                         assert!(!indices.is_empty(), "the hub overflows");
-                        assert!(indices.iter().all(|&i| colouring.colours[i as usize] == COLOURS_MAX));
+                        assert!(indices.iter().all(|&i| colouring.places[i as usize] == 0));
                         indices
                     }
                     Group::Coloured(indices) => {
                         let mut bodies = std::collections::BTreeSet::new();
                         for node in indices.iter().map(|&i| nodes[i as usize]) {
                             assert_eq!(node.size, nodes[indices[0] as usize].size);
-                            for body in [node.body_a, node.body_b].into_iter().flatten() {
+                            for body in node.bodies.into_iter().filter(|&body| body != GROUND) {
                                 assert!(bodies.insert(body), "body {body} twice in a colour");
                             }
                         }

@@ -4,7 +4,7 @@
 use super::super::TouchingPair;
 use super::super::body_list::{BodyFacts, BodyList, GROUND};
 use super::super::colour::{Node, Size};
-use super::super::row::{Lever, MassFractions, RATIO_MAX};
+use super::super::row::MassFractions;
 use super::super::settings::Tuning;
 use super::super::softness::Softness;
 use super::{Surface, WarmStarts};
@@ -89,13 +89,9 @@ impl Input {
 
     /// The contact, to be coloured.
     pub(super) fn node(&self, shapes: (u32, u32)) -> Node {
-        let changed = |side: usize| Some(self.changed(side)).filter(|&index| index != GROUND);
-        Node {
-            key: u64::from(shapes.0) << 32 | u64::from(shapes.1),
-            body_a: changed(0),
-            body_b: changed(1),
-            size: if self.count == 1 { Size::Small } else { Size::Large },
-        }
+        let key = u64::from(shapes.0) << 32 | u64::from(shapes.1);
+        let size = if self.count == 1 { Size::Small } else { Size::Large };
+        Node::new(key, [self.changed(0), self.changed(1)], size)
     }
 
     /// The place of the body on a side: the ground if no impulse changes it.
@@ -117,24 +113,13 @@ impl InputPoint {
         to_ends: [Vec2<Length>; 2],
         carried: PointImpulse,
     ) -> Self {
-        let lever = |side: usize| Lever {
-            arm: point.anchor + to_ends[side],
-            inverse_gyration: ends[side].inverse_gyration,
-        };
-        let (a, b) = (lever(0), lever(1));
-        let t = n.perp();
+        let arms = to_ends.map(|to_end| point.anchor + to_end);
+        let ratios = |n: Vec2<Ratio>| [ends[0].lever_ratio(arms[0], n), ends[1].lever_ratio(arms[1], n)];
         InputPoint {
-            normal: [lever_ratio(a, n), lever_ratio(b, n)],
-            tangent: [lever_ratio(a, t), lever_ratio(b, t)],
+            normal: ratios(n),
+            tangent: ratios(n.perp()),
             separation: convert(point.separation),
             carried: [carried.normal, carried.tangent],
         }
     }
-}
-
-/// `e = c / k`.
-fn lever_ratio(lever: Lever, n: Vec2<Ratio>) -> Ratio {
-    let c: Length = lever.arm.cross(n);
-    let e: Ratio = lever.inverse_gyration.times(c);
-    e.clamp(-RATIO_MAX, RATIO_MAX)
 }
