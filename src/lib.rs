@@ -41,6 +41,7 @@ pub mod math;
 pub mod replay;
 pub mod scenes;
 pub mod solver;
+mod threads;
 pub mod world;
 
 /// Names the arithmetic of the engine. It changes whenever the same inputs give another state, and replays and

@@ -10,7 +10,7 @@
 //!           solver
 //!         collision
 //!            body
-//!   math, hash, codec
+//!   math, hash, codec, threads
 //! ```
 
 mod source;
@@ -22,10 +22,11 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("math", &[]),
     ("codec", &[]),
     ("hash", &["codec"]),
+    ("threads", &[]),
     ("body", &["math", "codec", "hash"]),
     ("collision", &["math", "codec", "hash", "body"]),
-    ("solver", &["math", "codec", "hash", "body", "collision"]),
-    ("world", &["math", "codec", "hash", "body", "collision", "solver"]),
+    ("solver", &["math", "codec", "hash", "threads", "body", "collision"]),
+    ("world", &["math", "codec", "hash", "threads", "body", "collision", "solver"]),
     ("draw", &["math", "codec", "hash", "body", "collision", "solver", "world"]),
     ("lockstep", &["math", "codec", "hash", "body", "collision", "solver", "world"]),
     ("replay", &["math", "codec", "hash", "body", "collision", "solver", "world", "lockstep"]),

@@ -1,5 +1,7 @@
 //! What the kernels see of a body: its velocity and how far it has come within the tick.
 
+use core::cell::Cell;
+
 use super::limits::{Faults, SPEED_MAX};
 use crate::body::Body;
 use crate::math::{Reciprocal, Shift, Speed, Vec2, round_shift_wide, saturate_wide};
@@ -60,20 +62,14 @@ impl SolverBody {
 
     /// Velocity, spin and padding: 16 bytes, aligned to 32.
     #[inline(always)]
-    pub(super) fn velocity_bits(&self) -> *const i32 {
-        core::ptr::from_ref(self).cast()
-    }
-
-    /// The same to change them.
-    #[inline(always)]
-    pub(super) fn velocity_bits_mut(&mut self) -> *mut i32 {
-        core::ptr::from_mut(self).cast()
+    pub(super) fn velocity_bits(body: &Cell<Self>) -> *mut i32 {
+        body.as_ptr().cast()
     }
 
     /// Shift, turn and padding: 16 bytes, aligned to 16.
     #[inline(always)]
-    pub(super) fn shift_bits(&self) -> *const i32 {
-        self.velocity_bits().wrapping_add(4)
+    pub(super) fn shift_bits(body: &Cell<Self>) -> *mut i32 {
+        Self::velocity_bits(body).wrapping_add(4)
     }
 
     /// The velocities the other way.

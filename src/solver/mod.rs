@@ -18,6 +18,7 @@ mod settings;
 mod softness;
 
 use alloc::vec::Vec;
+use core::cell::Cell;
 
 pub(crate) use body::{SolverBody, turn_of};
 use body_list::BodyList;
@@ -40,6 +41,7 @@ pub use settings::{ContactTuning, DISTANCE_MAX, SolverSettings};
 use crate::body::{Arena, Body, BodyId, JointId};
 use crate::collision::{Contact, Manifold};
 use crate::math::Reciprocal;
+use crate::threads::Threads;
 
 /// How many times as often everything is solved in a tick in which most contact points are new: without impulses of
 /// the tick before, one round in a sub-step leaves piles restless (the 20 x 20 pyramids of 55 boxes at 0.27 m/s and
@@ -60,6 +62,7 @@ pub(crate) struct Solver {
     nodes: Vec<Node>,
     colouring: Colouring,
     pub(crate) machine: Machine,
+    pub(crate) threads: Threads,
     pub(crate) warm_starts: WarmStarts,
     pub(crate) faults: Faults,
 }
@@ -73,6 +76,11 @@ pub(crate) struct TouchingPair {
 }
 
 impl Solver {
+    /// A solver that computes in the same way and has done nothing yet.
+    pub(crate) fn emptied(&self) -> Self {
+        Solver { machine: self.machine, threads: self.threads.clone(), ..Solver::default() }
+    }
+
     /// Copies what the kernels need of the bodies in the given slots out of the state.
     pub(crate) fn prepare_bodies(&mut self, bodies: &Arena<Body, BodyId>, slots: &[u32], tuning: &Tuning) {
         self.faults = 0;
@@ -165,12 +173,12 @@ impl Solver {
     }
 
     fn perform_serial(&mut self, task: Task, tuning: &Tuning) {
-        self.contacts.perform_serial(task, tuning, &mut self.list.bodies, &mut self.faults);
+        self.contacts.perform_serial(task, tuning, cells(&mut self.list.bodies), &mut self.faults);
     }
 
     fn perform_coloured(&mut self, task: Task, tuning: &Tuning) {
-        let Solver { contacts, machine, list, faults, .. } = self;
-        contacts.perform_coloured(task, *machine, tuning, &mut list.bodies, faults);
+        let Solver { contacts, machine, threads, list, faults, .. } = self;
+        contacts.perform_coloured(task, (*machine, threads), tuning, cells(&mut list.bodies), faults);
     }
 
     pub(crate) fn apply_restitution(&mut self, tuning: &Tuning) {
@@ -183,4 +191,9 @@ impl Solver {
         self.joints.store(joints);
         self.contacts.store(contacts, &mut self.pushed);
     }
+}
+
+/// Bodies that several lanes, and several threads, read and write.
+fn cells(bodies: &mut [SolverBody]) -> &[Cell<SolverBody>] {
+    Cell::from_mut(bodies).as_slice_of_cells()
 }

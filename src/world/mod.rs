@@ -45,7 +45,10 @@ pub use validate::Violation;
 use crate::body::{Body, BodyId, BodyKind, JointId, Shape, ShapeId, WorldError};
 use crate::collision::{BroadPhaseKind, Manifold};
 use crate::math::Rng;
-use crate::solver::{Backend, Joint, Machine};
+pub use crate::solver::Backend;
+use crate::solver::{Joint, Machine};
+#[cfg(feature = "parallel")]
+use crate::threads::Threads;
 use scratch::Scratch;
 use state::State;
 
@@ -215,9 +218,22 @@ impl World {
 
     /// Chooses how overlapping pairs are found. No hash changes by it.
     pub fn set_broad_phase(&mut self, kind: BroadPhaseKind) {
-        let machine = self.scratch.solver.machine;
-        self.scratch = Scratch::new(kind, &self.state);
-        self.scratch.solver.machine = machine;
+        let solver = self.scratch.solver.emptied();
+        self.scratch = Scratch { solver, ..Scratch::new(kind, &self.state) };
+    }
+
+    /// How many threads share a tick.
+    #[must_use]
+    pub fn threads(&self) -> usize {
+        self.scratch.solver.threads.count()
+    }
+
+    /// Shares every tick among a number of threads, from 1. No hash changes by it. Returns whether they could be had; if
+    /// not, nothing changes. It pays for thousands of bodies. Clones of the world use the same threads.
+    #[cfg(feature = "parallel")]
+    pub fn set_threads(&mut self, count: usize) -> bool {
+        let threads = Threads::new(count);
+        threads.map(|threads| self.scratch.solver.threads = threads).is_some()
     }
 
     /// How the solver computes: the best way that this machine has, unless [`World::set_backend`] chose another.

@@ -24,8 +24,8 @@ pub(in crate::solver) struct Batch<const N: usize> {
     pub(super) count: usize,
     /// Whether anything in it bounces.
     pub(super) bounces: bool,
-    /// The place of its rolling rows, if any surface in it resists rolling.
-    pub(super) rolling: Option<u32>,
+    /// Whether any surface in it resists rolling: then it has [`super::rolling::RollingRows`] as well.
+    pub(super) resists_rolling: bool,
     pub(super) points: [Point<N>; 2],
 }
 
@@ -95,7 +95,7 @@ impl<const N: usize> Batch<N> {
         restitution: Ints::ZERO,
         count: 0,
         bounces: false,
-        rolling: None,
+        resists_rolling: false,
         points: [Point::NONE; 2],
     };
 }

@@ -10,6 +10,8 @@
 //! with the gains of `row.rs`. Differences of two velocities fit because each is below 512; a sum that may not fit
 //! saturates. What is below 0 in lanes that have no contact is never looked at: their gains are 0.
 
+use core::cell::Cell;
+
 use super::super::body::SolverBody;
 use super::super::lanes::{Ints, Lanes, Motion};
 use super::super::limits::{Faults, IMPULSE_MAX, SPEED_MAX};
@@ -53,13 +55,13 @@ struct Pair<L: Lanes<N>, const N: usize> {
 
 impl<L: Lanes<N>, const N: usize> Pair<L, N> {
     #[inline(always)]
-    fn load(bodies: &[SolverBody], batch: &Batch<N>) -> Self {
+    fn load(bodies: &[Cell<SolverBody>], batch: &Batch<N>) -> Self {
         let [a, b] = &batch.bodies;
         Pair { a: L::velocities(bodies, a), b: L::velocities(bodies, b) }
     }
 
     #[inline(always)]
-    fn store(self, bodies: &mut [SolverBody], batch: &Batch<N>) {
+    fn store(self, bodies: &[Cell<SolverBody>], batch: &Batch<N>) {
         let [a, b] = &batch.changed;
         L::set_velocities(bodies, a, self.a);
         L::set_velocities(bodies, b, self.b);
@@ -183,7 +185,7 @@ fn clamp<L: Lanes<N>, const N: usize>(value: L::Int, limit: L::Int) -> L::Int {
 #[inline(always)]
 pub(super) fn observe<L: Lanes<N>, const N: usize>(
     batch: &mut Batch<N>,
-    bodies: &[SolverBody],
+    bodies: &[Cell<SolverBody>],
     faults: &mut Faults,
 ) {
     let pair = Pair::<L, N>::load(bodies, batch);
@@ -199,8 +201,8 @@ pub(super) fn observe<L: Lanes<N>, const N: usize>(
 #[inline(always)]
 pub(super) fn warm_start<L: Lanes<N>, const N: usize>(
     batch: &Batch<N>,
-    rolling: &[RollingRows<N>],
-    bodies: &mut [SolverBody],
+    rolling: Option<&mut RollingRows<N>>,
+    bodies: &[Cell<SolverBody>],
     faults: &mut Faults,
 ) {
     let mut pair = Pair::<L, N>::load(bodies, batch);
@@ -208,8 +210,7 @@ pub(super) fn warm_start<L: Lanes<N>, const N: usize>(
         pair.apply(&point.normal, L::load(&point.normal_lambda), faults);
         pair.apply(&point.tangent, L::load(&point.tangent_lambda), faults);
     }
-    if let Some(place) = batch.rolling {
-        let rolling = &rolling[place as usize];
+    if let Some(rolling) = rolling {
         pair.apply(&rolling.row, L::load(&rolling.lambda), faults);
     }
     pair.store(bodies, batch);
@@ -219,10 +220,10 @@ pub(super) fn warm_start<L: Lanes<N>, const N: usize>(
 #[inline(always)]
 pub(super) fn solve<L: Lanes<N>, const N: usize>(
     batch: &mut Batch<N>,
-    rolling: &mut [RollingRows<N>],
+    rolling: Option<&mut RollingRows<N>>,
     (pass, sweep): (Pass, Sweep),
     constants: &Constants,
-    bodies: &mut [SolverBody],
+    bodies: &[Cell<SolverBody>],
     faults: &mut Faults,
 ) {
     let mut pair = Pair::<L, N>::load(bodies, batch);
@@ -251,8 +252,8 @@ pub(super) fn solve<L: Lanes<N>, const N: usize>(
         let all = L::greater(L::splat(1), L::splat(0));
         context.solve_normal(&mut batch.points[0], n, all, &mut pair, faults);
     }
-    if let Some(place) = batch.rolling {
-        solve_rolling::<L, N>(&mut rolling[place as usize], &batch.points, &mut pair, faults);
+    if let Some(rolling) = rolling {
+        solve_rolling::<L, N>(rolling, &batch.points, &mut pair, faults);
     }
     let surface_speed = L::load(&batch.surface_speed);
     solve_tangent::<L, N>(&mut batch.points[first], t, surface_speed, &mut pair, faults);
@@ -264,7 +265,7 @@ pub(super) fn solve<L: Lanes<N>, const N: usize>(
 
 /// Finds the separations where the bodies are now.
 #[inline(always)]
-pub(super) fn measure<L: Lanes<N>, const N: usize>(batch: &mut Batch<N>, bodies: &[SolverBody]) {
+pub(super) fn measure<L: Lanes<N>, const N: usize>(batch: &mut Batch<N>, bodies: &[Cell<SolverBody>]) {
     let (n, _) = directions::<L, N>(batch);
     let (a, b) = (L::shifts(bodies, &batch.bodies[0]), L::shifts(bodies, &batch.bodies[1]));
     for point in &mut batch.points[..batch.count] {
@@ -413,7 +414,7 @@ fn solve_rolling<L: Lanes<N>, const N: usize>(
 pub(super) fn apply_restitution<L: Lanes<N>, const N: usize>(
     batch: &mut Batch<N>,
     constants: &Constants,
-    bodies: &mut [SolverBody],
+    bodies: &[Cell<SolverBody>],
     faults: &mut Faults,
 ) {
     let restitution = L::load(&batch.restitution);

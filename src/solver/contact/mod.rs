@@ -10,14 +10,16 @@ mod prepare;
 mod rolling;
 
 use alloc::vec::Vec;
+use core::cell::Cell;
 
 use super::body::SolverBody;
-use super::lanes::{Kernel, Lanes, Machine, Scalar, WIDTH};
+use super::lanes::{Kernel, Lanes, Machine, Scalar, Shared, WIDTH};
 use super::limits::Faults;
 use super::settings::Tuning;
 use crate::body::Material;
 use crate::collision::Contact;
 use crate::math::{Fx, Speed, fx_mul};
+use crate::threads::Threads;
 use batch::Batch;
 use kernel::Constants;
 use input::Input;
@@ -59,6 +61,9 @@ const RESTITUTION_ITERATIONS: u32 = 12;
 /// pyramid of 5050 boxes costs a tenth more.
 const NORMAL_ROUNDS_MAX: u32 = 4;
 const SETTLED: Speed = Speed::lit("0.005");
+
+/// A job with fewer batches costs more to hand over than to do.
+const BATCHES_PER_JOB: usize = 16;
 
 /// The largest impulse of friction and of rolling resistance. The difference of two fits the format.
 const TANGENT_MAX: Speed = Speed::lit("511");
@@ -113,14 +118,17 @@ pub(super) struct ContactSet {
 #[derive(Clone, Debug)]
 struct Batches<const N: usize> {
     batches: Vec<Batch<N>>,
+    /// In the same order, for those that have any.
     rolling: Vec<RollingRows<N>>,
+    /// Where the batches of each colour end.
+    colours: Vec<usize>,
     /// For each batch, where its results belong.
     records: Vec<Records<N>>,
 }
 
 impl<const N: usize> Default for Batches<N> {
     fn default() -> Self {
-        Batches { batches: Vec::new(), rolling: Vec::new(), records: Vec::new() }
+        Batches { batches: Vec::new(), rolling: Vec::new(), colours: Vec::new(), records: Vec::new() }
     }
 }
 
@@ -142,24 +150,24 @@ impl ContactSet {
         &mut self,
         task: Task,
         tuning: &Tuning,
-        bodies: &mut [SolverBody],
+        bodies: &[Cell<SolverBody>],
         faults: &mut Faults,
     ) {
         let constants = Constants::new(tuning);
-        Perform { batches: &mut self.serial, task, constants, bodies, faults }.run::<Scalar<1>>();
+        self.serial.task(task, constants, bodies, faults).run::<Scalar<1>>();
     }
 
-    /// Performs a task for the contacts that come after them.
+    /// Performs a task for the contacts that come after them, on several threads where a colour has enough of them.
     pub(super) fn perform_coloured(
         &mut self,
         task: Task,
-        machine: Machine,
+        (machine, threads): (Machine, &Threads),
         tuning: &Tuning,
-        bodies: &mut [SolverBody],
+        bodies: &[Cell<SolverBody>],
         faults: &mut Faults,
     ) {
         let constants = Constants::new(tuning);
-        machine.run(Perform { batches: &mut self.coloured, task, constants, bodies, faults });
+                *faults += self.coloured.perform_on(threads, machine, task, constants, bodies);
     }
 
     /// Keeps the impulses for the next tick. `pushed` says of each contact whether its shapes have pushed each other.
@@ -173,17 +181,19 @@ impl ContactSet {
 
 /// A task, for the batches of `N` contacts.
 struct Perform<'a, const N: usize> {
-    batches: &'a mut Batches<N>,
+    batches: &'a mut [Batch<N>],
+    rolling: &'a mut [RollingRows<N>],
     task: Task,
     constants: Constants,
-    bodies: &'a mut [SolverBody],
+    bodies: &'a [Cell<SolverBody>],
     faults: &'a mut Faults,
 }
 
 impl<const N: usize> Kernel<N> for Perform<'_, N> {
     #[inline(always)]
     fn run<L: Lanes<N>>(self) {
-        let Perform { batches: Batches { batches, rolling, .. }, task, constants, bodies, faults } = self;
+        let Perform { batches, rolling, task, constants, bodies, faults } = self;
+        let mut rolling = rolling.iter_mut();
         match task {
             Task::Observe => {
                 for batch in batches.iter_mut().filter(|batch| batch.bounces) {
@@ -192,6 +202,7 @@ impl<const N: usize> Kernel<N> for Perform<'_, N> {
             }
             Task::WarmStart => {
                 for batch in batches {
+                    let rolling = if batch.resists_rolling { rolling.next() } else { None };
                     kernel::warm_start::<L, N>(batch, rolling, bodies, faults);
                 }
             }
@@ -199,12 +210,14 @@ impl<const N: usize> Kernel<N> for Perform<'_, N> {
             Task::Solve(Pass::Bias, sweep) => {
                 for batch in batches {
                     let how = (Pass::Bias, sweep);
+                    let rolling = if batch.resists_rolling { rolling.next() } else { None };
                     kernel::solve::<L, N>(batch, rolling, how, &constants, bodies, faults);
                 }
             }
             Task::Solve(Pass::Relax, sweep) => {
                 for batch in batches {
                     let how = (Pass::Relax, sweep);
+                    let rolling = if batch.resists_rolling { rolling.next() } else { None };
                     kernel::solve::<L, N>(batch, rolling, how, &constants, bodies, faults);
                 }
             }
@@ -222,15 +235,59 @@ impl<const N: usize> Kernel<N> for Perform<'_, N> {
     }
 }
 
+impl Batches<WIDTH> {
+    /// Performs a task colour by colour, each on all threads. Returns the faults.
+    fn perform_on(
+        &mut self,
+        threads: &Threads,
+        machine: Machine,
+        task: Task,
+        constants: Constants,
+        bodies: &[Cell<SolverBody>],
+    ) -> Faults {
+        let mut total = 0;
+        let bodies = Shared::within_a_colour(bodies);
+        let (mut start, mut rest) = (0, &mut self.rolling[..]);
+        for &end in &self.colours {
+            let colour = &mut self.batches[start..end];
+            start = end;
+            let share = threads.share(colour.len(), BATCHES_PER_JOB);
+            let jobs = colour.chunks_mut(share).map(|batches| {
+                let count = batches.iter().filter(|batch| batch.resists_rolling).count();
+                let (rolling, others) = core::mem::take(&mut rest).split_at_mut(count);
+                rest = others;
+                (batches, rolling)
+            });
+            total += threads.run(jobs, |(batches, rolling)| {
+                let mut faults = 0;
+                let bodies = bodies.bodies();
+                machine.run(Perform { batches, rolling, task, constants, bodies, faults: &mut faults });
+                faults
+            });
+        }
+        total
+    }
+}
+
 impl<const N: usize> Batches<N> {
+    fn task<'a>(
+        &'a mut self,
+        task: Task,
+        constants: Constants,
+        bodies: &'a [Cell<SolverBody>],
+        faults: &'a mut Faults,
+    ) -> Perform<'a, N> {
+        Perform { batches: &mut self.batches, rolling: &mut self.rolling, task, constants, bodies, faults }
+    }
+
     fn store(&self, contacts: &mut [Contact], pushed: &mut [bool]) {
+        let mut rolling = self.rolling.iter();
         for (batch, records) in self.batches.iter().zip(&self.records) {
+            let rolling = if batch.resists_rolling { rolling.next() } else { None };
             for (lane, index, count) in records.lanes() {
                 let memory = &mut contacts[index];
                 memory.clear_points();
-                if let Some(place) = batch.rolling {
-                    memory.rolling = self.rolling[place as usize].impulse(lane);
-                }
+                memory.rolling = rolling.map_or(Speed::ZERO, |rolling| rolling.impulse(lane));
                 for (i, point) in batch.points.iter().take(count).enumerate() {
                     let lambdas = (point.normal_lambda.0[lane], point.tangent_lambda.0[lane]);
                     memory.push_point(records.impulse(lane, i, lambdas));

@@ -107,13 +107,15 @@ impl<const N: usize> Kernel<N> for Fill<'_, N> {
             for chunk in indices.chunks(N) {
                 batches.push::<L>(inputs, chunk, tuning);
             }
+            batches.colours.push(batches.batches.len());
         }
     }
 }
 
 impl<const N: usize> Batches<N> {
     fn clear(&mut self) {
-        let Batches { batches, rolling, records } = self;
+        let Batches { batches, rolling, records, colours } = self;
+        colours.clear();
         batches.clear();
         rolling.clear();
         records.clear();
@@ -122,7 +124,7 @@ impl<const N: usize> Batches<N> {
     /// Adds a batch of up to `N` contacts.
     #[inline(always)]
     fn push<L: Lanes<N>>(&mut self, inputs: &[Input], indices: &[u32], tuning: &Tuning) {
-        let Batches { batches, rolling, records } = self;
+        let Batches { batches, rolling, records, .. } = self;
         batches.push(Batch::NONE);
         records.push(Records::NONE);
         let (Some(batch), Some(records)) = (batches.last_mut(), records.last_mut()) else { return };
@@ -133,7 +135,7 @@ impl<const N: usize> Batches<N> {
         gathered.fill::<L>(batch, records);
         let resists = |&&index: &&u32| inputs[index as usize].rolling_resistance > 0;
         if indices.iter().any(|index| resists(&index)) {
-            batch.rolling = Some(u32::try_from(rolling.len()).expect("fewer than 2^32 contacts"));
+            batch.resists_rolling = true;
             let mut rows = RollingRows::NONE;
             for (lane, index) in indices.iter().enumerate().filter(|(_, index)| resists(index)) {
                 let inverses = [0, 1].map(|point| Unit::from_bits(records.inverses[point][0].0[lane]));

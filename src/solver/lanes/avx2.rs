@@ -2,6 +2,7 @@
 #![expect(unsafe_code, reason = "vendor intrinsics")]
 
 use core::arch::x86_64::*;
+use core::cell::Cell;
 
 use super::super::body::SolverBody;
 use super::super::body_list::GROUND;
@@ -215,21 +216,21 @@ impl Lanes<WIDTH> for Avx2 {
     }
 
     #[inline(always)]
-    fn velocities(bodies: &[SolverBody], at: &[u32; WIDTH]) -> Motion<__m256i> {
+    fn velocities(bodies: &[Cell<SolverBody>], at: &[u32; WIDTH]) -> Motion<__m256i> {
         // SAFETY: see `Avx2`; the first 16 bytes of a body.
-        let row = |lane: usize| unsafe { _mm_load_si128(bodies[at[lane] as usize].velocity_bits().cast()) };
+        let row = |lane: usize| unsafe { _mm_load_si128(SolverBody::velocity_bits(&bodies[at[lane] as usize]).cast()) };
         transposed([row(0), row(1), row(2), row(3), row(4), row(5), row(6), row(7)])
     }
 
     #[inline(always)]
-    fn shifts(bodies: &[SolverBody], at: &[u32; WIDTH]) -> Motion<__m256i> {
+    fn shifts(bodies: &[Cell<SolverBody>], at: &[u32; WIDTH]) -> Motion<__m256i> {
         // SAFETY: see `Avx2`; the last 16 bytes of a body.
-        let row = |lane: usize| unsafe { _mm_load_si128(bodies[at[lane] as usize].shift_bits().cast()) };
+        let row = |lane: usize| unsafe { _mm_load_si128(SolverBody::shift_bits(&bodies[at[lane] as usize]).cast()) };
         transposed([row(0), row(1), row(2), row(3), row(4), row(5), row(6), row(7)])
     }
 
     #[inline(always)]
-    fn set_velocities(bodies: &mut [SolverBody], at: &[u32; WIDTH], v: Motion<__m256i>) {
+    fn set_velocities(bodies: &[Cell<SolverBody>], at: &[u32; WIDTH], v: Motion<__m256i>) {
         // SAFETY: see `Avx2`; the first 16 bytes of a body.
         unsafe {
             let zero = _mm256_setzero_si256();
@@ -245,7 +246,7 @@ impl Lanes<WIDTH> for Avx2 {
                 let (low, high) = (_mm256_castsi256_si128(pair), _mm256_extracti128_si256::<1>(pair));
                 for (at, velocity) in [(at[lane], low), (at[lane + 4], high)] {
                     if at != GROUND {
-                        _mm_store_si128(bodies[at as usize].velocity_bits_mut().cast(), velocity);
+                        _mm_store_si128(SolverBody::velocity_bits(&bodies[at as usize]).cast(), velocity);
                     }
                 }
             }

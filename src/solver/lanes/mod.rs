@@ -8,12 +8,16 @@
 #[cfg(target_arch = "x86_64")]
 mod avx2;
 mod scalar;
+mod shared;
 #[cfg(test)]
 mod tests;
 
 #[cfg(target_arch = "x86_64")]
 use avx2::Avx2;
 pub(super) use scalar::Scalar;
+pub(super) use shared::Shared;
+
+use core::cell::Cell;
 
 use super::body::SolverBody;
 
@@ -83,11 +87,11 @@ pub(super) trait Lanes<const N: usize>: Copy {
     fn to_array(a: Self::Wide) -> [i64; N];
 
     /// The velocities of bodies.
-    fn velocities(bodies: &[SolverBody], at: &[u32; N]) -> Motion<Self::Int>;
+    fn velocities(bodies: &[Cell<SolverBody>], at: &[u32; N]) -> Motion<Self::Int>;
     /// How far bodies have come in the tick.
-    fn shifts(bodies: &[SolverBody], at: &[u32; N]) -> Motion<Self::Int>;
+    fn shifts(bodies: &[Cell<SolverBody>], at: &[u32; N]) -> Motion<Self::Int>;
     /// Sets the velocities of bodies, but for those at [`super::body_list::GROUND`].
-    fn set_velocities(bodies: &mut [SolverBody], at: &[u32; N], velocities: Motion<Self::Int>);
+    fn set_velocities(bodies: &[Cell<SolverBody>], at: &[u32; N], velocities: Motion<Self::Int>);
 }
 
 /// What can be done with any lanes.

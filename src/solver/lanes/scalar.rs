@@ -1,5 +1,7 @@
 //! Lanes in plain integers.
 
+use core::cell::Cell;
+
 use super::super::body::SolverBody;
 use super::super::body_list::GROUND;
 use super::{Ints, Lanes, Motion};
@@ -143,8 +145,8 @@ impl<const N: usize> Lanes<N> for Scalar<N> {
     }
 
     #[inline(always)]
-    fn velocities(bodies: &[SolverBody], at: &[u32; N]) -> Motion<[i32; N]> {
-        let bodies = at.map(|at| &bodies[at as usize]);
+    fn velocities(bodies: &[Cell<SolverBody>], at: &[u32; N]) -> Motion<[i32; N]> {
+        let bodies = at.map(|at| bodies[at as usize].get());
         Motion {
             x: bodies.map(|body| body.velocity.x.to_bits()),
             y: bodies.map(|body| body.velocity.y.to_bits()),
@@ -153,8 +155,8 @@ impl<const N: usize> Lanes<N> for Scalar<N> {
     }
 
     #[inline(always)]
-    fn shifts(bodies: &[SolverBody], at: &[u32; N]) -> Motion<[i32; N]> {
-        let bodies = at.map(|at| &bodies[at as usize]);
+    fn shifts(bodies: &[Cell<SolverBody>], at: &[u32; N]) -> Motion<[i32; N]> {
+        let bodies = at.map(|at| bodies[at as usize].get());
         Motion {
             x: bodies.map(|body| body.shift.x.to_bits()),
             y: bodies.map(|body| body.shift.y.to_bits()),
@@ -163,9 +165,11 @@ impl<const N: usize> Lanes<N> for Scalar<N> {
     }
 
     #[inline(always)]
-    fn set_velocities(bodies: &mut [SolverBody], at: &[u32; N], velocities: Motion<[i32; N]>) {
+    fn set_velocities(bodies: &[Cell<SolverBody>], at: &[u32; N], velocities: Motion<[i32; N]>) {
         for (lane, &at) in at.iter().enumerate().filter(|&(_, &at)| at != GROUND) {
-            bodies[at as usize].set_motion(velocities.x[lane], velocities.y[lane], velocities.turn[lane]);
+            let mut body = bodies[at as usize].get();
+            body.set_motion(velocities.x[lane], velocities.y[lane], velocities.turn[lane]);
+            bodies[at as usize].set(body);
         }
     }
 }
