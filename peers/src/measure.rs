@@ -9,7 +9,7 @@ use crate::engine::{Engine, Kind};
 use crate::script::Script;
 use crate::stats::median;
 
-/// Times of a run in ms per step, the first step left out.
+/// Times of a run in ms per step, the first ones left out.
 #[derive(Clone, Copy, Debug)]
 pub struct Times {
     /// Of the calling thread's CPU.
@@ -81,11 +81,11 @@ pub fn run(kind: Kind, script: &Script, threads: usize) -> Result<(Times, Box<dy
         let clock = Instant::now();
         let (cpu, ()) = timed(|| engine.step());
         let wall = clock.elapsed().as_secs_f64() * 1e3;
-        if tick > 0 {
+        if tick >= script.untimed {
             sum = Times { cpu: sum.cpu + cpu, wall: sum.wall + wall, commands: sum.commands + commands };
         }
     }
-    let steps = script.steps().saturating_sub(1).max(1) as f64;
+    let steps = script.steps().saturating_sub(script.untimed).max(1) as f64;
     let times = Times { cpu: sum.cpu / steps, wall: sum.wall / steps, commands: sum.commands / steps };
     Ok((times, engine))
 }

@@ -34,6 +34,8 @@ pub struct Script {
     pub setup: Vec<Event>,
     /// What happens before each step.
     pub ticks: Vec<Vec<Event>>,
+    /// How many of the first steps are not timed.
+    pub untimed: usize,
 }
 
 impl Script {
@@ -63,7 +65,12 @@ impl Script {
             let now = commands(tick, &game);
             ticks.push(execute(&mut game, now)?);
         }
-        Ok(Script { config: setup.config, setup: setup_events, ticks })
+        Ok(Script { config: setup.config, setup: setup_events, ticks, untimed: 1 })
+    }
+
+    /// The same with another number of first steps that are not timed.
+    pub fn untimed(self, untimed: usize) -> Self {
+        Script { untimed, ..self }
     }
 
     /// How many steps it has.

@@ -43,8 +43,11 @@ impl Box2d {
         def.enableSleep = config.sleeping;
         def.enableContinuous = config.continuous;
         def.workerCount = i32::try_from(threads)?;
-        // SAFETY: the definition is complete.
-        let world = unsafe { b2CreateWorld(&def) };
+        // SAFETY: the definition is complete; the logger takes any message.
+        let world = unsafe {
+            b2SetLogFcn(Some(log));
+            b2CreateWorld(&def)
+        };
         let time_step = 1.0 / config.tick_rate as f32;
         let (bodies, joints, saved) = (Slots::new(), Vec::new(), Vec::new());
         Ok(Box2d { world, config: *config, time_step, bodies, joints, saved })
@@ -208,6 +211,13 @@ impl Engine for Box2d {
     fn hash(&self) -> Option<u128> {
         None
     }
+}
+
+/// What Box2D has to say: on stdout it would be between the results.
+unsafe extern "C" fn log(message: *const std::ffi::c_char) {
+    // SAFETY: Box2D passes a string that lives as long as the call.
+    let message = unsafe { std::ffi::CStr::from_ptr(message) };
+    eprintln!("Box2D: {}", message.to_string_lossy());
 }
 
 /// Two bodies that both move report their contact twice: it is counted for the first one.
