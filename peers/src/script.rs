@@ -82,7 +82,12 @@ impl Script {
 fn execute(game: &mut Sandbox, commands: Vec<Command>) -> Result<Vec<Event>> {
     let mut events = Vec::new();
     for command in commands {
-        let outcome = game.world_mut().execute(&command).map_err(|error| anyhow!("{error}"))?;
+        // What is sent somewhere has to be there for the next such command, without a step.
+        let at_once = match command {
+            Command::MoveTo { body, position, angle } => Command::SetTransform { body, position, angle },
+            ref other => other.clone(),
+        };
+        let outcome = game.world_mut().execute(&at_once).map_err(|error| anyhow!("{error}"))?;
         events.push((command, outcome));
     }
     Ok(events)
@@ -95,8 +100,8 @@ mod tests {
     #[test]
     fn every_scene_records_without_being_stepped() {
         for name in SCENES {
-            let script = Script::of_scene(name, Some(20)).unwrap();
-            assert_eq!(script.steps(), 20, "{name}");
+            let script = Script::of_scene(name, None).unwrap();
+            assert!(script.steps() >= 200, "{name}");
             assert!(!script.setup.is_empty(), "{name}");
         }
         let rain = Script::of_scene("rain", Some(20)).unwrap();

@@ -45,7 +45,7 @@ impl Box2d {
         def.workerCount = i32::try_from(threads)?;
         // SAFETY: the definition is complete; the logger takes any message.
         let world = unsafe {
-            b2SetLogFcn(Some(log));
+            b2SetLogFcn(Some(quiet));
             b2CreateWorld(&def)
         };
         let time_step = 1.0 / config.tick_rate as f32;
@@ -213,12 +213,8 @@ impl Engine for Box2d {
     }
 }
 
-/// What Box2D has to say: on stdout it would be between the results.
-unsafe extern "C" fn log(message: *const std::ffi::c_char) {
-    // SAFETY: Box2D passes a string that lives as long as the call.
-    let message = unsafe { std::ffi::CStr::from_ptr(message) };
-    eprintln!("Box2D: {}", message.to_string_lossy());
-}
+/// Drops what Box2D has to say: it would be between the results, and in the times.
+unsafe extern "C" fn quiet(_message: *const std::ffi::c_char) {}
 
 /// Two bodies that both move report their contact twice: it is counted for the first one.
 fn counts_for(body: b2BodyId, contact: &b2ContactData) -> bool {
