@@ -49,7 +49,6 @@ impl Rapier {
         parameters.normalized_max_corrective_velocity = push_speed.to_num();
         parameters.normalized_max_linear_velocity = config.solver.speed_max.to_num();
         parameters.max_ccd_substeps = usize::from(config.continuous);
-        parameters.warmstart_joints = true;
         let mut engine = Rapier {
             world,
             config: *config,
@@ -95,7 +94,7 @@ impl Rapier {
     }
 
     fn join(&mut self, joint: &JointDef, (a, b): (BodyId, BodyId)) -> Result<()> {
-        let joint = shapes::joint(joint, &self.config)?;
+        let joint = shapes::joint(joint)?;
         self.world.insert_impulse_joint(self.bodies.get(a)?, self.bodies.get(b)?, joint);
         Ok(())
     }

@@ -172,20 +172,16 @@ fn groups(filter: &Filter) -> InteractionGroups {
     InteractionGroups::new(memberships, accepted, InteractionTestMode::And)
 }
 
-/// A joint. An axis has one motor, so a spring goes before a motor, which are both in a ragdoll's hinges: their
-/// friction is left out.
-pub fn joint(def: &JointDef, config: &Config) -> Result<GenericJoint> {
+/// A joint, as stiff as rapier2d's are by default: with 60 Hz and a damping ratio of 2 the cloth of `joint_grid` is at
+/// 13 m/s after 100 steps, where the other engines' is at 1.4. An axis has one motor, so a spring goes before a motor,
+/// which are both in a ragdoll's hinges: their friction is left out.
+pub fn joint(def: &JointDef) -> Result<GenericJoint> {
     let JointKind::Revolute(hinge) = &def.kind else { bail!("joints that are no hinges") };
     let frame = |frame: &JointFrame| Pose::new(vector(frame.anchor), radians(frame.angle));
-    let softness = SpringCoefficients {
-        natural_frequency: config.solver.joint_hertz.to_num(),
-        damping_ratio: config.solver.joint_damping_ratio.to_num(),
-    };
     let mut joint = GenericJointBuilder::new(JointAxesMask::LOCKED_REVOLUTE_AXES)
         .local_frame1(frame(&def.frame_a))
         .local_frame2(frame(&def.frame_b))
-        .contacts_enabled(def.collide_connected)
-        .softness(softness);
+        .contacts_enabled(def.collide_connected);
     if let Some(limit) = hinge.limit {
         joint = joint.limits(JointAxis::AngX, [limit.lower.to_num(), limit.upper.to_num()]);
     }
