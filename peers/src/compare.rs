@@ -1,0 +1,212 @@
+//! The engines side by side in a scene, in interleaved rounds.
+
+use anyhow::{Context, Result, bail, ensure};
+use indicatif::ProgressBar;
+use serde::Serialize;
+
+use crate::engine::{Inventory, Kind};
+use crate::measure::{EndState, Keeping, Times, end_state, keeping, run};
+use crate::script::Script;
+use crate::stats::{geometric_mean, median, quartiles};
+
+/// Steps of each engine before the first round.
+const WARM_UP: u64 = 20;
+
+/// What to compare.
+#[derive(Clone, Copy, Debug)]
+pub struct Plan {
+    /// Runs of each engine.
+    pub rounds: usize,
+    /// Of each engine.
+    pub threads: usize,
+    /// Fewer steps than the scene has.
+    pub steps: Option<u64>,
+}
+
+impl Plan {
+    /// Units of progress of a scene.
+    pub fn runs(&self) -> u64 {
+        ((self.rounds + 1) * Kind::ALL.len()) as u64
+    }
+}
+
+/// A value of each engine.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Each<T> {
+    /// lockstep2d's.
+    pub ours: T,
+    /// Box2D's.
+    pub box2d: T,
+    /// rapier2d's.
+    pub rapier: T,
+}
+
+/// A scene's results: one line of JSON. Ratios are our time over the other's: less than 1 is faster than it.
+#[derive(Clone, Debug, Serialize)]
+pub struct SceneResult {
+    /// Its name.
+    pub scene: String,
+    /// How many were simulated, the first one not timed.
+    pub steps: usize,
+    /// Runs of each engine.
+    pub rounds: usize,
+    /// Of each engine.
+    pub threads: usize,
+    /// lockstep2d's ms per step: CPU time, or time on the clock with more threads than one; median of the rounds.
+    pub ms: f64,
+    /// Box2D's.
+    pub box2d_ms: f64,
+    /// rapier2d's.
+    pub rapier_ms: Option<f64>,
+    /// Median of the rounds' ratios.
+    pub vs_box2d: f64,
+    /// First and third quartile of the same.
+    pub vs_box2d_quartiles: [f64; 2],
+    /// Median of the rounds' ratios.
+    pub vs_rapier: Option<f64>,
+    /// First and third quartile of the same.
+    pub vs_rapier_quartiles: Option<[f64; 2]>,
+    /// Time on the clock in ms per step.
+    pub wall_ms: Each<Option<f64>>,
+    /// CPU time of bodies and joints that come and go, in ms per step: in no other number.
+    pub commands_ms: Each<Option<f64>>,
+    /// After the last step.
+    pub end: Each<Option<EndState>>,
+    /// What it costs to keep a whole world.
+    pub keeping: Each<Option<Keeping>>,
+    /// Why an engine is missing.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub missing: Vec<String>,
+}
+
+/// The last line of JSON.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Summary {
+    /// True: tells it from a scene's line.
+    pub summary: bool,
+    /// How many scenes it is over.
+    pub scenes: usize,
+    /// Of the scenes' medians.
+    pub geomean_vs_box2d: Option<f64>,
+    /// Of the scenes' medians, where rapier2d runs.
+    pub geomean_vs_rapier: Option<f64>,
+    /// The largest of the scenes' medians.
+    pub worst_vs_box2d: Option<f64>,
+}
+
+/// The runs of one engine.
+#[derive(Default)]
+struct Runs {
+    times: Vec<Times>,
+    end: Option<EndState>,
+    keeping: Option<Keeping>,
+}
+
+impl Runs {
+    /// The times that ratios are made of.
+    fn compared(&self, threads: usize) -> Vec<f64> {
+        self.times.iter().map(|times| if threads == 1 { times.cpu } else { times.wall }).collect()
+    }
+
+    fn middle(&self, part: impl Fn(&Times) -> f64) -> Option<f64> {
+        let values: Vec<_> = self.times.iter().map(part).collect();
+        (!values.is_empty()).then(|| median(&values))
+    }
+}
+
+/// Runs a scene in every engine.
+pub fn scene(name: &str, plan: Plan, progress: &ProgressBar) -> Result<SceneResult> {
+    let script = Script::of_scene(name, plan.steps)?;
+    let warm_up = Script::of_scene(name, Some(WARM_UP.min(script.steps() as u64)))?;
+    let mut missing = Vec::new();
+    let (mut kinds, mut worlds) = (Vec::new(), Vec::new());
+    for kind in Kind::ALL {
+        progress.set_message(format!("{name}: {}, warming up", kind.name()));
+        match run(kind, &warm_up, plan.threads) {
+            Ok((_, engine)) => {
+                worlds.push(Inventory::of(&*engine));
+                kinds.push(kind);
+            }
+            Err(why) => missing.push(format!("{}: {why:#}", kind.name())),
+        }
+        progress.inc(1);
+    }
+    for (kind, world) in kinds.iter().zip(&worlds) {
+        ensure!(worlds[0].is_like(world), "scene {name} in {}: {world:?}, not {:?}", kind.name(), worlds[0]);
+    }
+    let mut runs: [Runs; 3] = Default::default();
+    for round in 1..=plan.rounds {
+        for &kind in &kinds {
+            progress.set_message(format!("{name}: {}, round {round} of {}", kind.name(), plan.rounds));
+            let runs = &mut runs[kind as usize];
+            let (times, mut engine) = run(kind, &script, plan.threads)?;
+            runs.times.push(times);
+            if round == plan.rounds {
+                runs.end = Some(end_state(&*engine));
+                runs.keeping = Some(keeping(&mut *engine)?);
+            }
+            progress.inc(1);
+        }
+    }
+    result(name, plan, script.steps(), &runs, missing)
+}
+
+fn result(
+    name: &str,
+    plan: Plan,
+    steps: usize,
+    runs: &[Runs; 3],
+    missing: Vec<String>,
+) -> Result<SceneResult> {
+    let [ours, box2d, rapier] = runs;
+    let times = runs.each_ref().map(|runs| runs.compared(plan.threads));
+    let ratios = |other: &[f64]| -> Vec<f64> {
+        times[0].iter().zip(other).map(|(ours, other)| ours / other).collect()
+    };
+    let (to_box2d, to_rapier) = (ratios(&times[1]), ratios(&times[2]));
+    let with_rapier = !to_rapier.is_empty();
+    if times[0].is_empty() || times[1].is_empty() {
+        bail!("scene {name}: {}", missing.join("; "));
+    }
+    let each = |part: fn(&Times) -> f64| Each {
+        ours: ours.middle(part),
+        box2d: box2d.middle(part),
+        rapier: rapier.middle(part),
+    };
+    Ok(SceneResult {
+        scene: name.into(),
+        steps,
+        rounds: plan.rounds,
+        threads: plan.threads,
+        ms: median(&times[0]),
+        box2d_ms: median(&times[1]),
+        rapier_ms: with_rapier.then(|| median(&times[2])),
+        vs_box2d: median(&to_box2d),
+        vs_box2d_quartiles: quartiles(&to_box2d),
+        vs_rapier: with_rapier.then(|| median(&to_rapier)),
+        vs_rapier_quartiles: with_rapier.then(|| quartiles(&to_rapier)),
+        wall_ms: each(|times| times.wall),
+        commands_ms: each(|times| times.commands),
+        end: Each { ours: ours.end, box2d: box2d.end, rapier: rapier.end },
+        keeping: Each { ours: ours.keeping, box2d: box2d.keeping, rapier: rapier.keeping },
+        missing,
+    })
+}
+
+/// The geometric means.
+pub fn summary(results: &[SceneResult]) -> Summary {
+    let to_box2d: Vec<_> = results.iter().map(|result| result.vs_box2d).collect();
+    let to_rapier: Vec<_> = results.iter().filter_map(|result| result.vs_rapier).collect();
+    Summary {
+        summary: true,
+        scenes: results.len(),
+        geomean_vs_box2d: geometric_mean(&to_box2d),
+        geomean_vs_rapier: geometric_mean(&to_rapier),
+        worst_vs_box2d: to_box2d.iter().copied().max_by(f64::total_cmp),
+    }
+}
+
+/// A line of JSON.
+pub fn line(value: &impl Serialize) -> Result<String> {
+    serde_json::to_string(value).context("results are plain data")
+}

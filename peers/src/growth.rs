@@ -1,0 +1,184 @@
+//! How the time of a step grows with the number of bodies: the `p` of `n^p`, in worlds that are as dense at any size.
+
+use anyhow::{Result, anyhow};
+use indicatif::ProgressBar;
+use lockstep2d::body::{BodyDef, Geometry, Polygon, ShapeDef, WorldError};
+use lockstep2d::fx;
+use lockstep2d::lockstep::SandboxSetup;
+use lockstep2d::math::{Angle, Fx, Vec2};
+use lockstep2d::scenes::Builder;
+use lockstep2d::world::Config;
+use serde::Serialize;
+
+use crate::engine::Kind;
+use crate::measure::run;
+use crate::script::Script;
+use crate::stats::{median, power};
+
+/// A world of any size.
+#[derive(Clone, Copy)]
+pub struct World {
+    name: &'static str,
+    setup: fn(bodies: u32) -> Result<SandboxSetup, WorldError>,
+}
+
+/// All of them.
+pub const WORLDS: [World; 2] =
+    [World { name: "pyramids", setup: pyramids }, World { name: "churn", setup: churn }];
+
+/// What to measure.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// How many bodies, about.
+    pub sizes: Vec<u32>,
+    /// Steps that are timed.
+    pub steps: u64,
+    /// Steps before them.
+    pub untimed: u64,
+    /// Runs of each engine at each size.
+    pub rounds: usize,
+}
+
+/// A world in an engine at every size.
+#[derive(Clone, Debug, Serialize)]
+pub struct Growth {
+    /// Its name.
+    pub world: &'static str,
+    /// The engine's name.
+    pub engine: &'static str,
+    /// From small to large.
+    pub points: Vec<Point>,
+    /// The exponent that fits best.
+    pub p: f64,
+}
+
+/// A world at one size.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Point {
+    /// Dynamic bodies.
+    pub bodies: usize,
+    /// Pairs with contact points at the end.
+    pub contacts: usize,
+    /// CPU time of a step.
+    pub ms: f64,
+}
+
+/// Measures a world in every engine, in turn.
+pub fn measure(world: World, plan: &Plan, progress: &ProgressBar) -> Result<Vec<Growth>> {
+    let World { name, setup } = world;
+    let mut growths =
+        Kind::ALL.map(|kind| Growth { world: name, engine: kind.name(), points: Vec::new(), p: 0.0 });
+    for &size in &plan.sizes {
+        let setup = setup(size).map_err(|error| anyhow!("{name} of {size}: {error}"))?;
+        let script = Script::of_setup(setup, plan.untimed + plan.steps)?.untimed(plan.untimed as usize);
+        let mut times: [Vec<f64>; 3] = Default::default();
+        let mut counted = [(0, 0); 3];
+        for round in 1..=plan.rounds {
+            for kind in Kind::ALL {
+                progress.set_message(format!("{name} of {size}: {}, round {round}", kind.name()));
+                let (time, engine) = run(kind, &script, 1)?;
+                times[kind as usize].push(time.cpu);
+                let bodies = engine.bodies().iter().filter(|body| body.dynamic).count();
+                counted[kind as usize] = (bodies, engine.contacts().pairs);
+                progress.inc(1);
+            }
+        }
+        for ((growth, times), (bodies, contacts)) in growths.iter_mut().zip(&times).zip(counted) {
+            growth.points.push(Point { bodies, contacts, ms: median(times) });
+        }
+    }
+    for growth in &mut growths {
+        let points: Vec<_> = growth.points.iter().map(|point| (point.bodies as f64, point.ms)).collect();
+        growth.p = power(&points);
+    }
+    Ok(growths.into())
+}
+
+fn config() -> Config {
+    Config { sleeping: false, pair_limit: 1 << 20, ..Config::default() }
+}
+
+/// Pyramids of 55 boxes side by side, 20 on a shelf: the tiles of `many_pyramids`.
+fn pyramids(bodies: u32) -> Result<SandboxSetup, WorldError> {
+    let pyramids = (bodies / 55).max(1);
+    let mut scene = Builder::new(config());
+    let shelf = |row: u32| {
+        let y = Fx::from_num(11 * row);
+        Geometry::segment(Vec2::new(fx!(-110), y), Vec2::new(fx!(110), y)).map(ShapeDef::new)
+    };
+    let shelves = (0..pyramids.div_ceil(20)).map(shelf).collect::<Result<Vec<_>, _>>()?;
+    scene.spawn(BodyDef::fixed(), &shelves)?;
+    let place = |pyramid: u32, i: i32, j: i32| {
+        let (column, row) = (pyramid % 20, pyramid / 20);
+        let x = Fx::from_num(i + 1) / 2 + Fx::from_num(j - i) + Fx::from_num(11 * column) - fx!(109.5);
+        Vec2::new(x, Fx::from_num(i) + fx!(0.5) + Fx::from_num(11 * row))
+    };
+    let tile = |pyramid| (0..10).flat_map(move |i| (i..10).map(move |j| place(pyramid, i, j)));
+    let square = ShapeDef::new(Polygon::square(fx!(0.5))?);
+    scene.spawn_each(BodyDef::dynamic(), &[square], (0..pyramids).flat_map(tile))?;
+    Ok(scene.finish())
+}
+
+/// A square drum full of boxes and balls, that starts on its edge and turns. Its speed is that of the same Froude
+/// number at any size.
+fn churn(bodies: u32) -> Result<SandboxSetup, WorldError> {
+    let side = bodies.isqrt().max(2);
+    // The grid of bodies fits into the drum when that is turned by 30 degrees.
+    let apart = fx!(0.255);
+    let half_grid = apart * i64::from(side) / 2;
+    let half = half_grid * fx!(1.45) + fx!(0.5);
+    let mut scene = Builder::new(config());
+    let wall = |hx: Fx, hy: Fx, x: Fx, y: Fx| {
+        Polygon::rectangle(hx, hy).map(|wall| ShapeDef::new(wall).offset(x, y))
+    };
+    let walls = [
+        wall(fx!(0.5), half, half, fx!(0))?,
+        wall(fx!(0.5), half, -half, fx!(0))?,
+        wall(half, fx!(0.5), fx!(0), half)?,
+        wall(half, fx!(0.5), fx!(0), -half)?,
+    ];
+    let turning = lockstep2d::math::sqrt(fx!(2) / half).unwrap_or(fx!(0.4));
+    let drum = BodyDef::kinematic().angle(Angle::from_degrees(fx!(30))).angular_velocity(turning);
+    scene.spawn(drum, &walls)?;
+    let at = |index: u32| Fx::from_num(index) * apart + apart / 2 - half_grid;
+    let shapes: [Geometry; 2] = [Polygon::square(fx!(0.125))?.into(), Geometry::circle(fx!(0.125))?];
+    for (geometry, first) in shapes.into_iter().zip(0..) {
+        let places = (first..side * side).step_by(2).map(|i| Vec2::new(at(i % side), at(i / side)));
+        scene.spawn_each(BodyDef::dynamic(), &[ShapeDef::new(geometry)], places)?;
+    }
+    Ok(scene.finish())
+}
+
+/// Results for people.
+pub fn table(growths: &[Growth]) -> String {
+    let mut text = format!("{:9} {:10} {:>6}  ms per step (bodies, contacts)\n", "world", "engine", "p");
+    for Growth { world, engine, points, p } in growths {
+        let point = |point: &Point| format!("{:.2} ({}, {})", point.ms, point.bodies, point.contacts);
+        let points: Vec<_> = points.iter().map(point).collect();
+        text += &format!("{world:9} {engine:10} {p:6.3}  {}\n", points.join("  "));
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn worlds_of_two_sizes_give_an_exponent() {
+        let plan = Plan { sizes: vec![500, 2000], steps: 10, untimed: 20, rounds: 1 };
+        for world in WORLDS {
+            for growth in measure(world, &plan, &ProgressBar::hidden()).unwrap() {
+                let bodies: Vec<_> = growth.points.iter().map(|point| point.bodies).collect();
+                let expected = if world.name == "churn" { [484, 1936] } else { [495, 1980] };
+                assert_eq!(bodies, expected, "{growth:?}");
+                assert!((0.3..2.5).contains(&growth.p), "{growth:?}");
+                let density = |point: &Point| point.contacts as f64 / point.bodies as f64;
+                assert!(
+                    (density(&growth.points[0]) / density(&growth.points[1]) - 1.0).abs() < 0.5,
+                    "{growth:?}"
+                );
+            }
+        }
+    }
+}

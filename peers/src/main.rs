@@ -1,0 +1,182 @@
+//! The benchmark scenes side by side in lockstep2d, Box2D 3.2 and rapier2d. `README.md` has the commands, and
+//! `docs/PERFORMANCE.md` of the repository the method and the results.
+
+mod box2d;
+mod compare;
+mod engine;
+mod growth;
+mod measure;
+mod ours;
+mod rapier;
+mod rollback;
+mod script;
+mod stats;
+mod table;
+#[cfg(test)]
+mod tests;
+
+use anyhow::Result;
+use clap::Parser;
+use clap::builder::PossibleValuesParser;
+use compare::Plan;
+use indicatif::{ProgressBar, ProgressStyle};
+
+/// Runs the ten benchmark scenes in lockstep2d, Box2D 3.2 (AVX2) and rapier2d (enhanced-determinism).
+#[derive(Parser)]
+#[command(version, args_conflicts_with_subcommands = true)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Option<Command>,
+    #[command(flatten)]
+    scenes: ScenesArguments,
+}
+
+#[derive(clap::Subcommand)]
+enum Command {
+    /// How the time of a step grows with the number of bodies
+    Growth(GrowthArguments),
+    /// What rollback costs in lockstep2d
+    Rollback(RollbackArguments),
+}
+
+#[derive(clap::Args)]
+struct GrowthArguments {
+    /// Sizes, in bodies
+    #[arg(long, value_delimiter = ',', default_values_t = [1000, 4000, 16000, 64000],
+        value_parser = clap::value_parser!(u32).range(110..=250_000))]
+    bodies: Vec<u32>,
+    /// Steps that are timed
+    #[arg(long, default_value_t = 30, value_parser = clap::value_parser!(u64).range(1..))]
+    steps: u64,
+    /// Steps before them
+    #[arg(long, default_value_t = 60)]
+    untimed: u64,
+    /// Runs of each engine in turn
+    #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u16).range(1..))]
+    rounds: u16,
+    /// Lines of JSON instead of a table
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(clap::Args)]
+struct RollbackArguments {
+    /// Only these scenes, repeated or separated by commas
+    #[arg(long = "scene", value_delimiter = ',', value_parser = PossibleValuesParser::new(script::SCENES))]
+    scenes: Vec<String>,
+    /// At most this many steps of each scene, for a quick look
+    #[arg(long, value_parser = clap::value_parser!(u64).range(9..))]
+    steps: Option<u64>,
+    /// Lines of JSON instead of a table
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(clap::Args)]
+struct ScenesArguments {
+    /// Only these scenes, repeated or separated by commas
+    #[arg(long = "scene", value_delimiter = ',', value_parser = PossibleValuesParser::new(script::SCENES))]
+    scenes: Vec<String>,
+    /// Runs of each engine in turn
+    #[arg(long, default_value_t = 7, value_parser = clap::value_parser!(u16).range(1..))]
+    rounds: u16,
+    /// Threads of each engine; ratios are of CPU time with one, and of time on the clock with more
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=32))]
+    threads: u16,
+    /// At most this many steps of each scene, for a quick look
+    #[arg(long, value_parser = clap::value_parser!(u64).range(2..))]
+    steps: Option<u64>,
+    /// Lines of JSON instead of tables: one for each scene, and a summary
+    #[arg(long)]
+    json: bool,
+}
+
+fn main() -> Result<()> {
+    let arguments = Arguments::parse();
+    match &arguments.command {
+        None => compare_scenes(&arguments.scenes),
+        Some(Command::Growth(arguments)) => measure_growth(arguments),
+        Some(Command::Rollback(arguments)) => measure_rollback(arguments),
+    }
+}
+
+/// The scenes that are named, or all.
+fn names(some: &[String]) -> Vec<&str> {
+    if some.is_empty() { script::SCENES.into() } else { some.iter().map(String::as_str).collect() }
+}
+
+fn compare_scenes(arguments: &ScenesArguments) -> Result<()> {
+    let plan =
+        Plan { rounds: arguments.rounds.into(), threads: arguments.threads.into(), steps: arguments.steps };
+    let names = names(&arguments.scenes);
+    let progress = progress(plan.runs() * names.len() as u64)?;
+    if !arguments.json {
+        println!("{}", table::times_head());
+    }
+    let mut results = Vec::new();
+    for name in names {
+        let result = compare::scene(name, plan, &progress)?;
+        let row = if arguments.json { compare::line(&result)? } else { table::times(&result) };
+        progress.suspend(|| println!("{row}"));
+        for why in &result.missing {
+            progress.suspend(|| eprintln!("{name}: without {why}"));
+        }
+        results.push(result);
+    }
+    progress.finish_and_clear();
+    let summary = compare::summary(&results);
+    if arguments.json {
+        println!("{}", compare::line(&summary)?);
+    } else {
+        println!("{}\n\n{}\n{}", table::summary(&summary), table::ends(&results), table::keeping(&results));
+    }
+    Ok(())
+}
+
+fn measure_growth(arguments: &GrowthArguments) -> Result<()> {
+    let plan = growth::Plan {
+        sizes: arguments.bodies.clone(),
+        steps: arguments.steps,
+        untimed: arguments.untimed,
+        rounds: arguments.rounds.into(),
+    };
+    let runs = growth::WORLDS.len() * plan.sizes.len() * plan.rounds * engine::Kind::ALL.len();
+    let progress = progress(runs as u64)?;
+    let mut growths = Vec::new();
+    for world in growth::WORLDS {
+        growths.extend(growth::measure(world, &plan, &progress)?);
+    }
+    progress.finish_and_clear();
+    if !arguments.json {
+        print!("{}", growth::table(&growths));
+        return Ok(());
+    }
+    for growth in &growths {
+        println!("{}", compare::line(growth)?);
+    }
+    Ok(())
+}
+
+fn measure_rollback(arguments: &RollbackArguments) -> Result<()> {
+    let bytes = rollback::bytes()?;
+    if !arguments.json {
+        println!("{}", rollback::head());
+    }
+    for name in names(&arguments.scenes) {
+        let cost = rollback::cost(name, arguments.steps)?;
+        println!("{}", if arguments.json { compare::line(&cost)? } else { rollback::row(&cost) });
+    }
+    let rollback::Bytes { body, contact, joint } = bytes;
+    if arguments.json {
+        println!("{}", serde_json::json!({ "summary": true, "bytes_of_a_save_per": bytes }));
+    } else {
+        println!("A save has {body:.0} bytes per body, {contact:.0} per contact and {joint:.0} per joint.");
+    }
+    Ok(())
+}
+
+/// A bar on stderr, if that is a terminal.
+fn progress(length: u64) -> Result<ProgressBar> {
+    let style = ProgressStyle::with_template("{bar:30} {pos}/{len} runs, {eta} left  {msg}")?;
+    Ok(ProgressBar::new(length).with_style(style))
+}

@@ -1,0 +1,135 @@
+//! One run of one engine: how long its steps take, what the end looks like, what saving costs.
+
+use std::time::Instant;
+
+use anyhow::Result;
+use serde::Serialize;
+
+use crate::engine::{Engine, Kind};
+use crate::script::Script;
+use crate::stats::median;
+
+/// Times of a run in ms per step, the first ones left out.
+#[derive(Clone, Copy, Debug)]
+pub struct Times {
+    /// Of the calling thread's CPU.
+    pub cpu: f64,
+    /// On the clock.
+    pub wall: f64,
+    /// CPU time of what happens between steps: bodies and joints that come and go.
+    pub commands: f64,
+}
+
+/// What the world looks like after the last step.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct EndState {
+    /// Height of the highest dynamic body's centre of mass, in metres.
+    pub top: f64,
+    /// Height of the lowest one, in metres: what falls through the floor shows here.
+    pub bottom: f64,
+    /// In mm, as found in the last step.
+    pub deepest_mm: f64,
+    /// Over all dynamic bodies, in m/s; what sleeps stands still.
+    pub mean_speed: f64,
+    /// In m/s.
+    pub max_speed: f64,
+    /// Pairs of shapes with contact points.
+    pub contacts: usize,
+    /// The largest distance of two anchors in mm.
+    pub joint_gap_mm: Option<f64>,
+    /// Dynamic bodies that are simulated.
+    pub awake: usize,
+}
+
+/// What it costs to keep a whole world, at its end state.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Keeping {
+    /// CPU time in ms.
+    pub save_ms: f64,
+    /// CPU time in ms.
+    pub restore_ms: f64,
+    /// CPU time in ms, if the engine has a hash of the whole state.
+    pub hash_ms: Option<f64>,
+    /// As bytes for a file.
+    pub bytes: usize,
+    /// The same by body that is not fixed.
+    pub bytes_per_body: f64,
+}
+
+/// The calling thread's CPU time in ms.
+pub fn thread_ms() -> f64 {
+    let mut time = libc::timespec { tv_sec: 0, tv_nsec: 0 };
+    // SAFETY: the pointer is to a whole timespec.
+    unsafe { libc::clock_gettime(libc::CLOCK_THREAD_CPUTIME_ID, &raw mut time) };
+    time.tv_sec as f64 * 1e3 + time.tv_nsec as f64 * 1e-6
+}
+
+/// How long something takes: CPU time in ms, and its result.
+pub fn timed<T>(work: impl FnOnce() -> T) -> (f64, T) {
+    let start = thread_ms();
+    let result = work();
+    (thread_ms() - start, result)
+}
+
+/// Builds a world and steps it to the end of the script.
+pub fn run(kind: Kind, script: &Script, threads: usize) -> Result<(Times, Box<dyn Engine>)> {
+    let mut engine = kind.build(script, threads)?;
+    let mut sum = Times { cpu: 0.0, wall: 0.0, commands: 0.0 };
+    for (tick, events) in script.ticks.iter().enumerate() {
+        let (commands, applied) = timed(|| events.iter().try_for_each(|event| engine.apply(event)));
+        applied?;
+        let clock = Instant::now();
+        let (cpu, ()) = timed(|| engine.step());
+        let wall = clock.elapsed().as_secs_f64() * 1e3;
+        if tick >= script.untimed {
+            sum = Times { cpu: sum.cpu + cpu, wall: sum.wall + wall, commands: sum.commands + commands };
+        }
+    }
+    let steps = script.steps().saturating_sub(script.untimed).max(1) as f64;
+    let times = Times { cpu: sum.cpu / steps, wall: sum.wall / steps, commands: sum.commands / steps };
+    Ok((times, engine))
+}
+
+/// What a world looks like.
+pub fn end_state(engine: &dyn Engine) -> EndState {
+    let bodies = engine.bodies();
+    let dynamic: Vec<_> = bodies.iter().filter(|body| body.dynamic).collect();
+    let speeds: Vec<f64> = dynamic
+        .iter()
+        .map(|body| if body.awake { body.velocity[0].hypot(body.velocity[1]) } else { 0.0 })
+        .collect();
+    let heights = || dynamic.iter().map(|body| body.centre[1]);
+    let contacts = engine.contacts();
+    EndState {
+        top: heights().fold(f64::NEG_INFINITY, f64::max),
+        bottom: heights().fold(f64::INFINITY, f64::min),
+        deepest_mm: contacts.deepest * 1e3,
+        mean_speed: speeds.iter().sum::<f64>() / speeds.len().max(1) as f64,
+        max_speed: speeds.iter().copied().fold(0.0, f64::max),
+        contacts: contacts.pairs,
+        joint_gap_mm: engine.joint_gap().map(|gap| gap * 1e3),
+        awake: dynamic.iter().filter(|body| body.awake).count(),
+    }
+}
+
+/// Saves, restores and hashes a few times.
+pub fn keeping(engine: &mut dyn Engine) -> Result<Keeping> {
+    let (mut save, mut restore, mut hash) = (Vec::new(), Vec::new(), Vec::new());
+    for _ in 0..5 {
+        save.push(timed(|| engine.save()).0);
+        let (ms, restored) = timed(|| engine.restore());
+        restored?;
+        restore.push(ms);
+        if let (ms, Some(_)) = timed(|| engine.hash()) {
+            hash.push(ms);
+        }
+    }
+    let bytes = engine.saved_bytes();
+    Ok(Keeping {
+        save_ms: median(&save),
+        restore_ms: median(&restore),
+        hash_ms: (!hash.is_empty()).then(|| median(&hash)),
+        bytes,
+        bytes_per_body: bytes as f64 / engine.bodies().len().max(1) as f64,
+    })
+}

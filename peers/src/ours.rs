@@ -1,0 +1,88 @@
+//! lockstep2d behind the benchmark's interface.
+
+use anyhow::{Context, Result, anyhow, ensure};
+use lockstep2d::body::BodyKind;
+use lockstep2d::world::{Config, Snapshot, World};
+
+use crate::engine::{BodyState, Contacts, Counts, Engine, float, floats};
+use crate::script::Event;
+
+/// A world of lockstep2d.
+pub struct Ours {
+    world: World,
+    saved: Option<Snapshot>,
+}
+
+impl Ours {
+    /// An empty world.
+    pub fn new(config: &Config, threads: usize) -> Result<Self> {
+        ensure!(threads == 1, "lockstep2d has one thread");
+        let world = World::new(*config).map_err(|error| anyhow!("{error}"))?;
+        Ok(Ours { world, saved: None })
+    }
+}
+
+impl Engine for Ours {
+    fn apply(&mut self, (command, outcome): &Event) -> Result<()> {
+        let made = self.world.execute(command).map_err(|error| anyhow!("{error}"))?;
+        ensure!(made == *outcome, "made {made:?}, recorded {outcome:?}");
+        Ok(())
+    }
+
+    fn step(&mut self) {
+        self.world.step();
+    }
+
+    fn bodies(&self) -> Vec<BodyState> {
+        let moving = self.world.bodies().filter(|(_, body)| body.kind() != BodyKind::Fixed);
+        let state = moving.map(|(_, body)| BodyState {
+            dynamic: body.is_dynamic(),
+            awake: body.is_enabled() && !body.is_asleep(),
+            mass: float(body.mass()),
+            centre: floats(body.centre_of_mass()),
+            velocity: floats(body.velocity()),
+        });
+        state.collect()
+    }
+
+    fn counts(&self) -> Counts {
+        let world = &self.world;
+        Counts { bodies: world.body_count(), shapes: world.shape_count(), joints: world.joint_count() }
+    }
+
+    fn contacts(&self) -> Contacts {
+        let mut found = Contacts::default();
+        for contact in self.world.contacts() {
+            let points = contact.manifold.points();
+            found.pairs += usize::from(!points.is_empty());
+            let depths = points.iter().map(|point| -point.separation.to_num::<f64>());
+            found.deepest = depths.fold(found.deepest, f64::max);
+        }
+        found
+    }
+
+    fn joint_gap(&self) -> Option<f64> {
+        let gaps = self.world.joints().filter_map(|(id, _)| {
+            let (a, b) = self.world.joint_anchors(id)?;
+            Some(float(a.distance(b)))
+        });
+        gaps.max_by(f64::total_cmp)
+    }
+
+    fn save(&mut self) {
+        self.saved = Some(self.world.save());
+    }
+
+    fn saved_bytes(&self) -> usize {
+        self.world.to_bytes().len()
+    }
+
+    fn restore(&mut self) -> Result<()> {
+        self.world.restore(self.saved.as_ref().context("nothing is saved")?);
+        Ok(())
+    }
+
+    fn hash(&self) -> Option<u128> {
+        Some(self.world.state_hash().0)
+    }
+}

@@ -1,0 +1,223 @@
+//! What rollback costs in lockstep2d: a save and a hash every tick, and from time to time a restore and the last ticks
+//! again.
+
+use anyhow::{Result, anyhow};
+use lockstep2d::body::{BodyDef, Polygon, ShapeDef};
+use lockstep2d::fx;
+use lockstep2d::math::{Fx, Vec2};
+use lockstep2d::scenes::Builder;
+use lockstep2d::world::{Config, World};
+use serde::Serialize;
+
+use crate::measure::timed;
+use crate::script::{Event, Script};
+use crate::stats::median;
+
+/// How far a rollback goes.
+const TICKS: usize = 8;
+/// How often everything is measured.
+const TIMES: usize = 5;
+
+/// A scene's costs, at its end.
+#[derive(Clone, Debug, Serialize)]
+pub struct Cost {
+    /// Its name.
+    pub scene: String,
+    /// CPU time of a step, over the ticks that are rolled back.
+    pub step_ms: f64,
+    /// CPU time.
+    pub save_ms: f64,
+    /// CPU time.
+    pub hash_ms: f64,
+    /// CPU time.
+    pub restore_ms: f64,
+    /// A save and a hash, in percent of a step.
+    pub save_and_hash_percent: f64,
+    /// Restoring and simulating 8 ticks again, saves and hashes included, in steps.
+    pub rollback_steps: f64,
+    /// Memory of a save.
+    pub save_bytes: usize,
+    /// The same by dynamic body.
+    pub save_bytes_per_body: f64,
+    /// Length of `World::to_bytes`.
+    pub file_bytes: usize,
+}
+
+/// Memory of a save, by what is in the world.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Bytes {
+    /// A dynamic body with one shape, far from others.
+    pub body: f64,
+    /// A pair of shapes with contact points.
+    pub contact: f64,
+    /// A hinge.
+    pub joint: f64,
+}
+
+/// Costs of a scene near its end.
+pub fn cost(name: &str, steps: Option<u64>) -> Result<Cost> {
+    let script = Script::of_scene(name, steps)?;
+    let mut world = built(&script)?;
+    let (before, last) = script.ticks.split_at(script.steps().saturating_sub(TICKS));
+    before.iter().try_for_each(|events| advance(&mut world, events))?;
+
+    let start = world.save();
+    let (mut save, mut hash, mut restore) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut step, mut rollback) = (Vec::new(), Vec::new());
+    for _ in 0..TIMES {
+        let (restoring, ()) = timed(|| world.restore(&start));
+        restore.push(restoring);
+        let mut resimulating = 0.0;
+        for events in last {
+            execute(&mut world, events)?;
+            let (stepping, ()) = timed(|| world.step());
+            let (saving, saved) = timed(|| world.save());
+            let (hashing, _) = timed(|| world.state_hash());
+            drop(saved);
+            resimulating += stepping + saving + hashing;
+            step.push(stepping);
+            save.push(saving);
+            hash.push(hashing);
+        }
+        rollback.push(restoring + resimulating);
+    }
+    let [step_ms, save_ms, hash_ms, restore_ms] = [&step, &save, &hash, &restore].map(|times| median(times));
+    let save_bytes = save_bytes(&world);
+    let dynamic = world.bodies().filter(|(_, body)| body.is_dynamic()).count();
+    Ok(Cost {
+        scene: name.into(),
+        step_ms,
+        save_ms,
+        hash_ms,
+        restore_ms,
+        save_and_hash_percent: (save_ms + hash_ms) / step_ms * 100.0,
+        rollback_steps: median(&rollback) / step_ms,
+        save_bytes,
+        save_bytes_per_body: save_bytes as f64 / dynamic.max(1) as f64,
+        file_bytes: world.to_bytes().len(),
+    })
+}
+
+fn built(script: &Script) -> Result<World> {
+    let mut world = World::new(script.config).map_err(|error| anyhow!("{error}"))?;
+    execute(&mut world, &script.setup)?;
+    Ok(world)
+}
+
+fn execute(world: &mut World, events: &[Event]) -> Result<()> {
+    for (command, _) in events {
+        world.execute(command).map_err(|error| anyhow!("{error}"))?;
+    }
+    Ok(())
+}
+
+fn advance(world: &mut World, events: &[Event]) -> Result<()> {
+    execute(world, events)?;
+    world.step();
+    Ok(())
+}
+
+/// How much memory a save takes, as the allocator counts it.
+fn save_bytes(world: &World) -> usize {
+    let before = allocated();
+    let saved = world.save();
+    let after = allocated();
+    drop(saved);
+    after.saturating_sub(before)
+}
+
+/// Bytes that are allocated now, in the heap and in mappings.
+fn allocated() -> usize {
+    // SAFETY: takes nothing.
+    let info = unsafe { libc::mallinfo2() };
+    info.uordblks + info.hblkhd
+}
+
+/// What a body, a contact and a joint take: from worlds of bodies alone, of contacts and of joints.
+pub fn bytes() -> Result<Bytes> {
+    let few = save_bytes(&scattered(1000)?) as f64;
+    let many = save_bytes(&scattered(9000)?) as f64;
+    let body = (many - few) / 8000.0;
+    let rest_of = |name: &str| -> Result<(f64, World)> {
+        let script = Script::of_scene(name, Some(4))?;
+        let mut world = built(&script)?;
+        script.ticks.iter().try_for_each(|events| advance(&mut world, events))?;
+        Ok((save_bytes(&world) as f64 - body * world.body_count() as f64, world))
+    };
+    let (contacts, world) = rest_of("large_pyramid")?;
+    let contact =
+        contacts / world.contacts().filter(|contact| !contact.manifold.points().is_empty()).count() as f64;
+    let (joints, world) = rest_of("joint_grid")?;
+    Ok(Bytes { body, contact, joint: joints / world.joint_count() as f64 })
+}
+
+/// Boxes that are 10 m apart, after a step.
+fn scattered(count: u32) -> Result<World> {
+    let mut scene = Builder::new(Config { gravity: Vec2::ZERO, ..Config::default() });
+    let fill = |scene: &mut Builder| {
+        let square = ShapeDef::new(Polygon::square(fx!(0.5))?);
+        let places =
+            (0..count).map(|i| Vec2::new(Fx::from_num(10 * (i % 100)), Fx::from_num(10 * (i / 100))));
+        scene.spawn_each(BodyDef::dynamic(), &[square], places)
+    };
+    fill(&mut scene).map_err(|error| anyhow!("{error}"))?;
+    let script = Script::of_setup(scene.finish(), 1)?;
+    let mut world = built(&script)?;
+    world.step();
+    Ok(world)
+}
+
+/// Heads of [`row`].
+pub fn head() -> String {
+    format!(
+        "{:14} {:>8} {:>8} {:>8} {:>10} {:>11} {:>14} {:>11} {:>11} {:>10}",
+        "scene",
+        "step ms",
+        "save ms",
+        "hash ms",
+        "restore ms",
+        "save+hash %",
+        "8 ticks, steps",
+        "save bytes",
+        "per body",
+        "file bytes"
+    )
+}
+
+/// A scene for people.
+pub fn row(cost: &Cost) -> String {
+    format!(
+        "{:14} {:8.2} {:8.3} {:8.3} {:10.3} {:11.1} {:14.2} {:11} {:11.0} {:10}",
+        cost.scene,
+        cost.step_ms,
+        cost.save_ms,
+        cost.hash_ms,
+        cost.restore_ms,
+        cost.save_and_hash_percent,
+        cost.rollback_steps,
+        cost.save_bytes,
+        cost.save_bytes_per_body,
+        cost.file_bytes
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_rollback_of_eight_ticks_costs_at_least_them() {
+        let cost = cost("tumbler", Some(40)).unwrap();
+        assert!(cost.rollback_steps > 6.0 && cost.save_and_hash_percent > 0.0, "{cost:?}");
+        assert!(cost.file_bytes > 2026 * 100, "{cost:?}");
+    }
+
+    #[test]
+    #[ignore = "counts the memory of the whole process: run it alone"]
+    fn bytes_are_told_apart() {
+        let bytes = bytes().unwrap();
+        for part in [bytes.body, bytes.contact, bytes.joint] {
+            assert!((20.0..4000.0).contains(&part), "{bytes:?}");
+        }
+    }
+}
