@@ -76,11 +76,14 @@ impl Manifold {
     }
 
     /// Keeps the points that pass a test.
-    pub(crate) fn retain(&mut self, keep: impl Fn(&ManifoldPoint) -> bool) {
-        let all = *self;
-        self.count = 0;
-        for &point in all.points().iter().filter(|point| keep(point)) {
-            self.push(point);
+    #[inline]
+    pub(crate) fn retain(&mut self, mut keep: impl FnMut(&ManifoldPoint) -> bool) {
+        let count = core::mem::take(&mut self.count);
+        for index in 0..usize::from(count) {
+            let point = self.points[index];
+            if keep(&point) {
+                self.push(point);
+            }
         }
     }
 

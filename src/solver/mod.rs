@@ -36,7 +36,7 @@ pub(crate) use settings::Tuning;
 pub use settings::{ContactTuning, DISTANCE_MAX, SolverSettings};
 
 use crate::body::{Arena, Body, BodyId, JointId};
-use crate::collision::{Contact, Manifold};
+use crate::collision::{Contact, Manifold, Pair};
 use crate::math::Reciprocal;
 
 /// How many times as often everything is solved in a tick in which most contact points are new: without impulses of
@@ -65,10 +65,12 @@ pub(crate) struct Solver {
     pub(crate) faults: Faults,
 }
 
-/// A contact to solve: where it is in the state, the slots of its bodies, and their common surface.
+/// A contact to solve: where it is in the state, the slots of its shapes and of their bodies, and their common
+/// surface.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TouchingPair {
     pub(crate) contact: u32,
+    pub(crate) shapes: Pair,
     pub(crate) bodies: (u32, u32),
     pub(crate) surface: Surface,
 }
@@ -115,14 +117,13 @@ impl Solver {
     ) {
         self.nodes.clear();
         for pair in pairs {
-            let shapes = contacts[pair.contact as usize].shapes;
-            let key = u64::from(shapes.0) << 32 | u64::from(shapes.1);
+            let key = u64::from(pair.shapes.0) << 32 | u64::from(pair.shapes.1);
             self.nodes.push(self.list.node(key, bodies, pair.bodies.0, pair.bodies.1));
         }
         self.contacts.clear();
         self.contact_indices.clear();
         for &index in self.colouring.order(&self.nodes, self.list.len()) {
-            let TouchingPair { contact, bodies: (a, b), surface } = pairs[index as usize];
+            let TouchingPair { contact, bodies: (a, b), surface, .. } = pairs[index as usize];
             self.contact_indices.push(contact);
             self.contacts.push(ContactConstraint::prepare(
                 &manifolds[contact as usize],

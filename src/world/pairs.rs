@@ -22,6 +22,7 @@ pub(super) fn update(state: &mut State, scratch: &mut Scratch) {
     drop_parted(state, scratch);
     find_new(state, scratch);
     recall_hints(state, scratch);
+    scratch.surfaces_stale |= scratch.changes.everything || scratch.changes.rules;
     scratch.changes.clear();
 }
 

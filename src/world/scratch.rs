@@ -5,6 +5,7 @@ use alloc::vec::Vec;
 use super::continuous::Swept;
 use super::events::Events;
 use super::islands::{Roster, UnionFind};
+use super::look_ahead::Outlook;
 use super::state::State;
 use super::stats::StepStats;
 use crate::body::{Body, BodyKind, Handle, Pose};
@@ -41,6 +42,10 @@ pub(crate) struct Scratch {
     /// For each contact, its manifold in the last tick.
     pub(crate) manifolds: Vec<Manifold>,
     pub(crate) touching: Vec<TouchingPair>,
+    /// What touched in the tick before, sorted by pair: most of it still does, with the same surface.
+    pub(crate) touched: Vec<TouchingPair>,
+    /// Whether surfaces may have changed since.
+    pub(crate) surfaces_stale: bool,
     /// Approaches that become hits if the shapes push each other in this tick.
     pub(crate) approaches: Vec<Approaching>,
     pub(crate) sat: SatCounters,
@@ -108,6 +113,8 @@ impl Scratch {
             old_hints: Vec::new(),
             manifolds: Vec::new(),
             touching: Vec::new(),
+            touched: Vec::new(),
+            surfaces_stale: true,
             approaches: Vec::new(),
             sat: SatCounters::default(),
             solver: Solver::default(),
@@ -144,6 +151,8 @@ impl Scratch {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Poses {
     shapes: Vec<Option<PosedShape>>,
+    /// The same shapes as their pairs see them first.
+    pub(super) outlook: Outlook,
 }
 
 impl Poses {
@@ -155,7 +164,9 @@ impl Poses {
         let rotation = body.rotation();
         for &id in body.shapes() {
             let shape = state.shapes.at(id.slot());
-            self.shapes[id.slot() as usize] = Some(PosedShape::new(&shape.def, body, rotation));
+            let posed = PosedShape::new(&shape.def, body, rotation);
+            self.outlook.place(id.slot(), shape, shape.body().slot(), posed.bounds);
+            self.shapes[id.slot() as usize] = Some(posed);
         }
     }
 
