@@ -8,7 +8,7 @@
 use super::circle_hull::{distance_along, step_bits};
 use super::manifold::{Feature, Manifold, ManifoldPoint};
 use super::pose::Hull;
-use crate::math::{Length, Step, Unit, Vec2, round_shift_wide, saturate, saturate_wide};
+use crate::math::{Length, Step, Unit, Vec2, round_shift, round_shift_wide, saturate, saturate_wide};
 
 /// B's best face must beat A's by this much, in metres, to become the reference: 0.5 mm keeps the choice from
 /// flickering between two equal faces. Impulses survive a flicker, since features do not depend on the choice,
@@ -21,12 +21,14 @@ pub(super) const FACE_BITS: u32 = Unit::FRAC_NBITS + Length::FRAC_NBITS;
 /// [`TOLERANCE`] with [`FACE_BITS`] fraction bits.
 pub(super) const TOLERANCE_WIDE: i64 = (TOLERANCE.to_bits() as i64) << 25;
 
-/// The face that separated a pair in the last tick. Trying it first changes no result: any axis with a gap
+/// The face that separated a pair in the last tick, if one did. Trying it first changes no result: any axis with a gap
 /// beyond the margin proves that there is no contact.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct AxisHint {
-    on_b: bool,
-    edge: u8,
+pub(crate) enum AxisHint {
+    #[default]
+    None,
+    OfA(u8),
+    OfB(u8),
 }
 
 /// How often the hint saved the search.
@@ -54,10 +56,9 @@ pub(crate) fn collide(
 ) -> Manifold {
     let radii = a.radius.saturating_add(b.radius);
     let reach = i64::from(margin.saturating_add(radii).to_bits()) << 30;
-    let edge = usize::from(hint.edge);
-    let hinted = match hint.on_b {
-        false if edge < a.vertices().len() => face_separation(a, edge, b, d),
-        true if edge < b.vertices().len() => face_separation(b, edge, a, -d),
+    let hinted = match *hint {
+        AxisHint::OfA(edge) if usize::from(edge) < a.vertices().len() => face_separation(a, edge.into(), b, d),
+        AxisHint::OfB(edge) if usize::from(edge) < b.vertices().len() => face_separation(b, edge.into(), a, -d),
         _ => i64::MIN,
     };
     if hinted > reach {
@@ -67,14 +68,15 @@ pub(crate) fn collide(
     counters.searches += 1;
     let face_a = best_face(a, b, d);
     if face_a.separation > reach {
-        *hint = AxisHint { on_b: false, edge: small(face_a.edge) };
+        *hint = AxisHint::OfA(small(face_a.edge));
         return Manifold::NONE;
     }
     let face_b = best_face(b, a, -d);
     if face_b.separation > reach {
-        *hint = AxisHint { on_b: true, edge: small(face_b.edge) };
+        *hint = AxisHint::OfB(small(face_b.edge));
         return Manifold::NONE;
     }
+    *hint = AxisHint::None;
     let apart = are_apart(a, b, d, face_a, face_b);
     // Outlines that are apart need the true best face, which is next to the nearest corner.
     let preference = if apart { 0 } else { TOLERANCE_WIDE };
@@ -108,16 +110,59 @@ fn small(edge: usize) -> u8 {
     edge as u8
 }
 
-/// The face of `a` that is furthest from `b`.
+/// The face of `a` that is furthest from `b`: of equal ones the first.
 pub(super) fn best_face(a: &Hull, b: &Hull, d: Vec2<Length>) -> Face {
+    // Known counts unroll the loops, and most shapes are boxes.
+    match (a.as_box(), b.as_quad()) {
+        (Some((vertices, normals)), Some(others)) => furthest_of_box(vertices, normals, others, d),
+        (None, Some(others)) => furthest(a.vertices(), a.normals(), others, d),
+        _ => furthest(a.vertices(), a.normals(), b.vertices(), d),
+    }
+}
+
+/// [`furthest`] for four faces of which opposite ones have opposite normals: `min -n . v` is `-max n . v`.
+#[inline(always)]
+fn furthest_of_box(
+    vertices: &[Vec2<Length>; 4],
+    normals: &[Vec2<Unit>; 2],
+    others: &[Vec2<Length>; 4],
+    d: Vec2<Length>,
+) -> Face {
+    let faces = [0, 1].map(|edge: usize| {
+        let n = normals[edge];
+        let along = others.map(|vertex| product(n, vertex));
+        let least = along[0].min(along[1]).min(along[2].min(along[3]));
+        let most = along[0].max(along[1]).max(along[2].max(along[3]));
+        let (front, back) = (least + product(n, d - vertices[edge]), -most - product(n, d - vertices[edge + 2]));
+        (Face { edge, separation: front }, Face { edge: edge + 2, separation: back })
+    });
+    let [(face_0, face_2), (face_1, face_3)] = faces;
+    let further = |a: Face, b: Face| if b.separation > a.separation { b } else { a };
+    further(further(face_0, face_1), further(face_2, face_3))
+}
+
+#[inline(always)]
+fn furthest(vertices: &[Vec2<Length>], normals: &[Vec2<Unit>], others: &[Vec2<Length>], d: Vec2<Length>) -> Face {
     let mut best = Face { edge: 0, separation: i64::MIN };
-    for edge in 0..a.vertices().len() {
-        let separation = face_separation(a, edge, b, d);
+    for (edge, (&vertex, &normal)) in vertices.iter().zip(normals).enumerate() {
+        let separation = support(normal, others) + product(normal, d - vertex);
         if separation > best.separation {
             best = Face { edge, separation };
         }
     }
     best
+}
+
+/// `n . v` with 52 fraction bits.
+#[inline(always)]
+fn product(n: Vec2<Unit>, v: Vec2<Length>) -> i64 {
+    i64::from(n.x.to_bits()) * i64::from(v.x.to_bits()) + i64::from(n.y.to_bits()) * i64::from(v.y.to_bits())
+}
+
+/// How far some vertices, at least one, reach against a direction: `min n . v` with 52 fraction bits.
+#[inline(always)]
+fn support(n: Vec2<Unit>, vertices: &[Vec2<Length>]) -> i64 {
+    vertices.iter().fold(i64::MAX, |least, &vertex| least.min(product(n, vertex)))
 }
 
 /// Smallest distance of the vertices of `b` from a face of `a`, with 52 fraction bits.
@@ -127,10 +172,11 @@ pub(super) fn face_separation(a: &Hull, edge: usize, b: &Hull, d: Vec2<Length>) 
 
 /// Smallest distance of the vertices of `b` from the line through a point across `n`, with 52 fraction bits.
 pub(super) fn plane_separation(n: Vec2<Unit>, point: Vec2<Length>, b: &Hull, d: Vec2<Length>) -> i64 {
-    let (x, y) = (i64::from(n.x.to_bits()), i64::from(n.y.to_bits()));
-    let dot = |v: Vec2<Length>| x * i64::from(v.x.to_bits()) + y * i64::from(v.y.to_bits());
-    let support = b.vertices().iter().map(|&vertex| dot(vertex)).min().unwrap_or(0);
-    support + dot(d - point)
+    let reach = match b.as_quad() {
+        Some(others) => support(n, others),
+        None => support(n, b.vertices()),
+    };
+    reach + product(n, d - point)
 }
 
 /// One end of an edge: its vertex, and where it is along the reference edge.
@@ -148,23 +194,23 @@ pub(super) fn clip(a: &Hull, b: &Hull, d: Vec2<Length>, face: Face, apart: bool,
     let tangent = normal.perp();
     let end =
         |vertex: usize, position: Vec2<Length>| End { vertex, position, along: (position - v1).dot(tangent) };
-    let end_of_a = |vertex: usize| end(vertex, a.vertices()[vertex]);
     let end_of_b = |vertex: usize| end(vertex, b.vertices()[vertex] + d);
-    let (first, last) = (end_of_a(face.edge), end_of_a(a.next(face.edge)));
+    let first = End { vertex: face.edge, position: v1, along: Length::ZERO };
+    let last = end(a.next(face.edge), a.vertices()[a.next(face.edge)]);
     // Both outlines run counter-clockwise, so the incident edge runs against the reference edge: its second
     // vertex is the lower end.
     let incident = incident_edge(b, normal);
     let (upper, lower) = (end_of_b(incident), end_of_b(b.next(incident)));
 
     let context = Clip { normal, v1, radius_a: a.radius, radius_b: b.radius, margin };
-    let corners = nearest_corners(first, last, upper, lower).filter(|_| apart);
+    let corners = if apart { nearest_corners(first, last, upper, lower) } else { None };
     if upper.along < first.along || lower.along > last.along {
         // Outlines that overlap deeply may have no incident edge beside the face. Their deepest corner still pushes
         // them apart.
         let beside = if upper.along < first.along { (first, upper) } else { (last, lower) };
         return match corners {
             Some((vertex_a, vertex_b)) => context.corner(vertex_a, vertex_b),
-            None => context.face([(beside.0, beside.1, beside.1.position)].into_iter()),
+            None => context.face([(beside.0, beside.1, beside.1.position)]),
         };
     }
     let low = clip_end(lower, upper, first.along);
@@ -179,7 +225,7 @@ pub(super) fn clip(a: &Hull, b: &Hull, d: Vec2<Length>, face: Face, apart: bool,
             return context.corner(vertex_a, vertex_b);
         }
     }
-    context.face([(first, lower, low), (last, upper, high)].into_iter())
+    context.face([(first, lower, low), (last, upper, high)])
 }
 
 /// The corners that are nearest to each other, if those are what is nearest of two edges that are apart: each lies
@@ -204,11 +250,17 @@ fn nearest_corners(first: End, last: End, upper: End, lower: End) -> Option<(End
 
 /// The edge whose normal is most opposed to `normal`.
 fn incident_edge(b: &Hull, normal: Vec2<Unit>) -> usize {
-    let opposed = |n: &Vec2<Unit>| {
+    let opposed = |n: Vec2<Unit>| {
         i64::from(n.x.to_bits()) * i64::from(normal.x.to_bits())
             + i64::from(n.y.to_bits()) * i64::from(normal.y.to_bits())
     };
-    let (edge, _) = b.normals().iter().enumerate().min_by_key(|(_, n)| opposed(n)).unwrap_or((0, &Vec2::Y));
+    let (mut edge, mut least) = (0, i64::MAX);
+    for (index, &n) in b.normals().iter().enumerate() {
+        let cosine = opposed(n);
+        if cosine < least {
+            (edge, least) = (index, cosine);
+        }
+    }
     edge
 }
 
@@ -235,7 +287,8 @@ struct Clip {
 
 impl Clip {
     /// Contact points of clipped incident ends with the face.
-    fn face(&self, ends: impl Iterator<Item = (End, End, Vec2<Length>)>) -> Manifold {
+    #[inline(always)]
+    fn face<const N: usize>(&self, ends: [(End, End, Vec2<Length>); N]) -> Manifold {
         let mut manifold = Manifold::new(self.normal);
         for (end_a, end_b, position) in ends {
             let above_face = distance_along(self.normal, position - self.v1);
@@ -254,6 +307,7 @@ impl Clip {
 
     /// Adds the contact at a point of B's outline at a distance from A's, radii not counted, if it is near enough.
     /// The distance is in units of `Step` and does not saturate: that of large rounded shapes exceeds the type.
+    #[inline]
     fn push(&self, manifold: &mut Manifold, a: usize, b: usize, position: Vec2<Length>, distance: i64) {
         let (radius_a, radius_b) = (step_bits(self.radius_a), step_bits(self.radius_b));
         let separation = distance - (radius_a + radius_b);
@@ -265,9 +319,16 @@ impl Clip {
         // seen from `position` at `distance`.
         let to_middle = (radius_a - radius_b - distance) / 2;
         let along = |n: Unit| -> Length {
-            let wide = i128::from(n.to_bits()) * i128::from(to_middle);
-            let extra = Unit::FRAC_NBITS + Step::FRAC_NBITS - Length::FRAC_NBITS;
-            Length::from_bits(saturate(saturate_wide(round_shift_wide(wide, extra))))
+            // Of unit vectors and distances within 16 m the product has at most 62 bits.
+            const EXTRA: u32 = Unit::FRAC_NBITS + Step::FRAC_NBITS - Length::FRAC_NBITS;
+            let bits = match i32::try_from(to_middle) {
+                Ok(near) => round_shift(i64::from(n.to_bits()) * i64::from(near), EXTRA),
+                Err(_) => {
+                    let wide = i128::from(n.to_bits()) * i128::from(to_middle);
+                    saturate_wide(round_shift_wide(wide, EXTRA))
+                }
+            };
+            Length::from_bits(saturate(bits))
         };
         let anchor = position + Vec2::new(along(manifold.normal.x), along(manifold.normal.y));
         manifold.push(ManifoldPoint { anchor, separation, feature: Feature::of_vertices(a, b) });

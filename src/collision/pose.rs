@@ -41,6 +41,8 @@ pub(crate) struct Hull {
     vertices: [Vec2<Length>; POLYGON_VERTICES_MAX],
     normals: [Vec2<Unit>; POLYGON_VERTICES_MAX],
     pub(crate) radius: Length,
+    /// Whether it has four faces, of which opposite ones have exactly opposite normals.
+    is_box: bool,
 }
 
 impl Hull {
@@ -51,6 +53,21 @@ impl Hull {
     /// `normals()[i]` points out of the edge from vertex `i` to the next.
     pub(crate) fn normals(&self) -> &[Vec2<Unit>] {
         &self.normals[..self.count]
+    }
+
+    /// The vertices, if there are four of them.
+    #[inline]
+    pub(crate) fn as_quad(&self) -> Option<&[Vec2<Length>; 4]> {
+        if self.count == 4 { self.vertices.first_chunk() } else { None }
+    }
+
+    /// The vertices and the first two normals, if there are four, the other two of which are opposite to them.
+    #[inline]
+    pub(crate) fn as_box(&self) -> Option<(&[Vec2<Length>; 4], &[Vec2<Unit>; 2])> {
+        if !self.is_box {
+            return None;
+        }
+        self.vertices.first_chunk().zip(self.normals.first_chunk())
     }
 
     /// The index of the vertex after `i`, counter-clockwise.
@@ -95,6 +112,8 @@ impl Hull {
             hull.vertices[i] = rotation.apply(vertex);
             hull.normals[i] = rotation.apply(normal);
         }
+        let [a, b, c, d, ..] = hull.normals;
+        hull.is_box = hull.count == 4 && c == -a && d == -b;
         hull
     }
 
@@ -104,6 +123,7 @@ impl Hull {
             vertices: [Vec2::ZERO; POLYGON_VERTICES_MAX],
             normals: [Vec2::ZERO; POLYGON_VERTICES_MAX],
             radius: Length::ZERO,
+            is_box: false,
         }
     }
 
