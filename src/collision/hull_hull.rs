@@ -88,10 +88,11 @@ pub(crate) fn collide(
 }
 
 /// Whether two outlines do not touch, radii not counted, told by the best face of each.
+#[inline]
 pub(super) fn are_apart(a: &Hull, b: &Hull, d: Vec2<Length>, face_a: Face, face_b: Face) -> bool {
     face_a.separation.max(face_b.separation) > TOLERANCE_WIDE
-        || beyond_an_end(a, b, d)
-        || beyond_an_end(b, a, -d)
+        || (a.is_line() && beyond_an_end(a, b, d))
+        || (b.is_line() && beyond_an_end(b, a, -d))
 }
 
 /// Whether `b` lies beyond an end of `a`, which has two sides and no face there: of two capsules end to end no face
@@ -111,41 +112,20 @@ fn small(edge: usize) -> u8 {
 }
 
 /// The face of `a` that is furthest from `b`: of equal ones the first.
+#[inline]
 pub(super) fn best_face(a: &Hull, b: &Hull, d: Vec2<Length>) -> Face {
-    // Known counts unroll the loops, and most shapes are boxes.
+    // Most shapes are boxes.
     match (a.as_box(), b.as_quad()) {
         (Some((vertices, normals)), Some(others)) => furthest_of_box(vertices, normals, others, d),
-        (None, Some(others)) => furthest(a.vertices(), a.normals(), others, d),
-        _ => furthest(a.vertices(), a.normals(), b.vertices(), d),
+        _ => furthest(a, b, d),
     }
 }
 
-/// [`furthest`] for four faces of which opposite ones have opposite normals: `min -n . v` is `-max n . v`.
-#[inline(always)]
-fn furthest_of_box(
-    vertices: &[Vec2<Length>; 4],
-    normals: &[Vec2<Unit>; 2],
-    others: &[Vec2<Length>; 4],
-    d: Vec2<Length>,
-) -> Face {
-    let faces = [0, 1].map(|edge: usize| {
-        let n = normals[edge];
-        let along = others.map(|vertex| product(n, vertex));
-        let least = along[0].min(along[1]).min(along[2].min(along[3]));
-        let most = along[0].max(along[1]).max(along[2].max(along[3]));
-        let (front, back) = (least + product(n, d - vertices[edge]), -most - product(n, d - vertices[edge + 2]));
-        (Face { edge, separation: front }, Face { edge: edge + 2, separation: back })
-    });
-    let [(face_0, face_2), (face_1, face_3)] = faces;
-    let further = |a: Face, b: Face| if b.separation > a.separation { b } else { a };
-    further(further(face_0, face_1), further(face_2, face_3))
-}
-
-#[inline(always)]
-fn furthest(vertices: &[Vec2<Length>], normals: &[Vec2<Unit>], others: &[Vec2<Length>], d: Vec2<Length>) -> Face {
+#[inline(never)]
+fn furthest(a: &Hull, b: &Hull, d: Vec2<Length>) -> Face {
     let mut best = Face { edge: 0, separation: i64::MIN };
-    for (edge, (&vertex, &normal)) in vertices.iter().zip(normals).enumerate() {
-        let separation = support(normal, others) + product(normal, d - vertex);
+    for edge in 0..a.vertices().len() {
+        let separation = face_separation(a, edge, b, d);
         if separation > best.separation {
             best = Face { edge, separation };
         }
@@ -153,14 +133,38 @@ fn furthest(vertices: &[Vec2<Length>], normals: &[Vec2<Unit>], others: &[Vec2<Le
     best
 }
 
+/// [`furthest`] for four faces of which opposite ones have opposite normals: `min -n . v` is `-max n . v`.
+#[inline]
+fn furthest_of_box(
+    &[v0, v1, v2, v3]: &[Vec2<Length>; 4],
+    &[n0, n1]: &[Vec2<Unit>; 2],
+    others: &[Vec2<Length>; 4],
+    d: Vec2<Length>,
+) -> Face {
+    let ((least_0, most_0), (least_1, most_1)) = (extent(n0, others), extent(n1, others));
+    let face_0 = Face { edge: 0, separation: least_0 + product(n0, d - v0) };
+    let face_1 = Face { edge: 1, separation: least_1 + product(n1, d - v1) };
+    let face_2 = Face { edge: 2, separation: -most_0 - product(n0, d - v2) };
+    let face_3 = Face { edge: 3, separation: -most_1 - product(n1, d - v3) };
+    let further = |a: Face, b: Face| if b.separation > a.separation { b } else { a };
+    further(further(face_0, face_1), further(face_2, face_3))
+}
+
+/// Least and most `n . v` of four vertices.
+#[inline]
+fn extent(n: Vec2<Unit>, &[a, b, c, d]: &[Vec2<Length>; 4]) -> (i64, i64) {
+    let (a, b, c, d) = (product(n, a), product(n, b), product(n, c), product(n, d));
+    (a.min(b).min(c.min(d)), a.max(b).max(c.max(d)))
+}
+
 /// `n . v` with 52 fraction bits.
-#[inline(always)]
+#[inline]
 fn product(n: Vec2<Unit>, v: Vec2<Length>) -> i64 {
     i64::from(n.x.to_bits()) * i64::from(v.x.to_bits()) + i64::from(n.y.to_bits()) * i64::from(v.y.to_bits())
 }
 
 /// How far some vertices, at least one, reach against a direction: `min n . v` with 52 fraction bits.
-#[inline(always)]
+#[inline]
 fn support(n: Vec2<Unit>, vertices: &[Vec2<Length>]) -> i64 {
     vertices.iter().fold(i64::MAX, |least, &vertex| least.min(product(n, vertex)))
 }
@@ -193,7 +197,7 @@ pub(super) fn clip(a: &Hull, b: &Hull, d: Vec2<Length>, face: Face, apart: bool,
     let v1 = a.vertices()[face.edge];
     let tangent = normal.perp();
     let end =
-        |vertex: usize, position: Vec2<Length>| End { vertex, position, along: (position - v1).dot(tangent) };
+        |vertex: usize, position: Vec2<Length>| End { vertex, position, along: along(tangent, position - v1) };
     let end_of_b = |vertex: usize| end(vertex, b.vertices()[vertex] + d);
     let first = End { vertex: face.edge, position: v1, along: Length::ZERO };
     let last = end(a.next(face.edge), a.vertices()[a.next(face.edge)]);
@@ -248,20 +252,25 @@ fn nearest_corners(first: End, last: End, upper: End, lower: End) -> Option<(End
     })
 }
 
-/// The edge whose normal is most opposed to `normal`.
+/// The edge whose normal is most opposed to `normal`: of equal ones the first.
+#[inline]
 fn incident_edge(b: &Hull, normal: Vec2<Unit>) -> usize {
-    let opposed = |n: Vec2<Unit>| {
+    let cosine = |n: Vec2<Unit>| {
         i64::from(n.x.to_bits()) * i64::from(normal.x.to_bits())
             + i64::from(n.y.to_bits()) * i64::from(normal.y.to_bits())
     };
-    let (mut edge, mut least) = (0, i64::MAX);
-    for (index, &n) in b.normals().iter().enumerate() {
-        let cosine = opposed(n);
-        if cosine < least {
-            (edge, least) = (index, cosine);
-        }
+    let nearer = |a: (usize, i64), b: (usize, i64)| if b.1 < a.1 { b } else { a };
+    if let Some((_, &[n0, n1])) = b.as_box() {
+        let (cosine_0, cosine_1) = (cosine(n0), cosine(n1));
+        return nearer(nearer((0, cosine_0), (1, cosine_1)), nearer((2, -cosine_0), (3, -cosine_1))).0;
     }
-    edge
+    b.normals().iter().map(|&n| cosine(n)).enumerate().reduce(nearer).map_or(0, |(edge, _)| edge)
+}
+
+/// `t . v` for a unit vector, rounded, saturated.
+#[inline]
+fn along(t: Vec2<Unit>, v: Vec2<Length>) -> Length {
+    Length::from_bits(saturate(round_shift(product(t, v), Unit::FRAC_NBITS)))
 }
 
 /// Moves `end` along its edge to where it passes `limit`, if it is beyond it as seen from `other`.
@@ -318,19 +327,21 @@ impl Clip {
         // A's surface is at `radius_a` along the normal and B's at `distance - radius_b`: half-way between them,
         // seen from `position` at `distance`.
         let to_middle = (radius_a - radius_b - distance) / 2;
-        let along = |n: Unit| -> Length {
-            // Of unit vectors and distances within 16 m the product has at most 62 bits.
-            const EXTRA: u32 = Unit::FRAC_NBITS + Step::FRAC_NBITS - Length::FRAC_NBITS;
-            let bits = match i32::try_from(to_middle) {
-                Ok(near) => round_shift(i64::from(n.to_bits()) * i64::from(near), EXTRA),
-                Err(_) => {
-                    let wide = i128::from(n.to_bits()) * i128::from(to_middle);
-                    saturate_wide(round_shift_wide(wide, EXTRA))
-                }
-            };
-            Length::from_bits(saturate(bits))
+        // Within 16 m a product with a unit vector has at most 62 bits.
+        const EXTRA: u32 = Unit::FRAC_NBITS + Step::FRAC_NBITS - Length::FRAC_NBITS;
+        let (x, y) = (manifold.normal.x.to_bits(), manifold.normal.y.to_bits());
+        let (x, y) = match i32::try_from(to_middle) {
+            Ok(near) => {
+                let scaled = |n: i32| round_shift(i64::from(n) * i64::from(near), EXTRA);
+                (scaled(x), scaled(y))
+            }
+            Err(_) => {
+                let scaled =
+                    |n: i32| saturate_wide(round_shift_wide(i128::from(n) * i128::from(to_middle), EXTRA));
+                (scaled(x), scaled(y))
+            }
         };
-        let anchor = position + Vec2::new(along(manifold.normal.x), along(manifold.normal.y));
+        let anchor = position + Vec2::new(Length::from_bits(saturate(x)), Length::from_bits(saturate(y)));
         manifold.push(ManifoldPoint { anchor, separation, feature: Feature::of_vertices(a, b) });
     }
 }

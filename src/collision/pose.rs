@@ -46,13 +46,21 @@ pub(crate) struct Hull {
 }
 
 impl Hull {
+    #[inline]
     pub(crate) fn vertices(&self) -> &[Vec2<Length>] {
         &self.vertices[..self.count]
     }
 
     /// `normals()[i]` points out of the edge from vertex `i` to the next.
+    #[inline]
     pub(crate) fn normals(&self) -> &[Vec2<Unit>] {
         &self.normals[..self.count]
+    }
+
+    /// Whether it is a segment or a capsule: two sides, and no face at the ends.
+    #[inline]
+    pub(crate) fn is_line(&self) -> bool {
+        self.count == 2
     }
 
     /// The vertices, if there are four of them.
@@ -71,6 +79,7 @@ impl Hull {
     }
 
     /// The index of the vertex after `i`, counter-clockwise.
+    #[inline]
     pub(crate) fn next(&self, i: usize) -> usize {
         if i + 1 == self.count { 0 } else { i + 1 }
     }

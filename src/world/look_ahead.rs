@@ -226,24 +226,30 @@ impl<'a> Approach<'a> {
         // From this speed on a point closes by more than the least that counts.
         let at_passage_min = (PASSAGE_MIN.to_bits() + 1) * self.horizon.tick_rate;
         // A point that is not reached does nothing, so only one that is decides.
-        let mut reached = Fx::ZERO;
+        let mut reached = [None; 2];
+        let mut slot = reached.iter_mut();
         manifold.retain(|point| {
             let (separation, speed) = (widen(point.separation), approach_speed(point));
-            let slow = speed.to_bits() < at_passage_min;
-            if slow && separation <= speculative {
+            if speed.to_bits() < at_passage_min && separation <= speculative {
                 return true;
             }
             let closing = speed / self.horizon.tick_rate;
-            let kept = separation <= closing.saturating_add(speculative) || separation <= speculative;
+            let kept = separation <= speculative || separation <= closing.saturating_add(speculative);
             // A quarter more: a gap that just closes acts too.
             if kept && closing > PASSAGE_MIN && closing.saturating_add(closing / 4) > separation {
-                if separation >= -self.slack() {
-                    reached = reached.max(closing);
+                if let Some(slot) = slot.next() {
+                    *slot = Some((separation, closing));
                 }
             }
             kept
         });
-        if fast && reached > 0 && self.passes_by((motion_a, motion_b), posed, manifold.normal, reached) {
+        if !fast || reached[0].is_none() {
+            return;
+        }
+        let slack = self.slack();
+        let shallow = |&&(separation, _): &&(Fx, Fx)| separation >= -slack;
+        let closing = reached.iter().flatten().filter(shallow).map(|&(_, closing)| closing).max();
+        if closing.is_some_and(|closing| self.passes_by((motion_a, motion_b), posed, manifold.normal, closing)) {
             manifold.retain(|_| false);
         }
     }
