@@ -5,7 +5,7 @@
 //! overlap the closest features may be two corners, which no face normal sees: that case has its own normal, so
 //! that a box falling past the corner of another does not catch on it.
 
-use super::circle_hull::{distance_along, step_bits};
+use super::circle_hull::step_bits;
 use super::manifold::{Feature, Manifold, ManifoldPoint};
 use super::pose::Hull;
 use crate::math::{Length, Step, Unit, Vec2, round_shift, round_shift_wide, saturate, saturate_wide};
@@ -57,8 +57,12 @@ pub(crate) fn collide(
     let radii = a.radius.saturating_add(b.radius);
     let reach = i64::from(margin.saturating_add(radii).to_bits()) << 30;
     let hinted = match *hint {
-        AxisHint::OfA(edge) if usize::from(edge) < a.vertices().len() => face_separation(a, edge.into(), b, d),
-        AxisHint::OfB(edge) if usize::from(edge) < b.vertices().len() => face_separation(b, edge.into(), a, -d),
+        AxisHint::OfA(edge) if usize::from(edge) < a.vertices().len() => {
+            face_separation(a, edge.into(), b, d)
+        }
+        AxisHint::OfB(edge) if usize::from(edge) < b.vertices().len() => {
+            face_separation(b, edge.into(), a, -d)
+        }
         _ => i64::MIN,
     };
     if hinted > reach {
@@ -124,8 +128,8 @@ pub(super) fn best_face(a: &Hull, b: &Hull, d: Vec2<Length>) -> Face {
 #[inline(never)]
 fn furthest(a: &Hull, b: &Hull, d: Vec2<Length>) -> Face {
     let mut best = Face { edge: 0, separation: i64::MIN };
-    for edge in 0..a.vertices().len() {
-        let separation = face_separation(a, edge, b, d);
+    for (edge, (&vertex, &n)) in a.vertices().iter().zip(a.normals()).enumerate() {
+        let separation = plane_separation(n, vertex, b, d);
         if separation > best.separation {
             best = Face { edge, separation };
         }
@@ -142,10 +146,11 @@ fn furthest_of_box(
     d: Vec2<Length>,
 ) -> Face {
     let ((least_0, most_0), (least_1, most_1)) = (extent(n0, others), extent(n1, others));
-    let face_0 = Face { edge: 0, separation: least_0 + product(n0, d - v0) };
-    let face_1 = Face { edge: 1, separation: least_1 + product(n1, d - v1) };
-    let face_2 = Face { edge: 2, separation: -most_0 - product(n0, d - v2) };
-    let face_3 = Face { edge: 3, separation: -most_1 - product(n1, d - v3) };
+    let (d_0, d_1) = (product(n0, d), product(n1, d));
+    let face_0 = Face { edge: 0, separation: least_0 + d_0 - product(n0, v0) };
+    let face_1 = Face { edge: 1, separation: least_1 + d_1 - product(n1, v1) };
+    let face_2 = Face { edge: 2, separation: product(n0, v2) - d_0 - most_0 };
+    let face_3 = Face { edge: 3, separation: product(n1, v3) - d_1 - most_1 };
     let further = |a: Face, b: Face| if b.separation > a.separation { b } else { a };
     further(further(face_0, face_1), further(face_2, face_3))
 }
@@ -175,12 +180,13 @@ pub(super) fn face_separation(a: &Hull, edge: usize, b: &Hull, d: Vec2<Length>) 
 }
 
 /// Smallest distance of the vertices of `b` from the line through a point across `n`, with 52 fraction bits.
+#[inline]
 pub(super) fn plane_separation(n: Vec2<Unit>, point: Vec2<Length>, b: &Hull, d: Vec2<Length>) -> i64 {
     let reach = match b.as_quad() {
         Some(others) => support(n, others),
         None => support(n, b.vertices()),
     };
-    reach + product(n, d - point)
+    reach + product(n, d) - product(n, point)
 }
 
 /// One end of an edge: its vertex, and where it is along the reference edge.
@@ -197,7 +203,7 @@ pub(super) fn clip(a: &Hull, b: &Hull, d: Vec2<Length>, face: Face, apart: bool,
     let v1 = a.vertices()[face.edge];
     let tangent = normal.perp();
     let end =
-        |vertex: usize, position: Vec2<Length>| End { vertex, position, along: along(tangent, position - v1) };
+        |vertex: usize, position: Vec2<Length>| End { vertex, position, along: along(tangent, position, v1) };
     let end_of_b = |vertex: usize| end(vertex, b.vertices()[vertex] + d);
     let first = End { vertex: face.edge, position: v1, along: Length::ZERO };
     let last = end(a.next(face.edge), a.vertices()[a.next(face.edge)]);
@@ -223,8 +229,8 @@ pub(super) fn clip(a: &Hull, b: &Hull, d: Vec2<Length>, face: Face, apart: bool,
         // Rounded edges that are nearly parallel are nearest at a corner too, but rest on both ends: there the
         // corners are no nearer than the clipped edge, nor further than the face.
         let distance = step_bits((vertex_b.position - vertex_a.position).length());
-        let height = |end: Vec2<Length>| distance_along(normal, end - v1);
-        let spread = (height(low).min(height(high)) - distance).max(distance - (face.separation >> 25));
+        let nearer = height(normal, low, v1).min(height(normal, high, v1));
+        let spread = (nearer - distance).max(distance - (face.separation >> 25));
         if spread > i64::from(TOLERANCE.to_bits()) {
             return context.corner(vertex_a, vertex_b);
         }
@@ -267,10 +273,16 @@ fn incident_edge(b: &Hull, normal: Vec2<Unit>) -> usize {
     b.normals().iter().map(|&n| cosine(n)).enumerate().reduce(nearer).map_or(0, |(edge, _)| edge)
 }
 
-/// `t . v` for a unit vector, rounded, saturated.
+/// `t . (v - from)` for a unit vector, rounded, saturated.
 #[inline]
-fn along(t: Vec2<Unit>, v: Vec2<Length>) -> Length {
-    Length::from_bits(saturate(round_shift(product(t, v), Unit::FRAC_NBITS)))
+fn along(t: Vec2<Unit>, v: Vec2<Length>, from: Vec2<Length>) -> Length {
+    Length::from_bits(saturate(round_shift(product(t, v) - product(t, from), Unit::FRAC_NBITS)))
+}
+
+/// `n . (v - from)` in units of `Step`, not saturated.
+#[inline]
+fn height(n: Vec2<Unit>, v: Vec2<Length>, from: Vec2<Length>) -> i64 {
+    round_shift(product(n, v) - product(n, from), FACE_BITS - Step::FRAC_NBITS)
 }
 
 /// Moves `end` along its edge to where it passes `limit`, if it is beyond it as seen from `other`.
@@ -300,7 +312,7 @@ impl Clip {
     fn face<const N: usize>(&self, ends: [(End, End, Vec2<Length>); N]) -> Manifold {
         let mut manifold = Manifold::new(self.normal);
         for (end_a, end_b, position) in ends {
-            let above_face = distance_along(self.normal, position - self.v1);
+            let above_face = height(self.normal, position, self.v1);
             self.push(&mut manifold, end_a.vertex, end_b.vertex, position, above_face);
         }
         manifold

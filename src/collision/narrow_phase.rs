@@ -35,7 +35,11 @@ pub(crate) fn collide(
     hint: &mut AxisHint,
     counters: &mut SatCounters,
 ) -> Manifold {
-    if may_meet(a.bounds, b.bounds, margin) { collide_near(a, b, margin, hint, counters) } else { Manifold::NONE }
+    if may_meet(a.bounds, b.bounds, margin) {
+        collide_near(a, b, margin, hint, counters)
+    } else {
+        Manifold::NONE
+    }
 }
 
 /// [`collide`] without the reject, and its oracle.

@@ -65,11 +65,12 @@ pub(crate) struct Solver {
     pub(crate) faults: Faults,
 }
 
-/// A contact to solve: where it is in the state, the slots of its shapes and of their bodies, and their common
-/// surface.
+/// A contact to solve: where it is in the state and its manifold among those of the tick, the slots of its shapes and
+/// of their bodies, and their common surface.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TouchingPair {
     pub(crate) contact: u32,
+    pub(crate) manifold: u32,
     pub(crate) shapes: Pair,
     pub(crate) bodies: (u32, u32),
     pub(crate) surface: Surface,
@@ -123,10 +124,10 @@ impl Solver {
         self.contacts.clear();
         self.contact_indices.clear();
         for &index in self.colouring.order(&self.nodes, self.list.len()) {
-            let TouchingPair { contact, bodies: (a, b), surface, .. } = pairs[index as usize];
+            let TouchingPair { contact, manifold, bodies: (a, b), surface, .. } = pairs[index as usize];
             self.contact_indices.push(contact);
             self.contacts.push(ContactConstraint::prepare(
-                &manifolds[contact as usize],
+                &manifolds[manifold as usize],
                 &contacts[contact as usize],
                 surface,
                 (self.list.index_of(a), bodies.at(a)),

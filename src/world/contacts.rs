@@ -10,10 +10,10 @@ use crate::solver::{Surface, TouchingPair};
 
 /// Narrow phase: a manifold for every contact, and the list of those that the solver has to deal with.
 pub(super) fn find_manifolds(state: &mut State, scratch: &mut Scratch) {
-    let Scratch { hints, manifolds, approaches, touching, touched, poses, sat, .. } = scratch;
+    let Scratch { hints, manifolds, found, approaches, touching, touched, poses, sat, .. } = scratch;
     hints.resize(state.contacts.len(), AxisHint::default());
     manifolds.clear();
-    manifolds.reserve(state.contacts.len());
+    found.clear();
     approaches.clear();
     *sat = SatCounters::default();
     core::mem::swap(touching, touched);
@@ -26,18 +26,26 @@ pub(super) fn find_manifolds(state: &mut State, scratch: &mut Scratch) {
     let mut contacts = core::mem::take(&mut state.contacts);
     for ((index, contact), hint) in (0u32..).zip(&mut contacts).zip(hints) {
         let manifold = manifold_of(state, &horizon, poses, contact, hint, sat);
+        if manifold.points().is_empty() {
+            continue;
+        }
         let (a, b) = contact.shapes;
         let (reach_a, reach_b) = (poses.outlook.reach(a), poses.outlook.reach(b));
-        if !manifold.points().is_empty() && !(reach_a.sensor || reach_b.sensor) {
+        if !(reach_a.sensor || reach_b.sensor) {
             while touched.next_if(|pair| pair.shapes < contact.shapes).is_some() {}
             let known = touched.next_if(|pair| pair.shapes == contact.shapes);
-            let surface = known.map_or_else(|| surface_of(state, poses, contact.shapes), |pair| pair.surface);
-            let bodies = (reach_a.body, reach_b.body);
-            touching.push(TouchingPair { contact: index, shapes: contact.shapes, bodies, surface });
+            touching.push(TouchingPair {
+                contact: index,
+                manifold: u32::try_from(manifolds.len()).expect("fewer than 2^32 contacts"),
+                shapes: contact.shapes,
+                bodies: (reach_a.body, reach_b.body),
+                surface: known.map_or_else(|| surface_of(state, poses, contact.shapes), |pair| pair.surface),
+            });
             if reach_a.hit_events || reach_b.hit_events {
                 approaches.extend(approaching(state, &poses.outlook, index, contact, &manifold));
             }
         }
+        found.push(index);
         manifolds.push(manifold);
     }
     state.contacts = contacts;
@@ -132,21 +140,29 @@ pub(super) fn report(state: &mut State, scratch: &mut Scratch) {
     }
     let (near, apart) = (state.config.touching_distance(), state.config.speculative_distance);
     let mut contacts = core::mem::take(&mut state.contacts);
-    for (index, contact) in contacts.iter_mut().enumerate() {
-        let points = scratch.manifolds[index].points();
+    let Scratch { events, found, manifolds, poses, solver, .. } = scratch;
+    let mut found = found.iter().zip(&*manifolds).peekable();
+    for (index, contact) in (0u32..).zip(&mut contacts) {
+        let manifold = found.next_if(|(contact, _)| **contact == index).map(|(_, manifold)| manifold);
+        if manifold.is_none() {
+            contact.clear_points();
+            if !contact.touching {
+                continue;
+            }
+        }
+        let points = manifold.map_or(&[][..], Manifold::points);
         let separation = points.iter().map(|point| widen(point.separation)).min();
         let within = |distance: Fx| separation.is_some_and(|separation| separation <= distance);
-        let touching = match state.sensor_of(contact.shapes) {
-            Some(_) => within(Fx::ZERO),
-            None => scratch.solver.pushed[index] || within(if contact.touching { apart } else { near }),
+        let (a, b) = contact.shapes;
+        let touching = if poses.outlook.reach(a).sensor || poses.outlook.reach(b).sensor {
+            within(Fx::ZERO)
+        } else {
+            solver.pushed[index as usize] || within(if contact.touching { apart } else { near })
         };
         if touching != contact.touching {
             contact.touching = touching;
             let report = if touching { begin } else { end };
-            report(state.reported(contact), &mut scratch.events);
-        }
-        if separation.is_none() {
-            contact.clear_points();
+            report(state.reported(contact), events);
         }
     }
     state.contacts = contacts;

@@ -249,7 +249,9 @@ impl<'a> Approach<'a> {
         let slack = self.slack();
         let shallow = |&&(separation, _): &&(Fx, Fx)| separation >= -slack;
         let closing = reached.iter().flatten().filter(shallow).map(|&(_, closing)| closing).max();
-        if closing.is_some_and(|closing| self.passes_by((motion_a, motion_b), posed, manifold.normal, closing)) {
+        if closing
+            .is_some_and(|closing| self.passes_by((motion_a, motion_b), posed, manifold.normal, closing))
+        {
             manifold.retain(|_| false);
         }
     }
@@ -279,8 +281,7 @@ impl<'a> Approach<'a> {
         let velocity = motion_b.velocity_at(posed_b.centre) - motion_a.velocity_at(posed_a.centre);
         let turn = self.a.turn.saturating_add(self.b.turn);
         let shift = Vec2::new(velocity.x / rate, velocity.y / rate).narrow();
-        let passage =
-            Passage::new(shift, narrow(turn), narrow(self.slack()), narrow(closing / 8), normal);
+        let passage = Passage::new(shift, narrow(turn), narrow(self.slack()), narrow(closing / 8), normal);
         pass_by(posed_a, posed_b, &passage)
     }
 }
