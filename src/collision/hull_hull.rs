@@ -127,9 +127,30 @@ pub(super) fn best_face(a: &Hull, b: &Hull, d: Vec2<Length>) -> Face {
 
 #[inline(never)]
 fn furthest(a: &Hull, b: &Hull, d: Vec2<Length>) -> Face {
+    // Loops of known length are unrolled.
+    let others = b.vertices();
+    match others.len() {
+        2 => furthest_from::<2>(a, others, d),
+        3 => furthest_from::<3>(a, others, d),
+        4 => furthest_from::<4>(a, others, d),
+        5 => furthest_from::<5>(a, others, d),
+        6 => furthest_from::<6>(a, others, d),
+        _ => furthest_over(a, |n| support(n, others), d),
+    }
+}
+
+fn furthest_from<const N: usize>(a: &Hull, others: &[Vec2<Length>], d: Vec2<Length>) -> Face {
+    match others.first_chunk::<N>() {
+        Some(others) => furthest_over(a, |n| support(n, others), d),
+        None => Face { edge: 0, separation: i64::MIN },
+    }
+}
+
+#[inline]
+fn furthest_over(a: &Hull, support: impl Fn(Vec2<Unit>) -> i64, d: Vec2<Length>) -> Face {
     let mut best = Face { edge: 0, separation: i64::MIN };
     for (edge, (&vertex, &n)) in a.vertices().iter().zip(a.normals()).enumerate() {
-        let separation = plane_separation(n, vertex, b, d);
+        let separation = support(n) + product(n, d) - product(n, vertex);
         if separation > best.separation {
             best = Face { edge, separation };
         }

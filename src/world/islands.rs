@@ -118,9 +118,11 @@ pub(super) fn wake_touched(state: &mut State, scratch: &mut Scratch) {
     if state.islands.len() == 0 {
         return;
     }
+    let outlook = &scratch.poses.outlook;
     let has_sleeper = |contact: &&Contact| {
-        let (a, b) = state.bodies_of(contact.shapes);
-        (a.is_asleep() || b.is_asleep()) && state.sensor_of(contact.shapes).is_none()
+        let (a, b) = (outlook.reach(contact.shapes.0), outlook.reach(contact.shapes.1));
+        let asleep = |body: u32| state.bodies.at(body).is_asleep();
+        !(a.sensor || b.sensor) && (asleep(a.body) || asleep(b.body))
     };
     scratch.pairs.clear();
     scratch.pairs.extend(state.contacts.iter().filter(has_sleeper).map(|contact| contact.shapes));

@@ -66,6 +66,9 @@ impl Motion {
     }
 }
 
+/// The largest way in metres because of a turn that pairs tell from larger ones: they look ahead by 15 m at most.
+const TURN_MAX: Fx = fx!(1024);
+
 /// The box of a shape, how far it may come within the tick, and what its pairs have to know of it: one cache line.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Reach {
@@ -97,9 +100,10 @@ impl Reach {
 
     /// Bound of the way by which any two points of two shapes approach each other in the tick, in metres.
     fn closing(&self, other: &Reach) -> Fx {
-        let shift = other.shift - self.shift;
-        let turn = self.turn.saturating_add(other.turn);
-        shift.x.saturating_abs().saturating_add(shift.y.saturating_abs()).saturating_add(turn)
+        // Speeds are below 2^9 m/s and turns at most TURN_MAX: the sum is far from the end of the range.
+        let apart = |a: Fx, b: Fx| (b.to_bits() - a.to_bits()).abs();
+        let shift = apart(self.shift.x, other.shift.x) + apart(self.shift.y, other.shift.y);
+        Fx::from_bits(shift + self.turn.to_bits() + other.turn.to_bits())
     }
 
     /// How far the shape may overlap another, for its size, when they pass by each other.
@@ -147,7 +151,7 @@ impl Outlook {
 
     pub(super) fn set_reach(&mut self, shape: u32, shift: Vec2<Fx>, turn: Fx) {
         let reach = &mut self.reaches[shape as usize];
-        (reach.shift, reach.turn) = (shift, turn);
+        (reach.shift, reach.turn) = (shift, turn.min(TURN_MAX));
         self.moving_shapes.push(shape);
     }
 
