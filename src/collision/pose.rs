@@ -34,6 +34,9 @@ impl Outline {
     }
 }
 
+/// The vertices of a box, and the normals of its first two faces.
+pub(crate) type BoxFaces<'a> = (&'a [Vec2<Length>; 4], &'a [Vec2<Unit>; 2]);
+
 /// A convex outline in 32-bit coordinates: a polygon, or a segment or capsule seen as a polygon with two sides.
 #[derive(Clone, Debug)]
 pub(crate) struct Hull {
@@ -71,7 +74,7 @@ impl Hull {
 
     /// The vertices and the first two normals, if there are four, the other two of which are opposite to them.
     #[inline]
-    pub(crate) fn as_box(&self) -> Option<(&[Vec2<Length>; 4], &[Vec2<Unit>; 2])> {
+    pub(crate) fn as_box(&self) -> Option<BoxFaces<'_>> {
         if !self.is_box {
             return None;
         }
