@@ -5,13 +5,12 @@ use crate::math::{Length, Vec2, convert};
 
 /// `d` is the vector from the centre of A to the centre of B.
 pub(crate) fn collide(radius_a: Length, radius_b: Length, d: Vec2<Length>, margin: Length) -> Manifold {
-    let distance = d.length();
+    // Concentric circles have no direction of their own: up is as good as any, and the same everywhere.
+    let (normal, distance) = d.normalized_with_length().unwrap_or((Vec2::Y, Length::ZERO));
     let separation = distance.saturating_sub(radius_a).saturating_sub(radius_b);
     if separation > margin {
         return Manifold::NONE;
     }
-    // Concentric circles have no direction of their own: up is as good as any, and the same everywhere.
-    let normal = d.normalized().unwrap_or(Vec2::Y);
     let middle = radius_a.saturating_add(separation / 2);
     let point = ManifoldPoint {
         anchor: normal.scale(middle),

@@ -29,8 +29,9 @@ pub(crate) fn collide(hull: &Hull, radius: Length, centre: Vec2<Length>, margin:
     let (normal, distance) = match corner {
         // On the line of a segment and beyond its end the distance is 0 from both faces.
         Some(vertex) if face_distance >= 0 => {
-            let d = centre - vertex;
-            (d.normalized().unwrap_or(face_normal), step_bits(d.length()))
+            let polar = (centre - vertex).normalized_with_length();
+            let (normal, distance) = polar.unwrap_or((face_normal, Length::ZERO));
+            (normal, step_bits(distance))
         }
         _ => (face_normal, face_distance),
     };

@@ -55,6 +55,7 @@ impl Contact {
     }
 
     /// Forgets the impulses.
+    #[inline]
     pub(crate) fn clear_points(&mut self) {
         self.count = 0;
         self.points = [PointImpulse::default(); 2];

@@ -14,6 +14,7 @@ impl Feature {
     /// The only point of a contact with a circle.
     pub(crate) const SINGLE: Feature = Feature(0);
 
+    #[inline]
     pub(crate) fn of_vertices(a: usize, b: usize) -> Self {
         let byte = |i: usize| u16::try_from(i).expect("at most 8 vertices");
         Feature(byte(a) << 8 | byte(b))
@@ -65,26 +66,32 @@ impl Manifold {
     }
 
     /// The points, none to two.
+    #[inline]
     #[must_use]
     pub fn points(&self) -> &[ManifoldPoint] {
         &self.points[..usize::from(self.count)]
     }
 
+    #[inline]
     pub(crate) fn push(&mut self, point: ManifoldPoint) {
         self.points[usize::from(self.count)] = point;
         self.count += 1;
     }
 
     /// Keeps the points that pass a test.
-    pub(crate) fn retain(&mut self, keep: impl Fn(&ManifoldPoint) -> bool) {
-        let all = *self;
-        self.count = 0;
-        for &point in all.points().iter().filter(|point| keep(point)) {
-            self.push(point);
+    #[inline]
+    pub(crate) fn retain(&mut self, mut keep: impl FnMut(&ManifoldPoint) -> bool) {
+        let count = core::mem::take(&mut self.count);
+        for index in 0..usize::from(count) {
+            let point = self.points[index];
+            if keep(&point) {
+                self.push(point);
+            }
         }
     }
 
     /// The same contact with the roles of the shapes exchanged.
+    #[inline]
     pub(crate) fn swapped(mut self) -> Self {
         self.normal = -self.normal;
         for point in &mut self.points[..usize::from(self.count)] {
@@ -94,6 +101,7 @@ impl Manifold {
     }
 
     /// The same contact with its anchors moved.
+    #[inline]
     pub(crate) fn translated(mut self, by: Vec2<Length>) -> Self {
         for point in &mut self.points[..usize::from(self.count)] {
             point.anchor += by;
@@ -102,6 +110,7 @@ impl Manifold {
     }
 
     /// The same contact with its anchors measured from another world position.
+    #[inline]
     pub(crate) fn about(self, origin: Vec2<Fx>) -> Self {
         if self.count == 0 { Self::NONE } else { Manifold { origin, ..self } }
     }

@@ -31,7 +31,7 @@ pub(crate) use distance::{distance, overlap};
 pub(crate) use hull_hull::{AxisHint, SatCounters};
 pub(crate) use link::Link;
 pub use manifold::{Feature, Manifold, ManifoldPoint};
-pub(crate) use narrow_phase::{collide, margin_for};
+pub(crate) use narrow_phase::{collide, collide_near, margin_for, may_meet};
 pub(crate) use one_way::OneWay;
 pub(crate) use pass_by::{Passage, pass_by};
 pub(crate) use pose::{Outline, PosedShape};

@@ -6,7 +6,7 @@ use super::manifold::Manifold;
 use super::pose::{Hull, Outline, PosedShape};
 use super::{circle_circle, circle_hull, hull_hull, segment};
 use crate::fx;
-use crate::math::{Fx, Length, Vec2, narrow, widen};
+use crate::math::{Aabb, Fx, Length, Vec2, narrow, widen};
 
 /// Boxes further apart than the margin by more than this, in metres, are rejected without a closer look. The
 /// slack covers the rounding of vertices and the half millimetre by which nearly parallel edges count as nearer than
@@ -21,6 +21,12 @@ pub(crate) fn margin_for(speculative: Length, closing: Fx) -> Length {
     speculative.saturating_add(narrow(closing)).min(MARGIN_MAX)
 }
 
+/// Whether two boxes are so near that shapes in them may be at most `margin` metres apart.
+#[inline]
+pub(crate) fn may_meet(a: Aabb, b: Aabb, margin: Length) -> bool {
+    a.expanded(widen(margin).saturating_add(REJECT_SLACK)).overlaps(b)
+}
+
 /// The contact of two posed shapes whose surfaces are at most `margin` metres apart.
 pub(crate) fn collide(
     a: &PosedShape,
@@ -29,14 +35,15 @@ pub(crate) fn collide(
     hint: &mut AxisHint,
     counters: &mut SatCounters,
 ) -> Manifold {
-    if !a.bounds.expanded(widen(margin).saturating_add(REJECT_SLACK)).overlaps(b.bounds) {
-        return Manifold::NONE;
+    if may_meet(a.bounds, b.bounds, margin) {
+        collide_near(a, b, margin, hint, counters)
+    } else {
+        Manifold::NONE
     }
-    collide_outlines(a, b, margin, hint, counters)
 }
 
 /// [`collide`] without the reject, and its oracle.
-fn collide_outlines(
+pub(crate) fn collide_near(
     a: &PosedShape,
     b: &PosedShape,
     margin: Length,
@@ -157,12 +164,12 @@ mod tests {
             let (a, b) = (random_pose(&mut rng), random_pose(&mut rng));
             let margin = narrow(rng.range(fx!(0.005), fx!(0.2)));
             let mut hint = AxisHint::default();
-            let plain = collide_outlines(&a, &b, margin, &mut hint, &mut SatCounters::default());
+            let plain = collide_near(&a, &b, margin, &mut hint, &mut SatCounters::default());
             // `hint` now holds the separating axis, if there is one; another pair's is a wrong one.
             for _ in 0..2 {
                 assert_eq!(collide(&a, &b, margin, &mut hint, &mut counters), plain);
                 let other = random_pose(&mut rng);
-                collide_outlines(&a, &other, margin, &mut hint, &mut SatCounters::default());
+                collide_near(&a, &other, margin, &mut hint, &mut SatCounters::default());
             }
             touching += u32::from(!plain.points().is_empty());
         }

@@ -62,13 +62,16 @@ fn cosine(a: Vec2<Unit>, b: Vec2<Unit>) -> Unit {
 
 /// Whether a face of one of the shapes keeps them apart through the whole passage, but for the slack.
 pub(crate) fn pass_by(a: &PosedShape, b: &PosedShape, passage: &Passage) -> bool {
-    let (Some(hull_a), Some(hull_b)) = (hull_about(a, b), hull_about(b, a)) else { return false };
-    let mut faces = [&hull_a, &hull_b].into_iter().flat_map(|hull| &hull.normals()[..hull.faces()]);
+    let (mut room_a, mut room_b) = (None, None);
+    let (Some(hull_a), Some(hull_b)) = (hull_about(a, b, &mut room_a), hull_about(b, a, &mut room_b)) else {
+        return false;
+    };
+    let mut faces = [hull_a, hull_b].into_iter().flat_map(|hull| &hull.normals()[..hull.faces()]);
     let on_face = faces.any(|face| cosine(*face, passage.normal) > SAME);
     let passage = &Passage { own: if on_face { OWN } else { Unit::ONE }, ..*passage };
     let d = (origin(b, a) - origin(a, b)).narrow();
     let back = Passage { shift: -passage.shift, ..*passage };
-    some_face_parts(&hull_a, &hull_b, d, passage) || some_face_parts(&hull_b, &hull_a, -d, &back)
+    some_face_parts(hull_a, hull_b, d, passage) || some_face_parts(hull_b, hull_a, -d, &back)
 }
 
 /// Where the coordinates of [`hull_about`] start: a line may have its centre anywhere.
@@ -79,31 +82,37 @@ fn origin(shape: &PosedShape, other: &PosedShape) -> Vec2<Fx> {
     }
 }
 
-fn hull_about(shape: &PosedShape, other: &PosedShape) -> Option<Hull> {
+/// The outline of a shape as a hull, for which there is room if it is not one.
+fn hull_about<'a>(shape: &'a PosedShape, other: &PosedShape, room: &'a mut Option<Hull>) -> Option<&'a Hull> {
     let from_other = shape.centre - other.centre;
-    match &shape.outline {
+    *room = match &shape.outline {
+        Outline::Polygon(hull) => return Some(hull),
         Outline::Circle { radius } => Some(Hull::point(*radius)),
-        Outline::Polygon(hull) => Some(hull.clone()),
         Outline::Segment { a, b } => segment::near_hull(from_other + *a, from_other + *b),
         Outline::Link(link) => segment::near_hull(from_other + link.a, from_other + link.b),
-    }
+    };
+    room.as_ref()
 }
 
 /// `d` is the vector from the centre of A to that of B.
 fn some_face_parts(a: &Hull, b: &Hull, d: Vec2<Length>, passage: &Passage) -> bool {
     let radii = step_bits(a.radius) + step_bits(b.radius);
+    // What rules out most faces comes first.
     (0..a.faces()).any(|edge| {
-        if cosine(a.normals()[edge], passage.normal) > passage.own {
+        let normal = a.normals()[edge];
+        let moved = distance_along(normal, passage.shift);
+        if -moved > step_bits(passage.approach) || cosine(normal, passage.normal) > passage.own {
+            return false;
+        }
+        let before = round_shift(face_separation(a, edge, b, d), FACE_BITS - Step::FRAC_NBITS) - radii;
+        let after = before + moved - step_bits(passage.turn);
+        let nearest = before.min(after);
+        if nearest < -step_bits(passage.slack) {
             return false;
         }
         // Of what is thin on this axis the slack must not be all.
-        let widths =
-            [a, b].map(|hull| width(hull, a.normals()[edge]) / 4).into_iter().filter(|&width| width > 0);
-        let slack = -widths.fold(step_bits(passage.slack), i64::min);
-        let before = round_shift(face_separation(a, edge, b, d), FACE_BITS - Step::FRAC_NBITS) - radii;
-        let moved = distance_along(a.normals()[edge], passage.shift);
-        let after = before + moved - step_bits(passage.turn);
-        before >= slack && after >= slack && -moved <= step_bits(passage.approach)
+        let widths = [a, b].map(|hull| width(hull, normal) / 4).into_iter().filter(|&width| width > 0);
+        nearest >= -widths.fold(step_bits(passage.slack), i64::min)
     })
 }
 

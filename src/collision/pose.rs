@@ -34,6 +34,9 @@ impl Outline {
     }
 }
 
+/// The vertices of a box, and the normals of its first two faces.
+pub(crate) type BoxFaces<'a> = (&'a [Vec2<Length>; 4], &'a [Vec2<Unit>; 2]);
+
 /// A convex outline in 32-bit coordinates: a polygon, or a segment or capsule seen as a polygon with two sides.
 #[derive(Clone, Debug)]
 pub(crate) struct Hull {
@@ -41,19 +44,45 @@ pub(crate) struct Hull {
     vertices: [Vec2<Length>; POLYGON_VERTICES_MAX],
     normals: [Vec2<Unit>; POLYGON_VERTICES_MAX],
     pub(crate) radius: Length,
+    /// Whether it has four faces, of which opposite ones have exactly opposite normals.
+    is_box: bool,
 }
 
 impl Hull {
+    #[inline]
     pub(crate) fn vertices(&self) -> &[Vec2<Length>] {
         &self.vertices[..self.count]
     }
 
     /// `normals()[i]` points out of the edge from vertex `i` to the next.
+    #[inline]
     pub(crate) fn normals(&self) -> &[Vec2<Unit>] {
         &self.normals[..self.count]
     }
 
+    /// Whether it is a segment or a capsule: two sides, and no face at the ends.
+    #[inline]
+    pub(crate) fn is_line(&self) -> bool {
+        self.count == 2
+    }
+
+    /// The vertices, if there are four of them.
+    #[inline]
+    pub(crate) fn as_quad(&self) -> Option<&[Vec2<Length>; 4]> {
+        if self.count == 4 { self.vertices.first_chunk() } else { None }
+    }
+
+    /// The vertices and the first two normals, if there are four, the other two of which are opposite to them.
+    #[inline]
+    pub(crate) fn as_box(&self) -> Option<BoxFaces<'_>> {
+        if !self.is_box {
+            return None;
+        }
+        self.vertices.first_chunk().zip(self.normals.first_chunk())
+    }
+
     /// The index of the vertex after `i`, counter-clockwise.
+    #[inline]
     pub(crate) fn next(&self, i: usize) -> usize {
         if i + 1 == self.count { 0 } else { i + 1 }
     }
@@ -95,6 +124,8 @@ impl Hull {
             hull.vertices[i] = rotation.apply(vertex);
             hull.normals[i] = rotation.apply(normal);
         }
+        let [a, b, c, d, ..] = hull.normals;
+        hull.is_box = hull.count == 4 && c == -a && d == -b;
         hull
     }
 
@@ -104,6 +135,7 @@ impl Hull {
             vertices: [Vec2::ZERO; POLYGON_VERTICES_MAX],
             normals: [Vec2::ZERO; POLYGON_VERTICES_MAX],
             radius: Length::ZERO,
+            is_box: false,
         }
     }
 

@@ -153,7 +153,17 @@ pub fn widen<A: LeEqU32>(a: FixedI32<A>) -> Fx {
 #[inline]
 #[must_use]
 pub const fn fx_mul(a: Fx, b: Fx) -> Fx {
-    Fx::from_bits(saturate_wide(round_shift_wide(a.to_bits() as i128 * b.to_bits() as i128, 32)))
+    Fx::from_bits(round_product(a.to_bits() as i128 * b.to_bits() as i128))
+}
+
+/// A sum of products of world quantities as one: rounded to nearest, saturated.
+#[inline]
+#[expect(clippy::cast_possible_truncation, reason = "compared with what has been cut off")]
+pub(super) const fn round_product(x: i128) -> i64 {
+    // In units of half the resolution. Nearly always that fits 64 bits, and is rounded there.
+    let halves = x >> 31;
+    let low = halves as i64;
+    if low as i128 == halves { (low >> 1) + (low & 1) } else { saturate_wide(round_shift_wide(x, 32)) }
 }
 
 /// `a / b`, rounded to nearest, saturated; `None` when `b` is 0.

@@ -8,7 +8,7 @@ use fixed::types::extra::LeEqU32;
 use serde::{Deserialize, Serialize};
 
 use super::formats::{
-    Fx, Unit, convert, fx_mul, mul, mul_add, narrow, round_shift_wide, saturate_wide, widen,
+    Fx, Unit, convert, fx_mul, mul, mul_add, narrow, round_product, round_shift_wide, saturate_wide, widen,
 };
 
 /// A vector or a point. Sums and differences saturate.
@@ -179,7 +179,7 @@ const fn sum_of_products(a: Fx, x: Fx, b: Fx, y: Fx, sign: i128) -> Fx {
     let ax = a.to_bits() as i128 * x.to_bits() as i128;
     let by = b.to_bits() as i128 * y.to_bits() as i128;
     // Two products of 64-bit numbers stay within 127 bits, but for the corner where all four are `i64::MIN`.
-    Fx::from_bits(saturate_wide(round_shift_wide(ax.saturating_add(sign * by), 32)))
+    Fx::from_bits(round_product(ax.saturating_add(sign * by)))
 }
 
 /// `a (1 - t) + b t`, rounded once, saturated. The 128-bit sum has no difference that could overflow.

@@ -39,7 +39,7 @@ pub(crate) use settings::Tuning;
 pub use settings::{ContactTuning, DISTANCE_MAX, SolverSettings};
 
 use crate::body::{Arena, Body, BodyId, JointId};
-use crate::collision::{Contact, Manifold};
+use crate::collision::{Contact, Manifold, Pair};
 use crate::math::Reciprocal;
 use crate::threads::Threads;
 
@@ -67,10 +67,13 @@ pub(crate) struct Solver {
     pub(crate) faults: Faults,
 }
 
-/// A contact to solve: where it is in the state, the slots of its bodies, and their common surface.
+/// A contact to solve: where it is in the state and its manifold among those of the tick, the slots of its shapes and
+/// of their bodies, and their common surface.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TouchingPair {
     pub(crate) contact: u32,
+    pub(crate) manifold: u32,
+    pub(crate) shapes: Pair,
     pub(crate) bodies: (u32, u32),
     pub(crate) surface: Surface,
 }

@@ -18,7 +18,7 @@ use super::pairs;
 use super::scratch::Scratch;
 use super::state::{Island, State};
 use crate::body::{Body, BodyKind, Handle, IslandId};
-use crate::collision::Contact;
+use crate::collision::{AxisHint, Contact};
 use crate::math::{Fx, Shift, Speed, Vec2, narrow};
 use crate::solver::SolverBody;
 
@@ -118,9 +118,11 @@ pub(super) fn wake_touched(state: &mut State, scratch: &mut Scratch) {
     if state.islands.len() == 0 {
         return;
     }
+    let outlook = &scratch.poses.outlook;
     let has_sleeper = |contact: &&Contact| {
-        let (a, b) = state.bodies_of(contact.shapes);
-        (a.is_asleep() || b.is_asleep()) && state.sensor_of(contact.shapes).is_none()
+        let (a, b) = (outlook.reach(contact.shapes.0), outlook.reach(contact.shapes.1));
+        let asleep = |body: u32| state.bodies.at(body).is_asleep();
+        !(a.sensor || b.sensor) && (asleep(a.body) || asleep(b.body))
     };
     scratch.pairs.clear();
     scratch.pairs.extend(state.contacts.iter().filter(has_sleeper).map(|contact| contact.shapes));
@@ -336,31 +338,38 @@ pub(super) fn disturb_around(state: &mut State, scratch: &mut Scratch, shape: u3
 
 /// Sets the contacts aside of which no body is active any more, with their manifolds.
 fn rest_contacts(state: &mut State, scratch: &mut Scratch) {
-    if scratch.manifolds.len() != state.contacts.len() {
+    if scratch.hints.len() != state.contacts.len() {
         // There are none since a restore, or since a contact was removed.
-        scratch.forget_contacts();
+        scratch.hints.resize(state.contacts.len(), AxisHint::default());
     }
-    let Scratch { manifolds, hints, fresh, merged, .. } = scratch;
-    let has_manifolds = !manifolds.is_empty();
+    let Scratch { manifolds, found, hints, fresh, .. } = scratch;
     let mut contacts = core::mem::take(&mut state.contacts);
     fresh.clear();
-    let mut kept = 0;
+    let (mut kept, mut next, mut kept_manifolds) = (0, 0, 0);
     for index in 0..contacts.len() {
         let (a, b) = state.bodies_of(contacts[index].shapes);
-        if a.is_active() || b.is_active() {
-            contacts.swap(kept, index);
-            if has_manifolds {
-                manifolds.swap(kept, index);
-                hints.swap(kept, index);
+        let active = a.is_active() || b.is_active();
+        if found.get(next).is_some_and(|&contact| contact as usize == index) {
+            if active {
+                manifolds.swap(kept_manifolds, next);
+                found[kept_manifolds] =
+                    found[next] - u32::try_from(index - kept).expect("fewer than 2^32 contacts");
+                kept_manifolds += 1;
             }
+            next += 1;
+        }
+        if active {
+            contacts.swap(kept, index);
+            hints.swap(kept, index);
             kept += 1;
         } else {
             fresh.push(contacts[index]);
         }
     }
     contacts.truncate(kept);
-    manifolds.truncate(kept);
     hints.truncate(kept);
+    manifolds.truncate(kept_manifolds);
+    found.truncate(kept_manifolds);
     state.contacts = contacts;
-    pairs::merge(&mut state.resting, fresh, merged);
+    pairs::merge(&mut state.resting, fresh, |_, _| {});
 }

@@ -16,12 +16,15 @@ pub(super) fn update(state: &mut State, scratch: &mut Scratch) {
     if !(scratch.changes.any() || state.pairs_left_out) {
         return;
     }
-    remember_hints(state, scratch);
+    if scratch.hints.len() != state.contacts.len() {
+        scratch.hints.clear();
+        scratch.hints.resize(state.contacts.len(), AxisHint::default());
+    }
     refresh_joined(state, scratch);
     wake_resting(state, scratch);
     drop_parted(state, scratch);
     find_new(state, scratch);
-    recall_hints(state, scratch);
+    scratch.surfaces_stale |= scratch.changes.everything || scratch.changes.rules;
     scratch.changes.clear();
 }
 
@@ -32,7 +35,7 @@ fn wake_resting(state: &mut State, scratch: &mut Scratch) {
         return;
     }
     let mut resting = core::mem::take(&mut state.resting);
-    let Scratch { fresh: woken, joined, merged, .. } = scratch;
+    let Scratch { fresh: woken, joined, hints, .. } = scratch;
     woken.clear();
     resting.retain(|contact| {
         let (a, b) = state.bodies_of(contact.shapes);
@@ -43,7 +46,7 @@ fn wake_resting(state: &mut State, scratch: &mut Scratch) {
         !wakes
     });
     state.resting = resting;
-    merge(&mut state.contacts, woken, merged);
+    insert(&mut state.contacts, hints, woken);
 }
 
 fn is_near(state: &State, joined: &[Pair], (a, b): Pair) -> bool {
@@ -65,29 +68,45 @@ pub(super) fn find_sleepers(state: &State, scratch: &mut Scratch, first_change: 
 /// Takes out the contacts whose boxes have parted, and those that nothing moves any more.
 fn drop_parted(state: &mut State, scratch: &mut Scratch) {
     let mut contacts = core::mem::take(&mut state.contacts);
-    let Scratch { ended, fresh, changes, joined, .. } = scratch;
+    let Scratch { ended, fresh, changes, changed, joined, hints, .. } = scratch;
     fresh.clear();
-    contacts.retain(|contact| {
+    let any = changes.everything || changes.rules;
+    changed.resize(state.shapes.slot_count(), false);
+    changes.shapes.iter().for_each(|&slot| changed[slot as usize] = true);
+    let mut kept = 0;
+    for index in 0..contacts.len() {
+        let contact = contacts[index];
         let (a, b) = contact.shapes;
-        let near = state.shapes.at(a).fat.overlaps(state.shapes.at(b).fat)
-            && (!(changes.everything || changes.rules) || may_touch(state, joined, contact.shapes));
-        let (body_a, body_b) = state.bodies_of(contact.shapes);
-        let active = body_a.is_active() || body_b.is_active();
-        match (near, active) {
-            (false, _) => ended.push(*contact),
-            (true, false) => fresh.push(*contact),
-            (true, true) => {}
+        if any || changed[a as usize] || changed[b as usize] {
+            let near = state.shapes.at(a).fat.overlaps(state.shapes.at(b).fat)
+                && (!any || may_touch(state, joined, contact.shapes));
+            let (body_a, body_b) = state.bodies_of(contact.shapes);
+            if !near {
+                ended.push(contact);
+                continue;
+            }
+            if !(body_a.is_active() || body_b.is_active()) {
+                fresh.push(contact);
+                continue;
+            }
         }
-        near && active
-    });
+        if kept < index {
+            contacts[kept] = contact;
+            hints[kept] = hints[index];
+        }
+        kept += 1;
+    }
+    contacts.truncate(kept);
+    hints.truncate(kept);
+    changes.shapes.iter().for_each(|&slot| changed[slot as usize] = false);
     state.contacts = contacts;
-    merge(&mut state.resting, fresh, &mut scratch.merged);
+    merge(&mut state.resting, fresh, |_, _| {});
 }
 
 /// Adds a contact for every new pair.
 fn find_new(state: &mut State, scratch: &mut Scratch) {
     let limit = state.config.pair_limit as usize;
-    let Scratch { broad_phase, changes, pairs, joined, fresh, .. } = scratch;
+    let Scratch { broad_phase, changes, pairs, joined, fresh, hints, .. } = scratch;
     let everything = changes.everything || state.pairs_left_out;
     let moved = if everything { Moved::All } else { Moved::Slots(&changes.shapes) };
     let wanted = |pair: Pair| {
@@ -104,30 +123,42 @@ fn find_new(state: &mut State, scratch: &mut Scratch) {
         }
     }
     drop(known);
-    merge(&mut state.contacts, fresh, &mut scratch.merged);
+    insert(&mut state.contacts, hints, fresh);
     if state.contacts.len() > limit {
         scratch.ended.extend(state.contacts.drain(limit..));
+        hints.truncate(limit);
         left_out = true;
     }
     state.pairs_left_out = left_out;
 }
 
-/// Merges contacts into a list, both sorted by pair and without a pair in common.
-pub(super) fn merge(contacts: &mut Vec<Contact>, new: &[Contact], merged: &mut Vec<Contact>) {
-    if new.is_empty() {
-        return;
-    }
-    merged.clear();
-    merged.reserve(contacts.len() + new.len());
-    let mut old = contacts.iter().copied().peekable();
-    for contact in new {
-        while let Some(before) = old.next_if(|old| old.shapes < contact.shapes) {
-            merged.push(before);
+/// Merges contacts into a list that has hints.
+fn insert(contacts: &mut Vec<Contact>, hints: &mut Vec<AxisHint>, new: &[Contact]) {
+    hints.resize(contacts.len() + new.len(), AxisHint::default());
+    merge(contacts, new, |to, from| hints[to] = from.map_or(AxisHint::default(), |from| hints[from]));
+}
+
+/// Merges contacts into a list, both sorted by pair and without a pair in common, from the back: what comes before the
+/// first of them stays. `placed` is told which place has been taken, and from where in the old list unless it is a new
+/// contact's.
+pub(super) fn merge(
+    contacts: &mut Vec<Contact>,
+    new: &[Contact],
+    mut placed: impl FnMut(usize, Option<usize>),
+) {
+    let mut from = contacts.len();
+    contacts.extend_from_slice(new);
+    let mut to = contacts.len();
+    for contact in new.iter().rev() {
+        while from > 0 && contacts[from - 1].shapes > contact.shapes {
+            (from, to) = (from - 1, to - 1);
+            contacts[to] = contacts[from];
+            placed(to, Some(from));
         }
-        merged.push(*contact);
+        to -= 1;
+        contacts[to] = *contact;
+        placed(to, None);
     }
-    merged.extend(old);
-    core::mem::swap(contacts, merged);
 }
 
 /// Pairs of bodies that a joint keeps from colliding.
@@ -169,22 +200,4 @@ pub(super) fn may_touch(state: &State, joined: &[Pair], (a, b): Pair) -> bool {
 
 fn both_fixed(a: BodyKind, b: BodyKind) -> bool {
     a == BodyKind::Fixed && b == BodyKind::Fixed
-}
-
-/// Hints are found by the place of their contact, which is about to change.
-fn remember_hints(state: &State, scratch: &mut Scratch) {
-    scratch.old_hints.clear();
-    if scratch.hints.len() == state.contacts.len() {
-        let pairs = state.contacts.iter().map(|contact| contact.shapes);
-        scratch.old_hints.extend(pairs.zip(scratch.hints.iter().copied()));
-    }
-}
-
-fn recall_hints(state: &State, scratch: &mut Scratch) {
-    let mut old = scratch.old_hints.iter().peekable();
-    scratch.hints.clear();
-    scratch.hints.extend(state.contacts.iter().map(|contact| {
-        while old.next_if(|(pair, _)| *pair < contact.shapes).is_some() {}
-        old.next_if(|(pair, _)| *pair == contact.shapes).map_or(AxisHint::default(), |(_, hint)| *hint)
-    }));
 }

@@ -5,6 +5,7 @@ use alloc::vec::Vec;
 use super::continuous::Swept;
 use super::events::Events;
 use super::islands::{Roster, UnionFind};
+use super::look_ahead::Outlook;
 use super::state::State;
 use super::stats::StepStats;
 use crate::body::{Body, BodyKind, Handle, Pose};
@@ -20,6 +21,8 @@ pub(crate) struct Scratch {
     pub(crate) poses: Poses,
     /// What has changed since the last look at the pairs.
     pub(crate) changes: Changes,
+    /// By slot, which shapes are among them: all `false` between uses.
+    pub(crate) changed: Vec<bool>,
     pub(crate) roster: Roster,
     /// Whether there may be kinematic bodies.
     pub(crate) kinematic: bool,
@@ -33,14 +36,17 @@ pub(crate) struct Scratch {
     pub(crate) joined: Vec<Pair>,
     pub(crate) joined_stale: bool,
     pub(crate) fresh: Vec<Contact>,
-    pub(crate) merged: Vec<Contact>,
     pub(crate) ended: Vec<Contact>,
     /// For each contact, the axis that separated it in the last tick.
     pub(crate) hints: Vec<AxisHint>,
-    pub(crate) old_hints: Vec<(Pair, AxisHint)>,
-    /// For each contact, its manifold in the last tick.
+    /// The manifolds of the last tick that have points, in the order of their contacts, and where those are.
     pub(crate) manifolds: Vec<Manifold>,
+    pub(crate) found: Vec<u32>,
     pub(crate) touching: Vec<TouchingPair>,
+    /// What touched in the tick before, sorted by pair: most of it still does, with the same surface.
+    pub(crate) touched: Vec<TouchingPair>,
+    /// Whether surfaces may have changed since.
+    pub(crate) surfaces_stale: bool,
     /// Approaches that become hits if the shapes push each other in this tick.
     pub(crate) approaches: Vec<Approaching>,
     pub(crate) sat: SatCounters,
@@ -93,6 +99,7 @@ impl Scratch {
             broad_phase: BroadPhase::new(kind),
             poses: Poses::default(),
             changes: Changes { everything: true, ..Changes::default() },
+            changed: Vec::new(),
             roster: Roster::default(),
             kinematic: state.bodies.iter().any(|(_, body)| body.kind() == BodyKind::Kinematic),
             union: UnionFind::default(),
@@ -102,12 +109,13 @@ impl Scratch {
             joined: Vec::new(),
             joined_stale: true,
             fresh: Vec::new(),
-            merged: Vec::new(),
             ended: Vec::new(),
             hints: Vec::new(),
-            old_hints: Vec::new(),
             manifolds: Vec::new(),
+            found: Vec::new(),
             touching: Vec::new(),
+            touched: Vec::new(),
+            surfaces_stale: true,
             approaches: Vec::new(),
             sat: SatCounters::default(),
             solver: Solver::default(),
@@ -135,6 +143,7 @@ impl Scratch {
     /// Drops what is found by a contact's place in the state, because places have changed.
     pub(crate) fn forget_contacts(&mut self) {
         self.manifolds.clear();
+        self.found.clear();
         self.hints.clear();
         self.touching.clear();
     }
@@ -144,6 +153,8 @@ impl Scratch {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Poses {
     shapes: Vec<Option<PosedShape>>,
+    /// The same shapes as their pairs see them first.
+    pub(super) outlook: Outlook,
 }
 
 impl Poses {
@@ -155,7 +166,9 @@ impl Poses {
         let rotation = body.rotation();
         for &id in body.shapes() {
             let shape = state.shapes.at(id.slot());
-            self.shapes[id.slot() as usize] = Some(PosedShape::new(&shape.def, body, rotation));
+            let posed = PosedShape::new(&shape.def, body, rotation);
+            self.outlook.place(id.slot(), shape, shape.body().slot(), posed.bounds);
+            self.shapes[id.slot() as usize] = Some(posed);
         }
     }
 

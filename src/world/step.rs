@@ -79,13 +79,18 @@ impl World {
 /// Gives every shape that may leave its fat box within the tick a new one.
 fn refit_boxes(state: &mut State, scratch: &mut Scratch) {
     let State { bodies, shapes, config, .. } = state;
+    scratch.poses.outlook.begin(bodies.slot_count());
     for &slot in &scratch.roster.bodies {
         let body = bodies.at(slot);
-        let motion = Motion::of(body, config.tick_rate);
+        let motion = Motion::of(body);
+        let (shift, turn) = (motion.shift(config.tick_rate), motion.turn(config.tick_rate));
+        scratch.poses.outlook.set_motion(slot, motion);
         for &id in body.shapes() {
             let posed = scratch.poses.at(id.slot());
-            let reach = motion.turn_reach(posed, body).saturating_add(config.speculative_distance);
-            let needed = posed.bounds.expanded(reach).swept(motion.shift);
+            let turn_reach = motion.turn_reach(turn, posed);
+            let reach = turn_reach.saturating_add(config.speculative_distance);
+            let needed = posed.bounds.expanded(reach).swept(shift);
+            scratch.poses.outlook.set_reach(id.slot(), shift, turn_reach);
             let fat = &mut shapes.at_mut(id.slot()).fat;
             // A box that a fast shape has left behind would find pairs for ever, so it shrinks as well.
             let roomy = needed.expanded(config.fat_margin.saturating_mul_int(4));

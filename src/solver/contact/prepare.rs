@@ -74,9 +74,9 @@ impl ContactSet {
         inputs.clear();
         nodes.clear();
         for pair in pairs {
-            let (manifold, memory) = (&manifolds[pair.contact as usize], &contacts[pair.contact as usize]);
+            let (manifold, memory) = (&manifolds[pair.manifold as usize], &contacts[pair.contact as usize]);
             let input = Input::new(pair, manifold, memory, list, warm);
-            nodes.push(input.node(memory.shapes));
+            nodes.push(input.node(pair.shapes));
             inputs.push(input);
         }
         colouring.order(nodes, list.len());
