@@ -111,7 +111,7 @@ impl World {
         self.wake_joined(id);
         self.forget_contacts(&shapes);
         for shape in shapes {
-            self.scratch.broad_phase.remove(shape.slot());
+            self.scratch.remove_box(shape.slot());
         }
         let body = self.state.bodies.at_mut(id.slot());
         body.enabled = false;

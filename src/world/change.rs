@@ -271,7 +271,7 @@ impl World {
     /// Brings the caches in line with a body that has come or been moved.
     pub(super) fn placed(&mut self, slot: u32) {
         let body = self.state.bodies.at(slot);
-        self.scratch.place(&self.state, body);
+        self.scratch.place(&self.state, slot);
         self.scratch.changes.body(body);
         self.scratch.kinematic |= body.kind() == BodyKind::Kinematic;
         self.scratch.roster.invalidate();
@@ -285,7 +285,7 @@ impl World {
     fn forget_shapes(&mut self, ids: &[ShapeId]) {
         self.forget_contacts(ids);
         for &id in ids {
-            self.scratch.broad_phase.remove(id.slot());
+            self.scratch.remove_box(id.slot());
             self.state.shapes.remove(id);
         }
     }

@@ -6,8 +6,6 @@
 //! when the contact is there from the start. It loses the rest of its movement, so that time seems to stand still for
 //! it for part of a tick.
 
-use alloc::vec::Vec;
-
 use super::pairs::may_touch;
 use super::scratch::Scratch;
 use super::state::State;
@@ -25,42 +23,38 @@ pub(crate) struct Swept {
     end: Pose,
 }
 
-/// The sweep of a body, if it moves so far that it may pass through something: more than half of the radius inside its
-/// smallest shape, or of the reach of one that turns.
+/// A body that moves less than this in a tick, in metres, is not swept however thin it is.
+const SWEPT_MIN: Fx = fx!(0.0005);
+
+/// The sweep of a body, if it moves so far that it may pass through something: some point of it more than half of the
+/// radius inside its thinnest shape.
 pub(super) fn sweep_of(state: &State, scratch: &Scratch, slot: u32, end: Pose, turn: i64) -> Option<Swept> {
     let body = state.bodies.at(slot);
     if !state.config.continuous || !body.is_dynamic() || body.settings.continuous == Continuous::Off {
         return None;
     }
+    let extents = scratch.poses.extents(slot);
+    let limit = SWEPT_MIN.max(extents.core / 2);
     let shift = end.centre - body.centre;
-    let radians = Angle::turns_to_radians(turn);
-    let fast = body.shapes().iter().any(|id| {
-        let shape = state.shapes.at(id.slot());
-        let posed = scratch.poses.at(id.slot());
-        let away = posed.bounds.centre() - body.centre;
-        let half = posed.bounds.extents();
-        let reach = [half.x, half.y, away.x.saturating_abs(), away.y.saturating_abs()]
-            .into_iter()
-            .fold(Fx::ZERO, Fx::saturating_add);
-        let motion = shift.length().saturating_add(fx_mul(radians.saturating_abs(), reach));
-        // The radius inside a shape is at most that inside its box: most bodies are slow enough to tell at a glance.
-        !shape.is_sensor() && motion > fx!(0.0005) && motion > Core::of(posed, body.centre).inner_radius() / 2
-    });
+    let turned = fx_mul(Angle::turns_to_radians(turn).saturating_abs(), extents.reach);
+    // Most bodies are slow enough to tell without a root.
+    let at_most = shift.x.saturating_abs().saturating_add(shift.y.saturating_abs()).saturating_add(turned);
+    let fast = at_most > limit && shift.length().saturating_add(turned) > limit;
     fast.then_some(Swept { slot, sweep: Sweep { start: body.centre, end: end.centre, turn }, end })
 }
 
 /// Moves fast bodies as far as they can go: first those that only fixed bodies stop, then the bullets, in slot
 /// order. Everything else is where it will be.
 pub(super) fn sweep(state: &mut State, scratch: &mut Scratch, swept: &[Swept]) {
-    let is_bullet =
-        |state: &State, swept: &Swept| state.bodies.at(swept.slot).settings.continuous == Continuous::Bullet;
-    let (bullets, others): (Vec<&Swept>, Vec<&Swept>) =
-        swept.iter().partition(|swept| is_bullet(state, swept));
-    for swept in others.into_iter().chain(bullets) {
-        let impact = first_impact(state, scratch, swept);
-        let pose = impact.map_or(swept.end, |impact| pose_after(state, scratch, swept, impact));
-        scratch.stats.impacts += u32::from(impact.is_some());
-        move_body(state, scratch, swept.slot, pose);
+    for bullets in [false, true] {
+        for swept in swept {
+            if is_bullet(state.bodies.at(swept.slot)) == bullets {
+                let impact = first_impact(state, scratch, swept);
+                let pose = impact.map_or(swept.end, |impact| pose_after(state, scratch, swept, impact));
+                scratch.stats.impacts += u32::from(impact.is_some());
+                move_body(state, scratch, swept.slot, pose);
+            }
+        }
     }
 }
 
@@ -95,17 +89,24 @@ fn first_impact(state: &State, scratch: &Scratch, swept: &Swept) -> Option<Impac
             continue;
         }
         let posed = scratch.poses.at(id.slot());
-        let core = Core::of(posed, body.centre);
-        // Half as deep as it would have to be for its centre to be on the surface, but not more than 5 mm.
-        let target = -(core.inner_radius() / 4).min(fx!(0.005));
+        // Found when the first obstacle is: most fast bodies are far from any.
+        let mut known = None;
         let reach = if swept.sweep.turn == 0 { Fx::ZERO } else { posed.bounds.extents().length() };
         let area = posed.bounds.expanded(reach).swept(swept.sweep.end - swept.sweep.start);
-        scratch.broad_phase.each_overlap(area, |other| {
+        let obstacles = if is_bullet(body) { &scratch.broad_phase } else { &scratch.fixed };
+        obstacles.each_overlap(area, |other| {
             let obstacle = state.body_of(other);
             let posed_other = scratch.poses.at(other);
-            let solid = posed_other.is_solid_from(posed.centre);
+            // What moves is not where it was on the way.
+            let near = obstacle.kind() != BodyKind::Fixed || posed_other.bounds.overlaps(area);
+            let solid = near && posed_other.is_solid_from(posed.centre);
             if solid && stops(body, obstacle) && may_stop(state, scratch, id.slot(), other) {
                 let (there, movement) = obstacle_of(state, scratch, other);
+                let &mut (core, target) = known.get_or_insert_with(|| {
+                    let core = Core::of(posed, body.centre);
+                    // Half as deep as it would have to be for its centre to be on the surface, but not more than 5 mm.
+                    (core, -(core.inner_radius() / 4).min(fx!(0.005)))
+                });
                 let fraction = match time_of_impact((&there, &movement), (&core, &swept.sweep), target) {
                     TimeOfImpact::Hit { fraction } => Some(fraction),
                     // Never so late that something may have been passed, but a body has to go on.
@@ -138,8 +139,11 @@ fn obstacle_of(state: &State, scratch: &Scratch, shape: u32) -> (Core, Sweep) {
 
 /// Whether a body is swept against another.
 fn stops(body: &Body, obstacle: &Body) -> bool {
-    let bullet = |body: &Body| body.settings.continuous == Continuous::Bullet;
-    obstacle.kind() == BodyKind::Fixed || (bullet(body) && !bullet(obstacle))
+    obstacle.kind() == BodyKind::Fixed || (is_bullet(body) && !is_bullet(obstacle))
+}
+
+fn is_bullet(body: &Body) -> bool {
+    body.settings.continuous == Continuous::Bullet
 }
 
 fn may_stop(state: &State, scratch: &Scratch, a: u32, b: u32) -> bool {

@@ -7,16 +7,19 @@ use super::events::Events;
 use super::islands::{Roster, UnionFind};
 use super::state::State;
 use super::stats::StepStats;
-use crate::body::{Body, BodyKind, Handle, Pose};
+use crate::body::{Body, BodyKind, Geometry, Handle, Pose, Shape, ShapeId};
 use crate::collision::{
     AxisHint, BroadPhase, BroadPhaseKind, Contact, Manifold, Pair, PosedShape, SatCounters,
 };
+use crate::math::{Aabb, Fx};
 use crate::solver::{Solver, TouchingPair};
 
 /// Caches, buffers and results of the last tick.
 #[derive(Clone, Debug)]
 pub(crate) struct Scratch {
     pub(crate) broad_phase: BroadPhase,
+    /// The boxes of fixed bodies once more: all that most fast bodies are swept against.
+    pub(crate) fixed: BroadPhase,
     pub(crate) poses: Poses,
     /// What has changed since the last look at the pairs.
     pub(crate) changes: Changes,
@@ -91,6 +94,7 @@ impl Scratch {
     pub(crate) fn new(kind: BroadPhaseKind, state: &State) -> Self {
         let mut scratch = Scratch {
             broad_phase: BroadPhase::new(kind),
+            fixed: BroadPhase::new(kind),
             poses: Poses::default(),
             changes: Changes { everything: true, ..Changes::default() },
             roster: Roster::default(),
@@ -114,22 +118,36 @@ impl Scratch {
             events: Events::default(),
             stats: StepStats::default(),
         };
-        for (_, body) in state.bodies.iter() {
-            scratch.poses.pose_body(state, body);
+        for (id, _) in state.bodies.iter() {
+            scratch.poses.pose_body(state, id.slot());
         }
-        let enabled = state.shapes.iter().filter(|(_, shape)| state.bodies.at(shape.body().slot()).enabled);
-        scratch.broad_phase.refill(enabled.map(|(id, shape)| (id.slot(), shape.fat)));
+        let boxes = |(id, shape): (ShapeId, &Shape)| (id.slot(), shape.fat);
+        let body_of = |shape: &Shape| state.bodies.at(shape.body().slot());
+        let enabled = || state.shapes.iter().filter(|(_, shape)| body_of(shape).enabled);
+        scratch.broad_phase.refill(enabled().map(boxes));
+        let is_fixed = |shape: &Shape| body_of(shape).kind() == BodyKind::Fixed;
+        scratch.fixed.refill(enabled().filter(|(_, shape)| is_fixed(shape)).map(boxes));
         scratch
     }
 
     /// Brings the caches in line with the place of a body's shapes.
-    pub(crate) fn place(&mut self, state: &State, body: &Body) {
-        self.poses.pose_body(state, body);
-        if body.enabled {
-            for id in body.shapes() {
-                self.broad_phase.set(id.slot(), state.shapes.at(id.slot()).fat);
+    pub(crate) fn place(&mut self, state: &State, slot: u32) {
+        self.poses.pose_body(state, slot);
+        let body = state.bodies.at(slot);
+        for id in body.shapes().iter().filter(|_| body.enabled) {
+            let fat = state.shapes.at(id.slot()).fat;
+            self.broad_phase.set(id.slot(), fat);
+            match body.kind() {
+                BodyKind::Fixed => self.fixed.set(id.slot(), fat),
+                BodyKind::Kinematic | BodyKind::Dynamic => self.fixed.remove(id.slot()),
             }
         }
+    }
+
+    /// Hides a shape from whatever looks for boxes.
+    pub(crate) fn remove_box(&mut self, shape: u32) {
+        self.broad_phase.remove(shape);
+        self.fixed.remove(shape);
     }
 
     /// Drops what is found by a contact's place in the state, because places have changed.
@@ -144,19 +162,70 @@ impl Scratch {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Poses {
     shapes: Vec<Option<PosedShape>>,
+    /// By body slot.
+    extents: Vec<Extents>,
+}
+
+/// What decides how far a body may move before it might pass through something. Turning does not change it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Extents {
+    /// The radius of a disc inside the thinnest of its solid shapes, in metres; the largest number if there are none.
+    pub(crate) core: Fx,
+    /// From the centre of mass to the farthest point of a solid shape, at most, in metres. That of a disc is not
+    /// farther than its centre, about which nothing is seen of its turning.
+    pub(crate) reach: Fx,
+}
+
+impl Extents {
+    const NONE: Self = Extents { core: Fx::MAX, reach: Fx::ZERO };
+
+    fn of(state: &State, body: &Body) -> Self {
+        let solid =
+            body.shapes().iter().map(|id| state.shapes.at(id.slot())).filter(|shape| !shape.is_sensor());
+        solid.fold(Self::NONE, |extents, shape| {
+            let arm = (shape.offset() - body.local_centre_of_mass()).length();
+            let size = match shape.geometry() {
+                Geometry::Circle { .. } => Fx::ZERO,
+                geometry => {
+                    let Aabb { lower, upper } = geometry.local_bounds();
+                    (-lower).max(upper).length()
+                }
+            };
+            Extents {
+                core: extents.core.min(PosedShape::inner_radius(shape.geometry())),
+                reach: extents.reach.max(arm.saturating_add(size)),
+            }
+        })
+    }
 }
 
 impl Poses {
-    /// Poses the shapes of a body anew, after it has been moved or has got another shape.
-    pub(crate) fn pose_body(&mut self, state: &State, body: &Body) {
-        if self.shapes.len() < state.shapes.slot_count() {
-            self.shapes.resize_with(state.shapes.slot_count(), || None);
-        }
+    /// Poses the shapes of a body that has come, has got another shape, or has another mass.
+    fn pose_body(&mut self, state: &State, slot: u32) {
+        self.shapes.resize_with(state.shapes.slot_count(), || None);
+        self.extents.resize(state.bodies.slot_count(), Extents::NONE);
+        let body = state.bodies.at(slot);
         let rotation = body.rotation();
         for &id in body.shapes() {
             let shape = state.shapes.at(id.slot());
             self.shapes[id.slot() as usize] = Some(PosedShape::new(&shape.def, body, rotation));
         }
+        self.extents[slot as usize] = Extents::of(state, body);
+    }
+
+    /// Poses the shapes of a body again, after it has only been moved.
+    pub(crate) fn move_body(&mut self, state: &State, body: &Body) {
+        let rotation = body.rotation();
+        for &id in body.shapes() {
+            let posed =
+                self.shapes[id.slot() as usize].as_mut().expect("every shape is posed when it is placed");
+            posed.renew(&state.shapes.at(id.slot()).def, body, rotation);
+        }
+    }
+
+    /// The extents of the body in an occupied slot.
+    pub(crate) fn extents(&self, slot: u32) -> Extents {
+        self.extents[slot as usize]
     }
 
     /// The shape in an occupied slot.

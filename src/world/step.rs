@@ -153,7 +153,7 @@ pub(super) fn move_body(state: &mut State, scratch: &mut Scratch, slot: u32, pos
     let body = state.bodies.at_mut(slot);
     if (body.centre, body.angle) != (pose.centre, pose.angle) {
         (body.centre, body.angle) = (pose.centre, pose.angle);
-        scratch.poses.pose_body(state, state.bodies.at(slot));
+        scratch.poses.move_body(state, state.bodies.at(slot));
         cover_shapes(state, scratch, slot);
     }
 }
