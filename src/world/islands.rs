@@ -340,10 +340,10 @@ fn rest_contacts(state: &mut State, scratch: &mut Scratch) {
         // There are none since a restore, or since a contact was removed.
         scratch.forget_contacts();
     }
-    let Scratch { manifolds, hints, fresh, merged, .. } = scratch;
+    let Scratch { manifolds, hints, parked, merged, .. } = scratch;
     let has_manifolds = !manifolds.is_empty();
     let mut contacts = core::mem::take(&mut state.contacts);
-    fresh.clear();
+    parked.clear();
     let mut kept = 0;
     for index in 0..contacts.len() {
         let (a, b) = state.bodies_of(contacts[index].shapes);
@@ -355,12 +355,12 @@ fn rest_contacts(state: &mut State, scratch: &mut Scratch) {
             }
             kept += 1;
         } else {
-            fresh.push(contacts[index]);
+            parked.push(contacts[index]);
         }
     }
     contacts.truncate(kept);
     manifolds.truncate(kept);
     hints.truncate(kept);
     state.contacts = contacts;
-    pairs::merge(&mut state.resting, fresh, merged);
+    pairs::merge(&mut state.resting, parked, &mut merged.contacts);
 }

@@ -5,10 +5,10 @@
 
 use alloc::vec::Vec;
 
-use super::scratch::Scratch;
+use super::scratch::{Changes, Scratch};
 use super::state::State;
 use crate::body::{BodyKind, Handle};
-use crate::collision::{AxisHint, Contact, Moved, Pair};
+use crate::collision::{AxisHint, BroadPhase, Contact, Moved, Pair};
 
 /// Brings the contacts in line with the fat boxes. Contacts of pairs that have parted go to `scratch.ended`.
 pub(super) fn update(state: &mut State, scratch: &mut Scratch) {
@@ -16,34 +16,35 @@ pub(super) fn update(state: &mut State, scratch: &mut Scratch) {
     if !(scratch.changes.any() || state.pairs_left_out) {
         return;
     }
-    remember_hints(state, scratch);
     refresh_joined(state, scratch);
     wake_resting(state, scratch);
-    drop_parted(state, scratch);
-    find_new(state, scratch);
-    recall_hints(state, scratch);
-    scratch.changes.clear();
+    let left_out = find_new(state, scratch);
+    exchange(state, scratch);
+    keep_to_limit(state, scratch, left_out);
+    scratch.changes.settle(&scratch.broad_phase, state.shapes.slot_count());
 }
 
-/// Contacts of bodies that have woken, or have begun to move, are looked at again, and so are those that end
-/// although nothing is active: a sensor's, of a kinematic body that was moved by hand.
+/// Lists the contacts of bodies that have woken, or have begun to move, as fresh ones. Those that have parted although
+/// nothing is active end: a sensor's, of a kinematic body that was moved by hand.
 fn wake_resting(state: &mut State, scratch: &mut Scratch) {
-    if state.resting.is_empty() || !(scratch.changes.everything || scratch.changes.resting) {
+    let Scratch { fresh, joined, ended, changes, .. } = scratch;
+    fresh.clear();
+    if state.resting.is_empty() || !(changes.everything || changes.resting) {
         return;
     }
     let mut resting = core::mem::take(&mut state.resting);
-    let Scratch { fresh: woken, joined, merged, .. } = scratch;
-    woken.clear();
     resting.retain(|contact| {
         let (a, b) = state.bodies_of(contact.shapes);
-        let wakes = a.is_active() || b.is_active() || !is_near(state, joined, contact.shapes);
-        if wakes {
-            woken.push(*contact);
+        let near = is_near(state, joined, contact.shapes);
+        let active = a.is_active() || b.is_active();
+        if !near {
+            ended.push(*contact);
+        } else if active {
+            fresh.push(*contact);
         }
-        !wakes
+        near && !active
     });
     state.resting = resting;
-    merge(&mut state.contacts, woken, merged);
 }
 
 fn is_near(state: &State, joined: &[Pair], (a, b): Pair) -> bool {
@@ -62,54 +63,116 @@ pub(super) fn find_sleepers(state: &State, scratch: &mut Scratch, first_change: 
     broad_phase.pairs(moved, wanted, state.config.pair_limit as usize, pairs);
 }
 
-/// Takes out the contacts whose boxes have parted, and those that nothing moves any more.
-fn drop_parted(state: &mut State, scratch: &mut Scratch) {
-    let mut contacts = core::mem::take(&mut state.contacts);
-    let Scratch { ended, fresh, changes, joined, .. } = scratch;
-    fresh.clear();
-    contacts.retain(|contact| {
-        let (a, b) = contact.shapes;
-        let near = state.shapes.at(a).fat.overlaps(state.shapes.at(b).fat)
-            && (!(changes.everything || changes.rules) || may_touch(state, joined, contact.shapes));
-        let (body_a, body_b) = state.bodies_of(contact.shapes);
-        let active = body_a.is_active() || body_b.is_active();
-        match (near, active) {
-            (false, _) => ended.push(*contact),
-            (true, false) => fresh.push(*contact),
-            (true, true) => {}
-        }
-        near && active
-    });
-    state.contacts = contacts;
-    merge(&mut state.resting, fresh, &mut scratch.merged);
-}
-
-/// Adds a contact for every new pair.
-fn find_new(state: &mut State, scratch: &mut Scratch) {
+/// Lists a contact for every pair that may be new. Says whether any were left out.
+fn find_new(state: &State, scratch: &mut Scratch) -> bool {
     let limit = state.config.pair_limit as usize;
     let Scratch { broad_phase, changes, pairs, joined, fresh, .. } = scratch;
     let everything = changes.everything || state.pairs_left_out;
     let moved = if everything { Moved::All } else { Moved::Slots(&changes.shapes) };
     let wanted = |pair: Pair| {
+        if !everything && changes.has_seen(pair) {
+            return false;
+        }
         let (a, b) = state.bodies_of(pair);
         (a.is_active() || b.is_active()) && may_touch(state, joined, pair)
     };
-    let mut left_out = broad_phase.pairs(moved, wanted, limit, pairs);
-    let mut known = state.contacts.iter().map(|contact| contact.shapes).peekable();
-    fresh.clear();
+    let left_out = broad_phase.pairs(moved, wanted, limit, pairs);
+    let woken = fresh.len();
     for &pair in pairs.iter() {
-        while known.next_if(|&shapes| shapes < pair).is_some() {}
-        if known.peek() != Some(&pair) {
+        if fresh[..woken].binary_search_by_key(&pair, |contact| contact.shapes).is_err() {
             fresh.push(Contact::new(pair));
         }
     }
-    drop(known);
-    merge(&mut state.contacts, fresh, &mut scratch.merged);
+    fresh.sort_unstable_by_key(|contact| contact.shapes);
+    left_out
+}
+
+/// What becomes of a contact.
+enum Fate {
+    Stays,
+    /// Its boxes have parted, or its shapes may not touch any more.
+    Ends,
+    /// Nothing moves its bodies any more.
+    Rests,
+}
+
+fn fate(state: &State, (boxes, changes, joined): (&BroadPhase, &Changes, &[Pair]), (a, b): Pair) -> Fate {
+    let rules = changes.everything || changes.rules;
+    if !(rules || changes.resting || state.pairs_left_out || boxes.has_moved(a) || boxes.has_moved(b)) {
+        return Fate::Stays;
+    }
+    if !boxes.fat(a).overlaps(boxes.fat(b)) || (rules && !may_touch(state, joined, (a, b))) {
+        return Fate::Ends;
+    }
+    let (body_a, body_b) = state.bodies_of((a, b));
+    if body_a.is_active() || body_b.is_active() { Fate::Stays } else { Fate::Rests }
+}
+
+/// Contacts with their hints, while places change.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Merged {
+    pub(super) contacts: Vec<Contact>,
+    hints: Vec<AxisHint>,
+}
+
+impl Merged {
+    fn clear(&mut self) {
+        self.contacts.clear();
+        self.hints.clear();
+    }
+
+    fn push(&mut self, contact: Contact) {
+        self.contacts.push(contact);
+        self.hints.push(AxisHint::default());
+    }
+}
+
+/// Puts the fresh contacts among the others, and takes out those that end or rest. What stays between two such places
+/// is copied in one piece, with its hints.
+fn exchange(state: &mut State, scratch: &mut Scratch) {
+    scratch.hints.resize(state.contacts.len(), AxisHint::default());
+    let Scratch { broad_phase, changes, joined, ended, fresh, merged, parked, hints, .. } = scratch;
+    merged.clear();
+    parked.clear();
+    let contacts = &state.contacts;
+    let mut fresh = fresh.iter().peekable();
+    let mut copied = 0;
+    let mut copy = |merged: &mut Merged, end: usize, next: usize| {
+        merged.contacts.extend_from_slice(&contacts[copied..end]);
+        merged.hints.extend_from_slice(&hints[copied..end]);
+        copied = next;
+    };
+    for (index, contact) in contacts.iter().enumerate() {
+        if fresh.peek().is_some_and(|fresh| fresh.shapes <= contact.shapes) {
+            copy(merged, index, index);
+            while let Some(fresh) = fresh.next_if(|fresh| fresh.shapes < contact.shapes) {
+                merged.push(*fresh);
+            }
+            let _known_already = fresh.next_if(|fresh| fresh.shapes == contact.shapes);
+        }
+        let leaves = match fate(state, (broad_phase, changes, joined), contact.shapes) {
+            Fate::Stays => continue,
+            Fate::Ends => &mut *ended,
+            Fate::Rests => &mut *parked,
+        };
+        leaves.push(*contact);
+        copy(merged, index, index + 1);
+    }
+    copy(merged, contacts.len(), contacts.len());
+    fresh.for_each(|fresh| merged.push(*fresh));
+    core::mem::swap(&mut state.contacts, &mut merged.contacts);
+    core::mem::swap(hints, &mut merged.hints);
+    merge(&mut state.resting, parked, &mut merged.contacts);
+}
+
+/// Ends the contacts that are too many: those in the largest slots.
+fn keep_to_limit(state: &mut State, scratch: &mut Scratch, left_out: bool) {
+    let limit = state.config.pair_limit as usize;
+    state.pairs_left_out = left_out || state.contacts.len() > limit;
     if state.contacts.len() > limit {
         scratch.ended.extend(state.contacts.drain(limit..));
-        left_out = true;
+        scratch.hints.truncate(limit);
     }
-    state.pairs_left_out = left_out;
 }
 
 /// Merges contacts into a list, both sorted by pair and without a pair in common.
@@ -169,22 +232,4 @@ pub(super) fn may_touch(state: &State, joined: &[Pair], (a, b): Pair) -> bool {
 
 fn both_fixed(a: BodyKind, b: BodyKind) -> bool {
     a == BodyKind::Fixed && b == BodyKind::Fixed
-}
-
-/// Hints are found by the place of their contact, which is about to change.
-fn remember_hints(state: &State, scratch: &mut Scratch) {
-    scratch.old_hints.clear();
-    if scratch.hints.len() == state.contacts.len() {
-        let pairs = state.contacts.iter().map(|contact| contact.shapes);
-        scratch.old_hints.extend(pairs.zip(scratch.hints.iter().copied()));
-    }
-}
-
-fn recall_hints(state: &State, scratch: &mut Scratch) {
-    let mut old = scratch.old_hints.iter().peekable();
-    scratch.hints.clear();
-    scratch.hints.extend(state.contacts.iter().map(|contact| {
-        while old.next_if(|(pair, _)| *pair < contact.shapes).is_some() {}
-        old.next_if(|(pair, _)| *pair == contact.shapes).map_or(AxisHint::default(), |(_, hint)| *hint)
-    }));
 }

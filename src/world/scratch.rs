@@ -5,6 +5,7 @@ use alloc::vec::Vec;
 use super::continuous::Swept;
 use super::events::Events;
 use super::islands::{Roster, UnionFind};
+use super::pairs::Merged;
 use super::state::State;
 use super::stats::StepStats;
 use crate::body::{Body, BodyKind, Geometry, Handle, Pose, Shape, ShapeId};
@@ -36,11 +37,11 @@ pub(crate) struct Scratch {
     pub(crate) joined: Vec<Pair>,
     pub(crate) joined_stale: bool,
     pub(crate) fresh: Vec<Contact>,
-    pub(crate) merged: Vec<Contact>,
+    pub(crate) merged: Merged,
+    pub(crate) parked: Vec<Contact>,
     pub(crate) ended: Vec<Contact>,
     /// For each contact, the axis that separated it in the last tick.
     pub(crate) hints: Vec<AxisHint>,
-    pub(crate) old_hints: Vec<(Pair, AxisHint)>,
     /// For each contact, its manifold in the last tick.
     pub(crate) manifolds: Vec<Manifold>,
     pub(crate) touching: Vec<TouchingPair>,
@@ -70,6 +71,9 @@ pub(crate) struct Changes {
     pub(crate) rules: bool,
     /// Slots of shapes with another fat box, or whose body has begun or ceased to be active.
     pub(crate) shapes: Vec<u32>,
+    /// The box of each shape when the pairs were last looked at: of two that overlapped then, nothing is new. Nowhere
+    /// if the shape has another reason to have other pairs.
+    seen: Vec<Aabb>,
 }
 
 impl Changes {
@@ -77,15 +81,35 @@ impl Changes {
         self.everything || self.resting || self.rules || !self.shapes.is_empty()
     }
 
-    pub(crate) fn clear(&mut self) {
-        let Changes { everything, resting, rules, shapes } = self;
-        (*everything, *resting, *rules) = (false, false, false);
-        shapes.clear();
+    /// The pairs have been looked at.
+    pub(crate) fn settle(&mut self, boxes: &BroadPhase, slot_count: usize) {
+        self.seen.resize(slot_count, Aabb::NOWHERE);
+        if self.everything {
+            self.seen.iter_mut().zip(0..).for_each(|(seen, slot)| *seen = boxes.fat(slot));
+        }
+        for &slot in &self.shapes {
+            self.seen[slot as usize] = boxes.fat(slot);
+        }
+        (self.everything, self.resting, self.rules) = (false, false, false);
+        self.shapes.clear();
     }
 
-    /// The shapes of a body have another fat box, or another reason to have other pairs.
+    /// The shapes of a body have another reason to have other pairs than another fat box.
     pub(crate) fn body(&mut self, body: &Body) {
-        self.shapes.extend(body.shapes().iter().map(|id| id.slot()));
+        for id in body.shapes() {
+            self.shapes.push(id.slot());
+            if let Some(seen) = self.seen.get_mut(id.slot() as usize) {
+                *seen = Aabb::NOWHERE;
+            }
+        }
+    }
+
+    /// Whether the boxes of two shapes overlapped already when the pairs were last looked at.
+    pub(crate) fn has_seen(&self, (a, b): Pair) -> bool {
+        match (self.seen.get(a as usize), self.seen.get(b as usize)) {
+            (Some(a), Some(b)) => a.overlaps(*b),
+            _ => false,
+        }
     }
 }
 
@@ -106,10 +130,10 @@ impl Scratch {
             joined: Vec::new(),
             joined_stale: true,
             fresh: Vec::new(),
-            merged: Vec::new(),
+            merged: Merged::default(),
+            parked: Vec::new(),
             ended: Vec::new(),
             hints: Vec::new(),
-            old_hints: Vec::new(),
             manifolds: Vec::new(),
             touching: Vec::new(),
             approaches: Vec::new(),

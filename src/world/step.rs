@@ -86,12 +86,13 @@ fn refit_boxes(state: &mut State, scratch: &mut Scratch) {
             let posed = scratch.poses.at(id.slot());
             let reach = motion.turn_reach(posed, body).saturating_add(config.speculative_distance);
             let needed = posed.bounds.expanded(reach).swept(motion.shift);
-            let fat = &mut shapes.at_mut(id.slot()).fat;
+            let fat = scratch.broad_phase.fat(id.slot());
             // A box that a fast shape has left behind would find pairs for ever, so it shrinks as well.
             let roomy = needed.expanded(config.fat_margin.saturating_mul_int(4));
-            if !fat.contains(needed) || !roomy.contains(*fat) {
-                *fat = needed.expanded(config.fat_margin);
-                scratch.broad_phase.set(id.slot(), *fat);
+            if !fat.contains(needed) || !roomy.contains(fat) {
+                let fat = needed.expanded(config.fat_margin);
+                shapes.at_mut(id.slot()).fat = fat;
+                scratch.broad_phase.set(id.slot(), fat);
                 scratch.changes.shapes.push(id.slot());
                 // The box of a kinematic body that has stopped leaves what it rests on.
                 scratch.changes.resting |= !body.is_active();
@@ -163,10 +164,10 @@ fn cover_shapes(state: &mut State, scratch: &mut Scratch, slot: u32) {
     let State { bodies, shapes, config, .. } = state;
     for id in bodies.at(slot).shapes() {
         let bounds = scratch.poses.at(id.slot()).bounds;
-        let fat = &mut shapes.at_mut(id.slot()).fat;
-        if !fat.contains(bounds) {
-            *fat = bounds.expanded(config.fat_margin);
-            scratch.broad_phase.set(id.slot(), *fat);
+        if !scratch.broad_phase.fat(id.slot()).contains(bounds) {
+            let fat = bounds.expanded(config.fat_margin);
+            shapes.at_mut(id.slot()).fat = fat;
+            scratch.broad_phase.set(id.slot(), fat);
             scratch.changes.shapes.push(id.slot());
         }
     }
