@@ -94,6 +94,17 @@ impl BroadPhase {
         }
     }
 
+    /// Moves the boxes of many slots.
+    pub(crate) fn set_many(&mut self, boxes: &[(u32, Aabb)]) {
+        boxes.iter().for_each(|&(slot, fat)| self.remember(slot, fat));
+        let boxes = boxes.iter().copied();
+        match &mut self.structure {
+            Structure::Tree(tree) => tree.set_many(boxes),
+            Structure::SweepAndPrune(sweep) => boxes.for_each(|(slot, fat)| sweep.set(slot, fat)),
+            Structure::BruteForce(list) => boxes.for_each(|(slot, fat)| list.set(slot, fat)),
+        }
+    }
+
     /// Removes the box of a slot, if there is one.
     pub(crate) fn remove(&mut self, slot: u32) {
         if let Some(fat) = self.boxes.get_mut(slot as usize) {

@@ -14,6 +14,7 @@ use core::ops::ControlFlow;
 use super::broad_phase::Pair;
 use super::search::{Overlap, Search};
 use crate::math::Aabb;
+use rebuild::Rebuilt;
 
 mod rebuild;
 #[cfg(test)]
@@ -41,6 +42,11 @@ pub(crate) struct Tree {
     len: u32,
     /// Pairs of nodes that are still to be compared.
     stack: Vec<Pair>,
+    /// Whether every node is in use and stored before its children.
+    ordered: bool,
+    /// How many leaves have been moved out of their neighbourhood, and left where they are, since the last rebuild.
+    strays: u32,
+    rebuilt: Rebuilt,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -55,7 +61,17 @@ struct Node {
 
 impl Default for Tree {
     fn default() -> Self {
-        Tree { nodes: Vec::new(), root: NONE, vacant: NONE, leaves: Vec::new(), len: 0, stack: Vec::new() }
+        Tree {
+            nodes: Vec::new(),
+            root: NONE,
+            vacant: NONE,
+            leaves: Vec::new(),
+            len: 0,
+            stack: Vec::new(),
+            ordered: false,
+            strays: 0,
+            rebuilt: Rebuilt::default(),
+        }
     }
 }
 
@@ -68,9 +84,11 @@ impl Tree {
     pub(crate) fn set(&mut self, slot: u32, fat: Aabb) {
         match self.leaf_of(slot) {
             Some(leaf) if self.at(leaf).aabb == fat => {}
-            Some(leaf) if self.stays_near(leaf, fat) => {
-                self.at_mut(leaf).aabb = fat;
-                self.repair(self.at(leaf).parent);
+            Some(leaf) if self.stays_near(leaf, fat) => self.enlarge(leaf, fat),
+            // A few may stay where they do not belong: the tree keeps its order for the next refit.
+            Some(leaf) if self.strays < self.len / 64 => {
+                self.strays += 1;
+                self.enlarge(leaf, fat);
             }
             Some(leaf) => {
                 self.unlink(leaf);
@@ -155,8 +173,20 @@ impl Tree {
         ControlFlow::Continue(())
     }
 
+    /// Gives a leaf another box where it is. Boxes around it only grow: they shrink in the next refit or rebuild.
+    fn enlarge(&mut self, leaf: u32, fat: Aabb) {
+        self.at_mut(leaf).aabb = fat;
+        let mut at = self.at(leaf).parent;
+        while at != NONE && !self.at(at).aabb.contains(fat) {
+            let node = self.at_mut(at);
+            node.aabb = node.aabb.union(fat);
+            at = node.parent;
+        }
+    }
+
     /// Puts a leaf into the tree.
     fn link(&mut self, leaf: u32) {
+        self.ordered = false;
         if self.root == NONE {
             self.root = leaf;
             return;
@@ -172,6 +202,7 @@ impl Tree {
 
     /// Takes a leaf out of the tree: its sibling moves up.
     fn unlink(&mut self, leaf: u32) {
+        self.ordered = false;
         let parent = self.at(leaf).parent;
         if parent == NONE {
             self.root = NONE;

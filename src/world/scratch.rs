@@ -32,6 +32,8 @@ pub(crate) struct Scratch {
     pub(crate) starts: Vec<Pose>,
     /// The fast bodies of the tick.
     pub(crate) swept: Vec<Swept>,
+    /// The boxes that a tick begins with, where they are others.
+    pub(crate) refitted: Vec<(u32, Aabb)>,
     pub(crate) pairs: Vec<Pair>,
     /// Pairs of body slots whose joint keeps them from colliding, sorted; and whether joints have changed since.
     pub(crate) joined: Vec<Pair>,
@@ -126,6 +128,7 @@ impl Scratch {
             union: UnionFind::default(),
             starts: Vec::new(),
             swept: Vec::new(),
+            refitted: Vec::new(),
             pairs: Vec::new(),
             joined: Vec::new(),
             joined_stale: true,

@@ -79,26 +79,29 @@ impl World {
 /// Gives every shape that may leave its fat box within the tick a new one.
 fn refit_boxes(state: &mut State, scratch: &mut Scratch) {
     let State { bodies, shapes, config, .. } = state;
-    for &slot in &scratch.roster.bodies {
+    let Scratch { roster, poses, broad_phase, changes, refitted, .. } = scratch;
+    refitted.clear();
+    for &slot in &roster.bodies {
         let body = bodies.at(slot);
         let motion = Motion::of(body, config.tick_rate);
         for &id in body.shapes() {
-            let posed = scratch.poses.at(id.slot());
+            let posed = poses.at(id.slot());
             let reach = motion.turn_reach(posed, body).saturating_add(config.speculative_distance);
             let needed = posed.bounds.expanded(reach).swept(motion.shift);
-            let fat = scratch.broad_phase.fat(id.slot());
+            let fat = broad_phase.fat(id.slot());
             // A box that a fast shape has left behind would find pairs for ever, so it shrinks as well.
             let roomy = needed.expanded(config.fat_margin.saturating_mul_int(4));
             if !fat.contains(needed) || !roomy.contains(fat) {
                 let fat = needed.expanded(config.fat_margin);
                 shapes.at_mut(id.slot()).fat = fat;
-                scratch.broad_phase.set(id.slot(), fat);
-                scratch.changes.shapes.push(id.slot());
+                refitted.push((id.slot(), fat));
+                changes.shapes.push(id.slot());
                 // The box of a kinematic body that has stopped leaves what it rests on.
-                scratch.changes.resting |= !body.is_active();
+                changes.resting |= !body.is_active();
             }
         }
     }
+    broad_phase.set_many(refitted);
 }
 
 /// Moves the bodies to where the solver has brought them, or fast ones as far as nothing stops them.
