@@ -5,6 +5,7 @@ use alloc::vec::Vec;
 use serde::{Deserialize, Serialize};
 
 use super::World;
+use super::config::Config;
 use super::islands;
 use super::state::{Island, State};
 use super::stress;
@@ -13,7 +14,7 @@ use crate::body::{
     SHAPES_PER_BODY_MAX, Shape, ShapeDef, ShapeId, WORLD_EXTENT_MAX, WorldError, check_position,
 };
 use crate::collision::{Contact, PosedShape};
-use crate::math::{Angle, Fx, Vec2, fx_mul};
+use crate::math::{Aabb, Angle, Fx, Vec2, fx_mul};
 use crate::solver::{Joint, JointDef};
 
 /// Where to put a body.
@@ -251,7 +252,7 @@ impl World {
     /// Adds a shape that has been checked. It has to be posed afterwards.
     fn insert_shape(&mut self, body: BodyId, def: &ShapeDef) -> ShapeId {
         let owner = self.state.bodies.at_mut(body.slot());
-        let fat = fat_box(def, owner, self.state.config.fat_margin);
+        let fat = fat_box(def, owner, &self.state.config);
         let id = self.state.shapes.insert(Shape { body, def: *def, fat });
         owner.shapes.push(id);
         id
@@ -262,7 +263,7 @@ impl World {
         let body = self.state.bodies.at(slot);
         for shape in &body.shapes {
             let shape = self.state.shapes.at_mut(shape.slot());
-            shape.fat = fat_box(&shape.def, body, self.state.config.fat_margin);
+            shape.fat = fat_box(&shape.def, body, &self.state.config);
         }
         self.placed(slot);
         self.scratch.changes.resting = true;
@@ -336,8 +337,13 @@ pub(super) fn mass_of<'a>(
     Ok(if settings.locks.rotation { mass.without_rotation() } else { mass })
 }
 
-pub(super) fn fat_box(shape: &ShapeDef, body: &Body, margin: Fx) -> crate::math::Aabb {
-    PosedShape::new(shape, body, body.rotation()).bounds.expanded(margin)
+/// The fat box of a shape that has come or been moved by hand. One of a fixed body has no margin: nothing moves it.
+pub(super) fn fat_box(shape: &ShapeDef, body: &Body, config: &Config) -> Aabb {
+    let bounds = PosedShape::new(shape, body, body.rotation()).bounds;
+    match body.kind() {
+        BodyKind::Fixed => bounds,
+        BodyKind::Kinematic | BodyKind::Dynamic => bounds.expanded(config.margin_of(bounds)),
+    }
 }
 
 fn check_shapes_of_body(count: usize) -> Result<(), WorldError> {

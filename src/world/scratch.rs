@@ -12,6 +12,7 @@ use crate::body::{Body, BodyKind, Geometry, Handle, Pose, Shape, ShapeId};
 use crate::collision::{
     AxisHint, BroadPhase, BroadPhaseKind, Contact, Manifold, Pair, PosedShape, SatCounters,
 };
+use crate::fx;
 use crate::math::{Aabb, Fx};
 use crate::solver::{Solver, TouchingPair};
 
@@ -193,34 +194,35 @@ pub(crate) struct Poses {
     extents: Vec<Extents>,
 }
 
-/// What decides how far a body may move before it might pass through something. Turning does not change it.
+/// How large the shapes of a body are about its centre of mass, in metres. Turning does not change it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Extents {
-    /// The radius of a disc inside the thinnest of its solid shapes, in metres; the largest number if there are none.
+    /// The radius of a disc inside the thinnest of its solid shapes; the largest number if there are none.
     pub(crate) core: Fx,
-    /// From the centre of mass to the farthest point of a solid shape, at most, in metres. That of a disc is not
-    /// farther than its centre, about which nothing is seen of its turning.
+    /// No point of a shape is farther than this, but for those of discs, which are where they were when they turn.
     pub(crate) reach: Fx,
+    /// No point of a shape is farther than this.
+    pub(crate) radius: Fx,
 }
 
 impl Extents {
-    const NONE: Self = Extents { core: Fx::MAX, reach: Fx::ZERO };
+    const NONE: Self = Extents { core: Fx::MAX, reach: Fx::ZERO, radius: Fx::ZERO };
 
     fn of(state: &State, body: &Body) -> Self {
-        let solid =
-            body.shapes().iter().map(|id| state.shapes.at(id.slot())).filter(|shape| !shape.is_sensor());
-        solid.fold(Self::NONE, |extents, shape| {
-            let arm = (shape.offset() - body.local_centre_of_mass()).length();
-            let size = match shape.geometry() {
-                Geometry::Circle { .. } => Fx::ZERO,
-                geometry => {
-                    let Aabb { lower, upper } = geometry.local_bounds();
-                    (-lower).max(upper).length()
-                }
+        let shapes = body.shapes().iter().map(|id| state.shapes.at(id.slot()));
+        shapes.fold(Self::NONE, |extents, shape| {
+            // Posed vertices are rounded.
+            let arm = (shape.offset() - body.local_centre_of_mass()).length().saturating_add(fx!(0.00001));
+            let Aabb { lower, upper } = shape.geometry().local_bounds();
+            let (size, turning) = match shape.geometry() {
+                Geometry::Circle { radius } => (*radius, Fx::ZERO),
+                _ => [(-lower).max(upper).length(); 2].into(),
             };
+            let core = if shape.is_sensor() { Fx::MAX } else { PosedShape::inner_radius(shape.geometry()) };
             Extents {
-                core: extents.core.min(PosedShape::inner_radius(shape.geometry())),
-                reach: extents.reach.max(arm.saturating_add(size)),
+                core: extents.core.min(core),
+                reach: extents.reach.max(arm.saturating_add(turning)),
+                radius: extents.radius.max(arm.saturating_add(size)),
             }
         })
     }

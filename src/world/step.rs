@@ -5,15 +5,16 @@ use super::contacts;
 use super::continuous;
 use super::events::MoveEvent;
 use super::islands;
-use super::look_ahead::Motion;
 use super::pairs;
-use super::scratch::Scratch;
+use super::scratch::{Extents, Scratch};
 use super::state::State;
 use super::stats::{Phase, StepStats};
 use super::stress;
-use crate::body::{BodyKind, Handle, Pose, WORLD_EXTENT_MAX};
-use crate::math::{Angle, Fx, Vec2};
+use crate::body::{Body, BodyKind, Handle, Pose, WORLD_EXTENT_MAX};
+use crate::math::{Aabb, Angle, Fx, Reciprocal, Speed, Vec2, fx_mul, widen};
 use crate::solver::{SolverBody, Tuning, turn_of};
+use fixed::FixedI32;
+use fixed::types::extra::{U16, U24};
 
 impl World {
     /// Advances the world by one tick of `1 / tick_rate` seconds.
@@ -80,19 +81,20 @@ impl World {
 fn refit_boxes(state: &mut State, scratch: &mut Scratch) {
     let State { bodies, shapes, config, .. } = state;
     let Scratch { roster, poses, broad_phase, changes, refitted, .. } = scratch;
+    let per_second = Reciprocal::of_integer(config.tick_rate);
     refitted.clear();
     for &slot in &roster.bodies {
         let body = bodies.at(slot);
-        let motion = Motion::of(body, config.tick_rate);
+        let way = Way::of(body, poses.extents(slot), per_second);
         for &id in body.shapes() {
-            let posed = poses.at(id.slot());
-            let reach = motion.turn_reach(posed, body).saturating_add(config.speculative_distance);
-            let needed = posed.bounds.expanded(reach).swept(motion.shift);
+            let bounds = poses.at(id.slot()).bounds;
+            let needed = way.around(bounds).expanded(config.speculative_distance);
+            let margin = config.margin_of(bounds);
             let fat = broad_phase.fat(id.slot());
             // A box that a fast shape has left behind would find pairs for ever, so it shrinks as well.
-            let roomy = needed.expanded(config.fat_margin.saturating_mul_int(4));
+            let roomy = needed.expanded(margin.saturating_mul_int(4));
             if !fat.contains(needed) || !roomy.contains(fat) {
-                let fat = needed.expanded(config.fat_margin);
+                let fat = needed.expanded(margin);
                 shapes.at_mut(id.slot()).fat = fat;
                 refitted.push((id.slot(), fat));
                 changes.shapes.push(id.slot());
@@ -102,6 +104,35 @@ fn refit_boxes(state: &mut State, scratch: &mut Scratch) {
         }
     }
     broad_phase.set_many(refitted);
+}
+
+/// Where a body may get within a tick at its present velocity.
+struct Way {
+    shift: Vec2<Fx>,
+    /// How far its points move at most because it turns, in metres.
+    turned: Fx,
+    /// All that its shapes may cover where it is now, however it is turned.
+    disc: Aabb,
+}
+
+impl Way {
+    fn of(body: &Body, extents: Extents, per_second: Reciprocal) -> Self {
+        // Up to 102 m, and up to 128 rad: a slow tick may be a tenth of a second.
+        let step = |v: Speed| widen::<U24>(per_second.times(v));
+        let omega: FixedI32<U16> = body.mass.inverse_gyration.times(body.spin);
+        let angle = widen::<U24>(per_second.times(omega)).saturating_abs();
+        Way {
+            shift: Vec2::new(step(body.velocity.x), step(body.velocity.y)),
+            turned: fx_mul(angle, extents.reach),
+            disc: Aabb::new(body.centre, body.centre).expanded(extents.radius),
+        }
+    }
+
+    /// A box around a shape on its way.
+    fn around(&self, bounds: Aabb) -> Aabb {
+        let grown = bounds.expanded(self.turned);
+        Aabb::new(grown.lower.max(self.disc.lower), grown.upper.min(self.disc.upper)).swept(self.shift)
+    }
 }
 
 /// Moves the bodies to where the solver has brought them, or fast ones as far as nothing stops them.
@@ -168,7 +199,7 @@ fn cover_shapes(state: &mut State, scratch: &mut Scratch, slot: u32) {
     for id in bodies.at(slot).shapes() {
         let bounds = scratch.poses.at(id.slot()).bounds;
         if !scratch.broad_phase.fat(id.slot()).contains(bounds) {
-            let fat = bounds.expanded(config.fat_margin);
+            let fat = bounds.expanded(config.margin_of(bounds));
             shapes.at_mut(id.slot()).fat = fat;
             scratch.broad_phase.set(id.slot(), fat);
             scratch.changes.shapes.push(id.slot());
