@@ -121,20 +121,34 @@ impl Tree {
         if self.root != NONE {
             stack.push((self.root, self.root));
         }
+        let mut meet = |a: u32, b: u32, stack: &mut Vec<Pair>| {
+            let (node_a, node_b) = (self.at(a), self.at(b));
+            if node_a.aabb.overlaps(node_b.aabb) {
+                if node_a.is_leaf() && node_b.is_leaf() {
+                    let (a, b) = (node_a.children[0], node_b.children[0]);
+                    found((a.min(b), a.max(b)));
+                } else {
+                    stack.push((a, b));
+                }
+            }
+        };
         while let Some((a, b)) = stack.pop() {
             let (node_a, node_b) = (self.at(a), self.at(b));
             let ([a0, a1], [b0, b1]) = (node_a.children, node_b.children);
-            if a == b {
-                if !node_a.is_leaf() {
-                    stack.extend([(a0, a0), (a1, a1), (a0, a1)]);
+            match (node_a.is_leaf(), node_b.is_leaf()) {
+                _ if a == b => {
+                    if !node_a.is_leaf() {
+                        stack.extend([(a0, a0), (a1, a1)]);
+                        meet(a0, a1, &mut stack);
+                    }
                 }
-            } else if node_a.aabb.overlaps(node_b.aabb) {
-                match (node_a.is_leaf(), node_b.is_leaf()) {
-                    (true, true) => found((a0.min(b0), a0.max(b0))),
-                    (false, false) => stack.extend([(a0, b0), (a0, b1), (a1, b0), (a1, b1)]),
-                    (true, false) => stack.extend([(a, b0), (a, b1)]),
-                    (false, true) => stack.extend([(a0, b), (a1, b)]),
+                (false, false) => {
+                    for (a, b) in [(a0, b0), (a0, b1), (a1, b0), (a1, b1)] {
+                        meet(a, b, &mut stack);
+                    }
                 }
+                (true, _) => [b0, b1].into_iter().for_each(|b| meet(a, b, &mut stack)),
+                (false, true) => [a0, a1].into_iter().for_each(|a| meet(a, b, &mut stack)),
             }
         }
         self.stack = stack;

@@ -98,11 +98,16 @@ enum Fate {
 
 fn fate(state: &State, (boxes, changes, joined): (&BroadPhase, &Changes, &[Pair]), (a, b): Pair) -> Fate {
     let rules = changes.everything || changes.rules;
-    if !(rules || changes.resting || state.pairs_left_out || boxes.has_moved(a) || boxes.has_moved(b)) {
+    let anywhere = rules || changes.resting || state.pairs_left_out;
+    if !(anywhere || boxes.has_moved(a) || boxes.has_moved(b)) {
         return Fate::Stays;
     }
     if !boxes.fat(a).overlaps(boxes.fat(b)) || (rules && !may_touch(state, joined, (a, b))) {
         return Fate::Ends;
+    }
+    if !(anywhere || changes.is_new(a) || changes.is_new(b)) {
+        // Only a box is another one.
+        return Fate::Stays;
     }
     let (body_a, body_b) = state.bodies_of((a, b));
     if body_a.is_active() || body_b.is_active() { Fate::Stays } else { Fate::Rests }

@@ -107,6 +107,11 @@ impl Changes {
         }
     }
 
+    /// Whether a shape has another reason to have other pairs than another fat box.
+    pub(crate) fn is_new(&self, slot: u32) -> bool {
+        self.seen.get(slot as usize).is_none_or(|seen| *seen == Aabb::NOWHERE)
+    }
+
     /// Whether the boxes of two shapes overlapped already when the pairs were last looked at.
     pub(crate) fn has_seen(&self, (a, b): Pair) -> bool {
         match (self.seen.get(a as usize), self.seen.get(b as usize)) {
