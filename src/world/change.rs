@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::World;
 use super::config::Config;
 use super::islands;
-use super::state::{Island, State};
+use super::state::Island;
 use super::stress;
 use crate::body::{
     Body, BodyDef, BodyId, BodyKind, BodySettings, Handle, JointId, MassProperties, MassSource, REACH_MAX,
@@ -95,12 +95,7 @@ impl World {
     pub fn despawn(&mut self, id: BodyId) -> Result<(), WorldError> {
         let body = self.state.bodies.get(id).ok_or(WorldError::StaleBody(id))?;
         let shapes = body.shapes.clone();
-        let joined = |(joint_id, joint): (JointId, &Joint)| {
-            let (a, b) = joint.def().bodies();
-            (a == id || b == id).then_some(joint_id)
-        };
-        let joints: Vec<JointId> = self.state.joints.iter().filter_map(joined).collect();
-        for joint in joints {
+        for joint in self.scratch.links.of(&self.state, id) {
             self.remove_joint(joint)?;
         }
         islands::disturb(&mut self.state, &mut self.scratch, id.slot());
@@ -176,6 +171,7 @@ impl World {
     fn insert_joint(&mut self, def: JointDef) -> JointId {
         let (a, b) = def.bodies();
         let id = self.state.joints.insert(Joint::new(def));
+        self.scratch.links.add(id, (a, b));
         self.rejoined([a, b]);
         id
     }
@@ -221,6 +217,7 @@ impl World {
     pub fn remove_joint(&mut self, id: JointId) -> Result<(), WorldError> {
         let joint = self.state.joints.remove(id).ok_or(WorldError::StaleJoint(id))?;
         let (a, b) = joint.def.bodies();
+        self.scratch.links.remove(id, (a, b));
         self.rejoined([a, b]);
         Ok(())
     }
@@ -299,14 +296,25 @@ impl World {
             let (a, b) = contact.shapes;
             slots.binary_search(&a).is_ok() || slots.binary_search(&b).is_ok()
         };
-        let State { contacts, resting, .. } = &self.state;
-        let touching = contacts.iter().chain(resting).filter(|contact| contact.touching && ends(contact));
-        let removed: Vec<_> = touching.filter_map(|contact| self.state.reported(contact)).collect();
-        self.state.removed_contacts.extend(removed);
-        // Manifolds and hints are found by the contact's place, which moves.
-        self.state.contacts.retain(|contact| !ends(contact));
-        self.state.resting.retain(|contact| !ends(contact));
-        self.scratch.forget_contacts();
+        let mut contacts = core::mem::take(&mut self.state.contacts);
+        let mut resting = core::mem::take(&mut self.state.resting);
+        let mut removed = core::mem::take(&mut self.state.removed_contacts);
+        let before = contacts.len();
+        for list in [&mut contacts, &mut resting] {
+            list.retain(|contact| {
+                let ends = ends(contact);
+                if ends && contact.touching {
+                    removed.extend(self.state.reported(contact));
+                }
+                !ends
+            });
+        }
+        if contacts.len() < before {
+            // Manifolds and hints are found by the contact's place, which has moved.
+            self.scratch.forget_contacts();
+        }
+        (self.state.contacts, self.state.resting) = (contacts, resting);
+        self.state.removed_contacts = removed;
     }
 }
 

@@ -5,6 +5,7 @@ use alloc::vec::Vec;
 use super::continuous::Swept;
 use super::events::Events;
 use super::islands::{Roster, UnionFind};
+use super::joint_links::JointLinks;
 use super::pairs::Merged;
 use super::state::State;
 use super::stats::StepStats;
@@ -26,6 +27,7 @@ pub(crate) struct Scratch {
     /// What has changed since the last look at the pairs.
     pub(crate) changes: Changes,
     pub(crate) roster: Roster,
+    pub(crate) links: JointLinks,
     /// Whether there may be kinematic bodies.
     pub(crate) kinematic: bool,
     pub(crate) union: UnionFind,
@@ -130,6 +132,7 @@ impl Scratch {
             poses: Poses::default(),
             changes: Changes { everything: true, ..Changes::default() },
             roster: Roster::default(),
+            links: JointLinks::new(state),
             kinematic: state.bodies.iter().any(|(_, body)| body.kind() == BodyKind::Kinematic),
             union: UnionFind::default(),
             starts: Vec::new(),
