@@ -228,14 +228,10 @@ impl MovedSet {
             self.marks[slot as usize] = false;
         }
         self.slots.clear();
-        self.slots.extend(slots);
-        self.slots.sort_unstable();
-        self.slots.dedup();
-        let end = self.slots.last().map_or(0, |&last| last as usize + 1);
+        let end = slots.iter().max().map_or(0, |&last| last as usize + 1);
         self.marks.resize(end.max(self.marks.len()), false);
-        for &slot in &self.slots {
-            self.marks[slot as usize] = true;
-        }
+        let MovedSet { slots: list, marks } = self;
+        list.extend(slots.iter().filter(|&&slot| !core::mem::replace(&mut marks[slot as usize], true)));
     }
 
     fn has(&self, slot: u32) -> bool {

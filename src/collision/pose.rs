@@ -117,8 +117,7 @@ impl Hull {
 
     fn bounds(&self) -> Aabb {
         let first = self.vertices[0];
-        let (lower, upper) = self
-            .vertices()
+        let (lower, upper) = self.vertices()[1..]
             .iter()
             .fold((first, first), |(lower, upper), &vertex| (lower.min(vertex), upper.max(vertex)));
         Aabb::new(lower.widen(), upper.widen()).expanded(self.radius.into())

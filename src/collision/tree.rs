@@ -86,7 +86,7 @@ impl Tree {
             Some(leaf) if self.at(leaf).aabb == fat => {}
             Some(leaf) if self.stays_near(leaf, fat) => self.enlarge(leaf, fat),
             // A few may stay where they do not belong: the tree keeps its order for the next refit.
-            Some(leaf) if self.strays < self.len / 64 => {
+            Some(leaf) if self.strays < self.len / 8 => {
                 self.strays += 1;
                 self.enlarge(leaf, fat);
             }

@@ -13,7 +13,7 @@ use super::step::move_body;
 use crate::body::{Body, BodyKind, Continuous, Handle, Pose, WORLD_EXTENT_MAX};
 use crate::collision::{Core, Sweep, TimeOfImpact, time_of_impact};
 use crate::fx;
-use crate::math::{Angle, Fx, Rot, Vec2, fx_mul};
+use crate::math::{Aabb, Angle, Fx, Rot, Vec2, fx_mul};
 
 /// A body that has not been moved yet, because it may have moved too far.
 #[derive(Clone, Copy, Debug)]
@@ -21,6 +21,13 @@ pub(crate) struct Swept {
     slot: u32,
     sweep: Sweep,
     end: Pose,
+}
+
+impl Swept {
+    /// Whether it is swept against what moves as well, and so after that has been moved.
+    pub(super) fn is_bullet(&self, state: &State) -> bool {
+        is_bullet(state.bodies.at(self.slot))
+    }
 }
 
 /// A body that moves less than this in a tick, in metres, is not swept however thin it is.
@@ -37,25 +44,20 @@ pub(super) fn sweep_of(state: &State, scratch: &Scratch, slot: u32, end: Pose, t
     let limit = SWEPT_MIN.max(extents.core / 2);
     let shift = end.centre - body.centre;
     let turned = fx_mul(Angle::turns_to_radians(turn).saturating_abs(), extents.reach);
-    // Most bodies are slow enough to tell without a root.
-    let at_most = shift.x.saturating_abs().saturating_add(shift.y.saturating_abs()).saturating_add(turned);
-    let fast = at_most > limit && shift.length().saturating_add(turned) > limit;
+    // Most bodies are slow or fast enough to tell without a root.
+    let (x, y) = (shift.x.saturating_abs(), shift.y.saturating_abs());
+    let fast = x.max(y).saturating_add(turned) > limit
+        || (x.saturating_add(y).saturating_add(turned) > limit
+            && shift.length().saturating_add(turned) > limit);
     fast.then_some(Swept { slot, sweep: Sweep { start: body.centre, end: end.centre, turn }, end })
 }
 
-/// Moves fast bodies as far as they can go: first those that only fixed bodies stop, then the bullets, in slot
-/// order. Everything else is where it will be.
-pub(super) fn sweep(state: &mut State, scratch: &mut Scratch, swept: &[Swept]) {
-    for bullets in [false, true] {
-        for swept in swept {
-            if is_bullet(state.bodies.at(swept.slot)) == bullets {
-                let impact = first_impact(state, scratch, swept);
-                let pose = impact.map_or(swept.end, |impact| pose_after(state, scratch, swept, impact));
-                scratch.stats.impacts += u32::from(impact.is_some());
-                move_body(state, scratch, swept.slot, pose);
-            }
-        }
-    }
+/// Moves a fast body as far as it can go.
+pub(super) fn sweep(state: &mut State, scratch: &mut Scratch, swept: &Swept) {
+    let impact = first_impact(state, scratch, swept);
+    let pose = impact.map_or(swept.end, |impact| pose_after(state, scratch, swept, impact));
+    scratch.stats.impacts += u32::from(impact.is_some());
+    move_body(state, scratch, swept.slot, pose);
 }
 
 /// What stops a body, and at which fraction of the tick. Of two at the same time, the one in the smaller slot.
@@ -83,6 +85,8 @@ fn pose_after(state: &State, scratch: &Scratch, swept: &Swept, impact: Impact) -
 /// What first stops a body on its way.
 fn first_impact(state: &State, scratch: &Scratch, swept: &Swept) -> Option<Impact> {
     let body = state.bodies.at(swept.slot);
+    // All that its shapes cover where it starts, however it is turned.
+    let disc = Aabb::new(body.centre, body.centre).expanded(scratch.poses.extents(swept.slot).radius);
     let mut first: Option<Impact> = None;
     for id in body.shapes() {
         if state.shapes.at(id.slot()).is_sensor() {
@@ -91,8 +95,8 @@ fn first_impact(state: &State, scratch: &Scratch, swept: &Swept) -> Option<Impac
         let posed = scratch.poses.at(id.slot());
         // Found when the first obstacle is: most fast bodies are far from any.
         let mut known = None;
-        let reach = if swept.sweep.turn == 0 { Fx::ZERO } else { posed.bounds.extents().length() };
-        let area = posed.bounds.expanded(reach).swept(swept.sweep.end - swept.sweep.start);
+        let start = if swept.sweep.turn == 0 { posed.bounds } else { disc };
+        let area = start.swept(swept.sweep.end - swept.sweep.start);
         let obstacles = if is_bullet(body) { &scratch.broad_phase } else { &scratch.fixed };
         obstacles.each_overlap(area, |other| {
             let obstacle = state.body_of(other);

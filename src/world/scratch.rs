@@ -33,8 +33,8 @@ pub(crate) struct Scratch {
     pub(crate) union: UnionFind,
     /// Where the bodies of the roster were at the start of the tick.
     pub(crate) starts: Vec<Pose>,
-    /// The fast bodies of the tick.
-    pub(crate) swept: Vec<Swept>,
+    /// The fast bullets of the tick.
+    pub(crate) bullets: Vec<Swept>,
     /// The boxes that a tick begins with, where they are others.
     pub(crate) refitted: Vec<(u32, Aabb)>,
     pub(crate) pairs: Vec<Pair>,
@@ -136,7 +136,7 @@ impl Scratch {
             kinematic: state.bodies.iter().any(|(_, body)| body.kind() == BodyKind::Kinematic),
             union: UnionFind::default(),
             starts: Vec::new(),
-            swept: Vec::new(),
+            bullets: Vec::new(),
             refitted: Vec::new(),
             pairs: Vec::new(),
             joined: Vec::new(),

@@ -138,23 +138,27 @@ impl Way {
 /// Moves the bodies to where the solver has brought them, or fast ones as far as nothing stops them.
 fn finalise_poses(state: &mut State, scratch: &mut Scratch) {
     let roster = core::mem::take(&mut scratch.roster.bodies);
-    let mut swept = core::mem::take(&mut scratch.swept);
-    swept.clear();
+    let mut bullets = core::mem::take(&mut scratch.bullets);
+    bullets.clear();
     scratch.stats.impacts = 0;
-    let pose_of =
-        |&slot: &u32| Pose { centre: state.bodies.at(slot).centre, angle: state.bodies.at(slot).angle };
     scratch.starts.clear();
-    scratch.starts.extend(roster.iter().map(pose_of));
     for &slot in &roster {
+        let body = state.bodies.at(slot);
+        scratch.starts.push(Pose { centre: body.centre, angle: body.angle });
         let (pose, turn) = finalise_body(state, scratch, slot);
         match continuous::sweep_of(state, scratch, slot, pose, turn) {
-            Some(fast) => swept.push(fast),
             None => move_body(state, scratch, slot, pose),
+            Some(fast) if fast.is_bullet(state) => bullets.push(fast),
+            // Stopped by fixed bodies alone, which are where they were: it need not wait for the others.
+            Some(fast) => continuous::sweep(state, scratch, &fast),
         }
     }
     scratch.roster.bodies = roster;
-    continuous::sweep(state, scratch, &swept);
-    scratch.swept = swept;
+    // In slot order, while everything else is where it will be.
+    for bullet in &bullets {
+        continuous::sweep(state, scratch, bullet);
+    }
+    scratch.bullets = bullets;
 }
 
 /// Takes over what the solver has found out about a body. Returns where it goes, and how far it turns in units of

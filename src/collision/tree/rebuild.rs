@@ -54,7 +54,7 @@ impl Tree {
 
     /// Moves the boxes of many slots, which have one.
     pub(crate) fn set_many(&mut self, boxes: impl ExactSizeIterator<Item = (u32, Aabb)>) {
-        if boxes.len() < self.len() / 16 {
+        if boxes.len() + (self.strays as usize) < self.len() / 16 {
             boxes.for_each(|(slot, fat)| self.set(slot, fat));
             return;
         }
