@@ -7,6 +7,9 @@
 //! Neither bounds the height, and boxes inside of each other would make a chain. So heights of siblings differ by at
 //! most [`IMBALANCE_MAX`]: a relaxed AVL tree (G. Adelson-Velsky, E. Landis, 1962), in which an insertion or a removal
 //! changes heights by one and one exchange on each level repairs it.
+//!
+//! Boxes that move a little only make those around them grow, and many at once are fitted again from the leaves up, or
+//! the whole tree is built anew: see `rebuild.rs`.
 
 use alloc::vec::Vec;
 use core::ops::ControlFlow;

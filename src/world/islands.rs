@@ -147,8 +147,10 @@ pub(super) fn fall_asleep(state: &mut State, scratch: &mut Scratch) {
         return;
     }
     let limit = state.config.ticks_to_sleep();
-    keep_awake_on_moving_ground(state, scratch);
-    keep_awake_on_moving_anchors(state, scratch);
+    if scratch.kinematic {
+        keep_awake_on_moving_ground(state, scratch);
+        keep_awake_on_moving_anchors(state, scratch);
+    }
     let mut any_sleepy = false;
     for &slot in &scratch.roster.bodies {
         let body = state.bodies.at_mut(slot);
