@@ -95,6 +95,10 @@ impl Body {
     /// Its origin in the world, in metres.
     #[must_use]
     pub fn position(&self) -> Vec2<Fx> {
+        // Most bodies have their centre of mass at their origin: no need for a sine.
+        if self.mass.centre == Vec2::ZERO {
+            return self.centre;
+        }
         self.centre - self.rotation().apply_wide(self.mass.centre)
     }
 

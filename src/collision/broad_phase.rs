@@ -42,6 +42,8 @@ pub(crate) enum Moved<'a> {
 #[derive(Clone, Debug)]
 pub(crate) struct BroadPhase {
     structure: Structure,
+    /// By slot: what a tick looks up again and again, close together.
+    boxes: Vec<Aabb>,
     moved: MovedSet,
 }
 
@@ -59,7 +61,7 @@ impl BroadPhase {
             BroadPhaseKind::SweepAndPrune => Structure::SweepAndPrune(SweepAndPrune::default()),
             BroadPhaseKind::BruteForce => Structure::BruteForce(BoxList::default()),
         };
-        BroadPhase { structure, moved: MovedSet::default() }
+        BroadPhase { structure, boxes: Vec::new(), moved: MovedSet::default() }
     }
 
     pub(crate) fn kind(&self) -> BroadPhaseKind {
@@ -70,8 +72,21 @@ impl BroadPhase {
         }
     }
 
+    /// The box of a slot; nowhere if there is none.
+    pub(crate) fn fat(&self, slot: u32) -> Aabb {
+        self.boxes.get(slot as usize).copied().unwrap_or(Aabb::NOWHERE)
+    }
+
+    fn remember(&mut self, slot: u32, fat: Aabb) {
+        if self.boxes.len() <= slot as usize {
+            self.boxes.resize(slot as usize + 1, Aabb::NOWHERE);
+        }
+        self.boxes[slot as usize] = fat;
+    }
+
     /// Inserts the box of a slot, or moves it there.
     pub(crate) fn set(&mut self, slot: u32, fat: Aabb) {
+        self.remember(slot, fat);
         match &mut self.structure {
             Structure::Tree(tree) => tree.set(slot, fat),
             Structure::SweepAndPrune(sweep) => sweep.set(slot, fat),
@@ -79,8 +94,22 @@ impl BroadPhase {
         }
     }
 
+    /// Moves the boxes of many slots.
+    pub(crate) fn set_many(&mut self, boxes: &[(u32, Aabb)]) {
+        boxes.iter().for_each(|&(slot, fat)| self.remember(slot, fat));
+        let boxes = boxes.iter().copied();
+        match &mut self.structure {
+            Structure::Tree(tree) => tree.set_many(boxes),
+            Structure::SweepAndPrune(sweep) => boxes.for_each(|(slot, fat)| sweep.set(slot, fat)),
+            Structure::BruteForce(list) => boxes.for_each(|(slot, fat)| list.set(slot, fat)),
+        }
+    }
+
     /// Removes the box of a slot, if there is one.
     pub(crate) fn remove(&mut self, slot: u32) {
+        if let Some(fat) = self.boxes.get_mut(slot as usize) {
+            *fat = Aabb::NOWHERE;
+        }
         match &mut self.structure {
             Structure::Tree(tree) => tree.remove(slot),
             Structure::SweepAndPrune(sweep) => sweep.remove(slot),
@@ -90,12 +119,16 @@ impl BroadPhase {
 
     /// Replaces all boxes: cheaper than setting each. Of a slot that comes twice, the last box stays.
     pub(crate) fn refill(&mut self, boxes: impl IntoIterator<Item = (u32, Aabb)>) {
-        match &mut self.structure {
-            Structure::Tree(tree) => tree.refill(boxes),
-            _ => {
-                *self = BroadPhase::new(self.kind());
-                boxes.into_iter().for_each(|(slot, fat)| self.set(slot, fat));
-            }
+        *self = BroadPhase::new(self.kind());
+        let boxes = boxes.into_iter();
+        if let Structure::Tree(_) = self.structure {
+            boxes.for_each(|(slot, fat)| self.remember(slot, fat));
+            let present = (0..).zip(&self.boxes).filter(|(_, fat)| **fat != Aabb::NOWHERE);
+            let mut tree = Tree::default();
+            tree.refill(present.map(|(slot, fat)| (slot, *fat)));
+            self.structure = Structure::Tree(tree);
+        } else {
+            boxes.for_each(|(slot, fat)| self.set(slot, fat));
         }
     }
 
@@ -115,7 +148,7 @@ impl BroadPhase {
                 smallest.push(pair);
             }
         };
-        let BroadPhase { structure, moved: set } = self;
+        let BroadPhase { structure, moved: set, .. } = self;
         match moved {
             Moved::All => match structure {
                 Structure::Tree(tree) => tree.each_pair(found),
@@ -148,6 +181,11 @@ impl BroadPhase {
             }
         }
         smallest.finish()
+    }
+
+    /// Whether a slot is among those whose pairs were last asked for.
+    pub(crate) fn has_moved(&self, slot: u32) -> bool {
+        self.moved.has(slot)
     }
 
     /// Calls `visit` with every slot whose box overlaps the area, in no particular order, until it breaks.
@@ -190,14 +228,10 @@ impl MovedSet {
             self.marks[slot as usize] = false;
         }
         self.slots.clear();
-        self.slots.extend(slots);
-        self.slots.sort_unstable();
-        self.slots.dedup();
-        let end = self.slots.last().map_or(0, |&last| last as usize + 1);
+        let end = slots.iter().max().map_or(0, |&last| last as usize + 1);
         self.marks.resize(end.max(self.marks.len()), false);
-        for &slot in &self.slots {
-            self.marks[slot as usize] = true;
-        }
+        let MovedSet { slots: list, marks } = self;
+        list.extend(slots.iter().filter(|&&slot| !core::mem::replace(&mut marks[slot as usize], true)));
     }
 
     fn has(&self, slot: u32) -> bool {

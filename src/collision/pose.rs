@@ -1,5 +1,6 @@
 //! Shapes posed in world axes: each shape is rotated once in a tick, so that its pairs only translate.
 
+use super::core::Core;
 use super::link::Link;
 use crate::body::{Body, Geometry, POLYGON_VERTICES_MAX, Polygon, ShapeDef};
 use crate::math::{Aabb, Fx, Length, Rot, Unit, Vec2, narrow, widen};
@@ -120,13 +121,20 @@ impl Hull {
 
     pub(crate) fn rotated(polygon: &Polygon, rotation: Rot) -> Self {
         let mut hull = Hull { count: polygon.vertices().len(), radius: polygon.radius(), ..Self::empty() };
-        for (i, (&vertex, &normal)) in polygon.vertices().iter().zip(polygon.normals()).enumerate() {
-            hull.vertices[i] = rotation.apply(vertex);
-            hull.normals[i] = rotation.apply(normal);
-        }
-        let [a, b, c, d, ..] = hull.normals;
-        hull.is_box = hull.count == 4 && c == -a && d == -b;
+        hull.rotate(polygon, rotation);
         hull
+    }
+
+    /// Turns the vertices and normals of its polygon another way.
+    fn rotate(&mut self, polygon: &Polygon, rotation: Rot) {
+        let local = polygon.vertices().iter().zip(polygon.normals());
+        let posed = self.vertices.iter_mut().zip(&mut self.normals);
+        for ((vertex, normal), (local_vertex, local_normal)) in posed.zip(local) {
+            *vertex = rotation.apply(*local_vertex);
+            *normal = rotation.apply(*local_normal);
+        }
+        let [a, b, c, d, ..] = self.normals;
+        self.is_box = self.count == 4 && c == -a && d == -b;
     }
 
     const fn empty() -> Self {
@@ -141,8 +149,7 @@ impl Hull {
 
     fn bounds(&self) -> Aabb {
         let first = self.vertices[0];
-        let (lower, upper) = self
-            .vertices()
+        let (lower, upper) = self.vertices()[1..]
             .iter()
             .fold((first, first), |(lower, upper), &vertex| (lower.min(vertex), upper.max(vertex)));
         Aabb::new(lower.widen(), upper.widen()).expanded(self.radius.into())
@@ -152,8 +159,29 @@ impl Hull {
 impl PosedShape {
     /// Poses a shape of `body`, whose rotation is passed in because its shapes share it.
     pub(crate) fn new(shape: &ShapeDef, body: &Body, rotation: Rot) -> Self {
-        let centre = body.centre_of_mass() + rotation.apply_wide(shape.offset - body.local_centre_of_mass());
-        Self::of_geometry(&shape.geometry, centre, rotation)
+        Self::of_geometry(&shape.geometry, centre_of(shape, body, rotation), rotation)
+    }
+
+    /// Poses the same shape again, after its body has moved: writes only what that changes.
+    pub(crate) fn renew(&mut self, shape: &ShapeDef, body: &Body, rotation: Rot) {
+        let centre = centre_of(shape, body, rotation);
+        match (&mut self.outline, &shape.geometry) {
+            (Outline::Polygon(hull), Geometry::Polygon(polygon)) => {
+                hull.rotate(polygon, rotation);
+                self.bounds = hull.bounds().translated(centre);
+                self.centre = centre;
+            }
+            (Outline::Circle { .. }, Geometry::Circle { .. }) => {
+                self.bounds = self.bounds.translated(centre - self.centre);
+                self.centre = centre;
+            }
+            (_, geometry) => *self = Self::of_geometry(geometry, centre, rotation),
+        }
+    }
+
+    /// The radius of a disc inside a geometry, however it is turned; 0 for a line.
+    pub(crate) fn inner_radius(geometry: &Geometry) -> Fx {
+        Core::of(&Self::of_geometry(geometry, Vec2::ZERO, Rot::IDENTITY), Vec2::ZERO).inner_radius()
     }
 
     /// Whether something at a place in the world meets the shape, or passes from its open side.
@@ -194,4 +222,12 @@ impl PosedShape {
         };
         PosedShape { centre, bounds: bounds.translated(centre), outline }
     }
+}
+
+/// Where the centre of a shape of a body is.
+fn centre_of(shape: &ShapeDef, body: &Body, rotation: Rot) -> Vec2<Fx> {
+    let arm = shape.offset - body.local_centre_of_mass();
+    // Most bodies have one shape, about whose centre they turn.
+    let turned = if arm == Vec2::ZERO { arm } else { rotation.apply_wide(arm) };
+    body.centre_of_mass() + turned
 }

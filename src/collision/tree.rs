@@ -7,14 +7,19 @@
 //! Neither bounds the height, and boxes inside of each other would make a chain. So heights of siblings differ by at
 //! most [`IMBALANCE_MAX`]: a relaxed AVL tree (G. Adelson-Velsky, E. Landis, 1962), in which an insertion or a removal
 //! changes heights by one and one exchange on each level repairs it.
+//!
+//! Boxes that move a little only make those around them grow, and many at once are fitted again from the leaves up, or
+//! the whole tree is built anew: see `rebuild.rs`.
 
 use alloc::vec::Vec;
 use core::ops::ControlFlow;
 
 use super::broad_phase::Pair;
-use super::search::{Overlap, Search};
+use super::search::Search;
 use crate::math::Aabb;
+use rebuild::Rebuilt;
 
+mod pairs;
 mod rebuild;
 #[cfg(test)]
 mod tests;
@@ -41,6 +46,11 @@ pub(crate) struct Tree {
     len: u32,
     /// Pairs of nodes that are still to be compared.
     stack: Vec<Pair>,
+    /// Whether every node is in use and stored before its children.
+    ordered: bool,
+    /// How many leaves have been moved out of their neighbourhood, and left where they are, since the last rebuild.
+    strays: u32,
+    rebuilt: Rebuilt,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -55,7 +65,17 @@ struct Node {
 
 impl Default for Tree {
     fn default() -> Self {
-        Tree { nodes: Vec::new(), root: NONE, vacant: NONE, leaves: Vec::new(), len: 0, stack: Vec::new() }
+        Tree {
+            nodes: Vec::new(),
+            root: NONE,
+            vacant: NONE,
+            leaves: Vec::new(),
+            len: 0,
+            stack: Vec::new(),
+            ordered: false,
+            strays: 0,
+            rebuilt: Rebuilt::default(),
+        }
     }
 }
 
@@ -68,9 +88,11 @@ impl Tree {
     pub(crate) fn set(&mut self, slot: u32, fat: Aabb) {
         match self.leaf_of(slot) {
             Some(leaf) if self.at(leaf).aabb == fat => {}
-            Some(leaf) if self.stays_near(leaf, fat) => {
-                self.at_mut(leaf).aabb = fat;
-                self.repair(self.at(leaf).parent);
+            Some(leaf) if self.stays_near(leaf, fat) => self.enlarge(leaf, fat),
+            // A few may stay where they do not belong: the tree keeps its order for the next refit.
+            Some(leaf) if self.strays < self.len / 8 => {
+                self.strays += 1;
+                self.enlarge(leaf, fat);
             }
             Some(leaf) => {
                 self.unlink(leaf);
@@ -96,44 +118,6 @@ impl Tree {
         }
     }
 
-    /// Calls `found` with every pair of overlapping boxes once: the tree against itself.
-    pub(crate) fn each_pair(&mut self, mut found: impl FnMut(Pair)) {
-        let mut stack = core::mem::take(&mut self.stack);
-        stack.clear();
-        if self.root != NONE {
-            stack.push((self.root, self.root));
-        }
-        while let Some((a, b)) = stack.pop() {
-            let (node_a, node_b) = (self.at(a), self.at(b));
-            let ([a0, a1], [b0, b1]) = (node_a.children, node_b.children);
-            if a == b {
-                if !node_a.is_leaf() {
-                    stack.extend([(a0, a0), (a1, a1), (a0, a1)]);
-                }
-            } else if node_a.aabb.overlaps(node_b.aabb) {
-                match (node_a.is_leaf(), node_b.is_leaf()) {
-                    (true, true) => found((a0.min(b0), a0.max(b0))),
-                    (false, false) => stack.extend([(a0, b0), (a0, b1), (a1, b0), (a1, b1)]),
-                    (true, false) => stack.extend([(a, b0), (a, b1)]),
-                    (false, true) => stack.extend([(a0, b), (a1, b)]),
-                }
-            }
-        }
-        self.stack = stack;
-    }
-
-    /// Calls `found` with every slot whose box overlaps that of a slot, itself included.
-    pub(crate) fn each_overlap_of(&self, slot: u32, mut found: impl FnMut(u32)) {
-        if let Some(leaf) = self.leaf_of(slot) {
-            let area = self.at(leaf).aabb;
-            let visit = |slot| {
-                found(slot);
-                ControlFlow::Continue(())
-            };
-            let _never_breaks = self.search(&mut Overlap { area, visit });
-        }
-    }
-
     pub(crate) fn search(&self, search: &mut impl Search) -> ControlFlow<()> {
         let mut stack = [self.root; STACK_LEN];
         let mut waiting = usize::from(self.root != NONE);
@@ -155,8 +139,20 @@ impl Tree {
         ControlFlow::Continue(())
     }
 
+    /// Gives a leaf another box where it is. Boxes around it only grow: they shrink in the next refit or rebuild.
+    fn enlarge(&mut self, leaf: u32, fat: Aabb) {
+        self.at_mut(leaf).aabb = fat;
+        let mut at = self.at(leaf).parent;
+        while at != NONE && !self.at(at).aabb.contains(fat) {
+            let node = self.at_mut(at);
+            node.aabb = node.aabb.union(fat);
+            at = node.parent;
+        }
+    }
+
     /// Puts a leaf into the tree.
     fn link(&mut self, leaf: u32) {
+        self.ordered = false;
         if self.root == NONE {
             self.root = leaf;
             return;
@@ -172,6 +168,7 @@ impl Tree {
 
     /// Takes a leaf out of the tree: its sibling moves up.
     fn unlink(&mut self, leaf: u32) {
+        self.ordered = false;
         let parent = self.at(leaf).parent;
         if parent == NONE {
             self.root = NONE;

@@ -24,6 +24,10 @@ pub struct Aabb {
 }
 
 impl Aabb {
+    /// A box that overlaps no valid one.
+    pub(crate) const NOWHERE: Self =
+        Aabb { lower: Vec2::new(Fx::MAX, Fx::MAX), upper: Vec2::new(Fx::MIN, Fx::MIN) };
+
     /// A box from its lower and upper corner, taken as given: see [`is_valid`](Self::is_valid).
     #[inline]
     #[must_use]

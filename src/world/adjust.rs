@@ -71,9 +71,9 @@ impl World {
             true => kind == BodyKind::Dynamic,
             false => self.state.bodies.at(other.slot()).is_dynamic(),
         };
-        for (_, joint) in self.state.joints.iter() {
-            let (a, b) = joint.def().bodies();
-            if (a == id || b == id) && !stays_dynamic(a) && !stays_dynamic(b) {
+        for joint in self.scratch.links.of(&self.state, id) {
+            let (a, b) = self.state.joints.at(joint.slot()).def().bodies();
+            if !stays_dynamic(a) && !stays_dynamic(b) {
                 return Err(WorldError::JointWithoutDynamicBody);
             }
         }
@@ -111,7 +111,7 @@ impl World {
         self.wake_joined(id);
         self.forget_contacts(&shapes);
         for shape in shapes {
-            self.scratch.broad_phase.remove(shape.slot());
+            self.scratch.remove_box(shape.slot());
         }
         let body = self.state.bodies.at_mut(id.slot());
         body.enabled = false;
@@ -247,16 +247,11 @@ impl World {
         if self.state.islands.len() == 0 {
             return;
         }
-        let joined: alloc::vec::Vec<BodyId> = self
-            .state
-            .joints
-            .iter()
-            .map(|(_, joint)| joint.def().bodies())
-            .filter(|&(a, b)| a == id || b == id)
-            .flat_map(|(a, b)| [a, b])
-            .collect();
-        for body in joined {
-            islands::wake_body(&mut self.state, &mut self.scratch, body.slot());
+        for joint in self.scratch.links.of(&self.state, id) {
+            let (a, b) = self.state.joints.at(joint.slot()).def().bodies();
+            for body in [a, b] {
+                islands::wake_body(&mut self.state, &mut self.scratch, body.slot());
+            }
         }
     }
 }

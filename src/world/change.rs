@@ -5,15 +5,16 @@ use alloc::vec::Vec;
 use serde::{Deserialize, Serialize};
 
 use super::World;
+use super::config::Config;
 use super::islands;
-use super::state::{Island, State};
+use super::state::Island;
 use super::stress;
 use crate::body::{
     Body, BodyDef, BodyId, BodyKind, BodySettings, Handle, JointId, MassProperties, MassSource, REACH_MAX,
     SHAPES_PER_BODY_MAX, Shape, ShapeDef, ShapeId, WORLD_EXTENT_MAX, WorldError, check_position,
 };
 use crate::collision::{Contact, PosedShape};
-use crate::math::{Angle, Fx, Vec2, fx_mul};
+use crate::math::{Aabb, Angle, Fx, Vec2, fx_mul};
 use crate::solver::{Joint, JointDef};
 
 /// Where to put a body.
@@ -94,12 +95,7 @@ impl World {
     pub fn despawn(&mut self, id: BodyId) -> Result<(), WorldError> {
         let body = self.state.bodies.get(id).ok_or(WorldError::StaleBody(id))?;
         let shapes = body.shapes.clone();
-        let joined = |(joint_id, joint): (JointId, &Joint)| {
-            let (a, b) = joint.def().bodies();
-            (a == id || b == id).then_some(joint_id)
-        };
-        let joints: Vec<JointId> = self.state.joints.iter().filter_map(joined).collect();
-        for joint in joints {
+        for joint in self.scratch.links.of(&self.state, id) {
             self.remove_joint(joint)?;
         }
         islands::disturb(&mut self.state, &mut self.scratch, id.slot());
@@ -175,6 +171,7 @@ impl World {
     fn insert_joint(&mut self, def: JointDef) -> JointId {
         let (a, b) = def.bodies();
         let id = self.state.joints.insert(Joint::new(def));
+        self.scratch.links.add(id, (a, b));
         self.rejoined([a, b]);
         id
     }
@@ -220,6 +217,7 @@ impl World {
     pub fn remove_joint(&mut self, id: JointId) -> Result<(), WorldError> {
         let joint = self.state.joints.remove(id).ok_or(WorldError::StaleJoint(id))?;
         let (a, b) = joint.def.bodies();
+        self.scratch.links.remove(id, (a, b));
         self.rejoined([a, b]);
         Ok(())
     }
@@ -251,7 +249,7 @@ impl World {
     /// Adds a shape that has been checked. It has to be posed afterwards.
     fn insert_shape(&mut self, body: BodyId, def: &ShapeDef) -> ShapeId {
         let owner = self.state.bodies.at_mut(body.slot());
-        let fat = fat_box(def, owner, self.state.config.fat_margin);
+        let fat = fat_box(def, owner, &self.state.config);
         let id = self.state.shapes.insert(Shape { body, def: *def, fat });
         owner.shapes.push(id);
         id
@@ -262,7 +260,7 @@ impl World {
         let body = self.state.bodies.at(slot);
         for shape in &body.shapes {
             let shape = self.state.shapes.at_mut(shape.slot());
-            shape.fat = fat_box(&shape.def, body, self.state.config.fat_margin);
+            shape.fat = fat_box(&shape.def, body, &self.state.config);
         }
         self.placed(slot);
         self.scratch.changes.resting = true;
@@ -271,7 +269,7 @@ impl World {
     /// Brings the caches in line with a body that has come or been moved.
     pub(super) fn placed(&mut self, slot: u32) {
         let body = self.state.bodies.at(slot);
-        self.scratch.place(&self.state, body);
+        self.scratch.place(&self.state, slot);
         self.scratch.changes.body(body);
         self.scratch.kinematic |= body.kind() == BodyKind::Kinematic;
         self.scratch.roster.invalidate();
@@ -285,7 +283,7 @@ impl World {
     fn forget_shapes(&mut self, ids: &[ShapeId]) {
         self.forget_contacts(ids);
         for &id in ids {
-            self.scratch.broad_phase.remove(id.slot());
+            self.scratch.remove_box(id.slot());
             self.state.shapes.remove(id);
         }
     }
@@ -298,14 +296,25 @@ impl World {
             let (a, b) = contact.shapes;
             slots.binary_search(&a).is_ok() || slots.binary_search(&b).is_ok()
         };
-        let State { contacts, resting, .. } = &self.state;
-        let touching = contacts.iter().chain(resting).filter(|contact| contact.touching && ends(contact));
-        let removed: Vec<_> = touching.filter_map(|contact| self.state.reported(contact)).collect();
-        self.state.removed_contacts.extend(removed);
-        // Manifolds and hints are found by the contact's place, which moves.
-        self.state.contacts.retain(|contact| !ends(contact));
-        self.state.resting.retain(|contact| !ends(contact));
-        self.scratch.forget_contacts();
+        let mut contacts = core::mem::take(&mut self.state.contacts);
+        let mut resting = core::mem::take(&mut self.state.resting);
+        let mut removed = core::mem::take(&mut self.state.removed_contacts);
+        let before = contacts.len();
+        for list in [&mut contacts, &mut resting] {
+            list.retain(|contact| {
+                let ends = ends(contact);
+                if ends && contact.touching {
+                    removed.extend(self.state.reported(contact));
+                }
+                !ends
+            });
+        }
+        if contacts.len() < before {
+            // Manifolds and hints are found by the contact's place, which has moved.
+            self.scratch.forget_contacts();
+        }
+        (self.state.contacts, self.state.resting) = (contacts, resting);
+        self.state.removed_contacts = removed;
     }
 }
 
@@ -336,8 +345,13 @@ pub(super) fn mass_of<'a>(
     Ok(if settings.locks.rotation { mass.without_rotation() } else { mass })
 }
 
-pub(super) fn fat_box(shape: &ShapeDef, body: &Body, margin: Fx) -> crate::math::Aabb {
-    PosedShape::new(shape, body, body.rotation()).bounds.expanded(margin)
+/// The fat box of a shape that has come or been moved by hand. One of a fixed body has no margin: nothing moves it.
+pub(super) fn fat_box(shape: &ShapeDef, body: &Body, config: &Config) -> Aabb {
+    let bounds = PosedShape::new(shape, body, body.rotation()).bounds;
+    match body.kind() {
+        BodyKind::Fixed => bounds,
+        BodyKind::Kinematic | BodyKind::Dynamic => bounds.expanded(config.margin_of(bounds)),
+    }
 }
 
 fn check_shapes_of_body(count: usize) -> Result<(), WorldError> {

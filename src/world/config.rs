@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::body::WorldError;
 use crate::fx;
-use crate::math::{Fx, Vec2};
+use crate::math::{Aabb, Fx, Vec2};
 use crate::solver::SolverSettings;
 
 /// Settings of a world, fixed when it is made, except for gravity.
@@ -26,8 +26,8 @@ pub struct Config {
     /// Shapes this near to each other, in metres, already have contact points; 0.001 to 1. Larger margins follow
     /// from the speeds at the start of the tick.
     pub speculative_distance: Fx,
-    /// How much larger than needed the boxes of the broad phase are made, in metres, 0.001 to 10: larger ones
-    /// change less often but give more pairs.
+    /// How much larger than needed the boxes of the broad phase are made at most, in metres, 0.001 to 10: larger ones
+    /// change less often but give more pairs. At most a sixteenth of the shape's own extent.
     pub fat_margin: Fx,
     /// Whether bodies at rest fall asleep.
     pub sleeping: bool,
@@ -73,6 +73,12 @@ impl Config {
     #[must_use]
     pub fn touching_distance(&self) -> Fx {
         self.speculative_distance / 4
+    }
+
+    /// The margin of the fat box of a shape that moves.
+    pub(crate) fn margin_of(&self, bounds: Aabb) -> Fx {
+        let half = bounds.extents();
+        (half.x.max(half.y) / 16).min(self.fat_margin)
     }
 
     /// For how many ticks a body has to be slow before it sleeps: half a second.

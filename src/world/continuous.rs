@@ -6,8 +6,6 @@
 //! when the contact is there from the start. It loses the rest of its movement, so that time seems to stand still for
 //! it for part of a tick.
 
-use alloc::vec::Vec;
-
 use super::pairs::may_touch;
 use super::scratch::Scratch;
 use super::state::State;
@@ -15,7 +13,7 @@ use super::step::move_body;
 use crate::body::{Body, BodyKind, Continuous, Handle, Pose, WORLD_EXTENT_MAX};
 use crate::collision::{Core, Sweep, TimeOfImpact, time_of_impact};
 use crate::fx;
-use crate::math::{Angle, Fx, Rot, Vec2, fx_mul};
+use crate::math::{Aabb, Angle, Fx, Rot, Vec2, fx_mul};
 
 /// A body that has not been moved yet, because it may have moved too far.
 #[derive(Clone, Copy, Debug)]
@@ -25,43 +23,41 @@ pub(crate) struct Swept {
     end: Pose,
 }
 
-/// The sweep of a body, if it moves so far that it may pass through something: more than half of the radius inside its
-/// smallest shape, or of the reach of one that turns.
+impl Swept {
+    /// Whether it is swept against what moves as well, and so after that has been moved.
+    pub(super) fn is_bullet(&self, state: &State) -> bool {
+        is_bullet(state.bodies.at(self.slot))
+    }
+}
+
+/// A body that moves less than this in a tick, in metres, is not swept however thin it is.
+const SWEPT_MIN: Fx = fx!(0.0005);
+
+/// The sweep of a body, if it moves so far that it may pass through something: some point of it more than half of the
+/// radius inside its thinnest shape.
 pub(super) fn sweep_of(state: &State, scratch: &Scratch, slot: u32, end: Pose, turn: i64) -> Option<Swept> {
     let body = state.bodies.at(slot);
     if !state.config.continuous || !body.is_dynamic() || body.settings.continuous == Continuous::Off {
         return None;
     }
+    let extents = scratch.poses.extents(slot);
+    let limit = SWEPT_MIN.max(extents.core / 2);
     let shift = end.centre - body.centre;
-    let radians = Angle::turns_to_radians(turn);
-    let fast = body.shapes().iter().any(|id| {
-        let shape = state.shapes.at(id.slot());
-        let posed = scratch.poses.at(id.slot());
-        let away = posed.bounds.centre() - body.centre;
-        let half = posed.bounds.extents();
-        let reach = [half.x, half.y, away.x.saturating_abs(), away.y.saturating_abs()]
-            .into_iter()
-            .fold(Fx::ZERO, Fx::saturating_add);
-        let motion = shift.length().saturating_add(fx_mul(radians.saturating_abs(), reach));
-        // The radius inside a shape is at most that inside its box: most bodies are slow enough to tell at a glance.
-        !shape.is_sensor() && motion > fx!(0.0005) && motion > Core::of(posed, body.centre).inner_radius() / 2
-    });
+    let turned = fx_mul(Angle::turns_to_radians(turn).saturating_abs(), extents.reach);
+    // Most bodies are slow or fast enough to tell without a root.
+    let (x, y) = (shift.x.saturating_abs(), shift.y.saturating_abs());
+    let fast = x.max(y).saturating_add(turned) > limit
+        || (x.saturating_add(y).saturating_add(turned) > limit
+            && shift.length().saturating_add(turned) > limit);
     fast.then_some(Swept { slot, sweep: Sweep { start: body.centre, end: end.centre, turn }, end })
 }
 
-/// Moves fast bodies as far as they can go: first those that only fixed bodies stop, then the bullets, in slot
-/// order. Everything else is where it will be.
-pub(super) fn sweep(state: &mut State, scratch: &mut Scratch, swept: &[Swept]) {
-    let is_bullet =
-        |state: &State, swept: &Swept| state.bodies.at(swept.slot).settings.continuous == Continuous::Bullet;
-    let (bullets, others): (Vec<&Swept>, Vec<&Swept>) =
-        swept.iter().partition(|swept| is_bullet(state, swept));
-    for swept in others.into_iter().chain(bullets) {
-        let impact = first_impact(state, scratch, swept);
-        let pose = impact.map_or(swept.end, |impact| pose_after(state, scratch, swept, impact));
-        scratch.stats.impacts += u32::from(impact.is_some());
-        move_body(state, scratch, swept.slot, pose);
-    }
+/// Moves a fast body as far as it can go.
+pub(super) fn sweep(state: &mut State, scratch: &mut Scratch, swept: &Swept) {
+    let impact = first_impact(state, scratch, swept);
+    let pose = impact.map_or(swept.end, |impact| pose_after(state, scratch, swept, impact));
+    scratch.stats.impacts += u32::from(impact.is_some());
+    move_body(state, scratch, swept.slot, pose);
 }
 
 /// What stops a body, and at which fraction of the tick. Of two at the same time, the one in the smaller slot.
@@ -89,23 +85,32 @@ fn pose_after(state: &State, scratch: &Scratch, swept: &Swept, impact: Impact) -
 /// What first stops a body on its way.
 fn first_impact(state: &State, scratch: &Scratch, swept: &Swept) -> Option<Impact> {
     let body = state.bodies.at(swept.slot);
+    // All that its shapes cover where it starts, however it is turned.
+    let disc = Aabb::new(body.centre, body.centre).expanded(scratch.poses.extents(swept.slot).radius);
     let mut first: Option<Impact> = None;
     for id in body.shapes() {
         if state.shapes.at(id.slot()).is_sensor() {
             continue;
         }
         let posed = scratch.poses.at(id.slot());
-        let core = Core::of(posed, body.centre);
-        // Half as deep as it would have to be for its centre to be on the surface, but not more than 5 mm.
-        let target = -(core.inner_radius() / 4).min(fx!(0.005));
-        let reach = if swept.sweep.turn == 0 { Fx::ZERO } else { posed.bounds.extents().length() };
-        let area = posed.bounds.expanded(reach).swept(swept.sweep.end - swept.sweep.start);
-        scratch.broad_phase.each_overlap(area, |other| {
+        // Found when the first obstacle is: most fast bodies are far from any.
+        let mut known = None;
+        let start = if swept.sweep.turn == 0 { posed.bounds } else { disc };
+        let area = start.swept(swept.sweep.end - swept.sweep.start);
+        let obstacles = if is_bullet(body) { &scratch.broad_phase } else { &scratch.fixed };
+        obstacles.each_overlap(area, |other| {
             let obstacle = state.body_of(other);
             let posed_other = scratch.poses.at(other);
-            let solid = posed_other.is_solid_from(posed.centre);
+            // What moves is not where it was on the way.
+            let near = obstacle.kind() != BodyKind::Fixed || posed_other.bounds.overlaps(area);
+            let solid = near && posed_other.is_solid_from(posed.centre);
             if solid && stops(body, obstacle) && may_stop(state, scratch, id.slot(), other) {
                 let (there, movement) = obstacle_of(state, scratch, other);
+                let &mut (core, target) = known.get_or_insert_with(|| {
+                    let core = Core::of(posed, body.centre);
+                    // Half as deep as it would have to be for its centre to be on the surface, but not more than 5 mm.
+                    (core, -(core.inner_radius() / 4).min(fx!(0.005)))
+                });
                 let fraction = match time_of_impact((&there, &movement), (&core, &swept.sweep), target) {
                     TimeOfImpact::Hit { fraction } => Some(fraction),
                     // Never so late that something may have been passed, but a body has to go on.
@@ -138,8 +143,11 @@ fn obstacle_of(state: &State, scratch: &Scratch, shape: u32) -> (Core, Sweep) {
 
 /// Whether a body is swept against another.
 fn stops(body: &Body, obstacle: &Body) -> bool {
-    let bullet = |body: &Body| body.settings.continuous == Continuous::Bullet;
-    obstacle.kind() == BodyKind::Fixed || (bullet(body) && !bullet(obstacle))
+    obstacle.kind() == BodyKind::Fixed || (is_bullet(body) && !is_bullet(obstacle))
+}
+
+fn is_bullet(body: &Body) -> bool {
+    body.settings.continuous == Continuous::Bullet
 }
 
 fn may_stop(state: &State, scratch: &Scratch, a: u32, b: u32) -> bool {

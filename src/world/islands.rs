@@ -149,8 +149,10 @@ pub(super) fn fall_asleep(state: &mut State, scratch: &mut Scratch) {
         return;
     }
     let limit = state.config.ticks_to_sleep();
-    keep_awake_on_moving_ground(state, scratch);
-    keep_awake_on_moving_anchors(state, scratch);
+    if scratch.kinematic {
+        keep_awake_on_moving_ground(state, scratch);
+        keep_awake_on_moving_anchors(state, scratch);
+    }
     let mut any_sleepy = false;
     for &slot in &scratch.roster.bodies {
         let body = state.bodies.at_mut(slot);
@@ -342,9 +344,9 @@ fn rest_contacts(state: &mut State, scratch: &mut Scratch) {
         // There are none since a restore, or since a contact was removed.
         scratch.hints.resize(state.contacts.len(), AxisHint::default());
     }
-    let Scratch { manifolds, found, hints, fresh, .. } = scratch;
+    let Scratch { manifolds, found, hints, parked, merged, .. } = scratch;
     let mut contacts = core::mem::take(&mut state.contacts);
-    fresh.clear();
+    parked.clear();
     let (mut kept, mut next, mut kept_manifolds) = (0, 0, 0);
     for index in 0..contacts.len() {
         let (a, b) = state.bodies_of(contacts[index].shapes);
@@ -363,7 +365,7 @@ fn rest_contacts(state: &mut State, scratch: &mut Scratch) {
             hints.swap(kept, index);
             kept += 1;
         } else {
-            fresh.push(contacts[index]);
+            parked.push(contacts[index]);
         }
     }
     contacts.truncate(kept);
@@ -371,5 +373,5 @@ fn rest_contacts(state: &mut State, scratch: &mut Scratch) {
     manifolds.truncate(kept_manifolds);
     found.truncate(kept_manifolds);
     state.contacts = contacts;
-    pairs::merge(&mut state.resting, fresh, |_, _| {});
+    pairs::merge(&mut state.resting, parked, &mut merged.contacts);
 }

@@ -144,6 +144,11 @@ impl Outlook {
         self.reaches[slot as usize] = Reach::at_rest(shape, body, bounds);
     }
 
+    /// Takes up where a shape has been moved to.
+    pub(super) fn move_to(&mut self, slot: u32, bounds: Aabb) {
+        self.reaches[slot as usize].bounds = bounds;
+    }
+
     pub(super) fn set_motion(&mut self, body: u32, motion: Motion) {
         self.motions[body as usize] = motion;
         self.moving_bodies.push(body);

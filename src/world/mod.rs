@@ -12,6 +12,7 @@ mod digest;
 mod events;
 mod explosion;
 mod islands;
+mod joint_links;
 mod joint_view;
 mod look_ahead;
 mod mover_planes;

@@ -5,10 +5,10 @@
 
 use alloc::vec::Vec;
 
-use super::scratch::Scratch;
+use super::scratch::{Changes, Scratch};
 use super::state::State;
 use crate::body::{BodyKind, Handle};
-use crate::collision::{AxisHint, Contact, Moved, Pair};
+use crate::collision::{AxisHint, BroadPhase, Contact, Moved, Pair};
 
 /// Brings the contacts in line with the fat boxes. Contacts of pairs that have parted go to `scratch.ended`.
 pub(super) fn update(state: &mut State, scratch: &mut Scratch) {
@@ -16,37 +16,36 @@ pub(super) fn update(state: &mut State, scratch: &mut Scratch) {
     if !(scratch.changes.any() || state.pairs_left_out) {
         return;
     }
-    if scratch.hints.len() != state.contacts.len() {
-        scratch.hints.clear();
-        scratch.hints.resize(state.contacts.len(), AxisHint::default());
-    }
     refresh_joined(state, scratch);
     wake_resting(state, scratch);
-    drop_parted(state, scratch);
-    find_new(state, scratch);
+    let left_out = find_new(state, scratch);
+    exchange(state, scratch);
+    keep_to_limit(state, scratch, left_out);
     scratch.surfaces_stale |= scratch.changes.everything || scratch.changes.rules;
-    scratch.changes.clear();
+    scratch.changes.settle(&scratch.broad_phase, state.shapes.slot_count());
 }
 
-/// Contacts of bodies that have woken, or have begun to move, are looked at again, and so are those that end
-/// although nothing is active: a sensor's, of a kinematic body that was moved by hand.
+/// Lists the contacts of bodies that have woken, or have begun to move, as fresh ones. Those that have parted although
+/// nothing is active end: a sensor's, of a kinematic body that was moved by hand.
 fn wake_resting(state: &mut State, scratch: &mut Scratch) {
-    if state.resting.is_empty() || !(scratch.changes.everything || scratch.changes.resting) {
+    let Scratch { fresh, joined, ended, changes, .. } = scratch;
+    fresh.clear();
+    if state.resting.is_empty() || !(changes.everything || changes.resting) {
         return;
     }
     let mut resting = core::mem::take(&mut state.resting);
-    let Scratch { fresh: woken, joined, hints, .. } = scratch;
-    woken.clear();
     resting.retain(|contact| {
         let (a, b) = state.bodies_of(contact.shapes);
-        let wakes = a.is_active() || b.is_active() || !is_near(state, joined, contact.shapes);
-        if wakes {
-            woken.push(*contact);
+        let near = is_near(state, joined, contact.shapes);
+        let active = a.is_active() || b.is_active();
+        if !near {
+            ended.push(*contact);
+        } else if active {
+            fresh.push(*contact);
         }
-        !wakes
+        near && !active
     });
     state.resting = resting;
-    insert(&mut state.contacts, hints, woken);
 }
 
 fn is_near(state: &State, joined: &[Pair], (a, b): Pair) -> bool {
@@ -65,100 +64,139 @@ pub(super) fn find_sleepers(state: &State, scratch: &mut Scratch, first_change: 
     broad_phase.pairs(moved, wanted, state.config.pair_limit as usize, pairs);
 }
 
-/// Takes out the contacts whose boxes have parted, and those that nothing moves any more.
-fn drop_parted(state: &mut State, scratch: &mut Scratch) {
-    let mut contacts = core::mem::take(&mut state.contacts);
-    let Scratch { ended, fresh, changes, changed, joined, hints, .. } = scratch;
-    fresh.clear();
-    let any = changes.everything || changes.rules;
-    changed.resize(state.shapes.slot_count(), false);
-    changes.shapes.iter().for_each(|&slot| changed[slot as usize] = true);
-    let mut kept = 0;
-    for index in 0..contacts.len() {
-        let contact = contacts[index];
-        let (a, b) = contact.shapes;
-        if any || changed[a as usize] || changed[b as usize] {
-            let near = state.shapes.at(a).fat.overlaps(state.shapes.at(b).fat)
-                && (!any || may_touch(state, joined, contact.shapes));
-            let (body_a, body_b) = state.bodies_of(contact.shapes);
-            if !near {
-                ended.push(contact);
-                continue;
-            }
-            if !(body_a.is_active() || body_b.is_active()) {
-                fresh.push(contact);
-                continue;
-            }
-        }
-        if kept < index {
-            contacts[kept] = contact;
-            hints[kept] = hints[index];
-        }
-        kept += 1;
-    }
-    contacts.truncate(kept);
-    hints.truncate(kept);
-    changes.shapes.iter().for_each(|&slot| changed[slot as usize] = false);
-    state.contacts = contacts;
-    merge(&mut state.resting, fresh, |_, _| {});
-}
-
-/// Adds a contact for every new pair.
-fn find_new(state: &mut State, scratch: &mut Scratch) {
+/// Lists a contact for every pair that may be new. Says whether any were left out.
+fn find_new(state: &State, scratch: &mut Scratch) -> bool {
     let limit = state.config.pair_limit as usize;
-    let Scratch { broad_phase, changes, pairs, joined, fresh, hints, .. } = scratch;
+    let Scratch { broad_phase, changes, pairs, joined, fresh, .. } = scratch;
     let everything = changes.everything || state.pairs_left_out;
     let moved = if everything { Moved::All } else { Moved::Slots(&changes.shapes) };
     let wanted = |pair: Pair| {
+        if !everything && changes.has_seen(pair) {
+            return false;
+        }
         let (a, b) = state.bodies_of(pair);
         (a.is_active() || b.is_active()) && may_touch(state, joined, pair)
     };
-    let mut left_out = broad_phase.pairs(moved, wanted, limit, pairs);
-    let mut known = state.contacts.iter().map(|contact| contact.shapes).peekable();
-    fresh.clear();
+    let left_out = broad_phase.pairs(moved, wanted, limit, pairs);
+    let woken = fresh.len();
     for &pair in pairs.iter() {
-        while known.next_if(|&shapes| shapes < pair).is_some() {}
-        if known.peek() != Some(&pair) {
+        if fresh[..woken].binary_search_by_key(&pair, |contact| contact.shapes).is_err() {
             fresh.push(Contact::new(pair));
         }
     }
-    drop(known);
-    insert(&mut state.contacts, hints, fresh);
+    fresh.sort_unstable_by_key(|contact| contact.shapes);
+    left_out
+}
+
+/// What becomes of a contact.
+enum Fate {
+    Stays,
+    /// Its boxes have parted, or its shapes may not touch any more.
+    Ends,
+    /// Nothing moves its bodies any more.
+    Rests,
+}
+
+fn fate(state: &State, (boxes, changes, joined): (&BroadPhase, &Changes, &[Pair]), (a, b): Pair) -> Fate {
+    let rules = changes.everything || changes.rules;
+    let anywhere = rules || changes.resting || state.pairs_left_out;
+    if !(anywhere || boxes.has_moved(a) || boxes.has_moved(b)) {
+        return Fate::Stays;
+    }
+    if !boxes.fat(a).overlaps(boxes.fat(b)) || (rules && !may_touch(state, joined, (a, b))) {
+        return Fate::Ends;
+    }
+    if !(anywhere || changes.is_new(a) || changes.is_new(b)) {
+        // Only a box is another one.
+        return Fate::Stays;
+    }
+    let (body_a, body_b) = state.bodies_of((a, b));
+    if body_a.is_active() || body_b.is_active() { Fate::Stays } else { Fate::Rests }
+}
+
+/// Contacts with their hints, while places change.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Merged {
+    pub(super) contacts: Vec<Contact>,
+    hints: Vec<AxisHint>,
+}
+
+impl Merged {
+    fn clear(&mut self) {
+        self.contacts.clear();
+        self.hints.clear();
+    }
+
+    fn push(&mut self, contact: Contact) {
+        self.contacts.push(contact);
+        self.hints.push(AxisHint::default());
+    }
+}
+
+/// Puts the fresh contacts among the others, and takes out those that end or rest. What stays between two such places
+/// is copied in one piece, with its hints.
+fn exchange(state: &mut State, scratch: &mut Scratch) {
+    scratch.hints.resize(state.contacts.len(), AxisHint::default());
+    let Scratch { broad_phase, changes, joined, ended, fresh, merged, parked, hints, .. } = scratch;
+    merged.clear();
+    parked.clear();
+    let contacts = &state.contacts;
+    let mut fresh = fresh.iter().peekable();
+    let mut copied = 0;
+    let mut copy = |merged: &mut Merged, end: usize, next: usize| {
+        merged.contacts.extend_from_slice(&contacts[copied..end]);
+        merged.hints.extend_from_slice(&hints[copied..end]);
+        copied = next;
+    };
+    for (index, contact) in contacts.iter().enumerate() {
+        if fresh.peek().is_some_and(|fresh| fresh.shapes <= contact.shapes) {
+            copy(merged, index, index);
+            while let Some(fresh) = fresh.next_if(|fresh| fresh.shapes < contact.shapes) {
+                merged.push(*fresh);
+            }
+            let _known_already = fresh.next_if(|fresh| fresh.shapes == contact.shapes);
+        }
+        let leaves = match fate(state, (broad_phase, changes, joined), contact.shapes) {
+            Fate::Stays => continue,
+            Fate::Ends => &mut *ended,
+            Fate::Rests => &mut *parked,
+        };
+        leaves.push(*contact);
+        copy(merged, index, index + 1);
+    }
+    copy(merged, contacts.len(), contacts.len());
+    fresh.for_each(|fresh| merged.push(*fresh));
+    core::mem::swap(&mut state.contacts, &mut merged.contacts);
+    core::mem::swap(hints, &mut merged.hints);
+    merge(&mut state.resting, parked, &mut merged.contacts);
+}
+
+/// Ends the contacts that are too many: those in the largest slots.
+fn keep_to_limit(state: &mut State, scratch: &mut Scratch, left_out: bool) {
+    let limit = state.config.pair_limit as usize;
+    state.pairs_left_out = left_out || state.contacts.len() > limit;
     if state.contacts.len() > limit {
         scratch.ended.extend(state.contacts.drain(limit..));
-        hints.truncate(limit);
-        left_out = true;
+        scratch.hints.truncate(limit);
     }
-    state.pairs_left_out = left_out;
 }
 
-/// Merges contacts into a list that has hints.
-fn insert(contacts: &mut Vec<Contact>, hints: &mut Vec<AxisHint>, new: &[Contact]) {
-    hints.resize(contacts.len() + new.len(), AxisHint::default());
-    merge(contacts, new, |to, from| hints[to] = from.map_or(AxisHint::default(), |from| hints[from]));
-}
-
-/// Merges contacts into a list, both sorted by pair and without a pair in common, from the back: what comes before the
-/// first of them stays. `placed` is told which place has been taken, and from where in the old list unless it is a new
-/// contact's.
-pub(super) fn merge(
-    contacts: &mut Vec<Contact>,
-    new: &[Contact],
-    mut placed: impl FnMut(usize, Option<usize>),
-) {
-    let mut from = contacts.len();
-    contacts.extend_from_slice(new);
-    let mut to = contacts.len();
-    for contact in new.iter().rev() {
-        while from > 0 && contacts[from - 1].shapes > contact.shapes {
-            (from, to) = (from - 1, to - 1);
-            contacts[to] = contacts[from];
-            placed(to, Some(from));
+/// Merges contacts into a list, both sorted by pair and without a pair in common.
+pub(super) fn merge(contacts: &mut Vec<Contact>, new: &[Contact], merged: &mut Vec<Contact>) {
+    if new.is_empty() {
+        return;
+    }
+    merged.clear();
+    merged.reserve(contacts.len() + new.len());
+    let mut old = contacts.iter().copied().peekable();
+    for contact in new {
+        while let Some(before) = old.next_if(|old| old.shapes < contact.shapes) {
+            merged.push(before);
         }
-        to -= 1;
-        contacts[to] = *contact;
-        placed(to, None);
+        merged.push(*contact);
     }
+    merged.extend(old);
+    core::mem::swap(contacts, merged);
 }
 
 /// Pairs of bodies that a joint keeps from colliding.

@@ -5,37 +5,46 @@ use alloc::vec::Vec;
 use super::continuous::Swept;
 use super::events::Events;
 use super::islands::{Roster, UnionFind};
+use super::joint_links::JointLinks;
 use super::look_ahead::Outlook;
+use super::pairs::Merged;
 use super::state::State;
 use super::stats::StepStats;
-use crate::body::{Body, BodyKind, Handle, Pose};
+use crate::body::{Body, BodyKind, Geometry, Handle, Pose, Shape, ShapeId};
 use crate::collision::{
     AxisHint, BroadPhase, BroadPhaseKind, Contact, Manifold, Pair, PosedShape, SatCounters,
 };
+use crate::fx;
+use crate::math::{Aabb, Fx};
 use crate::solver::{Solver, TouchingPair};
 
 /// Caches, buffers and results of the last tick.
 #[derive(Clone, Debug)]
 pub(crate) struct Scratch {
     pub(crate) broad_phase: BroadPhase,
+    /// The boxes of fixed bodies once more: all that most fast bodies are swept against.
+    pub(crate) fixed: BroadPhase,
     pub(crate) poses: Poses,
     /// What has changed since the last look at the pairs.
     pub(crate) changes: Changes,
-    /// By slot, which shapes are among them: all `false` between uses.
-    pub(crate) changed: Vec<bool>,
     pub(crate) roster: Roster,
+    pub(crate) links: JointLinks,
     /// Whether there may be kinematic bodies.
     pub(crate) kinematic: bool,
     pub(crate) union: UnionFind,
     /// Where the bodies of the roster were at the start of the tick.
     pub(crate) starts: Vec<Pose>,
-    /// The fast bodies of the tick.
-    pub(crate) swept: Vec<Swept>,
+    /// The fast bullets of the tick.
+    pub(crate) bullets: Vec<Swept>,
+    /// The boxes that a tick begins with, where they are others.
+    pub(crate) refitted: Vec<(u32, Aabb)>,
     pub(crate) pairs: Vec<Pair>,
     /// Pairs of body slots whose joint keeps them from colliding, sorted; and whether joints have changed since.
     pub(crate) joined: Vec<Pair>,
     pub(crate) joined_stale: bool,
     pub(crate) fresh: Vec<Contact>,
+    pub(crate) merged: Merged,
+    pub(crate) parked: Vec<Contact>,
     pub(crate) ended: Vec<Contact>,
     /// For each contact, the axis that separated it in the last tick.
     pub(crate) hints: Vec<AxisHint>,
@@ -73,6 +82,9 @@ pub(crate) struct Changes {
     pub(crate) rules: bool,
     /// Slots of shapes with another fat box, or whose body has begun or ceased to be active.
     pub(crate) shapes: Vec<u32>,
+    /// The box of each shape when the pairs were last looked at: of two that overlapped then, nothing is new. Nowhere
+    /// if the shape has another reason to have other pairs.
+    seen: Vec<Aabb>,
 }
 
 impl Changes {
@@ -80,15 +92,40 @@ impl Changes {
         self.everything || self.resting || self.rules || !self.shapes.is_empty()
     }
 
-    pub(crate) fn clear(&mut self) {
-        let Changes { everything, resting, rules, shapes } = self;
-        (*everything, *resting, *rules) = (false, false, false);
-        shapes.clear();
+    /// The pairs have been looked at.
+    pub(crate) fn settle(&mut self, boxes: &BroadPhase, slot_count: usize) {
+        self.seen.resize(slot_count, Aabb::NOWHERE);
+        if self.everything {
+            self.seen.iter_mut().zip(0..).for_each(|(seen, slot)| *seen = boxes.fat(slot));
+        }
+        for &slot in &self.shapes {
+            self.seen[slot as usize] = boxes.fat(slot);
+        }
+        (self.everything, self.resting, self.rules) = (false, false, false);
+        self.shapes.clear();
     }
 
-    /// The shapes of a body have another fat box, or another reason to have other pairs.
+    /// The shapes of a body have another reason to have other pairs than another fat box.
     pub(crate) fn body(&mut self, body: &Body) {
-        self.shapes.extend(body.shapes().iter().map(|id| id.slot()));
+        for id in body.shapes() {
+            self.shapes.push(id.slot());
+            if let Some(seen) = self.seen.get_mut(id.slot() as usize) {
+                *seen = Aabb::NOWHERE;
+            }
+        }
+    }
+
+    /// Whether a shape has another reason to have other pairs than another fat box.
+    pub(crate) fn is_new(&self, slot: u32) -> bool {
+        self.seen.get(slot as usize).is_none_or(|seen| *seen == Aabb::NOWHERE)
+    }
+
+    /// Whether the boxes of two shapes overlapped already when the pairs were last looked at.
+    pub(crate) fn has_seen(&self, (a, b): Pair) -> bool {
+        match (self.seen.get(a as usize), self.seen.get(b as usize)) {
+            (Some(a), Some(b)) => a.overlaps(*b),
+            _ => false,
+        }
     }
 }
 
@@ -97,18 +134,22 @@ impl Scratch {
     pub(crate) fn new(kind: BroadPhaseKind, state: &State) -> Self {
         let mut scratch = Scratch {
             broad_phase: BroadPhase::new(kind),
+            fixed: BroadPhase::new(kind),
             poses: Poses::default(),
             changes: Changes { everything: true, ..Changes::default() },
-            changed: Vec::new(),
             roster: Roster::default(),
+            links: JointLinks::new(state),
             kinematic: state.bodies.iter().any(|(_, body)| body.kind() == BodyKind::Kinematic),
             union: UnionFind::default(),
             starts: Vec::new(),
-            swept: Vec::new(),
+            bullets: Vec::new(),
+            refitted: Vec::new(),
             pairs: Vec::new(),
             joined: Vec::new(),
             joined_stale: true,
             fresh: Vec::new(),
+            merged: Merged::default(),
+            parked: Vec::new(),
             ended: Vec::new(),
             hints: Vec::new(),
             manifolds: Vec::new(),
@@ -122,22 +163,36 @@ impl Scratch {
             events: Events::default(),
             stats: StepStats::default(),
         };
-        for (_, body) in state.bodies.iter() {
-            scratch.poses.pose_body(state, body);
+        for (id, _) in state.bodies.iter() {
+            scratch.poses.pose_body(state, id.slot());
         }
-        let enabled = state.shapes.iter().filter(|(_, shape)| state.bodies.at(shape.body().slot()).enabled);
-        scratch.broad_phase.refill(enabled.map(|(id, shape)| (id.slot(), shape.fat)));
+        let boxes = |(id, shape): (ShapeId, &Shape)| (id.slot(), shape.fat);
+        let body_of = |shape: &Shape| state.bodies.at(shape.body().slot());
+        let enabled = || state.shapes.iter().filter(|(_, shape)| body_of(shape).enabled);
+        scratch.broad_phase.refill(enabled().map(boxes));
+        let is_fixed = |shape: &Shape| body_of(shape).kind() == BodyKind::Fixed;
+        scratch.fixed.refill(enabled().filter(|(_, shape)| is_fixed(shape)).map(boxes));
         scratch
     }
 
     /// Brings the caches in line with the place of a body's shapes.
-    pub(crate) fn place(&mut self, state: &State, body: &Body) {
-        self.poses.pose_body(state, body);
-        if body.enabled {
-            for id in body.shapes() {
-                self.broad_phase.set(id.slot(), state.shapes.at(id.slot()).fat);
+    pub(crate) fn place(&mut self, state: &State, slot: u32) {
+        self.poses.pose_body(state, slot);
+        let body = state.bodies.at(slot);
+        for id in body.shapes().iter().filter(|_| body.enabled) {
+            let fat = state.shapes.at(id.slot()).fat;
+            self.broad_phase.set(id.slot(), fat);
+            match body.kind() {
+                BodyKind::Fixed => self.fixed.set(id.slot(), fat),
+                BodyKind::Kinematic | BodyKind::Dynamic => self.fixed.remove(id.slot()),
             }
         }
+    }
+
+    /// Hides a shape from whatever looks for boxes.
+    pub(crate) fn remove_box(&mut self, shape: u32) {
+        self.broad_phase.remove(shape);
+        self.fixed.remove(shape);
     }
 
     /// Drops what is found by a contact's place in the state, because places have changed.
@@ -155,14 +210,50 @@ pub(crate) struct Poses {
     shapes: Vec<Option<PosedShape>>,
     /// The same shapes as their pairs see them first.
     pub(super) outlook: Outlook,
+    /// By body slot.
+    extents: Vec<Extents>,
+}
+
+/// How large the shapes of a body are about its centre of mass, in metres. Turning does not change it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Extents {
+    /// The radius of a disc inside the thinnest of its solid shapes; the largest number if there are none.
+    pub(crate) core: Fx,
+    /// No point of a shape is farther than this, but for those of discs, which are where they were when they turn.
+    pub(crate) reach: Fx,
+    /// No point of a shape is farther than this.
+    pub(crate) radius: Fx,
+}
+
+impl Extents {
+    const NONE: Self = Extents { core: Fx::MAX, reach: Fx::ZERO, radius: Fx::ZERO };
+
+    fn of(state: &State, body: &Body) -> Self {
+        let shapes = body.shapes().iter().map(|id| state.shapes.at(id.slot()));
+        shapes.fold(Self::NONE, |extents, shape| {
+            // Posed vertices are rounded.
+            let arm = (shape.offset() - body.local_centre_of_mass()).length().saturating_add(fx!(0.00001));
+            let Aabb { lower, upper } = shape.geometry().local_bounds();
+            let (size, turning) = match shape.geometry() {
+                Geometry::Circle { radius } => (*radius, Fx::ZERO),
+                _ => [(-lower).max(upper).length(); 2].into(),
+            };
+            let core = if shape.is_sensor() { Fx::MAX } else { PosedShape::inner_radius(shape.geometry()) };
+            Extents {
+                core: extents.core.min(core),
+                reach: extents.reach.max(arm.saturating_add(turning)),
+                radius: extents.radius.max(arm.saturating_add(size)),
+            }
+        })
+    }
 }
 
 impl Poses {
-    /// Poses the shapes of a body anew, after it has been moved or has got another shape.
-    pub(crate) fn pose_body(&mut self, state: &State, body: &Body) {
-        if self.shapes.len() < state.shapes.slot_count() {
-            self.shapes.resize_with(state.shapes.slot_count(), || None);
-        }
+    /// Poses the shapes of a body that has come, has got another shape, or has another mass.
+    fn pose_body(&mut self, state: &State, slot: u32) {
+        self.shapes.resize_with(state.shapes.slot_count(), || None);
+        self.extents.resize(state.bodies.slot_count(), Extents::NONE);
+        let body = state.bodies.at(slot);
         let rotation = body.rotation();
         for &id in body.shapes() {
             let shape = state.shapes.at(id.slot());
@@ -170,6 +261,23 @@ impl Poses {
             self.outlook.place(id.slot(), shape, shape.body().slot(), posed.bounds);
             self.shapes[id.slot() as usize] = Some(posed);
         }
+        self.extents[slot as usize] = Extents::of(state, body);
+    }
+
+    /// Poses the shapes of a body again, after it has only been moved.
+    pub(crate) fn move_body(&mut self, state: &State, body: &Body) {
+        let rotation = body.rotation();
+        for &id in body.shapes() {
+            let posed =
+                self.shapes[id.slot() as usize].as_mut().expect("every shape is posed when it is placed");
+            posed.renew(&state.shapes.at(id.slot()).def, body, rotation);
+            self.outlook.move_to(id.slot(), posed.bounds);
+        }
+    }
+
+    /// The extents of the body in an occupied slot.
+    pub(crate) fn extents(&self, slot: u32) -> Extents {
+        self.extents[slot as usize]
     }
 
     /// The shape in an occupied slot.

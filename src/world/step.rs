@@ -7,13 +7,15 @@ use super::events::MoveEvent;
 use super::islands;
 use super::look_ahead::Motion;
 use super::pairs;
-use super::scratch::Scratch;
+use super::scratch::{Extents, Scratch};
 use super::state::State;
 use super::stats::{Phase, StepStats};
 use super::stress;
-use crate::body::{BodyKind, Handle, Pose, WORLD_EXTENT_MAX};
-use crate::math::{Angle, Fx, Vec2};
+use crate::body::{Body, BodyKind, Handle, Pose, WORLD_EXTENT_MAX};
+use crate::math::{Aabb, Angle, Fx, Reciprocal, Speed, Vec2, fx_mul, widen};
 use crate::solver::{SolverBody, Tuning, turn_of};
+use fixed::FixedI32;
+use fixed::types::extra::{U16, U24};
 
 impl World {
     /// Advances the world by one tick of `1 / tick_rate` seconds.
@@ -79,52 +81,91 @@ impl World {
 /// Gives every shape that may leave its fat box within the tick a new one.
 fn refit_boxes(state: &mut State, scratch: &mut Scratch) {
     let State { bodies, shapes, config, .. } = state;
-    scratch.poses.outlook.begin(bodies.slot_count());
-    for &slot in &scratch.roster.bodies {
+    let Scratch { roster, poses, broad_phase, changes, refitted, .. } = scratch;
+    let per_second = Reciprocal::of_integer(config.tick_rate);
+    refitted.clear();
+    poses.outlook.begin(bodies.slot_count());
+    for &slot in &roster.bodies {
         let body = bodies.at(slot);
         let motion = Motion::of(body);
         let (shift, turn) = (motion.shift(config.tick_rate), motion.turn(config.tick_rate));
-        scratch.poses.outlook.set_motion(slot, motion);
+        poses.outlook.set_motion(slot, motion);
+        let way = Way::of(body, poses.extents(slot), per_second);
         for &id in body.shapes() {
-            let posed = scratch.poses.at(id.slot());
-            let turn_reach = motion.turn_reach(turn, posed);
-            let reach = turn_reach.saturating_add(config.speculative_distance);
-            let needed = posed.bounds.expanded(reach).swept(shift);
-            scratch.poses.outlook.set_reach(id.slot(), shift, turn_reach);
-            let fat = &mut shapes.at_mut(id.slot()).fat;
+            let posed = poses.at(id.slot());
+            let (bounds, turn_reach) = (posed.bounds, motion.turn_reach(turn, posed));
+            poses.outlook.set_reach(id.slot(), shift, turn_reach);
+            let needed = way.around(bounds).expanded(config.speculative_distance);
+            let margin = config.margin_of(bounds);
+            let fat = broad_phase.fat(id.slot());
             // A box that a fast shape has left behind would find pairs for ever, so it shrinks as well.
-            let roomy = needed.expanded(config.fat_margin.saturating_mul_int(4));
-            if !fat.contains(needed) || !roomy.contains(*fat) {
-                *fat = needed.expanded(config.fat_margin);
-                scratch.broad_phase.set(id.slot(), *fat);
-                scratch.changes.shapes.push(id.slot());
+            let roomy = needed.expanded(margin.saturating_mul_int(4));
+            if !fat.contains(needed) || !roomy.contains(fat) {
+                let fat = needed.expanded(margin);
+                shapes.at_mut(id.slot()).fat = fat;
+                refitted.push((id.slot(), fat));
+                changes.shapes.push(id.slot());
                 // The box of a kinematic body that has stopped leaves what it rests on.
-                scratch.changes.resting |= !body.is_active();
+                changes.resting |= !body.is_active();
             }
         }
+    }
+    broad_phase.set_many(refitted);
+}
+
+/// Where a body may get within a tick at its present velocity.
+struct Way {
+    shift: Vec2<Fx>,
+    /// How far its points move at most because it turns, in metres.
+    turned: Fx,
+    /// All that its shapes may cover where it is now, however it is turned.
+    disc: Aabb,
+}
+
+impl Way {
+    fn of(body: &Body, extents: Extents, per_second: Reciprocal) -> Self {
+        // Up to 102 m, and up to 128 rad: a slow tick may be a tenth of a second.
+        let step = |v: Speed| widen::<U24>(per_second.times(v));
+        let omega: FixedI32<U16> = body.mass.inverse_gyration.times(body.spin);
+        let angle = widen::<U24>(per_second.times(omega)).saturating_abs();
+        Way {
+            shift: Vec2::new(step(body.velocity.x), step(body.velocity.y)),
+            turned: fx_mul(angle, extents.reach),
+            disc: Aabb::new(body.centre, body.centre).expanded(extents.radius),
+        }
+    }
+
+    /// A box around a shape on its way.
+    fn around(&self, bounds: Aabb) -> Aabb {
+        let grown = bounds.expanded(self.turned);
+        Aabb::new(grown.lower.max(self.disc.lower), grown.upper.min(self.disc.upper)).swept(self.shift)
     }
 }
 
 /// Moves the bodies to where the solver has brought them, or fast ones as far as nothing stops them.
 fn finalise_poses(state: &mut State, scratch: &mut Scratch) {
     let roster = core::mem::take(&mut scratch.roster.bodies);
-    let mut swept = core::mem::take(&mut scratch.swept);
-    swept.clear();
+    let mut bullets = core::mem::take(&mut scratch.bullets);
+    bullets.clear();
     scratch.stats.impacts = 0;
-    let pose_of =
-        |&slot: &u32| Pose { centre: state.bodies.at(slot).centre, angle: state.bodies.at(slot).angle };
     scratch.starts.clear();
-    scratch.starts.extend(roster.iter().map(pose_of));
     for &slot in &roster {
+        let body = state.bodies.at(slot);
+        scratch.starts.push(Pose { centre: body.centre, angle: body.angle });
         let (pose, turn) = finalise_body(state, scratch, slot);
         match continuous::sweep_of(state, scratch, slot, pose, turn) {
-            Some(fast) => swept.push(fast),
             None => move_body(state, scratch, slot, pose),
+            Some(fast) if fast.is_bullet(state) => bullets.push(fast),
+            // Stopped by fixed bodies alone, which are where they were: it need not wait for the others.
+            Some(fast) => continuous::sweep(state, scratch, &fast),
         }
     }
     scratch.roster.bodies = roster;
-    continuous::sweep(state, scratch, &swept);
-    scratch.swept = swept;
+    // In slot order, while everything else is where it will be.
+    for bullet in &bullets {
+        continuous::sweep(state, scratch, bullet);
+    }
+    scratch.bullets = bullets;
 }
 
 /// Takes over what the solver has found out about a body. Returns where it goes, and how far it turns in units of
@@ -158,7 +199,7 @@ pub(super) fn move_body(state: &mut State, scratch: &mut Scratch, slot: u32, pos
     let body = state.bodies.at_mut(slot);
     if (body.centre, body.angle) != (pose.centre, pose.angle) {
         (body.centre, body.angle) = (pose.centre, pose.angle);
-        scratch.poses.pose_body(state, state.bodies.at(slot));
+        scratch.poses.move_body(state, state.bodies.at(slot));
         cover_shapes(state, scratch, slot);
     }
 }
@@ -168,10 +209,10 @@ fn cover_shapes(state: &mut State, scratch: &mut Scratch, slot: u32) {
     let State { bodies, shapes, config, .. } = state;
     for id in bodies.at(slot).shapes() {
         let bounds = scratch.poses.at(id.slot()).bounds;
-        let fat = &mut shapes.at_mut(id.slot()).fat;
-        if !fat.contains(bounds) {
-            *fat = bounds.expanded(config.fat_margin);
-            scratch.broad_phase.set(id.slot(), *fat);
+        if !scratch.broad_phase.fat(id.slot()).contains(bounds) {
+            let fat = bounds.expanded(config.margin_of(bounds));
+            shapes.at_mut(id.slot()).fat = fat;
+            scratch.broad_phase.set(id.slot(), fat);
             scratch.changes.shapes.push(id.slot());
         }
     }

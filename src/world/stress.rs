@@ -28,6 +28,7 @@ pub(super) fn report(state: &mut State, scratch: &mut Scratch, tuning: &Tuning) 
     for &id in &broken {
         if let Some(joint) = state.joints.remove(id) {
             let (a, b) = joint.def().bodies();
+            scratch.links.remove(id, (a, b));
             rejoined(state, scratch, [a, b]);
         }
     }

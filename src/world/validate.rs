@@ -119,7 +119,7 @@ fn check_shapes(state: &State) -> Result<(), Violation> {
         let valid = shape.def.validate(reach_max(body.kind()));
         valid.map_err(|error| Violation { what: format!("shape {id}: {error}") })?;
         check(shape.fat.is_valid(), || format!("shape {id}: a fat box with its corners exchanged"))?;
-        let expected = || fat_box(&shape.def, body, state.config.fat_margin);
+        let expected = || fat_box(&shape.def, body, &state.config);
         check(body.kind() != BodyKind::Fixed || shape.fat == expected(), || {
             format!("shape {id}: the fat box of a fixed shape is somewhere else")
         })?;

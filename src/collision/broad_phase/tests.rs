@@ -59,6 +59,11 @@ impl Crowd {
         self.kinds.iter_mut().for_each(|kind| kind.set(u32::try_from(slot).expect("few"), fat));
     }
 
+    fn set_many(&mut self, many: &[(u32, Aabb)]) {
+        many.iter().for_each(|&(slot, fat)| self.boxes[slot as usize] = Some(fat));
+        self.kinds.iter_mut().for_each(|kind| kind.set_many(many));
+    }
+
     fn remove(&mut self, slot: usize) {
         self.boxes[slot] = None;
         self.kinds.iter_mut().for_each(|kind| kind.remove(u32::try_from(slot).expect("few")));
@@ -119,6 +124,16 @@ fn all_kinds_find_the_same_pairs_while_boxes_move() {
         }
         if round % 50 == 49 {
             crowd.refill();
+        }
+        // From a few of them to all.
+        let share = rng.below(8);
+        let many: Vec<_> = crowd.occupied().filter(|_| rng.below(8) < share).collect();
+        let shift = random_vector(&mut rng, 1 << 32);
+        let many: Vec<_> = many.into_iter().map(|(slot, fat)| (slot, fat.translated(shift))).collect();
+        crowd.set_many(&many);
+        for (slot, fat) in (0..).zip(&crowd.boxes) {
+            let expected = fat.unwrap_or(Aabb::NOWHERE);
+            assert!(crowd.kinds.iter().all(|kind| kind.fat(slot) == expected));
         }
         let accept = |(a, b): Pair| {
             assert!(a < b);

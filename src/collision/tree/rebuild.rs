@@ -1,13 +1,39 @@
-//! Building a tree from the top: the boxes are halved at the median of their centres, again and again, so that the
-//! height is the logarithm of their number. Nodes are stored in the order of a search.
+//! Whole trees at once, when many boxes have moved. First the boxes of the nodes are fitted again, from the leaves up;
+//! if the tree has become worse by that, it is built anew from the top: the boxes are halved at the median of their
+//! centres, again and again, so that the height is the logarithm of their number. Nodes are stored in the order of a
+//! search.
 
 use alloc::vec::Vec;
 
-use super::{NONE, Node, Tree};
-use crate::math::{Aabb, Fx, Vec2};
+use super::{NONE, Node, Tree, perimeter};
+use crate::math::Aabb;
 
-/// A leaf that is not in the tree yet: where its centre is, and itself.
-type Loose = (Vec2<Fx>, Node);
+/// What is kept from one rebuild for the next.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Rebuilt {
+    /// The cost of the tree when it was new.
+    cost: u64,
+    /// The nodes before: each rebuild exchanges them with the new ones.
+    nodes: Vec<Node>,
+    loose: Vec<Loose>,
+    waiting: Vec<Part>,
+}
+
+/// A leaf that is not in the tree yet: its centre on a grid of 2^32 cells a side around all of them, and its node.
+#[derive(Clone, Copy, Debug)]
+struct Loose {
+    x: u32,
+    y: u32,
+    leaf: u32,
+}
+
+/// Some of the loose leaves, which are to become the next child of a node.
+#[derive(Clone, Copy, Debug)]
+struct Part {
+    start: usize,
+    end: usize,
+    parent: u32,
+}
 
 impl Tree {
     /// Replaces all boxes.
@@ -26,39 +52,70 @@ impl Tree {
         self.rebuild();
     }
 
-    /// Builds the tree anew around the leaves that there are.
-    pub(super) fn rebuild(&mut self) {
-        let leaves = self.leaves.iter().filter(|&&leaf| leaf != NONE).map(|&leaf| *self.at(leaf));
-        let mut loose: Vec<Loose> = leaves.map(|leaf| (leaf.aabb.centre(), leaf)).collect();
-        self.nodes.clear();
-        self.nodes.reserve(2 * loose.len());
-        (self.root, self.vacant) = (NONE, NONE);
-        self.len = u32::try_from(loose.len()).expect("fewer than 2^31 shapes");
-        self.build(&mut loose);
-        // Children have been stored behind their parents.
+    /// Moves the boxes of many slots, which have one.
+    pub(crate) fn set_many(&mut self, boxes: impl ExactSizeIterator<Item = (u32, Aabb)>) {
+        if boxes.len() + (self.strays as usize) < self.len() / 16 {
+            boxes.for_each(|(slot, fat)| self.set(slot, fat));
+            return;
+        }
+        for (slot, fat) in boxes {
+            match self.leaf_of(slot) {
+                Some(leaf) => self.at_mut(leaf).aabb = fat,
+                None => self.set(slot, fat),
+            }
+        }
+        // An old tree that costs a quarter more than it did is worth a new one.
+        if !self.ordered || self.refit_all() / 5 > self.rebuilt.cost / 4 {
+            self.rebuild();
+        }
+        self.strays = 0;
+    }
+
+    /// Boxes and heights of all inner nodes. Returns the cost of the tree.
+    fn refit_all(&mut self) -> u64 {
+        let mut cost = 0_u64;
         for index in (0..u32::try_from(self.nodes.len()).expect("fewer than 2^32 nodes")).rev() {
             if !self.at(index).is_leaf() {
                 self.refit(index);
+                cost = cost.saturating_add(perimeter(self.at(index).aabb) >> 16);
             }
         }
+        cost
+    }
+
+    /// Builds the tree anew around the leaves that there are.
+    pub(super) fn rebuild(&mut self) {
+        let mut rebuilt = core::mem::take(&mut self.rebuilt);
+        core::mem::swap(&mut self.nodes, &mut rebuilt.nodes);
+        rebuilt.collect(&self.leaves);
+        self.nodes.clear();
+        self.nodes.reserve(2 * rebuilt.loose.len());
+        (self.root, self.vacant) = (NONE, NONE);
+        self.len = u32::try_from(rebuilt.loose.len()).expect("fewer than 2^31 shapes");
+        self.build(&mut rebuilt);
+        // Children have been stored behind their parents.
+        rebuilt.cost = self.refit_all();
+        self.rebuilt = rebuilt;
+        (self.ordered, self.strays) = (true, 0);
     }
 
     /// Stores the nodes, inner ones without boxes and heights.
-    fn build(&mut self, loose: &mut [Loose]) {
-        // Parts that wait for their parent's first half to be done.
-        let mut waiting: Vec<(&mut [Loose], u32)> = Vec::new();
-        waiting.push((loose, NONE));
-        while let Some((part, parent)) = waiting.pop() {
-            let node = match part {
+    fn build(&mut self, Rebuilt { nodes, loose, waiting, .. }: &mut Rebuilt) {
+        waiting.clear();
+        waiting.push(Part { start: 0, end: loose.len(), parent: NONE });
+        // Parts wait for their parent's first half to be done.
+        while let Some(Part { start, end, parent }) = waiting.pop() {
+            let node = match loose[start..end] {
                 [] => continue,
-                [(_, leaf)] => Node { parent, ..*leaf },
+                [Loose { leaf, .. }] => Node { parent, ..nodes[leaf as usize] },
                 _ => Node { aabb: Aabb::default(), parent, height: 1, children: [NONE, NONE] },
             };
             let index = self.allocate(node);
             self.replace_child(parent, NONE, index);
-            if let [_, _, ..] = part {
-                let (first, second) = halved(part);
-                waiting.extend([(second, index), (first, index)]);
+            if end - start > 1 {
+                let middle = start + halve(&mut loose[start..end]);
+                waiting.push(Part { start: middle, end, parent: index });
+                waiting.push(Part { start, end: middle, parent: index });
             } else {
                 self.leaves[node.children[0] as usize] = index;
             }
@@ -66,16 +123,42 @@ impl Tree {
     }
 }
 
-/// Two halves on either side of the median along the axis on which the centres are farther apart. Slots break ties.
-fn halved(part: &mut [Loose]) -> (&mut [Loose], &mut [Loose]) {
-    let around = Aabb::from_points(part.iter().map(|&(centre, _)| centre)).unwrap_or_default();
-    let width = around.upper.x.to_bits().abs_diff(around.lower.x.to_bits());
-    let height = around.upper.y.to_bits().abs_diff(around.lower.y.to_bits());
-    let middle = part.len() / 2;
-    if width >= height {
-        part.select_nth_unstable_by_key(middle, |(centre, leaf)| (centre.x, leaf.children[0]));
-    } else {
-        part.select_nth_unstable_by_key(middle, |(centre, leaf)| (centre.y, leaf.children[0]));
+impl Rebuilt {
+    /// Lists the leaves of the old nodes.
+    fn collect(&mut self, leaves: &[u32]) {
+        let Rebuilt { nodes, loose, .. } = self;
+        let present = || leaves.iter().filter(|&&leaf| leaf != NONE);
+        let centres = present().map(|&leaf| nodes[leaf as usize].aabb.centre());
+        let around = Aabb::from_points(centres).unwrap_or_default();
+        let (origin, corner) = (around.lower, around.upper);
+        let widest = corner
+            .x
+            .to_bits()
+            .abs_diff(origin.x.to_bits())
+            .max(corner.y.to_bits().abs_diff(origin.y.to_bits()));
+        let shift = u64::BITS.saturating_sub(widest.leading_zeros()).saturating_sub(u32::BITS);
+        let cell =
+            |at: i64, origin: i64| u32::try_from(at.abs_diff(origin) >> shift).expect("within the grid");
+        loose.clear();
+        loose.extend(present().map(|&leaf| {
+            let centre = nodes[leaf as usize].aabb.centre();
+            let x = cell(centre.x.to_bits(), origin.x.to_bits());
+            Loose { x, y: cell(centre.y.to_bits(), origin.y.to_bits()), leaf }
+        }));
     }
-    part.split_at_mut(middle)
+}
+
+/// Two halves on either side of the median along the axis on which the centres are farther apart. Returns where the
+/// second begins.
+fn halve(part: &mut [Loose]) -> usize {
+    let middle = part.len() / 2;
+    let least_most = (u32::MAX, u32::MIN);
+    let grow = |(least, most): (u32, u32), x: u32| (least.min(x), most.max(x));
+    let (x, y) = part.iter().fold((least_most, least_most), |(x, y), at| (grow(x, at.x), grow(y, at.y)));
+    if x.1 - x.0 >= y.1 - y.0 {
+        part.select_nth_unstable_by_key(middle, |at| at.x);
+    } else {
+        part.select_nth_unstable_by_key(middle, |at| at.y);
+    }
+    middle
 }
