@@ -162,8 +162,8 @@ impl Lanes<WIDTH> for Avx2 {
     fn mul(a: __m256i, b: __m256i) -> Products {
         // SAFETY: see `Avx2`. It multiplies the even lanes.
         unsafe {
-            let odd = |v| _mm256_srli_epi64::<32>(v);
-            Products { even: _mm256_mul_epi32(a, b), odd: _mm256_mul_epi32(odd(a), odd(b)) }
+            let (odd_a, odd_b) = (_mm256_srli_epi64::<32>(a), _mm256_srli_epi64::<32>(b));
+            Products { even: multiplied(a, b), odd: multiplied(odd_a, odd_b) }
         }
     }
 
@@ -252,6 +252,26 @@ impl Lanes<WIDTH> for Avx2 {
             }
         }
     }
+}
+
+/// The products of the even lanes. The compiler knows the instruction as a product of sign-extended numbers, takes the
+/// extension out of loops and past branches, and then no longer sees that 64-bit products are not needed: a fifth of the
+/// time of a kernel.
+#[inline]
+#[target_feature(enable = "avx2")]
+unsafe fn multiplied(a: __m256i, b: __m256i) -> __m256i {
+    let product: __m256i;
+    // SAFETY: see `Avx2`; nothing but the result is changed.
+    unsafe {
+        core::arch::asm!(
+            "vpmuldq {product}, {a}, {b}",
+            a = in(ymm_reg) a,
+            b = in(ymm_reg) b,
+            product = lateout(ymm_reg) product,
+            options(pure, nomem, nostack, preserves_flags),
+        );
+    }
+    product
 }
 
 /// A result, or the limit on the side of `sign` where it overflows.
