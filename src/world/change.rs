@@ -122,7 +122,7 @@ impl World {
         let mass = mass_of(owner.kind(), owner.mass_source, &owner.settings, shapes)?;
         self.check_spin(owner, &mass)?;
         islands::wake_body(&mut self.state, &mut self.scratch, body.slot());
-        self.state.bodies.at_mut(body.slot()).set_mass(mass);
+        self.state.bodies.redefine(body.slot()).set_mass(mass);
         let id = self.insert_shape(body, shape);
         // The centre of mass may have moved, and with it, by a rounding, the places of the other shapes.
         self.placed(body.slot());
@@ -144,7 +144,7 @@ impl World {
         self.check_spin(owner, &mass)?;
         islands::disturb(&mut self.state, &mut self.scratch, body.slot());
         self.forget_shapes(&[id]);
-        let owner = self.state.bodies.at_mut(body.slot());
+        let owner = self.state.bodies.redefine(body.slot());
         owner.shapes.retain(|&other| other != id);
         owner.set_mass(mass);
         // The centre of mass has moved, and with it, by a rounding, the places of the other shapes.
@@ -250,7 +250,7 @@ impl World {
 
     /// Adds a shape that has been checked. It has to be posed afterwards.
     fn insert_shape(&mut self, body: BodyId, def: &ShapeDef) -> ShapeId {
-        let owner = self.state.bodies.at_mut(body.slot());
+        let owner = self.state.bodies.redefine(body.slot());
         let fat = fat_box(def, owner, self.state.config.fat_margin);
         let id = self.state.shapes.insert(Shape { body, def: *def, fat });
         owner.shapes.push(id);
@@ -261,7 +261,8 @@ impl World {
     pub(super) fn replace(&mut self, slot: u32) {
         let body = self.state.bodies.at(slot);
         for shape in &body.shapes {
-            let shape = self.state.shapes.at_mut(shape.slot());
+            // Boxes of fixed bodies are not among what a step changes, and the body may have ceased to be fixed.
+            let shape = self.state.shapes.redefine(shape.slot());
             shape.fat = fat_box(&shape.def, body, self.state.config.fat_margin);
         }
         self.placed(slot);

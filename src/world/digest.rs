@@ -4,7 +4,6 @@ use alloc::vec::Vec;
 use core::fmt;
 
 use super::World;
-use super::state::State;
 use crate::body::BodyId;
 use crate::hash::StateHash;
 
@@ -49,6 +48,19 @@ pub struct WorldDigest {
 }
 
 impl WorldDigest {
+    /// Of sections that have not been looked at yet.
+    pub(super) const NONE: Self = WorldDigest {
+        sections: [
+            (Section::World, StateHash(0)),
+            (Section::Bodies, StateHash(0)),
+            (Section::Shapes, StateHash(0)),
+            (Section::Joints, StateHash(0)),
+            (Section::Contacts, StateHash(0)),
+            (Section::Islands, StateHash(0)),
+            (Section::Random, StateHash(0)),
+        ],
+    };
+
     /// The hash of the whole state.
     #[must_use]
     pub fn state_hash(&self) -> StateHash {
@@ -73,32 +85,7 @@ impl World {
     /// The digest of each section of the state.
     #[must_use]
     pub fn digest(&self) -> WorldDigest {
-        // Destructured, so that a new field does not compile until it has a section.
-        let State {
-            config,
-            tick,
-            faults,
-            bodies,
-            shapes,
-            joints,
-            islands,
-            contacts,
-            resting,
-            pairs_left_out,
-            removed_contacts,
-            rng,
-        } = &self.state;
-        WorldDigest {
-            sections: [
-                (Section::World, StateHash::of(&(config, tick, faults))),
-                (Section::Bodies, StateHash::of(bodies)),
-                (Section::Shapes, StateHash::of(shapes)),
-                (Section::Joints, StateHash::of(joints)),
-                (Section::Contacts, StateHash::of(&(contacts, resting, pairs_left_out, removed_contacts))),
-                (Section::Islands, StateHash::of(islands)),
-                (Section::Random, StateHash::of(rng)),
-            ],
-        }
+        self.save().digest()
     }
 
     /// The digest of each body, in slot order.

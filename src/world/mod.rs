@@ -19,6 +19,7 @@ mod pairs;
 mod probe;
 mod push;
 mod query;
+mod rollback;
 mod scratch;
 mod state;
 mod stats;
@@ -27,7 +28,7 @@ mod stress;
 mod timestep;
 mod validate;
 
-pub use bytes::{Snapshot, SnapshotError};
+pub use bytes::SnapshotError;
 pub use change::Place;
 pub use character::{Moved, Mover, MoverState};
 pub use command::{Command, Outcome};
@@ -38,6 +39,7 @@ pub use explosion::Explosion;
 pub use mover_planes::{MoverPlane, clip_velocity, solve_planes};
 pub use probe::Probe;
 pub use query::{CastHit, Proximity, QueryFilter, RayHit};
+pub use rollback::Snapshot;
 pub use stats::{Phase, StepStats};
 pub use timestep::FixedTimestep;
 pub use validate::Violation;
@@ -93,7 +95,8 @@ impl World {
         Ok(World::of(State::new(config), BroadPhaseKind::default()))
     }
 
-    fn of(state: State, broad_phase: BroadPhaseKind) -> Self {
+    fn of(mut state: State, broad_phase: BroadPhaseKind) -> Self {
+        state.keep_pages();
         let scratch = Scratch::new(broad_phase, &state);
         World { state, scratch }
     }

@@ -172,7 +172,7 @@ fn both_fixed(a: BodyKind, b: BodyKind) -> bool {
 }
 
 /// Hints are found by the place of their contact, which is about to change.
-fn remember_hints(state: &State, scratch: &mut Scratch) {
+pub(super) fn remember_hints(state: &State, scratch: &mut Scratch) {
     scratch.old_hints.clear();
     if scratch.hints.len() == state.contacts.len() {
         let pairs = state.contacts.iter().map(|contact| contact.shapes);
@@ -180,7 +180,7 @@ fn remember_hints(state: &State, scratch: &mut Scratch) {
     }
 }
 
-fn recall_hints(state: &State, scratch: &mut Scratch) {
+pub(super) fn recall_hints(state: &State, scratch: &mut Scratch) {
     let mut old = scratch.old_hints.iter().peekable();
     scratch.hints.clear();
     scratch.hints.extend(state.contacts.iter().map(|contact| {

@@ -117,9 +117,35 @@ impl Scratch {
         for (_, body) in state.bodies.iter() {
             scratch.poses.pose_body(state, body);
         }
-        let enabled = state.shapes.iter().filter(|(_, shape)| state.bodies.at(shape.body().slot()).enabled);
-        scratch.broad_phase.refill(enabled.map(|(id, shape)| (id.slot(), shape.fat)));
+        scratch.refill_boxes(state);
         scratch
+    }
+
+    fn refill_boxes(&mut self, state: &State) {
+        let enabled = state.shapes.iter().filter(|(_, shape)| state.bodies.at(shape.body().slot()).enabled);
+        self.broad_phase.refill(enabled.map(|(id, shape)| (id.slot(), shape.fat)));
+    }
+
+    /// Brings the broad phase in line with shapes in some slots: that have another box, or that have come or gone.
+    pub(crate) fn set_boxes(&mut self, state: &State, slots: &[u32]) {
+        if slots.len() > state.shapes.len() / 2 {
+            self.refill_boxes(state);
+            return;
+        }
+        for &slot in slots {
+            match state.shapes.get_slot(slot).filter(|shape| state.bodies.at(shape.body().slot()).enabled) {
+                Some(shape) => self.broad_phase.set(slot, shape.fat),
+                None => self.broad_phase.remove(slot),
+            }
+        }
+    }
+
+    /// Drops what is known of the last tick only: the state is now that of another one.
+    pub(crate) fn reset_results(&mut self) {
+        self.forget_contacts();
+        self.ended.clear();
+        self.events.clear();
+        self.stats = StepStats::default();
     }
 
     /// Brings the caches in line with the place of a body's shapes.

@@ -76,6 +76,14 @@ impl State {
         }
     }
 
+    /// Makes room for the copies that snapshots share, after it has been decoded.
+    pub(crate) fn keep_pages(&mut self) {
+        self.bodies.keep_pages();
+        self.shapes.keep_pages();
+        self.joints.keep_pages();
+        self.islands.keep_pages();
+    }
+
     /// The bodies of a pair of shapes.
     pub(crate) fn bodies_of(&self, (a, b): Pair) -> (&Body, &Body) {
         (self.body_of(a), self.body_of(b))

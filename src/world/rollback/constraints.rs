@@ -1,0 +1,134 @@
+//! What a step changes of contacts and joints, as bytes.
+//!
+//! The numbers of contacts that are looked at and that rest (2 x u32), then 8 bytes of each: shape A (30 bits), shape B
+//! (29 bits), touching, passing, number of points (2 bits), whether it has impulses. Then 24 bytes of each that has: normal
+//! and tangential impulse of both points, impulse against rolling (5 x i32), features (2 x u16).
+//!
+//! Of every joint a byte that says which of its six impulses are not 0 and whether its turns take 8 bytes, then these
+//! (i32 each) and the turns (i32 or i64).
+
+use alloc::vec::Vec;
+
+use super::packing::{Reader, Record};
+use crate::body::{Arena, JointId};
+use crate::collision::{Contact, PointImpulse};
+use crate::math::Speed;
+use crate::solver::Joint;
+
+pub(super) const CONTACT_BYTES: usize = 8;
+pub(super) const IMPULSES_BYTES: usize = 24;
+/// The bit of a joint's first byte for turns of 8 bytes.
+const MANY_TURNS: u8 = 1 << 6;
+/// Impulses of a joint.
+const JOINT_IMPULSES: u8 = 6;
+
+pub(super) fn pack_contacts(contacts: &[Contact], resting: &[Contact], bytes: &mut Vec<u8>) {
+    bytes.clear();
+    let all = || contacts.iter().chain(resting);
+    let with_impulses = all().filter(|contact| has_impulses(contact)).count();
+    bytes.reserve(8 + (contacts.len() + resting.len()) * CONTACT_BYTES + with_impulses * IMPULSES_BYTES);
+    let mut counts = Record::<8>::new();
+    for list in [contacts, resting] {
+        counts.put(u32::try_from(list.len()).unwrap_or(u32::MAX));
+    }
+    counts.append_to(bytes);
+    for list in [contacts, resting] {
+        list.iter().for_each(|contact| bytes.extend_from_slice(&head(contact).to_le_bytes()));
+    }
+    for list in [contacts, resting] {
+        for contact in list.iter().filter(|contact| has_impulses(contact)) {
+            let mut record = Record::<IMPULSES_BYTES>::new();
+            for point in &contact.points {
+                record.put(point.normal.to_bits());
+                record.put(point.tangent.to_bits());
+            }
+            record.put(contact.rolling.to_bits());
+            contact.points.iter().for_each(|point| record.put(point.feature));
+            record.append_to(bytes);
+        }
+    }
+}
+
+fn has_impulses(contact: &Contact) -> bool {
+    contact.count != 0 || contact.rolling != 0
+}
+
+/// Slots are below 2^21.
+fn head(contact: &Contact) -> u64 {
+    let (a, b) = contact.shapes;
+    u64::from(a) << 34
+        | u64::from(b) << 5
+        | u64::from(contact.touching) << 4
+        | u64::from(contact.passing) << 3
+        | u64::from(contact.count.min(3)) << 1
+        | u64::from(has_impulses(contact))
+}
+
+pub(super) fn unpack_contacts(contacts: &mut Vec<Contact>, resting: &mut Vec<Contact>, bytes: &[u8]) {
+    let mut reader = Reader(bytes);
+    let counts: [u32; 2] = core::array::from_fn(|_| reader.take());
+    let mut heads = reader.part((counts[0] as usize + counts[1] as usize) * CONTACT_BYTES);
+    for (list, count) in [contacts, resting].into_iter().zip(counts) {
+        list.clear();
+        list.extend((0..count).map(|_| unpack_contact(heads.take(), &mut reader)));
+    }
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "masked to the bits that were packed")]
+fn unpack_contact(head: u64, impulses: &mut Reader<'_>) -> Contact {
+    let bits = |shift: u32, count: u32| head >> shift & ((1 << count) - 1);
+    let mut contact = Contact::new((bits(34, 30) as u32, bits(5, 29) as u32));
+    contact.touching = bits(4, 1) != 0;
+    contact.passing = bits(3, 1) != 0;
+    contact.count = bits(1, 2) as u8;
+    if bits(0, 1) != 0 {
+        for point in &mut contact.points {
+            let (normal, tangent) = (Speed::from_bits(impulses.take()), Speed::from_bits(impulses.take()));
+            *point = PointImpulse { feature: 0, normal, tangent };
+        }
+        contact.rolling = Speed::from_bits(impulses.take());
+        contact.points.iter_mut().for_each(|point| point.feature = impulses.take());
+    }
+    contact
+}
+
+/// A joint without what a step changes.
+pub(super) fn lasting_joint(joint: &Joint) -> Joint {
+    Joint::new(joint.def)
+}
+
+pub(super) fn pack_joints(joints: &Arena<Joint, JointId>, bytes: &mut Vec<u8>) {
+    bytes.clear();
+    for (_, joint) in joints.iter() {
+        let mut record = Record::<{ 1 + 6 * 4 + 8 }>::new();
+        let few_turns = i32::try_from(joint.turns);
+        let mut there = if few_turns.is_err() { MANY_TURNS } else { 0 };
+        for (place, impulse) in (0..JOINT_IMPULSES).zip(joint.impulses.0) {
+            there |= u8::from(impulse != 0) << place;
+        }
+        record.put(there);
+        joint
+            .impulses
+            .0
+            .iter()
+            .filter(|&&impulse| impulse != 0)
+            .for_each(|impulse| record.put(impulse.to_bits()));
+        match few_turns {
+            Ok(turns) => record.put(turns),
+            Err(_) => record.put(joint.turns),
+        }
+        record.append_to(bytes);
+    }
+}
+
+pub(super) fn unpack_joints(joints: &mut Arena<Joint, JointId>, bytes: &[u8]) {
+    let mut reader = Reader(bytes);
+    for (_, joint) in joints.iter_mut() {
+        let there: u8 = reader.take();
+        for (place, impulse) in (0..JOINT_IMPULSES).zip(&mut joint.impulses.0) {
+            let some = there >> place & 1 != 0;
+            *impulse = if some { Speed::from_bits(reader.take()) } else { Speed::ZERO };
+        }
+        joint.turns = if there & MANY_TURNS != 0 { reader.take() } else { reader.take::<i32>().into() };
+    }
+}

@@ -1,0 +1,82 @@
+//! Little-endian integers in a buffer that is reused: records of a fixed size, written and read in order.
+
+use alloc::vec::Vec;
+
+/// An integer of a fixed number of bytes.
+pub(super) trait Integer: Copy {
+    type Bytes: AsRef<[u8]> + for<'a> TryFrom<&'a [u8]>;
+    fn to_bytes(self) -> Self::Bytes;
+    fn of_bytes(bytes: Self::Bytes) -> Self;
+}
+
+macro_rules! integers {
+    ($($integer:ty)*) => {
+        $(impl Integer for $integer {
+            type Bytes = [u8; size_of::<$integer>()];
+            #[inline(always)]
+            fn to_bytes(self) -> Self::Bytes {
+                self.to_le_bytes()
+            }
+            #[inline(always)]
+            fn of_bytes(bytes: Self::Bytes) -> Self {
+                <$integer>::from_le_bytes(bytes)
+            }
+        })*
+    };
+}
+
+integers!(u8 u16 u32 u64 i32 i64);
+
+/// A record of `N` bytes that is being written.
+pub(super) struct Record<const N: usize> {
+    bytes: [u8; N],
+    len: usize,
+}
+
+impl<const N: usize> Record<N> {
+    #[inline(always)]
+    pub(super) fn new() -> Self {
+        Record { bytes: [0; N], len: 0 }
+    }
+
+    #[inline(always)]
+    pub(super) fn put<I: Integer>(&mut self, integer: I) {
+        let bytes = integer.to_bytes();
+        let bytes = bytes.as_ref();
+        self.bytes[self.len..self.len + bytes.len()].copy_from_slice(bytes);
+        self.len += bytes.len();
+    }
+
+    /// Appends what has been written.
+    #[inline(always)]
+    pub(super) fn append_to(&self, bytes: &mut Vec<u8>) {
+        bytes.extend_from_slice(&self.bytes[..self.len]);
+    }
+}
+
+/// What is left to be read. Reads zeros after the end, which a buffer of our own never comes to.
+#[derive(Clone, Copy)]
+pub(super) struct Reader<'a>(pub(super) &'a [u8]);
+
+impl<'a> Reader<'a> {
+    #[inline(always)]
+    pub(super) fn take<I: Integer + Default>(&mut self) -> I {
+        let Some((bytes, rest)) = self.0.split_at_checked(size_of::<I>()) else {
+            debug_assert!(false, "read past the end");
+            return I::default();
+        };
+        self.0 = rest;
+        I::Bytes::try_from(bytes).map_or_else(|_| I::default(), I::of_bytes)
+    }
+
+    /// The next bytes for themselves.
+    pub(super) fn part(&mut self, length: usize) -> Reader<'a> {
+        let (part, rest) = self.0.split_at(length.min(self.0.len()));
+        self.0 = rest;
+        Reader(part)
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+}
