@@ -10,7 +10,7 @@
 
 use alloc::vec::Vec;
 
-use super::packing::{Reader, Record};
+use super::packing::{Reader, Record, Writer};
 use crate::body::{Arena, Body, BodyId, BodyKind, Handle, IslandId, Pose, Shape, ShapeId};
 use crate::math::{Aabb, Angle, Fx, Speed, Vec2};
 
@@ -18,8 +18,10 @@ const FORCE: u8 = 1;
 const ISLAND: u8 = 2;
 const TARGET: u8 = 4;
 
-pub(super) const BODY_BYTES: usize = 36;
-pub(super) const BOX_BYTES: usize = 16;
+const BODY_BYTES: usize = 36;
+/// At most.
+const SPECIAL_BYTES: usize = 5 + 24 + 8 + 20;
+const BOX_BYTES: usize = 16;
 
 /// Bits of a coordinate below the grid of 2^-22 m.
 const GRID_SHIFT: u32 = 10;
@@ -46,22 +48,26 @@ fn is_fixed(shape: &Shape, bodies: &Bodies) -> bool {
 }
 
 pub(super) fn pack_bodies(bodies: &Bodies, bytes: &mut Vec<u8>) {
-    bytes.clear();
-    bytes.reserve(bodies.len() * BODY_BYTES);
-    let mut special = false;
-    for (_, body) in bodies.iter() {
-        let mut record = Record::<BODY_BYTES>::new();
-        put_place(&mut record, body.centre, body.angle);
-        record.put(body.velocity.x.to_bits());
-        record.put(body.velocity.y.to_bits());
-        record.put(body.spin.to_bits());
-        record.put(body.rest_ticks);
-        record.append_to(bytes);
-        special |= specials(body) != 0;
+    let mut special = Vec::new();
+    let mut writer = Writer::new(bytes, bodies.len() * BODY_BYTES);
+    for (id, body) in bodies.iter() {
+        writer.record(|record: &mut Record<'_, BODY_BYTES>| {
+            put_place(record, body.centre, body.angle);
+            record.put(body.velocity.x.to_bits());
+            record.put(body.velocity.y.to_bits());
+            record.put(body.spin.to_bits());
+            record.put(body.rest_ticks);
+        });
+        if specials(body) != 0 {
+            special.push((id, body));
+        }
     }
-    if special {
-        bodies.iter().for_each(|(id, body)| pack_special(id, body, bytes));
-    }
+    drop(writer);
+    let mut rest = Vec::new();
+    let mut writer = Writer::new(&mut rest, special.len() * SPECIAL_BYTES);
+    special.into_iter().for_each(|(id, body)| writer.record(|record| pack_special(id, body, record)));
+    drop(writer);
+    bytes.extend_from_slice(&rest);
 }
 
 fn specials(body: &Body) -> u8 {
@@ -70,12 +76,8 @@ fn specials(body: &Body) -> u8 {
     mark(pushed, FORCE) | mark(body.island.is_some(), ISLAND) | mark(body.target.is_some(), TARGET)
 }
 
-fn pack_special(id: BodyId, body: &Body, bytes: &mut Vec<u8>) {
-    let mut record = Record::<{ 5 + 24 + 8 + 20 }>::new();
+fn pack_special(id: BodyId, body: &Body, record: &mut Record<'_, SPECIAL_BYTES>) {
     let specials = specials(body);
-    if specials == 0 {
-        return;
-    }
     record.put(id.slot());
     record.put(specials);
     if specials & FORCE != 0 {
@@ -88,12 +90,12 @@ fn pack_special(id: BodyId, body: &Body, bytes: &mut Vec<u8>) {
         record.put(island.generation());
     }
     if let Some(target) = body.target {
-        put_place(&mut record, target.centre, target.angle);
+        put_place(record, target.centre, target.angle);
     }
-    record.append_to(bytes);
 }
 
-fn put_place<const N: usize>(record: &mut Record<N>, centre: Vec2<Fx>, angle: Angle) {
+#[inline(always)]
+fn put_place<const N: usize>(record: &mut Record<'_, N>, centre: Vec2<Fx>, angle: Angle) {
     record.put(centre.x.to_bits());
     record.put(centre.y.to_bits());
     record.put(angle.to_bits());
@@ -143,28 +145,23 @@ fn take_point(reader: &mut Reader<'_>) -> Vec2<Fx> {
 }
 
 pub(super) fn pack_boxes(shapes: &Shapes, bodies: &Bodies, bytes: &mut Vec<u8>) {
-    bytes.clear();
-    bytes.reserve(shapes.len() * BOX_BYTES);
     let mut far = Vec::new();
+    let mut writer = Writer::new(bytes, shapes.len() * BOX_BYTES);
     for (_, shape) in shapes.iter() {
         let body = bodies.at(shape.body.slot());
         if body.kind == BodyKind::Fixed {
             continue;
         }
-        let mut record = Record::<BOX_BYTES>::new();
-        for corner in about(shape.fat, body.centre).unwrap_or([i32::MIN, 0, 0, 0]) {
-            record.put(corner);
+        let near = about(shape.fat, body.centre);
+        if near.is_none() {
+            far.extend(corners(shape.fat).map(Fx::to_bits));
         }
-        record.append_to(bytes);
-        if about(shape.fat, body.centre).is_none() {
-            far.push(shape.fat);
-        }
+        let steps = near.unwrap_or([i32::MIN, 0, 0, 0]);
+        writer
+            .record(|record: &mut Record<'_, BOX_BYTES>| steps.into_iter().for_each(|step| record.put(step)));
     }
-    for fat in far {
-        let mut record = Record::<32>::new();
-        corners(fat).into_iter().for_each(|corner| record.put(corner.to_bits()));
-        record.append_to(bytes);
-    }
+    drop(writer);
+    far.into_iter().for_each(|corner| bytes.extend_from_slice(&corner.to_le_bytes()));
 }
 
 fn corners(fat: Aabb) -> [Fx; 4] {

@@ -1,50 +1,54 @@
 //! What a step changes of contacts and joints, as bytes.
 //!
 //! The numbers of contacts that are looked at and that rest (2 x u32), then 8 bytes of each: shape A (30 bits), shape B
-//! (29 bits), touching, passing, number of points (2 bits), whether it has impulses. Then 24 bytes of each that has: normal
-//! and tangential impulse of both points, impulse against rolling (5 x i32), features (2 x u16).
+//! (29 bits), touching, passing, number of points (2 bits), whether it has impulses. Elsewhere, 24 bytes of each that has:
+//! normal and tangential impulse of both points, impulse against rolling (5 x i32), features (2 x u16).
 //!
 //! Of every joint a byte that says which of its six impulses are not 0 and whether its turns take 8 bytes, then these
 //! (i32 each) and the turns (i32 or i64).
 
 use alloc::vec::Vec;
 
-use super::packing::{Reader, Record};
+use super::packing::{Reader, Record, Writer};
 use crate::body::{Arena, JointId};
 use crate::collision::{Contact, PointImpulse};
 use crate::math::Speed;
 use crate::solver::Joint;
 
-pub(super) const CONTACT_BYTES: usize = 8;
-pub(super) const IMPULSES_BYTES: usize = 24;
+const HEAD_BYTES: usize = 8;
+const IMPULSES_BYTES: usize = 24;
+/// At most.
+const JOINT_BYTES: usize = 1 + 6 * 4 + 8;
 /// The bit of a joint's first byte for turns of 8 bytes.
 const MANY_TURNS: u8 = 1 << 6;
 /// Impulses of a joint.
 const JOINT_IMPULSES: u8 = 6;
 
-pub(super) fn pack_contacts(contacts: &[Contact], resting: &[Contact], bytes: &mut Vec<u8>) {
-    bytes.clear();
-    let all = || contacts.iter().chain(resting);
-    let with_impulses = all().filter(|contact| has_impulses(contact)).count();
-    bytes.reserve(8 + (contacts.len() + resting.len()) * CONTACT_BYTES + with_impulses * IMPULSES_BYTES);
-    let mut counts = Record::<8>::new();
-    for list in [contacts, resting] {
-        counts.put(u32::try_from(list.len()).unwrap_or(u32::MAX));
-    }
-    counts.append_to(bytes);
-    for list in [contacts, resting] {
-        list.iter().for_each(|contact| bytes.extend_from_slice(&head(contact).to_le_bytes()));
-    }
-    for list in [contacts, resting] {
-        for contact in list.iter().filter(|contact| has_impulses(contact)) {
-            let mut record = Record::<IMPULSES_BYTES>::new();
-            for point in &contact.points {
-                record.put(point.normal.to_bits());
-                record.put(point.tangent.to_bits());
-            }
-            record.put(contact.rolling.to_bits());
-            contact.points.iter().for_each(|point| record.put(point.feature));
-            record.append_to(bytes);
+pub(super) fn pack_contacts(
+    contacts: &[Contact],
+    resting: &[Contact],
+    heads: &mut Vec<u8>,
+    impulses: &mut Vec<u8>,
+) {
+    let count = contacts.len() + resting.len();
+    let mut heads = Writer::new(heads, 8 + count * HEAD_BYTES);
+    let mut impulses = Writer::new(impulses, count * IMPULSES_BYTES);
+    heads.record(|record: &mut Record<'_, 8>| {
+        for list in [contacts, resting] {
+            record.put(u32::try_from(list.len()).unwrap_or(u32::MAX));
+        }
+    });
+    for contact in contacts.iter().chain(resting) {
+        heads.record(|record: &mut Record<'_, HEAD_BYTES>| record.put(head(contact)));
+        if has_impulses(contact) {
+            impulses.record(|record: &mut Record<'_, IMPULSES_BYTES>| {
+                for point in &contact.points {
+                    record.put(point.normal.to_bits());
+                    record.put(point.tangent.to_bits());
+                }
+                record.put(contact.rolling.to_bits());
+                contact.points.iter().for_each(|point| record.put(point.feature));
+            });
         }
     }
 }
@@ -64,13 +68,17 @@ fn head(contact: &Contact) -> u64 {
         | u64::from(has_impulses(contact))
 }
 
-pub(super) fn unpack_contacts(contacts: &mut Vec<Contact>, resting: &mut Vec<Contact>, bytes: &[u8]) {
-    let mut reader = Reader(bytes);
-    let counts: [u32; 2] = core::array::from_fn(|_| reader.take());
-    let mut heads = reader.part((counts[0] as usize + counts[1] as usize) * CONTACT_BYTES);
+pub(super) fn unpack_contacts(
+    contacts: &mut Vec<Contact>,
+    resting: &mut Vec<Contact>,
+    heads: &[u8],
+    impulses: &[u8],
+) {
+    let (mut heads, mut impulses) = (Reader(heads), Reader(impulses));
+    let counts: [u32; 2] = core::array::from_fn(|_| heads.take());
     for (list, count) in [contacts, resting].into_iter().zip(counts) {
         list.clear();
-        list.extend((0..count).map(|_| unpack_contact(heads.take(), &mut reader)));
+        list.extend((0..count).map(|_| unpack_contact(heads.take(), &mut impulses)));
     }
 }
 
@@ -98,26 +106,23 @@ pub(super) fn lasting_joint(joint: &Joint) -> Joint {
 }
 
 pub(super) fn pack_joints(joints: &Arena<Joint, JointId>, bytes: &mut Vec<u8>) {
-    bytes.clear();
+    let mut writer = Writer::new(bytes, joints.len() * JOINT_BYTES);
     for (_, joint) in joints.iter() {
-        let mut record = Record::<{ 1 + 6 * 4 + 8 }>::new();
-        let few_turns = i32::try_from(joint.turns);
-        let mut there = if few_turns.is_err() { MANY_TURNS } else { 0 };
-        for (place, impulse) in (0..JOINT_IMPULSES).zip(joint.impulses.0) {
-            there |= u8::from(impulse != 0) << place;
-        }
-        record.put(there);
-        joint
-            .impulses
-            .0
-            .iter()
-            .filter(|&&impulse| impulse != 0)
-            .for_each(|impulse| record.put(impulse.to_bits()));
-        match few_turns {
-            Ok(turns) => record.put(turns),
-            Err(_) => record.put(joint.turns),
-        }
-        record.append_to(bytes);
+        writer.record(|record: &mut Record<'_, JOINT_BYTES>| {
+            let few_turns = i32::try_from(joint.turns);
+            let mut there = if few_turns.is_err() { MANY_TURNS } else { 0 };
+            for (place, impulse) in (0..JOINT_IMPULSES).zip(joint.impulses.0) {
+                there |= u8::from(impulse != 0) << place;
+            }
+            record.put(there);
+            for impulse in joint.impulses.0.into_iter().filter(|&impulse| impulse != 0) {
+                record.put(impulse.to_bits());
+            }
+            match few_turns {
+                Ok(turns) => record.put(turns),
+                Err(_) => record.put(joint.turns),
+            }
+        });
     }
 }
 

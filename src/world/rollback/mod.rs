@@ -58,6 +58,7 @@ struct Packed {
     boxes: Vec<u8>,
     joints: Vec<u8>,
     contacts: Vec<u8>,
+    impulses: Vec<u8>,
 }
 
 impl PartialEq for Snapshot {
@@ -95,8 +96,7 @@ impl Snapshot {
     pub fn rollback_bytes(&self) -> usize {
         let Snapshot { rest, bodies, shapes, joints, islands, packed, digest: _, changes } = self;
         let pages = bodies.size() + shapes.size() + joints.size() + islands.size();
-        let Packed { bodies, boxes, joints, contacts } = packed;
-        let packed = bodies.len() + boxes.len() + joints.len() + contacts.len();
+        let packed: usize = packed.buffers().iter().map(|buffer| buffer.len()).sum();
         let lists = size_of_val(&*rest.removed_contacts) + size_of_val(&*changes.shapes);
         size_of::<Self>() + pages + packed + lists
     }
@@ -136,10 +136,11 @@ impl Snapshot {
         shapes.share_into(&mut self.shapes, |shape| bodies::lasting_shape(shape, bodies));
         joints.share_into(&mut self.joints, constraints::lasting_joint);
         islands.share_into(&mut self.islands, Island::clone);
-        bodies::pack_bodies(bodies, &mut self.packed.bodies);
-        bodies::pack_boxes(shapes, bodies, &mut self.packed.boxes);
-        constraints::pack_joints(joints, &mut self.packed.joints);
-        constraints::pack_contacts(contacts, resting, &mut self.packed.contacts);
+        let Packed { bodies: motions, boxes, joints: turns, contacts: heads, impulses } = &mut self.packed;
+        bodies::pack_bodies(bodies, motions);
+        bodies::pack_boxes(shapes, bodies, boxes);
+        constraints::pack_joints(joints, turns);
+        constraints::pack_contacts(contacts, resting, heads, impulses);
         self.changes.clone_from(changes);
         self.digest = self.find_digest();
     }
@@ -147,21 +148,29 @@ impl Snapshot {
     fn find_digest(&self) -> WorldDigest {
         let Snapshot { rest, bodies, shapes, joints, islands, packed, digest: _, changes: _ } = self;
         let Rest { config, tick, faults, pairs_left_out, removed_contacts, rng } = rest;
-        fn of(digests: impl Iterator<Item = StateHash>, packed: &[u8]) -> StateHash {
-            StateHash::of_digests(digests.chain([StateHash::of_bytes(packed)]))
+        fn of(shared: impl Iterator<Item = StateHash>, packed: &[u8]) -> StateHash {
+            StateHash::of_digests(shared.chain([StateHash::of_bytes(packed)]))
         }
         let ended = StateHash::of(&(pairs_left_out, removed_contacts));
+        let contacts = [ended, StateHash::of_bytes(&packed.contacts)].into_iter();
         WorldDigest {
             sections: [
                 (Section::World, StateHash::of(&(config, tick, faults))),
                 (Section::Bodies, of(bodies.digests(), &packed.bodies)),
                 (Section::Shapes, of(shapes.digests(), &packed.boxes)),
                 (Section::Joints, of(joints.digests(), &packed.joints)),
-                (Section::Contacts, of([ended].into_iter(), &packed.contacts)),
+                (Section::Contacts, of(contacts, &packed.impulses)),
                 (Section::Islands, StateHash::of_digests(islands.digests())),
                 (Section::Random, StateHash::of(rng)),
             ],
         }
+    }
+}
+
+impl Packed {
+    fn buffers(&self) -> [&Vec<u8>; 5] {
+        let Packed { bodies, boxes, joints, contacts, impulses } = self;
+        [bodies, boxes, joints, contacts, impulses]
     }
 }
 
@@ -184,8 +193,8 @@ impl World {
     pub fn save(&self) -> Snapshot {
         let mut snapshot = Snapshot::empty(&self.state);
         self.save_into(&mut snapshot);
-        let Packed { bodies, boxes, joints, contacts } = &mut snapshot.packed;
-        [bodies, boxes, joints, contacts].into_iter().for_each(Vec::shrink_to_fit);
+        let Packed { bodies, boxes, joints, contacts, impulses } = &mut snapshot.packed;
+        [bodies, boxes, joints, contacts, impulses].into_iter().for_each(Vec::shrink_to_fit);
         snapshot
     }
 

@@ -28,17 +28,12 @@ macro_rules! integers {
 integers!(u8 u16 u32 u64 i32 i64);
 
 /// A record of `N` bytes that is being written.
-pub(super) struct Record<const N: usize> {
-    bytes: [u8; N],
+pub(super) struct Record<'a, const N: usize> {
+    bytes: &'a mut [u8; N],
     len: usize,
 }
 
-impl<const N: usize> Record<N> {
-    #[inline(always)]
-    pub(super) fn new() -> Self {
-        Record { bytes: [0; N], len: 0 }
-    }
-
+impl<const N: usize> Record<'_, N> {
     #[inline(always)]
     pub(super) fn put<I: Integer>(&mut self, integer: I) {
         let bytes = integer.to_bytes();
@@ -46,11 +41,35 @@ impl<const N: usize> Record<N> {
         self.bytes[self.len..self.len + bytes.len()].copy_from_slice(bytes);
         self.len += bytes.len();
     }
+}
 
-    /// Appends what has been written.
+/// Writes records one after the other into a buffer, which has room for all of them from the start: what was there
+/// is overwritten, and nothing is cleared before.
+pub(super) struct Writer<'a> {
+    bytes: &'a mut Vec<u8>,
+    len: usize,
+}
+
+impl<'a> Writer<'a> {
+    /// With room for so many bytes.
+    pub(super) fn new(bytes: &'a mut Vec<u8>, size: usize) -> Self {
+        bytes.resize(size.max(bytes.len()), 0);
+        Writer { bytes, len: 0 }
+    }
+
+    /// The next record: as many bytes of it are kept as are put.
     #[inline(always)]
-    pub(super) fn append_to(&self, bytes: &mut Vec<u8>) {
-        bytes.extend_from_slice(&self.bytes[..self.len]);
+    pub(super) fn record<const N: usize>(&mut self, write: impl FnOnce(&mut Record<'_, N>)) {
+        let bytes = self.bytes[self.len..].first_chunk_mut().expect("room for every record");
+        let mut record = Record { bytes, len: 0 };
+        write(&mut record);
+        self.len += record.len;
+    }
+}
+
+impl Drop for Writer<'_> {
+    fn drop(&mut self) {
+        self.bytes.truncate(self.len);
     }
 }
 

@@ -43,7 +43,7 @@ impl World {
 fn restore_state(state: &mut State, snapshot: &Snapshot, stale: &mut Stale) {
     let Snapshot { rest, bodies, shapes, joints, islands, packed, digest: _, changes: _ } = snapshot;
     let Rest { config, tick, faults, pairs_left_out, removed_contacts, rng } = rest;
-    let Packed { bodies: motions, boxes, joints: impulses, contacts } = packed;
+    let Packed { bodies: motions, boxes, joints: turns, contacts: heads, impulses } = packed;
     (state.config, state.tick, state.faults) = (*config, *tick, *faults);
     state.pairs_left_out = *pairs_left_out;
     state.removed_contacts.clone_from(removed_contacts);
@@ -54,8 +54,8 @@ fn restore_state(state: &mut State, snapshot: &Snapshot, stale: &mut Stale) {
     state.islands.restore(islands, |_| {});
     bodies::unpack_bodies(&mut state.bodies, motions, |slot| stale.bodies.push(slot));
     bodies::unpack_boxes(&mut state.shapes, &state.bodies, boxes, |slot| stale.boxes.push(slot));
-    constraints::unpack_joints(&mut state.joints, impulses);
-    constraints::unpack_contacts(&mut state.contacts, &mut state.resting, contacts);
+    constraints::unpack_joints(&mut state.joints, turns);
+    constraints::unpack_contacts(&mut state.contacts, &mut state.resting, heads, impulses);
 }
 
 /// Brings the caches of places in line with the state.
