@@ -80,7 +80,7 @@ impl World {
         bytes.extend_from_slice(&FORMAT.to_le_bytes());
         bytes.extend_from_slice(&SEMANTICS.to_le_bytes());
         bytes.extend_from_slice(&[0; 8]);
-        codec::encode_into(&self.state, &mut bytes);
+        codec::encode_into(self.state.get(), &mut bytes);
         let length = (bytes.len() - HEADER_LEN) as u64;
         bytes[HEADER_LEN - 8..HEADER_LEN].copy_from_slice(&length.to_le_bytes());
         let hash = StateHash::of_bytes(&bytes);

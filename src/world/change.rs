@@ -13,8 +13,11 @@ use crate::body::{
     SHAPES_PER_BODY_MAX, Shape, ShapeDef, ShapeId, WORLD_EXTENT_MAX, WorldError, check_position,
 };
 use crate::collision::{Contact, PosedShape};
-use crate::math::{Angle, Fx, Vec2, fx_mul};
+use crate::math::{Aabb, Angle, Fx, Vec2, fx_mul};
 use crate::solver::{Joint, JointDef};
+
+/// Bits of [`Fx`] below the grid that the corners of fat boxes are on.
+pub(super) const FAT_GRID_SHIFT: u32 = 10;
 
 /// Where to put a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -250,20 +253,22 @@ impl World {
 
     /// Adds a shape that has been checked. It has to be posed afterwards.
     fn insert_shape(&mut self, body: BodyId, def: &ShapeDef) -> ShapeId {
-        let owner = self.state.bodies.redefine(body.slot());
-        let fat = fat_box(def, owner, self.state.config.fat_margin);
-        let id = self.state.shapes.insert(Shape { body, def: *def, fat });
+        let State { bodies, shapes, config, .. } = &mut *self.state;
+        let owner = bodies.redefine(body.slot());
+        let fat = fat_box(def, owner, config.fat_margin);
+        let id = shapes.insert(Shape { body, def: *def, fat });
         owner.shapes.push(id);
         id
     }
 
     /// Gives the shapes of a body that has been moved new boxes.
     pub(super) fn replace(&mut self, slot: u32) {
-        let body = self.state.bodies.at(slot);
+        let State { bodies, shapes, config, .. } = &mut *self.state;
+        let body = bodies.at(slot);
         for shape in &body.shapes {
             // Boxes of fixed bodies are not among what a step changes, and the body may have ceased to be fixed.
-            let shape = self.state.shapes.redefine(shape.slot());
-            shape.fat = fat_box(&shape.def, body, self.state.config.fat_margin);
+            let shape = shapes.redefine(shape.slot());
+            shape.fat = fat_box(&shape.def, body, config.fat_margin);
         }
         self.placed(slot);
         self.scratch.changes.resting = true;
@@ -299,7 +304,7 @@ impl World {
             let (a, b) = contact.shapes;
             slots.binary_search(&a).is_ok() || slots.binary_search(&b).is_ok()
         };
-        let State { contacts, resting, .. } = &self.state;
+        let State { contacts, resting, .. } = &*self.state;
         let touching = contacts.iter().chain(resting).filter(|contact| contact.touching && ends(contact));
         let removed: Vec<_> = touching.filter_map(|contact| self.state.reported(contact)).collect();
         self.state.removed_contacts.extend(removed);
@@ -337,8 +342,14 @@ pub(super) fn mass_of<'a>(
     Ok(if settings.locks.rotation { mass.without_rotation() } else { mass })
 }
 
-pub(super) fn fat_box(shape: &ShapeDef, body: &Body, margin: Fx) -> crate::math::Aabb {
-    PosedShape::new(shape, body, body.rotation()).bounds.expanded(margin)
+pub(super) fn fat_box(shape: &ShapeDef, body: &Body, margin: Fx) -> Aabb {
+    fattened(PosedShape::new(shape, body, body.rotation()).bounds, margin)
+}
+
+/// A fat box around another one. Its corners are multiples of 2^-22 m, so that snapshots need only 32 bits for how far
+/// they are from the body's centre.
+pub(super) fn fattened(bounds: Aabb, margin: Fx) -> Aabb {
+    bounds.expanded(margin).rounded_out(FAT_GRID_SHIFT)
 }
 
 fn check_shapes_of_body(count: usize) -> Result<(), WorldError> {

@@ -33,6 +33,7 @@ pub use change::Place;
 pub use character::{Moved, Mover, MoverState};
 pub use command::{Command, Outcome};
 pub use config::Config;
+use digest::Hashed;
 pub use digest::{Section, WorldDigest};
 pub use events::{ContactEvent, Events, HitEvent, JointEvent, MoveEvent, SensorEvent};
 pub use explosion::Explosion;
@@ -74,7 +75,7 @@ use state::State;
 /// ```
 #[derive(Clone, Debug)]
 pub struct World {
-    state: State,
+    state: Hashed,
     scratch: Scratch,
 }
 
@@ -98,26 +99,26 @@ impl World {
     fn of(mut state: State, broad_phase: BroadPhaseKind) -> Self {
         state.keep_pages();
         let scratch = Scratch::new(broad_phase, &state);
-        World { state, scratch }
+        World { state: Hashed::new(state), scratch }
     }
 
     /// The settings.
     #[must_use]
     pub const fn config(&self) -> &Config {
-        &self.state.config
+        &self.state.get().config
     }
 
     /// Ticks since the world was made.
     #[must_use]
     pub const fn tick(&self) -> u64 {
-        self.state.tick
+        self.state.get().tick
     }
 
     /// How often a clamp of the solver has changed a result since the world was made. It never goes back to 0,
     /// and is 0 as long as speeds, impulses and displacements stay in their ranges.
     #[must_use]
     pub const fn faults(&self) -> u64 {
-        self.state.faults
+        self.state.get().faults
     }
 
     /// A body, while it is in the world.

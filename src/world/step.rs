@@ -1,6 +1,7 @@
 //! One tick, as the algorithm reads.
 
 use super::World;
+use super::change::fattened;
 use super::contacts;
 use super::continuous;
 use super::events::MoveEvent;
@@ -31,6 +32,7 @@ impl World {
     /// ```
     pub fn step_observed(&mut self, mut begin: impl FnMut(Phase)) {
         let World { state, scratch } = self;
+        let state = &mut **state;
         let settings = state.config.solver;
         let tuning = Tuning::new(&settings, state.config.gravity, state.config.tick_rate);
 
@@ -90,7 +92,7 @@ fn refit_boxes(state: &mut State, scratch: &mut Scratch) {
             // A box that a fast shape has left behind would find pairs for ever, so it shrinks as well.
             let roomy = needed.expanded(config.fat_margin.saturating_mul_int(4));
             if !fat.contains(needed) || !roomy.contains(*fat) {
-                *fat = needed.expanded(config.fat_margin);
+                *fat = fattened(needed, config.fat_margin);
                 scratch.broad_phase.set(id.slot(), *fat);
                 scratch.changes.shapes.push(id.slot());
                 // The box of a kinematic body that has stopped leaves what it rests on.
@@ -165,7 +167,7 @@ fn cover_shapes(state: &mut State, scratch: &mut Scratch, slot: u32) {
         let bounds = scratch.poses.at(id.slot()).bounds;
         let fat = &mut shapes.at_mut(id.slot()).fat;
         if !fat.contains(bounds) {
-            *fat = bounds.expanded(config.fat_margin);
+            *fat = fattened(bounds, config.fat_margin);
             scratch.broad_phase.set(id.slot(), *fat);
             scratch.changes.shapes.push(id.slot());
         }

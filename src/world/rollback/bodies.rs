@@ -13,6 +13,7 @@ use alloc::vec::Vec;
 use super::packing::{Reader, Record, Writer};
 use crate::body::{Arena, Body, BodyId, BodyKind, Handle, IslandId, Pose, Shape, ShapeId};
 use crate::math::{Aabb, Angle, Fx, Speed, Vec2};
+use crate::world::change::FAT_GRID_SHIFT;
 
 const FORCE: u8 = 1;
 const ISLAND: u8 = 2;
@@ -22,9 +23,6 @@ const BODY_BYTES: usize = 36;
 /// At most.
 const SPECIAL_BYTES: usize = 5 + 24 + 8 + 20;
 const BOX_BYTES: usize = 16;
-
-/// Bits of a coordinate below the grid of 2^-22 m.
-const GRID_SHIFT: u32 = 10;
 
 type Bodies = Arena<Body, BodyId>;
 type Shapes = Arena<Shape, ShapeId>;
@@ -171,12 +169,17 @@ fn corners(fat: Aabb) -> [Fx; 4] {
 /// A box in steps of the grid from a point, if it is on the grid and the steps are few enough.
 #[inline]
 fn about(fat: Aabb, centre: Vec2<Fx>) -> Option<[i32; 4]> {
-    let (x, y) = (centre.x.to_bits() >> GRID_SHIFT, centre.y.to_bits() >> GRID_SHIFT);
+    let (x, y) = (centre.x.to_bits() >> FAT_GRID_SHIFT, centre.y.to_bits() >> FAT_GRID_SHIFT);
     let bits = corners(fat).map(Fx::to_bits);
-    let steps = [bits[0] >> GRID_SHIFT, bits[1] >> GRID_SHIFT, bits[2] >> GRID_SHIFT, bits[3] >> GRID_SHIFT];
+    let steps = [
+        bits[0] >> FAT_GRID_SHIFT,
+        bits[1] >> FAT_GRID_SHIFT,
+        bits[2] >> FAT_GRID_SHIFT,
+        bits[3] >> FAT_GRID_SHIFT,
+    ];
     // Shifted right, so that differences cannot overflow.
     let [a, b, c, d] = [steps[0] - x, steps[1] - y, steps[2] - x, steps[3] - y].map(i32::try_from);
-    let on_grid = (bits[0] | bits[1] | bits[2] | bits[3]) & ((1 << GRID_SHIFT) - 1) == 0;
+    let on_grid = (bits[0] | bits[1] | bits[2] | bits[3]) & ((1 << FAT_GRID_SHIFT) - 1) == 0;
     match (a, b, c, d) {
         (Ok(a), Ok(b), Ok(c), Ok(d)) if on_grid && a != i32::MIN => Some([a, b, c, d]),
         _ => None,
@@ -208,5 +211,5 @@ pub(super) fn unpack_boxes(shapes: &mut Shapes, bodies: &Bodies, bytes: &[u8], m
 }
 
 fn at_step(centre: Fx, step: i32) -> Fx {
-    Fx::from_bits(((centre.to_bits() >> GRID_SHIFT) + i64::from(step)) << GRID_SHIFT)
+    Fx::from_bits(((centre.to_bits() >> FAT_GRID_SHIFT) + i64::from(step)) << FAT_GRID_SHIFT)
 }

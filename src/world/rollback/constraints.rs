@@ -111,13 +111,16 @@ pub(super) fn pack_joints(joints: &Arena<Joint, JointId>, bytes: &mut Vec<u8>) {
         writer.record(|record: &mut Record<'_, JOINT_BYTES>| {
             let few_turns = i32::try_from(joint.turns);
             let mut there = if few_turns.is_err() { MANY_TURNS } else { 0 };
+            // Each is written, and the next one over it if it is 0: without branches, which would be hard to foresee.
+            let mut words = [0i32; 7];
+            let mut count = 0;
             for (place, impulse) in (0..JOINT_IMPULSES).zip(joint.impulses.0) {
+                words[count] = impulse.to_bits();
+                count += usize::from(impulse != 0);
                 there |= u8::from(impulse != 0) << place;
             }
             record.put(there);
-            for impulse in joint.impulses.0.into_iter().filter(|&impulse| impulse != 0) {
-                record.put(impulse.to_bits());
-            }
+            record.put_some(words, count);
             match few_turns {
                 Ok(turns) => record.put(turns),
                 Err(_) => record.put(joint.turns),

@@ -216,5 +216,6 @@ impl World {
     /// ```
     pub fn save_into(&self, snapshot: &mut Snapshot) {
         snapshot.take(&self.state, &self.scratch.changes);
+        self.state.set_digest(snapshot.digest);
     }
 }

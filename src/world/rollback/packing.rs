@@ -41,6 +41,14 @@ impl<const N: usize> Record<'_, N> {
         self.bytes[self.len..self.len + bytes.len()].copy_from_slice(bytes);
         self.len += bytes.len();
     }
+
+    /// The first integers of some; the others are overwritten by what is put next.
+    #[inline(always)]
+    pub(super) fn put_some<I: Integer, const M: usize>(&mut self, integers: [I; M], count: usize) {
+        let start = self.len;
+        integers.into_iter().for_each(|integer| self.put(integer));
+        self.len = start + count * size_of::<I>();
+    }
 }
 
 /// Writes records one after the other into a buffer, which has room for all of them from the start: what was there

@@ -30,6 +30,7 @@ impl World {
     /// anew. What has been defined, spawned or removed since the save is copied in pages of 32.
     pub fn restore(&mut self, snapshot: &Snapshot) {
         let World { state, scratch } = self;
+        let state = &mut **state;
         pairs::remember_hints(state, scratch);
         let mut stale = Stale::default();
         restore_state(state, snapshot, &mut stale);
