@@ -99,6 +99,14 @@ impl BroadPhase {
         }
     }
 
+    /// Inserts or moves many boxes that have not come far: cheaper than setting each.
+    pub(crate) fn set_many(&mut self, boxes: impl IntoIterator<Item = (u32, Aabb)>) {
+        match &mut self.structure {
+            Structure::Tree(tree) => tree.set_many(boxes),
+            _ => boxes.into_iter().for_each(|(slot, fat)| self.set(slot, fat)),
+        }
+    }
+
     /// All pairs of overlapping boxes with an end that has moved that `accept` wants, sorted; of more than `limit`,
     /// the smallest. Says whether any were left out.
     pub(crate) fn pairs(

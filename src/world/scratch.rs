@@ -117,26 +117,25 @@ impl Scratch {
         for (_, body) in state.bodies.iter() {
             scratch.poses.pose_body(state, body);
         }
-        scratch.refill_boxes(state);
-        scratch
-    }
-
-    fn refill_boxes(&mut self, state: &State) {
         let enabled = state.shapes.iter().filter(|(_, shape)| state.bodies.at(shape.body().slot()).enabled);
-        self.broad_phase.refill(enabled.map(|(id, shape)| (id.slot(), shape.fat)));
+        scratch.broad_phase.refill(enabled.map(|(id, shape)| (id.slot(), shape.fat)));
+        scratch
     }
 
     /// Brings the broad phase in line with shapes in some slots: that have another box, or that have come or gone.
     pub(crate) fn set_boxes(&mut self, state: &State, slots: &[u32]) {
-        if slots.len() > state.shapes.len() / 2 {
-            self.refill_boxes(state);
-            return;
-        }
-        for &slot in slots {
-            match state.shapes.get_slot(slot).filter(|shape| state.bodies.at(shape.body().slot()).enabled) {
-                Some(shape) => self.broad_phase.set(slot, shape.fat),
-                None => self.broad_phase.remove(slot),
-            }
+        let there = |slot: u32| {
+            let shape = state.shapes.get_slot(slot)?;
+            state.bodies.at(shape.body().slot()).enabled.then_some((slot, shape.fat))
+        };
+        let gone = slots.iter().filter(|&&slot| there(slot).is_none());
+        gone.for_each(|&slot| self.broad_phase.remove(slot));
+        let boxes = slots.iter().filter_map(|&slot| there(slot));
+        // To look at every inner box of a tree is worth setting one box in eight.
+        if slots.len() > state.shapes.len() / 8 {
+            self.broad_phase.set_many(boxes);
+        } else {
+            boxes.for_each(|(slot, fat)| self.broad_phase.set(slot, fat));
         }
     }
 

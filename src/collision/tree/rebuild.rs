@@ -26,6 +26,27 @@ impl Tree {
         self.rebuild();
     }
 
+    /// Inserts or moves many boxes. Those that are there already stay where they are in the tree, and the inner boxes are
+    /// found anew: cheaper than moving each, for boxes that have not come far.
+    pub(crate) fn set_many(&mut self, boxes: impl IntoIterator<Item = (u32, Aabb)>) {
+        for (slot, fat) in boxes {
+            match self.leaf_of(slot) {
+                Some(leaf) => self.at_mut(leaf).aabb = fat,
+                None => self.set(slot, fat),
+            }
+        }
+        let mut inner = Vec::with_capacity(self.nodes.len() / 2);
+        inner.extend((self.root != NONE && !self.at(self.root).is_leaf()).then_some(self.root));
+        let mut next = 0;
+        while let Some(&node) = inner.get(next) {
+            let children = self.at(node).children;
+            inner.extend(children.into_iter().filter(|&child| !self.at(child).is_leaf()));
+            next += 1;
+        }
+        // Children are behind their parents.
+        inner.into_iter().rev().for_each(|node| self.refit(node));
+    }
+
     /// Builds the tree anew around the leaves that there are.
     pub(super) fn rebuild(&mut self) {
         let leaves = self.leaves.iter().filter(|&&leaf| leaf != NONE).map(|&leaf| *self.at(leaf));

@@ -10,7 +10,7 @@
 
 use alloc::vec::Vec;
 
-use super::packing::{Reader, Record, Writer};
+use super::packing::{Fields, Reader, Record, Writer};
 use crate::body::{Arena, Body, BodyId, BodyKind, Handle, IslandId, Pose, Shape, ShapeId};
 use crate::math::{Aabb, Angle, Fx, Speed, Vec2};
 use crate::world::change::FAT_GRID_SHIFT;
@@ -30,7 +30,7 @@ type Shapes = Arena<Shape, ShapeId>;
 /// A body without what a step changes.
 pub(super) fn lasting_body(body: &Body) -> Body {
     let mut body = body.clone();
-    set_motion(&mut body, &mut Reader(&[0; BODY_BYTES]));
+    set_motion(&mut body, &mut Reader(&[0; BODY_BYTES]).record());
     (body.force, body.torque, body.island, body.target) = (Vec2::ZERO, Fx::ZERO, None, None);
     body
 }
@@ -105,41 +105,48 @@ pub(super) fn unpack_bodies(bodies: &mut Bodies, bytes: &[u8], mut moved: impl F
     let mut motions = reader.part(bodies.len() * BODY_BYTES);
     for (id, body) in bodies.iter_mut() {
         let before = (body.centre, body.angle);
-        set_motion(body, &mut motions);
+        set_motion(body, &mut motions.record());
         (body.force, body.torque, body.island, body.target) = (Vec2::ZERO, Fx::ZERO, None, None);
         if before != (body.centre, body.angle) {
             moved(id.slot());
         }
     }
     while !reader.is_empty() {
-        let body = bodies.at_mut(reader.take());
-        let specials: u8 = reader.take();
+        let mut head: Fields<'_, 5> = reader.record();
+        let body = bodies.at_mut(head.take());
+        let specials: u8 = head.take();
         if specials & FORCE != 0 {
-            body.force = take_point(&mut reader);
-            body.torque = Fx::from_bits(reader.take());
+            let mut force: Fields<'_, 24> = reader.record();
+            body.force = take_point(&mut force);
+            body.torque = Fx::from_bits(force.take());
         }
         if specials & ISLAND != 0 {
-            body.island = Some(IslandId::from_parts(reader.take(), reader.take()));
+            let mut island: Fields<'_, 8> = reader.record();
+            body.island = Some(IslandId::from_parts(island.take(), island.take()));
         }
         if specials & TARGET != 0 {
-            body.target = Some(take_place(&mut reader));
+            let mut target: Fields<'_, 20> = reader.record();
+            body.target = Some(take_place(&mut target));
         }
     }
 }
 
-fn set_motion(body: &mut Body, reader: &mut Reader<'_>) {
-    Pose { centre: body.centre, angle: body.angle } = take_place(reader);
-    body.velocity = Vec2::new(Speed::from_bits(reader.take()), Speed::from_bits(reader.take()));
-    body.spin = Speed::from_bits(reader.take());
-    body.rest_ticks = reader.take();
+#[inline(always)]
+fn set_motion(body: &mut Body, fields: &mut Fields<'_, BODY_BYTES>) {
+    Pose { centre: body.centre, angle: body.angle } = take_place(fields);
+    body.velocity = Vec2::new(Speed::from_bits(fields.take()), Speed::from_bits(fields.take()));
+    body.spin = Speed::from_bits(fields.take());
+    body.rest_ticks = fields.take();
 }
 
-fn take_place(reader: &mut Reader<'_>) -> Pose {
-    Pose { centre: take_point(reader), angle: Angle::from_bits(reader.take()) }
+#[inline(always)]
+fn take_place<const N: usize>(fields: &mut Fields<'_, N>) -> Pose {
+    Pose { centre: take_point(fields), angle: Angle::from_bits(fields.take()) }
 }
 
-fn take_point(reader: &mut Reader<'_>) -> Vec2<Fx> {
-    Vec2::new(Fx::from_bits(reader.take()), Fx::from_bits(reader.take()))
+#[inline(always)]
+fn take_point<const N: usize>(fields: &mut Fields<'_, N>) -> Vec2<Fx> {
+    Vec2::new(Fx::from_bits(fields.take()), Fx::from_bits(fields.take()))
 }
 
 pub(super) fn pack_boxes(shapes: &Shapes, bodies: &Bodies, bytes: &mut Vec<u8>) {
@@ -196,9 +203,11 @@ pub(super) fn unpack_boxes(shapes: &mut Shapes, bodies: &Bodies, bytes: &[u8], m
         if body.kind == BodyKind::Fixed {
             continue;
         }
-        let steps: [i32; 4] = core::array::from_fn(|_| near.take());
+        let mut fields: Fields<'_, BOX_BYTES> = near.record();
+        let steps: [i32; 4] = core::array::from_fn(|_| fields.take());
         let fat = if steps[0] == i32::MIN {
-            Aabb::new(take_point(&mut far), take_point(&mut far))
+            let mut fields: Fields<'_, 32> = far.record();
+            Aabb::new(take_point(&mut fields), take_point(&mut fields))
         } else {
             let corner = |x: i32, y: i32| Vec2::new(at_step(body.centre.x, x), at_step(body.centre.y, y));
             Aabb::new(corner(steps[0], steps[1]), corner(steps[2], steps[3]))

@@ -9,7 +9,7 @@
 
 use alloc::vec::Vec;
 
-use super::packing::{Reader, Record, Writer};
+use super::packing::{Fields, Reader, Record, Writer};
 use crate::body::{Arena, JointId};
 use crate::collision::{Contact, PointImpulse};
 use crate::math::Speed;
@@ -38,7 +38,7 @@ pub(super) fn pack_contacts(
             record.put(u32::try_from(list.len()).unwrap_or(u32::MAX));
         }
     });
-    for contact in contacts.iter().chain(resting) {
+    contacts.iter().chain(resting).for_each(|contact| {
         heads.record(|record: &mut Record<'_, HEAD_BYTES>| record.put(head(contact)));
         if has_impulses(contact) {
             impulses.record(|record: &mut Record<'_, IMPULSES_BYTES>| {
@@ -50,7 +50,7 @@ pub(super) fn pack_contacts(
                 contact.points.iter().for_each(|point| record.put(point.feature));
             });
         }
-    }
+    });
 }
 
 fn has_impulses(contact: &Contact) -> bool {
@@ -75,21 +75,25 @@ pub(super) fn unpack_contacts(
     impulses: &[u8],
 ) {
     let (mut heads, mut impulses) = (Reader(heads), Reader(impulses));
-    let counts: [u32; 2] = core::array::from_fn(|_| heads.take());
-    for (list, count) in [contacts, resting].into_iter().zip(counts) {
+    let mut counts: Fields<'_, 8> = heads.record();
+    for list in [contacts, resting] {
+        let count: u32 = counts.take();
         list.clear();
-        list.extend((0..count).map(|_| unpack_contact(heads.take(), &mut impulses)));
+        list.extend((0..count).map(|_| unpack_contact(heads.record(), &mut impulses)));
     }
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "masked to the bits that were packed")]
-fn unpack_contact(head: u64, impulses: &mut Reader<'_>) -> Contact {
+#[inline(always)]
+fn unpack_contact(mut head: Fields<'_, HEAD_BYTES>, impulses: &mut Reader<'_>) -> Contact {
+    let head: u64 = head.take();
     let bits = |shift: u32, count: u32| head >> shift & ((1 << count) - 1);
     let mut contact = Contact::new((bits(34, 30) as u32, bits(5, 29) as u32));
     contact.touching = bits(4, 1) != 0;
     contact.passing = bits(3, 1) != 0;
     contact.count = bits(1, 2) as u8;
     if bits(0, 1) != 0 {
+        let mut impulses: Fields<'_, IMPULSES_BYTES> = impulses.record();
         for point in &mut contact.points {
             let (normal, tangent) = (Speed::from_bits(impulses.take()), Speed::from_bits(impulses.take()));
             *point = PointImpulse { feature: 0, normal, tangent };
@@ -108,35 +112,49 @@ pub(super) fn lasting_joint(joint: &Joint) -> Joint {
 pub(super) fn pack_joints(joints: &Arena<Joint, JointId>, bytes: &mut Vec<u8>) {
     let mut writer = Writer::new(bytes, joints.len() * JOINT_BYTES);
     for (_, joint) in joints.iter() {
+        let mut there = 0;
+        // Each word is written, and the next one over it if it is 0: without branches, which nobody could foresee.
+        let (mut words, mut count) = ([0i32; 8], 0);
+        for (place, impulse) in (0..JOINT_IMPULSES).zip(joint.impulses.0) {
+            words[count] = impulse.to_bits();
+            count += usize::from(impulse != 0);
+            there |= u8::from(impulse != 0) << place;
+        }
+        let [low, high] = halves(joint.turns);
+        words[count] = low;
+        count += 1;
+        if joint.turns != i64::from(low) {
+            there |= MANY_TURNS;
+            words[count] = high;
+            count += 1;
+        }
         writer.record(|record: &mut Record<'_, JOINT_BYTES>| {
-            let few_turns = i32::try_from(joint.turns);
-            let mut there = if few_turns.is_err() { MANY_TURNS } else { 0 };
-            // Each is written, and the next one over it if it is 0: without branches, which would be hard to foresee.
-            let mut words = [0i32; 7];
-            let mut count = 0;
-            for (place, impulse) in (0..JOINT_IMPULSES).zip(joint.impulses.0) {
-                words[count] = impulse.to_bits();
-                count += usize::from(impulse != 0);
-                there |= u8::from(impulse != 0) << place;
-            }
             record.put(there);
-            record.put_some(words, count);
-            match few_turns {
-                Ok(turns) => record.put(turns),
-                Err(_) => record.put(joint.turns),
-            }
+            words.into_iter().for_each(|word| record.put(word));
+            record.truncate(1 + count * size_of::<i32>());
         });
     }
+}
+
+/// The lower and the upper 32 bits.
+#[expect(clippy::cast_possible_truncation, reason = "to be put together again")]
+fn halves(turns: i64) -> [i32; 2] {
+    [turns as i32, (turns >> 32) as i32]
 }
 
 pub(super) fn unpack_joints(joints: &mut Arena<Joint, JointId>, bytes: &[u8]) {
     let mut reader = Reader(bytes);
     for (_, joint) in joints.iter_mut() {
-        let there: u8 = reader.take();
+        let there: u8 = reader.record::<1>().take();
+        let mut word = || -> i32 { reader.record::<4>().take() };
         for (place, impulse) in (0..JOINT_IMPULSES).zip(&mut joint.impulses.0) {
             let some = there >> place & 1 != 0;
-            *impulse = if some { Speed::from_bits(reader.take()) } else { Speed::ZERO };
+            *impulse = if some { Speed::from_bits(word()) } else { Speed::ZERO };
         }
-        joint.turns = if there & MANY_TURNS != 0 { reader.take() } else { reader.take::<i32>().into() };
+        let low = word();
+        joint.turns = i64::from(low);
+        if there & MANY_TURNS != 0 {
+            joint.turns = i64::from(word()) << 32 | (joint.turns & 0xffff_ffff);
+        }
     }
 }

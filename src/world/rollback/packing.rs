@@ -4,9 +4,10 @@ use alloc::vec::Vec;
 
 /// An integer of a fixed number of bytes.
 pub(super) trait Integer: Copy {
-    type Bytes: AsRef<[u8]> + for<'a> TryFrom<&'a [u8]>;
+    type Bytes: AsRef<[u8]>;
     fn to_bytes(self) -> Self::Bytes;
-    fn of_bytes(bytes: Self::Bytes) -> Self;
+    /// Of as many bytes.
+    fn of_slice(bytes: &[u8]) -> Self;
 }
 
 macro_rules! integers {
@@ -18,8 +19,8 @@ macro_rules! integers {
                 self.to_le_bytes()
             }
             #[inline(always)]
-            fn of_bytes(bytes: Self::Bytes) -> Self {
-                <$integer>::from_le_bytes(bytes)
+            fn of_slice(bytes: &[u8]) -> Self {
+                <$integer>::from_le_bytes(bytes.try_into().expect("as many bytes"))
             }
         })*
     };
@@ -42,12 +43,10 @@ impl<const N: usize> Record<'_, N> {
         self.len += bytes.len();
     }
 
-    /// The first integers of some; the others are overwritten by what is put next.
+    /// Takes back what has been put after so many bytes.
     #[inline(always)]
-    pub(super) fn put_some<I: Integer, const M: usize>(&mut self, integers: [I; M], count: usize) {
-        let start = self.len;
-        integers.into_iter().for_each(|integer| self.put(integer));
-        self.len = start + count * size_of::<I>();
+    pub(super) fn truncate(&mut self, len: usize) {
+        self.len = self.len.min(len);
     }
 }
 
@@ -81,19 +80,20 @@ impl Drop for Writer<'_> {
     }
 }
 
-/// What is left to be read. Reads zeros after the end, which a buffer of our own never comes to.
+/// What is left to be read. Behind the end, which nobody comes to with a buffer of our own, there are zeros.
 #[derive(Clone, Copy)]
 pub(super) struct Reader<'a>(pub(super) &'a [u8]);
 
 impl<'a> Reader<'a> {
+    /// The next record.
     #[inline(always)]
-    pub(super) fn take<I: Integer + Default>(&mut self) -> I {
-        let Some((bytes, rest)) = self.0.split_at_checked(size_of::<I>()) else {
+    pub(super) fn record<const N: usize>(&mut self) -> Fields<'a, N> {
+        let Some((bytes, rest)) = self.0.split_first_chunk() else {
             debug_assert!(false, "read past the end");
-            return I::default();
+            return Fields { bytes: &[0; N], len: 0 };
         };
         self.0 = rest;
-        I::Bytes::try_from(bytes).map_or_else(|_| I::default(), I::of_bytes)
+        Fields { bytes, len: 0 }
     }
 
     /// The next bytes for themselves.
@@ -105,5 +105,20 @@ impl<'a> Reader<'a> {
 
     pub(super) fn is_empty(&self) -> bool {
         self.0.is_empty()
+    }
+}
+
+/// A record of `N` bytes that is being read.
+pub(super) struct Fields<'a, const N: usize> {
+    bytes: &'a [u8; N],
+    len: usize,
+}
+
+impl<const N: usize> Fields<'_, N> {
+    #[inline(always)]
+    pub(super) fn take<I: Integer>(&mut self) -> I {
+        let start = self.len;
+        self.len += size_of::<I>();
+        I::of_slice(&self.bytes[start..self.len])
     }
 }
