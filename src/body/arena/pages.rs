@@ -109,6 +109,12 @@ impl<T> SharedArena<T> {
         core::iter::once(self.vacancies.digest).chain(self.pages.iter().map(|page| page.digest))
     }
 
+    /// How many pages are the very same as those of another snapshot.
+    #[cfg(test)]
+    pub(crate) fn shared_with(&self, other: &Self) -> usize {
+        self.pages.iter().zip(&other.pages).filter(|(a, b)| Arc::ptr_eq(a, b)).count()
+    }
+
     /// How many bytes it takes to name the pages.
     pub(crate) fn size(&self) -> usize {
         self.pages.len() * size_of::<Arc<Page<T>>>()

@@ -9,6 +9,8 @@ mod bodies;
 mod constraints;
 mod packing;
 mod restore;
+#[cfg(test)]
+mod tests;
 
 use alloc::vec::Vec;
 
