@@ -305,7 +305,8 @@ impl World {
             slots.binary_search(&a).is_ok() || slots.binary_search(&b).is_ok()
         };
         let State { contacts, resting, .. } = &*self.state;
-        let touching = contacts.iter().chain(resting).filter(|contact| contact.touching && ends(contact));
+        let touching =
+            contacts.iter().chain(resting.iter()).filter(|contact| contact.touching && ends(contact));
         let removed: Vec<_> = touching.filter_map(|contact| self.state.reported(contact)).collect();
         self.state.removed_contacts.extend(removed);
         // Manifolds and hints are found by the contact's place, which moves.

@@ -81,7 +81,9 @@ fn drop_parted(state: &mut State, scratch: &mut Scratch) {
         near && active
     });
     state.contacts = contacts;
-    merge(&mut state.resting, fresh, &mut scratch.merged);
+    if !fresh.is_empty() {
+        merge(&mut state.resting, fresh, &mut scratch.merged);
+    }
 }
 
 /// Adds a contact for every new pair.

@@ -1,6 +1,6 @@
 //! What a step changes of contacts and joints, as bytes.
 //!
-//! The numbers of contacts that are looked at and that rest (2 x u32), then 8 bytes of each: shape A (30 bits), shape B
+//! Of every contact 8 bytes: shape A (30 bits), shape B
 //! (29 bits), touching, passing, number of points (2 bits), whether it has impulses. Elsewhere, 24 bytes of each that has:
 //! normal and tangential impulse of both points, impulse against rolling (5 x i32), features (2 x u16).
 //!
@@ -24,21 +24,10 @@ const MANY_TURNS: u8 = 1 << 6;
 /// Impulses of a joint.
 const JOINT_IMPULSES: u8 = 6;
 
-pub(super) fn pack_contacts(
-    contacts: &[Contact],
-    resting: &[Contact],
-    heads: &mut Vec<u8>,
-    impulses: &mut Vec<u8>,
-) {
-    let count = contacts.len() + resting.len();
-    let mut heads = Writer::new(heads, 8 + count * HEAD_BYTES);
-    let mut impulses = Writer::new(impulses, count * IMPULSES_BYTES);
-    heads.record(|record: &mut Record<'_, 8>| {
-        for list in [contacts, resting] {
-            record.put(u32::try_from(list.len()).unwrap_or(u32::MAX));
-        }
-    });
-    contacts.iter().chain(resting).for_each(|contact| {
+pub(super) fn pack_contacts(contacts: &[Contact], heads: &mut Vec<u8>, impulses: &mut Vec<u8>) {
+    let mut heads = Writer::new(heads, contacts.len() * HEAD_BYTES);
+    let mut impulses = Writer::new(impulses, contacts.len() * IMPULSES_BYTES);
+    for contact in contacts {
         heads.record(|record: &mut Record<'_, HEAD_BYTES>| record.put(head(contact)));
         if has_impulses(contact) {
             impulses.record(|record: &mut Record<'_, IMPULSES_BYTES>| {
@@ -50,7 +39,7 @@ pub(super) fn pack_contacts(
                 contact.points.iter().for_each(|point| record.put(point.feature));
             });
         }
-    });
+    }
 }
 
 fn has_impulses(contact: &Contact) -> bool {
@@ -68,18 +57,12 @@ fn head(contact: &Contact) -> u64 {
         | u64::from(has_impulses(contact))
 }
 
-pub(super) fn unpack_contacts(
-    contacts: &mut Vec<Contact>,
-    resting: &mut Vec<Contact>,
-    heads: &[u8],
-    impulses: &[u8],
-) {
+pub(super) fn unpack_contacts(contacts: &mut Vec<Contact>, heads: &[u8], impulses: &[u8]) {
     let (mut heads, mut impulses) = (Reader(heads), Reader(impulses));
-    let mut counts: Fields<'_, 8> = heads.record();
-    for list in [contacts, resting] {
-        let count: u32 = counts.take();
-        list.clear();
-        list.extend((0..count).map(|_| unpack_contact(heads.record(), &mut impulses)));
+    contacts.clear();
+    contacts.reserve(heads.0.len() / HEAD_BYTES);
+    while !heads.is_empty() {
+        contacts.push(unpack_contact(heads.record(), &mut impulses));
     }
 }
 

@@ -8,11 +8,17 @@
 mod bodies;
 mod constraints;
 mod packing;
+mod resting;
 mod restore;
 #[cfg(test)]
 mod tests;
 
+use alloc::sync::Arc;
 use alloc::vec::Vec;
+
+pub(super) use resting::Resting;
+
+use resting::PackedContacts;
 
 use super::World;
 use super::config::Config;
@@ -35,6 +41,7 @@ pub struct Snapshot {
     shapes: SharedArena<Shape>,
     joints: SharedArena<Joint>,
     islands: SharedArena<Island>,
+    resting: Arc<PackedContacts>,
     packed: Packed,
     /// Of all this.
     digest: WorldDigest,
@@ -70,6 +77,7 @@ impl PartialEq for Snapshot {
             && parts(self) == parts(other)
             && (&self.bodies, &self.shapes) == (&other.bodies, &other.shapes)
             && (&self.joints, &self.islands) == (&other.joints, &other.islands)
+            && self.resting == other.resting
     }
 }
 
@@ -96,7 +104,7 @@ impl Snapshot {
     /// How many bytes of memory it takes for itself, without what it shares with the world and other snapshots.
     #[must_use]
     pub fn rollback_bytes(&self) -> usize {
-        let Snapshot { rest, bodies, shapes, joints, islands, packed, digest: _, changes } = self;
+        let Snapshot { rest, bodies, shapes, joints, islands, resting: _, packed, digest: _, changes } = self;
         let pages = bodies.size() + shapes.size() + joints.size() + islands.size();
         let packed: usize = packed.buffers().iter().map(|buffer| buffer.len()).sum();
         let lists = size_of_val(&*rest.removed_contacts) + size_of_val(&*changes.shapes);
@@ -110,6 +118,7 @@ impl Snapshot {
             shapes: SharedArena::default(),
             joints: SharedArena::default(),
             islands: SharedArena::default(),
+            resting: Arc::default(),
             packed: Packed::default(),
             digest: WorldDigest::NONE,
             changes: Changes::default(),
@@ -142,19 +151,20 @@ impl Snapshot {
         bodies::pack_bodies(bodies, motions);
         bodies::pack_boxes(shapes, bodies, boxes);
         constraints::pack_joints(joints, turns);
-        constraints::pack_contacts(contacts, resting, heads, impulses);
+        constraints::pack_contacts(contacts, heads, impulses);
+        self.resting = resting.share();
         self.changes.clone_from(changes);
         self.digest = self.find_digest();
     }
 
     fn find_digest(&self) -> WorldDigest {
-        let Snapshot { rest, bodies, shapes, joints, islands, packed, digest: _, changes: _ } = self;
+        let Snapshot { rest, bodies, shapes, joints, islands, resting, packed, digest: _, changes: _ } = self;
         let Rest { config, tick, faults, pairs_left_out, removed_contacts, rng } = rest;
         fn of(shared: impl Iterator<Item = StateHash>, packed: &[u8]) -> StateHash {
             StateHash::of_digests(shared.chain([StateHash::of_bytes(packed)]))
         }
         let ended = StateHash::of(&(pairs_left_out, removed_contacts));
-        let contacts = [ended, StateHash::of_bytes(&packed.contacts)].into_iter();
+        let contacts = [ended, resting.digest, StateHash::of_bytes(&packed.contacts)].into_iter();
         WorldDigest {
             sections: [
                 (Section::World, StateHash::of(&(config, tick, faults))),

@@ -42,7 +42,7 @@ impl World {
 }
 
 fn restore_state(state: &mut State, snapshot: &Snapshot, stale: &mut Stale) {
-    let Snapshot { rest, bodies, shapes, joints, islands, packed, digest: _, changes: _ } = snapshot;
+    let Snapshot { rest, bodies, shapes, joints, islands, resting, packed, digest: _, changes: _ } = snapshot;
     let Rest { config, tick, faults, pairs_left_out, removed_contacts, rng } = rest;
     let Packed { bodies: motions, boxes, joints: turns, contacts: heads, impulses } = packed;
     (state.config, state.tick, state.faults) = (*config, *tick, *faults);
@@ -56,7 +56,8 @@ fn restore_state(state: &mut State, snapshot: &Snapshot, stale: &mut Stale) {
     bodies::unpack_bodies(&mut state.bodies, motions, |slot| stale.bodies.push(slot));
     bodies::unpack_boxes(&mut state.shapes, &state.bodies, boxes, |slot| stale.boxes.push(slot));
     constraints::unpack_joints(&mut state.joints, turns);
-    constraints::unpack_contacts(&mut state.contacts, &mut state.resting, heads, impulses);
+    constraints::unpack_contacts(&mut state.contacts, heads, impulses);
+    state.resting.restore(resting);
 }
 
 /// Brings the caches of places in line with the state.

@@ -83,7 +83,7 @@ fn contacts_of_every_kind_come_back() {
         if slot % 5 == 0 {
             contact.rolling = Speed::MIN;
         }
-        if slot % 2 == 0 { &mut state.contacts } else { &mut state.resting }.push(contact);
+        if slot % 2 == 0 { &mut state.contacts } else { &mut *state.resting }.push(contact);
     }
     there_and_back(&mut world);
 }
