@@ -99,9 +99,10 @@ pub(super) fn pack_joints(joints: &Arena<Joint, JointId>, bytes: &mut Vec<u8>) {
         // Each word is written, and the next one over it if it is 0: without branches, which nobody could foresee.
         let (mut words, mut count) = ([0i32; 8], 0);
         for (place, impulse) in (0..JOINT_IMPULSES).zip(joint.impulses.0) {
-            words[count] = impulse.to_bits();
-            count += usize::from(impulse != 0);
-            there |= u8::from(impulse != 0) << place;
+            let bits = impulse.to_bits();
+            words[count] = bits;
+            count += usize::from(bits != 0);
+            there |= u8::from(bits != 0) << place;
         }
         let [low, high] = halves(joint.turns);
         words[count] = low;

@@ -50,27 +50,35 @@ impl<const N: usize> Record<'_, N> {
     }
 }
 
-/// Writes records one after the other into a buffer, which has room for all of them from the start: what was there
-/// is overwritten, and nothing is cleared before.
+/// Writes records one after the other into a buffer. What was there is overwritten and not cleared before, so that a
+/// buffer that is written again and again is only as much work as what is written.
 pub(super) struct Writer<'a> {
     bytes: &'a mut Vec<u8>,
     len: usize,
 }
 
 impl<'a> Writer<'a> {
-    /// With room for so many bytes.
+    /// Expects so many bytes.
     pub(super) fn new(bytes: &'a mut Vec<u8>, size: usize) -> Self {
-        bytes.resize(size.max(bytes.len()), 0);
+        bytes.reserve(size.saturating_sub(bytes.len()));
         Writer { bytes, len: 0 }
     }
 
     /// The next record: as many bytes of it are kept as are put.
     #[inline(always)]
     pub(super) fn record<const N: usize>(&mut self, write: impl FnOnce(&mut Record<'_, N>)) {
+        if self.bytes.len() < self.len + N {
+            self.grow(N);
+        }
         let bytes = self.bytes[self.len..].first_chunk_mut().expect("room for every record");
         let mut record = Record { bytes, len: 0 };
         write(&mut record);
         self.len += record.len;
+    }
+
+    #[cold]
+    fn grow(&mut self, record: usize) {
+        self.bytes.resize(self.len + record + self.len / 4 + 1024, 0);
     }
 }
 
