@@ -9,6 +9,11 @@ use core::marker::PhantomData;
 use serde::de::{SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
 
+mod pages;
+
+use pages::Kept;
+pub(crate) use pages::SharedArena;
+
 /// A generational handle: a slot and how often it has been reused.
 pub(crate) trait Handle: Copy + Eq {
     fn from_parts(index: u32, generation: u32) -> Self;
@@ -93,6 +98,8 @@ pub(crate) struct Arena<T, H> {
     /// Slots whose generations are used up.
     retired: u32,
     #[serde(skip)]
+    kept: Kept<T>,
+    #[serde(skip)]
     handle: PhantomData<fn() -> H>,
 }
 
@@ -129,7 +136,7 @@ where
 
 impl<T, H> Default for Arena<T, H> {
     fn default() -> Self {
-        Arena { slots: Vec::new(), free: Vec::new(), retired: 0, handle: PhantomData }
+        Arena { slots: Vec::new(), free: Vec::new(), retired: 0, kept: Kept::default(), handle: PhantomData }
     }
 }
 
@@ -151,6 +158,7 @@ impl<T, H: Handle> Arena<T, H> {
             Some(index) => self.slots[index as usize].value = Some(value),
             None => self.slots.push(Slot { generation: 0, value: Some(value) }),
         }
+        self.kept.came_or_went(handle.slot(), self.slots.len());
         handle
     }
 
@@ -174,6 +182,7 @@ impl<T, H: Handle> Arena<T, H> {
         } else {
             self.retired += 1;
         }
+        self.kept.came_or_went(handle.slot(), self.slots.len());
         value
     }
 
@@ -182,9 +191,19 @@ impl<T, H: Handle> Arena<T, H> {
         if slot.generation == handle.generation() { slot.value.as_ref() } else { None }
     }
 
+    /// The value in an occupied slot, to change anything about it.
+    ///
+    /// # Panics
+    /// If the slot is vacant: internal slot numbers never outlive their value.
+    pub(crate) fn redefine(&mut self, slot: u32) -> &mut T {
+        self.kept.changed(slot);
+        self.slots[slot as usize].value.as_mut().expect("an occupied slot")
+    }
+
+    /// The value of a handle, to change anything about it.
     pub(crate) fn get_mut(&mut self, handle: H) -> Option<&mut T> {
-        let slot = self.slots.get_mut(handle.slot() as usize)?;
-        if slot.generation == handle.generation() { slot.value.as_mut() } else { None }
+        self.get(handle)?;
+        Some(self.redefine(handle.slot()))
     }
 
     /// The value in an occupied slot.
@@ -196,7 +215,7 @@ impl<T, H: Handle> Arena<T, H> {
         self.slots[slot as usize].value.as_ref().expect("an occupied slot")
     }
 
-    /// The value in an occupied slot, to change.
+    /// The value in an occupied slot, to change what every step changes: see [`Arena::redefine`].
     ///
     /// # Panics
     /// If the slot is vacant: internal slot numbers never outlive their value.
@@ -222,7 +241,7 @@ impl<T, H: Handle> Arena<T, H> {
         })
     }
 
-    /// All values in slot order, to change.
+    /// All values in slot order, to change what every step changes: see [`Arena::redefine`].
     pub(crate) fn iter_mut(&mut self) -> impl Iterator<Item = (H, &mut T)> {
         self.slots.iter_mut().zip(0u32..).filter_map(|(slot, index)| {
             let generation = slot.generation;

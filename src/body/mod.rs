@@ -15,7 +15,7 @@ mod polygon;
 mod settings;
 mod shape;
 
-pub(crate) use arena::{Arena, Handle};
+pub(crate) use arena::{Arena, Handle, SharedArena};
 pub use arena::{BodyId, IslandId, JointId, ShapeId};
 pub use body::Body;
 pub(crate) use body::{Pose, SPEED_MAX};

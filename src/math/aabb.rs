@@ -48,6 +48,17 @@ impl Aabb {
         self.lower.x <= self.upper.x && self.lower.y <= self.upper.y
     }
 
+    /// The smallest box around this one whose corners are multiples of `2^shift` units of the format.
+    #[inline]
+    #[must_use]
+    pub(crate) fn rounded_out(self, shift: u32) -> Self {
+        let rest = (1i64 << shift) - 1;
+        let down = |x: Fx| Fx::from_bits(x.to_bits() & !rest);
+        let up = |x: Fx| Fx::from_bits(x.to_bits().saturating_add(rest) & !rest);
+        let Aabb { lower, upper } = self;
+        Aabb { lower: Vec2::new(down(lower.x), down(lower.y)), upper: Vec2::new(up(upper.x), up(upper.y)) }
+    }
+
     /// Whether the boxes share a point.
     #[inline]
     #[must_use]

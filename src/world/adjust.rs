@@ -22,7 +22,7 @@ impl World {
         settings.validate()?;
         let mass = mass_of(body.kind(), body.mass_source, settings, self.shape_defs(body))?;
         islands::wake_body(&mut self.state, &mut self.scratch, id.slot());
-        let body = self.state.bodies.at_mut(id.slot());
+        let body = self.state.bodies.redefine(id.slot());
         body.settings = *settings;
         body.set_mass(mass);
         body.hold_locked_axes();
@@ -48,7 +48,7 @@ impl World {
         let mass = mass_of(body.kind(), source, &body.settings, self.shape_defs(body))?;
         self.check_spin(body, &mass)?;
         islands::wake_body(&mut self.state, &mut self.scratch, id.slot());
-        let body = self.state.bodies.at_mut(id.slot());
+        let body = self.state.bodies.redefine(id.slot());
         body.mass_source = source;
         body.set_mass(mass);
         self.placed(id.slot());
@@ -79,7 +79,7 @@ impl World {
         }
         islands::disturb(&mut self.state, &mut self.scratch, id.slot());
         self.wake_joined(id);
-        let body = self.state.bodies.at_mut(id.slot());
+        let body = self.state.bodies.redefine(id.slot());
         body.kind = kind;
         body.target = None;
         body.set_mass(mass);
@@ -113,7 +113,7 @@ impl World {
         for shape in shapes {
             self.scratch.remove_box(shape.slot());
         }
-        let body = self.state.bodies.at_mut(id.slot());
+        let body = self.state.bodies.redefine(id.slot());
         body.enabled = false;
         body.target = None;
         (body.force, body.torque) = (Vec2::ZERO, Fx::ZERO);
@@ -185,8 +185,8 @@ impl World {
         if other_role {
             self.forget_contacts(&[id]);
         }
-        self.state.shapes.at_mut(id.slot()).def = *def;
-        self.state.bodies.at_mut(slot).set_mass(mass);
+        self.state.shapes.redefine(id.slot()).def = *def;
+        self.state.bodies.redefine(slot).set_mass(mass);
         self.replace(slot);
         self.scratch.changes.rules = true;
         islands::disturb(&mut self.state, &mut self.scratch, slot);

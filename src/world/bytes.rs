@@ -1,4 +1,4 @@
-//! Saving and restoring: in memory for rollback, as bytes for files and networks.
+//! A world as bytes, for files and networks.
 
 use alloc::vec::Vec;
 use core::fmt;
@@ -9,10 +9,6 @@ use super::validate::Violation;
 use crate::SEMANTICS;
 use crate::codec::{self, DecodeError};
 use crate::hash::StateHash;
-
-/// A copy of a world's state, for [`World::restore`].
-#[derive(Clone, Debug, PartialEq)]
-pub struct Snapshot(State);
 
 /// Starts the bytes of a world.
 const MAGIC: [u8; 8] = *b"LS2DWRLD";
@@ -76,18 +72,6 @@ impl fmt::Display for SnapshotError {
 impl core::error::Error for SnapshotError {}
 
 impl World {
-    /// A copy of the state.
-    #[must_use]
-    pub fn save(&self) -> Snapshot {
-        Snapshot(self.state.clone())
-    }
-
-    /// Returns to a saved state. What follows is bit-identical to what followed the save.
-    pub fn restore(&mut self, snapshot: &Snapshot) {
-        self.state.clone_from(&snapshot.0);
-        self.clear_scratch();
-    }
-
     /// The state as portable bytes: header, canonical encoding, hash. `docs/FORMAT.md` has the layout.
     #[must_use]
     pub fn to_bytes(&self) -> Vec<u8> {
@@ -96,7 +80,7 @@ impl World {
         bytes.extend_from_slice(&FORMAT.to_le_bytes());
         bytes.extend_from_slice(&SEMANTICS.to_le_bytes());
         bytes.extend_from_slice(&[0; 8]);
-        codec::encode_into(&self.state, &mut bytes);
+        codec::encode_into(self.state.get(), &mut bytes);
         let length = (bytes.len() - HEADER_LEN) as u64;
         bytes[HEADER_LEN - 8..HEADER_LEN].copy_from_slice(&length.to_le_bytes());
         let hash = StateHash::of_bytes(&bytes);

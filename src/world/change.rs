@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::World;
 use super::config::Config;
 use super::islands;
-use super::state::Island;
+use super::state::{Island, State};
 use super::stress;
 use crate::body::{
     Body, BodyDef, BodyId, BodyKind, BodySettings, Handle, JointId, MassProperties, MassSource, REACH_MAX,
@@ -16,6 +16,9 @@ use crate::body::{
 use crate::collision::{Contact, PosedShape};
 use crate::math::{Aabb, Angle, Fx, Vec2, fx_mul};
 use crate::solver::{Joint, JointDef};
+
+/// Bits of [`Fx`] below the grid that the corners of fat boxes are on.
+pub(super) const FAT_GRID_SHIFT: u32 = 10;
 
 /// Where to put a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -118,7 +121,7 @@ impl World {
         let mass = mass_of(owner.kind(), owner.mass_source, &owner.settings, shapes)?;
         self.check_spin(owner, &mass)?;
         islands::wake_body(&mut self.state, &mut self.scratch, body.slot());
-        self.state.bodies.at_mut(body.slot()).set_mass(mass);
+        self.state.bodies.redefine(body.slot()).set_mass(mass);
         let id = self.insert_shape(body, shape);
         // The centre of mass may have moved, and with it, by a rounding, the places of the other shapes.
         self.placed(body.slot());
@@ -140,7 +143,7 @@ impl World {
         self.check_spin(owner, &mass)?;
         islands::disturb(&mut self.state, &mut self.scratch, body.slot());
         self.forget_shapes(&[id]);
-        let owner = self.state.bodies.at_mut(body.slot());
+        let owner = self.state.bodies.redefine(body.slot());
         owner.shapes.retain(|&other| other != id);
         owner.set_mass(mass);
         // The centre of mass has moved, and with it, by a rounding, the places of the other shapes.
@@ -248,19 +251,22 @@ impl World {
 
     /// Adds a shape that has been checked. It has to be posed afterwards.
     fn insert_shape(&mut self, body: BodyId, def: &ShapeDef) -> ShapeId {
-        let owner = self.state.bodies.at_mut(body.slot());
-        let fat = fat_box(def, owner, &self.state.config);
-        let id = self.state.shapes.insert(Shape { body, def: *def, fat });
+        let State { bodies, shapes, config, .. } = &mut *self.state;
+        let owner = bodies.redefine(body.slot());
+        let fat = fat_box(def, owner, config);
+        let id = shapes.insert(Shape { body, def: *def, fat });
         owner.shapes.push(id);
         id
     }
 
     /// Gives the shapes of a body that has been moved new boxes.
     pub(super) fn replace(&mut self, slot: u32) {
-        let body = self.state.bodies.at(slot);
+        let State { bodies, shapes, config, .. } = &mut *self.state;
+        let body = bodies.at(slot);
         for shape in &body.shapes {
-            let shape = self.state.shapes.at_mut(shape.slot());
-            shape.fat = fat_box(&shape.def, body, &self.state.config);
+            // Boxes of fixed bodies are not among what a step changes, and the body may have ceased to be fixed.
+            let shape = shapes.redefine(shape.slot());
+            shape.fat = fat_box(&shape.def, body, config);
         }
         self.placed(slot);
         self.scratch.changes.resting = true;
@@ -296,25 +302,18 @@ impl World {
             let (a, b) = contact.shapes;
             slots.binary_search(&a).is_ok() || slots.binary_search(&b).is_ok()
         };
-        let mut contacts = core::mem::take(&mut self.state.contacts);
-        let mut resting = core::mem::take(&mut self.state.resting);
-        let mut removed = core::mem::take(&mut self.state.removed_contacts);
+        let State { contacts, resting, .. } = &*self.state;
         let before = contacts.len();
-        for list in [&mut contacts, &mut resting] {
-            list.retain(|contact| {
-                let ends = ends(contact);
-                if ends && contact.touching {
-                    removed.extend(self.state.reported(contact));
-                }
-                !ends
-            });
-        }
-        if contacts.len() < before {
+        let touching =
+            contacts.iter().chain(resting.iter()).filter(|contact| contact.touching && ends(contact));
+        let removed: Vec<_> = touching.filter_map(|contact| self.state.reported(contact)).collect();
+        self.state.removed_contacts.extend(removed);
+        self.state.contacts.retain(|contact| !ends(contact));
+        self.state.resting.retain(|contact| !ends(contact));
+        if self.state.contacts.len() < before {
             // Manifolds and hints are found by the contact's place, which has moved.
             self.scratch.forget_contacts();
         }
-        (self.state.contacts, self.state.resting) = (contacts, resting);
-        self.state.removed_contacts = removed;
     }
 }
 
@@ -349,9 +348,15 @@ pub(super) fn mass_of<'a>(
 pub(super) fn fat_box(shape: &ShapeDef, body: &Body, config: &Config) -> Aabb {
     let bounds = PosedShape::new(shape, body, body.rotation()).bounds;
     match body.kind() {
-        BodyKind::Fixed => bounds,
-        BodyKind::Kinematic | BodyKind::Dynamic => bounds.expanded(config.margin_of(bounds)),
+        BodyKind::Fixed => fattened(bounds, Fx::ZERO),
+        BodyKind::Kinematic | BodyKind::Dynamic => fattened(bounds, config.margin_of(bounds)),
     }
+}
+
+/// A fat box around another one. Its corners are multiples of 2^-22 m, so that snapshots need only 32 bits for how far
+/// they are from the body's centre.
+pub(super) fn fattened(bounds: Aabb, margin: Fx) -> Aabb {
+    bounds.expanded(margin).rounded_out(FAT_GRID_SHIFT)
 }
 
 fn check_shapes_of_body(count: usize) -> Result<(), WorldError> {

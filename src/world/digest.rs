@@ -1,7 +1,11 @@
 //! The state hash, and the digests it is made of: what a report of a divergence is built from.
 
+use alloc::boxed::Box;
 use alloc::vec::Vec;
 use core::fmt;
+use core::ops::{Deref, DerefMut};
+
+use once_cell::race::OnceBox;
 
 use super::World;
 use super::state::State;
@@ -49,6 +53,19 @@ pub struct WorldDigest {
 }
 
 impl WorldDigest {
+    /// Of sections that have not been looked at yet.
+    pub(super) const NONE: Self = WorldDigest {
+        sections: [
+            (Section::World, StateHash(0)),
+            (Section::Bodies, StateHash(0)),
+            (Section::Shapes, StateHash(0)),
+            (Section::Joints, StateHash(0)),
+            (Section::Contacts, StateHash(0)),
+            (Section::Islands, StateHash(0)),
+            (Section::Random, StateHash(0)),
+        ],
+    };
+
     /// The hash of the whole state.
     #[must_use]
     pub fn state_hash(&self) -> StateHash {
@@ -64,7 +81,8 @@ impl WorldDigest {
 }
 
 impl World {
-    /// The hash of everything that influences the future.
+    /// The hash of everything that influences the future. Costs about as much as [`World::save_into`], or nothing if the
+    /// world has not changed since it was last hashed or saved.
     #[must_use]
     pub fn state_hash(&self) -> StateHash {
         self.digest().state_hash()
@@ -73,36 +91,52 @@ impl World {
     /// The digest of each section of the state.
     #[must_use]
     pub fn digest(&self) -> WorldDigest {
-        // Destructured, so that a new field does not compile until it has a section.
-        let State {
-            config,
-            tick,
-            faults,
-            bodies,
-            shapes,
-            joints,
-            islands,
-            contacts,
-            resting,
-            pairs_left_out,
-            removed_contacts,
-            rng,
-        } = &self.state;
-        WorldDigest {
-            sections: [
-                (Section::World, StateHash::of(&(config, tick, faults))),
-                (Section::Bodies, StateHash::of(bodies)),
-                (Section::Shapes, StateHash::of(shapes)),
-                (Section::Joints, StateHash::of(joints)),
-                (Section::Contacts, StateHash::of(&(contacts, resting, pairs_left_out, removed_contacts))),
-                (Section::Islands, StateHash::of(islands)),
-                (Section::Random, StateHash::of(rng)),
-            ],
-        }
+        let Some(known) = self.state.digest.get() else {
+            return self.save().digest();
+        };
+        debug_assert_eq!(*known, self.save().digest(), "the state has changed unseen");
+        *known
     }
 
     /// The digest of each body, in slot order.
     pub fn body_digests(&self) -> impl Iterator<Item = (BodyId, StateHash)> {
         self.state.bodies.iter().map(|(id, body)| (id, StateHash::of(body)))
+    }
+}
+
+/// A state, and its digest from when it is found until it changes: whoever may change the state, forgets it.
+#[derive(Clone, Debug)]
+pub(super) struct Hashed {
+    state: State,
+    digest: OnceBox<WorldDigest>,
+}
+
+impl Hashed {
+    pub(super) fn new(state: State) -> Self {
+        Hashed { state, digest: OnceBox::new() }
+    }
+
+    pub(super) const fn get(&self) -> &State {
+        &self.state
+    }
+
+    /// Takes note of the digest of the state as it is.
+    pub(super) fn set_digest(&self, digest: WorldDigest) {
+        self.digest.get_or_init(|| Box::new(digest));
+    }
+}
+
+impl Deref for Hashed {
+    type Target = State;
+
+    fn deref(&self) -> &State {
+        &self.state
+    }
+}
+
+impl DerefMut for Hashed {
+    fn deref_mut(&mut self) -> &mut State {
+        self.digest = OnceBox::new();
+        &mut self.state
     }
 }

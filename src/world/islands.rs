@@ -275,7 +275,7 @@ fn put_to_sleep(state: &mut State, scratch: &mut Scratch, sleepy: impl Fn(&Body)
             Some(island) => island,
             None => state.islands.insert(Island { bodies: Vec::new() }),
         };
-        state.islands.at_mut(island.slot()).bodies.push(slot);
+        state.islands.redefine(island.slot()).bodies.push(slot);
         let body = state.bodies.at_mut(slot);
         body.island = Some(island);
         body.rest_ticks = 0;

@@ -20,6 +20,7 @@ mod pairs;
 mod probe;
 mod push;
 mod query;
+mod rollback;
 mod scratch;
 mod state;
 mod stats;
@@ -28,17 +29,19 @@ mod stress;
 mod timestep;
 mod validate;
 
-pub use bytes::{Snapshot, SnapshotError};
+pub use bytes::SnapshotError;
 pub use change::Place;
 pub use character::{Moved, Mover, MoverState};
 pub use command::{Command, Outcome};
 pub use config::Config;
+use digest::Hashed;
 pub use digest::{Section, WorldDigest};
 pub use events::{ContactEvent, Events, HitEvent, JointEvent, MoveEvent, SensorEvent};
 pub use explosion::Explosion;
 pub use mover_planes::{MoverPlane, clip_velocity, solve_planes};
 pub use probe::Probe;
 pub use query::{CastHit, Proximity, QueryFilter, RayHit};
+pub use rollback::Snapshot;
 pub use stats::{Phase, StepStats};
 pub use timestep::FixedTimestep;
 pub use validate::Violation;
@@ -76,7 +79,7 @@ use state::State;
 /// ```
 #[derive(Clone, Debug)]
 pub struct World {
-    state: State,
+    state: Hashed,
     scratch: Scratch,
 }
 
@@ -97,28 +100,29 @@ impl World {
         Ok(World::of(State::new(config), BroadPhaseKind::default()))
     }
 
-    fn of(state: State, broad_phase: BroadPhaseKind) -> Self {
+    fn of(mut state: State, broad_phase: BroadPhaseKind) -> Self {
+        state.keep_pages();
         let scratch = Scratch::new(broad_phase, &state);
-        World { state, scratch }
+        World { state: Hashed::new(state), scratch }
     }
 
     /// The settings.
     #[must_use]
     pub const fn config(&self) -> &Config {
-        &self.state.config
+        &self.state.get().config
     }
 
     /// Ticks since the world was made.
     #[must_use]
     pub const fn tick(&self) -> u64 {
-        self.state.tick
+        self.state.get().tick
     }
 
     /// How often a clamp of the solver has changed a result since the world was made. It never goes back to 0,
     /// and is 0 as long as speeds, impulses and displacements stay in their ranges.
     #[must_use]
     pub const fn faults(&self) -> u64 {
-        self.state.faults
+        self.state.get().faults
     }
 
     /// A body, while it is in the world.

@@ -92,6 +92,27 @@ impl Changes {
         self.everything || self.resting || self.rules || !self.shapes.is_empty()
     }
 
+    /// Keeps what is to be looked at, without what has been seen.
+    pub(crate) fn keep(&self, pending: &mut Self) {
+        let Changes { everything, resting, rules, shapes, seen: _ } = self;
+        (pending.everything, pending.resting, pending.rules) = (*everything, *resting, *rules);
+        pending.shapes.clone_from(shapes);
+    }
+
+    /// Takes over what was to be looked at when a snapshot was made, for a state that has been brought back.
+    pub(crate) fn resume(&mut self, pending: &Self, boxes: &BroadPhase, slot_count: usize) {
+        let Changes { everything, resting, rules, shapes, seen } = self;
+        (*everything, *resting, *rules) = (pending.everything, pending.resting, pending.rules);
+        shapes.clone_from(&pending.shapes);
+        seen.clear();
+        seen.extend((0u32..).take(slot_count).map(|slot| boxes.fat(slot)));
+        for &slot in shapes.iter() {
+            if let Some(seen) = seen.get_mut(slot as usize) {
+                *seen = Aabb::NOWHERE;
+            }
+        }
+    }
+
     /// The pairs have been looked at.
     pub(crate) fn settle(&mut self, boxes: &BroadPhase, slot_count: usize) {
         self.seen.resize(slot_count, Aabb::NOWHERE);
@@ -175,6 +196,37 @@ impl Scratch {
         scratch
     }
 
+    /// Brings the broad phase in line with shapes in some slots: that have another box, or that have come or gone.
+    pub(crate) fn set_boxes(&mut self, state: &State, slots: &[u32]) {
+        let there = |slot: u32| {
+            let shape = state.shapes.get_slot(slot)?;
+            state.bodies.at(shape.body().slot()).enabled.then_some((slot, shape.fat))
+        };
+        let Scratch { broad_phase, fixed, refitted, .. } = self;
+        refitted.clear();
+        for &slot in slots {
+            fixed.remove(slot);
+            match there(slot) {
+                Some((slot, fat)) if broad_phase.fat(slot) != Aabb::NOWHERE => refitted.push((slot, fat)),
+                Some((slot, fat)) => broad_phase.set(slot, fat),
+                None => broad_phase.remove(slot),
+            }
+            if let Some((slot, fat)) = there(slot).filter(|_| state.body_of(slot).kind() == BodyKind::Fixed) {
+                fixed.set(slot, fat);
+            }
+        }
+        broad_phase.set_many(refitted);
+    }
+
+    /// Drops what is known of the last tick only: the state is now that of another one.
+    pub(crate) fn reset_results(&mut self) {
+        self.forget_contacts();
+        self.surfaces_stale = true;
+        self.ended.clear();
+        self.events.clear();
+        self.stats = StepStats::default();
+    }
+
     /// Brings the caches in line with the place of a body's shapes.
     pub(crate) fn place(&mut self, state: &State, slot: u32) {
         self.poses.pose_body(state, slot);
@@ -250,7 +302,7 @@ impl Extents {
 
 impl Poses {
     /// Poses the shapes of a body that has come, has got another shape, or has another mass.
-    fn pose_body(&mut self, state: &State, slot: u32) {
+    pub(crate) fn pose_body(&mut self, state: &State, slot: u32) {
         self.shapes.resize_with(state.shapes.slot_count(), || None);
         self.extents.resize(state.bodies.slot_count(), Extents::NONE);
         let body = state.bodies.at(slot);
@@ -273,6 +325,11 @@ impl Poses {
             posed.renew(&state.shapes.at(id.slot()).def, body, rotation);
             self.outlook.move_to(id.slot(), posed.bounds);
         }
+    }
+
+    /// Whether a shape has been posed.
+    pub(crate) fn has(&self, slot: u32) -> bool {
+        self.shapes.get(slot as usize).is_some_and(Option::is_some)
     }
 
     /// The extents of the body in an occupied slot.

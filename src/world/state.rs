@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::config::Config;
 use super::events::ContactEvent;
+use super::rollback::Resting;
 use crate::body::{Arena, Body, BodyId, Handle, IslandId, JointId, Shape, ShapeId};
 use crate::collision::{Contact, Pair};
 use crate::math::Rng;
@@ -50,7 +51,7 @@ pub(crate) struct State {
     /// Near pairs of which a body is active, sorted by pair.
     pub(crate) contacts: Vec<Contact>,
     /// Contacts that a tick does not look at, because their bodies sleep or nothing moves them, sorted by pair.
-    pub(crate) resting: Vec<Contact>,
+    pub(crate) resting: Resting,
     /// Whether there are more pairs than [`Config::pair_limit`].
     pub(crate) pairs_left_out: bool,
     /// Contacts that ended because a shape was removed since the last tick, for the events of the next one.
@@ -69,11 +70,19 @@ impl State {
             joints: Arena::default(),
             islands: Arena::default(),
             contacts: Vec::new(),
-            resting: Vec::new(),
+            resting: Resting::default(),
             pairs_left_out: false,
             removed_contacts: Vec::new(),
             rng: Rng::new(0),
         }
+    }
+
+    /// Makes room for the copies that snapshots share, after it has been decoded.
+    pub(crate) fn keep_pages(&mut self) {
+        self.bodies.keep_pages();
+        self.shapes.keep_pages();
+        self.joints.keep_pages();
+        self.islands.keep_pages();
     }
 
     /// The bodies of a pair of shapes.

@@ -1,6 +1,7 @@
 //! One tick, as the algorithm reads.
 
 use super::World;
+use super::change::fattened;
 use super::contacts;
 use super::continuous;
 use super::events::MoveEvent;
@@ -33,6 +34,7 @@ impl World {
     /// ```
     pub fn step_observed(&mut self, mut begin: impl FnMut(Phase)) {
         let World { state, scratch } = self;
+        let state = &mut **state;
         let settings = state.config.solver;
         let tuning = Tuning::new(&settings, state.config.gravity, state.config.tick_rate);
 
@@ -101,7 +103,7 @@ fn refit_boxes(state: &mut State, scratch: &mut Scratch) {
             // A box that a fast shape has left behind would find pairs for ever, so it shrinks as well.
             let roomy = needed.expanded(margin.saturating_mul_int(4));
             if !fat.contains(needed) || !roomy.contains(fat) {
-                let fat = needed.expanded(margin);
+                let fat = fattened(needed, margin);
                 shapes.at_mut(id.slot()).fat = fat;
                 refitted.push((id.slot(), fat));
                 changes.shapes.push(id.slot());
@@ -210,7 +212,7 @@ fn cover_shapes(state: &mut State, scratch: &mut Scratch, slot: u32) {
     for id in bodies.at(slot).shapes() {
         let bounds = scratch.poses.at(id.slot()).bounds;
         if !scratch.broad_phase.fat(id.slot()).contains(bounds) {
-            let fat = bounds.expanded(config.margin_of(bounds));
+            let fat = fattened(bounds, config.margin_of(bounds));
             shapes.at_mut(id.slot()).fat = fat;
             scratch.broad_phase.set(id.slot(), fat);
             scratch.changes.shapes.push(id.slot());

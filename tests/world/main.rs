@@ -5,6 +5,7 @@ mod churn;
 mod equality;
 mod events;
 mod locks;
+mod rollback;
 mod sensors;
 mod sleeping;
 

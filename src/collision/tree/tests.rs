@@ -74,6 +74,11 @@ fn it_stays_sound_while_boxes_come_go_and_move() {
         let fat = square(rng.range(fx!(-9), fx!(9)), rng.range(fx!(-9), fx!(9)), rng.range(fx!(0), fx!(1)));
         match rng.below(if round % 2000 < 1000 { 2 } else { 4 }) {
             0 => tree.set(slot, fat),
+            _ if round % 50 == 7 => {
+                let moved = |i: u32| fat.translated(Vec2::new(Fx::from_num(i), fx!(0)));
+                tree.set_many((0..20).map(|i| ((slot + 3 * i) % 100, moved(i))));
+                assert_eq!(tree.leaf_of(slot).map(|leaf| tree.at(leaf).aabb), Some(fat));
+            }
             _ if round == 10_000 => tree.refill((0..50).map(|slot| (slot % 40, fat))),
             _ => tree.remove(slot),
         }

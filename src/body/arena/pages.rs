@@ -1,0 +1,213 @@
+//! Arenas in pages that snapshots share: a page is copied once and then shared by all snapshots, until something in
+//! it changes.
+//!
+//! Values are copied without what every step changes (velocities, impulses), which snapshots keep elsewhere. So a
+//! world in which nothing comes, goes or is redefined copies no page at all.
+
+use alloc::boxed::Box;
+use alloc::sync::Arc;
+use alloc::vec::Vec;
+
+use once_cell::race::OnceBox;
+use serde::Serialize;
+
+use super::{Arena, Slot};
+use crate::hash::StateHash;
+
+/// Slots in a page: few, so that a change copies little, but enough that sharing costs nothing.
+const PAGE_SLOTS: usize = 32;
+
+/// Copies of some slots, and their digest.
+#[derive(Debug, PartialEq)]
+struct Page<T> {
+    slots: Vec<Slot<T>>,
+    digest: StateHash,
+}
+
+/// A copy of the free list and the number of slots that are used up, and their digest.
+#[derive(Debug, Default, PartialEq)]
+struct Vacancies {
+    free: Vec<u32>,
+    retired: u32,
+    digest: StateHash,
+}
+
+/// The copies that are still as the arena is, where there are any. A cache: it is no part of the state.
+#[derive(Debug)]
+pub(super) struct Kept<T> {
+    pages: Vec<OnceBox<Arc<Page<T>>>>,
+    vacancies: OnceBox<Arc<Vacancies>>,
+}
+
+impl<T> Default for Kept<T> {
+    fn default() -> Self {
+        Kept { pages: Vec::new(), vacancies: OnceBox::new() }
+    }
+}
+
+impl<T> Clone for Kept<T> {
+    fn clone(&self) -> Self {
+        Kept { pages: self.pages.clone(), vacancies: self.vacancies.clone() }
+    }
+}
+
+/// Caches do not make arenas different.
+impl<T> PartialEq for Kept<T> {
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
+}
+
+impl<T> Kept<T> {
+    /// Forgets the copy of the page that a slot is in.
+    pub(super) fn changed(&mut self, slot: u32) {
+        if let Some(page) = self.pages.get_mut(slot as usize / PAGE_SLOTS) {
+            *page = OnceBox::new();
+        }
+    }
+
+    /// Forgets the copies of the free list and of the page that a slot is in. There may be one slot more than before.
+    pub(super) fn came_or_went(&mut self, slot: u32, slot_count: usize) {
+        self.fit(slot_count);
+        self.changed(slot);
+        self.vacancies = OnceBox::new();
+    }
+
+    /// Has room for as many slots.
+    fn fit(&mut self, slot_count: usize) {
+        self.pages.resize_with(slot_count.div_ceil(PAGE_SLOTS), OnceBox::new);
+    }
+}
+
+/// An arena as a snapshot has it: without what every step changes.
+#[derive(Debug, PartialEq)]
+pub(crate) struct SharedArena<T> {
+    pages: Vec<Arc<Page<T>>>,
+    vacancies: Arc<Vacancies>,
+}
+
+impl<T> Default for SharedArena<T> {
+    fn default() -> Self {
+        SharedArena { pages: Vec::new(), vacancies: Arc::default() }
+    }
+}
+
+impl<T> Clone for SharedArena<T> {
+    fn clone(&self) -> Self {
+        SharedArena { pages: self.pages.clone(), vacancies: self.vacancies.clone() }
+    }
+
+    fn clone_from(&mut self, other: &Self) {
+        self.pages.clone_from(&other.pages);
+        self.vacancies.clone_from(&other.vacancies);
+    }
+}
+
+impl<T> SharedArena<T> {
+    /// The digests of the free list and of each page.
+    pub(crate) fn digests(&self) -> impl Iterator<Item = StateHash> {
+        core::iter::once(self.vacancies.digest).chain(self.pages.iter().map(|page| page.digest))
+    }
+
+    /// How many pages are the very same as those of another snapshot.
+    #[cfg(test)]
+    pub(crate) fn shared_with(&self, other: &Self) -> usize {
+        self.pages.iter().zip(&other.pages).filter(|(a, b)| Arc::ptr_eq(a, b)).count()
+    }
+
+    /// How many bytes it takes to name the pages.
+    pub(crate) fn size(&self) -> usize {
+        self.pages.len() * size_of::<Arc<Page<T>>>()
+    }
+}
+
+impl<T, H> Arena<T, H> {
+    /// Makes room to keep copies of all pages, after the arena has been decoded.
+    pub(crate) fn keep_pages(&mut self) {
+        self.kept.fit(self.slots.len());
+    }
+
+    /// Shares the arena: only pages that have changed since they were last shared are copied, value by value.
+    pub(crate) fn share_into(&self, shared: &mut SharedArena<T>, copy: impl Fn(&T) -> T)
+    where
+        T: PartialEq + Serialize,
+    {
+        let SharedArena { pages, vacancies } = shared;
+        pages.truncate(self.slots.len().div_ceil(PAGE_SLOTS));
+        for (index, slots) in self.slots.chunks(PAGE_SLOTS).enumerate() {
+            let page_of = || Box::new(Arc::new(Page::of(slots, &copy)));
+            let unkept;
+            let page = match self.kept.pages.get(index) {
+                Some(kept) => kept.get_or_init(page_of),
+                None => {
+                    unkept = page_of();
+                    &*unkept
+                }
+            };
+            debug_assert!(page.is_copy_of(slots, &copy), "a change that the arena was not told about");
+            match pages.get_mut(index) {
+                Some(old) if Arc::ptr_eq(old, page) => {}
+                Some(old) => *old = page.clone(),
+                None => pages.push(page.clone()),
+            }
+        }
+        let vacancies_of = || Box::new(Arc::new(Vacancies::of(&self.free, self.retired)));
+        let current = self.kept.vacancies.get_or_init(vacancies_of);
+        debug_assert_eq!(**current, Vacancies::of(&self.free, self.retired));
+        vacancies.clone_from(current);
+    }
+
+    /// Returns to a shared arena, and calls `changed` with every slot that may now be another one, or that is gone. The
+    /// values there are as they were copied; what every step changes is to be restored in all values.
+    pub(crate) fn restore(&mut self, shared: &SharedArena<T>, mut changed: impl FnMut(u32))
+    where
+        T: Clone,
+    {
+        let slot_count = shared.pages.iter().map(|page| page.slots.len()).sum();
+        (slot_count..self.slots.len()).filter_map(|slot| u32::try_from(slot).ok()).for_each(&mut changed);
+        self.slots.truncate(slot_count);
+        self.kept.fit(slot_count);
+        let mut first = 0;
+        for (page, kept) in shared.pages.iter().zip(&mut self.kept.pages) {
+            let next = first + page.slots.len();
+            let same = kept.get().is_some_and(|kept| Arc::ptr_eq(kept, page));
+            if !same {
+                let there = self.slots.len().clamp(first, next);
+                self.slots[first..there].clone_from_slice(&page.slots[..there - first]);
+                self.slots.extend_from_slice(&page.slots[there - first..]);
+                *kept = OnceBox::with_value(Box::new(page.clone()));
+                (first..next).filter_map(|slot| u32::try_from(slot).ok()).for_each(&mut changed);
+            }
+            first = next;
+        }
+        self.free.clone_from(&shared.vacancies.free);
+        self.retired = shared.vacancies.retired;
+        self.kept.vacancies = OnceBox::with_value(Box::new(shared.vacancies.clone()));
+    }
+}
+
+impl<T: Serialize> Page<T> {
+    fn of(slots: &[Slot<T>], copy: impl Fn(&T) -> T) -> Self {
+        let slots: Vec<Slot<T>> = slots
+            .iter()
+            .map(|slot| Slot { generation: slot.generation, value: slot.value.as_ref().map(&copy) })
+            .collect();
+        let digest = StateHash::of(&slots);
+        Page { slots, digest }
+    }
+}
+
+impl<T: PartialEq> Page<T> {
+    fn is_copy_of(&self, slots: &[Slot<T>], copy: impl Fn(&T) -> T) -> bool {
+        let same = |(kept, slot): (&Slot<T>, &Slot<T>)| {
+            kept.generation == slot.generation && kept.value == slot.value.as_ref().map(&copy)
+        };
+        self.slots.len() == slots.len() && self.slots.iter().zip(slots).all(same)
+    }
+}
+
+impl Vacancies {
+    fn of(free: &[u32], retired: u32) -> Self {
+        Vacancies { free: free.to_vec(), retired, digest: StateHash::of(&(free, retired)) }
+    }
+}

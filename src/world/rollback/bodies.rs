@@ -1,0 +1,224 @@
+//! What a step changes of bodies and of the boxes of their shapes, as bytes.
+//!
+//! Of every body 36 bytes: centre (2 x i64), angle (u32), velocity (2 x i32), spin (i32), rest ticks (u32). After all of
+//! them, of those that are pushed, sleep or have a target, the slot (u32), which of the following there are (u8), and
+//! these: force and torque (3 x i64), island (2 x u32), target (2 x i64, u32).
+//!
+//! Of every shape of a body that is not fixed 16 bytes: the corners of its fat box about the body's centre in units of
+//! 2^-22 m (4 x i32). A box that is not on this grid or too far away has `i32::MIN` in the first place, and comes in full
+//! (4 x i64) after all others.
+
+use alloc::vec::Vec;
+
+use super::packing::{Fields, Reader, Record, Writer};
+use crate::body::{Arena, Body, BodyId, BodyKind, Handle, IslandId, Pose, Shape, ShapeId};
+use crate::math::{Aabb, Angle, Fx, Speed, Vec2};
+use crate::world::change::FAT_GRID_SHIFT;
+
+const FORCE: u8 = 1;
+const ISLAND: u8 = 2;
+const TARGET: u8 = 4;
+
+const BODY_BYTES: usize = 36;
+/// At most.
+const SPECIAL_BYTES: usize = 5 + 24 + 8 + 20;
+const BOX_BYTES: usize = 16;
+
+type Bodies = Arena<Body, BodyId>;
+type Shapes = Arena<Shape, ShapeId>;
+
+/// A body without what a step changes.
+pub(super) fn lasting_body(body: &Body) -> Body {
+    let mut body = body.clone();
+    set_motion(&mut body, &mut Reader(&[0; BODY_BYTES]).record());
+    (body.force, body.torque, body.island, body.target) = (Vec2::ZERO, Fx::ZERO, None, None);
+    body
+}
+
+/// A shape without what a step changes: its box, unless its body is fixed.
+pub(super) fn lasting_shape(shape: &Shape, bodies: &Bodies) -> Shape {
+    let fat = if is_fixed(shape, bodies) { shape.fat } else { Aabb::default() };
+    Shape { fat, ..shape.clone() }
+}
+
+fn is_fixed(shape: &Shape, bodies: &Bodies) -> bool {
+    bodies.get(shape.body).is_some_and(|body| body.kind == BodyKind::Fixed)
+}
+
+pub(super) fn pack_bodies(bodies: &Bodies, bytes: &mut Vec<u8>) {
+    let mut special = Vec::new();
+    let mut writer = Writer::new(bytes, bodies.len() * BODY_BYTES);
+    for (id, body) in bodies.iter() {
+        writer.record(|record: &mut Record<'_, BODY_BYTES>| {
+            put_place(record, body.centre, body.angle);
+            record.put(body.velocity.x.to_bits());
+            record.put(body.velocity.y.to_bits());
+            record.put(body.spin.to_bits());
+            record.put(body.rest_ticks);
+        });
+        if specials(body) != 0 {
+            special.push((id, body));
+        }
+    }
+    drop(writer);
+    let mut rest = Vec::new();
+    let mut writer = Writer::new(&mut rest, special.len() * SPECIAL_BYTES);
+    special.into_iter().for_each(|(id, body)| writer.record(|record| pack_special(id, body, record)));
+    drop(writer);
+    bytes.extend_from_slice(&rest);
+}
+
+fn specials(body: &Body) -> u8 {
+    let pushed = body.force != Vec2::ZERO || body.torque != Fx::ZERO;
+    let mark = |there: bool, flag: u8| if there { flag } else { 0 };
+    mark(pushed, FORCE) | mark(body.island.is_some(), ISLAND) | mark(body.target.is_some(), TARGET)
+}
+
+fn pack_special(id: BodyId, body: &Body, record: &mut Record<'_, SPECIAL_BYTES>) {
+    let specials = specials(body);
+    record.put(id.slot());
+    record.put(specials);
+    if specials & FORCE != 0 {
+        record.put(body.force.x.to_bits());
+        record.put(body.force.y.to_bits());
+        record.put(body.torque.to_bits());
+    }
+    if let Some(island) = body.island {
+        record.put(island.slot());
+        record.put(island.generation());
+    }
+    if let Some(target) = body.target {
+        put_place(record, target.centre, target.angle);
+    }
+}
+
+#[inline(always)]
+fn put_place<const N: usize>(record: &mut Record<'_, N>, centre: Vec2<Fx>, angle: Angle) {
+    record.put(centre.x.to_bits());
+    record.put(centre.y.to_bits());
+    record.put(angle.to_bits());
+}
+
+/// Gives the bodies back what was packed, and calls `moved` with the slots of those that it takes to another place.
+pub(super) fn unpack_bodies(bodies: &mut Bodies, bytes: &[u8], mut moved: impl FnMut(u32)) {
+    let mut reader = Reader(bytes);
+    let mut motions = reader.part(bodies.len() * BODY_BYTES);
+    for (id, body) in bodies.iter_mut() {
+        let before = (body.centre, body.angle);
+        set_motion(body, &mut motions.record());
+        (body.force, body.torque, body.island, body.target) = (Vec2::ZERO, Fx::ZERO, None, None);
+        if before != (body.centre, body.angle) {
+            moved(id.slot());
+        }
+    }
+    while !reader.is_empty() {
+        let mut head: Fields<'_, 5> = reader.record();
+        let body = bodies.at_mut(head.take());
+        let specials: u8 = head.take();
+        if specials & FORCE != 0 {
+            let mut force: Fields<'_, 24> = reader.record();
+            body.force = take_point(&mut force);
+            body.torque = Fx::from_bits(force.take());
+        }
+        if specials & ISLAND != 0 {
+            let mut island: Fields<'_, 8> = reader.record();
+            body.island = Some(IslandId::from_parts(island.take(), island.take()));
+        }
+        if specials & TARGET != 0 {
+            let mut target: Fields<'_, 20> = reader.record();
+            body.target = Some(take_place(&mut target));
+        }
+    }
+}
+
+#[inline(always)]
+fn set_motion(body: &mut Body, fields: &mut Fields<'_, BODY_BYTES>) {
+    Pose { centre: body.centre, angle: body.angle } = take_place(fields);
+    body.velocity = Vec2::new(Speed::from_bits(fields.take()), Speed::from_bits(fields.take()));
+    body.spin = Speed::from_bits(fields.take());
+    body.rest_ticks = fields.take();
+}
+
+#[inline(always)]
+fn take_place<const N: usize>(fields: &mut Fields<'_, N>) -> Pose {
+    Pose { centre: take_point(fields), angle: Angle::from_bits(fields.take()) }
+}
+
+#[inline(always)]
+fn take_point<const N: usize>(fields: &mut Fields<'_, N>) -> Vec2<Fx> {
+    Vec2::new(Fx::from_bits(fields.take()), Fx::from_bits(fields.take()))
+}
+
+pub(super) fn pack_boxes(shapes: &Shapes, bodies: &Bodies, bytes: &mut Vec<u8>) {
+    let mut far = Vec::new();
+    let mut writer = Writer::new(bytes, shapes.len() * BOX_BYTES);
+    for (_, shape) in shapes.iter() {
+        let body = bodies.at(shape.body.slot());
+        if body.kind == BodyKind::Fixed {
+            continue;
+        }
+        let near = about(shape.fat, body.centre);
+        if near.is_none() {
+            far.extend(corners(shape.fat).map(Fx::to_bits));
+        }
+        let steps = near.unwrap_or([i32::MIN, 0, 0, 0]);
+        writer
+            .record(|record: &mut Record<'_, BOX_BYTES>| steps.into_iter().for_each(|step| record.put(step)));
+    }
+    drop(writer);
+    far.into_iter().for_each(|corner| bytes.extend_from_slice(&corner.to_le_bytes()));
+}
+
+fn corners(fat: Aabb) -> [Fx; 4] {
+    [fat.lower.x, fat.lower.y, fat.upper.x, fat.upper.y]
+}
+
+/// A box in steps of the grid from a point, if it is on the grid and the steps are few enough.
+#[inline]
+fn about(fat: Aabb, centre: Vec2<Fx>) -> Option<[i32; 4]> {
+    let (x, y) = (centre.x.to_bits() >> FAT_GRID_SHIFT, centre.y.to_bits() >> FAT_GRID_SHIFT);
+    let bits = corners(fat).map(Fx::to_bits);
+    let steps = [
+        bits[0] >> FAT_GRID_SHIFT,
+        bits[1] >> FAT_GRID_SHIFT,
+        bits[2] >> FAT_GRID_SHIFT,
+        bits[3] >> FAT_GRID_SHIFT,
+    ];
+    // Shifted right, so that differences cannot overflow.
+    let [a, b, c, d] = [steps[0] - x, steps[1] - y, steps[2] - x, steps[3] - y].map(i32::try_from);
+    let on_grid = (bits[0] | bits[1] | bits[2] | bits[3]) & ((1 << FAT_GRID_SHIFT) - 1) == 0;
+    match (a, b, c, d) {
+        (Ok(a), Ok(b), Ok(c), Ok(d)) if on_grid && a != i32::MIN => Some([a, b, c, d]),
+        _ => None,
+    }
+}
+
+/// Gives the shapes back the boxes that were packed, and calls `changed` with the slots of those that were other ones.
+pub(super) fn unpack_boxes(shapes: &mut Shapes, bodies: &Bodies, bytes: &[u8], mut changed: impl FnMut(u32)) {
+    let count = shapes.iter().filter(|(_, shape)| !is_fixed(shape, bodies)).count();
+    let mut far = Reader(bytes);
+    let mut near = far.part(count * BOX_BYTES);
+    for (id, shape) in shapes.iter_mut() {
+        let body = bodies.at(shape.body.slot());
+        if body.kind == BodyKind::Fixed {
+            continue;
+        }
+        let mut fields: Fields<'_, BOX_BYTES> = near.record();
+        let steps: [i32; 4] = core::array::from_fn(|_| fields.take());
+        let fat = if steps[0] == i32::MIN {
+            let mut fields: Fields<'_, 32> = far.record();
+            Aabb::new(take_point(&mut fields), take_point(&mut fields))
+        } else {
+            let corner = |x: i32, y: i32| Vec2::new(at_step(body.centre.x, x), at_step(body.centre.y, y));
+            Aabb::new(corner(steps[0], steps[1]), corner(steps[2], steps[3]))
+        };
+        if shape.fat != fat {
+            shape.fat = fat;
+            changed(id.slot());
+        }
+    }
+}
+
+fn at_step(centre: Fx, step: i32) -> Fx {
+    Fx::from_bits(((centre.to_bits() >> FAT_GRID_SHIFT) + i64::from(step)) << FAT_GRID_SHIFT)
+}

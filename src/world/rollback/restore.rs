@@ -1,0 +1,95 @@
+//! Returning to a snapshot: the state, and of the caches what is not as it was.
+
+use alloc::vec::Vec;
+
+use super::{Packed, Rest, Snapshot, bodies, constraints};
+use crate::body::{BodyKind, Handle};
+use crate::world::World;
+use crate::world::joint_links::JointLinks;
+use crate::world::scratch::Scratch;
+use crate::world::state::State;
+
+/// Slots of which the caches know something else than the state has, in any order and more than once.
+#[derive(Default)]
+struct Stale {
+    /// Bodies that are elsewhere or other ones.
+    bodies: Vec<u32>,
+    /// Shapes with other boxes.
+    boxes: Vec<u32>,
+    /// Bodies, shapes or joints that are other ones or gone.
+    redefined_bodies: Vec<u32>,
+    redefined_shapes: Vec<u32>,
+    any_joint: bool,
+}
+
+impl World {
+    /// Returns to a saved state, also of another world. What follows is bit-identical to what followed the save, except
+    /// that [`World::contacts`] and [`World::events`] are empty until the next tick.
+    ///
+    /// Costs a fraction of a tick: what every tick changes is copied, and only shapes that have moved since are posed
+    /// anew. What has been defined, spawned or removed since the save is copied in pages of 32.
+    pub fn restore(&mut self, snapshot: &Snapshot) {
+        let World { state, scratch } = self;
+        let state = &mut **state;
+        let mut stale = Stale::default();
+        restore_state(state, snapshot, &mut stale);
+        refresh(state, scratch, stale);
+        scratch.reset_results();
+        scratch.changes.resume(&snapshot.changes, &scratch.broad_phase, state.shapes.slot_count());
+    }
+}
+
+fn restore_state(state: &mut State, snapshot: &Snapshot, stale: &mut Stale) {
+    let Snapshot { rest, bodies, shapes, joints, islands, resting, packed, digest: _, changes: _ } = snapshot;
+    let Rest { config, tick, faults, pairs_left_out, removed_contacts, rng } = rest;
+    let Packed { bodies: motions, boxes, joints: turns, contacts: heads, impulses } = packed;
+    (state.config, state.tick, state.faults) = (*config, *tick, *faults);
+    state.pairs_left_out = *pairs_left_out;
+    state.removed_contacts.clone_from(removed_contacts);
+    state.rng.clone_from(rng);
+    state.bodies.restore(bodies, |slot| stale.redefined_bodies.push(slot));
+    state.shapes.restore(shapes, |slot| stale.redefined_shapes.push(slot));
+    state.joints.restore(joints, |_| stale.any_joint = true);
+    state.islands.restore(islands, |_| {});
+    bodies::unpack_bodies(&mut state.bodies, motions, |slot| stale.bodies.push(slot));
+    bodies::unpack_boxes(&mut state.shapes, &state.bodies, boxes, |slot| stale.boxes.push(slot));
+    constraints::unpack_joints(&mut state.joints, turns);
+    constraints::unpack_contacts(&mut state.contacts, heads, impulses);
+    state.resting.restore(resting);
+}
+
+/// Brings the caches of places in line with the state.
+fn refresh(state: &State, scratch: &mut Scratch, stale: Stale) {
+    let Stale { mut bodies, mut boxes, redefined_bodies, redefined_shapes, any_joint } = stale;
+    if !redefined_bodies.is_empty() {
+        scratch.kinematic = state.bodies.iter().any(|(_, body)| body.kind() == BodyKind::Kinematic);
+    }
+    for body in bodies.iter().filter_map(|&slot| state.bodies.get_slot(slot)) {
+        if body.shapes().iter().all(|id| scratch.poses.has(id.slot())) {
+            scratch.poses.move_body(state, body);
+        }
+    }
+    bodies.clear();
+    let of_shapes = redefined_shapes.iter().filter_map(|&slot| state.shapes.get_slot(slot));
+    bodies.extend(of_shapes.map(|shape| shape.body().slot()));
+    let occupied = |&slot: &u32| state.bodies.get_slot(slot);
+    // A body that has been disabled or enabled has its boxes where they were.
+    boxes.extend(
+        redefined_bodies.iter().filter_map(occupied).flat_map(|body| body.shapes()).map(|id| id.slot()),
+    );
+    boxes.extend(&redefined_shapes);
+    bodies.extend(&redefined_bodies);
+    if !(redefined_bodies.is_empty() && redefined_shapes.is_empty()) {
+        bodies.sort_unstable();
+        bodies.dedup();
+    }
+    for slot in bodies.into_iter().filter(|slot| occupied(slot).is_some()) {
+        scratch.poses.pose_body(state, slot);
+    }
+    scratch.set_boxes(state, &boxes);
+    if any_joint {
+        scratch.joined_stale = true;
+        scratch.links = JointLinks::new(state);
+    }
+    scratch.roster.invalidate();
+}

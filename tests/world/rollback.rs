@@ -1,0 +1,165 @@
+//! Snapshots: whatever happened between a save and a restore, and whatever they share, the state comes back.
+
+use lockstep2d::fx;
+use lockstep2d::lockstep::{Game, Sandbox};
+use lockstep2d::math::{Rng, Vec2};
+use lockstep2d::scenes;
+use lockstep2d::world::{Command, Snapshot, World};
+
+use super::churn::Churn;
+use super::{spawn, square, world_with_floor};
+use lockstep2d::body::BodyDef;
+
+/// The hash of a world that knows nothing but its bytes.
+fn recomputed(world: &World) -> World {
+    World::from_bytes(&world.to_bytes()).expect("its own bytes")
+}
+
+fn assert_is(world: &World, saved: &(Snapshot, Vec<u8>), what: &str) {
+    let (snapshot, bytes) = saved;
+    assert_eq!(world.state_hash(), snapshot.state_hash(), "{what}");
+    assert!(world.to_bytes() == *bytes, "{what}: the bytes are others");
+    assert_eq!(world.validate(), Ok(()), "{what}");
+}
+
+/// The cached digest is that of the state after every command and every step, refused or not.
+#[test]
+fn what_is_known_of_a_world_follows_every_change() {
+    for seed in 100..108 {
+        let mut churn = Churn::new(seed);
+        let mut world = churn.world();
+        for tick in 0..150 {
+            for command in churn.commands(&world) {
+                let _refused_or_not = world.execute(&command);
+                let expected = recomputed(&world).digest();
+                let differing = world.digest().differing(&expected);
+                assert!(differing.is_empty(), "seed {seed}, tick {tick}, {command:?}: {differing:?}");
+            }
+            world.step();
+            let differing = world.digest().differing(&recomputed(&world).digest());
+            assert!(differing.is_empty(), "seed {seed}, tick {tick}: {differing:?}");
+        }
+    }
+}
+
+/// Jumps between snapshots that were taken at different times, backwards and forwards, over bodies, shapes and joints that
+/// have come, gone and changed; and goes on from each as from the first time.
+#[test]
+fn a_world_jumps_between_its_snapshots() {
+    for seed in 200..216 {
+        let mut churn = Churn::new(seed);
+        let mut world = churn.world();
+        let mut rng = Rng::new(seed);
+        let mut saves: Vec<(Snapshot, Vec<u8>)> = Vec::new();
+        let mut scripts: Vec<Vec<Command>> = Vec::new();
+        for _ in 0..120 {
+            saves.push((world.save(), world.to_bytes()));
+            let mut commands = churn.commands(&world);
+            commands.extend(churn.commands(&world));
+            for command in &commands {
+                let _refused_or_not = world.execute(command);
+            }
+            scripts.push(commands);
+            world.step();
+        }
+        for _ in 0..60 {
+            let from = rng.below(110) as usize;
+            world.restore(&saves[from].0);
+            assert_is(&world, &saves[from], "restored");
+            let to = from + rng.below(9) as usize;
+            for tick in from..to {
+                for command in &scripts[tick] {
+                    let _refused_or_not = world.execute(command);
+                }
+                world.step();
+                assert_is(&world, &saves[tick + 1], &format!("seed {seed}, {from} to {tick}"));
+            }
+        }
+        // Into a world that has never heard of any of this.
+        let mut other = world_with_floor().0;
+        other.restore(&saves[70].0);
+        assert_is(&other, &saves[70], "another world");
+        assert_eq!(other.save(), saves[70].0);
+    }
+}
+
+/// A snapshot that is saved into again and again is the same as a new one.
+#[test]
+fn a_reused_snapshot_is_as_good_as_new() {
+    let mut churn = Churn::new(7);
+    let mut world = churn.world();
+    let mut ring = vec![Snapshot::default(); 9];
+    for tick in 0..200_usize {
+        for command in churn.commands(&world) {
+            let _refused_or_not = world.execute(&command);
+        }
+        world.save_into(&mut ring[tick % 9]);
+        assert_eq!(ring[tick % 9], world.save(), "tick {tick}");
+        if tick % 20 == 19 {
+            let hash = world.state_hash();
+            world.restore(&ring[(tick + 1) % 9]);
+            assert_eq!(usize::try_from(world.tick()), Ok(tick - 8));
+            world.restore(&ring[tick % 9]);
+            assert_eq!(world.state_hash(), hash);
+        }
+        world.step();
+    }
+}
+
+/// What is saved of a body, a contact and a joint takes few bytes in every scene, and rolling back eight ticks brings the
+/// same hashes again.
+#[test]
+fn snapshots_of_every_scene_are_small_and_come_back() {
+    for scene in scenes::ALL {
+        let mut game = Sandbox::new(&scene.setup(1)).expect("the scenes of this crate are valid");
+        let step = |game: &mut Sandbox, tick: u64| {
+            let commands = scene.commands(tick, game);
+            game.step(&[commands]);
+        };
+        let large = game.world().body_count() > 2000;
+        let start = if large { 10 } else { 60 };
+        (0..start).for_each(|tick| step(&mut game, tick));
+        let world = game.world();
+        let snapshot = world.save();
+        let dynamic = world.bodies().filter(|(_, body)| body.is_dynamic()).count();
+        let limit = 96 * dynamic + 40 * world.pair_count() + 16 * world.joint_count() + 2048;
+        let size = snapshot.rollback_bytes();
+        assert!(size <= limit, "{}: {size} bytes, at most {limit}", scene.name);
+        let run = |game: &mut Sandbox| -> Vec<_> {
+            (start..start + 8)
+                .map(|tick| {
+                    step(game, tick);
+                    game.world().state_hash()
+                })
+                .collect()
+        };
+        let first = run(&mut game);
+        game.world_mut().restore(&snapshot);
+        assert!(run(&mut game) == first, "{}", scene.name);
+    }
+}
+
+#[test]
+fn snapshots_go_to_other_threads() {
+    fn sent<T: Clone + Send + Sync>(_: &T) {}
+    let (world, _) = world_with_floor();
+    sent(&world.save());
+    sent(&world);
+}
+
+/// The hash does not depend on whether and when a world was saved or hashed.
+#[test]
+fn random_numbers_and_clones_are_hashed_as_they_are() {
+    let (mut world, _) = world_with_floor();
+    let body = spawn(&mut world, BodyDef::dynamic().position(fx!(0), fx!(3)), square(fx!(0.5)));
+    let (before, snapshot) = (world.state_hash(), world.save());
+    world.rng().next_u32();
+    assert_ne!(world.state_hash(), before, "a number was drawn");
+    let mut twin = world.clone();
+    twin.set_user_data(body, 3).expect("there");
+    assert_ne!(twin.state_hash(), world.state_hash(), "the twin is marked");
+    twin.set_velocity(body, Vec2::new(fx!(1), fx!(0)), fx!(0)).expect("slow enough");
+    twin.restore(&snapshot);
+    world.restore(&snapshot);
+    assert_eq!((twin.state_hash(), world.state_hash()), (before, before));
+}
