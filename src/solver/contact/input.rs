@@ -5,8 +5,6 @@ use super::super::TouchingPair;
 use super::super::body_list::{BodyFacts, BodyList, GROUND};
 use super::super::colour::{Node, Size};
 use super::super::row::MassFractions;
-use super::super::settings::Tuning;
-use super::super::softness::Softness;
 use super::{Surface, WarmStarts};
 use crate::collision::{Contact, Manifold, ManifoldPoint, PointImpulse};
 use crate::math::{Fx, Length, Ratio, Reciprocal, Shift, Speed, Unit, Vec2, convert, narrow};
@@ -87,6 +85,11 @@ impl Input {
         input
     }
 
+    /// Whether it needs more than rows along the normal and the tangent.
+    pub(super) fn is_special(&self) -> bool {
+        self.restitution > 0 || self.surface_speed != 0 || self.rolling_resistance > 0
+    }
+
     /// The contact, to be coloured.
     pub(super) fn node(&self, shapes: (u32, u32)) -> Node {
         let key = u64::from(shapes.0) << 32 | u64::from(shapes.1);
@@ -98,10 +101,6 @@ impl Input {
     pub(super) fn changed(&self, side: usize) -> u32 {
         let fraction = if side == 0 { self.fractions.a } else { self.fractions.b };
         if fraction == 0 { GROUND } else { self.bodies[side] }
-    }
-
-    pub(super) fn softness<'a>(&self, tuning: &'a Tuning) -> &'a Softness {
-        if self.immovable { &tuning.contact_immovable } else { &tuning.contact }
     }
 }
 

@@ -16,8 +16,10 @@ use super::super::body::SolverBody;
 use super::super::lanes::{Ints, Lanes, Motion};
 use super::super::limits::{Faults, IMPULSE_MAX, SPEED_MAX};
 use super::super::settings::Tuning;
+use super::super::softness::Softness;
 use super::batch::{Batch, Point, Row};
 use super::rolling::RollingRows;
+use super::special::Special;
 use super::{NORMAL_ROUNDS_MAX, Pass, RESTITUTION_ITERATIONS, SETTLED, Sweep, TANGENT_MAX};
 use crate::math::{Rate, Ratio, Shift, Speed, Unit};
 
@@ -31,6 +33,9 @@ pub(super) struct Constants {
     slop: i32,
     push_speed: i32,
     restitution_threshold: i32,
+    soft: Softness,
+    /// Against bodies that do not give way.
+    stiff: Softness,
 }
 
 impl Constants {
@@ -43,6 +48,8 @@ impl Constants {
             slop: crate::math::convert::<_, fixed::types::extra::U26>(tuning.slop).to_bits(),
             push_speed: tuning.push_speed.to_bits(),
             restitution_threshold: tuning.restitution_threshold.to_bits(),
+            soft: tuning.contact,
+            stiff: tuning.contact_immovable,
         }
     }
 }
@@ -184,16 +191,18 @@ fn clamp<L: Lanes<N>, const N: usize>(value: L::Int, limit: L::Int) -> L::Int {
 /// the impulses of one contact alone would be an approach to another.
 #[inline(always)]
 pub(super) fn observe<L: Lanes<N>, const N: usize>(
-    batch: &mut Batch<N>,
+    batch: &Batch<N>,
+    special: &mut Special<N>,
     bodies: &[Cell<SolverBody>],
     faults: &mut Faults,
 ) {
     let pair = Pair::<L, N>::load(bodies, batch);
     let (n, _) = directions::<L, N>(batch);
-    for point in &mut batch.points[..batch.count] {
+    let Special { approach, pushed, .. } = special;
+    for ((point, approach), pushed) in batch.points[..batch.count].iter().zip(approach).zip(pushed) {
         let vn = pair.velocity(n, &point.normal, faults);
-        let pushed = L::negative(L::load(&point.pushed));
-        L::store(L::select(pushed, L::load(&point.approach), vn), &mut point.approach);
+        let pushed = L::negative(L::load(pushed));
+        L::store(L::select(pushed, L::load(approach), vn), approach);
     }
 }
 
@@ -201,7 +210,7 @@ pub(super) fn observe<L: Lanes<N>, const N: usize>(
 #[inline(always)]
 pub(super) fn warm_start<L: Lanes<N>, const N: usize>(
     batch: &Batch<N>,
-    rolling: Option<&mut RollingRows<N>>,
+    special: Option<&mut Special<N>>,
     bodies: &[Cell<SolverBody>],
     faults: &mut Faults,
 ) {
@@ -210,7 +219,7 @@ pub(super) fn warm_start<L: Lanes<N>, const N: usize>(
         pair.apply(&point.normal, L::load(&point.normal_lambda), faults);
         pair.apply(&point.tangent, L::load(&point.tangent_lambda), faults);
     }
-    if let Some(rolling) = rolling {
+    if let Some(Special { rolls: true, rolling, .. }) = special {
         pair.apply(&rolling.row, L::load(&rolling.lambda), faults);
     }
     pair.store(bodies, batch);
@@ -220,7 +229,7 @@ pub(super) fn warm_start<L: Lanes<N>, const N: usize>(
 #[inline(always)]
 pub(super) fn solve<L: Lanes<N>, const N: usize>(
     batch: &mut Batch<N>,
-    rolling: Option<&mut RollingRows<N>>,
+    special: Option<&mut Special<N>>,
     (pass, sweep): (Pass, Sweep),
     constants: &Constants,
     bodies: &[Cell<SolverBody>],
@@ -236,11 +245,12 @@ pub(super) fn solve<L: Lanes<N>, const N: usize>(
         (Sweep::Backward, 2) => (1, 0),
         _ => (0, 1),
     };
+    let all = L::greater(L::splat(1), L::splat(0));
     if batch.count == 2 {
-        let mut unsettled = L::greater(L::splat(1), L::splat(0));
+        let mut unsettled = all;
         for _ in 0..NORMAL_ROUNDS_MAX {
-            context.solve_normal(&mut batch.points[first], n, unsettled, &mut pair, faults);
-            let d = context.solve_normal(&mut batch.points[second], n, unsettled, &mut pair, faults);
+            context.solve_normal(batch, first, n, unsettled, &mut pair, faults);
+            let d = context.solve_normal(batch, second, n, unsettled, &mut pair, faults);
             let settled = L::splat(SETTLED.to_bits() - 1);
             let moved = L::either(L::greater(d, settled), L::greater(L::sub(L::splat(0), settled), d));
             unsettled = L::both(unsettled, moved);
@@ -249,18 +259,30 @@ pub(super) fn solve<L: Lanes<N>, const N: usize>(
             }
         }
     } else {
-        let all = L::greater(L::splat(1), L::splat(0));
-        context.solve_normal(&mut batch.points[0], n, all, &mut pair, faults);
+        context.solve_normal(batch, 0, n, all, &mut pair, faults);
     }
-    if let Some(rolling) = rolling {
-        solve_rolling::<L, N>(rolling, &batch.points, &mut pair, faults);
+    let mut surface_speed = L::splat(0);
+    if let Some(special) = special {
+        surface_speed = L::load(&special.surface_speed);
+        remember_pushes::<L, N>(batch, special);
+        if special.rolls {
+            solve_rolling::<L, N>(&mut special.rolling, &batch.points, &mut pair, faults);
+        }
     }
-    let surface_speed = L::load(&batch.surface_speed);
     solve_tangent::<L, N>(&mut batch.points[first], t, surface_speed, &mut pair, faults);
     if batch.count == 2 {
         solve_tangent::<L, N>(&mut batch.points[second], t, surface_speed, &mut pair, faults);
     }
     pair.store(bodies, batch);
+}
+
+/// Of what bounces, which points have pushed.
+#[inline(always)]
+fn remember_pushes<L: Lanes<N>, const N: usize>(batch: &Batch<N>, special: &mut Special<N>) {
+    for (point, pushed) in batch.points[..batch.count].iter().zip(&mut special.pushed) {
+        let pushes = L::to_int(L::greater(L::load(&point.normal_lambda), L::splat(0)));
+        L::store(L::or(L::load(pushed), pushes), pushed);
+    }
 }
 
 /// Finds the separations where the bodies are now.
@@ -290,16 +312,17 @@ struct Context<L: Lanes<N>, const N: usize> {
 impl<L: Lanes<N>, const N: usize> Context<L, N> {
     #[inline(always)]
     fn new(batch: &Batch<N>, pass: Pass, constants: &Constants) -> Self {
-        let &Constants { rate, separation_max, slop, push_speed, .. } = constants;
+        let &Constants { rate, separation_max, slop, push_speed, soft, stiff, .. } = constants;
+        let immovable = L::negative(L::load(&batch.immovable));
         Context {
             pass,
             rate: L::splat(rate),
             separation_max: L::splat(separation_max),
             slop: L::splat(slop),
             push_speed: L::splat(-push_speed),
-            bias_rate: L::load(&batch.bias_rate),
-            mass_scale: L::load(&batch.mass_scale),
-            impulse_scale: L::load(&batch.impulse_scale),
+            bias_rate: chosen::<L, N>(immovable, soft.bias_rate.to_bits(), stiff.bias_rate.to_bits()),
+            mass_scale: chosen::<L, N>(immovable, soft.mass_scale.to_bits(), stiff.mass_scale.to_bits()),
+            impulse_scale: chosen::<L, N>(immovable, soft.impulse_scale.to_bits(), stiff.impulse_scale.to_bits()),
         }
     }
 
@@ -308,12 +331,15 @@ impl<L: Lanes<N>, const N: usize> Context<L, N> {
     #[inline(always)]
     fn solve_normal(
         &self,
-        point: &mut Point<N>,
+        batch: &mut Batch<N>,
+        place: usize,
         n: [L::Int; 2],
         active: L::Mask,
         pair: &mut Pair<L, N>,
         faults: &mut Faults,
     ) -> L::Int {
+        let Batch { points, pushed, .. } = batch;
+        let point = &mut points[place];
         let vn = pair.velocity(n, &point.normal, faults);
         let old = L::load(&point.normal_lambda);
         let separation = L::load(&point.separation);
@@ -339,12 +365,11 @@ impl<L: Lanes<N>, const N: usize> Context<L, N> {
         if L::any(over) {
             *faults += u64::from(L::count(over));
         }
-        let new = L::min(wanted, L::load(&point.normal_max));
+        let new = L::min(wanted, L::splat(IMPULSE_MAX.to_bits()));
         let new = frozen.map_or(new, |frozen| L::select(frozen, old, new));
         let new = L::select(active, new, old);
         L::store(new, &mut point.normal_lambda);
-        let pushed = L::to_int(L::greater(new, L::splat(0)));
-        L::store(L::or(L::load(&point.pushed), pushed), &mut point.pushed);
+        pushed[place] |= L::bits(L::greater(new, L::splat(0)));
         let d = L::sub(new, old);
         pair.apply(&point.normal, d, faults);
         d
@@ -409,32 +434,37 @@ fn solve_rolling<L: Lanes<N>, const N: usize>(
     pair.apply(&rolling.row, L::sub(new, old), faults);
 }
 
+/// A number for contacts between bodies that give way, another for the others.
+#[inline(always)]
+fn chosen<L: Lanes<N>, const N: usize>(immovable: L::Mask, soft: i32, stiff: i32) -> L::Int {
+    L::select(immovable, L::splat(stiff), L::splat(soft))
+}
+
 /// Once in a tick, after the sub-steps: what approached faster than the threshold and was pushed, leaves.
 #[inline(always)]
 pub(super) fn apply_restitution<L: Lanes<N>, const N: usize>(
     batch: &mut Batch<N>,
+    special: &Special<N>,
     constants: &Constants,
     bodies: &[Cell<SolverBody>],
     faults: &mut Faults,
 ) {
-    let restitution = L::load(&batch.restitution);
+    let restitution = L::load(&special.restitution);
     let (n, _) = directions::<L, N>(batch);
-    let masks = [
-        bounces::<L, N>(&batch.points[0], restitution, constants),
-        bounces::<L, N>(&batch.points[1], restitution, constants),
-    ];
+    let masks = [bounces::<L, N>(special, 0, constants), bounces::<L, N>(special, 1, constants)];
     if !L::any(L::either(masks[0], masks[1])) {
         return;
     }
     let mut pair = Pair::<L, N>::load(bodies, batch);
     for _ in 0..if batch.count == 2 { RESTITUTION_ITERATIONS } else { 1 } {
-        for (point, &mask) in batch.points.iter_mut().zip(&masks).take(batch.count) {
-            let bounce = L::mul(restitution, L::load(&point.approach));
+        for i in 0..batch.count {
+            let point = &mut batch.points[i];
+            let bounce = L::mul(restitution, L::load(&special.approach[i]));
             let bounce = L::narrow::<{ Unit::FRAC_NBITS as i32 }>(bounce);
             let error = L::add_saturating(pair.velocity(n, &point.normal, faults), bounce);
             let old = L::load(&point.normal_lambda);
             let wanted = L::max(L::sub_saturating(old, error), L::splat(0));
-            let new = L::select(mask, L::min(wanted, L::load(&point.normal_max)), old);
+            let new = L::select(masks[i], L::min(wanted, L::splat(IMPULSE_MAX.to_bits())), old);
             L::store(new, &mut point.normal_lambda);
             pair.apply(&point.normal, L::sub(new, old), faults);
         }
@@ -444,13 +474,9 @@ pub(super) fn apply_restitution<L: Lanes<N>, const N: usize>(
 
 /// Whether a point approached fast enough, and was pushed.
 #[inline(always)]
-fn bounces<L: Lanes<N>, const N: usize>(
-    point: &Point<N>,
-    restitution: L::Int,
-    constants: &Constants,
-) -> L::Mask {
+fn bounces<L: Lanes<N>, const N: usize>(special: &Special<N>, i: usize, constants: &Constants) -> L::Mask {
     let threshold = L::splat(1 - constants.restitution_threshold);
-    let fast = L::greater(threshold, L::load(&point.approach));
-    let pushed = L::negative(L::load(&point.pushed));
-    L::both(L::both(fast, pushed), L::greater(restitution, L::splat(0)))
+    let fast = L::greater(threshold, L::load(&special.approach[i]));
+    let pushed = L::negative(L::load(&special.pushed[i]));
+    L::both(L::both(fast, pushed), L::greater(L::load(&special.restitution), L::splat(0)))
 }

@@ -8,6 +8,7 @@ mod input;
 mod kernel;
 mod prepare;
 mod rolling;
+mod special;
 
 use alloc::vec::Vec;
 use core::cell::Cell;
@@ -24,7 +25,7 @@ use batch::Batch;
 use kernel::Constants;
 use input::Input;
 use prepare::Records;
-use rolling::RollingRows;
+use special::Special;
 
 /// Whether a pass removes position errors or only velocity errors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -119,7 +120,7 @@ pub(super) struct ContactSet {
 struct Batches<const N: usize> {
     batches: Vec<Batch<N>>,
     /// In the same order, for those that have any.
-    rolling: Vec<RollingRows<N>>,
+    special: Vec<Special<N>>,
     /// Where the batches of each colour end.
     colours: Vec<usize>,
     /// For each batch, where its results belong.
@@ -128,7 +129,7 @@ struct Batches<const N: usize> {
 
 impl<const N: usize> Default for Batches<N> {
     fn default() -> Self {
-        Batches { batches: Vec::new(), rolling: Vec::new(), colours: Vec::new(), records: Vec::new() }
+        Batches { batches: Vec::new(), special: Vec::new(), colours: Vec::new(), records: Vec::new() }
     }
 }
 
@@ -182,7 +183,7 @@ impl ContactSet {
 /// A task, for the batches of `N` contacts.
 struct Perform<'a, const N: usize> {
     batches: &'a mut [Batch<N>],
-    rolling: &'a mut [RollingRows<N>],
+    special: &'a mut [Special<N>],
     task: Task,
     constants: Constants,
     bodies: &'a [Cell<SolverBody>],
@@ -192,44 +193,29 @@ struct Perform<'a, const N: usize> {
 impl<const N: usize> Kernel<N> for Perform<'_, N> {
     #[inline(always)]
     fn run<L: Lanes<N>>(self) {
-        let Perform { batches, rolling, task, constants, bodies, faults } = self;
-        let mut rolling = rolling.iter_mut();
-        match task {
-            Task::Observe => {
-                for batch in batches.iter_mut().filter(|batch| batch.bounces) {
-                    kernel::observe::<L, N>(batch, bodies, faults);
-                }
-            }
-            Task::WarmStart => {
-                for batch in batches {
-                    let rolling = if batch.resists_rolling { rolling.next() } else { None };
-                    kernel::warm_start::<L, N>(batch, rolling, bodies, faults);
-                }
-            }
-            // Named twice, so that each pass is compiled for itself.
-            Task::Solve(Pass::Bias, sweep) => {
-                for batch in batches {
+        let Perform { batches, special, task, constants, bodies, faults } = self;
+        let mut special = special.iter_mut();
+        for batch in batches {
+            let special = if batch.special { special.next() } else { None };
+            match (task, special) {
+                (Task::WarmStart, special) => kernel::warm_start::<L, N>(batch, special, bodies, faults),
+                // Named twice, so that each pass is compiled for itself.
+                (Task::Solve(Pass::Bias, sweep), special) => {
                     let how = (Pass::Bias, sweep);
-                    let rolling = if batch.resists_rolling { rolling.next() } else { None };
-                    kernel::solve::<L, N>(batch, rolling, how, &constants, bodies, faults);
+                    kernel::solve::<L, N>(batch, special, how, &constants, bodies, faults);
                 }
-            }
-            Task::Solve(Pass::Relax, sweep) => {
-                for batch in batches {
+                (Task::Solve(Pass::Relax, sweep), special) => {
                     let how = (Pass::Relax, sweep);
-                    let rolling = if batch.resists_rolling { rolling.next() } else { None };
-                    kernel::solve::<L, N>(batch, rolling, how, &constants, bodies, faults);
+                    kernel::solve::<L, N>(batch, special, how, &constants, bodies, faults);
                 }
-            }
-            Task::Measure => {
-                for batch in batches {
-                    kernel::measure::<L, N>(batch, bodies);
+                (Task::Measure, _) => kernel::measure::<L, N>(batch, bodies),
+                (Task::Observe, Some(special)) => {
+                    kernel::observe::<L, N>(batch, special, bodies, faults);
                 }
-            }
-            Task::Restitution => {
-                for batch in batches.iter_mut().filter(|batch| batch.bounces) {
-                    kernel::apply_restitution::<L, N>(batch, &constants, bodies, faults);
+                (Task::Restitution, Some(special)) => {
+                    kernel::apply_restitution::<L, N>(batch, special, &constants, bodies, faults);
                 }
+                (Task::Observe | Task::Restitution, None) => {}
             }
         }
     }
@@ -247,21 +233,21 @@ impl Batches<WIDTH> {
     ) -> Faults {
         let mut total = 0;
         let bodies = Shared::within_a_colour(bodies);
-        let (mut start, mut rest) = (0, &mut self.rolling[..]);
+        let (mut start, mut rest) = (0, &mut self.special[..]);
         for &end in &self.colours {
             let colour = &mut self.batches[start..end];
             start = end;
             let share = threads.share(colour.len(), BATCHES_PER_JOB);
             let jobs = colour.chunks_mut(share).map(|batches| {
-                let count = batches.iter().filter(|batch| batch.resists_rolling).count();
-                let (rolling, others) = core::mem::take(&mut rest).split_at_mut(count);
+                let count = batches.iter().filter(|batch| batch.special).count();
+                let (special, others) = core::mem::take(&mut rest).split_at_mut(count);
                 rest = others;
-                (batches, rolling)
+                (batches, special)
             });
-            total += threads.run(jobs, |(batches, rolling)| {
+            total += threads.run(jobs, |(batches, special)| {
                 let mut faults = 0;
                 let bodies = bodies.bodies();
-                machine.run(Perform { batches, rolling, task, constants, bodies, faults: &mut faults });
+                machine.run(Perform { batches, special, task, constants, bodies, faults: &mut faults });
                 faults
             });
         }
@@ -277,21 +263,21 @@ impl<const N: usize> Batches<N> {
         bodies: &'a [Cell<SolverBody>],
         faults: &'a mut Faults,
     ) -> Perform<'a, N> {
-        Perform { batches: &mut self.batches, rolling: &mut self.rolling, task, constants, bodies, faults }
+        Perform { batches: &mut self.batches, special: &mut self.special, task, constants, bodies, faults }
     }
 
     fn store(&self, contacts: &mut [Contact], pushed: &mut [bool]) {
-        let mut rolling = self.rolling.iter();
+        let mut special = self.special.iter();
         for (batch, records) in self.batches.iter().zip(&self.records) {
-            let rolling = if batch.resists_rolling { rolling.next() } else { None };
+            let special = if batch.special { special.next() } else { None };
             for (lane, index, count) in records.lanes() {
                 let memory = &mut contacts[index];
                 memory.clear_points();
-                memory.rolling = rolling.map_or(Speed::ZERO, |rolling| rolling.impulse(lane));
+                memory.rolling = special.map_or(Speed::ZERO, |special| special.rolling.impulse(lane));
                 for (i, point) in batch.points.iter().take(count).enumerate() {
                     let lambdas = (point.normal_lambda.0[lane], point.tangent_lambda.0[lane]);
                     memory.push_point(records.impulse(lane, i, lambdas));
-                    pushed[index] |= point.pushed.0[lane] != 0;
+                    pushed[index] |= batch.pushed[i] >> lane & 1 != 0;
                 }
             }
         }

@@ -11,10 +11,9 @@ use super::super::body_list::BodyList;
 use super::super::colour::{Colouring, Group, Node};
 use super::super::lanes::{Ints, Kernel, Lanes, Machine, Scalar, WIDTH};
 use super::super::limits::IMPULSE_MAX;
-use super::super::settings::Tuning;
 use super::batch::{Batch, Row};
 use super::input::Input;
-use super::rolling::RollingRows;
+use super::special::Special;
 use super::{Batches, ContactSet, TANGENT_MAX, WarmStarts};
 use crate::collision::{Contact, Manifold, PointImpulse};
 use crate::math::{Fx, Grip, Ratio, Speed, Unit, mul, narrow, round_shift_wide, saturate, saturate_wide};
@@ -59,7 +58,6 @@ impl<const N: usize> Records<N> {
 
 impl ContactSet {
     /// Takes the contacts of a tick, and sorts them into colours.
-    #[expect(clippy::too_many_arguments, reason = "what a contact is made of lies in several places")]
     pub(in crate::solver) fn prepare(
         &mut self,
         pairs: &[TouchingPair],
@@ -67,7 +65,6 @@ impl ContactSet {
         list: &BodyList,
         (nodes, colouring): (&mut Vec<Node>, &mut Colouring),
         machine: Machine,
-        tuning: &Tuning,
         warm: &mut WarmStarts,
     ) {
         let Self { serial, coloured, inputs } = self;
@@ -80,8 +77,8 @@ impl ContactSet {
             inputs.push(input);
         }
         colouring.order(nodes, list.len());
-        Fill { batches: serial, inputs, colouring, tuning }.run::<Scalar<1>>();
-        machine.run(Fill { batches: coloured, inputs, colouring, tuning });
+        Fill { batches: serial, inputs, colouring }.run::<Scalar<1>>();
+        machine.run(Fill { batches: coloured, inputs, colouring });
     }
 }
 
@@ -90,13 +87,12 @@ struct Fill<'a, const N: usize> {
     batches: &'a mut Batches<N>,
     inputs: &'a [Input],
     colouring: &'a Colouring,
-    tuning: &'a Tuning,
 }
 
 impl<const N: usize> Kernel<N> for Fill<'_, N> {
     #[inline(always)]
     fn run<L: Lanes<N>>(self) {
-        let Fill { batches, inputs, colouring, tuning } = self;
+        let Fill { batches, inputs, colouring } = self;
         batches.clear();
         for group in colouring.groups() {
             let indices = match group {
@@ -105,7 +101,7 @@ impl<const N: usize> Kernel<N> for Fill<'_, N> {
                 _ => continue,
             };
             for chunk in indices.chunks(N) {
-                batches.push::<L>(inputs, chunk, tuning);
+                batches.push::<L>(inputs, chunk);
             }
             batches.colours.push(batches.batches.len());
         }
@@ -114,34 +110,33 @@ impl<const N: usize> Kernel<N> for Fill<'_, N> {
 
 impl<const N: usize> Batches<N> {
     fn clear(&mut self) {
-        let Batches { batches, rolling, records, colours } = self;
+        let Batches { batches, special, records, colours } = self;
         colours.clear();
         batches.clear();
-        rolling.clear();
+        special.clear();
         records.clear();
     }
 
     /// Adds a batch of up to `N` contacts.
     #[inline(always)]
-    fn push<L: Lanes<N>>(&mut self, inputs: &[Input], indices: &[u32], tuning: &Tuning) {
-        let Batches { batches, rolling, records, .. } = self;
+    fn push<L: Lanes<N>>(&mut self, inputs: &[Input], indices: &[u32]) {
+        let Batches { batches, special, records, .. } = self;
         batches.push(Batch::NONE);
         records.push(Records::NONE);
         let (Some(batch), Some(records)) = (batches.last_mut(), records.last_mut()) else { return };
         let mut gathered = Gathered::NONE;
         for (lane, &index) in indices.iter().enumerate() {
-            gathered.take(&inputs[index as usize], lane, batch, records, tuning);
+            gathered.take(&inputs[index as usize], lane, batch, records);
         }
         gathered.fill::<L>(batch, records);
-        let resists = |&&index: &&u32| inputs[index as usize].rolling_resistance > 0;
-        if indices.iter().any(|index| resists(&index)) {
-            batch.resists_rolling = true;
-            let mut rows = RollingRows::NONE;
-            for (lane, index) in indices.iter().enumerate().filter(|(_, index)| resists(index)) {
+        if indices.iter().any(|&index| inputs[index as usize].is_special()) {
+            batch.special = true;
+            let mut rest = Special::NONE;
+            for (lane, &index) in indices.iter().enumerate() {
                 let inverses = [0, 1].map(|point| Unit::from_bits(records.inverses[point][0].0[lane]));
-                rows.fill(lane, &inputs[*index as usize], inverses);
+                rest.fill(lane, &inputs[index as usize], inverses);
             }
-            rolling.push(rows);
+            special.push(rest);
         }
     }
 }
@@ -169,7 +164,6 @@ impl<const N: usize> Gathered<N> {
         lane: usize,
         batch: &mut Batch<N>,
         records: &mut Records<N>,
-        tuning: &Tuning,
     ) {
         self.fractions[0].0[lane] = input.fractions.a.to_bits();
         self.fractions[1].0[lane] = input.fractions.b.to_bits();
@@ -178,15 +172,9 @@ impl<const N: usize> Gathered<N> {
             batch.bodies[side][lane] = input.bodies[side];
             batch.changed[side][lane] = input.changed(side);
         }
-        let softness = input.softness(tuning);
         batch.n_x.0[lane] = input.n.x.to_bits();
         batch.n_y.0[lane] = input.n.y.to_bits();
-        batch.bias_rate.0[lane] = softness.bias_rate.to_bits();
-        batch.mass_scale.0[lane] = softness.mass_scale.to_bits();
-        batch.impulse_scale.0[lane] = softness.impulse_scale.to_bits();
-        batch.surface_speed.0[lane] = input.surface_speed.to_bits();
-        batch.restitution.0[lane] = input.restitution.to_bits();
-        batch.bounces |= input.restitution > 0;
+        batch.immovable.0[lane] = -i32::from(input.immovable);
         batch.count = batch.count.max(input.count.into());
         records.len += 1;
         records.contacts[lane] = input.contact;
@@ -200,7 +188,6 @@ impl<const N: usize> Gathered<N> {
             }
             point.first_separation.0[lane] = from.separation.to_bits();
             point.separation.0[lane] = from.separation.to_bits();
-            point.normal_max.0[lane] = IMPULSE_MAX.to_bits();
             self.carried[i][0].0[lane] = from.carried[0].to_bits();
             self.carried[i][1].0[lane] = from.carried[1].to_bits();
         }

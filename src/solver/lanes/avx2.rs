@@ -136,9 +136,15 @@ impl Lanes<WIDTH> for Avx2 {
     }
 
     #[inline(always)]
-    fn count(mask: __m256i) -> u32 {
+    #[expect(clippy::cast_sign_loss, reason = "eight bits")]
+    fn bits(mask: __m256i) -> u32 {
         // SAFETY: see `Avx2`.
-        unsafe { _mm256_movemask_ps(_mm256_castsi256_ps(mask)).count_ones() }
+        unsafe { _mm256_movemask_ps(_mm256_castsi256_ps(mask)) as u32 }
+    }
+
+    #[inline(always)]
+    fn count(mask: __m256i) -> u32 {
+        Self::bits(mask).count_ones()
     }
 
     #[inline(always)]

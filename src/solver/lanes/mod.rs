@@ -66,6 +66,8 @@ pub(super) trait Lanes<const N: usize>: Copy {
     fn both(a: Self::Mask, b: Self::Mask) -> Self::Mask;
     fn either(a: Self::Mask, b: Self::Mask) -> Self::Mask;
     fn any(mask: Self::Mask) -> bool;
+    /// A bit for each lane, the first one lowest.
+    fn bits(mask: Self::Mask) -> u32;
     /// In how many lanes it is true.
     fn count(mask: Self::Mask) -> u32;
     fn select(mask: Self::Mask, yes: Self::Int, no: Self::Int) -> Self::Int;

@@ -92,6 +92,11 @@ impl<const N: usize> Lanes<N> for Scalar<N> {
     }
 
     #[inline(always)]
+    fn bits(mask: [bool; N]) -> u32 {
+        mask.iter().rev().fold(0, |bits, &lane| bits << 1 | u32::from(lane))
+    }
+
+    #[inline(always)]
     fn count(mask: [bool; N]) -> u32 {
         mask.iter().map(|&lane| u32::from(lane)).sum()
     }

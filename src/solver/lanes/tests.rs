@@ -44,6 +44,7 @@ impl Kernel<WIDTH> for Operations<'_> {
             keep(L::select(mask, a, b));
             keep(L::to_int(mask));
             keep(L::splat(i32::try_from(L::count(mask)).unwrap()));
+            keep(L::splat(i32::try_from(L::bits(mask)).unwrap()));
             keep(L::splat(i32::from(L::any(mask))));
         }
         // Sums of products stay below 2^62, as they do in the kernels.

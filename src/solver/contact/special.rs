@@ -1,0 +1,45 @@
+//! What few contacts have: restitution, surfaces that move, and resistance to rolling. The others should not carry it
+//! through the caches.
+
+use super::super::lanes::Ints;
+use super::input::Input;
+use super::rolling::RollingRows;
+use crate::math::Unit;
+
+/// The rest of a batch of which some surface is special.
+#[derive(Clone, Debug)]
+pub(super) struct Special<const N: usize> {
+    pub(super) restitution: Ints<N>,
+    /// For each point, the relative normal velocity when the shapes first pushed each other in this tick.
+    pub(super) approach: [Ints<N>; 2],
+    /// For each point, -1 where the shapes have pushed each other in this tick.
+    pub(super) pushed: [Ints<N>; 2],
+    /// How fast the surfaces move against each other by themselves, against the tangent.
+    pub(super) surface_speed: Ints<N>,
+    /// Whether any of them resists rolling.
+    pub(super) rolls: bool,
+    pub(super) rolling: RollingRows<N>,
+}
+
+impl<const N: usize> Special<N> {
+    /// Nothing special in any lane.
+    pub(super) const NONE: Self = Special {
+        restitution: Ints::ZERO,
+        approach: [Ints::ZERO; 2],
+        pushed: [Ints::ZERO; 2],
+        surface_speed: Ints::ZERO,
+        rolls: false,
+        rolling: RollingRows::NONE,
+    };
+
+    /// Takes a contact into a lane. `inverse_normals` are the reciprocals of its points' denominators, 0 for a missing
+    /// one.
+    pub(super) fn fill(&mut self, lane: usize, input: &Input, inverse_normals: [Unit; 2]) {
+        self.restitution.0[lane] = input.restitution.to_bits();
+        self.surface_speed.0[lane] = input.surface_speed.to_bits();
+        if input.rolling_resistance > 0 {
+            self.rolls = true;
+            self.rolling.fill(lane, input, inverse_normals);
+        }
+    }
+}
