@@ -6,7 +6,9 @@ use super::manifold::Manifold;
 use super::pose::{Hull, Outline, PosedShape};
 use super::{circle_circle, circle_hull, hull_hull, segment};
 use crate::fx;
-use crate::math::{Aabb, Fx, Length, Vec2, narrow, widen};
+use crate::math::{Aabb, Fx, Length, Vec2, convert, widen};
+use fixed::FixedI32;
+use fixed::types::extra::LeEqU32;
 
 /// Boxes further apart than the margin by more than this, in metres, are rejected without a closer look. The
 /// slack covers the rounding of vertices and the half millimetre by which nearly parallel edges count as nearer than
@@ -17,8 +19,9 @@ const REJECT_SLACK: Fx = fx!(0.001);
 const MARGIN_MAX: Length = Length::lit("15");
 
 /// The margin for two shapes that may approach each other by `closing` metres in the tick.
-pub(crate) fn margin_for(speculative: Length, closing: Fx) -> Length {
-    speculative.saturating_add(narrow(closing)).min(MARGIN_MAX)
+#[inline]
+pub(crate) fn margin_for<A: LeEqU32>(speculative: Length, closing: FixedI32<A>) -> Length {
+    speculative.saturating_add(convert(closing)).min(MARGIN_MAX)
 }
 
 /// Whether two boxes are so near that shapes in them may be at most `margin` metres apart.
@@ -121,7 +124,7 @@ mod tests {
     use crate::body::{Body, BodyDef, Geometry, MassProperties, Polygon, ShapeDef};
     use crate::collision::SatCounters;
     use crate::collision::link::Link;
-    use crate::math::{Angle, Rng, closest_point_on_segment};
+    use crate::math::{Angle, Rng, closest_point_on_segment, narrow};
     use alloc::vec::Vec;
 
     fn posed(geometry: Geometry, position: Vec2<Fx>, angle: Angle) -> PosedShape {

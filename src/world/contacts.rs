@@ -1,7 +1,7 @@
 //! Contacts of a tick: their manifolds at its start, and the events that follow from them at its end.
 
 use super::events::{ContactEvent, Events, HitEvent, SensorEvent};
-use super::look_ahead::{Approach, Horizon, Outlook};
+use super::look_ahead::{Approach, Horizon, Outlook, approach_speed};
 use super::scratch::{Approaching, Poses, Scratch};
 use super::state::{Reported, Side, State};
 use crate::collision::{AxisHint, Contact, Manifold, Pair, SatCounters, collide, collide_near, may_meet};
@@ -113,11 +113,10 @@ fn approaching(
 ) -> Option<Approaching> {
     let (a, b) = contact.shapes;
     let (motion_a, motion_b) = (outlook.motion(outlook.reach(a)), outlook.motion(outlook.reach(b)));
-    let normal = manifold.normal.widen();
-    let speed_at = |point| (motion_a.velocity_at(point) - motion_b.velocity_at(point)).dot(normal);
-    let points = manifold.points().iter().map(|point| manifold.origin + point.anchor.widen());
-    let (point, approach_speed) =
-        points.map(|point| (point, speed_at(point))).reduce(|a, b| if b.1 > a.1 { b } else { a })?;
+    let speed_at = approach_speed(motion_a, motion_b, manifold);
+    let speeds = manifold.points().iter().map(|point| (point, speed_at(point)));
+    let (point, speed) = speeds.reduce(|a, b| if b.1 > a.1 { b } else { a })?;
+    let (point, approach_speed) = (manifold.origin + point.anchor.widen(), widen(speed));
     if approach_speed < state.config.hit_speed {
         return None;
     }

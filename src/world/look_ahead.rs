@@ -9,41 +9,53 @@ use super::config::Config;
 use crate::body::{Body, Shape};
 use crate::collision::{Manifold, ManifoldPoint, OneWay, Outline, Passage, PosedShape, margin_for, pass_by};
 use crate::fx;
-use crate::math::{Aabb, Fx, Length, Rot, Unit, Vec2, fx_mul, narrow, widen};
+use crate::math::{
+    Aabb, Fx, Length, Reciprocal, Rot, Speed, Step, Unit, Vec2, convert, fx_mul, mul_add, narrow, saturate, widen,
+};
+use fixed::FixedI32;
+use fixed::types::extra::{U16, U22, U24};
+
+/// A way within a tick in metres: ±128, resolution 6e-8.
+pub(super) type Way = FixedI32<U24>;
+
+/// An angular velocity in rad/s: ±32 768, resolution 1.5e-5.
+type AngularSpeed = FixedI32<U16>;
 
 /// How a body moves at the start of a tick.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Motion {
     /// Centre of mass.
     centre: Vec2<Fx>,
-    velocity: Vec2<Fx>,
-    /// In rad/s.
-    omega: Fx,
+    velocity: Vec2<Speed>,
+    omega: AngularSpeed,
 }
 
 impl Motion {
+    #[inline]
     pub(super) fn of(body: &Body) -> Self {
-        let omega = if body.spin == 0 { Fx::ZERO } else { body.angular_velocity() };
-        Motion { centre: body.centre, velocity: body.velocity(), omega }
+        let omega = body.mass.inverse_gyration.times(body.spin);
+        Motion { centre: body.centre, velocity: body.velocity, omega }
     }
 
     /// Of the point of the body that is at a world point, in m/s.
-    pub(super) fn velocity_at(&self, point: Vec2<Fx>) -> Vec2<Fx> {
+    fn velocity_at(&self, point: Vec2<Fx>) -> Vec2<Speed> {
         if self.omega == 0 {
             return self.velocity;
         }
-        self.velocity + (point - self.centre).perp().scale(self.omega)
+        let arm: Vec2<Length> = (point - self.centre).narrow();
+        self.velocity + arm.perp().scale(self.omega)
     }
 
-    /// How far the centre of mass moves in a tick.
-    pub(super) fn shift(&self, tick_rate: u32) -> Vec2<Fx> {
-        let rate = i64::from(tick_rate);
-        Vec2::new(self.velocity.x / rate, self.velocity.y / rate)
+    /// How far the centre of mass moves in a tick: at most 52 m.
+    #[inline]
+    pub(super) fn shift(&self, per_second: Reciprocal) -> Vec2<Way> {
+        Vec2::new(per_second.times(self.velocity.x), per_second.times(self.velocity.y))
     }
 
-    /// By how much the body turns in a tick, in radians, without sign.
-    pub(super) fn turn(&self, tick_rate: u32) -> Fx {
-        self.omega.saturating_abs() / i64::from(tick_rate)
+    /// By how much the body turns in a tick, in radians, without sign: at most 128.
+    #[inline]
+    pub(super) fn turn(&self, per_second: Reciprocal) -> Fx {
+        widen::<U24>(per_second.times(self.omega)).saturating_abs()
     }
 
     /// How far any point of a shape moves because its body turns: at most arm times angle, and at most from one
@@ -66,17 +78,37 @@ impl Motion {
     }
 }
 
-/// The largest way in metres because of a turn that pairs tell from larger ones: they look ahead by 15 m at most.
-const TURN_MAX: Fx = fx!(1024);
+/// The speed in m/s at which two bodies approach each other along the normal at a point of their contact,
+///
+/// ```text
+/// n.(vA - vB) + wA (rA x n) - wB (rB x n)
+/// ```
+#[inline]
+pub(super) fn approach_speed(
+    a: &Motion,
+    b: &Motion,
+    manifold: &Manifold,
+) -> impl Fn(&ManifoldPoint) -> Speed + use<> {
+    let (normal, origin) = (manifold.normal, manifold.origin);
+    let arm = |motion: &Motion| -> Length { (origin - motion.centre).narrow::<U22>().cross(normal) };
+    let (arm_a, arm_b, omega_a, omega_b) = (arm(a), arm(b), a.omega, b.omega);
+    let linear: Speed = (a.velocity - b.velocity).dot(normal);
+    move |point| {
+        let arm: Length = point.anchor.cross(normal);
+        let (arm_a, arm_b) = (arm_a.saturating_add(arm), arm_b.saturating_add(arm));
+        let angular: Speed = mul_add(omega_a, arm_a, omega_b.saturating_neg(), arm_b);
+        linear.saturating_add(angular)
+    }
+}
 
 /// The box of a shape, how far it may come within the tick, and what its pairs have to know of it: one cache line.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Reach {
     pub(super) bounds: Aabb,
     /// Of the body's centre of mass.
-    pub(super) shift: Vec2<Fx>,
+    shift: Vec2<Way>,
     /// How far any point moves because the body turns.
-    pub(super) turn: Fx,
+    turn: Way,
     /// The slot of its body.
     pub(super) body: u32,
     pub(super) sensor: bool,
@@ -90,7 +122,7 @@ impl Reach {
         Reach {
             bounds,
             shift: Vec2::ZERO,
-            turn: Fx::ZERO,
+            turn: Way::ZERO,
             body,
             sensor: shape.is_sensor(),
             one_way: shape.one_way().is_some(),
@@ -99,11 +131,11 @@ impl Reach {
     }
 
     /// Bound of the way by which any two points of two shapes approach each other in the tick, in metres.
-    fn closing(&self, other: &Reach) -> Fx {
-        // Speeds are below 2^9 m/s and turns at most TURN_MAX: the sum is far from the end of the range.
-        let apart = |a: Fx, b: Fx| (b.to_bits() - a.to_bits()).abs();
+    #[inline]
+    fn closing(&self, other: &Reach) -> Way {
+        let apart = |a: Way, b: Way| (i64::from(b.to_bits()) - i64::from(a.to_bits())).abs();
         let shift = apart(self.shift.x, other.shift.x) + apart(self.shift.y, other.shift.y);
-        Fx::from_bits(shift + self.turn.to_bits() + other.turn.to_bits())
+        Way::from_bits(saturate(shift + i64::from(self.turn.to_bits()) + i64::from(other.turn.to_bits())))
     }
 
     /// How far the shape may overlap another, for its size, when they pass by each other.
@@ -131,7 +163,7 @@ impl Outlook {
         }
         for slot in self.moving_shapes.drain(..) {
             let reach = &mut self.reaches[slot as usize];
-            (reach.shift, reach.turn) = (Vec2::ZERO, Fx::ZERO);
+            (reach.shift, reach.turn) = (Vec2::ZERO, Way::ZERO);
         }
         self.motions.resize(body_slots, Motion::default());
     }
@@ -154,9 +186,9 @@ impl Outlook {
         self.moving_bodies.push(body);
     }
 
-    pub(super) fn set_reach(&mut self, shape: u32, shift: Vec2<Fx>, turn: Fx) {
+    pub(super) fn set_reach(&mut self, shape: u32, shift: Vec2<Way>, turn: Fx) {
         let reach = &mut self.reaches[shape as usize];
-        (reach.shift, reach.turn) = (shift, turn.min(TURN_MAX));
+        (reach.shift, reach.turn) = (shift, narrow(turn));
         self.moving_shapes.push(shape);
     }
 
@@ -172,7 +204,7 @@ impl Outlook {
 /// What is the same for all pairs of a world.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Horizon {
-    tick_rate: i64,
+    per_second: Reciprocal,
     speculative: Length,
     touching: Fx,
 }
@@ -180,7 +212,7 @@ pub(super) struct Horizon {
 impl Horizon {
     pub(super) fn of(config: &Config) -> Self {
         Horizon {
-            tick_rate: config.tick_rate.into(),
+            per_second: Reciprocal::of_integer(config.tick_rate),
             speculative: narrow(config.speculative_distance),
             touching: config.touching_distance(),
         }
@@ -193,12 +225,12 @@ pub(super) struct Approach<'a> {
     a: &'a Reach,
     b: &'a Reach,
     /// Bound of the way by which any two points of the shapes approach each other in the tick, in metres.
-    closing: Fx,
+    closing: Way,
     pub(super) margin: Length,
 }
 
 /// Shapes that move against each other by less than this in a tick, in metres, do not pass by.
-const PASSAGE_MIN: Fx = fx!(0.0001);
+const PASSAGE_MIN: Step = Step::lit("0.0001");
 
 impl<'a> Approach<'a> {
     #[inline]
@@ -220,48 +252,29 @@ impl<'a> Approach<'a> {
         outlook: &Outlook,
         posed: (&PosedShape, &PosedShape),
     ) {
-        let speculative = widen(self.horizon.speculative);
-        let ahead = |point: &ManifoldPoint| widen(point.separation) > speculative;
-        let fast = self.closing > PASSAGE_MIN;
-        if self.margin == self.horizon.speculative || !(fast || manifold.points().iter().any(ahead)) {
+        let speculative: Step = convert(self.horizon.speculative);
+        let ahead = |point: &ManifoldPoint| point.separation > speculative;
+        if self.closing <= PASSAGE_MIN && !manifold.points().iter().any(ahead) {
             return;
         }
-        let (motion_a, motion_b) = (outlook.motion(self.a), outlook.motion(self.b));
-        let (origin, normal) = (manifold.origin, manifold.normal.widen());
-        let approach_speed = |point: &ManifoldPoint| {
-            let place = origin + point.anchor.widen();
-            -(motion_b.velocity_at(place) - motion_a.velocity_at(place)).dot(normal)
-        };
-        // From this speed on a point closes by more than the least that counts.
-        let at_passage_min = (PASSAGE_MIN.to_bits() + 1) * self.horizon.tick_rate;
-        // A point that is not reached does nothing, so only one that is decides.
-        let mut reached = [None; 2];
-        let mut slot = reached.iter_mut();
+        let motions = (outlook.motion(self.a), outlook.motion(self.b));
+        let speed_at = approach_speed(motions.0, motions.1, manifold);
+        let slack: Step = narrow(self.slack());
+        // A point that is not reached does nothing, and a deep one does not pass by: only others decide.
+        let mut most = Step::ZERO;
         manifold.retain(|point| {
-            let (separation, speed) = (widen(point.separation), approach_speed(point));
-            if speed.to_bits() < at_passage_min && separation <= speculative {
-                return true;
-            }
-            let closing = speed / self.horizon.tick_rate;
+            let closing: Step = self.horizon.per_second.times(speed_at(point));
+            let separation = point.separation;
             let kept = separation <= speculative || separation <= closing.saturating_add(speculative);
             // A quarter more: a gap that just closes acts too.
-            if kept && closing > PASSAGE_MIN && closing.saturating_add(closing / 4) > separation {
-                if let Some(slot) = slot.next() {
-                    *slot = Some((separation, closing));
-                }
+            let reached = kept && closing.saturating_add(closing / 4) > separation;
+            if reached && closing > PASSAGE_MIN && separation >= -slack {
+                most = most.max(closing);
             }
             kept
         });
-        if !fast || reached[0].is_none() {
-            return;
-        }
-        let slack = self.slack();
-        let shallow = |&&(separation, _): &&(Fx, Fx)| separation >= -slack;
-        let closing = reached.iter().flatten().filter(shallow).map(|&(_, closing)| closing).max();
-        if closing
-            .is_some_and(|closing| self.passes_by((motion_a, motion_b), posed, manifold.normal, closing))
-        {
-            manifold.retain(|_| false);
+        if most > 0 && self.passes_by(motions, posed, manifold.normal, most) {
+            *manifold = Manifold::NONE;
         }
     }
 
@@ -284,13 +297,13 @@ impl<'a> Approach<'a> {
         (motion_a, motion_b): (&Motion, &Motion),
         (posed_a, posed_b): (&PosedShape, &PosedShape),
         normal: Vec2<Unit>,
-        closing: Fx,
+        closing: Step,
     ) -> bool {
-        let rate = self.horizon.tick_rate;
+        let per_second = self.horizon.per_second;
         let velocity = motion_b.velocity_at(posed_b.centre) - motion_a.velocity_at(posed_a.centre);
-        let turn = self.a.turn.saturating_add(self.b.turn);
-        let shift = Vec2::new(velocity.x / rate, velocity.y / rate).narrow();
-        let passage = Passage::new(shift, narrow(turn), narrow(self.slack()), narrow(closing / 8), normal);
+        let turn = convert(self.a.turn.saturating_add(self.b.turn));
+        let shift = Vec2::new(per_second.times(velocity.x), per_second.times(velocity.y));
+        let passage = Passage::new(shift, turn, narrow(self.slack()), convert(closing / 8), normal);
         pass_by(posed_a, posed_b, &passage)
     }
 }

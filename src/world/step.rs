@@ -5,17 +5,15 @@ use super::contacts;
 use super::continuous;
 use super::events::MoveEvent;
 use super::islands;
-use super::look_ahead::Motion;
+use super::look_ahead::{Motion, Way};
 use super::pairs;
 use super::scratch::{Extents, Scratch};
 use super::state::State;
 use super::stats::{Phase, StepStats};
 use super::stress;
 use crate::body::{Body, BodyKind, Handle, Pose, WORLD_EXTENT_MAX};
-use crate::math::{Aabb, Angle, Fx, Reciprocal, Speed, Vec2, fx_mul, widen};
+use crate::math::{Aabb, Angle, Fx, Reciprocal, Vec2, fx_mul};
 use crate::solver::{SolverBody, Tuning, turn_of};
-use fixed::FixedI32;
-use fixed::types::extra::{U16, U24};
 
 impl World {
     /// Advances the world by one tick of `1 / tick_rate` seconds.
@@ -88,14 +86,14 @@ fn refit_boxes(state: &mut State, scratch: &mut Scratch) {
     for &slot in &roster.bodies {
         let body = bodies.at(slot);
         let motion = Motion::of(body);
-        let (shift, turn) = (motion.shift(config.tick_rate), motion.turn(config.tick_rate));
+        let (shift, turn) = (motion.shift(per_second), motion.turn(per_second));
         poses.outlook.set_motion(slot, motion);
-        let way = Way::of(body, poses.extents(slot), per_second);
+        let course = Course::of(body, poses.extents(slot), shift, turn);
         for &id in body.shapes() {
             let posed = poses.at(id.slot());
             let (bounds, turn_reach) = (posed.bounds, motion.turn_reach(turn, posed));
             poses.outlook.set_reach(id.slot(), shift, turn_reach);
-            let needed = way.around(bounds).expanded(config.speculative_distance);
+            let needed = course.around(bounds).expanded(config.speculative_distance);
             let margin = config.margin_of(bounds);
             let fat = broad_phase.fat(id.slot());
             // A box that a fast shape has left behind would find pairs for ever, so it shrinks as well.
@@ -114,7 +112,7 @@ fn refit_boxes(state: &mut State, scratch: &mut Scratch) {
 }
 
 /// Where a body may get within a tick at its present velocity.
-struct Way {
+struct Course {
     shift: Vec2<Fx>,
     /// How far its points move at most because it turns, in metres.
     turned: Fx,
@@ -122,15 +120,11 @@ struct Way {
     disc: Aabb,
 }
 
-impl Way {
-    fn of(body: &Body, extents: Extents, per_second: Reciprocal) -> Self {
-        // Up to 102 m, and up to 128 rad: a slow tick may be a tenth of a second.
-        let step = |v: Speed| widen::<U24>(per_second.times(v));
-        let omega: FixedI32<U16> = body.mass.inverse_gyration.times(body.spin);
-        let angle = widen::<U24>(per_second.times(omega)).saturating_abs();
-        Way {
-            shift: Vec2::new(step(body.velocity.x), step(body.velocity.y)),
-            turned: fx_mul(angle, extents.reach),
+impl Course {
+    fn of(body: &Body, extents: Extents, shift: Vec2<Way>, turn: Fx) -> Self {
+        Course {
+            shift: shift.widen(),
+            turned: fx_mul(turn, extents.reach),
             disc: Aabb::new(body.centre, body.centre).expanded(extents.radius),
         }
     }
