@@ -88,7 +88,10 @@ pub(crate) fn collide(
     // Outlines that are apart need the true best face, which is next to the nearest corner.
     let preference = if apart { 0 } else { TOLERANCE_WIDE };
     if face_b.separation > face_a.separation + preference {
-        clip(b, a, -d, face_b, apart, margin).swapped().translated(d)
+        let mut manifold = clip(b, a, -d, face_b, apart, margin);
+        manifold.swap();
+        manifold.translate(d);
+        manifold
     } else {
         clip(a, b, d, face_a, apart, margin)
     }
@@ -119,7 +122,7 @@ fn small(edge: usize) -> u8 {
 }
 
 /// The face of `a` that is furthest from `b`: of equal ones the first.
-#[inline]
+#[inline(always)]
 pub(super) fn best_face(a: &Hull, b: &Hull, d: Vec2<Length>) -> Face {
     // Most shapes are boxes.
     match (a.as_box(), b.as_box()) {
@@ -163,7 +166,7 @@ fn furthest_over(a: &Hull, support: impl Fn(Vec2<Unit>) -> i64, d: Vec2<Length>)
 
 /// [`furthest`] of two boxes: `max n . v` and `min n . v` over the vertices of one differ in sign alone, and so do the
 /// distances of its own opposite faces from its centre.
-#[inline]
+#[inline(always)]
 fn furthest_of_boxes((vertices, normals): BoxFaces, (others, _): BoxFaces, d: Vec2<Length>) -> Face {
     let further_of_opposite = |edge: usize| {
         let n = normals[edge];
@@ -218,21 +221,19 @@ struct End {
 }
 
 /// Clips the incident edge of `b` against a face of `a`. Anchors are about the centre of `a`.
-#[inline]
 pub(super) fn clip(a: &Hull, b: &Hull, d: Vec2<Length>, face: Face, apart: bool, margin: Length) -> Manifold {
-    let normal = a.normals()[face.edge];
     let next = a.next(face.edge);
-    let v1 = a.vertices()[face.edge];
+    let (normal, v1) = (a.normal(face.edge), a.vertex(face.edge));
     let (first, last) = (
         End { vertex: face.edge, along: 0, above: 0 },
-        End { vertex: next, along: along(normal, between(v1, a.vertices()[next])), above: 0 },
+        End { vertex: next, along: along(normal, between(v1, a.vertex(next))), above: 0 },
     );
     // Both outlines run counter-clockwise, so the incident edge runs against the reference edge: its second
     // vertex is the lower end.
     let incident = incident_edge(b, normal);
     let to_b = between(v1, d);
     let end_of_b = |vertex: usize| {
-        let position = b.vertices()[vertex];
+        let position = b.vertex(vertex);
         let p = (to_b.0 + i64::from(position.x.to_bits()), to_b.1 + i64::from(position.y.to_bits()));
         End { vertex, along: along(normal, p), above: above(normal, p) }
     };
@@ -245,7 +246,7 @@ pub(super) fn clip(a: &Hull, b: &Hull, d: Vec2<Length>, face: Face, apart: bool,
         // them apart.
         let (end_a, end_b) = if upper.along < first.along { (first, upper) } else { (last, lower) };
         return match corners {
-            Some((vertex_a, vertex_b)) => context.corner(vertex_a.vertex, vertex_b.vertex),
+            Some((vertex_a, vertex_b)) => context.corner(&Gap::between(&context, vertex_a, vertex_b)),
             None => context.face([(end_a.vertex, end_b)]),
         };
     }
@@ -254,11 +255,12 @@ pub(super) fn clip(a: &Hull, b: &Hull, d: Vec2<Length>, face: Face, apart: bool,
     if let Some((vertex_a, vertex_b)) = corners {
         // Rounded edges that are nearly parallel are nearest at a corner too, but rest on both ends: there the
         // corners are no nearer than the clipped edge, nor further than the face.
-        let distance = step_bits(context.between_corners(vertex_a.vertex, vertex_b.vertex).length());
+        let gap = Gap::between(&context, vertex_a, vertex_b);
+        let distance = step_bits(gap.distance);
         let nearer = low.above.min(high.above);
         let spread = (nearer - distance).max(distance - (face.separation >> 25));
         if spread > i64::from(TOLERANCE.to_bits()) {
-            return context.corner(vertex_a.vertex, vertex_b.vertex);
+            return context.corner(&gap);
         }
     }
     context.face([(first.vertex, low), (last.vertex, high)])
@@ -339,11 +341,27 @@ struct Clip<'a> {
     margin: Length,
 }
 
+/// What is between two corners.
+struct Gap {
+    vertices: (usize, usize),
+    normal: Vec2<Unit>,
+    distance: Length,
+}
+
+impl Gap {
+    fn between(clip: &Clip, a: End, b: End) -> Self {
+        let d = clip.b.vertex(b.vertex) + clip.d - clip.a.vertex(a.vertex);
+        let (normal, distance) =
+            d.normalized_with_length().unwrap_or((clip.a.normal(clip.face), Length::ZERO));
+        Gap { vertices: (a.vertex, b.vertex), normal, distance }
+    }
+}
+
 impl Clip<'_> {
     /// Contact points of clipped incident ends, each with the vertex of A that it is next to.
     #[inline(always)]
     fn face<const N: usize>(&self, ends: [(usize, End); N]) -> Manifold {
-        let (normal, start) = (self.a.normals()[self.face], self.a.vertices()[self.face]);
+        let (normal, start) = (self.a.normal(self.face), self.a.vertex(self.face));
         let mut manifold = Manifold::new(normal);
         for (vertex, end) in ends {
             self.push(&mut manifold, start, (vertex, end));
@@ -352,19 +370,11 @@ impl Clip<'_> {
     }
 
     /// Contact between two corners, along the line that joins them.
-    fn corner(&self, vertex_a: usize, vertex_b: usize) -> Manifold {
-        let (normal, distance) = self
-            .between_corners(vertex_a, vertex_b)
-            .normalized_with_length()
-            .unwrap_or((self.a.normals()[self.face], Length::ZERO));
-        let mut manifold = Manifold::new(normal);
-        let end = End { vertex: vertex_b, along: 0, above: step_bits(distance) };
-        self.push(&mut manifold, self.a.vertices()[vertex_a], (vertex_a, end));
+    fn corner(&self, gap: &Gap) -> Manifold {
+        let mut manifold = Manifold::new(gap.normal);
+        let end = End { vertex: gap.vertices.1, along: 0, above: step_bits(gap.distance) };
+        self.push(&mut manifold, self.a.vertex(gap.vertices.0), (gap.vertices.0, end));
         manifold
-    }
-
-    fn between_corners(&self, a: usize, b: usize) -> Vec2<Length> {
-        self.b.vertices()[b] + self.d - self.a.vertices()[a]
     }
 
     /// Adds the contact at an end of B, given about a place on A's outline, radii not counted, if it is near enough.

@@ -61,6 +61,18 @@ impl Hull {
         &self.normals[..self.count]
     }
 
+    /// One of the vertices.
+    #[inline]
+    pub(crate) fn vertex(&self, i: usize) -> Vec2<Length> {
+        self.vertices[i % POLYGON_VERTICES_MAX]
+    }
+
+    /// One of the normals.
+    #[inline]
+    pub(crate) fn normal(&self, i: usize) -> Vec2<Unit> {
+        self.normals[i % POLYGON_VERTICES_MAX]
+    }
+
     /// Whether it is a segment or a capsule: two sides, and no face at the ends.
     #[inline]
     pub(crate) fn is_line(&self) -> bool {

@@ -10,7 +10,7 @@ use crate::body::{Body, Shape};
 use crate::collision::{Manifold, ManifoldPoint, OneWay, Outline, Passage, PosedShape, margin_for, pass_by};
 use crate::fx;
 use crate::math::{
-    Aabb, Fx, Length, Reciprocal, Rot, Speed, Step, Unit, Vec2, convert, fx_mul, mul_add, narrow, saturate, widen,
+    Aabb, Fx, Length, Reciprocal, Rot, Speed, Step, Unit, Vec2, convert, fx_mul, mul, mul_add, narrow, saturate, widen,
 };
 use fixed::FixedI32;
 use fixed::types::extra::{U16, U22, U24};
@@ -18,44 +18,38 @@ use fixed::types::extra::{U16, U22, U24};
 /// A way within a tick in metres: ±128, resolution 6e-8.
 pub(super) type Way = FixedI32<U24>;
 
-/// An angular velocity in rad/s: ±32 768, resolution 1.5e-5.
-type AngularSpeed = FixedI32<U16>;
-
-/// How a body moves at the start of a tick.
+/// How a body moves in a tick, at its velocity at the start.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Motion {
     /// Centre of mass.
     centre: Vec2<Fx>,
-    velocity: Vec2<Speed>,
-    omega: AngularSpeed,
+    /// How far that moves: at most 52 m.
+    pub(super) shift: Vec2<Way>,
+    /// By how much the body turns, in radians.
+    turn: Way,
 }
 
 impl Motion {
     #[inline]
-    pub(super) fn of(body: &Body) -> Self {
-        let omega = body.mass.inverse_gyration.times(body.spin);
-        Motion { centre: body.centre, velocity: body.velocity, omega }
+    pub(super) fn of(body: &Body, per_second: Reciprocal) -> Self {
+        let omega: FixedI32<U16> = body.mass.inverse_gyration.times(body.spin);
+        let step = |speed: Speed| per_second.times(speed);
+        let shift = Vec2::new(step(body.velocity.x), step(body.velocity.y));
+        Motion { centre: body.centre, shift, turn: per_second.times(omega) }
     }
 
-    /// Of the point of the body that is at a world point, in m/s.
-    fn velocity_at(&self, point: Vec2<Fx>) -> Vec2<Speed> {
-        if self.omega == 0 {
-            return self.velocity;
+    /// How far the point of the body that is at a world point moves.
+    fn shift_at(&self, point: Vec2<Fx>) -> Vec2<Way> {
+        if self.turn == 0 {
+            return self.shift;
         }
         let arm: Vec2<Length> = (point - self.centre).narrow();
-        self.velocity + arm.perp().scale(self.omega)
+        self.shift + arm.perp().scale(self.turn)
     }
 
-    /// How far the centre of mass moves in a tick: at most 52 m.
-    #[inline]
-    pub(super) fn shift(&self, per_second: Reciprocal) -> Vec2<Way> {
-        Vec2::new(per_second.times(self.velocity.x), per_second.times(self.velocity.y))
-    }
-
-    /// By how much the body turns in a tick, in radians, without sign: at most 128.
-    #[inline]
-    pub(super) fn turn(&self, per_second: Reciprocal) -> Fx {
-        widen::<U24>(per_second.times(self.omega)).saturating_abs()
+    /// By how much the body turns, in radians, without sign.
+    pub(super) fn turn(&self) -> Fx {
+        widen(self.turn).saturating_abs()
     }
 
     /// How far any point of a shape moves because its body turns: at most arm times angle, and at most from one
@@ -78,26 +72,28 @@ impl Motion {
     }
 }
 
-/// The speed in m/s at which two bodies approach each other along the normal at a point of their contact,
+/// By how much two bodies approach each other in a tick at a point of their contact, along the normal. With `x` the
+/// shift, `t` the turn and `r` the arm of each,
 ///
 /// ```text
-/// n.(vA - vB) + wA (rA x n) - wB (rB x n)
+/// n.(xA - xB) + tA (rA x n) - tB (rB x n)
 /// ```
+///
+/// where `r` is the arm of the manifold's origin and the anchor together: each point adds `(tA - tB) (anchor x n)`.
 #[inline]
-pub(super) fn approach_speed(
+pub(super) fn approach(
     a: &Motion,
     b: &Motion,
     manifold: &Manifold,
-) -> impl Fn(&ManifoldPoint) -> Speed + use<> {
+) -> impl Fn(&ManifoldPoint) -> Way + use<> {
     let (normal, origin) = (manifold.normal, manifold.origin);
     let arm = |motion: &Motion| -> Length { (origin - motion.centre).narrow::<U22>().cross(normal) };
-    let (arm_a, arm_b, omega_a, omega_b) = (arm(a), arm(b), a.omega, b.omega);
-    let linear: Speed = (a.velocity - b.velocity).dot(normal);
+    let linear: Way = (a.shift - b.shift).dot(normal);
+    let angular: Way = mul_add(a.turn, arm(a), b.turn.saturating_neg(), arm(b));
+    let (common, turn) = (linear.saturating_add(angular), a.turn.saturating_sub(b.turn));
     move |point| {
         let arm: Length = point.anchor.cross(normal);
-        let (arm_a, arm_b) = (arm_a.saturating_add(arm), arm_b.saturating_add(arm));
-        let angular: Speed = mul_add(omega_a, arm_a, omega_b.saturating_neg(), arm_b);
-        linear.saturating_add(angular)
+        common.saturating_add(mul(turn, arm))
     }
 }
 
@@ -109,6 +105,8 @@ pub(crate) struct Reach {
     shift: Vec2<Way>,
     /// How far any point moves because the body turns.
     turn: Way,
+    /// How far the shape may overlap another, for its size, when they pass by each other.
+    slack: Step,
     /// The slot of its body.
     pub(super) body: u32,
     pub(super) sensor: bool,
@@ -123,6 +121,7 @@ impl Reach {
             bounds,
             shift: Vec2::ZERO,
             turn: Way::ZERO,
+            slack: slack_of(bounds),
             body,
             sensor: shape.is_sensor(),
             one_way: shape.one_way().is_some(),
@@ -137,12 +136,12 @@ impl Reach {
         let shift = apart(self.shift.x, other.shift.x) + apart(self.shift.y, other.shift.y);
         Way::from_bits(saturate(shift + i64::from(self.turn.to_bits()) + i64::from(other.turn.to_bits())))
     }
+}
 
-    /// How far the shape may overlap another, for its size, when they pass by each other.
-    fn slack(&self) -> Fx {
-        let half = self.bounds.extents();
-        half.x.max(half.y) / 16
-    }
+/// How far a shape in a box may overlap another when they pass by each other, in metres.
+fn slack_of(bounds: Aabb) -> Step {
+    let half = bounds.extents();
+    narrow(half.x.max(half.y) / 16)
 }
 
 /// Bodies and shapes as the pairs of a tick see them, by slot. What has no place in the roster does not move.
@@ -178,7 +177,8 @@ impl Outlook {
 
     /// Takes up where a shape has been moved to.
     pub(super) fn move_to(&mut self, slot: u32, bounds: Aabb) {
-        self.reaches[slot as usize].bounds = bounds;
+        let reach = &mut self.reaches[slot as usize];
+        (reach.bounds, reach.slack) = (bounds, slack_of(bounds));
     }
 
     pub(super) fn set_motion(&mut self, body: u32, motion: Motion) {
@@ -204,17 +204,15 @@ impl Outlook {
 /// What is the same for all pairs of a world.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Horizon {
-    per_second: Reciprocal,
     speculative: Length,
-    touching: Fx,
+    touching: Step,
 }
 
 impl Horizon {
     pub(super) fn of(config: &Config) -> Self {
         Horizon {
-            per_second: Reciprocal::of_integer(config.tick_rate),
             speculative: narrow(config.speculative_distance),
-            touching: config.touching_distance(),
+            touching: narrow(config.touching_distance()),
         }
     }
 }
@@ -240,8 +238,8 @@ impl<'a> Approach<'a> {
     }
 
     /// How far the shapes may overlap, in metres, when they pass by each other.
-    fn slack(&self) -> Fx {
-        self.horizon.touching.min(self.a.slack()).min(self.b.slack())
+    fn slack(&self) -> Step {
+        self.horizon.touching.min(self.a.slack).min(self.b.slack)
     }
 
     /// Drops the points that the bodies, at their present velocities, will not reach within the tick: shapes that
@@ -258,12 +256,11 @@ impl<'a> Approach<'a> {
             return;
         }
         let motions = (outlook.motion(self.a), outlook.motion(self.b));
-        let speed_at = approach_speed(motions.0, motions.1, manifold);
-        let slack: Step = narrow(self.slack());
+        let (closing_at, slack) = (approach(motions.0, motions.1, manifold), self.slack());
         // A point that is not reached does nothing, and a deep one does not pass by: only others decide.
         let mut most = Step::ZERO;
         manifold.retain(|point| {
-            let closing: Step = self.horizon.per_second.times(speed_at(point));
+            let closing: Step = convert(closing_at(point));
             let separation = point.separation;
             let kept = separation <= speculative || separation <= closing.saturating_add(speculative);
             // A quarter more: a gap that just closes acts too.
@@ -285,7 +282,7 @@ impl<'a> Approach<'a> {
         manifold: &Manifold,
         was_passing: bool,
     ) -> bool {
-        let slack = self.slack();
+        let slack = widen(self.slack());
         one_way(a, body_a, posed_a).is_some_and(|a| a.lets_pass(posed_b, manifold, was_passing, slack))
             || one_way(b, body_b, posed_b)
                 .is_some_and(|b| b.lets_pass(posed_a, &manifold.swapped(), was_passing, slack))
@@ -299,11 +296,9 @@ impl<'a> Approach<'a> {
         normal: Vec2<Unit>,
         closing: Step,
     ) -> bool {
-        let per_second = self.horizon.per_second;
-        let velocity = motion_b.velocity_at(posed_b.centre) - motion_a.velocity_at(posed_a.centre);
+        let shift = motion_b.shift_at(posed_b.centre) - motion_a.shift_at(posed_a.centre);
         let turn = convert(self.a.turn.saturating_add(self.b.turn));
-        let shift = Vec2::new(per_second.times(velocity.x), per_second.times(velocity.y));
-        let passage = Passage::new(shift, turn, narrow(self.slack()), convert(closing / 8), normal);
+        let passage = Passage::new(shift.convert(), turn, convert(self.slack()), convert(closing / 8), normal);
         pass_by(posed_a, posed_b, &passage)
     }
 }

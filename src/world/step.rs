@@ -45,10 +45,10 @@ impl World {
         contacts::find_manifolds(state, scratch);
 
         begin(Phase::Prepare);
-        let Scratch { solver, roster, touching, manifolds, .. } = scratch;
+        let Scratch { solver, roster, found, .. } = scratch;
         solver.prepare_bodies(&state.bodies, &roster.bodies, &tuning);
         solver.prepare_joints(&state.joints, &roster.joints, &state.bodies, &tuning);
-        solver.prepare_contacts(touching, manifolds, &state.contacts, &tuning);
+        solver.prepare_contacts(&found.touching, &found.manifolds, &state.contacts, &tuning);
 
         begin(Phase::Solve);
         for index in 0..settings.sub_steps {
@@ -85,8 +85,8 @@ fn refit_boxes(state: &mut State, scratch: &mut Scratch) {
     poses.outlook.begin(bodies.slot_count());
     for &slot in &roster.bodies {
         let body = bodies.at(slot);
-        let motion = Motion::of(body);
-        let (shift, turn) = (motion.shift(per_second), motion.turn(per_second));
+        let motion = Motion::of(body, per_second);
+        let (shift, turn) = (motion.shift, motion.turn());
         poses.outlook.set_motion(slot, motion);
         let course = Course::of(body, poses.extents(slot), shift, turn);
         for &id in body.shapes() {
@@ -226,7 +226,7 @@ fn report_moves(state: &State, scratch: &mut Scratch) {
 }
 
 fn count(state: &mut State, scratch: &mut Scratch) {
-    let Scratch { solver, sat, stats, touching, roster, .. } = scratch;
+    let Scratch { solver, stats, found, roster, .. } = scratch;
     let faults = solver.faults + u64::from(state.pairs_left_out);
     state.faults = state.faults.saturating_add(faults);
     let count = |length: usize| u32::try_from(length).unwrap_or(u32::MAX);
@@ -234,12 +234,12 @@ fn count(state: &mut State, scratch: &mut Scratch) {
         bodies: count(roster.bodies.len()),
         joints: count(roster.joints.len()),
         pairs: count(state.contacts.len()),
-        contacts: count(touching.len()),
+        contacts: count(found.touching.len()),
         points: solver.warm_starts.points,
         points_kept: solver.warm_starts.kept,
         points_lost: solver.warm_starts.lost,
-        axis_hits: sat.hint_hits,
-        axis_searches: sat.searches,
+        axis_hits: found.sat.hint_hits,
+        axis_searches: found.sat.searches,
         impacts: stats.impacts,
         faults,
     };
