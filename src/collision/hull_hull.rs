@@ -7,8 +7,8 @@
 
 use super::circle_hull::step_bits;
 use super::manifold::{Feature, Manifold, ManifoldPoint};
-use super::pose::Hull;
-use crate::math::{Length, Step, Unit, Vec2, round_shift, round_shift_wide, saturate, saturate_wide};
+use super::pose::{BoxFaces, Hull};
+use crate::math::{Length, Step, Unit, Vec2, round_shift, saturate};
 
 /// B's best face must beat A's by this much, in metres, to become the reference: 0.5 mm keeps the choice from
 /// flickering between two equal faces. Impulses survive a flicker, since features do not depend on the choice,
@@ -17,6 +17,9 @@ const TOLERANCE: Step = Step::lit("0.0005");
 
 /// The fraction bits of a product of a length and a unit vector: of the separation from a face.
 pub(super) const FACE_BITS: u32 = Unit::FRAC_NBITS + Length::FRAC_NBITS;
+
+/// How many fraction bits a step has more than a length.
+const FINER: u32 = Step::FRAC_NBITS - Length::FRAC_NBITS;
 
 /// [`TOLERANCE`] with [`FACE_BITS`] fraction bits.
 pub(super) const TOLERANCE_WIDE: i64 = (TOLERANCE.to_bits() as i64) << 25;
@@ -85,7 +88,10 @@ pub(crate) fn collide(
     // Outlines that are apart need the true best face, which is next to the nearest corner.
     let preference = if apart { 0 } else { TOLERANCE_WIDE };
     if face_b.separation > face_a.separation + preference {
-        clip(b, a, -d, face_b, apart, margin).swapped().translated(d)
+        let mut manifold = clip(b, a, -d, face_b, apart, margin);
+        manifold.swap();
+        manifold.translate(d);
+        manifold
     } else {
         clip(a, b, d, face_a, apart, margin)
     }
@@ -116,11 +122,11 @@ fn small(edge: usize) -> u8 {
 }
 
 /// The face of `a` that is furthest from `b`: of equal ones the first.
-#[inline]
+#[inline(always)]
 pub(super) fn best_face(a: &Hull, b: &Hull, d: Vec2<Length>) -> Face {
     // Most shapes are boxes.
-    match (a.as_box(), b.as_quad()) {
-        (Some((vertices, normals)), Some(others)) => furthest_of_box(vertices, normals, others, d),
+    match (a.as_box(), b.as_box()) {
+        (Some(a), Some(b)) => furthest_of_boxes(a, b, d),
         _ => furthest(a, b, d),
     }
 }
@@ -158,29 +164,25 @@ fn furthest_over(a: &Hull, support: impl Fn(Vec2<Unit>) -> i64, d: Vec2<Length>)
     best
 }
 
-/// [`furthest`] for four faces of which opposite ones have opposite normals: `min -n . v` is `-max n . v`.
-#[inline]
-fn furthest_of_box(
-    &[v0, v1, v2, v3]: &[Vec2<Length>; 4],
-    &[n0, n1]: &[Vec2<Unit>; 2],
-    others: &[Vec2<Length>; 4],
-    d: Vec2<Length>,
-) -> Face {
-    let ((least_0, most_0), (least_1, most_1)) = (extent(n0, others), extent(n1, others));
-    let (d_0, d_1) = (product(n0, d), product(n1, d));
-    let face_0 = Face { edge: 0, separation: least_0 + d_0 - product(n0, v0) };
-    let face_1 = Face { edge: 1, separation: least_1 + d_1 - product(n1, v1) };
-    let face_2 = Face { edge: 2, separation: product(n0, v2) - d_0 - most_0 };
-    let face_3 = Face { edge: 3, separation: product(n1, v3) - d_1 - most_1 };
-    let further = |a: Face, b: Face| if b.separation > a.separation { b } else { a };
-    further(further(face_0, face_1), further(face_2, face_3))
+/// [`furthest`] of two boxes: `max n . v` and `min n . v` over the vertices of one differ in sign alone, and so do the
+/// distances of its own opposite faces from its centre.
+#[inline(always)]
+fn furthest_of_boxes((vertices, normals): BoxFaces, (others, _): BoxFaces, d: Vec2<Length>) -> Face {
+    let further_of_opposite = |edge: usize| {
+        let n = normals[edge];
+        let along = product(n, d);
+        let edge = if along >= 0 { edge } else { edge + 2 };
+        Face { edge, separation: along.abs() - product(n, vertices[edge & 1]) - half_extent(n, others) }
+    };
+    let (a, b) = (further_of_opposite(0), further_of_opposite(1));
+    // Of equal ones the first.
+    if (b.separation, a.edge) > (a.separation, b.edge) { b } else { a }
 }
 
-/// Least and most `n . v` of four vertices.
+/// The most `n . v` of a box given by its first two vertices: the least is the opposite.
 #[inline]
-fn extent(n: Vec2<Unit>, &[a, b, c, d]: &[Vec2<Length>; 4]) -> (i64, i64) {
-    let (a, b, c, d) = (product(n, a), product(n, b), product(n, c), product(n, d));
-    (a.min(b).min(c.min(d)), a.max(b).max(c.max(d)))
+fn half_extent(n: Vec2<Unit>, &[a, b]: &[Vec2<Length>; 2]) -> i64 {
+    product(n, a).abs().max(product(n, b).abs())
 }
 
 /// `n . v` with 52 fraction bits.
@@ -203,70 +205,75 @@ pub(super) fn face_separation(a: &Hull, edge: usize, b: &Hull, d: Vec2<Length>) 
 /// Smallest distance of the vertices of `b` from the line through a point across `n`, with 52 fraction bits.
 #[inline]
 pub(super) fn plane_separation(n: Vec2<Unit>, point: Vec2<Length>, b: &Hull, d: Vec2<Length>) -> i64 {
-    let reach = match b.as_quad() {
-        Some(others) => support(n, others),
+    let reach = match b.as_box() {
+        Some((others, _)) => -half_extent(n, others),
         None => support(n, b.vertices()),
     };
     reach + product(n, d) - product(n, point)
 }
 
-/// One end of an edge: its vertex, and where it is along the reference edge.
+/// One end of an edge, about the start of the reference edge, in units of `Length` and `Step` that do not saturate.
 #[derive(Clone, Copy)]
 struct End {
     vertex: usize,
-    position: Vec2<Length>,
-    along: Length,
+    along: i64,
+    above: i64,
 }
 
-/// Clips the incident edge of `b` against a face of `a`. Positions are about the centre of `a`.
+/// Clips the incident edge of `b` against a face of `a`. Anchors are about the centre of `a`.
 pub(super) fn clip(a: &Hull, b: &Hull, d: Vec2<Length>, face: Face, apart: bool, margin: Length) -> Manifold {
-    let normal = a.normals()[face.edge];
-    let v1 = a.vertices()[face.edge];
-    let tangent = normal.perp();
-    let end =
-        |vertex: usize, position: Vec2<Length>| End { vertex, position, along: along(tangent, position, v1) };
-    let end_of_b = |vertex: usize| end(vertex, b.vertices()[vertex] + d);
-    let first = End { vertex: face.edge, position: v1, along: Length::ZERO };
-    let last = end(a.next(face.edge), a.vertices()[a.next(face.edge)]);
+    let next = a.next(face.edge);
+    let (normal, v1) = (a.normal(face.edge), a.vertex(face.edge));
+    let (first, last) = (
+        End { vertex: face.edge, along: 0, above: 0 },
+        End { vertex: next, along: along(normal, between(v1, a.vertex(next))), above: 0 },
+    );
     // Both outlines run counter-clockwise, so the incident edge runs against the reference edge: its second
     // vertex is the lower end.
     let incident = incident_edge(b, normal);
+    let to_b = between(v1, d);
+    let end_of_b = |vertex: usize| {
+        let position = b.vertex(vertex);
+        let p = (to_b.0 + i64::from(position.x.to_bits()), to_b.1 + i64::from(position.y.to_bits()));
+        End { vertex, along: along(normal, p), above: above(normal, p) }
+    };
     let (upper, lower) = (end_of_b(incident), end_of_b(b.next(incident)));
 
-    let context = Clip { normal, v1, radius_a: a.radius, radius_b: b.radius, margin };
+    let context = Clip { a, b, d, face: face.edge, margin };
     let corners = if apart { nearest_corners(first, last, upper, lower) } else { None };
     if upper.along < first.along || lower.along > last.along {
         // Outlines that overlap deeply may have no incident edge beside the face. Their deepest corner still pushes
         // them apart.
-        let beside = if upper.along < first.along { (first, upper) } else { (last, lower) };
+        let (end_a, end_b) = if upper.along < first.along { (first, upper) } else { (last, lower) };
         return match corners {
-            Some((vertex_a, vertex_b)) => context.corner(vertex_a, vertex_b),
-            None => context.face([(beside.0, beside.1, beside.1.position)]),
+            Some((vertex_a, vertex_b)) => context.corner(&Gap::between(&context, vertex_a, vertex_b)),
+            None => context.face([(end_a.vertex, end_b)]),
         };
     }
-    let low = clip_end(lower, upper, first.along);
-    let high = clip_end(upper, lower, last.along);
+    let low = if lower.along < first.along { clipped(lower, upper, first.along) } else { lower };
+    let high = if upper.along > last.along { clipped(upper, lower, last.along) } else { upper };
     if let Some((vertex_a, vertex_b)) = corners {
         // Rounded edges that are nearly parallel are nearest at a corner too, but rest on both ends: there the
         // corners are no nearer than the clipped edge, nor further than the face.
-        let distance = step_bits((vertex_b.position - vertex_a.position).length());
-        let nearer = height(normal, low, v1).min(height(normal, high, v1));
+        let gap = Gap::between(&context, vertex_a, vertex_b);
+        let distance = step_bits(gap.distance);
+        let nearer = low.above.min(high.above);
         let spread = (nearer - distance).max(distance - (face.separation >> 25));
         if spread > i64::from(TOLERANCE.to_bits()) {
-            return context.corner(vertex_a, vertex_b);
+            return context.corner(&gap);
         }
     }
-    context.face([(first, lower, low), (last, upper, high)])
+    context.face([(first.vertex, low), (last.vertex, high)])
 }
 
 /// The corners that are nearest to each other, if those are what is nearest of two edges that are apart: each lies
 /// beyond the end of the other edge.
 fn nearest_corners(first: End, last: End, upper: End, lower: End) -> Option<(End, End)> {
-    let raw = |length: Length| i64::from(length.to_bits());
     let beyond_incident = |a: End, b: End, other: End| {
-        let (outward, edge) = (a.position - b.position, other.position - b.position);
-        // Coordinates differ by less than 512 m, so each product has at most 62 bits.
-        raw(outward.x) * raw(edge.x) + raw(outward.y) * raw(edge.y) < 0
+        let from_b = |end: End| (end.along - b.along, (end.above - b.above) >> FINER);
+        let (outward, edge) = (from_b(a), from_b(other));
+        // Points of a pair differ by less than 512 m, so each product has at most 62 bits.
+        outward.0 * edge.0 + outward.1 * edge.1 < 0
     };
     [(upper, lower), (lower, upper)].into_iter().find_map(|(b, other)| {
         if b.along < first.along && beyond_incident(first, b, other) {
@@ -289,92 +296,106 @@ fn incident_edge(b: &Hull, normal: Vec2<Unit>) -> usize {
     let nearer = |a: (usize, i64), b: (usize, i64)| if b.1 < a.1 { b } else { a };
     if let Some((_, &[n0, n1])) = b.as_box() {
         let (cosine_0, cosine_1) = (cosine(n0), cosine(n1));
-        return nearer(nearer((0, cosine_0), (1, cosine_1)), nearer((2, -cosine_0), (3, -cosine_1))).0;
+        let edge_0 = if cosine_0 <= 0 { 0 } else { 2 };
+        let edge_1 = if cosine_1 <= 0 { 1 } else { 3 };
+        return nearer((edge_0, -cosine_0.abs()), (edge_1, -cosine_1.abs())).0;
     }
     b.normals().iter().map(|&n| cosine(n)).enumerate().reduce(nearer).map_or(0, |(edge, _)| edge)
 }
 
-/// `t . (v - from)` for a unit vector, rounded, saturated.
+/// From one position to another, in units of `Length`: one bit more than that holds.
 #[inline]
-fn along(t: Vec2<Unit>, v: Vec2<Length>, from: Vec2<Length>) -> Length {
-    Length::from_bits(saturate(round_shift(product(t, v) - product(t, from), Unit::FRAC_NBITS)))
+fn between(from: Vec2<Length>, to: Vec2<Length>) -> (i64, i64) {
+    let apart = |from: Length, to: Length| i64::from(to.to_bits()) - i64::from(from.to_bits());
+    (apart(from.x, to.x), apart(from.y, to.y))
 }
 
-/// `n . (v - from)` in units of `Step`, not saturated.
+/// How far along the face with a normal, in units of `Length`: `t . p` for `t` the normal turned a quarter.
 #[inline]
-fn height(n: Vec2<Unit>, v: Vec2<Length>, from: Vec2<Length>) -> i64 {
-    round_shift(product(n, v) - product(n, from), FACE_BITS - Step::FRAC_NBITS)
+fn along(n: Vec2<Unit>, p: (i64, i64)) -> i64 {
+    round_shift(i64::from(n.x.to_bits()) * p.1 - i64::from(n.y.to_bits()) * p.0, Unit::FRAC_NBITS)
 }
 
-/// Moves `end` along its edge to where it passes `limit`, if it is beyond it as seen from `other`.
-fn clip_end(end: End, other: End, limit: Length) -> Vec2<Length> {
-    let (from, to) = (i64::from(end.along.to_bits()), i64::from(other.along.to_bits()));
-    let limit = i64::from(limit.to_bits());
-    let beyond = if from < to { limit > from } else { limit < from };
-    if !beyond || from == to {
-        return end.position;
-    }
-    // The fraction is within 0 to 1, because the edge reaches to the other side of the limit.
-    let fraction = Unit::from_bits(crate::math::saturate(((limit - from) << 30) / (to - from)));
-    end.position + (other.position - end.position).scale(fraction.clamp(Unit::ZERO, Unit::ONE))
+/// How far above the face with a normal, in units of `Step`: `n . p`.
+#[inline]
+fn above(n: Vec2<Unit>, p: (i64, i64)) -> i64 {
+    let above = i64::from(n.x.to_bits()) * p.0 + i64::from(n.y.to_bits()) * p.1;
+    round_shift(above, FACE_BITS - Step::FRAC_NBITS)
 }
 
-struct Clip {
-    normal: Vec2<Unit>,
-    v1: Vec2<Length>,
-    radius_a: Length,
-    radius_b: Length,
+/// Moves an end along its edge to where it passes a limit, which is between it and the other end.
+#[inline]
+fn clipped(end: End, other: End, limit: i64) -> End {
+    // Edges are at most 570 m long: the product has 63 bits.
+    const BITS: u32 = 26;
+    let fraction = ((limit - end.along) << BITS) / (other.along - end.along);
+    End { along: limit, above: end.above + round_shift((other.above - end.above) * fraction, BITS), ..end }
+}
+
+struct Clip<'a> {
+    a: &'a Hull,
+    b: &'a Hull,
+    /// From the centre of A to that of B.
+    d: Vec2<Length>,
+    face: usize,
     margin: Length,
 }
 
-impl Clip {
-    /// Contact points of clipped incident ends with the face.
+/// What is between two corners.
+struct Gap {
+    vertices: (usize, usize),
+    normal: Vec2<Unit>,
+    distance: Length,
+}
+
+impl Gap {
+    fn between(clip: &Clip, a: End, b: End) -> Self {
+        let d = clip.b.vertex(b.vertex) + clip.d - clip.a.vertex(a.vertex);
+        let (normal, distance) =
+            d.normalized_with_length().unwrap_or((clip.a.normal(clip.face), Length::ZERO));
+        Gap { vertices: (a.vertex, b.vertex), normal, distance }
+    }
+}
+
+impl Clip<'_> {
+    /// Contact points of clipped incident ends, each with the vertex of A that it is next to.
     #[inline(always)]
-    fn face<const N: usize>(&self, ends: [(End, End, Vec2<Length>); N]) -> Manifold {
-        let mut manifold = Manifold::new(self.normal);
-        for (end_a, end_b, position) in ends {
-            let above_face = height(self.normal, position, self.v1);
-            self.push(&mut manifold, end_a.vertex, end_b.vertex, position, above_face);
+    fn face<const N: usize>(&self, ends: [(usize, End); N]) -> Manifold {
+        let (normal, start) = (self.a.normal(self.face), self.a.vertex(self.face));
+        let mut manifold = Manifold::new(normal);
+        for (vertex, end) in ends {
+            self.push(&mut manifold, start, (vertex, end));
         }
         manifold
     }
 
     /// Contact between two corners, along the line that joins them.
-    fn corner(&self, a: End, b: End) -> Manifold {
-        let d = b.position - a.position;
-        let mut manifold = Manifold::new(d.normalized().unwrap_or(self.normal));
-        self.push(&mut manifold, a.vertex, b.vertex, b.position, step_bits(d.length()));
+    fn corner(&self, gap: &Gap) -> Manifold {
+        let mut manifold = Manifold::new(gap.normal);
+        let end = End { vertex: gap.vertices.1, along: 0, above: step_bits(gap.distance) };
+        self.push(&mut manifold, self.a.vertex(gap.vertices.0), (gap.vertices.0, end));
         manifold
     }
 
-    /// Adds the contact at a point of B's outline at a distance from A's, radii not counted, if it is near enough.
-    /// The distance is in units of `Step` and does not saturate: that of large rounded shapes exceeds the type.
-    #[inline]
-    fn push(&self, manifold: &mut Manifold, a: usize, b: usize, position: Vec2<Length>, distance: i64) {
-        let (radius_a, radius_b) = (step_bits(self.radius_a), step_bits(self.radius_b));
-        let separation = distance - (radius_a + radius_b);
+    /// Adds the contact at an end of B, given about a place on A's outline, radii not counted, if it is near enough.
+    #[inline(always)]
+    fn push(&self, manifold: &mut Manifold, start: Vec2<Length>, (vertex, end): (usize, End)) {
+        let (radius_a, radius_b) = (step_bits(self.a.radius), step_bits(self.b.radius));
+        let separation = end.above - (radius_a + radius_b);
         if separation > step_bits(self.margin) {
             return;
         }
-        let separation = Step::from_bits(saturate(separation));
-        // A's surface is at `radius_a` along the normal and B's at `distance - radius_b`: half-way between them,
-        // seen from `position` at `distance`.
-        let to_middle = (radius_a - radius_b - distance) / 2;
-        // Within 16 m a product with a unit vector has at most 62 bits.
-        const EXTRA: u32 = Unit::FRAC_NBITS + Step::FRAC_NBITS - Length::FRAC_NBITS;
-        let (x, y) = (manifold.normal.x.to_bits(), manifold.normal.y.to_bits());
-        let (x, y) = match i32::try_from(to_middle) {
-            Ok(near) => {
-                let scaled = |n: i32| round_shift(i64::from(n) * i64::from(near), EXTRA);
-                (scaled(x), scaled(y))
-            }
-            Err(_) => {
-                let scaled =
-                    |n: i32| saturate_wide(round_shift_wide(i128::from(n) * i128::from(to_middle), EXTRA));
-                (scaled(x), scaled(y))
-            }
+        // A's surface is at `radius_a` above the outline and B's at `above - radius_b`.
+        let middle = round_shift(end.above + radius_a - radius_b, FINER + 1);
+        let (x, y) = (i64::from(manifold.normal.x.to_bits()), i64::from(manifold.normal.y.to_bits()));
+        let moved = |from: Length, by: i64| {
+            Length::from_bits(saturate(i64::from(from.to_bits()) + round_shift(by, Unit::FRAC_NBITS)))
         };
-        let anchor = position + Vec2::new(Length::from_bits(saturate(x)), Length::from_bits(saturate(y)));
-        manifold.push(ManifoldPoint { anchor, separation, feature: Feature::of_vertices(a, b) });
+        let anchor = Vec2::new(
+            moved(start.x, x * middle - y * end.along),
+            moved(start.y, y * middle + x * end.along),
+        );
+        let separation = Step::from_bits(saturate(separation));
+        manifold.push(ManifoldPoint { anchor, separation, feature: Feature::of_vertices(vertex, end.vertex) });
     }
 }

@@ -15,9 +15,9 @@ impl Feature {
     pub(crate) const SINGLE: Feature = Feature(0);
 
     #[inline]
+    #[expect(clippy::cast_possible_truncation, reason = "at most 8 vertices")]
     pub(crate) fn of_vertices(a: usize, b: usize) -> Self {
-        let byte = |i: usize| u16::try_from(i).expect("at most 8 vertices");
-        Feature(byte(a) << 8 | byte(b))
+        Feature(((a % 8) << 8 | b % 8) as u16)
     }
 
     fn swapped(self) -> Self {
@@ -69,7 +69,7 @@ impl Manifold {
     #[inline]
     #[must_use]
     pub fn points(&self) -> &[ManifoldPoint] {
-        &self.points[..usize::from(self.count)]
+        &self.points[..usize::from(self.count.min(2))]
     }
 
     #[inline]
@@ -93,25 +93,24 @@ impl Manifold {
     /// The same contact with the roles of the shapes exchanged.
     #[inline]
     pub(crate) fn swapped(mut self) -> Self {
+        self.swap();
+        self
+    }
+
+    /// Exchanges the roles of the shapes.
+    #[inline]
+    pub(crate) fn swap(&mut self) {
         self.normal = -self.normal;
-        for point in &mut self.points[..usize::from(self.count)] {
+        for point in &mut self.points[..usize::from(self.count.min(2))] {
             point.feature = point.feature.swapped();
         }
-        self
     }
 
-    /// The same contact with its anchors moved.
+    /// Moves the anchors.
     #[inline]
-    pub(crate) fn translated(mut self, by: Vec2<Length>) -> Self {
-        for point in &mut self.points[..usize::from(self.count)] {
+    pub(crate) fn translate(&mut self, by: Vec2<Length>) {
+        for point in &mut self.points[..usize::from(self.count.min(2))] {
             point.anchor += by;
         }
-        self
-    }
-
-    /// The same contact with its anchors measured from another world position.
-    #[inline]
-    pub(crate) fn about(self, origin: Vec2<Fx>) -> Self {
-        if self.count == 0 { Self::NONE } else { Manifold { origin, ..self } }
     }
 }

@@ -35,8 +35,8 @@ impl Outline {
     }
 }
 
-/// The vertices of a box, and the normals of its first two faces.
-pub(crate) type BoxFaces<'a> = (&'a [Vec2<Length>; 4], &'a [Vec2<Unit>; 2]);
+/// The first two vertices of a box and the normals of its first two faces: the others are opposite to them.
+pub(crate) type BoxFaces<'a> = (&'a [Vec2<Length>; 2], &'a [Vec2<Unit>; 2]);
 
 /// A convex outline in 32-bit coordinates: a polygon, or a segment or capsule seen as a polygon with two sides.
 #[derive(Clone, Debug)]
@@ -45,7 +45,7 @@ pub(crate) struct Hull {
     vertices: [Vec2<Length>; POLYGON_VERTICES_MAX],
     normals: [Vec2<Unit>; POLYGON_VERTICES_MAX],
     pub(crate) radius: Length,
-    /// Whether it has four faces, of which opposite ones have exactly opposite normals.
+    /// Whether it has four faces and turning it half around its centre changes nothing.
     is_box: bool,
 }
 
@@ -61,19 +61,25 @@ impl Hull {
         &self.normals[..self.count]
     }
 
+    /// One of the vertices.
+    #[inline]
+    pub(crate) fn vertex(&self, i: usize) -> Vec2<Length> {
+        self.vertices[i % POLYGON_VERTICES_MAX]
+    }
+
+    /// One of the normals.
+    #[inline]
+    pub(crate) fn normal(&self, i: usize) -> Vec2<Unit> {
+        self.normals[i % POLYGON_VERTICES_MAX]
+    }
+
     /// Whether it is a segment or a capsule: two sides, and no face at the ends.
     #[inline]
     pub(crate) fn is_line(&self) -> bool {
         self.count == 2
     }
 
-    /// The vertices, if there are four of them.
-    #[inline]
-    pub(crate) fn as_quad(&self) -> Option<&[Vec2<Length>; 4]> {
-        if self.count == 4 { self.vertices.first_chunk() } else { None }
-    }
-
-    /// The vertices and the first two normals, if there are four, the other two of which are opposite to them.
+    /// The first half of a box: of vertices and normals alike, 2 and 3 are exactly opposite to 0 and 1.
     #[inline]
     pub(crate) fn as_box(&self) -> Option<BoxFaces<'_>> {
         if !self.is_box {
@@ -120,21 +126,32 @@ impl Hull {
     }
 
     pub(crate) fn rotated(polygon: &Polygon, rotation: Rot) -> Self {
-        let mut hull = Hull { count: polygon.vertices().len(), radius: polygon.radius(), ..Self::empty() };
+        let is_box = match (polygon.vertices(), polygon.normals()) {
+            (&[v0, v1, v2, v3], &[n0, n1, n2, n3]) => (v2, v3, n2, n3) == (-v0, -v1, -n0, -n1),
+            _ => false,
+        };
+        let count = polygon.vertices().len();
+        let mut hull = Hull { count, radius: polygon.radius(), is_box, ..Self::empty() };
         hull.rotate(polygon, rotation);
         hull
     }
 
     /// Turns the vertices and normals of its polygon another way.
+    #[inline]
     fn rotate(&mut self, polygon: &Polygon, rotation: Rot) {
-        let local = polygon.vertices().iter().zip(polygon.normals());
+        let count = if self.is_box { 2 } else { self.count };
+        let local = polygon.vertices().iter().zip(polygon.normals()).take(count);
         let posed = self.vertices.iter_mut().zip(&mut self.normals);
         for ((vertex, normal), (local_vertex, local_normal)) in posed.zip(local) {
             *vertex = rotation.apply(*local_vertex);
             *normal = rotation.apply(*local_normal);
         }
-        let [a, b, c, d, ..] = self.normals;
-        self.is_box = self.count == 4 && c == -a && d == -b;
+        if self.is_box {
+            // Rounded alike, so that opposite ones stay exactly opposite.
+            let (vertices, normals) = (&mut self.vertices, &mut self.normals);
+            (vertices[2], vertices[3]) = (-vertices[0], -vertices[1]);
+            (normals[2], normals[3]) = (-normals[0], -normals[1]);
+        }
     }
 
     const fn empty() -> Self {
@@ -148,6 +165,11 @@ impl Hull {
     }
 
     fn bounds(&self) -> Aabb {
+        if let Some((&[a, b], _)) = self.as_box() {
+            let most = |a: Length, b: Length| a.saturating_abs().max(b.saturating_abs());
+            let upper = Vec2::new(most(a.x, b.x), most(a.y, b.y)).widen();
+            return Aabb::new(-upper, upper).expanded(self.radius.into());
+        }
         let first = self.vertices[0];
         let (lower, upper) = self.vertices()[1..]
             .iter()

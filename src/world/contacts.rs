@@ -1,54 +1,131 @@
 //! Contacts of a tick: their manifolds at its start, and the events that follow from them at its end.
 
+use alloc::vec::Vec;
+
 use super::events::{ContactEvent, Events, HitEvent, SensorEvent};
-use super::look_ahead::{Approach, Horizon, Outlook};
+use super::look_ahead::{Approach, Horizon, Outlook, approach};
 use super::scratch::{Approaching, Poses, Scratch};
 use super::state::{Reported, Side, State};
 use crate::collision::{AxisHint, Contact, Manifold, Pair, SatCounters, collide, collide_near, may_meet};
 use crate::math::{Fx, Length, widen};
 use crate::solver::{Surface, TouchingPair};
 
-/// Narrow phase: a manifold for every contact, and the list of those that the solver has to deal with.
+/// Fewest contacts that are worth a job of their own.
+const JOB_MIN: usize = 512;
+
+/// What a part of the narrow phase has found, in the order of its contacts.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Found {
+    /// The manifolds that have points, and where their contacts are.
+    pub(super) manifolds: Vec<Manifold>,
+    pub(super) contacts: Vec<u32>,
+    /// Those that the solver has to deal with.
+    pub(super) touching: Vec<TouchingPair>,
+    /// Approaches that become hits if the shapes push each other in this tick.
+    pub(super) approaches: Vec<Approaching>,
+    pub(super) sat: SatCounters,
+}
+
+/// Narrow phase: a manifold for every contact, and the list of those that the solver has to deal with. The contacts
+/// are divided into jobs; what those find is put together in order, so that it is the same however many there are.
 pub(super) fn find_manifolds(state: &mut State, scratch: &mut Scratch) {
-    let Scratch { hints, manifolds, found, approaches, touching, touched, poses, sat, .. } = scratch;
+    let Scratch { hints, found, found_parts: parts, touched, poses, solver, .. } = scratch;
     hints.resize(state.contacts.len(), AxisHint::default());
-    manifolds.clear();
-    found.clear();
-    approaches.clear();
-    *sat = SatCounters::default();
-    core::mem::swap(touching, touched);
-    touching.clear();
+    core::mem::swap(&mut found.touching, touched);
     if core::mem::take(&mut scratch.surfaces_stale) {
         touched.clear();
     }
-    let mut touched = touched.iter().peekable();
-    let horizon = Horizon::of(&state.config);
     let mut contacts = core::mem::take(&mut state.contacts);
-    for ((index, contact), hint) in (0u32..).zip(&mut contacts).zip(hints) {
-        let manifold = manifold_of(state, &horizon, poses, contact, hint, sat);
-        if manifold.points().is_empty() {
-            continue;
-        }
-        let (a, b) = contact.shapes;
-        let (reach_a, reach_b) = (poses.outlook.reach(a), poses.outlook.reach(b));
-        if !(reach_a.sensor || reach_b.sensor) {
-            while touched.next_if(|pair| pair.shapes < contact.shapes).is_some() {}
-            let known = touched.next_if(|pair| pair.shapes == contact.shapes);
-            touching.push(TouchingPair {
-                contact: index,
-                manifold: u32::try_from(manifolds.len()).expect("fewer than 2^32 contacts"),
-                shapes: contact.shapes,
-                bodies: (reach_a.body, reach_b.body),
-                surface: known.map_or_else(|| surface_of(state, poses, contact.shapes), |pair| pair.surface),
-            });
-            if reach_a.hit_events || reach_b.hit_events {
-                approaches.extend(approaching(state, &poses.outlook, index, contact, &manifold));
-            }
-        }
-        found.push(index);
-        manifolds.push(manifold);
-    }
+    let share = solver.threads.share(contacts.len(), JOB_MIN);
+    parts.resize_with(contacts.len().div_ceil(share).max(1), Found::default);
+    core::mem::swap(&mut parts[0], found);
+    parts.iter_mut().for_each(Found::clear);
+    let search = Search { state, poses, touched, horizon: Horizon::of(&state.config) };
+    let chunks = contacts.chunks_mut(share).zip(hints.chunks_mut(share));
+    let jobs = (0u32..).step_by(share).zip(chunks).zip(parts.iter_mut());
+    solver.threads.run(jobs, |((first, (contacts, hints)), part)| {
+        search.run(first, contacts, hints, part);
+        0
+    });
+    core::mem::swap(&mut parts[0], found);
+    parts[1..].iter().for_each(|part| found.append(part));
     state.contacts = contacts;
+}
+
+impl Found {
+    /// Forgets everything but the room for it.
+    pub(super) fn clear(&mut self) {
+        self.manifolds.clear();
+        self.contacts.clear();
+        self.touching.clear();
+        self.approaches.clear();
+        self.sat = SatCounters::default();
+    }
+
+    /// Adds what has been found further on.
+    fn append(&mut self, further: &Found) {
+        let first = place_of(&self.manifolds);
+        let touching = further.touching.iter();
+        self.touching.extend(touching.map(|pair| TouchingPair { manifold: first + pair.manifold, ..*pair }));
+        self.manifolds.extend_from_slice(&further.manifolds);
+        self.contacts.extend_from_slice(&further.contacts);
+        self.approaches.extend_from_slice(&further.approaches);
+        self.sat.hint_hits += further.sat.hint_hits;
+        self.sat.searches += further.sat.searches;
+    }
+}
+
+/// Where the next manifold goes.
+fn place_of(manifolds: &[Manifold]) -> u32 {
+    u32::try_from(manifolds.len()).expect("fewer than 2^32 contacts")
+}
+
+/// What all jobs of the narrow phase read.
+struct Search<'a> {
+    state: &'a State,
+    poses: &'a Poses,
+    /// What touched in the tick before, sorted by pair.
+    touched: &'a [TouchingPair],
+    horizon: Horizon,
+}
+
+impl Search<'_> {
+    /// Looks at some contacts, of which the first one has a place in the state.
+    fn run(&self, first: u32, contacts: &mut [Contact], hints: &mut [AxisHint], found: &mut Found) {
+        let Search { state, poses, touched, horizon } = self;
+        let Some(pair) = contacts.first().map(|contact| contact.shapes) else { return };
+        let mut touched = touched[touched.partition_point(|known| known.shapes < pair)..].iter();
+        let mut next = touched.next();
+        for ((index, contact), hint) in (first..).zip(contacts).zip(hints) {
+            let manifold = manifold_of(state, horizon, poses, contact, hint, &mut found.sat);
+            if manifold.points().is_empty() {
+                continue;
+            }
+            let (a, b) = contact.shapes;
+            let (reach_a, reach_b) = (poses.outlook.reach(a), poses.outlook.reach(b));
+            if !(reach_a.sensor || reach_b.sensor) {
+                while next.is_some_and(|known| known.shapes < contact.shapes) {
+                    next = touched.next();
+                }
+                let surface = match next {
+                    Some(known) if known.shapes == contact.shapes => known.surface,
+                    _ => surface_of(state, poses, contact.shapes),
+                };
+                found.touching.push(TouchingPair {
+                    contact: index,
+                    manifold: place_of(&found.manifolds),
+                    shapes: contact.shapes,
+                    bodies: (reach_a.body, reach_b.body),
+                    surface,
+                });
+                if reach_a.hit_events || reach_b.hit_events {
+                    found.approaches.extend(approaching(state, &poses.outlook, index, contact, &manifold));
+                }
+            }
+            found.contacts.push(index);
+            found.manifolds.push(manifold);
+        }
+    }
 }
 
 /// Whether two shapes have contact, or come so near within the tick that they have to be solved together.
@@ -113,14 +190,14 @@ fn approaching(
 ) -> Option<Approaching> {
     let (a, b) = contact.shapes;
     let (motion_a, motion_b) = (outlook.motion(outlook.reach(a)), outlook.motion(outlook.reach(b)));
-    let normal = manifold.normal.widen();
-    let speed_at = |point| (motion_a.velocity_at(point) - motion_b.velocity_at(point)).dot(normal);
-    let points = manifold.points().iter().map(|point| manifold.origin + point.anchor.widen());
-    let (point, approach_speed) =
-        points.map(|point| (point, speed_at(point))).reduce(|a, b| if b.1 > a.1 { b } else { a })?;
+    let way_at = approach(motion_a, motion_b, manifold);
+    let ways = manifold.points().iter().map(|point| (point, way_at(point)));
+    let (point, way) = ways.reduce(|a, b| if b.1 > a.1 { b } else { a })?;
+    let approach_speed = widen(way).saturating_mul_int(state.config.tick_rate.into());
     if approach_speed < state.config.hit_speed {
         return None;
     }
+    let point = manifold.origin + point.anchor.widen();
     let ContactEvent { shape_a, shape_b } = state.contact_event(contact);
     let event = HitEvent { shape_a, shape_b, point, normal: manifold.normal, approach_speed };
     Some(Approaching { contact: index, event })
@@ -140,8 +217,8 @@ pub(super) fn report(state: &mut State, scratch: &mut Scratch) {
     }
     let (near, apart) = (state.config.touching_distance(), state.config.speculative_distance);
     let mut contacts = core::mem::take(&mut state.contacts);
-    let Scratch { events, found, manifolds, poses, solver, .. } = scratch;
-    let mut found = found.iter().zip(&*manifolds).peekable();
+    let Scratch { events, found, poses, solver, .. } = scratch;
+    let mut found = found.contacts.iter().zip(&found.manifolds).peekable();
     for (index, contact) in (0u32..).zip(&mut contacts) {
         let manifold = found.next_if(|(contact, _)| **contact == index).map(|(_, manifold)| manifold);
         if manifold.is_none() {
@@ -166,8 +243,8 @@ pub(super) fn report(state: &mut State, scratch: &mut Scratch) {
         }
     }
     state.contacts = contacts;
-    let Scratch { events, approaches, solver, .. } = scratch;
-    let hits = approaches.iter().filter(|hit| solver.pushed[hit.contact as usize]);
+    let Scratch { events, found, solver, .. } = scratch;
+    let hits = found.approaches.iter().filter(|hit| solver.pushed[hit.contact as usize]);
     events.hits.extend(hits.map(|hit| hit.event));
     events.contact_end.sort_unstable();
     events.sensor_begin.sort_unstable();

@@ -14,6 +14,7 @@
 use alloc::vec::Vec;
 use core::ops::ControlFlow;
 
+use super::contacts::Found;
 use super::pairs;
 use super::scratch::Scratch;
 use super::state::{Island, State};
@@ -189,7 +190,7 @@ pub(super) fn force_sleep(state: &mut State, scratch: &mut Scratch, slot: u32) {
 }
 
 fn keep_awake_on_moving_ground(state: &mut State, scratch: &Scratch) {
-    for pair in &scratch.touching {
+    for pair in &scratch.found.touching {
         keep_awake(state, scratch, pair.bodies);
     }
 }
@@ -344,7 +345,7 @@ fn rest_contacts(state: &mut State, scratch: &mut Scratch) {
         // There are none since a restore, or since a contact was removed.
         scratch.hints.resize(state.contacts.len(), AxisHint::default());
     }
-    let Scratch { manifolds, found, hints, parked, merged, .. } = scratch;
+    let Scratch { found: Found { manifolds, contacts: found, .. }, hints, parked, merged, .. } = scratch;
     let mut contacts = core::mem::take(&mut state.contacts);
     parked.clear();
     let (mut kept, mut next, mut kept_manifolds) = (0, 0, 0);

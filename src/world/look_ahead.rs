@@ -9,41 +9,47 @@ use super::config::Config;
 use crate::body::{Body, Shape};
 use crate::collision::{Manifold, ManifoldPoint, OneWay, Outline, Passage, PosedShape, margin_for, pass_by};
 use crate::fx;
-use crate::math::{Aabb, Fx, Length, Rot, Unit, Vec2, fx_mul, narrow, widen};
+use crate::math::{
+    Aabb, Fx, Length, Reciprocal, Rot, Speed, Step, Unit, Vec2, convert, fx_mul, mul, mul_add, narrow, saturate, widen,
+};
+use fixed::FixedI32;
+use fixed::types::extra::{U16, U22, U24};
 
-/// How a body moves at the start of a tick.
+/// A way within a tick in metres: ±128, resolution 6e-8.
+pub(super) type Way = FixedI32<U24>;
+
+/// How a body moves in a tick, at its velocity at the start.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Motion {
     /// Centre of mass.
     centre: Vec2<Fx>,
-    velocity: Vec2<Fx>,
-    /// In rad/s.
-    omega: Fx,
+    /// How far that moves: at most 52 m.
+    pub(super) shift: Vec2<Way>,
+    /// By how much the body turns, in radians.
+    turn: Way,
 }
 
 impl Motion {
-    pub(super) fn of(body: &Body) -> Self {
-        let omega = if body.spin == 0 { Fx::ZERO } else { body.angular_velocity() };
-        Motion { centre: body.centre, velocity: body.velocity(), omega }
+    #[inline]
+    pub(super) fn of(body: &Body, per_second: Reciprocal) -> Self {
+        let omega: FixedI32<U16> = body.mass.inverse_gyration.times(body.spin);
+        let step = |speed: Speed| per_second.times(speed);
+        let shift = Vec2::new(step(body.velocity.x), step(body.velocity.y));
+        Motion { centre: body.centre, shift, turn: per_second.times(omega) }
     }
 
-    /// Of the point of the body that is at a world point, in m/s.
-    pub(super) fn velocity_at(&self, point: Vec2<Fx>) -> Vec2<Fx> {
-        if self.omega == 0 {
-            return self.velocity;
+    /// How far the point of the body that is at a world point moves.
+    fn shift_at(&self, point: Vec2<Fx>) -> Vec2<Way> {
+        if self.turn == 0 {
+            return self.shift;
         }
-        self.velocity + (point - self.centre).perp().scale(self.omega)
+        let arm: Vec2<Length> = (point - self.centre).narrow();
+        self.shift + arm.perp().scale(self.turn)
     }
 
-    /// How far the centre of mass moves in a tick.
-    pub(super) fn shift(&self, tick_rate: u32) -> Vec2<Fx> {
-        let rate = i64::from(tick_rate);
-        Vec2::new(self.velocity.x / rate, self.velocity.y / rate)
-    }
-
-    /// By how much the body turns in a tick, in radians, without sign.
-    pub(super) fn turn(&self, tick_rate: u32) -> Fx {
-        self.omega.saturating_abs() / i64::from(tick_rate)
+    /// By how much the body turns, in radians, without sign.
+    pub(super) fn turn(&self) -> Fx {
+        widen(self.turn).saturating_abs()
     }
 
     /// How far any point of a shape moves because its body turns: at most arm times angle, and at most from one
@@ -66,17 +72,41 @@ impl Motion {
     }
 }
 
-/// The largest way in metres because of a turn that pairs tell from larger ones: they look ahead by 15 m at most.
-const TURN_MAX: Fx = fx!(1024);
+/// By how much two bodies approach each other in a tick at a point of their contact, along the normal. With `x` the
+/// shift, `t` the turn and `r` the arm of each,
+///
+/// ```text
+/// n.(xA - xB) + tA (rA x n) - tB (rB x n)
+/// ```
+///
+/// where `r` is the arm of the manifold's origin and the anchor together: each point adds `(tA - tB) (anchor x n)`.
+#[inline]
+pub(super) fn approach(
+    a: &Motion,
+    b: &Motion,
+    manifold: &Manifold,
+) -> impl Fn(&ManifoldPoint) -> Way + use<> {
+    let (normal, origin) = (manifold.normal, manifold.origin);
+    let arm = |motion: &Motion| -> Length { (origin - motion.centre).narrow::<U22>().cross(normal) };
+    let linear: Way = (a.shift - b.shift).dot(normal);
+    let angular: Way = mul_add(a.turn, arm(a), b.turn.saturating_neg(), arm(b));
+    let (common, turn) = (linear.saturating_add(angular), a.turn.saturating_sub(b.turn));
+    move |point| {
+        let arm: Length = point.anchor.cross(normal);
+        common.saturating_add(mul(turn, arm))
+    }
+}
 
 /// The box of a shape, how far it may come within the tick, and what its pairs have to know of it: one cache line.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Reach {
     pub(super) bounds: Aabb,
     /// Of the body's centre of mass.
-    pub(super) shift: Vec2<Fx>,
+    shift: Vec2<Way>,
     /// How far any point moves because the body turns.
-    pub(super) turn: Fx,
+    turn: Way,
+    /// How far the shape may overlap another, for its size, when they pass by each other.
+    slack: Step,
     /// The slot of its body.
     pub(super) body: u32,
     pub(super) sensor: bool,
@@ -90,7 +120,8 @@ impl Reach {
         Reach {
             bounds,
             shift: Vec2::ZERO,
-            turn: Fx::ZERO,
+            turn: Way::ZERO,
+            slack: slack_of(bounds),
             body,
             sensor: shape.is_sensor(),
             one_way: shape.one_way().is_some(),
@@ -99,18 +130,18 @@ impl Reach {
     }
 
     /// Bound of the way by which any two points of two shapes approach each other in the tick, in metres.
-    fn closing(&self, other: &Reach) -> Fx {
-        // Speeds are below 2^9 m/s and turns at most TURN_MAX: the sum is far from the end of the range.
-        let apart = |a: Fx, b: Fx| (b.to_bits() - a.to_bits()).abs();
+    #[inline]
+    fn closing(&self, other: &Reach) -> Way {
+        let apart = |a: Way, b: Way| (i64::from(b.to_bits()) - i64::from(a.to_bits())).abs();
         let shift = apart(self.shift.x, other.shift.x) + apart(self.shift.y, other.shift.y);
-        Fx::from_bits(shift + self.turn.to_bits() + other.turn.to_bits())
+        Way::from_bits(saturate(shift + i64::from(self.turn.to_bits()) + i64::from(other.turn.to_bits())))
     }
+}
 
-    /// How far the shape may overlap another, for its size, when they pass by each other.
-    fn slack(&self) -> Fx {
-        let half = self.bounds.extents();
-        half.x.max(half.y) / 16
-    }
+/// How far a shape in a box may overlap another when they pass by each other, in metres.
+fn slack_of(bounds: Aabb) -> Step {
+    let half = bounds.extents();
+    narrow(half.x.max(half.y) / 16)
 }
 
 /// Bodies and shapes as the pairs of a tick see them, by slot. What has no place in the roster does not move.
@@ -131,7 +162,7 @@ impl Outlook {
         }
         for slot in self.moving_shapes.drain(..) {
             let reach = &mut self.reaches[slot as usize];
-            (reach.shift, reach.turn) = (Vec2::ZERO, Fx::ZERO);
+            (reach.shift, reach.turn) = (Vec2::ZERO, Way::ZERO);
         }
         self.motions.resize(body_slots, Motion::default());
     }
@@ -146,7 +177,8 @@ impl Outlook {
 
     /// Takes up where a shape has been moved to.
     pub(super) fn move_to(&mut self, slot: u32, bounds: Aabb) {
-        self.reaches[slot as usize].bounds = bounds;
+        let reach = &mut self.reaches[slot as usize];
+        (reach.bounds, reach.slack) = (bounds, slack_of(bounds));
     }
 
     pub(super) fn set_motion(&mut self, body: u32, motion: Motion) {
@@ -154,9 +186,9 @@ impl Outlook {
         self.moving_bodies.push(body);
     }
 
-    pub(super) fn set_reach(&mut self, shape: u32, shift: Vec2<Fx>, turn: Fx) {
+    pub(super) fn set_reach(&mut self, shape: u32, shift: Vec2<Way>, turn: Fx) {
         let reach = &mut self.reaches[shape as usize];
-        (reach.shift, reach.turn) = (shift, turn.min(TURN_MAX));
+        (reach.shift, reach.turn) = (shift, narrow(turn));
         self.moving_shapes.push(shape);
     }
 
@@ -172,17 +204,15 @@ impl Outlook {
 /// What is the same for all pairs of a world.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Horizon {
-    tick_rate: i64,
     speculative: Length,
-    touching: Fx,
+    touching: Step,
 }
 
 impl Horizon {
     pub(super) fn of(config: &Config) -> Self {
         Horizon {
-            tick_rate: config.tick_rate.into(),
             speculative: narrow(config.speculative_distance),
-            touching: config.touching_distance(),
+            touching: narrow(config.touching_distance()),
         }
     }
 }
@@ -193,12 +223,12 @@ pub(super) struct Approach<'a> {
     a: &'a Reach,
     b: &'a Reach,
     /// Bound of the way by which any two points of the shapes approach each other in the tick, in metres.
-    closing: Fx,
+    closing: Way,
     pub(super) margin: Length,
 }
 
 /// Shapes that move against each other by less than this in a tick, in metres, do not pass by.
-const PASSAGE_MIN: Fx = fx!(0.0001);
+const PASSAGE_MIN: Step = Step::lit("0.0001");
 
 impl<'a> Approach<'a> {
     #[inline]
@@ -208,8 +238,8 @@ impl<'a> Approach<'a> {
     }
 
     /// How far the shapes may overlap, in metres, when they pass by each other.
-    fn slack(&self) -> Fx {
-        self.horizon.touching.min(self.a.slack()).min(self.b.slack())
+    fn slack(&self) -> Step {
+        self.horizon.touching.min(self.a.slack).min(self.b.slack)
     }
 
     /// Drops the points that the bodies, at their present velocities, will not reach within the tick: shapes that
@@ -220,48 +250,28 @@ impl<'a> Approach<'a> {
         outlook: &Outlook,
         posed: (&PosedShape, &PosedShape),
     ) {
-        let speculative = widen(self.horizon.speculative);
-        let ahead = |point: &ManifoldPoint| widen(point.separation) > speculative;
-        let fast = self.closing > PASSAGE_MIN;
-        if self.margin == self.horizon.speculative || !(fast || manifold.points().iter().any(ahead)) {
+        let speculative: Step = convert(self.horizon.speculative);
+        let ahead = |point: &ManifoldPoint| point.separation > speculative;
+        if self.closing <= PASSAGE_MIN && !manifold.points().iter().any(ahead) {
             return;
         }
-        let (motion_a, motion_b) = (outlook.motion(self.a), outlook.motion(self.b));
-        let (origin, normal) = (manifold.origin, manifold.normal.widen());
-        let approach_speed = |point: &ManifoldPoint| {
-            let place = origin + point.anchor.widen();
-            -(motion_b.velocity_at(place) - motion_a.velocity_at(place)).dot(normal)
-        };
-        // From this speed on a point closes by more than the least that counts.
-        let at_passage_min = (PASSAGE_MIN.to_bits() + 1) * self.horizon.tick_rate;
-        // A point that is not reached does nothing, so only one that is decides.
-        let mut reached = [None; 2];
-        let mut slot = reached.iter_mut();
+        let motions = (outlook.motion(self.a), outlook.motion(self.b));
+        let (closing_at, slack) = (approach(motions.0, motions.1, manifold), self.slack());
+        // A point that is not reached does nothing, and a deep one does not pass by: only others decide.
+        let mut most = Step::ZERO;
         manifold.retain(|point| {
-            let (separation, speed) = (widen(point.separation), approach_speed(point));
-            if speed.to_bits() < at_passage_min && separation <= speculative {
-                return true;
-            }
-            let closing = speed / self.horizon.tick_rate;
+            let closing: Step = convert(closing_at(point));
+            let separation = point.separation;
             let kept = separation <= speculative || separation <= closing.saturating_add(speculative);
             // A quarter more: a gap that just closes acts too.
-            if kept && closing > PASSAGE_MIN && closing.saturating_add(closing / 4) > separation {
-                if let Some(slot) = slot.next() {
-                    *slot = Some((separation, closing));
-                }
+            let reached = kept && closing.saturating_add(closing / 4) > separation;
+            if reached && closing > PASSAGE_MIN && separation >= -slack {
+                most = most.max(closing);
             }
             kept
         });
-        if !fast || reached[0].is_none() {
-            return;
-        }
-        let slack = self.slack();
-        let shallow = |&&(separation, _): &&(Fx, Fx)| separation >= -slack;
-        let closing = reached.iter().flatten().filter(shallow).map(|&(_, closing)| closing).max();
-        if closing
-            .is_some_and(|closing| self.passes_by((motion_a, motion_b), posed, manifold.normal, closing))
-        {
-            manifold.retain(|_| false);
+        if most > 0 && self.passes_by(motions, posed, manifold.normal, most) {
+            *manifold = Manifold::NONE;
         }
     }
 
@@ -272,7 +282,7 @@ impl<'a> Approach<'a> {
         manifold: &Manifold,
         was_passing: bool,
     ) -> bool {
-        let slack = self.slack();
+        let slack = widen(self.slack());
         one_way(a, body_a, posed_a).is_some_and(|a| a.lets_pass(posed_b, manifold, was_passing, slack))
             || one_way(b, body_b, posed_b)
                 .is_some_and(|b| b.lets_pass(posed_a, &manifold.swapped(), was_passing, slack))
@@ -284,13 +294,11 @@ impl<'a> Approach<'a> {
         (motion_a, motion_b): (&Motion, &Motion),
         (posed_a, posed_b): (&PosedShape, &PosedShape),
         normal: Vec2<Unit>,
-        closing: Fx,
+        closing: Step,
     ) -> bool {
-        let rate = self.horizon.tick_rate;
-        let velocity = motion_b.velocity_at(posed_b.centre) - motion_a.velocity_at(posed_a.centre);
-        let turn = self.a.turn.saturating_add(self.b.turn);
-        let shift = Vec2::new(velocity.x / rate, velocity.y / rate).narrow();
-        let passage = Passage::new(shift, narrow(turn), narrow(self.slack()), narrow(closing / 8), normal);
+        let shift = motion_b.shift_at(posed_b.centre) - motion_a.shift_at(posed_a.centre);
+        let turn = convert(self.a.turn.saturating_add(self.b.turn));
+        let passage = Passage::new(shift.convert(), turn, convert(self.slack()), convert(closing / 8), normal);
         pass_by(posed_a, posed_b, &passage)
     }
 }

@@ -192,8 +192,8 @@ impl World {
     /// The contacts of the last tick that had points, sorted by pair, as they were found at its start. Empty until
     /// the next tick after a restore or the removal of a shape or body, since manifolds are not state.
     pub fn contacts(&self) -> impl Iterator<Item = ContactView<'_>> {
-        let Scratch { found, manifolds, .. } = &self.scratch;
-        found.iter().zip(manifolds).map(|(&index, manifold)| {
+        let found = &self.scratch.found;
+        found.contacts.iter().zip(&found.manifolds).map(|(&index, manifold)| {
             let contact = &self.state.contacts[index as usize];
             let ContactEvent { shape_a, shape_b } = self.state.contact_event(contact);
             ContactView { shape_a, shape_b, touching: contact.touching, manifold }

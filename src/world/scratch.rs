@@ -2,6 +2,7 @@
 
 use alloc::vec::Vec;
 
+use super::contacts::Found;
 use super::continuous::Swept;
 use super::events::Events;
 use super::islands::{Roster, UnionFind};
@@ -11,9 +12,7 @@ use super::pairs::Merged;
 use super::state::State;
 use super::stats::StepStats;
 use crate::body::{Body, BodyKind, Geometry, Handle, Pose, Shape, ShapeId};
-use crate::collision::{
-    AxisHint, BroadPhase, BroadPhaseKind, Contact, Manifold, Pair, PosedShape, SatCounters,
-};
+use crate::collision::{AxisHint, BroadPhase, BroadPhaseKind, Contact, Pair, PosedShape};
 use crate::fx;
 use crate::math::{Aabb, Fx};
 use crate::solver::{Solver, TouchingPair};
@@ -48,17 +47,13 @@ pub(crate) struct Scratch {
     pub(crate) ended: Vec<Contact>,
     /// For each contact, the axis that separated it in the last tick.
     pub(crate) hints: Vec<AxisHint>,
-    /// The manifolds of the last tick that have points, in the order of their contacts, and where those are.
-    pub(crate) manifolds: Vec<Manifold>,
-    pub(crate) found: Vec<u32>,
-    pub(crate) touching: Vec<TouchingPair>,
+    /// What the narrow phase of the last tick has found, and the parts of it that its jobs have put together.
+    pub(crate) found: Found,
+    pub(crate) found_parts: Vec<Found>,
     /// What touched in the tick before, sorted by pair: most of it still does, with the same surface.
     pub(crate) touched: Vec<TouchingPair>,
     /// Whether surfaces may have changed since.
     pub(crate) surfaces_stale: bool,
-    /// Approaches that become hits if the shapes push each other in this tick.
-    pub(crate) approaches: Vec<Approaching>,
-    pub(crate) sat: SatCounters,
     pub(crate) solver: Solver,
     pub(crate) events: Events,
     pub(crate) stats: StepStats,
@@ -173,13 +168,10 @@ impl Scratch {
             parked: Vec::new(),
             ended: Vec::new(),
             hints: Vec::new(),
-            manifolds: Vec::new(),
-            found: Vec::new(),
-            touching: Vec::new(),
+            found: Found::default(),
+            found_parts: Vec::new(),
             touched: Vec::new(),
             surfaces_stale: true,
-            approaches: Vec::new(),
-            sat: SatCounters::default(),
             solver: Solver::default(),
             events: Events::default(),
             stats: StepStats::default(),
@@ -249,10 +241,8 @@ impl Scratch {
 
     /// Drops what is found by a contact's place in the state, because places have changed.
     pub(crate) fn forget_contacts(&mut self) {
-        self.manifolds.clear();
         self.found.clear();
         self.hints.clear();
-        self.touching.clear();
     }
 }
 

@@ -6,17 +6,15 @@ use super::contacts;
 use super::continuous;
 use super::events::MoveEvent;
 use super::islands;
-use super::look_ahead::Motion;
+use super::look_ahead::{Motion, Way};
 use super::pairs;
 use super::scratch::{Extents, Scratch};
 use super::state::State;
 use super::stats::{Phase, StepStats};
 use super::stress;
 use crate::body::{Body, BodyKind, Handle, Pose, WORLD_EXTENT_MAX};
-use crate::math::{Aabb, Angle, Fx, Reciprocal, Speed, Vec2, fx_mul, widen};
+use crate::math::{Aabb, Angle, Fx, Reciprocal, Vec2, fx_mul};
 use crate::solver::{SolverBody, Tuning, turn_of};
-use fixed::FixedI32;
-use fixed::types::extra::{U16, U24};
 
 impl World {
     /// Advances the world by one tick of `1 / tick_rate` seconds.
@@ -49,10 +47,10 @@ impl World {
         contacts::find_manifolds(state, scratch);
 
         begin(Phase::Prepare);
-        let Scratch { solver, roster, touching, manifolds, .. } = scratch;
+        let Scratch { solver, roster, found, .. } = scratch;
         solver.prepare_bodies(&state.bodies, &roster.bodies, &tuning);
         solver.prepare_joints(&state.joints, &roster.joints, &state.bodies, &tuning);
-        solver.prepare_contacts(touching, manifolds, &state.contacts);
+        solver.prepare_contacts(&found.touching, &found.manifolds, &state.contacts);
 
         begin(Phase::Solve);
         for index in 0..settings.sub_steps {
@@ -89,15 +87,15 @@ fn refit_boxes(state: &mut State, scratch: &mut Scratch) {
     poses.outlook.begin(bodies.slot_count());
     for &slot in &roster.bodies {
         let body = bodies.at(slot);
-        let motion = Motion::of(body);
-        let (shift, turn) = (motion.shift(config.tick_rate), motion.turn(config.tick_rate));
+        let motion = Motion::of(body, per_second);
+        let (shift, turn) = (motion.shift, motion.turn());
         poses.outlook.set_motion(slot, motion);
-        let way = Way::of(body, poses.extents(slot), per_second);
+        let course = Course::of(body, poses.extents(slot), shift, turn);
         for &id in body.shapes() {
             let posed = poses.at(id.slot());
             let (bounds, turn_reach) = (posed.bounds, motion.turn_reach(turn, posed));
             poses.outlook.set_reach(id.slot(), shift, turn_reach);
-            let needed = way.around(bounds).expanded(config.speculative_distance);
+            let needed = course.around(bounds).expanded(config.speculative_distance);
             let margin = config.margin_of(bounds);
             let fat = broad_phase.fat(id.slot());
             // A box that a fast shape has left behind would find pairs for ever, so it shrinks as well.
@@ -116,7 +114,7 @@ fn refit_boxes(state: &mut State, scratch: &mut Scratch) {
 }
 
 /// Where a body may get within a tick at its present velocity.
-struct Way {
+struct Course {
     shift: Vec2<Fx>,
     /// How far its points move at most because it turns, in metres.
     turned: Fx,
@@ -124,15 +122,11 @@ struct Way {
     disc: Aabb,
 }
 
-impl Way {
-    fn of(body: &Body, extents: Extents, per_second: Reciprocal) -> Self {
-        // Up to 102 m, and up to 128 rad: a slow tick may be a tenth of a second.
-        let step = |v: Speed| widen::<U24>(per_second.times(v));
-        let omega: FixedI32<U16> = body.mass.inverse_gyration.times(body.spin);
-        let angle = widen::<U24>(per_second.times(omega)).saturating_abs();
-        Way {
-            shift: Vec2::new(step(body.velocity.x), step(body.velocity.y)),
-            turned: fx_mul(angle, extents.reach),
+impl Course {
+    fn of(body: &Body, extents: Extents, shift: Vec2<Way>, turn: Fx) -> Self {
+        Course {
+            shift: shift.widen(),
+            turned: fx_mul(turn, extents.reach),
             disc: Aabb::new(body.centre, body.centre).expanded(extents.radius),
         }
     }
@@ -234,7 +228,7 @@ fn report_moves(state: &State, scratch: &mut Scratch) {
 }
 
 fn count(state: &mut State, scratch: &mut Scratch) {
-    let Scratch { solver, sat, stats, touching, roster, .. } = scratch;
+    let Scratch { solver, stats, found, roster, .. } = scratch;
     let faults = solver.faults + u64::from(state.pairs_left_out);
     state.faults = state.faults.saturating_add(faults);
     let count = |length: usize| u32::try_from(length).unwrap_or(u32::MAX);
@@ -242,12 +236,12 @@ fn count(state: &mut State, scratch: &mut Scratch) {
         bodies: count(roster.bodies.len()),
         joints: count(roster.joints.len()),
         pairs: count(state.contacts.len()),
-        contacts: count(touching.len()),
+        contacts: count(found.touching.len()),
         points: solver.warm_starts.points,
         points_kept: solver.warm_starts.kept,
         points_lost: solver.warm_starts.lost,
-        axis_hits: sat.hint_hits,
-        axis_searches: sat.searches,
+        axis_hits: found.sat.hint_hits,
+        axis_searches: found.sat.searches,
         impacts: stats.impacts,
         faults,
     };
