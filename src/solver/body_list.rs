@@ -3,7 +3,6 @@
 use alloc::vec::Vec;
 
 use super::body::SolverBody;
-use super::colour::{Node, Size};
 use crate::body::{Arena, Body, BodyId};
 use crate::math::{Fx, Length, Reciprocal, Vec2};
 
@@ -99,11 +98,5 @@ impl BodyList {
     /// The body of a slot.
     pub(super) fn body(&self, slot: u32) -> &SolverBody {
         &self.bodies[self.index_of(slot) as usize]
-    }
-
-    /// A constraint between the bodies of two slots, to be coloured.
-    pub(super) fn node(&self, key: u64, bodies: &Arena<Body, BodyId>, (a, b): (u32, u32), size: Size) -> Node {
-        let dynamic = |slot: u32| bodies.at(slot).is_dynamic().then(|| self.index_of(slot));
-        Node { key, body_a: dynamic(a), body_b: dynamic(b), size }
     }
 }

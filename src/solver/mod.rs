@@ -98,9 +98,9 @@ impl Solver {
         bodies: &Arena<Body, BodyId>,
         tuning: &Tuning,
     ) {
-        let Solver { list, nodes, colouring, .. } = self;
+        let Solver { list, nodes, colouring, machine, .. } = self;
         self.joints.prepare((joints, slots), (bodies, list), tuning, nodes, colouring);
-        self.joints.refresh(&self.list.bodies, tuning);
+        self.joints.refresh(&self.list.bodies, *machine, tuning);
     }
 
     /// Makes a constraint of every touching pair, in the order in which they are solved.
@@ -132,7 +132,7 @@ impl Solver {
         for mover in &self.movers {
             mover.integrate_displacement(&mut self.list.bodies, tuning.rate, &mut self.faults);
         }
-        self.joints.refresh(&self.list.bodies, tuning);
+        self.joints.refresh(&self.list.bodies, self.machine, tuning);
         if tuning.relax {
             for iteration in 0..iterations {
                 self.solve(Pass::Relax, Sweep::of(index, iteration), tuning);
@@ -152,7 +152,7 @@ impl Solver {
     fn warm_start(&mut self, tuning: &Tuning) {
         self.perform_serial(Task::Observe, tuning);
         self.perform_coloured(Task::Observe, tuning);
-        self.joints.warm_start(&mut self.list.bodies, &mut self.faults);
+        self.joints.warm_start(self.machine, tuning, &mut self.list.bodies, &mut self.faults);
         self.perform_serial(Task::WarmStart, tuning);
         self.perform_coloured(Task::WarmStart, tuning);
     }
@@ -160,7 +160,7 @@ impl Solver {
     fn solve(&mut self, pass: Pass, sweep: Sweep, tuning: &Tuning) {
         let task = Task::Solve(pass, sweep);
         self.perform_serial(task, tuning);
-        self.joints.solve(pass, tuning, &mut self.list.bodies, &mut self.faults);
+        self.joints.solve(pass, self.machine, tuning, &mut self.list.bodies, &mut self.faults);
         self.perform_coloured(task, tuning);
     }
 
