@@ -60,6 +60,11 @@ impl SolverBody {
         }
     }
 
+    /// Bodies that several lanes, and several threads, read and write.
+    pub(super) fn cells(bodies: &mut [Self]) -> &[Cell<Self>] {
+        Cell::from_mut(bodies).as_slice_of_cells()
+    }
+
     /// Velocity, spin and padding: 16 bytes, aligned to 32.
     #[inline(always)]
     pub(super) fn velocity_bits(body: &Cell<Self>) -> *mut i32 {

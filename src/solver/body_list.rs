@@ -4,7 +4,6 @@ use alloc::vec::Vec;
 
 use super::body::SolverBody;
 use super::row::RATIO_MAX;
-use super::colour::{Node, Size};
 use crate::body::{Arena, Body, BodyId};
 use crate::math::{Fx, Length, Ratio, Reciprocal, Vec2, round_shift, saturate};
 
@@ -112,11 +111,5 @@ impl BodyList {
     /// The body of a slot.
     pub(super) fn body(&self, slot: u32) -> &SolverBody {
         &self.bodies[self.index_of(slot) as usize]
-    }
-
-    /// A constraint between the bodies of two slots, to be coloured.
-    pub(super) fn node(&self, key: u64, bodies: &Arena<Body, BodyId>, (a, b): (u32, u32), size: Size) -> Node {
-        let changed = |slot: u32| if bodies.at(slot).is_dynamic() { self.index_of(slot) } else { GROUND };
-        Node::new(key, [changed(a), changed(b)], size)
     }
 }

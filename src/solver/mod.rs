@@ -18,7 +18,6 @@ mod settings;
 mod softness;
 
 use alloc::vec::Vec;
-use core::cell::Cell;
 
 pub(crate) use body::{SolverBody, turn_of};
 use body_list::BodyList;
@@ -109,9 +108,9 @@ impl Solver {
         bodies: &Arena<Body, BodyId>,
         tuning: &Tuning,
     ) {
-        let Solver { list, nodes, colouring, .. } = self;
+        let Solver { list, nodes, colouring, machine, .. } = self;
         self.joints.prepare((joints, slots), (bodies, list), tuning, nodes, colouring);
-        self.joints.refresh(&self.list.bodies, tuning);
+        self.joints.refresh(&mut self.list.bodies, *machine, tuning);
     }
 
     /// Makes a constraint of every touching pair, in the order in which they are solved.
@@ -142,7 +141,7 @@ impl Solver {
         for mover in &self.movers {
             mover.integrate_displacement(&mut self.list.bodies, tuning.rate, &mut self.faults);
         }
-        self.joints.refresh(&self.list.bodies, tuning);
+        self.joints.refresh(&mut self.list.bodies, self.machine, tuning);
         if tuning.relax {
             for iteration in 0..iterations {
                 self.solve(Pass::Relax, Sweep::of(index, iteration), tuning);
@@ -162,7 +161,7 @@ impl Solver {
     fn warm_start(&mut self, tuning: &Tuning) {
         self.perform_serial(Task::Observe, tuning);
         self.perform_coloured(Task::Observe, tuning);
-        self.joints.warm_start(&mut self.list.bodies, &mut self.faults);
+        self.joints.warm_start(self.machine, tuning, &mut self.list.bodies, &mut self.faults);
         self.perform_serial(Task::WarmStart, tuning);
         self.perform_coloured(Task::WarmStart, tuning);
     }
@@ -170,17 +169,17 @@ impl Solver {
     fn solve(&mut self, pass: Pass, sweep: Sweep, tuning: &Tuning) {
         let task = Task::Solve(pass, sweep);
         self.perform_serial(task, tuning);
-        self.joints.solve(pass, tuning, &mut self.list.bodies, &mut self.faults);
+        self.joints.solve(pass, self.machine, tuning, &mut self.list.bodies, &mut self.faults);
         self.perform_coloured(task, tuning);
     }
 
     fn perform_serial(&mut self, task: Task, tuning: &Tuning) {
-        self.contacts.perform_serial(task, tuning, cells(&mut self.list.bodies), &mut self.faults);
+        self.contacts.perform_serial(task, tuning, SolverBody::cells(&mut self.list.bodies), &mut self.faults);
     }
 
     fn perform_coloured(&mut self, task: Task, tuning: &Tuning) {
         let Solver { contacts, machine, threads, list, faults, .. } = self;
-        contacts.perform_coloured(task, (*machine, threads), tuning, cells(&mut list.bodies), faults);
+        contacts.perform_coloured(task, (*machine, threads), tuning, SolverBody::cells(&mut list.bodies), faults);
     }
 
     pub(crate) fn apply_restitution(&mut self, tuning: &Tuning) {
@@ -193,9 +192,4 @@ impl Solver {
         self.joints.store(joints);
         self.contacts.store(contacts, &mut self.pushed);
     }
-}
-
-/// Bodies that several lanes, and several threads, read and write.
-fn cells(bodies: &mut [SolverBody]) -> &[Cell<SolverBody>] {
-    Cell::from_mut(bodies).as_slice_of_cells()
 }

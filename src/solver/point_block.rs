@@ -117,18 +117,9 @@ impl PointBlock {
         (self.e_a, self.e_b)
     }
 
-    /// The lever ratios averaged over the turns ahead, of A and of B, in radians.
-    pub(crate) fn ratios_ahead(
-        &self,
-        (turn_a, turn_b): (Unit, Unit),
-        stretch: Unit,
-    ) -> (Vec2<Ratio>, Vec2<Ratio>) {
-        (averaged(self.e_a, turn_a, stretch), averaged(self.e_b, turn_b, stretch))
-    }
-
     /// Solves the block for one iteration, with the lever ratios that measure velocity. `lambda` is the
     /// accumulated `L`.
-    #[inline]
+    #[cfg(test)]
     #[expect(clippy::too_many_arguments, reason = "the quantities of the equations above")]
     pub(crate) fn solve(
         &self,
@@ -221,18 +212,6 @@ fn product_of_fractions(fractions: MassFractions) -> i128 {
     i128::from(mul::<_, _, U30>(fractions.a, fractions.b).to_bits())
 }
 
-/// Beyond a quarter of a radian the third order is no better than the second, and feeds energy to chains that one
-/// iteration does not solve.
-const TURN_MAX: Unit = Unit::lit("0.25");
-
-/// `e + M (t/2 (-e_y, e_x) - t^2/6 e)`.
-fn averaged(e: Vec2<Ratio>, turn: Unit, stretch: Unit) -> Vec2<Ratio> {
-    let turn = turn.clamp(-TURN_MAX, TURN_MAX);
-    let across: Unit = mul(stretch, turn / 2);
-    let along: Unit = mul(stretch, mul::<_, _, U30>(turn, turn / 6));
-    e + e.perp().scale(across) - e.scale(along)
-}
-
 /// `clamp(L + d, -1023, 1023)`.
 fn accumulate(lambda: Speed, d: Speed, faults: &mut Faults) -> Speed {
     let limit = i64::from(IMPULSE_MAX.to_bits());
@@ -249,6 +228,23 @@ fn inverse(k: &Symmetric<i64>, det: i64) -> Symmetric<Unit> {
     let reciprocal = (1i64 << 62) / (det >> excess);
     let entry = |value: i64| Unit::from_bits(saturate(round_shift((value >> excess) * reciprocal, 32)));
     Symmetric { m11: entry(k.m22), m12: entry(-k.m12), m22: entry(k.m11) }
+}
+
+/// The entries `g11, g12, g22` of `G` from those of `K - I` with 46 fraction bits, `eA x eB` with 48, and `aA aB`.
+#[inline]
+pub(crate) fn inverse_of([xx, xy, yy]: [i64; 3], cross: i64, shares: i32) -> [i32; 3] {
+    let [xx, xy, yy] = [xx, xy, yy].map(|entry| round_shift(entry, 16));
+    let one = 1i64 << 30;
+    let det = one + xx + yy + i64::from(shares != 0) * cross_term(cross, shares);
+    let Symmetric { m11, m12, m22 } = inverse(&Symmetric { m11: one + xx, m12: xy, m22: one + yy }, det);
+    [m11.to_bits(), m12.to_bits(), m22.to_bits()]
+}
+
+/// `aA aB (eA x eB)^2`. 24 fraction bits of `eA x eB` are enough: the term is never the smallest.
+#[inline]
+fn cross_term(cross: i64, shares: i32) -> i64 {
+    let cross = i128::from(round_shift(cross, 24));
+    saturate_wide(round_shift_wide(round_shift_wide(cross * cross, 24) * i128::from(shares), 24))
 }
 
 #[cfg(test)]

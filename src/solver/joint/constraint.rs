@@ -1,36 +1,49 @@
-//! Joints as the solver sees them: a list of constraints, each with its ends and its share of the rows and points.
+//! Joints as the solver sees them: hinges in batches, and a list of all others, each with its ends and its share of the
+//! rows and points.
 
 use alloc::vec::Vec;
 
 use super::super::body::{SolverBody, turn_of};
 use super::super::body_list::BodyList;
-use super::super::colour::{Colouring, Node, Size};
+use super::super::colour::{Colouring, Group, Node};
 use super::super::contact::Pass;
+use super::super::lanes::{Machine, Quad};
 use super::super::limits::Faults;
 use super::super::settings::Tuning;
 use super::def::JointKind;
+use super::hinge::{AngleInput, AngleParts, End, HingeSet, Input, Poses, Task, node};
 use super::parts::Parts;
 use super::place::{Ends, Turned};
 use super::point::JointPoint;
 use super::row::JointRow;
 use super::state::{Joint, JointImpulses};
-use crate::body::{Arena, Body, BodyId, Handle, JointId};
-use crate::math::{Angle, Fx, Reciprocal, Rot, Step, Unit, Vec2, fx_mul, widen};
+use crate::body::{Arena, Body, BodyId, JointId};
+use crate::math::{Angle, Fx, Reciprocal, Rot, Step, Unit, Vec2, fx_mul, mul, widen};
 
 /// All joints, for one tick.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct JointSet {
-    /// For each body of the tick, whether it is in `bodies`.
-    has_joint: Vec<bool>,
-    bodies: Vec<JointedBody>,
+    /// For each body of the tick, where it is in `bodies`, from 1; 0 if it has no joint.
+    places: Vec<u32>,
+    bodies: Vec<End>,
     /// For each body of the tick.
     turned: Vec<Turned>,
+    quads: Vec<Quad>,
+    /// For each joint in the order of the state, what it is solved as.
+    entries: Vec<Entry>,
+    hinges: HingeSet,
     /// In the order of the state, which is read once and from front to back: joints are large.
     drafts: JointList,
-    /// For each of the drafts, how many rows and points come before its own.
-    starts: Vec<(u32, u32)>,
     /// In the order in which they are solved.
     list: JointList,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Entry {
+    /// The index of its input.
+    Hinge(u32),
+    /// Where it is in the drafts, and how many rows and points come before its own.
+    Other { index: u32, starts: (u32, u32) },
 }
 
 /// Joints one after the other.
@@ -44,17 +57,9 @@ struct JointList {
     points: Vec<JointPoint>,
 }
 
-/// A body with joints, whose rotation is needed at every refresh.
-#[derive(Clone, Copy, Debug)]
-struct JointedBody {
-    index: u32,
-    angle: Angle,
-    inverse_gyration: Reciprocal,
-}
-
 #[derive(Clone, Copy, Debug)]
 struct JointConstraint {
-    joint: JointId,
+    slot: u32,
     ends: Ends,
 }
 
@@ -96,7 +101,7 @@ impl JointList {
         self.points.clear();
     }
 
-    fn push(&mut self, id: JointId, joint: &Joint, a: (u32, &Body), b: (u32, &Body), tuning: &Tuning) {
+    fn push(&mut self, slot: u32, joint: &Joint, a: (u32, &Body), b: (u32, &Body), tuning: &Tuning) {
         let (rows, points) = (self.rows.len(), self.points.len());
         let mut parts = Parts {
             rows: &mut self.rows,
@@ -106,17 +111,16 @@ impl JointList {
             rate: tuning.rate,
         };
         match &joint.def.kind {
-            JointKind::Revolute(kind) => kind.prepare(&mut parts),
             JointKind::Prismatic(kind) => kind.prepare(&mut parts),
             JointKind::Distance(kind) => kind.prepare(&mut parts),
             JointKind::Weld(kind) => kind.prepare(&mut parts),
             JointKind::Wheel(kind) => kind.prepare(&mut parts),
             JointKind::Motor(kind) => kind.prepare(&mut parts),
-            JointKind::Filter => {}
+            JointKind::Revolute(_) | JointKind::Filter => {}
         }
         let (rows, points) = (share(&self.rows, rows), share(&self.points, points));
         self.links.push(Link { body_a: a.0, body_b: b.0, rows, points });
-        self.joints.push(JointConstraint { joint: id, ends: Ends::prepare(joint, a, b) });
+        self.joints.push(JointConstraint { slot, ends: Ends::prepare(joint, a, b) });
     }
 
     /// Appends a joint of another list, whose rows and points start there.
@@ -134,7 +138,28 @@ impl JointList {
     }
 }
 
+/// The rows on the angle of a hinge; `None` of other joints.
+fn hinge_parts(kind: &JointKind) -> Option<AngleParts> {
+    match kind {
+        JointKind::Revolute(kind) => Some(kind.angle_parts()),
+        JointKind::Weld(kind) => kind.angle_parts(),
+        _ => None,
+    }
+}
+
 impl JointSet {
+    fn clear(&mut self) {
+        let JointSet { places, bodies, turned, quads, entries, hinges, drafts, list } = self;
+        places.clear();
+        bodies.clear();
+        turned.clear();
+        quads.clear();
+        entries.clear();
+        hinges.clear();
+        drafts.clear();
+        list.clear();
+    }
+
     /// Makes a constraint of every joint that is one, in the order in which they are solved.
     pub(crate) fn prepare(
         &mut self,
@@ -144,47 +169,95 @@ impl JointSet {
         nodes: &mut Vec<Node>,
         colouring: &mut Colouring,
     ) {
-        self.bodies.clear();
-        self.turned.clear();
-        self.starts.clear();
-        self.drafts.clear();
-        self.list.clear();
+        self.clear();
         nodes.clear();
-        self.has_joint.clear();
         for &slot in slots {
             let joint = joints.at(slot);
             let (a, b) = joint.def.bodies();
-            let ends = [a, b].map(|id| (list.own_index_of(id.index()), bodies.at(id.index())));
-            self.has_joint.resize(list.len(), false);
-            for (index, body) in ends {
-                if !core::mem::replace(&mut self.has_joint[index as usize], true) {
-                    let inverse_gyration = body.mass.inverse_gyration;
-                    self.bodies.push(JointedBody { index, angle: body.angle(), inverse_gyration });
+            let [place_a, place_b] = [a, b].map(|id| self.place_of(id.index(), bodies, list));
+            let (end_a, end_b) = (self.bodies[place_a], self.bodies[place_b]);
+            nodes.push(node(slot, &end_a, &end_b));
+            let entry = match hinge_parts(&joint.def.kind) {
+                Some(parts) => self.push_hinge(slot, joint, (&end_a, &end_b), &parts, tuning),
+                None => {
+                    let ends = [(end_a.index, bodies.at(a.index())), (end_b.index, bodies.at(b.index()))];
+                    let starts = (count(&self.drafts.rows), count(&self.drafts.points));
+                    self.drafts.push(slot, joint, ends[0], ends[1], tuning);
+                    Entry::Other { index: count(&self.drafts.joints) - 1, starts }
                 }
-            }
-            nodes.push(list.node(slot.into(), bodies, (a.index(), b.index()), Size::Large));
-            self.starts.push((count(&self.drafts.rows), count(&self.drafts.points)));
-            self.drafts.push(joints.handle_at(slot), joint, ends[0], ends[1], tuning);
+            };
+            self.entries.push(entry);
         }
         self.turned.resize(list.len(), Turned::default());
-        for &index in colouring.order(nodes, list.len()) {
-            self.list.copy(&self.drafts, index as usize, self.starts[index as usize]);
+        self.quads.resize(list.len(), Quad::default());
+        self.sort(nodes, colouring);
+    }
+
+    /// Where a body is in `bodies`: a compact copy of what joints need of it.
+    fn place_of(&mut self, slot: u32, bodies: &Arena<Body, BodyId>, list: &mut BodyList) -> usize {
+        let index = list.own_index_of(slot);
+        self.places.resize(list.len(), 0);
+        let place = &mut self.places[index as usize];
+        if *place == 0 {
+            self.bodies.push(End::new(index, bodies.at(slot)));
+            *place = count(&self.bodies);
+        }
+        *place as usize - 1
+    }
+
+    fn push_hinge(
+        &mut self,
+        slot: u32,
+        joint: &Joint,
+        (a, b): (&End, &End),
+        parts: &AngleParts,
+        tuning: &Tuning,
+    ) -> Entry {
+        let HingeSet { inputs, angles, .. } = &mut self.hinges;
+        let angle = if parts.is_empty() { None } else { Some(count(angles)) };
+        let input = Input::new(slot, joint, a, b, angle);
+        if angle.is_some() {
+            angles.push(AngleInput::new(parts, &input, (a, b), &joint.impulses, tuning));
+        }
+        inputs.push(input);
+        Entry::Hinge(count(inputs) - 1)
+    }
+
+    /// Sorts them into colours.
+    fn sort(&mut self, nodes: &[Node], colouring: &mut Colouring) {
+        let JointSet { entries, hinges, drafts, list, .. } = self;
+        colouring.order(nodes, self.turned.len());
+        for group in colouring.groups() {
+            let (Group::Serial(indices) | Group::Coloured(indices)) = group;
+            for &index in indices {
+                if let Entry::Other { index, starts } = entries[index as usize] {
+                    list.copy(drafts, index as usize, starts);
+                }
+            }
+            hinges.push(&group, |index| match entries[index as usize] {
+                Entry::Hinge(input) => Some(input),
+                Entry::Other { .. } => None,
+            });
         }
     }
 
     /// Arms, gains and gaps at the present pose.
-    pub(crate) fn refresh(&mut self, bodies: &[SolverBody], tuning: &Tuning) {
+    pub(crate) fn refresh(&mut self, bodies: &mut [SolverBody], machine: Machine, tuning: &Tuning) {
         for body in &self.bodies {
-            let turns = turn_of(bodies[body.index as usize].turn, body.inverse_gyration);
+            let at = body.index as usize;
+            let turns = turn_of(bodies[at].turn, body.inverse_gyration);
             let rotation = Rot::from_angle(body.angle + Angle::from_turns(Fx::from_bits(turns)));
-            self.turned[body.index as usize] = Turned { rotation, turns, ahead: Unit::ZERO };
+            self.turned[at] = Turned { rotation, turns };
+            self.quads[at] = Quad([rotation.cos.to_bits(), rotation.sin.to_bits(), 0, 0]);
         }
+        let poses = Poses { quads: &self.quads, turned: &self.turned };
+        self.hinges.refresh(SolverBody::cells(bodies), poses, machine, tuning);
         let JointList { joints, links, rows, points } = &mut self.list;
         let walk = Walk { links: links.iter(), rows, points };
         for (joint, (_, rows, points)) in joints.iter().zip(walk) {
             let place = joint.ends.place(bodies, &self.turned);
             for point in points {
-                point.refresh(&place, tuning);
+                point.refresh(&place);
             }
             let mut last = None;
             for row in rows {
@@ -202,28 +275,31 @@ impl JointSet {
     pub(crate) fn aim(&mut self, bodies: &[SolverBody], h: Reciprocal, tuning: &Tuning) {
         for body in &self.bodies {
             let step: Step = h.times(bodies[body.index as usize].spin);
-            self.turned[body.index as usize].ahead = body.inverse_gyration.times(step);
-        }
-        for (link, _, points) in self.list.walk() {
-            let ahead = |slot: u32| self.turned[slot as usize].ahead;
-            let turns = (ahead(link.body_a), ahead(link.body_b));
-            for point in points {
-                point.aim(turns, tuning);
-            }
+            let (across, along) = ahead(body.inverse_gyration.times(step), tuning.joint_stretch);
+            let Quad(numbers) = &mut self.quads[body.index as usize];
+            [numbers[2], numbers[3]] = [across.to_bits(), along.to_bits()];
         }
     }
 
-    pub(crate) fn warm_start(&mut self, bodies: &mut [SolverBody], faults: &mut Faults) {
+    pub(crate) fn warm_start(
+        &mut self,
+        machine: Machine,
+        tuning: &Tuning,
+        bodies: &mut [SolverBody],
+        faults: &mut Faults,
+    ) {
         for (link, rows, points) in self.list.walk() {
             let (a, b) = SolverBody::pair(bodies, link.body_a, link.body_b);
             rows.iter_mut().for_each(|row| row.warm_start(a, b, faults));
             points.iter_mut().for_each(|point| point.warm_start(a, b, faults));
         }
+        self.hinges.perform(Task::WarmStart, (&self.quads, machine), tuning, SolverBody::cells(bodies), faults);
     }
 
     pub(crate) fn solve(
         &mut self,
         pass: Pass,
+        machine: Machine,
         tuning: &Tuning,
         bodies: &mut [SolverBody],
         faults: &mut Faults,
@@ -231,16 +307,18 @@ impl JointSet {
         for (link, rows, points) in self.list.walk() {
             let (a, b) = SolverBody::pair(bodies, link.body_a, link.body_b);
             rows.iter_mut().for_each(|row| row.solve(pass, tuning, a, b, faults));
-            points.iter_mut().for_each(|point| point.solve(pass, tuning, a, b, faults));
+            points.iter_mut().for_each(|point| point.solve(pass, a, b, faults));
         }
+        self.hinges.perform(Task::Solve(pass), (&self.quads, machine), tuning, SolverBody::cells(bodies), faults);
     }
 
     /// Keeps impulses and turns for the next tick.
     pub(crate) fn store(&mut self, joints: &mut Arena<Joint, JointId>) {
+        self.hinges.store(joints, &self.turned);
         let JointList { joints: constraints, links, rows, points } = &mut self.list;
         let walk = Walk { links: links.iter(), rows, points };
         for (constraint, (_, rows, points)) in constraints.iter().zip(walk) {
-            let joint = joints.at_mut(constraint.joint.index());
+            let joint = joints.at_mut(constraint.slot);
             joint.turns = constraint.ends.turns(&self.turned);
             joint.impulses = JointImpulses::default();
             for row in rows {
@@ -255,27 +333,48 @@ impl JointSet {
     /// The force and the torque about B's anchor that a joint has last exerted on B: `P / h`, from the velocities that
     /// its impulses give to one of the bodies at rest.
     pub(super) fn reaction(joint: &Joint, a: &Body, b: &Body, tuning: &Tuning) -> (Vec2<Fx>, Fx) {
-        let mut set = JointSet { turned: alloc::vec![Turned::default(); 2], ..JointSet::default() };
-        for (index, body) in [(0, a), (1, b)] {
-            let inverse_gyration = body.mass.inverse_gyration;
-            set.bodies.push(JointedBody { index, angle: body.angle(), inverse_gyration });
+        // Place 0 is the ground's.
+        let mut set = JointSet {
+            bodies: alloc::vec![End::new(1, a), End::new(2, b)],
+            turned: alloc::vec![Turned::default(); 3],
+            quads: alloc::vec![Quad::default(); 3],
+            ..JointSet::default()
+        };
+        let machine = Machine::default();
+        let ends = (set.bodies[0], set.bodies[1]);
+        match hinge_parts(&joint.def.kind) {
+            Some(parts) => {
+                set.push_hinge(0, joint, (&ends.0, &ends.1), &parts, tuning);
+                set.hinges.push(&Group::Serial(&[0]), Some);
+            }
+            None => set.list.push(0, joint, (1, a), (2, b), tuning),
         }
-        set.list.push(JointId::from_parts(0, 0), joint, (0, a), (1, b), tuning);
-        let mut bodies = [SolverBody::default(); 2];
-        set.refresh(&bodies, tuning);
-        set.warm_start(&mut bodies, &mut 0);
-        let place = set.list.joints[0].ends.place(&bodies, &set.turned);
+        let mut bodies = [SolverBody::default(); 3];
+        set.refresh(&mut bodies, machine, tuning);
+        set.warm_start(machine, tuning, &mut bodies, &mut 0);
+        let place = Ends::prepare(joint, (1, a), (2, b)).place(&[SolverBody::default(); 3], &set.turned);
         // The lighter one shows more of it.
         let (body, moved, arm) = if a.is_dynamic() && (!b.is_dynamic() || a.mass() < b.mass()) {
-            (a, bodies[0].reversed(), place.lever_a.arm)
+            (a, bodies[1].reversed(), place.lever_a.arm)
         } else {
-            (b, bodies[1], place.lever_b.arm)
+            (b, bodies[2], place.lever_b.arm)
         };
         let per_second = |speed| fx_mul(widen(speed), body.mass()).saturating_mul_int(tuning.rate.into());
         let force = Vec2::new(per_second(moved.velocity.x), per_second(moved.velocity.y));
         let torque = fx_mul(per_second(moved.spin), body.radius_of_gyration());
         (force, torque.saturating_sub(arm.widen().cross(force)))
     }
+}
+
+/// Beyond a quarter of a radian the third order is no better than the second, and feeds energy to chains that one
+/// iteration does not solve.
+const TURN_MAX: Unit = Unit::lit("0.25");
+
+/// `M t/2` and `M t^2/6` of [`super::super::point_block`].
+fn ahead(turn: Unit, stretch: Unit) -> (Unit, Unit) {
+    let turn = turn.clamp(-TURN_MAX, TURN_MAX);
+    let squared: Unit = mul(turn, turn / 6);
+    (mul(stretch, turn / 2), mul(stretch, squared))
 }
 
 fn count<T>(parts: &[T]) -> u32 {

@@ -1,12 +1,14 @@
 //! Joints: what a user defines, what the state keeps, and the rows and point blocks that the kernels solve.
 //!
 //! A kind of joint only lists its parts: along which direction which row springs, drives, limits or holds, and which
-//! points are pinned. Everything else is the same for all. Within a joint the order is E. Catto's (Box2D v3): springs,
+//! points are pinned. Everything else is the same for all but
+//! hinges, of which there are most by far: they are solved in wide batches of their own. Within a joint the order is E. Catto's (Box2D v3): springs,
 //! motors and limits first, and last what must not give way.
 
 mod constraint;
 mod def;
 mod distance;
+mod hinge;
 mod motor;
 mod options;
 mod parts;

@@ -81,11 +81,6 @@ impl Parts<'_> {
         self.row(slot, direction, RowTask::Hold { target });
     }
 
-    /// Keeps the anchors on each other.
-    pub(super) fn pin(&mut self) {
-        self.point(slot::HOLD, PointTask::Pin);
-    }
-
     /// Pulls the anchors onto each other, with a largest force.
     pub(super) fn pull(&mut self, slot: u8, soft: Soft, max_force: Fx) {
         let softness = Softness::spring(soft.hertz, soft.damping_ratio, self.rate);
@@ -108,10 +103,14 @@ impl Parts<'_> {
         self.points.push(JointPoint::new(slot, task, self.impulses.point(slot)));
     }
 
-    /// The impulse of a force in a sub-step times `mA + mB`, the inverse masses: in m/s, or m²/s of a torque.
     fn impulse(&self, force: Fx) -> Fx {
-        let over = |mass: Fx| fx_div(force, mass).unwrap_or(Fx::ZERO);
-        let per_second = over(self.masses.0).saturating_add(over(self.masses.1));
-        fx_div(per_second, Fx::from_num(self.rate)).unwrap_or(Fx::ZERO)
+        impulse(force, self.masses, self.rate)
     }
+}
+
+/// The impulse of a force in a sub-step times `mA + mB`, the inverse masses: in m/s, or m²/s of a torque.
+pub(super) fn impulse(force: Fx, masses: (Fx, Fx), rate: u32) -> Fx {
+    let over = |mass: Fx| fx_div(force, mass).unwrap_or(Fx::ZERO);
+    let per_second = over(masses.0).saturating_add(over(masses.1));
+    fx_div(per_second, Fx::from_num(rate)).unwrap_or(Fx::ZERO)
 }

@@ -15,8 +15,6 @@ pub(super) struct Turned {
     pub(super) rotation: Rot,
     /// Since the start of the tick, in units of 2^-32 turn.
     pub(super) turns: i64,
-    /// By how much it will turn in the coming sub-step, in radians.
-    pub(super) ahead: Unit,
 }
 
 /// The ends of a joint, for one tick.

@@ -1,20 +1,17 @@
-//! A joint's points: pinned, pulled by a spring, or pushed to a velocity.
+//! A joint's points: pulled by a spring, or pushed to a velocity. Those that are pinned are hinges.
 
 use super::super::body::SolverBody;
 use super::super::contact::Pass;
 use super::super::limits::{Faults, clamp_warm_start};
 use super::super::point_block::PointBlock;
-use super::super::settings::Tuning;
 use super::super::softness::Softness;
 use super::place::Place;
-use crate::math::{Ratio, Speed, Step, Unit, Vec2, mul};
+use crate::math::{Speed, Vec2};
 
 /// What a point is for.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum PointTask {
-    /// Keeps the anchors on each other.
-    Pin,
-    /// Pulls them onto each other, with impulses times `mA + mB` of a largest size. In the bias pass only, as for rows.
+    /// Pulls the anchors onto each other, with impulses times `mA + mB` of a largest size. In the bias pass only, as for rows.
     Spring { softness: Softness, max: Speed },
     /// Brings their relative velocity to another, with impulses times `mA + mB` of a largest size.
     Drive { velocity: Vec2<Speed>, max: Speed },
@@ -30,36 +27,24 @@ pub(super) struct JointPoint {
     bias: Vec2<Speed>,
     /// `L`, in world axes.
     pub(super) lambda: Vec2<Speed>,
-    /// Lever ratios for the bias pass.
-    ratios_ahead: (Vec2<Ratio>, Vec2<Ratio>),
 }
 
 impl JointPoint {
     pub(super) fn new(slot: u8, task: PointTask, lambda: Vec2<Speed>) -> Self {
         let block = PointBlock::default();
-        JointPoint { slot, task, block, bias: Vec2::ZERO, lambda, ratios_ahead: Default::default() }
+        JointPoint { slot, task, block, bias: Vec2::ZERO, lambda }
     }
 
     /// Arms, gains and gap at the present pose.
     #[inline]
-    pub(super) fn refresh(&mut self, place: &Place, tuning: &Tuning) {
+    pub(super) fn refresh(&mut self, place: &Place) {
         self.block = PointBlock::new(place.lever_a, place.lever_b, place.fractions);
         self.bias = match &self.task {
-            PointTask::Pin => {
-                let gap: Vec2<Step> = place.gap.narrow();
-                Vec2::new(mul(gap.x, tuning.joint.bias_rate), mul(gap.y, tuning.joint.bias_rate))
-            }
             PointTask::Spring { softness, .. } => {
                 Vec2::new(softness.push(place.gap.x), softness.push(place.gap.y))
             }
             PointTask::Drive { velocity, .. } => -*velocity,
         };
-    }
-
-    /// Looks ahead along the turns of the bodies in the coming sub-step.
-    #[inline]
-    pub(super) fn aim(&mut self, turns: (Unit, Unit), tuning: &Tuning) {
-        self.ratios_ahead = self.block.ratios_ahead(turns, tuning.joint_stretch);
     }
 
     #[inline]
@@ -70,23 +55,9 @@ impl JointPoint {
     }
 
     #[inline]
-    pub(super) fn solve(
-        &mut self,
-        pass: Pass,
-        tuning: &Tuning,
-        a: &mut SolverBody,
-        b: &mut SolverBody,
-        faults: &mut Faults,
-    ) {
+    pub(super) fn solve(&mut self, pass: Pass, a: &mut SolverBody, b: &mut SolverBody, faults: &mut Faults) {
         let lambda = &mut self.lambda;
         match (&self.task, pass) {
-            (PointTask::Pin, Pass::Bias) => {
-                self.block.solve(a, b, self.ratios_ahead, self.bias, &tuning.joint, lambda, faults);
-            }
-            (PointTask::Pin, Pass::Relax) => {
-                let ratios = self.block.ratios();
-                self.block.solve(a, b, ratios, Vec2::ZERO, &Softness::RIGID, lambda, faults);
-            }
             (PointTask::Spring { softness, max }, Pass::Bias) => {
                 let push = self.bias;
                 self.block.solve_within(a, b, (Vec2::ZERO, push), softness, *max, lambda, faults);

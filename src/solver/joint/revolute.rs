@@ -6,8 +6,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::hinge::AngleParts;
 use super::options::{Drive, Limit, Spring};
-use super::parts::{Direction, Parts};
 use crate::body::WorldError;
 use crate::math::Fx;
 
@@ -59,10 +59,8 @@ impl Revolute {
         Spring::check(self.spring)
     }
 
-    pub(super) fn prepare(&self, parts: &mut Parts<'_>) {
-        parts.spring(Direction::Angle, self.spring);
-        parts.drive(Direction::Angle, self.motor);
-        parts.limit(Direction::Angle, self.limit);
-        parts.pin();
+    /// Its rows on the angle.
+    pub(super) fn angle_parts(&self) -> AngleParts {
+        AngleParts { spring: self.spring, held: false, drive: self.motor, limit: self.limit }
     }
 }

@@ -146,11 +146,15 @@ impl JointRow {
 }
 
 impl Measure {
-    /// `L` of an impulse times `mA + mB`, within what can be accumulated.
     fn lambda(&self, impulse: Fx) -> Speed {
-        // The denominator has 30 fraction bits.
-        let denominator = Fx::from_bits(saturate_wide(i128::from(self.denominator) << 2));
-        let lambda = fx_div(fx_mul(impulse, denominator), self.scale).unwrap_or(Fx::ZERO);
-        narrow::<fixed::types::extra::U21>(lambda).clamp(-IMPULSE_MAX, IMPULSE_MAX)
+        lambda_of(impulse, self.denominator, self.scale)
     }
+}
+
+/// `L` of an impulse times `mA + mB`, within what can be accumulated, along a direction of a length.
+pub(super) fn lambda_of(impulse: Fx, denominator: Denominator, scale: Fx) -> Speed {
+    // The denominator has 30 fraction bits.
+    let denominator = Fx::from_bits(saturate_wide(i128::from(denominator) << 2));
+    let lambda = fx_div(fx_mul(impulse, denominator), scale).unwrap_or(Fx::ZERO);
+    narrow::<fixed::types::extra::U21>(lambda).clamp(-IMPULSE_MAX, IMPULSE_MAX)
 }

@@ -92,3 +92,10 @@ impl Joint {
 pub(super) fn radians(turns: i64) -> Fx {
     fx_mul(Fx::from_bits(turns), TAU)
 }
+
+/// Radians in units of 2^-32 turn.
+pub(super) fn turns_of(radians: Fx) -> i64 {
+    /// `1 / (2 pi)` with 63 fraction bits.
+    const INVERSE_TAU: i128 = 1_467_945_251_641_000_613;
+    crate::math::saturate_wide(crate::math::round_shift_wide(i128::from(radians.to_bits()) * INVERSE_TAU, 63))
+}

@@ -5,6 +5,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::hinge::AngleParts;
 use super::options::Soft;
 use super::parts::{Direction, Parts, slot};
 use crate::body::WorldError;
@@ -45,14 +46,21 @@ impl Weld {
         Soft::check(self.angular)
     }
 
+    /// Its row on the angle, if it is a hinge: if its anchors do not give way.
+    pub(super) fn angle_parts(&self) -> Option<AngleParts> {
+        let spring = self.angular.map(|soft| soft.towards(Fx::ZERO));
+        let parts = AngleParts { spring, held: spring.is_none(), drive: None, limit: None };
+        self.linear.is_none().then_some(parts)
+    }
+
+    /// What it is made of if its anchors give way.
     pub(super) fn prepare(&self, parts: &mut Parts<'_>) {
         match self.angular {
             Some(soft) => parts.spring(Direction::Angle, Some(soft.towards(Fx::ZERO))),
             None => parts.hold(slot::SPRING, Direction::Angle, Fx::ZERO),
         }
-        match self.linear {
-            Some(soft) => parts.pull(slot::HOLD, soft, Fx::MAX),
-            None => parts.pin(),
+        if let Some(soft) = self.linear {
+            parts.pull(slot::HOLD, soft, Fx::MAX);
         }
     }
 }

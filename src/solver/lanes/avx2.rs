@@ -6,7 +6,7 @@ use core::cell::Cell;
 
 use super::super::body::SolverBody;
 use super::super::body_list::GROUND;
-use super::{Ints, Kernel, Lanes, Motion, WIDTH};
+use super::{Ints, Kernel, Lanes, Motion, Quad, WIDTH};
 
 /// The processor's AVX2 instructions. Only a [`super::Machine`] that has them runs kernels with it: every `unsafe`
 /// here is an instruction that is there then.
@@ -176,17 +176,13 @@ impl Lanes<WIDTH> for Avx2 {
     #[inline(always)]
     fn add_wide(a: Products, b: Products) -> Products {
         // SAFETY: see `Avx2`.
-        unsafe {
-            Products { even: _mm256_add_epi64(a.even, b.even), odd: _mm256_add_epi64(a.odd, b.odd) }
-        }
+        unsafe { Products { even: _mm256_add_epi64(a.even, b.even), odd: _mm256_add_epi64(a.odd, b.odd) } }
     }
 
     #[inline(always)]
     fn sub_wide(a: Products, b: Products) -> Products {
         // SAFETY: see `Avx2`.
-        unsafe {
-            Products { even: _mm256_sub_epi64(a.even, b.even), odd: _mm256_sub_epi64(a.odd, b.odd) }
-        }
+        unsafe { Products { even: _mm256_sub_epi64(a.even, b.even), odd: _mm256_sub_epi64(a.odd, b.odd) } }
     }
 
     #[inline(always)]
@@ -211,6 +207,32 @@ impl Lanes<WIDTH> for Avx2 {
     }
 
     #[inline(always)]
+    fn low(a: Products) -> __m256i {
+        // SAFETY: see `Avx2`.
+        unsafe { interleave(a.even, _mm256_slli_epi64::<32>(a.odd)) }
+    }
+
+    #[inline(always)]
+    fn load_wide(from: &[i64; WIDTH]) -> Products {
+        // SAFETY: see `Avx2`; 32 bytes each.
+        unsafe {
+            let front = _mm256_loadu_si256(from.as_ptr().cast());
+            let back = _mm256_loadu_si256(from.as_ptr().add(4).cast());
+            Products {
+                even: _mm256_permute4x64_epi64::<0b11_01_10_00>(_mm256_unpacklo_epi64(front, back)),
+                odd: _mm256_permute4x64_epi64::<0b11_01_10_00>(_mm256_unpackhi_epi64(front, back)),
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn quads(from: &[Quad], at: &[u32; WIDTH]) -> [__m256i; 4] {
+        // SAFETY: see `Avx2`; 16 bytes, aligned to 16.
+        let row = |lane: usize| unsafe { _mm_load_si128(from[at[lane] as usize].0.as_ptr().cast()) };
+        transposed([row(0), row(1), row(2), row(3), row(4), row(5), row(6), row(7)])
+    }
+
+    #[inline(always)]
     fn to_array(a: Products) -> [i64; WIDTH] {
         let (mut even, mut odd) = ([0i64; 4], [0i64; 4]);
         // SAFETY: see `Avx2`; 32 bytes each.
@@ -225,14 +247,14 @@ impl Lanes<WIDTH> for Avx2 {
     fn velocities(bodies: &[Cell<SolverBody>], at: &[u32; WIDTH]) -> Motion<__m256i> {
         // SAFETY: see `Avx2`; the first 16 bytes of a body.
         let row = |lane: usize| unsafe { _mm_load_si128(SolverBody::velocity_bits(&bodies[at[lane] as usize]).cast()) };
-        transposed([row(0), row(1), row(2), row(3), row(4), row(5), row(6), row(7)])
+        motion([row(0), row(1), row(2), row(3), row(4), row(5), row(6), row(7)])
     }
 
     #[inline(always)]
     fn shifts(bodies: &[Cell<SolverBody>], at: &[u32; WIDTH]) -> Motion<__m256i> {
         // SAFETY: see `Avx2`; the last 16 bytes of a body.
         let row = |lane: usize| unsafe { _mm_load_si128(SolverBody::shift_bits(&bodies[at[lane] as usize]).cast()) };
-        transposed([row(0), row(1), row(2), row(3), row(4), row(5), row(6), row(7)])
+        motion([row(0), row(1), row(2), row(3), row(4), row(5), row(6), row(7)])
     }
 
     #[inline(always)]
@@ -314,17 +336,26 @@ fn shifted<const SHIFT: i32>(a: Products) -> __m256i {
 
 /// From four numbers of each body to the first three of all.
 #[inline(always)]
-fn transposed(rows: [__m128i; WIDTH]) -> Motion<__m256i> {
+fn motion(rows: [__m128i; WIDTH]) -> Motion<__m256i> {
+    let [x, y, turn, _] = transposed(rows);
+    Motion { x, y, turn }
+}
+
+/// From four numbers of each body to each of the four of all.
+#[inline(always)]
+fn transposed(rows: [__m128i; WIDTH]) -> [__m256i; 4] {
     // SAFETY: see `Avx2`.
     unsafe {
-        let pair = |lane: usize| _mm256_inserti128_si256::<1>(_mm256_castsi128_si256(rows[lane]), rows[lane + 4]);
+        let pair =
+            |lane: usize| _mm256_inserti128_si256::<1>(_mm256_castsi128_si256(rows[lane]), rows[lane + 4]);
         let (r0, r1, r2, r3) = (pair(0), pair(1), pair(2), pair(3));
-        let (xy_01, xy_23) = (_mm256_unpacklo_epi32(r0, r1), _mm256_unpacklo_epi32(r2, r3));
-        let (t_01, t_23) = (_mm256_unpackhi_epi32(r0, r1), _mm256_unpackhi_epi32(r2, r3));
-        Motion {
-            x: _mm256_unpacklo_epi64(xy_01, xy_23),
-            y: _mm256_unpackhi_epi64(xy_01, xy_23),
-            turn: _mm256_unpacklo_epi64(t_01, t_23),
-        }
+        let (front_01, front_23) = (_mm256_unpacklo_epi32(r0, r1), _mm256_unpacklo_epi32(r2, r3));
+        let (back_01, back_23) = (_mm256_unpackhi_epi32(r0, r1), _mm256_unpackhi_epi32(r2, r3));
+        [
+            _mm256_unpacklo_epi64(front_01, front_23),
+            _mm256_unpackhi_epi64(front_01, front_23),
+            _mm256_unpacklo_epi64(back_01, back_23),
+            _mm256_unpackhi_epi64(back_01, back_23),
+        ]
     }
 }

@@ -33,6 +33,11 @@ impl<const N: usize> Ints<N> {
     pub(super) const ZERO: Self = Ints([0; N]);
 }
 
+/// Four numbers of a body, loaded at once.
+#[derive(Clone, Copy, Debug, Default)]
+#[repr(C, align(16))]
+pub(super) struct Quad(pub(super) [i32; 4]);
+
 /// The three components of a motion: along x, along y, and turning.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Motion<T> {
@@ -83,11 +88,17 @@ pub(super) trait Lanes<const N: usize>: Copy {
     /// `a / 2^SHIFT`, rounded to nearest, ties towards +infinity, of a number that then fits 32 bits. `SHIFT` is 1 to
     /// 32.
     fn narrow<const SHIFT: i32>(a: Self::Wide) -> Self::Int;
-    /// The same of any number below 2^62, saturated, and where it was. `SHIFT` is 1 to 31.
+    /// The same of any number that rounding does not take out of its format, saturated, and where it was. `SHIFT` is 1 to 31.
     fn narrow_saturating<const SHIFT: i32>(a: Self::Wide) -> (Self::Int, Self::Mask);
 
-    fn to_array(a: Self::Wide) -> [i64; N];
+    /// The lowest 32 bits, as a number between -2^31 and 2^31: what `narrow::<32>` leaves.
+    fn low(a: Self::Wide) -> Self::Int;
 
+    fn to_array(a: Self::Wide) -> [i64; N];
+    fn load_wide(from: &[i64; N]) -> Self::Wide;
+
+    /// The numbers of several places: the first of each, the second of each, and so on.
+    fn quads(from: &[Quad], at: &[u32; N]) -> [Self::Int; 4];
     /// The velocities of bodies.
     fn velocities(bodies: &[Cell<SolverBody>], at: &[u32; N]) -> Motion<Self::Int>;
     /// How far bodies have come in the tick.

@@ -4,7 +4,7 @@ use core::cell::Cell;
 
 use super::super::body::SolverBody;
 use super::super::body_list::GROUND;
-use super::{Ints, Lanes, Motion};
+use super::{Ints, Lanes, Motion, Quad};
 use crate::math::{round_shift, saturate};
 
 /// Arrays of `N` numbers.
@@ -138,15 +138,35 @@ impl<const N: usize> Lanes<N> for Scalar<N> {
     }
 
     #[inline(always)]
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "compared afterwards; a shift")]
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "compared afterwards; a shift"
+    )]
     fn narrow_saturating<const SHIFT: i32>(a: [i64; N]) -> ([i32; N], [bool; N]) {
         let rounded = a.map(|a| round_shift(a, SHIFT as u32));
         (rounded.map(saturate), rounded.map(|a| i64::from(a as i32) != a))
     }
 
     #[inline(always)]
+    #[expect(clippy::cast_possible_truncation, reason = "that is what it is for")]
+    fn low(a: [i64; N]) -> [i32; N] {
+        a.map(|a| a as i32)
+    }
+
+    #[inline(always)]
     fn to_array(a: [i64; N]) -> [i64; N] {
         a
+    }
+
+    #[inline(always)]
+    fn load_wide(from: &[i64; N]) -> [i64; N] {
+        *from
+    }
+
+    #[inline(always)]
+    fn quads(from: &[Quad], at: &[u32; N]) -> [[i32; N]; 4] {
+        core::array::from_fn(|i| at.map(|at| from[at as usize].0[i]))
     }
 
     #[inline(always)]

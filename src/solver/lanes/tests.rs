@@ -58,7 +58,17 @@ impl Kernel<WIDTH> for Operations<'_> {
             keep(rounded);
             keep(L::to_int(out));
             keep(L::narrow::<32>(wide));
+            keep(L::low(wide));
         }
+        // Whatever rounding does not take out of its format.
+        let wide = L::load_wide(&core::array::from_fn(|i| {
+            (i64::from(self.a.0[i]) << 31).saturating_add(i64::from(self.b.0[i])).saturating_mul(2) / 2
+        }));
+        keep(L::low(wide));
+        keep(L::narrow_saturating::<25>(wide).0);
+        keep(L::to_int(L::narrow_saturating::<25>(wide).1));
+        let quads: std::vec::Vec<_> = (0..WIDTH).map(|i| Quad([self.a.0[i], self.b.0[i], 3, -4])).collect();
+        L::quads(&quads, &[7, 0, 3, 3, 1, 2, 6, 5]).into_iter().for_each(&mut keep);
         // What fits.
         keep(L::narrow::<30>(L::mul(quarter, L::splat(1 << 30))));
     }

@@ -1,0 +1,296 @@
+//! The rows on the angle of `N` hinges: spring, motor and limits, in this order, as in `row.rs` of the joints.
+//!
+//! ```text
+//! vn = eB uB - eA uA,   w = massScale vn + push + impulseScale L,   L' = clamp(L - w, lo, hi),   d = L' - L
+//! uA -= fA d,  uB += fB d
+//! ```
+
+use super::super::super::contact::Pass;
+use super::super::super::lanes::{Ints, Lanes};
+use super::super::super::limits::Faults;
+use super::super::place::Turned;
+use super::angle_input::{ANGLE_MAX, AngleInput};
+use super::kernel::Constants;
+use super::pair::{Pair, UNIT, clamp};
+use crate::math::{Fx, Ratio, Speed, Unit, round_shift_wide, saturate, saturate_wide};
+
+/// The rows of a batch. Lanes without a row have no gains, or bounds of 0.
+#[derive(Clone, Debug)]
+#[repr(C, align(64))]
+pub(super) struct AngleRows<const N: usize> {
+    e: [Ints<N>; 2],
+    f: [Ints<N>; 2],
+    has_spring: bool,
+    has_drive: bool,
+    has_limit: bool,
+    /// Whether a spring's row holds in any lane: only then it is solved in the relax pass.
+    holds: bool,
+    spring: SpringRow<N>,
+    drive: DriveRow<N>,
+    /// The lower and the upper one, which measures the other way.
+    limits: [LimitRow<N>; 2],
+    limit_max: Ints<N>,
+    /// The angle at the start of the tick, in units of 2^-32 turn.
+    turns: [i64; N],
+    targets: [i64; N],
+    stiffness: [Fx; N],
+    closed: [Fx; N],
+    open: [Fx; N],
+}
+
+#[derive(Clone, Debug)]
+struct SpringRow<const N: usize> {
+    lambda: Ints<N>,
+    max: Ints<N>,
+    mass_scale: Ints<N>,
+    impulse_scale: Ints<N>,
+    push: Ints<N>,
+    /// -1 where it is no spring but holds.
+    holds: Ints<N>,
+}
+
+#[derive(Clone, Debug)]
+struct DriveRow<const N: usize> {
+    lambda: Ints<N>,
+    max: Ints<N>,
+    bias: Ints<N>,
+}
+
+#[derive(Clone, Debug)]
+struct LimitRow<const N: usize> {
+    lambda: Ints<N>,
+    push: Ints<N>,
+    /// -1 where it is not reached.
+    open: Ints<N>,
+    bounds: [i64; N],
+}
+
+impl<const N: usize> LimitRow<N> {
+    const NONE: Self = LimitRow { lambda: Ints::ZERO, push: Ints::ZERO, open: Ints::ZERO, bounds: [0; N] };
+}
+
+impl<const N: usize> AngleRows<N> {
+    pub(super) const NONE: Self = AngleRows {
+        e: [Ints::ZERO; 2],
+        f: [Ints::ZERO; 2],
+        has_spring: false,
+        has_drive: false,
+        has_limit: false,
+        holds: false,
+        spring: SpringRow {
+            lambda: Ints::ZERO,
+            max: Ints::ZERO,
+            mass_scale: Ints::ZERO,
+            impulse_scale: Ints::ZERO,
+            push: Ints::ZERO,
+            holds: Ints::ZERO,
+        },
+        drive: DriveRow { lambda: Ints::ZERO, max: Ints::ZERO, bias: Ints::ZERO },
+        limits: [LimitRow::NONE, LimitRow::NONE],
+        limit_max: Ints::ZERO,
+        turns: [0; N],
+        targets: [0; N],
+        stiffness: [Fx::ZERO; N],
+        closed: [Fx::ZERO; N],
+        open: [Fx::ZERO; N],
+    };
+
+    /// Puts the rows of a hinge into a lane.
+    pub(super) fn put(&mut self, lane: usize, turns: i64, input: &AngleInput) {
+        for side in 0..2 {
+            self.e[side].0[lane] = input.e[side].to_bits();
+            self.f[side].0[lane] = input.f[side].to_bits();
+        }
+        self.turns[lane] = turns;
+        if let Some(spring) = &input.spring {
+            self.has_spring = true;
+            self.holds |= spring.held;
+            self.spring.lambda.0[lane] = spring.lambda.to_bits();
+            self.spring.max.0[lane] = spring.max.to_bits();
+            self.spring.mass_scale.0[lane] = spring.mass_scale.to_bits();
+            self.spring.impulse_scale.0[lane] = spring.impulse_scale.to_bits();
+            self.spring.holds.0[lane] = -i32::from(spring.held);
+            self.targets[lane] = spring.target;
+            self.stiffness[lane] = spring.stiffness;
+        }
+        if let Some(drive) = &input.drive {
+            self.has_drive = true;
+            self.drive.lambda.0[lane] = drive.lambda.to_bits();
+            self.drive.max.0[lane] = drive.max.to_bits();
+            self.drive.bias.0[lane] = drive.bias.to_bits();
+        }
+        if let Some(limit) = &input.limit {
+            self.has_limit = true;
+            self.limit_max.0[lane] = limit.max.to_bits();
+            self.closed[lane] = limit.closed;
+            self.open[lane] = limit.open;
+            for (row, (bound, lambda)) in
+                self.limits.iter_mut().zip([limit.lower, limit.upper].into_iter().zip(limit.lambda))
+            {
+                row.bounds[lane] = bound;
+                row.lambda.0[lane] = lambda.to_bits();
+            }
+        }
+    }
+
+    /// The impulses in a lane: of spring, motor, lower and upper limit.
+    pub(super) fn impulses(&self, lane: usize) -> [Speed; 4] {
+        let [lower, upper] = &self.limits;
+        [&self.spring.lambda, &self.drive.lambda, &lower.lambda, &upper.lambda]
+            .map(|lambda| Speed::from_bits(lambda.0[lane]))
+    }
+
+    /// Positions at the present pose.
+    pub(super) fn refresh(&mut self, [a, b]: &[[u32; N]; 2], turned: &[Turned]) {
+        for lane in 0..N {
+            let (a, b) = (&turned[a[lane] as usize], &turned[b[lane] as usize]);
+            let position = self.turns[lane].wrapping_add(b.turns).wrapping_sub(a.turns);
+            if self.has_spring {
+                let stretch = position.saturating_sub(self.targets[lane]);
+                self.spring.push.0[lane] = speed_of(stretch, self.stiffness[lane]);
+            }
+            if self.has_limit {
+                let [lower, upper] = &mut self.limits;
+                let gaps = [
+                    position.saturating_sub(lower.bounds[lane]),
+                    upper.bounds[lane].saturating_sub(position),
+                ];
+                for (row, gap) in [lower, upper].into_iter().zip(gaps) {
+                    let open = gap > 0;
+                    row.open.0[lane] = -i32::from(open);
+                    row.push.0[lane] = speed_of(gap, if open { self.open[lane] } else { self.closed[lane] });
+                }
+            }
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn warm_start<L: Lanes<N>>(&self, pair: &mut Pair<L, N>, faults: &mut Faults) {
+        if self.has_spring {
+            pair.turn(&self.f, L::load(&self.spring.lambda), faults);
+        }
+        if self.has_drive {
+            pair.turn(&self.f, L::load(&self.drive.lambda), faults);
+        }
+        if self.has_limit {
+            let [lower, upper] = &self.limits;
+            pair.turn(&self.f, L::load(&lower.lambda), faults);
+            pair.turn(&self.f, L::sub(L::splat(0), L::load(&upper.lambda)), faults);
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn solve<L: Lanes<N>>(
+        &mut self,
+        pass: Pass,
+        constants: &Constants,
+        pair: &mut Pair<L, N>,
+        faults: &mut Faults,
+    ) {
+        if self.has_spring && (pass == Pass::Bias || self.holds) {
+            self.solve_spring(pass, pair, faults);
+        }
+        if self.has_drive {
+            let DriveRow { lambda, max, bias } = &mut self.drive;
+            let w = L::add_saturating(velocity::<L, N>(&self.e, pair, faults), L::load(bias));
+            let old = L::load(lambda);
+            let new = clamp::<L, N>(L::sub_saturating(old, w), L::load(max));
+            L::store(new, lambda);
+            pair.turn(&self.f, L::sub(new, old), faults);
+        }
+        if self.has_limit {
+            self.solve_limit(0, pass, constants, pair, faults);
+            self.solve_limit(1, pass, constants, pair, faults);
+        }
+    }
+
+    /// Springs are not solved in the relax pass.
+    #[inline(always)]
+    fn solve_spring<L: Lanes<N>>(&mut self, pass: Pass, pair: &mut Pair<L, N>, faults: &mut Faults) {
+        let SpringRow { lambda, max, mass_scale, impulse_scale, push, holds } = &mut self.spring;
+        let vn = velocity::<L, N>(&self.e, pair, faults);
+        let old = L::load(lambda);
+        let w = match pass {
+            Pass::Bias => {
+                let scales = (L::load(mass_scale), L::load(impulse_scale));
+                L::add_saturating(softened::<L, N>(scales, vn, old), L::load(push))
+            }
+            Pass::Relax => L::select(L::negative(L::load(holds)), vn, L::splat(0)),
+        };
+        let new = clamp::<L, N>(L::sub_saturating(old, w), L::load(max));
+        L::store(new, lambda);
+        pair.turn(&self.f, L::sub(new, old), faults);
+    }
+
+    /// As between shapes: a gap may close within this sub-step, and one that the bias pass has not closed is left to the
+    /// next.
+    #[inline(always)]
+    fn solve_limit<L: Lanes<N>>(
+        &mut self,
+        side: usize,
+        pass: Pass,
+        constants: &Constants,
+        pair: &mut Pair<L, N>,
+        faults: &mut Faults,
+    ) {
+        let zero = L::splat(0);
+        let LimitRow { lambda, push, open, .. } = &mut self.limits[side];
+        let vn = velocity::<L, N>(&self.e, pair, faults);
+        // A velocity that has saturated has a sign to spare, less one unit.
+        let vn = facing::<L, N>(side, L::max(vn, L::splat(-i32::MAX)));
+        let (old, push, open) = (L::load(lambda), L::load(push), L::negative(L::load(open)));
+        let w = match pass {
+            Pass::Bias => {
+                let mass_scale =
+                    L::select(open, L::splat(Unit::ONE.to_bits()), L::splat(constants.mass_scale));
+                let impulse_scale = L::select(open, zero, L::splat(constants.impulse_scale));
+                L::add_saturating(softened::<L, N>((mass_scale, impulse_scale), vn, old), push)
+            }
+            Pass::Relax => {
+                let w = L::add_saturating(vn, L::select(open, push, zero));
+                let untouched = L::both(open, L::greater(L::splat(1), old));
+                L::select(untouched, zero, w)
+            }
+        };
+        let most = L::min(L::load(&self.limit_max), L::splat(ANGLE_MAX.to_bits()));
+        let new = L::min(L::max(L::sub_saturating(old, w), zero), most);
+        L::store(new, lambda);
+        pair.turn(&self.f, facing::<L, N>(side, L::sub(new, old)), faults);
+    }
+}
+
+/// The row of the upper limit measures the other way.
+#[inline(always)]
+fn facing<L: Lanes<N>, const N: usize>(side: usize, value: L::Int) -> L::Int {
+    if side == 0 { value } else { L::sub(L::splat(0), value) }
+}
+
+/// `massScale v + impulseScale L`, of scales that add up to 1.
+#[inline(always)]
+fn softened<L: Lanes<N>, const N: usize>(
+    (mass_scale, impulse_scale): (L::Int, L::Int),
+    v: L::Int,
+    lambda: L::Int,
+) -> L::Int {
+    L::narrow::<UNIT>(L::add_wide(L::mul(mass_scale, v), L::mul(impulse_scale, lambda)))
+}
+
+/// Relative velocity of B from A on the angle. A lane in which it does not fit is a fault.
+#[inline(always)]
+fn velocity<L: Lanes<N>, const N: usize>(e: &[Ints<N>; 2], pair: &Pair<L, N>, faults: &mut Faults) -> L::Int {
+    let a = L::mul(L::load(&e[0]), pair.a.turn);
+    let b = L::mul(L::load(&e[1]), pair.b.turn);
+    let (vn, out) = L::narrow_saturating::<{ Ratio::FRAC_NBITS as i32 }>(L::sub_wide(b, a));
+    if L::any(out) {
+        *faults += u64::from(L::count(out));
+    }
+    vn
+}
+
+/// The speed of so many turns, saturated.
+#[inline]
+fn speed_of(turns: i64, per_turn: Fx) -> i32 {
+    const EXTRA: u32 = 32 + Fx::FRAC_NBITS - Speed::FRAC_NBITS;
+    let wide = i128::from(turns) * i128::from(per_turn.to_bits());
+    saturate(saturate_wide(round_shift_wide(wide, EXTRA)))
+}

@@ -1,0 +1,129 @@
+//! The rows on the angle of a hinge before its batch is filled.
+//!
+//! A position `x` on the angle becomes a velocity along the row: `2 pi s x` times a rate, in one product with a
+//! coefficient that does not change within a tick.
+
+use super::super::super::row::Row;
+use super::super::super::settings::Tuning;
+use super::super::super::softness::Softness;
+use super::super::options::{Drive, Limit, Spring};
+use super::super::parts::{impulse, slot};
+use super::super::row::lambda_of;
+use super::super::state::{JointImpulses, turns_of};
+use super::input::{End, Input};
+use crate::math::{Fx, Ratio, Speed, TAU, Unit, fx_mul, narrow};
+
+/// Largest impulse of a row on the angle. The difference of two fits the format.
+pub(super) const ANGLE_MAX: Speed = Speed::lit("511");
+
+/// What the angle of a hinge has, besides what holds its anchors together.
+#[derive(Clone, Copy, Debug)]
+pub(in super::super) struct AngleParts {
+    pub(in super::super) spring: Option<Spring>,
+    /// Whether it is held at 0, instead of a spring.
+    pub(in super::super) held: bool,
+    pub(in super::super) drive: Option<Drive>,
+    pub(in super::super) limit: Option<Limit>,
+}
+
+impl AngleParts {
+    pub(in super::super) fn is_empty(&self) -> bool {
+        let AngleParts { spring, held, drive, limit } = self;
+        spring.is_none() && !held && drive.is_none() && limit.is_none()
+    }
+}
+
+/// The rows of one hinge.
+#[derive(Clone, Copy, Debug)]
+pub(in super::super) struct AngleInput {
+    pub(super) e: [Ratio; 2],
+    pub(super) f: [Unit; 2],
+    pub(super) spring: Option<SpringInput>,
+    pub(super) drive: Option<DriveInput>,
+    pub(super) limit: Option<LimitInput>,
+}
+
+/// A spring, or what holds the angle.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct SpringInput {
+    pub(super) mass_scale: Unit,
+    pub(super) impulse_scale: Unit,
+    /// In units of 2^-32 turn.
+    pub(super) target: i64,
+    /// Speed for each turn away from the target.
+    pub(super) stiffness: Fx,
+    /// 0 if neither body turns.
+    pub(super) max: Speed,
+    pub(super) held: bool,
+    pub(super) lambda: Speed,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(super) struct DriveInput {
+    /// The speed that it goes for, reversed.
+    pub(super) bias: Speed,
+    pub(super) max: Speed,
+    pub(super) lambda: Speed,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(super) struct LimitInput {
+    /// In units of 2^-32 turn.
+    pub(super) lower: i64,
+    pub(super) upper: i64,
+    /// Speed for each turn beyond a limit, and for each turn before it.
+    pub(super) closed: Fx,
+    pub(super) open: Fx,
+    /// 0 if neither body turns.
+    pub(super) max: Speed,
+    pub(super) lambda: [Speed; 2],
+}
+
+impl AngleInput {
+    pub(in super::super) fn new(
+        parts: &AngleParts,
+        input: &Input,
+        (a, b): (&End, &End),
+        impulses: &JointImpulses,
+        tuning: &Tuning,
+    ) -> Self {
+        let (row, denominator, s) = Row::angular(a.inverse_gyration, b.inverse_gyration, input.fractions);
+        let (e, f) = row.turning_parts();
+        let s = Fx::from(s);
+        let max = if denominator == 0 { Speed::ZERO } else { ANGLE_MAX };
+        let lambda = |slot: u8| impulses.0[usize::from(slot)];
+        let per_turn = |rate: Fx| fx_mul(fx_mul(TAU, s), rate);
+        let stiffness = |soft: &Softness| fx_mul(per_turn(soft.bias_rate.into()), soft.mass_scale.into());
+        let spring = |softness: &Softness, target: Fx, held: bool| SpringInput {
+            mass_scale: softness.mass_scale,
+            impulse_scale: softness.impulse_scale,
+            target: turns_of(target),
+            stiffness: stiffness(softness),
+            max,
+            held,
+            lambda: lambda(slot::SPRING).clamp(-max, max),
+        };
+        let from_spring = parts.spring.map(|Spring { hertz, damping_ratio, target }| {
+            spring(&Softness::spring(hertz, damping_ratio, tuning.rate), target, false)
+        });
+        let drive = parts.drive.map(|Drive { speed, max: torque }| {
+            let most = lambda_of(impulse(torque, (a.mass, b.mass), tuning.rate), denominator, s).min(max);
+            let speed: Speed = narrow(fx_mul(speed, s));
+            DriveInput {
+                bias: speed.saturating_neg(),
+                max: most,
+                lambda: lambda(slot::DRIVE).clamp(-most, most),
+            }
+        });
+        let limit = parts.limit.map(|Limit { lower, upper }| LimitInput {
+            lower: turns_of(lower),
+            upper: turns_of(upper),
+            closed: stiffness(&tuning.joint),
+            open: per_turn(Fx::from_num(tuning.rate)),
+            max,
+            lambda: [0, 1].map(|side| lambda(slot::LIMIT + side).clamp(Speed::ZERO, max)),
+        });
+        let held = parts.held.then(|| spring(&tuning.joint, Fx::ZERO, true));
+        AngleInput { e, f, spring: from_spring.or(held), drive, limit }
+    }
+}

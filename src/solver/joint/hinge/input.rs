@@ -1,0 +1,106 @@
+//! What is known of a hinge before its batch is filled: taken from the state in the order in which it lies there, so
+//! that only this compact copy is read in the order of colours.
+
+use super::super::super::body_list::GROUND;
+use super::super::super::colour::{Node, Size};
+use super::super::super::row::MassFractions;
+use super::super::parts::slot;
+use super::super::state::Joint;
+use crate::body::Body;
+use crate::math::{Angle, Fx, Length, Ratio, Reciprocal, Vec2};
+
+/// A body with joints.
+#[derive(Clone, Copy, Debug)]
+pub(in super::super) struct End {
+    pub(in super::super) index: u32,
+    pub(in super::super) angle: Angle,
+    pub(in super::super) inverse_gyration: Reciprocal,
+    /// 0 if no impulse moves it.
+    pub(in super::super) mass: Fx,
+    centre: Vec2<Fx>,
+    local_centre: Vec2<Fx>,
+}
+
+impl End {
+    pub(in super::super) fn new(index: u32, body: &Body) -> Self {
+        End {
+            index,
+            angle: body.angle(),
+            inverse_gyration: body.mass.inverse_gyration,
+            mass: if body.is_dynamic() { body.mass() } else { Fx::ZERO },
+            centre: body.centre_of_mass(),
+            local_centre: body.local_centre_of_mass(),
+        }
+    }
+
+    /// The index of the body; the ground if no impulse changes it.
+    fn changed(&self) -> u32 {
+        if self.mass > 0 { self.index } else { GROUND }
+    }
+}
+
+/// A joint between two bodies, to be coloured.
+pub(in super::super) fn node(key: u32, a: &End, b: &End) -> Node {
+    Node::new(key.into(), [a.changed(), b.changed()], Size::Large)
+}
+
+/// A hinge.
+#[derive(Clone, Copy, Debug)]
+pub(in super::super) struct Input {
+    /// The slot of the joint.
+    pub(super) slot: u32,
+    pub(super) bodies: [u32; 2],
+    pub(super) changed: [u32; 2],
+    /// The place of its rows on the angle, if it has some.
+    pub(super) angle: Option<u32>,
+    /// Anchors from the centres of mass, in the frames of the bodies.
+    pub(super) arms: [Vec2<Length>; 2],
+    pub(super) ratios: [Vec2<Ratio>; 2],
+    pub(super) fractions: MassFractions,
+    /// Centre of mass of B from that of A.
+    pub(super) between: Vec2<Fx>,
+    /// The angle of the joint, in units of 2^-32 turn.
+    pub(super) turns: i64,
+    pub(super) lambda: [i32; 2],
+}
+
+impl Input {
+    pub(in super::super) fn new(slot: u32, joint: &Joint, a: &End, b: &End, angle: Option<u32>) -> Self {
+        let arms = [(&joint.def.frame_a, a), (&joint.def.frame_b, b)]
+            .map(|(frame, end)| arm(frame.anchor - end.local_centre));
+        let lambda = joint.impulses.point(slot::HOLD);
+        Input {
+            slot,
+            bodies: [a.index, b.index],
+            changed: [a.changed(), b.changed()],
+            angle,
+            arms,
+            ratios: [ratios(arms[0], a.inverse_gyration), ratios(arms[1], b.inverse_gyration)],
+            fractions: MassFractions::of_masses(a.mass, b.mass),
+            between: b.centre - a.centre,
+            turns: joint.turns(a.angle, b.angle),
+            lambda: [lambda.x.to_bits(), lambda.y.to_bits()],
+        }
+    }
+}
+
+/// An anchor from the centre of mass. Both are within 128 m of the body's origin: no arm comes near what it is kept
+/// within, but the sums of the gap rely on it.
+fn arm(arm: Vec2<Fx>) -> Vec2<Length> {
+    const ARM_MAX: Fx = crate::fx!(300);
+    Vec2::new(arm.x.clamp(-ARM_MAX, ARM_MAX), arm.y.clamp(-ARM_MAX, ARM_MAX)).narrow()
+}
+
+/// The longest lever: averaged over a turn ahead it still fits the format.
+const LENGTH_MAX: Ratio = Ratio::lit("124");
+
+/// `(-r_y, r_x) / k`, no longer than [`LENGTH_MAX`].
+fn ratios(arm: Vec2<Length>, inverse_gyration: Reciprocal) -> Vec2<Ratio> {
+    let perp = arm.perp();
+    let e: Vec2<Ratio> = Vec2::new(inverse_gyration.times(perp.x), inverse_gyration.times(perp.y));
+    let square = |part: Ratio| u64::from(part.unsigned_abs().to_bits()).pow(2);
+    if square(e.x) + square(e.y) <= square(LENGTH_MAX) {
+        return e;
+    }
+    perp.normalized().map_or(e, |direction| direction.scale(LENGTH_MAX))
+}

@@ -1,0 +1,149 @@
+//! The bodies of a batch while it is solved, and how impulses change them.
+
+use core::cell::Cell;
+
+use super::super::super::body::SolverBody;
+use super::super::super::lanes::{Ints, Lanes, Motion};
+use super::super::super::limits::{Faults, SPEED_MAX};
+use super::batch::Batch;
+use crate::math::Unit;
+
+pub(super) const UNIT: i32 = Unit::FRAC_NBITS as i32;
+
+/// 512 as a speed: half of what the format holds.
+pub(super) const HALF: i32 = 1 << 30;
+
+/// Two impulses of at most this, 362, change no velocity by 512 or more.
+const PLAIN_MAX: i32 = 362 << 21;
+
+pub(super) struct Pair<L: Lanes<N>, const N: usize> {
+    pub(super) a: Motion<L::Int>,
+    pub(super) b: Motion<L::Int>,
+}
+
+impl<L: Lanes<N>, const N: usize> Pair<L, N> {
+    #[inline(always)]
+    pub(super) fn load(bodies: &[Cell<SolverBody>], batch: &Batch<N>) -> Self {
+        let [a, b] = &batch.bodies;
+        Pair { a: L::velocities(bodies, a), b: L::velocities(bodies, b) }
+    }
+
+    #[inline(always)]
+    pub(super) fn store(self, bodies: &[Cell<SolverBody>], batch: &Batch<N>) {
+        let [a, b] = &batch.changed;
+        L::set_velocities(bodies, a, self.a);
+        L::set_velocities(bodies, b, self.b);
+    }
+
+    /// Changes the velocities by impulses `d` of at most 512 at a point.
+    #[inline(always)]
+    pub(super) fn apply(&mut self, batch: &Batch<N>, d: [L::Int; 2], faults: &mut Faults) {
+        let [g_a, g_b] = &batch.g;
+        let [f_a, f_b] = &batch.f;
+        let (a, b) = (changes::<L, N>(g_a, f_a, d), changes::<L, N>(g_b, f_b, d));
+        let limit = L::splat(PLAIN_MAX);
+        let large = L::either(beyond::<L, N>(d[0], limit), beyond::<L, N>(d[1], limit));
+        if L::any(large) {
+            self.apply_saturating(a, b);
+        } else {
+            let Motion { x, y, turn } = self.a;
+            self.a = Motion { x: L::sub(x, a.x), y: L::sub(y, a.y), turn: L::sub(turn, a.turn) };
+            let Motion { x, y, turn } = self.b;
+            self.b = Motion { x: L::add(x, b.x), y: L::add(y, b.y), turn: L::add(turn, b.turn) };
+        }
+        self.keep_in_range(faults);
+    }
+
+    /// A change of up to 512 on both axes may add up to 768.
+    #[cold]
+    fn apply_saturating(&mut self, a: Motion<L::Int>, b: Motion<L::Int>) {
+        let Motion { x, y, turn } = self.a;
+        let sub = L::sub_saturating;
+        self.a = Motion { x: sub(x, a.x), y: sub(y, a.y), turn: sub(turn, a.turn) };
+        let Motion { x, y, turn } = self.b;
+        let add = L::add_saturating;
+        self.b = Motion { x: add(x, b.x), y: add(y, b.y), turn: add(turn, b.turn) };
+    }
+
+    /// Changes the spins by impulses on the angle, of less than 1024.
+    #[inline(always)]
+    pub(super) fn turn(&mut self, f: &[Ints<N>; 2], d: L::Int, faults: &mut Faults) {
+        if L::any(beyond::<L, N>(d, L::splat(HALF - 1))) {
+            self.turn_in_steps(f, d, faults);
+        } else {
+            self.turn_step(f, d, faults);
+        }
+    }
+
+    #[inline(always)]
+    fn turn_step(&mut self, f: &[Ints<N>; 2], d: L::Int, faults: &mut Faults) {
+        self.a.turn = L::sub(self.a.turn, L::narrow::<UNIT>(L::mul(L::load(&f[0]), d)));
+        self.b.turn = L::add(self.b.turn, L::narrow::<UNIT>(L::mul(L::load(&f[1]), d)));
+        self.keep_in_range(faults);
+    }
+
+    /// A motor's limit may be on the other side, and what was held may come free.
+    #[cold]
+    fn turn_in_steps(&mut self, f: &[Ints<N>; 2], mut d: L::Int, faults: &mut Faults) {
+        for _ in 0..3 {
+            let step = clamp::<L, N>(d, L::splat(HALF - 1));
+            self.turn_step(f, step, faults);
+            d = L::sub(d, step);
+        }
+    }
+
+    #[inline(always)]
+    fn keep_in_range(&mut self, faults: &mut Faults) {
+        if L::any(L::negative(L::or(out_of_half::<L, N>(self.a), out_of_half::<L, N>(self.b)))) {
+            self.clamp(faults);
+        }
+    }
+
+    #[cold]
+    fn clamp(&mut self, faults: &mut Faults) {
+        let limit = L::splat(SPEED_MAX.to_bits());
+        for body in [&mut self.a, &mut self.b] {
+            for speed in [&mut body.x, &mut body.y, &mut body.turn] {
+                *faults += u64::from(L::count(beyond::<L, N>(*speed, limit)));
+                *speed = clamp::<L, N>(*speed, limit);
+            }
+        }
+    }
+}
+
+/// What impulses at a point change.
+#[inline(always)]
+fn changes<L: Lanes<N>, const N: usize>(
+    g: &[Ints<N>; 3],
+    f: &[Ints<N>; 2],
+    d: [L::Int; 2],
+) -> Motion<L::Int> {
+    Motion {
+        x: dot::<L, N>([&g[0], &g[1]], d),
+        y: dot::<L, N>([&g[1], &g[2]], d),
+        turn: dot::<L, N>([&f[0], &f[1]], d),
+    }
+}
+
+#[inline(always)]
+fn dot<L: Lanes<N>, const N: usize>([x, y]: [&Ints<N>; 2], d: [L::Int; 2]) -> L::Int {
+    L::narrow::<UNIT>(L::add_wide(L::mul(L::load(x), d[0]), L::mul(L::load(y), d[1])))
+}
+
+/// Whether a number is not within a limit on either side.
+#[inline(always)]
+pub(super) fn beyond<L: Lanes<N>, const N: usize>(value: L::Int, limit: L::Int) -> L::Mask {
+    L::either(L::greater(value, limit), L::greater(L::sub(L::splat(0), limit), value))
+}
+
+#[inline(always)]
+pub(super) fn clamp<L: Lanes<N>, const N: usize>(value: L::Int, limit: L::Int) -> L::Int {
+    L::min(L::max(value, L::sub(L::splat(0), limit)), limit)
+}
+
+/// Negative where a component is not within ±[`HALF`]: then the sum of both is negative, or wraps to become so.
+#[inline(always)]
+fn out_of_half<L: Lanes<N>, const N: usize>(v: Motion<L::Int>) -> L::Int {
+    let half = L::splat(HALF);
+    L::or(L::or(L::add(v.x, half), L::add(v.y, half)), L::add(v.turn, half))
+}

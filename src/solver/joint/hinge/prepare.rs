@@ -1,0 +1,145 @@
+//! Fills batches with hinges in the order in which they are solved, and brings their impulses back.
+
+use super::super::super::colour::Group;
+use super::super::place::Turned;
+use super::super::state::{Joint, JointImpulses};
+use super::angle::AngleRows;
+use super::batch::{Batch, Shape};
+use super::{AngleInput, Batches, HingeSet, Input};
+use crate::body::{Arena, JointId};
+use crate::math::{Fx, Length, Speed, Unit, Vec2, mul};
+
+/// What it takes to bring the results of a batch back to its joints.
+#[derive(Clone, Debug)]
+pub(super) struct Records<const N: usize> {
+    /// How many lanes are used.
+    len: usize,
+    slots: [u32; N],
+    /// The angles at the start of the tick.
+    turns: [i64; N],
+}
+
+impl HingeSet {
+    pub(in super::super) fn clear(&mut self) {
+        self.inputs.clear();
+        self.angles.clear();
+        self.serial.clear();
+        self.coloured.clear();
+    }
+
+    /// Adds the hinges of a group, given by their inputs. Those with rows on the angle keep to themselves.
+    pub(in super::super) fn push(&mut self, group: &Group<'_>, input_of: impl Fn(u32) -> Option<u32>) {
+        let HingeSet { inputs, angles, serial, coloured } = self;
+        for has_angle in [false, true] {
+            let wanted = |&index: &u32| inputs[index as usize].angle.is_some() == has_angle;
+            match group {
+                Group::Serial(indices) => {
+                    let indices = indices.iter().filter_map(|&index| input_of(index)).filter(wanted);
+                    serial.push(inputs, angles, indices);
+                }
+                Group::Coloured(indices) => {
+                    let indices = indices.iter().filter_map(|&index| input_of(index)).filter(wanted);
+                    coloured.push(inputs, angles, indices);
+                }
+            }
+        }
+    }
+
+    /// Keeps impulses and turns for the next tick.
+    pub(in super::super) fn store(&self, joints: &mut Arena<Joint, JointId>, turned: &[Turned]) {
+        self.serial.store(joints, turned);
+        self.coloured.store(joints, turned);
+    }
+}
+
+impl<const N: usize> Batches<N> {
+    fn clear(&mut self) {
+        let Batches { batches, shapes, angles, records } = self;
+        batches.clear();
+        shapes.clear();
+        angles.clear();
+        records.clear();
+    }
+
+    /// Adds batches of hinges that no two of `N` in turn share a body that impulses change.
+    fn push(&mut self, inputs: &[Input], angle_inputs: &[AngleInput], indices: impl Iterator<Item = u32>) {
+        let Batches { batches, shapes, angles, records } = self;
+        let mut lane = N;
+        for index in indices {
+            let input = &inputs[index as usize];
+            if lane == N {
+                lane = 0;
+                let mut batch = Batch::NONE;
+                if input.angle.is_some() {
+                    batch.angle = Some(u32::try_from(angles.len()).expect("fewer than 2^32 joints"));
+                    angles.push(AngleRows::NONE);
+                }
+                batches.push(batch);
+                shapes.push(Shape::NONE);
+                records.push(Records { len: 0, slots: [0; N], turns: [0; N] });
+            }
+            let (Some(batch), Some(shape)) = (batches.last_mut(), shapes.last_mut()) else { return };
+            batch.put(lane, input);
+            shape.put(lane, input);
+            if let (Some(place), Some(rows)) = (input.angle, angles.last_mut()) {
+                rows.put(lane, input.turns, &angle_inputs[place as usize]);
+            }
+            if let Some(records) = records.last_mut() {
+                records.len = lane + 1;
+                records.slots[lane] = input.slot;
+                records.turns[lane] = input.turns;
+            }
+            lane += 1;
+        }
+    }
+
+    fn store(&self, joints: &mut Arena<Joint, JointId>, turned: &[Turned]) {
+        for (batch, records) in self.batches.iter().zip(&self.records) {
+            let rows = batch.angle.map(|place| &self.angles[place as usize]);
+            for lane in 0..records.len {
+                let joint = joints.at_mut(records.slots[lane]);
+                let [a, b] = [0, 1].map(|side: usize| turned[batch.bodies[side][lane] as usize].turns);
+                joint.turns = records.turns[lane].wrapping_add(b).wrapping_sub(a);
+                let [spring, drive, lower, upper] = rows.map_or([Speed::ZERO; 4], |rows| rows.impulses(lane));
+                let [x, y] = [0, 1].map(|axis: usize| Speed::from_bits(batch.lambda[axis].0[lane]));
+                joint.impulses = JointImpulses([spring, drive, lower, upper, x, y]);
+            }
+        }
+    }
+}
+
+impl<const N: usize> Batch<N> {
+    fn put(&mut self, lane: usize, input: &Input) {
+        for i in 0..2 {
+            self.bodies[i][lane] = input.bodies[i];
+            self.changed[i][lane] = input.changed[i];
+            self.lambda[i].0[lane] = input.lambda[i];
+        }
+    }
+}
+
+impl<const N: usize> Shape<N> {
+    fn put(&mut self, lane: usize, input: &Input) {
+        for side in 0..2 {
+            self.arms[side][0].0[lane] = input.arms[side].x.to_bits();
+            self.arms[side][1].0[lane] = input.arms[side].y.to_bits();
+            self.ratios[side][0].0[lane] = input.ratios[side].x.to_bits();
+            self.ratios[side][1].0[lane] = input.ratios[side].y.to_bits();
+        }
+        self.fractions[0].0[lane] = input.fractions.a.to_bits();
+        self.fractions[1].0[lane] = input.fractions.b.to_bits();
+        self.shares.0[lane] =
+            mul::<_, _, fixed::types::extra::U30>(input.fractions.a, input.fractions.b).to_bits();
+        let Vec2 { x, y } = input.between;
+        self.between[0][lane] = widened(x);
+        self.between[1][lane] = widened(y);
+    }
+}
+
+/// A distance between centres with 52 fraction bits. Two arms reach 849 m, so that beyond 1024 m it does not matter how
+/// far they are apart, and no sum leaves the format.
+fn widened(between: Fx) -> i64 {
+    const FARTHEST: Fx = crate::fx!(1024);
+    const EXTRA: u32 = Length::FRAC_NBITS + Unit::FRAC_NBITS - Fx::FRAC_NBITS;
+    between.clamp(-FARTHEST, FARTHEST).to_bits() << EXTRA
+}
