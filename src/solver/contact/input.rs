@@ -7,9 +7,9 @@ use super::super::colour::{Node, Size};
 use super::super::row::MassFractions;
 use super::{Surface, WarmStarts};
 use crate::collision::{Contact, Manifold, ManifoldPoint, PointImpulse};
-use crate::math::{Fx, Length, Ratio, Reciprocal, Shift, Speed, Unit, Vec2, convert, narrow};
+use crate::math::{Fx, Length, Ratio, Shift, Speed, Unit, Vec2, convert, narrow};
 
-/// A contact with its lever ratios.
+/// A contact with its lever ratios: two cache lines.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub(super) struct Input {
@@ -26,8 +26,9 @@ pub(super) struct Input {
     pub(super) surface_speed: Speed,
     pub(super) rolling_resistance: Fx,
     pub(super) rolling: Speed,
-    pub(super) gyrations: [Reciprocal; 2],
 }
+
+const _: () = assert!(size_of::<Input>() == 128, "two cache lines");
 
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct InputPoint {
@@ -67,7 +68,6 @@ impl Input {
             surface_speed: narrow(surface_speed),
             rolling_resistance,
             rolling: memory.rolling,
-            gyrations: ends.map(|end| end.inverse_gyration),
         };
         let to_ends = ends.map(|end| end.to_centre(manifold.origin));
         for (i, point) in points.iter().enumerate() {

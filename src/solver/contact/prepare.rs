@@ -77,8 +77,8 @@ impl ContactSet {
             inputs.push(input);
         }
         colouring.order(nodes, list.len());
-        Fill { batches: serial, inputs, colouring }.run::<Scalar<1>>();
-        machine.run(Fill { batches: coloured, inputs, colouring });
+        Fill { batches: serial, inputs, list, colouring }.run::<Scalar<1>>();
+        machine.run(Fill { batches: coloured, inputs, list, colouring });
     }
 }
 
@@ -86,13 +86,14 @@ impl ContactSet {
 struct Fill<'a, const N: usize> {
     batches: &'a mut Batches<N>,
     inputs: &'a [Input],
+    list: &'a BodyList,
     colouring: &'a Colouring,
 }
 
 impl<const N: usize> Kernel<N> for Fill<'_, N> {
     #[inline(always)]
     fn run<L: Lanes<N>>(self) {
-        let Fill { batches, inputs, colouring } = self;
+        let Fill { batches, inputs, list, colouring } = self;
         batches.clear();
         for group in colouring.groups() {
             let indices = match group {
@@ -101,7 +102,7 @@ impl<const N: usize> Kernel<N> for Fill<'_, N> {
                 _ => continue,
             };
             for chunk in indices.chunks(N) {
-                batches.push::<L>(inputs, chunk);
+                batches.push::<L>(inputs, list, chunk);
             }
             batches.colours.push(batches.batches.len());
         }
@@ -119,7 +120,7 @@ impl<const N: usize> Batches<N> {
 
     /// Adds a batch of up to `N` contacts.
     #[inline(always)]
-    fn push<L: Lanes<N>>(&mut self, inputs: &[Input], indices: &[u32]) {
+    fn push<L: Lanes<N>>(&mut self, inputs: &[Input], list: &BodyList, indices: &[u32]) {
         let Batches { batches, special, records, .. } = self;
         batches.push(Batch::NONE);
         records.push(Records::NONE);
@@ -134,7 +135,7 @@ impl<const N: usize> Batches<N> {
             let mut rest = Special::NONE;
             for (lane, &index) in indices.iter().enumerate() {
                 let inverses = [0, 1].map(|point| Unit::from_bits(records.inverses[point][0].0[lane]));
-                rest.fill(lane, &inputs[index as usize], inverses);
+                rest.fill(lane, &inputs[index as usize], list, inverses);
             }
             special.push(rest);
         }

@@ -10,6 +10,7 @@
 //! |L / D| s <= R sum Ln / Dn
 //! ```
 
+use super::super::body_list::BodyList;
 use super::super::lanes::Ints;
 use super::super::row::{Denominator, Row as ScalarRow, impulse_of, lambda_of};
 use super::TANGENT_MAX;
@@ -43,9 +44,11 @@ impl<const N: usize> RollingRows<N> {
         &mut self,
         lane: usize,
         input: &Input,
+        list: &BodyList,
         inverse_normals: [Unit; 2],
     ) {
-        let &Input { gyrations: [a, b], fractions, rolling_resistance, rolling, .. } = input;
+        let &Input { bodies, fractions, rolling_resistance, rolling, .. } = input;
+        let [a, b] = bodies.map(|index| list.facts(index).inverse_gyration);
         let (row, denominator, scale) = ScalarRow::angular(a, b, fractions);
         // Neither body turns if there is no scale.
         let Some(length) = fx_div(rolling_resistance, scale.into()) else { return };

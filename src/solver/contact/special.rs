@@ -1,6 +1,7 @@
 //! What few contacts have: restitution, surfaces that move, and resistance to rolling. The others should not carry it
 //! through the caches.
 
+use super::super::body_list::BodyList;
 use super::super::lanes::Ints;
 use super::input::Input;
 use super::rolling::RollingRows;
@@ -34,12 +35,12 @@ impl<const N: usize> Special<N> {
 
     /// Takes a contact into a lane. `inverse_normals` are the reciprocals of its points' denominators, 0 for a missing
     /// one.
-    pub(super) fn fill(&mut self, lane: usize, input: &Input, inverse_normals: [Unit; 2]) {
+    pub(super) fn fill(&mut self, lane: usize, input: &Input, list: &BodyList, inverse_normals: [Unit; 2]) {
         self.restitution.0[lane] = input.restitution.to_bits();
         self.surface_speed.0[lane] = input.surface_speed.to_bits();
         if input.rolling_resistance > 0 {
             self.rolls = true;
-            self.rolling.fill(lane, input, inverse_normals);
+            self.rolling.fill(lane, input, list, inverse_normals);
         }
     }
 }
