@@ -16,8 +16,8 @@ pub struct Ours {
 impl Ours {
     /// An empty world.
     pub fn new(config: &Config, threads: usize) -> Result<Self> {
-        ensure!(threads == 1, "lockstep2d has one thread");
-        let world = World::new(*config).map_err(|error| anyhow!("{error}"))?;
+        let mut world = World::new(*config).map_err(|error| anyhow!("{error}"))?;
+        ensure!(world.set_threads(threads), "{threads} threads cannot be had");
         Ok(Ours { world, saved: None })
     }
 }

@@ -62,18 +62,19 @@ pub fn cost(name: &str, steps: Option<u64>) -> Result<Cost> {
     before.iter().try_for_each(|events| advance(&mut world, events))?;
 
     let start = world.save();
+    let mut saves = vec![start.clone(); TICKS];
     let (mut save, mut hash, mut restore) = (Vec::new(), Vec::new(), Vec::new());
     let (mut step, mut rollback) = (Vec::new(), Vec::new());
     for _ in 0..TIMES {
         let (restoring, ()) = timed(|| world.restore(&start));
         restore.push(restoring);
         let mut resimulating = 0.0;
-        for events in last {
+        for (tick, events) in last.iter().enumerate() {
             execute(&mut world, events)?;
             let (stepping, ()) = timed(|| world.step());
-            let (saving, saved) = timed(|| world.save());
+            // A game keeps as many saves as it may roll back, and uses their memory again.
+            let (saving, ()) = timed(|| world.save_into(&mut saves[tick]));
             let (hashing, _) = timed(|| world.state_hash());
-            drop(saved);
             resimulating += stepping + saving + hashing;
             step.push(stepping);
             save.push(saving);
@@ -117,20 +118,9 @@ fn advance(world: &mut World, events: &[Event]) -> Result<()> {
     Ok(())
 }
 
-/// How much memory a save takes, as the allocator counts it.
+/// What a save keeps for itself, beside what it shares with the world.
 fn save_bytes(world: &World) -> usize {
-    let before = allocated();
-    let saved = world.save();
-    let after = allocated();
-    drop(saved);
-    after.saturating_sub(before)
-}
-
-/// Bytes that are allocated now, in the heap and in mappings.
-fn allocated() -> usize {
-    // SAFETY: takes nothing.
-    let info = unsafe { libc::mallinfo2() };
-    info.uordblks + info.hblkhd
+    world.save().rollback_bytes()
 }
 
 /// What a body, a contact and a joint take: from worlds of bodies alone, of contacts and of joints.
