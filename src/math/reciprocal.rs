@@ -7,7 +7,7 @@ use fixed::FixedI32;
 use fixed::types::extra::LeEqU32;
 use serde::{Deserialize, Serialize};
 
-use super::formats::{Fx, div_round, round_shift, saturate};
+use super::formats::{Fx, div_round, round_shift, round_shift_wide, saturate, saturate_wide};
 
 /// The reciprocal of a positive number: `mantissa / 2^shift`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -58,6 +58,14 @@ impl Reciprocal {
             Ok(_) => 0,
             Err(_) => saturate(product.saturating_mul(1 << (-shift).min(62))),
         })
+    }
+
+    /// `a / x` of a world quantity, rounded once, saturated.
+    #[inline]
+    pub(crate) fn times_wide(self, a: Fx) -> Fx {
+        let product = i128::from(a.to_bits()) * i128::from(self.mantissa);
+        let rounded = if self.shift == 0 { product } else { round_shift_wide(product, self.shift) };
+        Fx::from_bits(saturate_wide(rounded))
     }
 
     /// `a / x` exactly: the product and its number of fraction bits beyond those of `a`.
