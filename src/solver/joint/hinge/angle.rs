@@ -11,8 +11,8 @@ use super::super::super::limits::Faults;
 use super::super::place::Turned;
 use super::angle_input::AngleInput;
 use super::kernel::Constants;
-use super::pair::{Pair, UNIT, clamp};
-use crate::math::{Fx, Ratio, Speed, Unit, round_shift_wide, saturate, saturate_wide};
+use super::pair::{Pair, RATIO, UNIT, clamp};
+use crate::math::{Fx, Speed, Unit, round_shift_wide, saturate, saturate_wide};
 
 /// The rows of a batch. Lanes without a row have no gains, or bounds of 0.
 #[derive(Clone, Debug)]
@@ -288,7 +288,7 @@ fn velocity<L: Lanes<N>, const N: usize>(
 ) -> L::Int {
     let a = L::mul(L::load(&e[0]), pair.a.turn);
     let b = L::mul(L::load(&e[1]), pair.b.turn);
-    let (vn, out) = L::narrow_saturating::<{ Ratio::FRAC_NBITS as i32 }>(L::sub_wide(b, a));
+    let (vn, out) = L::narrow_saturating::<RATIO>(L::sub_wide(b, a));
     if L::any(out) {
         *faults += u64::from(L::count(L::both(out, L::greater(max, L::splat(0)))));
     }

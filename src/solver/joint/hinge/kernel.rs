@@ -17,8 +17,8 @@ use super::super::super::limits::{Faults, IMPULSE_MAX, STEP_MAX};
 use super::super::super::settings::Tuning;
 use super::angle::AngleRows;
 use super::batch::{Batch, Shape};
-use super::pair::{Pair, UNIT, beyond, clamp};
-use crate::math::{Length, Rate, Ratio, Shift, Speed, Step, Unit};
+use super::pair::{Pair, RATIO, UNIT, beyond, clamp, shift};
+use crate::math::{Length, Rate, Shift, Speed, Step, Unit};
 
 /// The constants of a tick.
 #[derive(Clone, Copy)]
@@ -93,10 +93,10 @@ fn turned<L: Lanes<N>, const N: usize>(
 /// and what has moved since.
 #[inline(always)]
 fn closing<L: Lanes<N>, const N: usize>(gap: L::Wide, moved: L::Int, constants: &Constants) -> L::Int {
-    const ARM: i32 = (Length::FRAC_NBITS + Unit::FRAC_NBITS) as i32;
-    const RATE: i32 = (Step::FRAC_NBITS + Rate::FRAC_NBITS - Speed::FRAC_NBITS) as i32;
-    let moved = L::mul(moved, L::splat(1 << (ARM - Shift::FRAC_NBITS as i32)));
-    let (gap, _) = L::narrow_saturating::<{ ARM - Step::FRAC_NBITS as i32 }>(L::add_wide(gap, moved));
+    const ARM: u32 = Length::FRAC_NBITS + Unit::FRAC_NBITS;
+    const RATE: i32 = shift(Step::FRAC_NBITS + Rate::FRAC_NBITS - Speed::FRAC_NBITS);
+    let moved = L::mul(moved, L::splat(1 << (ARM - Shift::FRAC_NBITS)));
+    let (gap, _) = L::narrow_saturating::<{ shift(ARM - Step::FRAC_NBITS) }>(L::add_wide(gap, moved));
     L::narrow_saturating::<RATE>(L::mul(gap, L::splat(constants.bias_rate))).0
 }
 
@@ -147,6 +147,7 @@ fn inverse<L: Lanes<N>, const N: usize>([a, b]: [[L::Int; 2]; 2], fractions: [L:
     clippy::cast_sign_loss,
     reason = "1 <= det < 2^27, and G is at most 1"
 )]
+#[expect(clippy::cast_possible_wrap, reason = "a reciprocal is at most 2^33")]
 fn inverse_of(xx: i64, xy: i64, yy: i64) -> [i32; 3] {
     const ONE: i64 = 1 << 46;
     let (k11, k22) = (ONE + xx, ONE + yy);
@@ -175,7 +176,7 @@ fn fill_gains<L: Lanes<N>, const N: usize>(
     }
     for i in 0..2 {
         let wide = L::add_wide(L::mul(gains[i], e[0]), L::mul(gains[i + 1], e[1]));
-        L::store(L::narrow::<{ Ratio::FRAC_NBITS as i32 }>(wide), &mut batch.f[side][i]);
+        L::store(L::narrow::<RATIO>(wide), &mut batch.f[side][i]);
     }
 }
 
@@ -294,7 +295,6 @@ fn velocity<L: Lanes<N>, const N: usize>(
     b: &Motion<L::Int>,
     faults: &mut Faults,
 ) -> L::Int {
-    const RATIO: i32 = Ratio::FRAC_NBITS as i32;
     let angular = L::sub_wide(L::mul(e_b, b.turn), L::mul(e_a, a.turn));
     let wide = L::add_wide(L::mul(linear, L::splat(1 << RATIO)), angular);
     let (vr, out) = L::narrow_saturating::<RATIO>(wide);

@@ -4,9 +4,16 @@ use super::super::super::body::SolverBody;
 use super::super::super::lanes::{Ints, Lanes, Motion};
 use super::super::super::limits::{Faults, SPEED_MAX};
 use super::batch::Batch;
-use crate::math::Unit;
+use crate::math::{Ratio, Unit};
 
-pub(super) const UNIT: i32 = Unit::FRAC_NBITS as i32;
+/// Fraction bits to shift by.
+#[expect(clippy::cast_possible_wrap, reason = "at most 64")]
+pub(super) const fn shift(fraction_bits: u32) -> i32 {
+    fraction_bits as i32
+}
+
+pub(super) const UNIT: i32 = shift(Unit::FRAC_NBITS);
+pub(super) const RATIO: i32 = shift(Ratio::FRAC_NBITS);
 
 /// 512 as a speed: half of what the format holds.
 pub(super) const HALF: i32 = 1 << 30;
