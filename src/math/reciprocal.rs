@@ -7,7 +7,7 @@ use fixed::FixedI32;
 use fixed::types::extra::LeEqU32;
 use serde::{Deserialize, Serialize};
 
-use super::formats::{Fx, div_round, round_shift, saturate};
+use super::formats::{Fx, div_round, round_shift, round_shift_wide, saturate, saturate_wide};
 
 /// The reciprocal of a positive number: `mantissa / 2^shift`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -63,10 +63,18 @@ impl Reciprocal {
     /// `a / x` from a number of fraction bits to another, rounded to nearest. `|a|` must be below 2^32, and the result is
     /// not saturated.
     #[inline]
-    pub(crate) fn times_wide(self, a: i64, from: u32, to: u32) -> i64 {
+    pub(crate) fn times_bits(self, a: i64, from: u32, to: u32) -> i64 {
         let shift = (self.shift + from).saturating_sub(to);
         debug_assert!(self.mantissa == 0 || self.shift + from >= to, "the reciprocal of a tiny number");
         round_shift(a * i64::from(self.mantissa), shift.min(63))
+    }
+
+    /// `a / x` of a world quantity, rounded once, saturated.
+    #[inline]
+    pub(crate) fn times_wide(self, a: Fx) -> Fx {
+        let product = i128::from(a.to_bits()) * i128::from(self.mantissa);
+        let rounded = if self.shift == 0 { product } else { round_shift_wide(product, self.shift) };
+        Fx::from_bits(saturate_wide(rounded))
     }
 
     /// `a / x` exactly: the product and its number of fraction bits beyond those of `a`.

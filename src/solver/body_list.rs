@@ -50,7 +50,7 @@ impl BodyFacts {
         let (x, y) = (wide(arm.x.to_bits()), wide(arm.y.to_bits()));
         // An arm is below 2^31.5, so its product with a mantissa is below 2^63.
         let c = round_shift(x * wide(n.y.to_bits()) - y * wide(n.x.to_bits()), Ratio::FRAC_NBITS);
-        let e = self.inverse_gyration.times_wide(c, Length::FRAC_NBITS, Ratio::FRAC_NBITS);
+        let e = self.inverse_gyration.times_bits(c, Length::FRAC_NBITS, Ratio::FRAC_NBITS);
         let limit = wide(RATIO_MAX.to_bits());
         Ratio::from_bits(saturate(e.clamp(-limit, limit)))
     }

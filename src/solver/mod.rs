@@ -39,7 +39,6 @@ pub use settings::{ContactTuning, DISTANCE_MAX, SolverSettings};
 
 use crate::body::{Arena, Body, BodyId, JointId};
 use crate::collision::{Contact, Manifold, Pair};
-use crate::math::Reciprocal;
 use crate::threads::Threads;
 
 /// How many times as often everything is solved in a tick in which most contact points are new: without impulses of
@@ -128,8 +127,7 @@ impl Solver {
     /// One sub-step: aim joints, integrate velocities, warm start, solve with bias, integrate displacements,
     /// refresh joints, relax without bias. `index` counts the sub-steps since the world was made.
     pub(crate) fn sub_step(&mut self, index: u64, tuning: &Tuning) {
-        let h = Reciprocal::of_integer(tuning.rate);
-        self.joints.aim(&self.list.bodies, h, tuning);
+        self.joints.aim(&self.list.bodies, tuning);
         for mover in &self.movers {
             mover.integrate_velocity(&mut self.list.bodies, tuning.speed_max);
         }

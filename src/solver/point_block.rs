@@ -230,23 +230,6 @@ fn inverse(k: &Symmetric<i64>, det: i64) -> Symmetric<Unit> {
     Symmetric { m11: entry(k.m22), m12: entry(-k.m12), m22: entry(k.m11) }
 }
 
-/// The entries `g11, g12, g22` of `G` from those of `K - I` with 46 fraction bits, `eA x eB` with 48, and `aA aB`.
-#[inline]
-pub(crate) fn inverse_of([xx, xy, yy]: [i64; 3], cross: i64, shares: i32) -> [i32; 3] {
-    let [xx, xy, yy] = [xx, xy, yy].map(|entry| round_shift(entry, 16));
-    let one = 1i64 << 30;
-    let det = one + xx + yy + i64::from(shares != 0) * cross_term(cross, shares);
-    let Symmetric { m11, m12, m22 } = inverse(&Symmetric { m11: one + xx, m12: xy, m22: one + yy }, det);
-    [m11.to_bits(), m12.to_bits(), m22.to_bits()]
-}
-
-/// `aA aB (eA x eB)^2`. 24 fraction bits of `eA x eB` are enough: the term is never the smallest.
-#[inline]
-fn cross_term(cross: i64, shares: i32) -> i64 {
-    let cross = i128::from(round_shift(cross, 24));
-    saturate_wide(round_shift_wide(round_shift_wide(cross * cross, 24) * i128::from(shares), 24))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

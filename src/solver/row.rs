@@ -48,6 +48,8 @@ impl MassFractions {
     /// Of the masses in kg: 0 for a body that nothing moves.
     pub(crate) fn of_masses(a: Fx, b: Fx) -> Self {
         match (a > 0, b > 0) {
+            // Of equal bodies without a division.
+            (true, true) if a == b => MassFractions { a: Unit::ONE / 2, b: Unit::ONE / 2 },
             (true, true) => {
                 let (mass_a, mass_b) = (a.to_bits().unsigned_abs(), b.to_bits().unsigned_abs());
                 // Masses are below 2^62. Dropping all but 32 bits of the sum leaves room for 30 more.

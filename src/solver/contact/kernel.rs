@@ -116,7 +116,10 @@ impl<L: Lanes<N>, const N: usize> Pair<L, N> {
             turn: L::add(turn, part::<L, N>(&row.b[2], d)),
         };
         (self.a, self.b) = (a, b);
-        if L::any(L::negative(L::or(beyond::<L, N>(a), beyond::<L, N>(b)))) {
+        // One branch that is never taken, instead of six clamps.
+        let limit = L::splat(SPEED_MAX.to_bits());
+        let (most, least) = (L::max(most::<L, N>(a), most::<L, N>(b)), L::min(least::<L, N>(a), least::<L, N>(b)));
+        if L::any(L::either(L::greater(most, limit), L::greater(L::sub(L::splat(0), limit), least))) {
             self.clamp(faults);
         }
     }
@@ -149,11 +152,14 @@ impl<L: Lanes<N>, const N: usize> Pair<L, N> {
 /// 512 as a speed: half of what the format holds.
 const HALF: i32 = 1 << 30;
 
-/// Negative where a component is not within ±[`HALF`]: then the sum of both is negative, or wraps to become so.
 #[inline(always)]
-fn beyond<L: Lanes<N>, const N: usize>(v: Motion<L::Int>) -> L::Int {
-    let half = L::splat(HALF);
-    L::or(L::or(L::add(v.x, half), L::add(v.y, half)), L::add(v.turn, half))
+fn most<L: Lanes<N>, const N: usize>(v: Motion<L::Int>) -> L::Int {
+    L::max(L::max(v.x, v.y), v.turn)
+}
+
+#[inline(always)]
+fn least<L: Lanes<N>, const N: usize>(v: Motion<L::Int>) -> L::Int {
+    L::min(L::min(v.x, v.y), v.turn)
 }
 
 /// What an impulse changes.

@@ -3,7 +3,7 @@
 
 use alloc::vec::Vec;
 
-use super::super::body::{SolverBody, turn_of};
+use super::super::body::SolverBody;
 use super::super::body_list::BodyList;
 use super::super::colour::{Colouring, Group, Node};
 use super::super::contact::Pass;
@@ -11,14 +11,14 @@ use super::super::lanes::{Machine, Quad};
 use super::super::limits::Faults;
 use super::super::settings::Tuning;
 use super::def::JointKind;
-use super::hinge::{AngleInput, AngleParts, End, HingeSet, Input, Poses, Task, node};
+use super::hinge::{AngleParts, End, HingeSet, Poses, Task, node};
 use super::parts::Parts;
 use super::place::{Ends, Turned};
 use super::point::JointPoint;
 use super::row::JointRow;
 use super::state::{Joint, JointImpulses};
 use crate::body::{Arena, Body, BodyId, JointId};
-use crate::math::{Angle, Fx, Reciprocal, Rot, Step, Unit, Vec2, fx_mul, mul, widen};
+use crate::math::{Angle, Fx, Rot, Unit, Vec2, fx_mul, mul, widen};
 
 /// All joints, for one tick.
 #[derive(Clone, Debug, Default)]
@@ -174,11 +174,14 @@ impl JointSet {
         for &slot in slots {
             let joint = joints.at(slot);
             let (a, b) = joint.def.bodies();
-            let [place_a, place_b] = [a, b].map(|id| self.place_of(id.index(), bodies, list));
-            let (end_a, end_b) = (self.bodies[place_a], self.bodies[place_b]);
-            nodes.push(node(slot, &end_a, &end_b));
+            let rate = tuning.rate;
+            let places = [a, b].map(|id| self.place_of(id.index(), bodies, list, rate));
+            let [end_a, end_b] = places.map(|place| &self.bodies[place]);
+            nodes.push(node(slot, end_a, end_b));
             let entry = match hinge_parts(&joint.def.kind) {
-                Some(parts) => self.push_hinge(slot, joint, (&end_a, &end_b), &parts, tuning),
+                Some(parts) => {
+                    Entry::Hinge(self.hinges.push_input(slot, joint, (end_a, end_b), &parts, tuning))
+                }
                 None => {
                     let ends = [(end_a.index, bodies.at(a.index())), (end_b.index, bodies.at(b.index()))];
                     let starts = (count(&self.drafts.rows), count(&self.drafts.points));
@@ -194,33 +197,17 @@ impl JointSet {
     }
 
     /// Where a body is in `bodies`: a compact copy of what joints need of it.
-    fn place_of(&mut self, slot: u32, bodies: &Arena<Body, BodyId>, list: &mut BodyList) -> usize {
+    fn place_of(&mut self, slot: u32, bodies: &Arena<Body, BodyId>, list: &mut BodyList, rate: u32) -> usize {
         let index = list.own_index_of(slot);
-        self.places.resize(list.len(), 0);
+        if self.places.len() < list.len() {
+            self.places.resize(list.len(), 0);
+        }
         let place = &mut self.places[index as usize];
         if *place == 0 {
-            self.bodies.push(End::new(index, bodies.at(slot)));
+            self.bodies.push(End::new(index, bodies.at(slot), rate));
             *place = count(&self.bodies);
         }
         *place as usize - 1
-    }
-
-    fn push_hinge(
-        &mut self,
-        slot: u32,
-        joint: &Joint,
-        (a, b): (&End, &End),
-        parts: &AngleParts,
-        tuning: &Tuning,
-    ) -> Entry {
-        let HingeSet { inputs, angles, .. } = &mut self.hinges;
-        let angle = if parts.is_empty() { None } else { Some(count(angles)) };
-        let input = Input::new(slot, joint, a, b, angle);
-        if angle.is_some() {
-            angles.push(AngleInput::new(parts, &input, (a, b), &joint.impulses, tuning));
-        }
-        inputs.push(input);
-        Entry::Hinge(count(inputs) - 1)
     }
 
     /// Sorts them into colours.
@@ -245,7 +232,7 @@ impl JointSet {
     pub(crate) fn refresh(&mut self, bodies: &mut [SolverBody], machine: Machine, tuning: &Tuning) {
         for body in &self.bodies {
             let at = body.index as usize;
-            let turns = turn_of(bodies[at].turn, body.inverse_gyration);
+            let turns = body.turns_of(bodies[at].turn);
             let rotation = Rot::from_angle(body.angle + Angle::from_turns(Fx::from_bits(turns)));
             self.turned[at] = Turned { rotation, turns };
             self.quads[at] = Quad([rotation.cos.to_bits(), rotation.sin.to_bits(), 0, 0]);
@@ -272,10 +259,12 @@ impl JointSet {
     }
 
     /// Looks ahead along the turns of the coming sub-step, at the velocities that the last one has left.
-    pub(crate) fn aim(&mut self, bodies: &[SolverBody], h: Reciprocal, tuning: &Tuning) {
+    pub(crate) fn aim(&mut self, bodies: &[SolverBody], tuning: &Tuning) {
+        let (half, sixth) = (tuning.joint_stretch / 2, tuning.joint_stretch / 6);
         for body in &self.bodies {
-            let step: Step = h.times(bodies[body.index as usize].spin);
-            let (across, along) = ahead(body.inverse_gyration.times(step), tuning.joint_stretch);
+            let turn = body.ahead_of(bodies[body.index as usize].spin).clamp(-TURN_MAX, TURN_MAX);
+            let (across, squared): (Unit, Unit) = (mul(half, turn), mul(turn, turn));
+            let along: Unit = mul(sixth, squared);
             let Quad(numbers) = &mut self.quads[body.index as usize];
             [numbers[2], numbers[3]] = [across.to_bits(), along.to_bits()];
         }
@@ -335,16 +324,15 @@ impl JointSet {
     pub(super) fn reaction(joint: &Joint, a: &Body, b: &Body, tuning: &Tuning) -> (Vec2<Fx>, Fx) {
         // Place 0 is the ground's.
         let mut set = JointSet {
-            bodies: alloc::vec![End::new(1, a), End::new(2, b)],
+            bodies: alloc::vec![End::new(1, a, tuning.rate), End::new(2, b, tuning.rate)],
             turned: alloc::vec![Turned::default(); 3],
             quads: alloc::vec![Quad::default(); 3],
             ..JointSet::default()
         };
         let machine = Machine::default();
-        let ends = (set.bodies[0], set.bodies[1]);
         match hinge_parts(&joint.def.kind) {
             Some(parts) => {
-                set.push_hinge(0, joint, (&ends.0, &ends.1), &parts, tuning);
+                set.hinges.push_input(0, joint, (&set.bodies[0], &set.bodies[1]), &parts, tuning);
                 set.hinges.push(&Group::Serial(&[0]), Some);
             }
             None => set.list.push(0, joint, (1, a), (2, b), tuning),
@@ -369,13 +357,6 @@ impl JointSet {
 /// Beyond a quarter of a radian the third order is no better than the second, and feeds energy to chains that one
 /// iteration does not solve.
 const TURN_MAX: Unit = Unit::lit("0.25");
-
-/// `M t/2` and `M t^2/6` of [`super::super::point_block`].
-fn ahead(turn: Unit, stretch: Unit) -> (Unit, Unit) {
-    let turn = turn.clamp(-TURN_MAX, TURN_MAX);
-    let squared: Unit = mul(turn, turn / 6);
-    (mul(stretch, turn / 2), mul(stretch, squared))
-}
 
 fn count<T>(parts: &[T]) -> u32 {
     u32::try_from(parts.len()).expect("parts are counted in 32 bits")

@@ -234,13 +234,16 @@ impl Lanes<WIDTH> for Avx2 {
 
     #[inline(always)]
     fn to_array(a: Products) -> [i64; WIDTH] {
-        let (mut even, mut odd) = ([0i64; 4], [0i64; 4]);
+        let mut array = [0i64; WIDTH];
         // SAFETY: see `Avx2`; 32 bytes each.
         unsafe {
-            _mm256_storeu_si256(even.as_mut_ptr().cast(), a.even);
-            _mm256_storeu_si256(odd.as_mut_ptr().cast(), a.odd);
+            let (low, high) = (_mm256_unpacklo_epi64(a.even, a.odd), _mm256_unpackhi_epi64(a.even, a.odd));
+            let front = _mm256_permute2x128_si256::<0x20>(low, high);
+            let back = _mm256_permute2x128_si256::<0x31>(low, high);
+            _mm256_storeu_si256(array.as_mut_ptr().cast(), front);
+            _mm256_storeu_si256(array.as_mut_ptr().add(4).cast(), back);
         }
-        [even[0], odd[0], even[1], odd[1], even[2], odd[2], even[3], odd[3]]
+        array
     }
 
     #[inline(always)]

@@ -29,9 +29,8 @@ impl Row {
         let gain = |fraction: Unit, e: Ratio| {
             // 54 fraction bits over 30, and the rounding of a gain that is mostly 1.
             let product = i64::from(fraction.to_bits()) * i64::from(e.to_bits());
-            let quotient = div_round(i128::from(product) << 6, denominator.max(1).into());
             // No change of velocity may be larger than `L`: only impossible bodies exceed it.
-            Unit::from_bits(saturate(saturate_wide(quotient))).min(Unit::ONE)
+            Unit::from_bits(saturate(quotient(product, denominator.max(1)))).min(Unit::ONE)
         };
         let (f_a, f_b) = (gain(fractions.a, e_a), gain(fractions.b, e_b));
         (Row { e_a, e_b, f_a, f_b, ..Row::NONE }, denominator, s)
@@ -40,6 +39,16 @@ impl Row {
     /// Of a row on the angle: the shares of its velocity that A and B take. They add up to 1, unless neither turns.
     pub(crate) fn shares(&self) -> (Unit, Unit) {
         (mul(self.f_a, self.e_a), mul(self.f_b, self.e_b))
+    }
+}
+
+/// `2^6 n / d` of numbers that are not negative, to nearest.
+fn quotient(n: i64, d: i64) -> i64 {
+    if n < 1 << 56 && d < 1 << 62 {
+        // The same in 64 bits.
+        ((n << 6) + d / 2) / d
+    } else {
+        saturate_wide(div_round(i128::from(n) << 6, d.into()))
     }
 }
 
@@ -58,12 +67,17 @@ fn angular_scale(a: (Reciprocal, Unit), b: (Reciprocal, Unit)) -> Length {
     if sum == 0 {
         return Length::ZERO;
     }
-    // 126 fraction bits over 72 are 54, their root has 27, and a length 22. More than it is rounded by, so
-    // that `f` is not above 1.
-    let root = ((1 << 126) / sum).isqrt() >> 5;
-    let root = root + (root >> 14) + 1;
-    let most = (100u128 << 43) / u128::from(inverse(a).max(inverse(b)).to_bits().unsigned_abs());
-    Length::from_bits(i32::try_from(root.min(most)).unwrap_or(i32::MAX))
+    // Normalised to 31 or 32 bits by an even shift, so that its reciprocal has as many and the root of that half. More
+    // than it is rounded by, so that `f` is not above 1.
+    let shift = (i64::from(128 - sum.leading_zeros()) - 31) & !1;
+    let top = if shift >= 0 { sum >> shift } else { sum << -shift };
+    let root = ((1u64 << 62) / u64::try_from(top).unwrap_or(u64::MAX).max(1)).isqrt();
+    let root = u128::from(root + (root >> 14) + 1);
+    // `2^(31 + shift/2) / sqrt(sum)`, and a length is `2^(22 + 36) / sqrt(sum)`.
+    let up = 27 - shift / 2;
+    let length = if up >= 0 { root << up } else { root >> -up };
+    let most = (100u64 << 43) / u64::from(inverse(a).max(inverse(b)).to_bits().unsigned_abs()).max(1);
+    Length::from_bits(i32::try_from(length.min(most.into())).unwrap_or(i32::MAX))
 }
 
 #[cfg(test)]

@@ -9,10 +9,10 @@ use super::super::super::contact::Pass;
 use super::super::super::lanes::{Ints, Lanes};
 use super::super::super::limits::Faults;
 use super::super::place::Turned;
-use super::angle_input::{ANGLE_MAX, AngleInput};
+use super::angle_input::AngleInput;
 use super::kernel::Constants;
-use super::pair::{Pair, UNIT, clamp};
-use crate::math::{Fx, Ratio, Speed, Unit, round_shift_wide, saturate, saturate_wide};
+use super::pair::{Pair, RATIO, UNIT, clamp};
+use crate::math::{Fx, Speed, Unit, round_shift_wide, saturate, saturate_wide};
 
 /// The rows of a batch. Lanes without a row have no gains, or bounds of 0.
 #[derive(Clone, Debug)]
@@ -192,9 +192,9 @@ impl<const N: usize> AngleRows<N> {
         }
         if self.has_drive {
             let DriveRow { lambda, max, bias } = &mut self.drive;
-            let w = L::add_saturating(velocity::<L, N>(&self.e, pair, faults), L::load(bias));
-            let old = L::load(lambda);
-            let new = clamp::<L, N>(L::sub_saturating(old, w), L::load(max));
+            let (old, max) = (L::load(lambda), L::load(max));
+            let w = L::add_saturating(velocity::<L, N>(&self.e, max, pair, faults), L::load(bias));
+            let new = clamp::<L, N>(L::sub_saturating(old, w), max);
             L::store(new, lambda);
             pair.turn(&self.f, L::sub(new, old), faults);
         }
@@ -208,16 +208,18 @@ impl<const N: usize> AngleRows<N> {
     #[inline(always)]
     fn solve_spring<L: Lanes<N>>(&mut self, pass: Pass, pair: &mut Pair<L, N>, faults: &mut Faults) {
         let SpringRow { lambda, max, mass_scale, impulse_scale, push, holds } = &mut self.spring;
-        let vn = velocity::<L, N>(&self.e, pair, faults);
-        let old = L::load(lambda);
+        let (old, max) = (L::load(lambda), L::load(max));
+        let held = L::negative(L::load(holds));
+        let solved = if pass == Pass::Bias { max } else { L::select(held, max, L::splat(0)) };
+        let vn = velocity::<L, N>(&self.e, solved, pair, faults);
         let w = match pass {
             Pass::Bias => {
                 let scales = (L::load(mass_scale), L::load(impulse_scale));
                 L::add_saturating(softened::<L, N>(scales, vn, old), L::load(push))
             }
-            Pass::Relax => L::select(L::negative(L::load(holds)), vn, L::splat(0)),
+            Pass::Relax => L::select(held, vn, L::splat(0)),
         };
-        let new = clamp::<L, N>(L::sub_saturating(old, w), L::load(max));
+        let new = clamp::<L, N>(L::sub_saturating(old, w), max);
         L::store(new, lambda);
         pair.turn(&self.f, L::sub(new, old), faults);
     }
@@ -235,7 +237,8 @@ impl<const N: usize> AngleRows<N> {
     ) {
         let zero = L::splat(0);
         let LimitRow { lambda, push, open, .. } = &mut self.limits[side];
-        let vn = velocity::<L, N>(&self.e, pair, faults);
+        let max = L::load(&self.limit_max);
+        let vn = velocity::<L, N>(&self.e, max, pair, faults);
         // A velocity that has saturated has a sign to spare, less one unit.
         let vn = facing::<L, N>(side, L::max(vn, L::splat(-i32::MAX)));
         let (old, push, open) = (L::load(lambda), L::load(push), L::negative(L::load(open)));
@@ -252,8 +255,7 @@ impl<const N: usize> AngleRows<N> {
                 L::select(untouched, zero, w)
             }
         };
-        let most = L::min(L::load(&self.limit_max), L::splat(ANGLE_MAX.to_bits()));
-        let new = L::min(L::max(L::sub_saturating(old, w), zero), most);
+        let new = L::min(L::max(L::sub_saturating(old, w), zero), max);
         L::store(new, lambda);
         pair.turn(&self.f, facing::<L, N>(side, L::sub(new, old)), faults);
     }
@@ -275,14 +277,20 @@ fn softened<L: Lanes<N>, const N: usize>(
     L::narrow::<UNIT>(L::add_wide(L::mul(mass_scale, v), L::mul(impulse_scale, lambda)))
 }
 
-/// Relative velocity of B from A on the angle. A lane in which it does not fit is a fault.
+/// Relative velocity of B from A on the angle. A lane with a row, whose impulses have a largest size, in which it does not
+/// fit is a fault.
 #[inline(always)]
-fn velocity<L: Lanes<N>, const N: usize>(e: &[Ints<N>; 2], pair: &Pair<L, N>, faults: &mut Faults) -> L::Int {
+fn velocity<L: Lanes<N>, const N: usize>(
+    e: &[Ints<N>; 2],
+    max: L::Int,
+    pair: &Pair<L, N>,
+    faults: &mut Faults,
+) -> L::Int {
     let a = L::mul(L::load(&e[0]), pair.a.turn);
     let b = L::mul(L::load(&e[1]), pair.b.turn);
-    let (vn, out) = L::narrow_saturating::<{ Ratio::FRAC_NBITS as i32 }>(L::sub_wide(b, a));
+    let (vn, out) = L::narrow_saturating::<RATIO>(L::sub_wide(b, a));
     if L::any(out) {
-        *faults += u64::from(L::count(out));
+        *faults += u64::from(L::count(L::both(out, L::greater(max, L::splat(0)))));
     }
     vn
 }

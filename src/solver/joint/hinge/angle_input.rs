@@ -33,6 +33,24 @@ impl AngleParts {
     }
 }
 
+/// A spring, and what it is made of, in a tick.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Memo {
+    hertz_and_ratio: (Fx, Fx),
+    softness: Softness,
+}
+
+impl Memo {
+    fn softness(memo: &mut Option<Self>, hertz_and_ratio: (Fx, Fx), rate: u32) -> Softness {
+        if let Some(memo) = memo.filter(|memo| memo.hertz_and_ratio == hertz_and_ratio) {
+            return memo.softness;
+        }
+        let softness = Softness::spring(hertz_and_ratio.0, hertz_and_ratio.1, rate);
+        *memo = Some(Memo { hertz_and_ratio, softness });
+        softness
+    }
+}
+
 /// The rows of one hinge.
 #[derive(Clone, Copy, Debug)]
 pub(in super::super) struct AngleInput {
@@ -85,6 +103,7 @@ impl AngleInput {
         input: &Input,
         (a, b): (&End, &End),
         impulses: &JointImpulses,
+        memo: &mut Option<Memo>,
         tuning: &Tuning,
     ) -> Self {
         let (row, denominator, s) = Row::angular(a.inverse_gyration, b.inverse_gyration, input.fractions);
@@ -104,7 +123,7 @@ impl AngleInput {
             lambda: lambda(slot::SPRING).clamp(-max, max),
         };
         let from_spring = parts.spring.map(|Spring { hertz, damping_ratio, target }| {
-            spring(&Softness::spring(hertz, damping_ratio, tuning.rate), target, false)
+            spring(&Memo::softness(memo, (hertz, damping_ratio), tuning.rate), target, false)
         });
         let drive = parts.drive.map(|Drive { speed, max: torque }| {
             let most = lambda_of(impulse(torque, (a.mass, b.mass), tuning.rate), denominator, s).min(max);

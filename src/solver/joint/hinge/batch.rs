@@ -32,9 +32,8 @@ pub(super) struct Shape<const N: usize> {
     pub(super) arms: [[Ints<N>; 2]; 2],
     /// Lever ratios in the frames of A and of B.
     pub(super) ratios: [[Ints<N>; 2]; 2],
-    /// Mass fractions, and their product.
+    /// Mass fractions.
     pub(super) fractions: [Ints<N>; 2],
-    pub(super) shares: Ints<N>,
     /// Centre of mass of B from that of A at the start of the tick, with 52 fraction bits.
     pub(super) between: [[i64; N]; 2],
 }
@@ -58,7 +57,6 @@ impl<const N: usize> Shape<N> {
         arms: [[Ints::ZERO; 2]; 2],
         ratios: [[Ints::ZERO; 2]; 2],
         fractions: [Ints::ZERO; 2],
-        shares: Ints::ZERO,
         between: [[0; N]; 2],
     };
 }

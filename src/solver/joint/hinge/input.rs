@@ -7,7 +7,9 @@ use super::super::super::row::MassFractions;
 use super::super::parts::slot;
 use super::super::state::Joint;
 use crate::body::Body;
-use crate::math::{Angle, Fx, Length, Ratio, Reciprocal, Vec2};
+use crate::math::{
+    Angle, Fx, Length, Ratio, Reciprocal, Shift, Speed, Unit, Vec2, round_shift_wide, saturate, saturate_wide,
+};
 
 /// A body with joints.
 #[derive(Clone, Copy, Debug)]
@@ -17,13 +19,22 @@ pub(in super::super) struct End {
     pub(in super::super) inverse_gyration: Reciprocal,
     /// 0 if no impulse moves it.
     pub(in super::super) mass: Fx,
+    /// Units of 2^-32 turn for each unit of `k dtheta`.
+    pub(in super::super) turns: Fx,
+    /// Radians in a sub-step for each m/s of the spin, times 2^9: what lies between the formats.
+    pub(in super::super) ahead: Fx,
     centre: Vec2<Fx>,
     local_centre: Vec2<Fx>,
 }
 
 impl End {
-    pub(in super::super) fn new(index: u32, body: &Body) -> Self {
+    pub(in super::super) fn new(index: u32, body: &Body, rate: u32) -> Self {
+        /// `2^32 / 2^26 / (2 pi)`.
+        const TURNS: Fx = crate::fx!(10.18591635788);
+        let inverse = body.mass.inverse_gyration;
         End {
+            turns: inverse.times_wide(TURNS),
+            ahead: inverse.times_wide(Fx::from_bits((512 << 32) / i64::from(rate))),
             index,
             angle: body.angle(),
             inverse_gyration: body.mass.inverse_gyration,
@@ -33,10 +44,26 @@ impl End {
         }
     }
 
+    /// How far it has turned, in units of 2^-32 turn.
+    #[inline]
+    pub(in super::super) fn turns_of(&self, turn: Shift) -> i64 {
+        product(turn.to_bits(), self.turns)
+    }
+
+    /// How far it turns in a sub-step, in radians.
+    #[inline]
+    pub(in super::super) fn ahead_of(&self, spin: Speed) -> Unit {
+        Unit::from_bits(saturate(product(spin.to_bits(), self.ahead)))
+    }
+
     /// The index of the body; the ground if no impulse changes it.
     fn changed(&self) -> u32 {
         if self.mass > 0 { self.index } else { GROUND }
     }
+}
+
+fn product(number: i32, factor: Fx) -> i64 {
+    saturate_wide(round_shift_wide(i128::from(number) * i128::from(factor.to_bits()), Fx::FRAC_NBITS))
 }
 
 /// A joint between two bodies, to be coloured.
@@ -95,7 +122,7 @@ fn arm(arm: Vec2<Fx>) -> Vec2<Length> {
 const LENGTH_MAX: Ratio = Ratio::lit("124");
 
 /// `(-r_y, r_x) / k`, no longer than [`LENGTH_MAX`].
-fn ratios(arm: Vec2<Length>, inverse_gyration: Reciprocal) -> Vec2<Ratio> {
+pub(super) fn ratios(arm: Vec2<Length>, inverse_gyration: Reciprocal) -> Vec2<Ratio> {
     let perp = arm.perp();
     let e: Vec2<Ratio> = Vec2::new(inverse_gyration.times(perp.x), inverse_gyration.times(perp.y));
     let square = |part: Ratio| u64::from(part.unsigned_abs().to_bits()).pow(2);

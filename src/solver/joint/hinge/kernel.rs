@@ -7,7 +7,8 @@
 //! a e = hi 2^32 + lo,    a e e' = hi e' + round(lo e' / 2^32)       (46 fraction bits)
 //! ```
 //!
-//! because rounding `a e` to the format of `e` would cost 7 of its 24 bits.
+//! because rounding `a e` to the format of `e` would cost 7 of its 24 bits. With so many, the determinant may be the
+//! difference `K11 K22 - K12^2`: what cancels is exact.
 
 use core::cell::Cell;
 
@@ -15,12 +16,11 @@ use super::super::super::body::SolverBody;
 use super::super::super::contact::Pass;
 use super::super::super::lanes::{Ints, Lanes, Motion, Quad};
 use super::super::super::limits::{Faults, IMPULSE_MAX, STEP_MAX};
-use super::super::super::point_block::inverse_of;
 use super::super::super::settings::Tuning;
 use super::angle::AngleRows;
 use super::batch::{Batch, Shape};
-use super::pair::{Pair, UNIT, beyond, clamp};
-use crate::math::{Length, Rate, Ratio, Shift, Speed, Step, Unit};
+use super::pair::{Pair, RATIO, UNIT, beyond, clamp, shift};
+use crate::math::{Length, Rate, Shift, Speed, Step, Unit};
 
 /// The constants of a tick.
 #[derive(Clone, Copy)]
@@ -71,7 +71,7 @@ pub(super) fn refresh<L: Lanes<N>, const N: usize>(
         turned::<L, N>(&mut batch.e[1], &quads[1], &shape.ratios[1]),
     ];
     let fractions = [L::load(&shape.fractions[0]), L::load(&shape.fractions[1])];
-    let g = inverse::<L, N>(e, fractions, &shape.shares);
+    let g = inverse::<L, N>(e, fractions);
     for side in 0..2 {
         fill_gains::<L, N>(batch, side, g, e[side], fractions[side]);
     }
@@ -95,10 +95,10 @@ fn turned<L: Lanes<N>, const N: usize>(
 /// and what has moved since.
 #[inline(always)]
 fn closing<L: Lanes<N>, const N: usize>(gap: L::Wide, moved: L::Int, constants: &Constants) -> L::Int {
-    const ARM: i32 = (Length::FRAC_NBITS + Unit::FRAC_NBITS) as i32;
-    const RATE: i32 = (Step::FRAC_NBITS + Rate::FRAC_NBITS - Speed::FRAC_NBITS) as i32;
-    let moved = L::mul(moved, L::splat(1 << (ARM - Shift::FRAC_NBITS as i32)));
-    let (gap, _) = L::narrow_saturating::<{ ARM - Step::FRAC_NBITS as i32 }>(L::add_wide(gap, moved));
+    const ARM: u32 = Length::FRAC_NBITS + Unit::FRAC_NBITS;
+    const RATE: i32 = shift(Step::FRAC_NBITS + Rate::FRAC_NBITS - Speed::FRAC_NBITS);
+    let moved = L::mul(moved, L::splat(1 << (ARM - Shift::FRAC_NBITS)));
+    let (gap, _) = L::narrow_saturating::<{ shift(ARM - Step::FRAC_NBITS) }>(L::add_wide(gap, moved));
     L::narrow_saturating::<RATE>(L::mul(gap, L::splat(constants.bias_rate))).0
 }
 
@@ -129,25 +129,37 @@ fn entry<L: Lanes<N>, const N: usize>(
 
 /// `G = K^-1`.
 #[inline(always)]
-fn inverse<L: Lanes<N>, const N: usize>(
-    [a, b]: [[L::Int; 2]; 2],
-    fractions: [L::Int; 2],
-    shares: &Ints<N>,
-) -> [L::Int; 3] {
+fn inverse<L: Lanes<N>, const N: usize>([a, b]: [[L::Int; 2]; 2], fractions: [L::Int; 2]) -> [L::Int; 3] {
     let (a_x, a_y) = (Parts::<L, N>::of(fractions[0], a[0]), Parts::<L, N>::of(fractions[0], a[1]));
     let (b_x, b_y) = (Parts::<L, N>::of(fractions[1], b[0]), Parts::<L, N>::of(fractions[1], b[1]));
     let xx = entry((&a_x, a[0]), (&b_x, b[0]));
     let xy = entry((&a_x, a[1]), (&b_x, b[1]));
     let yy = entry((&a_y, a[1]), (&b_y, b[1]));
-    let cross = L::to_array(L::sub_wide(L::mul(a[0], b[1]), L::mul(a[1], b[0])));
     let mut g = [Ints::ZERO; 3];
     for lane in 0..N {
-        let entries = inverse_of([xx[lane], xy[lane], yy[lane]], cross[lane], shares.0[lane]);
-        g[0].0[lane] = entries[0];
-        g[1].0[lane] = entries[1];
-        g[2].0[lane] = entries[2];
+        [g[0].0[lane], g[1].0[lane], g[2].0[lane]] = inverse_of(xx[lane], xy[lane], yy[lane]);
     }
     [L::load(&g[0]), L::load(&g[1]), L::load(&g[2])]
+}
+
+/// The entries `g11, g12, g22` of `G` with 30 fraction bits, from those of `K - I` with 46.
+#[inline(always)]
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "1 <= det < 2^27, and G is at most 1"
+)]
+#[expect(clippy::cast_possible_wrap, reason = "a reciprocal is at most 2^33")]
+fn inverse_of(xx: i64, xy: i64, yy: i64) -> [i32; 3] {
+    const ONE: i64 = 1 << 46;
+    let (k11, k22) = (ONE + xx, ONE + yy);
+    // 92 fraction bits, of which 30 are kept.
+    let det = ((i128::from(k11) * i128::from(k22) - i128::from(xy) * i128::from(xy)) >> 62) as u64;
+    // Normalised to 32 bits: its reciprocal then has 31, and products fit 64.
+    let excess = 32u32.saturating_sub((det | 1).leading_zeros());
+    let reciprocal = ((1u64 << 62) / (det >> excess).max(1 << 29)) as i64;
+    let entry = |value: i64| ((((value >> (16 + excess)) * reciprocal) + (1 << 31)) >> 32) as i32;
+    [entry(k22), entry(-xy), entry(k11)]
 }
 
 /// The gains of the body on a side.
@@ -166,7 +178,7 @@ fn fill_gains<L: Lanes<N>, const N: usize>(
     }
     for i in 0..2 {
         let wide = L::add_wide(L::mul(gains[i], e[0]), L::mul(gains[i + 1], e[1]));
-        L::store(L::narrow::<{ Ratio::FRAC_NBITS as i32 }>(wide), &mut batch.f[side][i]);
+        L::store(L::narrow::<RATIO>(wide), &mut batch.f[side][i]);
     }
 }
 
@@ -285,7 +297,6 @@ fn velocity<L: Lanes<N>, const N: usize>(
     b: &Motion<L::Int>,
     faults: &mut Faults,
 ) -> L::Int {
-    const RATIO: i32 = Ratio::FRAC_NBITS as i32;
     let angular = L::sub_wide(L::mul(e_b, b.turn), L::mul(e_a, a.turn));
     let wide = L::add_wide(L::mul(linear, L::splat(1 << RATIO)), angular);
     let (vr, out) = L::narrow_saturating::<RATIO>(wide);

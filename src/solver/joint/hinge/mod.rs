@@ -24,9 +24,11 @@ use super::super::limits::Faults;
 use super::super::settings::Tuning;
 use super::place::Turned;
 use angle::AngleRows;
-pub(super) use angle_input::{AngleInput, AngleParts};
+pub(super) use angle_input::AngleParts;
+use angle_input::{AngleInput, Memo};
 use batch::{Batch, Shape};
-pub(super) use input::{End, Input, node};
+use input::Input;
+pub(super) use input::{End, node};
 use kernel::Constants;
 use prepare::Records;
 
@@ -42,8 +44,10 @@ pub(super) struct Poses<'a> {
 #[derive(Clone, Debug, Default)]
 pub(super) struct HingeSet {
     /// What they are made of, in the order of the state.
-    pub(super) inputs: Vec<Input>,
-    pub(super) angles: Vec<AngleInput>,
+    inputs: Vec<Input>,
+    angles: Vec<AngleInput>,
+    /// The spring that was prepared last: mostly the next one is like it.
+    memo: Option<Memo>,
     /// Those that fit no colour, in their own order.
     serial: Batches<1>,
     /// The others, colour by colour.

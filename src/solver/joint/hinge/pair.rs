@@ -6,9 +6,16 @@ use super::super::super::body::SolverBody;
 use super::super::super::lanes::{Ints, Lanes, Motion};
 use super::super::super::limits::{Faults, SPEED_MAX};
 use super::batch::Batch;
-use crate::math::Unit;
+use crate::math::{Ratio, Unit};
 
-pub(super) const UNIT: i32 = Unit::FRAC_NBITS as i32;
+/// Fraction bits to shift by.
+#[expect(clippy::cast_possible_wrap, reason = "at most 64")]
+pub(super) const fn shift(fraction_bits: u32) -> i32 {
+    fraction_bits as i32
+}
+
+pub(super) const UNIT: i32 = shift(Unit::FRAC_NBITS);
+pub(super) const RATIO: i32 = shift(Ratio::FRAC_NBITS);
 
 /// 512 as a speed: half of what the format holds.
 pub(super) const HALF: i32 = 1 << 30;
@@ -94,7 +101,11 @@ impl<L: Lanes<N>, const N: usize> Pair<L, N> {
 
     #[inline(always)]
     fn keep_in_range(&mut self, faults: &mut Faults) {
-        if L::any(L::negative(L::or(out_of_half::<L, N>(self.a), out_of_half::<L, N>(self.b)))) {
+        // One branch that is never taken, instead of six clamps.
+        let limit = L::splat(SPEED_MAX.to_bits());
+        let most = L::max(most::<L, N>(self.a), most::<L, N>(self.b));
+        let least = L::min(least::<L, N>(self.a), least::<L, N>(self.b));
+        if L::any(L::either(L::greater(most, limit), L::greater(L::sub(L::splat(0), limit), least))) {
             self.clamp(faults);
         }
     }
@@ -141,9 +152,12 @@ pub(super) fn clamp<L: Lanes<N>, const N: usize>(value: L::Int, limit: L::Int) -
     L::min(L::max(value, L::sub(L::splat(0), limit)), limit)
 }
 
-/// Negative where a component is not within ±[`HALF`]: then the sum of both is negative, or wraps to become so.
 #[inline(always)]
-fn out_of_half<L: Lanes<N>, const N: usize>(v: Motion<L::Int>) -> L::Int {
-    let half = L::splat(HALF);
-    L::or(L::or(L::add(v.x, half), L::add(v.y, half)), L::add(v.turn, half))
+fn most<L: Lanes<N>, const N: usize>(v: Motion<L::Int>) -> L::Int {
+    L::max(L::max(v.x, v.y), v.turn)
+}
+
+#[inline(always)]
+fn least<L: Lanes<N>, const N: usize>(v: Motion<L::Int>) -> L::Int {
+    L::min(L::min(v.x, v.y), v.turn)
 }

@@ -1,35 +1,57 @@
 //! Fills batches with hinges in the order in which they are solved, and brings their impulses back.
 
 use super::super::super::colour::Group;
+use super::super::super::settings::Tuning;
 use super::super::place::Turned;
 use super::super::state::{Joint, JointImpulses};
 use super::angle::AngleRows;
 use super::batch::{Batch, Shape};
-use super::{AngleInput, Batches, HingeSet, Input};
+use super::{AngleInput, AngleParts, Batches, End, HingeSet, Input};
 use crate::body::{Arena, JointId};
-use crate::math::{Fx, Length, Speed, Unit, Vec2, mul};
+use crate::math::{Fx, Length, Speed, Unit, Vec2};
 
 /// What it takes to bring the results of a batch back to its joints.
 #[derive(Clone, Debug)]
 pub(super) struct Records<const N: usize> {
     /// How many lanes are used.
-    len: usize,
-    slots: [u32; N],
+    pub(super) len: usize,
+    pub(super) slots: [u32; N],
     /// The angles at the start of the tick.
     turns: [i64; N],
 }
 
 impl HingeSet {
     pub(in super::super) fn clear(&mut self) {
-        self.inputs.clear();
-        self.angles.clear();
-        self.serial.clear();
-        self.coloured.clear();
+        let HingeSet { inputs, angles, memo, serial, coloured } = self;
+        inputs.clear();
+        angles.clear();
+        *memo = None;
+        serial.clear();
+        coloured.clear();
+    }
+
+    /// Takes a hinge, and returns the index of its input.
+    pub(in super::super) fn push_input(
+        &mut self,
+        slot: u32,
+        joint: &Joint,
+        (a, b): (&End, &End),
+        parts: &AngleParts,
+        tuning: &Tuning,
+    ) -> u32 {
+        let HingeSet { inputs, angles, memo, .. } = self;
+        let angle = if parts.is_empty() { None } else { Some(count(angles)) };
+        let input = Input::new(slot, joint, a, b, angle);
+        if angle.is_some() {
+            angles.push(AngleInput::new(parts, &input, (a, b), &joint.impulses, memo, tuning));
+        }
+        inputs.push(input);
+        count(inputs) - 1
     }
 
     /// Adds the hinges of a group, given by their inputs. Those with rows on the angle keep to themselves.
     pub(in super::super) fn push(&mut self, group: &Group<'_>, input_of: impl Fn(u32) -> Option<u32>) {
-        let HingeSet { inputs, angles, serial, coloured } = self;
+        let HingeSet { inputs, angles, serial, coloured, .. } = self;
         for has_angle in [false, true] {
             let wanted = |&index: &u32| inputs[index as usize].angle.is_some() == has_angle;
             match group {
@@ -52,6 +74,10 @@ impl HingeSet {
     }
 }
 
+fn count<T>(parts: &[T]) -> u32 {
+    u32::try_from(parts.len()).expect("fewer than 2^32 joints")
+}
+
 impl<const N: usize> Batches<N> {
     fn clear(&mut self) {
         let Batches { batches, shapes, angles, records } = self;
@@ -71,7 +97,7 @@ impl<const N: usize> Batches<N> {
                 lane = 0;
                 let mut batch = Batch::NONE;
                 if input.angle.is_some() {
-                    batch.angle = Some(u32::try_from(angles.len()).expect("fewer than 2^32 joints"));
+                    batch.angle = Some(count(angles));
                     angles.push(AngleRows::NONE);
                 }
                 batches.push(batch);
@@ -128,8 +154,6 @@ impl<const N: usize> Shape<N> {
         }
         self.fractions[0].0[lane] = input.fractions.a.to_bits();
         self.fractions[1].0[lane] = input.fractions.b.to_bits();
-        self.shares.0[lane] =
-            mul::<_, _, fixed::types::extra::U30>(input.fractions.a, input.fractions.b).to_bits();
         let Vec2 { x, y } = input.between;
         self.between[0][lane] = widened(x);
         self.between[1][lane] = widened(y);

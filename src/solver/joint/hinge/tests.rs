@@ -1,1 +1,259 @@
+//! The wide kernel on every machine and one hinge at a time, and against the scalar point block.
 
+use std::vec;
+use std::vec::Vec;
+
+use super::super::super::body_list::GROUND;
+use super::super::super::colour::Group;
+use super::super::super::lanes::Backend;
+use super::super::super::point_block::PointBlock;
+use super::super::super::row::{Lever, MassFractions, Row};
+use super::super::super::settings::{SolverSettings, Tuning};
+use super::super::super::softness::Softness;
+use super::angle_input::{DriveInput, LimitInput, SpringInput};
+use super::input::ratios;
+use super::*;
+use crate::fx;
+use crate::math::{Fx, Length, Reciprocal, Rng, Rot, Shift, Speed, Unit, Vec2, narrow};
+
+/// Eight hinges, each between two bodies of its own, in some pose.
+#[derive(Clone)]
+struct Setting {
+    hinges: HingeSet,
+    bodies: Vec<SolverBody>,
+    quads: Vec<Quad>,
+    turned: Vec<Turned>,
+    ends: Vec<[Lever; 2]>,
+    fractions: Vec<MassFractions>,
+}
+
+/// How large the numbers of a setting are.
+#[derive(Clone, Copy)]
+struct Sizes {
+    /// Of the arms, in radii of gyration.
+    arm: Fx,
+    speed: Fx,
+    gap: Fx,
+}
+
+/// Of what occurs.
+const COMMON: Sizes = Sizes { arm: fx!(16), speed: fx!(10), gap: fx!(0.1) };
+/// Beyond every clamp.
+const EXTREME: Sizes = Sizes { arm: fx!(500), speed: fx!(511), gap: fx!(2000) };
+
+fn tuning() -> Tuning {
+    Tuning::new(&SolverSettings::default(), Vec2::new(fx!(0), fx!(-10)), 60)
+}
+
+fn random_speed(rng: &mut Rng, size: Fx) -> Speed {
+    narrow(rng.range(-size, size))
+}
+
+fn random_fractions(rng: &mut Rng) -> MassFractions {
+    let a = match rng.below(4) {
+        0 => Unit::ZERO,
+        1 => Unit::from_bits(1 << rng.below(30)),
+        _ => narrow(rng.range(fx!(0), fx!(1))),
+    };
+    MassFractions { a, b: Unit::ONE - a }
+}
+
+impl Setting {
+    fn random(rng: &mut Rng, sizes: Sizes) -> Self {
+        let mut setting = Setting {
+            hinges: HingeSet::default(),
+            bodies: vec![SolverBody::default()],
+            quads: vec![Quad::default()],
+            turned: vec![Turned::default()],
+            ends: Vec::new(),
+            fractions: Vec::new(),
+        };
+        (0..8).for_each(|slot| setting.add(slot, rng, sizes));
+        setting
+    }
+
+    fn add(&mut self, slot: u32, rng: &mut Rng, sizes: Sizes) {
+        let fractions = random_fractions(rng);
+        let mut locals: Vec<Vec2<Length>> = Vec::new();
+        let mut ends = Vec::new();
+        for _ in 0..2 {
+            let gyration = rng.range(fx!(0.05), fx!(5));
+            let reach = crate::math::fx_mul(gyration, rng.range(fx!(0), sizes.arm)).min(fx!(290));
+            let local = Rot::from_angle(rng.angle()).apply_wide(Vec2::new(reach, Fx::ZERO)).narrow();
+            let rotation = Rot::from_angle(rng.angle());
+            ends.push(Lever { arm: rotation.apply(local), inverse_gyration: Reciprocal::of(gyration) });
+            locals.push(local);
+            let shift = || Vec2::<Shift>::ZERO;
+            self.bodies.push(SolverBody {
+                velocity: Vec2::new(random_speed(rng, sizes.speed), random_speed(rng, sizes.speed)),
+                spin: random_speed(rng, sizes.speed),
+                shift: shift(),
+                ..SolverBody::default()
+            });
+            let ahead = [rng.range(fx!(-0.2), fx!(0.2)), rng.range(fx!(0), fx!(0.02))];
+            let [across, along] = ahead.map(|part| narrow::<fixed::types::extra::U30>(part).to_bits());
+            self.quads.push(Quad([rotation.cos.to_bits(), rotation.sin.to_bits(), across, along]));
+            self.turned.push(Turned { rotation, turns: i64::from(rng.next_u32()) - (1 << 31) });
+        }
+        let gap = Vec2::new(rng.range(-sizes.gap, sizes.gap), rng.range(-sizes.gap, sizes.gap));
+        let bodies = [2 * slot + 1, 2 * slot + 2];
+        let angle = if rng.below(2) == 0 {
+            self.hinges.angles.push(angle_input(rng, [ends[0], ends[1]], fractions));
+            Some(u32::try_from(self.hinges.angles.len()).unwrap() - 1)
+        } else {
+            None
+        };
+        self.hinges.inputs.push(Input {
+            slot,
+            bodies,
+            changed: [(fractions.a, bodies[0]), (fractions.b, bodies[1])]
+                .map(|(fraction, body)| if fraction == 0 { GROUND } else { body }),
+            angle,
+            arms: [locals[0], locals[1]],
+            ratios: [0, 1].map(|side| ratios(locals[side], ends[side].inverse_gyration)),
+            fractions,
+            between: ends[0].arm.widen() - ends[1].arm.widen() + gap,
+            turns: i64::from(rng.next_u32()) - (1 << 31),
+            lambda: [random_speed(rng, sizes.speed).to_bits(), random_speed(rng, sizes.speed).to_bits()],
+        });
+        self.ends.push([ends[0], ends[1]]);
+        self.fractions.push(fractions);
+    }
+
+    /// As in two sub-steps. Returns the faults.
+    fn solve(&mut self, machine: Machine) -> Faults {
+        let (tuning, mut faults) = (tuning(), 0);
+        let Setting { hinges, bodies, quads, turned, .. } = self;
+        for _ in 0..2 {
+            hinges.refresh(bodies, Poses { quads, turned }, machine, &tuning);
+            for task in [Task::WarmStart, Task::Solve(Pass::Bias), Task::Solve(Pass::Relax)] {
+                hinges.perform(task, (quads, machine), &tuning, bodies, &mut faults);
+            }
+        }
+        faults
+    }
+
+    /// Impulses in the order of the slots.
+    fn impulses(&self) -> Vec<(u32, Vec<i32>)> {
+        let mut all = Vec::new();
+        self.hinges.serial.collect(&mut all);
+        self.hinges.coloured.collect(&mut all);
+        all.sort();
+        all
+    }
+}
+
+impl<const N: usize> Batches<N> {
+    fn collect(&self, all: &mut Vec<(u32, Vec<i32>)>) {
+        for (batch, records) in self.batches.iter().zip(&self.records) {
+            for lane in 0..records.len {
+                let mut impulses: Vec<i32> = batch.lambda.iter().map(|lambda| lambda.0[lane]).collect();
+                if let Some(place) = batch.angle {
+                    let rows = &self.angles[place as usize];
+                    impulses.extend(rows.impulses(lane).map(Speed::to_bits));
+                }
+                all.push((records.slots[lane], impulses));
+            }
+        }
+    }
+}
+
+fn angle_input(rng: &mut Rng, [a, b]: [Lever; 2], fractions: MassFractions) -> AngleInput {
+    let (row, _, _) = Row::angular(a.inverse_gyration, b.inverse_gyration, fractions);
+    let (e, f) = row.turning_parts();
+    let mut turns = || i64::from(rng.next_u32()) - (1 << 31);
+    let (target, lower, upper) = (turns(), turns(), turns());
+    let mut rate = || rng.range(fx!(0), fx!(300));
+    let (stiffness, closed, open) = (rate(), rate(), rate());
+    let mut lambda = || random_speed(rng, fx!(100));
+    let [first, second, third, fourth] = [lambda(), lambda(), lambda(), lambda()];
+    let scale: Unit = narrow(rng.range(fx!(0), fx!(1)));
+    let (held, max) = (rng.below(2) == 0, Speed::lit("511"));
+    let spring = SpringInput {
+        mass_scale: scale,
+        impulse_scale: Unit::ONE - scale,
+        target,
+        stiffness,
+        max,
+        held,
+        lambda: first,
+    };
+    let drive = DriveInput { bias: second, max: narrow(rng.range(fx!(0), fx!(100))), lambda: second };
+    let limit = LimitInput { lower, upper, closed, open, max, lambda: [third.abs(), fourth.abs()] };
+    let has = |part: u32| rng.next_u32() & part != 0;
+    let [has_spring, has_drive, has_limit] = [1, 2, 4].map(has);
+    AngleInput {
+        e,
+        f,
+        spring: has_spring.then_some(spring),
+        drive: has_drive.then_some(drive),
+        limit: has_limit.then_some(limit),
+    }
+}
+
+#[test]
+fn every_machine_solves_as_one_hinge_at_a_time() {
+    let mut rng = Rng::new(1);
+    let mut faulty = 0;
+    for i in 0..4000 {
+        let setting = Setting::random(&mut rng, if i % 2 == 0 { COMMON } else { EXTREME });
+        let order = [0, 1, 2, 3, 4, 5, 6, 7];
+        let mut alone = setting.clone();
+        alone.hinges.push(&Group::Serial(&order), Some);
+        let faults = alone.solve(Machine::default());
+        faulty += u32::from(faults > 0);
+        assert!(alone.bodies.iter().all(|body| body.velocity.x.abs() <= 511 && body.spin.abs() <= 511));
+        for backend in Backend::available() {
+            let mut wide = setting.clone();
+            wide.hinges.push(&Group::Coloured(&order), Some);
+            assert_eq!(wide.solve(Machine::new(backend).expect("available")), faults);
+            assert_eq!(wide.impulses(), alone.impulses());
+            for (wide, alone) in wide.bodies.iter().zip(&alone.bodies) {
+                assert_eq!((wide.velocity, wide.spin), (alone.velocity, alone.spin));
+            }
+        }
+    }
+    assert!(faulty > 100, "{faulty} settings reach the clamps");
+}
+
+/// Ratios that are turned instead of made anew differ by a unit of 2^-24. With arms of up to 16 radii of gyration on both
+/// sides the anchors start at up to 330 m/s, and a hundred-thousandth of that is what a sub-step's iteration may leave.
+#[test]
+fn a_point_is_solved_as_by_the_scalar_block() {
+    let mut rng = Rng::new(2);
+    let (mut worst, mut left) = (0, 0);
+    for _ in 0..2000 {
+        let mut setting = Setting::random(&mut rng, COMMON);
+        for input in &mut setting.hinges.inputs {
+            (input.angle, input.lambda) = (None, [0; 2]);
+        }
+        let before = setting.bodies.clone();
+        setting.hinges.push(&Group::Coloured(&[0, 1, 2, 3, 4, 5, 6, 7]), Some);
+        let (tuning, machine, mut faults) = (tuning(), Machine::default(), 0);
+        let Setting { hinges, bodies, quads, turned, ends, fractions } = &mut setting;
+        hinges.refresh(bodies, Poses { quads, turned }, machine, &tuning);
+        hinges.perform(Task::Solve(Pass::Relax), (quads, machine), &tuning, bodies, &mut faults);
+        for (i, (&[a, b], &fractions)) in ends.iter().zip(fractions.iter()).enumerate() {
+            let block = PointBlock::new(a, b, fractions);
+            let (mut a, mut b) = (before[2 * i + 1], before[2 * i + 2]);
+            let (ratios, mut lambda) = (block.ratios(), Vec2::ZERO);
+            block.solve(&mut a, &mut b, ratios, Vec2::ZERO, &Softness::RIGID, &mut lambda, &mut faults);
+            for (wide, scalar) in [(&bodies[2 * i + 1], a), (&bodies[2 * i + 2], b)] {
+                let apart = wide.velocity - scalar.velocity;
+                let apart = [apart.x, apart.y, wide.spin - scalar.spin].map(|part| part.to_bits().abs());
+                worst = apart.into_iter().fold(worst, i32::max);
+            }
+        }
+        // What a second update still finds.
+        let first: Vec<_> = setting.impulses();
+        let Setting { hinges, bodies, quads, .. } = &mut setting;
+        hinges.perform(Task::Solve(Pass::Relax), (quads, machine), &tuning, bodies, &mut faults);
+        for ((_, first), (_, second)) in first.iter().zip(setting.impulses()) {
+            let moved = first.iter().zip(second).map(|(first, second)| (second - first).abs());
+            left = moved.fold(left, i32::max);
+        }
+        assert_eq!(faults, 0);
+    }
+    assert!(left <= 128, "{left} units left");
+    assert!(worst <= 256, "{worst} units apart");
+}
