@@ -391,11 +391,13 @@ impl Clip<'_> {
         let moved = |from: Length, by: i64| {
             Length::from_bits(saturate(i64::from(from.to_bits()) + round_shift(by, Unit::FRAC_NBITS)))
         };
-        let anchor = Vec2::new(
-            moved(start.x, x * middle - y * end.along),
-            moved(start.y, y * middle + x * end.along),
-        );
+        let anchor =
+            Vec2::new(moved(start.x, x * middle - y * end.along), moved(start.y, y * middle + x * end.along));
         let separation = Step::from_bits(saturate(separation));
-        manifold.push(ManifoldPoint { anchor, separation, feature: Feature::of_vertices(vertex, end.vertex) });
+        manifold.push(ManifoldPoint {
+            anchor,
+            separation,
+            feature: Feature::of_vertices(vertex, end.vertex),
+        });
     }
 }

@@ -3,8 +3,8 @@
 use alloc::vec::Vec;
 
 use super::body::SolverBody;
-use super::row::RATIO_MAX;
 use super::colour::{Node, Size};
+use super::row::RATIO_MAX;
 use crate::body::{Arena, Body, BodyId};
 use crate::math::{Fx, Length, Ratio, Reciprocal, Vec2, round_shift, saturate};
 
@@ -115,7 +115,13 @@ impl BodyList {
     }
 
     /// A constraint between the bodies of two slots, to be coloured.
-    pub(super) fn node(&self, key: u64, bodies: &Arena<Body, BodyId>, (a, b): (u32, u32), size: Size) -> Node {
+    pub(super) fn node(
+        &self,
+        key: u64,
+        bodies: &Arena<Body, BodyId>,
+        (a, b): (u32, u32),
+        size: Size,
+    ) -> Node {
         let changed = |slot: u32| if bodies.at(slot).is_dynamic() { self.index_of(slot) } else { GROUND };
         Node::new(key, [changed(a), changed(b)], size)
     }

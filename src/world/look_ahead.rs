@@ -7,10 +7,13 @@ use alloc::vec::Vec;
 
 use super::config::Config;
 use crate::body::{Body, Shape};
-use crate::collision::{Manifold, ManifoldPoint, OneWay, Outline, Passage, PosedShape, margin_for, pass_by};
+use crate::collision::{
+    Manifold, ManifoldPoint, OneWay, Outline, Passage, PosedShape, margin_for, may_meet, pass_by,
+};
 use crate::fx;
 use crate::math::{
-    Aabb, Fx, Length, Reciprocal, Rot, Speed, Step, Unit, Vec2, convert, fx_mul, mul, mul_add, narrow, saturate, widen,
+    Aabb, Fx, Length, Reciprocal, Rot, Speed, Step, Unit, Vec2, convert, fx_mul, mul, mul_add, narrow,
+    saturate, widen,
 };
 use fixed::FixedI32;
 use fixed::types::extra::{U16, U22, U24};
@@ -242,8 +245,15 @@ impl<'a> Approach<'a> {
         self.horizon.touching.min(self.a.slack).min(self.b.slack)
     }
 
+    /// Whether the shapes are so near that they may meet within the tick.
+    #[inline]
+    pub(super) fn may_meet(&self) -> bool {
+        may_meet(self.a.bounds, self.b.bounds, self.margin)
+    }
+
     /// Drops the points that the bodies, at their present velocities, will not reach within the tick: shapes that
     /// pass by at speed must not catch on each other.
+    #[inline]
     pub(super) fn keep_reachable(
         &self,
         manifold: &mut Manifold,
@@ -252,9 +262,13 @@ impl<'a> Approach<'a> {
     ) {
         let speculative: Step = convert(self.horizon.speculative);
         let ahead = |point: &ManifoldPoint| point.separation > speculative;
-        if self.closing <= PASSAGE_MIN && !manifold.points().iter().any(ahead) {
-            return;
+        if self.closing > PASSAGE_MIN || manifold.points().iter().any(ahead) {
+            self.drop_unreached(manifold, outlook, posed);
         }
+    }
+
+    fn drop_unreached(&self, manifold: &mut Manifold, outlook: &Outlook, posed: (&PosedShape, &PosedShape)) {
+        let speculative: Step = convert(self.horizon.speculative);
         let motions = (outlook.motion(self.a), outlook.motion(self.b));
         let (closing_at, slack) = (approach(motions.0, motions.1, manifold), self.slack());
         // A point that is not reached does nothing, and a deep one does not pass by: only others decide.
@@ -298,7 +312,8 @@ impl<'a> Approach<'a> {
     ) -> bool {
         let shift = motion_b.shift_at(posed_b.centre) - motion_a.shift_at(posed_a.centre);
         let turn = convert(self.a.turn.saturating_add(self.b.turn));
-        let passage = Passage::new(shift.convert(), turn, convert(self.slack()), convert(closing / 8), normal);
+        let passage =
+            Passage::new(shift.convert(), turn, convert(self.slack()), convert(closing / 8), normal);
         pass_by(posed_a, posed_b, &passage)
     }
 }

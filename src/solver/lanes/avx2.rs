@@ -170,17 +170,13 @@ impl Lanes<WIDTH> for Avx2 {
     #[inline(always)]
     fn add_wide(a: Products, b: Products) -> Products {
         // SAFETY: see `Avx2`.
-        unsafe {
-            Products { even: _mm256_add_epi64(a.even, b.even), odd: _mm256_add_epi64(a.odd, b.odd) }
-        }
+        unsafe { Products { even: _mm256_add_epi64(a.even, b.even), odd: _mm256_add_epi64(a.odd, b.odd) } }
     }
 
     #[inline(always)]
     fn sub_wide(a: Products, b: Products) -> Products {
         // SAFETY: see `Avx2`.
-        unsafe {
-            Products { even: _mm256_sub_epi64(a.even, b.even), odd: _mm256_sub_epi64(a.odd, b.odd) }
-        }
+        unsafe { Products { even: _mm256_sub_epi64(a.even, b.even), odd: _mm256_sub_epi64(a.odd, b.odd) } }
     }
 
     #[inline(always)]
@@ -218,14 +214,18 @@ impl Lanes<WIDTH> for Avx2 {
     #[inline(always)]
     fn velocities(bodies: &[Cell<SolverBody>], at: &[u32; WIDTH]) -> Motion<__m256i> {
         // SAFETY: see `Avx2`; the first 16 bytes of a body.
-        let row = |lane: usize| unsafe { _mm_load_si128(SolverBody::velocity_bits(&bodies[at[lane] as usize]).cast()) };
+        let row = |lane: usize| unsafe {
+            _mm_load_si128(SolverBody::velocity_bits(&bodies[at[lane] as usize]).cast())
+        };
         transposed([row(0), row(1), row(2), row(3), row(4), row(5), row(6), row(7)])
     }
 
     #[inline(always)]
     fn shifts(bodies: &[Cell<SolverBody>], at: &[u32; WIDTH]) -> Motion<__m256i> {
         // SAFETY: see `Avx2`; the last 16 bytes of a body.
-        let row = |lane: usize| unsafe { _mm_load_si128(SolverBody::shift_bits(&bodies[at[lane] as usize]).cast()) };
+        let row = |lane: usize| unsafe {
+            _mm_load_si128(SolverBody::shift_bits(&bodies[at[lane] as usize]).cast())
+        };
         transposed([row(0), row(1), row(2), row(3), row(4), row(5), row(6), row(7)])
     }
 
@@ -291,7 +291,8 @@ fn shifted<const SHIFT: i32>(a: Products) -> __m256i {
 fn transposed(rows: [__m128i; WIDTH]) -> Motion<__m256i> {
     // SAFETY: see `Avx2`.
     unsafe {
-        let pair = |lane: usize| _mm256_inserti128_si256::<1>(_mm256_castsi128_si256(rows[lane]), rows[lane + 4]);
+        let pair =
+            |lane: usize| _mm256_inserti128_si256::<1>(_mm256_castsi128_si256(rows[lane]), rows[lane + 4]);
         let (r0, r1, r2, r3) = (pair(0), pair(1), pair(2), pair(3));
         let (xy_01, xy_23) = (_mm256_unpacklo_epi32(r0, r1), _mm256_unpacklo_epi32(r2, r3));
         let (t_01, t_23) = (_mm256_unpackhi_epi32(r0, r1), _mm256_unpackhi_epi32(r2, r3));

@@ -133,7 +133,11 @@ impl<const N: usize> Lanes<N> for Scalar<N> {
     }
 
     #[inline(always)]
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "compared afterwards; a shift")]
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "compared afterwards; a shift"
+    )]
     fn narrow_saturating<const SHIFT: i32>(a: [i64; N]) -> ([i32; N], [bool; N]) {
         let rounded = a.map(|a| round_shift(a, SHIFT as u32));
         (rounded.map(saturate), rounded.map(|a| i64::from(a as i32) != a))
