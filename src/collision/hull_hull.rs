@@ -168,19 +168,19 @@ fn furthest_over(a: &Hull, support: impl Fn(Vec2<Unit>) -> i64, d: Vec2<Length>)
 /// distances of its own opposite faces from its centre.
 #[inline(always)]
 fn furthest_of_boxes((vertices, normals): BoxFaces, (others, _): BoxFaces, d: Vec2<Length>) -> Face {
-    let further_of_opposite = |edge: usize| {
-        let n = normals[edge];
+    let further_of_opposite = |edge: usize, n: Vec2<Unit>, vertex: Vec2<Length>| {
         let along = product(n, d);
-        let edge = if along >= 0 { edge } else { edge + 2 };
-        Face { edge, separation: along.abs() - product(n, vertices[edge & 1]) - half_extent(n, others) }
+        let separation = along.abs() - product(n, vertex) - half_extent(n, others);
+        Face { edge: if along >= 0 { edge } else { edge + 2 }, separation }
     };
-    let (a, b) = (further_of_opposite(0), further_of_opposite(1));
+    let a = further_of_opposite(0, normals[0], vertices[0]);
+    let b = further_of_opposite(1, normals[1], vertices[1]);
     // Of equal ones the first.
     if (b.separation, a.edge) > (a.separation, b.edge) { b } else { a }
 }
 
 /// The most `n . v` of a box given by its first two vertices: the least is the opposite.
-#[inline]
+#[inline(always)]
 fn half_extent(n: Vec2<Unit>, &[a, b]: &[Vec2<Length>; 2]) -> i64 {
     product(n, a).abs().max(product(n, b).abs())
 }

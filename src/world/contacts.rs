@@ -7,7 +7,7 @@ use super::look_ahead::{Approach, Horizon, Outlook, approach};
 use super::scratch::{Approaching, Poses, Scratch};
 use super::state::{Reported, Side, State};
 use crate::collision::{AxisHint, Contact, Manifold, Pair, SatCounters, collide, collide_near};
-use crate::math::{Fx, Length, widen};
+use crate::math::{Fx, Length, Step, saturate, widen};
 use crate::solver::{Surface, TouchingPair};
 
 /// Fewest contacts that are worth a job of their own.
@@ -194,7 +194,8 @@ fn approaching(
     let way_at = approach(motion_a, motion_b, manifold);
     let ways = manifold.points().iter().map(|point| (point, way_at(point)));
     let (point, way) = ways.reduce(|a, b| if b.1 > a.1 { b } else { a })?;
-    let approach_speed = widen(way).saturating_mul_int(state.config.tick_rate.into());
+    let approach_speed =
+        widen(Step::from_bits(saturate(way))).saturating_mul_int(state.config.tick_rate.into());
     if approach_speed < state.config.hit_speed {
         return None;
     }
