@@ -46,7 +46,7 @@ pub(crate) fn collide(
 }
 
 /// [`collide`] without the reject, and its oracle.
-#[inline]
+#[inline(always)]
 pub(crate) fn collide_near(
     a: &PosedShape,
     b: &PosedShape,
@@ -65,6 +65,7 @@ pub(crate) fn collide_near(
 }
 
 /// [`collide_near`] for any outlines.
+#[inline(never)]
 fn collide_outlines(
     a: &PosedShape,
     b: &PosedShape,
