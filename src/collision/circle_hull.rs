@@ -3,6 +3,7 @@
 //! The centre is inside (the nearest face pushes it out, so that it is never pushed through), beside a face, or
 //! in the region of a corner.
 
+use super::hull_hull::{self, FACE_BITS, Face};
 use super::manifold::{Feature, Manifold, ManifoldPoint};
 use super::pose::Hull;
 use crate::math::{Length, Step, Unit, Vec2, convert, round_shift, saturate};
@@ -10,12 +11,14 @@ use crate::math::{Length, Step, Unit, Vec2, convert, round_shift, saturate};
 /// A is the hull, B the circle with its centre at `centre` from the hull's.
 pub(crate) fn collide(hull: &Hull, radius: Length, centre: Vec2<Length>, margin: Length) -> Manifold {
     let radii = step_bits(radius) + step_bits(hull.radius);
-    let (edge, face_distance) = nearest_face(hull, centre);
+    // Not saturated: of a large shape only the difference of distance and radius fits the type.
+    let Face { edge, separation } = hull_hull::face_before(hull, centre);
+    let face_distance = round_shift(separation, FACE_BITS - Step::FRAC_NBITS);
     if face_distance - radii > step_bits(margin) {
         return Manifold::NONE;
     }
-    let (v1, v2) = (hull.vertices()[edge], hull.vertices()[hull.next(edge)]);
-    let face_normal = hull.normals()[edge];
+    let (v1, v2) = (hull.vertex(edge), hull.vertex(hull.next(edge)));
+    let face_normal = hull.normal(edge);
     let tangent = face_normal.perp();
     let before: Length = (centre - v1).dot(tangent);
     let after: Length = (centre - v2).dot(tangent);
@@ -43,19 +46,6 @@ pub(crate) fn collide(hull: &Hull, radius: Length, centre: Vec2<Length>, margin:
     let back: Length = radius.saturating_add(convert(separation / 2));
     let anchor = centre - normal.scale(back);
     Manifold::single(normal, ManifoldPoint { anchor, separation, feature: Feature::SINGLE })
-}
-
-/// The face with the largest distance to a point, and that distance: negative for a point inside. In units of
-/// `Step` that do not saturate: of a large shape only the difference of distance and radius fits the type.
-fn nearest_face(hull: &Hull, point: Vec2<Length>) -> (usize, i64) {
-    let mut best = (0, i64::MIN);
-    for (i, (&vertex, &normal)) in hull.vertices().iter().zip(hull.normals()).enumerate() {
-        let distance = distance_along(normal, point - vertex);
-        if distance > best.1 {
-            best = (i, distance);
-        }
-    }
-    best
 }
 
 /// `n . d` in units of `Step`, not saturated.

@@ -17,7 +17,7 @@ impl Feature {
     #[inline]
     #[expect(clippy::cast_possible_truncation, reason = "at most 8 vertices")]
     pub(crate) fn of_vertices(a: usize, b: usize) -> Self {
-        Feature(((a % 8) << 8 | b % 8) as u16)
+        Feature((((a % 8) << 8) | (b % 8)) as u16)
     }
 
     fn swapped(self) -> Self {

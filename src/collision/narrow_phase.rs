@@ -46,7 +46,27 @@ pub(crate) fn collide(
 }
 
 /// [`collide`] without the reject, and its oracle.
+#[inline(always)]
 pub(crate) fn collide_near(
+    a: &PosedShape,
+    b: &PosedShape,
+    margin: Length,
+    hint: &mut AxisHint,
+    counters: &mut SatCounters,
+) -> Manifold {
+    // Most pairs.
+    if let (Outline::Polygon(hull_a), Outline::Polygon(hull_b)) = (&a.outline, &b.outline) {
+        let d = (b.centre - a.centre).narrow();
+        let mut manifold = hull_hull::collide(hull_a, hull_b, d, margin, hint, counters);
+        manifold.origin = a.centre;
+        return manifold;
+    }
+    collide_outlines(a, b, margin, hint, counters)
+}
+
+/// [`collide_near`] for any outlines.
+#[inline(never)]
+fn collide_outlines(
     a: &PosedShape,
     b: &PosedShape,
     margin: Length,
@@ -66,9 +86,7 @@ pub(crate) fn collide_near(
             origin = b.centre;
             circle_hull::collide(hull, *radius, -d, margin).swapped()
         }
-        (Polygon(hull_a), Polygon(hull_b)) => {
-            hull_hull::collide(hull_a, hull_b, d, margin, hint, counters)
-        }
+        (Polygon(hull_a), Polygon(hull_b)) => hull_hull::collide(hull_a, hull_b, d, margin, hint, counters),
         (Segment { .. }, Circle { radius }) => {
             origin = b.centre;
             let Some(hull) = segment_about(a, b) else { return Manifold::NONE };

@@ -137,6 +137,8 @@ fn reject_and_axis_spare_a_hundred_polygons_most_searches() {
     let plain: usize = ticks.iter().map(|near| near.without(margin)).sum();
     assert_eq!(fast, plain, "neither changes a result");
     let pairs: usize = ticks.iter().map(|near| near.pairs.len()).sum();
-    let searches = counters.searches as usize;
-    assert!(fast > 10_000 && searches < pairs * 2 / 3, "{fast} points, {pairs} pairs, {counters:?}");
+    // A pair has two points at most. Of those without contact most are spared.
+    let (searches, touching) = (counters.searches as usize, fast.div_ceil(2));
+    let spared = fast > 10_000 && (searches - touching) * 2 < pairs - touching;
+    assert!(spared, "{fast} points, {pairs} pairs, {counters:?}");
 }

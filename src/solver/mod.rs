@@ -172,12 +172,23 @@ impl Solver {
     }
 
     fn perform_serial(&mut self, task: Task, tuning: &Tuning) {
-        self.contacts.perform_serial(task, tuning, SolverBody::cells(&mut self.list.bodies), &mut self.faults);
+        self.contacts.perform_serial(
+            task,
+            tuning,
+            SolverBody::cells(&mut self.list.bodies),
+            &mut self.faults,
+        );
     }
 
     fn perform_coloured(&mut self, task: Task, tuning: &Tuning) {
         let Solver { contacts, machine, threads, list, faults, .. } = self;
-        contacts.perform_coloured(task, (*machine, threads), tuning, SolverBody::cells(&mut list.bodies), faults);
+        contacts.perform_coloured(
+            task,
+            (*machine, threads),
+            tuning,
+            SolverBody::cells(&mut list.bodies),
+            faults,
+        );
     }
 
     pub(crate) fn apply_restitution(&mut self, tuning: &Tuning) {

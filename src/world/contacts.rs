@@ -6,8 +6,8 @@ use super::events::{ContactEvent, Events, HitEvent, SensorEvent};
 use super::look_ahead::{Approach, Horizon, Outlook, approach};
 use super::scratch::{Approaching, Poses, Scratch};
 use super::state::{Reported, Side, State};
-use crate::collision::{AxisHint, Contact, Manifold, Pair, SatCounters, collide, collide_near, may_meet};
-use crate::math::{Fx, Length, widen};
+use crate::collision::{AxisHint, Contact, Manifold, Pair, SatCounters, collide, collide_near};
+use crate::math::{Fx, Length, Step, saturate, widen};
 use crate::solver::{Surface, TouchingPair};
 
 /// Fewest contacts that are worth a job of their own.
@@ -97,12 +97,13 @@ impl Search<'_> {
         let mut touched = touched[touched.partition_point(|known| known.shapes < pair)..].iter();
         let mut next = touched.next();
         for ((index, contact), hint) in (first..).zip(contacts).zip(hints) {
-            let manifold = manifold_of(state, horizon, poses, contact, hint, &mut found.sat);
+            let (a, b) = contact.shapes;
+            let (reach_a, reach_b) = (poses.outlook.reach(a), poses.outlook.reach(b));
+            let approach = Approach::new(horizon, reach_a, reach_b);
+            let manifold = manifold_of(state, poses, &approach, contact, hint, &mut found.sat);
             if manifold.points().is_empty() {
                 continue;
             }
-            let (a, b) = contact.shapes;
-            let (reach_a, reach_b) = (poses.outlook.reach(a), poses.outlook.reach(b));
             if !(reach_a.sensor || reach_b.sensor) {
                 while next.is_some_and(|known| known.shapes < contact.shapes) {
                     next = touched.next();
@@ -134,28 +135,28 @@ pub(super) fn touch(state: &State, poses: &Poses, pair: Pair) -> bool {
     let mut contact = known.map_or(Contact::new(pair), |index| state.contacts[index]);
     let horizon = Horizon::of(&state.config);
     let (mut hint, mut counters) = (AxisHint::default(), SatCounters::default());
-    let manifold = manifold_of(state, &horizon, poses, &mut contact, &mut hint, &mut counters);
+    let approach = Approach::new(&horizon, poses.outlook.reach(pair.0), poses.outlook.reach(pair.1));
+    let manifold = manifold_of(state, poses, &approach, &mut contact, &mut hint, &mut counters);
     !manifold.points().is_empty()
 }
 
-#[inline]
+#[inline(always)]
 fn manifold_of(
     state: &State,
-    horizon: &Horizon,
     poses: &Poses,
+    approach: &Approach,
     contact: &mut Contact,
     hint: &mut AxisHint,
     counters: &mut SatCounters,
 ) -> Manifold {
+    let was_passing = core::mem::take(&mut contact.passing);
+    if !approach.may_meet() {
+        return Manifold::NONE;
+    }
     let (a, b) = contact.shapes;
     let (reach_a, reach_b) = (poses.outlook.reach(a), poses.outlook.reach(b));
-    let approach = Approach::new(horizon, reach_a, reach_b);
     if reach_a.sensor || reach_b.sensor {
         return collide(poses.at(a), poses.at(b), Length::ZERO, hint, counters);
-    }
-    let was_passing = core::mem::take(&mut contact.passing);
-    if !may_meet(reach_a.bounds, reach_b.bounds, approach.margin) {
-        return Manifold::NONE;
     }
     let (posed_a, posed_b) = (poses.at(a), poses.at(b));
     let mut manifold = collide_near(posed_a, posed_b, approach.margin, hint, counters);
@@ -193,7 +194,8 @@ fn approaching(
     let way_at = approach(motion_a, motion_b, manifold);
     let ways = manifold.points().iter().map(|point| (point, way_at(point)));
     let (point, way) = ways.reduce(|a, b| if b.1 > a.1 { b } else { a })?;
-    let approach_speed = widen(way).saturating_mul_int(state.config.tick_rate.into());
+    let approach_speed =
+        widen(Step::from_bits(saturate(way))).saturating_mul_int(state.config.tick_rate.into());
     if approach_speed < state.config.hit_speed {
         return None;
     }

@@ -7,13 +7,15 @@ use alloc::vec::Vec;
 
 use super::config::Config;
 use crate::body::{Body, Shape};
-use crate::collision::{Manifold, ManifoldPoint, OneWay, Outline, Passage, PosedShape, margin_for, pass_by};
+use crate::collision::{
+    Manifold, ManifoldPoint, OneWay, Outline, Passage, PosedShape, margin_for, may_meet, pass_by,
+};
 use crate::fx;
 use crate::math::{
-    Aabb, Fx, Length, Reciprocal, Rot, Speed, Step, Unit, Vec2, convert, fx_mul, mul, mul_add, narrow, saturate, widen,
+    Aabb, Fx, Length, Reciprocal, Rot, Speed, Step, Unit, Vec2, convert, fx_mul, narrow, saturate, widen,
 };
 use fixed::FixedI32;
-use fixed::types::extra::{U16, U22, U24};
+use fixed::types::extra::{LeEqU32, U16, U24, U27};
 
 /// A way within a tick in metres: ±128, resolution 6e-8.
 pub(super) type Way = FixedI32<U24>;
@@ -79,23 +81,37 @@ impl Motion {
 /// n.(xA - xB) + tA (rA x n) - tB (rB x n)
 /// ```
 ///
-/// where `r` is the arm of the manifold's origin and the anchor together: each point adds `(tA - tB) (anchor x n)`.
+/// where `r` is the arm of the manifold's origin and the anchor together: each point adds `(tA - tB) (anchor x n)`. In
+/// units of `Step` that do not saturate.
 #[inline]
 pub(super) fn approach(
     a: &Motion,
     b: &Motion,
     manifold: &Manifold,
-) -> impl Fn(&ManifoldPoint) -> Way + use<> {
-    let (normal, origin) = (manifold.normal, manifold.origin);
-    let arm = |motion: &Motion| -> Length { (origin - motion.centre).narrow::<U22>().cross(normal) };
-    let linear: Way = (a.shift - b.shift).dot(normal);
-    let angular: Way = mul_add(a.turn, arm(a), b.turn.saturating_neg(), arm(b));
-    let (common, turn) = (linear.saturating_add(angular), a.turn.saturating_sub(b.turn));
-    move |point| {
-        let arm: Length = point.anchor.cross(normal);
-        common.saturating_add(mul(turn, arm))
-    }
+) -> impl Fn(&ManifoldPoint) -> i64 + use<> {
+    let n = (raw(manifold.normal.x), raw(manifold.normal.y));
+    // Shifts are at most 52 m, arms and anchors 725 m, and turns 128 rad: products of two have at most 62 bits.
+    let dot = (raw(a.shift.x) - raw(b.shift.x)) * n.0 + (raw(a.shift.y) - raw(b.shift.y)) * n.1;
+    let lever = move |r: Vec2<Length>| (raw(r.x) * n.1 - raw(r.y) * n.0) >> Unit::FRAC_NBITS;
+    let turned = move |turn: Way, lever: i64| (raw(turn) * lever) >> TURN_BITS;
+    let by_turn = |motion: &Motion| {
+        if motion.turn == 0 || motion.centre == manifold.origin {
+            return 0;
+        }
+        turned(motion.turn, lever((manifold.origin - motion.centre).narrow()))
+    };
+    let common = (dot >> (Way::FRAC_NBITS + Unit::FRAC_NBITS - Step::FRAC_NBITS)) + by_turn(a) - by_turn(b);
+    let turn = a.turn.saturating_sub(b.turn);
+    move |point| common + turned(turn, lever(point.anchor))
 }
+
+/// The bits of a number, with room for a product.
+fn raw<A: LeEqU32>(x: FixedI32<A>) -> i64 {
+    i64::from(x.to_bits())
+}
+
+/// The fraction bits of a product of a turn and a lever that a step does not have.
+const TURN_BITS: u32 = Way::FRAC_NBITS + Length::FRAC_NBITS - Step::FRAC_NBITS;
 
 /// The box of a shape, how far it may come within the tick, and what its pairs have to know of it: one cache line.
 #[derive(Clone, Copy, Debug, Default)]
@@ -242,8 +258,15 @@ impl<'a> Approach<'a> {
         self.horizon.touching.min(self.a.slack).min(self.b.slack)
     }
 
+    /// Whether the shapes are so near that they may meet within the tick.
+    #[inline]
+    pub(super) fn may_meet(&self) -> bool {
+        may_meet(self.a.bounds, self.b.bounds, self.margin)
+    }
+
     /// Drops the points that the bodies, at their present velocities, will not reach within the tick: shapes that
     /// pass by at speed must not catch on each other.
+    #[inline]
     pub(super) fn keep_reachable(
         &self,
         manifold: &mut Manifold,
@@ -252,25 +275,32 @@ impl<'a> Approach<'a> {
     ) {
         let speculative: Step = convert(self.horizon.speculative);
         let ahead = |point: &ManifoldPoint| point.separation > speculative;
-        if self.closing <= PASSAGE_MIN && !manifold.points().iter().any(ahead) {
-            return;
+        if self.closing > PASSAGE_MIN || manifold.points().iter().any(ahead) {
+            self.drop_unreached(manifold, outlook, posed);
         }
+    }
+
+    fn drop_unreached(&self, manifold: &mut Manifold, outlook: &Outlook, posed: (&PosedShape, &PosedShape)) {
         let motions = (outlook.motion(self.a), outlook.motion(self.b));
-        let (closing_at, slack) = (approach(motions.0, motions.1, manifold), self.slack());
+        let closing_at = approach(motions.0, motions.1, manifold);
+        let (speculative, slack) = (raw::<U27>(convert(self.horizon.speculative)), raw(self.slack()));
         // A point that is not reached does nothing, and a deep one does not pass by: only others decide.
-        let mut most = Step::ZERO;
-        manifold.retain(|point| {
-            let closing: Step = convert(closing_at(point));
-            let separation = point.separation;
-            let kept = separation <= speculative || separation <= closing.saturating_add(speculative);
+        let (mut kept, mut most) = ([true; 2], 0);
+        for (kept, point) in kept.iter_mut().zip(manifold.points()) {
+            let (closing, separation) = (closing_at(point), raw(point.separation));
+            *kept = separation <= speculative.max(closing + speculative);
             // A quarter more: a gap that just closes acts too.
-            let reached = kept && closing.saturating_add(closing / 4) > separation;
-            if reached && closing > PASSAGE_MIN && separation >= -slack {
+            let reached = *kept && closing + closing / 4 > separation;
+            if reached && separation >= -slack {
                 most = most.max(closing);
             }
-            kept
-        });
-        if most > 0 && self.passes_by(motions, posed, manifold.normal, most) {
+        }
+        if kept != [true; 2] {
+            let mut kept = kept.into_iter();
+            manifold.retain(|_| kept.next() == Some(true));
+        }
+        let most = Step::from_bits(saturate(most));
+        if most > PASSAGE_MIN && self.passes_by(motions, posed, manifold.normal, most) {
             *manifold = Manifold::NONE;
         }
     }
@@ -298,7 +328,8 @@ impl<'a> Approach<'a> {
     ) -> bool {
         let shift = motion_b.shift_at(posed_b.centre) - motion_a.shift_at(posed_a.centre);
         let turn = convert(self.a.turn.saturating_add(self.b.turn));
-        let passage = Passage::new(shift.convert(), turn, convert(self.slack()), convert(closing / 8), normal);
+        let passage =
+            Passage::new(shift.convert(), turn, convert(self.slack()), convert(closing / 8), normal);
         pass_by(posed_a, posed_b, &passage)
     }
 }

@@ -118,7 +118,8 @@ impl<L: Lanes<N>, const N: usize> Pair<L, N> {
         (self.a, self.b) = (a, b);
         // One branch that is never taken, instead of six clamps.
         let limit = L::splat(SPEED_MAX.to_bits());
-        let (most, least) = (L::max(most::<L, N>(a), most::<L, N>(b)), L::min(least::<L, N>(a), least::<L, N>(b)));
+        let (most, least) =
+            (L::max(most::<L, N>(a), most::<L, N>(b)), L::min(least::<L, N>(a), least::<L, N>(b)));
         if L::any(L::either(L::greater(most, limit), L::greater(L::sub(L::splat(0), limit), least))) {
             self.clamp(faults);
         }
@@ -328,7 +329,11 @@ impl<L: Lanes<N>, const N: usize> Context<L, N> {
             push_speed: L::splat(-push_speed),
             bias_rate: chosen::<L, N>(immovable, soft.bias_rate.to_bits(), stiff.bias_rate.to_bits()),
             mass_scale: chosen::<L, N>(immovable, soft.mass_scale.to_bits(), stiff.mass_scale.to_bits()),
-            impulse_scale: chosen::<L, N>(immovable, soft.impulse_scale.to_bits(), stiff.impulse_scale.to_bits()),
+            impulse_scale: chosen::<L, N>(
+                immovable,
+                soft.impulse_scale.to_bits(),
+                stiff.impulse_scale.to_bits(),
+            ),
         }
     }
 

@@ -22,8 +22,8 @@ use crate::collision::Contact;
 use crate::math::{Fx, Speed, fx_mul};
 use crate::threads::Threads;
 use batch::Batch;
-use kernel::Constants;
 use input::Input;
+use kernel::Constants;
 use prepare::Records;
 use special::Special;
 
@@ -168,7 +168,7 @@ impl ContactSet {
         faults: &mut Faults,
     ) {
         let constants = Constants::new(tuning);
-                *faults += self.coloured.perform_on(threads, machine, task, constants, bodies);
+        *faults += self.coloured.perform_on(threads, machine, task, constants, bodies);
     }
 
     /// Keeps the impulses for the next tick. `pushed` says of each contact whether its shapes have pushed each other.
@@ -283,4 +283,3 @@ impl<const N: usize> Batches<N> {
         }
     }
 }
-

@@ -151,21 +151,12 @@ struct Gathered<const N: usize> {
 }
 
 impl<const N: usize> Gathered<N> {
-    const NONE: Self = Gathered {
-        fractions: [Ints::ZERO; 2],
-        friction: Ints::ZERO,
-        carried: [[Ints::ZERO; 2]; 2],
-    };
+    const NONE: Self =
+        Gathered { fractions: [Ints::ZERO; 2], friction: Ints::ZERO, carried: [[Ints::ZERO; 2]; 2] };
 
     /// Puts a contact into a lane.
     #[inline(always)]
-    fn take(
-        &mut self,
-        input: &Input,
-        lane: usize,
-        batch: &mut Batch<N>,
-        records: &mut Records<N>,
-    ) {
+    fn take(&mut self, input: &Input, lane: usize, batch: &mut Batch<N>, records: &mut Records<N>) {
         self.fractions[0].0[lane] = input.fractions.a.to_bits();
         self.fractions[1].0[lane] = input.fractions.b.to_bits();
         self.friction.0[lane] = input.friction;
@@ -201,7 +192,8 @@ impl<const N: usize> Gathered<N> {
         let minus_y = L::sub(L::splat(0), y);
         let fractions = [L::load(&self.fractions[0]), L::load(&self.fractions[1])];
         for i in 0..batch.count {
-            let (point, [normal_inverses, tangent_inverses]) = (&mut batch.points[i], &mut records.inverses[i]);
+            let (point, [normal_inverses, tangent_inverses]) =
+                (&mut batch.points[i], &mut records.inverses[i]);
             let normal = fill_row::<L, N>(&mut point.normal, [x, y], fractions, normal_inverses);
             let tangent = fill_row::<L, N>(&mut point.tangent, [minus_y, x], fractions, tangent_inverses);
             for lane in 0..N {
@@ -257,7 +249,11 @@ fn fill_row<L: Lanes<N>, const N: usize>(
 
 /// `1 / D`, both with 30 fraction bits; of a lane without a contact, whose fractions are 0, anything.
 #[inline(always)]
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "D is 1 or more, so it is at most 1")]
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "D is 1 or more, so it is at most 1"
+)]
 fn reciprocal(denominator: i64) -> i32 {
     ((1u64 << 60) / denominator.max(1 << 30) as u64) as i32
 }

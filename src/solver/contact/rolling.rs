@@ -32,21 +32,11 @@ pub(super) struct RollingRows<const N: usize> {
 
 impl<const N: usize> RollingRows<N> {
     /// No rolling resistance in any lane.
-    pub(super) const NONE: Self = RollingRows {
-        row: Row::NONE,
-        grips: [Ints::ZERO; 2],
-        lambda: Ints::ZERO,
-        denominators: [0; N],
-    };
+    pub(super) const NONE: Self =
+        RollingRows { row: Row::NONE, grips: [Ints::ZERO; 2], lambda: Ints::ZERO, denominators: [0; N] };
 
     /// `inverse_normals` are the reciprocals of the points' denominators, 0 for a missing one.
-    pub(super) fn fill(
-        &mut self,
-        lane: usize,
-        input: &Input,
-        list: &BodyList,
-        inverse_normals: [Unit; 2],
-    ) {
+    pub(super) fn fill(&mut self, lane: usize, input: &Input, list: &BodyList, inverse_normals: [Unit; 2]) {
         let &Input { bodies, fractions, rolling_resistance, rolling, .. } = input;
         let [a, b] = bodies.map(|index| list.facts(index).inverse_gyration);
         let (row, denominator, scale) = ScalarRow::angular(a, b, fractions);

@@ -282,7 +282,13 @@ impl JointSet {
             rows.iter_mut().for_each(|row| row.warm_start(a, b, faults));
             points.iter_mut().for_each(|point| point.warm_start(a, b, faults));
         }
-        self.hinges.perform(Task::WarmStart, (&self.quads, machine), tuning, SolverBody::cells(bodies), faults);
+        self.hinges.perform(
+            Task::WarmStart,
+            (&self.quads, machine),
+            tuning,
+            SolverBody::cells(bodies),
+            faults,
+        );
     }
 
     pub(crate) fn solve(
@@ -298,7 +304,13 @@ impl JointSet {
             rows.iter_mut().for_each(|row| row.solve(pass, tuning, a, b, faults));
             points.iter_mut().for_each(|point| point.solve(pass, a, b, faults));
         }
-        self.hinges.perform(Task::Solve(pass), (&self.quads, machine), tuning, SolverBody::cells(bodies), faults);
+        self.hinges.perform(
+            Task::Solve(pass),
+            (&self.quads, machine),
+            tuning,
+            SolverBody::cells(bodies),
+            faults,
+        );
     }
 
     /// Keeps impulses and turns for the next tick.

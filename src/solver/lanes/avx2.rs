@@ -249,14 +249,18 @@ impl Lanes<WIDTH> for Avx2 {
     #[inline(always)]
     fn velocities(bodies: &[Cell<SolverBody>], at: &[u32; WIDTH]) -> Motion<__m256i> {
         // SAFETY: see `Avx2`; the first 16 bytes of a body.
-        let row = |lane: usize| unsafe { _mm_load_si128(SolverBody::velocity_bits(&bodies[at[lane] as usize]).cast()) };
+        let row = |lane: usize| unsafe {
+            _mm_load_si128(SolverBody::velocity_bits(&bodies[at[lane] as usize]).cast())
+        };
         motion([row(0), row(1), row(2), row(3), row(4), row(5), row(6), row(7)])
     }
 
     #[inline(always)]
     fn shifts(bodies: &[Cell<SolverBody>], at: &[u32; WIDTH]) -> Motion<__m256i> {
         // SAFETY: see `Avx2`; the last 16 bytes of a body.
-        let row = |lane: usize| unsafe { _mm_load_si128(SolverBody::shift_bits(&bodies[at[lane] as usize]).cast()) };
+        let row = |lane: usize| unsafe {
+            _mm_load_si128(SolverBody::shift_bits(&bodies[at[lane] as usize]).cast())
+        };
         motion([row(0), row(1), row(2), row(3), row(4), row(5), row(6), row(7)])
     }
 

@@ -1,0 +1,214 @@
+//! Clipping of the incident edge of one outline against the reference face of another.
+//!
+//! All that follows happens in the frame of the face: where a vertex is along it, and how far above. A contact point
+//! is half-way between the surfaces, at the clipped place:
+//!
+//! ```text
+//! anchor = v1 + t along + n (above + rA - rB) / 2,    separation = above - rA - rB
+//! ```
+
+use super::{FACE_BITS, Face, TOLERANCE};
+use crate::collision::circle_hull::step_bits;
+use crate::collision::manifold::{Feature, Manifold, ManifoldPoint};
+use crate::collision::pose::Hull;
+use crate::math::{Length, Step, Unit, Vec2, round_shift, saturate};
+
+/// How many fraction bits a step has more than a length.
+const FINER: u32 = Step::FRAC_NBITS - Length::FRAC_NBITS;
+
+/// One end of an edge, about the start of the reference edge, in units of `Length` and `Step` that do not saturate.
+#[derive(Clone, Copy)]
+struct End {
+    vertex: usize,
+    along: i64,
+    above: i64,
+}
+
+/// Clips the incident edge of `b` against a face of `a`. Anchors are about the centre of `a`.
+pub(in crate::collision) fn clip(
+    a: &Hull,
+    b: &Hull,
+    d: Vec2<Length>,
+    face: Face,
+    apart: bool,
+    margin: Length,
+) -> Manifold {
+    let next = a.next(face.edge);
+    let (normal, v1) = (a.normal(face.edge), a.vertex(face.edge));
+    let (first, last) = (
+        End { vertex: face.edge, along: 0, above: 0 },
+        End { vertex: next, along: along(normal, between(v1, a.vertex(next))), above: 0 },
+    );
+    // Both outlines run counter-clockwise, so the incident edge runs against the reference edge: its second
+    // vertex is the lower end.
+    let incident = incident_edge(b, normal);
+    let to_b = between(v1, d);
+    let end_of_b = |vertex: usize| {
+        let position = b.vertex(vertex);
+        let p = (to_b.0 + i64::from(position.x.to_bits()), to_b.1 + i64::from(position.y.to_bits()));
+        End { vertex, along: along(normal, p), above: above(normal, p) }
+    };
+    let (upper, lower) = (end_of_b(incident), end_of_b(b.next(incident)));
+
+    let context = Clip { a, b, d, face: face.edge, margin };
+    let corners = if apart { nearest_corners(first, last, upper, lower) } else { None };
+    if upper.along < first.along || lower.along > last.along {
+        // Outlines that overlap deeply may have no incident edge beside the face. Their deepest corner still pushes
+        // them apart.
+        let (end_a, end_b) = if upper.along < first.along { (first, upper) } else { (last, lower) };
+        return match corners {
+            Some((vertex_a, vertex_b)) => context.corner(&Gap::between(&context, vertex_a, vertex_b)),
+            None => context.face([(end_a.vertex, end_b)]),
+        };
+    }
+    let low = if lower.along < first.along { clipped(lower, upper, first.along) } else { lower };
+    let high = if upper.along > last.along { clipped(upper, lower, last.along) } else { upper };
+    if let Some((vertex_a, vertex_b)) = corners {
+        // Rounded edges that are nearly parallel are nearest at a corner too, but rest on both ends: there the
+        // corners are no nearer than the clipped edge, nor further than the face.
+        let gap = Gap::between(&context, vertex_a, vertex_b);
+        let distance = step_bits(gap.distance);
+        let nearer = low.above.min(high.above);
+        let spread = (nearer - distance).max(distance - (face.separation >> 25));
+        if spread > i64::from(TOLERANCE.to_bits()) {
+            return context.corner(&gap);
+        }
+    }
+    context.face([(first.vertex, low), (last.vertex, high)])
+}
+
+/// The corners that are nearest to each other, if those are what is nearest of two edges that are apart: each lies
+/// beyond the end of the other edge.
+fn nearest_corners(first: End, last: End, upper: End, lower: End) -> Option<(End, End)> {
+    let beyond_incident = |a: End, b: End, other: End| {
+        let from_b = |end: End| (end.along - b.along, (end.above - b.above) >> FINER);
+        let (outward, edge) = (from_b(a), from_b(other));
+        // Points of a pair differ by less than 512 m, so each product has at most 62 bits.
+        outward.0 * edge.0 + outward.1 * edge.1 < 0
+    };
+    [(upper, lower), (lower, upper)].into_iter().find_map(|(b, other)| {
+        if b.along < first.along && beyond_incident(first, b, other) {
+            Some((first, b))
+        } else if b.along > last.along && beyond_incident(last, b, other) {
+            Some((last, b))
+        } else {
+            None
+        }
+    })
+}
+
+/// The edge whose normal is most opposed to `normal`: of equal ones the first.
+#[inline]
+fn incident_edge(b: &Hull, normal: Vec2<Unit>) -> usize {
+    let cosine = |n: Vec2<Unit>| {
+        i64::from(n.x.to_bits()) * i64::from(normal.x.to_bits())
+            + i64::from(n.y.to_bits()) * i64::from(normal.y.to_bits())
+    };
+    let nearer = |a: (usize, i64), b: (usize, i64)| if b.1 < a.1 { b } else { a };
+    if let Some((_, &[n0, n1])) = b.as_box() {
+        let (cosine_0, cosine_1) = (cosine(n0), cosine(n1));
+        let edge_0 = if cosine_0 <= 0 { 0 } else { 2 };
+        let edge_1 = if cosine_1 <= 0 { 1 } else { 3 };
+        return nearer((edge_0, -cosine_0.abs()), (edge_1, -cosine_1.abs())).0;
+    }
+    b.normals().iter().map(|&n| cosine(n)).enumerate().reduce(nearer).map_or(0, |(edge, _)| edge)
+}
+
+/// From one position to another, in units of `Length`: one bit more than that holds.
+#[inline]
+fn between(from: Vec2<Length>, to: Vec2<Length>) -> (i64, i64) {
+    let apart = |from: Length, to: Length| i64::from(to.to_bits()) - i64::from(from.to_bits());
+    (apart(from.x, to.x), apart(from.y, to.y))
+}
+
+/// How far along the face with a normal, in units of `Length`: `t . p` for `t` the normal turned a quarter.
+#[inline]
+fn along(n: Vec2<Unit>, p: (i64, i64)) -> i64 {
+    round_shift(i64::from(n.x.to_bits()) * p.1 - i64::from(n.y.to_bits()) * p.0, Unit::FRAC_NBITS)
+}
+
+/// How far above the face with a normal, in units of `Step`: `n . p`.
+#[inline]
+fn above(n: Vec2<Unit>, p: (i64, i64)) -> i64 {
+    let above = i64::from(n.x.to_bits()) * p.0 + i64::from(n.y.to_bits()) * p.1;
+    round_shift(above, FACE_BITS - Step::FRAC_NBITS)
+}
+
+/// Moves an end along its edge to where it passes a limit, which is between it and the other end.
+#[inline]
+fn clipped(end: End, other: End, limit: i64) -> End {
+    // Edges are at most 570 m long: the product has 63 bits.
+    const BITS: u32 = 26;
+    let fraction = ((limit - end.along) << BITS) / (other.along - end.along);
+    End { along: limit, above: end.above + round_shift((other.above - end.above) * fraction, BITS), ..end }
+}
+
+struct Clip<'a> {
+    a: &'a Hull,
+    b: &'a Hull,
+    /// From the centre of A to that of B.
+    d: Vec2<Length>,
+    face: usize,
+    margin: Length,
+}
+
+/// What is between two corners.
+struct Gap {
+    vertices: (usize, usize),
+    normal: Vec2<Unit>,
+    distance: Length,
+}
+
+impl Gap {
+    fn between(clip: &Clip, a: End, b: End) -> Self {
+        let d = clip.b.vertex(b.vertex) + clip.d - clip.a.vertex(a.vertex);
+        let (normal, distance) =
+            d.normalized_with_length().unwrap_or((clip.a.normal(clip.face), Length::ZERO));
+        Gap { vertices: (a.vertex, b.vertex), normal, distance }
+    }
+}
+
+impl Clip<'_> {
+    /// Contact points of clipped incident ends, each with the vertex of A that it is next to.
+    #[inline(always)]
+    fn face<const N: usize>(&self, ends: [(usize, End); N]) -> Manifold {
+        let (normal, start) = (self.a.normal(self.face), self.a.vertex(self.face));
+        let mut manifold = Manifold::new(normal);
+        for (vertex, end) in ends {
+            self.push(&mut manifold, start, (vertex, end));
+        }
+        manifold
+    }
+
+    /// Contact between two corners, along the line that joins them.
+    fn corner(&self, gap: &Gap) -> Manifold {
+        let mut manifold = Manifold::new(gap.normal);
+        let end = End { vertex: gap.vertices.1, along: 0, above: step_bits(gap.distance) };
+        self.push(&mut manifold, self.a.vertex(gap.vertices.0), (gap.vertices.0, end));
+        manifold
+    }
+
+    /// Adds the contact at an end of B, given about a place on A's outline, radii not counted, if it is near enough.
+    #[inline(always)]
+    fn push(&self, manifold: &mut Manifold, start: Vec2<Length>, (vertex, end): (usize, End)) {
+        let (radius_a, radius_b) = (step_bits(self.a.radius), step_bits(self.b.radius));
+        let separation = end.above - (radius_a + radius_b);
+        if separation > step_bits(self.margin) {
+            return;
+        }
+        // A's surface is at `radius_a` above the outline and B's at `above - radius_b`.
+        let middle = round_shift(end.above + radius_a - radius_b, FINER + 1);
+        let (x, y) = (i64::from(manifold.normal.x.to_bits()), i64::from(manifold.normal.y.to_bits()));
+        let moved = |from: Length, by: i64| {
+            Length::from_bits(saturate(i64::from(from.to_bits()) + round_shift(by, Unit::FRAC_NBITS)))
+        };
+        let anchor =
+            Vec2::new(moved(start.x, x * middle - y * end.along), moved(start.y, y * middle + x * end.along));
+        let separation = Step::from_bits(saturate(separation));
+        manifold.push(ManifoldPoint {
+            anchor,
+            separation,
+            feature: Feature::of_vertices(vertex, end.vertex),
+        });
+    }
+}
