@@ -253,18 +253,26 @@ impl JointSet {
     }
 
     /// The force and the torque about B's anchor that a joint has last exerted on B: `P / h`, from the velocities that
-    /// its impulses give to one of the bodies at rest.
-    pub(super) fn reaction(joint: &Joint, a: &Body, b: &Body, tuning: &Tuning) -> (Vec2<Fx>, Fx) {
-        let mut set = JointSet { turned: alloc::vec![Turned::default(); 2], ..JointSet::default() };
+    /// its impulses give to one of the bodies at rest. The set's own constraints are gone afterwards, so that it needs
+    /// no other memory.
+    pub(crate) fn reaction(
+        &mut self,
+        joint: &Joint,
+        (a, b): (&Body, &Body),
+        tuning: &Tuning,
+    ) -> (Vec2<Fx>, Fx) {
+        self.list.clear();
+        self.bodies.clear();
+        self.turned.resize(2, Turned::default());
         for (index, body) in [(0, a), (1, b)] {
             let inverse_gyration = body.mass.inverse_gyration;
-            set.bodies.push(JointedBody { index, angle: body.angle(), inverse_gyration });
+            self.bodies.push(JointedBody { index, angle: body.angle(), inverse_gyration });
         }
-        set.list.push(JointId::from_parts(0, 0), joint, (0, a), (1, b), tuning);
+        self.list.push(JointId::from_parts(0, 0), joint, (0, a), (1, b), tuning);
         let mut bodies = [SolverBody::default(); 2];
-        set.refresh(&bodies, tuning);
-        set.warm_start(&mut bodies, &mut 0);
-        let place = set.list.joints[0].ends.place(&bodies, &set.turned);
+        self.refresh(&bodies, tuning);
+        self.warm_start(&mut bodies, &mut 0);
+        let place = self.list.joints[0].ends.place(&bodies, &self.turned);
         // The lighter one shows more of it.
         let (body, moved, arm) = if a.is_dynamic() && (!b.is_dynamic() || a.mass() < b.mass()) {
             (a, bodies[0].reversed(), place.lever_a.arm)
