@@ -68,8 +68,9 @@ fn every_backend_ends_in_the_same_hashes() {
     all_end_in_their_hashes(&backends, World::set_backend);
 }
 
+/// One thread is what the test above has.
 #[test]
 #[cfg(feature = "parallel")]
 fn any_number_of_threads_ends_in_the_same_hashes() {
-    all_end_in_their_hashes(&[1, 2, 4, 8], World::set_threads);
+    all_end_in_their_hashes(&[2, 4, 8], World::set_threads);
 }
