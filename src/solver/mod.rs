@@ -39,6 +39,7 @@ pub use settings::{ContactTuning, DISTANCE_MAX, SolverSettings};
 
 use crate::body::{Arena, Body, BodyId, JointId};
 use crate::collision::{Contact, Manifold, Pair};
+use crate::math::{Fx, Vec2};
 use crate::threads::Threads;
 
 /// How many times as often everything is solved in a tick in which most contact points are new: without impulses of
@@ -110,6 +111,16 @@ impl Solver {
         let Solver { list, nodes, colouring, machine, .. } = self;
         self.joints.prepare((joints, slots), (bodies, list), tuning, nodes, colouring);
         self.joints.refresh(&mut self.list.bodies, *machine, tuning);
+    }
+
+    /// [`Joint::reaction`] without memory of its own, once the joints of the tick have been solved.
+    pub(crate) fn reaction(
+        &mut self,
+        joint: &Joint,
+        bodies: (&Body, &Body),
+        tuning: &Tuning,
+    ) -> (Vec2<Fx>, Fx) {
+        self.joints.reaction(joint, bodies, tuning)
     }
 
     /// Makes a constraint of every touching pair, in the order in which they are solved.

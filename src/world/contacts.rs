@@ -209,10 +209,10 @@ fn approaching(
 /// has pushed it apart since: a fast bounce may begin and end between two ticks.
 pub(super) fn report(state: &mut State, scratch: &mut Scratch) {
     scratch.events.clear();
-    for removed in core::mem::take(&mut state.removed_contacts) {
+    for removed in state.removed_contacts.drain(..) {
         end(Some(removed), &mut scratch.events);
     }
-    for contact in core::mem::take(&mut scratch.ended) {
+    for contact in scratch.ended.drain(..) {
         if contact.touching {
             end(state.reported(&contact), &mut scratch.events);
         }

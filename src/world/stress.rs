@@ -8,15 +8,16 @@ use super::scratch::Scratch;
 use super::state::State;
 use crate::body::{BodyId, Handle};
 use crate::math::{Fx, Vec2};
-use crate::solver::{Joint, Threshold, ThresholdAction, Tuning};
+use crate::solver::{Joint, Solver, Threshold, ThresholdAction, Tuning};
 
 /// Looks at what the joints of the tick have borne in its last sub-step.
 pub(super) fn report(state: &mut State, scratch: &mut Scratch, tuning: &Tuning) {
-    let Scratch { roster, events, .. } = scratch;
+    let Scratch { roster, events, solver, .. } = scratch;
+    // Joints break so rarely that this is no buffer of the scratch memory.
     let mut broken = Vec::new();
     for &slot in &roster.joints {
         let joint = state.joints.at(slot);
-        if let Some((force, torque)) = excess(state, joint, tuning) {
+        if let Some((force, torque)) = excess(state, solver, joint, tuning) {
             let broke = joint.def().threshold.action == ThresholdAction::Break;
             let id = state.joints.handle_at(slot);
             events.joints.push(JointEvent { joint: id, force, torque, broke });
@@ -36,14 +37,14 @@ pub(super) fn report(state: &mut State, scratch: &mut Scratch, tuning: &Tuning) 
 }
 
 /// The force and torque of a joint, if one of them is above the threshold.
-fn excess(state: &State, joint: &Joint, tuning: &Tuning) -> Option<(Vec2<Fx>, Fx)> {
+fn excess(state: &State, solver: &mut Solver, joint: &Joint, tuning: &Tuning) -> Option<(Vec2<Fx>, Fx)> {
     let Threshold { force: most_force, torque: most_torque, action: _ } = joint.def().threshold;
     if most_force.is_none() && most_torque.is_none() {
         return None;
     }
     let (a, b) = joint.def().bodies();
     let (a, b) = (state.bodies.at(a.slot()), state.bodies.at(b.slot()));
-    let (force, torque) = joint.reaction(a, b, tuning);
+    let (force, torque) = solver.reaction(joint, (a, b), tuning);
     let too_much = most_force.is_some_and(|most| force.length() > most)
         || most_torque.is_some_and(|most| torque.saturating_abs() > most);
     too_much.then_some((force, torque))

@@ -13,9 +13,14 @@ pub(crate) struct Golden {
     pub(crate) hash: String,
 }
 
-/// The lines of `tests/goldens.txt` that belong to the present semantics: semantics, scene, ticks, hash.
+/// The lines of `tests/goldens.txt` that belong to the present semantics.
 pub(crate) fn goldens() -> Vec<Golden> {
-    let text = std::fs::read_to_string(root().join("tests/goldens.txt")).expect("tests/goldens.txt");
+    goldens_of("tests/goldens.txt")
+}
+
+/// The lines of a file of hashes that belong to the present semantics: semantics, scene, ticks, hash.
+pub(crate) fn goldens_of(file: &str) -> Vec<Golden> {
+    let text = std::fs::read_to_string(root().join(file)).expect("a file of hashes");
     let semantics = lockstep2d::SEMANTICS.to_string();
     let lines = text.lines().filter(|line| !line.starts_with('#') && !line.is_empty());
     lines

@@ -332,27 +332,32 @@ impl JointSet {
     }
 
     /// The force and the torque about B's anchor that a joint has last exerted on B: `P / h`, from the velocities that
-    /// its impulses give to one of the bodies at rest.
-    pub(super) fn reaction(joint: &Joint, a: &Body, b: &Body, tuning: &Tuning) -> (Vec2<Fx>, Fx) {
+    /// its impulses give to one of the bodies at rest. The set's own constraints are gone afterwards, so that it needs
+    /// no other memory.
+    pub(crate) fn reaction(
+        &mut self,
+        joint: &Joint,
+        (a, b): (&Body, &Body),
+        tuning: &Tuning,
+    ) -> (Vec2<Fx>, Fx) {
+        self.clear();
+        self.list.clear();
         // Place 0 is the ground's.
-        let mut set = JointSet {
-            bodies: alloc::vec![End::new(1, a, tuning.rate), End::new(2, b, tuning.rate)],
-            turned: alloc::vec![Turned::default(); 3],
-            quads: alloc::vec![Quad::default(); 3],
-            ..JointSet::default()
-        };
-        let machine = Machine::default();
+        self.bodies.extend([End::new(1, a, tuning.rate), End::new(2, b, tuning.rate)]);
+        self.turned.resize(self.turned.len().max(3), Turned::default());
+        self.quads.resize(self.quads.len().max(3), Quad::default());
         match hinge_parts(&joint.def.kind) {
             Some(parts) => {
-                set.hinges.push_input(0, joint, (&set.bodies[0], &set.bodies[1]), &parts, tuning);
-                set.hinges.push(&Group::Serial(&[0]), Some);
+                self.hinges.push_input(0, joint, (&self.bodies[0], &self.bodies[1]), &parts, tuning);
+                self.hinges.push(&Group::Serial(&[0]), Some);
             }
-            None => set.list.push(0, joint, (1, a), (2, b), tuning),
+            None => self.list.push(0, joint, (1, a), (2, b), tuning),
         }
+        let machine = Machine::default();
         let mut bodies = [SolverBody::default(); 3];
-        set.refresh(&mut bodies, machine, tuning);
-        set.warm_start(machine, tuning, &mut bodies, &mut 0);
-        let place = Ends::prepare(joint, (1, a), (2, b)).place(&[SolverBody::default(); 3], &set.turned);
+        self.refresh(&mut bodies, machine, tuning);
+        self.warm_start(machine, tuning, &mut bodies, &mut 0);
+        let place = Ends::prepare(joint, (1, a), (2, b)).place(&[SolverBody::default(); 3], &self.turned);
         // The lighter one shows more of it.
         let (body, moved, arm) = if a.is_dynamic() && (!b.is_dynamic() || a.mass() < b.mass()) {
             (a, bodies[1].reversed(), place.lever_a.arm)

@@ -84,7 +84,7 @@ impl Joint {
 
     /// The force in N and the torque in N m about B's anchor that the joint has last exerted on B.
     pub(crate) fn reaction(&self, a: &Body, b: &Body, tuning: &Tuning) -> (Vec2<Fx>, Fx) {
-        JointSet::reaction(self, a, b, tuning)
+        JointSet::default().reaction(self, (a, b), tuning)
     }
 }
 

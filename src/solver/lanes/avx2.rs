@@ -6,14 +6,24 @@ use core::cell::Cell;
 
 use super::super::body::SolverBody;
 use super::super::body_list::GROUND;
-use super::{Ints, Kernel, Lanes, Motion, Quad, WIDTH};
+use super::{Backend, Ints, Kernel, Lanes, Motion, Quad, WIDTH};
 
 /// The processor's AVX2 instructions. Only a [`super::Machine`] that has them runs kernels with it: every `unsafe`
 /// here is an instruction that is there then.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Avx2;
 
+pub(super) use Avx2 as Native;
+
 impl Avx2 {
+    pub(super) fn backend() -> Option<Backend> {
+        #[cfg(feature = "std")]
+        let has = std::arch::is_x86_feature_detected!("avx2");
+        #[cfg(not(feature = "std"))]
+        let has = cfg!(target_feature = "avx2");
+        has.then_some(Backend::Avx2)
+    }
+
     /// Runs a kernel on a processor that has been asked.
     pub(super) fn run(kernel: impl Kernel<WIDTH>) {
         #[target_feature(enable = "avx2")]

@@ -5,15 +5,17 @@
 //! the same bits, and the scalar one is the oracle of the rest. Only 32-bit numbers and their 64-bit products occur,
 //! because the widening multiplication 32 x 32 -> 64 is what all processors have (`vpmuldq`, `smull`, `i64x2.extmul`).
 
-#[cfg(target_arch = "x86_64")]
-mod avx2;
+// One file of vectors, whichever the program is compiled for.
+#[cfg_attr(target_arch = "x86_64", path = "avx2.rs")]
+#[cfg_attr(all(target_arch = "aarch64", target_feature = "neon", target_endian = "little"), path = "neon.rs")]
+#[cfg_attr(all(target_arch = "wasm32", target_feature = "simd128"), path = "simd128.rs")]
+mod native;
 mod scalar;
 mod shared;
 #[cfg(test)]
 mod tests;
 
-#[cfg(target_arch = "x86_64")]
-use avx2::Avx2;
+use native::Native;
 pub(super) use scalar::Scalar;
 pub(super) use shared::Shared;
 
@@ -133,8 +135,7 @@ impl Machine {
     pub(super) fn run(self, kernel: impl Kernel<WIDTH>) {
         match self.0 {
             Backend::Scalar => kernel.run::<Scalar<WIDTH>>(),
-            #[cfg(target_arch = "x86_64")]
-            Backend::Avx2 => Avx2::run(kernel),
+            Backend::Avx2 | Backend::Neon | Backend::Simd128 => Native::run(kernel),
         }
     }
 }
@@ -152,35 +153,24 @@ pub enum Backend {
     /// In plain integers: everywhere.
     Scalar,
     /// In vectors of 256 bits: most x86-64 processors since 2013.
-    #[cfg(target_arch = "x86_64")]
     Avx2,
+    /// In vectors of 128 bits: every 64-bit Arm processor.
+    Neon,
+    /// In vectors of 128 bits: WebAssembly, compiled with `-C target-feature=+simd128`.
+    Simd128,
 }
 
 impl Backend {
     /// Every backend that this machine can run, the best one last. Without the feature `std` only what the program was
     /// compiled for is known.
     pub fn available() -> impl Iterator<Item = Backend> {
-        [Some(Backend::Scalar), Backend::vectors()].into_iter().flatten()
+        [Some(Backend::Scalar), Native::backend()].into_iter().flatten()
     }
 
     /// The best backend of this machine.
     #[must_use]
     pub fn best() -> Self {
         Backend::available().last().unwrap_or(Backend::Scalar)
-    }
-
-    #[cfg(target_arch = "x86_64")]
-    fn vectors() -> Option<Self> {
-        #[cfg(feature = "std")]
-        let has = std::arch::is_x86_feature_detected!("avx2");
-        #[cfg(not(feature = "std"))]
-        let has = cfg!(target_feature = "avx2");
-        has.then_some(Backend::Avx2)
-    }
-
-    #[cfg(not(target_arch = "x86_64"))]
-    const fn vectors() -> Option<Self> {
-        None
     }
 }
 

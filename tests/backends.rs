@@ -1,0 +1,76 @@
+//! How the solver computes changes how fast, never what: with every backend of this machine and on any number of
+//! threads, the large scenes end in the hashes of `tests/backends.txt`.
+
+mod common;
+
+use core::fmt::Debug;
+
+use lockstep2d::lockstep::{Game, Sandbox};
+use lockstep2d::scenes::Scene;
+use lockstep2d::world::{Backend, World};
+
+const HASHES: &str = "tests/backends.txt";
+
+/// The scenes, and for how many ticks. The block of `smash` takes a while to arrive.
+const SCENES: [(&str, u64); 10] = [
+    ("large_pyramid", 60),
+    ("many_pyramids", 60),
+    ("joint_grid", 60),
+    ("rain", 60),
+    ("smash", 120),
+    ("spinner", 60),
+    ("tumbler", 60),
+    ("washer", 60),
+    ("junkyard", 60),
+    ("compounds", 60),
+];
+
+/// The hash at the end of a scene.
+fn hash_of(name: &str, ticks: u64, choose: impl FnOnce(&mut World) -> bool) -> String {
+    let scene = Scene::find(name).expect("a scene of this crate");
+    let mut game = Sandbox::new(&scene.setup(common::SEED)).expect("the scenes of this crate are valid");
+    assert!(choose(game.world_mut()), "this machine cannot compute like that");
+    for tick in 0..ticks {
+        let commands = scene.commands(tick, &game);
+        game.step(&[commands]);
+    }
+    assert_eq!(game.world().faults(), 0, "{name}");
+    game.state_hash().to_string()
+}
+
+/// Runs all scenes in each of several ways, which have to agree with each other and with the file.
+fn all_end_in_their_hashes<Way: Copy + Debug>(ways: &[Way], choose: fn(&mut World, Way) -> bool) {
+    let known = common::goldens_of(HASHES);
+    let mut wrong = Vec::new();
+    for (name, ticks) in SCENES {
+        let hash_of = |way| hash_of(name, ticks, |world| choose(world, way));
+        let hash = hash_of(ways[0]);
+        for &way in &ways[1..] {
+            assert_eq!(hash, hash_of(way), "{name}: {:?} and {way:?} differ after {ticks} ticks", ways[0]);
+        }
+        let line = known.iter().find(|line| (line.scene.as_str(), line.ticks) == (name, ticks));
+        if line.is_none_or(|line| line.hash != hash) {
+            wrong.push(format!("{} {name} {ticks} {hash}", lockstep2d::SEMANTICS));
+        }
+    }
+    assert!(
+        wrong.is_empty(),
+        "the arithmetic has changed, in the same way for all. If that is meant: raise lockstep2d::SEMANTICS and \
+         add these lines to {HASHES}.\n{}",
+        wrong.join("\n")
+    );
+    assert_eq!(known.len(), SCENES.len(), "{HASHES} has a line for each scene");
+}
+
+#[test]
+fn every_backend_ends_in_the_same_hashes() {
+    let backends: Vec<Backend> = Backend::available().collect();
+    all_end_in_their_hashes(&backends, World::set_backend);
+}
+
+/// One thread is what the test above has.
+#[test]
+#[cfg(feature = "parallel")]
+fn any_number_of_threads_ends_in_the_same_hashes() {
+    all_end_in_their_hashes(&[2, 4, 8], World::set_threads);
+}
