@@ -12,7 +12,11 @@ use crate::math::{round_shift, saturate};
 pub(in crate::solver) struct Scalar<const N: usize>;
 
 #[inline(always)]
-pub(super) fn map<A: Copy, B: Copy, C, const N: usize>(a: [A; N], b: [B; N], f: impl Fn(A, B) -> C) -> [C; N] {
+pub(super) fn map<A: Copy, B: Copy, C, const N: usize>(
+    a: [A; N],
+    b: [B; N],
+    f: impl Fn(A, B) -> C,
+) -> [C; N] {
     core::array::from_fn(|i| f(a[i], b[i]))
 }
 
