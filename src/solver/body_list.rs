@@ -56,7 +56,7 @@ impl BodyFacts {
     }
 
     /// From the centre of mass to a place; of what does not turn, anything.
-    pub(super) fn to_centre(&self, place: Vec2<Fx>) -> Vec2<Length> {
+    pub(super) fn arm_to(&self, place: Vec2<Fx>) -> Vec2<Length> {
         (place - self.centre).narrow()
     }
 }

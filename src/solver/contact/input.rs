@@ -69,7 +69,7 @@ impl Input {
             rolling_resistance,
             rolling: memory.rolling,
         };
-        let to_ends = ends.map(|end| end.to_centre(manifold.origin));
+        let to_ends = ends.map(|end| end.arm_to(manifold.origin));
         for (i, point) in points.iter().enumerate() {
             let carried = memory.impulse_of(point.feature);
             warm.points += 1;

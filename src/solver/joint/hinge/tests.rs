@@ -125,9 +125,9 @@ impl Setting {
         let (tuning, mut faults) = (tuning(), 0);
         let Setting { hinges, bodies, quads, turned, .. } = self;
         for _ in 0..2 {
-            hinges.refresh(bodies, Poses { quads, turned }, machine, &tuning);
+            hinges.refresh(SolverBody::cells(bodies), Poses { quads, turned }, machine, &tuning);
             for task in [Task::WarmStart, Task::Solve(Pass::Bias), Task::Solve(Pass::Relax)] {
-                hinges.perform(task, (quads, machine), &tuning, bodies, &mut faults);
+                hinges.perform(task, (quads, machine), &tuning, SolverBody::cells(bodies), &mut faults);
             }
         }
         faults
@@ -231,8 +231,8 @@ fn a_point_is_solved_as_by_the_scalar_block() {
         setting.hinges.push(&Group::Coloured(&[0, 1, 2, 3, 4, 5, 6, 7]), Some);
         let (tuning, machine, mut faults) = (tuning(), Machine::default(), 0);
         let Setting { hinges, bodies, quads, turned, ends, fractions } = &mut setting;
-        hinges.refresh(bodies, Poses { quads, turned }, machine, &tuning);
-        hinges.perform(Task::Solve(Pass::Relax), (quads, machine), &tuning, bodies, &mut faults);
+        hinges.refresh(SolverBody::cells(bodies), Poses { quads, turned }, machine, &tuning);
+        hinges.perform(Task::Solve(Pass::Relax), (quads, machine), &tuning, SolverBody::cells(bodies), &mut faults);
         for (i, (&[a, b], &fractions)) in ends.iter().zip(fractions.iter()).enumerate() {
             let block = PointBlock::new(a, b, fractions);
             let (mut a, mut b) = (before[2 * i + 1], before[2 * i + 2]);
@@ -247,7 +247,7 @@ fn a_point_is_solved_as_by_the_scalar_block() {
         // What a second update still finds.
         let first: Vec<_> = setting.impulses();
         let Setting { hinges, bodies, quads, .. } = &mut setting;
-        hinges.perform(Task::Solve(Pass::Relax), (quads, machine), &tuning, bodies, &mut faults);
+        hinges.perform(Task::Solve(Pass::Relax), (quads, machine), &tuning, SolverBody::cells(bodies), &mut faults);
         for ((_, first), (_, second)) in first.iter().zip(setting.impulses()) {
             let moved = first.iter().zip(second).map(|(first, second)| (second - first).abs());
             left = moved.fold(left, i32::max);
