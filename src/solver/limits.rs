@@ -11,12 +11,6 @@ pub(crate) const STEP_MAX: Speed = Speed::lit("512");
 /// Largest accumulated impulse, in m/s.
 pub(crate) const IMPULSE_MAX: Speed = Speed::lit("1023");
 
-/// A number of fraction bits to shift by, as the wide kernels want it.
-#[expect(clippy::cast_possible_wrap, reason = "at most 64")]
-pub(super) const fn shift(fraction_bits: u32) -> i32 {
-    fraction_bits as i32
-}
-
 /// Keeps an impulse that has accumulated over several sub-steps, each within [`STEP_MAX`], within it as a whole:
 /// it is applied at once, to a velocity of up to [`SPEED_MAX`].
 #[inline]

@@ -12,6 +12,7 @@ mod integrate;
 mod joint;
 mod lanes;
 mod limits;
+mod pair;
 mod point_block;
 mod row;
 mod settings;

@@ -13,15 +13,17 @@
 use core::cell::Cell;
 
 use super::super::body::SolverBody;
-use super::super::lanes::{Ints, Lanes, Motion};
-use super::super::limits::{Faults, IMPULSE_MAX, SPEED_MAX};
+use super::super::lanes::{Ints, Lanes};
+use super::super::limits::{Faults, IMPULSE_MAX};
+use super::super::pair::{Pair, RATIO, UNIT, clamp, shift};
 use super::super::settings::Tuning;
 use super::super::softness::Softness;
-use super::batch::{Batch, Point, Row};
+use super::batch::{Batch, Point};
+use super::pair::along;
 use super::rolling::RollingRows;
 use super::special::Special;
 use super::{NORMAL_ROUNDS_MAX, Pass, RESTITUTION_ITERATIONS, SETTLED, Sweep, TANGENT_MAX};
-use crate::math::{Rate, Ratio, Shift, Speed, Unit};
+use crate::math::{Grip, Rate, Shift, Speed, Unit};
 
 /// The constants of a tick.
 #[derive(Clone, Copy)]
@@ -54,144 +56,11 @@ impl Constants {
     }
 }
 
-/// The bodies of a batch, while it is solved.
-struct Pair<L: Lanes<N>, const N: usize> {
-    a: Motion<L::Int>,
-    b: Motion<L::Int>,
-}
-
-impl<L: Lanes<N>, const N: usize> Pair<L, N> {
-    #[inline(always)]
-    fn load(bodies: &[Cell<SolverBody>], batch: &Batch<N>) -> Self {
-        let [a, b] = &batch.bodies;
-        Pair { a: L::velocities(bodies, a), b: L::velocities(bodies, b) }
-    }
-
-    #[inline(always)]
-    fn store(self, bodies: &[Cell<SolverBody>], batch: &Batch<N>) {
-        let [a, b] = &batch.changed;
-        L::set_velocities(bodies, a, self.a);
-        L::set_velocities(bodies, b, self.b);
-    }
-
-    /// `J v`.
-    #[inline(always)]
-    fn along(&self, n: [L::Int; 2], row: &Row<N>) -> L::Wide {
-        along::<L, N>(&self.a, &self.b, n, row)
-    }
-
-    /// `J v` as a speed. A lane in which it does not fit is a fault.
-    #[inline(always)]
-    fn velocity(&self, n: [L::Int; 2], row: &Row<N>, faults: &mut Faults) -> L::Int {
-        let (vn, out) = L::narrow_saturating::<{ Ratio::FRAC_NBITS as i32 }>(self.along(n, row));
-        if L::any(out) {
-            *faults += u64::from(L::count(out));
-        }
-        vn
-    }
-
-    /// Changes the velocities by impulses `d`.
-    #[inline(always)]
-    fn apply(&mut self, row: &Row<N>, d: L::Int, faults: &mut Faults) {
-        if L::any(L::negative(L::add(d, L::splat(HALF)))) {
-            self.apply_in_steps(row, d, faults);
-        } else {
-            self.apply_step(row, d, faults);
-        }
-    }
-
-    /// Of impulses below 512: no sum leaves the format.
-    #[inline(always)]
-    fn apply_step(&mut self, row: &Row<N>, d: L::Int, faults: &mut Faults) {
-        let Motion { x, y, turn } = self.a;
-        let a = Motion {
-            x: L::sub(x, part::<L, N>(&row.a[0], d)),
-            y: L::sub(y, part::<L, N>(&row.a[1], d)),
-            turn: L::sub(turn, part::<L, N>(&row.a[2], d)),
-        };
-        let Motion { x, y, turn } = self.b;
-        let b = Motion {
-            x: L::add(x, part::<L, N>(&row.b[0], d)),
-            y: L::add(y, part::<L, N>(&row.b[1], d)),
-            turn: L::add(turn, part::<L, N>(&row.b[2], d)),
-        };
-        (self.a, self.b) = (a, b);
-        // One branch that is never taken, instead of six clamps.
-        let limit = L::splat(SPEED_MAX.to_bits());
-        let (most, least) =
-            (L::max(most::<L, N>(a), most::<L, N>(b)), L::min(least::<L, N>(a), least::<L, N>(b)));
-        if L::any(L::either(L::greater(most, limit), L::greater(L::sub(L::splat(0), limit), least))) {
-            self.clamp(faults);
-        }
-    }
-
-    /// A friction limit may shrink, and what was pushed may come free, by more than a velocity has room for.
-    #[cold]
-    fn apply_in_steps(&mut self, row: &Row<N>, mut d: L::Int, faults: &mut Faults) {
-        let limit = L::splat(HALF - 1);
-        for _ in 0..3 {
-            let step = L::min(L::max(d, L::sub(L::splat(0), limit)), limit);
-            self.apply_step(row, step, faults);
-            d = L::sub(d, step);
-        }
-    }
-
-    #[cold]
-    fn clamp(&mut self, faults: &mut Faults) {
-        let limit = L::splat(SPEED_MAX.to_bits());
-        for body in [&mut self.a, &mut self.b] {
-            for speed in [&mut body.x, &mut body.y, &mut body.turn] {
-                let within = L::min(L::max(*speed, L::sub(L::splat(0), limit)), limit);
-                let differs = L::either(L::greater(within, *speed), L::greater(*speed, within));
-                *faults += u64::from(L::count(differs));
-                *speed = within;
-            }
-        }
-    }
-}
-
-/// 512 as a speed: half of what the format holds.
-const HALF: i32 = 1 << 30;
-
-#[inline(always)]
-fn most<L: Lanes<N>, const N: usize>(v: Motion<L::Int>) -> L::Int {
-    L::max(L::max(v.x, v.y), v.turn)
-}
-
-#[inline(always)]
-fn least<L: Lanes<N>, const N: usize>(v: Motion<L::Int>) -> L::Int {
-    L::min(L::min(v.x, v.y), v.turn)
-}
-
-/// What an impulse changes.
-#[inline(always)]
-fn part<L: Lanes<N>, const N: usize>(gain: &Ints<N>, d: L::Int) -> L::Int {
-    L::narrow::<{ Unit::FRAC_NBITS as i32 }>(L::mul(L::load(gain), d))
-}
-
-/// `n.(b - a) + eB uB - eA uA`, with 24 more fraction bits.
-#[inline(always)]
-fn along<L: Lanes<N>, const N: usize>(
-    a: &Motion<L::Int>,
-    b: &Motion<L::Int>,
-    [x, y]: [L::Int; 2],
-    row: &Row<N>,
-) -> L::Wide {
-    let linear = L::add_wide(L::mul(x, L::sub(b.x, a.x)), L::mul(y, L::sub(b.y, a.y)));
-    let angular = L::sub_wide(L::mul(L::load(&row.e_b), b.turn), L::mul(L::load(&row.e_a), a.turn));
-    L::add_wide(linear, angular)
-}
-
 /// The normal and the tangent of a batch.
 #[inline(always)]
 fn directions<L: Lanes<N>, const N: usize>(batch: &Batch<N>) -> ([L::Int; 2], [L::Int; 2]) {
     let (x, y) = (L::load(&batch.n_x), L::load(&batch.n_y));
     ([x, y], [L::sub(L::splat(0), y), x])
-}
-
-#[inline(always)]
-fn clamp<L: Lanes<N>, const N: usize>(value: L::Int, limit: L::Int) -> L::Int {
-    L::min(L::max(value, L::sub(L::splat(0), limit)), limit)
 }
 
 /// Remembers how fast shapes that bounce approach, until they push each other: before anything has been solved, since
@@ -203,7 +72,7 @@ pub(super) fn observe<L: Lanes<N>, const N: usize>(
     bodies: &[Cell<SolverBody>],
     faults: &mut Faults,
 ) {
-    let pair = Pair::<L, N>::load(bodies, batch);
+    let pair = Pair::<L, N>::load(bodies, &batch.bodies);
     let (n, _) = directions::<L, N>(batch);
     let Special { approach, pushed, .. } = special;
     for ((point, approach), pushed) in batch.points[..batch.count].iter().zip(approach).zip(pushed) {
@@ -221,7 +90,7 @@ pub(super) fn warm_start<L: Lanes<N>, const N: usize>(
     bodies: &[Cell<SolverBody>],
     faults: &mut Faults,
 ) {
-    let mut pair = Pair::<L, N>::load(bodies, batch);
+    let mut pair = Pair::<L, N>::load(bodies, &batch.bodies);
     for point in &batch.points[..batch.count] {
         pair.apply(&point.normal, L::load(&point.normal_lambda), faults);
         pair.apply(&point.tangent, L::load(&point.tangent_lambda), faults);
@@ -229,7 +98,7 @@ pub(super) fn warm_start<L: Lanes<N>, const N: usize>(
     if let Some(Special { rolls: true, rolling, .. }) = special {
         pair.apply(&rolling.row, L::load(&rolling.lambda), faults);
     }
-    pair.store(bodies, batch);
+    pair.store(bodies, &batch.changed);
 }
 
 /// One iteration over all rows of a batch.
@@ -242,7 +111,7 @@ pub(super) fn solve<L: Lanes<N>, const N: usize>(
     bodies: &[Cell<SolverBody>],
     faults: &mut Faults,
 ) {
-    let mut pair = Pair::<L, N>::load(bodies, batch);
+    let mut pair = Pair::<L, N>::load(bodies, &batch.bodies);
     let (n, t) = directions::<L, N>(batch);
     if pass == Pass::Relax {
         measure::<L, N>(batch, bodies);
@@ -280,7 +149,7 @@ pub(super) fn solve<L: Lanes<N>, const N: usize>(
     if batch.count == 2 {
         solve_tangent::<L, N>(&mut batch.points[second], t, surface_speed, &mut pair, faults);
     }
-    pair.store(bodies, batch);
+    pair.store(bodies, &batch.changed);
 }
 
 /// Of what bounces, which points have pushed.
@@ -299,7 +168,7 @@ pub(super) fn measure<L: Lanes<N>, const N: usize>(batch: &mut Batch<N>, bodies:
     let (a, b) = (L::shifts(bodies, &batch.bodies[0]), L::shifts(bodies, &batch.bodies[1]));
     for point in &mut batch.points[..batch.count] {
         let moved = along::<L, N>(&a, &b, n, &point.normal);
-        let (moved, _) = L::narrow_saturating::<{ Ratio::FRAC_NBITS as i32 }>(moved);
+        let (moved, _) = L::narrow_saturating::<RATIO>(moved);
         L::store(L::add_saturating(L::load(&point.first_separation), moved), &mut point.separation);
     }
 }
@@ -361,7 +230,7 @@ impl<L: Lanes<N>, const N: usize> Context<L, N> {
                 let mass_scale = L::select(gap, L::splat(Unit::ONE.to_bits()), self.mass_scale);
                 let impulse_scale = L::select(gap, L::splat(0), self.impulse_scale);
                 let wide = L::add_wide(L::mul(mass_scale, error), L::mul(impulse_scale, old));
-                (L::narrow::<{ Unit::FRAC_NBITS as i32 }>(wide), None)
+                (L::narrow::<UNIT>(wide), None)
             }
             // A gap that the bias pass has not closed is left to the next sub-step: to slow an approach down before
             // it arrives, and to bounce there, would make a ball rebound from above the floor.
@@ -397,7 +266,7 @@ impl<L: Lanes<N>, const N: usize> Context<L, N> {
 
     #[inline(always)]
     fn speed_of(&self, distance: L::Int, rate: L::Int) -> L::Int {
-        const EXTRA: i32 = (Shift::FRAC_NBITS + Rate::FRAC_NBITS - Speed::FRAC_NBITS) as i32;
+        const EXTRA: i32 = shift(Shift::FRAC_NBITS + Rate::FRAC_NBITS - Speed::FRAC_NBITS);
         L::narrow::<EXTRA>(L::mul(clamp::<L, N>(distance, self.separation_max), rate))
     }
 }
@@ -423,7 +292,7 @@ fn solve_tangent<L: Lanes<N>, const N: usize>(
 #[inline(always)]
 fn limit<L: Lanes<N>, const N: usize>(grip: &Ints<N>, normal_lambda: &Ints<N>) -> L::Int {
     let wide = L::mul(L::load(grip), L::load(normal_lambda));
-    let (limit, _) = L::narrow_saturating::<{ crate::math::Grip::FRAC_NBITS as i32 }>(wide);
+    let (limit, _) = L::narrow_saturating::<{ shift(Grip::FRAC_NBITS) }>(wide);
     L::min(limit, L::splat(TANGENT_MAX.to_bits()))
 }
 
@@ -466,12 +335,12 @@ pub(super) fn apply_restitution<L: Lanes<N>, const N: usize>(
     if !L::any(L::either(masks[0], masks[1])) {
         return;
     }
-    let mut pair = Pair::<L, N>::load(bodies, batch);
+    let mut pair = Pair::<L, N>::load(bodies, &batch.bodies);
     for _ in 0..if batch.count == 2 { RESTITUTION_ITERATIONS } else { 1 } {
         for i in 0..batch.count {
             let point = &mut batch.points[i];
             let bounce = L::mul(restitution, L::load(&special.approach[i]));
-            let bounce = L::narrow::<{ Unit::FRAC_NBITS as i32 }>(bounce);
+            let bounce = L::narrow::<UNIT>(bounce);
             let error = L::add_saturating(pair.velocity(n, &point.normal, faults), bounce);
             let old = L::load(&point.normal_lambda);
             let wanted = L::max(L::sub_saturating(old, error), L::splat(0));
@@ -480,7 +349,7 @@ pub(super) fn apply_restitution<L: Lanes<N>, const N: usize>(
             pair.apply(&point.normal, L::sub(new, old), faults);
         }
     }
-    pair.store(bodies, batch);
+    pair.store(bodies, &batch.changed);
 }
 
 /// Whether a point approached fast enough, and was pushed.

@@ -6,6 +6,7 @@
 mod batch;
 mod input;
 mod kernel;
+mod pair;
 mod prepare;
 mod rolling;
 mod special;

@@ -10,13 +10,14 @@ use super::super::TouchingPair;
 use super::super::body_list::BodyList;
 use super::super::colour::{Colouring, Group, Node};
 use super::super::lanes::{Ints, Kernel, Lanes, Machine, Scalar, WIDTH};
-use super::super::limits::{IMPULSE_MAX, shift};
+use super::super::limits::IMPULSE_MAX;
+use super::super::pair::{RATIO, UNIT};
 use super::batch::{Batch, Row};
 use super::input::Input;
 use super::special::Special;
 use super::{Batches, ContactSet, TANGENT_MAX, WarmStarts};
 use crate::collision::{Contact, Manifold, PointImpulse};
-use crate::math::{Fx, Grip, Ratio, Speed, Unit, mul, narrow, round_shift_wide, saturate, saturate_wide};
+use crate::math::{Fx, Grip, Speed, Unit, mul, narrow, round_shift_wide, saturate, saturate_wide};
 
 /// What it takes to bring the impulses of a batch back to its contacts.
 #[derive(Clone, Debug)]
@@ -225,8 +226,6 @@ fn fill_row<L: Lanes<N>, const N: usize>(
     fractions: [L::Int; 2],
     inverses: &mut Ints<N>,
 ) -> [i64; N] {
-    const RATIO: i32 = shift(Ratio::FRAC_NBITS);
-    const UNIT: i32 = shift(Unit::FRAC_NBITS);
     let (e_a, e_b) = (L::load(&row.e_a), L::load(&row.e_b));
     // Ratios and their products with a fraction have 24 fraction bits, and their squares 48.
     let ae = L::narrow::<UNIT>(L::mul(fractions[0], e_a));

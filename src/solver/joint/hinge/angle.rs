@@ -8,10 +8,10 @@
 use super::super::super::contact::Pass;
 use super::super::super::lanes::{Ints, Lanes};
 use super::super::super::limits::Faults;
+use super::super::super::pair::{Pair, RATIO, UNIT, clamp};
 use super::super::place::Turned;
 use super::angle_input::AngleInput;
 use super::kernel::Constants;
-use super::pair::{Pair, RATIO, UNIT, clamp};
 use crate::math::{Fx, Speed, Unit, round_shift_wide, saturate, saturate_wide};
 
 /// The rows of a batch. Lanes without a row have no gains, or bounds of 0.

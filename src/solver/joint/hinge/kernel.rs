@@ -16,10 +16,10 @@ use super::super::super::body::SolverBody;
 use super::super::super::contact::Pass;
 use super::super::super::lanes::{Ints, Lanes, Motion, Quad};
 use super::super::super::limits::{Faults, IMPULSE_MAX, STEP_MAX};
+use super::super::super::pair::{Pair, RATIO, UNIT, beyond, clamp, shift};
 use super::super::super::settings::Tuning;
 use super::angle::AngleRows;
 use super::batch::{Batch, Shape};
-use super::pair::{Pair, RATIO, UNIT, beyond, clamp, shift};
 use crate::math::{Length, Rate, Shift, Speed, Step, Unit};
 
 /// The constants of a tick.
@@ -190,7 +190,7 @@ pub(super) fn warm_start<L: Lanes<N>, const N: usize>(
     bodies: &[Cell<SolverBody>],
     faults: &mut Faults,
 ) {
-    let mut pair = Pair::<L, N>::load(bodies, batch);
+    let mut pair = Pair::<L, N>::load(bodies, &batch.bodies);
     if let Some(place) = batch.angle {
         angles[place as usize].warm_start(&mut pair, faults);
     }
@@ -203,8 +203,8 @@ pub(super) fn warm_start<L: Lanes<N>, const N: usize>(
     let lambda = [clamp::<L, N>(lambda[0], limit), clamp::<L, N>(lambda[1], limit)];
     L::store(lambda[0], &mut batch.lambda[0]);
     L::store(lambda[1], &mut batch.lambda[1]);
-    pair.apply(batch, lambda, faults);
-    pair.store(bodies, batch);
+    pair.apply_at_point(batch, lambda, faults);
+    pair.store(bodies, &batch.changed);
 }
 
 /// One iteration over the rows and points of a batch.
@@ -217,7 +217,7 @@ pub(super) fn solve<L: Lanes<N>, const N: usize>(
     bodies: &[Cell<SolverBody>],
     faults: &mut Faults,
 ) {
-    let mut pair = Pair::<L, N>::load(bodies, batch);
+    let mut pair = Pair::<L, N>::load(bodies, &batch.bodies);
     if let Some(place) = batch.angle {
         angles[place as usize].solve(pass, constants, &mut pair, faults);
     }
@@ -240,8 +240,8 @@ pub(super) fn solve<L: Lanes<N>, const N: usize>(
         accumulate::<L, N>(batch, 0, vr[0], pass, constants, faults),
         accumulate::<L, N>(batch, 1, vr[1], pass, constants, faults),
     ];
-    pair.apply(batch, d, faults);
-    pair.store(bodies, batch);
+    pair.apply_at_point(batch, d, faults);
+    pair.store(bodies, &batch.changed);
 }
 
 /// The impulse along an axis against a relative velocity: adds it to what has accumulated, and returns it.

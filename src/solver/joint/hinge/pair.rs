@@ -1,50 +1,17 @@
-//! The bodies of a batch while it is solved, and how impulses change them.
+//! How the impulses of a hinge change the bodies of a batch.
 
-use core::cell::Cell;
-
-use super::super::super::body::SolverBody;
 use super::super::super::lanes::{Ints, Lanes, Motion};
-use super::super::super::limits::{Faults, SPEED_MAX};
+use super::super::super::limits::Faults;
+use super::super::super::pair::{HALF, Pair, UNIT, beyond, clamp};
 use super::batch::Batch;
-use crate::math::{Ratio, Unit};
-
-/// Fraction bits to shift by.
-#[expect(clippy::cast_possible_wrap, reason = "at most 64")]
-pub(super) const fn shift(fraction_bits: u32) -> i32 {
-    fraction_bits as i32
-}
-
-pub(super) const UNIT: i32 = shift(Unit::FRAC_NBITS);
-pub(super) const RATIO: i32 = shift(Ratio::FRAC_NBITS);
-
-/// 512 as a speed: half of what the format holds.
-pub(super) const HALF: i32 = 1 << 30;
 
 /// Two impulses of at most this, 362, change no velocity by 512 or more.
 const PLAIN_MAX: i32 = 362 << 21;
 
-pub(super) struct Pair<L: Lanes<N>, const N: usize> {
-    pub(super) a: Motion<L::Int>,
-    pub(super) b: Motion<L::Int>,
-}
-
 impl<L: Lanes<N>, const N: usize> Pair<L, N> {
-    #[inline(always)]
-    pub(super) fn load(bodies: &[Cell<SolverBody>], batch: &Batch<N>) -> Self {
-        let [a, b] = &batch.bodies;
-        Pair { a: L::velocities(bodies, a), b: L::velocities(bodies, b) }
-    }
-
-    #[inline(always)]
-    pub(super) fn store(self, bodies: &[Cell<SolverBody>], batch: &Batch<N>) {
-        let [a, b] = &batch.changed;
-        L::set_velocities(bodies, a, self.a);
-        L::set_velocities(bodies, b, self.b);
-    }
-
     /// Changes the velocities by impulses `d` of at most 512 at a point.
     #[inline(always)]
-    pub(super) fn apply(&mut self, batch: &Batch<N>, d: [L::Int; 2], faults: &mut Faults) {
+    pub(super) fn apply_at_point(&mut self, batch: &Batch<N>, d: [L::Int; 2], faults: &mut Faults) {
         let [g_a, g_b] = &batch.g;
         let [f_a, f_b] = &batch.f;
         let (a, b) = (changes::<L, N>(g_a, f_a, d), changes::<L, N>(g_b, f_b, d));
@@ -98,28 +65,6 @@ impl<L: Lanes<N>, const N: usize> Pair<L, N> {
             d = L::sub(d, step);
         }
     }
-
-    #[inline(always)]
-    fn keep_in_range(&mut self, faults: &mut Faults) {
-        // One branch that is never taken, instead of six clamps.
-        let limit = L::splat(SPEED_MAX.to_bits());
-        let most = L::max(most::<L, N>(self.a), most::<L, N>(self.b));
-        let least = L::min(least::<L, N>(self.a), least::<L, N>(self.b));
-        if L::any(L::either(L::greater(most, limit), L::greater(L::sub(L::splat(0), limit), least))) {
-            self.clamp(faults);
-        }
-    }
-
-    #[cold]
-    fn clamp(&mut self, faults: &mut Faults) {
-        let limit = L::splat(SPEED_MAX.to_bits());
-        for body in [&mut self.a, &mut self.b] {
-            for speed in [&mut body.x, &mut body.y, &mut body.turn] {
-                *faults += u64::from(L::count(beyond::<L, N>(*speed, limit)));
-                *speed = clamp::<L, N>(*speed, limit);
-            }
-        }
-    }
 }
 
 /// What impulses at a point change.
@@ -139,25 +84,4 @@ fn changes<L: Lanes<N>, const N: usize>(
 #[inline(always)]
 fn dot<L: Lanes<N>, const N: usize>([x, y]: [&Ints<N>; 2], d: [L::Int; 2]) -> L::Int {
     L::narrow::<UNIT>(L::add_wide(L::mul(L::load(x), d[0]), L::mul(L::load(y), d[1])))
-}
-
-/// Whether a number is not within a limit on either side.
-#[inline(always)]
-pub(super) fn beyond<L: Lanes<N>, const N: usize>(value: L::Int, limit: L::Int) -> L::Mask {
-    L::either(L::greater(value, limit), L::greater(L::sub(L::splat(0), limit), value))
-}
-
-#[inline(always)]
-pub(super) fn clamp<L: Lanes<N>, const N: usize>(value: L::Int, limit: L::Int) -> L::Int {
-    L::min(L::max(value, L::sub(L::splat(0), limit)), limit)
-}
-
-#[inline(always)]
-fn most<L: Lanes<N>, const N: usize>(v: Motion<L::Int>) -> L::Int {
-    L::max(L::max(v.x, v.y), v.turn)
-}
-
-#[inline(always)]
-fn least<L: Lanes<N>, const N: usize>(v: Motion<L::Int>) -> L::Int {
-    L::min(L::min(v.x, v.y), v.turn)
 }

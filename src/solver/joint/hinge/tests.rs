@@ -232,7 +232,13 @@ fn a_point_is_solved_as_by_the_scalar_block() {
         let (tuning, machine, mut faults) = (tuning(), Machine::default(), 0);
         let Setting { hinges, bodies, quads, turned, ends, fractions } = &mut setting;
         hinges.refresh(SolverBody::cells(bodies), Poses { quads, turned }, machine, &tuning);
-        hinges.perform(Task::Solve(Pass::Relax), (quads, machine), &tuning, SolverBody::cells(bodies), &mut faults);
+        hinges.perform(
+            Task::Solve(Pass::Relax),
+            (quads, machine),
+            &tuning,
+            SolverBody::cells(bodies),
+            &mut faults,
+        );
         for (i, (&[a, b], &fractions)) in ends.iter().zip(fractions.iter()).enumerate() {
             let block = PointBlock::new(a, b, fractions);
             let (mut a, mut b) = (before[2 * i + 1], before[2 * i + 2]);
@@ -247,7 +253,13 @@ fn a_point_is_solved_as_by_the_scalar_block() {
         // What a second update still finds.
         let first: Vec<_> = setting.impulses();
         let Setting { hinges, bodies, quads, .. } = &mut setting;
-        hinges.perform(Task::Solve(Pass::Relax), (quads, machine), &tuning, SolverBody::cells(bodies), &mut faults);
+        hinges.perform(
+            Task::Solve(Pass::Relax),
+            (quads, machine),
+            &tuning,
+            SolverBody::cells(bodies),
+            &mut faults,
+        );
         for ((_, first), (_, second)) in first.iter().zip(setting.impulses()) {
             let moved = first.iter().zip(second).map(|(first, second)| (second - first).abs());
             left = moved.fold(left, i32::max);

@@ -1,0 +1,83 @@
+//! The bodies of a batch while it is solved, and what all wide kernels calculate with.
+
+use core::cell::Cell;
+
+use super::body::SolverBody;
+use super::lanes::{Lanes, Motion};
+use super::limits::{Faults, SPEED_MAX};
+use crate::math::{Ratio, Unit};
+
+/// Fraction bits to shift by.
+#[expect(clippy::cast_possible_wrap, reason = "at most 64")]
+pub(super) const fn shift(fraction_bits: u32) -> i32 {
+    fraction_bits as i32
+}
+
+pub(super) const UNIT: i32 = shift(Unit::FRAC_NBITS);
+pub(super) const RATIO: i32 = shift(Ratio::FRAC_NBITS);
+
+/// 512 as a speed: half of what the format holds.
+pub(super) const HALF: i32 = 1 << 30;
+
+/// The velocities of two bodies in each lane. How impulses change them is with each kind of constraint.
+pub(super) struct Pair<L: Lanes<N>, const N: usize> {
+    pub(super) a: Motion<L::Int>,
+    pub(super) b: Motion<L::Int>,
+}
+
+impl<L: Lanes<N>, const N: usize> Pair<L, N> {
+    #[inline(always)]
+    pub(super) fn load(bodies: &[Cell<SolverBody>], [a, b]: &[[u32; N]; 2]) -> Self {
+        Pair { a: L::velocities(bodies, a), b: L::velocities(bodies, b) }
+    }
+
+    #[inline(always)]
+    pub(super) fn store(self, bodies: &[Cell<SolverBody>], [a, b]: &[[u32; N]; 2]) {
+        L::set_velocities(bodies, a, self.a);
+        L::set_velocities(bodies, b, self.b);
+    }
+
+    /// Keeps every component within [`SPEED_MAX`].
+    #[inline(always)]
+    pub(super) fn keep_in_range(&mut self, faults: &mut Faults) {
+        // One branch that is never taken, instead of six clamps.
+        let limit = L::splat(SPEED_MAX.to_bits());
+        let most = L::max(most::<L, N>(self.a), most::<L, N>(self.b));
+        let least = L::min(least::<L, N>(self.a), least::<L, N>(self.b));
+        if L::any(L::either(L::greater(most, limit), L::greater(L::sub(L::splat(0), limit), least))) {
+            self.clamp(faults);
+        }
+    }
+
+    #[cold]
+    fn clamp(&mut self, faults: &mut Faults) {
+        let limit = L::splat(SPEED_MAX.to_bits());
+        for body in [&mut self.a, &mut self.b] {
+            for speed in [&mut body.x, &mut body.y, &mut body.turn] {
+                *faults += u64::from(L::count(beyond::<L, N>(*speed, limit)));
+                *speed = clamp::<L, N>(*speed, limit);
+            }
+        }
+    }
+}
+
+/// Whether a number is not within a limit on either side.
+#[inline(always)]
+pub(super) fn beyond<L: Lanes<N>, const N: usize>(value: L::Int, limit: L::Int) -> L::Mask {
+    L::either(L::greater(value, limit), L::greater(L::sub(L::splat(0), limit), value))
+}
+
+#[inline(always)]
+pub(super) fn clamp<L: Lanes<N>, const N: usize>(value: L::Int, limit: L::Int) -> L::Int {
+    L::min(L::max(value, L::sub(L::splat(0), limit)), limit)
+}
+
+#[inline(always)]
+fn most<L: Lanes<N>, const N: usize>(v: Motion<L::Int>) -> L::Int {
+    L::max(L::max(v.x, v.y), v.turn)
+}
+
+#[inline(always)]
+fn least<L: Lanes<N>, const N: usize>(v: Motion<L::Int>) -> L::Int {
+    L::min(L::min(v.x, v.y), v.turn)
+}
