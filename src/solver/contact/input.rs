@@ -7,7 +7,7 @@ use super::super::colour::{Node, Size};
 use super::super::row::MassFractions;
 use super::{Surface, WarmStarts};
 use crate::collision::{Contact, Manifold, ManifoldPoint, PointImpulse};
-use crate::math::{Fx, Length, Ratio, Shift, Speed, Unit, Vec2, convert, narrow};
+use crate::math::{Fx, Length, Ratio, Shift, Speed, Unit, Vec2, convert};
 
 /// A contact with its lever ratios: two cache lines.
 #[derive(Clone, Copy, Debug)]
@@ -62,10 +62,10 @@ impl Input {
             features: [0; 2],
             n,
             fractions,
-            friction: narrow::<fixed::types::extra::U20>(friction).to_bits(),
+            friction: friction.to_bits(),
             points: [InputPoint::default(); 2],
-            restitution: narrow(restitution),
-            surface_speed: narrow(surface_speed),
+            restitution,
+            surface_speed,
             rolling_resistance,
             rolling: memory.rolling,
         };
@@ -78,9 +78,9 @@ impl Input {
             input.features[i] = point.feature.0;
             input.points[i] = InputPoint::new(point, n, ends, to_ends, carried.unwrap_or_default());
         }
-        let still_there = |old: &PointImpulse| points.iter().any(|point| point.feature.0 == old.feature);
-        for old in memory.points() {
-            warm.lost += u32::from(old.normal > 0 && !still_there(old));
+        for old in memory.points().iter().filter(|old| old.normal > 0) {
+            let is_there = points.iter().any(|point| point.feature.0 == old.feature);
+            warm.lost += u32::from(!is_there);
         }
         input
     }

@@ -20,7 +20,7 @@ use super::limits::Faults;
 use super::settings::Tuning;
 use crate::body::Material;
 use crate::collision::Contact;
-use crate::math::{Fx, Speed, fx_mul};
+use crate::math::{Fx, Grip, Speed, Unit, fx_mul, narrow};
 use crate::threads::Threads;
 use batch::Batch;
 use input::Input;
@@ -73,12 +73,12 @@ const TANGENT_MAX: Speed = Speed::lit("511");
 /// The surface that two shapes have in common.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Surface {
-    pub(crate) friction: Fx,
-    pub(crate) restitution: Fx,
+    pub(crate) friction: Grip,
+    pub(crate) restitution: Unit,
+    /// In m/s.
+    pub(crate) surface_speed: Speed,
     /// In metres: the largest torque for each unit of normal force.
     pub(crate) rolling_resistance: Fx,
-    /// In m/s.
-    pub(crate) surface_speed: Fx,
 }
 
 impl Surface {
@@ -86,10 +86,10 @@ impl Surface {
     pub(crate) fn between((a, radius_a): (&Material, Fx), (b, radius_b): (&Material, Fx)) -> Self {
         let resistance = a.rolling_resistance.max(b.rolling_resistance);
         Surface {
-            friction: a.mixed_friction(b),
-            restitution: a.mixed_restitution(b),
+            friction: narrow(a.mixed_friction(b)),
+            restitution: narrow(a.mixed_restitution(b)),
+            surface_speed: narrow(a.surface_speed.saturating_add(b.surface_speed)),
             rolling_resistance: fx_mul(resistance, radius_a.max(radius_b)),
-            surface_speed: a.surface_speed.saturating_add(b.surface_speed),
         }
     }
 }

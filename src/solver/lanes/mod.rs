@@ -116,8 +116,8 @@ pub(super) trait Kernel<const N: usize> {
     fn run<L: Lanes<N>>(self);
 }
 
-/// A backend that this machine has.
-#[derive(Clone, Copy, Debug)]
+/// A backend that this machine has: the best one, unless another is asked for.
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Machine(Backend);
 
 impl Machine {
@@ -137,12 +137,6 @@ impl Machine {
             Backend::Scalar => kernel.run::<Scalar<WIDTH>>(),
             Backend::Avx2 | Backend::Neon | Backend::Simd128 => Native::run(kernel),
         }
-    }
-}
-
-impl Default for Machine {
-    fn default() -> Self {
-        Machine(Backend::best())
     }
 }
 
