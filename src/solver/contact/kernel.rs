@@ -337,14 +337,14 @@ pub(super) fn apply_restitution<L: Lanes<N>, const N: usize>(
     }
     let mut pair = Pair::<L, N>::load(bodies, &batch.bodies);
     for _ in 0..if batch.count == 2 { RESTITUTION_ITERATIONS } else { 1 } {
-        for i in 0..batch.count {
-            let point = &mut batch.points[i];
-            let bounce = L::mul(restitution, L::load(&special.approach[i]));
+        let points = batch.points[..batch.count].iter_mut();
+        for ((point, approach), &mask) in points.zip(&special.approach).zip(&masks) {
+            let bounce = L::mul(restitution, L::load(approach));
             let bounce = L::narrow::<UNIT>(bounce);
             let error = L::add_saturating(pair.velocity(n, &point.normal, faults), bounce);
             let old = L::load(&point.normal_lambda);
             let wanted = L::max(L::sub_saturating(old, error), L::splat(0));
-            let new = L::select(masks[i], L::min(wanted, L::splat(IMPULSE_MAX.to_bits())), old);
+            let new = L::select(mask, L::min(wanted, L::splat(IMPULSE_MAX.to_bits())), old);
             L::store(new, &mut point.normal_lambda);
             pair.apply(&point.normal, L::sub(new, old), faults);
         }

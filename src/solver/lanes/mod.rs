@@ -117,7 +117,7 @@ pub(super) trait Kernel<const N: usize> {
 }
 
 /// A backend that this machine has.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Machine(Backend);
 
 impl Machine {
@@ -137,12 +137,6 @@ impl Machine {
             Backend::Scalar => kernel.run::<Scalar<WIDTH>>(),
             Backend::Avx2 | Backend::Neon | Backend::Simd128 => Native::run(kernel),
         }
-    }
-}
-
-impl Default for Machine {
-    fn default() -> Self {
-        Machine(Backend::best())
     }
 }
 
