@@ -15,7 +15,7 @@ const BANNED: &[(&str, &str)] = &[
     ("HashSet", "its order is random"),
     ("Instant", "time is passed in"),
     ("SystemTime", "time is passed in"),
-    ("unsafe", "nothing here needs it"),
+    ("unsafe", "only vectors need it"),
     ("todo", "finish it"),
     ("unimplemented", "finish it"),
     ("dbg", "a library does not print"),
@@ -27,6 +27,18 @@ const BANNED: &[(&str, &str)] = &[
 
 /// Words that `src/draw` may use: pictures are not simulated.
 const ALLOWED_IN_DRAW: &[&str] = &["f32", "f64"];
+
+/// The files that may use `unsafe`: vector instructions and bodies that threads share.
+const ALLOWED_UNSAFE: &[&str] = &[
+    "src/solver/lanes/avx2.rs",
+    "src/solver/lanes/neon.rs",
+    "src/solver/lanes/simd128.rs",
+    "src/solver/lanes/shared.rs",
+];
+
+/// Says why an `unsafe` there is sound, at most so many lines above it.
+const REASON: &str = "// SAFETY: ";
+const REASON_ABOVE: usize = 3;
 
 /// Where the state is defined.
 const STATE_FOLDERS: &[&str] = &["src/body/", "src/collision/", "src/solver/", "src/world/"];
@@ -58,9 +70,26 @@ fn banned_words(file: &Source) -> Vec<String> {
     let allowed: &[&str] = if file.path.starts_with("src/draw") { ALLOWED_IN_DRAW } else { &[] };
     let why = |token: &Token| {
         let (word, why) = BANNED.iter().find(|(word, _)| *word == token.text)?;
-        (!allowed.contains(word)).then(|| format!("{}: {word}: {why}", token.line))
+        let allowed = allowed.contains(word) || *word == "unsafe" && may_be_unsafe(file);
+        (!allowed).then(|| format!("{}: {word}: {why}", token.line))
     };
     tokens(&file.text).iter().filter_map(why).collect()
+}
+
+fn may_be_unsafe(file: &Source) -> bool {
+    ALLOWED_UNSAFE.contains(&file.path.as_str())
+}
+
+/// `unsafe` that nothing explains. An `unsafe fn` asks for a reason where it is called.
+fn unexplained_unsafe(file: &Source) -> Vec<String> {
+    let lines: Vec<_> = file.text.lines().collect();
+    let explained = |line: usize| {
+        lines[line.saturating_sub(1 + REASON_ABOVE)..line].iter().any(|text| text.contains(REASON))
+    };
+    let tokens = tokens(&file.text);
+    let uses = tokens.windows(2).filter(|pair| pair[0].text == "unsafe" && pair[1].text != "fn");
+    let wrong = uses.filter(|pair| !explained(pair[0].line));
+    wrong.map(|pair| format!("{}: unsafe without a reason", pair[0].line)).collect()
 }
 
 /// `usize` in a type that derives its encoding, whose width is then that of the machine.
@@ -124,6 +153,23 @@ fn nothing_in_the_library_differs_between_machines_or_prints() {
     );
     assert_eq!(canary("src/a.rs", "unsafe { dbg!(1) }", banned_words), 2);
     assert_eq!(canary("src/draw/svg.rs", "fn f(x: f64) { println!() }", banned_words), 1);
+}
+
+#[test]
+fn unsafe_is_where_it_may_be_and_says_why() {
+    let files = files("src", &["rs"]);
+    check(&files, unexplained_unsafe);
+    for path in ALLOWED_UNSAFE {
+        let file = files.iter().find(|file| file.path == *path).expect("a file of the list");
+        assert!(tokens(&file.text).iter().any(|token| token.text == "unsafe"), "{path} needs it no longer");
+    }
+    let path = ALLOWED_UNSAFE[0];
+    assert_eq!(canary(path, "unsafe { a() }", banned_words), 0);
+    assert_eq!(canary("src/solver/lanes/mod.rs", "unsafe { a() }", banned_words), 1);
+    assert_eq!(canary(path, "unsafe { a() }", unexplained_unsafe), 1);
+    assert_eq!(canary(path, "// SAFETY: there.\nunsafe { a() }", unexplained_unsafe), 0);
+    assert_eq!(canary(path, "// SAFETY: there.\n\n\n\nunsafe { a() }", unexplained_unsafe), 1);
+    assert_eq!(canary(path, "unsafe fn f() {}", unexplained_unsafe), 0);
 }
 
 #[test]

@@ -66,12 +66,14 @@ impl SolverBody {
     }
 
     /// Velocity, spin and padding: 16 bytes, aligned to 32.
+    #[allow(dead_code, reason = "only vectors load it whole")]
     #[inline(always)]
     pub(super) fn velocity_bits(body: &Cell<Self>) -> *mut i32 {
         body.as_ptr().cast()
     }
 
     /// Shift, turn and padding: 16 bytes, aligned to 16.
+    #[allow(dead_code, reason = "only vectors load it whole")]
     #[inline(always)]
     pub(super) fn shift_bits(body: &Cell<Self>) -> *mut i32 {
         Self::velocity_bits(body).wrapping_add(4)

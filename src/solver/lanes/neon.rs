@@ -7,7 +7,7 @@ use core::cell::Cell;
 use super::super::body::SolverBody;
 use super::super::body_list::GROUND;
 use super::scalar::map;
-use super::{Backend, Ints, Kernel, Lanes, Motion, WIDTH};
+use super::{Backend, Ints, Kernel, Lanes, Motion, Quad, WIDTH};
 
 /// NEON instructions. This file is only compiled for processors that have them: every `unsafe` here is an instruction
 /// that is there.
@@ -128,6 +128,16 @@ impl Lanes<WIDTH> for Neon {
     }
 
     #[inline(always)]
+    fn bits(mask: Masks) -> u32 {
+        // Lanes 0 to 3, and 4 to 7.
+        const PLACES: [[u32; 4]; 2] = [[1, 2, 4, 8], [16, 32, 64, 128]];
+        // SAFETY: see `Neon`; 16 bytes each.
+        let places = map(mask, PLACES, |mask, places| unsafe { vandq_u32(mask, vld1q_u32(places.as_ptr())) });
+        // SAFETY: see `Neon`.
+        unsafe { vaddvq_u32(vorrq_u32(places[0], places[1])) }
+    }
+
+    #[inline(always)]
     fn count([low, high]: Masks) -> u32 {
         // SAFETY: see `Neon`. True is -1.
         unsafe { vaddvq_s32(vreinterpretq_s32_u32(vaddq_u32(low, high))).unsigned_abs() }
@@ -193,6 +203,13 @@ impl Lanes<WIDTH> for Neon {
     }
 
     #[inline(always)]
+    fn low(a: Products) -> Ints32 {
+        // SAFETY: see `Neon`.
+        let four = |low, high| unsafe { vmovn_high_s64(vmovn_s64(low), high) };
+        [four(a[0], a[1]), four(a[2], a[3])]
+    }
+
+    #[inline(always)]
     fn to_array(a: Products) -> [i64; WIDTH] {
         let mut array = [0; WIDTH];
         for (to, a) in array.chunks_exact_mut(2).zip(a) {
@@ -203,15 +220,27 @@ impl Lanes<WIDTH> for Neon {
     }
 
     #[inline(always)]
+    fn load_wide(from: &[i64; WIDTH]) -> Products {
+        // SAFETY: see `Neon`; 16 bytes each.
+        core::array::from_fn(|i| unsafe { vld1q_s64(from[2 * i..2 * i + 2].as_ptr()) })
+    }
+
+    #[inline(always)]
+    fn quads(from: &[Quad], at: &[u32; WIDTH]) -> [Ints32; 4] {
+        // SAFETY: see `Neon`; 16 bytes.
+        columns(at.map(|at| unsafe { vld1q_s32(from[at as usize].0.as_ptr()) }))
+    }
+
+    #[inline(always)]
     fn velocities(bodies: &[Cell<SolverBody>], at: &[u32; WIDTH]) -> Motion<Ints32> {
         // SAFETY: see `Neon`; the first 16 bytes of a body.
-        motions(at.map(|at| unsafe { vld1q_s32(SolverBody::velocity_bits(&bodies[at as usize])) }))
+        motion(at.map(|at| unsafe { vld1q_s32(SolverBody::velocity_bits(&bodies[at as usize])) }))
     }
 
     #[inline(always)]
     fn shifts(bodies: &[Cell<SolverBody>], at: &[u32; WIDTH]) -> Motion<Ints32> {
         // SAFETY: see `Neon`; the last 16 bytes of a body.
-        motions(at.map(|at| unsafe { vld1q_s32(SolverBody::shift_bits(&bodies[at as usize])) }))
+        motion(at.map(|at| unsafe { vld1q_s32(SolverBody::shift_bits(&bodies[at as usize])) }))
     }
 
     #[inline(always)]
@@ -230,10 +259,17 @@ impl Lanes<WIDTH> for Neon {
 
 /// From four numbers of each body to the first three of all.
 #[inline(always)]
-fn motions(rows: [int32x4_t; WIDTH]) -> Motion<Ints32> {
+fn motion(rows: [int32x4_t; WIDTH]) -> Motion<Ints32> {
+    let [x, y, turn, _] = columns(rows);
+    Motion { x, y, turn }
+}
+
+/// From four numbers of each body to each of the four of all.
+#[inline(always)]
+fn columns(rows: [int32x4_t; WIDTH]) -> [Ints32; 4] {
     let low = transposed([rows[0], rows[1], rows[2], rows[3]]);
     let high = transposed([rows[4], rows[5], rows[6], rows[7]]);
-    Motion { x: [low[0], high[0]], y: [low[1], high[1]], turn: [low[2], high[2]] }
+    map(low, high, |low, high| [low, high])
 }
 
 #[inline(always)]

@@ -7,7 +7,7 @@ use core::cell::Cell;
 use super::super::body::SolverBody;
 use super::super::body_list::GROUND;
 use super::scalar::map;
-use super::{Backend, Ints, Kernel, Lanes, Motion, WIDTH};
+use super::{Backend, Ints, Kernel, Lanes, Motion, Quad, WIDTH};
 
 /// The vector instructions of WebAssembly. This file is only compiled for programs that use them: a machine which has
 /// none refuses such a program as a whole.
@@ -122,8 +122,13 @@ impl Lanes<WIDTH> for Simd128 {
     }
 
     #[inline(always)]
+    fn bits([low, high]: Ints32) -> u32 {
+        u32::from(i32x4_bitmask(low)) | u32::from(i32x4_bitmask(high)) << 4
+    }
+
+    #[inline(always)]
     fn count(mask: Ints32) -> u32 {
-        mask.iter().map(|&mask| u32::from(i32x4_bitmask(mask)).count_ones()).sum()
+        Self::bits(mask).count_ones()
     }
 
     #[inline(always)]
@@ -178,6 +183,12 @@ impl Lanes<WIDTH> for Simd128 {
     }
 
     #[inline(always)]
+    fn low(a: Products) -> Ints32 {
+        let four = |a, b| i32x4_shuffle::<0, 2, 4, 6>(a, b);
+        [four(a[0], a[1]), four(a[2], a[3])]
+    }
+
+    #[inline(always)]
     fn to_array(a: Products) -> [i64; WIDTH] {
         let mut array = [0; WIDTH];
         for (to, a) in array.chunks_exact_mut(2).zip(a) {
@@ -187,15 +198,26 @@ impl Lanes<WIDTH> for Simd128 {
     }
 
     #[inline(always)]
+    fn load_wide(from: &[i64; WIDTH]) -> Products {
+        core::array::from_fn(|i| i64x2(from[2 * i], from[2 * i + 1]))
+    }
+
+    #[inline(always)]
+    fn quads(from: &[Quad], at: &[u32; WIDTH]) -> [Ints32; 4] {
+        // SAFETY: 16 bytes.
+        columns(at.map(|at| unsafe { v128_load(from[at as usize].0.as_ptr().cast()) }))
+    }
+
+    #[inline(always)]
     fn velocities(bodies: &[Cell<SolverBody>], at: &[u32; WIDTH]) -> Motion<Ints32> {
         // SAFETY: the first 16 bytes of a body.
-        motions(at.map(|at| unsafe { v128_load(SolverBody::velocity_bits(&bodies[at as usize]).cast()) }))
+        motion(at.map(|at| unsafe { v128_load(SolverBody::velocity_bits(&bodies[at as usize]).cast()) }))
     }
 
     #[inline(always)]
     fn shifts(bodies: &[Cell<SolverBody>], at: &[u32; WIDTH]) -> Motion<Ints32> {
         // SAFETY: the last 16 bytes of a body.
-        motions(at.map(|at| unsafe { v128_load(SolverBody::shift_bits(&bodies[at as usize]).cast()) }))
+        motion(at.map(|at| unsafe { v128_load(SolverBody::shift_bits(&bodies[at as usize]).cast()) }))
     }
 
     #[inline(always)]
@@ -238,10 +260,17 @@ fn shifted<const SHIFT: i32>(a: v128, b: v128) -> v128 {
 
 /// From four numbers of each body to the first three of all.
 #[inline(always)]
-fn motions(rows: [v128; WIDTH]) -> Motion<Ints32> {
+fn motion(rows: [v128; WIDTH]) -> Motion<Ints32> {
+    let [x, y, turn, _] = columns(rows);
+    Motion { x, y, turn }
+}
+
+/// From four numbers of each body to each of the four of all.
+#[inline(always)]
+fn columns(rows: [v128; WIDTH]) -> [Ints32; 4] {
     let low = transposed([rows[0], rows[1], rows[2], rows[3]]);
     let high = transposed([rows[4], rows[5], rows[6], rows[7]]);
-    Motion { x: [low[0], high[0]], y: [low[1], high[1]], turn: [low[2], high[2]] }
+    map(low, high, |low, high| [low, high])
 }
 
 #[inline(always)]
