@@ -53,9 +53,13 @@ impl Threads {
         use core::sync::atomic::{AtomicU64, Ordering};
 
         let Some(pool) = &self.pool else { return jobs.map(work).sum() };
+        let mut jobs = jobs;
+        let Some(first) = jobs.next() else { return 0 };
+        // A single job, as small worlds have, is not worth waking another thread for.
+        let Some(second) = jobs.next() else { return work(first) };
         let (work, total) = (&work, &AtomicU64::new(0));
         pool.scope(|scope| {
-            for job in jobs {
+            for job in [first, second].into_iter().chain(jobs) {
                 scope.spawn(move |_| {
                     total.fetch_add(work(job), Ordering::Relaxed);
                 });
