@@ -43,6 +43,22 @@ impl Threads {
         }
     }
 
+    /// Does something on one of the threads. Jobs that are handed out from there cost much less than from elsewhere.
+    #[cfg(feature = "parallel")]
+    pub(crate) fn install(&self, work: impl FnOnce() + Send) {
+        match &self.pool {
+            Some(pool) => pool.install(work),
+            None => work(),
+        }
+    }
+
+    /// Does something on one of the threads.
+    #[cfg(not(feature = "parallel"))]
+    #[expect(clippy::unused_self, reason = "the same function as with the feature")]
+    pub(crate) fn install(&self, work: impl FnOnce() + Send) {
+        work();
+    }
+
     /// Does every job, in an order that is not said, and returns the sum of what they count.
     #[cfg(feature = "parallel")]
     pub(crate) fn run<J: Send>(

@@ -53,13 +53,13 @@ impl World {
         solver.prepare_contacts(&found.touching, &found.manifolds, &state.contacts);
 
         begin(Phase::Solve);
-        for index in 0..settings.sub_steps {
-            solver.sub_step(
-                state.tick.wrapping_mul(settings.sub_steps.into()).wrapping_add(index.into()),
-                &tuning,
-            );
-        }
-        solver.apply_restitution(&tuning);
+        let first_sub_step = state.tick.wrapping_mul(settings.sub_steps.into());
+        solver.threads.clone().install(|| {
+            for index in 0..settings.sub_steps {
+                solver.sub_step(first_sub_step.wrapping_add(index.into()), &tuning);
+            }
+            solver.apply_restitution(&tuning);
+        });
         solver.store_impulses(&mut state.contacts, &mut state.joints);
 
         begin(Phase::Finalise);
