@@ -1,8 +1,8 @@
 //! The solver: sequential impulses over rows and point blocks, in sub-steps, in a fixed order.
 //!
-//! One kernel (`row`) solves whatever acts along a direction, another (`point_block`) what pins two points
-//! together. Contacts and joints only prepare them, so that a wide kernel can take the place of a scalar one
-//! without touching a constraint.
+//! Rows solve whatever acts along a direction, point blocks what pins two points together. Contacts (`contact`) and
+//! hinges (`joint/hinge`) are solved eight at a time by kernels that are written once for any number of lanes
+//! (`lanes`); the rows and points of all other joints one by one (`row`, `point_block`).
 
 mod body;
 mod body_list;

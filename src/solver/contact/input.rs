@@ -14,6 +14,9 @@ use crate::math::{Fx, Length, Ratio, Shift, Speed, Unit, Vec2, convert};
 #[repr(C, align(64))]
 pub(super) struct Input {
     pub(super) bodies: [u32; 2],
+    /// Where impulses change them: the ground for one that nothing moves. One that is only too heavy for its partner to
+    /// move it is changed by others, so that colours have to know of it.
+    pub(super) changed: [u32; 2],
     pub(super) contact: u32,
     pub(super) count: u8,
     pub(super) immovable: bool,
@@ -54,8 +57,10 @@ impl Input {
         let Surface { friction, restitution, rolling_resistance, surface_speed } = pair.surface;
         let n: Vec2<Ratio> = manifold.normal.convert();
         let points = manifold.points();
+        let changed = [0, 1].map(|side: usize| if ends[side].mass > 0 { bodies[side] } else { GROUND });
         let mut input = Input {
             bodies,
+            changed,
             contact: pair.contact,
             count: 0,
             immovable: fractions.a == 0 || fractions.b == 0,
@@ -94,13 +99,7 @@ impl Input {
     pub(super) fn node(&self, shapes: (u32, u32)) -> Node {
         let key = u64::from(shapes.0) << 32 | u64::from(shapes.1);
         let size = if self.count == 1 { Size::Small } else { Size::Large };
-        Node::new(key, [self.changed(0), self.changed(1)], size)
-    }
-
-    /// The place of the body on a side: the ground if no impulse changes it.
-    pub(super) fn changed(&self, side: usize) -> u32 {
-        let fraction = if side == 0 { self.fractions.a } else { self.fractions.b };
-        if fraction == 0 { GROUND } else { self.bodies[side] }
+        Node::new(key, self.changed, size)
     }
 }
 
@@ -120,5 +119,38 @@ impl InputPoint {
             separation: convert(point.separation),
             carried: [carried.normal, carried.tangent],
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::body::{Arena, Body, BodyDef, BodyId, MassProperties, MassSource};
+    use crate::fx;
+    use alloc::vec::Vec;
+
+    /// Its share of a push is rounded to nothing, but other contacts of the same colour must not change it meanwhile.
+    #[test]
+    fn a_body_that_is_too_heavy_to_be_moved_is_still_one_that_changes() {
+        let mut bodies: Arena<Body, BodyId> = Arena::default();
+        for mass in [fx!(1073741824), fx!(0.00001)] {
+            let source = MassSource::Given { mass, centre: Vec2::ZERO, gyration: fx!(1) };
+            let mass = MassProperties::dynamic(source, core::iter::empty()).expect("valid");
+            bodies.insert(Body::new(&BodyDef::dynamic(), mass));
+        }
+        let mut list = BodyList::default();
+        list.fill(&bodies, &[0, 1]);
+        let surface = Surface {
+            friction: crate::math::Grip::ZERO,
+            restitution: Unit::ZERO,
+            surface_speed: Speed::ZERO,
+            rolling_resistance: Fx::ZERO,
+        };
+        let pair = TouchingPair { contact: 0, manifold: 0, shapes: (0, 1), bodies: (0, 1), surface };
+        let manifold = Manifold::new(Vec2::Y);
+        let input = Input::new(&pair, &manifold, &Contact::new((0, 1)), &list, &mut WarmStarts::default());
+        assert_eq!(input.fractions.a, Unit::ZERO);
+        let changed: Vec<_> = input.changed.into_iter().filter(|&index| index != GROUND).collect();
+        assert_eq!(changed, input.bodies);
     }
 }

@@ -6,16 +6,10 @@ use super::super::pair::{HALF, Pair, RATIO, UNIT, clamp};
 use super::batch::Row;
 
 impl<L: Lanes<N>, const N: usize> Pair<L, N> {
-    /// `J v`.
-    #[inline(always)]
-    fn along(&self, n: [L::Int; 2], row: &Row<N>) -> L::Wide {
-        along::<L, N>(&self.a, &self.b, n, row)
-    }
-
     /// `J v` as a speed. A lane in which it does not fit is a fault.
     #[inline(always)]
     pub(super) fn velocity(&self, n: [L::Int; 2], row: &Row<N>, faults: &mut Faults) -> L::Int {
-        let (vn, out) = L::narrow_saturating::<RATIO>(self.along(n, row));
+        let (vn, out) = L::narrow_saturating::<RATIO>(along::<L, N>(&self.a, &self.b, n, row));
         if L::any(out) {
             *faults += u64::from(L::count(out));
         }

@@ -163,7 +163,7 @@ impl<const N: usize> Gathered<N> {
         self.friction.0[lane] = input.friction;
         for side in 0..2 {
             batch.bodies[side][lane] = input.bodies[side];
-            batch.changed[side][lane] = input.changed(side);
+            batch.changed[side][lane] = input.changed[side];
         }
         batch.n_x.0[lane] = input.n.x.to_bits();
         batch.n_y.0[lane] = input.n.y.to_bits();
