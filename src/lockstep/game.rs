@@ -76,6 +76,15 @@ pub trait Game: Sized {
     /// file makes it compute. The sandbox counts bodies, contacts and joints, times sub-steps.
     fn work(&self, inputs: &[Self::Input]) -> u64;
 
+    /// What a seat contributes in every tick in which nobody sits on it: before its player has come, and after they
+    /// have left. "Nothing pressed", unless the game wants to know: then an input that no player can send.
+    ///
+    /// It is an input like any other. It stands in the replay, and so everybody agrees on when a player left.
+    #[must_use]
+    fn absent() -> Self::Input {
+        Self::Input::default()
+    }
+
     /// What the game reports of itself at the end of a replay, such as a score or a time: at most 256 values with
     /// different names of 1 to 64 bytes.
     ///
