@@ -9,6 +9,7 @@ mod kernel;
 mod pair;
 mod prepare;
 mod rolling;
+mod rows;
 mod special;
 
 use alloc::vec::Vec;

@@ -217,6 +217,20 @@ impl Lanes<WIDTH> for Avx2 {
     }
 
     #[inline(always)]
+    fn narrow_by(a: Products, shift: __m256i) -> __m256i {
+        // SAFETY: see `Avx2`. It fits if the upper half repeats the highest bit of the lower one.
+        unsafe {
+            let even = shifted_by(a.even, _mm256_and_si256(shift, _mm256_set1_epi64x(0xFFFF_FFFF)));
+            let odd = shifted_by(a.odd, _mm256_srli_epi64::<32>(shift));
+            let low = interleave(even, _mm256_slli_epi64::<32>(odd));
+            let high = interleave(_mm256_srli_epi64::<32>(even), odd);
+            let fits = _mm256_cmpeq_epi32(high, _mm256_srai_epi32::<31>(low));
+            let limit = _mm256_xor_si256(_mm256_srai_epi32::<31>(high), _mm256_set1_epi32(i32::MAX));
+            _mm256_blendv_epi8(limit, low, fits)
+        }
+    }
+
+    #[inline(always)]
     fn low(a: Products) -> __m256i {
         // SAFETY: see `Avx2`.
         unsafe { interleave(a.even, _mm256_slli_epi64::<32>(a.odd)) }
@@ -236,9 +250,9 @@ impl Lanes<WIDTH> for Avx2 {
     }
 
     #[inline(always)]
-    fn quads(from: &[Quad], at: &[u32; WIDTH]) -> [__m256i; 4] {
+    fn transposed(rows: [&Quad; WIDTH]) -> [__m256i; 4] {
         // SAFETY: see `Avx2`; 16 bytes, aligned to 16.
-        let row = |lane: usize| unsafe { _mm_load_si128(from[at[lane] as usize].0.as_ptr().cast()) };
+        let row = |lane: usize| unsafe { _mm_load_si128(rows[lane].0.as_ptr().cast()) };
         transposed([row(0), row(1), row(2), row(3), row(4), row(5), row(6), row(7)])
     }
 
@@ -348,6 +362,19 @@ fn shifted<const SHIFT: i32>(a: Products) -> __m256i {
         let even = _mm256_srl_epi64(a.even, _mm_cvtsi32_si128(SHIFT));
         let odd = _mm256_sll_epi64(a.odd, _mm_cvtsi32_si128(32 - SHIFT));
         interleave(even, odd)
+    }
+}
+
+/// Each `a / 2^shift`, rounded. There is no arithmetic shift of 64 bits: what is added before makes `a` positive, and is
+/// taken away afterwards.
+#[inline(always)]
+fn shifted_by(a: __m256i, shift: __m256i) -> __m256i {
+    // SAFETY: see `Avx2`.
+    unsafe {
+        let offset = _mm256_set1_epi64x(1 << 62);
+        let half = _mm256_srli_epi64::<1>(_mm256_sllv_epi64(_mm256_set1_epi64x(1), shift));
+        let sum = _mm256_add_epi64(_mm256_add_epi64(a, offset), half);
+        _mm256_sub_epi64(_mm256_srlv_epi64(sum, shift), _mm256_srlv_epi64(offset, shift))
     }
 }
 
