@@ -197,7 +197,12 @@ impl<const N: usize> Kernel<N> for Perform<'_, N> {
     fn run<L: Lanes<N>>(self) {
         let Perform { batches, special, task, constants, bodies, faults } = self;
         let mut special = special.iter_mut();
-        for batch in batches {
+        let mut rest = batches;
+        while let [batch, others @ ..] = rest {
+            rest = others;
+            if let Some(next) = rest.first() {
+                L::prefetch(next);
+            }
             let special = if batch.special { special.next() } else { None };
             match (task, special) {
                 (Task::WarmStart, special) => kernel::warm_start::<L, N>(batch, special, bodies, faults),

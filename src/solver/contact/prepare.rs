@@ -88,6 +88,9 @@ impl ContactSet {
     }
 }
 
+/// How many batches before it is read an input is asked for: in the order of colours they lie anywhere.
+const INPUTS_AHEAD: usize = 2;
+
 /// Fills the batches of `N` contacts.
 struct Fill<'a, const N: usize> {
     batches: &'a mut Batches<N>,
@@ -108,7 +111,10 @@ impl<const N: usize> Kernel<N> for Fill<'_, N> {
                 Group::Coloured(indices) if N == WIDTH => indices,
                 _ => continue,
             };
-            for chunk in indices.chunks(N) {
+            for (number, chunk) in indices.chunks(N).enumerate() {
+                for &index in indices.iter().skip((number + INPUTS_AHEAD) * N).take(N) {
+                    L::prefetch(&inputs[index as usize]);
+                }
                 batches.push::<L>(inputs, source, chunk);
             }
             batches.colours.push(batches.batches.len());

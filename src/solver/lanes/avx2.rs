@@ -311,7 +311,22 @@ impl Lanes<WIDTH> for Avx2 {
             }
         }
     }
+
+    #[inline(always)]
+    fn prefetch<T>(of: &T) {
+        let start = core::ptr::from_ref(of).cast::<i8>();
+        let last = size_of::<T>().saturating_sub(1);
+        // What is aligned to its lines begins with one.
+        let odd = if align_of::<T>() < CACHE_LINE { Some(last) } else { None };
+        for offset in (0..=last).step_by(CACHE_LINE).chain(odd) {
+            // SAFETY: an address within the value, which is not looked at.
+            unsafe { _mm_prefetch::<_MM_HINT_T0>(start.add(offset)) };
+        }
+    }
 }
+
+/// The bytes that a processor reads at a time.
+const CACHE_LINE: usize = 64;
 
 /// The products of the even lanes. The compiler knows the instruction as a product of sign-extended numbers, takes the
 /// extension out of loops and past branches, and then no longer sees that 64-bit products are not needed: a fifth of the

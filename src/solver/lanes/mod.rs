@@ -116,6 +116,10 @@ pub(super) trait Lanes<const N: usize>: Copy {
     fn shifts(bodies: &[Cell<SolverBody>], at: &[u32; N]) -> Motion<Self::Int>;
     /// Sets the velocities of bodies, but for those at [`super::body_list::GROUND`].
     fn set_velocities(bodies: &[Cell<SolverBody>], at: &[u32; N], velocities: Motion<Self::Int>);
+
+    /// Brings what will soon be looked at into the cache: a hint that changes nothing.
+    #[inline(always)]
+    fn prefetch<T>(_: &T) {}
 }
 
 /// What can be done with any lanes.
