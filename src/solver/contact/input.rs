@@ -8,7 +8,7 @@ use super::super::lanes::Quad;
 use super::super::row::MassFractions;
 use super::{Surface, WarmStarts};
 use crate::collision::{Contact, Manifold, ManifoldPoint, PointImpulse};
-use crate::math::Length;
+use crate::math::{Length, Speed};
 
 /// Where to look up what only special contacts have.
 #[derive(Clone, Copy)]
@@ -65,8 +65,8 @@ impl Input {
         let mut input = Input {
             bodies,
             changed: [
-                if a.mass > 0 { bodies[0] } else { GROUND },
-                if b.mass > 0 { bodies[1] } else { GROUND },
+                if a.mass.is_positive() { bodies[0] } else { GROUND },
+                if b.mass.is_positive() { bodies[1] } else { GROUND },
             ],
             contact: pair.contact,
             special: pair.surface.is_special(),
@@ -95,7 +95,7 @@ impl Input {
                 (point.anchor.x.to_bits(), point.anchor.y.to_bits());
             (self.carried.0[2 * i], self.carried.0[2 * i + 1]) = (normal.to_bits(), tangent.to_bits());
         }
-        for old in memory.points().iter().filter(|old| old.normal > 0) {
+        for old in memory.points().iter().filter(|old| old.normal.is_positive()) {
             let is_there = points.iter().any(|point| point.feature.0 == old.feature);
             warm.lost += u32::from(!is_there);
         }
@@ -113,7 +113,9 @@ impl Input {
 impl Surface {
     /// Whether it asks for more than rows along the normal and the tangent.
     fn is_special(&self) -> bool {
-        self.restitution > 0 || self.surface_speed != 0 || self.rolling_resistance > 0
+        self.restitution.is_positive()
+            || self.surface_speed != Speed::ZERO
+            || self.rolling_resistance.is_positive()
     }
 }
 
@@ -122,7 +124,7 @@ mod tests {
     use super::*;
     use crate::body::{Arena, Body, BodyDef, BodyId, MassProperties, MassSource};
     use crate::fx;
-    use crate::math::{Fx, Speed, Unit, Vec2};
+    use crate::math::{Fx, Unit, Vec2};
     use alloc::vec::Vec;
 
     /// Its share of a push is rounded to nothing, but other contacts of the same colour must not change it meanwhile.

@@ -5,60 +5,15 @@ use alloc::vec::Vec;
 use super::super::TouchingPair;
 use super::super::body_list::BodyList;
 use super::super::colour::{Colouring, Group, Node};
-use super::super::lanes::{Ints, Kernel, Lanes, Machine, Scalar, WIDTH};
+use super::super::lanes::{Kernel, Lanes, Machine, Scalar, WIDTH, prefetch};
 use super::batch::Batch;
 use super::input::{Input, Source};
 use super::rows;
 use super::special::Special;
+use super::store::Records;
 use super::{Batches, ContactSet, WarmStarts};
-use crate::collision::{Contact, Manifold, PointImpulse};
-use crate::math::{Speed, Unit, mul};
-
-/// What it takes to bring the impulses of a batch back to its contacts.
-#[derive(Clone, Debug)]
-pub(super) struct Records<const N: usize> {
-    /// How many lanes are used.
-    len: u32,
-    contacts: [u32; N],
-    counts: [u8; N],
-    features: [[u16; 2]; N],
-    /// `1 / D` of the normal and the tangent of each point.
-    pub(super) inverses: [[Ints<N>; 2]; 2],
-}
-
-impl<const N: usize> Records<N> {
-    pub(super) const NONE: Self = Records {
-        len: 0,
-        contacts: [0; N],
-        counts: [0; N],
-        features: [[0; 2]; N],
-        inverses: [[Ints::ZERO; 2]; 2],
-    };
-
-    #[inline(always)]
-    fn take(&mut self, lane: usize, input: &Input) {
-        self.len += 1;
-        self.contacts[lane] = input.contact;
-        self.counts[lane] = input.count;
-        self.features[lane] = input.features;
-    }
-
-    /// The lanes that are used, each with the index of its contact and its number of points.
-    pub(super) fn lanes(&self) -> impl Iterator<Item = (usize, usize, usize)> {
-        let lanes = self.contacts.iter().zip(&self.counts).take(self.len as usize);
-        lanes.enumerate().map(|(lane, (&contact, &count))| (lane, contact as usize, count.into()))
-    }
-
-    /// What is kept of the impulses of a point: `p = L / D`.
-    pub(super) fn impulse(&self, lane: usize, point: usize, (normal, tangent): (i32, i32)) -> PointImpulse {
-        let inverse = |row: usize| Unit::from_bits(self.inverses[point][row].0[lane]);
-        PointImpulse {
-            feature: self.features[lane][point],
-            normal: mul(inverse(0), Speed::from_bits(normal)),
-            tangent: mul(inverse(1), Speed::from_bits(tangent)),
-        }
-    }
-}
+use crate::collision::{Contact, Manifold};
+use crate::math::Unit;
 
 impl ContactSet {
     /// Takes the contacts of a tick, and sorts them into colours.
@@ -73,12 +28,14 @@ impl ContactSet {
     ) {
         let Self { serial, coloured, inputs } = self;
         inputs.clear();
+        nodes.clear();
+        nodes.reserve(pairs.len());
         inputs.extend(pairs.iter().map(|pair| {
             let (manifold, memory) = (&manifolds[pair.manifold as usize], &contacts[pair.contact as usize]);
-            Input::new(pair, manifold, memory, list, warm)
+            let input = Input::new(pair, manifold, memory, list, warm);
+            nodes.push(input.node(pair.shapes));
+            input
         }));
-        nodes.clear();
-        nodes.extend(inputs.iter().zip(pairs).map(|(input, pair)| input.node(pair.shapes)));
         colouring.order(nodes, list.len());
         // For lanes without a contact.
         inputs.push(Input::default());
@@ -113,7 +70,7 @@ impl<const N: usize> Kernel<N> for Fill<'_, N> {
             };
             for (number, chunk) in indices.chunks(N).enumerate() {
                 for &index in indices.iter().skip((number + INPUTS_AHEAD) * N).take(N) {
-                    L::prefetch(&inputs[index as usize]);
+                    prefetch(&inputs[index as usize]);
                 }
                 batches.push::<L>(inputs, source, chunk);
             }

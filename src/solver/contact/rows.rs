@@ -14,11 +14,9 @@ use super::super::limits::IMPULSE_MAX;
 use super::super::pair::{RATIO, UNIT, clamp, shift};
 use super::super::row::RATIO_MAX;
 use super::TANGENT_MAX;
-use super::batch::{Batch, Point, Row};
+use super::batch::{Batch, Row};
 use super::input::Input;
-use crate::math::{
-    Fx, Grip, Length, Ratio, Shift, Speed, Step, narrow, round_shift_wide, saturate, saturate_wide,
-};
+use crate::math::{Fx, Grip, Length, Ratio, Shift, Step, narrow, round_shift_wide, saturate, saturate_wide};
 
 /// From the format of a unit vector to that of a lever ratio.
 const UNIT_TO_RATIO: i32 = UNIT - RATIO;
@@ -69,11 +67,14 @@ pub(super) fn fill<L: Lanes<N>, const N: usize>(
         let [normal_inverses, tangent_inverses] = inverses;
         let normal = fill_row::<L, N>(&mut point.normal, n, &ends, anchor, normal_inverses);
         let tangent = fill_row::<L, N>(&mut point.tangent, t, &ends, anchor, tangent_inverses);
-        let mut given = [Ints::ZERO; 3];
-        L::store(friction, &mut given[0]);
-        L::store(carried[0], &mut given[1]);
-        L::store(carried[1], &mut given[2]);
-        fill_limits(point, &given, &normal, &tangent, normal_inverses);
+        let ratio = ratio::<L, N>(&tangent, L::load(normal_inverses));
+        L::store(product::<L, N>(friction, &ratio), &mut point.grip);
+        // A guess, so that to clamp it is no fault.
+        let normal_lambda = product::<L, N>(carried[0], &normal);
+        let normal_lambda = L::min(L::max(normal_lambda, L::splat(0)), L::splat(IMPULSE_MAX.to_bits()));
+        L::store(normal_lambda, &mut point.normal_lambda);
+        let tangent_lambda = product::<L, N>(carried[1], &tangent);
+        L::store(clamp::<L, N>(tangent_lambda, L::splat(TANGENT_MAX.to_bits())), &mut point.tangent_lambda);
     }
 }
 
@@ -93,7 +94,7 @@ impl<L: Lanes<N>, const N: usize> End<L, N> {
     fn new(fraction: L::Int, to_origin: [L::Int; 2], mantissa: L::Int, exponent: L::Int) -> Self {
         const DIFFERENCE: i32 = shift(Ratio::FRAC_NBITS - Length::FRAC_NBITS);
         // Only what does not turn has a smaller exponent, and its mantissa is 0.
-        let shift = L::max(L::sub(exponent, L::splat(DIFFERENCE)), L::splat(0));
+        let shift = L::max(L::sub(exponent, L::splat(DIFFERENCE)), L::splat(1));
         End { fraction, to_origin, mantissa, shift }
     }
 
@@ -125,7 +126,7 @@ impl<L: Lanes<N>, const N: usize> End<L, N> {
     }
 }
 
-/// Makes a row. Returns its denominators, with 30 fraction bits.
+/// Makes a row. Returns its denominators.
 #[inline(always)]
 fn fill_row<L: Lanes<N>, const N: usize>(
     row: &mut Row<N>,
@@ -133,7 +134,7 @@ fn fill_row<L: Lanes<N>, const N: usize>(
     ends: &[End<L, N>; 2],
     anchor: [L::Int; 2],
     inverses: &mut Ints<N>,
-) -> [i64; N] {
+) -> Long<N> {
     let [e_a, e_b] = [ends[0].lever_ratio(anchor, n), ends[1].lever_ratio(anchor, n)];
     L::store(e_a, &mut row.e_a);
     L::store(e_b, &mut row.e_b);
@@ -155,33 +156,45 @@ fn fill_row<L: Lanes<N>, const N: usize>(
         L::store(L::narrow::<RATIO>(L::mul(g, n[1])), &mut gains[1]);
         L::store(L::narrow::<RATIO>(L::mul(g, e)), &mut gains[2]);
     }
-    denominators
+    Long::new(&denominators)
 }
 
-/// Friction limits, and impulses to start from.
-#[inline(always)]
-fn fill_limits<const N: usize>(
-    point: &mut Point<N>,
-    [friction, normal_p, tangent_p]: &[Ints<N>; 3],
-    normal: &[i64; N],
-    tangent: &[i64; N],
-    normal_inverses: &Ints<N>,
-) {
-    for lane in 0..N {
-        let ratio = i128::from(tangent[lane]) * i128::from(normal_inverses.0[lane]);
-        let ratio = saturate_wide(round_shift_wide(ratio, 30));
-        point.grip.0[lane] = grip_of(friction.0[lane].into(), ratio).to_bits();
-        // A guess, so that to clamp it is no fault.
-        point.normal_lambda.0[lane] = carried(normal_p.0[lane], normal[lane], IMPULSE_MAX).max(0);
-        point.tangent_lambda.0[lane] = carried(tangent_p.0[lane], tangent[lane], TANGENT_MAX);
+/// Numbers from 0 to 2^45 with 30 fraction bits: too long for a lane.
+#[derive(Clone, Copy)]
+struct Long<const N: usize> {
+    whole: Ints<N>,
+    /// The 30 fraction bits.
+    part: Ints<N>,
+}
+
+impl<const N: usize> Long<N> {
+    #[inline(always)]
+    #[expect(clippy::cast_possible_truncation, reason = "fewer bits than there is room for")]
+    fn new(numbers: &[i64; N]) -> Self {
+        let mut long = Long { whole: Ints::ZERO, part: Ints::ZERO };
+        for (lane, number) in numbers.iter().enumerate() {
+            long.whole.0[lane] = (number >> 30) as i32;
+            long.part.0[lane] = (number & ((1 << 30) - 1)) as i32;
+        }
+        long
     }
 }
 
-/// `p D`, as far as a limit.
+/// `x D`, rounded to nearest, saturated.
 #[inline(always)]
-fn carried(p: i32, denominator: i64, limit: Speed) -> i32 {
-    let bits = round_shift_wide(i128::from(p) * i128::from(denominator), 30);
-    saturate(saturate_wide(bits)).clamp(-limit.to_bits(), limit.to_bits())
+fn product<L: Lanes<N>, const N: usize>(x: L::Int, long: &Long<N>) -> L::Int {
+    let (whole, part) = (L::load(&long.whole), L::load(&long.part));
+    // The product with the whole is exact, and both have the sign of x: if one saturates, so does the sum.
+    let (whole, _) = L::narrow_saturating::<1>(L::mul(x, L::add(whole, whole)));
+    L::add_saturating(whole, L::narrow::<30>(L::mul(x, part)))
+}
+
+/// `Dt / Dn`, rounded to nearest.
+#[inline(always)]
+fn ratio<L: Lanes<N>, const N: usize>(tangent: &Long<N>, normal_inverse: L::Int) -> Long<N> {
+    let part = L::narrow::<30>(L::mul(normal_inverse, L::load(&tangent.part)));
+    let wide = L::add_wide(L::mul(normal_inverse, L::load(&tangent.whole)), L::mul(part, L::splat(1)));
+    Long::new(&L::to_array(wide))
 }
 
 /// `1 / D`, both with 30 fraction bits; of a lane without a contact, whose fractions are 0, anything.
@@ -197,11 +210,6 @@ fn reciprocal(denominator: i64) -> i32 {
 
 /// `mu r`, with `r = Dt / Dn` with 30 fraction bits, saturated.
 pub(super) fn grip(friction: Fx, ratio: i64) -> Grip {
-    grip_of(narrow::<fixed::types::extra::U20>(friction).to_bits().into(), ratio)
-}
-
-#[inline(always)]
-fn grip_of(friction: i64, ratio: i64) -> Grip {
-    let wide = i128::from(friction) * i128::from(ratio);
-    Grip::from_bits(saturate(saturate_wide(round_shift_wide(wide, 30))))
+    let friction = i128::from(narrow::<fixed::types::extra::U20>(friction).to_bits());
+    Grip::from_bits(saturate(saturate_wide(round_shift_wide(friction * i128::from(ratio), 30))))
 }

@@ -218,16 +218,12 @@ impl Lanes<WIDTH> for Avx2 {
 
     #[inline(always)]
     fn narrow_by(a: Products, shift: __m256i) -> __m256i {
-        // SAFETY: see `Avx2`. It fits if the upper half repeats the highest bit of the lower one.
-        unsafe {
-            let even = shifted_by(a.even, _mm256_and_si256(shift, _mm256_set1_epi64x(0xFFFF_FFFF)));
-            let odd = shifted_by(a.odd, _mm256_srli_epi64::<32>(shift));
-            let low = interleave(even, _mm256_slli_epi64::<32>(odd));
-            let high = interleave(_mm256_srli_epi64::<32>(even), odd);
-            let fits = _mm256_cmpeq_epi32(high, _mm256_srai_epi32::<31>(low));
-            let limit = _mm256_xor_si256(_mm256_srai_epi32::<31>(high), _mm256_set1_epi32(i32::MAX));
-            _mm256_blendv_epi8(limit, low, fits)
-        }
+        // SAFETY: see `Avx2`.
+        let less = unsafe { _mm256_sub_epi32(shift, _mm256_set1_epi32(1)) };
+        let (even, odd) =
+            unsafe { (interleave(less, _mm256_setzero_si256()), _mm256_srli_epi64::<32>(less)) };
+        let twice = Products { even: shifted_by(a.even, even), odd: shifted_by(a.odd, odd) };
+        Self::narrow_saturating::<1>(twice).0
     }
 
     #[inline(always)]
@@ -311,22 +307,7 @@ impl Lanes<WIDTH> for Avx2 {
             }
         }
     }
-
-    #[inline(always)]
-    fn prefetch<T>(of: &T) {
-        let start = core::ptr::from_ref(of).cast::<i8>();
-        let last = size_of::<T>().saturating_sub(1);
-        // What is aligned to its lines begins with one.
-        let odd = if align_of::<T>() < CACHE_LINE { Some(last) } else { None };
-        for offset in (0..=last).step_by(CACHE_LINE).chain(odd) {
-            // SAFETY: an address within the value, which is not looked at.
-            unsafe { _mm_prefetch::<_MM_HINT_T0>(start.add(offset)) };
-        }
-    }
 }
-
-/// The bytes that a processor reads at a time.
-const CACHE_LINE: usize = 64;
 
 /// The products of the even lanes. The compiler knows the instruction as a product of sign-extended numbers, takes the
 /// extension out of loops and past branches, and then no longer sees that 64-bit products are not needed: a fifth of the
@@ -380,16 +361,14 @@ fn shifted<const SHIFT: i32>(a: Products) -> __m256i {
     }
 }
 
-/// Each `a / 2^shift`, rounded. There is no arithmetic shift of 64 bits: what is added before makes `a` positive, and is
-/// taken away afterwards.
+/// `a / 2^shift`, rounded down. Only positive numbers of 64 bits can be shifted: 2^62 is added before.
 #[inline(always)]
 fn shifted_by(a: __m256i, shift: __m256i) -> __m256i {
     // SAFETY: see `Avx2`.
     unsafe {
         let offset = _mm256_set1_epi64x(1 << 62);
-        let half = _mm256_srli_epi64::<1>(_mm256_sllv_epi64(_mm256_set1_epi64x(1), shift));
-        let sum = _mm256_add_epi64(_mm256_add_epi64(a, offset), half);
-        _mm256_sub_epi64(_mm256_srlv_epi64(sum, shift), _mm256_srlv_epi64(offset, shift))
+        let sum = _mm256_srlv_epi64(_mm256_add_epi64(a, offset), shift);
+        _mm256_sub_epi64(sum, _mm256_srlv_epi64(offset, shift))
     }
 }
 

@@ -10,12 +10,14 @@
 #[cfg_attr(all(target_arch = "aarch64", target_feature = "neon", target_endian = "little"), path = "neon.rs")]
 #[cfg_attr(all(target_arch = "wasm32", target_feature = "simd128"), path = "simd128.rs")]
 mod native;
+mod prefetch;
 mod scalar;
 mod shared;
 #[cfg(test)]
 mod tests;
 
 use native::Native;
+pub(super) use prefetch::prefetch;
 pub(super) use scalar::Scalar;
 pub(super) use shared::Shared;
 
@@ -93,7 +95,7 @@ pub(super) trait Lanes<const N: usize>: Copy {
     /// The same of any number that rounding does not take out of its format, saturated, and where it was. `SHIFT` is 1 to 31.
     fn narrow_saturating<const SHIFT: i32>(a: Self::Wide) -> (Self::Int, Self::Mask);
 
-    /// `a / 2^shift` of each lane, rounded to nearest, ties towards +infinity, saturated. `shift` is 0 to 61 and `a` at
+    /// `a / 2^shift` of each lane, rounded to nearest, ties towards +infinity, saturated. `shift` is 1 to 61 and `a` at
     /// most 2^62 in magnitude.
     fn narrow_by(a: Self::Wide, shift: Self::Int) -> Self::Int;
 
@@ -116,10 +118,6 @@ pub(super) trait Lanes<const N: usize>: Copy {
     fn shifts(bodies: &[Cell<SolverBody>], at: &[u32; N]) -> Motion<Self::Int>;
     /// Sets the velocities of bodies, but for those at [`super::body_list::GROUND`].
     fn set_velocities(bodies: &[Cell<SolverBody>], at: &[u32; N], velocities: Motion<Self::Int>);
-
-    /// Brings what will soon be looked at into the cache: a hint that changes nothing.
-    #[inline(always)]
-    fn prefetch<T>(_: &T) {}
 }
 
 /// What can be done with any lanes.

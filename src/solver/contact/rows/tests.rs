@@ -4,7 +4,7 @@ use super::super::super::lanes::{Backend, Kernel, Machine, Scalar, WIDTH};
 use super::super::super::row::MassFractions;
 use super::*;
 use crate::fx;
-use crate::math::{Reciprocal, Rng, Rot, Unit, Vec2};
+use crate::math::{Reciprocal, Rng, Rot, Speed, Unit, Vec2};
 use std::vec::Vec;
 
 #[test]
