@@ -28,11 +28,12 @@ const BANNED: &[(&str, &str)] = &[
 /// Words that `src/draw` may use: pictures are not simulated.
 const ALLOWED_IN_DRAW: &[&str] = &["f32", "f64"];
 
-/// The files that may use `unsafe`: vector instructions and bodies that threads share.
+/// The files that may use `unsafe`: vector instructions, hints to caches, and bodies that threads share.
 const ALLOWED_UNSAFE: &[&str] = &[
     "src/solver/lanes/avx2.rs",
     "src/solver/lanes/neon.rs",
     "src/solver/lanes/simd128.rs",
+    "src/solver/lanes/prefetch.rs",
     "src/solver/lanes/shared.rs",
 ];
 

@@ -312,7 +312,8 @@ impl Body {
     /// per second: `dv = F / (m rate)`, `du = torque / (m k rate)`.
     pub(crate) fn acceleration_step(&self, rate: u32) -> (Vec2<Speed>, Speed) {
         let dv = |force: Fx| over_mass(force, self.mass.mass, rate);
-        let du = if self.turns() { divide(self.torque, self.mass.gyration) } else { Fx::ZERO };
+        let is_turned = self.torque != Fx::ZERO && self.turns();
+        let du = if is_turned { divide(self.torque, self.mass.gyration) } else { Fx::ZERO };
         (Vec2::new(dv(self.force.x), dv(self.force.y)), over_mass(du, self.mass.mass, rate))
     }
 }

@@ -50,8 +50,13 @@ impl Contact {
     }
 
     /// The impulse carried over for a feature, if it was there in the last tick.
+    #[inline]
     pub(crate) fn impulse_of(&self, feature: Feature) -> Option<PointImpulse> {
-        self.points().iter().copied().find(|point| point.feature == feature.0)
+        match self.points {
+            [first, _] if self.count > 0 && first.feature == feature.0 => Some(first),
+            [_, second] if self.count > 1 && second.feature == feature.0 => Some(second),
+            _ => None,
+        }
     }
 
     /// Forgets the impulses.

@@ -60,21 +60,19 @@ impl Reciprocal {
         })
     }
 
-    /// `a / x` from a number of fraction bits to another, rounded to nearest. `|a|` must be below 2^32, and the result is
-    /// not saturated.
-    #[inline]
-    pub(crate) fn times_bits(self, a: i64, from: u32, to: u32) -> i64 {
-        let shift = (self.shift + from).saturating_sub(to);
-        debug_assert!(self.mantissa == 0 || self.shift + from >= to, "the reciprocal of a tiny number");
-        round_shift(a * i64::from(self.mantissa), shift.min(63))
-    }
-
     /// `a / x` of a world quantity, rounded once, saturated.
     #[inline]
     pub(crate) fn times_wide(self, a: Fx) -> Fx {
         let product = i128::from(a.to_bits()) * i128::from(self.mantissa);
         let rounded = if self.shift == 0 { product } else { round_shift_wide(product, self.shift) };
         Fx::from_bits(saturate_wide(rounded))
+    }
+
+    /// The mantissa, 0 or 2^30 to 2^31 - 1, and the exponent, 0 to 63: `mantissa / 2^shift`.
+    #[inline]
+    #[expect(clippy::cast_possible_wrap, reason = "at most 63")]
+    pub(crate) const fn parts(self) -> (i32, i32) {
+        (self.mantissa, self.shift as i32)
     }
 
     /// `a / x` exactly: the product and its number of fraction bits beyond those of `a`.

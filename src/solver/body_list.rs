@@ -43,22 +43,21 @@ impl BodyFacts {
         }
     }
 
-    /// `e = c / k` of an arm across a direction, at most [`RATIO_MAX`].
-    #[inline]
-    pub(super) fn lever_ratio(&self, arm: Vec2<Length>, n: Vec2<Ratio>) -> Ratio {
-        let wide = |a: i32| i64::from(a);
-        let (x, y) = (wide(arm.x.to_bits()), wide(arm.y.to_bits()));
-        // An arm is below 2^31.5, so its product with a mantissa is below 2^63.
-        let c = round_shift(x * wide(n.y.to_bits()) - y * wide(n.x.to_bits()), Ratio::FRAC_NBITS);
-        let e = self.inverse_gyration.times_bits(c, Length::FRAC_NBITS, Ratio::FRAC_NBITS);
-        let limit = wide(RATIO_MAX.to_bits());
-        Ratio::from_bits(saturate(e.clamp(-limit, limit)))
-    }
-
     /// From the centre of mass to a place; of what does not turn, anything.
     pub(super) fn arm_to(&self, place: Vec2<Fx>) -> Vec2<Length> {
         (place - self.centre).narrow()
     }
+}
+
+/// `e = c / k` of an arm across a direction, at most [`RATIO_MAX`]. `1 / k` is `mantissa / 2^shift`, from the format of
+/// a length to that of a lever ratio.
+pub(super) fn lever_ratio([x, y]: [i32; 2], [n_x, n_y]: [i32; 2], (mantissa, shift): (i32, i32)) -> Ratio {
+    let wide = |a: i32| i64::from(a);
+    // An arm is below 2^31.5, so its product with a mantissa is below 2^63.
+    let c = round_shift(wide(x) * wide(n_y) - wide(y) * wide(n_x), Ratio::FRAC_NBITS);
+    let e = round_shift(c * wide(mantissa), shift.unsigned_abs());
+    let limit = wide(RATIO_MAX.to_bits());
+    Ratio::from_bits(saturate(e.clamp(-limit, limit)))
 }
 
 impl BodyList {

@@ -211,6 +211,6 @@ impl Solver {
     /// Keeps the impulses for the next tick.
     pub(crate) fn store_impulses(&mut self, contacts: &mut [Contact], joints: &mut Arena<Joint, JointId>) {
         self.joints.store(joints);
-        self.contacts.store(contacts, &mut self.pushed);
+        self.contacts.store(self.machine, contacts, &mut self.pushed);
     }
 }

@@ -47,7 +47,7 @@ impl MassFractions {
 
     /// Of the masses in kg: 0 for a body that nothing moves.
     pub(crate) fn of_masses(a: Fx, b: Fx) -> Self {
-        match (a > 0, b > 0) {
+        match (a.is_positive(), b.is_positive()) {
             // Of equal bodies without a division.
             (true, true) if a == b => MassFractions { a: Unit::ONE / 2, b: Unit::ONE / 2 },
             (true, true) => {

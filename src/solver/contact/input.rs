@@ -2,15 +2,24 @@
 //! that only this compact copy is read in the order of colours.
 
 use super::super::TouchingPair;
-use super::super::body_list::{BodyFacts, BodyList, GROUND};
+use super::super::body_list::{BodyList, GROUND};
 use super::super::colour::{Node, Size};
+use super::super::lanes::Quad;
 use super::super::row::MassFractions;
 use super::{Surface, WarmStarts};
 use crate::collision::{Contact, Manifold, ManifoldPoint, PointImpulse};
-use crate::math::{Fx, Length, Ratio, Shift, Speed, Unit, Vec2, convert};
+use crate::math::{Length, Speed};
 
-/// A contact with its lever ratios: two cache lines.
-#[derive(Clone, Copy, Debug)]
+/// Where to look up what only special contacts have.
+#[derive(Clone, Copy)]
+pub(super) struct Source<'a> {
+    pub(super) pairs: &'a [TouchingPair],
+    pub(super) contacts: &'a [Contact],
+    pub(super) list: &'a BodyList,
+}
+
+/// A contact in two cache lines. What eight of them are computed from is in quads, which are read in lanes.
+#[derive(Clone, Copy, Debug, Default)]
 #[repr(C, align(64))]
 pub(super) struct Input {
     pub(super) bodies: [u32; 2],
@@ -18,32 +27,28 @@ pub(super) struct Input {
     /// move it is changed by others, so that colours have to know of it.
     pub(super) changed: [u32; 2],
     pub(super) contact: u32,
-    pub(super) count: u8,
-    pub(super) immovable: bool,
     pub(super) features: [u16; 2],
-    pub(super) n: Vec2<Ratio>,
-    pub(super) fractions: MassFractions,
-    pub(super) friction: i32,
-    pub(super) points: [InputPoint; 2],
-    pub(super) restitution: Unit,
-    pub(super) surface_speed: Speed,
-    pub(super) rolling_resistance: Fx,
-    pub(super) rolling: Speed,
+    pub(super) count: u8,
+    /// Whether it needs more than rows along the normal and the tangent.
+    pub(super) special: bool,
+    /// The normal, and the mass fractions of A and B.
+    pub(super) shares: Quad,
+    /// `1 / k` of A and B: their mantissas, and their exponents.
+    pub(super) gyrations: Quad,
+    /// From the centres of mass of A and B to the manifold's origin.
+    pub(super) to_origin: Quad,
+    /// From there to the two points.
+    pub(super) anchors: Quad,
+    /// For each point what the last tick has left, along the normal and along the tangent: `p = L / D`.
+    pub(super) carried: Quad,
+    /// The separations of the points, in the format of a step, and the friction.
+    pub(super) rest: Quad,
 }
 
 const _: () = assert!(size_of::<Input>() == 128, "two cache lines");
 
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct InputPoint {
-    /// Of A and B, along the normal and along the tangent.
-    pub(super) normal: [Ratio; 2],
-    pub(super) tangent: [Ratio; 2],
-    pub(super) separation: Shift,
-    /// What the last tick has left: `p = L / D`.
-    pub(super) carried: [Speed; 2],
-}
-
 impl Input {
+    #[inline]
     pub(super) fn new(
         pair: &TouchingPair,
         manifold: &Manifold,
@@ -52,50 +57,52 @@ impl Input {
         warm: &mut WarmStarts,
     ) -> Self {
         let bodies = [list.index_of(pair.bodies.0), list.index_of(pair.bodies.1)];
-        let ends = bodies.map(|index| list.facts(index));
-        let fractions = MassFractions::of_masses(ends[0].mass, ends[1].mass);
-        let Surface { friction, restitution, rolling_resistance, surface_speed } = pair.surface;
-        let n: Vec2<Ratio> = manifold.normal.convert();
-        let points = manifold.points();
-        let changed = [0, 1].map(|side: usize| if ends[side].mass > 0 { bodies[side] } else { GROUND });
+        let [a, b] = bodies.map(|index| list.facts(index));
+        let fractions = MassFractions::of_masses(a.mass, b.mass);
+        let n = manifold.normal;
+        let (inverse_a, inverse_b) = (a.inverse_gyration.parts(), b.inverse_gyration.parts());
+        let (to_a, to_b) = (a.arm_to(manifold.origin), b.arm_to(manifold.origin));
         let mut input = Input {
             bodies,
-            changed,
+            changed: [
+                if a.mass.is_positive() { bodies[0] } else { GROUND },
+                if b.mass.is_positive() { bodies[1] } else { GROUND },
+            ],
             contact: pair.contact,
-            count: 0,
-            immovable: fractions.a == 0 || fractions.b == 0,
-            features: [0; 2],
-            n,
-            fractions,
-            friction: friction.to_bits(),
-            points: [InputPoint::default(); 2],
-            restitution,
-            surface_speed,
-            rolling_resistance,
-            rolling: memory.rolling,
+            special: pair.surface.is_special(),
+            shares: Quad([n.x.to_bits(), n.y.to_bits(), fractions.a.to_bits(), fractions.b.to_bits()]),
+            gyrations: Quad([inverse_a.0, inverse_b.0, inverse_a.1, inverse_b.1]),
+            to_origin: Quad([to_a.x, to_a.y, to_b.x, to_b.y].map(Length::to_bits)),
+            rest: Quad([0, 0, pair.surface.friction.to_bits(), 0]),
+            ..Input::default()
         };
-        let to_ends = ends.map(|end| end.arm_to(manifold.origin));
-        for (i, point) in points.iter().enumerate() {
-            let carried = memory.impulse_of(point.feature);
-            warm.points += 1;
-            warm.kept += u32::from(carried.is_some());
-            input.count += 1;
-            input.features[i] = point.feature.0;
-            input.points[i] = InputPoint::new(point, n, ends, to_ends, carried.unwrap_or_default());
-        }
-        for old in memory.points().iter().filter(|old| old.normal > 0) {
-            let is_there = points.iter().any(|point| point.feature.0 == old.feature);
-            warm.lost += u32::from(!is_there);
-        }
+        input.take_points(manifold.points(), memory, warm);
         input
     }
 
-    /// Whether it needs more than rows along the normal and the tangent.
-    pub(super) fn is_special(&self) -> bool {
-        self.restitution > 0 || self.surface_speed != 0 || self.rolling_resistance > 0
+    /// Takes the points, each with the impulses that its feature had.
+    #[inline]
+    fn take_points(&mut self, points: &[ManifoldPoint], memory: &Contact, warm: &mut WarmStarts) {
+        for (i, point) in points.iter().take(2).enumerate() {
+            let carried = memory.impulse_of(point.feature);
+            warm.points += 1;
+            warm.kept += u32::from(carried.is_some());
+            let PointImpulse { normal, tangent, .. } = carried.unwrap_or_default();
+            self.count += 1;
+            self.features[i] = point.feature.0;
+            self.rest.0[i] = point.separation.to_bits();
+            (self.anchors.0[2 * i], self.anchors.0[2 * i + 1]) =
+                (point.anchor.x.to_bits(), point.anchor.y.to_bits());
+            (self.carried.0[2 * i], self.carried.0[2 * i + 1]) = (normal.to_bits(), tangent.to_bits());
+        }
+        for old in memory.points().iter().filter(|old| old.normal.is_positive()) {
+            let is_there = points.iter().any(|point| point.feature.0 == old.feature);
+            warm.lost += u32::from(!is_there);
+        }
     }
 
     /// The contact, to be coloured.
+    #[inline]
     pub(super) fn node(&self, shapes: (u32, u32)) -> Node {
         let key = u64::from(shapes.0) << 32 | u64::from(shapes.1);
         let size = if self.count == 1 { Size::Small } else { Size::Large };
@@ -103,22 +110,12 @@ impl Input {
     }
 }
 
-impl InputPoint {
-    fn new(
-        point: &ManifoldPoint,
-        n: Vec2<Ratio>,
-        ends: [&BodyFacts; 2],
-        to_ends: [Vec2<Length>; 2],
-        carried: PointImpulse,
-    ) -> Self {
-        let arms = to_ends.map(|to_end| point.anchor + to_end);
-        let ratios = |n: Vec2<Ratio>| [ends[0].lever_ratio(arms[0], n), ends[1].lever_ratio(arms[1], n)];
-        InputPoint {
-            normal: ratios(n),
-            tangent: ratios(n.perp()),
-            separation: convert(point.separation),
-            carried: [carried.normal, carried.tangent],
-        }
+impl Surface {
+    /// Whether it asks for more than rows along the normal and the tangent.
+    fn is_special(&self) -> bool {
+        self.restitution.is_positive()
+            || self.surface_speed != Speed::ZERO
+            || self.rolling_resistance.is_positive()
     }
 }
 
@@ -127,6 +124,7 @@ mod tests {
     use super::*;
     use crate::body::{Arena, Body, BodyDef, BodyId, MassProperties, MassSource};
     use crate::fx;
+    use crate::math::{Fx, Unit, Vec2};
     use alloc::vec::Vec;
 
     /// Its share of a push is rounded to nothing, but other contacts of the same colour must not change it meanwhile.
@@ -149,7 +147,7 @@ mod tests {
         let pair = TouchingPair { contact: 0, manifold: 0, shapes: (0, 1), bodies: (0, 1), surface };
         let manifold = Manifold::new(Vec2::Y);
         let input = Input::new(&pair, &manifold, &Contact::new((0, 1)), &list, &mut WarmStarts::default());
-        assert_eq!(input.fractions.a, Unit::ZERO);
+        assert_eq!(input.shares.0[2], 0);
         let changed: Vec<_> = input.changed.into_iter().filter(|&index| index != GROUND).collect();
         assert_eq!(changed, input.bodies);
     }

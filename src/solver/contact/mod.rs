@@ -9,13 +9,15 @@ mod kernel;
 mod pair;
 mod prepare;
 mod rolling;
+mod rows;
 mod special;
+mod store;
 
 use alloc::vec::Vec;
 use core::cell::Cell;
 
 use super::body::SolverBody;
-use super::lanes::{Kernel, Lanes, Machine, Scalar, Shared, WIDTH};
+use super::lanes::{Kernel, Lanes, Machine, Scalar, Shared, WIDTH, prefetch};
 use super::limits::Faults;
 use super::settings::Tuning;
 use crate::body::Material;
@@ -25,8 +27,8 @@ use crate::threads::Threads;
 use batch::Batch;
 use input::Input;
 use kernel::Constants;
-use prepare::Records;
 use special::Special;
+use store::{Records, Store};
 
 /// Whether a pass removes position errors or only velocity errors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -173,11 +175,11 @@ impl ContactSet {
     }
 
     /// Keeps the impulses for the next tick. `pushed` says of each contact whether its shapes have pushed each other.
-    pub(super) fn store(&self, contacts: &mut [Contact], pushed: &mut Vec<bool>) {
+    pub(super) fn store(&self, machine: Machine, contacts: &mut [Contact], pushed: &mut Vec<bool>) {
         pushed.clear();
         pushed.resize(contacts.len(), false);
-        self.serial.store(contacts, pushed);
-        self.coloured.store(contacts, pushed);
+        Store { batches: &self.serial, contacts, pushed }.run::<Scalar<1>>();
+        machine.run(Store { batches: &self.coloured, contacts, pushed });
     }
 }
 
@@ -196,7 +198,12 @@ impl<const N: usize> Kernel<N> for Perform<'_, N> {
     fn run<L: Lanes<N>>(self) {
         let Perform { batches, special, task, constants, bodies, faults } = self;
         let mut special = special.iter_mut();
-        for batch in batches {
+        let mut rest = batches;
+        while let [batch, others @ ..] = rest {
+            rest = others;
+            if let Some(next) = rest.first() {
+                prefetch(next);
+            }
             let special = if batch.special { special.next() } else { None };
             match (task, special) {
                 (Task::WarmStart, special) => kernel::warm_start::<L, N>(batch, special, bodies, faults),
@@ -240,7 +247,9 @@ impl Batches<WIDTH> {
             start = end;
             let share = threads.share(colour.len(), BATCHES_PER_JOB);
             let jobs = colour.chunks_mut(share).map(|batches| {
-                let count = batches.iter().filter(|batch| batch.special).count();
+                // Few ticks have any, and to look at every batch costs a cache miss each.
+                let special = |batch: &&Batch<WIDTH>| batch.special;
+                let count = if rest.is_empty() { 0 } else { batches.iter().filter(special).count() };
                 let (special, others) = core::mem::take(&mut rest).split_at_mut(count);
                 rest = others;
                 (batches, special)
@@ -265,22 +274,5 @@ impl<const N: usize> Batches<N> {
         faults: &'a mut Faults,
     ) -> Perform<'a, N> {
         Perform { batches: &mut self.batches, special: &mut self.special, task, constants, bodies, faults }
-    }
-
-    fn store(&self, contacts: &mut [Contact], pushed: &mut [bool]) {
-        let mut special = self.special.iter();
-        for (batch, records) in self.batches.iter().zip(&self.records) {
-            let special = if batch.special { special.next() } else { None };
-            for (lane, index, count) in records.lanes() {
-                let memory = &mut contacts[index];
-                memory.clear_points();
-                memory.rolling = special.map_or(Speed::ZERO, |special| special.rolling.impulse(lane));
-                for (i, point) in batch.points.iter().take(count).enumerate() {
-                    let lambdas = (point.normal_lambda.0[lane], point.tangent_lambda.0[lane]);
-                    memory.push_point(records.impulse(lane, i, lambdas));
-                    pushed[index] |= batch.pushed[i] >> lane & 1 != 0;
-                }
-            }
-        }
     }
 }

@@ -10,13 +10,13 @@
 //! |L / D| s <= R sum Ln / Dn
 //! ```
 
+use super::super::TouchingPair;
 use super::super::body_list::BodyList;
 use super::super::lanes::Ints;
-use super::super::row::{Denominator, Row as ScalarRow, impulse_of, lambda_of};
+use super::super::row::{Denominator, MassFractions, Row as ScalarRow, impulse_of, lambda_of};
 use super::TANGENT_MAX;
 use super::batch::Row;
-use super::input::Input;
-use super::prepare::grip;
+use super::rows::grip;
 use crate::math::{Speed, Unit, fx_div, round_shift_wide, saturate_wide};
 
 /// The rolling rows of a batch. Few surfaces resist rolling, and the others should not carry rows for it through the
@@ -36,12 +36,19 @@ impl<const N: usize> RollingRows<N> {
         RollingRows { row: Row::NONE, grips: [Ints::ZERO; 2], lambda: Ints::ZERO, denominators: [0; N] };
 
     /// `inverse_normals` are the reciprocals of the points' denominators, 0 for a missing one.
-    pub(super) fn fill(&mut self, lane: usize, input: &Input, list: &BodyList, inverse_normals: [Unit; 2]) {
-        let &Input { bodies, fractions, rolling_resistance, rolling, .. } = input;
-        let [a, b] = bodies.map(|index| list.facts(index).inverse_gyration);
-        let (row, denominator, scale) = ScalarRow::angular(a, b, fractions);
+    pub(super) fn fill(
+        &mut self,
+        lane: usize,
+        pair: &TouchingPair,
+        carried: Speed,
+        list: &BodyList,
+        inverse_normals: [Unit; 2],
+    ) {
+        let [a, b] = [pair.bodies.0, pair.bodies.1].map(|slot| list.facts(list.index_of(slot)));
+        let fractions = MassFractions::of_masses(a.mass, b.mass);
+        let (row, denominator, scale) = ScalarRow::angular(a.inverse_gyration, b.inverse_gyration, fractions);
         // Neither body turns if there is no scale.
-        let Some(length) = fx_div(rolling_resistance, scale.into()) else { return };
+        let Some(length) = fx_div(pair.surface.rolling_resistance, scale.into()) else { return };
         let (e, f) = row.turning_parts();
         (self.row.e_a.0[lane], self.row.e_b.0[lane]) = (e[0].to_bits(), e[1].to_bits());
         (self.row.a[2].0[lane], self.row.b[2].0[lane]) = (f[0].to_bits(), f[1].to_bits());
@@ -49,7 +56,7 @@ impl<const N: usize> RollingRows<N> {
             let ratio = round_shift_wide(i128::from(denominator) * i128::from(inverse.to_bits()), 30);
             grips.0[lane] = grip(length, saturate_wide(ratio)).to_bits();
         }
-        self.lambda.0[lane] = lambda_of(rolling, denominator).clamp(-TANGENT_MAX, TANGENT_MAX).to_bits();
+        self.lambda.0[lane] = lambda_of(carried, denominator).clamp(-TANGENT_MAX, TANGENT_MAX).to_bits();
         self.denominators[lane] = denominator;
     }
 

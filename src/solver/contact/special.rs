@@ -1,9 +1,8 @@
 //! What few contacts have: restitution, surfaces that move, and resistance to rolling. The others should not carry it
 //! through the caches.
 
-use super::super::body_list::BodyList;
 use super::super::lanes::Ints;
-use super::input::Input;
+use super::input::Source;
 use super::rolling::RollingRows;
 use crate::math::Unit;
 
@@ -35,12 +34,20 @@ impl<const N: usize> Special<N> {
 
     /// Takes a contact into a lane. `inverse_normals` are the reciprocals of its points' denominators, 0 for a missing
     /// one.
-    pub(super) fn fill(&mut self, lane: usize, input: &Input, list: &BodyList, inverse_normals: [Unit; 2]) {
-        self.restitution.0[lane] = input.restitution.to_bits();
-        self.surface_speed.0[lane] = input.surface_speed.to_bits();
-        if input.rolling_resistance > 0 {
+    pub(super) fn fill(
+        &mut self,
+        lane: usize,
+        source: &Source<'_>,
+        index: usize,
+        inverse_normals: [Unit; 2],
+    ) {
+        let pair = &source.pairs[index];
+        self.restitution.0[lane] = pair.surface.restitution.to_bits();
+        self.surface_speed.0[lane] = pair.surface.surface_speed.to_bits();
+        if pair.surface.rolling_resistance > 0 {
             self.rolls = true;
-            self.rolling.fill(lane, input, list, inverse_normals);
+            let carried = source.contacts[pair.contact as usize].rolling;
+            self.rolling.fill(lane, pair, carried, source.list, inverse_normals);
         }
     }
 }

@@ -217,6 +217,16 @@ impl Lanes<WIDTH> for Avx2 {
     }
 
     #[inline(always)]
+    fn narrow_by(a: Products, shift: __m256i) -> __m256i {
+        // SAFETY: see `Avx2`.
+        let less = unsafe { _mm256_sub_epi32(shift, _mm256_set1_epi32(1)) };
+        let (even, odd) =
+            unsafe { (interleave(less, _mm256_setzero_si256()), _mm256_srli_epi64::<32>(less)) };
+        let twice = Products { even: shifted_by(a.even, even), odd: shifted_by(a.odd, odd) };
+        Self::narrow_saturating::<1>(twice).0
+    }
+
+    #[inline(always)]
     fn low(a: Products) -> __m256i {
         // SAFETY: see `Avx2`.
         unsafe { interleave(a.even, _mm256_slli_epi64::<32>(a.odd)) }
@@ -236,9 +246,9 @@ impl Lanes<WIDTH> for Avx2 {
     }
 
     #[inline(always)]
-    fn quads(from: &[Quad], at: &[u32; WIDTH]) -> [__m256i; 4] {
+    fn transposed(rows: [&Quad; WIDTH]) -> [__m256i; 4] {
         // SAFETY: see `Avx2`; 16 bytes, aligned to 16.
-        let row = |lane: usize| unsafe { _mm_load_si128(from[at[lane] as usize].0.as_ptr().cast()) };
+        let row = |lane: usize| unsafe { _mm_load_si128(rows[lane].0.as_ptr().cast()) };
         transposed([row(0), row(1), row(2), row(3), row(4), row(5), row(6), row(7)])
     }
 
@@ -348,6 +358,17 @@ fn shifted<const SHIFT: i32>(a: Products) -> __m256i {
         let even = _mm256_srl_epi64(a.even, _mm_cvtsi32_si128(SHIFT));
         let odd = _mm256_sll_epi64(a.odd, _mm_cvtsi32_si128(32 - SHIFT));
         interleave(even, odd)
+    }
+}
+
+/// `a / 2^shift`, rounded down. Only positive numbers of 64 bits can be shifted: 2^62 is added before.
+#[inline(always)]
+fn shifted_by(a: __m256i, shift: __m256i) -> __m256i {
+    // SAFETY: see `Avx2`.
+    unsafe {
+        let offset = _mm256_set1_epi64x(1 << 62);
+        let sum = _mm256_srlv_epi64(_mm256_add_epi64(a, offset), shift);
+        _mm256_sub_epi64(sum, _mm256_srlv_epi64(offset, shift))
     }
 }
 

@@ -10,12 +10,14 @@
 #[cfg_attr(all(target_arch = "aarch64", target_feature = "neon", target_endian = "little"), path = "neon.rs")]
 #[cfg_attr(all(target_arch = "wasm32", target_feature = "simd128"), path = "simd128.rs")]
 mod native;
+mod prefetch;
 mod scalar;
 mod shared;
 #[cfg(test)]
 mod tests;
 
 use native::Native;
+pub(super) use prefetch::prefetch;
 pub(super) use scalar::Scalar;
 pub(super) use shared::Shared;
 
@@ -93,6 +95,10 @@ pub(super) trait Lanes<const N: usize>: Copy {
     /// The same of any number that rounding does not take out of its format, saturated, and where it was. `SHIFT` is 1 to 31.
     fn narrow_saturating<const SHIFT: i32>(a: Self::Wide) -> (Self::Int, Self::Mask);
 
+    /// `a / 2^shift` of each lane, rounded to nearest, ties towards +infinity, saturated. `shift` is 1 to 61 and `a` at
+    /// most 2^62 in magnitude.
+    fn narrow_by(a: Self::Wide, shift: Self::Int) -> Self::Int;
+
     /// The lowest 32 bits, as a number between -2^31 and 2^31: what `narrow::<32>` leaves.
     fn low(a: Self::Wide) -> Self::Int;
 
@@ -100,7 +106,12 @@ pub(super) trait Lanes<const N: usize>: Copy {
     fn load_wide(from: &[i64; N]) -> Self::Wide;
 
     /// The numbers of several places: the first of each, the second of each, and so on.
-    fn quads(from: &[Quad], at: &[u32; N]) -> [Self::Int; 4];
+    #[inline(always)]
+    fn quads(from: &[Quad], at: &[u32; N]) -> [Self::Int; 4] {
+        Self::transposed(at.map(|at| &from[at as usize]))
+    }
+    /// The first number of each row, the second of each, and so on.
+    fn transposed(rows: [&Quad; N]) -> [Self::Int; 4];
     /// The velocities of bodies.
     fn velocities(bodies: &[Cell<SolverBody>], at: &[u32; N]) -> Motion<Self::Int>;
     /// How far bodies have come in the tick.

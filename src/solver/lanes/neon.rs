@@ -203,6 +203,18 @@ impl Lanes<WIDTH> for Neon {
     }
 
     #[inline(always)]
+    fn narrow_by(a: Products, shift: Ints32) -> Ints32 {
+        // SAFETY: see `Neon`. A rounding shift to the left by a negative number is one to the right.
+        let four = |low, high, shift| unsafe {
+            let shift = vnegq_s32(shift);
+            let low = vrshlq_s64(low, vmovl_s32(vget_low_s32(shift)));
+            let high = vrshlq_s64(high, vmovl_high_s32(shift));
+            vqmovn_high_s64(vqmovn_s64(low), high)
+        };
+        [four(a[0], a[1], shift[0]), four(a[2], a[3], shift[1])]
+    }
+
+    #[inline(always)]
     fn low(a: Products) -> Ints32 {
         // SAFETY: see `Neon`.
         let four = |low, high| unsafe { vmovn_high_s64(vmovn_s64(low), high) };
@@ -226,9 +238,9 @@ impl Lanes<WIDTH> for Neon {
     }
 
     #[inline(always)]
-    fn quads(from: &[Quad], at: &[u32; WIDTH]) -> [Ints32; 4] {
+    fn transposed(rows: [&Quad; WIDTH]) -> [Ints32; 4] {
         // SAFETY: see `Neon`; 16 bytes.
-        columns(at.map(|at| unsafe { vld1q_s32(from[at as usize].0.as_ptr()) }))
+        columns(rows.map(|row| unsafe { vld1q_s32(row.0.as_ptr()) }))
     }
 
     #[inline(always)]

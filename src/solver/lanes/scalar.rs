@@ -153,6 +153,12 @@ impl<const N: usize> Lanes<N> for Scalar<N> {
     }
 
     #[inline(always)]
+    #[expect(clippy::cast_sign_loss, reason = "a shift")]
+    fn narrow_by(a: [i64; N], shift: [i32; N]) -> [i32; N] {
+        map(a, shift, |a, shift| saturate(round_shift(a, shift as u32)))
+    }
+
+    #[inline(always)]
     #[expect(clippy::cast_possible_truncation, reason = "that is what it is for")]
     fn low(a: [i64; N]) -> [i32; N] {
         a.map(|a| a as i32)
@@ -169,8 +175,8 @@ impl<const N: usize> Lanes<N> for Scalar<N> {
     }
 
     #[inline(always)]
-    fn quads(from: &[Quad], at: &[u32; N]) -> [[i32; N]; 4] {
-        core::array::from_fn(|i| at.map(|at| from[at as usize].0[i]))
+    fn transposed(rows: [&Quad; N]) -> [[i32; N]; 4] {
+        core::array::from_fn(|i| rows.map(|row| row.0[i]))
     }
 
     #[inline(always)]

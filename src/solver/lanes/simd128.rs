@@ -6,7 +6,7 @@ use core::cell::Cell;
 
 use super::super::body::SolverBody;
 use super::super::body_list::GROUND;
-use super::scalar::map;
+use super::scalar::{Scalar, map};
 use super::{Backend, Ints, Kernel, Lanes, Motion, Quad, WIDTH};
 
 /// The vector instructions of WebAssembly. This file is only compiled for programs that use them: a machine which has
@@ -183,6 +183,14 @@ impl Lanes<WIDTH> for Simd128 {
     }
 
     #[inline(always)]
+    fn narrow_by(a: Products, shift: Ints32) -> Ints32 {
+        // No lane has a shift of its own here.
+        let mut shifts = Ints::ZERO;
+        Self::store(shift, &mut shifts);
+        Self::load(&Ints(Scalar::<WIDTH>::narrow_by(Self::to_array(a), shifts.0)))
+    }
+
+    #[inline(always)]
     fn low(a: Products) -> Ints32 {
         let four = |a, b| i32x4_shuffle::<0, 2, 4, 6>(a, b);
         [four(a[0], a[1]), four(a[2], a[3])]
@@ -203,9 +211,9 @@ impl Lanes<WIDTH> for Simd128 {
     }
 
     #[inline(always)]
-    fn quads(from: &[Quad], at: &[u32; WIDTH]) -> [Ints32; 4] {
+    fn transposed(rows: [&Quad; WIDTH]) -> [Ints32; 4] {
         // SAFETY: 16 bytes.
-        columns(at.map(|at| unsafe { v128_load(from[at as usize].0.as_ptr().cast()) }))
+        columns(rows.map(|row| unsafe { v128_load(row.0.as_ptr().cast()) }))
     }
 
     #[inline(always)]

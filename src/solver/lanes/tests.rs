@@ -67,6 +67,8 @@ impl Kernel<WIDTH> for Operations<'_> {
         keep(L::low(wide));
         keep(L::narrow_saturating::<25>(wide).0);
         keep(L::to_int(L::narrow_saturating::<25>(wide).1));
+        let shifts = Ints(self.b.0.map(|b| (b & 63).clamp(1, 61)));
+        keep(L::narrow_by(L::mul(a, b), L::load(&shifts)));
         let quads: std::vec::Vec<_> = (0..WIDTH).map(|i| Quad([self.a.0[i], self.b.0[i], 3, -4])).collect();
         L::quads(&quads, &[7, 0, 3, 3, 1, 2, 6, 5]).into_iter().for_each(&mut keep);
         // What fits.

@@ -1,0 +1,215 @@
+//! The rows of eight contacts at a time.
+//!
+//! ```text
+//! c = r x n,   e = c / k,   D = aA (1 + eA^2) + aB (1 + eB^2),   g = a / D,   f = g e
+//! grip = mu Dt / Dn,   L = p D
+//! ```
+
+#[cfg(test)]
+mod tests;
+
+use super::super::body_list::lever_ratio;
+use super::super::lanes::{Ints, Lanes, Quad};
+use super::super::limits::IMPULSE_MAX;
+use super::super::pair::{RATIO, UNIT, clamp, shift};
+use super::super::row::RATIO_MAX;
+use super::TANGENT_MAX;
+use super::batch::{Batch, Row};
+use super::input::Input;
+use crate::math::{Fx, Grip, Length, Ratio, Shift, Step, narrow, round_shift_wide, saturate, saturate_wide};
+
+/// From the format of a unit vector to that of a lever ratio.
+const UNIT_TO_RATIO: i32 = UNIT - RATIO;
+const STEP_TO_SHIFT: i32 = shift(Step::FRAC_NBITS - Shift::FRAC_NBITS);
+
+/// A body's end of the contacts.
+#[derive(Clone, Copy)]
+struct End<L: Lanes<N>, const N: usize> {
+    fraction: L::Int,
+    /// From the centre of mass to the origin of the manifold.
+    to_origin: [L::Int; 2],
+    /// `1 / k`, and by how much to shift what is multiplied by it to have a lever ratio.
+    mantissa: L::Int,
+    shift: L::Int,
+}
+
+/// Makes the rows of a batch. `inverses` are the reciprocals of their denominators.
+#[inline(always)]
+pub(super) fn fill<L: Lanes<N>, const N: usize>(
+    inputs: &[&Input; N],
+    batch: &mut Batch<N>,
+    inverses: &mut [[Ints<N>; 2]; 2],
+) {
+    let one = L::splat(1);
+    let [x, y, fraction_a, fraction_b] = columns::<L, N>(inputs, |input| &input.shares);
+    let n = [L::narrow::<UNIT_TO_RATIO>(L::mul(x, one)), L::narrow::<UNIT_TO_RATIO>(L::mul(y, one))];
+    let t = [L::sub(L::splat(0), n[1]), n[0]];
+    let [mantissa_a, mantissa_b, shift_a, shift_b] = columns::<L, N>(inputs, |input| &input.gyrations);
+    let [ax, ay, bx, by] = columns::<L, N>(inputs, |input| &input.to_origin);
+    let ends = [
+        End::<L, N>::new(fraction_a, [ax, ay], mantissa_a, shift_a),
+        End::<L, N>::new(fraction_b, [bx, by], mantissa_b, shift_b),
+    ];
+    let [x0, y0, x1, y1] = columns::<L, N>(inputs, |input| &input.anchors);
+    let [normal_0, tangent_0, normal_1, tangent_1] = columns::<L, N>(inputs, |input| &input.carried);
+    let [separation_0, separation_1, friction, _] = columns::<L, N>(inputs, |input| &input.rest);
+    L::store(n[0], &mut batch.n_x);
+    L::store(n[1], &mut batch.n_y);
+    let stiff = L::either(L::greater(one, fraction_a), L::greater(one, fraction_b));
+    L::store(L::to_int(stiff), &mut batch.immovable);
+    let given =
+        [([x0, y0], separation_0, [normal_0, tangent_0]), ([x1, y1], separation_1, [normal_1, tangent_1])];
+    let points = batch.points.iter_mut().zip(inverses).take(batch.count);
+    for ((point, inverses), (anchor, separation, carried)) in points.zip(given) {
+        let separation = L::narrow::<STEP_TO_SHIFT>(L::mul(separation, one));
+        L::store(separation, &mut point.first_separation);
+        L::store(separation, &mut point.separation);
+        let [normal_inverses, tangent_inverses] = inverses;
+        let normal = fill_row::<L, N>(&mut point.normal, n, &ends, anchor, normal_inverses);
+        let tangent = fill_row::<L, N>(&mut point.tangent, t, &ends, anchor, tangent_inverses);
+        let ratio = ratio::<L, N>(&tangent, L::load(normal_inverses));
+        L::store(product::<L, N>(friction, &ratio), &mut point.grip);
+        // A guess, so that to clamp it is no fault.
+        let normal_lambda = product::<L, N>(carried[0], &normal);
+        let normal_lambda = L::min(L::max(normal_lambda, L::splat(0)), L::splat(IMPULSE_MAX.to_bits()));
+        L::store(normal_lambda, &mut point.normal_lambda);
+        let tangent_lambda = product::<L, N>(carried[1], &tangent);
+        L::store(clamp::<L, N>(tangent_lambda, L::splat(TANGENT_MAX.to_bits())), &mut point.tangent_lambda);
+    }
+}
+
+/// The first number of a quad of each contact, the second, and so on.
+#[inline(always)]
+fn columns<L: Lanes<N>, const N: usize>(inputs: &[&Input; N], quad: impl Fn(&Input) -> &Quad) -> [L::Int; 4] {
+    let mut rows = [quad(inputs[0]); N];
+    for (row, input) in rows.iter_mut().zip(inputs) {
+        *row = quad(input);
+    }
+    L::transposed(rows)
+}
+
+impl<L: Lanes<N>, const N: usize> End<L, N> {
+    /// `exponent` is that of `1 / k`.
+    #[inline(always)]
+    fn new(fraction: L::Int, to_origin: [L::Int; 2], mantissa: L::Int, exponent: L::Int) -> Self {
+        const DIFFERENCE: i32 = shift(Ratio::FRAC_NBITS - Length::FRAC_NBITS);
+        // Only what does not turn has a smaller exponent, and its mantissa is 0.
+        let shift = L::max(L::sub(exponent, L::splat(DIFFERENCE)), L::splat(1));
+        End { fraction, to_origin, mantissa, shift }
+    }
+
+    /// The lever ratios of pushes in the direction `n` at points.
+    #[inline(always)]
+    fn lever_ratio(&self, anchor: [L::Int; 2], n: [L::Int; 2]) -> L::Int {
+        let x = L::add_saturating(anchor[0], self.to_origin[0]);
+        let y = L::add_saturating(anchor[1], self.to_origin[1]);
+        let cross = L::sub_wide(L::mul(x, n[1]), L::mul(y, n[0]));
+        let (c, out) = L::narrow_saturating::<RATIO>(cross);
+        if L::any(out) {
+            return self.long_lever_ratio([x, y], n);
+        }
+        clamp::<L, N>(L::narrow_by(L::mul(c, self.mantissa), self.shift), L::splat(RATIO_MAX.to_bits()))
+    }
+
+    /// The same of arms of more than 512 m.
+    #[cold]
+    fn long_lever_ratio(&self, arm: [L::Int; 2], n: [L::Int; 2]) -> L::Int {
+        let numbers = [arm[0], arm[1], n[0], n[1], self.mantissa, self.shift].map(|number| {
+            let mut ints = Ints::ZERO;
+            L::store(number, &mut ints);
+            ints.0
+        });
+        let [x, y, n_x, n_y, mantissa, shift] = numbers;
+        L::load(&Ints(core::array::from_fn(|i| {
+            lever_ratio([x[i], y[i]], [n_x[i], n_y[i]], (mantissa[i], shift[i])).to_bits()
+        })))
+    }
+}
+
+/// Makes a row. Returns its denominators.
+#[inline(always)]
+fn fill_row<L: Lanes<N>, const N: usize>(
+    row: &mut Row<N>,
+    n: [L::Int; 2],
+    ends: &[End<L, N>; 2],
+    anchor: [L::Int; 2],
+    inverses: &mut Ints<N>,
+) -> Long<N> {
+    let [e_a, e_b] = [ends[0].lever_ratio(anchor, n), ends[1].lever_ratio(anchor, n)];
+    L::store(e_a, &mut row.e_a);
+    L::store(e_b, &mut row.e_b);
+    let fractions = [ends[0].fraction, ends[1].fraction];
+    // Ratios and their products with a fraction have 24 fraction bits, and their squares 48.
+    let ae = L::narrow::<UNIT>(L::mul(fractions[0], e_a));
+    let be = L::narrow::<UNIT>(L::mul(fractions[1], e_b));
+    let squares = L::add_wide(L::mul(ae, e_a), L::mul(be, e_b));
+    let ones = L::mul(L::add(fractions[0], fractions[1]), L::splat(1 << 18));
+    let mut denominators = L::to_array(L::add_wide(squares, ones));
+    for (inverse, denominator) in inverses.0.iter_mut().zip(&mut denominators) {
+        *denominator >>= 18;
+        *inverse = reciprocal(*denominator);
+    }
+    let inverse = L::load(inverses);
+    for (gains, fraction, e) in [(&mut row.a, fractions[0], e_a), (&mut row.b, fractions[1], e_b)] {
+        let g = L::narrow::<UNIT>(L::mul(fraction, inverse));
+        L::store(L::narrow::<RATIO>(L::mul(g, n[0])), &mut gains[0]);
+        L::store(L::narrow::<RATIO>(L::mul(g, n[1])), &mut gains[1]);
+        L::store(L::narrow::<RATIO>(L::mul(g, e)), &mut gains[2]);
+    }
+    Long::new(&denominators)
+}
+
+/// Numbers from 0 to 2^45 with 30 fraction bits: too long for a lane.
+#[derive(Clone, Copy)]
+struct Long<const N: usize> {
+    whole: Ints<N>,
+    /// The 30 fraction bits.
+    part: Ints<N>,
+}
+
+impl<const N: usize> Long<N> {
+    #[inline(always)]
+    #[expect(clippy::cast_possible_truncation, reason = "fewer bits than there is room for")]
+    fn new(numbers: &[i64; N]) -> Self {
+        let mut long = Long { whole: Ints::ZERO, part: Ints::ZERO };
+        for (lane, number) in numbers.iter().enumerate() {
+            long.whole.0[lane] = (number >> 30) as i32;
+            long.part.0[lane] = (number & ((1 << 30) - 1)) as i32;
+        }
+        long
+    }
+}
+
+/// `x D`, rounded to nearest, saturated.
+#[inline(always)]
+fn product<L: Lanes<N>, const N: usize>(x: L::Int, long: &Long<N>) -> L::Int {
+    let (whole, part) = (L::load(&long.whole), L::load(&long.part));
+    // The product with the whole is exact, and both have the sign of x: if one saturates, so does the sum.
+    let (whole, _) = L::narrow_saturating::<1>(L::mul(x, L::add(whole, whole)));
+    L::add_saturating(whole, L::narrow::<30>(L::mul(x, part)))
+}
+
+/// `Dt / Dn`, rounded to nearest.
+#[inline(always)]
+fn ratio<L: Lanes<N>, const N: usize>(tangent: &Long<N>, normal_inverse: L::Int) -> Long<N> {
+    let part = L::narrow::<30>(L::mul(normal_inverse, L::load(&tangent.part)));
+    let wide = L::add_wide(L::mul(normal_inverse, L::load(&tangent.whole)), L::mul(part, L::splat(1)));
+    Long::new(&L::to_array(wide))
+}
+
+/// `1 / D`, both with 30 fraction bits; of a lane without a contact, whose fractions are 0, anything.
+#[inline(always)]
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "D is 1 or more, so it is at most 1"
+)]
+fn reciprocal(denominator: i64) -> i32 {
+    ((1u64 << 60) / denominator.max(1 << 30) as u64) as i32
+}
+
+/// `mu r`, with `r = Dt / Dn` with 30 fraction bits, saturated.
+pub(super) fn grip(friction: Fx, ratio: i64) -> Grip {
+    let friction = i128::from(narrow::<fixed::types::extra::U20>(friction).to_bits());
+    Grip::from_bits(saturate(saturate_wide(round_shift_wide(friction * i128::from(ratio), 30))))
+}

@@ -1,0 +1,170 @@
+//! The rows of every backend against the equations, one number at a time.
+
+use super::super::super::lanes::{Backend, Kernel, Machine, Scalar, WIDTH};
+use super::super::super::row::MassFractions;
+use super::*;
+use crate::fx;
+use crate::math::{Reciprocal, Rng, Rot, Speed, Unit, Vec2};
+use std::vec::Vec;
+
+#[test]
+fn grip_is_friction_times_the_ratio_of_denominators() {
+    let one = 1i64 << 30;
+    assert_eq!(grip(fx!(0.5), one), Grip::lit("0.5"));
+    assert_eq!(grip(fx!(0.5), 4 * one), Grip::lit("2"));
+    assert_eq!(grip(fx!(0.5), one / 4), Grip::lit("0.125"));
+    assert_eq!(grip(fx!(16), 16130 * one), Grip::MAX, "saturated, not wrapped");
+}
+
+struct FillRows<'a, const N: usize> {
+    inputs: &'a [Input],
+    made: &'a mut Made<N>,
+}
+
+struct Made<const N: usize> {
+    batch: Batch<N>,
+    inverses: [[Ints<N>; 2]; 2],
+}
+
+impl<const N: usize> Made<N> {
+    fn of_points(count: usize) -> Self {
+        Made { batch: Batch { count, ..Batch::NONE }, inverses: [[Ints::ZERO; 2]; 2] }
+    }
+}
+
+impl<const N: usize> Kernel<N> for FillRows<'_, N> {
+    #[inline(always)]
+    fn run<L: Lanes<N>>(self) {
+        let FillRows { inputs, made } = self;
+        fill::<L, N>(&core::array::from_fn(|lane| &inputs[lane]), &mut made.batch, &mut made.inverses);
+    }
+}
+
+/// What is in a format, its ends more often than by chance.
+fn any(rng: &mut Rng, limit: i32) -> i32 {
+    match rng.below(8) {
+        0 => limit,
+        1 => -limit,
+        2 => 0,
+        _ => (i32::from_le_bytes(rng.next_u32().to_le_bytes()) >> rng.below(31)).clamp(-limit, limit),
+    }
+}
+
+fn random_input(rng: &mut Rng) -> Input {
+    let n: Vec2<Unit> = match rng.below(4) {
+        0 => Vec2::Y,
+        1 => -Vec2::X,
+        _ => Rot::from_angle(rng.angle()).apply(Vec2::X),
+    };
+    let mass = |rng: &mut Rng| match rng.below(4) {
+        0 => fx!(0),
+        1 => fx!(1),
+        _ => Fx::from_bits(1i64 << rng.below(62)),
+    };
+    let fractions = MassFractions::of_masses(mass(rng), mass(rng));
+    let mut gyration = || match rng.below(4) {
+        0 => Reciprocal::ZERO.parts(),
+        1 => Reciprocal::of(fx!(0.002)).parts(),
+        2 => Reciprocal::of(fx!(512)).parts(),
+        _ => Reciprocal::of(rng.range(fx!(0.002), fx!(512))).parts(),
+    };
+    let (a, b) = (gyration(), gyration());
+    let mut quad = |limit: i32| Quad(core::array::from_fn(|_| any(rng, limit)));
+    Input {
+        shares: Quad([n.x.to_bits(), n.y.to_bits(), fractions.a.to_bits(), fractions.b.to_bits()]),
+        gyrations: Quad([a.0, b.0, a.1, b.1]),
+        to_origin: quad(i32::MAX),
+        anchors: quad(i32::MAX),
+        carried: quad(i32::MAX),
+        rest: Quad(quad(i32::MAX).0.map(i32::abs)),
+        ..Input::default()
+    }
+}
+
+fn rounded(x: i128, shift: u32) -> i128 {
+    if shift == 0 { x } else { (x + (1 << (shift - 1))) >> shift }
+}
+
+fn limited(x: i128, limit: i32) -> i32 {
+    i32::try_from(x.clamp(-i128::from(limit), limit.into())).expect("clamped")
+}
+
+/// A row as the equations have it: lever ratios, gains of A and of B, denominator and its reciprocal.
+struct Naive {
+    e: [i32; 2],
+    gains: [[i32; 3]; 2],
+    denominator: i128,
+    inverse: i32,
+}
+
+fn naive_row(input: &Input, point: usize, n: [i32; 2]) -> Naive {
+    let wide = |a: i32| i128::from(a);
+    let Quad([_, _, fraction_a, fraction_b]) = input.shares;
+    let fractions = [fraction_a, fraction_b];
+    let e = [0, 1].map(|side| {
+        let arm = |axis: usize| {
+            let [to, on] = [input.to_origin.0[2 * side + axis], input.anchors.0[2 * point + axis]];
+            wide(to.saturating_add(on))
+        };
+        let c = rounded(arm(0) * wide(n[1]) - arm(1) * wide(n[0]), 24);
+        let (mantissa, exponent) = (input.gyrations.0[side], input.gyrations.0[2 + side].unsigned_abs());
+        limited(rounded(c * wide(mantissa), exponent.saturating_sub(2)), RATIO_MAX.to_bits())
+    });
+    let square = |side: usize| rounded(wide(fractions[side]) * wide(e[side]), 30) * wide(e[side]);
+    let moving = wide(fraction_a) + wide(fraction_b);
+    let denominator = (square(0) + square(1) + (moving << 18)) >> 18;
+    let inverse = limited((1 << 60) / denominator.max(1 << 30), i32::MAX);
+    let gains = [0, 1].map(|side| {
+        let g = rounded(wide(fractions[side]) * wide(inverse), 30);
+        [n[0], n[1], e[side]].map(|part| limited(rounded(g * wide(part), 24), i32::MAX))
+    });
+    Naive { e, gains, denominator, inverse }
+}
+
+/// Every number that the equations define of a lane is the one in the batch.
+fn check<const N: usize>(input: &Input, lane: usize, made: &Made<N>) {
+    let Made { batch, inverses } = made;
+    let Quad([x, y, fraction_a, fraction_b]) = input.shares;
+    let [x, y] = [x, y].map(|n| limited(rounded(n.into(), 6), i32::MAX));
+    assert_eq!([batch.n_x.0[lane], batch.n_y.0[lane]], [x, y]);
+    assert_eq!(batch.immovable.0[lane], -i32::from(fraction_a == 0 || fraction_b == 0));
+    let friction = input.rest.0[2];
+    for (i, point) in batch.points.iter().enumerate().take(batch.count) {
+        let separation = limited(rounded(input.rest.0[i].into(), 1), i32::MAX);
+        assert_eq!([point.separation.0[lane], point.first_separation.0[lane]], [separation; 2]);
+        let rows = [naive_row(input, i, [x, y]), naive_row(input, i, [-y, x])];
+        for ((row, naive), inverse) in
+            [&point.normal, &point.tangent].into_iter().zip(&rows).zip(&inverses[i])
+        {
+            assert_eq!([row.e_a.0[lane], row.e_b.0[lane]], naive.e, "{input:?}");
+            assert_eq!([&row.a, &row.b].map(|gains| [0, 1, 2].map(|part| gains[part].0[lane])), naive.gains);
+            assert_eq!(inverse.0[lane], naive.inverse);
+        }
+        let ratio = rounded(rows[1].denominator * i128::from(rows[0].inverse), 30);
+        assert_eq!(point.grip.0[lane], limited(rounded(i128::from(friction) * ratio, 30), i32::MAX));
+        let lambda = |row: usize, limit: Speed| {
+            let p = i128::from(input.carried.0[2 * i + row]);
+            limited(rounded(p * rows[row].denominator, 30), limit.to_bits())
+        };
+        assert_eq!(point.normal_lambda.0[lane], lambda(0, IMPULSE_MAX).max(0));
+        assert_eq!(point.tangent_lambda.0[lane], lambda(1, TANGENT_MAX));
+    }
+}
+
+#[test]
+fn every_backend_makes_the_rows_of_the_equations() {
+    let mut rng = Rng::new(7);
+    for round in 0..20_000 {
+        let inputs: Vec<Input> = (0..WIDTH).map(|_| random_input(&mut rng)).collect();
+        let count = 1 + round % 2;
+        for backend in Backend::available() {
+            let mut made = Made::of_points(count);
+            let machine = Machine::new(backend).expect("available");
+            machine.run(FillRows { inputs: &inputs, made: &mut made });
+            inputs.iter().enumerate().for_each(|(lane, input)| check(input, lane, &made));
+        }
+        let mut made = Made::of_points(count);
+        FillRows { inputs: &inputs, made: &mut made }.run::<Scalar<1>>();
+        check(&inputs[0], 0, &made);
+    }
+}
