@@ -4,8 +4,8 @@ use alloc::vec::Vec;
 
 use super::body::SolverBody;
 use super::row::RATIO_MAX;
-use crate::body::{Arena, Body, BodyId};
-use crate::math::{Fx, Length, Ratio, Reciprocal, Vec2, round_shift, saturate};
+use crate::body::{Arena, Body, BodyId, Pose};
+use crate::math::{Angle, Fx, Length, Ratio, Reciprocal, Vec2, round_shift, saturate};
 
 /// The index of the body that stands for all those that nothing moves. Their mass fraction is 0, so that it never
 /// changes.
@@ -15,6 +15,8 @@ pub(super) const GROUND: u32 = 0;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct BodyList {
     pub(super) bodies: Vec<SolverBody>,
+    /// Where each of them is at the start of the tick.
+    poses: Vec<Pose>,
     /// What contacts are made of, for each of them.
     facts: Vec<BodyFacts>,
     /// For each body slot, where its body is in `bodies`: 0 if nothing moves it.
@@ -71,18 +73,21 @@ impl BodyList {
         self.slots.clear();
         self.bodies.clear();
         self.bodies.push(SolverBody::default());
+        self.poses.clear();
+        self.poses.push(Pose { centre: Vec2::ZERO, angle: Angle::ZERO });
         self.facts.clear();
         self.facts.push(BodyFacts::GROUND);
         for &slot in slots {
             let body = bodies.at(slot);
-            self.push(slot, SolverBody::of(body), BodyFacts::of(body));
+            self.push((slot, body), SolverBody::of(body), BodyFacts::of(body));
         }
     }
 
-    fn push(&mut self, slot: u32, body: SolverBody, facts: BodyFacts) {
+    fn push(&mut self, (slot, source): (u32, &Body), body: SolverBody, facts: BodyFacts) {
         self.indices[slot as usize] = u32::try_from(self.bodies.len()).expect("fewer than 2^32 bodies");
         self.slots.push(slot);
         self.bodies.push(body);
+        self.poses.push(Pose { centre: source.centre, angle: source.angle });
         self.facts.push(facts);
     }
 
@@ -96,11 +101,21 @@ impl BodyList {
     }
 
     /// The same for a body with a joint: it does not share the ground's place, because joints see how it is turned.
-    pub(super) fn own_index_of(&mut self, slot: u32) -> u32 {
+    pub(super) fn own_index_of(&mut self, slot: u32, body: &Body) -> u32 {
         if self.index_of(slot) == GROUND {
-            self.push(slot, SolverBody::default(), BodyFacts::GROUND);
+            self.push((slot, body), SolverBody::default(), BodyFacts::GROUND);
         }
         self.index_of(slot)
+    }
+
+    /// The slots of the bodies that have an index of their own.
+    pub(super) fn slots(&self) -> &[u32] {
+        &self.slots
+    }
+
+    /// Where the body at each index is at the start of the tick; the ground anywhere.
+    pub(super) fn poses(&self) -> &[Pose] {
+        &self.poses
     }
 
     /// The constants of the body at an index.

@@ -56,6 +56,8 @@ pub(crate) struct Solver {
     list: BodyList,
     movers: Vec<Mover>,
     joints: JointSet,
+    /// One joint at a time, when its reaction is asked for.
+    reaction: JointSet,
     contacts: ContactSet,
     /// For each contact in the state, whether its shapes have pushed each other in this tick.
     pub(crate) pushed: Vec<bool>,
@@ -121,7 +123,7 @@ impl Solver {
         bodies: (&Body, &Body),
         tuning: &Tuning,
     ) -> (Vec2<Fx>, Fx) {
-        self.joints.reaction(joint, bodies, tuning)
+        self.reaction.reaction(joint, bodies, tuning)
     }
 
     /// Makes a constraint of every touching pair, in the order in which they are solved.

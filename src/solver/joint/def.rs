@@ -180,6 +180,11 @@ impl JointDef {
         (self.body_a, self.body_b)
     }
 
+    /// The angle of B's frame in A's while neither body is turned.
+    pub(crate) fn rest_angle(&self) -> Angle {
+        self.frame_b.angle - self.frame_a.angle
+    }
+
     /// Checks what does not depend on the world.
     pub(crate) fn validate(&self) -> Result<(), WorldError> {
         if self.body_a == self.body_b {
