@@ -25,7 +25,7 @@ use body_list::BodyList;
 use colour::{Colouring, Node};
 use contact::{ContactSet, Pass, Sweep, Task};
 pub(crate) use contact::{Surface, WarmStarts};
-use integrate::Mover;
+use integrate::{Mover, SubStep};
 use joint::JointSet;
 pub use joint::{
     Distance, Drive, Joint, JointDef, JointFrame, JointKind, Limit, LinearDrive, Motor, Prismatic, Pull,
@@ -150,8 +150,9 @@ impl Solver {
         for iteration in 0..iterations {
             self.solve(Pass::Bias, Sweep::of(index, iteration), tuning);
         }
+        let sub_step = SubStep::of(tuning.rate);
         for mover in &self.movers {
-            mover.integrate_displacement(&mut self.list.bodies, tuning.rate, &mut self.faults);
+            mover.integrate_displacement(&mut self.list.bodies, &sub_step, &mut self.faults);
         }
         self.joints.refresh(&mut self.list.bodies, self.machine, tuning);
         if tuning.relax {

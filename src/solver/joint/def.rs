@@ -95,6 +95,11 @@ pub enum ThresholdAction {
 impl Threshold {
     /// Bears anything.
     pub const NONE: Self = Threshold { force: None, torque: None, action: ThresholdAction::Event };
+
+    /// Whether anything is too much.
+    pub(crate) const fn is_set(&self) -> bool {
+        self.force.is_some() || self.torque.is_some()
+    }
 }
 
 impl JointFrame {
