@@ -4,7 +4,9 @@ use alloc::vec::Vec;
 
 use super::body::SolverBody;
 use super::row::RATIO_MAX;
-use crate::body::{Arena, Body, BodyId, Pose};
+#[cfg(test)]
+use crate::body::{Arena, BodyId};
+use crate::body::{Body, Pose};
 use crate::math::{Angle, Fx, Length, Ratio, Reciprocal, Vec2, round_shift, saturate};
 
 /// The index of the body that stands for all those that nothing moves. Their mass fraction is 0, so that it never
@@ -65,11 +67,18 @@ impl BodyFacts {
 
 impl BodyList {
     /// Starts anew with the bodies in the given slots.
+    #[cfg(test)]
     pub(super) fn fill(&mut self, bodies: &Arena<Body, BodyId>, slots: &[u32]) {
+        self.begin(bodies.slot_count());
+        slots.iter().for_each(|&slot| self.add(slot, bodies.at(slot)));
+    }
+
+    /// Starts anew without bodies, of a world with so many slots for them.
+    pub(super) fn begin(&mut self, slot_count: usize) {
         for &slot in &self.slots {
             self.indices[slot as usize] = GROUND;
         }
-        self.indices.resize(bodies.slot_count(), GROUND);
+        self.indices.resize(slot_count, GROUND);
         self.slots.clear();
         self.bodies.clear();
         self.bodies.push(SolverBody::default());
@@ -77,10 +86,12 @@ impl BodyList {
         self.poses.push(Pose { centre: Vec2::ZERO, angle: Angle::ZERO });
         self.facts.clear();
         self.facts.push(BodyFacts::GROUND);
-        for &slot in slots {
-            let body = bodies.at(slot);
-            self.push((slot, body), SolverBody::of(body), BodyFacts::of(body));
-        }
+    }
+
+    /// Takes a body that something moves.
+    #[inline]
+    pub(super) fn add(&mut self, slot: u32, body: &Body) {
+        self.push((slot, body), SolverBody::of(body), BodyFacts::of(body));
     }
 
     fn push(&mut self, (slot, source): (u32, &Body), body: SolverBody, facts: BodyFacts) {

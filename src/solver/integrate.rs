@@ -184,7 +184,8 @@ mod tests {
         for rate in 60..=4000 {
             let sub_step = SubStep::of(rate);
             let ends = [i32::MIN, i32::MIN + 1, -1, 0, 1, i32::MAX - 1, i32::MAX];
-            let random = core::iter::repeat_with(|| i32::from_le_bytes(rng.next_u32().to_le_bytes())).take(50);
+            let random =
+                core::iter::repeat_with(|| i32::from_le_bytes(rng.next_u32().to_le_bytes())).take(50);
             // Those just before, at and behind a tie.
             let ties: Vec<i32> = (0..50).map(|i| (i * i32::try_from(rate).unwrap()) / 64 - 40 + i).collect();
             for bits in random.collect::<Vec<_>>().into_iter().chain(ends).chain(ties) {

@@ -90,11 +90,13 @@ impl Solver {
     pub(crate) fn prepare_bodies(&mut self, bodies: &Arena<Body, BodyId>, slots: &[u32], tuning: &Tuning) {
         self.faults = 0;
         self.warm_starts = WarmStarts::default();
-        self.list.fill(bodies, slots);
+        self.list.begin(bodies.slot_count());
         self.movers.clear();
+        // Bodies are large: each is read once.
         for &slot in slots {
-            let index = self.list.index_of(slot);
-            self.movers.extend(Mover::prepare(index, bodies.at(slot), tuning));
+            let body = bodies.at(slot);
+            self.list.add(slot, body);
+            self.movers.extend(Mover::prepare(self.list.index_of(slot), body, tuning));
         }
     }
 
