@@ -177,6 +177,7 @@ fn limit_speed(velocity: &mut Vec2<Speed>, speed_max: Speed) {
 mod tests {
     use super::*;
     use crate::math::Rng;
+    use std::vec::Vec;
 
     #[test]
     fn a_distance_is_the_rounded_quotient() {
