@@ -4,8 +4,10 @@ use alloc::vec::Vec;
 
 use super::body::SolverBody;
 use super::row::RATIO_MAX;
-use crate::body::{Arena, Body, BodyId};
-use crate::math::{Fx, Length, Ratio, Reciprocal, Vec2, round_shift, saturate};
+#[cfg(test)]
+use crate::body::{Arena, BodyId};
+use crate::body::{Body, Pose};
+use crate::math::{Angle, Fx, Length, Ratio, Reciprocal, Vec2, round_shift, saturate};
 
 /// The index of the body that stands for all those that nothing moves. Their mass fraction is 0, so that it never
 /// changes.
@@ -15,6 +17,8 @@ pub(super) const GROUND: u32 = 0;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct BodyList {
     pub(super) bodies: Vec<SolverBody>,
+    /// Where each of them is at the start of the tick.
+    poses: Vec<Pose>,
     /// What contacts are made of, for each of them.
     facts: Vec<BodyFacts>,
     /// For each body slot, where its body is in `bodies`: 0 if nothing moves it.
@@ -62,26 +66,38 @@ pub(super) fn lever_ratio([x, y]: [i32; 2], [n_x, n_y]: [i32; 2], (mantissa, shi
 
 impl BodyList {
     /// Starts anew with the bodies in the given slots.
+    #[cfg(test)]
     pub(super) fn fill(&mut self, bodies: &Arena<Body, BodyId>, slots: &[u32]) {
+        self.begin(bodies.slot_count());
+        slots.iter().for_each(|&slot| self.add(slot, bodies.at(slot)));
+    }
+
+    /// Starts anew without bodies, of a world with so many slots for them.
+    pub(super) fn begin(&mut self, slot_count: usize) {
         for &slot in &self.slots {
             self.indices[slot as usize] = GROUND;
         }
-        self.indices.resize(bodies.slot_count(), GROUND);
+        self.indices.resize(slot_count, GROUND);
         self.slots.clear();
         self.bodies.clear();
         self.bodies.push(SolverBody::default());
+        self.poses.clear();
+        self.poses.push(Pose { centre: Vec2::ZERO, angle: Angle::ZERO });
         self.facts.clear();
         self.facts.push(BodyFacts::GROUND);
-        for &slot in slots {
-            let body = bodies.at(slot);
-            self.push(slot, SolverBody::of(body), BodyFacts::of(body));
-        }
     }
 
-    fn push(&mut self, slot: u32, body: SolverBody, facts: BodyFacts) {
+    /// Takes a body that something moves.
+    #[inline]
+    pub(super) fn add(&mut self, slot: u32, body: &Body) {
+        self.push((slot, body), SolverBody::of(body), BodyFacts::of(body));
+    }
+
+    fn push(&mut self, (slot, source): (u32, &Body), body: SolverBody, facts: BodyFacts) {
         self.indices[slot as usize] = u32::try_from(self.bodies.len()).expect("fewer than 2^32 bodies");
         self.slots.push(slot);
         self.bodies.push(body);
+        self.poses.push(Pose { centre: source.centre, angle: source.angle });
         self.facts.push(facts);
     }
 
@@ -95,11 +111,21 @@ impl BodyList {
     }
 
     /// The same for a body with a joint: it does not share the ground's place, because joints see how it is turned.
-    pub(super) fn own_index_of(&mut self, slot: u32) -> u32 {
+    pub(super) fn own_index_of(&mut self, slot: u32, body: &Body) -> u32 {
         if self.index_of(slot) == GROUND {
-            self.push(slot, SolverBody::default(), BodyFacts::GROUND);
+            self.push((slot, body), SolverBody::default(), BodyFacts::GROUND);
         }
         self.index_of(slot)
+    }
+
+    /// The slots of the bodies that have an index of their own.
+    pub(super) fn slots(&self) -> &[u32] {
+        &self.slots
+    }
+
+    /// Where the body at each index is at the start of the tick; the ground anywhere.
+    pub(super) fn poses(&self) -> &[Pose] {
+        &self.poses
     }
 
     /// The constants of the body at an index.

@@ -91,13 +91,18 @@ impl Mover {
         }
     }
 
-    /// `x' = x + h v'`, with `rate` sub-steps per second.
-    pub(crate) fn integrate_displacement(&self, bodies: &mut [SolverBody], rate: u32, faults: &mut Faults) {
+    /// `x' = x + h v'`.
+    pub(crate) fn integrate_displacement(
+        &self,
+        bodies: &mut [SolverBody],
+        sub_step: &SubStep,
+        faults: &mut Faults,
+    ) {
         let body = &mut bodies[self.index as usize];
         self.hold_locked_axes(body);
         let mut advance = |sum: &mut Shift, speed: Speed| {
             // Each is below 32, and so is the sum unless impulses exceed the speed limit at less than 32 Hz.
-            let wanted = sum.saturating_add(distance(speed, rate));
+            let wanted = sum.saturating_add(sub_step.distance(speed));
             *sum = wanted.clamp(-SHIFT_MAX, SHIFT_MAX);
             *faults += u64::from(*sum != wanted);
         };
@@ -107,14 +112,40 @@ impl Mover {
     }
 }
 
-/// `v / rate`, rounded to nearest, ties towards +infinity: no time step is ever rounded.
-#[inline]
-#[expect(clippy::cast_possible_truncation, reason = "at most 512 m/s in a sixtieth of a second")]
-fn distance(speed: Speed, rate: u32) -> Shift {
-    let rate = i64::from(rate);
-    // A distance has 5 more fraction bits than a speed.
-    let doubled = (i64::from(speed.to_bits()) << 6) + rate;
-    Shift::from_bits(doubled.div_euclid(2 * rate) as i32)
+/// `1 / rate` seconds: no time step is ever rounded.
+pub(crate) struct SubStep {
+    /// Twice the rate, `d`.
+    divisor: u64,
+    /// `2^64 / d`, rounded up.
+    reciprocal: u64,
+}
+
+impl SubStep {
+    /// Of so many in a second, 60 to 4000.
+    pub(crate) fn of(rate: u32) -> Self {
+        let divisor = 2 * u64::from(rate);
+        SubStep { divisor, reciprocal: u64::MAX / divisor + 1 }
+    }
+
+    /// `v / rate`, rounded to nearest, ties towards +infinity, by a product instead of a division (T. Granlund,
+    /// P. Montgomery, 1994): the dividend is below 2^48, so that the product is too large by less than `2^48 d`, which
+    /// does not reach the next multiple of `2^64`.
+    #[inline]
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_possible_wrap,
+        clippy::cast_sign_loss,
+        reason = "at most 512 m/s in a sixtieth of a second, and the dividend is positive"
+    )]
+    fn distance(&self, speed: Speed) -> Shift {
+        /// Added to every quotient, so that none is negative.
+        const BIAS: u64 = 1 << 34;
+        // A distance has 5 more fraction bits than a speed, and one more is for the half that rounds.
+        let doubled = (i64::from(speed.to_bits()) << 6) + (self.divisor / 2) as i64;
+        let dividend = (doubled + (BIAS * self.divisor) as i64) as u64;
+        let quotient = ((u128::from(dividend) * u128::from(self.reciprocal)) >> 64) as u64;
+        Shift::from_bits((quotient as i64 - BIAS as i64) as i32)
+    }
 }
 
 /// A damped speed, rounded towards 0: rounded to nearest it would creep on for ever.
@@ -139,5 +170,30 @@ fn limit_speed(velocity: &mut Vec2<Speed>, speed_max: Speed) {
     }
     if let Some(direction) = velocity.normalized() {
         *velocity = direction.scale(speed_max);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Rng;
+    use std::vec::Vec;
+
+    #[test]
+    fn a_distance_is_the_rounded_quotient() {
+        let mut rng = Rng::new(1);
+        for rate in 60..=4000 {
+            let sub_step = SubStep::of(rate);
+            let ends = [i32::MIN, i32::MIN + 1, -1, 0, 1, i32::MAX - 1, i32::MAX];
+            let random =
+                core::iter::repeat_with(|| i32::from_le_bytes(rng.next_u32().to_le_bytes())).take(50);
+            // Those just before, at and behind a tie.
+            let ties: Vec<i32> = (0..50).map(|i| (i * i32::try_from(rate).unwrap()) / 64 - 40 + i).collect();
+            for bits in random.collect::<Vec<_>>().into_iter().chain(ends).chain(ties) {
+                let rate = i64::from(rate);
+                let expected = ((i64::from(bits) << 6) + rate).div_euclid(2 * rate);
+                assert_eq!(i64::from(sub_step.distance(Speed::from_bits(bits)).to_bits()), expected);
+            }
+        }
     }
 }

@@ -25,7 +25,7 @@ use body_list::BodyList;
 use colour::{Colouring, Node};
 use contact::{ContactSet, Pass, Sweep, Task};
 pub(crate) use contact::{Surface, WarmStarts};
-use integrate::Mover;
+use integrate::{Mover, SubStep};
 use joint::JointSet;
 pub use joint::{
     Distance, Drive, Joint, JointDef, JointFrame, JointKind, Limit, LinearDrive, Motor, Prismatic, Pull,
@@ -56,6 +56,8 @@ pub(crate) struct Solver {
     list: BodyList,
     movers: Vec<Mover>,
     joints: JointSet,
+    /// One joint at a time, when its reaction is asked for.
+    reaction: JointSet,
     contacts: ContactSet,
     /// For each contact in the state, whether its shapes have pushed each other in this tick.
     pub(crate) pushed: Vec<bool>,
@@ -88,11 +90,13 @@ impl Solver {
     pub(crate) fn prepare_bodies(&mut self, bodies: &Arena<Body, BodyId>, slots: &[u32], tuning: &Tuning) {
         self.faults = 0;
         self.warm_starts = WarmStarts::default();
-        self.list.fill(bodies, slots);
+        self.list.begin(bodies.slot_count());
         self.movers.clear();
+        // Bodies are large: each is read once.
         for &slot in slots {
-            let index = self.list.index_of(slot);
-            self.movers.extend(Mover::prepare(index, bodies.at(slot), tuning));
+            let body = bodies.at(slot);
+            self.list.add(slot, body);
+            self.movers.extend(Mover::prepare(self.list.index_of(slot), body, tuning));
         }
     }
 
@@ -121,7 +125,7 @@ impl Solver {
         bodies: (&Body, &Body),
         tuning: &Tuning,
     ) -> (Vec2<Fx>, Fx) {
-        self.joints.reaction(joint, bodies, tuning)
+        self.reaction.reaction(joint, bodies, tuning)
     }
 
     /// Makes a constraint of every touching pair, in the order in which they are solved.
@@ -148,8 +152,9 @@ impl Solver {
         for iteration in 0..iterations {
             self.solve(Pass::Bias, Sweep::of(index, iteration), tuning);
         }
+        let sub_step = SubStep::of(tuning.rate);
         for mover in &self.movers {
-            mover.integrate_displacement(&mut self.list.bodies, tuning.rate, &mut self.faults);
+            mover.integrate_displacement(&mut self.list.bodies, &sub_step, &mut self.faults);
         }
         self.joints.refresh(&mut self.list.bodies, self.machine, tuning);
         if tuning.relax {

@@ -109,7 +109,7 @@ impl SolverSettings {
 }
 
 /// The settings in kernel formats, for one tick.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Tuning {
     /// Sub-steps per second.
     pub(crate) rate: u32,

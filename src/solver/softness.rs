@@ -11,7 +11,7 @@ use crate::fx;
 use crate::math::{Fx, Rate, Speed, TAU, Unit, fx_div, fx_mul, narrow, round_shift, saturate};
 
 /// How a constraint error and an accumulated impulse turn into an impulse.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Softness {
     pub(crate) bias_rate: Rate,
     pub(super) mass_scale: Unit,

@@ -30,6 +30,8 @@ pub(crate) struct Roster {
     pub(crate) bodies: Vec<u32>,
     /// Joints of which a body is awake.
     pub(crate) joints: Vec<u32>,
+    /// Those of them that do not bear everything.
+    pub(crate) breakable: Vec<u32>,
     current: bool,
 }
 
@@ -52,6 +54,9 @@ impl Roster {
             let held = a.enabled && b.enabled && joint.is_solved();
             (held && (is_awake(a) || is_awake(b))).then_some(id.slot())
         }));
+        self.breakable.clear();
+        let breaks = |&&slot: &&u32| state.joints.at(slot).def().threshold.is_set();
+        self.breakable.extend(self.joints.iter().filter(breaks));
     }
 }
 

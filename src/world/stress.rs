@@ -15,7 +15,7 @@ pub(super) fn report(state: &mut State, scratch: &mut Scratch, tuning: &Tuning) 
     let Scratch { roster, events, solver, .. } = scratch;
     // Joints break so rarely that this is no buffer of the scratch memory.
     let mut broken = Vec::new();
-    for &slot in &roster.joints {
+    for &slot in &roster.breakable {
         let joint = state.joints.at(slot);
         if let Some((force, torque)) = excess(state, solver, joint, tuning) {
             let broke = joint.def().threshold.action == ThresholdAction::Break;
@@ -39,9 +39,6 @@ pub(super) fn report(state: &mut State, scratch: &mut Scratch, tuning: &Tuning) 
 /// The force and torque of a joint, if one of them is above the threshold.
 fn excess(state: &State, solver: &mut Solver, joint: &Joint, tuning: &Tuning) -> Option<(Vec2<Fx>, Fx)> {
     let Threshold { force: most_force, torque: most_torque, action: _ } = joint.def().threshold;
-    if most_force.is_none() && most_torque.is_none() {
-        return None;
-    }
     let (a, b) = joint.def().bodies();
     let (a, b) = (state.bodies.at(a.slot()), state.bodies.at(b.slot()));
     let (force, torque) = solver.reaction(joint, (a, b), tuning);

@@ -4,6 +4,7 @@ mod adjust;
 mod churn;
 mod equality;
 mod events;
+mod joint_batches;
 mod locks;
 mod rollback;
 mod sensors;

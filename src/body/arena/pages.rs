@@ -37,17 +37,19 @@ struct Vacancies {
 pub(super) struct Kept<T> {
     pages: Vec<OnceBox<Arc<Page<T>>>>,
     vacancies: OnceBox<Arc<Vacancies>>,
+    /// How often something has changed of what pages are copies of.
+    revision: u64,
 }
 
 impl<T> Default for Kept<T> {
     fn default() -> Self {
-        Kept { pages: Vec::new(), vacancies: OnceBox::new() }
+        Kept { pages: Vec::new(), vacancies: OnceBox::new(), revision: 0 }
     }
 }
 
 impl<T> Clone for Kept<T> {
     fn clone(&self) -> Self {
-        Kept { pages: self.pages.clone(), vacancies: self.vacancies.clone() }
+        Kept { pages: self.pages.clone(), vacancies: self.vacancies.clone(), revision: self.revision }
     }
 }
 
@@ -61,6 +63,7 @@ impl<T> PartialEq for Kept<T> {
 impl<T> Kept<T> {
     /// Forgets the copy of the page that a slot is in.
     pub(super) fn changed(&mut self, slot: u32) {
+        self.revision += 1;
         if let Some(page) = self.pages.get_mut(slot as usize / PAGE_SLOTS) {
             *page = OnceBox::new();
         }
@@ -122,6 +125,12 @@ impl<T> SharedArena<T> {
 }
 
 impl<T, H> Arena<T, H> {
+    /// A number that is another one after a value has come, gone or been redefined: what every step changes does not
+    /// count. A cache that was made at the same revision still holds.
+    pub(crate) fn revision(&self) -> u64 {
+        self.kept.revision
+    }
+
     /// Makes room to keep copies of all pages, after the arena has been decoded.
     pub(crate) fn keep_pages(&mut self) {
         self.kept.fit(self.slots.len());
@@ -167,6 +176,7 @@ impl<T, H> Arena<T, H> {
         (slot_count..self.slots.len()).filter_map(|slot| u32::try_from(slot).ok()).for_each(&mut changed);
         self.slots.truncate(slot_count);
         self.kept.fit(slot_count);
+        self.kept.revision += 1;
         let mut first = 0;
         for (page, kept) in shared.pages.iter().zip(&mut self.kept.pages) {
             let next = first + page.slots.len();

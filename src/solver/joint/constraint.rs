@@ -4,7 +4,7 @@
 use alloc::vec::Vec;
 
 use super::super::body::SolverBody;
-use super::super::body_list::BodyList;
+use super::super::body_list::{BodyList, GROUND};
 use super::super::colour::{Colouring, Group, Node};
 use super::super::contact::Pass;
 use super::super::lanes::{Machine, Quad};
@@ -12,10 +12,8 @@ use super::super::limits::Faults;
 use super::super::settings::Tuning;
 use super::def::JointKind;
 use super::hinge::{AngleParts, End, HingeSet, Poses, Task, node};
-use super::parts::Parts;
+use super::list::JointList;
 use super::place::{Ends, Turned};
-use super::point::JointPoint;
-use super::row::JointRow;
 use super::state::{Joint, JointImpulses};
 use crate::body::{Arena, Body, BodyId, JointId};
 use crate::math::{Angle, Fx, Rot, Unit, Vec2, fx_mul, mul, widen};
@@ -23,6 +21,9 @@ use crate::math::{Angle, Fx, Rot, Unit, Vec2, fx_mul, mul, widen};
 /// All joints, for one tick.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct JointSet {
+    basis: Basis,
+    /// The slots of bodies with joints that nothing moves.
+    anchors: Vec<u32>,
     /// For each body of the tick, where it is in `bodies`, from 1; 0 if it has no joint.
     places: Vec<u32>,
     bodies: Vec<End>,
@@ -32,6 +33,10 @@ pub(crate) struct JointSet {
     /// For each joint in the order of the state, what it is solved as.
     entries: Vec<Entry>,
     hinges: HingeSet,
+    /// The slots of the joints that are no hinges.
+    others: Vec<u32>,
+    /// Indices of these, in the order in which they are solved.
+    order: Vec<u32>,
     /// In the order of the state, which is read once and from front to back: joints are large.
     drafts: JointList,
     /// In the order in which they are solved.
@@ -42,99 +47,41 @@ pub(crate) struct JointSet {
 enum Entry {
     /// The index of its input.
     Hinge(u32),
-    /// Where it is in the drafts, and how many rows and points come before its own.
-    Other { index: u32, starts: (u32, u32) },
+    /// The index of its slot.
+    Other(u32),
 }
 
-/// Joints one after the other.
+/// All that it depends on what is solved as what, in which order and with which masses: mostly it is the same from tick
+/// to tick.
 #[derive(Clone, Debug, Default)]
-struct JointList {
-    joints: Vec<JointConstraint>,
-    /// For each joint what every pass needs, so that the passes read little memory.
-    links: Vec<Link>,
-    /// Of all joints in turn: a plain hinge has none.
-    rows: Vec<JointRow>,
-    points: Vec<JointPoint>,
+struct Basis {
+    /// `None` if nothing is known.
+    definitions: Option<Definitions>,
+    /// The slots of the joints and of the bodies that something moves.
+    joints: Vec<u32>,
+    bodies: Vec<u32>,
 }
 
-#[derive(Clone, Copy, Debug)]
-struct JointConstraint {
-    slot: u32,
-    ends: Ends,
+/// The revisions of joints and bodies, and the settings.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Definitions {
+    joints: u64,
+    bodies: u64,
+    tuning: Tuning,
 }
 
-/// The bodies of a joint, and how many rows and points are its own.
-#[derive(Clone, Copy, Debug)]
-struct Link {
-    body_a: u32,
-    body_b: u32,
-    rows: u16,
-    points: u16,
-}
-
-/// Goes through joints with their rows and points.
-struct Walk<'a> {
-    links: core::slice::Iter<'a, Link>,
-    rows: &'a mut [JointRow],
-    points: &'a mut [JointPoint],
-}
-
-impl<'a> Iterator for Walk<'a> {
-    type Item = (&'a Link, &'a mut [JointRow], &'a mut [JointPoint]);
-
-    #[inline]
-    fn next(&mut self) -> Option<Self::Item> {
-        let link = self.links.next()?;
-        let (rows, rest) = core::mem::take(&mut self.rows).split_at_mut(link.rows.into());
-        self.rows = rest;
-        let (points, rest) = core::mem::take(&mut self.points).split_at_mut(link.points.into());
-        self.points = rest;
-        Some((link, rows, points))
-    }
-}
-
-impl JointList {
-    fn clear(&mut self) {
-        self.joints.clear();
-        self.links.clear();
-        self.rows.clear();
-        self.points.clear();
-    }
-
-    fn push(&mut self, slot: u32, joint: &Joint, a: (u32, &Body), b: (u32, &Body), tuning: &Tuning) {
-        let (rows, points) = (self.rows.len(), self.points.len());
-        let mut parts = Parts {
-            rows: &mut self.rows,
-            points: &mut self.points,
-            impulses: &joint.impulses,
-            masses: (a.1.mass(), b.1.mass()),
-            rate: tuning.rate,
-        };
-        match &joint.def.kind {
-            JointKind::Prismatic(kind) => kind.prepare(&mut parts),
-            JointKind::Distance(kind) => kind.prepare(&mut parts),
-            JointKind::Weld(kind) => kind.prepare(&mut parts),
-            JointKind::Wheel(kind) => kind.prepare(&mut parts),
-            JointKind::Motor(kind) => kind.prepare(&mut parts),
-            JointKind::Revolute(_) | JointKind::Filter => {}
+impl Basis {
+    /// Takes another one. Says whether it is the same.
+    fn renew(&mut self, definitions: Definitions, joints: &[u32], bodies: &[u32]) -> bool {
+        let same = self.definitions == Some(definitions) && self.joints == joints && self.bodies == bodies;
+        if !same {
+            self.definitions = Some(definitions);
+            self.joints.clear();
+            self.joints.extend_from_slice(joints);
+            self.bodies.clear();
+            self.bodies.extend_from_slice(bodies);
         }
-        let (rows, points) = (share(&self.rows, rows), share(&self.points, points));
-        self.links.push(Link { body_a: a.0, body_b: b.0, rows, points });
-        self.joints.push(JointConstraint { slot, ends: Ends::prepare(joint, a, b) });
-    }
-
-    /// Appends a joint of another list, whose rows and points start there.
-    fn copy(&mut self, other: &Self, index: usize, (rows, points): (u32, u32)) {
-        let link = other.links[index];
-        let (rows, points) = (rows as usize, points as usize);
-        self.joints.push(other.joints[index]);
-        self.links.push(link);
-        self.rows.extend_from_slice(&other.rows[rows..rows + usize::from(link.rows)]);
-        self.points.extend_from_slice(&other.points[points..points + usize::from(link.points)]);
-    }
-
-    fn walk(&mut self) -> Walk<'_> {
-        Walk { links: self.links.iter(), rows: &mut self.rows, points: &mut self.points }
+        same
     }
 }
 
@@ -149,13 +96,29 @@ fn hinge_parts(kind: &JointKind) -> Option<AngleParts> {
 
 impl JointSet {
     fn clear(&mut self) {
-        let JointSet { places, bodies, turned, quads, entries, hinges, drafts, list } = self;
+        let JointSet {
+            basis: _,
+            anchors,
+            places,
+            bodies,
+            turned,
+            quads,
+            entries,
+            hinges,
+            others,
+            order,
+            drafts,
+            list,
+        } = self;
+        anchors.clear();
         places.clear();
         bodies.clear();
         turned.clear();
         quads.clear();
         entries.clear();
         hinges.clear();
+        others.clear();
+        order.clear();
         drafts.clear();
         list.clear();
     }
@@ -169,13 +132,42 @@ impl JointSet {
         nodes: &mut Vec<Node>,
         colouring: &mut Colouring,
     ) {
-        self.clear();
+        let definitions =
+            Definitions { joints: joints.revision(), bodies: bodies.revision(), tuning: *tuning };
+        if self.basis.renew(definitions, slots, list.slots()) {
+            self.resume(bodies, list);
+        } else {
+            self.clear();
+            self.arrange((joints, slots), (bodies, list), tuning, nodes);
+            self.sort(nodes, colouring);
+        }
+        self.prepare_others(joints, (bodies, list), tuning);
+    }
+
+    /// Hinges as the last tick has left them, with the bodies where they are now.
+    fn resume(&mut self, bodies: &Arena<Body, BodyId>, list: &mut BodyList) {
+        for &slot in &self.anchors {
+            list.own_index_of(slot, bodies.at(slot));
+        }
+        for end in &mut self.bodies {
+            end.angle = list.poses()[end.index as usize].angle;
+        }
+        self.hinges.resume(list.poses());
+    }
+
+    /// Lists the joints and their bodies.
+    fn arrange(
+        &mut self,
+        (joints, slots): (&Arena<Joint, JointId>, &[u32]),
+        (bodies, list): (&Arena<Body, BodyId>, &mut BodyList),
+        tuning: &Tuning,
+        nodes: &mut Vec<Node>,
+    ) {
         nodes.clear();
         for &slot in slots {
             let joint = joints.at(slot);
             let (a, b) = joint.def.bodies();
-            let rate = tuning.rate;
-            let places = [a, b].map(|id| self.place_of(id.index(), bodies, list, rate));
+            let places = [a, b].map(|id| self.place_of(id.index(), bodies, list, tuning.rate));
             let [end_a, end_b] = places.map(|place| &self.bodies[place]);
             nodes.push(node(slot, end_a, end_b));
             let entry = match hinge_parts(&joint.def.kind) {
@@ -183,22 +175,22 @@ impl JointSet {
                     Entry::Hinge(self.hinges.push_input(slot, joint, (end_a, end_b), &parts, tuning))
                 }
                 None => {
-                    let ends = [(end_a.index, bodies.at(a.index())), (end_b.index, bodies.at(b.index()))];
-                    let starts = (count(&self.drafts.rows), count(&self.drafts.points));
-                    self.drafts.push(slot, joint, ends[0], ends[1], tuning);
-                    Entry::Other { index: count(&self.drafts.joints) - 1, starts }
+                    self.others.push(slot);
+                    Entry::Other(count(&self.others) - 1)
                 }
             };
             self.entries.push(entry);
         }
         self.turned.resize(list.len(), Turned::default());
         self.quads.resize(list.len(), Quad::default());
-        self.sort(nodes, colouring);
     }
 
     /// Where a body is in `bodies`: a compact copy of what joints need of it.
     fn place_of(&mut self, slot: u32, bodies: &Arena<Body, BodyId>, list: &mut BodyList, rate: u32) -> usize {
-        let index = list.own_index_of(slot);
+        if list.index_of(slot) == GROUND {
+            self.anchors.push(slot);
+        }
+        let index = list.own_index_of(slot, bodies.at(slot));
         if self.places.len() < list.len() {
             self.places.resize(list.len(), 0);
         }
@@ -212,19 +204,39 @@ impl JointSet {
 
     /// Sorts them into colours.
     fn sort(&mut self, nodes: &[Node], colouring: &mut Colouring) {
-        let JointSet { entries, hinges, drafts, list, .. } = self;
+        let JointSet { entries, hinges, order, .. } = self;
         colouring.order(nodes, self.turned.len());
         for group in colouring.groups() {
             let (Group::Serial(indices) | Group::Coloured(indices)) = group;
-            for &index in indices {
-                if let Entry::Other { index, starts } = entries[index as usize] {
-                    list.copy(drafts, index as usize, starts);
-                }
-            }
+            order.extend(indices.iter().filter_map(|&index| match entries[index as usize] {
+                Entry::Hinge(_) => None,
+                Entry::Other(other) => Some(other),
+            }));
             hinges.push(&group, |index| match entries[index as usize] {
                 Entry::Hinge(input) => Some(input),
-                Entry::Other { .. } => None,
+                Entry::Other(_) => None,
             });
+        }
+    }
+
+    /// Lists the joints that are no hinges, with their rows and points.
+    fn prepare_others(
+        &mut self,
+        joints: &Arena<Joint, JointId>,
+        (bodies, indices): (&Arena<Body, BodyId>, &BodyList),
+        tuning: &Tuning,
+    ) {
+        let JointSet { others, order, drafts, list, .. } = self;
+        drafts.clear();
+        list.clear();
+        for &slot in others.iter() {
+            let joint = joints.at(slot);
+            let end = |id: BodyId| (indices.index_of(id.index()), bodies.at(id.index()));
+            let (a, b) = joint.def.bodies();
+            drafts.push(slot, joint, end(a), end(b), tuning);
+        }
+        for &index in order.iter() {
+            list.copy(drafts, index);
         }
     }
 
@@ -239,9 +251,7 @@ impl JointSet {
         }
         let poses = Poses { quads: &self.quads, turned: &self.turned };
         self.hinges.refresh(SolverBody::cells(bodies), poses, machine, tuning);
-        let JointList { joints, links, rows, points } = &mut self.list;
-        let walk = Walk { links: links.iter(), rows, points };
-        for (joint, (_, rows, points)) in joints.iter().zip(walk) {
+        for (joint, (_, rows, points)) in self.list.walk_joints() {
             let place = joint.ends.place(bodies, &self.turned);
             for point in points {
                 point.refresh(&place);
@@ -316,9 +326,7 @@ impl JointSet {
     /// Keeps impulses and turns for the next tick.
     pub(crate) fn store(&mut self, joints: &mut Arena<Joint, JointId>) {
         self.hinges.store(joints, &self.turned);
-        let JointList { joints: constraints, links, rows, points } = &mut self.list;
-        let walk = Walk { links: links.iter(), rows, points };
-        for (constraint, (_, rows, points)) in constraints.iter().zip(walk) {
+        for (constraint, (_, rows, points)) in self.list.walk_joints() {
             let joint = joints.at_mut(constraint.slot);
             joint.turns = constraint.ends.turns(&self.turned);
             joint.impulses = JointImpulses::default();
@@ -341,7 +349,6 @@ impl JointSet {
         tuning: &Tuning,
     ) -> (Vec2<Fx>, Fx) {
         self.clear();
-        self.list.clear();
         // Place 0 is the ground's.
         self.bodies.extend([End::new(1, a, tuning.rate), End::new(2, b, tuning.rate)]);
         self.turned.resize(self.turned.len().max(3), Turned::default());
@@ -377,9 +384,4 @@ const TURN_MAX: Unit = Unit::lit("0.25");
 
 fn count<T>(parts: &[T]) -> u32 {
     u32::try_from(parts.len()).expect("parts are counted in 32 bits")
-}
-
-/// How many there are more than there were.
-fn share<T>(parts: &[T], before: usize) -> u16 {
-    u16::try_from(parts.len() - before).expect("a joint has a handful of parts")
 }

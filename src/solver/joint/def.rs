@@ -95,6 +95,11 @@ pub enum ThresholdAction {
 impl Threshold {
     /// Bears anything.
     pub const NONE: Self = Threshold { force: None, torque: None, action: ThresholdAction::Event };
+
+    /// Whether anything is too much.
+    pub(crate) const fn is_set(&self) -> bool {
+        self.force.is_some() || self.torque.is_some()
+    }
 }
 
 impl JointFrame {
@@ -178,6 +183,11 @@ impl JointDef {
     #[must_use]
     pub const fn bodies(&self) -> (BodyId, BodyId) {
         (self.body_a, self.body_b)
+    }
+
+    /// The angle of B's frame in A's while neither body is turned.
+    pub(crate) fn rest_angle(&self) -> Angle {
+        self.frame_b.angle - self.frame_a.angle
     }
 
     /// Checks what does not depend on the world.

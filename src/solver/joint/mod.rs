@@ -9,6 +9,7 @@ mod constraint;
 mod def;
 mod distance;
 mod hinge;
+mod list;
 mod motor;
 mod options;
 mod parts;

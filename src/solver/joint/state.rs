@@ -62,14 +62,7 @@ impl Joint {
     /// The angle of B's frame in A's in units of 2^-32 turn: of all that are a whole number of turns apart, the nearest
     /// to the last one.
     pub(crate) fn turns(&self, a: Angle, b: Angle) -> i64 {
-        let now = (b + self.def.frame_b.angle) - (a + self.def.frame_a.angle);
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "whole turns are dropped"
-        )]
-        let last = Angle::from_bits(self.turns as u32);
-        self.turns.wrapping_add((now - last).to_turns().to_bits())
+        nearest_turns(self.turns, (b - a) + self.def.rest_angle())
     }
 
     /// The angle of B's frame in A's in radians, with all its turns.
@@ -86,6 +79,13 @@ impl Joint {
     pub(crate) fn reaction(&self, a: &Body, b: &Body, tuning: &Tuning) -> (Vec2<Fx>, Fx) {
         JointSet::default().reaction(self, (a, b), tuning)
     }
+}
+
+/// The angle `now`, with so many turns that it is nearest to the last one in units of 2^-32 turn.
+pub(super) fn nearest_turns(last: i64, now: Angle) -> i64 {
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "whole turns are dropped")]
+    let before = Angle::from_bits(last as u32);
+    last.wrapping_add((now - before).to_turns().to_bits())
 }
 
 /// Units of 2^-32 turn in radians.

@@ -30,8 +30,7 @@ pub(super) struct AngleRows<const N: usize> {
     /// The lower and the upper one, which measures the other way.
     limits: [LimitRow<N>; 2],
     limit_max: Ints<N>,
-    /// The angle at the start of the tick, in units of 2^-32 turn.
-    turns: [i64; N],
+    /// In units of 2^-32 turn.
     targets: [i64; N],
     stiffness: [Fx; N],
     closed: [Fx; N],
@@ -88,7 +87,6 @@ impl<const N: usize> AngleRows<N> {
         drive: DriveRow { lambda: Ints::ZERO, max: Ints::ZERO, bias: Ints::ZERO },
         limits: [LimitRow::NONE, LimitRow::NONE],
         limit_max: Ints::ZERO,
-        turns: [0; N],
         targets: [0; N],
         stiffness: [Fx::ZERO; N],
         closed: [Fx::ZERO; N],
@@ -96,12 +94,11 @@ impl<const N: usize> AngleRows<N> {
     };
 
     /// Puts the rows of a hinge into a lane.
-    pub(super) fn put(&mut self, lane: usize, turns: i64, input: &AngleInput) {
+    pub(super) fn put(&mut self, lane: usize, input: &AngleInput) {
         for side in 0..2 {
             self.e[side].0[lane] = input.e[side].to_bits();
             self.f[side].0[lane] = input.f[side].to_bits();
         }
-        self.turns[lane] = turns;
         if let Some(spring) = &input.spring {
             self.has_spring = true;
             self.holds |= spring.held;
@@ -140,11 +137,11 @@ impl<const N: usize> AngleRows<N> {
             .map(|lambda| Speed::from_bits(lambda.0[lane]))
     }
 
-    /// Positions at the present pose.
-    pub(super) fn refresh(&mut self, [a, b]: &[[u32; N]; 2], turned: &[Turned]) {
+    /// Positions at the present pose, from the angles at the start of the tick.
+    pub(super) fn refresh(&mut self, turns: &[i64; N], [a, b]: &[[u32; N]; 2], turned: &[Turned]) {
         for lane in 0..N {
             let (a, b) = (&turned[a[lane] as usize], &turned[b[lane] as usize]);
-            let position = self.turns[lane].wrapping_add(b.turns).wrapping_sub(a.turns);
+            let position = turns[lane].wrapping_add(b.turns).wrapping_sub(a.turns);
             if self.has_spring {
                 let stretch = position.saturating_sub(self.targets[lane]);
                 self.spring.push.0[lane] = speed_of(stretch, self.stiffness[lane]);

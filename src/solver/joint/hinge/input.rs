@@ -88,6 +88,8 @@ pub(in super::super) struct Input {
     pub(super) between: Vec2<Fx>,
     /// The angle of the joint, in units of 2^-32 turn.
     pub(super) turns: i64,
+    /// The same while neither body is turned.
+    pub(super) rest: Angle,
     pub(super) lambda: [i32; 2],
 }
 
@@ -106,6 +108,7 @@ impl Input {
             fractions: MassFractions::of_masses(a.mass, b.mass),
             between: b.centre - a.centre,
             turns: joint.turns(a.angle, b.angle),
+            rest: joint.def.rest_angle(),
             lambda: [lambda.x.to_bits(), lambda.y.to_bits()],
         }
     }

@@ -118,11 +118,12 @@ struct Refresh<'a, const N: usize> {
 impl<const N: usize> Kernel<N> for Refresh<'_, N> {
     #[inline(always)]
     fn run<L: Lanes<N>>(self) {
-        let Refresh { batches: Batches { batches, shapes, angles, .. }, constants, bodies, poses } = self;
-        for (batch, shape) in batches.iter_mut().zip(shapes) {
+        let Refresh { batches: Batches { batches, shapes, angles, records }, constants, bodies, poses } =
+            self;
+        for ((batch, shape), records) in batches.iter_mut().zip(shapes).zip(records) {
             kernel::refresh::<L, N>(batch, shape, bodies, poses.quads, &constants);
             if let Some(place) = batch.angle {
-                angles[place as usize].refresh(&batch.bodies, poses.turned);
+                angles[place as usize].refresh(&records.turns, &batch.bodies, poses.turned);
             }
         }
     }

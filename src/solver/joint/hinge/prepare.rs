@@ -3,12 +3,12 @@
 use super::super::super::colour::Group;
 use super::super::super::settings::Tuning;
 use super::super::place::Turned;
-use super::super::state::{Joint, JointImpulses};
+use super::super::state::{Joint, JointImpulses, nearest_turns};
 use super::angle::AngleRows;
 use super::batch::{Batch, Shape};
 use super::{AngleInput, AngleParts, Batches, End, HingeSet, Input};
-use crate::body::{Arena, JointId};
-use crate::math::{Fx, Length, Speed, Unit, Vec2};
+use crate::body::{Arena, JointId, Pose};
+use crate::math::{Angle, Fx, Length, Speed, Unit, Vec2};
 
 /// What it takes to bring the results of a batch back to its joints.
 #[derive(Clone, Debug)]
@@ -16,8 +16,10 @@ pub(super) struct Records<const N: usize> {
     /// How many lanes are used.
     pub(super) len: usize,
     pub(super) slots: [u32; N],
-    /// The angles at the start of the tick.
-    turns: [i64; N],
+    /// The angles of the joints at the start of the tick, and behind it at its end, in units of 2^-32 turn.
+    pub(super) turns: [i64; N],
+    /// The same while no body is turned.
+    rest: [Angle; N],
 }
 
 impl HingeSet {
@@ -67,8 +69,14 @@ impl HingeSet {
         }
     }
 
+    /// What the last tick has stored, with the bodies where they are now.
+    pub(in super::super) fn resume(&mut self, poses: &[Pose]) {
+        self.serial.resume(poses);
+        self.coloured.resume(poses);
+    }
+
     /// Keeps impulses and turns for the next tick.
-    pub(in super::super) fn store(&self, joints: &mut Arena<Joint, JointId>, turned: &[Turned]) {
+    pub(in super::super) fn store(&mut self, joints: &mut Arena<Joint, JointId>, turned: &[Turned]) {
         self.serial.store(joints, turned);
         self.coloured.store(joints, turned);
     }
@@ -102,30 +110,43 @@ impl<const N: usize> Batches<N> {
                 }
                 batches.push(batch);
                 shapes.push(Shape::NONE);
-                records.push(Records { len: 0, slots: [0; N], turns: [0; N] });
+                records.push(Records { len: 0, slots: [0; N], turns: [0; N], rest: [Angle::ZERO; N] });
             }
             let (Some(batch), Some(shape)) = (batches.last_mut(), shapes.last_mut()) else { return };
             batch.put(lane, input);
             shape.put(lane, input);
             if let (Some(place), Some(rows)) = (input.angle, angles.last_mut()) {
-                rows.put(lane, input.turns, &angle_inputs[place as usize]);
+                rows.put(lane, &angle_inputs[place as usize]);
             }
             if let Some(records) = records.last_mut() {
                 records.len = lane + 1;
                 records.slots[lane] = input.slot;
                 records.turns[lane] = input.turns;
+                records.rest[lane] = input.rest;
             }
             lane += 1;
         }
     }
 
-    fn store(&self, joints: &mut Arena<Joint, JointId>, turned: &[Turned]) {
-        for (batch, records) in self.batches.iter().zip(&self.records) {
+    fn resume(&mut self, poses: &[Pose]) {
+        for ((batch, shape), records) in self.batches.iter().zip(&mut self.shapes).zip(&mut self.records) {
+            for lane in 0..records.len {
+                let [a, b] = [0, 1].map(|side: usize| poses[batch.bodies[side][lane] as usize]);
+                shape.put_between(lane, b.centre - a.centre);
+                records.turns[lane] =
+                    nearest_turns(records.turns[lane], (b.angle - a.angle) + records.rest[lane]);
+            }
+        }
+    }
+
+    fn store(&mut self, joints: &mut Arena<Joint, JointId>, turned: &[Turned]) {
+        for (batch, records) in self.batches.iter().zip(&mut self.records) {
             let rows = batch.angle.map(|place| &self.angles[place as usize]);
             for lane in 0..records.len {
                 let joint = joints.at_mut(records.slots[lane]);
                 let [a, b] = [0, 1].map(|side: usize| turned[batch.bodies[side][lane] as usize].turns);
-                joint.turns = records.turns[lane].wrapping_add(b).wrapping_sub(a);
+                records.turns[lane] = records.turns[lane].wrapping_add(b).wrapping_sub(a);
+                joint.turns = records.turns[lane];
                 let [spring, drive, lower, upper] = rows.map_or([Speed::ZERO; 4], |rows| rows.impulses(lane));
                 let [x, y] = [0, 1].map(|axis: usize| Speed::from_bits(batch.lambda[axis].0[lane]));
                 joint.impulses = JointImpulses([spring, drive, lower, upper, x, y]);
@@ -154,7 +175,10 @@ impl<const N: usize> Shape<N> {
         }
         self.fractions[0].0[lane] = input.fractions.a.to_bits();
         self.fractions[1].0[lane] = input.fractions.b.to_bits();
-        let Vec2 { x, y } = input.between;
+        self.put_between(lane, input.between);
+    }
+
+    fn put_between(&mut self, lane: usize, Vec2 { x, y }: Vec2<Fx>) {
         self.between[0][lane] = widened(x);
         self.between[1][lane] = widened(y);
     }

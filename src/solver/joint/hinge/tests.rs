@@ -14,7 +14,7 @@ use super::angle_input::{DriveInput, LimitInput, SpringInput};
 use super::input::ratios;
 use super::*;
 use crate::fx;
-use crate::math::{Fx, Length, Reciprocal, Rng, Rot, Shift, Speed, Unit, Vec2, narrow};
+use crate::math::{Angle, Fx, Length, Reciprocal, Rng, Rot, Shift, Speed, Unit, Vec2, narrow};
 
 /// Eight hinges, each between two bodies of its own, in some pose.
 #[derive(Clone)]
@@ -114,6 +114,7 @@ impl Setting {
             fractions,
             between: ends[0].arm.widen() - ends[1].arm.widen() + gap,
             turns: i64::from(rng.next_u32()) - (1 << 31),
+            rest: Angle::ZERO,
             lambda: [random_speed(rng, sizes.speed).to_bits(), random_speed(rng, sizes.speed).to_bits()],
         });
         self.ends.push([ends[0], ends[1]]);
