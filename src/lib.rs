@@ -38,6 +38,8 @@ pub mod draw;
 pub mod hash;
 pub mod lockstep;
 pub mod math;
+#[cfg(feature = "ggrs")]
+pub mod net;
 pub mod replay;
 pub mod scenes;
 pub mod solver;
