@@ -9,4 +9,4 @@ pub use game::{Game, RulesId, SetupError};
 pub use history::{History, Moment};
 pub(crate) use input_log::decode_inputs;
 pub use input_log::{EncodedInputs, InputError, InputLog};
-pub use sandbox::{Sandbox, SandboxSetup};
+pub use sandbox::{Sandbox, SandboxSave, SandboxSetup};
