@@ -28,6 +28,11 @@ impl<G: Game> History<G> {
         History { first: 0, moments: VecDeque::new(), capacity: 2 * tick_rate as usize + 1 }
     }
 
+    /// Keeps at least this many states.
+    pub fn reserve(&mut self, ticks: u64) {
+        self.capacity = self.capacity.max(usize::try_from(ticks).unwrap_or(usize::MAX));
+    }
+
     /// Puts the state after `tick` ticks, in place of this one and all later ones.
     pub fn push(&mut self, tick: u64, save: G::Save, hash: StateHash) {
         self.truncate(tick);

@@ -163,6 +163,11 @@ impl<G: NetGame> Driver<G> {
         self
     }
 
+    /// Remembers the states of at least twice this many ticks.
+    pub(super) fn remember(&mut self, ticks: u64) {
+        self.history.reserve(2 * ticks);
+    }
+
     /// The game, as far as it has been played, perhaps with predicted inputs.
     #[must_use]
     pub const fn game(&self) -> &G {

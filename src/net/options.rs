@@ -97,6 +97,6 @@ impl Options {
     /// How many ticks a peer can be ahead of what another one knows: that many of its last ticks are not final before
     /// it has heard more.
     pub(super) fn doubt(&self) -> u64 {
-        2 * (u64::from(self.window()) + u64::from(INPUT_DELAY_MAX)) + 4
+        u64::from(self.window()) + u64::from(INPUT_DELAY_MAX) + 2
     }
 }

@@ -62,7 +62,8 @@ pub(super) enum Packet<A> {
     /// The plan is known.
     Agreed { plan: SessionId },
     /// The seats in `gone` have left this session, of which the sender has final inputs for `ticks` ticks.
-    Gone { session: SessionId, gone: u64, ticks: u64 },
+    /// `settled` if it has gone on since: then it needs no answer.
+    Gone { session: SessionId, gone: u64, ticks: u64, settled: bool },
     /// The sender leaves.
     Bye { session: SessionId },
     /// A message of GGRS.
