@@ -2,6 +2,8 @@
 //! tests included, and a path upwards fails.
 //!
 //! ```text
+//!          net
+//!           |
 //! scenes   replay
 //!       \  /
 //!     lockstep   draw
@@ -30,6 +32,7 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("draw", &["math", "codec", "hash", "body", "collision", "solver", "world"]),
     ("lockstep", &["math", "codec", "hash", "body", "collision", "solver", "world"]),
     ("replay", &["math", "codec", "hash", "body", "collision", "solver", "world", "lockstep"]),
+    ("net", &["math", "codec", "hash", "lockstep", "replay"]),
     ("scenes", &["math", "codec", "hash", "body", "collision", "solver", "world", "lockstep"]),
 ];
 

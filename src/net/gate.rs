@@ -92,7 +92,9 @@ impl Gate {
                 let known = self.pings.iter().position(|ping| ping == pong)?;
                 self.pings.remove(known);
             }
-            Body::ChecksumReport { frame, .. } | Body::InputAck(frame) if !frames.contains(frame) => return None,
+            Body::ChecksumReport { frame, .. } | Body::InputAck(frame) if !frames.contains(frame) => {
+                return None;
+            }
             _ => {}
         }
         layout().deserialize(&layout().serialize(&shadow).ok()?).ok()

@@ -30,9 +30,7 @@ pub(super) enum Refused {
     /// All seats are taken, or too many others are about to join.
     Full,
     /// The state reached by catching up is another one.
-    Diverged {
-        tick: u64,
-    },
+    Diverged { tick: u64 },
     /// Anything that is not in this list.
     Other(String),
 }

@@ -125,7 +125,8 @@ impl<G: NetGame, A: Address> Session<G, A> {
             .with_fps(usize::try_from(tick_rate).unwrap_or(usize::MAX))?;
         for (handle, seat) in seats.iter().enumerate() {
             let address = roster.others.iter().find(|(other, _)| other == seat);
-            let player = address.map_or(PlayerType::Local, |(_, address)| PlayerType::Remote(address.clone()));
+            let player =
+                address.map_or(PlayerType::Local, |(_, address)| PlayerType::Remote(address.clone()));
             builder = builder.add_player(player, handle)?;
         }
         let mail = Arc::new(Mutex::new(Mail { incoming: Vec::new(), outgoing: Vec::new() }));

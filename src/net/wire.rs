@@ -15,10 +15,7 @@ pub trait NetGame: Game<Input: Copy + Send + Sync> + Send + 'static {}
 impl<G: Game<Input: Copy + Send + Sync> + Send + 'static> NetGame for G {}
 
 /// How a peer is found: a socket address, or whatever the transport uses.
-pub trait Address:
-    Clone + Ord + Hash + Debug + Serialize + DeserializeOwned + Send + Sync + 'static
-{
-}
+pub trait Address: Clone + Ord + Hash + Debug + Serialize + DeserializeOwned + Send + Sync + 'static {}
 
 impl<A> Address for A where
     A: Clone + Ord + Hash + Debug + Serialize + DeserializeOwned + Send + Sync + 'static

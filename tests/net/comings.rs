@@ -19,7 +19,11 @@ fn check_late(weather: Weather, seed: u64) {
         let mut table = Table::of(3, options(), weather, seed);
         assert!(table.play(40, |table| table.all_confirmed(200)), "{}", table.describe());
         table.sit(table.guest(9, options()));
-        assert!(table.play(40, |table| table.peers[3].as_ref().unwrap().seat().is_some()), "{}", table.describe());
+        assert!(
+            table.play(40, |table| table.peers[3].as_ref().unwrap().seat().is_some()),
+            "{}",
+            table.describe()
+        );
         let tick = joins(&table, 0, 3).expect("a tick");
         assert!((0..4).all(|at| joins(&table, at, 3) == Some(tick)), "{}", table.describe());
         let end = tick + 100;
@@ -51,7 +55,8 @@ fn a_peer_comes_back_to_its_seat() {
     assert!(table.play(40, |table| table.all_confirmed(60)));
     table.kill(1).finish(0).unwrap();
     assert!(table.play(20, |table| table.peers[0].as_ref().unwrap().seats() == [0, 2]));
-    let again = Peer::join(&Setup::default(), Options::rollback(), table.network.port(1), 0, Some(1)).unwrap();
+    let again =
+        Peer::join(&Setup::default(), Options::rollback(), table.network.port(1), 0, Some(1)).unwrap();
     table.peers[1] = Some(again);
     let back = table.play(20, |table| table.peers[0].as_ref().unwrap().seats() == [0, 1, 2]);
     assert!(back, "{}", table.describe());

@@ -1,7 +1,7 @@
 //! Peers that vanish, leave, or are cut off.
 
 use lockstep2d::net::{Event, NetError, Weather};
-use lockstep2d::replay::Verdict;
+use lockstep2d::replay::{Limits, Part, Reader, Verdict};
 
 use super::matches::{MODES, STORM, verdict};
 use super::pushers::EMPTY;
@@ -23,9 +23,11 @@ fn check_goings(weather: Weather, gone: usize, seed: u64) {
         table.kill(gone);
         let ended = table.play(60, |table| table.all_confirmed(220));
         assert!(ended, "{}", table.describe());
-        let ticks: Vec<_> = (0..4).filter(|at| *at != gone).map(|at| left_at(&table.events[at], gone as u32)).collect();
+        let ticks: Vec<_> =
+            (0..4).filter(|at| *at != gone).map(|at| left_at(&table.events[at], gone as u32)).collect();
         assert!(ticks[0].is_some() && ticks.iter().all(|tick| *tick == ticks[0]), "{ticks:?}");
-        let replays: Vec<_> = table.finish(220).into_iter().enumerate().filter(|(at, _)| *at != gone).collect();
+        let replays: Vec<_> =
+            table.finish(220).into_iter().enumerate().filter(|(at, _)| *at != gone).collect();
         assert!(matches!(verdict(&replays[0].1), Verdict::Match { .. }), "{}", verdict(&replays[0].1));
         assert!(replays.iter().all(|(_, replay)| *replay == replays[0].1), "replays differ");
         let inputs = inputs_of(&replays[0].1, gone);
@@ -37,13 +39,12 @@ fn check_goings(weather: Weather, gone: usize, seed: u64) {
 
 /// The inputs of a seat in each tick of a replay.
 fn inputs_of(replay: &[u8], seat: usize) -> Vec<u8> {
-    use lockstep2d::replay::{Limits, Part, Reader};
     let mut inputs = Vec::new();
-    let mut reader = Reader::new(replay, &Limits::default()).unwrap();
-    while let Part::Inputs(block) = reader.next_part().unwrap() {
-        for run in block.runs() {
-            let run = run.unwrap();
-            inputs.extend(std::iter::repeat_n(run.inputs()[seat], run.ticks() as usize));
+    let mut reader = Reader::open(replay, &Limits::default()).unwrap();
+    while let Some(Part::Inputs(block)) = reader.next_part().unwrap() {
+        let mut runs = block.runs();
+        while let Some(run) = runs.next_run().unwrap() {
+            inputs.extend(std::iter::repeat_n(run.encoded[seat], run.ticks as usize));
         }
     }
     inputs

@@ -4,4 +4,5 @@ mod comings;
 mod goings;
 mod matches;
 mod pushers;
+mod scripted;
 mod table;

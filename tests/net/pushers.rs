@@ -51,10 +51,6 @@ impl Pushers {
         }
         Ok(Pushers { world, discs, tick_rate: setup.tick_rate })
     }
-
-    pub(crate) fn world(&self) -> &World {
-        &self.world
-    }
 }
 
 impl Game for Pushers {

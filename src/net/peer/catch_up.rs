@@ -1,9 +1,9 @@
 //! The way into a match: ask, load a state, play the inputs since, faster than the others.
 
+use alloc::collections::VecDeque;
 use alloc::string::ToString;
 use alloc::vec;
 use alloc::vec::Vec;
-use alloc::collections::VecDeque;
 use core::time::Duration;
 
 use super::{NetError, Peer, RESEND};
@@ -52,6 +52,11 @@ impl<A: Address> CatchUp<A> {
 
     pub(super) fn watch(contact: A, nonce: Nonce) -> Self {
         CatchUp { watch: true, ..Self::play(contact, nonce, None) }
+    }
+
+    /// Whether it is open yet with which tick the match begins here.
+    pub(super) fn is_loading(&self) -> bool {
+        !matches!(self.stage, Stage::Following { .. })
     }
 
     pub(super) fn contact(&self) -> &A {
@@ -168,7 +173,9 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
         let Some(joining) = &mut self.catch_up else { return Ok(()) };
         let Stage::Loading { tick, hash, bytes, missing } = &mut joining.stage else { return Ok(()) };
         let offset = usize::try_from(offset).unwrap_or(usize::MAX);
-        let Some(at) = missing.iter().position(|number| number * PIECE_BYTES == offset) else { return Ok(()) };
+        let Some(at) = missing.iter().position(|number| number * PIECE_BYTES == offset) else {
+            return Ok(());
+        };
         let end = bytes.len().min(offset + PIECE_BYTES);
         if piece.len() != end - offset {
             return Ok(());

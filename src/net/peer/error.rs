@@ -55,7 +55,9 @@ impl fmt::Display for NetError {
             NetError::State { why } => write!(f, "the state that was sent cannot be used: {why}"),
             NetError::Refused { why } => write!(f, "refused: {why}"),
             NetError::NoAnswer => write!(f, "no answer"),
-            NetError::Dropped => write!(f, "the others have gone on without this peer, which was silent for too long"),
+            NetError::Dropped => {
+                write!(f, "the others have gone on without this peer, which was silent for too long")
+            }
         }
     }
 }

@@ -127,7 +127,8 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
             left.filter(|seat| !agrees(seat)).fold(0, |mask, seat| mask | seat_bit(seat))
         };
         // Who says that somebody is gone has to be believed, or the peers would never agree.
-        leaving.gone = leaving.heard.values().fold(leaving.gone, |mask, (gone, _)| mask | gone & roster.mask());
+        leaving.gone =
+            leaving.heard.values().fold(leaving.gone, |mask, (gone, _)| mask | gone & roster.mask());
         if leaving.gone & seat_bit(roster.seat) != 0 {
             return Err(NetError::Dropped);
         }

@@ -343,7 +343,9 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
     /// There is none of a match that was joined after its first tick.
     #[must_use]
     pub fn take_replay(&mut self) -> Vec<u8> {
-        self.driver.take_replay()
+        // What has been written may be the beginning of another match than the one that is joined.
+        let unsure = self.catch_up.as_ref().is_some_and(CatchUp::is_loading);
+        if unsure { Vec::new() } else { self.driver.take_replay() }
     }
 
     /// Leaves the match and ends the replay after `ticks` ticks, or after the last that is known from everybody.

@@ -96,7 +96,8 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
             (Some(joining), _) => joining.contact() == from,
             (None, Some(session)) => {
                 let leader = session.roster.others.first();
-                let leads = leader.is_some_and(|(seat, leader)| leader == from && *seat < session.roster.seat);
+                let leads =
+                    leader.is_some_and(|(seat, leader)| leader == from && *seat < session.roster.seat);
                 leads && session.roster.session == parent && self.leaving.is_none()
             }
             (None, None) => false,
@@ -110,8 +111,10 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
     /// The roster of a plan, if it is one that can be played.
     fn roster_of(&self, from: &A, plan: Plan<A>) -> Option<Roster<A>> {
         let Plan { session, base, seat, others } = plan;
-        let others: Vec<_> =
-            others.into_iter().map(|(seat, address)| (seat, address.unwrap_or_else(|| from.clone()))).collect();
+        let others: Vec<_> = others
+            .into_iter()
+            .map(|(seat, address)| (seat, address.unwrap_or_else(|| from.clone())))
+            .collect();
         let players = self.terms.players;
         let ascending = others.windows(2).all(|pair| pair[0].0 < pair[1].0);
         let seated = others.iter().all(|(other, _)| *other < players && *other != seat) && seat < players;
