@@ -1,7 +1,8 @@
 //! What lies in the world beside the players: platform, mill, bumpers, plates and crates.
 //!
-//! From the middle outwards, in metres: the mill's flails reach to 4.5, bumpers stand and the first crates lie at 6.2,
-//! players start at 8.1, more crates lie at 10, and the platform ends at 12, at first. Plates lie at 5.2.
+//! From the middle outwards, in metres: the mill's flails reach to 4.4, bumpers stand at 5.4, the first crates lie at 6.2,
+//! plates at 7.2, players start at 8.1, more crates lie at 10, and the platform ends at 12: at first, for in the end it is
+//! within the mill's reach.
 
 use lockstep2d::body::{
     Body, BodyDef, BodyId, EventSwitches, Filter, Geometry, Polygon, ShapeDef, WorldError,
@@ -16,7 +17,7 @@ pub const START_RADIUS: Fx = fx!(12);
 /// How much of the radius crumbles at once.
 const RING: Fx = fx!(0.5);
 /// How many rings of the platform crumble in a round.
-pub(crate) const RINGS: u8 = 10;
+pub(crate) const RINGS: u8 = 15;
 
 const START_RING: Fx = fx!(8.1);
 const PLAYER_RADIUS: Fx = fx!(0.5);
@@ -100,11 +101,11 @@ pub(crate) fn build() -> Result<World, WorldError> {
 
     let hits = EventSwitches { hit: true, ..EventSwitches::default() };
     let bumper = ShapeDef::new(Geometry::circle(fx!(0.6))?).restitution(fx!(1)).events(hits);
-    let plate = ShapeDef::new(Geometry::circle(fx!(0.7))?).sensor();
+    let plate = ShapeDef::new(Polygon::square(fx!(0.6))?).sensor();
     for quarter in 0..4 {
-        let place = polar(fx!(6.2), part(quarter, 4));
+        let place = polar(fx!(5.4), part(quarter, 4));
         world.spawn(&at(BodyDef::fixed(), place, Role::Bumper), &[bumper])?;
-        let place = polar(fx!(5.2), part(quarter, 4) + Angle::EIGHTH);
+        let place = polar(fx!(7.2), part(quarter, 4) + Angle::EIGHTH);
         world.spawn(&at(BodyDef::fixed(), place, Role::Plate), &[plate])?;
     }
     build_mill(&mut world)?;
@@ -168,8 +169,8 @@ pub(crate) fn place_player(
     (place, count): (u8, u8),
     first: Angle,
 ) -> Result<BodyId, WorldError> {
-    let disc = ShapeDef::new(Geometry::circle(PLAYER_RADIUS)?).friction(fx!(0.3)).restitution(fx!(0.8));
-    let def = BodyDef::dynamic().linear_damping(fx!(2)).angular_damping(fx!(2)).never_sleeps();
+    let disc = ShapeDef::new(Geometry::circle(PLAYER_RADIUS)?).friction(fx!(0.3)).restitution(fx!(1));
+    let def = BodyDef::dynamic().linear_damping(fx!(1.2)).angular_damping(fx!(2)).never_sleeps();
     world.spawn(&at(def, polar(START_RING, first + part(place, count)), Role::Player(seat)), &[disc])
 }
 

@@ -26,7 +26,7 @@ impl Bot {
     #[must_use]
     pub fn new(seed: u64, seat: u8) -> Self {
         let mut rng = Rng::with_stream(seed, seat.into());
-        let caution = rng.range(fx!(0.6), fx!(1.6));
+        let caution = rng.range(fx!(0.4), fx!(1.2));
         Bot { seat: seat.into(), rng, caution, pad: Pad::default(), hold: 0 }
     }
 
@@ -51,8 +51,8 @@ impl Bot {
     }
 
     fn decide(&mut self, game: &Shove, me: &Player) -> Pad {
-        // Where it will be in half a second, if it does nothing.
-        let soon = me.position + me.velocity.scale(fx!(0.4));
+        // Where it will be in a third of a second.
+        let soon = me.position + me.velocity.scale(fx!(0.3));
         let margin = game.radius().saturating_sub(soon.length());
         if margin < self.caution {
             let back = Pad::towards(-me.position);

@@ -12,10 +12,10 @@ use crate::pad::Pad;
 use crate::rules::{Phase, Rules};
 use crate::setup::Setup;
 
-/// How a player speeds up, in m/s²; damping ends it at half as much in m/s.
-const ACCELERATION: Fx = fx!(12);
+/// How a player speeds up, in m/s²; damping ends it at 7.5 m/s.
+const ACCELERATION: Fx = fx!(9);
 /// What a dash adds, in m/s, and ticks until the next one.
-const DASH: Fx = fx!(6);
+const DASH: Fx = fx!(8);
 const RECHARGE: u8 = 75;
 /// What a bumper adds, in m/s.
 const KICK: Fx = fx!(5);

@@ -4,7 +4,7 @@ mod scenes;
 
 use std::process::ExitCode;
 
-use lockstep2d::draw::{self, Frame, View};
+use lockstep2d::draw::{self, Frame, Layers, View};
 use lockstep2d::math::{Aabb, Vec2};
 use lockstep2d_cli::Tool;
 use lockstep2d_shove::{START_RADIUS, Shove};
@@ -20,7 +20,8 @@ fn draw_match(game: &Shove) -> String {
     let corner = Vec2::new(START_RADIUS, START_RADIUS);
     let scores: Vec<_> = game.players_in_order().map(|player| player.score.to_string()).collect();
     let title = format!("round {} · {:?} · {}", game.round(), game.phase(), scores.join(" : "));
-    let view =
-        View { height: 960, frame: Frame::Window(Aabb::new(-corner, corner)), title, ..View::default() };
+    let frame = Frame::Window(Aabb::new(-corner, corner));
+    let layers = Layers { outlines: true, joints: true, velocities: true, ..Layers::NONE };
+    let view = View { height: 960, frame, title, layers, ..View::default() };
     draw::svg(game.world(), &view)
 }

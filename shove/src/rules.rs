@@ -10,11 +10,11 @@ use crate::arena;
 
 /// Ticks before a round in which nobody can move, of a round, and after it.
 const READY: u16 = 60;
-const FIGHT: u16 = 1500;
+const FIGHT: u16 = 1200;
 const PAUSE: u16 = 75;
 /// Ticks into a round at which the first ring of the platform crumbles, and between two rings.
-const FIRST_RING: u16 = 240;
-const RING: u16 = 90;
+const FIRST_RING: u16 = 180;
+const RING: u16 = 60;
 
 /// What is going on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
