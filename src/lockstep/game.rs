@@ -40,8 +40,9 @@ pub trait Game: Sized {
     type Setup: Serialize + DeserializeOwned;
     /// What one player contributes to one tick. `Default` is "nothing pressed".
     type Input: Clone + Default + PartialEq + Serialize + DeserializeOwned;
-    /// A copy of the state that [`Game::load`] returns to.
-    type Save;
+    /// A copy of the state that [`Game::load`] returns to: all of it, so that it can be sent to someone who was not
+    /// there, and compared with another machine's. In a format for people its names are those of a report.
+    type Save: Clone + Serialize + DeserializeOwned;
 
     /// The name and version of the rules.
     const RULES: RulesId;

@@ -7,4 +7,4 @@ mod sandbox;
 pub use game::{Game, RulesId, SetupError};
 pub(crate) use input_log::decode_inputs;
 pub use input_log::{EncodedInputs, InputError, InputLog};
-pub use sandbox::{Sandbox, SandboxSetup};
+pub use sandbox::{Sandbox, SandboxSave, SandboxSetup};

@@ -28,6 +28,7 @@ mod step;
 mod stress;
 mod timestep;
 mod validate;
+mod view;
 
 pub use bytes::SnapshotError;
 pub use change::Place;
