@@ -12,6 +12,8 @@ use lockstep2d::math::{Angle, Fx, Rng, Rot, Vec2, fx_mul};
 use lockstep2d::solver::{JointDef, Revolute};
 use lockstep2d::world::{Config, World};
 
+/// Ticks per second.
+pub(crate) const TICK_RATE: u32 = 60;
 /// The radius of the whole platform, in metres.
 pub const START_RADIUS: Fx = fx!(12);
 /// How much of the radius crumbles at once.
@@ -93,8 +95,14 @@ fn at(def: BodyDef, place: Vec2<Fx>, role: Role) -> BodyDef {
 
 /// The world before the first round: all but players and crates.
 pub(crate) fn build() -> Result<World, WorldError> {
-    let limits = Config { body_limit: 64, shape_limit: 64, joint_limit: 16, ..Config::default() };
-    let mut world = World::new(Config { gravity: Vec2::ZERO, ..limits })?;
+    let mut world = World::new(Config {
+        tick_rate: TICK_RATE,
+        gravity: Vec2::ZERO,
+        body_limit: 64,
+        shape_limit: 64,
+        joint_limit: 16,
+        ..Config::default()
+    })?;
     let picture = Filter { category: 2, mask: 0, group: 0 };
     let platform = ShapeDef::new(Geometry::circle(START_RADIUS)?).sensor().filter(picture);
     world.spawn(&at(BodyDef::fixed(), Vec2::ZERO, Role::Platform), &[platform])?;

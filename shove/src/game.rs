@@ -6,6 +6,7 @@ use lockstep2d::hash::StateHash;
 use lockstep2d::lockstep::{Game, RulesId, SetupError};
 use lockstep2d::math::{Fx, Unit, Vec2, fx_mul};
 use lockstep2d::world::{Snapshot, World};
+use serde::{Deserialize, Serialize};
 
 use crate::arena::{self, Role};
 use crate::pad::Pad;
@@ -29,7 +30,7 @@ pub struct Shove {
 }
 
 /// A copy of the state of a match.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Save {
     world: Snapshot,
     rules: Rules,
@@ -208,7 +209,7 @@ impl Game for Shove {
     }
 
     fn tick_rate(&self) -> u32 {
-        self.world.config().tick_rate
+        arena::TICK_RATE
     }
 
     fn step(&mut self, inputs: &[Pad]) {
@@ -249,7 +250,10 @@ impl Game for Shove {
         let constraints = count(self.world.pair_count()).saturating_add(count(self.world.joint_count()));
         let shapes = u64::from(limits.shape_limit);
         let rounds = u64::from(limits.solver.sub_steps) * u64::from(limits.solver.iterations);
-        bodies.saturating_add(constraints).saturating_mul(rounds).saturating_add(shapes.saturating_mul(shapes))
+        bodies
+            .saturating_add(constraints)
+            .saturating_mul(rounds)
+            .saturating_add(shapes.saturating_mul(shapes))
     }
 
     fn absent() -> Pad {
