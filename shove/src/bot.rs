@@ -3,9 +3,10 @@
 use lockstep2d::fx;
 use lockstep2d::math::{Fx, Rng, Vec2, fx_mul};
 
-use crate::game::{Player, Shove};
+use crate::game::Shove;
 use crate::pad::Pad;
 use crate::setup::Setup;
+use crate::view::Player;
 
 /// A player that sees the match and nothing else. The same seed, seat and matches give the same pads.
 ///
@@ -59,7 +60,9 @@ impl Bot {
             return if margin < Fx::ZERO { back.with(Pad::DASH) } else { back };
         }
         let distance = |other: &Player| other.position.distance(me.position);
-        let others = game.players_in_order().filter(|other| other.is_alive() && other.body != me.body);
+        // Of equally near ones the next one round the table, so that not everybody goes for the first.
+        let others = (1..game.seats()).filter_map(|next| game.player((self.seat + next) % game.seats()));
+        let others = others.filter(Player::is_alive);
         let Some(other) = others.min_by_key(distance) else {
             return Pad::towards(-me.position);
         };

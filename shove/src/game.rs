@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::arena::{self, Role};
 use crate::pad::Pad;
-use crate::rules::{Phase, Rules};
+use crate::rules::Rules;
 use crate::setup::Setup;
 
 /// How a player speeds up, in m/s²; damping ends it at 7.5 m/s.
@@ -24,9 +24,9 @@ const KICK: Fx = fx!(5);
 /// A match.
 #[derive(Clone, Debug)]
 pub struct Shove {
-    setup: Setup,
-    world: World,
-    rules: Rules,
+    pub(crate) setup: Setup,
+    pub(crate) world: World,
+    pub(crate) rules: Rules,
 }
 
 /// A copy of the state of a match.
@@ -36,97 +36,7 @@ pub struct Save {
     rules: Rules,
 }
 
-/// How a player stands.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Player {
-    /// Whether somebody sits on the seat.
-    pub present: bool,
-    /// The body, while it stands on the platform.
-    pub body: Option<BodyId>,
-    /// Where it is, in metres; zero without a body.
-    pub position: Vec2<Fx>,
-    /// How fast it is, in m/s; zero without a body.
-    pub velocity: Vec2<Fx>,
-    /// Ticks until it can dash.
-    pub recharge: u32,
-    /// Points: one for each player whom it has outlived.
-    pub score: u32,
-    /// Rounds won.
-    pub won: u32,
-}
-
-impl Player {
-    /// Whether it stands on the platform.
-    #[must_use]
-    pub fn is_alive(&self) -> bool {
-        self.body.is_some()
-    }
-}
-
 impl Shove {
-    /// What the match started from.
-    #[must_use]
-    pub const fn setup(&self) -> &Setup {
-        &self.setup
-    }
-
-    /// The world; [`Role::of`] tells what its bodies are.
-    #[must_use]
-    pub const fn world(&self) -> &World {
-        &self.world
-    }
-
-    /// The number of seats.
-    #[must_use]
-    pub fn seats(&self) -> usize {
-        self.setup.seats.into()
-    }
-
-    /// The player on a seat; `None` above the number of seats.
-    #[must_use]
-    pub fn player(&self, seat: usize) -> Option<Player> {
-        let seat = self.rules.seats.get(seat).filter(|_| seat < self.seats())?;
-        let body = seat.body.and_then(|id| self.world.body(id));
-        Some(Player {
-            present: seat.present,
-            body: seat.body,
-            position: body.map_or(Vec2::ZERO, Body::position),
-            velocity: body.map_or(Vec2::ZERO, Body::velocity),
-            recharge: seat.recharge.into(),
-            score: seat.score,
-            won: seat.won,
-        })
-    }
-
-    /// The players of all seats.
-    pub fn players_in_order(&self) -> impl Iterator<Item = Player> {
-        (0..self.seats()).filter_map(|seat| self.player(seat))
-    }
-
-    /// The radius of what is left of the platform, in metres.
-    #[must_use]
-    pub fn radius(&self) -> Fx {
-        arena::radius(self.rules.rings)
-    }
-
-    /// The number of the round, from 1; 0 before the first that counts.
-    #[must_use]
-    pub const fn round(&self) -> u8 {
-        self.rules.round
-    }
-
-    /// What is going on.
-    #[must_use]
-    pub const fn phase(&self) -> Phase {
-        self.rules.phase
-    }
-
-    /// Ticks until the phase ends by itself.
-    #[must_use]
-    pub const fn ticks_left(&self) -> u16 {
-        self.rules.ticks_left
-    }
-
     /// What the player of a seat does: speed up, dash.
     fn drive(&mut self, seat: usize, pad: Pad) -> Result<(), WorldError> {
         let Some(seat) = self.rules.seats.get_mut(seat) else { return Ok(()) };

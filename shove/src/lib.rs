@@ -28,13 +28,15 @@ mod game;
 mod pad;
 mod rules;
 mod setup;
+mod view;
 
 pub use arena::{Role, START_RADIUS};
 pub use bot::Bot;
-pub use game::{Player, Save, Shove};
+pub use game::{Save, Shove};
 pub use pad::Pad;
 pub use rules::Phase;
 pub use setup::{Setup, UnplayableSetup};
+pub use view::Player;
 
 /// Most players of a game.
 pub const SEATS_MAX: usize = 4;
