@@ -1,5 +1,6 @@
 //! The `shove` command: the tools of the game.
 
+mod play;
 mod scenes;
 
 use std::process::ExitCode;
@@ -12,6 +13,9 @@ use lockstep2d_shove::{START_RADIUS, Shove};
 use scenes::Matches;
 
 fn main() -> ExitCode {
+    if std::env::args_os().nth(1).is_some_and(|command| command == play::NAME) {
+        return play::run().into();
+    }
     Tool::<Shove>::new().with_scenes(Matches).with_svg(draw_match).run()
 }
 
