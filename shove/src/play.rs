@@ -1,7 +1,7 @@
 //! `shove play`: a match over UDP, in which a bot has the pad.
 
 use std::error::Error;
-use std::fs::{self, File};
+use std::fs::File;
 use std::io::Write;
 use std::net::{SocketAddr, ToSocketAddrs};
 use std::path::PathBuf;
