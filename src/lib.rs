@@ -8,6 +8,7 @@
 //! - [`math`]: numbers, vectors and angles, also for a game's own rules; [`fx!`] writes constants.
 //! - [`lockstep`]: [`lockstep::Game`], the seam that recording, verifying and tools are generic over.
 //! - [`replay`]: writes, reads and verifies replay files.
+//! - [`inspect`]: any value as named fields, and what differs between two.
 //! - [`draw`]: pictures of a world. [`scenes`]: worlds that tests, replays and tools share.
 //! - [`hash`] and [`codec`]: what a state hash is made of.
 //!
@@ -36,6 +37,7 @@ pub mod codec;
 pub mod collision;
 pub mod draw;
 pub mod hash;
+pub mod inspect;
 pub mod lockstep;
 pub mod math;
 pub mod replay;

@@ -10,6 +10,7 @@
 //!           solver
 //!         collision
 //!            body
+//!           inspect
 //!   math, hash, codec, threads
 //! ```
 
@@ -23,6 +24,7 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("codec", &[]),
     ("hash", &["codec"]),
     ("threads", &[]),
+    ("inspect", &["math"]),
     ("body", &["math", "codec", "hash"]),
     ("collision", &["math", "codec", "hash", "body"]),
     ("solver", &["math", "codec", "hash", "threads", "body", "collision"]),
