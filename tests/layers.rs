@@ -2,6 +2,7 @@
 //! tests included, and a path upwards fails.
 //!
 //! ```text
+//!          report
 //! scenes   replay
 //!       \  /
 //!     lockstep   draw
@@ -10,8 +11,7 @@
 //!           solver
 //!         collision
 //!            body
-//!           inspect
-//!   math, hash, codec, threads
+//! math, hash, codec, threads, inspect
 //! ```
 
 mod source;
@@ -32,6 +32,10 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("draw", &["math", "codec", "hash", "body", "collision", "solver", "world"]),
     ("lockstep", &["math", "codec", "hash", "body", "collision", "solver", "world"]),
     ("replay", &["math", "codec", "hash", "body", "collision", "solver", "world", "lockstep"]),
+    (
+        "report",
+        &["math", "codec", "hash", "inspect", "body", "collision", "solver", "world", "lockstep", "replay"],
+    ),
     ("scenes", &["math", "codec", "hash", "body", "collision", "solver", "world", "lockstep"]),
 ];
 

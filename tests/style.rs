@@ -69,7 +69,8 @@ fn too_long(file: &Source) -> Vec<String> {
 }
 
 fn banned_words(file: &Source) -> Vec<String> {
-    let allowed: &[&str] = if ALLOWED_FLOATS.iter().any(|path| file.path.starts_with(path)) { FLOATS } else { &[] };
+    let allowed: &[&str] =
+        if ALLOWED_FLOATS.iter().any(|path| file.path.starts_with(path)) { FLOATS } else { &[] };
     let why = |token: &Token| {
         let (word, why) = BANNED.iter().find(|(word, _)| *word == token.text)?;
         let allowed = allowed.contains(word) || *word == "unsafe" && may_be_unsafe(file);

@@ -205,6 +205,22 @@ impl<G: Game> Recorder<G> {
         core::mem::take(&mut self.finished)
     }
 
+    /// The bytes that were not yet taken, and the block at hand as if the game ended here with this state: put behind
+    /// what was taken, a replay of all ticks so far. The recorder goes on as if nobody had asked.
+    #[must_use]
+    pub fn so_far(&self, state: StateHash) -> Vec<u8> {
+        let mut copy = Recorder::<G> {
+            finished: self.finished.clone(),
+            runs: self.runs.clone(),
+            last_run: self.last_run.clone(),
+            ..*self
+        };
+        if copy.block_ticks > 0 {
+            copy.finish_block(state);
+        }
+        copy.finished
+    }
+
     /// Writes the last block and the trailer, and returns all bytes that were not yet taken.
     ///
     /// # Errors

@@ -1,0 +1,6 @@
+//! What two peers tell together after their states have become different.
+#![expect(clippy::unwrap_used, reason = "what goes wrong in a helper fails the test")]
+
+mod compare;
+mod format;
+mod yard;
