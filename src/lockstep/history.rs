@@ -16,6 +16,10 @@ pub struct Past<S> {
     pub save: S,
 }
 
+/// Ticks that a history keeps beyond what it promises: so many may be repeated by a rollback, whose mispredictions push
+/// older ticks out.
+const ROLLBACK_TICKS: u32 = 16;
+
 /// The saves and state hashes of the last ticks. Saves of a world share what has not changed, so that a few seconds cost
 /// little more than what every step changes.
 ///
@@ -28,7 +32,7 @@ pub struct Past<S> {
 ///     history.push(tick, game.save(), game.state_hash());
 ///     game.step(&[vec![]]);
 /// }
-/// assert_eq!((history.oldest(), history.newest()), (Some(380), Some(499)));
+/// assert_eq!((history.oldest(), history.newest()), (Some(364), Some(499)));
 /// # Ok::<(), lockstep2d::lockstep::SetupError>(())
 /// ```
 #[derive(Clone, Debug)]
@@ -39,10 +43,11 @@ pub struct History<G: Game> {
 }
 
 impl<G: Game> History<G> {
-    /// An empty history that is going to have the last two seconds of a game.
+    /// An empty history that is going to have at least the last two seconds of a game, if rollbacks repeat no more than
+    /// 16 ticks.
     #[must_use]
     pub fn new(game: &G) -> Self {
-        Self::of_ticks(game.tick_rate().saturating_mul(2))
+        Self::of_ticks(game.tick_rate().saturating_mul(2).saturating_add(ROLLBACK_TICKS))
     }
 
     /// An empty history that is going to have as many of the last ticks, at least 1.

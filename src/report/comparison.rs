@@ -93,10 +93,10 @@ pub struct Explanation {
     pub tick: u64,
     /// The path of the body.
     pub path: String,
-    /// The name of its field.
-    pub field: &'static str,
     /// The number of the bit, from the lowest.
     pub bit: u32,
+    /// What that changed then: first the number that the bit is in. A is what it was and B what it became.
+    pub differences: Vec<Difference>,
 }
 
 /// What two reports, replays or snapshots tell together.

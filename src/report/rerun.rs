@@ -33,7 +33,8 @@ pub(super) fn run<G: Game>(
     }
     let rerun = Rerun::<G>::open(replay, limits).map_err(|verdict| CompareError::Replay { side, verdict })?;
     let until = known[0].last().max(known[1].last()).min(horizon);
-    Beside { known, found, rerun, previous: None, wrong: None, states: None, obstacle: None }.run(until)
+    Beside { known, found, rerun, previous: None, wrong: None, states: None, presumed: None, obstacle: None }
+        .run(until)
 }
 
 /// What is to be seen without playing: the first tick of which both say something else.
@@ -80,11 +81,13 @@ fn compare_saves_alone<G: Game>(
     Ok(())
 }
 
-/// The state that a side had after some tick.
-enum Had<S> {
-    /// That of the rerun.
-    Rerun,
-    Own(S),
+/// The states of both sides after some tick.
+struct States<S> {
+    tick: u64,
+    states: [S; 2],
+    /// The side that has said nothing of this tick, and that is taken to have been where the rerun is: nobody who has
+    /// departed comes back, so that this holds if it is there later.
+    presumed: Option<Side>,
 }
 
 struct Beside<'a, 'k, G: Game> {
@@ -95,8 +98,10 @@ struct Beside<'a, 'k, G: Game> {
     previous: Option<G::Save>,
     /// The tick in which the first side that departs did so.
     wrong: Option<WrongTick<G>>,
-    /// The state of both sides at the first tick that differs and of which they can be had.
-    states: Option<[G::Save; 2]>,
+    /// The states at the first tick that differs and of which they can be had.
+    states: Option<States<G::Save>>,
+    /// The same, where one of them is only presumed.
+    presumed: Option<States<G::Save>>,
     /// Why not earlier.
     obstacle: Option<String>,
 }
@@ -166,37 +171,46 @@ impl<G: Game> Beside<'_, '_, G> {
     fn take_states(&mut self, had: [Option<bool>; 2]) {
         let tick = self.rerun.tick();
         let mut states = Vec::new();
+        let mut presumed = None;
         for (side, had) in Side::BOTH.into_iter().zip(had) {
             let own = self.known[side.index()].saves.get(&tick);
             states.push(match (own, had) {
-                (_, Some(true)) => Had::Rerun,
+                (_, Some(true)) => self.rerun.game().save(),
+                (None, None) if presumed.is_none() => {
+                    presumed = Some(side);
+                    self.rerun.game().save()
+                }
+                (None, _) => return,
                 (Some(bytes), _) => match decode::<G>(side, tick, bytes) {
-                    Ok(save) => Had::Own(save),
+                    Ok(save) => save,
                     Err(obstacle) => {
                         self.obstacle.get_or_insert(obstacle);
                         return;
                     }
                 },
-                (None, _) => return,
             });
         }
-        let state = |had| match had {
-            Had::Rerun => self.rerun.game().save(),
-            Had::Own(save) => save,
+        let Ok(states) = states.try_into() else {
+            return;
         };
-        if let (Some(b), Some(a)) = (states.pop(), states.pop()) {
-            let states = [state(a), state(b)];
-            self.found.tick = Some(tick);
+        let states = States { tick, states, presumed };
+        if presumed.is_some() {
+            self.presumed.get_or_insert(states);
+        } else {
             self.states = Some(states);
         }
     }
 
     fn conclude(self) -> Result<(), CompareError> {
-        let Beside { known, found, rerun, wrong, states, obstacle, previous: _ } = self;
+        let Beside { known, found, rerun, wrong, states, presumed, obstacle, previous: _ } = self;
         found.notes.extend(obstacle);
-
-        match states {
-            Some([a, b]) => {
+        let courses = &found.courses;
+        let came_later = |states: &States<G::Save>| {
+            states.presumed.is_some_and(|side| courses[side.index()].equal_until >= Some(states.tick))
+        };
+        match presumed.filter(came_later).or(states) {
+            Some(States { tick, states: [a, b], .. }) => {
+                found.tick = Some(tick);
                 found.things = suspect::things(differences(&fields(&a)?, &fields(&b)?));
             }
             None => {
@@ -205,9 +219,10 @@ impl<G: Game> Beside<'_, '_, G> {
                 }
             }
         }
-        let at_once = |wrong: &&WrongTick<G>| found.tick == Some(wrong.tick + 1) && found.things.len() > 1;
+        let count: usize = found.things.iter().map(|thing| thing.differences.len()).sum();
+        let at_once = |wrong: &&WrongTick<G>| found.tick == Some(wrong.tick + 1) && count > 1;
         if let Some(wrong) = wrong.as_ref().filter(at_once) {
-            found.explanation = suspect::explain(wrong, rerun.into_game(), &mut found.things);
+            found.explanation = suspect::explain(wrong, rerun.into_game(), &mut found.things)?;
         }
         Ok(())
     }

@@ -5,14 +5,12 @@
 //! then it is tried: if one flipped bit in the last state that was right leads to exactly the wrong state, that bit it was.
 
 use alloc::collections::BTreeMap;
-use alloc::format;
 use alloc::string::String;
 use alloc::vec::Vec;
 
 use super::comparison::{Explanation, Thing};
-use crate::body::BodyId;
 use crate::hash::StateHash;
-use crate::inspect::Difference;
+use crate::inspect::{Difference, InspectError, Value, differences, fields};
 use crate::lockstep::Game;
 use crate::world::Motion;
 
@@ -54,7 +52,7 @@ fn disturbance(thing: &Thing) -> u128 {
         Motion::ALL.iter().any(|motion| difference.field().name() == motion.name())
     };
     let units = |difference: &Difference| {
-        let bits = |value: &Option<crate::inspect::Value>| value.as_ref().and_then(|value| value.bits());
+        let bits = |value: &Option<Value>| value.as_ref().and_then(|value| value.bits());
         bits(&difference.a).zip(bits(&difference.b)).map_or(0, |(a, b)| a.abs_diff(b))
     };
     thing.differences.iter().filter(is_motion).map(units).sum()
@@ -65,34 +63,51 @@ pub(super) fn explain<G: Game>(
     wrong: &WrongTick<G>,
     mut game: G,
     things: &mut Vec<Thing>,
-) -> Option<Explanation> {
+) -> Result<Option<Explanation>, InspectError> {
+    let Some((at, motion, bit)) = search(wrong, &mut game, things) else {
+        return Ok(None);
+    };
+    let mut thing = things.remove(at);
+    thing.differences.sort_by_key(|difference| difference.field().name() != motion.name());
+    let path = thing.path.clone();
+    things.insert(0, thing);
+    // As it was before the tick, and as it became.
+    game.load(&wrong.before);
+    let was = fields(&game.save())?;
+    flip(&mut game, &path, motion, bit);
+    let differences = differences(&was, &fields(&game.save())?);
+    Ok(Some(Explanation { tick: wrong.tick, path, bit, differences }))
+}
+
+/// The place in the list, the number and the bit that lead to the wrong state.
+fn search<G: Game>(wrong: &WrongTick<G>, game: &mut G, things: &[Thing]) -> Option<(usize, Motion, u32)> {
     game.load(&wrong.before);
     let mut left = WORK_MAX / game.work(&wrong.inputs).max(1);
-    let bodies: BTreeMap<String, BodyId> =
-        game.world_mut()?.bodies().map(|(id, _)| (format!("body {id}"), id)).collect();
-    for at in 0..things.len() {
-        let key = things[at].path.rsplit('.').next();
-        let Some(&body) = key.and_then(|key| bodies.get(key)) else {
-            continue;
-        };
+    for (at, thing) in things.iter().enumerate() {
         for motion in Motion::ALL {
             for bit in 0..32 {
                 game.load(&wrong.before);
-                if game.world_mut()?.flip_bit(body, motion, bit).is_err() {
+                if flip(game, &thing.path, motion, bit).is_none() {
                     continue;
                 }
                 left = left.checked_sub(1)?;
                 game.step(&wrong.inputs);
-                if game.state_hash() != wrong.wrong {
-                    continue;
+                if game.state_hash() == wrong.wrong {
+                    return Some((at, motion, bit));
                 }
-                let mut thing = things.remove(at);
-                thing.differences.sort_by_key(|difference| difference.field().name() != motion.name());
-                let (path, field) = (thing.path.clone(), motion.name());
-                things.insert(0, thing);
-                return Some(Explanation { tick: wrong.tick, path, field, bit });
             }
         }
     }
     None
+}
+
+/// Flips a bit of the body of that path, if there is one and it can have that speed.
+fn flip<G: Game>(game: &mut G, path: &str, motion: Motion, bit: u32) -> Option<()> {
+    let (_, handle) = path.rsplit_once("body ")?;
+    let (slot, generation) = handle.split_once('v')?;
+    let (slot, generation): (u32, u32) = (slot.parse().ok()?, generation.parse().ok()?);
+    let world = game.world_mut()?;
+    let body = world.bodies().map(|(id, _)| id);
+    let body = { body }.find(|id| (id.index(), id.generation()) == (slot, generation))?;
+    world.flip_bit(body, motion, bit).ok()
 }

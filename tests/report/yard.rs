@@ -28,7 +28,7 @@ pub(crate) struct YardSave {
 
 impl Yard {
     fn build(seed: u64) -> Result<Self, WorldError> {
-        let mut world = World::new(Config { allow_sleep: false, ..Config::default() })?;
+        let mut world = World::new(Config { sleeping: false, ..Config::default() })?;
         for (x, y, w, h) in [(0, -1, 6, 1), (-6, 5, 1, 7), (6, 5, 1, 7)] {
             let wall = ShapeDef::new(Polygon::rectangle(Fx::from_num(w), Fx::from_num(h))?);
             world.spawn(&BodyDef::fixed().position(Fx::from_num(x), Fx::from_num(y)), &[wall])?;
@@ -148,7 +148,7 @@ pub(crate) struct Peer {
 
 impl Peer {
     pub(crate) fn new(seed: u64, flip: Option<Flip>) -> Self {
-        let (mut recorder, game) = Recorder::start(&seed, 25).expect("a valid setup");
+        let (mut recorder, game) = Recorder::<Yard>::start(&seed, 25).expect("a valid setup");
         let mut history = History::new(&game);
         history.push(0, game.save(), game.state_hash());
         let replay = recorder.take_bytes();
