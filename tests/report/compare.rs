@@ -114,11 +114,16 @@ fn a_bit_that_flips_after_a_step_is_found() {
     cases(1, 100, When::After);
 }
 
-/// All that touches the body differs in the same tick; the bit is found by trying.
+/// All that touches the body differs in the same tick; the bit is found by trying. Some flips make no difference at all.
+/// In two parts, for two processors.
 #[test]
 fn a_bit_that_flips_before_a_step_is_found() {
-    let swallowed = cases(2, 100, When::Before);
-    assert!(swallowed < 100, "{swallowed} of the flips made no difference");
+    assert!(cases(2, 50, When::Before) < 50, "most flips are to make a difference");
+}
+
+#[test]
+fn a_bit_that_flips_before_another_step_is_found() {
+    assert!(cases(3, 50, When::Before) < 50, "most flips are to make a difference");
 }
 
 #[test]

@@ -2,5 +2,6 @@
 #![expect(clippy::unwrap_used, reason = "what goes wrong in a helper fails the test")]
 
 mod compare;
+mod fields;
 mod format;
 mod yard;

@@ -104,7 +104,10 @@ impl Text<'_> {
             return Ok(());
         }
         let sections: Vec<String> = found.sections().iter().map(|section| section.to_string()).collect();
-        found.tick.map_or(write!(f, "\n"), |tick| write!(f, "\nstates after tick {tick}: "))?;
+        match found.tick {
+            Some(tick) => write!(f, "\nstates after tick {tick}: ")?,
+            None => writeln!(f)?,
+        }
         let count = found.things.len();
         write!(
             f,
