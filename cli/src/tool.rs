@@ -8,7 +8,7 @@ use clap::{ArgMatches, Command};
 use lockstep2d::lockstep::Game;
 use lockstep2d::replay::Limits;
 
-use crate::commands::{export, record, scenes, verify};
+use crate::commands::{diff, export, record, scenes, verify};
 use crate::console::Console;
 use crate::error::CommandError;
 use crate::exit::Exit;
@@ -32,7 +32,7 @@ impl<G: Game> Default for Tool<G> {
 }
 
 impl<G: Game> Tool<G> {
-    /// The tools that every game has: `verify`.
+    /// The tools that every game has: `verify` and `diff`.
     #[must_use]
     pub fn new() -> Self {
         Tool { limits: Limits::default(), catalogue: None, svg: None }
@@ -98,7 +98,8 @@ impl<G: Game> Tool<G> {
             .version(format!("rules version {}, engine semantics {engine}", rules.version))
             .subcommand_required(true)
             .arg_required_else_help(true)
-            .subcommand(verify::command());
+            .subcommand(verify::command())
+            .subcommand(diff::command());
         if self.catalogue.is_some() {
             command = command.subcommand(scenes::command()).subcommand(record::command());
         }
@@ -112,6 +113,9 @@ impl<G: Game> Tool<G> {
         match (matches.subcommand(), &self.catalogue, self.svg) {
             (Some((verify::NAME, matches)), _, _) => {
                 verify::run::<G>(&verify::arguments(matches), &self.limits, console)
+            }
+            (Some((diff::NAME, matches)), _, _) => {
+                diff::run::<G>(&diff::arguments(matches), &self.limits, console)
             }
             (Some((scenes::NAME, _)), Some(catalogue), _) => scenes::run(catalogue.as_ref(), console),
             (Some((record::NAME, matches)), Some(catalogue), _) => {

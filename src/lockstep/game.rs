@@ -7,6 +7,7 @@ use core::fmt;
 use serde::{Serialize, de::DeserializeOwned};
 
 use crate::hash::StateHash;
+use crate::world::World;
 
 /// Which rules a replay was made with. Bump `version` whenever the same inputs give another state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -84,6 +85,11 @@ pub trait Game: Sized {
     #[must_use]
     fn absent() -> Self::Input {
         Self::Input::default()
+    }
+
+    /// The physics world, if there is one, for tools that look into it. They change it only in games of their own.
+    fn world_mut(&mut self) -> Option<&mut World> {
+        None
     }
 
     /// What the game reports of itself at the end of a replay, such as a score or a time: at most 256 values with

@@ -1,61 +1,154 @@
-//! [`History`]: the states of the last ticks.
+//! [`History`]: the last seconds of a game, so that a divergence which is noticed late can be looked at where it began.
 
 use alloc::collections::VecDeque;
 
 use super::Game;
 use crate::hash::StateHash;
 
-/// The state after some tick.
+/// A game after some tick.
 #[derive(Clone, Debug)]
-pub struct Moment<S> {
-    /// The state.
-    pub save: S,
-    /// Its hash.
+pub struct Past<S> {
+    /// How many ticks had been played.
+    pub tick: u64,
+    /// The hash of the state.
     pub hash: StateHash,
+    /// A copy of it.
+    pub save: S,
 }
 
-/// The states of the last ticks, by tick.
+/// Ticks that a history keeps beyond what it promises: so many may be repeated by a rollback, whose mispredictions push
+/// older ticks out.
+const ROLLBACK_TICKS: u32 = 16;
+
+/// The saves and state hashes of the last ticks. Saves of a world share what has not changed, so that a few seconds cost
+/// little more than what every step changes.
+///
+/// ```
+/// use lockstep2d::lockstep::{Game, History, Sandbox, SandboxSetup};
+///
+/// let mut game = Sandbox::new(&SandboxSetup::default())?;
+/// let mut history = History::new(&game);
+/// for tick in 0..500 {
+///     history.push(tick, game.save(), game.state_hash());
+///     game.step(&[vec![]]);
+/// }
+/// assert_eq!((history.oldest(), history.newest()), (Some(364), Some(499)));
+/// # Ok::<(), lockstep2d::lockstep::SetupError>(())
+/// ```
+#[derive(Clone, Debug)]
 pub struct History<G: Game> {
-    first: u64,
-    moments: VecDeque<Moment<G::Save>>,
-    capacity: usize,
+    /// In ascending order of their ticks.
+    ticks: VecDeque<Past<G::Save>>,
+    length: u64,
 }
 
 impl<G: Game> History<G> {
-    /// Room for two seconds.
+    /// An empty history that is going to have at least the last two seconds of a game, if rollbacks repeat no more than
+    /// 16 ticks.
     #[must_use]
-    pub fn new(tick_rate: u32) -> Self {
-        History { first: 0, moments: VecDeque::new(), capacity: 2 * tick_rate as usize + 1 }
+    pub fn new(game: &G) -> Self {
+        Self::of_ticks(game.tick_rate().saturating_mul(2).saturating_add(ROLLBACK_TICKS))
     }
 
-    /// Keeps at least this many states.
-    pub fn reserve(&mut self, ticks: u64) {
-        self.capacity = self.capacity.max(usize::try_from(ticks).unwrap_or(usize::MAX));
+    /// An empty history that is going to have as many of the last ticks, at least 1.
+    #[must_use]
+    pub fn of_ticks(length: u32) -> Self {
+        History { ticks: VecDeque::new(), length: length.max(1).into() }
     }
 
-    /// Puts the state after `tick` ticks, in place of this one and all later ones.
+    /// How many ticks it has at most.
+    #[must_use]
+    pub fn capacity(&self) -> u64 {
+        self.length
+    }
+
+    /// Remembers the game after `tick` ticks. What was known of this tick and all later ones is forgotten: a rollback
+    /// repeats ticks, and what followed the mispredicted ones never happened.
     pub fn push(&mut self, tick: u64, save: G::Save, hash: StateHash) {
-        self.truncate(tick);
-        if self.moments.is_empty() || self.first + self.moments.len() as u64 != tick {
-            self.moments.clear();
-            self.first = tick;
+        if let Some(before) = tick.checked_sub(1) {
+            self.truncate(before);
+        } else {
+            self.ticks.clear();
         }
-        if self.moments.len() == self.capacity {
-            self.moments.pop_front();
-            self.first += 1;
+        while self.ticks.front().is_some_and(|past| tick - past.tick >= self.length) {
+            self.ticks.pop_front();
         }
-        self.moments.push_back(Moment { save, hash });
+        self.ticks.push_back(Past { tick, hash, save });
     }
 
-    /// The state after `tick` ticks.
+    /// The game after `tick` ticks, if it is known.
     #[must_use]
-    pub fn get(&self, tick: u64) -> Option<&Moment<G::Save>> {
-        self.moments.get(usize::try_from(tick.checked_sub(self.first)?).ok()?)
+    pub fn get(&self, tick: u64) -> Option<&Past<G::Save>> {
+        let index = self.ticks.partition_point(|past| past.tick < tick);
+        self.ticks.get(index).filter(|past| past.tick == tick)
     }
 
-    /// Forgets all states from `tick` on.
+    /// Forgets everything after `tick`.
     pub fn truncate(&mut self, tick: u64) {
-        let keep = usize::try_from(tick.saturating_sub(self.first)).unwrap_or(usize::MAX);
-        self.moments.truncate(keep);
+        self.ticks.truncate(self.ticks.partition_point(|past| past.tick <= tick));
+    }
+
+    /// Everything that is known, in ascending order of the ticks.
+    pub fn iter(&self) -> impl DoubleEndedIterator<Item = &Past<G::Save>> {
+        self.ticks.iter()
+    }
+
+    /// The first tick that is known.
+    #[must_use]
+    pub fn oldest(&self) -> Option<u64> {
+        self.ticks.front().map(|past| past.tick)
+    }
+
+    /// The last tick that is known.
+    #[must_use]
+    pub fn newest(&self) -> Option<u64> {
+        self.ticks.back().map(|past| past.tick)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use alloc::vec::Vec;
+
+    use super::super::{Sandbox, SandboxSave, SandboxSetup};
+    use super::*;
+
+    fn push(history: &mut History<Sandbox>, tick: u64, hash: u128) {
+        let game = Sandbox::new(&SandboxSetup::default()).expect("the default");
+        history.push(tick, SandboxSave { refused: tick, ..game.save() }, StateHash(hash));
+    }
+
+    fn known(history: &History<Sandbox>) -> Vec<(u64, u128)> {
+        for past in history.iter() {
+            let found = history.get(past.tick).map(|found| (found.hash, found.save.refused));
+            assert_eq!(found, Some((past.hash, past.tick)));
+        }
+        history.iter().map(|past| (past.tick, past.hash.0)).collect()
+    }
+
+    #[test]
+    fn the_last_ticks_are_known_and_no_others() {
+        let mut history = History::of_ticks(3);
+        assert_eq!((history.oldest(), history.newest()), (None, None));
+        (0..5).for_each(|tick| push(&mut history, tick, 100 + u128::from(tick)));
+        assert_eq!(known(&history), [(2, 102), (3, 103), (4, 104)]);
+        assert_eq!((history.oldest(), history.newest()), (Some(2), Some(4)));
+        assert!(history.get(1).is_none() && history.get(5).is_none());
+        history.truncate(3);
+        assert_eq!(known(&history), [(2, 102), (3, 103)]);
+    }
+
+    #[test]
+    fn a_rollback_replaces_what_never_happened() {
+        let mut history = History::of_ticks(10);
+        (0..6).for_each(|tick| push(&mut history, tick, 0));
+        push(&mut history, 3, 1);
+        assert_eq!(known(&history), [(0, 0), (1, 0), (2, 0), (3, 1)]);
+        push(&mut history, 0, 2);
+        assert_eq!(known(&history), [(0, 2)]);
+        push(&mut history, 8, 3);
+        assert_eq!(known(&history), [(0, 2), (8, 3)], "not every tick has to be saved");
+        push(&mut history, 100, 4);
+        assert_eq!(known(&history), [(100, 4)]);
     }
 }

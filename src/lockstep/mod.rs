@@ -6,7 +6,7 @@ mod input_log;
 mod sandbox;
 
 pub use game::{Game, RulesId, SetupError};
-pub use history::{History, Moment};
+pub use history::{History, Past};
 pub(crate) use input_log::decode_inputs;
 pub use input_log::{EncodedInputs, InputError, InputLog};
 pub use sandbox::{Sandbox, SandboxSave, SandboxSetup};

@@ -122,6 +122,10 @@ impl Game for Sandbox {
         self.refused = save.refused;
     }
 
+    fn world_mut(&mut self) -> Option<&mut World> {
+        Some(&mut self.world)
+    }
+
     /// Bodies, pairs and joints times what is done for each in a tick. Shapes that have just been put on top of
     /// each other make pairs that are not there yet: as many as the world allows, in the worst case, for which
     /// the broad phase compares each with each.

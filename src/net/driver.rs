@@ -12,6 +12,7 @@ use super::wire::{Address, Echo, GgrsConfig, NetGame, Wire};
 use crate::hash::StateHash;
 use crate::lockstep::{EncodedInputs, Game, History};
 use crate::replay::{RecordError, Recorder};
+use crate::report::{Desync, DesyncReport};
 
 /// For how long inputs are kept for those who join later, in seconds.
 const KEPT_SECONDS: u64 = 60;
@@ -115,6 +116,8 @@ pub struct Driver<G: Game> {
     /// Ticks whose inputs are final.
     committed: u64,
     recorder: Option<Recorder<G>>,
+    /// What was taken of the replay, for reports.
+    taken: Vec<u8>,
     /// Whether inputs carry hashes, and how many ticks apart these are.
     echo_interval: Option<u64>,
     divergences: Vec<Divergence>,
@@ -138,7 +141,7 @@ impl<G: NetGame> Driver<G> {
     }
 
     fn of(game: G, tick: u64) -> Self {
-        let mut history = History::new(game.tick_rate());
+        let mut history = History::new(&game);
         history.push(tick, game.save(), game.state_hash());
         Driver {
             seats: (0..game.players()).collect(),
@@ -150,6 +153,7 @@ impl<G: NetGame> Driver<G> {
             first_input: tick,
             committed: tick,
             recorder: None,
+            taken: Vec::new(),
             echo_interval: None,
             divergences: Vec::new(),
         }
@@ -163,9 +167,12 @@ impl<G: NetGame> Driver<G> {
         self
     }
 
-    /// Remembers the states of at least twice this many ticks.
-    pub(super) fn remember(&mut self, ticks: u64) {
-        self.history.reserve(2 * ticks);
+    /// Remembers the states of at least this many ticks; to be said before the first.
+    pub(super) fn remember(&mut self, ticks: u32) {
+        if self.history.capacity() < u64::from(ticks) {
+            self.history = History::of_ticks(ticks);
+            self.history.push(self.tick, self.game.save(), self.game.state_hash());
+        }
     }
 
     /// The game, as far as it has been played, perhaps with predicted inputs.
@@ -236,7 +243,7 @@ impl<G: NetGame> Driver<G> {
     fn rewind(&mut self, tick: u64) -> Result<(), DriverError> {
         let moment = self.history.get(tick).ok_or(DriverError::NoState { tick })?;
         self.game.load(&moment.save);
-        self.history.truncate(tick + 1);
+        self.history.truncate(tick);
         let played = tick.saturating_sub(self.first_input);
         self.inputs.truncate(usize::try_from(played).unwrap_or(usize::MAX));
         self.tick = tick;
@@ -339,7 +346,32 @@ impl<G: NetGame> Driver<G> {
     /// Finished bytes of the replay, to be appended to its file; handed out once. None without a replay.
     #[must_use]
     pub fn take_replay(&mut self) -> Vec<u8> {
-        self.recorder.as_mut().map(Recorder::take_bytes).unwrap_or_default()
+        let bytes = self.recorder.as_mut().map(Recorder::take_bytes).unwrap_or_default();
+        self.taken.extend_from_slice(&bytes);
+        bytes
+    }
+
+    /// What this peer knows of a divergence, for a file: `diff` tells from two of them who departed, when and where.
+    ///
+    /// `seats` are played here; `known` ticks have been played with everybody's true inputs.
+    #[must_use]
+    pub fn report(&self, divergence: &Divergence, seats: Vec<u32>, known: u64) -> DesyncReport {
+        let players = self.game.players();
+        let theirs = |seat| (seat == divergence.seat).then_some(divergence.theirs);
+        let hashes = (0..players).map(theirs).collect();
+        let found = Desync { players, tick: divergence.tick, seats, hashes };
+        DesyncReport::new(&found, &self.history, self.replay_so_far(known).unwrap_or_default())
+    }
+
+    /// The replay with all inputs of the first `known` ticks, which need not be committed.
+    fn replay_so_far(&self, known: u64) -> Option<Vec<u8>> {
+        let mut recorder = self.recorder.clone()?;
+        let known = known.clamp(self.committed, self.tick);
+        for tick in self.committed..known {
+            self.record(tick, &mut recorder).ok()?;
+        }
+        let state = self.history.get(known)?.hash;
+        Some([&self.taken[..], &recorder.so_far(state)].concat())
     }
 
     /// Ends the replay after the last committed tick, and returns the bytes that were not yet taken.

@@ -99,4 +99,9 @@ impl Options {
     pub(super) fn doubt(&self) -> u64 {
         u64::from(self.window()) + u64::from(INPUT_DELAY_MAX) + 2
     }
+
+    /// How many states have to be remembered: one that is final, and all those since.
+    pub(super) fn memory(&self) -> u32 {
+        2 * (u32::from(self.window()) + u32::from(INPUT_DELAY_MAX) + 2)
+    }
 }

@@ -36,7 +36,9 @@ impl Serialize for StateView<'_> {
         } = self.0;
         let contact = |contact| (self.name(contact), contact);
         Sections {
-            world: WorldView { settings: config, tick: *tick, faults: *faults },
+            settings: config,
+            tick: *tick,
+            faults: *faults,
             bodies: Entries(|| bodies.iter().map(|(id, body)| (format!("body {id}"), BodyView::of(body)))),
             shapes: Entries(|| shapes.iter().map(|(id, shape)| (format!("shape {id}"), shape))),
             joints: Entries(|| joints.iter().map(|(id, joint)| (format!("joint {id}"), joint))),
@@ -67,7 +69,9 @@ impl StateView<'_> {
 
 #[derive(Serialize)]
 struct Sections<'a, B, S, J, C, R, I> {
-    world: WorldView<'a>,
+    settings: &'a Config,
+    tick: u64,
+    faults: u64,
     bodies: B,
     shapes: S,
     joints: J,
@@ -78,13 +82,6 @@ struct Sections<'a, B, S, J, C, R, I> {
     islands: I,
     random: &'a Rng,
     vacant: VacantSlots,
-}
-
-#[derive(Serialize)]
-struct WorldView<'a> {
-    settings: &'a Config,
-    tick: u64,
-    faults: u64,
 }
 
 /// A map of what an iterator gives, in its order.

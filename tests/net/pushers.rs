@@ -1,11 +1,13 @@
 //! A small game for network tests: discs in a box, each pushed by a seat.
 
+use std::cell::Cell;
+
 use lockstep2d::body::{BodyDef, BodyId, Geometry, Polygon, ShapeDef, WorldError};
 use lockstep2d::fx;
 use lockstep2d::hash::StateHash;
 use lockstep2d::lockstep::{Game, RulesId, SetupError};
 use lockstep2d::math::{Fx, Rng, Vec2};
-use lockstep2d::world::{Config, Snapshot, World};
+use lockstep2d::world::{Config, Motion, Snapshot, World};
 use serde::{Deserialize, Serialize};
 
 /// How a game begins.
@@ -26,6 +28,21 @@ pub(crate) struct Pushers {
     world: World,
     discs: Vec<BodyId>,
     tick_rate: u32,
+    fault: Option<Fault>,
+}
+
+/// A bit that flips when a tick has been played, each time that it is played.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Fault {
+    pub(crate) tick: u64,
+    pub(crate) disc: usize,
+    pub(crate) motion: Motion,
+    pub(crate) bit: u32,
+}
+
+thread_local! {
+    /// What is wrong with the next game that is made in this thread.
+    pub(crate) static FAULT: Cell<Option<Fault>> = const { Cell::new(None) };
 }
 
 /// The bit of a seat without a player.
@@ -49,7 +66,7 @@ impl Pushers {
             let disc = ShapeDef::new(Geometry::circle(fx!(0.6))?).restitution(fx!(0.8));
             discs.push(world.spawn(&body.velocity(velocity.x, velocity.y), &[disc])?);
         }
-        Ok(Pushers { world, discs, tick_rate: setup.tick_rate })
+        Ok(Pushers { world, discs, tick_rate: setup.tick_rate, fault: FAULT.take() })
     }
 }
 
@@ -86,6 +103,9 @@ impl Game for Pushers {
             let _ = self.world.apply_force(*disc, push, at);
         }
         self.world.step();
+        if let Some(fault) = self.fault.filter(|fault| fault.tick == self.world.tick()) {
+            let _ = self.world.flip_bit(self.discs[fault.disc], fault.motion, fault.bit);
+        }
     }
 
     fn state_hash(&self) -> StateHash {
@@ -102,6 +122,10 @@ impl Game for Pushers {
 
     fn work(&self, _: &[u8]) -> u64 {
         100
+    }
+
+    fn world_mut(&mut self) -> Option<&mut World> {
+        Some(&mut self.world)
     }
 
     fn absent() -> u8 {

@@ -138,7 +138,7 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
 
     fn new(setup: &G::Setup, options: Options, transport: T) -> Result<Self, NetError> {
         let mut driver = Driver::start(setup, options.checkpoint_interval)?;
-        driver.remember(options.doubt());
+        driver.remember(options.memory());
         if options.window() == 0 {
             driver = driver.with_echo(options.check_interval.into());
         }
@@ -319,6 +319,14 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
     #[must_use]
     pub const fn history(&self) -> &History<G> {
         self.driver.history()
+    }
+
+    /// What this peer knows of a divergence, as bytes for a file. Two of them, from any two peers, tell who departed, when
+    /// and where: `lockstep2d diff`, or [`report::compare`](crate::report::compare).
+    #[must_use]
+    pub fn report(&self, divergence: &Divergence) -> Vec<u8> {
+        let seats = self.seat().into_iter().collect();
+        self.driver.report(divergence, seats, self.confirmed()).to_bytes()
     }
 
     /// The own seat, once there is one.
