@@ -13,10 +13,11 @@ use lockstep2d_shove::{START_RADIUS, Shove};
 use scenes::Matches;
 
 fn main() -> ExitCode {
-    if std::env::args_os().nth(1).is_some_and(|command| command == play::NAME) {
-        return play::run().into();
-    }
-    Tool::<Shove>::new().with_scenes(Matches).with_svg(draw_match).run()
+    Tool::<Shove>::new()
+        .with_scenes(Matches)
+        .with_svg(draw_match)
+        .with_command(play::command(), play::run)
+        .run()
 }
 
 /// The whole platform, with round and scores above.

@@ -8,13 +8,11 @@ use std::path::PathBuf;
 use std::thread;
 use std::time::Duration;
 
-use clap::{Args, Parser};
+use clap::{ArgMatches, Args, Command, FromArgMatches};
 use lockstep2d::hash::StateHash;
 use lockstep2d::net::{Divergence, Event, Options, Peer, Udp};
 use lockstep2d_cli::Exit;
 use lockstep2d_shove::{Bot, Setup, Shove};
-
-pub(crate) const NAME: &str = "play";
 
 /// How long a peer stays for those who have not heard everything, when its match is over.
 const LINGER: Duration = Duration::from_secs(2);
@@ -22,8 +20,7 @@ const LINGER: Duration = Duration::from_secs(2);
 /// Plays a match over UDP: a bot has the pad.
 ///
 /// Exits with 0 after the last tick, with 1 if states differ, with 2 when the match cannot be played.
-#[derive(Debug, Parser)]
-#[command(name = "shove play")]
+#[derive(Debug, Args)]
 struct Arguments {
     #[command(flatten)]
     way: Way,
@@ -76,16 +73,18 @@ struct Way {
     watch: Option<String>,
 }
 
-type Udper = Peer<Shove, SocketAddr, Udp>;
+type Participant = Peer<Shove, SocketAddr, Udp>;
 
-/// Plays as the arguments of this process say.
-pub(crate) fn run() -> Exit {
-    let arguments = match Arguments::try_parse_from(std::env::args_os().skip(1)) {
+/// How it is called.
+pub(crate) fn command() -> Command {
+    Arguments::augment_args(Command::new("play"))
+}
+
+/// Plays as the arguments say.
+pub(crate) fn run(matches: &ArgMatches) -> Exit {
+    let arguments = match Arguments::from_arg_matches(matches) {
         Ok(arguments) => arguments,
-        Err(usage) => {
-            let _ = usage.print();
-            return if usage.use_stderr() { Exit::Trouble } else { Exit::Success };
-        }
+        Err(usage) => usage.exit(),
     };
     match play(&arguments) {
         Ok(None) => Exit::Success,
@@ -117,6 +116,9 @@ fn play(arguments: &Arguments) -> Result<Option<Divergence>, Box<dyn Error>> {
         while let Some(event) = peer.next_event() {
             if let (Event::Diverged(found), None) = (event, diverged) {
                 diverged = Some(found);
+                if let Some(path) = &arguments.report {
+                    std::fs::write(path, peer.report(&found))?;
+                }
             }
             tell(&peer, event);
         }
@@ -139,7 +141,7 @@ fn play(arguments: &Arguments) -> Result<Option<Divergence>, Box<dyn Error>> {
     Ok(diverged)
 }
 
-fn sit_down(arguments: &Arguments) -> Result<Udper, Box<dyn Error>> {
+fn sit_down(arguments: &Arguments) -> Result<Participant, Box<dyn Error>> {
     let setup = Setup { seats: arguments.seats, seed: arguments.seed, ..Setup::default() };
     let options = if arguments.lockstep { Options::lockstep() } else { Options::rollback() };
     let input_delay = arguments.input_delay.unwrap_or(options.input_delay);
@@ -161,7 +163,7 @@ fn resolve(address: &str) -> Result<SocketAddr, Box<dyn Error>> {
     first.ok_or_else(|| format!("{address}: no such address").into())
 }
 
-fn tell(peer: &Udper, event: Event) {
+fn tell(peer: &Participant, event: Event) {
     let name = peer.seat().map_or("spectator".into(), |seat| format!("seat {seat}"));
     match event {
         Event::Joined { seat, tick } => eprintln!("{name}: seat {seat} plays from tick {tick}"),
@@ -176,7 +178,7 @@ fn tell(peer: &Udper, event: Event) {
 
 fn say_end(
     arguments: &Arguments,
-    peer: &Udper,
+    peer: &Participant,
     ticks: u64,
     hash: Option<StateHash>,
     diverged: Option<Divergence>,
