@@ -178,11 +178,19 @@ impl<'a> Serializer for &'a mut Collector {
         Ok(())
     }
 
+    #[expect(
+        clippy::disallowed_types,
+        reason = "a serializer has to have this method; only the bits are kept"
+    )]
     fn serialize_f32(self, number: f32) -> Result<(), InspectError> {
         self.push(Value::Float(number.to_bits().into()));
         Ok(())
     }
 
+    #[expect(
+        clippy::disallowed_types,
+        reason = "a serializer has to have this method; only the bits are kept"
+    )]
     fn serialize_f64(self, number: f64) -> Result<(), InspectError> {
         self.push(Value::Float(number.to_bits()));
         Ok(())

@@ -104,7 +104,7 @@ fn every_format_is_known_by_its_fraction_bits() {
         bits(Ratio::ZERO),
         bits(Rate::ZERO),
         bits(Grip::ZERO),
-        bits(&&Fx::ZERO),
+        bits([Fx::ZERO]),
         bits(fixed::types::I64F0::ZERO),
     ];
     assert_eq!(found, [32, 22, 21, 27, 26, 30, 24, 18, 20, 32, 0].map(Some));

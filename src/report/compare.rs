@@ -71,10 +71,13 @@ pub fn compare<G: Game>(a: &Evidence, b: &Evidence, limits: &Limits) -> Result<C
     let mut found = Comparison::new();
     found.courses =
         [0, 1].map(|side: usize| Course { seats: known[side].seats.to_vec(), ..Course::default() });
-    found.groups = [a, b].into_iter().find_map(|evidence| match evidence {
-        Evidence::Report(report) => Some((report.tick(), report.groups())),
+    let report = [a, b].into_iter().find_map(|evidence| match evidence {
+        Evidence::Report(report) => Some(report),
         _ => None,
     });
+    if let Some(report) = report {
+        (found.checkpoint, found.groups) = (Some(report.tick()), report.groups());
+    }
     if known.iter().all(|known| !known.replay.is_empty()) {
         found.setup = setup_differences::<G>(&known, limits)?;
         if !found.setup.is_empty() {

@@ -4,7 +4,7 @@ use alloc::string::String;
 use alloc::vec::Vec;
 use core::fmt;
 
-use crate::hash::StateHash;
+use super::desync::Group;
 use crate::inspect::Difference;
 
 /// One of two files.
@@ -123,8 +123,10 @@ pub struct Comparison {
     pub things: Vec<Thing>,
     /// What explains all of it.
     pub explanation: Option<Explanation>,
-    /// Which seats agree at the checkpoint that a report was written for, the largest group first.
-    pub groups: Option<(u64, Vec<(StateHash, Vec<u32>)>)>,
+    /// The checkpoint that a report was written for.
+    pub checkpoint: Option<u64>,
+    /// Which seats agree there, the largest group first.
+    pub groups: Vec<Group>,
     /// What could not be found out, and why.
     pub notes: Vec<String>,
 }
@@ -142,7 +144,8 @@ impl Comparison {
             tick: None,
             things: Vec::new(),
             explanation: None,
-            groups: None,
+            checkpoint: None,
+            groups: Vec::new(),
             notes: Vec::new(),
         }
     }

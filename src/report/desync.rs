@@ -27,6 +27,15 @@ pub struct Desync {
     pub hashes: Vec<Option<StateHash>>,
 }
 
+/// Seats whose peers have the same state.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Group {
+    /// The hash of that state.
+    pub hash: StateHash,
+    /// The seats, in ascending order.
+    pub seats: Vec<u32>,
+}
+
 /// What a peer knows when states differ: two of them tell together who departed, when and where.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DesyncReport {
@@ -123,15 +132,15 @@ impl DesyncReport {
 
     /// Which seats agree at that checkpoint: the largest group first. Of three peers or more, that shows who departed.
     #[must_use]
-    pub fn groups(&self) -> Vec<(StateHash, Vec<u32>)> {
+    pub fn groups(&self) -> Vec<Group> {
         let mut groups: BTreeMap<StateHash, Vec<u32>> = BTreeMap::new();
         for (seat, hash) in (0..).zip(&self.body.hashes) {
             if let Some(hash) = hash {
                 groups.entry(*hash).or_default().push(seat);
             }
         }
-        let mut groups: Vec<_> = groups.into_iter().collect();
-        groups.sort_by_key(|(_, seats)| core::cmp::Reverse(seats.len()));
+        let mut groups: Vec<Group> = groups.into_iter().map(|(hash, seats)| Group { hash, seats }).collect();
+        groups.sort_by_key(|group| core::cmp::Reverse(group.seats.len()));
         groups
     }
 

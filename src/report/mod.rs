@@ -18,5 +18,5 @@ mod suspect;
 pub use bytes::{REPORT_FORMAT_VERSION, REPORT_MAGIC, ReportError, ReportFlaw};
 pub use compare::{CompareError, compare};
 pub use comparison::{Blame, Comparison, Course, Explanation, InputDifference, Side, Thing};
-pub use desync::{Desync, DesyncReport, SAVES_BYTES_MAX};
+pub use desync::{Desync, DesyncReport, Group, SAVES_BYTES_MAX};
 pub use evidence::{Evidence, EvidenceError};

@@ -34,7 +34,7 @@ fn whatever_bit_of_a_state_differs_is_a_field() {
             // Most bits make a state that is impossible.
             let Ok(other) = World::from_bytes(&changed) else { continue };
             let found = differences(&before, &view(&other));
-            assert!((1..=8).contains(&found.len()), "{name}: {} fields for one bit", found.len());
+            assert!(!found.is_empty(), "{name}: a bit that is not in the view");
             told += 1;
         }
         assert!(told > 50, "{name}: only {told} states were possible");

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use lockstep2d::inspect::{Difference, Value};
-use lockstep2d::report::{Blame, Comparison, Course, Side};
+use lockstep2d::report::{Blame, Comparison, Course, Group, Side};
 use serde_json::{Value as Json, json};
 
 pub(super) fn document(a: &Path, b: &Path, found: &Comparison) -> String {
@@ -19,11 +19,8 @@ pub(super) fn document(a: &Path, b: &Path, found: &Comparison) -> String {
     let explanation = found.explanation.as_ref().map(
         |one| json!({"tick": one.tick, "path": one.path, "bit": one.bit, "fields": fields(&one.differences)}),
     );
-    let groups = found.groups.as_ref().map(|(tick, groups)| {
-        let groups: Vec<Json> =
-            groups.iter().map(|(hash, seats)| json!({"hash": hash.to_string(), "seats": seats})).collect();
-        json!({"tick": tick, "groups": groups})
-    });
+    let group = |group: &Group| json!({"hash": group.hash.to_string(), "seats": group.seats});
+    let groups: Vec<Json> = found.groups.iter().map(group).collect();
     let document = json!({
         "equal": found.is_equal(),
         "last_equal": found.last_equal,
@@ -32,7 +29,8 @@ pub(super) fn document(a: &Path, b: &Path, found: &Comparison) -> String {
         "rerun": found.rerun,
         "a": side(a, &found.courses[0]),
         "b": side(b, &found.courses[1]),
-        "checkpoint": groups,
+        "checkpoint": found.checkpoint,
+        "groups": groups,
         "setup": fields(&found.setup),
         "input": input,
         "explanation": explanation,

@@ -4,7 +4,7 @@ use std::fmt;
 use std::path::Path;
 
 use lockstep2d::inspect::Difference;
-use lockstep2d::report::{Blame, Comparison, Course, Side, Thing};
+use lockstep2d::report::{Blame, Comparison, Course, Group, Side, Thing};
 
 use crate::console::{BAD, DOUBTFUL, GOOD};
 use crate::files::Shown;
@@ -54,8 +54,8 @@ impl Text<'_> {
 
     fn who(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let found = self.found;
-        if let Some((tick, groups)) = found.groups.as_ref().filter(|(_, groups)| groups.len() > 1) {
-            for (hash, seats) in groups {
+        if let Some(tick) = found.checkpoint.filter(|_| found.groups.len() > 1) {
+            for Group { hash, seats } in &found.groups {
                 write!(f, "\nat tick {tick} {} {} {hash}", SeatList(seats), has(seats))?;
             }
         }
