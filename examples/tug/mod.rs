@@ -8,7 +8,7 @@ use lockstep2d::math::{Fx, Vec2};
 use lockstep2d::world::{Config, Snapshot, World};
 
 /// A ball that two players push.
-pub struct Tug {
+pub(crate) struct Tug {
     world: World,
     ball: BodyId,
 }
@@ -22,7 +22,7 @@ impl Tug {
     }
 
     /// Where the ball is.
-    pub fn position(&self) -> Vec2<Fx> {
+    pub(crate) fn position(&self) -> Vec2<Fx> {
         self.world.body(self.ball).map_or(Vec2::ZERO, |body| body.position())
     }
 }

@@ -151,6 +151,10 @@ impl Game for Shove {
         self.rules.clone_from(&save.rules);
     }
 
+    fn world_mut(&mut self) -> Option<&mut World> {
+        Some(&mut self.world)
+    }
+
     /// Like the sandbox's: what is solved, and pairs that are not there yet. A new round may add every player and
     /// crate.
     fn work(&self, _: &[Pad]) -> u64 {

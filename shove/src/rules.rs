@@ -163,7 +163,7 @@ impl Rules {
     /// As the round goes on, the platform loses rings.
     fn crumble(&mut self, world: &mut World) -> Result<(), WorldError> {
         let elapsed = FIGHT.saturating_sub(self.ticks_left);
-        let due = elapsed >= FIRST_RING && (elapsed - FIRST_RING) % RING == 0;
+        let due = elapsed >= FIRST_RING && (elapsed - FIRST_RING).is_multiple_of(RING);
         if due && self.rings < arena::RINGS {
             self.rings += 1;
             arena::draw_platform(world, arena::radius(self.rings))?;
