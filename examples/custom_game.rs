@@ -1,83 +1,12 @@
 //! A game of its own that records itself and verifies the recording: `cargo run --example custom_game`.
-//!
-//! Two players push one ball; its distance from the start is what the replay claims.
+
+mod tug;
 
 use std::error::Error;
 
-use lockstep2d::body::{BodyDef, BodyId, Geometry, ShapeDef, WorldError};
-use lockstep2d::fx;
-use lockstep2d::hash::StateHash;
-use lockstep2d::lockstep::{Game, RulesId, SetupError};
-use lockstep2d::math::{Fx, Vec2};
 use lockstep2d::replay::{CHECKPOINT_INTERVAL, Limits, Recording, verify};
-use lockstep2d::world::{Config, Snapshot, World};
 
-struct Tug {
-    world: World,
-    ball: BodyId,
-}
-
-impl Tug {
-    fn build() -> Result<Self, WorldError> {
-        let mut world = World::new(Config { gravity: Vec2::ZERO, ..Config::default() })?;
-        let ball = ShapeDef::new(Geometry::circle(fx!(0.5))?);
-        let ball = world.spawn(&BodyDef::dynamic().linear_damping(fx!(0.5)), &[ball])?;
-        Ok(Tug { world, ball })
-    }
-
-    fn position(&self) -> Vec2<Fx> {
-        self.world.body(self.ball).map_or(Vec2::ZERO, |body| body.position())
-    }
-}
-
-impl Game for Tug {
-    type Setup = ();
-    /// How hard a player pushes to the right, in N.
-    type Input = i8;
-    type Save = Snapshot;
-
-    const RULES: RulesId = RulesId { name: "tug", version: 1 };
-
-    fn new((): &()) -> Result<Self, SetupError> {
-        Tug::build().map_err(|error| SetupError { why: error.to_string() })
-    }
-
-    fn players(&self) -> u32 {
-        2
-    }
-
-    fn tick_rate(&self) -> u32 {
-        60
-    }
-
-    fn step(&mut self, inputs: &[i8]) {
-        let force = inputs.iter().map(|&push| Fx::from(push)).sum();
-        // The ball is always there; if it were not, a player could do nothing about it.
-        let _ = self.world.apply_force(self.ball, Vec2::new(force, fx!(0)), self.position());
-        self.world.step();
-    }
-
-    /// `ball` never changes, so the state of the world is all there is.
-    fn state_hash(&self) -> StateHash {
-        self.world.state_hash()
-    }
-
-    fn save(&self) -> Snapshot {
-        self.world.save()
-    }
-
-    fn load(&mut self, save: &Snapshot) {
-        self.world.restore(save);
-    }
-
-    fn work(&self, _: &[i8]) -> u64 {
-        1
-    }
-
-    fn claims(&self) -> Vec<(String, i64)> {
-        vec![("metres".into(), self.position().x.to_num())]
-    }
-}
+use tug::Tug;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut recording = Recording::<Tug>::start(&(), CHECKPOINT_INTERVAL)?;

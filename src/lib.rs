@@ -8,6 +8,8 @@
 //! - [`math`]: numbers, vectors and angles, also for a game's own rules; [`fx!`] writes constants.
 //! - [`lockstep`]: [`lockstep::Game`], the seam that recording, verifying and tools are generic over.
 //! - [`replay`]: writes, reads and verifies replay files.
+//! - [`report`]: what a peer writes when states differ, and who departed, when and where.
+//! - [`inspect`]: any value as named fields, and what differs between two.
 //! - [`draw`]: pictures of a world. [`scenes`]: worlds that tests, replays and tools share.
 //! - [`hash`] and [`codec`]: what a state hash is made of.
 //!
@@ -36,9 +38,13 @@ pub mod codec;
 pub mod collision;
 pub mod draw;
 pub mod hash;
+pub mod inspect;
 pub mod lockstep;
 pub mod math;
+#[cfg(feature = "ggrs")]
+pub mod net;
 pub mod replay;
+pub mod report;
 pub mod scenes;
 pub mod solver;
 mod threads;

@@ -2,6 +2,8 @@
 //! tests included, and a path upwards fails.
 //!
 //! ```text
+//!           net
+//!          report
 //! scenes   replay
 //!       \  /
 //!     lockstep   draw
@@ -10,7 +12,7 @@
 //!           solver
 //!         collision
 //!            body
-//!   math, hash, codec, threads
+//! math, hash, codec, threads, inspect
 //! ```
 
 mod source;
@@ -23,6 +25,7 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("codec", &[]),
     ("hash", &["codec"]),
     ("threads", &[]),
+    ("inspect", &["math"]),
     ("body", &["math", "codec", "hash"]),
     ("collision", &["math", "codec", "hash", "body"]),
     ("solver", &["math", "codec", "hash", "threads", "body", "collision"]),
@@ -30,6 +33,11 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("draw", &["math", "codec", "hash", "body", "collision", "solver", "world"]),
     ("lockstep", &["math", "codec", "hash", "body", "collision", "solver", "world"]),
     ("replay", &["math", "codec", "hash", "body", "collision", "solver", "world", "lockstep"]),
+    (
+        "report",
+        &["math", "codec", "hash", "inspect", "body", "collision", "solver", "world", "lockstep", "replay"],
+    ),
+    ("net", &["math", "codec", "hash", "lockstep", "replay", "report"]),
     ("scenes", &["math", "codec", "hash", "body", "collision", "solver", "world", "lockstep"]),
 ];
 

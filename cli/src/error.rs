@@ -5,6 +5,7 @@ use std::io;
 use std::path::PathBuf;
 
 use lockstep2d::replay::{RecordError, Verdict};
+use lockstep2d::report::{CompareError, EvidenceError};
 
 use crate::exit::Exit;
 
@@ -27,6 +28,10 @@ pub(crate) enum CommandError {
     NoSuchTick { path: PathBuf, tick: u64, ticks: u64 },
     /// A replay cannot be played as far as was asked for.
     Replay { path: PathBuf, verdict: Verdict },
+    /// A file is nothing that can be compared.
+    Evidence { path: PathBuf, error: EvidenceError },
+    /// Two files cannot be compared with each other.
+    Compare(CompareError),
 }
 
 impl CommandError {
@@ -58,6 +63,8 @@ impl fmt::Display for CommandError {
                 write!(f, "{} has {ticks} ticks, there is no tick {tick}", Shown(path))
             }
             CommandError::Replay { path, verdict } => write!(f, "{}: {verdict}", Shown(path)),
+            CommandError::Evidence { path, error } => write!(f, "{}: {error}", Shown(path)),
+            CommandError::Compare(error) => write!(f, "cannot compare: {error}"),
         }
     }
 }

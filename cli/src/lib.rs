@@ -25,7 +25,7 @@
 //! }
 //! ```
 //!
-//! That gives `verify`. A game that has scenes to record and pictures to draw says so to a [`Tool`], which then has
+//! That gives `verify` and `diff`. A game that has scenes to record and pictures to draw says so to a [`Tool`], which then has
 //! `scenes`, `record` and `export` as well.
 
 mod commands;
@@ -46,7 +46,7 @@ pub use sandbox::SandboxScenes;
 pub use scenes::{Catalogue, Scene, SceneInfo, Script};
 pub use tool::Tool;
 
-/// The tools for a game without scenes: `verify`, with the arguments of this process.
+/// The tools for a game without scenes: `verify` and `diff`, with the arguments of this process.
 #[must_use]
 pub fn run<G: Game>() -> ExitCode {
     Tool::<G>::new().run()

@@ -8,7 +8,7 @@ use clap::{ArgMatches, Command};
 use lockstep2d::lockstep::Game;
 use lockstep2d::replay::Limits;
 
-use crate::commands::{export, record, scenes, verify};
+use crate::commands::{diff, export, record, scenes, verify};
 use crate::console::Console;
 use crate::error::CommandError;
 use crate::exit::Exit;
@@ -23,7 +23,12 @@ pub struct Tool<G: Game> {
     pub(crate) limits: Limits,
     pub(crate) catalogue: Option<Box<dyn Catalogue<G>>>,
     pub(crate) svg: Option<fn(&G) -> String>,
+    /// Commands of the game's own.
+    own: Vec<(Command, OwnCommand)>,
 }
+
+/// Does what a command of a game's own is asked to.
+type OwnCommand = fn(&ArgMatches) -> Exit;
 
 impl<G: Game> Default for Tool<G> {
     fn default() -> Self {
@@ -32,10 +37,10 @@ impl<G: Game> Default for Tool<G> {
 }
 
 impl<G: Game> Tool<G> {
-    /// The tools that every game has: `verify`.
+    /// The tools that every game has: `verify` and `diff`.
     #[must_use]
     pub fn new() -> Self {
-        Tool { limits: Limits::default(), catalogue: None, svg: None }
+        Tool { limits: Limits::default(), catalogue: None, svg: None, own: Vec::new() }
     }
 
     /// Sets how much a replay may cost.
@@ -54,6 +59,13 @@ impl<G: Game> Tool<G> {
     #[must_use]
     pub fn with_svg(self, svg: fn(&G) -> String) -> Self {
         Tool { svg: Some(svg), ..self }
+    }
+
+    /// Adds a command of the game's own; `run` does what its arguments say, and prints for itself.
+    #[must_use]
+    pub fn with_command(mut self, command: Command, run: fn(&ArgMatches) -> Exit) -> Self {
+        self.own.push((command, run));
+        self
     }
 
     /// Does what the arguments of this process say, with colours where a terminal shows them.
@@ -98,20 +110,24 @@ impl<G: Game> Tool<G> {
             .version(format!("rules version {}, engine semantics {engine}", rules.version))
             .subcommand_required(true)
             .arg_required_else_help(true)
-            .subcommand(verify::command());
+            .subcommand(verify::command())
+            .subcommand(diff::command());
         if self.catalogue.is_some() {
             command = command.subcommand(scenes::command()).subcommand(record::command());
         }
         if self.svg.is_some() {
             command = command.subcommand(export::command());
         }
-        command
+        command.subcommands(self.own.iter().map(|(own, _)| own.clone()))
     }
 
     fn dispatch(&self, matches: &ArgMatches, console: &mut Console<'_>) -> Result<Exit, CommandError> {
         match (matches.subcommand(), &self.catalogue, self.svg) {
             (Some((verify::NAME, matches)), _, _) => {
                 verify::run::<G>(&verify::arguments(matches), &self.limits, console)
+            }
+            (Some((diff::NAME, matches)), _, _) => {
+                diff::run::<G>(&diff::arguments(matches), &self.limits, console)
             }
             (Some((scenes::NAME, _)), Some(catalogue), _) => scenes::run(catalogue.as_ref(), console),
             (Some((record::NAME, matches)), Some(catalogue), _) => {
@@ -120,8 +136,12 @@ impl<G: Game> Tool<G> {
             (Some((export::NAME, matches)), _, Some(svg)) => {
                 export::run(&export::arguments(matches), svg, &self.limits, console)
             }
-            // clap has refused every other command.
-            _ => Ok(Exit::Trouble),
+            (Some((name, matches)), _, _) => {
+                let own = self.own.iter().find(|(own, _)| own.get_name() == name);
+                // clap has refused every other command.
+                Ok(own.map_or(Exit::Trouble, |(_, run)| run(matches)))
+            }
+            (None, _, _) => Ok(Exit::Trouble),
         }
     }
 }

@@ -9,6 +9,7 @@ pub mod generator;
 pub mod joints;
 pub mod lockstep;
 pub mod mirror;
+pub mod packets;
 pub mod questions;
 pub mod settings;
 pub mod shapes;

@@ -2,7 +2,7 @@
 //! their scenes are full of contacts.
 
 use lockstep2d::math::Rng;
-use lockstep2d_fuzz::{broad_phases, lockstep, questions, snapshots, verdicts};
+use lockstep2d_fuzz::{broad_phases, lockstep, packets, questions, snapshots, verdicts};
 
 fn random_inputs(count: u64) -> impl Iterator<Item = Vec<u8>> {
     (0..count).map(|seed| {
@@ -67,4 +67,17 @@ fn broad_phases_find_the_same() {
     let pairs: u64 = random_inputs(200).map(|input| broad_phases::run(&input)).sum();
     println!("{pairs} pairs");
     assert!(pairs > 200 * 500, "only {pairs} pairs");
+}
+
+#[test]
+fn matches_go_on_whatever_comes() {
+    let (mut ticks, mut packets, mut stopped) = (0, 0, 0);
+    for input in random_inputs(300) {
+        let seen = packets::run(&input);
+        ticks += seen.ticks;
+        packets += seen.packets;
+        stopped += u64::from(seen.stopped);
+    }
+    println!("{ticks} ticks, {packets} packets, {stopped} of 300 stopped");
+    assert!(ticks > 100 * 50 && packets > 300 * 50, "{ticks} ticks, {packets} packets");
 }

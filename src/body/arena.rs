@@ -229,9 +229,19 @@ impl<T, H: Handle> Arena<T, H> {
         self.slots.get(slot as usize)?.value.as_ref()
     }
 
-    /// The handle of an occupied slot.
+    /// The handle of a slot: of its value or, if it is vacant, of its next one.
     pub(crate) fn handle_at(&self, slot: u32) -> H {
         H::from_parts(slot, self.slots[slot as usize].generation)
+    }
+
+    /// The handles that the next values get in vacant slots, the last one first.
+    pub(crate) fn free_handles(&self) -> impl Iterator<Item = H> {
+        self.free.iter().map(|&slot| self.handle_at(slot))
+    }
+
+    /// Number of slots whose generations are used up.
+    pub(crate) fn retired(&self) -> u32 {
+        self.retired
     }
 
     /// All values in slot order.

@@ -28,6 +28,7 @@ pub(crate) struct Pose {
 pub struct Body {
     pub(crate) kind: BodyKind,
     /// Centre of mass in the world.
+    #[serde(rename = "centre_of_mass")]
     pub(crate) centre: Vec2<Fx>,
     pub(crate) angle: Angle,
     /// Of the centre of mass.

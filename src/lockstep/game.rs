@@ -7,6 +7,7 @@ use core::fmt;
 use serde::{Serialize, de::DeserializeOwned};
 
 use crate::hash::StateHash;
+use crate::world::World;
 
 /// Which rules a replay was made with. Bump `version` whenever the same inputs give another state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,8 +41,9 @@ pub trait Game: Sized {
     type Setup: Serialize + DeserializeOwned;
     /// What one player contributes to one tick. `Default` is "nothing pressed".
     type Input: Clone + Default + PartialEq + Serialize + DeserializeOwned;
-    /// A copy of the state that [`Game::load`] returns to.
-    type Save;
+    /// A copy of the state that [`Game::load`] returns to: all of it, so that it can be sent to someone who was not
+    /// there, and compared with another machine's. In a format for people its names are those of a report.
+    type Save: Clone + Serialize + DeserializeOwned;
 
     /// The name and version of the rules.
     const RULES: RulesId;
@@ -83,6 +85,11 @@ pub trait Game: Sized {
     #[must_use]
     fn absent() -> Self::Input {
         Self::Input::default()
+    }
+
+    /// The physics world, if there is one, for tools that look into it. They change it only in games of their own.
+    fn world_mut(&mut self) -> Option<&mut World> {
+        None
     }
 
     /// What the game reports of itself at the end of a replay, such as a score or a time: at most 256 values with

@@ -1,10 +1,12 @@
 //! What makes a simulation a lockstep game: [`Game`], the seam that every tool is generic over.
 
 mod game;
+mod history;
 mod input_log;
 mod sandbox;
 
 pub use game::{Game, RulesId, SetupError};
+pub use history::{History, Past};
 pub(crate) use input_log::decode_inputs;
 pub use input_log::{EncodedInputs, InputError, InputLog};
-pub use sandbox::{Sandbox, SandboxSetup};
+pub use sandbox::{Sandbox, SandboxSave, SandboxSetup};

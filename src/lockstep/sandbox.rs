@@ -39,6 +39,15 @@ pub struct SandboxSetup {
     pub commands: Vec<Command>,
 }
 
+/// A copy of a sandbox.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SandboxSave {
+    /// The world.
+    pub world: Snapshot,
+    /// How many commands it has refused.
+    pub refused: u64,
+}
+
 impl Sandbox {
     /// The world.
     #[must_use]
@@ -62,7 +71,7 @@ impl Sandbox {
 impl Game for Sandbox {
     type Setup = SandboxSetup;
     type Input = Vec<Command>;
-    type Save = (Snapshot, u64);
+    type Save = SandboxSave;
 
     const RULES: RulesId = RulesId { name: "sandbox", version: 1 };
 
@@ -105,12 +114,16 @@ impl Game for Sandbox {
     }
 
     fn save(&self) -> Self::Save {
-        (self.world.save(), self.refused)
+        SandboxSave { world: self.world.save(), refused: self.refused }
     }
 
-    fn load(&mut self, (snapshot, refused): &Self::Save) {
-        self.world.restore(snapshot);
-        self.refused = *refused;
+    fn load(&mut self, save: &SandboxSave) {
+        self.world.restore(&save.world);
+        self.refused = save.refused;
+    }
+
+    fn world_mut(&mut self) -> Option<&mut World> {
+        Some(&mut self.world)
     }
 
     /// Bodies, pairs and joints times what is done for each in a tick. Shapes that have just been put on top of

@@ -31,6 +31,7 @@ mod playback;
 mod reader;
 mod recorder;
 mod recording;
+mod rerun;
 mod runs;
 mod verdict;
 
@@ -45,5 +46,6 @@ pub use playback::{Playback, Step, verify};
 pub use reader::{InputBlock, Part, ReadError, Reader, Trailer};
 pub use recorder::{CHECKPOINT_INTERVAL, RecordError, Recorder};
 pub use recording::Recording;
+pub use rerun::{Rerun, TickInputs};
 pub use runs::{Run, Runs};
 pub use verdict::{ClaimDifference, Mismatch, Verdict};

@@ -59,7 +59,7 @@ pub struct Playback<'a, G: Game> {
 
 /// How the file ends, known before the first tick is played.
 #[derive(Clone, Debug)]
-struct Ending {
+pub(super) struct Ending {
     ticks: u64,
     trailer: Option<Trailer>,
 }
@@ -215,7 +215,7 @@ impl<'a, G: Game> Playback<'a, G> {
 }
 
 /// Reads the file to its end.
-fn scan(mut reader: Reader<'_>) -> Result<Ending, ReadError> {
+pub(super) fn scan(mut reader: Reader<'_>) -> Result<Ending, ReadError> {
     loop {
         match reader.next_part()? {
             Some(Part::Inputs(_)) => {}
@@ -227,7 +227,7 @@ fn scan(mut reader: Reader<'_>) -> Result<Ending, ReadError> {
     }
 }
 
-fn check_rules<G: Game>(header: &Header<'_>) -> Result<(), Verdict> {
+pub(super) fn check_rules<G: Game>(header: &Header<'_>) -> Result<(), Verdict> {
     if header.semantics != crate::SEMANTICS {
         let why = Mismatch::Semantics { file: header.semantics, here: crate::SEMANTICS };
         return Err(Verdict::Unverifiable { why });
@@ -243,7 +243,7 @@ fn check_rules<G: Game>(header: &Header<'_>) -> Result<(), Verdict> {
 }
 
 /// The game before its first tick, if it is the one that the header describes.
-fn start<G: Game>(header: &Header<'_>) -> Result<G, Verdict> {
+pub(super) fn start<G: Game>(header: &Header<'_>) -> Result<G, Verdict> {
     let malformed = |offset, flaw| Verdict::Malformed { offset, flaw };
     let setup: G::Setup = codec::decode(header.setup)
         .ok()

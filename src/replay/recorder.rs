@@ -117,6 +117,17 @@ pub struct Recorder<G: Game> {
     game: PhantomData<fn(&G)>,
 }
 
+impl<G: Game> Clone for Recorder<G> {
+    fn clone(&self) -> Self {
+        Recorder {
+            finished: self.finished.clone(),
+            runs: self.runs.clone(),
+            last_run: self.last_run.clone(),
+            ..*self
+        }
+    }
+}
+
 impl<G: Game> Recorder<G> {
     /// Starts the game that `setup` describes, and its replay.
     ///
@@ -203,6 +214,17 @@ impl<G: Game> Recorder<G> {
     #[must_use]
     pub fn take_bytes(&mut self) -> Vec<u8> {
         core::mem::take(&mut self.finished)
+    }
+
+    /// The bytes that were not yet taken, and the block at hand as if the game ended here with this state: put behind
+    /// what was taken, a replay of all ticks so far. The recorder goes on as if nobody had asked.
+    #[must_use]
+    pub fn so_far(&self, state: StateHash) -> Vec<u8> {
+        let mut copy = self.clone();
+        if copy.block_ticks > 0 {
+            copy.finish_block(state);
+        }
+        copy.finished
     }
 
     /// Writes the last block and the trailer, and returns all bytes that were not yet taken.

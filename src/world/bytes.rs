@@ -75,17 +75,7 @@ impl World {
     /// The state as portable bytes: header, canonical encoding, hash. `docs/FORMAT.md` has the layout.
     #[must_use]
     pub fn to_bytes(&self) -> Vec<u8> {
-        let mut bytes = Vec::new();
-        bytes.extend_from_slice(&MAGIC);
-        bytes.extend_from_slice(&FORMAT.to_le_bytes());
-        bytes.extend_from_slice(&SEMANTICS.to_le_bytes());
-        bytes.extend_from_slice(&[0; 8]);
-        codec::encode_into(self.state.get(), &mut bytes);
-        let length = (bytes.len() - HEADER_LEN) as u64;
-        bytes[HEADER_LEN - 8..HEADER_LEN].copy_from_slice(&length.to_le_bytes());
-        let hash = StateHash::of_bytes(&bytes);
-        bytes.extend_from_slice(&hash.0.to_le_bytes());
-        bytes
+        state_to_bytes(self.state.get())
     }
 
     /// The world that [`World::to_bytes`] has written.
@@ -119,4 +109,19 @@ impl World {
         state.validate().map_err(SnapshotError::Invalid)?;
         Ok(World::of(state, Default::default()))
     }
+}
+
+/// [`World::to_bytes`] of a state.
+pub(super) fn state_to_bytes(state: &State) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    bytes.extend_from_slice(&MAGIC);
+    bytes.extend_from_slice(&FORMAT.to_le_bytes());
+    bytes.extend_from_slice(&SEMANTICS.to_le_bytes());
+    bytes.extend_from_slice(&[0; 8]);
+    codec::encode_into(state, &mut bytes);
+    let length = (bytes.len() - HEADER_LEN) as u64;
+    bytes[HEADER_LEN - 8..HEADER_LEN].copy_from_slice(&length.to_le_bytes());
+    let hash = StateHash::of_bytes(&bytes);
+    bytes.extend_from_slice(&hash.0.to_le_bytes());
+    bytes
 }

@@ -22,7 +22,7 @@ pub(crate) struct Input {
     pub(crate) mood: u8,
 }
 
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Counter {
     pub(crate) sum: i64,
     pub(crate) tick: u64,

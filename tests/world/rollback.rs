@@ -1,7 +1,8 @@
 //! Snapshots: whatever happened between a save and a restore, and whatever they share, the state comes back.
 
+use lockstep2d::codec;
 use lockstep2d::fx;
-use lockstep2d::lockstep::{Game, Sandbox};
+use lockstep2d::lockstep::{Game, Sandbox, SandboxSave, SandboxSetup};
 use lockstep2d::math::{Rng, Vec2};
 use lockstep2d::scenes;
 use lockstep2d::world::{Command, Snapshot, World};
@@ -162,4 +163,35 @@ fn random_numbers_and_clones_are_hashed_as_they_are() {
     twin.restore(&snapshot);
     world.restore(&snapshot);
     assert_eq!((twin.state_hash(), world.state_hash()), (before, before));
+}
+
+/// A snapshot travels as the bytes of its world, and is checked on arrival like these.
+#[test]
+fn snapshots_come_back_from_their_bytes() {
+    for name in ["ragdoll", "game", "box_stack"] {
+        let scene = scenes::Scene::find(name).expect("a scene");
+        let mut game = Sandbox::new(&scene.setup(1)).expect("a valid scene");
+        for tick in 0..60 {
+            game.step(&[scene.commands(tick, &game)]);
+        }
+        let save = game.save();
+        assert_eq!(save.world.to_bytes(), game.world().to_bytes(), "{name}");
+        let bytes = codec::encode(&save);
+        let back: SandboxSave = codec::decode(&bytes).expect("what was written");
+        assert_eq!(back, save, "{name}");
+        assert_eq!(codec::encode(&back), bytes, "{name}");
+        let mut other = Sandbox::new(&SandboxSetup::default()).expect("the default");
+        other.load(&back);
+        for tick in 60..70 {
+            game.step(&[scene.commands(tick, &game)]);
+            other.step(&[scene.commands(tick, &other)]);
+            assert_eq!(other.state_hash(), game.state_hash(), "{name}, tick {tick}");
+        }
+        for at in (0..bytes.len() - 8).step_by(bytes.len() / 100) {
+            let mut damaged = bytes.clone();
+            damaged[at] ^= 1;
+            assert!(codec::decode::<SandboxSave>(&damaged).is_err(), "{name}: byte {at} is another one");
+            assert!(codec::decode::<SandboxSave>(&bytes[..at]).is_err(), "{name}: cut after {at} bytes");
+        }
+    }
 }

@@ -5,6 +5,7 @@
 mod counter;
 
 mod binary;
+mod diff;
 mod export;
 mod record;
 mod verify;

@@ -7,6 +7,7 @@
 
 mod bodies;
 mod constraints;
+mod encoding;
 mod packing;
 mod resting;
 mod restore;

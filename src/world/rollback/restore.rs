@@ -11,7 +11,7 @@ use crate::world::state::State;
 
 /// Slots of which the caches know something else than the state has, in any order and more than once.
 #[derive(Default)]
-struct Stale {
+pub(super) struct Stale {
     /// Bodies that are elsewhere or other ones.
     bodies: Vec<u32>,
     /// Shapes with other boxes.
@@ -39,7 +39,7 @@ impl World {
     }
 }
 
-fn restore_state(state: &mut State, snapshot: &Snapshot, stale: &mut Stale) {
+pub(super) fn restore_state(state: &mut State, snapshot: &Snapshot, stale: &mut Stale) {
     let Snapshot { rest, bodies, shapes, joints, islands, resting, packed, digest: _, changes: _ } = snapshot;
     let Rest { config, tick, faults, pairs_left_out, removed_contacts, rng } = rest;
     let Packed { bodies: motions, boxes, joints: turns, contacts: heads, impulses } = packed;

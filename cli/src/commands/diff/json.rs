@@ -1,0 +1,81 @@
+//! A comparison as JSON.
+
+use std::path::Path;
+
+use lockstep2d::inspect::{Difference, Value};
+use lockstep2d::report::{Blame, Comparison, Course, Group, Side};
+use serde_json::{Value as Json, json};
+
+pub(super) fn document(a: &Path, b: &Path, found: &Comparison) -> String {
+    let things: Vec<Json> = found
+        .things
+        .iter()
+        .map(|thing| json!({"path": thing.path, "section": thing.section, "fields": fields(&thing.differences)}))
+        .collect();
+    let input = found
+        .input
+        .as_ref()
+        .map(|input| json!({"tick": input.tick, "seat": input.seat, "fields": fields(&input.differences)}));
+    let explanation = found.explanation.as_ref().map(
+        |one| json!({"tick": one.tick, "path": one.path, "bit": one.bit, "fields": fields(&one.differences)}),
+    );
+    let group = |group: &Group| json!({"hash": group.hash.to_string(), "seats": group.seats});
+    let groups: Vec<Json> = found.groups.iter().map(group).collect();
+    let document = json!({
+        "equal": found.is_equal(),
+        "last_equal": found.last_equal,
+        "first_different": found.first_different,
+        "blame": blame(found.blame),
+        "rerun": found.rerun,
+        "a": side(a, &found.courses[0]),
+        "b": side(b, &found.courses[1]),
+        "checkpoint": found.checkpoint,
+        "groups": groups,
+        "setup": fields(&found.setup),
+        "input": input,
+        "explanation": explanation,
+        "tick": found.tick,
+        "things": things,
+        "notes": found.notes,
+    });
+    document.to_string()
+}
+
+fn side(file: &Path, course: &Course) -> Json {
+    json!({
+        "file": file.display().to_string(),
+        "seats": course.seats,
+        "equal_until": course.equal_until,
+        "departs": course.departs,
+    })
+}
+
+fn blame(blame: Blame) -> &'static str {
+    match blame {
+        Blame::Nobody => "nobody",
+        Blame::Side(Side::A) => "a",
+        Blame::Side(Side::B) => "b",
+        Blame::Both => "both",
+        Blame::Unknown => "unknown",
+    }
+}
+
+fn fields(differences: &[Difference]) -> Vec<Json> {
+    let field = |difference: &Difference| {
+        json!({
+            "path": difference.field().path(),
+            "name": difference.field().name(),
+            "a": value(difference.a.as_ref()),
+            "b": value(difference.b.as_ref()),
+        })
+    };
+    differences.iter().map(field).collect()
+}
+
+/// A value as people read it and, of a number, its bits: as text, since they may be more than JSON's numbers hold.
+fn value(value: Option<&Value>) -> Json {
+    value.map_or(
+        Json::Null,
+        |value| json!({"text": value.to_string(), "bits": value.bits().map(|bits| bits.to_string())}),
+    )
+}

@@ -1,0 +1,168 @@
+//! A comparison for people.
+
+use std::fmt;
+use std::path::Path;
+
+use lockstep2d::inspect::Difference;
+use lockstep2d::report::{Blame, Comparison, Course, Group, Side, Thing};
+
+use crate::console::{BAD, DOUBTFUL, GOOD};
+use crate::files::Shown;
+
+/// A comparison, and of how many things it shows how they differ.
+pub(super) struct Text<'a> {
+    pub(super) found: &'a Comparison,
+    pub(super) sides: [&'a Path; 2],
+    pub(super) things: usize,
+}
+
+impl fmt::Display for Text<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.heads(f)?;
+        self.verdict(f)?;
+        self.who(f)?;
+        self.inputs(f)?;
+        self.what(f)?;
+        self.found.notes.iter().try_for_each(|note| write!(f, "\n{DOUBTFUL}note:{DOUBTFUL:#} {note}"))
+    }
+}
+
+impl Text<'_> {
+    fn heads(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (side, course) in Side::BOTH.into_iter().zip(&self.found.courses) {
+            writeln!(f, "{side}: {}{}", Shown(self.sides[side.index()]), Seats(course))?;
+        }
+        Ok(())
+    }
+
+    fn verdict(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let found = self.found;
+        match (found.last_equal, found.first_different) {
+            _ if found.is_equal() => {
+                write!(f, "{GOOD}equal{GOOD:#}")?;
+                found.last_equal.map_or(Ok(()), |tick| write!(f, " up to tick {tick}"))
+            }
+            _ if !found.setup.is_empty() => write!(f, "{BAD}different{BAD:#} from the setup on"),
+            (Some(last), Some(first)) => {
+                write!(f, "{BAD}different{BAD:#} at tick {first}, equal at tick {last}")
+            }
+            (None, Some(first)) => write!(f, "{BAD}different{BAD:#} at tick {first}"),
+            (Some(last), None) => write!(f, "{BAD}different{BAD:#}, equal states up to tick {last}"),
+            (None, None) => write!(f, "{BAD}different{BAD:#}"),
+        }
+    }
+
+    fn who(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let found = self.found;
+        if let Some(tick) = found.checkpoint.filter(|_| found.groups.len() > 1) {
+            for Group { hash, seats } in &found.groups {
+                write!(f, "\nat tick {tick} {} {} {hash}", SeatList(seats), has(seats))?;
+            }
+        }
+        match (found.rerun, found.blame) {
+            (None, _) | (_, Blame::Unknown) => {}
+            (Some(until), Blame::Nobody) => {
+                write!(f, "\nplayed again up to tick {until}: both kept to the rules")?
+            }
+            (Some(until), Blame::Side(side)) => {
+                let course = &found.courses[side.index()];
+                write!(f, "\nplayed again up to tick {until}: {BAD}{side} departed{BAD:#}{}", Seats(course))?;
+                course.departs.map_or(Ok(()), |tick| write!(f, " at tick {tick}"))?;
+            }
+            (Some(until), Blame::Both) => {
+                let [a, b] = [0, 1].map(|side: usize| found.courses[side].departs.unwrap_or_default());
+                write!(
+                    f,
+                    "\nplayed again up to tick {until}: {BAD}both departed{BAD:#}, A at tick {a}, B at tick {b}; are \
+                     these rules and this engine theirs?"
+                )?;
+            }
+        }
+        let Some(explanation) = &found.explanation else {
+            return Ok(());
+        };
+        let (tick, bit) = (explanation.tick, explanation.bit);
+        write!(f, "\nexplained by bit {bit} of one number, flipped after tick {tick}:")?;
+        explanation.differences.iter().try_for_each(|difference| write!(f, "\n    {}", Line(difference)))
+    }
+
+    fn inputs(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if !self.found.setup.is_empty() {
+            write!(f, "\nsetup")?;
+            self.found.setup.iter().try_for_each(|difference| write!(f, "\n    {}", Line(difference)))?;
+        }
+        let Some(input) = &self.found.input else {
+            return Ok(());
+        };
+        write!(f, "\n{BAD}other inputs{BAD:#}: after tick {}, of seat {}", input.tick, input.seat)?;
+        input.differences.iter().try_for_each(|difference| write!(f, "\n    {}", Line(difference)))
+    }
+
+    fn what(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let found = self.found;
+        if found.things.is_empty() {
+            return Ok(());
+        }
+        let sections: Vec<String> = found.sections().iter().map(|section| section.to_string()).collect();
+        match found.tick {
+            Some(tick) => write!(f, "\nstates after tick {tick}: ")?,
+            None => writeln!(f)?,
+        }
+        let count = found.things.len();
+        write!(
+            f,
+            "{count} {} in {}",
+            if count == 1 { "thing differs" } else { "things differ" },
+            sections.join(", ")
+        )?;
+        for Thing { path, differences, .. } in found.things.iter().take(self.things) {
+            write!(f, "\n  {path}")?;
+            differences.iter().try_for_each(|difference| write!(f, "\n    {}", Line(difference)))?;
+        }
+        match count.saturating_sub(self.things) {
+            0 => Ok(()),
+            more => write!(f, "\n  and {more} more (--things {count})"),
+        }
+    }
+}
+
+/// The name of a field within its thing and both values.
+struct Line<'a>(&'a Difference);
+
+impl fmt::Display for Line<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Line(difference) = self;
+        let value = |value: &Option<_>| match value {
+            Some(value) => format!("{value}"),
+            None => "nothing".into(),
+        };
+        let name = match difference.field().name() {
+            "" => "value",
+            name => name,
+        };
+        // Names and texts of a stranger's file must not reach the terminal as they are.
+        let text = format!("{name}: {} | {}", value(&difference.a), value(&difference.b));
+        write!(f, "{}", Shown(Path::new(&text)))
+    }
+}
+
+struct Seats<'a>(&'a Course);
+
+impl fmt::Display for Seats<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.0.seats.is_empty() { Ok(()) } else { write!(f, " ({})", SeatList(&self.0.seats)) }
+    }
+}
+
+struct SeatList<'a>(&'a [u32]);
+
+impl fmt::Display for SeatList<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let numbers: Vec<String> = self.0.iter().map(u32::to_string).collect();
+        write!(f, "{} {}", if numbers.len() == 1 { "seat" } else { "seats" }, numbers.join(", "))
+    }
+}
+
+fn has(seats: &[u32]) -> &'static str {
+    if seats.len() == 1 { "has" } else { "have" }
+}

@@ -1,0 +1,46 @@
+//! Two players with rollback: late inputs are guessed, and wrong guesses played again.
+//! `cargo run --features ggrs --example rollback_match`.
+
+mod tug;
+
+use std::error::Error;
+use std::time::{Duration, Instant};
+
+use lockstep2d::net::{Network, Options, Peer, Weather};
+use lockstep2d::replay::{Limits, verify};
+
+use tug::Tug;
+
+const TICKS: u64 = 300;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    // With `Udp::bind("0.0.0.0:7000")?` in place of a port, each peer can be a process of its own.
+    let network =
+        Network::new(Weather { latency: Duration::from_millis(60), loss: 10, ..Weather::default() }, 1);
+    let options = Options::rollback();
+    let mut peers = [
+        Peer::<Tug, _, _>::host(&(), options, network.port(0))?,
+        Peer::join(&(), options, network.port(1), 0, None)?,
+    ];
+    let start = Instant::now();
+    while peers.iter().any(|peer| peer.confirmed() < TICKS) {
+        let now = start.elapsed();
+        network.set_time(now);
+        for peer in &mut peers {
+            peer.update(now)?;
+            while let Some(event) = peer.next_event() {
+                println!("seat {:?}: {event:?}", peer.seat());
+            }
+            // Each pushes the ball its own way, now and then.
+            let force = if peer.seat() == Some(0) { 3 } else { -2 };
+            let push = if peer.tick() % 120 < 60 { force } else { 0 };
+            while peer.is_due() && peer.advance(push)? {}
+        }
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    for mut peer in peers {
+        let replay = [peer.take_replay(), peer.finish(TICKS)?].concat();
+        println!("{} bytes: {}", replay.len(), verify::<Tug>(&replay, &Limits::default()));
+    }
+    Ok(())
+}

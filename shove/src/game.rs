@@ -1,0 +1,181 @@
+//! [`Shove`]: the game.
+
+use lockstep2d::body::{Body, BodyId, ShapeId, WorldError};
+use lockstep2d::fx;
+use lockstep2d::hash::StateHash;
+use lockstep2d::lockstep::{Game, RulesId, SetupError};
+use lockstep2d::math::{Fx, Unit, Vec2, fx_mul};
+use lockstep2d::world::{Snapshot, World};
+use serde::{Deserialize, Serialize};
+
+use crate::arena::{self, Role};
+use crate::pad::Pad;
+use crate::rules::Rules;
+use crate::setup::Setup;
+
+/// How a player speeds up, in m/s²; damping ends it at 7.5 m/s.
+const ACCELERATION: Fx = fx!(9);
+/// What a dash adds, in m/s, and ticks until the next one.
+const DASH: Fx = fx!(8);
+const RECHARGE: u8 = 75;
+/// What a bumper adds, in m/s.
+const KICK: Fx = fx!(5);
+
+/// A match.
+#[derive(Clone, Debug)]
+pub struct Shove {
+    pub(crate) setup: Setup,
+    pub(crate) world: World,
+    pub(crate) rules: Rules,
+}
+
+/// A copy of the state of a match.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Save {
+    world: Snapshot,
+    rules: Rules,
+}
+
+impl Shove {
+    /// What the player of a seat does: speed up, dash.
+    fn drive(&mut self, seat: usize, pad: Pad) -> Result<(), WorldError> {
+        let Some(seat) = self.rules.seats.get_mut(seat) else { return Ok(()) };
+        seat.recharge = seat.recharge.saturating_sub(1);
+        let (Some(id), Some(direction)) = (seat.body, pad.direction()) else { return Ok(()) };
+        let Some(mass) = self.world.body(id).map(Body::mass) else { return Ok(()) };
+        let direction = direction.widen();
+        self.world.apply_force_to_centre(id, direction.scale(fx_mul(mass, ACCELERATION)))?;
+        if pad.has(Pad::DASH) && seat.recharge == 0 {
+            seat.recharge = RECHARGE;
+            self.world.apply_impulse_to_centre(id, direction.scale(fx_mul(mass, DASH)))?;
+        }
+        Ok(())
+    }
+
+    /// The body of a shape, and what it is.
+    fn owner(&self, shape: ShapeId) -> Option<(BodyId, Role)> {
+        let id = self.world.shape(shape)?.body();
+        Some((id, Role::of(self.world.body(id)?)))
+    }
+
+    /// Bumpers kick what has hit them.
+    fn kick(&mut self) -> Result<(), WorldError> {
+        let kicked = |shape, bumper, away: Vec2<Unit>| {
+            let ((body, _), (_, role)) = (self.owner(shape)?, self.owner(bumper)?);
+            (role == Role::Bumper).then_some((body, away))
+        };
+        let hits = self.world.events().hits.iter();
+        let kicked: Vec<_> = hits
+            .filter_map(|hit| {
+                let (a, b) = (hit.shape_a, hit.shape_b);
+                kicked(b, a, hit.normal).or_else(|| kicked(a, b, -hit.normal))
+            })
+            .collect();
+        for (body, away) in kicked {
+            let mass = self.world.body(body).map_or(Fx::ZERO, Body::mass);
+            self.world.apply_impulse_to_centre(body, away.widen().scale(fx_mul(mass, KICK)))?;
+        }
+        Ok(())
+    }
+
+    /// Plates charge the dash of who has just come over them.
+    fn charge(&mut self) {
+        for event in &self.world.events().sensor_begin {
+            if let Some((_, Role::Player(seat))) = self.owner(event.visitor) {
+                if let Some(seat) = self.rules.seats.get_mut(usize::from(seat)) {
+                    seat.recharge = 0;
+                }
+            }
+        }
+    }
+
+    /// A tick, up to the first change that the world refuses: none, unless the state came from a stranger.
+    fn try_step(&mut self, pads: &[Pad]) -> Result<(), WorldError> {
+        self.rules.advance(&mut self.world, self.setup.rounds)?;
+        if self.rules.is_on() {
+            for (seat, &pad) in pads.iter().enumerate() {
+                self.drive(seat, pad)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Game for Shove {
+    type Setup = Setup;
+    type Input = Pad;
+    type Save = Save;
+
+    const RULES: RulesId = RulesId { name: "shove", version: 1 };
+
+    fn new(setup: &Setup) -> Result<Self, SetupError> {
+        setup.check()?;
+        let world = arena::build().map_err(|error| SetupError { why: error.to_string() })?;
+        Ok(Shove { setup: *setup, world, rules: Rules::new(setup.seed) })
+    }
+
+    fn players(&self) -> u32 {
+        self.setup.seats.into()
+    }
+
+    fn tick_rate(&self) -> u32 {
+        arena::TICK_RATE
+    }
+
+    fn step(&mut self, inputs: &[Pad]) {
+        for seat in 0..self.seats() {
+            let present = inputs.get(seat).is_some_and(|pad| !pad.is_absent());
+            self.rules.seat(&mut self.world, seat, present);
+        }
+        let pads = &inputs[..inputs.len().min(self.seats())];
+        // A world that a stranger has made up may refuse what follows. The tick then goes on without it, on every
+        // machine alike.
+        let _ = self.try_step(pads);
+        self.world.step();
+        self.charge();
+        let _ = self.kick();
+        let fallen = arena::drop_outside(&mut self.world, arena::radius(self.rules.rings));
+        self.rules.fall(&fallen);
+    }
+
+    fn state_hash(&self) -> StateHash {
+        StateHash::of_digests([self.world.state_hash(), StateHash::of(&self.rules)])
+    }
+
+    fn save(&self) -> Save {
+        Save { world: self.world.save(), rules: self.rules.clone() }
+    }
+
+    fn load(&mut self, save: &Save) {
+        self.world.restore(&save.world);
+        self.rules.clone_from(&save.rules);
+    }
+
+    fn world_mut(&mut self) -> Option<&mut World> {
+        Some(&mut self.world)
+    }
+
+    /// Like the sandbox's: what is solved, and pairs that are not there yet. A new round may add every player and
+    /// crate.
+    fn work(&self, _: &[Pad]) -> u64 {
+        let count = |n: usize| u64::try_from(n).unwrap_or(u64::MAX);
+        let limits = self.world.config();
+        let bodies = u64::from(limits.body_limit) + u64::from(limits.shape_limit);
+        let constraints = count(self.world.pair_count()).saturating_add(count(self.world.joint_count()));
+        let shapes = u64::from(limits.shape_limit);
+        let rounds = u64::from(limits.solver.sub_steps) * u64::from(limits.solver.iterations);
+        bodies
+            .saturating_add(constraints)
+            .saturating_mul(rounds)
+            .saturating_add(shapes.saturating_mul(shapes))
+    }
+
+    fn absent() -> Pad {
+        Pad::ABSENT
+    }
+
+    fn claims(&self) -> Vec<(String, i64)> {
+        let scores = (1..).zip(self.players_in_order());
+        scores.map(|(number, player)| (format!("score {number}"), player.score.into())).collect()
+    }
+}

@@ -1,0 +1,209 @@
+//! `shove play`: a match over UDP, in which a bot has the pad.
+
+use std::error::Error;
+use std::fs::File;
+use std::io::Write;
+use std::net::{SocketAddr, ToSocketAddrs};
+use std::path::PathBuf;
+use std::thread;
+use std::time::Duration;
+
+use clap::{ArgMatches, Args, Command, FromArgMatches};
+use lockstep2d::hash::StateHash;
+use lockstep2d::net::{Divergence, Event, Options, Peer, Udp};
+use lockstep2d_cli::Exit;
+use lockstep2d_shove::{Bot, Setup, Shove};
+
+/// How long a peer stays for those who have not heard everything, when its match is over.
+const LINGER: Duration = Duration::from_secs(2);
+
+/// Plays a match over UDP: a bot has the pad.
+///
+/// Exits with 0 after the last tick, with 1 if states differ, with 2 when the match cannot be played.
+#[derive(Debug, Args)]
+struct Arguments {
+    #[command(flatten)]
+    way: Way,
+    /// Where packets come in, if not at any free port.
+    #[arg(long, value_name = "ADDRESS")]
+    bind: Option<String>,
+    /// The seat to ask for.
+    #[arg(long)]
+    seat: Option<u32>,
+    /// How many players the first tick waits for; of interest to the host only.
+    #[arg(long, default_value_t = 2)]
+    players: u32,
+    /// Seats of the match.
+    #[arg(long, default_value_t = 4)]
+    seats: u8,
+    /// What the placing of players and crates is drawn from.
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+    /// Waits for late inputs instead of guessing them.
+    #[arg(long)]
+    lockstep: bool,
+    /// After how many ticks an input takes effect.
+    #[arg(long, value_name = "TICKS")]
+    input_delay: Option<u8>,
+    /// Ends after so many ticks; otherwise the match goes on until somebody stops it.
+    #[arg(long)]
+    ticks: Option<u64>,
+    /// Where to write the replay.
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// Where to write a report when states differ.
+    #[arg(long, value_name = "FILE")]
+    report: Option<PathBuf>,
+    /// Writes one line of JSON at the end.
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Debug, Args)]
+#[group(required = true, multiple = false)]
+struct Way {
+    /// Opens a match at this address.
+    #[arg(long, value_name = "ADDRESS")]
+    host: Option<String>,
+    /// Takes part in the match at this address.
+    #[arg(long, value_name = "ADDRESS")]
+    join: Option<String>,
+    /// Watches the match at this address.
+    #[arg(long, value_name = "ADDRESS")]
+    watch: Option<String>,
+}
+
+type Participant = Peer<Shove, SocketAddr, Udp>;
+
+/// How it is called.
+pub(crate) fn command() -> Command {
+    Arguments::augment_args(Command::new("play"))
+}
+
+/// Plays as the arguments say.
+pub(crate) fn run(matches: &ArgMatches) -> Exit {
+    let arguments = match Arguments::from_arg_matches(matches) {
+        Ok(arguments) => arguments,
+        Err(usage) => usage.exit(),
+    };
+    match play(&arguments) {
+        Ok(None) => Exit::Success,
+        Ok(Some(_)) => Exit::NoMatch,
+        Err(error) => {
+            eprintln!("error: {error}");
+            Exit::Trouble
+        }
+    }
+}
+
+/// Plays the match and returns the first divergence.
+fn play(arguments: &Arguments) -> Result<Option<Divergence>, Box<dyn Error>> {
+    let mut peer = sit_down(arguments)?;
+    let mut file = arguments.output.as_ref().map(File::create).transpose()?;
+    let mut diverged = None;
+    let mut bot = None;
+    let clock = Clock::start();
+    let ticks = arguments.ticks.unwrap_or(u64::MAX);
+    while peer.confirmed() < ticks {
+        peer.update(clock.now())?;
+        while peer.is_due() {
+            let seat = peer.seat().and_then(|seat| u8::try_from(seat).ok()).unwrap_or(0);
+            let pad = bot.get_or_insert_with(|| Bot::new(arguments.seed, seat)).pad(peer.game());
+            if !peer.advance(pad)? {
+                break;
+            }
+        }
+        while let Some(event) = peer.next_event() {
+            if let (Event::Diverged(found), None) = (event, diverged) {
+                diverged = Some(found);
+                if let Some(path) = &arguments.report {
+                    std::fs::write(path, peer.report(&found))?;
+                }
+            }
+            tell(&peer, event);
+        }
+        if let Some(file) = &mut file {
+            file.write_all(&peer.take_replay())?;
+        }
+        thread::sleep(Duration::from_millis(1));
+    }
+    let hash = peer.history().get(ticks).map(|moment| moment.hash);
+    say_end(arguments, &peer, ticks, hash, diverged);
+    let end = clock.now() + LINGER;
+    while clock.now() < end {
+        peer.update(clock.now())?;
+        thread::sleep(Duration::from_millis(5));
+    }
+    let rest = peer.finish(ticks)?;
+    if let Some(file) = &mut file {
+        file.write_all(&rest)?;
+    }
+    Ok(diverged)
+}
+
+fn sit_down(arguments: &Arguments) -> Result<Participant, Box<dyn Error>> {
+    let setup = Setup { seats: arguments.seats, seed: arguments.seed, ..Setup::default() };
+    let options = if arguments.lockstep { Options::lockstep() } else { Options::rollback() };
+    let input_delay = arguments.input_delay.unwrap_or(options.input_delay);
+    let options = Options { input_delay, ..options }.start_with(arguments.players);
+    let Way { host, join, watch } = &arguments.way;
+    let contact = join.as_ref().or(watch.as_ref()).map(|address| resolve(address)).transpose()?;
+    let anywhere = if contact.is_some_and(|contact| contact.is_ipv6()) { "[::]:0" } else { "0.0.0.0:0" };
+    let bind = host.as_ref().or(arguments.bind.as_ref()).map_or(anywhere, String::as_str);
+    let udp = Udp::bind(resolve(bind)?)?;
+    Ok(match contact {
+        None => Peer::host(&setup, options, udp)?,
+        Some(contact) if watch.is_some() => Peer::watch(&setup, options, udp, contact)?,
+        Some(contact) => Peer::join(&setup, options, udp, contact, arguments.seat)?,
+    })
+}
+
+fn resolve(address: &str) -> Result<SocketAddr, Box<dyn Error>> {
+    let first = address.to_socket_addrs().map_err(|error| format!("{address}: {error}"))?.next();
+    first.ok_or_else(|| format!("{address}: no such address").into())
+}
+
+fn tell(peer: &Participant, event: Event) {
+    let name = peer.seat().map_or("spectator".into(), |seat| format!("seat {seat}"));
+    match event {
+        Event::Joined { seat, tick } => eprintln!("{name}: seat {seat} plays from tick {tick}"),
+        Event::Left { seat, tick } => eprintln!("{name}: seat {seat} is empty from tick {tick}"),
+        Event::Interrupted { seat } => eprintln!("{name}: nothing comes from seat {seat}"),
+        Event::Resumed { seat } => eprintln!("{name}: seat {seat} is back"),
+        Event::Diverged(Divergence { tick, seat, ours, theirs }) => {
+            eprintln!("{name}: after tick {tick} the state is {ours} here and {theirs} at seat {seat}");
+        }
+    }
+}
+
+fn say_end(
+    arguments: &Arguments,
+    peer: &Participant,
+    ticks: u64,
+    hash: Option<StateHash>,
+    diverged: Option<Divergence>,
+) {
+    let hash = hash.map(|hash| hash.to_string());
+    if arguments.json {
+        let diverged = diverged.map(|found| found.tick);
+        let line =
+            serde_json::json!({ "seat": peer.seat(), "ticks": ticks, "hash": hash, "diverged": diverged });
+        println!("{line}");
+    } else {
+        println!("{ticks} ticks, state {}", hash.unwrap_or_default());
+    }
+}
+
+/// The time since the match was opened.
+struct Clock(#[expect(clippy::disallowed_types, reason = "the clock of this process")] std::time::Instant);
+
+impl Clock {
+    fn start() -> Self {
+        #[expect(clippy::disallowed_types, reason = "the clock of this process")]
+        Clock(std::time::Instant::now())
+    }
+
+    fn now(&self) -> Duration {
+        self.0.elapsed()
+    }
+}

@@ -1,0 +1,188 @@
+//! What a match remembers beside the world, and how rounds follow each other.
+
+use lockstep2d::body::{BodyId, WorldError};
+use lockstep2d::math::Rng;
+use lockstep2d::world::World;
+use serde::{Deserialize, Serialize};
+
+use crate::SEATS_MAX;
+use crate::arena;
+
+/// Ticks before a round in which nobody can move, of a round, and after it.
+const READY: u16 = 60;
+const FIGHT: u16 = 1200;
+const PAUSE: u16 = 75;
+/// Ticks into a round at which the first ring of the platform crumbles, and between two rings.
+const FIRST_RING: u16 = 180;
+const RING: u16 = 60;
+
+/// What is going on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Phase {
+    /// A round is about to begin: everybody stands still.
+    Ready,
+    /// A round.
+    Fight,
+    /// A round has ended.
+    Pause,
+    /// The match has ended. The world goes on, without players' moves.
+    Over,
+}
+
+/// A seat, taken or not. One above the number of players is never taken.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct Seat {
+    /// Whether somebody sits there.
+    pub(crate) present: bool,
+    /// Their body, until it falls.
+    pub(crate) body: Option<BodyId>,
+    /// Ticks until the next dash.
+    pub(crate) recharge: u8,
+    /// One point for each player whom they have outlived.
+    pub(crate) score: u32,
+    /// Rounds won.
+    pub(crate) won: u32,
+}
+
+/// The state of a match beside its world.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct Rules {
+    pub(crate) seats: [Seat; SEATS_MAX],
+    /// The number of the round, from 1; 0 before the first.
+    pub(crate) round: u8,
+    pub(crate) phase: Phase,
+    /// Ticks until the phase ends by itself.
+    pub(crate) ticks_left: u16,
+    /// Rings that have crumbled.
+    pub(crate) rings: u8,
+    /// How many began the round. With fewer than two it is practice, and does not count.
+    starters: u8,
+    rng: Rng,
+}
+
+impl Rules {
+    /// Before the first tick: a round begins as soon as it is known who is there.
+    pub(crate) fn new(seed: u64) -> Self {
+        Rules {
+            seats: [Seat::default(); SEATS_MAX],
+            round: 0,
+            phase: Phase::Pause,
+            ticks_left: 0,
+            rings: 0,
+            starters: 0,
+            rng: Rng::new(seed),
+        }
+    }
+
+    fn count(&self, which: impl Fn(&Seat) -> bool) -> u8 {
+        self.seats.iter().map(|seat| u8::from(which(seat))).sum()
+    }
+
+    fn is_practice(&self) -> bool {
+        self.starters < 2
+    }
+
+    /// Whether players move.
+    pub(crate) fn is_on(&self) -> bool {
+        matches!(self.phase, Phase::Fight | Phase::Pause)
+    }
+
+    /// Somebody sits down or gets up. Who leaves takes their body along, which is no fall; who comes gets one at the
+    /// next round, which begins at once if there was nobody to play against.
+    pub(crate) fn seat(&mut self, world: &mut World, seat: usize, present: bool) {
+        let Some(seat) = self.seats.get_mut(seat) else { return };
+        seat.present = present;
+        if let Some(body) = seat.body.filter(|_| !present) {
+            // It can only fail if the body is gone already.
+            let _ = world.despawn(body);
+            seat.body = None;
+        }
+    }
+
+    /// Counts a tick down, and goes on to the next phase when it is time.
+    pub(crate) fn advance(&mut self, world: &mut World, rounds: u8) -> Result<(), WorldError> {
+        self.ticks_left = self.ticks_left.saturating_sub(1);
+        let (present, standing) = (self.count(|seat| seat.present), self.count(|seat| seat.body.is_some()));
+        let is_decided = if self.is_practice() { standing < self.starters } else { standing < 2 };
+        let is_due = self.ticks_left == 0;
+        match self.phase {
+            Phase::Over => Ok(()),
+            _ if self.is_practice() && present > self.starters => self.begin_round(world),
+            Phase::Pause if is_due && self.round >= rounds && !self.is_practice() => {
+                self.phase = Phase::Over;
+                Ok(())
+            }
+            Phase::Pause if is_due => self.begin_round(world),
+            Phase::Ready if is_due => {
+                (self.phase, self.ticks_left) = (Phase::Fight, FIGHT);
+                Ok(())
+            }
+            Phase::Fight if is_due || is_decided => {
+                self.end_round(standing);
+                Ok(())
+            }
+            Phase::Fight => self.crumble(world),
+            Phase::Ready | Phase::Pause => Ok(()),
+        }
+    }
+
+    /// Everything is laid out anew, and everybody who is there gets a body.
+    fn begin_round(&mut self, world: &mut World) -> Result<(), WorldError> {
+        self.starters = self.count(|seat| seat.present);
+        self.round = self.round.saturating_add(u8::from(!self.is_practice()));
+        (self.phase, self.ticks_left, self.rings) = (Phase::Ready, READY, 0);
+        arena::draw_platform(world, arena::radius(0))?;
+        arena::lay_crates(world, &mut self.rng)?;
+        let first = self.rng.angle();
+        let mut places = [0, 1, 2, 3];
+        let places = &mut places[..self.starters.into()];
+        self.rng.shuffle(places);
+        let mut places = places.iter();
+        for (index, seat) in (0..).zip(&mut self.seats) {
+            if let Some(body) = seat.body.take() {
+                let _ = world.despawn(body);
+            }
+            seat.recharge = 0;
+            if seat.present {
+                let place = (places.next().copied().unwrap_or(0), self.starters);
+                seat.body = Some(arena::place_player(world, index, place, first)?);
+            }
+        }
+        Ok(())
+    }
+
+    fn end_round(&mut self, standing: u8) {
+        (self.phase, self.ticks_left) = (Phase::Pause, PAUSE);
+        if standing == 1 && !self.is_practice() {
+            for seat in self.seats.iter_mut().filter(|seat| seat.body.is_some()) {
+                seat.won = seat.won.saturating_add(1);
+            }
+        }
+    }
+
+    /// As the round goes on, the platform loses rings.
+    fn crumble(&mut self, world: &mut World) -> Result<(), WorldError> {
+        let elapsed = FIGHT.saturating_sub(self.ticks_left);
+        let due = elapsed >= FIRST_RING && (elapsed - FIRST_RING).is_multiple_of(RING);
+        if due && self.rings < arena::RINGS {
+            self.rings += 1;
+            arena::draw_platform(world, arena::radius(self.rings))?;
+        }
+        Ok(())
+    }
+
+    /// Some have fallen: whoever still stands gets a point for each, while it counts.
+    pub(crate) fn fall(&mut self, fallen: &[u8]) {
+        for &seat in fallen {
+            if let Some(seat) = self.seats.get_mut(usize::from(seat)) {
+                seat.body = None;
+            }
+        }
+        if self.phase == Phase::Fight {
+            let points = fallen.iter().fold(0u32, |points, _| points.saturating_add(1));
+            for seat in self.seats.iter_mut().filter(|seat| seat.body.is_some()) {
+                seat.score = seat.score.saturating_add(points);
+            }
+        }
+    }
+}

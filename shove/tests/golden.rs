@@ -1,0 +1,62 @@
+//! The committed matches verify, end in the committed hashes, and are what the bots still play.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use lockstep2d::replay::{Limits, Verdict, verify};
+use lockstep2d_shove::Shove;
+
+/// Scene, and state hash after 3000 ticks with seed 1, for the present semantics and version of the rules.
+const GOLDENS: [(&str, &str); 3] = [
+    ("duel", "ba32d2e1eee706b3a941e6c201f93b6e"),
+    ("match", "f19c004cab80ed44bdd802b64c989633"),
+    ("guests", "c161bd9130575bdf65603e40621ca7a5"),
+];
+
+fn replay(scene: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("replays").join(scene).with_extension("replay")
+}
+
+fn shove() -> Command {
+    Command::new(env!("CARGO_BIN_EXE_shove"))
+}
+
+#[test]
+fn every_replay_matches_and_ends_in_its_golden() {
+    for (scene, golden) in GOLDENS {
+        let bytes = fs::read(replay(scene)).expect("a replay for each golden");
+        match verify::<Shove>(&bytes, &Limits::default()) {
+            Verdict::Match { ticks, hash } => {
+                assert_eq!((ticks, hash.to_string().as_str()), (3000, golden), "{scene}");
+            }
+            other => panic!("{scene}: {other}"),
+        }
+    }
+    let folder = replay("match").with_file_name("");
+    let outcome = shove().arg("verify").arg(folder).output().expect("the binary runs");
+    let text = String::from_utf8_lossy(&outcome.stdout).into_owned();
+    assert!(outcome.status.success() && text.contains("3 of 3 files match"), "{text}");
+}
+
+#[test]
+fn every_replay_is_what_its_bots_play() {
+    for (scene, _) in GOLDENS {
+        let file = std::env::temp_dir().join(format!("shove-{}-{scene}.replay", std::process::id()));
+        let recorded = shove().args(["record", scene, "--seed", "1", "-o"]).arg(&file).output();
+        assert!(recorded.expect("the binary runs").status.success(), "{scene}");
+        let bytes = fs::read(&file).expect("what was just written");
+        let _ = fs::remove_file(&file);
+        let committed = fs::read(replay(scene)).expect("a replay for each golden");
+        assert!(bytes == committed, "{scene}: the recording differs from the committed one");
+    }
+}
+
+#[test]
+fn a_tick_is_drawn() {
+    let picture = shove().arg("export").arg(replay("match")).args(["--tick", "100", "--svg"]).output();
+    let picture = picture.expect("the binary runs");
+    assert!(picture.status.success());
+    let text = String::from_utf8_lossy(&picture.stdout).into_owned();
+    assert!(text.starts_with("<svg ") && text.contains("round 1 · Fight"), "{text}");
+}

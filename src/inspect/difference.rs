@@ -1,0 +1,97 @@
+//! What differs between two lists of fields.
+
+use alloc::collections::{BTreeMap, BTreeSet};
+use alloc::vec::Vec;
+use core::fmt;
+use core::ops::Range;
+
+use super::value::{Field, Value};
+
+/// A field that two values do not have in common.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Difference {
+    field: Field,
+    /// What the first has there, if anything.
+    pub a: Option<Value>,
+    /// What the second has there.
+    pub b: Option<Value>,
+}
+
+impl Difference {
+    fn new(field: &Field, a: Option<&Field>, b: Option<&Field>) -> Self {
+        let value = |field: &Field| field.value.clone();
+        Difference { field: field.clone(), a: a.map(value), b: b.map(value) }
+    }
+
+    /// Where it is; of one side, if the other has no such field. See [`Field::path`], and the other names there.
+    #[must_use]
+    pub fn field(&self) -> &Field {
+        &self.field
+    }
+}
+
+impl fmt::Display for Difference {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {} | {}", self.field.path(), OrNothing(self.a.as_ref()), OrNothing(self.b.as_ref()))
+    }
+}
+
+struct OrNothing<'a>(Option<&'a Value>);
+
+impl fmt::Display for OrNothing<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.0 {
+            Some(value) => value.fmt(f),
+            None => write!(f, "nothing"),
+        }
+    }
+}
+
+/// The fields that are not the same in both lists or are missing from one, in the order of the first; what only the
+/// second has comes where it has it.
+#[must_use]
+pub fn differences(a: &[Field], b: &[Field]) -> Vec<Difference> {
+    let (places_a, places_b) = (places(a), places(b));
+    let in_a: BTreeSet<_> = places_a.iter().collect();
+    let in_b: BTreeMap<_, usize> = places_b.iter().zip(0..).collect();
+    let mut found = Vec::new();
+    let mut passed = 0;
+    for (field, place) in a.iter().zip(&places_a) {
+        let Some(&at) = in_b.get(place) else {
+            found.push(Difference::new(field, Some(field), None));
+            continue;
+        };
+        found.extend(only_in_b(b, &places_b, &in_a, passed..at));
+        passed = passed.max(at);
+        if b[at].value != field.value {
+            found.push(Difference::new(field, Some(field), Some(&b[at])));
+        }
+    }
+    found.extend(only_in_b(b, &places_b, &in_a, passed..b.len()));
+    found
+}
+
+/// A path, and how often it has been there before: a map may have two keys that are written the same.
+type Place<'a> = (&'a str, u32);
+
+fn places(fields: &[Field]) -> Vec<Place<'_>> {
+    let mut places = Vec::with_capacity(fields.len());
+    let mut seen: BTreeMap<&str, u32> = BTreeMap::new();
+    for field in fields {
+        let before = seen.entry(field.path()).or_default();
+        places.push((field.path(), *before));
+        *before += 1;
+    }
+    places
+}
+
+/// The fields in a range of the second list that the first does not have.
+fn only_in_b<'a>(
+    b: &'a [Field],
+    places: &'a [Place<'a>],
+    in_a: &'a BTreeSet<&Place<'a>>,
+    range: Range<usize>,
+) -> impl Iterator<Item = Difference> + 'a {
+    let lacking = range.filter(|&at| !in_a.contains(&places[at]));
+    lacking.map(|at| Difference::new(&b[at], None, Some(&b[at])))
+}

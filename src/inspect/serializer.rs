@@ -1,0 +1,287 @@
+//! [`Collector`]: a serializer whose output is a list of fields.
+
+use alloc::format;
+use alloc::string::{String, ToString};
+use alloc::vec::Vec;
+use core::any::type_name;
+use core::fmt::{self, Display};
+
+use serde::{Serialize, Serializer};
+
+use super::DEPTH_MAX;
+use super::compound::Compound;
+use super::value::{Field, Value};
+use crate::math::Angle;
+
+/// Why a value cannot be looked at.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct InspectError {
+    /// What its `Serialize` says, or that it is nested too deep.
+    pub why: String,
+}
+
+impl fmt::Display for InspectError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "a value that cannot be looked at: {}", self.why)
+    }
+}
+
+impl core::error::Error for InspectError {}
+
+impl serde::ser::Error for InspectError {
+    fn custom<T: Display>(why: T) -> Self {
+        InspectError { why: why.to_string() }
+    }
+}
+
+/// What is known on the way through a value.
+#[derive(Default)]
+pub(super) struct Collector {
+    fields: Vec<Field>,
+    path: String,
+    thing: Option<(usize, usize)>,
+    depth: u32,
+    /// The type of the value at hand. It is for display only: what it is called decides how a number is written.
+    kind: &'static str,
+}
+
+impl Collector {
+    pub(super) fn into_fields(self) -> Vec<Field> {
+        self.fields
+    }
+
+    pub(super) fn count(&self) -> usize {
+        self.fields.len()
+    }
+
+    pub(super) fn push(&mut self, value: Value) {
+        self.fields.push(Field { path: self.path.clone(), thing: self.thing, value });
+    }
+
+    /// Adds a value at the path as it is.
+    pub(super) fn nested<T: Serialize + ?Sized>(&mut self, value: &T) -> Result<(), InspectError> {
+        if self.depth == DEPTH_MAX {
+            return Err(InspectError { why: format!("nested deeper than {DEPTH_MAX}") });
+        }
+        let kind = core::mem::replace(&mut self.kind, type_name::<T>());
+        self.depth += 1;
+        let result = value.serialize(&mut *self);
+        self.depth -= 1;
+        self.kind = kind;
+        result
+    }
+
+    /// Adds a value under a name.
+    pub(super) fn named<T: Serialize + ?Sized>(&mut self, name: &str, value: &T) -> Result<(), InspectError> {
+        self.within(|path| push_name(path, name), value)
+    }
+
+    /// Adds a value under a number.
+    pub(super) fn numbered<T: Serialize + ?Sized>(&mut self, at: u64, value: &T) -> Result<(), InspectError> {
+        self.within(|path| path.push_str(&format!("[{at}]")), value)
+    }
+
+    /// Adds the entry of a map: the outermost are the things that a report names.
+    pub(super) fn entry<T: Serialize + ?Sized>(&mut self, key: &str, value: &T) -> Result<(), InspectError> {
+        let (outer, section) = (self.thing, self.path.len());
+        let length = section + usize::from(section > 0) + key.len();
+        self.thing = outer.or(Some((length, section)));
+        let result = self.named(key, value);
+        self.thing = outer;
+        result
+    }
+
+    fn within<T: Serialize + ?Sized>(
+        &mut self,
+        extend: impl FnOnce(&mut String),
+        value: &T,
+    ) -> Result<(), InspectError> {
+        let length = self.path.len();
+        extend(&mut self.path);
+        let result = self.nested(value);
+        self.path.truncate(length);
+        result
+    }
+
+    /// The fraction bits of the fixed-point number at hand. The type's name spells them as binary digits, `B1` and `B0`.
+    pub(super) fn fraction_bits(&self) -> Option<u32> {
+        let name = self.kind.trim_start_matches('&').strip_prefix("fixed::")?;
+        let digits = name.split(|c: char| !c.is_alphanumeric()).filter_map(|word| match word {
+            "B0" => Some(0),
+            "B1" => Some(1),
+            _ => None,
+        });
+        let bits = digits.fold(0u32, |bits, digit| bits.saturating_mul(2).saturating_add(digit));
+        (name.contains("UTerm") && bits <= 128).then_some(bits)
+    }
+}
+
+fn push_name(path: &mut String, name: &str) {
+    if !path.is_empty() {
+        path.push('.');
+    }
+    path.push_str(name);
+}
+
+/// A key as text: its only value, or all of them.
+pub(super) fn key<T: Serialize + ?Sized>(key: &T) -> Result<String, InspectError> {
+    let parts = super::fields(key)?.into_iter().map(|field| match field.value {
+        Value::Text(text) => text,
+        value => value.to_string(),
+    });
+    Ok(parts.collect::<Vec<_>>().join(", "))
+}
+
+macro_rules! integers {
+    ($($method:ident $integer:ty: $variant:ident,)*) => {
+        $(fn $method(self, number: $integer) -> Result<(), InspectError> {
+            self.push(Value::$variant(number.into()));
+            Ok(())
+        })*
+    };
+}
+
+impl<'a> Serializer for &'a mut Collector {
+    type Ok = ();
+    type Error = InspectError;
+    type SerializeSeq = Compound<'a>;
+    type SerializeTuple = Compound<'a>;
+    type SerializeTupleStruct = Compound<'a>;
+    type SerializeTupleVariant = Compound<'a>;
+    type SerializeMap = Compound<'a>;
+    type SerializeStruct = Compound<'a>;
+    type SerializeStructVariant = Compound<'a>;
+
+    integers! {
+        serialize_bool bool: Bool,
+        serialize_u8 u8: Unsigned,
+        serialize_u16 u16: Unsigned,
+        serialize_u64 u64: Unsigned,
+        serialize_u128 u128: Unsigned,
+        serialize_i8 i8: Signed,
+        serialize_i16 i16: Signed,
+        serialize_i32 i32: Signed,
+        serialize_i64 i64: Signed,
+        serialize_i128 i128: Signed,
+        serialize_str &str: Text,
+        serialize_char char: Text,
+        serialize_bytes &[u8]: Bytes,
+    }
+
+    fn serialize_u32(self, number: u32) -> Result<(), InspectError> {
+        let is_angle = self.kind.trim_start_matches('&') == type_name::<Angle>();
+        self.push(if is_angle {
+            Value::Angle(Angle::from_bits(number))
+        } else {
+            Value::Unsigned(number.into())
+        });
+        Ok(())
+    }
+
+    #[expect(
+        clippy::disallowed_types,
+        reason = "a serializer has to have this method; only the bits are kept"
+    )]
+    fn serialize_f32(self, number: f32) -> Result<(), InspectError> {
+        self.push(Value::Float(number.to_bits().into()));
+        Ok(())
+    }
+
+    #[expect(
+        clippy::disallowed_types,
+        reason = "a serializer has to have this method; only the bits are kept"
+    )]
+    fn serialize_f64(self, number: f64) -> Result<(), InspectError> {
+        self.push(Value::Float(number.to_bits()));
+        Ok(())
+    }
+
+    fn serialize_none(self) -> Result<(), InspectError> {
+        self.push(Value::Name("none"));
+        Ok(())
+    }
+
+    fn serialize_some<T: Serialize + ?Sized>(self, value: &T) -> Result<(), InspectError> {
+        let before = self.count();
+        self.nested(value)?;
+        // `Some(None)` is not `None`.
+        if let [Field { value: value @ Value::Name("none" | "some none"), .. }] = &mut self.fields[before..] {
+            *value = Value::Name("some none");
+        }
+        Ok(())
+    }
+
+    fn serialize_unit(self) -> Result<(), InspectError> {
+        self.push(Value::Empty);
+        Ok(())
+    }
+
+    fn serialize_unit_struct(self, _: &'static str) -> Result<(), InspectError> {
+        self.serialize_unit()
+    }
+
+    fn serialize_unit_variant(self, _: &'static str, _: u32, name: &'static str) -> Result<(), InspectError> {
+        self.push(Value::Name(name));
+        Ok(())
+    }
+
+    fn serialize_newtype_struct<T: Serialize + ?Sized>(
+        self,
+        _: &'static str,
+        value: &T,
+    ) -> Result<(), InspectError> {
+        self.nested(value)
+    }
+
+    fn serialize_newtype_variant<T: Serialize + ?Sized>(
+        self,
+        _: &'static str,
+        _: u32,
+        name: &'static str,
+        value: &T,
+    ) -> Result<(), InspectError> {
+        self.push(Value::Name(name));
+        self.named(name, value)
+    }
+
+    fn serialize_seq(self, _: Option<usize>) -> Result<Compound<'a>, InspectError> {
+        Ok(Compound::new(self, None))
+    }
+
+    fn serialize_tuple(self, _: usize) -> Result<Compound<'a>, InspectError> {
+        Ok(Compound::new(self, None))
+    }
+
+    fn serialize_tuple_struct(self, _: &'static str, _: usize) -> Result<Compound<'a>, InspectError> {
+        Ok(Compound::new(self, None))
+    }
+
+    fn serialize_map(self, _: Option<usize>) -> Result<Compound<'a>, InspectError> {
+        Ok(Compound::new(self, None))
+    }
+
+    fn serialize_struct(self, name: &'static str, _: usize) -> Result<Compound<'a>, InspectError> {
+        let is_fixed = name.starts_with("FixedI") || name.starts_with("FixedU");
+        Ok(if is_fixed { Compound::fixed(self) } else { Compound::new(self, None) })
+    }
+
+    fn serialize_tuple_variant(
+        self,
+        _: &'static str,
+        _: u32,
+        name: &'static str,
+        _: usize,
+    ) -> Result<Compound<'a>, InspectError> {
+        Ok(Compound::new(self, Some(name)))
+    }
+
+    fn serialize_struct_variant(
+        self,
+        _: &'static str,
+        _: u32,
+        name: &'static str,
+        _: usize,
+    ) -> Result<Compound<'a>, InspectError> {
+        Ok(Compound::new(self, Some(name)))
+    }
+}

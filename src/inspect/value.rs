@@ -1,0 +1,130 @@
+//! Fields and their values.
+
+use alloc::string::String;
+use alloc::vec::Vec;
+use core::fmt;
+
+use super::decimal::Decimal;
+use crate::math::Angle;
+
+/// A value that has no parts, exactly.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Value {
+    /// True or false.
+    Bool(bool),
+    /// An unsigned integer.
+    Unsigned(u128),
+    /// A signed integer.
+    Signed(i128),
+    /// A fixed-point number.
+    Fixed {
+        /// The number times 2 to the number of its fraction bits.
+        bits: i128,
+        /// How many fraction bits it has, if that is known.
+        fraction_bits: Option<u32>,
+    },
+    /// An angle.
+    Angle(Angle),
+    /// Floating-point numbers, by their bits: a game may show one, though none belongs into a state.
+    Float(u64),
+    /// Text.
+    Text(String),
+    /// Bytes.
+    Bytes(Vec<u8>),
+    /// One of several names: a variant, or `none`.
+    Name(&'static str),
+    /// A list, map or struct without a part.
+    Empty,
+}
+
+impl Value {
+    /// The raw integer behind a number, an angle or a truth value.
+    #[must_use]
+    pub fn bits(&self) -> Option<i128> {
+        match self {
+            Value::Bool(bit) => Some(i128::from(*bit)),
+            Value::Unsigned(number) => i128::try_from(*number).ok(),
+            Value::Signed(bits) | Value::Fixed { bits, .. } => Some(*bits),
+            Value::Angle(angle) => Some(i128::from(angle.to_bits())),
+            Value::Float(bits) => Some(i128::from(*bits)),
+            Value::Text(_) | Value::Bytes(_) | Value::Name(_) | Value::Empty => None,
+        }
+    }
+}
+
+impl fmt::Display for Value {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Value::Bool(bit) => write!(f, "{bit}"),
+            Value::Unsigned(number) => write!(f, "{number}"),
+            Value::Signed(number) => write!(f, "{number}"),
+            Value::Fixed { bits, fraction_bits } => {
+                match fraction_bits.and_then(|count| Decimal::new(*bits, count)) {
+                    Some(decimal) => write!(f, "{decimal} (bits {bits})"),
+                    None => write!(f, "bits {bits}"),
+                }
+            }
+            Value::Angle(angle) => {
+                let degrees = Decimal::new(angle.to_degrees().to_bits().into(), 32);
+                match degrees {
+                    Some(degrees) => write!(f, "{degrees} degrees (bits {})", angle.to_bits()),
+                    None => write!(f, "bits {}", angle.to_bits()),
+                }
+            }
+            Value::Float(bits) => write!(f, "a float (bits {bits:#x})"),
+            Value::Text(text) => write!(f, "{text:?}"),
+            Value::Bytes(bytes) => {
+                write!(f, "{} bytes", bytes.len())?;
+                let shown = &bytes[..bytes.len().min(16)];
+                shown.iter().try_for_each(|byte| write!(f, " {byte:02x}"))?;
+                f.write_str(if shown.len() < bytes.len() { " ..." } else { "" })
+            }
+            Value::Name(name) => f.write_str(name),
+            Value::Empty => write!(f, "empty"),
+        }
+    }
+}
+
+/// A part of a value that has no parts itself.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Field {
+    pub(super) path: String,
+    /// How many bytes of the path name the thing that it is a field of, and how many of these where that is.
+    pub(super) thing: Option<(usize, usize)>,
+    /// What is there.
+    pub value: Value,
+}
+
+impl Field {
+    /// Where it is: names separated by dots, and numbers in brackets. Empty if the value has no parts.
+    #[must_use]
+    pub fn path(&self) -> &str {
+        &self.path
+    }
+
+    /// The path of the thing that it is a field of, such as `world.bodies.body 12v1`: that of the outermost entry of a
+    /// map.
+    #[must_use]
+    pub fn thing(&self) -> Option<&str> {
+        self.thing.map(|(end, _)| &self.path[..end])
+    }
+
+    /// The section that it is in, such as `world.bodies`: the path of the outermost map, or else the first name.
+    #[must_use]
+    pub fn section(&self) -> &str {
+        let end = match self.thing {
+            Some((_, end)) => end,
+            None => self.path.find(['.', '[']).unwrap_or(self.path.len()),
+        };
+        &self.path[..end]
+    }
+
+    /// What it is called within its thing, such as `velocity.x`.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        match self.thing {
+            Some((end, _)) => self.path[end..].trim_start_matches('.'),
+            None => &self.path,
+        }
+    }
+}

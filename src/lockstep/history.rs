@@ -1,0 +1,154 @@
+//! [`History`]: the last seconds of a game, so that a divergence which is noticed late can be looked at where it began.
+
+use alloc::collections::VecDeque;
+
+use super::Game;
+use crate::hash::StateHash;
+
+/// A game after some tick.
+#[derive(Clone, Debug)]
+pub struct Past<S> {
+    /// How many ticks had been played.
+    pub tick: u64,
+    /// The hash of the state.
+    pub hash: StateHash,
+    /// A copy of it.
+    pub save: S,
+}
+
+/// Ticks that a history keeps beyond what it promises: so many may be repeated by a rollback, whose mispredictions push
+/// older ticks out.
+const ROLLBACK_TICKS: u32 = 16;
+
+/// The saves and state hashes of the last ticks. Saves of a world share what has not changed, so that a few seconds cost
+/// little more than what every step changes.
+///
+/// ```
+/// use lockstep2d::lockstep::{Game, History, Sandbox, SandboxSetup};
+///
+/// let mut game = Sandbox::new(&SandboxSetup::default())?;
+/// let mut history = History::new(&game);
+/// for tick in 0..500 {
+///     history.push(tick, game.save(), game.state_hash());
+///     game.step(&[vec![]]);
+/// }
+/// assert_eq!((history.oldest(), history.newest()), (Some(364), Some(499)));
+/// # Ok::<(), lockstep2d::lockstep::SetupError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct History<G: Game> {
+    /// In ascending order of their ticks.
+    ticks: VecDeque<Past<G::Save>>,
+    length: u64,
+}
+
+impl<G: Game> History<G> {
+    /// An empty history that is going to have at least the last two seconds of a game, if rollbacks repeat no more than
+    /// 16 ticks.
+    #[must_use]
+    pub fn new(game: &G) -> Self {
+        Self::of_ticks(game.tick_rate().saturating_mul(2).saturating_add(ROLLBACK_TICKS))
+    }
+
+    /// An empty history that is going to have as many of the last ticks, at least 1.
+    #[must_use]
+    pub fn of_ticks(length: u32) -> Self {
+        History { ticks: VecDeque::new(), length: length.max(1).into() }
+    }
+
+    /// How many ticks it has at most.
+    #[must_use]
+    pub fn capacity(&self) -> u64 {
+        self.length
+    }
+
+    /// Remembers the game after `tick` ticks. What was known of this tick and all later ones is forgotten: a rollback
+    /// repeats ticks, and what followed the mispredicted ones never happened.
+    pub fn push(&mut self, tick: u64, save: G::Save, hash: StateHash) {
+        if let Some(before) = tick.checked_sub(1) {
+            self.truncate(before);
+        } else {
+            self.ticks.clear();
+        }
+        while self.ticks.front().is_some_and(|past| tick - past.tick >= self.length) {
+            self.ticks.pop_front();
+        }
+        self.ticks.push_back(Past { tick, hash, save });
+    }
+
+    /// The game after `tick` ticks, if it is known.
+    #[must_use]
+    pub fn get(&self, tick: u64) -> Option<&Past<G::Save>> {
+        let index = self.ticks.partition_point(|past| past.tick < tick);
+        self.ticks.get(index).filter(|past| past.tick == tick)
+    }
+
+    /// Forgets everything after `tick`.
+    pub fn truncate(&mut self, tick: u64) {
+        self.ticks.truncate(self.ticks.partition_point(|past| past.tick <= tick));
+    }
+
+    /// Everything that is known, in ascending order of the ticks.
+    pub fn iter(&self) -> impl DoubleEndedIterator<Item = &Past<G::Save>> {
+        self.ticks.iter()
+    }
+
+    /// The first tick that is known.
+    #[must_use]
+    pub fn oldest(&self) -> Option<u64> {
+        self.ticks.front().map(|past| past.tick)
+    }
+
+    /// The last tick that is known.
+    #[must_use]
+    pub fn newest(&self) -> Option<u64> {
+        self.ticks.back().map(|past| past.tick)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use alloc::vec::Vec;
+
+    use super::super::{Sandbox, SandboxSave, SandboxSetup};
+    use super::*;
+
+    fn push(history: &mut History<Sandbox>, tick: u64, hash: u128) {
+        let game = Sandbox::new(&SandboxSetup::default()).expect("the default");
+        history.push(tick, SandboxSave { refused: tick, ..game.save() }, StateHash(hash));
+    }
+
+    fn known(history: &History<Sandbox>) -> Vec<(u64, u128)> {
+        for past in history.iter() {
+            let found = history.get(past.tick).map(|found| (found.hash, found.save.refused));
+            assert_eq!(found, Some((past.hash, past.tick)));
+        }
+        history.iter().map(|past| (past.tick, past.hash.0)).collect()
+    }
+
+    #[test]
+    fn the_last_ticks_are_known_and_no_others() {
+        let mut history = History::of_ticks(3);
+        assert_eq!((history.oldest(), history.newest()), (None, None));
+        (0..5).for_each(|tick| push(&mut history, tick, 100 + u128::from(tick)));
+        assert_eq!(known(&history), [(2, 102), (3, 103), (4, 104)]);
+        assert_eq!((history.oldest(), history.newest()), (Some(2), Some(4)));
+        assert!(history.get(1).is_none() && history.get(5).is_none());
+        history.truncate(3);
+        assert_eq!(known(&history), [(2, 102), (3, 103)]);
+    }
+
+    #[test]
+    fn a_rollback_replaces_what_never_happened() {
+        let mut history = History::of_ticks(10);
+        (0..6).for_each(|tick| push(&mut history, tick, 0));
+        push(&mut history, 3, 1);
+        assert_eq!(known(&history), [(0, 0), (1, 0), (2, 0), (3, 1)]);
+        push(&mut history, 0, 2);
+        assert_eq!(known(&history), [(0, 2)]);
+        push(&mut history, 8, 3);
+        assert_eq!(known(&history), [(0, 2), (8, 3)], "not every tick has to be saved");
+        push(&mut history, 100, 4);
+        assert_eq!(known(&history), [(100, 4)]);
+    }
+}

@@ -1,0 +1,391 @@
+//! [`Driver`]: does what a GGRS session asks for.
+
+use alloc::collections::VecDeque;
+use alloc::vec;
+use alloc::vec::Vec;
+use core::fmt;
+
+use ggrs::{Frame, GgrsRequest, InputStatus};
+use serde::{Serialize, de::DeserializeOwned};
+
+use super::wire::{Address, Echo, GgrsConfig, NetGame, Wire};
+use crate::hash::StateHash;
+use crate::lockstep::{EncodedInputs, Game, History};
+use crate::replay::{RecordError, Recorder};
+use crate::report::{Desync, DesyncReport};
+
+/// For how long inputs are kept for those who join later, in seconds.
+const KEPT_SECONDS: u64 = 60;
+
+/// Something that a session should not have asked for.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum DriverError {
+    /// A state that is no longer, or not yet, remembered.
+    NoState {
+        /// How many ticks lead to it.
+        tick: u64,
+    },
+    /// Inputs for another number of players than were seated.
+    Players {
+        /// How many players have seats.
+        seated: u64,
+        /// How many inputs came.
+        inputs: u64,
+    },
+    /// The replay refuses what was played.
+    Record(RecordError),
+}
+
+impl fmt::Display for DriverError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            DriverError::NoState { tick } => write!(f, "the state after {tick} ticks is not remembered"),
+            DriverError::Players { seated, inputs } => {
+                write!(f, "{inputs} inputs for {seated} seated players")
+            }
+            DriverError::Record(error) => write!(f, "the replay cannot go on: {error}"),
+        }
+    }
+}
+
+impl core::error::Error for DriverError {}
+
+/// A peer had another state after some tick.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Divergence {
+    /// How many ticks had been played.
+    pub tick: u64,
+    /// The seat of the peer that differs.
+    pub seat: u32,
+    /// The hash here.
+    pub ours: StateHash,
+    /// The hash there.
+    pub theirs: StateHash,
+}
+
+/// A game, its recent states and its replay, driven by the requests of a GGRS session of any kind: peer to peer,
+/// spectator or sync test.
+///
+/// The inputs of a tick count for the replay when [`Driver::commit`] says that no rollback will change them.
+///
+/// ```
+/// use ggrs::{PlayerType, SessionBuilder};
+/// use lockstep2d::net::{Driver, GgrsConfig};
+/// # use lockstep2d::{hash::StateHash, lockstep::{Game, RulesId, SetupError}};
+/// # #[derive(Clone)] struct Sum(u64);
+/// # impl Game for Sum {
+/// #     type Setup = ();
+/// #     type Input = u8;
+/// #     type Save = u64;
+/// #     const RULES: RulesId = RulesId { name: "sum", version: 1 };
+/// #     fn new(_: &()) -> Result<Self, SetupError> { Ok(Sum(0)) }
+/// #     fn players(&self) -> u32 { 1 }
+/// #     fn tick_rate(&self) -> u32 { 60 }
+/// #     fn step(&mut self, inputs: &[u8]) { self.0 = self.0 * 31 + u64::from(inputs[0]) }
+/// #     fn state_hash(&self) -> StateHash { StateHash::of(&self.0) }
+/// #     fn save(&self) -> u64 { self.0 }
+/// #     fn load(&mut self, save: &u64) { self.0 = *save }
+/// #     fn work(&self, _: &[u8]) -> u64 { 1 }
+/// # }
+///
+/// // Does the game come to the same states when it is rolled back and played again?
+/// let mut session = SessionBuilder::<GgrsConfig<Sum, u8>>::new()
+///     .with_num_players(1)?
+///     .add_player(PlayerType::Local, 0)?
+///     .with_check_distance(7)
+///     .start_synctest_session()?;
+/// let mut driver = Driver::<Sum>::start(&(), 60)?;
+/// for pad in 0..10 {
+///     session.add_local_input(0, driver.local_input(pad))?;
+///     driver.fulfil(session.advance_frame()?)?;
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub struct Driver<G: Game> {
+    game: G,
+    /// Ticks that the game has played.
+    tick: u64,
+    /// The tick of the session's frame 0.
+    base: u64,
+    /// The seat of each of the session's players.
+    seats: Vec<u32>,
+    history: History<G>,
+    /// The inputs of the ticks from `first_input` on.
+    inputs: VecDeque<EncodedInputs<G::Input>>,
+    first_input: u64,
+    /// Ticks whose inputs are final.
+    committed: u64,
+    recorder: Option<Recorder<G>>,
+    /// What was taken of the replay, for reports.
+    taken: Vec<u8>,
+    /// Whether inputs carry hashes, and how many ticks apart these are.
+    echo_interval: Option<u64>,
+    divergences: Vec<Divergence>,
+}
+
+impl<G: NetGame> Driver<G> {
+    /// Starts the game and its replay; every seat is a player of the session, in order.
+    ///
+    /// # Errors
+    /// [`RecordError`] when the setup starts no game, or none that a replay can hold.
+    pub fn start(setup: &G::Setup, checkpoint_interval: u32) -> Result<Self, RecordError> {
+        let (recorder, game) = Recorder::start(setup, checkpoint_interval)?;
+        Ok(Driver { recorder: Some(recorder), ..Self::of(game, 0) })
+    }
+
+    /// Goes on with a game that others have played up to some tick. There is no replay of it: its beginning is
+    /// unknown here.
+    #[must_use]
+    pub fn resume(game: G, tick: u64) -> Self {
+        Self::of(game, tick)
+    }
+
+    fn of(game: G, tick: u64) -> Self {
+        let mut history = History::new(&game);
+        history.push(tick, game.save(), game.state_hash());
+        Driver {
+            seats: (0..game.players()).collect(),
+            game,
+            tick,
+            base: tick,
+            history,
+            inputs: VecDeque::new(),
+            first_input: tick,
+            committed: tick,
+            recorder: None,
+            taken: Vec::new(),
+            echo_interval: None,
+            divergences: Vec::new(),
+        }
+    }
+
+    /// Lets inputs carry the hash of every `interval`-th tick: for sessions without prediction, which never compare
+    /// checksums.
+    #[must_use]
+    pub fn with_echo(mut self, interval: u64) -> Self {
+        self.echo_interval = Some(interval.max(1));
+        self
+    }
+
+    /// Remembers the states of at least this many ticks; to be said before the first.
+    pub(super) fn remember(&mut self, ticks: u32) {
+        if self.history.capacity() < u64::from(ticks) {
+            self.history = History::of_ticks(ticks);
+            self.history.push(self.tick, self.game.save(), self.game.state_hash());
+        }
+    }
+
+    /// The game, as far as it has been played, perhaps with predicted inputs.
+    #[must_use]
+    pub const fn game(&self) -> &G {
+        &self.game
+    }
+
+    /// How many ticks have been played, the predicted ones among them.
+    #[must_use]
+    pub const fn tick(&self) -> u64 {
+        self.tick
+    }
+
+    /// How many ticks are final.
+    #[must_use]
+    pub const fn committed(&self) -> u64 {
+        self.committed
+    }
+
+    /// The recent states.
+    #[must_use]
+    pub const fn history(&self) -> &History<G> {
+        &self.history
+    }
+
+    /// The tick of a session's frame.
+    #[must_use]
+    pub fn tick_of(&self, frame: Frame) -> u64 {
+        self.base + u64::try_from(frame).unwrap_or(0)
+    }
+
+    /// A local player's input, as a session wants it: as it will be after its encoding, and in lockstep with a hash.
+    #[must_use]
+    pub fn local_input(&self, input: G::Input) -> Wire<G::Input> {
+        Wire { input: canonical(input).unwrap_or_default(), echo: self.echo().unwrap_or_default() }
+    }
+
+    fn echo(&self) -> Option<Echo> {
+        let interval = self.echo_interval?;
+        let tick = self.tick - self.tick % interval;
+        Some(Echo { tick, hash: self.history.get(tick)?.hash })
+    }
+
+    /// Does what a session asks for, in order.
+    ///
+    /// # Errors
+    /// [`DriverError`] when it asks for what cannot be done, which a session of GGRS that plays this game does not.
+    pub fn fulfil<A: Address>(
+        &mut self,
+        requests: Vec<GgrsRequest<GgrsConfig<G, A>>>,
+    ) -> Result<(), DriverError> {
+        for request in requests {
+            match request {
+                GgrsRequest::SaveGameState { cell, frame } => {
+                    let tick = self.tick_of(frame);
+                    let moment = self.history.get(tick).ok_or(DriverError::NoState { tick })?;
+                    cell.save(frame, None, Some(moment.hash.0));
+                }
+                GgrsRequest::LoadGameState { frame, .. } => self.rewind(self.tick_of(frame))?,
+                GgrsRequest::AdvanceFrame { inputs } => self.advance(&inputs)?,
+            }
+        }
+        Ok(())
+    }
+
+    /// Returns to the state after `tick` ticks.
+    fn rewind(&mut self, tick: u64) -> Result<(), DriverError> {
+        let moment = self.history.get(tick).ok_or(DriverError::NoState { tick })?;
+        self.game.load(&moment.save);
+        self.history.truncate(tick);
+        let played = tick.saturating_sub(self.first_input);
+        self.inputs.truncate(usize::try_from(played).unwrap_or(usize::MAX));
+        self.tick = tick;
+        Ok(())
+    }
+
+    fn advance(&mut self, inputs: &[(Wire<G::Input>, InputStatus)]) -> Result<(), DriverError> {
+        if inputs.len() != self.seats.len() {
+            let (seated, inputs) = (self.seats.len() as u64, inputs.len() as u64);
+            return Err(DriverError::Players { seated, inputs });
+        }
+        let mut of_seat = vec![G::absent(); self.game.players() as usize];
+        for (seat, (wire, status)) in self.seats.iter().zip(inputs) {
+            let Some(input) = of_seat.get_mut(*seat as usize) else { continue };
+            if *status != InputStatus::Disconnected {
+                *input = canonical(wire.input).unwrap_or_default();
+            }
+        }
+        self.step(&of_seat)?;
+        let heard = self.seats.iter().zip(inputs);
+        let differs = |(seat, (wire, _)): (&u32, &(Wire<G::Input>, InputStatus))| {
+            let ours = self.history.get(wire.echo.tick)?.hash;
+            let Echo { tick, hash: theirs } = wire.echo;
+            let differs = tick > 0 && theirs != ours;
+            differs.then_some(Divergence { tick, seat: *seat, ours, theirs })
+        };
+        let found: Vec<_> = heard.filter_map(differs).collect();
+        self.divergences.extend(found);
+        Ok(())
+    }
+
+    /// Plays a tick with the inputs of all seats.
+    ///
+    /// # Errors
+    /// [`DriverError`] when there is not one input for each seat.
+    pub fn step(&mut self, inputs: &[G::Input]) -> Result<(), DriverError> {
+        let players = self.game.players();
+        let inputs = EncodedInputs::new(inputs, players)
+            .map_err(|error| DriverError::Record(RecordError::Inputs(error)))?;
+        self.game.step(inputs.inputs());
+        self.tick += 1;
+        self.history.push(self.tick, self.game.save(), self.game.state_hash());
+        self.inputs.push_back(inputs);
+        Ok(())
+    }
+
+    /// The divergences that inputs have told of since this was last asked.
+    pub fn take_divergences(&mut self) -> Vec<Divergence> {
+        core::mem::take(&mut self.divergences)
+    }
+
+    /// Says that the first `ticks` ticks will not be played again: their inputs go into the replay.
+    ///
+    /// # Errors
+    /// [`DriverError::Record`] when the replay cannot hold them.
+    pub fn commit(&mut self, ticks: u64) -> Result<(), DriverError> {
+        while self.committed < ticks.min(self.tick) {
+            let tick = self.committed;
+            if let Some(mut recorder) = self.recorder.take() {
+                self.record(tick, &mut recorder)?;
+                self.recorder = Some(recorder);
+            }
+            self.committed += 1;
+        }
+        let kept = KEPT_SECONDS * u64::from(self.game.tick_rate());
+        while self.first_input + kept < self.committed {
+            self.inputs.pop_front();
+            self.first_input += 1;
+        }
+        Ok(())
+    }
+
+    fn record(&self, tick: u64, recorder: &mut Recorder<G>) -> Result<(), DriverError> {
+        let inputs = self.inputs_of(tick).ok_or(DriverError::NoState { tick })?;
+        recorder.record(inputs.inputs()).map_err(DriverError::Record)?;
+        if recorder.is_checkpoint_due() {
+            let tick = tick + 1;
+            let moment = self.history.get(tick).ok_or(DriverError::NoState { tick })?;
+            recorder.checkpoint(moment.hash);
+        }
+        Ok(())
+    }
+
+    /// The inputs of all seats in some tick, if they are remembered.
+    pub(super) fn inputs_of(&self, tick: u64) -> Option<&EncodedInputs<G::Input>> {
+        self.inputs.get(usize::try_from(tick.checked_sub(self.first_input)?).ok()?)
+    }
+
+    /// Goes on from tick `base` with a new session, whose players have these seats.
+    ///
+    /// # Errors
+    /// [`DriverError::NoState`] when that tick is not remembered.
+    pub fn restart(&mut self, base: u64, seats: Vec<u32>) -> Result<(), DriverError> {
+        self.rewind(base)?;
+        self.base = base;
+        self.seats = seats;
+        Ok(())
+    }
+
+    /// Finished bytes of the replay, to be appended to its file; handed out once. None without a replay.
+    #[must_use]
+    pub fn take_replay(&mut self) -> Vec<u8> {
+        let bytes = self.recorder.as_mut().map(Recorder::take_bytes).unwrap_or_default();
+        self.taken.extend_from_slice(&bytes);
+        bytes
+    }
+
+    /// What this peer knows of a divergence, for a file: `diff` tells from two of them who departed, when and where.
+    ///
+    /// `seats` are played here; `known` ticks have been played with everybody's true inputs.
+    #[must_use]
+    pub fn report(&self, divergence: &Divergence, seats: Vec<u32>, known: u64) -> DesyncReport {
+        let players = self.game.players();
+        let theirs = |seat| (seat == divergence.seat).then_some(divergence.theirs);
+        let hashes = (0..players).map(theirs).collect();
+        let found = Desync { players, tick: divergence.tick, seats, hashes };
+        DesyncReport::new(&found, &self.history, self.replay_so_far(known).unwrap_or_default())
+    }
+
+    /// The replay with all inputs of the first `known` ticks, which need not be committed.
+    fn replay_so_far(&self, known: u64) -> Option<Vec<u8>> {
+        let mut recorder = self.recorder.clone()?;
+        let known = known.clamp(self.committed, self.tick);
+        for tick in self.committed..known {
+            self.record(tick, &mut recorder).ok()?;
+        }
+        let state = self.history.get(known)?.hash;
+        Some([&self.taken[..], &recorder.so_far(state)].concat())
+    }
+
+    /// Ends the replay after the last committed tick, and returns the bytes that were not yet taken.
+    ///
+    /// # Errors
+    /// [`DriverError`] when the state after that tick is not remembered, or the game's claims cannot be recorded.
+    pub fn finish(mut self) -> Result<Vec<u8>, DriverError> {
+        self.rewind(self.committed)?;
+        let recorder = self.recorder.take();
+        recorder.map_or(Ok(Vec::new()), |recorder| recorder.finish(&self.game).map_err(DriverError::Record))
+    }
+}
+
+/// The input as it comes back from its encoding.
+fn canonical<I: Copy + Serialize + DeserializeOwned>(input: I) -> Option<I> {
+    EncodedInputs::new(&[input], 1).ok()?.inputs().first().copied()
+}

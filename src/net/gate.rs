@@ -1,0 +1,179 @@
+//! [`Gate`]: keeps from GGRS the messages that it would panic on, or that would let a peer decide alone who has left.
+//!
+//! GGRS reads what it is sent with the trust that peers of one game have in each other. The messages of one remote pass
+//! here first: those that no GGRS would have sent are dropped.
+
+use alloc::collections::VecDeque;
+use alloc::vec::Vec;
+
+use ggrs::Message;
+use ggrs_bincode::Options as _;
+use serde::{Deserialize, Serialize};
+
+use super::options::INPUT_DELAY_MAX;
+use super::transport::PACKET_BYTES_MAX;
+
+/// The layout of GGRS's messages, version 0.13.
+#[derive(Serialize, Deserialize)]
+struct Shadow {
+    magic: u16,
+    body: Body,
+}
+
+#[derive(Serialize, Deserialize)]
+enum Body {
+    SyncRequest(u32),
+    SyncReply(u32),
+    Input(Input),
+    InputAck(i32),
+    QualityReport { frame_advantage: i16, ping: u128 },
+    QualityReply { pong: u128 },
+    ChecksumReport { checksum: u128, frame: i32 },
+    KeepAlive,
+}
+
+#[derive(Serialize, Deserialize)]
+struct Input {
+    connections: Vec<Connection>,
+    disconnect_requested: bool,
+    start_frame: i32,
+    ack_frame: i32,
+    bytes: Vec<u8>,
+}
+
+#[derive(Clone, Copy, Serialize, Deserialize)]
+struct Connection {
+    disconnected: bool,
+    last_frame: i32,
+}
+
+/// Frames that a peer can be ahead: GGRS has room for 128.
+const FRAMES_AHEAD: i32 = 96;
+/// Bytes that the inputs of one message can have, unpacked.
+const INPUT_BYTES_MAX: usize = 64 << 10;
+/// How many of our pings are remembered.
+const PINGS: usize = 16;
+
+/// What is known of one remote in one session.
+#[derive(Debug)]
+pub(super) struct Gate {
+    players: usize,
+    /// The newest frame whose input has passed; -1 before the first.
+    last_frame: i32,
+    /// Pings that were sent and not answered.
+    pings: VecDeque<u128>,
+}
+
+impl Gate {
+    pub(super) const fn new(players: usize) -> Self {
+        Gate { players, last_frame: -1, pings: VecDeque::new() }
+    }
+
+    /// Takes note of a message to the remote, and gives its bytes.
+    pub(super) fn send(&mut self, message: &Message) -> Option<Vec<u8>> {
+        let bytes = layout().serialize(message).ok()?;
+        if let Ok(Shadow { body: Body::QualityReport { ping, .. }, .. }) = layout().deserialize(&bytes) {
+            if self.pings.len() == PINGS {
+                self.pings.pop_front();
+            }
+            self.pings.push_back(ping);
+        }
+        Some(bytes)
+    }
+
+    /// A message of the remote, if GGRS can bear it. `frame` is the one that is played here.
+    pub(super) fn receive(&mut self, bytes: &[u8], frame: i32) -> Option<Message> {
+        let mut shadow: Shadow = layout().deserialize(bytes).ok()?;
+        let frames = -1..=frame.saturating_add(FRAMES_AHEAD);
+        match &mut shadow.body {
+            Body::Input(input) => self.check_input(input, frame)?,
+            // The round trip would be the age of the universe.
+            Body::QualityReply { pong } => {
+                let known = self.pings.iter().position(|ping| ping == pong)?;
+                self.pings.remove(known);
+            }
+            Body::ChecksumReport { frame, .. } | Body::InputAck(frame) if !frames.contains(frame) => {
+                return None;
+            }
+            _ => {}
+        }
+        layout().deserialize(&layout().serialize(&shadow).ok()?).ok()
+    }
+
+    fn check_input(&mut self, input: &mut Input, frame: i32) -> Option<()> {
+        // Who has left is agreed upon elsewhere: GGRS lets each peer end with another frame.
+        input.disconnect_requested = false;
+        input.connections.iter_mut().for_each(|connection| connection.disconnected = false);
+        let frames = -1..=frame.saturating_add(FRAMES_AHEAD);
+        let possible = input.connections.iter().all(|connection| frames.contains(&connection.last_frame));
+        let first = if self.last_frame < 0 { i32::from(INPUT_DELAY_MAX) } else { self.last_frame + 1 };
+        if !possible
+            || input.connections.len() != self.players
+            || !frames.contains(&input.ack_frame)
+            || !(0..=first).contains(&input.start_frame)
+        {
+            return None;
+        }
+        let count = i32::try_from(count_inputs(&unpack(&input.bytes)?)?).ok()?;
+        let last = input.start_frame + count - 1;
+        if count == 0 || !frames.contains(&last) {
+            return None;
+        }
+        self.last_frame = self.last_frame.max(last);
+        Some(())
+    }
+}
+
+fn layout() -> impl ggrs_bincode::Options {
+    ggrs_bincode::DefaultOptions::new()
+        .with_fixint_encoding()
+        .with_limit(2 * PACKET_BYTES_MAX as u64)
+        .reject_trailing_bytes()
+}
+
+/// How many inputs there are, each behind its length in two bytes; `None` if the last is cut.
+fn count_inputs(mut bytes: &[u8]) -> Option<usize> {
+    let mut count = 0;
+    while let Some((length, rest)) = bytes.split_first_chunk() {
+        bytes = rest.get(usize::from(u16::from_le_bytes(*length))..)?;
+        count += 1;
+    }
+    bytes.is_empty().then_some(count)
+}
+
+/// Undoes the run-length coding of `bitfield-rle`, up to [`INPUT_BYTES_MAX`] bytes.
+///
+/// A head is a varint: its lowest bit says whether a run of equal bytes follows, the next whether of ones; the rest is
+/// the number of bytes.
+fn unpack(mut bytes: &[u8]) -> Option<Vec<u8>> {
+    let mut unpacked = Vec::new();
+    while !bytes.is_empty() {
+        let head = varint(&mut bytes)?;
+        let is_run = head & 1 == 1;
+        let length = usize::try_from(if is_run { head >> 2 } else { head >> 1 }).ok()?;
+        if length > INPUT_BYTES_MAX - unpacked.len() {
+            return None;
+        }
+        if is_run {
+            unpacked.resize(unpacked.len() + length, if head & 2 == 2 { 255 } else { 0 });
+        } else {
+            unpacked.extend_from_slice(bytes.get(..length)?);
+            bytes = &bytes[length..];
+        }
+    }
+    Some(unpacked)
+}
+
+/// Seven bits a byte, the lowest first; at most four bytes.
+fn varint(bytes: &mut &[u8]) -> Option<u32> {
+    let mut value = 0;
+    for shift in [0, 7, 14, 21] {
+        let (byte, rest) = bytes.split_first()?;
+        *bytes = rest;
+        value |= u32::from(byte & 127) << shift;
+        if byte & 128 == 0 {
+            return Some(value);
+        }
+    }
+    None
+}

@@ -1,0 +1,375 @@
+//! [`Peer`]: one participant of a match, from the first packet to the finished replay.
+
+mod catch_up;
+mod error;
+mod joiners;
+mod leaving;
+mod planning;
+
+use alloc::collections::VecDeque;
+use alloc::vec::Vec;
+use core::time::Duration;
+use std::hash::{BuildHasher, RandomState};
+
+pub use error::NetError;
+
+use catch_up::CatchUp;
+use joiners::Joiner;
+use leaving::{Leaving, Settled};
+use planning::Planned;
+
+use super::driver::{Divergence, Driver};
+use super::options::Options;
+use super::packet::{Nonce, Packet, SessionId};
+use super::session::{Session, SessionEvent};
+use super::terms::Terms;
+use super::transport::Transport;
+use super::wire::{Address, NetGame};
+use crate::codec;
+use crate::lockstep::History;
+
+/// How long to wait before something that may have been lost is said again.
+const RESEND: Duration = Duration::from_millis(50);
+/// Most packets that one update reads: the rest waits for the next.
+const PACKETS_PER_UPDATE: usize = 2000;
+
+/// What a peer tells its game.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Event {
+    /// From this tick on, the player of this seat takes part.
+    Joined {
+        /// Whose seat.
+        seat: u32,
+        /// The first tick.
+        tick: u64,
+    },
+    /// From this tick on, this seat is empty. All peers say the same tick.
+    Left {
+        /// Whose seat.
+        seat: u32,
+        /// The first tick.
+        tick: u64,
+    },
+    /// Nothing has come from this seat for a while.
+    Interrupted {
+        /// Whose seat.
+        seat: u32,
+    },
+    /// Something comes from this seat again.
+    Resumed {
+        /// Whose seat.
+        seat: u32,
+    },
+    /// Another peer has another state. Write [`Peer::report`] to a file: it says what is needed to find out why.
+    Diverged(Divergence),
+}
+
+/// One participant of a match: hosts it, joins it, or watches it.
+///
+/// It owns the game and decides when a tick can be played; the caller owns the clock and the transport. Call
+/// [`Peer::update`] often, and [`Peer::advance`] whenever [`Peer::is_due`] says so.
+///
+/// The host has the lowest seat at first, and admits players to empty seats at any time. When it leaves, the player
+/// with the next lowest seat does that: nobody is needed.
+pub struct Peer<G: NetGame, A: Address, T: Transport<A>> {
+    transport: T,
+    options: Options,
+    terms: Terms,
+    /// The canonical bytes of the setup.
+    setup: Vec<u8>,
+    driver: Driver<G>,
+    now: Duration,
+    /// When the next tick is due.
+    next_tick: Duration,
+    /// Of a peer that has no seat yet, or never will.
+    catch_up: Option<CatchUp<A>>,
+    /// What the first session follows, where this peer is the host and plays nothing yet.
+    root: Option<SessionId>,
+    session: Option<Session<G, A>>,
+    /// When it was entered.
+    entered: Duration,
+    /// The session that is agreed upon and not yet entered.
+    next: Option<Session<G, A>>,
+    planned: Option<Planned<A>>,
+    /// The session before, while others may still be in it.
+    past: Option<Session<G, A>>,
+    leaving: Option<Leaving>,
+    settled: Option<Settled>,
+    joiners: Vec<Joiner<A>>,
+    events: VecDeque<Event>,
+}
+
+impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
+    /// Opens a match and waits for [`Options::start_with`] players.
+    ///
+    /// # Errors
+    /// [`NetError`] when the setup starts no game.
+    pub fn host(setup: &G::Setup, options: Options, transport: T) -> Result<Self, NetError> {
+        let mut peer = Self::new(setup, options, transport)?;
+        peer.root = Some(SessionId(random()));
+        Ok(peer)
+    }
+
+    /// Asks the peer at `contact` for a seat, a certain one if it is free.
+    ///
+    /// # Errors
+    /// [`NetError`] when the setup starts no game.
+    pub fn join(
+        setup: &G::Setup,
+        options: Options,
+        transport: T,
+        contact: A,
+        seat: Option<u32>,
+    ) -> Result<Self, NetError> {
+        let mut peer = Self::new(setup, options, transport)?;
+        peer.catch_up = Some(CatchUp::play(contact, Nonce(random()), seat));
+        Ok(peer)
+    }
+
+    /// Asks the peer at `contact` to watch.
+    ///
+    /// # Errors
+    /// [`NetError`] when the setup starts no game.
+    pub fn watch(setup: &G::Setup, options: Options, transport: T, contact: A) -> Result<Self, NetError> {
+        let mut peer = Self::new(setup, options, transport)?;
+        peer.catch_up = Some(CatchUp::watch(contact, Nonce(random())));
+        Ok(peer)
+    }
+
+    fn new(setup: &G::Setup, options: Options, transport: T) -> Result<Self, NetError> {
+        let mut driver = Driver::start(setup, options.checkpoint_interval)?;
+        driver.remember(options.memory());
+        if options.window() == 0 {
+            driver = driver.with_echo(options.check_interval.into());
+        }
+        let terms = Terms::of(driver.game(), setup, &options);
+        Ok(Peer {
+            transport,
+            options,
+            terms,
+            setup: codec::encode(setup),
+            driver,
+            now: Duration::ZERO,
+            next_tick: Duration::ZERO,
+            catch_up: None,
+            root: None,
+            session: None,
+            entered: Duration::ZERO,
+            next: None,
+            planned: None,
+            past: None,
+            leaving: None,
+            settled: None,
+            joiners: Vec::new(),
+            events: VecDeque::new(),
+        })
+    }
+
+    /// Reads what has come and sends what is to be sent. `now` is the time since any moment in the past.
+    ///
+    /// # Errors
+    /// [`NetError`] when this peer cannot go on: it was refused, or dropped, or nobody answers.
+    pub fn update(&mut self, now: Duration) -> Result<(), NetError> {
+        self.now = self.now.max(now);
+        for _ in 0..PACKETS_PER_UPDATE {
+            let Some((from, bytes)) = self.transport.receive() else { break };
+            if let Some(packet) = Packet::decode(&bytes) {
+                self.receive(&from, packet)?;
+            }
+        }
+        self.poll_sessions();
+        self.catch_up()?;
+        self.admit()?;
+        self.settle()?;
+        self.enter_next()?;
+        self.send_sessions();
+        Ok(())
+    }
+
+    fn receive(&mut self, from: &A, packet: Packet<A>) -> Result<(), NetError> {
+        match packet {
+            Packet::Session { session, message } => {
+                let sessions = [&mut self.session, &mut self.next, &mut self.past];
+                let of = sessions.into_iter().flatten().find(|known| known.roster.session == session);
+                if let Some(session) = of {
+                    session.receive(from, &message);
+                }
+            }
+            Packet::Hello { nonce, terms, seat, watch } => self.greet(from, nonce, &terms, seat, watch),
+            Packet::WantState { nonce, offset } => self.give_state(from, nonce, offset),
+            Packet::WantInputs { nonce, from: tick } => self.give_inputs(from, nonce, tick),
+            Packet::Ready { nonce, tick, hash } => self.take_ready(from, nonce, tick, hash),
+            Packet::Refused { .. }
+            | Packet::Redirect { .. }
+            | Packet::Welcome { .. }
+            | Packet::State { .. }
+            | Packet::Inputs { .. } => self.hear_contact(from, packet)?,
+            Packet::Plan { parent, plan } => self.hear_plan(from, parent, plan)?,
+            Packet::Agreed { plan } => self.hear_agreed(from, plan),
+            Packet::Gone { session, gone, ticks, settled } => {
+                self.hear_gone(from, session, gone, ticks, settled)?;
+            }
+            Packet::Bye { session } => self.hear_bye(from, session),
+        }
+        Ok(())
+    }
+
+    fn poll_sessions(&mut self) {
+        // Its players may still miss something of ours; what it says is no longer of interest.
+        if let Some(past) = &mut self.past {
+            past.poll(&self.driver);
+        }
+        if let Some(next) = &mut self.next {
+            next.poll(&self.driver);
+        }
+        if self.leaving.is_none()
+            && let Some(session) = &mut self.session
+        {
+            let events = session.poll(&self.driver);
+            self.note(events);
+        }
+    }
+
+    fn send_sessions(&mut self) {
+        for session in [&mut self.past, &mut self.next, &mut self.session].into_iter().flatten() {
+            let id = session.roster.session;
+            for (to, message) in session.send() {
+                let packet: Packet<A> = Packet::Session { session: id, message };
+                self.transport.send(&packet.encode(), &to);
+            }
+        }
+    }
+
+    fn note(&mut self, events: Vec<SessionEvent>) {
+        for event in events {
+            match event {
+                SessionEvent::Lost(seat) => self.begin_leaving(super::session::seat_bit(seat)),
+                SessionEvent::Interrupted(seat) => self.events.push_back(Event::Interrupted { seat }),
+                SessionEvent::Resumed(seat) => self.events.push_back(Event::Resumed { seat }),
+                SessionEvent::Diverged(found) => self.events.push_back(Event::Diverged(found)),
+            }
+        }
+    }
+
+    fn say(&mut self, packet: &Packet<A>, to: &A) {
+        self.transport.send(&packet.encode(), to);
+    }
+
+    /// Whether it is time for the next tick.
+    #[must_use]
+    pub fn is_due(&self) -> bool {
+        let plays = self.session.as_ref().is_some_and(Session::is_running) && self.leaving.is_none();
+        plays && self.now >= self.next_tick
+    }
+
+    /// Plays a tick with the local player's input, if the others let it. Returns whether one was played.
+    ///
+    /// In rollback, some earlier ticks may be played again. Ticks of a peer that is ahead of others take a little
+    /// longer, so that nobody has to wait abruptly; one that was held up catches up by up to eight ticks.
+    ///
+    /// # Errors
+    /// [`NetError`] when the game or its replay cannot go on.
+    pub fn advance(&mut self, input: G::Input) -> Result<bool, NetError> {
+        if self.leaving.is_some() {
+            return Ok(false);
+        }
+        let Some(session) = &mut self.session else { return Ok(false) };
+        if !session.is_running() {
+            return Ok(false);
+        }
+        let before = self.driver.tick();
+        let events = session.advance(&mut self.driver, input)?;
+        let played = self.driver.tick() > before;
+        let period = Duration::from_secs(1) / self.terms.tick_rate;
+        let stretched = period + period * session.ahead().min(8) / 32;
+        let wait = if played { stretched } else { period / 8 };
+        self.next_tick = (self.next_tick + wait).max(self.now.saturating_sub(8 * period));
+        let known = session.confirmed();
+        self.driver.commit(known.saturating_sub(self.options.doubt()))?;
+        self.note(events);
+        self.enter_next()?;
+        self.send_sessions();
+        Ok(played)
+    }
+
+    /// The next thing to know, oldest first.
+    pub fn next_event(&mut self) -> Option<Event> {
+        self.events.pop_front()
+    }
+
+    /// The game as it is now; in rollback, perhaps after guessed inputs.
+    #[must_use]
+    pub const fn game(&self) -> &G {
+        self.driver.game()
+    }
+
+    /// How many ticks have been played, the guessed ones among them.
+    #[must_use]
+    pub const fn tick(&self) -> u64 {
+        self.driver.tick()
+    }
+
+    /// How many ticks have been played with everybody's true inputs.
+    #[must_use]
+    pub fn confirmed(&self) -> u64 {
+        self.session.as_ref().map_or(self.driver.committed(), Session::confirmed)
+    }
+
+    /// The recent states.
+    #[must_use]
+    pub const fn history(&self) -> &History<G> {
+        self.driver.history()
+    }
+
+    /// What this peer knows of a divergence, as bytes for a file. Two of them, from any two peers, tell who departed, when
+    /// and where: `lockstep2d diff`, or [`report::compare`](crate::report::compare).
+    #[must_use]
+    pub fn report(&self, divergence: &Divergence) -> Vec<u8> {
+        let seats = self.seat().into_iter().collect();
+        self.driver.report(divergence, seats, self.confirmed()).to_bytes()
+    }
+
+    /// The own seat, once there is one.
+    #[must_use]
+    pub fn seat(&self) -> Option<u32> {
+        self.session.as_ref().map(|session| session.roster.seat)
+    }
+
+    /// The seats that players have at the moment, in ascending order.
+    #[must_use]
+    pub fn seats(&self) -> Vec<u32> {
+        self.session.as_ref().map(|session| session.roster.seats()).unwrap_or_default()
+    }
+
+    /// The transport.
+    pub fn transport_mut(&mut self) -> &mut T {
+        &mut self.transport
+    }
+
+    /// Finished bytes of the replay, to be appended to its file; handed out once.
+    ///
+    /// There is none of a match that was joined after its first tick.
+    #[must_use]
+    pub fn take_replay(&mut self) -> Vec<u8> {
+        // What has been written may be the beginning of another match than the one that is joined.
+        let unsure = self.catch_up.as_ref().is_some_and(CatchUp::is_loading);
+        if unsure { Vec::new() } else { self.driver.take_replay() }
+    }
+
+    /// Leaves the match and ends the replay after `ticks` ticks, or after the last that is known from everybody.
+    /// Returns the bytes of the replay that were not yet taken.
+    ///
+    /// # Errors
+    /// [`NetError`] when the replay cannot be ended.
+    pub fn finish(mut self, ticks: u64) -> Result<Vec<u8>, NetError> {
+        self.say_bye();
+        let known = self.confirmed().min(ticks);
+        self.driver.commit(known)?;
+        Ok(self.driver.finish()?)
+    }
+}
+
+/// A number that nobody else has: not part of any state.
+fn random() -> u64 {
+    RandomState::new().hash_one(0)
+}

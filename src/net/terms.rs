@@ -1,0 +1,99 @@
+//! [`Terms`]: what peers have to agree on before the first tick.
+
+use alloc::string::String;
+use alloc::vec::Vec;
+use core::fmt;
+
+use serde::{Deserialize, Serialize};
+
+use super::options::{Mode, Options};
+use crate::codec;
+use crate::hash::StateHash;
+use crate::lockstep::Game;
+
+/// What a peer plays. Two peers that differ in any of it would not come to the same states.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Terms {
+    /// The engine's semantics, [`SEMANTICS`](crate::SEMANTICS).
+    pub semantics: u32,
+    /// The name of the game's rules.
+    pub rules: String,
+    /// The version of the rules.
+    pub rules_version: u32,
+    /// The hash of the setup.
+    pub setup: StateHash,
+    /// Ticks per second.
+    pub tick_rate: u32,
+    /// Number of seats.
+    pub players: u32,
+    /// How the peers stay together.
+    pub mode: Mode,
+}
+
+/// In what two peers differ.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct TermsMismatch {
+    /// What is different.
+    pub differences: Vec<TermsDifference>,
+}
+
+/// One thing in which two peers differ.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct TermsDifference {
+    /// Its name.
+    pub what: &'static str,
+    /// What it is here.
+    pub ours: String,
+    /// What it is there.
+    pub theirs: String,
+}
+
+impl fmt::Display for TermsMismatch {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "the peers do not play the same:")?;
+        for (at, TermsDifference { what, ours, theirs }) in self.differences.iter().enumerate() {
+            let comma = if at > 0 { "," } else { "" };
+            write!(f, "{comma} {what} {ours} here and {theirs} there")?;
+        }
+        Ok(())
+    }
+}
+
+impl core::error::Error for TermsMismatch {}
+
+impl Terms {
+    /// The terms of a game.
+    pub(super) fn of<G: Game>(game: &G, setup: &G::Setup, options: &Options) -> Self {
+        Terms {
+            semantics: crate::SEMANTICS,
+            rules: G::RULES.name.into(),
+            rules_version: G::RULES.version,
+            setup: StateHash::of_bytes(&codec::encode(setup)),
+            tick_rate: game.tick_rate(),
+            players: game.players(),
+            mode: options.mode,
+        }
+    }
+
+    /// Compares them with a peer's.
+    ///
+    /// # Errors
+    /// [`TermsMismatch`] names everything that is different.
+    pub fn agree(&self, theirs: &Terms) -> Result<(), TermsMismatch> {
+        let mut differences = Vec::new();
+        let mut compare = |what, ours: &dyn fmt::Display, theirs: &dyn fmt::Display| {
+            let (ours, theirs) = (alloc::format!("{ours}"), alloc::format!("{theirs}"));
+            if ours != theirs {
+                differences.push(TermsDifference { what, ours, theirs });
+            }
+        };
+        compare("engine semantics", &self.semantics, &theirs.semantics);
+        compare("rules", &self.rules, &theirs.rules);
+        compare("rules version", &self.rules_version, &theirs.rules_version);
+        compare("setup", &self.setup, &theirs.setup);
+        compare("tick rate", &self.tick_rate, &theirs.tick_rate);
+        compare("number of seats", &self.players, &theirs.players);
+        compare("mode", &self.mode, &theirs.mode);
+        if differences.is_empty() { Ok(()) } else { Err(TermsMismatch { differences }) }
+    }
+}

@@ -1,0 +1,182 @@
+//! A report as bytes. `docs/FORMAT.md` has the layout.
+
+use alloc::vec::Vec;
+use core::fmt;
+
+use super::desync::{Body, DesyncReport};
+use crate::codec::{self, DecodeError};
+use crate::hash::StateHash;
+use crate::replay::{Limits, PLAYERS_MAX, RULES_NAME_BYTES_MAX};
+
+/// The first eight bytes of a report, modelled like those of a replay.
+pub const REPORT_MAGIC: [u8; 8] = *b"\x89L2R\r\n\x1a\n";
+
+/// The version of the layout.
+pub const REPORT_FORMAT_VERSION: u32 = 1;
+
+/// Magic, format, semantics, length.
+const HEADER_LEN: usize = 8 + 4 + 4 + 8;
+/// The hash at the end.
+const HASH_LEN: usize = 16;
+
+/// Bytes that are no report.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum ReportError {
+    /// They do not start like a report.
+    NotAReport,
+    /// The layout is of another version.
+    Format {
+        /// The version found.
+        found: u32,
+    },
+    /// There are more than the reader allows.
+    TooLong {
+        /// How many there are.
+        bytes: u64,
+        /// How many are allowed.
+        max: u64,
+    },
+    /// There are fewer or more bytes than announced.
+    Length {
+        /// How many the header announces, itself included.
+        announced: u64,
+        /// How many there are.
+        found: u64,
+    },
+    /// The hash at the end does not belong to the bytes before it.
+    Hash,
+    /// The body does not decode.
+    Decode(DecodeError),
+    /// The body is one that nobody writes.
+    Invalid(ReportFlaw),
+}
+
+/// What is wrong with the body of a report.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ReportFlaw {
+    /// The name of the rules is empty or too long.
+    RulesName,
+    /// More players than a game can have.
+    Players,
+    /// The seats are not in ascending order, or there is no such seat.
+    Seats,
+    /// There is not one hash, known or not, for each seat.
+    Hashes,
+    /// The ticks of the history are not in ascending order.
+    History,
+    /// The ticks of the saves are not in ascending order, or there is one that is not in the history.
+    Saves,
+}
+
+impl fmt::Display for ReportFlaw {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            ReportFlaw::RulesName => "the name of the rules is empty or too long",
+            ReportFlaw::Players => "more players than a game can have",
+            ReportFlaw::Seats => {
+                "the seats are not in ascending order, or there are others than the game has"
+            }
+            ReportFlaw::Hashes => "there is not one hash for each seat",
+            ReportFlaw::History => "the ticks of the history are not in ascending order",
+            ReportFlaw::Saves => "the ticks of the saves are not ascending ticks of the history",
+        })
+    }
+}
+
+impl fmt::Display for ReportError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            ReportError::NotAReport => write!(f, "not a report"),
+            ReportError::Format { found } => {
+                write!(f, "format version {found}, this engine reads {REPORT_FORMAT_VERSION}")
+            }
+            ReportError::TooLong { bytes, max } => write!(f, "{bytes} bytes, at most {max} are allowed"),
+            ReportError::Length { announced, found } => {
+                write!(f, "{found} bytes where {announced} are announced")
+            }
+            ReportError::Hash => write!(f, "the hash does not match the bytes"),
+            ReportError::Decode(error) => error.fmt(f),
+            ReportError::Invalid(flaw) => flaw.fmt(f),
+        }
+    }
+}
+
+impl core::error::Error for ReportError {}
+
+impl DesyncReport {
+    /// The bytes of a report file.
+    #[must_use]
+    pub fn to_bytes(&self) -> Vec<u8> {
+        let mut bytes = REPORT_MAGIC.to_vec();
+        bytes.extend_from_slice(&REPORT_FORMAT_VERSION.to_le_bytes());
+        bytes.extend_from_slice(&self.semantics.to_le_bytes());
+        bytes.extend_from_slice(&[0; 8]);
+        codec::encode_into(&self.body, &mut bytes);
+        let length = (bytes.len() - HEADER_LEN) as u64;
+        bytes[HEADER_LEN - 8..HEADER_LEN].copy_from_slice(&length.to_le_bytes());
+        let hash = StateHash::of_bytes(&bytes);
+        bytes.extend_from_slice(&hash.0.to_le_bytes());
+        bytes
+    }
+
+    /// The report that [`DesyncReport::to_bytes`] has written. Of the limits, that of the file's bytes counts: what is
+    /// allocated is a small multiple of the bytes that there are. The saves and the replay in it are not yet judged.
+    ///
+    /// # Errors
+    /// [`ReportError`] for any other bytes.
+    pub fn from_bytes(bytes: &[u8], limits: &Limits) -> Result<Self, ReportError> {
+        let found = bytes.len() as u64;
+        let header: &[u8; HEADER_LEN] = bytes.first_chunk().ok_or(ReportError::NotAReport)?;
+        let number =
+            |at: usize| u32::from_le_bytes([header[at], header[at + 1], header[at + 2], header[at + 3]]);
+        if header[..8] != REPORT_MAGIC {
+            return Err(ReportError::NotAReport);
+        }
+        if number(8) != REPORT_FORMAT_VERSION {
+            return Err(ReportError::Format { found: number(8) });
+        }
+        if found > limits.file_bytes {
+            return Err(ReportError::TooLong { bytes: found, max: limits.file_bytes });
+        }
+        let length = u64::from(number(16)) | u64::from(number(20)) << 32;
+        let announced = length.saturating_add((HEADER_LEN + HASH_LEN) as u64);
+        if announced != found {
+            return Err(ReportError::Length { announced, found });
+        }
+        let (covered, hash) = bytes.split_at(bytes.len() - HASH_LEN);
+        if StateHash::of_bytes(covered).0.to_le_bytes() != *hash {
+            return Err(ReportError::Hash);
+        }
+        let body: Body = codec::decode(&covered[HEADER_LEN..]).map_err(ReportError::Decode)?;
+        body.check().map_err(ReportError::Invalid)?;
+        Ok(DesyncReport { semantics: number(12), body })
+    }
+}
+
+impl Body {
+    fn check(&self) -> Result<(), ReportFlaw> {
+        let Body { rules_name, players, seats, hashes, history, saves, .. } = self;
+        let ascending = |ticks: &[u64]| ticks.windows(2).all(|pair| pair[0] < pair[1]);
+        if rules_name.is_empty() || rules_name.len() > RULES_NAME_BYTES_MAX as usize {
+            return Err(ReportFlaw::RulesName);
+        }
+        if *players > PLAYERS_MAX {
+            return Err(ReportFlaw::Players);
+        }
+        if seats.windows(2).any(|pair| pair[0] >= pair[1]) || seats.iter().any(|seat| seat >= players) {
+            return Err(ReportFlaw::Seats);
+        }
+        if hashes.len() as u64 != u64::from(*players) {
+            return Err(ReportFlaw::Hashes);
+        }
+        let known: Vec<u64> = history.iter().map(|(tick, _)| *tick).collect();
+        if !ascending(&known) {
+            return Err(ReportFlaw::History);
+        }
+        let saved: Vec<u64> = saves.iter().map(|(tick, _)| *tick).collect();
+        if !ascending(&saved) || saved.iter().any(|tick| known.binary_search(tick).is_err()) {
+            return Err(ReportFlaw::Saves);
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,192 @@
+//! [`compare`]: two files, and the inputs played again.
+
+use alloc::vec::Vec;
+use core::fmt;
+
+use super::comparison::{Blame, Comparison, Course, InputDifference, Side};
+use super::desync::DesyncReport;
+use super::evidence::{Evidence, Known};
+use super::rerun;
+use super::suspect;
+use crate::codec;
+use crate::inspect::{Difference, InspectError, differences, fields};
+use crate::lockstep::{Game, decode_inputs};
+use crate::replay::{Limits, Mismatch, ReadError, Reader, TickInputs, Verdict};
+
+/// Why two files cannot be compared.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum CompareError {
+    /// A snapshot of a world can only be compared with another one.
+    Kinds,
+    /// A report is of another engine or of another game.
+    Unverifiable {
+        /// Which.
+        side: Side,
+        /// What this program lacks.
+        why: Mismatch,
+    },
+    /// A replay, or that in a report, cannot be read or played.
+    Replay {
+        /// Which.
+        side: Side,
+        /// What is wrong.
+        verdict: Verdict,
+    },
+    /// A save, setup or input refuses to be looked at.
+    Inspect(InspectError),
+}
+
+impl fmt::Display for CompareError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            CompareError::Kinds => write!(f, "a snapshot can only be compared with another snapshot"),
+            CompareError::Unverifiable { side, why } => write!(f, "{side}: {why}"),
+            CompareError::Replay { side, verdict } => write!(f, "the replay of {side}: {verdict}"),
+            CompareError::Inspect(error) => error.fmt(f),
+        }
+    }
+}
+
+impl core::error::Error for CompareError {}
+
+impl From<InspectError> for CompareError {
+    fn from(error: InspectError) -> Self {
+        CompareError::Inspect(error)
+    }
+}
+
+/// Finds out in what two reports, replays or snapshots differ first, and who departed.
+///
+/// The replay's inputs are played again with the running engine, within the limits. With `G` any game will do if both are
+/// snapshots.
+///
+/// # Errors
+/// [`CompareError`] when the files cannot be compared at all. What is only not to be found out is a note.
+pub fn compare<G: Game>(a: &Evidence, b: &Evidence, limits: &Limits) -> Result<Comparison, CompareError> {
+    if let (Evidence::World(a), Evidence::World(b)) = (a, b) {
+        let found = differences(&fields(&a.save())?, &fields(&b.save())?);
+        return Ok(Comparison { things: suspect::things(found), ..Comparison::new() });
+    }
+    let known = [known::<G>(a, Side::A, limits)?, known::<G>(b, Side::B, limits)?];
+    let mut found = Comparison::new();
+    found.courses =
+        [0, 1].map(|side: usize| Course { seats: known[side].seats.to_vec(), ..Course::default() });
+    let report = [a, b].into_iter().find_map(|evidence| match evidence {
+        Evidence::Report(report) => Some(report),
+        _ => None,
+    });
+    if let Some(report) = report {
+        (found.checkpoint, found.groups) = (Some(report.tick()), report.groups());
+    }
+    if known.iter().all(|known| !known.replay.is_empty()) {
+        found.setup = setup_differences::<G>(&known, limits)?;
+        if !found.setup.is_empty() {
+            found.first_different = Some(0);
+            return Ok(found);
+        }
+        found.input = input_difference::<G>(&known, limits)?;
+    }
+    rerun::run::<G>(&known, limits, &mut found)?;
+    found.blame = match [found.courses[0].departs, found.courses[1].departs] {
+        _ if found.rerun.is_none() => Blame::Unknown,
+        [None, None] => Blame::Nobody,
+        [Some(_), None] => Blame::Side(Side::A),
+        [None, Some(_)] => Blame::Side(Side::B),
+        [Some(_), Some(_)] => Blame::Both,
+    };
+    Ok(found)
+}
+
+fn known<'a, G: Game>(
+    evidence: &'a Evidence,
+    side: Side,
+    limits: &Limits,
+) -> Result<Known<'a>, CompareError> {
+    let known = match evidence {
+        Evidence::World(_) => return Err(CompareError::Kinds),
+        Evidence::Report(report) => {
+            check_rules::<G>(report).map_err(|why| CompareError::Unverifiable { side, why })?;
+            Known::of_report(report, limits)
+        }
+        Evidence::Replay(bytes) => Known::of_replay(bytes, limits),
+    };
+    known.map_err(|error| unreadable(side, error))
+}
+
+fn unreadable(side: Side, error: ReadError) -> CompareError {
+    CompareError::Replay { side, verdict: error.into() }
+}
+
+fn check_rules<G: Game>(report: &DesyncReport) -> Result<(), Mismatch> {
+    if report.semantics != crate::SEMANTICS {
+        return Err(Mismatch::Semantics { file: report.semantics, here: crate::SEMANTICS });
+    }
+    let (name, version) = report.rules();
+    if (name, version) != (G::RULES.name, G::RULES.version) {
+        let here = (G::RULES.name.into(), G::RULES.version);
+        return Err(Mismatch::Rules { file: (name.into(), version), here });
+    }
+    Ok(())
+}
+
+/// How the setups of two replays differ.
+fn setup_differences<G: Game>(
+    known: &[Known<'_>; 2],
+    limits: &Limits,
+) -> Result<Vec<Difference>, CompareError> {
+    let mut setups = Vec::new();
+    for (side, known) in Side::BOTH.into_iter().zip(known) {
+        let reader = Reader::open(known.replay, limits).map_err(|error| unreadable(side, error))?;
+        setups.push(reader.header().setup);
+    }
+    if setups[0] == setups[1] {
+        return Ok(Vec::new());
+    }
+    let mut listed = Vec::new();
+    for setup in setups {
+        // What does not decode differs as bytes.
+        listed.push(match codec::decode::<G::Setup>(setup) {
+            Ok(setup) => fields(&setup)?,
+            Err(_) => fields(setup)?,
+        });
+    }
+    let found = differences(&listed[0], &listed[1]);
+    Ok(found)
+}
+
+/// The first tick and seat whose input is not the same in two replays.
+fn input_difference<G: Game>(
+    known: &[Known<'_>; 2],
+    limits: &Limits,
+) -> Result<Option<InputDifference>, CompareError> {
+    let open = |side: Side| {
+        TickInputs::open(known[side.index()].replay, limits).map_err(|error| unreadable(side, error))
+    };
+    let (mut a, mut b) = (open(Side::A)?, open(Side::B)?);
+    let players = Reader::open(known[0].replay, limits).map_err(|error| unreadable(Side::A, error))?;
+    let players = players.header().players;
+    for tick in 0.. {
+        let run_a = a.next_tick().map_err(|error| unreadable(Side::A, error))?;
+        let run_b = b.next_tick().map_err(|error| unreadable(Side::B, error))?;
+        let (Some(run_a), Some(run_b)) = (run_a, run_b) else {
+            break;
+        };
+        if run_a.encoded == run_b.encoded {
+            continue;
+        }
+        let decode = |side: Side, run: &crate::replay::Run<'_>| {
+            let flaw = crate::replay::Flaw::Inputs;
+            let verdict = Verdict::Malformed { offset: run.offset, flaw };
+            decode_inputs::<G::Input>(run.encoded, players)
+                .map_err(|_| CompareError::Replay { side, verdict })
+        };
+        let (inputs_a, inputs_b) = (decode(Side::A, &run_a)?, decode(Side::B, &run_b)?);
+        for (seat, (a, b)) in (0..).zip(inputs_a.iter().zip(&inputs_b)) {
+            if codec::encode(a) != codec::encode(b) {
+                let differences = differences(&fields(a)?, &fields(b)?);
+                return Ok(Some(InputDifference { tick, seat, differences }));
+            }
+        }
+    }
+    Ok(None)
+}

@@ -1,0 +1,229 @@
+//! Playing the inputs again beside what both sides say of each tick.
+
+use alloc::format;
+use alloc::string::String;
+use alloc::vec::Vec;
+
+use super::compare::CompareError;
+use super::comparison::{Comparison, Side};
+use super::evidence::Known;
+use super::suspect::{self, WrongTick};
+use crate::codec;
+use crate::inspect::{differences, fields};
+use crate::lockstep::Game;
+use crate::replay::{Limits, Rerun, Step};
+
+/// Fills in the states and the courses of a comparison.
+pub(super) fn run<G: Game>(
+    known: &[Known<'_>; 2],
+    limits: &Limits,
+    found: &mut Comparison,
+) -> Result<(), CompareError> {
+    // Behind an input that differs, so do the states.
+    let horizon = found.input.as_ref().map_or(u64::MAX, |input| input.tick);
+    compare_directly(known, horizon, found);
+    let side = if known[0].ticks < known[1].ticks { Side::B } else { Side::A };
+    let replay = known[side.index()].replay;
+    if replay.is_empty() {
+        found.notes.push("there are no inputs to play again, so nobody is to blame".into());
+        if let Some(first) = found.first_different {
+            compare_saves_alone::<G>(known, first, found)?;
+        }
+        return Ok(());
+    }
+    let rerun = Rerun::<G>::open(replay, limits).map_err(|verdict| CompareError::Replay { side, verdict })?;
+    let until = known[0].last().max(known[1].last()).min(horizon);
+    Beside { known, found, rerun, previous: None, wrong: None, states: None, presumed: None, obstacle: None }
+        .run(until)
+}
+
+/// What is to be seen without playing: the first tick of which both say something else.
+fn compare_directly(known: &[Known<'_>; 2], horizon: u64, found: &mut Comparison) {
+    let mut ticks: Vec<u64> = known.iter().flat_map(|known| known.ticks_known()).collect();
+    ticks.sort_unstable();
+    ticks.dedup();
+    for tick in ticks.into_iter().filter(|tick| *tick <= horizon) {
+        match known[0].same(&known[1], tick) {
+            Some(true) => found.last_equal = Some(tick),
+            Some(false) => {
+                found.first_different = Some(tick);
+                return;
+            }
+            None => {}
+        }
+    }
+}
+
+fn decode<G: Game>(side: Side, tick: u64, bytes: &[u8]) -> Result<G::Save, String> {
+    codec::decode(bytes)
+        .map_err(|error| format!("the state of {side} after tick {tick} cannot be read: {error}"))
+}
+
+fn compare_saves_alone<G: Game>(
+    known: &[Known<'_>; 2],
+    first: u64,
+    found: &mut Comparison,
+) -> Result<(), CompareError> {
+    let in_both = |tick: &u64| known[1].saves.contains_key(tick);
+    let tick = known[0].saves.range(first..).map(|(tick, _)| *tick).find(in_both);
+    let Some(tick) = tick else {
+        found.notes.push("the files do not have the states that differ".into());
+        return Ok(());
+    };
+    let state = |side: Side| decode::<G>(side, tick, known[side.index()].saves[&tick]);
+    match (state(Side::A), state(Side::B)) {
+        (Ok(a), Ok(b)) => {
+            found.tick = Some(tick);
+            found.things = suspect::things(differences(&fields(&a)?, &fields(&b)?));
+        }
+        (Err(obstacle), _) | (_, Err(obstacle)) => found.notes.push(obstacle),
+    }
+    Ok(())
+}
+
+/// The states of both sides after some tick.
+struct States<S> {
+    tick: u64,
+    states: [S; 2],
+    /// The side that has said nothing of this tick, and that is taken to have been where the rerun is: nobody who has
+    /// departed comes back, so that this holds if it is there later.
+    presumed: Option<Side>,
+}
+
+struct Beside<'a, 'k, G: Game> {
+    known: &'a [Known<'k>; 2],
+    found: &'a mut Comparison,
+    rerun: Rerun<'k, G>,
+    /// The state of the rerun one tick ago.
+    previous: Option<G::Save>,
+    /// The tick in which the first side that departs did so.
+    wrong: Option<WrongTick<G>>,
+    /// The states at the first tick that differs and of which they can be had.
+    states: Option<States<G::Save>>,
+    /// The same, where one of them is only presumed.
+    presumed: Option<States<G::Save>>,
+    /// Why not earlier.
+    obstacle: Option<String>,
+}
+
+impl<G: Game> Beside<'_, '_, G> {
+    fn run(mut self, until: u64) -> Result<(), CompareError> {
+        let (direct, equal) = (self.found.first_different, self.found.last_equal.take());
+        loop {
+            self.look(direct);
+            if self.rerun.tick() >= until {
+                break;
+            }
+            self.previous = self.wrong.is_none().then(|| self.rerun.game().save());
+            match self.rerun.step() {
+                Ok(Step::Ticked) => {}
+                Ok(Step::Ended) => break,
+                Err(verdict) => {
+                    let tick = self.rerun.tick();
+                    self.found.notes.push(format!("the rerun ends after tick {tick}: {verdict}"));
+                    break;
+                }
+            }
+        }
+        self.found.rerun = Some(self.rerun.tick());
+        // The files may go further than the inputs do.
+        let equal = equal.filter(|equal| self.found.first_different.is_none_or(|first| *equal < first));
+        self.found.last_equal = self.found.last_equal.max(equal);
+        self.conclude()
+    }
+
+    /// Compares the rerun as of now with what both sides say.
+    fn look(&mut self, direct: Option<u64>) {
+        let (tick, hash) = (self.rerun.tick(), self.rerun.game().state_hash());
+        let had = [0, 1].map(|side: usize| self.known[side].had(tick, hash));
+        for (known, (course, had)) in self.known.iter().zip(self.found.courses.iter_mut().zip(had)) {
+            match had {
+                Some(true) if course.departs.is_none() => course.equal_until = Some(tick),
+                Some(false) if course.departs.is_none() => {
+                    course.departs = Some(tick);
+                    let before = self.previous.take();
+                    let wrong = known.states.get(&tick).copied();
+                    let was_right = tick.checked_sub(1).filter(|last| course.equal_until == Some(*last));
+                    if let ((Some(before), Some(wrong)), Some(last)) = ((before, wrong), was_right) {
+                        let inputs = self.rerun.inputs().to_vec();
+                        self.wrong = Some(WrongTick { tick: last, before, inputs, wrong });
+                    }
+                }
+                _ => {}
+            }
+        }
+        let differ = had.contains(&Some(false)) && had != [Some(false); 2]
+            || self.known[0].same(&self.known[1], tick) == Some(false);
+        if self.found.first_different.is_none_or(|first| tick < first) && differ {
+            self.found.first_different = Some(tick);
+        }
+        let before_it = self.found.first_different.or(direct).is_none_or(|first| tick < first);
+        let same = had == [Some(true); 2] || self.known[0].same(&self.known[1], tick) == Some(true);
+        if before_it && same {
+            self.found.last_equal = Some(tick);
+        }
+        if !before_it && self.states.is_none() {
+            self.take_states(had);
+        }
+    }
+
+    /// Takes the states of both sides, if they can be had now.
+    fn take_states(&mut self, had: [Option<bool>; 2]) {
+        let tick = self.rerun.tick();
+        let mut states = Vec::new();
+        let mut presumed = None;
+        for (side, had) in Side::BOTH.into_iter().zip(had) {
+            let own = self.known[side.index()].saves.get(&tick);
+            states.push(match (own, had) {
+                (_, Some(true)) => self.rerun.game().save(),
+                (None, None) if presumed.is_none() => {
+                    presumed = Some(side);
+                    self.rerun.game().save()
+                }
+                (None, _) => return,
+                (Some(bytes), _) => match decode::<G>(side, tick, bytes) {
+                    Ok(save) => save,
+                    Err(obstacle) => {
+                        self.obstacle.get_or_insert(obstacle);
+                        return;
+                    }
+                },
+            });
+        }
+        let Ok(states) = states.try_into() else {
+            return;
+        };
+        let states = States { tick, states, presumed };
+        if presumed.is_some() {
+            self.presumed.get_or_insert(states);
+        } else {
+            self.states = Some(states);
+        }
+    }
+
+    fn conclude(self) -> Result<(), CompareError> {
+        let Beside { known, found, rerun, wrong, states, presumed, obstacle, previous: _ } = self;
+        found.notes.extend(obstacle);
+        let courses = &found.courses;
+        let came_later = |states: &States<G::Save>| {
+            states.presumed.is_some_and(|side| courses[side.index()].equal_until >= Some(states.tick))
+        };
+        match presumed.filter(came_later).or(states) {
+            Some(States { tick, states: [a, b], .. }) => {
+                found.tick = Some(tick);
+                found.things = suspect::things(differences(&fields(&a)?, &fields(&b)?));
+            }
+            None => {
+                if let Some(first) = found.first_different {
+                    compare_saves_alone::<G>(known, first, found)?;
+                }
+            }
+        }
+        let count: usize = found.things.iter().map(|thing| thing.differences.len()).sum();
+        let at_once = |wrong: &&WrongTick<G>| found.tick == Some(wrong.tick + 1) && count > 1;
+        if let Some(wrong) = wrong.as_ref().filter(at_once) {
+            found.explanation = suspect::explain(wrong, rerun.into_game(), &mut found.things)?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,64 @@
+//! Snapshots in serde's formats: the bytes of the world in a binary one, a view to look at in one for people.
+
+use alloc::vec::Vec;
+use core::fmt;
+
+use serde::de::{Error, Visitor};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+use super::restore::restore_state;
+use super::{Snapshot, State};
+use crate::world::World;
+use crate::world::bytes::state_to_bytes;
+use crate::world::view::StateView;
+
+impl Snapshot {
+    /// [`World::to_bytes`] of the world that was saved.
+    #[must_use]
+    pub fn to_bytes(&self) -> Vec<u8> {
+        state_to_bytes(&self.state())
+    }
+
+    fn state(&self) -> State {
+        let mut state = State::new(self.rest.config);
+        restore_state(&mut state, self, &mut Default::default());
+        state
+    }
+}
+
+/// In a binary format the bytes of [`World::to_bytes`]. In one for people, such as JSON, a view of the state whose
+/// names are those of the API: bodies by their handle, as in `body 12v1`, and so on; it cannot be read back.
+impl Serialize for Snapshot {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let state = self.state();
+        if serializer.is_human_readable() {
+            StateView(&state).serialize(serializer)
+        } else {
+            serializer.serialize_bytes(&state_to_bytes(&state))
+        }
+    }
+}
+
+/// From the bytes of [`World::to_bytes`], with all checks of [`World::from_bytes`].
+impl<'de> Deserialize<'de> for Snapshot {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        if deserializer.is_human_readable() {
+            return Err(D::Error::custom("a snapshot can only be read from a binary format"));
+        }
+        deserializer.deserialize_byte_buf(WorldBytes)
+    }
+}
+
+struct WorldBytes;
+
+impl Visitor<'_> for WorldBytes {
+    type Value = Snapshot;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "the bytes of a world")
+    }
+
+    fn visit_bytes<E: Error>(self, bytes: &[u8]) -> Result<Snapshot, E> {
+        World::from_bytes(bytes).map(|world| world.save()).map_err(E::custom)
+    }
+}

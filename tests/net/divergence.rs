@@ -1,0 +1,82 @@
+//! A peer whose memory fails: it is noticed soon, and the reports say where, when and by what.
+
+use std::thread;
+
+use lockstep2d::math::Rng;
+use lockstep2d::net::{Divergence, Event, Options, Peer, Weather};
+use lockstep2d::replay::Limits;
+use lockstep2d::report::{Blame, Evidence, Side, compare};
+use lockstep2d::world::Motion;
+
+use super::matches::MODES;
+use super::pushers::{FAULT, Fault, Pushers, Setup};
+use super::table::Table;
+
+fn found(table: &Table, at: usize) -> Option<Divergence> {
+    table.events[at].iter().find_map(|event| match event {
+        Event::Diverged(found) => Some(*found),
+        _ => None,
+    })
+}
+
+fn check(options: Options, seed: u64) {
+    let mut rng = Rng::new(seed);
+    let fault = Fault {
+        tick: 40 + u64::from(rng.below(40)),
+        disc: usize::try_from(rng.below(12)).unwrap(),
+        motion: Motion::ALL[usize::try_from(rng.below(3)).unwrap()],
+        bit: rng.below(24),
+    };
+    let players = 2 + rng.below(2);
+    let faulty = rng.below(players);
+    let options = options.start_with(players);
+    let mut table =
+        Table::new(Weather { latency: std::time::Duration::from_millis(20), ..Weather::default() }, seed);
+    for address in 0..players {
+        FAULT.set((address == faulty).then_some(fault));
+        let port = table.network.port(address);
+        let peer = match address {
+            0 => Peer::host(&Setup::default(), options, port),
+            _ => Peer::join(&Setup::default(), options, port, 0, None),
+        };
+        table.sit(peer.unwrap());
+    }
+    let seen = table.play(40, |table| (0..players).all(|at| found(table, at as usize).is_some()));
+    assert!(seen, "{fault:?}: {}", table.describe());
+
+    let other = (faulty + 1) % players;
+    let mut sides = Vec::new();
+    for at in [faulty, other] {
+        let first = found(&table, at as usize).unwrap();
+        let checkpoints = (first.tick - fault.tick) / u64::from(options.check_interval);
+        assert!(first.tick >= fault.tick && checkpoints < 2, "{fault:?} was noticed as {first:?}");
+        let report = table.peers[at as usize].as_ref().unwrap().report(&first);
+        sides.push(Evidence::read(report, &Limits::default()).unwrap());
+    }
+    let told = compare::<Pushers>(&sides[0], &sides[1], &Limits::default()).unwrap();
+    let what = format!("{options:?} {fault:?} on {faulty}: {told:?}");
+    assert_eq!(told.blame, Blame::Side(Side::A), "{what}");
+    assert_eq!(told.first_different, Some(fault.tick), "{what}");
+    let seat = table.peers[faulty as usize].as_ref().unwrap().seat().unwrap();
+    assert_eq!(told.courses[0].seats, [seat], "{what}");
+    assert_eq!(told.things.len(), 1, "{what}");
+    let differences = &told.things[0].differences;
+    // The view of a spin is its bits, and the angular velocity that they mean.
+    let derived = usize::from(fault.motion == Motion::Spin);
+    assert_eq!(
+        (differences.len(), differences[0].field().name()),
+        (1 + derived, fault.motion.name()),
+        "{what}"
+    );
+}
+
+#[test]
+fn a_bit_that_flips_is_noticed_within_two_checkpoints_and_named() {
+    for batch in 0..3 {
+        thread::scope(|scope| {
+            for seed in 0..16 {
+                scope.spawn(move || check(MODES[seed as usize % 2](), 100 * batch + seed));
+            }
+        });
+    }
+}

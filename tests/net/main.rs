@@ -1,0 +1,9 @@
+//! Matches over networks that lose, delay, double and reorder packets, and peers that come and go.
+
+mod comings;
+mod divergence;
+mod goings;
+mod matches;
+mod pushers;
+mod scripted;
+mod table;

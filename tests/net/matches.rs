@@ -1,0 +1,53 @@
+//! Whole matches: equal hashes, replays that verify, the same inputs in all of them.
+
+use std::thread;
+use std::time::Duration;
+
+use lockstep2d::net::{Event, Options, Weather};
+use lockstep2d::replay::{Limits, Verdict, verify};
+
+use super::pushers::Pushers;
+use super::table::Table;
+
+pub(crate) const MODES: [fn() -> Options; 2] = [Options::lockstep, Options::rollback];
+
+pub(crate) const STORM: Weather =
+    Weather { latency: Duration::from_millis(70), jitter: Duration::from_millis(60), loss: 20, doubled: 10 };
+
+pub(crate) fn verdict(replay: &[u8]) -> Verdict {
+    verify::<Pushers>(replay, &Limits::default())
+}
+
+fn check_match(options: Options, weather: Weather, seed: u64, ticks: u64) {
+    let mut table = Table::of(4, options, weather, seed);
+    let done = table.play(60 + ticks / 10, |table| table.all_confirmed(ticks));
+    assert!(done, "{options:?}: {}", table.describe());
+    for events in &table.events {
+        assert!(!events.iter().any(|event| matches!(event, Event::Diverged(_))), "{events:?}");
+        assert!(!events.iter().any(|event| matches!(event, Event::Left { .. })), "{events:?}");
+    }
+    let replays = table.finish(ticks);
+    assert!(matches!(verdict(&replays[0]), Verdict::Match { .. }), "{}", verdict(&replays[0]));
+    assert!(replays.iter().all(|replay| *replay == replays[0]), "replays differ");
+}
+
+#[test]
+fn four_peers_play_the_same_in_calm_weather() {
+    for options in MODES {
+        check_match(options(), Weather::default(), 1, 200);
+    }
+}
+
+/// GGRS reads the clock, so matches take the time that they take; many run at once.
+#[test]
+fn fifty_matches_in_a_storm_end_alike() {
+    let tempest = Weather { latency: Duration::from_millis(100), ..STORM };
+    for seeds in [0..25, 25..50] {
+        thread::scope(|scope| {
+            for seed in seeds {
+                let options = MODES[usize::from(seed % 2 == 0)]();
+                scope.spawn(move || check_match(options, tempest, seed, 300));
+            }
+        });
+    }
+}

@@ -1,0 +1,164 @@
+//! A session without clock and network: any legal sequence of requests, drawn from a seed.
+//!
+//! Each peer of a match has its own script. What they share is the truth: everybody's inputs, and when somebody left.
+
+use ggrs::{GameStateCell, GgrsRequest, InputStatus};
+use lockstep2d::math::Rng;
+use lockstep2d::net::{Driver, GgrsConfig, Wire};
+use lockstep2d::replay::{Limits, Verdict, verify};
+
+use super::pushers::{Pushers, Setup, bot};
+
+type Request = GgrsRequest<GgrsConfig<Pushers, u32>>;
+
+/// What really happens.
+struct Truth {
+    setup: Setup,
+    frames: u32,
+    /// From which frame on a player is gone.
+    leaves: Vec<u32>,
+}
+
+impl Truth {
+    fn new(rng: &mut Rng) -> Self {
+        let frames = 40 + rng.below(60);
+        let players = 2 + rng.below(3);
+        let setup = Setup { players, tick_rate: 60, seed: rng.next_u64() };
+        let leave = |_| if rng.chance(1, 8) { rng.below(frames) } else { u32::MAX };
+        Truth { setup, frames, leaves: (0..players).map(leave).collect() }
+    }
+
+    fn input(&self, player: u32, frame: u32) -> (u8, InputStatus) {
+        if frame >= self.leaves[player as usize] {
+            (0, InputStatus::Disconnected)
+        } else {
+            (bot(player, frame.into()), InputStatus::Confirmed)
+        }
+    }
+}
+
+/// One peer: what it knows of the truth, and what it has guessed.
+struct Script<'a> {
+    truth: &'a Truth,
+    rng: Rng,
+    /// Guessed frames at most; none in lockstep.
+    window: u32,
+    /// The frame to be played next.
+    frame: u32,
+    /// Of each player, up to which frame the inputs are known.
+    known: Vec<u32>,
+    /// What was played, by frame, since the last frame that is known of all.
+    played: Vec<Vec<(u8, InputStatus)>>,
+}
+
+impl<'a> Script<'a> {
+    fn new(truth: &'a Truth, window: u32, seed: u64) -> Self {
+        let known = vec![0; truth.setup.players as usize];
+        Script { truth, rng: Rng::new(seed), window, frame: 0, known, played: vec![] }
+    }
+
+    /// Frames whose inputs are known of all.
+    fn confirmed(&self) -> u32 {
+        self.known.iter().copied().min().unwrap_or(0).min(self.frame)
+    }
+
+    fn guess(&self, player: u32, frame: u32) -> (u8, InputStatus) {
+        let known = self.known[player as usize];
+        match known.checked_sub(1) {
+            _ if frame < known => self.truth.input(player, frame),
+            Some(last) => match self.truth.input(player, last) {
+                (_, InputStatus::Disconnected) => (0, InputStatus::Disconnected),
+                (input, _) => (input, InputStatus::Predicted),
+            },
+            None => (0, InputStatus::Predicted),
+        }
+    }
+
+    fn play(&mut self, driver: &Driver<Pushers>, frame: u32) -> Request {
+        let players = 0..self.truth.setup.players;
+        let inputs: Vec<_> = players.map(|player| self.guess(player, frame)).collect();
+        self.played.truncate(frame as usize);
+        self.played.push(inputs.clone());
+        // The hash that a peer sends is its own, which is here everybody's.
+        let wire = |(input, status)| (Wire { echo: driver.local_input(input).echo, input }, status);
+        GgrsRequest::AdvanceFrame { inputs: inputs.into_iter().map(wire).collect() }
+    }
+
+    fn save(frame: u32) -> Request {
+        GgrsRequest::SaveGameState { cell: GameStateCell::default(), frame: i32::try_from(frame).unwrap() }
+    }
+
+    /// Hears something, plays again what was wrong, and goes on if it may. Makes its requests one at a time, as the
+    /// hashes in them depend on those before.
+    fn turn(&mut self, driver: &mut Driver<Pushers>) {
+        for player in 0..self.known.len() {
+            let more = self.rng.below(4);
+            let behind = if self.window == 0 { 1 } else { 6 };
+            self.known[player] = (self.known[player] + more).min(self.frame + behind).min(self.truth.frames);
+        }
+        let is_wrong = |frame: &u32| {
+            let players = 0..self.truth.setup.players;
+            players.zip(&self.played[*frame as usize]).any(|(player, (input, status))| {
+                let (now, status_now) = self.guess(player, *frame);
+                let gone = |status| status == InputStatus::Disconnected;
+                now != *input || gone(status_now) != gone(*status)
+            })
+        };
+        if let Some(first) = (0..self.frame).find(is_wrong) {
+            let end = self.frame;
+            let load: Request = GgrsRequest::LoadGameState {
+                cell: GameStateCell::default(),
+                frame: i32::try_from(first).unwrap(),
+            };
+            driver.fulfil(vec![load]).unwrap();
+            for frame in first..end {
+                if self.rng.chance(1, 2) {
+                    driver.fulfil(vec![Self::save(frame)]).unwrap();
+                }
+                let play = self.play(driver, frame);
+                driver.fulfil(vec![play]).unwrap();
+            }
+        }
+        driver.commit(self.confirmed().into()).unwrap();
+        let may = if self.window == 0 {
+            self.known.iter().all(|known| *known > self.frame)
+        } else {
+            self.frame < self.confirmed() + self.window
+        };
+        if may && self.frame < self.truth.frames {
+            let play = self.play(driver, self.frame);
+            driver.fulfil(vec![Self::save(self.frame), play]).unwrap();
+            self.frame += 1;
+        }
+    }
+}
+
+fn check(seed: u64) {
+    let mut rng = Rng::new(seed);
+    let truth = Truth::new(&mut rng);
+    let mut replays = Vec::new();
+    for peer in 0..3 {
+        let window = [0, 8, 1 + rng.below(12)][peer];
+        let mut driver = Driver::<Pushers>::start(&truth.setup, 1 + rng.below(30)).unwrap();
+        if window == 0 {
+            driver = driver.with_echo(1 + u64::from(rng.below(10)));
+        }
+        let mut script = Script::new(&truth, window, rng.next_u64());
+        while script.confirmed() < truth.frames {
+            script.turn(&mut driver);
+        }
+        driver.commit(truth.frames.into()).unwrap();
+        assert_eq!(driver.take_divergences(), [], "seed {seed}: a false report");
+        assert_eq!(driver.committed(), u64::from(truth.frames));
+        let replay = [driver.take_replay(), driver.finish().unwrap()].concat();
+        let verdict = verify::<Pushers>(&replay, &Limits::default());
+        let Verdict::Match { .. } = verdict else { panic!("seed {seed}, peer {peer}: {verdict}") };
+        replays.push(format!("{verdict}"));
+    }
+    assert!(replays.iter().all(|verdict| *verdict == replays[0]), "seed {seed}: {replays:?}");
+}
+
+#[test]
+fn a_thousand_scripts_end_alike() {
+    (0..1000).for_each(check);
+}

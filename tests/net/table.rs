@@ -1,0 +1,121 @@
+//! Peers around a network in memory, in real time: GGRS reads the clock.
+
+use std::time::{Duration, Instant};
+
+use lockstep2d::hash::StateHash;
+use lockstep2d::net::{Event, NetError, Network, Options, Peer, Port, Weather};
+
+use super::pushers::{Pushers, Setup, bot};
+
+pub(crate) type Player = Peer<Pushers, u32, Port>;
+
+pub(crate) struct Table {
+    pub(crate) network: Network,
+    pub(crate) peers: Vec<Option<Player>>,
+    pub(crate) events: Vec<Vec<Event>>,
+    pub(crate) errors: Vec<Option<NetError>>,
+    pub(crate) replays: Vec<Vec<u8>>,
+    start: Instant,
+}
+
+impl Table {
+    pub(crate) fn new(weather: Weather, seed: u64) -> Self {
+        let network = Network::new(weather, seed);
+        let start = Instant::now();
+        Table { network, peers: vec![], events: vec![], errors: vec![], replays: vec![], start }
+    }
+
+    /// A host and its guests; peer `n` has the address `n`.
+    pub(crate) fn of(count: u32, options: Options, weather: Weather, seed: u64) -> Self {
+        let mut table = Table::new(weather, seed);
+        let setup = Setup::default();
+        let options = options.start_with(count);
+        table.sit(Peer::host(&setup, options, table.network.port(0)).unwrap());
+        for address in 1..count {
+            table.sit(table.guest(address, options));
+        }
+        table
+    }
+
+    pub(crate) fn guest(&self, address: u32, options: Options) -> Player {
+        Peer::join(&Setup::default(), options, self.network.port(address), 0, None).unwrap()
+    }
+
+    pub(crate) fn sit(&mut self, peer: Player) {
+        self.peers.push(Some(peer));
+        self.events.push(vec![]);
+        self.errors.push(None);
+        self.replays.push(vec![]);
+    }
+
+    /// The peer vanishes without a word.
+    pub(crate) fn kill(&mut self, at: usize) -> Player {
+        self.peers[at].take().unwrap()
+    }
+
+    /// Plays until `done` says so, at most some seconds.
+    pub(crate) fn play(&mut self, seconds: u64, mut done: impl FnMut(&mut Table) -> bool) -> bool {
+        let end = Instant::now() + Duration::from_secs(seconds);
+        while Instant::now() < end {
+            self.turn();
+            if done(self) {
+                return true;
+            }
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        false
+    }
+
+    fn turn(&mut self) {
+        let now = self.start.elapsed();
+        self.network.set_time(now);
+        for at in 0..self.peers.len() {
+            let Some(peer) = &mut self.peers[at] else { continue };
+            if self.errors[at].is_some() {
+                continue;
+            }
+            let mut turn = || {
+                peer.update(now)?;
+                while peer.is_due() {
+                    let input = bot(peer.seat().unwrap_or(0), peer.tick());
+                    if !peer.advance(input)? {
+                        break;
+                    }
+                }
+                Ok(())
+            };
+            self.errors[at] = turn().err();
+            self.replays[at].extend(peer.take_replay());
+            while let Some(event) = peer.next_event() {
+                self.events[at].push(event);
+            }
+        }
+    }
+
+    /// Whether all peers know everything up to this tick.
+    pub(crate) fn all_confirmed(&self, tick: u64) -> bool {
+        self.peers.iter().flatten().all(|peer| peer.confirmed() >= tick)
+    }
+
+    pub(crate) fn describe(&self) -> String {
+        let peer = |peer: &Player| (peer.tick(), peer.confirmed(), peer.seats());
+        let peers: Vec<_> = self.peers.iter().map(|p| p.as_ref().map(peer)).collect();
+        format!("{peers:?} {:?} {:?}", self.errors, self.events)
+    }
+
+    /// The hash that each peer had after a tick, of those who remember it.
+    pub(crate) fn hashes(&self, tick: u64) -> Vec<StateHash> {
+        let peers = self.peers.iter().flatten();
+        peers.filter_map(|peer| Some(peer.history().get(tick)?.hash)).collect()
+    }
+
+    /// Ends all replays after this tick and returns them.
+    pub(crate) fn finish(mut self, tick: u64) -> Vec<Vec<u8>> {
+        for (peer, replay) in self.peers.iter_mut().zip(&mut self.replays) {
+            if let Some(peer) = peer.take() {
+                replay.extend(peer.finish(tick).unwrap());
+            }
+        }
+        self.replays
+    }
+}

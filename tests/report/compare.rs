@@ -1,0 +1,214 @@
+//! Who departed, when, where and by what: in a yard of sixty bodies of which one gets a wrong bit.
+
+use lockstep2d::hash::StateHash;
+use lockstep2d::inspect::{Difference, Value};
+use lockstep2d::lockstep::Game;
+use lockstep2d::math::Rng;
+use lockstep2d::replay::Limits;
+use lockstep2d::report::{Blame, Comparison, DesyncReport, Evidence, Side, compare};
+use lockstep2d::world::Motion;
+
+use crate::yard::{BODIES, Flip, Peer, When, Yard};
+
+const CHECKPOINT: u64 = 10;
+
+/// Reads a report as if it came in a file.
+fn evidence(report: &DesyncReport) -> Evidence {
+    Evidence::read(report.to_bytes(), &Limits::default()).unwrap()
+}
+
+pub(crate) fn compared(a: &Evidence, b: &Evidence) -> Comparison {
+    compare::<Yard>(a, b, &Limits::default()).unwrap()
+}
+
+/// Plays until a checkpoint differs and some ticks more, and writes reports.
+fn reports(peers: &mut [Peer; 3], until: u64) -> Option<[DesyncReport; 3]> {
+    let mut found = None;
+    while peers[0].tick < until {
+        peers.iter_mut().for_each(Peer::advance);
+        let tick = peers[0].tick;
+        let hashes: Vec<StateHash> = peers.iter().map(|peer| peer.game.state_hash()).collect();
+        if tick % CHECKPOINT == 0 && found.is_none() && hashes.iter().any(|hash| *hash != hashes[0]) {
+            found = Some((tick, hashes));
+        }
+        if let Some((at, hashes)) = &found {
+            if tick >= at + 7 {
+                let hashes: Vec<_> = hashes.iter().copied().map(Some).collect();
+                return Some(
+                    [0, 1, 2].map(|seat: u32| peers[seat as usize].report(seat, *at, hashes.clone())),
+                );
+            }
+        }
+    }
+    None
+}
+
+fn random_flip(rng: &mut Rng, when: When) -> Flip {
+    Flip {
+        tick: 30 + u64::from(rng.next_u32() % 60),
+        when,
+        body: rng.next_u32() as usize % BODIES,
+        motion: Motion::ALL[rng.next_u32() as usize % 2],
+        bit: rng.next_u32() % 30,
+    }
+}
+
+/// In how many bits two numbers differ.
+fn flipped_bits(difference: &Difference) -> u32 {
+    let bits = |value: &Option<Value>| value.as_ref().and_then(Value::bits).unwrap();
+    (bits(&difference.a) ^ bits(&difference.b)).count_ones()
+}
+
+/// Cases of a flip in one peer's game, each of them told by the reports of that peer and of another one. Returns how many
+/// flips the solver swallowed without a trace.
+fn cases(seed: u64, count: u32, when: When) -> u32 {
+    let mut rng = Rng::new(seed);
+    let (mut told, mut swallowed, mut largest) = (0, 0, 0);
+    while told < count {
+        let flip = random_flip(&mut rng, when);
+        let faulty = rng.next_u32() as usize % 3;
+        let mut peers = [0, 1, 2].map(|seat: usize| Peer::new(seed, (seat == faulty).then_some(flip)));
+        let reports = reports(&mut peers, flip.tick + 25);
+        let (Some(body), Some(reports)) = (peers[faulty].flipped.clone(), reports) else {
+            swallowed += 1;
+            continue;
+        };
+        told += 1;
+        let other = (faulty + 1) % 3;
+        let sides = if told % 2 == 0 { [faulty, other] } else { [other, faulty] };
+        let found = compared(&evidence(&reports[sides[0]]), &evidence(&reports[sides[1]]));
+        let what = format!("{flip:?} of {body} on peer {faulty}: {found:?}");
+        assert_eq!(found.first_different, Some(flip.tick), "{what}");
+        assert_eq!(found.last_equal, Some(flip.tick - 1), "{what}");
+        let blamed = Side::BOTH[usize::from(told % 2 == 1)];
+        assert_eq!(found.blame, Blame::Side(blamed), "{what}");
+        assert_eq!(found.courses[blamed.index()].seats, [u32::try_from(faulty).unwrap()], "{what}");
+        assert_eq!(found.tick, Some(flip.tick), "{what}");
+        let first = &found.things[0];
+        assert_eq!((first.path.as_str(), first.section.as_str()), (body.as_str(), "world.bodies"), "{what}");
+        let difference = match when {
+            When::After => {
+                assert_eq!((found.things.len(), first.differences.len()), (1, 1), "{what}");
+                assert_eq!(found.explanation, None, "{what}");
+                assert_eq!(flipped_bits(&first.differences[0]), 1, "{what}");
+                &first.differences[0]
+            }
+            // It was passed on to nothing, and needs no explanation.
+            When::Before if found.things.len() == 1 && first.differences.len() == 1 => &first.differences[0],
+            // The tick itself may have made the flipped number right again, and others wrong.
+            When::Before => {
+                let explanation = found.explanation.as_ref().expect(&what);
+                assert_eq!((explanation.tick, &explanation.path), (flip.tick - 1, &body), "{what}");
+                assert_eq!(flipped_bits(&explanation.differences[0]), 1, "{what}");
+                &explanation.differences[0]
+            }
+        };
+        assert_eq!(difference.field().thing(), Some(body.as_str()), "{what}");
+        assert_eq!(difference.field().name(), flip.motion.name(), "{what}");
+        largest = largest.max(found.things.len());
+        let seats: Vec<&[u32]> = found.groups.iter().map(|group| group.seats.as_slice()).collect();
+        let faulty = u32::try_from(faulty).unwrap();
+        let others: Vec<u32> = (0..3).filter(|seat| *seat != faulty).collect();
+        assert_eq!(seats, [others.as_slice(), &[faulty]], "{what}");
+    }
+    if when == When::Before {
+        assert!(largest > 20, "at most {largest} things differed: nothing was passed on");
+    }
+    swallowed
+}
+
+#[test]
+fn a_bit_that_flips_after_a_step_is_found() {
+    cases(1, 100, When::After);
+}
+
+/// All that touches the body differs in the same tick; the bit is found by trying. Some flips make no difference at all.
+/// In two parts, for two processors.
+#[test]
+fn a_bit_that_flips_before_a_step_is_found() {
+    assert!(cases(2, 50, When::Before) < 50, "most flips are to make a difference");
+}
+
+#[test]
+fn a_bit_that_flips_before_another_step_is_found() {
+    assert!(cases(3, 50, When::Before) < 50, "most flips are to make a difference");
+}
+
+#[test]
+fn peers_that_agree_are_equal() {
+    let mut peers = [0, 1, 2].map(|_| Peer::new(5, None));
+    assert_eq!(reports(&mut peers, 60), None);
+    let [a, b, _] = peers.map(|peer| peer.report(0, 50, Vec::new()));
+    let found = compared(&evidence(&a), &evidence(&b));
+    assert!(found.is_equal(), "{found:?}");
+    assert_eq!((found.blame, found.last_equal, found.rerun), (Blame::Nobody, Some(60), Some(60)));
+    let replays = [a, b].map(|report| Evidence::Replay(report.replay().to_vec()));
+    assert!(compared(&replays[0], &replays[1]).is_equal());
+}
+
+/// A replay has checkpoints only: the tick is known to their distance, and of the states nothing.
+#[test]
+fn replays_tell_who_departed_between_which_checkpoints() {
+    let flip = Flip { tick: 60, when: When::After, body: 9, motion: Motion::VelocityY, bit: 12 };
+    let mut peers = [None, Some(flip)].map(|flip| Peer::new(3, flip));
+    (0..110).for_each(|_| peers.iter_mut().for_each(Peer::advance));
+    let replays = [0, 1].map(|peer: usize| Evidence::Replay(peers[peer].replay()));
+    let found = compared(&replays[0], &replays[1]);
+    assert_eq!((found.last_equal, found.first_different), (Some(50), Some(75)));
+    assert_eq!(found.blame, Blame::Side(Side::B));
+    assert!(found.things.is_empty() && !found.notes.is_empty());
+
+    // With the report of the one that is to blame, everything is known.
+    let report = peers[1].report(1, 75, Vec::new());
+    let found = compared(&replays[0], &evidence(&report));
+    assert_eq!((found.first_different, found.blame), (Some(60), Blame::Side(Side::B)));
+    assert_eq!(found.things.len(), 1, "{:?}", found.things);
+
+    // With that of the other one, it is known what the states should have been.
+    let report = peers[0].report(0, 75, Vec::new());
+    let found = compared(&evidence(&report), &replays[1]);
+    assert_eq!((found.first_different, found.blame), (Some(75), Blame::Side(Side::B)));
+}
+
+#[test]
+fn other_inputs_and_other_setups_are_named() {
+    let mut peers = [0, 1].map(|_| Peer::new(3, None));
+    (0..40).for_each(|_| peers.iter_mut().for_each(Peer::advance));
+    let replay = peers[0].replay();
+    let mut other = lockstep2d::replay::Recording::<Yard>::start(&3, 25).unwrap();
+    for tick in 0..40 {
+        let mut inputs = [0, 1, 2].map(|player| crate::yard::inputs_at(tick, player));
+        inputs[2] ^= u8::from(tick >= 33);
+        other.step(&inputs).unwrap();
+    }
+    let (a, b) = (Evidence::Replay(replay), Evidence::Replay(other.finish().unwrap()));
+    let found = compared(&a, &b);
+    let input = found.input.clone().unwrap();
+    assert_eq!((input.tick, input.seat, input.differences.len()), (33, 2, 1));
+    assert_eq!((found.first_different, found.blame), (None, Blame::Nobody), "the same up to there");
+    assert!(!found.is_equal());
+
+    let c = Evidence::Replay(Peer::new(4, None).replay());
+    let found = compared(&a, &c);
+    assert_eq!(found.setup.len(), 1);
+    assert_eq!(found.setup[0].to_string(), ": 3 | 4");
+}
+
+#[test]
+fn worlds_are_compared_field_by_field() {
+    let mut peer = Peer::new(6, None);
+    (0..30).for_each(|_| peer.advance());
+    let a = Evidence::World(Box::new(peer.game.world.clone()));
+    let bytes = peer.game.world.to_bytes();
+    let same = Evidence::read(bytes, &Limits::default()).unwrap();
+    assert!(compared(&a, &same).is_equal());
+    let flip = Flip { tick: 0, when: When::After, body: 20, motion: Motion::Spin, bit: 3 };
+    let body = flip.apply(&mut peer.game).unwrap();
+    let b = Evidence::World(Box::new(peer.game.world));
+    let found = compared(&a, &b);
+    assert_eq!(format!("world.{}", found.things[0].path), body);
+    let names: Vec<&str> =
+        found.things[0].differences.iter().map(|difference| difference.field().name()).collect();
+    assert_eq!(names, ["spin", "angular_velocity"]);
+    assert!(compare::<Yard>(&a, &Evidence::Replay(Vec::new()), &Limits::default()).is_err());
+}

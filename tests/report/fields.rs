@@ -1,0 +1,42 @@
+//! The view of a state leaves nothing out: states that differ in any bit differ in a field.
+
+use lockstep2d::hash::StateHash;
+use lockstep2d::inspect::{Field, differences, fields};
+use lockstep2d::lockstep::{Game, Sandbox};
+use lockstep2d::math::Rng;
+use lockstep2d::scenes::Scene;
+use lockstep2d::world::World;
+
+fn view(world: &World) -> Vec<Field> {
+    fields(&world.save()).unwrap()
+}
+
+#[test]
+fn whatever_bit_of_a_state_differs_is_a_field() {
+    let mut rng = Rng::new(11);
+    for name in ["ragdoll", "game", "chain", "box_stack"] {
+        let scene = Scene::find(name).unwrap();
+        let mut game = Sandbox::new(&scene.setup(1)).unwrap();
+        for tick in 0..70 {
+            game.step(&[scene.commands(tick, &game)]);
+        }
+        let bytes = game.world().to_bytes();
+        let before = view(game.world());
+        let copy = World::from_bytes(&bytes).unwrap();
+        assert!(differences(&before, &view(&copy)).is_empty(), "{name}: equal worlds look equal");
+        let mut told = 0;
+        for _ in 0..400 {
+            let mut changed = bytes.clone();
+            let state = changed.len() - 16;
+            changed[24 + rng.next_u32() as usize % (state - 24)] ^= 1 << (rng.next_u32() % 8);
+            let hash = StateHash::of_bytes(&changed[..state]);
+            changed[state..].copy_from_slice(&hash.0.to_le_bytes());
+            // Most bits make a state that is impossible.
+            let Ok(other) = World::from_bytes(&changed) else { continue };
+            let found = differences(&before, &view(&other));
+            assert!(!found.is_empty(), "{name}: a bit that is not in the view");
+            told += 1;
+        }
+        assert!(told > 50, "{name}: only {told} states were possible");
+    }
+}

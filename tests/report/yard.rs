@@ -1,0 +1,202 @@
+//! A yard full of balls and boxes that players push: a game with dozens of touching bodies.
+
+use lockstep2d::body::{BodyDef, Geometry, Polygon, ShapeDef, WorldError};
+use lockstep2d::fx;
+use lockstep2d::hash::StateHash;
+use lockstep2d::lockstep::{Game, History, RulesId, SetupError};
+use lockstep2d::math::{Fx, Rng, Vec2};
+use lockstep2d::replay::Recorder;
+use lockstep2d::report::{Desync, DesyncReport};
+use lockstep2d::world::{Config, Motion, Snapshot, World};
+use serde::{Deserialize, Serialize};
+
+pub(crate) const PLAYERS: u32 = 3;
+
+/// Bodies that can move.
+pub(crate) const BODIES: usize = 60;
+
+pub(crate) struct Yard {
+    pub(crate) world: World,
+    pushes: u64,
+}
+
+#[derive(Clone, Serialize, Deserialize)]
+pub(crate) struct YardSave {
+    world: Snapshot,
+    pushes: u64,
+}
+
+impl Yard {
+    fn build(seed: u64) -> Result<Self, WorldError> {
+        let mut world = World::new(Config { sleeping: false, ..Config::default() })?;
+        for (x, y, w, h) in [(0, -1, 6, 1), (-6, 5, 1, 7), (6, 5, 1, 7)] {
+            let wall = ShapeDef::new(Polygon::rectangle(Fx::from_num(w), Fx::from_num(h))?);
+            world.spawn(&BodyDef::fixed().position(Fx::from_num(x), Fx::from_num(y)), &[wall])?;
+        }
+        let mut rng = Rng::new(seed);
+        for number in 0..BODIES {
+            let size = fx!(0.3) + Fx::from_bits(i64::from(rng.next_u32() >> 4));
+            let shape = if number % 2 == 0 {
+                Geometry::circle(size)?
+            } else {
+                Polygon::rectangle(size, size)?.into()
+            };
+            let (column, row) = (number % 8, number / 8);
+            let x = Fx::from_num(column) - fx!(3.5) + Fx::from_bits(i64::from(rng.next_u32() >> 6));
+            let body = BodyDef::dynamic().position(x, Fx::from_num(row) + fx!(0.5));
+            world.spawn(&body, &[ShapeDef::new(shape)])?;
+        }
+        Ok(Yard { world, pushes: 0 })
+    }
+}
+
+impl Game for Yard {
+    type Setup = u64;
+    type Input = u8;
+    type Save = YardSave;
+
+    const RULES: RulesId = RulesId { name: "yard", version: 1 };
+
+    fn new(seed: &u64) -> Result<Self, SetupError> {
+        Yard::build(*seed).map_err(|error| SetupError { why: error.to_string() })
+    }
+
+    fn players(&self) -> u32 {
+        PLAYERS
+    }
+
+    fn tick_rate(&self) -> u32 {
+        60
+    }
+
+    fn step(&mut self, inputs: &[u8]) {
+        for (player, &input) in inputs.iter().enumerate() {
+            let body = self.world.bodies().nth(3 + player * 7).map(|(id, _)| id);
+            if let Some(body) = body.filter(|_| input > 0) {
+                let push = Vec2::new(Fx::from(input) - fx!(128), fx!(90));
+                self.pushes += u64::from(self.world.apply_force_to_centre(body, push).is_ok());
+            }
+        }
+        self.world.step();
+    }
+
+    fn state_hash(&self) -> StateHash {
+        StateHash::of_digests([self.world.state_hash(), StateHash::of(&self.pushes)])
+    }
+
+    fn save(&self) -> YardSave {
+        YardSave { world: self.world.save(), pushes: self.pushes }
+    }
+
+    fn load(&mut self, save: &YardSave) {
+        self.world.restore(&save.world);
+        self.pushes = save.pushes;
+    }
+
+    fn work(&self, _: &[u8]) -> u64 {
+        4000
+    }
+
+    fn world_mut(&mut self) -> Option<&mut World> {
+        Some(&mut self.world)
+    }
+}
+
+pub(crate) fn inputs_at(tick: u64, player: u64) -> u8 {
+    let mut rng = Rng::new(tick / 9 * 3 + player);
+    rng.next_u32().to_le_bytes()[0]
+}
+
+/// When in a tick a bit flips.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum When {
+    Before,
+    After,
+}
+
+/// A bit that flips on the way to a tick, each time that this tick is played.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Flip {
+    pub(crate) tick: u64,
+    pub(crate) when: When,
+    /// Which of the dynamic bodies.
+    pub(crate) body: usize,
+    pub(crate) motion: Motion,
+    pub(crate) bit: u32,
+}
+
+impl Flip {
+    /// Flips the bit, if a body may have that speed.
+    pub(crate) fn apply(&self, game: &mut Yard) -> Option<String> {
+        let body = game.world.bodies().filter(|(_, body)| body.is_dynamic()).nth(self.body)?.0;
+        game.world.flip_bit(body, self.motion, self.bit).ok()?;
+        Some(format!("world.bodies.body {body}"))
+    }
+}
+
+/// A peer without a network.
+pub(crate) struct Peer {
+    pub(crate) game: Yard,
+    pub(crate) history: History<Yard>,
+    recorder: Recorder<Yard>,
+    replay: Vec<u8>,
+    flip: Option<Flip>,
+    pub(crate) tick: u64,
+    /// The body whose bit flipped.
+    pub(crate) flipped: Option<String>,
+}
+
+impl Peer {
+    pub(crate) fn new(seed: u64, flip: Option<Flip>) -> Self {
+        let (mut recorder, game) = Recorder::<Yard>::start(&seed, 25).expect("a valid setup");
+        let mut history = History::new(&game);
+        history.push(0, game.save(), game.state_hash());
+        let replay = recorder.take_bytes();
+        Peer { game, history, recorder, replay, flip, tick: 0, flipped: None }
+    }
+
+    /// Plays a tick that is not confirmed yet.
+    fn play(&mut self, inputs: &[u8]) {
+        let next = self.tick + 1;
+        let flip = |when| move |flip: &Flip| flip.tick == next && flip.when == when;
+        if let Some(flip) = self.flip.filter(flip(When::Before)) {
+            self.flipped = flip.apply(&mut self.game);
+        }
+        self.game.step(inputs);
+        if let Some(flip) = self.flip.filter(flip(When::After)) {
+            self.flipped = flip.apply(&mut self.game);
+        }
+        self.tick = next;
+        self.history.push(next, self.game.save(), self.game.state_hash());
+    }
+
+    fn inputs(&self) -> Vec<u8> {
+        (0..u64::from(PLAYERS)).map(|player| inputs_at(self.tick, player)).collect()
+    }
+
+    /// Plays and records a tick, after having played it wrong with guessed inputs now and then.
+    pub(crate) fn advance(&mut self) {
+        let start = self.tick;
+        if start % 7 == 3 {
+            (0..4).for_each(|_| self.play(&[9; PLAYERS as usize]));
+            self.tick = start;
+            self.history.truncate(start);
+            let past = self.history.get(start).expect("four ticks ago");
+            self.game.load(&past.save.clone());
+        }
+        let inputs = self.inputs();
+        self.recorder.record(&inputs).expect("valid inputs");
+        self.play(&inputs);
+        self.recorder.checkpoint(self.game.state_hash());
+        self.replay.extend(self.recorder.take_bytes());
+    }
+
+    pub(crate) fn replay(&self) -> Vec<u8> {
+        [self.replay.as_slice(), &self.recorder.so_far(self.game.state_hash())].concat()
+    }
+
+    pub(crate) fn report(&self, seat: u32, tick: u64, hashes: Vec<Option<StateHash>>) -> DesyncReport {
+        let found = Desync { players: PLAYERS, tick, seats: vec![seat], hashes };
+        DesyncReport::new(&found, &self.history, self.replay())
+    }
+}
