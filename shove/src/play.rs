@@ -114,10 +114,11 @@ fn play(arguments: &Arguments) -> Result<Option<Divergence>, Box<dyn Error>> {
             }
         }
         while let Some(event) = peer.next_event() {
-            if let (Event::Diverged(found), None) = (event, diverged) {
-                diverged = Some(found);
-                if let Some(path) = &arguments.report {
-                    std::fs::write(path, peer.report(&found))?;
+            if let Event::Diverged(found) = event {
+                let first = *diverged.get_or_insert(found);
+                // Of the same tick, more is known each time that somebody says what they have.
+                if let Some(path) = arguments.report.as_ref().filter(|_| found.tick == first.tick) {
+                    std::fs::write(path, peer.report(&first))?;
                 }
             }
             tell(&peer, event);

@@ -121,7 +121,12 @@ pub struct Driver<G: Game> {
     /// Whether inputs carry hashes, and how many ticks apart these are.
     echo_interval: Option<u64>,
     divergences: Vec<Divergence>,
+    /// What seats have said of late, the newest last: hashes after some tick.
+    heard: VecDeque<(u32, Echo)>,
 }
+
+/// How many hashes of each seat are remembered.
+const HEARD: usize = 16;
 
 impl<G: NetGame> Driver<G> {
     /// Starts the game and its replay; every seat is a player of the session, in order.
@@ -156,6 +161,7 @@ impl<G: NetGame> Driver<G> {
             taken: Vec::new(),
             echo_interval: None,
             divergences: Vec::new(),
+            heard: VecDeque::new(),
         }
     }
 
@@ -263,16 +269,26 @@ impl<G: NetGame> Driver<G> {
             }
         }
         self.step(&of_seat)?;
-        let heard = self.seats.iter().zip(inputs);
-        let differs = |(seat, (wire, _)): (&u32, &(Wire<G::Input>, InputStatus))| {
-            let ours = self.history.get(wire.echo.tick)?.hash;
-            let Echo { tick, hash: theirs } = wire.echo;
-            let differs = tick > 0 && theirs != ours;
-            differs.then_some(Divergence { tick, seat: *seat, ours, theirs })
-        };
-        let found: Vec<_> = heard.filter_map(differs).collect();
-        self.divergences.extend(found);
+        for (at, (wire, _)) in inputs.iter().enumerate() {
+            self.hear(self.seats[at], wire.echo);
+        }
         Ok(())
+    }
+
+    /// Takes note of the hash that a seat's peer had after some tick; hashes inside inputs are taken note of anyway. With a
+    /// session of your own, pass on what `GgrsEvent::DesyncDetected` says.
+    pub fn hear(&mut self, seat: u32, echo: Echo) {
+        if echo.tick == 0 || self.heard.contains(&(seat, echo)) {
+            return;
+        }
+        if self.heard.len() == HEARD * self.seats.len() {
+            self.heard.pop_front();
+        }
+        self.heard.push_back((seat, echo));
+        let Some(ours) = self.history.get(echo.tick).map(|past| past.hash) else { return };
+        if ours != echo.hash {
+            self.divergences.push(Divergence { tick: echo.tick, seat, ours, theirs: echo.hash });
+        }
     }
 
     /// Plays a tick with the inputs of all seats.
@@ -290,7 +306,7 @@ impl<G: NetGame> Driver<G> {
         Ok(())
     }
 
-    /// The divergences that inputs have told of since this was last asked.
+    /// The divergences that have become known since this was last asked.
     pub fn take_divergences(&mut self) -> Vec<Divergence> {
         core::mem::take(&mut self.divergences)
     }
@@ -338,6 +354,8 @@ impl<G: NetGame> Driver<G> {
     /// [`DriverError::NoState`] when that tick is not remembered.
     pub fn restart(&mut self, base: u64, seats: Vec<u32>) -> Result<(), DriverError> {
         self.rewind(base)?;
+        // What was said of later ticks is said of what never happened.
+        self.heard.retain(|(_, echo)| echo.tick <= base);
         self.base = base;
         self.seats = seats;
         Ok(())
@@ -357,8 +375,11 @@ impl<G: NetGame> Driver<G> {
     #[must_use]
     pub fn report(&self, divergence: &Divergence, seats: Vec<u32>, known: u64) -> DesyncReport {
         let players = self.game.players();
-        let theirs = |seat| (seat == divergence.seat).then_some(divergence.theirs);
-        let hashes = (0..players).map(theirs).collect();
+        let said = |seat| {
+            let said = self.heard.iter().find(|(of, echo)| *of == seat && echo.tick == divergence.tick);
+            said.map(|(_, echo)| echo.hash).or((seat == divergence.seat).then_some(divergence.theirs))
+        };
+        let hashes = (0..players).map(said).collect();
         let found = Desync { players, tick: divergence.tick, seats, hashes };
         DesyncReport::new(&found, &self.history, self.replay_so_far(known).unwrap_or_default())
     }

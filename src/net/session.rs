@@ -9,12 +9,12 @@ use std::sync::{Mutex, PoisonError};
 use ggrs::{DesyncDetection, GgrsError, GgrsEvent, Message, NonBlockingSocket, P2PSession};
 use ggrs::{PlayerType, SessionBuilder};
 
-use super::driver::{Divergence, Driver};
+use super::driver::Driver;
 use super::gate::Gate;
 use super::options::Options;
 use super::packet::SessionId;
 use super::peer::NetError;
-use super::wire::{Address, GgrsConfig, NetGame};
+use super::wire::{Address, Echo, GgrsConfig, NetGame};
 use crate::hash::StateHash;
 
 /// Who plays from which tick on.
@@ -74,8 +74,8 @@ pub(super) enum SessionEvent {
     Resumed(u32),
     /// Nothing has come for too long.
     Lost(u32),
-    /// Two peers have other states.
-    Diverged(Divergence),
+    /// The peer of this seat has another hash after some tick.
+    Said(u32, Echo),
 }
 
 pub(super) struct Session<G: NetGame, A: Address> {
@@ -156,12 +156,12 @@ impl<G: NetGame, A: Address> Session<G, A> {
     }
 
     /// Lets GGRS read its messages and write new ones.
-    pub(super) fn poll(&mut self, driver: &Driver<G>) -> Vec<SessionEvent> {
+    pub(super) fn poll(&mut self) -> Vec<SessionEvent> {
         self.p2p.poll_remote_clients();
-        self.events(driver)
+        self.events()
     }
 
-    fn events(&mut self, driver: &Driver<G>) -> Vec<SessionEvent> {
+    fn events(&mut self) -> Vec<SessionEvent> {
         let mut events = Vec::new();
         for event in self.p2p.events().collect::<Vec<_>>() {
             let of = |address: &A| self.roster.seat_of(address);
@@ -177,14 +177,10 @@ impl<G: NetGame, A: Address> Session<G, A> {
                     events.extend(of(&addr).map(SessionEvent::Interrupted));
                 }
                 GgrsEvent::NetworkResumed { addr } => events.extend(of(&addr).map(SessionEvent::Resumed)),
-                GgrsEvent::DesyncDetected { frame, local_checksum, remote_checksum, addr } => {
-                    let divergence = |seat| Divergence {
-                        tick: driver.tick_of(frame),
-                        seat,
-                        ours: StateHash(local_checksum),
-                        theirs: StateHash(remote_checksum),
-                    };
-                    events.extend(of(&addr).map(divergence).map(SessionEvent::Diverged));
+                GgrsEvent::DesyncDetected { frame, remote_checksum, addr, .. } => {
+                    let tick = self.roster.base + u64::try_from(frame).unwrap_or(0);
+                    let echo = Echo { tick, hash: StateHash(remote_checksum) };
+                    events.extend(of(&addr).map(|seat| SessionEvent::Said(seat, echo)));
                 }
                 GgrsEvent::Synchronizing { .. } | GgrsEvent::WaitRecommendation { .. } => {}
             }
@@ -215,8 +211,7 @@ impl<G: NetGame, A: Address> Session<G, A> {
         }
         let requests = self.p2p.advance_frame()?;
         driver.fulfil(requests)?;
-        let mut events = self.events(driver);
-        events.extend(driver.take_divergences().into_iter().map(SessionEvent::Diverged));
+        let events = self.events();
         // Only now have rollbacks been made for all that has come.
         if !self.lost {
             let known = u64::try_from(self.p2p.confirmed_frame() + 1).unwrap_or(0);

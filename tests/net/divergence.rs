@@ -3,9 +3,9 @@
 use std::thread;
 
 use lockstep2d::math::Rng;
-use lockstep2d::net::{Divergence, Event, Options, Peer, Weather};
+use lockstep2d::net::{Divergence, Event, Mode, Options, Peer, Weather};
 use lockstep2d::replay::Limits;
-use lockstep2d::report::{Blame, Evidence, Side, compare};
+use lockstep2d::report::{Blame, DesyncReport, Evidence, Side, compare};
 use lockstep2d::world::Motion;
 
 use super::matches::MODES;
@@ -45,6 +45,16 @@ fn check(options: Options, seed: u64) {
     assert!(seen, "{fault:?}: {}", table.describe());
 
     let other = (faulty + 1) % players;
+    // Who differs from all others hears of all of them; in lockstep everybody does.
+    let told = |at: u32, first: &Divergence| {
+        let report = table.peers[at as usize].as_ref().unwrap().report(first);
+        DesyncReport::from_bytes(&report, &Limits::default()).unwrap()
+    };
+    if options.mode == Mode::Lockstep {
+        let groups = told(other, &found(&table, other as usize).unwrap()).groups();
+        let sizes: Vec<_> = groups.iter().map(|(_, seats)| seats.len()).collect();
+        assert_eq!(sizes, if players == 2 { vec![1, 1] } else { vec![2, 1] }, "{groups:?}");
+    }
     let mut sides = Vec::new();
     for at in [faulty, other] {
         let first = found(&table, at as usize).unwrap();

@@ -217,15 +217,15 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
     fn poll_sessions(&mut self) {
         // Its players may still miss something of ours; what it says is no longer of interest.
         if let Some(past) = &mut self.past {
-            past.poll(&self.driver);
+            past.poll();
         }
         if let Some(next) = &mut self.next {
-            next.poll(&self.driver);
+            next.poll();
         }
         if self.leaving.is_none()
             && let Some(session) = &mut self.session
         {
-            let events = session.poll(&self.driver);
+            let events = session.poll();
             self.note(events);
         }
     }
@@ -246,9 +246,10 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
                 SessionEvent::Lost(seat) => self.begin_leaving(super::session::seat_bit(seat)),
                 SessionEvent::Interrupted(seat) => self.events.push_back(Event::Interrupted { seat }),
                 SessionEvent::Resumed(seat) => self.events.push_back(Event::Resumed { seat }),
-                SessionEvent::Diverged(found) => self.events.push_back(Event::Diverged(found)),
+                SessionEvent::Said(seat, echo) => self.driver.hear(seat, echo),
             }
         }
+        self.events.extend(self.driver.take_divergences().into_iter().map(Event::Diverged));
     }
 
     fn say(&mut self, packet: &Packet<A>, to: &A) {
