@@ -31,6 +31,7 @@
 //! ```
 
 mod driver;
+mod error;
 mod gate;
 mod options;
 mod packet;
@@ -41,7 +42,8 @@ mod transport;
 mod weather;
 mod wire;
 
-pub use driver::{Divergence, Driver, DriverError};
+pub use driver::{Divergence, Driver};
+pub use error::DriverError;
 pub use options::{INPUT_DELAY_MAX, Mode, Options};
 pub use peer::{Event, NetError, Peer};
 pub use terms::{Terms, TermsDifference, TermsMismatch};

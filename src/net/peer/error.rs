@@ -5,7 +5,7 @@ use core::fmt;
 
 use ggrs::GgrsError;
 
-use crate::net::driver::DriverError;
+use crate::net::error::DriverError;
 use crate::net::terms::TermsMismatch;
 use crate::replay::RecordError;
 
