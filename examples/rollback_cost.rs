@@ -84,7 +84,11 @@ fn main() -> Result<(), WorldError> {
         frames.push(hundredths(frame, step / TICKS));
     }
     let (step, save, frame) = (median(steps), median(saves), median(frames));
-    println!("{} awake bodies, {} contacts, a step {step:?}", world.awake_body_count(), world.stats().contacts);
+    println!(
+        "{} awake bodies, {} contacts, a step {step:?}",
+        world.awake_body_count(),
+        world.stats().contacts
+    );
     println!("a save and its hash: {save} % of a step");
     println!("{TICKS} ticks again: {}.{:02} steps", frame / 100, frame % 100);
     Ok(())

@@ -1,6 +1,7 @@
 //! Matches over networks that lose, delay, double and reorder packets, and peers that come and go.
 
 mod comings;
+mod disasters;
 mod divergence;
 mod goings;
 mod matches;

@@ -95,6 +95,8 @@ pub struct Peer<G: NetGame, A: Address, T: Transport<A>> {
     past: Option<Session<G, A>>,
     leaving: Option<Leaving>,
     settled: Option<Settled>,
+    /// The last session that was agreed upon and is not played after all.
+    abandoned: Option<SessionId>,
     joiners: Vec<Joiner<A>>,
     events: VecDeque<Event>,
 }
@@ -143,6 +145,7 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
             driver = driver.with_echo(options.check_interval.into());
         }
         let terms = Terms::of(driver.game(), setup, &options);
+        let options = options.start_with(options.start_with.min(terms.players));
         Ok(Peer {
             transport,
             options,
@@ -160,6 +163,7 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
             past: None,
             leaving: None,
             settled: None,
+            abandoned: None,
             joiners: Vec::new(),
             events: VecDeque::new(),
         })
