@@ -93,6 +93,18 @@ fn a_spectator_that_was_silent_is_told() {
     assert!(table.play(3, told), "{}", table.describe());
 }
 
+#[test]
+fn a_lost_packet_does_not_hold_up_lockstep_for_long() {
+    let loss = Weather { latency: Duration::from_millis(20), loss: 20, ..Weather::default() };
+    let mut table = Table::of(4, Options::lockstep(), loss, 26);
+    assert!(table.play(20, |table| table.all_confirmed(10)), "{}", table.describe());
+    let start = of(&table, 0).confirmed();
+    pass(&mut table, 5000);
+    let ticks = of(&table, 0).confirmed() - start;
+    println!("{ticks} ticks in 5 s");
+    assert!(ticks > 120, "{ticks} ticks in 5 s");
+}
+
 /// Whatever happens, in the end everybody plays with the others or knows why not.
 fn anything(seed: u64) {
     let mut rng = Rng::new(seed);

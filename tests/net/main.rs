@@ -5,6 +5,7 @@ mod disasters;
 mod divergence;
 mod goings;
 mod matches;
+mod oddities;
 mod pushers;
 mod scripted;
 mod table;

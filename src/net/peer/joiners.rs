@@ -146,6 +146,18 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
         self.say(&Packet::Refused { nonce, why: Refused::Other("silent or behind for too long".into()) }, to);
     }
 
+    /// Tells those who load, follow or watch that this peer leaves.
+    pub(super) fn say_bye_to_joiners(&mut self) {
+        let why = || Refused::Other("the player who was asked has left".into());
+        let packet = |joiner: &Joiner<A>| {
+            (joiner.address.clone(), Packet::Refused { nonce: joiner.nonce, why: why() })
+        };
+        let packets: Vec<_> = self.joiners.iter().map(packet).collect();
+        for (to, packet) in packets {
+            self.say(&packet, &to);
+        }
+    }
+
     pub(super) fn take_ready(&mut self, from: &A, nonce: Nonce, tick: u64, hash: StateHash) {
         let ours = self.driver.history().get(tick).map(|moment| moment.hash);
         // Somebody else may have been faster.

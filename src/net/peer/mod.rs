@@ -237,7 +237,7 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
     fn send_sessions(&mut self) {
         for session in [&mut self.past, &mut self.next, &mut self.session].into_iter().flatten() {
             let id = session.roster.session;
-            for (to, message) in session.send() {
+            for (to, message) in session.send(self.now) {
                 let packet: Packet<A> = Packet::Session { session: id, message };
                 self.transport.send(&packet.encode(), &to);
             }
@@ -367,6 +367,7 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
     /// [`NetError`] when the replay cannot be ended.
     pub fn finish(mut self, ticks: u64) -> Result<Vec<u8>, NetError> {
         self.say_bye();
+        self.say_bye_to_joiners();
         let known = self.confirmed().min(ticks);
         self.driver.commit(known)?;
         Ok(self.driver.finish()?)
