@@ -104,8 +104,17 @@ fn play(arguments: &Arguments) -> Result<Option<Divergence>, Box<dyn Error>> {
     let mut bot = None;
     let clock = Clock::start();
     let ticks = arguments.ticks.unwrap_or(u64::MAX);
+    let watches = arguments.way.watch.is_some();
+    let mut written = 0;
     while peer.confirmed() < ticks {
-        peer.update(clock.now())?;
+        if let Err(error) = peer.update(clock.now()) {
+            // Without players there is nothing more to see.
+            if !watches || peer.tick() == 0 {
+                return Err(error.into());
+            }
+            eprintln!("spectator: {error}");
+            break;
+        }
         while peer.is_due() {
             let seat = peer.seat().and_then(|seat| u8::try_from(seat).ok()).unwrap_or(0);
             let pad = bot.get_or_insert_with(|| Bot::new(arguments.seed, seat)).pad(peer.game());
@@ -124,20 +133,26 @@ fn play(arguments: &Arguments) -> Result<Option<Divergence>, Box<dyn Error>> {
             tell(&peer, event);
         }
         if let Some(file) = &mut file {
-            file.write_all(&peer.take_replay())?;
+            let bytes = peer.take_replay();
+            written += bytes.len();
+            file.write_all(&bytes)?;
         }
         thread::sleep(Duration::from_millis(1));
     }
+    let ticks = ticks.min(peer.confirmed());
     let hash = peer.history().get(ticks).map(|moment| moment.hash);
     say_end(arguments, &peer, ticks, hash, diverged);
     let end = clock.now() + LINGER;
-    while clock.now() < end {
-        peer.update(clock.now())?;
+    // Others may still miss something of ours; what becomes of them does not matter any more.
+    while !watches && clock.now() < end && peer.update(clock.now()).is_ok() {
         thread::sleep(Duration::from_millis(5));
     }
     let rest = peer.finish(ticks)?;
     if let Some(file) = &mut file {
         file.write_all(&rest)?;
+        if written + rest.len() == 0 {
+            eprintln!("no replay: the first ticks were played without this peer");
+        }
     }
     Ok(diverged)
 }

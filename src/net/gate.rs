@@ -5,6 +5,7 @@
 
 use alloc::collections::VecDeque;
 use alloc::vec::Vec;
+use core::time::Duration;
 
 use ggrs::Message;
 use ggrs_bincode::Options as _;
@@ -51,6 +52,8 @@ struct Connection {
 const FRAMES_AHEAD: i32 = 96;
 /// Bytes that the inputs of one message can have, unpacked.
 const INPUT_BYTES_MAX: usize = 64 << 10;
+/// After how long inputs are sent again if there are no newer ones: when all wait for a lost packet, nobody has any.
+const SEND_AGAIN: Duration = Duration::from_millis(50);
 /// How many of our pings are remembered.
 const PINGS: usize = 16;
 
@@ -62,23 +65,36 @@ pub(super) struct Gate {
     last_frame: i32,
     /// Pings that were sent and not answered.
     pings: VecDeque<u128>,
+    /// The last message with inputs to the remote, and when it was sent.
+    inputs: Option<(Duration, Vec<u8>)>,
 }
 
 impl Gate {
     pub(super) const fn new(players: usize) -> Self {
-        Gate { players, last_frame: -1, pings: VecDeque::new() }
+        Gate { players, last_frame: -1, pings: VecDeque::new(), inputs: None }
     }
 
     /// Takes note of a message to the remote, and gives its bytes.
-    pub(super) fn send(&mut self, message: &Message) -> Option<Vec<u8>> {
+    pub(super) fn send(&mut self, message: &Message, now: Duration) -> Option<Vec<u8>> {
         let bytes = layout().serialize(message).ok()?;
-        if let Ok(Shadow { body: Body::QualityReport { ping, .. }, .. }) = layout().deserialize(&bytes) {
-            if self.pings.len() == PINGS {
-                self.pings.pop_front();
+        match layout().deserialize(&bytes).map(|shadow: Shadow| shadow.body) {
+            Ok(Body::QualityReport { ping, .. }) => {
+                if self.pings.len() == PINGS {
+                    self.pings.pop_front();
+                }
+                self.pings.push_back(ping);
             }
-            self.pings.push_back(ping);
+            Ok(Body::Input(_)) => self.inputs = Some((now, bytes.clone())),
+            _ => {}
         }
         Some(bytes)
+    }
+
+    /// The last inputs once more, if they may have been lost. GGRS itself waits for four times as long.
+    pub(super) fn send_again(&mut self, now: Duration) -> Option<Vec<u8>> {
+        let (sent, bytes) = self.inputs.as_mut().filter(|(sent, _)| now >= *sent + SEND_AGAIN)?;
+        *sent = now;
+        Some(bytes.clone())
     }
 
     /// A message of the remote, if GGRS can bear it. `frame` is the one that is played here.

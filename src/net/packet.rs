@@ -60,7 +60,7 @@ pub(super) enum Packet<A> {
     /// The plan is known.
     Agreed { plan: SessionId },
     /// The seats in `gone` have left this session, of which the sender has final inputs for `ticks` ticks.
-    /// `settled` if it has gone on since: then it needs no answer.
+    /// `settled` if it has gone on since: then it needs no answer, and `ticks` is where it went on from.
     Gone { session: SessionId, gone: u64, ticks: u64, settled: bool },
     /// The sender leaves.
     Bye { session: SessionId },

@@ -4,6 +4,7 @@ use alloc::collections::{BTreeMap, BTreeSet};
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 use core::mem;
+use core::time::Duration;
 use std::sync::{Mutex, PoisonError};
 
 use ggrs::{DesyncDetection, GgrsError, GgrsEvent, Message, NonBlockingSocket, P2PSession};
@@ -145,14 +146,17 @@ impl<G: NetGame, A: Address> Session<G, A> {
     }
 
     /// The messages that are to be sent.
-    pub(super) fn send(&mut self) -> Vec<(A, Vec<u8>)> {
+    pub(super) fn send(&mut self, now: Duration) -> Vec<(A, Vec<u8>)> {
         let outgoing = mem::take(&mut lock(&self.mail).outgoing);
         let gates = &mut self.gates;
         let bytes = |(to, message): (A, Message)| {
-            let bytes = gates.get_mut(&to)?.send(&message)?;
+            let bytes = gates.get_mut(&to)?.send(&message, now)?;
             Some((to, bytes))
         };
-        outgoing.into_iter().filter_map(bytes).collect()
+        let mut packets: Vec<_> = outgoing.into_iter().filter_map(bytes).collect();
+        let again = gates.iter_mut().filter_map(|(to, gate)| Some((to.clone(), gate.send_again(now)?)));
+        packets.extend(again);
+        packets
     }
 
     /// Lets GGRS read its messages and write new ones.

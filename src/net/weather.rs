@@ -1,6 +1,6 @@
 //! [`Network`]: a network in memory, as bad as one likes, for tests.
 
-use alloc::collections::{BTreeMap, VecDeque};
+use alloc::collections::{BTreeMap, BTreeSet, VecDeque};
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 use core::time::Duration;
@@ -42,6 +42,8 @@ pub struct Network(Arc<Mutex<Air>>);
 #[derive(Debug)]
 struct Air {
     weather: Weather,
+    /// From whom to whom nothing comes.
+    cut: BTreeSet<(u32, u32)>,
     rng: Rng,
     now: Duration,
     /// Packets on their way, by the time of their arrival and the order in which they were sent.
@@ -70,6 +72,7 @@ impl Network {
     pub fn new(weather: Weather, seed: u64) -> Self {
         Network(Arc::new(Mutex::new(Air {
             weather,
+            cut: BTreeSet::new(),
             rng: Rng::new(seed),
             now: Duration::ZERO,
             flying: BTreeMap::new(),
@@ -94,6 +97,16 @@ impl Network {
         self.air().weather = weather;
     }
 
+    /// Loses all packets that are sent from one address to another, until [`Network::mend`].
+    pub fn cut(&self, from: u32, to: u32) {
+        self.air().cut.insert((from, to));
+    }
+
+    /// Lets packets pass everywhere again.
+    pub fn mend(&self) {
+        self.air().cut.clear();
+    }
+
     fn air(&self) -> MutexGuard<'_, Air> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -101,6 +114,9 @@ impl Network {
 
 impl Air {
     fn send(&mut self, letter: &Letter) {
+        if self.cut.contains(&(letter.from, letter.to)) {
+            return;
+        }
         let Weather { latency, jitter, loss, doubled } = self.weather;
         let copies = if self.rng.below(100) < doubled { 2 } else { 1 };
         for _ in 0..copies {

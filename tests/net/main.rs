@@ -3,9 +3,11 @@
 #![expect(clippy::unwrap_used, reason = "what fails here is the test")]
 
 mod comings;
+mod disasters;
 mod divergence;
 mod goings;
 mod matches;
+mod oddities;
 mod pushers;
 mod scripted;
 mod table;

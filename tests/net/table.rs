@@ -16,13 +16,23 @@ pub(crate) struct Table {
     pub(crate) errors: Vec<Option<NetError>>,
     pub(crate) replays: Vec<Vec<u8>>,
     start: Instant,
+    /// How far the clock of all has jumped.
+    pub(crate) ahead: Duration,
 }
 
 impl Table {
     pub(crate) fn new(weather: Weather, seed: u64) -> Self {
         let network = Network::new(weather, seed);
         let start = Instant::now();
-        Table { network, peers: vec![], events: vec![], errors: vec![], replays: vec![], start }
+        Table {
+            network,
+            peers: vec![],
+            events: vec![],
+            errors: vec![],
+            replays: vec![],
+            start,
+            ahead: Duration::ZERO,
+        }
     }
 
     /// A host and its guests; peer `n` has the address `n`.
@@ -67,7 +77,7 @@ impl Table {
     }
 
     fn turn(&mut self) {
-        let now = self.start.elapsed();
+        let now = self.start.elapsed() + self.ahead;
         self.network.set_time(now);
         for at in 0..self.peers.len() {
             let Some(peer) = &mut self.peers[at] else { continue };

@@ -242,11 +242,12 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
             if self.driver.tick() >= until {
                 return Ok(());
             }
+            let doubt = if joining.watch { 0 } else { self.options.doubt() };
             let Some(bytes) = queue.pop_front() else { return Ok(()) };
             let inputs = decode_inputs::<G::Input>(&bytes, self.terms.players)
                 .map_err(|error| NetError::State { why: error.to_string() })?;
             self.driver.step(&inputs)?;
-            self.driver.commit(self.driver.tick().saturating_sub(self.options.doubt()))?;
+            self.driver.commit(self.driver.tick().saturating_sub(doubt))?;
         }
         Ok(())
     }

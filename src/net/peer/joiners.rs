@@ -39,7 +39,9 @@ pub(super) struct Joiner<A> {
 
 impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
     pub(super) fn greet(&mut self, from: &A, nonce: Nonce, terms: &Terms, seat: Option<u32>, watch: bool) {
-        if self.catch_up.is_some() {
+        // A player who asks for a seat has come back before it was missed: it will be, and then it can have its seat.
+        let plays = |session: &Session<G, A>| session.roster.seat_of(from).is_some();
+        if self.catch_up.is_some() || self.session.as_ref().is_some_and(plays) {
             return;
         }
         if let Err(_mismatch) = self.terms.agree(terms) {
@@ -98,6 +100,12 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
         seats & !taken
     }
 
+    /// Whether who has this address plays, or is about to.
+    fn is_seated(&self, address: &A) -> bool {
+        let sessions = [&self.session, &self.next].into_iter().flatten();
+        sessions.into_iter().any(|session| session.roster.seat_of(address).is_some())
+    }
+
     fn joiner(&mut self, from: &A, nonce: Nonce) -> Option<&mut Joiner<A>> {
         let now = self.now;
         let known = |joiner: &&mut Joiner<A>| joiner.nonce == nonce && joiner.address == *from;
@@ -107,7 +115,7 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
     }
 
     pub(super) fn give_state(&mut self, from: &A, nonce: Nonce, offset: u64) {
-        let Some(joiner) = self.joiner(from, nonce) else { return };
+        let Some(joiner) = self.joiner(from, nonce) else { return self.say_forgotten(from, nonce) };
         let state = joiner.state.clone();
         let Ok(start) = usize::try_from(offset) else { return };
         let end = start.saturating_add(PIECE_BYTES).min(state.len());
@@ -116,12 +124,15 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
     }
 
     pub(super) fn give_inputs(&mut self, from: &A, nonce: Nonce, tick: u64) {
-        if self.joiner(from, nonce).is_none() {
-            return;
-        }
-        // Once a session is entered, nothing before it changes any more.
-        let base = self.session.as_ref().map_or(0, |session| session.roster.base);
+        let Some(joiner) = self.joiner(from, nonce) else { return self.say_forgotten(from, nonce) };
+        let watch = joiner.watch;
+        // Once everybody has entered a session, nothing before it changes any more; who is to enter it needs all of that.
+        let entered = self.session.as_ref().filter(|session| !watch || session.is_established());
+        let base = entered.map_or(0, |session| session.roster.base);
         let committed = self.driver.committed().max(base);
+        if tick < committed && self.driver.inputs_of(tick).is_none() {
+            return self.say_forgotten(from, nonce);
+        }
         let mut ticks = Vec::new();
         let mut room = PACKET_BYTES_AIM - INPUTS_HEAD;
         for tick in tick..committed {
@@ -135,10 +146,32 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
         self.say(&Packet::Inputs { nonce, from: tick, ticks, committed }, from);
     }
 
+    fn say_forgotten(&mut self, to: &A, nonce: Nonce) {
+        self.say(&Packet::Refused { nonce, why: Refused::Other("silent or behind for too long".into()) }, to);
+    }
+
+    /// Tells those who load, follow or watch that this peer leaves.
+    pub(super) fn say_bye_to_joiners(&mut self) {
+        let why = || Refused::Other("the player who was asked has left".into());
+        let packet = |joiner: &Joiner<A>| {
+            (joiner.address.clone(), Packet::Refused { nonce: joiner.nonce, why: why() })
+        };
+        let packets: Vec<_> = self.joiners.iter().map(packet).collect();
+        for (to, packet) in packets {
+            self.say(&packet, &to);
+        }
+    }
+
     pub(super) fn take_ready(&mut self, from: &A, nonce: Nonce, tick: u64, hash: StateHash) {
         let ours = self.driver.history().get(tick).map(|moment| moment.hash);
+        // Somebody else may have been faster.
+        let late = self.free_seats() == 0 && !self.is_seated(from);
         let Some(joiner) = self.joiner(from, nonce) else { return };
         match ours {
+            _ if late && !joiner.watch => {
+                joiner.ready = false;
+                self.say(&Packet::Refused { nonce, why: Refused::Full }, from);
+            }
             Some(ours) if ours == hash => joiner.ready = !joiner.watch,
             Some(_) => self.say(&Packet::Refused { nonce, why: Refused::Diverged { tick } }, from),
             // Too long ago to tell: it is not up to date.

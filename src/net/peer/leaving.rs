@@ -31,7 +31,8 @@ pub(super) struct Leaving {
 pub(super) struct Settled {
     session: SessionId,
     gone: u64,
-    ticks: u64,
+    /// The first tick of the session that followed.
+    base: u64,
 }
 
 /// How many times a leaving player says so.
@@ -47,7 +48,7 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
                 let (ticks, since) = (session.confirmed(), self.now);
                 self.leaving = Some(Leaving { gone, ticks, heard: BTreeMap::new(), since, said: None });
                 // Who was about to join will ask again.
-                self.next = None;
+                self.abandoned = self.next.take().map(|next| next.roster.session).or(self.abandoned);
                 self.planned = None;
             }
         }
@@ -79,10 +80,14 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
         settled: bool,
     ) -> Result<(), NetError> {
         if let Some(known) = self.settled.as_ref().filter(|known| known.session == session) {
-            let Settled { gone, ticks, .. } = *known;
+            let Settled { gone, base, .. } = *known;
             if !settled {
-                self.say(&Packet::Gone { session, gone, ticks, settled: true }, from);
+                self.say(&Packet::Gone { session, gone, ticks: base, settled: true }, from);
             }
+            return Ok(());
+        }
+        if self.abandoned == Some(session) && !settled {
+            self.say(&Packet::Gone { session, gone: u64::MAX, ticks: 0, settled: true }, from);
             return Ok(());
         }
         self.fall_back(session);
@@ -91,12 +96,24 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
         };
         let Some(seat) = current.roster.seat_of(from) else { return Ok(()) };
         if gone & seat_bit(current.roster.seat) != 0 {
-            return Err(NetError::Dropped);
+            return match &self.past {
+                // The others have not entered it after all.
+                Some(past) if settled && !current.is_established() => {
+                    let past = past.roster.session;
+                    self.fall_back(past);
+                    Ok(())
+                }
+                _ => Err(NetError::Dropped),
+            };
         }
         self.begin_leaving(gone & current.roster.mask());
-        if let Some(leaving) = &mut self.leaving {
-            leaving.heard.insert(seat, (gone, ticks));
+        let Some(leaving) = &mut self.leaving else { return Ok(()) };
+        if settled && ticks <= leaving.ticks {
+            // It has heard all whom it has gone on with, and we may have missed one of them.
+            leaving.gone = gone;
+            return self.go_on_without(ticks);
         }
+        leaving.heard.insert(seat, (gone, ticks));
         Ok(())
     }
 
@@ -105,6 +122,7 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
         let established = self.session.as_ref().is_some_and(Session::is_established);
         let is_past = self.past.as_ref().is_some_and(|past| past.roster.session == session);
         if is_past && !established {
+            self.abandoned = self.session.as_ref().map(|session| session.roster.session);
             self.session = self.past.take();
             self.leaving = None;
         }
@@ -132,12 +150,15 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
         if leaving.gone & seat_bit(roster.seat) != 0 {
             return Err(NetError::Dropped);
         }
-        if self.now > leaving.since + 2 * timeout {
+        if self.now > leaving.since + timeout {
             leaving.gone |= unheard(leaving);
             leaving.since = self.now;
         }
         if unheard(leaving) == 0 {
-            return self.go_on_without();
+            let left = |seat: &u32| leaving.gone & seat_bit(*seat) == 0;
+            let said = leaving.heard.iter().filter(|(seat, _)| left(seat));
+            let base = said.fold(leaving.ticks, |base, (_, (_, ticks))| base.min(*ticks));
+            return self.go_on_without(base);
         }
         self.say_gone();
         Ok(())
@@ -157,8 +178,8 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
         }
     }
 
-    /// Begins a session without those who are gone, at the first tick that somebody does not know.
-    fn go_on_without(&mut self) -> Result<(), NetError> {
+    /// Begins a session without those who are gone at `base`, the first tick that somebody does not know.
+    fn go_on_without(&mut self, base: u64) -> Result<(), NetError> {
         // Once more for those who wait for it.
         if let Some(leaving) = &mut self.leaving {
             leaving.said = None;
@@ -168,11 +189,9 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
         let Roster { session: parent, seat, others, .. } = session.roster.clone();
         let left: Vec<_> =
             others.into_iter().filter(|(seat, _)| leaving.gone & seat_bit(*seat) == 0).collect();
-        let said = left.iter().filter_map(|(seat, _)| leaving.heard.get(seat));
-        let base = said.fold(leaving.ticks, |base, (_, ticks)| base.min(*ticks));
         let mut roster = Roster { session: parent, base, seat, others: left };
         roster.session = Roster::<A>::id(parent, base, roster.mask(), 0);
-        self.settled = Some(Settled { session: parent, gone: leaving.gone, ticks: leaving.ticks });
+        self.settled = Some(Settled { session: parent, gone: leaving.gone, base });
         let next = Session::new(roster, &self.options, self.terms.tick_rate)?;
         self.past = None;
         self.enter(next)?;

@@ -95,6 +95,8 @@ pub struct Peer<G: NetGame, A: Address, T: Transport<A>> {
     past: Option<Session<G, A>>,
     leaving: Option<Leaving>,
     settled: Option<Settled>,
+    /// The last session that was agreed upon and is not played after all.
+    abandoned: Option<SessionId>,
     joiners: Vec<Joiner<A>>,
     events: VecDeque<Event>,
 }
@@ -143,6 +145,7 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
             driver = driver.with_echo(options.check_interval.into());
         }
         let terms = Terms::of(driver.game(), setup, &options);
+        let options = options.start_with(options.start_with.min(terms.players));
         Ok(Peer {
             transport,
             options,
@@ -160,6 +163,7 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
             past: None,
             leaving: None,
             settled: None,
+            abandoned: None,
             joiners: Vec::new(),
             events: VecDeque::new(),
         })
@@ -233,7 +237,7 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
     fn send_sessions(&mut self) {
         for session in [&mut self.past, &mut self.next, &mut self.session].into_iter().flatten() {
             let id = session.roster.session;
-            for (to, message) in session.send() {
+            for (to, message) in session.send(self.now) {
                 let packet: Packet<A> = Packet::Session { session: id, message };
                 self.transport.send(&packet.encode(), &to);
             }
@@ -364,6 +368,7 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
     /// [`NetError`] when the replay cannot be ended.
     pub fn finish(mut self, ticks: u64) -> Result<Vec<u8>, NetError> {
         self.say_bye();
+        self.say_bye_to_joiners();
         let known = self.confirmed().min(ticks);
         self.driver.commit(known)?;
         Ok(self.driver.finish()?)

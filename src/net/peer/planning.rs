@@ -41,6 +41,11 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
             free &= !seat_bit(seat);
             others.push((seat, joiner.address.clone()));
         }
+        if let Some(session) = &self.session
+            && others.len() == session.roster.others.len()
+        {
+            return Ok(());
+        }
         others.sort_by_key(|(seat, _)| *seat);
         let lead = if self.session.is_some() { LEAD_SECONDS * u64::from(self.terms.tick_rate) } else { 0 };
         let base = self.driver.tick() + lead;

@@ -1,0 +1,145 @@
+//! Matches that are unusual: many players or one, odd rates, windows and delays, clocks that jump.
+
+use std::thread;
+use std::time::Duration;
+
+use lockstep2d::net::{Event, Mode, Options, Peer, Weather};
+use lockstep2d::replay::Verdict;
+
+use super::matches::{MODES, STORM, verdict};
+use super::pushers::Setup;
+use super::table::Table;
+
+/// A match between peers of which each has its own options.
+fn open(setup: &Setup, options: &[Options], weather: Weather, seed: u64) -> Table {
+    let mut table = Table::new(weather, seed);
+    for (address, options) in (0..).zip(options) {
+        let port = table.network.port(address);
+        let options = options.start_with(setup.players);
+        table.sit(match address {
+            0 => Peer::host(setup, options, port).unwrap(),
+            _ => Peer::join(setup, options, port, 0, None).unwrap(),
+        });
+    }
+    table
+}
+
+/// Plays to this tick, without divergences or departures, to replays that verify and are the same.
+fn check(mut table: Table, ticks: u64, mut each_turn: impl FnMut(&mut Table)) {
+    let done = table.play(40, |table| {
+        each_turn(table);
+        table.all_confirmed(ticks)
+    });
+    assert!(done, "{}", table.describe());
+    let bad = |event: &Event| matches!(event, Event::Diverged(_) | Event::Left { .. });
+    assert!(!table.events.iter().flatten().any(bad), "{}", table.describe());
+    let replays = table.finish(ticks);
+    assert!(matches!(verdict(&replays[0]), Verdict::Match { .. }), "{}", verdict(&replays[0]));
+    assert!(replays.iter().all(|replay| *replay == replays[0]), "replays differ");
+}
+
+#[test]
+fn one_player_and_eight() {
+    for players in [1, 8] {
+        for (seed, options) in (31..).zip(MODES) {
+            let setup = Setup { players, ..Setup::default() };
+            check(open(&setup, &vec![options(); players as usize], STORM, seed), 100, |_| ());
+        }
+    }
+}
+
+#[test]
+fn any_tick_rate() {
+    thread::scope(|scope| {
+        for (tick_rate, ticks) in [(1, 6), (10, 40), (120, 300), (240, 600)] {
+            for (seed, options) in (33..).zip(MODES) {
+                let setup = Setup { tick_rate, players: 2, ..Setup::default() };
+                scope.spawn(move || {
+                    check(open(&setup, &[options(); 2], Weather::default(), seed), ticks, |_| ())
+                });
+            }
+        }
+    });
+}
+
+#[test]
+fn any_window_and_delay() {
+    thread::scope(|scope| {
+        for window in [0, 1, 32, 255] {
+            for delays in [[0, 0], [0, 15], [15, 1], [255, 0]] {
+                let options = move |input_delay| Options {
+                    mode: Mode::Rollback { window },
+                    input_delay,
+                    ..Options::rollback()
+                };
+                let setup = Setup { players: 2, ..Setup::default() };
+                scope.spawn(move || check(open(&setup, &delays.map(options), STORM, 35), 150, |_| ()));
+            }
+        }
+        for delays in [[0, 0], [0, 15]] {
+            let options = |input_delay| Options { input_delay, ..Options::lockstep() };
+            let setup = Setup { players: 2, ..Setup::default() };
+            scope.spawn(move || check(open(&setup, &delays.map(options), STORM, 36), 60, |_| ()));
+        }
+    });
+}
+
+#[test]
+fn who_looks_rarely_plays_all_the_same() {
+    for (seed, options) in (37..).zip(MODES) {
+        let setup = Setup { players: 2, ..Setup::default() };
+        let table = open(&setup, &[options(); 2], Weather::default(), seed);
+        check(table, 100, |_| thread::sleep(Duration::from_millis(100)));
+    }
+}
+
+#[test]
+fn a_clock_that_jumps_is_survived() {
+    for (seed, options) in (39..).zip(MODES) {
+        let setup = Setup { players: 2, ..Setup::default() };
+        let table = open(&setup, &[options(); 2], Weather::default(), seed);
+        let mut jumped = false;
+        check(table, 200, |table| {
+            if !jumped && table.all_confirmed(60) {
+                jumped = true;
+                table.ahead += Duration::from_secs(10);
+            }
+        });
+    }
+}
+
+#[test]
+fn who_plays_alone_is_joined() {
+    for (seed, options) in (41..).zip(MODES) {
+        let mut table = Table::of(1, options(), Weather::default(), seed);
+        assert!(table.play(10, |table| table.all_confirmed(100)), "{}", table.describe());
+        table.sit(table.guest(5, options()));
+        let tick = 300;
+        let both = |table: &mut Table| table.all_confirmed(tick) && table.hashes(tick).len() == 2;
+        assert!(table.play(20, both), "{}", table.describe());
+        assert!(table.hashes(tick).windows(2).all(|pair| pair[0] == pair[1]));
+    }
+}
+
+#[test]
+fn two_matches_do_not_mix() {
+    let mut table = Table::of(3, Options::rollback(), Weather::default(), 43);
+    assert!(table.play(20, |table| table.all_confirmed(60)));
+    // Another match at the same addresses, to which the first one's packets still come.
+    let late = Weather { latency: Duration::from_millis(400), ..Weather::default() };
+    table.network.set_weather(late);
+    table.play(1, |_| false);
+    table.network.set_weather(Weather::default());
+    table.peers.clear();
+    let setup = Setup::default();
+    let options = Options::rollback().start_with(3);
+    for address in 0..3 {
+        let port = table.network.port(address);
+        table.peers.push(Some(match address {
+            0 => Peer::host(&setup, options, port).unwrap(),
+            _ => table.guest(address, options),
+        }));
+    }
+    assert!(table.play(20, |table| table.all_confirmed(120)), "{}", table.describe());
+    assert!(table.hashes(110).windows(2).all(|pair| pair[0] == pair[1]), "{}", table.describe());
+}
