@@ -13,6 +13,7 @@ pub mod memory;
 pub mod mirror;
 pub mod packets;
 pub mod questions;
+pub mod reports;
 pub mod settings;
 pub mod shapes;
 pub mod snapshots;
