@@ -297,8 +297,7 @@ impl Forger<'_, '_> {
                 1 => input.ack_frame = self.frame(),
                 2 => {
                     let players = self.source.pick(&[2, 3, 0, 1, 4, 40]);
-                    input.connections =
-                        (0..players).map(|_| (self.source.one_in(4), self.frame())).collect();
+                    input.connections = (0..players).map(|_| (self.source.one_in(4), self.frame())).collect();
                 }
                 3 => input.disconnect_requested = !input.disconnect_requested,
                 4 => mutate(self.source, &mut input.bytes),
@@ -323,7 +322,8 @@ impl Forger<'_, '_> {
     /// Inputs of some frames: a run of zeros or ones, or as many of some length, not compressed.
     fn frames(&mut self) -> Vec<u8> {
         if self.source.one_in(3) {
-            let length = self.source.pick(&[2, 27, 54, 2 * 96, 27 * 100, 65_535, 65_536, 65_537, 1 << 20, 1 << 25]);
+            let length =
+                self.source.pick(&[2, 27, 54, 2 * 96, 27 * 100, 65_535, 65_536, 65_537, 1 << 20, 1 << 25]);
             return varint(length << 2 | self.source.below(2) << 1 | 1);
         }
         let length = self.source.pick(&[25, 25, 25, 0, 1, 24, 26, 50, 65_535]);

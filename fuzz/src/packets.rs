@@ -5,7 +5,7 @@ use std::cell::RefCell;
 use std::rc::Rc;
 use std::time::Duration;
 
-use lockstep2d::net::{Event, Mode, Network, Options, Peer, Port, Transport, Weather};
+use lockstep2d::net::{Event, Mode, NetError, Network, Options, Peer, Port, Transport, Weather};
 use lockstep2d::replay::{Limits, verify};
 use lockstep2d::report::DesyncReport;
 
@@ -17,6 +17,8 @@ use crate::wire;
 
 /// How many times the peers are called.
 const TURNS: u8 = 160;
+/// How often each peer reads in a turn.
+const ROUNDS: usize = 3;
 /// When the third peer asks to take part, or to watch.
 const NEWCOMER: u8 = 10;
 
@@ -117,29 +119,18 @@ impl Match {
     fn turn(&mut self, turn: u8) {
         let now = Duration::from_millis(50) * u32::from(turn);
         self.network.set_time(now);
-        for at in 0..self.peers.len() {
-            for _ in 0..4 {
-                for peer in &mut self.peers {
-                    let failed = peer.as_mut().and_then(|peer| peer.update(now).err());
-                    if let Some(error) = failed {
-                        assert!(self.forges, "noise has stopped a match: {error}");
-                        (*peer, self.seen.stopped) = (None, true);
-                    }
-                }
-            }
-            let Some(peer) = &mut self.peers[at] else { continue };
-            let input = turn.wrapping_mul(7) ^ at as u8;
-            if peer.is_due() && peer.advance(input).is_err() {
-                assert!(self.forges, "noise has stopped a match");
-                (self.peers[at], self.seen.stopped) = (None, true);
-            }
+        for _ in 0..ROUNDS {
+            self.each(|peer| peer.update(now));
         }
+        let mut input = turn.wrapping_mul(7);
+        self.each(|peer| {
+            input ^= 1;
+            if peer.is_due() { peer.advance(input).map(drop) } else { Ok(()) }
+        });
         for peer in self.peers.iter_mut().flatten() {
             while let Some(event) = peer.next_event() {
-                let calm = matches!(
-                    event,
-                    Event::Joined { .. } | Event::Interrupted { .. } | Event::Resumed { .. }
-                );
+                let calm =
+                    matches!(event, Event::Joined { .. } | Event::Interrupted { .. } | Event::Resumed { .. });
                 assert!(calm || self.forges, "noise has made {event:?}");
                 if let Event::Diverged(divergence) = event
                     && !self.seen.diverged
@@ -148,6 +139,16 @@ impl Match {
                     let report = DesyncReport::from_bytes(&peer.report(&divergence), &Limits::default());
                     assert!(report.is_ok(), "a peer's own report: {report:?}");
                 }
+            }
+        }
+    }
+
+    /// Lets each peer do something; who cannot go on is gone.
+    fn each(&mut self, mut act: impl FnMut(&mut Peer<Memory, u32, Tapped>) -> Result<(), NetError>) {
+        for peer in &mut self.peers {
+            if let Some(Err(error)) = peer.as_mut().map(&mut act) {
+                assert!(self.forges, "noise has stopped a match: {error}");
+                (*peer, self.seen.stopped) = (None, true);
             }
         }
     }

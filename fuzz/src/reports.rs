@@ -146,7 +146,8 @@ impl Course {
             {
                 let _ = world.flip_bit(body, flip.motion, flip.bit);
             }
-            let inputs = recorder.record(std::slice::from_ref(commands)).expect("inputs that can be recorded");
+            let inputs =
+                recorder.record(std::slice::from_ref(commands)).expect("inputs that can be recorded");
             game.step(inputs);
             let hash = game.state_hash();
             recorder.checkpoint(hash);
