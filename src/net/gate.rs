@@ -127,7 +127,7 @@ impl Gate {
 fn layout() -> impl ggrs_bincode::Options {
     ggrs_bincode::DefaultOptions::new()
         .with_fixint_encoding()
-        .with_limit(2 * PACKET_BYTES_MAX as u64)
+        .with_limit(PACKET_BYTES_MAX as u64)
         .reject_trailing_bytes()
 }
 

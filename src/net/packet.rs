@@ -96,7 +96,7 @@ impl<A: Address> Packet<A> {
     }
 
     pub(super) fn decode(bytes: &[u8]) -> Option<Self> {
-        if bytes.len() > 2 * PACKET_BYTES_MAX {
+        if bytes.len() > PACKET_BYTES_MAX {
             return None;
         }
         let (sum, body) = bytes.split_first_chunk::<CHECKSUM_BYTES>()?;

@@ -6,8 +6,11 @@ use core::fmt;
 use std::io;
 use std::net::{SocketAddr, ToSocketAddrs, UdpSocket};
 
-/// Longest packet that is sent, in bytes: what passes through most networks in one piece.
-pub const PACKET_BYTES_MAX: usize = 1200;
+/// Longest packet, in bytes. Only a game with long inputs comes near: GGRS sends all those that were not acknowledged in
+/// one message.
+pub const PACKET_BYTES_MAX: usize = 16 << 10;
+/// What passes through most networks in one piece: packets of our own making are no longer.
+pub(super) const PACKET_BYTES_AIM: usize = 1200;
 
 /// Carries packets between peers: it may lose, double, delay and reorder them, and anybody may send some.
 pub trait Transport<A> {
@@ -38,7 +41,7 @@ impl Udp {
     pub fn bind(address: impl ToSocketAddrs) -> io::Result<Self> {
         let socket = UdpSocket::bind(address)?;
         socket.set_nonblocking(true)?;
-        Ok(Udp { socket, buffer: vec![0; 2 * PACKET_BYTES_MAX] })
+        Ok(Udp { socket, buffer: vec![0; PACKET_BYTES_MAX] })
     }
 
     /// Where it is bound.

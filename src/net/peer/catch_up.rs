@@ -25,6 +25,8 @@ const PIECES_AT_ONCE: usize = 32;
 const ALMOST: u64 = 4;
 /// How many ticks a spectator stays behind, so as not to stutter.
 const WATCH_BEHIND: usize = 12;
+/// Most ticks that wait to be played: more are not asked for.
+const QUEUE_MAX: usize = 10_000;
 /// How often those are asked who are not heard of, before they count as gone: times the timeout.
 const PATIENCE: u32 = 4;
 
@@ -218,7 +220,7 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
         let Some(joining) = &mut self.catch_up else { return };
         let Stage::Following { queue, committed } = &mut joining.stage else { return };
         *committed = known.max(*committed);
-        if from == tick + queue.len() as u64 && !ticks.is_empty() {
+        if from == tick + queue.len() as u64 && !ticks.is_empty() && queue.len() < QUEUE_MAX {
             queue.extend(ticks);
             joining.asked = None;
         }

@@ -12,13 +12,15 @@ use crate::lockstep::EncodedInputs;
 use crate::net::packet::{Nonce, Packet, Refused};
 use crate::net::session::{Session, seat_bit};
 use crate::net::terms::Terms;
-use crate::net::transport::{PACKET_BYTES_MAX, Transport};
+use crate::net::transport::{PACKET_BYTES_AIM, Transport};
 use crate::net::wire::{Address, NetGame};
 
 /// Most peers that may be on their way in, or watch, at a time.
 const JOINERS_MAX: usize = 32;
 /// Bytes that a packet needs besides inputs.
 const INPUTS_HEAD: usize = 100;
+/// Bytes of a list's length.
+const LENGTH_BYTES: usize = 8;
 
 /// Somebody who wants to take part, or watches.
 pub(super) struct Joiner<A> {
@@ -121,11 +123,13 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
         let base = self.session.as_ref().map_or(0, |session| session.roster.base);
         let committed = self.driver.committed().max(base);
         let mut ticks = Vec::new();
-        let mut room = PACKET_BYTES_MAX - INPUTS_HEAD;
+        let mut room = PACKET_BYTES_AIM - INPUTS_HEAD;
         for tick in tick..committed {
             let Some(bytes) = self.driver.inputs_of(tick).map(EncodedInputs::bytes) else { break };
-            let Some(left) = room.checked_sub(bytes.len() + 8) else { break };
-            room = left;
+            if !ticks.is_empty() && bytes.len() + LENGTH_BYTES > room {
+                break;
+            }
+            room = room.saturating_sub(bytes.len() + LENGTH_BYTES);
             ticks.push(bytes.to_vec());
         }
         self.say(&Packet::Inputs { nonce, from: tick, ticks, committed }, from);
