@@ -5,6 +5,7 @@
 mod comings;
 mod divergence;
 mod goings;
+mod hostile;
 mod matches;
 mod pushers;
 mod scripted;
