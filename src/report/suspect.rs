@@ -17,6 +17,8 @@ use crate::world::Motion;
 
 /// Most work units that are spent on trying, if the limits allow as many: some ten seconds.
 const WORK_MAX: u64 = 400_000_000;
+/// Work units that a try costs at least, as the state is loaded and hashed.
+const TRY_WORK: u64 = 1000;
 
 /// A tick that has gone wrong on one side.
 pub(super) struct WrongTick<G: Game> {
@@ -90,7 +92,7 @@ fn search<G: Game>(
     work: u64,
 ) -> Option<(usize, Motion, u32)> {
     game.load(&wrong.before);
-    let mut left = work / game.work(&wrong.inputs).max(1);
+    let mut left = work / game.work(&wrong.inputs).max(TRY_WORK);
     let is_body = |thing: &&Thing| handle(&thing.path).is_some();
     for (at, thing) in things.iter().enumerate().filter(|(_, thing)| is_body(thing)) {
         for motion in Motion::ALL {
