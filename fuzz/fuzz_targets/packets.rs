@@ -1,9 +1,16 @@
-//! Peers in the middle of a match who get what nobody sent. See `packets`.
+//! Peers in the middle of a match who get what nobody sent, in bounded memory. See `packets`.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use lockstep2d_fuzz::packets;
+use lockstep2d_fuzz::{allocations, packets};
+
+#[global_allocator]
+static ALLOCATOR: allocations::Counting = allocations::Counting;
+
+/// Most bytes at one time: the largest state that one newcomer takes (64 MiB), and little besides.
+const MEMORY_MAX: usize = 80 << 20;
 
 fuzz_target!(|bytes: &[u8]| {
-    packets::run(bytes);
+    let (_, peak) = allocations::peak_of(|| packets::run(bytes));
+    assert!(peak <= MEMORY_MAX, "{peak} bytes at one time");
 });

@@ -1,187 +1,206 @@
-//! Two peers play a match while a third party sends them what it likes: noise, packets of the match cut, repeated or
-//! changed, with and without a right checksum, in its own name and in that of the other.
+//! Peers play a match while a third party, who hears everything, sends them what it likes: noise, packets of the match
+//! cut, repeated or changed, and with right checksums any packet at all, in its own name and in that of others.
 
-use std::collections::VecDeque;
+use std::cell::RefCell;
+use std::rc::Rc;
 use std::time::Duration;
 
-use lockstep2d::hash::StateHash;
-use lockstep2d::lockstep::{Game, RulesId, SetupError};
-use lockstep2d::net::{Event, Network, Options, Peer, Port, Transport, Weather};
+use lockstep2d::net::{Event, Mode, NetError, Network, Options, Peer, Port, Transport, Weather};
+use lockstep2d::replay::{Limits, verify};
+use lockstep2d::report::DesyncReport;
 
+use crate::forge::mutate;
+use crate::hostile::{Forger, Known, STRANGER};
+use crate::memory::Memory;
 use crate::source::Source;
+use crate::wire;
 
-/// A game that is next to nothing, but remembers everything.
-#[derive(Clone)]
-struct Memory {
-    sum: u64,
-}
+/// How many times the peers are called.
+const TURNS: u8 = 160;
+/// How often each peer reads in a turn.
+const ROUNDS: usize = 3;
+/// When the third peer asks to take part, or to watch.
+const NEWCOMER: u8 = 10;
 
-impl Game for Memory {
-    type Setup = ();
-    type Input = u8;
-    type Save = u64;
-
-    const RULES: RulesId = RulesId { name: "memory", version: 1 };
-
-    fn new((): &()) -> Result<Self, SetupError> {
-        Ok(Memory { sum: 1 })
-    }
-
-    fn players(&self) -> u32 {
-        3
-    }
-
-    fn tick_rate(&self) -> u32 {
-        60
-    }
-
-    fn step(&mut self, inputs: &[u8]) {
-        for input in inputs {
-            self.sum = self.sum.wrapping_mul(31).wrapping_add(u64::from(*input));
-        }
-    }
-
-    fn state_hash(&self) -> StateHash {
-        StateHash::of(&self.sum)
-    }
-
-    fn save(&self) -> u64 {
-        self.sum
-    }
-
-    fn load(&mut self, save: &u64) {
-        self.sum = *save;
-    }
-
-    fn work(&self, _: &[u8]) -> u64 {
-        1
-    }
-
-    fn absent() -> u8 {
-        255
-    }
-}
-
-/// A port that remembers what has passed.
+/// A port at which somebody listens.
 struct Tapped {
     port: Port,
-    heard: VecDeque<Vec<u8>>,
+    address: u32,
+    known: Rc<RefCell<Known>>,
 }
 
 impl Transport<u32> for Tapped {
     fn send(&mut self, packet: &[u8], to: &u32) {
+        self.known.borrow_mut().hear(self.address, *to, packet);
         self.port.send(packet, to);
     }
 
     fn receive(&mut self) -> Option<(u32, Vec<u8>)> {
-        let (from, bytes) = self.port.receive()?;
-        if from != STRANGER {
-            if self.heard.len() == 64 {
-                self.heard.pop_front();
-            }
-            self.heard.push_back(bytes.clone());
-        }
-        Some((from, bytes))
+        self.port.receive()
     }
 }
-
-/// The address of nobody.
-const STRANGER: u32 = 9;
-const CHECKSUM_BYTES: usize = 8;
 
 /// What has happened.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Seen {
-    /// Ticks that both have played with everybody's inputs.
+    /// Ticks that host and player have played with everybody's inputs.
     pub ticks: u64,
     /// Packets of the third party.
     pub packets: u64,
     /// Whether somebody has stopped: packets with right checksums can do that.
     pub stopped: bool,
+    /// Whether somebody has seen another state: they can do that, too.
+    pub diverged: bool,
+    /// Whether somebody has joined a match that was under way, or watched it.
+    pub late: bool,
+}
+
+/// A match and its enemy.
+struct Match {
+    options: Options,
+    network: Network,
+    known: Rc<RefCell<Known>>,
+    /// By address; gone if it had to stop.
+    peers: [Option<Peer<Memory, u32, Tapped>>; 3],
+    /// Whether the enemy can make a packet look right.
+    forges: bool,
+    seen: Seen,
 }
 
 /// A match of a few dozen ticks, disturbed as the bytes say.
 ///
 /// # Panics
-/// When a peer does, or when packets that nobody can mistake for genuine ones make the peers stop or differ.
+/// When a peer does, when its report or replay is not worth reading, or when packets that nobody can mistake for
+/// genuine ones make the peers stop or differ.
 pub fn run(bytes: &[u8]) -> Seen {
     let mut source = Source::new(bytes);
-    let options = if source.one_in(2) { Options::lockstep() } else { Options::rollback() };
-    // Whether the third party can make a packet look right.
-    let forges = source.one_in(2);
-    let network = Network::new(Weather::default(), 1);
-    let port = |address| Tapped { port: network.port(address), heard: VecDeque::new() };
-    let mut peers = [
-        Peer::<Memory, u32, _>::host(&(), options, port(0)).expect("a setup"),
-        Peer::join(&(), options, port(1), 0, None).expect("a setup"),
-    ];
-    let mut seen = Seen::default();
-    let mut now = Duration::ZERO;
-    for turn in 0..120u8 {
-        now += Duration::from_millis(17);
-        network.set_time(now);
-        for at in [0, 1] {
-            for _ in 0..4 {
-                if peers.iter_mut().any(|peer| peer.update(now).is_err()) {
-                    seen.stopped = true;
-                }
+    let options = match source.below(4) {
+        0 => Options::lockstep(),
+        1 | 2 => Options::rollback(),
+        _ => Options { mode: Mode::Rollback { window: 32 }, input_delay: 15, ..Options::rollback() },
+    };
+    let newcomer = source.below(3);
+    let mut game = Match {
+        options,
+        network: Network::new(Weather::default(), 1),
+        known: Rc::default(),
+        peers: [None, None, None],
+        forges: !source.one_in(4),
+        seen: Seen::default(),
+    };
+    game.peers[0] = Peer::host(&(), options, game.port(0)).ok();
+    game.peers[1] = Peer::join(&(), options, game.port(1), 0, None).ok();
+    let mut pause = source.below(12);
+    for turn in 0..TURNS {
+        if turn == NEWCOMER && newcomer > 0 {
+            let port = game.port(2);
+            game.peers[2] = match newcomer {
+                1 => Peer::join(&(), options, port, 0, None).ok(),
+                _ => Peer::watch(&(), options, port, 1).ok(),
+            };
+        }
+        game.turn(turn);
+        pause = match pause {
+            0 if !source.is_empty() => {
+                game.disturb(&mut source);
+                source.pick(&[0, 0, 1, 2, 30])
             }
-            let input = turn.wrapping_mul(7) ^ at as u8;
-            if peers[at].is_due() && peers[at].advance(input).is_err() {
-                seen.stopped = true;
-            }
-        }
-        if seen.stopped {
-            assert!(forges, "noise has stopped a match");
-            return seen;
-        }
-        // The match has to be under way, or the two would only wait for each other.
-        if peers[1].seat().is_some() && !source.is_empty() {
-            disturb(&mut source, &mut peers, &network, forges);
-            seen.packets += 1;
-        }
+            _ => pause.max(1) - 1,
+        };
     }
-    seen.ticks = peers[0].confirmed().min(peers[1].confirmed());
-    if !forges {
-        let hash = |peer: &Peer<Memory, u32, Tapped>| peer.history().get(seen.ticks).map(|moment| moment.hash);
-        assert_eq!(hash(&peers[0]), hash(&peers[1]), "the peers differ");
-        for peer in &mut peers {
-            while let Some(event) = peer.next_event() {
-                let calm = matches!(event, Event::Joined { .. } | Event::Interrupted { .. } | Event::Resumed { .. });
-                assert!(calm, "noise has made {event:?}");
-            }
-        }
-    }
-    for peer in peers {
-        let _ = peer.finish(u64::MAX);
-    }
-    seen
+    game.finish()
 }
 
-/// Sends somebody something.
-fn disturb(source: &mut Source<'_>, peers: &mut [Peer<Memory, u32, Tapped>; 2], network: &Network, forges: bool) {
-    let to = source.below(2);
-    let heard = &peers[to].transport_mut().heard;
-    let known = heard.get(source.below(heard.len().max(1))).cloned().unwrap_or_default();
-    let mut packet = match source.below(4) {
-        0 => (0..source.below(60)).map(|_| source.byte()).collect(),
-        1 => known[..source.below(known.len() + 1)].to_vec(),
-        2 => known,
-        _ => {
-            let mut changed = known;
-            for _ in 0..=source.below(3) {
-                if !changed.is_empty() {
-                    let at = source.below(changed.len());
-                    changed[at] = source.byte();
+impl Match {
+    fn port(&self, address: u32) -> Tapped {
+        Tapped { port: self.network.port(address), address, known: self.known.clone() }
+    }
+
+    fn turn(&mut self, turn: u8) {
+        let now = Duration::from_millis(50) * u32::from(turn);
+        self.network.set_time(now);
+        for _ in 0..ROUNDS {
+            self.each(|peer| peer.update(now));
+        }
+        let mut input = turn.wrapping_mul(7);
+        self.each(|peer| {
+            input ^= 1;
+            if peer.is_due() { peer.advance(input).map(drop) } else { Ok(()) }
+        });
+        for peer in self.peers.iter_mut().flatten() {
+            while let Some(event) = peer.next_event() {
+                let calm =
+                    matches!(event, Event::Joined { .. } | Event::Interrupted { .. } | Event::Resumed { .. });
+                assert!(calm || self.forges, "noise has made {event:?}");
+                if let Event::Diverged(divergence) = event
+                    && !self.seen.diverged
+                {
+                    self.seen.diverged = true;
+                    let report = DesyncReport::from_bytes(&peer.report(&divergence), &Limits::default());
+                    assert!(report.is_ok(), "a peer's own report: {report:?}");
                 }
             }
-            changed
         }
-    };
-    if forges && packet.len() >= CHECKSUM_BYTES {
-        let hash = StateHash::of_bytes(&packet[CHECKSUM_BYTES..]).0.to_le_bytes();
-        packet[..CHECKSUM_BYTES].copy_from_slice(&hash[..CHECKSUM_BYTES]);
     }
-    let from = if source.one_in(2) { STRANGER } else { 1 - to as u32 };
-    network.port(from).send(&packet, &(to as u32));
+
+    /// Lets each peer do something; who cannot go on is gone.
+    fn each(&mut self, mut act: impl FnMut(&mut Peer<Memory, u32, Tapped>) -> Result<(), NetError>) {
+        for peer in &mut self.peers {
+            if let Some(Err(error)) = peer.as_mut().map(&mut act) {
+                assert!(self.forges, "noise has stopped a match: {error}");
+                (*peer, self.seen.stopped) = (None, true);
+            }
+        }
+    }
+
+    /// Sends somebody something.
+    fn disturb(&mut self, source: &mut Source<'_>) {
+        let present: Vec<_> = (0..3).filter(|at| self.peers[*at as usize].is_some()).collect();
+        if present.is_empty() {
+            return;
+        }
+        let to = source.pick(&present);
+        let from = source.pick(&[0, 1, 2, STRANGER]);
+        let known = self.known.borrow();
+        let heard = known.packets.get(source.below(known.packets.len())).cloned();
+        let (sender, _, heard) = heard.unwrap_or_default();
+        let mut packet = match source.below(if self.forges { 12 } else { 4 }) {
+            0 => (0..source.below(60)).map(|_| source.byte()).collect(),
+            1 => heard[..source.below(heard.len() + 1)].to_vec(),
+            2 => heard,
+            3 => {
+                let mut changed = heard;
+                for _ in 0..=source.below(3) {
+                    mutate(source, &mut changed);
+                }
+                changed
+            }
+            _ => Forger { source, known: &known, from, to }.packet().write(),
+        };
+        drop(known);
+        // A genuine packet in another's name is a forged one.
+        let from = if !self.forges && wire::is_right(&packet) { sender } else { from };
+        if self.forges {
+            wire::repair(&mut packet);
+        }
+        self.network.port(from).send(&packet, &to);
+        self.seen.packets += 1;
+    }
+
+    fn finish(self) -> Seen {
+        let Match { peers, forges, mut seen, options, .. } = self;
+        if let [Some(host), Some(player), third] = &peers {
+            seen.ticks = host.confirmed().min(player.confirmed());
+            seen.late = third.as_ref().is_some_and(|third| third.seat().is_some() || third.tick() > 0);
+            let hash = |peer: &Peer<Memory, u32, Tapped>| Some(peer.history().get(seen.ticks)?.hash);
+            assert!(forges || hash(host) == hash(player), "the peers differ");
+        }
+        for peer in peers.into_iter().flatten() {
+            let Ok(replay) = peer.finish(u64::MAX) else { continue };
+            let verdict = verify::<Memory>(&replay, &Limits::default());
+            // Who joins late has none.
+            assert!(replay.is_empty() || verdict.is_match(), "a peer's own replay, {options:?}: {verdict}");
+        }
+        seen
+    }
 }

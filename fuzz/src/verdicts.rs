@@ -56,8 +56,8 @@ pub fn run(bytes: &[u8]) -> Verdict {
     verdict
 }
 
-/// The replay of a small scene.
-fn record(source: &mut Source<'_>) -> Vec<u8> {
+/// A small scene, and whoever gives commands in it.
+pub(crate) fn scene(source: &mut Source<'_>) -> (SandboxSetup, Generator) {
     let config = generator::config(source);
     let config = World::new(config).map(|_| config).unwrap_or_default();
     let mut generator = Generator::new(source);
@@ -66,7 +66,12 @@ fn record(source: &mut Source<'_>) -> Vec<u8> {
     let mut commands = generator.setup(source);
     commands.retain(|command| world.execute(command).is_ok());
     commands.truncate(24);
-    let setup = SandboxSetup { config, commands };
+    (SandboxSetup { config, commands }, generator)
+}
+
+/// The replay of such a scene.
+fn record(source: &mut Source<'_>) -> Vec<u8> {
+    let (setup, mut generator) = scene(source);
     let interval = 1 + source.below(9) as u32;
     let mut recording = Recording::<Sandbox>::start(&setup, interval).expect("a valid setup");
     let mut inputs = Vec::new();

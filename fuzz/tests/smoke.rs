@@ -2,7 +2,7 @@
 //! their scenes are full of contacts.
 
 use lockstep2d::math::Rng;
-use lockstep2d_fuzz::{broad_phases, lockstep, packets, questions, snapshots, verdicts};
+use lockstep2d_fuzz::{broad_phases, lockstep, packets, questions, reports, snapshots, verdicts};
 
 fn random_inputs(count: u64) -> impl Iterator<Item = Vec<u8>> {
     (0..count).map(|seed| {
@@ -71,13 +71,26 @@ fn broad_phases_find_the_same() {
 
 #[test]
 fn matches_go_on_whatever_comes() {
-    let (mut ticks, mut packets, mut stopped) = (0, 0, 0);
+    let (mut ticks, mut packets, mut stopped, mut diverged, mut late) = (0, 0, 0, 0, 0);
     for input in random_inputs(300) {
         let seen = packets::run(&input);
         ticks += seen.ticks;
         packets += seen.packets;
         stopped += u64::from(seen.stopped);
+        diverged += u64::from(seen.diverged);
+        late += u64::from(seen.late);
     }
-    println!("{ticks} ticks, {packets} packets, {stopped} of 300 stopped");
-    assert!(ticks > 100 * 50 && packets > 300 * 50, "{ticks} ticks, {packets} packets");
+    println!("{ticks} ticks, {packets} packets; of 300 {stopped} stopped, {diverged} diverged, {late} late");
+    assert!(ticks > 100 * 50 && packets > 300 * 10, "{ticks} ticks, {packets} packets");
+    assert!(stopped > 20 && late > 50, "{stopped} stopped, {late} late");
+}
+
+#[test]
+fn reports_tell_the_truth_or_are_refused() {
+    let mut seen = std::collections::BTreeMap::new();
+    for input in random_inputs(500) {
+        *seen.entry(reports::run(&input)).or_insert(0) += 1;
+    }
+    println!("{seen:?}");
+    assert!(seen.len() >= 5, "{seen:?}");
 }

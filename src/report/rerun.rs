@@ -33,8 +33,18 @@ pub(super) fn run<G: Game>(
     }
     let rerun = Rerun::<G>::open(replay, limits).map_err(|verdict| CompareError::Replay { side, verdict })?;
     let until = known[0].last().max(known[1].last()).min(horizon);
-    Beside { known, found, rerun, previous: None, wrong: None, states: None, presumed: None, obstacle: None }
-        .run(until)
+    Beside {
+        known,
+        limits,
+        found,
+        rerun,
+        previous: None,
+        wrong: None,
+        states: None,
+        presumed: None,
+        obstacle: None,
+    }
+    .run(until)
 }
 
 /// What is to be seen without playing: the first tick of which both say something else.
@@ -92,6 +102,7 @@ struct States<S> {
 
 struct Beside<'a, 'k, G: Game> {
     known: &'a [Known<'k>; 2],
+    limits: &'a Limits,
     found: &'a mut Comparison,
     rerun: Rerun<'k, G>,
     /// The state of the rerun one tick ago.
@@ -202,7 +213,7 @@ impl<G: Game> Beside<'_, '_, G> {
     }
 
     fn conclude(self) -> Result<(), CompareError> {
-        let Beside { known, found, rerun, wrong, states, presumed, obstacle, previous: _ } = self;
+        let Beside { known, limits, found, rerun, wrong, states, presumed, obstacle, previous: _ } = self;
         found.notes.extend(obstacle);
         let courses = &found.courses;
         let came_later = |states: &States<G::Save>| {
@@ -222,7 +233,7 @@ impl<G: Game> Beside<'_, '_, G> {
         let count: usize = found.things.iter().map(|thing| thing.differences.len()).sum();
         let at_once = |wrong: &&WrongTick<G>| found.tick == Some(wrong.tick + 1) && count > 1;
         if let Some(wrong) = wrong.as_ref().filter(at_once) {
-            found.explanation = suspect::explain(wrong, rerun.into_game(), &mut found.things)?;
+            found.explanation = suspect::explain(wrong, rerun.into_game(), &mut found.things, limits)?;
         }
         Ok(())
     }

@@ -12,10 +12,13 @@ use super::comparison::{Explanation, Thing};
 use crate::hash::StateHash;
 use crate::inspect::{Difference, InspectError, Value, differences, fields};
 use crate::lockstep::Game;
+use crate::replay::Limits;
 use crate::world::Motion;
 
-/// Most work units that are spent on trying: some ten seconds.
+/// Most work units that are spent on trying, if the limits allow as many: some ten seconds.
 const WORK_MAX: u64 = 400_000_000;
+/// Work units that a try costs at least, as the state is loaded and hashed.
+const TRY_WORK: u64 = 1000;
 
 /// A tick that has gone wrong on one side.
 pub(super) struct WrongTick<G: Game> {
@@ -63,8 +66,10 @@ pub(super) fn explain<G: Game>(
     wrong: &WrongTick<G>,
     mut game: G,
     things: &mut Vec<Thing>,
+    limits: &Limits,
 ) -> Result<Option<Explanation>, InspectError> {
-    let Some((at, motion, bit)) = search(wrong, &mut game, things) else {
+    let work = WORK_MAX.min(limits.total_work);
+    let Some((at, motion, bit)) = search(wrong, &mut game, things, work) else {
         return Ok(None);
     };
     let mut thing = things.remove(at);
@@ -80,17 +85,23 @@ pub(super) fn explain<G: Game>(
 }
 
 /// The place in the list, the number and the bit that lead to the wrong state.
-fn search<G: Game>(wrong: &WrongTick<G>, game: &mut G, things: &[Thing]) -> Option<(usize, Motion, u32)> {
+fn search<G: Game>(
+    wrong: &WrongTick<G>,
+    game: &mut G,
+    things: &[Thing],
+    work: u64,
+) -> Option<(usize, Motion, u32)> {
     game.load(&wrong.before);
-    let mut left = WORK_MAX / game.work(&wrong.inputs).max(1);
-    for (at, thing) in things.iter().enumerate() {
+    let mut left = work / game.work(&wrong.inputs).max(TRY_WORK);
+    let is_body = |thing: &&Thing| handle(&thing.path).is_some();
+    for (at, thing) in things.iter().enumerate().filter(|(_, thing)| is_body(thing)) {
         for motion in Motion::ALL {
             for bit in 0..32 {
+                left = left.checked_sub(1)?;
                 game.load(&wrong.before);
                 if flip(game, &thing.path, motion, bit).is_none() {
                     continue;
                 }
-                left = left.checked_sub(1)?;
                 game.step(&wrong.inputs);
                 if game.state_hash() == wrong.wrong {
                     return Some((at, motion, bit));
@@ -101,13 +112,18 @@ fn search<G: Game>(wrong: &WrongTick<G>, game: &mut G, things: &[Thing]) -> Opti
     None
 }
 
-/// Flips a bit of the body of that path, if there is one and it can have that speed.
-fn flip<G: Game>(game: &mut G, path: &str, motion: Motion, bit: u32) -> Option<()> {
+/// Slot and generation of a body, from its path.
+fn handle(path: &str) -> Option<(u32, u32)> {
     let (_, handle) = path.rsplit_once("body ")?;
     let (slot, generation) = handle.split_once('v')?;
-    let (slot, generation): (u32, u32) = (slot.parse().ok()?, generation.parse().ok()?);
+    Some((slot.parse().ok()?, generation.parse().ok()?))
+}
+
+/// Flips a bit of the body of that path, if there is one and it can have that speed.
+fn flip<G: Game>(game: &mut G, path: &str, motion: Motion, bit: u32) -> Option<()> {
+    let handle = handle(path)?;
     let world = game.world_mut()?;
     let body = world.bodies().map(|(id, _)| id);
-    let body = { body }.find(|id| (id.index(), id.generation()) == (slot, generation))?;
+    let body = { body }.find(|id| (id.index(), id.generation()) == handle)?;
     world.flip_bit(body, motion, bit).ok()
 }

@@ -6,6 +6,7 @@ mod comings;
 mod disasters;
 mod divergence;
 mod goings;
+mod hostile;
 mod matches;
 mod oddities;
 mod pushers;

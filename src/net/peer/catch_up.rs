@@ -25,8 +25,10 @@ const PIECES_AT_ONCE: usize = 32;
 const ALMOST: u64 = 4;
 /// How many ticks a spectator stays behind, so as not to stutter.
 const WATCH_BEHIND: usize = 12;
-/// Most ticks that wait to be played: more are not asked for.
-const QUEUE_MAX: usize = 10_000;
+/// Most ticks that wait to be played: more are not asked for. Each came in a packet: they have 32 MiB at most.
+const QUEUE_MAX: usize = 2000;
+/// No match is that long: what is counted from here on does not overflow.
+const TICK_MAX: u64 = 1 << 48;
 /// How often those are asked who are not heard of, before they count as gone: times the timeout.
 const PATIENCE: u32 = 4;
 
@@ -156,6 +158,9 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
         let Some(joining) = &mut self.catch_up else { return Ok(()) };
         if length > STATE_BYTES_MAX {
             return Err(NetError::State { why: alloc::format!("{length} bytes") });
+        }
+        if tick > TICK_MAX {
+            return Err(NetError::State { why: alloc::format!("after {tick} ticks") });
         }
         if length == 0 {
             if tick != self.driver.tick() || hash != self.driver.game().state_hash() {

@@ -193,8 +193,10 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
     fn receive(&mut self, from: &A, packet: Packet<A>) -> Result<(), NetError> {
         match packet {
             Packet::Session { session, message } => {
-                let sessions = [&mut self.session, &mut self.next, &mut self.past];
-                let of = sessions.into_iter().flatten().find(|known| known.roster.session == session);
+                // One that is left reads nothing any more: its mail would pile up.
+                let current = self.session.as_mut().filter(|_| self.leaving.is_none());
+                let mut sessions = current.into_iter().chain(&mut self.next).chain(&mut self.past);
+                let of = sessions.find(|known| known.roster.session == session);
                 if let Some(session) = of {
                     session.receive(from, &message);
                 }

@@ -5,6 +5,7 @@ use alloc::vec::Vec;
 use core::time::Duration;
 
 use super::{Event, NetError, Peer, RESEND, random};
+use crate::net::driver::DriverError;
 use crate::net::packet::{Packet, Plan, SessionId};
 use crate::net::session::{Roster, Session, seat_bit};
 use crate::net::transport::Transport;
@@ -151,6 +152,10 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
     /// Puts a session in the place of the one at hand, which is returned.
     pub(super) fn enter(&mut self, next: Session<G, A>) -> Result<Option<Session<G, A>>, NetError> {
         let Roster { base: tick, .. } = next.roster;
+        // What is committed is in the replay and stays; honest peers do not ask for less.
+        if tick < self.driver.committed() {
+            return Err(DriverError::NoState { tick }.into());
+        }
         self.driver.restart(tick, next.roster.seats())?;
         let before = self.session.as_ref().map_or(0, |session| session.roster.mask());
         let after = next.roster.mask();
