@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 use core::time::Duration;
 
 use super::{Event, NetError, Peer, RESEND, random};
-use crate::net::driver::DriverError;
+use crate::net::error::DriverError;
 use crate::net::packet::{Packet, Plan, SessionId};
 use crate::net::session::{Roster, Session, seat_bit};
 use crate::net::transport::Transport;
