@@ -1,5 +1,6 @@
 //! Two players in lockstep: a tick is played when both inputs are there.
 //! `cargo run --features ggrs --example lockstep_match`.
+#![expect(clippy::disallowed_types, reason = "the clock of this process")]
 
 mod tug;
 

@@ -1,5 +1,6 @@
 //! Two players with rollback: late inputs are guessed, and wrong guesses played again.
 //! `cargo run --features ggrs --example rollback_match`.
+#![expect(clippy::disallowed_types, reason = "the clock of this process")]
 
 mod tug;
 

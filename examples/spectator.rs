@@ -1,4 +1,5 @@
 //! Two players, and one who comes later and only watches. `cargo run --features ggrs --example spectator`.
+#![expect(clippy::disallowed_types, reason = "the clock of this process")]
 
 mod tug;
 

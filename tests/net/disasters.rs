@@ -11,7 +11,7 @@ use super::matches::{MODES, verdict};
 use super::pushers::Setup;
 use super::table::{Player, Table};
 
-fn of<'a>(table: &'a Table, at: usize) -> &'a Player {
+fn of(table: &Table, at: usize) -> &Player {
     table.peers[at].as_ref().unwrap()
 }
 

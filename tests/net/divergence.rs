@@ -52,7 +52,7 @@ fn check(options: Options, seed: u64) {
     };
     if options.mode == Mode::Lockstep {
         let groups = told(other, &found(&table, other as usize).unwrap()).groups();
-        let sizes: Vec<_> = groups.iter().map(|(_, seats)| seats.len()).collect();
+        let sizes: Vec<_> = groups.iter().map(|group| group.seats.len()).collect();
         assert_eq!(sizes, if players == 2 { vec![1, 1] } else { vec![2, 1] }, "{groups:?}");
     }
     let mut sides = Vec::new();
@@ -85,7 +85,7 @@ fn a_bit_that_flips_is_noticed_within_two_checkpoints_and_named() {
     for batch in 0..3 {
         thread::scope(|scope| {
             for seed in 0..16 {
-                scope.spawn(move || check(MODES[seed as usize % 2](), 100 * batch + seed));
+                scope.spawn(move || check(MODES[usize::from(seed % 2 == 1)](), 100 * batch + seed));
             }
         });
     }

@@ -23,8 +23,10 @@ fn check_goings(weather: Weather, gone: usize, seed: u64) {
         table.kill(gone);
         let ended = table.play(60, |table| table.all_confirmed(220));
         assert!(ended, "{}", table.describe());
-        let ticks: Vec<_> =
-            (0..4).filter(|at| *at != gone).map(|at| left_at(&table.events[at], gone as u32)).collect();
+        let ticks: Vec<_> = (0..4)
+            .filter(|at| *at != gone)
+            .map(|at| left_at(&table.events[at], u32::try_from(gone).unwrap()))
+            .collect();
         assert!(ticks[0].is_some() && ticks.iter().all(|tick| *tick == ticks[0]), "{ticks:?}");
         let replays: Vec<_> =
             table.finish(220).into_iter().enumerate().filter(|(at, _)| *at != gone).collect();
