@@ -19,6 +19,8 @@ use crate::net::wire::{Address, NetGame};
 const JOINERS_MAX: usize = 32;
 /// Bytes that a packet needs besides inputs.
 const INPUTS_HEAD: usize = 100;
+/// How many packets of inputs answer one question: who is far away gets more than it plays in a round trip.
+const PACKETS_AT_ONCE: usize = 4;
 /// Bytes of a list's length.
 const LENGTH_BYTES: usize = 8;
 
@@ -133,9 +135,23 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
         if tick < committed && self.driver.inputs_of(tick).is_none() {
             return self.say_forgotten(from, nonce);
         }
+        let mut from_tick = tick;
+        for _ in 0..PACKETS_AT_ONCE {
+            let ticks = self.inputs_between(from_tick, committed);
+            let next = from_tick + ticks.len() as u64;
+            self.say(&Packet::Inputs { nonce, from: from_tick, ticks, committed }, from);
+            if next >= committed {
+                return;
+            }
+            from_tick = next;
+        }
+    }
+
+    /// The inputs of some ticks, as many as go into a packet, but of one tick at least.
+    fn inputs_between(&self, first: u64, end: u64) -> Vec<Vec<u8>> {
         let mut ticks = Vec::new();
         let mut room = PACKET_BYTES_AIM - INPUTS_HEAD;
-        for tick in tick..committed {
+        for tick in first..end {
             let Some(bytes) = self.driver.inputs_of(tick).map(EncodedInputs::bytes) else { break };
             if !ticks.is_empty() && bytes.len() + LENGTH_BYTES > room {
                 break;
@@ -143,7 +159,7 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
             room = room.saturating_sub(bytes.len() + LENGTH_BYTES);
             ticks.push(bytes.to_vec());
         }
-        self.say(&Packet::Inputs { nonce, from: tick, ticks, committed }, from);
+        ticks
     }
 
     fn say_forgotten(&mut self, to: &A, nonce: Nonce) {
