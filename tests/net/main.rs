@@ -10,6 +10,7 @@ mod goings;
 mod hostile;
 mod matches;
 mod oddities;
+mod patience;
 mod pushers;
 mod scripted;
 mod table;

@@ -76,6 +76,12 @@ impl Table {
         false
     }
 
+    /// Plays for some time.
+    pub(crate) fn play_for(&mut self, time: Duration) {
+        let end = Instant::now() + time;
+        self.play(time.as_secs() + 1, |_| Instant::now() >= end);
+    }
+
     fn turn(&mut self) {
         let now = self.start.elapsed() + self.ahead;
         self.network.set_time(now);

@@ -1,0 +1,58 @@
+//! What a match has to bear for a long time, or often.
+
+use std::time::Duration;
+
+use lockstep2d::net::{Event, Options, Peer, Weather};
+use lockstep2d::replay::Verdict;
+
+use super::matches::{MODES, verdict};
+use super::pushers::Setup;
+use super::table::Table;
+
+/// Nothing at all comes through for some time, but for less than the timeout.
+#[test]
+fn a_hole_in_the_network_is_no_end() {
+    for options in MODES {
+        let mut table = Table::of(3, options(), Weather::default(), 31);
+        assert!(table.play(40, |table| table.all_confirmed(60)), "{}", table.describe());
+        for millis in [300, 1400] {
+            table.network.set_weather(Weather { loss: 100, ..Weather::default() });
+            table.play_for(Duration::from_millis(millis));
+            table.network.set_weather(Weather::default());
+            table.play_for(Duration::from_millis(500));
+        }
+        let tick = table.peers[0].as_ref().unwrap().tick() + 60;
+        assert!(table.play(40, |table| table.all_confirmed(tick)), "{}", table.describe());
+        let left = |event: &Event| matches!(event, Event::Left { .. } | Event::Diverged(_));
+        assert!(!table.events.iter().flatten().any(left), "{}", table.describe());
+        let replays = table.finish(tick);
+        assert!(matches!(verdict(&replays[0]), Verdict::Match { .. }));
+        assert!(replays.iter().all(|replay| *replay == replays[0]), "replays differ");
+    }
+}
+
+/// A player goes and comes back, again and again, always to the same seat.
+#[test]
+fn a_player_comes_and_goes_ten_times() {
+    let options = Options::rollback();
+    let mut table = Table::of(3, options, Weather::default(), 32);
+    assert!(table.play(40, |table| table.all_confirmed(30)));
+    for time in 0..10 {
+        table.kill(2).finish(0).unwrap();
+        let gone = table.play(20, |table| table.peers[0].as_ref().unwrap().seats() == [0, 1]);
+        assert!(gone, "time {time}: {}", table.describe());
+        let port = table.network.port(100 + time);
+        table.peers[2] = Some(Peer::join(&Setup::default(), options, port, 1, Some(2)).unwrap());
+        let back = table.play(20, |table| table.peers[2].as_ref().unwrap().seat() == Some(2));
+        assert!(back, "time {time}: {}", table.describe());
+        let tick = table.peers[0].as_ref().unwrap().tick() + 20;
+        assert!(table.play(20, |table| table.all_confirmed(tick)), "time {time}: {}", table.describe());
+        let hashes = table.hashes(tick);
+        assert!(hashes.len() == 3 && hashes.iter().all(|hash| *hash == hashes[0]), "time {time}");
+    }
+    let tick = table.peers[0].as_ref().unwrap().confirmed();
+    table.kill(2);
+    let replays = table.finish(tick);
+    assert!(matches!(verdict(&replays[0]), Verdict::Match { .. }), "{}", verdict(&replays[0]));
+    assert_eq!(replays[0], replays[1]);
+}
