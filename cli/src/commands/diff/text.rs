@@ -81,8 +81,8 @@ impl Text<'_> {
         let Some(explanation) = &found.explanation else {
             return Ok(());
         };
-        let (tick, bit) = (explanation.tick, explanation.bit);
-        write!(f, "\nexplained by bit {bit} of one number, flipped after tick {tick}:")?;
+        let (tick, bit, path) = (explanation.tick, explanation.bit, &explanation.path);
+        write!(f, "\nexplained by bit {bit} of a number of {path}, flipped after tick {tick}:")?;
         explanation.differences.iter().try_for_each(|difference| write!(f, "\n    {}", Line(difference)))
     }
 
