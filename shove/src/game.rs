@@ -81,10 +81,10 @@ impl Shove {
     /// Plates charge the dash of who has just come over them.
     fn charge(&mut self) {
         for event in &self.world.events().sensor_begin {
-            if let Some((_, Role::Player(seat))) = self.owner(event.visitor) {
-                if let Some(seat) = self.rules.seats.get_mut(usize::from(seat)) {
-                    seat.recharge = 0;
-                }
+            if let Some((_, Role::Player(seat))) = self.owner(event.visitor)
+                && let Some(seat) = self.rules.seats.get_mut(usize::from(seat))
+            {
+                seat.recharge = 0;
             }
         }
     }
