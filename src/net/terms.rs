@@ -97,3 +97,45 @@ impl Terms {
         if differences.is_empty() { Ok(()) } else { Err(TermsMismatch { differences }) }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn terms() -> Terms {
+        Terms {
+            semantics: 3,
+            rules: "pong".into(),
+            rules_version: 1,
+            setup: StateHash(7),
+            tick_rate: 60,
+            players: 2,
+            mode: Mode::Lockstep,
+        }
+    }
+
+    #[test]
+    fn everything_that_differs_is_named() {
+        assert_eq!(terms().agree(&terms()), Ok(()));
+        let cases: [(Terms, &str); 8] = [
+            (Terms { semantics: 4, ..terms() }, "engine semantics 3 here and 4 there"),
+            (Terms { rules: "tug".into(), ..terms() }, "rules pong here and tug there"),
+            (Terms { rules_version: 2, ..terms() }, "rules version 1 here and 2 there"),
+            (Terms { setup: StateHash(8), ..terms() }, "7 here and 00000000000000000000000000000008 there"),
+            (Terms { tick_rate: 30, ..terms() }, "tick rate 60 here and 30 there"),
+            (Terms { players: 3, ..terms() }, "number of seats 2 here and 3 there"),
+            (
+                Terms { mode: Mode::Rollback { window: 8 }, ..terms() },
+                "lockstep here and rollback by up to 8 ticks",
+            ),
+            (
+                Terms { rules_version: 2, tick_rate: 30, ..terms() },
+                "rules version 1 here and 2 there, tick rate 60 here and 30 there",
+            ),
+        ];
+        for (theirs, what) in cases {
+            let mismatch = terms().agree(&theirs).expect_err(what).to_string();
+            assert!(mismatch.contains(what), "{mismatch}");
+        }
+    }
+}
