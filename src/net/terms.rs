@@ -100,6 +100,8 @@ impl Terms {
 
 #[cfg(test)]
 mod tests {
+    use alloc::string::ToString;
+
     use super::*;
 
     fn terms() -> Terms {
