@@ -286,8 +286,10 @@ impl<G: NetGame> Driver<G> {
         while self.committed < ticks.min(self.tick) {
             let tick = self.committed;
             if let Some(mut recorder) = self.recorder.take() {
-                self.record(tick, &mut recorder)?;
+                let recorded = self.record(tick, &mut recorder);
+                // What has been recorded so far is still worth writing.
                 self.recorder = Some(recorder);
+                recorded?;
             }
             self.committed += 1;
         }
