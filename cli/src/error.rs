@@ -5,7 +5,7 @@ use std::io;
 use std::path::PathBuf;
 
 use lockstep2d::replay::{RecordError, Verdict};
-use lockstep2d::report::{CompareError, EvidenceError};
+use lockstep2d::report::{CompareError, EvidenceError, TraceError};
 
 use crate::exit::Exit;
 
@@ -30,6 +30,8 @@ pub(crate) enum CommandError {
     Replay { path: PathBuf, verdict: Verdict },
     /// A file is nothing that can be compared.
     Evidence { path: PathBuf, error: EvidenceError },
+    /// A replay cannot be traced.
+    Trace { path: PathBuf, error: TraceError },
     /// Two files cannot be compared with each other.
     Compare(CompareError),
 }
@@ -38,7 +40,7 @@ impl CommandError {
     /// How a command that stops for this ends.
     pub(crate) fn exit(&self) -> Exit {
         match self {
-            CommandError::Replay { .. } => Exit::NoMatch,
+            CommandError::Replay { .. } | CommandError::Trace { .. } => Exit::NoMatch,
             _ => Exit::Trouble,
         }
     }
@@ -64,6 +66,7 @@ impl fmt::Display for CommandError {
             }
             CommandError::Replay { path, verdict } => write!(f, "{}: {verdict}", Shown(path)),
             CommandError::Evidence { path, error } => write!(f, "{}: {error}", Shown(path)),
+            CommandError::Trace { path, error } => write!(f, "{}: {error}", Shown(path)),
             CommandError::Compare(error) => write!(f, "cannot compare: {error}"),
         }
     }

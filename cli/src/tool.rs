@@ -8,7 +8,7 @@ use clap::{ArgMatches, Command};
 use lockstep2d::lockstep::Game;
 use lockstep2d::replay::Limits;
 
-use crate::commands::{diff, export, record, scenes, verify};
+use crate::commands::{bisect, diff, export, record, scenes, trace, verify};
 use crate::console::Console;
 use crate::error::CommandError;
 use crate::exit::Exit;
@@ -111,7 +111,9 @@ impl<G: Game> Tool<G> {
             .subcommand_required(true)
             .arg_required_else_help(true)
             .subcommand(verify::command())
-            .subcommand(diff::command());
+            .subcommand(diff::command())
+            .subcommand(bisect::command())
+            .subcommand(trace::command());
         if self.catalogue.is_some() {
             command = command.subcommand(scenes::command()).subcommand(record::command());
         }
@@ -128,6 +130,12 @@ impl<G: Game> Tool<G> {
             }
             (Some((diff::NAME, matches)), _, _) => {
                 diff::run::<G>(&diff::arguments(matches), &self.limits, console)
+            }
+            (Some((bisect::NAME, matches)), _, _) => {
+                bisect::run::<G>(&bisect::arguments(matches), &self.limits, console)
+            }
+            (Some((trace::NAME, matches)), _, _) => {
+                trace::run::<G>(&trace::arguments(matches), &self.limits, console)
             }
             (Some((scenes::NAME, _)), Some(catalogue), _) => scenes::run(catalogue.as_ref(), console),
             (Some((record::NAME, matches)), Some(catalogue), _) => {

@@ -60,7 +60,7 @@ pub struct Playback<'a, G: Game> {
 /// How the file ends, known before the first tick is played.
 #[derive(Clone, Debug)]
 pub(super) struct Ending {
-    ticks: u64,
+    pub(super) ticks: u64,
     trailer: Option<Trailer>,
 }
 
@@ -242,13 +242,18 @@ pub(super) fn check_rules<G: Game>(header: &Header<'_>) -> Result<(), Verdict> {
     Ok(())
 }
 
+/// The setup, if it is written as this program writes it.
+pub(super) fn decode_setup<G: Game>(header: &Header<'_>) -> Result<G::Setup, Verdict> {
+    codec::decode(header.setup)
+        .ok()
+        .filter(|setup| codec::encode(setup) == header.setup)
+        .ok_or(Verdict::Malformed { offset: header.setup_offset(), flaw: Flaw::Setup })
+}
+
 /// The game before its first tick, if it is the one that the header describes.
 pub(super) fn start<G: Game>(header: &Header<'_>) -> Result<G, Verdict> {
     let malformed = |offset, flaw| Verdict::Malformed { offset, flaw };
-    let setup: G::Setup = codec::decode(header.setup)
-        .ok()
-        .filter(|setup| codec::encode(setup) == header.setup)
-        .ok_or(malformed(header.setup_offset(), Flaw::Setup))?;
+    let setup = decode_setup::<G>(header)?;
     let game = G::new(&setup)
         .map_err(|error| malformed(header.setup_offset(), Flaw::SetupRefused { why: error.why }))?;
     if game.players() != header.players {

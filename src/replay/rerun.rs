@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 
 use super::flaw::Flaw;
 use super::limits::{Limit, Limits};
-use super::playback::{Step, check_rules, scan, start};
+use super::playback::{Step, check_rules, decode_setup, scan, start};
 use super::reader::{Part, ReadError, Reader};
 use super::runs::{Run, Runs};
 use super::verdict::Verdict;
@@ -60,6 +60,8 @@ pub struct Rerun<'a, G: Game> {
     inputs: Vec<G::Input>,
     tick: u64,
     work: u64,
+    /// How many ticks the file has, as far as it is whole.
+    length: u64,
 }
 
 impl<'a, G: Game> Rerun<'a, G> {
@@ -69,11 +71,11 @@ impl<'a, G: Game> Rerun<'a, G> {
     /// The [`Verdict`] when there is nothing to play: the file is malformed, too large, or of another game.
     pub fn open(file: &'a [u8], limits: &Limits) -> Result<Self, Verdict> {
         let ticks = TickInputs::open(file, limits)?;
-        scan(ticks.reader.clone())?;
+        let length = scan(ticks.reader.clone())?.ticks;
         check_rules::<G>(ticks.reader.header())?;
         let game = start::<G>(ticks.reader.header())?;
         let limits = limits.clone();
-        Ok(Rerun { game, limits, ticks, encoded: &[], inputs: Vec::new(), tick: 0, work: 0 })
+        Ok(Rerun { game, limits, ticks, encoded: &[], inputs: Vec::new(), tick: 0, work: 0, length })
     }
 
     /// The game as of now.
@@ -88,10 +90,26 @@ impl<'a, G: Game> Rerun<'a, G> {
         self.game
     }
 
+    /// The game as of now, for tools that look into its world.
+    pub(crate) fn game_mut(&mut self) -> &mut G {
+        &mut self.game
+    }
+
+    /// The setup that the game was started from.
+    pub(crate) fn setup(&self) -> Result<G::Setup, Verdict> {
+        decode_setup::<G>(self.ticks.reader.header())
+    }
+
     /// How many ticks have been played.
     #[must_use]
     pub fn tick(&self) -> u64 {
         self.tick
+    }
+
+    /// How many ticks the file has, as far as it is whole.
+    #[must_use]
+    pub fn ticks(&self) -> u64 {
+        self.length
     }
 
     /// The inputs that the last tick was played with.
@@ -100,11 +118,26 @@ impl<'a, G: Game> Rerun<'a, G> {
         &self.inputs
     }
 
+    /// Work units so far.
+    #[must_use]
+    pub fn work(&self) -> u64 {
+        self.work
+    }
+
     /// Plays one tick.
     ///
     /// # Errors
     /// The [`Verdict`] when the inputs are not this game's or cost too much.
     pub fn step(&mut self) -> Result<Step, Verdict> {
+        if self.read_inputs()? == Step::Ended {
+            return Ok(Step::Ended);
+        }
+        self.play()?;
+        Ok(Step::Ticked)
+    }
+
+    /// Fetches the inputs of the next tick, which [`Rerun::play`] or [`Rerun::follow`] has to be called for.
+    pub(crate) fn read_inputs(&mut self) -> Result<Step, Verdict> {
         let Some(run) = self.ticks.next_tick()? else {
             return Ok(Step::Ended);
         };
@@ -114,12 +147,31 @@ impl<'a, G: Game> Rerun<'a, G> {
                 decode_inputs(run.encoded, self.ticks.reader.header().players).map_err(malformed)?;
             self.encoded = run.encoded;
         }
+        self.tick += 1;
+        Ok(Step::Ticked)
+    }
+
+    /// Plays the tick whose inputs were read.
+    pub(crate) fn play(&mut self) -> Result<(), Verdict> {
+        self.play_with(G::step)
+    }
+
+    /// The same with a `step` that does more than to step.
+    pub(crate) fn play_with<T>(&mut self, step: impl FnOnce(&mut G, &[G::Input]) -> T) -> Result<T, Verdict> {
         let work = self.game.work(&self.inputs);
         Limit::TickWork.check(work, self.limits.tick_work)?;
         self.work = self.work.saturating_add(work);
         Limit::TotalWork.check(self.work, self.limits.total_work)?;
-        self.game.step(&self.inputs);
-        self.tick += 1;
-        Ok(Step::Ticked)
+        Ok(step(&mut self.game, &self.inputs))
+    }
+
+    /// Takes over what another game with the same state and the same inputs has come to.
+    pub(crate) fn follow(&mut self, save: &G::Save) {
+        self.game.load(save);
+    }
+
+    /// The canonical bytes of the inputs that were read last.
+    pub(crate) fn encoded(&self) -> &'a [u8] {
+        self.encoded
     }
 }

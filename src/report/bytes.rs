@@ -4,6 +4,7 @@ use alloc::vec::Vec;
 use core::fmt;
 
 use super::desync::{Body, DesyncReport};
+use super::phases::PHASE_DIGESTS_MAX;
 use crate::codec::{self, DecodeError};
 use crate::hash::StateHash;
 use crate::replay::{Limits, PLAYERS_MAX, RULES_NAME_BYTES_MAX};
@@ -12,7 +13,7 @@ use crate::replay::{Limits, PLAYERS_MAX, RULES_NAME_BYTES_MAX};
 pub const REPORT_MAGIC: [u8; 8] = *b"\x89L2R\r\n\x1a\n";
 
 /// The version of the layout.
-pub const REPORT_FORMAT_VERSION: u32 = 1;
+pub const REPORT_FORMAT_VERSION: u32 = 2;
 
 /// Magic, format, semantics, length.
 const HEADER_LEN: usize = 8 + 4 + 4 + 8;
@@ -66,6 +67,8 @@ pub enum ReportFlaw {
     History,
     /// The ticks of the saves are not in ascending order, or there is one that is not in the history.
     Saves,
+    /// The same of the digests of phases, or one tick has more of them than [`PHASE_DIGESTS_MAX`].
+    Phases,
 }
 
 impl fmt::Display for ReportFlaw {
@@ -79,6 +82,9 @@ impl fmt::Display for ReportFlaw {
             ReportFlaw::Hashes => "there is not one hash for each seat",
             ReportFlaw::History => "the ticks of the history are not in ascending order",
             ReportFlaw::Saves => "the ticks of the saves are not ascending ticks of the history",
+            ReportFlaw::Phases => {
+                "the ticks of the phases are not ascending ticks of the history, or one has too many"
+            }
         })
     }
 }
@@ -155,7 +161,7 @@ impl DesyncReport {
 
 impl Body {
     fn check(&self) -> Result<(), ReportFlaw> {
-        let Body { rules_name, players, seats, hashes, history, saves, .. } = self;
+        let Body { rules_name, players, seats, hashes, history, saves, phases, .. } = self;
         let ascending = |ticks: &[u64]| ticks.windows(2).all(|pair| pair[0] < pair[1]);
         if rules_name.is_empty() || rules_name.len() > RULES_NAME_BYTES_MAX as usize {
             return Err(ReportFlaw::RulesName);
@@ -176,6 +182,12 @@ impl Body {
         let saved: Vec<u64> = saves.iter().map(|(tick, _)| *tick).collect();
         if !ascending(&saved) || saved.iter().any(|tick| known.binary_search(tick).is_err()) {
             return Err(ReportFlaw::Saves);
+        }
+        let noted: Vec<u64> = phases.iter().map(|(tick, _)| *tick).collect();
+        let is_known = |tick: &u64| known.binary_search(tick).is_ok();
+        let too_many = phases.iter().any(|(_, tick)| tick.digests.len() > PHASE_DIGESTS_MAX);
+        if !ascending(&noted) || !noted.iter().all(is_known) || too_many {
+            return Err(ReportFlaw::Phases);
         }
         Ok(())
     }

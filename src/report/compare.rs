@@ -3,15 +3,16 @@
 use alloc::vec::Vec;
 use core::fmt;
 
-use super::comparison::{Blame, Comparison, Course, InputDifference, Side};
+use super::comparison::{Comparison, Course, InputDifference, Side};
 use super::desync::DesyncReport;
 use super::evidence::{Evidence, Known};
-use super::rerun;
+use super::rerun::{self, Effort};
 use super::suspect;
 use crate::codec;
 use crate::inspect::{Difference, InspectError, differences, fields};
 use crate::lockstep::{Game, decode_inputs};
 use crate::replay::{Limits, Mismatch, ReadError, Reader, TickInputs, Verdict};
+use crate::world::World;
 
 /// Why two files cannot be compared.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -64,37 +65,48 @@ impl From<InspectError> for CompareError {
 /// [`CompareError`] when the files cannot be compared at all. What is only not to be found out is a note.
 pub fn compare<G: Game>(a: &Evidence, b: &Evidence, limits: &Limits) -> Result<Comparison, CompareError> {
     if let (Evidence::World(a), Evidence::World(b)) = (a, b) {
-        let found = differences(&fields(&a.save())?, &fields(&b.save())?);
-        return Ok(Comparison { things: suspect::things(found), ..Comparison::new() });
+        return compare_worlds(a, b);
     }
-    let known = [known::<G>(a, Side::A, limits)?, known::<G>(b, Side::B, limits)?];
+    let (known, mut found) = survey::<G>(a, Some(b), limits)?;
+    if !found.setup.is_empty() {
+        found.first_different = Some(0);
+        return Ok(found);
+    }
+    rerun::run::<G>(&known, limits, Effort::Thorough, &mut found)?;
+    Ok(found)
+}
+
+pub(super) fn compare_worlds(a: &World, b: &World) -> Result<Comparison, CompareError> {
+    let found = differences(&fields(&a.save())?, &fields(&b.save())?);
+    Ok(Comparison { things: suspect::things(found), ..Comparison::new() })
+}
+
+/// What both sides know, without B the running engine's as well, and what is to be seen of it without playing.
+pub(super) fn survey<'a, G: Game>(
+    a: &'a Evidence,
+    b: Option<&'a Evidence>,
+    limits: &Limits,
+) -> Result<([Known<'a>; 2], Comparison), CompareError> {
+    let known_a = known::<G>(a, Side::A, limits)?;
+    let known_b = b.map_or_else(|| Ok(known_a.of_rerun()), |b| known::<G>(b, Side::B, limits))?;
+    let known = [known_a, known_b];
     let mut found = Comparison::new();
     found.courses =
         [0, 1].map(|side: usize| Course { seats: known[side].seats.to_vec(), ..Course::default() });
-    let report = [a, b].into_iter().find_map(|evidence| match evidence {
-        Evidence::Report(report) => Some(report),
+    let report = [Some(a), b].into_iter().flatten().find_map(|evidence| match evidence {
+        Evidence::Report(report) if !report.hashes().iter().all(Option::is_none) => Some(report),
         _ => None,
     });
     if let Some(report) = report {
         (found.checkpoint, found.groups) = (Some(report.tick()), report.groups());
     }
-    if known.iter().all(|known| !known.replay.is_empty()) {
+    if known.iter().all(|known| !known.replay.is_empty()) && b.is_some() {
         found.setup = setup_differences::<G>(&known, limits)?;
-        if !found.setup.is_empty() {
-            found.first_different = Some(0);
-            return Ok(found);
+        if found.setup.is_empty() {
+            found.input = input_difference::<G>(&known, limits)?;
         }
-        found.input = input_difference::<G>(&known, limits)?;
     }
-    rerun::run::<G>(&known, limits, &mut found)?;
-    found.blame = match [found.courses[0].departs, found.courses[1].departs] {
-        _ if found.rerun.is_none() => Blame::Unknown,
-        [None, None] => Blame::Nobody,
-        [Some(_), None] => Blame::Side(Side::A),
-        [None, Some(_)] => Blame::Side(Side::B),
-        [Some(_), Some(_)] => Blame::Both,
-    };
-    Ok(found)
+    Ok((known, found))
 }
 
 fn known<'a, G: Game>(

@@ -5,6 +5,7 @@ use alloc::vec::Vec;
 use core::fmt;
 
 use super::desync::Group;
+use super::stage::Stage;
 use crate::inspect::Difference;
 
 /// One of two files.
@@ -86,7 +87,7 @@ pub struct Thing {
     pub differences: Vec<Difference>,
 }
 
-/// One flipped bit before a tick, after which the rules lead exactly to what the side to blame has.
+/// One flipped bit between two ticks, with which the rules lead exactly to what the side to blame has.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Explanation {
     /// After how many ticks it flipped.
@@ -106,9 +107,9 @@ pub struct Comparison {
     pub last_equal: Option<u64>,
     /// The first tick at which the states are known to differ.
     pub first_different: Option<u64>,
-    /// How the setups differ; if they do, nothing else is compared.
+    /// How the setups differ; if they do, [`compare`](super::compare) compares nothing else.
     pub setup: Vec<Difference>,
-    /// The first input that differs. States are compared up to there.
+    /// The first input that differs. [`compare`](super::compare) compares states up to there.
     pub input: Option<InputDifference>,
     /// How A and B compare with the rerun.
     pub courses: [Course; 2],
@@ -121,6 +122,10 @@ pub struct Comparison {
     /// What differs in the states: what is to blame for it first, if that is known, then the bodies whose motion differs
     /// most.
     pub things: Vec<Thing>,
+    /// In which part of the tick that led to `first_different` the states parted.
+    pub stage: Option<Stage>,
+    /// If they parted before the step of the world: what differed when it began. B is the side to blame, A the rerun.
+    pub began: Vec<Thing>,
     /// What explains all of it.
     pub explanation: Option<Explanation>,
     /// The checkpoint that a report was written for.
@@ -143,6 +148,8 @@ impl Comparison {
             blame: Blame::Unknown,
             tick: None,
             things: Vec::new(),
+            stage: None,
+            began: Vec::new(),
             explanation: None,
             checkpoint: None,
             groups: Vec::new(),

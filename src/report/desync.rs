@@ -6,6 +6,7 @@ use alloc::vec::Vec;
 
 use serde::{Deserialize, Serialize};
 
+use super::phases::TickPhases;
 use crate::codec;
 use crate::hash::StateHash;
 use crate::lockstep::{Game, History, RulesId};
@@ -58,6 +59,8 @@ pub(super) struct Body {
     pub(super) history: Vec<(u64, StateHash)>,
     /// The canonical bytes of saves, in ascending order of the ticks.
     pub(super) saves: Vec<(u64, Vec<u8>)>,
+    /// What the phases of the tick that led there have left behind, in ascending order of the ticks.
+    pub(super) phases: Vec<(u64, TickPhases)>,
     pub(super) replay: Vec<u8>,
 }
 
@@ -95,9 +98,15 @@ impl DesyncReport {
             hashes,
             history: history.iter().map(|past| (past.tick, past.hash)).collect(),
             saves: saves(bytes_max, tick, history),
+            phases: Vec::new(),
             replay,
         };
         DesyncReport { semantics: crate::SEMANTICS, body }
+    }
+
+    pub(super) fn with_phases(mut self, phases: Vec<(u64, TickPhases)>) -> Self {
+        self.body.phases = phases;
+        self
     }
 
     /// The name and version of the rules.
@@ -154,6 +163,12 @@ impl DesyncReport {
     #[must_use]
     pub fn saves(&self) -> &[(u64, Vec<u8>)] {
         &self.body.saves
+    }
+
+    /// How ticks went, in ascending order of the ticks that they led to. Only a [`Trace`](super::Trace) tells.
+    #[must_use]
+    pub fn phases(&self) -> &[(u64, TickPhases)] {
+        &self.body.phases
     }
 
     /// How many ticks of the history have no save, because the report would have become too large.

@@ -7,6 +7,7 @@ use core::fmt;
 
 use super::bytes::{REPORT_MAGIC, ReportError};
 use super::desync::DesyncReport;
+use super::phases::TickPhases;
 use crate::hash::StateHash;
 use crate::replay::{self, Limits, Part, ReadError, Reader, checkpoint_hash};
 use crate::world::{SnapshotError, World};
@@ -66,15 +67,34 @@ impl Evidence {
     }
 }
 
+/// What somebody says of a state.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Said {
+    hash: StateHash,
+    /// Of a checkpoint, the digest of the inputs that it binds as well.
+    inputs: Option<StateHash>,
+}
+
+impl Said {
+    /// Whether it is said of the state with that hash.
+    pub(super) fn is(&self, state: StateHash) -> bool {
+        self.hash == self.inputs.map_or(state, |inputs| checkpoint_hash(state, inputs))
+    }
+}
+
 /// What one side knows of the course of a game.
 #[derive(Default)]
 pub(super) struct Known<'a> {
     pub(super) seats: &'a [u32],
     /// State hashes by their ticks.
     pub(super) states: BTreeMap<u64, StateHash>,
-    /// Checkpoints of a replay, and the digest of the inputs up to each.
-    checkpoints: BTreeMap<u64, (StateHash, StateHash)>,
+    /// Checkpoints of a replay.
+    checkpoints: BTreeMap<u64, Said>,
     pub(super) saves: BTreeMap<u64, &'a [u8]>,
+    /// How the tick went that led there.
+    pub(super) phases: BTreeMap<u64, &'a TickPhases>,
+    /// Whether this side is the running engine, which has whatever the rerun has.
+    is_rerun: bool,
     /// Of a report without a replay, nothing.
     pub(super) replay: &'a [u8],
     /// How many ticks the replay has.
@@ -87,7 +107,13 @@ impl<'a> Known<'a> {
         known.seats = report.seats();
         known.states.extend(report.history().iter().copied());
         known.saves = report.saves().iter().map(|(tick, save)| (*tick, save.as_slice())).collect();
+        known.phases = report.phases().iter().map(|(tick, phases)| (*tick, phases)).collect();
         Ok(known)
+    }
+
+    /// The running engine, playing the inputs that another side knows.
+    pub(super) fn of_rerun(&self) -> Self {
+        Known { replay: self.replay, ticks: self.ticks, is_rerun: true, ..Known::default() }
     }
 
     pub(super) fn of_replay(replay: &'a [u8], limits: &Limits) -> Result<Self, ReadError> {
@@ -96,11 +122,12 @@ impl<'a> Known<'a> {
             return Ok(known);
         }
         let mut reader = Reader::open(replay, limits)?;
-        known.checkpoints.insert(0, (reader.start(), reader.inputs_digest()));
+        let start = Said { hash: reader.start(), inputs: Some(reader.inputs_digest()) };
+        known.checkpoints.insert(0, start);
         while let Some(part) = reader.next_part()? {
             match part {
                 Part::Inputs(block) => {
-                    let checkpoint = (block.checkpoint, block.inputs_digest);
+                    let checkpoint = Said { hash: block.checkpoint, inputs: Some(block.inputs_digest) };
                     known.checkpoints.insert(reader.ticks(), checkpoint);
                 }
                 Part::Trailer(trailer) => drop(known.states.insert(trailer.ticks, trailer.final_hash)),
@@ -113,13 +140,17 @@ impl<'a> Known<'a> {
 
     /// Whether this side had that state after so many ticks, if it has said so.
     pub(super) fn had(&self, tick: u64, state: StateHash) -> Option<bool> {
-        let by_state = self.states.get(&tick).map(|known| *known == state);
-        let by_checkpoint =
-            self.checkpoints.get(&tick).map(|(known, inputs)| *known == checkpoint_hash(state, *inputs));
-        match (by_state, by_checkpoint) {
-            (Some(a), Some(b)) => Some(a && b),
-            (known, None) | (None, known) => known,
+        if self.is_rerun {
+            return Some(true);
         }
+        let by_checkpoint = self.checkpoints.get(&tick).is_none_or(|said| said.is(state));
+        self.said(tick).map(|said| said.is(state) && by_checkpoint)
+    }
+
+    /// What this side has said of its state after so many ticks.
+    pub(super) fn said(&self, tick: u64) -> Option<Said> {
+        let state = self.states.get(&tick).map(|state| Said { hash: *state, inputs: None });
+        state.or_else(|| self.checkpoints.get(&tick).copied())
     }
 
     /// Whether both sides had the same state after so many ticks, if both have said so.
@@ -127,9 +158,9 @@ impl<'a> Known<'a> {
         if let Some((a, b)) = self.states.get(&tick).zip(other.states.get(&tick)) {
             return Some(a == b);
         }
-        let ((a, inputs_a), (b, inputs_b)) = self.checkpoints.get(&tick).zip(other.checkpoints.get(&tick))?;
+        let (a, b) = self.checkpoints.get(&tick).zip(other.checkpoints.get(&tick))?;
         // With other digests (another interval in the header) the checkpoints cannot be compared.
-        (inputs_a == inputs_b).then_some(a == b)
+        (a.inputs == b.inputs).then_some(a.hash == b.hash)
     }
 
     /// The last tick of which it has said anything.

@@ -5,18 +5,47 @@ use alloc::string::String;
 use alloc::vec::Vec;
 
 use super::compare::CompareError;
-use super::comparison::{Comparison, Side};
+use super::comparison::{Blame, Comparison, Side};
 use super::evidence::Known;
+use super::origin;
 use super::suspect::{self, WrongTick};
 use crate::codec;
 use crate::inspect::{differences, fields};
 use crate::lockstep::Game;
 use crate::replay::{Limits, Rerun, Step};
 
-/// Fills in the states and the courses of a comparison.
+/// How much is played.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Effort {
+    /// All that either side knows, and a while of trying what could explain a difference.
+    Thorough,
+    /// As far as it takes to find the first difference, and so much to explain it that both together cost less than
+    /// playing all ticks three times.
+    Bounded,
+}
+
+/// Fills in the states, the courses and the blame of a comparison.
 pub(super) fn run<G: Game>(
     known: &[Known<'_>; 2],
     limits: &Limits,
+    effort: Effort,
+    found: &mut Comparison,
+) -> Result<(), CompareError> {
+    play::<G>(known, limits, effort, found)?;
+    found.blame = match [found.courses[0].departs, found.courses[1].departs] {
+        _ if found.rerun.is_none() => Blame::Unknown,
+        [None, None] => Blame::Nobody,
+        [Some(_), None] => Blame::Side(Side::A),
+        [None, Some(_)] => Blame::Side(Side::B),
+        [Some(_), Some(_)] => Blame::Both,
+    };
+    Ok(())
+}
+
+fn play<G: Game>(
+    known: &[Known<'_>; 2],
+    limits: &Limits,
+    effort: Effort,
     found: &mut Comparison,
 ) -> Result<(), CompareError> {
     // Behind an input that differs, so do the states.
@@ -36,6 +65,7 @@ pub(super) fn run<G: Game>(
     Beside {
         known,
         limits,
+        effort,
         found,
         rerun,
         previous: None,
@@ -103,6 +133,7 @@ struct States<S> {
 struct Beside<'a, 'k, G: Game> {
     known: &'a [Known<'k>; 2],
     limits: &'a Limits,
+    effort: Effort,
     found: &'a mut Comparison,
     rerun: Rerun<'k, G>,
     /// The state of the rerun one tick ago.
@@ -122,7 +153,7 @@ impl<G: Game> Beside<'_, '_, G> {
         let (direct, equal) = (self.found.first_different, self.found.last_equal.take());
         loop {
             self.look(direct);
-            if self.rerun.tick() >= until {
+            if self.rerun.tick() >= until || self.is_enough() {
                 break;
             }
             self.previous = self.wrong.is_none().then(|| self.rerun.game().save());
@@ -143,6 +174,15 @@ impl<G: Game> Beside<'_, '_, G> {
         self.conclude()
     }
 
+    /// Whether what is still to come can tell nothing that was asked for.
+    fn is_enough(&self) -> bool {
+        let tick = self.rerun.tick();
+        let has_departed = |side: &usize| self.found.courses[*side].departs.is_some();
+        let has_told = |side: usize| self.known[side].saves.range(tick..).next().is_none();
+        let departed = [0, 1].into_iter().find(has_departed);
+        self.effort == Effort::Bounded && departed.is_some_and(|side| self.states.is_some() || has_told(side))
+    }
+
     /// Compares the rerun as of now with what both sides say.
     fn look(&mut self, direct: Option<u64>) {
         let (tick, hash) = (self.rerun.tick(), self.rerun.game().state_hash());
@@ -153,11 +193,12 @@ impl<G: Game> Beside<'_, '_, G> {
                 Some(false) if course.departs.is_none() => {
                     course.departs = Some(tick);
                     let before = self.previous.take();
-                    let wrong = known.states.get(&tick).copied();
+                    let wrong = known.said(tick);
                     let was_right = tick.checked_sub(1).filter(|last| course.equal_until == Some(*last));
                     if let ((Some(before), Some(wrong)), Some(last)) = ((before, wrong), was_right) {
                         let inputs = self.rerun.inputs().to_vec();
-                        self.wrong = Some(WrongTick { tick: last, before, inputs, wrong });
+                        let phases = known.phases.get(&tick).copied().cloned();
+                        self.wrong = Some(WrongTick { tick: last, before, inputs, wrong, phases });
                     }
                 }
                 _ => {}
@@ -213,7 +254,8 @@ impl<G: Game> Beside<'_, '_, G> {
     }
 
     fn conclude(self) -> Result<(), CompareError> {
-        let Beside { known, limits, found, rerun, wrong, states, presumed, obstacle, previous: _ } = self;
+        let Beside { known, limits, effort, found, rerun, wrong, states, presumed, obstacle, previous: _ } =
+            self;
         found.notes.extend(obstacle);
         let courses = &found.courses;
         let came_later = |states: &States<G::Save>| {
@@ -230,10 +272,22 @@ impl<G: Game> Beside<'_, '_, G> {
                 }
             }
         }
-        let count: usize = found.things.iter().map(|thing| thing.differences.len()).sum();
-        let at_once = |wrong: &&WrongTick<G>| found.tick == Some(wrong.tick + 1) && count > 1;
-        if let Some(wrong) = wrong.as_ref().filter(at_once) {
-            found.explanation = suspect::explain(wrong, rerun.into_game(), &mut found.things, limits)?;
+        let Some(wrong) = wrong else {
+            return Ok(());
+        };
+        let work = match effort {
+            Effort::Thorough => suspect::WORK_MAX,
+            Effort::Bounded => {
+                let whole = rerun.work() / rerun.tick().max(1) * rerun.ticks();
+                whole.saturating_mul(5) / 2 - rerun.work().min(whole)
+            }
+        };
+        let mut game = rerun.into_game();
+        if let Some(theirs) = &wrong.phases {
+            origin::find(&wrong, theirs, &mut game, found)?;
+        }
+        if found.began.is_empty() {
+            suspect::explain(&wrong, game, work.min(limits.total_work), found)?;
         }
         Ok(())
     }

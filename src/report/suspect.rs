@@ -5,18 +5,20 @@
 //! then it is tried: if one flipped bit in the last state that was right leads to exactly the wrong state, that bit it was.
 
 use alloc::collections::BTreeMap;
+use alloc::format;
 use alloc::string::String;
 use alloc::vec::Vec;
 
-use super::comparison::{Explanation, Thing};
-use crate::hash::StateHash;
+use super::comparison::{Comparison, Explanation, Thing};
+use super::evidence::Said;
+use super::phases::TickPhases;
+use super::stage::Stage;
 use crate::inspect::{Difference, InspectError, Value, differences, fields};
 use crate::lockstep::Game;
-use crate::replay::Limits;
 use crate::world::Motion;
 
 /// Most work units that are spent on trying, if the limits allow as many: some ten seconds.
-const WORK_MAX: u64 = 400_000_000;
+pub(super) const WORK_MAX: u64 = 400_000_000;
 /// Work units that a try costs at least, as the state is loaded and hashed.
 const TRY_WORK: u64 = 1000;
 
@@ -28,7 +30,9 @@ pub(super) struct WrongTick<G: Game> {
     /// The inputs that led from it to the wrong one.
     pub(super) inputs: Vec<G::Input>,
     /// What came of them on the side that is to blame.
-    pub(super) wrong: StateHash,
+    pub(super) wrong: Said,
+    /// How the tick went there, if that is known.
+    pub(super) phases: Option<TickPhases>,
 }
 
 /// Puts things into sections and bodies, those whose motion differs most first.
@@ -52,7 +56,7 @@ pub(super) fn things(differences: Vec<Difference>) -> Vec<Thing> {
 /// By how many units the motion of a body differs; 0 of everything else.
 fn disturbance(thing: &Thing) -> u128 {
     let is_motion = |difference: &&Difference| {
-        Motion::ALL.iter().any(|motion| difference.field().name() == motion.name())
+        Motion::SPEEDS.iter().any(|motion| difference.field().name() == motion.name())
     };
     let units = |difference: &Difference| {
         let bits = |value: &Option<Value>| value.as_ref().and_then(|value| value.bits());
@@ -61,55 +65,138 @@ fn disturbance(thing: &Thing) -> u128 {
     thing.differences.iter().filter(is_motion).map(units).sum()
 }
 
-/// The bit that explains everything, if there is one. Its body and field are put first.
+/// Looks for the bit that explains everything, and puts its body and field first.
 pub(super) fn explain<G: Game>(
     wrong: &WrongTick<G>,
     mut game: G,
-    things: &mut Vec<Thing>,
-    limits: &Limits,
-) -> Result<Option<Explanation>, InspectError> {
-    let work = WORK_MAX.min(limits.total_work);
-    let Some((at, motion, bit)) = search(wrong, &mut game, things, work) else {
-        return Ok(None);
+    work: u64,
+    found: &mut Comparison,
+) -> Result<(), InspectError> {
+    let is_known = found.tick == Some(wrong.tick + 1);
+    let count: usize = found.things.iter().map(|thing| thing.differences.len()).sum();
+    if is_known && count == 1 {
+        return Ok(());
+    }
+    let suspects = if is_known { suspects(&found.things) } else { everybody(&mut game, &wrong.before) };
+    let Some(culprit) = search(wrong, &mut game, suspects, work) else {
+        return Ok(());
     };
-    let mut thing = things.remove(at);
-    thing.differences.sort_by_key(|difference| difference.field().name() != motion.name());
-    let path = thing.path.clone();
-    things.insert(0, thing);
-    // As it was before the tick, and as it became.
+    let Suspect { path, motion, bit, when, .. } = culprit;
+    if is_known {
+        found.things.sort_by_key(|thing| thing.path != path);
+        let first = &mut found.things[0].differences;
+        first.sort_by_key(|difference| difference.field().name() != motion.name());
+    }
+    // As it was before it flipped, and as it became.
     game.load(&wrong.before);
+    if when == When::After {
+        game.step(&wrong.inputs);
+    }
     let was = fields(&game.save())?;
     flip(&mut game, &path, motion, bit);
     let differences = differences(&was, &fields(&game.save())?);
-    Ok(Some(Explanation { tick: wrong.tick, path, bit, differences }))
+    let (tick, stage) = match when {
+        When::Before => (wrong.tick, Stage::BeforeStep),
+        When::After => (wrong.tick + 1, Stage::AfterStep),
+    };
+    let path = differences.first().and_then(|first| first.field().thing()).map_or(path, String::from);
+    found.stage.get_or_insert(stage);
+    found.explanation = Some(Explanation { tick, path, bit, differences });
+    Ok(())
 }
 
-/// The place in the list, the number and the bit that lead to the wrong state.
-fn search<G: Game>(
-    wrong: &WrongTick<G>,
-    game: &mut G,
-    things: &[Thing],
-    work: u64,
-) -> Option<(usize, Motion, u32)> {
-    game.load(&wrong.before);
-    let mut left = work / game.work(&wrong.inputs).max(TRY_WORK);
-    let is_body = |thing: &&Thing| handle(&thing.path).is_some();
-    for (at, thing) in things.iter().enumerate().filter(|(_, thing)| is_body(thing)) {
+/// On which side of a tick a bit may have flipped.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum When {
+    Before,
+    After,
+}
+
+/// A bit that may have flipped.
+struct Suspect {
+    path: String,
+    motion: Motion,
+    bit: u32,
+    when: When,
+    /// How far from the difference that is seen, in powers of two times 256: the lower, the sooner it is tried.
+    distance: u32,
+}
+
+/// Every bit of the bodies that differ. Most of a flip stays in its number, as long as nothing else is hit hard by it.
+fn suspects(things: &[Thing]) -> Vec<Suspect> {
+    let mut suspects = Vec::new();
+    for thing in things.iter().filter(|thing| handle(&thing.path).is_some()) {
         for motion in Motion::ALL {
-            for bit in 0..32 {
-                left = left.checked_sub(1)?;
-                game.load(&wrong.before);
-                if flip(game, &thing.path, motion, bit).is_none() {
-                    continue;
-                }
-                game.step(&wrong.inputs);
-                if game.state_hash() == wrong.wrong {
-                    return Some((at, motion, bit));
-                }
+            let of_motion = |difference: &&Difference| difference.field().name() == motion.name();
+            let bits = |value: &Option<Value>| value.as_ref().and_then(|value| value.bits());
+            let difference = thing.differences.iter().find(of_motion);
+            let difference = difference.and_then(|found| bits(&found.a).zip(bits(&found.b)));
+            let size = log2(difference.map_or(0, |(a, b)| a.abs_diff(b)));
+            suspects.extend((0..motion.bits()).map(|bit| Suspect {
+                path: thing.path.clone(),
+                motion,
+                bit,
+                when: When::Before,
+                distance: size.map_or(u32::MAX, |size| size.abs_diff(bit << 8)),
+            }));
+        }
+    }
+    suspects.sort_by_key(|suspect| suspect.distance);
+    suspects
+}
+
+/// The logarithm of a number to base 2, times 256, within 25 units; of 0 there is none.
+fn log2(number: u128) -> Option<u32> {
+    let whole = number.checked_ilog2()?;
+    // Behind the leading one, as if the logarithm were straight between powers of two.
+    let fraction = number << (127 - whole) << 1 >> 120;
+    Some((whole << 8) + u32::try_from(fraction).unwrap_or(0))
+}
+
+/// Every bit of every body, before and after the tick.
+fn everybody<G: Game>(game: &mut G, before: &G::Save) -> Vec<Suspect> {
+    game.load(before);
+    let Some(world) = game.world_mut() else {
+        return Vec::new();
+    };
+    let paths: Vec<String> = world.bodies().map(|(id, _)| format!("body {id}")).collect();
+    let mut suspects = Vec::new();
+    for when in [When::After, When::Before] {
+        for path in &paths {
+            for motion in Motion::ALL {
+                let of_bit = |bit| Suspect { path: path.clone(), motion, bit, when, distance: 0 };
+                suspects.extend((0..motion.bits()).map(of_bit));
             }
         }
     }
-    None
+    suspects
+}
+
+/// The first suspect that leads to the wrong state.
+fn search<G: Game>(wrong: &WrongTick<G>, game: &mut G, suspects: Vec<Suspect>, work: u64) -> Option<Suspect> {
+    game.load(&wrong.before);
+    let step_work = game.work(&wrong.inputs).max(TRY_WORK);
+    game.step(&wrong.inputs);
+    let right = game.save();
+    let mut left = work;
+    suspects.into_iter().find(|suspect| {
+        // A state is loaded and hashed as well.
+        let price = if suspect.when == When::Before { step_work + step_work / 2 } else { TRY_WORK };
+        // Whoever comes cheaper may still be tried.
+        let Some(rest) = left.checked_sub(price) else {
+            return false;
+        };
+        let Suspect { path, motion, bit, when, .. } = suspect;
+        game.load(if *when == When::Before { &wrong.before } else { &right });
+        if flip(game, path, *motion, *bit).is_none() {
+            return false;
+        }
+        left = rest;
+        if *when == When::Before {
+            game.step(&wrong.inputs);
+        }
+        wrong.wrong.is(game.state_hash())
+    })
 }
 
 /// Slot and generation of a body, from its path.

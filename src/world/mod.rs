@@ -43,6 +43,7 @@ pub use events::{ContactEvent, Events, HitEvent, JointEvent, MoveEvent, SensorEv
 pub use explosion::Explosion;
 pub use fault::Motion;
 pub use mover_planes::{MoverPlane, clip_velocity, solve_planes};
+use phases::Noted;
 pub use phases::PhaseDigest;
 pub use probe::Probe;
 pub use query::{CastHit, Proximity, QueryFilter, RayHit};
@@ -50,8 +51,6 @@ pub use rollback::Snapshot;
 pub use stats::{Phase, StepStats};
 pub use timestep::FixedTimestep;
 pub use validate::Violation;
-
-use alloc::vec::Vec;
 
 use crate::body::{Body, BodyId, BodyKind, JointId, Shape, ShapeId, WorldError};
 use crate::collision::{BroadPhaseKind, Manifold};
@@ -89,7 +88,7 @@ pub struct World {
     state: Hashed,
     scratch: Scratch,
     /// What each phase of the last tick has left behind, if somebody wants to know.
-    phases: Option<Vec<PhaseDigest>>,
+    phases: Option<Noted>,
 }
 
 impl Default for World {

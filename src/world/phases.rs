@@ -5,6 +5,7 @@ use alloc::vec::Vec;
 use super::World;
 use super::contacts::Found;
 use super::islands::Roster;
+use super::rollback::Snapshot;
 use super::scratch::Scratch;
 use super::state::State;
 use super::stats::Phase;
@@ -22,11 +23,18 @@ pub struct PhaseDigest {
     pub digest: StateHash,
 }
 
+/// What a world has noted.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Noted {
+    digests: Vec<PhaseDigest>,
+    start: Option<Snapshot>,
+}
+
 impl World {
     /// From now on every tick notes what its phases leave behind, and takes several times as long. What has been noted
     /// before is forgotten. No result depends on it.
     pub fn note_phases(&mut self) {
-        self.phases = Some(Vec::new());
+        self.phases = Some(Noted::default());
     }
 
     /// Ends what [`World::note_phases`] has begun.
@@ -48,18 +56,26 @@ impl World {
     /// ```
     #[must_use]
     pub fn phase_digests(&self) -> &[PhaseDigest] {
-        self.phases.as_deref().unwrap_or_default()
+        self.phases.as_ref().map_or(&[], |noted| &noted.digests)
+    }
+
+    /// The state with which the last tick since [`World::note_phases`] began: what the last one has left behind, and
+    /// whatever was changed since.
+    #[must_use]
+    pub fn step_start(&self) -> Option<&Snapshot> {
+        self.phases.as_ref()?.start.as_ref()
     }
 
     pub(super) fn step_noting_phases(&mut self) {
         let mut noted = self.phases.take().unwrap_or_default();
+        noted.start = Some(self.save());
         let mut running = None;
         self.advance(|next, sight| {
-            noted.push(PhaseDigest { phase: running, digest: sight.after(running) });
+            noted.digests.push(PhaseDigest { phase: running, digest: sight.after(running) });
             running = Some(next);
         });
         let sight = Sight::of(self.state.get(), &self.scratch);
-        noted.push(PhaseDigest { phase: running, digest: sight.after(running) });
+        noted.digests.push(PhaseDigest { phase: running, digest: sight.after(running) });
         self.phases = Some(noted);
     }
 }

@@ -20,6 +20,19 @@ pub enum Phase {
     Report,
 }
 
+impl Phase {
+    /// All phases, in order.
+    pub const ALL: [Phase; 7] = [
+        Phase::BroadPhase,
+        Phase::NarrowPhase,
+        Phase::Prepare,
+        Phase::Solve,
+        Phase::Finalise,
+        Phase::Sleep,
+        Phase::Report,
+    ];
+}
+
 /// What the last tick did.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]

@@ -62,7 +62,7 @@ fn what_no_peer_writes_is_refused() {
         read(&repaired(bytes))
     };
     assert_eq!(with(0, 0), Err(ReportError::NotAReport));
-    assert_eq!(with(8, 2), Err(ReportError::Format { found: 2 }));
+    assert_eq!(with(8, 1), Err(ReportError::Format { found: 1 }));
     assert!(matches!(with(16, 0), Err(ReportError::Length { .. })));
     let name = 24 + 8;
     let players = name + "yard".len() + 4;

@@ -12,8 +12,8 @@ use crate::error::CommandError;
 use crate::exit::Exit;
 use crate::files;
 
-mod json;
-mod text;
+pub(super) mod json;
+pub(super) mod text;
 
 pub(crate) const NAME: &str = "diff";
 
@@ -61,7 +61,7 @@ pub(crate) fn run<G: Game>(
     Ok(if found.is_equal() { Exit::Success } else { Exit::NoMatch })
 }
 
-fn read(path: &Path, limits: &Limits) -> Result<Evidence, CommandError> {
+pub(super) fn read(path: &Path, limits: &Limits) -> Result<Evidence, CommandError> {
     let bytes = files::read(path, limits.file_bytes)
         .map_err(|error| CommandError::Read { path: path.to_path_buf(), error })?;
     Evidence::read(bytes, limits).map_err(|error| CommandError::Evidence { path: path.to_path_buf(), error })

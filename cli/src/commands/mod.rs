@@ -1,10 +1,12 @@
 //! The commands, one file each, with the same functions in the same order: `command` describes its arguments,
 //! `arguments` takes them from what clap matched, `run` does it.
 
+pub(crate) mod bisect;
 pub(crate) mod diff;
 pub(crate) mod export;
 pub(crate) mod record;
 pub(crate) mod scenes;
+pub(crate) mod trace;
 pub(crate) mod verify;
 
 use clap::{ArgMatches, FromArgMatches};

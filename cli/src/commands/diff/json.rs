@@ -3,15 +3,13 @@
 use std::path::Path;
 
 use lockstep2d::inspect::{Difference, Value};
-use lockstep2d::report::{Blame, Comparison, Course, Group, Side};
+use lockstep2d::report::{Blame, Comparison, Course, Group, Side, Thing};
 use serde_json::{Value as Json, json};
 
-pub(super) fn document(a: &Path, b: &Path, found: &Comparison) -> String {
-    let things: Vec<Json> = found
-        .things
-        .iter()
-        .map(|thing| json!({"path": thing.path, "section": thing.section, "fields": fields(&thing.differences)}))
-        .collect();
+pub(in crate::commands) fn document(a: &Path, b: &Path, found: &Comparison) -> String {
+    let thing = |thing: &Thing| json!({"path": thing.path, "section": thing.section, "fields": fields(&thing.differences)});
+    let things: Vec<Json> = found.things.iter().map(thing).collect();
+    let began: Vec<Json> = found.began.iter().map(thing).collect();
     let input = found
         .input
         .as_ref()
@@ -34,7 +32,9 @@ pub(super) fn document(a: &Path, b: &Path, found: &Comparison) -> String {
         "setup": fields(&found.setup),
         "input": input,
         "explanation": explanation,
+        "stage": found.stage.map(|stage| stage.name()),
         "tick": found.tick,
+        "began": began,
         "things": things,
         "notes": found.notes,
     });

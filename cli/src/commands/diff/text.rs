@@ -10,18 +10,22 @@ use crate::console::{BAD, DOUBTFUL, GOOD};
 use crate::files::Shown;
 
 /// A comparison, and of how many things it shows how they differ.
-pub(super) struct Text<'a> {
-    pub(super) found: &'a Comparison,
-    pub(super) sides: [&'a Path; 2],
-    pub(super) things: usize,
+pub(in crate::commands) struct Text<'a> {
+    pub(in crate::commands) found: &'a Comparison,
+    pub(in crate::commands) sides: [&'a Path; 2],
+    pub(in crate::commands) things: usize,
 }
 
 impl fmt::Display for Text<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.heads(f)?;
         self.verdict(f)?;
+        if let Some(stage) = self.found.stage {
+            write!(f, ", {stage}")?;
+        }
         self.who(f)?;
         self.inputs(f)?;
+        self.began(f)?;
         self.what(f)?;
         self.found.notes.iter().try_for_each(|note| write!(f, "\n{DOUBTFUL}note:{DOUBTFUL:#} {note}"))
     }
@@ -103,19 +107,30 @@ impl Text<'_> {
         if found.things.is_empty() {
             return Ok(());
         }
-        let sections: Vec<String> = found.sections().iter().map(|section| section.to_string()).collect();
         match found.tick {
             Some(tick) => write!(f, "\nstates after tick {tick}: ")?,
             None => writeln!(f)?,
         }
-        let count = found.things.len();
-        write!(
-            f,
-            "{count} {} in {}",
-            if count == 1 { "thing differs" } else { "things differ" },
-            sections.join(", ")
-        )?;
-        for Thing { path, differences, .. } in found.things.iter().take(self.things) {
+        self.things(&found.things, f)
+    }
+
+    fn began(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let found = self.found;
+        if found.began.is_empty() || found.explanation.is_some() {
+            return Ok(());
+        }
+        write!(f, "\nwhen the step of the world began: ")?;
+        self.things(&found.began, f)
+    }
+
+    fn things(&self, things: &[Thing], f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut sections: Vec<&str> = things.iter().map(|thing| thing.section.as_str()).collect();
+        sections.sort_unstable();
+        sections.dedup();
+        let count = things.len();
+        let differ = if count == 1 { "thing differs" } else { "things differ" };
+        write!(f, "{count} {differ} in {}", sections.join(", "))?;
+        for Thing { path, differences, .. } in things.iter().take(self.things) {
             write!(f, "\n  {path}")?;
             differences.iter().try_for_each(|difference| write!(f, "\n    {}", Line(difference)))?;
         }

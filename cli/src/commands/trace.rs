@@ -1,0 +1,68 @@
+//! `trace`: plays a replay and writes all that `bisect` needs of its last ticks.
+
+use std::fs;
+use std::path::PathBuf;
+
+use clap::{ArgMatches, Args, Command};
+use lockstep2d::lockstep::Game;
+use lockstep2d::replay::Limits;
+use lockstep2d::report::Trace;
+
+use crate::console::Console;
+use crate::error::CommandError;
+use crate::exit::Exit;
+use crate::files::{self, Shown};
+
+pub(crate) const NAME: &str = "trace";
+
+/// Play a replay and write the states and phases of some ticks, for bisect
+#[derive(Args, Debug)]
+#[command(
+    after_help = "The inputs are played again by this program, whatever the checkpoints of the file say. Another \
+                        program that bisects the trace tells in which tick, phase, body and field the two part."
+)]
+pub(crate) struct Arguments {
+    /// The replay
+    file: PathBuf,
+    /// The last tick to trace; without it, the end
+    #[arg(long, value_name = "TICK")]
+    to: Option<u64>,
+    /// How many ticks before it to trace
+    #[arg(long, default_value_t = 120)]
+    ticks: u32,
+    /// The file to write
+    #[arg(short, long, value_name = "FILE")]
+    output: PathBuf,
+}
+
+pub(crate) fn command() -> Command {
+    Arguments::augment_args(Command::new(NAME))
+}
+
+pub(crate) fn arguments(matches: &ArgMatches) -> Arguments {
+    super::from_matches(matches)
+}
+
+pub(crate) fn run<G: Game>(
+    arguments: &Arguments,
+    limits: &Limits,
+    console: &mut Console<'_>,
+) -> Result<Exit, CommandError> {
+    let Arguments { file, to, ticks, output } = arguments;
+    let path = || file.clone();
+    let bytes =
+        files::read(file, limits.file_bytes).map_err(|error| CommandError::Read { path: path(), error })?;
+    let traced = Trace::<G>::of_replay(&bytes, limits, to.unwrap_or(u64::MAX), *ticks);
+    let report = traced.map_err(|error| CommandError::Trace { path: path(), error })?;
+    let written = fs::write(output, report.to_bytes());
+    written.map_err(|error| CommandError::Write { path: output.clone(), error })?;
+    let (known, left_out) = (report.history().len(), report.saves_left_out());
+    let first = report.history().first().map_or(0, |(tick, _)| *tick);
+    console.line(format_args!(
+        "{}: ticks {first} to {}, {} of {known} states",
+        Shown(output),
+        report.tick(),
+        known - left_out
+    ))?;
+    Ok(Exit::Success)
+}

@@ -1,0 +1,110 @@
+//! Two replays with other setups or other inputs, both played by the running engine.
+//!
+//! As long as the states and the inputs are the same, one game stands for both. So all that this costs beyond playing one
+//! replay are the ticks with other inputs.
+
+use alloc::format;
+
+use super::compare::CompareError;
+use super::comparison::{Comparison, Side};
+use super::evidence::Known;
+use super::phases::TickPhases;
+use super::suspect;
+use crate::inspect::{differences, fields};
+use crate::lockstep::Game;
+use crate::replay::{Limits, Rerun, Step, Verdict};
+
+/// Plays both until their states differ, and fills in what that tells.
+pub(super) fn run<G: Game>(
+    known: &[Known<'_>; 2],
+    limits: &Limits,
+    found: &mut Comparison,
+) -> Result<(), CompareError> {
+    let open = |side: Side| {
+        let refused = |verdict| CompareError::Replay { side, verdict };
+        Rerun::<G>::open(known[side.index()].replay, limits).map_err(refused)
+    };
+    let mut duel = Duel { a: open(Side::A)?, b: open(Side::B)?, merged: false, found };
+    duel.compare(0)?;
+    while duel.found.first_different.is_none() {
+        match duel.step() {
+            Ok(Step::Ticked) => {}
+            Ok(Step::Ended) => break,
+            Err(DuelError::Compare(error)) => return Err(error),
+            Err(DuelError::Verdict(side, verdict)) => {
+                let tick = duel.a.tick();
+                duel.found.notes.push(format!("{side} cannot be played beyond tick {tick}: {verdict}"));
+                break;
+            }
+        }
+    }
+    let played = duel.a.tick();
+    duel.found.rerun = Some(played);
+    Ok(())
+}
+
+enum DuelError {
+    Compare(CompareError),
+    Verdict(Side, Verdict),
+}
+
+impl From<CompareError> for DuelError {
+    fn from(error: CompareError) -> Self {
+        DuelError::Compare(error)
+    }
+}
+
+struct Duel<'f, 'a, G: Game> {
+    a: Rerun<'a, G>,
+    b: Rerun<'a, G>,
+    /// Whether A stands for both, because their states are the same.
+    merged: bool,
+    found: &'f mut Comparison,
+}
+
+impl<G: Game> Duel<'_, '_, G> {
+    fn step(&mut self) -> Result<Step, DuelError> {
+        let of = |side| move |verdict| DuelError::Verdict(side, verdict);
+        let a = self.a.read_inputs().map_err(of(Side::A))?;
+        let b = self.b.read_inputs().map_err(of(Side::B))?;
+        if (a, b) != (Step::Ticked, Step::Ticked) {
+            return Ok(Step::Ended);
+        }
+        if self.merged && self.a.encoded() == self.b.encoded() {
+            self.a.play().map_err(of(Side::A))?;
+            self.found.last_equal = Some(self.a.tick());
+            return Ok(Step::Ticked);
+        }
+        let before = self.a.game().save();
+        if self.merged {
+            self.b.follow(&before);
+        }
+        self.a.play().map_err(of(Side::A))?;
+        self.b.play().map_err(of(Side::B))?;
+        self.compare(self.a.tick())?;
+        if self.found.first_different.is_some() {
+            let (a, b) = (self.a.inputs().to_vec(), self.b.inputs().to_vec());
+            let game = self.a.game_mut();
+            let [a, b] = [a, b].map(|inputs| {
+                game.load(&before);
+                TickPhases::of(game, &inputs)
+            });
+            self.found.stage = a.parting(&b);
+        }
+        Ok(Step::Ticked)
+    }
+
+    /// Compares the states as of now.
+    fn compare(&mut self, tick: u64) -> Result<(), CompareError> {
+        let (a, b) = (self.a.game(), self.b.game());
+        self.merged = a.state_hash() == b.state_hash();
+        if self.merged {
+            self.found.last_equal = Some(tick);
+            return Ok(());
+        }
+        self.found.first_different = Some(tick);
+        self.found.tick = Some(tick);
+        self.found.things = suspect::things(differences(&fields(&a.save())?, &fields(&b.save())?));
+        Ok(())
+    }
+}

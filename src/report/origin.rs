@@ -1,0 +1,63 @@
+//! In which part of a tick two courses parted, and with what: known if the side to blame has noted how its tick went.
+
+use alloc::string::String;
+
+use super::comparison::{Comparison, Explanation};
+use super::phases::TickPhases;
+use super::stage::Stage;
+use super::suspect::{self, WrongTick};
+use crate::inspect::{Difference, InspectError, Value, differences, fields};
+use crate::lockstep::Game;
+
+/// Plays the tick as it should have gone, and compares.
+pub(super) fn find<G: Game>(
+    wrong: &WrongTick<G>,
+    theirs: &TickPhases,
+    game: &mut G,
+    found: &mut Comparison,
+) -> Result<(), InspectError> {
+    game.load(&wrong.before);
+    let before = game.world_mut().cloned();
+    let ours = TickPhases::of(game, &wrong.inputs);
+    found.stage = ours.parting(theirs);
+    if found.stage != Some(Stage::BeforeStep) {
+        return Ok(());
+    }
+    let Some((ours, theirs)) = before.and_then(|before| ours.start(&before).zip(theirs.start(&before)))
+    else {
+        return Ok(());
+    };
+    let differences = differences(&fields(&ours.save())?, &fields(&theirs.save())?);
+    found.explanation = flipped_bit(wrong, &differences)?;
+    found.began = suspect::things(differences);
+    Ok(())
+}
+
+/// The bit in which two states differ, if there is only one.
+fn flipped_bit<G: Game>(
+    wrong: &WrongTick<G>,
+    differences: &[Difference],
+) -> Result<Option<Explanation>, InspectError> {
+    // A view shows the angular velocity beside the spin, and whatever moves a body may give its shapes other boxes.
+    let derived = ["angular_velocity", "fat.lower.x", "fat.lower.y", "fat.upper.x", "fat.upper.y"];
+    let stored = |difference: &&Difference| !derived.contains(&difference.field().name());
+    let mut stored = differences.iter().filter(stored);
+    let (Some(only), None) = (stored.next(), stored.next()) else {
+        return Ok(None);
+    };
+    let bits = |value: &Option<Value>| value.as_ref().and_then(|value| value.bits());
+    let changed = bits(&only.a).zip(bits(&only.b)).map_or(0, |(a, b)| a ^ b);
+    // The sign stands in all bits above a number's own.
+    let is_sign = changed.leading_ones() + changed.trailing_zeros() == i128::BITS;
+    if changed.count_ones() != 1 && !is_sign {
+        return Ok(None);
+    }
+    // The world is somewhere in what the game saves.
+    let place = only.field().thing().unwrap_or(only.field().section());
+    let saved = fields(&wrong.before)?;
+    let path = saved.iter().filter_map(|field| field.thing()).find(|path| path.ends_with(place));
+    let path = path.map_or_else(|| String::from(place), String::from);
+    let mut differences = differences.to_vec();
+    differences.sort_by_key(|difference| difference != only);
+    Ok(Some(Explanation { tick: wrong.tick, path, bit: changed.trailing_zeros(), differences }))
+}

@@ -1,0 +1,169 @@
+//! [`TickPhases`]: how a tick went, phase by phase.
+
+use alloc::vec::Vec;
+
+use serde::{Deserialize, Serialize};
+
+use super::stage::Stage;
+use crate::hash::StateHash;
+use crate::lockstep::Game;
+use crate::world::{Phase, Snapshot, World};
+
+/// Most digests of phases that a report has of one tick.
+pub const PHASE_DIGESTS_MAX: usize = 1024;
+
+/// What the phases of one tick have found and left behind; see
+/// [`World::phase_digests`](crate::world::World::phase_digests).
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct TickPhases {
+    /// The digests, in order.
+    pub digests: Vec<StateHash>,
+    /// The bytes of the world with which its step began, where they are not those after the tick before.
+    start: Vec<Patch>,
+    /// How many bytes there are.
+    start_length: u64,
+}
+
+/// Bytes that are not those of another world.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+struct Patch {
+    at: u64,
+    bytes: Vec<u8>,
+}
+
+/// Equal bytes between two patches that are not worth a new one.
+const GAP: usize = 16;
+
+impl TickPhases {
+    /// Plays a tick and notes how it goes; nothing of a game without a world.
+    pub(super) fn of<G: Game>(game: &mut G, inputs: &[G::Input]) -> Self {
+        let Some(world) = game.world_mut() else {
+            game.step(inputs);
+            return TickPhases::default();
+        };
+        let before = world.to_bytes();
+        world.note_phases();
+        game.step(inputs);
+        let Some(world) = game.world_mut() else {
+            return TickPhases::default();
+        };
+        let digests = world.phase_digests().iter().take(PHASE_DIGESTS_MAX).map(|noted| noted.digest);
+        let digests = digests.collect();
+        let start = world.step_start().map(bytes_of).unwrap_or_default();
+        world.ignore_phases();
+        TickPhases { digests, start: patches(&before, &start), start_length: start.len() as u64 }
+    }
+
+    /// The world with which the step began, given the one after the tick before; `None` if what is noted is no world.
+    pub(super) fn start(&self, before: &World) -> Option<World> {
+        let mut bytes = before.to_bytes();
+        let patched: usize = self.start.iter().map(|patch| patch.bytes.len()).sum();
+        let length = usize::try_from(self.start_length).ok()?;
+        if length > bytes.len() + patched {
+            return None;
+        }
+        bytes.resize(length, 0);
+        for patch in &self.start {
+            let at = usize::try_from(patch.at).ok()?;
+            let end = at.checked_add(patch.bytes.len())?;
+            bytes.get_mut(at..end)?.copy_from_slice(&patch.bytes);
+        }
+        World::from_bytes(&bytes).ok()
+    }
+
+    /// In which part of the tick another course with the same start has parted from this one; `None` if nobody has noted
+    /// it.
+    pub(super) fn parting(&self, other: &Self) -> Option<Stage> {
+        if self.digests.is_empty() || other.digests.is_empty() {
+            return None;
+        }
+        let Some(first) = self.digests.iter().zip(&other.digests).position(|(a, b)| a != b) else {
+            return Some(Stage::AfterStep);
+        };
+        // A world that is stepped several times in a tick notes the phases as often.
+        Some(match Phase::ALL.get((first % (Phase::ALL.len() + 1)).wrapping_sub(1)) {
+            Some(phase) => Stage::Phase(*phase),
+            None => Stage::BeforeStep,
+        })
+    }
+}
+
+fn bytes_of(snapshot: &Snapshot) -> Vec<u8> {
+    let mut world = World::default();
+    world.restore(snapshot);
+    world.to_bytes()
+}
+
+/// Where `new` has other bytes than `old`.
+fn patches(old: &[u8], new: &[u8]) -> Vec<Patch> {
+    let differs = |at: usize| old.get(at) != new.get(at);
+    let mut patches = Vec::new();
+    let mut at = 0;
+    while at < new.len() {
+        if !differs(at) {
+            at += 1;
+            continue;
+        }
+        let (start, mut end) = (at, at + 1);
+        while at < new.len() && at < end + GAP {
+            at += 1;
+            if at < new.len() && differs(at) {
+                end = at + 1;
+            }
+        }
+        patches.push(Patch { at: start as u64, bytes: new[start..end].to_vec() });
+    }
+    patches
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::body::BodyDef;
+    use crate::fx;
+
+    #[test]
+    fn patches_make_the_new_bytes() {
+        let apply = |old: &[u8], new: &[u8]| {
+            let mut bytes = old.to_vec();
+            bytes.resize(new.len(), 0);
+            for patch in patches(old, new) {
+                let at = usize::try_from(patch.at).expect("small");
+                bytes[at..at + patch.bytes.len()].copy_from_slice(&patch.bytes);
+            }
+            bytes
+        };
+        let long: Vec<u8> = (0..200).collect();
+        let mut changed = long.clone();
+        for at in [0, 1, 17, 40, 55, 120, 199] {
+            changed[at] ^= 0x80;
+        }
+        for (old, new) in
+            [(&long[..], &changed[..]), (&long[..50], &changed[..]), (&long[..], &changed[..60])]
+        {
+            assert_eq!(apply(old, new), new);
+        }
+        assert!(patches(&long, &long).is_empty());
+        assert_eq!(patches(&long, &changed).len(), 4);
+        assert_eq!(apply(&[], &long), long);
+    }
+
+    #[test]
+    fn a_start_comes_back_and_a_forged_one_is_refused() {
+        let before = World::default();
+        let mut changed = before.clone();
+        changed.spawn(&BodyDef::dynamic().position(fx!(1), fx!(2)), &[]).expect("valid");
+        let (old, new) = (before.to_bytes(), changed.to_bytes());
+        let noted =
+            TickPhases { digests: Vec::new(), start: patches(&old, &new), start_length: new.len() as u64 };
+        assert_eq!(noted.start(&before).map(|world| world.state_hash()), Some(changed.state_hash()));
+        let endless = TickPhases { start_length: u64::MAX, ..noted.clone() };
+        assert!(endless.start(&before).is_none());
+        let mut beyond = noted.clone();
+        beyond.start[0].at = u64::MAX;
+        assert!(beyond.start(&before).is_none());
+        let mut damaged = noted;
+        damaged.start[0].bytes[0] ^= 1;
+        assert!(damaged.start(&before).is_none());
+    }
+}

@@ -1,0 +1,51 @@
+//! [`Stage`]: in which part of a tick two courses part.
+
+use core::fmt;
+
+use crate::world::Phase;
+
+/// The first part of a tick after which two states that were equal before it are not.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Stage {
+    /// Before the world's step: what the rules have made of the inputs, or what came from outside.
+    BeforeStep,
+    /// In a phase of the world's step.
+    Phase(Phase),
+    /// After the world's step, or in what is not in the world.
+    AfterStep,
+}
+
+impl Stage {
+    /// In one word, as tools print it for other programs.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Stage::BeforeStep => "before_step",
+            Stage::Phase(Phase::BroadPhase) => "broad_phase",
+            Stage::Phase(Phase::NarrowPhase) => "narrow_phase",
+            Stage::Phase(Phase::Prepare) => "prepare",
+            Stage::Phase(Phase::Solve) => "solve",
+            Stage::Phase(Phase::Finalise) => "finalise",
+            Stage::Phase(Phase::Sleep) => "sleep",
+            Stage::Phase(Phase::Report) => "report",
+            Stage::AfterStep => "after_step",
+        }
+    }
+}
+
+impl fmt::Display for Stage {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Stage::BeforeStep => "before the step of the world",
+            Stage::Phase(Phase::BroadPhase) => "in the broad phase",
+            Stage::Phase(Phase::NarrowPhase) => "in the narrow phase",
+            Stage::Phase(Phase::Prepare) => "in the preparation of constraints",
+            Stage::Phase(Phase::Solve) => "in the solver",
+            Stage::Phase(Phase::Finalise) => "in the finalisation of poses",
+            Stage::Phase(Phase::Sleep) => "where islands fall asleep",
+            Stage::Phase(Phase::Report) => "in the report of events",
+            Stage::AfterStep => "after the step of the world",
+        })
+    }
+}

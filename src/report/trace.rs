@@ -1,0 +1,182 @@
+//! [`Trace`]: a game that is recorded with all that is needed to tell afterwards where its course left another one.
+
+use alloc::collections::VecDeque;
+use alloc::vec::Vec;
+use core::fmt;
+
+use super::desync::{Desync, DesyncReport};
+use super::phases::TickPhases;
+use crate::lockstep::{Game, History};
+use crate::replay::{CHECKPOINT_INTERVAL, Limits, RecordError, Recorder, Rerun, Step, Verdict};
+
+/// A game that is recorded with the state hash, the save and the phases of its last ticks. What becomes of it is a
+/// [`DesyncReport`] that names no checkpoint as different: [`bisect`](super::bisect) compares it with the running engine.
+///
+/// A replay has a hash every second, and so tells the second in which two engines part. The trace of that second, written
+/// by the engine that wrote the replay, tells the tick, the phase, the body and the field.
+///
+/// ```
+/// use lockstep2d::lockstep::{Sandbox, SandboxSetup};
+/// use lockstep2d::replay::Limits;
+/// use lockstep2d::report::{Evidence, Trace, bisect};
+///
+/// let mut trace = Trace::<Sandbox>::start(&SandboxSetup::default(), 120)?;
+/// for _ in 0..300 {
+///     trace.step(&[vec![]])?;
+/// }
+/// let file = trace.report().to_bytes();
+///
+/// let limits = Limits::default();
+/// let evidence = Evidence::read(file, &limits).expect("a report");
+/// let found = bisect::<Sandbox>(&evidence, None, &limits).expect("it can be played");
+/// assert!(found.is_equal());
+/// # Ok::<(), lockstep2d::replay::RecordError>(())
+/// ```
+pub struct Trace<G: Game> {
+    game: G,
+    recorder: Recorder<G>,
+    replay: Vec<u8>,
+    memory: Memory<G>,
+}
+
+impl<G: Game> Trace<G> {
+    /// Starts the game that `setup` describes; the last `ticks` ticks are going to be remembered.
+    ///
+    /// # Errors
+    /// [`RecordError`] when the setup starts no game, or none that a replay can hold.
+    pub fn start(setup: &G::Setup, ticks: u32) -> Result<Self, RecordError> {
+        let (recorder, game) = Recorder::start(setup, CHECKPOINT_INTERVAL)?;
+        let mut memory = Memory::new(ticks);
+        memory.push(0, &game, TickPhases::default());
+        Ok(Trace { game, recorder, replay: Vec::new(), memory })
+    }
+
+    /// The game as of now.
+    #[must_use]
+    pub fn game(&self) -> &G {
+        &self.game
+    }
+
+    /// How many ticks have been played.
+    #[must_use]
+    pub fn ticks(&self) -> u64 {
+        self.recorder.ticks()
+    }
+
+    /// Plays one tick with the inputs as a verifier will decode them.
+    ///
+    /// # Errors
+    /// [`RecordError`] when the inputs cannot be recorded; then the tick is not played.
+    pub fn step(&mut self, inputs: &[G::Input]) -> Result<(), RecordError> {
+        let inputs = self.recorder.record(inputs)?;
+        let phases = TickPhases::of(&mut self.game, inputs);
+        self.memory.push(self.recorder.ticks(), &self.game, phases);
+        if self.recorder.is_checkpoint_due() {
+            self.recorder.checkpoint(self.game.state_hash());
+            self.replay.extend(self.recorder.take_bytes());
+        }
+        Ok(())
+    }
+
+    /// What there is to tell, with a replay of all ticks so far.
+    #[must_use]
+    pub fn report(&self) -> DesyncReport {
+        let replay = [self.replay.as_slice(), &self.recorder.so_far(self.game.state_hash())].concat();
+        self.memory.report(&self.game, self.ticks(), replay)
+    }
+
+    /// Plays the inputs of a replay again, up to tick `until` at most, and tells how the running engine went through the
+    /// last `ticks` ticks, whatever the checkpoints of the file say.
+    ///
+    /// # Errors
+    /// [`TraceError`] when there is nothing to play or it costs too much.
+    pub fn of_replay(
+        file: &[u8],
+        limits: &Limits,
+        until: u64,
+        ticks: u32,
+    ) -> Result<DesyncReport, TraceError> {
+        let mut rerun = Rerun::<G>::open(file, limits)?;
+        let (mut recorder, _) = Recorder::<G>::start(&rerun.setup()?, CHECKPOINT_INTERVAL)?;
+        let mut memory = Memory::new(ticks);
+        let from = until.min(rerun.ticks()).saturating_sub(ticks.into());
+        if from == 0 {
+            memory.push(0, rerun.game(), TickPhases::default());
+        }
+        while rerun.tick() < until && rerun.read_inputs()? == Step::Ticked {
+            let tick = rerun.tick();
+            recorder.record(rerun.inputs())?;
+            if tick <= from {
+                rerun.play()?;
+            } else {
+                let phases = rerun.play_with(TickPhases::of)?;
+                memory.push(tick, rerun.game(), phases);
+            }
+            if recorder.is_checkpoint_due() {
+                recorder.checkpoint(rerun.game().state_hash());
+            }
+        }
+        let replay = recorder.so_far(rerun.game().state_hash());
+        Ok(memory.report(rerun.game(), rerun.tick(), replay))
+    }
+}
+
+/// The last ticks of a game.
+struct Memory<G: Game> {
+    history: History<G>,
+    phases: VecDeque<(u64, TickPhases)>,
+}
+
+impl<G: Game> Memory<G> {
+    fn new(ticks: u32) -> Self {
+        Memory { history: History::of_ticks(ticks.saturating_add(1)), phases: VecDeque::new() }
+    }
+
+    fn push(&mut self, tick: u64, game: &G, phases: TickPhases) {
+        self.history.push(tick, game.save(), game.state_hash());
+        if !phases.digests.is_empty() {
+            self.phases.push_back((tick, phases));
+        }
+        let oldest = self.history.oldest().unwrap_or(0);
+        while self.phases.front().is_some_and(|(tick, _)| *tick < oldest) {
+            self.phases.pop_front();
+        }
+    }
+
+    fn report(&self, game: &G, tick: u64, replay: Vec<u8>) -> DesyncReport {
+        let found = Desync { players: game.players(), tick, seats: Vec::new(), hashes: Vec::new() };
+        DesyncReport::new(&found, &self.history, replay).with_phases(self.phases.iter().cloned().collect())
+    }
+}
+
+/// Why a replay cannot be traced.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum TraceError {
+    /// It cannot be played.
+    Replay(Verdict),
+    /// It cannot be recorded anew.
+    Record(RecordError),
+}
+
+impl fmt::Display for TraceError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            TraceError::Replay(verdict) => verdict.fmt(f),
+            TraceError::Record(error) => error.fmt(f),
+        }
+    }
+}
+
+impl core::error::Error for TraceError {}
+
+impl From<Verdict> for TraceError {
+    fn from(verdict: Verdict) -> Self {
+        TraceError::Replay(verdict)
+    }
+}
+
+impl From<RecordError> for TraceError {
+    fn from(error: RecordError) -> Self {
+        TraceError::Record(error)
+    }
+}

@@ -1,0 +1,281 @@
+//! The tick, the stage, the body and the field of one bit that flips at random, for less than three verifications.
+
+use std::cell::Cell;
+
+use lockstep2d::body::{BodyDef, Geometry, ShapeDef};
+use lockstep2d::fx;
+use lockstep2d::hash::StateHash;
+use lockstep2d::lockstep::{Game, RulesId, Sandbox, SandboxSetup, SetupError};
+use lockstep2d::math::Rng;
+use lockstep2d::replay::{Limits, Recording, verify};
+use lockstep2d::report::{Comparison, Evidence, Stage, Trace, bisect};
+use lockstep2d::world::{Command, Motion, World};
+
+use crate::yard::{BODIES, Flip, PLAYERS, When, Yard, YardSave, inputs_at};
+
+thread_local! {
+    static FLIP: Cell<Option<Flip>> = const { Cell::new(None) };
+    static STEPS: Cell<u64> = const { Cell::new(0) };
+}
+
+/// A yard that counts how often it is stepped, and in which a bit may flip.
+struct Faulty<const FAULTY: bool>(Yard);
+
+impl<const FAULTY: bool> Faulty<FAULTY> {
+    fn flip(&mut self, now: When) {
+        let tick = self.0.world.tick() + u64::from(now == When::Before);
+        if let Some(flip) = FLIP.get().filter(|flip| FAULTY && flip.tick == tick && flip.when == now) {
+            flip.apply(&mut self.0);
+        }
+    }
+}
+
+impl<const FAULTY: bool> Game for Faulty<FAULTY> {
+    type Setup = u64;
+    type Input = u8;
+    type Save = YardSave;
+
+    const RULES: RulesId = Yard::RULES;
+
+    fn new(seed: &u64) -> Result<Self, SetupError> {
+        Yard::new(seed).map(Faulty)
+    }
+
+    fn players(&self) -> u32 {
+        PLAYERS
+    }
+
+    fn tick_rate(&self) -> u32 {
+        60
+    }
+
+    fn step(&mut self, inputs: &[u8]) {
+        STEPS.set(STEPS.get() + 1);
+        self.flip(When::Before);
+        self.0.step(inputs);
+        self.flip(When::After);
+    }
+
+    fn state_hash(&self) -> StateHash {
+        self.0.state_hash()
+    }
+
+    fn save(&self) -> YardSave {
+        self.0.save()
+    }
+
+    fn load(&mut self, save: &YardSave) {
+        self.0.load(save);
+    }
+
+    fn work(&self, inputs: &[u8]) -> u64 {
+        self.0.work(inputs)
+    }
+
+    fn world_mut(&mut self) -> Option<&mut World> {
+        self.0.world_mut()
+    }
+}
+
+type Sound = Faulty<false>;
+
+const TICKS: u64 = 200;
+
+fn inputs(tick: u64) -> Vec<u8> {
+    (0..u64::from(PLAYERS)).map(|player| inputs_at(tick, player)).collect()
+}
+
+/// A flip that is possible, and the path of its body.
+fn random_flip(rng: &mut Rng, seed: u64) -> (Flip, String) {
+    let mut below = |n: u64| u64::from(rng.next_u32()) % n;
+    loop {
+        let motion = Motion::ALL[below(6) as usize];
+        let flip = Flip {
+            tick: 1 + below(TICKS - 60),
+            when: if below(2) == 0 { When::Before } else { When::After },
+            body: below(BODIES as u64) as usize,
+            motion,
+            bit: below(motion.bits().into()) as u32,
+        };
+        let mut yard = Yard::new(&seed).unwrap();
+        (1..flip.tick).for_each(|tick| yard.step(&inputs(tick - 1)));
+        if flip.when == When::After {
+            yard.step(&inputs(flip.tick - 1));
+        }
+        let before = yard.state_hash();
+        let Some(path) = flip.apply(&mut yard) else { continue };
+        assert_ne!(yard.state_hash(), before);
+        // What a tick swallows, nobody can find.
+        if flip.when == When::Before {
+            yard.step(&inputs(flip.tick - 1));
+            let mut right = Yard::new(&seed).unwrap();
+            (0..flip.tick).for_each(|tick| right.step(&inputs(tick)));
+            if right.state_hash() == yard.state_hash() {
+                continue;
+            }
+        }
+        return (flip, path);
+    }
+}
+
+fn evidence(bytes: Vec<u8>) -> Evidence {
+    Evidence::read(bytes, &Limits::default()).unwrap()
+}
+
+/// Path and name of the field that is to blame.
+fn culprit(found: &Comparison) -> (String, String) {
+    if let Some(told) = &found.explanation {
+        return (told.path.clone(), told.differences[0].field().name().into());
+    }
+    let thing = found.things.first().expect("something differs");
+    (thing.path.clone(), thing.differences[0].field().name().into())
+}
+
+#[test]
+fn a_flipped_bit_is_found_in_its_trace_for_less_than_three_verifications() {
+    let mut rng = Rng::new(6);
+    let mut worst = 0;
+    for case in 0..100 {
+        let (flip, path) = random_flip(&mut rng, case);
+        FLIP.set(Some(flip));
+        let mut trace = Trace::<Faulty<true>>::start(&case, TICKS as u32).unwrap();
+        (0..TICKS).for_each(|tick| trace.step(&inputs(tick)).unwrap());
+        let trace = evidence(trace.report().to_bytes());
+        STEPS.set(0);
+        let found = bisect::<Sound>(&trace, None, &Limits::default()).unwrap();
+        worst = worst.max(STEPS.get());
+        let what = format!("{flip:?} of {path}");
+        assert_eq!(found.first_different, Some(flip.tick), "{what}");
+        assert_eq!(found.last_equal, Some(flip.tick - 1), "{what}");
+        let stage = if flip.when == When::Before { Stage::BeforeStep } else { Stage::AfterStep };
+        assert_eq!(found.stage, Some(stage), "{what}");
+        assert_eq!(culprit(&found), (path.clone(), flip.motion.name().into()), "{what}");
+    }
+    assert!(worst < 3 * TICKS, "{worst} ticks instead of {TICKS}");
+}
+
+#[test]
+fn a_replay_tells_the_second_and_the_trace_of_that_second_the_rest() {
+    let mut rng = Rng::new(7);
+    let (flip, path) = random_flip(&mut rng, 5);
+    FLIP.set(Some(flip));
+    let mut recording = Recording::<Faulty<true>>::start(&5, 60).unwrap();
+    (0..TICKS).for_each(|tick| recording.step(&inputs(tick)).unwrap());
+    let replay = recording.finish().unwrap();
+    let limits = Limits::default();
+    assert!(!verify::<Sound>(&replay, &limits).is_match());
+
+    let found = bisect::<Sound>(&evidence(replay.clone()), None, &limits).unwrap();
+    let (last, first) = (found.last_equal.unwrap(), found.first_different.unwrap());
+    assert!(last < flip.tick && flip.tick <= first && first == last + 60, "{found:?}");
+    assert!(found.notes.last().unwrap().contains("their trace"), "{found:?}");
+
+    // The faulty program plays its replay again.
+    let trace = Trace::<Faulty<true>>::of_replay(&replay, &limits, first, 60).unwrap();
+    assert_eq!((trace.tick(), trace.history().len()), (first, 61));
+    let found = bisect::<Sound>(&evidence(trace.to_bytes()), None, &limits).unwrap();
+    assert_eq!(found.first_different, Some(flip.tick), "{found:?}");
+    assert_eq!(culprit(&found), (path, flip.motion.name().into()), "{found:?}");
+    // A program without the fault finds nothing in its own trace of the same file.
+    let own = Trace::<Sound>::of_replay(&replay, &limits, u64::MAX, 60).unwrap();
+    assert!(bisect::<Sound>(&evidence(own.to_bytes()), None, &limits).unwrap().is_equal());
+}
+
+#[test]
+fn checkpoints_of_every_tick_tell_the_tick() {
+    let mut rng = Rng::new(8);
+    for case in 0..6 {
+        let (flip, path) = random_flip(&mut rng, case);
+        FLIP.set(Some(flip));
+        let mut recording = Recording::<Faulty<true>>::start(&case, 1).unwrap();
+        (0..TICKS).for_each(|tick| recording.step(&inputs(tick)).unwrap());
+        let replay = evidence(recording.finish().unwrap());
+        STEPS.set(0);
+        let found = bisect::<Sound>(&replay, None, &Limits::default()).unwrap();
+        assert!(STEPS.get() < 3 * TICKS);
+        assert_eq!(found.first_different, Some(flip.tick), "{found:?}");
+        // There are too many bits to try them all, but what is told is true.
+        let told = found.explanation.map(|told| told.path);
+        assert!(told.as_ref().is_none_or(|told| *told == path), "{told:?} instead of {path}");
+    }
+}
+
+fn sandbox(seed: u64) -> SandboxSetup {
+    let mut setup = SandboxSetup::default();
+    let ball = ShapeDef::new(Geometry::circle(fx!(0.4)).unwrap());
+    for place in 0..12 {
+        let x = lockstep2d::math::Fx::from_num((place + seed) % 12) * 2;
+        let body = BodyDef::dynamic().position(x, fx!(3));
+        setup.commands.push(Command::Spawn { body, shapes: vec![ball] });
+    }
+    setup
+}
+
+/// Two replays that differ in one command, by one bit of a speed.
+#[test]
+fn of_two_replays_the_tick_after_the_first_other_command_is_found() {
+    let mut rng = Rng::new(9);
+    for case in 0..40 {
+        let tick = u64::from(rng.next_u32()) % 200;
+        let body = rng.next_u32() as usize % 12;
+        let bit = rng.next_u32() % 20;
+        let record = |planted: bool| {
+            let mut recording = Recording::<Sandbox>::start(&sandbox(case), 60).unwrap();
+            for now in 0..260 {
+                let mut commands = Vec::new();
+                if now == tick && planted {
+                    let (id, body) = recording.game().world().bodies().nth(body).unwrap();
+                    let mut velocity = body.velocity();
+                    velocity.x = lockstep2d::math::Fx::from_bits(velocity.x.to_bits() ^ (1 << (bit + 11)));
+                    commands.push(Command::SetVelocity {
+                        body: id,
+                        velocity,
+                        angular_velocity: body.angular_velocity(),
+                    });
+                }
+                recording.step(&[commands]).unwrap();
+            }
+            evidence(recording.finish().unwrap())
+        };
+        let (a, b) = (record(false), record(true));
+        let found = bisect::<Sandbox>(&a, Some(&b), &Limits::default()).unwrap();
+        assert_eq!((found.last_equal, found.first_different), (Some(tick), Some(tick + 1)), "{found:?}");
+        assert_eq!(found.input.as_ref().map(|input| input.tick), Some(tick), "{found:?}");
+        assert_eq!(found.stage, Some(Stage::BeforeStep), "{found:?}");
+        let (thing, name) = culprit(&found);
+        assert!(thing.ends_with(&format!("body {body}v0")), "{thing} {name}");
+        let found = bisect::<Sandbox>(&a, Some(&a), &Limits::default()).unwrap();
+        assert!(found.is_equal() && found.last_equal == Some(260));
+    }
+}
+
+/// What is found by playing two games all the way and comparing every tick.
+#[test]
+fn replays_whose_states_meet_again_part_where_every_tick_says_so() {
+    let record = |kicks: &[(u64, i32)]| {
+        let mut recording = Recording::<Sandbox>::start(&sandbox(0), 60).unwrap();
+        for now in 0..120 {
+            let kick = kicks.iter().find(|(tick, _)| *tick == now);
+            // A random number is drawn and put back: other inputs, the same state. Or a refused command, which counts.
+            let commands = match kick {
+                Some((_, 0)) => {
+                    vec![Command::SetGravity { gravity: recording.game().world().config().gravity }]
+                }
+                Some(_) => {
+                    vec![Command::SetGravity { gravity: lockstep2d::math::Vec2::new(fx!(1), fx!(-9)) }]
+                }
+                None => Vec::new(),
+            };
+            recording.step(&[commands]).unwrap();
+        }
+        evidence(recording.finish().unwrap())
+    };
+    let found = |a: &[(u64, i32)], b: &[(u64, i32)]| {
+        bisect::<Sandbox>(&record(a), Some(&record(b)), &Limits::default()).unwrap()
+    };
+    let same = found(&[(20, 0)], &[(40, 0)]);
+    assert_eq!((same.first_different, same.last_equal), (None, Some(120)), "{same:?}");
+    assert!(same.input.is_some() && !same.is_equal());
+    let later = found(&[(20, 0), (77, 1)], &[(40, 0)]);
+    assert_eq!((later.first_different, later.last_equal), (Some(78), Some(77)), "{later:?}");
+}
