@@ -15,6 +15,8 @@ pub(crate) const BAD: Style = AnsiColor::Red.on_default().bold();
 pub(crate) struct Console<'a> {
     pub(crate) out: &'a mut dyn Write,
     pub(crate) err: &'a mut dyn Write,
+    /// Whether somebody watches the messages on a terminal as they come.
+    pub(crate) is_terminal: bool,
 }
 
 impl Console<'_> {
@@ -27,6 +29,11 @@ impl Console<'_> {
     pub(crate) fn note(&mut self, note: impl fmt::Display) {
         // When not even messages can be written, there is nowhere left to say so.
         let _ = writeln!(self.err, "{note}");
+    }
+
+    /// Writes a message on something that went wrong and changes no result.
+    pub(crate) fn warning(&mut self, warning: impl fmt::Display) {
+        self.note(format_args!("{DOUBTFUL}warning:{DOUBTFUL:#} {warning}"));
     }
 
     /// Writes a message on something that went wrong.

@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 
 use super::flaw::Flaw;
 use super::limits::{Limit, Limits};
-use super::playback::{Step, check_rules, scan, start};
+use super::playback::{Step, check_bodies, check_rules, scan, start};
 use super::reader::{Part, ReadError, Reader};
 use super::runs::{Run, Runs};
 use super::verdict::Verdict;
@@ -71,7 +71,8 @@ impl<'a, G: Game> Rerun<'a, G> {
         let ticks = TickInputs::open(file, limits)?;
         scan(ticks.reader.clone())?;
         check_rules::<G>(ticks.reader.header())?;
-        let game = start::<G>(ticks.reader.header())?;
+        let mut game = start::<G>(ticks.reader.header())?;
+        check_bodies(&mut game, limits)?;
         let limits = limits.clone();
         Ok(Rerun { game, limits, ticks, encoded: &[], inputs: Vec::new(), tick: 0, work: 0 })
     }
@@ -120,6 +121,7 @@ impl<'a, G: Game> Rerun<'a, G> {
         Limit::TotalWork.check(self.work, self.limits.total_work)?;
         self.game.step(&self.inputs);
         self.tick += 1;
+        check_bodies(&mut self.game, &self.limits)?;
         Ok(Step::Ticked)
     }
 }
