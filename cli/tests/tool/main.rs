@@ -12,6 +12,8 @@ mod export;
 mod hostile;
 mod record;
 mod verify;
+#[cfg(unix)]
+mod verify_any;
 
 use std::fs;
 use std::path::{Path, PathBuf};
