@@ -20,9 +20,9 @@ pub(crate) struct Console<'a> {
 }
 
 impl Console<'_> {
-    /// Writes a line of results.
+    /// Writes a line of results, in one go, so that nothing that a game prints gets into it.
     pub(crate) fn line(&mut self, line: impl fmt::Display) -> Result<(), CommandError> {
-        writeln!(self.out, "{line}").map_err(CommandError::Output)
+        self.out.write_all(format!("{line}\n").as_bytes()).map_err(CommandError::Output)
     }
 
     /// Writes a line that is no result, such as a summary beside machine-readable output.

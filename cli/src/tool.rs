@@ -71,8 +71,8 @@ impl<G: Game> Tool<G> {
     /// Does what the arguments of this process say, with colours where a terminal shows them.
     #[must_use]
     pub fn run(&self) -> ExitCode {
-        // The messages are not locked: a thread that panics writes there too.
-        let (mut out, mut err) = (anstream::stdout().lock(), anstream::stderr());
+        // Not locked: a game on another thread may print or panic, and would wait for ever.
+        let (mut out, mut err) = (anstream::stdout(), anstream::stderr());
         let is_terminal = std::io::stderr().is_terminal();
         let console = Console { out: &mut out, err: &mut err, is_terminal };
         self.run_on(std::env::args_os(), console).into()

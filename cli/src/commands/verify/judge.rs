@@ -17,7 +17,7 @@ const TICKS_BETWEEN: u64 = 64;
 pub(super) struct Shared {
     /// Nobody waits for results any more.
     pub(super) stop: AtomicBool,
-    /// Ticks that were played, roughly.
+    /// Ticks that were played, those of files at hand but for the last few.
     pub(super) ticks: AtomicU64,
 }
 
@@ -25,7 +25,9 @@ pub(super) struct Shared {
 pub(super) fn judge<G: Game>(bytes: &[u8], limits: &Limits, shared: &Shared) -> Option<Report> {
     let tick = Cell::new(0);
     let length = u64::try_from(bytes.len()).unwrap_or(u64::MAX);
-    match panics::catch(|| play::<G>(bytes, limits, shared, &tick)) {
+    let result = panics::catch(|| play::<G>(bytes, limits, shared, &tick));
+    shared.ticks.fetch_add(tick.get() % TICKS_BETWEEN, Ordering::Relaxed);
+    match result {
         Ok(report) => report,
         Err(panic) => Some(Report::of_panic(length, tick.get(), &panic)),
     }
@@ -48,7 +50,7 @@ fn play<G: Game>(bytes: &[u8], limits: &Limits, shared: &Shared, tick: &Cell<u64
             Err(verdict) => return Some(Report::new(length, &verdict, &[], None)),
         }
         tick.set(playback.tick());
-        if playback.tick() % TICKS_BETWEEN == 0 {
+        if tick.get() % TICKS_BETWEEN == 0 {
             shared.ticks.fetch_add(TICKS_BETWEEN, Ordering::Relaxed);
             if shared.stop.load(Ordering::Relaxed) {
                 return None;

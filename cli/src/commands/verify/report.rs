@@ -13,20 +13,12 @@ use super::panics::Panic;
 pub(super) struct Report {
     /// For people: the verdict's words, a colon, the rest.
     pub(super) text: String,
-    /// For programs.
-    pub(super) line: Line,
-}
-
-/// What a line of JSON has, but for what depends on where and when.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub(super) struct Line {
     pub(super) verdict: String,
     pub(super) ticks: u64,
     hash: Option<String>,
     /// Bytes of the file, as far as it was read: at most one more than allowed.
     bytes: u64,
-    /// What there is for this verdict only.
-    #[serde(flatten)]
+    /// What there is for this verdict only, by name.
     details: Map<String, Value>,
 }
 
@@ -50,14 +42,14 @@ impl Report {
             let claims = claims.iter().map(|(name, value)| format!("{name} {value}"));
             text += &format!("; {}", claims.collect::<Vec<_>>().join(", "));
         }
-        let line = Line {
+        Report {
+            text,
             verdict: verdict.name().into(),
             ticks: verdict.ticks(),
             hash: verdict.hash().map(|hash| hash.to_string()),
             bytes,
             details: details(verdict, claims, needs),
-        };
-        Report { text, line }
+        }
     }
 
     pub(super) fn of_panic(bytes: u64, ticks: u64, panic: &Panic) -> Self {
@@ -65,23 +57,22 @@ impl Report {
         let place = location.as_ref().map(|location| format!(", at {location}")).unwrap_or_default();
         let text = format!("{PANICKED}: the game, after {ticks} ticks{place}: {message}");
         let details = object(json!({ "why": message, "location": location }));
-        let line = Line { verdict: PANICKED.into(), ticks, hash: None, bytes, details };
-        Report { text, line }
+        Report { text, verdict: PANICKED.into(), ticks, hash: None, bytes, details }
     }
 
     pub(super) fn is_match(&self) -> bool {
-        self.line.verdict == "match"
+        self.verdict == "match"
     }
 
     /// Whether the file is not bad, as far as one can tell.
     pub(super) fn is_doubtful(&self) -> bool {
-        matches!(self.line.verdict.as_str(), "incomplete" | "unverifiable")
+        matches!(self.verdict.as_str(), "incomplete" | "unverifiable")
     }
 
     /// Whether another run must come to the same. A panic may have been the machine's fault, and the defect be mended
     /// without another version of the rules.
     pub(super) fn is_final(&self) -> bool {
-        self.line.verdict != PANICKED
+        self.verdict != PANICKED
     }
 
     /// One line of JSON.
@@ -89,11 +80,18 @@ impl Report {
         #[derive(Serialize)]
         struct Whole<'a> {
             file: String,
-            #[serde(flatten)]
-            line: &'a Line,
+            verdict: &'a str,
+            ticks: u64,
+            hash: Option<&'a str>,
+            bytes: u64,
             cached: bool,
+            #[serde(flatten)]
+            details: &'a Map<String, Value>,
         }
-        let line = Whole { file: file.display().to_string(), line: &self.line, cached };
+        let Report { text: _, verdict, ticks, hash, bytes, details } = self;
+        let (ticks, hash, bytes) = (*ticks, hash.as_deref(), *bytes);
+        let file = file.display().to_string();
+        let line = Whole { file, verdict, ticks, hash, bytes, cached, details };
         serde_json::to_string(&line).expect("strings and numbers have a JSON form")
     }
 }

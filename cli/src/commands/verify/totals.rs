@@ -26,12 +26,12 @@ impl Totals {
         if report.is_match() {
             self.matches += 1;
         } else {
-            *self.others.entry(report.line.verdict.clone()).or_default() += 1;
+            *self.others.entry(report.verdict.clone()).or_default() += 1;
         }
         if cached {
             self.cached += 1;
         } else {
-            self.ticks = self.ticks.saturating_add(report.line.ticks);
+            self.ticks = self.ticks.saturating_add(report.ticks);
         }
     }
 }
