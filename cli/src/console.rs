@@ -15,18 +15,25 @@ pub(crate) const BAD: Style = AnsiColor::Red.on_default().bold();
 pub(crate) struct Console<'a> {
     pub(crate) out: &'a mut dyn Write,
     pub(crate) err: &'a mut dyn Write,
+    /// Whether somebody watches the messages on a terminal as they come.
+    pub(crate) is_terminal: bool,
 }
 
 impl Console<'_> {
-    /// Writes a line of results.
+    /// Writes a line of results, in one go, so that nothing that a game prints gets into it.
     pub(crate) fn line(&mut self, line: impl fmt::Display) -> Result<(), CommandError> {
-        writeln!(self.out, "{line}").map_err(CommandError::Output)
+        self.out.write_all(format!("{line}\n").as_bytes()).map_err(CommandError::Output)
     }
 
     /// Writes a line that is no result, such as a summary beside machine-readable output.
     pub(crate) fn note(&mut self, note: impl fmt::Display) {
         // When not even messages can be written, there is nowhere left to say so.
         let _ = writeln!(self.err, "{note}");
+    }
+
+    /// Writes a message on something that went wrong and changes no result.
+    pub(crate) fn warning(&mut self, warning: impl fmt::Display) {
+        self.note(format_args!("{DOUBTFUL}warning:{DOUBTFUL:#} {warning}"));
     }
 
     /// Writes a message on something that went wrong.

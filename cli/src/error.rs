@@ -9,7 +9,7 @@ use lockstep2d::report::{CompareError, EvidenceError, TraceError};
 
 use crate::exit::Exit;
 
-use crate::files::Shown;
+use crate::files::{EXTENSION, Shown};
 
 /// Why a command had to stop.
 #[derive(Debug)]
@@ -18,6 +18,10 @@ pub(crate) enum CommandError {
     Output(io::Error),
     /// A file cannot be read.
     Read { path: PathBuf, error: io::Error },
+    /// A folder has no replays.
+    NothingToVerify { path: PathBuf },
+    /// There is only one standard input.
+    InputTwice,
     /// A file cannot be written.
     Write { path: PathBuf, error: io::Error },
     /// There is no such scene.
@@ -56,6 +60,10 @@ impl fmt::Display for CommandError {
         match self {
             CommandError::Output(error) => write!(f, "cannot write the output: {error}"),
             CommandError::Read { path, error } => write!(f, "cannot read {}: {error}", Shown(path)),
+            CommandError::NothingToVerify { path } => {
+                write!(f, "{}: nothing to verify, no *.{EXTENSION} here", Shown(path))
+            }
+            CommandError::InputTwice => write!(f, "the standard input can be read only once"),
             CommandError::Write { path, error } => write!(f, "cannot write {}: {error}", Shown(path)),
             CommandError::UnknownScene { name, known } => {
                 write!(f, "there is no scene {name:?}; there are {}", known.join(", "))

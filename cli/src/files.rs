@@ -1,48 +1,30 @@
-//! Finding and reading replay files, without trusting their size.
+//! Reading replay files, without trusting their size, and showing their names.
 
 use std::fmt;
-use std::fs::{self, File};
+use std::fs::File;
 use std::io::{self, Read};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// The extension of replay files in folders.
 pub(crate) const EXTENSION: &str = "replay";
 
-/// The files that a path stands for: itself, or the replays in the folder and all folders in it, sorted.
-///
-/// A file that is named is taken whatever its extension.
-pub(crate) fn find(path: &Path) -> io::Result<Vec<PathBuf>> {
-    let mut files = Vec::new();
-    if fs::metadata(path)?.is_dir() {
-        collect(path, &mut files)?;
-        files.sort();
-    } else {
-        files.push(path.to_path_buf());
-    }
-    Ok(files)
-}
-
-/// Links to folders are not followed: they may lead in circles. Neither is what is no regular file read: a pipe
-/// that is named like a replay would wait for ever.
-fn collect(folder: &Path, files: &mut Vec<PathBuf>) -> io::Result<()> {
-    for entry in fs::read_dir(folder)? {
-        let entry = entry?;
-        let path = entry.path();
-        if entry.file_type()?.is_dir() {
-            collect(&path, files)?;
-        } else if path.extension().is_some_and(|extension| extension == EXTENSION)
-            && fs::metadata(&path)?.is_file()
-        {
-            files.push(path);
-        }
-    }
-    Ok(())
-}
-
 /// The bytes of a file, but at most one more than `bytes_max`, which is enough to see that it is too large.
 pub(crate) fn read(path: &Path, bytes_max: u64) -> io::Result<Vec<u8>> {
+    let file = File::open(path)?;
+    let expected = file.metadata()?.len();
+    read_from(file, expected, bytes_max)
+}
+
+/// The bytes of a stream that may have `expected`, but at most one more than `bytes_max`.
+pub(crate) fn read_from(stream: impl Read, expected: u64, bytes_max: u64) -> io::Result<Vec<u8>> {
+    let end = bytes_max.saturating_add(1);
+    // The byte more is for finding the end, without which a growing list doubles.
+    let expected = expected.min(bytes_max).saturating_add(1);
     let mut bytes = Vec::new();
-    File::open(path)?.take(bytes_max.saturating_add(1)).read_to_end(&mut bytes)?;
+    if usize::try_from(expected).map_or(true, |expected| bytes.try_reserve_exact(expected).is_err()) {
+        return Err(io::ErrorKind::OutOfMemory.into());
+    }
+    stream.take(end).read_to_end(&mut bytes)?;
     Ok(bytes)
 }
 
@@ -51,7 +33,16 @@ pub(crate) struct Shown<'a>(pub(crate) &'a Path);
 
 impl fmt::Display for Shown<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for character in self.0.display().to_string().chars() {
+        OneLine(&self.0.display().to_string()).fmt(f)
+    }
+}
+
+/// Text from a stranger that stays on its line.
+pub(crate) struct OneLine<'a>(pub(crate) &'a str);
+
+impl fmt::Display for OneLine<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for character in self.0.chars() {
             if character.is_control() {
                 write!(f, "{}", character.escape_default())?;
             } else {
@@ -70,5 +61,15 @@ mod tests {
     fn a_line_break_in_a_name_is_shown_escaped() {
         let name = Path::new("a\n9 of 9 files match\u{1b}[2J ü.replay");
         assert_eq!(Shown(name).to_string(), "a\\n9 of 9 files match\\u{1b}[2J ü.replay");
+    }
+
+    #[test]
+    fn a_stream_is_read_no_further_than_its_limit() {
+        for (length, expected) in [(0, 0), (99, 99), (100, 100), (101, 101), (5000, 101)] {
+            for guess in [0, 10, length, u64::MAX] {
+                let bytes = read_from(io::repeat(7).take(length), guess, 100).unwrap();
+                assert_eq!(bytes.len(), expected, "of {length}, with {guess} expected");
+            }
+        }
     }
 }

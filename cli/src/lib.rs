@@ -36,6 +36,7 @@ mod files;
 mod sandbox;
 mod scenes;
 mod tool;
+mod walk;
 
 use std::process::ExitCode;
 

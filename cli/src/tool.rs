@@ -1,7 +1,7 @@
 //! [`Tool`]: the commands that a game has, and which of them was asked for.
 
 use std::ffi::OsString;
-use std::io::Write;
+use std::io::{IsTerminal, Write};
 use std::process::ExitCode;
 
 use clap::{ArgMatches, Command};
@@ -71,8 +71,11 @@ impl<G: Game> Tool<G> {
     /// Does what the arguments of this process say, with colours where a terminal shows them.
     #[must_use]
     pub fn run(&self) -> ExitCode {
-        let (mut out, mut err) = (anstream::stdout().lock(), anstream::stderr().lock());
-        self.run_with(std::env::args_os(), &mut out, &mut err).into()
+        // Not locked: a game on another thread may print or panic, and would wait for ever.
+        let (mut out, mut err) = (anstream::stdout(), anstream::stderr());
+        let is_terminal = std::io::stderr().is_terminal();
+        let console = Console { out: &mut out, err: &mut err, is_terminal };
+        self.run_on(std::env::args_os(), console).into()
     }
 
     /// Does what `arguments` say, the first of which is the program's name. Results go to `out`, messages to
@@ -86,7 +89,13 @@ impl<G: Game> Tool<G> {
     where
         A: Into<OsString> + Clone,
     {
-        let mut console = Console { out, err };
+        self.run_on(arguments, Console { out, err, is_terminal: false })
+    }
+
+    fn run_on<A>(&self, arguments: impl IntoIterator<Item = A>, mut console: Console<'_>) -> Exit
+    where
+        A: Into<OsString> + Clone,
+    {
         let matches = match self.command().try_get_matches_from(arguments) {
             Ok(matches) => matches,
             Err(usage) => return explain(&usage, &mut console),

@@ -18,6 +18,7 @@ pub fn limits() -> Limits {
         block_bytes: 32 << 10,
         block_ticks: 600,
         ticks: 600,
+        bodies: 1 << 20,
         tick_work: 40_000,
         total_work: 400_000,
     }

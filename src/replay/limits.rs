@@ -23,6 +23,10 @@ pub struct Limits {
     pub block_ticks: u32,
     /// Ticks of the whole game.
     pub ticks: u64,
+    /// Bodies in the game's world, at the start and after every tick, if it shows one
+    /// ([`Game::world_mut`](crate::lockstep::Game::world_mut)). Between two looks, `setup_bytes` and `tick_work` bound
+    /// them.
+    pub bodies: u64,
     /// Work units of one tick, as [`Game::work`](crate::lockstep::Game::work) counts them.
     pub tick_work: u64,
     /// Work units of the whole game.
@@ -39,6 +43,8 @@ impl Default for Limits {
             block_ticks: BLOCK_TICKS_MAX,
             // A day at 60 Hz.
             ticks: 24 * 60 * 60 * 60,
+            // As many as a world can hold.
+            bodies: 1 << 20,
             // A unit of the sandbox is some 25 ns: a quarter of a second, and eight minutes.
             tick_work: 10_000_000,
             total_work: 20_000_000_000,
@@ -61,6 +67,8 @@ pub enum Limit {
     BlockTicks,
     /// [`Limits::ticks`]
     Ticks,
+    /// [`Limits::bodies`]
+    Bodies,
     /// [`Limits::tick_work`]
     TickWork,
     /// [`Limits::total_work`]
@@ -78,6 +86,7 @@ impl Limit {
             Limit::BlockBytes => "block_bytes",
             Limit::BlockTicks => "block_ticks",
             Limit::Ticks => "ticks",
+            Limit::Bodies => "bodies",
             Limit::TickWork => "tick_work",
             Limit::TotalWork => "total_work",
         }
@@ -99,6 +108,7 @@ impl fmt::Display for Limit {
             Limit::BlockBytes => "bytes of a block",
             Limit::BlockTicks => "ticks between checkpoints",
             Limit::Ticks => "ticks",
+            Limit::Bodies => "bodies",
             Limit::TickWork => "work units in one tick",
             Limit::TotalWork => "work units",
         })

@@ -74,7 +74,8 @@ impl<'a, G: Game> Playback<'a, G> {
         let reader = Reader::open(file, limits)?;
         let ending = scan(reader.clone())?;
         check_rules::<G>(reader.header())?;
-        let game = start::<G>(reader.header())?;
+        let mut game = start::<G>(reader.header())?;
+        check_bodies(&mut game, limits)?;
         if checkpoint_hash(game.state_hash(), reader.inputs_digest()) != reader.start() {
             return Err(Verdict::Diverged { last_equal: None, first_different: 0 });
         }
@@ -116,6 +117,12 @@ impl<'a, G: Game> Playback<'a, G> {
     #[must_use]
     pub fn ticks(&self) -> u64 {
         self.ending.ticks
+    }
+
+    /// What the file states of its end, if it is complete. Only a [`Verdict::Match`] makes it true.
+    #[must_use]
+    pub fn trailer(&self) -> Option<&Trailer> {
+        self.ending.trailer.as_ref()
     }
 
     /// Plays one tick and, at the end of a block, compares the checkpoint.
@@ -171,6 +178,7 @@ impl<'a, G: Game> Playback<'a, G> {
         self.game.step(&self.inputs);
         self.tick += 1;
         self.run_left -= 1;
+        check_bodies(&mut self.game, &self.limits)?;
         self.compare_at_block_end()?;
         Ok(Step::Ticked)
     }
@@ -265,6 +273,12 @@ pub(super) fn start<G: Game>(header: &Header<'_>) -> Result<G, Verdict> {
         return Err(malformed(offset::TICK_RATE, flaw));
     }
     Ok(game)
+}
+
+/// A game that shows no world has no bodies to count.
+pub(super) fn check_bodies<G: Game>(game: &mut G, limits: &Limits) -> Result<(), ReadError> {
+    let bodies = game.world_mut().map_or(0, |world| world.body_count());
+    Limit::Bodies.check(u64::try_from(bodies).unwrap_or(u64::MAX), limits.bodies)
 }
 
 /// The first name, in order, whose value is not the same on both sides.

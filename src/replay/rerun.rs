@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 
 use super::flaw::Flaw;
 use super::limits::{Limit, Limits};
-use super::playback::{Step, check_rules, decode_setup, scan, start};
+use super::playback::{Step, check_bodies, check_rules, decode_setup, scan, start};
 use super::reader::{Part, ReadError, Reader};
 use super::runs::{Run, Runs};
 use super::verdict::Verdict;
@@ -73,7 +73,8 @@ impl<'a, G: Game> Rerun<'a, G> {
         let ticks = TickInputs::open(file, limits)?;
         let length = scan(ticks.reader.clone())?.ticks;
         check_rules::<G>(ticks.reader.header())?;
-        let game = start::<G>(ticks.reader.header())?;
+        let mut game = start::<G>(ticks.reader.header())?;
+        check_bodies(&mut game, limits)?;
         let limits = limits.clone();
         Ok(Rerun { game, limits, ticks, encoded: &[], inputs: Vec::new(), tick: 0, work: 0, length })
     }
@@ -162,7 +163,9 @@ impl<'a, G: Game> Rerun<'a, G> {
         Limit::TickWork.check(work, self.limits.tick_work)?;
         self.work = self.work.saturating_add(work);
         Limit::TotalWork.check(self.work, self.limits.total_work)?;
-        Ok(step(&mut self.game, &self.inputs))
+        let done = step(&mut self.game, &self.inputs);
+        check_bodies(&mut self.game, &self.limits)?;
+        Ok(done)
     }
 
     /// Takes over what another game with the same state and the same inputs has come to.

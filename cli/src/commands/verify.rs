@@ -1,33 +1,97 @@
 //! `verify`: plays replays again and prints a verdict for each.
 
 use std::fmt;
+use std::io;
+use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
+use std::thread;
 use std::time::Duration;
 
 use clap::{ArgMatches, Args, Command};
 use lockstep2d::lockstep::Game;
-use lockstep2d::replay::{Limits, Verdict};
+use lockstep2d::replay::Limits;
 
 use crate::console::{BAD, Console, DOUBTFUL, GOOD};
 use crate::error::CommandError;
 use crate::exit::Exit;
-use crate::files::{self, Shown};
+use crate::files::{self, OneLine, Shown};
 
-mod json;
+mod cache;
+mod judge;
+mod panics;
+mod pool;
+mod progress;
+mod report;
+mod shard;
+mod tasks;
+mod totals;
+
+use cache::Cache;
+use judge::Shared;
+use progress::Progress;
+use report::Report;
+use shard::Shard;
+use tasks::Tasks;
+use totals::Totals;
 
 pub(crate) const NAME: &str = "verify";
 
 /// Play replays again and print a verdict for each
 #[derive(Args, Debug)]
 #[command(after_help = "Exit code: 0 when all match, 1 when any does not, 2 for wrong usage, a path that \
-                        cannot be read, or nothing to verify.")]
+                        cannot be read, or nothing to verify. docs/VERIFYING.md has more.")]
 pub(crate) struct Arguments {
-    /// Replays, or folders with files named *.replay at any depth
+    /// Replays, folders with files named *.replay at any depth, or - for one from standard input
     #[arg(required = true, value_name = "PATH")]
     paths: Vec<PathBuf>,
     /// Print a line of JSON for each file
     #[arg(long)]
     json: bool,
+    /// Verify so many files at a time [default: one for each processor]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    jobs: Option<u16>,
+    /// Verify only the I-th of N parts of the files, from 1 to N
+    #[arg(long, value_name = "I/N", default_value_t = Shard::WHOLE, hide_default_value = true)]
+    shard: Shard,
+    /// Keep verdicts in this folder, and do not play again what it knows
+    #[arg(long, value_name = "DIR")]
+    cache: Option<PathBuf>,
+    #[command(flatten)]
+    limits: LimitArguments,
+}
+
+/// What a file may cost, where it differs from what the game's tools allow anyway.
+#[derive(Args, Debug)]
+#[command(next_help_heading = "Limits of one file")]
+struct LimitArguments {
+    /// Bytes of the file
+    #[arg(long, value_name = "N")]
+    max_bytes: Option<u64>,
+    /// Ticks
+    #[arg(long, value_name = "N")]
+    max_ticks: Option<u64>,
+    /// Bodies in its world at a time
+    #[arg(long, value_name = "N")]
+    max_bodies: Option<u64>,
+    /// Work units of one tick, as the game counts them
+    #[arg(long, value_name = "N")]
+    max_tick_work: Option<u64>,
+    /// Work units of all ticks
+    #[arg(long, value_name = "N")]
+    max_work: Option<u64>,
+}
+
+impl LimitArguments {
+    fn over(&self, limits: &Limits) -> Limits {
+        Limits {
+            file_bytes: self.max_bytes.unwrap_or(limits.file_bytes),
+            ticks: self.max_ticks.unwrap_or(limits.ticks),
+            bodies: self.max_bodies.unwrap_or(limits.bodies),
+            tick_work: self.max_tick_work.unwrap_or(limits.tick_work),
+            total_work: self.max_work.unwrap_or(limits.total_work),
+            ..limits.clone()
+        }
+    }
 }
 
 pub(crate) fn command() -> Command {
@@ -43,111 +107,179 @@ pub(crate) fn run<G: Game>(
     limits: &Limits,
     console: &mut Console<'_>,
 ) -> Result<Exit, CommandError> {
-    let mut totals = Totals::default();
-    let mut exit = Exit::Success;
-    for path in &arguments.paths {
-        match files::find(path) {
-            Err(error) => {
-                console.error(CommandError::Read { path: path.clone(), error });
-                exit = Exit::Trouble;
-            }
-            Ok(files) if files.is_empty() => {
-                let extension = files::EXTENSION;
-                console.error(format_args!("{}: nothing to verify, no *.{extension} here", Shown(path)));
-                exit = Exit::Trouble;
-            }
-            Ok(files) => {
-                for file in files {
-                    exit = exit.max(verify_file::<G>(&file, arguments, limits, &mut totals, console)?);
-                }
-            }
-        }
-    }
-    if arguments.json {
-        console.note(&totals);
-    } else if totals.files > 0 {
-        console.line(&totals)?;
-    }
-    Ok(exit)
-}
-
-fn verify_file<G: Game>(
-    file: &Path,
-    arguments: &Arguments,
-    limits: &Limits,
-    totals: &mut Totals,
-    console: &mut Console<'_>,
-) -> Result<Exit, CommandError> {
-    let bytes = match files::read(file, limits.file_bytes) {
-        Ok(bytes) => bytes,
-        Err(error) => {
-            console.error(CommandError::Read { path: file.to_path_buf(), error });
-            return Ok(Exit::Trouble);
-        }
+    let limits = arguments.limits.over(limits);
+    let open = |folder: &PathBuf| {
+        let unwritable = |error| CommandError::Write { path: folder.clone(), error };
+        Cache::open(folder, G::RULES, &limits).map_err(unwritable)
     };
-    let (verdict, elapsed) = timed(|| lockstep2d::replay::verify::<G>(&bytes, limits));
-    totals.add(&verdict, elapsed);
-    if arguments.json {
-        console.line(json::line(file, &verdict))?;
-    } else {
-        console.line(Line { file, verdict: &verdict })?;
-    }
-    Ok(if verdict.is_match() { Exit::Success } else { Exit::NoMatch })
+    let cache = arguments.cache.as_ref().map(open).transpose()?;
+    let verifier = Verifier { judge: judge::judge::<G>, cache, limits, shared: Shared::default() };
+    let jobs = arguments.jobs.map_or_else(processors, usize::from);
+    let tasks = Tasks::new(&arguments.paths, arguments.shard);
+    let mut display = Display::new(arguments.json, console, &verifier.shared);
+    pool::in_order(
+        jobs,
+        tasks,
+        |task| task.and_then(|path| verifier.verify(path)),
+        &verifier.shared.stop,
+        |result| display.show(result),
+    )?;
+    display.finish()
 }
 
-/// How long something took. The time is shown and never reaches a simulation.
+fn processors() -> usize {
+    thread::available_parallelism().map_or(1, NonZeroUsize::get)
+}
+
+/// What each thread does with a file.
+struct Verifier {
+    judge: fn(&[u8], &Limits, &Shared) -> Option<Report>,
+    limits: Limits,
+    cache: Option<Cache>,
+    shared: Shared,
+}
+
+/// A file and what it is worth.
+struct Verified {
+    path: PathBuf,
+    /// `None` if nobody waits for it any more.
+    report: Option<Report>,
+    cached: bool,
+    /// Why it could not be kept.
+    unkept: Option<io::Error>,
+}
+
+impl Verifier {
+    fn verify(&self, path: PathBuf) -> Result<Verified, CommandError> {
+        let bytes = match self.read(&path) {
+            Ok(bytes) => bytes,
+            Err(error) => return Err(CommandError::Read { path, error }),
+        };
+        let Some(cache) = &self.cache else {
+            let report = (self.judge)(&bytes, &self.limits, &self.shared);
+            return Ok(Verified { path, report, cached: false, unkept: None });
+        };
+        let key = cache.key(&bytes);
+        if let Some(report) = cache.get(&key) {
+            return Ok(Verified { path, report: Some(report), cached: true, unkept: None });
+        }
+        let report = (self.judge)(&bytes, &self.limits, &self.shared);
+        let to_keep = report.clone().filter(Report::is_final);
+        let unkept = to_keep.and_then(|report| cache.put(&key, report).err());
+        Ok(Verified { path, report, cached: false, unkept })
+    }
+
+    fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
+        if path.as_os_str() == tasks::INPUT {
+            files::read_from(io::stdin().lock(), 0, self.limits.file_bytes)
+        } else {
+            files::read(path, self.limits.file_bytes)
+        }
+    }
+}
+
+/// What is printed, line by line.
+struct Display<'a, 'c> {
+    json: bool,
+    console: &'a mut Console<'c>,
+    shared: &'a Shared,
+    progress: Progress,
+    clock: Clock,
+    totals: Totals,
+    exit: Exit,
+    is_cache_failing: bool,
+}
+
+impl<'a, 'c> Display<'a, 'c> {
+    fn new(json: bool, console: &'a mut Console<'c>, shared: &'a Shared) -> Self {
+        Display {
+            json,
+            progress: Progress::new(console.is_terminal && !json),
+            console,
+            shared,
+            clock: Clock::start(),
+            totals: Totals::default(),
+            exit: Exit::Success,
+            is_cache_failing: false,
+        }
+    }
+
+    /// Shows a result, or how far things are.
+    fn show(&mut self, result: Option<Result<Verified, CommandError>>) -> Result<(), CommandError> {
+        match result {
+            None => {}
+            Some(Err(error)) => {
+                self.progress.aside(|| self.console.error(error));
+                self.exit = Exit::Trouble;
+            }
+            Some(Ok(verified)) => self.line(&verified)?,
+        }
+        self.progress.update(&self.totals, self.shared, self.clock.elapsed());
+        Ok(())
+    }
+
+    fn line(&mut self, verified: &Verified) -> Result<(), CommandError> {
+        let Verified { path, report: Some(report), cached, unkept } = verified else {
+            return Ok(());
+        };
+        self.totals.add(report, *cached);
+        if !report.is_match() {
+            self.exit = self.exit.max(Exit::NoMatch);
+        }
+        if let Some(error) = unkept.as_ref().filter(|_| !self.is_cache_failing) {
+            // Once is enough: what fails for one file fails for the others.
+            self.is_cache_failing = true;
+            let warning = format!("the cache keeps nothing: {error}");
+            self.progress.aside(|| self.console.warning(warning));
+        }
+        self.progress.aside(|| match self.json {
+            true => self.console.line(report.json(path, *cached)),
+            false => self.console.line(Line { path, report }),
+        })
+    }
+
+    fn finish(mut self) -> Result<Exit, CommandError> {
+        self.progress.finish();
+        self.totals.elapsed = self.clock.elapsed();
+        if self.json {
+            self.console.note(&self.totals);
+        } else if self.totals.files > 0 {
+            self.console.line(&self.totals)?;
+        }
+        Ok(self.exit)
+    }
+}
+
+/// How long it has taken. The time is shown and never reaches a simulation.
 #[expect(clippy::disallowed_types, reason = "the time is shown to the user and never reaches a simulation")]
-fn timed<T>(work: impl FnOnce() -> T) -> (T, Duration) {
-    let start = std::time::Instant::now();
-    let result = work();
-    (result, start.elapsed())
+struct Clock(std::time::Instant);
+
+#[expect(clippy::disallowed_types, reason = "the time is shown to the user and never reaches a simulation")]
+impl Clock {
+    fn start() -> Self {
+        Clock(std::time::Instant::now())
+    }
+
+    fn elapsed(&self) -> Duration {
+        self.0.elapsed()
+    }
 }
 
 /// A file and its verdict, for people.
 struct Line<'a> {
-    file: &'a Path,
-    verdict: &'a Verdict,
+    path: &'a Path,
+    report: &'a Report,
 }
 
 impl fmt::Display for Line<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let style = match self.verdict {
-            Verdict::Match { .. } => GOOD,
-            Verdict::Incomplete { .. } | Verdict::Unverifiable { .. } => DOUBTFUL,
+        let style = match self.report {
+            report if report.is_match() => GOOD,
+            report if report.is_doubtful() => DOUBTFUL,
             _ => BAD,
         };
-        let text = self.verdict.to_string();
-        let (word, rest) = text.split_once(':').unwrap_or((&text, ""));
-        write!(f, "{}: {style}{word}{style:#}:{rest}", Shown(self.file))
-    }
-}
-
-/// What all files come to.
-#[derive(Debug, Default)]
-struct Totals {
-    files: u64,
-    matches: u64,
-    ticks: u64,
-    elapsed: Duration,
-}
-
-impl Totals {
-    fn add(&mut self, verdict: &Verdict, elapsed: Duration) {
-        self.files += 1;
-        self.matches += u64::from(verdict.is_match());
-        self.ticks += verdict.ticks();
-        self.elapsed += elapsed;
-    }
-
-    fn ticks_per_second(&self) -> u128 {
-        u128::from(self.ticks) * 1_000_000_000 / self.elapsed.as_nanos().max(1)
-    }
-}
-
-impl fmt::Display for Totals {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Totals { files, matches, ticks, elapsed } = self;
-        let rate = self.ticks_per_second();
-        write!(f, "{matches} of {files} files match; {ticks} ticks in {elapsed:.1?}, {rate} ticks per second")
+        let text = &self.report.text;
+        let (word, rest) = text.split_once(':').unwrap_or((text, ""));
+        write!(f, "{}: {style}{word}{style:#}:{}", Shown(self.path), OneLine(rest))
     }
 }

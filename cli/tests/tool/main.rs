@@ -4,15 +4,21 @@
 #[path = "../../../tests/replay/counter.rs"]
 mod counter;
 
+mod batch;
 mod binary;
+mod cache;
 mod diff;
 mod export;
+mod hostile;
 mod record;
 mod verify;
+#[cfg(unix)]
+mod verify_any;
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use lockstep2d::lockstep::Game;
 use lockstep2d::replay::Recording;
 use lockstep2d_cli::{Catalogue, Exit, Scene, SceneInfo, Tool};
 
@@ -33,6 +39,11 @@ fn run(arguments: &[&str]) -> Outcome {
 }
 
 fn run_tool(tool: &Tool<Counter>, arguments: &[&str]) -> Outcome {
+    run_tool_of(tool, arguments)
+}
+
+/// The same with the tools of any game.
+fn run_tool_of<G: Game>(tool: &Tool<G>, arguments: &[&str]) -> Outcome {
     let (mut out, mut err) = (anstream::StripStream::new(Vec::new()), anstream::StripStream::new(Vec::new()));
     let arguments = ["counter"].into_iter().chain(arguments.iter().copied());
     let exit = tool.run_with(arguments, &mut out, &mut err);

@@ -1,5 +1,7 @@
 //! `verify`: a line per file, a summary, the exit code.
 
+use std::fs;
+
 use lockstep2d::hash::StateHash;
 use lockstep2d::lockstep::{Game, RulesId, SetupError};
 use lockstep2d::replay::{Limits, Recorder, Recording};
@@ -67,10 +69,18 @@ fn every_verdict_has_its_json() {
         let (mut lines, exit) = verify_json(&[&file]);
         assert_eq!((lines.len(), exit), (1, expected_exit), "{name}");
         let mut line = lines.remove(0);
-        assert_eq!(line.as_object_mut().unwrap().remove("file"), Some(json!(file)));
+        let fields = line.as_object_mut().unwrap();
+        assert_eq!(fields.remove("file"), Some(json!(file)));
+        assert_eq!(fields.remove("bytes"), Some(json!(bytes.len())));
+        assert_eq!(fields.remove("cached"), Some(json!(false)));
         line
     };
-    let expected = json!({"verdict": "match", "ticks": 35, "hash": hash});
+    let sum = 5
+        + (0..35)
+            .map(|tick| inputs_at(tick).iter().map(|input| i64::from(input.add)).sum::<i64>())
+            .sum::<i64>();
+    let claims = json!({"half": sum / 2, "sum": sum});
+    let expected = json!({"verdict": "match", "ticks": 35, "hash": hash, "claims": claims});
     assert_eq!(json_of("match", &good, Exit::Success), expected);
 
     let mut cut = json_of("incomplete", &good[..good.len() - 1], Exit::NoMatch);
@@ -86,7 +96,8 @@ fn every_verdict_has_its_json() {
     let mut other_format = good.clone();
     other_format[8] = 2;
     let why = "made in version 2 of the file format, this program reads 1";
-    let expected = json!({"verdict": "unverifiable", "ticks": 0, "hash": null, "why": why});
+    let needs = json!({"format": 2, "semantics": null, "rules": null, "rules_version": null});
+    let expected = json!({"verdict": "unverifiable", "ticks": 0, "hash": null, "why": why, "needs": needs});
     assert_eq!(json_of("unverifiable", &other_format, Exit::NoMatch), expected);
 
     let mut huge_setup = good.clone();
@@ -112,7 +123,8 @@ fn a_file_that_diverges_says_where() {
     let file = folder.write("diverged", &recorder.finish(&game).unwrap());
     let (lines, exit) = verify_json(&[&file]);
     let expected = json!({
-        "file": file, "verdict": "diverged", "ticks": 4, "hash": null,
+        "file": file, "verdict": "diverged", "ticks": 4, "hash": null, "cached": false,
+        "bytes": fs::metadata(&file).unwrap().len(),
         "last_equal": 2, "first_different": 4,
     });
     assert_eq!((lines, exit), (vec![expected], Exit::NoMatch));
@@ -176,6 +188,8 @@ fn a_wrong_claim_says_which() {
     let expected = json!({
         "file": file, "verdict": "claim_mismatch", "ticks": 0, "hash": hash.to_string(),
         "claim": "sum", "claimed": 1_000_000, "actual": 5,
+        "claims": {"half": 2, "sum": 1_000_000}, "cached": false,
+        "bytes": fs::metadata(&file).unwrap().len(),
     });
     assert_eq!(verify_json(&[&file]), (vec![expected], Exit::NoMatch));
 }
@@ -189,7 +203,7 @@ fn one_bad_file_is_enough_and_hides_no_other() {
     folder.write("c.replay", &good);
     let outcome = run(&["verify", &folder.path("")]);
     assert_eq!(outcome.out.lines().count(), 4);
-    assert!(outcome.out.contains("2 of 3 files match"), "{}", outcome.out);
+    assert!(outcome.out.contains("2 of 3 files match (1 incomplete); 1"), "{}", outcome.out);
     assert_eq!(outcome.exit, Exit::NoMatch);
 }
 

@@ -1,0 +1,80 @@
+//! [`judge`]: plays one file again, whatever it does.
+
+use std::cell::Cell;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+
+use lockstep2d::lockstep::Game;
+use lockstep2d::replay::{FORMAT_VERSION, Limits, Mismatch, Playback, Reader, Step, Verdict};
+
+use super::panics;
+use super::report::{Needs, Report};
+
+/// Every how many ticks the others are looked at, and told of.
+const TICKS_BETWEEN: u64 = 64;
+
+/// What all threads know of each other.
+#[derive(Debug, Default)]
+pub(super) struct Shared {
+    /// Nobody waits for results any more.
+    pub(super) stop: AtomicBool,
+    /// Ticks that were played, those of files at hand but for the last few.
+    pub(super) ticks: AtomicU64,
+}
+
+/// What a file is worth; `None` if told to stop before that is known.
+pub(super) fn judge<G: Game>(bytes: &[u8], limits: &Limits, shared: &Shared) -> Option<Report> {
+    let tick = Cell::new(0);
+    let length = u64::try_from(bytes.len()).unwrap_or(u64::MAX);
+    let result = panics::catch(|| play::<G>(bytes, limits, shared, &tick));
+    shared.ticks.fetch_add(tick.get() % TICKS_BETWEEN, Ordering::Relaxed);
+    match result {
+        Ok(report) => report,
+        Err(panic) => Some(Report::of_panic(length, tick.get(), &panic)),
+    }
+}
+
+fn play<G: Game>(bytes: &[u8], limits: &Limits, shared: &Shared, tick: &Cell<u64>) -> Option<Report> {
+    let length = u64::try_from(bytes.len()).unwrap_or(u64::MAX);
+    let mut playback = match Playback::<G>::open(bytes, limits) {
+        Ok(playback) => playback,
+        Err(verdict) => {
+            let needs = needs(bytes, limits, &verdict);
+            return Some(Report::new(length, &verdict, &[], needs));
+        }
+    };
+    let claims = playback.trailer().map(|trailer| trailer.claims.clone()).unwrap_or_default();
+    loop {
+        match playback.step() {
+            Ok(Step::Ticked) => {}
+            Ok(Step::Ended) => return Some(Report::new(length, &playback.conclude(), &claims, None)),
+            Err(verdict) => return Some(Report::new(length, &verdict, &[], None)),
+        }
+        tick.set(playback.tick());
+        if tick.get() % TICKS_BETWEEN == 0 {
+            shared.ticks.fetch_add(TICKS_BETWEEN, Ordering::Relaxed);
+            if shared.stop.load(Ordering::Relaxed) {
+                return None;
+            }
+        }
+    }
+}
+
+/// What it takes to verify a file that this program cannot.
+fn needs(bytes: &[u8], limits: &Limits, verdict: &Verdict) -> Option<Needs> {
+    match verdict {
+        Verdict::Unverifiable { why: Mismatch::Format { file, .. } } => {
+            Some(Needs { format: *file, semantics: None, rules: None, rules_version: None })
+        }
+        Verdict::Unverifiable { .. } => {
+            let reader = Reader::open(bytes, limits).ok()?;
+            let header = reader.header();
+            Some(Needs {
+                format: FORMAT_VERSION,
+                semantics: Some(header.semantics),
+                rules: Some(header.rules_name.to_string()),
+                rules_version: Some(header.rules_version),
+            })
+        }
+        _ => None,
+    }
+}

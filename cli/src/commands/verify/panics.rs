@@ -1,0 +1,75 @@
+//! [`catch`]: lets a game panic on a stranger's file without taking the others with it.
+
+use std::any::Any;
+use std::cell::{Cell, RefCell};
+use std::panic::{self, AssertUnwindSafe, PanicHookInfo};
+use std::sync::Once;
+
+/// Most characters of a panic's message that are kept. It may quote the file.
+const MESSAGE_CHARS_MAX: usize = 400;
+
+/// A panic that was caught.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Panic {
+    pub(super) message: String,
+    /// File, line and column of the program, if the panic was this thread's own.
+    pub(super) location: Option<String>,
+}
+
+thread_local! {
+    /// Whether a panic of this thread will be caught.
+    static IS_CAUGHT: Cell<bool> = const { Cell::new(false) };
+    /// Where this thread's last panic was.
+    static LOCATION: RefCell<Option<String>> = const { RefCell::new(None) };
+}
+
+/// Does `work`, or says how it panicked; nothing is printed then. What it has changed must not be used any more.
+pub(super) fn catch<T>(work: impl FnOnce() -> T) -> Result<T, Panic> {
+    listen();
+    IS_CAUGHT.set(true);
+    let result = panic::catch_unwind(AssertUnwindSafe(work));
+    IS_CAUGHT.set(false);
+    result.map_err(|payload| Panic { message: message(payload.as_ref()), location: LOCATION.take() })
+}
+
+/// Notes where caught panics are, and leaves all others to whoever has listened so far.
+fn listen() {
+    static LISTENING: Once = Once::new();
+    LISTENING.call_once(|| {
+        let others = panic::take_hook();
+        panic::set_hook(Box::new(move |info: &PanicHookInfo<'_>| {
+            if IS_CAUGHT.get() {
+                LOCATION.set(info.location().map(ToString::to_string));
+            } else {
+                others(info);
+            }
+        }));
+    });
+}
+
+fn message(payload: &(dyn Any + Send)) -> String {
+    let message = match (payload.downcast_ref::<&str>(), payload.downcast_ref::<String>()) {
+        (Some(message), _) => message,
+        (_, Some(message)) => message.as_str(),
+        _ => "without a message",
+    };
+    message.chars().take(MESSAGE_CHARS_MAX).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn panics_are_told_apart_and_work_goes_on() {
+        assert_eq!(catch(|| 7), Ok(7));
+        let fixed = catch(|| panic!("fixed")).unwrap_err();
+        assert_eq!(fixed.message, "fixed");
+        assert!(fixed.location.unwrap().contains("panics.rs:"));
+        let written = catch(|| panic!("{}", "x".repeat(1000))).unwrap_err();
+        assert_eq!(written.message, "x".repeat(MESSAGE_CHARS_MAX));
+        let other = catch(|| panic::resume_unwind(Box::new(7))).unwrap_err();
+        assert_eq!(other, Panic { message: "without a message".into(), location: None });
+        assert_eq!(catch(|| 8), Ok(8));
+    }
+}

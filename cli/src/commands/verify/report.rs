@@ -1,0 +1,129 @@
+//! [`Report`]: what is known of a file's bytes, as it is printed and as the cache keeps it.
+
+use std::path::Path;
+
+use lockstep2d::replay::{ClaimDifference, Verdict};
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value, json};
+
+use super::panics::Panic;
+
+/// What a file's bytes are worth: a function of them, the limits and the program.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) struct Report {
+    /// For people: the verdict's words, a colon, the rest.
+    pub(super) text: String,
+    pub(super) verdict: String,
+    pub(super) ticks: u64,
+    hash: Option<String>,
+    /// Bytes of the file, as far as it was read: at most one more than allowed.
+    bytes: u64,
+    /// What there is for this verdict only, by name.
+    details: Map<String, Value>,
+}
+
+/// What it takes to verify a file. Another version of the format hides the rest.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub(super) struct Needs {
+    pub(super) format: u32,
+    pub(super) semantics: Option<u32>,
+    pub(super) rules: Option<String>,
+    pub(super) rules_version: Option<u32>,
+}
+
+/// The verdict on a file that made the game panic. It is not the library's: there a panic goes on to the caller.
+const PANICKED: &str = "panicked";
+
+impl Report {
+    /// `claims` are those of the trailer, `needs` what an unverifiable file asks for.
+    pub(super) fn new(bytes: u64, verdict: &Verdict, claims: &[(String, i64)], needs: Option<Needs>) -> Self {
+        let mut text = verdict.to_string();
+        if verdict.is_match() && !claims.is_empty() {
+            let claims = claims.iter().map(|(name, value)| format!("{name} {value}"));
+            text += &format!("; {}", claims.collect::<Vec<_>>().join(", "));
+        }
+        Report {
+            text,
+            verdict: verdict.name().into(),
+            ticks: verdict.ticks(),
+            hash: verdict.hash().map(|hash| hash.to_string()),
+            bytes,
+            details: details(verdict, claims, needs),
+        }
+    }
+
+    pub(super) fn of_panic(bytes: u64, ticks: u64, panic: &Panic) -> Self {
+        let Panic { message, location } = panic;
+        let place = location.as_ref().map(|location| format!(", at {location}")).unwrap_or_default();
+        let text = format!("{PANICKED}: the game, after {ticks} ticks{place}: {message}");
+        let details = object(json!({ "why": message, "location": location }));
+        Report { text, verdict: PANICKED.into(), ticks, hash: None, bytes, details }
+    }
+
+    pub(super) fn is_match(&self) -> bool {
+        self.verdict == "match"
+    }
+
+    /// Whether the file is not bad, as far as one can tell.
+    pub(super) fn is_doubtful(&self) -> bool {
+        matches!(self.verdict.as_str(), "incomplete" | "unverifiable")
+    }
+
+    /// Whether another run must come to the same. A panic may have been the machine's fault, and the defect be mended
+    /// without another version of the rules.
+    pub(super) fn is_final(&self) -> bool {
+        self.verdict != PANICKED
+    }
+
+    /// One line of JSON.
+    pub(super) fn json(&self, file: &Path, cached: bool) -> String {
+        #[derive(Serialize)]
+        struct Whole<'a> {
+            file: String,
+            verdict: &'a str,
+            ticks: u64,
+            hash: Option<&'a str>,
+            bytes: u64,
+            cached: bool,
+            #[serde(flatten)]
+            details: &'a Map<String, Value>,
+        }
+        let Report { text: _, verdict, ticks, hash, bytes, details } = self;
+        let (ticks, hash, bytes) = (*ticks, hash.as_deref(), *bytes);
+        let file = file.display().to_string();
+        let line = Whole { file, verdict, ticks, hash, bytes, cached, details };
+        serde_json::to_string(&line).expect("strings and numbers have a JSON form")
+    }
+}
+
+fn details(verdict: &Verdict, claims: &[(String, i64)], needs: Option<Needs>) -> Map<String, Value> {
+    let stated = || claims.iter().map(|(name, value)| (name.clone(), json!(value))).collect::<Map<_, _>>();
+    object(match verdict {
+        Verdict::Match { .. } => json!({ "claims": stated() }),
+        Verdict::Incomplete { .. } => json!({}),
+        Verdict::ClaimMismatch { difference: ClaimDifference::FinalHash { claimed, actual }, .. } => json!({
+            "claim": "final_hash",
+            "claimed": claimed.to_string(),
+            "actual": actual.to_string(),
+            "claims": stated(),
+        }),
+        Verdict::ClaimMismatch { difference: ClaimDifference::Value { name, claimed, actual }, .. } => {
+            json!({ "claim": name, "claimed": claimed, "actual": actual, "claims": stated() })
+        }
+        Verdict::Diverged { last_equal, first_different } => {
+            json!({ "last_equal": last_equal, "first_different": first_different })
+        }
+        Verdict::Malformed { offset, flaw } => json!({ "offset": offset, "why": flaw.to_string() }),
+        Verdict::LimitExceeded { limit, value, max } => {
+            json!({ "limit": limit.name(), "value": value, "max": max })
+        }
+        Verdict::Unverifiable { why } => json!({ "why": why.to_string(), "needs": needs }),
+    })
+}
+
+fn object(value: Value) -> Map<String, Value> {
+    match value {
+        Value::Object(map) => map,
+        _ => Map::new(),
+    }
+}

@@ -1,0 +1,57 @@
+//! [`Totals`]: what all files come to.
+
+use std::collections::BTreeMap;
+use std::fmt;
+use std::time::Duration;
+
+use super::report::Report;
+
+/// What all files come to.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Totals {
+    pub(super) files: u64,
+    pub(super) matches: u64,
+    /// Files that do not match, by verdict.
+    others: BTreeMap<String, u64>,
+    /// Files that were not played, since an earlier run has.
+    cached: u64,
+    /// Ticks that were played.
+    ticks: u64,
+    pub(super) elapsed: Duration,
+}
+
+impl Totals {
+    pub(super) fn add(&mut self, report: &Report, cached: bool) {
+        self.files += 1;
+        if report.is_match() {
+            self.matches += 1;
+        } else {
+            *self.others.entry(report.verdict.clone()).or_default() += 1;
+        }
+        if cached {
+            self.cached += 1;
+        } else {
+            self.ticks = self.ticks.saturating_add(report.ticks);
+        }
+    }
+}
+
+/// How many ticks a second these are.
+pub(super) fn rate(ticks: u64, elapsed: Duration) -> u128 {
+    u128::from(ticks) * 1_000_000_000 / elapsed.as_nanos().max(1)
+}
+
+impl fmt::Display for Totals {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Totals { files, matches, others, cached, ticks, elapsed } = self;
+        write!(f, "{matches} of {files} files match")?;
+        if !others.is_empty() {
+            let others = others.iter().map(|(verdict, count)| format!("{count} {verdict}"));
+            write!(f, " ({})", others.collect::<Vec<_>>().join(", "))?;
+        }
+        if *cached > 0 {
+            write!(f, "; {cached} known from the cache")?;
+        }
+        write!(f, "; {ticks} ticks in {elapsed:.1?}, {} ticks per second", rate(*ticks, *elapsed))
+    }
+}

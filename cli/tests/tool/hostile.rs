@@ -1,0 +1,209 @@
+//! `verify` and files that ask for too much, or for another program, or make the game panic.
+
+use lockstep2d::body::{BodyDef, Polygon, ShapeDef};
+use lockstep2d::fx;
+use lockstep2d::lockstep::{Game, RulesId, Sandbox, SandboxSetup};
+use lockstep2d::replay::Recording;
+use lockstep2d::world::Command;
+use lockstep2d_cli::{Exit, Tool};
+use serde_json::{Value, json};
+
+use crate::batch::{fuse, run_bomb};
+use crate::counter::{add, setup};
+use crate::{Counter, Folder, replay, run, run_tool_of};
+
+fn line(out: &str) -> Value {
+    serde_json::from_str(out.lines().next().unwrap()).unwrap()
+}
+
+#[test]
+fn every_limit_has_its_flag() {
+    let folder = Folder::new("flags");
+    // 20 ticks of work 1 + 1 + 1, all told 60.
+    let mut recording = Recording::<Counter>::start(&setup(), 10).unwrap();
+    for _ in 0..20 {
+        recording.step(&add(1, -1)).unwrap();
+    }
+    let bytes = recording.finish().unwrap();
+    let file = folder.write("good.replay", &bytes);
+    let length = bytes.len() as u64;
+    for (flag, limit, value) in [
+        ("--max-bytes", "file_bytes", length),
+        ("--max-ticks", "ticks", 20),
+        ("--max-tick-work", "tick_work", 3),
+        ("--max-work", "total_work", 60),
+    ] {
+        let enough = run(&["verify", &file, flag, &value.to_string()]);
+        assert_eq!(enough.exit, Exit::Success, "{flag}: {}", enough.out);
+        let outcome = run(&["verify", "--json", &file, flag, &(value - 1).to_string()]);
+        let line = line(&outcome.out);
+        let is =
+            (line["verdict"].as_str(), line["limit"].as_str(), line["max"].as_u64(), line["value"].as_u64());
+        assert_eq!(is, (Some("limit_exceeded"), Some(limit), Some(value - 1), Some(value)), "{flag}");
+        assert_eq!(outcome.exit, Exit::NoMatch);
+        for wrong in ["-1", "1.5", "much", ""] {
+            assert_eq!(run(&["verify", &file, flag, wrong]).exit, Exit::Trouble, "{flag} {wrong}");
+        }
+    }
+}
+
+/// A sandbox that starts with three bodies, has five after four ticks, then four.
+fn crowd() -> Vec<u8> {
+    let ball = || Command::Spawn {
+        body: BodyDef::dynamic(),
+        shapes: vec![ShapeDef::new(Polygon::square(fx!(0.5)).unwrap())],
+    };
+    let setup = SandboxSetup { commands: vec![ball(), ball(), ball()], ..SandboxSetup::default() };
+    let mut recording = Recording::<Sandbox>::start(&setup, 3).unwrap();
+    for tick in 0..10 {
+        let last = recording.game().world().bodies().last().unwrap().0;
+        let commands = match tick {
+            3 => vec![ball(), ball()],
+            4 => vec![Command::Despawn { body: last }],
+            _ => Vec::new(),
+        };
+        recording.step(&[commands]).unwrap();
+    }
+    recording.finish().unwrap()
+}
+
+#[test]
+fn bodies_are_counted_at_the_start_and_after_every_tick() {
+    let folder = Folder::new("bodies");
+    let file = folder.write("crowd.replay", &crowd());
+    let tool = Tool::<Sandbox>::new();
+    let limited = |bodies: &str| run_tool_of(&tool, &["verify", "--json", "--max-bodies", bodies, &file]);
+    for (bodies, value) in [("5", None), ("4", Some(5)), ("3", Some(5)), ("2", Some(3)), ("0", Some(3))] {
+        let line = line(&limited(bodies).out);
+        let is = (line["limit"].as_str(), line["value"].as_u64());
+        assert_eq!(is, (value.map(|_| "bodies"), value), "{bodies}: {line}");
+    }
+    let text = run_tool_of(&tool, &["verify", "--max-bodies", "4", &file]).out;
+    assert!(text.contains("limit exceeded: 5 bodies, at most 4 are allowed"), "{text}");
+    // A game that shows no world has none.
+    let other = folder.write("counter.replay", &replay(3));
+    assert_eq!(run(&["verify", "--max-bodies", "0", &other]).exit, Exit::Success);
+}
+
+#[test]
+fn a_panic_is_said_and_hides_no_other() {
+    let folder = Folder::new("panic");
+    folder.write("a.replay", &replay(3));
+    let file = folder.write("b.replay", &fuse(12));
+    folder.write("c.replay", &replay(3));
+    let outcome = run_bomb(&["verify", "--json", "--jobs", "2", &folder.path("")]);
+    assert_eq!((outcome.out.lines().count(), outcome.exit), (3, Exit::NoMatch));
+    assert!(outcome.err.starts_with("2 of 3 files match (1 panicked); "), "{}", outcome.err);
+    let mut line: Value = serde_json::from_str(outcome.out.lines().nth(1).unwrap()).unwrap();
+    let place = line["location"].take();
+    assert!(place.as_str().unwrap().contains("batch.rs:"), "{place}");
+    let expected = json!({
+        "file": file, "verdict": "panicked", "ticks": 12, "hash": null, "cached": false,
+        "bytes": fuse(12).len(), "why": "somebody\nadded 13", "location": null,
+    });
+    assert_eq!(line, expected);
+
+    let outcome = run_bomb(&["verify", &file]);
+    assert_eq!(outcome.out.lines().count(), 2, "the message stays on its line: {}", outcome.out);
+    assert!(outcome.out.contains("panicked: the game, after 12 ticks, at "), "{}", outcome.out);
+    assert!(outcome.out.contains("somebody\\nadded 13"), "{}", outcome.out);
+}
+
+#[test]
+fn a_setup_may_panic_as_well() {
+    let folder = Folder::new("panic-setup");
+    let start = crate::counter::Setup { start: 13, ..setup() };
+    let bytes = Recording::<Counter>::start(&start, 10).unwrap().finish().unwrap();
+    let outcome = run_bomb(&["verify", "--json", &folder.write("a.replay", &bytes)]);
+    let line = line(&outcome.out);
+    assert_eq!((line["verdict"].as_str(), line["ticks"].as_u64()), (Some("panicked"), Some(0)));
+}
+
+/// The counter with other rules.
+macro_rules! other_rules {
+    ($name:ident, $rules:expr) => {
+        struct $name(Counter);
+
+        impl Game for $name {
+            type Setup = crate::counter::Setup;
+            type Input = crate::counter::Input;
+            type Save = Counter;
+            const RULES: RulesId = $rules;
+
+            fn new(setup: &Self::Setup) -> Result<Self, lockstep2d::lockstep::SetupError> {
+                Counter::new(setup).map($name)
+            }
+            fn players(&self) -> u32 {
+                self.0.players()
+            }
+            fn tick_rate(&self) -> u32 {
+                self.0.tick_rate()
+            }
+            fn step(&mut self, inputs: &[Self::Input]) {
+                self.0.step(inputs);
+            }
+            fn state_hash(&self) -> lockstep2d::hash::StateHash {
+                self.0.state_hash()
+            }
+            fn save(&self) -> Counter {
+                self.0.save()
+            }
+            fn load(&mut self, save: &Counter) {
+                self.0.load(save);
+            }
+            fn work(&self, inputs: &[Self::Input]) -> u64 {
+                self.0.work(inputs)
+            }
+        }
+    };
+}
+
+other_rules!(Later, RulesId { name: "counter", version: 4 });
+other_rules!(Renamed, RulesId { name: "adder", version: 3 });
+
+#[test]
+fn what_cannot_be_verified_says_what_it_needs() {
+    let folder = Folder::new("needs");
+    let later = Recording::<Later>::start(&setup(), 10).unwrap().finish().unwrap();
+    let renamed = Recording::<Renamed>::start(&setup(), 10).unwrap().finish().unwrap();
+    // Semantics 2, with the checksum of the header repaired: the checksum is that of the bytes before it.
+    let mut older = Recording::<Counter>::start(&setup(), 10).unwrap().take_bytes();
+    let end = older.len() - 8;
+    older[12] = 2;
+    let checksum = lockstep2d::hash::StateHash::of_bytes(&older[..end]).0.to_le_bytes();
+    older[end..].copy_from_slice(&checksum[..8]);
+    for (bytes, semantics, name, version, why) in [
+        (
+            later,
+            3,
+            "counter",
+            4,
+            "made with the rules \"counter\" version 4, this program has \"counter\" version 3",
+        ),
+        (
+            renamed,
+            3,
+            "adder",
+            3,
+            "made with the rules \"adder\" version 3, this program has \"counter\" version 3",
+        ),
+        (older, 2, "counter", 3, "made with engine semantics 2, this program has 3"),
+    ] {
+        let file = folder.write("a.replay", &bytes);
+        let outcome = run(&["verify", "--json", &file]);
+        let line = line(&outcome.out);
+        let needs = json!({"format": 1, "semantics": semantics, "rules": name, "rules_version": version});
+        assert_eq!((&line["needs"], line["why"].as_str()), (&needs, Some(why)));
+        assert_eq!(outcome.exit, Exit::NoMatch);
+        assert!(run(&["verify", &file]).out.contains(why));
+    }
+}
+
+#[test]
+fn declared_results_are_shown() {
+    let folder = Folder::new("declared");
+    let file = folder.write("good.replay", &replay(0));
+    let outcome = run(&["verify", &file]);
+    let line = outcome.out.lines().next().unwrap();
+    assert!(line.ends_with("; half 2, sum 5"), "{line}");
+}
