@@ -5,6 +5,8 @@ use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
+use crate::error::CommandError;
+
 /// The extension of replay files in folders.
 pub(crate) const EXTENSION: &str = "replay";
 
@@ -44,6 +46,16 @@ pub(crate) fn read(path: &Path, bytes_max: u64) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     File::open(path)?.take(bytes_max.saturating_add(1)).read_to_end(&mut bytes)?;
     Ok(bytes)
+}
+
+/// The bytes of a file that a command cannot do without; see [`read`].
+pub(crate) fn load(path: &Path, bytes_max: u64) -> Result<Vec<u8>, CommandError> {
+    read(path, bytes_max).map_err(|error| CommandError::Read { path: path.to_path_buf(), error })
+}
+
+/// Writes a file.
+pub(crate) fn save(path: &Path, bytes: &[u8]) -> Result<(), CommandError> {
+    fs::write(path, bytes).map_err(|error| CommandError::Write { path: path.to_path_buf(), error })
 }
 
 /// A path for a line of text: a name with a line break in it must not pass for a line of its own.
