@@ -3,10 +3,10 @@
 use std::path::PathBuf;
 
 use clap::{ArgMatches, Args, Command};
+use lockstep2d::hash::StateHash;
 use lockstep2d::lockstep::Game;
 use lockstep2d::replay::{Limits, Playback, Step};
 use lockstep2d::world::World;
-use serde_json::{Map, json};
 
 use crate::console::Console;
 use crate::counts::Counts;
@@ -59,7 +59,7 @@ pub(crate) fn run<G: Game>(
         let mut figures = vec![("work", playback.work() - work_before)];
         figures.extend(playback.world().into_iter().flat_map(world_figures));
         if arguments.json {
-            console.line(line(playback.tick(), &playback.game().state_hash().to_string(), &figures))?;
+            console.line(line(playback.tick(), playback.game().state_hash(), &figures))?;
         }
         summary.add(playback.tick(), &figures);
     };
@@ -94,12 +94,11 @@ fn world_figures(world: &World) -> [(&'static str, u64); 13] {
     ]
 }
 
-fn line(tick: u64, hash: &str, figures: &[(&str, u64)]) -> String {
-    let mut line = Map::new();
-    line.insert("tick".into(), tick.into());
-    line.insert("hash".into(), hash.into());
-    line.extend(figures.iter().map(|(name, value)| (name.to_string(), json!(value))));
-    serde_json::Value::Object(line).to_string()
+/// A line of JSON, in the order of the table. The names are ours and need no escapes.
+fn line(tick: u64, hash: StateHash, figures: &[(&str, u64)]) -> String {
+    let mut line = format!("{{\"tick\":{tick},\"hash\":\"{hash}\"");
+    line.extend(figures.iter().map(|(name, value)| format!(",\"{name}\":{value}")));
+    line + "}"
 }
 
 /// All ticks together.

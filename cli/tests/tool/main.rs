@@ -6,13 +6,20 @@ mod counter;
 
 mod binary;
 mod diff;
+mod docs;
 mod export;
+mod fork;
+mod inspect;
 mod record;
+mod seek;
+mod stats;
+mod trim;
 mod verify;
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use lockstep2d::lockstep::{Game, Sandbox};
 use lockstep2d::replay::Recording;
 use lockstep2d_cli::{Catalogue, Exit, Scene, SceneInfo, Tool};
 
@@ -32,7 +39,12 @@ fn run(arguments: &[&str]) -> Outcome {
     run_tool(&tool, arguments)
 }
 
-fn run_tool(tool: &Tool<Counter>, arguments: &[&str]) -> Outcome {
+/// Runs the tools of the sandbox, which draws nothing here.
+fn run_sandbox(arguments: &[&str]) -> Outcome {
+    run_tool(&Tool::<Sandbox>::new(), arguments)
+}
+
+fn run_tool<G: Game>(tool: &Tool<G>, arguments: &[&str]) -> Outcome {
     let (mut out, mut err) = (anstream::StripStream::new(Vec::new()), anstream::StripStream::new(Vec::new()));
     let arguments = ["counter"].into_iter().chain(arguments.iter().copied());
     let exit = tool.run_with(arguments, &mut out, &mut err);
@@ -69,6 +81,11 @@ fn replay(ticks: u64) -> Vec<u8> {
         recording.step(&inputs_at(tick)).unwrap();
     }
     recording.finish().unwrap()
+}
+
+/// One of the replays of this repository.
+fn golden(scene: &str) -> String {
+    format!("{}/../replays/{scene}.replay", env!("CARGO_MANIFEST_DIR"))
 }
 
 /// A folder of its own for a test, gone with the value.

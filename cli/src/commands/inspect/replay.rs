@@ -180,9 +180,10 @@ impl Summary {
         }
     }
 
-    /// The duration in hundredths of a second.
+    /// The duration in hundredths of a second, rounded.
     fn hundredths(&self) -> u128 {
-        u128::from(self.ticks) * 100 / u128::from(self.tick_rate.max(1))
+        let rate = u128::from(self.tick_rate.max(1));
+        (u128::from(self.ticks) * 200 + rate) / (2 * rate)
     }
 
     pub(super) fn document(&self) -> Json {

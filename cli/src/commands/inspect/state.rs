@@ -35,7 +35,7 @@ impl State {
             console.line(document)?;
             return Ok(Exit::Success);
         }
-        let tick = tick.map_or(String::new(), |tick| format!(" after tick {tick}"));
+        let tick = tick.map_or(" that was saved".into(), |tick| format!(" after tick {tick}"));
         let hash = hash.map_or(String::new(), |hash| format!(": {hash}"));
         console.line(format_args!("state{tick}{hash}"))?;
         for field in fields {
