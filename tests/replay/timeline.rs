@@ -3,7 +3,7 @@
 
 use lockstep2d::codec;
 use lockstep2d::hash::StateHash;
-use lockstep2d::lockstep::{Game, Sandbox};
+use lockstep2d::lockstep::{Game, RulesId, Sandbox, SetupError};
 use lockstep2d::math::Rng;
 use lockstep2d::replay::{
     KEYFRAMES_MAGIC, KeyframesError, KeyframesFlaw, Limit, Limits, Playback, Recording, SeekError, Step,
@@ -11,7 +11,7 @@ use lockstep2d::replay::{
 };
 use lockstep2d::scenes;
 
-use crate::counter::{Counter, Input, add, inputs_at};
+use crate::counter::{Counter, Input, Setup, add, inputs_at, setup};
 use crate::forge::forge;
 use crate::record;
 
@@ -362,6 +362,64 @@ fn damaged_keyframes_with_repaired_hashes_never_lead_elsewhere() {
         }
     }
     assert!(led > 100, "most damage is elsewhere: {led}");
+}
+
+/// A counter that also adds what it saw last, and does not save it.
+struct Forgetful {
+    counter: Counter,
+    last: i64,
+}
+
+impl Game for Forgetful {
+    type Setup = Setup;
+    type Input = Input;
+    type Save = Counter;
+
+    const RULES: RulesId = Counter::RULES;
+
+    fn new(setup: &Setup) -> Result<Self, SetupError> {
+        Ok(Forgetful { counter: Counter::new(setup)?, last: 0 })
+    }
+
+    fn players(&self) -> u32 {
+        self.counter.players()
+    }
+
+    fn tick_rate(&self) -> u32 {
+        self.counter.tick_rate()
+    }
+
+    fn step(&mut self, inputs: &[Input]) {
+        self.counter.step(inputs);
+        self.counter.sum += self.last;
+        self.last = 1 + self.counter.sum % 5;
+    }
+
+    fn state_hash(&self) -> StateHash {
+        self.counter.state_hash()
+    }
+
+    fn save(&self) -> Counter {
+        self.counter.clone()
+    }
+
+    fn load(&mut self, save: &Counter) {
+        self.counter = save.clone();
+    }
+
+    fn work(&self, inputs: &[Input]) -> u64 {
+        self.counter.work(inputs)
+    }
+}
+
+#[test]
+fn a_game_that_does_not_save_all_of_itself_is_found_out() {
+    let mut recording = Recording::<Forgetful>::start(&setup(), 10).unwrap();
+    (0..100).for_each(|tick| recording.step(&inputs_at(tick)).unwrap());
+    let file = recording.finish().unwrap();
+    let mut timeline = open::<Forgetful>(&file, 20, 1 << 20);
+    timeline.seek(100).unwrap();
+    assert_eq!(timeline.seek(55), Err(SeekError::Forgetful { tick: 50 }));
 }
 
 #[test]

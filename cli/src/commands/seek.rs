@@ -106,6 +106,7 @@ fn go<G: Game>(timeline: &mut Timeline<'_, G>, arguments: &Arguments) -> Result<
     let explain = |error| match error {
         SeekError::NoSuchTick { tick, ticks } => CommandError::NoSuchTick { path: path(), tick, ticks },
         SeekError::Replay(verdict) => CommandError::Replay { path: path(), verdict },
+        SeekError::Forgetful { .. } => CommandError::Keyframe { path: path(), error },
         SeekError::Keyframe { .. } => {
             CommandError::Keyframe { path: arguments.keyframes.clone().unwrap_or_else(path), error }
         }

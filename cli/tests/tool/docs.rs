@@ -67,6 +67,10 @@ fn the_documentation_shows_what_is_printed() {
             .unwrap();
         let found = String::from_utf8(done.stdout).unwrap();
         let lines: Vec<&str> = found.lines().collect();
-        assert!(fits(&output, &lines), "$ {line}\n{found}\nis not what docs/REPLAYS.md has:\n{}", output.join("\n"));
+        assert!(
+            fits(&output, &lines),
+            "$ {line}\n{found}\nis not what docs/REPLAYS.md has:\n{}",
+            output.join("\n")
+        );
     }
 }

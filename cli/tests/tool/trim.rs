@@ -2,11 +2,12 @@
 
 use std::fs;
 
-use lockstep2d::replay::{Limits, verify};
+use lockstep2d::lockstep::Game;
+use lockstep2d::replay::{Limits, Recorder, verify};
 use lockstep2d_cli::Exit;
 use serde_json::Value;
 
-use crate::counter::Counter;
+use crate::counter::{Counter, inputs_at, setup};
 use crate::{Folder, golden, replay, run, run_sandbox};
 
 /// Trims bytes and verifies what comes out: its ticks, and what was said on the error stream.
@@ -84,17 +85,13 @@ fn a_complete_replay_stays_or_becomes_shorter() {
 #[test]
 fn where_a_replay_leaves_the_rules_it_ends() {
     let folder = Folder::new("trim-diverged");
-    let mut recorder = {
-        let (recorder, game) = lockstep2d::replay::Recorder::<Counter>::start(&crate::setup(), 10).unwrap();
-        (recorder, game)
-    };
+    let (mut recorder, mut game) = Recorder::<Counter>::start(&setup(), 10).unwrap();
     for tick in 0..35 {
-        let inputs = recorder.0.record(&crate::inputs_at(tick)).unwrap().to_vec();
-        lockstep2d::lockstep::Game::step(&mut recorder.1, &inputs);
-        recorder.1.sum += i64::from(tick == 24);
-        recorder.0.checkpoint(lockstep2d::lockstep::Game::state_hash(&recorder.1));
+        game.step(recorder.record(&inputs_at(tick)).unwrap());
+        game.sum += i64::from(tick == 24);
+        recorder.checkpoint(game.state_hash());
     }
-    let diverged = recorder.0.finish(&recorder.1).unwrap();
+    let diverged = recorder.finish(&game).unwrap();
     let (kept, message) = trimmed(&folder, &diverged, &[]).unwrap();
     assert_eq!(kept, 20);
     assert!(message.contains("diverged: equal at tick 20, different at tick 30"), "{message}");

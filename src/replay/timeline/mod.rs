@@ -70,6 +70,11 @@ pub enum SeekError {
         /// What is wrong with it.
         why: String,
     },
+    /// After going back, the game has taken another course than the first time: saving and loading it loses something.
+    Forgetful {
+        /// The tick of the first checkpoint that is not the same any more.
+        tick: u64,
+    },
 }
 
 impl fmt::Display for SeekError {
@@ -78,6 +83,10 @@ impl fmt::Display for SeekError {
             SeekError::NoSuchTick { tick, ticks } => write!(f, "there are {ticks} ticks, and no tick {tick}"),
             SeekError::Replay(verdict) => verdict.fmt(f),
             SeekError::Keyframe { tick, why } => write!(f, "the keyframe of tick {tick}: {why}"),
+            SeekError::Forgetful { tick } => write!(
+                f,
+                "played again after going back, tick {tick} is another one: saving and loading this game loses something"
+            ),
         }
     }
 }
@@ -186,7 +195,7 @@ impl<'a, G: Game> Timeline<'a, G> {
     ///
     /// # Errors
     /// [`SeekError`]. If the replay cannot be played as far, the game is where that was found; one can still go to every
-    /// tick before. After the others it is where it was.
+    /// tick before. Where there is no such tick or no such keyframe, it is where it was.
     pub fn seek(&mut self, tick: u64) -> Result<(), SeekError> {
         if tick > self.ticks() {
             return Err(SeekError::NoSuchTick { tick, ticks: self.ticks() });
@@ -316,6 +325,9 @@ impl<'a, G: Game> Timeline<'a, G> {
         let now = self.tick();
         self.simulated += now - before;
         if let Err(verdict) = result {
+            if now <= self.played && matches!(verdict, Verdict::Diverged { .. }) {
+                return Err(SeekError::Forgetful { tick: now });
+            }
             self.failed = Some((before + 1, verdict.clone()));
             return Err(SeekError::Replay(verdict));
         }
