@@ -4,7 +4,8 @@ use std::fmt;
 use std::io;
 use std::path::PathBuf;
 
-use lockstep2d::replay::{RecordError, Verdict};
+use lockstep2d::inspect::InspectError;
+use lockstep2d::replay::{KeyframesError, RecordError, SeekError, Verdict};
 use lockstep2d::report::{CompareError, EvidenceError, TraceError};
 
 use crate::exit::Exit;
@@ -32,6 +33,18 @@ pub(crate) enum CommandError {
     NoSuchTick { path: PathBuf, tick: u64, ticks: u64 },
     /// A replay cannot be played as far as was asked for.
     Replay { path: PathBuf, verdict: Verdict },
+    /// A keyframe is none of the replay.
+    Keyframe { path: PathBuf, error: SeekError },
+    /// A file has no keyframes of the replay.
+    Keyframes { path: PathBuf, error: KeyframesError },
+    /// A line of inputs has none for every player.
+    Inputs { path: PathBuf, line: u64, why: String },
+    /// A state has no form for people, or none in JSON.
+    State { why: String },
+    /// There is nothing under the name that was asked for.
+    NothingThere { what: String },
+    /// The game has no pictures of itself.
+    NoPictures,
     /// A file is nothing that can be compared.
     Evidence { path: PathBuf, error: EvidenceError },
     /// A replay cannot be traced.
@@ -73,10 +86,24 @@ impl fmt::Display for CommandError {
                 write!(f, "{} has {ticks} ticks, there is no tick {tick}", Shown(path))
             }
             CommandError::Replay { path, verdict } => write!(f, "{}: {verdict}", Shown(path)),
+            CommandError::Keyframe { path, error } => write!(f, "{}: {error}", Shown(path)),
+            CommandError::Keyframes { path, error } => {
+                write!(f, "{}: {error}; delete it to have it written anew", Shown(path))
+            }
+            CommandError::Inputs { path, line, why } => write!(f, "{}, line {line}: {why}", Shown(path)),
+            CommandError::State { why } => write!(f, "cannot show the state: {why}"),
+            CommandError::NothingThere { what } => write!(f, "there is no {what} in this state"),
+            CommandError::NoPictures => write!(f, "this game draws no pictures"),
             CommandError::Evidence { path, error } => write!(f, "{}: {error}", Shown(path)),
             CommandError::Trace { path, error } => write!(f, "{}: {error}", Shown(path)),
             CommandError::Compare(error) => write!(f, "cannot compare: {error}"),
         }
+    }
+}
+
+impl From<InspectError> for CommandError {
+    fn from(error: InspectError) -> Self {
+        CommandError::State { why: error.to_string() }
     }
 }
 

@@ -1,9 +1,11 @@
 //! Reading replay files, without trusting their size, and showing their names.
 
 use std::fmt;
-use std::fs::File;
+use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::Path;
+
+use crate::error::CommandError;
 
 /// The extension of replay files in folders.
 pub(crate) const EXTENSION: &str = "replay";
@@ -26,6 +28,16 @@ pub(crate) fn read_from(stream: impl Read, expected: u64, bytes_max: u64) -> io:
     }
     stream.take(end).read_to_end(&mut bytes)?;
     Ok(bytes)
+}
+
+/// The bytes of a file that a command cannot do without; see [`read`].
+pub(crate) fn load(path: &Path, bytes_max: u64) -> Result<Vec<u8>, CommandError> {
+    read(path, bytes_max).map_err(|error| CommandError::Read { path: path.to_path_buf(), error })
+}
+
+/// Writes a file.
+pub(crate) fn save(path: &Path, bytes: &[u8]) -> Result<(), CommandError> {
+    fs::write(path, bytes).map_err(|error| CommandError::Write { path: path.to_path_buf(), error })
 }
 
 /// A path for a line of text: a name with a line break in it must not pass for a line of its own.

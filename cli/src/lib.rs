@@ -25,14 +25,16 @@
 //! }
 //! ```
 //!
-//! That gives `verify` and `diff`. A game that has scenes to record and pictures to draw says so to a [`Tool`], which then has
-//! `scenes`, `record` and `export` as well.
+//! That gives `verify`, `diff`, `inspect`, `seek`, `fork`, `trim`, `stats` and `export`. A game that has scenes to record and
+//! pictures to draw says so to a [`Tool`], which then has `scenes`, `record` and `export --svg` as well.
 
 mod commands;
 mod console;
+mod counts;
 mod error;
 mod exit;
 mod files;
+mod rewriting;
 mod sandbox;
 mod scenes;
 mod tool;
@@ -47,7 +49,7 @@ pub use sandbox::SandboxScenes;
 pub use scenes::{Catalogue, Scene, SceneInfo, Script};
 pub use tool::Tool;
 
-/// The tools for a game without scenes: `verify` and `diff`, with the arguments of this process.
+/// The tools for a game without scenes and pictures, with the arguments of this process.
 #[must_use]
 pub fn run<G: Game>() -> ExitCode {
     Tool::<G>::new().run()

@@ -8,7 +8,9 @@ use clap::{ArgMatches, Command};
 use lockstep2d::lockstep::Game;
 use lockstep2d::replay::Limits;
 
-use crate::commands::{bisect, diff, export, record, scenes, trace, verify};
+use crate::commands::{
+    bisect, diff, export, fork, inspect, record, scenes, seek, stats, trace, trim, verify,
+};
 use crate::console::Console;
 use crate::error::CommandError;
 use crate::exit::Exit;
@@ -37,7 +39,7 @@ impl<G: Game> Default for Tool<G> {
 }
 
 impl<G: Game> Tool<G> {
-    /// The tools that every game has: `verify` and `diff`.
+    /// The tools that every game has: `verify`, `diff`, `inspect`, `seek`, `fork`, `trim`, `stats` and `export --json`.
     #[must_use]
     pub fn new() -> Self {
         Tool { limits: Limits::default(), catalogue: None, svg: None, own: Vec::new() }
@@ -55,7 +57,7 @@ impl<G: Game> Tool<G> {
         Tool { catalogue: Some(Box::new(catalogue)), ..self }
     }
 
-    /// Adds `export`; `svg` draws a game as one SVG document.
+    /// Adds `export --svg`; `svg` draws a game as one SVG document.
     #[must_use]
     pub fn with_svg(self, svg: fn(&G) -> String) -> Self {
         Tool { svg: Some(svg), ..self }
@@ -122,43 +124,52 @@ impl<G: Game> Tool<G> {
             .subcommand(verify::command())
             .subcommand(diff::command())
             .subcommand(bisect::command())
-            .subcommand(trace::command());
+            .subcommand(trace::command())
+            .subcommand(inspect::command())
+            .subcommand(seek::command())
+            .subcommand(fork::command())
+            .subcommand(trim::command())
+            .subcommand(stats::command())
+            .subcommand(export::command());
         if self.catalogue.is_some() {
             command = command.subcommand(scenes::command()).subcommand(record::command());
-        }
-        if self.svg.is_some() {
-            command = command.subcommand(export::command());
         }
         command.subcommands(self.own.iter().map(|(own, _)| own.clone()))
     }
 
     fn dispatch(&self, matches: &ArgMatches, console: &mut Console<'_>) -> Result<Exit, CommandError> {
-        match (matches.subcommand(), &self.catalogue, self.svg) {
-            (Some((verify::NAME, matches)), _, _) => {
+        let limits = &self.limits;
+        match (matches.subcommand(), &self.catalogue) {
+            (Some((verify::NAME, matches)), _) => {
                 verify::run::<G>(&verify::arguments(matches), &self.limits, console)
             }
-            (Some((diff::NAME, matches)), _, _) => {
+            (Some((diff::NAME, matches)), _) => {
                 diff::run::<G>(&diff::arguments(matches), &self.limits, console)
             }
-            (Some((bisect::NAME, matches)), _, _) => {
-                bisect::run::<G>(&bisect::arguments(matches), &self.limits, console)
+            (Some((bisect::NAME, matches)), _) => {
+                bisect::run::<G>(&bisect::arguments(matches), limits, console)
             }
-            (Some((trace::NAME, matches)), _, _) => {
-                trace::run::<G>(&trace::arguments(matches), &self.limits, console)
+            (Some((trace::NAME, matches)), _) => trace::run::<G>(&trace::arguments(matches), limits, console),
+            (Some((inspect::NAME, matches)), _) => {
+                inspect::run::<G>(&inspect::arguments(matches), limits, console)
             }
-            (Some((scenes::NAME, _)), Some(catalogue), _) => scenes::run(catalogue.as_ref(), console),
-            (Some((record::NAME, matches)), Some(catalogue), _) => {
+            (Some((seek::NAME, matches)), _) => seek::run::<G>(&seek::arguments(matches), limits, console),
+            (Some((fork::NAME, matches)), _) => fork::run::<G>(&fork::arguments(matches), limits, console),
+            (Some((trim::NAME, matches)), _) => trim::run::<G>(&trim::arguments(matches), limits, console),
+            (Some((stats::NAME, matches)), _) => stats::run::<G>(&stats::arguments(matches), limits, console),
+            (Some((export::NAME, matches)), _) => {
+                export::run::<G>(&export::arguments(matches), self.svg, limits, console)
+            }
+            (Some((scenes::NAME, _)), Some(catalogue)) => scenes::run(catalogue.as_ref(), console),
+            (Some((record::NAME, matches)), Some(catalogue)) => {
                 record::run(&record::arguments(matches), catalogue.as_ref(), console)
             }
-            (Some((export::NAME, matches)), _, Some(svg)) => {
-                export::run(&export::arguments(matches), svg, &self.limits, console)
-            }
-            (Some((name, matches)), _, _) => {
+            (Some((name, matches)), _) => {
                 let own = self.own.iter().find(|(own, _)| own.get_name() == name);
                 // clap has refused every other command.
                 Ok(own.map_or(Exit::Trouble, |(_, run)| run(matches)))
             }
-            (None, _, _) => Ok(Exit::Trouble),
+            (None, _) => Ok(Exit::Trouble),
         }
     }
 }

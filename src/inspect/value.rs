@@ -1,5 +1,6 @@
 //! Fields and their values.
 
+use alloc::format;
 use alloc::string::String;
 use alloc::vec::Vec;
 use core::fmt;
@@ -48,6 +49,19 @@ impl Value {
             Value::Angle(angle) => Some(i128::from(angle.to_bits())),
             Value::Float(bits) => Some(i128::from(*bits)),
             Value::Text(_) | Value::Bytes(_) | Value::Name(_) | Value::Empty => None,
+        }
+    }
+}
+
+impl Value {
+    /// A fixed-point number in decimal, with as many digits as tell it from its neighbours; `None` of other values.
+    #[must_use]
+    pub fn decimal(&self) -> Option<String> {
+        match self {
+            Value::Fixed { bits, fraction_bits } => {
+                fraction_bits.and_then(|count| Decimal::new(*bits, count)).map(|decimal| format!("{decimal}"))
+            }
+            _ => None,
         }
     }
 }

@@ -1,7 +1,8 @@
 //! Replay files: recording, reading and verifying. Bytes in, bytes out; `docs/FORMAT.md` gives the layout.
 //!
 //! A replay is a setup and the inputs of every tick. [`Recording`] steps a game and writes one as it goes,
-//! [`verify`] plays it again and answers with a [`Verdict`].
+//! [`verify`] plays it again and answers with a [`Verdict`]. A [`Timeline`] goes to any tick of it, forwards and
+//! backwards.
 //!
 //! # What `Match` means
 //!
@@ -33,6 +34,8 @@ mod recorder;
 mod recording;
 mod rerun;
 mod runs;
+mod tick_inputs;
+mod timeline;
 mod verdict;
 
 pub use flaw::Flaw;
@@ -46,6 +49,11 @@ pub use playback::{Playback, Step, verify};
 pub use reader::{InputBlock, Part, ReadError, Reader, Trailer};
 pub use recorder::{CHECKPOINT_INTERVAL, RecordError, Recorder};
 pub use recording::Recording;
-pub use rerun::{Rerun, TickInputs};
+pub use rerun::Rerun;
 pub use runs::{Run, Runs};
+pub use tick_inputs::TickInputs;
+pub use timeline::{
+    KEYFRAMES_BYTES_MAX, KEYFRAMES_FORMAT_VERSION, KEYFRAMES_MAGIC, KeyframesError, KeyframesFlaw, SeekError,
+    Timeline, TimelineOptions,
+};
 pub use verdict::{ClaimDifference, Mismatch, Verdict};

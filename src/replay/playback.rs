@@ -8,11 +8,12 @@ use super::flaw::Flaw;
 use super::format::checkpoint_hash;
 use super::header::{Header, offset};
 use super::limits::{Limit, Limits};
-use super::reader::{InputBlock, Part, ReadError, Reader, Trailer};
-use super::runs::Runs;
+use super::reader::{Part, ReadError, Reader, Trailer};
+use super::rerun::{Place, Rerun};
 use super::verdict::{ClaimDifference, Mismatch, Verdict};
 use crate::codec;
-use crate::lockstep::{Game, InputError, decode_inputs};
+use crate::lockstep::Game;
+use crate::world::World;
 
 /// Plays a replay again and says what it is worth.
 #[must_use]
@@ -39,21 +40,10 @@ pub enum Step {
     Ended,
 }
 
-/// A replay being played again.
+/// A replay being played again: a [`Rerun`] that is compared with what the file states.
 pub struct Playback<'a, G: Game> {
-    game: G,
-    limits: Limits,
-    reader: Reader<'a>,
+    rerun: Rerun<'a, G>,
     ending: Ending,
-    /// The block being played and its ticks yet to come.
-    block: Option<(InputBlock<'a>, u32)>,
-    runs: Runs<'a>,
-    /// The inputs of the current run, for one tick, and its ticks yet to come.
-    inputs: Vec<G::Input>,
-    run_left: u32,
-    tick: u64,
-    last_equal: u64,
-    work: u64,
     failed: Option<Verdict>,
 }
 
@@ -71,46 +61,47 @@ impl<'a, G: Game> Playback<'a, G> {
     /// The [`Verdict`] when there is nothing to play: the file is malformed, too large, of another game, or its
     /// setup starts another state.
     pub fn open(file: &'a [u8], limits: &Limits) -> Result<Self, Verdict> {
-        let reader = Reader::open(file, limits)?;
-        let ending = scan(reader.clone())?;
-        check_rules::<G>(reader.header())?;
-        let mut game = start::<G>(reader.header())?;
-        check_bodies(&mut game, limits)?;
-        if checkpoint_hash(game.state_hash(), reader.inputs_digest()) != reader.start() {
+        let (rerun, ending) = Rerun::<G>::open_to_end(file, limits)?;
+        let reader = rerun.place().inputs.reader();
+        if checkpoint_hash(rerun.game().state_hash(), reader.inputs_digest()) != reader.start() {
             return Err(Verdict::Diverged { last_equal: None, first_different: 0 });
         }
-        Ok(Playback {
-            game,
-            limits: limits.clone(),
-            reader,
-            ending,
-            block: None,
-            runs: Runs::new(&[], 0),
-            inputs: Vec::new(),
-            run_left: 0,
-            tick: 0,
-            last_equal: 0,
-            work: 0,
-            failed: None,
-        })
+        Ok(Playback { rerun, ending, failed: None })
     }
 
     /// The game as of now.
     #[must_use]
     pub fn game(&self) -> &G {
-        &self.game
+        self.rerun.game()
+    }
+
+    /// The physics world of the game as of now, if it has one, to look at.
+    pub fn world(&mut self) -> Option<&World> {
+        self.rerun.world()
     }
 
     /// The game as of now, to keep.
     #[must_use]
     pub fn into_game(self) -> G {
-        self.game
+        self.rerun.into_game()
     }
 
     /// How many ticks have been played.
     #[must_use]
     pub fn tick(&self) -> u64 {
-        self.tick
+        self.rerun.tick()
+    }
+
+    /// The inputs that the last tick was played with; before the first, none.
+    #[must_use]
+    pub fn inputs(&self) -> &[G::Input] {
+        self.rerun.inputs()
+    }
+
+    /// The work units of all ticks so far, as [`Game::work`] counts them.
+    #[must_use]
+    pub fn work(&self) -> u64 {
+        self.rerun.work()
     }
 
     /// How many ticks the file has, as far as it is whole.
@@ -148,7 +139,7 @@ impl<'a, G: Game> Playback<'a, G> {
         if let Some(verdict) = self.failed {
             return verdict;
         }
-        let (ticks, hash) = (self.tick, self.game.state_hash());
+        let (ticks, hash) = (self.tick(), self.game().state_hash());
         let Some(trailer) = self.ending.trailer.filter(|trailer| trailer.ticks == ticks) else {
             return Verdict::Incomplete { ticks, hash };
         };
@@ -158,67 +149,41 @@ impl<'a, G: Game> Playback<'a, G> {
             let difference = ClaimDifference::FinalHash { claimed: trailer.final_hash, actual: hash };
             return Verdict::ClaimMismatch { ticks, hash, difference };
         }
-        match first_difference(trailer.claims, self.game.claims()) {
+        match first_difference(trailer.claims, self.rerun.game().claims()) {
             Some(difference) => Verdict::ClaimMismatch { ticks, hash, difference },
             None => Verdict::Match { ticks, hash },
         }
     }
 
     fn try_step(&mut self) -> Result<Step, Verdict> {
-        while self.run_left == 0 {
-            if !self.next_run()? && !self.next_block()? {
-                return Ok(Step::Ended);
-            }
+        if self.rerun.step()? == Step::Ended {
+            return Ok(Step::Ended);
         }
-        let work = self.game.work(&self.inputs);
-        Limit::TickWork.check(work, self.limits.tick_work)?;
-        self.work = self.work.saturating_add(work);
-        Limit::TotalWork.check(self.work, self.limits.total_work)?;
-
-        self.game.step(&self.inputs);
-        self.tick += 1;
-        self.run_left -= 1;
-        check_bodies(&mut self.game, &self.limits)?;
-        self.compare_at_block_end()?;
-        Ok(Step::Ticked)
+        if self.agrees() {
+            return Ok(Step::Ticked);
+        }
+        let (tick, inputs) = (self.tick(), &self.rerun.place().inputs);
+        let block_ticks = inputs.finished_block().map_or(0, |block| u64::from(block.ticks));
+        // All blocks before have been compared.
+        Err(Verdict::Diverged { last_equal: Some(tick - block_ticks), first_different: tick })
     }
 
-    /// Decodes the next run's inputs; false at the end of the block.
-    fn next_run(&mut self) -> Result<bool, Verdict> {
-        let Some(run) = self.runs.next_run()? else {
-            return Ok(false);
-        };
-        let malformed = |_: InputError| Verdict::Malformed { offset: run.offset, flaw: Flaw::Inputs };
-        self.inputs = decode_inputs(run.encoded, self.reader.header().players).map_err(malformed)?;
-        self.run_left = run.ticks;
-        Ok(true)
+    /// Whether the state is that of the checkpoint, if the file has one of this tick.
+    pub(super) fn agrees(&self) -> bool {
+        self.rerun.place().inputs.finished_block().is_none_or(|block| {
+            checkpoint_hash(self.game().state_hash(), block.inputs_digest) == block.checkpoint
+        })
     }
 
-    /// Goes on to the next block of inputs; false at the end of the file.
-    fn next_block(&mut self) -> Result<bool, Verdict> {
-        let Some(Part::Inputs(block)) = self.reader.next_part()? else {
-            return Ok(false);
-        };
-        self.runs = block.runs();
-        let ticks = block.ticks;
-        self.block = Some((block, ticks));
-        Ok(true)
+    /// Where in the file it is.
+    pub(super) fn place(&self) -> &Place<'a> {
+        self.rerun.place()
     }
 
-    fn compare_at_block_end(&mut self) -> Result<(), Verdict> {
-        let Some((block, left)) = &mut self.block else {
-            return Ok(());
-        };
-        *left -= 1;
-        if *left > 0 {
-            return Ok(());
-        }
-        if checkpoint_hash(self.game.state_hash(), block.inputs_digest) != block.checkpoint {
-            let last_equal = Some(self.last_equal);
-            return Err(Verdict::Diverged { last_equal, first_different: self.tick });
-        }
-        self.last_equal = self.tick;
-        Ok(())
+    /// Goes where it has been.
+    pub(super) fn go(&mut self, save: &G::Save, place: Place<'a>) {
+        self.rerun.go(save, place);
+        self.failed = None;
     }
 }
 
@@ -250,6 +215,12 @@ pub(super) fn check_rules<G: Game>(header: &Header<'_>) -> Result<(), Verdict> {
     Ok(())
 }
 
+/// A game that shows no world has no bodies to count.
+pub(super) fn check_bodies<G: Game>(game: &mut G, limits: &Limits) -> Result<(), ReadError> {
+    let bodies = game.world_mut().map_or(0, |world| world.body_count());
+    Limit::Bodies.check(u64::try_from(bodies).unwrap_or(u64::MAX), limits.bodies)
+}
+
 /// The setup, if it is written as this program writes it.
 pub(super) fn decode_setup<G: Game>(header: &Header<'_>) -> Result<G::Setup, Verdict> {
     codec::decode(header.setup)
@@ -273,12 +244,6 @@ pub(super) fn start<G: Game>(header: &Header<'_>) -> Result<G, Verdict> {
         return Err(malformed(offset::TICK_RATE, flaw));
     }
     Ok(game)
-}
-
-/// A game that shows no world has no bodies to count.
-pub(super) fn check_bodies<G: Game>(game: &mut G, limits: &Limits) -> Result<(), ReadError> {
-    let bodies = game.world_mut().map_or(0, |world| world.body_count());
-    Limit::Bodies.check(u64::try_from(bodies).unwrap_or(u64::MAX), limits.bodies)
 }
 
 /// The first name, in order, whose value is not the same on both sides.

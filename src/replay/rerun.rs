@@ -4,64 +4,32 @@ use alloc::vec::Vec;
 
 use super::flaw::Flaw;
 use super::limits::{Limit, Limits};
-use super::playback::{Step, check_bodies, check_rules, decode_setup, scan, start};
-use super::reader::{Part, ReadError, Reader};
-use super::runs::{Run, Runs};
+use super::playback::{Ending, Step, check_bodies, check_rules, decode_setup, scan, start};
+use super::tick_inputs::TickInputs;
 use super::verdict::Verdict;
 use crate::lockstep::{Game, decode_inputs};
-
-/// The encoded inputs of a replay, tick by tick.
-#[derive(Clone, Debug)]
-pub struct TickInputs<'a> {
-    reader: Reader<'a>,
-    runs: Runs<'a>,
-    run: Option<Run<'a>>,
-}
-
-impl<'a> TickInputs<'a> {
-    /// The inputs from the first tick on.
-    ///
-    /// # Errors
-    /// [`ReadError`] for a header that is none.
-    pub fn open(file: &'a [u8], limits: &Limits) -> Result<Self, ReadError> {
-        Ok(TickInputs { reader: Reader::open(file, limits)?, runs: Runs::new(&[], 0), run: None })
-    }
-
-    /// The run that the next tick belongs to, with the ticks that are left of it; that tick is then passed. `None` at the
-    /// end of what is whole.
-    ///
-    /// # Errors
-    /// [`ReadError`] when the next block is none.
-    pub fn next_tick(&mut self) -> Result<Option<Run<'a>>, ReadError> {
-        loop {
-            if let Some(run) = self.run.as_mut().filter(|run| run.ticks > 0) {
-                let found = *run;
-                run.ticks -= 1;
-                return Ok(Some(found));
-            }
-            self.run = self.runs.next_run()?;
-            if self.run.is_none() {
-                match self.reader.next_part()? {
-                    Some(Part::Inputs(block)) => self.runs = block.runs(),
-                    _ => return Ok(None),
-                }
-            }
-        }
-    }
-}
+use crate::world::World;
 
 /// A replay whose inputs are played again. Unlike a [`Playback`](super::Playback) it compares nothing: it is what the
 /// running engine makes of these inputs.
 pub struct Rerun<'a, G: Game> {
     game: G,
     limits: Limits,
-    ticks: TickInputs<'a>,
-    encoded: &'a [u8],
+    place: Place<'a>,
+    /// What `inputs` were decoded from.
+    encoded: Option<&'a [u8]>,
     inputs: Vec<G::Input>,
-    tick: u64,
-    work: u64,
     /// How many ticks the file has, as far as it is whole.
     length: u64,
+}
+
+/// Where in a replay a rerun is: all of it but the game.
+#[derive(Clone, Debug)]
+pub(super) struct Place<'a> {
+    pub(super) inputs: TickInputs<'a>,
+    pub(super) tick: u64,
+    /// Work units up to here.
+    pub(super) work: u64,
 }
 
 impl<'a, G: Game> Rerun<'a, G> {
@@ -70,13 +38,19 @@ impl<'a, G: Game> Rerun<'a, G> {
     /// # Errors
     /// The [`Verdict`] when there is nothing to play: the file is malformed, too large, or of another game.
     pub fn open(file: &'a [u8], limits: &Limits) -> Result<Self, Verdict> {
-        let ticks = TickInputs::open(file, limits)?;
-        let length = scan(ticks.reader.clone())?.ticks;
-        check_rules::<G>(ticks.reader.header())?;
-        let mut game = start::<G>(ticks.reader.header())?;
+        Self::open_to_end(file, limits).map(|(rerun, _)| rerun)
+    }
+
+    /// [`Rerun::open`], with what the scan has found at the end.
+    pub(super) fn open_to_end(file: &'a [u8], limits: &Limits) -> Result<(Self, Ending), Verdict> {
+        let inputs = TickInputs::open(file, limits)?;
+        let ending = scan(inputs.reader().clone())?;
+        check_rules::<G>(inputs.reader().header())?;
+        let mut game = start::<G>(inputs.reader().header())?;
         check_bodies(&mut game, limits)?;
-        let limits = limits.clone();
-        Ok(Rerun { game, limits, ticks, encoded: &[], inputs: Vec::new(), tick: 0, work: 0, length })
+        let (limits, place) = (limits.clone(), Place { inputs, tick: 0, work: 0 });
+        let length = ending.ticks;
+        Ok((Rerun { game, limits, place, encoded: None, inputs: Vec::new(), length }, ending))
     }
 
     /// The game as of now.
@@ -85,44 +59,39 @@ impl<'a, G: Game> Rerun<'a, G> {
         &self.game
     }
 
+    /// The physics world of the game as of now, if it has one, to look at.
+    pub fn world(&mut self) -> Option<&World> {
+        self.game.world_mut().map(|world| &*world)
+    }
+
     /// The game as of now, to keep.
     #[must_use]
     pub fn into_game(self) -> G {
         self.game
     }
 
-    /// The game as of now, for tools that look into its world.
-    pub(crate) fn game_mut(&mut self) -> &mut G {
-        &mut self.game
-    }
-
-    /// The setup that the game was started from.
-    pub(crate) fn setup(&self) -> Result<G::Setup, Verdict> {
-        decode_setup::<G>(self.ticks.reader.header())
-    }
-
     /// How many ticks have been played.
     #[must_use]
     pub fn tick(&self) -> u64 {
-        self.tick
+        self.place.tick
+    }
+
+    /// The work units of all ticks so far, as [`Game::work`] counts them.
+    #[must_use]
+    pub fn work(&self) -> u64 {
+        self.place.work
+    }
+
+    /// The inputs that the last tick was played with; before the first, none.
+    #[must_use]
+    pub fn inputs(&self) -> &[G::Input] {
+        &self.inputs
     }
 
     /// How many ticks the file has, as far as it is whole.
     #[must_use]
     pub fn ticks(&self) -> u64 {
         self.length
-    }
-
-    /// The inputs that the last tick was played with.
-    #[must_use]
-    pub fn inputs(&self) -> &[G::Input] {
-        &self.inputs
-    }
-
-    /// Work units so far.
-    #[must_use]
-    pub fn work(&self) -> u64 {
-        self.work
     }
 
     /// Plays one tick.
@@ -137,18 +106,17 @@ impl<'a, G: Game> Rerun<'a, G> {
         Ok(Step::Ticked)
     }
 
-    /// Fetches the inputs of the next tick, which [`Rerun::play`] or [`Rerun::follow`] has to be called for.
+    /// Fetches the inputs of the next tick, which has to be played or followed then.
     pub(crate) fn read_inputs(&mut self) -> Result<Step, Verdict> {
-        let Some(run) = self.ticks.next_tick()? else {
+        let Some(run) = self.place.inputs.next_tick()? else {
             return Ok(Step::Ended);
         };
-        if self.tick == 0 || run.encoded != self.encoded {
+        if self.encoded != Some(run.encoded) {
             let malformed = |_| Verdict::Malformed { offset: run.offset, flaw: Flaw::Inputs };
-            self.inputs =
-                decode_inputs(run.encoded, self.ticks.reader.header().players).map_err(malformed)?;
-            self.encoded = run.encoded;
+            let players = self.place.inputs.reader().header().players;
+            self.inputs = decode_inputs(run.encoded, players).map_err(malformed)?;
+            self.encoded = Some(run.encoded);
         }
-        self.tick += 1;
         Ok(Step::Ticked)
     }
 
@@ -161,20 +129,49 @@ impl<'a, G: Game> Rerun<'a, G> {
     pub(crate) fn play_with<T>(&mut self, step: impl FnOnce(&mut G, &[G::Input]) -> T) -> Result<T, Verdict> {
         let work = self.game.work(&self.inputs);
         Limit::TickWork.check(work, self.limits.tick_work)?;
-        self.work = self.work.saturating_add(work);
-        Limit::TotalWork.check(self.work, self.limits.total_work)?;
+        self.place.work = self.place.work.saturating_add(work);
+        Limit::TotalWork.check(self.place.work, self.limits.total_work)?;
         let done = step(&mut self.game, &self.inputs);
+        self.place.tick += 1;
         check_bodies(&mut self.game, &self.limits)?;
         Ok(done)
     }
 
-    /// Takes over what another game with the same state and the same inputs has come to.
+    /// Counts the tick whose inputs were read as played: another game with the same state has played it.
+    pub(crate) fn skip(&mut self) {
+        self.place.tick += 1;
+    }
+
+    /// Takes over the state that another game has come to after as many ticks.
     pub(crate) fn follow(&mut self, save: &G::Save) {
         self.game.load(save);
     }
 
     /// The canonical bytes of the inputs that were read last.
-    pub(crate) fn encoded(&self) -> &'a [u8] {
+    pub(crate) fn encoded(&self) -> Option<&'a [u8]> {
         self.encoded
+    }
+
+    /// The game as of now, for tools that look into its world.
+    pub(crate) fn game_mut(&mut self) -> &mut G {
+        &mut self.game
+    }
+
+    /// The setup that the game was started from.
+    pub(crate) fn setup(&self) -> Result<G::Setup, Verdict> {
+        decode_setup::<G>(self.place.inputs.reader().header())
+    }
+
+    /// Where it is.
+    pub(super) fn place(&self) -> &Place<'a> {
+        &self.place
+    }
+
+    /// Goes where it, or another rerun of the same file, has been. [`Rerun::inputs`] are none then.
+    pub(super) fn go(&mut self, save: &G::Save, place: Place<'a>) {
+        self.game.load(save);
+        self.place = place;
+        self.encoded = None;
+        self.inputs.clear();
     }
 }

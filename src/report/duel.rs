@@ -72,6 +72,7 @@ impl<G: Game> Duel<'_, '_, G> {
         }
         if self.merged && self.a.encoded() == self.b.encoded() {
             self.a.play().map_err(of(Side::A))?;
+            self.b.skip();
             self.found.last_equal = Some(self.a.tick());
             return Ok(Step::Ticked);
         }

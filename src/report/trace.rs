@@ -104,7 +104,7 @@ impl<G: Game> Trace<G> {
             memory.push(0, rerun.game(), TickPhases::default());
         }
         while rerun.tick() < until && rerun.read_inputs()? == Step::Ticked {
-            let tick = rerun.tick();
+            let tick = rerun.tick() + 1;
             recorder.record(rerun.inputs())?;
             if tick <= from {
                 rerun.play()?;

@@ -10,6 +10,7 @@ mod limits;
 mod recorder;
 mod sandbox;
 mod setups;
+mod timeline;
 
 use lockstep2d::replay::{Limits, Recording, Verdict, verify};
 

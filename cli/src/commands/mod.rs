@@ -4,9 +4,14 @@
 pub(crate) mod bisect;
 pub(crate) mod diff;
 pub(crate) mod export;
+pub(crate) mod fork;
+pub(crate) mod inspect;
 pub(crate) mod record;
 pub(crate) mod scenes;
+pub(crate) mod seek;
+pub(crate) mod stats;
 pub(crate) mod trace;
+pub(crate) mod trim;
 pub(crate) mod verify;
 
 use clap::{ArgMatches, FromArgMatches};

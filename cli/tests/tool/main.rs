@@ -8,9 +8,15 @@ mod batch;
 mod binary;
 mod cache;
 mod diff;
+mod docs;
 mod export;
+mod fork;
 mod hostile;
+mod inspect;
 mod record;
+mod seek;
+mod stats;
+mod trim;
 mod verify;
 #[cfg(unix)]
 mod verify_any;
@@ -18,7 +24,7 @@ mod verify_any;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use lockstep2d::lockstep::Game;
+use lockstep2d::lockstep::{Game, Sandbox};
 use lockstep2d::replay::Recording;
 use lockstep2d_cli::{Catalogue, Exit, Scene, SceneInfo, Tool};
 
@@ -36,6 +42,11 @@ fn run(arguments: &[&str]) -> Outcome {
     let tool =
         Tool::new().with_scenes(Scenes).with_svg(|game: &Counter| format!("<svg>{}</svg>\n", game.sum));
     run_tool(&tool, arguments)
+}
+
+/// Runs the tools of the sandbox, which draws nothing here.
+fn run_sandbox(arguments: &[&str]) -> Outcome {
+    run_tool_of(&Tool::<Sandbox>::new(), arguments)
 }
 
 fn run_tool(tool: &Tool<Counter>, arguments: &[&str]) -> Outcome {
@@ -80,6 +91,11 @@ fn replay(ticks: u64) -> Vec<u8> {
         recording.step(&inputs_at(tick)).unwrap();
     }
     recording.finish().unwrap()
+}
+
+/// One of the replays of this repository.
+fn golden(scene: &str) -> String {
+    format!("{}/../replays/{scene}.replay", env!("CARGO_MANIFEST_DIR"))
 }
 
 /// A folder of its own for a test, gone with the value.

@@ -53,7 +53,7 @@ fn what_cannot_be_recorded_is_trouble() {
 #[test]
 fn a_game_without_scenes_has_no_such_commands() {
     let tool = Tool::new();
-    for command in ["scenes", "record", "export"] {
+    for command in ["scenes", "record"] {
         let outcome = run_tool(&tool, &[command]);
         assert_eq!(outcome.exit, Exit::Trouble);
         assert!(outcome.err.contains("unrecognized subcommand"), "{}", outcome.err);

@@ -1,0 +1,125 @@
+//! `fork`: the beginning of a replay, with another end.
+
+use std::fs::File;
+use std::io::{self, BufRead, BufReader, Read};
+use std::path::{Path, PathBuf};
+
+use clap::{ArgMatches, Args, Command};
+use lockstep2d::lockstep::Game;
+use lockstep2d::replay::Limits;
+use serde::Serialize;
+
+use crate::console::Console;
+use crate::error::CommandError;
+use crate::exit::Exit;
+use crate::files::{self, Shown};
+use crate::rewriting::{Copy, CopyError};
+
+pub(crate) const NAME: &str = "fork";
+
+/// Write a new replay with the beginning of another one
+#[derive(Args, Debug)]
+#[command(
+    after_help = "It begins like the old one up to tick N, goes on with the inputs of --then, then with --idle \
+                        ticks, and ends there. A line of inputs is a JSON array with one entry for each player; an empty \
+                        line is skipped. The new replay is verified before it is written.\n\nExit code: 0 when it was \
+                        written, 1 when the old replay cannot be played as far or the new one would not match, 2 for \
+                        wrong usage, or files that cannot be read or written."
+)]
+pub(crate) struct Arguments {
+    /// The replay
+    file: PathBuf,
+    /// How many of its ticks to take over
+    #[arg(long, value_name = "N")]
+    tick: u64,
+    /// The inputs to go on with, a line of JSON for each tick; - is the standard input
+    #[arg(long, value_name = "FILE")]
+    then: Option<PathBuf>,
+    /// For how many ticks to go on with nothing pressed
+    #[arg(long, value_name = "K", default_value_t = 0)]
+    idle: u64,
+    /// The file to write
+    #[arg(short, long, value_name = "FILE")]
+    output: PathBuf,
+    /// Print one JSON document
+    #[arg(long)]
+    json: bool,
+}
+
+pub(crate) fn command() -> Command {
+    Arguments::augment_args(Command::new(NAME))
+}
+
+pub(crate) fn arguments(matches: &ArgMatches) -> Arguments {
+    super::from_matches(matches)
+}
+
+pub(crate) fn run<G: Game>(
+    arguments: &Arguments,
+    limits: &Limits,
+    console: &mut Console<'_>,
+) -> Result<Exit, CommandError> {
+    let bytes = files::load(&arguments.file, limits.file_bytes)?;
+    let of_file = |error: CopyError| error.of_file(&arguments.file);
+    let mut copy = Copy::<G>::new(&bytes, arguments.tick, limits).map_err(of_file)?;
+    let kept = copy.ticks();
+    if kept < arguments.tick {
+        let path = arguments.file.clone();
+        return Err(CommandError::NoSuchTick { path, tick: arguments.tick, ticks: kept });
+    }
+    if let Some(path) = &arguments.then {
+        play_lines(&mut copy, path, limits)?;
+    }
+    let idle = vec![G::Input::default(); usize::try_from(copy.players()).unwrap_or(0)];
+    // A verifier with these limits would not play more.
+    let idle_ticks = arguments.idle.min(limits.ticks.saturating_sub(copy.ticks()).saturating_add(1));
+    for _ in 0..idle_ticks {
+        copy.step(&idle)?;
+    }
+    let ticks = copy.ticks();
+    let (replay, hash) = copy.finish(&arguments.output, limits)?;
+    files::save(&arguments.output, &replay)?;
+
+    let added = ticks - kept;
+    if arguments.json {
+        let file = arguments.output.display().to_string();
+        let line = Line { file, ticks, kept, added, hash: hash.to_string() };
+        console.line(serde_json::to_string(&line).expect("strings and numbers have a JSON form"))?;
+    } else {
+        let (old, new) = (Shown(&arguments.file), Shown(&arguments.output));
+        console.line(format_args!("{new}: {kept} ticks of {old} and {added} more, final hash {hash}"))?;
+    }
+    Ok(Exit::Success)
+}
+
+#[derive(Serialize)]
+struct Line {
+    file: String,
+    ticks: u64,
+    kept: u64,
+    added: u64,
+    hash: String,
+}
+
+/// Plays a tick for each line of inputs.
+fn play_lines<G: Game>(copy: &mut Copy<G>, path: &Path, limits: &Limits) -> Result<(), CommandError> {
+    let read_error = |error| CommandError::Read { path: path.to_path_buf(), error };
+    let source: Box<dyn Read> = if path == Path::new("-") {
+        Box::new(io::stdin().lock())
+    } else {
+        Box::new(File::open(path).map_err(read_error)?)
+    };
+    // JSON takes some ten times the bytes that inputs have in a replay.
+    let lines = BufReader::new(source.take(limits.file_bytes.saturating_mul(16))).lines();
+    for (number, line) in (1..).zip(lines) {
+        let line = line.map_err(read_error)?;
+        if line.trim().is_empty() {
+            continue;
+        }
+        let explain = |why| CommandError::Inputs { path: path.to_path_buf(), line: number, why };
+        let inputs: Vec<G::Input> =
+            serde_json::from_str(&line).map_err(|error| explain(error.to_string()))?;
+        copy.step(&inputs).map_err(|error| explain(error.to_string()))?;
+    }
+    Ok(())
+}

@@ -1,0 +1,76 @@
+//! The fields of a state.
+
+use lockstep2d::hash::StateHash;
+use lockstep2d::inspect::Field;
+use serde_json::{Value as Json, json};
+
+use super::{Arguments, shown};
+use crate::console::Console;
+use crate::error::CommandError;
+use crate::exit::Exit;
+
+/// A state, as far as it is known where it comes from.
+pub(super) struct State {
+    pub(super) tick: Option<u64>,
+    pub(super) hash: Option<StateHash>,
+    pub(super) fields: Vec<Field>,
+}
+
+impl State {
+    pub(super) fn print(
+        self,
+        arguments: &Arguments,
+        console: &mut Console<'_>,
+    ) -> Result<Exit, CommandError> {
+        let State { tick, hash, fields } = self;
+        let fields: Vec<&Field> = fields.iter().filter(|field| is_wanted(field, arguments)).collect();
+        if fields.is_empty() {
+            return Err(CommandError::NothingThere { what: what(arguments) });
+        }
+        let hash = hash.map(|hash| hash.to_string());
+        if arguments.json {
+            let file = arguments.file.display().to_string();
+            let fields: Vec<Json> = fields.into_iter().map(field_json).collect();
+            let document = json!({"file": file, "tick": tick, "hash": hash, "fields": fields});
+            console.line(document)?;
+            return Ok(Exit::Success);
+        }
+        let tick = tick.map_or(" that was saved".into(), |tick| format!(" after tick {tick}"));
+        let hash = hash.map_or(String::new(), |hash| format!(": {hash}"));
+        console.line(format_args!("state{tick}{hash}"))?;
+        for field in fields {
+            console.line(format_args!("{}", field_text(field)))?;
+        }
+        Ok(Exit::Success)
+    }
+}
+
+fn is_wanted(field: &Field, arguments: &Arguments) -> bool {
+    let is_body = |id: &str| {
+        let name = field.thing().and_then(|thing| thing.rsplit('.').next());
+        let found = name.and_then(|name| name.strip_prefix("body "));
+        found.is_some_and(|found| found == id || found.split('v').next() == Some(id))
+    };
+    let path = arguments.path.as_deref().unwrap_or("");
+    arguments.body.as_deref().is_none_or(is_body) && field.path().starts_with(path)
+}
+
+fn what(arguments: &Arguments) -> String {
+    match (&arguments.body, &arguments.path) {
+        (Some(id), _) => format!("body {id:?}"),
+        (None, Some(path)) => format!("field whose path begins with {path:?}"),
+        (None, None) => "field".into(),
+    }
+}
+
+/// A field on a line. The names and texts may be a stranger's.
+pub(super) fn field_text(field: &Field) -> String {
+    let path = if field.path().is_empty() { "value" } else { field.path() };
+    shown(&format!("{path}: {}", field.value))
+}
+
+/// A value as people read it and, of a number, its bits: as text, since they may be more than JSON's numbers hold.
+pub(super) fn field_json(field: &Field) -> Json {
+    let bits = field.value.bits().map(|bits| bits.to_string());
+    json!({"path": field.path(), "text": field.value.to_string(), "bits": bits})
+}

@@ -1,0 +1,177 @@
+//! `seek`: goes to a tick of a replay, and back from there.
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use clap::{ArgMatches, Args, Command, value_parser};
+use lockstep2d::codec;
+use lockstep2d::lockstep::Game;
+use lockstep2d::replay::{KEYFRAMES_BYTES_MAX, Limits, SeekError, Timeline, TimelineOptions};
+use serde::Serialize;
+
+use crate::console::Console;
+use crate::counts::Counts;
+use crate::error::CommandError;
+use crate::exit::Exit;
+use crate::files::{self, Shown};
+
+pub(crate) const NAME: &str = "seek";
+
+/// Go to a tick of a replay and say what is there
+#[derive(Args, Debug)]
+#[command(
+    after_help = "Tick t is the state after t ticks; 0 is the start.\n\nA file of keyframes is written on the first \
+                        run and used, and added to, on later ones: then seeking costs no more than what lies between \
+                        two keyframes. Each has the state that the replay itself states for its tick. It is no verdict: \
+                        only `verify` tells whether the inputs lead there.\n\nExit code: 0 when the tick was reached, 1 \
+                        when the replay cannot be played as far, 2 for wrong usage, a file that cannot be read or \
+                        written, or keyframes of another replay."
+)]
+pub(crate) struct Arguments {
+    /// The replay
+    file: PathBuf,
+    /// After how many ticks; 0 is the start
+    #[arg(long, value_name = "N")]
+    tick: u64,
+    /// Then go back one tick at a time, so many times
+    #[arg(long, value_name = "K", default_value_t = 0)]
+    back: u64,
+    /// A file of keyframes beside the replay
+    #[arg(long, value_name = "FILE")]
+    keyframes: Option<PathBuf>,
+    /// Ticks from one keyframe to the next
+    #[arg(long, value_name = "TICKS", default_value_t = TimelineOptions::default().interval,
+          value_parser = value_parser!(u32).range(1..))]
+    interval: u32,
+    /// Write the game's save there, in canonical bytes
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// Print one JSON document
+    #[arg(long)]
+    json: bool,
+}
+
+pub(crate) fn command() -> Command {
+    Arguments::augment_args(Command::new(NAME))
+}
+
+pub(crate) fn arguments(matches: &ArgMatches) -> Arguments {
+    super::from_matches(matches)
+}
+
+pub(crate) fn run<G: Game>(
+    arguments: &Arguments,
+    limits: &Limits,
+    console: &mut Console<'_>,
+) -> Result<Exit, CommandError> {
+    let bytes = files::load(&arguments.file, limits.file_bytes)?;
+    let options = TimelineOptions { interval: arguments.interval, ..TimelineOptions::default() };
+    let mut timeline = Timeline::<G>::open(&bytes, &options, limits)
+        .map_err(|verdict| CommandError::Replay { path: arguments.file.clone(), verdict })?;
+    if let Some(path) = &arguments.keyframes {
+        use_keyframes(&mut timeline, path)?;
+    }
+    let known = timeline.keyframes().count();
+    let result = go(&mut timeline, arguments);
+    if let Some(path) = arguments.keyframes.as_ref().filter(|_| timeline.keyframes().count() != known) {
+        replace(path, &timeline.keyframes_to_bytes())?;
+    }
+    let (there, back) = result?;
+
+    if let Some(path) = &arguments.output {
+        files::save(path, &codec::encode(&timeline.game().save()))?;
+    }
+    let found = Found {
+        file: arguments.file.display().to_string(),
+        tick: timeline.tick(),
+        ticks: timeline.ticks(),
+        hash: timeline.game().state_hash().to_string(),
+        counts: timeline.world().map(|world| Counts::of(world)),
+        simulated: there,
+        simulated_back: back,
+        keyframe_interval: timeline.interval(),
+    };
+    if arguments.json {
+        console.line(serde_json::to_string(&found).expect("strings and numbers have a JSON form"))?;
+    } else {
+        found.print(arguments, console)?;
+    }
+    Ok(Exit::Success)
+}
+
+/// Goes where it was asked to go; how many ticks were simulated on the way there and on the way back.
+fn go<G: Game>(timeline: &mut Timeline<'_, G>, arguments: &Arguments) -> Result<(u64, u64), CommandError> {
+    let path = || arguments.file.clone();
+    let explain = |error| match error {
+        SeekError::NoSuchTick { tick, ticks } => CommandError::NoSuchTick { path: path(), tick, ticks },
+        SeekError::Replay(verdict) => CommandError::Replay { path: path(), verdict },
+        SeekError::Forgetful { .. } => CommandError::Keyframe { path: path(), error },
+        SeekError::Keyframe { .. } => {
+            CommandError::Keyframe { path: arguments.keyframes.clone().unwrap_or_else(path), error }
+        }
+    };
+    timeline.seek(arguments.tick).map_err(explain)?;
+    let there = timeline.simulated();
+    for _ in 0..arguments.back.min(arguments.tick) {
+        timeline.step_back().map_err(explain)?;
+    }
+    Ok((there, timeline.simulated() - there))
+}
+
+/// Takes over the keyframes of a file, if there is one.
+fn use_keyframes<G: Game>(timeline: &mut Timeline<'_, G>, path: &Path) -> Result<(), CommandError> {
+    // Beside the saves there are some bytes for each, and for the file.
+    let bytes = match files::read(path, (KEYFRAMES_BYTES_MAX + (1 << 20)) as u64) {
+        Ok(bytes) => bytes,
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(()),
+        Err(error) => return Err(CommandError::Read { path: path.to_path_buf(), error }),
+    };
+    timeline
+        .use_keyframes(&bytes)
+        .map_err(|error| CommandError::Keyframes { path: path.to_path_buf(), error })
+}
+
+/// Writes a file in one piece: whoever is interrupted leaves the old one.
+fn replace(path: &Path, bytes: &[u8]) -> Result<(), CommandError> {
+    let mut unfinished = path.to_path_buf().into_os_string();
+    unfinished.push(".unfinished");
+    let unfinished = PathBuf::from(unfinished);
+    files::save(&unfinished, bytes)?;
+    fs::rename(&unfinished, path).map_err(|error| CommandError::Write { path: path.to_path_buf(), error })
+}
+
+/// What there is at a tick, and what it has cost to go there.
+#[derive(Serialize)]
+struct Found {
+    file: String,
+    tick: u64,
+    ticks: u64,
+    hash: String,
+    counts: Option<Counts>,
+    simulated: u64,
+    simulated_back: u64,
+    keyframe_interval: u64,
+}
+
+impl Found {
+    fn print(&self, arguments: &Arguments, console: &mut Console<'_>) -> Result<(), CommandError> {
+        let Found { tick, ticks, hash, simulated, simulated_back, .. } = self;
+        console.line(format_args!("{}: tick {tick} of {ticks}", Shown(&arguments.file)))?;
+        console.line(format_args!("state {hash}"))?;
+        if let Some(counts) = &self.counts {
+            console.line(counts)?;
+        }
+        if arguments.back == 0 {
+            console.line(format_args!("simulated {simulated} ticks"))?;
+        } else {
+            let back = arguments.back.min(arguments.tick);
+            console
+                .line(format_args!("simulated {simulated} ticks, and {simulated_back} for {back} back"))?;
+        }
+        match &arguments.output {
+            Some(path) => console.line(format_args!("save written to {}", Shown(path))),
+            None => Ok(()),
+        }
+    }
+}

@@ -1,0 +1,148 @@
+//! `stats`: how much there was in each tick of a replay.
+
+use std::path::PathBuf;
+
+use clap::{ArgMatches, Args, Command};
+use lockstep2d::hash::StateHash;
+use lockstep2d::lockstep::Game;
+use lockstep2d::replay::{Limits, Playback, Step};
+use lockstep2d::world::World;
+
+use crate::console::Console;
+use crate::counts::Counts;
+use crate::error::CommandError;
+use crate::exit::Exit;
+use crate::files::{self, Shown};
+
+pub(crate) const NAME: &str = "stats";
+
+/// Play a replay and say how much there was in each tick
+#[derive(Args, Debug)]
+#[command(
+    after_help = "Work is what the game allows for the next tick in front of it, in work units; faults are clamps \
+                        that changed a result. Tick t is the state after t ticks, or what was done on the way to it.\
+                        \n\nExit code: 0 when all of it was played, 1 when it cannot be played to its end, 2 for wrong \
+                        usage, or a file that cannot be read."
+)]
+pub(crate) struct Arguments {
+    /// The replay
+    file: PathBuf,
+    /// Print a line of JSON for each tick, instead of the largest and the mean
+    #[arg(long)]
+    json: bool,
+}
+
+pub(crate) fn command() -> Command {
+    Arguments::augment_args(Command::new(NAME))
+}
+
+pub(crate) fn arguments(matches: &ArgMatches) -> Arguments {
+    super::from_matches(matches)
+}
+
+pub(crate) fn run<G: Game>(
+    arguments: &Arguments,
+    limits: &Limits,
+    console: &mut Console<'_>,
+) -> Result<Exit, CommandError> {
+    let refused = |verdict| CommandError::Replay { path: arguments.file.clone(), verdict };
+    let bytes = files::load(&arguments.file, limits.file_bytes)?;
+    let mut playback = Playback::<G>::open(&bytes, limits).map_err(refused)?;
+    let mut summary = Summary::default();
+    let failed = loop {
+        let work_before = playback.work();
+        match playback.step() {
+            Ok(Step::Ticked) => {}
+            Ok(Step::Ended) => break None,
+            Err(verdict) => break Some(verdict),
+        }
+        let mut figures = vec![("work", playback.work() - work_before)];
+        figures.extend(playback.world().into_iter().flat_map(world_figures));
+        if arguments.json {
+            console.line(line(playback.tick(), playback.game().state_hash(), &figures))?;
+        }
+        summary.add(playback.tick(), &figures);
+    };
+    if !arguments.json {
+        let (file, ticks) = (Shown(&arguments.file), summary.ticks);
+        let hash = playback.game().state_hash();
+        console.line(format_args!("{file}: {ticks} ticks, state {hash}"))?;
+        summary.print(console)?;
+    }
+    failed.map_or(Ok(Exit::Success), |verdict| Err(refused(verdict)))
+}
+
+/// What there is in a world, and what the last tick did.
+fn world_figures(world: &World) -> [(&'static str, u64); 13] {
+    let Counts { bodies, awake, asleep, shapes, joints, pairs } = Counts::of(world);
+    let stats = world.stats();
+    let count = |number: usize| u64::try_from(number).unwrap_or(u64::MAX);
+    [
+        ("bodies", count(bodies)),
+        ("awake", count(awake)),
+        ("asleep", count(asleep)),
+        ("shapes", count(shapes)),
+        ("joints", count(joints)),
+        ("joints_solved", stats.joints.into()),
+        ("pairs", count(pairs)),
+        ("contacts", stats.contacts.into()),
+        ("points", stats.points.into()),
+        ("points_kept", stats.points_kept.into()),
+        ("points_lost", stats.points_lost.into()),
+        ("impacts", stats.impacts.into()),
+        ("faults", stats.faults),
+    ]
+}
+
+/// A line of JSON, in the order of the table. The names are ours and need no escapes.
+fn line(tick: u64, hash: StateHash, figures: &[(&str, u64)]) -> String {
+    let mut line = format!("{{\"tick\":{tick},\"hash\":\"{hash}\"");
+    line.extend(figures.iter().map(|(name, value)| format!(",\"{name}\":{value}")));
+    line + "}"
+}
+
+/// All ticks together.
+#[derive(Default)]
+struct Summary {
+    ticks: u64,
+    figures: Vec<Figure>,
+}
+
+struct Figure {
+    name: &'static str,
+    total: u128,
+    largest: u64,
+    /// The first tick with the largest.
+    tick: u64,
+}
+
+impl Summary {
+    fn add(&mut self, tick: u64, figures: &[(&'static str, u64)]) {
+        if self.figures.is_empty() {
+            let figure = |&(name, _): &(_, u64)| Figure { name, total: 0, largest: 0, tick };
+            self.figures = figures.iter().map(figure).collect();
+        }
+        self.ticks += 1;
+        for (figure, (_, value)) in self.figures.iter_mut().zip(figures) {
+            figure.total += u128::from(*value);
+            if *value > figure.largest {
+                (figure.largest, figure.tick) = (*value, tick);
+            }
+        }
+    }
+
+    fn print(&self, console: &mut Console<'_>) -> Result<(), CommandError> {
+        if self.figures.is_empty() {
+            return Ok(());
+        }
+        console.line(format_args!("{:14} {:>12} {:>14} {:>9}", "", "largest", "mean", "at tick"))?;
+        for Figure { name, total, largest, tick } in &self.figures {
+            let tenths = total * 10 / u128::from(self.ticks.max(1));
+            let mean = format!("{}.{}", tenths / 10, tenths % 10);
+            let tick = if *largest > 0 { tick.to_string() } else { "-".into() };
+            let name = name.replace('_', " ");
+            console.line(format_args!("{name:14} {largest:>12} {mean:>14} {tick:>9}"))?;
+        }
+        Ok(())
+    }
+}

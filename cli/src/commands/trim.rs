@@ -1,0 +1,107 @@
+//! `trim`: makes what is whole of a replay complete.
+
+use std::path::PathBuf;
+
+use clap::{ArgMatches, Args, Command};
+use lockstep2d::lockstep::Game;
+use lockstep2d::replay::{Limits, Part, ReadError, Reader, Verdict};
+use serde::Serialize;
+
+use crate::console::{Console, DOUBTFUL};
+use crate::error::CommandError;
+use crate::exit::Exit;
+use crate::files::{self, Shown};
+use crate::rewriting::{Copy, CopyError};
+
+pub(crate) const NAME: &str = "trim";
+
+/// Make a complete replay of what is whole of a cut or damaged one
+#[derive(Args, Debug)]
+#[command(
+    after_help = "Kept are the blocks in front of the first damage that lead to the checkpoints that the replay \
+                        states. The new replay is verified before it is written. It begins where the old one does.\
+                        \n\nExit code: 0 when it was written, 1 when there is nothing to keep, 2 for wrong usage, or files \
+                        that cannot be read or written."
+)]
+pub(crate) struct Arguments {
+    /// The replay
+    file: PathBuf,
+    /// Keep at most so many ticks
+    #[arg(long, value_name = "N")]
+    ticks: Option<u64>,
+    /// The file to write
+    #[arg(short, long, value_name = "FILE")]
+    output: PathBuf,
+    /// Print one JSON document
+    #[arg(long)]
+    json: bool,
+}
+
+pub(crate) fn command() -> Command {
+    Arguments::augment_args(Command::new(NAME))
+}
+
+pub(crate) fn arguments(matches: &ArgMatches) -> Arguments {
+    super::from_matches(matches)
+}
+
+pub(crate) fn run<G: Game>(
+    arguments: &Arguments,
+    limits: &Limits,
+    console: &mut Console<'_>,
+) -> Result<Exit, CommandError> {
+    let bytes = files::load(&arguments.file, limits.file_bytes)?;
+    let refused =
+        |error: ReadError| CommandError::Replay { path: arguments.file.clone(), verdict: error.into() };
+    let (whole, damage) = whole_part(&bytes, limits).map_err(refused)?;
+    let most = arguments.ticks.unwrap_or(u64::MAX);
+    let of_file = |error: CopyError| error.of_file(&arguments.file);
+    let (copy, damage) = match Copy::<G>::new(whole, most, limits) {
+        Err(CopyError::Replay { ticks, verdict }) if ticks > 0 => {
+            (Copy::new(whole, ticks, limits).map_err(of_file)?, Some(verdict))
+        }
+        copy => (copy.map_err(of_file)?, damage),
+    };
+    let ticks = copy.ticks();
+    let (replay, hash) = copy.finish(&arguments.output, limits)?;
+    files::save(&arguments.output, &replay)?;
+
+    // What is behind the last tick that was asked for is of no interest.
+    let damage = damage.filter(|_| ticks < most);
+    if arguments.json {
+        let file = arguments.output.display().to_string();
+        let line =
+            Line { file, ticks, hash: hash.to_string(), left_out: damage.map(|verdict| verdict.to_string()) };
+        console.line(serde_json::to_string(&line).expect("strings and numbers have a JSON form"))?;
+    } else {
+        let (old, new) = (Shown(&arguments.file), Shown(&arguments.output));
+        console.line(format_args!("{new}: {ticks} ticks of {old}, final hash {hash}"))?;
+        if let Some(verdict) = damage {
+            console.note(format_args!("{DOUBTFUL}left out:{DOUBTFUL:#} {old}: {verdict}"));
+        }
+    }
+    Ok(Exit::Success)
+}
+
+#[derive(Serialize)]
+struct Line {
+    file: String,
+    ticks: u64,
+    hash: String,
+    left_out: Option<String>,
+}
+
+/// The header and the blocks that are whole, and what is wrong behind them.
+fn whole_part<'a>(bytes: &'a [u8], limits: &Limits) -> Result<(&'a [u8], Option<Verdict>), ReadError> {
+    let mut reader = Reader::open(bytes, limits)?;
+    let mut end = reader.offset();
+    let damage = loop {
+        match reader.next_part() {
+            Ok(Some(Part::Inputs(_))) => end = reader.offset(),
+            Ok(_) => break None,
+            Err(error) => break Some(error.into()),
+        }
+    };
+    let end = usize::try_from(end).unwrap_or(bytes.len());
+    Ok((&bytes[..end], damage))
+}

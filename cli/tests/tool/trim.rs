@@ -1,0 +1,120 @@
+//! `trim`: what is whole of a replay becomes complete.
+
+use std::fs;
+
+use lockstep2d::lockstep::Game;
+use lockstep2d::replay::{Limits, Recorder, verify};
+use lockstep2d_cli::Exit;
+use serde_json::Value;
+
+use crate::counter::{Counter, inputs_at, setup};
+use crate::{Folder, golden, replay, run, run_sandbox};
+
+/// Trims bytes and verifies what comes out: its ticks, and what was said on the error stream.
+fn trimmed(folder: &Folder, bytes: &[u8], more: &[&str]) -> Option<(u64, String)> {
+    let (file, new) = (folder.write("a.replay", bytes), folder.path("new.replay"));
+    let outcome = run(&[&["trim", &file, "-o", &new], more].concat());
+    let written = fs::read(&new).ok();
+    let _ = fs::remove_file(&new);
+    if outcome.exit == Exit::NoMatch {
+        assert_eq!((written, outcome.out.as_str()), (None, ""));
+        return None;
+    }
+    let verdict = verify::<Counter>(&written.unwrap(), &Limits::default());
+    assert!(verdict.is_match(), "{verdict}");
+    let ticks = verdict.ticks();
+    assert!(
+        outcome.out.starts_with(&format!("{new}: {ticks} ticks of {file}, final hash ")),
+        "{}",
+        outcome.out
+    );
+    Some((ticks, outcome.err))
+}
+
+#[test]
+fn a_replay_that_is_cut_anywhere_becomes_complete() {
+    let folder = Folder::new("trim-cut");
+    let whole = replay(35);
+    let mut kept = Vec::new();
+    for length in 0..=whole.len() {
+        match trimmed(&folder, &whole[..length], &[]) {
+            Some((ticks, message)) => {
+                assert_eq!(message, "", "to be cut is no damage");
+                kept.push(ticks);
+            }
+            None => assert!(kept.is_empty(), "only the header has to be whole"),
+        }
+    }
+    kept.dedup();
+    assert_eq!(kept, [0, 10, 20, 30, 35]);
+}
+
+#[test]
+fn in_front_of_damage_it_is_kept() {
+    let folder = Folder::new("trim-damage");
+    let whole = replay(35);
+    let mut kept = Vec::new();
+    for at in 0..whole.len() {
+        let mut damaged = whole.clone();
+        damaged[at] ^= 1;
+        if let Some((ticks, message)) = trimmed(&folder, &damaged, &[]) {
+            // A length that points behind the end makes a file that is cut.
+            assert!(message.is_empty() || message.contains("left out:"), "{message}");
+            kept.push(ticks);
+        }
+    }
+    assert!(kept.is_sorted());
+    kept.dedup();
+    assert_eq!(kept, [0, 10, 20, 30, 35]);
+}
+
+#[test]
+fn a_complete_replay_stays_or_becomes_shorter() {
+    let folder = Folder::new("trim-short");
+    let whole = replay(35);
+    for ticks in [0, 1, 10, 34, 35, 99] {
+        let (kept, message) = trimmed(&folder, &whole, &["--ticks", &ticks.to_string()]).unwrap();
+        assert_eq!((kept, message.as_str()), (ticks.min(35), ""));
+    }
+    let new = folder.path("same");
+    assert_eq!(run_sandbox(&["trim", &golden("chain"), "-o", &new]).exit, Exit::Success);
+    assert_eq!(fs::read(&new).unwrap(), fs::read(golden("chain")).unwrap());
+}
+
+/// The checksums are right, but from some tick on the states are others.
+#[test]
+fn where_a_replay_leaves_the_rules_it_ends() {
+    let folder = Folder::new("trim-diverged");
+    let (mut recorder, mut game) = Recorder::<Counter>::start(&setup(), 10).unwrap();
+    for tick in 0..35 {
+        game.step(recorder.record(&inputs_at(tick)).unwrap());
+        game.sum += i64::from(tick == 24);
+        recorder.checkpoint(game.state_hash());
+    }
+    let diverged = recorder.finish(&game).unwrap();
+    let (kept, message) = trimmed(&folder, &diverged, &[]).unwrap();
+    assert_eq!(kept, 20);
+    assert!(message.contains("diverged: equal at tick 20, different at tick 30"), "{message}");
+    assert_eq!(trimmed(&folder, &diverged, &["--ticks", "15"]), Some((15, String::new())));
+
+    let file = folder.write("a.replay", &diverged);
+    let outcome = run(&["trim", &file, "-o", &folder.path("new"), "--json"]);
+    let found: Value = serde_json::from_str(&outcome.out).unwrap();
+    assert_eq!(found["ticks"], 20);
+    assert!(found["left_out"].as_str().unwrap().starts_with("diverged"), "{found}");
+}
+
+#[test]
+fn what_has_nothing_to_keep_is_explained() {
+    let folder = Folder::new("untrimmable");
+    let (bad, new) = (folder.write("bad.replay", b"no replay"), folder.path("new"));
+    for (file, exit, message) in [
+        (bad, Exit::NoMatch, "malformed: at byte 0"),
+        (golden("game"), Exit::NoMatch, "unverifiable: made with the rules \"sandbox\""),
+        (folder.path("missing"), Exit::Trouble, "cannot read"),
+    ] {
+        let outcome = run(&["trim", &file, "-o", &new]);
+        assert_eq!(outcome.exit, exit, "{file}");
+        assert!(outcome.err.contains(message), "{}", outcome.err);
+    }
+}

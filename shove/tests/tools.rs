@@ -1,0 +1,79 @@
+//! The commands for replays, on a committed match: a game of its own, with four players and claims.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use lockstep2d::lockstep::Game;
+use lockstep2d::replay::{Limits, Playback, Verdict, verify};
+use lockstep2d_shove::Shove;
+
+fn replay() -> String {
+    format!("{}/replays/match.replay", env!("CARGO_MANIFEST_DIR"))
+}
+
+/// What the command prints, if it succeeds.
+fn shove(arguments: &[&str]) -> String {
+    let outcome =
+        Command::new(env!("CARGO_BIN_EXE_shove")).args(arguments).output().expect("the binary runs");
+    let messages = String::from_utf8_lossy(&outcome.stderr).into_owned();
+    assert!(outcome.status.success(), "{arguments:?}: {messages}");
+    String::from_utf8(outcome.stdout).expect("UTF-8")
+}
+
+/// A path for a test, with nothing there.
+fn path(name: &str) -> PathBuf {
+    let path = std::env::temp_dir().join(format!("shove-{}-{name}", std::process::id()));
+    let _ = fs::remove_file(&path);
+    path
+}
+
+fn text(path: &Path) -> &str {
+    path.to_str().expect("a path of this test")
+}
+
+#[test]
+fn a_match_can_be_gone_through() {
+    let bytes = fs::read(replay()).expect("a committed replay");
+    let mut playback = Playback::<Shove>::open(&bytes, &Limits::default()).expect("a match");
+    while playback.tick() < 1990 {
+        playback.step().expect("a match");
+    }
+    let keyframes = path("keyframes");
+    let arguments = ["seek", &replay(), "--tick", "2000", "--back", "10", "--keyframes", text(&keyframes)];
+    let expected = format!("tick 1990 of 3000\nstate {}\n", playback.game().state_hash());
+    for there in [2000, 200] {
+        let out = shove(&arguments);
+        assert!(out.contains(&expected), "{out}");
+        assert!(out.contains(&format!("simulated {there} ticks, and 199 for 10 back")), "{out}");
+    }
+    let _ = fs::remove_file(keyframes);
+    let out = shove(&["inspect", &replay(), "--tick", "1990", "--path", "rules.seats[0].score"]);
+    assert_eq!(out.lines().count(), 2, "{out}");
+    let out = shove(&["export", &replay(), "--json", "--from", "1989", "--to", "1990"]);
+    assert_eq!(out.lines().count(), 2);
+    assert!(out.contains(&format!("{{\"tick\":1990,\"hash\":\"{}\"", playback.game().state_hash())));
+    assert!(shove(&["stats", &replay()]).contains("joints solved"));
+    assert!(shove(&["inspect", &replay()]).contains("claims \"score 4\" = 5\n"));
+}
+
+#[test]
+fn a_match_can_end_otherwise() {
+    let (new, then) = (path("fork.replay"), path("pads"));
+    fs::write(&then, "[1,2,3,4]\n[17,1,0,0]\n").expect("a folder for temporary files");
+    let out =
+        shove(&["fork", &replay(), "--tick", "700", "--then", text(&then), "--idle", "98", "-o", text(&new)]);
+    assert!(out.contains("700 ticks of ") && out.contains(" and 100 more"), "{out}");
+    let whole = fs::read(&new).expect("what was written");
+    let verdict = verify::<Shove>(&whole, &Limits::default());
+    assert!(matches!(verdict, Verdict::Match { ticks: 800, .. }), "{verdict}");
+
+    let (cut, trimmed) = (path("cut.replay"), path("trimmed.replay"));
+    fs::write(&cut, &whole[..whole.len() * 9 / 10]).expect("a folder for temporary files");
+    shove(&["trim", text(&cut), "-o", text(&trimmed)]);
+    let verdict = verify::<Shove>(&fs::read(&trimmed).expect("what was written"), &Limits::default());
+    assert!(verdict.is_match() && verdict.ticks() % 60 == 0 && verdict.ticks() > 300, "{verdict}");
+    for file in [new, then, cut, trimmed] {
+        let _ = fs::remove_file(file);
+    }
+}

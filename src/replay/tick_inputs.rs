@@ -1,0 +1,63 @@
+//! [`TickInputs`]: the encoded inputs of a replay, tick by tick.
+
+use super::limits::Limits;
+use super::reader::{InputBlock, Part, ReadError, Reader};
+use super::runs::{Run, Runs};
+
+/// The encoded inputs of a replay, tick by tick.
+#[derive(Clone, Debug)]
+pub struct TickInputs<'a> {
+    reader: Reader<'a>,
+    /// The block at hand, and its ticks yet to come.
+    block: Option<InputBlock<'a>>,
+    block_left: u32,
+    runs: Runs<'a>,
+    /// The run at hand, with its ticks yet to come.
+    run: Option<Run<'a>>,
+}
+
+impl<'a> TickInputs<'a> {
+    /// The inputs from the first tick on.
+    ///
+    /// # Errors
+    /// [`ReadError`] for a header that is none.
+    pub fn open(file: &'a [u8], limits: &Limits) -> Result<Self, ReadError> {
+        let reader = Reader::open(file, limits)?;
+        Ok(TickInputs { reader, block: None, block_left: 0, runs: Runs::new(&[], 0), run: None })
+    }
+
+    /// The run that the next tick belongs to, with the ticks that are left of it; that tick is then passed. `None` at the
+    /// end of what is whole.
+    ///
+    /// # Errors
+    /// [`ReadError`] when the next block is none.
+    pub fn next_tick(&mut self) -> Result<Option<Run<'a>>, ReadError> {
+        loop {
+            if let Some(run) = self.run.as_mut().filter(|run| run.ticks > 0) {
+                let found = *run;
+                run.ticks -= 1;
+                self.block_left -= 1;
+                return Ok(Some(found));
+            }
+            self.run = self.runs.next_run()?;
+            if self.run.is_none() {
+                let Some(Part::Inputs(block)) = self.reader.next_part()? else {
+                    return Ok(None);
+                };
+                (self.runs, self.block_left) = (block.runs(), block.ticks);
+                self.block = Some(block);
+            }
+        }
+    }
+
+    /// The block whose last tick was the last that was passed: its checkpoint is of the state after that tick.
+    #[must_use]
+    pub fn finished_block(&self) -> Option<&InputBlock<'a>> {
+        self.block.as_ref().filter(|_| self.block_left == 0)
+    }
+
+    /// The reader, behind the block at hand.
+    pub(super) fn reader(&self) -> &Reader<'a> {
+        &self.reader
+    }
+}

@@ -1,0 +1,247 @@
+//! Keyframes as a file beside the replay. `docs/FORMAT.md` has the layout.
+
+use alloc::string::String;
+use alloc::vec::Vec;
+use core::fmt;
+
+use serde::de::Visitor;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+use super::super::rerun::Place;
+use super::keyframes::{Keyframe, Keyframes};
+use crate::codec::{self, DecodeError};
+use crate::hash::StateHash;
+use crate::lockstep::Game;
+
+/// The first eight bytes of a file of keyframes, modelled like those of a replay.
+pub const KEYFRAMES_MAGIC: [u8; 8] = *b"\x89L2K\r\n\x1a\n";
+
+/// The version of the layout.
+pub const KEYFRAMES_FORMAT_VERSION: u32 = 1;
+
+/// Most bytes that keyframes take together: their file can then be decoded at once.
+pub const KEYFRAMES_BYTES_MAX: usize = 192 << 20;
+
+/// Magic, format, semantics, length.
+const HEADER_LEN: usize = 8 + 4 + 4 + 8;
+/// The hash at the end.
+const HASH_LEN: usize = 16;
+
+/// Bytes that are no keyframes of this replay.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum KeyframesError {
+    /// They do not start like a file of keyframes.
+    NotKeyframes,
+    /// The layout is of another version.
+    Format {
+        /// The version found.
+        found: u32,
+    },
+    /// They are of another version of the engine.
+    Semantics {
+        /// The semantics found.
+        found: u32,
+    },
+    /// They are of another game, or another version of its rules.
+    Rules {
+        /// The name found.
+        name: String,
+        /// The version found.
+        version: u32,
+    },
+    /// They are of another replay, or of this one when it had other bytes.
+    OtherReplay,
+    /// There are fewer or more bytes than announced.
+    Length {
+        /// How many the header announces, itself included.
+        announced: u64,
+        /// How many there are.
+        found: u64,
+    },
+    /// The hash at the end does not belong to the bytes before it.
+    Hash,
+    /// The body does not decode.
+    Decode(DecodeError),
+    /// The body is one that nobody writes.
+    Invalid(KeyframesFlaw),
+}
+
+/// What is wrong with keyframes that decode.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum KeyframesFlaw {
+    /// The interval is zero.
+    Interval,
+    /// The ticks are not multiples of the interval in ascending order, from 1 to the end of the replay.
+    Ticks,
+    /// The replay has no checkpoint at one of the ticks.
+    Checkpoint,
+}
+
+impl fmt::Display for KeyframesFlaw {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            KeyframesFlaw::Interval => "an interval of zero",
+            KeyframesFlaw::Ticks => "the ticks are not ascending multiples of the interval within the replay",
+            KeyframesFlaw::Checkpoint => "a keyframe at a tick of which the replay has no checkpoint",
+        })
+    }
+}
+
+impl fmt::Display for KeyframesError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            KeyframesError::NotKeyframes => write!(f, "no file of keyframes"),
+            KeyframesError::Format { found } => {
+                write!(f, "format version {found}, this engine reads {KEYFRAMES_FORMAT_VERSION}")
+            }
+            KeyframesError::Semantics { found } => {
+                write!(f, "made with engine semantics {found}, this program has {}", crate::SEMANTICS)
+            }
+            KeyframesError::Rules { name, version } => {
+                write!(
+                    f,
+                    "made with the rules {name:?} version {version}, which are not those of this program"
+                )
+            }
+            KeyframesError::OtherReplay => write!(f, "they are keyframes of another replay"),
+            KeyframesError::Length { announced, found } => {
+                write!(f, "{found} bytes where {announced} are announced")
+            }
+            KeyframesError::Hash => write!(f, "the hash does not match the bytes"),
+            KeyframesError::Decode(error) => error.fmt(f),
+            KeyframesError::Invalid(flaw) => flaw.fmt(f),
+        }
+    }
+}
+
+impl core::error::Error for KeyframesError {}
+
+/// What follows the header.
+#[derive(Serialize, Deserialize)]
+pub(super) struct Body {
+    rules_name: String,
+    rules_version: u32,
+    /// The hash of the replay's bytes.
+    replay: StateHash,
+    pub(super) interval: u64,
+    /// In ascending order of the ticks.
+    saves: Vec<(u64, Save)>,
+}
+
+/// The canonical bytes of a save: the same layout as that of a list of u8, read and written in one go.
+struct Save(Vec<u8>);
+
+impl Serialize for Save {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_bytes(&self.0)
+    }
+}
+
+impl<'de> Deserialize<'de> for Save {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_byte_buf(SaveBytes)
+    }
+}
+
+struct SaveBytes;
+
+impl Visitor<'_> for SaveBytes {
+    type Value = Save;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "the bytes of a save")
+    }
+
+    fn visit_bytes<E>(self, bytes: &[u8]) -> Result<Save, E> {
+        Ok(Save(bytes.into()))
+    }
+
+    fn visit_byte_buf<E>(self, bytes: Vec<u8>) -> Result<Save, E> {
+        Ok(Save(bytes))
+    }
+}
+
+/// The bytes of a file of keyframes.
+pub(super) fn encode<G: Game>(replay: &[u8], keyframes: &Keyframes<'_>) -> Vec<u8> {
+    let at_checkpoints = keyframes.iter().filter(|frame| frame.place.inputs.finished_block().is_some());
+    let body = Body {
+        rules_name: G::RULES.name.into(),
+        rules_version: G::RULES.version,
+        replay: StateHash::of_bytes(replay),
+        interval: keyframes.interval(),
+        saves: at_checkpoints.map(|frame| (frame.place.tick, Save(frame.save.clone()))).collect(),
+    };
+    let mut bytes = KEYFRAMES_MAGIC.to_vec();
+    bytes.extend_from_slice(&KEYFRAMES_FORMAT_VERSION.to_le_bytes());
+    bytes.extend_from_slice(&crate::SEMANTICS.to_le_bytes());
+    bytes.extend_from_slice(&[0; 8]);
+    codec::encode_into(&body, &mut bytes);
+    let length = (bytes.len() - HEADER_LEN) as u64;
+    bytes[HEADER_LEN - 8..HEADER_LEN].copy_from_slice(&length.to_le_bytes());
+    let hash = StateHash::of_bytes(&bytes);
+    bytes.extend_from_slice(&hash.0.to_le_bytes());
+    bytes
+}
+
+/// The body of a file of keyframes of this replay. The saves are not yet judged.
+pub(super) fn decode<G: Game>(replay: &[u8], bytes: &[u8]) -> Result<Body, KeyframesError> {
+    let header: &[u8; HEADER_LEN] = bytes.first_chunk().ok_or(KeyframesError::NotKeyframes)?;
+    let number = |at: usize| u32::from_le_bytes([header[at], header[at + 1], header[at + 2], header[at + 3]]);
+    if header[..8] != KEYFRAMES_MAGIC {
+        return Err(KeyframesError::NotKeyframes);
+    }
+    if number(8) != KEYFRAMES_FORMAT_VERSION {
+        return Err(KeyframesError::Format { found: number(8) });
+    }
+    if number(12) != crate::SEMANTICS {
+        return Err(KeyframesError::Semantics { found: number(12) });
+    }
+    let length = u64::from(number(16)) | u64::from(number(20)) << 32;
+    let (announced, found) = (length.saturating_add((HEADER_LEN + HASH_LEN) as u64), bytes.len() as u64);
+    if announced != found {
+        return Err(KeyframesError::Length { announced, found });
+    }
+    let (covered, hash) = bytes.split_at(bytes.len() - HASH_LEN);
+    if StateHash::of_bytes(covered).0.to_le_bytes() != *hash {
+        return Err(KeyframesError::Hash);
+    }
+    let body: Body = codec::decode(&covered[HEADER_LEN..]).map_err(KeyframesError::Decode)?;
+    if (body.rules_name.as_str(), body.rules_version) != (G::RULES.name, G::RULES.version) {
+        return Err(KeyframesError::Rules { name: body.rules_name, version: body.rules_version });
+    }
+    if body.replay != StateHash::of_bytes(replay) {
+        return Err(KeyframesError::OtherReplay);
+    }
+    let ticks = body.saves.iter().map(|(tick, _)| *tick);
+    let before = [0].into_iter().chain(ticks.clone());
+    if body.interval == 0 {
+        return Err(KeyframesError::Invalid(KeyframesFlaw::Interval));
+    }
+    if before.zip(ticks).any(|(before, tick)| before >= tick || tick % body.interval != 0) {
+        return Err(KeyframesError::Invalid(KeyframesFlaw::Ticks));
+    }
+    Ok(body)
+}
+
+/// The keyframes at their places in a replay of `ticks` ticks that begins at `start`.
+pub(super) fn place<'a>(
+    start: &Place<'a>,
+    ticks: u64,
+    body: Body,
+) -> Result<Vec<Keyframe<'a>>, KeyframesError> {
+    let mut place = start.clone();
+    let mut keyframes = Vec::new();
+    for (tick, Save(save)) in body.saves {
+        while place.tick < tick.min(ticks) && matches!(place.inputs.next_tick(), Ok(Some(_))) {
+            place.tick += 1;
+        }
+        if place.tick != tick {
+            return Err(KeyframesError::Invalid(KeyframesFlaw::Ticks));
+        }
+        if place.inputs.finished_block().is_none() {
+            return Err(KeyframesError::Invalid(KeyframesFlaw::Checkpoint));
+        }
+        keyframes.push(Keyframe { place: place.clone(), save });
+    }
+    Ok(keyframes)
+}

@@ -1,0 +1,436 @@
+//! A timeline goes to any tick, and what it finds there is what a straight playback finds; going there costs at most two
+//! intervals of simulation; what it keeps stays within its budget; and no file of keyframes passes for another one.
+
+use lockstep2d::codec;
+use lockstep2d::hash::StateHash;
+use lockstep2d::lockstep::{Game, RulesId, Sandbox, SetupError};
+use lockstep2d::math::Rng;
+use lockstep2d::replay::{
+    KEYFRAMES_MAGIC, KeyframesError, KeyframesFlaw, Limit, Limits, Playback, Recording, SeekError, Step,
+    Timeline, TimelineOptions, Verdict,
+};
+use lockstep2d::scenes;
+
+use crate::counter::{Counter, Input, Setup, add, inputs_at, setup};
+use crate::forge::forge;
+use crate::record;
+
+fn open<'a, G: Game>(file: &'a [u8], interval: u32, bytes: usize) -> Timeline<'a, G> {
+    let options = TimelineOptions { interval, bytes };
+    Timeline::open(file, &options, &Limits::default()).unwrap()
+}
+
+/// The state hash of every tick, by playing straight on.
+fn hashes<G: Game>(file: &[u8]) -> Vec<StateHash> {
+    let mut playback = Playback::<G>::open(file, &Limits::default()).unwrap();
+    let mut hashes = vec![playback.game().state_hash()];
+    while playback.step().unwrap() == Step::Ticked {
+        hashes.push(playback.game().state_hash());
+    }
+    hashes
+}
+
+fn at(tick: u64) -> usize {
+    usize::try_from(tick).unwrap()
+}
+
+fn random_tick(rng: &mut Rng, ticks: u64) -> u64 {
+    u64::from(rng.below(u32::try_from(ticks).unwrap() + 1))
+}
+
+fn recorded(scene: &str, ticks: u64, interval: u32) -> Vec<u8> {
+    let scene = scenes::Scene::find(scene).unwrap();
+    let mut recording = Recording::<Sandbox>::start(&scene.setup(1), interval).unwrap();
+    for tick in 0..ticks {
+        let commands = scene.commands(tick, recording.game());
+        recording.step(&[commands]).unwrap();
+    }
+    recording.finish().unwrap()
+}
+
+#[test]
+fn any_tick_of_a_hundred_thousand_is_two_intervals_away() {
+    const TICKS: u64 = 100_000;
+    let file = record(TICKS, 60, inputs_at);
+    let hashes = hashes::<Counter>(&file);
+    // With room for all keyframes, with room for a hundred, and where an interval is no whole number of blocks.
+    for (interval, bytes) in [(300, 64 << 20), (60, 50_000), (37, 64 << 20), (1000, 64 << 20)] {
+        let mut timeline = open::<Counter>(&file, interval, bytes);
+        assert_eq!((timeline.simulated(), timeline.ticks()), (0, TICKS), "opening plays nothing");
+        timeline.play_all().unwrap();
+        assert_eq!((timeline.tick(), timeline.played(), timeline.simulated()), (0, TICKS, TICKS));
+        let mut rng = Rng::new(7);
+        let mut longest = 0;
+        for _ in 0..2000 {
+            let (tick, before) = (random_tick(&mut rng, TICKS), timeline.simulated());
+            timeline.seek(tick).unwrap();
+            assert_eq!(timeline.tick(), tick);
+            assert_eq!(timeline.game().state_hash(), hashes[at(tick)], "tick {tick}");
+            longest = longest.max(timeline.simulated() - before);
+        }
+        assert!(
+            longest <= 2 * timeline.interval(),
+            "{longest} ticks at an interval of {}",
+            timeline.interval()
+        );
+        assert!(longest > timeline.interval() / 2, "the test has not tried the far ends");
+        assert!(bytes < 1 << 20 || timeline.interval() <= u64::from(interval), "{}", timeline.interval());
+    }
+}
+
+#[test]
+fn before_it_has_been_played_a_seek_plays_what_is_missing_and_no_more() {
+    let file = record(5000, 60, inputs_at);
+    let hashes = hashes::<Counter>(&file);
+    let mut timeline = open::<Counter>(&file, 120, 1 << 20);
+    let mut rng = Rng::new(3);
+    for _ in 0..500 {
+        let (tick, before) = (random_tick(&mut rng, 5000), timeline.simulated());
+        let missing = tick.saturating_sub(timeline.played());
+        timeline.seek(tick).unwrap();
+        assert!(timeline.simulated() - before <= missing + 120, "tick {tick}");
+        assert_eq!(timeline.game().state_hash(), hashes[at(tick)]);
+    }
+}
+
+#[test]
+fn worlds_come_back_at_every_tick() {
+    for (scene, ticks) in [("game", 400), ("spawning", 600), ("ragdoll", 320)] {
+        let file = recorded(scene, ticks, 20);
+        let hashes = hashes::<Sandbox>(&file);
+        let mut timeline = open::<Sandbox>(&file, 40, 64 << 20);
+        let mut rng = Rng::new(5);
+        timeline.seek(ticks).unwrap();
+        for _ in 0..60 {
+            let (tick, before) = (random_tick(&mut rng, ticks), timeline.simulated());
+            timeline.seek(tick).unwrap();
+            assert_eq!(timeline.game().state_hash(), hashes[at(tick)], "{scene}, tick {tick}");
+            assert!(timeline.simulated() - before < 40, "{scene}, tick {tick}");
+        }
+        timeline.seek(ticks).unwrap();
+        let before = timeline.simulated();
+        for tick in (0..ticks).rev() {
+            assert_eq!(timeline.step_back(), Ok(Step::Ticked));
+            assert_eq!(timeline.game().state_hash(), hashes[at(tick)], "{scene}, back at tick {tick}");
+        }
+        assert_eq!(timeline.step_back(), Ok(Step::Ended));
+        assert!(
+            timeline.simulated() - before <= ticks,
+            "every tick once more: {}",
+            timeline.simulated() - before
+        );
+        assert_eq!((timeline.tick(), timeline.step()), (0, Ok(Step::Ticked)));
+    }
+}
+
+#[test]
+fn steps_backwards_are_cheap_in_little_memory_too() {
+    let file = record(20_000, 60, inputs_at);
+    // Room for some 12 keyframes, and a few saves behind the cursor.
+    let mut timeline = open::<Counter>(&file, 60, 10_000);
+    timeline.seek(20_000).unwrap();
+    let interval = timeline.interval();
+    assert!(interval >= 960, "{interval}");
+    let before = timeline.simulated();
+    for _ in 0..interval {
+        timeline.step_back().unwrap();
+    }
+    let each = (timeline.simulated() - before) / interval;
+    assert!(each <= interval / 20, "{each} ticks for a step, at an interval of {interval}");
+}
+
+#[test]
+fn keyframes_stay_within_their_budget_and_evenly_spread() {
+    let file = record(50_000, 60, inputs_at);
+    for bytes in [0, 1, 10_000, 100_000, 1 << 20] {
+        let mut timeline = open::<Counter>(&file, 60, bytes);
+        timeline.seek(50_000).unwrap();
+        let (interval, ticks): (u64, Vec<u64>) = (timeline.interval(), timeline.keyframes().collect());
+        let count = u64::try_from(ticks.len()).unwrap();
+        assert!(ticks.iter().zip(0..).all(|(tick, number)| *tick == number * interval), "{bytes}: {ticks:?}");
+        assert!(count == 1 || count == 50_000 / interval + 1, "{bytes} bytes: {count} at {interval}");
+        let saves = ticks.len() * codec::encode(timeline.game()).len();
+        assert!(ticks.len() == 1 || saves <= bytes, "{saves} bytes of saves in a budget of {bytes}");
+        timeline.seek(12_345).unwrap();
+        assert_eq!(timeline.game().tick, 12_345);
+    }
+}
+
+#[test]
+fn there_is_no_tick_behind_the_last() {
+    let file = record(35, 10, inputs_at);
+    for whole in [file.len(), file.len() - 1] {
+        let mut timeline = open::<Counter>(&file[..whole], 10, 1 << 20);
+        assert_eq!(timeline.seek(36), Err(SeekError::NoSuchTick { tick: 36, ticks: 35 }));
+        assert_eq!(timeline.tick(), 0);
+        timeline.seek(35).unwrap();
+        assert_eq!(timeline.step(), Ok(Step::Ended));
+        assert_eq!(timeline.game().tick, 35);
+    }
+}
+
+#[test]
+fn a_checkpoint_that_is_another_is_found_on_the_way() {
+    let file = forge(&record(50, 10, inputs_at), |forged| *forged.payload(2).last_mut().unwrap() ^= 1);
+    let mut timeline = open::<Counter>(&file, 10, 1 << 20);
+    let diverged = SeekError::Replay(Verdict::Diverged { last_equal: Some(20), first_different: 30 });
+    assert_eq!(timeline.seek(45), Err(diverged.clone()));
+    assert_eq!((timeline.tick(), timeline.played()), (30, 29));
+    for tick in [29, 3, 20, 28] {
+        timeline.seek(tick).unwrap();
+        assert_eq!(timeline.game().tick, tick);
+    }
+    assert_eq!(timeline.seek(30), Err(diverged.clone()));
+    timeline.seek(29).unwrap();
+    assert_eq!((timeline.step(), timeline.tick()), (Err(diverged), 29));
+}
+
+#[test]
+fn limits_hold_on_the_way_and_repeated_ticks_count_once() {
+    let file = record(100, 10, |tick| add(if tick == 70 { 100 } else { 1 }, 1));
+    let limits = Limits { tick_work: 50, ..Limits::default() };
+    let mut timeline = Timeline::<Counter>::open(&file, &TimelineOptions::default(), &limits).unwrap();
+    let exceeded = Verdict::LimitExceeded { limit: Limit::TickWork, value: 102, max: 50 };
+    assert_eq!(timeline.seek(100), Err(SeekError::Replay(exceeded)));
+    timeline.seek(69).unwrap();
+    // Three units a tick.
+    let limits = Limits { total_work: 700, ..Limits::default() };
+    let mut timeline = Timeline::<Counter>::open(&file, &TimelineOptions::default(), &limits).unwrap();
+    for _ in 0..50 {
+        timeline.seek(99).unwrap();
+        timeline.seek(0).unwrap();
+    }
+}
+
+#[test]
+fn keyframes_of_a_file_spare_the_way() {
+    let file = recorded("game", 400, 20);
+    let hashes = hashes::<Sandbox>(&file);
+    let mut first = open::<Sandbox>(&file, 40, 64 << 20);
+    first.seek(400).unwrap();
+    let bytes = first.keyframes_to_bytes();
+    for tick in [399, 40, 39, 200, 0] {
+        let mut timeline = open::<Sandbox>(&file, 40, 64 << 20);
+        timeline.use_keyframes(&bytes).unwrap();
+        assert_eq!(timeline.keyframes_to_bytes(), bytes);
+        timeline.seek(tick).unwrap();
+        assert_eq!(timeline.game().state_hash(), hashes[at(tick)]);
+        assert!(timeline.simulated() < 40, "tick {tick}: {}", timeline.simulated());
+        assert!(timeline.played() < 40, "what was not played is not called played");
+    }
+    // Another interval: as many of them as fit it.
+    for (interval, then) in [(20, 40), (40, 40), (60, 80), (100, 120)] {
+        let mut timeline = open::<Sandbox>(&file, interval, 64 << 20);
+        timeline.use_keyframes(&bytes).unwrap();
+        assert_eq!(timeline.interval(), then);
+        assert!(timeline.keyframes().all(|tick| tick % then == 0));
+    }
+}
+
+#[test]
+fn keyframes_of_an_interval_within_blocks_are_those_at_checkpoints() {
+    let file = record(100, 10, inputs_at);
+    let mut timeline = open::<Counter>(&file, 4, 1 << 20);
+    timeline.seek(100).unwrap();
+    let bytes = timeline.keyframes_to_bytes();
+    timeline.use_keyframes(&bytes).unwrap();
+    assert_eq!(timeline.keyframes().collect::<Vec<_>>(), [0, 20, 40, 60, 80, 100]);
+}
+
+/// The layout of `docs/FORMAT.md`, written without help.
+fn keyframes(replay: &[u8], interval: u64, saves: &[(u64, Counter)]) -> Vec<u8> {
+    let saves: Vec<(u64, Vec<u8>)> = saves.iter().map(|(tick, save)| (*tick, codec::encode(save))).collect();
+    of_body(&(("counter", 3u32), StateHash::of_bytes(replay), interval, saves))
+}
+
+fn of_body<T: serde::Serialize>(body: &T) -> Vec<u8> {
+    let body = codec::encode(body);
+    let mut bytes = KEYFRAMES_MAGIC.to_vec();
+    bytes.extend(1u32.to_le_bytes());
+    bytes.extend(lockstep2d::SEMANTICS.to_le_bytes());
+    bytes.extend(u64::try_from(body.len()).unwrap().to_le_bytes());
+    bytes.extend(body);
+    let hash = StateHash::of_bytes(&bytes);
+    bytes.extend(hash.0.to_le_bytes());
+    bytes
+}
+
+fn refused(file: &[u8], keyframes: &[u8]) -> KeyframesError {
+    let mut timeline = open::<Counter>(file, 10, 1 << 20);
+    let error = timeline.use_keyframes(keyframes).unwrap_err();
+    timeline.seek(35).unwrap();
+    assert_eq!(timeline.game().tick, 35, "it goes on without them");
+    error
+}
+
+#[test]
+fn what_is_no_file_of_keyframes_is_refused() {
+    let file = record(35, 10, inputs_at);
+    let mut timeline = open::<Counter>(&file, 10, 1 << 20);
+    let mut saves = Vec::new();
+    for tick in [10, 20, 30] {
+        timeline.seek(tick).unwrap();
+        saves.push((tick, timeline.game().clone()));
+    }
+    let good = timeline.keyframes_to_bytes();
+    assert_eq!(good, keyframes(&file, 10, &saves), "the layout is that of the documentation");
+
+    for cut in 0..good.len() {
+        refused(&file, &good[..cut]);
+    }
+    for at in 0..good.len() {
+        for bit in 0..8 {
+            let mut bad = good.clone();
+            bad[at] ^= 1 << bit;
+            refused(&file, &bad);
+        }
+    }
+    assert_eq!(refused(&file, &file), KeyframesError::NotKeyframes);
+    assert_eq!(refused(&record(36, 10, inputs_at), &good), KeyframesError::OtherReplay);
+    let other_rules =
+        of_body(&(("counter", 4u32), StateHash::of_bytes(&file), 10u64, Vec::<(u64, Vec<u8>)>::new()));
+    assert!(matches!(refused(&file, &other_rules), KeyframesError::Rules { version: 4, .. }));
+    let huge = of_body(&(("counter", 3u32), StateHash::of_bytes(&file), 10u64, u64::MAX));
+    assert!(matches!(refused(&file, &huge), KeyframesError::Decode(_)));
+    let huge = of_body(&(("counter", 3u32), StateHash::of_bytes(&file), 10u64, 1u64, 10u64, u64::MAX));
+    assert!(matches!(refused(&file, &huge), KeyframesError::Decode(_)));
+
+    let with = |interval, ticks: &[u64]| {
+        let saves: Vec<_> = ticks.iter().map(|tick| (*tick, saves[0].1.clone())).collect();
+        refused(&file, &keyframes(&file, interval, &saves))
+    };
+    for (interval, ticks, flaw) in [
+        (0, &[][..], KeyframesFlaw::Interval),
+        (10, &[0], KeyframesFlaw::Ticks),
+        (10, &[10, 10], KeyframesFlaw::Ticks),
+        (10, &[20, 10], KeyframesFlaw::Ticks),
+        (20, &[10], KeyframesFlaw::Ticks),
+        (10, &[40], KeyframesFlaw::Ticks),
+        (1, &[u64::MAX], KeyframesFlaw::Ticks),
+        (5, &[10, 15], KeyframesFlaw::Checkpoint),
+    ] {
+        assert_eq!(with(interval, ticks), KeyframesError::Invalid(flaw), "{interval}, {ticks:?}");
+    }
+}
+
+/// A forger can repair every hash of the file, but not what the replay says of the state.
+#[test]
+fn a_keyframe_with_another_state_is_found_when_it_is_used() {
+    let file = record(35, 10, inputs_at);
+    let forged = Counter { sum: 1_000_000, tick: 20, moods: 0 };
+    let mut timeline = open::<Counter>(&file, 10, 1 << 20);
+    timeline.use_keyframes(&keyframes(&file, 10, &[(20, forged)])).unwrap();
+    timeline.seek(7).unwrap();
+    let there = timeline.game().clone();
+    assert!(matches!(timeline.seek(25), Err(SeekError::Keyframe { tick: 20, .. })));
+    assert_eq!((timeline.tick(), timeline.game()), (7, &there), "it stays where it was");
+    timeline.seek(19).unwrap();
+
+    let garbage =
+        of_body(&(("counter", 3u32), StateHash::of_bytes(&file), 10u64, vec![(20u64, vec![1u8, 2])]));
+    let mut timeline = open::<Counter>(&file, 10, 1 << 20);
+    timeline.use_keyframes(&garbage).unwrap();
+    assert!(matches!(timeline.seek(25), Err(SeekError::Keyframe { tick: 20, .. })));
+    assert_eq!(timeline.tick(), 0);
+}
+
+#[test]
+fn damaged_keyframes_with_repaired_hashes_never_lead_elsewhere() {
+    let file = record(35, 10, inputs_at);
+    let hashes = hashes::<Counter>(&file);
+    let mut timeline = open::<Counter>(&file, 10, 1 << 20);
+    timeline.seek(35).unwrap();
+    let good = timeline.keyframes_to_bytes();
+    let body = good.len() - 16;
+    let mut led = 0;
+    for at_byte in 24..body {
+        for bit in 0..8 {
+            let mut bad = good[..body].to_vec();
+            bad[at_byte] ^= 1 << bit;
+            let hash = StateHash::of_bytes(&bad);
+            bad.extend(hash.0.to_le_bytes());
+            let mut timeline = open::<Counter>(&file, 10, 1 << 20);
+            if timeline.use_keyframes(&bad).is_err() {
+                continue;
+            }
+            for tick in [12, 25, 35] {
+                if timeline.seek(tick).is_ok() {
+                    led += 1;
+                    assert_eq!(timeline.game().state_hash(), hashes[at(tick)], "byte {at_byte}, bit {bit}");
+                }
+            }
+        }
+    }
+    assert!(led > 100, "most damage is elsewhere: {led}");
+}
+
+/// A counter that also adds what it saw last, and does not save it.
+struct Forgetful {
+    counter: Counter,
+    last: i64,
+}
+
+impl Game for Forgetful {
+    type Setup = Setup;
+    type Input = Input;
+    type Save = Counter;
+
+    const RULES: RulesId = Counter::RULES;
+
+    fn new(setup: &Setup) -> Result<Self, SetupError> {
+        Ok(Forgetful { counter: Counter::new(setup)?, last: 0 })
+    }
+
+    fn players(&self) -> u32 {
+        self.counter.players()
+    }
+
+    fn tick_rate(&self) -> u32 {
+        self.counter.tick_rate()
+    }
+
+    fn step(&mut self, inputs: &[Input]) {
+        self.counter.step(inputs);
+        self.counter.sum += self.last;
+        self.last = 1 + self.counter.sum % 5;
+    }
+
+    fn state_hash(&self) -> StateHash {
+        self.counter.state_hash()
+    }
+
+    fn save(&self) -> Counter {
+        self.counter.clone()
+    }
+
+    fn load(&mut self, save: &Counter) {
+        self.counter = save.clone();
+    }
+
+    fn work(&self, inputs: &[Input]) -> u64 {
+        self.counter.work(inputs)
+    }
+}
+
+#[test]
+fn a_game_that_does_not_save_all_of_itself_is_found_out() {
+    let mut recording = Recording::<Forgetful>::start(&setup(), 10).unwrap();
+    (0..100).for_each(|tick| recording.step(&inputs_at(tick)).unwrap());
+    let file = recording.finish().unwrap();
+    let mut timeline = open::<Forgetful>(&file, 20, 1 << 20);
+    timeline.seek(100).unwrap();
+    assert_eq!(timeline.seek(55), Err(SeekError::Forgetful { tick: 50 }));
+}
+
+#[test]
+fn inputs_of_a_playback_are_those_of_the_tick() {
+    let file = record(35, 10, inputs_at);
+    let mut playback = Playback::<Counter>::open(&file, &Limits::default()).unwrap();
+    assert_eq!(playback.inputs(), &[] as &[Input]);
+    for tick in 0..35 {
+        playback.step().unwrap();
+        assert_eq!(playback.inputs(), inputs_at(tick));
+    }
+    let units: u64 = (0..35).map(|tick| Counter { sum: 0, tick: 0, moods: 0 }.work(&inputs_at(tick))).sum();
+    assert_eq!(playback.work(), units);
+}
