@@ -18,6 +18,7 @@ mod joint_view;
 mod look_ahead;
 mod mover_planes;
 mod pairs;
+mod phases;
 mod probe;
 mod push;
 mod query;
@@ -42,12 +43,15 @@ pub use events::{ContactEvent, Events, HitEvent, JointEvent, MoveEvent, SensorEv
 pub use explosion::Explosion;
 pub use fault::Motion;
 pub use mover_planes::{MoverPlane, clip_velocity, solve_planes};
+pub use phases::PhaseDigest;
 pub use probe::Probe;
 pub use query::{CastHit, Proximity, QueryFilter, RayHit};
 pub use rollback::Snapshot;
 pub use stats::{Phase, StepStats};
 pub use timestep::FixedTimestep;
 pub use validate::Violation;
+
+use alloc::vec::Vec;
 
 use crate::body::{Body, BodyId, BodyKind, JointId, Shape, ShapeId, WorldError};
 use crate::collision::{BroadPhaseKind, Manifold};
@@ -84,6 +88,8 @@ use state::State;
 pub struct World {
     state: Hashed,
     scratch: Scratch,
+    /// What each phase of the last tick has left behind, if somebody wants to know.
+    phases: Option<Vec<PhaseDigest>>,
 }
 
 impl Default for World {
@@ -106,7 +112,7 @@ impl World {
     fn of(mut state: State, broad_phase: BroadPhaseKind) -> Self {
         state.keep_pages();
         let scratch = Scratch::new(broad_phase, &state);
-        World { state: Hashed::new(state), scratch }
+        World { state: Hashed::new(state), scratch, phases: None }
     }
 
     /// The settings.

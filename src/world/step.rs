@@ -8,6 +8,7 @@ use super::events::MoveEvent;
 use super::islands;
 use super::look_ahead::{Motion, Way};
 use super::pairs;
+use super::phases::Sight;
 use super::scratch::{Extents, Scratch};
 use super::state::State;
 use super::stats::{Phase, StepStats};
@@ -19,7 +20,11 @@ use crate::solver::{SolverBody, Tuning, turn_of};
 impl World {
     /// Advances the world by one tick of `1 / tick_rate` seconds.
     pub fn step(&mut self) {
-        self.step_observed(|_| {});
+        if self.phases.is_some() {
+            self.step_noting_phases();
+        } else {
+            self.advance(|_, _| {});
+        }
     }
 
     /// [`World::step`], telling an observer which phase begins: what a profile is made of. The engine has no clock.
@@ -31,28 +36,33 @@ impl World {
     /// assert_eq!(phases.len(), 7);
     /// ```
     pub fn step_observed(&mut self, mut begin: impl FnMut(Phase)) {
-        let World { state, scratch } = self;
+        self.advance(|phase, _| begin(phase));
+    }
+
+    /// The algorithm; `begin` hears of each phase, and sees what it begins with.
+    pub(super) fn advance(&mut self, mut begin: impl FnMut(Phase, Sight<'_>)) {
+        let World { state, scratch, phases: _ } = self;
         let state = &mut **state;
         let settings = state.config.solver;
         let tuning = Tuning::new(&settings, state.config.gravity, state.config.tick_rate);
 
-        begin(Phase::BroadPhase);
+        begin(Phase::BroadPhase, Sight::of(state, scratch));
         scratch.roster.refresh(state);
         refit_boxes(state, scratch);
         pairs::update(state, scratch);
         islands::wake_touched(state, scratch);
         scratch.roster.refresh(state);
 
-        begin(Phase::NarrowPhase);
+        begin(Phase::NarrowPhase, Sight::of(state, scratch));
         contacts::find_manifolds(state, scratch);
 
-        begin(Phase::Prepare);
+        begin(Phase::Prepare, Sight::of(state, scratch));
         let Scratch { solver, roster, found, .. } = scratch;
         solver.prepare_bodies(&state.bodies, &roster.bodies, &tuning);
         solver.prepare_joints(&state.joints, &roster.joints, &state.bodies, &tuning);
         solver.prepare_contacts(&found.touching, &found.manifolds, &state.contacts);
 
-        begin(Phase::Solve);
+        begin(Phase::Solve, Sight { state, solver, roster, found });
         let first_sub_step = state.tick.wrapping_mul(settings.sub_steps.into());
         solver.threads.clone().install(|| {
             for index in 0..settings.sub_steps {
@@ -62,15 +72,15 @@ impl World {
         });
         solver.store_impulses(&mut state.contacts, &mut state.joints);
 
-        begin(Phase::Finalise);
+        begin(Phase::Finalise, Sight::of(state, scratch));
         contacts::report(state, scratch);
         finalise_poses(state, scratch);
         stress::report(state, scratch, &tuning);
 
-        begin(Phase::Sleep);
+        begin(Phase::Sleep, Sight::of(state, scratch));
         islands::fall_asleep(state, scratch);
 
-        begin(Phase::Report);
+        begin(Phase::Report, Sight::of(state, scratch));
         report_moves(state, scratch);
         count(state, scratch);
         // A count that a stranger's snapshot may start anywhere.

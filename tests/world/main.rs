@@ -6,6 +6,7 @@ mod equality;
 mod events;
 mod joint_batches;
 mod locks;
+mod phases;
 mod rollback;
 mod sensors;
 mod sleeping;

@@ -29,7 +29,7 @@ impl World {
     /// Costs a fraction of a tick: what every tick changes is copied, and only shapes that have moved since are posed
     /// anew. What has been defined, spawned or removed since the save is copied in pages of 32.
     pub fn restore(&mut self, snapshot: &Snapshot) {
-        let World { state, scratch } = self;
+        let World { state, scratch, phases: _ } = self;
         let state = &mut **state;
         let mut stale = Stale::default();
         restore_state(state, snapshot, &mut stale);
