@@ -8,7 +8,7 @@ use clap::{ArgMatches, Command};
 use lockstep2d::lockstep::Game;
 use lockstep2d::replay::Limits;
 
-use crate::commands::{diff, export, record, scenes, verify};
+use crate::commands::{diff, export, heavy, record, scenes, verify};
 use crate::console::Console;
 use crate::error::CommandError;
 use crate::exit::Exit;
@@ -37,7 +37,7 @@ impl<G: Game> Default for Tool<G> {
 }
 
 impl<G: Game> Tool<G> {
-    /// The tools that every game has: `verify` and `diff`.
+    /// The tools that every game has: `verify`, `diff` and `heavy`.
     #[must_use]
     pub fn new() -> Self {
         Tool { limits: Limits::default(), catalogue: None, svg: None, own: Vec::new() }
@@ -111,7 +111,8 @@ impl<G: Game> Tool<G> {
             .subcommand_required(true)
             .arg_required_else_help(true)
             .subcommand(verify::command())
-            .subcommand(diff::command());
+            .subcommand(diff::command())
+            .subcommand(heavy::command());
         if self.catalogue.is_some() {
             command = command.subcommand(scenes::command()).subcommand(record::command());
         }
@@ -128,6 +129,9 @@ impl<G: Game> Tool<G> {
             }
             (Some((diff::NAME, matches)), _, _) => {
                 diff::run::<G>(&diff::arguments(matches), &self.limits, console)
+            }
+            (Some((heavy::NAME, matches)), _, _) => {
+                heavy::run::<G>(&heavy::arguments(matches), &self.limits, console)
             }
             (Some((scenes::NAME, _)), Some(catalogue), _) => scenes::run(catalogue.as_ref(), console),
             (Some((record::NAME, matches)), Some(catalogue), _) => {

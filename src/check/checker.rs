@@ -5,10 +5,11 @@ use alloc::vec::Vec;
 
 use super::finding::{Fault, Finding};
 use super::lane::{Lane, Now};
-use super::options::{Options, Way};
+use super::options::{Options, Phases, Way};
 use crate::hash::StateHash;
 use crate::lockstep::{Game, SetupError};
 use crate::replay::{Limit, Verdict};
+use crate::world::PhaseDigest;
 
 /// What has been checked, and found good.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -34,6 +35,8 @@ pub struct Checker<'s, G: Game> {
     hash: StateHash,
     tick: u64,
     work: u64,
+    /// What the phases of the last tick have left behind, if they are compared.
+    phases: Vec<PhaseDigest>,
     /// Empty before the tick from which on it is checked.
     lanes: Vec<Lane<G>>,
 }
@@ -47,7 +50,16 @@ impl<'s, G: Game> Checker<'s, G> {
         let straight = G::new(setup)?;
         let hash = straight.state_hash();
         let options = options.clone();
-        Ok(Checker { setup, options, straight, hash, tick: 0, work: 0, lanes: Vec::new() })
+        Ok(Checker {
+            setup,
+            options,
+            straight,
+            hash,
+            tick: 0,
+            work: 0,
+            phases: Vec::new(),
+            lanes: Vec::new(),
+        })
     }
 
     /// The straight run as of now.
@@ -75,7 +87,7 @@ impl<'s, G: Game> Checker<'s, G> {
     pub fn step(&mut self, inputs: &[G::Input]) -> Result<(), Box<Finding>> {
         self.begin()?;
         self.check_work(inputs)?;
-        self.straight.step(inputs);
+        self.phases = step(&mut self.straight, inputs, self.options.phases);
         self.hash = self.straight.state_hash();
         self.tick += 1;
         let now = Now {
@@ -85,6 +97,7 @@ impl<'s, G: Game> Checker<'s, G> {
             inputs,
             hash: self.hash,
             tick: self.tick,
+            phases: &self.phases,
             claims: Vec::new(),
         };
         self.lanes.iter_mut().try_for_each(|lane| lane.step(&now))
@@ -105,8 +118,8 @@ impl<'s, G: Game> Checker<'s, G> {
     }
 
     fn now<'a>(&'a self, inputs: &'a [G::Input]) -> Now<'a, G> {
-        let Checker { setup, options, straight, hash, tick, .. } = self;
-        Now { setup, options, straight, inputs, hash: *hash, tick: *tick, claims: Vec::new() }
+        let Checker { setup, options, straight, hash, tick, phases, .. } = self;
+        Now { setup, options, straight, inputs, hash: *hash, tick: *tick, phases, claims: Vec::new() }
     }
 
     /// Starts all ways, at the tick from which on is checked.
@@ -139,6 +152,20 @@ impl<'s, G: Game> Checker<'s, G> {
             }
             None => Ok(()),
         }
+    }
+}
+
+/// Plays a tick and says what its phases have left behind, if that is wanted.
+pub(super) fn step<G: Game>(game: &mut G, inputs: &[G::Input], phases: Phases) -> Vec<PhaseDigest> {
+    if phases == Phases::Compared {
+        if let Some(world) = game.world_mut() {
+            world.note_phases();
+        }
+    }
+    game.step(inputs);
+    match (phases, game.world_mut()) {
+        (Phases::Compared, Some(world)) => world.phase_digests().to_vec(),
+        _ => Vec::new(),
     }
 }
 

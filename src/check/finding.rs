@@ -17,6 +17,8 @@ use crate::world::Phase;
 pub enum Fault {
     /// The hash after the tick is not that of the straight run.
     Hash,
+    /// The hash is, but a phase of the physics step has left something else behind.
+    Phase,
     /// Loading a save gives a state with another hash than the one that was saved.
     Loaded,
     /// A save that was decoded is encoded to other bytes.
@@ -70,7 +72,8 @@ pub struct Finding {
     pub fault: Fault,
     /// After how many ticks.
     pub tick: u64,
-    /// The phase of the physics step after which the states differ first, if that was looked at.
+    /// The phase of the physics step after which something differs first, if phases are compared; `None` also if
+    /// something differed before the step.
     pub phase: Option<Phase>,
     /// By how many ticks it had been rolled back, and after which guess.
     pub rollback: Option<(u32, Guess)>,
@@ -164,6 +167,7 @@ impl fmt::Display for Fault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Fault::Hash => write!(f, "the state hash is not that of the straight run"),
+            Fault::Phase => write!(f, "something else was left behind than in the straight run"),
             Fault::Loaded => {
                 write!(f, "the state that was loaded has not the hash of the one that was saved")
             }

@@ -4,7 +4,7 @@ use alloc::boxed::Box;
 use alloc::string::{String, ToString};
 use alloc::vec::Vec;
 
-use super::checker::another;
+use super::checker::{another, step};
 use super::exchange::Exchanges;
 use super::finding::{Fault, Finding};
 use super::options::{Options, Way};
@@ -12,8 +12,7 @@ use super::rollback::Past;
 use crate::codec;
 use crate::hash::StateHash;
 use crate::lockstep::Game;
-#[cfg(feature = "parallel")]
-use crate::world::World;
+use crate::world::PhaseDigest;
 
 /// The straight run after a tick.
 pub(super) struct Now<'a, G: Game> {
@@ -26,6 +25,8 @@ pub(super) struct Now<'a, G: Game> {
     pub(super) hash: StateHash,
     /// Ticks that have been played.
     pub(super) tick: u64,
+    /// What the phases of the tick have left behind, if they are compared.
+    pub(super) phases: &'a [PhaseDigest],
     /// What it claims, once it has ended.
     pub(super) claims: Vec<(String, i64)>,
 }
@@ -63,10 +64,17 @@ impl<G: Game> Lane<G> {
             // Whatever the straight run is asked for.
             let _work = self.game.work(now.inputs);
         }
-        self.game.step(now.inputs);
+        let phases = step(&mut self.game, now.inputs, now.options.phases);
         self.steps += 1;
         if self.way == Way::Unasked {
             return Ok(());
+        }
+        let apart = phases.iter().zip(now.phases).find(|(a, b)| a != b);
+        if let Some((noted, _)) = apart {
+            let is_same = self.game.state_hash() == now.hash;
+            let fault = if is_same { Fault::Phase } else { Fault::Hash };
+            let finding = self.finding(fault, now).with_saves(&now.straight.save(), &self.game.save());
+            return Err(Box::new(Finding { phase: noted.phase, ..finding }));
         }
         self.compare(now)?;
         self.disturb(now)
@@ -106,7 +114,7 @@ impl<G: Game> Lane<G> {
             }
             Way::BroadPhase(kind) if world.tick() == 0 || self.steps == 0 => world.set_broad_phase(kind),
             #[cfg(feature = "parallel")]
-            Way::Threads(count) if World::threads(world) != count => {
+            Way::Threads(count) if world.threads() != count => {
                 let _are_available = world.set_threads(count);
             }
             _ => {}

@@ -77,6 +77,11 @@ pub(super) fn minimise<G: Game>(
     finding: Finding,
     options: &Options,
 ) -> Failure {
+    if options.budget == 0 {
+        let cut = first(log, finding.tick);
+        let (minimised, replay) = (finding.clone(), cut.record(setup));
+        return Failure { finding, minimised, replay, ticks: cut.len(), failed: (1, 1) };
+    }
     let mut search = Search { setup, options: options.clone(), spent: 0, need: 0 };
     let way = finding.way;
     // Whatever is random shows in any way: then that is what to say.
@@ -93,6 +98,11 @@ pub(super) fn minimise<G: Game>(
         ticks: log.len(),
         failed: (best.failed, options.repeats.max(1)),
     }
+}
+
+/// The first ticks of a log, at least one.
+fn first<G: Game>(log: &Log<G>, ticks: u64) -> Log<G> {
+    log.of(log.ticks.iter().zip(0..ticks.max(1)).map(|(inputs, _)| inputs.clone()).collect())
 }
 
 /// A log that fails, and how often.
@@ -121,9 +131,7 @@ impl<G: Game> Search<'_, G> {
             self.options.depths = Depths::InTurn;
         }
         self.need = 1;
-        let cut =
-            log.of(log.ticks.iter().zip(0..finding.tick.max(1)).map(|(inputs, _)| inputs.clone()).collect());
-        let of_cut = self.attempt(cut.ticks, log);
+        let of_cut = self.attempt(first(log, finding.tick).ticks, log);
         // What fails by chance may fail more often with more ticks.
         self.need = of_cut.as_ref().map_or(0, |found| found.failed) + 1;
         let of_all = match self.need <= self.options.repeats {

@@ -36,14 +36,14 @@ mod source;
 pub use checker::{Checked, Checker};
 pub use failure::{CheckError, Failure};
 pub use finding::{Fault, Finding, Guess};
-pub use options::{Depths, Options, Way};
+pub use options::{Depths, Options, Phases, Way};
 pub use source::{inputs_from_bytes, random_inputs};
 
 use alloc::boxed::Box;
 use alloc::vec::Vec;
 
 use crate::lockstep::Game;
-use crate::replay::Recorder;
+use crate::replay::{Recorder, Verdict};
 use log::{INTERVAL, Log, Logged};
 
 /// Plays a game from a setup with the inputs of every tick, in every [`Way`] of the options.
@@ -74,7 +74,13 @@ pub fn check<G: Game>(
 /// As [`check`]; [`CheckError::Replay`] if the file is no replay of this game or costs more than the limits allow.
 pub fn check_replay<G: Game>(file: &[u8], options: &Options) -> Result<Checked, CheckError> {
     let Logged { setup, log } = log::read::<G>(file, &options.limits, options.to)?;
-    check_log(&setup, &log, options)
+    match check_log(&setup, &log, options) {
+        Err(CheckError::Failed(failure)) => Err(match failure.finding.fault {
+            Fault::Verdict(verdict @ Verdict::LimitExceeded { .. }) => CheckError::Replay(verdict),
+            _ => CheckError::Failed(failure),
+        }),
+        result => result,
+    }
 }
 
 fn check_log<G: Game>(setup: &G::Setup, log: &Log<G>, options: &Options) -> Result<Checked, CheckError> {

@@ -97,6 +97,16 @@ pub enum Depths {
     Each,
 }
 
+/// Whether the phases of the physics step are compared as well.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Phases {
+    /// Only the states between ticks.
+    #[default]
+    Ignored,
+    /// After each phase the world and what its later phases work with; a tick takes several times as long.
+    Compared,
+}
+
 /// What is checked, and how much it may cost.
 #[derive(Clone, Debug)]
 pub struct Options {
@@ -108,6 +118,8 @@ pub struct Options {
     pub rollback_max: u32,
     /// Which of these numbers of ticks in one go.
     pub depths: Depths,
+    /// Whether the phases of the physics step are compared as well.
+    pub phases: Phases,
     /// The tick from which on it is checked; before it, the game is only played.
     pub from: u64,
     /// The tick up to which a log is played, if it is that long.
@@ -115,7 +127,8 @@ pub struct Options {
     /// How often a shorter log is played to see how often it fails, at least 1. A log that fails by chance, because of a
     /// `HashMap`, is made shorter only as long as it fails as often as before.
     pub repeats: u32,
-    /// Ticks that may be simulated to make a failing log shorter. With 0 it ends with the tick that fails.
+    /// Ticks that may be simulated to make a failing log shorter. With 0 it ends with the tick that fails,
+    /// and is not played again.
     pub budget: u64,
     /// What a replay may cost: one that is checked, and one that is recorded.
     pub limits: Limits,
@@ -129,6 +142,7 @@ impl Default for Options {
             every: 1,
             rollback_max: 8,
             depths: Depths::default(),
+            phases: Phases::default(),
             from: 0,
             to: u64::MAX,
             repeats: 4,

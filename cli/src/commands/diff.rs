@@ -12,7 +12,7 @@ use crate::error::CommandError;
 use crate::exit::Exit;
 use crate::files;
 
-mod json;
+pub(super) mod json;
 mod text;
 
 pub(crate) const NAME: &str = "diff";

@@ -3,6 +3,7 @@
 
 pub(crate) mod diff;
 pub(crate) mod export;
+pub(crate) mod heavy;
 pub(crate) mod record;
 pub(crate) mod scenes;
 pub(crate) mod verify;

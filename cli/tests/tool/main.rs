@@ -7,12 +7,14 @@ mod counter;
 mod binary;
 mod diff;
 mod export;
+mod heavy;
 mod record;
 mod verify;
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use lockstep2d::lockstep::Game;
 use lockstep2d::replay::Recording;
 use lockstep2d_cli::{Catalogue, Exit, Scene, SceneInfo, Tool};
 
@@ -33,6 +35,10 @@ fn run(arguments: &[&str]) -> Outcome {
 }
 
 fn run_tool(tool: &Tool<Counter>, arguments: &[&str]) -> Outcome {
+    run_tool_of(tool, arguments)
+}
+
+fn run_tool_of<G: Game>(tool: &Tool<G>, arguments: &[&str]) -> Outcome {
     let (mut out, mut err) = (anstream::StripStream::new(Vec::new()), anstream::StripStream::new(Vec::new()));
     let arguments = ["counter"].into_iter().chain(arguments.iter().copied());
     let exit = tool.run_with(arguments, &mut out, &mut err);
