@@ -5,6 +5,7 @@
 #[path = "../../examples/fuzzing/src/lib.rs"]
 mod harvest;
 mod inputs;
+mod physics;
 mod planted;
 mod random_order;
 mod sandbox;
