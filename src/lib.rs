@@ -9,6 +9,7 @@
 //! - [`lockstep`]: [`lockstep::Game`], the seam that recording, verifying and tools are generic over.
 //! - [`replay`]: writes, reads and verifies replay files.
 //! - [`report`]: what a peer writes when states differ, and who departed, when and where.
+//! - [`check`]: plays a game in many ways that must make no difference, for tests and fuzzers.
 //! - [`inspect`]: any value as named fields, and what differs between two.
 //! - [`draw`]: pictures of a world. [`scenes`]: worlds that tests, replays and tools share.
 //! - [`hash`] and [`codec`]: what a state hash is made of.
@@ -34,6 +35,7 @@ extern crate alloc;
 extern crate std;
 
 pub mod body;
+pub mod check;
 pub mod codec;
 pub mod collision;
 pub mod draw;

@@ -3,7 +3,7 @@
 //!
 //! ```text
 //!           net
-//!          report
+//!          report   check
 //! scenes   replay
 //!       \  /
 //!     lockstep   draw
@@ -35,6 +35,10 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("replay", &["math", "codec", "hash", "body", "collision", "solver", "world", "lockstep"]),
     (
         "report",
+        &["math", "codec", "hash", "inspect", "body", "collision", "solver", "world", "lockstep", "replay"],
+    ),
+    (
+        "check",
         &["math", "codec", "hash", "inspect", "body", "collision", "solver", "world", "lockstep", "replay"],
     ),
     ("net", &["math", "codec", "hash", "lockstep", "replay", "report"]),

@@ -9,7 +9,7 @@ use lockstep2d::lockstep::Game;
 use lockstep2d::replay::Limits;
 
 use crate::commands::{
-    bisect, diff, export, fork, inspect, record, scenes, seek, stats, trace, trim, verify,
+    bisect, diff, export, fork, heavy, inspect, record, scenes, seek, stats, trace, trim, verify,
 };
 use crate::console::Console;
 use crate::error::CommandError;
@@ -39,7 +39,8 @@ impl<G: Game> Default for Tool<G> {
 }
 
 impl<G: Game> Tool<G> {
-    /// The tools that every game has: `verify`, `diff`, `inspect`, `seek`, `fork`, `trim`, `stats` and `export --json`.
+    /// The tools that every game has: `verify`, `diff`, `bisect`, `trace`, `heavy`, `inspect`, `seek`, `fork`, `trim`,
+    /// `stats` and `export --json`.
     #[must_use]
     pub fn new() -> Self {
         Tool { limits: Limits::default(), catalogue: None, svg: None, own: Vec::new() }
@@ -125,6 +126,7 @@ impl<G: Game> Tool<G> {
             .subcommand(diff::command())
             .subcommand(bisect::command())
             .subcommand(trace::command())
+            .subcommand(heavy::command())
             .subcommand(inspect::command())
             .subcommand(seek::command())
             .subcommand(fork::command())
@@ -141,15 +143,14 @@ impl<G: Game> Tool<G> {
         let limits = &self.limits;
         match (matches.subcommand(), &self.catalogue) {
             (Some((verify::NAME, matches)), _) => {
-                verify::run::<G>(&verify::arguments(matches), &self.limits, console)
+                verify::run::<G>(&verify::arguments(matches), limits, console)
             }
-            (Some((diff::NAME, matches)), _) => {
-                diff::run::<G>(&diff::arguments(matches), &self.limits, console)
-            }
+            (Some((diff::NAME, matches)), _) => diff::run::<G>(&diff::arguments(matches), limits, console),
             (Some((bisect::NAME, matches)), _) => {
                 bisect::run::<G>(&bisect::arguments(matches), limits, console)
             }
             (Some((trace::NAME, matches)), _) => trace::run::<G>(&trace::arguments(matches), limits, console),
+            (Some((heavy::NAME, matches)), _) => heavy::run::<G>(&heavy::arguments(matches), limits, console),
             (Some((inspect::NAME, matches)), _) => {
                 inspect::run::<G>(&inspect::arguments(matches), limits, console)
             }

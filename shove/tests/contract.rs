@@ -1,6 +1,7 @@
 //! What every user of a `Game` relies on, shown on this one: the same pads give the same hashes, whatever is saved,
 //! loaded and encoded in between, and whatever the pads are.
 
+use lockstep2d::check::{self, Options, Phases};
 use lockstep2d::codec::{decode, encode};
 use lockstep2d::hash::StateHash;
 use lockstep2d::lockstep::Game;
@@ -184,4 +185,18 @@ fn missing_and_surplus_pads_are_no_trouble() {
     game.step(&two);
     other.step(&four);
     assert_eq!(game.state_hash(), other.state_hash());
+}
+
+/// Bots and any bytes, in every way that must make no difference.
+#[test]
+fn every_way_to_play_comes_to_the_same() {
+    for setup in setups() {
+        let by_bots: Vec<_> = played(&setup, 60).into_iter().map(|(pads, _)| pads).collect();
+        let options = Options { phases: Phases::Compared, ..Options::default() };
+        check::check::<Shove>(&setup, &by_bots, &options).expect("a good game");
+        let random = check::random_inputs::<Shove>(setup.seats.into(), 200, &mut Rng::new(setup.seed));
+        let checked =
+            check::check::<Shove>(&setup, &random, &Options::default().every(4)).expect("a good game");
+        assert_eq!(checked.ticks, 200);
+    }
 }

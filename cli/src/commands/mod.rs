@@ -5,6 +5,7 @@ pub(crate) mod bisect;
 pub(crate) mod diff;
 pub(crate) mod export;
 pub(crate) mod fork;
+pub(crate) mod heavy;
 pub(crate) mod inspect;
 pub(crate) mod record;
 pub(crate) mod scenes;

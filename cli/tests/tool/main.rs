@@ -6,11 +6,13 @@ mod counter;
 
 mod batch;
 mod binary;
+mod bisect;
 mod cache;
 mod diff;
 mod docs;
 mod export;
 mod fork;
+mod heavy;
 mod hostile;
 mod inspect;
 mod record;

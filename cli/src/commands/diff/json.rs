@@ -60,7 +60,8 @@ fn blame(blame: Blame) -> &'static str {
     }
 }
 
-fn fields(differences: &[Difference]) -> Vec<Json> {
+/// Fields that differ, with both values.
+pub(crate) fn fields(differences: &[Difference]) -> Vec<Json> {
     let field = |difference: &Difference| {
         json!({
             "path": difference.field().path(),

@@ -1,0 +1,210 @@
+//! `heavy`: plays a replay and, at every tick, takes the game through bytes into a new one that plays on beside it.
+
+use std::fmt;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use clap::{ArgMatches, Args, Command};
+use lockstep2d::check::{CheckError, Checked, Failure, Finding, Guess, Options, Phases, Way, check_replay};
+use lockstep2d::lockstep::Game;
+use lockstep2d::replay::{Limits, TickInputs};
+use serde_json::{Value as Json, json};
+
+use super::diff;
+use crate::console::{BAD, Console, GOOD};
+use crate::error::CommandError;
+use crate::exit::Exit;
+use crate::files::{self, Shown};
+
+pub(crate) const NAME: &str = "heavy";
+
+/// Play a replay, and at every tick save it to bytes, restore them into a new game, and compare
+///
+/// The new game plays on beside the first one: after every phase of the physics step and after every tick both must be in
+/// the same state. What the replay's own checkpoints say is for `verify`.
+#[derive(Args, Debug)]
+#[command(
+    after_help = "Exit code: 0 when nothing differs, 1 when something does or the replay cannot be played, 2 for \
+                        wrong usage or a path that cannot be read or written."
+)]
+pub(crate) struct Arguments {
+    /// The replay
+    file: PathBuf,
+    /// The tick from which on to compare; before it the game is only played
+    #[arg(long, default_value_t = 0, value_name = "TICK")]
+    from: u64,
+    /// The tick up to which to play
+    #[arg(long, value_name = "TICK")]
+    to: Option<u64>,
+    /// Roll back by 1 to 8 ticks as well, also after wrong guesses
+    #[arg(long)]
+    rollback: bool,
+    /// Play in every other way that must make no difference, too: without caches, with other broad phases and so on
+    #[arg(long)]
+    all: bool,
+    /// Write a replay that fails and is as short as could be found
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// Print one JSON document
+    #[arg(long)]
+    json: bool,
+}
+
+pub(crate) fn command() -> Command {
+    Arguments::augment_args(Command::new(NAME))
+}
+
+pub(crate) fn arguments(matches: &ArgMatches) -> Arguments {
+    super::from_matches(matches)
+}
+
+pub(crate) fn run<G: Game>(
+    arguments: &Arguments,
+    limits: &Limits,
+    console: &mut Console<'_>,
+) -> Result<Exit, CommandError> {
+    let path = || arguments.file.clone();
+    let bytes = files::read(&arguments.file, limits.file_bytes)
+        .map_err(|error| CommandError::Read { path: path(), error })?;
+    let result = match check_replay::<G>(&bytes, &options(arguments, limits)) {
+        Ok(checked) if checked.ticks < arguments.from.max(arguments.to.unwrap_or(0)) => {
+            let tick = arguments.from.max(arguments.to.unwrap_or(0));
+            return Err(CommandError::NoSuchTick { path: path(), tick, ticks: ticks(&bytes, limits) });
+        }
+        Ok(checked) => Ok(checked),
+        Err(CheckError::Failed(failure)) => Err(failure),
+        Err(CheckError::Replay(verdict)) => return Err(CommandError::Replay { path: path(), verdict }),
+        Err(CheckError::Record(error)) => return Err(CommandError::Record(error)),
+    };
+    if let (Err(failure), Some(output)) = (&result, &arguments.output) {
+        fs::write(output, &failure.replay)
+            .map_err(|error| CommandError::Write { path: output.clone(), error })?;
+    }
+    let outcome = Outcome { arguments, result: result.as_ref().map_err(AsRef::as_ref) };
+    if arguments.json {
+        console.line(outcome.document())?;
+    } else {
+        console.line(&outcome)?;
+    }
+    Ok(if result.is_ok() { Exit::Success } else { Exit::NoMatch })
+}
+
+fn options(arguments: &Arguments, limits: &Limits) -> Options {
+    let mut options = Options::default();
+    if !arguments.all {
+        // A game that does not repeat itself is not to be blamed on the save.
+        options.ways = vec![Way::Again, Way::Reloaded];
+        options.ways.extend(arguments.rollback.then_some(Way::RolledBack));
+    }
+    Options {
+        phases: Phases::Compared,
+        from: arguments.from,
+        to: arguments.to.unwrap_or(u64::MAX),
+        budget: if arguments.output.is_some() { options.budget } else { 0 },
+        limits: limits.clone(),
+        ..options
+    }
+}
+
+/// How many ticks a replay has whose inputs have been read.
+fn ticks(file: &[u8], limits: &Limits) -> u64 {
+    let Ok(mut inputs) = TickInputs::open(file, limits) else {
+        return 0;
+    };
+    let mut ticks = 0;
+    while let Ok(Some(_)) = inputs.next_tick() {
+        ticks += 1;
+    }
+    ticks
+}
+
+/// What has come of it.
+struct Outcome<'a> {
+    arguments: &'a Arguments,
+    result: Result<&'a Checked, &'a Failure>,
+}
+
+impl fmt::Display for Outcome<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Arguments { file, from, output, .. } = self.arguments;
+        match self.result {
+            Ok(Checked { ticks, hash, ways, .. }) => {
+                let ways: Vec<String> = ways.iter().map(Way::to_string).collect();
+                write!(f, "{}: {GOOD}holds{GOOD:#}: ticks {from} to {ticks}, ", Shown(file))?;
+                write!(f, "hash {hash}; {}", ways.join(", "))
+            }
+            Err(failure) => {
+                write!(f, "{}: {BAD}fails{BAD:#}: {}", Shown(file), Lines(&failure.finding))?;
+                let Some(output) = output else {
+                    return Ok(());
+                };
+                let (failed, of) = failure.failed;
+                let ticks = failure.ticks;
+                write!(f, "\n{}: {ticks} ticks that fail {failed} times out of {of}: ", Shown(output))?;
+                write!(f, "{}", Lines(&failure.minimised))
+            }
+        }
+    }
+}
+
+/// A finding, whose texts may be a stranger's and must not reach the terminal as they are.
+struct Lines<'a>(&'a Finding);
+
+impl fmt::Display for Lines<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (at, line) in self.0.to_string().lines().enumerate() {
+            write!(f, "{}{}", if at > 0 { "\n" } else { "" }, Shown(Path::new(line)))?;
+        }
+        Ok(())
+    }
+}
+
+impl Outcome<'_> {
+    fn document(&self) -> String {
+        let Arguments { file, from, output, .. } = self.arguments;
+        let file = file.display().to_string();
+        match self.result {
+            Ok(Checked { ticks, hash, ways, simulated }) => {
+                let ways: Vec<String> = ways.iter().map(Way::to_string).collect();
+                json!({
+                    "file": file, "holds": true, "from": from, "ticks": ticks, "hash": hash.to_string(), "ways": ways,
+                    "simulated": simulated, "failure": null, "minimised": null,
+                })
+            }
+            Err(failure) => {
+                let minimised = output.as_ref().map(|output| {
+                    let (failed, of) = failure.failed;
+                    json!({
+                        "file": output.display().to_string(), "ticks": failure.ticks, "failed": failed, "of": of,
+                        "failure": described(&failure.minimised),
+                    })
+                });
+                json!({
+                    "file": file, "holds": false, "from": from, "failure": described(&failure.finding),
+                    "minimised": minimised,
+                })
+            }
+        }
+        .to_string()
+    }
+}
+
+fn described(finding: &Finding) -> Json {
+    let rollback = finding.rollback.map(|(ticks, guess)| {
+        let guess = match guess {
+            Guess::Right => "right",
+            Guess::Default => "default",
+            Guess::Held => "held",
+        };
+        json!({"ticks": ticks, "guess": guess})
+    });
+    json!({
+        "way": finding.way.to_string(),
+        "fault": finding.fault.to_string(),
+        "tick": finding.tick,
+        "phase": finding.phase.map(|phase| format!("{phase:?}")),
+        "rollback": rollback,
+        "fields": diff::json::fields(&finding.differences),
+        "usually": finding.hint(),
+    })
+}

@@ -1,0 +1,85 @@
+//! `bisect` and `trace`: from a replay that diverges to the bit, with files and exit codes.
+
+use lockstep2d::lockstep::{Sandbox, SandboxSetup};
+use lockstep2d::replay::Recording;
+use lockstep2d::scenes::Scene;
+use lockstep2d::world::Command;
+use lockstep2d_cli::Exit;
+use serde_json::Value;
+
+use crate::{Folder, run_sandbox};
+
+fn ragdoll() -> SandboxSetup {
+    Scene::find("ragdoll").unwrap().setup(0)
+}
+
+/// A replay of some ticks, in one of which a body gets another speed, if that is wanted.
+fn replay(kicked: Option<u64>) -> Vec<u8> {
+    let mut recording = Recording::<Sandbox>::start(&ragdoll(), 20).unwrap();
+    for tick in 0..50 {
+        let mut commands = Vec::new();
+        if kicked == Some(tick) {
+            let (body, found) =
+                recording.game().world().bodies().find(|(_, body)| body.is_dynamic()).unwrap();
+            let velocity = found.velocity();
+            commands.push(Command::SetVelocity { body, velocity, angular_velocity: lockstep2d::fx!(0) });
+        }
+        recording.step(&[commands]).unwrap();
+    }
+    recording.finish().unwrap()
+}
+
+fn json_of(arguments: &[&str]) -> (Value, Exit) {
+    let outcome = run_sandbox(&[&["bisect", "--json"], arguments].concat());
+    (serde_json::from_str(&outcome.out).unwrap(), outcome.exit)
+}
+
+#[test]
+fn a_replay_of_this_program_and_its_trace_keep_its_course() {
+    let folder = Folder::new("bisect-equal");
+    let file = folder.write("a.replay", &replay(None));
+    let trace = folder.path("a.trace");
+    let outcome = run_sandbox(&["trace", &file, "--to", "30", "--ticks", "10", "-o", &trace]);
+    assert_eq!((outcome.exit, outcome.err.as_str()), (Exit::Success, ""));
+    assert_eq!(outcome.out, format!("{trace}: ticks 20 to 30, 11 of 11 states\n"));
+    for (file, last) in [(&file, 50), (&trace, 30)] {
+        let (found, exit) = json_of(&[file]);
+        assert_eq!(
+            (exit, &found["equal"], &found["last_equal"]),
+            (Exit::Success, &true.into(), &last.into())
+        );
+    }
+    let outcome = run_sandbox(&["bisect", &file]);
+    assert!(outcome.out.contains("equal up to tick 50"), "{}", outcome.out);
+}
+
+#[test]
+fn two_replays_with_other_inputs_part_after_the_first_that_matters() {
+    let folder = Folder::new("bisect-inputs");
+    let a = folder.write("a.replay", &replay(None));
+    let b = folder.write("b.replay", &replay(Some(33)));
+    let (found, exit) = json_of(&[&a, &b]);
+    assert_eq!(exit, Exit::NoMatch);
+    assert_eq!((&found["last_equal"], &found["first_different"]), (&33.into(), &34.into()));
+    assert_eq!(found["stage"], "before_step");
+    assert_eq!(found["input"]["tick"], 33);
+    let outcome = run_sandbox(&["bisect", &a, &b]);
+    assert!(outcome.out.contains("before the step of the world"), "{}", outcome.out);
+}
+
+#[test]
+fn what_is_no_evidence_is_trouble() {
+    let folder = Folder::new("bisect-trouble");
+    let file = folder.write("nothing", b"nothing");
+    for arguments in
+        [&["bisect", &file][..], &["bisect", "/no/such/file"], &["trace", "/no/such/file", "-o", "x"]]
+    {
+        let outcome = run_sandbox(arguments);
+        assert_eq!((outcome.exit, outcome.out.as_str()), (Exit::Trouble, ""), "{arguments:?}");
+        assert!(!outcome.err.is_empty());
+    }
+    let output = folder.path("never");
+    let outcome = run_sandbox(&["trace", &file, "-o", &output]);
+    assert_eq!(outcome.exit, Exit::NoMatch);
+    assert!(outcome.err.contains("malformed"), "{}", outcome.err);
+}

@@ -1,0 +1,30 @@
+//! Any inputs, in every way that must make no difference. A panic is a finding, whether of the game or of the check.
+#![no_main]
+
+use std::fs;
+
+// Your game, its setup and its number of players.
+use harvest::Harvest as MyGame;
+const SETUP: <MyGame as Game>::Setup = 7;
+const PLAYERS: u32 = 2;
+
+use libfuzzer_sys::fuzz_target;
+use lockstep2d::check::{CheckError, Options, check, inputs_from_bytes};
+use lockstep2d::lockstep::Game;
+
+/// Longer logs are slower and rarely find more.
+const TICKS_MAX: usize = 300;
+
+fuzz_target!(|bytes: &[u8]| {
+    let mut inputs = inputs_from_bytes::<MyGame>(PLAYERS, bytes);
+    inputs.truncate(TICKS_MAX);
+    match check::<MyGame>(&SETUP, &inputs, &Options::default()) {
+        Ok(_) => {}
+        Err(CheckError::Failed(failure)) => {
+            let name = "failure.replay";
+            let written = fs::write(name, &failure.replay).map_or("not written", |()| name);
+            panic!("{failure}\nthe replay: {written}");
+        }
+        Err(error) => panic!("{error}"),
+    }
+});

@@ -1,0 +1,175 @@
+//! [`Checker`]: a straight run, and every other way beside it, tick by tick.
+
+use alloc::boxed::Box;
+use alloc::vec::Vec;
+
+use super::finding::{Fault, Finding};
+use super::lane::{Lane, Now};
+use super::options::{Options, Phases, Way};
+use crate::hash::StateHash;
+use crate::lockstep::{Game, SetupError};
+use crate::replay::{Limit, Verdict};
+use crate::world::PhaseDigest;
+
+/// What has been checked, and found good.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Checked {
+    /// The ticks that were played.
+    pub ticks: u64,
+    /// The hash after them.
+    pub hash: StateHash,
+    /// The ways in which they were played, beside the straight one.
+    pub ways: Vec<Way>,
+    /// The ticks that were simulated, in all ways together.
+    pub simulated: u64,
+}
+
+/// A game that is checked as it is played, for those who do not have all inputs beforehand; all ways but
+/// [`Way::Recorded`].
+///
+/// Once something is found, that is all it is good for.
+pub struct Checker<'s, G: Game> {
+    setup: &'s G::Setup,
+    options: Options,
+    straight: G,
+    hash: StateHash,
+    tick: u64,
+    work: u64,
+    /// What the phases of the last tick have left behind, if they are compared.
+    phases: Vec<PhaseDigest>,
+    /// Empty before the tick from which on it is checked.
+    lanes: Vec<Lane<G>>,
+}
+
+impl<'s, G: Game> Checker<'s, G> {
+    /// The game before its first tick.
+    ///
+    /// # Errors
+    /// [`SetupError`] if the setup starts no game.
+    pub fn new(setup: &'s G::Setup, options: &Options) -> Result<Self, SetupError> {
+        let straight = G::new(setup)?;
+        let hash = straight.state_hash();
+        let options = options.clone();
+        Ok(Checker {
+            setup,
+            options,
+            straight,
+            hash,
+            tick: 0,
+            work: 0,
+            phases: Vec::new(),
+            lanes: Vec::new(),
+        })
+    }
+
+    /// The straight run as of now.
+    #[must_use]
+    pub fn game(&self) -> &G {
+        &self.straight
+    }
+
+    /// How many ticks have been played.
+    #[must_use]
+    pub fn tick(&self) -> u64 {
+        self.tick
+    }
+
+    /// How many ticks have been simulated, in all ways together.
+    #[must_use]
+    pub fn simulated(&self) -> u64 {
+        self.tick + self.lanes.iter().map(|lane| lane.steps).sum::<u64>()
+    }
+
+    /// Plays one tick in every way.
+    ///
+    /// # Errors
+    /// [`Finding`], the first.
+    pub fn step(&mut self, inputs: &[G::Input]) -> Result<(), Box<Finding>> {
+        self.begin()?;
+        self.check_work(inputs)?;
+        self.phases = step(&mut self.straight, inputs, self.options.phases);
+        self.hash = self.straight.state_hash();
+        self.tick += 1;
+        let now = Now {
+            setup: self.setup,
+            options: &self.options,
+            straight: &self.straight,
+            inputs,
+            hash: self.hash,
+            tick: self.tick,
+            phases: &self.phases,
+            claims: Vec::new(),
+        };
+        self.lanes.iter_mut().try_for_each(|lane| lane.step(&now))
+    }
+
+    /// What is to be seen only at the end.
+    ///
+    /// # Errors
+    /// [`Finding`], the first.
+    pub fn finish(mut self) -> Result<Checked, Box<Finding>> {
+        self.begin()?;
+        let mut lanes = core::mem::take(&mut self.lanes);
+        let now = Now { claims: self.straight.claims(), ..self.now(&[]) };
+        lanes.iter_mut().try_for_each(|lane| lane.finish(&now))?;
+        let ways = lanes.iter().map(|lane| lane.way).collect();
+        let simulated = self.tick + lanes.iter().map(|lane| lane.steps).sum::<u64>();
+        Ok(Checked { ticks: self.tick, hash: self.hash, ways, simulated })
+    }
+
+    fn now<'a>(&'a self, inputs: &'a [G::Input]) -> Now<'a, G> {
+        let Checker { setup, options, straight, hash, tick, phases, .. } = self;
+        Now { setup, options, straight, inputs, hash: *hash, tick: *tick, phases, claims: Vec::new() }
+    }
+
+    /// Starts all ways, at the tick from which on is checked.
+    fn begin(&mut self) -> Result<(), Box<Finding>> {
+        if self.tick != self.options.from || !self.lanes.is_empty() {
+            return Ok(());
+        }
+        let has_world = self.straight.world_mut().is_some();
+        let ways = self.options.ways.clone();
+        let ways = ways.into_iter().filter(|way| *way != Way::Recorded && (has_world || !way.needs_world()));
+        let mut lanes = Vec::new();
+        for way in ways {
+            let now = self.now(&[]);
+            lanes.push(Lane::begin(way, &now)?);
+        }
+        self.lanes = lanes;
+        Ok(())
+    }
+
+    fn check_work(&mut self, inputs: &[G::Input]) -> Result<(), Box<Finding>> {
+        let limits = &self.options.limits;
+        let work = self.straight.work(inputs);
+        self.work = self.work.saturating_add(work);
+        let spent =
+            [(Limit::TickWork, work, limits.tick_work), (Limit::TotalWork, self.work, limits.total_work)];
+        match spent.into_iter().find(|(_, value, max)| value > max) {
+            Some((limit, value, max)) => {
+                let fault = Fault::Verdict(Verdict::LimitExceeded { limit, value, max });
+                Err(Box::new(Finding::new(Way::Recorded, fault, self.tick)))
+            }
+            None => Ok(()),
+        }
+    }
+}
+
+/// Plays a tick and says what its phases have left behind, if that is wanted.
+pub(super) fn step<G: Game>(game: &mut G, inputs: &[G::Input], phases: Phases) -> Vec<PhaseDigest> {
+    if phases == Phases::Compared {
+        if let Some(world) = game.world_mut() {
+            world.note_phases();
+        }
+    }
+    game.step(inputs);
+    match (phases, game.world_mut()) {
+        (Phases::Compared, Some(world)) => world.phase_digests().to_vec(),
+        _ => Vec::new(),
+    }
+}
+
+/// Another game from the same setup.
+pub(super) fn another<G: Game>(setup: &G::Setup, way: Way, tick: u64) -> Result<G, Box<Finding>> {
+    G::new(setup).map_err(|error| Box::new(Finding::new(way, Fault::Refused { why: error.why }, tick)))
+}

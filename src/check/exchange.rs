@@ -1,0 +1,196 @@
+//! [`Exchanges`]: does the hash see everything that influences the future?
+//!
+//! From a save and one of another tick a third is made: the first, with a byte or a few from the second. If the state
+//! that it is loaded into has the hash of the first all the same, then it must also have its future.
+
+use alloc::boxed::Box;
+use alloc::collections::VecDeque;
+use alloc::vec::Vec;
+use core::ops::Range;
+
+use super::checker::another;
+use super::finding::{Fault, Finding};
+use super::lane::Now;
+use super::options::Way;
+use crate::codec;
+use crate::hash::StateHash;
+use crate::lockstep::Game;
+
+/// Every how many ticks a save is kept, beside some at the start.
+const INTERVAL: u64 = 16;
+/// For how many ticks its future is compared.
+const FUTURE: usize = 48;
+/// How many saves of other ticks there are to take bytes from.
+const DONORS_MAX: usize = 6;
+/// Most exchanges that are tried with one save.
+const TRIES_MAX: usize = 32;
+
+/// The saves of some ticks, and what followed.
+pub(super) struct Exchanges<G: Game> {
+    moments: VecDeque<Moment<G>>,
+    donors: VecDeque<Vec<u8>>,
+}
+
+struct Moment<G: Game> {
+    tick: u64,
+    bytes: Vec<u8>,
+    hash: StateHash,
+    /// The inputs of the ticks after it.
+    inputs: Vec<Vec<G::Input>>,
+}
+
+impl<G: Game> Default for Exchanges<G> {
+    fn default() -> Self {
+        Exchanges { moments: VecDeque::new(), donors: VecDeque::new() }
+    }
+}
+
+impl<G: Game> Exchanges<G> {
+    /// Takes note of the state after a tick.
+    pub(super) fn disturb(
+        &mut self,
+        game: &G,
+        now: &Now<'_, G>,
+        steps: &mut u64,
+    ) -> Result<(), Box<Finding>> {
+        self.moments.iter_mut().for_each(|moment| moment.inputs.push(now.inputs.to_vec()));
+        let interval = INTERVAL.max(now.options.every);
+        if now.tick % interval == 0 || now.tick.is_power_of_two() && now.tick < interval {
+            let bytes = codec::encode(&game.save());
+            self.add_donor(&bytes);
+            self.moments.push_back(Moment { tick: now.tick, bytes, hash: now.hash, inputs: Vec::new() });
+        }
+        while self.moments.front().is_some_and(|moment| moment.inputs.len() >= FUTURE) {
+            if let Some(moment) = self.moments.pop_front() {
+                self.examine(&moment, now, steps)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Examines the saves that are left, with as much future as there is.
+    pub(super) fn finish(&mut self, game: &G, now: &Now<'_, G>, steps: &mut u64) -> Result<(), Box<Finding>> {
+        self.add_donor(&codec::encode(&game.save()));
+        core::mem::take(&mut self.moments).iter().try_for_each(|moment| self.examine(moment, now, steps))
+    }
+
+    fn add_donor(&mut self, bytes: &[u8]) {
+        if self.donors.len() >= DONORS_MAX {
+            self.donors.pop_front();
+        }
+        self.donors.push_back(bytes.to_vec());
+    }
+
+    fn examine(&self, moment: &Moment<G>, now: &Now<'_, G>, steps: &mut u64) -> Result<(), Box<Finding>> {
+        // The world has a hash of its own, which sees all of it.
+        let world = world_in::<G>(moment, now)?;
+        let exchanges = self.donors.iter().flat_map(|donor| exchanges(&moment.bytes, donor));
+        let mut exchanges: Vec<_> = exchanges.filter(|(range, _)| !overlap(range, &world)).collect();
+        exchanges.sort_by(|a, b| (a.0.start, a.0.end, &a.1).cmp(&(b.0.start, b.0.end, &b.1)));
+        exchanges.dedup();
+        // Of too many, others each time.
+        let turn = usize::try_from(moment.tick).unwrap_or(0).wrapping_mul(7) % exchanges.len().max(1);
+        exchanges.rotate_left(turn);
+        for (range, replacement) in exchanges.into_iter().take(TRIES_MAX) {
+            let mut bytes = moment.bytes.clone();
+            bytes[range].copy_from_slice(&replacement);
+            if let Some((after, a, b)) = self.futures_differ(moment, &bytes, now, steps)? {
+                let finding = Finding::new(Way::Exchanged, Fault::Unhashed, moment.tick + after);
+                return Err(Box::new(finding.with_saves(&a, &b)));
+            }
+        }
+        Ok(())
+    }
+
+    /// After how many ticks two states with the same hash have another one, and their saves before.
+    #[expect(clippy::type_complexity, reason = "it is taken apart at once")]
+    fn futures_differ(
+        &self,
+        moment: &Moment<G>,
+        changed: &[u8],
+        now: &Now<'_, G>,
+        steps: &mut u64,
+    ) -> Result<Option<(u64, G::Save, G::Save)>, Box<Finding>> {
+        let Some((mut b, saved_b)) = loaded::<G>(changed, now)? else {
+            return Ok(None);
+        };
+        // A `load` that puts such a field right has seen it.
+        if b.state_hash() != moment.hash || codec::encode(&b.save()) != changed {
+            return Ok(None);
+        }
+        let Some((mut a, saved_a)) = loaded::<G>(&moment.bytes, now)? else {
+            return Ok(None);
+        };
+        for (inputs, after) in moment.inputs.iter().zip(1..) {
+            a.step(inputs);
+            b.step(inputs);
+            *steps += 2;
+            if a.state_hash() != b.state_hash() {
+                return Ok(Some((after, saved_a, saved_b)));
+            }
+        }
+        Ok(None)
+    }
+}
+
+/// A game and the save that it was loaded from, if these bytes are one.
+fn loaded<G: Game>(bytes: &[u8], now: &Now<'_, G>) -> Result<Option<(G, G::Save)>, Box<Finding>> {
+    let Ok(save) = codec::decode::<G::Save>(bytes) else {
+        return Ok(None);
+    };
+    if codec::encode(&save) != bytes {
+        return Ok(None);
+    }
+    let mut game = another::<G>(now.setup, Way::Exchanged, now.tick)?;
+    game.load(&save);
+    Ok(Some((game, save)))
+}
+
+/// Where the bytes of the physics world are in a save; nowhere if there is none.
+fn world_in<G: Game>(moment: &Moment<G>, now: &Now<'_, G>) -> Result<Range<usize>, Box<Finding>> {
+    let Some((mut game, _)) = loaded::<G>(&moment.bytes, now)? else {
+        return Ok(0..0);
+    };
+    let Some(world) = game.world_mut().map(|world| codec::encode(&world.save())) else {
+        return Ok(0..0);
+    };
+    let start = moment.bytes.windows(world.len()).position(|bytes| bytes == world);
+    Ok(start.map_or(0..0, |start| start..start + world.len()))
+}
+
+fn overlap(a: &Range<usize>, b: &Range<usize>) -> bool {
+    a.start < b.end && b.start < a.end
+}
+
+/// What can be taken over from a save of the same length: every byte that differs, and every run of them.
+fn exchanges(bytes: &[u8], donor: &[u8]) -> Vec<(Range<usize>, Vec<u8>)> {
+    let mut found = Vec::new();
+    if bytes.len() != donor.len() {
+        return found;
+    }
+    let mut run: Option<usize> = None;
+    for at in 0..=bytes.len() {
+        let differs = at < bytes.len() && bytes[at] != donor[at];
+        if differs {
+            found.push((at..at + 1, donor[at..at + 1].to_vec()));
+            run.get_or_insert(at);
+        } else if let Some(start) = run.take().filter(|start| at - start > 1) {
+            found.push((start..at, donor[start..at].to_vec()));
+        }
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bytes_and_runs_are_exchanged() {
+        let found = exchanges(&[1, 2, 3, 4, 5, 6], &[1, 9, 8, 4, 5, 7]);
+        let expected: [(Range<usize>, &[u8]); 4] =
+            [(1..2, &[9]), (2..3, &[8]), (1..3, &[9, 8]), (5..6, &[7])];
+        assert_eq!(found, expected.map(|(range, bytes)| (range, bytes.to_vec())));
+        assert!(exchanges(&[1], &[1, 2]).is_empty());
+    }
+}

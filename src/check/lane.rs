@@ -1,0 +1,182 @@
+//! [`Lane`]: one way to play, beside the straight run.
+
+use alloc::boxed::Box;
+use alloc::string::{String, ToString};
+use alloc::vec::Vec;
+
+use super::checker::{another, step};
+use super::exchange::Exchanges;
+use super::finding::{Fault, Finding};
+use super::options::{Options, Way};
+use super::rollback::Past;
+use crate::codec;
+use crate::hash::StateHash;
+use crate::lockstep::Game;
+use crate::world::PhaseDigest;
+
+/// The straight run after a tick.
+pub(super) struct Now<'a, G: Game> {
+    pub(super) setup: &'a G::Setup,
+    pub(super) options: &'a Options,
+    pub(super) straight: &'a G,
+    /// The inputs of the tick.
+    pub(super) inputs: &'a [G::Input],
+    /// The hash after it.
+    pub(super) hash: StateHash,
+    /// Ticks that have been played.
+    pub(super) tick: u64,
+    /// What the phases of the tick have left behind, if they are compared.
+    pub(super) phases: &'a [PhaseDigest],
+    /// What it claims, once it has ended.
+    pub(super) claims: Vec<(String, i64)>,
+}
+
+/// One way to play, beside the straight run.
+pub(super) struct Lane<G: Game> {
+    pub(super) way: Way,
+    game: G,
+    /// Ticks that it has simulated.
+    pub(super) steps: u64,
+    past: Past<G>,
+    exchanges: Exchanges<G>,
+}
+
+impl<G: Game> Lane<G> {
+    /// A game that is where the straight run is.
+    pub(super) fn begin(way: Way, now: &Now<'_, G>) -> Result<Self, Box<Finding>> {
+        let mut game = another::<G>(now.setup, way, now.tick)?;
+        if now.tick > 0 {
+            game.load(&now.straight.save());
+        }
+        let (past, exchanges) = (Past::default(), Exchanges::default());
+        let mut lane = Lane { way, game, steps: 0, past, exchanges };
+        if way != Way::Unasked {
+            lane.compare(now)?;
+        }
+        lane.disturb(now)?;
+        Ok(lane)
+    }
+
+    /// Plays the tick that the straight run has played, compares, and does what must not matter.
+    pub(super) fn step(&mut self, now: &Now<'_, G>) -> Result<(), Box<Finding>> {
+        self.arrange();
+        if self.way == Way::Again {
+            // Whatever the straight run is asked for.
+            let _work = self.game.work(now.inputs);
+        }
+        let phases = step(&mut self.game, now.inputs, now.options.phases);
+        self.steps += 1;
+        if self.way == Way::Unasked {
+            return Ok(());
+        }
+        let apart = phases.iter().zip(now.phases).find(|(a, b)| a != b);
+        if let Some((noted, _)) = apart {
+            let is_same = self.game.state_hash() == now.hash;
+            let fault = if is_same { Fault::Phase } else { Fault::Hash };
+            let finding = self.finding(fault, now).with_saves(&now.straight.save(), &self.game.save());
+            return Err(Box::new(Finding { phase: noted.phase, ..finding }));
+        }
+        self.compare(now)?;
+        self.disturb(now)
+    }
+
+    pub(super) fn finish(&mut self, now: &Now<'_, G>) -> Result<(), Box<Finding>> {
+        match self.way {
+            Way::Unasked => self.compare(now),
+            Way::Again if self.game.claims() != now.claims => {
+                Err(Box::new(self.finding(Fault::Answers { of: "claims" }, now)))
+            }
+            Way::Exchanged => self.exchanges.finish(&self.game, now, &mut self.steps),
+            _ => Ok(()),
+        }
+    }
+
+    fn compare(&self, now: &Now<'_, G>) -> Result<(), Box<Finding>> {
+        if self.game.state_hash() == now.hash {
+            return Ok(());
+        }
+        let finding = self.finding(Fault::Hash, now);
+        Err(Box::new(finding.with_saves(&now.straight.save(), &self.game.save())))
+    }
+
+    fn finding(&self, fault: Fault, now: &Now<'_, G>) -> Finding {
+        Finding::new(self.way, fault, now.tick)
+    }
+
+    /// Chooses how the world computes. A game may have made another world meanwhile, so it is chosen before every tick.
+    fn arrange(&mut self) {
+        let Some(world) = self.game.world_mut() else {
+            return;
+        };
+        match self.way {
+            Way::Backend(backend) if world.backend() != backend => {
+                let _is_available = world.set_backend(backend);
+            }
+            Way::BroadPhase(kind) if world.tick() == 0 || self.steps == 0 => world.set_broad_phase(kind),
+            #[cfg(feature = "parallel")]
+            Way::Threads(count) if world.threads() != count => {
+                let _are_available = world.set_threads(count);
+            }
+            _ => {}
+        }
+    }
+
+    fn disturb(&mut self, now: &Now<'_, G>) -> Result<(), Box<Finding>> {
+        let is_due = now.options.is_due(now.tick);
+        match self.way {
+            Way::Asked => self.ask(now),
+            Way::Reloaded if is_due => self.reload(now),
+            Way::RolledBack => self.past.disturb(&mut self.game, now, &mut self.steps),
+            Way::Exchanged => self.exchanges.disturb(&self.game, now, &mut self.steps),
+            Way::ClearedScratch if is_due => {
+                if let Some(world) = self.game.world_mut() {
+                    world.clear_scratch();
+                }
+                Ok(())
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Asks everything that can be asked for, twice.
+    fn ask(&self, now: &Now<'_, G>) -> Result<(), Box<Finding>> {
+        let answers = || {
+            let game = &self.game;
+            (game.state_hash(), game.work(now.inputs), game.claims(), codec::encode(&game.save()))
+        };
+        let (a, b) = (answers(), answers());
+        let same =
+            [("state_hash", a.0 == b.0), ("work", a.1 == b.1), ("claims", a.2 == b.2), ("save", a.3 == b.3)];
+        match same.into_iter().find(|(_, same)| !same) {
+            Some((of, _)) => Err(Box::new(self.finding(Fault::Answers { of }, now))),
+            None => self.compare(now),
+        }
+    }
+
+    /// Through bytes into a new game.
+    fn reload(&mut self, now: &Now<'_, G>) -> Result<(), Box<Finding>> {
+        let save = self.game.save();
+        let bytes = codec::encode(&save);
+        let decoded: G::Save = match codec::decode(&bytes) {
+            Ok(decoded) => decoded,
+            Err(error) => {
+                let fault = Fault::Unreadable { why: error.to_string() };
+                return Err(Box::new(self.finding(fault, now)));
+            }
+        };
+        if codec::encode(&decoded) != bytes {
+            return Err(Box::new(self.finding(Fault::Encoding, now).with_saves(&save, &decoded)));
+        }
+        let mut fresh = another::<G>(now.setup, self.way, now.tick)?;
+        fresh.load(&decoded);
+        let again = fresh.save();
+        if fresh.state_hash() != now.hash {
+            return Err(Box::new(self.finding(Fault::Loaded, now).with_saves(&save, &again)));
+        }
+        if codec::encode(&again) != bytes {
+            return Err(Box::new(self.finding(Fault::SavedAgain, now).with_saves(&save, &again)));
+        }
+        self.game = fresh;
+        Ok(())
+    }
+}

@@ -1,0 +1,101 @@
+//! The inputs of every tick, shared by the logs that are made of one.
+
+use alloc::rc::Rc;
+use alloc::vec;
+use alloc::vec::Vec;
+
+use super::failure::CheckError;
+use crate::codec;
+use crate::lockstep::{EncodedInputs, Game, InputError, decode_inputs};
+use crate::replay::{
+    CHECKPOINT_INTERVAL, Flaw, Limits, ReadError, Reader, Recording, Rerun, TickInputs, Verdict,
+};
+
+/// The checkpoint interval of the replays that are made here.
+pub(super) const INTERVAL: u32 = CHECKPOINT_INTERVAL;
+
+/// The inputs of every player for one tick.
+pub(super) type Inputs<G> = Rc<[<G as Game>::Input]>;
+
+/// The inputs of every tick, as they come back from their bytes.
+pub(super) struct Log<G: Game> {
+    pub(super) players: u32,
+    pub(super) ticks: Vec<Inputs<G>>,
+}
+
+impl<G: Game> Log<G> {
+    pub(super) fn new(players: u32) -> Self {
+        Log { players, ticks: Vec::new() }
+    }
+
+    pub(super) fn push(&mut self, inputs: &[G::Input]) -> Result<(), InputError> {
+        let inputs = EncodedInputs::new(inputs, self.players)?;
+        self.ticks.push(inputs.inputs().into());
+        Ok(())
+    }
+
+    /// Other ticks of the same players.
+    pub(super) fn of(&self, ticks: Vec<Inputs<G>>) -> Self {
+        Log { players: self.players, ticks }
+    }
+
+    pub(super) fn len(&self) -> u64 {
+        self.ticks.len() as u64
+    }
+
+    /// Nothing pressed.
+    pub(super) fn nothing(&self) -> Inputs<G> {
+        vec![G::Input::default(); self.players as usize].into()
+    }
+
+    /// Its replay, as far as it can be recorded.
+    pub(super) fn record(&self, setup: &G::Setup) -> Vec<u8> {
+        let Ok(mut recording) = Recording::<G>::start(setup, INTERVAL) else {
+            return Vec::new();
+        };
+        let mut file = Vec::new();
+        for inputs in &self.ticks {
+            if recording.step(inputs).is_err() {
+                break;
+            }
+        }
+        file.extend(recording.take_bytes());
+        file.extend(recording.finish().unwrap_or_default());
+        file
+    }
+}
+
+/// The setup and the inputs of a replay.
+pub(super) struct Logged<G: Game> {
+    pub(super) setup: G::Setup,
+    pub(super) log: Log<G>,
+}
+
+/// Reads the first `to` ticks of a replay.
+pub(super) fn read<G: Game>(file: &[u8], limits: &Limits, to: u64) -> Result<Logged<G>, CheckError> {
+    // It scans the file and starts the game: what is left may be read.
+    let players = Rerun::<G>::open(file, limits)?.game().players();
+    let refused = |error: ReadError| CheckError::Replay(error.into());
+    let mut ticks = TickInputs::open(file, limits).map_err(refused)?;
+    let reader = Reader::open(file, limits).map_err(refused)?;
+    let no_setup = |_| Verdict::Malformed { offset: 0, flaw: Flaw::Setup };
+    let setup = codec::decode(reader.header().setup).map_err(no_setup)?;
+    let mut log = Log::<G>::new(players);
+    let mut last: Option<(&[u8], Inputs<G>)> = None;
+    while log.len() < to {
+        let Some(run) = ticks.next_tick().map_err(refused)? else {
+            break;
+        };
+        let known =
+            last.as_ref().filter(|(encoded, _)| *encoded == run.encoded).map(|(_, inputs)| inputs.clone());
+        let inputs = match known {
+            Some(inputs) => inputs,
+            None => decode_inputs(run.encoded, players)
+                .map_err(|_| Verdict::Malformed { offset: run.offset, flaw: Flaw::Inputs })?
+                .into(),
+        };
+        last = Some((run.encoded, inputs.clone()));
+        log.ticks.push(inputs);
+    }
+    Ok(Logged { setup, log })
+}

@@ -1,0 +1,240 @@
+//! Makes a log that fails shorter: delta debugging over ticks, then over inputs.
+
+use alloc::boxed::Box;
+use alloc::vec::Vec;
+
+use super::checker::{Checked, Checker};
+use super::failure::Failure;
+use super::finding::{Fault, Finding};
+use super::log::{INTERVAL, Inputs, Log};
+use super::options::{Depths, Options, Way};
+use crate::lockstep::Game;
+use crate::replay::{Recording, Verdict, verify};
+
+/// How many runs from the start are compared when it is a matter of chance whether two of them differ.
+const AGAIN: usize = 4;
+
+/// Plays a log in all ways.
+pub(super) fn run<G: Game>(
+    setup: &G::Setup,
+    log: &Log<G>,
+    options: &Options,
+) -> Result<Checked, Box<Finding>> {
+    run_counted(setup, log, options, &mut 0)
+}
+
+fn run_counted<G: Game>(
+    setup: &G::Setup,
+    log: &Log<G>,
+    options: &Options,
+    simulated: &mut u64,
+) -> Result<Checked, Box<Finding>> {
+    let refused = |why| Box::new(Finding::new(Way::Again, Fault::Refused { why }, 0));
+    let mut checker = Checker::<G>::new(setup, options).map_err(|error| refused(error.why))?;
+    let ticks = log.ticks.iter().zip(0..options.to).map(|(inputs, _)| inputs);
+    let played = { ticks }.try_for_each(|inputs| checker.step(inputs));
+    *simulated = simulated.saturating_add(checker.simulated());
+    played?;
+    let mut checked = checker.finish()?;
+    if options.ways.contains(&Way::Recorded) {
+        *simulated = simulated.saturating_add(2 * checked.ticks);
+        record(setup, log, options)?;
+        checked.ways.push(Way::Recorded);
+    }
+    Ok(checked)
+}
+
+/// Records the game and verifies the recording.
+fn record<G: Game>(setup: &G::Setup, log: &Log<G>, options: &Options) -> Result<(), Box<Finding>> {
+    let found = |fault, tick| Err(Box::new(Finding::new(Way::Recorded, fault, tick)));
+    let mut recording = match Recording::<G>::start(setup, INTERVAL) {
+        Ok(recording) => recording,
+        Err(error) => return found(Fault::Unrecordable(error), 0),
+    };
+    for (inputs, tick) in log.ticks.iter().zip(0..options.to) {
+        if let Err(error) = recording.step(inputs) {
+            return found(Fault::Unrecordable(error), tick);
+        }
+    }
+    let ticks = recording.ticks();
+    let file = match recording.finish() {
+        Ok(file) => file,
+        Err(error) => return found(Fault::Unrecordable(error), ticks),
+    };
+    match verify::<G>(&file, &options.limits) {
+        Verdict::Match { .. } => Ok(()),
+        Verdict::Diverged { last_equal, first_different } => {
+            found(Fault::Verdict(Verdict::Diverged { last_equal, first_different }), first_different)
+        }
+        verdict => found(Fault::Verdict(verdict), ticks),
+    }
+}
+
+/// The failure that a finding in a log comes down to.
+pub(super) fn minimise<G: Game>(
+    setup: &G::Setup,
+    log: &Log<G>,
+    finding: Finding,
+    options: &Options,
+) -> Failure {
+    if options.budget == 0 {
+        let cut = first(log, finding.tick);
+        let (minimised, replay) = (finding.clone(), cut.record(setup));
+        return Failure { finding, minimised, replay, ticks: cut.len(), failed: (1, 1) };
+    }
+    let mut search = Search { setup, options: options.clone(), spent: 0, need: 0 };
+    let way = finding.way;
+    // Whatever is random shows in any way: then that is what to say.
+    let (finding, best) = [Way::Again, way]
+        .into_iter()
+        .find_map(|way| search.begin(log, way, &finding))
+        .unwrap_or_else(|| (finding.clone(), Attempt { ticks: log.ticks.clone(), finding, failed: 0 }));
+    let best = if search.need > 0 { search.shrink(log, best) } else { best };
+    let log = log.of(best.ticks);
+    Failure {
+        finding,
+        minimised: best.finding,
+        replay: log.record(setup),
+        ticks: log.len(),
+        failed: (best.failed, options.repeats.max(1)),
+    }
+}
+
+/// The first ticks of a log, at least one.
+fn first<G: Game>(log: &Log<G>, ticks: u64) -> Log<G> {
+    log.of(log.ticks.iter().zip(0..ticks.max(1)).map(|(inputs, _)| inputs.clone()).collect())
+}
+
+/// A log that fails, and how often.
+struct Attempt<G: Game> {
+    ticks: Vec<Inputs<G>>,
+    finding: Finding,
+    failed: u32,
+}
+
+struct Search<'s, G: Game> {
+    setup: &'s G::Setup,
+    /// Only what fails.
+    options: Options,
+    /// Ticks that were simulated.
+    spent: u64,
+    /// How often a log has to fail.
+    need: u32,
+}
+
+impl<G: Game> Search<'_, G> {
+    /// Looks whether a log fails in one way alone, and how often.
+    fn begin(&mut self, log: &Log<G>, way: Way, finding: &Finding) -> Option<(Finding, Attempt<G>)> {
+        let ways = if way == Way::Again { [way; AGAIN].to_vec() } else { [way].to_vec() };
+        self.options = Options { ways, from: 0, every: 1, depths: Depths::Each, ..self.options.clone() };
+        if finding.way != Way::RolledBack || way != finding.way {
+            self.options.depths = Depths::InTurn;
+        }
+        self.need = 1;
+        let of_cut = self.attempt(first(log, finding.tick).ticks, log);
+        // What fails by chance may fail more often with more ticks.
+        self.need = of_cut.as_ref().map_or(0, |found| found.failed) + 1;
+        let of_all = match self.need <= self.options.repeats {
+            true => self.attempt(log.ticks.clone(), log),
+            false => None,
+        };
+        let found = of_all.or(of_cut);
+        self.need = found.as_ref().map_or(0, |found| found.failed);
+        let found = found?;
+        let finding = if way == finding.way { finding.clone() } else { found.finding.clone() };
+        Some((finding, found))
+    }
+
+    /// Plays some ticks as often as it takes to know whether they fail often enough. They are then cut where the last
+    /// of these runs has failed.
+    fn attempt(&mut self, mut ticks: Vec<Inputs<G>>, log: &Log<G>) -> Option<Attempt<G>> {
+        let repeats = self.options.repeats.max(1);
+        let candidate = log.of(ticks.clone());
+        let (mut failed, mut last): (u32, Option<Box<Finding>>) = (0, None);
+        for left in (0..repeats).rev() {
+            if let Err(found) = run_counted(self.setup, &candidate, &self.options, &mut self.spent) {
+                failed += 1;
+                if last.as_ref().is_none_or(|last| last.tick < found.tick) {
+                    last = Some(found);
+                }
+            }
+            if failed + left < self.need {
+                return None;
+            }
+        }
+        let finding = *last?;
+        ticks.truncate(usize::try_from(finding.tick.max(1)).unwrap_or(usize::MAX));
+        Some(Attempt { ticks, finding, failed })
+    }
+
+    fn is_spent(&self) -> bool {
+        self.spent >= self.options.budget
+    }
+
+    /// Leaves out ticks, then inputs, then single players' inputs, for as long as that helps.
+    fn shrink(&mut self, log: &Log<G>, mut best: Attempt<G>) -> Attempt<G> {
+        loop {
+            let before = weight(&best.ticks);
+            self.pass(log, &mut best, &|ticks, from, to| Some([&ticks[..from], &ticks[to..]].concat()));
+            let nothing = log.nothing();
+            self.pass(log, &mut best, &|ticks, from, to| replaced(ticks, from, to, |_| nothing.clone()));
+            for player in 0..log.players as usize {
+                self.pass(log, &mut best, &|ticks, from, to| {
+                    replaced(ticks, from, to, |inputs| without(inputs, player))
+                });
+            }
+            // What is held needs fewer words than what changes.
+            self.pass(log, &mut best, &|ticks, from, to| {
+                let held = ticks[from.checked_sub(1)?].clone();
+                replaced(ticks, from, to, |_| held.clone())
+            });
+            if self.is_spent() || weight(&best.ticks) >= before {
+                return best;
+            }
+        }
+    }
+
+    /// Tries a change on all of the log, then on halves, quarters and so on, and keeps what still fails.
+    fn pass(&mut self, log: &Log<G>, best: &mut Attempt<G>, change: &Change<'_, G>) {
+        let mut size = best.ticks.len();
+        while size > 0 {
+            // From the end: what comes early has more influence.
+            let mut to = best.ticks.len();
+            while to > 0 && !self.is_spent() {
+                let from = to.saturating_sub(size);
+                let changed =
+                    change(&best.ticks, from, to).filter(|ticks| weight(ticks) < weight(&best.ticks));
+                if let Some(found) = changed.and_then(|ticks| self.attempt(ticks, log)) {
+                    *best = found;
+                }
+                to = from.min(best.ticks.len());
+            }
+            size /= 2;
+        }
+    }
+}
+
+/// A log with something else from one tick to another; `None` if that cannot be.
+type Change<'a, G> = dyn Fn(&[Inputs<G>], usize, usize) -> Option<Vec<Inputs<G>>> + 'a;
+
+fn replaced<I: Clone>(ticks: &[I], from: usize, to: usize, with: impl Fn(&I) -> I) -> Option<Vec<I>> {
+    let changed = ticks[from..to].iter().map(with).collect::<Vec<_>>();
+    Some([&ticks[..from], &changed, &ticks[to..]].concat())
+}
+
+/// Inputs without those of a player.
+fn without<I: Clone + Default>(inputs: &alloc::rc::Rc<[I]>, player: usize) -> alloc::rc::Rc<[I]> {
+    let mut inputs = inputs.to_vec();
+    if let Some(input) = inputs.get_mut(player) {
+        *input = I::default();
+    }
+    inputs.into()
+}
+
+/// How much there is in a log: ticks, then inputs that are not nothing, then changes.
+fn weight<I: Default + PartialEq>(ticks: &[alloc::rc::Rc<[I]>]) -> (usize, usize, usize) {
+    let nothing = I::default();
+    let inputs = ticks.iter().flat_map(|inputs| inputs.iter());
+    let changes = ticks.windows(2).filter(|pair| pair[0] != pair[1]).count();
+    (ticks.len(), inputs.filter(|input| **input != nothing).count(), changes)
+}

@@ -1,0 +1,132 @@
+//! [`Past`]: the last ticks of a game that is rolled back.
+
+use alloc::boxed::Box;
+use alloc::collections::VecDeque;
+use alloc::vec;
+use alloc::vec::Vec;
+
+use super::finding::{Fault, Finding, Guess};
+use super::lane::Now;
+use super::options::{Depths, Way};
+use crate::hash::StateHash;
+use crate::lockstep::Game;
+
+/// Most ticks that are kept.
+const DEPTH_MAX: u32 = 64;
+
+/// The last ticks of a game that is rolled back.
+pub(super) struct Past<G: Game> {
+    moments: VecDeque<Moment<G>>,
+}
+
+/// A state, and the inputs that have led to it.
+struct Moment<G: Game> {
+    inputs: Vec<G::Input>,
+    save: G::Save,
+    hash: StateHash,
+}
+
+impl<G: Game> Default for Past<G> {
+    fn default() -> Self {
+        Past { moments: VecDeque::new() }
+    }
+}
+
+/// A rollback by some ticks, after a guess.
+type Rollback = (u32, Guess);
+
+impl<G: Game> Past<G> {
+    /// Takes note of the state after a tick, and rolls back.
+    pub(super) fn disturb(
+        &mut self,
+        game: &mut G,
+        now: &Now<'_, G>,
+        steps: &mut u64,
+    ) -> Result<(), Box<Finding>> {
+        let depth_max = now.options.rollback_max.min(DEPTH_MAX);
+        if self.moments.len() > depth_max as usize {
+            self.moments.pop_front();
+        }
+        self.moments.push_back(Moment { inputs: now.inputs.to_vec(), save: game.save(), hash: now.hash });
+        if !now.options.is_due(now.tick) {
+            return Ok(());
+        }
+        for (depth, guess) in rollbacks(now.options.depths, depth_max, now.tick) {
+            let last = self.moments.len() - 1;
+            // Near the start there is less to go back by.
+            let depth = depth.min(u32::try_from(last).unwrap_or(u32::MAX));
+            if depth > 0 {
+                *steps += u64::from(depth) * if guess == Guess::Right { 1 } else { 2 };
+                self.roll_back(game, last - depth as usize, (depth, guess), now)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Goes back to a moment and plays up to now: first as guessed, then as it was.
+    fn roll_back(
+        &self,
+        game: &mut G,
+        first: usize,
+        (depth, guess): Rollback,
+        now: &Now<'_, G>,
+    ) -> Result<(), Box<Finding>> {
+        let start = &self.moments[first];
+        if guess != Guess::Right {
+            let guessed = match guess {
+                Guess::Held if !start.inputs.is_empty() => start.inputs.clone(),
+                _ => vec![G::Input::default(); now.inputs.len()],
+            };
+            game.load(&start.save);
+            (0..depth).for_each(|_| game.step(&guessed));
+        }
+        game.load(&start.save);
+        for (moment, left) in self.moments.iter().skip(first).zip((0..=depth).rev()) {
+            if left < depth {
+                game.step(&moment.inputs);
+            }
+            if game.state_hash() != moment.hash {
+                let fault = if left < depth { Fault::Hash } else { Fault::Loaded };
+                let finding = Finding::new(Way::RolledBack, fault, now.tick - u64::from(left));
+                let finding = finding.with_saves(&moment.save, &game.save());
+                return Err(Box::new(Finding { rollback: Some((depth, guess)), ..finding }));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The rollbacks of a tick.
+fn rollbacks(depths: Depths, depth_max: u32, tick: u64) -> Vec<Rollback> {
+    let each = |depth: u32| Guess::ALL.into_iter().map(move |guess| (depth, guess));
+    match depths {
+        Depths::Each => (1..=depth_max).flat_map(each).collect(),
+        Depths::InTurn => {
+            let depth = (1..=depth_max).cycle().nth(remainder(tick, depth_max));
+            let guess = Guess::ALL[remainder(tick, 3)];
+            depth.map(|depth| (depth, guess)).into_iter().collect()
+        }
+    }
+}
+
+fn remainder(tick: u64, of: u32) -> usize {
+    usize::try_from(tick % u64::from(of.max(1))).unwrap_or(0)
+}
+
+#[cfg(test)]
+mod tests {
+    use alloc::collections::BTreeSet;
+
+    use super::*;
+
+    #[test]
+    fn every_rollback_has_its_turn() {
+        let name = |(depth, guess): Rollback| (depth, Guess::ALL.iter().position(|one| *one == guess));
+        let in_turn: BTreeSet<_> =
+            (0..24).flat_map(|tick| rollbacks(Depths::InTurn, 8, tick)).map(name).collect();
+        let each: BTreeSet<_> = rollbacks(Depths::Each, 8, 5).into_iter().map(name).collect();
+        assert_eq!(in_turn, each);
+        assert_eq!(each.len(), 24);
+        assert!(rollbacks(Depths::InTurn, 0, 5).is_empty());
+    }
+}

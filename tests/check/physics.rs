@@ -1,0 +1,131 @@
+//! Games with a physics world: what is no state of it must not decide anything.
+
+use lockstep2d::body::{BodyDef, BodyId, Geometry, Polygon, ShapeDef};
+use lockstep2d::check::{Depths, Fault, Options, Phases, Way, check, check_replay};
+use lockstep2d::fx;
+use lockstep2d::hash::StateHash;
+use lockstep2d::lockstep::{Game, RulesId, SetupError};
+use lockstep2d::math::{Fx, Vec2};
+use lockstep2d::world::{Config, Snapshot, World};
+
+/// What is wrong.
+const NOTHING: u8 = 0;
+/// The contacts that the world happens to know decide, which are none after a restore.
+const CONTACTS: u8 = 1;
+/// A wind that is not saved.
+const WIND: u8 = 2;
+
+/// A ball that is kicked about in a pit.
+struct Pit<const MISTAKE: u8> {
+    world: World,
+    ball: BodyId,
+    wind: Fx,
+    score: u32,
+}
+
+impl<const MISTAKE: u8> Game for Pit<MISTAKE> {
+    type Setup = ();
+    type Input = bool;
+    type Save = (Snapshot, u32);
+
+    const RULES: RulesId = RulesId { name: "pit", version: 1 };
+
+    fn new(_: &()) -> Result<Self, SetupError> {
+        let refused = |why| SetupError { why };
+        let mut world = World::new(Config::default()).map_err(|error| refused(error.to_string()))?;
+        let floor = ShapeDef::new(Polygon::rectangle(fx!(20), fx!(1)).map_err(|e| refused(e.to_string()))?);
+        let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).map_err(|e| refused(e.to_string()))?);
+        let spawned = world
+            .spawn(&BodyDef::fixed().position(fx!(0), fx!(-1)), &[floor])
+            .and_then(|_| world.spawn(&BodyDef::dynamic().position(fx!(0), fx!(0.7)), &[ball]));
+        let ball = spawned.map_err(|error| refused(error.to_string()))?;
+        Ok(Pit { world, ball, wind: fx!(0), score: 0 })
+    }
+
+    fn players(&self) -> u32 {
+        1
+    }
+
+    fn tick_rate(&self) -> u32 {
+        self.world.config().tick_rate
+    }
+
+    fn step(&mut self, kicks: &[bool]) {
+        if kicks == [true] {
+            self.wind += fx!(0.25);
+        }
+        if MISTAKE == CONTACTS && self.world.contacts().count() > 0 {
+            self.score += 1;
+        }
+        if MISTAKE == WIND {
+            let _ball_is_there = self.world.apply_impulse_to_centre(self.ball, Vec2::new(self.wind, fx!(0)));
+        }
+        self.world.step();
+    }
+
+    fn state_hash(&self) -> StateHash {
+        StateHash::of_digests([self.world.state_hash(), StateHash::of(&self.score)])
+    }
+
+    fn save(&self) -> (Snapshot, u32) {
+        (self.world.save(), self.score)
+    }
+
+    fn load(&mut self, (world, score): &(Snapshot, u32)) {
+        self.world.restore(world);
+        self.score = *score;
+    }
+
+    fn work(&self, _: &[bool]) -> u64 {
+        1
+    }
+
+    fn world_mut(&mut self) -> Option<&mut World> {
+        Some(&mut self.world)
+    }
+}
+
+/// A kick in tick 31.
+fn inputs() -> Vec<Vec<bool>> {
+    (0..60).map(|tick| vec![tick == 30]).collect()
+}
+
+#[test]
+fn a_good_game_with_a_world_passes() {
+    let options = Options { depths: Depths::Each, phases: Phases::Compared, ..Options::default() };
+    let checked = check::<Pit<NOTHING>>(&(), &inputs(), &options).unwrap();
+    assert!(checked.ways.iter().any(|way| matches!(way, Way::BroadPhase(_))));
+    assert_eq!(checked.ways.iter().any(|way| matches!(way, Way::Threads(_))), cfg!(feature = "parallel"));
+    assert_eq!(checked.ways.len(), options.ways.len(), "all ways are gone");
+}
+
+#[test]
+fn who_reads_what_is_no_state_is_found() {
+    for way in [Way::Reloaded, Way::RolledBack, Way::ClearedScratch] {
+        let error = check::<Pit<CONTACTS>>(&(), &inputs(), &Options::default().only(&[way])).unwrap_err();
+        let failure = error.failure().unwrap();
+        assert_eq!((failure.minimised.way, &failure.minimised.fault), (way, &Fault::Hash), "{failure}");
+        assert_eq!(failure.minimised.differences[0].field().path(), "[1]", "{failure}");
+    }
+}
+
+/// The body and its velocity are named, and two ticks are left: one with the kick, and one that feels it anew.
+#[test]
+fn the_body_and_the_field_are_named() {
+    let error = check::<Pit<WIND>>(&(), &inputs(), &Options::default()).unwrap_err();
+    let failure = error.failure().unwrap();
+    assert_eq!((failure.finding.way, failure.finding.tick), (Way::Reloaded, 32), "{failure}");
+    let paths = failure.finding.differences.iter().map(|difference| difference.field().path());
+    assert!({ paths }.any(|path| path == "[0].bodies.body 1v0.velocity.x"), "{failure:?}");
+    assert_eq!((failure.ticks, failure.minimised.tick), (2, 2));
+    assert!(check_replay::<Pit<WIND>>(&failure.replay, &Options::default()).is_err());
+}
+
+/// The bonus of a game is lost before the step begins, which is then no phase of it.
+#[test]
+fn phases_are_compared() {
+    let options = Options { phases: Phases::Compared, ..Options::default() };
+    let error = check::<Pit<WIND>>(&(), &inputs(), &options).unwrap_err();
+    let finding = &error.failure().unwrap().finding;
+    assert_eq!((finding.tick, finding.phase), (32, None), "{finding}");
+}

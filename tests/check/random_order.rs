@@ -1,0 +1,27 @@
+//! The planted mistake of `examples/fuzzing`: the order of a `HashMap`, which differs from map to map.
+
+use lockstep2d::check::{Options, Way, check, check_replay, random_inputs};
+use lockstep2d::math::Rng;
+
+use super::harvest::Harvest;
+
+/// Random logs find it, and the replay that is left has little more than two fruits and somebody who reaches for them.
+#[test]
+fn random_logs_find_the_order_of_a_hash_map() {
+    let mut rng = Rng::new(3);
+    let failure = (0..200).find_map(|_| {
+        let inputs = random_inputs::<Harvest>(2, 200, &mut rng);
+        check::<Harvest>(&7, &inputs, &Options::default()).err()
+    });
+    let failure = failure.expect("it is found");
+    let failure = failure.failure().expect("it is a fault of the game");
+    println!("{failure}");
+    assert_eq!(failure.minimised.way, Way::Again, "{failure}");
+    assert!(failure.ticks < 120, "{failure}");
+    assert!(failure.failed.0 >= 3, "{failure}");
+    assert!(failure.minimised.differences.iter().any(|found| found.field().path().contains("weight")));
+
+    let options = Options::default().only(&[Way::Again; 4]);
+    let fails = (0..8).filter(|_| check_replay::<Harvest>(&failure.replay, &options).is_err()).count();
+    assert!(fails >= 4, "it fails {fails} times out of 8");
+}

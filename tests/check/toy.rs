@@ -1,0 +1,250 @@
+//! A small game, with one mistake of many.
+
+use std::cell::Cell;
+use std::sync::atomic::{AtomicU32, Ordering};
+
+use lockstep2d::hash::StateHash;
+use lockstep2d::lockstep::{Game, RulesId, SetupError};
+use serde::{Deserialize, Serialize};
+
+/// What is wrong with a [`Toy`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Mistake {
+    None,
+    /// The save has no cooldowns.
+    SaveLacksField,
+    /// Neither the save nor the hash has cooldowns.
+    BothLackField,
+    /// The hash has no cooldowns.
+    HashLacksField,
+    /// A counter that all games share decides.
+    Global,
+    /// `load` leaves the total as it was, which `step` trusts.
+    LoadKeepsCache,
+    /// `step` remembers the last hit and only notices that another player is at it.
+    StaleMemory,
+    /// Every question for the hash is counted in the state.
+    HashCounts,
+    /// A question for the hash tidies up.
+    HashTidies,
+    /// A set in the save.
+    SaveIsUnordered,
+    /// One more with every question.
+    ClaimsCount,
+    /// One more with every question.
+    WorkCounts,
+    /// Two claims with the same name.
+    ClaimsTwice,
+    /// A claim of a shared counter.
+    ClaimsGlobal,
+    /// Refuses what it wrote itself.
+    Unreadable,
+    /// More work than any verifier allows.
+    WorkIsHuge,
+}
+
+/// Two players walk a line and hit each other. Shots need time to cool down.
+pub(crate) struct Toy<const MISTAKE: usize> {
+    state: State,
+    /// The sum of the places: a cache.
+    total: i64,
+    /// Who hit last, and for how much: a cache.
+    last_hit: Option<(usize, u32)>,
+    asked: Cell<u32>,
+    tidy: Cell<bool>,
+}
+
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct State {
+    places: [i64; 2],
+    cooldown: [u8; 2],
+    hits: [u32; 2],
+    tick: u64,
+}
+
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(crate) struct Save {
+    state: State,
+    #[serde(with = "unordered")]
+    seen: Unordered,
+    flag: Flag,
+}
+
+/// A set without an order, and its encoding.
+#[expect(clippy::disallowed_types, reason = "a planted mistake")]
+type Unordered = std::collections::HashSet<u64>;
+
+mod unordered {
+    use serde::{Deserialize, Deserializer, Serializer};
+
+    use super::Unordered;
+
+    pub(super) fn serialize<S: Serializer>(set: &Unordered, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_seq(set)
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Unordered, D::Error> {
+        Vec::deserialize(deserializer).map(Unordered::from_iter)
+    }
+}
+
+/// A byte that is written as 2 and read up to 1, if that is the mistake.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[serde(try_from = "u8")]
+pub(crate) struct Flag(u8);
+
+impl TryFrom<u8> for Flag {
+    type Error = &'static str;
+
+    fn try_from(byte: u8) -> Result<Self, Self::Error> {
+        if byte <= 1 { Ok(Flag(byte)) } else { Err("a flag above 1") }
+    }
+}
+
+/// Bit 0: to the right, bit 1: to the left, bit 2: hits.
+pub(crate) type Pad = u8;
+
+static SHARED: AtomicU32 = AtomicU32::new(0);
+
+const MISTAKES: [Mistake; 16] = [
+    Mistake::None,
+    Mistake::SaveLacksField,
+    Mistake::BothLackField,
+    Mistake::HashLacksField,
+    Mistake::Global,
+    Mistake::LoadKeepsCache,
+    Mistake::StaleMemory,
+    Mistake::HashCounts,
+    Mistake::HashTidies,
+    Mistake::SaveIsUnordered,
+    Mistake::ClaimsCount,
+    Mistake::WorkCounts,
+    Mistake::ClaimsTwice,
+    Mistake::ClaimsGlobal,
+    Mistake::Unreadable,
+    Mistake::WorkIsHuge,
+];
+
+impl<const MISTAKE: usize> Toy<MISTAKE> {
+    fn has(mistake: Mistake) -> bool {
+        MISTAKES[MISTAKE] == mistake
+    }
+
+    fn hit(&mut self, player: usize) {
+        let other = 1 - player;
+        let near = (self.state.places[player] - self.state.places[other]).abs() <= 2;
+        if !near || self.state.cooldown[player] > 0 {
+            return;
+        }
+        self.state.cooldown[player] = 20;
+        let mut strength = 1 + u32::from(self.state.tick % 3 == 0);
+        if Self::has(Mistake::StaleMemory) {
+            strength = match self.last_hit {
+                Some((last, strength)) if last == player => strength,
+                _ => strength,
+            };
+            self.last_hit = Some((player, strength));
+        }
+        if Self::has(Mistake::Global) {
+            strength += SHARED.fetch_add(1, Ordering::Relaxed) % 7;
+        }
+        self.state.hits[player] += strength;
+    }
+}
+
+impl<const MISTAKE: usize> Game for Toy<MISTAKE> {
+    type Setup = ();
+    type Input = Pad;
+    type Save = Save;
+
+    const RULES: RulesId = RulesId { name: "toy", version: 1 };
+
+    fn new(_: &()) -> Result<Self, SetupError> {
+        let state = State { places: [-3, 3], cooldown: [0; 2], hits: [0; 2], tick: 0 };
+        Ok(Toy { state, total: 0, last_hit: None, asked: Cell::new(0), tidy: Cell::new(false) })
+    }
+
+    fn players(&self) -> u32 {
+        2
+    }
+
+    fn tick_rate(&self) -> u32 {
+        60
+    }
+
+    fn step(&mut self, pads: &[Pad]) {
+        for player in 0..2 {
+            self.state.cooldown[player] = self.state.cooldown[player].saturating_sub(1);
+            let pad = pads.get(player).copied().unwrap_or_default();
+            let way = i64::from(pad & 1) - i64::from(pad >> 1 & 1);
+            self.state.places[player] = (self.state.places[player] + way).clamp(-9, 9);
+            self.total = match Self::has(Mistake::LoadKeepsCache) {
+                true => self.total + way,
+                false => self.state.places.iter().sum(),
+            };
+            if pad & 4 != 0 {
+                self.hit(player);
+            }
+        }
+        if self.total > 4 {
+            self.state.hits[0] += 1;
+        }
+        if Self::has(Mistake::HashCounts) {
+            self.state.hits[1] += self.asked.replace(0) / 2;
+        }
+        if Self::has(Mistake::HashTidies) && !self.tidy.get() {
+            self.state.hits[0] += u32::from(self.state.tick == 7);
+        }
+        self.state.tick += 1;
+    }
+
+    fn state_hash(&self) -> StateHash {
+        self.asked.set(self.asked.get() + 1);
+        self.tidy.set(true);
+        let State { places, cooldown, hits, tick } = &self.state;
+        let cooldown = match MISTAKES[MISTAKE] {
+            Mistake::HashLacksField | Mistake::BothLackField => &[0; 2],
+            _ => cooldown,
+        };
+        StateHash::of(&(places, cooldown, hits, tick))
+    }
+
+    fn save(&self) -> Save {
+        let mut state = self.state.clone();
+        if Self::has(Mistake::SaveLacksField) || Self::has(Mistake::BothLackField) {
+            state.cooldown = [0; 2];
+        }
+        let seen = if Self::has(Mistake::SaveIsUnordered) { 0..state.tick.min(6) } else { 0..0 };
+        let flag = Flag(if Self::has(Mistake::Unreadable) && state.tick == 9 { 2 } else { 0 });
+        Save { state, seen: seen.collect(), flag }
+    }
+
+    fn load(&mut self, save: &Save) {
+        self.state = save.state.clone();
+        if !Self::has(Mistake::LoadKeepsCache) {
+            self.total = self.state.places.iter().sum();
+        }
+    }
+
+    fn work(&self, _: &[Pad]) -> u64 {
+        self.asked.set(self.asked.get() + 1);
+        match MISTAKES[MISTAKE] {
+            Mistake::WorkCounts => self.asked.get().into(),
+            Mistake::WorkIsHuge => u64::MAX,
+            _ => 1,
+        }
+    }
+
+    fn claims(&self) -> Vec<(String, i64)> {
+        self.asked.set(self.asked.get() + 1);
+        let hits = self.state.hits.map(i64::from);
+        match MISTAKES[MISTAKE] {
+            Mistake::ClaimsCount => vec![("asked".into(), self.asked.get().into())],
+            Mistake::ClaimsTwice => hits.map(|hits| ("hits".into(), hits)).into(),
+            Mistake::ClaimsGlobal => {
+                vec![("shared".into(), SHARED.fetch_add(1, Ordering::Relaxed).into())]
+            }
+            _ => vec![("a".into(), hits[0]), ("b".into(), hits[1])],
+        }
+    }
+}
