@@ -126,11 +126,11 @@ fn worlds_come_back_at_every_tick() {
 #[test]
 fn steps_backwards_are_cheap_in_little_memory_too() {
     let file = record(20_000, 60, inputs_at);
-    // Room for some 12 keyframes, and a few saves behind the cursor.
-    let mut timeline = open::<Counter>(&file, 60, 10_000);
+    // Room for some 100 keyframes, and 30 saves behind the cursor.
+    let mut timeline = open::<Counter>(&file, 60, 40_000);
     timeline.seek(20_000).unwrap();
     let interval = timeline.interval();
-    assert!(interval >= 960, "{interval}");
+    assert!(interval >= 240, "{interval}");
     let before = timeline.simulated();
     for _ in 0..interval {
         timeline.step_back().unwrap();
@@ -217,6 +217,10 @@ fn keyframes_of_a_file_spare_the_way() {
         assert_eq!(timeline.game().state_hash(), hashes[at(tick)]);
         assert!(timeline.simulated() < 40, "tick {tick}: {}", timeline.simulated());
         assert!(timeline.played() < 40, "what was not played is not called played");
+        let before = timeline.simulated();
+        timeline.play_all().unwrap();
+        assert_eq!((timeline.played(), timeline.tick()), (400, tick));
+        assert!((360..440).contains(&(timeline.simulated() - before)), "all of it, and the way back");
     }
     // Another interval: as many of them as fit it.
     for (interval, then) in [(20, 40), (40, 40), (60, 80), (100, 120)] {

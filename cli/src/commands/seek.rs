@@ -87,7 +87,7 @@ pub(crate) fn run<G: Game>(
         tick: timeline.tick(),
         ticks: timeline.ticks(),
         hash: timeline.game().state_hash().to_string(),
-        counts: timeline.world().map(|world| Counts::of(world)),
+        counts: timeline.world().map(Counts::of),
         simulated: there,
         simulated_back: back,
         keyframe_interval: timeline.interval(),

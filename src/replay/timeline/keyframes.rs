@@ -14,7 +14,8 @@ pub(super) struct Keyframe<'a> {
 }
 
 impl Keyframe<'_> {
-    fn bytes(&self) -> usize {
+    /// What it takes, its place included: never 0.
+    pub(super) fn bytes(&self) -> usize {
         self.save.len() + size_of::<Self>()
     }
 }

@@ -245,7 +245,10 @@ impl<'a, G: Game> Timeline<'a, G> {
     pub fn play_all(&mut self) -> Result<(), SeekError> {
         let here = self.tick();
         self.seek(self.played)?;
-        self.seek(self.ticks())?;
+        // Not by `seek`, which would pass over what a file's keyframes spare.
+        while self.tick() < self.ticks() {
+            self.play_tick()?;
+        }
         self.seek(here)
     }
 
@@ -310,8 +313,7 @@ impl<'a, G: Game> Timeline<'a, G> {
 
     /// Keeps where it is, for steps backwards.
     fn leave_trail(&mut self) {
-        let save_bytes = self.keyframes.latest(self.tick()).save.len();
-        let length = (self.keyframes.bytes_max() / 4) / save_bytes.max(1);
+        let length = (self.keyframes.bytes_max() / 4) / self.keyframes.latest(self.tick()).bytes();
         let length = u64::try_from(length).unwrap_or(u64::MAX).max(2);
         let spacing = self.interval().div_ceil(length);
         if self.tick() % spacing == 0 {
