@@ -173,3 +173,24 @@ pub(super) fn step<G: Game>(game: &mut G, inputs: &[G::Input], phases: Phases) -
 pub(super) fn another<G: Game>(setup: &G::Setup, way: Way, tick: u64) -> Result<G, Box<Finding>> {
     G::new(setup).map_err(|error| Box::new(Finding::new(way, Fault::Refused { why: error.why }, tick)))
 }
+
+#[cfg(test)]
+mod tests {
+    use alloc::vec;
+
+    use super::*;
+    use crate::lockstep::{Sandbox, SandboxSetup};
+    use crate::world::Phase;
+
+    #[test]
+    fn phases_are_noted_if_wanted() {
+        let mut game = Sandbox::new(&SandboxSetup::default()).expect("an empty world");
+        for _ in 0..2 {
+            let noted = step(&mut game, &[vec![]], Phases::Compared);
+            let phases: Vec<_> = noted.iter().map(|noted| noted.phase).collect();
+            assert_eq!((phases.len(), phases[1]), (8, Some(Phase::BroadPhase)));
+        }
+        let mut ignoring = Sandbox::new(&SandboxSetup::default()).expect("an empty world");
+        assert!(step(&mut ignoring, &[vec![]], Phases::Ignored).is_empty());
+    }
+}

@@ -96,7 +96,7 @@ impl<G: Game> Exchanges<G> {
             bytes[range].copy_from_slice(&replacement);
             if let Some((after, a, b)) = self.futures_differ(moment, &bytes, now, steps)? {
                 let finding = Finding::new(Way::Exchanged, Fault::Unhashed, moment.tick + after);
-                return Err(Box::new(finding.with_saves(&a, &b)));
+                return Err(Box::new(Finding { played: now.tick, ..finding.with_saves(&a, &b) }));
             }
         }
         Ok(())

@@ -72,6 +72,8 @@ pub struct Finding {
     pub fault: Fault,
     /// After how many ticks.
     pub tick: u64,
+    /// How many ticks had been played when it showed: more, if the game had been rolled back.
+    pub played: u64,
     /// The phase of the physics step after which something differs first, if phases are compared; `None` also if
     /// something differed before the step.
     pub phase: Option<Phase>,
@@ -84,7 +86,7 @@ pub struct Finding {
 
 impl Finding {
     pub(super) fn new(way: Way, fault: Fault, tick: u64) -> Self {
-        Finding { way, fault, tick, phase: None, rollback: None, differences: Vec::new() }
+        Finding { way, fault, tick, played: tick, phase: None, rollback: None, differences: Vec::new() }
     }
 
     /// With what differs in two saves.
@@ -111,7 +113,8 @@ impl Finding {
             (_, Fault::Unreadable { .. }) => "a Serialize and a Deserialize that do not fit each other",
             (Way::Reloaded, _) => "a field that is missing from `Save`, or that `load` does not bring back",
             (Way::RolledBack, _) => {
-                "a cache or a field that `load` leaves as it was: it is right in a new game and wrong in one that has lived"
+                "a cache or a field that `load` leaves as it was, saved or not: it is right in a new game and wrong in one that \
+                 has lived"
             }
             (_, Fault::Verdict(Verdict::LimitExceeded { .. })) => "`work` answers more than the limits allow",
             (_, Fault::Verdict(_) | Fault::Unrecordable(_)) => {

@@ -78,7 +78,7 @@ pub(super) fn minimise<G: Game>(
     options: &Options,
 ) -> Failure {
     if options.budget == 0 {
-        let cut = first(log, finding.tick);
+        let cut = first(log, finding.played);
         let (minimised, replay) = (finding.clone(), cut.record(setup));
         return Failure { finding, minimised, replay, ticks: cut.len(), failed: (1, 1) };
     }
@@ -131,7 +131,7 @@ impl<G: Game> Search<'_, G> {
             self.options.depths = Depths::InTurn;
         }
         self.need = 1;
-        let of_cut = self.attempt(first(log, finding.tick).ticks, log);
+        let of_cut = self.attempt(first(log, finding.played).ticks, log);
         // What fails by chance may fail more often with more ticks.
         self.need = of_cut.as_ref().map_or(0, |found| found.failed) + 1;
         let of_all = match self.need <= self.options.repeats {
@@ -154,7 +154,7 @@ impl<G: Game> Search<'_, G> {
         for left in (0..repeats).rev() {
             if let Err(found) = run_counted(self.setup, &candidate, &self.options, &mut self.spent) {
                 failed += 1;
-                if last.as_ref().is_none_or(|last| last.tick < found.tick) {
+                if last.as_ref().is_none_or(|last| last.played < found.played) {
                     last = Some(found);
                 }
             }
@@ -163,7 +163,7 @@ impl<G: Game> Search<'_, G> {
             }
         }
         let finding = *last?;
-        ticks.truncate(usize::try_from(finding.tick.max(1)).unwrap_or(usize::MAX));
+        ticks.truncate(usize::try_from(finding.played.max(1)).unwrap_or(usize::MAX));
         Some(Attempt { ticks, finding, failed })
     }
 

@@ -89,7 +89,8 @@ impl<G: Game> Past<G> {
                 let fault = if left < depth { Fault::Hash } else { Fault::Loaded };
                 let finding = Finding::new(Way::RolledBack, fault, now.tick - u64::from(left));
                 let finding = finding.with_saves(&moment.save, &game.save());
-                return Err(Box::new(Finding { rollback: Some((depth, guess)), ..finding }));
+                let rollback = Some((depth, guess));
+                return Err(Box::new(Finding { rollback, played: now.tick, ..finding }));
             }
         }
         Ok(())

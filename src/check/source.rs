@@ -124,7 +124,7 @@ impl Source<'_> {
 macro_rules! integers {
     ($($method:ident $visit:ident $type:ty)*) => {$(
         fn $method<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
-            let [bytes @ ..] = self.bits(<$type>::BITS).to_le_bytes();
+            let bytes = self.bits(<$type>::BITS).to_le_bytes();
             let mut own = [0; size_of::<$type>()];
             own.copy_from_slice(&bytes[..size_of::<$type>()]);
             visitor.$visit(<$type>::from_le_bytes(own))

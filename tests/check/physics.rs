@@ -112,7 +112,8 @@ fn who_reads_what_is_no_state_is_found() {
 /// The body and its velocity are named, and two ticks are left: one with the kick, and one that feels it anew.
 #[test]
 fn the_body_and_the_field_are_named() {
-    let error = check::<Pit<WIND>>(&(), &inputs(), &Options::default()).unwrap_err();
+    let options = Options::default().only(&[Way::Again, Way::Reloaded]);
+    let error = check::<Pit<WIND>>(&(), &inputs(), &options).unwrap_err();
     let failure = error.failure().unwrap();
     assert_eq!((failure.finding.way, failure.finding.tick), (Way::Reloaded, 32), "{failure}");
     let paths = failure.finding.differences.iter().map(|difference| difference.field().path());
@@ -121,10 +122,20 @@ fn the_body_and_the_field_are_named() {
     assert!(check_replay::<Pit<WIND>>(&failure.replay, &Options::default()).is_err());
 }
 
+/// Who is rolled back to before the kick still has the wind.
+#[test]
+fn a_rollback_shows_before_it_has_happened() {
+    let error = check::<Pit<WIND>>(&(), &inputs(), &Options::default()).unwrap_err();
+    let failure = error.failure().unwrap();
+    assert_eq!((failure.finding.way, failure.finding.played), (Way::RolledBack, 31), "{failure}");
+    assert!(failure.finding.tick < 31, "{failure}");
+    assert_eq!((failure.ticks, failure.failed), (1, (4, 4)), "{failure}");
+}
+
 /// The bonus of a game is lost before the step begins, which is then no phase of it.
 #[test]
 fn phases_are_compared() {
-    let options = Options { phases: Phases::Compared, ..Options::default() };
+    let options = Options { phases: Phases::Compared, ..Options::default() }.only(&[Way::Reloaded]);
     let error = check::<Pit<WIND>>(&(), &inputs(), &options).unwrap_err();
     let finding = &error.failure().unwrap().finding;
     assert_eq!((finding.tick, finding.phase), (32, None), "{finding}");
