@@ -3,15 +3,16 @@
 
 pub mod allocations;
 pub mod broad_phases;
+pub mod bytes;
 pub mod calm;
 pub mod forge;
 pub mod generator;
 pub mod hostile;
 pub mod joints;
 pub mod lockstep;
+pub mod matches;
 pub mod memory;
 pub mod mirror;
-pub mod packets;
 pub mod questions;
 pub mod reports;
 pub mod settings;
