@@ -5,7 +5,7 @@ use std::sync::Mutex;
 
 use lockstep2d::collision::BroadPhaseKind;
 use lockstep2d::hash::StateHash;
-use lockstep2d::world::{Command, Events, Snapshot, World};
+use lockstep2d::world::{Command, Events, Motion, Snapshot, World};
 
 use crate::generator::{self, Generator};
 use crate::source::Source;
@@ -71,6 +71,28 @@ struct Variants {
 /// # Panics
 /// When the variants differ, an invariant breaks, or a refused command has changed something.
 pub fn run(bytes: &[u8]) -> Seen {
+    play(bytes, |_| ())
+}
+
+/// The same, with a fault that the comparison has to find: in a crowd, a bit of one body of one world flips.
+///
+/// # Panics
+/// Always, if the scene has a crowd.
+pub fn run_with_a_fault(bytes: &[u8]) {
+    play(bytes, |variants| {
+        let touching = variants.plain.contacts().filter(|contact| contact.touching).count();
+        let (_, other) = &mut variants.others[1];
+        let bodies: Vec<_> = other.bodies().map(|(id, _)| id).collect();
+        if touching > 12
+            && let Some(&body) = bodies.get(7)
+        {
+            // Refused while the body sleeps.
+            let _ = other.flip_bit(body, Motion::ALL[0], 0);
+        }
+    });
+}
+
+fn play(bytes: &[u8], mut meddle: impl FnMut(&mut Variants)) -> Seen {
     let mut source = Source::new(bytes);
     let config = generator::config(&mut source);
     let plain = World::new(config).unwrap_or_default();
@@ -93,6 +115,7 @@ pub fn run(bytes: &[u8]) -> Seen {
         }
         variants.disturb(&mut source);
         variants.execute(&commands, &mut seen);
+        meddle(&mut variants);
         let hash = variants.step();
         if let Some(rollback) = &mut rollback {
             rollback.ticks.push((commands, hash, variants.plain.events().clone()));

@@ -2,7 +2,9 @@
 //! their scenes are full of contacts.
 
 use lockstep2d::math::Rng;
-use lockstep2d_fuzz::{broad_phases, lockstep, matches, questions, reports, snapshots, verdicts};
+use lockstep2d_fuzz::{
+    broad_phases, hulls, lockstep, manifolds, matches, maths, pairs, questions, reports, snapshots, verdicts,
+};
 
 fn random_inputs(count: u64) -> impl Iterator<Item = Vec<u8>> {
     (0..count).map(|seed| {
@@ -94,4 +96,41 @@ fn reports_tell_the_truth_or_are_refused() {
     }
     println!("{seen:?}");
     assert!(seen.len() >= 5, "{seen:?}");
+}
+
+#[test]
+fn operations_are_exact() {
+    let tried: u64 = random_inputs(2000).map(|input| maths::run(&input)).sum();
+    println!("{tried} operations");
+    assert!(tried > 2000 * 3, "only {tried} operations");
+}
+
+#[test]
+fn hulls_are_hulls() {
+    let hulls = random_inputs(5000).filter(|input| hulls::run(input)).count();
+    println!("{hulls} hulls");
+    assert!(hulls > 1000, "only {hulls} hulls");
+}
+
+#[test]
+fn contacts_are_exact() {
+    let mut seen = std::collections::BTreeMap::new();
+    for input in random_inputs(20_000) {
+        *seen.entry(manifolds::run(&input)).or_insert(0) += 1;
+    }
+    println!("{seen:?}");
+    assert!(seen.len() == 4 && seen.values().all(|count| *count > 50), "{seen:?}");
+}
+
+#[test]
+fn pairs_depend_on_nothing_else() {
+    let contacts: u64 = random_inputs(5000).filter_map(|input| pairs::run(&input)).sum();
+    println!("{contacts} contacts");
+    assert!(contacts > 2000, "only {contacts} contacts");
+}
+
+#[test]
+#[should_panic(expected = "tick")]
+fn a_planted_fault_is_found() {
+    random_inputs(300).for_each(|input| lockstep::run_with_a_fault(&input));
 }

@@ -131,6 +131,7 @@ fn boundaries(file: &[u8]) -> Vec<usize> {
         }
     }
     places.retain(|place| *place < file.len());
+    places.sort_unstable();
     places.push(file.len());
     places
 }
