@@ -66,11 +66,17 @@ pub fn run(bytes: &[u8]) -> Option<u64> {
         }
         let least = separation(&manifold);
         if let Some(before) = before.filter(|before| *before > fx!(-15)) {
-            assert!((least - before).abs() <= ERROR, "{least} m in contact, {before} m apart: {still:?} {moving:?}");
+            assert!(
+                (least - before).abs() <= ERROR,
+                "{least} m in contact, {before} m apart: {still:?} {moving:?}"
+            );
         }
         if let Some((swapped, _)) = second.contact() {
             let other = separation(&swapped);
-            assert!((least - other).abs() <= ERROR, "{least} m and, exchanged, {other} m: {still:?} {moving:?}");
+            assert!(
+                (least - other).abs() <= ERROR,
+                "{least} m and, exchanged, {other} m: {still:?} {moving:?}"
+            );
         } else {
             assert!(least > config.touching_distance() - ERROR, "no contact with the shapes exchanged");
         }
@@ -121,7 +127,11 @@ fn distances(pair: &Pair) {
     assert!((length - Fx::ONE).abs() < Fx::from_bits(16), "a normal of length {length}");
     if there.distance > fx!(0.001) {
         let between = there.point_a.distance(there.point_b);
-        assert!((between - there.distance).abs() <= fx!(0.000001), "{between} m between, {} m apart", there.distance);
+        assert!(
+            (between - there.distance).abs() <= fx!(0.000001),
+            "{between} m between, {} m apart",
+            there.distance
+        );
         let same: Unit = there.normal.dot(back.normal);
         assert!(same < Unit::ZERO, "{:?} there, {:?} back", there.normal, back.normal);
     }

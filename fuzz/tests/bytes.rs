@@ -70,8 +70,11 @@ fn write_seeds() {
         std::fs::create_dir_all(&folder).expect("a folder");
         std::fs::write(folder.join(name), bytes).expect("a file");
     };
-    let targets =
-        [("replay_bytes", replay::originals()), ("snapshot_bytes", snapshot::originals()), ("report_bytes", report::originals())];
+    let targets = [
+        ("replay_bytes", replay::originals()),
+        ("snapshot_bytes", snapshot::originals()),
+        ("report_bytes", report::originals()),
+    ];
     for (target, originals) in targets {
         for (at, file) in originals.iter().enumerate() {
             write(target, &format!("whole_{at}"), &[&[0], file.as_slice()].concat());

@@ -97,10 +97,12 @@ impl Stage {
         let host = |at: usize| Peer::host(&(), options, posts[at].clone());
         let join = |at: usize, contact| Peer::join(&(), options, posts[at].clone(), contact, None);
         let watch = |at: usize, contact| Peer::watch(&(), options, posts[at].clone(), contact);
-        let peers = [host(WAITING), host(PLAYING[0]), join(PLAYING[1], 1), join(JOINING, 0), watch(WATCHING, 1)];
+        let peers =
+            [host(WAITING), host(PLAYING[0]), join(PLAYING[1], 1), join(JOINING, 0), watch(WATCHING, 1)];
         let peers: Result<Vec<_>, _> = peers.into_iter().collect();
         let peers = peers.expect("a valid setup").into_iter().zip(posts).collect();
-        let mut stage = Stage { peers, known: Known::default(), now: Duration::ZERO, inputs: 0, forged: false };
+        let mut stage =
+            Stage { peers, known: Known::default(), now: Duration::ZERO, inputs: 0, forged: false };
         // Until the match is under way.
         for turn in 0..40 {
             stage.now += Duration::from_millis(25);
@@ -132,7 +134,9 @@ impl Stage {
         let said = std::mem::take(&mut self.peers[from].1.0.borrow_mut().outgoing);
         for (to, packet) in said {
             self.known.hear(from as u32, to, &packet);
-            if arrives(to) && let Some((_, post)) = self.peers.get(to as usize) {
+            if arrives(to)
+                && let Some((_, post)) = self.peers.get(to as usize)
+            {
                 post.0.borrow_mut().incoming.push_back((from as u32, packet));
             }
         }

@@ -81,8 +81,7 @@ fn judge<G: Game>(file: &[u8]) -> Verdict {
 fn again<G: Game>(file: &[u8]) -> Vec<u8> {
     let reader = Reader::open(file, &LIMITS).expect("a match");
     let setup: G::Setup = codec::decode(reader.header().setup).expect("a match");
-    let mut recording =
-        Recording::<G>::start(&setup, reader.header().checkpoint_interval).expect("a match");
+    let mut recording = Recording::<G>::start(&setup, reader.header().checkpoint_interval).expect("a match");
     let mut rerun = Rerun::<G>::open(file, &LIMITS).expect("a match");
     while rerun.step().expect("a match") == Step::Ticked {
         recording.step(rerun.inputs()).expect("a match");

@@ -25,7 +25,10 @@ static ORIGINALS: LazyLock<Vec<Vec<u8>>> = LazyLock::new(|| {
     let sandbox = |fail: bool| {
         report::<Sandbox>(&setup, &inputs, |game, tick| {
             let world = game.world_mut();
-            if fail && tick == 2 && let Some(body) = { world.bodies().map(|(id, _)| id).nth(1) } {
+            if fail
+                && tick == 2
+                && let Some(body) = { world.bodies().map(|(id, _)| id).nth(1) }
+            {
                 world.flip_bit(body, Motion::ALL[0], 20).expect("a body that is there");
             }
         })

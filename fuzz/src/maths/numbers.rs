@@ -131,7 +131,11 @@ fn matrices(source: &mut Source<'_>) {
     let rounded = |exact: &Exact| saturated(halves_up(exact, 32), 64);
     assert_eq!(BigInt::from(matrix.determinant().to_bits()), rounded(&exact), "{matrix:?}");
     let v = vector(source);
-    assert_eq!(BigInt::from(matrix.apply(v).y.to_bits()), rounded(&(&c * of(v.x) + &d * of(v.y))), "{matrix:?}");
+    assert_eq!(
+        BigInt::from(matrix.apply(v).y.to_bits()),
+        rounded(&(&c * of(v.x) + &d * of(v.y))),
+        "{matrix:?}"
+    );
     let Some(inverse) = matrix.inverse() else {
         return assert!(exact.is_zero(), "{matrix:?} has an inverse");
     };
