@@ -76,7 +76,8 @@ pub const DECODE_BYTES_MAX: usize = 256 << 20;
 /// The value whose canonical bytes these are, all of them.
 ///
 /// A length prefix is not believed: what is allocated for a string is at most the next larger of 4 KiB, 1 MiB and
-/// 256 MiB above the number of bytes that there are, and for a list of values a small multiple of that number.
+/// 256 MiB above the number of bytes that there are, and for a list of values a small multiple of that number, but up to
+/// 1 MiB for each list that is begun, before its values are there.
 /// Two kinds of types defeat this and must not be decoded from a stranger's bytes: lists of values that take no
 /// bytes, whose length nothing bounds, and types that contain themselves, whose depth nothing bounds.
 ///

@@ -1,16 +1,16 @@
-//! Replays that no recorder has written: a verdict, never `Match`, in bounded time and memory. See `verdicts`.
+//! Files for the verifier, a few kilobytes each. See `bytes::replay`.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use lockstep2d_fuzz::{allocations, verdicts};
+use lockstep2d_fuzz::{allocations, bytes::replay};
 
 #[global_allocator]
 static ALLOCATOR: allocations::Counting = allocations::Counting;
 
-/// Most bytes that a file within the limits may make the verifier and the recorder allocate.
-const MEMORY_MAX: usize = 256 << 20;
+/// Most bytes at one time: a world and its scratch, for a file of a few kilobytes.
+const MEMORY_MAX: usize = 4 << 20;
 
 fuzz_target!(|bytes: &[u8]| {
-    let (_, peak) = allocations::peak_of(|| verdicts::run(bytes));
+    let (_, peak) = allocations::peak_of(|| replay::run(bytes));
     assert!(peak <= MEMORY_MAX, "{peak} bytes at one time");
 });

@@ -1,9 +1,16 @@
-//! Bytes of worlds that no world has written: an error, or a world that lives on. See `snapshots`.
+//! Bytes for worlds, a few kilobytes each. See `bytes::snapshot`.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use lockstep2d_fuzz::snapshots;
+use lockstep2d_fuzz::{allocations, bytes::snapshot};
+
+#[global_allocator]
+static ALLOCATOR: allocations::Counting = allocations::Counting;
+
+/// Most bytes at one time: two worlds and their scratch, for a file of a few kilobytes.
+const MEMORY_MAX: usize = 4 << 20;
 
 fuzz_target!(|bytes: &[u8]| {
-    snapshots::run(bytes);
+    let (_, peak) = allocations::peak_of(|| snapshot::run(bytes));
+    assert!(peak <= MEMORY_MAX, "{peak} bytes at one time");
 });

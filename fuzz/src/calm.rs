@@ -103,7 +103,7 @@ fn belt(source: &mut Source<'_>) -> [ShapeDef; 3] {
 /// Equal bodies in rows, next to each other or a little apart.
 fn pile(source: &mut Source<'_>, middle: Vec2<Fx>, commands: &mut Vec<Command>) {
     let shape = calm_shape(source);
-    let count = source.pick(&[10, 6, 15, 20, 4, 28]);
+    let count = source.pick(&[12, 8, 16, 20, 10, 28]);
     let columns = source.pick(&[4, 2, 3, 1, 6, 5]);
     let gap = source.pick(&[fx!(0), fx!(0.01), fx!(-0.005), fx!(0.1)]);
     let mut rng = Rng::new(source.byte().into());

@@ -81,6 +81,37 @@ impl Forged {
     }
 }
 
+/// Makes the checksums and the chain hash right of whatever bytes are laid out like a replay.
+pub fn repair(file: &mut Vec<u8>) {
+    let length = |file: &[u8], at: usize| {
+        let bytes = file.get(at..at + 4)?.first_chunk()?;
+        usize::try_from(u32::from_le_bytes(*bytes)).ok()
+    };
+    let seal = |file: &mut Vec<u8>, at: usize, chain: u128| {
+        let sum = chain.to_le_bytes();
+        file.get_mut(at..at + 8).map(|place| place.copy_from_slice(&sum[..8]))
+    };
+    let Some(mut at) = length(file, 32).zip(length(file, 36)).map(|(name, setup)| 56 + name + setup) else {
+        return;
+    };
+    let Some(header) = file.get(..at) else { return };
+    let mut chain = StateHash::of_bytes(header).0;
+    while seal(file, at, chain).is_some() {
+        at += 8;
+        let Some(payload) = length(file, at) else { return };
+        let end = at + 5 + payload;
+        if end > file.len() {
+            return;
+        }
+        if file[at + 4] == TRAILER && payload >= CHAIN.end {
+            file[at + 5..end][CHAIN].copy_from_slice(&chain.to_le_bytes());
+        }
+        let block = StateHash::of_bytes(&file[at..end]).0;
+        chain = StateHash::of_bytes(&[chain.to_le_bytes(), block.to_le_bytes()].concat()).0;
+        at = end;
+    }
+}
+
 /// Changes, adds, removes or copies a few bytes.
 pub fn mutate(source: &mut Source<'_>, bytes: &mut Vec<u8>) {
     let at = source.below(bytes.len());

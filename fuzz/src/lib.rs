@@ -3,15 +3,20 @@
 
 pub mod allocations;
 pub mod broad_phases;
+pub mod bytes;
 pub mod calm;
 pub mod forge;
 pub mod generator;
 pub mod hostile;
+pub mod hulls;
 pub mod joints;
 pub mod lockstep;
+pub mod manifolds;
+pub mod matches;
+pub mod maths;
 pub mod memory;
 pub mod mirror;
-pub mod packets;
+pub mod pairs;
 pub mod questions;
 pub mod reports;
 pub mod settings;

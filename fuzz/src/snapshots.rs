@@ -71,8 +71,8 @@ fn mutate_state(source: &mut Source<'_>, snapshot: &mut Vec<u8>) {
     snapshot.splice(HEADER_BYTES..end, state);
 }
 
-/// Makes length and hash fit the rest.
-fn repair(snapshot: &mut [u8]) {
+/// Makes length and hash of a snapshot, or of a report, fit the rest.
+pub(crate) fn repair(snapshot: &mut [u8]) {
     if snapshot.len() < HEADER_BYTES + HASH_BYTES {
         return;
     }

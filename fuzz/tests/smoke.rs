@@ -2,7 +2,9 @@
 //! their scenes are full of contacts.
 
 use lockstep2d::math::Rng;
-use lockstep2d_fuzz::{broad_phases, lockstep, packets, questions, reports, snapshots, verdicts};
+use lockstep2d_fuzz::{
+    broad_phases, hulls, lockstep, manifolds, matches, maths, pairs, questions, reports, snapshots, verdicts,
+};
 
 fn random_inputs(count: u64) -> impl Iterator<Item = Vec<u8>> {
     (0..count).map(|seed| {
@@ -14,7 +16,7 @@ fn random_inputs(count: u64) -> impl Iterator<Item = Vec<u8>> {
 #[test]
 fn scenes_run_the_same_in_every_way_and_touch_a_lot() {
     let (mut touching, mut ticks, mut done, mut refused, mut faulty) = (0, 0, 0, 0, 0);
-    let (mut touched_runs, mut slept, mut noticed, mut hits, mut calm) = (0, 0, 0, 0, [0; 2]);
+    let (mut touched_runs, mut full, mut slept, mut noticed, mut hits, mut calm) = (0, 0, 0, 0, 0, [0; 2]);
     for input in random_inputs(300) {
         let seen = lockstep::run(&input);
         touching += seen.touching;
@@ -27,12 +29,13 @@ fn scenes_run_the_same_in_every_way_and_touch_a_lot() {
         hits += seen.hits;
         calm[usize::from(seen.calm && seen.faults > 0)] += u64::from(seen.calm);
         touched_runs += u64::from(seen.touching > 100);
+        full += u64::from(seen.ticks >= 60 && seen.most_touching >= 10);
     }
     println!(
-        "{ticks} ticks, {touching} touching, {touched_runs} runs with >100, {done} done, {refused} refused, {faulty} runs with faults; calm ones without and with: {calm:?}; {slept} fell asleep, {noticed} noticed, {hits} hits"
+        "{ticks} ticks, {touching} touching, {touched_runs} runs with >100, {full} long ones with >=10 at once, {done} done, {refused} refused, {faulty} runs with faults; calm ones without and with: {calm:?}; {slept} fell asleep, {noticed} noticed, {hits} hits"
     );
     assert!(
-        slept > 300 && noticed > 300 && hits > 300,
+        slept > 100 && noticed > 300 && hits > 300,
         "{slept} fell asleep, {noticed} noticed, {hits} hits"
     );
     assert!(touching > 300 * 500, "only {touching} touching contacts");
@@ -73,7 +76,7 @@ fn broad_phases_find_the_same() {
 fn matches_go_on_whatever_comes() {
     let (mut ticks, mut packets, mut stopped, mut diverged, mut late) = (0, 0, 0, 0, 0);
     for input in random_inputs(300) {
-        let seen = packets::run(&input);
+        let seen = matches::run(&input);
         ticks += seen.ticks;
         packets += seen.packets;
         stopped += u64::from(seen.stopped);
@@ -93,4 +96,41 @@ fn reports_tell_the_truth_or_are_refused() {
     }
     println!("{seen:?}");
     assert!(seen.len() >= 5, "{seen:?}");
+}
+
+#[test]
+fn operations_are_exact() {
+    let tried: u64 = random_inputs(2000).map(|input| maths::run(&input)).sum();
+    println!("{tried} operations");
+    assert!(tried > 2000 * 3, "only {tried} operations");
+}
+
+#[test]
+fn hulls_are_hulls() {
+    let hulls = random_inputs(5000).filter(|input| hulls::run(input)).count();
+    println!("{hulls} hulls");
+    assert!(hulls > 1000, "only {hulls} hulls");
+}
+
+#[test]
+fn contacts_are_exact() {
+    let mut seen = std::collections::BTreeMap::new();
+    for input in random_inputs(20_000) {
+        *seen.entry(manifolds::run(&input)).or_insert(0) += 1;
+    }
+    println!("{seen:?}");
+    assert!(seen.len() == 4 && seen.values().all(|count| *count > 50), "{seen:?}");
+}
+
+#[test]
+fn pairs_depend_on_nothing_else() {
+    let contacts: u64 = random_inputs(5000).filter_map(|input| pairs::run(&input)).sum();
+    println!("{contacts} contacts");
+    assert!(contacts > 2000, "only {contacts} contacts");
+}
+
+#[test]
+#[should_panic(expected = "tick")]
+fn a_planted_fault_is_found() {
+    random_inputs(300).for_each(|input| lockstep::run_with_a_fault(&input));
 }

@@ -1,0 +1,9 @@
+//! Two shapes that jump about each other. See `pairs`.
+#![no_main]
+
+use libfuzzer_sys::fuzz_target;
+use lockstep2d_fuzz::pairs;
+
+fuzz_target!(|bytes: &[u8]| {
+    pairs::run(bytes);
+});

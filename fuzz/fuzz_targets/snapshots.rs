@@ -1,0 +1,9 @@
+//! Bytes of worlds that no world has written: an error, or a world that lives on. See `snapshots`.
+#![no_main]
+
+use libfuzzer_sys::fuzz_target;
+use lockstep2d_fuzz::snapshots;
+
+fuzz_target!(|bytes: &[u8]| {
+    snapshots::run(bytes);
+});

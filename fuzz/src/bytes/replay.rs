@@ -1,0 +1,95 @@
+//! Files for the verifier.
+
+use std::sync::LazyLock;
+
+use lockstep2d::body::{BodyDef, Geometry, ShapeDef};
+use lockstep2d::lockstep::{Game, Sandbox, SandboxSetup};
+use lockstep2d::replay::{Limits, Reader, Recording, Rerun, Step, Verdict, verify};
+use lockstep2d::world::{Command, Config};
+use lockstep2d::{codec, fx};
+
+use super::attempt;
+use crate::forge;
+use crate::generator::spawn;
+use crate::memory::Memory;
+
+/// What a file may cost: some tens of microseconds.
+pub(super) const LIMITS: Limits = Limits {
+    file_bytes: 8 << 10,
+    setup_bytes: 4 << 10,
+    players: 4,
+    block_bytes: 4 << 10,
+    block_ticks: 16,
+    ticks: 16,
+    tick_work: 2000,
+    total_work: 4000,
+};
+
+/// Recordings of both games, whole and cut.
+static ORIGINALS: LazyLock<Vec<Vec<u8>>> = LazyLock::new(|| {
+    let memory = record::<Memory>(&(), 3, &[[1, 2, 3], [1, 2, 3], [4, 5, 6], [0, 255, 0], [9, 9, 9]]);
+    let empty = record::<Sandbox>(&SandboxSetup::default(), 2, &[[vec![]], [vec![]], [vec![]]]);
+    let (setup, inputs) = ball();
+    let sandbox = record::<Sandbox>(&setup, 2, &inputs);
+    let cut = sandbox[..sandbox.len() - 60].to_vec();
+    vec![memory, sandbox, empty, cut]
+});
+
+/// Two balls above each other, of which one is pushed.
+pub(super) fn ball() -> (SandboxSetup, [[Vec<Command>; 1]; 5]) {
+    let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).expect("a valid radius"));
+    let low = spawn(BodyDef::fixed(), &[ball]);
+    let high = spawn(BodyDef::dynamic().position(fx!(0.1), fx!(1.01)), &[ball]);
+    let push = Command::SetGravity { gravity: lockstep2d::math::Vec2::new(fx!(1), fx!(-20)) };
+    let setup = SandboxSetup { config: Config::default(), commands: vec![low, high] };
+    (setup, [[vec![]], [vec![]], [vec![push.clone()]], [vec![push]], [vec![]]])
+}
+
+/// The replay of a game.
+pub(super) fn record<G: Game>(setup: &G::Setup, interval: u32, ticks: &[impl AsRef<[G::Input]>]) -> Vec<u8> {
+    let mut recording = Recording::<G>::start(setup, interval).expect("a valid setup");
+    for inputs in ticks {
+        recording.step(inputs.as_ref()).expect("inputs that can be recorded");
+    }
+    recording.finish().expect("no claims")
+}
+
+/// Verifies a file.
+///
+/// # Panics
+/// When a file is a `Match` that is not, byte for byte, what a recorder writes of the same inputs.
+pub fn run(bytes: &[u8]) -> &'static str {
+    let attempt = attempt(bytes, &ORIGINALS, forge::repair);
+    let verdict = match judge::<Memory>(&attempt.file) {
+        Verdict::Unverifiable { .. } => judge::<Sandbox>(&attempt.file),
+        verdict => verdict,
+    };
+    let changed = attempt.original.is_some_and(|original| original != attempt.file);
+    assert!(!changed || !verdict.is_match(), "a changed file is a match");
+    verdict.name()
+}
+
+fn judge<G: Game>(file: &[u8]) -> Verdict {
+    let verdict = verify::<G>(file, &LIMITS);
+    if verdict.is_match() {
+        assert_eq!(again::<G>(file), file, "a match that no recorder writes");
+    }
+    verdict
+}
+
+/// What a recorder writes of the inputs in a file.
+fn again<G: Game>(file: &[u8]) -> Vec<u8> {
+    let reader = Reader::open(file, &LIMITS).expect("a match");
+    let setup: G::Setup = codec::decode(reader.header().setup).expect("a match");
+    let mut recording = Recording::<G>::start(&setup, reader.header().checkpoint_interval).expect("a match");
+    let mut rerun = Rerun::<G>::open(file, &LIMITS).expect("a match");
+    while rerun.step().expect("a match") == Step::Ticked {
+        recording.step(rerun.inputs()).expect("a match");
+    }
+    recording.finish().expect("a match")
+}
+
+/// The good files, for seeds.
+pub fn originals() -> &'static [Vec<u8>] {
+    &ORIGINALS
+}

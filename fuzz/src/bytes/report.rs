@@ -1,0 +1,95 @@
+//! Files for the comparison of reports.
+
+use std::sync::LazyLock;
+
+use lockstep2d::lockstep::{Game, History, Sandbox};
+use lockstep2d::replay::Recorder;
+use lockstep2d::report::{Blame, Desync, DesyncReport, Evidence, Side, compare};
+use lockstep2d::world::Motion;
+
+use super::attempt;
+use super::replay::{LIMITS, ball};
+use crate::memory::Memory;
+use crate::snapshots::repair;
+
+/// Reports of both games, the first of each right, the second of a peer that departed after two ticks.
+static ORIGINALS: LazyLock<Vec<Vec<u8>>> = LazyLock::new(|| {
+    let memory = |fail: bool| {
+        report::<Memory>(&(), &[[1, 2, 3], [1, 2, 3], [4, 5, 6], [0, 255, 0]], |game, tick| {
+            if fail && tick == 2 {
+                game.load(&7);
+            }
+        })
+    };
+    let (setup, inputs) = ball();
+    let sandbox = |fail: bool| {
+        report::<Sandbox>(&setup, &inputs, |game, tick| {
+            let world = game.world_mut();
+            if fail
+                && tick == 2
+                && let Some(body) = { world.bodies().map(|(id, _)| id).nth(1) }
+            {
+                world.flip_bit(body, Motion::ALL[0], 20).expect("a body that is there");
+            }
+        })
+    };
+    vec![memory(false), memory(true), sandbox(false), sandbox(true)]
+});
+
+/// What those who follow the rules say: the first and the third.
+static RIGHT: LazyLock<[Evidence; 2]> = LazyLock::new(|| {
+    [0, 2].map(|at: usize| Evidence::read(ORIGINALS[at].clone(), &LIMITS).expect("a peer's own report"))
+});
+
+fn report<G: Game>(
+    setup: &G::Setup,
+    ticks: &[impl AsRef<[G::Input]>],
+    mut fail: impl FnMut(&mut G, u64),
+) -> Vec<u8> {
+    let (mut recorder, mut game) = Recorder::<G>::start(setup, 2).expect("a valid setup");
+    let mut history = History::<G>::of_ticks(2);
+    history.push(0, game.save(), game.state_hash());
+    for (tick, inputs) in (0..).zip(ticks) {
+        fail(&mut game, tick);
+        game.step(recorder.record(inputs.as_ref()).expect("inputs that can be recorded"));
+        let hash = game.state_hash();
+        if recorder.is_checkpoint_due() {
+            recorder.checkpoint(hash);
+        }
+        history.push(tick + 1, game.save(), hash);
+    }
+    let desync = Desync { players: game.players(), tick: ticks.len() as u64, seats: vec![0], hashes: vec![] };
+    let replay = recorder.so_far(game.state_hash());
+    DesyncReport::within(4000, &desync, &history, replay).to_bytes()
+}
+
+/// Reads a file and compares it with a right report. Returns what came of it, in a word.
+///
+/// # Panics
+/// When a report is not what its own bytes say, or a side is blamed that followed the rules.
+pub fn run(bytes: &[u8]) -> &'static str {
+    let attempt = attempt(bytes, &ORIGINALS, |file| repair(file));
+    if let Ok(report) = DesyncReport::from_bytes(&attempt.file, &LIMITS) {
+        assert_eq!(report.to_bytes(), attempt.file, "a report has one encoding");
+    }
+    let Ok(left) = Evidence::read(attempt.file, &LIMITS) else { return "refused" };
+    let dear = bytes.first().is_some_and(|mode| mode >> 6 == 0);
+    let blame = if dear { judge::<Sandbox>(&left, &RIGHT[1]) } else { judge::<Memory>(&left, &RIGHT[0]) };
+    match blame {
+        None => "not compared",
+        Some(Blame::Nobody) => "nobody",
+        Some(Blame::Side(_)) => "blamed",
+        Some(_) => "unknown",
+    }
+}
+
+fn judge<G: Game>(left: &Evidence, right: &Evidence) -> Option<Blame> {
+    let found = compare::<G>(left, right, &LIMITS).ok()?;
+    assert!(!matches!(found.blame, Blame::Side(Side::B) | Blame::Both), "{found:?}");
+    Some(found.blame)
+}
+
+/// The good files, for seeds.
+pub fn originals() -> &'static [Vec<u8>] {
+    &ORIGINALS
+}

@@ -1,0 +1,115 @@
+//! Hulls of points, against the slow definition: an edge is a pair of points that has all others to its left.
+
+use lockstep2d::body::{Polygon, SHAPE_EXTENT_MAX};
+use lockstep2d::math::{Fx, Length, Rng, Vec2};
+use num_bigint::BigInt;
+use num_traits::Signed;
+
+use crate::source::Source;
+
+/// Shortest edge, in units of `Length`: half a millimetre.
+const EDGE_MIN: i64 = (1 << 22) / 2000;
+
+type Point = Vec2<Length>;
+
+/// Makes a hull of some points. Says whether there is one.
+///
+/// # Panics
+/// When it is not the hull, when the order of the points or their number matters, or when one that is valid is refused.
+pub fn run(bytes: &[u8]) -> bool {
+    let mut source = Source::new(bytes);
+    let points = points(&mut source);
+    let narrow: Vec<Point> = points.iter().map(|point| point.narrow()).collect();
+    let found = Polygon::hull(&points);
+    let mut others = points.clone();
+    Rng::new(source.word()).shuffle(&mut others);
+    others.extend_from_slice(&points[..source.below(points.len() + 1)]);
+    // Of several faults, the first is told.
+    assert_eq!(found.as_ref().ok(), Polygon::hull(&others).as_ref().ok(), "the order of the points matters");
+    let in_range = |value: Fx| (-SHAPE_EXTENT_MAX..=SHAPE_EXTENT_MAX).contains(&value);
+    let legal = points.iter().all(|point| in_range(point.x) && in_range(point.y));
+    let corners = if legal { slow_hull(&narrow) } else { Vec::new() };
+    let Ok(hull) = found else {
+        let valid = (3..=8).contains(&corners.len()) && corners.iter().all(|(a, b)| length_is_legal(*a, *b));
+        assert!(!valid, "a hull of {points:?} is refused: {found:?}");
+        return false;
+    };
+    assert!(legal, "points out of range: {points:?}");
+    let vertices = hull.vertices();
+    assert_eq!(vertices.len(), corners.len(), "the hull of {points:?}");
+    for (at, &vertex) in vertices.iter().enumerate() {
+        let next = vertices[(at + 1) % vertices.len()];
+        assert!(corners.contains(&(vertex, next)), "{vertex:?} to {next:?} is no edge of {points:?}");
+        assert_normal(hull.normals()[at], vertex, next);
+    }
+    let wide: Vec<_> = vertices.iter().map(|vertex| vertex.widen()).collect();
+    assert_eq!(Polygon::new(&wide), Ok(hull), "a hull is a polygon");
+    assert_eq!(Polygon::hull(&wide), Ok(hull), "a hull is its own hull");
+    true
+}
+
+fn points(source: &mut Source<'_>) -> Vec<Vec2<Fx>> {
+    let reach = source.pick(&[1000, 3, 110_000, 20, 120_000]);
+    let way = source.below(4);
+    (0..source.below(20))
+        .map(|_| match way {
+            // A grid of few lines, so that many points lie on an edge.
+            0 => Vec2::new(Fx::from(source.below(4) as i32), Fx::from(source.below(4) as i32)),
+            1 => source.mostly_vec(-reach, reach),
+            2 => {
+                // About a circle.
+                let turned = lockstep2d::math::Rot::from_angle(source.angle());
+                turned.apply_wide(Vec2::new(lockstep2d::math::ratio(reach, 1000), Fx::ZERO))
+            }
+            _ => {
+                // Next to a line.
+                let along = source.thousandths(-reach, reach);
+                Vec2::new(along, along + Fx::from_bits(i64::from(source.byte()) << 8))
+            }
+        })
+        .collect()
+}
+
+fn cross(a: Point, b: Point, c: Point) -> BigInt {
+    let difference = |from: Length, to: Length| BigInt::from(to.to_bits()) - from.to_bits();
+    difference(a.x, b.x) * difference(a.y, c.y) - difference(a.y, b.y) * difference(a.x, c.x)
+}
+
+/// The edges of the hull: all points are to the left of each, or on it.
+fn slow_hull(points: &[Point]) -> Vec<(Point, Point)> {
+    let mut edges = Vec::new();
+    for &a in points {
+        for &b in points {
+            let on_or_left = |&c: &Point| {
+                let side = cross(a, b, c);
+                side.is_positive() || side == BigInt::from(0) && is_between(c, a, b)
+            };
+            if a != b && !edges.contains(&(a, b)) && points.iter().all(on_or_left) {
+                edges.push((a, b));
+            }
+        }
+    }
+    edges
+}
+
+fn is_between(c: Point, a: Point, b: Point) -> bool {
+    let (low, high) = (a.min(b), a.max(b));
+    (low.x..=high.x).contains(&c.x) && (low.y..=high.y).contains(&c.y)
+}
+
+/// The length as it is rounded is at least the smallest.
+fn length_is_legal(a: Point, b: Point) -> bool {
+    let difference = |from: Length, to: Length| BigInt::from(to.to_bits()) - from.to_bits();
+    let square = difference(a.x, b.x).pow(2) + difference(a.y, b.y).pow(2);
+    square > BigInt::from(EDGE_MIN + 1).pow(2)
+}
+
+/// Across the edge, to its right, within the rounding of a unit vector.
+fn assert_normal(normal: Vec2<lockstep2d::math::Unit>, a: Point, b: Point) {
+    let (x, y) = (BigInt::from(normal.x.to_bits()), BigInt::from(normal.y.to_bits()));
+    let (dx, dy) = (BigInt::from(b.x.to_bits()) - a.x.to_bits(), BigInt::from(b.y.to_bits()) - a.y.to_bits());
+    // |n . e| <= 0.76 (|ex| + |ey|) units.
+    let along: BigInt = (&x * &dx + &y * &dy).abs();
+    assert!(along * 100 <= (dx.abs() + dy.abs()) * 77, "{normal:?} from {a:?} to {b:?}");
+    assert!((&x * &dy - &y * &dx).is_positive(), "{normal:?} points inwards");
+}

@@ -1,0 +1,20 @@
+//! Damaged and forged replays of this game: see the engine's test of the same name.
+#![expect(clippy::unwrap_used, reason = "the files of this repository are good")]
+
+#[path = "../../tests/mutated/judge.rs"]
+mod judge;
+#[path = "../../tests/mutated/memory.rs"]
+mod memory;
+#[path = "../../tests/mutated/mutation.rs"]
+mod mutation;
+
+use lockstep2d_shove::Shove;
+
+#[test]
+fn a_mutated_replay_is_never_another_match() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/replays");
+    let mut paths: Vec<_> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    paths.sort();
+    let originals: Vec<_> = paths.iter().map(|path| std::fs::read(path).unwrap()).collect();
+    judge::check_replays::<Shove>(&originals);
+}

@@ -1,0 +1,180 @@
+//! What may happen to a file: by accident, or by somebody who knows its layout.
+
+use lockstep2d::hash::StateHash;
+use lockstep2d::math::Rng;
+
+/// Bytes of a replay's checksums, and of the hash at the end of a snapshot.
+const CHECKSUM: usize = 8;
+const HASH: usize = 16;
+/// Magic, format, semantics, length.
+const SNAPSHOT_HEADER: usize = 24;
+const TRAILER: u8 = 3;
+/// Where the trailer's payload holds the chain hash.
+const CHAIN: std::ops::Range<usize> = 24..40;
+/// Numbers that are an end of something.
+const EDGES: [u64; 12] =
+    [0, 1, 2, 127, 128, 255, 65_535, 1 << 20, 1 << 24, (1 << 31) - 1, u32::MAX as u64, u64::MAX];
+
+/// What was done to a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Mutation {
+    Bits,
+    Bytes,
+    Cut,
+    Splice,
+    Duplicate,
+    Remove,
+    Swap,
+    Length,
+}
+
+const ALL: [Mutation; 8] = [
+    Mutation::Bits,
+    Mutation::Bytes,
+    Mutation::Cut,
+    Mutation::Splice,
+    Mutation::Duplicate,
+    Mutation::Remove,
+    Mutation::Swap,
+    Mutation::Length,
+];
+
+/// Changes a file in one way; `others` are files of which pieces may come.
+pub(crate) fn mutate(rng: &mut Rng, file: &mut Vec<u8>, others: &[Vec<u8>]) -> Mutation {
+    let mutation = ALL[below(rng, ALL.len())];
+    let length = file.len();
+    match mutation {
+        Mutation::Bits => {
+            for _ in 0..1 + below(rng, 4) {
+                file[below(rng, length)] ^= 1 << rng.below(8);
+            }
+        }
+        Mutation::Bytes => {
+            let at = below(rng, length);
+            let end = (at + 1 + below(rng, 8)).min(length);
+            file[at..end].iter_mut().for_each(|byte| *byte = rng.next_u32() as u8);
+        }
+        Mutation::Cut => {
+            let places = boundaries(file);
+            let at = if rng.below(2) == 0 { below(rng, length) } else { places[below(rng, places.len())] };
+            file.truncate(at);
+        }
+        Mutation::Splice => {
+            let other = &others[below(rng, others.len())];
+            let (at, from) = (below(rng, length), below(rng, other.len()));
+            if rng.below(2) == 0 {
+                // The beginning of one and the end of another.
+                file.truncate(at);
+                file.extend_from_slice(&other[from..]);
+            } else {
+                let count = (1 + below(rng, 200)).min(other.len() - from).min(length - at);
+                file[at..at + count].copy_from_slice(&other[from..from + count]);
+            }
+        }
+        Mutation::Duplicate => {
+            let (start, end) = part(rng, file);
+            let copy = file[start..end].to_vec();
+            file.splice(end..end, copy);
+        }
+        Mutation::Remove => {
+            let (start, end) = part(rng, file);
+            file.drain(start..end);
+        }
+        Mutation::Swap => {
+            let (start, end) = part(rng, file);
+            let middle = start + below(rng, end - start + 1);
+            file[start..end].rotate_left(middle - start);
+        }
+        Mutation::Length => {
+            // A number at the beginning of some part, where lengths are, or anywhere.
+            let places = boundaries(file);
+            let part = places[below(rng, places.len())];
+            let at = [part, below(rng, length), below(rng, length.min(100))][below(rng, 3)].min(length);
+            let number = match rng.below(3) {
+                0 => EDGES[below(rng, EDGES.len())],
+                1 => rng.next_u64() >> rng.below(64),
+                _ => length as u64 - rng.below(64).min(length as u32) as u64,
+            };
+            let width = [1, 2, 4, 8][below(rng, 4)].min(length - at);
+            file[at..at + width].copy_from_slice(&number.to_le_bytes()[..width]);
+        }
+    }
+    mutation
+}
+
+fn below(rng: &mut Rng, bound: usize) -> usize {
+    rng.below(u32::try_from(bound).unwrap_or(u32::MAX).max(1)) as usize
+}
+
+/// Some stretch of a file, often between two of its parts.
+fn part(rng: &mut Rng, file: &[u8]) -> (usize, usize) {
+    let places = boundaries(file);
+    if rng.below(2) == 0 && places.len() > 1 {
+        let first = below(rng, places.len() - 1);
+        return (places[first], places[first + 1]);
+    }
+    let start = below(rng, file.len());
+    (start, (start + 1 + below(rng, 100)).min(file.len()))
+}
+
+/// Where the parts of a replay or a snapshot begin, and where the last one ends.
+fn boundaries(file: &[u8]) -> Vec<usize> {
+    let mut places = vec![0];
+    if is_snapshot(file) {
+        places.extend([SNAPSHOT_HEADER, file.len().saturating_sub(HASH)]);
+    } else if let Some(mut at) = replay_header(file) {
+        while at + CHECKSUM <= file.len() {
+            at += CHECKSUM;
+            places.push(at);
+            let Some(length) = number(file, at) else { break };
+            at += 5 + length;
+        }
+    }
+    places.retain(|place| *place < file.len());
+    places.sort_unstable();
+    places.push(file.len());
+    places
+}
+
+fn is_snapshot(file: &[u8]) -> bool {
+    file.starts_with(b"LS2DWRLD")
+}
+
+fn number(file: &[u8], at: usize) -> Option<usize> {
+    let bytes = file.get(at..)?.first_chunk()?;
+    usize::try_from(u32::from_le_bytes(*bytes)).ok()
+}
+
+/// Where a replay's header has its checksum.
+fn replay_header(file: &[u8]) -> Option<usize> {
+    Some(56 + number(file, 32)? + number(file, 36)?)
+}
+
+/// Makes right what a forger can who knows the format and not the game: lengths, checksums and hashes of bytes.
+pub(crate) fn repair(file: &mut [u8]) {
+    if is_snapshot(file) { repair_snapshot(file) } else { repair_replay(file).unwrap_or(()) }
+}
+
+fn repair_snapshot(file: &mut [u8]) {
+    let Some(body) = file.len().checked_sub(SNAPSHOT_HEADER + HASH) else { return };
+    let end = file.len() - HASH;
+    file[SNAPSHOT_HEADER - 8..SNAPSHOT_HEADER].copy_from_slice(&(body as u64).to_le_bytes());
+    let hash = StateHash::of_bytes(&file[..end]).0;
+    file[end..].copy_from_slice(&hash.to_le_bytes());
+}
+
+fn repair_replay(file: &mut [u8]) -> Option<()> {
+    let mut at = replay_header(file)?;
+    let mut chain = StateHash::of_bytes(file.get(..at)?).0;
+    loop {
+        file.get_mut(at..at + CHECKSUM)?.copy_from_slice(&chain.to_le_bytes()[..CHECKSUM]);
+        at += CHECKSUM;
+        let payload = at + 5..at + 5 + number(file, at)?;
+        if *file.get(at + 4)? == TRAILER && payload.len() >= CHAIN.end {
+            file.get_mut(payload.clone())?[CHAIN].copy_from_slice(&chain.to_le_bytes());
+        }
+        let block = StateHash::of_bytes(file.get(at..payload.end)?).0;
+        chain = StateHash::of_bytes(&[chain.to_le_bytes(), block.to_le_bytes()].concat()).0;
+        at = payload.end;
+    }
+}
