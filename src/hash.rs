@@ -28,8 +28,23 @@ impl StateHash {
     /// The digest of a sequence of digests, in order.
     #[must_use]
     pub fn of_digests(digests: impl IntoIterator<Item = StateHash>) -> Self {
-        let bytes: Vec<u8> = digests.into_iter().flat_map(|digest| digest.0.to_le_bytes()).collect();
+        let bytes: Vec<u8> = digests.into_iter().flat_map(StateHash::bytes).collect();
         Self::of_bytes(&bytes)
+    }
+
+    /// The bytes of this digest within another, the same on every machine.
+    #[cfg(not(lockstep2d_broken))]
+    fn bytes(self) -> [u8; 16] {
+        self.0.to_le_bytes()
+    }
+
+    /// Two mistakes that no x86-64 machine notices, to show that `tests/cross/run broken` does: the order of bytes and
+    /// the width of `usize` are those of the machine.
+    #[cfg(lockstep2d_broken)]
+    #[allow(clippy::cast_possible_truncation, reason = "one of the mistakes")]
+    fn bytes(self) -> Vec<u8> {
+        let halves = [self.0 as usize, (self.0 >> 64) as usize];
+        halves.into_iter().flat_map(usize::to_ne_bytes).collect()
     }
 }
 

@@ -110,20 +110,63 @@ impl<G: Game> History<G> {
 mod tests {
     use alloc::vec::Vec;
 
-    use super::super::{Sandbox, SandboxSave, SandboxSetup};
+    use super::super::{RulesId, SetupError};
     use super::*;
 
-    fn push(history: &mut History<Sandbox>, tick: u64, hash: u128) {
-        let game = Sandbox::new(&SandboxSetup::default()).expect("the default");
-        history.push(tick, SandboxSave { refused: tick, ..game.save() }, StateHash(hash));
+    /// A game with nothing in it but a save.
+    struct Toy;
+
+    impl Game for Toy {
+        type Setup = ();
+        type Input = ();
+        type Save = u64;
+        const RULES: RulesId = RulesId { name: "toy", version: 1 };
+
+        fn new(&(): &()) -> Result<Self, SetupError> {
+            Ok(Toy)
+        }
+
+        fn players(&self) -> u32 {
+            1
+        }
+
+        fn tick_rate(&self) -> u32 {
+            60
+        }
+
+        fn step(&mut self, _: &[()]) {}
+
+        fn state_hash(&self) -> StateHash {
+            StateHash(0)
+        }
+
+        fn save(&self) -> u64 {
+            0
+        }
+
+        fn load(&mut self, _: &u64) {}
+
+        fn work(&self, _: &[()]) -> u64 {
+            0
+        }
     }
 
-    fn known(history: &History<Sandbox>) -> Vec<(u64, u128)> {
+    fn push(history: &mut History<Toy>, tick: u64, hash: u128) {
+        history.push(tick, tick, StateHash(hash));
+    }
+
+    fn known(history: &History<Toy>) -> Vec<(u64, u128)> {
         for past in history.iter() {
-            let found = history.get(past.tick).map(|found| (found.hash, found.save.refused));
+            let found = history.get(past.tick).map(|found| (found.hash, found.save));
             assert_eq!(found, Some((past.hash, past.tick)));
         }
         history.iter().map(|past| (past.tick, past.hash.0)).collect()
+    }
+
+    #[test]
+    fn it_has_two_seconds_and_a_rollback_and_never_nothing() {
+        assert_eq!(History::new(&Toy).capacity(), 2 * 60 + 16);
+        assert_eq!(History::<Toy>::of_ticks(0).capacity(), 1);
     }
 
     #[test]

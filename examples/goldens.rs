@@ -1,0 +1,98 @@
+//! Plays the golden scenes in each way in which this machine can compute, and compares with the committed hashes:
+//! `goldens short|goldens|all`. What `tests/cross/run` runs on other processors; the constants are in the program, so it needs
+//! no files.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::process::ExitCode;
+
+use lockstep2d::lockstep::{Game, Sandbox};
+use lockstep2d::replay::{Limits, Verdict, verify};
+use lockstep2d::scenes::Scene;
+use lockstep2d::world::Backend;
+
+const GOLDENS: &str = include_str!("../tests/goldens.txt");
+const BACKENDS: &str = include_str!("../tests/backends.txt");
+const SHORT: &str = include_str!("../tests/cross/short.txt");
+
+/// Recordings made elsewhere: read, checked and played again they end in their goldens.
+const REPLAYS: [(&str, &[u8]); 3] = [
+    ("bridge", include_bytes!("../replays/bridge.replay")),
+    ("game", include_bytes!("../replays/game.replay")),
+    ("ragdoll", include_bytes!("../replays/ragdoll.replay")),
+];
+
+/// The seed of the golden scenes.
+const SEED: u64 = 1;
+
+/// The hashes of each scene: after so many ticks, this.
+type Hashes<'a> = BTreeMap<&'a str, BTreeSet<(u64, &'a str)>>;
+
+fn main() -> ExitCode {
+    let words: Vec<String> = std::env::args().skip(1).collect();
+    let known = match words.iter().map(String::as_str).collect::<Vec<_>>()[..] {
+        ["short"] => SHORT.to_owned(),
+        ["goldens"] => [GOLDENS, SHORT].concat(),
+        ["all"] => [GOLDENS, SHORT, BACKENDS].concat(),
+        _ => {
+            eprintln!("usage: goldens short|goldens|all");
+            return ExitCode::from(2);
+        }
+    };
+    let hashes = hashes(&known);
+    let mut all_equal = !hashes.is_empty();
+    for backend in Backend::available() {
+        for (name, hashes) in &hashes {
+            all_equal &= play(name, backend, hashes);
+        }
+    }
+    for (name, replay) in REPLAYS {
+        all_equal &= check(name, replay);
+    }
+    if all_equal { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+}
+
+/// The lines of the present semantics: semantics, scene, ticks, hash.
+fn hashes(text: &str) -> Hashes<'_> {
+    let mut hashes = Hashes::new();
+    for line in text.lines() {
+        if let [semantics, scene, ticks, hash] = line.split(' ').collect::<Vec<_>>()[..] {
+            if let (Ok(lockstep2d::SEMANTICS), Ok(ticks)) = (semantics.parse(), ticks.parse()) {
+                hashes.entry(scene).or_default().insert((ticks, hash));
+            }
+        }
+    }
+    hashes
+}
+
+/// Plays a scene and compares wherever there is a hash, once per line of output.
+fn play(name: &str, backend: Backend, hashes: &BTreeSet<(u64, &str)>) -> bool {
+    let scene = Scene::find(name).expect("a scene of this crate");
+    let mut game = Sandbox::new(&scene.setup(SEED)).expect("the scenes of this crate are valid");
+    assert!(game.world_mut().set_backend(backend), "a backend of this machine");
+    let mut equal = true;
+    for &(ticks, hash) in hashes {
+        for tick in game.world().tick()..ticks {
+            let commands = scene.commands(tick, &game);
+            game.step(&[commands]);
+        }
+        equal &= compare(&format!("{backend:?}"), name, ticks, hash, &game.state_hash().to_string());
+    }
+    equal
+}
+
+/// Verifies a committed recording.
+fn check(name: &str, replay: &[u8]) -> bool {
+    let golden = hashes(GOLDENS)[name].first().copied().expect("a golden for each replay");
+    let (ticks, end) = match verify::<Sandbox>(replay, &Limits::default()) {
+        Verdict::Match { ticks, hash } => (ticks, hash.to_string()),
+        other => (0, other.to_string()),
+    };
+    (ticks == golden.0) & compare("replay", name, ticks, golden.1, &end)
+}
+
+/// Prints how a run ended, and whether that is as it should be.
+fn compare(how: &str, name: &str, ticks: u64, known: &str, found: &str) -> bool {
+    let verdict = if known == found { "equal" } else { "DIFFERENT" };
+    println!("{how:<8} {name:<16} {ticks:>4} {found} {verdict}");
+    known == found
+}
