@@ -107,8 +107,9 @@ impl Finding {
                 "something that changes when it is asked for: a Cell, a static, or a HashMap in what is answered"
             }
             (_, Fault::Unhashed) => "a field that `state_hash` leaves out and `step` reads",
-            (_, Fault::Encoding) => {
-                "a HashMap or HashSet in the save, or a Serialize and a Deserialize that are no inverses"
+            (_, Fault::Encoding | Fault::SavedAgain) => {
+                "a HashMap or HashSet in the save, a `load` that does not bring all of it back, or a Serialize \
+                 and a Deserialize that are no inverses"
             }
             (_, Fault::Unreadable { .. }) => "a Serialize and a Deserialize that do not fit each other",
             (Way::Reloaded, _) => "a field that is missing from `Save`, or that `load` does not bring back",
