@@ -130,4 +130,30 @@ mod tests {
             assert!(matches!(decoded, Err(DecodeError::Invalid { .. })), "a string of {length} bytes");
         }
     }
+
+    /// Little more is allocated than there is: a length far above that is refused for its size, not for what follows.
+    #[test]
+    fn an_announced_length_is_limited_by_how_much_there_is() {
+        for (count, announced) in
+            [(8, 4 << 10), (4 << 10, 4 << 10), ((4 << 10) + 1, 1 << 20), (1 << 20, 1 << 20)]
+        {
+            let mut bytes = encode::<u64>(&announced);
+            bytes.resize(count, b'x');
+            let Err(DecodeError::Invalid { why }) = decode::<String>(&bytes) else {
+                panic!("{announced} bytes announced in {count}");
+            };
+            assert!(why.contains("LimitExceeded"), "{announced} bytes announced in {count}: {why}");
+        }
+    }
+
+    #[test]
+    fn errors_say_what_is_wrong() {
+        let error = decode::<u8>(&[1, 2, 3]).expect_err("two bytes too many");
+        assert_eq!(error, DecodeError::TrailingBytes { count: 2 });
+        assert_eq!(alloc::format!("{error}"), "2 bytes after the end of the value");
+        let error = decode::<u64>(&[1, 2, 3]).expect_err("five bytes too few");
+        assert!(alloc::format!("{error}").starts_with("not a valid encoding: "), "{error}");
+        let error = DecodeError::TooLong { count: 1 << 40 };
+        assert_eq!(alloc::format!("{error}"), "1099511627776 bytes, at most 268435456 are decoded");
+    }
 }
