@@ -8,7 +8,7 @@ use lockstep2d::math::Rng;
 use lockstep2d::replay::{Limits, Reader, TickInputs, Verdict, verify};
 
 use crate::memory;
-use crate::mutation::{mutate, repair};
+use crate::mutation::{below, mutate, repair};
 
 /// How many files each test makes.
 const FILES: u64 = 2000;
@@ -19,8 +19,6 @@ const MEMORY_MAX: usize = 32 << 20;
 /// Largest files that most mutations are tried on, and how often a larger one is taken: once in so many times.
 const SMALL: usize = 6000;
 const LARGE_ONE_IN: u32 = 50;
-/// Larger ones only cost time.
-pub(crate) const LARGEST: usize = 60_000;
 /// What a verdict was given on, apart from the bytes.
 #[derive(PartialEq, Eq)]
 struct Course {
@@ -107,8 +105,8 @@ pub(crate) fn files_wanted() -> u64 {
 pub(crate) fn mutated(rng: &mut Rng, originals: &[Vec<u8>]) -> Vec<u8> {
     let (small, large): (Vec<_>, Vec<_>) = originals.iter().partition(|file| file.len() <= SMALL);
     let kind = if rng.below(LARGE_ONE_IN) == 0 && !large.is_empty() { large } else { small };
-    let mut file = kind[rng.below(kind.len() as u32) as usize].clone();
-    for _ in 0..[1, 1, 1, 1, 2, 3][rng.below(6) as usize] {
+    let mut file = kind[below(rng, kind.len())].clone();
+    for _ in 0..[1, 1, 1, 1, 2, 3][below(rng, 6)] {
         if !file.is_empty() {
             mutate(rng, &mut file, originals);
         }

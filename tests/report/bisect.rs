@@ -79,7 +79,8 @@ impl<const FAULTY: bool> Game for Faulty<FAULTY> {
 
 type Sound = Faulty<false>;
 
-const TICKS: u64 = 200;
+const LENGTH: u32 = 200;
+const TICKS: u64 = LENGTH as u64;
 
 fn inputs(tick: u64) -> Vec<u8> {
     (0..u64::from(PLAYERS)).map(|player| inputs_at(tick, player)).collect()
@@ -87,15 +88,15 @@ fn inputs(tick: u64) -> Vec<u8> {
 
 /// A flip that is possible, and the path of its body.
 fn random_flip(rng: &mut Rng, seed: u64) -> (Flip, String) {
-    let mut below = |n: u64| u64::from(rng.next_u32()) % n;
+    let mut below = |n: u32| rng.next_u32() % n;
     loop {
         let motion = Motion::ALL[below(6) as usize];
         let flip = Flip {
-            tick: 1 + below(TICKS - 60),
+            tick: 1 + u64::from(below(LENGTH - 60)),
             when: if below(2) == 0 { When::Before } else { When::After },
-            body: below(BODIES as u64) as usize,
+            body: below(u32::try_from(BODIES).unwrap()) as usize,
             motion,
-            bit: below(motion.bits().into()) as u32,
+            bit: below(motion.bits()),
         };
         let mut yard = Yard::new(&seed).unwrap();
         (1..flip.tick).for_each(|tick| yard.step(&inputs(tick - 1)));
@@ -138,7 +139,7 @@ fn a_flipped_bit_is_found_in_its_trace_for_less_than_three_verifications() {
     for case in 0..100 {
         let (flip, path) = random_flip(&mut rng, case);
         FLIP.set(Some(flip));
-        let mut trace = Trace::<Faulty<true>>::start(&case, TICKS as u32).unwrap();
+        let mut trace = Trace::<Faulty<true>>::start(&case, LENGTH).unwrap();
         (0..TICKS).for_each(|tick| trace.step(&inputs(tick)).unwrap());
         let trace = evidence(trace.report().to_bytes());
         STEPS.set(0);
