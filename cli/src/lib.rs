@@ -25,7 +25,7 @@
 //! }
 //! ```
 //!
-//! That gives `verify`, `diff`, `inspect`, `seek`, `fork`, `trim`, `stats` and `export`. A game that has scenes to record and
+//! That gives `verify`, `diff`, `bisect`, `trace`, `heavy`, `inspect`, `seek`, `fork`, `trim`, `stats` and `export`. A game that has scenes to record and
 //! pictures to draw says so to a [`Tool`], which then has `scenes`, `record` and `export --svg` as well.
 
 mod commands;
