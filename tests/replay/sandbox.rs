@@ -1,9 +1,9 @@
 //! The sandbox on file: every command can be recorded, whether the world carries it out or refuses it, and a replay is
 //! a match all the same.
 
-use lockstep2d::body::{BodyDef, BodyId, BodyKind, BodySettings, Geometry, MassSource, ShapeDef};
+use lockstep2d::body::{BodyDef, BodyId, BodyKind, BodySettings, Geometry, MassSource, Polygon, ShapeDef};
 use lockstep2d::fx;
-use lockstep2d::lockstep::{Sandbox, SandboxSetup};
+use lockstep2d::lockstep::{Game, Sandbox, SandboxSetup};
 use lockstep2d::math::{Angle, Fx, Vec2};
 use lockstep2d::replay::{Limits, Recording, verify};
 use lockstep2d::solver::{JointDef, Revolute};
@@ -112,4 +112,21 @@ fn many_bodies_in_one_command_are_work() {
     let limits = Limits { tick_work: 1_000_000, ..Limits::default() };
     let verdict = verify::<Sandbox>(&file, &limits);
     assert_eq!(verdict.name(), "limit_exceeded", "{verdict}");
+}
+
+/// Bodies inside each other cost far more than the same ones side by side, and a limit has to see it.
+#[test]
+fn a_heap_in_one_place_is_dear() {
+    let work = |apart: i32| {
+        let square = ShapeDef::new(Polygon::square(fx!(0.5)).unwrap());
+        let spawn = |place: i32| Command::Spawn {
+            body: BodyDef::dynamic().position(Fx::from_num(place * apart), fx!(0)),
+            shapes: vec![square],
+        };
+        let commands = (0..200).map(spawn).collect();
+        let mut game = Sandbox::new(&SandboxSetup { commands, ..SandboxSetup::default() }).unwrap();
+        game.step(&[vec![]]);
+        game.work(&[vec![]])
+    };
+    assert!(work(0) > 50 * work(3), "{} instead of {}", work(0), work(3));
 }
