@@ -58,6 +58,11 @@ impl fmt::Display for StateHash {
 mod tests {
     use super::*;
 
+    #[test]
+    fn it_is_shown_in_32_digits() {
+        assert_eq!(alloc::format!("{}", StateHash(0xab)), "000000000000000000000000000000ab");
+    }
+
     /// With and without vector instructions: the values are those of the reference implementation in C, xxHash 0.8.
     #[test]
     fn digests_of_all_lengths_are_those_of_the_reference() {

@@ -7,6 +7,7 @@ mod forge;
 mod format;
 mod hostile;
 mod limits;
+mod reader;
 mod recorder;
 mod sandbox;
 mod setups;
