@@ -8,10 +8,8 @@ use lockstep2d::math::Rng;
 use lockstep2d::replay::{Limits, Reader, TickInputs, Verdict, verify};
 
 use crate::memory;
-use crate::mutation::{mutate, repair};
+use crate::mutation::{below, mutate, repair};
 
-/// How many files each test makes.
-const FILES: u64 = 2000;
 /// A hang.
 const SECONDS_MAX: u64 = 5;
 /// Most memory that reading or playing one of these files may take at one time.
@@ -19,8 +17,6 @@ const MEMORY_MAX: usize = 32 << 20;
 /// Largest files that most mutations are tried on, and how often a larger one is taken: once in so many times.
 const SMALL: usize = 6000;
 const LARGE_ONE_IN: u32 = 50;
-/// Larger ones only cost time.
-pub(crate) const LARGEST: usize = 60_000;
 /// What a verdict was given on, apart from the bytes.
 #[derive(PartialEq, Eq)]
 struct Course {
@@ -99,16 +95,17 @@ fn started() -> std::time::Instant {
     *START.get_or_init(std::time::Instant::now)
 }
 
-pub(crate) fn files_wanted() -> u64 {
-    std::env::var("MUTATIONS").ok().and_then(|count| count.parse().ok()).unwrap_or(FILES)
+/// How many files a test makes: `few`, unless told otherwise.
+pub(crate) fn files_wanted(few: u64) -> u64 {
+    std::env::var("MUTATIONS").ok().and_then(|count| count.parse().ok()).unwrap_or(few)
 }
 
 /// Changes one of some files in one to three ways, and repairs half of them.
 pub(crate) fn mutated(rng: &mut Rng, originals: &[Vec<u8>]) -> Vec<u8> {
     let (small, large): (Vec<_>, Vec<_>) = originals.iter().partition(|file| file.len() <= SMALL);
     let kind = if rng.below(LARGE_ONE_IN) == 0 && !large.is_empty() { large } else { small };
-    let mut file = kind[rng.below(kind.len() as u32) as usize].clone();
-    for _ in 0..[1, 1, 1, 1, 2, 3][rng.below(6) as usize] {
+    let mut file = kind[below(rng, kind.len())].clone();
+    for _ in 0..[1, 1, 1, 1, 2, 3][below(rng, 6)] {
         if !file.is_empty() {
             mutate(rng, &mut file, originals);
         }
@@ -120,12 +117,12 @@ pub(crate) fn mutated(rng: &mut Rng, originals: &[Vec<u8>]) -> Vec<u8> {
 }
 
 /// Changes replays and verifies them: what is a match has the setup, the inputs, the ticks and the end of one of them.
-pub(crate) fn check_replays<G: Game>(originals: &[Vec<u8>]) {
+pub(crate) fn check_replays<G: Game>(originals: &[Vec<u8>], few: u64) {
     let limits = Limits::default();
     let verdicts = originals.iter().map(|file| (file, verify::<G>(file, &limits)));
     let courses: Vec<_> = verdicts.map(|(file, verdict)| Course::of(file, verdict)).collect();
     let (mut rng, mut figures) = (Rng::new(1), Figures::default());
-    for number in 0..files_wanted() {
+    for number in 0..files_wanted(few) {
         let file = mutated(&mut rng, originals);
         let name = |verdict: &Verdict| verdict.name().to_string();
         let verdict = figures.count(&file, || verify::<G>(&file, &limits), name);

@@ -13,7 +13,7 @@ const TRAILER: u8 = 3;
 const CHAIN: std::ops::Range<usize> = 24..40;
 /// Numbers that are an end of something.
 const EDGES: [u64; 12] =
-    [0, 1, 2, 127, 128, 255, 65_535, 1 << 20, 1 << 24, (1 << 31) - 1, u32::MAX as u64, u64::MAX];
+    [0, 1, 2, 127, 128, 255, 65_535, 1 << 20, 1 << 24, (1 << 31) - 1, 0xffff_ffff, u64::MAX];
 
 /// What was done to a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -52,7 +52,7 @@ pub(crate) fn mutate(rng: &mut Rng, file: &mut Vec<u8>, others: &[Vec<u8>]) -> M
         Mutation::Bytes => {
             let at = below(rng, length);
             let end = (at + 1 + below(rng, 8)).min(length);
-            file[at..end].iter_mut().for_each(|byte| *byte = rng.next_u32() as u8);
+            file[at..end].iter_mut().for_each(|byte| *byte = rng.next_u32().to_le_bytes()[0]);
         }
         Mutation::Cut => {
             let places = boundaries(file);
@@ -93,7 +93,7 @@ pub(crate) fn mutate(rng: &mut Rng, file: &mut Vec<u8>, others: &[Vec<u8>]) -> M
             let number = match rng.below(3) {
                 0 => EDGES[below(rng, EDGES.len())],
                 1 => rng.next_u64() >> rng.below(64),
-                _ => length as u64 - rng.below(64).min(length as u32) as u64,
+                _ => (length - below(rng, length.min(64))) as u64,
             };
             let width = [1, 2, 4, 8][below(rng, 4)].min(length - at);
             file[at..at + width].copy_from_slice(&number.to_le_bytes()[..width]);
@@ -102,8 +102,9 @@ pub(crate) fn mutate(rng: &mut Rng, file: &mut Vec<u8>, others: &[Vec<u8>]) -> M
     mutation
 }
 
-fn below(rng: &mut Rng, bound: usize) -> usize {
-    rng.below(u32::try_from(bound).unwrap_or(u32::MAX).max(1)) as usize
+/// A number below `bound`; 0 when that is 0.
+pub(crate) fn below(rng: &mut Rng, bound: usize) -> usize {
+    usize::try_from(rng.below_u64(bound as u64)).unwrap_or(0)
 }
 
 /// Some stretch of a file, often between two of its parts.
