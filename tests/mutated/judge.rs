@@ -10,8 +10,6 @@ use lockstep2d::replay::{Limits, Reader, TickInputs, Verdict, verify};
 use crate::memory;
 use crate::mutation::{below, mutate, repair};
 
-/// How many files each test makes.
-const FILES: u64 = 2000;
 /// A hang.
 const SECONDS_MAX: u64 = 5;
 /// Most memory that reading or playing one of these files may take at one time.
@@ -97,8 +95,9 @@ fn started() -> std::time::Instant {
     *START.get_or_init(std::time::Instant::now)
 }
 
-pub(crate) fn files_wanted() -> u64 {
-    std::env::var("MUTATIONS").ok().and_then(|count| count.parse().ok()).unwrap_or(FILES)
+/// How many files a test makes: `few`, unless told otherwise.
+pub(crate) fn files_wanted(few: u64) -> u64 {
+    std::env::var("MUTATIONS").ok().and_then(|count| count.parse().ok()).unwrap_or(few)
 }
 
 /// Changes one of some files in one to three ways, and repairs half of them.
@@ -118,12 +117,12 @@ pub(crate) fn mutated(rng: &mut Rng, originals: &[Vec<u8>]) -> Vec<u8> {
 }
 
 /// Changes replays and verifies them: what is a match has the setup, the inputs, the ticks and the end of one of them.
-pub(crate) fn check_replays<G: Game>(originals: &[Vec<u8>]) {
+pub(crate) fn check_replays<G: Game>(originals: &[Vec<u8>], few: u64) {
     let limits = Limits::default();
     let verdicts = originals.iter().map(|file| (file, verify::<G>(file, &limits)));
     let courses: Vec<_> = verdicts.map(|(file, verdict)| Course::of(file, verdict)).collect();
     let (mut rng, mut figures) = (Rng::new(1), Figures::default());
-    for number in 0..files_wanted() {
+    for number in 0..files_wanted(few) {
         let file = mutated(&mut rng, originals);
         let name = |verdict: &Verdict| verdict.name().to_string();
         let verdict = figures.count(&file, || verify::<G>(&file, &limits), name);

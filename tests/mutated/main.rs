@@ -19,7 +19,9 @@ use lockstep2d::world::{SnapshotError, World};
 
 use judge::{Figures, check_replays, files_wanted, mutated};
 
-/// Files that are larger only cost time.
+/// How many files each test makes, unless told otherwise.
+const FILES: u64 = 2000;
+/// Largest files that are mutated: larger ones only cost time.
 const LARGEST: usize = 60_000;
 /// Ticks that an accepted world has to live.
 const TICKS: u32 = 3;
@@ -34,7 +36,7 @@ fn a_mutated_replay_is_never_another_match() {
     paths.sort();
     let mut originals: Vec<_> = paths.iter().map(|path| std::fs::read(path).unwrap()).collect();
     originals.retain(|file| file.len() <= LARGEST);
-    check_replays::<Sandbox>(&originals);
+    check_replays::<Sandbox>(&originals, FILES);
 }
 
 /// The bytes of each scene's world, soon after its beginning.
@@ -56,7 +58,7 @@ fn snapshots() -> Vec<Vec<u8>> {
 fn a_mutated_snapshot_is_refused_or_a_world() {
     let originals = snapshots();
     let (mut rng, mut figures) = (Rng::new(2), Figures::default());
-    for number in 0..files_wanted() {
+    for number in 0..files_wanted(FILES) {
         let file = mutated(&mut rng, &originals);
         let name = |world: &Result<World, SnapshotError>| match world {
             Ok(_) => "accepted".into(),

@@ -93,7 +93,7 @@ pub(crate) fn mutate(rng: &mut Rng, file: &mut Vec<u8>, others: &[Vec<u8>]) -> M
             let number = match rng.below(3) {
                 0 => EDGES[below(rng, EDGES.len())],
                 1 => rng.next_u64() >> rng.below(64),
-                _ => (length - below(rng, 64).min(length)) as u64,
+                _ => (length - below(rng, length.min(64))) as u64,
             };
             let width = [1, 2, 4, 8][below(rng, 4)].min(length - at);
             file[at..at + width].copy_from_slice(&number.to_le_bytes()[..width]);
@@ -102,8 +102,9 @@ pub(crate) fn mutate(rng: &mut Rng, file: &mut Vec<u8>, others: &[Vec<u8>]) -> M
     mutation
 }
 
+/// A number below `bound`; 0 when that is 0.
 pub(crate) fn below(rng: &mut Rng, bound: usize) -> usize {
-    rng.below(u32::try_from(bound).unwrap_or(u32::MAX).max(1)) as usize
+    usize::try_from(rng.below_u64(bound as u64)).unwrap_or(0)
 }
 
 /// Some stretch of a file, often between two of its parts.
