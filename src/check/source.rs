@@ -14,7 +14,7 @@ use crate::math::Rng;
 /// is mostly a small change of the log.
 ///
 /// The first of the bytes of a tick says whether inputs are held, for up to 16 ticks, or whether one player or all have
-/// new ones. These are made by [`Deserialize`]: the bytes choose variants, lengths and numbers, so that lists are short
+/// new ones. These are made by the input's own `Deserialize`: the bytes choose variants, lengths and numbers, so that lists are short
 /// and numbers often small or the largest. An input that refuses what it gets is the default one.
 #[must_use]
 pub fn inputs_from_bytes<G: Game>(players: u32, bytes: &[u8]) -> Vec<Vec<G::Input>> {

@@ -106,10 +106,13 @@ impl<G: Game> Trace<G> {
         while rerun.tick() < until && rerun.read_inputs()? == Step::Ticked {
             let tick = rerun.tick() + 1;
             recorder.record(rerun.inputs())?;
-            if tick <= from {
+            let phases = if tick <= from {
                 rerun.play()?;
+                TickPhases::default()
             } else {
-                let phases = rerun.play_with(TickPhases::of)?;
+                rerun.play_with(TickPhases::of)?
+            };
+            if tick >= from {
                 memory.push(tick, rerun.game(), phases);
             }
             if recorder.is_checkpoint_due() {
