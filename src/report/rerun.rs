@@ -8,6 +8,7 @@ use super::compare::CompareError;
 use super::comparison::{Blame, Comparison, Side};
 use super::evidence::Known;
 use super::origin;
+use super::stage::Stage;
 use super::suspect::{self, WrongTick};
 use crate::codec;
 use crate::inspect::{differences, fields};
@@ -286,7 +287,8 @@ impl<G: Game> Beside<'_, '_, G> {
         if let Some(theirs) = &wrong.phases {
             origin::find(&wrong, theirs, &mut game, found)?;
         }
-        if found.began.is_empty() {
+        // Otherwise it is known that nothing had flipped before, or what.
+        if found.stage.is_none_or(|stage| stage == Stage::BeforeStep) && found.began.is_empty() {
             suspect::explain(&wrong, game, work.min(limits.total_work), found)?;
         }
         Ok(())
