@@ -27,7 +27,17 @@ struct Body {
     hashes: Vec<Option<StateHash>>,
     history: Vec<(u64, StateHash)>,
     saves: Vec<(u64, Vec<u8>)>,
+    phases: Vec<(u64, Phases)>,
     replay: Vec<u8>,
+}
+
+/// How a tick went, by the same document.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct Phases {
+    digests: Vec<StateHash>,
+    /// Offsets and bytes.
+    start: Vec<(u64, Vec<u8>)>,
+    length: u64,
 }
 
 /// The bit that fails on one side.
@@ -174,7 +184,7 @@ fn seal(file: &[u8], body: &[u8]) -> Vec<u8> {
 /// Changes one thing; `replay` is the genuine one.
 fn forge(source: &mut Source<'_>, body: &mut Body, replay: &[u8]) {
     let at = source.below(body.history.len());
-    match source.below(12) {
+    match source.below(13) {
         0 => body.players = source.pick(&[0, 2, 64, 65, u32::MAX]),
         1 => body.seats = (0..source.below(3)).map(|_| source.below(4) as u32).collect(),
         2 => body.tick = source.edge().to_bits() as u64,
@@ -197,6 +207,13 @@ fn forge(source: &mut Source<'_>, body: &mut Body, replay: &[u8]) {
             body.replay = forged.put_together();
         }
         9 => mutate(source, &mut body.replay),
+        12 if !body.history.is_empty() => {
+            let digests = vec![StateHash(1); source.pick(&[0, 1, 8, 16, 1025])];
+            let at_byte = source.pick(&[0, 24, 100, 1000, u64::MAX]);
+            let length = source.pick(&[0, 500, 2000, u64::MAX]);
+            let start = vec![(at_byte, vec![source.byte(); source.below(9)])];
+            body.phases.push((body.history[at].0, Phases { digests, start, length }));
+        }
         _ if !body.saves.is_empty() => {
             let at = source.below(body.saves.len());
             mutate(source, &mut body.saves[at].1);

@@ -21,6 +21,7 @@ pub(super) const LIMITS: Limits = Limits {
     block_bytes: 4 << 10,
     block_ticks: 16,
     ticks: 16,
+    bodies: 1000,
     tick_work: 2000,
     total_work: 4000,
 };
