@@ -83,9 +83,7 @@ pub fn run_with_a_fault(bytes: &[u8]) {
         let touching = variants.plain.contacts().filter(|contact| contact.touching).count();
         let (_, other) = &mut variants.others[1];
         let bodies: Vec<_> = other.bodies().map(|(id, _)| id).collect();
-        // Not what the first inputs lead to: it has to be searched for.
         if touching > 12
-            && variants.plain.joint_count() > 2
             && let Some(&body) = bodies.get(7)
         {
             // Refused while the body sleeps.
