@@ -107,7 +107,7 @@ impl<'a, G: Game> Playback<'a, G> {
     /// How many ticks the file has, as far as it is whole.
     #[must_use]
     pub fn ticks(&self) -> u64 {
-        self.ending.ticks
+        self.rerun.ticks()
     }
 
     /// What the file states of its end, if it is complete. Only a [`Verdict::Match`] makes it true.

@@ -106,7 +106,7 @@ impl<'a, G: Game> Rerun<'a, G> {
         Ok(Step::Ticked)
     }
 
-    /// Fetches the inputs of the next tick, which has to be played or followed then.
+    /// Fetches the inputs of the next tick, which has to be played or skipped then.
     pub(crate) fn read_inputs(&mut self) -> Result<Step, Verdict> {
         let Some(run) = self.place.inputs.next_tick()? else {
             return Ok(Step::Ended);
@@ -140,11 +140,6 @@ impl<'a, G: Game> Rerun<'a, G> {
     /// Counts the tick whose inputs were read as played: another game with the same state has played it.
     pub(crate) fn skip(&mut self) {
         self.place.tick += 1;
-    }
-
-    /// Takes over the state that another game has come to after as many ticks.
-    pub(crate) fn follow(&mut self, save: &G::Save) {
-        self.game.load(save);
     }
 
     /// The canonical bytes of the inputs that were read last.

@@ -24,7 +24,7 @@ pub(super) fn run<G: Game>(
         let refused = |verdict| CompareError::Replay { side, verdict };
         Rerun::<G>::open(known[side.index()].replay, limits).map_err(refused)
     };
-    let mut duel = Duel { a: open(Side::A)?, b: open(Side::B)?, merged: false, found };
+    let mut duel = Duel { a: open(Side::A)?, b: open(Side::B)?, found };
     duel.compare(0)?;
     while duel.found.first_different.is_none() {
         match duel.step() {
@@ -57,12 +57,11 @@ impl From<CompareError> for DuelError {
 struct Duel<'f, 'a, G: Game> {
     a: Rerun<'a, G>,
     b: Rerun<'a, G>,
-    /// Whether A stands for both, because their states are the same.
-    merged: bool,
     found: &'f mut Comparison,
 }
 
 impl<G: Game> Duel<'_, '_, G> {
+    /// Plays a tick. Up to now the states are the same, and A's game stands for both.
     fn step(&mut self) -> Result<Step, DuelError> {
         let of = |side| move |verdict| DuelError::Verdict(side, verdict);
         let a = self.a.read_inputs().map_err(of(Side::A))?;
@@ -70,16 +69,14 @@ impl<G: Game> Duel<'_, '_, G> {
         if (a, b) != (Step::Ticked, Step::Ticked) {
             return Ok(Step::Ended);
         }
-        if self.merged && self.a.encoded() == self.b.encoded() {
+        if self.a.encoded() == self.b.encoded() {
             self.a.play().map_err(of(Side::A))?;
             self.b.skip();
             self.found.last_equal = Some(self.a.tick());
             return Ok(Step::Ticked);
         }
         let before = self.a.game().save();
-        if self.merged {
-            self.b.follow(&before);
-        }
+        self.b.game_mut().load(&before);
         self.a.play().map_err(of(Side::A))?;
         self.b.play().map_err(of(Side::B))?;
         self.compare(self.a.tick())?;
@@ -98,8 +95,7 @@ impl<G: Game> Duel<'_, '_, G> {
     /// Compares the states as of now.
     fn compare(&mut self, tick: u64) -> Result<(), CompareError> {
         let (a, b) = (self.a.game(), self.b.game());
-        self.merged = a.state_hash() == b.state_hash();
-        if self.merged {
+        if a.state_hash() == b.state_hash() {
             self.found.last_equal = Some(tick);
             return Ok(());
         }

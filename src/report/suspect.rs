@@ -181,7 +181,8 @@ fn search<G: Game>(wrong: &WrongTick<G>, game: &mut G, suspects: Vec<Suspect>, w
     let mut left = work;
     suspects.into_iter().find(|suspect| {
         // A state is loaded and hashed as well.
-        let price = if suspect.when == When::Before { step_work + step_work / 2 } else { TRY_WORK };
+        let loading = step_work / 2;
+        let price = if suspect.when == When::Before { step_work + loading } else { loading };
         // Whoever comes cheaper may still be tried.
         let Some(rest) = left.checked_sub(price) else {
             return false;

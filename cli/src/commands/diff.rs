@@ -62,7 +62,6 @@ pub(crate) fn run<G: Game>(
 }
 
 pub(super) fn read(path: &Path, limits: &Limits) -> Result<Evidence, CommandError> {
-    let bytes = files::read(path, limits.file_bytes)
-        .map_err(|error| CommandError::Read { path: path.to_path_buf(), error })?;
+    let bytes = files::load(path, limits.file_bytes)?;
     Evidence::read(bytes, limits).map_err(|error| CommandError::Evidence { path: path.to_path_buf(), error })
 }

@@ -64,8 +64,7 @@ pub(crate) fn run<G: Game>(
     console: &mut Console<'_>,
 ) -> Result<Exit, CommandError> {
     let path = || arguments.file.clone();
-    let bytes = files::read(&arguments.file, limits.file_bytes)
-        .map_err(|error| CommandError::Read { path: path(), error })?;
+    let bytes = files::load(&arguments.file, limits.file_bytes)?;
     let result = match check_replay::<G>(&bytes, &options(arguments, limits)) {
         Ok(checked) if checked.ticks < arguments.from.max(arguments.to.unwrap_or(0)) => {
             let tick = arguments.from.max(arguments.to.unwrap_or(0));

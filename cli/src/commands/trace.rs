@@ -1,6 +1,5 @@
 //! `trace`: plays a replay and writes all that `bisect` needs of its last ticks.
 
-use std::fs;
 use std::path::PathBuf;
 
 use clap::{ArgMatches, Args, Command};
@@ -49,13 +48,10 @@ pub(crate) fn run<G: Game>(
     console: &mut Console<'_>,
 ) -> Result<Exit, CommandError> {
     let Arguments { file, to, ticks, output } = arguments;
-    let path = || file.clone();
-    let bytes =
-        files::read(file, limits.file_bytes).map_err(|error| CommandError::Read { path: path(), error })?;
+    let bytes = files::load(file, limits.file_bytes)?;
     let traced = Trace::<G>::of_replay(&bytes, limits, to.unwrap_or(u64::MAX), *ticks);
-    let report = traced.map_err(|error| CommandError::Trace { path: path(), error })?;
-    let written = fs::write(output, report.to_bytes());
-    written.map_err(|error| CommandError::Write { path: output.clone(), error })?;
+    let report = traced.map_err(|error| CommandError::Trace { path: file.clone(), error })?;
+    files::save(output, &report.to_bytes())?;
     let (known, left_out) = (report.history().len(), report.saves_left_out());
     let first = report.history().first().map_or(0, |(tick, _)| *tick);
     console.line(format_args!(
