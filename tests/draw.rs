@@ -43,10 +43,10 @@ fn count(found: &[Primitive], style: Style) -> usize {
 fn every_layer_has_its_primitives() {
     let found = primitives(&scene(), Layers::ALL);
     let expected = [
-        (Style::Outline(BodyKind::Fixed), 1),
+        (Style::Fixed, 1),
         // A box, and a circle with its radius.
-        (Style::Outline(BodyKind::Dynamic), 3),
-        (Style::Outline(BodyKind::Kinematic), 1),
+        (Style::Dynamic, 3),
+        (Style::Kinematic, 1),
         (Style::FatBox, 4),
         (Style::ContactPoint(Proximity::Touching), 2),
         (Style::ContactPoint(Proximity::Speculative), 0),
@@ -91,7 +91,7 @@ fn primitives_are_where_the_world_is() {
                 let Subject::Body(id) = *subject else { panic!("{subject:?}") };
                 assert_eq!(*place, world.body(id).unwrap().centre_of_mass());
             }
-            (Style::Outline(_), Form::Line { from, to }) => {
+            (Style::Dynamic, Form::Line { from, to }) => {
                 let radius = from.distance(*to);
                 assert!((radius - fx!(0.25)).abs() < fx!(0.0001), "the bob's: {radius}");
             }
@@ -162,10 +162,14 @@ fn pictures_are_well_formed_for_any_view() {
 fn a_picture_has_an_element_for_each_body_and_style() {
     let view = View { layers: Layers::ALL, ..View::default() };
     let picture = svg(&scene(), &view);
-    assert_eq!(picture.matches("<title>body ").count(), 4);
-    // Four outlines, fat boxes, arm, velocity, centres, anchors, gap, normals, points, and the scale bar.
-    assert_eq!(picture.matches("<path ").count(), 4 + 8 + 1);
-    assert!(picture.len() < 5000, "{} bytes", picture.len());
+    // The four bodies, and the two dynamic ones again as islands.
+    assert_eq!(picture.matches("<title>body ").count(), 4 + 2);
+    // Those; boxes of the broad phase, fat boxes, arm, velocity, centres, anchors, gap, normals, points, forces, friction
+    // and the colour of the solver; the scale bar.
+    assert_eq!(picture.matches("<path ").count(), 4 + 2 + 12 + 1);
+    // The ids of all bodies but the ground, whose centre lies below the picture, and the error of the joint.
+    assert_eq!(picture.matches(" dy=\"-3\">").count(), 4 + 1);
+    assert!(picture.len() < 8000, "{} bytes", picture.len());
 }
 
 #[test]

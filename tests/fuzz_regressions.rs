@@ -354,3 +354,20 @@ fn a_body_that_a_joint_drags_out_of_range_is_not_slow() {
         assert_eq!(world.validate(), Ok(()));
     }
 }
+
+#[test]
+fn a_shape_in_the_slot_of_one_that_slept_has_its_own_surface() {
+    // What falls asleep takes its contacts out of the list in which removed shapes were looked for, and the surface of a
+    // pair was known by its slots: it was taken for that of a shape that came into the slot before the next tick.
+    let mut world = World::default();
+    let ground = ShapeDef::new(Polygon::rectangle(fx!(20), fx!(1)).unwrap());
+    world.spawn(&BodyDef::fixed().position(fx!(0), fx!(-1)), &[ground]).unwrap();
+    let square = |friction| ShapeDef::new(Polygon::square(fx!(0.5)).unwrap()).friction(friction);
+    let def = BodyDef::dynamic().position(fx!(0), fx!(0.5));
+    let rough = world.spawn(&def, &[square(fx!(1))]).unwrap();
+    (0..30).for_each(|_| world.step());
+    world.sleep(rough).unwrap();
+    world.despawn(rough).unwrap();
+    world.spawn(&def.velocity(fx!(5), fx!(0)), &[square(fx!(0))]).unwrap();
+    caches_decide_nothing(&mut world, 2);
+}

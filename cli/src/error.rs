@@ -43,8 +43,16 @@ pub(crate) enum CommandError {
     State { why: String },
     /// There is nothing under the name that was asked for.
     NothingThere { what: String },
-    /// The game has no pictures of itself.
+    /// The game shows no world of which there could be pictures.
     NoPictures,
+    /// Neither an option nor the name of a file says in which format to write.
+    NoFormat,
+    /// What is no text cannot go to a terminal.
+    NoOutput { format: &'static str },
+    /// An option makes no sense in a format.
+    Useless { option: &'static str, format: &'static str },
+    /// A file has one state, of which the format makes nothing.
+    OneState { path: PathBuf, format: &'static str },
     /// A file is nothing that can be compared.
     Evidence { path: PathBuf, error: EvidenceError },
     /// A replay cannot be traced.
@@ -93,7 +101,16 @@ impl fmt::Display for CommandError {
             CommandError::Inputs { path, line, why } => write!(f, "{}, line {line}: {why}", Shown(path)),
             CommandError::State { why } => write!(f, "cannot show the state: {why}"),
             CommandError::NothingThere { what } => write!(f, "there is no {what} in this state"),
-            CommandError::NoPictures => write!(f, "this game draws no pictures"),
+            CommandError::NoPictures => write!(f, "this game shows no world, so there are no pictures of it"),
+            CommandError::NoFormat => write!(
+                f,
+                "in which format? Say --svg, --png, --gif, --apng, --json or --plot, or -o with a name that ends in one"
+            ),
+            CommandError::NoOutput { format } => write!(f, "{format} needs a file to write: -o FILE"),
+            CommandError::Useless { option, format } => write!(f, "{option} makes no sense with {format}"),
+            CommandError::OneState { path, format } => {
+                write!(f, "{} has one state, which is too few for {format}", Shown(path))
+            }
             CommandError::Evidence { path, error } => write!(f, "{}: {error}", Shown(path)),
             CommandError::Trace { path, error } => write!(f, "{}: {error}", Shown(path)),
             CommandError::Compare(error) => write!(f, "cannot compare: {error}"),

@@ -25,14 +25,16 @@
 //! }
 //! ```
 //!
-//! That gives `verify`, `diff`, `bisect`, `trace`, `heavy`, `inspect`, `seek`, `fork`, `trim`, `stats` and `export`. A game that has scenes to record and
-//! pictures to draw says so to a [`Tool`], which then has `scenes`, `record` and `export --svg` as well.
+//! That gives `verify`, `diff`, `bisect`, `trace`, `heavy`, `inspect`, `seek`, `fork`, `trim`, `stats` and `export`. A game that has scenes to record says
+//! so to a [`Tool`], which then has `scenes` and `record` as well; one that wants to be seen in its own way says how.
 
 mod commands;
 mod console;
 mod counts;
+mod energy;
 mod error;
 mod exit;
+mod figures;
 mod files;
 mod rewriting;
 mod sandbox;

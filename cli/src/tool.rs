@@ -4,13 +4,12 @@ use std::ffi::OsString;
 use std::io::{IsTerminal, Write};
 use std::process::ExitCode;
 
-use clap::{ArgMatches, Command};
+use clap::{ArgMatches, Command, FromArgMatches, Subcommand};
+use lockstep2d::draw::View;
 use lockstep2d::lockstep::Game;
 use lockstep2d::replay::Limits;
 
-use crate::commands::{
-    bisect, diff, export, fork, heavy, inspect, record, scenes, seek, stats, trace, trim, verify,
-};
+use crate::commands::{Common, OfScenes};
 use crate::console::Console;
 use crate::error::CommandError;
 use crate::exit::Exit;
@@ -19,12 +18,12 @@ use crate::scenes::Catalogue;
 /// The command-line tools of a game.
 ///
 /// ```text
-/// Tool::<MyGame>::new().with_scenes(MyScenes).with_svg(draw_my_game).run()
+/// Tool::<MyGame>::new().with_scenes(MyScenes).with_view(view_of_my_game).run()
 /// ```
 pub struct Tool<G: Game> {
     pub(crate) limits: Limits,
     pub(crate) catalogue: Option<Box<dyn Catalogue<G>>>,
-    pub(crate) svg: Option<fn(&G) -> String>,
+    pub(crate) view: Option<fn(&G) -> View>,
     /// Commands of the game's own.
     own: Vec<(Command, OwnCommand)>,
 }
@@ -40,10 +39,10 @@ impl<G: Game> Default for Tool<G> {
 
 impl<G: Game> Tool<G> {
     /// The tools that every game has: `verify`, `diff`, `bisect`, `trace`, `heavy`, `inspect`, `seek`, `fork`, `trim`,
-    /// `stats` and `export --json`.
+    /// `stats` and `export`.
     #[must_use]
     pub fn new() -> Self {
-        Tool { limits: Limits::default(), catalogue: None, svg: None, own: Vec::new() }
+        Tool { limits: Limits::default(), catalogue: None, view: None, own: Vec::new() }
     }
 
     /// Sets how much a replay may cost.
@@ -58,10 +57,11 @@ impl<G: Game> Tool<G> {
         Tool { catalogue: Some(Box::new(catalogue)), ..self }
     }
 
-    /// Adds `export --svg`; `svg` draws a game as one SVG document.
+    /// Sets what `export` shows of a game's world ([`Game::world_mut`]) unless its arguments say otherwise: part, layers,
+    /// size and title. Without it that is what is worth seeing, as [`View::default`] has it.
     #[must_use]
-    pub fn with_svg(self, svg: fn(&G) -> String) -> Self {
-        Tool { svg: Some(svg), ..self }
+    pub fn with_view(self, view: fn(&G) -> View) -> Self {
+        Tool { view: Some(view), ..self }
     }
 
     /// Adds a command of the game's own; `run` does what its arguments say, and prints for itself.
@@ -117,60 +117,29 @@ impl<G: Game> Tool<G> {
     fn command(&self) -> Command {
         let rules = G::RULES;
         let engine = lockstep2d::SEMANTICS;
-        let mut command = Command::new(rules.name)
+        let mut command = Common::augment_subcommands(Command::new(rules.name));
+        if self.catalogue.is_some() {
+            command = OfScenes::augment_subcommands(command);
+        }
+        let command = command
             .about(format!("Tools for the replays of {}", rules.name))
             .version(format!("rules version {}, engine semantics {engine}", rules.version))
             .subcommand_required(true)
-            .arg_required_else_help(true)
-            .subcommand(verify::command())
-            .subcommand(diff::command())
-            .subcommand(bisect::command())
-            .subcommand(trace::command())
-            .subcommand(heavy::command())
-            .subcommand(inspect::command())
-            .subcommand(seek::command())
-            .subcommand(fork::command())
-            .subcommand(trim::command())
-            .subcommand(stats::command())
-            .subcommand(export::command());
-        if self.catalogue.is_some() {
-            command = command.subcommand(scenes::command()).subcommand(record::command());
-        }
+            .arg_required_else_help(true);
         command.subcommands(self.own.iter().map(|(own, _)| own.clone()))
     }
 
     fn dispatch(&self, matches: &ArgMatches, console: &mut Console<'_>) -> Result<Exit, CommandError> {
-        let limits = &self.limits;
-        match (matches.subcommand(), &self.catalogue) {
-            (Some((verify::NAME, matches)), _) => {
-                verify::run::<G>(&verify::arguments(matches), limits, console)
+        let Some((name, of_command)) = matches.subcommand() else { return Ok(Exit::Trouble) };
+        if let Some((_, run)) = self.own.iter().find(|(own, _)| own.get_name() == name) {
+            return Ok(run(of_command));
+        }
+        let described = "clap matched what these types describe";
+        match &self.catalogue {
+            Some(catalogue) if OfScenes::has_subcommand(name) => {
+                OfScenes::from_arg_matches(matches).expect(described).run(catalogue.as_ref(), console)
             }
-            (Some((diff::NAME, matches)), _) => diff::run::<G>(&diff::arguments(matches), limits, console),
-            (Some((bisect::NAME, matches)), _) => {
-                bisect::run::<G>(&bisect::arguments(matches), limits, console)
-            }
-            (Some((trace::NAME, matches)), _) => trace::run::<G>(&trace::arguments(matches), limits, console),
-            (Some((heavy::NAME, matches)), _) => heavy::run::<G>(&heavy::arguments(matches), limits, console),
-            (Some((inspect::NAME, matches)), _) => {
-                inspect::run::<G>(&inspect::arguments(matches), limits, console)
-            }
-            (Some((seek::NAME, matches)), _) => seek::run::<G>(&seek::arguments(matches), limits, console),
-            (Some((fork::NAME, matches)), _) => fork::run::<G>(&fork::arguments(matches), limits, console),
-            (Some((trim::NAME, matches)), _) => trim::run::<G>(&trim::arguments(matches), limits, console),
-            (Some((stats::NAME, matches)), _) => stats::run::<G>(&stats::arguments(matches), limits, console),
-            (Some((export::NAME, matches)), _) => {
-                export::run::<G>(&export::arguments(matches), self.svg, limits, console)
-            }
-            (Some((scenes::NAME, _)), Some(catalogue)) => scenes::run(catalogue.as_ref(), console),
-            (Some((record::NAME, matches)), Some(catalogue)) => {
-                record::run(&record::arguments(matches), catalogue.as_ref(), console)
-            }
-            (Some((name, matches)), _) => {
-                let own = self.own.iter().find(|(own, _)| own.get_name() == name);
-                // clap has refused every other command.
-                Ok(own.map_or(Exit::Trouble, |(_, run)| run(matches)))
-            }
-            (None, _) => Ok(Exit::Trouble),
+            _ => Common::from_arg_matches(matches).expect(described).run(self, console),
         }
     }
 }

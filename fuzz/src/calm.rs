@@ -37,15 +37,14 @@ pub fn config(source: &mut Source<'_>) -> Config {
     config
 }
 
-/// Something to stand on, and one or two things on it.
+/// Something to stand on, a pile on it, and perhaps another or a chain.
 pub fn setup(source: &mut Source<'_>, middle: Vec2<Fx>, commands: &mut Vec<Command>) {
     ground(source, middle, commands);
-    for _ in 0..source.pick(&[1, 2, 1]) {
-        if source.one_in(4) {
-            chain(source, middle, commands);
-        } else {
-            pile(source, middle, commands);
-        }
+    pile(source, middle, commands);
+    match source.below(6) {
+        4 => pile(source, middle, commands),
+        5 => chain(source, middle, commands),
+        _ => {}
     }
 }
 
@@ -101,9 +100,9 @@ fn belt(source: &mut Source<'_>) -> [ShapeDef; 3] {
 }
 
 /// Equal bodies in rows, next to each other or a little apart.
-fn pile(source: &mut Source<'_>, middle: Vec2<Fx>, commands: &mut Vec<Command>) {
+pub(crate) fn pile(source: &mut Source<'_>, middle: Vec2<Fx>, commands: &mut Vec<Command>) {
     let shape = calm_shape(source);
-    let count = source.pick(&[12, 8, 16, 20, 10, 28]);
+    let count = source.pick(&[12, 8, 16, 14, 10, 12, 20, 28]);
     let columns = source.pick(&[4, 2, 3, 1, 6, 5]);
     let gap = source.pick(&[fx!(0), fx!(0.01), fx!(-0.005), fx!(0.1)]);
     let mut rng = Rng::new(source.byte().into());

@@ -32,7 +32,7 @@ pub fn config(source: &mut Source<'_>) -> Config {
 
 fn wild_config(source: &mut Source<'_>) -> Config {
     let tick_rate = source.pick(&[60, 60, 30, 10, 120, 250, 1000, 20]);
-    let sub_steps = source.pick(&[4, 4, 2, 8, 64, 16, 6, 1]);
+    let sub_steps = source.pick(&[4, 4, 2, 4, 8, 4, 1, 6, 4, 2, 3, 4, 16, 4, 2, 64]);
     let contact = match source.below(3) {
         0 => SolverSettings::default().contact,
         1 => ContactTuning::Soft {
@@ -50,7 +50,7 @@ fn wild_config(source: &mut Source<'_>) -> Config {
         tick_rate,
         solver: SolverSettings {
             sub_steps,
-            iterations: source.pick(&[1, 1, 2, 4]),
+            iterations: source.pick(&[1, 1, 1, 2, 1, 1, 1, 4]),
             contact,
             ..SolverSettings::default()
         },
@@ -95,7 +95,7 @@ impl Generator {
         Generator { middle, lulls, bodies: Vec::new(), shapes: Vec::new(), joints: Vec::new() }
     }
 
-    /// What the scene starts with: mostly a floor and a heap of bodies.
+    /// What the scene starts with: mostly a floor and a heap of bodies, often with an ordinary pile among them.
     pub fn setup(&mut self, source: &mut Source<'_>) -> Vec<Command> {
         let mut commands = Vec::new();
         if source.is_calm() {
@@ -116,6 +116,9 @@ impl Generator {
             _ => {}
         }
         self.heap(source, &mut commands);
+        if source.below(2) == 0 {
+            calm::pile(source, self.middle, &mut commands);
+        }
         commands
     }
 
@@ -218,7 +221,7 @@ impl Generator {
 
     /// Many bodies of a kind at once, for few bytes: at one point, or scattered around it.
     fn heap(&self, source: &mut Source<'_>, commands: &mut Vec<Command>) {
-        let count = source.pick(&[5, 12, 20, 8, 3, 40, 1, 80]);
+        let count = source.pick(&[12, 5, 20, 14, 3, 16, 8, 12, 1, 12, 18, 16, 10, 14, 40, 80]);
         let asleep = source.one_in(6);
         let mut rng = Rng::new(source.byte().into());
         let shape = shapes::shape(source);

@@ -1,5 +1,5 @@
-//! One scene run in ways that must not differ: as it is, rolled back, and in two of four others: through bytes,
-//! without caches, with another broad phase.
+//! One scene run in ways that must not differ: as it is and rolled back, and beside it in another way: with another
+//! broad phase, through bytes or without caches, or with another broad phase and one of these.
 
 use std::sync::Mutex;
 
@@ -10,8 +10,13 @@ use lockstep2d::world::{Command, Events, Motion, Snapshot, World};
 use crate::generator::{self, Generator};
 use crate::source::Source;
 
-/// Most work of a run, as [`generator::cost`] counts it.
-const COST_MAX: u64 = 150_000;
+/// Most work of a run, as [`generator::cost`] counts it: some three times that of an ordinary one.
+const COST_MAX: u64 = 60_000;
+/// Ticks after which a state is left for good at the latest, or returned to.
+const ROLLBACK_MAX: usize = 30;
+/// Every how many ticks the invariants are checked, besides after commands and at the end: they are most of the work
+/// in a small world, and what breaks one of them stays broken.
+const CHECK_INTERVAL: u64 = 8;
 
 /// What a run has seen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -40,30 +45,43 @@ pub struct Seen {
 
 /// A way of running that must make no difference.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Way {
-    ThroughBytes,
-    Uncached,
-    SweepAndPrune,
-    BruteForce,
+struct Way {
+    broad_phase: BroadPhaseKind,
+    disturbance: Disturbance,
 }
 
-/// Two ways each: more of them in one run only make it slower.
-const WAYS: [[Way; 2]; 6] = {
-    use Way::{BruteForce, SweepAndPrune, ThroughBytes, Uncached};
+/// What happens to a world between ticks now and then.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Disturbance {
+    None,
+    ThroughBytes,
+    ClearedScratch,
+}
+
+/// All but the way of the plain world.
+const WAYS: [Way; 8] = {
+    use BroadPhaseKind::{BruteForce, SweepAndPrune, Tree};
+    use Disturbance::{ClearedScratch, None, ThroughBytes};
+    const fn way(broad_phase: BroadPhaseKind, disturbance: Disturbance) -> Way {
+        Way { broad_phase, disturbance }
+    }
     [
-        [ThroughBytes, BruteForce],
-        [Uncached, SweepAndPrune],
-        [ThroughBytes, SweepAndPrune],
-        [Uncached, BruteForce],
-        [ThroughBytes, Uncached],
-        [SweepAndPrune, BruteForce],
+        way(Tree, ThroughBytes),
+        way(Tree, ClearedScratch),
+        way(SweepAndPrune, None),
+        way(BruteForce, None),
+        way(SweepAndPrune, ThroughBytes),
+        way(BruteForce, ThroughBytes),
+        way(SweepAndPrune, ClearedScratch),
+        way(BruteForce, ClearedScratch),
     ]
 };
 
 /// The worlds that must stay equal.
 struct Variants {
     plain: World,
-    others: [(Way, World); 2],
+    way: Way,
+    other: World,
 }
 
 /// Runs the scene that the bytes describe.
@@ -81,7 +99,7 @@ pub fn run(bytes: &[u8]) -> Seen {
 pub fn run_with_a_fault(bytes: &[u8]) {
     play(bytes, |variants| {
         let touching = variants.plain.contacts().filter(|contact| contact.touching).count();
-        let (_, other) = &mut variants.others[1];
+        let other = &mut variants.other;
         let bodies: Vec<_> = other.bodies().map(|(id, _)| id).collect();
         if touching > 12
             && let Some(&body) = bodies.get(7)
@@ -96,11 +114,12 @@ fn play(bytes: &[u8], mut meddle: impl FnMut(&mut Variants)) -> Seen {
     let mut source = Source::new(bytes);
     let config = generator::config(&mut source);
     let plain = World::new(config).unwrap_or_default();
-    let others = source.pick(&WAYS).map(|way| (way, way.begin(&plain)));
-    let mut variants = Variants { plain, others };
+    let way = source.pick(&WAYS);
+    let mut variants = Variants { other: way.begin(&plain), way, plain };
     let mut generator = Generator::new(&mut source);
-    let ticks = source.pick(&[60, 60, 60, 120]);
+    let ticks = source.pick(&[60, 60, 60, 60, 60, 60, 60, 120]);
     let rollback_at = source.below(ticks);
+    let depth = 1 + source.below(ROLLBACK_MAX);
     let mut seen = Seen::default();
     let mut cost = 0;
     let mut rollback: Option<Rollback> = None;
@@ -113,95 +132,102 @@ fn play(bytes: &[u8], mut meddle: impl FnMut(&mut Variants)) -> Seen {
         if tick == rollback_at {
             rollback = Some(Rollback { save: variants.plain.save(), ticks: Vec::new() });
         }
-        variants.disturb(&mut source);
+        variants.way.disturb(&mut source, &mut variants.other);
         variants.execute(&commands, &mut seen);
         meddle(&mut variants);
         let hash = variants.step();
         if let Some(rollback) = &mut rollback {
             rollback.ticks.push((commands, hash, variants.plain.events().clone()));
         }
-        seen.ticks += 1;
-        let touching = variants.plain.contacts().filter(|contact| contact.touching).count() as u64;
-        seen.touching += touching;
-        seen.most_touching = seen.most_touching.max(touching);
-        let events = variants.plain.events();
-        seen.slept += events.moved.iter().filter(|event| event.fell_asleep).count() as u64;
-        seen.noticed += events.sensor_begin.len() as u64;
-        seen.hits += (events.hits.len() + events.joints.len()) as u64;
+        if let Some(due) = rollback.take_if(|rollback| rollback.ticks.len() == depth) {
+            due.repeat(&mut variants.plain);
+        }
+        seen.see(&variants.plain);
         cost += generator::cost(&variants.plain);
         if cost > COST_MAX {
             break;
         }
     }
+    check(&variants.plain, &"the last tick");
     seen.faults = variants.plain.faults();
     seen.calm = source.is_calm();
     if let Some(rollback) = rollback {
-        rollback.repeat(variants.plain);
+        rollback.repeat(&mut variants.plain);
     }
     seen
+}
+
+impl Seen {
+    /// Counts what a tick has brought.
+    fn see(&mut self, world: &World) {
+        let touching = world.contacts().filter(|contact| contact.touching).count() as u64;
+        let events = world.events();
+        self.ticks += 1;
+        self.touching += touching;
+        self.most_touching = self.most_touching.max(touching);
+        self.slept += events.moved.iter().filter(|event| event.fell_asleep).count() as u64;
+        self.noticed += events.sensor_begin.len() as u64;
+        self.hits += (events.hits.len() + events.joints.len()) as u64;
+    }
+
+    /// Whether this is a run of 60 ticks or more in which ten contacts or more touched at one time.
+    #[must_use]
+    pub fn is_full(&self) -> bool {
+        self.ticks >= 60 && self.most_touching >= 10
+    }
 }
 
 impl Way {
     fn begin(self, plain: &World) -> World {
         let mut world = plain.clone();
-        match self {
-            Way::SweepAndPrune => world.set_broad_phase(BroadPhaseKind::SweepAndPrune),
-            Way::BruteForce => world.set_broad_phase(BroadPhaseKind::BruteForce),
-            Way::ThroughBytes | Way::Uncached => {}
-        }
+        world.set_broad_phase(self.broad_phase);
         world
     }
 
     /// What must not make a difference.
     fn disturb(self, source: &mut Source<'_>, world: &mut World) {
-        match self {
-            Way::ThroughBytes if source.below(4) == 0 => {
+        match self.disturbance {
+            Disturbance::ThroughBytes if source.below(4) == 0 => {
                 *world = World::from_bytes(&world.to_bytes()).expect("a world's own bytes");
+                world.set_broad_phase(self.broad_phase);
             }
-            Way::Uncached if source.below(2) == 0 => world.clear_scratch(),
+            Disturbance::ClearedScratch if source.below(2) == 0 => world.clear_scratch(),
             _ => {}
         }
     }
 }
 
 impl Variants {
-    fn disturb(&mut self, source: &mut Source<'_>) {
-        for (way, world) in &mut self.others {
-            way.disturb(source, world);
-        }
-    }
-
     fn execute(&mut self, commands: &[Command], seen: &mut Seen) {
+        let Variants { plain, way, other } = self;
         for command in commands {
-            let outcome = self.plain.execute(command);
+            let outcome = plain.execute(command);
             match &outcome {
                 Ok(_) => seen.done += 1,
                 Err(error) => {
                     seen.refused += 1;
-                    // The others have not seen the command yet.
-                    let changed = self.plain.digest().differing(&self.others[0].1.digest());
+                    // The other has not seen the command yet.
+                    let changed = plain.digest().differing(&other.digest());
                     assert!(changed.is_empty(), "refused ({error}), yet changed {changed:?}: {command:?}");
                 }
             }
-            for (way, world) in &mut self.others {
-                assert_eq!(world.execute(command), outcome, "{way:?}: {command:?}");
-            }
+            assert_eq!(other.execute(command), outcome, "{way:?}: {command:?}");
         }
         if !commands.is_empty() {
-            check(&self.plain, &commands);
+            check(plain, &commands);
         }
     }
 
     fn step(&mut self) -> StateHash {
-        self.plain.step();
-        let digest = self.plain.digest();
-        let events = self.plain.events().clone();
-        check(&self.plain, &"a tick");
-        for (way, world) in &mut self.others {
-            world.step();
-            let differing = world.digest().differing(&digest);
-            assert!(differing.is_empty(), "{way:?}, tick {}: {differing:?}", world.tick());
-            assert_eq!(world.events(), &events, "{way:?}, tick {}: events", world.tick());
+        let Variants { plain, way, other } = self;
+        plain.step();
+        other.step();
+        let digest = plain.digest();
+        let differing = other.digest().differing(&digest);
+        assert!(differing.is_empty(), "{way:?}, tick {}: {differing:?}", plain.tick());
+        assert_eq!(other.events(), plain.events(), "{way:?}, tick {}: events", plain.tick());
+        if plain.tick().is_multiple_of(CHECK_INTERVAL) {
+            check(plain, &"a tick");
         }
         digest.state_hash()
     }
@@ -214,8 +240,8 @@ struct Rollback {
 }
 
 impl Rollback {
-    /// Returns to the state, in a world whose caches are those of the end, and plays the same again.
-    fn repeat(self, mut world: World) {
+    /// Returns to the state, in a world whose caches are those of a later one, and plays the same again.
+    fn repeat(self, world: &mut World) {
         world.restore(&self.save);
         for (commands, hash, events) in &self.ticks {
             for command in commands {
@@ -268,7 +294,7 @@ pub fn count(seen: Seen) {
     let Ok(mut total) = TOTAL.lock() else { return };
     total.runs += 1;
     total.long += u64::from(seen.ticks >= 60);
-    total.full += u64::from(seen.ticks >= 60 && seen.most_touching >= 10);
+    total.full += u64::from(seen.is_full());
     total.touching += seen.touching;
     total.ticks += seen.ticks;
     total.calm += u64::from(seen.calm);

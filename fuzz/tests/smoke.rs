@@ -29,7 +29,7 @@ fn scenes_run_the_same_in_every_way_and_touch_a_lot() {
         hits += seen.hits;
         calm[usize::from(seen.calm && seen.faults > 0)] += u64::from(seen.calm);
         touched_runs += u64::from(seen.touching > 100);
-        full += u64::from(seen.ticks >= 60 && seen.most_touching >= 10);
+        full += u64::from(seen.is_full());
     }
     println!(
         "{ticks} ticks, {touching} touching, {touched_runs} runs with >100, {full} long ones with >=10 at once, {done} done, {refused} refused, {faulty} runs with faults; calm ones without and with: {calm:?}; {slept} fell asleep, {noticed} noticed, {hits} hits"
@@ -39,6 +39,7 @@ fn scenes_run_the_same_in_every_way_and_touch_a_lot() {
         "{slept} fell asleep, {noticed} noticed, {hits} hits"
     );
     assert!(touching > 300 * 500, "only {touching} touching contacts");
+    assert!(full > 150, "only {full} long runs with ten contacts");
 }
 
 #[test]

@@ -36,6 +36,14 @@ pub struct Save {
     rules: Rules,
 }
 
+impl Save {
+    /// How many bytes of memory it takes for itself, without what it shares with other saves.
+    #[must_use]
+    pub fn rollback_bytes(&self) -> usize {
+        self.world.rollback_bytes() + size_of::<Rules>()
+    }
+}
+
 impl Shove {
     /// What the player of a seat does: speed up, dash.
     fn drive(&mut self, seat: usize, pad: Pad) -> Result<(), WorldError> {

@@ -25,6 +25,8 @@
 mod arena;
 mod bot;
 mod game;
+#[cfg(feature = "net")]
+pub mod online;
 mod pad;
 mod rules;
 mod setup;

@@ -5,7 +5,7 @@ mod scenes;
 
 use std::process::ExitCode;
 
-use lockstep2d::draw::{self, Frame, Layers, View};
+use lockstep2d::draw::{Frame, Layers, View};
 use lockstep2d::math::{Aabb, Vec2};
 use lockstep2d_cli::Tool;
 use lockstep2d_shove::{START_RADIUS, Shove};
@@ -15,18 +15,17 @@ use scenes::Matches;
 fn main() -> ExitCode {
     Tool::<Shove>::new()
         .with_scenes(Matches)
-        .with_svg(draw_match)
+        .with_view(view_of_match)
         .with_command(play::command(), play::run)
         .run()
 }
 
 /// The whole platform, with round and scores above.
-fn draw_match(game: &Shove) -> String {
+fn view_of_match(game: &Shove) -> View {
     let corner = Vec2::new(START_RADIUS, START_RADIUS);
     let scores: Vec<_> = game.players_in_order().map(|player| player.score.to_string()).collect();
     let title = format!("round {} · {:?} · {}", game.round(), game.phase(), scores.join(" : "));
     let frame = Frame::Window(Aabb::new(-corner, corner));
     let layers = Layers { outlines: true, joints: true, velocities: true, ..Layers::NONE };
-    let view = View { height: 960, frame, title, layers, ..View::default() };
-    draw::svg(game.world(), &view)
+    View { height: 960, frame, title, layers, ..View::default() }
 }

@@ -3,16 +3,16 @@
 use std::error::Error;
 use std::fs::File;
 use std::io::Write;
-use std::net::{SocketAddr, ToSocketAddrs};
 use std::path::PathBuf;
 use std::thread;
 use std::time::Duration;
 
 use clap::{ArgMatches, Args, Command, FromArgMatches};
 use lockstep2d::hash::StateHash;
-use lockstep2d::net::{Divergence, Event, Options, Peer, Udp};
+use lockstep2d::net::{Divergence, Event, Options};
 use lockstep2d_cli::Exit;
-use lockstep2d_shove::{Bot, Setup, Shove};
+use lockstep2d_shove::online::{self, UdpPeer};
+use lockstep2d_shove::{Bot, Setup};
 
 /// How long a peer stays for those who have not heard everything, when its match is over.
 const LINGER: Duration = Duration::from_secs(2);
@@ -73,8 +73,6 @@ struct Way {
     watch: Option<String>,
 }
 
-type Participant = Peer<Shove, SocketAddr, Udp>;
-
 /// How it is called.
 pub(crate) fn command() -> Command {
     Arguments::augment_args(Command::new("play"))
@@ -115,13 +113,9 @@ fn play(arguments: &Arguments) -> Result<Option<Divergence>, Box<dyn Error>> {
             eprintln!("spectator: {error}");
             break;
         }
-        while peer.is_due() {
-            let seat = peer.seat().and_then(|seat| u8::try_from(seat).ok()).unwrap_or(0);
-            let pad = bot.get_or_insert_with(|| Bot::new(arguments.seed, seat)).pad(peer.game());
-            if !peer.advance(pad)? {
-                break;
-            }
-        }
+        online::play_due(&mut peer, |game, seat| {
+            bot.get_or_insert_with(|| Bot::new(arguments.seed, seat)).pad(game)
+        })?;
         while let Some(event) = peer.next_event() {
             if let Event::Diverged(found) = event {
                 let first = *diverged.get_or_insert(found);
@@ -130,7 +124,8 @@ fn play(arguments: &Arguments) -> Result<Option<Divergence>, Box<dyn Error>> {
                     std::fs::write(path, peer.report(&first))?;
                 }
             }
-            tell(&peer, event);
+            let name = peer.seat().map_or("spectator".into(), |seat| format!("seat {seat}"));
+            eprintln!("{name}: {}", online::describe(&event));
         }
         if let Some(file) = &mut file {
             let bytes = peer.take_replay();
@@ -157,44 +152,24 @@ fn play(arguments: &Arguments) -> Result<Option<Divergence>, Box<dyn Error>> {
     Ok(diverged)
 }
 
-fn sit_down(arguments: &Arguments) -> Result<Participant, Box<dyn Error>> {
+fn sit_down(arguments: &Arguments) -> Result<UdpPeer, Box<dyn Error>> {
     let setup = Setup { seats: arguments.seats, seed: arguments.seed, ..Setup::default() };
     let options = if arguments.lockstep { Options::lockstep() } else { Options::rollback() };
     let input_delay = arguments.input_delay.unwrap_or(options.input_delay);
     let options = Options { input_delay, ..options }.start_with(arguments.players);
     let Way { host, join, watch } = &arguments.way;
-    let contact = join.as_ref().or(watch.as_ref()).map(|address| resolve(address)).transpose()?;
-    let anywhere = if contact.is_some_and(|contact| contact.is_ipv6()) { "[::]:0" } else { "0.0.0.0:0" };
-    let bind = host.as_ref().or(arguments.bind.as_ref()).map_or(anywhere, String::as_str);
-    let udp = Udp::bind(resolve(bind)?)?;
-    Ok(match contact {
-        None => Peer::host(&setup, options, udp)?,
-        Some(contact) if watch.is_some() => Peer::watch(&setup, options, udp, contact)?,
-        Some(contact) => Peer::join(&setup, options, udp, contact, arguments.seat)?,
-    })
-}
-
-fn resolve(address: &str) -> Result<SocketAddr, Box<dyn Error>> {
-    let first = address.to_socket_addrs().map_err(|error| format!("{address}: {error}"))?.next();
-    first.ok_or_else(|| format!("{address}: no such address").into())
-}
-
-fn tell(peer: &Participant, event: Event) {
-    let name = peer.seat().map_or("spectator".into(), |seat| format!("seat {seat}"));
-    match event {
-        Event::Joined { seat, tick } => eprintln!("{name}: seat {seat} plays from tick {tick}"),
-        Event::Left { seat, tick } => eprintln!("{name}: seat {seat} is empty from tick {tick}"),
-        Event::Interrupted { seat } => eprintln!("{name}: nothing comes from seat {seat}"),
-        Event::Resumed { seat } => eprintln!("{name}: seat {seat} is back"),
-        Event::Diverged(Divergence { tick, seat, ours, theirs }) => {
-            eprintln!("{name}: after tick {tick} the state is {ours} here and {theirs} at seat {seat}");
-        }
-    }
+    let way = match (join, watch) {
+        (Some(contact), _) => online::Way::Join { contact: contact.as_str(), seat: arguments.seat },
+        (None, Some(contact)) => online::Way::Watch { contact: contact.as_str() },
+        (None, None) => online::Way::Host,
+    };
+    let bind = host.as_ref().or(arguments.bind.as_ref());
+    Ok(way.enter_udp(bind.map(String::as_str), &setup, options)?)
 }
 
 fn say_end(
     arguments: &Arguments,
-    peer: &Participant,
+    peer: &UdpPeer,
     ticks: u64,
     hash: Option<StateHash>,
     diverged: Option<Divergence>,

@@ -183,6 +183,14 @@ impl BroadPhase {
         smallest.finish()
     }
 
+    /// The boxes that it has put around others, each with its distance from the root.
+    pub(crate) fn inner_boxes(&self) -> Vec<(Aabb, u32)> {
+        match &self.structure {
+            Structure::Tree(tree) => tree.inner_boxes(),
+            Structure::SweepAndPrune(_) | Structure::BruteForce(_) => Vec::new(),
+        }
+    }
+
     /// Whether a slot is among those whose pairs were last asked for.
     pub(crate) fn has_moved(&self, slot: u32) -> bool {
         self.moved.has(slot)

@@ -140,6 +140,20 @@ impl Tree {
     }
 
     /// Gives a leaf another box where it is. Boxes around it only grow: they shrink in the next refit or rebuild.
+    /// The boxes of inner nodes, each with its distance from the root, parents first.
+    pub(crate) fn inner_boxes(&self) -> Vec<(Aabb, u32)> {
+        let mut boxes = Vec::new();
+        let mut waiting = Vec::from_iter((self.root != NONE).then_some((self.root, 0)));
+        while let Some((index, depth)) = waiting.pop() {
+            let node = self.at(index);
+            if !node.is_leaf() {
+                boxes.push((node.aabb, depth));
+                waiting.extend(node.children.iter().rev().map(|&child| (child, depth + 1)));
+            }
+        }
+        boxes
+    }
+
     fn enlarge(&mut self, leaf: u32, fat: Aabb) {
         self.at_mut(leaf).aabb = fat;
         let mut at = self.at(leaf).parent;

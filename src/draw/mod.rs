@@ -31,14 +31,22 @@
 //! [`World::restore`]: crate::world::World::restore
 //! [`World::from_bytes`]: crate::world::World::from_bytes
 
+mod bar;
 mod fit;
+mod legend;
+mod paint;
 mod path;
+mod primitive;
 mod primitives;
 mod screen;
 mod svg;
 mod view;
 
+pub use bar::Bar;
 pub use fit::fit;
-pub use primitives::{Form, Layers, Primitive, Proximity, Style, Subject, primitives};
+pub use legend::Legend;
+pub use paint::{Fill, PAPER, Paint};
+pub use primitive::{Form, Hue, Layers, Primitive, Proximity, Style, Subject};
+pub use primitives::{each_primitive, primitives};
 pub use svg::svg;
 pub use view::{Frame, View};

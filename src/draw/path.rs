@@ -3,7 +3,7 @@
 use alloc::string::String;
 use core::fmt::{Arguments, Write};
 
-use super::primitives::Form;
+use super::primitive::Form;
 use super::screen::{Pixel, Screen};
 use crate::math::{Aabb, Fx, Unit, Vec2, round_shift, widen};
 
@@ -20,6 +20,7 @@ pub(super) fn add(path: &mut String, form: &Form, screen: &Screen, direction_len
         Form::Direction { from, direction } => {
             add_direction(path, *from, *direction, screen, direction_length)
         }
+        Form::Label { at, text } => add_label(path, *at, text, screen),
         Form::Box(aabb) => add_box(path, *aabb, screen),
         Form::Circle { centre, radius } => add_circle(path, *centre, *radius, screen),
         Form::Polygon { vertices, radius } => add_polygon(path, vertices, *radius, screen),
@@ -31,6 +32,14 @@ fn add_point(path: &mut String, place: Vec2<Fx>, screen: &Screen) {
     if screen.seen.contains_point(place) {
         let (x, y) = screen.place(place);
         push(path, format_args!("M{x} {y}h0"));
+    }
+}
+
+/// Not a path but an element of its own, a little above the place.
+fn add_label(elements: &mut String, place: Vec2<Fx>, text: &str, screen: &Screen) {
+    if screen.seen.contains_point(place) {
+        let (x, y) = screen.place(place);
+        push(elements, format_args!("<text x=\"{x}\" y=\"{y}\" dx=\"3\" dy=\"-3\">{text}</text>\n"));
     }
 }
 

@@ -1,219 +1,108 @@
 //! What there is to see in a world, as plain data.
 
+use alloc::format;
 use alloc::vec::Vec;
 
-use crate::body::{Body, BodyId, BodyKind, JointId, ShapeId};
+use super::primitive::{Form, Hue, Layers, Primitive, Proximity, Style, Subject};
+use crate::body::{Body, BodyId, BodyKind, JointId};
 use crate::collision::{Link, ManifoldPoint, Outline, PosedShape};
 use crate::fx;
-use crate::math::{Aabb, Fx, Unit, Vec2, fx_mul, widen};
-use crate::world::{ContactView, World};
+use crate::math::{Fx, Unit, Vec2, fx_mul, widen};
+use crate::world::{ContactView, SolverColour, World};
 
 /// A velocity is drawn as the way that the body makes in this time, in seconds: at 10 m/s one metre, the size of
 /// a typical body. Longer ones hide the scene, shorter ones cannot be told from a point.
 const VELOCITY_TIME: Fx = fx!(0.1);
 
-/// What to draw.
-///
-/// ```
-/// use lockstep2d::draw::Layers;
-/// let with_arrows = Layers { velocities: true, ..Layers::default() };
-/// let only_joints = Layers { joints: true, ..Layers::NONE };
-/// ```
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Layers {
-    /// The shapes of all bodies.
-    pub outlines: bool,
-    /// The fat boxes that the broad phase sees.
-    pub fat_boxes: bool,
-    /// Where shapes touch or are about to.
-    pub contact_points: bool,
-    /// In which direction they push, from the contact points.
-    pub contact_normals: bool,
-    /// Anchors of joints, the gap between them, and lines to the bodies that they hold.
-    pub joints: bool,
-    /// Centres of mass of the bodies that can move.
-    pub centres_of_mass: bool,
-    /// Velocities of the centres of mass.
-    pub velocities: bool,
-}
+/// How long the force is that accelerates by [`FORCE_UNIT`], in metres: shorter than a typical body.
+const FORCE_LENGTH: Fx = fx!(0.2);
+/// About what gravity is, in m/s².
+const FORCE_UNIT: i64 = 10;
 
-impl Layers {
-    /// Nothing.
-    pub const NONE: Self = Layers {
-        outlines: false,
-        fat_boxes: false,
-        contact_points: false,
-        contact_normals: false,
-        joints: false,
-        centres_of_mass: false,
-        velocities: false,
-    };
-
-    /// Everything.
-    pub const ALL: Self = Layers {
-        outlines: true,
-        fat_boxes: true,
-        contact_points: true,
-        contact_normals: true,
-        joints: true,
-        centres_of_mass: true,
-        velocities: true,
-    };
-}
-
-impl Default for Layers {
-    /// Everything but velocities.
-    fn default() -> Self {
-        Layers { velocities: false, ..Self::ALL }
-    }
-}
-
-/// A thing to draw.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Primitive {
-    /// What it means; the renderer has the colours.
-    pub style: Style,
-    /// What it belongs to, for picking and highlighting.
-    pub subject: Subject,
-    /// What it looks like.
-    pub form: Form,
-}
-
-/// What a primitive means.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Style {
-    /// The outline of a shape, or the radius that shows how a circle is turned.
-    Outline(BodyKind),
-    /// The box that the broad phase sees of a shape.
-    FatBox,
-    /// A contact point.
-    ContactPoint(Proximity),
-    /// The direction in which a contact pushes its shape B.
-    ContactNormal(Proximity),
-    /// From a joint's anchor to the centre of mass of the body that it holds there.
-    JointArm,
-    /// An anchor of a joint.
-    JointAnchor,
-    /// From one anchor of a joint to the other, where both should be in one place.
-    JointGap,
-    /// The centre of mass of a body.
-    CentreOfMass,
-    /// From the centre of mass to where the body would be in a tenth of a second.
-    Velocity,
-}
-
-/// Whether a contact point pushes yet.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Proximity {
-    /// No further apart than a quarter of the speculative distance, as contact events have it.
-    Touching,
-    /// Further apart: it is there so that fast shapes do not pass through each other.
-    Speculative,
-}
-
-/// What a primitive belongs to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Subject {
-    /// A body.
-    Body(BodyId),
-    /// A shape of a body.
-    Shape(ShapeId),
-    /// A contact between two shapes.
-    Contact(ShapeId, ShapeId),
-    /// A joint.
-    Joint(JointId),
-}
-
-/// What a primitive looks like, in world coordinates in metres.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Form {
-    /// A mark of the renderer's size and shape.
-    Point(Vec2<Fx>),
-    /// A straight line.
-    Line {
-        /// One end.
-        from: Vec2<Fx>,
-        /// The other end.
-        to: Vec2<Fx>,
-    },
-    /// A line of the renderer's length, so that it can be seen at any scale.
-    Direction {
-        /// Where it starts.
-        from: Vec2<Fx>,
-        /// Where it points, of length 1.
-        direction: Vec2<Unit>,
-    },
-    /// An axis-aligned box.
-    Box(Aabb),
-    /// A circle.
-    Circle {
-        /// Its centre.
-        centre: Vec2<Fx>,
-        /// Its radius.
-        radius: Fx,
-    },
-    /// A convex polygon, or a line with a radius if it has two vertices.
-    Polygon {
-        /// Counter-clockwise.
-        vertices: Vec<Vec2<Fx>>,
-        /// How far the outline lies outside of the edges, with round corners about the vertices.
-        radius: Fx,
-    },
-}
-
-/// Everything that some layers show of a world: body by body, then contacts, then joints, each in slot order.
+/// Everything that some layers show of a world: the boxes of the broad phase, then body by body, islands, contacts and
+/// joints, each in slot order.
 #[must_use]
 pub fn primitives(world: &World, layers: Layers) -> Vec<Primitive> {
     let mut found = Vec::new();
-    for (id, body) in world.bodies() {
-        add_body(world, (id, body), layers, &mut found);
-    }
-    if layers.contact_points || layers.contact_normals {
-        // The threshold at which a contact event begins.
-        let touching_distance = world.config().touching_distance();
-        for contact in world.contacts() {
-            add_contact(&contact, touching_distance, layers, &mut found);
-        }
-    }
-    if layers.joints {
-        for (id, _) in world.joints() {
-            add_joint(world, id, &mut found);
-        }
-    }
+    each_primitive(world, layers, &mut |primitive| found.push(primitive));
     found
 }
 
-fn add_body(world: &World, (id, body): (BodyId, &Body), layers: Layers, found: &mut Vec<Primitive>) {
+/// [`primitives`] one by one, without memory for all of them: a large world has a hundred thousand.
+pub fn each_primitive(world: &World, layers: Layers, found: Found<'_>) {
+    if layers.broad_phase {
+        for (aabb, _) in world.broad_phase_boxes() {
+            found(primitive(Style::BroadPhase, Subject::World, Form::Box(aabb)));
+        }
+    }
+    for (id, body) in world.bodies() {
+        add_body(world, (id, body), layers, found);
+    }
+    if layers.islands {
+        add_islands(world, found);
+    }
+    if layers.contact_points || layers.contact_normals || layers.contact_forces || layers.solver_colours {
+        // The threshold at which a contact event begins.
+        let touching_distance = world.config().touching_distance();
+        for contact in world.contacts() {
+            add_contact(&contact, touching_distance, layers, found);
+        }
+    }
+    if layers.joints || layers.joint_errors {
+        for (id, _) in world.joints() {
+            add_joint(world, id, layers, found);
+        }
+    }
+}
+
+/// What is done with each primitive.
+type Found<'a> = &'a mut dyn FnMut(Primitive);
+
+fn primitive(style: Style, subject: Subject, form: Form) -> Primitive {
+    Primitive { style, subject, form }
+}
+
+fn add_body(world: &World, (id, body): (BodyId, &Body), layers: Layers, found: Found<'_>) {
     let subject = Subject::Body(id);
     if layers.outlines {
-        add_outlines(world, (id, body), found);
+        add_outlines(world, (id, body), style_of(body), found);
     }
     if layers.fat_boxes {
         for &id in body.shapes() {
             let Some(shape) = world.shape(id) else { continue };
-            let form = Form::Box(shape.fat_aabb());
-            found.push(Primitive { style: Style::FatBox, subject: Subject::Shape(id), form });
+            found(primitive(Style::FatBox, Subject::Shape(id), Form::Box(shape.fat_aabb())));
         }
+    }
+    let centre = body.centre_of_mass();
+    if layers.ids {
+        found(primitive(Style::Id, subject, Form::Label { at: centre, text: format!("{id}") }));
     }
     if body.kind() == BodyKind::Fixed {
         return;
     }
-    let centre = body.centre_of_mass();
     if layers.centres_of_mass {
-        found.push(Primitive { style: Style::CentreOfMass, subject, form: Form::Point(centre) });
+        found(primitive(Style::CentreOfMass, subject, Form::Point(centre)));
     }
     let velocity = body.velocity();
     if layers.velocities && velocity != Vec2::ZERO {
-        let way = Vec2::new(fx_mul(velocity.x, VELOCITY_TIME), fx_mul(velocity.y, VELOCITY_TIME));
-        let form = Form::Line { from: centre, to: centre + way };
-        found.push(Primitive { style: Style::Velocity, subject, form });
+        let form = Form::Line { from: centre, to: centre + stretched(velocity, VELOCITY_TIME) };
+        found(primitive(Style::Velocity, subject, form));
     }
 }
 
-fn add_outlines(world: &World, (id, body): (BodyId, &Body), found: &mut Vec<Primitive>) {
-    let (style, subject) = (Style::Outline(body.kind()), Subject::Body(id));
+fn style_of(body: &Body) -> Style {
+    match body.kind() {
+        BodyKind::Fixed => Style::Fixed,
+        BodyKind::Kinematic => Style::Kinematic,
+        BodyKind::Dynamic if body.is_asleep() => Style::Asleep,
+        BodyKind::Dynamic => Style::Dynamic,
+    }
+}
+
+fn add_outlines(world: &World, (id, body): (BodyId, &Body), style: Style, found: Found<'_>) {
+    let subject = Subject::Body(id);
     let rotation = body.rotation();
-    let mut add = |form| found.push(Primitive { style, subject, form });
+    let mut add = |form| found(primitive(style, subject, form));
     for shape in body.shapes().iter().filter_map(|&id| world.shape(id)) {
         // What collision detection sees, so that a picture cannot hide a fault of the pose.
         let PosedShape { centre, outline, .. } = PosedShape::new(&shape.def, body, rotation);
@@ -235,32 +124,86 @@ fn add_outlines(world: &World, (id, body): (BodyId, &Body), found: &mut Vec<Prim
     }
 }
 
-fn add_contact(contact: &ContactView<'_>, touching_distance: Fx, layers: Layers, found: &mut Vec<Primitive>) {
+/// Each island in a colour of its own, that of its first body, so that it keeps it while it grows.
+fn add_islands(world: &World, found: Found<'_>) {
+    for island in world.islands() {
+        let Some(first) = island.first() else { continue };
+        let style = Style::Island(Hue::of(first.index() as usize));
+        for id in island {
+            let Some(body) = world.body(id) else { continue };
+            add_outlines(world, (id, body), style, found);
+        }
+    }
+}
+
+fn add_contact(contact: &ContactView<'_>, touching_distance: Fx, layers: Layers, found: Found<'_>) {
     let subject = Subject::Contact(contact.shape_a, contact.shape_b);
     let manifold = contact.manifold;
+    let colour = if layers.solver_colours { contact.solver_colour() } else { None };
+    let mut add = |style, form| found(primitive(style, subject, form));
     for &ManifoldPoint { anchor, separation, .. } in manifold.points() {
         let place = manifold.origin + anchor.widen();
         let touching = widen(separation) <= touching_distance;
         let proximity = if touching { Proximity::Touching } else { Proximity::Speculative };
         if layers.contact_normals {
             let form = Form::Direction { from: place, direction: manifold.normal };
-            found.push(Primitive { style: Style::ContactNormal(proximity), subject, form });
+            add(Style::ContactNormal(proximity), form);
         }
         if layers.contact_points {
-            found.push(Primitive {
-                style: Style::ContactPoint(proximity),
-                subject,
-                form: Form::Point(place),
-            });
+            add(Style::ContactPoint(proximity), Form::Point(place));
         }
+        match colour {
+            Some(SolverColour::Group(group)) => {
+                add(Style::SolverGroup(Hue::of(group.into())), Form::Point(place));
+            }
+            Some(SolverColour::Overflow) => add(Style::SolverOverflow, Form::Point(place)),
+            None => {}
+        }
+    }
+    if layers.contact_forces {
+        add_forces(contact, &mut add);
     }
 }
 
-fn add_joint(world: &World, id: JointId, found: &mut Vec<Primitive>) {
+fn add_forces(contact: &ContactView<'_>, add: &mut impl FnMut(Style, Form)) {
+    let manifold = contact.manifold;
+    for (point, [normal, friction]) in contact.accelerations() {
+        let place = manifold.origin + point.anchor.widen();
+        let mut arrow = |style, direction: Vec2<Unit>, acceleration| {
+            if acceleration != Fx::ZERO {
+                let to = place + stretched(direction.widen(), force_length(acceleration));
+                add(style, Form::Line { from: place, to });
+            }
+        };
+        arrow(Style::ContactForce, manifold.normal, normal);
+        arrow(Style::ContactFriction, manifold.normal.perp(), friction);
+    }
+}
+
+/// In metres, with the sign of the acceleration, to 16 bits after the point; see [`Style::ContactForce`].
+fn force_length(acceleration: Fx) -> Fx {
+    let units = (acceleration / FORCE_UNIT).to_bits();
+    // The root has half as many bits after the point.
+    let root = Fx::saturating_from_num(units.unsigned_abs().isqrt()) / (1 << (Fx::FRAC_NBITS / 2));
+    fx_mul(root, if acceleration < Fx::ZERO { -FORCE_LENGTH } else { FORCE_LENGTH })
+}
+
+fn stretched(vector: Vec2<Fx>, factor: Fx) -> Vec2<Fx> {
+    Vec2::new(fx_mul(vector.x, factor), fx_mul(vector.y, factor))
+}
+
+fn add_joint(world: &World, id: JointId, layers: Layers, found: Found<'_>) {
     let (Some(joint), Some((anchor_a, anchor_b))) = (world.joint(id), world.joint_anchors(id)) else {
         return;
     };
-    let mut add = |style, form| found.push(Primitive { style, subject: Subject::Joint(id), form });
+    let mut add = |style, form| found(primitive(style, Subject::Joint(id), form));
+    if let Some(error) = world.joint_error(id).filter(|_| layers.joint_errors) {
+        let millimetres = error.saturating_mul_int(1000);
+        add(Style::JointError, Form::Label { at: anchor_b, text: format!("{millimetres:.2} mm") });
+    }
+    if !layers.joints {
+        return;
+    }
     let (body_a, body_b) = joint.def().bodies();
     for (body, anchor) in [(body_a, anchor_a), (body_b, anchor_b)] {
         // Where the centre of a fixed body is means nothing: often all of them share one body, and their arms

@@ -4,74 +4,23 @@
 //! 5000 boxes at rest stays at about two megabytes. Points are lines without length, and no stroke scales, so that
 //! one can enlarge a picture in a browser and still see where exactly two shapes touch.
 
+use alloc::collections::BTreeMap;
 use alloc::string::String;
-use alloc::vec::Vec;
 
+use super::bar::Bar;
 use super::fit::fit;
+use super::legend::Legend;
+use super::paint::{Fill, PAPER, Paint};
 use super::path::{add, push};
-use super::primitives::{Proximity, Style, Subject, primitives};
+use super::primitive::{Style, Subject};
+use super::primitives::primitives;
 use super::screen::{Pixel, Screen};
 use super::view::{Frame, View};
 use crate::body::BodyKind;
-use crate::math::{Fx, widen};
 use crate::world::World;
 
 /// Height of the legend in pixels: two lines of text.
 const LEGEND_HEIGHT: u32 = 42;
-
-/// How to paint a style.
-struct Paint {
-    style: Style,
-    /// In the legend.
-    name: &'static str,
-    /// Of strokes.
-    colour: &'static str,
-    /// Fill and opacity, as attributes.
-    fill: &'static str,
-    /// In hundredths of a pixel, when marks are largest.
-    width: i64,
-}
-
-const fn paint(
-    style: Style,
-    name: &'static str,
-    colour: &'static str,
-    fill: &'static str,
-    width: i64,
-) -> Paint {
-    Paint { style, name, colour, fill, width }
-}
-
-const HOLLOW: &str = "fill=\"none\"";
-
-/// What lies below comes first: what is small and explains the rest lies on top.
-const PAINTS: [Paint; 13] = [
-    paint(Style::Outline(BodyKind::Fixed), "fixed", "#6d6d68", "fill=\"#dddcd6\"", 120),
-    paint(Style::FatBox, "fat box", "#b9b9b0", HOLLOW, 70),
-    paint(
-        Style::Outline(BodyKind::Kinematic),
-        "kinematic",
-        "#00796b",
-        "fill=\"#b2dfdb\" fill-opacity=\".75\"",
-        120,
-    ),
-    paint(
-        Style::Outline(BodyKind::Dynamic),
-        "dynamic",
-        "#1f5f9e",
-        "fill=\"#c5ddf2\" fill-opacity=\".75\"",
-        120,
-    ),
-    paint(Style::JointArm, "joint", "#8e24aa", HOLLOW, 120),
-    paint(Style::Velocity, "velocity", "#2e7d32", HOLLOW, 180),
-    paint(Style::CentreOfMass, "centre of mass", "#1a237e", HOLLOW, 380),
-    paint(Style::JointAnchor, "anchor", "#8e24aa", HOLLOW, 700),
-    paint(Style::JointGap, "gap", "#ff4081", HOLLOW, 300),
-    paint(Style::ContactNormal(Proximity::Speculative), "", "#e69500", HOLLOW, 130),
-    paint(Style::ContactPoint(Proximity::Speculative), "about to touch", "#e69500", HOLLOW, 500),
-    paint(Style::ContactNormal(Proximity::Touching), "", "#c62828", HOLLOW, 130),
-    paint(Style::ContactPoint(Proximity::Touching), "touching", "#c62828", HOLLOW, 500),
-];
 
 /// Draws the world as it is, with y upwards. The same world and view give the same text on every machine.
 #[must_use]
@@ -84,7 +33,7 @@ pub fn svg(world: &World, view: &View) -> String {
     let scene_height = height.saturating_sub(LEGEND_HEIGHT);
     let screen = Screen::new(window, (width, scene_height));
     let marks = Marks::of(world, &screen);
-    let layers = sorted_by_paint(world, view, &screen, &marks);
+    let layers = sorted_by_style(world, view, &screen, &marks);
 
     let mut text = String::new();
     push(
@@ -102,16 +51,12 @@ pub fn svg(world: &World, view: &View) -> String {
         &mut text,
         format_args!(
             "<svg y=\"{LEGEND_HEIGHT}\" width=\"{width}\" height=\"{scene_height}\">\n\
-             <rect width=\"{width}\" height=\"{scene_height}\" fill=\"#fafaf7\"/>\n\
+             <rect width=\"{width}\" height=\"{scene_height}\" fill=\"#{PAPER:06x}\"/>\n\
              <g stroke-linecap=\"round\" stroke-linejoin=\"round\">\n"
         ),
     );
-    for (Paint { colour, fill, width, .. }, paths) in &layers {
-        let width = marks.scaled(*width);
-        push(
-            &mut text,
-            format_args!("<g stroke=\"{colour}\" {fill} stroke-width=\"{width}\">\n{paths}</g>\n"),
-        );
+    for (style, paths) in &layers {
+        add_layer(&mut text, *style, &marks, paths);
     }
     text.push_str("</g>\n");
     add_scale_bar(&mut text, &screen, (width, scene_height));
@@ -149,39 +94,62 @@ impl Marks {
 }
 
 /// The elements of every style that can be seen, in the order in which they are painted.
-fn sorted_by_paint(world: &World, view: &View, screen: &Screen, marks: &Marks) -> Vec<(Paint, String)> {
-    let mut layers: Vec<(Paint, String)> = PAINTS.into_iter().map(|paint| (paint, String::new())).collect();
+fn sorted_by_style(world: &World, view: &View, screen: &Screen, marks: &Marks) -> BTreeMap<Style, String> {
+    let mut layers = BTreeMap::<Style, String>::new();
     let normal_length = marks.scaled(1800);
     let mut path = String::new();
     let found = primitives(world, view.layers);
     for group in found.chunk_by(|a, b| a.style == b.style && a.subject == b.subject) {
         let first = &group[0];
-        let layer = layers.iter_mut().find(|(paint, _)| paint.style == first.style);
-        let Some((_, elements)) = layer else { unreachable!("every style has a paint") };
-        let Subject::Body(id) = first.subject else {
-            group.iter().for_each(|primitive| add(elements, &primitive.form, screen, normal_length));
-            continue;
-        };
         path.clear();
         group.iter().for_each(|primitive| add(&mut path, &primitive.form, screen, normal_length));
-        match first.style {
-            _ if path.is_empty() => {}
-            Style::Outline(_) => {
+        if path.is_empty() {
+            continue;
+        }
+        let elements = layers.entry(first.style).or_default();
+        match (has_tooltip(first.style), first.subject) {
+            (true, Subject::Body(id)) => {
                 push(elements, format_args!("<path d=\"{path}\"><title>body {id}</title></path>\n"));
             }
             _ => elements.push_str(&path),
         }
     }
-    layers.retain(|(_, elements)| !elements.is_empty());
-    for (paint, elements) in &mut layers {
-        if !matches!(paint.style, Style::Outline(_)) {
+    for (style, elements) in &mut layers {
+        if !has_tooltip(*style) && !is_text(*style) {
             *elements = alloc::format!("<path d=\"{elements}\"/>\n");
         }
     }
     layers
 }
 
-fn add_legend(text: &mut String, world: &World, view: &View, layers: &[(Paint, String)]) {
+/// Whether each body has a path of its own.
+fn has_tooltip(style: Style) -> bool {
+    matches!(style, Style::Fixed | Style::Kinematic | Style::Dynamic | Style::Asleep | Style::Island(_))
+}
+
+fn is_text(style: Style) -> bool {
+    matches!(style, Style::Id | Style::JointError)
+}
+
+fn add_layer(text: &mut String, style: Style, marks: &Marks, elements: &str) {
+    let Paint { stroke, fill, width, .. } = style.paint();
+    if is_text(style) {
+        let font = "font-family=\"ui-monospace,monospace\" font-size=\"10\"";
+        return push(text, format_args!("<g fill=\"#{stroke:06x}\" {font}>\n{elements}</g>\n"));
+    }
+    push(text, format_args!("<g stroke=\"#{stroke:06x}\" fill=\""));
+    match fill {
+        None => text.push_str("none\""),
+        Some(Fill { colour, opacity: 100 }) => push(text, format_args!("#{colour:06x}\"")),
+        Some(Fill { colour, opacity }) => {
+            push(text, format_args!("#{colour:06x}\" fill-opacity=\".{opacity}\""))
+        }
+    }
+    let width = marks.scaled(width.into());
+    push(text, format_args!(" stroke-width=\"{width}\">\n{elements}</g>\n"));
+}
+
+fn add_legend(text: &mut String, world: &World, view: &View, layers: &BTreeMap<Style, String>) {
     text.push_str(
         "<g font-family=\"ui-monospace,monospace\" font-size=\"12\" fill=\"#222\">\n<text x=\"8\" y=\"16\">",
     );
@@ -190,45 +158,26 @@ fn add_legend(text: &mut String, world: &World, view: &View, layers: &[(Paint, S
         add_escaped(text, &view.title);
         text.push_str("</tspan> · ");
     }
-    let overlaps =
-        world.contacts().flat_map(|contact| contact.manifold.points()).map(|point| -point.separation);
-    let overlap = millimetres(overlaps.max().map_or(Fx::ZERO, widen));
-    let gaps = world.joints().filter_map(|(id, _)| world.joint_anchors(id)).map(|(a, b)| a.distance(b));
-    let gap = millimetres(gaps.max().unwrap_or_default());
-    let (tick, bodies, contacts) = (world.tick(), world.body_count(), world.contacts().count());
-    let (faults, hash) = (world.faults(), world.state_hash());
-    push(
-        text,
-        format_args!(
-            "tick {tick} · {bodies} bodies · {contacts} contacts · deepest overlap {overlap:.1} mm · \
-             widest joint gap {gap:.1} mm · {faults} faults</text>\n<text x=\"8\" y=\"33\">{hash}"
-        ),
-    );
-    for (Paint { name, colour, .. }, _) in layers.iter().filter(|(paint, _)| !paint.name.is_empty()) {
-        push(text, format_args!(" <tspan fill=\"{colour}\">{name}</tspan>"));
+    let Legend { figures, hash, names } = Legend::of(world, layers.keys().copied());
+    push(text, format_args!("{figures}</text>\n<text x=\"8\" y=\"33\">{hash}"));
+    for (name, colour) in names {
+        push(text, format_args!(" <tspan fill=\"#{colour:06x}\">{name}</tspan>"));
     }
     text.push_str("</text>\n</g>\n");
 }
 
-/// Of a length in metres; what does not reach anything is 0.
-fn millimetres(length: Fx) -> Fx {
-    length.max(Fx::ZERO).saturating_mul_int(1000)
-}
-
 /// A bar of 1, 2 or 5 times a power of ten metres, a tenth to a quarter of the picture wide.
 fn add_scale_bar(text: &mut String, screen: &Screen, (width, height): (u32, u32)) {
-    let lengths = (0u32..13).flat_map(|power| [1i64, 2, 5].map(|digit| digit * 10i64.pow(power)));
-    let metres = |millimetres: i64| crate::math::ratio(millimetres, 1000);
-    let fitting = lengths.take_while(|&length| screen.length(metres(length)).0 <= i64::from(width) * 25);
-    let Some(length) = fitting.last() else { return };
-    let (bar, y) = (screen.length(metres(length)), height - 10);
-    let (number, unit) = if length < 1000 { (length, "mm") } else { (length / 1000, "m") };
+    let Some(Bar { length, label }) = Bar::up_to(|bar| screen.length(bar).0 <= i64::from(width) * 25) else {
+        return;
+    };
+    let (bar, y) = (screen.length(length), height - 10);
     push(
         text,
         format_args!(
             "<path d=\"M10 {}v6m0 -3h{bar}m0 -3v6\" fill=\"none\" stroke=\"#222\"/>\n\
              <text x=\"14\" y=\"{}\" font-family=\"ui-monospace,monospace\" font-size=\"12\" fill=\"#222\">\
-             {number} {unit}</text>\n",
+             {label}</text>\n",
             y - 3,
             y - 6
         ),

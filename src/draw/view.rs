@@ -2,7 +2,7 @@
 
 use alloc::string::String;
 
-use super::primitives::Layers;
+use super::primitive::Layers;
 use crate::math::Aabb;
 
 /// How to draw a picture.

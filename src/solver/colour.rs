@@ -39,6 +39,15 @@ pub(crate) enum Size {
     Small,
 }
 
+/// Where the solver has a contact: contacts of one colour are independent of each other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SolverColour {
+    /// It is solved together with all others of this colour, from 0.
+    Group(u8),
+    /// Its bodies have more contacts than there are colours: it is solved by itself, before all groups.
+    Overflow,
+}
+
 /// Constraints to be solved at a time.
 pub(crate) enum Group<'a> {
     /// One after the other.
@@ -83,11 +92,21 @@ impl Colouring {
         order
     }
 
-    /// The last order, in the groups in which it may be solved.
+    /// Where the last order has one of the nodes.
+    pub(super) fn colour_of(&self, node: usize) -> Option<SolverColour> {
+        self.places.get(node).map(|&place| match place.checked_sub(1) {
+            None => SolverColour::Overflow,
+            Some(place) => SolverColour::Group(place / 2),
+        })
+    }
+
+    /// The last order, in the groups in which it may be solved. None of them is empty: most places of a small world are,
+    /// and whoever goes through the groups does so many times in a tick.
     pub(crate) fn groups(&self) -> impl Iterator<Item = Group<'_>> {
         let starts = core::iter::once(0).chain(self.ends.iter().copied());
         let places = starts.zip(&self.ends).map(|(start, &end)| &self.order[start as usize..end as usize]);
-        places.enumerate().map(|(place, indices)| match place {
+        let filled = places.enumerate().filter(|(_, indices)| !indices.is_empty());
+        filled.map(|(place, indices)| match place {
             0 => Group::Serial(indices),
             _ => Group::Coloured(indices),
         })
@@ -157,7 +176,7 @@ mod tests {
             for group in colouring.groups() {
                 let indices = match group {
                     Group::Serial(indices) => {
-                        assert!(!indices.is_empty(), "the hub overflows");
+                        assert!(solved.is_empty(), "the overflow comes first");
                         assert!(indices.iter().all(|&i| colouring.places[i as usize] == 0));
                         indices
                     }
@@ -175,6 +194,7 @@ mod tests {
                 solved.extend_from_slice(indices);
             }
             assert_eq!(solved, order, "groups follow the order");
+            assert!(colouring.places.contains(&0), "the hub overflows");
         }
     }
 }

@@ -22,6 +22,7 @@ use alloc::vec::Vec;
 
 pub(crate) use body::{SolverBody, turn_of};
 use body_list::BodyList;
+pub use colour::SolverColour;
 use colour::{Colouring, Node};
 use contact::{ContactSet, Pass, Sweep, Task};
 pub(crate) use contact::{Surface, WarmStarts};
@@ -138,6 +139,11 @@ impl Solver {
         let Solver { list, nodes, colouring, contacts: set, machine, warm_starts, .. } = self;
         let source = (manifolds, contacts);
         set.prepare(pairs, source, list, (nodes, colouring), *machine, warm_starts);
+    }
+
+    /// Where the contact of a touching pair was in the last tick.
+    pub(crate) fn contact_colour(&self, pair: usize) -> Option<SolverColour> {
+        self.colouring.colour_of(pair)
     }
 
     /// One sub-step: aim joints, integrate velocities, warm start, solve with bias, integrate displacements,

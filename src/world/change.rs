@@ -13,7 +13,7 @@ use crate::body::{
     Body, BodyDef, BodyId, BodyKind, BodySettings, Handle, JointId, MassProperties, MassSource, REACH_MAX,
     SHAPES_PER_BODY_MAX, Shape, ShapeDef, ShapeId, WORLD_EXTENT_MAX, WorldError, check_position,
 };
-use crate::collision::{Contact, PosedShape};
+use crate::collision::{Pair, PosedShape};
 use crate::math::{Aabb, Angle, Fx, Vec2, fx_mul};
 use crate::solver::{Joint, JointDef};
 
@@ -298,18 +298,17 @@ impl World {
     pub(super) fn forget_contacts(&mut self, ids: &[ShapeId]) {
         let mut slots: Vec<u32> = ids.iter().map(|id| id.slot()).collect();
         slots.sort_unstable();
-        let ends = |contact: &Contact| {
-            let (a, b) = contact.shapes;
-            slots.binary_search(&a).is_ok() || slots.binary_search(&b).is_ok()
-        };
+        let ends = |(a, b): Pair| slots.binary_search(&a).is_ok() || slots.binary_search(&b).is_ok();
         let State { contacts, resting, .. } = &*self.state;
         let before = contacts.len();
+        // Surfaces are known by slots, which another shape may get before the next tick.
+        self.scratch.found.touching.retain(|pair| !ends(pair.shapes));
         let touching =
-            contacts.iter().chain(resting.iter()).filter(|contact| contact.touching && ends(contact));
+            contacts.iter().chain(resting.iter()).filter(|contact| contact.touching && ends(contact.shapes));
         let removed: Vec<_> = touching.filter_map(|contact| self.state.reported(contact)).collect();
         self.state.removed_contacts.extend(removed);
-        self.state.contacts.retain(|contact| !ends(contact));
-        self.state.resting.retain(|contact| !ends(contact));
+        self.state.contacts.retain(|contact| !ends(contact.shapes));
+        self.state.resting.retain(|contact| !ends(contact.shapes));
         if self.state.contacts.len() < before {
             // Manifolds and hints are found by the contact's place, which has moved.
             self.scratch.forget_contacts();

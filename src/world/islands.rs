@@ -81,7 +81,7 @@ pub(crate) struct UnionFind {
 
 impl UnionFind {
     /// Each body for itself.
-    fn reset(&mut self, slots: &[u32], slot_count: usize) {
+    pub(super) fn reset(&mut self, slots: &[u32], slot_count: usize) {
         self.parents.resize(slot_count, 0);
         self.restless.resize(slot_count, false);
         for &slot in slots {
@@ -89,7 +89,7 @@ impl UnionFind {
         }
     }
 
-    fn root(&mut self, mut slot: u32) -> u32 {
+    pub(super) fn root(&mut self, mut slot: u32) -> u32 {
         while self.parents[slot as usize] != slot {
             let grandparent = self.parents[self.parents[slot as usize] as usize];
             self.parents[slot as usize] = grandparent;
@@ -99,7 +99,7 @@ impl UnionFind {
     }
 
     /// The smallest slot of a set is its root.
-    fn unite(&mut self, a: u32, b: u32) {
+    pub(super) fn unite(&mut self, a: u32, b: u32) {
         let (a, b) = (self.root(a), self.root(b));
         self.parents[a.max(b) as usize] = a.min(b);
     }
@@ -171,7 +171,7 @@ pub(super) fn fall_asleep(state: &mut State, scratch: &mut Scratch) {
     if any_sleepy {
         scratch.union.reset(&scratch.roster.bodies, state.bodies.slot_count());
         unite_joined(state, scratch);
-        unite_touching(state, scratch, &state.contacts);
+        unite_touching(state, &mut scratch.union, &state.contacts);
         put_to_sleep(state, scratch, |body| body.rest_ticks == limit);
     }
 }
@@ -181,9 +181,9 @@ pub(super) fn force_sleep(state: &mut State, scratch: &mut Scratch, slot: u32) {
     scratch.roster.refresh(state);
     scratch.union.reset(&scratch.roster.bodies, state.bodies.slot_count());
     unite_joined(state, scratch);
-    unite_touching(state, scratch, &state.contacts);
+    unite_touching(state, &mut scratch.union, &state.contacts);
     // What has been woken since the last tick still has its contacts there.
-    unite_touching(state, scratch, &state.resting);
+    unite_touching(state, &mut scratch.union, &state.resting);
     let root = scratch.union.root(slot);
     for &other in &scratch.roster.bodies {
         // Not a count that a body reaches by itself: it marks those that are meant.
@@ -247,14 +247,14 @@ fn unite_joined(state: &State, scratch: &mut Scratch) {
 }
 
 /// Unites the bodies of every contact.
-fn unite_touching(state: &State, scratch: &mut Scratch, contacts: &[Contact]) {
+pub(super) fn unite_touching(state: &State, union: &mut UnionFind, contacts: &[Contact]) {
     for contact in contacts.iter().filter(|contact| contact.count > 0) {
         let (a, b) = contact.shapes;
-        unite(state, &mut scratch.union, state.shapes.at(a).body().slot(), state.shapes.at(b).body().slot());
+        unite(state, union, state.shapes.at(a).body().slot(), state.shapes.at(b).body().slot());
     }
 }
 
-fn unite(state: &State, union: &mut UnionFind, a: u32, b: u32) {
+pub(super) fn unite(state: &State, union: &mut UnionFind, a: u32, b: u32) {
     if is_awake(state.bodies.at(a)) && is_awake(state.bodies.at(b)) {
         union.unite(a, b);
     }

@@ -3,7 +3,7 @@
 use super::World;
 use crate::body::{Body, JointId};
 use crate::math::{Fx, Vec2};
-use crate::solver::{Joint, Tuning};
+use crate::solver::{Joint, JointKind, Tuning};
 
 impl World {
     /// Where the anchors of a joint are in the world, A's first.
@@ -48,6 +48,29 @@ impl World {
     #[must_use]
     pub fn joint_length(&self, id: JointId) -> Option<Fx> {
         self.joint_anchors(id).map(|(a, b)| a.distance(b))
+    }
+
+    /// How far the anchors are from where the joint would have them if nothing gave way, in metres: across the axis of
+    /// joints that slide, beyond the range of a distance; not the limits, springs and motors of the others. `None` for
+    /// kinds that ask for no place.
+    #[must_use]
+    pub fn joint_error(&self, id: JointId) -> Option<Fx> {
+        match &self.joint(id)?.def().kind {
+            JointKind::Revolute(_) | JointKind::Weld(_) => self.joint_length(id),
+            JointKind::Prismatic(_) | JointKind::Wheel(_) => {
+                self.joint_translation(id).map(|translation| translation.y.saturating_abs())
+            }
+            JointKind::Distance(distance) => {
+                let length = self.joint_length(id)?;
+                let nearest = match (distance.rod, distance.limit) {
+                    (Some(rod), _) => rod,
+                    (None, Some(limit)) => length.max(limit.lower).min(limit.upper),
+                    (None, None) => length,
+                };
+                Some(length.saturating_sub(nearest).saturating_abs())
+            }
+            JointKind::Motor(_) | JointKind::Filter => None,
+        }
     }
 
     /// The force in N that the joint exerted on B in the last sub-step, and the torque in N m about B's anchor.

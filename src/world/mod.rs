@@ -6,12 +6,14 @@ mod change;
 mod character;
 mod command;
 mod config;
+mod contact_view;
 mod contacts;
 mod continuous;
 mod digest;
 mod events;
 mod explosion;
 mod fault;
+mod island_view;
 mod islands;
 mod joint_links;
 mod joint_view;
@@ -37,6 +39,7 @@ pub use change::Place;
 pub use character::{Moved, Mover, MoverState};
 pub use command::{Command, Outcome};
 pub use config::Config;
+pub use contact_view::{ContactForce, ContactView, SolverColour};
 use digest::Hashed;
 pub use digest::{Section, WorldDigest};
 pub use events::{ContactEvent, Events, HitEvent, JointEvent, MoveEvent, SensorEvent};
@@ -52,9 +55,11 @@ pub use stats::{Phase, StepStats};
 pub use timestep::FixedTimestep;
 pub use validate::Violation;
 
+use alloc::vec::Vec;
+
 use crate::body::{Body, BodyId, BodyKind, JointId, Shape, ShapeId, WorldError};
-use crate::collision::{BroadPhaseKind, Manifold};
-use crate::math::Rng;
+use crate::collision::BroadPhaseKind;
+use crate::math::{Aabb, Rng};
 pub use crate::solver::Backend;
 use crate::solver::{Joint, Machine};
 #[cfg(feature = "parallel")]
@@ -197,17 +202,6 @@ impl World {
         self.state.contacts.len()
     }
 
-    /// The contacts of the last tick that had points, sorted by pair, as they were found at its start. Empty until
-    /// the next tick after a restore or the removal of a shape or body, since manifolds are not state.
-    pub fn contacts(&self) -> impl Iterator<Item = ContactView<'_>> {
-        let found = &self.scratch.found;
-        found.contacts.iter().zip(&found.manifolds).map(|(&index, manifold)| {
-            let contact = &self.state.contacts[index as usize];
-            let ContactEvent { shape_a, shape_b } = self.state.contact_event(contact);
-            ContactView { shape_a, shape_b, touching: contact.touching, manifold }
-        })
-    }
-
     /// What happened in the last tick.
     #[must_use]
     pub const fn events(&self) -> &Events {
@@ -223,6 +217,14 @@ impl World {
     /// The world's random numbers: part of the state, so that a rollback rolls them back too.
     pub fn rng(&mut self) -> &mut Rng {
         &mut self.state.rng
+    }
+
+    /// The boxes in which the broad phase has put those of the shapes, each with its distance from the root: what queries
+    /// and pairs have to descend through. A cache, so that it depends on the past, and a copy of this world may have
+    /// others. Only [`BroadPhaseKind::Tree`] has any.
+    #[must_use]
+    pub fn broad_phase_boxes(&self) -> Vec<(Aabb, u32)> {
+        self.scratch.broad_phase.inner_boxes()
     }
 
     /// Drops every cache. No hash changes by it: the next tick only takes longer.
@@ -262,17 +264,4 @@ impl World {
         let machine = Machine::new(backend);
         machine.inspect(|&machine| self.scratch.solver.machine = machine).is_some()
     }
-}
-
-/// Two shapes in contact.
-#[derive(Clone, Copy, Debug)]
-pub struct ContactView<'a> {
-    /// The shape in the smaller slot.
-    pub shape_a: ShapeId,
-    /// The other shape.
-    pub shape_b: ShapeId,
-    /// Whether they touch, or are only about to.
-    pub touching: bool,
-    /// Normal and points.
-    pub manifold: &'a Manifold,
 }

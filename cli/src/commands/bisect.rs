@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::{ArgMatches, Args, Command};
+use clap::Args;
 use lockstep2d::lockstep::Game;
 use lockstep2d::replay::Limits;
 use lockstep2d::report::bisect;
@@ -11,8 +11,6 @@ use super::diff::{self, json, text};
 use crate::console::Console;
 use crate::error::CommandError;
 use crate::exit::Exit;
-
-pub(crate) const NAME: &str = "bisect";
 
 /// Find the tick, its stage, the body and the field in which a course leaves another
 #[derive(Args, Debug)]
@@ -35,14 +33,6 @@ pub(crate) struct Arguments {
     /// How many of the bodies and other things that differ to show
     #[arg(long, default_value_t = 10, value_name = "N")]
     things: usize,
-}
-
-pub(crate) fn command() -> Command {
-    Arguments::augment_args(Command::new(NAME))
-}
-
-pub(crate) fn arguments(matches: &ArgMatches) -> Arguments {
-    super::from_matches(matches)
 }
 
 pub(crate) fn run<G: Game>(

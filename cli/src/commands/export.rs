@@ -1,124 +1,166 @@
 //! `export`: plays a replay and writes what is there in another format.
 
-use std::fs::File;
-use std::io::{BufWriter, Write};
 use std::path::PathBuf;
 
-use clap::{ArgMatches, Args, Command};
+use clap::Args;
+use lockstep2d::draw::{Layers, View};
 use lockstep2d::lockstep::Game;
+use lockstep2d::math::Aabb;
 use lockstep2d::replay::{Limits, Playback, Verdict};
+use lockstep2d::report::Evidence;
+use lockstep2d::world::World;
 
 use crate::console::Console;
 use crate::error::CommandError;
 use crate::exit::Exit;
 use crate::files;
 
+mod animation;
+mod format;
 mod json;
+mod options;
+mod output;
+mod plot;
+mod still;
 
-pub(crate) const NAME: &str = "export";
+use format::{Format, Formats};
+use output::Output;
 
-/// Play a replay and write what is there as a picture or as JSON
+/// Play a replay and write what is there as a picture, an animation, a plot or JSON
 #[derive(Args, Debug)]
 #[command(
-    after_help = "Tick t is the state after t ticks; 0 is the start. A line of JSON has the tick, the state hash \
-                        and the game's save in its form for people; a fixed-point number is its bits, and beside them a \
-                        decimal.\n\nExit code: 0 when it was written, 1 when the replay cannot be played as far, 2 for \
-                        wrong usage, or files that cannot be read or written."
+    after_help = "The format can be left out where the name of the file to write ends in it. Tick t is the state after t \
+                        ticks; 0 is the start. A picture is of one tick, the last unless --tick says otherwise, an \
+                        animation, a plot and JSON of all from --from to --to. A line of JSON has the tick, the state \
+                        hash and the game's save in its form for people; a fixed-point number is its bits, and beside \
+                        them a decimal. Of a snapshot of a world there is a picture, or a line of JSON.\n\nExit code: 0 \
+                        when it was written, 1 when the replay cannot be played as far, 2 for wrong usage, or files \
+                        that cannot be read or written."
 )]
 pub(crate) struct Arguments {
-    /// The replay
+    /// The replay, or a snapshot of a world
     file: PathBuf,
     #[command(flatten)]
-    format: Format,
-    /// After how many ticks
-    #[arg(long, required_unless_present = "json")]
-    tick: Option<u64>,
-    /// The first tick, instead of the start
-    #[arg(long, value_name = "TICK", conflicts_with_all = ["tick", "svg"])]
-    from: Option<u64>,
-    /// The last tick, instead of the end
-    #[arg(long, value_name = "TICK", conflicts_with_all = ["tick", "svg"])]
-    to: Option<u64>,
-    /// The file to write, instead of the standard output
+    formats: Formats,
+    /// The file to write; JSON, SVG and plots go to the standard output without it
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
+    /// After how many ticks, instead of at the end
+    #[arg(long, value_name = "N")]
+    tick: Option<u64>,
+    /// The first tick, instead of the start
+    #[arg(long, value_name = "TICK", conflicts_with = "tick")]
+    from: Option<u64>,
+    /// The last tick, instead of the end
+    #[arg(long, value_name = "TICK", conflicts_with = "tick")]
+    to: Option<u64>,
+    /// Ticks from one frame, or line of JSON, to the next; so many that there are 30 frames a second at most, unless
+    /// said otherwise
+    #[arg(long, value_name = "TICKS", value_parser = clap::value_parser!(u32).range(1..))]
+    every: Option<u32>,
+    /// Width in pixels
+    #[arg(long, value_name = "PIXELS", value_parser = clap::value_parser!(u32).range(64..=16384))]
+    width: Option<u32>,
+    /// Height in pixels
+    #[arg(long, value_name = "PIXELS", value_parser = clap::value_parser!(u32).range(64..=16384))]
+    height: Option<u32>,
+    /// What to draw, by its names with commas between them, or `all`, or `none`
+    #[arg(long, value_name = "NAMES", value_parser = options::layers)]
+    layers: Option<Layers>,
+    /// Which part of the world to draw: two opposite corners in metres
+    #[arg(long, value_name = "X0,Y0,X1,Y1", value_parser = options::window, allow_hyphen_values = true)]
+    window: Option<Aabb>,
 }
 
-/// In which format.
-#[derive(Args, Debug)]
-#[group(required = true, multiple = false)]
-struct Format {
-    /// A picture of one tick as an SVG document, if the game draws any
-    #[arg(long)]
-    svg: bool,
-    /// The states of one or more ticks as JSON, a line for each
-    #[arg(long)]
-    json: bool,
-}
-
-pub(crate) fn command() -> Command {
-    Arguments::augment_args(Command::new(NAME))
-}
-
-pub(crate) fn arguments(matches: &ArgMatches) -> Arguments {
-    super::from_matches(matches)
-}
+/// How a game wants to be seen.
+pub(crate) type ViewOf<G> = fn(&G) -> View;
 
 pub(crate) fn run<G: Game>(
     arguments: &Arguments,
-    svg: Option<fn(&G) -> String>,
+    view: Option<ViewOf<G>>,
     limits: &Limits,
     console: &mut Console<'_>,
 ) -> Result<Exit, CommandError> {
+    let format = arguments.formats.chosen(arguments.output.as_deref())?;
+    arguments.check(format)?;
     let bytes = files::load(&arguments.file, limits.file_bytes)?;
+    if let Ok(Evidence::World(world)) = Evidence::read(bytes.clone(), limits) {
+        return export_world(&world, format, arguments, console);
+    }
     let mut replay = Replay::<G>::open(&bytes, arguments, limits)?;
-    let first = arguments.tick.or(arguments.from).unwrap_or(0);
-    let last = arguments.tick.or(arguments.to).unwrap_or(replay.playback.ticks());
-    replay.check(first)?;
-    replay.check(last)?;
-    if arguments.format.json {
-        return with_output(arguments, console, |output| json::write(replay, first..=last, output));
+    match format {
+        Format::Svg | Format::Png => {
+            let tick = arguments.tick.unwrap_or(replay.playback.ticks());
+            replay.check(tick)?;
+            replay.play_to(tick)?;
+            let view = arguments.view(replay.view(view));
+            still::write(replay.world()?, &view, format, arguments, console)
+        }
+        Format::Gif | Format::Apng => {
+            animation::write(&bytes, replay, view, format, (arguments, limits), console)
+        }
+        Format::Json => {
+            let (first, last) = replay.range(arguments)?;
+            let every = arguments.every.unwrap_or(1);
+            Output::write(arguments.output.as_deref(), console, |output| {
+                json::write(replay, (first..=last).step_by(every as usize), output)
+            })
+        }
+        Format::Plot => plot::write(replay, arguments, console),
     }
-    let svg = svg.ok_or(CommandError::NoPictures)?;
-    replay.play_to(first)?;
-    let document = svg(replay.playback.game());
-    with_output(arguments, console, |output| output.line(document.trim_end()))
 }
 
-/// Where lines go, and what a failure to write them is.
-struct Output<'a> {
-    to: &'a mut dyn Write,
-    path: Option<&'a PathBuf>,
-}
-
-impl Output<'_> {
-    fn line(&mut self, line: &str) -> Result<(), CommandError> {
-        writeln!(self.to, "{line}").map_err(|error| self.explain(error))
+fn export_world(
+    world: &World,
+    format: Format,
+    arguments: &Arguments,
+    console: &mut Console<'_>,
+) -> Result<Exit, CommandError> {
+    if arguments.tick.is_some_and(|tick| tick != world.tick()) {
+        return Err(CommandError::NothingThere { what: "other tick than its own".into() });
     }
-
-    fn explain(&self, error: std::io::Error) -> CommandError {
-        match self.path {
-            Some(path) => CommandError::Write { path: path.clone(), error },
-            None => CommandError::Output(error),
+    match format {
+        Format::Svg | Format::Png => {
+            still::write(world, &arguments.view(View::default()), format, arguments, console)
+        }
+        Format::Json => {
+            let line = json::line(world.tick(), world.state_hash(), &world.save())?;
+            Output::write(arguments.output.as_deref(), console, |output| output.line(&line))
+        }
+        Format::Gif | Format::Apng | Format::Plot => {
+            Err(CommandError::OneState { path: arguments.file.clone(), format: format.option() })
         }
     }
 }
 
-fn with_output(
-    arguments: &Arguments,
-    console: &mut Console<'_>,
-    write: impl FnOnce(&mut Output<'_>) -> Result<(), CommandError>,
-) -> Result<Exit, CommandError> {
-    let Some(path) = &arguments.output else {
-        write(&mut Output { to: console.out, path: None })?;
-        return Ok(Exit::Success);
-    };
-    let file = File::create(path).map_err(|error| CommandError::Write { path: path.clone(), error })?;
-    let mut buffer = BufWriter::new(file);
-    let mut output = Output { to: &mut buffer, path: Some(path) };
-    write(&mut output)?;
-    output.to.flush().map_err(|error| output.explain(error))?;
-    Ok(Exit::Success)
+impl Arguments {
+    /// Refuses options that the format has no use for.
+    fn check(&self, format: Format) -> Result<(), CommandError> {
+        let is_still = matches!(format, Format::Svg | Format::Png);
+        let is_animation = matches!(format, Format::Gif | Format::Apng);
+        let is_picture = is_still || is_animation;
+        let options = [
+            ("--tick", self.tick.is_some(), is_still || format == Format::Json),
+            ("--from", self.from.is_some(), !is_still),
+            ("--to", self.to.is_some(), !is_still),
+            ("--every", self.every.is_some(), is_animation || format == Format::Json),
+            ("--width", self.width.is_some(), format != Format::Json),
+            ("--height", self.height.is_some(), format != Format::Json),
+            ("--layers", self.layers.is_some(), is_picture),
+            ("--window", self.window.is_some(), is_picture),
+        ];
+        match options.into_iter().find(|(_, is_given, is_useful)| *is_given && !is_useful) {
+            Some((option, ..)) => Err(CommandError::Useless { option, format: format.option() }),
+            None => Ok(()),
+        }
+    }
+
+    /// What the game wants to show, as the arguments have it.
+    fn view(&self, game: View) -> View {
+        let (width, height) = (self.width.unwrap_or(game.width), self.height.unwrap_or(game.height));
+        let frame = self.window.map_or(game.frame, lockstep2d::draw::Frame::Window);
+        View { width, height, frame, layers: self.layers.unwrap_or(game.layers), title: game.title }
+    }
 }
 
 /// A replay that is played up to the ticks that are asked for.
@@ -132,6 +174,18 @@ impl<'a, G: Game> Replay<'a, G> {
         let path = &arguments.file;
         let refused = |verdict| CommandError::Replay { path: path.clone(), verdict };
         Ok(Replay { playback: Playback::open(bytes, limits).map_err(refused)?, path })
+    }
+
+    /// The first and the last tick that are asked for.
+    fn range(&self, arguments: &Arguments) -> Result<(u64, u64), CommandError> {
+        let first = arguments.tick.or(arguments.from).unwrap_or(0);
+        let last = arguments.tick.or(arguments.to).unwrap_or(self.playback.ticks());
+        self.check(first)?;
+        self.check(last)?;
+        if first > last {
+            return Err(CommandError::NothingThere { what: format!("tick from {first} to {last}") });
+        }
+        Ok((first, last))
     }
 
     /// Refuses a tick that is not there.
@@ -148,5 +202,13 @@ impl<'a, G: Game> Replay<'a, G> {
             self.playback.step().map_err(refused)?;
         }
         Ok(())
+    }
+
+    fn view(&self, view: Option<ViewOf<G>>) -> View {
+        view.map_or_else(View::default, |view| view(self.playback.game()))
+    }
+
+    fn world(&mut self) -> Result<&World, CommandError> {
+        self.playback.world().ok_or(CommandError::NoPictures)
     }
 }

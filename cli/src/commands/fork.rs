@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 
-use clap::{ArgMatches, Args, Command};
+use clap::Args;
 use lockstep2d::lockstep::Game;
 use lockstep2d::replay::Limits;
 use serde::Serialize;
@@ -14,8 +14,6 @@ use crate::error::CommandError;
 use crate::exit::Exit;
 use crate::files::{self, Shown};
 use crate::rewriting::{Copy, CopyError};
-
-pub(crate) const NAME: &str = "fork";
 
 /// Write a new replay with the beginning of another one
 #[derive(Args, Debug)]
@@ -44,14 +42,6 @@ pub(crate) struct Arguments {
     /// Print one JSON document
     #[arg(long)]
     json: bool,
-}
-
-pub(crate) fn command() -> Command {
-    Arguments::augment_args(Command::new(NAME))
-}
-
-pub(crate) fn arguments(matches: &ArgMatches) -> Arguments {
-    super::from_matches(matches)
 }
 
 pub(crate) fn run<G: Game>(

@@ -4,7 +4,7 @@ use std::fmt;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use clap::{ArgMatches, Args, Command};
+use clap::Args;
 use lockstep2d::check::{CheckError, Checked, Failure, Finding, Guess, Options, Phases, Way, check_replay};
 use lockstep2d::lockstep::Game;
 use lockstep2d::replay::{Limits, TickInputs};
@@ -15,8 +15,6 @@ use crate::console::{BAD, Console, GOOD};
 use crate::error::CommandError;
 use crate::exit::Exit;
 use crate::files::{self, Shown};
-
-pub(crate) const NAME: &str = "heavy";
 
 /// Play a replay, and at every tick save it to bytes, restore them into a new game, and compare
 ///
@@ -48,14 +46,6 @@ pub(crate) struct Arguments {
     /// Print one JSON document
     #[arg(long)]
     json: bool,
-}
-
-pub(crate) fn command() -> Command {
-    Arguments::augment_args(Command::new(NAME))
-}
-
-pub(crate) fn arguments(matches: &ArgMatches) -> Arguments {
-    super::from_matches(matches)
 }
 
 pub(crate) fn run<G: Game>(

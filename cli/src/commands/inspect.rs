@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::{ArgMatches, Args, Command};
+use clap::Args;
 use lockstep2d::codec;
 use lockstep2d::inspect::fields;
 use lockstep2d::lockstep::Game;
@@ -20,8 +20,6 @@ mod state;
 mod world;
 
 use state::State;
-
-pub(crate) const NAME: &str = "inspect";
 
 /// Say what is in a replay, a snapshot of a world or a report of a divergence
 #[derive(Args, Debug)]
@@ -51,14 +49,6 @@ pub(crate) struct Arguments {
     /// Print one JSON document, with all that there is
     #[arg(long)]
     json: bool,
-}
-
-pub(crate) fn command() -> Command {
-    Arguments::augment_args(Command::new(NAME))
-}
-
-pub(crate) fn arguments(matches: &ArgMatches) -> Arguments {
-    super::from_matches(matches)
 }
 
 pub(crate) fn run<G: Game>(

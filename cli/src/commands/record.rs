@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::Write;
 use std::path::PathBuf;
 
-use clap::{ArgMatches, Args, Command};
+use clap::Args;
 use lockstep2d::hash::StateHash;
 use lockstep2d::lockstep::Game;
 use lockstep2d::replay::{CHECKPOINT_INTERVAL, Recording};
@@ -14,8 +14,6 @@ use crate::error::CommandError;
 use crate::exit::Exit;
 use crate::files::Shown;
 use crate::scenes::{Catalogue, Scene};
-
-pub(crate) const NAME: &str = "record";
 
 /// Play a scene and write its replay
 #[derive(Args, Debug)]
@@ -31,14 +29,6 @@ pub(crate) struct Arguments {
     /// The file to write
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
-}
-
-pub(crate) fn command() -> Command {
-    Arguments::augment_args(Command::new(NAME))
-}
-
-pub(crate) fn arguments(matches: &ArgMatches) -> Arguments {
-    super::from_matches(matches)
 }
 
 pub(crate) fn run<G: Game>(

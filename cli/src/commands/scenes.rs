@@ -1,6 +1,6 @@
 //! `scenes`: lists what can be recorded.
 
-use clap::{Args, Command};
+use clap::Args;
 use lockstep2d::lockstep::Game;
 
 use crate::console::Console;
@@ -8,15 +8,9 @@ use crate::error::CommandError;
 use crate::exit::Exit;
 use crate::scenes::Catalogue;
 
-pub(crate) const NAME: &str = "scenes";
-
 /// List the scenes that can be recorded
 #[derive(Args, Debug)]
 pub(crate) struct Arguments {}
-
-pub(crate) fn command() -> Command {
-    Arguments::augment_args(Command::new(NAME))
-}
 
 pub(crate) fn run<G: Game>(
     catalogue: &dyn Catalogue<G>,

@@ -4,7 +4,7 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use clap::{ArgMatches, Args, Command, value_parser};
+use clap::{Args, value_parser};
 use lockstep2d::codec;
 use lockstep2d::lockstep::Game;
 use lockstep2d::replay::{KEYFRAMES_BYTES_MAX, Limits, SeekError, Timeline, TimelineOptions};
@@ -15,8 +15,6 @@ use crate::counts::Counts;
 use crate::error::CommandError;
 use crate::exit::Exit;
 use crate::files::{self, Shown};
-
-pub(crate) const NAME: &str = "seek";
 
 /// Go to a tick of a replay and say what is there
 #[derive(Args, Debug)]
@@ -50,14 +48,6 @@ pub(crate) struct Arguments {
     /// Print one JSON document
     #[arg(long)]
     json: bool,
-}
-
-pub(crate) fn command() -> Command {
-    Arguments::augment_args(Command::new(NAME))
-}
-
-pub(crate) fn arguments(matches: &ArgMatches) -> Arguments {
-    super::from_matches(matches)
 }
 
 pub(crate) fn run<G: Game>(

@@ -2,19 +2,16 @@
 
 use std::path::PathBuf;
 
-use clap::{ArgMatches, Args, Command};
+use clap::Args;
 use lockstep2d::hash::StateHash;
 use lockstep2d::lockstep::Game;
 use lockstep2d::replay::{Limits, Playback, Step};
-use lockstep2d::world::World;
 
 use crate::console::Console;
-use crate::counts::Counts;
 use crate::error::CommandError;
 use crate::exit::Exit;
+use crate::figures;
 use crate::files::{self, Shown};
-
-pub(crate) const NAME: &str = "stats";
 
 /// Play a replay and say how much there was in each tick
 #[derive(Args, Debug)]
@@ -30,14 +27,6 @@ pub(crate) struct Arguments {
     /// Print a line of JSON for each tick, instead of the largest and the mean
     #[arg(long)]
     json: bool,
-}
-
-pub(crate) fn command() -> Command {
-    Arguments::augment_args(Command::new(NAME))
-}
-
-pub(crate) fn arguments(matches: &ArgMatches) -> Arguments {
-    super::from_matches(matches)
 }
 
 pub(crate) fn run<G: Game>(
@@ -57,7 +46,7 @@ pub(crate) fn run<G: Game>(
             Err(verdict) => break Some(verdict),
         }
         let mut figures = vec![("work", playback.work() - work_before)];
-        figures.extend(playback.world().into_iter().flat_map(world_figures));
+        figures.extend(playback.world().into_iter().flat_map(figures::of));
         if arguments.json {
             console.line(line(playback.tick(), playback.game().state_hash(), &figures))?;
         }
@@ -70,28 +59,6 @@ pub(crate) fn run<G: Game>(
         summary.print(console)?;
     }
     failed.map_or(Ok(Exit::Success), |verdict| Err(refused(verdict)))
-}
-
-/// What there is in a world, and what the last tick did.
-fn world_figures(world: &World) -> [(&'static str, u64); 13] {
-    let Counts { bodies, awake, asleep, shapes, joints, pairs } = Counts::of(world);
-    let stats = world.stats();
-    let count = |number: usize| u64::try_from(number).unwrap_or(u64::MAX);
-    [
-        ("bodies", count(bodies)),
-        ("awake", count(awake)),
-        ("asleep", count(asleep)),
-        ("shapes", count(shapes)),
-        ("joints", count(joints)),
-        ("joints_solved", stats.joints.into()),
-        ("pairs", count(pairs)),
-        ("contacts", stats.contacts.into()),
-        ("points", stats.points.into()),
-        ("points_kept", stats.points_kept.into()),
-        ("points_lost", stats.points_lost.into()),
-        ("impacts", stats.impacts.into()),
-        ("faults", stats.faults),
-    ]
 }
 
 /// A line of JSON, in the order of the table. The names are ours and need no escapes.

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use clap::{ArgMatches, Args, Command};
+use clap::Args;
 use lockstep2d::lockstep::Game;
 use lockstep2d::replay::Limits;
 use lockstep2d::report::Trace;
@@ -11,8 +11,6 @@ use crate::console::Console;
 use crate::error::CommandError;
 use crate::exit::Exit;
 use crate::files::{self, Shown};
-
-pub(crate) const NAME: &str = "trace";
 
 /// Play a replay and write the states and phases of some ticks, for bisect
 #[derive(Args, Debug)]
@@ -32,14 +30,6 @@ pub(crate) struct Arguments {
     /// The file to write
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
-}
-
-pub(crate) fn command() -> Command {
-    Arguments::augment_args(Command::new(NAME))
-}
-
-pub(crate) fn arguments(matches: &ArgMatches) -> Arguments {
-    super::from_matches(matches)
 }
 
 pub(crate) fn run<G: Game>(

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use clap::{ArgMatches, Args, Command};
+use clap::Args;
 use lockstep2d::lockstep::Game;
 use lockstep2d::replay::{Limits, Part, ReadError, Reader, Verdict};
 use serde::Serialize;
@@ -12,8 +12,6 @@ use crate::error::CommandError;
 use crate::exit::Exit;
 use crate::files::{self, Shown};
 use crate::rewriting::{Copy, CopyError};
-
-pub(crate) const NAME: &str = "trim";
 
 /// Make a complete replay of what is whole of a cut or damaged one
 #[derive(Args, Debug)]
@@ -35,14 +33,6 @@ pub(crate) struct Arguments {
     /// Print one JSON document
     #[arg(long)]
     json: bool,
-}
-
-pub(crate) fn command() -> Command {
-    Arguments::augment_args(Command::new(NAME))
-}
-
-pub(crate) fn arguments(matches: &ArgMatches) -> Arguments {
-    super::from_matches(matches)
 }
 
 pub(crate) fn run<G: Game>(

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::thread;
 use std::time::Duration;
 
-use clap::{ArgMatches, Args, Command};
+use clap::Args;
 use lockstep2d::lockstep::Game;
 use lockstep2d::replay::Limits;
 
@@ -33,8 +33,6 @@ use report::Report;
 use shard::Shard;
 use tasks::Tasks;
 use totals::Totals;
-
-pub(crate) const NAME: &str = "verify";
 
 /// Play replays again and print a verdict for each
 #[derive(Args, Debug)]
@@ -92,14 +90,6 @@ impl LimitArguments {
             ..limits.clone()
         }
     }
-}
-
-pub(crate) fn command() -> Command {
-    Arguments::augment_args(Command::new(NAME))
-}
-
-pub(crate) fn arguments(matches: &ArgMatches) -> Arguments {
-    super::from_matches(matches)
 }
 
 pub(crate) fn run<G: Game>(
@@ -208,13 +198,20 @@ impl<'a, 'c> Display<'a, 'c> {
     fn show(&mut self, result: Option<Result<Verified, CommandError>>) -> Result<(), CommandError> {
         match result {
             None => {}
-            Some(Err(error)) => {
-                self.progress.aside(|| self.console.error(error));
-                self.exit = Exit::Trouble;
-            }
+            Some(Err(error)) => self.trouble(&error)?,
             Some(Ok(verified)) => self.line(&verified)?,
         }
         self.progress.update(&self.totals, self.shared, self.clock.elapsed());
+        Ok(())
+    }
+
+    /// Shows that something is not verified: a file in its place among the lines as well.
+    fn trouble(&mut self, error: &CommandError) -> Result<(), CommandError> {
+        self.exit = Exit::Trouble;
+        if let (true, CommandError::Read { path, error }) = (self.json, error) {
+            self.progress.aside(|| self.console.line(report::unread(path, error)))?;
+        }
+        self.progress.aside(|| self.console.error(error));
         Ok(())
     }
 

@@ -174,7 +174,10 @@ fn what_goes_wrong_is_said_in_its_place() {
     let good = folder.write("good.replay", &replay(3));
     let arguments = ["verify", "--json", "--jobs", "2", &good, "no such file", &good];
     let outcome = run(&arguments);
-    assert_eq!((outcome.out.lines().count(), outcome.exit), (2, Exit::Trouble));
+    let lines: Vec<Value> = outcome.out.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    let has_verdict = |line: &Value| line["verdict"] == "match";
+    assert_eq!(lines.iter().map(has_verdict).collect::<Vec<_>>(), [true, false, true]);
+    assert_eq!((&lines[1]["file"], outcome.exit), (&"no such file".into(), Exit::Trouble));
     assert!(outcome.err.starts_with("error: cannot read no such file: "), "{}", outcome.err);
     assert!(outcome.err.contains("\n2 of 2 files match; 6 ticks in "), "{}", outcome.err);
 }

@@ -11,6 +11,8 @@ mod cache;
 mod diff;
 mod docs;
 mod export;
+mod export_files;
+mod export_plot;
 mod fork;
 mod heavy;
 mod hostile;
@@ -41,12 +43,10 @@ struct Outcome {
 
 /// Runs the tools of the counter without a terminal.
 fn run(arguments: &[&str]) -> Outcome {
-    let tool =
-        Tool::new().with_scenes(Scenes).with_svg(|game: &Counter| format!("<svg>{}</svg>\n", game.sum));
-    run_tool(&tool, arguments)
+    run_tool(&Tool::new().with_scenes(Scenes), arguments)
 }
 
-/// Runs the tools of the sandbox, which draws nothing here.
+/// Runs the tools of the sandbox.
 fn run_sandbox(arguments: &[&str]) -> Outcome {
     run_tool_of(&Tool::<Sandbox>::new(), arguments)
 }

@@ -219,7 +219,11 @@ fn what_cannot_be_read_is_trouble_and_hides_no_other() {
     assert_eq!(outcome.out.lines().count(), 3, "the other two, and the summary");
 
     let (lines, exit) = verify_json(&[&missing, &good]);
-    assert_eq!((lines.len(), exit), (1, Exit::Trouble));
+    assert_eq!((lines.len(), exit), (2, Exit::Trouble));
+    assert_eq!(lines[0]["file"], missing.as_str());
+    assert!(lines[0]["error"].as_str().unwrap().starts_with("No such file"), "{}", lines[0]);
+    assert!(lines[0].get("verdict").is_none(), "{}", lines[0]);
+    assert_eq!(lines[1]["verdict"], "match");
 }
 
 #[test]

@@ -200,9 +200,7 @@ impl<'a, G: Game> Timeline<'a, G> {
         if tick > self.ticks() {
             return Err(SeekError::NoSuchTick { tick, ticks: self.ticks() });
         }
-        if let Some((_, verdict)) = self.failed.as_ref().filter(|(unreachable, _)| tick >= *unreachable) {
-            return Err(SeekError::Replay(verdict.clone()));
-        }
+        self.check_reachable(tick)?;
         // Who goes back a little is going to go back more.
         let goes_back = self.tick().checked_sub(tick).is_some_and(|by| (1..self.interval()).contains(&by));
         self.go_to_latest_before(tick)?;
@@ -215,7 +213,8 @@ impl<'a, G: Game> Timeline<'a, G> {
         Ok(())
     }
 
-    /// Goes one tick further.
+    /// Goes one tick further. That is always simulated, so that what a tick leaves behind beside the state, such as its
+    /// contact points, is there to be seen.
     ///
     /// # Errors
     /// As [`Timeline::seek`]. At the end it stays where it is and says [`Step::Ended`].
@@ -223,7 +222,8 @@ impl<'a, G: Game> Timeline<'a, G> {
         if self.tick() == self.ticks() {
             return Ok(Step::Ended);
         }
-        self.seek(self.tick() + 1).map(|()| Step::Ticked)
+        self.check_reachable(self.tick() + 1)?;
+        self.play_tick().map(|()| Step::Ticked)
     }
 
     /// Goes one tick back. The first time in an interval that may cost an interval of simulation, and then, in memory
@@ -278,6 +278,13 @@ impl<'a, G: Game> Timeline<'a, G> {
         }
         self.keyframes = keyframes;
         Ok(())
+    }
+
+    fn check_reachable(&self, tick: u64) -> Result<(), SeekError> {
+        match &self.failed {
+            Some((unreachable, verdict)) if tick >= *unreachable => Err(SeekError::Replay(verdict.clone())),
+            _ => Ok(()),
+        }
     }
 
     /// Goes to the last tick up to `tick` that costs no simulation.

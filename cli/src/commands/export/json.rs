@@ -1,7 +1,5 @@
 //! States as lines of JSON.
 
-use std::ops::RangeInclusive;
-
 use lockstep2d::hash::StateHash;
 use lockstep2d::inspect::{Field, fields};
 use lockstep2d::lockstep::Game;
@@ -14,7 +12,7 @@ use crate::error::CommandError;
 /// Writes a line for each of some ticks.
 pub(super) fn write<G: Game>(
     mut replay: Replay<'_, G>,
-    ticks: RangeInclusive<u64>,
+    ticks: impl Iterator<Item = u64>,
     output: &mut Output<'_>,
 ) -> Result<(), CommandError> {
     for tick in ticks {
@@ -26,7 +24,7 @@ pub(super) fn write<G: Game>(
 }
 
 /// The tick comes first, for whoever looks at the beginning of a long line.
-fn line<S: Serialize>(tick: u64, hash: StateHash, save: &S) -> Result<String, CommandError> {
+pub(super) fn line<S: Serialize>(tick: u64, hash: StateHash, save: &S) -> Result<String, CommandError> {
     let mut state =
         serde_json::to_value(save).map_err(|error| CommandError::State { why: error.to_string() })?;
     let mut numbers = fields(save)?;

@@ -1,5 +1,6 @@
 //! [`Report`]: what is known of a file's bytes, as it is printed and as the cache keeps it.
 
+use std::io;
 use std::path::Path;
 
 use lockstep2d::replay::{ClaimDifference, Verdict};
@@ -94,6 +95,11 @@ impl Report {
         let line = Whole { file, verdict, ticks, hash, bytes, cached, details };
         serde_json::to_string(&line).expect("strings and numbers have a JSON form")
     }
+}
+
+/// The line of a file that cannot be read, which has no verdict.
+pub(super) fn unread(file: &Path, error: &io::Error) -> String {
+    json!({ "file": file.display().to_string(), "error": error.to_string() }).to_string()
 }
 
 fn details(verdict: &Verdict, claims: &[(String, i64)], needs: Option<Needs>) -> Map<String, Value> {

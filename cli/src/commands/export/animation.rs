@@ -1,0 +1,186 @@
+//! A range of ticks as an animation.
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use lockstep2d::draw::{Frame, View, fit};
+use lockstep2d::lockstep::Game;
+use lockstep2d::math::Aabb;
+use lockstep2d::replay::Limits;
+use lockstep2d_picture::{Animation, DrawList, Image, Pace};
+
+use super::format::Format;
+use super::still::image;
+use super::{Arguments, Output, Replay, ViewOf};
+use crate::console::Console;
+use crate::error::CommandError;
+use crate::exit::Exit;
+
+/// Unless someone says otherwise, an animation has no more frames a second: more are hard to see.
+const FRAME_RATE_MAX: u32 = 30;
+/// Width of an animation, unless someone says otherwise: it is moved about more than looked at closely.
+const WIDTH: u32 = 640;
+/// More frames a second than this are shown slowly by most programs: the shortest time that they take is 2/100 s.
+const GIF_RATE_MAX: u32 = 50;
+/// So many ticks are looked at for a window in which all of them fit.
+const SAMPLES: u64 = 100;
+/// Of so many of these there is a picture, for its colours.
+const SAMPLES_OF_A_PICTURE: usize = 10;
+
+/// Writes a range of ticks as an animation.
+///
+/// A replay is played twice: first to see what there will be, and that it can be played at all, before anything is
+/// written.
+pub(super) fn write<G: Game>(
+    bytes: &[u8],
+    mut replay: Replay<'_, G>,
+    view: Option<ViewOf<G>>,
+    format: Format,
+    (arguments, limits): (&Arguments, &Limits),
+    console: &mut Console<'_>,
+) -> Result<Exit, CommandError> {
+    let frames = Frames::of(&replay, arguments)?;
+    if format == Format::Gif && frames.pace.ticks.saturating_mul(GIF_RATE_MAX) < frames.pace.tick_rate {
+        console.warning("more than 50 frames a second: most programs show such a GIF slowly");
+    }
+    let progress = Progress::new(console.is_terminal, frames.count);
+    let mut camera = Camera::new(&mut replay, view, arguments)?;
+    let samples = camera.look_at(&mut replay, &frames)?;
+    let mut replay = Replay::<G>::open(bytes, arguments, limits)?;
+    Output::write(arguments.output.as_deref(), console, |output| {
+        let (to, failed) = output.parts();
+        let mut animation = match format {
+            Format::Apng => Animation::apng(to, frames.pace, frames.count),
+            _ => Animation::gif(to, frames.pace),
+        };
+        samples.iter().for_each(|sample| animation.expect(sample));
+        let mut list = DrawList::default();
+        for tick in frames.ticks() {
+            replay.play_to(tick)?;
+            animation.add(&camera.picture(&mut replay, &mut list)?).map_err(&failed)?;
+            progress.advance();
+        }
+        animation.finish().map_err(failed)
+    })
+}
+
+/// Which ticks are shown, and for how long each.
+struct Frames {
+    first: u64,
+    last: u64,
+    pace: Pace,
+    /// How many there are.
+    count: u32,
+}
+
+impl Frames {
+    fn of<G: Game>(replay: &Replay<'_, G>, arguments: &Arguments) -> Result<Self, CommandError> {
+        let (first, last) = replay.range(arguments)?;
+        let tick_rate = replay.playback.game().tick_rate();
+        let ticks = arguments.every.unwrap_or_else(|| tick_rate.div_ceil(FRAME_RATE_MAX).max(1));
+        let Some(span) = last.checked_sub(first) else {
+            return Err(CommandError::NothingThere { what: format!("tick from {first} to {last}") });
+        };
+        let count = u32::try_from(span / u64::from(ticks) + 1).unwrap_or(u32::MAX);
+        Ok(Frames { first, last, pace: Pace { ticks, tick_rate }, count })
+    }
+
+    fn ticks(&self) -> impl Iterator<Item = u64> {
+        (0..u64::from(self.count)).map(|frame| self.first + frame * u64::from(self.pace.ticks))
+    }
+
+    /// A few of all ticks, the first and the last among them.
+    fn samples(&self) -> impl Iterator<Item = u64> {
+        let step = (self.last - self.first).div_ceil(SAMPLES).max(1);
+        (0..SAMPLES)
+            .map(move |sample| self.first + sample * step)
+            .take_while(|&tick| tick < self.last)
+            .chain([self.last])
+    }
+}
+
+/// Which part of the world is shown, in which size.
+struct Camera<'a, G: Game> {
+    view: Option<ViewOf<G>>,
+    arguments: &'a Arguments,
+    size: (u32, u32),
+    /// Unless the game or the arguments say it. It stands still.
+    window: Option<Aabb>,
+}
+
+impl<'a, G: Game> Camera<'a, G> {
+    /// All frames are as large as the first. Its sides are those of the game's own picture, unless the arguments say it.
+    fn new(
+        replay: &mut Replay<'_, G>,
+        view: Option<ViewOf<G>>,
+        arguments: &'a Arguments,
+    ) -> Result<Self, CommandError> {
+        replay.world()?;
+        let View { width, height, .. } = replay.view(view);
+        let scaled = |side: u32, from: u32, to: u32| {
+            let side = u64::from(side) * u64::from(to) / u64::from(from.max(1));
+            u32::try_from(side).unwrap_or(u32::MAX).clamp(64, 16384)
+        };
+        let size = match (arguments.width, arguments.height) {
+            (None, None) => (WIDTH, scaled(height, width, WIDTH)),
+            (Some(to), None) => (to, scaled(height, width, to)),
+            (None, Some(to)) => (scaled(width, height, to), to),
+            (Some(width), Some(height)) => (width, height),
+        };
+        Ok(Camera { view, arguments, size, window: None })
+    }
+
+    /// Finds a window in which there is room for what is worth seeing at any time; a few pictures, which have nearly all
+    /// colours.
+    fn look_at(&mut self, replay: &mut Replay<'_, G>, frames: &Frames) -> Result<Vec<Image>, CommandError> {
+        let mut window: Option<Aabb> = None;
+        let mut pictures = Vec::new();
+        for (at, tick) in frames.samples().enumerate() {
+            replay.play_to(tick)?;
+            let fitting = fit(replay.world()?);
+            window = Some(window.map_or(fitting, |window| window.union(fitting)));
+            if at % SAMPLES_OF_A_PICTURE == SAMPLES_OF_A_PICTURE / 2 {
+                pictures.push(self.picture(replay, &mut DrawList::default())?);
+            }
+        }
+        self.window = window;
+        Ok(pictures)
+    }
+
+    /// The picture of the tick at which a replay is.
+    fn picture(&self, replay: &mut Replay<'_, G>, list: &mut DrawList) -> Result<Image, CommandError> {
+        let (width, height) = self.size;
+        let mut view = View { width, height, ..self.arguments.view(replay.view(self.view)) };
+        if let (Frame::Fit, Some(window)) = (view.frame, self.window) {
+            view.frame = Frame::Window(window);
+        }
+        Ok(image(list, replay.world()?, &view))
+    }
+}
+
+/// How far it is, for who watches a terminal.
+struct Progress(Option<ProgressBar>);
+
+impl Progress {
+    fn new(is_shown: bool, frames: u32) -> Self {
+        Progress(is_shown.then(|| {
+            let bar =
+                ProgressBar::with_draw_target(Some(frames.into()), ProgressDrawTarget::stderr_with_hz(10));
+            let style = ProgressStyle::with_template("{bar:40} {pos} of {len} frames, {eta} left");
+            bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+            bar
+        }))
+    }
+
+    fn advance(&self) {
+        if let Some(bar) = &self.0 {
+            bar.inc(1);
+        }
+    }
+}
+
+impl Drop for Progress {
+    fn drop(&mut self) {
+        if let Some(bar) = &self.0 {
+            bar.finish_and_clear();
+        }
+    }
+}

@@ -1,0 +1,91 @@
+//! [`Format`]: as what a replay is written.
+
+use std::path::Path;
+
+use clap::Args;
+
+use crate::error::CommandError;
+
+/// As what a replay is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Format {
+    Svg,
+    Png,
+    Gif,
+    Apng,
+    Json,
+    Plot,
+}
+
+/// The options that choose among them.
+#[derive(Args, Debug)]
+#[group(multiple = false)]
+pub(super) struct Formats {
+    /// A picture of one tick as an SVG document
+    #[arg(long)]
+    svg: bool,
+    /// A picture of one tick as a PNG file
+    #[arg(long)]
+    png: bool,
+    /// An animation as a GIF file
+    #[arg(long)]
+    gif: bool,
+    /// An animation as an animated PNG file
+    #[arg(long)]
+    apng: bool,
+    /// The states of one or more ticks as JSON, a line for each
+    #[arg(long)]
+    json: bool,
+    /// Energy, overlaps, contacts, awake bodies and joint gaps over time, as an SVG document
+    #[arg(long)]
+    plot: bool,
+}
+
+impl Formats {
+    /// The one that was asked for, or that the name of the file to write ends in.
+    pub(super) fn chosen(&self, output: Option<&Path>) -> Result<Format, CommandError> {
+        let Formats { svg, png, gif, apng, json, plot } = *self;
+        let asked = [
+            (svg, Format::Svg),
+            (png, Format::Png),
+            (gif, Format::Gif),
+            (apng, Format::Apng),
+            (json, Format::Json),
+            (plot, Format::Plot),
+        ];
+        let format = match asked.into_iter().find(|(asked, _)| *asked) {
+            Some((_, format)) => format,
+            None => by_extension(output).ok_or(CommandError::NoFormat)?,
+        };
+        let is_text = matches!(format, Format::Svg | Format::Json | Format::Plot);
+        if output.is_none() && !is_text {
+            return Err(CommandError::NoOutput { format: format.option() });
+        }
+        Ok(format)
+    }
+}
+
+fn by_extension(output: Option<&Path>) -> Option<Format> {
+    match output?.extension()?.to_str()?.to_ascii_lowercase().as_str() {
+        "svg" => Some(Format::Svg),
+        "png" => Some(Format::Png),
+        "gif" => Some(Format::Gif),
+        "apng" => Some(Format::Apng),
+        "json" | "jsonl" => Some(Format::Json),
+        _ => None,
+    }
+}
+
+impl Format {
+    /// The option that asks for it.
+    pub(super) fn option(self) -> &'static str {
+        match self {
+            Format::Svg => "--svg",
+            Format::Png => "--png",
+            Format::Gif => "--gif",
+            Format::Apng => "--apng",
+            Format::Json => "--json",
+            Format::Plot => "--plot",
+        }
+    }
+}

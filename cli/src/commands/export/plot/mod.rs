@@ -1,0 +1,96 @@
+//! How a game goes, as curves over time.
+#![expect(
+    clippy::disallowed_types,
+    clippy::float_arithmetic,
+    reason = "nothing drawn flows back into a simulation"
+)]
+#![expect(clippy::cast_possible_truncation, clippy::cast_precision_loss, reason = "pixels")]
+
+mod axis;
+mod chart;
+mod curve;
+
+use lockstep2d::lockstep::Game;
+use lockstep2d::world::World;
+
+use super::{Arguments, Output, Replay};
+use crate::console::Console;
+use crate::energy::Measures;
+use crate::error::CommandError;
+use crate::exit::Exit;
+use crate::figures;
+
+use axis::Unit;
+use chart::{Chart, Panel};
+use curve::Curve;
+
+/// Colours that can be told apart, also without red or green.
+const BLUE: &str = "#1f5f9e";
+const ORANGE: &str = "#d95f0e";
+const INK: &str = "#333333";
+const RED: &str = "#c62828";
+const GREEN: &str = "#2e7d32";
+const PURPLE: &str = "#8e24aa";
+
+/// Writes the curves of a range of ticks as an SVG document.
+pub(super) fn write<G: Game>(
+    mut replay: Replay<'_, G>,
+    arguments: &Arguments,
+    console: &mut Console<'_>,
+) -> Result<Exit, CommandError> {
+    let (first, last) = replay.range(arguments)?;
+    if first > last {
+        return Err(CommandError::NothingThere { what: format!("tick from {first} to {last}") });
+    }
+    let mut panels = panels(first, last);
+    let (mut joints, mut ticks) = (0, first..=last);
+    let hash = loop {
+        let Some(tick) = ticks.next() else { break replay.playback.game().state_hash() };
+        replay.play_to(tick)?;
+        let world = replay.world()?;
+        joints = world.joint_count().max(joints);
+        for (curve, value) in panels.iter_mut().flat_map(|panel| &mut panel.curves).zip(values(world)) {
+            curve.add(tick, value);
+        }
+    };
+    // Only differences of potential energy mean something; from where it is lowest, they can be seen.
+    if let [potential, _, total] = &mut panels[0].curves[..] {
+        let lowest = potential.lowest();
+        [potential, total].into_iter().for_each(|curve| curve.shift(-lowest));
+    }
+    if joints == 0 {
+        panels.pop();
+    }
+    let name = arguments.file.file_name().unwrap_or_default().to_string_lossy();
+    let rate = replay.playback.game().tick_rate().max(1);
+    let title = format!("{name} · ticks {first} to {last} at {rate} a second · {hash}");
+    let (width, height) = (arguments.width.unwrap_or(chart::WIDTH), arguments.height);
+    let document = Chart { title, panels, first, last, rate, width, height }.svg();
+    Output::write(arguments.output.as_deref(), console, |output| output.line(document.trim_end()))
+}
+
+/// Joints come last: not every world has some.
+fn panels(first: u64, last: u64) -> Vec<Panel> {
+    let curve = |name, colour| Curve::new(name, colour, first, last);
+    let panel = |title, unit, curves| Panel { title, unit, curves };
+    vec![
+        panel(
+            "energy",
+            Unit::Energy,
+            vec![curve("potential", BLUE), curve("kinetic", ORANGE), curve("total", INK)],
+        ),
+        panel("deepest overlap", Unit::Length, vec![curve("overlap", RED)]),
+        panel("contact points", Unit::Count, vec![curve("points", RED)]),
+        panel("awake bodies", Unit::Count, vec![curve("awake", GREEN)]),
+        panel("widest joint gap", Unit::Length, vec![curve("gap", PURPLE)]),
+    ]
+}
+
+/// What the curves have after a tick, in their order.
+fn values(world: &World) -> [f64; 7] {
+    let Measures { kinetic, potential, overlap, gap } = Measures::of(world);
+    let figures = figures::of(world);
+    let figure =
+        |wanted| figures.iter().find(|(name, _)| *name == wanted).map_or(0.0, |(_, value)| *value as f64);
+    [potential, kinetic, potential + kinetic, overlap, figure("points"), figure("awake"), gap]
+}

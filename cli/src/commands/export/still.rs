@@ -1,0 +1,35 @@
+//! A picture of one tick.
+
+use lockstep2d::draw::{self, View};
+use lockstep2d::world::World;
+use lockstep2d_picture::{Colour, DrawList, Image, page, raster};
+
+use super::format::Format;
+use super::{Arguments, Output};
+use crate::console::Console;
+use crate::error::CommandError;
+use crate::exit::Exit;
+
+/// Writes a picture of a world as an SVG document, or else as a PNG file.
+pub(super) fn write(
+    world: &World,
+    view: &View,
+    format: Format,
+    arguments: &Arguments,
+    console: &mut Console<'_>,
+) -> Result<Exit, CommandError> {
+    Output::write(arguments.output.as_deref(), console, |output| match format {
+        Format::Svg => output.line(draw::svg(world, view).trim_end()),
+        _ => {
+            let (to, failed) = output.parts();
+            image(&mut DrawList::default(), world, view).write_png(to).map_err(failed)
+        }
+    })
+}
+
+/// A picture of a world in pixels. The list is cleared and used again.
+pub(super) fn image(list: &mut DrawList, world: &World, view: &View) -> Image {
+    list.clear();
+    page(list, world, view);
+    raster(list, (view.width, view.height), Colour::hex(0xffffff))
+}

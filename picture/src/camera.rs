@@ -1,0 +1,191 @@
+//! [`Camera`]: from the world to the screen and back.
+
+use lockstep2d::math::{Aabb, Fx, Vec2};
+
+/// Fewest and most pixels for a metre: from a world of a billion metres on a small screen to a micrometre a pixel.
+const SCALE_MIN: f64 = 1e-8;
+const SCALE_MAX: f64 = 1e6;
+
+/// What is cut off, is cut off so far outside of what is seen, in pixels: strokes are wide.
+const MARGIN: f64 = 16.0;
+
+/// Which part of a world is seen, upright: y is upwards in the world and downwards on the screen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Camera {
+    /// What is in the middle. Fixed-point, so that a world far from its origin is drawn as precisely.
+    pub centre: Vec2<Fx>,
+    /// Pixels for a metre.
+    pub scale: f64,
+    /// The middle of the area in which it is seen, in pixels.
+    pub middle: [f64; 2],
+    /// Half of the size of that area, in pixels.
+    pub half: [f64; 2],
+}
+
+impl Camera {
+    /// Shows a window of the world as large as it fits into an area of the screen: upper left corner and size in pixels.
+    #[must_use]
+    pub fn new(window: Aabb, corner: [f32; 2], size: [f32; 2]) -> Self {
+        let [width, height] = size.map(|side| f64::from(side.max(1.0)));
+        let sides = window.upper - window.lower;
+        let side = |side: Fx| metres(side).abs().max(0.02);
+        let scale = (width / side(sides.x)).min(height / side(sides.y)).clamp(SCALE_MIN, SCALE_MAX);
+        let middle = [f64::from(corner[0]) + width / 2.0, f64::from(corner[1]) + height / 2.0];
+        Camera { centre: window.centre(), scale, middle, half: [width / 2.0, height / 2.0] }
+    }
+
+    /// Where a place is on the screen.
+    #[must_use]
+    pub fn place(&self, point: Vec2<Fx>) -> [f32; 2] {
+        // Subtracted before anything is rounded to 24 bits.
+        let x = difference(point.x, self.centre.x) * self.scale;
+        let y = difference(point.y, self.centre.y) * self.scale;
+        [(self.middle[0] + x) as f32, (self.middle[1] - y) as f32]
+    }
+
+    /// How long a length is on the screen, in pixels.
+    #[must_use]
+    pub fn length(&self, length: Fx) -> f32 {
+        (metres(length) * self.scale) as f32
+    }
+
+    /// Which place is at a point of the screen; as near as the numbers of the world go.
+    #[must_use]
+    pub fn point(&self, [x, y]: [f32; 2]) -> Vec2<Fx> {
+        let x = (f64::from(x) - self.middle[0]) / self.scale;
+        let y = (self.middle[1] - f64::from(y)) / self.scale;
+        let far = |from: Fx, by: f64| {
+            from.saturating_add(Fx::saturating_from_num(if by.is_nan() { 0.0 } else { by }))
+        };
+        Vec2::new(far(self.centre.x, x), far(self.centre.y, y))
+    }
+
+    /// Moves what is seen by pixels, as a hand would move a sheet of paper.
+    pub fn pan(&mut self, [x, y]: [f32; 2]) {
+        let [left, up] = [self.middle[0] - f64::from(x), self.middle[1] - f64::from(y)];
+        self.centre = self.point([left as f32, up as f32]);
+    }
+
+    /// Makes everything larger by a factor about a point of the screen, which stays where it is.
+    pub fn zoom(&mut self, factor: f32, about: [f32; 2]) {
+        let fixed = self.point(about);
+        self.scale = (self.scale * f64::from(factor)).clamp(SCALE_MIN, SCALE_MAX);
+        let now = self.place(fixed);
+        self.pan([about[0] - now[0], about[1] - now[1]]);
+    }
+
+    /// Whether a mark of a size, in pixels, can be seen at a place on the screen.
+    #[must_use]
+    pub fn sees(&self, [x, y]: [f32; 2], size: f32) -> bool {
+        let beside =
+            |at: f32, middle: f64, half: f64| (f64::from(at) - middle).abs() <= half + f64::from(size);
+        beside(x, self.middle[0], self.half[0]) && beside(y, self.middle[1], self.half[1])
+    }
+
+    /// Whether the box around some places on the screen can be seen.
+    #[must_use]
+    pub fn sees_any(&self, points: &[[f32; 2]]) -> bool {
+        let beyond = |axis: usize| {
+            let side = |at: f32| {
+                let from_middle = f64::from(at) - self.middle[axis];
+                (from_middle < -self.half[axis] - MARGIN, from_middle > self.half[axis] + MARGIN)
+            };
+            points.iter().all(|point| side(point[axis]).0) || points.iter().all(|point| side(point[axis]).1)
+        };
+        !(points.is_empty() || beyond(0) || beyond(1))
+    }
+
+    /// The part of a line on the screen that can be seen (Liang and Barsky, "A New Concept and Method for Line Clipping",
+    /// 1984): a line to the other end of the world has coordinates that no screen takes.
+    #[must_use]
+    pub fn clipped(&self, [from, to]: [[f32; 2]; 2]) -> Option<[[f32; 2]; 2]> {
+        if self.sees(from, MARGIN as f32) && self.sees(to, MARGIN as f32) {
+            return Some([from, to]);
+        }
+        let (start, way) =
+            (from.map(f64::from), [0, 1].map(|axis| f64::from(to[axis]) - f64::from(from[axis])));
+        let (mut first, mut last) = (0.0f64, 1.0f64);
+        for axis in 0..2 {
+            let low = self.middle[axis] - self.half[axis] - MARGIN - start[axis];
+            let high = self.middle[axis] + self.half[axis] + MARGIN - start[axis];
+            if way[axis] == 0.0 {
+                if low > 0.0 || high < 0.0 {
+                    return None;
+                }
+                continue;
+            }
+            let (a, b) = (low / way[axis], high / way[axis]);
+            (first, last) = (first.max(a.min(b)), last.min(a.max(b)));
+        }
+        let at = |t: f64| [0, 1].map(|axis| (start[axis] + way[axis] * t) as f32);
+        (first <= last).then(|| [at(first), at(last)])
+    }
+}
+
+fn metres(length: Fx) -> f64 {
+    difference(length, Fx::ZERO)
+}
+
+fn difference(a: Fx, b: Fx) -> f64 {
+    let difference = match a.to_bits().checked_sub(b.to_bits()) {
+        Some(bits) => bits as f64,
+        // Two places may be further apart than a world is wide.
+        None => a.to_bits() as f64 - b.to_bits() as f64,
+    };
+    difference / (1i64 << Fx::FRAC_NBITS) as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use lockstep2d::fx;
+
+    fn camera(centre: Fx) -> Camera {
+        let (middle, half) = (Vec2::new(centre, centre), Vec2::new(fx!(5), fx!(5)));
+        Camera::new(Aabb::new(middle - half, middle + half), [100.0, 0.0], [1000.0, 500.0])
+    }
+
+    #[test]
+    fn a_window_is_in_the_middle_upright_and_as_large_as_it_fits() {
+        let camera = camera(fx!(0));
+        assert_eq!(camera.scale, 50.0);
+        assert_eq!(camera.place(Vec2::ZERO), [600.0, 250.0]);
+        assert_eq!(camera.place(Vec2::new(fx!(1), fx!(5))), [650.0, 0.0]);
+        assert_eq!(camera.length(fx!(0.5)), 25.0);
+    }
+
+    #[test]
+    fn a_millimetre_is_seen_a_billion_metres_out() {
+        let far = fx!(1000000000);
+        let mut camera = camera(far);
+        camera.zoom(1000.0, [600.0, 250.0]);
+        let [x, y] = camera.place(Vec2::new(far + fx!(0.001), far));
+        assert!((x - 650.0).abs() < 0.01 && (y - 250.0).abs() < 0.01, "{x} {y}");
+    }
+
+    #[test]
+    fn the_point_under_the_pointer_stays_there_while_one_zooms_and_comes_along_while_one_pans() {
+        let mut camera = camera(fx!(3));
+        let pointer = [321.0, 77.0];
+        let held = camera.point(pointer);
+        camera.zoom(1.7, pointer);
+        let [x, y] = camera.place(held);
+        assert!((x - 321.0).abs() < 0.01 && (y - 77.0).abs() < 0.01, "{x} {y}");
+        camera.pan([10.0, -20.0]);
+        let [x, y] = camera.place(held);
+        assert!((x - 331.0).abs() < 0.01 && (y - 57.0).abs() < 0.01, "{x} {y}");
+        (0..1000).for_each(|_| camera.zoom(0.5, pointer));
+        assert!(camera.place(camera.centre).iter().all(|at| at.is_finite()));
+    }
+
+    #[test]
+    fn lines_are_cut_where_the_picture_ends() {
+        let camera = camera(fx!(0));
+        let [from, to] = camera.clipped([[-1e9, 250.0], [1e9, 250.0]]).expect("it goes through");
+        assert!((from[0] - 84.0).abs() < 1.0 && (to[0] - 1116.0).abs() < 1.0, "{from:?} {to:?}");
+        assert_eq!(camera.clipped([[-1e9, 900.0], [1e9, 900.0]]), None);
+        assert_eq!(camera.clipped([[0.0, -500.0], [-500.0, 0.0]]), None);
+        let inside = [[200.0, 10.0], [300.0, 20.0]];
+        assert_eq!(camera.clipped(inside), Some(inside));
+    }
+}

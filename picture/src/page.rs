@@ -1,0 +1,114 @@
+//! [`page`]: a picture of a world with all that explains it, as in an SVG.
+
+use lockstep2d::draw::{Bar, Frame, Legend, PAPER, Style, View, fit, primitives};
+use lockstep2d::world::World;
+
+use crate::camera::Camera;
+use crate::colour::Colour;
+use crate::list::DrawList;
+use crate::paint::{Brush, paint};
+use crate::text::{CELL_WIDTH, width_of};
+
+/// Of all text that names nothing with a colour.
+const INK: Colour = Colour::hex(0x222222);
+/// Of the ground on which the legend stands.
+const WHITE: Colour = Colour::hex(0xffffff);
+/// From one line of the legend to the next.
+const LINE: f32 = 17.0;
+/// Around the legend.
+const MARGIN: f32 = 8.0;
+/// Characters of figures without the title, and of a hash with the names of a few styles: as long as they usually are.
+const FIGURES: usize = 100;
+const HASH: usize = 34;
+const NAME: usize = 12;
+
+/// Draws a world as `lockstep2d::draw::svg` does, in the same size and with the same words: what is seen of it, a bar
+/// for lengths, and above them the legend, in as many lines as the width makes necessary.
+pub fn page(list: &mut DrawList, world: &World, view: &View) {
+    let size = [view.width.clamp(64, 16384) as f32, view.height.clamp(64, 16384) as f32];
+    let window = match view.frame {
+        Frame::Fit => fit(world),
+        Frame::Window(window) => window,
+    };
+    let mut found = primitives(world, view.layers);
+    // Stable: what is of one style stays in the order of slots.
+    found.sort_by_key(|primitive| primitive.style);
+    let top = height_of_legend(view, size[0]).min(size[1] / 2.0);
+    let camera = Camera::new(window, [0.0, top], [size[0], size[1] - top]);
+    let brush = Brush::suiting(world, &camera);
+    list.rectangle([0.0, top], [size[0], size[1] - top], Colour::hex(PAPER));
+    let mut styles: Vec<Style> = Vec::new();
+    for primitive in &found {
+        let count = (list.items().len(), list.texts().len());
+        paint(list, primitive, &camera, &brush);
+        if (list.items().len(), list.texts().len()) != count && styles.last() != Some(&primitive.style) {
+            styles.push(primitive.style);
+        }
+    }
+    add_bar(list, &camera, size);
+    // Over what reaches beyond the picture.
+    list.rectangle([0.0, 0.0], [size[0], top], WHITE);
+    add_legend(list, &Legend::of(world, styles), &view.title, size[0]);
+}
+
+/// As many lines as the legend usually needs, whatever the figures of this tick: an animation must not jump.
+fn height_of_legend(view: &View, width: f32) -> f32 {
+    let columns = ((width - 2.0 * MARGIN) / CELL_WIDTH).max(1.0) as usize;
+    let title = view.title.chars().count().next_multiple_of(8);
+    let layers = { view.layers }.named().into_iter().filter(|(_, shown)| **shown).count();
+    let lines = (FIGURES + title).div_ceil(columns) + (HASH + layers * NAME).div_ceil(columns);
+    lines as f32 * LINE + MARGIN
+}
+
+/// The title with the figures, and below them the hash with the names of what is seen.
+fn add_legend(list: &mut DrawList, legend: &Legend, title: &str, width: f32) {
+    let mut pen = Pen { at: [MARGIN, 2.0], width };
+    if !title.is_empty() {
+        // There is one weight of letters: twice is bold.
+        let title = format!("{title} · ");
+        list.text([pen.at[0] + 0.6, pen.at[1]], 1.0, INK, title.clone());
+        pen.write(list, &title, INK);
+    }
+    for figure in legend.figures.split_inclusive(" · ") {
+        pen.write(list, figure, INK);
+    }
+    pen.new_line();
+    pen.write(list, &format!("{} ", legend.hash), INK);
+    for &(name, colour) in &legend.names {
+        pen.write(list, &format!("{name} "), Colour::hex(colour));
+    }
+}
+
+/// Writes from left to right, and goes on in the next line.
+struct Pen {
+    at: [f32; 2],
+    width: f32,
+}
+
+impl Pen {
+    fn write(&mut self, list: &mut DrawList, text: &str, colour: Colour) {
+        let length = width_of(text, 1.0);
+        if self.at[0] > MARGIN && self.at[0] + width_of(text.trim_end(), 1.0) > self.width - MARGIN {
+            self.new_line();
+        }
+        list.text(self.at, 1.0, colour, text);
+        self.at[0] += length;
+    }
+
+    fn new_line(&mut self) {
+        self.at = [MARGIN, self.at[1] + LINE];
+    }
+}
+
+/// A bar of up to a quarter of the picture, in its lower left corner.
+fn add_bar(list: &mut DrawList, camera: &Camera, [width, height]: [f32; 2]) {
+    let Some(Bar { length, label }) = Bar::up_to(|length| camera.length(length) <= width / 4.0) else {
+        return;
+    };
+    let (left, right, y) = (10.0, 10.0 + camera.length(length), height - 10.0);
+    list.line([[left, y], [right, y]], INK, 1.0);
+    for end in [left, right] {
+        list.line([[end, y - 3.0], [end, y + 3.0]], INK, 1.0);
+    }
+    list.text([14.0, y - 18.0], 1.0, INK, label);
+}

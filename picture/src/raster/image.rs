@@ -1,0 +1,59 @@
+//! [`Image`].
+
+use tiny_skia::Pixmap;
+
+use crate::colour::Colour;
+
+/// Pixels in rows from top to bottom, each from left to right.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Image {
+    width: u32,
+    height: u32,
+    rgba: Vec<u8>,
+}
+
+impl Image {
+    pub(super) fn of(pixels: &Pixmap) -> Self {
+        let (width, height) = (pixels.width(), pixels.height());
+        let colours = pixels.pixels().iter().map(|pixel| pixel.demultiply());
+        let rgba = colours
+            .flat_map(|colour| [colour.red(), colour.green(), colour.blue(), colour.alpha()])
+            .collect();
+        Image { width, height, rgba }
+    }
+
+    /// Width in pixels, at least 1.
+    #[must_use]
+    pub fn width(&self) -> u32 {
+        self.width
+    }
+
+    /// Height in pixels, at least 1.
+    #[must_use]
+    pub fn height(&self) -> u32 {
+        self.height
+    }
+
+    /// Red, green, blue and opacity of each pixel in turn, not premultiplied.
+    #[must_use]
+    pub fn rgba(&self) -> &[u8] {
+        &self.rgba
+    }
+
+    /// A pixel, or `None` outside of the image.
+    #[must_use]
+    pub fn pixel(&self, x: u32, y: u32) -> Option<Colour> {
+        if x >= self.width || y >= self.height {
+            return None;
+        }
+        let at = (y as usize * self.width as usize + x as usize) * 4;
+        let [red, green, blue, opacity] = *self.rgba.get(at..)?.first_chunk()?;
+        Some(Colour { rgb: [red, green, blue], opacity })
+    }
+
+    /// Whether nothing shines through.
+    #[must_use]
+    pub fn is_opaque(&self) -> bool {
+        self.rgba.chunks_exact(4).all(|pixel| pixel[3] == 255)
+    }
+}

@@ -1,0 +1,27 @@
+//! [`Bar`]: a length to compare others with.
+
+use alloc::format;
+use alloc::string::String;
+
+use crate::math::{Fx, ratio};
+
+/// A bar that shows how long a round length is in a picture.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Bar {
+    /// In metres.
+    pub length: Fx,
+    /// The length with its unit.
+    pub label: String,
+}
+
+impl Bar {
+    /// The longest that fits of 1, 2 or 5 times a power of ten millimetres, or `None` if not even 1 mm does.
+    #[must_use]
+    pub fn up_to(fits: impl Fn(Fx) -> bool) -> Option<Self> {
+        let lengths = (0u32..13).flat_map(|power| [1i64, 2, 5].map(|digit| digit * 10i64.pow(power)));
+        let metres = |millimetres: i64| ratio(millimetres, 1000);
+        let length = lengths.take_while(|&length| fits(metres(length))).last()?;
+        let label = if length < 1000 { format!("{length} mm") } else { format!("{} m", length / 1000) };
+        Some(Bar { length: metres(length), label })
+    }
+}

@@ -1,0 +1,78 @@
+//! [`Paint`]: how styles look, the same in every renderer.
+
+use super::primitive::{Hue, Proximity, Style};
+
+/// How a style is painted, on a ground as bright as paper.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Paint {
+    /// What to call it in a legend; empty where another one of the same meaning says it.
+    pub name: &'static str,
+    /// Of lines, marks and text, as `0xRRGGBB`.
+    pub stroke: u32,
+    /// Of what lines enclose.
+    pub fill: Option<Fill>,
+    /// Width of lines and size of marks in hundredths of a pixel, where bodies are large.
+    pub width: u16,
+}
+
+/// A colour that something shines through.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Fill {
+    /// As `0xRRGGBB`.
+    pub colour: u32,
+    /// In percent.
+    pub opacity: u8,
+}
+
+/// What is behind everything, as `0xRRGGBB`.
+pub const PAPER: u32 = 0xfafaf7;
+
+/// Colours that can be told apart, by [`Hue::index`]: those of P. Tol's qualitative schemes, which most people with a
+/// colour vision deficiency can tell apart too, in an order in which neighbours differ much.
+const HUES: [u32; Hue::COUNT as usize] = [
+    0x4477aa, 0xee6677, 0x228833, 0xccbb44, 0x66ccee, 0xaa3377, 0xee7733, 0x009988, 0x332288, 0x999933,
+    0xcc3311, 0x882255,
+];
+
+impl Style {
+    /// How it is painted.
+    #[must_use]
+    pub const fn paint(self) -> Paint {
+        match self {
+            Style::Fixed => shape("fixed", 0x6d6d68, 0xdddcd6, 100),
+            Style::Kinematic => shape("kinematic", 0x00796b, 0xb2dfdb, 75),
+            Style::Dynamic => shape("dynamic", 0x1f5f9e, 0xc5ddf2, 75),
+            Style::Asleep => shape("asleep", 0x7d8794, 0xe2e5e9, 75),
+            Style::Island(hue) => shape("island", hue_of(hue), hue_of(hue), 35),
+            Style::BroadPhase => mark("broad phase", 0xc08a3e, 60),
+            Style::FatBox => mark("fat box", 0xb9b9b0, 70),
+            Style::JointArm => mark("joint", 0x8e24aa, 120),
+            Style::Velocity => mark("velocity", 0x2e7d32, 180),
+            Style::CentreOfMass => mark("centre of mass", 0x1a237e, 380),
+            Style::JointAnchor => mark("anchor", 0x8e24aa, 700),
+            Style::JointGap => mark("gap", 0xff4081, 300),
+            Style::JointError => mark("", 0x6a1b9a, 100),
+            Style::ContactNormal(Proximity::Speculative) => mark("", 0xe69500, 130),
+            Style::ContactPoint(Proximity::Speculative) => mark("about to touch", 0xe69500, 500),
+            Style::ContactNormal(Proximity::Touching) => mark("", 0xc62828, 130),
+            Style::ContactPoint(Proximity::Touching) => mark("touching", 0xc62828, 500),
+            Style::ContactForce => mark("force", 0xd500f9, 200),
+            Style::ContactFriction => mark("friction", 0x00b8d4, 200),
+            Style::SolverGroup(hue) => mark("solver colour", hue_of(hue), 700),
+            Style::SolverOverflow => mark("no solver colour", 0x000000, 900),
+            Style::Id => mark("", 0x263238, 100),
+        }
+    }
+}
+
+const fn hue_of(hue: Hue) -> u32 {
+    HUES[hue.index() as usize]
+}
+
+const fn shape(name: &'static str, stroke: u32, colour: u32, opacity: u8) -> Paint {
+    Paint { name, stroke, fill: Some(Fill { colour, opacity }), width: 120 }
+}
+
+const fn mark(name: &'static str, stroke: u32, width: u16) -> Paint {
+    Paint { name, stroke, fill: None, width }
+}

@@ -1,0 +1,143 @@
+//! What a check of a game has found.
+
+use lockstep2d::check::{CheckError, Failure, Fault, Finding, Guess, Way};
+use lockstep2d::collision::BroadPhaseKind;
+use lockstep2d::inspect::{Difference, differences, fields};
+use lockstep2d::replay::{Flaw, RecordError, Verdict};
+use lockstep2d::world::{Backend, Phase};
+
+use crate::says;
+
+fn finding(way: Way, fault: Fault) -> Finding {
+    Finding { way, fault, tick: 9, played: 9, phase: None, rollback: None, differences: Vec::new() }
+}
+
+/// As many fields as are asked for.
+fn differing(count: usize) -> Vec<Difference> {
+    let (a, b) = (fields(&vec![1; count]).expect("numbers"), fields(&vec![2; count]).expect("numbers"));
+    differences(&a, &b)
+}
+
+#[test]
+fn ways() {
+    says([
+        (Way::Again, "played again"),
+        (Way::Asked, "asked for hash, work, claims and save"),
+        (Way::Unasked, "not asked for its hash"),
+        (Way::Reloaded, "through bytes into a new game"),
+        (Way::RolledBack, "rolled back"),
+        (Way::ClearedScratch, "with cleared scratch"),
+        (Way::Backend(Backend::Scalar), "with the backend Scalar"),
+        (Way::BroadPhase(BroadPhaseKind::BruteForce), "with the broad phase BruteForce"),
+        (Way::Threads(3), "on 3 threads"),
+        (Way::Exchanged, "with bytes of another tick in its save"),
+        (Way::Recorded, "recorded and verified"),
+    ]);
+}
+
+#[test]
+fn faults() {
+    let verdict = Verdict::Malformed { offset: 0, flaw: Flaw::Magic };
+    says([
+        (Fault::Hash, "the state hash is not that of the straight run"),
+        (Fault::Phase, "something else was left behind than in the straight run"),
+        (Fault::Loaded, "the state that was loaded has not the hash of the one that was saved"),
+        (Fault::Encoding, "the save has other bytes after it was decoded and encoded"),
+        (Fault::SavedAgain, "the state that was loaded is saved as other bytes"),
+        (Fault::Unreadable { why: "a bad tag".into() }, "the bytes of the save are not read: a bad tag"),
+        (Fault::Refused { why: "no floor".into() }, "the setup starts no game any more: no floor"),
+        (Fault::Answers { of: "work" }, "`work` gives two answers to the same question"),
+        (
+            Fault::Unhashed,
+            "a state with the same hash and another save has come to another hash with the same inputs",
+        ),
+        (
+            Fault::Verdict(verdict),
+            "the recording does not verify: malformed: at byte 0: this is no replay file",
+        ),
+        (Fault::Unrecordable(RecordError::TickRate), "the recording cannot be finished: a tick rate of zero"),
+    ]);
+}
+
+#[test]
+fn a_finding_says_where() {
+    let mut found = finding(Way::RolledBack, Fault::Hash);
+    (found.rollback, found.phase) = (Some((1, Guess::Held)), Some(Phase::Solve));
+    found.differences = differing(2);
+    let text = found.to_string();
+    let start = "rolled back by 1 tick after guessing that inputs are held: after tick 9, phase Solve, the state hash is \
+                 not that of the straight run\n    [0]: 1 | 2\n    [1]: 1 | 2\nusually a cache or a field that `load` \
+                 leaves as it was";
+    assert!(text.starts_with(start), "{text}");
+    found.rollback = Some((3, Guess::Default));
+    assert!(found.to_string().starts_with("rolled back by 3 ticks after guessing default inputs: "));
+    found.rollback = Some((3, Guess::Right));
+    assert!(found.to_string().starts_with("rolled back by 3 ticks: after tick 9"));
+}
+
+#[test]
+fn a_finding_is_not_endless() {
+    let mut found = finding(Way::Again, Fault::Hash);
+    let same = "\n    the saves are the same: what differs is not saved\nusually a HashMap";
+    assert!(found.to_string().contains(same), "{found}");
+    found.differences = differing(1000);
+    let text = found.to_string();
+    let lines = text.lines().filter(|line| line.contains("1 | 2")).count();
+    assert!(lines < 50 && text.contains(&format!("\n    and {} more\n", 1000 - lines)), "{text}");
+}
+
+/// Every mistake has a remedy of its own.
+#[test]
+fn what_it_usually_is() {
+    let too_much = Verdict::LimitExceeded { limit: lockstep2d::replay::Limit::TickWork, value: 2, max: 1 };
+    let all = [
+        (Way::Again, Fault::Hash, "a HashMap or HashSet that is iterated"),
+        (Way::Asked, Fault::Answers { of: "save" }, "something that changes when it is asked for"),
+        (Way::Unasked, Fault::Hash, "something that changes when it is asked for"),
+        (Way::Exchanged, Fault::Unhashed, "a field that `state_hash` leaves out"),
+        (Way::Reloaded, Fault::Encoding, "a HashMap or HashSet in the save"),
+        (
+            Way::Reloaded,
+            Fault::Unreadable { why: String::new() },
+            "a Serialize and a Deserialize that do not fit",
+        ),
+        (Way::Reloaded, Fault::Hash, "a field that is missing from `Save`"),
+        (Way::RolledBack, Fault::Hash, "a cache or a field that `load` leaves as it was"),
+        (Way::Recorded, Fault::Verdict(too_much), "`work` answers more than the limits allow"),
+    ];
+    for (way, fault, expected) in all {
+        let hint = finding(way, fault.clone()).hint();
+        assert!(hint.starts_with(expected), "{way}, {fault}: {hint}");
+    }
+}
+
+#[test]
+fn failures() {
+    let found = finding(Way::Again, Fault::Hash);
+    let mut failure = Failure {
+        finding: found.clone(),
+        minimised: found.clone(),
+        replay: Vec::new(),
+        ticks: 4,
+        failed: (3, 4),
+    };
+    assert_eq!(
+        failure.to_string(),
+        format!("{found}\na replay of 4 ticks fails in this way 3 times out of 4")
+    );
+    failure.minimised.tick = 4;
+    let shorter = failure.minimised.to_string();
+    assert!(failure.to_string().ends_with(&format!("3 times out of 4:\n{shorter}")), "{failure}");
+    assert_eq!(format!("{failure:?}"), failure.to_string());
+    says([
+        (CheckError::Record(RecordError::TickRate), "nothing to check: a tick rate of zero"),
+        (
+            CheckError::Replay(Verdict::Malformed { offset: 0, flaw: Flaw::Magic }),
+            "nothing to check: malformed: at byte 0: this is no replay file",
+        ),
+    ]);
+    let error = CheckError::Failed(Box::new(failure.clone()));
+    assert_eq!(error.to_string(), failure.to_string());
+    assert_eq!(error.failure(), Some(&failure));
+    assert_eq!(CheckError::Record(RecordError::TickRate).failure(), None);
+}

@@ -1,0 +1,80 @@
+//! Peers, and the socket between them.
+
+use std::net::SocketAddr;
+use std::thread::sleep;
+use std::time::Duration;
+
+use ggrs::GgrsError;
+use lockstep2d::net::{DriverError, Mode, NetError, TermsDifference, TermsMismatch, Transport, Udp};
+use lockstep2d::replay::RecordError;
+
+use crate::says;
+
+#[test]
+fn drivers() {
+    says([
+        (DriverError::NoState { tick: 12 }, "the state after 12 ticks is not remembered"),
+        (DriverError::Players { seated: 2, inputs: 3 }, "3 inputs for 2 seated players"),
+        (DriverError::Record(RecordError::TickRate), "the replay cannot go on: a tick rate of zero"),
+    ]);
+}
+
+#[test]
+fn peers() {
+    let different =
+        |what, ours: &str, theirs: &str| TermsDifference { what, ours: ours.into(), theirs: theirs.into() };
+    let differences = vec![different("semantics", "3", "2"), different("players", "4", "2")];
+    let too_far = GgrsError::SpectatorTooFarBehind.to_string();
+    assert_eq!(NetError::from(GgrsError::SpectatorTooFarBehind).to_string(), too_far);
+    says([
+        (NetError::from(RecordError::TickRate), "a tick rate of zero"),
+        (NetError::from(DriverError::NoState { tick: 12 }), "the state after 12 ticks is not remembered"),
+        (
+            NetError::Terms(TermsMismatch { differences }),
+            "the peers do not play the same: semantics 3 here and 2 there, players 4 here and 2 there",
+        ),
+        (NetError::Full, "all seats are taken"),
+        (NetError::Diverged { tick: 60 }, "another state than the others' after tick 60"),
+        (NetError::State { why: "a bad tag".into() }, "the state that was sent cannot be used: a bad tag"),
+        (NetError::Refused { why: "all seats are taken".into() }, "refused: all seats are taken"),
+        (NetError::NoAnswer, "no answer"),
+        (NetError::Dropped, "the others have gone on without this peer, which was silent for too long"),
+    ]);
+    says([(Mode::Lockstep, "lockstep"), (Mode::Rollback { window: 8 }, "rollback by up to 8 ticks")]);
+}
+
+/// What comes within a second.
+fn wait_for(socket: &mut Udp) -> Option<(SocketAddr, Vec<u8>)> {
+    (0..1000).find_map(|_| {
+        let packet = socket.receive();
+        if packet.is_none() {
+            sleep(Duration::from_millis(1));
+        }
+        packet
+    })
+}
+
+#[test]
+fn a_socket_carries_packets_both_ways() {
+    let mut sockets = [(); 2].map(|()| Udp::bind("127.0.0.1:0").expect("a free port"));
+    let [a, b] = &mut sockets;
+    let (at_a, at_b) = (a.local_address().expect("bound"), b.local_address().expect("bound"));
+    assert!(format!("{a:?}").contains(&at_a.port().to_string()), "{a:?}");
+    assert_eq!(a.receive(), None, "nothing has come, and nobody waits");
+    a.send(b"to and", &at_b);
+    assert_eq!(wait_for(b), Some((at_a, b"to and".to_vec())));
+    b.send(b"fro", &at_a);
+    assert_eq!(wait_for(a), Some((at_b, b"fro".to_vec())));
+}
+
+#[test]
+fn what_cannot_be_sent_is_lost() {
+    let mut socket = Udp::bind("127.0.0.1:0").expect("a free port");
+    let here = socket.local_address().expect("bound");
+    let gone = Udp::bind("127.0.0.1:0").expect("a free port").local_address().expect("bound");
+    socket.send(b"nobody is there", &gone);
+    socket.send(&vec![0; 100_000], &here);
+    socket.send(b"arrives", &here);
+    assert_eq!(wait_for(&mut socket), Some((here, b"arrives".to_vec())));
+    assert!(Udp::bind(here).is_err(), "the port is taken");
+}

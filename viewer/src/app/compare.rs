@@ -1,0 +1,96 @@
+//! [`Comparison`]: a second replay over the first, and where they part.
+
+use lockstep2d::body::{Body, BodyId};
+use lockstep2d::inspect::{differences, fields};
+use lockstep2d::world::World;
+
+use super::player::slice_of;
+use crate::source::Source;
+
+/// The second of two sources that are shown at the same tick.
+pub(super) struct Comparison {
+    pub(super) other: Box<dyn Source>,
+    /// Both once more: they look for the first tick at which states differ while others are shown.
+    scouts: Option<[Box<dyn Source>; 2]>,
+    pub(super) first: Option<First>,
+    searched: u64,
+}
+
+/// Where two sources part.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct First {
+    pub(super) tick: u64,
+    /// The first body that is not the same, in the order of slots; `None` if something else is not.
+    pub(super) body: Option<BodyId>,
+    /// The first of its fields, with both values.
+    pub(super) field: String,
+}
+
+impl Comparison {
+    pub(super) fn new(other: Box<dyn Source>, scouts: [Box<dyn Source>; 2]) -> Self {
+        Comparison { other, scouts: Some(scouts), first: None, searched: 0 }
+    }
+
+    /// Looks for the first difference for a while.
+    pub(super) fn think(&mut self) {
+        let Some([a, b]) = &mut self.scouts else { return };
+        let (mut left, first) = (slice_of(a.world()), a.first());
+        while left > 0 {
+            left -= 1;
+            if a.hash() != b.hash() {
+                self.first = Some(First::between(a.as_mut(), b.as_mut()));
+                self.scouts = None;
+                return;
+            }
+            let next = a.tick() + 1;
+            let ends = [&*a, &*b].map(|scout| scout.ticks().unwrap_or(u64::MAX));
+            let further = next <= ends[0].min(ends[1]);
+            if !further || a.seek(next).is_err() || b.seek(next).is_err() {
+                self.searched = a.tick();
+                self.scouts = None;
+                return;
+            }
+        }
+        self.searched = a.tick().max(first);
+    }
+
+    /// What is known so far.
+    pub(super) fn status(&self) -> String {
+        let name = self.other.name();
+        match (&self.first, &self.scouts) {
+            (Some(First { tick, field, .. }), _) => format!("{name}: they part at tick {tick}: {field}"),
+            (None, Some(_)) => format!("{name}: compared up to tick {}, no difference", self.searched),
+            (None, None) => format!("{name}: the same up to tick {}", self.searched),
+        }
+    }
+}
+
+impl First {
+    fn between(a: &mut dyn Source, b: &mut dyn Source) -> Self {
+        let tick = a.tick();
+        let (a, b) = (a.world(), b.world());
+        let body = differing(a, b).next();
+        let field = match body {
+            None => "something else than bodies".into(),
+            Some(id) => format!("body {id}: {}", first_field(a.body(id), b.body(id))),
+        };
+        First { tick, body, field }
+    }
+}
+
+/// The bodies that two worlds do not have alike, in the order of slots.
+pub(super) fn differing<'a>(a: &'a World, b: &'a World) -> impl Iterator<Item = BodyId> + 'a {
+    let not_in_b = a.bodies().filter(|&(id, body)| b.body(id) != Some(body)).map(|(id, _)| id);
+    let only_in_b = b.bodies().filter(|&(id, _)| a.body(id).is_none()).map(|(id, _)| id);
+    let mut ids: Vec<BodyId> = not_in_b.chain(only_in_b).collect();
+    ids.sort_unstable();
+    ids.into_iter()
+}
+
+fn first_field(a: Option<&Body>, b: Option<&Body>) -> String {
+    let (Some(a), Some(b)) = (a, b) else {
+        return format!("only in the {}", if a.is_some() { "first" } else { "second" });
+    };
+    let (a, b) = (fields(a).unwrap_or_default(), fields(b).unwrap_or_default());
+    differences(&a, &b).first().map(|difference| difference.to_string()).unwrap_or_default()
+}

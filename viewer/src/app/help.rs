@@ -1,0 +1,43 @@
+//! What keys and the pointer do.
+
+use lockstep2d_picture::{CELL_HEIGHT, DrawList, width_of};
+
+use super::theme;
+
+const LINES: &[(&str, &str)] = &[
+    ("space", "play, pause"),
+    ("left, right", "one tick back, further; with shift ten"),
+    ("page up, down", "a second back, further"),
+    ("home, end", "to the start, to the end"),
+    ("up, down", "twice as fast, half as fast"),
+    ("1 ... 0 c v i", "layers; or click them"),
+    ("wheel, + -", "zoom"),
+    ("drag", "pan"),
+    ("click", "select a body: all that there is to know of it"),
+    ("f", "follow the selected body"),
+    ("r", "see everything again"),
+    ("j", "to the first difference of two replays"),
+    ("h", "this list"),
+    ("", ""),
+    ("", "in a live world:"),
+    ("drag", "a body, and throw it"),
+    ("right drag", "a new body, as large as the way"),
+    ("b", "disc, box, polygon, rod"),
+    ("x, delete", "remove the body under the pointer"),
+    ("e", "explosion at the pointer"),
+    ("g", "gravity: down, none, up, left, right"),
+    ("[ ]", "the scene before, the next scene"),
+    ("s", "save what was done as a replay"),
+];
+
+pub(super) fn draw(list: &mut DrawList, [width, height]: [f32; 2]) {
+    let (column, columns) = (width_of("x", 1.0) * 16.0, width_of("x", 1.0) * 64.0);
+    let tall = CELL_HEIGHT * LINES.len() as f32;
+    let corner = [((width - columns) / 2.0).max(8.0), ((height - tall) / 2.0).max(8.0)];
+    theme::panel(list, corner, [columns, tall]);
+    for (row, (keys, what)) in LINES.iter().enumerate() {
+        let y = corner[1] + row as f32 * CELL_HEIGHT;
+        list.text([corner[0], y], 1.0, theme::ACCENT, *keys);
+        list.text([corner[0] + column, y], 1.0, theme::INK, *what);
+    }
+}

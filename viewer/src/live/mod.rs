@@ -1,0 +1,196 @@
+//! [`Live`]: a world that one can act in while it runs.
+
+mod act;
+mod hand;
+mod pick;
+mod spawn;
+
+pub use act::{Act, Aim, Form, Held, Playground};
+
+use lockstep2d::hash::StateHash;
+use lockstep2d::lockstep::{Game, Sandbox, SandboxSave, SandboxSetup};
+use lockstep2d::replay::{Limits, RecordError};
+use lockstep2d::scenes::Scene;
+use lockstep2d::world::{Command, World};
+
+use crate::source::{Source, SourceError};
+use crate::tape::{Tape, TapeError};
+use hand::Hand;
+
+/// A sandbox that one acts in, and its history.
+///
+/// Everything that happens is on a tape: one can pause, step back and go to any tick since the start. Who then only plays
+/// on sees the same again, as recorded. Only an [`Act`] that changes something cuts the tape there, and drops what came
+/// after. The tape is a replay at any time, which verifies.
+///
+/// ```
+/// use lockstep2d::scenes::Scene;
+/// use lockstep2d_viewer::{Source, live::{Act, Live, Playground}};
+///
+/// let scene = Scene::find("box_stack").expect("a scene");
+/// let mut live = Live::scene(scene, 0)?;
+/// live.seek(30)?;
+/// live.act(Act::Gravity(lockstep2d::math::Vec2::ZERO));
+/// live.seek(60)?;
+/// live.seek(10)?;
+/// assert_eq!((live.tick(), live.recorded()), (10, 60));
+/// let file = live.save_replay().expect("it records")?;
+/// assert!(lockstep2d::replay::verify::<lockstep2d::lockstep::Sandbox>(&file, &Default::default()).is_match());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub struct Live {
+    name: String,
+    scene: Option<&'static Scene>,
+    tape: Tape<Sandbox>,
+    hand: Hand,
+    acts: Vec<Act>,
+    /// What there is to say about the last act.
+    note: Option<&'static str>,
+}
+
+impl Live {
+    /// A scene; what its script does goes on.
+    ///
+    /// # Errors
+    /// [`RecordError`] when it is none that a replay can hold.
+    pub fn scene(scene: &'static Scene, seed: u64) -> Result<Self, RecordError> {
+        let live = Self::new(scene.name, &scene.setup(seed))?;
+        Ok(Live { scene: Some(scene), ..live })
+    }
+
+    /// A world of any setup.
+    ///
+    /// # Errors
+    /// [`RecordError`] when nothing can start from it, or nothing that a replay can hold.
+    pub fn new(name: impl Into<String>, setup: &SandboxSetup) -> Result<Self, RecordError> {
+        let tape = Tape::start(setup, |save: &SandboxSave| save.world.rollback_bytes())?;
+        Ok(Live { name: name.into(), scene: None, tape, hand: Hand::new(0), acts: Vec::new(), note: None })
+    }
+
+    /// The sandbox as of now.
+    #[must_use]
+    pub fn game(&self) -> &Sandbox {
+        self.tape.game()
+    }
+
+    /// Plays one tick: with what there is to do, or else as it is on the tape.
+    fn step(&mut self) -> Result<(), TapeError> {
+        let world = self.tape.game().world();
+        let goes_on = self.tape.is_at_end();
+        let mut done = Vec::new();
+        if goes_on {
+            self.hand.follow(world, &mut done);
+        }
+        for act in self.acts.drain(..) {
+            self.hand.act(act, world, &mut done);
+        }
+        if !goes_on && done.is_empty() {
+            return self.tape.replay_tick();
+        }
+        self.hand.pull(world, &mut done);
+        self.play(done)
+    }
+
+    fn play(&mut self, done: Vec<Command>) -> Result<(), TapeError> {
+        let script = self.scene.map(|scene| scene.commands(self.tape.tick(), self.tape.game()));
+        let script = script.unwrap_or_default();
+        let all = [[script.clone(), done].concat()];
+        self.note = None;
+        match self.tape.play(&all) {
+            // More than a replay can hold: without what was done there is at least the script.
+            Err(TapeError::TooMuch | TapeError::Record(_)) if all[0].len() > script.len() => {
+                self.hand.forget();
+                self.note = Some("too much at once: nothing was done");
+                if self.tape.is_at_end() { self.tape.play(&[script]) } else { self.tape.replay_tick() }
+            }
+            result => result,
+        }
+    }
+}
+
+impl Playground for Live {
+    fn act(&mut self, act: Act) {
+        // Only the last of several places to drag to matters.
+        if let (Act::DragTo(_), Some(Act::DragTo(_))) = (act, self.acts.last()) {
+            self.acts.pop();
+        }
+        self.acts.push(act);
+    }
+
+    fn held(&self) -> Option<Held> {
+        self.hand.held()
+    }
+
+    fn waiting(&self) -> usize {
+        self.acts.len()
+    }
+}
+
+impl Source for Live {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn world(&mut self) -> &World {
+        self.tape.game().world()
+    }
+
+    fn hash(&self) -> StateHash {
+        self.tape.game().state_hash()
+    }
+
+    fn tick(&self) -> u64 {
+        self.tape.tick()
+    }
+
+    /// It goes on for ever.
+    fn ticks(&self) -> Option<u64> {
+        None
+    }
+
+    fn recorded(&self) -> u64 {
+        self.tape.ticks()
+    }
+
+    fn tick_rate(&self) -> u32 {
+        self.tape.game().tick_rate()
+    }
+
+    /// Forwards it plays: what there is to do is done in the next tick, and beyond what has been played the world goes
+    /// on. Backwards, what there is to do is forgotten, and what is held is let go.
+    fn seek(&mut self, tick: u64) -> Result<(), SourceError> {
+        if tick < self.tick() {
+            self.acts.clear();
+            self.hand.forget();
+            return self.tape.seek(tick).map_err(SourceError::of);
+        }
+        while self.tick() < tick {
+            if self.acts.is_empty() && !self.tape.is_at_end() {
+                self.tape.seek(tick.min(self.recorded())).map_err(SourceError::of)?;
+            } else {
+                self.step().map_err(SourceError::of)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn playground(&mut self) -> Option<&mut dyn Playground> {
+        Some(self)
+    }
+
+    fn save_replay(&mut self) -> Option<Result<Vec<u8>, SourceError>> {
+        Some(self.tape.to_replay().map_err(SourceError::of))
+    }
+
+    fn status(&self) -> String {
+        let refused = self.tape.game().refused();
+        let course = if self.tape.is_at_end() { "live" } else { "recorded" };
+        let mut status = format!("{course} · {refused} commands refused");
+        status.extend(self.note.map(|note| format!(" · {note}")));
+        let work = self.tape.work();
+        if work > Limits::default().total_work {
+            status += &format!(" · verify it with --max-work {work}");
+        }
+        status
+    }
+}

@@ -1,0 +1,128 @@
+//! A replay to look at.
+
+use lockstep2d::hash::StateHash;
+use lockstep2d::lockstep::Game;
+use lockstep2d::replay::{Limits, Playback, Step, Timeline, TimelineOptions, Verdict};
+use lockstep2d::world::World;
+use lockstep2d_picture::{Camera, DrawList};
+
+use super::{Source, SourceError};
+
+/// Ticks from one keyframe to the next: to go back takes less than that many ticks, half a second of large scenes.
+const INTERVAL: u32 = 60;
+
+/// How much is verified at a time, in work units: some milliseconds.
+const THINK_WORK: u64 = 100_000;
+
+/// A replay of a game that has a world: verified while one looks at it.
+pub struct Replay<G: Game> {
+    name: String,
+    timeline: Timeline<'static, G>,
+    /// The verifier, until there is a verdict.
+    check: Option<Box<Playback<'static, G>>>,
+    verdict: Option<Verdict>,
+    /// What is shown of a game without a world.
+    nothing: World,
+    decorate: Decorate<G>,
+}
+
+/// Draws on top of the world what belongs to a game.
+type Decorate<G> = fn(&G, &mut DrawList, &Camera);
+
+impl<G: Game> Replay<G> {
+    /// Opens a replay.
+    ///
+    /// # Errors
+    /// The [`Verdict`] if nothing of it can be played.
+    pub fn open(name: &str, bytes: &'static [u8], limits: &Limits) -> Result<Self, Verdict> {
+        let options = TimelineOptions { interval: INTERVAL, ..TimelineOptions::default() };
+        let timeline = Timeline::open(bytes, &options, limits)?;
+        let check = Some(Box::new(Playback::open(bytes, limits)?));
+        Ok(Replay {
+            name: name.into(),
+            timeline,
+            check,
+            verdict: None,
+            nothing: World::default(),
+            decorate: |_, _, _| {},
+        })
+    }
+
+    /// Draws something on top of the world: scores, colours of players.
+    #[must_use]
+    pub fn decorated(self, decorate: Decorate<G>) -> Self {
+        Replay { decorate, ..self }
+    }
+
+    /// The game as of now.
+    #[must_use]
+    pub fn game(&self) -> &G {
+        self.timeline.game()
+    }
+
+    fn go(&mut self, tick: u64) -> Result<(), SourceError> {
+        if tick == self.timeline.tick() {
+            return Ok(());
+        }
+        // From the tick before, so that what is no state, such as contact points, is there to be seen.
+        let Some(before) = tick.checked_sub(1) else {
+            return self.timeline.seek(tick).map_err(SourceError::of);
+        };
+        self.timeline.seek(before).map_err(SourceError::of)?;
+        self.timeline.step().map(drop).map_err(SourceError::of)
+    }
+}
+
+impl<G: Game> Source for Replay<G> {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn world(&mut self) -> &World {
+        self.timeline.world().unwrap_or(&self.nothing)
+    }
+
+    fn hash(&self) -> StateHash {
+        self.timeline.game().state_hash()
+    }
+
+    fn tick(&self) -> u64 {
+        self.timeline.tick()
+    }
+
+    fn ticks(&self) -> Option<u64> {
+        Some(self.timeline.ticks())
+    }
+
+    fn tick_rate(&self) -> u32 {
+        self.timeline.game().tick_rate()
+    }
+
+    fn seek(&mut self, tick: u64) -> Result<(), SourceError> {
+        self.go(tick.min(self.timeline.ticks()))
+    }
+
+    fn decorate(&mut self, list: &mut DrawList, camera: &Camera) {
+        (self.decorate)(self.timeline.game(), list, camera);
+    }
+
+    fn status(&self) -> String {
+        match (&self.verdict, &self.check) {
+            (Some(verdict), _) => verdict.to_string(),
+            (None, Some(check)) => format!("verifying: tick {} of {}", check.tick(), check.ticks()),
+            (None, None) => String::new(),
+        }
+    }
+
+    fn think(&mut self) -> bool {
+        let Some(check) = &mut self.check else { return false };
+        let enough = check.work().saturating_add(THINK_WORK);
+        while check.work() < enough {
+            if !matches!(check.step(), Ok(Step::Ticked)) {
+                self.verdict = self.check.take().map(|check| check.conclude());
+                return false;
+            }
+        }
+        true
+    }
+}

@@ -1,0 +1,107 @@
+//! A snapshot to look at: a world that one can let go on.
+
+use std::collections::BTreeMap;
+
+use lockstep2d::hash::StateHash;
+use lockstep2d::world::{self, World};
+
+use super::{Source, SourceError};
+
+/// Ticks from one save to the next.
+const INTERVAL: u64 = 30;
+/// Most saves: then every second one goes.
+const SAVES_MAX: usize = 256;
+
+/// A world from a snapshot, and what becomes of it when nobody does anything.
+///
+/// *Tick t* is that of the world, so the first is that of the snapshot.
+pub struct Snapshot {
+    name: String,
+    world: World,
+    first: u64,
+    last: u64,
+    saves: BTreeMap<u64, world::Snapshot>,
+    interval: u64,
+}
+
+impl Snapshot {
+    /// Shows a world.
+    #[must_use]
+    pub fn new(name: &str, world: World) -> Self {
+        let first = world.tick();
+        let saves = BTreeMap::from([(first, world.save())]);
+        Snapshot { name: name.into(), world, first, last: first, saves, interval: INTERVAL }
+    }
+
+    fn step(&mut self) {
+        self.world.step();
+        let tick = self.world.tick();
+        self.last = self.last.max(tick);
+        if (tick - self.first).is_multiple_of(self.interval) && !self.saves.contains_key(&tick) {
+            self.saves.insert(tick, self.world.save());
+            if self.saves.len() > SAVES_MAX {
+                self.interval *= 2;
+                let (first, interval) = (self.first, self.interval);
+                self.saves.retain(|tick, _| (tick - first).is_multiple_of(interval));
+            }
+        }
+    }
+}
+
+impl Source for Snapshot {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn world(&mut self) -> &World {
+        &self.world
+    }
+
+    fn hash(&self) -> StateHash {
+        self.world.state_hash()
+    }
+
+    fn tick(&self) -> u64 {
+        self.world.tick()
+    }
+
+    fn first(&self) -> u64 {
+        self.first
+    }
+
+    fn ticks(&self) -> Option<u64> {
+        None
+    }
+
+    fn recorded(&self) -> u64 {
+        self.last
+    }
+
+    fn tick_rate(&self) -> u32 {
+        self.world.config().tick_rate
+    }
+
+    fn seek(&mut self, tick: u64) -> Result<(), SourceError> {
+        let tick = tick.max(self.first);
+        if tick < self.world.tick() {
+            // From a tick before, so that contacts are there to be seen.
+            let before = tick.saturating_sub(1).max(self.first);
+            if let Some((_, save)) = self.saves.range(..=before).next_back() {
+                self.world.restore(save);
+            }
+        }
+        while self.world.tick() < tick {
+            self.step();
+        }
+        Ok(())
+    }
+
+    fn status(&self) -> String {
+        match self.tick() == self.first {
+            true => "a snapshot".into(),
+            false => {
+                format!("{} ticks after the snapshot, if nobody does anything", self.tick() - self.first)
+            }
+        }
+    }
+}

@@ -1,0 +1,127 @@
+//! [`History`]: saves of a game to go back to.
+
+use std::collections::BTreeMap;
+
+/// How many saves there are at most, whatever they take: looking through them has to cost nothing.
+const FRAMES_MAX: usize = 2048;
+/// Within so many ticks of where one is, saves are as dense as anywhere: ten seconds at 60 Hz.
+const NEAR: u64 = 600;
+
+/// Saves of a game after some ticks, within a budget.
+///
+/// When it is used up, those go whose loss is felt the least: the further from where one is, the further apart they may
+/// be. So a step back costs little, and going back far costs in proportion to how far it is.
+pub(super) struct History<S> {
+    frames: BTreeMap<u64, Frame<S>>,
+    bytes: usize,
+    bytes_max: usize,
+}
+
+struct Frame<S> {
+    save: S,
+    bytes: usize,
+}
+
+impl<S> History<S> {
+    /// The save before the first tick, which always stays.
+    pub(super) fn new(first: S, bytes_max: usize) -> Self {
+        let frames = BTreeMap::from([(0, Frame { save: first, bytes: 0 })]);
+        History { frames, bytes: 0, bytes_max }
+    }
+
+    /// The last save up to a tick.
+    pub(super) fn latest(&self, tick: u64) -> Option<(u64, &S)> {
+        self.frames.range(..=tick).next_back().map(|(tick, frame)| (*tick, &frame.save))
+    }
+
+    pub(super) fn has(&self, tick: u64) -> bool {
+        self.frames.contains_key(&tick)
+    }
+
+    /// Keeps a save that takes so many bytes of its own, and drops others for it that are of less use to who is `here`.
+    pub(super) fn keep(&mut self, tick: u64, save: S, bytes: usize, here: u64) {
+        if self.has(tick) {
+            return;
+        }
+        self.bytes += bytes;
+        self.frames.insert(tick, Frame { save, bytes });
+        while self.bytes > self.bytes_max || self.frames.len() > FRAMES_MAX {
+            let Some(tick) = self.least_useful(here) else { break };
+            self.remove(tick);
+        }
+    }
+
+    /// Forgets everything after a tick.
+    pub(super) fn truncate(&mut self, tick: u64) {
+        if let Some(next) = tick.checked_add(1) {
+            let cut = self.frames.split_off(&next);
+            self.bytes -= cut.values().map(|frame| frame.bytes).sum::<usize>();
+        }
+    }
+
+    fn remove(&mut self, tick: u64) {
+        if let Some(frame) = self.frames.remove(&tick) {
+            self.bytes -= frame.bytes;
+        }
+    }
+
+    /// Neither the first nor the last: that without which the gap is the smallest for its distance.
+    fn least_useful(&self, here: u64) -> Option<u64> {
+        let (before, at, after) =
+            (self.frames.keys(), self.frames.keys().skip(1), self.frames.keys().skip(2));
+        let gaps = before.zip(at).zip(after).map(|((before, at), after)| (after - before, *at));
+        let felt = |&(gap, at): &(u64, u64)| (u128::from(gap) << 32) / u128::from(here.abs_diff(at) + NEAR);
+        gaps.min_by_key(felt).map(|(_, at)| at)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn kept(history: &History<u64>) -> Vec<u64> {
+        history.frames.keys().copied().collect()
+    }
+
+    #[test]
+    fn what_is_near_is_dense_and_what_is_far_is_not_forgotten() {
+        let mut history = History::new(0, 100 * 10);
+        for tick in (4..=40_000).step_by(4) {
+            history.keep(tick, tick, 10, tick);
+        }
+        let kept = kept(&history);
+        assert_eq!((kept.len(), kept[0], kept[100]), (101, 0, 40_000));
+        for pair in kept.windows(2) {
+            let (gap, age) = (pair[1] - pair[0], 40_000 - pair[0]);
+            assert!(gap <= 40 + age / 8, "{gap} ticks at {age}");
+        }
+    }
+
+    #[test]
+    fn who_goes_back_gets_dense_saves_there() {
+        let mut history = History::new(0, 50 * 10);
+        (4..=10_000).step_by(4).for_each(|tick| history.keep(tick, tick, 10, tick));
+        (3000..=3200).step_by(4).for_each(|tick| history.keep(tick, tick, 10, 3200));
+        let near = kept(&history).into_iter().filter(|tick| (3000..=3200).contains(tick)).count();
+        assert!(near >= 4, "{near}");
+        assert!(kept(&history).len() <= 51);
+    }
+
+    #[test]
+    fn a_cut_forgets_what_came_after() {
+        let mut history = History::new(0, 1000);
+        (1..=10).for_each(|tick| history.keep(tick * 10, tick, 7, tick));
+        history.truncate(50);
+        assert_eq!((kept(&history), history.bytes), (vec![0, 10, 20, 30, 40, 50], 35));
+        assert_eq!(history.latest(49), Some((40, &4)));
+        history.truncate(0);
+        assert_eq!((kept(&history), history.bytes), (vec![0], 0));
+    }
+
+    #[test]
+    fn the_first_and_the_last_stay_in_any_case() {
+        let mut history = History::new(0, 1);
+        (1..=10).for_each(|tick| history.keep(tick, tick, 100, tick));
+        assert_eq!(kept(&history), [0, 10]);
+    }
+}

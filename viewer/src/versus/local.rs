@@ -1,0 +1,167 @@
+//! [`Versus`]: a match on one machine.
+
+use lockstep2d::hash::StateHash;
+use lockstep2d::lockstep::Game;
+use lockstep2d::replay::RecordError;
+use lockstep2d::world::World;
+use lockstep2d_picture::{Camera, DrawList};
+use lockstep2d_shove::{Bot, Pad, Save, Setup, Shove};
+
+use super::decorate::{decorate, headline};
+use super::keys::{Keys, Side};
+use crate::event::Event;
+use crate::source::{Source, SourceError};
+use crate::tape::{Tape, TapeError};
+
+/// Who sits on a seat.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Chair {
+    /// A person with these keys.
+    Person(Side),
+    /// A bot.
+    Bot,
+    /// Nobody.
+    Empty,
+}
+
+/// A match of people at one keyboard, and of bots.
+///
+/// As in a live sandbox, everything is on a tape: one can go back to any tick. There it is played again as recorded, until
+/// one of the people presses one of their keys: then the match goes on from there, and what came after is dropped.
+pub struct Versus {
+    tape: Tape<Shove>,
+    players: Vec<Player>,
+}
+
+enum Player {
+    Person(Keys),
+    Bot(Bot),
+    Nobody,
+}
+
+impl Versus {
+    /// A match of `chairs.len()` seats, 2 to 4.
+    ///
+    /// # Errors
+    /// [`RecordError`] when there are not as many, or the setup is unplayable otherwise.
+    pub fn new(setup: Setup, chairs: &[Chair]) -> Result<Self, RecordError> {
+        let setup = Setup { seats: u8::try_from(chairs.len()).unwrap_or(u8::MAX), ..setup };
+        let tape = Tape::start(&setup, Save::rollback_bytes)?;
+        let player = |(seat, chair): (u8, &Chair)| match chair {
+            Chair::Person(side) => Player::Person(Keys::new(*side)),
+            Chair::Bot => Player::Bot(Bot::new(setup.seed, seat)),
+            Chair::Empty => Player::Nobody,
+        };
+        Ok(Versus { tape, players: (0..).zip(chairs).map(player).collect() })
+    }
+
+    /// Two people at one keyboard, the first on the left side of it, and as many bots.
+    ///
+    /// # Errors
+    /// As [`Versus::new`].
+    pub fn for_two(seed: u64, bots: usize) -> Result<Self, RecordError> {
+        let mut chairs = vec![Chair::Person(Side::Left), Chair::Person(Side::Right)];
+        chairs.resize(2 + bots.min(2), Chair::Bot);
+        Self::new(Setup { seed, ..Setup::default() }, &chairs)
+    }
+
+    /// The match as of now.
+    #[must_use]
+    pub fn game(&self) -> &Shove {
+        self.tape.game()
+    }
+
+    fn step(&mut self) -> Result<(), TapeError> {
+        if !self.tape.is_at_end() && !self.somebody_presses() {
+            return self.tape.replay_tick();
+        }
+        let game = self.tape.game();
+        let pads: Vec<_> = self.players.iter_mut().map(|player| player.pad(game)).collect();
+        self.tape.play(&pads)
+    }
+
+    fn somebody_presses(&self) -> bool {
+        self.players.iter().any(|player| match player {
+            Player::Person(keys) => keys.pad() != Pad::default(),
+            _ => false,
+        })
+    }
+}
+
+impl Player {
+    fn pad(&mut self, game: &Shove) -> Pad {
+        match self {
+            Player::Person(keys) => keys.pad(),
+            Player::Bot(bot) => bot.pad(game),
+            Player::Nobody => Pad::ABSENT,
+        }
+    }
+}
+
+impl Source for Versus {
+    fn name(&self) -> &str {
+        "shove"
+    }
+
+    fn world(&mut self) -> &World {
+        self.tape.game().world()
+    }
+
+    fn hash(&self) -> StateHash {
+        self.tape.game().state_hash()
+    }
+
+    fn tick(&self) -> u64 {
+        self.tape.tick()
+    }
+
+    /// It goes on for ever: after the last round, the world does.
+    fn ticks(&self) -> Option<u64> {
+        None
+    }
+
+    fn recorded(&self) -> u64 {
+        self.tape.ticks()
+    }
+
+    fn tick_rate(&self) -> u32 {
+        self.tape.game().tick_rate()
+    }
+
+    /// Forwards it plays; backwards it only looks.
+    fn seek(&mut self, tick: u64) -> Result<(), SourceError> {
+        if tick < self.tick() {
+            return self.tape.seek(tick).map_err(SourceError::of);
+        }
+        while self.tick() < tick {
+            if self.tape.is_at_end() || self.somebody_presses() {
+                self.step().map_err(SourceError::of)?;
+            } else {
+                self.tape.seek(tick.min(self.recorded())).map_err(SourceError::of)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn handle(&mut self, event: &Event) -> bool {
+        // Everybody sees it: nobody may miss that a key goes up.
+        let taken = self.players.iter_mut().map(|player| match player {
+            Player::Person(keys) => keys.handle(event),
+            _ => false,
+        });
+        taken.fold(false, |any, taken| any | taken)
+    }
+
+    fn decorate(&mut self, list: &mut DrawList, camera: &Camera) {
+        decorate(self.tape.game(), list, camera);
+    }
+
+    fn save_replay(&mut self) -> Option<Result<Vec<u8>, SourceError>> {
+        Some(self.tape.to_replay().map_err(SourceError::of))
+    }
+
+    fn status(&self) -> String {
+        let course = if self.tape.is_at_end() { "live" } else { "recorded" };
+        format!("{course} · {}", headline(self.tape.game()))
+    }
+}

@@ -1,0 +1,152 @@
+//! Keys and buttons, as miniquad names them.
+
+use lockstep2d_viewer::{Button, Key};
+use miniquad::{KeyCode, MouseButton};
+
+/// Which keys are down.
+#[derive(Debug, Default)]
+pub(super) struct Keyboard {
+    down: Vec<KeyCode>,
+}
+
+impl Keyboard {
+    /// A key goes down, or is held for so long that it repeats. The key, if that is for the viewer.
+    pub(super) fn down(&mut self, code: KeyCode, repeat: bool) -> Option<Key> {
+        let key = key(code)?;
+        if !self.down.contains(&code) {
+            self.down.push(code);
+        }
+        (!repeat || repeats(key)).then_some(key)
+    }
+
+    /// A key goes up. The key, unless another one of the same meaning is still down, as there are two Shift keys.
+    pub(super) fn up(&mut self, code: KeyCode) -> Option<Key> {
+        self.down.retain(|&down| down != code);
+        let key = key(code)?;
+        let held = self.down.iter().any(|&down| self::key(down) == Some(key));
+        (!held).then_some(key)
+    }
+
+    /// All keys go up.
+    pub(super) fn release(&mut self) -> Vec<Key> {
+        self.down.drain(..).filter_map(key).collect()
+    }
+}
+
+/// Keys that go a step each time; the others switch things, which would flicker.
+fn repeats(key: Key) -> bool {
+    let steps = [Key::Left, Key::Right, Key::Up, Key::Down, Key::PageUp, Key::PageDown];
+    steps.contains(&key) || matches!(key, Key::Character(',' | '.' | '+' | '-' | '='))
+}
+
+/// A key, or `None` for those that nobody asks about.
+fn key(code: KeyCode) -> Option<Key> {
+    Some(match code {
+        KeyCode::Space => Key::Space,
+        KeyCode::Left => Key::Left,
+        KeyCode::Right => Key::Right,
+        KeyCode::Up => Key::Up,
+        KeyCode::Down => Key::Down,
+        KeyCode::Home => Key::Home,
+        KeyCode::End => Key::End,
+        KeyCode::PageUp => Key::PageUp,
+        KeyCode::PageDown => Key::PageDown,
+        KeyCode::Enter | KeyCode::KpEnter => Key::Enter,
+        KeyCode::Escape => Key::Escape,
+        KeyCode::Delete | KeyCode::Backspace => Key::Delete,
+        KeyCode::Tab => Key::Tab,
+        KeyCode::LeftShift | KeyCode::RightShift => Key::Shift,
+        KeyCode::LeftControl | KeyCode::RightControl => Key::Control,
+        other => Key::Character(character(other)?),
+    })
+}
+
+fn character(code: KeyCode) -> Option<char> {
+    // The codes of these keys are those of their characters.
+    let ascii = u8::try_from(code as u16).ok().map(char::from).filter(char::is_ascii_graphic);
+    ascii.map(|character| character.to_ascii_lowercase()).or(match code {
+        KeyCode::KpAdd => Some('+'),
+        KeyCode::KpSubtract => Some('-'),
+        KeyCode::KpMultiply => Some('*'),
+        KeyCode::KpDivide => Some('/'),
+        KeyCode::KpDecimal => Some('.'),
+        KeyCode::Kp0 => Some('0'),
+        KeyCode::Kp1 => Some('1'),
+        KeyCode::Kp2 => Some('2'),
+        KeyCode::Kp3 => Some('3'),
+        KeyCode::Kp4 => Some('4'),
+        KeyCode::Kp5 => Some('5'),
+        KeyCode::Kp6 => Some('6'),
+        KeyCode::Kp7 => Some('7'),
+        KeyCode::Kp8 => Some('8'),
+        KeyCode::Kp9 => Some('9'),
+        _ => None,
+    })
+}
+
+/// A button, or `None` for those that nobody asks about.
+pub(super) fn button(button: MouseButton) -> Option<Button> {
+    match button {
+        MouseButton::Left => Some(Button::Left),
+        MouseButton::Middle => Some(Button::Middle),
+        MouseButton::Right => Some(Button::Right),
+        MouseButton::Unknown => None,
+    }
+}
+
+/// What miniquad says when a wheel is turned by a notch: a line, or the distance by which a page would scroll.
+const NOTCH: f32 = if cfg!(target_arch = "wasm32") {
+    100.0
+} else if cfg!(target_os = "windows") {
+    120.0
+} else {
+    1.0
+};
+
+/// By how many notches a wheel was turned. At most ten at once.
+pub(super) fn notches(turned: f32) -> f32 {
+    let notches = turned / NOTCH;
+    if notches.is_finite() { notches.clamp(-10.0, 10.0) } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn letters_are_in_lower_case_and_both_shifts_are_one_key() {
+        assert_eq!(key(KeyCode::A), Some(Key::Character('a')));
+        assert_eq!(key(KeyCode::Key7), Some(Key::Character('7')));
+        assert_eq!(key(KeyCode::Comma), Some(Key::Character(',')));
+        assert_eq!(key(KeyCode::Kp3), Some(Key::Character('3')));
+        assert_eq!(key(KeyCode::LeftShift), key(KeyCode::RightShift));
+        assert_eq!(key(KeyCode::F1), None);
+        assert_eq!(key(KeyCode::World1), None);
+    }
+
+    #[test]
+    fn a_shift_key_is_up_when_both_are() {
+        let mut keyboard = Keyboard::default();
+        assert_eq!(keyboard.down(KeyCode::LeftShift, false), Some(Key::Shift));
+        assert_eq!(keyboard.down(KeyCode::RightShift, false), Some(Key::Shift));
+        assert_eq!(keyboard.up(KeyCode::LeftShift), None);
+        assert_eq!(keyboard.up(KeyCode::RightShift), Some(Key::Shift));
+    }
+
+    #[test]
+    fn held_keys_repeat_if_they_go_a_step() {
+        let mut keyboard = Keyboard::default();
+        assert_eq!(keyboard.down(KeyCode::Right, true), Some(Key::Right));
+        assert_eq!(keyboard.down(KeyCode::Space, false), Some(Key::Space));
+        assert_eq!(keyboard.down(KeyCode::Space, true), None);
+        assert_eq!(keyboard.release(), [Key::Right, Key::Space]);
+        assert_eq!(keyboard.release(), []);
+    }
+
+    #[test]
+    fn wheels_turn_by_notches() {
+        assert_eq!(notches(NOTCH), 1.0);
+        assert_eq!(notches(-1e9), -10.0);
+        assert_eq!(notches(f32::NAN), 0.0);
+    }
+}

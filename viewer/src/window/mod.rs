@@ -1,0 +1,82 @@
+//! The window: miniquad's events for the viewer, and its draw list on the screen.
+
+#[cfg_attr(target_arch = "wasm32", path = "page.rs")]
+mod host;
+mod keys;
+#[cfg(not(target_arch = "wasm32"))]
+mod performance;
+mod renderer;
+mod stage;
+
+use std::cell::RefCell;
+use std::fmt;
+use std::path::PathBuf;
+use std::rc::Rc;
+
+use lockstep2d_viewer::App;
+use lockstep2d_viewer::script::Script;
+use miniquad::conf::{Conf, LinuxBackend, Platform};
+
+use host::Host;
+use stage::Stage;
+
+/// Something lively to begin with.
+pub(crate) const FIRST_SCENE: &str = "ragdoll";
+
+/// What a window is to be.
+pub(crate) struct Options {
+    /// Width and height.
+    pub(crate) size: [u16; 2],
+    /// What to do instead of waiting for a person.
+    pub(crate) script: Option<Script>,
+    /// Where to save what is recorded.
+    pub(crate) output: Option<PathBuf>,
+}
+
+/// Why a window was closed that nobody closed.
+#[derive(Debug)]
+pub(crate) enum WindowError {
+    /// The graphics driver takes no shader.
+    Graphics(miniquad::ShaderError),
+    /// A file could not be read or written.
+    #[cfg(not(target_arch = "wasm32"))]
+    File { path: String, error: std::io::Error },
+}
+
+impl fmt::Display for WindowError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            WindowError::Graphics(error) => write!(f, "cannot draw with this graphics driver: {error}"),
+            #[cfg(not(target_arch = "wasm32"))]
+            WindowError::File { path, error } => write!(f, "{path}: {error}"),
+        }
+    }
+}
+
+impl std::error::Error for WindowError {}
+
+/// How the window ended.
+type Outcome = Rc<RefCell<Result<(), WindowError>>>;
+
+/// Shows the viewer in a window until it is closed. In a browser, it returns at once and goes on by itself.
+pub(crate) fn show(app: App, options: Options) -> Result<(), WindowError> {
+    let [width, height] = options.size.map(i32::from);
+    let conf = Conf {
+        window_title: "lockstep2d".to_owned(),
+        window_width: width,
+        window_height: height,
+        high_dpi: true,
+        icon: None,
+        platform: Platform {
+            linux_wm_class: "lockstep2d",
+            linux_backend: LinuxBackend::X11WithWaylandFallback,
+            ..Platform::default()
+        },
+        ..Conf::default()
+    };
+    let outcome = Outcome::new(RefCell::new(Ok(())));
+    let host = Host::new(options.output);
+    let shared = Rc::clone(&outcome);
+    miniquad::start(conf, move || Stage::start(app, options.script, host, shared));
+    outcome.replace(Ok(()))
+}

@@ -1,0 +1,55 @@
+//! Two replays, one over the other.
+
+use lockstep2d::fx;
+use lockstep2d::math::Vec2;
+use lockstep2d::world::Command;
+use lockstep2d_viewer::{Event, Key};
+
+use super::common::{app_of, frames, press, replay, texts, wait_for};
+
+/// Somebody pushes the fifth body before tick 90.
+fn pushed() -> Vec<u8> {
+    replay("box_stack", 200, |tick, game| {
+        let fifth = game.world().bodies().filter(|(_, body)| body.is_dynamic()).nth(4).unwrap();
+        let (body, impulse, point) = (fifth.0, Vec2::new(fx!(0.001), fx!(0)), fifth.1.centre_of_mass());
+        if tick == 90 { vec![Command::ApplyImpulse { body, impulse, point }] } else { vec![] }
+    })
+}
+
+#[test]
+fn the_first_tick_body_and_field_that_differ_are_found_and_shown() {
+    let mut app = app_of(replay("box_stack", 200, |_, _| vec![]));
+    app.compare_with("pushed.replay", pushed()).unwrap();
+    let found = (0..1000).find_map(|_| {
+        frames(&mut app, 1);
+        Some(app.report().status).filter(|status| status.contains("part at tick"))
+    });
+    let found = found.unwrap();
+    assert!(found.contains("part at tick 91: body "), "{found}");
+    assert!(found.contains("(bits "), "both values: {found}");
+    press(&mut app, Key::Character('j'));
+    wait_for(&mut app, 91);
+    let rings = |app: &mut lockstep2d_viewer::App| {
+        let list = app.draw();
+        list.items()
+            .iter()
+            .filter(|item| item.closed && item.fill.is_none() && item.points.count == 24)
+            .count()
+    };
+    assert!(rings(&mut app) >= 1);
+    press(&mut app, Key::Left);
+    wait_for(&mut app, 90);
+    assert_eq!(rings(&mut app), 0, "nothing differs yet");
+}
+
+#[test]
+fn the_same_replay_twice_has_no_difference() {
+    let file = replay("box_stack", 200, |_, _| vec![]);
+    let mut app = app_of(file.clone());
+    app.handle(Event::Pressed(Key::Shift));
+    app.handle(Event::Dropped { name: "again.replay".into(), bytes: file });
+    app.handle(Event::Released(Key::Shift));
+    frames(&mut app, 500);
+    assert!(app.report().status.contains("the same up to tick 200"), "{}", app.report());
+    assert!(texts(&mut app).iter().any(|line| line.contains("the same up to tick 200")));
+}

@@ -1,0 +1,52 @@
+//! What the command says before there is a window.
+#![expect(clippy::unwrap_used, reason = "what fails here is the test")]
+
+use std::path::PathBuf;
+use std::process::{Command, Output};
+
+fn viewer(args: &[&str]) -> (Option<i32>, String, String) {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_lockstep2d-viewer"));
+    // Nobody is to see these windows.
+    command.env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY").args(args);
+    let Output { status, stdout, stderr } = command.output().unwrap();
+    let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
+    (status.code(), text(stdout), text(stderr))
+}
+
+fn file(name: &str, bytes: &[u8]) -> String {
+    let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
+    std::fs::write(&path, bytes).unwrap();
+    path.to_str().unwrap().to_owned()
+}
+
+#[test]
+fn it_lists_its_scenes() {
+    let (code, scenes, errors) = viewer(&["--list"]);
+    assert_eq!((code, errors.as_str()), (Some(0), ""));
+    assert_eq!(scenes.lines().count(), lockstep2d::scenes::ALL.len());
+    assert!(scenes.lines().any(|line| line.starts_with("pyramid ")));
+}
+
+#[test]
+fn it_says_what_is_wrong() {
+    let garbage = file("garbage.replay", b"no replay at all");
+    let script = file("bad-script.txt", b"frames 3\n\njump 5\n");
+    let cases: [(&[&str], &str); 7] = [
+        (&["--scene", "nowhere"], "--list says which there are"),
+        (&["no such file"], "no such file: "),
+        (&[&garbage], "garbage.replay: neither a report nor a replay nor a snapshot"),
+        (&["--script", &script], "bad-script.txt: line 3: there is no instruction \"jump\""),
+        (&["--size", "9x9"], "should be a width and a height"),
+        (&["--frobnicate"], "unexpected argument"),
+        (&["--scene", "pyramid"], "no display"),
+    ];
+    for (args, expected) in cases {
+        // Elsewhere than on Linux, windows need no such variable.
+        if expected == "no display" && !cfg!(target_os = "linux") {
+            continue;
+        }
+        let (code, _, errors) = viewer(args);
+        assert_eq!(code, Some(2), "{args:?}: {errors}");
+        assert!(errors.contains(expected), "{args:?}: {errors}");
+    }
+}

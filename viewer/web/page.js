@@ -1,0 +1,105 @@
+// What connects the page with the viewer: files go in, a line about what is shown comes out.
+//
+// ?file=URL opens a file, ?scene=NAME a scene.
+"use strict";
+
+const element = (id) => document.getElementById(id);
+
+// Written with a capital, as the library names them.
+const VERDICTS = /\b(match|claim mismatch|diverged|incomplete|malformed|limit exceeded|unverifiable)\b/;
+
+function report([name, tick, ticks, hash, status]) {
+    element("name").textContent = name;
+    element("tick").textContent = ticks === "" ? `tick ${tick}` : `tick ${tick} of ${ticks}`;
+    element("hash").textContent = hash;
+    element("verdict").textContent = status.replace(VERDICTS, (verdict) => verdict.charAt(0).toUpperCase() + verdict.slice(1));
+}
+
+function save([name, digits]) {
+    const bytes = Uint8Array.from(digits.match(/../g) ?? [], (pair) => parseInt(pair, 16));
+    const link = document.createElement("a");
+    link.href = URL.createObjectURL(new Blob([bytes]));
+    link.download = name;
+    link.click();
+    setTimeout(() => URL.revokeObjectURL(link.href), 60_000);
+}
+
+const LINES = { "lockstep2d.report": report, "lockstep2d.save": save };
+
+function fail(message) {
+    element("verdict").textContent = message;
+}
+
+// Hands bytes to the viewer, as if they had been dropped on a window.
+function give(bytes) {
+    const start = wasm_exports.allocate_vec_u8(bytes.length);
+    new Uint8Array(wasm_memory.buffer, start, bytes.length).set(bytes);
+    return [start, bytes.length];
+}
+
+function show(name, bytes) {
+    const file = [...give(new TextEncoder().encode(name)), ...give(bytes)];
+    wasm_exports.on_files_dropped_start();
+    wasm_exports.on_file_dropped(...file);
+    wasm_exports.on_files_dropped_finish();
+    element("glcanvas").focus();
+}
+
+async function showFiles(files) {
+    for (const file of files) {
+        show(file.name, new Uint8Array(await file.arrayBuffer()));
+    }
+}
+
+async function showUrl(url) {
+    const answer = await fetch(url);
+    if (!answer.ok) {
+        throw new Error(`${answer.status} ${answer.statusText}`);
+    }
+    show(url.split("/").pop(), new Uint8Array(await answer.arrayBuffer()));
+}
+
+// Instead of miniquad's way, which takes names to be as many bytes as letters.
+window.addEventListener("drop", (event) => {
+    event.preventDefault();
+    event.stopImmediatePropagation();
+    showFiles(Array.from(event.dataTransfer.files));
+}, { capture: true });
+element("file").addEventListener("change", (event) => showFiles(Array.from(event.target.files)));
+
+// The first frame is when the viewer listens.
+let started = false;
+function start() {
+    if (started) {
+        return;
+    }
+    started = true;
+    const wishes = new URLSearchParams(location.search);
+    if (wishes.has("scene")) {
+        show(`${wishes.get("scene")}.scene`, new Uint8Array(0));
+    }
+    if (wishes.has("file")) {
+        showUrl(wishes.get("file")).catch((error) => fail(`${wishes.get("file")}: ${error.message}`));
+    }
+}
+
+miniquad_add_plugin({
+    name: "lockstep2d",
+    version: 1,
+    register_plugin(imports) {
+        const info = imports.env.console_info;
+        imports.env.console_info = (text) => {
+            const [kind, ...fields] = UTF8ToString(text).split("\t");
+            if (!(kind in LINES)) {
+                return info(text);
+            }
+            LINES[kind](fields);
+            // Not now: this is called by the viewer, which takes nothing while it speaks.
+            setTimeout(start);
+        };
+        imports.env.console_error = (text) => fail(UTF8ToString(text));
+        imports.env.console_log = (text) => fail(UTF8ToString(text));
+    },
+});
+
+load("viewer.wasm");
