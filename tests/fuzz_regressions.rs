@@ -249,6 +249,23 @@ fn a_snapshot_that_hides_the_floor_from_the_broad_phase_is_refused() {
 }
 
 #[test]
+fn a_snapshot_of_a_kinematic_body_that_rests_and_moves_is_refused() {
+    // When it stopped, nobody was told that its contacts rest.
+    let mut world = weightless();
+    world.spawn(&BodyDef::kinematic().position(fx!(3.25), fx!(0)), &[]).unwrap();
+    world.step();
+    let push = |bytes: &mut Vec<u8>| {
+        let place = fx!(3.25).to_bits().to_le_bytes();
+        let body = bytes.windows(8).position(|window| window == place).expect("the body is there");
+        // Two coordinates and an angle, then the velocity.
+        bytes[body + 20..body + 24].copy_from_slice(&1000i32.to_le_bytes());
+    };
+    let refusal = World::from_bytes(&forged(&world, push)).unwrap_err().to_string();
+    assert!(refusal.ends_with("at rest and moving"), "{refusal}");
+    assert!(World::from_bytes(&forged(&world, |_| ())).is_ok());
+}
+
+#[test]
 fn many_shapes_added_in_one_tick_are_work() {
     let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).unwrap());
     let setup = SandboxSetup {

@@ -91,6 +91,9 @@ fn check_body(state: &State, id: BodyId, body: &Body) -> Result<(), Violation> {
         BodyKind::Dynamic => state.config.ticks_to_sleep(),
     };
     check(body.rest_ticks <= sleepiest, || at("too sleepy to be awake"))?;
+    // It is seen where it stops only if it has not been at rest before.
+    let rests = body.kind == BodyKind::Kinematic && body.rest_ticks != 0;
+    check(!(rests && body.is_moving()), || at("at rest and moving"))?;
     let locks = body.settings.locks;
     let held = !(locks.x && body.velocity.x != 0 || locks.y && body.velocity.y != 0);
     check(held, || at("moves along a locked axis"))?;

@@ -101,7 +101,9 @@ impl State {
         }
         body.rest();
         if body.kind != BodyKind::Dynamic {
-            body.rest_ticks = body.rest_ticks.min((body.kind == BodyKind::Kinematic).into());
+            let still = body.velocity == (0, 0) && body.spin == 0;
+            let may_rest = body.kind == BodyKind::Kinematic && still;
+            body.rest_ticks = body.rest_ticks.min(may_rest.into());
         }
         self.weigh(index)
     }
