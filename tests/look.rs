@@ -50,6 +50,16 @@ fn the_ground_bears_the_weight() {
 }
 
 #[test]
+fn a_contact_is_printed_without_its_world() {
+    let mut world = empty();
+    slab(&mut world);
+    square(&mut world, fx!(0), fx!(0.5));
+    run(&mut world, 2);
+    let printed = format!("{:?}", world.contacts().next().unwrap());
+    assert!(printed.contains("touching: true") && printed.len() < 500, "{printed}");
+}
+
+#[test]
 fn each_box_of_a_stack_bears_those_above() {
     let mut world = empty();
     slab(&mut world);

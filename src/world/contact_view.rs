@@ -1,5 +1,7 @@
 //! The contacts of the last tick, to look at.
 
+use core::fmt;
+
 use super::World;
 use crate::body::ShapeId;
 use crate::collision::{Contact, Manifold, ManifoldPoint};
@@ -8,7 +10,7 @@ use crate::math::{Fx, Speed, fx_div, fx_mul, widen};
 pub use crate::solver::SolverColour;
 
 /// Two shapes in contact.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy)]
 pub struct ContactView<'a> {
     /// The shape in the smaller slot.
     pub shape_a: ShapeId,
@@ -20,6 +22,19 @@ pub struct ContactView<'a> {
     pub manifold: &'a Manifold,
     world: &'a World,
     contact: &'a Contact,
+}
+
+/// Without the world that it is a part of.
+impl fmt::Debug for ContactView<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("ContactView")
+            .field("shape_a", &self.shape_a)
+            .field("shape_b", &self.shape_b)
+            .field("touching", &self.touching)
+            .field("normal", &self.manifold.normal)
+            .field("points", &self.manifold.points())
+            .finish_non_exhaustive()
+    }
 }
 
 /// What a contact point exerts on shape B.

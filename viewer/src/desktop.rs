@@ -10,6 +10,8 @@ use lockstep2d_viewer::script::Script;
 
 use crate::window::{self, Options};
 
+#[cfg(target_os = "linux")]
+mod display;
 mod shove;
 
 /// Shows replays, snapshots and live scenes of lockstep2d in a window.
@@ -105,11 +107,8 @@ fn run(args: Args) -> Result<(), Trouble> {
             return Err(Trouble(format!("there is no scene {:?}: --list says which there are", args.scene)));
         }
     }
-    if cfg!(target_os = "linux")
-        && ["DISPLAY", "WAYLAND_DISPLAY"].iter().all(|name| std::env::var_os(name).is_none())
-    {
-        return Err(Trouble("no display: neither DISPLAY nor WAYLAND_DISPLAY is set".to_owned()));
-    }
+    #[cfg(target_os = "linux")]
+    display::check().map_err(Trouble)?;
     let options = Options { size: args.size, script, output: args.output };
     window::show(app, options).map_err(|error| Trouble(error.to_string()))
 }

@@ -28,6 +28,18 @@ fn it_lists_its_scenes() {
 }
 
 #[test]
+#[cfg(target_os = "linux")]
+fn it_says_that_nobody_answers() {
+    for display in [":4711", "unix:4711.0", "/nowhere"] {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_lockstep2d-viewer"));
+        let output = command.env_remove("WAYLAND_DISPLAY").env("DISPLAY", display).output().unwrap();
+        let errors = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{errors}");
+        assert!(errors.contains(&format!("nothing answers at DISPLAY={display}")), "{errors}");
+    }
+}
+
+#[test]
 fn it_says_what_is_wrong() {
     let garbage = file("garbage.replay", b"no replay at all");
     let script = file("bad-script.txt", b"frames 3\n\njump 5\n");
