@@ -1,5 +1,7 @@
 //! Shapes: geometry attached to a body, with material and filter.
 
+use alloc::boxed::Box;
+
 use serde::{Deserialize, Serialize};
 
 use super::arena::BodyId;
@@ -194,7 +196,8 @@ fn check_reach(geometry: &Geometry, offset: Vec2<Fx>, reach_max: Fx) -> Result<(
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Shape {
     pub(crate) body: BodyId,
-    pub(crate) def: ShapeDef,
+    /// Elsewhere, so that what steps change lies close together: saving it is a matter of memory.
+    pub(crate) def: Box<ShapeDef>,
     /// The box that the broad phase sees: it contains the shape and where it may get within the tick, with a
     /// margin so that it seldom changes. It decides which pairs exist, so it is state.
     pub(crate) fat: Aabb,

@@ -185,7 +185,7 @@ impl World {
         if other_role {
             self.forget_contacts(&[id]);
         }
-        self.state.shapes.redefine(id.slot()).def = *def;
+        *self.state.shapes.redefine(id.slot()).def = *def;
         self.state.bodies.redefine(slot).set_mass(mass);
         self.replace(slot);
         self.scratch.changes.rules = true;
@@ -218,7 +218,7 @@ impl World {
     }
 
     fn change_shape(&mut self, id: ShapeId, change: impl FnOnce(&mut ShapeDef)) -> Result<(), WorldError> {
-        let mut def = self.state.shapes.get(id).ok_or(WorldError::StaleShape(id))?.def;
+        let mut def = *self.state.shapes.get(id).ok_or(WorldError::StaleShape(id))?.def;
         change(&mut def);
         self.set_shape(id, &def)
     }

@@ -1,5 +1,6 @@
 //! Changes to a world between ticks. Each one either happens or returns an error and leaves the world as it was.
 
+use alloc::boxed::Box;
 use alloc::vec::Vec;
 
 use serde::{Deserialize, Serialize};
@@ -138,7 +139,7 @@ impl World {
         let body = shape.body();
         let owner = self.state.bodies.at(body.slot());
         let rest = owner.shapes.iter().filter(|&&other| other != id);
-        let rest = rest.map(|other| &self.state.shapes.at(other.slot()).def);
+        let rest = rest.map(|other| self.state.shapes.at(other.slot()).def());
         let mass = mass_of(owner.kind(), owner.mass_source, &owner.settings, rest)?;
         self.check_spin(owner, &mass)?;
         islands::disturb(&mut self.state, &mut self.scratch, body.slot());
@@ -226,7 +227,7 @@ impl World {
     }
 
     pub(super) fn shape_defs<'a>(&'a self, body: &'a Body) -> impl Iterator<Item = &'a ShapeDef> + Clone {
-        body.shapes.iter().map(|id| &self.state.shapes.at(id.slot()).def)
+        body.shapes.iter().map(|id| self.state.shapes.at(id.slot()).def())
     }
 
     pub(super) fn check_velocity(
@@ -254,7 +255,7 @@ impl World {
         let State { bodies, shapes, config, .. } = &mut *self.state;
         let owner = bodies.redefine(body.slot());
         let fat = fat_box(def, owner, config);
-        let id = shapes.insert(Shape { body, def: *def, fat });
+        let id = shapes.insert(Shape { body, def: Box::new(*def), fat });
         owner.shapes.push(id);
         id
     }

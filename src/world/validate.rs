@@ -99,7 +99,7 @@ fn check_body(state: &State, id: BodyId, body: &Body) -> Result<(), Violation> {
     check(held, || at("moves along a locked axis"))?;
     let reachable = |target: Pose| body.kind == BodyKind::Kinematic && inside(target.centre);
     check(body.target.is_none_or(reachable), || at("a target that it cannot have"))?;
-    let shapes = body.shapes.iter().map(|shape| &state.shapes.at(shape.slot()).def);
+    let shapes = body.shapes.iter().map(|shape| state.shapes.at(shape.slot()).def());
     let mass = mass_of(body.kind, body.mass_source, &body.settings, shapes)
         .map_err(|error| Violation { what: at(&format!("{error}")) })?;
     check(mass == body.mass, || at("mass does not follow from its shapes"))

@@ -38,7 +38,7 @@ pub(super) struct Ends {
 
 impl Ends {
     pub(super) fn prepare(joint: &Joint, (slot_a, a): (u32, &Body), (slot_b, b): (u32, &Body)) -> Self {
-        let JointDef { frame_a, frame_b, .. } = &joint.def;
+        let JointDef { frame_a, frame_b, .. } = &*joint.def;
         let axis = Rot::from_angle(frame_a.angle);
         Ends {
             body_a: slot_a,

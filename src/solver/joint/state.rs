@@ -1,5 +1,7 @@
 //! Joints as the state keeps them.
 
+use alloc::boxed::Box;
+
 use serde::{Deserialize, Serialize};
 
 use super::super::settings::Tuning;
@@ -11,7 +13,8 @@ use crate::math::{Angle, Fx, Rot, Speed, TAU, Vec2, fx_mul};
 /// A joint in the world.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Joint {
-    pub(crate) def: JointDef,
+    /// Elsewhere, so that what every step changes lies close together: saving it is a matter of memory.
+    pub(crate) def: Box<JointDef>,
     pub(crate) impulses: JointImpulses,
     /// The angle of B's frame in A's when it was last looked at, in units of 2^-32 turn: which turn it is in.
     pub(crate) turns: i64,
@@ -37,7 +40,7 @@ impl JointImpulses {
 
 impl Joint {
     pub(crate) fn new(def: JointDef) -> Self {
-        Joint { def, impulses: JointImpulses::default(), turns: 0 }
+        Joint { def: Box::new(def), impulses: JointImpulses::default(), turns: 0 }
     }
 
     /// Takes another definition. Impulses mean the same as long as the kind is the same.
@@ -45,7 +48,7 @@ impl Joint {
         if core::mem::discriminant(&def.kind) != core::mem::discriminant(&self.def.kind) {
             self.impulses = JointImpulses::default();
         }
-        self.def = def;
+        *self.def = def;
     }
 
     /// Whether the solver has to do with it.

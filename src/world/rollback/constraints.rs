@@ -89,7 +89,7 @@ fn unpack_contact(mut head: Fields<'_, HEAD_BYTES>, impulses: &mut Reader<'_>) -
 
 /// A joint without what a step changes.
 pub(super) fn lasting_joint(joint: &Joint) -> Joint {
-    Joint::new(joint.def)
+    Joint::new(*joint.def)
 }
 
 pub(super) fn pack_joints(joints: &Arena<Joint, JointId>, bytes: &mut Vec<u8>) {
