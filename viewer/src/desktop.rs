@@ -26,9 +26,9 @@ struct Args {
     /// The scene of the live sandbox: `--list` says which there are.
     #[arg(long, value_name = "NAME", conflicts_with = "file", default_value = window::FIRST_SCENE)]
     scene: String,
-    /// What a scene that has something random in it is made from.
-    #[arg(long, default_value_t = 0, conflicts_with = "file", global = true)]
-    seed: u64,
+    /// What a scene, or a match, that has something random in it is made from; 0 unless told.
+    #[arg(long, value_name = "NUMBER", global = true)]
+    seed: Option<u64>,
     /// Lists the scenes.
     #[arg(long)]
     list: bool,
@@ -93,16 +93,21 @@ fn run(args: Args) -> Result<(), Trouble> {
             Some(Script::parse(&text).map_err(|error| trouble(path, &error))?)
         }
     };
+    // Nothing that is global can be in conflict with what is not.
+    if args.seed.is_some() && args.file.is_some() {
+        return Err(Trouble("--seed is for scenes and matches: a file has what it was made from".to_owned()));
+    }
+    let seed = args.seed.unwrap_or_default();
     let mut app = App::default();
     match (&args.game, &args.file) {
-        (Some(Game::Shove(shove)), _) => app.show(shove.open(args.seed)?),
+        (Some(Game::Shove(shove)), _) => app.show(shove.open(seed)?),
         (None, Some(path)) => {
             app.show_file(&name(path), read(path)?).map_err(|error| trouble(path, &error))?;
             if let Some(other) = &args.other {
                 app.compare_with(&name(other), read(other)?).map_err(|error| trouble(other, &error))?;
             }
         }
-        (None, None) if app.show_scene(&args.scene, args.seed) => {}
+        (None, None) if app.show_scene(&args.scene, seed) => {}
         (None, None) => {
             return Err(Trouble(format!("there is no scene {:?}: --list says which there are", args.scene)));
         }
@@ -123,4 +128,15 @@ fn read(path: &Path) -> Result<Vec<u8>, Trouble> {
 
 fn trouble(path: &Path, error: &dyn fmt::Display) -> Trouble {
     Trouble(format!("{}: {error}", path.display()))
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    /// As far as there are debug assertions: it is they that check.
+    #[test]
+    fn the_arguments_go_together() {
+        super::Args::command().debug_assert();
+    }
 }

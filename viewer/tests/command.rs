@@ -43,13 +43,14 @@ fn it_says_that_nobody_answers() {
 fn it_says_what_is_wrong() {
     let garbage = file("garbage.replay", b"no replay at all");
     let script = file("bad-script.txt", b"frames 3\n\njump 5\n");
-    let cases: [(&[&str], &str); 7] = [
+    let cases: [(&[&str], &str); 8] = [
         (&["--scene", "nowhere"], "--list says which there are"),
         (&["no such file"], "no such file: "),
         (&[&garbage], "garbage.replay: neither a report nor a replay nor a snapshot"),
         (&["--script", &script], "bad-script.txt: line 3: there is no instruction \"jump\""),
         (&["--size", "9x9"], "should be a width and a height"),
         (&["--frobnicate"], "unexpected argument"),
+        (&["--seed", "1", &garbage], "--seed is for scenes"),
         (&["--scene", "pyramid"], "no display"),
     ];
     for (args, expected) in cases {
