@@ -1,6 +1,6 @@
 //! Ordinary scenes: moderate sizes, masses and speeds; piles, containers, drums and chains, in which much touches
-//! and nothing should reach a clamp. One in five hundred does: where a chain is spawned across a pile, boxes are wedged
-//! between its links, and joints and contacts cannot both have their way.
+//! and nothing should reach a clamp. One in five hundred does; those looked at all have joints. A chain that is spawned
+//! across a pile has boxes wedged between its links, and joints and contacts cannot both have their way.
 
 use lockstep2d::body::{BodyDef, BodyId, BodyKind, Geometry, ShapeDef};
 use lockstep2d::fx;
