@@ -1,8 +1,8 @@
 //! What is where: questions about the shapes of a world, between ticks. They change nothing, see every enabled body as
 //! it is at the moment, and allocate nothing but lists of results.
 //!
-//! The order of results is part of the contract: along a ray or a cast by fraction, and where two are equal by slot;
-//! everywhere else in slot order.
+//! The order of results is part of the contract: along a ray or a cast by the fraction before it is rounded (so that the
+//! nearer of two comes first on a ray of any length), and where two are equal by slot; everywhere else in slot order.
 
 use alloc::vec::Vec;
 use core::ops::ControlFlow;
