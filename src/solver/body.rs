@@ -38,6 +38,13 @@ impl SolverBody {
         self.spin = Speed::from_bits(spin);
     }
 
+    /// Sets how far it has come.
+    #[inline(always)]
+    pub(super) fn set_shift(&mut self, x: i32, y: i32, turn: i32) {
+        self.shift = Vec2::new(Shift::from_bits(x), Shift::from_bits(y));
+        self.turn = Shift::from_bits(turn);
+    }
+
     /// Sets the velocity, every component kept within [`SPEED_MAX`].
     #[inline]
     pub(crate) fn set_velocity(&mut self, x: Speed, y: Speed, spin: Speed, faults: &mut Faults) {

@@ -26,7 +26,7 @@ pub use colour::SolverColour;
 use colour::{Colouring, Node};
 use contact::{ContactSet, Pass, Sweep, Task};
 pub(crate) use contact::{Surface, WarmStarts};
-use integrate::{Mover, SubStep};
+use integrate::{Mover, integrate_displacements, integrate_velocities};
 use joint::JointSet;
 pub use joint::{
     Distance, Drive, Joint, JointDef, JointFrame, JointKind, Limit, LinearDrive, Motor, Prismatic, Pull,
@@ -150,18 +150,15 @@ impl Solver {
     /// refresh joints, relax without bias. `index` counts the sub-steps since the world was made.
     pub(crate) fn sub_step(&mut self, index: u64, tuning: &Tuning) {
         self.joints.aim(&self.list.bodies, tuning);
-        for mover in &self.movers {
-            mover.integrate_velocity(&mut self.list.bodies, tuning.speed_max);
-        }
+        let bodies = SolverBody::cells(&mut self.list.bodies);
+        integrate_velocities(&self.movers, bodies, self.machine, tuning);
         self.warm_start(tuning);
         let iterations = tuning.iterations * if self.is_cold() { COLD_ROUNDS } else { 1 };
         for iteration in 0..iterations {
             self.solve(Pass::Bias, Sweep::of(index, iteration), tuning);
         }
-        let sub_step = SubStep::of(tuning.rate);
-        for mover in &self.movers {
-            mover.integrate_displacement(&mut self.list.bodies, &sub_step, &mut self.faults);
-        }
+        let bodies = SolverBody::cells(&mut self.list.bodies);
+        integrate_displacements(&self.movers, bodies, self.machine, tuning, &mut self.faults);
         self.joints.refresh(&mut self.list.bodies, self.machine, tuning);
         if tuning.relax {
             for iteration in 0..iterations {

@@ -285,24 +285,35 @@ impl Lanes<WIDTH> for Avx2 {
     }
 
     #[inline(always)]
-    fn set_velocities(bodies: &[Cell<SolverBody>], at: &[u32; WIDTH], v: Motion<__m256i>) {
-        // SAFETY: see `Avx2`; the first 16 bytes of a body.
-        unsafe {
-            let zero = _mm256_setzero_si256();
-            let (xy_low, xy_high) = (_mm256_unpacklo_epi32(v.x, v.y), _mm256_unpackhi_epi32(v.x, v.y));
-            let (t_low, t_high) = (_mm256_unpacklo_epi32(v.turn, zero), _mm256_unpackhi_epi32(v.turn, zero));
-            let pairs = [
-                _mm256_unpacklo_epi64(xy_low, t_low),
-                _mm256_unpackhi_epi64(xy_low, t_low),
-                _mm256_unpacklo_epi64(xy_high, t_high),
-                _mm256_unpackhi_epi64(xy_high, t_high),
-            ];
-            for (lane, &pair) in pairs.iter().enumerate() {
-                let (low, high) = (_mm256_castsi256_si128(pair), _mm256_extracti128_si256::<1>(pair));
-                for (at, velocity) in [(at[lane], low), (at[lane + 4], high)] {
-                    if at != GROUND {
-                        _mm_store_si128(SolverBody::velocity_bits(&bodies[at as usize]).cast(), velocity);
-                    }
+    fn set_velocities(bodies: &[Cell<SolverBody>], at: &[u32; WIDTH], velocities: Motion<__m256i>) {
+        set_motions(at, velocities, |at| SolverBody::velocity_bits(&bodies[at as usize]));
+    }
+
+    #[inline(always)]
+    fn set_shifts(bodies: &[Cell<SolverBody>], at: &[u32; WIDTH], shifts: Motion<__m256i>) {
+        set_motions(at, shifts, |at| SolverBody::shift_bits(&bodies[at as usize]));
+    }
+}
+
+/// Writes three numbers of all bodies, and a 0, to where each body has them, but for the ground.
+#[inline(always)]
+fn set_motions(at: &[u32; WIDTH], v: Motion<__m256i>, place: impl Fn(u32) -> *mut i32) {
+    // SAFETY: see `Avx2`; 16 bytes of a body.
+    unsafe {
+        let zero = _mm256_setzero_si256();
+        let (xy_low, xy_high) = (_mm256_unpacklo_epi32(v.x, v.y), _mm256_unpackhi_epi32(v.x, v.y));
+        let (t_low, t_high) = (_mm256_unpacklo_epi32(v.turn, zero), _mm256_unpackhi_epi32(v.turn, zero));
+        let pairs = [
+            _mm256_unpacklo_epi64(xy_low, t_low),
+            _mm256_unpackhi_epi64(xy_low, t_low),
+            _mm256_unpacklo_epi64(xy_high, t_high),
+            _mm256_unpackhi_epi64(xy_high, t_high),
+        ];
+        for (lane, &pair) in pairs.iter().enumerate() {
+            let (low, high) = (_mm256_castsi256_si128(pair), _mm256_extracti128_si256::<1>(pair));
+            for (at, motion) in [(at[lane], low), (at[lane + 4], high)] {
+                if at != GROUND {
+                    _mm_store_si128(place(at).cast(), motion);
                 }
             }
         }

@@ -118,6 +118,8 @@ pub(super) trait Lanes<const N: usize>: Copy {
     fn shifts(bodies: &[Cell<SolverBody>], at: &[u32; N]) -> Motion<Self::Int>;
     /// Sets the velocities of bodies, but for those at [`super::body_list::GROUND`].
     fn set_velocities(bodies: &[Cell<SolverBody>], at: &[u32; N], velocities: Motion<Self::Int>);
+    /// Sets how far bodies have come, but for those at the ground's place.
+    fn set_shifts(bodies: &[Cell<SolverBody>], at: &[u32; N], shifts: Motion<Self::Int>);
 }
 
 /// What can be done with any lanes.

@@ -207,4 +207,13 @@ impl<const N: usize> Lanes<N> for Scalar<N> {
             bodies[at as usize].set(body);
         }
     }
+
+    #[inline(always)]
+    fn set_shifts(bodies: &[Cell<SolverBody>], at: &[u32; N], shifts: Motion<[i32; N]>) {
+        for (lane, &at) in at.iter().enumerate().filter(|&(_, &at)| at != GROUND) {
+            let mut body = bodies[at as usize].get();
+            body.set_shift(shifts.x[lane], shifts.y[lane], shifts.turn[lane]);
+            bodies[at as usize].set(body);
+        }
+    }
 }

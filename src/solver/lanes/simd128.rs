@@ -229,14 +229,25 @@ impl Lanes<WIDTH> for Simd128 {
     }
 
     #[inline(always)]
-    fn set_velocities(bodies: &[Cell<SolverBody>], at: &[u32; WIDTH], v: Motion<Ints32>) {
-        let zero = i32x4_splat(0);
-        for (half, at) in at.chunks_exact(4).enumerate() {
-            let rows = transposed([v.x[half], v.y[half], v.turn[half], zero]);
-            for (&at, row) in at.iter().zip(rows).filter(|&(&at, _)| at != GROUND) {
-                // SAFETY: the first 16 bytes of a body.
-                unsafe { v128_store(SolverBody::velocity_bits(&bodies[at as usize]).cast(), row) };
-            }
+    fn set_velocities(bodies: &[Cell<SolverBody>], at: &[u32; WIDTH], velocities: Motion<Ints32>) {
+        set_motions(at, velocities, |at| SolverBody::velocity_bits(&bodies[at as usize]));
+    }
+
+    #[inline(always)]
+    fn set_shifts(bodies: &[Cell<SolverBody>], at: &[u32; WIDTH], shifts: Motion<Ints32>) {
+        set_motions(at, shifts, |at| SolverBody::shift_bits(&bodies[at as usize]));
+    }
+}
+
+/// Writes three numbers of all bodies, and a 0, to where each body has them, but for the ground.
+#[inline(always)]
+fn set_motions(at: &[u32; WIDTH], v: Motion<Ints32>, place: impl Fn(u32) -> *mut i32) {
+    let zero = i32x4_splat(0);
+    for (half, at) in at.chunks_exact(4).enumerate() {
+        let rows = transposed([v.x[half], v.y[half], v.turn[half], zero]);
+        for (&at, row) in at.iter().zip(rows).filter(|&(&at, _)| at != GROUND) {
+            // SAFETY: 16 bytes of a body.
+            unsafe { v128_store(place(at).cast(), row) };
         }
     }
 }

@@ -1,0 +1,139 @@
+//! The same for any number of bodies at a time.
+
+use core::cell::Cell;
+
+use super::super::body::SolverBody;
+use super::super::lanes::{Kernel, Lanes, Motion};
+use super::super::limits::Faults;
+use super::super::pair::{UNIT, beyond};
+use super::sub_step::SubStep;
+use super::{Mover, SHIFT_MAX};
+use crate::math::{Speed, Unit};
+
+/// New velocities.
+pub(super) struct Velocities<'a> {
+    pub(super) movers: &'a [Mover],
+    pub(super) bodies: &'a [Cell<SolverBody>],
+    pub(super) speed_max: Speed,
+}
+
+/// New displacements.
+pub(super) struct Displacements<'a> {
+    pub(super) movers: &'a [Mover],
+    pub(super) bodies: &'a [Cell<SolverBody>],
+    pub(super) sub_step: SubStep,
+    pub(super) faults: &'a mut Faults,
+}
+
+impl<const N: usize> Kernel<N> for Velocities<'_> {
+    #[inline(always)]
+    fn run<L: Lanes<N>>(self) {
+        let Velocities { movers, bodies, speed_max } = self;
+        let speed_max_on_axis = on_axis(speed_max);
+        for movers in movers.chunks(N) {
+            let limits = (L::splat(speed_max_on_axis), L::splat(speed_max.to_bits()));
+            let is_done =
+                movers.first_chunk().is_some_and(|movers| velocities::<L, N>(movers, bodies, limits));
+            if !is_done {
+                one_by_one(movers, bodies, |mover, body| mover.integrate_velocity(body, speed_max));
+            }
+        }
+    }
+}
+
+impl<const N: usize> Kernel<N> for Displacements<'_> {
+    #[inline(always)]
+    fn run<L: Lanes<N>>(self) {
+        let Displacements { movers, bodies, sub_step, faults } = self;
+        for movers in movers.chunks(N) {
+            let is_done =
+                movers.first_chunk().is_some_and(|movers| displacements::<L, N>(movers, bodies, sub_step));
+            if !is_done {
+                one_by_one(movers, bodies, |mover, body| {
+                    mover.integrate_displacement(body, sub_step, faults);
+                });
+            }
+        }
+    }
+}
+
+#[cold]
+fn one_by_one(
+    movers: &[Mover],
+    bodies: &[Cell<SolverBody>],
+    mut integrate: impl FnMut(&Mover, &mut SolverBody),
+) {
+    for mover in movers {
+        let place = &bodies[mover.index as usize];
+        let mut body = place.get();
+        integrate(mover, &mut body);
+        place.set(body);
+    }
+}
+
+/// The largest speed along both axes at once that is within the limit: the limit over the square root of 2.
+fn on_axis(speed_max: Speed) -> i32 {
+    let square = u64::from(speed_max.unsigned_abs().to_bits()).pow(2);
+    i32::try_from((square / 2).isqrt()).expect("less than the limit")
+}
+
+/// Does nothing, and says so, if any of the bodies is not just dynamic and free, or may be too fast: on an axis, or
+/// turning.
+#[inline(always)]
+fn velocities<L: Lanes<N>, const N: usize>(
+    movers: &[Mover; N],
+    bodies: &[Cell<SolverBody>],
+    (on_axis, turning): (L::Int, L::Int),
+) -> bool {
+    let [step_x, step_y, step_turn, _] = L::transposed(movers.each_ref().map(|mover| &mover.step));
+    let [linear, angular, special, _] = L::transposed(movers.each_ref().map(|mover| &mover.factors));
+    let at = movers.each_ref().map(|mover| mover.index);
+    let Motion { x, y, turn } = L::velocities(bodies, &at);
+    let [x, y] = [L::add_saturating(x, step_x), L::add_saturating(y, step_y)];
+    let turn = L::add_saturating(turn, step_turn);
+    let fast = L::either(beyond::<L, N>(x, on_axis), beyond::<L, N>(y, on_axis));
+    let unusual = L::either(L::negative(special), L::either(fast, beyond::<L, N>(turn, turning)));
+    if L::any(unusual) {
+        return false;
+    }
+    let mut velocities = Motion { x, y, turn };
+    if L::any(L::greater(L::splat(Unit::ONE.to_bits()), L::min(linear, angular))) {
+        velocities.x = towards_rest::<L, N>(x, linear);
+        velocities.y = towards_rest::<L, N>(y, linear);
+        velocities.turn = towards_rest::<L, N>(turn, angular);
+    }
+    L::set_velocities(bodies, &at, velocities);
+    true
+}
+
+/// A damped speed, rounded towards 0, of one that has a sign to spare.
+#[inline(always)]
+fn towards_rest<L: Lanes<N>, const N: usize>(speed: L::Int, factor: L::Int) -> L::Int {
+    let reversed = L::sub(L::splat(0), speed);
+    let size = L::mul(L::max(speed, reversed), factor);
+    // Half a unit less is rounded to the unit below.
+    let less = L::narrow::<UNIT>(L::sub_wide(size, L::mul(L::splat(1 << (UNIT - 1)), L::splat(1))));
+    L::select(L::negative(speed), L::sub(L::splat(0), less), less)
+}
+
+/// Does nothing, and says so, if any of the bodies is not just dynamic and free, or would come too far in the tick.
+#[inline(always)]
+fn displacements<L: Lanes<N>, const N: usize>(
+    movers: &[Mover; N],
+    bodies: &[Cell<SolverBody>],
+    sub_step: SubStep,
+) -> bool {
+    let at = movers.each_ref().map(|mover| mover.index);
+    let (speeds, shifts) = (L::velocities(bodies, &at), L::shifts(bodies, &at));
+    let advance = |sum, speed| L::add_saturating(sum, sub_step.distances::<L, N>(speed));
+    let (x, y) = (advance(shifts.x, speeds.x), advance(shifts.y, speeds.y));
+    let turn = advance(shifts.turn, speeds.turn);
+    let limit = L::splat(SHIFT_MAX.to_bits());
+    let far = L::either(beyond::<L, N>(x, limit), beyond::<L, N>(y, limit));
+    let is_special = movers.iter().any(Mover::is_special);
+    if is_special || L::any(L::either(far, beyond::<L, N>(turn, limit))) {
+        return false;
+    }
+    L::set_shifts(bodies, &at, Motion { x, y, turn });
+    true
+}

@@ -1,0 +1,171 @@
+//! Semi-implicit Euler: velocities first, then displacements from the new velocities. Eight bodies at a time where all of
+//! them are dynamic, free and within all limits (`kernel`), as most are; one by one where not.
+
+mod kernel;
+mod sub_step;
+#[cfg(test)]
+mod tests;
+
+use core::cell::Cell;
+
+use super::body::SolverBody;
+use super::lanes::{Machine, Quad};
+use super::limits::Faults;
+use super::settings::Tuning;
+use crate::body::{Body, BodyKind, BodySettings, MotionLocks};
+use crate::math::{Fx, Shift, Speed, Unit, Vec2, fx_div, fx_mul, narrow, saturate};
+use sub_step::SubStep;
+
+/// How far a body comes in a tick, at most.
+const SHIFT_MAX: Shift = Shift::lit("15.999");
+
+/// A body that moves, and what changes its velocity in every sub-step of the tick.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Mover {
+    /// By gravity and applied force along x and y, and by applied torque.
+    step: Quad,
+    /// What damping leaves of the velocity and of the spin, `1 / (1 + h c)`, the implicit step, stable for any rate `c`.
+    /// Negative in the third place if the body is not just dynamic and free.
+    factors: Quad,
+    index: u32,
+    dynamic: bool,
+    locks: MotionLocks,
+}
+
+impl Mover {
+    pub(super) fn prepare(index: u32, body: &Body, tuning: &Tuning) -> Option<Self> {
+        match body.kind() {
+            BodyKind::Fixed => None,
+            BodyKind::Kinematic => {
+                let factors = Quad([Unit::ONE.to_bits(), Unit::ONE.to_bits(), -1, 0]);
+                Some(Mover {
+                    step: Quad::default(),
+                    factors,
+                    index,
+                    dynamic: false,
+                    locks: MotionLocks::default(),
+                })
+            }
+            BodyKind::Dynamic => Some(Self::dynamic(index, body, tuning)),
+        }
+    }
+
+    fn dynamic(index: u32, body: &Body, tuning: &Tuning) -> Self {
+        let BodySettings { linear_damping, angular_damping, gravity_scale, locks, .. } = *body.settings();
+        let (force_step, spin_step) = body.acceleration_step(tuning.rate);
+        let gravity = |step: Fx| {
+            if gravity_scale == Fx::ONE { narrow(step) } else { narrow(fx_mul(step, gravity_scale)) }
+        };
+        let gravity_step = Vec2::new(gravity(tuning.gravity_step.x), gravity(tuning.gravity_step.y));
+        let step: Vec2<Speed> = gravity_step + force_step;
+        let factor = |damping| damping_factor(damping, tuning.rate).to_bits();
+        let is_held = i32::from(locks.x || locks.y);
+        Mover {
+            step: Quad([step.x.to_bits(), step.y.to_bits(), spin_step.to_bits(), 0]),
+            factors: Quad([factor(linear_damping), factor(angular_damping), -is_held, 0]),
+            index,
+            dynamic: true,
+            locks,
+        }
+    }
+
+    /// Whether it is not just dynamic and free.
+    #[inline(always)]
+    fn is_special(&self) -> bool {
+        let Quad([_, _, special, _]) = self.factors;
+        special < 0
+    }
+
+    /// `v' = (v + h F / m) / (1 + h c)`, within the world's speed limit.
+    fn integrate_velocity(&self, body: &mut SolverBody, speed_max: Speed) {
+        if !self.dynamic {
+            return;
+        }
+        let [x, y, turn, _] = self.step.0.map(Speed::from_bits);
+        let [linear_factor, angular_factor, ..] = self.factors.0.map(Unit::from_bits);
+        body.velocity += Vec2::new(x, y);
+        body.spin = body.spin.saturating_add(turn);
+        if linear_factor != Unit::ONE {
+            body.velocity = Vec2::new(
+                towards_rest(body.velocity.x, linear_factor),
+                towards_rest(body.velocity.y, linear_factor),
+            );
+        }
+        if angular_factor != Unit::ONE {
+            body.spin = towards_rest(body.spin, angular_factor);
+        }
+        self.hold_locked_axes(body);
+        limit_speed(&mut body.velocity, speed_max);
+        body.spin = body.spin.clamp(-speed_max, speed_max);
+    }
+
+    /// Takes away what impulses have put along locked axes. Rotation is locked by a reciprocal gyration of 0.
+    fn hold_locked_axes(&self, body: &mut SolverBody) {
+        if self.locks.x {
+            body.velocity.x = Speed::ZERO;
+        }
+        if self.locks.y {
+            body.velocity.y = Speed::ZERO;
+        }
+    }
+
+    /// `x' = x + h v'`.
+    fn integrate_displacement(&self, body: &mut SolverBody, sub_step: SubStep, faults: &mut Faults) {
+        self.hold_locked_axes(body);
+        let mut advance = |sum: &mut Shift, speed: Speed| {
+            // Each is below 32, and so is the sum unless impulses exceed the speed limit at less than 32 Hz.
+            let wanted = sum.saturating_add(sub_step.distance(speed));
+            *sum = wanted.clamp(-SHIFT_MAX, SHIFT_MAX);
+            *faults += u64::from(*sum != wanted);
+        };
+        advance(&mut body.shift.x, body.velocity.x);
+        advance(&mut body.shift.y, body.velocity.y);
+        advance(&mut body.turn, body.spin);
+    }
+}
+
+/// New velocities for all that move.
+pub(super) fn integrate_velocities(
+    movers: &[Mover],
+    bodies: &[Cell<SolverBody>],
+    machine: Machine,
+    tuning: &Tuning,
+) {
+    machine.run(kernel::Velocities { movers, bodies, speed_max: tuning.speed_max });
+}
+
+/// New displacements from the new velocities.
+pub(super) fn integrate_displacements(
+    movers: &[Mover],
+    bodies: &[Cell<SolverBody>],
+    machine: Machine,
+    tuning: &Tuning,
+    faults: &mut Faults,
+) {
+    machine.run(kernel::Displacements { movers, bodies, sub_step: SubStep::of(tuning.rate), faults });
+}
+
+/// A damped speed, rounded towards 0: rounded to nearest it would creep on for ever.
+fn towards_rest(speed: Speed, factor: Unit) -> Speed {
+    let product = i64::from(speed.to_bits()) * i64::from(factor.to_bits());
+    Speed::from_bits(saturate(product / (1 << 30)))
+}
+
+fn damping_factor(damping: Fx, rate: u32) -> Unit {
+    if damping == Fx::ZERO {
+        return Unit::ONE;
+    }
+    narrow(fx_div(Fx::ONE, Fx::ONE + damping / i64::from(rate)).unwrap_or(Fx::ONE))
+}
+
+/// Shortens a velocity to the limit, which is a setting and so no fault. Its components are within ±1024, so its
+/// square fits 64 bits.
+fn limit_speed(velocity: &mut Vec2<Speed>, speed_max: Speed) {
+    let square = |speed: Speed| i64::from(speed.to_bits()) * i64::from(speed.to_bits());
+    if square(velocity.x).saturating_add(square(velocity.y)) <= square(speed_max) {
+        return;
+    }
+    if let Some(direction) = velocity.normalized() {
+        *velocity = direction.scale(speed_max);
+    }
+}

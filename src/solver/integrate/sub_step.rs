@@ -1,0 +1,92 @@
+//! What a speed is within a sub-step.
+
+use super::super::lanes::Lanes;
+use crate::math::{Shift, Speed};
+
+/// `1 / rate` seconds: no time step is ever rounded.
+#[derive(Clone, Copy)]
+pub(super) struct SubStep {
+    /// Twice the rate, `d`.
+    divisor: u64,
+    /// `2^64 / d`, rounded up.
+    reciprocal: u64,
+    rate: i32,
+    /// `2^36 / rate`, rounded: below 2^31.
+    coarse: i32,
+}
+
+impl SubStep {
+    /// Of so many in a second, 60 to 4000.
+    pub(super) fn of(rate: u32) -> Self {
+        let divisor = 2 * u64::from(rate);
+        let bits = |number: u64| i32::try_from(number).expect("at least 60 sub-steps in a second");
+        SubStep {
+            divisor,
+            reciprocal: u64::MAX / divisor + 1,
+            rate: bits(rate.into()),
+            coarse: bits(((1 << 37) / u64::from(rate)).div_ceil(2)),
+        }
+    }
+
+    /// `v / rate`, rounded to nearest, ties towards +infinity, by a product instead of a division (T. Granlund,
+    /// P. Montgomery, 1994): the dividend is below 2^48, so that the product is too large by less than `2^48 d`, which
+    /// does not reach the next multiple of `2^64`.
+    #[inline]
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_possible_wrap,
+        clippy::cast_sign_loss,
+        reason = "at most 512 m/s in a sixtieth of a second, and the dividend is positive"
+    )]
+    pub(super) fn distance(&self, speed: Speed) -> Shift {
+        /// Added to every quotient, so that none is negative.
+        const BIAS: u64 = 1 << 34;
+        // A distance has 5 more fraction bits than a speed, and one more is for the half that rounds.
+        let doubled = (i64::from(speed.to_bits()) << 6) + (self.divisor / 2) as i64;
+        let dividend = (doubled + (BIAS * self.divisor) as i64) as u64;
+        let quotient = ((u128::from(dividend) * u128::from(self.reciprocal)) >> 64) as u64;
+        Shift::from_bits((quotient as i64 - BIAS as i64) as i32)
+    }
+
+    /// The same in lanes, by a quotient that is off by one at most and a look at what it leaves: `64 v + rate` less
+    /// `2 rate q` is between 0 and `2 rate`, so that its lowest 32 bits are all of it.
+    #[inline(always)]
+    pub(super) fn distances<L: Lanes<N>, const N: usize>(&self, speed: L::Int) -> L::Int {
+        let double = L::splat(2 * self.rate);
+        // 2^36 v / (2^31 rate), off by half a unit at most, is rounded by another half.
+        let q = L::narrow::<31>(L::mul(speed, L::splat(self.coarse)));
+        let dividend = L::add(L::low(L::mul(speed, L::splat(64))), L::splat(self.rate));
+        let rest = L::sub(dividend, L::low(L::mul(q, double)));
+        let less = L::to_int(L::negative(rest));
+        let more = L::to_int(L::greater(rest, L::sub(double, L::splat(1))));
+        L::sub(L::add(q, less), more)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::lanes::Scalar;
+    use super::*;
+    use crate::math::Rng;
+    use std::vec::Vec;
+
+    #[test]
+    fn a_distance_is_the_rounded_quotient() {
+        let mut rng = Rng::new(1);
+        for rate in 60..=4000 {
+            let sub_step = SubStep::of(rate);
+            let ends = [i32::MIN, i32::MIN + 1, -1, 0, 1, i32::MAX - 1, i32::MAX];
+            let random =
+                core::iter::repeat_with(|| i32::from_le_bytes(rng.next_u32().to_le_bytes())).take(50);
+            // Those just before, at and behind a tie.
+            let ties: Vec<i32> = (0..50).map(|i| (i * i32::try_from(rate).unwrap()) / 64 - 40 + i).collect();
+            for bits in random.collect::<Vec<_>>().into_iter().chain(ends).chain(ties) {
+                let rate = i64::from(rate);
+                let expected = ((i64::from(bits) << 6) + rate).div_euclid(2 * rate);
+                assert_eq!(i64::from(sub_step.distance(Speed::from_bits(bits)).to_bits()), expected);
+                let [wide] = sub_step.distances::<Scalar<1>, 1>([bits]);
+                assert_eq!(i64::from(wide), expected, "{bits} at {rate} Hz");
+            }
+        }
+    }
+}
