@@ -388,3 +388,47 @@ fn a_shape_in_the_slot_of_one_that_slept_has_its_own_surface() {
     world.spawn(&def.velocity(fx!(5), fx!(0)), &[square(fx!(0))]).unwrap();
     caches_decide_nothing(&mut world, 2);
 }
+
+#[test]
+fn a_circle_in_line_with_a_turned_capsule_is_beyond_its_end() {
+    // Rounding put the centre between the two sides of the capsule, and the contact a radius deep: at every fourth angle.
+    let ends = [fx!(-0.03), fx!(-0.5)].map(|along| Vec2::new(along, along));
+    let capsule = Geometry::capsule(ends[0], ends[1], fx!(0.018)).expect("valid");
+    let ball = Geometry::circle(fx!(0.007)).expect("valid");
+    let gap = fx!(0.0424264) - fx!(0.025);
+    let mut contacts = 0;
+    for turn in 0..1000u32 {
+        let mut world = weightless();
+        let angle = Angle::from_bits(turn.wrapping_mul(2_654_435_761));
+        world.spawn(&BodyDef::fixed().angle(angle), &[ShapeDef::new(capsule)]).expect("valid");
+        world.spawn(&BodyDef::dynamic(), &[ShapeDef::new(ball)]).expect("valid");
+        world.step();
+        for contact in world.contacts() {
+            contacts += 1;
+            let separation = Fx::from(contact.manifold.points()[0].separation);
+            assert!((separation - gap).abs() < fx!(0.000002), "{separation} at {angle:?}");
+        }
+    }
+    assert!(contacts == 1000, "{contacts}");
+}
+
+#[test]
+fn a_bar_below_an_outline_that_hardly_bends_touches_it_where_it_is() {
+    // The edge that was most against the bar's side lay beside the bar, and so did the contact.
+    let corners =
+        [(fx!(-0.5), fx!(-0.5)), (fx!(-0.37), fx!(-0.5)), (fx!(0.182), fx!(-0.499)), (fx!(-0.5), fx!(0.394))];
+    let outline = Polygon::new(&corners.map(|(x, y)| Vec2::new(x, y))).expect("convex");
+    let ends = [fx!(-0.204), fx!(-0.327)].map(|x| Vec2::new(x, fx!(-0.5)));
+    let bar = Geometry::capsule(ends[0], ends[1], fx!(0.002)).expect("valid");
+    let mut world = weightless();
+    world.spawn(&BodyDef::fixed(), &[ShapeDef::new(bar)]).expect("valid");
+    world.spawn(&BodyDef::dynamic(), &[ShapeDef::new(outline)]).expect("valid");
+    world.step();
+    let contact = world.contacts().next().expect("they overlap");
+    assert_eq!(contact.manifold.points().len(), 2);
+    for point in contact.manifold.points() {
+        let place = contact.manifold.origin + point.anchor.widen();
+        assert!((fx!(-0.33)..=fx!(-0.2)).contains(&place.x), "{place:?}");
+        assert!((place.y + fx!(0.5)).abs() < fx!(0.002), "{place:?}");
+    }
+}

@@ -64,18 +64,21 @@ pub fn run(bytes: &[u8]) -> Option<u64> {
         if links || still.one_way.is_some() || moving.one_way.is_some() {
             continue;
         }
+        if is_thin(&still) || is_thin(&moving) {
+            continue;
+        }
         let least = separation(&manifold);
         if let Some(before) = before.filter(|before| *before > fx!(-15)) {
             assert!(
                 (least - before).abs() <= ERROR,
-                "{least} m in contact, {before} m apart: {still:?} {moving:?}"
+                "{least} m in contact, {before} m apart at {position:?} {angle:?}: {still:?} {moving:?}"
             );
         }
         if let Some((swapped, _)) = second.contact() {
             let other = separation(&swapped);
             assert!(
                 (least - other).abs() <= ERROR,
-                "{least} m and, exchanged, {other} m: {still:?} {moving:?}"
+                "{least} m and, exchanged, {other} m at {position:?} {angle:?}: {still:?} {moving:?}"
             );
         } else {
             assert!(least > config.touching_distance() - ERROR, "no contact with the shapes exchanged");
@@ -135,6 +138,15 @@ fn distances(pair: &Pair) {
         let same: Unit = there.normal.dot(back.normal);
         assert!(same < Unit::ZERO, "{:?} there, {:?} back", there.normal, back.normal);
     }
+}
+
+/// Whether a polygon has a corner at which its outline goes on, or comes back, almost in the same direction: normals are
+/// not exact enough to tell beside which of the two edges something is.
+fn is_thin(def: &ShapeDef) -> bool {
+    let Geometry::Polygon(polygon) = &def.geometry else { return false };
+    let normals = polygon.normals();
+    let turn = |(n, next): (&Vec2<Unit>, &Vec2<Unit>)| n.widen().cross(next.widen()).abs();
+    normals.iter().zip(normals.iter().cycle().skip(1)).map(turn).any(|turn| turn < fx!(0.0001))
 }
 
 fn separation(manifold: &Manifold) -> Fx {

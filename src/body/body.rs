@@ -1,5 +1,6 @@
 //! Bodies: pose, velocity, mass and the forces waiting for the next tick.
 
+use alloc::boxed::Box;
 use alloc::vec::Vec;
 
 use serde::{Deserialize, Serialize};
@@ -39,7 +40,8 @@ pub struct Body {
     pub(crate) force: Vec2<Fx>,
     /// About the centre of mass in N m, until the end of the next tick.
     pub(crate) torque: Fx,
-    pub(crate) mass_source: MassSource,
+    /// Elsewhere, like a target, so that what every step looks at lies close together.
+    pub(crate) mass_source: Box<MassSource>,
     pub(crate) mass: MassProperties,
     pub(crate) settings: BodySettings,
     pub(crate) enabled: bool,
@@ -48,7 +50,7 @@ pub struct Body {
     /// The sleeping island it belongs to, unless it is awake.
     pub(crate) island: Option<IslandId>,
     /// Where the coming tick takes it, if it is kinematic and has been told so.
-    pub(crate) target: Option<Pose>,
+    pub(crate) target: Option<Box<Pose>>,
     /// In order of attachment.
     pub(crate) shapes: Vec<ShapeId>,
     pub(crate) user_data: u64,
@@ -65,7 +67,7 @@ impl Body {
             spin: Speed::ZERO,
             force: Vec2::ZERO,
             torque: Fx::ZERO,
-            mass_source: def.mass,
+            mass_source: Box::new(def.mass),
             mass,
             settings: def.settings,
             enabled: def.enabled,
@@ -258,7 +260,8 @@ impl Body {
     /// Takes away what impulses have put along locked axes, and stays there if it is told to go somewhere.
     pub(crate) fn hold_locked_axes(&mut self) {
         let (turns, locks) = (self.turns(), self.settings.locks);
-        let mut target = self.target.unwrap_or(Pose { centre: self.centre, angle: self.angle });
+        let mut target =
+            self.target.as_deref().copied().unwrap_or(Pose { centre: self.centre, angle: self.angle });
         if locks.x {
             self.velocity.x = Speed::ZERO;
             target.centre.x = self.centre.x;
@@ -270,7 +273,9 @@ impl Body {
         if !turns {
             target.angle = self.angle;
         }
-        self.target = self.target.map(|_| target);
+        if let Some(old) = &mut self.target {
+            **old = target;
+        }
     }
 
     /// Forgets its velocity.

@@ -66,6 +66,9 @@ impl TryFrom<Repr> for Polygon {
 impl Polygon {
     /// A polygon from its vertices in counter-clockwise order, in metres from the shape's centre.
     ///
+    /// Leave out corners that hardly turn, and spikes that hardly open: below some 0.0001 rad the directions of their two
+    /// edges are hard to tell apart, and what lies beside one may be taken for beside the other, for some centimetres.
+    ///
     /// # Errors
     /// When the vertices are not 3 to 8, out of range, closer than 0.5 mm, clockwise, collinear or not convex.
     pub fn new(vertices: &[Vec2<Fx>]) -> Result<Self, GeometryError> {

@@ -30,8 +30,8 @@ pub(crate) fn collide(hull: &Hull, radius: Length, centre: Vec2<Length>, margin:
         None
     };
     let (normal, distance) = match corner {
-        // On the line of a segment and beyond its end the distance is 0 from both faces.
-        Some(vertex) if face_distance >= 0 => {
+        // On the line of a segment and beyond its end the distance is 0 from both faces, or less by rounding.
+        Some(vertex) if face_distance >= 0 || hull.is_line() => {
             let polar = (centre - vertex).normalized_with_length();
             let (normal, distance) = polar.unwrap_or((face_normal, Length::ZERO));
             (normal, step_bits(distance))

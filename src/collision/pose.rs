@@ -94,6 +94,12 @@ impl Hull {
         if i + 1 == self.count { 0 } else { i + 1 }
     }
 
+    /// The index of the vertex before `i`.
+    #[inline]
+    pub(crate) fn previous(&self, i: usize) -> usize {
+        if i == 0 { self.count.saturating_sub(1) } else { i - 1 }
+    }
+
     /// A circle: a point with a radius, and no face.
     pub(crate) fn point(radius: Length) -> Self {
         Hull { count: 1, radius, ..Self::empty() }

@@ -46,8 +46,9 @@ pub(crate) struct Tree {
     len: u32,
     /// Pairs of nodes that are still to be compared.
     stack: Vec<Pair>,
-    /// Whether every node is in use and stored before its children.
-    ordered: bool,
+    /// How many leaves have come to another place or gone since the last rebuild. While none has, every node is in use and
+    /// stored before its children.
+    relinked: u32,
     /// How many leaves have been moved out of their neighbourhood, and left where they are, since the last rebuild.
     strays: u32,
     rebuilt: Rebuilt,
@@ -72,7 +73,7 @@ impl Default for Tree {
             leaves: Vec::new(),
             len: 0,
             stack: Vec::new(),
-            ordered: false,
+            relinked: 0,
             strays: 0,
             rebuilt: Rebuilt::default(),
         }
@@ -139,7 +140,6 @@ impl Tree {
         ControlFlow::Continue(())
     }
 
-    /// Gives a leaf another box where it is. Boxes around it only grow: they shrink in the next refit or rebuild.
     /// The boxes of inner nodes, each with its distance from the root, parents first.
     pub(crate) fn inner_boxes(&self) -> Vec<(Aabb, u32)> {
         let mut boxes = Vec::new();
@@ -154,6 +154,7 @@ impl Tree {
         boxes
     }
 
+    /// Gives a leaf another box where it is. Boxes around it only grow: they shrink in the next refit or rebuild.
     fn enlarge(&mut self, leaf: u32, fat: Aabb) {
         self.at_mut(leaf).aabb = fat;
         let mut at = self.at(leaf).parent;
@@ -166,7 +167,7 @@ impl Tree {
 
     /// Puts a leaf into the tree.
     fn link(&mut self, leaf: u32) {
-        self.ordered = false;
+        self.relinked = self.relinked.saturating_add(1);
         if self.root == NONE {
             self.root = leaf;
             return;
@@ -182,7 +183,7 @@ impl Tree {
 
     /// Takes a leaf out of the tree: its sibling moves up.
     fn unlink(&mut self, leaf: u32) {
-        self.ordered = false;
+        self.relinked = self.relinked.saturating_add(1);
         let parent = self.at(leaf).parent;
         if parent == NONE {
             self.root = NONE;

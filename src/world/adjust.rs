@@ -20,7 +20,7 @@ impl World {
     pub fn set_body(&mut self, id: BodyId, settings: &BodySettings) -> Result<(), WorldError> {
         let body = self.state.bodies.get(id).ok_or(WorldError::StaleBody(id))?;
         settings.validate()?;
-        let mass = mass_of(body.kind(), body.mass_source, settings, self.shape_defs(body))?;
+        let mass = mass_of(body.kind(), *body.mass_source, settings, self.shape_defs(body))?;
         islands::wake_body(&mut self.state, &mut self.scratch, id.slot());
         let body = self.state.bodies.redefine(id.slot());
         body.settings = *settings;
@@ -49,7 +49,7 @@ impl World {
         self.check_spin(body, &mass)?;
         islands::wake_body(&mut self.state, &mut self.scratch, id.slot());
         let body = self.state.bodies.redefine(id.slot());
-        body.mass_source = source;
+        *body.mass_source = source;
         body.set_mass(mass);
         self.placed(id.slot());
         Ok(())
@@ -65,7 +65,7 @@ impl World {
         for shape in self.shape_defs(body) {
             shape.validate(reach_max(kind))?;
         }
-        let mass = mass_of(kind, body.mass_source, &body.settings, self.shape_defs(body))?;
+        let mass = mass_of(kind, *body.mass_source, &body.settings, self.shape_defs(body))?;
         self.check_spin(body, &mass)?;
         let stays_dynamic = |other: BodyId| match other == id {
             true => kind == BodyKind::Dynamic,
@@ -177,7 +177,7 @@ impl World {
             .shapes
             .iter()
             .map(|other| if *other == id { def } else { &self.state.shapes.at(other.slot()).def });
-        let mass = mass_of(owner.kind(), owner.mass_source, &owner.settings, with)?;
+        let mass = mass_of(owner.kind(), *owner.mass_source, &owner.settings, with)?;
         self.check_spin(owner, &mass)?;
         // Who was told that a contact began is told that it ended.
         let other_role = (shape.def.sensor, shape.def.events.contact) != (def.sensor, def.events.contact);

@@ -119,7 +119,7 @@ impl World {
         shape.validate(reach_max(owner.kind()))?;
         check_shapes_of_body(owner.shapes.len() + 1)?;
         let shapes = self.shape_defs(owner).chain([shape]);
-        let mass = mass_of(owner.kind(), owner.mass_source, &owner.settings, shapes)?;
+        let mass = mass_of(owner.kind(), *owner.mass_source, &owner.settings, shapes)?;
         self.check_spin(owner, &mass)?;
         islands::wake_body(&mut self.state, &mut self.scratch, body.slot());
         self.state.bodies.redefine(body.slot()).set_mass(mass);
@@ -140,7 +140,7 @@ impl World {
         let owner = self.state.bodies.at(body.slot());
         let rest = owner.shapes.iter().filter(|&&other| other != id);
         let rest = rest.map(|other| self.state.shapes.at(other.slot()).def());
-        let mass = mass_of(owner.kind(), owner.mass_source, &owner.settings, rest)?;
+        let mass = mass_of(owner.kind(), *owner.mass_source, &owner.settings, rest)?;
         self.check_spin(owner, &mass)?;
         islands::disturb(&mut self.state, &mut self.scratch, body.slot());
         self.forget_shapes(&[id]);

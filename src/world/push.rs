@@ -1,5 +1,7 @@
 //! Pushing and moving bodies between ticks. Each of these wakes the body.
 
+use alloc::boxed::Box;
+
 use super::World;
 use super::islands;
 use crate::body::{Body, BodyId, BodyKind, Handle, Pose, WorldError, check_position};
@@ -114,7 +116,7 @@ impl World {
         self.set_velocity(id, velocity, angular)?;
         let body = self.state.bodies.at_mut(id.slot());
         if body.is_moving() {
-            body.target = Some(Pose { centre: there.centre, angle });
+            body.target = Some(Box::new(Pose { centre: there.centre, angle }));
             body.hold_locked_axes();
         }
         Ok(())

@@ -191,7 +191,7 @@ fn finalise_body(state: &mut State, scratch: &mut Scratch, slot: u32) -> (Pose, 
     let turn = turn_of(turn, body.mass.inverse_gyration);
     if let Some(target) = body.target.take() {
         body.stop();
-        return (target, turn);
+        return (*target, turn);
     }
     let centre = body.centre + shift.widen();
     let edge = Vec2::new(WORLD_EXTENT_MAX, WORLD_EXTENT_MAX);

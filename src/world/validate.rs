@@ -97,10 +97,10 @@ fn check_body(state: &State, id: BodyId, body: &Body) -> Result<(), Violation> {
     let locks = body.settings.locks;
     let held = !(locks.x && body.velocity.x != 0 || locks.y && body.velocity.y != 0);
     check(held, || at("moves along a locked axis"))?;
-    let reachable = |target: Pose| body.kind == BodyKind::Kinematic && inside(target.centre);
-    check(body.target.is_none_or(reachable), || at("a target that it cannot have"))?;
+    let reachable = |target: &Pose| body.kind == BodyKind::Kinematic && inside(target.centre);
+    check(body.target.as_deref().is_none_or(reachable), || at("a target that it cannot have"))?;
     let shapes = body.shapes.iter().map(|shape| state.shapes.at(shape.slot()).def());
-    let mass = mass_of(body.kind, body.mass_source, &body.settings, shapes)
+    let mass = mass_of(body.kind, *body.mass_source, &body.settings, shapes)
         .map_err(|error| Violation { what: at(&format!("{error}")) })?;
     check(mass == body.mass, || at("mass does not follow from its shapes"))
 }

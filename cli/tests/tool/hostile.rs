@@ -175,19 +175,19 @@ fn what_cannot_be_verified_says_what_it_needs() {
     for (bytes, semantics, name, version, why) in [
         (
             later,
-            3,
+            lockstep2d::SEMANTICS,
             "counter",
             4,
             "made with the rules \"counter\" version 4, this program has \"counter\" version 3",
         ),
         (
             renamed,
-            3,
+            lockstep2d::SEMANTICS,
             "adder",
             3,
             "made with the rules \"adder\" version 3, this program has \"counter\" version 3",
         ),
-        (older, 2, "counter", 3, "made with engine semantics 2, this program has 3"),
+        (older, 2, "counter", 3, "made with engine semantics 2, this program has 4"),
     ] {
         let file = folder.write("a.replay", &bytes);
         let outcome = run(&["verify", "--json", &file]);

@@ -41,14 +41,32 @@ pub(in crate::collision) fn clip(
     );
     // Both outlines run counter-clockwise, so the incident edge runs against the reference edge: its second
     // vertex is the lower end.
-    let incident = incident_edge(b, normal);
     let to_b = between(v1, d);
     let end_of_b = |vertex: usize| {
         let position = b.vertex(vertex);
         let p = (to_b.0 + i64::from(position.x.to_bits()), to_b.1 + i64::from(position.y.to_bits()));
         End { vertex, along: along(normal, p), above: above(normal, p) }
     };
-    let (upper, lower) = (end_of_b(incident), end_of_b(b.next(incident)));
+    let edge_of_b = |edge: usize| (end_of_b(edge), end_of_b(b.next(edge)));
+    let mut incident = incident_edge(b, normal);
+    let (mut upper, mut lower) = edge_of_b(incident);
+    // Of an outline that hardly bends, the edge most against the face may lie beside it, and a neighbour before it. Where
+    // outlines are apart, the nearest corner is one of that edge.
+    let neighbours = if apart { 0 } else { b.faces() };
+    for _ in 0..neighbours {
+        let neighbour = if upper.along < first.along {
+            b.previous(incident)
+        } else if lower.along > last.along {
+            b.next(incident)
+        } else {
+            break;
+        };
+        if !bends_little(b, incident, neighbour) || dot(b.normal(neighbour), normal) >= 0 {
+            break;
+        }
+        incident = neighbour;
+        (upper, lower) = edge_of_b(incident);
+    }
 
     let context = Clip { a, b, d, face: face.edge, margin };
     let corners = if apart { nearest_corners(first, last, upper, lower) } else { None };
@@ -100,10 +118,7 @@ fn nearest_corners(first: End, last: End, upper: End, lower: End) -> Option<(End
 /// The edge whose normal is most opposed to `normal`: of equal ones the first.
 #[inline]
 fn incident_edge(b: &Hull, normal: Vec2<Unit>) -> usize {
-    let cosine = |n: Vec2<Unit>| {
-        i64::from(n.x.to_bits()) * i64::from(normal.x.to_bits())
-            + i64::from(n.y.to_bits()) * i64::from(normal.y.to_bits())
-    };
+    let cosine = |n: Vec2<Unit>| dot(n, normal);
     let nearer = |a: (usize, i64), b: (usize, i64)| if b.1 < a.1 { b } else { a };
     if let Some((_, &[n0, n1])) = b.as_box() {
         let (cosine_0, cosine_1) = (cosine(n0), cosine(n1));
@@ -112,6 +127,19 @@ fn incident_edge(b: &Hull, normal: Vec2<Unit>) -> usize {
         return nearer((edge_0, -cosine_0.abs()), (edge_1, -cosine_1.abs())).0;
     }
     b.normals().iter().map(|&n| cosine(n)).enumerate().reduce(nearer).map_or(0, |(edge, _)| edge)
+}
+
+/// Whether an outline turns by less than an eighth of a turn from an edge to its neighbour. Where it turns by more, the face
+/// of the neighbour wins over one that is beside it by more than a millimetre.
+fn bends_little(b: &Hull, edge: usize, neighbour: usize) -> bool {
+    const COS_EIGHTH: i64 = (Unit::lit("0.70711").to_bits() as i64) << Unit::FRAC_NBITS;
+    dot(b.normal(edge), b.normal(neighbour)) > COS_EIGHTH
+}
+
+/// `a . b` with 60 fraction bits.
+#[inline]
+fn dot(a: Vec2<Unit>, b: Vec2<Unit>) -> i64 {
+    i64::from(a.x.to_bits()) * i64::from(b.x.to_bits()) + i64::from(a.y.to_bits()) * i64::from(b.y.to_bits())
 }
 
 /// From one position to another, in units of `Length`: one bit more than that holds.

@@ -17,6 +17,8 @@ pub(super) struct Rebuilt {
     nodes: Vec<Node>,
     loose: Vec<Loose>,
     waiting: Vec<Part>,
+    /// All nodes, parents before their children.
+    below: Vec<u32>,
 }
 
 /// A leaf that is not in the tree yet: its centre on a grid of 2^32 cells a side around all of them, and its node.
@@ -64,8 +66,8 @@ impl Tree {
                 None => self.set(slot, fat),
             }
         }
-        // An old tree that costs a quarter more than it did is worth a new one.
-        if !self.ordered || self.refit_all() / 5 > self.rebuilt.cost / 4 {
+        // An old tree of which much has changed, or that costs a quarter more than it did, is worth a new one.
+        if self.relinked > self.len / 4 || self.refit_all() / 5 > self.rebuilt.cost / 4 {
             self.rebuild();
         }
         self.strays = 0;
@@ -73,8 +75,30 @@ impl Tree {
 
     /// Boxes and heights of all inner nodes. Returns the cost of the tree.
     fn refit_all(&mut self) -> u64 {
+        if self.relinked == 0 {
+            let count = u32::try_from(self.nodes.len()).expect("fewer than 2^32 nodes");
+            return self.refit_each((0..count).rev());
+        }
+        let mut below = core::mem::take(&mut self.rebuilt.below);
+        below.clear();
+        below.extend((self.root != NONE).then_some(self.root));
+        let mut next = 0;
+        while let Some(&index) = below.get(next) {
+            let node = self.at(index);
+            if !node.is_leaf() {
+                below.extend(node.children);
+            }
+            next += 1;
+        }
+        let cost = self.refit_each(below.iter().rev().copied());
+        self.rebuilt.below = below;
+        cost
+    }
+
+    /// The inner ones of some nodes, children before their parents.
+    fn refit_each(&mut self, nodes: impl Iterator<Item = u32>) -> u64 {
         let mut cost = 0_u64;
-        for index in (0..u32::try_from(self.nodes.len()).expect("fewer than 2^32 nodes")).rev() {
+        for index in nodes {
             if !self.at(index).is_leaf() {
                 self.refit(index);
                 cost = cost.saturating_add(perimeter(self.at(index).aabb) >> 16);
@@ -94,9 +118,9 @@ impl Tree {
         self.len = u32::try_from(rebuilt.loose.len()).expect("fewer than 2^31 shapes");
         self.build(&mut rebuilt);
         // Children have been stored behind their parents.
+        (self.relinked, self.strays) = (0, 0);
         rebuilt.cost = self.refit_all();
         self.rebuilt = rebuilt;
-        (self.ordered, self.strays) = (true, 0);
     }
 
     /// Stores the nodes, inner ones without boxes and heights.

@@ -247,9 +247,7 @@ impl Lanes<WIDTH> for Avx2 {
 
     #[inline(always)]
     fn transposed(rows: [&Quad; WIDTH]) -> [__m256i; 4] {
-        // SAFETY: see `Avx2`; 16 bytes, aligned to 16.
-        let row = |lane: usize| unsafe { _mm_load_si128(rows[lane].0.as_ptr().cast()) };
-        transposed([row(0), row(1), row(2), row(3), row(4), row(5), row(6), row(7)])
+        transposed(|lane| rows[lane].0.as_ptr())
     }
 
     #[inline(always)]
@@ -268,20 +266,12 @@ impl Lanes<WIDTH> for Avx2 {
 
     #[inline(always)]
     fn velocities(bodies: &[Cell<SolverBody>], at: &[u32; WIDTH]) -> Motion<__m256i> {
-        // SAFETY: see `Avx2`; the first 16 bytes of a body.
-        let row = |lane: usize| unsafe {
-            _mm_load_si128(SolverBody::velocity_bits(&bodies[at[lane] as usize]).cast())
-        };
-        motion([row(0), row(1), row(2), row(3), row(4), row(5), row(6), row(7)])
+        motion(at, |at| SolverBody::velocity_bits(&bodies[at as usize]))
     }
 
     #[inline(always)]
     fn shifts(bodies: &[Cell<SolverBody>], at: &[u32; WIDTH]) -> Motion<__m256i> {
-        // SAFETY: see `Avx2`; the last 16 bytes of a body.
-        let row = |lane: usize| unsafe {
-            _mm_load_si128(SolverBody::shift_bits(&bodies[at[lane] as usize]).cast())
-        };
-        motion([row(0), row(1), row(2), row(3), row(4), row(5), row(6), row(7)])
+        motion(at, |at| SolverBody::shift_bits(&bodies[at as usize]))
     }
 
     #[inline(always)]
@@ -383,20 +373,20 @@ fn shifted_by(a: __m256i, shift: __m256i) -> __m256i {
     }
 }
 
-/// From four numbers of each body to the first three of all.
+/// Three numbers of all bodies, from where each body has them.
 #[inline(always)]
-fn motion(rows: [__m128i; WIDTH]) -> Motion<__m256i> {
-    let [x, y, turn, _] = transposed(rows);
+fn motion(at: &[u32; WIDTH], place: impl Fn(u32) -> *mut i32) -> Motion<__m256i> {
+    let [x, y, turn, _] = transposed(|lane| place(at[lane]).cast_const());
     Motion { x, y, turn }
 }
 
-/// From four numbers of each body to each of the four of all.
+/// The first of four numbers in each lane, the second in each, and so on, from where each lane has them.
 #[inline(always)]
-fn transposed(rows: [__m128i; WIDTH]) -> [__m256i; 4] {
-    // SAFETY: see `Avx2`.
+fn transposed(row: impl Fn(usize) -> *const i32) -> [__m256i; 4] {
+    // SAFETY: see `Avx2`; 16 bytes, aligned to 16.
     unsafe {
-        let pair =
-            |lane: usize| _mm256_inserti128_si256::<1>(_mm256_castsi128_si256(rows[lane]), rows[lane + 4]);
+        let row = |lane: usize| _mm_load_si128(row(lane).cast());
+        let pair = |lane: usize| _mm256_set_m128i(row(lane + 4), row(lane));
         let (r0, r1, r2, r3) = (pair(0), pair(1), pair(2), pair(3));
         let (front_01, front_23) = (_mm256_unpacklo_epi32(r0, r1), _mm256_unpacklo_epi32(r2, r3));
         let (back_01, back_23) = (_mm256_unpackhi_epi32(r0, r1), _mm256_unpackhi_epi32(r2, r3));

@@ -8,6 +8,7 @@
 //! 2^-22 m (4 x i32). A box that is not on this grid or too far away has `i32::MIN` in the first place, and comes in full
 //! (4 x i64) after all others.
 
+use alloc::boxed::Box;
 use alloc::vec::Vec;
 
 use super::packing::{Fields, Reader, Record, Writer};
@@ -87,7 +88,7 @@ fn pack_special(id: BodyId, body: &Body, record: &mut Record<'_, SPECIAL_BYTES>)
         record.put(island.slot());
         record.put(island.generation());
     }
-    if let Some(target) = body.target {
+    if let Some(target) = &body.target {
         put_place(record, target.centre, target.angle);
     }
 }
@@ -126,7 +127,7 @@ pub(super) fn unpack_bodies(bodies: &mut Bodies, bytes: &[u8], mut moved: impl F
         }
         if specials & TARGET != 0 {
             let mut target: Fields<'_, 20> = reader.record();
-            body.target = Some(take_place(&mut target));
+            body.target = Some(Box::new(take_place(&mut target)));
         }
     }
 }

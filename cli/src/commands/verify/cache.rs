@@ -56,8 +56,10 @@ impl Cache {
     pub(super) fn get(&self, key: &Hash) -> Option<Report> {
         let mut text = String::new();
         File::open(self.path(key)).ok()?.take(ENTRY_BYTES_MAX).read_to_string(&mut text).ok()?;
-        let Entry { report, checksum: stored } = serde_json::from_str(&text).ok()?;
-        (stored == checksum(key, &report)).then_some(report)
+        let entry: Entry = serde_json::from_str(&text).ok()?;
+        // Some damage makes no other report of it, such as to the name of a field that may be missing.
+        let is_whole = serde_json::to_string(&entry).ok()? == text;
+        (is_whole && entry.checksum == checksum(key, &entry.report)).then_some(entry.report)
     }
 
     /// Keeps a report.
