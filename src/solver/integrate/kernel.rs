@@ -1,4 +1,4 @@
-//! The same for any number of bodies at a time.
+//! Integration of as many bodies at a time as there are lanes, if none of them is unusual.
 
 use core::cell::Cell;
 
