@@ -164,7 +164,7 @@ impl Course {
             history.push(tick + 1, game.save(), hash);
         }
         let tick = self.inputs.len() as u64;
-        let desync = Desync { players: 1, tick, seats: vec![0], hashes: vec![] };
+        let desync = Desync { players: 1, tick, known: tick, seats: vec![0], hashes: vec![] };
         let replay = recorder.so_far(game.state_hash());
         let saves_max = if source.one_in(4) { source.below(20_000) } else { 40_000 };
         DesyncReport::within(saves_max, &desync, &history, replay)

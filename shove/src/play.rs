@@ -45,6 +45,9 @@ struct Arguments {
     /// After how many ticks an input takes effect.
     #[arg(long, value_name = "TICKS")]
     input_delay: Option<u8>,
+    /// After how long a silent player counts as gone.
+    #[arg(long, value_name = "SECONDS", default_value_t = 2)]
+    timeout: u64,
     /// Ends after so many ticks; otherwise the match goes on until somebody stops it.
     #[arg(long)]
     ticks: Option<u64>,
@@ -156,7 +159,8 @@ fn sit_down(arguments: &Arguments) -> Result<UdpPeer, Box<dyn Error>> {
     let setup = Setup { seats: arguments.seats, seed: arguments.seed, ..Setup::default() };
     let options = if arguments.lockstep { Options::lockstep() } else { Options::rollback() };
     let input_delay = arguments.input_delay.unwrap_or(options.input_delay);
-    let options = Options { input_delay, ..options }.start_with(arguments.players);
+    let timeout = Duration::from_secs(arguments.timeout.max(1));
+    let options = Options { input_delay, timeout, ..options }.start_with(arguments.players);
     let Way { host, join, watch } = &arguments.way;
     let way = match (join, watch) {
         (Some(contact), _) => online::Way::Join { contact: contact.as_str(), seat: arguments.seat },

@@ -349,14 +349,14 @@ impl<G: NetGame> Driver<G> {
             said.map(|(_, echo)| echo.hash).or((seat == divergence.seat).then_some(divergence.theirs))
         };
         let hashes = (0..players).map(said).collect();
-        let found = Desync { players, tick: divergence.tick, seats, hashes };
+        let known = known.clamp(self.committed, self.tick);
+        let found = Desync { players, tick: divergence.tick, known, seats, hashes };
         DesyncReport::new(&found, &self.history, self.replay_so_far(known).unwrap_or_default())
     }
 
-    /// The replay with all inputs of the first `known` ticks, which need not be committed.
+    /// The replay with all inputs of the first `known` ticks, some of which may not be committed.
     fn replay_so_far(&self, known: u64) -> Option<Vec<u8>> {
         let mut recorder = self.recorder.clone()?;
-        let known = known.clamp(self.committed, self.tick);
         for tick in self.committed..known {
             self.record(tick, &mut recorder).ok()?;
         }

@@ -52,7 +52,8 @@ struct Connection {
 const FRAMES_AHEAD: i32 = 96;
 /// Bytes that the inputs of one message can have, unpacked.
 const INPUT_BYTES_MAX: usize = 64 << 10;
-/// After how long inputs are sent again if there are no newer ones: when all wait for a lost packet, nobody has any.
+/// After how long inputs, or a question before the first, are sent again if there are no newer ones: when all wait for a
+/// lost packet, nobody has any.
 const SEND_AGAIN: Duration = Duration::from_millis(50);
 /// How many of our pings are remembered.
 const PINGS: usize = 16;
@@ -65,13 +66,13 @@ pub(super) struct Gate {
     last_frame: i32,
     /// Pings that were sent and not answered.
     pings: VecDeque<u128>,
-    /// The last message with inputs to the remote, and when it was sent.
-    inputs: Option<(Duration, Vec<u8>)>,
+    /// The last message to the remote that it has to get, and when it was sent.
+    needed: Option<(Duration, Vec<u8>)>,
 }
 
 impl Gate {
     pub(super) const fn new(players: usize) -> Self {
-        Gate { players, last_frame: -1, pings: VecDeque::new(), inputs: None }
+        Gate { players, last_frame: -1, pings: VecDeque::new(), needed: None }
     }
 
     /// Takes note of a message to the remote, and gives its bytes.
@@ -84,15 +85,16 @@ impl Gate {
                 }
                 self.pings.push_back(ping);
             }
-            Ok(Body::Input(_)) => self.inputs = Some((now, bytes.clone())),
+            Ok(Body::Input(_) | Body::SyncRequest(_)) => self.needed = Some((now, bytes.clone())),
             _ => {}
         }
         Some(bytes)
     }
 
-    /// The last inputs once more, if they may have been lost. GGRS itself waits for four times as long.
+    /// What the remote has to get once more, if it may have been lost. GGRS itself waits for four times as long, by the
+    /// clock.
     pub(super) fn send_again(&mut self, now: Duration) -> Option<Vec<u8>> {
-        let (sent, bytes) = self.inputs.as_mut().filter(|(sent, _)| now >= *sent + SEND_AGAIN)?;
+        let (sent, bytes) = self.needed.as_mut().filter(|(sent, _)| now >= *sent + SEND_AGAIN)?;
         *sent = now;
         Some(bytes.clone())
     }

@@ -36,6 +36,7 @@ mod gate;
 mod options;
 mod packet;
 mod peer;
+mod presence;
 mod session;
 mod terms;
 mod transport;

@@ -15,6 +15,7 @@ use super::gate::Gate;
 use super::options::Options;
 use super::packet::SessionId;
 use super::peer::NetError;
+use super::presence::Presence;
 use super::wire::{Address, Echo, GgrsConfig, NetGame};
 use crate::hash::StateHash;
 
@@ -69,11 +70,13 @@ pub(super) const fn seat_bit(seat: u32) -> u64 {
 /// What has happened in a session.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum SessionEvent {
+    /// Somebody has answered once more, of the few times that it takes before ticks can be played.
+    Answered,
     /// Nothing comes from this seat.
     Interrupted(u32),
     /// Something comes again.
     Resumed(u32),
-    /// Nothing has come for too long.
+    /// Nothing has come for too long. Said again and again.
     Lost(u32),
     /// The peer of this seat has another hash after some tick.
     Said(u32, Echo),
@@ -84,12 +87,19 @@ pub(super) struct Session<G: NetGame, A: Address> {
     p2p: P2PSession<GgrsConfig<G, A>>,
     mail: Arc<Mutex<Mail<A>>>,
     gates: BTreeMap<A, Gate>,
+    presences: BTreeMap<A, Presence>,
+    timeout: Duration,
+    /// When it was last listened to.
+    polled: Duration,
     synchronised: BTreeSet<A>,
     /// A player was lost: from then on what GGRS calls confirmed is without them.
     lost: bool,
     /// Ticks that have been played with everybody's true inputs.
     confirmed: u64,
 }
+
+/// When GGRS may say that a player is gone: that is for [`Presence`] to say.
+const NEVER: Duration = Duration::from_secs(u32::MAX as u64);
 
 /// What GGRS takes for a socket.
 struct Mail<A> {
@@ -121,8 +131,8 @@ impl<G: NetGame, A: Address> Session<G, A> {
             .with_max_prediction_window(options.window().into())
             .with_input_delay(options.delay().into())
             .with_desync_detection_mode(DesyncDetection::On { interval: options.check_interval.max(1) })
-            .with_disconnect_timeout(options.timeout)
-            .with_disconnect_notify_delay(options.timeout / 4)
+            .with_disconnect_timeout(NEVER)
+            .with_disconnect_notify_delay(NEVER)
             .with_fps(usize::try_from(tick_rate).unwrap_or(usize::MAX))?;
         for (handle, seat) in seats.iter().enumerate() {
             let address = roster.others.iter().find(|(other, _)| other == seat);
@@ -132,17 +142,31 @@ impl<G: NetGame, A: Address> Session<G, A> {
         }
         let mail = Arc::new(Mutex::new(Mail { incoming: Vec::new(), outgoing: Vec::new() }));
         let p2p = builder.start_p2p_session(Mailbox(mail.clone()))?;
-        let gates =
-            roster.others.iter().map(|(_, address)| (address.clone(), Gate::new(seats.len()))).collect();
-        let confirmed = roster.base;
-        Ok(Session { roster, p2p, mail, gates, synchronised: BTreeSet::new(), lost: false, confirmed })
+        let others = roster.others.iter().map(|(_, address)| address.clone());
+        Ok(Session {
+            gates: others.clone().map(|address| (address, Gate::new(seats.len()))).collect(),
+            presences: others.map(|address| (address, Presence::default())).collect(),
+            timeout: options.timeout,
+            polled: Duration::ZERO,
+            synchronised: BTreeSet::new(),
+            lost: false,
+            confirmed: roster.base,
+            roster,
+            p2p,
+            mail,
+        })
     }
 
     /// Takes a message of GGRS from a peer.
     pub(super) fn receive(&mut self, from: &A, message: &[u8]) {
         let frame = self.p2p.current_frame();
-        let message = self.gates.get_mut(from).and_then(|gate| gate.receive(message, frame));
-        lock(&self.mail).incoming.extend(message.map(|message| (from.clone(), message)));
+        let Some(message) = self.gates.get_mut(from).and_then(|gate| gate.receive(message, frame)) else {
+            return;
+        };
+        if let Some(presence) = self.presences.get_mut(from) {
+            presence.hear();
+        }
+        lock(&self.mail).incoming.push((from.clone(), message));
     }
 
     /// The messages that are to be sent.
@@ -160,9 +184,18 @@ impl<G: NetGame, A: Address> Session<G, A> {
     }
 
     /// Lets GGRS read its messages and write new ones.
-    pub(super) fn poll(&mut self) -> Vec<SessionEvent> {
+    pub(super) fn poll(&mut self, now: Duration) -> Vec<SessionEvent> {
         self.p2p.poll_remote_clients();
-        self.events()
+        let mut events = self.events();
+        let passed = now.saturating_sub(self.polled);
+        self.polled = now;
+        // Who has not yet answered is waited for in another way: that takes long in bad weather.
+        let others = self.roster.others.iter().filter(|(_, address)| self.synchronised.contains(address));
+        for (seat, address) in others {
+            let presence = self.presences.get_mut(address);
+            events.extend(presence.and_then(|presence| presence.listen(*seat, passed, self.timeout)));
+        }
+        events
     }
 
     fn events(&mut self) -> Vec<SessionEvent> {
@@ -177,16 +210,15 @@ impl<G: NetGame, A: Address> Session<G, A> {
                     self.lost = true;
                     events.extend(of(&addr).map(SessionEvent::Lost));
                 }
-                GgrsEvent::NetworkInterrupted { addr, .. } => {
-                    events.extend(of(&addr).map(SessionEvent::Interrupted));
-                }
-                GgrsEvent::NetworkResumed { addr } => events.extend(of(&addr).map(SessionEvent::Resumed)),
                 GgrsEvent::DesyncDetected { frame, remote_checksum, addr, .. } => {
                     let tick = self.roster.base + u64::try_from(frame).unwrap_or(0);
                     let echo = Echo { tick, hash: StateHash(remote_checksum) };
                     events.extend(of(&addr).map(|seat| SessionEvent::Said(seat, echo)));
                 }
-                GgrsEvent::Synchronizing { .. } | GgrsEvent::WaitRecommendation { .. } => {}
+                GgrsEvent::Synchronizing { .. } => events.push(SessionEvent::Answered),
+                GgrsEvent::NetworkInterrupted { .. }
+                | GgrsEvent::NetworkResumed { .. }
+                | GgrsEvent::WaitRecommendation { .. } => {}
             }
         }
         events

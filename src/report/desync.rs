@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::phases::TickPhases;
 use crate::codec;
 use crate::hash::StateHash;
-use crate::lockstep::{Game, History, RulesId};
+use crate::lockstep::{Game, History, Past, RulesId};
 
 /// Most bytes of saves that a report takes along.
 pub const SAVES_BYTES_MAX: usize = 32 << 20;
@@ -21,6 +21,9 @@ pub struct Desync {
     pub players: u32,
     /// After how many ticks.
     pub tick: u64,
+    /// How many ticks have been played with everybody's true inputs: all of them without prediction. What a history has
+    /// beyond them rests on guesses, and is no evidence.
+    pub known: u64,
     /// The seats that this peer plays, in ascending order; none of a spectator.
     pub seats: Vec<u32>,
     /// For each seat the state hash that its peer has, as far as it has said so. This peer's own are taken from its
@@ -65,7 +68,7 @@ pub(super) struct Body {
 }
 
 impl DesyncReport {
-    /// The report of a peer: `replay` has the confirmed inputs up to now, for example from
+    /// The report of a peer: `replay` has the inputs of the known ticks, for example from
     /// [`Recorder::so_far`](crate::replay::Recorder::so_far).
     ///
     /// Of each tick it has the hash. Of saves it has as many as fit into [`SAVES_BYTES_MAX`]: those of the tick at which
@@ -78,7 +81,8 @@ impl DesyncReport {
     /// [`DesyncReport::new`] with at most so many bytes of saves.
     #[must_use]
     pub fn within<G: Game>(bytes_max: usize, found: &Desync, history: &History<G>, replay: Vec<u8>) -> Self {
-        let Desync { players, tick, ref seats, ref hashes } = *found;
+        let Desync { players, tick, known, ref seats, ref hashes } = *found;
+        let states: Vec<_> = history.iter().filter(|past| past.tick <= known).collect();
         let mut hashes = hashes.clone();
         hashes.resize(usize::try_from(players).unwrap_or(0), None);
         if let Some(own) = history.get(tick) {
@@ -96,8 +100,8 @@ impl DesyncReport {
             seats: seats.clone(),
             tick,
             hashes,
-            history: history.iter().map(|past| (past.tick, past.hash)).collect(),
-            saves: saves(bytes_max, tick, history),
+            history: states.iter().map(|past| (past.tick, past.hash)).collect(),
+            saves: saves(bytes_max, tick, &states),
             phases: Vec::new(),
             replay,
         };
@@ -185,9 +189,9 @@ impl DesyncReport {
 }
 
 /// The saves that a report takes along.
-fn saves<G: Game>(bytes_max: usize, tick: u64, history: &History<G>) -> Vec<(u64, Vec<u8>)> {
-    let until = history.iter().rev().filter(|past| past.tick <= tick);
-    let after = history.iter().filter(|past| past.tick > tick);
+fn saves<S: Serialize>(bytes_max: usize, tick: u64, states: &[&Past<S>]) -> Vec<(u64, Vec<u8>)> {
+    let until = states.iter().rev().filter(|past| past.tick <= tick);
+    let after = states.iter().filter(|past| past.tick > tick);
     let mut left = bytes_max;
     let mut saves = Vec::new();
     for past in until.chain(after) {

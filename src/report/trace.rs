@@ -147,7 +147,8 @@ impl<G: Game> Memory<G> {
     }
 
     fn report(&self, game: &G, tick: u64, replay: Vec<u8>) -> DesyncReport {
-        let found = Desync { players: game.players(), tick, seats: Vec::new(), hashes: Vec::new() };
+        let found =
+            Desync { players: game.players(), tick, known: u64::MAX, seats: Vec::new(), hashes: Vec::new() };
         DesyncReport::new(&found, &self.history, replay).with_phases(self.phases.iter().cloned().collect())
     }
 }

@@ -17,11 +17,7 @@ fn of(table: &Table, at: usize) -> &Player {
 
 /// Lets time pass.
 fn pass(table: &mut Table, milliseconds: u64) {
-    let mut left = milliseconds.div_ceil(1000);
-    let end = std::time::Instant::now() + Duration::from_millis(milliseconds);
-    while left > 0 && !table.play(1, |_| std::time::Instant::now() >= end) {
-        left -= 1;
-    }
+    table.play_for(Duration::from_millis(milliseconds));
 }
 
 #[test]

@@ -1,4 +1,5 @@
-//! Peers around a network in memory, in real time: GGRS reads the clock.
+//! Peers around a network in memory, in a time of their own: it passes as fast as outside, since GGRS repeats itself by the
+//! clock, but more slowly where the machine is too slow for all that happens in it.
 
 use std::time::{Duration, Instant};
 
@@ -15,23 +16,25 @@ pub(crate) struct Table {
     pub(crate) events: Vec<Vec<Event>>,
     pub(crate) errors: Vec<Option<NetError>>,
     pub(crate) replays: Vec<Vec<u8>>,
-    start: Instant,
-    /// How far the clock of all has jumped.
-    pub(crate) ahead: Duration,
+    /// The clock of all.
+    pub(crate) now: Duration,
+    last_turn: Instant,
 }
+
+/// Most time that passes in a turn: one that takes longer keeps nobody waiting.
+const TURN_MAX: Duration = Duration::from_millis(20);
 
 impl Table {
     pub(crate) fn new(weather: Weather, seed: u64) -> Self {
         let network = Network::new(weather, seed);
-        let start = Instant::now();
         Table {
             network,
             peers: vec![],
             events: vec![],
             errors: vec![],
             replays: vec![],
-            start,
-            ahead: Duration::ZERO,
+            now: Duration::ZERO,
+            last_turn: Instant::now(),
         }
     }
 
@@ -64,9 +67,17 @@ impl Table {
     }
 
     /// Plays until `done` says so, at most some seconds.
-    pub(crate) fn play(&mut self, seconds: u64, mut done: impl FnMut(&mut Table) -> bool) -> bool {
-        let end = Instant::now() + Duration::from_secs(seconds);
-        while Instant::now() < end {
+    pub(crate) fn play(&mut self, seconds: u64, done: impl FnMut(&mut Table) -> bool) -> bool {
+        self.play_until(self.now + Duration::from_secs(seconds), done)
+    }
+
+    /// Plays for some time.
+    pub(crate) fn play_for(&mut self, time: Duration) {
+        self.play_until(self.now + time, |_| false);
+    }
+
+    fn play_until(&mut self, end: Duration, mut done: impl FnMut(&mut Table) -> bool) -> bool {
+        while self.now < end {
             self.turn();
             if done(self) {
                 return true;
@@ -76,14 +87,10 @@ impl Table {
         false
     }
 
-    /// Plays for some time.
-    pub(crate) fn play_for(&mut self, time: Duration) {
-        let end = Instant::now() + time;
-        self.play(time.as_secs() + 1, |_| Instant::now() >= end);
-    }
-
     fn turn(&mut self) {
-        let now = self.start.elapsed() + self.ahead;
+        self.now += self.last_turn.elapsed().min(TURN_MAX);
+        self.last_turn = Instant::now();
+        let now = self.now;
         self.network.set_time(now);
         for at in 0..self.peers.len() {
             let Some(peer) = &mut self.peers[at] else { continue };

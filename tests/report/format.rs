@@ -42,7 +42,7 @@ fn a_report_comes_back() {
 #[test]
 fn a_report_that_would_be_large_leaves_saves_out() {
     let peer = peer();
-    let found = Desync { players: PLAYERS, tick: 100, seats: vec![0], hashes: Vec::new() };
+    let found = Desync { players: PLAYERS, tick: 100, known: u64::MAX, seats: vec![0], hashes: Vec::new() };
     let length = codec::encode(&peer.history.get(100).unwrap().save).len();
     let report = DesyncReport::within(length * 5 + length / 2, &found, &peer.history, Vec::new());
     let ticks: Vec<u64> = report.saves().iter().map(|(tick, _)| *tick).collect();

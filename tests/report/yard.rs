@@ -196,7 +196,7 @@ impl Peer {
     }
 
     pub(crate) fn report(&self, seat: u32, tick: u64, hashes: Vec<Option<StateHash>>) -> DesyncReport {
-        let found = Desync { players: PLAYERS, tick, seats: vec![seat], hashes };
+        let found = Desync { players: PLAYERS, tick, known: u64::MAX, seats: vec![seat], hashes };
         DesyncReport::new(&found, &self.history, self.replay())
     }
 }

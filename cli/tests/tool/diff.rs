@@ -21,7 +21,7 @@ fn report(seat: u32, wrong: Option<u64>) -> DesyncReport {
         recorder.checkpoint(game.state_hash());
         history.push(tick, game.save(), game.state_hash());
     }
-    let found = Desync { players: 2, tick: 30, seats: vec![seat], hashes: Vec::new() };
+    let found = Desync { players: 2, tick: 30, known: 35, seats: vec![seat], hashes: Vec::new() };
     DesyncReport::new(&found, &history, recorder.so_far(game.state_hash()))
 }
 

@@ -182,7 +182,7 @@ fn reports_are_described_with_their_states() {
         recorder.checkpoint(game.state_hash());
         history.push(tick, game.save(), game.state_hash());
     }
-    let found = Desync { players: 2, tick: 34, seats: vec![1], hashes: Vec::new() };
+    let found = Desync { players: 2, tick: 34, known: 35, seats: vec![1], hashes: Vec::new() };
     let report = DesyncReport::new(&found, &history, recorder.so_far(game.state_hash()));
     let file = folder.write("report", &report.to_bytes());
     let outcome = run(&["inspect", &file]);

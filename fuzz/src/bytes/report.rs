@@ -58,7 +58,8 @@ fn report<G: Game>(
         }
         history.push(tick + 1, game.save(), hash);
     }
-    let desync = Desync { players: game.players(), tick: ticks.len() as u64, seats: vec![0], hashes: vec![] };
+    let tick = ticks.len() as u64;
+    let desync = Desync { players: game.players(), tick, known: tick, seats: vec![0], hashes: vec![] };
     let replay = recorder.so_far(game.state_hash());
     DesyncReport::within(4000, &desync, &history, replay).to_bytes()
 }

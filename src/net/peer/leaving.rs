@@ -132,7 +132,7 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
     pub(super) fn settle(&mut self) -> Result<(), NetError> {
         let timeout = self.options.timeout;
         let Some(session) = &self.session else { return Ok(()) };
-        if self.leaving.is_none() && !session.is_running() && self.now > self.entered + 2 * timeout {
+        if self.leaving.is_none() && !session.is_running() && self.now > self.awaited_since + 2 * timeout {
             let silent = session.silent();
             self.begin_leaving(silent);
         }

@@ -86,8 +86,8 @@ pub struct Peer<G: NetGame, A: Address, T: Transport<A>> {
     /// What the first session follows, where this peer is the host and plays nothing yet.
     root: Option<SessionId>,
     session: Option<Session<G, A>>,
-    /// When it was entered.
-    entered: Duration,
+    /// When it was entered, or, until all play in it, when somebody last answered: that takes long in bad weather.
+    awaited_since: Duration,
     /// The session that is agreed upon and not yet entered.
     next: Option<Session<G, A>>,
     planned: Option<Planned<A>>,
@@ -157,7 +157,7 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
             catch_up: None,
             root: None,
             session: None,
-            entered: Duration::ZERO,
+            awaited_since: Duration::ZERO,
             next: None,
             planned: None,
             past: None,
@@ -223,15 +223,15 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
     fn poll_sessions(&mut self) {
         // Its players may still miss something of ours; what it says is no longer of interest.
         if let Some(past) = &mut self.past {
-            past.poll();
+            past.poll(self.now);
         }
         if let Some(next) = &mut self.next {
-            next.poll();
+            next.poll(self.now);
         }
         if self.leaving.is_none()
             && let Some(session) = &mut self.session
         {
-            let events = session.poll();
+            let events = session.poll(self.now);
             self.note(events);
         }
     }
@@ -249,6 +249,7 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
     fn note(&mut self, events: Vec<SessionEvent>) {
         for event in events {
             match event {
+                SessionEvent::Answered => self.awaited_since = self.now,
                 SessionEvent::Lost(seat) => self.begin_leaving(super::session::seat_bit(seat)),
                 SessionEvent::Interrupted(seat) => self.events.push_back(Event::Interrupted { seat }),
                 SessionEvent::Resumed(seat) => self.events.push_back(Event::Resumed { seat }),

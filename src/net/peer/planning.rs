@@ -168,7 +168,7 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
         }
         self.catch_up = None;
         self.root = None;
-        self.entered = self.now;
+        self.awaited_since = self.now;
         self.next_tick = self.now;
         Ok(self.session.replace(next))
     }
