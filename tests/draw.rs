@@ -11,13 +11,15 @@ use lockstep2d::world::{Config, World};
 
 const GROUND_TOP: Fx = fx!(0);
 
-/// A ground, a box at rest on it, a pendulum, and a lift: after a second the box has two contact points.
+/// A ground, a box at rest on it, a pendulum, and a lift: after a second the box has two contact points. All fall a
+/// little to the side, so that friction holds the box.
 fn scene() -> World {
     build_scene().expect("a valid scene")
 }
 
 fn build_scene() -> Result<World, WorldError> {
-    let mut world = World::new(Config { sleeping: false, ..Config::default() })?;
+    let gravity = Vec2::new(fx!(1), fx!(-10));
+    let mut world = World::new(Config { gravity, sleeping: false, ..Config::default() })?;
     let slab = ShapeDef::new(Polygon::rectangle(fx!(100), fx!(1))?);
     world.spawn(&BodyDef::fixed().position(fx!(0), fx!(-1)), &[slab])?;
     let crate_ = ShapeDef::new(Polygon::square(fx!(0.5))?);

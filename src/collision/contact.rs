@@ -28,7 +28,7 @@ pub(crate) struct PointImpulse {
     pub(crate) feature: u16,
     /// `p = L / D`, the impulse times `mA + mB`: it does not depend on the lever arms.
     pub(crate) normal: Speed,
-    /// The same along the tangent.
+    /// The same along the tangent: its share of what both points have in common.
     pub(crate) tangent: Speed,
 }
 

@@ -27,7 +27,7 @@ pub(crate) fn margin_for<A: LeEqU32>(speculative: Length, closing: FixedI32<A>) 
 /// Whether two boxes are so near that shapes in them may be at most `margin` metres apart.
 #[inline]
 pub(crate) fn may_meet(a: Aabb, b: Aabb, margin: Length) -> bool {
-    a.expanded(widen(margin).saturating_add(REJECT_SLACK)).overlaps(b)
+    a.expanded_nearby(widen(margin).wrapping_add(REJECT_SLACK)).overlaps(b)
 }
 
 /// The contact of two posed shapes whose surfaces are at most `margin` metres apart.

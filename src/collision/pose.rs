@@ -1,5 +1,7 @@
 //! Shapes posed in world axes: each shape is rotated once in a tick, so that its pairs only translate.
 
+use core::ops::Deref;
+
 use super::core::Core;
 use super::link::Link;
 use crate::body::{Body, Geometry, POLYGON_VERTICES_MAX, Polygon, ShapeDef};
@@ -120,15 +122,26 @@ impl Hull {
     /// A segment: one edge there and one back, with opposite normals.
     pub(crate) fn segment(a: Vec2<Length>, b: Vec2<Length>, direction: Vec2<Unit>) -> Self {
         let mut hull = Hull { count: 2, ..Self::empty() };
-        hull.vertices[..2].copy_from_slice(&[a, b]);
-        hull.normals[..2].copy_from_slice(&[-direction.perp(), direction.perp()]);
+        hull.place_ends(a, b, direction);
         hull
     }
 
-    /// A capsule: a segment with a radius. One that is long enough to be valid has a direction.
+    /// A capsule: a segment with a radius.
     fn capsule(a: Vec2<Fx>, b: Vec2<Fx>, radius: Length) -> Self {
+        let mut hull = Hull { count: 2, radius, ..Self::empty() };
+        hull.place_capsule(a, b);
+        hull
+    }
+
+    /// Puts a capsule between two other ends. One that is long enough to be valid has a direction.
+    fn place_capsule(&mut self, a: Vec2<Fx>, b: Vec2<Fx>) {
         let direction = (b - a).normalized().unwrap_or(Vec2::X);
-        Hull { radius, ..Hull::segment(a.narrow(), b.narrow(), direction) }
+        self.place_ends(a.narrow(), b.narrow(), direction);
+    }
+
+    fn place_ends(&mut self, a: Vec2<Length>, b: Vec2<Length>, direction: Vec2<Unit>) {
+        [self.vertices[0], self.vertices[1]] = [a, b];
+        [self.normals[0], self.normals[1]] = [-direction.perp(), direction.perp()];
     }
 
     pub(crate) fn rotated(polygon: &Polygon, rotation: Rot) -> Self {
@@ -187,15 +200,21 @@ impl Hull {
 impl PosedShape {
     /// Poses a shape of `body`, whose rotation is passed in because its shapes share it.
     pub(crate) fn new(shape: &ShapeDef, body: &Body, rotation: Rot) -> Self {
-        Self::of_geometry(&shape.geometry, centre_of(shape, body, rotation), rotation)
+        Self::of_geometry(&shape.geometry, centre_of(shape, body, || rotation), rotation)
     }
 
-    /// Poses the same shape again, after its body has moved: writes only what that changes.
-    pub(crate) fn renew(&mut self, shape: &ShapeDef, body: &Body, rotation: Rot) {
-        let centre = centre_of(shape, body, rotation);
+    /// Poses the same shape again, after its body has moved: writes only what that changes. The rotation is asked for
+    /// only if it changes something.
+    pub(crate) fn renew(&mut self, shape: &ShapeDef, body: &Body, rotation: &impl Deref<Target = Rot>) {
+        let centre = centre_of(shape, body, || **rotation);
         match (&mut self.outline, &shape.geometry) {
             (Outline::Polygon(hull), Geometry::Polygon(polygon)) => {
-                hull.rotate(polygon, rotation);
+                hull.rotate(polygon, **rotation);
+                self.bounds = hull.bounds().translated(centre);
+                self.centre = centre;
+            }
+            (Outline::Polygon(hull), Geometry::Capsule { a, b, radius: _ }) => {
+                hull.place_capsule(rotation.apply_wide(*a), rotation.apply_wide(*b));
                 self.bounds = hull.bounds().translated(centre);
                 self.centre = centre;
             }
@@ -203,7 +222,7 @@ impl PosedShape {
                 self.bounds = self.bounds.translated(centre - self.centre);
                 self.centre = centre;
             }
-            (_, geometry) => *self = Self::of_geometry(geometry, centre, rotation),
+            (_, geometry) => *self = Self::of_geometry(geometry, centre, **rotation),
         }
     }
 
@@ -253,9 +272,9 @@ impl PosedShape {
 }
 
 /// Where the centre of a shape of a body is.
-fn centre_of(shape: &ShapeDef, body: &Body, rotation: Rot) -> Vec2<Fx> {
+fn centre_of(shape: &ShapeDef, body: &Body, rotation: impl FnOnce() -> Rot) -> Vec2<Fx> {
     let arm = shape.offset - body.local_centre_of_mass();
     // Most bodies have one shape, about whose centre they turn.
-    let turned = if arm == Vec2::ZERO { arm } else { rotation.apply_wide(arm) };
+    let turned = if arm == Vec2::ZERO { arm } else { rotation().apply_wide(arm) };
     body.centre_of_mass() + turned
 }

@@ -103,6 +103,15 @@ impl Aabb {
         Aabb::new(self.lower - margin, self.upper + margin)
     }
 
+    /// The same of a box in the world and a margin that is not out of all proportion to it: what cannot overflow need not
+    /// saturate.
+    #[inline]
+    #[must_use]
+    pub(crate) fn expanded_nearby(self, margin: Fx) -> Self {
+        let margin = Vec2::new(margin, margin);
+        Aabb::new(self.lower.wrapping_sub(margin), self.upper.wrapping_add(margin))
+    }
+
     /// The box moved by an offset in metres, saturated.
     #[inline]
     #[must_use]

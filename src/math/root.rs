@@ -67,6 +67,13 @@ impl Vec2<Fx> {
     #[must_use]
     pub const fn normalized(self) -> Option<Vec2<Unit>> {
         let (x, y) = (self.x.to_bits(), self.y.to_bits());
+        // What fits 32 bits has the same direction there, bit for bit: all shifts are exact.
+        if let (Some(x), Some(y)) = (narrowed(x), narrowed(y)) {
+            return match polar(x, y) {
+                Some((direction, _)) => Some(direction),
+                None => None,
+            };
+        }
         let sum = sum_of_squares_wide(x.unsigned_abs(), y.unsigned_abs());
         if sum == 0 {
             return None;
@@ -152,6 +159,14 @@ const fn root_from_inverse(n: u64, shift: u32, inverse: u64) -> u64 {
     if root * root + root < n { root + 1 } else { root }
 }
 
+/// The same number in 32 bits, if it fits.
+#[inline]
+#[expect(clippy::cast_possible_truncation, reason = "compared with what it is made of")]
+const fn narrowed(x: i64) -> Option<i32> {
+    let low = x as i32;
+    if low as i64 == x { Some(low) } else { None }
+}
+
 /// A component from its magnitude in units of 2^-63 (at most 1 and an error far below the final rounding).
 #[inline]
 const fn unit(magnitude: u64, negative: bool) -> Unit {
@@ -207,11 +222,35 @@ const fn sqrt_rounded(n: u64) -> u64 {
     if n - root * root > root { root + 1 } else { root }
 }
 
-/// `sqrt(n)` rounded to nearest.
+/// `sqrt(n)` rounded to nearest, for `n <= 2^127`.
 #[inline]
 const fn sqrt_rounded_wide(n: u128) -> u128 {
-    let root = n.isqrt();
+    let root = root_wide(n);
     if n - root * root > root { root + 1 } else { root }
+}
+
+/// `sqrt(n)` rounded down, for `n <= 2^127`: without the divisions of `u128::isqrt`, which take most of its time.
+#[inline]
+#[expect(clippy::cast_possible_wrap, clippy::cast_sign_loss, reason = "the residual is taken modulo 2^128")]
+const fn root_wide(n: u128) -> u128 {
+    if n == 0 {
+        return 0;
+    }
+    // `m / sqrt(m)` for the upper half of `n 2^shift` has 32 bits; what is left of `n` makes them 63, as
+    // `(n - r^2) / (2 sqrt(n))`; the exact squares decide about the last.
+    let shift = n.leading_zeros() & !1;
+    let m = high_half(n << shift);
+    let inverse = inverse_root(m); // 2^63 / sqrt(m)
+    let rough = ((m as u128 * inverse as u128) >> 31) >> (shift / 2);
+    let left = n.wrapping_sub(rough * rough) as i128;
+    let mut root = rough.wrapping_add((((left >> 2) * inverse as i128) >> (94 - shift / 2)) as u128);
+    while root * root > n {
+        root -= 1;
+    }
+    while (root + 1) * (root + 1) <= n {
+        root += 1;
+    }
+    root
 }
 
 /// The nearest world quantity to a magnitude in its units.

@@ -138,6 +138,18 @@ impl<A: LeEqU32> Vec2<FixedI32<A>> {
 }
 
 impl Vec2<Fx> {
+    /// The sum where it is known not to overflow, at a fraction of the cost; the same in every build profile if it does.
+    #[inline]
+    pub(crate) fn wrapping_add(self, other: Self) -> Self {
+        Vec2::new(self.x.wrapping_add(other.x), self.y.wrapping_add(other.y))
+    }
+
+    /// The difference where it is known not to overflow.
+    #[inline]
+    pub(crate) fn wrapping_sub(self, other: Self) -> Self {
+        Vec2::new(self.x.wrapping_sub(other.x), self.y.wrapping_sub(other.y))
+    }
+
     /// The same vector in a 32-bit format: rounded, saturated.
     #[inline]
     #[must_use]

@@ -15,7 +15,7 @@ const COLOURS_MAX: u8 = 24;
 const BUCKETS: usize = 256;
 
 /// A constraint to be coloured.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Node {
     /// Its bucket in the order in which constraints are coloured.
     bucket: u8,
@@ -67,12 +67,19 @@ pub(crate) struct Colouring {
     order: Vec<u32>,
     /// For each place in the order, where it ends.
     ends: Vec<u32>,
+    /// What has been ordered. Most ticks of what rests ask for the same again.
+    nodes: Vec<Node>,
 }
 
 impl Colouring {
     /// The order in which to solve: indices into `nodes`, the overflow first and then colour by colour.
     pub(crate) fn order(&mut self, nodes: &[Node], body_slots: usize) -> &[u32] {
-        let Colouring { used, hashed, places, order, ends } = self;
+        let Colouring { used, hashed, places, order, ends, nodes: ordered } = self;
+        if ordered == nodes {
+            return order;
+        }
+        ordered.clear();
+        ordered.extend_from_slice(nodes);
         used.clear();
         used.resize(body_slots, 0);
         counting_sort(nodes.len(), |i| nodes[i].bucket, hashed, ends);

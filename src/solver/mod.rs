@@ -114,9 +114,9 @@ impl Solver {
         bodies: &Arena<Body, BodyId>,
         tuning: &Tuning,
     ) {
-        let Solver { list, nodes, colouring, machine, .. } = self;
+        let Solver { list, nodes, colouring, .. } = self;
         self.joints.prepare((joints, slots), (bodies, list), tuning, nodes, colouring);
-        self.joints.refresh(&mut self.list.bodies, *machine, tuning);
+        self.joints.refresh(&self.list.bodies, tuning);
     }
 
     /// [`Joint::reaction`] without memory of its own, once the joints of the tick have been solved.
@@ -159,7 +159,7 @@ impl Solver {
         }
         let bodies = SolverBody::cells(&mut self.list.bodies);
         integrate_displacements(&self.movers, bodies, self.machine, tuning, &mut self.faults);
-        self.joints.refresh(&mut self.list.bodies, self.machine, tuning);
+        self.joints.refresh(&self.list.bodies, tuning);
         if tuning.relax {
             for iteration in 0..iterations {
                 self.solve(Pass::Relax, Sweep::of(index, iteration), tuning);

@@ -31,6 +31,12 @@ impl<L: Lanes<N>, const N: usize> Pair<L, N> {
         Pair { a: L::velocities(bodies, a), b: L::velocities(bodies, b) }
     }
 
+    /// How far two bodies in each lane have come, instead of their velocities.
+    #[inline(always)]
+    pub(super) fn load_shifts(bodies: &[Cell<SolverBody>], [a, b]: &[[u32; N]; 2]) -> Self {
+        Pair { a: L::shifts(bodies, a), b: L::shifts(bodies, b) }
+    }
+
     #[inline(always)]
     pub(super) fn store(self, bodies: &[Cell<SolverBody>], [a, b]: &[[u32; N]; 2]) {
         L::set_velocities(bodies, a, self.a);

@@ -100,6 +100,10 @@ impl Search<'_> {
             let (a, b) = contact.shapes;
             let (reach_a, reach_b) = (poses.outlook.reach(a), poses.outlook.reach(b));
             let approach = Approach::new(horizon, reach_a, reach_b);
+            if !approach.may_meet() {
+                contact.passing = false;
+                continue;
+            }
             let manifold = manifold_of(state, poses, &approach, contact, hint, &mut found.sat);
             if manifold.points().is_empty() {
                 continue;
@@ -136,10 +140,13 @@ pub(super) fn touch(state: &State, poses: &Poses, pair: Pair) -> bool {
     let horizon = Horizon::of(&state.config);
     let (mut hint, mut counters) = (AxisHint::default(), SatCounters::default());
     let approach = Approach::new(&horizon, poses.outlook.reach(pair.0), poses.outlook.reach(pair.1));
-    let manifold = manifold_of(state, poses, &approach, &mut contact, &mut hint, &mut counters);
-    !manifold.points().is_empty()
+    approach.may_meet() && {
+        let manifold = manifold_of(state, poses, &approach, &mut contact, &mut hint, &mut counters);
+        !manifold.points().is_empty()
+    }
 }
 
+/// The contact of two shapes that may meet.
 #[inline(always)]
 fn manifold_of(
     state: &State,
@@ -150,9 +157,6 @@ fn manifold_of(
     counters: &mut SatCounters,
 ) -> Manifold {
     let was_passing = core::mem::take(&mut contact.passing);
-    if !approach.may_meet() {
-        return Manifold::NONE;
-    }
     let (a, b) = contact.shapes;
     let (reach_a, reach_b) = (poses.outlook.reach(a), poses.outlook.reach(b));
     if reach_a.sensor || reach_b.sensor {

@@ -6,10 +6,8 @@
 use alloc::vec::Vec;
 
 use super::config::Config;
-use crate::body::{Body, Shape};
-use crate::collision::{
-    Manifold, ManifoldPoint, OneWay, Outline, Passage, PosedShape, margin_for, may_meet, pass_by,
-};
+use crate::body::{Body, Geometry, Shape};
+use crate::collision::{Manifold, ManifoldPoint, OneWay, Passage, PosedShape, margin_for, may_meet, pass_by};
 use crate::fx;
 use crate::math::{
     Aabb, Fx, Length, Reciprocal, Rot, Speed, Step, Unit, Vec2, convert, fx_mul, narrow, saturate, widen,
@@ -56,15 +54,15 @@ impl Motion {
 
     /// How far any point of a shape moves because its body turns: at most arm times angle, and at most from one
     /// side to the other.
-    pub(super) fn turn_reach(&self, turn: Fx, posed: &PosedShape) -> Fx {
+    pub(super) fn turn_reach(&self, turn: Fx, shape: &Reach) -> Fx {
         if turn < Fx::DELTA * 64 {
             return Fx::ZERO;
         }
-        let offset = posed.bounds.centre() - self.centre;
-        if matches!(posed.outline, Outline::Circle { .. }) && offset == Vec2::ZERO {
+        let offset = shape.bounds.centre() - self.centre;
+        if shape.circle && offset == Vec2::ZERO {
             return Fx::ZERO;
         }
-        let half = posed.bounds.extents();
+        let half = shape.bounds.extents();
         let reach = half
             .x
             .saturating_add(half.y)
@@ -125,6 +123,7 @@ pub(crate) struct Reach {
     slack: Step,
     /// The slot of its body.
     pub(super) body: u32,
+    circle: bool,
     pub(super) sensor: bool,
     pub(super) one_way: bool,
     pub(super) hit_events: bool,
@@ -139,6 +138,7 @@ impl Reach {
             turn: Way::ZERO,
             slack: slack_of(bounds),
             body,
+            circle: matches!(shape.geometry(), Geometry::Circle { .. }),
             sensor: shape.is_sensor(),
             one_way: shape.one_way().is_some(),
             hit_events: shape.def.events.hit,

@@ -1,6 +1,7 @@
 //! Working memory: whatever a tick may throw away. Clearing it before any tick changes no hash.
 
 use alloc::vec::Vec;
+use core::cell::LazyCell;
 
 use super::contacts::Found;
 use super::continuous::Swept;
@@ -308,11 +309,11 @@ impl Poses {
 
     /// Poses the shapes of a body again, after it has only been moved.
     pub(crate) fn move_body(&mut self, state: &State, body: &Body) {
-        let rotation = body.rotation();
+        let rotation = LazyCell::new(|| body.rotation());
         for &id in body.shapes() {
             let posed =
                 self.shapes[id.slot() as usize].as_mut().expect("every shape is posed when it is placed");
-            posed.renew(&state.shapes.at(id.slot()).def, body, rotation);
+            posed.renew(&state.shapes.at(id.slot()).def, body, &rotation);
             self.outlook.move_to(id.slot(), posed.bounds);
         }
     }

@@ -100,16 +100,16 @@ fn refit_boxes(state: &mut State, scratch: &mut Scratch) {
         let motion = Motion::of(body, per_second);
         let (shift, turn) = (motion.shift, motion.turn());
         poses.outlook.set_motion(slot, motion);
-        let course = Course::of(body, poses.extents(slot), shift, turn);
+        let course = Course::of(body, poses.extents(slot), shift, turn, config.speculative_distance);
         for &id in body.shapes() {
-            let posed = poses.at(id.slot());
-            let (bounds, turn_reach) = (posed.bounds, motion.turn_reach(turn, posed));
+            let reach = poses.outlook.reach(id.slot());
+            let (bounds, turn_reach) = (reach.bounds, motion.turn_reach(turn, reach));
             poses.outlook.set_reach(id.slot(), shift, turn_reach);
-            let needed = course.around(bounds).expanded(config.speculative_distance);
+            let needed = course.around(bounds);
             let margin = config.margin_of(bounds);
             let fat = broad_phase.fat(id.slot());
             // A box that a fast shape has left behind would find pairs for ever, so it shrinks as well.
-            let roomy = needed.expanded(margin.saturating_mul_int(4));
+            let roomy = needed.expanded_nearby(margin.wrapping_mul_int(4));
             if !fat.contains(needed) || !roomy.contains(fat) {
                 let fat = fattened(needed, margin);
                 shapes.at_mut(id.slot()).fat = fat;
@@ -123,28 +123,34 @@ fn refit_boxes(state: &mut State, scratch: &mut Scratch) {
     broad_phase.set_many(refitted);
 }
 
-/// Where a body may get within a tick at its present velocity.
+/// Where a body may get within a tick at its present velocity. Places are within the world and ways are short, so that no
+/// sum overflows.
 struct Course {
-    shift: Vec2<Fx>,
+    /// By how much the lower and the upper corner of a box around its shapes move while it moves, with room for contacts
+    /// that are only about to be.
+    moved: [Vec2<Fx>; 2],
     /// How far its points move at most because it turns, in metres.
-    turned: Fx,
+    turned: Vec2<Fx>,
     /// All that its shapes may cover where it is now, however it is turned.
     disc: Aabb,
 }
 
 impl Course {
-    fn of(body: &Body, extents: Extents, shift: Vec2<Way>, turn: Fx) -> Self {
+    fn of(body: &Body, extents: Extents, shift: Vec2<Way>, turn: Fx, room: Fx) -> Self {
+        let (shift, room) = (shift.widen(), Vec2::new(room, room));
+        let turned = fx_mul(turn, extents.reach);
         Course {
-            shift: shift.widen(),
-            turned: fx_mul(turn, extents.reach),
-            disc: Aabb::new(body.centre, body.centre).expanded(extents.radius),
+            moved: [shift.min(Vec2::ZERO).wrapping_sub(room), shift.max(Vec2::ZERO).wrapping_add(room)],
+            turned: Vec2::new(turned, turned),
+            disc: Aabb::new(body.centre, body.centre).expanded_nearby(extents.radius),
         }
     }
 
     /// A box around a shape on its way.
     fn around(&self, bounds: Aabb) -> Aabb {
-        let grown = bounds.expanded(self.turned);
-        Aabb::new(grown.lower.max(self.disc.lower), grown.upper.min(self.disc.upper)).swept(self.shift)
+        let lower = bounds.lower.wrapping_sub(self.turned).max(self.disc.lower);
+        let upper = bounds.upper.wrapping_add(self.turned).min(self.disc.upper);
+        Aabb::new(lower.wrapping_add(self.moved[0]), upper.wrapping_add(self.moved[1]))
     }
 }
 

@@ -24,7 +24,7 @@ fn snapshots() {
     says([
         (SnapshotError::NotASnapshot, "not the bytes of a world"),
         (SnapshotError::Format { found: 1 }, "format version 1, this engine reads 2"),
-        (SnapshotError::Semantics { found: 2 }, "made with semantics 2, this engine has 4"),
+        (SnapshotError::Semantics { found: 2 }, "made with semantics 2, this engine has 5"),
         (SnapshotError::Length { announced: 500, found: 499 }, "499 bytes where 500 are announced"),
         (SnapshotError::Hash, "the hash does not match the bytes"),
         (
@@ -68,13 +68,13 @@ fn reports() {
 
 #[test]
 fn comparisons() {
-    let why = Mismatch::Semantics { file: 2, here: 4 };
+    let why = Mismatch::Semantics { file: 2, here: 5 };
     let verdict = Verdict::Malformed { offset: 0, flaw: Flaw::Magic };
     says([
         (CompareError::Kinds, "a snapshot can only be compared with another snapshot"),
         (
             CompareError::Unverifiable { side: Side::A, why },
-            "A: made with engine semantics 2, this program has 4",
+            "A: made with engine semantics 2, this program has 5",
         ),
         (
             CompareError::Replay { side: Side::B, verdict: verdict.clone() },

@@ -39,17 +39,20 @@ pub(super) struct Kept<T> {
     vacancies: OnceBox<Arc<Vacancies>>,
     /// How often something has changed of what pages are copies of.
     revision: u64,
+    /// How often the arena has returned to what it was.
+    returns: u64,
 }
 
 impl<T> Default for Kept<T> {
     fn default() -> Self {
-        Kept { pages: Vec::new(), vacancies: OnceBox::new(), revision: 0 }
+        Kept { pages: Vec::new(), vacancies: OnceBox::new(), revision: 0, returns: 0 }
     }
 }
 
 impl<T> Clone for Kept<T> {
     fn clone(&self) -> Self {
-        Kept { pages: self.pages.clone(), vacancies: self.vacancies.clone(), revision: self.revision }
+        let Kept { pages, vacancies, revision, returns } = self;
+        Kept { pages: pages.clone(), vacancies: vacancies.clone(), revision: *revision, returns: *returns }
     }
 }
 
@@ -131,6 +134,11 @@ impl<T, H> Arena<T, H> {
         self.kept.revision
     }
 
+    /// A number that is another one after what every step changes has been restored.
+    pub(crate) fn returns(&self) -> u64 {
+        self.kept.returns
+    }
+
     /// Makes room to keep copies of all pages, after the arena has been decoded.
     pub(crate) fn keep_pages(&mut self) {
         self.kept.fit(self.slots.len());
@@ -174,14 +182,16 @@ impl<T, H> Arena<T, H> {
     {
         let slot_count = shared.pages.iter().map(|page| page.slots.len()).sum();
         (slot_count..self.slots.len()).filter_map(|slot| u32::try_from(slot).ok()).for_each(&mut changed);
+        let mut other = slot_count != self.slots.len();
         self.slots.truncate(slot_count);
         self.kept.fit(slot_count);
-        self.kept.revision += 1;
+        self.kept.returns += 1;
         let mut first = 0;
         for (page, kept) in shared.pages.iter().zip(&mut self.kept.pages) {
             let next = first + page.slots.len();
             let same = kept.get().is_some_and(|kept| Arc::ptr_eq(kept, page));
             if !same {
+                other = true;
                 let there = self.slots.len().clamp(first, next);
                 self.slots[first..there].clone_from_slice(&page.slots[..there - first]);
                 self.slots.extend_from_slice(&page.slots[there - first..]);
@@ -193,6 +203,7 @@ impl<T, H> Arena<T, H> {
         self.free.clone_from(&shared.vacancies.free);
         self.retired = shared.vacancies.retired;
         self.kept.vacancies = OnceBox::with_value(Box::new(shared.vacancies.clone()));
+        self.kept.revision += u64::from(other);
     }
 }
 

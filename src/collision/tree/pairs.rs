@@ -3,7 +3,7 @@
 use alloc::vec::Vec;
 use core::ops::ControlFlow;
 
-use super::{NONE, Tree};
+use super::{NONE, Node, Tree};
 use crate::collision::broad_phase::Pair;
 use crate::collision::search::Overlap;
 
@@ -15,8 +15,8 @@ impl Tree {
         if self.root != NONE {
             stack.push((self.root, self.root));
         }
-        let mut meet = |a: u32, b: u32, stack: &mut Vec<Pair>| {
-            let (node_a, node_b) = (self.at(a), self.at(b));
+        // Two different nodes in the stack overlap, and at least one of them has children.
+        let mut meet = |(a, node_a): (u32, &Node), (b, node_b): (u32, &Node), stack: &mut Vec<Pair>| {
             if node_a.aabb.overlaps(node_b.aabb) {
                 if node_a.is_leaf() && node_b.is_leaf() {
                     let (a, b) = (node_a.children[0], node_b.children[0]);
@@ -26,23 +26,33 @@ impl Tree {
                 }
             }
         };
+        let child = |node: &Node, i: usize| (node.children[i], self.at(node.children[i]));
         while let Some((a, b)) = stack.pop() {
             let (node_a, node_b) = (self.at(a), self.at(b));
-            let ([a0, a1], [b0, b1]) = (node_a.children, node_b.children);
             match (node_a.is_leaf(), node_b.is_leaf()) {
                 _ if a == b => {
                     if !node_a.is_leaf() {
+                        let [a0, a1] = node_a.children;
                         stack.extend([(a0, a0), (a1, a1)]);
-                        meet(a0, a1, &mut stack);
+                        meet(child(node_a, 0), child(node_a, 1), &mut stack);
                     }
                 }
                 (false, false) => {
-                    for (a, b) in [(a0, b0), (a0, b1), (a1, b0), (a1, b1)] {
-                        meet(a, b, &mut stack);
-                    }
+                    let (a0, a1) = (child(node_a, 0), child(node_a, 1));
+                    let (b0, b1) = (child(node_b, 0), child(node_b, 1));
+                    meet(a0, b0, &mut stack);
+                    meet(a0, b1, &mut stack);
+                    meet(a1, b0, &mut stack);
+                    meet(a1, b1, &mut stack);
                 }
-                (true, _) => [b0, b1].into_iter().for_each(|b| meet(a, b, &mut stack)),
-                (false, true) => [a0, a1].into_iter().for_each(|a| meet(a, b, &mut stack)),
+                (true, _) => {
+                    meet((a, node_a), child(node_b, 0), &mut stack);
+                    meet((a, node_a), child(node_b, 1), &mut stack);
+                }
+                (false, true) => {
+                    meet(child(node_a, 0), (b, node_b), &mut stack);
+                    meet(child(node_a, 1), (b, node_b), &mut stack);
+                }
             }
         }
         self.stack = stack;

@@ -182,3 +182,19 @@ fn narrow_lengths_are_nearest_or_saturated() {
     let extremes = [0, 1, -1, i32::MAX, i32::MIN];
     extremes.into_iter().for_each(|x| extremes.into_iter().for_each(|y| check(x, y)));
 }
+
+#[test]
+fn the_wide_root_is_that_of_the_standard_library() {
+    let mut rng = Rng::new(4);
+    let mut wide = || u128::from(rng.next_u64()) << 64 | u128::from(rng.next_u64());
+    let random = (0..400_000).map(|i| (wide() >> 1) >> (i % 127));
+    let squares = (0..63).flat_map(|bit| {
+        let edge = 1u128 << bit;
+        [edge, edge + 1, edge * 3 / 2, edge * 2 - 1].map(|root| root * root)
+    });
+    let near = squares.flat_map(|square| [square.saturating_sub(1), square, square + 1]);
+    let small = 0..5000;
+    for n in small.chain(near).chain(random).chain([1 << 127, (1 << 127) - 1]) {
+        assert_eq!(root_wide(n), n.isqrt(), "{n}");
+    }
+}

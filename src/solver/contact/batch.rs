@@ -1,6 +1,6 @@
 //! Contacts as the kernels read them: `N` at a time, each number in a row of its own.
 
-use super::super::lanes::Ints;
+use super::super::lanes::{Ints, Lanes};
 
 /// `N` contacts of which no two change the same body, for one tick. Lanes without a contact have no gains, and stand
 /// between the ground and itself.
@@ -20,16 +20,20 @@ pub(in crate::solver) struct Batch<const N: usize> {
     pub(super) count: usize,
     /// Whether any surface in it bounces, moves or resists rolling: then it has a [`super::special::Special`] as well.
     pub(super) special: bool,
+    /// Whether its rows, and what is special about it, can be those of [`super::care::Calm`] contacts.
+    pub(super) calm: bool,
     /// For each point, in which lanes the shapes have pushed each other in this tick: one bit each.
     pub(super) pushed: [u32; 2],
     pub(super) points: [Point<N>; 2],
+    /// Friction, half-way between the points: both would have the same row, for they lie on one line along the tangent.
+    pub(super) tangent: Row<N>,
+    pub(super) tangent_lambda: Ints<N>,
 }
 
 /// The same point of `N` contacts.
 #[derive(Clone, Debug)]
 pub(super) struct Point<const N: usize> {
     pub(super) normal: Row<N>,
-    pub(super) tangent: Row<N>,
     /// At the start of the tick, in the format of a shift.
     pub(super) first_separation: Ints<N>,
     /// Where the bodies are now.
@@ -37,7 +41,6 @@ pub(super) struct Point<const N: usize> {
     /// Friction limit for each unit of the normal impulse: `mu Dt / Dn`.
     pub(super) grip: Ints<N>,
     pub(super) normal_lambda: Ints<N>,
-    pub(super) tangent_lambda: Ints<N>,
 }
 
 /// `N` rows: lever ratios, and what an impulse of 1 changes. The linear part of a lever ratio is the direction, which
@@ -59,12 +62,10 @@ impl<const N: usize> Row<N> {
 impl<const N: usize> Point<N> {
     const NONE: Self = Point {
         normal: Row::NONE,
-        tangent: Row::NONE,
         first_separation: Ints::ZERO,
         separation: Ints::ZERO,
         grip: Ints::ZERO,
         normal_lambda: Ints::ZERO,
-        tangent_lambda: Ints::ZERO,
     };
 }
 
@@ -78,7 +79,17 @@ impl<const N: usize> Batch<N> {
         immovable: Ints::ZERO,
         count: 0,
         special: false,
+        calm: false,
         pushed: [0; 2],
         points: [Point::NONE; 2],
+        tangent: Row::NONE,
+        tangent_lambda: Ints::ZERO,
     };
+
+    /// Sets the normal impulse of a point.
+    #[inline(always)]
+    pub(super) fn push<L: Lanes<N>>(&mut self, place: usize, lambda: L::Int) {
+        L::store(lambda, &mut self.points[place].normal_lambda);
+        self.pushed[place] |= L::bits(L::greater(lambda, L::splat(0)));
+    }
 }

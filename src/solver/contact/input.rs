@@ -39,7 +39,7 @@ pub(super) struct Input {
     pub(super) to_origin: Quad,
     /// From there to the two points.
     pub(super) anchors: Quad,
-    /// For each point what the last tick has left, along the normal and along the tangent: `p = L / D`.
+    /// What the last tick has left: `p = L / D` along the normal of each point, and along the tangent.
     pub(super) carried: Quad,
     /// The separations of the points, in the format of a step, and the friction.
     pub(super) rest: Quad,
@@ -83,18 +83,21 @@ impl Input {
     /// Takes the points, each with the impulses that its feature had.
     #[inline]
     fn take_points(&mut self, points: &[ManifoldPoint], memory: &Contact, warm: &mut WarmStarts) {
+        let mut tangent = Speed::ZERO;
         for (i, point) in points.iter().take(2).enumerate() {
             let carried = memory.impulse_of(point.feature);
             warm.points += 1;
             warm.kept += u32::from(carried.is_some());
-            let PointImpulse { normal, tangent, .. } = carried.unwrap_or_default();
+            let PointImpulse { normal, tangent: share, .. } = carried.unwrap_or_default();
             self.count += 1;
             self.features[i] = point.feature.0;
             self.rest.0[i] = point.separation.to_bits();
             (self.anchors.0[2 * i], self.anchors.0[2 * i + 1]) =
                 (point.anchor.x.to_bits(), point.anchor.y.to_bits());
-            (self.carried.0[2 * i], self.carried.0[2 * i + 1]) = (normal.to_bits(), tangent.to_bits());
+            self.carried.0[i] = normal.to_bits();
+            tangent = tangent.saturating_add(share);
         }
+        self.carried.0[2] = tangent.to_bits();
         for old in memory.points().iter().filter(|old| old.normal.is_positive()) {
             let is_there = points.iter().any(|point| point.feature.0 == old.feature);
             warm.lost += u32::from(!is_there);

@@ -1,10 +1,12 @@
-//! Contacts: one row along the normal and one along the tangent for each point, eight contacts at a time.
+//! Contacts: one row along the normal for each point and one along the tangent for both, eight contacts at a time.
 //!
-//! `prepare` fills batches with the contacts of one colour each, `kernel` solves them, `store` brings their impulses
-//! back. The contacts of bodies that have too many to be coloured are solved one by one, before all others.
+//! `prepare` fills batches with the contacts of one colour each, `kernel` and `iteration` solve them with as much `care`
+//! as they need, `store` brings their impulses back. The contacts of bodies that have too many to be coloured are solved one by one, before all others.
 
 mod batch;
+mod care;
 mod input;
+mod iteration;
 mod kernel;
 mod pair;
 mod prepare;

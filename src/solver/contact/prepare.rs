@@ -7,6 +7,7 @@ use super::super::body_list::BodyList;
 use super::super::colour::{Colouring, Group, Node};
 use super::super::lanes::{Kernel, Lanes, Machine, Scalar, WIDTH, prefetch};
 use super::batch::Batch;
+use super::care::Calm;
 use super::input::{Input, Source};
 use super::rows;
 use super::special::Special;
@@ -107,13 +108,15 @@ impl<const N: usize> Batches<N> {
             records.take(lane, input);
         }
         rows::fill::<L, N>(&chosen, batch, &mut records.inverses);
+        let mut rest = None;
         if batch.special {
-            let mut rest = Special::NONE;
+            let rest = rest.insert(Special::NONE);
             for (lane, &index) in indices.iter().enumerate() {
-                let inverses = [0, 1].map(|point| Unit::from_bits(records.inverses[point][0].0[lane]));
+                let inverses = [0, 1].map(|point| Unit::from_bits(records.inverses.normals[point].0[lane]));
                 rest.fill(lane, source, index as usize, inverses);
             }
-            special.push(rest);
         }
+        batch.calm = Calm::<L, N>::suits(batch, rest.as_ref());
+        special.extend(rest);
     }
 }

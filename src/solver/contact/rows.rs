@@ -33,12 +33,23 @@ struct End<L: Lanes<N>, const N: usize> {
     shift: L::Int,
 }
 
-/// Makes the rows of a batch. `inverses` are the reciprocals of their denominators.
+/// The reciprocals of the denominators of a batch's rows.
+#[derive(Clone, Debug)]
+pub(super) struct Inverses<const N: usize> {
+    pub(super) normals: [Ints<N>; 2],
+    pub(super) tangent: Ints<N>,
+}
+
+impl<const N: usize> Inverses<N> {
+    pub(super) const NONE: Self = Inverses { normals: [Ints::ZERO; 2], tangent: Ints::ZERO };
+}
+
+/// Makes the rows of a batch.
 #[inline(always)]
 pub(super) fn fill<L: Lanes<N>, const N: usize>(
     inputs: &[&Input; N],
     batch: &mut Batch<N>,
-    inverses: &mut [[Ints<N>; 2]; 2],
+    inverses: &mut Inverses<N>,
 ) {
     let one = L::splat(1);
     let [x, y, fraction_a, fraction_b] = columns::<L, N>(inputs, |input| &input.shares);
@@ -51,31 +62,40 @@ pub(super) fn fill<L: Lanes<N>, const N: usize>(
         End::<L, N>::new(fraction_b, [bx, by], mantissa_b, shift_b),
     ];
     let [x0, y0, x1, y1] = columns::<L, N>(inputs, |input| &input.anchors);
-    let [normal_0, tangent_0, normal_1, tangent_1] = columns::<L, N>(inputs, |input| &input.carried);
+    let [normal_0, normal_1, carried, _] = columns::<L, N>(inputs, |input| &input.carried);
     let [separation_0, separation_1, friction, _] = columns::<L, N>(inputs, |input| &input.rest);
     L::store(n[0], &mut batch.n_x);
     L::store(n[1], &mut batch.n_y);
     let stiff = L::either(L::greater(one, fraction_a), L::greater(one, fraction_b));
     L::store(L::to_int(stiff), &mut batch.immovable);
-    let given =
-        [([x0, y0], separation_0, [normal_0, tangent_0]), ([x1, y1], separation_1, [normal_1, tangent_1])];
-    let points = batch.points.iter_mut().zip(inverses).take(batch.count);
+    let middle = match batch.count {
+        2 => [half_way::<L, N>(x0, x1), half_way::<L, N>(y0, y1)],
+        _ => [x0, y0],
+    };
+    let tangent = fill_row::<L, N>(&mut batch.tangent, t, &ends, middle, &mut inverses.tangent);
+    // Guesses, so that to clamp them is no fault.
+    let tangent_lambda = product::<L, N>(carried, &tangent);
+    L::store(clamp::<L, N>(tangent_lambda, L::splat(TANGENT_MAX.to_bits())), &mut batch.tangent_lambda);
+    let given = [([x0, y0], separation_0, normal_0), ([x1, y1], separation_1, normal_1)];
+    let points = batch.points.iter_mut().zip(&mut inverses.normals).take(batch.count);
     for ((point, inverses), (anchor, separation, carried)) in points.zip(given) {
         let separation = L::narrow::<STEP_TO_SHIFT>(L::mul(separation, one));
         L::store(separation, &mut point.first_separation);
         L::store(separation, &mut point.separation);
-        let [normal_inverses, tangent_inverses] = inverses;
-        let normal = fill_row::<L, N>(&mut point.normal, n, &ends, anchor, normal_inverses);
-        let tangent = fill_row::<L, N>(&mut point.tangent, t, &ends, anchor, tangent_inverses);
-        let ratio = ratio::<L, N>(&tangent, L::load(normal_inverses));
+        let normal = fill_row::<L, N>(&mut point.normal, n, &ends, anchor, inverses);
+        let ratio = ratio::<L, N>(&tangent, L::load(inverses));
         L::store(product::<L, N>(friction, &ratio), &mut point.grip);
-        // A guess, so that to clamp it is no fault.
-        let normal_lambda = product::<L, N>(carried[0], &normal);
+        let normal_lambda = product::<L, N>(carried, &normal);
         let normal_lambda = L::min(L::max(normal_lambda, L::splat(0)), L::splat(IMPULSE_MAX.to_bits()));
         L::store(normal_lambda, &mut point.normal_lambda);
-        let tangent_lambda = product::<L, N>(carried[1], &tangent);
-        L::store(clamp::<L, N>(tangent_lambda, L::splat(TANGENT_MAX.to_bits())), &mut point.tangent_lambda);
     }
+}
+
+/// The mean of two numbers, rounded to nearest.
+#[inline(always)]
+fn half_way<L: Lanes<N>, const N: usize>(a: L::Int, b: L::Int) -> L::Int {
+    let one = L::splat(1);
+    L::narrow::<1>(L::add_wide(L::mul(a, one), L::mul(b, one)))
 }
 
 /// The first number of a quad of each contact, the second, and so on.

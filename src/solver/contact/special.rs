@@ -1,7 +1,8 @@
 //! What few contacts have: restitution, surfaces that move, and resistance to rolling. The others should not carry it
 //! through the caches.
 
-use super::super::lanes::Ints;
+use super::super::lanes::{Ints, Lanes};
+use super::batch::Batch;
 use super::input::Source;
 use super::rolling::RollingRows;
 use crate::math::Unit;
@@ -48,6 +49,15 @@ impl<const N: usize> Special<N> {
             self.rolls = true;
             let carried = source.contacts[pair.contact as usize].rolling;
             self.rolling.fill(lane, pair, carried, source.list, inverse_normals);
+        }
+    }
+
+    /// Remembers which points have pushed.
+    #[inline(always)]
+    pub(super) fn remember_pushes<L: Lanes<N>>(&mut self, batch: &Batch<N>) {
+        for (point, pushed) in batch.points[..batch.count].iter().zip(&mut self.pushed) {
+            let pushes = L::to_int(L::greater(L::load(&point.normal_lambda), L::splat(0)));
+            L::store(L::or(L::load(pushed), pushes), pushed);
         }
     }
 }

@@ -5,6 +5,8 @@ use super::super::pair::UNIT;
 use super::Batches;
 use super::batch::Batch;
 use super::input::Input;
+use super::kernel;
+use super::rows::Inverses;
 use crate::collision::{Contact, PointImpulse};
 use crate::math::Speed;
 
@@ -19,18 +21,13 @@ pub(super) struct Records<const N: usize> {
     contacts: [u32; N],
     counts: [u8; N],
     features: [[u16; 2]; N],
-    /// `1 / D` of the normal and the tangent of each point.
-    pub(super) inverses: [[Ints<N>; 2]; 2],
+    /// `1 / D` of its rows.
+    pub(super) inverses: Inverses<N>,
 }
 
 impl<const N: usize> Records<N> {
-    pub(super) const NONE: Self = Records {
-        len: 0,
-        contacts: [0; N],
-        counts: [0; N],
-        features: [[0; 2]; N],
-        inverses: [[Ints::ZERO; 2]; 2],
-    };
+    pub(super) const NONE: Self =
+        Records { len: 0, contacts: [0; N], counts: [0; N], features: [[0; 2]; N], inverses: Inverses::NONE };
 
     #[inline(always)]
     pub(super) fn take(&mut self, lane: usize, input: &Input) {
@@ -46,14 +43,15 @@ impl<const N: usize> Records<N> {
         lanes.enumerate().map(|(lane, (&contact, &count))| (lane, contact as usize, count.into()))
     }
 
-    /// What is kept of the impulses of a point: `p = L / D`, along the normal and along the tangent.
+    /// What is kept of the impulses of each point: `p = L / D`, along the normal and along the tangent.
     #[inline(always)]
-    fn impulses<L: Lanes<N>>(&self, batch: &Batch<N>, point: usize) -> [Ints<N>; 2] {
-        let (lambdas, inverses) = (&batch.points[point], &self.inverses[point]);
-        let mut impulses = [Ints::ZERO; 2];
-        for (row, lambda) in [&lambdas.normal_lambda, &lambdas.tangent_lambda].into_iter().enumerate() {
-            let p = L::mul(L::load(&inverses[row]), L::load(lambda));
-            L::store(L::narrow::<UNIT>(p), &mut impulses[row]);
+    fn impulses<L: Lanes<N>>(&self, batch: &Batch<N>) -> [[Ints<N>; 2]; 2] {
+        let shares = kernel::shares_of_friction::<L, N>(batch);
+        let mut impulses = [[Ints::ZERO; 2]; 2];
+        for (i, [normal, tangent]) in impulses.iter_mut().enumerate() {
+            let lambda = L::load(&batch.points[i].normal_lambda);
+            L::store(L::narrow::<UNIT>(L::mul(L::load(&self.inverses.normals[i]), lambda)), normal);
+            L::store(L::narrow::<UNIT>(L::mul(L::load(&self.inverses.tangent), shares[i])), tangent);
         }
         impulses
     }
@@ -77,7 +75,7 @@ impl<const N: usize> Kernel<N> for Store<'_, N> {
                 prefetch(&contacts[index]);
             }
             let special = if batch.special { special.next() } else { None };
-            let impulses = [record.impulses::<L>(batch, 0), record.impulses::<L>(batch, 1)];
+            let impulses = record.impulses::<L>(batch);
             for (lane, index, count) in record.lanes() {
                 let memory = &mut contacts[index];
                 memory.clear_points();
@@ -90,6 +88,40 @@ impl<const N: usize> Kernel<N> for Store<'_, N> {
                     });
                     pushed[index] |= batch.pushed[i] >> lane & 1 != 0;
                 }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::lanes::Scalar;
+    use super::*;
+    use crate::math::Rng;
+
+    /// Together the points have the whole impulse along the tangent, each no more than its friction allows, and half of it
+    /// where both may have that.
+    #[test]
+    fn friction_is_shared_out_by_halves_as_far_as_each_point_reaches() {
+        let mut rng = Rng::new(31);
+        for _ in 0..20_000 {
+            let mut batch = Batch::<1> { count: 2, ..Batch::NONE };
+            let limits = [0, 1].map(|i| {
+                let limit = i64::from(rng.below(1000));
+                // A grip of 1.
+                batch.points[i].grip.0[0] = 1 << 20;
+                batch.points[i].normal_lambda.0[0] = i32::try_from(limit).expect("below 1000");
+                limit
+            });
+            let most = limits[0] + limits[1];
+            let whole = i64::from(rng.below(2000)).min(2 * most) - most;
+            batch.tangent_lambda.0[0] = i32::try_from(whole).expect("below 2000");
+            let shares = kernel::shares_of_friction::<Scalar<1>, 1>(&batch).map(|share| i64::from(share[0]));
+            assert_eq!(shares[0] + shares[1], whole);
+            for (share, limit) in shares.into_iter().zip(limits) {
+                assert!(share.abs() <= limit, "{share} of {whole} within {limits:?}");
+                let half = (whole.abs() + 1) / 2;
+                assert!(half > limits[0].min(limits[1]) || share.abs().abs_diff(half) <= 1, "{shares:?}");
             }
         }
     }

@@ -10,8 +10,9 @@ use super::super::contact::Pass;
 use super::super::lanes::{Machine, Quad};
 use super::super::limits::Faults;
 use super::super::settings::Tuning;
+use super::basis::{Basis, Definitions, Known};
 use super::def::JointKind;
-use super::hinge::{AngleParts, End, HingeSet, Poses, Task, node};
+use super::hinge::{AngleParts, End, Expired, HingeSet, Poses, Task, Turning, node};
 use super::list::JointList;
 use super::place::{Ends, Turned};
 use super::state::{Joint, JointImpulses};
@@ -26,7 +27,10 @@ pub(crate) struct JointSet {
     anchors: Vec<u32>,
     /// For each body of the tick, where it is in `bodies`, from 1; 0 if it has no joint.
     places: Vec<u32>,
+    /// What joints have to know of their bodies while they are arranged.
     bodies: Vec<End>,
+    /// How each of `bodies` turns, from tick to tick: what is read in every sub-step lies by itself.
+    turning: Vec<Turning>,
     /// For each body of the tick.
     turned: Vec<Turned>,
     quads: Vec<Quad>,
@@ -51,40 +55,6 @@ enum Entry {
     Other(u32),
 }
 
-/// All that it depends on what is solved as what, in which order and with which masses: mostly it is the same from tick
-/// to tick.
-#[derive(Clone, Debug, Default)]
-struct Basis {
-    /// `None` if nothing is known.
-    definitions: Option<Definitions>,
-    /// The slots of the joints and of the bodies that something moves.
-    joints: Vec<u32>,
-    bodies: Vec<u32>,
-}
-
-/// The revisions of joints and bodies, and the settings.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Definitions {
-    joints: u64,
-    bodies: u64,
-    tuning: Tuning,
-}
-
-impl Basis {
-    /// Takes another one. Says whether it is the same.
-    fn renew(&mut self, definitions: Definitions, joints: &[u32], bodies: &[u32]) -> bool {
-        let same = self.definitions == Some(definitions) && self.joints == joints && self.bodies == bodies;
-        if !same {
-            self.definitions = Some(definitions);
-            self.joints.clear();
-            self.joints.extend_from_slice(joints);
-            self.bodies.clear();
-            self.bodies.extend_from_slice(bodies);
-        }
-        same
-    }
-}
-
 /// The rows on the angle of a hinge; `None` of other joints.
 fn hinge_parts(kind: &JointKind) -> Option<AngleParts> {
     match kind {
@@ -101,6 +71,7 @@ impl JointSet {
             anchors,
             places,
             bodies,
+            turning,
             turned,
             quads,
             entries,
@@ -113,6 +84,7 @@ impl JointSet {
         anchors.clear();
         places.clear();
         bodies.clear();
+        turning.clear();
         turned.clear();
         quads.clear();
         entries.clear();
@@ -134,12 +106,17 @@ impl JointSet {
     ) {
         let definitions =
             Definitions { joints: joints.revision(), bodies: bodies.revision(), tuning: *tuning };
-        if self.basis.renew(definitions, slots, list.slots()) {
-            self.resume(bodies, list);
-        } else {
-            self.clear();
-            self.arrange((joints, slots), (bodies, list), tuning, nodes);
-            self.sort(nodes, colouring);
+        match self.basis.renew(definitions, joints.returns(), slots, list.slots()) {
+            Known::All => self.resume(bodies, list),
+            Known::Arrangement => {
+                self.hinges.reload(joints);
+                self.resume(bodies, list);
+            }
+            Known::Nothing => {
+                self.clear();
+                self.arrange((joints, slots), (bodies, list), tuning, nodes);
+                self.sort(nodes, colouring);
+            }
         }
         self.prepare_others(joints, (bodies, list), tuning);
     }
@@ -149,8 +126,8 @@ impl JointSet {
         for &slot in &self.anchors {
             list.own_index_of(slot, bodies.at(slot));
         }
-        for end in &mut self.bodies {
-            end.angle = list.poses()[end.index as usize].angle;
+        for body in &mut self.turning {
+            body.angle = list.poses()[body.index as usize].angle;
         }
         self.hinges.resume(list.poses());
     }
@@ -196,7 +173,9 @@ impl JointSet {
         }
         let place = &mut self.places[index as usize];
         if *place == 0 {
-            self.bodies.push(End::new(index, bodies.at(slot), rate));
+            let end = End::new(index, bodies.at(slot), rate);
+            self.turning.push(end.turning);
+            self.bodies.push(end);
             *place = count(&self.bodies);
         }
         *place as usize - 1
@@ -240,17 +219,19 @@ impl JointSet {
         }
     }
 
-    /// Arms, gains and gaps at the present pose.
-    pub(crate) fn refresh(&mut self, bodies: &mut [SolverBody], machine: Machine, tuning: &Tuning) {
-        for body in &self.bodies {
+    /// Arms, gains and gaps at the present pose; those of hinges when the next task comes to them.
+    pub(crate) fn refresh(&mut self, bodies: &[SolverBody], tuning: &Tuning) {
+        let mut any_turned = false;
+        for body in &self.turning {
             let at = body.index as usize;
             let turns = body.turns_of(bodies[at].turn);
-            let rotation = Rot::from_angle(body.angle + Angle::from_turns(Fx::from_bits(turns)));
-            self.turned[at] = Turned { rotation, turns };
-            self.quads[at] = Quad([rotation.cos.to_bits(), rotation.sin.to_bits(), 0, 0]);
+            let turned = &mut self.turned[at];
+            any_turned |= turned.turn_to(body.angle + Angle::from_turns(Fx::from_bits(turns)));
+            turned.turns = turns;
+            let Rot { cos, sin } = turned.rotation;
+            self.quads[at] = Quad([cos.to_bits(), sin.to_bits(), 0, 0]);
         }
-        let poses = Poses { quads: &self.quads, turned: &self.turned };
-        self.hinges.refresh(SolverBody::cells(bodies), poses, machine, tuning);
+        self.hinges.expire(if any_turned { Expired::Everything } else { Expired::Gaps });
         for (joint, (_, rows, points)) in self.list.walk_joints() {
             let place = joint.ends.place(bodies, &self.turned);
             for point in points {
@@ -271,7 +252,7 @@ impl JointSet {
     /// Looks ahead along the turns of the coming sub-step, at the velocities that the last one has left.
     pub(crate) fn aim(&mut self, bodies: &[SolverBody], tuning: &Tuning) {
         let (half, sixth) = (tuning.joint_stretch / 2, tuning.joint_stretch / 6);
-        for body in &self.bodies {
+        for body in &self.turning {
             let turn = body.ahead_of(bodies[body.index as usize].spin).clamp(-TURN_MAX, TURN_MAX);
             let (across, squared): (Unit, Unit) = (mul(half, turn), mul(turn, turn));
             let along: Unit = mul(sixth, squared);
@@ -294,7 +275,7 @@ impl JointSet {
         }
         self.hinges.perform(
             Task::WarmStart,
-            (&self.quads, machine),
+            (Poses { quads: &self.quads, turned: &self.turned }, machine),
             tuning,
             SolverBody::cells(bodies),
             faults,
@@ -316,7 +297,7 @@ impl JointSet {
         }
         self.hinges.perform(
             Task::Solve(pass),
-            (&self.quads, machine),
+            (Poses { quads: &self.quads, turned: &self.turned }, machine),
             tuning,
             SolverBody::cells(bodies),
             faults,
@@ -350,19 +331,20 @@ impl JointSet {
     ) -> (Vec2<Fx>, Fx) {
         self.clear();
         // Place 0 is the ground's.
-        self.bodies.extend([End::new(1, a, tuning.rate), End::new(2, b, tuning.rate)]);
+        let ends = [End::new(1, a, tuning.rate), End::new(2, b, tuning.rate)];
+        self.turning.extend(ends.map(|end| end.turning));
         self.turned.resize(self.turned.len().max(3), Turned::default());
         self.quads.resize(self.quads.len().max(3), Quad::default());
         match hinge_parts(&joint.def.kind) {
             Some(parts) => {
-                self.hinges.push_input(0, joint, (&self.bodies[0], &self.bodies[1]), &parts, tuning);
+                self.hinges.push_input(0, joint, (&ends[0], &ends[1]), &parts, tuning);
                 self.hinges.push(&Group::Serial(&[0]), Some);
             }
             None => self.list.push(0, joint, (1, a), (2, b), tuning),
         }
         let machine = Machine::default();
         let mut bodies = [SolverBody::default(); 3];
-        self.refresh(&mut bodies, machine, tuning);
+        self.refresh(&bodies, tuning);
         self.warm_start(machine, tuning, &mut bodies, &mut 0);
         let place = Ends::prepare(joint, (1, a), (2, b)).place(&[SolverBody::default(); 3], &self.turned);
         // The lighter one shows more of it.

@@ -5,6 +5,7 @@
 //! hinges, of which there are most by far: they are solved in wide batches of their own. Within a joint the order is E. Catto's (Box2D v3): springs,
 //! motors and limits first, and last what must not give way.
 
+mod basis;
 mod constraint;
 mod def;
 mod distance;

@@ -13,8 +13,23 @@ use crate::math::{Angle, Fx, Length, Reciprocal, Rot, Unit, Vec2, round_shift, s
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Turned {
     pub(super) rotation: Rot,
+    /// The angle of the rotation.
+    pub(super) angle: Angle,
     /// Since the start of the tick, in units of 2^-32 turn.
     pub(super) turns: i64,
+}
+
+impl Turned {
+    /// Turns to an angle, and says whether that is another one: a tick begins where the last one has ended.
+    #[inline]
+    pub(super) fn turn_to(&mut self, angle: Angle) -> bool {
+        let other = self.angle != angle;
+        if other {
+            self.rotation = Rot::from_angle(angle);
+            self.angle = angle;
+        }
+        other
+    }
 }
 
 /// The ends of a joint, for one tick.

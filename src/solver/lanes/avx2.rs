@@ -178,8 +178,8 @@ impl Lanes<WIDTH> for Avx2 {
     fn mul(a: __m256i, b: __m256i) -> Products {
         // SAFETY: see `Avx2`. It multiplies the even lanes.
         unsafe {
-            let (odd_a, odd_b) = (_mm256_srli_epi64::<32>(a), _mm256_srli_epi64::<32>(b));
-            Products { even: multiplied(a, b), odd: multiplied(odd_a, odd_b) }
+            let odd = |v| _mm256_castps_si256(_mm256_movehdup_ps(_mm256_castsi256_ps(v)));
+            Products { even: multiplied(a, b), odd: multiplied(odd(a), odd(b)) }
         }
     }
 

@@ -108,7 +108,12 @@ pub(super) trait Lanes<const N: usize>: Copy {
     /// The numbers of several places: the first of each, the second of each, and so on.
     #[inline(always)]
     fn quads(from: &[Quad], at: &[u32; N]) -> [Self::Int; 4] {
-        Self::transposed(at.map(|at| &from[at as usize]))
+        // `map` would not be inlined into code for other instructions.
+        let mut rows = [&from[at[0] as usize]; N];
+        for (row, &at) in rows.iter_mut().zip(at) {
+            *row = &from[at as usize];
+        }
+        Self::transposed(rows)
     }
     /// The first number of each row, the second of each, and so on.
     fn transposed(rows: [&Quad; N]) -> [Self::Int; 4];

@@ -23,12 +23,12 @@ struct FillRows<'a, const N: usize> {
 
 struct Made<const N: usize> {
     batch: Batch<N>,
-    inverses: [[Ints<N>; 2]; 2],
+    inverses: Inverses<N>,
 }
 
 impl<const N: usize> Made<N> {
     fn of_points(count: usize) -> Self {
-        Made { batch: Batch { count, ..Batch::NONE }, inverses: [[Ints::ZERO; 2]; 2] }
+        Made { batch: Batch { count, ..Batch::NONE }, inverses: Inverses::NONE }
     }
 }
 
@@ -97,15 +97,20 @@ struct Naive {
     inverse: i32,
 }
 
-fn naive_row(input: &Input, point: usize, n: [i32; 2]) -> Naive {
+/// Where a point is, or what is half-way between two.
+fn anchor(input: &Input, points: &[usize]) -> [i32; 2] {
+    [0, 1].map(|axis| {
+        let sum: i128 = points.iter().map(|point| i128::from(input.anchors.0[2 * point + axis])).sum();
+        limited(rounded(sum, points.len().ilog2()), i32::MAX)
+    })
+}
+
+fn naive_row(input: &Input, anchor: [i32; 2], n: [i32; 2]) -> Naive {
     let wide = |a: i32| i128::from(a);
     let Quad([_, _, fraction_a, fraction_b]) = input.shares;
     let fractions = [fraction_a, fraction_b];
     let e = [0, 1].map(|side| {
-        let arm = |axis: usize| {
-            let [to, on] = [input.to_origin.0[2 * side + axis], input.anchors.0[2 * point + axis]];
-            wide(to.saturating_add(on))
-        };
+        let arm = |axis: usize| wide(input.to_origin.0[2 * side + axis].saturating_add(anchor[axis]));
         let c = rounded(arm(0) * wide(n[1]) - arm(1) * wide(n[0]), 24);
         let (mantissa, exponent) = (input.gyrations.0[side], input.gyrations.0[2 + side].unsigned_abs());
         limited(rounded(c * wide(mantissa), exponent.saturating_sub(2)), RATIO_MAX.to_bits())
@@ -128,26 +133,28 @@ fn check<const N: usize>(input: &Input, lane: usize, made: &Made<N>) {
     let [x, y] = [x, y].map(|n| limited(rounded(n.into(), 6), i32::MAX));
     assert_eq!([batch.n_x.0[lane], batch.n_y.0[lane]], [x, y]);
     assert_eq!(batch.immovable.0[lane], -i32::from(fraction_a == 0 || fraction_b == 0));
+    let check_row = |row: &Row<N>, inverse: &Ints<N>, naive: &Naive| {
+        assert_eq!([row.e_a.0[lane], row.e_b.0[lane]], naive.e, "{input:?}");
+        assert_eq!([&row.a, &row.b].map(|gains| [0, 1, 2].map(|part| gains[part].0[lane])), naive.gains);
+        assert_eq!(inverse.0[lane], naive.inverse);
+    };
+    let lambda = |place: usize, row: &Naive, limit: Speed| {
+        let p = i128::from(input.carried.0[place]);
+        limited(rounded(p * row.denominator, 30), limit.to_bits())
+    };
+    let half_way = anchor(input, &[0, 1][..batch.count]);
+    let tangent = naive_row(input, half_way, [-y, x]);
+    check_row(&batch.tangent, &inverses.tangent, &tangent);
+    assert_eq!(batch.tangent_lambda.0[lane], lambda(2, &tangent, TANGENT_MAX));
     let friction = input.rest.0[2];
     for (i, point) in batch.points.iter().enumerate().take(batch.count) {
         let separation = limited(rounded(input.rest.0[i].into(), 1), i32::MAX);
         assert_eq!([point.separation.0[lane], point.first_separation.0[lane]], [separation; 2]);
-        let rows = [naive_row(input, i, [x, y]), naive_row(input, i, [-y, x])];
-        for ((row, naive), inverse) in
-            [&point.normal, &point.tangent].into_iter().zip(&rows).zip(&inverses[i])
-        {
-            assert_eq!([row.e_a.0[lane], row.e_b.0[lane]], naive.e, "{input:?}");
-            assert_eq!([&row.a, &row.b].map(|gains| [0, 1, 2].map(|part| gains[part].0[lane])), naive.gains);
-            assert_eq!(inverse.0[lane], naive.inverse);
-        }
-        let ratio = rounded(rows[1].denominator * i128::from(rows[0].inverse), 30);
+        let normal = naive_row(input, anchor(input, &[i]), [x, y]);
+        check_row(&point.normal, &inverses.normals[i], &normal);
+        let ratio = rounded(tangent.denominator * i128::from(normal.inverse), 30);
         assert_eq!(point.grip.0[lane], limited(rounded(i128::from(friction) * ratio, 30), i32::MAX));
-        let lambda = |row: usize, limit: Speed| {
-            let p = i128::from(input.carried.0[2 * i + row]);
-            limited(rounded(p * rows[row].denominator, 30), limit.to_bits())
-        };
-        assert_eq!(point.normal_lambda.0[lane], lambda(0, IMPULSE_MAX).max(0));
-        assert_eq!(point.tangent_lambda.0[lane], lambda(1, TANGENT_MAX));
+        assert_eq!(point.normal_lambda.0[lane], lambda(i, &normal, IMPULSE_MAX).max(0));
     }
 }
 

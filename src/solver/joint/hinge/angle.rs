@@ -9,7 +9,9 @@ use super::super::super::contact::Pass;
 use super::super::super::lanes::{Ints, Lanes};
 use super::super::super::limits::Faults;
 use super::super::super::pair::{Pair, RATIO, UNIT, clamp};
+use super::super::parts::slot;
 use super::super::place::Turned;
+use super::super::state::JointImpulses;
 use super::angle_input::AngleInput;
 use super::kernel::Constants;
 use crate::math::{Fx, Speed, Unit, round_shift_wide, saturate, saturate_wide};
@@ -127,6 +129,17 @@ impl<const N: usize> AngleRows<N> {
                 row.bounds[lane] = bound;
                 row.lambda.0[lane] = lambda.to_bits();
             }
+        }
+    }
+
+    /// Puts impulses into a lane, each within what its row allows: 0 where there is none.
+    pub(super) fn reload(&mut self, lane: usize, impulses: &JointImpulses) {
+        let AngleRows { spring, drive, limits, limit_max, .. } = self;
+        let within = |slot: u8, max: i32| impulses.0[usize::from(slot)].to_bits().clamp(-max, max);
+        spring.lambda.0[lane] = within(slot::SPRING, spring.max.0[lane]);
+        drive.lambda.0[lane] = within(slot::DRIVE, drive.max.0[lane]);
+        for (row, side) in limits.iter_mut().zip(0..) {
+            row.lambda.0[lane] = within(slot::LIMIT + side, limit_max.0[lane]).max(0);
         }
     }
 

@@ -14,17 +14,24 @@ use crate::math::{
 /// A body with joints.
 #[derive(Clone, Copy, Debug)]
 pub(in super::super) struct End {
-    pub(in super::super) index: u32,
-    pub(in super::super) angle: Angle,
+    pub(in super::super) turning: Turning,
     pub(in super::super) inverse_gyration: Reciprocal,
     /// 0 if no impulse moves it.
     pub(in super::super) mass: Fx,
-    /// Units of 2^-32 turn for each unit of `k dtheta`.
-    pub(in super::super) turns: Fx,
-    /// Radians in a sub-step for each m/s of the spin, times 2^9: what lies between the formats.
-    pub(in super::super) ahead: Fx,
     centre: Vec2<Fx>,
     local_centre: Vec2<Fx>,
+}
+
+/// How a body with joints turns: what every sub-step reads of it.
+#[derive(Clone, Copy, Debug)]
+pub(in super::super) struct Turning {
+    pub(in super::super) index: u32,
+    /// At the start of the tick.
+    pub(in super::super) angle: Angle,
+    /// Units of 2^-32 turn for each unit of `k dtheta`.
+    turns: Fx,
+    /// Radians in a sub-step for each m/s of the spin, times 2^9: what lies between the formats.
+    ahead: Fx,
 }
 
 impl End {
@@ -33,17 +40,26 @@ impl End {
         const TURNS: Fx = crate::fx!(10.18591635788);
         let inverse = body.mass.inverse_gyration;
         End {
-            turns: inverse.times_wide(TURNS),
-            ahead: inverse.times_wide(Fx::from_bits((512 << 32) / i64::from(rate))),
-            index,
-            angle: body.angle(),
-            inverse_gyration: body.mass.inverse_gyration,
+            turning: Turning {
+                index,
+                angle: body.angle(),
+                turns: inverse.times_wide(TURNS),
+                ahead: inverse.times_wide(Fx::from_bits((512 << 32) / i64::from(rate))),
+            },
+            inverse_gyration: inverse,
             mass: if body.is_dynamic() { body.mass() } else { Fx::ZERO },
             centre: body.centre_of_mass(),
             local_centre: body.local_centre_of_mass(),
         }
     }
 
+    /// The index of the body; the ground if no impulse changes it.
+    fn changed(&self) -> u32 {
+        if self.mass > 0 { self.turning.index } else { GROUND }
+    }
+}
+
+impl Turning {
     /// How far it has turned, in units of 2^-32 turn.
     #[inline]
     pub(in super::super) fn turns_of(&self, turn: Shift) -> i64 {
@@ -54,11 +70,6 @@ impl End {
     #[inline]
     pub(in super::super) fn ahead_of(&self, spin: Speed) -> Unit {
         Unit::from_bits(saturate(product(spin.to_bits(), self.ahead)))
-    }
-
-    /// The index of the body; the ground if no impulse changes it.
-    fn changed(&self) -> u32 {
-        if self.mass > 0 { self.index } else { GROUND }
     }
 }
 
@@ -100,14 +111,14 @@ impl Input {
         let lambda = joint.impulses.point(slot::HOLD);
         Input {
             slot,
-            bodies: [a.index, b.index],
+            bodies: [a.turning.index, b.turning.index],
             changed: [a.changed(), b.changed()],
             angle,
             arms,
             ratios: [ratios(arms[0], a.inverse_gyration), ratios(arms[1], b.inverse_gyration)],
             fractions: MassFractions::of_masses(a.mass, b.mass),
             between: b.centre - a.centre,
-            turns: joint.turns(a.angle, b.angle),
+            turns: joint.turns(a.turning.angle, b.turning.angle),
             rest: joint.def.rest_angle(),
             lambda: [lambda.x.to_bits(), lambda.y.to_bits()],
         }

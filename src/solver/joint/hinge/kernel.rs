@@ -48,16 +48,21 @@ fn rotated<L: Lanes<N>, const N: usize>(quads: &[L::Int; 4], v: &[Ints<N>; 2]) -
     [L::sub_wide(L::mul(c, x), L::mul(s, y)), L::add_wide(L::mul(s, x), L::mul(c, y))]
 }
 
-/// Lever ratios, gains and gaps at the present pose.
+/// How the bodies of a batch are turned.
 #[inline(always)]
-pub(super) fn refresh<L: Lanes<N>, const N: usize>(
+pub(super) fn turns<L: Lanes<N>, const N: usize>(batch: &Batch<N>, quads: &[Quad]) -> [[L::Int; 4]; 2] {
+    [L::quads(quads, &batch.bodies[0]), L::quads(quads, &batch.bodies[1])]
+}
+
+/// Gaps at the present pose.
+#[inline(always)]
+pub(super) fn refresh_gaps<L: Lanes<N>, const N: usize>(
     batch: &mut Batch<N>,
     shape: &Shape<N>,
+    quads: &[[L::Int; 4]; 2],
     bodies: &[Cell<SolverBody>],
-    quads: &[Quad],
     constants: &Constants,
 ) {
-    let quads = [L::quads(quads, &batch.bodies[0]), L::quads(quads, &batch.bodies[1])];
     let arms = [rotated::<L, N>(&quads[0], &shape.arms[0]), rotated::<L, N>(&quads[1], &shape.arms[1])];
     let (a, b) = (L::shifts(bodies, &batch.bodies[0]), L::shifts(bodies, &batch.bodies[1]));
     let moved = [L::sub(b.x, a.x), L::sub(b.y, a.y)];
@@ -66,6 +71,15 @@ pub(super) fn refresh<L: Lanes<N>, const N: usize>(
         let gap = L::add_wide(L::sub_wide(arms[1][axis], arms[0][axis]), between);
         L::store(closing::<L, N>(gap, moved[axis], constants), &mut batch.bias[axis]);
     }
+}
+
+/// Lever ratios and gains at the present pose.
+#[inline(always)]
+pub(super) fn refresh_gains<L: Lanes<N>, const N: usize>(
+    batch: &mut Batch<N>,
+    shape: &Shape<N>,
+    quads: &[[L::Int; 4]; 2],
+) {
     let e = [
         turned::<L, N>(&mut batch.e[0], &quads[0], &shape.ratios[0]),
         turned::<L, N>(&mut batch.e[1], &quads[1], &shape.ratios[1]),

@@ -16,6 +16,7 @@ mod tests;
 
 use alloc::vec::Vec;
 use core::cell::Cell;
+use core::mem;
 
 use super::super::body::SolverBody;
 use super::super::contact::Pass;
@@ -28,7 +29,7 @@ pub(super) use angle_input::AngleParts;
 use angle_input::{AngleInput, Memo};
 use batch::{Batch, Shape};
 use input::Input;
-pub(super) use input::{End, node};
+pub(super) use input::{End, Turning, node};
 use kernel::Constants;
 use prepare::Records;
 
@@ -52,6 +53,18 @@ pub(super) struct HingeSet {
     serial: Batches<1>,
     /// The others, colour by colour.
     coloured: Batches<WIDTH>,
+    /// What of the batches is no longer true.
+    expired: Expired,
+}
+
+/// What bodies that have moved leave of a batch.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Expired {
+    #[default]
+    Nothing,
+    /// No body has turned: lever ratios and gains are what they were.
+    Gaps,
+    Everything,
 }
 
 /// Batches of hinges in the order in which they are solved.
@@ -79,53 +92,25 @@ pub(super) enum Task {
 }
 
 impl HingeSet {
-    /// Arms, gains and gaps at the present pose.
-    pub(super) fn refresh(
-        &mut self,
-        bodies: &[Cell<SolverBody>],
-        poses: Poses<'_>,
-        machine: Machine,
-        tuning: &Tuning,
-    ) {
-        let constants = Constants::new(tuning);
-        Refresh { batches: &mut self.serial, constants, bodies, poses }.run::<Scalar<1>>();
-        machine.run(Refresh { batches: &mut self.coloured, constants, bodies, poses });
+    /// Bodies have moved: the next task finds arms, gains and gaps at the new poses, batch by batch, so that a batch is
+    /// fetched from memory once for both.
+    pub(super) fn expire(&mut self, what: Expired) {
+        self.expired = self.expired.max(what);
     }
 
     /// Performs a task for all of them.
     pub(super) fn perform(
         &mut self,
         task: Task,
-        (quads, machine): (&[Quad], Machine),
+        (poses, machine): (Poses<'_>, Machine),
         tuning: &Tuning,
         bodies: &[Cell<SolverBody>],
         faults: &mut Faults,
     ) {
-        let constants = Constants::new(tuning);
-        Perform { batches: &mut self.serial, task, constants, quads, bodies, faults }.run::<Scalar<1>>();
-        machine.run(Perform { batches: &mut self.coloured, task, constants, quads, bodies, faults });
-    }
-}
-
-/// The refresh of the batches of `N` hinges.
-struct Refresh<'a, const N: usize> {
-    batches: &'a mut Batches<N>,
-    constants: Constants,
-    bodies: &'a [Cell<SolverBody>],
-    poses: Poses<'a>,
-}
-
-impl<const N: usize> Kernel<N> for Refresh<'_, N> {
-    #[inline(always)]
-    fn run<L: Lanes<N>>(self) {
-        let Refresh { batches: Batches { batches, shapes, angles, records }, constants, bodies, poses } =
-            self;
-        for ((batch, shape), records) in batches.iter_mut().zip(shapes).zip(records) {
-            kernel::refresh::<L, N>(batch, shape, bodies, poses.quads, &constants);
-            if let Some(place) = batch.angle {
-                angles[place as usize].refresh(&records.turns, &batch.bodies, poses.turned);
-            }
-        }
+        let (constants, expired) = (Constants::new(tuning), mem::take(&mut self.expired));
+        let HingeSet { serial, coloured, .. } = self;
+        Perform { batches: serial, task, expired, constants, poses, bodies, faults }.run::<Scalar<1>>();
+        machine.run(Perform { batches: coloured, task, expired, constants, poses, bodies, faults });
     }
 }
 
@@ -133,8 +118,10 @@ impl<const N: usize> Kernel<N> for Refresh<'_, N> {
 struct Perform<'a, const N: usize> {
     batches: &'a mut Batches<N>,
     task: Task,
+    /// What is to be found anew before.
+    expired: Expired,
     constants: Constants,
-    quads: &'a [Quad],
+    poses: Poses<'a>,
     bodies: &'a [Cell<SolverBody>],
     faults: &'a mut Faults,
 }
@@ -142,23 +129,35 @@ struct Perform<'a, const N: usize> {
 impl<const N: usize> Kernel<N> for Perform<'_, N> {
     #[inline(always)]
     fn run<L: Lanes<N>>(self) {
-        let Perform { batches: Batches { batches, angles, .. }, task, constants, quads, bodies, faults } =
-            self;
-        match task {
-            Task::WarmStart => {
-                for batch in batches {
-                    kernel::warm_start::<L, N>(batch, angles, bodies, faults);
+        match self.task {
+            // Named one by one, so that each is compiled for itself.
+            Task::WarmStart => self.each::<L>(Task::WarmStart),
+            Task::Solve(Pass::Bias) => self.each::<L>(Task::Solve(Pass::Bias)),
+            Task::Solve(Pass::Relax) => self.each::<L>(Task::Solve(Pass::Relax)),
+        }
+    }
+}
+
+impl<const N: usize> Perform<'_, N> {
+    #[inline(always)]
+    fn each<L: Lanes<N>>(self, task: Task) {
+        let Perform { batches, task: _, expired, constants, poses, bodies, faults } = self;
+        let Batches { batches, shapes, angles, records } = batches;
+        for ((batch, shape), records) in batches.iter_mut().zip(shapes).zip(records) {
+            if expired >= Expired::Gaps {
+                let quads = kernel::turns::<L, N>(batch, poses.quads);
+                kernel::refresh_gaps::<L, N>(batch, shape, &quads, bodies, &constants);
+                if expired == Expired::Everything {
+                    kernel::refresh_gains::<L, N>(batch, shape, &quads);
+                }
+                if let Some(place) = batch.angle {
+                    angles[place as usize].refresh(&records.turns, &batch.bodies, poses.turned);
                 }
             }
-            // Named twice, so that each pass is compiled for itself.
-            Task::Solve(Pass::Bias) => {
-                for batch in batches {
-                    kernel::solve::<L, N>(batch, angles, Pass::Bias, (&constants, quads), bodies, faults);
-                }
-            }
-            Task::Solve(Pass::Relax) => {
-                for batch in batches {
-                    kernel::solve::<L, N>(batch, angles, Pass::Relax, (&constants, quads), bodies, faults);
+            match task {
+                Task::WarmStart => kernel::warm_start::<L, N>(batch, angles, bodies, faults),
+                Task::Solve(pass) => {
+                    kernel::solve::<L, N>(batch, angles, pass, (&constants, poses.quads), bodies, faults);
                 }
             }
         }

@@ -2,11 +2,12 @@
 
 use super::super::super::colour::Group;
 use super::super::super::settings::Tuning;
+use super::super::parts::slot;
 use super::super::place::Turned;
 use super::super::state::{Joint, JointImpulses, nearest_turns};
 use super::angle::AngleRows;
 use super::batch::{Batch, Shape};
-use super::{AngleInput, AngleParts, Batches, End, HingeSet, Input};
+use super::{AngleInput, AngleParts, Batches, End, Expired, HingeSet, Input};
 use crate::body::{Arena, JointId, Pose};
 use crate::math::{Angle, Fx, Length, Speed, Unit, Vec2};
 
@@ -24,7 +25,8 @@ pub(super) struct Records<const N: usize> {
 
 impl HingeSet {
     pub(in super::super) fn clear(&mut self) {
-        let HingeSet { inputs, angles, memo, serial, coloured } = self;
+        let HingeSet { inputs, angles, memo, serial, coloured, expired } = self;
+        *expired = Expired::Everything;
         inputs.clear();
         angles.clear();
         *memo = None;
@@ -67,6 +69,12 @@ impl HingeSet {
                 }
             }
         }
+    }
+
+    /// What the joints have been restored to, instead of what the last tick has stored.
+    pub(in super::super) fn reload(&mut self, joints: &Arena<Joint, JointId>) {
+        self.serial.reload(joints);
+        self.coloured.reload(joints);
     }
 
     /// What the last tick has stored, with the bodies where they are now.
@@ -125,6 +133,23 @@ impl<const N: usize> Batches<N> {
                 records.rest[lane] = input.rest;
             }
             lane += 1;
+        }
+    }
+
+    fn reload(&mut self, joints: &Arena<Joint, JointId>) {
+        let Batches { batches, angles, records, .. } = self;
+        for (batch, records) in batches.iter_mut().zip(records) {
+            let mut rows = batch.angle.map(|place| &mut angles[place as usize]);
+            for lane in 0..records.len {
+                let joint = joints.at(records.slots[lane]);
+                let lambda = joint.impulses.point(slot::HOLD);
+                batch.lambda[0].0[lane] = lambda.x.to_bits();
+                batch.lambda[1].0[lane] = lambda.y.to_bits();
+                records.turns[lane] = joint.turns;
+                if let Some(rows) = &mut rows {
+                    rows.reload(lane, &joint.impulses);
+                }
+            }
         }
     }
 

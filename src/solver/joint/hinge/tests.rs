@@ -93,7 +93,11 @@ impl Setting {
             let ahead = [rng.range(fx!(-0.2), fx!(0.2)), rng.range(fx!(0), fx!(0.02))];
             let [across, along] = ahead.map(|part| narrow::<fixed::types::extra::U30>(part).to_bits());
             self.quads.push(Quad([rotation.cos.to_bits(), rotation.sin.to_bits(), across, along]));
-            self.turned.push(Turned { rotation, turns: i64::from(rng.next_u32()) - (1 << 31) });
+            self.turned.push(Turned {
+                rotation,
+                turns: i64::from(rng.next_u32()) - (1 << 31),
+                ..Turned::default()
+            });
         }
         let gap = Vec2::new(rng.range(-sizes.gap, sizes.gap), rng.range(-sizes.gap, sizes.gap));
         let bodies = [2 * slot + 1, 2 * slot + 2];
@@ -126,9 +130,15 @@ impl Setting {
         let (tuning, mut faults) = (tuning(), 0);
         let Setting { hinges, bodies, quads, turned, .. } = self;
         for _ in 0..2 {
-            hinges.refresh(SolverBody::cells(bodies), Poses { quads, turned }, machine, &tuning);
+            hinges.expire(Expired::Everything);
             for task in [Task::WarmStart, Task::Solve(Pass::Bias), Task::Solve(Pass::Relax)] {
-                hinges.perform(task, (quads, machine), &tuning, SolverBody::cells(bodies), &mut faults);
+                hinges.perform(
+                    task,
+                    (Poses { quads, turned }, machine),
+                    &tuning,
+                    SolverBody::cells(bodies),
+                    &mut faults,
+                );
             }
         }
         faults
@@ -232,10 +242,10 @@ fn a_point_is_solved_as_by_the_scalar_block() {
         setting.hinges.push(&Group::Coloured(&[0, 1, 2, 3, 4, 5, 6, 7]), Some);
         let (tuning, machine, mut faults) = (tuning(), Machine::default(), 0);
         let Setting { hinges, bodies, quads, turned, ends, fractions } = &mut setting;
-        hinges.refresh(SolverBody::cells(bodies), Poses { quads, turned }, machine, &tuning);
+        hinges.expire(Expired::Everything);
         hinges.perform(
             Task::Solve(Pass::Relax),
-            (quads, machine),
+            (Poses { quads, turned }, machine),
             &tuning,
             SolverBody::cells(bodies),
             &mut faults,
@@ -253,10 +263,10 @@ fn a_point_is_solved_as_by_the_scalar_block() {
         }
         // What a second update still finds.
         let first: Vec<_> = setting.impulses();
-        let Setting { hinges, bodies, quads, .. } = &mut setting;
+        let Setting { hinges, bodies, quads, turned, .. } = &mut setting;
         hinges.perform(
             Task::Solve(Pass::Relax),
-            (quads, machine),
+            (Poses { quads, turned }, machine),
             &tuning,
             SolverBody::cells(bodies),
             &mut faults,
