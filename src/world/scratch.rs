@@ -189,25 +189,24 @@ impl Scratch {
         scratch
     }
 
-    /// Brings the broad phase in line with shapes in some slots: that have another box, or that have come or gone.
-    pub(crate) fn set_boxes(&mut self, state: &State, slots: &[u32]) {
-        let there = |slot: u32| {
-            let shape = state.shapes.get_slot(slot)?;
-            state.bodies.at(shape.body().slot()).enabled.then_some((slot, shape.fat))
-        };
+    /// Brings the broad phase in line with a state that it has not followed: `refitted` has the boxes that are others, and
+    /// `redefined` the slots of shapes that may have come or gone, or whose bodies are other ones.
+    pub(crate) fn set_boxes(&mut self, state: &State, redefined: &[u32]) {
         let Scratch { broad_phase, fixed, refitted, .. } = self;
-        refitted.clear();
-        for &slot in slots {
-            fixed.remove(slot);
-            match there(slot) {
-                Some((slot, fat)) if broad_phase.fat(slot) != Aabb::NOWHERE => refitted.push((slot, fat)),
-                Some((slot, fat)) => broad_phase.set(slot, fat),
+        for &slot in redefined {
+            let shape = state.shapes.get_slot(slot).filter(|_| state.body_of(slot).enabled);
+            match shape {
+                Some(shape) if broad_phase.fat(slot) != Aabb::NOWHERE => refitted.push((slot, shape.fat)),
+                Some(shape) => broad_phase.set(slot, shape.fat),
                 None => broad_phase.remove(slot),
             }
-            if let Some((slot, fat)) = there(slot).filter(|_| state.body_of(slot).kind() == BodyKind::Fixed) {
-                fixed.set(slot, fat);
+            match shape {
+                Some(shape) if state.body_of(slot).kind() == BodyKind::Fixed => fixed.set(slot, shape.fat),
+                _ => fixed.remove(slot),
             }
         }
+        // Disabled bodies have boxes too.
+        refitted.retain(|&(slot, _)| broad_phase.fat(slot) != Aabb::NOWHERE);
         broad_phase.set_many(refitted);
     }
 

@@ -11,7 +11,7 @@
 use alloc::boxed::Box;
 use alloc::vec::Vec;
 
-use super::packing::{Fields, Reader, Record, Writer};
+use super::packing::{Fields, Reader, Record, Writer, low_half, put_records};
 use crate::body::{Arena, Body, BodyId, BodyKind, Handle, IslandId, Pose, Shape, ShapeId};
 use crate::math::{Aabb, Angle, Fx, Speed, Vec2};
 use crate::world::change::FAT_GRID_SHIFT;
@@ -24,6 +24,8 @@ const BODY_BYTES: usize = 36;
 /// At most.
 const SPECIAL_BYTES: usize = 5 + 24 + 8 + 20;
 const BOX_BYTES: usize = 16;
+/// In the place of the first step of a box that comes in full.
+const NOT_NEAR: i32 = i32::MIN;
 
 type Bodies = Arena<Body, BodyId>;
 type Shapes = Arena<Shape, ShapeId>;
@@ -48,20 +50,16 @@ fn is_fixed(shape: &Shape, bodies: &Bodies) -> bool {
 
 pub(super) fn pack_bodies(bodies: &Bodies, bytes: &mut Vec<u8>) {
     let mut special = Vec::new();
-    let mut writer = Writer::new(bytes, bodies.len() * BODY_BYTES);
-    for (id, body) in bodies.iter() {
-        writer.record(|record: &mut Record<'_, BODY_BYTES>| {
-            put_place(record, body.centre, body.angle);
-            record.put(body.velocity.x.to_bits());
-            record.put(body.velocity.y.to_bits());
-            record.put(body.spin.to_bits());
-            record.put(body.rest_ticks);
-        });
+    put_records(bytes, bodies.len(), bodies.iter(), |(id, body), record: &mut Record<'_, BODY_BYTES>| {
+        put_place(record, body.centre, body.angle);
+        record.put(body.velocity.x.to_bits());
+        record.put(body.velocity.y.to_bits());
+        record.put(body.spin.to_bits());
+        record.put(body.rest_ticks);
         if specials(body) != 0 {
             special.push((id, body));
         }
-    }
-    drop(writer);
+    });
     let mut rest = Vec::new();
     let mut writer = Writer::new(&mut rest, special.len() * SPECIAL_BYTES);
     special.into_iter().for_each(|(id, body)| writer.record(|record| pack_special(id, body, record)));
@@ -162,7 +160,7 @@ pub(super) fn pack_boxes(shapes: &Shapes, bodies: &Bodies, bytes: &mut Vec<u8>) 
         if near.is_none() {
             far.extend(corners(shape.fat).map(Fx::to_bits));
         }
-        let steps = near.unwrap_or([i32::MIN, 0, 0, 0]);
+        let steps = near.unwrap_or([NOT_NEAR, 0, 0, 0]);
         writer
             .record(|record: &mut Record<'_, BOX_BYTES>| steps.into_iter().for_each(|step| record.put(step)));
     }
@@ -175,48 +173,56 @@ fn corners(fat: Aabb) -> [Fx; 4] {
 }
 
 /// A box in steps of the grid from a point, if it is on the grid and the steps are few enough.
-#[inline]
+#[inline(always)]
 fn about(fat: Aabb, centre: Vec2<Fx>) -> Option<[i32; 4]> {
-    let (x, y) = (centre.x.to_bits() >> FAT_GRID_SHIFT, centre.y.to_bits() >> FAT_GRID_SHIFT);
-    let bits = corners(fat).map(Fx::to_bits);
-    let steps = [
-        bits[0] >> FAT_GRID_SHIFT,
-        bits[1] >> FAT_GRID_SHIFT,
-        bits[2] >> FAT_GRID_SHIFT,
-        bits[3] >> FAT_GRID_SHIFT,
-    ];
+    let [left, bottom, right, top] = corners(fat).map(Fx::to_bits);
     // Shifted right, so that differences cannot overflow.
-    let [a, b, c, d] = [steps[0] - x, steps[1] - y, steps[2] - x, steps[3] - y].map(i32::try_from);
-    let on_grid = (bits[0] | bits[1] | bits[2] | bits[3]) & ((1 << FAT_GRID_SHIFT) - 1) == 0;
-    match (a, b, c, d) {
-        (Ok(a), Ok(b), Ok(c), Ok(d)) if on_grid && a != i32::MIN => Some([a, b, c, d]),
-        _ => None,
-    }
+    let (x, y) = (centre.x.to_bits() >> FAT_GRID_SHIFT, centre.y.to_bits() >> FAT_GRID_SHIFT);
+    let steps = |bits: i64, origin: i64| (bits >> FAT_GRID_SHIFT) - origin;
+    let steps = [steps(left, x), steps(bottom, y), steps(right, x), steps(top, y)];
+    let off_grid = (left | bottom | right | top) & ((1 << FAT_GRID_SHIFT) - 1);
+    // 0 if a step fits 32 bits and is not less; the first has to say as well that the box is near.
+    let misfit = |step: i64, least: i32| (step - i64::from(least)) >> u32::BITS;
+    let [a, b, c, d] = steps;
+    let a = misfit(a, NOT_NEAR + 1);
+    let [b, c, d] = [b, c, d].map(|step| misfit(step, i32::MIN));
+    (off_grid | a | b | c | d == 0).then(|| steps.map(low_half))
 }
 
-/// Gives the shapes back the boxes that were packed, and calls `changed` with the slots of those that were other ones.
-pub(super) fn unpack_boxes(shapes: &mut Shapes, bodies: &Bodies, bytes: &[u8], mut changed: impl FnMut(u32)) {
-    let count = shapes.iter().filter(|(_, shape)| !is_fixed(shape, bodies)).count();
-    let mut far = Reader(bytes);
-    let mut near = far.part(count * BOX_BYTES);
+/// Gives the shapes back the boxes that were packed, and calls `changed` with the slots and boxes of those that were other
+/// ones.
+pub(super) fn unpack_boxes(
+    shapes: &mut Shapes,
+    bodies: &Bodies,
+    bytes: &[u8],
+    mut changed: impl FnMut(u32, Aabb),
+) {
+    let mut reader = Reader(bytes);
+    let mut far = Vec::new();
+    let mut set = |slot: u32, shape: &mut Shape, fat: Aabb| {
+        if shape.fat != fat {
+            shape.fat = fat;
+            changed(slot, fat);
+        }
+    };
     for (id, shape) in shapes.iter_mut() {
         let body = bodies.at(shape.body.slot());
         if body.kind == BodyKind::Fixed {
             continue;
         }
-        let mut fields: Fields<'_, BOX_BYTES> = near.record();
+        let mut fields: Fields<'_, BOX_BYTES> = reader.record();
         let steps: [i32; 4] = core::array::from_fn(|_| fields.take());
-        let fat = if steps[0] == i32::MIN {
-            let mut fields: Fields<'_, 32> = far.record();
-            Aabb::new(take_point(&mut fields), take_point(&mut fields))
-        } else {
-            let corner = |x: i32, y: i32| Vec2::new(at_step(body.centre.x, x), at_step(body.centre.y, y));
-            Aabb::new(corner(steps[0], steps[1]), corner(steps[2], steps[3]))
-        };
-        if shape.fat != fat {
-            shape.fat = fat;
-            changed(id.slot());
+        if steps[0] == NOT_NEAR {
+            far.push(id.slot());
+            continue;
         }
+        let corner = |x: i32, y: i32| Vec2::new(at_step(body.centre.x, x), at_step(body.centre.y, y));
+        set(id.slot(), shape, Aabb::new(corner(steps[0], steps[1]), corner(steps[2], steps[3])));
+    }
+    for slot in far {
+        let mut fields: Fields<'_, 32> = reader.record();
+        let fat = Aabb::new(take_point(&mut fields), take_point(&mut fields));
+        set(slot, shapes.at_mut(slot), fat);
     }
 }
 

@@ -9,7 +9,7 @@
 
 use alloc::vec::Vec;
 
-use super::packing::{Fields, Reader, Record, Writer};
+use super::packing::{Fields, Reader, Record, Writer, low_half, put_records};
 use crate::body::{Arena, JointId};
 use crate::collision::{Contact, PointImpulse};
 use crate::math::Speed;
@@ -19,16 +19,18 @@ const HEAD_BYTES: usize = 8;
 const IMPULSES_BYTES: usize = 24;
 /// At most.
 const JOINT_BYTES: usize = 1 + 6 * 4 + 8;
+/// The first byte of a joint that has only the impulses of the point that holds it, and the length of all of it.
+const HINGE: u8 = 0b11_0000;
+const HINGE_BYTES: usize = 1 + 3 * 4;
 /// The bit of a joint's first byte for turns of 8 bytes.
 const MANY_TURNS: u8 = 1 << 6;
 /// Impulses of a joint.
 const JOINT_IMPULSES: u8 = 6;
 
 pub(super) fn pack_contacts(contacts: &[Contact], heads: &mut Vec<u8>, impulses: &mut Vec<u8>) {
-    let mut heads = Writer::new(heads, contacts.len() * HEAD_BYTES);
     let mut impulses = Writer::new(impulses, contacts.len() * IMPULSES_BYTES);
-    for contact in contacts {
-        heads.record(|record: &mut Record<'_, HEAD_BYTES>| record.put(head(contact)));
+    put_records(heads, contacts.len(), contacts, |contact, record: &mut Record<'_, HEAD_BYTES>| {
+        record.put(head(contact));
         if has_impulses(contact) {
             impulses.record(|record: &mut Record<'_, IMPULSES_BYTES>| {
                 for point in &contact.points {
@@ -39,7 +41,7 @@ pub(super) fn pack_contacts(contacts: &[Contact], heads: &mut Vec<u8>, impulses:
                 contact.points.iter().for_each(|point| record.put(point.feature));
             });
         }
-    }
+    });
 }
 
 fn has_impulses(contact: &Contact) -> bool {
@@ -95,6 +97,13 @@ pub(super) fn lasting_joint(joint: &Joint) -> Joint {
 pub(super) fn pack_joints(joints: &Arena<Joint, JointId>, bytes: &mut Vec<u8>) {
     let mut writer = Writer::new(bytes, joints.len() * JOINT_BYTES);
     for (_, joint) in joints.iter() {
+        if let Some((x, y, turns)) = plain_hinge(joint) {
+            writer.record(|record: &mut Record<'_, HINGE_BYTES>| {
+                record.put(HINGE);
+                [x, y, turns].into_iter().for_each(|word| record.put(word));
+            });
+            continue;
+        }
         let mut there = 0;
         // Each word is written, and the next one over it if it is 0: without branches, which nobody could foresee.
         let (mut words, mut count) = ([0i32; 8], 0);
@@ -120,16 +129,32 @@ pub(super) fn pack_joints(joints: &Arena<Joint, JointId>, bytes: &mut Vec<u8>) {
     }
 }
 
+/// The impulses and the turns of what most joints are: held at one point, and nothing else.
+#[inline(always)]
+fn plain_hinge(joint: &Joint) -> Option<(i32, i32, i32)> {
+    let low = low_half(joint.turns);
+    match joint.impulses.0.map(Speed::to_bits) {
+        [0, 0, 0, 0, x, y] if x != 0 && y != 0 && joint.turns == i64::from(low) => Some((x, y, low)),
+        _ => None,
+    }
+}
+
 /// The lower and the upper 32 bits.
-#[expect(clippy::cast_possible_truncation, reason = "to be put together again")]
 fn halves(turns: i64) -> [i32; 2] {
-    [turns as i32, (turns >> 32) as i32]
+    [low_half(turns), low_half(turns >> u32::BITS)]
 }
 
 pub(super) fn unpack_joints(joints: &mut Arena<Joint, JointId>, bytes: &[u8]) {
     let mut reader = Reader(bytes);
     for (_, joint) in joints.iter_mut() {
         let there: u8 = reader.record::<1>().take();
+        if there == HINGE {
+            let mut words: Fields<'_, { HINGE_BYTES - 1 }> = reader.record();
+            let (x, y) = (Speed::from_bits(words.take()), Speed::from_bits(words.take()));
+            joint.impulses.0 = [Speed::ZERO, Speed::ZERO, Speed::ZERO, Speed::ZERO, x, y];
+            joint.turns = i64::from(words.take::<i32>());
+            continue;
+        }
         let mut word = || -> i32 { reader.record::<4>().take() };
         for (place, impulse) in (0..JOINT_IMPULSES).zip(&mut joint.impulses.0) {
             let some = there >> place & 1 != 0;

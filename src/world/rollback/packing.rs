@@ -28,6 +28,13 @@ macro_rules! integers {
 
 integers!(u8 u16 u32 u64 i32 i64);
 
+/// The lower 32 bits.
+#[expect(clippy::cast_possible_truncation, reason = "the upper half is looked at or kept by the caller")]
+#[inline(always)]
+pub(super) fn low_half(integer: i64) -> i32 {
+    integer as i32
+}
+
 /// A record of `N` bytes that is being written.
 pub(super) struct Record<'a, const N: usize> {
     bytes: &'a mut [u8; N],
@@ -50,8 +57,23 @@ impl<const N: usize> Record<'_, N> {
     }
 }
 
-/// Writes records one after the other into a buffer. What was there is overwritten and not cleared before, so that a
-/// buffer that is written again and again is only as much work as what is written.
+/// Replaces what is in a buffer by a record for each of so many things. With their number known before, that takes less
+/// than a [`Writer`].
+#[inline(always)]
+pub(super) fn put_records<T, const N: usize>(
+    bytes: &mut Vec<u8>,
+    count: usize,
+    things: impl IntoIterator<Item = T>,
+    mut put: impl FnMut(T, &mut Record<'_, N>),
+) {
+    bytes.resize(count * N, 0);
+    for (thing, bytes) in things.into_iter().zip(bytes.chunks_exact_mut(N)) {
+        put(thing, &mut Record { bytes: bytes.try_into().expect("as many bytes"), len: 0 });
+    }
+}
+
+/// Writes records one after the other into a buffer, however many there will be. What was there is overwritten and not
+/// cleared before, so that a buffer that is written again and again is only as much work as what is written.
 pub(super) struct Writer<'a> {
     bytes: &'a mut Vec<u8>,
     len: usize,

@@ -4,6 +4,7 @@ use alloc::vec::Vec;
 
 use super::{Packed, Rest, Snapshot, bodies, constraints};
 use crate::body::{BodyKind, Handle};
+use crate::math::Aabb;
 use crate::world::World;
 use crate::world::joint_links::JointLinks;
 use crate::world::scratch::Scratch;
@@ -14,8 +15,8 @@ use crate::world::state::State;
 pub(super) struct Stale {
     /// Bodies that are elsewhere or other ones.
     bodies: Vec<u32>,
-    /// Shapes with other boxes.
-    boxes: Vec<u32>,
+    /// Shapes with other boxes, and these.
+    boxes: Vec<(u32, Aabb)>,
     /// Bodies, shapes or joints that are other ones or gone.
     redefined_bodies: Vec<u32>,
     redefined_shapes: Vec<u32>,
@@ -31,7 +32,8 @@ impl World {
     pub fn restore(&mut self, snapshot: &Snapshot) {
         let World { state, scratch, phases: _ } = self;
         let state = &mut **state;
-        let mut stale = Stale::default();
+        let mut stale = Stale { boxes: core::mem::take(&mut scratch.refitted), ..Stale::default() };
+        stale.boxes.clear();
         restore_state(state, snapshot, &mut stale);
         refresh(state, scratch, stale);
         scratch.reset_results();
@@ -52,7 +54,7 @@ pub(super) fn restore_state(state: &mut State, snapshot: &Snapshot, stale: &mut 
     state.joints.restore(joints, |_| stale.any_joint = true);
     state.islands.restore(islands, |_| {});
     bodies::unpack_bodies(&mut state.bodies, motions, |slot| stale.bodies.push(slot));
-    bodies::unpack_boxes(&mut state.shapes, &state.bodies, boxes, |slot| stale.boxes.push(slot));
+    bodies::unpack_boxes(&mut state.shapes, &state.bodies, boxes, |slot, fat| stale.boxes.push((slot, fat)));
     constraints::unpack_joints(&mut state.joints, turns);
     constraints::unpack_contacts(&mut state.contacts, heads, impulses);
     state.resting.restore(resting);
@@ -60,7 +62,7 @@ pub(super) fn restore_state(state: &mut State, snapshot: &Snapshot, stale: &mut 
 
 /// Brings the caches of places in line with the state.
 fn refresh(state: &State, scratch: &mut Scratch, stale: Stale) {
-    let Stale { mut bodies, mut boxes, redefined_bodies, redefined_shapes, any_joint } = stale;
+    let Stale { mut bodies, boxes, redefined_bodies, redefined_shapes, any_joint } = stale;
     if !redefined_bodies.is_empty() {
         scratch.kinematic = state.bodies.iter().any(|(_, body)| body.kind() == BodyKind::Kinematic);
     }
@@ -74,10 +76,9 @@ fn refresh(state: &State, scratch: &mut Scratch, stale: Stale) {
     bodies.extend(of_shapes.map(|shape| shape.body().slot()));
     let occupied = |&slot: &u32| state.bodies.get_slot(slot);
     // A body that has been disabled or enabled has its boxes where they were.
-    boxes.extend(
-        redefined_bodies.iter().filter_map(occupied).flat_map(|body| body.shapes()).map(|id| id.slot()),
-    );
-    boxes.extend(&redefined_shapes);
+    let of_bodies = redefined_bodies.iter().filter_map(occupied).flat_map(|body| body.shapes());
+    let redefined_boxes: Vec<u32> =
+        of_bodies.map(|id| id.slot()).chain(redefined_shapes.iter().copied()).collect();
     bodies.extend(&redefined_bodies);
     if !(redefined_bodies.is_empty() && redefined_shapes.is_empty()) {
         bodies.sort_unstable();
@@ -86,7 +87,8 @@ fn refresh(state: &State, scratch: &mut Scratch, stale: Stale) {
     for slot in bodies.into_iter().filter(|slot| occupied(slot).is_some()) {
         scratch.poses.pose_body(state, slot);
     }
-    scratch.set_boxes(state, &boxes);
+    scratch.refitted = boxes;
+    scratch.set_boxes(state, &redefined_boxes);
     if any_joint {
         scratch.joined_stale = true;
         scratch.links = JointLinks::new(state);
