@@ -207,6 +207,19 @@ mod tests {
         assert!(touching > 20_000 && counters.hint_hits > 10_000, "{touching} touch, {counters:?}");
     }
 
+    #[test]
+    fn a_shape_that_is_shifted_is_as_if_it_had_been_posed_there() {
+        let mut rng = Rng::new(4);
+        for _ in 0..20_000 {
+            let (geometry, angle) = (random_geometry(&mut rng), rng.angle());
+            let mut place = || Vec2::new(rng.range(fx!(-900), fx!(900)), rng.range(fx!(-900), fx!(900)));
+            let (from, to) = (place(), place());
+            let mut shifted = posed(geometry.clone(), from, angle);
+            shifted.shift(to - from);
+            assert_eq!(alloc::format!("{shifted:?}"), alloc::format!("{:?}", posed(geometry, to, angle)));
+        }
+    }
+
     /// The corners of an outline in the world, and its radius.
     fn corners(shape: &PosedShape) -> (Vec<Vec2<Fx>>, Fx) {
         match &shape.outline {

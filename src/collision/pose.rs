@@ -219,11 +219,16 @@ impl PosedShape {
                 self.centre = centre;
             }
             (Outline::Circle { .. }, Geometry::Circle { .. }) => {
-                self.bounds = self.bounds.translated(centre - self.centre);
-                self.centre = centre;
+                self.shift(centre - self.centre);
             }
             (_, geometry) => *self = Self::of_geometry(geometry, centre, **rotation),
         }
+    }
+
+    /// Shifts it, unturned: the same as posing it again where its body has been shifted to.
+    pub(crate) fn shift(&mut self, by: Vec2<Fx>) {
+        self.centre += by;
+        self.bounds = self.bounds.translated(by);
     }
 
     /// The radius of a disc inside a geometry, however it is turned; 0 for a line.

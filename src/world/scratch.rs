@@ -15,7 +15,7 @@ use super::stats::StepStats;
 use crate::body::{Body, BodyKind, Geometry, Handle, Pose, Shape, ShapeId};
 use crate::collision::{AxisHint, BroadPhase, BroadPhaseKind, Contact, Pair, PosedShape};
 use crate::fx;
-use crate::math::{Aabb, Fx};
+use crate::math::{Aabb, Fx, Vec2};
 use crate::solver::{Solver, TouchingPair};
 
 /// Caches, buffers and results of the last tick.
@@ -304,6 +304,16 @@ impl Poses {
             self.shapes[id.slot() as usize] = Some(posed);
         }
         self.extents[slot as usize] = Extents::of(state, body);
+    }
+
+    /// Takes the shapes of a body along, after it has been shifted and not turned: falling and resting bodies mostly are.
+    pub(crate) fn shift_body(&mut self, body: &Body, by: Vec2<Fx>) {
+        for &id in body.shapes() {
+            let posed =
+                self.shapes[id.slot() as usize].as_mut().expect("every shape is posed when it is placed");
+            posed.shift(by);
+            self.outlook.move_to(id.slot(), posed.bounds);
+        }
     }
 
     /// Poses the shapes of a body again, after it has only been moved.

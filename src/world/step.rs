@@ -209,9 +209,15 @@ fn finalise_body(state: &mut State, scratch: &mut Scratch, slot: u32) -> (Pose, 
 /// Moves a body, its shapes and, where they leave them, their boxes.
 pub(super) fn move_body(state: &mut State, scratch: &mut Scratch, slot: u32, pose: Pose) {
     let body = state.bodies.at_mut(slot);
-    if (body.centre, body.angle) != (pose.centre, pose.angle) {
+    let (by, turned) = (pose.centre - body.centre, pose.angle != body.angle);
+    if turned || by != Vec2::ZERO {
         (body.centre, body.angle) = (pose.centre, pose.angle);
-        scratch.poses.move_body(state, state.bodies.at(slot));
+        let body = state.bodies.at(slot);
+        if turned {
+            scratch.poses.move_body(state, body);
+        } else {
+            scratch.poses.shift_body(body, by);
+        }
         cover_shapes(state, scratch, slot);
     }
 }

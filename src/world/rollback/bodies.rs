@@ -98,16 +98,20 @@ fn put_place<const N: usize>(record: &mut Record<'_, N>, centre: Vec2<Fx>, angle
     record.put(angle.to_bits());
 }
 
-/// Gives the bodies back what was packed, and calls `moved` with the slots of those that it takes to another place.
-pub(super) fn unpack_bodies(bodies: &mut Bodies, bytes: &[u8], mut moved: impl FnMut(u32)) {
+/// Gives the bodies back what was packed, and calls `moved` with the slots of those that it takes to another place: by
+/// how much, unless it also turns them.
+pub(super) fn unpack_bodies(bodies: &mut Bodies, bytes: &[u8], mut moved: impl FnMut(u32, Option<Vec2<Fx>>)) {
     let mut reader = Reader(bytes);
     let mut motions = reader.part(bodies.len() * BODY_BYTES);
     for (id, body) in bodies.iter_mut() {
-        let before = (body.centre, body.angle);
+        let before = Pose { centre: body.centre, angle: body.angle };
         set_motion(body, &mut motions.record());
         (body.force, body.torque, body.island, body.target) = (Vec2::ZERO, Fx::ZERO, None, None);
-        if before != (body.centre, body.angle) {
-            moved(id.slot());
+        let by = body.centre - before.centre;
+        if body.angle != before.angle {
+            moved(id.slot(), None);
+        } else if by != Vec2::ZERO {
+            moved(id.slot(), Some(by));
         }
     }
     while !reader.is_empty() {

@@ -3,18 +3,20 @@
 use alloc::vec::Vec;
 
 use super::{Packed, Rest, Snapshot, bodies, constraints};
-use crate::body::{BodyKind, Handle};
-use crate::math::Aabb;
+use crate::body::{Body, BodyKind, Handle};
+use crate::math::{Aabb, Fx, Vec2};
 use crate::world::World;
 use crate::world::joint_links::JointLinks;
-use crate::world::scratch::Scratch;
+use crate::world::scratch::{Poses, Scratch};
 use crate::world::state::State;
 
 /// Slots of which the caches know something else than the state has, in any order and more than once.
 #[derive(Default)]
 pub(super) struct Stale {
-    /// Bodies that are elsewhere or other ones.
-    bodies: Vec<u32>,
+    /// Bodies that are turned another way.
+    turned: Vec<u32>,
+    /// The others that are elsewhere, and by how much.
+    shifted: Vec<(u32, Vec2<Fx>)>,
     /// Shapes with other boxes, and these.
     boxes: Vec<(u32, Aabb)>,
     /// Bodies, shapes or joints that are other ones or gone.
@@ -53,7 +55,10 @@ pub(super) fn restore_state(state: &mut State, snapshot: &Snapshot, stale: &mut 
     state.shapes.restore(shapes, |slot| stale.redefined_shapes.push(slot));
     state.joints.restore(joints, |_| stale.any_joint = true);
     state.islands.restore(islands, |_| {});
-    bodies::unpack_bodies(&mut state.bodies, motions, |slot| stale.bodies.push(slot));
+    bodies::unpack_bodies(&mut state.bodies, motions, |slot, by| match by {
+        Some(by) => stale.shifted.push((slot, by)),
+        None => stale.turned.push(slot),
+    });
     bodies::unpack_boxes(&mut state.shapes, &state.bodies, boxes, |slot, fat| stale.boxes.push((slot, fat)));
     constraints::unpack_joints(&mut state.joints, turns);
     constraints::unpack_contacts(&mut state.contacts, heads, impulses);
@@ -62,18 +67,23 @@ pub(super) fn restore_state(state: &mut State, snapshot: &Snapshot, stale: &mut 
 
 /// Brings the caches of places in line with the state.
 fn refresh(state: &State, scratch: &mut Scratch, stale: Stale) {
-    let Stale { mut bodies, boxes, redefined_bodies, redefined_shapes, any_joint } = stale;
+    let Stale { turned, shifted, boxes, redefined_bodies, redefined_shapes, any_joint } = stale;
     if !redefined_bodies.is_empty() {
         scratch.kinematic = state.bodies.iter().any(|(_, body)| body.kind() == BodyKind::Kinematic);
     }
-    for body in bodies.iter().filter_map(|&slot| state.bodies.get_slot(slot)) {
-        if body.shapes().iter().all(|id| scratch.poses.has(id.slot())) {
+    let posed = |poses: &Poses, body: &Body| body.shapes().iter().all(|id| poses.has(id.slot()));
+    for body in turned.into_iter().map(|slot| state.bodies.at(slot)) {
+        if posed(&scratch.poses, body) {
             scratch.poses.move_body(state, body);
         }
     }
-    bodies.clear();
+    for (body, by) in shifted.into_iter().map(|(slot, by)| (state.bodies.at(slot), by)) {
+        if posed(&scratch.poses, body) {
+            scratch.poses.shift_body(body, by);
+        }
+    }
     let of_shapes = redefined_shapes.iter().filter_map(|&slot| state.shapes.get_slot(slot));
-    bodies.extend(of_shapes.map(|shape| shape.body().slot()));
+    let mut bodies: Vec<u32> = of_shapes.map(|shape| shape.body().slot()).collect();
     let occupied = |&slot: &u32| state.bodies.get_slot(slot);
     // A body that has been disabled or enabled has its boxes where they were.
     let of_bodies = redefined_bodies.iter().filter_map(occupied).flat_map(|body| body.shapes());
