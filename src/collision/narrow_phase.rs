@@ -214,7 +214,7 @@ mod tests {
             let (geometry, angle) = (random_geometry(&mut rng), rng.angle());
             let mut place = || Vec2::new(rng.range(fx!(-900), fx!(900)), rng.range(fx!(-900), fx!(900)));
             let (from, to) = (place(), place());
-            let mut shifted = posed(geometry.clone(), from, angle);
+            let mut shifted = posed(geometry, from, angle);
             shifted.shift(to - from);
             assert_eq!(alloc::format!("{shifted:?}"), alloc::format!("{:?}", posed(geometry, to, angle)));
         }
