@@ -41,6 +41,7 @@ pub mod collision;
 pub mod draw;
 pub mod hash;
 pub mod inspect;
+mod lanes;
 pub mod lockstep;
 pub mod math;
 #[cfg(feature = "ggrs")]

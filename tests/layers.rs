@@ -12,6 +12,7 @@
 //!           solver
 //!         collision
 //!            body
+//!            lanes
 //! math, hash, codec, threads, inspect
 //! ```
 
@@ -26,9 +27,10 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("hash", &["codec"]),
     ("threads", &[]),
     ("inspect", &["math"]),
+    ("lanes", &["math"]),
     ("body", &["math", "codec", "hash"]),
-    ("collision", &["math", "codec", "hash", "body"]),
-    ("solver", &["math", "codec", "hash", "threads", "body", "collision"]),
+    ("collision", &["math", "codec", "hash", "lanes", "body"]),
+    ("solver", &["math", "codec", "hash", "threads", "lanes", "body", "collision"]),
     ("world", &["math", "codec", "hash", "threads", "body", "collision", "solver"]),
     ("draw", &["math", "codec", "hash", "body", "collision", "solver", "world"]),
     ("lockstep", &["math", "codec", "hash", "body", "collision", "solver", "world"]),

@@ -1,48 +1,13 @@
-//! What the kernels see of a body: its velocity and how far it has come within the tick.
-
-use core::cell::Cell;
+//! Bodies in the solver, apart from what lanes do with them: how they come in, and how one alone is changed.
 
 use super::limits::{Faults, SPEED_MAX};
 use crate::body::Body;
+pub(crate) use crate::lanes::SolverBody;
 use crate::math::{Reciprocal, Shift, Speed, Vec2, round_shift_wide, saturate_wide};
-
-/// A body in the solver. Bodies that nothing moves have mass fraction 0 in every row, so that they are read and
-/// written like the others and never change.
-///
-/// Two halves of 16 bytes, which wide kernels load as a whole.
-#[derive(Clone, Copy, Debug, Default)]
-#[repr(C, align(32))]
-pub(crate) struct SolverBody {
-    pub(crate) velocity: Vec2<Speed>,
-    /// `u = k w`.
-    pub(crate) spin: Speed,
-    pub(super) velocity_padding: i32,
-    /// Displacement of the centre of mass since the start of the tick.
-    pub(crate) shift: Vec2<Shift>,
-    /// `k dtheta` since the start of the tick.
-    pub(crate) turn: Shift,
-    pub(super) shift_padding: i32,
-}
-
-const _: () = assert!(size_of::<SolverBody>() == 32, "two halves of 16 bytes");
 
 impl SolverBody {
     pub(crate) fn of(body: &Body) -> Self {
         SolverBody { velocity: body.velocity, spin: body.spin, ..Self::default() }
-    }
-
-    /// Sets the velocity, which is in range.
-    #[inline(always)]
-    pub(super) fn set_motion(&mut self, x: i32, y: i32, spin: i32) {
-        self.velocity = Vec2::new(Speed::from_bits(x), Speed::from_bits(y));
-        self.spin = Speed::from_bits(spin);
-    }
-
-    /// Sets how far it has come.
-    #[inline(always)]
-    pub(super) fn set_shift(&mut self, x: i32, y: i32, turn: i32) {
-        self.shift = Vec2::new(Shift::from_bits(x), Shift::from_bits(y));
-        self.turn = Shift::from_bits(turn);
     }
 
     /// Sets the velocity, every component kept within [`SPEED_MAX`].
@@ -65,25 +30,6 @@ impl SolverBody {
             *faults += u64::from(within != *speed);
             *speed = within;
         }
-    }
-
-    /// Bodies that several lanes, and several threads, read and write.
-    pub(super) fn cells(bodies: &mut [Self]) -> &[Cell<Self>] {
-        Cell::from_mut(bodies).as_slice_of_cells()
-    }
-
-    /// Velocity, spin and padding: 16 bytes, aligned to 32.
-    #[allow(dead_code, reason = "only vectors load it whole")]
-    #[inline(always)]
-    pub(super) fn velocity_bits(body: &Cell<Self>) -> *mut i32 {
-        body.as_ptr().cast()
-    }
-
-    /// Shift, turn and padding: 16 bytes, aligned to 16.
-    #[allow(dead_code, reason = "only vectors load it whole")]
-    #[inline(always)]
-    pub(super) fn shift_bits(body: &Cell<Self>) -> *mut i32 {
-        Self::velocity_bits(body).wrapping_add(4)
     }
 
     /// The velocities the other way.

@@ -7,11 +7,8 @@ use super::row::RATIO_MAX;
 #[cfg(test)]
 use crate::body::{Arena, BodyId};
 use crate::body::{Body, Pose};
+pub(super) use crate::lanes::GROUND;
 use crate::math::{Angle, Fx, Length, Ratio, Reciprocal, Vec2, round_shift, saturate};
-
-/// The index of the body that stands for all those that nothing moves. Their mass fraction is 0, so that it never
-/// changes.
-pub(super) const GROUND: u32 = 0;
 
 /// Bodies in the order of their slots, after the ground.
 #[derive(Clone, Debug, Default)]

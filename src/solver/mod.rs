@@ -10,7 +10,6 @@ mod colour;
 mod contact;
 mod integrate;
 mod joint;
-mod lanes;
 mod limits;
 mod pair;
 mod point_block;
@@ -20,6 +19,8 @@ mod softness;
 
 use alloc::vec::Vec;
 
+pub use crate::lanes::Backend;
+pub(crate) use crate::lanes::Machine;
 pub(crate) use body::{SolverBody, turn_of};
 use body_list::BodyList;
 pub use colour::SolverColour;
@@ -32,8 +33,6 @@ pub use joint::{
     Distance, Drive, Joint, JointDef, JointFrame, JointKind, Limit, LinearDrive, Motor, Prismatic, Pull,
     Revolute, Soft, Spring, Threshold, ThresholdAction, Weld, Wheel,
 };
-pub use lanes::Backend;
-pub(crate) use lanes::Machine;
 use limits::Faults;
 pub(crate) use limits::IMPULSE_MAX;
 pub(crate) use settings::Tuning;

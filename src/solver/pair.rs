@@ -3,8 +3,8 @@
 use core::cell::Cell;
 
 use super::body::SolverBody;
-use super::lanes::{Lanes, Motion};
 use super::limits::{Faults, SPEED_MAX};
+use crate::lanes::{Lanes, Motion};
 use crate::math::{Ratio, Unit};
 
 /// Fraction bits to shift by.

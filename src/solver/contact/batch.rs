@@ -1,6 +1,6 @@
 //! Contacts as the kernels read them: `N` at a time, each number in a row of its own.
 
-use super::super::lanes::{Ints, Lanes};
+use crate::lanes::{Ints, Lanes};
 
 /// `N` contacts of which no two change the same body, for one tick. Lanes without a contact have no gains, and stand
 /// between the ground and itself.

@@ -16,11 +16,11 @@
 #[cfg(test)]
 mod tests;
 
-use super::super::lanes::{Lanes, Motion};
 use super::super::limits::{Faults, IMPULSE_MAX};
 use super::super::pair::{HALF, Pair, RATIO, UNIT, beyond, clamp, shift};
 use super::batch::{Batch, Row};
 use super::special::Special;
+use crate::lanes::{Lanes, Motion};
 use crate::math::{Grip, Rate, Ratio, Shift, Speed};
 
 pub(super) const GRIP: i32 = shift(Grip::FRAC_NBITS);

@@ -4,10 +4,10 @@
 use super::super::TouchingPair;
 use super::super::body_list::{BodyList, GROUND};
 use super::super::colour::{Node, Size};
-use super::super::lanes::Quad;
 use super::super::row::MassFractions;
 use super::{Surface, WarmStarts};
 use crate::collision::{Contact, Manifold, ManifoldPoint, PointImpulse};
+use crate::lanes::Quad;
 use crate::math::{Length, Speed};
 
 /// Where to look up what only special contacts have.

@@ -3,7 +3,6 @@
 use core::cell::Cell;
 
 use super::super::body::SolverBody;
-use super::super::lanes::{Ints, Lanes};
 use super::super::pair::{Pair, UNIT, beyond, clamp, shift};
 use super::batch::{Batch, Point};
 use super::care::Care;
@@ -11,6 +10,7 @@ use super::kernel::{Constants, directions};
 use super::rolling::RollingRows;
 use super::special::Special;
 use super::{NORMAL_ROUNDS_MAX, Pass, SETTLED, Sweep, TANGENT_MAX};
+use crate::lanes::{Ints, Lanes};
 use crate::math::{Rate, Shift, Speed, Unit};
 
 /// What an iteration makes of a batch.

@@ -13,7 +13,6 @@
 use core::cell::Cell;
 
 use super::super::body::SolverBody;
-use super::super::lanes::Lanes;
 use super::super::limits::{Faults, IMPULSE_MAX};
 use super::super::pair::{Pair, UNIT, clamp};
 use super::super::settings::Tuning;
@@ -24,6 +23,7 @@ use super::iteration::Iteration;
 use super::pair::along;
 use super::special::Special;
 use super::{Pass, RESTITUTION_ITERATIONS, Sweep};
+use crate::lanes::Lanes;
 use crate::math::{Rate, Shift};
 
 /// The constants of a tick.

@@ -19,11 +19,11 @@ use alloc::vec::Vec;
 use core::cell::Cell;
 
 use super::body::SolverBody;
-use super::lanes::{Kernel, Lanes, Machine, Scalar, Shared, WIDTH, prefetch};
 use super::limits::Faults;
 use super::settings::Tuning;
 use crate::body::Material;
 use crate::collision::Contact;
+use crate::lanes::{Kernel, Lanes, Machine, Scalar, Shared, WIDTH, prefetch};
 use crate::math::{Fx, Grip, Speed, Unit, fx_mul, narrow};
 use crate::threads::Threads;
 use batch::Batch;

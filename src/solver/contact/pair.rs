@@ -1,9 +1,9 @@
 //! How the impulses of a row change the bodies of a batch.
 
-use super::super::lanes::{Ints, Lanes, Motion};
 use super::super::pair::Pair;
 use super::batch::Row;
 use super::care::Care;
+use crate::lanes::{Ints, Lanes, Motion};
 
 impl<L: Lanes<N>, const N: usize> Pair<L, N> {
     /// `J v` as a speed.

@@ -5,7 +5,6 @@ use alloc::vec::Vec;
 use super::super::TouchingPair;
 use super::super::body_list::BodyList;
 use super::super::colour::{Colouring, Group, Node};
-use super::super::lanes::{Kernel, Lanes, Machine, Scalar, WIDTH, prefetch};
 use super::batch::Batch;
 use super::care::Calm;
 use super::input::{Input, Source};
@@ -14,6 +13,7 @@ use super::special::Special;
 use super::store::Records;
 use super::{Batches, ContactSet, WarmStarts};
 use crate::collision::{Contact, Manifold};
+use crate::lanes::{Kernel, Lanes, Machine, Scalar, WIDTH, prefetch};
 use crate::math::Unit;
 
 impl ContactSet {

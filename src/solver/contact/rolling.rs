@@ -12,11 +12,11 @@
 
 use super::super::TouchingPair;
 use super::super::body_list::BodyList;
-use super::super::lanes::Ints;
 use super::super::row::{Denominator, MassFractions, Row as ScalarRow, impulse_of, lambda_of};
 use super::TANGENT_MAX;
 use super::batch::Row;
 use super::rows::grip;
+use crate::lanes::Ints;
 use crate::math::{Speed, Unit, fx_div, round_shift_wide, saturate_wide};
 
 /// The rolling rows of a batch. Few surfaces resist rolling, and the others should not carry rows for it through the

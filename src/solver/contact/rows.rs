@@ -9,13 +9,13 @@
 mod tests;
 
 use super::super::body_list::lever_ratio;
-use super::super::lanes::{Ints, Lanes, Quad};
 use super::super::limits::IMPULSE_MAX;
 use super::super::pair::{RATIO, UNIT, clamp, shift};
 use super::super::row::RATIO_MAX;
 use super::TANGENT_MAX;
 use super::batch::{Batch, Row};
 use super::input::Input;
+use crate::lanes::{Ints, Lanes, Quad};
 use crate::math::{Fx, Grip, Length, Ratio, Shift, Step, narrow, round_shift_wide, saturate, saturate_wide};
 
 /// From the format of a unit vector to that of a lever ratio.

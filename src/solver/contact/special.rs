@@ -1,10 +1,10 @@
 //! What few contacts have: restitution, surfaces that move, and resistance to rolling. The others should not carry it
 //! through the caches.
 
-use super::super::lanes::{Ints, Lanes};
 use super::batch::Batch;
 use super::input::Source;
 use super::rolling::RollingRows;
+use crate::lanes::{Ints, Lanes};
 use crate::math::Unit;
 
 /// The rest of a batch of which some surface is special.

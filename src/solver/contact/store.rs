@@ -1,6 +1,5 @@
 //! Brings the impulses of batches back to their contacts.
 
-use super::super::lanes::{Ints, Kernel, Lanes, prefetch};
 use super::super::pair::UNIT;
 use super::Batches;
 use super::batch::Batch;
@@ -8,6 +7,7 @@ use super::input::Input;
 use super::kernel;
 use super::rows::Inverses;
 use crate::collision::{Contact, PointImpulse};
+use crate::lanes::{Ints, Kernel, Lanes, prefetch};
 use crate::math::Speed;
 
 /// How many batches before its impulses are stored a contact is asked for: in the order of colours they lie anywhere.
@@ -95,8 +95,8 @@ impl<const N: usize> Kernel<N> for Store<'_, N> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::super::lanes::Scalar;
     use super::*;
+    use crate::lanes::Scalar;
     use crate::math::Rng;
 
     /// Together the points have the whole impulse along the tangent, each no more than its friction allows, and half of it

@@ -3,11 +3,11 @@
 use core::cell::Cell;
 
 use super::super::body::SolverBody;
-use super::super::lanes::{Kernel, Lanes, Motion};
 use super::super::limits::Faults;
 use super::super::pair::{UNIT, beyond};
 use super::sub_step::SubStep;
 use super::{Mover, SHIFT_MAX};
+use crate::lanes::{Kernel, Lanes, Motion};
 use crate::math::{Speed, Unit};
 
 /// New velocities.

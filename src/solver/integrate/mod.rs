@@ -9,10 +9,10 @@ mod tests;
 use core::cell::Cell;
 
 use super::body::SolverBody;
-use super::lanes::{Machine, Quad};
 use super::limits::Faults;
 use super::settings::Tuning;
 use crate::body::{Body, BodyKind, BodySettings, MotionLocks};
+use crate::lanes::{Machine, Quad};
 use crate::math::{Fx, Shift, Speed, Unit, Vec2, fx_div, fx_mul, narrow, saturate};
 use sub_step::SubStep;
 

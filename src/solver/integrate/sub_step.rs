@@ -1,6 +1,6 @@
 //! What a speed is within a sub-step.
 
-use super::super::lanes::Lanes;
+use crate::lanes::Lanes;
 use crate::math::{Shift, Speed};
 
 /// `1 / rate` seconds: no time step is ever rounded.
@@ -65,8 +65,8 @@ impl SubStep {
 
 #[cfg(test)]
 mod tests {
-    use super::super::super::lanes::Scalar;
     use super::*;
+    use crate::lanes::Scalar;
     use crate::math::Rng;
     use std::vec::Vec;
 

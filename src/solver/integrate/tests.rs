@@ -2,10 +2,10 @@
 
 use std::vec::Vec;
 
-use super::super::lanes::Backend;
 use super::super::settings::SolverSettings;
 use super::*;
 use crate::fx;
+use crate::lanes::Backend;
 use crate::math::Rng;
 
 fn random_speed(rng: &mut Rng, size: Fx) -> Speed {

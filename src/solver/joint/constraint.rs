@@ -7,7 +7,6 @@ use super::super::body::SolverBody;
 use super::super::body_list::{BodyList, GROUND};
 use super::super::colour::{Colouring, Group, Node};
 use super::super::contact::Pass;
-use super::super::lanes::{Machine, Quad};
 use super::super::limits::Faults;
 use super::super::settings::Tuning;
 use super::basis::{Basis, Definitions, Known};
@@ -17,6 +16,7 @@ use super::list::JointList;
 use super::place::{Ends, Turned};
 use super::state::{Joint, JointImpulses};
 use crate::body::{Arena, Body, BodyId, JointId};
+use crate::lanes::{Machine, Quad};
 use crate::math::{Angle, Fx, Rot, Unit, Vec2, fx_mul, mul, widen};
 
 /// All joints, for one tick.

@@ -1,7 +1,6 @@
 //! Batches solved calmly against the same ones solved carefully, on every backend.
 
 use super::super::super::body::SolverBody;
-use super::super::super::lanes::{Backend, Ints, Kernel, Machine, WIDTH};
 use super::super::super::settings::SolverSettings;
 use super::super::batch::Point;
 use super::super::input::Input;
@@ -10,8 +9,9 @@ use super::super::rows::{Inverses, fill};
 use super::super::{Pass, Sweep};
 use super::*;
 use crate::fx;
+use crate::lanes::Quad;
+use crate::lanes::{Backend, Ints, Kernel, Machine, WIDTH};
 use crate::math::{Fx, Length, Reciprocal, Rng, Rot, Step, Vec2, narrow};
-use crate::solver::lanes::Quad;
 use crate::solver::row::MassFractions;
 use crate::solver::settings::Tuning;
 use core::cell::Cell;

@@ -1,9 +1,9 @@
 //! The rows of every backend against the equations, one number at a time.
 
-use super::super::super::lanes::{Backend, Kernel, Machine, Scalar, WIDTH};
 use super::super::super::row::MassFractions;
 use super::*;
 use crate::fx;
+use crate::lanes::{Backend, Kernel, Machine, Scalar, WIDTH};
 use crate::math::{Reciprocal, Rng, Rot, Speed, Unit, Vec2};
 use std::vec::Vec;
 

@@ -6,7 +6,6 @@
 //! ```
 
 use super::super::super::contact::Pass;
-use super::super::super::lanes::{Ints, Lanes};
 use super::super::super::limits::Faults;
 use super::super::super::pair::{Pair, RATIO, UNIT, clamp};
 use super::super::parts::slot;
@@ -14,6 +13,7 @@ use super::super::place::Turned;
 use super::super::state::JointImpulses;
 use super::angle_input::AngleInput;
 use super::kernel::Constants;
+use crate::lanes::{Ints, Lanes};
 use crate::math::{Fx, Speed, Unit, round_shift_wide, saturate, saturate_wide};
 
 /// The rows of a batch. Lanes without a row have no gains, or bounds of 0.

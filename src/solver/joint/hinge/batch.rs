@@ -1,6 +1,6 @@
 //! Hinges as the kernels read them: `N` at a time, each number in a row of its own.
 
-use super::super::super::lanes::Ints;
+use crate::lanes::Ints;
 
 /// `N` hinges of which no two change the same body, for one tick. Lanes without a hinge have no gains, and stand between
 /// the ground and itself.

@@ -14,12 +14,12 @@ use core::cell::Cell;
 
 use super::super::super::body::SolverBody;
 use super::super::super::contact::Pass;
-use super::super::super::lanes::{Ints, Lanes, Motion, Quad};
 use super::super::super::limits::{Faults, IMPULSE_MAX, STEP_MAX};
 use super::super::super::pair::{Pair, RATIO, UNIT, beyond, clamp, shift};
 use super::super::super::settings::Tuning;
 use super::angle::AngleRows;
 use super::batch::{Batch, Shape};
+use crate::lanes::{Ints, Lanes, Motion, Quad};
 use crate::math::{Length, Rate, Shift, Speed, Step, Unit};
 
 /// The constants of a tick.

@@ -20,10 +20,10 @@ use core::mem;
 
 use super::super::body::SolverBody;
 use super::super::contact::Pass;
-use super::super::lanes::{Kernel, Lanes, Machine, Quad, Scalar, WIDTH};
 use super::super::limits::Faults;
 use super::super::settings::Tuning;
 use super::place::Turned;
+use crate::lanes::{Kernel, Lanes, Machine, Quad, Scalar, WIDTH};
 use angle::AngleRows;
 pub(super) use angle_input::AngleParts;
 use angle_input::{AngleInput, Memo};

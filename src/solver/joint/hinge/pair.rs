@@ -1,9 +1,9 @@
 //! How the impulses of a hinge change the bodies of a batch.
 
-use super::super::super::lanes::{Ints, Lanes, Motion};
 use super::super::super::limits::Faults;
 use super::super::super::pair::{HALF, Pair, UNIT, beyond, clamp};
 use super::batch::Batch;
+use crate::lanes::{Ints, Lanes, Motion};
 
 /// Two impulses of at most this, 362, change no velocity by 512 or more.
 const PLAIN_MAX: i32 = 362 << 21;

@@ -5,7 +5,6 @@ use std::vec::Vec;
 
 use super::super::super::body_list::GROUND;
 use super::super::super::colour::Group;
-use super::super::super::lanes::Backend;
 use super::super::super::point_block::PointBlock;
 use super::super::super::row::{Lever, MassFractions, Row};
 use super::super::super::settings::{SolverSettings, Tuning};
@@ -14,6 +13,7 @@ use super::angle_input::{DriveInput, LimitInput, SpringInput};
 use super::input::ratios;
 use super::*;
 use crate::fx;
+use crate::lanes::Backend;
 use crate::math::{Angle, Fx, Length, Reciprocal, Rng, Rot, Shift, Speed, Unit, Vec2, narrow};
 
 /// Eight hinges, each between two bodies of its own, in some pose.

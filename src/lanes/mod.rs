@@ -6,6 +6,7 @@
 //! because the widening multiplication 32 x 32 -> 64 is what all processors have (`vpmuldq`, `smull`, `i64x2.extmul`).
 
 // One file of vectors, whichever the program is compiled for.
+mod body;
 #[cfg_attr(target_arch = "x86_64", path = "avx2.rs")]
 #[cfg_attr(all(target_arch = "aarch64", target_feature = "neon", target_endian = "little"), path = "neon.rs")]
 #[cfg_attr(all(target_arch = "wasm32", target_feature = "simd128"), path = "simd128.rs")]
@@ -16,42 +17,41 @@ mod shared;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use body::{GROUND, SolverBody};
 use native::Native;
-pub(super) use prefetch::prefetch;
-pub(super) use scalar::Scalar;
-pub(super) use shared::Shared;
+pub(crate) use prefetch::prefetch;
+pub(crate) use scalar::Scalar;
+pub(crate) use shared::Shared;
 
 use core::cell::Cell;
 
-use super::body::SolverBody;
-
 /// How many rows a wide kernel solves at a time, on every machine.
-pub(super) const WIDTH: usize = 8;
+pub(crate) const WIDTH: usize = 8;
 
 /// A number for each of `N` rows, aligned for the widest load.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(32))]
-pub(super) struct Ints<const N: usize>(pub(super) [i32; N]);
+pub(crate) struct Ints<const N: usize>(pub(crate) [i32; N]);
 
 impl<const N: usize> Ints<N> {
-    pub(super) const ZERO: Self = Ints([0; N]);
+    pub(crate) const ZERO: Self = Ints([0; N]);
 }
 
 /// Four numbers of a body, loaded at once.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(C, align(16))]
-pub(super) struct Quad(pub(super) [i32; 4]);
+pub(crate) struct Quad(pub(crate) [i32; 4]);
 
 /// The three components of a motion: along x, along y, and turning.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Motion<T> {
-    pub(super) x: T,
-    pub(super) y: T,
-    pub(super) turn: T,
+pub(crate) struct Motion<T> {
+    pub(crate) x: T,
+    pub(crate) y: T,
+    pub(crate) turn: T,
 }
 
 /// `N` lanes of 32-bit integers. Sums and differences wrap unless they are named otherwise.
-pub(super) trait Lanes<const N: usize>: Copy {
+pub(crate) trait Lanes<const N: usize>: Copy {
     type Int: Copy;
     /// Products.
     type Wide: Copy;
@@ -121,14 +121,14 @@ pub(super) trait Lanes<const N: usize>: Copy {
     fn velocities(bodies: &[Cell<SolverBody>], at: &[u32; N]) -> Motion<Self::Int>;
     /// How far bodies have come in the tick.
     fn shifts(bodies: &[Cell<SolverBody>], at: &[u32; N]) -> Motion<Self::Int>;
-    /// Sets the velocities of bodies, but for those at [`super::body_list::GROUND`].
+    /// Sets the velocities of bodies, but for those at [`GROUND`].
     fn set_velocities(bodies: &[Cell<SolverBody>], at: &[u32; N], velocities: Motion<Self::Int>);
     /// Sets how far bodies have come, but for those at the ground's place.
     fn set_shifts(bodies: &[Cell<SolverBody>], at: &[u32; N], shifts: Motion<Self::Int>);
 }
 
 /// What can be done with any lanes.
-pub(super) trait Kernel<const N: usize> {
+pub(crate) trait Kernel<const N: usize> {
     /// Must be `#[inline(always)]`, and so must whatever it calls with lanes: only then is it compiled for the
     /// instructions of its backend.
     fn run<L: Lanes<N>>(self);
@@ -150,7 +150,7 @@ impl Machine {
 
     /// Runs a kernel.
     #[inline]
-    pub(super) fn run(self, kernel: impl Kernel<WIDTH>) {
+    pub(crate) fn run(self, kernel: impl Kernel<WIDTH>) {
         match self.0 {
             Backend::Scalar => kernel.run::<Scalar<WIDTH>>(),
             Backend::Avx2 | Backend::Neon | Backend::Simd128 => Native::run(kernel),

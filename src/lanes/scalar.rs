@@ -2,14 +2,13 @@
 
 use core::cell::Cell;
 
-use super::super::body::SolverBody;
-use super::super::body_list::GROUND;
+use super::body::{GROUND, SolverBody};
 use super::{Ints, Lanes, Motion, Quad};
 use crate::math::{round_shift, saturate};
 
 /// Arrays of `N` numbers.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::solver) struct Scalar<const N: usize>;
+pub(crate) struct Scalar<const N: usize>;
 
 #[inline(always)]
 pub(super) fn map<A: Copy, B: Copy, C, const N: usize>(

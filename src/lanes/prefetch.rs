@@ -4,7 +4,7 @@
 #[cfg(target_arch = "x86_64")]
 #[inline(always)]
 #[expect(unsafe_code, reason = "vendor intrinsics")]
-pub(in crate::solver) fn prefetch<T>(of: &T) {
+pub(crate) fn prefetch<T>(of: &T) {
     use core::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
     /// The bytes that a processor reads at a time.
     const LINE: usize = 64;
@@ -20,4 +20,4 @@ pub(in crate::solver) fn prefetch<T>(of: &T) {
 
 #[cfg(not(target_arch = "x86_64"))]
 #[inline(always)]
-pub(in crate::solver) fn prefetch<T>(_: &T) {}
+pub(crate) fn prefetch<T>(_: &T) {}

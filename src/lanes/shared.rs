@@ -3,11 +3,11 @@
 
 use core::cell::Cell;
 
-use super::super::body::SolverBody;
+use super::body::SolverBody;
 
 /// Bodies of which no thread changes one that another looks at.
 #[derive(Clone, Copy)]
-pub(in crate::solver) struct Shared<'a>(&'a [Cell<SolverBody>]);
+pub(crate) struct Shared<'a>(&'a [Cell<SolverBody>]);
 
 // SAFETY: who makes one has promised that no body is changed by one thread and looked at by another.
 unsafe impl Send for Shared<'_> {}
@@ -17,11 +17,11 @@ unsafe impl Sync for Shared<'_> {}
 impl<'a> Shared<'a> {
     /// Bodies for the batches of one colour: no two of its constraints touch the same body that any impulse changes, and
     /// batches write only those ([`super::Lanes::set_velocities`] leaves out the ground).
-    pub(in crate::solver) fn within_a_colour(bodies: &'a [Cell<SolverBody>]) -> Self {
+    pub(crate) fn within_a_colour(bodies: &'a [Cell<SolverBody>]) -> Self {
         Shared(bodies)
     }
 
-    pub(in crate::solver) fn bodies(self) -> &'a [Cell<SolverBody>] {
+    pub(crate) fn bodies(self) -> &'a [Cell<SolverBody>] {
         self.0
     }
 }

@@ -4,8 +4,7 @@
 use core::arch::aarch64::*;
 use core::cell::Cell;
 
-use super::super::body::SolverBody;
-use super::super::body_list::GROUND;
+use super::body::{GROUND, SolverBody};
 use super::scalar::map;
 use super::{Backend, Ints, Kernel, Lanes, Motion, Quad, WIDTH};
 

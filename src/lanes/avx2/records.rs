@@ -1,0 +1,58 @@
+//! What lies together in memory, as lanes: four numbers of each of eight records are four vectors.
+#![expect(unsafe_code, reason = "vendor intrinsics")]
+
+use core::arch::x86_64::*;
+
+use super::super::body::GROUND;
+use super::super::{Motion, WIDTH};
+
+/// Writes three numbers of all bodies, and a 0, to where each body has them, but for the ground.
+#[inline(always)]
+pub(super) fn set_motions(at: &[u32; WIDTH], v: Motion<__m256i>, place: impl Fn(u32) -> *mut i32) {
+    // SAFETY: see `super::Avx2`; 16 bytes of a body.
+    unsafe {
+        let zero = _mm256_setzero_si256();
+        let (xy_low, xy_high) = (_mm256_unpacklo_epi32(v.x, v.y), _mm256_unpackhi_epi32(v.x, v.y));
+        let (t_low, t_high) = (_mm256_unpacklo_epi32(v.turn, zero), _mm256_unpackhi_epi32(v.turn, zero));
+        let pairs = [
+            _mm256_unpacklo_epi64(xy_low, t_low),
+            _mm256_unpackhi_epi64(xy_low, t_low),
+            _mm256_unpacklo_epi64(xy_high, t_high),
+            _mm256_unpackhi_epi64(xy_high, t_high),
+        ];
+        for (lane, &pair) in pairs.iter().enumerate() {
+            let (low, high) = (_mm256_castsi256_si128(pair), _mm256_extracti128_si256::<1>(pair));
+            for (at, motion) in [(at[lane], low), (at[lane + 4], high)] {
+                if at != GROUND {
+                    _mm_store_si128(place(at).cast(), motion);
+                }
+            }
+        }
+    }
+}
+
+/// Three numbers of all bodies, from where each body has them.
+#[inline(always)]
+pub(super) fn motion(at: &[u32; WIDTH], place: impl Fn(u32) -> *mut i32) -> Motion<__m256i> {
+    let [x, y, turn, _] = transposed(|lane| place(at[lane]).cast_const());
+    Motion { x, y, turn }
+}
+
+/// The first of four numbers in each lane, the second in each, and so on, from where each lane has them.
+#[inline(always)]
+pub(super) fn transposed(row: impl Fn(usize) -> *const i32) -> [__m256i; 4] {
+    // SAFETY: see `super::Avx2`; 16 bytes, aligned to 16.
+    unsafe {
+        let row = |lane: usize| _mm_load_si128(row(lane).cast());
+        let pair = |lane: usize| _mm256_set_m128i(row(lane + 4), row(lane));
+        let (r0, r1, r2, r3) = (pair(0), pair(1), pair(2), pair(3));
+        let (front_01, front_23) = (_mm256_unpacklo_epi32(r0, r1), _mm256_unpacklo_epi32(r2, r3));
+        let (back_01, back_23) = (_mm256_unpackhi_epi32(r0, r1), _mm256_unpackhi_epi32(r2, r3));
+        [
+            _mm256_unpacklo_epi64(front_01, front_23),
+            _mm256_unpackhi_epi64(front_01, front_23),
+            _mm256_unpacklo_epi64(back_01, back_23),
+            _mm256_unpackhi_epi64(back_01, back_23),
+        ]
+    }
+}
