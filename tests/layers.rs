@@ -31,7 +31,7 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("body", &["math", "codec", "hash"]),
     ("collision", &["math", "codec", "hash", "lanes", "body"]),
     ("solver", &["math", "codec", "hash", "threads", "lanes", "body", "collision"]),
-    ("world", &["math", "codec", "hash", "threads", "body", "collision", "solver"]),
+    ("world", &["math", "codec", "hash", "threads", "lanes", "body", "collision", "solver"]),
     ("draw", &["math", "codec", "hash", "body", "collision", "solver", "world"]),
     ("lockstep", &["math", "codec", "hash", "body", "collision", "solver", "world"]),
     ("replay", &["math", "codec", "hash", "body", "collision", "solver", "world", "lockstep"]),

@@ -16,7 +16,7 @@ use crate::math::{Length, Step, Unit, Vec2};
 /// B's best face must beat A's by this much, in metres, to become the reference: 0.5 mm keeps the choice from
 /// flickering between two equal faces. Impulses survive a flicker, since features do not depend on the choice,
 /// but anchors would jump. The same distance tells apart polygons that are disjoint from those that touch.
-const TOLERANCE: Step = Step::lit("0.0005");
+pub(super) const TOLERANCE: Step = Step::lit("0.0005");
 
 /// The fraction bits of a product of a length and a unit vector: of the separation from a face.
 pub(super) const FACE_BITS: u32 = Unit::FRAC_NBITS + Length::FRAC_NBITS;

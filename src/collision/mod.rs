@@ -1,6 +1,7 @@
 //! Collision detection: broad phase, narrow phase and what contacts remember. It reads bodies and returns
 //! contacts; it never changes a body.
 
+mod box_box;
 mod box_list;
 mod broad_phase;
 mod circle_circle;
@@ -23,6 +24,7 @@ mod sweep_and_prune;
 mod time_of_impact;
 mod tree;
 
+pub(crate) use box_box::BoxPairs;
 pub use broad_phase::BroadPhaseKind;
 pub(crate) use broad_phase::{BroadPhase, Moved, Pair};
 pub(crate) use contact::{Contact, PointImpulse};

@@ -2,6 +2,7 @@
 
 use core::ops::Deref;
 
+use super::box_box::BOX_REACH_MAX;
 use super::core::Core;
 use super::link::Link;
 use crate::body::{Body, Geometry, POLYGON_VERTICES_MAX, Polygon, ShapeDef};
@@ -49,6 +50,8 @@ pub(crate) struct Hull {
     pub(crate) radius: Length,
     /// Whether it has four faces and turning it half around its centre changes nothing.
     is_box: bool,
+    /// Whether it is a box with right angles, and small enough for lanes.
+    is_small_box: bool,
 }
 
 impl Hull {
@@ -152,7 +155,16 @@ impl Hull {
         let count = polygon.vertices().len();
         let mut hull = Hull { count, radius: polygon.radius(), is_box, ..Self::empty() };
         hull.rotate(polygon, rotation);
+        hull.is_small_box = is_box && hull.fits_lanes();
         hull
+    }
+
+    /// Whether a box, however it is turned, is no larger than lanes take, and has nearly right angles.
+    fn fits_lanes(&self) -> bool {
+        let reach = |vertex: &Vec2<Length>| vertex.length().saturating_add(self.radius);
+        let cosine: Unit = self.normals[0].dot(self.normals[1]);
+        self.vertices().iter().all(|vertex| reach(vertex) <= BOX_REACH_MAX)
+            && cosine.saturating_abs() < Unit::lit("0.1")
     }
 
     /// Turns the vertices and normals of its polygon another way.
@@ -180,6 +192,7 @@ impl Hull {
             normals: [Vec2::ZERO; POLYGON_VERTICES_MAX],
             radius: Length::ZERO,
             is_box: false,
+            is_small_box: false,
         }
     }
 
@@ -234,6 +247,11 @@ impl PosedShape {
     /// The radius of a disc inside a geometry, however it is turned; 0 for a line.
     pub(crate) fn inner_radius(geometry: &Geometry) -> Fx {
         Core::of(&Self::of_geometry(geometry, Vec2::ZERO, Rot::IDENTITY), Vec2::ZERO).inner_radius()
+    }
+
+    /// Whether it may be in a pair of [`BoxPairs`](super::BoxPairs).
+    pub(crate) fn is_small_box(&self) -> bool {
+        matches!(&self.outline, Outline::Polygon(hull) if hull.is_small_box)
     }
 
     /// Whether something at a place in the world meets the shape, or passes from its open side.

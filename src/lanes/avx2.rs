@@ -199,6 +199,22 @@ impl Lanes<WIDTH> for Avx2 {
     }
 
     #[inline(always)]
+    fn max_wide(a: Products, b: Products) -> Products {
+        Products { even: larger(a.even, b.even), odd: larger(a.odd, b.odd) }
+    }
+
+    #[inline(always)]
+    fn abs_wide(a: Products) -> Products {
+        Products { even: magnitude(a.even), odd: magnitude(a.odd) }
+    }
+
+    #[inline(always)]
+    fn greater_wide(a: Products, b: Products) -> __m256i {
+        // SAFETY: see `Avx2`.
+        unsafe { interleave(_mm256_cmpgt_epi64(a.even, b.even), _mm256_cmpgt_epi64(a.odd, b.odd)) }
+    }
+
+    #[inline(always)]
     fn narrow<const SHIFT: i32>(a: Products) -> __m256i {
         let a = rounded::<SHIFT>(a);
         shifted::<SHIFT>(a)
@@ -285,6 +301,23 @@ impl Lanes<WIDTH> for Avx2 {
     #[inline(always)]
     fn set_shifts(bodies: &[Cell<SolverBody>], at: &[u32; WIDTH], shifts: Motion<__m256i>) {
         set_motions(at, shifts, |at| SolverBody::shift_bits(&bodies[at as usize]));
+    }
+}
+
+/// The larger of two numbers of 64 bits.
+#[inline(always)]
+fn larger(a: __m256i, b: __m256i) -> __m256i {
+    // SAFETY: see `Avx2`.
+    unsafe { _mm256_blendv_epi8(b, a, _mm256_cmpgt_epi64(a, b)) }
+}
+
+/// The magnitudes of numbers of 64 bits.
+#[inline(always)]
+fn magnitude(a: __m256i) -> __m256i {
+    // SAFETY: see `Avx2`. `-a` is `!a + 1`.
+    unsafe {
+        let sign = _mm256_cmpgt_epi64(_mm256_setzero_si256(), a);
+        _mm256_sub_epi64(_mm256_xor_si256(a, sign), sign)
     }
 }
 

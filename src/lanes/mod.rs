@@ -37,6 +37,12 @@ impl<const N: usize> Ints<N> {
     pub(crate) const ZERO: Self = Ints([0; N]);
 }
 
+/// Fraction bits to shift by.
+#[expect(clippy::cast_possible_wrap, reason = "at most 64")]
+pub(crate) const fn shift(fraction_bits: u32) -> i32 {
+    fraction_bits as i32
+}
+
 /// Four numbers of a body, loaded at once.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(C, align(16))]
@@ -89,6 +95,10 @@ pub(crate) trait Lanes<const N: usize>: Copy {
     fn mul(a: Self::Int, b: Self::Int) -> Self::Wide;
     fn add_wide(a: Self::Wide, b: Self::Wide) -> Self::Wide;
     fn sub_wide(a: Self::Wide, b: Self::Wide) -> Self::Wide;
+    fn max_wide(a: Self::Wide, b: Self::Wide) -> Self::Wide;
+    fn abs_wide(a: Self::Wide) -> Self::Wide;
+    /// `a > b`.
+    fn greater_wide(a: Self::Wide, b: Self::Wide) -> Self::Mask;
     /// `a / 2^SHIFT`, rounded to nearest, ties towards +infinity, of a number that then fits 32 bits. `SHIFT` is 1 to
     /// 32.
     fn narrow<const SHIFT: i32>(a: Self::Wide) -> Self::Int;

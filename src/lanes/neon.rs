@@ -181,6 +181,26 @@ impl Lanes<WIDTH> for Neon {
     }
 
     #[inline(always)]
+    fn max_wide(a: Products, b: Products) -> Products {
+        // SAFETY: see `Neon`.
+        map(a, b, |a, b| unsafe { vbslq_s64(vcgtq_s64(a, b), a, b) })
+    }
+
+    #[inline(always)]
+    fn abs_wide(a: Products) -> Products {
+        // SAFETY: see `Neon`.
+        a.map(|a| unsafe { vabsq_s64(a) })
+    }
+
+    #[inline(always)]
+    fn greater_wide(a: Products, b: Products) -> Masks {
+        // SAFETY: see `Neon`.
+        let [a, b, c, d] = map(a, b, |a, b| unsafe { vcgtq_s64(a, b) });
+        // SAFETY: see `Neon`.
+        unsafe { [vmovn_high_u64(vmovn_u64(a), b), vmovn_high_u64(vmovn_u64(c), d)] }
+    }
+
+    #[inline(always)]
     fn narrow<const SHIFT: i32>(a: Products) -> Ints32 {
         // SAFETY: see `Neon`.
         let four = |low, high| unsafe { vrshrn_high_n_s64::<SHIFT>(vrshrn_n_s64::<SHIFT>(low), high) };

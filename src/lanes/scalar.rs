@@ -135,6 +135,21 @@ impl<const N: usize> Lanes<N> for Scalar<N> {
     }
 
     #[inline(always)]
+    fn max_wide(a: [i64; N], b: [i64; N]) -> [i64; N] {
+        map(a, b, i64::max)
+    }
+
+    #[inline(always)]
+    fn abs_wide(a: [i64; N]) -> [i64; N] {
+        a.map(i64::wrapping_abs)
+    }
+
+    #[inline(always)]
+    fn greater_wide(a: [i64; N], b: [i64; N]) -> [bool; N] {
+        map(a, b, |a, b| a > b)
+    }
+
+    #[inline(always)]
     #[expect(clippy::cast_possible_truncation, reason = "it fits, as the trait says")]
     fn narrow<const SHIFT: i32>(a: [i64; N]) -> [i32; N] {
         a.map(|a| (a.wrapping_add(1 << (SHIFT - 1)) >> SHIFT) as i32)

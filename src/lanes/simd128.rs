@@ -162,6 +162,21 @@ impl Lanes<WIDTH> for Simd128 {
     }
 
     #[inline(always)]
+    fn max_wide(a: Products, b: Products) -> Products {
+        map(a, b, |a, b| v128_bitselect(a, b, i64x2_gt(a, b)))
+    }
+
+    #[inline(always)]
+    fn abs_wide(a: Products) -> Products {
+        a.map(|a| i64x2_abs(a))
+    }
+
+    #[inline(always)]
+    fn greater_wide(a: Products, b: Products) -> Ints32 {
+        Self::low(map(a, b, |a, b| i64x2_gt(a, b)))
+    }
+
+    #[inline(always)]
     fn narrow<const SHIFT: i32>(a: Products) -> Ints32 {
         let a = rounded::<SHIFT>(a);
         [shifted::<SHIFT>(a[0], a[1]), shifted::<SHIFT>(a[2], a[3])]

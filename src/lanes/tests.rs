@@ -60,6 +60,13 @@ impl Kernel<WIDTH> for Operations<'_> {
             keep(L::narrow::<32>(wide));
             keep(L::low(wide));
         }
+        let (wide, other) = (L::mul(a, quarter), L::mul(quarter, b));
+        keep(L::to_int(L::greater_wide(wide, other)));
+        keep(L::to_int(L::greater_wide(wide, wide)));
+        for wide in [L::max_wide(wide, other), L::abs_wide(wide)] {
+            keep(L::narrow_saturating::<31>(wide).0);
+            keep(L::low(wide));
+        }
         // Whatever rounding does not take out of its format.
         let wide = L::load_wide(&core::array::from_fn(|i| {
             (i64::from(self.a.0[i]) << 31).saturating_add(i64::from(self.b.0[i])).saturating_mul(2) / 2

@@ -4,14 +4,9 @@ use core::cell::Cell;
 
 use super::body::SolverBody;
 use super::limits::{Faults, SPEED_MAX};
+pub(super) use crate::lanes::shift;
 use crate::lanes::{Lanes, Motion};
 use crate::math::{Ratio, Unit};
-
-/// Fraction bits to shift by.
-#[expect(clippy::cast_possible_wrap, reason = "at most 64")]
-pub(super) const fn shift(fraction_bits: u32) -> i32 {
-    fraction_bits as i32
-}
 
 pub(super) const UNIT: i32 = shift(Unit::FRAC_NBITS);
 pub(super) const RATIO: i32 = shift(Ratio::FRAC_NBITS);

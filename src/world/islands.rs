@@ -14,7 +14,7 @@
 use alloc::vec::Vec;
 use core::ops::ControlFlow;
 
-use super::contacts::Found;
+use super::manifolds::Found;
 use super::pairs;
 use super::scratch::Scratch;
 use super::state::{Island, State};
@@ -139,7 +139,7 @@ pub(super) fn wake_touched(state: &mut State, scratch: &mut Scratch) {
             // Another pair may have woken it already.
             let (a, b) = state.bodies_of(pair);
             let Some(island) = a.island.or(b.island) else { continue };
-            if super::contacts::touch(state, &scratch.poses, pair) {
+            if super::manifolds::touch(state, &scratch.poses, pair) {
                 wake(state, scratch, island);
             }
         }

@@ -124,6 +124,8 @@ pub(crate) struct Reach {
     /// The slot of its body.
     pub(super) body: u32,
     circle: bool,
+    /// Whether it is solid, and may be in one of [`BoxPairs`](crate::collision::BoxPairs).
+    pub(super) small_box: bool,
     pub(super) sensor: bool,
     pub(super) one_way: bool,
     pub(super) hit_events: bool,
@@ -131,7 +133,8 @@ pub(crate) struct Reach {
 
 impl Reach {
     /// Of a shape that does not move.
-    fn at_rest(shape: &Shape, body: u32, bounds: Aabb) -> Self {
+    fn at_rest(shape: &Shape, body: u32, posed: &PosedShape) -> Self {
+        let bounds = posed.bounds;
         Reach {
             bounds,
             shift: Vec2::ZERO,
@@ -139,6 +142,7 @@ impl Reach {
             slack: slack_of(bounds),
             body,
             circle: matches!(shape.geometry(), Geometry::Circle { .. }),
+            small_box: posed.is_small_box() && !shape.is_sensor(),
             sensor: shape.is_sensor(),
             one_way: shape.one_way().is_some(),
             hit_events: shape.def.events.hit,
@@ -184,11 +188,11 @@ impl Outlook {
     }
 
     /// Takes up a shape that has been posed.
-    pub(super) fn place(&mut self, slot: u32, shape: &Shape, body: u32, bounds: Aabb) {
+    pub(super) fn place(&mut self, slot: u32, shape: &Shape, body: u32, posed: &PosedShape) {
         if self.reaches.len() <= slot as usize {
             self.reaches.resize(slot as usize + 1, Reach::default());
         }
-        self.reaches[slot as usize] = Reach::at_rest(shape, body, bounds);
+        self.reaches[slot as usize] = Reach::at_rest(shape, body, posed);
     }
 
     /// Takes up where a shape has been moved to.
@@ -233,35 +237,44 @@ impl Horizon {
     }
 }
 
-/// How two bodies approach: it decides how far ahead their contact has to look.
-pub(super) struct Approach<'a> {
-    horizon: &'a Horizon,
-    a: &'a Reach,
-    b: &'a Reach,
+/// How far two shapes may come towards each other.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Closing {
     /// Bound of the way by which any two points of the shapes approach each other in the tick, in metres.
-    closing: Way,
+    way: Way,
+    /// How far ahead their contact has to look, in metres.
     pub(super) margin: Length,
+}
+
+impl Closing {
+    #[inline]
+    pub(super) fn of(horizon: &Horizon, a: &Reach, b: &Reach) -> Self {
+        let way = a.closing(b);
+        Closing { way, margin: margin_for(horizon.speculative, way) }
+    }
+
+    /// Whether the shapes are so near that they may meet within the tick.
+    #[inline]
+    pub(super) fn may_meet(self, a: &Reach, b: &Reach) -> bool {
+        may_meet(a.bounds, b.bounds, self.margin)
+    }
+}
+
+/// How two bodies approach.
+pub(super) struct Approach<'a> {
+    pub(super) horizon: &'a Horizon,
+    pub(super) a: &'a Reach,
+    pub(super) b: &'a Reach,
+    pub(super) closing: Closing,
 }
 
 /// Shapes that move against each other by less than this in a tick, in metres, do not pass by.
 const PASSAGE_MIN: Step = Step::lit("0.0001");
 
-impl<'a> Approach<'a> {
-    #[inline]
-    pub(super) fn new(horizon: &'a Horizon, a: &'a Reach, b: &'a Reach) -> Self {
-        let closing = a.closing(b);
-        Approach { horizon, a, b, closing, margin: margin_for(horizon.speculative, closing) }
-    }
-
+impl Approach<'_> {
     /// How far the shapes may overlap, in metres, when they pass by each other.
     fn slack(&self) -> Step {
         self.horizon.touching.min(self.a.slack).min(self.b.slack)
-    }
-
-    /// Whether the shapes are so near that they may meet within the tick.
-    #[inline]
-    pub(super) fn may_meet(&self) -> bool {
-        may_meet(self.a.bounds, self.b.bounds, self.margin)
     }
 
     /// Drops the points that the bodies, at their present velocities, will not reach within the tick: shapes that
@@ -275,7 +288,7 @@ impl<'a> Approach<'a> {
     ) {
         let speculative: Step = convert(self.horizon.speculative);
         let ahead = |point: &ManifoldPoint| point.separation > speculative;
-        if self.closing > PASSAGE_MIN || manifold.points().iter().any(ahead) {
+        if self.closing.way > PASSAGE_MIN || manifold.points().iter().any(ahead) {
             self.drop_unreached(manifold, outlook, posed);
         }
     }

@@ -18,6 +18,7 @@ mod islands;
 mod joint_links;
 mod joint_view;
 mod look_ahead;
+mod manifolds;
 mod mover_planes;
 mod pairs;
 mod phases;

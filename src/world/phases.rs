@@ -3,8 +3,8 @@
 use alloc::vec::Vec;
 
 use super::World;
-use super::contacts::Found;
 use super::islands::Roster;
+use super::manifolds::Found;
 use super::rollback::Snapshot;
 use super::scratch::Scratch;
 use super::state::State;

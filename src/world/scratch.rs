@@ -3,12 +3,12 @@
 use alloc::vec::Vec;
 use core::cell::LazyCell;
 
-use super::contacts::Found;
 use super::continuous::Swept;
 use super::events::Events;
 use super::islands::{Roster, UnionFind};
 use super::joint_links::JointLinks;
 use super::look_ahead::Outlook;
+use super::manifolds::Found;
 use super::pairs::Merged;
 use super::state::State;
 use super::stats::StepStats;
@@ -300,7 +300,7 @@ impl Poses {
         for &id in body.shapes() {
             let shape = state.shapes.at(id.slot());
             let posed = PosedShape::new(&shape.def, body, rotation);
-            self.outlook.place(id.slot(), shape, shape.body().slot(), posed.bounds);
+            self.outlook.place(id.slot(), shape, shape.body().slot(), &posed);
             self.shapes[id.slot() as usize] = Some(posed);
         }
         self.extents[slot as usize] = Extents::of(state, body);

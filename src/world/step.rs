@@ -7,6 +7,7 @@ use super::continuous;
 use super::events::MoveEvent;
 use super::islands;
 use super::look_ahead::{Motion, Way};
+use super::manifolds;
 use super::pairs;
 use super::phases::Sight;
 use super::scratch::{Extents, Scratch};
@@ -54,7 +55,7 @@ impl World {
         scratch.roster.refresh(state);
 
         begin(Phase::NarrowPhase, Sight::of(state, scratch));
-        contacts::find_manifolds(state, scratch);
+        manifolds::find_manifolds(state, scratch);
 
         begin(Phase::Prepare, Sight::of(state, scratch));
         let Scratch { solver, roster, found, .. } = scratch;

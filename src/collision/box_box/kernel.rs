@@ -1,0 +1,318 @@
+//! The separating axis test and the clipping of [`hull_hull`](crate::collision::hull_hull), of eight pairs at a time.
+//!
+//! Along the normal `n` of a face of a box centred at `-d` from another, with `v` on that face and `w` the other's corners,
+//!
+//! ```text
+//! separation = |n . d| - n . v - max |n . w|
+//! ```
+//!
+//! of the face or of its opposite, whichever looks towards the other box.
+
+use super::super::hull_hull::TOLERANCE;
+use super::{BoxPairs, Boxes, Found};
+use crate::lanes::{Ints, Kernel, Lanes, WIDTH, shift};
+use crate::math::{Length, Step, Unit};
+
+const UNIT: i32 = shift(Unit::FRAC_NBITS);
+/// From the product of a unit vector and a length to a step.
+const TO_STEP: i32 = shift(Unit::FRAC_NBITS + Length::FRAC_NBITS - Step::FRAC_NBITS);
+/// From a step to a length.
+const FINER: u32 = Step::FRAC_NBITS - Length::FRAC_NBITS;
+/// The fraction bits of where an edge is clipped.
+const CLIP: i32 = 26;
+
+pub(super) struct Collide<'a> {
+    pub(super) pairs: &'a BoxPairs,
+    pub(super) found: &'a mut Found,
+}
+
+/// A place or a direction in each lane.
+type Vector<T> = [T; 2];
+
+/// The first two normals and vertices of a box.
+#[derive(Clone, Copy)]
+struct Corners<T> {
+    n: [Vector<T>; 2],
+    v: [Vector<T>; 2],
+}
+
+/// One of the four edges of a box: whether it is the second or fourth, and whether it is opposite to the first two.
+#[derive(Clone, Copy)]
+struct Choice<M> {
+    second: M,
+    opposite: M,
+}
+
+#[derive(Clone, Copy)]
+struct Edge<T> {
+    n: Vector<T>,
+    start: Vector<T>,
+    end: Vector<T>,
+}
+
+/// An end of the incident edge: how far along the reference edge from its start, as a length, and how far above, as a
+/// step.
+#[derive(Clone, Copy)]
+struct End<T> {
+    along: T,
+    above: T,
+}
+
+impl Kernel<WIDTH> for Collide<'_> {
+    #[inline(always)]
+    fn run<L: Lanes<WIDTH>>(self) {
+        collide::<L>(self.pairs, self.found);
+    }
+}
+
+#[inline(always)]
+fn collide<L: Lanes<WIDTH>>(pairs: &BoxPairs, found: &mut Found) {
+    let [a, b] = [corners::<L>(&pairs.boxes[0]), corners::<L>(&pairs.boxes[1])];
+    let [radius_a, radius_b] = [L::load(&pairs.boxes[0].radius), L::load(&pairs.boxes[1].radius)];
+    let (d, margin) = ([L::load(&pairs.d[0]), L::load(&pairs.d[1])], L::load(&pairs.margin));
+    let radii = L::add(radius_a, radius_b);
+    let (face_a, separation_a) = best_face::<L>(&a, &b, d);
+    let (face_b, separation_b) = best_face::<L>(&b, &a, negated::<L>(d));
+    let reach = L::mul(L::add(margin, radii), L::splat(1 << UNIT));
+    let further = L::max_wide(separation_a, separation_b);
+    found.near = !L::bits(L::greater_wide(further, reach));
+    if found.near & ((1 << WIDTH) - 1) == 0 {
+        return;
+    }
+    // Boxes that are apart need the true best face, which is next to the nearest corner.
+    let (tolerance, as_product) = (L::splat(TOLERANCE.to_bits()), L::splat(1 << TO_STEP));
+    let is_apart = L::greater_wide(further, L::mul(tolerance, as_product));
+    let preference = L::mul(L::select(is_apart, L::splat(0), tolerance), as_product);
+    let swapped = L::greater_wide(separation_b, L::add_wide(separation_a, preference));
+
+    let reference_face = chosen::<L>(swapped, face_b, face_a);
+    let reference = edge::<L>(&selected::<L>(swapped, &b, &a), reference_face);
+    let incident_box = selected::<L>(swapped, &a, &b);
+    let incident_face = most_opposed::<L>(&incident_box, reference.n);
+    let incident = edge::<L>(&incident_box, incident_face);
+    let from_reference = select_vector::<L>(swapped, negated::<L>(d), d);
+    let to_incident = minus::<L>(from_reference, reference.start);
+    let length = along::<L>(reference.n, minus::<L>(reference.end, reference.start));
+    // It runs against the reference edge.
+    let upper = end::<L>(reference.n, plus::<L>(to_incident, incident.start));
+    let lower = end::<L>(reference.n, plus::<L>(to_incident, incident.end));
+    let zero = L::splat(0);
+    let mut open = L::either(L::greater(zero, upper.along), L::greater(lower.along, length));
+    if L::any(is_apart) {
+        let corner = L::either(
+            nearest_at_corner::<L>(length, upper, lower),
+            nearest_at_corner::<L>(length, lower, upper),
+        );
+        open = L::either(open, L::both(is_apart, corner));
+    }
+    found.open = L::bits(open) & found.near;
+    found.swapped = L::bits(swapped);
+    L::store(index::<L>(reference_face), &mut found.edges[0]);
+    L::store(index::<L>(incident_face), &mut found.edges[1]);
+
+    let [below, beyond] = [L::sub(zero, lower.along), L::sub(upper.along, length)];
+    let span = L::sub(upper.along, lower.along);
+    let low = End { along: L::max(lower.along, zero), above: clipped::<L>(lower, upper, below, span) };
+    let high = End { along: L::min(upper.along, length), above: clipped::<L>(upper, lower, beyond, span) };
+    let [radius_r, radius_i] =
+        [L::select(swapped, radius_b, radius_a), L::select(swapped, radius_a, radius_b)];
+    let (radii, margin) = (as_step::<L>(radii), as_step::<L>(margin));
+    let difference = as_step::<L>(L::sub(radius_r, radius_i));
+    // Anchors are from the centre of A.
+    let start = plus::<L>(reference.start, select_vector::<L>(swapped, d, [zero; 2]));
+    let [x, y] = reference.n;
+    for (end, points) in [low, high].into_iter().zip(&mut found.points) {
+        let separation = L::sub(end.above, radii);
+        points.kept = !L::bits(L::greater(separation, margin));
+        L::store(separation, &mut points.separation);
+        let middle = L::narrow::<32>(L::mul(L::add(end.above, difference), L::splat(1 << (31 - FINER))));
+        let across = L::sub_wide(L::mul(x, middle), L::mul(y, end.along));
+        let up = L::add_wide(L::mul(y, middle), L::mul(x, end.along));
+        L::store(L::add(start[0], L::narrow::<UNIT>(across)), &mut points.anchor[0]);
+        L::store(L::add(start[1], L::narrow::<UNIT>(up)), &mut points.anchor[1]);
+    }
+    let normal = select_vector::<L>(swapped, negated::<L>(reference.n), reference.n);
+    L::store(normal[0], &mut found.normal[0]);
+    L::store(normal[1], &mut found.normal[1]);
+}
+
+#[inline(always)]
+fn corners<L: Lanes<WIDTH>>(boxes: &Boxes) -> Corners<L::Int> {
+    const IN_ORDER: [u32; WIDTH] = [0, 1, 2, 3, 4, 5, 6, 7];
+    let [n0x, n0y, n1x, n1y] = L::quads(&boxes.normals, &IN_ORDER);
+    let [v0x, v0y, v1x, v1y] = L::quads(&boxes.vertices, &IN_ORDER);
+    Corners { n: [[n0x, n0y], [n1x, n1y]], v: [[v0x, v0y], [v1x, v1y]] }
+}
+
+/// The face of `a` that is furthest from `b`, of equal ones the first, and how far.
+#[inline(always)]
+fn best_face<L: Lanes<WIDTH>>(
+    a: &Corners<L::Int>,
+    b: &Corners<L::Int>,
+    d: Vector<L::Int>,
+) -> (Choice<L::Mask>, L::Wide) {
+    let (opposite_0, separation_0) = further_of_opposite::<L>(a.n[0], a.v[0], b, d);
+    let (opposite_1, separation_1) = further_of_opposite::<L>(a.n[1], a.v[1], b, d);
+    // Where they are equal, the second one is the first only if it comes before the opposite of the other.
+    let ahead = L::greater(L::to_int(opposite_1), L::to_int(opposite_0));
+    let advantage = L::mul(L::to_int(ahead), L::splat(-1));
+    let second = L::greater_wide(L::add_wide(separation_1, advantage), separation_0);
+    let opposite = choose::<L>(second, opposite_1, opposite_0);
+    (Choice { second, opposite }, L::max_wide(separation_0, separation_1))
+}
+
+/// Whether the opposite of a face looks towards `b` rather than the face does, and how far it is.
+#[inline(always)]
+fn further_of_opposite<L: Lanes<WIDTH>>(
+    n: Vector<L::Int>,
+    v: Vector<L::Int>,
+    b: &Corners<L::Int>,
+    d: Vector<L::Int>,
+) -> (L::Mask, L::Wide) {
+    let towards = dot::<L>(n, d);
+    let half = L::max_wide(L::abs_wide(dot::<L>(n, b.v[0])), L::abs_wide(dot::<L>(n, b.v[1])));
+    let separation = L::sub_wide(L::sub_wide(L::abs_wide(towards), dot::<L>(n, v)), half);
+    (L::greater_wide(nothing::<L>(), towards), separation)
+}
+
+/// The edge whose normal is most opposed to `n`: of equal ones the first.
+#[inline(always)]
+fn most_opposed<L: Lanes<WIDTH>>(of: &Corners<L::Int>, n: Vector<L::Int>) -> Choice<L::Mask> {
+    let [cosine_0, cosine_1] = [dot::<L>(of.n[0], n), dot::<L>(of.n[1], n)];
+    let second = L::greater_wide(L::abs_wide(cosine_1), L::abs_wide(cosine_0));
+    let [opposite_0, opposite_1] =
+        [L::greater_wide(cosine_0, nothing::<L>()), L::greater_wide(cosine_1, nothing::<L>())];
+    Choice { second, opposite: choose::<L>(second, opposite_1, opposite_0) }
+}
+
+#[inline(always)]
+fn edge<L: Lanes<WIDTH>>(of: &Corners<L::Int>, Choice { second, opposite }: Choice<L::Mask>) -> Edge<L::Int> {
+    let n = select_vector::<L>(second, of.n[1], of.n[0]);
+    let start = select_vector::<L>(second, of.v[1], of.v[0]);
+    let end = select_vector::<L>(second, negated::<L>(of.v[0]), of.v[1]);
+    Edge {
+        n: select_vector::<L>(opposite, negated::<L>(n), n),
+        start: select_vector::<L>(opposite, negated::<L>(start), start),
+        end: select_vector::<L>(opposite, negated::<L>(end), end),
+    }
+}
+
+/// Which of the four edges it is.
+#[inline(always)]
+fn index<L: Lanes<WIDTH>>(Choice { second, opposite }: Choice<L::Mask>) -> L::Int {
+    let (second, opposite) = (L::to_int(second), L::to_int(opposite));
+    L::sub(L::sub(L::sub(L::splat(0), second), opposite), opposite)
+}
+
+/// Where a place from the start of the reference edge is.
+#[inline(always)]
+fn end<L: Lanes<WIDTH>>(n: Vector<L::Int>, place: Vector<L::Int>) -> End<L::Int> {
+    End { along: along::<L>(n, place), above: L::narrow::<TO_STEP>(dot::<L>(n, place)) }
+}
+
+/// `t . p`, for `t` the normal turned a quarter.
+#[inline(always)]
+fn along<L: Lanes<WIDTH>>(n: Vector<L::Int>, p: Vector<L::Int>) -> L::Int {
+    L::narrow::<UNIT>(L::sub_wide(L::mul(n[0], p[1]), L::mul(n[1], p[0])))
+}
+
+/// Whether a corner of the incident box, of an edge to another, and an end of the reference edge are nearest to each
+/// other: each beyond the end of the other edge.
+#[inline(always)]
+fn nearest_at_corner<L: Lanes<WIDTH>>(length: L::Int, corner: End<L::Int>, other: End<L::Int>) -> L::Mask {
+    let zero = L::splat(0);
+    let edge = [L::sub(other.along, corner.along), as_length::<L>(L::sub(other.above, corner.above))];
+    let up = L::mul(as_length::<L>(L::sub(zero, corner.above)), edge[1]);
+    let from_start = L::add_wide(L::mul(L::sub(zero, corner.along), edge[0]), up);
+    let from_end = L::add_wide(L::mul(L::sub(length, corner.along), edge[0]), up);
+    let before = L::both(L::greater(zero, corner.along), L::greater_wide(nothing::<L>(), from_start));
+    let behind = L::both(L::greater(corner.along, length), L::greater_wide(nothing::<L>(), from_end));
+    L::either(before, behind)
+}
+
+/// How far above the reference edge an end is after it has been moved by `past`, if that is positive, along its edge,
+/// which spans more.
+#[inline(always)]
+fn clipped<L: Lanes<WIDTH>>(end: End<L::Int>, other: End<L::Int>, past: L::Int, span: L::Int) -> L::Int {
+    let (mut fractions, mut spans) = (Ints::ZERO, Ints::ZERO);
+    L::store(L::max(past, L::splat(0)), &mut fractions);
+    L::store(span, &mut spans);
+    for (fraction, &span) in fractions.0.iter_mut().zip(&spans.0) {
+        if *fraction != 0 {
+            *fraction = part(*fraction, span);
+        }
+    }
+    let way = L::mul(L::sub(other.above, end.above), L::load(&fractions));
+    L::add(end.above, L::narrow::<CLIP>(way))
+}
+
+/// `past / span`, both positive; of a lane that is left to others anything.
+#[inline(always)]
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most 1")]
+fn part(past: i32, span: i32) -> i32 {
+    (((past as u64) << CLIP) / span.max(1) as u64) as i32
+}
+
+/// A length with the fraction bits of a step.
+#[inline(always)]
+fn as_step<L: Lanes<WIDTH>>(length: L::Int) -> L::Int {
+    L::low(L::mul(length, L::splat(1 << FINER)))
+}
+
+/// A step with the fraction bits of a length, rounded down.
+#[inline(always)]
+fn as_length<L: Lanes<WIDTH>>(step: L::Int) -> L::Int {
+    let half = L::splat(1 << (FINER - 1));
+    L::narrow::<32>(L::mul(L::sub(step, half), L::splat(1 << (32 - FINER))))
+}
+
+#[inline(always)]
+fn nothing<L: Lanes<WIDTH>>() -> L::Wide {
+    L::load_wide(&[0; WIDTH])
+}
+
+#[inline(always)]
+fn dot<L: Lanes<WIDTH>>(a: Vector<L::Int>, b: Vector<L::Int>) -> L::Wide {
+    L::add_wide(L::mul(a[0], b[0]), L::mul(a[1], b[1]))
+}
+
+#[inline(always)]
+fn plus<L: Lanes<WIDTH>>(a: Vector<L::Int>, b: Vector<L::Int>) -> Vector<L::Int> {
+    [L::add(a[0], b[0]), L::add(a[1], b[1])]
+}
+
+#[inline(always)]
+fn minus<L: Lanes<WIDTH>>(a: Vector<L::Int>, b: Vector<L::Int>) -> Vector<L::Int> {
+    [L::sub(a[0], b[0]), L::sub(a[1], b[1])]
+}
+
+#[inline(always)]
+fn negated<L: Lanes<WIDTH>>(v: Vector<L::Int>) -> Vector<L::Int> {
+    minus::<L>([L::splat(0); 2], v)
+}
+
+#[inline(always)]
+fn select_vector<L: Lanes<WIDTH>>(mask: L::Mask, yes: Vector<L::Int>, no: Vector<L::Int>) -> Vector<L::Int> {
+    [L::select(mask, yes[0], no[0]), L::select(mask, yes[1], no[1])]
+}
+
+#[inline(always)]
+fn selected<L: Lanes<WIDTH>>(mask: L::Mask, yes: &Corners<L::Int>, no: &Corners<L::Int>) -> Corners<L::Int> {
+    Corners {
+        n: [select_vector::<L>(mask, yes.n[0], no.n[0]), select_vector::<L>(mask, yes.n[1], no.n[1])],
+        v: [select_vector::<L>(mask, yes.v[0], no.v[0]), select_vector::<L>(mask, yes.v[1], no.v[1])],
+    }
+}
+
+#[inline(always)]
+fn choose<L: Lanes<WIDTH>>(mask: L::Mask, yes: L::Mask, no: L::Mask) -> L::Mask {
+    L::negative(L::select(mask, L::to_int(yes), L::to_int(no)))
+}
+
+#[inline(always)]
+fn chosen<L: Lanes<WIDTH>>(mask: L::Mask, yes: Choice<L::Mask>, no: Choice<L::Mask>) -> Choice<L::Mask> {
+    Choice {
+        second: choose::<L>(mask, yes.second, no.second),
+        opposite: choose::<L>(mask, yes.opposite, no.opposite),
+    }
+}

@@ -1,0 +1,99 @@
+//! Boxes in lanes against the narrow phase of any two hulls.
+
+use super::*;
+use crate::body::{Body, BodyDef, Geometry, MassProperties, Polygon, ShapeDef};
+use crate::collision::{AxisHint, SatCounters, collide_near};
+use crate::fx;
+use crate::lanes::Backend;
+use crate::math::{Angle, Rng, Rot, fx_mul, narrow};
+use alloc::vec::Vec;
+
+fn posed(geometry: Geometry, position: Vec2<Fx>, angle: Angle) -> PosedShape {
+    let def = BodyDef::fixed().position(position.x, position.y).angle(angle);
+    let body = Body::new(&def, MassProperties::immovable());
+    PosedShape::new(&ShapeDef::new(geometry), &body, body.rotation())
+}
+
+/// A box of any size that lanes take, some with round corners, some that slant a little; and how far it reaches.
+fn random_box(rng: &mut Rng) -> (Polygon, Vec2<Fx>) {
+    // In whole millimetres, or nearly, so that opposite corners are exactly opposite.
+    let size_max = [1850, 1850, 500, 250][rng.below(4) as usize];
+    let mut size = || i64::from(50 + rng.below(size_max - 50));
+    let (width, height) = (size(), size());
+    let slant = if rng.below(4) == 0 { height / 20 } else { 0 };
+    let corner = |x: i64, y: i64| Vec2::new(fx!(1) * x / 1024, fx!(1) * y / 1024);
+    let (top, bottom) = (corner(width + slant, height), corner(width - slant, -height));
+    let Vec2 { x: width, y: height } = top;
+    let polygon = Polygon::hull(&[top, -bottom, -top, bottom]).expect("convex");
+    let radius = if rng.below(3) == 0 { rng.range(fx!(0), fx!(0.2)) } else { fx!(0) };
+    (polygon.rounded(radius).expect("valid"), Vec2::new(width + radius, height + radius))
+}
+
+/// Two boxes that touch or are about to: in piles most are turned by nearly nothing or by right angles.
+fn random_pair(rng: &mut Rng) -> (PosedShape, PosedShape) {
+    let ((a, reach_a), (b, reach_b)) = (random_box(rng), random_box(rng));
+    let turned = match rng.below(4) {
+        0 => rng.angle(),
+        1 => Angle::from_degrees(rng.range(fx!(-0.5), fx!(0.5))),
+        2 => Angle::from_degrees(fx!(90) * i64::from(rng.below(4))),
+        _ => Angle::ZERO,
+    };
+    let reach_b = Vec2::new(reach_b.x.max(reach_a.x), reach_b.y);
+    let aside = match rng.below(4) {
+        0 => fx!(0),
+        1 => reach_a.x + rng.range(fx!(-0.001), fx!(0.001)),
+        _ => rng.range(-(reach_a.x + reach_b.x), reach_a.x + reach_b.x),
+    };
+    let gap = match rng.below(4) {
+        0 => fx!(0),
+        1 => rng.range(-reach_b.y, fx!(0.2)),
+        _ => rng.range(fx!(-0.002), fx!(0.03)),
+    };
+    let away = reach_a.y + reach_b.y + gap;
+    let place = Vec2::new(rng.range(fx!(-900), fx!(900)), rng.range(fx!(-900), fx!(900)));
+    let common = if rng.below(4) == 0 { Angle::ZERO } else { rng.angle() };
+    let way = Rot::from_angle(common).apply_wide(Vec2::new(aside, away));
+    let first = posed(a.into(), place, common);
+    let second = posed(b.into(), place + way, common + turned);
+    if rng.below(2) == 0 { (first, second) } else { (second, first) }
+}
+
+#[test]
+fn lanes_find_what_is_found_one_by_one() {
+    let mut rng = Rng::new(5);
+    let (mut pairs_seen, mut points, mut left) = (0, [0; 3], 0);
+    for _ in 0..20_000 {
+        let pairs: Vec<_> = (0..=rng.below(8)).map(|_| random_pair(&mut rng)).collect();
+        let margins: Vec<_> = pairs.iter().map(|_| narrow(rng.range(fx!(0.005), fx!(0.2)))).collect();
+        let expected = pairs.iter().zip(&margins).map(|((a, b), &margin)| {
+            collide_near(a, b, margin, &mut AxisHint::default(), &mut SatCounters::default())
+        });
+        let expected: Vec<_> = expected.collect();
+        for backend in Backend::available() {
+            let machine = Machine::new(backend).expect("available");
+            let mut batch = BoxPairs::NONE;
+            for (place, ((a, b), &margin)) in pairs.iter().zip(&margins).enumerate() {
+                assert!(a.is_small_box() && b.is_small_box(), "{a:?} {b:?}");
+                assert!(batch.push(a, b, margin, place), "{a:?} {b:?}");
+            }
+            assert_eq!(batch.is_full(), pairs.len() == WIDTH);
+            let mut manifolds = alloc::vec![Manifold::NONE; pairs.len()];
+            let mut is_left = [false; WIDTH];
+            batch.collide(machine, &mut manifolds, |place| is_left[place] = true);
+            for (place, (found, expected)) in manifolds.iter().zip(&expected).enumerate() {
+                if is_left[place] {
+                    left += 1;
+                    continue;
+                }
+                let same = found.points() == expected.points()
+                    && (found.points().is_empty()
+                        || (found.normal, found.origin) == (expected.normal, expected.origin));
+                assert!(same, "{backend:?}: {found:?} is not {expected:?}: {:?}", pairs[place]);
+                points[found.points().len()] += 1;
+            }
+            pairs_seen += pairs.len();
+        }
+    }
+    assert!(points.iter().all(|&count| count > pairs_seen / 20), "{points:?} of {pairs_seen}");
+    assert!(left > 0 && left < pairs_seen / 10, "{left} of {pairs_seen} were left");
+}
