@@ -7,6 +7,7 @@ mod tests;
 
 use super::manifold::{Feature, Manifold, ManifoldPoint};
 use super::pose::{Outline, PosedShape};
+use crate::fx;
 use crate::lanes::{Ints, Machine, Quad, WIDTH};
 use crate::math::{Fx, Length, Step, Unit, Vec2};
 
@@ -15,7 +16,7 @@ pub(super) const BOX_REACH_MAX: Length = Length::lit("3");
 
 /// Furthest apart that two centres may be along either axis, in metres. Then no corner of a pair is more than
 /// `5 sqrt(2) + 2 * 3 < 14` m from a corner of the other: that has room in a `Step`, which goes to 16.
-const DISTANCE_MAX: Length = Length::lit("5");
+const DISTANCE_MAX: Fx = fx!(5);
 
 /// Largest margin of a pair that lanes take, in metres.
 const MARGIN_MAX: Length = Length::lit("2");
@@ -79,15 +80,17 @@ impl BoxPairs {
     #[inline]
     pub(crate) fn push(&mut self, a: &PosedShape, b: &PosedShape, margin: Length, place: usize) -> bool {
         let lane = self.count;
-        let d: Vec2<Length> = (b.centre - a.centre).narrow();
-        let within = |x: Length| (-DISTANCE_MAX..=DISTANCE_MAX).contains(&x);
-        if lane == WIDTH || margin > MARGIN_MAX || !within(d.x) || !within(d.y) {
+        // Both are in the world.
+        let d = b.centre.wrapping_sub(a.centre);
+        let is_far = d.x.saturating_abs().max(d.y.saturating_abs()) > DISTANCE_MAX;
+        if lane >= WIDTH || is_far || margin > MARGIN_MAX {
             return false;
         }
         let [boxes_a, boxes_b] = &mut self.boxes;
         if !(boxes_a.set(lane, a) && boxes_b.set(lane, b)) {
             return false;
         }
+        let d: Vec2<Length> = d.narrow();
         self.places[lane] = place;
         self.origins[lane] = a.centre;
         (self.d[0].0[lane], self.d[1].0[lane]) = (d.x.to_bits(), d.y.to_bits());
@@ -114,11 +117,11 @@ impl BoxPairs {
         }
         let mut found = Found::NONE;
         machine.run(kernel::Collide { pairs: self, found: &mut found });
-        for (lane, (&place, &origin)) in self.places.iter().zip(&self.origins).enumerate().take(self.count) {
+        for lane in 0..self.count.min(WIDTH) {
             if found.open >> lane & 1 != 0 {
-                left(place);
+                left(self.places[lane]);
             } else if found.near >> lane & 1 != 0 {
-                found.write(lane, origin, &mut manifolds[place]);
+                found.write(lane, self.origins[lane], &mut manifolds[self.places[lane]]);
             }
         }
         self.count = 0;
@@ -150,27 +153,30 @@ impl Found {
         points: [Points::NONE, Points::NONE],
     };
 
-    #[inline]
+    #[inline(always)]
     fn write(&self, lane: usize, origin: Vec2<Fx>, to: &mut Manifold) {
         let at = |ints: &Ints<WIDTH>| ints.0[lane];
+        let [reference, incident] = [0, 1].map(|i| at(&self.edges[i]).unsigned_abs() as usize);
+        let swapped = self.swapped >> lane & 1 != 0;
+        let point = |point: &Points, reference, incident| ManifoldPoint {
+            anchor: Vec2::new(
+                Length::from_bits(at(&point.anchor[0])),
+                Length::from_bits(at(&point.anchor[1])),
+            ),
+            separation: Step::from_bits(at(&point.separation)),
+            feature: if swapped {
+                Feature::of_vertices(incident, reference)
+            } else {
+                Feature::of_vertices(reference, incident)
+            },
+        };
         to.origin = origin;
         to.normal = Vec2::new(Unit::from_bits(at(&self.normal[0])), Unit::from_bits(at(&self.normal[1])));
-        let [reference, incident] = [0, 1].map(|i| at(&self.edges[i]).unsigned_abs() as usize);
         let next = |edge: usize| (edge + 1) % 4;
+        let [first, second] = &self.points;
         // The incident edge runs against the reference edge.
-        let vertices = [(reference, next(incident)), (next(reference), incident)];
-        for (point, (reference, incident)) in self.points.iter().zip(vertices) {
-            if point.kept >> lane & 1 != 0 {
-                let swapped = self.swapped >> lane & 1 != 0;
-                let (a, b) = if swapped { (incident, reference) } else { (reference, incident) };
-                let [x, y] = [0, 1].map(|i| Length::from_bits(at(&point.anchor[i])));
-                to.push(ManifoldPoint {
-                    anchor: Vec2::new(x, y),
-                    separation: Step::from_bits(at(&point.separation)),
-                    feature: Feature::of_vertices(a, b),
-                });
-            }
-        }
+        let points = [point(first, reference, next(incident)), point(second, next(reference), incident)];
+        to.set_points(points, [first, second].map(|point| point.kept >> lane & 1 != 0));
     }
 }
 

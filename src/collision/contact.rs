@@ -67,9 +67,9 @@ impl Contact {
         self.rolling = Speed::ZERO;
     }
 
-    /// Remembers the impulse of a point.
-    pub(crate) fn push_point(&mut self, point: PointImpulse) {
-        self.points[usize::from(self.count)] = point;
-        self.count += 1;
+    /// Remembers the impulses of one point or two.
+    #[inline]
+    pub(crate) fn remember(&mut self, points: [PointImpulse; 2], count: u8, rolling: Speed) {
+        (self.points, self.count, self.rolling) = (points, count, rolling);
     }
 }

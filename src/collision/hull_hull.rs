@@ -60,6 +60,8 @@ pub(crate) fn collide(
     let radii = a.radius.saturating_add(b.radius);
     let reach = i64::from(margin.saturating_add(radii).to_bits()) << 30;
     let hinted = match *hint {
+        // Lanes have no use for one, and what is counted should not tell them apart.
+        _ if a.is_small_box() && b.is_small_box() => i64::MIN,
         AxisHint::OfA(edge) if usize::from(edge) < a.vertices().len() => {
             face_separation(a, edge.into(), b, d)
         }

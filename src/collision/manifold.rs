@@ -78,16 +78,31 @@ impl Manifold {
         self.count += 1;
     }
 
+    /// Sets those of two points that are to be kept.
+    #[inline]
+    pub(crate) fn set_points(&mut self, points: [ManifoldPoint; 2], kept: [bool; 2]) {
+        self.points = points;
+        self.keep(kept);
+    }
+
+    /// Keeps some of two points.
+    #[inline]
+    fn keep(&mut self, kept: [bool; 2]) {
+        if kept == [false, true] {
+            self.points[0] = self.points[1];
+        }
+        self.count = kept.into_iter().map(u8::from).sum();
+    }
+
     /// Keeps the points that pass a test.
     #[inline]
     pub(crate) fn retain(&mut self, mut keep: impl FnMut(&ManifoldPoint) -> bool) {
-        let count = core::mem::take(&mut self.count);
-        for index in 0..usize::from(count) {
-            let point = self.points[index];
-            if keep(&point) {
-                self.push(point);
-            }
-        }
+        let keeps = match self.points() {
+            [] => [false; 2],
+            [only] => [keep(only), false],
+            [first, second, ..] => [keep(first), keep(second)],
+        };
+        self.keep(keeps);
     }
 
     /// The same contact with the roles of the shapes exchanged.

@@ -93,6 +93,12 @@ impl Hull {
         self.vertices.first_chunk().zip(self.normals.first_chunk())
     }
 
+    /// Whether it may be in a pair of [`BoxPairs`](super::BoxPairs).
+    #[inline]
+    pub(crate) fn is_small_box(&self) -> bool {
+        self.is_small_box
+    }
+
     /// The index of the vertex after `i`, counter-clockwise.
     #[inline]
     pub(crate) fn next(&self, i: usize) -> usize {
@@ -251,7 +257,7 @@ impl PosedShape {
 
     /// Whether it may be in a pair of [`BoxPairs`](super::BoxPairs).
     pub(crate) fn is_small_box(&self) -> bool {
-        matches!(&self.outline, Outline::Polygon(hull) if hull.is_small_box)
+        matches!(&self.outline, Outline::Polygon(hull) if hull.is_small_box())
     }
 
     /// Whether something at a place in the world meets the shape, or passes from its open side.

@@ -158,6 +158,11 @@ impl Machine {
         self.0
     }
 
+    /// Whether eight lanes are faster than one at a time.
+    pub(crate) fn has_vectors(self) -> bool {
+        self.0 != Backend::Scalar
+    }
+
     /// Runs a kernel.
     #[inline]
     pub(crate) fn run(self, kernel: impl Kernel<WIDTH>) {

@@ -46,7 +46,8 @@ impl BodyFacts {
 
     /// From the centre of mass to a place; of what does not turn, anything.
     pub(super) fn arm_to(&self, place: Vec2<Fx>) -> Vec2<Length> {
-        (place - self.centre).narrow()
+        // Both are in the world.
+        place.wrapping_sub(self.centre).narrow()
     }
 }
 

@@ -43,7 +43,10 @@ pub(super) fn sweep_of(state: &State, scratch: &Scratch, slot: u32, end: Pose, t
     let extents = scratch.poses.extents(slot);
     let limit = SWEPT_MIN.max(extents.core / 2);
     let shift = end.centre - body.centre;
-    let turned = fx_mul(Angle::turns_to_radians(turn).saturating_abs(), extents.reach);
+    let turned = match turn {
+        0 => Fx::ZERO,
+        _ => fx_mul(Angle::turns_to_radians(turn).saturating_abs(), extents.reach),
+    };
     // Most bodies are slow or fast enough to tell without a root.
     let (x, y) = (shift.x.saturating_abs(), shift.y.saturating_abs());
     let fast = x.max(y).saturating_add(turned) > limit

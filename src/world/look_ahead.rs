@@ -32,10 +32,11 @@ pub(crate) struct Motion {
 impl Motion {
     #[inline]
     pub(super) fn of(body: &Body, per_second: Reciprocal) -> Self {
-        let omega: FixedI32<U16> = body.mass.inverse_gyration.times(body.spin);
         let step = |speed: Speed| per_second.times(speed);
         let shift = Vec2::new(step(body.velocity.x), step(body.velocity.y));
-        Motion { centre: body.centre, shift, turn: per_second.times(omega) }
+        let omega = |spin| -> FixedI32<U16> { body.mass.inverse_gyration.times(spin) };
+        let turn = if body.spin == 0 { Way::ZERO } else { per_second.times(omega(body.spin)) };
+        Motion { centre: body.centre, shift, turn }
     }
 
     /// How far the point of the body that is at a world point moves.
@@ -96,7 +97,8 @@ pub(super) fn approach(
         if motion.turn == 0 || motion.centre == manifold.origin {
             return 0;
         }
-        turned(motion.turn, lever((manifold.origin - motion.centre).narrow()))
+        // Both are in the world.
+        turned(motion.turn, lever(manifold.origin.wrapping_sub(motion.centre).narrow()))
     };
     let common = (dot >> (Way::FRAC_NBITS + Unit::FRAC_NBITS - Step::FRAC_NBITS)) + by_turn(a) - by_turn(b);
     let turn = a.turn.saturating_sub(b.turn);
@@ -279,7 +281,7 @@ impl Approach<'_> {
 
     /// Drops the points that the bodies, at their present velocities, will not reach within the tick: shapes that
     /// pass by at speed must not catch on each other.
-    #[inline]
+    #[inline(always)]
     pub(super) fn keep_reachable(
         &self,
         manifold: &mut Manifold,
@@ -293,25 +295,26 @@ impl Approach<'_> {
         }
     }
 
+    #[inline(never)]
     fn drop_unreached(&self, manifold: &mut Manifold, outlook: &Outlook, posed: (&PosedShape, &PosedShape)) {
         let motions = (outlook.motion(self.a), outlook.motion(self.b));
         let closing_at = approach(motions.0, motions.1, manifold);
         let (speculative, slack) = (raw::<U27>(convert(self.horizon.speculative)), raw(self.slack()));
         // A point that is not reached does nothing, and a deep one does not pass by: only others decide.
-        let (mut kept, mut most) = ([true; 2], 0);
-        for (kept, point) in kept.iter_mut().zip(manifold.points()) {
-            let (closing, separation) = (closing_at(point), raw(point.separation));
-            *kept = separation <= speculative.max(closing + speculative);
+        let mut most = 0;
+        manifold.retain(|point| {
+            let separation = raw(point.separation);
+            if separation < -slack {
+                return true;
+            }
+            let closing = closing_at(point);
+            let kept = separation <= speculative.max(closing + speculative);
             // A quarter more: a gap that just closes acts too.
-            let reached = *kept && closing + closing / 4 > separation;
-            if reached && separation >= -slack {
+            if kept && closing + closing / 4 > separation {
                 most = most.max(closing);
             }
-        }
-        if kept != [true; 2] {
-            let mut kept = kept.into_iter();
-            manifold.retain(|_| kept.next() == Some(true));
-        }
+            kept
+        });
         let most = Step::from_bits(saturate(most));
         if most > PASSAGE_MIN && self.passes_by(motions, posed, manifold.normal, most) {
             *manifold = Manifold::NONE;

@@ -144,7 +144,8 @@ impl Search<'_> {
                 contact.passing = false;
                 continue;
             }
-            let found = reach_a.small_box
+            let found = machine.has_vectors()
+                && reach_a.small_box
                 && reach_b.small_box
                 && boxes.push(poses.at(a), poses.at(b), closing.margin, manifolds.len());
             candidates.push(Candidate { index, closing, found });

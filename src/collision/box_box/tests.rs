@@ -5,7 +5,7 @@ use crate::body::{Body, BodyDef, Geometry, MassProperties, Polygon, ShapeDef};
 use crate::collision::{AxisHint, SatCounters, collide_near};
 use crate::fx;
 use crate::lanes::Backend;
-use crate::math::{Angle, Rng, Rot, fx_mul, narrow};
+use crate::math::{Angle, Rng, Rot, narrow};
 use alloc::vec::Vec;
 
 fn posed(geometry: Geometry, position: Vec2<Fx>, angle: Angle) -> PosedShape {

@@ -84,10 +84,10 @@ impl Input {
     #[inline]
     fn take_points(&mut self, points: &[ManifoldPoint], memory: &Contact, warm: &mut WarmStarts) {
         let mut tangent = Speed::ZERO;
+        let mut kept = 0;
         for (i, point) in points.iter().take(2).enumerate() {
             let carried = memory.impulse_of(point.feature);
-            warm.points += 1;
-            warm.kept += u32::from(carried.is_some());
+            kept += u8::from(carried.is_some());
             let PointImpulse { normal, tangent: share, .. } = carried.unwrap_or_default();
             self.count += 1;
             self.features[i] = point.feature.0;
@@ -98,9 +98,12 @@ impl Input {
             tangent = tangent.saturating_add(share);
         }
         self.carried.0[2] = tangent.to_bits();
-        for old in memory.points().iter().filter(|old| old.normal.is_positive()) {
-            let is_there = points.iter().any(|point| point.feature.0 == old.feature);
-            warm.lost += u32::from(!is_there);
+        warm.points += u32::from(self.count);
+        warm.kept += u32::from(kept);
+        if kept < memory.count {
+            let old = memory.points().iter().filter(|old| old.normal.is_positive());
+            let is_there = |old: &&PointImpulse| points.iter().any(|point| point.feature.0 == old.feature);
+            warm.lost += old.map(|old| u32::from(!is_there(&old))).sum::<u32>();
         }
     }
 

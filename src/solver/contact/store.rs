@@ -38,9 +38,9 @@ impl<const N: usize> Records<N> {
     }
 
     /// The lanes that are used, each with the index of its contact and its number of points.
-    pub(super) fn lanes(&self) -> impl Iterator<Item = (usize, usize, usize)> {
+    pub(super) fn lanes(&self) -> impl Iterator<Item = (usize, usize, u8)> {
         let lanes = self.contacts.iter().zip(&self.counts).take(self.len as usize);
-        lanes.enumerate().map(|(lane, (&contact, &count))| (lane, contact as usize, count.into()))
+        lanes.enumerate().map(|(lane, (&contact, &count))| (lane, contact as usize, count))
     }
 
     /// What is kept of the impulses of each point: `p = L / D`, along the normal and along the tangent.
@@ -77,17 +77,19 @@ impl<const N: usize> Kernel<N> for Store<'_, N> {
             let special = if batch.special { special.next() } else { None };
             let impulses = record.impulses::<L>(batch);
             for (lane, index, count) in record.lanes() {
-                let memory = &mut contacts[index];
-                memory.clear_points();
-                memory.rolling = special.map_or(Speed::ZERO, |special| special.rolling.impulse(lane));
-                for (i, [normal, tangent]) in impulses.iter().enumerate().take(count) {
-                    memory.push_point(PointImpulse {
+                let point = |i: usize| {
+                    let [normal, tangent] = &impulses[i];
+                    PointImpulse {
                         feature: record.features[lane][i],
                         normal: Speed::from_bits(normal.0[lane]),
                         tangent: Speed::from_bits(tangent.0[lane]),
-                    });
-                    pushed[index] |= batch.pushed[i] >> lane & 1 != 0;
-                }
+                    }
+                };
+                let second = if count > 1 { point(1) } else { PointImpulse::default() };
+                let rolling = special.map_or(Speed::ZERO, |special| special.rolling.impulse(lane));
+                contacts[index].remember([point(0), second], count, rolling);
+                pushed[index] =
+                    batch.pushed[0] >> lane & 1 != 0 || count > 1 && batch.pushed[1] >> lane & 1 != 0;
             }
         }
     }

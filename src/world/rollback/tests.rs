@@ -74,14 +74,12 @@ fn contacts_of_every_kind_come_back() {
         let mut contact = Contact::new((slot, slot + 30));
         contact.touching = slot & 1 != 0;
         contact.passing = slot & 2 != 0;
-        if slot % 3 > 0 {
-            contact.push_point(point(0xffff, Speed::MAX));
-        }
-        if slot % 3 > 1 {
-            contact.push_point(point(7, Speed::DELTA));
-        }
-        if slot % 5 == 0 {
-            contact.rolling = Speed::MIN;
+        let rolling = if slot % 5 == 0 { Speed::MIN } else { Speed::ZERO };
+        let points = [point(0xffff, Speed::MAX), point(7, Speed::DELTA)];
+        match slot % 3 {
+            0 => contact.rolling = rolling,
+            1 => contact.remember([points[0], PointImpulse::default()], 1, rolling),
+            _ => contact.remember(points, 2, rolling),
         }
         if slot % 2 == 0 { &mut state.contacts } else { &mut *state.resting }.push(contact);
     }
