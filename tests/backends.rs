@@ -7,7 +7,7 @@ use core::fmt::Debug;
 
 use lockstep2d::lockstep::{Game, Sandbox};
 use lockstep2d::scenes::Scene;
-use lockstep2d::world::{Backend, World};
+use lockstep2d::world::{Backend, StepStats, World};
 
 const HASHES: &str = "tests/backends.txt";
 
@@ -25,8 +25,8 @@ const SCENES: [(&str, u64); 10] = [
     ("compounds", 60),
 ];
 
-/// The hash at the end of a scene.
-fn hash_of(name: &str, ticks: u64, choose: impl FnOnce(&mut World) -> bool) -> String {
+/// The hash at the end of a scene, and what has been counted in its last tick.
+fn end_of(name: &str, ticks: u64, choose: impl FnOnce(&mut World) -> bool) -> (String, StepStats) {
     let scene = Scene::find(name).expect("a scene of this crate");
     let mut game = Sandbox::new(&scene.setup(common::SEED)).expect("the scenes of this crate are valid");
     assert!(choose(game.world_mut()), "this machine cannot compute like that");
@@ -35,7 +35,7 @@ fn hash_of(name: &str, ticks: u64, choose: impl FnOnce(&mut World) -> bool) -> S
         game.step(&[commands]);
     }
     assert_eq!(game.world().faults(), 0, "{name}");
-    game.state_hash().to_string()
+    (game.state_hash().to_string(), *game.world().stats())
 }
 
 /// Runs all scenes in each of several ways, which have to agree with each other and with the file.
@@ -43,11 +43,12 @@ fn all_end_in_their_hashes<Way: Copy + Debug>(ways: &[Way], choose: fn(&mut Worl
     let known = common::goldens_of(HASHES);
     let mut wrong = Vec::new();
     for (name, ticks) in SCENES {
-        let hash_of = |way| hash_of(name, ticks, |world| choose(world, way));
-        let hash = hash_of(ways[0]);
+        let end_of = |way| end_of(name, ticks, |world| choose(world, way));
+        let end = end_of(ways[0]);
         for &way in &ways[1..] {
-            assert_eq!(hash, hash_of(way), "{name}: {:?} and {way:?} differ after {ticks} ticks", ways[0]);
+            assert_eq!(end, end_of(way), "{name}: {:?} and {way:?} differ after {ticks} ticks", ways[0]);
         }
+        let (hash, _) = end;
         let line = known.iter().find(|line| (line.scene.as_str(), line.ticks) == (name, ticks));
         if line.is_none_or(|line| line.hash != hash) {
             wrong.push(format!("{} {name} {ticks} {hash}", lockstep2d::SEMANTICS));

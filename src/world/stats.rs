@@ -51,9 +51,9 @@ pub struct StepStats {
     pub points_kept: u32,
     /// Contact points that pushed in the tick before and are gone, although their shapes still have contact.
     pub points_lost: u32,
-    /// Pairs of polygons whose separating axis of the tick before was still one.
+    /// Pairs of polygons whose separating axis of the tick before was still one. Two small boxes are never among them.
     pub axis_hits: u32,
-    /// Pairs of polygons that needed the whole test.
+    /// Pairs of polygons that got the whole test.
     pub axis_searches: u32,
     /// Fast bodies that were stopped on their way; see [`crate::body::Continuous`].
     pub impacts: u32,
