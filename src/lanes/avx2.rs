@@ -9,7 +9,7 @@ use core::cell::Cell;
 
 use super::body::SolverBody;
 use super::{Backend, Ints, Kernel, Lanes, Motion, Quad, WIDTH};
-use records::{motion, set_motions, transposed};
+use records::{Records, motion, set_motions, transposed};
 
 /// The processor's AVX2 instructions. Only a [`super::Machine`] that has them runs kernels with it: every `unsafe`
 /// here is an instruction that is there then.
@@ -265,6 +265,12 @@ impl Lanes<WIDTH> for Avx2 {
     }
 
     #[inline(always)]
+    fn quads(from: &[Quad], at: &[u32; WIDTH]) -> [__m256i; 4] {
+        let quads = Records::new(from, at);
+        transposed(|lane| quads.get(lane).0.as_ptr())
+    }
+
+    #[inline(always)]
     fn transposed(rows: [&Quad; WIDTH]) -> [__m256i; 4] {
         transposed(|lane| rows[lane].0.as_ptr())
     }
@@ -285,22 +291,22 @@ impl Lanes<WIDTH> for Avx2 {
 
     #[inline(always)]
     fn velocities(bodies: &[Cell<SolverBody>], at: &[u32; WIDTH]) -> Motion<__m256i> {
-        motion(at, |at| SolverBody::velocity_bits(&bodies[at as usize]))
+        motion(&Records::new(bodies, at), SolverBody::velocity_bits)
     }
 
     #[inline(always)]
     fn shifts(bodies: &[Cell<SolverBody>], at: &[u32; WIDTH]) -> Motion<__m256i> {
-        motion(at, |at| SolverBody::shift_bits(&bodies[at as usize]))
+        motion(&Records::new(bodies, at), SolverBody::shift_bits)
     }
 
     #[inline(always)]
     fn set_velocities(bodies: &[Cell<SolverBody>], at: &[u32; WIDTH], velocities: Motion<__m256i>) {
-        set_motions(at, velocities, |at| SolverBody::velocity_bits(&bodies[at as usize]));
+        set_motions(&Records::new(bodies, at), velocities, SolverBody::velocity_bits);
     }
 
     #[inline(always)]
     fn set_shifts(bodies: &[Cell<SolverBody>], at: &[u32; WIDTH], shifts: Motion<__m256i>) {
-        set_motions(at, shifts, |at| SolverBody::shift_bits(&bodies[at as usize]));
+        set_motions(&Records::new(bodies, at), shifts, SolverBody::shift_bits);
     }
 }
 

@@ -99,3 +99,47 @@ fn every_backend_computes_what_plain_integers_do() {
         assert!(results.iter().all(|result| *result == results[0]), "{a:?} {b:?}: {results:?}");
     }
 }
+
+/// Reads bodies and quads, and writes bodies, at eight places.
+struct Places<'a> {
+    quads: &'a [Quad],
+    bodies: &'a [Cell<SolverBody>],
+    at: [u32; WIDTH],
+}
+
+impl Kernel<WIDTH> for Places<'_> {
+    #[inline(always)]
+    fn run<L: Lanes<WIDTH>>(self) {
+        let Places { quads, bodies, at } = self;
+        if quads.len() < bodies.len() {
+            L::set_velocities(bodies, &at, L::shifts(bodies, &at));
+            return;
+        }
+        let [x, y, turn, _] = L::quads(quads, &at);
+        L::set_shifts(bodies, &at, Motion { x, y, turn });
+    }
+}
+
+#[test]
+fn places_that_are_not_there_are_refused() {
+    for backend in Backend::available() {
+        let machine = Machine::new(backend).expect("available");
+        let is_refused = |quads: u32, bodies: u32, at: [u32; WIDTH]| {
+            let quads: std::vec::Vec<_> = (0..quads).map(|_| Quad::default()).collect();
+            let bodies: std::vec::Vec<_> = (0..bodies).map(|_| Cell::new(SolverBody::default())).collect();
+            let run = || machine.run(Places { quads: &quads, bodies: &bodies, at });
+            std::panic::catch_unwind(std::panic::AssertUnwindSafe(run)).is_err()
+        };
+        for (quads, bodies) in [(10, 10), (0, 10)] {
+            assert!(!is_refused(quads, bodies, [0, 9, 1, 2, 0, 3, 4, 5]), "{backend:?}");
+            for lane in 0..WIDTH {
+                for outside in [10, 1 << 31, u32::MAX] {
+                    let mut at = [1; WIDTH];
+                    at[lane] = outside;
+                    assert!(is_refused(quads, bodies, at), "{backend:?}, {outside} in {lane}");
+                }
+            }
+        }
+        assert!(is_refused(0, 0, [0; WIDTH]), "{backend:?}");
+    }
+}

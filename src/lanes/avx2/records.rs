@@ -6,9 +6,38 @@ use core::arch::x86_64::*;
 use super::super::body::GROUND;
 use super::super::{Motion, WIDTH};
 
+/// Eight records of many.
+pub(super) struct Records<'a, T> {
+    all: &'a [T],
+    at: &'a [u32; WIDTH],
+}
+
+impl<'a, T> Records<'a, T> {
+    /// Looks at all eight places at once: a check for each of them took as long as what is done with its record.
+    #[inline(always)]
+    #[expect(clippy::cast_possible_wrap, reason = "compared without a sign")]
+    pub(super) fn new(all: &'a [T], at: &'a [u32; WIDTH]) -> Self {
+        let last = u32::try_from(all.len().saturating_sub(1)).unwrap_or(u32::MAX);
+        // SAFETY: see `super::Avx2`; 32 bytes.
+        let outside = unsafe {
+            let at = _mm256_loadu_si256(at.as_ptr().cast());
+            let within = _mm256_min_epu32(at, _mm256_set1_epi32(last as i32));
+            _mm256_movemask_epi8(_mm256_cmpeq_epi32(at, within)) != -1
+        };
+        assert!(!(outside || all.is_empty()), "places of records that are there");
+        Records { all, at }
+    }
+
+    #[inline(always)]
+    pub(super) fn get(&self, lane: usize) -> &'a T {
+        // SAFETY: `new` has seen that it is there.
+        unsafe { self.all.get_unchecked(self.at[lane] as usize) }
+    }
+}
+
 /// Writes three numbers of all bodies, and a 0, to where each body has them, but for the ground.
 #[inline(always)]
-pub(super) fn set_motions(at: &[u32; WIDTH], v: Motion<__m256i>, place: impl Fn(u32) -> *mut i32) {
+pub(super) fn set_motions<T>(bodies: &Records<'_, T>, v: Motion<__m256i>, place: impl Fn(&T) -> *mut i32) {
     // SAFETY: see `super::Avx2`; 16 bytes of a body.
     unsafe {
         let zero = _mm256_setzero_si256();
@@ -22,9 +51,9 @@ pub(super) fn set_motions(at: &[u32; WIDTH], v: Motion<__m256i>, place: impl Fn(
         ];
         for (lane, &pair) in pairs.iter().enumerate() {
             let (low, high) = (_mm256_castsi256_si128(pair), _mm256_extracti128_si256::<1>(pair));
-            for (at, motion) in [(at[lane], low), (at[lane + 4], high)] {
-                if at != GROUND {
-                    _mm_store_si128(place(at).cast(), motion);
+            for (lane, motion) in [(lane, low), (lane + 4, high)] {
+                if bodies.at[lane] != GROUND {
+                    _mm_store_si128(place(bodies.get(lane)).cast(), motion);
                 }
             }
         }
@@ -33,8 +62,8 @@ pub(super) fn set_motions(at: &[u32; WIDTH], v: Motion<__m256i>, place: impl Fn(
 
 /// Three numbers of all bodies, from where each body has them.
 #[inline(always)]
-pub(super) fn motion(at: &[u32; WIDTH], place: impl Fn(u32) -> *mut i32) -> Motion<__m256i> {
-    let [x, y, turn, _] = transposed(|lane| place(at[lane]).cast_const());
+pub(super) fn motion<T>(bodies: &Records<'_, T>, place: impl Fn(&T) -> *mut i32) -> Motion<__m256i> {
+    let [x, y, turn, _] = transposed(|lane| place(bodies.get(lane)).cast_const());
     Motion { x, y, turn }
 }
 
