@@ -28,6 +28,17 @@ impl<'a, T> Records<'a, T> {
         Records { all, at }
     }
 
+    /// Whether the ground is among them.
+    #[inline(always)]
+    fn has_ground(&self) -> bool {
+        const { assert!(GROUND == 0) };
+        // SAFETY: see `super::Avx2`; 32 bytes.
+        unsafe {
+            let at = _mm256_loadu_si256(self.at.as_ptr().cast());
+            _mm256_movemask_epi8(_mm256_cmpeq_epi32(at, _mm256_setzero_si256())) != 0
+        }
+    }
+
     #[inline(always)]
     pub(super) fn get(&self, lane: usize) -> &'a T {
         // SAFETY: `new` has seen that it is there.
@@ -49,10 +60,12 @@ pub(super) fn set_motions<T>(bodies: &Records<'_, T>, v: Motion<__m256i>, place:
             _mm256_unpacklo_epi64(xy_high, t_high),
             _mm256_unpackhi_epi64(xy_high, t_high),
         ];
+        // Most batches are away from it: then no lane has to be asked.
+        let has_ground = bodies.has_ground();
         for (lane, &pair) in pairs.iter().enumerate() {
             let (low, high) = (_mm256_castsi256_si128(pair), _mm256_extracti128_si256::<1>(pair));
             for (lane, motion) in [(lane, low), (lane + 4, high)] {
-                if bodies.at[lane] != GROUND {
+                if !has_ground || bodies.at[lane] != GROUND {
                     _mm_store_si128(place(bodies.get(lane)).cast(), motion);
                 }
             }
