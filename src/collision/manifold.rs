@@ -85,13 +85,16 @@ impl Manifold {
         self.keep(kept);
     }
 
-    /// Keeps some of two points.
+    /// Keeps some of two points. Nothing is left of the others: contacts that are equal compare as equal.
     #[inline]
     fn keep(&mut self, kept: [bool; 2]) {
-        if kept == [false, true] {
-            self.points[0] = self.points[1];
-        }
-        self.count = kept.into_iter().map(u8::from).sum();
+        let [first, second] = self.points;
+        (self.points, self.count) = match kept {
+            [true, true] => (self.points, 2),
+            [true, false] => ([first, Self::NO_POINT], 1),
+            [false, true] => ([second, Self::NO_POINT], 1),
+            [false, false] => ([Self::NO_POINT; 2], 0),
+        };
     }
 
     /// Keeps the points that pass a test.

@@ -85,9 +85,8 @@ fn lanes_find_what_is_found_one_by_one() {
                     left += 1;
                     continue;
                 }
-                let same = found.points() == expected.points()
-                    && (found.points().is_empty()
-                        || (found.normal, found.origin) == (expected.normal, expected.origin));
+                // Of no points the rest is of no interest; of others all is, for a contact may be compared as a whole.
+                let same = found == expected || found.points().is_empty() && expected.points().is_empty();
                 assert!(same, "{backend:?}: {found:?} is not {expected:?}: {:?}", pairs[place]);
                 points[found.points().len()] += 1;
             }
