@@ -7,7 +7,7 @@
 
 mod clip;
 
-pub(super) use clip::clip;
+pub(super) use clip::{CLIP_BITS, FINER, clip};
 
 use super::manifold::Manifold;
 use super::pose::{BoxFaces, Hull};

@@ -8,18 +8,15 @@
 //!
 //! of the face or of its opposite, whichever looks towards the other box.
 
-use super::super::hull_hull::TOLERANCE;
+use super::super::hull_hull::{CLIP_BITS, FACE_BITS, FINER, TOLERANCE};
 use super::{BoxPairs, Boxes, Found};
 use crate::lanes::{Ints, Kernel, Lanes, WIDTH, shift};
-use crate::math::{Length, Step, Unit};
+use crate::math::{Step, Unit};
 
 const UNIT: i32 = shift(Unit::FRAC_NBITS);
 /// From the product of a unit vector and a length to a step.
-const TO_STEP: i32 = shift(Unit::FRAC_NBITS + Length::FRAC_NBITS - Step::FRAC_NBITS);
-/// From a step to a length.
-const FINER: u32 = Step::FRAC_NBITS - Length::FRAC_NBITS;
-/// The fraction bits of where an edge is clipped.
-const CLIP: i32 = 26;
+const TO_STEP: i32 = shift(FACE_BITS - Step::FRAC_NBITS);
+const CLIP: i32 = shift(CLIP_BITS);
 
 pub(super) struct Collide<'a> {
     pub(super) pairs: &'a BoxPairs,

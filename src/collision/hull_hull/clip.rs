@@ -14,7 +14,10 @@ use crate::collision::pose::Hull;
 use crate::math::{Length, Step, Unit, Vec2, round_shift, saturate};
 
 /// How many fraction bits a step has more than a length.
-const FINER: u32 = Step::FRAC_NBITS - Length::FRAC_NBITS;
+pub(in crate::collision) const FINER: u32 = Step::FRAC_NBITS - Length::FRAC_NBITS;
+
+/// The fraction bits of where an edge is clipped: edges are at most 570 m long, and its product with one has 63 bits.
+pub(in crate::collision) const CLIP_BITS: u32 = 26;
 
 /// One end of an edge, about the start of the reference edge, in units of `Length` and `Step` that do not saturate.
 #[derive(Clone, Copy)]
@@ -165,10 +168,12 @@ fn above(n: Vec2<Unit>, p: (i64, i64)) -> i64 {
 /// Moves an end along its edge to where it passes a limit, which is between it and the other end.
 #[inline]
 fn clipped(end: End, other: End, limit: i64) -> End {
-    // Edges are at most 570 m long: the product has 63 bits.
-    const BITS: u32 = 26;
-    let fraction = ((limit - end.along) << BITS) / (other.along - end.along);
-    End { along: limit, above: end.above + round_shift((other.above - end.above) * fraction, BITS), ..end }
+    let fraction = ((limit - end.along) << CLIP_BITS) / (other.along - end.along);
+    End {
+        along: limit,
+        above: end.above + round_shift((other.above - end.above) * fraction, CLIP_BITS),
+        ..end
+    }
 }
 
 struct Clip<'a> {
