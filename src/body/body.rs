@@ -1,7 +1,6 @@
 //! Bodies: pose, velocity, mass and the forces waiting for the next tick.
 
 use alloc::boxed::Box;
-use alloc::vec::Vec;
 
 use serde::{Deserialize, Serialize};
 
@@ -9,6 +8,7 @@ use super::arena::{IslandId, ShapeId};
 use super::body_def::{BodyDef, BodyKind};
 use super::mass::{MassProperties, MassSource};
 use super::settings::BodySettings;
+use super::shape_list::{self, ShapeList};
 use crate::math::{
     Angle, Fx, Reciprocal, Rot, Speed, Transform, Vec2, div_round, fx_mul, narrow, saturate, saturate_wide,
     widen,
@@ -52,7 +52,8 @@ pub struct Body {
     /// Where the coming tick takes it, if it is kinematic and has been told so.
     pub(crate) target: Option<Box<Pose>>,
     /// In order of attachment.
-    pub(crate) shapes: Vec<ShapeId>,
+    #[serde(with = "shape_list")]
+    pub(crate) shapes: ShapeList,
     pub(crate) user_data: u64,
 }
 
@@ -74,7 +75,7 @@ impl Body {
             rest_ticks: 0,
             island: None,
             target: None,
-            shapes: Vec::new(),
+            shapes: ShapeList::new(),
             user_data: def.user_data,
         };
         body.set_angular_velocity(def.angular_velocity);

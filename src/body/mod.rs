@@ -14,6 +14,7 @@ mod material;
 mod polygon;
 mod settings;
 mod shape;
+mod shape_list;
 
 pub(crate) use arena::{Arena, Handle, SharedArena};
 pub use arena::{BodyId, IslandId, JointId, ShapeId};

@@ -10,6 +10,7 @@ use crate::math::{Aabb, Fx, Length, Rot, Unit, Vec2, narrow, widen};
 
 /// A shape in the world: its outline in world axes about its own centre.
 #[derive(Clone, Debug)]
+#[repr(align(64))]
 pub(crate) struct PosedShape {
     /// The shape's centre in the world.
     pub(crate) centre: Vec2<Fx>,

@@ -145,7 +145,7 @@ impl World {
         islands::disturb(&mut self.state, &mut self.scratch, body.slot());
         self.forget_shapes(&[id]);
         let owner = self.state.bodies.redefine(body.slot());
-        owner.shapes.retain(|&other| other != id);
+        owner.shapes.retain(|other| *other != id);
         owner.set_mass(mass);
         // The centre of mass has moved, and with it, by a rounding, the places of the other shapes.
         self.placed(body.slot());

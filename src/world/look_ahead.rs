@@ -9,6 +9,7 @@ use super::config::Config;
 use crate::body::{Body, Geometry, Shape};
 use crate::collision::{Manifold, ManifoldPoint, OneWay, Passage, PosedShape, margin_for, may_meet, pass_by};
 use crate::fx;
+use crate::lanes::prefetch;
 use crate::math::{
     Aabb, Fx, Length, Reciprocal, Rot, Speed, Step, Unit, Vec2, convert, fx_mul, narrow, saturate, widen,
 };
@@ -115,6 +116,7 @@ const TURN_BITS: u32 = Way::FRAC_NBITS + Length::FRAC_NBITS - Step::FRAC_NBITS;
 
 /// The box of a shape, how far it may come within the tick, and what its pairs have to know of it: one cache line.
 #[derive(Clone, Copy, Debug, Default)]
+#[repr(align(64))]
 pub(crate) struct Reach {
     pub(super) bounds: Aabb,
     /// Of the body's centre of mass.
@@ -216,6 +218,12 @@ impl Outlook {
 
     pub(super) fn reach(&self, shape: u32) -> &Reach {
         &self.reaches[shape as usize]
+    }
+
+    /// Asks for what will soon be looked at.
+    #[inline]
+    pub(super) fn prefetch(&self, shape: u32) {
+        prefetch(&self.reaches[shape as usize]);
     }
 
     pub(super) fn motion(&self, reach: &Reach) -> &Motion {

@@ -20,6 +20,9 @@ const JOB_MIN: usize = 512;
 /// known of them stays near.
 const BLOCK: usize = 128;
 
+/// How many contacts before it is looked at the second shape of one is asked for: those lie anywhere.
+const CONTACTS_AHEAD: usize = 8;
+
 /// A contact whose shapes may meet.
 #[derive(Clone, Copy, Debug)]
 struct Candidate {
@@ -136,7 +139,11 @@ impl Search<'_> {
         let first = manifolds.len();
         let mut boxes = BoxPairs::NONE;
         candidates.clear();
-        for (index, contact) in block.clone().zip(&mut job.contacts[block]) {
+        for index in block {
+            if let Some(ahead) = job.contacts.get(index + CONTACTS_AHEAD) {
+                poses.outlook.prefetch(ahead.shapes.1);
+            }
+            let contact = &mut job.contacts[index];
             let (a, b) = contact.shapes;
             let (reach_a, reach_b) = (poses.outlook.reach(a), poses.outlook.reach(b));
             let closing = Closing::of(horizon, reach_a, reach_b);
@@ -148,6 +155,9 @@ impl Search<'_> {
                 && reach_a.small_box
                 && reach_b.small_box
                 && boxes.push(poses.at(a), poses.at(b), closing.margin, manifolds.len());
+            if !found {
+                poses.prefetch(b);
+            }
             candidates.push(Candidate { index, closing, found });
             manifolds.push(Manifold::NONE);
             if boxes.is_full() {

@@ -15,6 +15,7 @@ use super::stats::StepStats;
 use crate::body::{Body, BodyKind, Geometry, Handle, Pose, Shape, ShapeId};
 use crate::collision::{AxisHint, BroadPhase, BroadPhaseKind, Contact, Pair, PosedShape};
 use crate::fx;
+use crate::lanes::prefetch;
 use crate::math::{Aabb, Fx, Vec2};
 use crate::solver::{Solver, TouchingPair};
 
@@ -337,7 +338,14 @@ impl Poses {
         self.extents[slot as usize]
     }
 
+    /// Asks for a shape that will soon be looked at.
+    #[inline]
+    pub(super) fn prefetch(&self, slot: u32) {
+        prefetch(&self.shapes[slot as usize]);
+    }
+
     /// The shape in an occupied slot.
+    #[inline]
     pub(crate) fn at(&self, slot: u32) -> &PosedShape {
         self.shapes[slot as usize].as_ref().expect("every shape is posed when it is placed")
     }
