@@ -5,10 +5,13 @@ mod kernel;
 #[cfg(test)]
 mod tests;
 
+use alloc::vec::Vec;
+
+use super::broad_phase::Pair;
 use super::manifold::{Feature, Manifold, ManifoldPoint};
-use super::pose::{Outline, PosedShape};
+use super::pose::PosedShape;
 use crate::fx;
-use crate::lanes::{Ints, Machine, Quad, WIDTH};
+use crate::lanes::{Ints, Machine, Quad, WIDTH, prefetch};
 use crate::math::{Fx, Length, Step, Unit, Vec2};
 
 /// Furthest corner of a box that lanes take, radius included, in metres from its centre.
@@ -21,165 +24,168 @@ const DISTANCE_MAX: Fx = fx!(5);
 /// Largest margin of a pair that lanes take, in metres.
 const MARGIN_MAX: Length = Length::lit("2");
 
-/// Up to eight pairs of boxes, and where their manifolds go.
-#[derive(Clone, Debug)]
+/// The boxes of a world that lanes take, by the slots of their shapes: half a cache line for each, where a
+/// [`PosedShape`] has four.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct SmallBoxes {
+    /// For each slot the first two vertices of its box and its first two normals: the others are opposite to them. Zeros
+    /// for what is no such box.
+    quads: Vec<Quad>,
+}
+
+/// How many quads a box has.
+const QUADS: usize = 2;
+
+impl SmallBoxes {
+    /// Makes room for so many slots.
+    pub(crate) fn resize(&mut self, slot_count: usize) {
+        self.quads.resize(QUADS * slot_count, Quad::default());
+    }
+
+    /// Takes up a shape that has been turned.
+    #[inline]
+    pub(crate) fn set(&mut self, slot: u32, shape: &PosedShape) {
+        if let Some(([v0, v1], [n0, n1])) = shape.as_small_box() {
+            let quads = &mut self.quads[QUADS * slot as usize..][..QUADS];
+            quads[0] = Quad([v0.x, v0.y, v1.x, v1.y].map(Length::to_bits));
+            quads[1] = Quad([n0.x, n0.y, n1.x, n1.y].map(Unit::to_bits));
+        }
+    }
+
+    /// Asks for a box that will soon be looked at.
+    #[inline]
+    pub(crate) fn prefetch(&self, slot: u32) {
+        prefetch(&self.quads[QUADS * slot as usize]);
+    }
+}
+
+/// Pairs of small boxes, and what has been found of them.
+#[derive(Clone, Debug, Default)]
 pub(crate) struct BoxPairs {
     count: usize,
-    places: [usize; WIDTH],
-    /// The centres of the boxes A.
-    origins: [Vec2<Fx>; WIDTH],
-    boxes: [Boxes; 2],
+    batches: Vec<Batch>,
+}
+
+/// Up to eight pairs. Lanes that are left over have boxes as well, the first pair's or earlier ones'.
+#[derive(Clone, Debug)]
+struct Batch {
+    /// Where the boxes of each pair have their quads.
+    at: [[u32; WIDTH]; 2],
     /// From the centres of A to those of B.
     d: [Ints<WIDTH>; 2],
+    radius: [Ints<WIDTH>; 2],
     margin: Ints<WIDTH>,
+    found: Found,
 }
 
-/// One of the boxes of each pair: the other halves of its normals and its vertices are opposite to these.
+/// The manifolds of eight pairs.
 #[derive(Clone, Debug)]
-struct Boxes {
-    normals: [Quad; WIDTH],
-    vertices: [Quad; WIDTH],
-    radius: Ints<WIDTH>,
-}
-
-/// What has been found of eight pairs.
-#[derive(Debug)]
 struct Found {
-    /// A bit for each pair that is not further apart than its margin.
-    near: u32,
-    /// Of these, a bit for each that is left to others.
+    /// A bit for each pair that is left to others.
     open: u32,
-    /// Whether the reference face is one of B.
-    swapped: u32,
-    /// The edges of the reference and the incident box.
-    edges: [Ints<WIDTH>; 2],
     normal: [Ints<WIDTH>; 2],
+    /// How many points each has.
+    count: Ints<WIDTH>,
+    /// What a pair does not have is zero.
     points: [Points; 2],
 }
 
-/// A point of each pair.
-#[derive(Debug)]
-struct Points {
-    /// A bit for each that is near enough.
-    kept: u32,
-    anchor: [Ints<WIDTH>; 2],
-    separation: Ints<WIDTH>,
-}
+/// A point of each pair: anchor, separation and feature.
+#[derive(Clone, Debug)]
+struct Points([Ints<WIDTH>; 4]);
 
 impl BoxPairs {
-    pub(crate) const NONE: Self = BoxPairs {
-        count: 0,
-        places: [0; WIDTH],
-        origins: [Vec2::new(Fx::ZERO, Fx::ZERO); WIDTH],
-        boxes: [Boxes::NONE, Boxes::NONE],
-        d: [Ints::ZERO; 2],
-        margin: Ints::ZERO,
-    };
+    /// Forgets all pairs.
+    pub(crate) fn clear(&mut self) {
+        self.count = 0;
+    }
 
-    /// Adds two boxes, of which both are small. False if they are not for lanes, or if there are eight.
+    /// Adds the small boxes in two slots, by the vector from the centre of the first to that of the second. Returns the place
+    /// of the pair, or nothing if it is not for lanes.
     #[inline]
-    pub(crate) fn push(&mut self, a: &PosedShape, b: &PosedShape, margin: Length, place: usize) -> bool {
-        let lane = self.count;
-        // Both are in the world.
-        let d = b.centre.wrapping_sub(a.centre);
-        let is_far = d.x.saturating_abs().max(d.y.saturating_abs()) > DISTANCE_MAX;
-        if lane >= WIDTH || is_far || margin > MARGIN_MAX {
-            return false;
+    pub(crate) fn push(
+        &mut self,
+        (a, b): Pair,
+        d: Vec2<Fx>,
+        radii: [Length; 2],
+        margin: Length,
+    ) -> Option<usize> {
+        if d.x.saturating_abs().max(d.y.saturating_abs()) > DISTANCE_MAX || margin > MARGIN_MAX {
+            return None;
         }
-        let [boxes_a, boxes_b] = &mut self.boxes;
-        if !(boxes_a.set(lane, a) && boxes_b.set(lane, b)) {
-            return false;
+        let (place, lane) = (self.count, self.count % WIDTH);
+        let at = [a, b].map(|slot| slot * 2);
+        if place / WIDTH == self.batches.len() {
+            self.batches.push(Batch::EMPTY);
+        }
+        let batch = &mut self.batches[place / WIDTH];
+        if lane == 0 {
+            // The slots of an earlier tick may be gone.
+            batch.at = at.map(|at| [at; WIDTH]);
         }
         let d: Vec2<Length> = d.narrow();
-        self.places[lane] = place;
-        self.origins[lane] = a.centre;
-        (self.d[0].0[lane], self.d[1].0[lane]) = (d.x.to_bits(), d.y.to_bits());
-        self.margin.0[lane] = margin.to_bits();
+        for side in 0..2 {
+            batch.at[side][lane] = at[side];
+            batch.radius[side].0[lane] = radii[side].to_bits();
+        }
+        (batch.d[0].0[lane], batch.d[1].0[lane]) = (d.x.to_bits(), d.y.to_bits());
+        batch.margin.0[lane] = margin.to_bits();
         self.count += 1;
-        true
+        Some(place)
     }
 
-    pub(crate) fn is_full(&self) -> bool {
-        self.count == WIDTH
+    /// Finds the manifolds of all pairs.
+    pub(crate) fn collide(&mut self, machine: Machine, boxes: &SmallBoxes) {
+        let batches = &mut self.batches[..self.count.div_ceil(WIDTH)];
+        if !batches.is_empty() {
+            machine.run(kernel::Collide { batches, boxes: &boxes.quads });
+        }
     }
 
-    /// Writes the manifolds of all pairs to their places, where there is [`Manifold::NONE`], and forgets the pairs. Tells the
-    /// places of those that are left to others.
-    #[inline]
-    pub(crate) fn collide(
-        &mut self,
-        machine: Machine,
-        manifolds: &mut [Manifold],
-        mut left: impl FnMut(usize),
-    ) {
-        if self.count == 0 {
-            return;
+    /// Adds the manifold of the pair at a place to others, with the centre of its first box for an origin. Does nothing and
+    /// says so if the pair is left to others.
+    #[inline(always)]
+    pub(crate) fn append_to(&self, manifolds: &mut Vec<Manifold>, place: usize, origin: Vec2<Fx>) -> bool {
+        let (found, lane) = (&self.batches[place / WIDTH].found, place % WIDTH);
+        let is_closed = found.open >> lane & 1 == 0;
+        if is_closed {
+            manifolds.push(found.manifold(lane, origin));
         }
-        let mut found = Found::NONE;
-        machine.run(kernel::Collide { pairs: self, found: &mut found });
-        for lane in 0..self.count.min(WIDTH) {
-            if found.open >> lane & 1 != 0 {
-                left(self.places[lane]);
-            } else if found.near >> lane & 1 != 0 {
-                found.write(lane, self.origins[lane], &mut manifolds[self.places[lane]]);
-            }
-        }
-        self.count = 0;
+        is_closed
     }
 }
 
-impl Boxes {
-    const NONE: Self =
-        Boxes { normals: [Quad([0; 4]); WIDTH], vertices: [Quad([0; 4]); WIDTH], radius: Ints::ZERO };
-
-    #[inline]
-    fn set(&mut self, lane: usize, shape: &PosedShape) -> bool {
-        let Outline::Polygon(hull) = &shape.outline else { return false };
-        let Some(([v0, v1], [n0, n1])) = hull.as_box() else { return false };
-        self.normals[lane] = Quad([n0.x, n0.y, n1.x, n1.y].map(Unit::to_bits));
-        self.vertices[lane] = Quad([v0.x, v0.y, v1.x, v1.y].map(Length::to_bits));
-        self.radius.0[lane] = hull.radius.to_bits();
-        true
-    }
+impl Batch {
+    const EMPTY: Self = Batch {
+        at: [[0; WIDTH]; 2],
+        d: [Ints::ZERO; 2],
+        radius: [Ints::ZERO; 2],
+        margin: Ints::ZERO,
+        found: Found {
+            open: 0,
+            normal: [Ints::ZERO; 2],
+            count: Ints::ZERO,
+            points: [Points([Ints::ZERO; 4]), Points([Ints::ZERO; 4])],
+        },
+    };
 }
 
 impl Found {
-    const NONE: Self = Found {
-        near: 0,
-        open: 0,
-        swapped: 0,
-        edges: [Ints::ZERO; 2],
-        normal: [Ints::ZERO; 2],
-        points: [Points::NONE, Points::NONE],
-    };
-
     #[inline(always)]
-    fn write(&self, lane: usize, origin: Vec2<Fx>, to: &mut Manifold) {
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "at most 2 points of 4 corners"
+    )]
+    fn manifold(&self, lane: usize, origin: Vec2<Fx>) -> Manifold {
         let at = |ints: &Ints<WIDTH>| ints.0[lane];
-        let [reference, incident] = [0, 1].map(|i| at(&self.edges[i]).unsigned_abs() as usize);
-        let swapped = self.swapped >> lane & 1 != 0;
-        let point = |point: &Points, reference, incident| ManifoldPoint {
-            anchor: Vec2::new(
-                Length::from_bits(at(&point.anchor[0])),
-                Length::from_bits(at(&point.anchor[1])),
-            ),
-            separation: Step::from_bits(at(&point.separation)),
-            feature: if swapped {
-                Feature::of_vertices(incident, reference)
-            } else {
-                Feature::of_vertices(reference, incident)
-            },
+        let point = |Points([x, y, separation, feature]): &Points| ManifoldPoint {
+            anchor: Vec2::new(Length::from_bits(at(x)), Length::from_bits(at(y))),
+            separation: Step::from_bits(at(separation)),
+            feature: Feature(at(feature) as u16),
         };
-        to.origin = origin;
-        to.normal = Vec2::new(Unit::from_bits(at(&self.normal[0])), Unit::from_bits(at(&self.normal[1])));
-        let next = |edge: usize| (edge + 1) % 4;
+        let normal = Vec2::new(Unit::from_bits(at(&self.normal[0])), Unit::from_bits(at(&self.normal[1])));
         let [first, second] = &self.points;
-        // The incident edge runs against the reference edge.
-        let points = [point(first, reference, next(incident)), point(second, next(reference), incident)];
-        to.set_points(points, [first, second].map(|point| point.kept >> lane & 1 != 0));
+        Manifold::of_points(normal, origin, [point(first), point(second)], at(&self.count) as u8)
     }
-}
-
-impl Points {
-    const NONE: Self = Points { kept: 0, anchor: [Ints::ZERO; 2], separation: Ints::ZERO };
 }

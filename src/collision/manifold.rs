@@ -65,6 +65,18 @@ impl Manifold {
         manifold
     }
 
+    /// A contact with the first so many of two points. Those that it does not have must be zero: contacts that are equal
+    /// compare as equal.
+    #[inline]
+    pub(crate) fn of_points(
+        normal: Vec2<Unit>,
+        origin: Vec2<Fx>,
+        points: [ManifoldPoint; 2],
+        count: u8,
+    ) -> Self {
+        Manifold { normal, origin, points, count }
+    }
+
     /// The points, none to two.
     #[inline]
     #[must_use]
@@ -76,13 +88,6 @@ impl Manifold {
     pub(crate) fn push(&mut self, point: ManifoldPoint) {
         self.points[usize::from(self.count)] = point;
         self.count += 1;
-    }
-
-    /// Sets those of two points that are to be kept.
-    #[inline]
-    pub(crate) fn set_points(&mut self, points: [ManifoldPoint; 2], kept: [bool; 2]) {
-        self.points = points;
-        self.keep(kept);
     }
 
     /// Keeps some of two points. Nothing is left of the others: contacts that are equal compare as equal.
@@ -105,7 +110,10 @@ impl Manifold {
             [only] => [keep(only), false],
             [first, second, ..] => [keep(first), keep(second)],
         };
-        self.keep(keeps);
+        // Nothing is written where all stay, which is nearly always.
+        if keeps.iter().filter(|&&kept| kept).count() < self.points().len() {
+            self.keep(keeps);
+        }
     }
 
     /// The same contact with the roles of the shapes exchanged.

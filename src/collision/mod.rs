@@ -24,7 +24,7 @@ mod sweep_and_prune;
 mod time_of_impact;
 mod tree;
 
-pub(crate) use box_box::BoxPairs;
+pub(crate) use box_box::{BoxPairs, SmallBoxes};
 pub use broad_phase::BroadPhaseKind;
 pub(crate) use broad_phase::{BroadPhase, Moved, Pair};
 pub(crate) use contact::{Contact, PointImpulse};

@@ -94,7 +94,7 @@ impl Hull {
         self.vertices.first_chunk().zip(self.normals.first_chunk())
     }
 
-    /// Whether it may be in a pair of [`BoxPairs`](super::BoxPairs).
+    /// Whether it may be one of [`SmallBoxes`](super::SmallBoxes).
     #[inline]
     pub(crate) fn is_small_box(&self) -> bool {
         self.is_small_box
@@ -175,20 +175,22 @@ impl Hull {
     }
 
     /// Turns the vertices and normals of its polygon another way.
-    #[inline]
+    #[inline(always)]
     fn rotate(&mut self, polygon: &Polygon, rotation: Rot) {
-        let count = if self.is_box { 2 } else { self.count };
-        let local = polygon.vertices().iter().zip(polygon.normals()).take(count);
+        if let (true, [v0, v1, ..], [n0, n1, ..]) = (self.is_box, polygon.vertices(), polygon.normals()) {
+            // Rounded alike, so that opposite ones stay exactly opposite.
+            let [v0, v1] = [rotation.apply(*v0), rotation.apply(*v1)];
+            let [n0, n1] = [rotation.apply(*n0), rotation.apply(*n1)];
+            let (vertices, normals) = (&mut self.vertices, &mut self.normals);
+            [vertices[0], vertices[1], vertices[2], vertices[3]] = [v0, v1, -v0, -v1];
+            [normals[0], normals[1], normals[2], normals[3]] = [n0, n1, -n0, -n1];
+            return;
+        }
+        let local = polygon.vertices().iter().zip(polygon.normals());
         let posed = self.vertices.iter_mut().zip(&mut self.normals);
         for ((vertex, normal), (local_vertex, local_normal)) in posed.zip(local) {
             *vertex = rotation.apply(*local_vertex);
             *normal = rotation.apply(*local_normal);
-        }
-        if self.is_box {
-            // Rounded alike, so that opposite ones stay exactly opposite.
-            let (vertices, normals) = (&mut self.vertices, &mut self.normals);
-            (vertices[2], vertices[3]) = (-vertices[0], -vertices[1]);
-            (normals[2], normals[3]) = (-normals[0], -normals[1]);
         }
     }
 
@@ -225,6 +227,7 @@ impl PosedShape {
 
     /// Poses the same shape again, after its body has moved: writes only what that changes. The rotation is asked for
     /// only if it changes something.
+    #[inline(always)]
     pub(crate) fn renew(&mut self, shape: &ShapeDef, body: &Body, rotation: &impl Deref<Target = Rot>) {
         let centre = centre_of(shape, body, || **rotation);
         match (&mut self.outline, &shape.geometry) {
@@ -256,9 +259,13 @@ impl PosedShape {
         Core::of(&Self::of_geometry(geometry, Vec2::ZERO, Rot::IDENTITY), Vec2::ZERO).inner_radius()
     }
 
-    /// Whether it may be in a pair of [`BoxPairs`](super::BoxPairs).
-    pub(crate) fn is_small_box(&self) -> bool {
-        matches!(&self.outline, Outline::Polygon(hull) if hull.is_small_box())
+    /// What it is to [`SmallBoxes`](super::SmallBoxes), if it may be one of them.
+    #[inline]
+    pub(crate) fn as_small_box(&self) -> Option<BoxFaces<'_>> {
+        match &self.outline {
+            Outline::Polygon(hull) if hull.is_small_box => hull.as_box(),
+            _ => None,
+        }
     }
 
     /// Whether something at a place in the world meets the shape, or passes from its open side.

@@ -9,12 +9,19 @@ pub(crate) fn prefetch<T>(of: &T) {
     /// The bytes that a processor reads at a time.
     const LINE: usize = 64;
     let start = core::ptr::from_ref(of).cast::<i8>();
-    let last = size_of::<T>().saturating_sub(1);
-    // What is not aligned to a line may end in one more.
-    let end = if align_of::<T>() < LINE { Some(last) } else { None };
-    for offset in (0..=last).step_by(LINE).chain(end) {
+    let ask = |offset| {
         // SAFETY: every processor of this architecture has the instruction, and the address is within the value.
         unsafe { _mm_prefetch::<_MM_HINT_T0>(start.add(offset)) };
+    };
+    // A plain loop is unrolled.
+    let mut offset = 0;
+    while offset < size_of::<T>() {
+        ask(offset);
+        offset += LINE;
+    }
+    // What is not aligned to a line may end in one more.
+    if align_of::<T>() < LINE.min(size_of::<T>()) {
+        ask(size_of::<T>() - 1);
     }
 }
 

@@ -127,13 +127,17 @@ pub(crate) struct Reach {
     slack: Step,
     /// The slot of its body.
     pub(super) body: u32,
+    /// How far the surface is from the vertices.
+    pub(super) radius: Length,
     circle: bool,
-    /// Whether it is solid, and may be in one of [`BoxPairs`](crate::collision::BoxPairs).
+    /// Whether it is solid, and one of [`SmallBoxes`](crate::collision::SmallBoxes).
     pub(super) small_box: bool,
     pub(super) sensor: bool,
     pub(super) one_way: bool,
     pub(super) hit_events: bool,
 }
+
+const _: () = assert!(size_of::<Reach>() == 64);
 
 impl Reach {
     /// Of a shape that does not move.
@@ -145,12 +149,27 @@ impl Reach {
             turn: Way::ZERO,
             slack: slack_of(bounds),
             body,
+            radius: narrow(posed.outline.radius()),
             circle: matches!(shape.geometry(), Geometry::Circle { .. }),
-            small_box: posed.is_small_box() && !shape.is_sensor(),
+            small_box: posed.as_small_box().is_some() && !shape.is_sensor(),
             sensor: shape.is_sensor(),
             one_way: shape.one_way().is_some(),
             hit_events: shape.def.events.hit,
         }
+    }
+
+    /// The centre of its box: of a shape that is a box, its centre.
+    #[inline]
+    pub(super) fn centre(&self) -> Vec2<Fx> {
+        self.bounds.centre()
+    }
+
+    /// From its centre to that of another, which is in the world like it.
+    #[inline]
+    pub(super) fn way_to(&self, other: &Reach) -> Vec2<Fx> {
+        let twice = |reach: &Reach| reach.bounds.lower.wrapping_add(reach.bounds.upper);
+        let Vec2 { x, y } = twice(other).wrapping_sub(twice(self));
+        Vec2::new(x >> 1, y >> 1)
     }
 
     /// Bound of the way by which any two points of two shapes approach each other in the tick, in metres.
@@ -290,11 +309,11 @@ impl Approach<'_> {
     /// Drops the points that the bodies, at their present velocities, will not reach within the tick: shapes that
     /// pass by at speed must not catch on each other.
     #[inline(always)]
-    pub(super) fn keep_reachable(
+    pub(super) fn keep_reachable<'p>(
         &self,
         manifold: &mut Manifold,
         outlook: &Outlook,
-        posed: (&PosedShape, &PosedShape),
+        posed: impl FnOnce() -> (&'p PosedShape, &'p PosedShape),
     ) {
         let speculative: Step = convert(self.horizon.speculative);
         let ahead = |point: &ManifoldPoint| point.separation > speculative;
@@ -304,7 +323,12 @@ impl Approach<'_> {
     }
 
     #[inline(never)]
-    fn drop_unreached(&self, manifold: &mut Manifold, outlook: &Outlook, posed: (&PosedShape, &PosedShape)) {
+    fn drop_unreached<'p>(
+        &self,
+        manifold: &mut Manifold,
+        outlook: &Outlook,
+        posed: impl FnOnce() -> (&'p PosedShape, &'p PosedShape),
+    ) {
         let motions = (outlook.motion(self.a), outlook.motion(self.b));
         let closing_at = approach(motions.0, motions.1, manifold);
         let (speculative, slack) = (raw::<U27>(convert(self.horizon.speculative)), raw(self.slack()));
@@ -324,7 +348,7 @@ impl Approach<'_> {
             kept
         });
         let most = Step::from_bits(saturate(most));
-        if most > PASSAGE_MIN && self.passes_by(motions, posed, manifold.normal, most) {
+        if most > PASSAGE_MIN && self.passes_by(motions, posed(), manifold.normal, most) {
             *manifold = Manifold::NONE;
         }
     }

@@ -18,7 +18,7 @@ const JOB_MIN: usize = 512;
 
 /// How many contacts are looked at before boxes are collided: so many that few lanes stay empty, and so few that what is
 /// known of them stays near.
-const BLOCK: usize = 128;
+const BLOCK: usize = 64;
 
 /// How many contacts before it is looked at the second shape of one is asked for: those lie anywhere.
 const CONTACTS_AHEAD: usize = 8;
@@ -29,8 +29,8 @@ struct Candidate {
     /// Its place among those of the job.
     index: usize,
     closing: Closing,
-    /// Whether its manifold has been found, with those of other boxes.
-    found: bool,
+    /// Its place among the pairs of boxes, if it is one.
+    pair: Option<usize>,
 }
 
 /// What a part of the narrow phase has found, in the order of its contacts.
@@ -46,6 +46,7 @@ pub(crate) struct Found {
     pub(super) sat: SatCounters,
     /// Those of the block that is being looked at.
     candidates: Vec<Candidate>,
+    boxes: BoxPairs,
 }
 
 /// Narrow phase: a manifold for every contact, and the list of those that the solver has to deal with. The contacts
@@ -83,6 +84,7 @@ impl Found {
         self.touching.clear();
         self.approaches.clear();
         self.candidates.clear();
+        self.boxes.clear();
         self.sat = SatCounters::default();
     }
 
@@ -132,16 +134,16 @@ impl Search<'_> {
         }
     }
 
-    /// Lists the contacts of a block whose shapes may meet, each with a manifold: empty, but between boxes.
+    /// Lists the contacts of a block whose shapes may meet, and finds the manifolds of those between boxes.
     fn list_candidates(&self, job: &mut Job<'_>, block: Range<usize>, found: &mut Found) {
         let Search { poses, horizon, machine, .. } = self;
-        let Found { manifolds, candidates, .. } = found;
-        let first = manifolds.len();
-        let mut boxes = BoxPairs::NONE;
+        let Found { candidates, boxes, .. } = found;
         candidates.clear();
+        boxes.clear();
         for index in block {
             if let Some(ahead) = job.contacts.get(index + CONTACTS_AHEAD) {
                 poses.outlook.prefetch(ahead.shapes.1);
+                poses.boxes.prefetch(ahead.shapes.1);
             }
             let contact = &mut job.contacts[index];
             let (a, b) = contact.shapes;
@@ -151,20 +153,18 @@ impl Search<'_> {
                 contact.passing = false;
                 continue;
             }
-            let found = machine.has_vectors()
-                && reach_a.small_box
-                && reach_b.small_box
-                && boxes.push(poses.at(a), poses.at(b), closing.margin, manifolds.len());
-            if !found {
+            let pair = if machine.has_vectors() && reach_a.small_box && reach_b.small_box {
+                let radii = [reach_a.radius, reach_b.radius];
+                boxes.push(contact.shapes, reach_a.way_to(reach_b), radii, closing.margin)
+            } else {
+                None
+            };
+            if pair.is_none() {
                 poses.prefetch(b);
             }
-            candidates.push(Candidate { index, closing, found });
-            manifolds.push(Manifold::NONE);
-            if boxes.is_full() {
-                boxes.collide(*machine, manifolds, |place| candidates[place - first].found = false);
-            }
+            candidates.push(Candidate { index, closing, pair });
         }
-        boxes.collide(*machine, manifolds, |place| candidates[place - first].found = false);
+        boxes.collide(*machine, &poses.boxes);
     }
 
     /// Completes the manifolds of a block's candidates, keeps those that have points, and lists what touches. Returns what
@@ -176,51 +176,48 @@ impl Search<'_> {
         found: &mut Found,
     ) -> &'t [TouchingPair] {
         let Search { state, poses, horizon, .. } = self;
-        let Found { candidates, contacts, manifolds, touching, approaches, sat } = found;
-        let first = manifolds.len() - candidates.len();
-        let mut kept = first;
-        for (place, candidate) in (first..).zip(candidates.iter()) {
-            let (contact, hint) = (&mut job.contacts[candidate.index], &mut job.hints[candidate.index]);
+        let Found { candidates, boxes, contacts, manifolds, touching, approaches, sat } = found;
+        for &Candidate { index, closing, pair } in candidates.iter() {
+            let (contact, hint) = (&mut job.contacts[index], &mut job.hints[index]);
             let (a, b) = contact.shapes;
             let (reach_a, reach_b) = (poses.outlook.reach(a), poses.outlook.reach(b));
-            let approach = Approach { horizon, a: reach_a, b: reach_b, closing: candidate.closing };
-            let manifold = &mut manifolds[place];
-            if candidate.found {
+            let approach = Approach { horizon, a: reach_a, b: reach_b, closing };
+            let is_found = pair.is_some_and(|pair| boxes.append_to(manifolds, pair, reach_a.centre()));
+            if is_found {
                 sat.searches += 1;
             } else {
-                *manifold = manifold_of(poses, &approach, contact.shapes, hint, sat);
+                manifolds.push(manifold_of(poses, &approach, contact.shapes, hint, sat));
             }
+            let place = place_of(manifolds) - 1;
+            let Some(manifold) = manifolds.last_mut() else { continue };
             keep_reachable(state, poses, &approach, contact, manifold);
             if manifold.points().is_empty() {
+                manifolds.pop();
                 continue;
             }
-            let index = job.first + u32::try_from(candidate.index).expect("fewer than 2^32 contacts");
-            if !(reach_a.sensor || reach_b.sensor) {
-                if reach_a.hit_events || reach_b.hit_events {
-                    approaches.extend(approaching(state, &poses.outlook, index, contact, manifold));
-                }
-                while touched.first().is_some_and(|known| known.shapes < contact.shapes) {
-                    touched = &touched[1..];
-                }
-                let surface = match touched.first() {
-                    Some(known) if known.shapes == contact.shapes => known.surface,
-                    _ => surface_of(state, poses, contact.shapes),
-                };
-                touching.push(TouchingPair {
-                    contact: index,
-                    manifold: place_of(&manifolds[..kept]),
-                    shapes: contact.shapes,
-                    bodies: (reach_a.body, reach_b.body),
-                    surface,
-                });
-            }
+            let index = job.first + u32::try_from(index).expect("fewer than 2^32 contacts");
             contacts.push(index);
-            if kept != place {
-                manifolds[kept] = manifolds[place];
+            if reach_a.sensor || reach_b.sensor {
+                continue;
             }
-            kept += 1;
+            if reach_a.hit_events || reach_b.hit_events {
+                approaches.extend(approaching(state, &poses.outlook, index, contact, manifold));
+            }
+            while touched.first().is_some_and(|known| known.shapes < contact.shapes) {
+                touched = &touched[1..];
+            }
+            let surface = match touched.first() {
+                Some(known) if known.shapes == contact.shapes => known.surface,
+                _ => surface_of(state, poses, contact.shapes),
+            };
+            touching.push(TouchingPair {
+                contact: index,
+                manifold: place,
+                shapes: contact.shapes,
+                bodies: (reach_a.body, reach_b.body),
+                surface,
+            });
         }
-        manifolds.truncate(kept);
         touched
     }
 }
@@ -272,8 +269,10 @@ fn keep_reachable(
         return;
     }
     let (a, b) = contact.shapes;
-    let (posed_a, posed_b) = (poses.at(a), poses.at(b));
+    // Few contacts need them, and they are large.
+    let posed = || (poses.at(a), poses.at(b));
     if reach_a.one_way || reach_b.one_way {
+        let (posed_a, posed_b) = posed();
         let (shape_a, shape_b) = (state.shapes.at(a), state.shapes.at(b));
         let (body_a, body_b) = state.bodies_of((a, b));
         let sides = [(shape_a, body_a, posed_a), (shape_b, body_b, posed_b)];
@@ -283,7 +282,7 @@ fn keep_reachable(
             return;
         }
     }
-    approach.keep_reachable(manifold, &poses.outlook, (posed_a, posed_b));
+    approach.keep_reachable(manifold, &poses.outlook, posed);
 }
 
 fn surface_of(state: &State, poses: &Poses, (a, b): Pair) -> Surface {

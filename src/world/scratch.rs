@@ -13,7 +13,7 @@ use super::pairs::Merged;
 use super::state::State;
 use super::stats::StepStats;
 use crate::body::{Body, BodyKind, Geometry, Handle, Pose, Shape, ShapeId};
-use crate::collision::{AxisHint, BroadPhase, BroadPhaseKind, Contact, Pair, PosedShape};
+use crate::collision::{AxisHint, BroadPhase, BroadPhaseKind, Contact, Pair, PosedShape, SmallBoxes};
 use crate::fx;
 use crate::lanes::prefetch;
 use crate::math::{Aabb, Fx, Vec2};
@@ -253,6 +253,8 @@ pub(crate) struct Poses {
     shapes: Vec<Option<PosedShape>>,
     /// The same shapes as their pairs see them first.
     pub(super) outlook: Outlook,
+    /// And those of them that are collided in lanes.
+    pub(super) boxes: SmallBoxes,
     /// By body slot.
     extents: Vec<Extents>,
 }
@@ -295,6 +297,7 @@ impl Poses {
     /// Poses the shapes of a body that has come, has got another shape, or has another mass.
     pub(crate) fn pose_body(&mut self, state: &State, slot: u32) {
         self.shapes.resize_with(state.shapes.slot_count(), || None);
+        self.boxes.resize(state.shapes.slot_count());
         self.extents.resize(state.bodies.slot_count(), Extents::NONE);
         let body = state.bodies.at(slot);
         let rotation = body.rotation();
@@ -302,6 +305,7 @@ impl Poses {
             let shape = state.shapes.at(id.slot());
             let posed = PosedShape::new(&shape.def, body, rotation);
             self.outlook.place(id.slot(), shape, shape.body().slot(), &posed);
+            self.boxes.set(id.slot(), &posed);
             self.shapes[id.slot() as usize] = Some(posed);
         }
         self.extents[slot as usize] = Extents::of(state, body);
@@ -324,6 +328,7 @@ impl Poses {
             let posed =
                 self.shapes[id.slot() as usize].as_mut().expect("every shape is posed when it is placed");
             posed.renew(&state.shapes.at(id.slot()).def, body, &rotation);
+            self.boxes.set(id.slot(), posed);
             self.outlook.move_to(id.slot(), posed.bounds);
         }
     }

@@ -9,8 +9,8 @@
 //! of the face or of its opposite, whichever looks towards the other box.
 
 use super::super::hull_hull::{CLIP_BITS, FACE_BITS, FINER, TOLERANCE};
-use super::{BoxPairs, Boxes, Found};
-use crate::lanes::{Ints, Kernel, Lanes, WIDTH, shift};
+use super::{Batch, Found};
+use crate::lanes::{Ints, Kernel, Lanes, Quad, WIDTH, shift};
 use crate::math::{Step, Unit};
 
 const UNIT: i32 = shift(Unit::FRAC_NBITS);
@@ -19,8 +19,9 @@ const TO_STEP: i32 = shift(FACE_BITS - Step::FRAC_NBITS);
 const CLIP: i32 = shift(CLIP_BITS);
 
 pub(super) struct Collide<'a> {
-    pub(super) pairs: &'a BoxPairs,
-    pub(super) found: &'a mut Found,
+    pub(super) batches: &'a mut [Batch],
+    /// Of all boxes.
+    pub(super) boxes: &'a [Quad],
 }
 
 /// A place or a direction in each lane.
@@ -55,27 +56,45 @@ struct End<T> {
     above: T,
 }
 
+/// The reference edge as contact points see it.
+struct Reference<T> {
+    n: Vector<T>,
+    /// From the centre of A.
+    start: Vector<T>,
+    /// As steps: both radii, by how much the reference's is larger, and how far above it points may be.
+    radii: T,
+    difference: T,
+    margin: T,
+}
+
+/// A contact point: its anchor, separation and feature, if it is not too far.
+struct Point<T, M> {
+    gone: M,
+    numbers: [T; 4],
+}
+
 impl Kernel<WIDTH> for Collide<'_> {
     #[inline(always)]
     fn run<L: Lanes<WIDTH>>(self) {
-        collide::<L>(self.pairs, self.found);
+        for batch in self.batches {
+            collide::<L>(batch, self.boxes);
+        }
     }
 }
 
 #[inline(always)]
-fn collide<L: Lanes<WIDTH>>(pairs: &BoxPairs, found: &mut Found) {
-    let [a, b] = [corners::<L>(&pairs.boxes[0]), corners::<L>(&pairs.boxes[1])];
-    let [radius_a, radius_b] = [L::load(&pairs.boxes[0].radius), L::load(&pairs.boxes[1].radius)];
-    let (d, margin) = ([L::load(&pairs.d[0]), L::load(&pairs.d[1])], L::load(&pairs.margin));
+fn collide<L: Lanes<WIDTH>>(batch: &mut Batch, boxes: &[Quad]) {
+    let Batch { at, d, radius, margin, found } = batch;
+    let [a, b] = [corners::<L>(boxes, &at[0]), corners::<L>(boxes, &at[1])];
+    let [radius_a, radius_b] = [L::load(&radius[0]), L::load(&radius[1])];
+    let (d, margin) = ([L::load(&d[0]), L::load(&d[1])], L::load(margin));
     let radii = L::add(radius_a, radius_b);
     let (face_a, separation_a) = best_face::<L>(&a, &b, d);
     let (face_b, separation_b) = best_face::<L>(&b, &a, negated::<L>(d));
     let reach = L::mul(L::add(margin, radii), L::splat(1 << UNIT));
     let further = L::max_wide(separation_a, separation_b);
-    found.near = !L::bits(L::greater_wide(further, reach));
-    if found.near & ((1 << WIDTH) - 1) == 0 {
-        return;
-    }
+    let is_far = L::greater_wide(further, reach);
+    let zero = L::splat(0);
     // Boxes that are apart need the true best face, which is next to the nearest corner.
     let (tolerance, as_product) = (L::splat(TOLERANCE.to_bits()), L::splat(1 << TO_STEP));
     let is_apart = L::greater_wide(further, L::mul(tolerance, as_product));
@@ -93,7 +112,6 @@ fn collide<L: Lanes<WIDTH>>(pairs: &BoxPairs, found: &mut Found) {
     // It runs against the reference edge.
     let upper = end::<L>(reference.n, plus::<L>(to_incident, incident.start));
     let lower = end::<L>(reference.n, plus::<L>(to_incident, incident.end));
-    let zero = L::splat(0);
     let mut open = L::either(L::greater(zero, upper.along), L::greater(lower.along, length));
     if L::any(is_apart) {
         let corner = L::either(
@@ -102,10 +120,7 @@ fn collide<L: Lanes<WIDTH>>(pairs: &BoxPairs, found: &mut Found) {
         );
         open = L::either(open, L::both(is_apart, corner));
     }
-    found.open = L::bits(open) & found.near;
-    found.swapped = L::bits(swapped);
-    L::store(index::<L>(reference_face), &mut found.edges[0]);
-    L::store(index::<L>(incident_face), &mut found.edges[1]);
+    found.open = L::bits(open) & !L::bits(is_far);
 
     let [below, beyond] = [L::sub(zero, lower.along), L::sub(upper.along, length)];
     let span = L::sub(upper.along, lower.along);
@@ -113,31 +128,77 @@ fn collide<L: Lanes<WIDTH>>(pairs: &BoxPairs, found: &mut Found) {
     let high = End { along: L::min(upper.along, length), above: clipped::<L>(upper, lower, beyond, span) };
     let [radius_r, radius_i] =
         [L::select(swapped, radius_b, radius_a), L::select(swapped, radius_a, radius_b)];
-    let (radii, margin) = (as_step::<L>(radii), as_step::<L>(margin));
-    let difference = as_step::<L>(L::sub(radius_r, radius_i));
-    // Anchors are from the centre of A.
-    let start = plus::<L>(reference.start, select_vector::<L>(swapped, d, [zero; 2]));
-    let [x, y] = reference.n;
-    for (end, points) in [low, high].into_iter().zip(&mut found.points) {
-        let separation = L::sub(end.above, radii);
-        points.kept = !L::bits(L::greater(separation, margin));
-        L::store(separation, &mut points.separation);
-        let middle = L::narrow::<32>(L::mul(L::add(end.above, difference), L::splat(1 << (31 - FINER))));
-        let across = L::sub_wide(L::mul(x, middle), L::mul(y, end.along));
-        let up = L::add_wide(L::mul(y, middle), L::mul(x, end.along));
-        L::store(L::add(start[0], L::narrow::<UNIT>(across)), &mut points.anchor[0]);
-        L::store(L::add(start[1], L::narrow::<UNIT>(up)), &mut points.anchor[1]);
-    }
+    let reference = Reference {
+        n: reference.n,
+        // Anchors are from the centre of A.
+        start: plus::<L>(reference.start, select_vector::<L>(swapped, d, [zero; 2])),
+        radii: as_step::<L>(radii),
+        difference: as_step::<L>(L::sub(radius_r, radius_i)),
+        margin: as_step::<L>(margin),
+    };
+    let (edge, opposed) = (index::<L>(reference_face), index::<L>(incident_face));
+    // The incident edge runs against the reference edge.
+    let features =
+        [feature::<L>(swapped, edge, next::<L>(opposed)), feature::<L>(swapped, next::<L>(edge), opposed)];
+    let first = point::<L>(&reference, low, features[0], is_far);
+    let second = point::<L>(&reference, high, features[1], is_far);
+    store::<L>(&first, &second, found);
     let normal = select_vector::<L>(swapped, negated::<L>(reference.n), reference.n);
     L::store(normal[0], &mut found.normal[0]);
     L::store(normal[1], &mut found.normal[1]);
 }
 
+/// The point of a contact at an end of the incident edge.
 #[inline(always)]
-fn corners<L: Lanes<WIDTH>>(boxes: &Boxes) -> Corners<L::Int> {
-    const IN_ORDER: [u32; WIDTH] = [0, 1, 2, 3, 4, 5, 6, 7];
-    let [n0x, n0y, n1x, n1y] = L::quads(&boxes.normals, &IN_ORDER);
-    let [v0x, v0y, v1x, v1y] = L::quads(&boxes.vertices, &IN_ORDER);
+fn point<L: Lanes<WIDTH>>(
+    reference: &Reference<L::Int>,
+    end: End<L::Int>,
+    feature: L::Int,
+    is_far: L::Mask,
+) -> Point<L::Int, L::Mask> {
+    let Reference { n: [x, y], start, radii, difference, margin } = *reference;
+    let separation = L::sub(end.above, radii);
+    let middle = L::narrow::<32>(L::mul(L::add(end.above, difference), L::splat(1 << (31 - FINER))));
+    let across = L::sub_wide(L::mul(x, middle), L::mul(y, end.along));
+    let up = L::add_wide(L::mul(y, middle), L::mul(x, end.along));
+    let anchor = plus::<L>(start, [L::narrow::<UNIT>(across), L::narrow::<UNIT>(up)]);
+    Point {
+        gone: L::either(is_far, L::greater(separation, margin)),
+        numbers: [anchor[0], anchor[1], separation, feature],
+    }
+}
+
+/// See [`Feature`](crate::collision::Feature).
+#[inline(always)]
+fn feature<L: Lanes<WIDTH>>(swapped: L::Mask, of_reference: L::Int, of_incident: L::Int) -> L::Int {
+    let of_a = L::select(swapped, of_incident, of_reference);
+    let of_b = L::select(swapped, of_reference, of_incident);
+    L::add(L::low(L::mul(of_a, L::splat(1 << 8))), of_b)
+}
+
+/// Writes the points that are there, of each pair the first one first.
+#[inline(always)]
+fn store<L: Lanes<WIDTH>>(
+    first: &Point<L::Int, L::Mask>,
+    second: &Point<L::Int, L::Mask>,
+    found: &mut Found,
+) {
+    let (none, not_both) = (L::both(first.gone, second.gone), L::either(first.gone, second.gone));
+    let [front, back] = &mut found.points;
+    for i in 0..4 {
+        let foremost = L::select(first.gone, second.numbers[i], first.numbers[i]);
+        L::store(L::select(none, L::splat(0), foremost), &mut front.0[i]);
+        L::store(L::select(not_both, L::splat(0), second.numbers[i]), &mut back.0[i]);
+    }
+    let fewer = L::add(L::to_int(none), L::to_int(not_both));
+    L::store(L::add(L::splat(2), fewer), &mut found.count);
+}
+
+#[inline(always)]
+fn corners<L: Lanes<WIDTH>>(boxes: &[Quad], at: &[u32; WIDTH]) -> Corners<L::Int> {
+    let [v0x, v0y, v1x, v1y] = L::quads(boxes, at);
+    // Each box has its normals behind its vertices.
+    let [n0x, n0y, n1x, n1y] = L::quads(&boxes[1..], at);
     Corners { n: [[n0x, n0y], [n1x, n1y]], v: [[v0x, v0y], [v1x, v1y]] }
 }
 
@@ -192,6 +253,12 @@ fn edge<L: Lanes<WIDTH>>(of: &Corners<L::Int>, Choice { second, opposite }: Choi
         start: select_vector::<L>(opposite, negated::<L>(start), start),
         end: select_vector::<L>(opposite, negated::<L>(end), end),
     }
+}
+
+/// The edge behind one of four.
+#[inline(always)]
+fn next<L: Lanes<WIDTH>>(edge: L::Int) -> L::Int {
+    L::select(L::greater(edge, L::splat(2)), L::splat(0), L::add(edge, L::splat(1)))
 }
 
 /// Which of the four edges it is.

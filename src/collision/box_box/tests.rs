@@ -60,32 +60,46 @@ fn random_pair(rng: &mut Rng) -> (PosedShape, PosedShape) {
 fn lanes_find_what_is_found_one_by_one() {
     let mut rng = Rng::new(5);
     let (mut pairs_seen, mut points, mut left) = (0, [0; 3], 0);
+    let mut batch = BoxPairs::default();
     for _ in 0..20_000 {
-        let pairs: Vec<_> = (0..=rng.below(8)).map(|_| random_pair(&mut rng)).collect();
+        // One to ten: more than a batch.
+        let pairs: Vec<_> = (0..=rng.below(10)).map(|_| random_pair(&mut rng)).collect();
         let widest = if rng.below(16) == 0 { fx!(2) } else { fx!(0.2) };
         let margins: Vec<_> = pairs.iter().map(|_| narrow(rng.range(fx!(0.005), widest))).collect();
         let expected = pairs.iter().zip(&margins).map(|((a, b), &margin)| {
             collide_near(a, b, margin, &mut AxisHint::default(), &mut SatCounters::default())
         });
         let expected: Vec<_> = expected.collect();
+        // Slots in another order than the pairs.
+        let slots_of = |place: usize| (63 - 3 * u32::try_from(place).unwrap(), u32::try_from(place).unwrap());
+        let mut boxes = SmallBoxes::default();
+        boxes.resize(64);
+        for (place, (a, b)) in pairs.iter().enumerate() {
+            assert!(a.as_small_box().is_some() && b.as_small_box().is_some(), "{a:?} {b:?}");
+            let (slot_a, slot_b) = slots_of(place);
+            boxes.set(slot_a, a);
+            boxes.set(slot_b, b);
+        }
         for backend in Backend::available() {
             let machine = Machine::new(backend).expect("available");
-            let (mut batch, mut is_left) = (BoxPairs::NONE, [false; WIDTH]);
-            for (place, ((a, b), &margin)) in pairs.iter().zip(&margins).enumerate() {
-                assert!(a.is_small_box() && b.is_small_box(), "{a:?} {b:?}");
-                is_left[place] = !batch.push(a, b, margin, place);
-            }
-            assert_eq!(batch.is_full(), is_left[..pairs.len()] == [false; WIDTH]);
-            let mut manifolds = alloc::vec![Manifold::NONE; pairs.len()];
-            batch.collide(machine, &mut manifolds, |place| is_left[place] = true);
-            for (place, (found, expected)) in manifolds.iter().zip(&expected).enumerate() {
-                if is_left[place] {
+            batch.clear();
+            let places = pairs.iter().zip(&margins).enumerate().map(|(place, ((a, b), &margin))| {
+                let radii = [a, b].map(|shape| narrow(shape.outline.radius()));
+                batch.push(slots_of(place), b.centre - a.centre, radii, margin)
+            });
+            let places: Vec<_> = places.collect();
+            batch.collide(machine, &boxes);
+            for (i, ((place, (a, _)), expected)) in places.iter().zip(&pairs).zip(&expected).enumerate() {
+                let mut manifolds = Vec::new();
+                if !place.is_some_and(|place| batch.append_to(&mut manifolds, place, a.centre)) {
+                    assert!(manifolds.is_empty());
                     left += 1;
                     continue;
                 }
+                let [found] = manifolds[..] else { panic!("one manifold, not {manifolds:?}") };
                 // Of no points the rest is of no interest; of others all is, for a contact may be compared as a whole.
-                let same = found == expected || found.points().is_empty() && expected.points().is_empty();
-                assert!(same, "{backend:?}: {found:?} is not {expected:?}: {:?}", pairs[place]);
+                let same = found == *expected || found.points().is_empty() && expected.points().is_empty();
+                assert!(same, "{backend:?}: {found:?} is not {expected:?}: {:?}", pairs[i]);
                 points[found.points().len()] += 1;
             }
             pairs_seen += pairs.len();
