@@ -98,7 +98,9 @@ impl Core {
 
     /// The largest distance of a point of the hull from the origin, without the radius.
     pub(crate) fn reach(&self) -> Grid {
-        self.points().iter().map(|&point| length(point)).max().unwrap_or(Grid::ZERO)
+        // The longest has the longest length, rounded or not: one root is enough.
+        let furthest = self.points().iter().max_by_key(|&&point| dot(point, point));
+        furthest.map_or(Grid::ZERO, |&point| length(point))
     }
 
     /// The mean of the vertices: a place inside.

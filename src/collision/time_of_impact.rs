@@ -83,19 +83,26 @@ pub(crate) enum TimeOfImpact {
 pub(crate) fn time_of_impact(a: (&Core, &Sweep), b: (&Core, &Sweep), target: Fx) -> TimeOfImpact {
     let between = b.1.start - a.1.start;
     let moved = (b.1.end - b.1.start).length().saturating_add((a.1.end - a.1.start).length());
-    let reach =
-        moved.saturating_add(to_fx(b.0.reach())).saturating_add(radii(a.0, b.0)).saturating_add(target);
+    let reach_b = to_fx(b.0.reach());
+    let reach = moved.saturating_add(reach_b).saturating_add(radii(a.0, b.0)).saturating_add(target);
     let Some(core_a) = near(a, between, reach.saturating_add(Fx::ONE)) else {
         return TimeOfImpact::Separated;
     };
-    let gap = between.length().saturating_sub(to_fx(core_a.reach()));
-    if gap > reach {
+    let reach_a = to_fx(core_a.reach());
+    if is_longer(between, reach.saturating_add(reach_a)) {
         return TimeOfImpact::Separated;
     }
-    let (Some(a), Some(b)) = (Mover::new(core_a, a.1, -between), Mover::new(*b.0, b.1, Vec2::ZERO)) else {
-        return TimeOfImpact::Failed { fraction: Fx::ZERO };
-    };
-    advance(&a, &b, target)
+    let movers = Mover::new(core_a, reach_a, a.1, -between).zip(Mover::new(*b.0, reach_b, b.1, Vec2::ZERO));
+    match movers {
+        Some((a, b)) => advance(&a, &b, target),
+        None => TimeOfImpact::Failed { fraction: Fx::ZERO },
+    }
+}
+
+/// Whether a vector is longer than a limit. Most are by far, or by far not: those need no root.
+fn is_longer(v: Vec2<Fx>, limit: Fx) -> bool {
+    let (x, y) = (v.x.saturating_abs(), v.y.saturating_abs());
+    x.max(y) > limit || (x.saturating_add(y) > limit && v.length() > limit)
 }
 
 fn advance(a: &Mover, b: &Mover, mut target: Fx) -> TimeOfImpact {
@@ -173,9 +180,8 @@ struct Posed {
 }
 
 impl Mover {
-    /// `None` if it turns too far.
-    fn new(core: Core, sweep: &Sweep, centre: Vec2<Fx>) -> Option<Self> {
-        let reach = to_fx(core.reach());
+    /// Of a core that reaches so far from its body's centre. `None` if it turns too far.
+    fn new(core: Core, reach: Fx, sweep: &Sweep, centre: Vec2<Fx>) -> Option<Self> {
         let turn = i128::from(sweep.turn) * i128::from(TAU.to_bits());
         let theta = Fx::from_bits(saturate_wide(round_shift_wide(turn, Fx::FRAC_NBITS)));
         let theta = if reach == 0 { Fx::ZERO } else { theta };

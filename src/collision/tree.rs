@@ -14,9 +14,9 @@
 use alloc::vec::Vec;
 use core::ops::ControlFlow;
 
-use super::broad_phase::Pair;
 use super::search::Search;
 use crate::math::Aabb;
+use pairs::Meetings;
 use rebuild::Rebuilt;
 
 mod pairs;
@@ -44,8 +44,8 @@ pub(crate) struct Tree {
     /// The leaf of each slot, or none.
     leaves: Vec<u32>,
     len: u32,
-    /// Pairs of nodes that are still to be compared.
-    stack: Vec<Pair>,
+    /// The tree against itself.
+    meetings: Meetings,
     /// How many leaves have come to another place or gone since the last rebuild. While none has, every node is in use and
     /// stored before its children.
     relinked: u32,
@@ -72,7 +72,7 @@ impl Default for Tree {
             vacant: NONE,
             leaves: Vec::new(),
             len: 0,
-            stack: Vec::new(),
+            meetings: Meetings::default(),
             relinked: 0,
             strays: 0,
             rebuilt: Rebuilt::default(),

@@ -34,6 +34,13 @@ pub const fn sqrt(x: Fx) -> Option<Fx> {
 /// ```
 #[must_use]
 pub const fn hypot(x: Fx, y: Fx) -> Fx {
+    // Much stands still, or moves along an axis.
+    if x.to_bits() == 0 {
+        return y.saturating_abs();
+    }
+    if y.to_bits() == 0 {
+        return x.saturating_abs();
+    }
     saturated(sqrt_rounded_wide(sum_of_squares_wide(x.to_bits().unsigned_abs(), y.to_bits().unsigned_abs())))
 }
 

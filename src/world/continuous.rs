@@ -92,7 +92,8 @@ fn first_impact(state: &State, scratch: &Scratch, swept: &Swept) -> Option<Impac
     let disc = Aabb::new(body.centre, body.centre).expanded(scratch.poses.extents(swept.slot).radius);
     let mut first: Option<Impact> = None;
     for id in body.shapes() {
-        if state.shapes.at(id.slot()).is_sensor() {
+        let outlook = &scratch.poses.outlook;
+        if outlook.reach(id.slot()).sensor {
             continue;
         }
         let posed = scratch.poses.at(id.slot());
@@ -100,13 +101,14 @@ fn first_impact(state: &State, scratch: &Scratch, swept: &Swept) -> Option<Impac
         let mut known = None;
         let start = if swept.sweep.turn == 0 { posed.bounds } else { disc };
         let area = start.swept(swept.sweep.end - swept.sweep.start);
-        let obstacles = if is_bullet(body) { &scratch.broad_phase } else { &scratch.fixed };
+        let is_bullet = is_bullet(body);
+        let obstacles = if is_bullet { &scratch.broad_phase } else { &scratch.fixed };
         obstacles.each_overlap(area, |other| {
-            let obstacle = state.body_of(other);
-            let posed_other = scratch.poses.at(other);
+            let reach = outlook.reach(other);
+            let obstacle = state.bodies.at(reach.body);
             // What moves is not where it was on the way.
-            let near = obstacle.kind() != BodyKind::Fixed || posed_other.bounds.overlaps(area);
-            let solid = near && posed_other.is_solid_from(posed.centre);
+            let near = reach.bounds.overlaps(area) || (is_bullet && obstacle.kind() != BodyKind::Fixed);
+            let solid = near && scratch.poses.at(other).is_solid_from(posed.centre);
             if solid && stops(body, obstacle) && may_stop(state, scratch, id.slot(), other) {
                 let (there, movement) = obstacle_of(state, scratch, other);
                 let &mut (core, target) = known.get_or_insert_with(|| {

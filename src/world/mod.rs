@@ -20,6 +20,7 @@ mod joint_view;
 mod look_ahead;
 mod manifolds;
 mod mover_planes;
+mod moves;
 mod pairs;
 mod phases;
 mod probe;

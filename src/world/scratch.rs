@@ -9,6 +9,7 @@ use super::islands::{Roster, UnionFind};
 use super::joint_links::JointLinks;
 use super::look_ahead::Outlook;
 use super::manifolds::Found;
+use super::moves::Origins;
 use super::pairs::Merged;
 use super::state::State;
 use super::stats::StepStats;
@@ -57,6 +58,7 @@ pub(crate) struct Scratch {
     /// Whether surfaces may have changed since.
     pub(crate) surfaces_stale: bool,
     pub(crate) solver: Solver,
+    pub(crate) origins: Origins,
     pub(crate) events: Events,
     pub(crate) stats: StepStats,
 }
@@ -175,6 +177,7 @@ impl Scratch {
             touched: Vec::new(),
             surfaces_stale: true,
             solver: Solver::default(),
+            origins: Origins::default(),
             events: Events::default(),
             stats: StepStats::default(),
         };

@@ -4,10 +4,10 @@ use super::World;
 use super::change::fattened;
 use super::contacts;
 use super::continuous;
-use super::events::MoveEvent;
 use super::islands;
 use super::look_ahead::{Motion, Way};
 use super::manifolds;
+use super::moves;
 use super::pairs;
 use super::phases::Sight;
 use super::scratch::{Extents, Scratch};
@@ -82,7 +82,7 @@ impl World {
         islands::fall_asleep(state, scratch);
 
         begin(Phase::Report, Sight::of(state, scratch));
-        report_moves(state, scratch);
+        moves::report(state, scratch);
         count(state, scratch);
         // A count that a stranger's snapshot may start anywhere.
         state.tick = state.tick.wrapping_add(1);
@@ -233,19 +233,6 @@ fn cover_shapes(state: &mut State, scratch: &mut Scratch, slot: u32) {
             shapes.at_mut(id.slot()).fat = fat;
             scratch.broad_phase.set(id.slot(), fat);
             scratch.changes.shapes.push(id.slot());
-        }
-    }
-}
-
-/// Lists the bodies that have moved or fallen asleep.
-fn report_moves(state: &State, scratch: &mut Scratch) {
-    let Scratch { roster, solver, events, .. } = scratch;
-    for &slot in &roster.bodies {
-        let (body, solved) = (state.bodies.at(slot), solver.body(slot));
-        let fell_asleep = body.is_asleep();
-        if fell_asleep || solved.shift != Vec2::ZERO || solved.turn != 0 {
-            let (id, position, angle) = (state.bodies.handle_at(slot), body.position(), body.angle());
-            events.moved.push(MoveEvent { body: id, position, angle, fell_asleep });
         }
     }
 }

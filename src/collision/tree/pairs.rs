@@ -7,45 +7,101 @@ use super::{NONE, Node, Tree};
 use crate::collision::broad_phase::Pair;
 use crate::collision::search::Overlap;
 
+/// How many pairs are found before they are told.
+const FOUND_MAX: usize = 256;
+
+/// Whether two boxes overlap is as good as random, and a branch that is taken wrongly costs more than to write what nobody
+/// wants: a pair is written in any case, and counted if it is wanted.
+#[derive(Clone, Debug, Default)]
+pub(super) struct PairList {
+    pairs: Vec<Pair>,
+    len: usize,
+}
+
+impl PairList {
+    #[inline(always)]
+    fn push_wanted<const N: usize>(&mut self, pairs: [(Pair, bool); N]) {
+        let end = self.len + N;
+        if self.pairs.len() < end {
+            self.pairs.resize(end.next_power_of_two(), (NONE, NONE));
+        }
+        let room = &mut self.pairs[self.len..end];
+        let mut count = 0;
+        for (pair, wanted) in pairs {
+            room[count] = pair;
+            count += usize::from(wanted);
+        }
+        self.len += count;
+    }
+
+    #[inline(always)]
+    fn pop(&mut self) -> Option<Pair> {
+        self.len = self.len.checked_sub(1)?;
+        Some(self.pairs[self.len])
+    }
+
+    fn tell(&mut self, found: &mut impl FnMut(Pair)) {
+        self.pairs[..self.len].iter().for_each(|&pair| found(pair));
+        self.len = 0;
+    }
+}
+
+/// Pairs of nodes that are to be looked at, and of slots that have been found.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Meetings {
+    /// Two nodes that overlap and of which at least one has children, or one that has some and meets itself.
+    waiting: PairList,
+    found: PairList,
+}
+
+impl Meetings {
+    /// Of each two nodes that overlap, leaves are a pair, and others have something to be looked at later.
+    #[inline(always)]
+    fn meet<const N: usize>(&mut self, pairs: [[(u32, &Node); 2]; N]) {
+        let (mut found, mut waiting) = ([((NONE, NONE), false); N], [((NONE, NONE), false); N]);
+        for i in 0..N {
+            let [(a, node_a), (b, node_b)] = pairs[i];
+            let overlap = node_a.aabb.overlaps(node_b.aabb);
+            let are_leaves = node_a.is_leaf() & node_b.is_leaf();
+            let (slot_a, slot_b) = (node_a.children[0], node_b.children[0]);
+            found[i] = ((slot_a.min(slot_b), slot_a.max(slot_b)), overlap & are_leaves);
+            waiting[i] = ((a, b), overlap & !are_leaves);
+        }
+        self.found.push_wanted(found);
+        self.waiting.push_wanted(waiting);
+    }
+}
+
 impl Tree {
     /// Calls `found` with every pair of overlapping boxes once: the tree against itself.
     pub(crate) fn each_pair(&mut self, mut found: impl FnMut(Pair)) {
-        let mut stack = core::mem::take(&mut self.stack);
-        stack.clear();
-        if self.root != NONE {
-            stack.push((self.root, self.root));
-        }
-        // Two different nodes in the stack overlap, and at least one of them has children.
+        let mut meetings = core::mem::take(&mut self.meetings);
+        let itself = |node: u32| ((node, node), node != NONE && !self.at(node).is_leaf());
         let child = |node: &Node, i: usize| (node.children[i], self.at(node.children[i]));
-        while let Some((a, b)) = stack.pop() {
+        meetings.waiting.push_wanted([itself(self.root)]);
+        while let Some((a, b)) = meetings.waiting.pop() {
             let (node_a, node_b) = (self.at(a), self.at(b));
-            match (node_a.is_leaf(), node_b.is_leaf()) {
-                _ if a == b => {
-                    if !node_a.is_leaf() {
-                        let [a0, a1] = node_a.children;
-                        stack.extend([(a0, a0), (a1, a1)]);
-                        meet(child(node_a, 0), child(node_a, 1), &mut stack, &mut found);
-                    }
-                }
-                (false, false) => {
-                    let (a0, a1) = (child(node_a, 0), child(node_a, 1));
-                    let (b0, b1) = (child(node_b, 0), child(node_b, 1));
-                    meet(a0, b0, &mut stack, &mut found);
-                    meet(a0, b1, &mut stack, &mut found);
-                    meet(a1, b0, &mut stack, &mut found);
-                    meet(a1, b1, &mut stack, &mut found);
-                }
-                (true, _) => {
-                    meet((a, node_a), child(node_b, 0), &mut stack, &mut found);
-                    meet((a, node_a), child(node_b, 1), &mut stack, &mut found);
-                }
-                (false, true) => {
-                    meet(child(node_a, 0), (b, node_b), &mut stack, &mut found);
-                    meet(child(node_a, 1), (b, node_b), &mut stack, &mut found);
-                }
+            if a == b {
+                let [a0, a1] = [child(node_a, 0), child(node_a, 1)];
+                meetings.waiting.push_wanted([itself(a0.0), itself(a1.0)]);
+                meetings.meet([[a0, a1]]);
+            } else if node_a.is_leaf() {
+                let leaf = (a, node_a);
+                meetings.meet([[leaf, child(node_b, 0)], [leaf, child(node_b, 1)]]);
+            } else if node_b.is_leaf() {
+                let leaf = (b, node_b);
+                meetings.meet([[child(node_a, 0), leaf], [child(node_a, 1), leaf]]);
+            } else {
+                let [a0, a1] = [child(node_a, 0), child(node_a, 1)];
+                let [b0, b1] = [child(node_b, 0), child(node_b, 1)];
+                meetings.meet([[a0, b0], [a0, b1], [a1, b0], [a1, b1]]);
+            }
+            if meetings.found.len >= FOUND_MAX {
+                meetings.found.tell(&mut found);
             }
         }
-        self.stack = stack;
+        meetings.found.tell(&mut found);
+        self.meetings = meetings;
     }
 
     /// Calls `found` with every slot whose box overlaps that of a slot, itself included.
@@ -57,25 +113,6 @@ impl Tree {
                 ControlFlow::Continue(())
             };
             let _never_breaks = self.search(&mut Overlap { area, visit });
-        }
-    }
-}
-
-/// Two nodes that overlap are a pair, or have something to be looked at later. Inlined wherever it is called, whatever a
-/// compiler thinks of it: all there is to finding pairs is this.
-#[inline(always)]
-fn meet(
-    (a, node_a): (u32, &Node),
-    (b, node_b): (u32, &Node),
-    stack: &mut Vec<Pair>,
-    found: &mut impl FnMut(Pair),
-) {
-    if node_a.aabb.overlaps(node_b.aabb) {
-        if node_a.is_leaf() && node_b.is_leaf() {
-            let (a, b) = (node_a.children[0], node_b.children[0]);
-            found((a.min(b), a.max(b)));
-        } else {
-            stack.push((a, b));
         }
     }
 }

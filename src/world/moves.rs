@@ -1,0 +1,56 @@
+//! What a tick reports at its end: which bodies have moved, and where they are.
+
+use alloc::vec::Vec;
+
+use super::events::MoveEvent;
+use super::scratch::Scratch;
+use super::state::State;
+use crate::body::Body;
+use crate::math::{Angle, Fx, Vec2};
+
+/// By body slot, how the origin of a body lay about its centre of mass when that was last asked for: most bodies have not
+/// turned since, and to turn it takes longer than all else that is reported.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Origins(Vec<Origin>);
+
+#[derive(Clone, Copy, Debug, Default)]
+struct Origin {
+    /// Of the body, and its centre of mass in its own frame.
+    angle: Angle,
+    centre: Vec2<Fx>,
+    /// The same in world axes.
+    turned: Vec2<Fx>,
+}
+
+impl Origins {
+    /// [`Body::position`] of the body in a slot.
+    fn position(&mut self, slot: u32, body: &Body) -> Vec2<Fx> {
+        let (angle, centre) = (body.angle, body.mass.centre);
+        if centre == Vec2::ZERO {
+            return body.centre;
+        }
+        if self.0.len() <= slot as usize {
+            self.0.resize(slot as usize + 1, Origin::default());
+        }
+        let known = &mut self.0[slot as usize];
+        if (known.angle, known.centre) != (angle, centre) {
+            *known = Origin { angle, centre, turned: body.rotation().apply_wide(centre) };
+        }
+        body.centre - known.turned
+    }
+}
+
+/// Lists the bodies that have moved or fallen asleep.
+pub(super) fn report(state: &State, scratch: &mut Scratch) {
+    let Scratch { roster, solver, events, origins, .. } = scratch;
+    for &slot in &roster.bodies {
+        let (body, solved) = (state.bodies.at(slot), solver.body(slot));
+        let fell_asleep = body.is_asleep();
+        if fell_asleep || solved.shift != Vec2::ZERO || solved.turn != 0 {
+            let (id, position, angle) =
+                (state.bodies.handle_at(slot), origins.position(slot, body), body.angle());
+            debug_assert_eq!(position, body.position());
+            events.moved.push(MoveEvent { body: id, position, angle, fell_asleep });
+        }
+    }
+}
