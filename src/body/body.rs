@@ -261,21 +261,22 @@ impl Body {
     /// Takes away what impulses have put along locked axes, and stays there if it is told to go somewhere.
     pub(crate) fn hold_locked_axes(&mut self) {
         let (turns, locks) = (self.turns(), self.settings.locks);
-        let mut target =
-            self.target.as_deref().copied().unwrap_or(Pose { centre: self.centre, angle: self.angle });
         if locks.x {
             self.velocity.x = Speed::ZERO;
-            target.centre.x = self.centre.x;
         }
         if locks.y {
             self.velocity.y = Speed::ZERO;
+        }
+        // Few bodies have one.
+        let Some(target) = &mut self.target else { return };
+        if locks.x {
+            target.centre.x = self.centre.x;
+        }
+        if locks.y {
             target.centre.y = self.centre.y;
         }
         if !turns {
             target.angle = self.angle;
-        }
-        if let Some(old) = &mut self.target {
-            **old = target;
         }
     }
 

@@ -84,6 +84,18 @@ impl Manifold {
         &self.points[..usize::from(self.count.min(2))]
     }
 
+    /// How many points there are.
+    #[inline]
+    pub(crate) fn count(&self) -> u8 {
+        self.count.min(2)
+    }
+
+    /// Two points, of which what is not there is zero.
+    #[inline]
+    pub(crate) fn both_points(&self) -> &[ManifoldPoint; 2] {
+        &self.points
+    }
+
     #[inline]
     pub(crate) fn push(&mut self, point: ManifoldPoint) {
         self.points[usize::from(self.count)] = point;

@@ -57,6 +57,9 @@ impl SolverBody {
 pub(crate) fn turn_of(turn: Shift, inverse_gyration: Reciprocal) -> i64 {
     /// `1 / (2 pi)` with 63 fraction bits.
     const INVERSE_TAU: i128 = 1_467_945_251_641_000_613;
+    if turn == Shift::ZERO {
+        return 0;
+    }
     let (product, extra) = inverse_gyration.times_exact(turn);
     saturate_wide(round_shift_wide(i128::from(product) * INVERSE_TAU, extra + Shift::FRAC_NBITS + 63 - 32))
 }

@@ -77,7 +77,8 @@ impl Config {
 
     /// The margin of the fat box of a shape that moves.
     pub(crate) fn margin_of(&self, bounds: Aabb) -> Fx {
-        let half = bounds.extents();
+        // Of a box in the world.
+        let half = bounds.upper.wrapping_sub(bounds.centre());
         (half.x.max(half.y) / 16).min(self.fat_margin)
     }
 

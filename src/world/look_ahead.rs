@@ -60,16 +60,15 @@ impl Motion {
         if turn < Fx::DELTA * 64 {
             return Fx::ZERO;
         }
-        let offset = shape.bounds.centre() - self.centre;
+        let centre = shape.bounds.centre();
+        // Shapes and centres are in the world: nothing here overflows.
+        let offset = centre.wrapping_sub(self.centre);
         if shape.circle && offset == Vec2::ZERO {
             return Fx::ZERO;
         }
-        let half = shape.bounds.extents();
-        let reach = half
-            .x
-            .saturating_add(half.y)
-            .saturating_add(offset.x.saturating_abs())
-            .saturating_add(offset.y.saturating_abs());
+        let half = shape.bounds.upper.wrapping_sub(centre);
+        let aside = offset.x.wrapping_abs().wrapping_add(offset.y.wrapping_abs());
+        let reach = half.x.wrapping_add(half.y).wrapping_add(aside);
         fx_mul(reach, turn.min(fx!(2)))
     }
 }

@@ -204,7 +204,7 @@ fn finalise_body(state: &mut State, scratch: &mut Scratch, slot: u32) -> (Pose, 
     let edge = Vec2::new(WORLD_EXTENT_MAX, WORLD_EXTENT_MAX);
     let inside = centre.max(-edge).min(edge);
     scratch.solver.faults += u64::from(inside != centre);
-    (Pose { centre: inside, angle: body.angle + Angle::from_wide_turns(turn, Fx::ONE) }, turn)
+    (Pose { centre: inside, angle: body.angle + Angle::from_turns(Fx::from_bits(turn)) }, turn)
 }
 
 /// Moves a body, its shapes and, where they leave them, their boxes.

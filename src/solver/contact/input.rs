@@ -6,7 +6,7 @@ use super::super::body_list::{BodyList, GROUND};
 use super::super::colour::{Node, Size};
 use super::super::row::MassFractions;
 use super::{Surface, WarmStarts};
-use crate::collision::{Contact, Manifold, ManifoldPoint, PointImpulse};
+use crate::collision::{Contact, Manifold, PointImpulse};
 use crate::lanes::Quad;
 use crate::math::{Length, Speed};
 
@@ -62,48 +62,32 @@ impl Input {
         let n = manifold.normal;
         let (inverse_a, inverse_b) = (a.inverse_gyration.parts(), b.inverse_gyration.parts());
         let (to_a, to_b) = (a.arm_to(manifold.origin), b.arm_to(manifold.origin));
-        let mut input = Input {
+        let [first, second] = manifold.both_points();
+        let [old_first, old_second] = carried_over(manifold, memory, warm);
+        let tangent = old_first.tangent.saturating_add(old_second.tangent);
+        Input {
             bodies,
             changed: [
                 if a.mass.is_positive() { bodies[0] } else { GROUND },
                 if b.mass.is_positive() { bodies[1] } else { GROUND },
             ],
             contact: pair.contact,
+            features: [first.feature.0, second.feature.0],
+            count: manifold.count(),
             special: pair.surface.is_special(),
             shares: Quad([n.x.to_bits(), n.y.to_bits(), fractions.a.to_bits(), fractions.b.to_bits()]),
             gyrations: Quad([inverse_a.0, inverse_b.0, inverse_a.1, inverse_b.1]),
             to_origin: Quad([to_a.x, to_a.y, to_b.x, to_b.y].map(Length::to_bits)),
-            rest: Quad([0, 0, pair.surface.friction.to_bits(), 0]),
-            ..Input::default()
-        };
-        input.take_points(manifold.points(), memory, warm);
-        input
-    }
-
-    /// Takes the points, each with the impulses that its feature had.
-    #[inline]
-    fn take_points(&mut self, points: &[ManifoldPoint], memory: &Contact, warm: &mut WarmStarts) {
-        let mut tangent = Speed::ZERO;
-        let mut kept = 0;
-        for (i, point) in points.iter().take(2).enumerate() {
-            let carried = memory.impulse_of(point.feature);
-            kept += u8::from(carried.is_some());
-            let PointImpulse { normal, tangent: share, .. } = carried.unwrap_or_default();
-            self.count += 1;
-            self.features[i] = point.feature.0;
-            self.rest.0[i] = point.separation.to_bits();
-            (self.anchors.0[2 * i], self.anchors.0[2 * i + 1]) =
-                (point.anchor.x.to_bits(), point.anchor.y.to_bits());
-            self.carried.0[i] = normal.to_bits();
-            tangent = tangent.saturating_add(share);
-        }
-        self.carried.0[2] = tangent.to_bits();
-        warm.points += u32::from(self.count);
-        warm.kept += u32::from(kept);
-        if kept < memory.count {
-            let old = memory.points().iter().filter(|old| old.normal.is_positive());
-            let is_there = |old: &&PointImpulse| points.iter().any(|point| point.feature.0 == old.feature);
-            warm.lost += old.map(|old| u32::from(!is_there(&old))).sum::<u32>();
+            anchors: Quad(
+                [first.anchor.x, first.anchor.y, second.anchor.x, second.anchor.y].map(Length::to_bits),
+            ),
+            carried: Quad([old_first.normal.to_bits(), old_second.normal.to_bits(), tangent.to_bits(), 0]),
+            rest: Quad([
+                first.separation.to_bits(),
+                second.separation.to_bits(),
+                pair.surface.friction.to_bits(),
+                0,
+            ]),
         }
     }
 
@@ -114,6 +98,23 @@ impl Input {
         let size = if self.count == 1 { Size::Small } else { Size::Large };
         Node::new(key, self.changed, size)
     }
+}
+
+/// The impulse that each of the two points starts from: none if its feature was not there.
+#[inline]
+fn carried_over(manifold: &Manifold, memory: &Contact, warm: &mut WarmStarts) -> [PointImpulse; 2] {
+    let points = manifold.points();
+    let old = |i: usize| points.get(i).and_then(|point| memory.impulse_of(point.feature));
+    let (first, second) = (old(0), old(1));
+    let kept = u8::from(first.is_some()) + u8::from(second.is_some());
+    warm.points += u32::from(manifold.count());
+    warm.kept += u32::from(kept);
+    if kept < memory.count {
+        let old = memory.points().iter().filter(|old| old.normal.is_positive());
+        let is_there = |old: &&PointImpulse| points.iter().any(|point| point.feature.0 == old.feature);
+        warm.lost += old.map(|old| u32::from(!is_there(&old))).sum::<u32>();
+    }
+    [first.unwrap_or_default(), second.unwrap_or_default()]
 }
 
 impl Surface {
