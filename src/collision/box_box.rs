@@ -6,13 +6,14 @@ mod kernel;
 mod tests;
 
 use alloc::vec::Vec;
+use core::ops::Deref;
 
 use super::broad_phase::Pair;
 use super::manifold::{Feature, Manifold, ManifoldPoint};
-use super::pose::PosedShape;
+use super::pose::{Faces, PosedShape};
 use crate::fx;
 use crate::lanes::{Ints, Machine, Quad, WIDTH, prefetch};
-use crate::math::{Fx, Length, Step, Unit, Vec2};
+use crate::math::{Fx, Length, Rot, Step, Unit, Vec2};
 
 /// Furthest corner of a box that lanes take, radius included, in metres from its centre.
 pub(super) const BOX_REACH_MAX: Length = Length::lit("3");
@@ -31,6 +32,8 @@ pub(crate) struct SmallBoxes {
     /// For each slot the first two vertices of its box and its first two normals: the others are opposite to them. Zeros
     /// for what is no such box.
     quads: Vec<Quad>,
+    /// The same in the frames of their bodies, of boxes about whose centres those turn.
+    centred: Vec<Option<Faces>>,
 }
 
 /// How many quads a box has.
@@ -40,16 +43,37 @@ impl SmallBoxes {
     /// Makes room for so many slots.
     pub(crate) fn resize(&mut self, slot_count: usize) {
         self.quads.resize(QUADS * slot_count, Quad::default());
+        self.centred.resize(slot_count, None);
+    }
+
+    /// Takes up a shape that is posed for the first time, or has become another one. `centred` is
+    /// [`PosedShape::as_centred_box`].
+    pub(crate) fn place(&mut self, slot: u32, shape: &PosedShape, centred: Option<Faces>) {
+        self.centred[slot as usize] = centred;
+        self.renew(slot, shape);
     }
 
     /// Takes up a shape that has been turned.
     #[inline]
-    pub(crate) fn set(&mut self, slot: u32, shape: &PosedShape) {
-        if let Some(([v0, v1], [n0, n1])) = shape.as_small_box() {
-            let quads = &mut self.quads[QUADS * slot as usize..][..QUADS];
-            quads[0] = Quad([v0.x, v0.y, v1.x, v1.y].map(Length::to_bits));
-            quads[1] = Quad([n0.x, n0.y, n1.x, n1.y].map(Unit::to_bits));
+    pub(crate) fn renew(&mut self, slot: u32, shape: &PosedShape) {
+        if let Some(faces) = shape.as_small_box() {
+            self.set(slot, &faces);
         }
+    }
+
+    /// Turns a box whose body turns about its centre, and returns it. Nothing happens to any other shape.
+    #[inline(always)]
+    pub(crate) fn turn(&mut self, slot: u32, rotation: &impl Deref<Target = Rot>) -> Option<Faces> {
+        let faces = self.centred[slot as usize].as_ref()?.rotated(**rotation);
+        self.set(slot, &faces);
+        Some(faces)
+    }
+
+    #[inline(always)]
+    fn set(&mut self, slot: u32, Faces { vertices: [v0, v1], normals: [n0, n1] }: &Faces) {
+        let quads = &mut self.quads[QUADS * slot as usize..][..QUADS];
+        quads[0] = Quad([v0.x, v0.y, v1.x, v1.y].map(Length::to_bits));
+        quads[1] = Quad([n0.x, n0.y, n1.x, n1.y].map(Unit::to_bits));
     }
 
     /// Asks for a box that will soon be looked at.

@@ -36,7 +36,7 @@ pub use manifold::{Feature, Manifold, ManifoldPoint};
 pub(crate) use narrow_phase::{collide, collide_near, margin_for, may_meet};
 pub(crate) use one_way::OneWay;
 pub(crate) use pass_by::{Passage, pass_by};
-pub(crate) use pose::{Outline, PosedShape};
+pub(crate) use pose::{Outline, PosedShape, arm_of};
 pub(crate) use ray::{cast_ray, contains_point};
 pub(crate) use shape_cast::{SKIN, ShapeHit, cast_shape};
 pub(crate) use time_of_impact::{Sweep, TimeOfImpact, time_of_impact};

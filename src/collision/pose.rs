@@ -42,6 +42,38 @@ impl Outline {
 /// The first two vertices of a box and the normals of its first two faces: the others are opposite to them.
 pub(crate) type BoxFaces<'a> = (&'a [Vec2<Length>; 2], &'a [Vec2<Unit>; 2]);
 
+/// The same of a box by itself.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Faces {
+    pub(super) vertices: [Vec2<Length>; 2],
+    pub(super) normals: [Vec2<Unit>; 2],
+}
+
+impl Faces {
+    /// Of a box whose first faces these are.
+    fn of(vertices: &[Vec2<Length>], normals: &[Vec2<Unit>]) -> Option<Self> {
+        Some(Faces { vertices: *vertices.first_chunk()?, normals: *normals.first_chunk()? })
+    }
+
+    #[inline(always)]
+    pub(super) fn rotated(&self, rotation: Rot) -> Self {
+        let Faces { vertices: [v0, v1], normals: [n0, n1] } = *self;
+        Faces {
+            vertices: [rotation.apply(v0), rotation.apply(v1)],
+            normals: [rotation.apply(n0), rotation.apply(n1)],
+        }
+    }
+
+    /// The smallest box with sides along the axes around this one, with rounded corners, about its centre.
+    #[inline(always)]
+    fn bounds(&self, radius: Length) -> Aabb {
+        let [a, b] = self.vertices;
+        let most = |a: Length, b: Length| a.saturating_abs().max(b.saturating_abs());
+        let upper = Vec2::new(most(a.x, b.x), most(a.y, b.y)).widen();
+        Aabb::new(-upper, upper).expanded(radius.into())
+    }
+}
+
 /// A convex outline in 32-bit coordinates: a polygon, or a segment or capsule seen as a polygon with two sides.
 #[derive(Clone, Debug)]
 pub(crate) struct Hull {
@@ -177,13 +209,8 @@ impl Hull {
     /// Turns the vertices and normals of its polygon another way.
     #[inline(always)]
     fn rotate(&mut self, polygon: &Polygon, rotation: Rot) {
-        if let (true, [v0, v1, ..], [n0, n1, ..]) = (self.is_box, polygon.vertices(), polygon.normals()) {
-            // Rounded alike, so that opposite ones stay exactly opposite.
-            let [v0, v1] = [rotation.apply(*v0), rotation.apply(*v1)];
-            let [n0, n1] = [rotation.apply(*n0), rotation.apply(*n1)];
-            let (vertices, normals) = (&mut self.vertices, &mut self.normals);
-            [vertices[0], vertices[1], vertices[2], vertices[3]] = [v0, v1, -v0, -v1];
-            [normals[0], normals[1], normals[2], normals[3]] = [n0, n1, -n0, -n1];
+        if let (true, Some(faces)) = (self.is_box, Faces::of(polygon.vertices(), polygon.normals())) {
+            self.set_faces(&faces.rotated(rotation));
             return;
         }
         let local = polygon.vertices().iter().zip(polygon.normals());
@@ -192,6 +219,15 @@ impl Hull {
             *vertex = rotation.apply(*local_vertex);
             *normal = rotation.apply(*local_normal);
         }
+    }
+
+    /// Turns a box.
+    #[inline(always)]
+    fn set_faces(&mut self, Faces { vertices: [v0, v1], normals: [n0, n1] }: &Faces) {
+        let (vertices, normals) = (&mut self.vertices, &mut self.normals);
+        // Rounded alike, so that opposite ones stay exactly opposite.
+        [vertices[0], vertices[1], vertices[2], vertices[3]] = [*v0, *v1, -*v0, -*v1];
+        [normals[0], normals[1], normals[2], normals[3]] = [*n0, *n1, -*n0, -*n1];
     }
 
     const fn empty() -> Self {
@@ -206,10 +242,8 @@ impl Hull {
     }
 
     fn bounds(&self) -> Aabb {
-        if let Some((&[a, b], _)) = self.as_box() {
-            let most = |a: Length, b: Length| a.saturating_abs().max(b.saturating_abs());
-            let upper = Vec2::new(most(a.x, b.x), most(a.y, b.y)).widen();
-            return Aabb::new(-upper, upper).expanded(self.radius.into());
+        if let (true, Some(faces)) = (self.is_box, Faces::of(&self.vertices, &self.normals)) {
+            return faces.bounds(self.radius);
         }
         let first = self.vertices[0];
         let (lower, upper) = self.vertices()[1..]
@@ -248,6 +282,16 @@ impl PosedShape {
         }
     }
 
+    /// Turns a box, and puts its centre somewhere else.
+    #[inline(always)]
+    pub(crate) fn turn_box(&mut self, faces: &Faces, centre: Vec2<Fx>) {
+        if let Outline::Polygon(hull) = &mut self.outline {
+            hull.set_faces(faces);
+            self.bounds = faces.bounds(hull.radius).translated(centre);
+            self.centre = centre;
+        }
+    }
+
     /// Shifts it, unturned: the same as posing it again where its body has been shifted to.
     pub(crate) fn shift(&mut self, by: Vec2<Fx>) {
         self.centre += by;
@@ -259,13 +303,22 @@ impl PosedShape {
         Core::of(&Self::of_geometry(geometry, Vec2::ZERO, Rot::IDENTITY), Vec2::ZERO).inner_radius()
     }
 
-    /// What it is to [`SmallBoxes`](super::SmallBoxes), if it may be one of them.
+    /// Its faces, if it may be one of [`SmallBoxes`](super::SmallBoxes).
     #[inline]
-    pub(crate) fn as_small_box(&self) -> Option<BoxFaces<'_>> {
+    pub(crate) fn as_small_box(&self) -> Option<Faces> {
         match &self.outline {
-            Outline::Polygon(hull) if hull.is_small_box => hull.as_box(),
+            Outline::Polygon(hull) if hull.is_small_box => Faces::of(&hull.vertices, &hull.normals),
             _ => None,
         }
+    }
+
+    /// The same in the frame of the shape, if its body turns about its centre: then these and the body's rotation are all
+    /// that it takes to pose it.
+    pub(crate) fn as_centred_box(&self, shape: &ShapeDef, body: &Body) -> Option<Faces> {
+        let Geometry::Polygon(polygon) = &shape.geometry else { return None };
+        self.as_small_box()?;
+        let is_centred = arm_of(shape, body) == Vec2::ZERO;
+        Faces::of(polygon.vertices(), polygon.normals()).filter(|_| is_centred)
     }
 
     /// Whether something at a place in the world meets the shape, or passes from its open side.
@@ -310,8 +363,13 @@ impl PosedShape {
 
 /// Where the centre of a shape of a body is.
 fn centre_of(shape: &ShapeDef, body: &Body, rotation: impl FnOnce() -> Rot) -> Vec2<Fx> {
-    let arm = shape.offset - body.local_centre_of_mass();
+    let arm = arm_of(shape, body);
     // Most bodies have one shape, about whose centre they turn.
     let turned = if arm == Vec2::ZERO { arm } else { rotation().apply_wide(arm) };
     body.centre_of_mass() + turned
+}
+
+/// From the centre of mass of a body to the centre of one of its shapes, in the frame of the body.
+pub(crate) fn arm_of(shape: &ShapeDef, body: &Body) -> Vec2<Fx> {
+    shape.offset - body.local_centre_of_mass()
 }

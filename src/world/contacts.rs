@@ -1,9 +1,9 @@
 //! What the contacts of a tick lead to at its end: whether shapes touch, and the events that follow from it.
 
 use super::events::{ContactEvent, Events, SensorEvent};
-use super::scratch::Scratch;
+use super::scratch::{Poses, Scratch};
 use super::state::{Reported, Side, State};
-use crate::collision::Manifold;
+use crate::collision::{Contact, Manifold};
 use crate::math::{Fx, widen};
 
 /// Turns changes of touching into events. A pair touches if it is near at the start of the tick, or if the solver
@@ -13,14 +13,14 @@ pub(super) fn report(state: &mut State, scratch: &mut Scratch) {
     for removed in state.removed_contacts.drain(..) {
         end(Some(removed), &mut scratch.events);
     }
-    for contact in scratch.ended.drain(..) {
-        if contact.touching {
-            end(state.reported(&contact), &mut scratch.events);
-        }
+    let Scratch { events, ended, poses, .. } = scratch;
+    for contact in ended.drain(..).filter(|contact| contact.touching) {
+        end(reported(state, poses, &contact), events);
     }
     let (near, apart) = (state.config.touching_distance(), state.config.speculative_distance);
     let mut contacts = core::mem::take(&mut state.contacts);
     let Scratch { events, found, poses, solver, .. } = scratch;
+    let mut sensors = found.sensors.iter().peekable();
     let mut found = found.contacts.iter().zip(&found.manifolds).peekable();
     for (index, contact) in (0u32..).zip(&mut contacts) {
         let manifold = found.next_if(|(contact, _)| **contact == index).map(|(_, manifold)| manifold);
@@ -33,8 +33,7 @@ pub(super) fn report(state: &mut State, scratch: &mut Scratch) {
         let points = manifold.map_or(&[][..], Manifold::points);
         let separation = points.iter().map(|point| widen(point.separation)).min();
         let within = |distance: Fx| separation.is_some_and(|separation| separation <= distance);
-        let (a, b) = contact.shapes;
-        let touching = if poses.outlook.reach(a).sensor || poses.outlook.reach(b).sensor {
+        let touching = if sensors.next_if_eq(&&index).is_some() {
             within(Fx::ZERO)
         } else {
             solver.pushed[index as usize] || within(if contact.touching { apart } else { near })
@@ -42,7 +41,7 @@ pub(super) fn report(state: &mut State, scratch: &mut Scratch) {
         if touching != contact.touching {
             contact.touching = touching;
             let report = if touching { begin } else { end };
-            report(state.reported(contact), events);
+            report(reported(state, poses, contact), events);
         }
     }
     state.contacts = contacts;
@@ -52,6 +51,17 @@ pub(super) fn report(state: &mut State, scratch: &mut Scratch) {
     events.contact_end.sort_unstable();
     events.sensor_begin.sort_unstable();
     events.sensor_end.sort_unstable();
+}
+
+/// [`State::reported`], from what is known of the shapes without a look at them.
+fn reported(state: &State, poses: &Poses, contact: &Contact) -> Option<Reported> {
+    let (a, b) = (poses.outlook.reach(contact.shapes.0), poses.outlook.reach(contact.shapes.1));
+    let reported = (a.is_reported || b.is_reported).then(|| Reported {
+        shapes: state.contact_event(contact),
+        sensor: if a.sensor { Some(Side::A) } else { b.sensor.then_some(Side::B) },
+    });
+    debug_assert_eq!(reported, state.reported(contact));
+    reported
 }
 
 fn begin(pair: Option<Reported>, events: &mut Events) {

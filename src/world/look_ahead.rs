@@ -6,8 +6,10 @@
 use alloc::vec::Vec;
 
 use super::config::Config;
-use crate::body::{Body, Geometry, Shape};
-use crate::collision::{Manifold, ManifoldPoint, OneWay, Passage, PosedShape, margin_for, may_meet, pass_by};
+use crate::body::{Body, Geometry, Handle, Shape};
+use crate::collision::{
+    Manifold, ManifoldPoint, OneWay, Passage, PosedShape, arm_of, margin_for, may_meet, pass_by,
+};
 use crate::fx;
 use crate::lanes::prefetch;
 use crate::math::{
@@ -57,15 +59,12 @@ impl Motion {
     /// How far any point of a shape moves because its body turns: at most arm times angle, and at most from one
     /// side to the other.
     pub(super) fn turn_reach(&self, turn: Fx, shape: &Reach) -> Fx {
-        if turn < Fx::DELTA * 64 {
+        if turn < Fx::DELTA * 64 || shape.disc {
             return Fx::ZERO;
         }
         let centre = shape.bounds.centre();
         // Shapes and centres are in the world: nothing here overflows.
         let offset = centre.wrapping_sub(self.centre);
-        if shape.circle && offset == Vec2::ZERO {
-            return Fx::ZERO;
-        }
         let half = shape.bounds.upper.wrapping_sub(centre);
         let aside = offset.x.wrapping_abs().wrapping_add(offset.y.wrapping_abs());
         let reach = half.x.wrapping_add(half.y).wrapping_add(aside);
@@ -128,32 +127,37 @@ pub(crate) struct Reach {
     pub(super) body: u32,
     /// How far the surface is from the vertices.
     pub(super) radius: Length,
-    circle: bool,
+    /// Whether it is a circle about its body's centre of mass: to turn that changes nothing.
+    pub(super) disc: bool,
     /// Whether it is solid, and one of [`SmallBoxes`](crate::collision::SmallBoxes).
     pub(super) small_box: bool,
     pub(super) sensor: bool,
     pub(super) one_way: bool,
     pub(super) hit_events: bool,
+    /// Whether events tell what it touches.
+    pub(super) is_reported: bool,
 }
 
 const _: () = assert!(size_of::<Reach>() == 64);
 
 impl Reach {
     /// Of a shape that does not move.
-    fn at_rest(shape: &Shape, body: u32, posed: &PosedShape) -> Self {
+    fn at_rest(shape: &Shape, body: &Body, posed: &PosedShape) -> Self {
         let bounds = posed.bounds;
+        let is_circle = matches!(shape.geometry(), Geometry::Circle { .. });
         Reach {
             bounds,
             shift: Vec2::ZERO,
             turn: Way::ZERO,
             slack: slack_of(bounds),
-            body,
+            body: shape.body().slot(),
             radius: narrow(posed.outline.radius()),
-            circle: matches!(shape.geometry(), Geometry::Circle { .. }),
+            disc: is_circle && arm_of(&shape.def, body) == Vec2::ZERO,
             small_box: posed.as_small_box().is_some() && !shape.is_sensor(),
             sensor: shape.is_sensor(),
             one_way: shape.one_way().is_some(),
             hit_events: shape.def.events.hit,
+            is_reported: shape.is_sensor() || shape.def.events.contact,
         }
     }
 
@@ -210,7 +214,7 @@ impl Outlook {
     }
 
     /// Takes up a shape that has been posed.
-    pub(super) fn place(&mut self, slot: u32, shape: &Shape, body: u32, posed: &PosedShape) {
+    pub(super) fn place(&mut self, slot: u32, shape: &Shape, body: &Body, posed: &PosedShape) {
         if self.reaches.len() <= slot as usize {
             self.reaches.resize(slot as usize + 1, Reach::default());
         }
@@ -242,6 +246,15 @@ impl Outlook {
     #[inline]
     pub(super) fn prefetch(&self, shape: u32) {
         prefetch(&self.reaches[shape as usize]);
+    }
+
+    /// Asks for what it takes to tell which points of two shapes will be reached, if they move against each other.
+    #[inline]
+    pub(super) fn prefetch_motions(&self, closing: Closing, a: &Reach, b: &Reach) {
+        if closing.is_fast() {
+            prefetch(self.motion(a));
+            prefetch(self.motion(b));
+        }
     }
 
     pub(super) fn motion(&self, reach: &Reach) -> &Motion {
@@ -281,6 +294,12 @@ impl Closing {
         Closing { way, margin: margin_for(horizon.speculative, way) }
     }
 
+    /// Whether the shapes move so fast against each other that they may pass by.
+    #[inline]
+    fn is_fast(self) -> bool {
+        self.way > PASSAGE_MIN
+    }
+
     /// Whether the shapes are so near that they may meet within the tick.
     #[inline]
     pub(super) fn may_meet(self, a: &Reach, b: &Reach) -> bool {
@@ -316,7 +335,7 @@ impl Approach<'_> {
     ) {
         let speculative: Step = convert(self.horizon.speculative);
         let ahead = |point: &ManifoldPoint| point.separation > speculative;
-        if self.closing.way > PASSAGE_MIN || manifold.points().iter().any(ahead) {
+        if self.closing.is_fast() || manifold.points().iter().any(ahead) {
             self.drop_unreached(manifold, outlook, posed);
         }
     }

@@ -39,6 +39,8 @@ pub(crate) struct Found {
     /// The manifolds that have points, and where their contacts are.
     pub(super) manifolds: Vec<Manifold>,
     pub(super) contacts: Vec<u32>,
+    /// Of these contacts, those with sensors.
+    pub(super) sensors: Vec<u32>,
     /// Those that the solver has to deal with.
     pub(super) touching: Vec<TouchingPair>,
     /// Approaches that become hits if the shapes push each other in this tick.
@@ -81,6 +83,7 @@ impl Found {
     pub(super) fn clear(&mut self) {
         self.manifolds.clear();
         self.contacts.clear();
+        self.sensors.clear();
         self.touching.clear();
         self.approaches.clear();
         self.candidates.clear();
@@ -95,6 +98,7 @@ impl Found {
         self.touching.extend(touching.map(|pair| TouchingPair { manifold: first + pair.manifold, ..*pair }));
         self.manifolds.extend_from_slice(&further.manifolds);
         self.contacts.extend_from_slice(&further.contacts);
+        self.sensors.extend_from_slice(&further.sensors);
         self.approaches.extend_from_slice(&further.approaches);
         self.sat.hint_hits += further.sat.hint_hits;
         self.sat.searches += further.sat.searches;
@@ -162,6 +166,7 @@ impl Search<'_> {
             if pair.is_none() {
                 poses.prefetch(b);
             }
+            poses.outlook.prefetch_motions(closing, reach_a, reach_b);
             candidates.push(Candidate { index, closing, pair });
         }
         boxes.collide(*machine, &poses.boxes);
@@ -176,7 +181,7 @@ impl Search<'_> {
         found: &mut Found,
     ) -> &'t [TouchingPair] {
         let Search { state, poses, horizon, .. } = self;
-        let Found { candidates, boxes, contacts, manifolds, touching, approaches, sat } = found;
+        let Found { candidates, boxes, contacts, sensors, manifolds, touching, approaches, sat } = found;
         for &Candidate { index, closing, pair } in candidates.iter() {
             let (contact, hint) = (&mut job.contacts[index], &mut job.hints[index]);
             let (a, b) = contact.shapes;
@@ -198,6 +203,7 @@ impl Search<'_> {
             let index = job.first + u32::try_from(index).expect("fewer than 2^32 contacts");
             contacts.push(index);
             if reach_a.sensor || reach_b.sensor {
+                sensors.push(index);
                 continue;
             }
             if reach_a.hit_events || reach_b.hit_events {

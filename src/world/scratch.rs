@@ -307,8 +307,8 @@ impl Poses {
         for &id in body.shapes() {
             let shape = state.shapes.at(id.slot());
             let posed = PosedShape::new(&shape.def, body, rotation);
-            self.outlook.place(id.slot(), shape, shape.body().slot(), &posed);
-            self.boxes.set(id.slot(), &posed);
+            self.outlook.place(id.slot(), shape, body, &posed);
+            self.boxes.place(id.slot(), &posed, posed.as_centred_box(&shape.def, body));
             self.shapes[id.slot() as usize] = Some(posed);
         }
         self.extents[slot as usize] = Extents::of(state, body);
@@ -330,8 +330,14 @@ impl Poses {
         for &id in body.shapes() {
             let posed =
                 self.shapes[id.slot() as usize].as_mut().expect("every shape is posed when it is placed");
-            posed.renew(&state.shapes.at(id.slot()).def, body, &rotation);
-            self.boxes.set(id.slot(), posed);
+            if let Some(faces) = self.boxes.turn(id.slot(), &rotation) {
+                posed.turn_box(&faces, body.centre);
+            } else if self.outlook.reach(id.slot()).disc {
+                posed.shift(body.centre.wrapping_sub(posed.centre));
+            } else {
+                posed.renew(&state.shapes.at(id.slot()).def, body, &rotation);
+                self.boxes.renew(id.slot(), posed);
+            }
             self.outlook.move_to(id.slot(), posed.bounds);
         }
     }

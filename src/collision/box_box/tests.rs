@@ -1,11 +1,12 @@
 //! Boxes in lanes against the narrow phase of any two hulls.
 
 use super::*;
-use crate::body::Polygon;
+use crate::body::{Body, BodyDef, MassProperties, Polygon, ShapeDef};
 use crate::collision::{AxisHint, SatCounters, collide_near};
 use crate::fx;
 use crate::lanes::Backend;
 use crate::math::{Angle, Rng, Rot, narrow};
+use alloc::format;
 use alloc::vec::Vec;
 
 /// A box of any size that lanes take, some with round corners, some that slant a little; and how far it reaches.
@@ -77,8 +78,8 @@ fn lanes_find_what_is_found_one_by_one() {
         for (place, (a, b)) in pairs.iter().enumerate() {
             assert!(a.as_small_box().is_some() && b.as_small_box().is_some(), "{a:?} {b:?}");
             let (slot_a, slot_b) = slots_of(place);
-            boxes.set(slot_a, a);
-            boxes.set(slot_b, b);
+            boxes.place(slot_a, a, None);
+            boxes.place(slot_b, b, None);
         }
         for backend in Backend::available() {
             let machine = Machine::new(backend).expect("available");
@@ -107,4 +108,40 @@ fn lanes_find_what_is_found_one_by_one() {
     }
     assert!(points.iter().all(|&count| count > pairs_seen / 20), "{points:?} of {pairs_seen}");
     assert!(left > 0 && left < pairs_seen / 10, "{left} of {pairs_seen} were left");
+}
+
+/// A body about its own origin.
+fn body_at_rest() -> Body {
+    Body::new(&BodyDef::dynamic(), MassProperties::immovable())
+}
+
+/// Whatever way it is turned, a box is the one that would be posed there anew.
+#[test]
+fn a_box_that_is_turned_is_posed_as_if_anew() {
+    let mut rng = Rng::new(8);
+    let mut boxes = SmallBoxes::default();
+    boxes.resize(1);
+    for _ in 0..200 {
+        let polygon = random_box(&mut rng).0;
+        let (shape, body) = (ShapeDef::new(polygon), body_at_rest());
+        let mut posed = PosedShape::of_geometry(&shape.geometry, Vec2::ZERO, Rot::IDENTITY);
+        boxes.place(0, &posed, posed.as_centred_box(&shape, &body));
+        for _ in 0..20 {
+            let rotation = Rot::from_angle(rng.angle());
+            let centre = Vec2::new(rng.range(fx!(-900), fx!(900)), rng.range(fx!(-900), fx!(900)));
+            let faces = boxes.turn(0, &&rotation).expect("a centred box");
+            posed.turn_box(&faces, centre);
+            let anew = PosedShape::of_geometry(&shape.geometry, centre, rotation);
+            assert_eq!(format!("{posed:?}"), format!("{anew:?}"));
+            let mut fresh = SmallBoxes::default();
+            fresh.resize(1);
+            fresh.place(0, &anew, None);
+            assert_eq!(format!("{:?}", boxes.quads), format!("{:?}", fresh.quads));
+        }
+    }
+    // One that its body swings around is left to others.
+    let shape = ShapeDef::new(Polygon::square(fx!(1)).expect("valid")).offset(fx!(1), fx!(0));
+    let posed = PosedShape::of_geometry(&shape.geometry, Vec2::ZERO, Rot::IDENTITY);
+    boxes.place(0, &posed, posed.as_centred_box(&shape, &body_at_rest()));
+    assert!(boxes.turn(0, &&Rot::IDENTITY).is_none());
 }
