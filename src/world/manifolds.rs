@@ -5,7 +5,8 @@ use alloc::vec::Vec;
 use core::ops::Range;
 
 use super::events::{ContactEvent, HitEvent};
-use super::look_ahead::{Approach, Closing, Horizon, Outlook, approach};
+use super::look_ahead::{Approach, Closing, Horizon, approach};
+use super::outlook::Outlook;
 use super::scratch::{Approaching, Poses, Scratch};
 use super::state::State;
 use crate::collision::{AxisHint, BoxPairs, Contact, Manifold, Pair, SatCounters, collide, collide_near};
@@ -166,7 +167,9 @@ impl Search<'_> {
             if pair.is_none() {
                 poses.prefetch(b);
             }
-            poses.outlook.prefetch_motions(closing, reach_a, reach_b);
+            if closing.is_fast() {
+                poses.outlook.prefetch_motions(reach_a, reach_b);
+            }
             candidates.push(Candidate { index, closing, pair });
         }
         boxes.collide(*machine, &poses.boxes);

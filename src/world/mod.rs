@@ -21,6 +21,7 @@ mod look_ahead;
 mod manifolds;
 mod mover_planes;
 mod moves;
+mod outlook;
 mod pairs;
 mod phases;
 mod probe;

@@ -5,9 +5,9 @@ use super::change::fattened;
 use super::contacts;
 use super::continuous;
 use super::islands;
-use super::look_ahead::{Motion, Way};
 use super::manifolds;
 use super::moves;
+use super::outlook::{Motion, Way};
 use super::pairs;
 use super::phases::Sight;
 use super::scratch::{Extents, Scratch};
@@ -99,7 +99,7 @@ fn refit_boxes(state: &mut State, scratch: &mut Scratch) {
     for &slot in &roster.bodies {
         let body = bodies.at(slot);
         let motion = Motion::of(body, per_second);
-        let (shift, turn) = (motion.shift, motion.turn());
+        let (shift, turn) = (motion.shift, motion.turned());
         poses.outlook.set_motion(slot, motion);
         let course = Course::of(body, poses.extents(slot), shift, turn, config.speculative_distance);
         for &id in body.shapes() {
