@@ -29,20 +29,22 @@ const MARGIN_MAX: Length = Length::lit("2");
 /// [`PosedShape`] has four.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SmallBoxes {
-    /// For each slot the first two vertices of its box and its first two normals: the others are opposite to them. Zeros
-    /// for what is no such box.
-    quads: Vec<Quad>,
+    /// In world axes, by slot; zeros for what is no such box.
+    turned: Vec<Turned>,
     /// The same in the frames of their bodies, of boxes about whose centres those turn.
     centred: Vec<Option<Faces>>,
 }
 
-/// How many quads a box has.
-const QUADS: usize = 2;
+/// The first two vertices of a box, and its first two normals: the others are opposite to them. Aligned, so that none lies
+/// in two cache lines.
+#[derive(Clone, Copy, Debug, Default)]
+#[repr(align(32))]
+struct Turned([Quad; 2]);
 
 impl SmallBoxes {
     /// Makes room for so many slots.
     pub(crate) fn resize(&mut self, slot_count: usize) {
-        self.quads.resize(QUADS * slot_count, Quad::default());
+        self.turned.resize(slot_count, Turned::default());
         self.centred.resize(slot_count, None);
     }
 
@@ -71,15 +73,16 @@ impl SmallBoxes {
 
     #[inline(always)]
     fn set(&mut self, slot: u32, Faces { vertices: [v0, v1], normals: [n0, n1] }: &Faces) {
-        let quads = &mut self.quads[QUADS * slot as usize..][..QUADS];
-        quads[0] = Quad([v0.x, v0.y, v1.x, v1.y].map(Length::to_bits));
-        quads[1] = Quad([n0.x, n0.y, n1.x, n1.y].map(Unit::to_bits));
+        self.turned[slot as usize] = Turned([
+            Quad([v0.x, v0.y, v1.x, v1.y].map(Length::to_bits)),
+            Quad([n0.x, n0.y, n1.x, n1.y].map(Unit::to_bits)),
+        ]);
     }
 
     /// Asks for a box that will soon be looked at.
     #[inline]
     pub(crate) fn prefetch(&self, slot: u32) {
-        prefetch(&self.quads[QUADS * slot as usize]);
+        prefetch(&self.turned[slot as usize]);
     }
 }
 
@@ -93,7 +96,7 @@ pub(crate) struct BoxPairs {
 /// Up to eight pairs. Lanes that are left over have boxes as well, the first pair's or earlier ones'.
 #[derive(Clone, Debug)]
 struct Batch {
-    /// Where the boxes of each pair have their quads.
+    /// The slots of the boxes of each pair.
     at: [[u32; WIDTH]; 2],
     /// From the centres of A to those of B.
     d: [Ints<WIDTH>; 2],
@@ -138,18 +141,17 @@ impl BoxPairs {
             return None;
         }
         let (place, lane) = (self.count, self.count % WIDTH);
-        let at = [a, b].map(|slot| slot * 2);
         if place / WIDTH == self.batches.len() {
             self.batches.push(Batch::EMPTY);
         }
         let batch = &mut self.batches[place / WIDTH];
         if lane == 0 {
             // The slots of an earlier tick may be gone.
-            batch.at = at.map(|at| [at; WIDTH]);
+            batch.at = [[a; WIDTH], [b; WIDTH]];
         }
         let d: Vec2<Length> = d.narrow();
         for side in 0..2 {
-            batch.at[side][lane] = at[side];
+            batch.at[side][lane] = [a, b][side];
             batch.radius[side].0[lane] = radii[side].to_bits();
         }
         (batch.d[0].0[lane], batch.d[1].0[lane]) = (d.x.to_bits(), d.y.to_bits());
@@ -162,7 +164,7 @@ impl BoxPairs {
     pub(crate) fn collide(&mut self, machine: Machine, boxes: &SmallBoxes) {
         let batches = &mut self.batches[..self.count.div_ceil(WIDTH)];
         if !batches.is_empty() {
-            machine.run(kernel::Collide { batches, boxes: &boxes.quads });
+            machine.run(kernel::Collide { batches, boxes: &boxes.turned });
         }
     }
 

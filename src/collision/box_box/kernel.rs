@@ -9,8 +9,8 @@
 //! of the face or of its opposite, whichever looks towards the other box.
 
 use super::super::hull_hull::{CLIP_BITS, FACE_BITS, FINER, TOLERANCE};
-use super::{Batch, Found};
-use crate::lanes::{Ints, Kernel, Lanes, Quad, WIDTH, shift};
+use super::{Batch, Found, Turned};
+use crate::lanes::{Ints, Kernel, Lanes, WIDTH, shift};
 use crate::math::{Step, Unit};
 
 const UNIT: i32 = shift(Unit::FRAC_NBITS);
@@ -21,7 +21,7 @@ const CLIP: i32 = shift(CLIP_BITS);
 pub(super) struct Collide<'a> {
     pub(super) batches: &'a mut [Batch],
     /// Of all boxes.
-    pub(super) boxes: &'a [Quad],
+    pub(super) boxes: &'a [Turned],
 }
 
 /// A place or a direction in each lane.
@@ -83,7 +83,7 @@ impl Kernel<WIDTH> for Collide<'_> {
 }
 
 #[inline(always)]
-fn collide<L: Lanes<WIDTH>>(batch: &mut Batch, boxes: &[Quad]) {
+fn collide<L: Lanes<WIDTH>>(batch: &mut Batch, boxes: &[Turned]) {
     let Batch { at, d, radius, margin, found } = batch;
     let [a, b] = [corners::<L>(boxes, &at[0]), corners::<L>(boxes, &at[1])];
     let [radius_a, radius_b] = [L::load(&radius[0]), L::load(&radius[1])];
@@ -195,10 +195,15 @@ fn store<L: Lanes<WIDTH>>(
 }
 
 #[inline(always)]
-fn corners<L: Lanes<WIDTH>>(boxes: &[Quad], at: &[u32; WIDTH]) -> Corners<L::Int> {
-    let [v0x, v0y, v1x, v1y] = L::quads(boxes, at);
-    // Each box has its normals behind its vertices.
-    let [n0x, n0y, n1x, n1y] = L::quads(&boxes[1..], at);
+fn corners<L: Lanes<WIDTH>>(boxes: &[Turned], at: &[u32; WIDTH]) -> Corners<L::Int> {
+    let Turned([vertices, normals]) = &boxes[at[0] as usize];
+    let (mut vertices, mut normals) = ([vertices; WIDTH], [normals; WIDTH]);
+    for lane in 1..WIDTH {
+        let Turned(quads) = &boxes[at[lane] as usize];
+        [vertices[lane], normals[lane]] = [&quads[0], &quads[1]];
+    }
+    let [v0x, v0y, v1x, v1y] = L::transposed(vertices);
+    let [n0x, n0y, n1x, n1y] = L::transposed(normals);
     Corners { n: [[n0x, n0y], [n1x, n1y]], v: [[v0x, v0y], [v1x, v1y]] }
 }
 

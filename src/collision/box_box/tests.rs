@@ -136,7 +136,7 @@ fn a_box_that_is_turned_is_posed_as_if_anew() {
             let mut fresh = SmallBoxes::default();
             fresh.resize(1);
             fresh.place(0, &anew, None);
-            assert_eq!(format!("{:?}", boxes.quads), format!("{:?}", fresh.quads));
+            assert_eq!(format!("{:?}", boxes.turned), format!("{:?}", fresh.turned));
         }
     }
     // One that its body swings around is left to others.
