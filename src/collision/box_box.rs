@@ -93,7 +93,7 @@ pub(crate) struct BoxPairs {
     batches: Vec<Batch>,
 }
 
-/// Up to eight pairs. Lanes that are left over have boxes as well, the first pair's or earlier ones'.
+/// Up to eight pairs. Lanes that are left over have the boxes of the first pair.
 #[derive(Clone, Debug)]
 struct Batch {
     /// The slots of the boxes of each pair.

@@ -89,7 +89,7 @@ pub(crate) fn time_of_impact(a: (&Core, &Sweep), b: (&Core, &Sweep), target: Fx)
         return TimeOfImpact::Separated;
     };
     let reach_a = to_fx(core_a.reach());
-    if is_longer(between, reach.saturating_add(reach_a)) {
+    if between.is_longer_than(reach.saturating_add(reach_a)) {
         return TimeOfImpact::Separated;
     }
     let movers = Mover::new(core_a, reach_a, a.1, -between).zip(Mover::new(*b.0, reach_b, b.1, Vec2::ZERO));
@@ -97,12 +97,6 @@ pub(crate) fn time_of_impact(a: (&Core, &Sweep), b: (&Core, &Sweep), target: Fx)
         Some((a, b)) => advance(&a, &b, target),
         None => TimeOfImpact::Failed { fraction: Fx::ZERO },
     }
-}
-
-/// Whether a vector is longer than a limit. Most are by far, or by far not: those need no root.
-fn is_longer(v: Vec2<Fx>, limit: Fx) -> bool {
-    let (x, y) = (v.x.saturating_abs(), v.y.saturating_abs());
-    x.max(y) > limit || (x.saturating_add(y) > limit && v.length() > limit)
 }
 
 fn advance(a: &Mover, b: &Mover, mut target: Fx) -> TimeOfImpact {

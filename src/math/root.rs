@@ -52,6 +52,13 @@ impl Vec2<Fx> {
         hypot(self.x, self.y)
     }
 
+    /// Whether the length is more than a limit. Most vectors are longer by far, or by far not: those need no root.
+    #[inline]
+    pub(crate) fn is_longer_than(self, limit: Fx) -> bool {
+        let (x, y) = (self.x.saturating_abs(), self.y.saturating_abs());
+        x.max(y) > limit || (x.saturating_add(y) > limit && self.length() > limit)
+    }
+
     /// The square of the length, rounded to nearest, saturated (from 46 341 m on).
     #[inline]
     #[must_use]

@@ -47,11 +47,7 @@ pub(super) fn sweep_of(state: &State, scratch: &Scratch, slot: u32, end: Pose, t
         0 => Fx::ZERO,
         _ => fx_mul(Angle::turns_to_radians(turn).saturating_abs(), extents.reach),
     };
-    // Most bodies are slow or fast enough to tell without a root.
-    let (x, y) = (shift.x.saturating_abs(), shift.y.saturating_abs());
-    let fast = x.max(y).saturating_add(turned) > limit
-        || (x.saturating_add(y).saturating_add(turned) > limit
-            && shift.length().saturating_add(turned) > limit);
+    let fast = shift.is_longer_than(limit.saturating_sub(turned));
     fast.then_some(Swept { slot, sweep: Sweep { start: body.centre, end: end.centre, turn }, end })
 }
 

@@ -198,3 +198,24 @@ fn the_wide_root_is_that_of_the_standard_library() {
         assert_eq!(root_wide(n), n.isqrt(), "{n}");
     }
 }
+
+#[test]
+fn what_is_longer_than_a_limit_has_a_greater_length() {
+    let mut rng = Rng::new(12);
+    let mut undecided = 0;
+    for _ in 0..20_000 {
+        let v = Vec2::new(rng.range(fx!(-3), fx!(3)), rng.range(fx!(-3), fx!(3)));
+        // At the length itself, next to it, and anywhere.
+        for limit in [v.length(), v.length() - Fx::DELTA, v.length() + Fx::DELTA, rng.range(fx!(-1), fx!(5))]
+        {
+            assert_eq!(v.is_longer_than(limit), v.length() > limit, "{v:?} {limit}");
+            undecided += u32::from(v.x.abs().max(v.y.abs()) <= limit && v.x.abs() + v.y.abs() > limit);
+        }
+    }
+    assert!(undecided > 20_000, "{undecided} needed a root");
+    for v in [Vec2::ZERO, Vec2::new(Fx::MIN, Fx::MIN), Vec2::new(Fx::MAX, fx!(0))] {
+        for limit in [Fx::MIN, -Fx::DELTA, fx!(0), Fx::MAX - Fx::DELTA, Fx::MAX] {
+            assert_eq!(v.is_longer_than(limit), v.length() > limit, "{v:?} {limit}");
+        }
+    }
+}
