@@ -55,10 +55,10 @@ fn main() -> ExitCode {
 fn hashes(text: &str) -> Hashes<'_> {
     let mut hashes = Hashes::new();
     for line in text.lines() {
-        if let [semantics, scene, ticks, hash] = line.split(' ').collect::<Vec<_>>()[..] {
-            if let (Ok(lockstep2d::SEMANTICS), Ok(ticks)) = (semantics.parse(), ticks.parse()) {
-                hashes.entry(scene).or_default().insert((ticks, hash));
-            }
+        if let [semantics, scene, ticks, hash] = line.split(' ').collect::<Vec<_>>()[..]
+            && let (Ok(lockstep2d::SEMANTICS), Ok(ticks)) = (semantics.parse(), ticks.parse())
+        {
+            hashes.entry(scene).or_default().insert((ticks, hash));
         }
     }
     hashes

@@ -1,4 +1,4 @@
-//! Steps a scene: `ticks SCENE COUNT [scalar|avx2|neon|simd128]`. What `.ci/instructions` counts the instructions of.
+//! Steps a scene: `ticks SCENE COUNT [scalar|avx2|avx512|neon|simd128]`. What `.ci/instructions` counts the instructions of.
 
 use std::process::ExitCode;
 
@@ -25,7 +25,7 @@ fn run(words: &[String]) -> Result<String, String> {
     let (name, count, backend) = match words {
         [name, count] => (name, count, Backend::best()),
         [name, count, backend] => (name, count, backend_named(backend)?),
-        _ => return Err("ticks SCENE COUNT [scalar|avx2|neon|simd128]".into()),
+        _ => return Err("ticks SCENE COUNT [scalar|avx2|avx512|neon|simd128]".into()),
     };
     let scene = Scene::find(name).ok_or(format!("there is no scene {name}"))?;
     let count: u64 = count.parse().map_err(|error| format!("{count}: {error}"))?;

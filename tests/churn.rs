@@ -98,7 +98,7 @@ fn ten_thousand_bodies_come_and_go() {
         if churn.rng.below(16) == 0 {
             churn.world.step();
         }
-        if churn.spawned % 1000 == 0 {
+        if churn.spawned.is_multiple_of(1000) {
             churn.check();
         }
         if churn.spawned == 5000 && twin.is_none() {

@@ -84,7 +84,7 @@ fn restoring_from_bytes_continues_bit_identically() {
 fn rolling_back_and_forth_changes_nothing() {
     each_scene(|scene, ticks, reference| {
         let back_and_forth = |tick: u64, game: &mut Sandbox| {
-            if tick % 7 == 0 {
+            if tick.is_multiple_of(7) {
                 let save = game.save();
                 for ahead in 0..3 {
                     let commands = scene.commands(tick + ahead, game);
@@ -101,7 +101,7 @@ fn rolling_back_and_forth_changes_nothing() {
 fn scratch_may_be_cleared_before_any_tick() {
     each_scene(|scene, ticks, reference| {
         let clear = |tick: u64, game: &mut Sandbox| {
-            if tick % 3 == 0 {
+            if tick.is_multiple_of(3) {
                 game.world_mut().clear_scratch();
             }
         };

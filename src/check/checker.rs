@@ -157,10 +157,10 @@ impl<'s, G: Game> Checker<'s, G> {
 
 /// Plays a tick and says what its phases have left behind, if that is wanted.
 pub(super) fn step<G: Game>(game: &mut G, inputs: &[G::Input], phases: Phases) -> Vec<PhaseDigest> {
-    if phases == Phases::Compared {
-        if let Some(world) = game.world_mut() {
-            world.note_phases();
-        }
+    if phases == Phases::Compared
+        && let Some(world) = game.world_mut()
+    {
+        world.note_phases();
     }
     game.step(inputs);
     match (phases, game.world_mut()) {

@@ -55,7 +55,7 @@ impl<G: Game> Exchanges<G> {
     ) -> Result<(), Box<Finding>> {
         self.moments.iter_mut().for_each(|moment| moment.inputs.push(now.inputs.to_vec()));
         let interval = INTERVAL.max(now.options.every);
-        if now.tick % interval == 0 || now.tick.is_power_of_two() && now.tick < interval {
+        if now.tick.is_multiple_of(interval) || now.tick.is_power_of_two() && now.tick < interval {
             let bytes = codec::encode(&game.save());
             self.add_donor(&bytes);
             self.moments.push_back(Moment { tick: now.tick, bytes, hash: now.hash, inputs: Vec::new() });

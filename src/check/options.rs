@@ -173,6 +173,6 @@ impl Options {
     }
 
     pub(super) fn is_due(&self, tick: u64) -> bool {
-        tick % self.every.max(1) == 0
+        tick.is_multiple_of(self.every.max(1))
     }
 }

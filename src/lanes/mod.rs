@@ -5,9 +5,10 @@
 //! the same bits, and the scalar one is the oracle of the rest. Only 32-bit numbers and their 64-bit products occur,
 //! because the widening multiplication 32 x 32 -> 64 is what all processors have (`vpmuldq`, `smull`, `i64x2.extmul`).
 
-// One file of vectors, whichever the program is compiled for.
+// Besides plain integers, the vectors of whichever processor the program is compiled for.
 mod body;
-#[cfg_attr(target_arch = "x86_64", path = "avx2.rs")]
+mod division;
+#[cfg_attr(target_arch = "x86_64", path = "x86.rs")]
 #[cfg_attr(all(target_arch = "aarch64", target_feature = "neon", target_endian = "little"), path = "neon.rs")]
 #[cfg_attr(all(target_arch = "wasm32", target_feature = "simd128"), path = "simd128.rs")]
 mod native;
@@ -112,6 +113,33 @@ pub(crate) trait Lanes<const N: usize>: Copy {
     /// The lowest 32 bits, as a number between -2^31 and 2^31: what `narrow::<32>` leaves.
     fn low(a: Self::Wide) -> Self::Int;
 
+    /// `a / 2^SHIFT` rounded down, of numbers that are not negative. `SHIFT` is 1 to 63.
+    fn shift_down<const SHIFT: i32>(a: Self::Wide) -> Self::Wide;
+
+    /// `1 / d`, both with 30 fraction bits, rounded down: of numbers below 2^46, and of less than 1 as of 1.
+    #[inline(always)]
+    fn reciprocal(d: Self::Wide) -> Self::Int {
+        let mut quotients = Ints::ZERO;
+        let d = Self::to_array(d);
+        for (quotient, &d) in quotients.0.iter_mut().zip(&d) {
+            *quotient = division::reciprocal(d);
+        }
+        Self::load(&quotients)
+    }
+
+    /// The entries `g11, g12, g22` of `G = K^-1` with 30 fraction bits, from those of `K - I` with 46: of what point blocks
+    /// have, whose determinants are 1 to 2^27.
+    #[inline(always)]
+    fn inverse(entries: [Self::Wide; 3]) -> [Self::Int; 3] {
+        let [xx, xy, yy] =
+            [Self::to_array(entries[0]), Self::to_array(entries[1]), Self::to_array(entries[2])];
+        let mut g = [Ints::ZERO; 3];
+        for lane in 0..N {
+            [g[0].0[lane], g[1].0[lane], g[2].0[lane]] = division::inverse([xx[lane], xy[lane], yy[lane]]);
+        }
+        [Self::load(&g[0]), Self::load(&g[1]), Self::load(&g[2])]
+    }
+
     fn to_array(a: Self::Wide) -> [i64; N];
     fn load_wide(from: &[i64; N]) -> Self::Wide;
 
@@ -168,7 +196,7 @@ impl Machine {
     pub(crate) fn run(self, kernel: impl Kernel<WIDTH>) {
         match self.0 {
             Backend::Scalar => kernel.run::<Scalar<WIDTH>>(),
-            Backend::Avx2 | Backend::Neon | Backend::Simd128 => Native::run(kernel),
+            backend => Native::run(backend, kernel),
         }
     }
 }
@@ -181,6 +209,8 @@ pub enum Backend {
     Scalar,
     /// In vectors of 256 bits: most x86-64 processors since 2013.
     Avx2,
+    /// In vectors of 512 bits: most x86-64 servers since 2017, and desktop processors with AVX-512.
+    Avx512,
     /// In vectors of 128 bits: every 64-bit Arm processor.
     Neon,
     /// In vectors of 128 bits: WebAssembly, compiled with `-C target-feature=+simd128`.
@@ -191,7 +221,7 @@ impl Backend {
     /// Every backend that this machine can run, the best one last. Without the feature `std` only what the program was
     /// compiled for is known.
     pub fn available() -> impl Iterator<Item = Backend> {
-        [Some(Backend::Scalar), Native::backend()].into_iter().flatten()
+        core::iter::once(Backend::Scalar).chain(Native::backends())
     }
 
     /// The best backend of this machine.

@@ -5,11 +5,11 @@ use super::{Backend, Kernel, Scalar, WIDTH};
 pub(super) struct Native;
 
 impl Native {
-    pub(super) const fn backend() -> Option<Backend> {
-        None
+    pub(super) fn backends() -> impl Iterator<Item = Backend> {
+        core::iter::empty()
     }
 
-    pub(super) fn run(kernel: impl Kernel<WIDTH>) {
+    pub(super) fn run(_: Backend, kernel: impl Kernel<WIDTH>) {
         kernel.run::<Scalar<WIDTH>>();
     }
 }

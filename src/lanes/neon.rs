@@ -16,11 +16,11 @@ pub(super) struct Neon;
 pub(super) use Neon as Native;
 
 impl Neon {
-    pub(super) fn backend() -> Option<Backend> {
-        Some(Backend::Neon)
+    pub(super) fn backends() -> impl Iterator<Item = Backend> {
+        core::iter::once(Backend::Neon)
     }
 
-    pub(super) fn run(kernel: impl Kernel<WIDTH>) {
+    pub(super) fn run(_: Backend, kernel: impl Kernel<WIDTH>) {
         kernel.run::<Neon>();
     }
 }
@@ -248,6 +248,12 @@ impl Lanes<WIDTH> for Neon {
             unsafe { vst1q_s64(to.as_mut_ptr(), a) };
         }
         array
+    }
+
+    #[inline(always)]
+    fn shift_down<const SHIFT: i32>(a: Products) -> Products {
+        // SAFETY: see `Neon`.
+        a.map(|a| unsafe { vshrq_n_s64::<SHIFT>(a) })
     }
 
     #[inline(always)]

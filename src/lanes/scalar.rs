@@ -179,6 +179,11 @@ impl<const N: usize> Lanes<N> for Scalar<N> {
     }
 
     #[inline(always)]
+    fn shift_down<const SHIFT: i32>(a: [i64; N]) -> [i64; N] {
+        a.map(|a| a >> SHIFT)
+    }
+
+    #[inline(always)]
     fn to_array(a: [i64; N]) -> [i64; N] {
         a
     }

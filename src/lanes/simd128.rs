@@ -16,11 +16,11 @@ pub(super) struct Simd128;
 pub(super) use Simd128 as Native;
 
 impl Simd128 {
-    pub(super) fn backend() -> Option<Backend> {
-        Some(Backend::Simd128)
+    pub(super) fn backends() -> impl Iterator<Item = Backend> {
+        core::iter::once(Backend::Simd128)
     }
 
-    pub(super) fn run(kernel: impl Kernel<WIDTH>) {
+    pub(super) fn run(_: Backend, kernel: impl Kernel<WIDTH>) {
         kernel.run::<Simd128>();
     }
 }
@@ -217,6 +217,12 @@ impl Lanes<WIDTH> for Simd128 {
             to.copy_from_slice(&[i64x2_extract_lane::<0>(a), i64x2_extract_lane::<1>(a)]);
         }
         array
+    }
+
+    #[inline(always)]
+    #[expect(clippy::cast_sign_loss, reason = "a shift")]
+    fn shift_down<const SHIFT: i32>(a: Products) -> Products {
+        a.map(|a| i64x2_shr(a, SHIFT as u32))
     }
 
     #[inline(always)]

@@ -74,12 +74,73 @@ impl Kernel<WIDTH> for Operations<'_> {
         keep(L::low(wide));
         keep(L::narrow_saturating::<25>(wide).0);
         keep(L::to_int(L::narrow_saturating::<25>(wide).1));
+        let positive = L::abs_wide(L::mul(a, quarter));
+        keep(L::low(L::shift_down::<18>(positive)));
+        keep(L::low(L::shift_down::<40>(positive)));
         let shifts = Ints(self.b.0.map(|b| (b & 63).clamp(1, 61)));
         keep(L::narrow_by(L::mul(a, b), L::load(&shifts)));
         let quads: std::vec::Vec<_> = (0..WIDTH).map(|i| Quad([self.a.0[i], self.b.0[i], 3, -4])).collect();
         L::quads(&quads, &[7, 0, 3, 3, 1, 2, 6, 5]).into_iter().for_each(&mut keep);
         // What fits.
         keep(L::narrow::<30>(L::mul(quarter, L::splat(1 << 30))));
+    }
+}
+
+/// Quotients, and the determinants and inverses that they are for.
+struct Divisions<'a> {
+    divisors: [i64; WIDTH],
+    entries: [[i64; WIDTH]; 3],
+    results: &'a mut [Ints<WIDTH>; 4],
+}
+
+impl Kernel<WIDTH> for Divisions<'_> {
+    #[inline(always)]
+    fn run<L: Lanes<WIDTH>>(self) {
+        let [xx, xy, yy] = &self.entries;
+        let [g11, g12, g22] = L::inverse([L::load_wide(xx), L::load_wide(xy), L::load_wide(yy)]);
+        let values = [L::reciprocal(L::load_wide(&self.divisors)), g11, g12, g22];
+        self.results.iter_mut().zip(values).for_each(|(to, value)| L::store(value, to));
+    }
+}
+
+/// The entries of `K - I` with 46 fraction bits, of two bodies with mass fractions and lever ratios of all sizes.
+fn entries(rng: &mut Rng) -> [i64; 3] {
+    let a = i64::from(rng.below(1 << 30) + 1) >> rng.below(31);
+    let mut sum = [0; 3];
+    for fraction in [a, (1 << 30) - a] {
+        let mut ratio = || i64::from(random(rng)) >> 1 >> 7;
+        let [x, y] = [ratio(), ratio()];
+        let term = |a: i64, b: i64| i64::try_from((i128::from(fraction) * i128::from(a * b)) >> 18).unwrap();
+        sum = [sum[0] + term(x, x), sum[1] + term(x, y), sum[2] + term(y, y)];
+    }
+    sum
+}
+
+#[test]
+fn every_backend_divides_as_plain_integers_do() {
+    let mut rng = Rng::new(2);
+    for round in 0..200_000u32 {
+        let divisors = core::array::from_fn(|lane| match lane {
+            // Powers of two, quotients without a rest, and what is next to both.
+            0 | 1 => (1i64 << (round % 47).max(1)) + i64::from(rng.below(3)) - 1,
+            2 | 3 => (1i64 << 60) / (i64::from(rng.below(1 << 30)) + 1) + i64::from(rng.below(3)) - 1,
+            _ => i64::from(rng.next_u32()) << 14 >> rng.below(46),
+        });
+        let divisors = divisors.map(|d| d.min((1 << 46) - 1));
+        let entries: [[i64; 3]; WIDTH] = core::array::from_fn(|_| entries(&mut rng));
+        let entries = core::array::from_fn(|i| entries.map(|entries| entries[i]));
+        let results = Backend::available().map(|backend| {
+            let mut results = [Ints::ZERO; 4];
+            let machine = Machine::new(backend).expect("available");
+            machine.run(Divisions { divisors, entries, results: &mut results });
+            results.map(|ints| ints.0)
+        });
+        let results: std::vec::Vec<_> = results.collect();
+        assert!(results.iter().all(|result| *result == results[0]), "{divisors:?} {entries:?}: {results:?}");
+        for (quotient, d) in results[0][0].into_iter().zip(divisors) {
+            let (quotient, d) = (i128::from(quotient), i128::from(d.max(1 << 30)));
+            assert!(quotient * d <= 1 << 60 && (quotient + 1) * d > 1 << 60, "{d}");
+        }
     }
 }
 

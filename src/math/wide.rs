@@ -144,12 +144,13 @@ pub(super) fn point_at(
 #[expect(clippy::cast_possible_truncation, reason = "at most x")]
 fn scaled(x: u64, numerator: Wide, denominator: Wide) -> (u64, Ordering) {
     // Points less than a kilometre apart take this branch.
-    if numerator.high == 0 && denominator.high == 0 {
-        if let Some(product) = numerator.low.checked_mul(u128::from(x)) {
-            let quotient = product / denominator.low;
-            let rest = product - quotient * denominator.low;
-            return (quotient as u64, rest.cmp(&(denominator.low - rest)));
-        }
+    if numerator.high == 0
+        && denominator.high == 0
+        && let Some(product) = numerator.low.checked_mul(u128::from(x))
+    {
+        let quotient = product / denominator.low;
+        let rest = product - quotient * denominator.low;
+        return (quotient as u64, rest.cmp(&(denominator.low - rest)));
     }
     // Multiply and divide bit by bit, from the top of x: `rest < denominator < 2^130` throughout.
     let (mut quotient, mut rest) = (0_u64, Wide::ZERO);

@@ -37,13 +37,13 @@ pub fn bisect<G: Game>(
     } else {
         duel::run::<G>(&known, limits, &mut found)?;
     }
-    if let (Some(last), Some(first)) = (found.last_equal, found.first_different) {
-        if last + 1 < first {
-            found.notes.push(format!(
+    if let (Some(last), Some(first)) = (found.last_equal, found.first_different)
+        && last + 1 < first
+    {
+        found.notes.push(format!(
                 "nothing is known of the ticks between {last} and {first}: their trace, from the program that wrote \
                  the replay, tells the rest"
             ));
-        }
     }
     Ok(found)
 }

@@ -76,7 +76,7 @@ fn spawn_kick_despawn(tick: u64, game: &Sandbox) -> Vec<Command> {
     let mut rng = Rng::new(tick);
     let dynamic: Vec<_> = game.world().bodies().filter(|(_, body)| body.is_dynamic()).collect();
     let mut commands = vec![];
-    if tick % 6 == 0 {
+    if tick.is_multiple_of(6) {
         let body = BodyDef::dynamic().position(rng.range(fx!(-6), fx!(6)), fx!(8)).angle(rng.angle());
         let shape = match rng.below(3) {
             0 => ShapeDef::new(random_polygon(&mut rng)),

@@ -41,7 +41,7 @@ pub(super) const GAME: Scene = Scene {
 
 /// Every 5 s all bodies are thrown upwards, each in a direction of its own.
 fn shake(tick: u64, game: &Sandbox) -> Vec<Command> {
-    if tick == 0 || tick % 300 != 0 {
+    if tick == 0 || !tick.is_multiple_of(300) {
         return vec![];
     }
     let mut rng = Rng::new(tick);

@@ -137,7 +137,7 @@ impl<const MISTAKE: usize> Toy<MISTAKE> {
             return;
         }
         self.state.cooldown[player] = 20;
-        let mut strength = 1 + u32::from(self.state.tick % 3 == 0);
+        let mut strength = 1 + u32::from(self.state.tick.is_multiple_of(3));
         if Self::has(Mistake::StaleMemory) {
             strength = match self.last_hit {
                 Some((last, strength)) if last == player => strength,

@@ -104,7 +104,7 @@ fn a_lost_packet_does_not_hold_up_lockstep_for_long() {
 /// Whatever happens, in the end everybody plays with the others or knows why not.
 fn anything(seed: u64) {
     let mut rng = Rng::new(seed);
-    let options = MODES[usize::from(seed % 2 == 0)]();
+    let options = MODES[usize::from(seed.is_multiple_of(2))]();
     let bad = Weather {
         latency: Duration::from_millis(100),
         jitter: Duration::from_millis(30),

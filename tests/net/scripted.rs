@@ -157,7 +157,7 @@ fn check(seed: u64) {
         while script.confirmed() < truth.frames {
             script.turn(&mut driver);
             // Reports take long to compare: not in every script.
-            if seed % 10 == 0 && script.frame >= truth.frames / 2 {
+            if seed.is_multiple_of(10) && script.frame >= truth.frames / 2 {
                 halfway.get_or_insert_with(|| report(&driver, script.confirmed()));
             }
         }

@@ -124,7 +124,7 @@ fn churn_and_ask(seed: u64, centre: Vec2<Fx>, states: u32) -> Tally {
 
 fn check(world: &World, filter: QueryFilter, query: Query, answer: &Answer, tally: &mut Tally) {
     let solids = seen(world, filter);
-    let thorough = tally.queries % 8 == 0;
+    let thorough = tally.queries.is_multiple_of(8);
     match (query, answer) {
         (Query::Ray { origin, translation }, Answer::Ray { first, all, any }) => {
             assert_eq!((first.as_ref(), *any), (all.first(), !all.is_empty()), "{query:?}");

@@ -28,16 +28,15 @@ fn reports(peers: &mut [Peer; 3], until: u64) -> Option<[DesyncReport; 3]> {
         peers.iter_mut().for_each(Peer::advance);
         let tick = peers[0].tick;
         let hashes: Vec<StateHash> = peers.iter().map(|peer| peer.game.state_hash()).collect();
-        if tick % CHECKPOINT == 0 && found.is_none() && hashes.iter().any(|hash| *hash != hashes[0]) {
+        if tick.is_multiple_of(CHECKPOINT) && found.is_none() && hashes.iter().any(|hash| *hash != hashes[0])
+        {
             found = Some((tick, hashes));
         }
-        if let Some((at, hashes)) = &found {
-            if tick >= at + 7 {
-                let hashes: Vec<_> = hashes.iter().copied().map(Some).collect();
-                return Some(
-                    [0, 1, 2].map(|seat: u32| peers[seat as usize].report(seat, *at, hashes.clone())),
-                );
-            }
+        if let Some((at, hashes)) = &found
+            && tick >= at + 7
+        {
+            let hashes: Vec<_> = hashes.iter().copied().map(Some).collect();
+            return Some([0, 1, 2].map(|seat: u32| peers[seat as usize].report(seat, *at, hashes.clone())));
         }
     }
     None

@@ -96,7 +96,7 @@ fn hostile_reports_are_no_danger() {
         let mut bytes = bytes.clone();
         for _ in 0..1 + rng.next_u32() % 3 {
             // Mostly what is in front of the saves, where the structure is.
-            let reach = if rng.next_u32() % 3 == 0 { bytes.len() - 40 } else { 700 };
+            let reach = if rng.next_u32().is_multiple_of(3) { bytes.len() - 40 } else { 700 };
             let at = 24 + rng.next_u32() as usize % (reach - 24);
             bytes[at] ^= 1 << (rng.next_u32() % 8);
         }

@@ -86,7 +86,7 @@ impl Game for Harvest {
     }
 
     fn step(&mut self, inputs: &[Action]) {
-        if self.tick % 4 == 0 && self.fruit.len() < FRUIT_MAX {
+        if self.tick.is_multiple_of(4) && self.fruit.len() < FRUIT_MAX {
             let place = (self.somewhere(), self.somewhere());
             let weight = 1 + self.rng.below(100);
             self.fruit.entry(place).or_insert(weight);

@@ -59,7 +59,7 @@ impl<'a> Keyframes<'a> {
 
     /// Whether one is missing here.
     pub(super) fn is_due(&self, tick: u64) -> bool {
-        tick > 0 && tick % self.interval == 0 && !self.later.contains_key(&tick)
+        tick > 0 && tick.is_multiple_of(self.interval) && !self.later.contains_key(&tick)
     }
 
     /// Adds one where one is due; elsewhere it is dropped.

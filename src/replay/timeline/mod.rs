@@ -323,7 +323,7 @@ impl<'a, G: Game> Timeline<'a, G> {
         let length = (self.keyframes.bytes_max() / 4) / self.keyframes.latest(self.tick()).bytes();
         let length = u64::try_from(length).unwrap_or(u64::MAX).max(2);
         let spacing = self.interval().div_ceil(length);
-        if self.tick() % spacing == 0 {
+        if self.tick().is_multiple_of(spacing) {
             self.trail.keep(self.playback.place().clone(), self.playback.game().save(), length);
         }
     }

@@ -204,7 +204,9 @@ impl<const N: usize> Kernel<N> for Perform<'_, N> {
         while let [batch, others @ ..] = rest {
             rest = others;
             if let Some(next) = rest.first() {
-                prefetch(next);
+                // What its bodies are read by. The rest comes in order, as processors expect it: asked for all at
+                // once it takes the room that this batch's bodies need.
+                prefetch(&next.bodies);
             }
             let special = if batch.special { special.next() } else { None };
             match (task, special) {

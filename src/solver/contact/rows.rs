@@ -154,7 +154,7 @@ fn fill_row<L: Lanes<N>, const N: usize>(
     ends: &[End<L, N>; 2],
     anchor: [L::Int; 2],
     inverses: &mut Ints<N>,
-) -> Long<N> {
+) -> Long<L, N> {
     let [e_a, e_b] = [ends[0].lever_ratio(anchor, n), ends[1].lever_ratio(anchor, n)];
     L::store(e_a, &mut row.e_a);
     L::store(e_b, &mut row.e_b);
@@ -164,46 +164,39 @@ fn fill_row<L: Lanes<N>, const N: usize>(
     let be = L::narrow::<UNIT>(L::mul(fractions[1], e_b));
     let squares = L::add_wide(L::mul(ae, e_a), L::mul(be, e_b));
     let ones = L::mul(L::add(fractions[0], fractions[1]), L::splat(1 << 18));
-    let mut denominators = L::to_array(L::add_wide(squares, ones));
-    for (inverse, denominator) in inverses.0.iter_mut().zip(&mut denominators) {
-        *denominator >>= 18;
-        *inverse = reciprocal(*denominator);
-    }
-    let inverse = L::load(inverses);
+    let denominators = L::shift_down::<18>(L::add_wide(squares, ones));
+    let inverse = L::reciprocal(denominators);
+    L::store(inverse, inverses);
     for (gains, fraction, e) in [(&mut row.a, fractions[0], e_a), (&mut row.b, fractions[1], e_b)] {
         let g = L::narrow::<UNIT>(L::mul(fraction, inverse));
         L::store(L::narrow::<RATIO>(L::mul(g, n[0])), &mut gains[0]);
         L::store(L::narrow::<RATIO>(L::mul(g, n[1])), &mut gains[1]);
         L::store(L::narrow::<RATIO>(L::mul(g, e)), &mut gains[2]);
     }
-    Long::new(&denominators)
+    Long::of(denominators)
 }
 
 /// Numbers from 0 to 2^45 with 30 fraction bits: too long for a lane.
 #[derive(Clone, Copy)]
-struct Long<const N: usize> {
-    whole: Ints<N>,
+struct Long<L: Lanes<N>, const N: usize> {
+    whole: L::Int,
     /// The 30 fraction bits.
-    part: Ints<N>,
+    part: L::Int,
 }
 
-impl<const N: usize> Long<N> {
+impl<L: Lanes<N>, const N: usize> Long<L, N> {
     #[inline(always)]
-    #[expect(clippy::cast_possible_truncation, reason = "fewer bits than there is room for")]
-    fn new(numbers: &[i64; N]) -> Self {
-        let mut long = Long { whole: Ints::ZERO, part: Ints::ZERO };
-        for (lane, number) in numbers.iter().enumerate() {
-            long.whole.0[lane] = (number >> 30) as i32;
-            long.part.0[lane] = (number & ((1 << 30) - 1)) as i32;
-        }
-        long
+    fn of(numbers: L::Wide) -> Self {
+        let whole = L::low(L::shift_down::<30>(numbers));
+        let part = L::low(L::sub_wide(numbers, L::mul(whole, L::splat(1 << 30))));
+        Long { whole, part }
     }
 }
 
 /// `x D`, rounded to nearest, saturated.
 #[inline(always)]
-fn product<L: Lanes<N>, const N: usize>(x: L::Int, long: &Long<N>) -> L::Int {
-    let (whole, part) = (L::load(&long.whole), L::load(&long.part));
+fn product<L: Lanes<N>, const N: usize>(x: L::Int, long: &Long<L, N>) -> L::Int {
+    let Long { whole, part } = *long;
     // The product with the whole is exact, and both have the sign of x: if one saturates, so does the sum.
     let (whole, _) = L::narrow_saturating::<1>(L::mul(x, L::add(whole, whole)));
     L::add_saturating(whole, L::narrow::<30>(L::mul(x, part)))
@@ -211,21 +204,9 @@ fn product<L: Lanes<N>, const N: usize>(x: L::Int, long: &Long<N>) -> L::Int {
 
 /// `Dt / Dn`, rounded to nearest.
 #[inline(always)]
-fn ratio<L: Lanes<N>, const N: usize>(tangent: &Long<N>, normal_inverse: L::Int) -> Long<N> {
-    let part = L::narrow::<30>(L::mul(normal_inverse, L::load(&tangent.part)));
-    let wide = L::add_wide(L::mul(normal_inverse, L::load(&tangent.whole)), L::mul(part, L::splat(1)));
-    Long::new(&L::to_array(wide))
-}
-
-/// `1 / D`, both with 30 fraction bits; of a lane without a contact, whose fractions are 0, anything.
-#[inline(always)]
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "D is 1 or more, so it is at most 1"
-)]
-fn reciprocal(denominator: i64) -> i32 {
-    ((1u64 << 60) / denominator.max(1 << 30) as u64) as i32
+fn ratio<L: Lanes<N>, const N: usize>(tangent: &Long<L, N>, normal_inverse: L::Int) -> Long<L, N> {
+    let part = L::narrow::<30>(L::mul(normal_inverse, tangent.part));
+    Long::of(L::add_wide(L::mul(normal_inverse, tangent.whole), L::mul(part, L::splat(1))))
 }
 
 /// `mu r`, with `r = Dt / Dn` with 30 fraction bits, saturated.

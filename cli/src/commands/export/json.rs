@@ -39,12 +39,13 @@ fn add_decimals(value: &mut Value, path: &mut String, numbers: &[Field]) {
     let length = path.len();
     match value {
         Value::Object(entries) => {
-            if entries.len() == 1 && entries.contains_key("bits") {
-                if let Ok(found) = numbers.binary_search_by(|field| field.path().cmp(path)) {
-                    let decimal = numbers[found].value.decimal();
-                    entries.extend(decimal.map(|decimal| ("decimal".into(), decimal.into())));
-                    return;
-                }
+            if entries.len() == 1
+                && entries.contains_key("bits")
+                && let Ok(found) = numbers.binary_search_by(|field| field.path().cmp(path))
+            {
+                let decimal = numbers[found].value.decimal();
+                entries.extend(decimal.map(|decimal| ("decimal".into(), decimal.into())));
+                return;
             }
             let is_single = entries.len() == 1;
             for (name, entry) in entries {

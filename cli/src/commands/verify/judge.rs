@@ -50,7 +50,7 @@ fn play<G: Game>(bytes: &[u8], limits: &Limits, shared: &Shared, tick: &Cell<u64
             Err(verdict) => return Some(Report::new(length, &verdict, &[], None)),
         }
         tick.set(playback.tick());
-        if tick.get() % TICKS_BETWEEN == 0 {
+        if tick.get().is_multiple_of(TICKS_BETWEEN) {
             shared.ticks.fetch_add(TICKS_BETWEEN, Ordering::Relaxed);
             if shared.stop.load(Ordering::Relaxed) {
                 return None;

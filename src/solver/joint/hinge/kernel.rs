@@ -135,10 +135,10 @@ impl<L: Lanes<N>, const N: usize> Parts<L, N> {
 fn entry<L: Lanes<N>, const N: usize>(
     (part_a, a): (&Parts<L, N>, L::Int),
     (part_b, b): (&Parts<L, N>, L::Int),
-) -> [i64; N] {
+) -> L::Wide {
     let high = L::add_wide(L::mul(part_a.high, a), L::mul(part_b.high, b));
     let low = L::add_wide(L::mul(part_a.low, a), L::mul(part_b.low, b));
-    L::to_array(L::add_wide(high, L::mul(L::narrow::<32>(low), L::splat(1))))
+    L::add_wide(high, L::mul(L::narrow::<32>(low), L::splat(1)))
 }
 
 /// `G = K^-1`.
@@ -146,34 +146,10 @@ fn entry<L: Lanes<N>, const N: usize>(
 fn inverse<L: Lanes<N>, const N: usize>([a, b]: [[L::Int; 2]; 2], fractions: [L::Int; 2]) -> [L::Int; 3] {
     let (a_x, a_y) = (Parts::<L, N>::of(fractions[0], a[0]), Parts::<L, N>::of(fractions[0], a[1]));
     let (b_x, b_y) = (Parts::<L, N>::of(fractions[1], b[0]), Parts::<L, N>::of(fractions[1], b[1]));
-    let xx = entry((&a_x, a[0]), (&b_x, b[0]));
-    let xy = entry((&a_x, a[1]), (&b_x, b[1]));
-    let yy = entry((&a_y, a[1]), (&b_y, b[1]));
-    let mut g = [Ints::ZERO; 3];
-    for lane in 0..N {
-        [g[0].0[lane], g[1].0[lane], g[2].0[lane]] = inverse_of(xx[lane], xy[lane], yy[lane]);
-    }
-    [L::load(&g[0]), L::load(&g[1]), L::load(&g[2])]
-}
-
-/// The entries `g11, g12, g22` of `G` with 30 fraction bits, from those of `K - I` with 46.
-#[inline(always)]
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "1 <= det < 2^27, and G is at most 1"
-)]
-#[expect(clippy::cast_possible_wrap, reason = "a reciprocal is at most 2^33")]
-fn inverse_of(xx: i64, xy: i64, yy: i64) -> [i32; 3] {
-    const ONE: i64 = 1 << 46;
-    let (k11, k22) = (ONE + xx, ONE + yy);
-    // 92 fraction bits, of which 30 are kept.
-    let det = ((i128::from(k11) * i128::from(k22) - i128::from(xy) * i128::from(xy)) >> 62) as u64;
-    // Normalised to 32 bits: its reciprocal then has 31, and products fit 64.
-    let excess = 32u32.saturating_sub((det | 1).leading_zeros());
-    let reciprocal = ((1u64 << 62) / (det >> excess).max(1 << 29)) as i64;
-    let entry = |value: i64| ((((value >> (16 + excess)) * reciprocal) + (1 << 31)) >> 32) as i32;
-    [entry(k22), entry(-xy), entry(k11)]
+    let xx = entry::<L, N>((&a_x, a[0]), (&b_x, b[0]));
+    let xy = entry::<L, N>((&a_x, a[1]), (&b_x, b[1]));
+    let yy = entry::<L, N>((&a_y, a[1]), (&b_y, b[1]));
+    L::inverse([xx, xy, yy])
 }
 
 /// The gains of the body on a side.

@@ -1,42 +1,21 @@
 //! Eight lanes in vectors of 256 bits. A product of eight is two vectors: those of the even and of the odd lanes.
 #![expect(unsafe_code, reason = "vendor intrinsics")]
 
-#[path = "avx2/records.rs"]
-mod records;
+#[path = "avx2/rows.rs"]
+mod rows;
 
 use core::arch::x86_64::*;
 use core::cell::Cell;
 
-use super::body::SolverBody;
-use super::{Backend, Ints, Kernel, Lanes, Motion, Quad, WIDTH};
-use records::{Records, motion, set_motions, transposed};
+use super::super::body::SolverBody;
+use super::super::{Ints, Lanes, Motion, Quad, WIDTH};
+use super::records::Records;
+use rows::{motion, set_motions, transposed};
 
-/// The processor's AVX2 instructions. Only a [`super::Machine`] that has them runs kernels with it: every `unsafe`
-/// here is an instruction that is there then.
+/// The processor's AVX2 instructions. Only a [`super::super::Machine`] that has them runs kernels with it: every
+/// `unsafe` here is an instruction that is there then.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Avx2;
-
-pub(super) use Avx2 as Native;
-
-impl Avx2 {
-    pub(super) fn backend() -> Option<Backend> {
-        #[cfg(feature = "std")]
-        let has = std::arch::is_x86_feature_detected!("avx2");
-        #[cfg(not(feature = "std"))]
-        let has = cfg!(target_feature = "avx2");
-        has.then_some(Backend::Avx2)
-    }
-
-    /// Runs a kernel on a processor that has been asked.
-    pub(super) fn run(kernel: impl Kernel<WIDTH>) {
-        #[target_feature(enable = "avx2")]
-        unsafe fn compiled(kernel: impl Kernel<WIDTH>) {
-            kernel.run::<Avx2>();
-        }
-        // SAFETY: see `Avx2`.
-        unsafe { compiled(kernel) }
-    }
-}
 
 #[derive(Clone, Copy)]
 pub(super) struct Products {
@@ -249,6 +228,15 @@ impl Lanes<WIDTH> for Avx2 {
     fn low(a: Products) -> __m256i {
         // SAFETY: see `Avx2`.
         unsafe { interleave(a.even, _mm256_slli_epi64::<32>(a.odd)) }
+    }
+
+    #[inline(always)]
+    fn shift_down<const SHIFT: i32>(a: Products) -> Products {
+        // SAFETY: see `Avx2`.
+        unsafe {
+            let shift = _mm_cvtsi32_si128(SHIFT);
+            Products { even: _mm256_srl_epi64(a.even, shift), odd: _mm256_srl_epi64(a.odd, shift) }
+        }
     }
 
     #[inline(always)]

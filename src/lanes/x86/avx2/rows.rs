@@ -3,48 +3,8 @@
 
 use core::arch::x86_64::*;
 
-use super::super::body::GROUND;
-use super::super::{Motion, WIDTH};
-
-/// Eight records of many.
-pub(super) struct Records<'a, T> {
-    all: &'a [T],
-    at: &'a [u32; WIDTH],
-}
-
-impl<'a, T> Records<'a, T> {
-    /// Looks at all eight places at once: a check for each of them took as long as what is done with its record.
-    #[inline(always)]
-    #[expect(clippy::cast_possible_wrap, reason = "compared without a sign")]
-    pub(super) fn new(all: &'a [T], at: &'a [u32; WIDTH]) -> Self {
-        let last = u32::try_from(all.len().saturating_sub(1)).unwrap_or(u32::MAX);
-        // SAFETY: see `super::Avx2`; 32 bytes.
-        let outside = unsafe {
-            let at = _mm256_loadu_si256(at.as_ptr().cast());
-            let within = _mm256_min_epu32(at, _mm256_set1_epi32(last as i32));
-            _mm256_movemask_epi8(_mm256_cmpeq_epi32(at, within)) != -1
-        };
-        assert!(!(outside || all.is_empty()), "places of records that are there");
-        Records { all, at }
-    }
-
-    /// Whether the ground is among them.
-    #[inline(always)]
-    fn has_ground(&self) -> bool {
-        const { assert!(GROUND == 0) };
-        // SAFETY: see `super::Avx2`; 32 bytes.
-        unsafe {
-            let at = _mm256_loadu_si256(self.at.as_ptr().cast());
-            _mm256_movemask_epi8(_mm256_cmpeq_epi32(at, _mm256_setzero_si256())) != 0
-        }
-    }
-
-    #[inline(always)]
-    pub(super) fn get(&self, lane: usize) -> &'a T {
-        // SAFETY: `new` has seen that it is there.
-        unsafe { self.all.get_unchecked(self.at[lane] as usize) }
-    }
-}
+use super::super::records::Records;
+use super::Motion;
 
 /// Writes three numbers of all bodies, and a 0, to where each body has them, but for the ground.
 #[inline(always)]
@@ -60,16 +20,12 @@ pub(super) fn set_motions<T>(bodies: &Records<'_, T>, v: Motion<__m256i>, place:
             _mm256_unpacklo_epi64(xy_high, t_high),
             _mm256_unpackhi_epi64(xy_high, t_high),
         ];
-        // Most batches are away from it: then no lane has to be asked.
-        let has_ground = bodies.has_ground();
-        for (lane, &pair) in pairs.iter().enumerate() {
-            let (low, high) = (_mm256_castsi256_si128(pair), _mm256_extracti128_si256::<1>(pair));
-            for (lane, motion) in [(lane, low), (lane + 4, high)] {
-                if !has_ground || bodies.at[lane] != GROUND {
-                    _mm_store_si128(place(bodies.get(lane)).cast(), motion);
-                }
-            }
-        }
+        bodies.each_but_the_ground(|lane, body| {
+            let pair = pairs[lane % 4];
+            let row =
+                if lane < 4 { _mm256_castsi256_si128(pair) } else { _mm256_extracti128_si256::<1>(pair) };
+            _mm_store_si128(place(body).cast(), row);
+        });
     }
 }
 

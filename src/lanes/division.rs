@@ -1,0 +1,32 @@
+//! Quotients of single numbers: what vectors without a division of their own come down to.
+
+/// `1 / d`, both with 30 fraction bits, rounded down; of less than 1 as of 1.
+#[inline(always)]
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "d is 1 or more, so it is at most 1"
+)]
+pub(super) fn reciprocal(d: i64) -> i32 {
+    ((1u64 << 60) / d.max(1 << 30) as u64) as i32
+}
+
+/// The entries `g11, g12, g22` of `G = K^-1` with 30 fraction bits, from those of `K - I` with 46.
+#[inline(always)]
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "1 <= det < 2^27, and G is at most 1"
+)]
+#[expect(clippy::cast_possible_wrap, reason = "a reciprocal is at most 2^33")]
+pub(super) fn inverse([xx, xy, yy]: [i64; 3]) -> [i32; 3] {
+    const ONE: i64 = 1 << 46;
+    let (k11, k22) = (ONE + xx, ONE + yy);
+    // 92 fraction bits, of which 30 are kept.
+    let det = ((i128::from(k11) * i128::from(k22) - i128::from(xy) * i128::from(xy)) >> 62) as u64;
+    // Normalised to 32 bits: its reciprocal then has 31, and products fit 64.
+    let excess = 32u32.saturating_sub((det | 1).leading_zeros());
+    let reciprocal = ((1u64 << 62) / (det >> excess).max(1 << 29)) as i64;
+    let entry = |value: i64| ((((value >> (16 + excess)) * reciprocal) + (1 << 31)) >> 32) as i32;
+    [entry(k22), entry(-xy), entry(k11)]
+}

@@ -1,0 +1,53 @@
+//! The vectors of x86-64 processors, the widest that this one has.
+#![expect(unsafe_code, reason = "vendor intrinsics")]
+
+#[path = "x86/avx2.rs"]
+mod avx2;
+#[path = "x86/avx512.rs"]
+mod avx512;
+#[path = "x86/records.rs"]
+mod records;
+
+use super::{Backend, Kernel, WIDTH};
+use avx2::Avx2;
+use avx512::Avx512;
+
+pub(super) struct Native;
+
+/// Whether the processor has all of these features: by asking it, or by what the program is compiled for.
+macro_rules! has {
+    ($($feature:tt),+) => {{
+        #[cfg(feature = "std")]
+        let has = $(std::arch::is_x86_feature_detected!($feature))&&+;
+        #[cfg(not(feature = "std"))]
+        let has = $(cfg!(target_feature = $feature))&&+;
+        has
+    }};
+}
+
+impl Native {
+    pub(super) fn backends() -> impl Iterator<Item = Backend> {
+        let avx2 = has!("avx2").then_some(Backend::Avx2);
+        let wide = has!("avx2", "avx512f", "avx512cd", "avx512dq", "bmi2", "popcnt");
+        avx2.into_iter().chain(wide.then_some(Backend::Avx512))
+    }
+
+    /// Runs a kernel on a processor that has been asked whether it has this backend.
+    pub(super) fn run(backend: Backend, kernel: impl Kernel<WIDTH>) {
+        #[target_feature(enable = "avx2")]
+        unsafe fn with_avx2(kernel: impl Kernel<WIDTH>) {
+            kernel.run::<Avx2>();
+        }
+        #[target_feature(enable = "avx2,avx512f,avx512cd,avx512dq,bmi2,popcnt")]
+        unsafe fn with_avx512(kernel: impl Kernel<WIDTH>) {
+            kernel.run::<Avx512>();
+        }
+        // SAFETY: only a `Machine` that has a backend runs kernels with it.
+        unsafe {
+            match backend {
+                Backend::Avx512 => with_avx512(kernel),
+                _ => with_avx2(kernel),
+            }
+        }
+    }
+}
