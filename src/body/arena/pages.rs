@@ -1,5 +1,5 @@
 //! Arenas in pages that snapshots share: a page is copied once and then shared by all snapshots, until something in
-//! it changes.
+//! it changes. As long as nothing in an arena does, snapshots share all of it at once.
 //!
 //! Values are copied without what every step changes (velocities, impulses), which snapshots keep elsewhere. So a
 //! world in which nothing comes, goes or is redefined copies no page at all.
@@ -32,11 +32,22 @@ struct Vacancies {
     digest: StateHash,
 }
 
+/// A copy of a whole arena, as far as snapshots share it.
+#[derive(Debug, PartialEq)]
+struct Whole<T> {
+    pages: Vec<Arc<Page<T>>>,
+    vacancies: Arc<Vacancies>,
+    /// The digests of the vacancies and of each page, so that nobody has to go to every page for them.
+    digests: Vec<StateHash>,
+}
+
 /// The copies that are still as the arena is, where there are any. A cache: it is no part of the state.
 #[derive(Debug)]
 pub(super) struct Kept<T> {
     pages: Vec<OnceBox<Arc<Page<T>>>>,
     vacancies: OnceBox<Arc<Vacancies>>,
+    /// Of all of these.
+    whole: OnceBox<Arc<Whole<T>>>,
     /// How often something has changed of what pages are copies of.
     revision: u64,
     /// How often the arena has returned to what it was.
@@ -45,14 +56,20 @@ pub(super) struct Kept<T> {
 
 impl<T> Default for Kept<T> {
     fn default() -> Self {
-        Kept { pages: Vec::new(), vacancies: OnceBox::new(), revision: 0, returns: 0 }
+        Kept { pages: Vec::new(), vacancies: OnceBox::new(), whole: OnceBox::new(), revision: 0, returns: 0 }
     }
 }
 
 impl<T> Clone for Kept<T> {
     fn clone(&self) -> Self {
-        let Kept { pages, vacancies, revision, returns } = self;
-        Kept { pages: pages.clone(), vacancies: vacancies.clone(), revision: *revision, returns: *returns }
+        let Kept { pages, vacancies, whole, revision, returns } = self;
+        Kept {
+            pages: pages.clone(),
+            vacancies: vacancies.clone(),
+            whole: whole.clone(),
+            revision: *revision,
+            returns: *returns,
+        }
     }
 }
 
@@ -67,6 +84,7 @@ impl<T> Kept<T> {
     /// Forgets the copy of the page that a slot is in.
     pub(super) fn changed(&mut self, slot: u32) {
         self.revision += 1;
+        self.whole = OnceBox::new();
         if let Some(page) = self.pages.get_mut(slot as usize / PAGE_SLOTS) {
             *page = OnceBox::new();
         }
@@ -87,43 +105,31 @@ impl<T> Kept<T> {
 
 /// An arena as a snapshot has it: without what every step changes.
 #[derive(Debug, PartialEq)]
-pub(crate) struct SharedArena<T> {
-    pages: Vec<Arc<Page<T>>>,
-    vacancies: Arc<Vacancies>,
-}
+pub(crate) struct SharedArena<T>(Arc<Whole<T>>);
 
 impl<T> Default for SharedArena<T> {
     fn default() -> Self {
-        SharedArena { pages: Vec::new(), vacancies: Arc::default() }
+        let vacancies = Arc::default();
+        SharedArena(Arc::new(Whole { pages: Vec::new(), vacancies, digests: Vec::new() }))
     }
 }
 
 impl<T> Clone for SharedArena<T> {
     fn clone(&self) -> Self {
-        SharedArena { pages: self.pages.clone(), vacancies: self.vacancies.clone() }
-    }
-
-    fn clone_from(&mut self, other: &Self) {
-        self.pages.clone_from(&other.pages);
-        self.vacancies.clone_from(&other.vacancies);
+        SharedArena(self.0.clone())
     }
 }
 
 impl<T> SharedArena<T> {
     /// The digests of the free list and of each page.
     pub(crate) fn digests(&self) -> impl Iterator<Item = StateHash> {
-        core::iter::once(self.vacancies.digest).chain(self.pages.iter().map(|page| page.digest))
+        self.0.digests.iter().copied()
     }
 
     /// How many pages are the very same as those of another snapshot.
     #[cfg(test)]
     pub(crate) fn shared_with(&self, other: &Self) -> usize {
-        self.pages.iter().zip(&other.pages).filter(|(a, b)| Arc::ptr_eq(a, b)).count()
-    }
-
-    /// How many bytes it takes to name the pages.
-    pub(crate) fn size(&self) -> usize {
-        self.pages.len() * size_of::<Arc<Page<T>>>()
+        self.0.pages.iter().zip(&other.0.pages).filter(|(a, b)| Arc::ptr_eq(a, b)).count()
     }
 }
 
@@ -144,34 +150,36 @@ impl<T, H> Arena<T, H> {
         self.kept.fit(self.slots.len());
     }
 
-    /// Shares the arena: only pages that have changed since they were last shared are copied, value by value.
+    /// Shares the arena: only pages that have changed since they were last shared are copied, value by value. If none has,
+    /// that costs nothing.
     pub(crate) fn share_into(&self, shared: &mut SharedArena<T>, copy: impl Fn(&T) -> T)
     where
         T: PartialEq + Serialize,
     {
-        let SharedArena { pages, vacancies } = shared;
-        pages.truncate(self.slots.len().div_ceil(PAGE_SLOTS));
-        for (index, slots) in self.slots.chunks(PAGE_SLOTS).enumerate() {
-            let page_of = || Box::new(Arc::new(Page::of(slots, &copy)));
-            let unkept;
-            let page = match self.kept.pages.get(index) {
-                Some(kept) => kept.get_or_init(page_of),
-                None => {
-                    unkept = page_of();
-                    &*unkept
-                }
-            };
-            debug_assert!(page.is_copy_of(slots, &copy), "a change that the arena was not told about");
-            match pages.get_mut(index) {
-                Some(old) if Arc::ptr_eq(old, page) => {}
-                Some(old) => *old = page.clone(),
-                None => pages.push(page.clone()),
-            }
+        let whole = self.kept.whole.get_or_init(|| Box::new(Arc::new(self.whole(&copy))));
+        debug_assert!(whole.is_copy_of(self, &copy), "a change that the arena was not told about");
+        if !Arc::ptr_eq(&shared.0, whole) {
+            shared.0 = whole.clone();
         }
+    }
+
+    fn whole(&self, copy: impl Fn(&T) -> T) -> Whole<T>
+    where
+        T: Serialize,
+    {
         let vacancies_of = || Box::new(Arc::new(Vacancies::of(&self.free, self.retired)));
-        let current = self.kept.vacancies.get_or_init(vacancies_of);
-        debug_assert_eq!(**current, Vacancies::of(&self.free, self.retired));
-        vacancies.clone_from(current);
+        let vacancies = self.kept.vacancies.get_or_init(vacancies_of).clone();
+        let pages = self.slots.chunks(PAGE_SLOTS).enumerate().map(|(index, slots)| {
+            let page_of = || Box::new(Arc::new(Page::of(slots, &copy)));
+            match self.kept.pages.get(index) {
+                Some(kept) => kept.get_or_init(page_of).clone(),
+                None => *page_of(),
+            }
+        });
+        let pages: Vec<_> = pages.collect();
+        let of_pages = pages.iter().map(|page| page.digest);
+        let digests = core::iter::once(vacancies.digest).chain(of_pages).collect();
+        Whole { pages, vacancies, digests }
     }
 
     /// Returns to a shared arena, and calls `changed` with every slot that may now be another one, or that is gone. The
@@ -180,14 +188,18 @@ impl<T, H> Arena<T, H> {
     where
         T: Clone,
     {
-        let slot_count = shared.pages.iter().map(|page| page.slots.len()).sum();
+        self.kept.returns += 1;
+        let SharedArena(whole) = shared;
+        if self.kept.whole.get().is_some_and(|kept| Arc::ptr_eq(kept, whole)) {
+            return;
+        }
+        let slot_count = whole.pages.iter().map(|page| page.slots.len()).sum();
         (slot_count..self.slots.len()).filter_map(|slot| u32::try_from(slot).ok()).for_each(&mut changed);
         let mut other = slot_count != self.slots.len();
         self.slots.truncate(slot_count);
         self.kept.fit(slot_count);
-        self.kept.returns += 1;
         let mut first = 0;
-        for (page, kept) in shared.pages.iter().zip(&mut self.kept.pages) {
+        for (page, kept) in whole.pages.iter().zip(&mut self.kept.pages) {
             let next = first + page.slots.len();
             let same = kept.get().is_some_and(|kept| Arc::ptr_eq(kept, page));
             if !same {
@@ -200,10 +212,20 @@ impl<T, H> Arena<T, H> {
             }
             first = next;
         }
-        self.free.clone_from(&shared.vacancies.free);
-        self.retired = shared.vacancies.retired;
-        self.kept.vacancies = OnceBox::with_value(Box::new(shared.vacancies.clone()));
+        self.free.clone_from(&whole.vacancies.free);
+        self.retired = whole.vacancies.retired;
+        self.kept.vacancies = OnceBox::with_value(Box::new(whole.vacancies.clone()));
+        self.kept.whole = OnceBox::with_value(Box::new(whole.clone()));
         self.kept.revision += u64::from(other);
+    }
+}
+
+impl<T: PartialEq> Whole<T> {
+    fn is_copy_of<H>(&self, arena: &Arena<T, H>, copy: impl Fn(&T) -> T) -> bool {
+        let mut pages = self.pages.iter().zip(arena.slots.chunks(PAGE_SLOTS));
+        self.pages.len() == arena.slots.len().div_ceil(PAGE_SLOTS)
+            && pages.all(|(page, slots)| page.is_copy_of(slots, &copy))
+            && *self.vacancies == Vacancies::of(&arena.free, arena.retired)
     }
 }
 

@@ -48,9 +48,20 @@ fn is_fixed(shape: &Shape, bodies: &Bodies) -> bool {
     bodies.get(shape.body).is_some_and(|body| body.kind == BodyKind::Fixed)
 }
 
-pub(super) fn pack_bodies(bodies: &Bodies, bytes: &mut Vec<u8>) {
+/// Packs bodies, and the boxes of their shapes on the way if these come in the order of their slots: bodies are large, and
+/// to go to each of them twice takes most of the time.
+pub(super) fn pack_bodies(bodies: &Bodies, shapes: &Shapes, bytes: &mut Vec<u8>, box_bytes: &mut Vec<u8>) {
     let mut special = Vec::new();
+    let mut boxes = BoxWriter::new(box_bytes, shapes);
+    let (mut next, mut in_order) = (0, true);
     put_records(bytes, bodies.len(), bodies.iter(), |(id, body), record: &mut Record<'_, BODY_BYTES>| {
+        for shape in body.shapes() {
+            in_order &= shape.slot() >= next;
+            next = shape.slot() + 1;
+            if in_order && body.kind != BodyKind::Fixed {
+                boxes.put(shapes.at(shape.slot()).fat, body.centre);
+            }
+        }
         put_place(record, body.centre, body.angle);
         record.put(body.velocity.x.to_bits());
         record.put(body.velocity.y.to_bits());
@@ -60,6 +71,10 @@ pub(super) fn pack_bodies(bodies: &Bodies, bytes: &mut Vec<u8>) {
             special.push((id, body));
         }
     });
+    boxes.finish();
+    if !in_order {
+        pack_boxes(shapes, bodies, box_bytes);
+    }
     let mut rest = Vec::new();
     let mut writer = Writer::new(&mut rest, special.len() * SPECIAL_BYTES);
     special.into_iter().for_each(|(id, body)| writer.record(|record| pack_special(id, body, record)));
@@ -152,24 +167,45 @@ fn take_point<const N: usize>(fields: &mut Fields<'_, N>) -> Vec2<Fx> {
     Vec2::new(Fx::from_bits(fields.take()), Fx::from_bits(fields.take()))
 }
 
-pub(super) fn pack_boxes(shapes: &Shapes, bodies: &Bodies, bytes: &mut Vec<u8>) {
-    let mut far = Vec::new();
-    let mut writer = Writer::new(bytes, shapes.len() * BOX_BYTES);
+fn pack_boxes(shapes: &Shapes, bodies: &Bodies, bytes: &mut Vec<u8>) {
+    let mut boxes = BoxWriter::new(bytes, shapes);
     for (_, shape) in shapes.iter() {
         let body = bodies.at(shape.body.slot());
-        if body.kind == BodyKind::Fixed {
-            continue;
+        if body.kind != BodyKind::Fixed {
+            boxes.put(shape.fat, body.centre);
         }
-        let near = about(shape.fat, body.centre);
+    }
+    boxes.finish();
+}
+
+/// Writes boxes, in the order of the slots of their shapes.
+struct BoxWriter<'a> {
+    near: Writer<'a>,
+    far: Vec<i64>,
+}
+
+impl<'a> BoxWriter<'a> {
+    fn new(bytes: &'a mut Vec<u8>, shapes: &Shapes) -> Self {
+        BoxWriter { near: Writer::new(bytes, shapes.len() * BOX_BYTES), far: Vec::new() }
+    }
+
+    /// The box of a shape whose body's centre is there.
+    #[inline(always)]
+    fn put(&mut self, fat: Aabb, centre: Vec2<Fx>) {
+        let near = about(fat, centre);
         if near.is_none() {
-            far.extend(corners(shape.fat).map(Fx::to_bits));
+            self.far.extend(corners(fat).map(Fx::to_bits));
         }
         let steps = near.unwrap_or([NOT_NEAR, 0, 0, 0]);
-        writer
-            .record(|record: &mut Record<'_, BOX_BYTES>| steps.into_iter().for_each(|step| record.put(step)));
+        let put = |record: &mut Record<'_, BOX_BYTES>| steps.into_iter().for_each(|step| record.put(step));
+        self.near.record(put);
     }
-    drop(writer);
-    far.into_iter().for_each(|corner| bytes.extend_from_slice(&corner.to_le_bytes()));
+
+    fn finish(mut self) {
+        for corner in self.far {
+            self.near.record(|record: &mut Record<'_, 8>| record.put(corner));
+        }
+    }
 }
 
 fn corners(fat: Aabb) -> [Fx; 4] {

@@ -61,14 +61,14 @@ struct Rest {
     rng: Rng,
 }
 
-/// What every step changes.
+/// What every step changes: each kind of it as bytes, or their digest.
 #[derive(Clone, Debug, Default, PartialEq)]
-struct Packed {
-    bodies: Vec<u8>,
-    boxes: Vec<u8>,
-    joints: Vec<u8>,
-    contacts: Vec<u8>,
-    impulses: Vec<u8>,
+struct Packed<T = Vec<u8>> {
+    bodies: T,
+    boxes: T,
+    joints: T,
+    contacts: T,
+    impulses: T,
 }
 
 impl PartialEq for Snapshot {
@@ -105,11 +105,20 @@ impl Snapshot {
     /// How many bytes of memory it takes for itself, without what it shares with the world and other snapshots.
     #[must_use]
     pub fn rollback_bytes(&self) -> usize {
-        let Snapshot { rest, bodies, shapes, joints, islands, resting: _, packed, digest: _, changes } = self;
-        let pages = bodies.size() + shapes.size() + joints.size() + islands.size();
+        let Snapshot {
+            rest,
+            bodies: _,
+            shapes: _,
+            joints: _,
+            islands: _,
+            resting: _,
+            packed,
+            digest: _,
+            changes,
+        } = self;
         let packed: usize = packed.buffers().iter().map(|buffer| buffer.len()).sum();
         let lists = size_of_val(&*rest.removed_contacts) + size_of_val(&*changes.shapes);
-        size_of::<Self>() + pages + packed + lists
+        size_of::<Self>() + packed + lists
     }
 
     fn empty(state: &State) -> Self {
@@ -148,31 +157,36 @@ impl Snapshot {
         shapes.share_into(&mut self.shapes, |shape| bodies::lasting_shape(shape, bodies));
         joints.share_into(&mut self.joints, constraints::lasting_joint);
         islands.share_into(&mut self.islands, Island::clone);
+        // Each buffer is hashed as soon as it is written, while it is near.
         let Packed { bodies: motions, boxes, joints: turns, contacts: heads, impulses } = &mut self.packed;
-        bodies::pack_bodies(bodies, motions);
-        bodies::pack_boxes(shapes, bodies, boxes);
+        bodies::pack_bodies(bodies, shapes, motions, boxes);
+        let [bodies, boxes] = [StateHash::of_bytes(motions), StateHash::of_bytes(boxes)];
         constraints::pack_joints(joints, turns);
+        let joints = StateHash::of_bytes(turns);
         constraints::pack_contacts(contacts, heads, impulses);
+        let [contacts, impulses] = [StateHash::of_bytes(heads), StateHash::of_bytes(impulses)];
         self.resting = resting.share();
         changes.keep(&mut self.changes);
-        self.digest = self.find_digest();
+        self.digest = self.digest_with(Packed { bodies, boxes, joints, contacts, impulses });
     }
 
-    fn find_digest(&self) -> WorldDigest {
-        let Snapshot { rest, bodies, shapes, joints, islands, resting, packed, digest: _, changes: _ } = self;
+    /// The digest of all of it, with those of what is packed.
+    fn digest_with(&self, packed: Packed<StateHash>) -> WorldDigest {
+        let Snapshot { rest, bodies, shapes, joints, islands, resting, packed: _, digest: _, changes: _ } =
+            self;
         let Rest { config, tick, faults, pairs_left_out, removed_contacts, rng } = rest;
-        fn of(shared: impl Iterator<Item = StateHash>, packed: &[u8]) -> StateHash {
-            StateHash::of_digests(shared.chain([StateHash::of_bytes(packed)]))
+        fn of(shared: impl Iterator<Item = StateHash>, packed: StateHash) -> StateHash {
+            StateHash::of_digests(shared.chain([packed]))
         }
         let ended = StateHash::of(&(pairs_left_out, removed_contacts));
-        let contacts = [ended, resting.digest, StateHash::of_bytes(&packed.contacts)].into_iter();
+        let contacts = [ended, resting.digest, packed.contacts].into_iter();
         WorldDigest {
             sections: [
                 (Section::World, StateHash::of(&(config, tick, faults))),
-                (Section::Bodies, of(bodies.digests(), &packed.bodies)),
-                (Section::Shapes, of(shapes.digests(), &packed.boxes)),
-                (Section::Joints, of(joints.digests(), &packed.joints)),
-                (Section::Contacts, of(contacts, &packed.impulses)),
+                (Section::Bodies, of(bodies.digests(), packed.bodies)),
+                (Section::Shapes, of(shapes.digests(), packed.boxes)),
+                (Section::Joints, of(joints.digests(), packed.joints)),
+                (Section::Contacts, of(contacts, packed.impulses)),
                 (Section::Islands, StateHash::of_digests(islands.digests())),
                 (Section::Random, StateHash::of(rng)),
             ],
