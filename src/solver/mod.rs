@@ -115,7 +115,7 @@ impl Solver {
     ) {
         let Solver { list, nodes, colouring, .. } = self;
         self.joints.prepare((joints, slots), (bodies, list), tuning, nodes, colouring);
-        self.joints.refresh(&self.list.bodies, tuning);
+        self.joints.refresh(self.machine, &self.list.bodies, tuning);
     }
 
     /// [`Joint::reaction`] without memory of its own, once the joints of the tick have been solved.
@@ -158,7 +158,7 @@ impl Solver {
         }
         let bodies = SolverBody::cells(&mut self.list.bodies);
         integrate_displacements(&self.movers, bodies, self.machine, tuning, &mut self.faults);
-        self.joints.refresh(&self.list.bodies, tuning);
+        self.joints.refresh(self.machine, &self.list.bodies, tuning);
         if tuning.relax {
             for iteration in 0..iterations {
                 self.solve(Pass::Relax, Sweep::of(index, iteration), tuning);

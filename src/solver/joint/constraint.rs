@@ -14,10 +14,11 @@ use super::def::JointKind;
 use super::hinge::{AngleParts, End, Expired, HingeSet, Poses, Task, Turning, node};
 use super::list::JointList;
 use super::place::{Ends, Turned};
+use super::rotations::Rotations;
 use super::state::{Joint, JointImpulses};
 use crate::body::{Arena, Body, BodyId, JointId};
 use crate::lanes::{Machine, Quad};
-use crate::math::{Angle, Fx, Rot, Unit, Vec2, fx_mul, mul, widen};
+use crate::math::{Fx, Unit, Vec2, fx_mul, mul, widen};
 
 /// All joints, for one tick.
 #[derive(Clone, Debug, Default)]
@@ -220,17 +221,10 @@ impl JointSet {
     }
 
     /// Arms, gains and gaps at the present pose; those of hinges when the next task comes to them.
-    pub(crate) fn refresh(&mut self, bodies: &[SolverBody], tuning: &Tuning) {
+    pub(crate) fn refresh(&mut self, machine: Machine, bodies: &[SolverBody], tuning: &Tuning) {
         let mut any_turned = false;
-        for body in &self.turning {
-            let at = body.index as usize;
-            let turns = body.turns_of(bodies[at].turn);
-            let turned = &mut self.turned[at];
-            any_turned |= turned.turn_to(body.angle + Angle::from_turns(Fx::from_bits(turns)));
-            turned.turns = turns;
-            let Rot { cos, sin } = turned.rotation;
-            self.quads[at] = Quad([cos.to_bits(), sin.to_bits(), 0, 0]);
-        }
+        let JointSet { turning, turned, quads, .. } = self;
+        machine.run(Rotations { turning, bodies, turned, quads, any: &mut any_turned });
         self.hinges.expire(if any_turned { Expired::Everything } else { Expired::Gaps });
         for (joint, (_, rows, points)) in self.list.walk_joints() {
             let place = joint.ends.place(bodies, &self.turned);
@@ -344,7 +338,7 @@ impl JointSet {
         }
         let machine = Machine::default();
         let mut bodies = [SolverBody::default(); 3];
-        self.refresh(&bodies, tuning);
+        self.refresh(machine, &bodies, tuning);
         self.warm_start(machine, tuning, &mut bodies, &mut 0);
         let place = Ends::prepare(joint, (1, a), (2, b)).place(&[SolverBody::default(); 3], &self.turned);
         // The lighter one shows more of it.

@@ -18,6 +18,7 @@ mod place;
 mod point;
 mod prismatic;
 mod revolute;
+mod rotations;
 mod row;
 mod state;
 mod weld;

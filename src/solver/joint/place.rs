@@ -19,19 +19,6 @@ pub(super) struct Turned {
     pub(super) turns: i64,
 }
 
-impl Turned {
-    /// Turns to an angle, and says whether that is another one: a tick begins where the last one has ended.
-    #[inline]
-    pub(super) fn turn_to(&mut self, angle: Angle) -> bool {
-        let other = self.angle != angle;
-        if other {
-            self.rotation = Rot::from_angle(angle);
-            self.angle = angle;
-        }
-        other
-    }
-}
-
 /// The ends of a joint, for one tick.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Ends {
