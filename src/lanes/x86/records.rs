@@ -41,8 +41,11 @@ impl<'a, T> Records<'a, T> {
 
     #[inline(always)]
     pub(super) fn get(&self, lane: usize) -> &'a T {
-        // SAFETY: `new` has seen that it is there.
-        unsafe { self.all.get_unchecked(self.at[lane] as usize) }
+        // Read by itself: the compiler would take the place out of the vector that `new` has looked at, by the units of
+        // the processor that kernels wait for.
+        let at: *const u32 = &self.at[lane];
+        // SAFETY: a place that can be read; `new` has seen that a record is there.
+        unsafe { self.all.get_unchecked(at.read_volatile() as usize) }
     }
 
     /// Does something with each of eight bodies but those at the ground's place. Most batches are away from it: then no
