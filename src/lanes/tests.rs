@@ -110,7 +110,7 @@ fn entries(rng: &mut Rng) -> [i64; 3] {
     for fraction in [a, (1 << 30) - a] {
         let mut ratio = || i64::from(random(rng)) >> 1 >> 7;
         let [x, y] = [ratio(), ratio()];
-        let term = |a: i64, b: i64| i64::try_from((i128::from(fraction) * i128::from(a * b)) >> 18).unwrap();
+        let term = |a: i64, b: i64| i64::try_from((i128::from(fraction) * i128::from(a * b)) >> 16).unwrap();
         sum = [sum[0] + term(x, x), sum[1] + term(x, y), sum[2] + term(y, y)];
     }
     sum
