@@ -43,13 +43,9 @@ impl Rot {
     /// The rotations by several angles. With the loops inlined where they are called, they become vectors.
     #[inline(always)]
     pub(crate) fn from_angles<const N: usize>(angles: &[Angle; N]) -> [Self; N] {
-        let (mut sines, mut cosines) = ([Unit::ZERO; N], [Unit::ZERO; N]);
-        for ((sin, cos), angle) in sines.iter_mut().zip(&mut cosines).zip(angles) {
-            (*sin, *cos) = angle.sin_cos();
-        }
         let mut rotations = [Rot::IDENTITY; N];
-        for ((rotation, sin), cos) in rotations.iter_mut().zip(sines).zip(cosines) {
-            *rotation = Rot { cos, sin };
+        for (rotation, &angle) in rotations.iter_mut().zip(angles) {
+            *rotation = Rot::from_angle(angle);
         }
         rotations
     }
