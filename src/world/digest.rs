@@ -1,6 +1,7 @@
 //! The state hash, and the digests it is made of: what a report of a divergence is built from.
 
 use alloc::boxed::Box;
+use alloc::sync::Arc;
 use alloc::vec::Vec;
 use core::fmt;
 use core::ops::{Deref, DerefMut};
@@ -8,6 +9,7 @@ use core::ops::{Deref, DerefMut};
 use once_cell::race::OnceBox;
 
 use super::World;
+use super::rollback::{PackedBodies, Pool};
 use super::state::State;
 use crate::body::BodyId;
 use crate::hash::StateHash;
@@ -104,16 +106,17 @@ impl World {
     }
 }
 
-/// A state, and its digest from when it is found until it changes: whoever may change the state, forgets it.
+/// A state, and what has been found out about it until it changes: whoever may change the state, forgets it.
 #[derive(Clone, Debug)]
 pub(super) struct Hashed {
     state: State,
     digest: OnceBox<WorldDigest>,
+    packs: Pool,
 }
 
 impl Hashed {
     pub(super) fn new(state: State) -> Self {
-        Hashed { state, digest: OnceBox::new() }
+        Hashed { state, digest: OnceBox::new(), packs: Pool::default() }
     }
 
     pub(super) const fn get(&self) -> &State {
@@ -123,6 +126,22 @@ impl Hashed {
     /// Takes note of the digest of the state as it is.
     pub(super) fn set_digest(&self, digest: WorldDigest) {
         self.digest.get_or_init(|| Box::new(digest));
+        self.packs.want();
+    }
+
+    /// Its bodies as snapshots have them, if that is known.
+    pub(super) fn packed_bodies(&self) -> Option<&Arc<PackedBodies>> {
+        self.packs.current()
+    }
+
+    /// Room to pack the bodies in, if they will be wanted after the coming step.
+    pub(super) fn room_for_bodies(&mut self) -> Option<Arc<PackedBodies>> {
+        self.packs.room()
+    }
+
+    /// Takes the bodies of the state as it is, packed.
+    pub(super) fn keep_bodies(&mut self, packed: Option<Arc<PackedBodies>>) {
+        self.packs.keep(packed);
     }
 }
 
@@ -137,6 +156,7 @@ impl Deref for Hashed {
 impl DerefMut for Hashed {
     fn deref_mut(&mut self) -> &mut State {
         self.digest = OnceBox::new();
+        self.packs.forget();
         &mut self.state
     }
 }

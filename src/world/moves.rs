@@ -3,9 +3,10 @@
 use alloc::vec::Vec;
 
 use super::events::MoveEvent;
+use super::rollback::PackedBodies;
 use super::scratch::Scratch;
 use super::state::State;
-use crate::body::Body;
+use crate::body::{Body, BodyId, Handle};
 use crate::math::{Angle, Fx, Vec2};
 
 /// By body slot, how the origin of a body lay about its centre of mass when that was last asked for: most bodies have not
@@ -40,17 +41,25 @@ impl Origins {
     }
 }
 
-/// Lists the bodies that have moved or fallen asleep.
-pub(super) fn report(state: &State, scratch: &mut Scratch) {
+/// Lists the bodies that have moved or fallen asleep, and packs all bodies on the way if that is wanted.
+pub(super) fn report(state: &State, scratch: &mut Scratch, packed: Option<&mut PackedBodies>) {
     let Scratch { roster, solver, events, origins, .. } = scratch;
-    for &slot in &roster.bodies {
-        let (body, solved) = (state.bodies.at(slot), solver.body(slot));
-        let fell_asleep = body.is_asleep();
+    let mut report = |id: BodyId, body: &Body| {
+        let (fell_asleep, solved) = (body.is_asleep(), solver.body(id.slot()));
         if fell_asleep || solved.shift != Vec2::ZERO || solved.turn != 0 {
-            let (id, position, angle) =
-                (state.bodies.handle_at(slot), origins.position(slot, body), body.angle());
+            let (position, angle) = (origins.position(id.slot(), body), body.angle());
             debug_assert_eq!(position, body.position());
             events.moved.push(MoveEvent { body: id, position, angle, fell_asleep });
         }
-    }
+    };
+    let Some(packed) = packed else {
+        let bodies = &state.bodies;
+        return roster.bodies.iter().for_each(|&slot| report(bodies.handle_at(slot), bodies.at(slot)));
+    };
+    let mut moving = roster.bodies.iter().peekable();
+    packed.fill(state, |id, body| {
+        if moving.next_if_eq(&&id.slot()).is_some() {
+            report(id, body);
+        }
+    });
 }

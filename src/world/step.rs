@@ -1,5 +1,7 @@
 //! One tick, as the algorithm reads.
 
+use alloc::sync::Arc;
+
 use super::World;
 use super::change::fattened;
 use super::contacts;
@@ -42,8 +44,9 @@ impl World {
 
     /// The algorithm; `begin` hears of each phase, and sees what it begins with.
     pub(super) fn advance(&mut self, mut begin: impl FnMut(Phase, Sight<'_>)) {
-        let World { state, scratch, phases: _ } = self;
-        let state = &mut **state;
+        let World { state: hashed, scratch, phases: _ } = self;
+        let mut packed = hashed.room_for_bodies();
+        let state = &mut **hashed;
         let settings = state.config.solver;
         let tuning = Tuning::new(&settings, state.config.gravity, state.config.tick_rate);
 
@@ -82,10 +85,11 @@ impl World {
         islands::fall_asleep(state, scratch);
 
         begin(Phase::Report, Sight::of(state, scratch));
-        moves::report(state, scratch);
+        moves::report(state, scratch, packed.as_mut().and_then(Arc::get_mut));
         count(state, scratch);
         // A count that a stranger's snapshot may start anywhere.
         state.tick = state.tick.wrapping_add(1);
+        hashed.keep_bodies(packed);
     }
 }
 

@@ -11,10 +11,11 @@
 use alloc::boxed::Box;
 use alloc::vec::Vec;
 
-use super::packing::{Fields, Reader, Record, Writer, low_half, put_records};
+use super::packing::{Fields, Reader, Record, Writer, low_half};
 use crate::body::{Arena, Body, BodyId, BodyKind, Handle, IslandId, Pose, Shape, ShapeId};
 use crate::math::{Aabb, Angle, Fx, Speed, Vec2};
 use crate::world::change::FAT_GRID_SHIFT;
+use crate::world::state::State;
 
 const FORCE: u8 = 1;
 const ISLAND: u8 = 2;
@@ -24,6 +25,8 @@ const BODY_BYTES: usize = 36;
 /// At most.
 const SPECIAL_BYTES: usize = 5 + 24 + 8 + 20;
 const BOX_BYTES: usize = 16;
+/// Bodies that are packed before their boxes.
+const BLOCK: usize = 32;
 /// In the place of the first step of a box that comes in full.
 const NOT_NEAR: i32 = i32::MIN;
 
@@ -48,38 +51,66 @@ fn is_fixed(shape: &Shape, bodies: &Bodies) -> bool {
     bodies.get(shape.body).is_some_and(|body| body.kind == BodyKind::Fixed)
 }
 
-/// Packs bodies, and the boxes of their shapes on the way if these come in the order of their slots: bodies are large, and
-/// to go to each of them twice takes most of the time.
-pub(super) fn pack_bodies(bodies: &Bodies, shapes: &Shapes, bytes: &mut Vec<u8>, box_bytes: &mut Vec<u8>) {
-    let mut special = Vec::new();
-    let mut boxes = BoxWriter::new(box_bytes, shapes);
-    let (mut next, mut in_order) = (0, true);
-    put_records(bytes, bodies.len(), bodies.iter(), |(id, body), record: &mut Record<'_, BODY_BYTES>| {
-        for shape in body.shapes() {
-            in_order &= shape.slot() >= next;
-            next = shape.slot() + 1;
-            if in_order && body.kind != BodyKind::Fixed {
-                boxes.put(shapes.at(shape.slot()).fat, body.centre);
+/// Bodies and the boxes of their shapes, each as bytes, or the digests of these.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(in crate::world) struct PackedBodies<T = Vec<u8>> {
+    pub(super) bodies: T,
+    pub(super) boxes: T,
+}
+
+impl PackedBodies {
+    pub(super) fn of(state: &State) -> Self {
+        let mut packed = PackedBodies::default();
+        packed.fill(state, |_, _| {});
+        packed
+    }
+
+    /// Packs all bodies, and calls `visit` with each while it is near; and the boxes of their shapes while their bodies are
+    /// near: those of a block of bodies after these, if shapes come in the order of their bodies.
+    pub(in crate::world) fn fill(&mut self, state: &State, mut visit: impl FnMut(BodyId, &Body)) {
+        let State { bodies, shapes, .. } = state;
+        self.bodies.resize(bodies.len() * BODY_BYTES, 0);
+        let mut special = Vec::new();
+        let mut boxes = BoxWriter::new(&mut self.boxes, shapes);
+        let (mut bodies_left, mut shapes_left) = (bodies.iter(), shapes.iter().peekable());
+        for block in self.bodies.as_chunks_mut().0.chunks_mut(BLOCK) {
+            let mut end = 0;
+            for (bytes, (id, body)) in block.iter_mut().zip(bodies_left.by_ref()) {
+                pack_motion(body, Record::new(bytes));
+                if is_special(body) {
+                    special.push((id.slot(), body));
+                }
+                visit(id, body);
+                end = id.slot();
+            }
+            while let Some((_, shape)) = shapes_left.next_if(|(_, shape)| shape.body.slot() <= end) {
+                boxes.pack(shape, bodies);
             }
         }
-        put_place(record, body.centre, body.angle);
-        record.put(body.velocity.x.to_bits());
-        record.put(body.velocity.y.to_bits());
-        record.put(body.spin.to_bits());
-        record.put(body.rest_ticks);
-        if specials(body) != 0 {
-            special.push((id, body));
-        }
-    });
-    boxes.finish();
-    if !in_order {
-        pack_boxes(shapes, bodies, box_bytes);
+        shapes_left.for_each(|(_, shape)| boxes.pack(shape, bodies));
+        boxes.finish();
+        let mut rest = Vec::new();
+        let mut writer = Writer::new(&mut rest, special.len() * SPECIAL_BYTES);
+        special.into_iter().for_each(|(slot, body)| writer.record(|record| pack_special(slot, body, record)));
+        drop(writer);
+        self.bodies.extend_from_slice(&rest);
     }
-    let mut rest = Vec::new();
-    let mut writer = Writer::new(&mut rest, special.len() * SPECIAL_BYTES);
-    special.into_iter().for_each(|(id, body)| writer.record(|record| pack_special(id, body, record)));
-    drop(writer);
-    bytes.extend_from_slice(&rest);
+}
+
+#[inline(always)]
+fn pack_motion(body: &Body, mut record: Record<'_, BODY_BYTES>) {
+    put_place(&mut record, body.centre, body.angle);
+    record.put(body.velocity.x.to_bits());
+    record.put(body.velocity.y.to_bits());
+    record.put(body.spin.to_bits());
+    record.put(body.rest_ticks);
+}
+
+/// Whether a body has anything that few have.
+#[inline(always)]
+fn is_special(body: &Body) -> bool {
+    let pushes = body.force.x.to_bits() | body.force.y.to_bits() | body.torque.to_bits();
+    (pushes != 0) | body.island.is_some() | body.target.is_some()
 }
 
 fn specials(body: &Body) -> u8 {
@@ -88,9 +119,9 @@ fn specials(body: &Body) -> u8 {
     mark(pushed, FORCE) | mark(body.island.is_some(), ISLAND) | mark(body.target.is_some(), TARGET)
 }
 
-fn pack_special(id: BodyId, body: &Body, record: &mut Record<'_, SPECIAL_BYTES>) {
+fn pack_special(slot: u32, body: &Body, record: &mut Record<'_, SPECIAL_BYTES>) {
     let specials = specials(body);
-    record.put(id.slot());
+    record.put(slot);
     record.put(specials);
     if specials & FORCE != 0 {
         record.put(body.force.x.to_bits());
@@ -167,44 +198,40 @@ fn take_point<const N: usize>(fields: &mut Fields<'_, N>) -> Vec2<Fx> {
     Vec2::new(Fx::from_bits(fields.take()), Fx::from_bits(fields.take()))
 }
 
-fn pack_boxes(shapes: &Shapes, bodies: &Bodies, bytes: &mut Vec<u8>) {
-    let mut boxes = BoxWriter::new(bytes, shapes);
-    for (_, shape) in shapes.iter() {
-        let body = bodies.at(shape.body.slot());
-        if body.kind != BodyKind::Fixed {
-            boxes.put(shape.fat, body.centre);
-        }
-    }
-    boxes.finish();
-}
-
 /// Writes boxes, in the order of the slots of their shapes.
 struct BoxWriter<'a> {
-    near: Writer<'a>,
-    far: Vec<i64>,
+    bytes: &'a mut Vec<u8>,
+    count: usize,
+    far: Vec<Aabb>,
 }
 
 impl<'a> BoxWriter<'a> {
+    /// Makes room for a box of every shape.
     fn new(bytes: &'a mut Vec<u8>, shapes: &Shapes) -> Self {
-        BoxWriter { near: Writer::new(bytes, shapes.len() * BOX_BYTES), far: Vec::new() }
+        bytes.resize(shapes.len() * BOX_BYTES, 0);
+        BoxWriter { bytes, count: 0, far: Vec::new() }
     }
 
-    /// The box of a shape whose body's centre is there.
+    /// The box of the next shape, if its body is not fixed.
     #[inline(always)]
-    fn put(&mut self, fat: Aabb, centre: Vec2<Fx>) {
-        let near = about(fat, centre);
-        if near.is_none() {
-            self.far.extend(corners(fat).map(Fx::to_bits));
+    fn pack(&mut self, shape: &Shape, bodies: &Bodies) {
+        let body = bodies.at(shape.body.slot());
+        if body.kind == BodyKind::Fixed {
+            return;
         }
-        let steps = near.unwrap_or([NOT_NEAR, 0, 0, 0]);
-        let put = |record: &mut Record<'_, BOX_BYTES>| steps.into_iter().for_each(|step| record.put(step));
-        self.near.record(put);
+        let near = about(shape.fat, body.centre);
+        if near.is_none() {
+            self.far.push(shape.fat);
+        }
+        let mut record = Record::new(&mut self.bytes.as_chunks_mut::<BOX_BYTES>().0[self.count]);
+        near.unwrap_or([NOT_NEAR, 0, 0, 0]).into_iter().for_each(|step| record.put(step));
+        self.count += 1;
     }
 
-    fn finish(mut self) {
-        for corner in self.far {
-            self.near.record(|record: &mut Record<'_, 8>| record.put(corner));
-        }
+    fn finish(self) {
+        self.bytes.truncate(self.count * BOX_BYTES);
+        let corners = self.far.into_iter().flat_map(corners);
+        self.bytes.extend(corners.flat_map(|corner| corner.to_bits().to_le_bytes()));
     }
 }
 
@@ -212,21 +239,24 @@ fn corners(fat: Aabb) -> [Fx; 4] {
     [fat.lower.x, fat.lower.y, fat.upper.x, fat.upper.y]
 }
 
-/// A box in steps of the grid from a point, if it is on the grid and the steps are few enough.
+/// A box in steps of the grid from a point in the world, if it is on the grid and the steps are few enough.
 #[inline(always)]
 fn about(fat: Aabb, centre: Vec2<Fx>) -> Option<[i32; 4]> {
+    const GRID: i64 = 1 << FAT_GRID_SHIFT;
+    /// As many steps below the point as there may be.
+    const LOWEST: i64 = (i32::MIN as i64) << FAT_GRID_SHIFT;
+    /// The bits of what is on the grid, and not more than all steps there are above the lowest.
+    const NEAR: i64 = (u32::MAX as i64) << FAT_GRID_SHIFT;
+    let lowest = |centre: Fx| (centre.to_bits() & -GRID) + LOWEST;
+    let (x, y) = (lowest(centre.x), lowest(centre.y));
     let [left, bottom, right, top] = corners(fat).map(Fx::to_bits);
-    // Shifted right, so that differences cannot overflow.
-    let (x, y) = (centre.x.to_bits() >> FAT_GRID_SHIFT, centre.y.to_bits() >> FAT_GRID_SHIFT);
-    let steps = |bits: i64, origin: i64| (bits >> FAT_GRID_SHIFT) - origin;
-    let steps = [steps(left, x), steps(bottom, y), steps(right, x), steps(top, y)];
-    let off_grid = (left | bottom | right | top) & ((1 << FAT_GRID_SHIFT) - 1);
-    // 0 if a step fits 32 bits and is not less; the first has to say as well that the box is near.
-    let misfit = |step: i64, least: i32| (step - i64::from(least)) >> u32::BITS;
-    let [a, b, c, d] = steps;
-    let a = misfit(a, NOT_NEAR + 1);
-    let [b, c, d] = [b, c, d].map(|step| misfit(step, i32::MIN));
-    (off_grid | a | b | c | d == 0).then(|| steps.map(low_half))
+    // What wraps around is still too far: a point in the world leaves a quarter of all numbers between.
+    let above = |bits: i64, lowest: i64| bits.wrapping_sub(lowest);
+    let above = [above(left, x), above(bottom, y), above(right, x), above(top, y)];
+    let [a, b, c, d] = above;
+    // The first has to say as well that the box is near, and cannot be the lowest.
+    let bits = a | a.wrapping_sub(GRID) | b | c | d;
+    (bits & !NEAR == 0).then(|| above.map(|above| low_half(above >> FAT_GRID_SHIFT) ^ i32::MIN))
 }
 
 /// Gives the shapes back the boxes that were packed, and calls `changed` with the slots and boxes of those that were other

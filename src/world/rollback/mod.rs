@@ -9,6 +9,7 @@ mod bodies;
 mod constraints;
 mod encoding;
 mod packing;
+mod pool;
 mod resting;
 mod restore;
 #[cfg(test)]
@@ -17,6 +18,8 @@ mod tests;
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 
+pub(super) use bodies::PackedBodies;
+pub(super) use pool::Pool;
 pub(super) use resting::Resting;
 
 use resting::PackedContacts;
@@ -43,6 +46,7 @@ pub struct Snapshot {
     joints: SharedArena<Joint>,
     islands: SharedArena<Island>,
     resting: Arc<PackedContacts>,
+    moving: Arc<PackedBodies>,
     packed: Packed,
     /// Of all this.
     digest: WorldDigest,
@@ -61,11 +65,9 @@ struct Rest {
     rng: Rng,
 }
 
-/// What every step changes: each kind of it as bytes, or their digest.
+/// What else every step changes: each kind of it as bytes, or their digest.
 #[derive(Clone, Debug, Default, PartialEq)]
 struct Packed<T = Vec<u8>> {
-    bodies: T,
-    boxes: T,
     joints: T,
     contacts: T,
     impulses: T,
@@ -73,9 +75,9 @@ struct Packed<T = Vec<u8>> {
 
 impl PartialEq for Snapshot {
     fn eq(&self, other: &Self) -> bool {
-        let parts = |snapshot: &Snapshot| (snapshot.rest.clone(), snapshot.packed.clone());
         self.digest == other.digest
-            && parts(self) == parts(other)
+            && self.rest == other.rest
+            && (&self.moving, &self.packed) == (&other.moving, &other.packed)
             && (&self.bodies, &self.shapes) == (&other.bodies, &other.shapes)
             && (&self.joints, &self.islands) == (&other.joints, &other.islands)
             && self.resting == other.resting
@@ -112,11 +114,14 @@ impl Snapshot {
             joints: _,
             islands: _,
             resting: _,
+            moving,
             packed,
             digest: _,
             changes,
         } = self;
-        let packed: usize = packed.buffers().iter().map(|buffer| buffer.len()).sum();
+        let PackedBodies { bodies, boxes } = &**moving;
+        let Packed { joints, contacts, impulses } = packed;
+        let packed: usize = [bodies, boxes, joints, contacts, impulses].into_iter().map(Vec::len).sum();
         let lists = size_of_val(&*rest.removed_contacts) + size_of_val(&*changes.shapes);
         size_of::<Self>() + packed + lists
     }
@@ -129,14 +134,15 @@ impl Snapshot {
             joints: SharedArena::default(),
             islands: SharedArena::default(),
             resting: Arc::default(),
+            moving: Arc::default(),
             packed: Packed::default(),
             digest: WorldDigest::NONE,
             changes: Changes::default(),
         }
     }
 
-    /// Takes a state over, as far as it is another one than before.
-    fn take(&mut self, state: &State, changes: &Changes) {
+    /// Takes a state over, as far as it is another one than before. Its bodies may have been packed already.
+    fn take(&mut self, state: &State, bodies_at_hand: Option<&Arc<PackedBodies>>, changes: &Changes) {
         // Destructured, so that a new field does not compile until it is saved.
         let State {
             config: _,
@@ -157,23 +163,44 @@ impl Snapshot {
         shapes.share_into(&mut self.shapes, |shape| bodies::lasting_shape(shape, bodies));
         joints.share_into(&mut self.joints, constraints::lasting_joint);
         islands.share_into(&mut self.islands, Island::clone);
+        self.take_moving(state, bodies_at_hand);
         // Each buffer is hashed as soon as it is written, while it is near.
-        let Packed { bodies: motions, boxes, joints: turns, contacts: heads, impulses } = &mut self.packed;
-        bodies::pack_bodies(bodies, shapes, motions, boxes);
-        let [bodies, boxes] = [StateHash::of_bytes(motions), StateHash::of_bytes(boxes)];
+        let PackedBodies { bodies, boxes } = &*self.moving;
+        let moving = PackedBodies { bodies: StateHash::of_bytes(bodies), boxes: StateHash::of_bytes(boxes) };
+        let Packed { joints: turns, contacts: heads, impulses } = &mut self.packed;
         constraints::pack_joints(joints, turns);
         let joints = StateHash::of_bytes(turns);
         constraints::pack_contacts(contacts, heads, impulses);
         let [contacts, impulses] = [StateHash::of_bytes(heads), StateHash::of_bytes(impulses)];
         self.resting = resting.share();
         changes.keep(&mut self.changes);
-        self.digest = self.digest_with(Packed { bodies, boxes, joints, contacts, impulses });
+        self.digest = self.digest_with(&moving, &Packed { joints, contacts, impulses });
+    }
+
+    /// Shares the packed bodies of a state, or packs them.
+    fn take_moving(&mut self, state: &State, at_hand: Option<&Arc<PackedBodies>>) {
+        match (at_hand, Arc::get_mut(&mut self.moving)) {
+            (Some(packed), _) => self.moving = packed.clone(),
+            (None, Some(own)) => own.fill(state, |_, _| {}),
+            (None, None) => self.moving = Arc::new(PackedBodies::of(state)),
+        }
+        debug_assert!(*self.moving == PackedBodies::of(state), "bodies have changed since they were packed");
     }
 
     /// The digest of all of it, with those of what is packed.
-    fn digest_with(&self, packed: Packed<StateHash>) -> WorldDigest {
-        let Snapshot { rest, bodies, shapes, joints, islands, resting, packed: _, digest: _, changes: _ } =
-            self;
+    fn digest_with(&self, moving: &PackedBodies<StateHash>, packed: &Packed<StateHash>) -> WorldDigest {
+        let Snapshot {
+            rest,
+            bodies,
+            shapes,
+            joints,
+            islands,
+            resting,
+            moving: _,
+            packed: _,
+            digest: _,
+            changes: _,
+        } = self;
         let Rest { config, tick, faults, pairs_left_out, removed_contacts, rng } = rest;
         fn of(shared: impl Iterator<Item = StateHash>, packed: StateHash) -> StateHash {
             StateHash::of_digests(shared.chain([packed]))
@@ -183,21 +210,14 @@ impl Snapshot {
         WorldDigest {
             sections: [
                 (Section::World, StateHash::of(&(config, tick, faults))),
-                (Section::Bodies, of(bodies.digests(), packed.bodies)),
-                (Section::Shapes, of(shapes.digests(), packed.boxes)),
+                (Section::Bodies, of(bodies.digests(), moving.bodies)),
+                (Section::Shapes, of(shapes.digests(), moving.boxes)),
                 (Section::Joints, of(joints.digests(), packed.joints)),
                 (Section::Contacts, of(contacts, packed.impulses)),
                 (Section::Islands, StateHash::of_digests(islands.digests())),
                 (Section::Random, StateHash::of(rng)),
             ],
         }
-    }
-}
-
-impl Packed {
-    fn buffers(&self) -> [&Vec<u8>; 5] {
-        let Packed { bodies, boxes, joints, contacts, impulses } = self;
-        [bodies, boxes, joints, contacts, impulses]
     }
 }
 
@@ -220,8 +240,8 @@ impl World {
     pub fn save(&self) -> Snapshot {
         let mut snapshot = Snapshot::empty(&self.state);
         self.save_into(&mut snapshot);
-        let Packed { bodies, boxes, joints, contacts, impulses } = &mut snapshot.packed;
-        [bodies, boxes, joints, contacts, impulses].into_iter().for_each(Vec::shrink_to_fit);
+        let Packed { joints, contacts, impulses } = &mut snapshot.packed;
+        [joints, contacts, impulses].into_iter().for_each(Vec::shrink_to_fit);
         snapshot
     }
 
@@ -242,7 +262,7 @@ impl World {
     /// assert_eq!((world.tick(), world.state_hash()), (92, ring[92 % 8].state_hash()));
     /// ```
     pub fn save_into(&self, snapshot: &mut Snapshot) {
-        snapshot.take(&self.state, &self.scratch.changes);
+        snapshot.take(&self.state, self.state.packed_bodies(), &self.scratch.changes);
         self.state.set_digest(snapshot.digest);
     }
 }

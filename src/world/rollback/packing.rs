@@ -41,7 +41,11 @@ pub(super) struct Record<'a, const N: usize> {
     len: usize,
 }
 
-impl<const N: usize> Record<'_, N> {
+impl<'a, const N: usize> Record<'a, N> {
+    pub(super) fn new(bytes: &'a mut [u8; N]) -> Self {
+        Record { bytes, len: 0 }
+    }
+
     #[inline(always)]
     pub(super) fn put<I: Integer>(&mut self, integer: I) {
         let bytes = integer.to_bytes();
@@ -68,7 +72,7 @@ pub(super) fn put_records<T, const N: usize>(
 ) {
     bytes.resize(count * N, 0);
     for (thing, bytes) in things.into_iter().zip(bytes.chunks_exact_mut(N)) {
-        put(thing, &mut Record { bytes: bytes.try_into().expect("as many bytes"), len: 0 });
+        put(thing, &mut Record::new(bytes.try_into().expect("as many bytes")));
     }
 }
 
@@ -93,7 +97,7 @@ impl<'a> Writer<'a> {
             self.grow(N);
         }
         let bytes = self.bytes[self.len..].first_chunk_mut().expect("room for every record");
-        let mut record = Record { bytes, len: 0 };
+        let mut record = Record::new(bytes);
         write(&mut record);
         self.len += record.len;
     }

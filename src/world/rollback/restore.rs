@@ -2,7 +2,7 @@
 
 use alloc::vec::Vec;
 
-use super::{Packed, Rest, Snapshot, bodies, constraints};
+use super::{Packed, PackedBodies, Rest, Snapshot, bodies, constraints};
 use crate::body::{Body, BodyKind, Handle};
 use crate::math::{Aabb, Fx, Vec2};
 use crate::world::World;
@@ -44,9 +44,11 @@ impl World {
 }
 
 pub(super) fn restore_state(state: &mut State, snapshot: &Snapshot, stale: &mut Stale) {
-    let Snapshot { rest, bodies, shapes, joints, islands, resting, packed, digest: _, changes: _ } = snapshot;
+    let Snapshot { rest, bodies, shapes, joints, islands, resting, moving, packed, digest: _, changes: _ } =
+        snapshot;
     let Rest { config, tick, faults, pairs_left_out, removed_contacts, rng } = rest;
-    let Packed { bodies: motions, boxes, joints: turns, contacts: heads, impulses } = packed;
+    let PackedBodies { bodies: motions, boxes } = &**moving;
+    let Packed { joints: turns, contacts: heads, impulses } = packed;
     (state.config, state.tick, state.faults) = (*config, *tick, *faults);
     state.pairs_left_out = *pairs_left_out;
     state.removed_contacts.clone_from(removed_contacts);
