@@ -60,7 +60,7 @@ impl<const N: usize> Row<N> {
 }
 
 impl<const N: usize> Point<N> {
-    const NONE: Self = Point {
+    pub(super) const NONE: Self = Point {
         normal: Row::NONE,
         first_separation: Ints::ZERO,
         separation: Ints::ZERO,
@@ -85,6 +85,14 @@ impl<const N: usize> Batch<N> {
         tangent: Row::NONE,
         tangent_lambda: Ints::ZERO,
     };
+
+    /// Forgets what is not written anew when contacts are put into a batch.
+    #[inline(always)]
+    pub(super) fn begin(&mut self) {
+        self.bodies = Self::NONE.bodies;
+        self.changed = Self::NONE.changed;
+        (self.count, self.special, self.pushed) = (0, false, [0; 2]);
+    }
 
     /// Sets the normal impulse of a point.
     #[inline(always)]

@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 use super::super::TouchingPair;
 use super::super::body_list::BodyList;
 use super::super::colour::{Colouring, Group, Node};
-use super::batch::Batch;
+use super::batch::{Batch, Point};
 use super::care::Calm;
 use super::input::{Input, Source};
 use super::rows;
@@ -13,7 +13,7 @@ use super::special::Special;
 use super::store::Records;
 use super::{Batches, ContactSet, WarmStarts};
 use crate::collision::{Contact, Manifold};
-use crate::lanes::{Kernel, Lanes, Machine, Scalar, WIDTH, prefetch};
+use crate::lanes::{Ints, Kernel, Lanes, Machine, Scalar, WIDTH, prefetch};
 use crate::math::Unit;
 
 impl ContactSet {
@@ -62,7 +62,9 @@ impl<const N: usize> Kernel<N> for Fill<'_, N> {
     #[inline(always)]
     fn run<L: Lanes<N>>(self) {
         let Fill { batches, inputs, source, colouring } = self;
-        batches.clear();
+        batches.special.clear();
+        batches.colours.clear();
+        let mut count = 0;
         for group in colouring.groups() {
             let indices = match group {
                 Group::Serial(indices) if N == 1 => indices,
@@ -73,29 +75,34 @@ impl<const N: usize> Kernel<N> for Fill<'_, N> {
                 for &index in indices.iter().skip((number + INPUTS_AHEAD) * N).take(N) {
                     prefetch(&inputs[index as usize]);
                 }
-                batches.push::<L>(inputs, source, chunk);
+                batches.fill::<L>(count, inputs, source, chunk);
+                count += 1;
             }
-            batches.colours.push(batches.batches.len());
+            batches.colours.push(count);
         }
+        batches.truncate(count);
     }
 }
 
 impl<const N: usize> Batches<N> {
-    fn clear(&mut self) {
-        let Batches { batches, special, records, colours } = self;
-        colours.clear();
-        batches.clear();
-        special.clear();
-        records.clear();
+    /// Forgets all batches but the first so many.
+    fn truncate(&mut self, count: usize) {
+        self.batches.truncate(count);
+        self.records.truncate(count);
     }
 
-    /// Adds a batch of up to `N` contacts.
+    /// Makes a batch of up to `N` contacts, in the place of one of the last tick if there was one: nothing is written that
+    /// is written again, for memory cannot keep up.
     #[inline(always)]
-    fn push<L: Lanes<N>>(&mut self, inputs: &[Input], source: &Source<'_>, indices: &[u32]) {
+    fn fill<L: Lanes<N>>(&mut self, number: usize, inputs: &[Input], source: &Source<'_>, indices: &[u32]) {
         let Batches { batches, special, records, .. } = self;
-        batches.push(Batch::NONE);
-        records.push(Records::NONE);
-        let (Some(batch), Some(records)) = (batches.last_mut(), records.last_mut()) else { return };
+        if number >= batches.len() {
+            batches.push(Batch::NONE);
+            records.push(Records::NONE);
+        }
+        let (batch, records) = (&mut batches[number], &mut records[number]);
+        batch.begin();
+        records.begin();
         let mut chosen = [&inputs[inputs.len() - 1]; N];
         for (lane, (input, &index)) in chosen.iter_mut().zip(indices).enumerate() {
             *input = &inputs[index as usize];
@@ -106,6 +113,10 @@ impl<const N: usize> Batches<N> {
                 batch.changed[side][lane] = input.changed[side];
             }
             records.take(lane, input);
+        }
+        if batch.count < batch.points.len() {
+            batch.points[1] = Point::NONE;
+            records.inverses.normals[1] = Ints::ZERO;
         }
         rows::fill::<L, N>(&chosen, batch, &mut records.inverses);
         let mut rest = None;

@@ -29,6 +29,12 @@ impl<const N: usize> Records<N> {
     pub(super) const NONE: Self =
         Records { len: 0, contacts: [0; N], counts: [0; N], features: [[0; 2]; N], inverses: Inverses::NONE };
 
+    /// Forgets the contacts of an earlier batch.
+    #[inline(always)]
+    pub(super) fn begin(&mut self) {
+        self.len = 0;
+    }
+
     #[inline(always)]
     pub(super) fn take(&mut self, lane: usize, input: &Input) {
         self.len += 1;
