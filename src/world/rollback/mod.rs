@@ -1,9 +1,9 @@
 //! Saving and restoring in memory, often enough for rollback.
 //!
 //! A snapshot has two parts. What every step changes (places, velocities, fat boxes, impulses) is packed into buffers:
-//! `bodies.rs`, `constraints.rs`. Everything else is copied in pages, which snapshots share as long as nothing in them
-//! changes (`body/arena/pages.rs`). The digests of the state are taken over the same bytes, so that hashing what has been
-//! saved costs no more than reading it once.
+//! `bodies.rs`, which the step may have done already (`pool.rs`), and `constraints.rs`. Everything else is copied in pages,
+//! which snapshots share as long as nothing in them changes (`body/arena/pages.rs`). The digests of the state are taken over
+//! the same bytes, so that hashing what has been saved costs no more than reading it once.
 
 mod bodies;
 mod constraints;
@@ -246,8 +246,8 @@ impl World {
     }
 
     /// Replaces a snapshot, of this world or another one, by a copy of the state. Costs a few per cent of a tick: what
-    /// every tick changes is copied, everything else is shared and copied only where it has changed since it was last
-    /// saved or hashed. The state hash is found on the way.
+    /// every tick changes is copied (bodies by the step already, if the tick before was saved or hashed), everything else is
+    /// shared and copied only where it has changed since it was last saved or hashed. The state hash is found on the way.
     ///
     /// ```
     /// # use lockstep2d::world::{Snapshot, World};
