@@ -106,7 +106,7 @@ fn pack_motion(body: &Body, mut record: Record<'_, BODY_BYTES>) {
     record.put(body.rest_ticks);
 }
 
-/// Whether a body has anything that few have.
+/// Whether a body has any of [`specials`], told by one guess.
 #[inline(always)]
 fn is_special(body: &Body) -> bool {
     let pushes = body.force.x.to_bits() | body.force.y.to_bits() | body.torque.to_bits();
