@@ -8,7 +8,7 @@ use lockstep2d::lockstep::{Game, Sandbox};
 use lockstep2d::math::Fx;
 use lockstep2d::scenes::Scene;
 use lockstep2d::solver::{JointDef, Revolute, Threshold};
-use lockstep2d::world::{Config, World};
+use lockstep2d::world::{Config, Snapshot, World};
 
 /// The system's memory, which counts for each thread what that thread asks for.
 mod counting {
@@ -24,6 +24,12 @@ mod counting {
 
     thread_local! {
         static COUNT: Cell<usize> = const { Cell::new(0) };
+        static BYTES: Cell<usize> = const { Cell::new(0) };
+    }
+
+    fn add(bytes: usize) {
+        COUNT.set(COUNT.get() + 1);
+        BYTES.set(BYTES.get() + bytes);
     }
 
     /// How often this thread has asked for memory.
@@ -31,10 +37,15 @@ mod counting {
         COUNT.get()
     }
 
+    /// How many bytes it has asked for.
+    pub(super) fn bytes() -> usize {
+        BYTES.get()
+    }
+
     // SAFETY: as the system's, which does it all.
     unsafe impl GlobalAlloc for Counting {
         unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-            COUNT.set(COUNT.get() + 1);
+            add(layout.size());
             // SAFETY: as the caller's.
             unsafe { System.alloc(layout) }
         }
@@ -45,7 +56,7 @@ mod counting {
         }
 
         unsafe fn realloc(&self, memory: *mut u8, layout: Layout, size: usize) -> *mut u8 {
-            COUNT.set(COUNT.get() + 1);
+            add(size);
             // SAFETY: as the caller's.
             unsafe { System.realloc(memory, layout, size) }
         }
@@ -102,6 +113,29 @@ fn joints_with_thresholds_allocate_nothing() {
         above = body;
     }
     assert_eq!(allocations(&mut world, 60, 60), 0);
+}
+
+/// Bodies are packed in the step and copied by the save, each time in the memory of the time before: 52 bytes for each. What
+/// a save asks for is lists of digests, of half a byte for each body, shape and joint.
+#[test]
+fn saving_every_tick_allocates_no_room_for_bodies() {
+    // A world at rest, one in which nearly everything sleeps, and one of hinges.
+    for (name, warm_up) in [("large_pyramid", 60), ("smash", 20), ("joint_grid", 60)] {
+        let mut world = world_of(name);
+        (0..warm_up).for_each(|_| world.step());
+        let mut ring: [Snapshot; 4] = std::array::from_fn(|_| world.save());
+        for tick in 0..28 {
+            let before = counting::count();
+            world.step();
+            let (stepped, bytes) = (counting::count(), counting::bytes());
+            world.save_into(&mut ring[tick % 4]);
+            let per_body = (counting::bytes() - bytes) / world.body_count();
+            if tick >= 8 {
+                assert_eq!(stepped - before, 0, "{name}, tick {tick}");
+                assert!(per_body < 5, "{per_body} bytes for each body of {name}, tick {tick}");
+            }
+        }
+    }
 }
 
 /// What churns reaches a new largest number of this or that now and then, ever more rarely.

@@ -1,7 +1,6 @@
 //! The state hash, and the digests it is made of: what a report of a divergence is built from.
 
 use alloc::boxed::Box;
-use alloc::sync::Arc;
 use alloc::vec::Vec;
 use core::fmt;
 use core::ops::{Deref, DerefMut};
@@ -9,7 +8,7 @@ use core::ops::{Deref, DerefMut};
 use once_cell::race::OnceBox;
 
 use super::World;
-use super::rollback::{PackedBodies, Pool};
+use super::rollback::PackedBodies;
 use super::state::State;
 use crate::body::BodyId;
 use crate::hash::StateHash;
@@ -111,12 +110,18 @@ impl World {
 pub(super) struct Hashed {
     state: State,
     digest: OnceBox<WorldDigest>,
-    packs: Pool,
+    /// The bodies as snapshots have them, while `is_packed`.
+    packed: PackedBodies,
+    is_packed: bool,
+    /// Whether a state since the last step has been saved or hashed: who does so with one tick does so with the next, and
+    /// the step packs the bodies while it has them at hand.
+    is_watched: bool,
 }
 
 impl Hashed {
     pub(super) fn new(state: State) -> Self {
-        Hashed { state, digest: OnceBox::new(), packs: Pool::default() }
+        let (digest, packed) = (OnceBox::new(), PackedBodies::default());
+        Hashed { state, digest, packed, is_packed: false, is_watched: false }
     }
 
     pub(super) const fn get(&self) -> &State {
@@ -126,22 +131,24 @@ impl Hashed {
     /// Takes note of the digest of the state as it is.
     pub(super) fn set_digest(&self, digest: WorldDigest) {
         self.digest.get_or_init(|| Box::new(digest));
-        self.packs.want();
     }
 
-    /// Its bodies as snapshots have them, if that is known.
-    pub(super) fn packed_bodies(&self) -> Option<&Arc<PackedBodies>> {
-        self.packs.current()
+    /// Its bodies as snapshots have them, if the last step has packed them.
+    pub(super) fn packed_bodies(&self) -> Option<&PackedBodies> {
+        self.is_packed.then_some(&self.packed)
     }
 
-    /// Room to pack the bodies in, if they will be wanted after the coming step.
-    pub(super) fn room_for_bodies(&mut self) -> Option<Arc<PackedBodies>> {
-        self.packs.room()
+    /// The state, for a step, and where to pack the bodies at its end if that is worth while.
+    pub(super) fn for_step(&mut self) -> (&mut State, Option<&mut PackedBodies>) {
+        self.forget();
+        self.is_packed = core::mem::take(&mut self.is_watched);
+        (&mut self.state, self.is_packed.then_some(&mut self.packed))
     }
 
-    /// Takes the bodies of the state as it is, packed.
-    pub(super) fn keep_bodies(&mut self, packed: Option<Arc<PackedBodies>>) {
-        self.packs.keep(packed);
+    fn forget(&mut self) {
+        self.is_watched |= self.digest.get().is_some();
+        self.is_packed = false;
+        self.digest = OnceBox::new();
     }
 }
 
@@ -155,8 +162,7 @@ impl Deref for Hashed {
 
 impl DerefMut for Hashed {
     fn deref_mut(&mut self) -> &mut State {
-        self.digest = OnceBox::new();
-        self.packs.forget();
+        self.forget();
         &mut self.state
     }
 }

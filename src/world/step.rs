@@ -1,7 +1,5 @@
 //! One tick, as the algorithm reads.
 
-use alloc::sync::Arc;
-
 use super::World;
 use super::change::fattened;
 use super::contacts;
@@ -44,9 +42,8 @@ impl World {
 
     /// The algorithm; `begin` hears of each phase, and sees what it begins with.
     pub(super) fn advance(&mut self, mut begin: impl FnMut(Phase, Sight<'_>)) {
-        let World { state: hashed, scratch, phases: _ } = self;
-        let mut packed = hashed.room_for_bodies();
-        let state = &mut **hashed;
+        let World { state, scratch, phases: _ } = self;
+        let (state, packed) = state.for_step();
         let settings = state.config.solver;
         let tuning = Tuning::new(&settings, state.config.gravity, state.config.tick_rate);
 
@@ -85,11 +82,10 @@ impl World {
         islands::fall_asleep(state, scratch);
 
         begin(Phase::Report, Sight::of(state, scratch));
-        moves::report(state, scratch, packed.as_mut().and_then(Arc::get_mut));
+        moves::report(state, scratch, packed);
         count(state, scratch);
         // A count that a stranger's snapshot may start anywhere.
         state.tick = state.tick.wrapping_add(1);
-        hashed.keep_bodies(packed);
     }
 }
 

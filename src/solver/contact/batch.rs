@@ -16,7 +16,7 @@ pub(in crate::solver) struct Batch<const N: usize> {
     pub(super) n_y: Ints<N>,
     /// -1 where one of the bodies does not give way: such contacts are stiffer.
     pub(super) immovable: Ints<N>,
-    /// How many of the points have a contact in any lane.
+    /// How many of the points have a contact in any lane. What is left of the others has no part in anything.
     pub(super) count: usize,
     /// Whether any surface in it bounces, moves or resists rolling: then it has a [`super::special::Special`] as well.
     pub(super) special: bool,

@@ -182,7 +182,7 @@ impl<L: Lanes<N>, const N: usize> Calm<L, N> {
     pub(super) fn suits(batch: &Batch<N>, special: Option<&Special<N>>) -> bool {
         let ratio = L::splat(CALM_RATIO.to_bits());
         let mut wild = long::<L, N>(&batch.tangent, ratio);
-        for point in &batch.points {
+        for point in &batch.points[..batch.count] {
             wild = L::either(wild, long::<L, N>(&point.normal, ratio));
             wild = L::either(wild, L::greater(L::load(&point.grip), L::splat(CALM_GRIP.to_bits())));
         }

@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 use super::super::TouchingPair;
 use super::super::body_list::BodyList;
 use super::super::colour::{Colouring, Group, Node};
-use super::batch::{Batch, Point};
+use super::batch::Batch;
 use super::care::Calm;
 use super::input::{Input, Source};
 use super::rows;
@@ -13,7 +13,7 @@ use super::special::Special;
 use super::store::Records;
 use super::{Batches, ContactSet, WarmStarts};
 use crate::collision::{Contact, Manifold};
-use crate::lanes::{Ints, Kernel, Lanes, Machine, Scalar, WIDTH, prefetch};
+use crate::lanes::{Kernel, Lanes, Machine, Scalar, WIDTH, prefetch};
 use crate::math::Unit;
 
 impl ContactSet {
@@ -113,10 +113,6 @@ impl<const N: usize> Batches<N> {
                 batch.changed[side][lane] = input.changed[side];
             }
             records.take(lane, input);
-        }
-        if batch.count < batch.points.len() {
-            batch.points[1] = Point::NONE;
-            records.inverses.normals[1] = Ints::ZERO;
         }
         rows::fill::<L, N>(&chosen, batch, &mut records.inverses);
         let mut rest = None;

@@ -35,7 +35,7 @@ impl<const N: usize> RollingRows<N> {
     pub(super) const NONE: Self =
         RollingRows { row: Row::NONE, grips: [Ints::ZERO; 2], lambda: Ints::ZERO, denominators: [0; N] };
 
-    /// `inverse_normals` are the reciprocals of the points' denominators, 0 for a missing one.
+    /// `inverse_normals` are the reciprocals of the points' denominators, anything for a missing one.
     pub(super) fn fill(
         &mut self,
         lane: usize,

@@ -33,8 +33,8 @@ impl<const N: usize> Special<N> {
         rolling: RollingRows::NONE,
     };
 
-    /// Takes a contact into a lane. `inverse_normals` are the reciprocals of its points' denominators, 0 for a missing
-    /// one.
+    /// Takes a contact into a lane. `inverse_normals` are the reciprocals of its points' denominators, anything for a
+    /// missing one, which has no impulse.
     pub(super) fn fill(
         &mut self,
         lane: usize,

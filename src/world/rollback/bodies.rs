@@ -11,8 +11,9 @@
 use alloc::boxed::Box;
 use alloc::vec::Vec;
 
-use super::packing::{Fields, Reader, Record, Writer, low_half};
+use super::packing::{Fields, Reader, Record, low_half};
 use crate::body::{Arena, Body, BodyId, BodyKind, Handle, IslandId, Pose, Shape, ShapeId};
+use crate::hash::StateHash;
 use crate::math::{Aabb, Angle, Fx, Speed, Vec2};
 use crate::world::change::FAT_GRID_SHIFT;
 use crate::world::state::State;
@@ -69,19 +70,24 @@ impl PackedBodies {
     /// near: those of a block of bodies after these, if shapes come in the order of their bodies.
     pub(in crate::world) fn fill(&mut self, state: &State, mut visit: impl FnMut(BodyId, &Body)) {
         let State { bodies, shapes, .. } = state;
-        self.bodies.resize(bodies.len() * BODY_BYTES, 0);
-        let mut special = Vec::new();
-        let mut boxes = BoxWriter::new(&mut self.boxes, shapes);
+        let PackedBodies { bodies: motions, boxes } = self;
+        motions.resize(bodies.len() * BODY_BYTES, 0);
+        let mut boxes = BoxWriter::new(boxes, shapes);
         let (mut bodies_left, mut shapes_left) = (bodies.iter(), shapes.iter().peekable());
-        for block in self.bodies.as_chunks_mut().0.chunks_mut(BLOCK) {
-            let mut end = 0;
-            for (bytes, (id, body)) in block.iter_mut().zip(bodies_left.by_ref()) {
+        for start in (0..bodies.len()).step_by(BLOCK) {
+            let block = start * BODY_BYTES..bodies.len().min(start + BLOCK) * BODY_BYTES;
+            let (mut special, mut specials_len, mut end) = ([0; BLOCK], 0, 0);
+            for (bytes, (id, body)) in motions[block].as_chunks_mut().0.iter_mut().zip(bodies_left.by_ref()) {
                 pack_motion(body, Record::new(bytes));
-                if is_special(body) {
-                    special.push((id.slot(), body));
+                if specials(body) != 0 {
+                    special[specials_len] = id.slot();
+                    specials_len += 1;
                 }
                 visit(id, body);
                 end = id.slot();
+            }
+            for &slot in &special[..specials_len] {
+                pack_special(slot, bodies.at(slot), motions);
             }
             while let Some((_, shape)) = shapes_left.next_if(|(_, shape)| shape.body.slot() <= end) {
                 boxes.pack(shape, bodies);
@@ -89,11 +95,16 @@ impl PackedBodies {
         }
         shapes_left.for_each(|(_, shape)| boxes.pack(shape, bodies));
         boxes.finish();
-        let mut rest = Vec::new();
-        let mut writer = Writer::new(&mut rest, special.len() * SPECIAL_BYTES);
-        special.into_iter().for_each(|(slot, body)| writer.record(|record| pack_special(slot, body, record)));
-        drop(writer);
-        self.bodies.extend_from_slice(&rest);
+    }
+
+    /// Becomes a copy, in the memory that it has.
+    pub(super) fn copy_from(&mut self, other: &Self) {
+        self.bodies.clone_from(&other.bodies);
+        self.boxes.clone_from(&other.boxes);
+    }
+
+    pub(super) fn digests(&self) -> PackedBodies<StateHash> {
+        PackedBodies { bodies: StateHash::of_bytes(&self.bodies), boxes: StateHash::of_bytes(&self.boxes) }
     }
 }
 
@@ -106,21 +117,18 @@ fn pack_motion(body: &Body, mut record: Record<'_, BODY_BYTES>) {
     record.put(body.rest_ticks);
 }
 
-/// Whether a body has any of [`specials`], told by one guess.
+/// What a body has of what most have not. Without branches: most have none of it.
 #[inline(always)]
-fn is_special(body: &Body) -> bool {
-    let pushes = body.force.x.to_bits() | body.force.y.to_bits() | body.torque.to_bits();
-    (pushes != 0) | body.island.is_some() | body.target.is_some()
-}
-
 fn specials(body: &Body) -> u8 {
-    let pushed = body.force != Vec2::ZERO || body.torque != Fx::ZERO;
-    let mark = |there: bool, flag: u8| if there { flag } else { 0 };
-    mark(pushed, FORCE) | mark(body.island.is_some(), ISLAND) | mark(body.target.is_some(), TARGET)
+    let pushes = body.force.x.to_bits() | body.force.y.to_bits() | body.torque.to_bits();
+    let mark = |there: bool, flag: u8| u8::from(there) * flag;
+    mark(pushes != 0, FORCE) | mark(body.island.is_some(), ISLAND) | mark(body.target.is_some(), TARGET)
 }
 
-fn pack_special(slot: u32, body: &Body, record: &mut Record<'_, SPECIAL_BYTES>) {
-    let specials = specials(body);
+/// Appends what [`specials`] tells of.
+fn pack_special(slot: u32, body: &Body, bytes: &mut Vec<u8>) {
+    let (specials, mut record) = (specials(body), [0; SPECIAL_BYTES]);
+    let mut record = Record::new(&mut record);
     record.put(slot);
     record.put(specials);
     if specials & FORCE != 0 {
@@ -133,8 +141,9 @@ fn pack_special(slot: u32, body: &Body, record: &mut Record<'_, SPECIAL_BYTES>) 
         record.put(island.generation());
     }
     if let Some(target) = &body.target {
-        put_place(record, target.centre, target.angle);
+        put_place(&mut record, target.centre, target.angle);
     }
+    bytes.extend_from_slice(record.written());
 }
 
 #[inline(always)]

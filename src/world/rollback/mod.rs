@@ -1,7 +1,7 @@
 //! Saving and restoring in memory, often enough for rollback.
 //!
 //! A snapshot has two parts. What every step changes (places, velocities, fat boxes, impulses) is packed into buffers:
-//! `bodies.rs`, which the step may have done already (`pool.rs`), and `constraints.rs`. Everything else is copied in pages,
+//! `bodies.rs`, which the step may have done already, and `constraints.rs`. Everything else is copied in pages,
 //! which snapshots share as long as nothing in them changes (`body/arena/pages.rs`). The digests of the state are taken over
 //! the same bytes, so that hashing what has been saved costs no more than reading it once.
 
@@ -9,7 +9,6 @@ mod bodies;
 mod constraints;
 mod encoding;
 mod packing;
-mod pool;
 mod resting;
 mod restore;
 #[cfg(test)]
@@ -19,7 +18,6 @@ use alloc::sync::Arc;
 use alloc::vec::Vec;
 
 pub(super) use bodies::PackedBodies;
-pub(super) use pool::Pool;
 pub(super) use resting::Resting;
 
 use resting::PackedContacts;
@@ -46,7 +44,6 @@ pub struct Snapshot {
     joints: SharedArena<Joint>,
     islands: SharedArena<Island>,
     resting: Arc<PackedContacts>,
-    moving: Arc<PackedBodies>,
     packed: Packed,
     /// Of all this.
     digest: WorldDigest,
@@ -65,9 +62,10 @@ struct Rest {
     rng: Rng,
 }
 
-/// What else every step changes: each kind of it as bytes, or their digest.
+/// What every step changes: each kind of it as bytes, or their digest.
 #[derive(Clone, Debug, Default, PartialEq)]
 struct Packed<T = Vec<u8>> {
+    bodies: PackedBodies<T>,
     joints: T,
     contacts: T,
     impulses: T,
@@ -77,7 +75,7 @@ impl PartialEq for Snapshot {
     fn eq(&self, other: &Self) -> bool {
         self.digest == other.digest
             && self.rest == other.rest
-            && (&self.moving, &self.packed) == (&other.moving, &other.packed)
+            && self.packed == other.packed
             && (&self.bodies, &self.shapes) == (&other.bodies, &other.shapes)
             && (&self.joints, &self.islands) == (&other.joints, &other.islands)
             && self.resting == other.resting
@@ -114,13 +112,11 @@ impl Snapshot {
             joints: _,
             islands: _,
             resting: _,
-            moving,
             packed,
             digest: _,
             changes,
         } = self;
-        let PackedBodies { bodies, boxes } = &**moving;
-        let Packed { joints, contacts, impulses } = packed;
+        let Packed { bodies: PackedBodies { bodies, boxes }, joints, contacts, impulses } = packed;
         let packed: usize = [bodies, boxes, joints, contacts, impulses].into_iter().map(Vec::len).sum();
         let lists = size_of_val(&*rest.removed_contacts) + size_of_val(&*changes.shapes);
         size_of::<Self>() + packed + lists
@@ -134,7 +130,6 @@ impl Snapshot {
             joints: SharedArena::default(),
             islands: SharedArena::default(),
             resting: Arc::default(),
-            moving: Arc::default(),
             packed: Packed::default(),
             digest: WorldDigest::NONE,
             changes: Changes::default(),
@@ -142,7 +137,7 @@ impl Snapshot {
     }
 
     /// Takes a state over, as far as it is another one than before. Its bodies may have been packed already.
-    fn take(&mut self, state: &State, bodies_at_hand: Option<&Arc<PackedBodies>>, changes: &Changes) {
+    fn take(&mut self, state: &State, packed_bodies: Option<&PackedBodies>, changes: &Changes) {
         // Destructured, so that a new field does not compile until it is saved.
         let State {
             config: _,
@@ -163,44 +158,27 @@ impl Snapshot {
         shapes.share_into(&mut self.shapes, |shape| bodies::lasting_shape(shape, bodies));
         joints.share_into(&mut self.joints, constraints::lasting_joint);
         islands.share_into(&mut self.islands, Island::clone);
-        self.take_moving(state, bodies_at_hand);
         // Each buffer is hashed as soon as it is written, while it is near.
-        let PackedBodies { bodies, boxes } = &*self.moving;
-        let moving = PackedBodies { bodies: StateHash::of_bytes(bodies), boxes: StateHash::of_bytes(boxes) };
-        let Packed { joints: turns, contacts: heads, impulses } = &mut self.packed;
+        let Packed { bodies: moving, joints: turns, contacts: heads, impulses } = &mut self.packed;
+        match packed_bodies {
+            Some(packed) => moving.copy_from(packed),
+            None => moving.fill(state, |_, _| {}),
+        }
+        debug_assert!(*moving == PackedBodies::of(state), "bodies have changed since they were packed");
+        let bodies = moving.digests();
         constraints::pack_joints(joints, turns);
         let joints = StateHash::of_bytes(turns);
         constraints::pack_contacts(contacts, heads, impulses);
         let [contacts, impulses] = [StateHash::of_bytes(heads), StateHash::of_bytes(impulses)];
         self.resting = resting.share();
         changes.keep(&mut self.changes);
-        self.digest = self.digest_with(&moving, &Packed { joints, contacts, impulses });
-    }
-
-    /// Shares the packed bodies of a state, or packs them.
-    fn take_moving(&mut self, state: &State, at_hand: Option<&Arc<PackedBodies>>) {
-        match (at_hand, Arc::get_mut(&mut self.moving)) {
-            (Some(packed), _) => self.moving = packed.clone(),
-            (None, Some(own)) => own.fill(state, |_, _| {}),
-            (None, None) => self.moving = Arc::new(PackedBodies::of(state)),
-        }
-        debug_assert!(*self.moving == PackedBodies::of(state), "bodies have changed since they were packed");
+        self.digest = self.digest_with(&Packed { bodies, joints, contacts, impulses });
     }
 
     /// The digest of all of it, with those of what is packed.
-    fn digest_with(&self, moving: &PackedBodies<StateHash>, packed: &Packed<StateHash>) -> WorldDigest {
-        let Snapshot {
-            rest,
-            bodies,
-            shapes,
-            joints,
-            islands,
-            resting,
-            moving: _,
-            packed: _,
-            digest: _,
-            changes: _,
-        } = self;
+    fn digest_with(&self, packed: &Packed<StateHash>) -> WorldDigest {
+        let Snapshot { rest, bodies, shapes, joints, islands, resting, packed: _, digest: _, changes: _ } =
+            self;
         let Rest { config, tick, faults, pairs_left_out, removed_contacts, rng } = rest;
         fn of(shared: impl Iterator<Item = StateHash>, packed: StateHash) -> StateHash {
             StateHash::of_digests(shared.chain([packed]))
@@ -210,14 +188,22 @@ impl Snapshot {
         WorldDigest {
             sections: [
                 (Section::World, StateHash::of(&(config, tick, faults))),
-                (Section::Bodies, of(bodies.digests(), moving.bodies)),
-                (Section::Shapes, of(shapes.digests(), moving.boxes)),
+                (Section::Bodies, of(bodies.digests(), packed.bodies.bodies)),
+                (Section::Shapes, of(shapes.digests(), packed.bodies.boxes)),
                 (Section::Joints, of(joints.digests(), packed.joints)),
                 (Section::Contacts, of(contacts, packed.impulses)),
                 (Section::Islands, StateHash::of_digests(islands.digests())),
                 (Section::Random, StateHash::of(rng)),
             ],
         }
+    }
+}
+
+impl Packed {
+    /// All that it is in memory.
+    fn buffers(&mut self) -> [&mut Vec<u8>; 5] {
+        let Packed { bodies: PackedBodies { bodies, boxes }, joints, contacts, impulses } = self;
+        [bodies, boxes, joints, contacts, impulses]
     }
 }
 
@@ -240,8 +226,7 @@ impl World {
     pub fn save(&self) -> Snapshot {
         let mut snapshot = Snapshot::empty(&self.state);
         self.save_into(&mut snapshot);
-        let Packed { joints, contacts, impulses } = &mut snapshot.packed;
-        [joints, contacts, impulses].into_iter().for_each(Vec::shrink_to_fit);
+        snapshot.packed.buffers().into_iter().for_each(Vec::shrink_to_fit);
         snapshot
     }
 

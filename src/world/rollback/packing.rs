@@ -54,6 +54,11 @@ impl<'a, const N: usize> Record<'a, N> {
         self.len += bytes.len();
     }
 
+    /// What has been put.
+    pub(super) fn written(&self) -> &[u8] {
+        &self.bytes[..self.len]
+    }
+
     /// Takes back what has been put after so many bytes.
     #[inline(always)]
     pub(super) fn truncate(&mut self, len: usize) {

@@ -44,11 +44,10 @@ impl World {
 }
 
 pub(super) fn restore_state(state: &mut State, snapshot: &Snapshot, stale: &mut Stale) {
-    let Snapshot { rest, bodies, shapes, joints, islands, resting, moving, packed, digest: _, changes: _ } =
-        snapshot;
+    let Snapshot { rest, bodies, shapes, joints, islands, resting, packed, digest: _, changes: _ } = snapshot;
     let Rest { config, tick, faults, pairs_left_out, removed_contacts, rng } = rest;
-    let PackedBodies { bodies: motions, boxes } = &**moving;
-    let Packed { joints: turns, contacts: heads, impulses } = packed;
+    let Packed { bodies: moving, joints: turns, contacts: heads, impulses } = packed;
+    let PackedBodies { bodies: motions, boxes } = moving;
     (state.config, state.tick, state.faults) = (*config, *tick, *faults);
     state.pairs_left_out = *pairs_left_out;
     state.removed_contacts.clone_from(removed_contacts);
