@@ -3,7 +3,9 @@
 //! A position `x` on the angle becomes a velocity along the row: `2 pi s x` times a rate, in one product with a
 //! coefficient that does not change within a tick.
 
-use super::super::super::row::Row;
+use alloc::vec::Vec;
+
+use super::super::super::row::{MassFractions, Row};
 use super::super::super::settings::Tuning;
 use super::super::super::softness::Softness;
 use super::super::options::{Drive, Limit, Spring};
@@ -11,7 +13,7 @@ use super::super::parts::{impulse, slot};
 use super::super::row::lambda_of;
 use super::super::state::{JointImpulses, turns_of};
 use super::input::{End, Input};
-use crate::math::{Fx, Ratio, Speed, TAU, Unit, fx_mul, narrow};
+use crate::math::{Fx, Ratio, Reciprocal, Speed, TAU, Unit, fx_mul, narrow};
 
 /// Largest impulse of a row on the angle. The difference of two fits the format.
 pub(super) const ANGLE_MAX: Speed = Speed::lit("511");
@@ -33,21 +35,82 @@ impl AngleParts {
     }
 }
 
-/// A spring, and what it is made of, in a tick.
-#[derive(Clone, Copy, Debug)]
+/// What has been found out about hinges in a tick. It takes many divisions, and mostly there are many joints alike: all
+/// links of a chain, each knee of the ragdolls.
+#[derive(Clone, Debug, Default)]
 pub(super) struct Memo {
-    hertz_and_ratio: (Fx, Fx),
-    softness: Softness,
+    /// Of the last spring, hertz and damping ratio, and what they make.
+    spring: Option<((Fx, Fx), Softness)>,
+    /// By a hash of its bodies, what joins them.
+    angulars: Vec<Option<Angular>>,
 }
 
 impl Memo {
-    fn softness(memo: &mut Option<Self>, hertz_and_ratio: (Fx, Fx), rate: u32) -> Softness {
-        if let Some(memo) = memo.filter(|memo| memo.hertz_and_ratio == hertz_and_ratio) {
-            return memo.softness;
+    /// As many as a few machines have joints.
+    const ANGULARS: usize = 64;
+
+    pub(super) fn clear(&mut self) {
+        self.spring = None;
+        self.angulars.clear();
+    }
+
+    fn softness(&mut self, hertz_and_ratio: (Fx, Fx), rate: u32) -> Softness {
+        match self.spring {
+            Some((known, softness)) if known == hertz_and_ratio => softness,
+            _ => {
+                let softness = Softness::spring(hertz_and_ratio.0, hertz_and_ratio.1, rate);
+                self.spring = Some((hertz_and_ratio, softness));
+                softness
+            }
         }
-        let softness = Softness::spring(hertz_and_ratio.0, hertz_and_ratio.1, rate);
-        *memo = Some(Memo { hertz_and_ratio, softness });
-        softness
+    }
+
+    fn angular(&mut self, bodies: Bodies, torque: Fx, fractions: MassFractions, rate: u32) -> Angular {
+        self.angulars.resize(Self::ANGULARS, None);
+        let place = &mut self.angulars[bodies.hash() % Self::ANGULARS];
+        match *place {
+            Some(known) if known.bodies == bodies && known.torque == torque => known,
+            _ => *place.insert(Angular::new(bodies, torque, fractions, rate)),
+        }
+    }
+}
+
+/// `1 / k` and mass of two bodies.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Bodies([(Reciprocal, Fx); 2]);
+
+impl Bodies {
+    fn hash(&self) -> usize {
+        let parts = self.0.iter().flat_map(|(inverse, mass)| [i64::from(inverse.parts().0), mass.to_bits()]);
+        let hash = parts.fold(0u64, |hash, part| {
+            (hash.rotate_left(5) ^ part.cast_unsigned()).wrapping_mul(0x9E37_79B9_7F4A_7C15)
+        });
+        (hash >> 58) as usize
+    }
+}
+
+/// The row on the angle between two bodies, whatever it is for, and the impulse of a torque on it.
+#[derive(Clone, Copy, Debug)]
+struct Angular {
+    bodies: Bodies,
+    torque: Fx,
+    e: [Ratio; 2],
+    f: [Unit; 2],
+    s: Fx,
+    /// Largest impulse: 0 if neither body turns.
+    max: Speed,
+    lambda_of_torque: Speed,
+}
+
+impl Angular {
+    fn new(bodies: Bodies, torque: Fx, fractions: MassFractions, rate: u32) -> Self {
+        let Bodies([(a, mass_a), (b, mass_b)]) = bodies;
+        let (row, denominator, s) = Row::angular(a, b, fractions);
+        let (e, f) = row.turning_parts();
+        let s = Fx::from(s);
+        let max = if denominator == 0 { Speed::ZERO } else { ANGLE_MAX };
+        let lambda_of_torque = lambda_of(impulse(torque, (mass_a, mass_b), rate), denominator, s).min(max);
+        Angular { bodies, torque, e, f, s, max, lambda_of_torque }
     }
 }
 
@@ -103,13 +166,13 @@ impl AngleInput {
         input: &Input,
         (a, b): (&End, &End),
         impulses: &JointImpulses,
-        memo: &mut Option<Memo>,
+        memo: &mut Memo,
         tuning: &Tuning,
     ) -> Self {
-        let (row, denominator, s) = Row::angular(a.inverse_gyration, b.inverse_gyration, input.fractions);
-        let (e, f) = row.turning_parts();
-        let s = Fx::from(s);
-        let max = if denominator == 0 { Speed::ZERO } else { ANGLE_MAX };
+        let bodies = Bodies([(a.inverse_gyration, a.mass), (b.inverse_gyration, b.mass)]);
+        let torque = parts.drive.map_or(Fx::ZERO, |drive| drive.max);
+        let Angular { e, f, s, max, lambda_of_torque, .. } =
+            memo.angular(bodies, torque, input.fractions, tuning.rate);
         let lambda = |slot: u8| impulses.0[usize::from(slot)];
         let per_turn = |rate: Fx| fx_mul(fx_mul(TAU, s), rate);
         let stiffness = |soft: &Softness| fx_mul(per_turn(soft.bias_rate.into()), soft.mass_scale.into());
@@ -123,10 +186,10 @@ impl AngleInput {
             lambda: lambda(slot::SPRING).clamp(-max, max),
         };
         let from_spring = parts.spring.map(|Spring { hertz, damping_ratio, target }| {
-            spring(&Memo::softness(memo, (hertz, damping_ratio), tuning.rate), target, false)
+            spring(&memo.softness((hertz, damping_ratio), tuning.rate), target, false)
         });
-        let drive = parts.drive.map(|Drive { speed, max: torque }| {
-            let most = lambda_of(impulse(torque, (a.mass, b.mass), tuning.rate), denominator, s).min(max);
+        let drive = parts.drive.map(|Drive { speed, max: _ }| {
+            let most = lambda_of_torque;
             let speed: Speed = narrow(fx_mul(speed, s));
             DriveInput {
                 bias: speed.saturating_neg(),

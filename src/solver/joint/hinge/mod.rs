@@ -47,8 +47,7 @@ pub(super) struct HingeSet {
     /// What they are made of, in the order of the state.
     inputs: Vec<Input>,
     angles: Vec<AngleInput>,
-    /// The spring that was prepared last: mostly the next one is like it.
-    memo: Option<Memo>,
+    memo: Memo,
     /// Those that fit no colour, in their own order.
     serial: Batches<1>,
     /// The others, colour by colour.

@@ -29,7 +29,7 @@ impl HingeSet {
         *expired = Expired::Everything;
         inputs.clear();
         angles.clear();
-        *memo = None;
+        memo.clear();
         serial.clear();
         coloured.clear();
     }
