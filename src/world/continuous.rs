@@ -131,10 +131,12 @@ fn first_impact(state: &State, scratch: &Scratch, swept: &Swept) -> Option<Impac
 fn obstacle_of(state: &State, scratch: &Scratch, shape: u32) -> (Core, Sweep) {
     let body = state.body_of(shape);
     let core = Core::of(scratch.poses.at(shape), body.centre);
+    let stands = (core, Sweep::fixed(body.centre));
+    if body.kind() == BodyKind::Fixed {
+        return stands;
+    }
     let slot = state.shapes.at(shape).body().slot();
-    let Ok(index) = scratch.roster.bodies.binary_search(&slot) else {
-        return (core, Sweep::fixed(body.centre));
-    };
+    let Ok(index) = scratch.roster.bodies.binary_search(&slot) else { return stands };
     let start = scratch.starts[index];
     // The shorter way round: what turns more than half a turn in a tick is not seen to.
     let turn = (body.angle - start.angle).to_turns().to_bits();
@@ -155,6 +157,9 @@ fn may_stop(state: &State, scratch: &Scratch, a: u32, b: u32) -> bool {
     let pair = (a.min(b), a.max(b));
     // Whether a one-way shape lets the other pass was decided at the start of the tick.
     let passing = || {
+        if ![a, b].iter().any(|&shape| scratch.poses.outlook.reach(shape).one_way) {
+            return false;
+        }
         let known = state.contacts.binary_search_by_key(&pair, |contact| contact.shapes);
         known.is_ok_and(|index| state.contacts[index].passing)
     };
