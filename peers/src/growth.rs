@@ -18,8 +18,10 @@ use crate::stats::{median, power};
 /// A world of any size.
 #[derive(Clone, Copy)]
 pub struct World {
-    name: &'static str,
-    setup: fn(bodies: u32) -> Result<SandboxSetup, WorldError>,
+    /// What it is called.
+    pub name: &'static str,
+    /// What is in it, about so many bodies.
+    pub setup: fn(bodies: u32) -> Result<SandboxSetup, WorldError>,
 }
 
 /// All of them.

@@ -5,6 +5,7 @@ mod box2d;
 mod compare;
 mod engine;
 mod growth;
+mod instructions;
 mod measure;
 mod ours;
 mod rapier;
@@ -15,7 +16,7 @@ mod table;
 #[cfg(test)]
 mod tests;
 
-use anyhow::Result;
+use anyhow::{Context, Result};
 use clap::Parser;
 use clap::builder::PossibleValuesParser;
 use compare::Plan;
@@ -35,6 +36,9 @@ struct Arguments {
 enum Command {
     /// How the time of a step grows with the number of bodies
     Growth(GrowthArguments),
+    /// Steps one of the worlds of `growth`: what that counts the instructions of
+    #[command(hide = true)]
+    Step { world: String, bodies: u32, steps: u64 },
     /// What rollback costs in lockstep2d
     Rollback(RollbackArguments),
 }
@@ -54,6 +58,9 @@ struct GrowthArguments {
     /// Runs of each engine in turn
     #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u16).range(1..))]
     rounds: u16,
+    /// Instructions of lockstep2d instead of the time of all engines: one round under valgrind, which is slow
+    #[arg(long, conflicts_with = "rounds")]
+    instructions: bool,
     /// Lines of JSON instead of a table
     #[arg(long)]
     json: bool,
@@ -96,6 +103,12 @@ fn main() -> Result<()> {
     match &arguments.command {
         None => compare_scenes(&arguments.scenes),
         Some(Command::Growth(arguments)) => measure_growth(arguments),
+        Some(Command::Step { world, bodies, steps }) => {
+            let world = growth::WORLDS.into_iter().find(|known| known.name == world);
+            let world = world.context("a world of `growth`")?;
+            println!("{}", instructions::step(world, *bodies, *steps)?);
+            Ok(())
+        }
         Some(Command::Rollback(arguments)) => measure_rollback(arguments),
     }
 }
@@ -140,6 +153,9 @@ fn measure_growth(arguments: &GrowthArguments) -> Result<()> {
         untimed: arguments.untimed,
         rounds: arguments.rounds.into(),
     };
+    if arguments.instructions {
+        return count_instructions(&plan, arguments.json);
+    }
     let runs = growth::WORLDS.len() * plan.sizes.len() * plan.rounds * engine::Kind::ALL.len();
     let progress = progress(runs as u64)?;
     let mut growths = Vec::new();
@@ -149,6 +165,24 @@ fn measure_growth(arguments: &GrowthArguments) -> Result<()> {
     progress.finish_and_clear();
     if !arguments.json {
         print!("{}", growth::table(&growths));
+        return Ok(());
+    }
+    for growth in &growths {
+        println!("{}", compare::line(growth)?);
+    }
+    Ok(())
+}
+
+fn count_instructions(plan: &growth::Plan, json: bool) -> Result<()> {
+    let progress = progress(growth::WORLDS.len() as u64)?;
+    let mut growths = Vec::new();
+    for world in growth::WORLDS {
+        growths.push(instructions::measure(world, plan)?);
+        progress.inc(1);
+    }
+    progress.finish_and_clear();
+    if !json {
+        print!("{}", instructions::table(&growths));
         return Ok(());
     }
     for growth in &growths {

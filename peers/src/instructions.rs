@@ -1,0 +1,78 @@
+//! How many instructions a step of lockstep2d takes at each size, counted by callgrind: unlike times, counts know nothing
+//! of caches or of what else a machine does.
+
+use std::process::Command;
+
+use anyhow::{Context, Result, anyhow, ensure};
+use lockstep2d::lockstep::{Game, Sandbox};
+use serde::Serialize;
+
+use crate::growth::{Plan, World};
+use crate::stats::power;
+
+/// A world at every size.
+#[derive(Clone, Debug, Serialize)]
+pub struct Growth {
+    /// Its name.
+    pub world: &'static str,
+    /// From small to large.
+    pub points: Vec<Point>,
+    /// The exponent that fits best.
+    pub p: f64,
+}
+
+/// A world at one size.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Point {
+    /// Dynamic bodies.
+    pub bodies: usize,
+    /// Millions of instructions in a step.
+    pub millions: f64,
+}
+
+/// Counts a world at every size: what a run takes more than one that ends before the steps that count.
+pub fn measure(world: World, plan: &Plan) -> Result<Growth> {
+    let mut points = Vec::new();
+    for &size in &plan.sizes {
+        let (bodies, start) = count(world, size, plan.untimed)?;
+        let (_, end) = count(world, size, plan.untimed + plan.steps)?;
+        points.push(Point { bodies, millions: (end - start) / plan.steps as f64 / 1e6 });
+    }
+    let p = power(&points.iter().map(|point| (point.bodies as f64, point.millions)).collect::<Vec<_>>());
+    Ok(Growth { world: world.name, points, p })
+}
+
+/// The number of bodies and of instructions of this program under callgrind, when all that it does is [`step`].
+fn count(world: World, size: u32, steps: u64) -> Result<(usize, f64)> {
+    let output = Command::new("valgrind")
+        .args(["--tool=callgrind", "--callgrind-out-file=/dev/null"])
+        .arg(std::env::current_exe()?)
+        .args(["step", world.name, &size.to_string(), &steps.to_string()])
+        .output()
+        .context("valgrind does not start: is it installed?")?;
+    let log = String::from_utf8_lossy(&output.stderr);
+    ensure!(output.status.success(), "{} of {size}: {log}", world.name);
+    let bodies = String::from_utf8_lossy(&output.stdout).trim().parse()?;
+    let collected = log.lines().find_map(|line| line.split_once("Collected : "));
+    let (_, collected) = collected.with_context(|| format!("callgrind has counted nothing: {log}"))?;
+    Ok((bodies, collected.trim().parse()?))
+}
+
+/// Makes a world of a size, steps it, and returns how many dynamic bodies it has.
+pub fn step(world: World, size: u32, steps: u64) -> Result<usize> {
+    let setup = (world.setup)(size).map_err(|error| anyhow!("{} of {size}: {error}", world.name))?;
+    let mut game = Sandbox::new(&setup).map_err(|error| anyhow!("{error}"))?;
+    (0..steps).for_each(|_| game.step(&[]));
+    Ok(game.world().bodies().filter(|(_, body)| body.is_dynamic()).count())
+}
+
+/// Results for people.
+pub fn table(growths: &[Growth]) -> String {
+    let mut text = format!("{:9} {:>6}  million instructions per step (bodies)\n", "world", "p");
+    for Growth { world, points, p } in growths {
+        let point = |point: &Point| format!("{:.1} ({})", point.millions, point.bodies);
+        let points: Vec<_> = points.iter().map(point).collect();
+        text += &format!("{world:9} {p:6.3}  {}\n", points.join("  "));
+    }
+    text
+}
