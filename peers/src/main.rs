@@ -21,6 +21,7 @@ use clap::Parser;
 use clap::builder::PossibleValuesParser;
 use compare::Plan;
 use indicatif::{ProgressBar, ProgressStyle};
+use serde::Serialize;
 
 /// Runs the ten benchmark scenes in lockstep2d, Box2D 3.2 (AVX2) and rapier2d (enhanced-determinism).
 #[derive(Parser)]
@@ -163,11 +164,16 @@ fn measure_growth(arguments: &GrowthArguments) -> Result<()> {
         growths.extend(growth::measure(world, &plan, &progress)?);
     }
     progress.finish_and_clear();
-    if !arguments.json {
-        print!("{}", growth::table(&growths));
+    print_growths(&growths, growth::table, arguments.json)
+}
+
+/// As lines of JSON, or as a table.
+fn print_growths<T: Serialize>(growths: &[T], table: fn(&[T]) -> String, json: bool) -> Result<()> {
+    if !json {
+        print!("{}", table(growths));
         return Ok(());
     }
-    for growth in &growths {
+    for growth in growths {
         println!("{}", compare::line(growth)?);
     }
     Ok(())
@@ -181,14 +187,7 @@ fn count_instructions(plan: &growth::Plan, json: bool) -> Result<()> {
         progress.inc(1);
     }
     progress.finish_and_clear();
-    if !json {
-        print!("{}", instructions::table(&growths));
-        return Ok(());
-    }
-    for growth in &growths {
-        println!("{}", compare::line(growth)?);
-    }
-    Ok(())
+    print_growths(&growths, instructions::table, json)
 }
 
 fn measure_rollback(arguments: &RollbackArguments) -> Result<()> {

@@ -12,7 +12,7 @@ use super::super::options::{Drive, Limit, Spring};
 use super::super::parts::{impulse, slot};
 use super::super::row::lambda_of;
 use super::super::state::{JointImpulses, turns_of};
-use super::input::{End, Input};
+use super::input::End;
 use crate::math::{Fx, Ratio, Reciprocal, Speed, TAU, Unit, fx_mul, narrow};
 
 /// Largest impulse of a row on the angle. The difference of two fits the format.
@@ -35,82 +35,81 @@ impl AngleParts {
     }
 }
 
-/// What has been found out about hinges in a tick. It takes many divisions, and mostly there are many joints alike: all
-/// links of a chain, each knee of the ragdolls.
+/// What has been found out about hinges. It takes many divisions, and mostly there are many joints alike: all links of a
+/// chain, each knee of the ragdolls. It depends on nothing but what it is kept with, so that it is true for ever.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Memo {
-    /// Of the last spring, hertz and damping ratio, and what they make.
-    spring: Option<((Fx, Fx), Softness)>,
+    /// Of the last spring, hertz, damping ratio and rate, and what they make.
+    spring: Option<((Fx, Fx, u32), Softness)>,
     /// By a hash of its bodies, what joins them.
     angulars: Vec<Option<Angular>>,
 }
 
 impl Memo {
-    /// As many as a few machines have joints.
-    const ANGULARS: usize = 64;
+    /// There is room for the joints of a few machines: a power of two.
+    const ANGULARS_BITS: u32 = 6;
 
-    pub(super) fn clear(&mut self) {
-        self.spring = None;
-        self.angulars.clear();
-    }
-
-    fn softness(&mut self, hertz_and_ratio: (Fx, Fx), rate: u32) -> Softness {
+    fn softness(&mut self, hertz: Fx, damping_ratio: Fx, rate: u32) -> Softness {
+        let wanted = (hertz, damping_ratio, rate);
         match self.spring {
-            Some((known, softness)) if known == hertz_and_ratio => softness,
-            _ => {
-                let softness = Softness::spring(hertz_and_ratio.0, hertz_and_ratio.1, rate);
-                self.spring = Some((hertz_and_ratio, softness));
-                softness
-            }
+            Some((known, softness)) if known == wanted => softness,
+            _ => self.spring.insert((wanted, Softness::spring(hertz, damping_ratio, rate))).1,
         }
     }
 
-    fn angular(&mut self, bodies: Bodies, torque: Fx, fractions: MassFractions, rate: u32) -> Angular {
-        self.angulars.resize(Self::ANGULARS, None);
-        let place = &mut self.angulars[bodies.hash() % Self::ANGULARS];
+    fn angular(&mut self, wanted: Joined) -> Angular {
+        self.angulars.resize(1 << Self::ANGULARS_BITS, None);
+        let place = &mut self.angulars[wanted.hash()];
         match *place {
-            Some(known) if known.bodies == bodies && known.torque == torque => known,
-            _ => *place.insert(Angular::new(bodies, torque, fractions, rate)),
+            Some(known) if known.joined == wanted => known,
+            _ => *place.insert(Angular::new(wanted)),
         }
     }
 }
 
-/// `1 / k` and mass of two bodies.
+/// Two bodies alike to others, as far as the angle between them is concerned.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Bodies([(Reciprocal, Fx); 2]);
+struct Joined {
+    /// `1 / k` and mass of each.
+    bodies: [(Reciprocal, Fx); 2],
+    /// Of the motor between them.
+    torque: Fx,
+    /// Sub-steps per second.
+    rate: u32,
+}
 
-impl Bodies {
+impl Joined {
     fn hash(&self) -> usize {
-        let parts = self.0.iter().flat_map(|(inverse, mass)| [i64::from(inverse.parts().0), mass.to_bits()]);
+        let parts = self.bodies.iter().flat_map(|(inverse, mass)| [inverse.parts().0.into(), mass.to_bits()]);
         let hash = parts.fold(0u64, |hash, part| {
             (hash.rotate_left(5) ^ part.cast_unsigned()).wrapping_mul(0x9E37_79B9_7F4A_7C15)
         });
-        (hash >> 58) as usize
+        (hash >> (u64::BITS - Memo::ANGULARS_BITS)) as usize
     }
 }
 
 /// The row on the angle between two bodies, whatever it is for, and the impulse of a torque on it.
 #[derive(Clone, Copy, Debug)]
 struct Angular {
-    bodies: Bodies,
-    torque: Fx,
+    joined: Joined,
     e: [Ratio; 2],
     f: [Unit; 2],
     s: Fx,
     /// Largest impulse: 0 if neither body turns.
     max: Speed,
-    lambda_of_torque: Speed,
+    /// Largest impulse of the motor.
+    drive_max: Speed,
 }
 
 impl Angular {
-    fn new(bodies: Bodies, torque: Fx, fractions: MassFractions, rate: u32) -> Self {
-        let Bodies([(a, mass_a), (b, mass_b)]) = bodies;
-        let (row, denominator, s) = Row::angular(a, b, fractions);
+    fn new(joined: Joined) -> Self {
+        let Joined { bodies: [(a, mass_a), (b, mass_b)], torque, rate } = joined;
+        let (row, denominator, s) = Row::angular(a, b, MassFractions::of_masses(mass_a, mass_b));
         let (e, f) = row.turning_parts();
         let s = Fx::from(s);
         let max = if denominator == 0 { Speed::ZERO } else { ANGLE_MAX };
-        let lambda_of_torque = lambda_of(impulse(torque, (mass_a, mass_b), rate), denominator, s).min(max);
-        Angular { bodies, torque, e, f, s, max, lambda_of_torque }
+        let drive_max = lambda_of(impulse(torque, (mass_a, mass_b), rate), denominator, s).min(max);
+        Angular { joined, e, f, s, max, drive_max }
     }
 }
 
@@ -163,16 +162,16 @@ pub(super) struct LimitInput {
 impl AngleInput {
     pub(in super::super) fn new(
         parts: &AngleParts,
-        input: &Input,
         (a, b): (&End, &End),
         impulses: &JointImpulses,
         memo: &mut Memo,
         tuning: &Tuning,
     ) -> Self {
-        let bodies = Bodies([(a.inverse_gyration, a.mass), (b.inverse_gyration, b.mass)]);
-        let torque = parts.drive.map_or(Fx::ZERO, |drive| drive.max);
-        let Angular { e, f, s, max, lambda_of_torque, .. } =
-            memo.angular(bodies, torque, input.fractions, tuning.rate);
+        let Angular { joined: _, e, f, s, max, drive_max } = memo.angular(Joined {
+            bodies: [a, b].map(|end| (end.inverse_gyration, end.mass)),
+            torque: parts.drive.map_or(Fx::ZERO, |drive| drive.max),
+            rate: tuning.rate,
+        });
         let lambda = |slot: u8| impulses.0[usize::from(slot)];
         let per_turn = |rate: Fx| fx_mul(fx_mul(TAU, s), rate);
         let stiffness = |soft: &Softness| fx_mul(per_turn(soft.bias_rate.into()), soft.mass_scale.into());
@@ -186,15 +185,14 @@ impl AngleInput {
             lambda: lambda(slot::SPRING).clamp(-max, max),
         };
         let from_spring = parts.spring.map(|Spring { hertz, damping_ratio, target }| {
-            spring(&memo.softness((hertz, damping_ratio), tuning.rate), target, false)
+            spring(&memo.softness(hertz, damping_ratio, tuning.rate), target, false)
         });
         let drive = parts.drive.map(|Drive { speed, max: _ }| {
-            let most = lambda_of_torque;
             let speed: Speed = narrow(fx_mul(speed, s));
             DriveInput {
                 bias: speed.saturating_neg(),
-                max: most,
-                lambda: lambda(slot::DRIVE).clamp(-most, most),
+                max: drive_max,
+                lambda: lambda(slot::DRIVE).clamp(-drive_max, drive_max),
             }
         });
         let limit = parts.limit.map(|Limit { lower, upper }| LimitInput {

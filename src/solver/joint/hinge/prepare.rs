@@ -25,11 +25,10 @@ pub(super) struct Records<const N: usize> {
 
 impl HingeSet {
     pub(in super::super) fn clear(&mut self) {
-        let HingeSet { inputs, angles, memo, serial, coloured, expired } = self;
+        let HingeSet { inputs, angles, memo: _, serial, coloured, expired } = self;
         *expired = Expired::Everything;
         inputs.clear();
         angles.clear();
-        memo.clear();
         serial.clear();
         coloured.clear();
     }
@@ -47,7 +46,7 @@ impl HingeSet {
         let angle = if parts.is_empty() { None } else { Some(count(angles)) };
         let input = Input::new(slot, joint, a, b, angle);
         if angle.is_some() {
-            angles.push(AngleInput::new(parts, &input, (a, b), &joint.impulses, memo, tuning));
+            angles.push(AngleInput::new(parts, (a, b), &joint.impulses, memo, tuning));
         }
         inputs.push(input);
         count(inputs) - 1
