@@ -163,16 +163,9 @@ impl BroadPhase {
                     }
                 };
                 match structure {
-                    // To compare a tree with itself is worth four times as many searches.
-                    Structure::Tree(tree) if set.slots.len() < tree.len() / 4 => {
-                        for &a in &set.slots {
-                            // A pair of two that have moved is met from both ends.
-                            tree.each_overlap_of(a, |b| {
-                                if b > a || (b < a && !set.has(b)) {
-                                    found((a.min(b), a.max(b)));
-                                }
-                            });
-                        }
+                    // To mark most of a tree costs more than it spares.
+                    Structure::Tree(tree) if set.slots.len() < tree.len() / 2 => {
+                        tree.each_pair_of(&set.slots, found);
                     }
                     Structure::Tree(tree) => tree.each_pair(found_moved),
                     Structure::SweepAndPrune(sweep) => sweep.each_pair(found_moved),

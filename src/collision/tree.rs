@@ -29,7 +29,7 @@ const NONE: u32 = u32::MAX;
 
 /// By how much the heights of two siblings may differ: so much that a long ground may stay near the root, where the
 /// perimeters want it. With 4, the pairs of 10 000 boxes on top of some such grounds take several times as long.
-const IMBALANCE_MAX: u32 = 16;
+const IMBALANCE_MAX: u16 = 16;
 
 /// One node waits on each level of a search, and one more: enough for 2^31 boxes, see the test.
 const STACK_LEN: usize = 192;
@@ -59,7 +59,9 @@ struct Node {
     aabb: Aabb,
     parent: u32,
     /// 0 for a leaf.
-    height: u32,
+    height: u16,
+    /// Whether there is something below it, or itself, of which pairs are asked for at the moment.
+    marked: bool,
     /// Of a leaf, its slot and nothing.
     children: [u32; 2],
 }
@@ -275,7 +277,7 @@ impl Tree {
 
     /// Exchanges a child with a child of its sibling, if that makes the sibling smaller: the box of the node itself
     /// stays the same. The height may differ by one from what it was, which the ancestors can put right.
-    fn tighten(&mut self, at: u32, height_before: u32) {
+    fn tighten(&mut self, at: u32, height_before: u16) {
         let [a, b] = self.at(at).children;
         let (mut best_gain, mut best) = (0, None);
         for (child, sibling) in [(a, b), (b, a)] {
@@ -297,7 +299,7 @@ impl Tree {
     }
 
     /// Whether a node may have the first of three as a child and the other two as grandchildren.
-    fn stays_balanced(&self, three: [u32; 3], height_before: u32) -> bool {
+    fn stays_balanced(&self, three: [u32; 3], height_before: u16) -> bool {
         let [up, a, b] = three.map(|index| self.at(index).height);
         let sibling = 1 + a.max(b);
         let height = 1 + up.max(sibling);
@@ -357,7 +359,7 @@ impl Tree {
 
 impl Node {
     fn leaf(slot: u32, aabb: Aabb) -> Self {
-        Node { aabb, parent: NONE, height: 0, children: [slot, NONE] }
+        Node { aabb, parent: NONE, height: 0, marked: false, children: [slot, NONE] }
     }
 
     fn is_leaf(&self) -> bool {

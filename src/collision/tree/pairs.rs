@@ -1,11 +1,9 @@
 //! Which boxes overlap each other.
 
 use alloc::vec::Vec;
-use core::ops::ControlFlow;
 
 use super::{NONE, Node, Tree};
 use crate::collision::broad_phase::Pair;
-use crate::collision::search::Overlap;
 
 /// How many pairs are found before they are told.
 const FOUND_MAX: usize = 256;
@@ -55,13 +53,13 @@ pub(super) struct Meetings {
 }
 
 impl Meetings {
-    /// Of each two nodes that overlap, leaves are a pair, and others have something to be looked at later.
+    /// Of each two nodes that overlap, one of them wanted, leaves are a pair, and others have something to be looked at later.
     #[inline(always)]
-    fn meet<const N: usize>(&mut self, pairs: [[(u32, &Node); 2]; N]) {
+    fn meet<const N: usize>(&mut self, pairs: [[(u32, &Node); 2]; N], wanted: impl Fn(&Node) -> bool) {
         let (mut found, mut waiting) = ([((NONE, NONE), false); N], [((NONE, NONE), false); N]);
         for i in 0..N {
             let [(a, node_a), (b, node_b)] = pairs[i];
-            let overlap = node_a.aabb.overlaps(node_b.aabb);
+            let overlap = node_a.aabb.overlaps(node_b.aabb) & (wanted(node_a) | wanted(node_b));
             let are_leaves = node_a.is_leaf() & node_b.is_leaf();
             let (slot_a, slot_b) = (node_a.children[0], node_b.children[0]);
             found[i] = ((slot_a.min(slot_b), slot_a.max(slot_b)), overlap & are_leaves);
@@ -73,10 +71,35 @@ impl Meetings {
 }
 
 impl Tree {
-    /// Calls `found` with every pair of overlapping boxes once: the tree against itself.
-    pub(crate) fn each_pair(&mut self, mut found: impl FnMut(Pair)) {
+    /// Calls `found` with every pair of overlapping boxes once.
+    pub(crate) fn each_pair(&mut self, found: impl FnMut(Pair)) {
+        self.meet_itself(|_| true, found);
+    }
+
+    /// The same of pairs with at least one of some slots.
+    pub(crate) fn each_pair_of(&mut self, slots: &[u32], found: impl FnMut(Pair)) {
+        slots.iter().for_each(|&slot| self.mark(slot, true));
+        self.meet_itself(|node| node.marked, found);
+        slots.iter().for_each(|&slot| self.mark(slot, false));
+    }
+
+    /// Marks a leaf and all that it is below, or takes the marks away.
+    fn mark(&mut self, slot: u32, marked: bool) {
+        let mut at = self.leaf_of(slot).unwrap_or(NONE);
+        while at != NONE && self.at(at).marked != marked {
+            self.at_mut(at).marked = marked;
+            at = self.at(at).parent;
+        }
+    }
+
+    /// The tree against itself, but for two nodes of which neither is wanted.
+    #[inline(always)]
+    fn meet_itself(&mut self, wanted: impl Fn(&Node) -> bool, mut found: impl FnMut(Pair)) {
         let mut meetings = core::mem::take(&mut self.meetings);
-        let itself = |node: u32| ((node, node), node != NONE && !self.at(node).is_leaf());
+        let itself = |node: u32| {
+            let meets = node != NONE && wanted(self.at(node)) && !self.at(node).is_leaf();
+            ((node, node), meets)
+        };
         let child = |node: &Node, i: usize| (node.children[i], self.at(node.children[i]));
         meetings.waiting.push_wanted([itself(self.root)]);
         while let Some((a, b)) = meetings.waiting.pop() {
@@ -84,17 +107,17 @@ impl Tree {
             if a == b {
                 let [a0, a1] = [child(node_a, 0), child(node_a, 1)];
                 meetings.waiting.push_wanted([itself(a0.0), itself(a1.0)]);
-                meetings.meet([[a0, a1]]);
+                meetings.meet([[a0, a1]], &wanted);
             } else if node_a.is_leaf() {
                 let leaf = (a, node_a);
-                meetings.meet([[leaf, child(node_b, 0)], [leaf, child(node_b, 1)]]);
+                meetings.meet([[leaf, child(node_b, 0)], [leaf, child(node_b, 1)]], &wanted);
             } else if node_b.is_leaf() {
                 let leaf = (b, node_b);
-                meetings.meet([[child(node_a, 0), leaf], [child(node_a, 1), leaf]]);
+                meetings.meet([[child(node_a, 0), leaf], [child(node_a, 1), leaf]], &wanted);
             } else {
                 let [a0, a1] = [child(node_a, 0), child(node_a, 1)];
                 let [b0, b1] = [child(node_b, 0), child(node_b, 1)];
-                meetings.meet([[a0, b0], [a0, b1], [a1, b0], [a1, b1]]);
+                meetings.meet([[a0, b0], [a0, b1], [a1, b0], [a1, b1]], &wanted);
             }
             if meetings.found.len >= FOUND_MAX {
                 meetings.found.tell(&mut found);
@@ -102,17 +125,5 @@ impl Tree {
         }
         meetings.found.tell(&mut found);
         self.meetings = meetings;
-    }
-
-    /// Calls `found` with every slot whose box overlaps that of a slot, itself included.
-    pub(crate) fn each_overlap_of(&self, slot: u32, mut found: impl FnMut(u32)) {
-        if let Some(leaf) = self.leaf_of(slot) {
-            let area = self.at(leaf).aabb;
-            let visit = |slot| {
-                found(slot);
-                ControlFlow::Continue(())
-            };
-            let _never_breaks = self.search(&mut Overlap { area, visit });
-        }
     }
 }

@@ -132,7 +132,7 @@ impl Tree {
             let node = match loose[start..end] {
                 [] => continue,
                 [Loose { leaf, .. }] => Node { parent, ..nodes[leaf as usize] },
-                _ => Node { aabb: Aabb::default(), parent, height: 1, children: [NONE, NONE] },
+                _ => Node { parent, height: 1, ..Node::leaf(NONE, Aabb::default()) },
             };
             let index = self.allocate(node);
             self.replace_child(parent, NONE, index);

@@ -1,6 +1,7 @@
 //! The tree is sound after whatever happens to it, and no order of boxes makes it deep.
 
 use super::*;
+use crate::collision::broad_phase::Pair;
 use crate::fx;
 use crate::math::{Fx, Rng, Vec2};
 
@@ -10,7 +11,7 @@ impl Tree {
     }
 
     /// Panics unless links, boxes, heights and the free list are as they should be. Returns the height.
-    fn validate(&self) -> u32 {
+    fn validate(&self) -> u16 {
         let mut reached = 0;
         let mut stack = Vec::new();
         if self.root != NONE {
@@ -26,6 +27,7 @@ impl Tree {
             }
             let [a, b] = node.children.map(|child| self.at(child));
             assert!(node.aabb.contains(a.aabb.union(b.aabb)), "the box is around the children");
+            assert!(!node.marked, "marks are taken away");
             assert_eq!(node.height, 1 + a.height.max(b.height));
             assert!(a.height.abs_diff(b.height) <= IMBALANCE_MAX, "siblings are balanced");
             for child in node.children {
@@ -44,6 +46,17 @@ impl Tree {
         }
         assert_eq!(reached + vacant, self.nodes.len(), "every node is in use or vacant");
         if self.root == NONE { 0 } else { self.at(self.root).height }
+    }
+
+    /// The pairs of some slots, from the definition.
+    fn pairs_of(&self, slots: &[u32]) -> Vec<Pair> {
+        let present = || (0u32..).zip(&self.leaves).filter(|&(_, &leaf)| leaf != NONE);
+        let boxes = || present().map(|(slot, &leaf)| (slot, self.at(leaf).aabb));
+        let all = boxes().flat_map(|a| boxes().map(move |b| (a, b)));
+        let wanted = all.filter(|&((a, box_a), (b, box_b))| {
+            a < b && box_a.overlaps(box_b) && (slots.contains(&a) || slots.contains(&b))
+        });
+        wanted.map(|((a, _), (b, _))| (a, b)).collect()
     }
 }
 
@@ -69,6 +82,7 @@ fn the_stack_holds_a_search_of_the_highest_tree() {
 fn it_stays_sound_while_boxes_come_go_and_move() {
     let mut rng = Rng::new(1);
     let mut tree = Tree::default();
+    let mut pairs = 0;
     for round in 0..20_000 {
         let slot = rng.below(100);
         let fat = square(rng.range(fx!(-9), fx!(9)), rng.range(fx!(-9), fx!(9)), rng.range(fx!(0), fx!(1)));
@@ -82,11 +96,20 @@ fn it_stays_sound_while_boxes_come_go_and_move() {
             _ if round == 10_000 => tree.refill((0..50).map(|slot| (slot % 40, fat))),
             _ => tree.remove(slot),
         }
+        if round % 5 == 0 {
+            let slots: Vec<u32> = (0..rng.below(8)).map(|_| rng.below(120)).collect();
+            let mut found = Vec::new();
+            tree.each_pair_of(&slots, |pair| found.push(pair));
+            found.sort_unstable();
+            assert_eq!(found, tree.pairs_of(&slots));
+            pairs += found.len();
+        }
         tree.validate();
         assert!(tree.leaf_of(slot).is_none_or(|leaf| tree.at(leaf).children[0] == slot));
     }
     (0..100).for_each(|slot| tree.remove(slot));
     assert_eq!((tree.validate(), tree.len(), tree.root), (0, 0, NONE));
+    assert!(pairs > 1000, "only {pairs} pairs");
 }
 
 #[test]
