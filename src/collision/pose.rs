@@ -81,6 +81,8 @@ pub(crate) struct Hull {
     vertices: [Vec2<Length>; POLYGON_VERTICES_MAX],
     normals: [Vec2<Unit>; POLYGON_VERTICES_MAX],
     pub(crate) radius: Length,
+    /// The direction of a capsule in its own frame.
+    direction: Vec2<Unit>,
     /// Whether it has four faces and turning it half around its centre changes nothing.
     is_box: bool,
     /// Whether it is a box with right angles, and small enough for lanes.
@@ -169,16 +171,18 @@ impl Hull {
     }
 
     /// A capsule: a segment with a radius.
-    fn capsule(a: Vec2<Fx>, b: Vec2<Fx>, radius: Length) -> Self {
-        let mut hull = Hull { count: 2, radius, ..Self::empty() };
-        hull.place_capsule(a, b);
+    fn capsule(a: Vec2<Fx>, b: Vec2<Fx>, radius: Length, rotation: Rot) -> Self {
+        // One that is long enough to be valid has a direction.
+        let direction = (b - a).normalized().unwrap_or(Vec2::X);
+        let mut hull = Hull { count: 2, radius, direction, ..Self::empty() };
+        hull.turn_capsule(a, b, rotation);
         hull
     }
 
-    /// Puts a capsule between two other ends. One that is long enough to be valid has a direction.
-    fn place_capsule(&mut self, a: Vec2<Fx>, b: Vec2<Fx>) {
-        let direction = (b - a).normalized().unwrap_or(Vec2::X);
-        self.place_ends(a.narrow(), b.narrow(), direction);
+    /// Turns a capsule with its ends in its own frame another way.
+    fn turn_capsule(&mut self, a: Vec2<Fx>, b: Vec2<Fx>, rotation: Rot) {
+        let [a, b] = [a, b].map(|end| rotation.apply(end.narrow()));
+        self.place_ends(a, b, rotation.apply(self.direction));
     }
 
     fn place_ends(&mut self, a: Vec2<Length>, b: Vec2<Length>, direction: Vec2<Unit>) {
@@ -236,6 +240,7 @@ impl Hull {
             vertices: [Vec2::ZERO; POLYGON_VERTICES_MAX],
             normals: [Vec2::ZERO; POLYGON_VERTICES_MAX],
             radius: Length::ZERO,
+            direction: Vec2::ZERO,
             is_box: false,
             is_small_box: false,
         }
@@ -271,7 +276,7 @@ impl PosedShape {
                 self.centre = centre;
             }
             (Outline::Polygon(hull), Geometry::Capsule { a, b, radius: _ }) => {
-                hull.place_capsule(rotation.apply_wide(*a), rotation.apply_wide(*b));
+                hull.turn_capsule(*a, *b, **rotation);
                 self.bounds = hull.bounds().translated(centre);
                 self.centre = centre;
             }
@@ -351,8 +356,7 @@ impl PosedShape {
                 (Outline::Polygon(hull), bounds)
             }
             Geometry::Capsule { a, b, radius } => {
-                let (a, b) = (rotation.apply_wide(*a), rotation.apply_wide(*b));
-                let hull = Hull::capsule(a, b, narrow(*radius));
+                let hull = Hull::capsule(*a, *b, narrow(*radius), rotation);
                 let bounds = hull.bounds();
                 (Outline::Polygon(hull), bounds)
             }

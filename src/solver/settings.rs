@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::softness::Softness;
 use crate::fx;
-use crate::math::{Fx, Rate, Speed, Step, Unit, Vec2, narrow};
+use crate::math::{Fx, Rate, Speed, Step, Vec2, narrow};
 
 /// How contacts remove overlap.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -41,7 +41,8 @@ pub struct SolverSettings {
     pub iterations: u32,
     /// How contacts remove overlap.
     pub contact: ContactTuning,
-    /// Stiffness of joints in Hz, at most a quarter of the sub-step rate.
+    /// Stiffness of joints in Hz, at most a quarter of the sub-step rate. Twice that for the anchors of a hinge or rigid weld
+    /// that holds a body with no other joint to one that is not dynamic: nothing else has to give way there.
     pub joint_hertz: Fx,
     /// Damping ratio of joints, 0 to 100.
     pub joint_damping_ratio: Fx,
@@ -119,9 +120,9 @@ pub(crate) struct Tuning {
     pub(crate) contact_immovable: Softness,
     pub(crate) slop: Step,
     pub(crate) push_speed: Speed,
+    /// Of joints, and of what pins a mounted body: see [`super::joint`].
     pub(crate) joint: Softness,
-    /// `M` of [`super::point_block`].
-    pub(crate) joint_stretch: Unit,
+    pub(crate) mount: Softness,
     pub(crate) relax: bool,
     pub(crate) restitution_threshold: Speed,
     pub(crate) speed_max: Speed,
@@ -145,7 +146,8 @@ impl Tuning {
                 (rigid, rigid, slop, push_speed, false)
             }
         };
-        let joint = Softness::spring(at_most(settings.joint_hertz, 4), settings.joint_damping_ratio, rate);
+        let joint_hertz = at_most(settings.joint_hertz, 4);
+        let joint = |hertz| Softness::spring(hertz, settings.joint_damping_ratio, rate);
         let over_rate = |g: Fx| {
             Fx::from_bits(crate::math::saturate_wide(crate::math::div_round(g.to_bits().into(), rate.into())))
         };
@@ -156,8 +158,8 @@ impl Tuning {
             contact_immovable,
             slop: narrow(slop),
             push_speed: narrow(push_speed),
-            joint,
-            joint_stretch: joint.stretch(),
+            joint: joint(joint_hertz),
+            mount: joint(joint_hertz * 2),
             relax,
             restitution_threshold: narrow(settings.restitution_threshold),
             speed_max: narrow(settings.speed_limit(tick_rate)),

@@ -98,6 +98,32 @@ fn a_cantilever_of_rigid_welds_hardly_bends() {
     }
 }
 
+/// At rest a soft joint gives way to a load `m g` of a mass `m` by `g / omega^2`, as a spring does. The upper hinge of
+/// two rods bears both, at 60 Hz; of one alone, which is mounted, at twice that, so that it gives way a quarter as much.
+#[test]
+fn a_hinge_sags_as_its_stiffness_says_and_a_mount_is_twice_as_stiff() {
+    let sag = |rods: i64| {
+        let mut bench = Bench::new(Ground::Fixed, fx!(-10), Vec2::new(fx!(9), fx!(0)), fx!(0));
+        let mass = MassSource::Given { mass: fx!(1), centre: Vec2::ZERO, gyration: fx!(0.29) };
+        let mut above = bench.a;
+        let joints: Vec<_> = (0..rods)
+            .map(|i| {
+                let rod = BodyDef::dynamic().mass(mass).position(fx!(0), -Fx::from_num(i) - fx!(0.5));
+                let rod = bench.world.spawn(&rod, &[]).expect("valid");
+                let hangs_from = if i == 0 { fx!(0) } else { fx!(-0.5) };
+                let def = JointDef::new(core::mem::replace(&mut above, rod), rod, Revolute::new());
+                bench.join(def.anchor_a(fx!(0), hangs_from).anchor_b(fx!(0), fx!(0.5)))
+            })
+            .collect();
+        bench.run(600, |_, _| {});
+        bench.world.joint_length(joints[0]).expect("there")
+    };
+    // 10 / (120 pi)^2 and 10 / (240 pi)^2.
+    let (soft, stiff) = (fx!(0.000070362), fx!(0.0000175905));
+    close(sag(1), stiff, stiff / 50, "m");
+    close(sag(2), soft * 2, soft / 50, "m");
+}
+
 /// A wheel of 2 kg on a spring of 3 Hz under gravity settles where the spring bears it: `g / omega^2` below.
 #[test]
 fn a_wheel_sinks_into_its_suspension() {

@@ -146,6 +146,7 @@ impl JointSet {
             let joint = joints.at(slot);
             let (a, b) = joint.def.bodies();
             let places = [a, b].map(|id| self.place_of(id.index(), bodies, list, tuning.rate));
+            places.into_iter().for_each(|place| self.bodies[place].joints += 1);
             let [end_a, end_b] = places.map(|place| &self.bodies[place]);
             nodes.push(node(slot, end_a, end_b));
             let entry = match hinge_parts(&joint.def.kind) {
@@ -184,7 +185,8 @@ impl JointSet {
 
     /// Sorts them into colours.
     fn sort(&mut self, nodes: &[Node], colouring: &mut Colouring) {
-        let JointSet { entries, hinges, order, .. } = self;
+        let JointSet { entries, hinges, order, places, bodies, .. } = self;
+        let is_alone = |index: u32| bodies[places[index as usize] as usize - 1].joints == 1;
         colouring.order(nodes, self.turned.len());
         for group in colouring.groups() {
             let (Group::Serial(indices) | Group::Coloured(indices)) = group;
@@ -192,10 +194,11 @@ impl JointSet {
                 Entry::Hinge(_) => None,
                 Entry::Other(other) => Some(other),
             }));
-            hinges.push(&group, |index| match entries[index as usize] {
+            let input_of = |index: u32| match entries[index as usize] {
                 Entry::Hinge(input) => Some(input),
                 Entry::Other(_) => None,
-            });
+            };
+            hinges.push(&group, input_of, is_alone);
         }
     }
 
@@ -245,13 +248,21 @@ impl JointSet {
 
     /// Looks ahead along the turns of the coming sub-step, at the velocities that the last one has left.
     pub(crate) fn aim(&mut self, bodies: &[SolverBody], tuning: &Tuning) {
-        let (half, sixth) = (tuning.joint_stretch / 2, tuning.joint_stretch / 6);
-        for body in &self.turning {
+        let JointSet { turning, quads, hinges, places, .. } = self;
+        let mut aim = |body: &Turning, (half, sixth): (Unit, Unit)| {
             let turn = body.ahead_of(bodies[body.index as usize].spin).clamp(-TURN_MAX, TURN_MAX);
             let (across, squared): (Unit, Unit) = (mul(half, turn), mul(turn, turn));
             let along: Unit = mul(sixth, squared);
-            let Quad(numbers) = &mut self.quads[body.index as usize];
+            let Quad(numbers) = &mut quads[body.index as usize];
             [numbers[2], numbers[3]] = [across.to_bits(), along.to_bits()];
+        };
+        let [joint, mount] = [tuning.joint, tuning.mount].map(|softness| {
+            let stretch = softness.stretch();
+            (stretch / 2, stretch / 6)
+        });
+        turning.iter().for_each(|body| aim(body, joint));
+        for index in hinges.mounted() {
+            aim(&turning[places[index as usize] as usize - 1], mount);
         }
     }
 
@@ -332,7 +343,7 @@ impl JointSet {
         match hinge_parts(&joint.def.kind) {
             Some(parts) => {
                 self.hinges.push_input(0, joint, (&ends[0], &ends[1]), &parts, tuning);
-                self.hinges.push(&Group::Serial(&[0]), Some);
+                self.hinges.push(&Group::Serial(&[0]), Some, |_| false);
             }
             None => self.list.push(0, joint, (1, a), (2, b), tuning),
         }

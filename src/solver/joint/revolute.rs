@@ -13,6 +13,10 @@ use crate::math::Fx;
 
 /// A hinge: pins A's anchor to B's.
 ///
+/// Under a steady pull that would accelerate a body by `a`, the anchors of a hinge at rest come apart by `a / (2 pi f)^2`, where
+/// `f` is [`SolverSettings::joint_hertz`](crate::solver::SolverSettings::joint_hertz), or twice that for a body that has no other
+/// joint on one that is not dynamic: at 60 Hz its weight opens a rotor's hinge by 18 µm, and one with another joint by 70 µm.
+///
 /// The angle of the joint is that of B's frame in A's, in radians, counter-clockwise. It counts turns, so a limit may be
 /// wider than one.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]

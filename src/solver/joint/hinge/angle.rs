@@ -8,11 +8,11 @@
 use super::super::super::contact::Pass;
 use super::super::super::limits::Faults;
 use super::super::super::pair::{Pair, RATIO, UNIT, clamp};
+use super::super::super::softness::Softness;
 use super::super::parts::slot;
 use super::super::place::Turned;
 use super::super::state::JointImpulses;
 use super::angle_input::AngleInput;
-use super::kernel::Constants;
 use crate::lanes::{Ints, Lanes};
 use crate::math::{Fx, Speed, Unit, round_shift_wide, saturate, saturate_wide};
 
@@ -193,7 +193,7 @@ impl<const N: usize> AngleRows<N> {
     pub(super) fn solve<L: Lanes<N>>(
         &mut self,
         pass: Pass,
-        constants: &Constants,
+        softness: &Softness,
         pair: &mut Pair<L, N>,
         faults: &mut Faults,
     ) {
@@ -209,8 +209,8 @@ impl<const N: usize> AngleRows<N> {
             pair.turn(&self.f, L::sub(new, old), faults);
         }
         if self.has_limit {
-            self.solve_limit(0, pass, constants, pair, faults);
-            self.solve_limit(1, pass, constants, pair, faults);
+            self.solve_limit(0, pass, softness, pair, faults);
+            self.solve_limit(1, pass, softness, pair, faults);
         }
     }
 
@@ -241,7 +241,7 @@ impl<const N: usize> AngleRows<N> {
         &mut self,
         side: usize,
         pass: Pass,
-        constants: &Constants,
+        softness: &Softness,
         pair: &mut Pair<L, N>,
         faults: &mut Faults,
     ) {
@@ -255,8 +255,8 @@ impl<const N: usize> AngleRows<N> {
         let w = match pass {
             Pass::Bias => {
                 let mass_scale =
-                    L::select(open, L::splat(Unit::ONE.to_bits()), L::splat(constants.mass_scale));
-                let impulse_scale = L::select(open, zero, L::splat(constants.impulse_scale));
+                    L::select(open, L::splat(Unit::ONE.to_bits()), L::splat(softness.mass_scale.to_bits()));
+                let impulse_scale = L::select(open, zero, L::splat(softness.impulse_scale.to_bits()));
                 L::add_saturating(softened::<L, N>((mass_scale, impulse_scale), vn, old), push)
             }
             Pass::Relax => {

@@ -7,9 +7,7 @@ use super::super::super::row::MassFractions;
 use super::super::parts::slot;
 use super::super::state::Joint;
 use crate::body::Body;
-use crate::math::{
-    Angle, Fx, Length, Ratio, Reciprocal, Shift, Speed, Unit, Vec2, round_shift_wide, saturate, saturate_wide,
-};
+use crate::math::{Angle, Fx, Length, Ratio, Reciprocal, Shift, Speed, Unit, Vec2, round_shift, saturate};
 
 /// A body with joints.
 #[derive(Clone, Copy, Debug)]
@@ -18,6 +16,8 @@ pub(in super::super) struct End {
     pub(in super::super) inverse_gyration: Reciprocal,
     /// 0 if no impulse moves it.
     pub(in super::super) mass: Fx,
+    /// How many joints it has.
+    pub(in super::super) joints: u32,
     centre: Vec2<Fx>,
     local_centre: Vec2<Fx>,
 }
@@ -48,6 +48,7 @@ impl End {
             },
             inverse_gyration: inverse,
             mass: if body.is_dynamic() { body.mass() } else { Fx::ZERO },
+            joints: 0,
             centre: body.centre_of_mass(),
             local_centre: body.local_centre_of_mass(),
         }
@@ -73,8 +74,10 @@ impl Turning {
     }
 }
 
+/// In two parts, each of which fits 64 bits.
 fn product(number: i32, factor: Fx) -> i64 {
-    saturate_wide(round_shift_wide(i128::from(number) * i128::from(factor.to_bits()), Fx::FRAC_NBITS))
+    let (number, high, low) = (i64::from(number), factor.to_bits() >> 32, factor.to_bits() & 0xFFFF_FFFF);
+    number * high + round_shift(number * low, 32)
 }
 
 /// A joint between two bodies, to be coloured.
@@ -121,6 +124,14 @@ impl Input {
             turns: joint.turns(a.turning.angle, b.turning.angle),
             rest: joint.def.rest_angle(),
             lambda: [lambda.x.to_bits(), lambda.y.to_bits()],
+        }
+    }
+
+    /// The index of the body that it holds to one that nothing moves, if it does.
+    pub(super) fn mounted(&self) -> Option<u32> {
+        match self.changed {
+            [GROUND, body] | [body, GROUND] if body != GROUND => Some(body),
+            _ => None,
         }
     }
 }

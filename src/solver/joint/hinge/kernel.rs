@@ -16,28 +16,17 @@ use super::super::super::body::SolverBody;
 use super::super::super::contact::Pass;
 use super::super::super::limits::{Faults, IMPULSE_MAX, STEP_MAX};
 use super::super::super::pair::{Pair, RATIO, UNIT, beyond, clamp, shift};
-use super::super::super::settings::Tuning;
+use super::super::super::softness::Softness;
 use super::angle::AngleRows;
 use super::batch::{Batch, Shape};
 use crate::lanes::{Ints, Lanes, Motion, Quad};
 use crate::math::{Length, Rate, Shift, Speed, Step, Unit};
 
-/// The constants of a tick.
+/// How soft the rows of a batch are. A copy, so that what is written to a batch cannot change it.
 #[derive(Clone, Copy)]
-pub(super) struct Constants {
-    pub(super) bias_rate: i32,
-    pub(super) mass_scale: i32,
-    pub(super) impulse_scale: i32,
-}
-
-impl Constants {
-    pub(super) fn new(tuning: &Tuning) -> Self {
-        Constants {
-            bias_rate: tuning.joint.bias_rate.to_bits(),
-            mass_scale: tuning.joint.mass_scale.to_bits(),
-            impulse_scale: tuning.joint.impulse_scale.to_bits(),
-        }
-    }
+pub(super) struct Stiffness {
+    pub(super) points: Softness,
+    pub(super) limits: Softness,
 }
 
 /// `R v` of the rotations of quads, with 30 more fraction bits.
@@ -61,7 +50,7 @@ pub(super) fn refresh_gaps<L: Lanes<N>, const N: usize>(
     shape: &Shape<N>,
     quads: &[[L::Int; 4]; 2],
     bodies: &[Cell<SolverBody>],
-    constants: &Constants,
+    softness: &Softness,
 ) {
     let arms = [rotated::<L, N>(&quads[0], &shape.arms[0]), rotated::<L, N>(&quads[1], &shape.arms[1])];
     let (a, b) = (L::shifts(bodies, &batch.bodies[0]), L::shifts(bodies, &batch.bodies[1]));
@@ -69,7 +58,7 @@ pub(super) fn refresh_gaps<L: Lanes<N>, const N: usize>(
     for axis in 0..2 {
         let between = L::load_wide(&shape.between[axis]);
         let gap = L::add_wide(L::sub_wide(arms[1][axis], arms[0][axis]), between);
-        L::store(closing::<L, N>(gap, moved[axis], constants), &mut batch.bias[axis]);
+        L::store(closing::<L, N>(gap, moved[axis], softness), &mut batch.bias[axis]);
     }
 }
 
@@ -108,12 +97,12 @@ fn turned<L: Lanes<N>, const N: usize>(
 /// The velocity that closes a gap, reversed: of the gap with 52 fraction bits, which is exact until it is rounded once,
 /// and what has moved since.
 #[inline(always)]
-fn closing<L: Lanes<N>, const N: usize>(gap: L::Wide, moved: L::Int, constants: &Constants) -> L::Int {
+fn closing<L: Lanes<N>, const N: usize>(gap: L::Wide, moved: L::Int, softness: &Softness) -> L::Int {
     const ARM: u32 = Length::FRAC_NBITS + Unit::FRAC_NBITS;
     const RATE: i32 = shift(Step::FRAC_NBITS + Rate::FRAC_NBITS - Speed::FRAC_NBITS);
     let moved = L::mul(moved, L::splat(1 << (ARM - Shift::FRAC_NBITS)));
     let (gap, _) = L::narrow_saturating::<{ shift(ARM - Step::FRAC_NBITS) }>(L::add_wide(gap, moved));
-    L::narrow_saturating::<RATE>(L::mul(gap, L::splat(constants.bias_rate))).0
+    L::narrow_saturating::<RATE>(L::mul(gap, L::splat(softness.bias_rate.to_bits()))).0
 }
 
 /// `a e` in two parts: what is left of it when 32 bits are dropped, and those.
@@ -203,13 +192,13 @@ pub(super) fn solve<L: Lanes<N>, const N: usize>(
     batch: &mut Batch<N>,
     angles: &mut [AngleRows<N>],
     pass: Pass,
-    (constants, quads): (&Constants, &[Quad]),
+    (stiffness, quads): (Stiffness, &[Quad]),
     bodies: &[Cell<SolverBody>],
     faults: &mut Faults,
 ) {
     let mut pair = Pair::<L, N>::load(bodies, &batch.bodies);
     if let Some(place) = batch.angle {
-        angles[place as usize].solve(pass, constants, &mut pair, faults);
+        angles[place as usize].solve(pass, &stiffness.limits, &mut pair, faults);
     }
     let (e_a, e_b) = match pass {
         Pass::Bias => (
@@ -227,8 +216,8 @@ pub(super) fn solve<L: Lanes<N>, const N: usize>(
         velocity::<L, N>(L::sub(b.y, a.y), (e_a[1], e_b[1]), a, b, faults),
     ];
     let d = [
-        accumulate::<L, N>(batch, 0, vr[0], pass, constants, faults),
-        accumulate::<L, N>(batch, 1, vr[1], pass, constants, faults),
+        accumulate::<L, N>(batch, 0, vr[0], pass, &stiffness.points, faults),
+        accumulate::<L, N>(batch, 1, vr[1], pass, &stiffness.points, faults),
     ];
     pair.apply_at_point(batch, d, faults);
     pair.store(bodies, &batch.changed);
@@ -241,7 +230,7 @@ fn accumulate<L: Lanes<N>, const N: usize>(
     axis: usize,
     vr: L::Int,
     pass: Pass,
-    constants: &Constants,
+    softness: &Softness,
     faults: &mut Faults,
 ) -> L::Int {
     let old = L::load(&batch.lambda[axis]);
@@ -249,8 +238,8 @@ fn accumulate<L: Lanes<N>, const N: usize>(
         Pass::Relax => vr,
         Pass::Bias => {
             let error = L::add_saturating(vr, L::load(&batch.bias[axis]));
-            let (mass_scale, impulse_scale) = (constants.mass_scale, constants.impulse_scale);
-            let wide = L::add_wide(L::mul(L::splat(mass_scale), error), L::mul(L::splat(impulse_scale), old));
+            let scales = [softness.mass_scale, softness.impulse_scale].map(Unit::to_bits);
+            let wide = L::add_wide(L::mul(L::splat(scales[0]), error), L::mul(L::splat(scales[1]), old));
             L::narrow::<UNIT>(wide)
         }
     };

@@ -30,7 +30,7 @@ use angle_input::{AngleInput, Memo};
 use batch::{Batch, Shape};
 use input::Input;
 pub(super) use input::{End, Turning, node};
-use kernel::Constants;
+use kernel::Stiffness;
 use prepare::Records;
 
 /// How the bodies of a tick are turned, by their indices.
@@ -52,6 +52,8 @@ pub(super) struct HingeSet {
     serial: Batches<1>,
     /// The others, colour by colour.
     coloured: Batches<WIDTH>,
+    /// Those that hold a body which has no other joint to one that nothing moves.
+    mounts: Batches<WIDTH>,
     /// What of the batches is no longer true.
     expired: Expired,
 }
@@ -106,10 +108,13 @@ impl HingeSet {
         bodies: &[Cell<SolverBody>],
         faults: &mut Faults,
     ) {
-        let (constants, expired) = (Constants::new(tuning), mem::take(&mut self.expired));
-        let HingeSet { serial, coloured, .. } = self;
-        Perform { batches: serial, task, expired, constants, poses, bodies, faults }.run::<Scalar<1>>();
-        machine.run(Perform { batches: coloured, task, expired, constants, poses, bodies, faults });
+        let expired = mem::take(&mut self.expired);
+        let HingeSet { serial, coloured, mounts, .. } = self;
+        let stiffness = Stiffness { points: tuning.joint, limits: tuning.joint };
+        Perform { batches: serial, task, expired, stiffness, poses, bodies, faults }.run::<Scalar<1>>();
+        machine.run(Perform { batches: coloured, task, expired, stiffness, poses, bodies, faults });
+        let stiffness = Stiffness { points: tuning.mount, ..stiffness };
+        machine.run(Perform { batches: mounts, task, expired, stiffness, poses, bodies, faults });
     }
 }
 
@@ -119,7 +124,7 @@ struct Perform<'a, const N: usize> {
     task: Task,
     /// What is to be found anew before.
     expired: Expired,
-    constants: Constants,
+    stiffness: Stiffness,
     poses: Poses<'a>,
     bodies: &'a [Cell<SolverBody>],
     faults: &'a mut Faults,
@@ -140,12 +145,12 @@ impl<const N: usize> Kernel<N> for Perform<'_, N> {
 impl<const N: usize> Perform<'_, N> {
     #[inline(always)]
     fn each<L: Lanes<N>>(self, task: Task) {
-        let Perform { batches, task: _, expired, constants, poses, bodies, faults } = self;
+        let Perform { batches, task: _, expired, stiffness, poses, bodies, faults } = self;
         let Batches { batches, shapes, angles, records } = batches;
         for ((batch, shape), records) in batches.iter_mut().zip(shapes).zip(records) {
             if expired >= Expired::Gaps {
                 let quads = kernel::turns::<L, N>(batch, poses.quads);
-                kernel::refresh_gaps::<L, N>(batch, shape, &quads, bodies, &constants);
+                kernel::refresh_gaps::<L, N>(batch, shape, &quads, bodies, &stiffness.points);
                 if expired == Expired::Everything {
                     kernel::refresh_gains::<L, N>(batch, shape, &quads);
                 }
@@ -156,7 +161,7 @@ impl<const N: usize> Perform<'_, N> {
             match task {
                 Task::WarmStart => kernel::warm_start::<L, N>(batch, angles, bodies, faults),
                 Task::Solve(pass) => {
-                    kernel::solve::<L, N>(batch, angles, pass, (&constants, poses.quads), bodies, faults);
+                    kernel::solve::<L, N>(batch, angles, pass, (stiffness, poses.quads), bodies, faults);
                 }
             }
         }

@@ -1,5 +1,6 @@
 //! Fills batches with hinges in the order in which they are solved, and brings their impulses back.
 
+use super::super::super::body_list::GROUND;
 use super::super::super::colour::Group;
 use super::super::super::settings::Tuning;
 use super::super::parts::slot;
@@ -25,12 +26,13 @@ pub(super) struct Records<const N: usize> {
 
 impl HingeSet {
     pub(in super::super) fn clear(&mut self) {
-        let HingeSet { inputs, angles, memo: _, serial, coloured, expired } = self;
+        let HingeSet { inputs, angles, memo: _, serial, coloured, mounts, expired } = self;
         *expired = Expired::Everything;
         inputs.clear();
         angles.clear();
         serial.clear();
         coloured.clear();
+        mounts.clear();
     }
 
     /// Takes a hinge, and returns the index of its input.
@@ -52,9 +54,15 @@ impl HingeSet {
         count(inputs) - 1
     }
 
-    /// Adds the hinges of a group, given by their inputs. Those with rows on the angle keep to themselves.
-    pub(in super::super) fn push(&mut self, group: &Group<'_>, input_of: impl Fn(u32) -> Option<u32>) {
-        let HingeSet { inputs, angles, serial, coloured, .. } = self;
+    /// Adds the hinges of a group, given by their inputs. Those with rows on the angle keep to themselves, and so do mounts:
+    /// those of a body that no other joint holds, by its index.
+    pub(in super::super) fn push(
+        &mut self,
+        group: &Group<'_>,
+        input_of: impl Fn(u32) -> Option<u32>,
+        is_alone: impl Fn(u32) -> bool,
+    ) {
+        let HingeSet { inputs, angles, serial, coloured, mounts, .. } = self;
         for has_angle in [false, true] {
             let wanted = |&index: &u32| inputs[index as usize].angle.is_some() == has_angle;
             match group {
@@ -63,29 +71,42 @@ impl HingeSet {
                     serial.push(inputs, angles, indices);
                 }
                 Group::Coloured(indices) => {
+                    let is_mount = |&index: &u32| inputs[index as usize].mounted().is_some_and(&is_alone);
                     let indices = indices.iter().filter_map(|&index| input_of(index)).filter(wanted);
-                    coloured.push(inputs, angles, indices);
+                    coloured.push(inputs, angles, indices.clone().filter(|index| !is_mount(index)));
+                    mounts.push(inputs, angles, indices.filter(is_mount));
                 }
             }
         }
+    }
+
+    /// The indices of the bodies that are mounted.
+    pub(in super::super) fn mounted(&self) -> impl Iterator<Item = u32> {
+        let Batches { batches, records, .. } = &self.mounts;
+        batches.iter().zip(records).flat_map(|(Batch { changed: [a, b], .. }, records)| {
+            a.iter().zip(b).take(records.len).map(|(&a, &b)| if a == GROUND { b } else { a })
+        })
     }
 
     /// What the joints have been restored to, instead of what the last tick has stored.
     pub(in super::super) fn reload(&mut self, joints: &Arena<Joint, JointId>) {
         self.serial.reload(joints);
         self.coloured.reload(joints);
+        self.mounts.reload(joints);
     }
 
     /// What the last tick has stored, with the bodies where they are now.
     pub(in super::super) fn resume(&mut self, poses: &[Pose]) {
         self.serial.resume(poses);
         self.coloured.resume(poses);
+        self.mounts.resume(poses);
     }
 
     /// Keeps impulses and turns for the next tick.
     pub(in super::super) fn store(&mut self, joints: &mut Arena<Joint, JointId>, turned: &[Turned]) {
         self.serial.store(joints, turned);
         self.coloured.store(joints, turned);
+        self.mounts.store(joints, turned);
     }
 }
 

@@ -41,8 +41,10 @@ const COMMON: Sizes = Sizes { arm: fx!(16), speed: fx!(10), gap: fx!(0.1) };
 /// Beyond every clamp.
 const EXTREME: Sizes = Sizes { arm: fx!(500), speed: fx!(511), gap: fx!(2000) };
 
+/// Mounts are as stiff as all others, to be compared with them.
 fn tuning() -> Tuning {
-    Tuning::new(&SolverSettings::default(), Vec2::new(fx!(0), fx!(-10)), 60)
+    let tuning = Tuning::new(&SolverSettings::default(), Vec2::new(fx!(0), fx!(-10)), 60);
+    Tuning { mount: tuning.joint, ..tuning }
 }
 
 fn random_speed(rng: &mut Rng, size: Fx) -> Speed {
@@ -149,6 +151,7 @@ impl Setting {
         let mut all = Vec::new();
         self.hinges.serial.collect(&mut all);
         self.hinges.coloured.collect(&mut all);
+        self.hinges.mounts.collect(&mut all);
         all.sort();
         all
     }
@@ -210,13 +213,13 @@ fn every_machine_solves_as_one_hinge_at_a_time() {
         let setting = Setting::random(&mut rng, if i % 2 == 0 { COMMON } else { EXTREME });
         let order = [0, 1, 2, 3, 4, 5, 6, 7];
         let mut alone = setting.clone();
-        alone.hinges.push(&Group::Serial(&order), Some);
+        alone.hinges.push(&Group::Serial(&order), Some, |_| false);
         let faults = alone.solve(Machine::default());
         faulty += u32::from(faults > 0);
         assert!(alone.bodies.iter().all(|body| body.velocity.x.abs() <= 511 && body.spin.abs() <= 511));
         for backend in Backend::available() {
             let mut wide = setting.clone();
-            wide.hinges.push(&Group::Coloured(&order), Some);
+            wide.hinges.push(&Group::Coloured(&order), Some, |body| body % 3 == 0);
             assert_eq!(wide.solve(Machine::new(backend).expect("available")), faults);
             assert_eq!(wide.impulses(), alone.impulses());
             for (wide, alone) in wide.bodies.iter().zip(&alone.bodies) {
@@ -239,7 +242,7 @@ fn a_point_is_solved_as_by_the_scalar_block() {
             (input.angle, input.lambda) = (None, [0; 2]);
         }
         let before = setting.bodies.clone();
-        setting.hinges.push(&Group::Coloured(&[0, 1, 2, 3, 4, 5, 6, 7]), Some);
+        setting.hinges.push(&Group::Coloured(&[0, 1, 2, 3, 4, 5, 6, 7]), Some, |_| false);
         let (tuning, machine, mut faults) = (tuning(), Machine::default(), 0);
         let Setting { hinges, bodies, quads, turned, ends, fractions } = &mut setting;
         hinges.expire(Expired::Everything);
