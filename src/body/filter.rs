@@ -30,11 +30,39 @@ impl Filter {
         }
         self.mask & other.category != 0 && other.mask & self.category != 0
     }
+
+    /// The kin of a shape.
+    pub(crate) fn kin(&self) -> Kin {
+        let Filter { category, mask, group } = *self;
+        let kin = match group {
+            // Two of the same group: neither category nor mask matters.
+            ..0 => i64::from(group),
+            // Two of the same category: the mask of each leaves the other out.
+            0 if category.is_power_of_two() && mask & category == 0 => i64::from(1 + category.ilog2()),
+            _ => 0,
+        };
+        Kin(i16::try_from(kin).unwrap_or(0))
+    }
+}
+
+/// Which shapes never collide with each other: those of the same kin, unless that is [`Kin::NONE`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Kin(i16);
+
+impl Kin {
+    /// Of shapes that may collide with any other, or of many that are not all of one kin.
+    pub(crate) const NONE: Self = Kin(0);
+
+    /// What two have in common.
+    pub(crate) fn common(self, other: Self) -> Self {
+        if self == other { self } else { Kin::NONE }
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::Rng;
 
     #[test]
     fn groups_override_masks() {
@@ -46,5 +74,31 @@ mod tests {
         assert!(team.accepts(&team));
         let ghost = Filter { group: -7, ..wall };
         assert!(!ghost.accepts(&ghost) && ghost.accepts(&wall));
+    }
+
+    #[test]
+    fn kin_never_accept_each_other() {
+        let (mut kin, mut strangers) = (0, 0);
+        let mut rng = Rng::new(8);
+        let mut random = || {
+            let mut bits = || u64::from(rng.below(16)) << (60 * rng.below(2));
+            let (category, mask) = (bits(), bits());
+            let group = [0, 0, 1, -1, -2, -32_768, -32_769, i32::MIN][rng.below(8) as usize];
+            Filter { category, mask, group }
+        };
+        for _ in 0..50_000 {
+            let (a, b) = (random(), random());
+            if a.kin().common(b.kin()) == Kin::NONE {
+                strangers += u32::from(a.accepts(&b));
+            } else {
+                assert!(!a.accepts(&b), "{a:?} {b:?}");
+                kin += 1;
+            }
+        }
+        assert!(kin > 1000 && strangers > 1000, "{kin} {strangers}");
+        let bullet = Filter { category: 1 << 63, mask: 1, group: 0 };
+        assert_ne!(bullet.kin(), Kin::NONE);
+        assert_ne!(Filter { group: -5, ..bullet }.kin(), bullet.kin());
+        assert_eq!(Filter::default().kin(), Kin::NONE);
     }
 }

@@ -26,6 +26,7 @@ pub use chain::Chain;
 pub use error::{GeometryError, WorldError};
 pub use event_switches::EventSwitches;
 pub use filter::Filter;
+pub(crate) use filter::Kin;
 pub use geometry::{Geometry, Sides};
 pub use mass::{MassProperties, MassSource};
 pub use material::{Material, Mixing};

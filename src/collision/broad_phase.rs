@@ -8,6 +8,7 @@ use super::box_list::BoxList;
 use super::search::{Along, Near, Overlap, Search};
 use super::sweep_and_prune::SweepAndPrune;
 use super::tree::Tree;
+use crate::body::Kin;
 use crate::math::{Aabb, Fx, Unit, Vec2};
 
 #[cfg(test)]
@@ -94,6 +95,14 @@ impl BroadPhase {
         }
     }
 
+    /// Says of which kin a slot with a box is: pairs of one kin are of no interest, and may be left out. One that is new has
+    /// none.
+    pub(crate) fn set_kin(&mut self, slot: u32, kin: Kin) {
+        if let Structure::Tree(tree) = &mut self.structure {
+            tree.set_kin(slot, kin);
+        }
+    }
+
     /// Moves the boxes of many slots.
     pub(crate) fn set_many(&mut self, boxes: &[(u32, Aabb)]) {
         boxes.iter().for_each(|&(slot, fat)| self.remember(slot, fat));
@@ -117,7 +126,7 @@ impl BroadPhase {
         }
     }
 
-    /// Replaces all boxes: cheaper than setting each. Of a slot that comes twice, the last box stays.
+    /// Replaces all boxes, without kin: cheaper than setting each. Of a slot that comes twice, the last box stays.
     pub(crate) fn refill(&mut self, boxes: impl IntoIterator<Item = (u32, Aabb)>) {
         *self = BroadPhase::new(self.kind());
         let boxes = boxes.into_iter();
@@ -133,7 +142,7 @@ impl BroadPhase {
     }
 
     /// All pairs of overlapping boxes with an end that has moved that `accept` wants, sorted; of more than `limit`,
-    /// the smallest. Says whether any were left out.
+    /// the smallest. Says whether any were left out. `accept` wants no pair of one kin.
     pub(crate) fn pairs(
         &mut self,
         moved: Moved<'_>,

@@ -15,6 +15,7 @@ use alloc::vec::Vec;
 use core::ops::ControlFlow;
 
 use super::search::Search;
+use crate::body::Kin;
 use crate::math::Aabb;
 use pairs::Meetings;
 use rebuild::Rebuilt;
@@ -29,7 +30,7 @@ const NONE: u32 = u32::MAX;
 
 /// By how much the heights of two siblings may differ: so much that a long ground may stay near the root, where the
 /// perimeters want it. With 4, the pairs of 10 000 boxes on top of some such grounds take several times as long.
-const IMBALANCE_MAX: u16 = 16;
+const IMBALANCE_MAX: u8 = 16;
 
 /// One node waits on each level of a search, and one more: enough for 2^31 boxes, see the test.
 const STACK_LEN: usize = 192;
@@ -59,7 +60,9 @@ struct Node {
     aabb: Aabb,
     parent: u32,
     /// 0 for a leaf.
-    height: u16,
+    height: u8,
+    /// That of everything below it, or its own.
+    kin: Kin,
     /// Whether there is something below it, or itself, of which pairs are asked for at the moment.
     marked: bool,
     /// Of a leaf, its slot and nothing.
@@ -109,6 +112,14 @@ impl Tree {
                 self.len += 1;
                 self.link(leaf);
             }
+        }
+    }
+
+    /// Gives a slot another kin, if it has a box.
+    pub(crate) fn set_kin(&mut self, slot: u32, kin: Kin) {
+        if let Some(leaf) = self.leaf_of(slot).filter(|&leaf| self.at(leaf).kin != kin) {
+            self.at_mut(leaf).kin = kin;
+            self.repair(self.at(leaf).parent);
         }
     }
 
@@ -241,27 +252,28 @@ impl Tree {
         neighbourhood.is_some_and(|at| self.at(at).aabb.contains(fat))
     }
 
-    /// Brings boxes and heights up to date from a node upwards, until they are.
+    /// Brings boxes, heights and kin up to date from a node upwards, until they are.
     fn repair(&mut self, mut at: u32) {
         while at != NONE {
-            let Node { aabb, height, parent, .. } = *self.at(at);
+            let Node { aabb, height, kin, parent, .. } = *self.at(at);
             self.refit(at);
             self.balance(at);
             self.tighten(at, height);
             let node = self.at(at);
-            if (node.aabb, node.height) == (aabb, height) {
+            if (node.aabb, node.height, node.kin) == (aabb, height, kin) {
                 break;
             }
             at = parent;
         }
     }
 
-    /// Box and height of an inner node from its children.
+    /// Box, height and kin of an inner node from its children.
     fn refit(&mut self, at: u32) {
         let [a, b] = self.at(at).children.map(|child| *self.at(child));
         let node = self.at_mut(at);
         node.aabb = a.aabb.union(b.aabb);
         node.height = 1 + a.height.max(b.height);
+        node.kin = a.kin.common(b.kin);
     }
 
     /// If one child is too high, its higher child moves up in exchange for the other child.
@@ -277,7 +289,7 @@ impl Tree {
 
     /// Exchanges a child with a child of its sibling, if that makes the sibling smaller: the box of the node itself
     /// stays the same. The height may differ by one from what it was, which the ancestors can put right.
-    fn tighten(&mut self, at: u32, height_before: u16) {
+    fn tighten(&mut self, at: u32, height_before: u8) {
         let [a, b] = self.at(at).children;
         let (mut best_gain, mut best) = (0, None);
         for (child, sibling) in [(a, b), (b, a)] {
@@ -299,7 +311,7 @@ impl Tree {
     }
 
     /// Whether a node may have the first of three as a child and the other two as grandchildren.
-    fn stays_balanced(&self, three: [u32; 3], height_before: u16) -> bool {
+    fn stays_balanced(&self, three: [u32; 3], height_before: u8) -> bool {
         let [up, a, b] = three.map(|index| self.at(index).height);
         let sibling = 1 + a.max(b);
         let height = 1 + up.max(sibling);
@@ -359,7 +371,7 @@ impl Tree {
 
 impl Node {
     fn leaf(slot: u32, aabb: Aabb) -> Self {
-        Node { aabb, parent: NONE, height: 0, marked: false, children: [slot, NONE] }
+        Node { aabb, parent: NONE, height: 0, kin: Kin::NONE, marked: false, children: [slot, NONE] }
     }
 
     fn is_leaf(&self) -> bool {

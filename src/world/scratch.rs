@@ -188,6 +188,9 @@ impl Scratch {
         let body_of = |shape: &Shape| state.bodies.at(shape.body().slot());
         let enabled = || state.shapes.iter().filter(|(_, shape)| body_of(shape).enabled);
         scratch.broad_phase.refill(enabled().map(boxes));
+        for (id, shape) in enabled() {
+            scratch.broad_phase.set_kin(id.slot(), shape.filter().kin());
+        }
         let is_fixed = |shape: &Shape| body_of(shape).kind() == BodyKind::Fixed;
         scratch.fixed.refill(enabled().filter(|(_, shape)| is_fixed(shape)).map(boxes));
         scratch
@@ -203,6 +206,9 @@ impl Scratch {
                 Some(shape) if broad_phase.fat(slot) != Aabb::NOWHERE => refitted.push((slot, shape.fat)),
                 Some(shape) => broad_phase.set(slot, shape.fat),
                 None => broad_phase.remove(slot),
+            }
+            if let Some(shape) = shape {
+                broad_phase.set_kin(slot, shape.filter().kin());
             }
             match shape {
                 Some(shape) if state.body_of(slot).kind() == BodyKind::Fixed => fixed.set(slot, shape.fat),
@@ -228,8 +234,10 @@ impl Scratch {
         self.poses.pose_body(state, slot);
         let body = state.bodies.at(slot);
         for id in body.shapes().iter().filter(|_| body.enabled) {
-            let fat = state.shapes.at(id.slot()).fat;
+            let shape = state.shapes.at(id.slot());
+            let fat = shape.fat;
             self.broad_phase.set(id.slot(), fat);
+            self.broad_phase.set_kin(id.slot(), shape.filter().kin());
             match body.kind() {
                 BodyKind::Fixed => self.fixed.set(id.slot(), fat),
                 BodyKind::Kinematic | BodyKind::Dynamic => self.fixed.remove(id.slot()),

@@ -1,6 +1,7 @@
 //! Snapshots: whatever happened between a save and a restore, and whatever they share, the state comes back.
 
 use lockstep2d::codec;
+use lockstep2d::collision::BroadPhaseKind;
 use lockstep2d::fx;
 use lockstep2d::lockstep::{Game, Sandbox, SandboxSave, SandboxSetup};
 use lockstep2d::math::{Rng, Vec2};
@@ -8,8 +9,8 @@ use lockstep2d::scenes;
 use lockstep2d::world::{Command, Snapshot, World};
 
 use super::churn::Churn;
-use super::{spawn, square, world_with_floor};
-use lockstep2d::body::BodyDef;
+use super::{ball, shape_of, spawn, square, weightless, world_with_floor};
+use lockstep2d::body::{BodyDef, Filter};
 
 /// The hash of a world that knows nothing but its bytes.
 fn recomputed(world: &World) -> World {
@@ -82,6 +83,47 @@ fn a_world_jumps_between_its_snapshots() {
         assert_is(&other, &saves[70], "another world");
         assert_eq!(other.save(), saves[70].0);
     }
+}
+
+/// Shapes that leave each other out because of their filters are never looked for in pairs. They are again after whatever
+/// gives them other filters.
+#[test]
+fn crowds_that_leave_each_other_out_come_back_together() {
+    let mut world = weightless();
+    let ids: Vec<_> = (0..40)
+        .map(|i| {
+            let place = BodyDef::dynamic().position(fx!(0.8) * i, fx!(0));
+            let body = spawn(&mut world, place, ball(fx!(0.5)));
+            shape_of(&world, body)
+        })
+        .collect();
+    let together = Filter::default();
+    let same_category = Filter { category: 2, mask: !2, group: 0 };
+    let same_group = Filter { group: -7, ..together };
+    let set = |world: &mut World, filter: Filter| {
+        ids.iter().for_each(|&id| world.set_filter(id, filter).expect("there"));
+    };
+    let filters = [(together, 39), (same_category, 0), (together, 39), (same_group, 0), (same_category, 0)];
+    let saves = filters.map(|(filter, pairs)| {
+        set(&mut world, filter);
+        (world.save(), pairs)
+    });
+    for kind in [BroadPhaseKind::BruteForce, BroadPhaseKind::Tree] {
+        world.set_broad_phase(kind);
+        for (from, _) in &saves {
+            for (to, pairs) in &saves {
+                world.restore(from);
+                world.step();
+                world.restore(to);
+                world.step();
+                assert_eq!(world.pair_count(), *pairs, "{kind:?}");
+            }
+        }
+    }
+    // One that is let in collides with its neighbours on both sides.
+    world.set_filter(ids[20], together).expect("there");
+    world.step();
+    assert_eq!(world.pair_count(), 2);
 }
 
 /// A snapshot that is saved into again and again is the same as a new one.

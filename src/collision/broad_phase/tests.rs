@@ -2,6 +2,7 @@
 //! box, in a small world and in one as large as the format.
 
 use super::*;
+use crate::body::Filter;
 use crate::fx;
 use crate::math::Rng;
 use alloc::vec;
@@ -33,15 +34,25 @@ fn random_box(rng: &mut Rng, world: i64) -> Aabb {
 /// Half the size of worlds in units of the last place: 8 m, 2^30 m, and all that there is.
 const WORLDS: [i64; 3] = [8 << 32, 1 << 62, i64::MAX];
 
+fn random_kin(rng: &mut Rng, count: u32) -> Kin {
+    let group = -i32::try_from(rng.below(count + 1)).expect("few");
+    Filter { group, ..Filter::default() }.kin()
+}
+
 /// Boxes by slot, and the three kinds that are to hold the same.
 struct Crowd {
     boxes: Vec<Option<Aabb>>,
+    kin: Vec<Kin>,
     kinds: Vec<BroadPhase>,
 }
 
 impl Crowd {
     fn new(slots: usize) -> Self {
-        Crowd { boxes: vec![None; slots], kinds: KINDS.map(BroadPhase::new).into() }
+        Crowd {
+            boxes: vec![None; slots],
+            kin: vec![Kin::NONE; slots],
+            kinds: KINDS.map(BroadPhase::new).into(),
+        }
     }
 
     fn random(rng: &mut Rng, slots: usize, world: i64) -> Self {
@@ -64,13 +75,19 @@ impl Crowd {
         self.kinds.iter_mut().for_each(|kind| kind.set_many(many));
     }
 
+    fn set_kin(&mut self, slot: usize, kin: Kin) {
+        self.kin[slot] = kin;
+        self.kinds.iter_mut().for_each(|kind| kind.set_kin(u32::try_from(slot).expect("few"), kin));
+    }
+
     fn remove(&mut self, slot: usize) {
-        self.boxes[slot] = None;
+        (self.boxes[slot], self.kin[slot]) = (None, Kin::NONE);
         self.kinds.iter_mut().for_each(|kind| kind.remove(u32::try_from(slot).expect("few")));
     }
 
     fn refill(&mut self) {
         let boxes: Vec<_> = self.occupied().collect();
+        self.kin.fill(Kin::NONE);
         self.kinds.iter_mut().for_each(|kind| kind.refill(boxes.iter().copied()));
     }
 
@@ -114,6 +131,11 @@ fn all_kinds_find_the_same_pairs_while_boxes_move() {
                 (2..8, Some(fat)) => {
                     crowd.set(slot, fat.translated(random_vector(&mut rng, 1 << 32)));
                 }
+                // Few of most rounds, nearly all of some.
+                (8, Some(_)) => crowd.set_kin(slot, random_kin(&mut rng, 3)),
+                (9..19, Some(_)) if round % 10 == 0 => {
+                    crowd.set_kin(slot, random_kin(&mut rng, 1 + u32::from(round > 150)));
+                }
                 _ => {}
             }
             // The tree searches for few and compares itself with itself for many.
@@ -137,7 +159,7 @@ fn all_kinds_find_the_same_pairs_while_boxes_move() {
         }
         let accept = |(a, b): Pair| {
             assert!(a < b);
-            (a + b) % 7 != 0
+            (a + b) % 7 != 0 && crowd.kin[a as usize].common(crowd.kin[b as usize]) == Kin::NONE
         };
         let limit = if round % 3 == 0 { 10 } else { 1000 };
         for moved in [Moved::All, Moved::Slots(&moved), Moved::Slots(&[])] {

@@ -3,6 +3,7 @@
 use alloc::vec::Vec;
 
 use super::{NONE, Node, Tree};
+use crate::body::Kin;
 use crate::collision::broad_phase::Pair;
 
 /// How many pairs are found before they are told.
@@ -71,7 +72,7 @@ impl Meetings {
 }
 
 impl Tree {
-    /// Calls `found` with every pair of overlapping boxes once.
+    /// Calls `found` with every pair of overlapping boxes once, but for most of those of one kin.
     pub(crate) fn each_pair(&mut self, found: impl FnMut(Pair)) {
         self.meet_itself(|_| true, found);
     }
@@ -104,6 +105,9 @@ impl Tree {
         meetings.waiting.push_wanted([itself(self.root)]);
         while let Some((a, b)) = meetings.waiting.pop() {
             let (node_a, node_b) = (self.at(a), self.at(b));
+            if node_a.kin.common(node_b.kin) != Kin::NONE {
+                continue;
+            }
             if a == b {
                 let [a0, a1] = [child(node_a, 0), child(node_a, 1)];
                 meetings.waiting.push_wanted([itself(a0.0), itself(a1.0)]);

@@ -1,6 +1,7 @@
 //! The tree is sound after whatever happens to it, and no order of boxes makes it deep.
 
 use super::*;
+use crate::body::Filter;
 use crate::collision::broad_phase::Pair;
 use crate::fx;
 use crate::math::{Fx, Rng, Vec2};
@@ -11,7 +12,7 @@ impl Tree {
     }
 
     /// Panics unless links, boxes, heights and the free list are as they should be. Returns the height.
-    fn validate(&self) -> u16 {
+    fn validate(&self) -> u8 {
         let mut reached = 0;
         let mut stack = Vec::new();
         if self.root != NONE {
@@ -28,6 +29,7 @@ impl Tree {
             let [a, b] = node.children.map(|child| self.at(child));
             assert!(node.aabb.contains(a.aabb.union(b.aabb)), "the box is around the children");
             assert!(!node.marked, "marks are taken away");
+            assert_eq!(node.kin, a.kin.common(b.kin));
             assert_eq!(node.height, 1 + a.height.max(b.height));
             assert!(a.height.abs_diff(b.height) <= IMBALANCE_MAX, "siblings are balanced");
             for child in node.children {
@@ -88,6 +90,10 @@ fn it_stays_sound_while_boxes_come_go_and_move() {
         let fat = square(rng.range(fx!(-9), fx!(9)), rng.range(fx!(-9), fx!(9)), rng.range(fx!(0), fx!(1)));
         match rng.below(if round % 2000 < 1000 { 2 } else { 4 }) {
             0 => tree.set(slot, fat),
+            _ if round % 50 == 6 => {
+                let group = -i32::try_from(rng.below(3)).expect("few");
+                tree.set_kin(slot, Filter { group, ..Filter::default() }.kin());
+            }
             _ if round % 50 == 7 => {
                 let moved = |i: u32| fat.translated(Vec2::new(Fx::from_num(i), fx!(0)));
                 tree.set_many((0..20).map(|i| ((slot + 3 * i) % 100, moved(i))));
@@ -101,7 +107,12 @@ fn it_stays_sound_while_boxes_come_go_and_move() {
             let mut found = Vec::new();
             tree.each_pair_of(&slots, |pair| found.push(pair));
             found.sort_unstable();
-            assert_eq!(found, tree.pairs_of(&slots));
+            let kin_of = |slot: u32| tree.at(tree.leaves[slot as usize]).kin;
+            let mut all = tree.pairs_of(&slots);
+            all.retain(|&(a, b)| {
+                kin_of(a).common(kin_of(b)) == Kin::NONE || found.binary_search(&(a, b)).is_ok()
+            });
+            assert_eq!(found, all, "none is left out but of one kin");
             pairs += found.len();
         }
         tree.validate();
