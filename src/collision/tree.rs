@@ -115,11 +115,19 @@ impl Tree {
         }
     }
 
-    /// Gives a slot another kin, if it has a box.
+    /// Gives a slot another kin, if it has a box. The tree keeps its order.
     pub(crate) fn set_kin(&mut self, slot: u32, kin: Kin) {
         if let Some(leaf) = self.leaf_of(slot).filter(|&leaf| self.at(leaf).kin != kin) {
             self.at_mut(leaf).kin = kin;
-            self.repair(self.at(leaf).parent);
+            let mut at = self.at(leaf).parent;
+            while at != NONE {
+                let before = self.at(at).kin;
+                self.refit(at);
+                if self.at(at).kin == before {
+                    break;
+                }
+                at = self.at(at).parent;
+            }
         }
     }
 

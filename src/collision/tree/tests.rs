@@ -30,6 +30,8 @@ impl Tree {
             assert!(node.aabb.contains(a.aabb.union(b.aabb)), "the box is around the children");
             assert!(!node.marked, "marks are taken away");
             assert_eq!(node.kin, a.kin.common(b.kin));
+            let is_in_order = node.children.iter().all(|&child| child > index);
+            assert!(self.relinked > 0 || is_in_order, "while no leaf has moved, parents come first");
             assert_eq!(node.height, 1 + a.height.max(b.height));
             assert!(a.height.abs_diff(b.height) <= IMBALANCE_MAX, "siblings are balanced");
             for child in node.children {
@@ -62,6 +64,11 @@ impl Tree {
     }
 }
 
+fn random_kin(rng: &mut Rng) -> Kin {
+    let group = -i32::try_from(rng.below(3)).expect("few");
+    Filter { group, ..Filter::default() }.kin()
+}
+
 fn square(x: Fx, y: Fx, half: Fx) -> Aabb {
     let corner = Vec2::new(x, y);
     Aabb::new(corner, corner).expanded(half)
@@ -91,8 +98,7 @@ fn it_stays_sound_while_boxes_come_go_and_move() {
         match rng.below(if round % 2000 < 1000 { 2 } else { 4 }) {
             0 => tree.set(slot, fat),
             _ if round % 50 == 6 => {
-                let group = -i32::try_from(rng.below(3)).expect("few");
-                tree.set_kin(slot, Filter { group, ..Filter::default() }.kin());
+                tree.set_kin(slot, random_kin(&mut rng));
             }
             _ if round % 50 == 7 => {
                 let moved = |i: u32| fat.translated(Vec2::new(Fx::from_num(i), fx!(0)));
@@ -182,6 +188,7 @@ fn many_boxes_at_once_keep_the_tree_sound_and_tight() {
             *fat = if round % 4 == 3 { place(&mut rng) } else { fat.translated(Vec2::new(fx!(1), fx!(0))) };
         }
         tree.set_many(boxes[..some].iter().copied());
+        (0..30).for_each(|_| tree.set_kin(rng.below(1000), random_kin(&mut rng)));
         tree.validate();
         // A few strays wait for the next refit.
         assert!(tree.strays > 0 || tree.cost() < fresh * 3 / 2, "{round}: {} of {fresh}", tree.cost());
