@@ -99,6 +99,11 @@ impl Colouring {
         order
     }
 
+    /// Whether any constraint of the last order changes a body.
+    pub(super) fn holds(&self, body: u32) -> bool {
+        self.used.get(body as usize).is_some_and(|&colours| colours != 0)
+    }
+
     /// Where the last order has one of the nodes.
     pub(super) fn colour_of(&self, node: usize) -> Option<SolverColour> {
         self.places.get(node).map(|&place| match place.checked_sub(1) {

@@ -13,6 +13,7 @@ mod joint;
 mod limits;
 mod pair;
 mod point_block;
+mod push;
 mod row;
 mod settings;
 mod softness;
@@ -34,6 +35,7 @@ pub use joint::{
     Revolute, Soft, Spring, Threshold, ThresholdAction, Weld, Wheel,
 };
 use limits::Faults;
+use push::Pushes;
 pub(crate) use limits::IMPULSE_MAX;
 pub(crate) use settings::Tuning;
 pub use settings::{ContactTuning, DISTANCE_MAX, SolverSettings};
@@ -59,6 +61,7 @@ pub(crate) struct Solver {
     /// One joint at a time, when its reaction is asked for.
     reaction: JointSet,
     contacts: ContactSet,
+    pushes: Pushes,
     /// For each contact in the state, whether its shapes have pushed each other in this tick.
     pub(crate) pushed: Vec<bool>,
     nodes: Vec<Node>,
@@ -138,6 +141,12 @@ impl Solver {
         let Solver { list, nodes, colouring, contacts: set, machine, warm_starts, .. } = self;
         let source = (manifolds, contacts);
         set.prepare(pairs, source, list, (nodes, colouring), *machine, warm_starts);
+        let Solver { pushes, movers, joints, colouring, .. } = self;
+        let touched = movers.iter().filter(|mover| colouring.holds(mover.index()));
+        pushes.begin(touched.map(|mover| {
+            let index = mover.index();
+            (index, mover.is_special() || joints.holds(index))
+        }));
     }
 
     /// Where the contact of a touching pair was in the last tick.
@@ -149,6 +158,7 @@ impl Solver {
     /// refresh joints, relax without bias. `index` counts the sub-steps since the world was made.
     pub(crate) fn sub_step(&mut self, index: u64, tuning: &Tuning) {
         self.joints.aim(&self.list.bodies, tuning);
+        self.push(push::Task::Measure);
         let bodies = SolverBody::cells(&mut self.list.bodies);
         integrate_velocities(&self.movers, bodies, self.machine, tuning);
         self.warm_start(tuning);
@@ -156,8 +166,10 @@ impl Solver {
         for iteration in 0..iterations {
             self.solve(Pass::Bias, Sweep::of(index, iteration), tuning);
         }
+        self.push(push::Task::Suspend);
         let bodies = SolverBody::cells(&mut self.list.bodies);
         integrate_displacements(&self.movers, bodies, self.machine, tuning, &mut self.faults);
+        self.push(push::Task::Resume);
         self.joints.refresh(self.machine, &self.list.bodies, tuning);
         if tuning.relax {
             for iteration in 0..iterations {
@@ -179,14 +191,25 @@ impl Solver {
         self.perform_serial(Task::Observe, tuning);
         self.perform_coloured(Task::Observe, tuning);
         self.joints.warm_start(self.machine, tuning, &mut self.list.bodies, &mut self.faults);
-        self.perform_serial(Task::WarmStart, tuning);
-        self.perform_coloured(Task::WarmStart, tuning);
+        let are_known = self.pushes.are_known();
+        self.push(push::Task::Apply);
+        if !are_known {
+            self.perform_serial(Task::WarmStart, tuning);
+            self.perform_coloured(Task::WarmStart, tuning);
+        }
+    }
+
+    fn push(&mut self, task: push::Task) {
+        let bodies = SolverBody::cells(&mut self.list.bodies);
+        self.pushes.perform(task, self.machine, bodies, &mut self.faults);
     }
 
     fn solve(&mut self, pass: Pass, sweep: Sweep, tuning: &Tuning) {
         let task = Task::Solve(pass, sweep);
         self.perform_serial(task, tuning);
+        self.push(push::Task::Suspend);
         self.joints.solve(pass, self.machine, tuning, &mut self.list.bodies, &mut self.faults);
+        self.push(push::Task::Resume);
         self.perform_coloured(task, tuning);
     }
 

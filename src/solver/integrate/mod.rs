@@ -69,9 +69,14 @@ impl Mover {
         }
     }
 
+    /// Where it is among the bodies of the tick.
+    pub(super) fn index(&self) -> u32 {
+        self.index
+    }
+
     /// Whether it is not just dynamic and free.
     #[inline(always)]
-    fn is_special(&self) -> bool {
+    pub(super) fn is_special(&self) -> bool {
         let Quad([_, _, special, _]) = self.factors;
         special < 0
     }

@@ -223,6 +223,11 @@ impl JointSet {
         }
     }
 
+    /// Whether the body at an index of the tick has a joint.
+    pub(crate) fn holds(&self, index: u32) -> bool {
+        self.places.get(index as usize).is_some_and(|&place| place != 0)
+    }
+
     /// Arms, gains and gaps at the present pose; those of hinges when the next task comes to them.
     pub(crate) fn refresh(&mut self, machine: Machine, bodies: &[SolverBody], tuning: &Tuning) {
         let mut any_turned = false;
