@@ -55,7 +55,7 @@ pub mod world;
 
 /// Names the arithmetic of the engine. It changes whenever the same inputs give another state, and replays and
 /// snapshots carry it: one made with other semantics is refused, not misread.
-pub const SEMANTICS: u32 = 6;
+pub const SEMANTICS: u32 = 7;
 
 /// The code of the README compiles and runs.
 #[cfg(doctest)]

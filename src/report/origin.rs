@@ -6,7 +6,7 @@ use super::comparison::{Comparison, Explanation};
 use super::phases::TickPhases;
 use super::stage::Stage;
 use super::suspect::{self, WrongTick};
-use crate::inspect::{Difference, InspectError, Value, differences, fields};
+use crate::inspect::{Difference, InspectError, differences, fields};
 use crate::lockstep::Game;
 
 /// Plays the tick as it should have gone, and compares.
@@ -45,13 +45,9 @@ fn flipped_bit<G: Game>(
     let (Some(only), None) = (stored.next(), stored.next()) else {
         return Ok(None);
     };
-    let bits = |value: &Option<Value>| value.as_ref().and_then(|value| value.bits());
-    let changed = bits(&only.a).zip(bits(&only.b)).map_or(0, |(a, b)| a ^ b);
-    // The sign stands in all bits above a number's own.
-    let is_sign = changed.leading_ones() + changed.trailing_zeros() == i128::BITS;
-    if changed.count_ones() != 1 && !is_sign {
+    let Some(bit) = suspect::flipped_bit(only) else {
         return Ok(None);
-    }
+    };
     // The world is somewhere in what the game saves.
     let place = only.field().thing().unwrap_or(only.field().section());
     let saved = fields(&wrong.before)?;
@@ -59,5 +55,5 @@ fn flipped_bit<G: Game>(
     let path = path.map_or_else(|| String::from(place), String::from);
     let mut differences = differences.to_vec();
     differences.sort_by_key(|difference| difference != only);
-    Ok(Some(Explanation { tick: wrong.tick, path, bit: changed.trailing_zeros(), differences }))
+    Ok(Some(Explanation { tick: wrong.tick, path, bit, differences }))
 }

@@ -65,6 +65,15 @@ fn disturbance(thing: &Thing) -> u128 {
     thing.differences.iter().filter(is_motion).map(units).sum()
 }
 
+/// The bit in which two numbers differ, if it is a single one.
+pub(super) fn flipped_bit(difference: &Difference) -> Option<u32> {
+    let bits = |value: &Option<Value>| value.as_ref().and_then(|value| value.bits());
+    let changed = bits(&difference.a)? ^ bits(&difference.b)?;
+    // The sign stands in all bits above a number's own.
+    let is_sign = changed.leading_ones() + changed.trailing_zeros() == i128::BITS;
+    (changed.count_ones() == 1 || is_sign).then(|| changed.trailing_zeros())
+}
+
 /// Looks for the bit that explains everything, and puts its body and field first.
 pub(super) fn explain<G: Game>(
     wrong: &WrongTick<G>,
@@ -73,8 +82,12 @@ pub(super) fn explain<G: Game>(
     found: &mut Comparison,
 ) -> Result<(), InspectError> {
     let is_known = found.tick == Some(wrong.tick + 1);
-    let count: usize = found.things.iter().map(|thing| thing.differences.len()).sum();
-    if is_known && count == 1 {
+    let mut all = found.things.iter().flat_map(|thing| &thing.differences);
+    if let (Some(only), None) = (all.next(), all.next())
+        && is_known
+        && flipped_bit(only).is_some()
+    {
+        // The bit is there to be seen.
         return Ok(());
     }
     let suspects = if is_known { suspects(&found.things) } else { everybody(&mut game, &wrong.before) };

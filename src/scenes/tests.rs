@@ -142,3 +142,22 @@ fn reject_and_axis_spare_a_hundred_polygons_most_searches() {
     let spared = fast > 10_000 && (searches - touching) * 2 < pairs - touching;
     assert!(spared, "{fast} points, {pairs} pairs, {counters:?}");
 }
+
+/// Boxes, hinges, motors, rolling and locked axes: what contacts push is what their impulses amount to, but for the
+/// rounding of some twenty changes of each row.
+#[test]
+fn pushes_are_what_the_impulses_amount_to() {
+    for (name, ticks) in [("pyramid", 30), ("bridge", 120), ("ragdoll", 90), ("drum", 120), ("slope", 60)] {
+        let scene = Scene::find(name).expect("a scene");
+        let mut game = open(name);
+        let (mut worst, mut most) = (0, 0);
+        for tick in 0..ticks {
+            let commands = scene.commands(tick, &game);
+            game.step(&[commands]);
+            let (error, largest) = game.world().push_error();
+            (worst, most) = (worst.max(error), most.max(largest));
+        }
+        assert!(worst <= 100, "{name}: {worst} units apart");
+        assert!(most > 10_000, "{name}: contacts push at {most} units");
+    }
+}

@@ -35,8 +35,8 @@ pub use joint::{
     Revolute, Soft, Spring, Threshold, ThresholdAction, Weld, Wheel,
 };
 use limits::Faults;
-use push::Pushes;
 pub(crate) use limits::IMPULSE_MAX;
+use push::Pushes;
 pub(crate) use settings::Tuning;
 pub use settings::{ContactTuning, DISTANCE_MAX, SolverSettings};
 
@@ -138,15 +138,12 @@ impl Solver {
         manifolds: &[Manifold],
         contacts: &[Contact],
     ) {
-        let Solver { list, nodes, colouring, contacts: set, machine, warm_starts, .. } = self;
+        let Solver { list, movers, joints, nodes, colouring, contacts: set, machine, warm_starts, .. } = self;
         let source = (manifolds, contacts);
         set.prepare(pairs, source, list, (nodes, colouring), *machine, warm_starts);
-        let Solver { pushes, movers, joints, colouring, .. } = self;
         let touched = movers.iter().filter(|mover| colouring.holds(mover.index()));
-        pushes.begin(touched.map(|mover| {
-            let index = mover.index();
-            (index, mover.is_special() || joints.holds(index))
-        }));
+        let is_shared = |mover: &Mover| mover.is_special() || joints.holds(mover.index());
+        self.pushes.begin(touched.map(|mover| (mover.index(), is_shared(mover))));
     }
 
     /// Where the contact of a touching pair was in the last tick.
@@ -154,7 +151,7 @@ impl Solver {
         self.colouring.colour_of(pair)
     }
 
-    /// One sub-step: aim joints, integrate velocities, warm start, solve with bias, integrate displacements,
+    /// One sub-step: aim joints, integrate velocities, warm start (contacts by rows or, later in a tick, all at once), solve with bias, integrate displacements,
     /// refresh joints, relax without bias. `index` counts the sub-steps since the world was made.
     pub(crate) fn sub_step(&mut self, index: u64, tuning: &Tuning) {
         self.joints.aim(&self.list.bodies, tuning);
@@ -191,14 +188,15 @@ impl Solver {
         self.perform_serial(Task::Observe, tuning);
         self.perform_coloured(Task::Observe, tuning);
         self.joints.warm_start(self.machine, tuning, &mut self.list.bodies, &mut self.faults);
-        let are_known = self.pushes.are_known();
+        let is_first = !self.pushes.are_known();
         self.push(push::Task::Apply);
-        if !are_known {
+        if is_first {
             self.perform_serial(Task::WarmStart, tuning);
             self.perform_coloured(Task::WarmStart, tuning);
         }
     }
 
+    /// Keeps account of what contacts change of velocities.
     fn push(&mut self, task: push::Task) {
         let bodies = SolverBody::cells(&mut self.list.bodies);
         self.pushes.perform(task, self.machine, bodies, &mut self.faults);

