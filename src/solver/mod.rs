@@ -151,8 +151,8 @@ impl Solver {
         self.colouring.colour_of(pair)
     }
 
-    /// One sub-step: aim joints, integrate velocities, warm start (contacts by rows or, later in a tick, all at once), solve with bias, integrate displacements,
-    /// refresh joints, relax without bias. `index` counts the sub-steps since the world was made.
+    /// One sub-step: aim joints, integrate velocities, warm start, solve with bias, integrate displacements, refresh
+    /// joints, relax without bias. `index` counts the sub-steps since the world was made.
     pub(crate) fn sub_step(&mut self, index: u64, tuning: &Tuning) {
         self.joints.aim(&self.list.bodies, tuning);
         self.push(push::Task::Measure);
@@ -188,9 +188,9 @@ impl Solver {
         self.perform_serial(Task::Observe, tuning);
         self.perform_coloured(Task::Observe, tuning);
         self.joints.warm_start(self.machine, tuning, &mut self.list.bodies, &mut self.faults);
-        let is_first = !self.pushes.are_known();
+        let are_known = self.pushes.are_known();
         self.push(push::Task::Apply);
-        if is_first {
+        if !are_known {
             self.perform_serial(Task::WarmStart, tuning);
             self.perform_coloured(Task::WarmStart, tuning);
         }
