@@ -3,8 +3,9 @@
 use alloc::vec::Vec;
 
 use super::{ALL, Scene};
-use crate::body::Handle;
+use crate::body::{BodyDef, Geometry, Handle, Polygon, ShapeDef};
 use crate::collision::{AxisHint, PosedShape, SatCounters, collide, collide_near};
+use crate::fx;
 use crate::lockstep::{Game, Sandbox};
 use crate::math::{Length, narrow};
 use crate::world::World;
@@ -143,7 +144,7 @@ fn reject_and_axis_spare_a_hundred_polygons_most_searches() {
     assert!(spared, "{fast} points, {pairs} pairs, {counters:?}");
 }
 
-/// Boxes, hinges, motors, rolling and locked axes: what contacts push is what their impulses amount to, but for the
+/// Boxes, hinges, motors and rolling: what contacts push is what their impulses amount to, but for the
 /// rounding of some twenty changes of each row.
 #[test]
 fn pushes_are_what_the_impulses_amount_to() {
@@ -160,4 +161,25 @@ fn pushes_are_what_the_impulses_amount_to() {
         assert!(worst <= 100, "{name}: {worst} units apart");
         assert!(most > 10_000, "{name}: contacts push at {most} units");
     }
+}
+
+/// A box that cannot move along x is pushed along x by the ball that leans on it: what its lock takes away again is no
+/// push that is missing.
+#[test]
+fn pushes_are_known_of_what_is_locked() {
+    let mut world = World::default();
+    let floor = Polygon::rectangle(fx!(10), fx!(1)).unwrap();
+    world.spawn(&BodyDef::fixed().position(fx!(0), fx!(-1)), &[ShapeDef::new(floor)]).unwrap();
+    let mut locked = BodyDef::dynamic().position(fx!(0), fx!(0.5));
+    locked.settings.locks.x = true;
+    world.spawn(&locked, &[ShapeDef::new(Polygon::square(fx!(0.5)).unwrap())]).unwrap();
+    let ball = BodyDef::dynamic().position(fx!(-1.2), fx!(0.5)).velocity(fx!(3), fx!(0));
+    world.spawn(&ball, &[ShapeDef::new(Geometry::circle(fx!(0.5)).unwrap())]).unwrap();
+    let (mut worst, mut most) = (0, 0);
+    for _ in 0..30 {
+        world.step();
+        let (error, largest) = world.push_error();
+        (worst, most) = (worst.max(error), most.max(largest));
+    }
+    assert!(worst <= 100 && most > 100_000, "{worst} units apart at {most} units");
 }
