@@ -58,17 +58,20 @@ fn disturbance(thing: &Thing) -> u128 {
     let is_motion = |difference: &&Difference| {
         Motion::SPEEDS.iter().any(|motion| difference.field().name() == motion.name())
     };
-    let units = |difference: &Difference| {
-        let bits = |value: &Option<Value>| value.as_ref().and_then(|value| value.bits());
-        bits(&difference.a).zip(bits(&difference.b)).map_or(0, |(a, b)| a.abs_diff(b))
-    };
+    let units = |difference: &Difference| both_bits(difference).map_or(0, |(a, b)| a.abs_diff(b));
     thing.differences.iter().filter(is_motion).map(units).sum()
+}
+
+/// The bits of two numbers that differ; `None` if one is missing or no number.
+fn both_bits(difference: &Difference) -> Option<(i128, i128)> {
+    let bits = |value: &Option<Value>| value.as_ref().and_then(|value| value.bits());
+    bits(&difference.a).zip(bits(&difference.b))
 }
 
 /// The bit in which two numbers differ, if it is a single one.
 pub(super) fn flipped_bit(difference: &Difference) -> Option<u32> {
-    let bits = |value: &Option<Value>| value.as_ref().and_then(|value| value.bits());
-    let changed = bits(&difference.a)? ^ bits(&difference.b)?;
+    let (a, b) = both_bits(difference)?;
+    let changed = a ^ b;
     // The sign stands in all bits above a number's own.
     let is_sign = changed.leading_ones() + changed.trailing_zeros() == i128::BITS;
     (changed.count_ones() == 1 || is_sign).then(|| changed.trailing_zeros())
@@ -141,9 +144,7 @@ fn suspects(things: &[Thing]) -> Vec<Suspect> {
     for thing in things.iter().filter(|thing| handle(&thing.path).is_some()) {
         for motion in Motion::ALL {
             let of_motion = |difference: &&Difference| difference.field().name() == motion.name();
-            let bits = |value: &Option<Value>| value.as_ref().and_then(|value| value.bits());
-            let difference = thing.differences.iter().find(of_motion);
-            let difference = difference.and_then(|found| bits(&found.a).zip(bits(&found.b)));
+            let difference = thing.differences.iter().find(of_motion).and_then(both_bits);
             let size = log2(difference.map_or(0, |(a, b)| a.abs_diff(b)));
             suspects.extend((0..motion.bits()).map(|bit| Suspect {
                 path: thing.path.clone(),
