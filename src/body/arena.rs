@@ -1,4 +1,5 @@
-//! Generational storage: handles stay valid while other values come and go, and never resolve to a successor.
+//! Generational arena. A handle stays valid while other values are inserted and removed, and never resolves to a later
+//! value in the same slot.
 //!
 //! The free list is part of the state, because it decides which handle the next value gets.
 
@@ -14,7 +15,7 @@ mod pages;
 use pages::Kept;
 pub(crate) use pages::SharedArena;
 
-/// A generational handle: a slot and how often it has been reused.
+/// A generational handle: a slot index, and the number of earlier values in that slot.
 pub(crate) trait Handle: Copy + Eq {
     fn from_parts(index: u32, generation: u32) -> Self;
     fn slot(self) -> u32;
@@ -31,13 +32,13 @@ macro_rules! define_handle {
         }
 
         impl $name {
-            /// The slot that the value lives in: small, dense and reused. An index for a game's side tables.
+            /// Slot of the value: a small, dense index that is reused. Suitable as an index into a game's side tables.
             #[must_use]
             pub const fn index(self) -> u32 {
                 self.index
             }
 
-            /// How many values have lived in this slot before.
+            /// Number of earlier values in this slot.
             #[must_use]
             pub const fn generation(self) -> u32 {
                 self.generation
@@ -65,19 +66,19 @@ macro_rules! define_handle {
 }
 
 define_handle! {
-    /// Names a body. Stays valid until that body is despawned, and never names another one.
+    /// Handle of a body. Valid until that body is despawned; never resolves to another body.
     BodyId
 }
 define_handle! {
-    /// Names a shape. Stays valid until that shape or its body is removed.
+    /// Handle of a shape. Valid until that shape or its body is removed.
     ShapeId
 }
 define_handle! {
-    /// Names a sleeping island. Stays valid until the island wakes.
+    /// Handle of a sleeping island. Valid until the island wakes.
     IslandId
 }
 define_handle! {
-    /// Names a joint. Stays valid until that joint or one of its bodies is removed.
+    /// Handle of a joint. Valid until that joint or one of its bodies is removed.
     JointId
 }
 
@@ -93,9 +94,9 @@ struct Slot<T> {
 pub(crate) struct Arena<T, H> {
     #[serde(deserialize_with = "slots_within_limit")]
     slots: Vec<Slot<T>>,
-    /// Vacant slots, last freed on top.
+    /// Vacant slots; the last element was freed last.
     free: Vec<u32>,
-    /// Slots whose generations are used up.
+    /// Number of retired slots: vacant slots whose generation counter is exhausted.
     retired: u32,
     #[serde(skip)]
     kept: Kept<T>,
@@ -103,8 +104,8 @@ pub(crate) struct Arena<T, H> {
     handle: PhantomData<fn() -> H>,
 }
 
-/// Most slots of an arena that is decoded: what a world may hold, and some used-up ones. A vacant slot takes 5 bytes in a file
-/// and hundreds in memory, so a file's length alone does not bound what it makes us allocate.
+/// Largest number of slots that is decoded: the capacity of a world plus some retired slots. A vacant slot takes 5
+/// bytes in a file and hundreds in memory, so the length of a file alone does not bound the allocation.
 const DECODED_SLOTS_MAX: usize = (1 << 20) + (1 << 12);
 
 fn slots_within_limit<'de, T, D>(deserializer: D) -> Result<Vec<Slot<T>>, D::Error>
@@ -141,7 +142,7 @@ impl<T, H> Default for Arena<T, H> {
 }
 
 impl<T, H: Handle> Arena<T, H> {
-    /// One more than the largest slot ever used.
+    /// Number of slots ever used: the largest slot index plus 1.
     pub(crate) fn slot_count(&self) -> usize {
         self.slots.len()
     }
@@ -162,7 +163,7 @@ impl<T, H: Handle> Arena<T, H> {
         handle
     }
 
-    /// The handle that [`Arena::insert`] is going to give.
+    /// Handle that the next [`Arena::insert`] returns.
     pub(crate) fn next_handle(&self) -> H {
         match self.free.last() {
             Some(&index) => H::from_parts(index, self.slots[index as usize].generation),
@@ -170,12 +171,12 @@ impl<T, H: Handle> Arena<T, H> {
         }
     }
 
-    /// Takes a value out. Its handle never resolves again.
+    /// Removes and returns a value. Its handle never resolves again.
     pub(crate) fn remove(&mut self, handle: H) -> Option<T> {
         self.get(handle)?;
         let slot = &mut self.slots[handle.slot() as usize];
         let value = slot.value.take();
-        // A slot whose generations are used up is retired, not wrapped: an old handle must never resolve.
+        // A slot with an exhausted generation counter is retired, not wrapped: an old handle must never resolve.
         if slot.generation < u32::MAX {
             slot.generation += 1;
             self.free.push(handle.slot());
@@ -191,7 +192,7 @@ impl<T, H: Handle> Arena<T, H> {
         if slot.generation == handle.generation() { slot.value.as_ref() } else { None }
     }
 
-    /// The value in an occupied slot, to change anything about it.
+    /// Mutable access to the value in an occupied slot, for any change. Invalidates the cached page copy.
     ///
     /// # Panics
     /// If the slot is vacant: internal slot numbers never outlive their value.
@@ -200,13 +201,13 @@ impl<T, H: Handle> Arena<T, H> {
         self.slots[slot as usize].value.as_mut().expect("an occupied slot")
     }
 
-    /// The value of a handle, to change anything about it.
+    /// Mutable access to the value of a handle, for any change. Invalidates the cached page copy.
     pub(crate) fn get_mut(&mut self, handle: H) -> Option<&mut T> {
         self.get(handle)?;
         Some(self.redefine(handle.slot()))
     }
 
-    /// The value in an occupied slot.
+    /// Value in an occupied slot.
     ///
     /// # Panics
     /// If the slot is vacant: internal slot numbers never outlive their value.
@@ -215,7 +216,8 @@ impl<T, H: Handle> Arena<T, H> {
         self.slots[slot as usize].value.as_ref().expect("an occupied slot")
     }
 
-    /// The value in an occupied slot, to change what every step changes: see [`Arena::redefine`].
+    /// Mutable access to the value in an occupied slot, only for fields that every step changes. Keeps the cached page
+    /// copy: other changes need [`Arena::redefine`].
     ///
     /// # Panics
     /// If the slot is vacant: internal slot numbers never outlive their value.
@@ -224,34 +226,34 @@ impl<T, H: Handle> Arena<T, H> {
         self.slots[slot as usize].value.as_mut().expect("an occupied slot")
     }
 
-    /// The value in a slot, if it is occupied.
+    /// Value in a slot; `None` if the slot is vacant.
     pub(crate) fn get_slot(&self, slot: u32) -> Option<&T> {
         self.slots.get(slot as usize)?.value.as_ref()
     }
 
-    /// The handle of a slot: of its value or, if it is vacant, of its next one.
+    /// Handle of a slot: that of its value or, if the slot is vacant, that of its next value.
     pub(crate) fn handle_at(&self, slot: u32) -> H {
         H::from_parts(slot, self.slots[slot as usize].generation)
     }
 
-    /// The handles that the next values get in vacant slots, the last one first.
+    /// Handles that the next values in vacant slots will get. The last handle is used first.
     pub(crate) fn free_handles(&self) -> impl Iterator<Item = H> {
         self.free.iter().map(|&slot| self.handle_at(slot))
     }
 
-    /// Number of slots whose generations are used up.
+    /// Number of slots whose generation counter is exhausted.
     pub(crate) fn retired(&self) -> u32 {
         self.retired
     }
 
-    /// All values in slot order.
+    /// Iterates all values in slot order.
     pub(crate) fn iter(&self) -> impl Iterator<Item = (H, &T)> {
         self.slots.iter().zip(0u32..).filter_map(|(slot, index)| {
             slot.value.as_ref().map(|value| (H::from_parts(index, slot.generation), value))
         })
     }
 
-    /// All values in slot order, to change what every step changes: see [`Arena::redefine`].
+    /// Iterates all values in slot order mutably, only for fields that every step changes: see [`Arena::at_mut`].
     pub(crate) fn iter_mut(&mut self) -> impl Iterator<Item = (H, &mut T)> {
         self.slots.iter_mut().zip(0u32..).filter_map(|(slot, index)| {
             let generation = slot.generation;
@@ -259,7 +261,7 @@ impl<T, H: Handle> Arena<T, H> {
         })
     }
 
-    /// Whether the free list names exactly the vacant slots that are not retired, each once.
+    /// Whether the free list contains exactly the vacant slots that are not retired, each once.
     pub(crate) fn is_consistent(&self) -> bool {
         let mut listed = alloc::vec![false; self.slots.len()];
         let all_vacant = self.free.iter().all(|&index| {
@@ -285,7 +287,7 @@ mod tests {
         assert_eq!(arena.remove(first), Some(1));
         assert_eq!(arena.remove(first), None);
         let third = arena.insert(3);
-        assert_eq!(third.index(), first.index(), "the slot is reused");
+        assert_eq!(third.index(), first.index(), "the freed slot should be reused");
         assert_eq!(arena.get(first), None);
         assert_eq!(arena.get(second), Some(&2));
         assert_eq!(arena.get(third), Some(&3));
@@ -300,7 +302,7 @@ mod tests {
         let last = arena.handle_at(0);
         assert_eq!(arena.remove(last), Some(1));
         assert_eq!(arena.get(last), None);
-        assert_eq!(arena.insert(2).index(), 1, "a new slot");
+        assert_eq!(arena.insert(2).index(), 1, "a retired slot should not be reused");
         assert!(arena.is_consistent());
     }
 }

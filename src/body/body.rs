@@ -1,4 +1,4 @@
-//! Bodies: pose, velocity, mass and the forces waiting for the next tick.
+//! Bodies: pose, velocity, mass, and the forces accumulated for the next tick.
 
 use alloc::boxed::Box;
 
@@ -14,10 +14,11 @@ use crate::math::{
     widen,
 };
 
-/// Largest component of a velocity in m/s, also of `u = k w`: the difference of two fits [`Speed`].
+/// Largest velocity component in m/s, of the linear velocity and of `u = k w`. The difference of two such components
+/// fits [`Speed`].
 pub(crate) const SPEED_MAX: Speed = Speed::lit("511");
 
-/// A centre of mass in the world, and a rotation.
+/// Centre of mass in the world, and rotation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Pose {
     pub(crate) centre: Vec2<Fx>,
@@ -32,33 +33,34 @@ pub struct Body {
     #[serde(rename = "centre_of_mass")]
     pub(crate) centre: Vec2<Fx>,
     pub(crate) angle: Angle,
-    /// Of the centre of mass.
+    /// Velocity of the centre of mass.
     pub(crate) velocity: Vec2<Speed>,
-    /// `u = k w`.
+    /// Angular velocity times the radius of gyration, `u = k w`.
     pub(crate) spin: Speed,
-    /// In N, until the end of the next tick.
+    /// Applied force in N; cleared at the end of the next tick.
     pub(crate) force: Vec2<Fx>,
-    /// About the centre of mass in N m, until the end of the next tick.
+    /// Applied torque about the centre of mass in N m; cleared at the end of the next tick.
     pub(crate) torque: Fx,
-    /// Elsewhere, like a target, so that what every step looks at lies close together.
+    /// Boxed, like `target`, so that the fields that every step reads lie close together.
     pub(crate) mass_source: Box<MassSource>,
     pub(crate) mass: MassProperties,
     pub(crate) settings: BodySettings,
     pub(crate) enabled: bool,
-    /// For how many ticks it has been slow enough to sleep, or has been at rest if it is kinematic, up to 1.
+    /// Number of ticks for which the body has been slow enough to sleep. For a kinematic body: number of ticks at rest,
+    /// at most 1.
     pub(crate) rest_ticks: u32,
-    /// The sleeping island it belongs to, unless it is awake.
+    /// Sleeping island of the body; `None` while it is awake.
     pub(crate) island: Option<IslandId>,
-    /// Where the coming tick takes it, if it is kinematic and has been told so.
+    /// Pose that a kinematic body reaches in the next tick, if one was set.
     pub(crate) target: Option<Box<Pose>>,
-    /// In order of attachment.
+    /// Shapes in order of attachment.
     #[serde(with = "shape_list")]
     pub(crate) shapes: ShapeList,
     pub(crate) user_data: u64,
 }
 
 impl Body {
-    /// A body without shapes yet.
+    /// Creates a body without shapes.
     pub(crate) fn new(def: &BodyDef, mass: MassProperties) -> Self {
         let mut body = Body {
             kind: def.kind,
@@ -84,59 +86,59 @@ impl Body {
         body
     }
 
-    /// What moves it.
+    /// Whether the body is fixed, kinematic or dynamic.
     #[must_use]
     pub const fn kind(&self) -> BodyKind {
         self.kind
     }
 
-    /// Whether forces, contacts and joints move it.
+    /// Whether the body is dynamic: forces, contacts and joints move it.
     #[must_use]
     pub const fn is_dynamic(&self) -> bool {
         matches!(self.kind, BodyKind::Dynamic)
     }
 
-    /// Its origin in the world, in metres.
+    /// Origin of the body in the world, in metres.
     #[must_use]
     pub fn position(&self) -> Vec2<Fx> {
-        // Most bodies have their centre of mass at their origin: no need for a sine.
+        // Most bodies have their centre of mass at their origin; this case needs no sine.
         if self.mass.centre == Vec2::ZERO {
             return self.centre;
         }
         self.centre - self.rotation().apply_wide(self.mass.centre)
     }
 
-    /// Its centre of mass in the world, in metres.
+    /// Centre of mass in the world, in metres.
     #[must_use]
     pub const fn centre_of_mass(&self) -> Vec2<Fx> {
         self.centre
     }
 
-    /// Its centre of mass in its own frame, in metres.
+    /// Centre of mass in the body's frame, in metres.
     #[must_use]
     pub const fn local_centre_of_mass(&self) -> Vec2<Fx> {
         self.mass.centre
     }
 
-    /// Its rotation.
+    /// Rotation of the body.
     #[must_use]
     pub const fn angle(&self) -> Angle {
         self.angle
     }
 
-    /// Cosine and sine of its rotation.
+    /// Cosine and sine of the rotation.
     #[must_use]
     pub fn rotation(&self) -> Rot {
         Rot::from_angle(self.angle)
     }
 
-    /// From its frame to the world.
+    /// Transform from the body's frame to the world.
     #[must_use]
     pub fn transform(&self) -> Transform {
         Transform::new(self.position(), self.rotation())
     }
 
-    /// Velocity of its centre of mass in m/s.
+    /// Velocity of the centre of mass in m/s.
     #[must_use]
     pub fn velocity(&self) -> Vec2<Fx> {
         self.velocity.widen()
@@ -148,19 +150,19 @@ impl Body {
         divide(widen(self.spin), self.mass.gyration)
     }
 
-    /// Velocity in m/s of the point of the body that is at a world point.
+    /// Velocity in m/s of the material point of the body at a world position.
     #[must_use]
     pub fn velocity_at(&self, point: Vec2<Fx>) -> Vec2<Fx> {
         self.velocity() + (point - self.centre).perp().scale(self.angular_velocity())
     }
 
-    /// Mass in kg; 0 unless it is dynamic.
+    /// Mass in kg; 0 unless the body is dynamic.
     #[must_use]
     pub const fn mass(&self) -> Fx {
         self.mass.mass
     }
 
-    /// Moment of inertia about its centre of mass in kg m²; 0 unless it is dynamic.
+    /// Moment of inertia about the centre of mass in kg m²; 0 unless the body is dynamic.
     #[must_use]
     pub fn inertia(&self) -> Fx {
         fx_mul(fx_mul(self.mass.mass, self.mass.gyration), self.mass.gyration)
@@ -181,38 +183,38 @@ impl Body {
         fx_mul(self.mass.mass, squared) / 2
     }
 
-    /// Its shapes in order of attachment.
+    /// Shapes of the body in order of attachment.
     #[must_use]
     pub fn shapes(&self) -> &[ShapeId] {
         &self.shapes
     }
 
-    /// How it takes part in the simulation.
+    /// Damping, gravity scale, locks and sleep settings.
     #[must_use]
     pub const fn settings(&self) -> &BodySettings {
         &self.settings
     }
 
-    /// Whether it takes part at all.
+    /// Whether the body takes part in the simulation.
     #[must_use]
     pub const fn is_enabled(&self) -> bool {
         self.enabled
     }
 
-    /// Whether it sleeps: at rest, and of no cost until something wakes it.
+    /// Whether the body is asleep: at rest, and without cost until something wakes it.
     #[must_use]
     pub const fn is_asleep(&self) -> bool {
         self.island.is_some()
     }
 
-    /// The island that it sleeps in, if it sleeps.
+    /// Sleeping island of the body; `None` while it is awake.
     #[must_use]
     pub const fn island(&self) -> Option<IslandId> {
         self.island
     }
 
-    /// Whether something may happen to it or by it: pairs of shapes of which neither body is active are not looked
-    /// at. A kinematic body is active for one more tick after it has come to rest, in which it is seen where it is.
+    /// Whether the body can start or change contacts. Pairs of shapes whose bodies are both inactive are skipped. A
+    /// kinematic body stays active for one tick after it has come to rest, so that its final pose is processed.
     pub(crate) fn is_active(&self) -> bool {
         match self.kind {
             BodyKind::Fixed => false,
@@ -221,12 +223,12 @@ impl Body {
         }
     }
 
-    /// Whether it has a velocity.
+    /// Whether the linear or angular velocity is non-zero.
     pub(crate) fn is_moving(&self) -> bool {
         self.velocity != Vec2::ZERO || self.spin != 0
     }
 
-    /// The game's own number.
+    /// User data, set by the game.
     #[must_use]
     pub const fn user_data(&self) -> u64 {
         self.user_data
@@ -241,7 +243,7 @@ impl Body {
         self.spin = if self.turns() { narrow(fx_mul(omega, self.mass.gyration)) } else { Speed::ZERO };
     }
 
-    /// Changes the mass, keeping pose, angular velocity and the velocity of the material.
+    /// Changes the mass. Keeps the pose, the angular velocity and the velocity of every material point.
     pub(crate) fn set_mass(&mut self, mass: MassProperties) {
         let (position, angle, omega) = (self.position(), self.angle, self.angular_velocity());
         let old_centre = self.centre;
@@ -253,12 +255,12 @@ impl Body {
         self.clamp_velocity();
     }
 
-    /// Whether its rotation is free.
+    /// Whether the rotation is not locked.
     pub(crate) fn turns(&self) -> bool {
         self.mass.inverse_gyration != Reciprocal::ZERO
     }
 
-    /// Takes away what impulses have put along locked axes, and stays there if it is told to go somewhere.
+    /// Clears velocity along locked axes, and resets the kinematic target to the current pose along them.
     pub(crate) fn hold_locked_axes(&mut self) {
         let (turns, locks) = (self.turns(), self.settings.locks);
         if locks.x {
@@ -267,7 +269,7 @@ impl Body {
         if locks.y {
             self.velocity.y = Speed::ZERO;
         }
-        // Few bodies have one.
+        // Few bodies have a target.
         let Some(target) = &mut self.target else { return };
         if locks.x {
             target.centre.x = self.centre.x;
@@ -280,13 +282,13 @@ impl Body {
         }
     }
 
-    /// Forgets its velocity.
+    /// Sets the velocity to zero.
     pub(crate) fn stop(&mut self) {
         self.velocity = Vec2::ZERO;
         self.spin = Speed::ZERO;
     }
 
-    /// Keeps every component of the velocity within [`SPEED_MAX`], where the kernels need it.
+    /// Clamps every velocity component to ±[`SPEED_MAX`], the range that the kernels require.
     fn clamp_velocity(&mut self) {
         let clamp = |speed: Speed| speed.clamp(-SPEED_MAX, SPEED_MAX);
         self.velocity = Vec2::new(clamp(self.velocity.x), clamp(self.velocity.y));
@@ -294,20 +296,20 @@ impl Body {
         self.hold_locked_axes();
     }
 
-    /// Adds a force in N at a world point until the end of the next tick.
+    /// Adds a force in N at a world point. It acts until the end of the next tick.
     pub(crate) fn apply_force(&mut self, force: Vec2<Fx>, point: Vec2<Fx>) {
         self.force += force;
         self.torque = self.torque.saturating_add((point - self.centre).cross(force));
     }
 
-    /// Changes velocity at once by an impulse in N s at a world point: `dv = P / m`, `du = r x P / (m k)`.
+    /// Applies an impulse in N s at a world point, which changes velocity at once: `dv = P / m`, `du = r x P / (m k)`.
     pub(crate) fn apply_impulse(&mut self, impulse: Vec2<Fx>, point: Vec2<Fx>) {
         let dv = |p: Fx| narrow::<fixed::types::extra::U21>(divide(p, self.mass.mass));
         self.velocity += Vec2::new(dv(impulse.x), dv(impulse.y));
         self.apply_angular_impulse((point - self.centre).cross(impulse));
     }
 
-    /// Changes angular velocity at once by an angular impulse in N m s.
+    /// Applies an angular impulse in N m s, which changes angular velocity at once.
     pub(crate) fn apply_angular_impulse(&mut self, impulse: Fx) {
         if self.turns() {
             let du = narrow(divide(divide(impulse, self.mass.mass), self.mass.gyration));
@@ -316,8 +318,8 @@ impl Body {
         self.clamp_velocity();
     }
 
-    /// Change of velocity in one sub-step by the applied force, and of `u` by the torque, at `rate` sub-steps
-    /// per second: `dv = F / (m rate)`, `du = torque / (m k rate)`.
+    /// Velocity change in one sub-step, of `v` by the applied force and of `u` by the applied torque, at `rate`
+    /// sub-steps per second: `dv = F / (m rate)`, `du = torque / (m k rate)`.
     pub(crate) fn acceleration_step(&self, rate: u32) -> (Vec2<Speed>, Speed) {
         let dv = |force: Fx| over_mass(force, self.mass.mass, rate);
         let is_turned = self.torque != Fx::ZERO && self.turns();
@@ -326,12 +328,12 @@ impl Body {
     }
 }
 
-/// `a / b` of world quantities, rounded, saturated; 0 for a body without mass.
+/// `a / b` of world quantities, rounded to nearest and saturated; 0 for a body without mass.
 fn divide(a: Fx, b: Fx) -> Fx {
     crate::math::fx_div(a, b).unwrap_or(Fx::ZERO)
 }
 
-/// `force / (mass rate)` as a speed.
+/// `force / (mass rate)` as a speed, rounded to nearest and saturated; 0 without mass.
 fn over_mass(force: Fx, mass: Fx, rate: u32) -> Speed {
     if force == Fx::ZERO || mass == Fx::ZERO {
         return Speed::ZERO;

@@ -1,4 +1,4 @@
-//! What to spawn: a body's definition, as a builder.
+//! Body definitions, with builder methods.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,18 +8,18 @@ use super::settings::{BodySettings, Continuous};
 use super::shape::WORLD_EXTENT_MAX;
 use crate::math::{Angle, Fx, Vec2};
 
-/// What moves a body.
+/// How a body moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum BodyKind {
-    /// Nothing: ground and walls.
+    /// Does not move: ground and walls.
     Fixed,
-    /// Its velocity alone: lifts and doors. It pushes dynamic bodies and nothing pushes it.
+    /// Moves with its velocity alone: lifts and doors. It pushes dynamic bodies and nothing pushes it.
     Kinematic,
-    /// Forces, contacts and joints.
+    /// Moved by forces, contacts and joints.
     Dynamic,
 }
 
-/// What to spawn.
+/// Definition of a body to spawn.
 ///
 /// ```
 /// use lockstep2d::{body::BodyDef, fx};
@@ -28,30 +28,30 @@ pub enum BodyKind {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct BodyDef {
-    /// What moves it.
+    /// How the body moves.
     pub kind: BodyKind,
-    /// Its origin in the world, in metres.
+    /// Origin in the world, in metres.
     pub position: Vec2<Fx>,
-    /// Its rotation.
+    /// Rotation.
     pub angle: Angle,
-    /// Velocity of its centre of mass in m/s.
+    /// Velocity of the centre of mass in m/s.
     pub velocity: Vec2<Fx>,
     /// Angular velocity in rad/s, counter-clockwise.
     pub angular_velocity: Fx,
-    /// Where its mass comes from, if it is dynamic.
+    /// Source of the mass of a dynamic body.
     pub mass: MassSource,
-    /// How it takes part in the simulation.
+    /// Damping, gravity scale, locks and sleep settings.
     pub settings: BodySettings,
-    /// Whether it takes part at all: a disabled body keeps its place, and nothing touches it.
+    /// Whether the body takes part in the simulation. A disabled body keeps its pose and collides with nothing.
     pub enabled: bool,
-    /// Whether it starts asleep. Only dynamic bodies sleep.
+    /// Whether the body starts asleep. Only dynamic bodies sleep.
     pub asleep: bool,
     /// Not used by the engine, but part of the state and its hash.
     pub user_data: u64,
 }
 
 impl BodyDef {
-    /// A body of some kind at rest at the origin.
+    /// Creates a definition of a body of the given kind, at rest at the origin.
     #[must_use]
     pub const fn new(kind: BodyKind) -> Self {
         BodyDef {
@@ -68,19 +68,19 @@ impl BodyDef {
         }
     }
 
-    /// A body that does not move.
+    /// Creates a definition of a fixed body, which does not move.
     #[must_use]
     pub const fn fixed() -> Self {
         Self::new(BodyKind::Fixed)
     }
 
-    /// A body that only its velocity moves.
+    /// Creates a definition of a kinematic body, which moves with its velocity alone.
     #[must_use]
     pub const fn kinematic() -> Self {
         Self::new(BodyKind::Kinematic)
     }
 
-    /// A body that forces, contacts and joints move.
+    /// Creates a definition of a dynamic body, which forces, contacts and joints move.
     #[must_use]
     pub const fn dynamic() -> Self {
         Self::new(BodyKind::Dynamic)
@@ -114,90 +114,91 @@ impl BodyDef {
         self
     }
 
-    /// Sets where the mass comes from.
+    /// Sets the source of the mass.
     #[must_use]
     pub const fn mass(mut self, mass: MassSource) -> Self {
         self.mass = mass;
         self
     }
 
-    /// Sets how fast the velocity decays, per second.
+    /// Sets the linear damping: the decay rate of the velocity, per second.
     #[must_use]
     pub const fn linear_damping(mut self, rate: Fx) -> Self {
         self.settings.linear_damping = rate;
         self
     }
 
-    /// Sets how fast the angular velocity decays, per second.
+    /// Sets the angular damping: the decay rate of the angular velocity, per second.
     #[must_use]
     pub const fn angular_damping(mut self, rate: Fx) -> Self {
         self.settings.angular_damping = rate;
         self
     }
 
-    /// Sets how much of the world's gravity it feels.
+    /// Sets the factor on the world's gravity.
     #[must_use]
     pub const fn gravity_scale(mut self, scale: Fx) -> Self {
         self.settings.gravity_scale = scale;
         self
     }
 
-    /// Keeps it from turning.
+    /// Locks rotation.
     #[must_use]
     pub const fn lock_rotation(mut self) -> Self {
         self.settings.locks.rotation = true;
         self
     }
 
-    /// Keeps it from moving along the world's x axis.
+    /// Locks motion along the world's x axis.
     #[must_use]
     pub const fn lock_x(mut self) -> Self {
         self.settings.locks.x = true;
         self
     }
 
-    /// Keeps it from moving along the world's y axis.
+    /// Locks motion along the world's y axis.
     #[must_use]
     pub const fn lock_y(mut self) -> Self {
         self.settings.locks.y = true;
         self
     }
 
-    /// Sets what it is swept against.
+    /// Sets which bodies this body is swept against.
     #[must_use]
     pub const fn continuous(mut self, continuous: Continuous) -> Self {
         self.settings.continuous = continuous;
         self
     }
 
-    /// Sweeps it against all other bodies, so that it passes through none of them.
+    /// Makes the body a bullet: it is swept against all bodies that are not bullets, so that it does not pass through
+    /// them.
     #[must_use]
     pub const fn bullet(self) -> Self {
         self.continuous(Continuous::Bullet)
     }
 
-    /// Keeps it from falling asleep.
+    /// Prevents the body from falling asleep.
     #[must_use]
     pub const fn never_sleeps(mut self) -> Self {
         self.settings.may_sleep = false;
         self
     }
 
-    /// Sets the speed below which it grows sleepy, in m/s.
+    /// Sets the speed below which the body becomes ready to sleep, in m/s.
     #[must_use]
     pub const fn sleep_speed(mut self, speed: Fx) -> Self {
         self.settings.sleep_speed = speed;
         self
     }
 
-    /// Starts it asleep: it costs nothing until something touches it.
+    /// Starts the body asleep: it costs nothing until something touches it.
     #[must_use]
     pub const fn asleep(mut self) -> Self {
         self.asleep = true;
         self
     }
 
-    /// Starts it disabled.
+    /// Starts the body disabled.
     #[must_use]
     pub const fn disabled(mut self) -> Self {
         self.enabled = false;
@@ -211,7 +212,7 @@ impl BodyDef {
         self
     }
 
-    /// Checks everything but mass and speed, which depend on shapes and on the world.
+    /// Validates everything but mass and speed, which depend on shapes and on the world.
     pub(crate) fn validate(&self) -> Result<(), WorldError> {
         check_position(self.position)?;
         self.settings.validate()

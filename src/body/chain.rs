@@ -1,4 +1,4 @@
-//! Chains: smooth outlines of any length for grounds and walls.
+//! Chains: smooth outlines of any length, for ground and walls.
 
 use alloc::vec::Vec;
 
@@ -9,8 +9,8 @@ use super::material::Material;
 use super::shape::{SHAPES_PER_BODY_MAX, ShapeDef};
 use crate::math::{Fx, Vec2};
 
-/// A line through points, made of a [`Geometry::Link`] for each stretch. Links know their neighbours, so that what
-/// slides or rolls over the chain feels no seam between them.
+/// A polyline of [`Geometry::Link`] shapes, one for each segment. Each link stores its neighbours, so that a body that
+/// slides or rolls over the chain has no ghost collisions at the joints between links.
 ///
 /// ```
 /// use lockstep2d::{body::{BodyDef, Chain}, fx, math::Vec2, world::World};
@@ -31,7 +31,7 @@ pub struct Chain<'a> {
 }
 
 impl<'a> Chain<'a> {
-    /// A chain that is open and solid from both sides, through points in metres from the body's origin, in its frame.
+    /// Creates an open two-sided chain through points in metres from the body's origin, in the body's frame.
     #[must_use]
     pub fn new(points: &'a [Vec2<Fx>]) -> Self {
         Chain { points, materials: &[], closed: false, sides: Sides::Both, filter: Filter::default() }
@@ -44,16 +44,16 @@ impl<'a> Chain<'a> {
         self
     }
 
-    /// Makes it solid only from its right as one walks along the points: a closed chain in counter-clockwise order
-    /// from outside, a ground from above if its points run from right to left. Whatever has its centre on the
-    /// other side passes.
+    /// Makes the chain solid only from its right as seen along the points: a closed chain in counter-clockwise order is
+    /// solid from outside, and ground whose points run from right to left is solid from above. A shape whose centre is
+    /// on the other side passes through.
     #[must_use]
     pub fn one_sided(mut self) -> Self {
         self.sides = Sides::Right;
         self
     }
 
-    /// Sets the materials: one for all links, or one for each.
+    /// Sets the materials: one for all links, or one per link.
     #[must_use]
     pub fn materials(mut self, materials: &'a [Material]) -> Self {
         self.materials = materials;
@@ -67,12 +67,12 @@ impl<'a> Chain<'a> {
         self
     }
 
-    /// The links, as shapes of a body.
+    /// Returns the links, as shapes of a body.
     ///
     /// # Errors
-    /// [`GeometryError::ChainLength`] unless there are at least 2 points, or 3 of a closed chain, and at most 4096
-    /// links; [`GeometryError::MaterialCount`] unless there are none, one, or one material for each link;
-    /// [`GeometryError::SizeOutOfRange`] when neighbouring points are closer than 2 mm, or a point outside of the
+    /// [`GeometryError::ChainLength`] unless there are at least 2 points (3 for a closed chain) and at most 4096 links;
+    /// [`GeometryError::MaterialCount`] unless there are no materials, one, or one per link;
+    /// [`GeometryError::SizeOutOfRange`] if neighbouring points are closer than 2 mm, or a point is outside of the
     /// world.
     pub fn links(&self) -> Result<Vec<ShapeDef>, GeometryError> {
         let points = self.points;
@@ -123,7 +123,7 @@ mod tests {
     fn neighbours(shape: &ShapeDef) -> (Option<Vec2<Fx>>, Option<Vec2<Fx>>) {
         match shape.geometry {
             Geometry::Link { before, after, .. } => (before, after),
-            _ => unreachable!("chains are made of links"),
+            _ => unreachable!("a chain consists of links"),
         }
     }
 

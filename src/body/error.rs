@@ -5,39 +5,39 @@ use core::fmt;
 use super::arena::{BodyId, JointId, ShapeId};
 use crate::math::Fx;
 
-/// Geometry that cannot be simulated.
+/// Invalid geometry.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GeometryError {
     /// A polygon has 3 to 8 vertices.
     VertexCount {
-        /// How many there were.
+        /// Number of vertices given.
         count: u64,
     },
     /// Two neighbouring vertices are closer than 0.5 mm.
     ShortEdge {
-        /// The first of the two.
+        /// The first of the two vertices.
         vertex: u64,
     },
     /// The outline is concave, clockwise, collinear, or crosses itself.
     NotConvex {
-        /// The first vertex of an edge with another vertex on its wrong side.
+        /// First vertex of an edge that has another vertex on its outer side.
         vertex: u64,
     },
     /// A chain has at least 2 points, 3 if it is closed, and at most 4096 links.
     ChainLength {
-        /// How many points there were.
+        /// Number of points given.
         points: u64,
     },
-    /// A chain has no materials, one for all links, or one for each.
+    /// A chain takes no materials, one for all links, or one per link.
     MaterialCount {
-        /// How many links there are.
+        /// Number of links.
         links: u64,
-        /// How many materials there were.
+        /// Number of materials given.
         materials: u64,
     },
     /// A coordinate, radius or length is too small or too large.
     SizeOutOfRange {
-        /// The value in metres.
+        /// The value, in metres.
         value: Fx,
     },
 }
@@ -59,7 +59,10 @@ impl fmt::Display for GeometryError {
                 )
             }
             GeometryError::MaterialCount { links, materials } => {
-                write!(f, "{materials} materials for the {links} links of a chain")
+                write!(
+                    f,
+                    "a chain of {links} links takes no materials, one, or one per link: not {materials}"
+                )
             }
             GeometryError::SizeOutOfRange { value } => {
                 write!(f, "a size or coordinate of {value} m is out of range")
@@ -70,31 +73,31 @@ impl fmt::Display for GeometryError {
 
 impl core::error::Error for GeometryError {}
 
-/// A change that the world refuses. The world is as it was before.
+/// A change that the world rejects. The world stays as it was.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WorldError {
     /// The geometry of a shape is not valid.
     Geometry(GeometryError),
-    /// The handle names a body that is gone, or was never here.
+    /// The handle refers to a body that was removed or never existed.
     StaleBody(BodyId),
-    /// The handle names a shape that is gone, or was never here.
+    /// The handle refers to a shape that was removed or never existed.
     StaleShape(ShapeId),
-    /// The handle names a joint that is gone, or was never here.
+    /// The handle refers to a joint that was removed or never existed.
     StaleJoint(JointId),
     /// A position is further than 2^30 m from the origin on some axis.
     PositionOutOfRange {
         /// The coordinate in metres.
         value: Fx,
     },
-    /// A shape or anchor is further than 128 m from its movable body's origin on some axis, or 2^30 m from a fixed
-    /// one's.
+    /// A shape or anchor is further from its body's origin on some axis than 128 m, or than 2^30 m if the body is
+    /// fixed.
     OffsetOutOfRange {
         /// The coordinate in metres.
         value: Fx,
     },
-    /// A speed is above the limit of the world, in m/s, or in rad/s times the radius of gyration.
+    /// A speed exceeds the limit of the world, in m/s; for angular velocity, in rad/s times the radius of gyration.
     SpeedOutOfRange {
-        /// The speed asked for.
+        /// The requested speed.
         value: Fx,
     },
     /// The density is negative, or above 2^20 kg/m².
@@ -102,53 +105,55 @@ pub enum WorldError {
         /// The density in kg/m².
         value: Fx,
     },
-    /// Friction is not within 0 to 16, restitution or rolling resistance not within 0 to 1, or a surface speed not
-    /// within ±400 m/s.
+    /// Friction is not within 0 to 16, restitution or rolling resistance is not within 0 to 1, or a surface speed is
+    /// not within ±400 m/s.
     MaterialOutOfRange,
-    /// A dynamic body's mass is not within 10 mg to 2^30 kg: it has no shape with area and density, or too much.
+    /// The mass of a dynamic body is not within 10 mg to 2^30 kg. It is too small if no shape has both area and
+    /// density.
     MassOutOfRange {
         /// The mass in kg.
         value: Fx,
     },
-    /// A dynamic body's radius of gyration is not within 2 mm to 512 m.
+    /// The radius of gyration of a dynamic body is not within 2 mm to 512 m.
     GyrationOutOfRange {
         /// The radius in metres.
         value: Fx,
     },
     /// A damping rate is not within 0 to 1000 per second.
     DampingOutOfRange {
-        /// The rate asked for.
+        /// The requested rate.
         value: Fx,
     },
     /// A gravity scale is not within ±1000.
     GravityScaleOutOfRange {
-        /// The scale asked for.
+        /// The requested scale.
         value: Fx,
     },
-    /// A joint between a body and itself.
+    /// A joint connects a body to itself.
     JointToItself(BodyId),
-    /// Neither body of a joint is dynamic, so nothing could move.
+    /// Neither body of a joint is dynamic, so the joint could move nothing.
     JointWithoutDynamicBody,
-    /// A joint stays between its bodies as long as it lives.
+    /// The bodies of an existing joint cannot be changed.
     JointOfOtherBodies(JointId),
-    /// Something of a joint is out of range.
+    /// A property of a joint is out of range.
     JointOutOfRange {
-        /// What.
+        /// Name of the property.
         what: &'static str,
     },
     /// A world setting is out of range.
     Setting {
-        /// Which one.
+        /// Name of the setting.
         name: &'static str,
     },
-    /// The world holds as many bodies, shapes or joints as it may.
+    /// The world already holds the largest number of bodies, shapes or joints.
     Full {
         /// What there are too many of.
         what: &'static str,
-        /// How many there may be.
+        /// The largest number.
         limit: u32,
     },
-    /// Only dynamic bodies take forces and impulses, and fixed ones do not move.
+    /// The kind of the body does not allow the change: only dynamic bodies take forces and impulses, and fixed bodies
+    /// do not move.
     WrongKind(BodyId),
 }
 
@@ -162,12 +167,12 @@ impl fmt::Display for WorldError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             WorldError::Geometry(error) => error.fmt(f),
-            WorldError::StaleBody(id) => write!(f, "no body {id}"),
-            WorldError::StaleShape(id) => write!(f, "no shape {id}"),
-            WorldError::StaleJoint(id) => write!(f, "no joint {id}"),
+            WorldError::StaleBody(id) => write!(f, "body {id} does not exist"),
+            WorldError::StaleShape(id) => write!(f, "shape {id} does not exist"),
+            WorldError::StaleJoint(id) => write!(f, "joint {id} does not exist"),
             WorldError::PositionOutOfRange { value } => write!(f, "position {value} m is beyond 2^30 m"),
             WorldError::OffsetOutOfRange { value } => {
-                write!(f, "a shape or anchor reaches {value} m from its body's origin")
+                write!(f, "a shape or anchor at {value} m from its body's origin is out of range")
             }
             WorldError::SpeedOutOfRange { value } => write!(f, "speed {value} is above the world's limit"),
             WorldError::DensityOutOfRange { value } => write!(f, "density {value} kg/m² is out of range"),
@@ -190,13 +195,13 @@ impl fmt::Display for WorldError {
             WorldError::GravityScaleOutOfRange { value } => {
                 write!(f, "gravity scale is within ±1000, not {value}")
             }
-            WorldError::JointToItself(id) => write!(f, "a joint between body {id} and itself"),
+            WorldError::JointToItself(id) => write!(f, "a joint cannot connect body {id} to itself"),
             WorldError::JointWithoutDynamicBody => write!(f, "neither body of the joint is dynamic"),
-            WorldError::JointOfOtherBodies(id) => write!(f, "joint {id} is between other bodies"),
+            WorldError::JointOfOtherBodies(id) => write!(f, "the bodies of joint {id} cannot be changed"),
             WorldError::JointOutOfRange { what } => write!(f, "the {what} of a joint is out of range"),
             WorldError::Setting { name } => write!(f, "the world setting `{name}` is out of range"),
             WorldError::Full { what, limit } => write!(f, "the world already holds {limit} {what}"),
-            WorldError::WrongKind(id) => write!(f, "body {id} is not of a kind that can do this"),
+            WorldError::WrongKind(id) => write!(f, "the kind of body {id} does not allow this change"),
         }
     }
 }

@@ -1,21 +1,21 @@
-//! Which events a shape takes part in.
+//! Event switches: the events in which a shape takes part.
 
 use serde::{Deserialize, Serialize};
 
-/// Which events a shape takes part in.
+/// Switches for the events in which a shape takes part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct EventSwitches {
-    /// Beginning and end of contacts; of a pair of shapes, either one's is enough.
+    /// Begin and end of contacts. A pair reports them if either shape enables them.
     pub contact: bool,
-    /// Hits: contacts that push after an approach faster than [`crate::world::Config::hit_speed`]; of a pair, either
-    /// one's is enough.
+    /// Hit events: contacts that push after an approach faster than [`crate::world::Config::hit_speed`]. A pair reports
+    /// them if either shape enables them.
     pub hit: bool,
-    /// Being noticed by sensors.
+    /// Detection by sensors.
     pub sensor: bool,
 }
 
 impl Default for EventSwitches {
-    /// All but hits.
+    /// Contact and sensor events enabled, hit events disabled.
     fn default() -> Self {
         EventSwitches { contact: true, hit: false, sensor: true }
     }

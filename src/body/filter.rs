@@ -1,12 +1,13 @@
-//! Which shapes collide.
+//! Collision filters.
 
 use serde::{Deserialize, Serialize};
 
-/// Collision filter: two shapes of a shared non-zero group collide if it is positive and never if it is
-/// negative; otherwise each one's mask must name one of the other's categories.
+/// Collision filter. Two shapes in the same non-zero group collide if the group is positive and never if it is
+/// negative. Otherwise they collide if each shape's mask includes at least one of the other shape's categories.
 ///
-/// Crowds that leave out their own kind are cheap: shapes of one negative group, down to -32 768, or of one category that is
-/// not in their masks, are not even looked for in pairs with each other. For bullets, debris, nets and ragdolls:
+/// Large sets of shapes that do not collide among themselves are cheap: the broad phase does not search for pairs
+/// within one negative group down to -32 768, nor within one category that its own shapes exclude from their masks.
+/// This suits bullets, debris, nets and ragdolls:
 ///
 /// ```
 /// # use lockstep2d::body::Filter;
@@ -40,13 +41,13 @@ impl Filter {
         self.mask & other.category != 0 && other.mask & self.category != 0
     }
 
-    /// The kin of a shape.
+    /// Collision class of a shape.
     pub(crate) fn kin(&self) -> Kin {
         let Filter { category, mask, group } = *self;
         let kin = match group {
-            // Two of the same group: neither category nor mask matters.
+            // Within one group neither category nor mask matters.
             ..0 => i64::from(group),
-            // Two of the same category: the mask of each leaves the other out.
+            // Within one category the mask of each shape excludes the other.
             0 if category.is_power_of_two() && mask & category == 0 => i64::from(1 + category.ilog2()),
             _ => 0,
         };
@@ -54,15 +55,15 @@ impl Filter {
     }
 }
 
-/// Which shapes never collide with each other: those of the same kin, unless that is [`Kin::NONE`].
+/// Collision class: two shapes of the same class never collide with each other, unless the class is [`Kin::NONE`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Kin(i16);
 
 impl Kin {
-    /// Of shapes that may collide with any other, or of many that are not all of one kin.
+    /// Class of a shape that may collide with any other, and of a set of shapes that are not all of one class.
     pub(crate) const NONE: Self = Kin(0);
 
-    /// What two have in common.
+    /// Class of the union of two sets.
     pub(crate) fn common(self, other: Self) -> Self {
         if self == other { self } else { Kin::NONE }
     }
@@ -78,7 +79,7 @@ mod tests {
         let player = Filter { category: 2, mask: 1, group: 0 };
         let wall = Filter::default();
         assert!(player.accepts(&wall) && wall.accepts(&player));
-        assert!(!player.accepts(&player), "players pass through each other");
+        assert!(!player.accepts(&player), "players should not collide with each other");
         let team = Filter { group: 7, ..player };
         assert!(team.accepts(&team));
         let ghost = Filter { group: -7, ..wall };
@@ -104,7 +105,7 @@ mod tests {
                 kin += 1;
             }
         }
-        assert!(kin > 1000 && strangers > 1000, "{kin} {strangers}");
+        assert!(kin > 1000 && strangers > 1000, "both outcomes should be frequent: {kin} {strangers}");
         let bullet = Filter { category: 1 << 63, mask: 1, group: 0 };
         assert_ne!(bullet.kin(), Kin::NONE);
         assert_ne!(Filter { group: -5, ..bullet }.kin(), bullet.kin());

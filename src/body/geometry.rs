@@ -1,4 +1,4 @@
-//! Geometry: what shapes look like, with its ranges and bounds.
+//! Geometry of shapes, with size limits and bounding boxes.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,60 +8,60 @@ use super::shape::WORLD_EXTENT_MAX;
 use crate::fx;
 use crate::math::{Aabb, Fx, Vec2};
 
-/// The shortest circle radius and segment length in metres.
+/// Smallest circle radius and segment length in metres.
 const SIZE_MIN: Fx = fx!(0.002);
 
-/// What a shape looks like, about its own centre.
+/// Geometry of a shape, relative to the shape's centre.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Geometry {
-    /// A disc about the shape's centre.
+    /// A disc centred on the shape's centre.
     Circle {
-        /// 0.002 to 110 m.
+        /// Radius in metres, 0.002 to 110.
         radius: Fx,
     },
-    /// A line between two points, solid from both sides. It has no area, and so no mass. Segments do not collide
-    /// with each other. May be as long as the world.
+    /// A line segment, solid from both sides. It has no area, and so no mass. Segments do not collide with each other.
+    /// A segment may be as long as the world.
     Segment {
-        /// One end, in metres from the shape's centre.
+        /// First end, in metres from the shape's centre.
         a: Vec2<Fx>,
-        /// The other end.
+        /// Second end.
         b: Vec2<Fx>,
     },
     /// A convex polygon, optionally rounded.
     Polygon(Polygon),
-    /// Everything within a radius of the line between two points: a pill, or a stick with round ends.
+    /// All points within a radius of a line segment: a pill, or a stick with round ends.
     Capsule {
-        /// The centre of one round end, in metres from the shape's centre.
+        /// Centre of the first round end, in metres from the shape's centre.
         a: Vec2<Fx>,
-        /// The centre of the other, at least 2 mm away.
+        /// Centre of the second round end, at least 2 mm away.
         b: Vec2<Fx>,
-        /// 0.002 m or more. The capsule reaches at most 110 m from the shape's centre on each axis.
+        /// Radius in metres, at least 0.002. The capsule extends at most 110 m from the shape's centre on each axis.
         radius: Fx,
     },
-    /// A line between two points that is part of a chain: see [`Chain`](super::Chain), which makes them. Like a
-    /// segment it has no area, does not collide with lines, and may be as long as the world. Where it has a
-    /// neighbour it pushes only in directions that the chain as a whole allows.
+    /// A line segment of a chain, created by [`Chain`](super::Chain). Like a segment it has no area, does not collide
+    /// with segments or links, and may be as long as the world. At an end with a neighbour it pushes only in directions
+    /// that the chain as a whole allows, which prevents ghost collisions.
     Link {
-        /// One end, in metres from the shape's centre.
+        /// First end, in metres from the shape's centre.
         a: Vec2<Fx>,
-        /// The other end.
+        /// Second end.
         b: Vec2<Fx>,
-        /// The other end of the neighbour that ends at `a`.
+        /// Far end of the neighbour that ends at `a`.
         before: Option<Vec2<Fx>>,
-        /// The other end of the neighbour that starts at `b`.
+        /// Far end of the neighbour that starts at `b`.
         after: Option<Vec2<Fx>>,
-        /// From where it is solid.
+        /// Sides from which the link is solid.
         sides: Sides,
     },
 }
 
-/// From which sides a link is solid.
+/// Sides from which a link is solid.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Sides {
-    /// From both.
+    /// Both sides.
     #[default]
     Both,
-    /// Only from the right as one looks from `a` to `b`. What has its centre on the left passes.
+    /// Only the right side, looking from `a` to `b`. A shape whose centre is on the left passes through.
     Right,
 }
 
@@ -72,34 +72,35 @@ impl From<Polygon> for Geometry {
 }
 
 impl Geometry {
-    /// A circle from its radius in metres.
+    /// Creates a circle from its radius in metres.
     ///
     /// # Errors
-    /// When the radius is not within 0.002 to 110 m.
+    /// If the radius is not within 0.002 to 110 m.
     pub fn circle(radius: Fx) -> Result<Self, GeometryError> {
         let circle = Geometry::Circle { radius };
         circle.validate().map(|()| circle)
     }
 
-    /// A segment from its ends, in metres from the shape's centre.
+    /// Creates a segment from its ends, in metres from the shape's centre.
     ///
     /// # Errors
-    /// When it is shorter than 2 mm or leaves the world.
+    /// If the segment is shorter than 2 mm or leaves the world.
     pub fn segment(a: Vec2<Fx>, b: Vec2<Fx>) -> Result<Self, GeometryError> {
         let segment = Geometry::Segment { a, b };
         segment.validate().map(|()| segment)
     }
 
-    /// A capsule from the centres of its round ends, in metres from the shape's centre, and its radius.
+    /// Creates a capsule from the centres of its round ends, in metres from the shape's centre, and its radius.
     ///
     /// # Errors
-    /// When the centres are closer than 2 mm, the radius is below 2 mm, or it reaches further than 110 m on some axis.
+    /// If the centres are closer than 2 mm, the radius is below 2 mm, or the capsule extends further than 110 m on some
+    /// axis.
     pub fn capsule(a: Vec2<Fx>, b: Vec2<Fx>, radius: Fx) -> Result<Self, GeometryError> {
         let capsule = Geometry::Capsule { a, b, radius };
         capsule.validate().map(|()| capsule)
     }
 
-    /// Checks sizes. A [`Polygon`] is valid by construction.
+    /// Validates the size. A [`Polygon`] is valid by construction.
     pub(crate) fn validate(&self) -> Result<(), GeometryError> {
         match *self {
             Geometry::Circle { radius } => {
@@ -130,7 +131,7 @@ impl Geometry {
         Ok(())
     }
 
-    /// The box around the geometry about its own centre, unrotated.
+    /// Bounding box of the geometry about its own centre, without rotation.
     pub(crate) fn local_bounds(&self) -> Aabb {
         match self {
             Geometry::Circle { radius } => Aabb::new(Vec2::ZERO, Vec2::ZERO).expanded(*radius),
@@ -154,7 +155,7 @@ fn check_within(points: &[Vec2<Fx>], extent: Fx) -> Result<(), GeometryError> {
     }
 }
 
-/// Checks that a line is long enough to have a direction.
+/// Checks that a segment is long enough to have a reliable direction.
 fn check_length(a: Vec2<Fx>, b: Vec2<Fx>) -> Result<(), GeometryError> {
     let length = a.distance(b);
     if length < SIZE_MIN { Err(GeometryError::SizeOutOfRange { value: length }) } else { Ok(()) }

@@ -1,8 +1,8 @@
 //! Mass, centre of mass and radius of gyration from shapes and densities.
 //!
-//! The radius of gyration `k = sqrt(I / m)` takes the place of the moment of inertia everywhere: with `u = k w`
-//! linear and angular velocity are both speeds of the same mass (`docs/DESIGN.md`, rows). The parts of a body
-//! are summed by the parallel axis theorem:
+//! The radius of gyration `k = sqrt(I / m)` replaces the moment of inertia everywhere. With `u = k w`, linear and
+//! angular velocity are both speeds of the same mass (`docs/DESIGN.md`, rows). The parts of a body are summed by the
+//! parallel axis theorem:
 //!
 //! ```text
 //! m     = sum m_i
@@ -10,7 +10,7 @@
 //! m k^2 = sum m_i (k_i^2 + |c_i - c|^2)
 //! ```
 //!
-//! All sums are exact integers; each quotient is rounded once. What a polygon adds to them is in `figure.rs`.
+//! All sums are exact integers; each quotient is rounded once. `figure.rs` computes the part of a polygon.
 
 mod figure;
 
@@ -25,18 +25,18 @@ use super::shape::ShapeDef;
 use crate::fx;
 use crate::math::{Fx, PI, Reciprocal, Unit, Vec2, div_round, fx_mul, saturate_wide};
 
-/// Limits of a dynamic body's mass in kg.
+/// Range of a dynamic body's mass in kg.
 const MASS: core::ops::RangeInclusive<Fx> = fx!(0.00001)..=fx!(1073741824);
-/// Limits of a dynamic body's radius of gyration in metres.
+/// Range of a dynamic body's radius of gyration in metres.
 const GYRATION: core::ops::RangeInclusive<Fx> = fx!(0.002)..=fx!(512);
 
-/// Where a dynamic body's mass comes from.
+/// Source of a dynamic body's mass.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum MassSource {
-    /// From the area and density of its shapes.
+    /// Computed from the area and density of the shapes.
     #[default]
     Shapes,
-    /// Given, whatever the shapes are.
+    /// Given explicitly; the shapes do not matter.
     Given {
         /// Mass in kg, 1e-5 to 2^30.
         mass: Fx,
@@ -47,27 +47,27 @@ pub enum MassSource {
     },
 }
 
-/// How a body resists being moved.
+/// Mass, centre of mass and radius of gyration of a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct MassProperties {
-    /// Mass in kg; 0 for a body that no force moves.
+    /// Mass in kg; 0 for a fixed or kinematic body.
     pub(crate) mass: Fx,
     /// Centre of mass in the body's frame.
     pub(crate) centre: Vec2<Fx>,
-    /// Radius of gyration in metres. For a body that no force moves, any convenient length.
+    /// Radius of gyration in metres. An arbitrary positive length for a fixed or kinematic body.
     pub(crate) gyration: Fx,
     /// `1 / gyration`.
     pub(crate) inverse_gyration: Reciprocal,
 }
 
 impl MassProperties {
-    /// The properties of a body that no force moves. Its `k` is any convenient length: 4 m lets it turn at
-    /// 100 rad/s within a speed limit of 400 m/s, and keeps the lever ratio of the longest arm below 91.
+    /// Properties of a fixed or kinematic body. Its `k` is arbitrary: 4 m allows a rotation of 100 rad/s within a speed
+    /// limit of 400 m/s, and keeps the ratio of the longest lever arm to `k` below 91.
     pub(crate) fn immovable() -> Self {
         Self::new(Fx::ZERO, Vec2::ZERO, fx!(4))
     }
 
-    /// The properties of a dynamic body.
+    /// Properties of a dynamic body.
     pub(crate) fn dynamic<'a>(
         source: MassSource,
         shapes: impl Iterator<Item = &'a ShapeDef> + Clone,
@@ -90,7 +90,7 @@ impl MassProperties {
         Ok(properties)
     }
 
-    /// The same for a body that does not turn.
+    /// Returns the properties with rotation locked.
     pub(crate) fn without_rotation(self) -> Self {
         MassProperties { inverse_gyration: Reciprocal::ZERO, ..self }
     }
@@ -114,7 +114,7 @@ impl MassProperties {
             Fx::from_bits(saturate_wide(div_round(sum, mass)))
         };
         let centre = Vec2::new(weighted(|part| part.centre.x), weighted(|part| part.centre.y));
-        // 44 fraction bits: two lengths multiplied. Mass has at most 62 bits and k² + d² 63, well within 128.
+        // Products of two lengths have 44 fraction bits. Mass has at most 62 bits and k² + d² 63, well within 128.
         let moment: i128 = parts
             .map(|part| {
                 let arm = part.centre - centre;
@@ -135,12 +135,12 @@ fn check_gyration(gyration: Fx) -> Result<(), WorldError> {
     if inside { Ok(()) } else { Err(WorldError::GyrationOutOfRange { value: gyration }) }
 }
 
-/// One shape's share of a body's mass.
+/// Contribution of one shape to a body's mass.
 struct Part {
     mass: Fx,
-    /// In the body's frame.
+    /// Centre of mass in the body's frame.
     centre: Vec2<Fx>,
-    /// About its own centre of mass, in m², with 44 fraction bits.
+    /// Squared radius of gyration about the shape's centre of mass, in m², with 44 fraction bits.
     gyration_squared: i128,
 }
 
@@ -163,7 +163,7 @@ impl Part {
         }
     }
 
-    /// A rectangle of `l` by `2 r` and two half discs with their centres of mass at `4 r / (3 pi)` from its ends:
+    /// A rectangle of `l` by `2 r`, and two half discs whose centres of mass are `4 r / (3 pi)` from its ends:
     ///
     /// ```text
     /// A     = 2 r l + pi r^2
@@ -176,7 +176,7 @@ impl Part {
         let area = rectangle + disc;
         let of_rectangle = (ll + rr * 4) / 12;
         let of_disc = rr / 2 + ll / 4 + fx_mul(rl, fx!(0.424413181578));
-        // Weights and squares of lengths, each with 32 fraction bits; the mean has 44.
+        // Weights and squares of lengths have 32 fraction bits each; the mean has 44.
         let product = |weight: Fx, square: Fx| i128::from(weight.to_bits()) * i128::from(square.to_bits());
         let moment = product(rectangle, of_rectangle) + product(disc, of_disc);
         let gyration_squared = div_round(moment << 12, area.to_bits().max(1).into());
@@ -203,7 +203,7 @@ mod tests {
     use super::*;
 
     fn close(a: Fx, b: Fx) {
-        assert!((a - b).abs() < fx!(0.00001), "{a} is not {b}");
+        assert!((a - b).abs() < fx!(0.00001), "expected {b}, got {a}");
     }
 
     fn dynamic(shapes: &[ShapeDef]) -> Result<MassProperties, WorldError> {
@@ -248,9 +248,13 @@ mod tests {
     fn a_rounded_rail_weighs_its_core_its_sides_and_four_quarter_discs() {
         let rail = Polygon::rectangle(fx!(0.4), fx!(20)).unwrap().rounded(fx!(0.2)).unwrap();
         let properties = dynamic(&[ShapeDef::new(rail).density(fx!(3)).offset(fx!(1), fx!(2))]).unwrap();
-        // 3 (0.8 * 40 + 0.2 * 81.6 + 0.04 pi); 0.2 in `Length` is off by 5e-8, and so is 0.4.
+        // 3 (0.8 * 40 + 0.2 * 81.6 + 0.04 pi); as a `Length`, 0.2 has an error of 5e-8, and so has 0.4.
         let expected = fx!(144.96) + fx_mul(fx!(0.12), PI);
-        assert!((properties.mass - expected).abs() < fx!(0.0001), "{}", properties.mass);
+        assert!(
+            (properties.mass - expected).abs() < fx!(0.0001),
+            "expected {expected}, got {}",
+            properties.mass
+        );
         assert_eq!(properties.centre, Vec2::new(fx!(1), fx!(2)));
     }
 
@@ -273,7 +277,10 @@ mod tests {
             // k = 2 h / sqrt(6)
             let expected = fx_mul(half, fx!(0.816496580928));
             let error = (gyration - expected).abs();
-            assert!(error <= fx_mul(expected, fx!(0.0001)), "half {half}: {gyration} is not {expected}");
+            assert!(
+                error <= fx_mul(expected, fx!(0.0001)),
+                "half extent {half}: expected {expected}, got {gyration}"
+            );
         }
     }
 

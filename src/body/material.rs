@@ -1,12 +1,12 @@
-//! Surface properties and how those of two touching shapes combine.
+//! Surface properties, and their combination for two touching shapes.
 
 use serde::{Deserialize, Serialize};
 
 use crate::fx;
 use crate::math::{Fx, fx_mul};
 
-/// How two values of a surface property become one. Where two shapes disagree, the later of the two rules in
-/// this list is used.
+/// Rule that combines the values of a surface property of two shapes. If the shapes have different rules, the rule that
+/// comes later in this list applies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub enum Mixing {
     /// `(a + b) / 2`.
@@ -34,7 +34,7 @@ impl Mixing {
     }
 }
 
-/// `sqrt(a b)` of two values that are not negative, rounded down: the square root of 64 fraction bits has 32.
+/// `sqrt(a b)` of two non-negative values, rounded down: the square root of 64 fraction bits has 32.
 fn geometric_mean(a: Fx, b: Fx) -> Fx {
     let product = u128::from(a.to_bits().unsigned_abs()) * u128::from(b.to_bits().unsigned_abs());
     Fx::from_bits(i64::try_from(product.isqrt()).expect("the mean of two Fx is an Fx"))
@@ -51,25 +51,25 @@ fn geometric_mean(a: Fx, b: Fx) -> Fx {
 pub struct Material {
     /// Coulomb friction coefficient, 0 to 16.
     pub friction: Fx,
-    /// How the friction of two shapes combines.
+    /// Rule that combines the friction of two shapes.
     pub friction_mixing: Mixing,
-    /// Fraction of the approach speed that a bounce returns, 0 to 1.
+    /// Fraction of the approach speed that is returned by a bounce, 0 to 1.
     pub restitution: Fx,
-    /// How the restitution of two shapes combines.
+    /// Rule that combines the restitution of two shapes.
     pub restitution_mixing: Mixing,
-    /// How much a round shape resists rolling, 0 to 1: the distance by which the ground pushes back before its axle,
-    /// as a share of its radius. Of two shapes the larger value counts, and the larger radius: that of a circle or
-    /// capsule, or by which a polygon is rounded. A wheel that only rolls on level ground loses
+    /// Rolling resistance of a round shape, 0 to 1: the offset of the ground reaction ahead of the axle, as a fraction
+    /// of the radius. A pair uses the larger value and the larger radius of its two shapes, where the radius is that of
+    /// a circle or capsule, or the rounding radius of a polygon. A wheel that rolls freely on level ground loses
     /// `rolling_resistance g / (1 + k^2 / r^2)` of speed per second.
     pub rolling_resistance: Fx,
-    /// How fast the surface runs around the shape, clockwise, in m/s, ±400: the upper side of a conveyor belt carries
-    /// things to the right with its speed. The speeds of two shapes add up.
+    /// Surface speed: the speed of the surface around the shape, clockwise, in m/s, ±400. The upper side of a conveyor
+    /// belt with a positive speed carries bodies to the right. A pair uses the sum of the speeds of its two shapes.
     pub surface_speed: Fx,
 }
 
 impl Default for Material {
-    /// Friction 0.6 mixed as the geometric mean, no restitution, mixed as the maximum, a surface at rest that does not
-    /// resist rolling.
+    /// Friction 0.6 with the geometric mean, restitution 0 with the maximum, no rolling resistance, and surface speed
+    /// 0.
     fn default() -> Self {
         Material {
             friction: fx!(0.6),
@@ -83,10 +83,10 @@ impl Default for Material {
 }
 
 impl Material {
-    /// The largest friction coefficient.
+    /// Largest friction coefficient.
     pub const FRICTION_MAX: Fx = fx!(16);
 
-    /// The fastest surface in m/s, in either direction.
+    /// Largest surface speed in m/s, in either direction.
     pub const SURFACE_SPEED_MAX: Fx = fx!(400);
 
     /// Whether all properties are in range.
@@ -107,13 +107,13 @@ impl Material {
             && (-Self::SURFACE_SPEED_MAX..=Self::SURFACE_SPEED_MAX).contains(&surface_speed)
     }
 
-    /// The friction between two surfaces.
+    /// Combined friction of two surfaces.
     #[must_use]
     pub fn mixed_friction(&self, other: &Material) -> Fx {
         self.friction_mixing.max(other.friction_mixing).mix(self.friction, other.friction)
     }
 
-    /// The restitution between two surfaces.
+    /// Combined restitution of two surfaces.
     #[must_use]
     pub fn mixed_restitution(&self, other: &Material) -> Fx {
         self.restitution_mixing.max(other.restitution_mixing).mix(self.restitution, other.restitution)

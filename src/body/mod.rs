@@ -1,4 +1,4 @@
-//! Bodies, shapes and what they are made of, behind generational handles.
+//! Bodies, shapes, geometry, materials and filters, addressed by generational handles.
 
 mod arena;
 #[expect(clippy::module_inception, reason = "the file that holds `Body`")]

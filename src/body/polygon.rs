@@ -7,19 +7,19 @@ use serde::{Deserialize, Serialize};
 use super::error::GeometryError;
 use crate::math::{Angle, Fx, Length, Rot, Unit, Vec2};
 
-/// The largest number of vertices of a polygon.
+/// Largest number of vertices of a polygon.
 pub const POLYGON_VERTICES_MAX: usize = 8;
 
-/// A shape may reach this far from its centre on each axis of its own frame, radius included, in metres: turned
-/// by any angle it stays within 156 m. A vertex of one shape from that of another whose boxes are at most 15 m apart is
-/// three times that and 15 m away, which is within the range of [`Length`].
+/// Largest extent of a shape from its centre on each axis of its own frame, radius included, in metres. Rotated by any
+/// angle, the shape stays within 156 m. If the boxes of two shapes are at most 15 m apart, a vertex of one is at most
+/// three times that and 15 m from a vertex of the other, which is within the range of [`Length`].
 pub const SHAPE_EXTENT_MAX: Fx = crate::fx!(110);
 
-/// Edges shorter than this, in metres, have no reliable direction: about a thousand units of [`Length`].
+/// Smallest edge length in metres, about 2000 units of [`Length`]: a shorter edge has no reliable direction.
 const EDGE_MIN: Fx = crate::fx!(0.0005);
 
-/// A convex polygon, counter-clockwise, about its shape's own centre. With a radius its corners and edges are
-/// rounded outwards by it.
+/// A convex polygon, counter-clockwise, relative to its shape's centre. With a radius its corners and edges are rounded
+/// outwards.
 ///
 /// ```
 /// use lockstep2d::{body::Polygon, fx, math::Vec2};
@@ -38,12 +38,12 @@ const EDGE_MIN: Fx = crate::fx!(0.0005);
 pub struct Polygon {
     count: u8,
     vertices: [Vec2<Length>; POLYGON_VERTICES_MAX],
-    /// `normals[i]` points out of the edge from vertex `i` to the next one.
+    /// `normals[i]` is the outward normal of the edge from vertex `i` to the next vertex.
     normals: [Vec2<Unit>; POLYGON_VERTICES_MAX],
     radius: Length,
 }
 
-/// What is stored of a polygon. Normals follow from it, so that no file can hold wrong ones.
+/// Serialized form of a polygon. Normals are recomputed from it, so that no file can contain wrong normals.
 #[derive(Serialize, Deserialize)]
 struct Repr {
     vertices: Vec<Vec2<Length>>,
@@ -64,13 +64,15 @@ impl TryFrom<Repr> for Polygon {
 }
 
 impl Polygon {
-    /// A polygon from its vertices in counter-clockwise order, in metres from the shape's centre.
+    /// Creates a polygon from its vertices in counter-clockwise order, in metres from the shape's centre.
     ///
-    /// Leave out corners that hardly turn, and spikes that hardly open: below some 0.0001 rad the directions of their two
-    /// edges are hard to tell apart, and what lies beside one may be taken for beside the other, for some centimetres.
+    /// Avoid corners that are nearly flat and spikes that are nearly closed. Below an angle of about 0.0001 rad the
+    /// directions of the two edges are hard to distinguish, and a point beside one edge may be classified as beside the
+    /// other, over a range of some centimetres.
     ///
     /// # Errors
-    /// When the vertices are not 3 to 8, out of range, closer than 0.5 mm, clockwise, collinear or not convex.
+    /// If there are not 3 to 8 vertices, or vertices are out of range, closer than 0.5 mm, clockwise, collinear or not
+    /// convex.
     pub fn new(vertices: &[Vec2<Fx>]) -> Result<Self, GeometryError> {
         for &vertex in vertices {
             check_vertex(vertex)?;
@@ -79,10 +81,10 @@ impl Polygon {
         Self::from_vertices(&narrow)
     }
 
-    /// The convex hull of some points. Points inside it or on its edges are left out.
+    /// Creates the convex hull of points. Points inside it or on its edges are left out.
     ///
     /// # Errors
-    /// When a point is out of range, or the hull has no area or more than 8 vertices.
+    /// If a point is out of range, or the hull has no area or more than 8 vertices.
     pub fn hull(points: &[Vec2<Fx>]) -> Result<Self, GeometryError> {
         for &point in points {
             check_vertex(point)?;
@@ -93,10 +95,10 @@ impl Polygon {
         Self::from_vertices(&monotone_chain(&sorted))
     }
 
-    /// A rectangle about the shape's centre from its half extents, in metres.
+    /// Creates a rectangle centred on the shape's centre from its half extents, in metres.
     ///
     /// # Errors
-    /// When a half extent is out of range.
+    /// If a half extent is out of range.
     pub fn rectangle(half_width: Fx, half_height: Fx) -> Result<Self, GeometryError> {
         let (x, y) = (half_width, half_height);
         if x <= Fx::ZERO || y <= Fx::ZERO {
@@ -106,18 +108,18 @@ impl Polygon {
         Self::new(&[corner(-x, -y), corner(x, -y), corner(x, y), corner(-x, y)])
     }
 
-    /// A square about the shape's centre from its half extent, in metres.
+    /// Creates a square centred on the shape's centre from its half extent, in metres.
     ///
     /// # Errors
-    /// When the half extent is out of range.
+    /// If the half extent is out of range.
     pub fn square(half_extent: Fx) -> Result<Self, GeometryError> {
         Self::rectangle(half_extent, half_extent)
     }
 
-    /// A regular polygon with its first vertex to the right of the centre.
+    /// Creates a regular polygon with its first vertex to the right of the centre, from its circumradius in metres.
     ///
     /// # Errors
-    /// When there are not 3 to 8 vertices or the radius is out of range.
+    /// If there are not 3 to 8 vertices or the radius is out of range.
     pub fn regular(vertex_count: u32, radius: Fx) -> Result<Self, GeometryError> {
         if !(3..=8).contains(&vertex_count) {
             return Err(GeometryError::VertexCount { count: u64::from(vertex_count) });
@@ -132,19 +134,19 @@ impl Polygon {
         Self::new(&points)
     }
 
-    /// The polygon turned about the shape's centre.
+    /// Returns the polygon rotated about the shape's centre.
     ///
     /// # Errors
-    /// When a vertex leaves the range.
+    /// If a vertex leaves the range.
     pub fn rotated(&self, angle: Angle) -> Result<Self, GeometryError> {
         let rotation = Rot::from_angle(angle);
         self.mapped(|vertex| rotation.apply_wide(vertex))
     }
 
-    /// The polygon moved relative to the shape's centre.
+    /// Returns the polygon translated relative to the shape's centre, in metres.
     ///
     /// # Errors
-    /// When a vertex leaves the range.
+    /// If a vertex leaves the range.
     pub fn translated(&self, by: Vec2<Fx>) -> Result<Self, GeometryError> {
         self.mapped(|vertex| vertex + by)
     }
@@ -154,10 +156,10 @@ impl Polygon {
         Self::new(&points)?.rounded(self.radius.into())
     }
 
-    /// The polygon with its outline moved outwards by `radius` metres.
+    /// Returns the polygon with its outline moved outwards by `radius` metres.
     ///
     /// # Errors
-    /// When the radius is negative, or the outline reaches further than 110 m on some axis.
+    /// If the radius is negative, or the outline extends further than 110 m on some axis.
     pub fn rounded(mut self, radius: Fx) -> Result<Self, GeometryError> {
         let reach = self.vertices().iter().fold(Fx::ZERO, |reach, vertex| {
             let vertex = vertex.widen();
@@ -170,19 +172,19 @@ impl Polygon {
         Ok(self)
     }
 
-    /// The vertices, counter-clockwise.
+    /// Vertices, counter-clockwise.
     #[must_use]
     pub fn vertices(&self) -> &[Vec2<Length>] {
         &self.vertices[..usize::from(self.count)]
     }
 
-    /// The outward normals; `normals()[i]` belongs to the edge from vertex `i` to the next one.
+    /// Outward normals; `normals()[i]` belongs to the edge from vertex `i` to the next vertex.
     #[must_use]
     pub fn normals(&self) -> &[Vec2<Unit>] {
         &self.normals[..usize::from(self.count)]
     }
 
-    /// The rounding radius in metres.
+    /// Rounding radius in metres.
     #[must_use]
     pub const fn radius(&self) -> Length {
         self.radius
@@ -202,9 +204,9 @@ impl Polygon {
             if edge.widen().length() < EDGE_MIN {
                 return Err(GeometryError::ShortEdge { vertex: i as u64 });
             }
-            // Convex means: every other vertex lies strictly to the left of this edge. Testing all of them, not
-            // only the next corner, also refuses star shapes that wind around twice.
-            // Its own ends are told by their place: an outline that comes back to one of them is refused too.
+            // In a convex polygon every other vertex lies strictly to the left of this edge. Testing all vertices, not
+            // only the next one, also rejects star shapes that wind around twice. The two ends of the edge are excluded
+            // by index, so an outline that returns to the position of one of them is rejected too.
             let strictly_left = |(j, &other): (usize, &Vec2<Length>)| {
                 j == i || j == (i + 1) % count || wide_cross(edge, other - point) > 0
             };
@@ -235,7 +237,7 @@ fn wide_cross(a: Vec2<Length>, b: Vec2<Length>) -> i128 {
         - i128::from(a.y.to_bits()) * i128::from(b.x.to_bits())
 }
 
-/// Andrew's monotone chain: the hull of sorted, distinct points, counter-clockwise from the leftmost.
+/// Andrew's monotone chain: the hull of sorted, distinct points, counter-clockwise from the leftmost point.
 fn monotone_chain(sorted: &[Vec2<Length>]) -> Vec<Vec2<Length>> {
     let mut hull = half_hull(sorted.iter());
     let upper = half_hull(sorted.iter().rev());
@@ -302,16 +304,22 @@ mod tests {
             let Ok(hull) = Polygon::hull(&points) else { continue };
             built += 1;
             for &vertex in hull.vertices() {
-                assert!(points.iter().any(|point| point.narrow() == vertex), "made of the points");
+                assert!(
+                    points.iter().any(|point| point.narrow() == vertex),
+                    "a hull vertex should be an input point"
+                );
             }
             for (&vertex, &normal) in hull.vertices().iter().zip(hull.normals()) {
                 for point in &points {
                     let outside: Length = (point.narrow() - vertex).dot(normal);
-                    assert!(outside <= Length::from_bits(2), "{outside} outside");
+                    assert!(
+                        outside <= Length::from_bits(2),
+                        "expected no point outside of the hull, got one {outside} outside"
+                    );
                 }
             }
         }
-        assert!(built > 1500, "only {built} hulls");
+        assert!(built > 1500, "expected over 1500 hulls, got {built}");
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! How a body takes part in the simulation, apart from its pose, its mass and its shapes.
+//! Settings of a body apart from its pose, mass and shapes.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,54 +6,55 @@ use super::error::WorldError;
 use crate::fx;
 use crate::math::Fx;
 
-/// Directions in which a body does not move, however it is pushed.
+/// Locked degrees of freedom of a body.
 ///
-/// A locked rotation is exact: contacts and joints see a body that cannot turn. A locked axis is a velocity that is
-/// taken away in every sub-step: what pushes a body both along and across a locked axis settles over a few ticks.
+/// A locked rotation is exact: contacts and joints treat the body as unable to rotate. A locked axis is enforced by
+/// clearing the velocity along it in every sub-step, so a body that is pushed both along and across a locked axis
+/// settles over a few ticks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct MotionLocks {
-    /// Not along the world's x axis.
+    /// Locks motion along the world's x axis.
     pub x: bool,
-    /// Not along the world's y axis.
+    /// Locks motion along the world's y axis.
     pub y: bool,
-    /// Does not turn.
+    /// Locks rotation.
     pub rotation: bool,
 }
 
-/// What a body is swept against so that it does not pass through it within a tick.
+/// Bodies that a body is swept against, so that it does not tunnel through them within a tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Continuous {
-    /// Nothing: cheap, for debris.
+    /// None: cheap, for debris.
     Off,
-    /// Fixed bodies. Kinematic ones are left out: what they carry along is fast too, and must not be held back.
+    /// Fixed bodies. Kinematic bodies are excluded: the bodies that they carry are fast too, and must not be held back.
     #[default]
     Fixed,
     /// All bodies that are not bullets themselves.
     Bullet,
 }
 
-/// How a body takes part in the simulation. [`crate::world::World::set_body`] changes it later.
+/// Settings of a body. [`crate::world::World::set_body`] changes them later.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct BodySettings {
-    /// Rate at which its velocity decays, per second, 0 to 1000.
+    /// Decay rate of the velocity, per second, 0 to 1000.
     pub linear_damping: Fx,
-    /// Rate at which its angular velocity decays, per second, 0 to 1000.
+    /// Decay rate of the angular velocity, per second, 0 to 1000.
     pub angular_damping: Fx,
-    /// How much of the world's gravity it feels, ±1000.
+    /// Factor on the world's gravity, ±1000.
     pub gravity_scale: Fx,
-    /// In which directions it does not move.
+    /// Locked degrees of freedom.
     pub locks: MotionLocks,
-    /// What it is swept against.
+    /// Bodies that this body is swept against.
     pub continuous: Continuous,
-    /// Whether it may fall asleep.
+    /// Whether the body may fall asleep.
     pub may_sleep: bool,
-    /// Speed in m/s below which it grows sleepy, 0 to 400; also of the radius of gyration times twice the angular
-    /// velocity, which is about the speed of its outline.
+    /// Speed in m/s below which the body becomes ready to sleep, 0 to 400. It also limits twice the angular velocity
+    /// times the radius of gyration, which is about the speed of the body's outline.
     pub sleep_speed: Fx,
 }
 
 impl Default for BodySettings {
-    /// No damping and no locks; swept against fixed bodies; sleeps below 0.05 m/s.
+    /// No damping, no locks, swept against fixed bodies, sleeps below 0.05 m/s.
     fn default() -> Self {
         Self::new()
     }

@@ -13,21 +13,22 @@ use super::material::Material;
 use crate::fx;
 use crate::math::{Aabb, Angle, Fx, Vec2};
 
-/// Coordinates in the world stay within ± this many metres, so that sums of a few of them cannot overflow.
+/// Largest world coordinate in metres, on each axis and in both directions, so that sums of a few coordinates cannot
+/// overflow.
 pub const WORLD_EXTENT_MAX: Fx = fx!(1073741824);
 
-/// How far a shape of a body that can move, and an anchor of a joint, may be from the body's origin on each axis of
-/// its frame, in metres. The centre of mass is among them, so lever arms are at most 363 m long however the body is
-/// turned, and fit `Length`.
+/// Largest distance in metres, on each axis of the body's frame, of a shape of a movable body or of a joint anchor from
+/// the body's origin. The centre of mass is within the same range, so lever arms are at most 363 m long at any rotation
+/// of the body, and fit `Length`.
 pub const REACH_MAX: Fx = fx!(128);
 
-/// Most shapes of one body: changes to a body cost time for each of its shapes.
+/// Largest number of shapes of one body: the cost of a change to a body grows with its shapes.
 pub const SHAPES_PER_BODY_MAX: u32 = 4096;
 
 /// The largest density in kg/m².
 pub const DENSITY_MAX: Fx = fx!(1048576);
 
-/// What to attach to a body.
+/// Definition of a shape to attach to a body.
 ///
 /// ```
 /// use lockstep2d::{body::{Geometry, ShapeDef}, fx};
@@ -36,35 +37,36 @@ pub const DENSITY_MAX: Fx = fx!(1048576);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ShapeDef {
-    /// What it looks like.
+    /// Geometry about the shape's centre.
     pub geometry: Geometry,
-    /// The shape's centre, in metres from the body's origin, in the body's frame.
+    /// Shape's centre in the body's frame, in metres from the body's origin.
     pub offset: Vec2<Fx>,
-    /// Mass for each area, in kg/m².
+    /// Mass per area, in kg/m².
     pub density: Fx,
-    /// Friction and restitution.
+    /// Friction, restitution, rolling resistance and surface speed.
     pub material: Material,
-    /// What it collides with.
+    /// Collision filter.
     pub filter: Filter,
-    /// Lets things pass through in one direction: the direction in the body's frame, 90 degrees for up. `None` for an
-    /// ordinary shape.
+    /// Makes the shape a one-way platform: the direction in the body's frame in which other shapes pass through, 90
+    /// degrees for up. `None` for an ordinary shape.
     ///
-    /// What touches the shape is stopped if the contact's normal, from this shape to the other, is within 60 degrees
-    /// of the direction, and passes otherwise: from above it is a floor, from below and from the sides it is not
-    /// there. What passes goes on passing until it is apart or has come through but for a quarter of the world's
-    /// speculative distance, so what turns round half-way falls back. A pair that passes does not touch.
+    /// A shape that touches the platform is stopped if the contact normal, from the platform to the other shape, is
+    /// within 60 degrees of the direction, and passes otherwise: from above the platform is solid, from below and from
+    /// the sides it is not. A passing pair continues to pass until the shapes are apart, or until the other shape has
+    /// come through except for a quarter of the world's speculative distance, so a shape that turns round half-way
+    /// falls back. A pair that passes does not touch.
     pub one_way: Option<Angle>,
-    /// Whether it only notices what it overlaps, and touches nothing. Sensors do not notice each other, and sensors
-    /// of fixed bodies do not notice fixed bodies.
+    /// Whether the shape is a sensor, which detects overlaps and generates no contact response. Sensors do not detect
+    /// each other, and sensors of fixed bodies do not detect fixed bodies.
     pub sensor: bool,
-    /// Which events it takes part in.
+    /// Events in which the shape takes part.
     pub events: EventSwitches,
     /// Not used by the engine, but part of the state and its hash.
     pub user_data: u64,
 }
 
 impl ShapeDef {
-    /// A shape at the body's origin with density 1 and the default material and filter.
+    /// Creates a shape at the body's origin with density 1 and the default material and filter.
     #[must_use]
     pub fn new(geometry: impl Into<Geometry>) -> Self {
         ShapeDef {
@@ -115,7 +117,7 @@ impl ShapeDef {
         self
     }
 
-    /// Sets how fast the surface runs, clockwise, in m/s: see [`Material::surface_speed`].
+    /// Sets the surface speed, clockwise, in m/s: see [`Material::surface_speed`].
     #[must_use]
     pub fn surface_speed(mut self, speed: Fx) -> Self {
         self.material.surface_speed = speed;
@@ -129,21 +131,21 @@ impl ShapeDef {
         self
     }
 
-    /// Lets things pass through in one direction, given in the body's frame: see [`one_way`](Self::one_way).
+    /// Makes the shape a one-way platform, with the direction in the body's frame: see [`one_way`](Self::one_way).
     #[must_use]
     pub fn one_way(mut self, direction: Angle) -> Self {
         self.one_way = Some(direction);
         self
     }
 
-    /// Makes it notice what overlaps it without pushing.
+    /// Makes the shape a sensor, which detects overlaps without pushing.
     #[must_use]
     pub fn sensor(mut self) -> Self {
         self.sensor = true;
         self
     }
 
-    /// Sets which events it takes part in.
+    /// Sets the events in which the shape takes part.
     #[must_use]
     pub fn events(mut self, events: EventSwitches) -> Self {
         self.events = events;
@@ -157,7 +159,7 @@ impl ShapeDef {
         self
     }
 
-    /// Checks everything that does not depend on the body. `reach_max` does: see [`REACH_MAX`].
+    /// Validates the definition. `reach_max` depends on the kind of the body: see [`REACH_MAX`].
     pub(crate) fn validate(&self, reach_max: Fx) -> Result<(), WorldError> {
         let ShapeDef {
             geometry,
@@ -196,75 +198,76 @@ fn check_reach(geometry: &Geometry, offset: Vec2<Fx>, reach_max: Fx) -> Result<(
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Shape {
     pub(crate) body: BodyId,
-    /// Elsewhere, so that what steps change lies close together: saving it is a matter of memory.
+    /// Boxed, so that the fields that steps change lie close together: the cost of saving them is memory traffic.
     pub(crate) def: Box<ShapeDef>,
-    /// The box that the broad phase sees: it contains the shape and where it may get within the tick, with a
-    /// margin so that it seldom changes. It decides which pairs exist, so it is state.
+    /// Fat AABB used by the broad phase: the swept AABB of the shape over the tick, plus a margin so that it seldom
+    /// changes. It decides which pairs exist, so it is part of the state.
     pub(crate) fat: Aabb,
 }
 
 impl Shape {
-    /// The body it is attached to.
+    /// Body that the shape is attached to.
     #[must_use]
     pub const fn body(&self) -> BodyId {
         self.body
     }
 
-    /// What it was defined as, with all later changes.
+    /// Definition of the shape, with all later changes.
     #[must_use]
     pub const fn def(&self) -> &ShapeDef {
         &self.def
     }
 
-    /// Its geometry about its own centre.
+    /// Geometry about the shape's centre.
     #[must_use]
     pub const fn geometry(&self) -> &Geometry {
         &self.def.geometry
     }
 
-    /// Its centre in the body's frame, in metres.
+    /// Centre of the shape in the body's frame, in metres.
     #[must_use]
     pub const fn offset(&self) -> Vec2<Fx> {
         self.def.offset
     }
 
-    /// Its density in kg/m².
+    /// Density in kg/m².
     #[must_use]
     pub const fn density(&self) -> Fx {
         self.def.density
     }
 
-    /// Its surface.
+    /// Surface material.
     #[must_use]
     pub const fn material(&self) -> &Material {
         &self.def.material
     }
 
-    /// What it collides with.
+    /// Collision filter.
     #[must_use]
     pub const fn filter(&self) -> &Filter {
         &self.def.filter
     }
 
-    /// The direction in the body's frame into which things pass through, of a one-way shape.
+    /// Direction in the body's frame in which other shapes pass through a one-way platform; `None` for an ordinary
+    /// shape.
     #[must_use]
     pub const fn one_way(&self) -> Option<Angle> {
         self.def.one_way
     }
 
-    /// Whether it only notices what overlaps it.
+    /// Whether the shape is a sensor.
     #[must_use]
     pub const fn is_sensor(&self) -> bool {
         self.def.sensor
     }
 
-    /// The game's own number.
+    /// User data, set by the game.
     #[must_use]
     pub const fn user_data(&self) -> u64 {
         self.def.user_data
     }
 
-    /// The box that the broad phase sees, in world coordinates.
+    /// Fat AABB used by the broad phase, in world coordinates.
     #[must_use]
     pub const fn fat_aabb(&self) -> Aabb {
         self.fat

@@ -1,4 +1,4 @@
-//! The shapes of a body: one or two lie in the body itself, which is where every step looks for them.
+//! Shape list of a body. Up to two handles are stored inline in the body, where every step reads them.
 
 use alloc::vec::Vec;
 
@@ -7,15 +7,16 @@ use smallvec::SmallVec;
 
 use super::arena::ShapeId;
 
-/// In order of attachment.
+/// Shapes in order of attachment.
 pub(crate) type ShapeList = SmallVec<[ShapeId; 2]>;
 
-/// Writes them as a sequence.
+/// Serializes the list as a sequence.
 pub(super) fn serialize<S: Serializer>(shapes: &ShapeList, to: S) -> Result<S::Ok, S::Error> {
     shapes.as_slice().serialize(to)
 }
 
-/// Reads them as a `Vec`, which makes room for what comes and not for what a stranger's file announces.
+/// Deserializes through a `Vec`, which allocates for the elements that arrive, not for the length that an untrusted
+/// file announces.
 pub(super) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<ShapeList, D::Error> {
     Vec::deserialize(from).map(|shapes| ShapeList::from_slice(&shapes))
 }

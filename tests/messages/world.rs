@@ -23,7 +23,10 @@ fn geometry() {
             GeometryError::ChainLength { points: 1 },
             "a chain has 2 points or more, 3 if it is closed, and at most 4096 links: not 1 points",
         ),
-        (GeometryError::MaterialCount { links: 5, materials: 2 }, "2 materials for the 5 links of a chain"),
+        (
+            GeometryError::MaterialCount { links: 5, materials: 2 },
+            "a chain of 5 links takes no materials, one, or one per link: not 2",
+        ),
         (
             GeometryError::SizeOutOfRange { value: fx!(-1.5) },
             "a size or coordinate of -1.5 m is out of range",
@@ -37,13 +40,13 @@ fn what_a_handle_names() {
     let shape: ShapeId = codec::decode(&SLOT_7).expect("two numbers");
     let joint: JointId = codec::decode(&SLOT_7).expect("two numbers");
     says([
-        (WorldError::StaleBody(body), "no body 7v2"),
-        (WorldError::StaleShape(shape), "no shape 7v2"),
-        (WorldError::StaleJoint(joint), "no joint 7v2"),
-        (WorldError::JointToItself(body), "a joint between body 7v2 and itself"),
+        (WorldError::StaleBody(body), "body 7v2 does not exist"),
+        (WorldError::StaleShape(shape), "shape 7v2 does not exist"),
+        (WorldError::StaleJoint(joint), "joint 7v2 does not exist"),
+        (WorldError::JointToItself(body), "a joint cannot connect body 7v2 to itself"),
         (WorldError::JointWithoutDynamicBody, "neither body of the joint is dynamic"),
-        (WorldError::JointOfOtherBodies(joint), "joint 7v2 is between other bodies"),
-        (WorldError::WrongKind(body), "body 7v2 is not of a kind that can do this"),
+        (WorldError::JointOfOtherBodies(joint), "the bodies of joint 7v2 cannot be changed"),
+        (WorldError::WrongKind(body), "the kind of body 7v2 does not allow this change"),
     ]);
 }
 
@@ -56,7 +59,10 @@ fn values_out_of_range() {
             "a polygon has 3 to 8 vertices, not 2",
         ),
         (WorldError::PositionOutOfRange { value }, "position 2.25 m is beyond 2^30 m"),
-        (WorldError::OffsetOutOfRange { value }, "a shape or anchor reaches 2.25 m from its body's origin"),
+        (
+            WorldError::OffsetOutOfRange { value },
+            "a shape or anchor at 2.25 m from its body's origin is out of range",
+        ),
         (WorldError::SpeedOutOfRange { value }, "speed 2.25 is above the world's limit"),
         (WorldError::DensityOutOfRange { value }, "density 2.25 kg/m² is out of range"),
         (

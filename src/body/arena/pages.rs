@@ -1,8 +1,8 @@
-//! Arenas in pages that snapshots share: a page is copied once and then shared by all snapshots, until something in
-//! it changes. As long as nothing in an arena does, snapshots share all of it at once.
+//! Arena pages that snapshots share. A page is copied once and then shared by all snapshots until a slot in it changes.
+//! While no slot of an arena changes, snapshots share the whole arena through one pointer.
 //!
-//! Values are copied without what every step changes (velocities, impulses), which snapshots keep elsewhere. So a
-//! world in which nothing comes, goes or is redefined copies no page at all.
+//! A copied value leaves out the fields that every step changes (velocities, impulses); snapshots store those
+//! separately. A world in which no value is inserted, removed or redefined therefore copies no page at all.
 
 use alloc::boxed::Box;
 use alloc::sync::Arc;
@@ -14,17 +14,17 @@ use serde::Serialize;
 use super::{Arena, Slot};
 use crate::hash::StateHash;
 
-/// Slots in a page: few, so that a change copies little, but enough that sharing costs nothing.
+/// Slots per page: few, so that a change copies little, but enough to make the overhead of sharing negligible.
 const PAGE_SLOTS: usize = 32;
 
-/// Copies of some slots, and their digest.
+/// Copies of the slots of one page, and their digest.
 #[derive(Debug, PartialEq)]
 struct Page<T> {
     slots: Vec<Slot<T>>,
     digest: StateHash,
 }
 
-/// A copy of the free list and the number of slots that are used up, and their digest.
+/// Copy of the free list and of the number of retired slots, and their digest.
 #[derive(Debug, Default, PartialEq)]
 struct Vacancies {
     free: Vec<u32>,
@@ -32,25 +32,25 @@ struct Vacancies {
     digest: StateHash,
 }
 
-/// A copy of a whole arena, as far as snapshots share it.
+/// Copy of a whole arena, without the fields that snapshots do not share.
 #[derive(Debug, PartialEq)]
 struct Whole<T> {
     pages: Vec<Arc<Page<T>>>,
     vacancies: Arc<Vacancies>,
-    /// The digests of the vacancies and of each page, so that nobody has to go to every page for them.
+    /// Digests of the vacancies and of each page, stored together so that reading them does not visit every page.
     digests: Vec<StateHash>,
 }
 
-/// The copies that are still as the arena is, where there are any. A cache: it is no part of the state.
+/// Copies that still equal the arena, where such copies exist. A cache, not part of the state.
 #[derive(Debug)]
 pub(super) struct Kept<T> {
     pages: Vec<OnceBox<Arc<Page<T>>>>,
     vacancies: OnceBox<Arc<Vacancies>>,
-    /// Of all of these.
+    /// Copy of the whole arena, assembled from `pages` and `vacancies`.
     whole: OnceBox<Arc<Whole<T>>>,
-    /// How often something has changed of what pages are copies of.
+    /// Number of changes to values that pages copy.
     revision: u64,
-    /// How often the arena has returned to what it was.
+    /// Number of times the arena was restored from a shared copy.
     returns: u64,
 }
 
@@ -73,7 +73,7 @@ impl<T> Clone for Kept<T> {
     }
 }
 
-/// Caches do not make arenas different.
+/// Always equal: caches do not make arenas different.
 impl<T> PartialEq for Kept<T> {
     fn eq(&self, _: &Self) -> bool {
         true
@@ -81,7 +81,7 @@ impl<T> PartialEq for Kept<T> {
 }
 
 impl<T> Kept<T> {
-    /// Forgets the copy of the page that a slot is in.
+    /// Invalidates the copy of the page that contains a slot.
     pub(super) fn changed(&mut self, slot: u32) {
         self.revision += 1;
         self.whole = OnceBox::new();
@@ -90,20 +90,21 @@ impl<T> Kept<T> {
         }
     }
 
-    /// Forgets the copies of the free list and of the page that a slot is in. There may be one slot more than before.
+    /// Invalidates the copies of the free list and of the page that contains a slot. `slot_count` may have grown by
+    /// one.
     pub(super) fn came_or_went(&mut self, slot: u32, slot_count: usize) {
         self.fit(slot_count);
         self.changed(slot);
         self.vacancies = OnceBox::new();
     }
 
-    /// Has room for as many slots.
+    /// Resizes the page cache for a number of slots.
     fn fit(&mut self, slot_count: usize) {
         self.pages.resize_with(slot_count.div_ceil(PAGE_SLOTS), OnceBox::new);
     }
 }
 
-/// An arena as a snapshot has it: without what every step changes.
+/// Arena as stored in a snapshot: without the fields that every step changes.
 #[derive(Debug, PartialEq)]
 pub(crate) struct SharedArena<T>(Arc<Whole<T>>);
 
@@ -121,12 +122,12 @@ impl<T> Clone for SharedArena<T> {
 }
 
 impl<T> SharedArena<T> {
-    /// The digests of the free list and of each page.
+    /// Digests of the free list and of each page.
     pub(crate) fn digests(&self) -> impl Iterator<Item = StateHash> {
         self.0.digests.iter().copied()
     }
 
-    /// How many pages are the very same as those of another snapshot.
+    /// Number of pages that are shared, by pointer, with another snapshot.
     #[cfg(test)]
     pub(crate) fn shared_with(&self, other: &Self) -> usize {
         self.0.pages.iter().zip(&other.0.pages).filter(|(a, b)| Arc::ptr_eq(a, b)).count()
@@ -134,30 +135,30 @@ impl<T> SharedArena<T> {
 }
 
 impl<T, H> Arena<T, H> {
-    /// A number that is another one after a value has come, gone or been redefined: what every step changes does not
-    /// count. A cache that was made at the same revision still holds.
+    /// Revision number, which changes when a value is inserted, removed or redefined. Fields that every step changes do
+    /// not count. A cache built at the same revision is still valid.
     pub(crate) fn revision(&self) -> u64 {
         self.kept.revision
     }
 
-    /// A number that is another one after what every step changes has been restored.
+    /// Number of restores. It changes whenever the fields that every step changes have been restored.
     pub(crate) fn returns(&self) -> u64 {
         self.kept.returns
     }
 
-    /// Makes room to keep copies of all pages, after the arena has been decoded.
+    /// Sizes the page cache after the arena has been decoded.
     pub(crate) fn keep_pages(&mut self) {
         self.kept.fit(self.slots.len());
     }
 
-    /// Shares the arena: only pages that have changed since they were last shared are copied, value by value. If none has,
-    /// that costs nothing.
+    /// Shares the arena. Copies, value by value, only the pages that have changed since they were last shared; costs
+    /// nothing if none has.
     pub(crate) fn share_into(&self, shared: &mut SharedArena<T>, copy: impl Fn(&T) -> T)
     where
         T: PartialEq + Serialize,
     {
         let whole = self.kept.whole.get_or_init(|| Box::new(Arc::new(self.whole(&copy))));
-        debug_assert!(whole.is_copy_of(self, &copy), "a change that the arena was not told about");
+        debug_assert!(whole.is_copy_of(self, &copy), "a value changed without invalidating its page");
         if !Arc::ptr_eq(&shared.0, whole) {
             shared.0 = whole.clone();
         }
@@ -182,8 +183,9 @@ impl<T, H> Arena<T, H> {
         Whole { pages, vacancies, digests }
     }
 
-    /// Returns to a shared arena, and calls `changed` with every slot that may now be another one, or that is gone. The
-    /// values there are as they were copied; what every step changes is to be restored in all values.
+    /// Restores the arena from a shared copy, and calls `changed` with every slot that was removed or whose value may
+    /// differ. Restored values are as they were copied; the caller restores the fields that every step changes, in all
+    /// values.
     pub(crate) fn restore(&mut self, shared: &SharedArena<T>, mut changed: impl FnMut(u32))
     where
         T: Clone,

@@ -1,6 +1,6 @@
-//! Area, centre and radius of gyration of a rounded convex polygon.
+//! Area, centre of mass and radius of gyration of a rounded convex polygon.
 //!
-//! For the core about the origin, with `c_i = v_i x v_(i+1)` (D. Eberly, "Polyhedral Mass Properties", 2D
+//! For the core polygon about the origin, with `c_i = v_i x v_(i+1)` (D. Eberly, "Polyhedral Mass Properties", 2D
 //! case):
 //!
 //! ```text
@@ -9,9 +9,9 @@
 //! A (k² + c.c) = 1/6 sum c_i (v_i.v_i + v_i.v_(i+1) + v_(i+1).v_(i+1)) / 2
 //! ```
 //!
-//! A radius `r` adds a rectangle `r` wide to every edge and a sector to every vertex. With `v_i` about the
-//! core's centre, `l_i` the length of the edge from `v_i` to the next vertex, `a_i = r theta_i` the arc about
-//! `v_i`, and `l = sum l_i`, `a = sum a_i`:
+//! A rounding radius `r` adds a rectangle of width `r` to every edge and a circular sector to every vertex. Let `v_i`
+//! be relative to the core's centre, `l_i` the length of the edge from `v_i` to the next vertex, `a_i = r theta_i` the
+//! arc about `v_i`, `l = sum l_i` and `a = sum a_i`:
 //!
 //! ```text
 //! 2 A' = 2 A + r (2 l + a)
@@ -22,32 +22,32 @@
 //! k'²  = J / A' - |m / A'|²
 //! ```
 //!
-//! The first line is J. Steiner's formula (1840). Neither normals nor bisectors are left: the first moment of a
-//! rectangle has `r² l_i n_i / 2` across its edge, where `l_i n_i` is the edge turned by a quarter, and that of
-//! a sector about its vertex is `r³ (n_i - n_(i-1)) / 3` turned by a quarter. Both cancel round the outline. The
-//! mixed terms of the second moment are `r² c_i` and `2/3 r³ v_i x (n_i - n_(i-1))`, with sums `2 r² A` and
-//! `2/3 r³ l`; the rectangles' own `1/3 r³ l` makes the latter `r³ l`.
+//! The first line is J. Steiner's formula (1840). No normals or bisectors remain: the first moment of a rectangle
+//! has `r² l_i n_i / 2` across its edge, where `l_i n_i` is the edge rotated by a quarter turn, and that of a sector
+//! about its vertex is `r³ (n_i - n_(i-1)) / 3` rotated by a quarter turn. Both cancel around the outline. The mixed
+//! terms of the second moment are `r² c_i` and `2/3 r³ v_i x (n_i - n_(i-1))`, with sums `2 r² A` and `2/3 r³ l`;
+//! the rectangles' own `1/3 r³ l` completes the latter to `r³ l`.
 
 use crate::math::{Angle, Fx, Length, Vec2, div_round, fx_mul, round_shift_wide};
 
-/// A figure of uniform density.
+/// Moments of a region of uniform density.
 ///
-/// No sum overflows: a figure reaches 110 m, so `2 A` is below 2^17 m², `|v|` below 2^9 m and `2 J` below
+/// No sum overflows: a region extends at most 110 m, so `2 A` is below 2^17 m², `|v|` below 2^9 m and `2 J` below
 /// 2^30 m⁴, with 44, 32 and 88 fraction bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Figure {
     /// Twice the area in m², with 44 fraction bits.
     doubled_area: i128,
-    /// In metres, with 32 fraction bits.
+    /// Centre of mass in metres, with 32 fraction bits.
     centre: (i128, i128),
-    /// About the centre, in m², with 44 fraction bits.
+    /// Squared radius of gyration about the centre, in m², with 44 fraction bits.
     gyration_squared: i128,
 }
 
 impl Figure {
-    /// A polygon, counter-clockwise. Sums are exact, each quotient is rounded once.
+    /// Moments of a counter-clockwise polygon. Sums are exact; each quotient is rounded once.
     pub(super) fn of_polygon(vertices: &[Vec2<Length>]) -> Figure {
-        // 22 fraction bits in a coordinate, so 44 in the area, 66 and 88 in the moments.
+        // Coordinates have 22 fraction bits, so the area has 44 and the moments have 66 and 88.
         let (mut area, mut first_x, mut first_y, mut second) = (0i128, 0i128, 0i128, 0i128);
         for (i, start) in vertices.iter().enumerate() {
             let end = vertices[(i + 1) % vertices.len()];
@@ -66,11 +66,11 @@ impl Figure {
         Figure { doubled_area: area, centre: (x, y), gyration_squared }
     }
 
-    /// This polygon with its outline moved outwards by `radius`; bit for bit the same without one.
+    /// Returns the moments with the outline moved outwards by `radius`; bit for bit unchanged if `radius` is 0.
     pub(super) fn rounded(self, vertices: &[Vec2<Length>], radius: Length) -> Figure {
         let r = i128::from(Fx::from(radius).to_bits());
         let (mut edges, mut arcs) = (0i128, 0i128);
-        // 64 and 76 fraction bits: lengths have 32, squares of lengths 44.
+        // First moments have 64 fraction bits and the second 76: lengths have 32, squares of lengths 44.
         let (mut first_x, mut first_y, mut second) = (0i128, 0i128, 0i128);
         for (i, &vertex) in vertices.iter().enumerate() {
             let before = vertices[(i + vertices.len() - 1) % vertices.len()];
@@ -102,17 +102,17 @@ impl Figure {
         }
     }
 
-    /// The area in m², with 32 fraction bits, rounded down.
+    /// Area in m², with 32 fraction bits, rounded down.
     pub(super) fn area(&self) -> i128 {
         self.doubled_area >> 13
     }
 
-    /// The centre of mass in metres, with 32 fraction bits.
+    /// Centre of mass in metres, with 32 fraction bits.
     pub(super) fn centre(&self) -> (i128, i128) {
         self.centre
     }
 
-    /// The square of the radius of gyration about the centre, in m², with 44 fraction bits.
+    /// Squared radius of gyration about the centre, in m², with 44 fraction bits.
     pub(super) fn gyration_squared(&self) -> i128 {
         self.gyration_squared
     }
@@ -123,10 +123,10 @@ impl Figure {
     }
 }
 
-/// The angle from one edge to the next: that between their normals. All of them make one turn.
+/// Angle from one edge to the next, which equals the angle between their normals. Over an outline they sum to one turn.
 fn turn_between(before: Vec2<Length>, after: Vec2<Length>) -> Angle {
     let product = |a: Length, b: Length| i64::from(a.to_bits()) * i64::from(b.to_bits());
-    // Exact: edges are below 220 m on each axis, so a sum of two products has at most 61 bits.
+    // Exact: edges are shorter than 220 m on each axis, so a sum of two products has at most 61 bits.
     let dot = product(before.x, after.x) + product(before.y, after.y);
     let cross = product(before.x, after.y) - product(before.y, after.x);
     Angle::of(Vec2::new(Fx::from_bits(dot), Fx::from_bits(cross)))

@@ -1,5 +1,5 @@
-//! Against textbook formulas in exact rational numbers, against the same outline as a polygon of thousands of
-//! vertices, and against counted grid points.
+//! Tests the moments against textbook formulas in exact rational numbers, against a polygon of thousands of vertices
+//! along the same outline, and against counted grid points.
 
 use alloc::vec::Vec;
 
@@ -15,22 +15,22 @@ fn figure(polygon: &Polygon) -> Figure {
     Figure::of_polygon(polygon.vertices()).rounded(polygon.vertices(), polygon.radius())
 }
 
-/// Whether two numbers are within `1 / parts` of each other.
+/// Asserts that two numbers are within `1 / parts` of each other.
 fn close(actual: i128, expected: i128, parts: i128) {
     let error = (actual - expected).abs();
-    assert!(error * parts <= expected.abs(), "{actual} is not {expected} to 1 in {parts}");
+    assert!(error * parts <= expected.abs(), "expected {expected} to 1 in {parts}, got {actual}");
 }
 
 fn near(actual: (i128, i128), expected: (i128, i128), tolerance: Fx) {
     let error = (actual.0 - expected.0).abs().max((actual.1 - expected.1).abs());
-    assert!(error <= i128::from(tolerance.to_bits()), "{actual:?} is not {expected:?}");
+    assert!(error <= i128::from(tolerance.to_bits()), "expected {expected:?}, got {actual:?}");
 }
 
 fn vertex(x: Fx, y: Fx) -> Vec2<Fx> {
     Vec2::new(x, y)
 }
 
-/// A hull of random points, rounded.
+/// The rounded convex hull of random points.
 fn random_rounded_hull(rng: &mut Rng, extent: Fx) -> Option<Polygon> {
     let points: Vec<_> = (0..rng.below(6) + 3)
         .map(|_| vertex(rng.range(-extent, extent), rng.range(-extent, extent)))
@@ -38,13 +38,13 @@ fn random_rounded_hull(rng: &mut Rng, extent: Fx) -> Option<Polygon> {
     Polygon::hull(&points).ok()?.rounded(rng.range(fx!(0.002), extent)).ok()
 }
 
-/// Twice the area and the square of the radius of gyration of a rectangle of half extents `a` and `b`, rounded
-/// by `r`, each in units of `unit`. The rectangle, four rectangles on its sides, and four quarter discs.
+/// Twice the area and the squared radius of gyration of a rectangle with half extents `a` and `b`, rounded by `r`, all
+/// in units of `unit`. The sum of the rectangle, four rectangles on its sides, and four quarter discs.
 fn rounded_rectangle(a: i128, b: i128, r: i128, unit: Fx) -> (i128, i128) {
-    /// A convergent of pi, right to 17 digits.
+    /// A convergent of pi, correct to 17 digits.
     const PI_NUMERATOR: i128 = 1_068_966_896;
     const PI_DENOMINATOR: i128 = 340_262_731;
-    // Everything times 12 and the denominator of pi.
+    // Everything is multiplied by 12 and by the denominator of pi.
     let (over, pi) = (12 * PI_DENOMINATOR, 12 * PI_NUMERATOR);
     let area = over * (4 * a * b + 4 * (a + b) * r) + pi * r * r;
     let core = over / 3 * 4 * a * b * (a * a + b * b);
@@ -63,7 +63,7 @@ fn a_rounded_rectangle_is_that_of_the_formula() {
     for (a, b, r) in
         [(1, 1, 1), (2, 100, 1), (40, 1, 4), (1, 1, 50), (300, 200, 3), (700, 10, 100), (800, 800, 80)]
     {
-        // An eighth of a metre, and 2 mm or so: exact in `Length`.
+        // An eighth of a metre, and about 2 mm: both exact in `Length`.
         for unit in [fx!(0.125), fx!(0.001953125)] {
             let of = |n: i128| Fx::from_bits(unit.to_bits() * i64::try_from(n).unwrap());
             let polygon = Polygon::rectangle(of(a), of(b)).unwrap().rounded(of(r)).unwrap();
@@ -91,7 +91,7 @@ fn a_triangle_in_a_large_radius_is_nearly_a_disc() {
     let points = [vertex(fx!(0), fx!(0)), vertex(fx!(0.001), fx!(0)), vertex(fx!(0), fx!(0.001))];
     let triangle = Polygon::new(&points).unwrap().rounded(fx!(100)).unwrap();
     let actual = figure(&triangle);
-    // The perimeter is 3.4 mm, so the area is larger by 0.34 m² of 31416 m².
+    // The perimeter is 3.4 mm, so the area exceeds that of the disc by 0.34 m² of 31416 m².
     close(actual.doubled_area, i128::from(PI.to_bits() * 20000) << 12, 50_000);
     close(actual.gyration_squared, 5000 * ONE, 50_000);
     near(actual.centre, (0, 0), fx!(0.001));
@@ -110,7 +110,7 @@ fn the_arcs_of_all_corners_make_one_turn() {
                 i64::from(turn_between(vertices[i] - before, after - vertices[i]).to_bits())
             })
             .sum();
-        assert!((turns - (1 << 32)).abs() <= 8, "{turns}");
+        assert!((turns - (1 << 32)).abs() <= 8, "the turns should sum to 2^32, not {turns}");
     }
 }
 
@@ -128,13 +128,14 @@ fn symmetric_shapes_keep_their_centre() {
         assert_eq!(moved.doubled_area, figure(&square).doubled_area);
         assert_eq!(moved.gyration_squared, figure(&square).gyration_squared);
     }
-    // About the diagonal.
+    // Symmetric about the diagonal.
     let points = [vertex(fx!(0), fx!(0)), vertex(fx!(2), fx!(0)), vertex(fx!(0), fx!(2))];
     let (x, y) = figure(&Polygon::new(&points).unwrap().rounded(fx!(0.3)).unwrap()).centre;
-    assert!((x - y).abs() <= 1, "{x} {y}");
+    assert!((x - y).abs() <= 1, "the coordinates of the centre should be equal: {x} {y}");
 }
 
-/// The outline with 4096 chords to a turn, whose sectors are short by 4e-7. Its points are rounded to 2.4e-7 m.
+/// The outline with 4096 chords per turn. The relative error of its sectors is 4e-7, and its points are rounded to
+/// 2.4e-7 m.
 fn fine_outline(polygon: &Polygon) -> Vec<Vec2<Length>> {
     let (vertices, normals) = (polygon.vertices(), polygon.normals());
     let count = vertices.len();
@@ -166,7 +167,7 @@ fn a_polygon_along_the_outline_has_the_same_mass() {
         close(actual.gyration_squared, expected.gyration_squared, 1_000_000);
         near(actual.centre, expected.centre, fx_mul(extent, fx!(0.000001)));
     }
-    assert!(compared > 250, "only {compared} hulls");
+    assert!(compared > 250, "expected over 250 hulls, got {compared}");
 }
 
 /// Whether a point is within the radius of the polygon. All in raw units of `Length`.
@@ -195,7 +196,7 @@ fn counted_grid_points_agree() {
     for _ in 0..16 {
         let Some(polygon) = random_rounded_hull(&mut rng, fx!(4)) else { continue };
         compared += 1;
-        // A cell of 1/64 m, and -10 m to 10 m.
+        // Cells of 1/64 m, from -10 m to 10 m.
         const CELL: i128 = 1 << 16;
         let (mut count, mut first_x, mut first_y, mut second) = (0i128, 0i128, 0i128, 0i128);
         for (x, y) in (-640..640).flat_map(|x| (-640..640).map(move |y| (x, y))) {
@@ -213,5 +214,5 @@ fn counted_grid_points_agree() {
         let squared = div_round(second << 32, count) - ((centre.0 * centre.0 + centre.1 * centre.1) >> 20);
         close(actual.gyration_squared, squared, 1000);
     }
-    assert!(compared > 8, "only {compared} hulls");
+    assert!(compared > 8, "expected over 8 hulls, got {compared}");
 }
