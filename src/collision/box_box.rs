@@ -1,5 +1,6 @@
-//! Two boxes, eight pairs at a time: what most shapes of most worlds are. Each pair gets the manifold that
-//! [`hull_hull`](super::hull_hull) finds, bit by bit; the few that are near at two corners are left to that.
+//! Box against box, eight pairs at a time with SIMD: in most worlds most shapes are boxes. Each pair gets bit for bit
+//! the manifold that [`hull_hull`](super::hull_hull) computes. The few pairs whose nearest features are two corners are
+//! left to the scalar path.
 
 mod kernel;
 #[cfg(test)]
@@ -15,47 +16,46 @@ use crate::fx;
 use crate::lanes::{Ints, Machine, Quad, WIDTH, prefetch};
 use crate::math::{Fx, Length, Rot, Step, Unit, Vec2};
 
-/// Furthest corner of a box that lanes take, radius included, in metres from its centre.
+/// Largest distance in metres of a box corner from the box centre, radius included, for the SIMD path.
 pub(super) const BOX_REACH_MAX: Length = Length::lit("3");
 
-/// Furthest apart that two centres may be along either axis, in metres. Then no corner of a pair is more than
-/// `5 sqrt(2) + 2 * 3 < 14` m from a corner of the other: that has room in a `Step`, which goes to 16.
+/// Largest distance in metres of the two centres along either axis for the SIMD path. No corner of one box is then more
+/// than `5 sqrt(2) + 2 * 3 < 14` m from a corner of the other, which fits a `Step` (16 m).
 const DISTANCE_MAX: Fx = fx!(5);
 
-/// Largest margin of a pair that lanes take, in metres.
+/// Largest speculative margin in metres of a pair for the SIMD path.
 const MARGIN_MAX: Length = Length::lit("2");
 
-/// The boxes of a world that lanes take, by the slots of their shapes: half a cache line for each, where a
-/// [`PosedShape`] has four.
+/// Compact copies of the boxes that the SIMD path takes, indexed by shape slot. Each copy takes half a cache line,
+/// where a [`PosedShape`] takes four lines.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SmallBoxes {
-    /// In world axes, by slot; zeros for what is no such box.
+    /// Faces in world axes, by slot; zeros for a shape that is not a small box.
     turned: Vec<Turned>,
-    /// The same in the frames of their bodies, of boxes about whose centres those turn.
+    /// Faces in the frame of the body, by slot, for boxes whose centre is their body's centre of mass.
     centred: Vec<Option<Faces>>,
 }
 
-/// The first two vertices of a box, and its first two normals: the others are opposite to them. Aligned, so that none lies
-/// in two cache lines.
+/// First two vertices and normals of a box; the other two are their opposites. Aligned, so that no entry straddles two
+/// cache lines.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(align(32))]
 struct Turned([Quad; 2]);
 
 impl SmallBoxes {
-    /// Makes room for so many slots.
+    /// Resizes the arrays for a number of slots.
     pub(crate) fn resize(&mut self, slot_count: usize) {
         self.turned.resize(slot_count, Turned::default());
         self.centred.resize(slot_count, None);
     }
 
-    /// Takes up a shape that is posed for the first time, or has become another one. `centred` is
-    /// [`PosedShape::as_centred_box`].
+    /// Stores a shape that is posed for the first time or was redefined. `centred` is [`PosedShape::as_centred_box`].
     pub(crate) fn place(&mut self, slot: u32, shape: &PosedShape, centred: Option<Faces>) {
         self.centred[slot as usize] = centred;
         self.renew(slot, shape);
     }
 
-    /// Takes up a shape that has been turned.
+    /// Updates a shape that has been rotated.
     #[inline]
     pub(crate) fn renew(&mut self, slot: u32, shape: &PosedShape) {
         if let Some(faces) = shape.as_small_box() {
@@ -63,7 +63,7 @@ impl SmallBoxes {
         }
     }
 
-    /// Turns a box whose body turns about its centre, and returns it. Nothing happens to any other shape.
+    /// Rotates a centred box and returns its faces. Returns `None` for any other shape, which stays unchanged.
     #[inline(always)]
     pub(crate) fn turn(&mut self, slot: u32, rotation: &impl Deref<Target = Rot>) -> Option<Faces> {
         let faces = self.centred[slot as usize].as_ref()?.rotated(**rotation);
@@ -79,56 +79,56 @@ impl SmallBoxes {
         ]);
     }
 
-    /// Asks for a box that will soon be looked at.
+    /// Prefetches a box.
     #[inline]
     pub(crate) fn prefetch(&self, slot: u32) {
         prefetch(&self.turned[slot as usize]);
     }
 }
 
-/// Pairs of small boxes, and what has been found of them.
+/// Pairs of small boxes, and their manifolds.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct BoxPairs {
     count: usize,
     batches: Vec<Batch>,
 }
 
-/// Up to eight pairs. Lanes that are left over have the boxes of the first pair.
+/// Up to eight pairs. Unused lanes contain the boxes of the first pair.
 #[derive(Clone, Debug)]
 struct Batch {
-    /// The slots of the boxes of each pair.
+    /// Slots of the two boxes of each pair.
     at: [[u32; WIDTH]; 2],
-    /// From the centres of A to those of B.
+    /// Vectors from the centres of A to those of B.
     d: [Ints<WIDTH>; 2],
     radius: [Ints<WIDTH>; 2],
     margin: Ints<WIDTH>,
     found: Found,
 }
 
-/// The manifolds of eight pairs.
+/// Manifolds of eight pairs.
 #[derive(Clone, Debug)]
 struct Found {
-    /// A bit for each pair that is left to others.
+    /// Bit mask of the pairs that are left to the scalar path.
     open: u32,
     normal: [Ints<WIDTH>; 2],
-    /// How many points each has.
+    /// Number of points of each pair.
     count: Ints<WIDTH>,
-    /// What a pair does not have is zero.
+    /// Contact points. Points beyond a pair's count are zero.
     points: [Points; 2],
 }
 
-/// A point of each pair: anchor, separation and feature.
+/// One contact point of each pair: anchor (x, y), separation and feature.
 #[derive(Clone, Debug)]
 struct Points([Ints<WIDTH>; 4]);
 
 impl BoxPairs {
-    /// Forgets all pairs.
+    /// Removes all pairs.
     pub(crate) fn clear(&mut self) {
         self.count = 0;
     }
 
-    /// Adds the small boxes in two slots, by the vector from the centre of the first to that of the second. Returns the place
-    /// of the pair, or nothing if it is not for lanes.
+    /// Adds a pair of small boxes by slot, with the vector from the centre of the first to that of the second. Returns
+    /// the index of the pair, or `None` if the pair is out of the range of the SIMD path.
     #[inline]
     pub(crate) fn push(
         &mut self,
@@ -146,7 +146,7 @@ impl BoxPairs {
         }
         let batch = &mut self.batches[place / WIDTH];
         if lane == 0 {
-            // The slots of an earlier tick may be gone.
+            // Slots of an earlier tick may no longer exist.
             batch.at = [[a; WIDTH], [b; WIDTH]];
         }
         let d: Vec2<Length> = d.narrow();
@@ -160,7 +160,7 @@ impl BoxPairs {
         Some(place)
     }
 
-    /// Finds the manifolds of all pairs.
+    /// Computes the manifolds of all pairs.
     pub(crate) fn collide(&mut self, machine: Machine, boxes: &SmallBoxes) {
         let batches = &mut self.batches[..self.count.div_ceil(WIDTH)];
         if !batches.is_empty() {
@@ -168,8 +168,8 @@ impl BoxPairs {
         }
     }
 
-    /// Adds the manifold of the pair at a place to others, with the centre of its first box for an origin. Does nothing and
-    /// says so if the pair is left to others.
+    /// Appends the manifold of a pair, with the centre of its first box as the origin. Returns false, without
+    /// appending, if the pair is left to the scalar path.
     #[inline(always)]
     pub(crate) fn append_to(&self, manifolds: &mut Vec<Manifold>, place: usize, origin: Vec2<Fx>) -> bool {
         let (found, lane) = (&self.batches[place / WIDTH].found, place % WIDTH);

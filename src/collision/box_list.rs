@@ -1,4 +1,4 @@
-//! Boxes by slot, searched from end to end: brute force, and the oracle of everything faster.
+//! Linear list of boxes by slot: brute force, used as the test oracle of the faster structures.
 
 use alloc::vec::Vec;
 use core::ops::ControlFlow;
@@ -7,7 +7,7 @@ use super::broad_phase::Pair;
 use super::search::Search;
 use crate::math::Aabb;
 
-/// A box or none for each slot.
+/// An optional box for each slot.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct BoxList {
     boxes: Vec<Option<Aabb>>,
@@ -41,7 +41,7 @@ impl BoxList {
         (0..).zip(&self.boxes).filter_map(|(slot, aabb)| aabb.map(|aabb| (slot, aabb)))
     }
 
-    /// Every box against every other.
+    /// Calls `found` with every overlapping pair, by testing each box against every other.
     pub(crate) fn each_pair(&self, mut found: impl FnMut(Pair)) {
         let mut rest = self.iter();
         while let Some((a, box_a)) = rest.next() {

@@ -1,5 +1,5 @@
-//! The broad phase: which fat boxes overlap. What is found is a function of the boxes alone, so that every
-//! implementation returns the same pairs, sorted, and the structure behind it is a cache.
+//! Broad phase: pairs of overlapping fat AABBs. The result is a function of the boxes alone: every implementation
+//! returns the same pairs in sorted order, so the data structure is a cache and not part of the state.
 
 use alloc::vec::Vec;
 use core::ops::ControlFlow;
@@ -17,33 +17,33 @@ mod tests;
 /// A pair of shape slots, the smaller one first.
 pub(crate) type Pair = (u32, u32);
 
-/// How boxes are found: overlapping pairs in a tick, and whatever a query may hit. The choice changes how fast,
-/// never which.
+/// Data structure of the broad phase, for overlapping pairs in a tick and for queries. The choice changes the speed,
+/// never the result.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum BroadPhaseKind {
-    /// A balanced tree of boxes: the cost grows with what moves, and queries are fast.
+    /// Dynamic AABB tree: the cost grows with the number of moving boxes, and queries are fast.
     #[default]
     Tree,
-    /// Incremental sweep and prune: fast while most boxes move, and little. Queries look at every box.
+    /// Incremental sweep and prune: fast if most boxes move by small distances. Queries visit every box.
     SweepAndPrune,
-    /// Every box against every other: the oracle of the rest.
+    /// Tests every pair of boxes: the test oracle of the other kinds.
     BruteForce,
 }
 
-/// Whose pairs are wanted.
+/// Boxes whose pairs are requested.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Moved<'a> {
-    /// Those of every box.
+    /// Pairs of all boxes.
     All,
-    /// Those with an end in one of these slots, which may repeat or be vacant.
+    /// Pairs with at least one box in these slots, which may repeat or be vacant.
     Slots(&'a [u32]),
 }
 
-/// The boxes, in the structure of the chosen kind.
+/// The boxes, in the data structure of the chosen kind.
 #[derive(Clone, Debug)]
 pub(crate) struct BroadPhase {
     structure: Structure,
-    /// By slot: what a tick looks up again and again, close together.
+    /// Boxes by slot, stored contiguously for the frequent lookups within a tick.
     boxes: Vec<Aabb>,
     moved: MovedSet,
 }
@@ -73,7 +73,7 @@ impl BroadPhase {
         }
     }
 
-    /// The box of a slot; nowhere if there is none.
+    /// Box of a slot; [`Aabb::NOWHERE`] if there is none.
     pub(crate) fn fat(&self, slot: u32) -> Aabb {
         self.boxes.get(slot as usize).copied().unwrap_or(Aabb::NOWHERE)
     }
@@ -85,7 +85,7 @@ impl BroadPhase {
         self.boxes[slot as usize] = fat;
     }
 
-    /// Inserts the box of a slot, or moves it there.
+    /// Inserts or moves the box of a slot.
     pub(crate) fn set(&mut self, slot: u32, fat: Aabb) {
         self.remember(slot, fat);
         match &mut self.structure {
@@ -95,8 +95,8 @@ impl BroadPhase {
         }
     }
 
-    /// Says of which kin a slot with a box is: pairs of one kin are of no interest, and may be left out. One that is new has
-    /// none.
+    /// Sets the collision class of a slot that has a box. Pairs within one class never collide, and may be left out of
+    /// the results. A new box has no class.
     pub(crate) fn set_kin(&mut self, slot: u32, kin: Kin) {
         if let Structure::Tree(tree) = &mut self.structure {
             tree.set_kin(slot, kin);
@@ -126,7 +126,8 @@ impl BroadPhase {
         }
     }
 
-    /// Replaces all boxes, without kin: cheaper than setting each. Of a slot that comes twice, the last box stays.
+    /// Replaces all boxes, without collision classes; cheaper than setting each. If a slot repeats, its last box is
+    /// kept.
     pub(crate) fn refill(&mut self, boxes: impl IntoIterator<Item = (u32, Aabb)>) {
         *self = BroadPhase::new(self.kind());
         let boxes = boxes.into_iter();
@@ -141,8 +142,9 @@ impl BroadPhase {
         }
     }
 
-    /// All pairs of overlapping boxes with an end that has moved that `accept` wants, sorted; of more than `limit`,
-    /// the smallest. Says whether any were left out. `accept` wants no pair of one kin.
+    /// Finds all overlapping pairs with at least one moved box that `accept` returns true for, sorted. If there are
+    /// more than `limit`, keeps the smallest and returns true. `accept` must reject every pair within one collision
+    /// class.
     pub(crate) fn pairs(
         &mut self,
         moved: Moved<'_>,
@@ -172,7 +174,7 @@ impl BroadPhase {
                     }
                 };
                 match structure {
-                    // To mark most of a tree costs more than it spares.
+                    // Marking more than half of a tree costs more than it saves.
                     Structure::Tree(tree) if set.slots.len() < tree.len() / 2 => {
                         tree.each_pair_of(&set.slots, found);
                     }
@@ -185,7 +187,7 @@ impl BroadPhase {
         smallest.finish()
     }
 
-    /// The boxes that it has put around others, each with its distance from the root.
+    /// Boxes of the inner nodes of the tree, each with its depth. Empty for the other kinds.
     pub(crate) fn inner_boxes(&self) -> Vec<(Aabb, u32)> {
         match &self.structure {
             Structure::Tree(tree) => tree.inner_boxes(),
@@ -193,25 +195,25 @@ impl BroadPhase {
         }
     }
 
-    /// Whether a slot is among those whose pairs were last asked for.
+    /// Whether a slot was in the set of the last [`BroadPhase::pairs`] call with [`Moved::Slots`].
     pub(crate) fn has_moved(&self, slot: u32) -> bool {
         self.moved.has(slot)
     }
 
-    /// Calls `visit` with every slot whose box overlaps the area, in no particular order, until it breaks.
+    /// Calls `visit` with every slot whose box overlaps the area, in no particular order, until `visit` breaks.
     pub(crate) fn each_overlap(&self, area: Aabb, visit: impl FnMut(u32) -> ControlFlow<()>) {
         self.search(Overlap { area, visit });
     }
 
-    /// Calls `visit` with every slot whose box the area touches when it moves along the translation, nearer ones
-    /// rather earlier, and perhaps with some that it only just misses. It returns the largest fraction of the
+    /// Calls `visit` with every slot whose box the area touches while it moves along the translation. Nearer boxes tend
+    /// to come first, and a box that the area just misses may be included. `visit` returns the largest fraction of the
     /// translation that is still of interest; 0 ends the search.
     pub(crate) fn each_along(&self, area: Aabb, translation: Vec2<Fx>, visit: impl FnMut(u32) -> Unit) {
         self.search(Along::new(area, translation, visit));
     }
 
-    /// Calls `visit` with every slot whose box is within the radius of the point, nearer ones rather earlier. It
-    /// returns the radius that is still of interest; a negative one ends the search.
+    /// Calls `visit` with every slot whose box is within the radius of the point. Nearer boxes tend to come first.
+    /// `visit` returns the radius that is still of interest; a negative radius ends the search.
     pub(crate) fn each_near(&self, point: Vec2<Fx>, radius: Fx, visit: impl FnMut(u32) -> Fx) {
         self.search(Near { point, radius, visit });
     }
@@ -225,7 +227,7 @@ impl BroadPhase {
     }
 }
 
-/// Slots as a list without duplicates and as marks.
+/// A set of slots, as a list without duplicates and as marks.
 #[derive(Clone, Debug, Default)]
 struct MovedSet {
     slots: Vec<u32>,
@@ -249,7 +251,7 @@ impl MovedSet {
     }
 }
 
-/// Keeps the smallest pairs in bounded memory, in whatever order they are found.
+/// Keeps the smallest pairs in bounded memory; the result does not depend on the order in which pairs are found.
 struct SmallestPairs<'a> {
     pairs: &'a mut Vec<Pair>,
     limit: usize,
@@ -259,7 +261,7 @@ struct SmallestPairs<'a> {
 impl SmallestPairs<'_> {
     fn push(&mut self, pair: Pair) {
         self.pairs.push(pair);
-        // Twice the limit, so that the sort is paid for by as many pushes.
+        // Trims at twice the limit, so that the cost of a sort is amortized over as many pushes.
         if self.pairs.len() >= self.limit.saturating_mul(2).max(64) {
             self.trim();
         }

@@ -3,9 +3,9 @@
 use super::manifold::{Feature, Manifold, ManifoldPoint};
 use crate::math::{Length, Vec2, convert};
 
-/// `d` is the vector from the centre of A to the centre of B.
+/// Contact of two circles. `d` is the vector from the centre of A to the centre of B.
 pub(crate) fn collide(radius_a: Length, radius_b: Length, d: Vec2<Length>, margin: Length) -> Manifold {
-    // Concentric circles have no direction of their own: up is as good as any, and the same everywhere.
+    // Concentric circles have no direction between them; the normal is then up.
     let (normal, distance) = d.normalized_with_length().unwrap_or((Vec2::Y, Length::ZERO));
     let separation = distance.saturating_sub(radius_a).saturating_sub(radius_b);
     if separation > margin {

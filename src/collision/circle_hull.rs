@@ -1,17 +1,17 @@
-//! A circle against a convex outline: a polygon, or a segment or capsule as a polygon with two sides.
+//! A circle against a convex outline: a polygon, or a segment or capsule as a two-sided polygon.
 //!
-//! The centre is inside (the nearest face pushes it out, so that it is never pushed through), beside a face, or
-//! in the region of a corner.
+//! The circle's centre is inside the outline, beside a face, or in the Voronoi region of a corner. If it is inside, the
+//! nearest face pushes it out, so that it is never pushed through.
 
 use super::hull_hull::{self, FACE_BITS, Face};
 use super::manifold::{Feature, Manifold, ManifoldPoint};
 use super::pose::Hull;
 use crate::math::{Length, Step, Unit, Vec2, convert, round_shift, saturate};
 
-/// A is the hull, B the circle with its centre at `centre` from the hull's.
+/// Contact of a hull A and a circle B whose centre is at `centre` relative to the hull's centre.
 pub(crate) fn collide(hull: &Hull, radius: Length, centre: Vec2<Length>, margin: Length) -> Manifold {
     let radii = step_bits(radius) + step_bits(hull.radius);
-    // Not saturated: of a large shape only the difference of distance and radius fits the type.
+    // Not saturated: for a large shape only the difference of distance and radii fits the type.
     let Face { edge, separation } = hull_hull::face_before(hull, centre);
     let face_distance = round_shift(separation, FACE_BITS - Step::FRAC_NBITS);
     if face_distance - radii > step_bits(margin) {
@@ -30,7 +30,7 @@ pub(crate) fn collide(hull: &Hull, radius: Length, centre: Vec2<Length>, margin:
         None
     };
     let (normal, distance) = match corner {
-        // On the line of a segment and beyond its end the distance is 0 from both faces, or less by rounding.
+        // On the line of a segment, beyond its end, the distance from both faces is 0, or slightly less by rounding.
         Some(vertex) if face_distance >= 0 || hull.is_line() => {
             let polar = (centre - vertex).normalized_with_length();
             let (normal, distance) = polar.unwrap_or((face_normal, Length::ZERO));
@@ -42,7 +42,7 @@ pub(crate) fn collide(hull: &Hull, radius: Length, centre: Vec2<Length>, margin:
         return Manifold::NONE;
     }
     let separation = Step::from_bits(saturate(distance - radii));
-    // The circle's surface is `radius` before its centre; half-way back to the hull's is another half separation.
+    // The circle's surface is `radius` before its centre; the midpoint of the gap is half the separation further.
     let back: Length = radius.saturating_add(convert(separation / 2));
     let anchor = centre - normal.scale(back);
     Manifold::single(normal, ManifoldPoint { anchor, separation, feature: Feature::SINGLE })

@@ -1,4 +1,4 @@
-//! Contacts: what is remembered of a pair of shapes from tick to tick.
+//! Contacts: the state of a pair of shapes that persists from tick to tick.
 
 use serde::{Deserialize, Serialize};
 
@@ -9,26 +9,26 @@ use crate::math::Speed;
 /// A pair of shapes whose fat boxes overlap.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Contact {
-    /// Shape slots, the smaller first. Contacts are sorted by them.
+    /// Shape slots, the smaller first. Contacts are sorted by this key.
     pub(crate) shapes: Pair,
-    /// Whether the shapes touch, as the events last said.
+    /// Whether the shapes touch, as last reported by the contact events.
     pub(crate) touching: bool,
-    /// Whether one of the shapes lets the other pass: see `one_way.rs`.
+    /// Whether one shape is a one-way platform that lets the other pass: see `one_way.rs`.
     pub(crate) passing: bool,
-    /// How many points have impulses.
+    /// Number of points with accumulated impulses.
     pub(crate) count: u8,
     pub(crate) points: [PointImpulse; 2],
-    /// The angular impulse against rolling, times `(mA + mB) / s`: see `solver/rolling.rs`.
+    /// Accumulated angular impulse of rolling resistance, times `(mA + mB) / s`: see `solver/rolling.rs`.
     pub(crate) rolling: Speed,
 }
 
-/// The impulse of a contact point, to start the next tick from.
+/// Accumulated impulse of a contact point, for the warm start of the next tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct PointImpulse {
     pub(crate) feature: u16,
-    /// `p = L / D`, the impulse times `mA + mB`: it does not depend on the lever arms.
+    /// Normal impulse `p = L / D`, scaled by `mA + mB`, which makes it independent of the lever arms.
     pub(crate) normal: Speed,
-    /// The same along the tangent: its share of what both points have in common.
+    /// Tangent impulse, scaled alike: this point's share of the total friction of both points.
     pub(crate) tangent: Speed,
 }
 
@@ -44,12 +44,12 @@ impl Contact {
         }
     }
 
-    /// The points that have impulses.
+    /// Points with accumulated impulses.
     pub(crate) fn points(&self) -> &[PointImpulse] {
         &self.points[..usize::from(self.count.min(2))]
     }
 
-    /// The impulse carried over for a feature, if it was there in the last tick.
+    /// Accumulated impulse of a feature, if the feature was in contact in the last tick.
     #[inline]
     pub(crate) fn impulse_of(&self, feature: Feature) -> Option<PointImpulse> {
         match self.points {
@@ -59,7 +59,7 @@ impl Contact {
         }
     }
 
-    /// Forgets the impulses.
+    /// Clears the accumulated impulses.
     #[inline]
     pub(crate) fn clear_points(&mut self) {
         self.count = 0;
@@ -67,7 +67,7 @@ impl Contact {
         self.rolling = Speed::ZERO;
     }
 
-    /// Remembers the impulses of one point or two.
+    /// Stores the accumulated impulses of up to two points.
     #[inline]
     pub(crate) fn remember(&mut self, points: [PointImpulse; 2], count: u8, rolling: Speed) {
         (self.points, self.count, self.rolling) = (points, count, rolling);

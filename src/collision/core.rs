@@ -1,11 +1,11 @@
-//! A shape as queries see it: a convex *core* of 1 to 8 points, widened by a radius.
+//! Support shape for queries: a convex *core* of 1 to 8 points, widened by a radius.
 //!
-//! A circle is a point with a radius, a segment two points without one, a capsule two points with one, and a
-//! polygon its vertices, with a radius if it is rounded.
+//! A circle is one point with a radius, a segment two points without a radius, a capsule two points with a radius, and
+//! a polygon its vertices, with a radius if it is rounded.
 //!
-//! Points are on a grid of 2^-28 m (3.7 nm). The grid is coarser than that of the world so that the sign of every
-//! product of two differences is exact in 128 bits, for points anywhere in the world: coordinates have at most
-//! 2^60 units, differences of differences 2^62, and a sum of two products 2^125.
+//! Points are on a grid of 2^-28 m (3.7 nm). The grid is coarser than world coordinates so that the sign of every
+//! product of two differences is exact in 128 bits, for points anywhere in the world: coordinates have at most 2^60
+//! units, differences of differences 2^62, and a sum of two products 2^125.
 
 use fixed::FixedI64;
 use fixed::types::extra::U28;
@@ -19,14 +19,14 @@ use crate::math::{Fx, Rot, Unit, Vec2, div_round, round_shift, round_shift_wide,
 /// A coordinate in metres with 28 fraction bits.
 pub(crate) type Grid = FixedI64<U28>;
 
-/// The largest radius of a core in metres: more than that of any shape. Products of a radius and a cross product of
-/// the world fit 128 bits.
+/// Largest radius of a core in metres, larger than that of any shape. Products of this radius and a cross product of
+/// world coordinates fit 128 bits.
 pub(crate) const RADIUS_MAX: Fx = fx!(512);
 
-/// Bits by which a world coordinate is finer than the grid.
+/// Number of fraction bits of a world coordinate beyond those of the grid.
 const FINER: u32 = Fx::FRAC_NBITS - Grid::FRAC_NBITS;
 
-/// The points within `radius` of the hull of some points.
+/// All points within `radius` of the convex hull of up to 8 points.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Core {
     count: usize,
@@ -35,7 +35,8 @@ pub(crate) struct Core {
 }
 
 impl Core {
-    /// A shape in world axes about `origin`. Queries on two cores need the same origin; near them is best.
+    /// Creates the core of a shape in world axes relative to `origin`. A query needs two cores with the same origin; an
+    /// origin near both is best.
     pub(crate) fn of(shape: &PosedShape, origin: Vec2<Fx>) -> Self {
         let place = |offset| place(shape.centre, offset, origin);
         match &shape.outline {
@@ -50,7 +51,7 @@ impl Core {
         }
     }
 
-    /// A point, for queries such as the distance from it.
+    /// Creates a core of a single point, for queries such as the distance from a point.
     pub(crate) fn point(at: Vec2<Fx>) -> Self {
         Core::disc(at, Fx::ZERO)
     }
@@ -59,8 +60,8 @@ impl Core {
         Core::from_points([centre], radius)
     }
 
-    /// From the vertices of a convex outline, counter-clockwise: 1 to 8; any further are left out. The radius is
-    /// limited to 0 to [`RADIUS_MAX`].
+    /// Creates a core from the vertices of a convex outline, counter-clockwise: 1 to 8; further vertices are ignored.
+    /// The radius is clamped to 0 to [`RADIUS_MAX`].
     pub(crate) fn from_points(points: impl IntoIterator<Item = Vec2<Fx>>, radius: Fx) -> Self {
         Core::from_grid_points(points.into_iter().map(to_grid), radius)
     }
@@ -79,12 +80,12 @@ impl Core {
         &self.points[..self.count]
     }
 
-    /// The core moved by a vector.
+    /// Returns the core translated by a vector.
     pub(crate) fn moved(&self, by: Vec2<Grid>) -> Self {
         self.mapped(|point| point + by)
     }
 
-    /// The core turned about its origin.
+    /// Returns the core rotated about its origin.
     pub(crate) fn rotated(&self, rotation: Rot) -> Self {
         self.mapped(|point| from_raw(rotation.apply_wide(raw(point))))
     }
@@ -96,14 +97,14 @@ impl Core {
         self
     }
 
-    /// The largest distance of a point of the hull from the origin, without the radius.
+    /// Largest distance of a point of the hull from the origin, without the radius.
     pub(crate) fn reach(&self) -> Grid {
-        // The longest has the longest length, rounded or not: one root is enough.
+        // The longest vector also has the largest rounded length, so one square root is enough.
         let furthest = self.points().iter().max_by_key(|&&point| dot(point, point));
         furthest.map_or(Grid::ZERO, |&point| length(point))
     }
 
-    /// The mean of the vertices: a place inside.
+    /// Mean of the vertices, a point inside the hull.
     pub(crate) fn middle(&self) -> Vec2<Fx> {
         from_grid(self.mean())
     }
@@ -111,18 +112,18 @@ impl Core {
     fn mean(&self) -> Vec2<Grid> {
         let points = self.points();
         let count = i64::try_from(points.len()).unwrap_or(1);
-        // Divided first: the sum of 8 may be more than the grid holds.
+        // Each term is divided before the sum: the sum of 8 coordinates may exceed the grid's range.
         points.iter().fold(Vec2::ZERO, |sum, &point| sum + Vec2::new(point.x / count, point.y / count))
     }
 
-    /// How wide the shape is along a direction, in metres.
+    /// Extent of the shape along a direction, in metres.
     pub(crate) fn extent(&self, direction: Vec2<Unit>) -> Fx {
         let along = self.points().iter().map(|&point| along(direction, point));
         let (least, most) = along.fold((Grid::MAX, Grid::MIN), |(a, b), x| (a.min(x), b.max(x)));
         to_fx(most.saturating_sub(least).saturating_add(self.radius + self.radius))
     }
 
-    /// The radius of a disc inside the shape, about the mean of its vertices; 0 for a segment.
+    /// Radius of a disc inside the shape, centred on the mean of the vertices; 0 for a segment.
     pub(crate) fn inner_radius(&self) -> Fx {
         let points = self.points();
         let mean = self.mean();
@@ -135,13 +136,13 @@ impl Core {
     }
 }
 
-/// The edges of an outline, counter-clockwise. Two points have an edge there and one back, a point has none.
+/// Edges of an outline, counter-clockwise. Two points have one edge in each direction; a single point has none.
 pub(super) fn edges(points: &[Vec2<Grid>]) -> impl Iterator<Item = (Vec2<Grid>, Vec2<Grid>)> {
     let next = points.iter().cycle().skip(1);
     points.iter().zip(next).filter(|_| points.len() > 1).map(|(&p, &q)| (p, q))
 }
 
-/// `centre + offset - origin`, to the nearest point of the grid: nothing saturates, however far away the origin is.
+/// `centre + offset - origin`, rounded to nearest on the grid. Only the result saturates, whatever the origin.
 fn place(centre: Vec2<Fx>, offset: Vec2<Fx>, origin: Vec2<Fx>) -> Vec2<Grid> {
     let component = |centre: Fx, offset: Fx, origin: Fx| {
         let sum = i128::from(centre.to_bits()) + i128::from(offset.to_bits()) - i128::from(origin.to_bits());
@@ -150,23 +151,23 @@ fn place(centre: Vec2<Fx>, offset: Vec2<Fx>, origin: Vec2<Fx>) -> Vec2<Grid> {
     Vec2::new(component(centre.x, offset.x, origin.x), component(centre.y, offset.y, origin.y))
 }
 
-/// To the nearest point of the grid.
+/// Converts a world vector to the grid, rounded to nearest.
 pub(crate) fn to_grid(v: Vec2<Fx>) -> Vec2<Grid> {
     let component = |x: Fx| Grid::from_bits(round_shift(x.to_bits(), FINER));
     Vec2::new(component(v.x), component(v.y))
 }
 
-/// A point of the grid as a world vector: exact, saturated.
+/// Converts a grid vector to a world vector: exact, saturated.
 pub(crate) fn from_grid(v: Vec2<Grid>) -> Vec2<Fx> {
     Vec2::new(to_fx(v.x), to_fx(v.y))
 }
 
-/// A length as a world quantity: exact, saturated.
+/// Converts a grid length to a world length: exact, saturated.
 pub(crate) fn to_fx(x: Grid) -> Fx {
     Fx::from_bits(saturate_wide(i128::from(x.to_bits()) << FINER))
 }
 
-/// The same bits as a world vector, for operations that do not depend on the unit.
+/// Reinterprets the bits as a world vector, for operations that do not depend on the unit.
 fn raw(v: Vec2<Grid>) -> Vec2<Fx> {
     Vec2::new(Fx::from_bits(v.x.to_bits()), Fx::from_bits(v.y.to_bits()))
 }
@@ -175,12 +176,12 @@ fn from_raw(v: Vec2<Fx>) -> Vec2<Grid> {
     Vec2::new(Grid::from_bits(v.x.to_bits()), Grid::from_bits(v.y.to_bits()))
 }
 
-/// `a . b`: exact, in units of 2^-56 m².
+/// `a . b`, exact, in units of 2^-56 m².
 pub(super) fn dot(a: Vec2<Grid>, b: Vec2<Grid>) -> i128 {
     product(a.x, b.x) + product(a.y, b.y)
 }
 
-/// `a x b`: exact, in units of 2^-56 m².
+/// `a x b`, exact, in units of 2^-56 m².
 pub(super) fn cross(a: Vec2<Grid>, b: Vec2<Grid>) -> i128 {
     product(a.x, b.y) - product(a.y, b.x)
 }
@@ -189,28 +190,28 @@ fn product(a: Grid, b: Grid) -> i128 {
     i128::from(a.to_bits()) * i128::from(b.to_bits())
 }
 
-/// The length, rounded to nearest.
+/// Length of a vector, rounded to nearest.
 pub(super) fn length(v: Vec2<Grid>) -> Grid {
     Grid::from_bits(raw(v).length().to_bits())
 }
 
-/// The unit vector; `None` for zero.
+/// Unit vector of a vector; `None` for zero.
 pub(super) fn direction(v: Vec2<Grid>) -> Option<Vec2<Unit>> {
     raw(v).normalized()
 }
 
-/// `n . v` for a unit vector, rounded.
+/// `n . v` for a unit vector, rounded to nearest.
 pub(super) fn along(n: Vec2<Unit>, v: Vec2<Grid>) -> Grid {
     Grid::from_bits(saturate_wide(round_shift_wide(scaled_along(n, v), Unit::FRAC_NBITS)))
 }
 
-/// `n . v` in units of 2^-58 m: with the direction of `v` its length, to a relative 1.5e-9.
+/// `n . v` in units of 2^-58 m. If `n` is the direction of `v`, this is its length, with a relative error of 1.5e-9.
 pub(super) fn scaled_along(n: Vec2<Unit>, v: Vec2<Grid>) -> i128 {
     let product = |n: Unit, x: Grid| i128::from(n.to_bits()) * i128::from(x.to_bits());
     product(n.x, v.x) + product(n.y, v.y)
 }
 
-/// `n s`, rounded.
+/// `n s`, rounded to nearest.
 pub(super) fn scaled(n: Vec2<Unit>, s: Grid) -> Vec2<Grid> {
     let part = |n: Unit| {
         let product = i128::from(n.to_bits()) * i128::from(s.to_bits());
@@ -219,10 +220,10 @@ pub(super) fn scaled(n: Vec2<Unit>, s: Grid) -> Vec2<Grid> {
     Vec2::new(part(n.x), part(n.y))
 }
 
-/// `cross / scaled_length`: the distance that belongs to a cross product with a vector whose length
-/// [`scaled_along`] has found.
+/// `cross / scaled_length`: the distance of a point from a line, from the cross product with a vector along the line
+/// and the length of that vector, as computed by [`scaled_along`].
 pub(super) fn height(cross: i128, scaled_length: i128) -> Grid {
-    // Beyond 2^97 the height is more than that of anything near the vector, and a few bits less do not matter.
+    // Beyond 2^97 the height exceeds any distance of interest from the vector, and losing a few bits is harmless.
     let bits = if cross.unsigned_abs() >> 97 == 0 {
         div_round(cross << Unit::FRAC_NBITS, scaled_length)
     } else {
@@ -231,7 +232,7 @@ pub(super) fn height(cross: i128, scaled_length: i128) -> Grid {
     Grid::from_bits(saturate_wide(bits))
 }
 
-/// A fraction from 0 to 1 in units of 2^-62: fine enough to find a point on a line across the world.
+/// A fraction from 0 to 1 in units of 2^-62: fine enough to locate a point on a line across the world.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Fraction(i64);
 
@@ -247,7 +248,7 @@ impl Fraction {
         Fraction(saturate_wide(quotient).clamp(0, Self::ONE))
     }
 
-    /// `v` times the fraction, rounded.
+    /// Returns `v` times the fraction, rounded to nearest.
     pub(super) fn of(self, v: Vec2<Grid>) -> Vec2<Grid> {
         let part = |x: Grid| {
             let product = i128::from(x.to_bits()) * i128::from(self.0);
@@ -256,7 +257,7 @@ impl Fraction {
         Vec2::new(part(v.x), part(v.y))
     }
 
-    /// Rounded down to 32 bits.
+    /// Converts to 32 fraction bits, rounded down.
     pub(super) fn to_fx(self) -> Fx {
         Fx::from_bits(self.0 >> (Self::FRAC_NBITS - Fx::FRAC_NBITS))
     }
@@ -275,7 +276,7 @@ pub(super) mod samples {
         Vec2::new(rng.range(-size, size), rng.range(-size, size))
     }
 
-    /// A point, segment, capsule, disc or polygon, rounded or not, about its own centre.
+    /// A random point, segment, capsule, disc or polygon, with or without a radius, about its own centre.
     pub(in crate::collision) fn core(rng: &mut Rng) -> Core {
         loop {
             let points: Vec<_> = (0..7).map(|_| vector(rng, fx!(1))).collect();
@@ -299,19 +300,19 @@ pub(super) mod samples {
         }
     }
 
-    /// The same as large as shapes get: up to 110 m from the centre.
+    /// A random core of the largest shape size: up to 110 m from the centre.
     pub(in crate::collision) fn large(rng: &mut Rng) -> Core {
         let core = core(rng);
         let points: Vec<_> = world_points(&core).into_iter().map(|point| point.scale(fx!(75))).collect();
         Core::from_points(points, to_fx(core.radius) * 75)
     }
 
-    /// One to place near another.
+    /// A random core with a random offset.
     pub(in crate::collision) fn placed(rng: &mut Rng, spread: Fx) -> Core {
         core(rng).moved(to_grid(vector(rng, spread)))
     }
 
-    /// The points as world vectors.
+    /// Points of a core as world vectors.
     pub(in crate::collision) fn world_points(core: &Core) -> Vec<Vec2<Fx>> {
         core.points().iter().map(|&point| from_grid(point)).collect()
     }
@@ -352,7 +353,10 @@ mod tests {
         let near = to_grid(Vec2::new(fx!(1234567.5), fx!(-1234567.5)));
         let fraction = Fraction::ratio(dot(near, end), dot(end, end));
         let apart = fraction.of(end) - near;
-        assert!(apart.x.abs().to_bits() <= 1 && apart.y.abs().to_bits() <= 1, "{apart:?}");
+        assert!(
+            apart.x.abs().to_bits() <= 1 && apart.y.abs().to_bits() <= 1,
+            "the error should be at most 1 unit, not {apart:?}"
+        );
         assert_eq!(Fraction::ratio(5, 5).to_fx(), Fx::ONE);
         assert_eq!(Fraction::ratio(0, 5).of(end), Vec2::ZERO);
     }

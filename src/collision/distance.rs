@@ -1,29 +1,29 @@
-//! The distance of two cores: the point of `B - A` nearest to the origin, by the algorithm of E. Gilbert,
-//! D. Johnson and S. Keerthi ("A Fast Procedure for Computing the Distance Between Complex Objects", 1988).
+//! Distance of two cores: the point of the Minkowski difference `B - A` nearest to the origin, by the algorithm of
+//! E. Gilbert, D. Johnson and S. Keerthi ("A Fast Procedure for Computing the Distance Between Complex Objects", 1988).
 //!
-//! In two dimensions a search direction is a vertex of `B - A` or the perpendicular of an edge: never rounded. With
-//! exact signs each step comes strictly nearer, so the search ends without a tolerance and cannot cycle. Cores that
-//! overlap go to the separating axis test, which gives the depth.
+//! In two dimensions a search direction is a vertex of `B - A` or the perpendicular of an edge, which needs no
+//! rounding. With exact signs each step comes strictly nearer, so the search ends without a tolerance and cannot cycle.
+//! Overlapping cores are handled by the separating axis test, which gives the depth.
 
 use super::core::{Core, Fraction, Grid, cross, direction, edges, height, length, scaled, scaled_along};
 use super::core::{dot, from_grid, to_fx};
 use crate::math::{Fx, Unit, Vec2};
 
-/// How far two shapes are apart, and where.
+/// Distance of two shapes, with the nearest points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Distance {
-    /// Between the surfaces in metres. Negative where shapes overlap: how far they have to move apart. Within 20 nm
-    /// for cores that are apart; of overlapping cores within 1e-9 of their size.
+    /// Distance between the surfaces in metres. Negative for overlapping shapes: the depth, the shortest translation
+    /// that separates them. The error is at most 20 nm for separate cores and 1e-9 of the size for overlapping cores.
     pub(crate) distance: Fx,
-    /// The nearest point on the surface of A, or the deepest inside B; about the origin of the cores.
+    /// Nearest point on the surface of A, or the deepest point of A inside B; relative to the origin of the cores.
     pub(crate) point_a: Vec2<Fx>,
-    /// The nearest point on the surface of B, or the deepest inside A.
+    /// Nearest point on the surface of B, or the deepest point of B inside A.
     pub(crate) point_b: Vec2<Fx>,
-    /// From A to B. Moving B by `-distance` along it makes overlapping shapes touch.
+    /// Unit vector from A to B. Translating B by `-distance` along it makes overlapping shapes touch.
     pub(crate) normal: Vec2<Unit>,
 }
 
-/// The distance of two shapes.
+/// Computes the distance of two shapes.
 pub(crate) fn distance(a: &Core, b: &Core) -> Distance {
     let Axis { separation, normal, point_a, point_b } = axis(a, b);
     let (point_a, point_b) = (point_a + scaled(normal, a.radius), point_b - scaled(normal, b.radius));
@@ -43,7 +43,7 @@ pub(crate) fn overlap(a: &Core, b: &Core) -> bool {
     }
 }
 
-/// The axis along which two cores are furthest apart, or overlap least. Radii are left out.
+/// Axis of largest separation, or of least overlap, of two cores without their radii.
 struct Axis {
     separation: Grid,
     normal: Vec2<Unit>,
@@ -55,7 +55,7 @@ fn axis(a: &Core, b: &Core) -> Axis {
     nearest(a, b).unwrap_or_else(|| deepest(a, b))
 }
 
-/// A vertex of `B - A`, and where it comes from.
+/// A vertex of `B - A`, and the two points whose difference it is.
 #[derive(Clone, Copy)]
 struct Vertex {
     a: Vec2<Grid>,
@@ -65,7 +65,7 @@ struct Vertex {
 }
 
 impl Vertex {
-    /// The vertex of `B - A` furthest along a direction; the first of equals.
+    /// Vertex of `B - A` furthest along a direction; the first one in case of a tie.
     fn support(a: &Core, b: &Core, d: Vec2<Grid>) -> Self {
         let (a, b) = (furthest(a.points(), -d), furthest(b.points(), d));
         Vertex { a, b, w: b - a }
@@ -83,15 +83,15 @@ fn furthest(points: &[Vec2<Grid>], d: Vec2<Grid>) -> Vec2<Grid> {
     best
 }
 
-/// The part of `B - A` that is nearest to the origin so far.
+/// The simplex: the part of `B - A` that is nearest to the origin so far.
 #[derive(Clone, Copy)]
 enum Nearest {
     Vertex(Vertex),
-    /// The origin projects strictly between the ends.
+    /// An edge; the origin projects strictly between its ends.
     Edge(Vertex, Vertex),
 }
 
-/// The nearest points of two cores; `None` when they share one.
+/// Nearest points of two cores; `None` if the cores share a point.
 fn nearest(a: &Core, b: &Core) -> Option<Axis> {
     let (first_a, first_b) = (a.points()[0], b.points()[0]);
     let mut found = Nearest::Vertex(Vertex { a: first_a, b: first_b, w: first_b - first_a });
@@ -125,11 +125,11 @@ fn nearest(a: &Core, b: &Core) -> Option<Axis> {
     }
 }
 
-/// Of a triangle whose vertex `s` is on the origin's side of the edge `p q`, which the origin projects into:
-/// `None` when the origin is inside.
+/// Nearest part of a triangle whose vertex `s` is on the origin's side of the edge `p q`, where the origin projects
+/// onto the interior of that edge. `None` if the origin is inside the triangle.
 fn nearest_of_triangle(p: Vertex, q: Vertex, s: Vertex) -> Option<Nearest> {
     let winding = cross(q.w - p.w, s.w - p.w).signum();
-    // Beyond an edge, seen from the third vertex.
+    // Whether the origin is beyond an edge, as seen from the triangle's third vertex.
     let beyond_ps = cross(p.w - s.w, -s.w) * winding < 0;
     let beyond_sq = cross(s.w - q.w, -q.w) * winding < 0;
     match (beyond_ps, beyond_sq) {
@@ -140,7 +140,7 @@ fn nearest_of_triangle(p: Vertex, q: Vertex, s: Vertex) -> Option<Nearest> {
     }
 }
 
-/// Whether the origin is on the side of `p` of the line through `s` across the edge `s p`.
+/// Whether the origin is on the side of `p` of the line through `s` perpendicular to the edge `s p`.
 fn projects_inside(s: Vertex, p: Vertex) -> bool {
     dot(p.w - s.w, -s.w) > 0
 }
@@ -155,12 +155,12 @@ fn on_edge(p: Vertex, q: Vertex, to_origin: Vec2<Grid>) -> Axis {
     let fraction = Fraction::ratio(-dot(p.w, edge), dot(edge, edge));
     let point_a = p.a + fraction.of(q.a - p.a);
     let point_b = p.b + fraction.of(q.b - p.b);
-    // The edge has the direction exactly; the difference of the points is rounded, but right about the length.
+    // The normal comes from the exact edge direction; the difference of the points is rounded, but accurate in length.
     let normal = direction(-to_origin).unwrap_or(Vec2::Y);
     Axis { separation: length(point_b - point_a), normal, point_a, point_b }
 }
 
-/// Of cores that overlap or touch, the face that is least deep inside the other core.
+/// Face of least depth of two overlapping or touching cores.
 fn deepest(a: &Core, b: &Core) -> Axis {
     let shared = a.points()[0];
     let mut best: Option<Axis> = None;
@@ -176,11 +176,11 @@ fn deepest(a: &Core, b: &Core) -> Axis {
         let point_b = point - scaled(normal, separation);
         keep(Axis { separation, normal: -normal, point_a: point, point_b });
     }
-    // Two points that coincide have no face.
+    // Two coincident points have no face.
     best.unwrap_or(Axis { separation: Grid::ZERO, normal: Vec2::Y, point_a: shared, point_b: shared })
 }
 
-/// For each face: its normal, how far the other core is in front of it, and the point of the other core where.
+/// For each face of a core: its normal, the separation of the other core from it, and the other core's nearest point.
 fn faces(core: &Core, other: &Core) -> impl Iterator<Item = (Vec2<Unit>, Grid, Vec2<Grid>)> {
     edges(core.points()).filter_map(|(p, q)| {
         let edge = q - p;
@@ -193,14 +193,14 @@ fn faces(core: &Core, other: &Core) -> impl Iterator<Item = (Vec2<Unit>, Grid, V
 
 #[cfg(test)]
 mod tests {
-    //! Against every pair of a vertex and an edge, with the predicates of `math`.
+    //! Tests against brute force over all vertex and edge pairs, with the predicates of `math`.
 
     use super::super::core::{samples, to_grid};
     use super::*;
     use crate::fx;
     use crate::math::{Rng, Rot, closest_point_on_segment, point_in_polygon, segment_intersection};
 
-    /// Distance of two cores without radii, `None` if they share a point.
+    /// Distance of two cores without radii; `None` if they share a point.
     fn naive(a: &Core, b: &Core) -> Option<Fx> {
         let (a, b) = (samples::world_points(a), samples::world_points(b));
         if point_in_polygon(&a, b[0]) || point_in_polygon(&b, a[0]) {
@@ -240,13 +240,13 @@ mod tests {
             apart += 1;
             worst = worst.max((found.distance - (expected - radii)).abs());
             assert_eq!(overlap(&a, &b), found.distance <= 0, "{a:?} {b:?}");
-            // The points are that far apart along the normal.
+            // The distance between the points, along the normal, must equal the reported distance.
             let between = found.point_b - found.point_a;
             let error = between - found.normal.widen().scale(found.distance);
             assert!(error.length() < fx!(0.000001), "{error:?} {found:?} {a:?} {b:?}");
         }
-        assert!(apart > 60_000, "{apart}");
-        assert!(worst < fx!(0.00000002), "{worst}");
+        assert!(apart > 60_000, "expected over 60000 separate pairs, got {apart}");
+        assert!(worst < fx!(0.00000002), "the largest error should be below 20 nm, not {worst} m");
     }
 
     /// Moved by the depth along the normal the shapes touch; moved by less in any direction they still overlap.
@@ -268,7 +268,7 @@ mod tests {
             let way = Rot::from_angle(rng.angle()).apply_wide(shorter);
             assert!(overlap(&a, &b.moved(to_grid(way))), "{found:?} {a:?} {b:?}");
         }
-        assert!(tested > 5_000, "{tested}");
+        assert!(tested > 5_000, "expected over 5000 overlapping pairs, got {tested}");
     }
 
     #[test]
@@ -283,7 +283,7 @@ mod tests {
             [(-1, -2), (2, -2), (2, 1)].map(|(x, y)| Vec2::new(Fx::from_num(x), Fx::from_num(y))),
             Fx::ZERO,
         );
-        // The nearest vertices are 1 / sqrt 2 below the line; then they are as much above it.
+        // The nearest vertices are 1 / sqrt 2 below the line; after the move they are as far above it.
         assert!((distance(&floor, &deep).distance - fx!(0.7071067811865)).abs() < fx!(0.00000001));
         let deep = deep.moved(to_grid(Vec2::new(fx!(-1), fx!(1))));
         assert!((distance(&floor, &deep).distance + fx!(0.7071067811865)).abs() < fx!(0.00000001));

@@ -1,9 +1,9 @@
-//! Two convex outlines: the separating axis test over the face normals of both, then clipping of the incident
-//! edge against the reference face (D. Gregorius, "Robust Contact Creation", GDC 2015).
+//! Contact of two convex outlines: the separating axis test over the face normals of both, then clipping of the
+//! incident edge against the reference face (D. Gregorius, "Robust Contact Creation", GDC 2015).
 //!
-//! In two dimensions the axis of least overlap of two convex polygons is always a face normal. Where they do not
-//! overlap the closest features may be two corners, which no face normal sees: that case has its own normal, so
-//! that a box falling past the corner of another does not catch on it.
+//! In two dimensions the axis of least overlap of two convex polygons is always a face normal. If the polygons do not
+//! overlap, the closest features may be two corners, which no face normal detects. That case has its own normal, so
+//! that a box falling past the corner of another box does not catch on it.
 
 mod clip;
 
@@ -13,19 +13,19 @@ use super::manifold::Manifold;
 use super::pose::{BoxFaces, Hull};
 use crate::math::{Length, Step, Unit, Vec2};
 
-/// B's best face must beat A's by this much, in metres, to become the reference: 0.5 mm keeps the choice from
-/// flickering between two equal faces. Impulses survive a flicker, since features do not depend on the choice,
-/// but anchors would jump. The same distance tells apart polygons that are disjoint from those that touch.
+/// Margin in metres by which B's best face must beat A's to become the reference face. 0.5 mm prevents the choice from
+/// flickering between two equal faces: accumulated impulses survive a flicker, since features do not depend on the
+/// choice, but anchors would jump. The same distance separates disjoint polygons from touching ones.
 pub(super) const TOLERANCE: Step = Step::lit("0.0005");
 
-/// The fraction bits of a product of a length and a unit vector: of the separation from a face.
+/// Fraction bits of the product of a length and a unit vector, such as the separation from a face.
 pub(super) const FACE_BITS: u32 = Unit::FRAC_NBITS + Length::FRAC_NBITS;
 
 /// [`TOLERANCE`] with [`FACE_BITS`] fraction bits.
 pub(super) const TOLERANCE_WIDE: i64 = (TOLERANCE.to_bits() as i64) << 25;
 
-/// The face that separated a pair in the last tick, if one did. Trying it first changes no result: any axis with a gap
-/// beyond the margin proves that there is no contact.
+/// Cached separating axis: the face that separated a pair in the last tick, if any. Testing it first changes no result,
+/// since any axis with a gap beyond the margin proves that there is no contact.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) enum AxisHint {
     #[default]
@@ -34,7 +34,7 @@ pub(crate) enum AxisHint {
     OfB(u8),
 }
 
-/// How often the hint saved the search.
+/// Counts of separating axis tests that the cached axis avoided, and of full searches.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct SatCounters {
     pub(crate) hint_hits: u32,
@@ -44,11 +44,11 @@ pub(crate) struct SatCounters {
 #[derive(Clone, Copy)]
 pub(super) struct Face {
     pub(super) edge: usize,
-    /// Of the other outline's vertices from the face, without radii: 52 fraction bits.
+    /// Separation of the other outline's vertices from the face, without radii, with 52 fraction bits.
     pub(super) separation: i64,
 }
 
-/// `d` is the vector from the centre of A to the centre of B.
+/// Contact of two hulls. `d` is the vector from the centre of A to the centre of B.
 pub(crate) fn collide(
     a: &Hull,
     b: &Hull,
@@ -60,7 +60,7 @@ pub(crate) fn collide(
     let radii = a.radius.saturating_add(b.radius);
     let reach = i64::from(margin.saturating_add(radii).to_bits()) << 30;
     let hinted = match *hint {
-        // Lanes have no use for one, and what is counted should not tell them apart.
+        // The SIMD path has no cached axes; ignoring them here too keeps the counters equal on both paths.
         _ if a.is_small_box() && b.is_small_box() => i64::MIN,
         AxisHint::OfA(edge) if usize::from(edge) < a.vertices().len() => {
             face_separation(a, edge.into(), b, d)
@@ -87,7 +87,7 @@ pub(crate) fn collide(
     }
     *hint = AxisHint::None;
     let apart = are_apart(a, b, d, face_a, face_b);
-    // Outlines that are apart need the true best face, which is next to the nearest corner.
+    // Separate outlines need the true best face, which is next to the nearest corner.
     let preference = if apart { 0 } else { TOLERANCE_WIDE };
     if face_b.separation > face_a.separation + preference {
         let mut manifold = clip(b, a, -d, face_b, apart, margin);
@@ -99,7 +99,7 @@ pub(crate) fn collide(
     }
 }
 
-/// Whether two outlines do not touch, radii not counted, told by the best face of each.
+/// Whether two outlines without their radii are disjoint, given the best face of each.
 #[inline]
 pub(super) fn are_apart(a: &Hull, b: &Hull, d: Vec2<Length>, face_a: Face, face_b: Face) -> bool {
     face_a.separation.max(face_b.separation) > TOLERANCE_WIDE
@@ -107,8 +107,8 @@ pub(super) fn are_apart(a: &Hull, b: &Hull, d: Vec2<Length>, face_a: Face, face_
         || (b.is_line() && beyond_an_end(b, a, -d))
 }
 
-/// Whether `b` lies beyond an end of `a`, which has two sides and no face there: of two capsules end to end no face
-/// tells that they are apart.
+/// Whether `b` lies beyond an end of `a`, which is a two-sided outline and has no face there. For two capsules end to
+/// end no face shows that they are apart.
 fn beyond_an_end(a: &Hull, b: &Hull, d: Vec2<Length>) -> bool {
     let &[start, end] = a.vertices() else { return false };
     let t = a.normals()[0].perp();
@@ -123,17 +123,17 @@ fn small(edge: usize) -> u8 {
     edge as u8
 }
 
-/// The face of `a` that is furthest from `b`: of equal ones the first.
+/// Face of `a` with the largest separation from `b`; the first one in case of a tie.
 #[inline(always)]
 pub(super) fn best_face(a: &Hull, b: &Hull, d: Vec2<Length>) -> Face {
-    // Most shapes are boxes.
+    // Fast path: most shapes are boxes.
     match (a.as_box(), b.as_box()) {
         (Some(a), Some((others, _))) => furthest_of_box(a, others, d),
         _ => furthest(a, b, d),
     }
 }
 
-/// The face of a hull that is furthest from a point: of equal ones the first.
+/// Face of a hull with the largest separation from a point; the first one in case of a tie.
 #[inline]
 pub(super) fn face_before(hull: &Hull, point: Vec2<Length>) -> Face {
     match hull.as_box() {
@@ -144,7 +144,7 @@ pub(super) fn face_before(hull: &Hull, point: Vec2<Length>) -> Face {
 
 #[inline(never)]
 fn furthest(a: &Hull, b: &Hull, d: Vec2<Length>) -> Face {
-    // Loops of known length are unrolled.
+    // A loop of constant length is unrolled.
     let others = b.vertices();
     match others.len() {
         2 => furthest_from::<2>(a, others, d),
@@ -175,8 +175,8 @@ fn furthest_over(a: &Hull, support: impl Fn(Vec2<Unit>) -> i64, d: Vec2<Length>)
     best
 }
 
-/// [`furthest`] of two boxes: `max n . v` and `min n . v` over the vertices of one differ in sign alone, and so do the
-/// distances of its own opposite faces from its centre.
+/// [`furthest`] for two boxes: the largest and smallest `n . v` over the vertices of a box differ only in sign, and so
+/// do the distances of its opposite faces from its centre.
 #[inline(always)]
 fn furthest_of_box((vertices, normals): BoxFaces, others: &[Vec2<Length>; 2], d: Vec2<Length>) -> Face {
     let further_of_opposite = |edge: usize, n: Vec2<Unit>, vertex: Vec2<Length>| {
@@ -186,11 +186,11 @@ fn furthest_of_box((vertices, normals): BoxFaces, others: &[Vec2<Length>; 2], d:
     };
     let a = further_of_opposite(0, normals[0], vertices[0]);
     let b = further_of_opposite(1, normals[1], vertices[1]);
-    // Of equal ones the first.
+    // In case of a tie the lower edge index wins.
     if (b.separation, a.edge) > (a.separation, b.edge) { b } else { a }
 }
 
-/// The most `n . v` of a box given by its first two vertices: the least is the opposite.
+/// Largest `n . v` over the vertices of a box, given by its first two; the smallest is the negative.
 #[inline(always)]
 fn half_extent(n: Vec2<Unit>, &[a, b]: &[Vec2<Length>; 2]) -> i64 {
     product(n, a).abs().max(product(n, b).abs())
@@ -202,7 +202,7 @@ fn product(n: Vec2<Unit>, v: Vec2<Length>) -> i64 {
     i64::from(n.x.to_bits()) * i64::from(v.x.to_bits()) + i64::from(n.y.to_bits()) * i64::from(v.y.to_bits())
 }
 
-/// How far some vertices, at least one, reach against a direction: `min n . v` with 52 fraction bits.
+/// Support of at least one vertex against a direction: `min n . v`, with 52 fraction bits.
 #[inline]
 fn support(n: Vec2<Unit>, vertices: &[Vec2<Length>]) -> i64 {
     vertices.iter().fold(i64::MAX, |least, &vertex| least.min(product(n, vertex)))
@@ -213,7 +213,7 @@ pub(super) fn face_separation(a: &Hull, edge: usize, b: &Hull, d: Vec2<Length>) 
     plane_separation(a.normals()[edge], a.vertices()[edge], b, d)
 }
 
-/// Smallest distance of the vertices of `b` from the line through a point across `n`, with 52 fraction bits.
+/// Smallest distance of the vertices of `b` from the line through a point with normal `n`, with 52 fraction bits.
 #[inline]
 pub(super) fn plane_separation(n: Vec2<Unit>, point: Vec2<Length>, b: &Hull, d: Vec2<Length>) -> i64 {
     let reach = match b.as_box() {

@@ -1,15 +1,16 @@
-//! A link of a chain against a circle or a convex outline.
+//! A chain link against a circle or a convex outline.
 //!
-//! A link alone pushes a shape that slides over its end back or up. What the chain as a whole may do at a vertex is
-//! decided by its neighbours (E. Catto, chain segments of Box2D 3, from the same Gauss map of the outline):
+//! A single link would push a shape that slides over its end back or up: a ghost collision. The neighbours of the link
+//! decide which normals the chain as a whole allows at a vertex (E. Catto, chain segments of Box2D 3, from the same
+//! Gauss map of the outline):
 //!
 //! ```text
-//! convex vertex    normals turn from one link's to the other's; each link has those nearer to its own
-//! flat or concave  there are only the two links' normals: the link pushes along its own
+//! convex vertex    normals between those of the two links; each link has the half nearer to its own
+//! flat or concave  only the two links' normals: a link pushes along its own
 //! free end         every direction
 //! ```
 //!
-//! So each place beside a chain belongs to one link, but for the inside of a concave vertex, which both bound.
+//! Each point beside a chain therefore belongs to one link, except inside of a concave vertex, which both links bound.
 
 use super::circle_hull::{distance_along, step_bits};
 use super::hull_hull::{self, Face, TOLERANCE_WIDE};
@@ -19,15 +20,15 @@ use super::segment::{clipped_to_window, right_of};
 use crate::body::Sides;
 use crate::math::{Fx, Length, Orientation, Step, Unit, Vec2, convert, orientation, saturate};
 
-/// Normals are told apart from here on, as the sine of the angle between them. Vertices that turn by less than this
-/// (0.6 degrees) count as flat.
+/// Smallest difference of two normals, as the sine of the angle between them. Vertices that turn by less than this (0.6
+/// degrees) count as flat.
 const ANGLE_TOLERANCE: Unit = Unit::lit("0.01");
 
-/// As the sine of an angle: a face that differs less from the link's own is the link's own. Wider, a rounded box that
-/// slides along would be pushed back a little at every vertex.
+/// Sine of the largest angle at which a face normal counts as the link's own. With a larger value a rounded box that
+/// slides along the chain would be pushed back slightly at every vertex.
 const PARALLEL: Unit = Unit::lit("0.0002");
 
-/// A link in world axes, about the centre of the shape that it belongs to or meets.
+/// A link in world axes, relative to the centre of its own shape or of the shape that it meets.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Link {
     pub(crate) a: Vec2<Fx>,
@@ -48,17 +49,17 @@ impl Link {
         Link { a: b, b: a, before: after, after: before, sides }
     }
 
-    /// Whether something at a place meets the link, or passes from its open side.
+    /// Whether the link is solid for a shape whose centre is at `place`: always, or only on the right if one-sided.
     pub(crate) fn is_solid_from(&self, place: Vec2<Fx>) -> bool {
         self.sides == Sides::Both || self.has_on_right(place)
     }
 
-    /// Whether a place is on the right of the chain, as far as this link and its neighbours tell.
+    /// Whether a point is on the right of the chain, as far as this link and its neighbours can tell.
     fn has_on_right(&self, place: Vec2<Fx>) -> bool {
         let Link { a, b, before, after, .. } = *self;
         let own = right_of(a, b, place);
         let direction = b - a;
-        // Signs alone matter, and a saturated product keeps its sign.
+        // Only signs matter, and a saturated product keeps its sign.
         let (corner, neighbour) = if (place - a).dot(direction) < 0 {
             (before.map(|before| [before, a, b]), before.map(|before| (before, a)))
         } else if (place - b).dot(direction) > 0 {
@@ -71,21 +72,21 @@ impl Link {
         if orientation(p, q, r) == Orientation::CounterClockwise {
             return own || other;
         }
-        // Beyond the neighbour's own stretch its line says nothing about the chain.
+        // Beyond the neighbour's own extent its line says nothing about the chain.
         let stretch = to - from;
         let beside = (place - from).dot(stretch) >= 0 && (place - to).dot(stretch) <= 0;
         own && (other || !beside)
     }
 }
 
-/// What is at an end of a link.
+/// End of a link: free, or joined to a neighbour.
 #[derive(Clone, Copy, Debug)]
 enum End {
     Free,
     Joined { direction: Vec2<Unit>, turn: Turn },
 }
 
-/// How the chain turns at a vertex, as seen from the side of the shape.
+/// Turn of the chain at a vertex, as seen from the side of the shape.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Turn {
     Convex,
@@ -93,21 +94,21 @@ enum Turn {
     Concave,
 }
 
-/// What a link does with a normal.
+/// Result of testing a normal against the chain.
 enum Verdict {
-    /// It pushes along it.
+    /// The link pushes along the normal.
     Own,
-    /// The chain allows it, and a neighbour pushes along it.
+    /// The chain allows the normal, and a neighbour pushes along it.
     Neighbour,
-    /// It does not come from this link.
+    /// The normal does not belong to this link.
     Leave,
-    /// It pushes along its own normal instead.
+    /// The link pushes along its own normal instead.
     Snap,
 }
 
-/// A link about the centre of the shape that it meets, which is on its right.
+/// A link relative to the centre of the shape that it meets, oriented so that the shape is on its right.
 pub(crate) struct Facing {
-    /// The link as a hull: edge 0 faces the shape.
+    /// The link as a two-sided hull: edge 0 faces the shape.
     hull: Hull,
     direction: Vec2<Unit>,
     normal: Vec2<Unit>,
@@ -117,8 +118,8 @@ pub(crate) struct Facing {
 }
 
 impl Facing {
-    /// The link, given about the other shape's centre, as it faces `place` in that shape. `None` if it is far away
-    /// or not solid from this side.
+    /// Orients a link, given relative to the other shape's centre, towards the point `place` in that shape. Returns
+    /// `None` if the link is far away or not solid from this side.
     pub(crate) fn new(link: &Link, place: Vec2<Fx>) -> Option<Self> {
         let link = match (link.has_on_right(place), link.sides) {
             (true, _) => *link,
@@ -128,7 +129,7 @@ impl Facing {
         let (p, q) = clipped_to_window(link.a, link.b)?;
         let direction = (link.b - link.a).normalized()?;
         let end = |neighbour: Option<Vec2<Unit>>, turn: fn(Vec2<Unit>, Vec2<Unit>) -> Turn| match neighbour {
-            // A chain that goes back on itself ends there.
+            // A chain that reverses its direction exactly counts as ending there.
             Some(other) if other != -direction => {
                 End::Joined { direction: other, turn: turn(other, direction) }
             }
@@ -146,14 +147,14 @@ impl Facing {
         })
     }
 
-    /// What to do with a normal that the shape and the link would have if they were alone.
+    /// Decides about the normal that the shape and the link would have without the chain.
     fn judge(&self, n: Vec2<Unit>) -> Verdict {
         let own: Unit = self.normal.dot(n);
         let across: Unit = self.normal.cross(n);
         if own > 0 && across.abs() <= PARALLEL {
             return Verdict::Own;
         }
-        // Towards the start normals turn clockwise from the link's own, towards the end counter-clockwise.
+        // Normals turn clockwise from the link's own towards its start, and counter-clockwise towards its end.
         let (end, outwards) = if across < 0 { (self.start, 1) } else { (self.end, -1) };
         match end {
             End::Free if self.one_sided && own < 0 => Verdict::Leave,
@@ -165,7 +166,7 @@ impl Facing {
                 let beyond: Unit = other.cross(n);
                 let nearer_to_other: Unit = other.dot(n);
                 let within = beyond.to_bits() * outwards >= -ANGLE_TOLERANCE.to_bits();
-                // The link that starts at the vertex has the middle.
+                // On a tie the normal belongs to the link that starts at the vertex.
                 let ours = if outwards == 1 { own >= nearer_to_other } else { own > nearer_to_other };
                 match (within, ours) {
                     (true, true) => Verdict::Own,
@@ -176,7 +177,8 @@ impl Facing {
         }
     }
 
-    /// How far the neighbour's face at a convex vertex is from a hull about the origin; it bounds the shape too.
+    /// Largest separation of a hull about the origin from the neighbours' faces at convex vertices: the chain is solid
+    /// only behind both faces.
     fn neighbour_separation(&self, b: &Hull) -> i64 {
         let [start, end] = [(self.start, 0), (self.end, 1)].map(|(end, vertex)| match end {
             End::Joined { turn: Turn::Convex, direction } => {
@@ -188,7 +190,7 @@ impl Facing {
         start.max(end)
     }
 
-    /// The contact with a circle about the origin. Its centre is beside the link, or belongs to the vertex at which
+    /// Contact with a circle about the origin, if its centre is beside the link or in the region of the vertex at which
     /// the link starts.
     pub(crate) fn collide_circle(&self, radius: Length, margin: Length) -> Manifold {
         let (a, b) = (self.hull.vertices()[0], self.hull.vertices()[1]);
@@ -223,7 +225,7 @@ impl Facing {
         }
     }
 
-    /// The contact with a hull about the origin.
+    /// Contact with a hull about the origin.
     pub(crate) fn collide_hull(&self, b: &Hull, margin: Length) -> Manifold {
         let a = &self.hull;
         let reach = i64::from(margin.saturating_add(b.radius).to_bits()) << 30;
@@ -239,12 +241,12 @@ impl Facing {
         }
     }
 
-    /// The face that the shape is in front of.
+    /// The face on the side of the shape, with its separation.
     fn face(&self, b: &Hull) -> Face {
         Face { edge: 0, separation: hull_hull::face_separation(&self.hull, 0, b, Vec2::ZERO) }
     }
 
-    /// The nearest features, if the chain allows their normal.
+    /// Contact of the nearest features of separate outlines, if the chain allows their normal.
     fn collide_apart(&self, b: &Hull, (face_a, face_b): (Face, Face), margin: Length) -> Manifold {
         let a = &self.hull;
         let found = if face_b.separation > face_a.separation {
@@ -252,7 +254,7 @@ impl Facing {
         } else if face_a.edge == 0 {
             hull_hull::clip(a, b, Vec2::ZERO, face_a, true, margin)
         } else {
-            // Behind the link, and in front of its neighbour.
+            // The shape is behind the link, and in front of its neighbour.
             return Manifold::NONE;
         };
         if found.points().is_empty() {
@@ -263,22 +265,21 @@ impl Facing {
             Verdict::Neighbour | Verdict::Leave => Manifold::NONE,
             Verdict::Snap => {
                 let mut found = hull_hull::clip(a, b, Vec2::ZERO, self.face(b), false, margin);
-                // Beyond the end of the link its line only bounds what may yet come.
+                // Beyond the end of the link its line only bounds an approach: a speculative point.
                 found.retain(|point| point.separation > 0 || self.is_beside(point.anchor, b.radius));
                 found
             }
         }
     }
 
-    /// Whether a place is beside the link, and not beyond its ends by more than a vertex that counts as flat makes
-    /// up for.
+    /// Whether a point is beside the link, or beyond its ends by no more than the gap at a vertex that counts as flat.
     fn is_beside(&self, place: Vec2<Length>, radius: Length) -> bool {
         let slack: Length = (radius / 64).saturating_add(Length::lit("0.0005"));
         let past = |vertex: Vec2<Length>| -> Length { (place - vertex).dot(self.direction) };
         past(self.hull.vertices()[0]) >= -slack && past(self.hull.vertices()[1]) <= slack
     }
 
-    /// The face of least overlap among those that the chain allows.
+    /// Contact of overlapping outlines, on the face of least overlap among those that the chain allows.
     fn collide_overlapping(&self, b: &Hull, margin: Length) -> Manifold {
         let a = &self.hull;
         let face = self.face(b);
@@ -305,7 +306,7 @@ impl Facing {
     }
 }
 
-/// How a chain turns from one link to the next, as seen from its right.
+/// Turn of a chain from one link to the next, as seen from its right.
 fn turn(from: Vec2<Unit>, to: Vec2<Unit>) -> Turn {
     let sine: Unit = from.cross(to);
     let cosine: Unit = from.dot(to);
@@ -316,7 +317,7 @@ fn turn(from: Vec2<Unit>, to: Vec2<Unit>) -> Turn {
     }
 }
 
-/// The contact of a circle about the origin with something at a distance along a normal.
+/// Contact of a circle about the origin with a feature at a distance along a normal.
 fn single(normal: Vec2<Unit>, distance: i64, radius: Length, margin: Length) -> Manifold {
     let separation = distance - step_bits(radius);
     if separation > step_bits(margin) {

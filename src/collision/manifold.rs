@@ -1,17 +1,17 @@
-//! What a pair of shapes has in contact: a normal and up to two points.
+//! Contact manifold of a pair of shapes: a normal and up to two points.
 
 use crate::math::{Fx, Length, Step, Unit, Vec2};
 
-/// Identifies a contact point across ticks, so that its impulse can be carried over: the pair (vertex of A,
-/// vertex of B) of the matched ends, whichever shape the reference edge belongs to and wherever it was clipped.
+/// Identifies a contact point across ticks, so that its accumulated impulse can be carried over: the pair (vertex of A,
+/// vertex of B) of the matched ends, independent of which shape has the reference edge and of the clipping.
 ///
-/// Identities that encode the clipping as well change while a pile settles; every change loses a warm start and
-/// the pile sinks (`docs/DESIGN.md` has the figures).
+/// Identifiers that encode the clipping as well change while a pile settles. Every change loses a warm start, and the
+/// pile sinks (`docs/DESIGN.md` has the figures).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Feature(pub(crate) u16);
 
 impl Feature {
-    /// The only point of a contact with a circle.
+    /// Feature of the only point of a contact with a circle.
     pub(crate) const SINGLE: Feature = Feature(0);
 
     #[inline]
@@ -25,23 +25,23 @@ impl Feature {
     }
 }
 
-/// A point where two shapes touch or are about to.
+/// A point where two shapes touch or are about to touch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ManifoldPoint {
-    /// Half-way between the two surfaces, in metres from the manifold's origin, in world axes.
+    /// Position half-way between the two surfaces, in metres from the manifold's origin, in world axes.
     pub anchor: Vec2<Length>,
-    /// Distance between the surfaces along the normal in metres, negative where they overlap.
+    /// Distance between the surfaces along the normal in metres; negative if they overlap.
     pub separation: Step,
-    /// Which features meet.
+    /// Features that meet at the point.
     pub feature: Feature,
 }
 
-/// The contact between shape A and shape B.
+/// Contact manifold of shape A and shape B.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Manifold {
     /// Unit vector from A to B.
     pub normal: Vec2<Unit>,
-    /// The world position that anchors are measured from: the centre of one of the shapes.
+    /// World position that anchors are relative to: the centre of one of the shapes.
     pub origin: Vec2<Fx>,
     points: [ManifoldPoint; 2],
     count: u8,
@@ -51,21 +51,21 @@ impl Manifold {
     const NO_POINT: ManifoldPoint =
         ManifoldPoint { anchor: Vec2::ZERO, separation: Step::ZERO, feature: Feature::SINGLE };
 
-    /// No contact.
+    /// A manifold without points.
     pub(crate) const NONE: Self = Self::new(Vec2::Y);
 
     pub(crate) const fn new(normal: Vec2<Unit>) -> Self {
         Manifold { normal, origin: Vec2::new(Fx::ZERO, Fx::ZERO), points: [Self::NO_POINT; 2], count: 0 }
     }
 
-    /// A contact with one point.
+    /// Creates a manifold with one point.
     pub(crate) fn single(normal: Vec2<Unit>, point: ManifoldPoint) -> Self {
         let mut manifold = Self::new(normal);
         manifold.push(point);
         manifold
     }
 
-    /// A contact with the first so many of two points. Those that it does not have must be zero: contacts that are equal
+    /// Creates a manifold with the first `count` of two points. Unused points must be zero, so that equal manifolds
     /// compare as equal.
     #[inline]
     pub(crate) fn of_points(
@@ -77,20 +77,20 @@ impl Manifold {
         Manifold { normal, origin, points, count }
     }
 
-    /// The points, none to two.
+    /// Contact points, none to two.
     #[inline]
     #[must_use]
     pub fn points(&self) -> &[ManifoldPoint] {
         &self.points[..usize::from(self.count.min(2))]
     }
 
-    /// How many points there are.
+    /// Number of contact points.
     #[inline]
     pub(crate) fn count(&self) -> u8 {
         self.count.min(2)
     }
 
-    /// Two points, of which what is not there is zero.
+    /// Both points; unused points are zero.
     #[inline]
     pub(crate) fn both_points(&self) -> &[ManifoldPoint; 2] {
         &self.points
@@ -102,7 +102,7 @@ impl Manifold {
         self.count += 1;
     }
 
-    /// Keeps some of two points. Nothing is left of the others: contacts that are equal compare as equal.
+    /// Keeps the selected points and zeroes the others, so that equal manifolds compare as equal.
     #[inline]
     fn keep(&mut self, kept: [bool; 2]) {
         let [first, second] = self.points;
@@ -114,7 +114,7 @@ impl Manifold {
         };
     }
 
-    /// Keeps the points that pass a test.
+    /// Keeps the points for which `keep` returns true.
     #[inline]
     pub(crate) fn retain(&mut self, mut keep: impl FnMut(&ManifoldPoint) -> bool) {
         let keeps = match self.points() {
@@ -122,13 +122,13 @@ impl Manifold {
             [only] => [keep(only), false],
             [first, second, ..] => [keep(first), keep(second)],
         };
-        // Nothing is written where all stay, which is nearly always.
+        // The common case, in which all points stay, writes nothing.
         if keeps.iter().filter(|&&kept| kept).count() < self.points().len() {
             self.keep(keeps);
         }
     }
 
-    /// The same contact with the roles of the shapes exchanged.
+    /// Returns the manifold with the roles of the shapes exchanged.
     #[inline]
     pub(crate) fn swapped(mut self) -> Self {
         self.swap();
@@ -144,7 +144,7 @@ impl Manifold {
         }
     }
 
-    /// Moves the anchors.
+    /// Translates the anchors.
     #[inline]
     pub(crate) fn translate(&mut self, by: Vec2<Length>) {
         for point in &mut self.points[..usize::from(self.count.min(2))] {

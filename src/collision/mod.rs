@@ -1,4 +1,4 @@
-//! Collision detection: broad phase, narrow phase and what contacts remember. It reads bodies and returns
+//! Collision detection: broad phase, narrow phase, and the persistent state of contacts. It reads bodies and returns
 //! contacts; it never changes a body.
 
 mod box_box;

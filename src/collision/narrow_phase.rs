@@ -1,4 +1,4 @@
-//! The narrow phase: every pair of outlines, listed.
+//! Narrow phase: dispatch over all pairs of outlines.
 
 use super::hull_hull::{AxisHint, SatCounters};
 use super::link::Facing;
@@ -10,15 +10,15 @@ use crate::math::{Aabb, Fx, Length, Vec2, convert, widen};
 use fixed::FixedI32;
 use fixed::types::extra::LeEqU32;
 
-/// Boxes further apart than the margin by more than this, in metres, are rejected without a closer look. The
+/// Pairs of bounding boxes whose distance exceeds the margin by more than this, in metres, are rejected early. The
 /// slack covers the rounding of vertices and the half millimetre by which nearly parallel edges count as nearer than
-/// they are, so that the reject does not decide what the closer look would not.
+/// they are, so that the early reject changes no result.
 const REJECT_SLACK: Fx = fx!(0.001);
 
-/// Largest distance in metres that contacts look ahead: what a separation can hold.
+/// Largest speculative margin in metres: the largest separation that the type can store.
 const MARGIN_MAX: Length = Length::lit("15");
 
-/// The margin for two shapes that may approach each other by `closing` metres in the tick.
+/// Speculative margin for two shapes that may approach each other by `closing` metres in the tick.
 #[inline]
 pub(crate) fn margin_for<A: LeEqU32>(speculative: Length, closing: FixedI32<A>) -> Length {
     speculative.saturating_add(convert(closing)).min(MARGIN_MAX)
@@ -30,7 +30,7 @@ pub(crate) fn may_meet(a: Aabb, b: Aabb, margin: Length) -> bool {
     a.expanded_nearby(widen(margin).wrapping_add(REJECT_SLACK)).overlaps(b)
 }
 
-/// The contact of two posed shapes whose surfaces are at most `margin` metres apart.
+/// Contact manifold of two posed shapes whose surfaces are at most `margin` metres apart.
 pub(crate) fn collide(
     a: &PosedShape,
     b: &PosedShape,
@@ -45,7 +45,7 @@ pub(crate) fn collide(
     }
 }
 
-/// [`collide`] without the reject, and its oracle.
+/// [`collide`] without the early reject; also its test oracle.
 #[inline(always)]
 pub(crate) fn collide_near(
     a: &PosedShape,
@@ -54,7 +54,7 @@ pub(crate) fn collide_near(
     hint: &mut AxisHint,
     counters: &mut SatCounters,
 ) -> Manifold {
-    // Most pairs.
+    // Fast path for most pairs.
     if let (Outline::Polygon(hull_a), Outline::Polygon(hull_b)) = (&a.outline, &b.outline) {
         let d = (b.centre - a.centre).narrow();
         let mut manifold = hull_hull::collide(hull_a, hull_b, d, margin, hint, counters);
@@ -64,7 +64,7 @@ pub(crate) fn collide_near(
     collide_outlines(a, b, margin, hint, counters)
 }
 
-/// [`collide_near`] for any outlines.
+/// [`collide_near`] for all pairs of outlines.
 #[inline(never)]
 fn collide_outlines(
     a: &PosedShape,
@@ -75,7 +75,7 @@ fn collide_outlines(
 ) -> Manifold {
     use Outline::{Circle, Link, Polygon, Segment};
     let d: Vec2<Length> = (b.centre - a.centre).narrow();
-    // Each manifold is found about the centre of one shape: A's, unless only B has a centre near the contact.
+    // Anchors are relative to the centre of one shape: A's, unless only B's centre is near the contact.
     let mut origin = a.centre;
     let mut manifold = match (&a.outline, &b.outline) {
         (Circle { radius: radius_a }, Circle { radius: radius_b }) => {
@@ -123,21 +123,21 @@ fn collide_outlines(
             let Some(facing) = link_facing(b, a, hull_a.middle()) else { return Manifold::NONE };
             facing.collide_hull(hull_a, margin).swapped()
         }
-        // Two lines have no inside: nothing tells on which side one should be.
+        // Two lines have no inside, so nothing determines on which side one should be.
         (Segment { .. } | Link(_), Segment { .. } | Link(_)) => Manifold::NONE,
     };
     manifold.origin = origin;
     manifold
 }
 
-/// The segment's outline about the centre of the other shape.
+/// Outline of a segment relative to the centre of the other shape.
 fn segment_about(segment: &PosedShape, other: &PosedShape) -> Option<Hull> {
     let Outline::Segment { a, b } = segment.outline else { return None };
     let from_other = segment.centre - other.centre;
     segment::near_hull(from_other + a, from_other + b)
 }
 
-/// The link about the centre of the other shape, as it faces a place in that.
+/// A link relative to the centre of the other shape, oriented towards a point in that shape.
 fn link_facing(link: &PosedShape, other: &PosedShape, place: Vec2<Fx>) -> Option<Facing> {
     let Outline::Link(posed) = link.outline else { return None };
     let from_other = link.centre - other.centre;
@@ -194,7 +194,8 @@ mod tests {
             let margin = narrow(rng.range(fx!(0.005), fx!(0.2)));
             let mut hint = AxisHint::default();
             let plain = collide_near(&a, &b, margin, &mut hint, &mut SatCounters::default());
-            // `hint` now holds the separating axis, if there is one; another pair's is a wrong one.
+            // `hint` now contains the separating axis, if there is one. In the second round it contains that of another
+            // pair.
             for _ in 0..2 {
                 let found = collide(&a, &b, margin, &mut hint, &mut counters);
                 assert_eq!(found.points(), plain.points());
@@ -204,7 +205,10 @@ mod tests {
             }
             touching += u32::from(!plain.points().is_empty());
         }
-        assert!(touching > 20_000 && counters.hint_hits > 10_000, "{touching} touch, {counters:?}");
+        assert!(
+            touching > 20_000 && counters.hint_hits > 10_000,
+            "touching pairs and cached axes should be frequent: {touching} touch, {counters:?}"
+        );
     }
 
     #[test]
@@ -220,7 +224,7 @@ mod tests {
         }
     }
 
-    /// The corners of an outline in the world, and its radius.
+    /// Vertices of an outline in the world, and its radius.
     fn corners(shape: &PosedShape) -> (Vec<Vec2<Fx>>, Fx) {
         match &shape.outline {
             Outline::Circle { radius } => (alloc::vec![shape.centre], widen(*radius)),
@@ -234,7 +238,7 @@ mod tests {
         }
     }
 
-    /// Smallest distance of the corners of one outline from the edges of the other.
+    /// Smallest distance of the vertices of one outline from the edges of the other.
     fn distance(a: &[Vec2<Fx>], b: &[Vec2<Fx>]) -> Fx {
         let from = |points: &[Vec2<Fx>], outline: &[Vec2<Fx>]| {
             let edges = outline.iter().zip(outline.iter().cycle().skip(1));
@@ -248,8 +252,8 @@ mod tests {
         from(a, b).min(from(b, a))
     }
 
-    /// The oracle of the separation: for outlines that are apart, the distance between corners and edges by brute
-    /// force in 64 bits. A pair is only skipped if the outlines cross, where there is no such distance.
+    /// Compares the separation of disjoint outlines with the distance between vertices and edges, by brute force in 64
+    /// bits. A pair is skipped only if the outlines cross, where there is no such distance.
     #[test]
     fn separation_is_the_distance_of_outlines_that_are_apart() {
         let mut rng = Rng::new(2);
@@ -269,21 +273,25 @@ mod tests {
                     none += 1;
                     assert!(expected > fx!(0.04999), "missed a contact at {expected} m: {a:?} {b:?}");
                 }
-                // Sharp corners nearly touching are treated as faces: below the tolerance of 0.5 mm the
-                // separation along a face is less than the distance.
+                // Sharp corners that nearly touch are treated as faces: below the tolerance of 0.5 mm the separation
+                // along a face is less than the distance.
                 Some(found) if found + radius_a + radius_b > fx!(0.0005) => {
                     compared += 1;
-                    // Edges that are nearly parallel are seen as faces, up to the same tolerance off.
+                    // Edges that are nearly parallel are treated as faces, with an error up to the same tolerance.
                     let error = found - expected;
-                    assert!(error.abs() < fx!(0.000502), "{found} m, not {expected} m: {a:?} {b:?}");
+                    assert!(error.abs() < fx!(0.000502), "expected {expected} m, got {found} m: {a:?} {b:?}");
                 }
                 Some(_) => {}
             }
         }
-        assert!(compared > 5_000 && none > 10_000, "{compared} compared, {none} without contact");
+        assert!(
+            compared > 5_000 && none > 10_000,
+            "both cases should be frequent: {compared} compared, {none} without contact"
+        );
     }
 
-    /// No face tells capsules and circles on one line apart: only the distance of their ends does.
+    /// For capsules and circles on one line no face is a separating axis; only the distance of their ends shows the
+    /// gap.
     #[test]
     fn shapes_in_line_are_apart_and_pushed_along_the_line() {
         let pill =
@@ -305,12 +313,12 @@ mod tests {
                 assert_eq!(found.points().len(), 1, "{other:?}, gap {gap}");
                 assert!(found.normal.x > Length::lit("0.999"), "{:?}", found.normal);
                 let error = widen(found.points()[0].separation) - gap;
-                assert!(error.abs() < fx!(0.00001), "{error}");
+                assert!(error.abs() < fx!(0.00001), "expected a separation of {gap} m, off by {error} m");
             }
         }
     }
 
-    /// Exchanging the shapes exchanges the roles and nothing else, as long as no tie is broken by order.
+    /// Exchanging the shapes exchanges their roles and changes nothing else, unless a tie is broken by order.
     #[test]
     fn exchanged_shapes_give_the_opposite_normal() {
         let mut rng = Rng::new(3);
@@ -331,6 +339,6 @@ mod tests {
             features.iter_mut().for_each(|list| list.sort());
             assert_eq!(features[0], features[1], "{a:?} {b:?}");
         }
-        assert!(compared > 10_000, "only {compared}");
+        assert!(compared > 10_000, "expected over 10000 comparisons, got {compared}");
     }
 }

@@ -1,22 +1,22 @@
-//! One-way shapes: whether what touches one passes through it.
+//! One-way platforms: decides whether a shape in contact passes through.
 //!
-//! With `p` the direction into which things may pass, `m` the normal of the contact from the one-way shape to the other
-//! and `s` the separation of the two along `p`, the other one
+//! Let `p` be the pass direction, `m` the contact normal from the platform to the other shape, and `s` the separation
+//! of the two along `p`. The other shape
 //!
 //! ```text
-//! goes on passing    if it was passing, overlaps, and s < -slack
+//! continues to pass  if it was passing, overlaps, and s < -slack
 //! else is stopped    if m.p >= 1/2: it is on the side that `p` points to
 //! else passes
 //! ```
 //!
-//! So a decision is sticky while it matters: what turns round half-way falls back, and what has come through is held
-//! as soon as it is out, but for a slack that lets things slide from one platform to the next.
+//! A decision therefore persists during an overlap: a shape that turns round half-way falls back, and a shape that has
+//! come through is supported as soon as it is out. The slack lets a shape slide from one platform to the next.
 
 use super::manifold::Manifold;
 use super::pose::{Outline, PosedShape};
 use crate::math::{Fx, Unit, Vec2, widen};
 
-/// A shape with the direction into which things may pass through it, in world axes.
+/// A one-way platform with its pass direction in world axes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct OneWay<'a> {
     pub(crate) shape: &'a PosedShape,
@@ -24,7 +24,7 @@ pub(crate) struct OneWay<'a> {
 }
 
 impl OneWay<'_> {
-    /// Whether `other` passes. The manifold's normal points from the one-way shape to it.
+    /// Whether `other` passes. The manifold's normal points from the platform to `other`.
     pub(crate) fn lets_pass(
         &self,
         other: &PosedShape,
@@ -44,7 +44,7 @@ impl OneWay<'_> {
         upright < Unit::lit("0.5")
     }
 
-    /// How far the other shape is above this one in the direction: negative while it is not all through.
+    /// Separation of the other shape from this one along the pass direction; negative until the other is fully through.
     fn separation_from(&self, other: &PosedShape) -> Fx {
         let direction = self.direction.widen();
         let between = (other.centre - self.shape.centre).dot(direction);
@@ -54,7 +54,7 @@ impl OneWay<'_> {
     }
 }
 
-/// How far an outline reaches from its centre in a direction.
+/// Extent of an outline from its centre along a direction.
 fn reach(outline: &Outline, direction: Vec2<Fx>) -> Fx {
     match outline {
         Outline::Circle { radius } => widen(*radius),

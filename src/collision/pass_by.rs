@@ -1,16 +1,16 @@
-//! Shapes that pass by each other: in which direction they stay apart while one moves.
+//! Ghost-collision filter: finds a direction in which two shapes stay apart while they move past each other.
 //!
-//! A contact is a plane, fixed for a tick. The corner of the next block on a flush floor is such a plane too, and
-//! leans against whatever comes along, though it would slide over the block. Along a fixed axis `m` the separation of
-//! two shapes that do not turn is linear in time,
+//! A contact is a plane that is fixed for a tick. The corner of the next block of a flush floor gives such a plane too,
+//! and it would stop a shape that slides along, although the shape would slide over the block. Along a fixed axis `m`
+//! the separation of two shapes that do not rotate is linear in time,
 //!
 //! ```text
 //! s(t) = s(0) + m.v t
 //! ```
 //!
-//! so an axis on which they are apart at the start and at the end of a tick keeps them apart all the time (D. Eberly,
+//! so an axis that separates the shapes at the start and at the end of a tick separates them throughout (D. Eberly,
 //! "Intersection of Convex Objects: The Method of Separating Axes", 2001, for moving objects). The axes tried are the
-//! faces of both.
+//! face normals of both shapes.
 
 use super::circle_hull::{distance_along, step_bits};
 use super::hull_hull::{FACE_BITS, face_separation};
@@ -18,31 +18,32 @@ use super::pose::{Hull, Outline, PosedShape};
 use super::segment;
 use crate::math::{Fx, Length, Step, Unit, Vec2, round_shift};
 
-/// The cosine beyond which a face is one that the shapes lie on: nothing but rounding.
+/// Cosine between a face normal and the contact normal above which the contact is on that face; allows for rounding
+/// only.
 const SAME: Unit = Unit::lit("0.999999");
-/// And beyond which a face is parallel to that: 25 degrees.
+/// Cosine above which a face counts as parallel to a contact that is on a face: 25 degrees.
 const OWN: Unit = Unit::lit("0.9");
 
-/// How two shapes move against each other within a tick.
+/// Relative motion of two shapes in a tick, and the tolerances of the filter.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Passage {
-    /// Displacement of B from A, in metres.
+    /// Displacement of B relative to A, in metres.
     pub(crate) shift: Vec2<Length>,
-    /// Largest way of a point because the shapes turn.
+    /// Largest displacement of a point by rotation.
     pub(crate) turn: Length,
-    /// Overlap that is left to the next tick.
+    /// Overlap that may be left to the next tick.
     pub(crate) slack: Length,
-    /// How much nearer they may come on the axis: what falls on a face does not pass it by.
+    /// Largest approach along the axis: a shape that falls onto a face does not pass it.
     pub(crate) approach: Length,
-    /// Of the contact, either way round.
+    /// Contact normal, with either sign.
     pub(crate) normal: Vec2<Unit>,
-    /// Faces of which the normal has a larger cosine with the contact's are the contact's own. A shape does not pass by
-    /// the face that it lies on, however it turns there; a corner has no face of its own.
+    /// Faces whose normals have a larger cosine with the contact normal are the contact's own. A shape does not pass by
+    /// the face on which it lies, whatever its rotation; a corner contact has no own face.
     own: Unit,
 }
 
 impl Passage {
-    /// A passage at a contact with a normal.
+    /// Creates the filter input for a contact with a normal.
     pub(crate) fn new(
         shift: Vec2<Length>,
         turn: Length,
@@ -54,13 +55,13 @@ impl Passage {
     }
 }
 
-/// Without sign.
+/// Absolute value of the cosine between two unit vectors.
 fn cosine(a: Vec2<Unit>, b: Vec2<Unit>) -> Unit {
     let cosine: Unit = a.dot(b);
     cosine.saturating_abs()
 }
 
-/// Whether a face of one of the shapes keeps them apart through the whole passage, but for the slack.
+/// Whether a face of one of the shapes separates them throughout the motion, up to the slack.
 pub(crate) fn pass_by(a: &PosedShape, b: &PosedShape, passage: &Passage) -> bool {
     let (mut room_a, mut room_b) = (None, None);
     let (Some(hull_a), Some(hull_b)) = (hull_about(a, b, &mut room_a), hull_about(b, a, &mut room_b)) else {
@@ -74,7 +75,7 @@ pub(crate) fn pass_by(a: &PosedShape, b: &PosedShape, passage: &Passage) -> bool
     some_face_parts(hull_a, hull_b, d, passage) || some_face_parts(hull_b, hull_a, -d, &back)
 }
 
-/// Where the coordinates of [`hull_about`] start: a line may have its centre anywhere.
+/// Origin of the coordinates of [`hull_about`]: a segment's own centre may be far away.
 fn origin(shape: &PosedShape, other: &PosedShape) -> Vec2<Fx> {
     match shape.outline {
         Outline::Circle { .. } | Outline::Polygon(_) => shape.centre,
@@ -82,7 +83,7 @@ fn origin(shape: &PosedShape, other: &PosedShape) -> Vec2<Fx> {
     }
 }
 
-/// The outline of a shape as a hull, for which there is room if it is not one.
+/// Outline of a shape as a hull. `room` provides storage if the outline is not a hull already.
 fn hull_about<'a>(shape: &'a PosedShape, other: &PosedShape, room: &'a mut Option<Hull>) -> Option<&'a Hull> {
     let from_other = shape.centre - other.centre;
     *room = match &shape.outline {
@@ -94,10 +95,10 @@ fn hull_about<'a>(shape: &'a PosedShape, other: &PosedShape, room: &'a mut Optio
     room.as_ref()
 }
 
-/// `d` is the vector from the centre of A to that of B.
+/// Whether a face of `a` separates the hulls. `d` is the vector from the centre of A to that of B.
 fn some_face_parts(a: &Hull, b: &Hull, d: Vec2<Length>, passage: &Passage) -> bool {
     let radii = step_bits(a.radius) + step_bits(b.radius);
-    // What rules out most faces comes first.
+    // The test that rejects most faces comes first.
     (0..a.faces()).any(|edge| {
         let normal = a.normals()[edge];
         let moved = distance_along(normal, passage.shift);
@@ -110,13 +111,13 @@ fn some_face_parts(a: &Hull, b: &Hull, d: Vec2<Length>, passage: &Passage) -> bo
         if nearest < -step_bits(passage.slack) {
             return false;
         }
-        // Of what is thin on this axis the slack must not be all.
+        // If an outline is thin along this axis, the slack must not exceed a quarter of its width.
         let widths = [a, b].map(|hull| width(hull, normal) / 4).into_iter().filter(|&width| width > 0);
         nearest >= -widths.fold(step_bits(passage.slack), i64::min)
     })
 }
 
-/// How wide an outline is on an axis, in units of `Step`: 0 for a line across it.
+/// Width of an outline along an axis, in units of `Step`: 0 for a line perpendicular to the axis.
 fn width(hull: &Hull, n: Vec2<Unit>) -> i64 {
     let along = |&vertex: &Vec2<Length>| distance_along(n, vertex);
     let (lower, upper) = hull

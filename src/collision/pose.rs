@@ -1,4 +1,4 @@
-//! Shapes posed in world axes: each shape is rotated once in a tick, so that its pairs only translate.
+//! Posed shapes: each shape is rotated to world axes once per tick, so that its pairs only translate.
 
 use core::ops::Deref;
 
@@ -8,18 +8,18 @@ use super::link::Link;
 use crate::body::{Body, Geometry, POLYGON_VERTICES_MAX, Polygon, ShapeDef};
 use crate::math::{Aabb, Fx, Length, Rot, Unit, Vec2, narrow, widen};
 
-/// A shape in the world: its outline in world axes about its own centre.
+/// A shape posed in the world: its outline in world axes relative to its own centre.
 #[derive(Clone, Debug)]
 #[repr(align(64))]
 pub(crate) struct PosedShape {
-    /// The shape's centre in the world.
+    /// Centre of the shape in the world.
     pub(crate) centre: Vec2<Fx>,
-    /// The smallest box around the shape, in the world.
+    /// Smallest AABB of the shape, in the world.
     pub(crate) bounds: Aabb,
     pub(crate) outline: Outline,
 }
 
-/// An outline about the shape's centre, in world axes.
+/// Outline relative to the shape's centre, in world axes.
 #[derive(Clone, Debug)]
 pub(crate) enum Outline {
     Circle { radius: Length },
@@ -29,7 +29,7 @@ pub(crate) enum Outline {
 }
 
 impl Outline {
-    /// How far the surface is from the vertices, in metres: 0 where corners are sharp.
+    /// Distance of the surface from the vertices, in metres: 0 if corners are sharp.
     pub(crate) fn radius(&self) -> Fx {
         match self {
             Outline::Circle { radius } => widen(*radius),
@@ -39,10 +39,10 @@ impl Outline {
     }
 }
 
-/// The first two vertices of a box and the normals of its first two faces: the others are opposite to them.
+/// First two vertices and face normals of a box; the other two are their opposites.
 pub(crate) type BoxFaces<'a> = (&'a [Vec2<Length>; 2], &'a [Vec2<Unit>; 2]);
 
-/// The same of a box by itself.
+/// First two vertices and face normals of a box, by value.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Faces {
     pub(super) vertices: [Vec2<Length>; 2],
@@ -50,7 +50,7 @@ pub(crate) struct Faces {
 }
 
 impl Faces {
-    /// Of a box whose first faces these are.
+    /// Takes the first two vertices and normals of a box.
     fn of(vertices: &[Vec2<Length>], normals: &[Vec2<Unit>]) -> Option<Self> {
         Some(Faces { vertices: *vertices.first_chunk()?, normals: *normals.first_chunk()? })
     }
@@ -64,7 +64,7 @@ impl Faces {
         }
     }
 
-    /// The smallest box with sides along the axes around this one, with rounded corners, about its centre.
+    /// Smallest AABB of the box about its centre, with rounded corners.
     #[inline(always)]
     fn bounds(&self, radius: Length) -> Aabb {
         let [a, b] = self.vertices;
@@ -74,18 +74,18 @@ impl Faces {
     }
 }
 
-/// A convex outline in 32-bit coordinates: a polygon, or a segment or capsule seen as a polygon with two sides.
+/// A convex outline in 32-bit coordinates: a polygon, or a segment or capsule as a two-sided polygon.
 #[derive(Clone, Debug)]
 pub(crate) struct Hull {
     count: usize,
     vertices: [Vec2<Length>; POLYGON_VERTICES_MAX],
     normals: [Vec2<Unit>; POLYGON_VERTICES_MAX],
     pub(crate) radius: Length,
-    /// The direction of a capsule in its own frame.
+    /// Direction of a capsule in its own frame.
     direction: Vec2<Unit>,
-    /// Whether it has four faces and turning it half around its centre changes nothing.
+    /// Whether the outline has four sides and is point-symmetric about its centre.
     is_box: bool,
-    /// Whether it is a box with right angles, and small enough for lanes.
+    /// Whether the outline is a box with nearly right angles that is small enough for the SIMD path.
     is_small_box: bool,
 }
 
@@ -95,31 +95,31 @@ impl Hull {
         &self.vertices[..self.count]
     }
 
-    /// `normals()[i]` points out of the edge from vertex `i` to the next.
+    /// `normals()[i]` is the outward normal of the edge from vertex `i` to the next vertex.
     #[inline]
     pub(crate) fn normals(&self) -> &[Vec2<Unit>] {
         &self.normals[..self.count]
     }
 
-    /// One of the vertices.
+    /// Vertex `i`.
     #[inline]
     pub(crate) fn vertex(&self, i: usize) -> Vec2<Length> {
         self.vertices[i % POLYGON_VERTICES_MAX]
     }
 
-    /// One of the normals.
+    /// Normal `i`.
     #[inline]
     pub(crate) fn normal(&self, i: usize) -> Vec2<Unit> {
         self.normals[i % POLYGON_VERTICES_MAX]
     }
 
-    /// Whether it is a segment or a capsule: two sides, and no face at the ends.
+    /// Whether the outline is a segment or a capsule: two sides, without faces at the ends.
     #[inline]
     pub(crate) fn is_line(&self) -> bool {
         self.count == 2
     }
 
-    /// The first half of a box: of vertices and normals alike, 2 and 3 are exactly opposite to 0 and 1.
+    /// First two vertices and normals of a box; 2 and 3 are the exact opposites of 0 and 1.
     #[inline]
     pub(crate) fn as_box(&self) -> Option<BoxFaces<'_>> {
         if !self.is_box {
@@ -128,58 +128,58 @@ impl Hull {
         self.vertices.first_chunk().zip(self.normals.first_chunk())
     }
 
-    /// Whether it may be one of [`SmallBoxes`](super::SmallBoxes).
+    /// Whether the outline qualifies for [`SmallBoxes`](super::SmallBoxes).
     #[inline]
     pub(crate) fn is_small_box(&self) -> bool {
         self.is_small_box
     }
 
-    /// The index of the vertex after `i`, counter-clockwise.
+    /// Index of the vertex after `i`, counter-clockwise.
     #[inline]
     pub(crate) fn next(&self, i: usize) -> usize {
         if i + 1 == self.count { 0 } else { i + 1 }
     }
 
-    /// The index of the vertex before `i`.
+    /// Index of the vertex before `i`.
     #[inline]
     pub(crate) fn previous(&self, i: usize) -> usize {
         if i == 0 { self.count.saturating_sub(1) } else { i - 1 }
     }
 
-    /// A circle: a point with a radius, and no face.
+    /// Creates the hull of a circle: one point with a radius, without faces.
     pub(crate) fn point(radius: Length) -> Self {
         Hull { count: 1, radius, ..Self::empty() }
     }
 
-    /// How many faces it has.
+    /// Number of faces.
     pub(crate) fn faces(&self) -> usize {
         if self.count < 2 { 0 } else { self.count }
     }
 
-    /// The mean of the vertices, about the shape's centre: a place inside.
+    /// Mean of the vertices, a point inside, relative to the shape's centre.
     pub(crate) fn middle(&self) -> Vec2<Fx> {
         let sum = self.vertices().iter().fold(Vec2::ZERO, |sum, vertex| sum + vertex.widen());
         let count = i64::try_from(self.count).expect("at most 8 vertices");
         Vec2::new(sum.x / count, sum.y / count)
     }
 
-    /// A segment: one edge there and one back, with opposite normals.
+    /// Creates the hull of a segment: one edge in each direction, with opposite normals.
     pub(crate) fn segment(a: Vec2<Length>, b: Vec2<Length>, direction: Vec2<Unit>) -> Self {
         let mut hull = Hull { count: 2, ..Self::empty() };
         hull.place_ends(a, b, direction);
         hull
     }
 
-    /// A capsule: a segment with a radius.
+    /// Creates the hull of a capsule: a segment with a radius.
     fn capsule(a: Vec2<Fx>, b: Vec2<Fx>, radius: Length, rotation: Rot) -> Self {
-        // One that is long enough to be valid has a direction.
+        // A valid capsule is long enough to have a direction.
         let direction = (b - a).normalized().unwrap_or(Vec2::X);
         let mut hull = Hull { count: 2, radius, direction, ..Self::empty() };
         hull.turn_capsule(a, b, rotation);
         hull
     }
 
-    /// Turns a capsule with its ends in its own frame another way.
+    /// Rotates a capsule, whose ends are given in its own frame.
     fn turn_capsule(&mut self, a: Vec2<Fx>, b: Vec2<Fx>, rotation: Rot) {
         let [a, b] = [a, b].map(|end| rotation.apply(end.narrow()));
         self.place_ends(a, b, rotation.apply(self.direction));
@@ -202,7 +202,7 @@ impl Hull {
         hull
     }
 
-    /// Whether a box, however it is turned, is no larger than lanes take, and has nearly right angles.
+    /// Whether a box at any rotation is within the size limit of the SIMD path, and has nearly right angles.
     fn fits_lanes(&self) -> bool {
         let reach = |vertex: &Vec2<Length>| vertex.length().saturating_add(self.radius);
         let cosine: Unit = self.normals[0].dot(self.normals[1]);
@@ -210,7 +210,7 @@ impl Hull {
             && cosine.saturating_abs() < Unit::lit("0.1")
     }
 
-    /// Turns the vertices and normals of its polygon another way.
+    /// Sets the vertices and normals to those of a polygon at a rotation.
     #[inline(always)]
     fn rotate(&mut self, polygon: &Polygon, rotation: Rot) {
         if let (true, Some(faces)) = (self.is_box, Faces::of(polygon.vertices(), polygon.normals())) {
@@ -225,11 +225,11 @@ impl Hull {
         }
     }
 
-    /// Turns a box.
+    /// Sets the faces of a box.
     #[inline(always)]
     fn set_faces(&mut self, Faces { vertices: [v0, v1], normals: [n0, n1] }: &Faces) {
         let (vertices, normals) = (&mut self.vertices, &mut self.normals);
-        // Rounded alike, so that opposite ones stay exactly opposite.
+        // Opposites are negated after rounding, so that they stay exact opposites.
         [vertices[0], vertices[1], vertices[2], vertices[3]] = [*v0, *v1, -*v0, -*v1];
         [normals[0], normals[1], normals[2], normals[3]] = [*n0, *n1, -*n0, -*n1];
     }
@@ -264,8 +264,8 @@ impl PosedShape {
         Self::of_geometry(&shape.geometry, centre_of(shape, body, || rotation), rotation)
     }
 
-    /// Poses the same shape again, after its body has moved: writes only what that changes. The rotation is asked for
-    /// only if it changes something.
+    /// Poses the same shape again after its body has moved, writing only the fields that change. `rotation` is
+    /// evaluated lazily, only if the shape depends on it.
     #[inline(always)]
     pub(crate) fn renew(&mut self, shape: &ShapeDef, body: &Body, rotation: &impl Deref<Target = Rot>) {
         let centre = centre_of(shape, body, || **rotation);
@@ -287,7 +287,7 @@ impl PosedShape {
         }
     }
 
-    /// Turns a box, and puts its centre somewhere else.
+    /// Sets the faces of a box and moves its centre.
     #[inline(always)]
     pub(crate) fn turn_box(&mut self, faces: &Faces, centre: Vec2<Fx>) {
         if let Outline::Polygon(hull) = &mut self.outline {
@@ -297,18 +297,18 @@ impl PosedShape {
         }
     }
 
-    /// Shifts it, unturned: the same as posing it again where its body has been shifted to.
+    /// Translates the shape; the result equals posing it again after its body was translated.
     pub(crate) fn shift(&mut self, by: Vec2<Fx>) {
         self.centre += by;
         self.bounds = self.bounds.translated(by);
     }
 
-    /// The radius of a disc inside a geometry, however it is turned; 0 for a line.
+    /// Radius of a disc inside a geometry, at any rotation; 0 for a segment or link.
     pub(crate) fn inner_radius(geometry: &Geometry) -> Fx {
         Core::of(&Self::of_geometry(geometry, Vec2::ZERO, Rot::IDENTITY), Vec2::ZERO).inner_radius()
     }
 
-    /// Its faces, if it may be one of [`SmallBoxes`](super::SmallBoxes).
+    /// Faces of the shape, if it qualifies for [`SmallBoxes`](super::SmallBoxes).
     #[inline]
     pub(crate) fn as_small_box(&self) -> Option<Faces> {
         match &self.outline {
@@ -317,8 +317,8 @@ impl PosedShape {
         }
     }
 
-    /// The same in the frame of the shape, if its body turns about its centre: then these and the body's rotation are all
-    /// that it takes to pose it.
+    /// Faces of a small box in the shape's frame, if the shape's centre is its body's centre of mass. These and the
+    /// body's rotation are then enough to pose the shape.
     pub(crate) fn as_centred_box(&self, shape: &ShapeDef, body: &Body) -> Option<Faces> {
         let Geometry::Polygon(polygon) = &shape.geometry else { return None };
         self.as_small_box()?;
@@ -326,7 +326,7 @@ impl PosedShape {
         Faces::of(polygon.vertices(), polygon.normals()).filter(|_| is_centred)
     }
 
-    /// Whether something at a place in the world meets the shape, or passes from its open side.
+    /// Whether the shape is solid for another shape at a world point: false on the open side of a one-sided link.
     pub(crate) fn is_solid_from(&self, place: Vec2<Fx>) -> bool {
         match &self.outline {
             Outline::Link(link) => link.is_solid_from(place - self.centre),
@@ -334,7 +334,7 @@ impl PosedShape {
         }
     }
 
-    /// Poses a geometry with its centre somewhere in the world.
+    /// Poses a geometry with its centre at a world position.
     pub(crate) fn of_geometry(geometry: &Geometry, centre: Vec2<Fx>, rotation: Rot) -> Self {
         let (outline, bounds) = match geometry {
             Geometry::Circle { radius } => {
@@ -365,15 +365,15 @@ impl PosedShape {
     }
 }
 
-/// Where the centre of a shape of a body is.
+/// World position of the centre of a shape.
 fn centre_of(shape: &ShapeDef, body: &Body, rotation: impl FnOnce() -> Rot) -> Vec2<Fx> {
     let arm = arm_of(shape, body);
-    // Most bodies have one shape, about whose centre they turn.
+    // Most bodies have one shape, centred on the centre of mass.
     let turned = if arm == Vec2::ZERO { arm } else { rotation().apply_wide(arm) };
     body.centre_of_mass() + turned
 }
 
-/// From the centre of mass of a body to the centre of one of its shapes, in the frame of the body.
+/// Vector from the centre of mass of a body to the centre of one of its shapes, in the body's frame.
 pub(crate) fn arm_of(shape: &ShapeDef, body: &Body) -> Vec2<Fx> {
     shape.offset - body.local_centre_of_mass()
 }

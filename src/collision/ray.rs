@@ -1,37 +1,37 @@
-//! Where a ray enters a shape: `o + t d` for the smallest `t` from 0 to 1.
+//! Ray cast against a shape: `o + t d` for the smallest `t` from 0 to 1.
 //!
-//! The outline of a convex core with a radius `r` is made of its edges, moved out by `r`, and of circles about its
-//! vertices. With outward edges `e` from `p` a ray crosses the moved line where `e x (o + t d - p) = -r |e|`, and it
-//! enters a circle about `p` half a chord before its nearest point. Each `t` is a quotient of exact products: the
-//! only approximations are `|e|` and `|d|`, which multiply no more than the radius, to a relative 1.5e-9. So rays
-//! and segments may be as long as the world.
+//! The outline of a convex core with a radius `r` consists of its edges, moved outwards by `r`, and of circles about
+//! its vertices. For an edge vector `e` from `p`, a ray crosses the moved line where `e x (o + t d - p) = -r |e|`; it
+//! enters a circle about `p` half a chord before the ray's nearest point to `p`. Each `t` is a quotient of exact
+//! products. The only approximations are `|e|` and `|d|`, with a relative error of 1.5e-9, and they are only multiplied
+//! by the radius. Rays and segments may therefore be as long as the world.
 
 use super::core::{Core, Fraction, Grid, along, cross, direction, dot, edges, from_grid, height};
 use super::core::{scaled_along, to_grid};
 use super::distance::overlap;
 use crate::math::{Fx, Unit, Vec2};
 
-/// Where a ray hits a shape.
+/// Hit of a ray on a shape.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct RayHit {
-    /// Of the ray's translation, 0 to 1, rounded down to 2^-32: of a ray of 2^30 m that is 0.25 m.
+    /// Fraction of the ray's translation, 0 to 1, rounded down to 2^-32: for a ray of 2^30 m that is 0.25 m.
     pub(crate) fraction: Fx,
-    /// The same, fine enough to say which of two hits is the first.
+    /// The fraction with more bits, enough to order two hits.
     pub(crate) order: Fraction,
-    /// Where, about the origin of the core: within 1 µm of the surface, however long the ray.
+    /// Hit point relative to the origin of the core: within 1 µm of the surface at any length of the ray.
     pub(crate) point: Vec2<Fx>,
-    /// Out of the surface. Zero if the ray starts inside the shape or on its border.
+    /// Outward surface normal. Zero if the ray starts inside the shape or on its border.
     pub(crate) normal: Vec2<Unit>,
 }
 
-/// Where the ray from `origin` to `origin + translation` first meets a shape. Segments are hit from both sides, and
-/// at their end if the ray runs along them.
+/// First hit of the ray from `origin` to `origin + translation` on a shape. Segments are hit from both sides, and at
+/// their end if the ray runs along them.
 pub(crate) fn cast_ray(shape: &Core, origin: Vec2<Fx>, translation: Vec2<Fx>) -> Option<RayHit> {
     if contains_point(shape, origin) {
         let (fraction, order) = (Fx::ZERO, Fraction::ZERO);
         return Some(RayHit { fraction, order, point: origin, normal: Vec2::ZERO });
     }
-    // Both ends are on the grid, so that the end of one ray is the beginning of the next.
+    // Both ends are rounded to the grid, so that the end of one ray is the start of the next.
     let end = to_grid(origin + translation);
     let origin = to_grid(origin);
     let translation = end - origin;
@@ -40,12 +40,12 @@ pub(crate) fn cast_ray(shape: &Core, origin: Vec2<Fx>, translation: Vec2<Fx>) ->
     Some(RayHit { fraction: fraction.to_fx(), order: fraction, point, normal })
 }
 
-/// Whether a point is in a shape or on its border.
+/// Whether a point is inside a shape or on its border.
 pub(crate) fn contains_point(shape: &Core, point: Vec2<Fx>) -> bool {
     overlap(shape, &Core::point(point))
 }
 
-/// Where a ray from outside enters the points within `radius` of the hull of `points`, and the normal there.
+/// Fraction and normal at which a ray from outside enters the set of points within `radius` of the hull of `points`.
 pub(super) fn entry(
     points: &[Vec2<Grid>],
     radius: Grid,
@@ -53,11 +53,11 @@ pub(super) fn entry(
     d: Vec2<Grid>,
 ) -> Option<(Fraction, Vec2<Unit>)> {
     let forward = direction(d)?;
-    // A ray enters something convex once: a face that it hits is where.
+    // A ray enters a convex shape at one point, so a face that it hits is the entry.
     if let Some(found) = edges(points).find_map(|(p, q)| enter_face(p, q, radius, o, d)) {
         return Some(found);
     }
-    // Without a radius there are no circles, but a ray along a segment, or to a point, meets its end.
+    // Without a radius there are no circles, but a ray along a segment, or towards a point, hits its end.
     if radius == 0 && points.len() > 2 {
         return None;
     }
@@ -68,7 +68,7 @@ pub(super) fn entry(
     Some((fraction, normal.unwrap_or(-forward)))
 }
 
-/// Where a ray enters through the face from `p` to `q`, moved out by `radius`.
+/// Entry of a ray through the face from `p` to `q`, moved outwards by `radius`.
 fn enter_face(
     p: Vec2<Grid>,
     q: Vec2<Grid>,
@@ -91,13 +91,13 @@ fn enter_face(
         // Exact, so that no ray slips through a corner.
         (0..=inwards).contains(&cross(o - p, d))
     } else {
-        // Near its ends the face and the circle about them agree.
+        // Near its ends the face and the circle about the end agree.
         (0..=dot(e, e)).contains(&dot(e, o + fraction.of(d) - p))
     };
     on_face.then_some((fraction, -tangent.perp()))
 }
 
-/// Where a ray enters the circle about `p`. `forward` is its direction.
+/// Entry of a ray into the circle about `p`. `forward` is the ray's direction.
 fn enter_circle(
     p: Vec2<Grid>,
     radius: Grid,
@@ -114,7 +114,7 @@ fn enter_circle(
     let half_chord = (i128::from(r - h) * i128::from(r + h)).max(0).isqrt();
     let way = before - ((half_chord * (scaled_along(forward, d) >> 8)) >> (Unit::FRAC_NBITS - 8));
     let whole = dot(d, d);
-    // From a point inside by a rounding error the way is negative.
+    // If the ray starts inside by a rounding error, `way` is negative.
     (way <= whole).then(|| Fraction::ratio(way.max(0), whole))
 }
 
@@ -123,14 +123,16 @@ fn times_length(radius: Grid, v: Vec2<Grid>, direction: Vec2<Unit>) -> i128 {
     ((scaled_along(direction, v) >> 8) * i128::from(radius.to_bits())) >> (Unit::FRAC_NBITS - 8)
 }
 
-/// How far `translation` approaches something whose outward normal is known, in metres; negative when it leaves.
+/// Distance in metres by which `translation` approaches a surface with the given outward normal; negative if it moves
+/// away.
 pub(super) fn approach(normal: Vec2<Unit>, translation: Vec2<Grid>) -> Grid {
     -along(normal, translation)
 }
 
 #[cfg(test)]
 mod tests {
-    //! Against sphere tracing: a point that goes on by its distance from the shape never passes the surface.
+    //! Tests against sphere tracing: a point that repeatedly advances by its distance from the shape never passes the
+    //! surface.
 
     use super::super::core::samples;
     use super::super::distance::distance;
@@ -138,8 +140,8 @@ mod tests {
     use crate::fx;
     use crate::math::{Rng, fx_div, fx_mul};
 
-    /// How far along a ray of length 1 to 30 m the surface is: within about 2e-7 m, or `None`.
-    /// Rays that pass within `skip` of the surface without reaching it are undecided.
+    /// Distance along a ray of length 1 to 30 m to the surface, within about 2e-7 m; `None` for a miss. A ray that
+    /// passes within 2e-6 m of the surface without reaching it is undecided: `Err`.
     fn trace(shape: &Core, origin: Vec2<Fx>, translation: Vec2<Fx>) -> Result<Option<Fx>, ()> {
         let length = translation.length();
         let (mut way, mut nearest) = (Fx::ZERO, Fx::MAX);
@@ -178,7 +180,7 @@ mod tests {
                 (Ok(None), None) => misses += 1,
                 (Ok(Some(way)), Some(hit)) => {
                     hits += 1;
-                    // A ray at a flat angle needs longer for the last 2e-7 m.
+                    // A ray at a grazing angle travels further over the last 2e-7 m.
                     let found = fx_mul(hit.fraction, translation.length());
                     let steep = -translation.normalized().unwrap().widen().dot(hit.normal.widen());
                     assert!(steep >= 0, "{hit:?} {shape:?}");
@@ -197,7 +199,7 @@ mod tests {
         );
     }
 
-    /// Through corners and along edges too, a ray into a shape hits it.
+    /// A ray into a shape hits it, also through corners and along edges.
     #[test]
     fn no_ray_slips_into_a_shape() {
         let mut rng = Rng::new(3);
@@ -220,7 +222,7 @@ mod tests {
                 );
             }
         }
-        assert!(rays > 20_000, "{rays}");
+        assert!(rays > 20_000, "expected over 20000 rays, got {rays}");
     }
 
     #[test]
@@ -236,7 +238,7 @@ mod tests {
             let surface = distance(&shape, &Core::point(hit.point));
             assert!(surface.distance.abs() < fx!(0.0000001), "{surface:?} {hit:?} {shape:?}");
         }
-        assert!(hits > 5_000, "{hits}");
+        assert!(hits > 5_000, "expected over 5000 hits, got {hits}");
     }
 
     #[test]
@@ -252,7 +254,7 @@ mod tests {
             let surface = distance(&shape, &Core::point(hit.point)).distance;
             assert!(hit.fraction == 0 || surface.abs() < fx!(0.0000003), "{surface:?} {hit:?} {shape:?}");
         }
-        assert!(hits > 5_000, "{hits}");
+        assert!(hits > 5_000, "expected over 5000 hits, got {hits}");
     }
 
     #[test]

@@ -1,27 +1,28 @@
-//! Searches through boxes: what overlaps an area, what a moving area may hit, what is near a point. Each says which
-//! boxes it reaches, so that a tree can leave out whole subtrees, and it may reach less as it finds more.
+//! Searches over boxes: boxes that overlap an area, that a moving area may hit, or that are near a point. Each search
+//! states which boxes it reaches, so that a tree can skip whole subtrees, and the reach may shrink as results are
+//! found.
 //!
-//! A test may let through a box that is a few units of the last place too far away, but never refuses one in reach.
+//! A test may accept a box that is a few units of the last place too far away, but never rejects a box within reach.
 
 use core::ops::ControlFlow;
 
 use crate::math::{Aabb, Fx, Unit, Vec2, saturate_wide};
 
-/// A search through boxes, whatever they are kept in.
+/// A search over boxes, independent of their data structure.
 pub(crate) trait Search {
-    /// Whether the box may hold something of interest.
+    /// Whether the box may contain a result.
     fn reaches(&self, aabb: Aabb) -> bool;
 
-    /// Whether `a` should be searched before `b`. Changes how fast, never what may be missed.
+    /// Whether `a` should be searched before `b`. Changes the speed, never the result.
     fn prefers(&self, _a: Aabb, _b: Aabb) -> bool {
         true
     }
 
-    /// Called with every slot whose box is reached.
+    /// Visits a slot whose box is reached.
     fn visit(&mut self, slot: u32) -> ControlFlow<()>;
 }
 
-/// Boxes that overlap an area.
+/// Search for boxes that overlap an area.
 pub(crate) struct Overlap<F> {
     pub(crate) area: Aabb,
     pub(crate) visit: F,
@@ -37,13 +38,13 @@ impl<F: FnMut(u32) -> ControlFlow<()>> Search for Overlap<F> {
     }
 }
 
-/// Boxes that an area touches on its way along a translation.
+/// Search for boxes that an area touches while it moves along a translation.
 pub(crate) struct Along<F> {
     area: Aabb,
     translation: Vec2<Fx>,
-    /// How much of the translation is of interest.
+    /// Fraction of the translation that is still of interest.
     fraction: Unit,
-    /// The box around that much of the way.
+    /// Box around the area's motion over that fraction.
     around: Aabb,
     visit: F,
 }
@@ -54,13 +55,13 @@ impl<F: FnMut(u32) -> Unit> Along<F> {
         Along { area, translation, fraction: Unit::ONE, around, visit }
     }
 
-    /// Separating axis across the way: the line `t d` meets the Minkowski difference of the boxes if not all of
-    /// its corners `p` have `d x p` of one sign.
+    /// Separating axis test perpendicular to the motion: the line `t d` meets the Minkowski difference of the boxes
+    /// unless `d x p` has the same sign for all of its corners `p`.
     fn strip_meets(&self, aabb: Aabb) -> bool {
         let (lower, upper) = (coarse(self.area.lower), coarse(self.area.upper));
         let (box_lower, box_upper) = (coarse(aabb.lower), coarse(aabb.upper));
         let (dx, dy) = coarse(self.translation);
-        // Rounding down has moved either end, and that of the translation, by less than one.
+        // Rounding down has moved each end, and that of the translation, by less than one unit.
         let (left, right) = (box_lower.0 - upper.0 - 2, box_upper.0 - lower.0 + 2);
         let (bottom, top) = (box_lower.1 - upper.1 - 2, box_upper.1 - lower.1 + 2);
         let (y_least, y_most) = if dx < 0 { (top, bottom) } else { (bottom, top) };
@@ -75,7 +76,7 @@ impl<F: FnMut(u32) -> Unit> Search for Along<F> {
         self.around.overlaps(aabb) && self.strip_meets(aabb)
     }
 
-    /// What the area meets first on the axis along which it moves farther.
+    /// Prefers the box that the area meets first on the axis of its larger displacement.
     fn prefers(&self, a: Aabb, b: Aabb) -> bool {
         let Vec2 { x, y } = self.translation;
         match (x.unsigned_abs() >= y.unsigned_abs(), x >= Fx::ZERO, y >= Fx::ZERO) {
@@ -99,12 +100,12 @@ impl<F: FnMut(u32) -> Unit> Search for Along<F> {
     }
 }
 
-/// In quarters of the resolution, rounded down: differences fit into 64 bits, and sums of their products into 128.
+/// Coordinates at a quarter of the resolution, rounded down: differences fit 64 bits, and sums of their products 128.
 fn coarse(point: Vec2<Fx>) -> (i64, i64) {
     (point.x.to_bits() >> 2, point.y.to_bits() >> 2)
 }
 
-/// A box around the area on its way along a fraction of the translation, rounded outwards.
+/// Box around the area's motion over a fraction of the translation, rounded outwards.
 fn area_around(area: Aabb, translation: Vec2<Fx>, fraction: Unit) -> Aabb {
     let floor = |way: Fx| (i128::from(way.to_bits()) * i128::from(fraction.to_bits())) >> Unit::FRAC_NBITS;
     let (x, y) = (floor(translation.x), floor(translation.y));
@@ -113,17 +114,17 @@ fn area_around(area: Aabb, translation: Vec2<Fx>, fraction: Unit) -> Aabb {
     Aabb::new(area.lower + vector(x.min(0), y.min(0)), area.upper + vector((x + 1).max(0), (y + 1).max(0)))
 }
 
-/// Boxes within a distance of a point, the nearer ones rather earlier.
+/// Search for boxes within a distance of a point. Nearer boxes tend to come first.
 pub(crate) struct Near<F> {
     pub(crate) point: Vec2<Fx>,
-    /// In metres. Negative: nothing is near. The largest number: everything is.
+    /// Radius in metres. A negative radius reaches no box; the largest number reaches every box.
     pub(crate) radius: Fx,
-    /// Returns the radius that is still of interest.
+    /// Visits a slot and returns the radius that is still of interest.
     pub(crate) visit: F,
 }
 
 impl<F> Near<F> {
-    /// The distance on each axis, in units of the last place.
+    /// Distance of the point from a box on each axis, in units of the last place.
     fn distances(&self, aabb: Aabb) -> (u64, u64) {
         let outside = |at: Fx, lower: Fx, upper: Fx| at.to_bits().abs_diff(at.clamp(lower, upper).to_bits());
         (outside(self.point.x, aabb.lower.x, aabb.upper.x), outside(self.point.y, aabb.lower.y, aabb.upper.y))

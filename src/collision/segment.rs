@@ -1,33 +1,32 @@
-//! Segments may be as long as the world: before they meet a shape they are clipped, in 64 bits, to a window
-//! around it, and become a two-sided outline in 32-bit coordinates about that shape's centre.
+//! Segments, which may be as long as the world. Before it meets a shape, a segment is clipped in 64 bits to a window
+//! around that shape, and becomes a two-sided outline in 32-bit coordinates relative to the shape's centre.
 
 use super::pose::Hull;
 use crate::fx;
 use crate::math::{Fx, Orientation, Vec2, div_round, orientation, saturate_wide};
 
-/// Half the side of the window in metres: more than any shape's reach of 170 m with the margin of a fast one,
-/// and small enough that coordinates about the shape's centre, and the edge itself, fit `Length`.
+/// Half the side of the window in metres. It exceeds any shape's extent of 170 m with the margin of a fast shape, and
+/// is small enough that coordinates relative to the shape's centre, and the edge itself, fit `Length`.
 const WINDOW: Fx = fx!(200);
 
-/// The segment from `a` to `b`, given about the other shape's centre, as an outline about it; `None` when it
-/// passes the window by.
+/// Outline of the segment from `a` to `b`, both relative to the other shape's centre; `None` if it misses the window.
 pub(crate) fn near_hull(a: Vec2<Fx>, b: Vec2<Fx>) -> Option<Hull> {
     let direction = (b - a).normalized()?;
     let (p, q) = clipped_to_window(a, b)?;
     Some(Hull::segment(p.narrow(), q.narrow(), direction))
 }
 
-/// Whether a place is on the right of the line from `a` to `b`, or on it: exact.
+/// Whether a point is on the right of the line from `a` to `b`, or on it: exact.
 pub(crate) fn right_of(a: Vec2<Fx>, b: Vec2<Fx>, place: Vec2<Fx>) -> bool {
     orientation(a, b, place) != Orientation::CounterClockwise
 }
 
-/// The part of a segment that is in the window.
+/// Part of a segment inside the window.
 pub(crate) fn clipped_to_window(a: Vec2<Fx>, b: Vec2<Fx>) -> Option<(Vec2<Fx>, Vec2<Fx>)> {
     clip(a, b, WINDOW)
 }
 
-/// The part of a segment in a square about the origin; `None` when it passes by.
+/// Part of a segment inside a square about the origin; `None` if there is none.
 pub(super) fn clip(a: Vec2<Fx>, b: Vec2<Fx>, half_side: Fx) -> Option<(Vec2<Fx>, Vec2<Fx>)> {
     let (mut p, mut q) = (a, b);
     for sign in [1, -1] {
@@ -40,7 +39,7 @@ pub(super) fn clip(a: Vec2<Fx>, b: Vec2<Fx>, half_side: Fx) -> Option<(Vec2<Fx>,
     Some((p, q))
 }
 
-/// The part of a segment where `outside` is not positive. `outside` is linear.
+/// Part of a segment where `outside` is not positive. `outside` must be linear.
 fn clip_to_half_plane(
     p: Vec2<Fx>,
     q: Vec2<Fx>,
@@ -55,9 +54,9 @@ fn clip_to_half_plane(
     }
 }
 
-/// Where the segment from `p` to `q` crosses zero, `at_p > 0 >= at_q`.
+/// Point at which a linear function crosses zero on the segment from `p` to `q`, with `at_p > 0 >= at_q`.
 fn crossing(p: Vec2<Fx>, q: Vec2<Fx>, at_p: i128, at_q: i128) -> Vec2<Fx> {
-    // Coordinates are below 2^63 and so are differences within the world: the product has at most 127 bits.
+    // Coordinates, and differences within the world, are below 2^63: the product has at most 127 bits.
     let part = |p: Fx, q: Fx| {
         let moved = div_round((i128::from(q.to_bits()) - i128::from(p.to_bits())) * at_p, at_p - at_q);
         Fx::from_bits(saturate_wide(i128::from(p.to_bits()) + moved))

@@ -1,11 +1,11 @@
-//! How far a shape can move, without turning, until it touches another: B moved by `t v` touches A when the ray
-//! `t v` from the origin meets `A - B`, whose outline are the edges of both in order of their angle. So a shape cast
-//! is a ray cast, exact, without iteration.
+//! Shape cast: how far a shape can move without rotating until it touches another. B moved by `t v` touches A if the
+//! ray `t v` from the origin meets the Minkowski difference `A - B`, whose outline consists of the edges of both in
+//! order of their angle. A shape cast is therefore an exact ray cast without iteration.
 //!
-//! A moving shape stops [`SKIN`] before it touches. Its next move starts there, and must not be stopped by what it
-//! slides along or leaves: starting within the skin, or overlapping, only a movement against the normal is a hit. No
-//! movement that is let through comes deeper than where it began, since along the normal the separation of convex
-//! shapes does not shrink.
+//! A moving shape stops at a distance of [`SKIN`] before contact. Its next move starts there, and must not be stopped
+//! by a surface that it slides along or leaves: if it starts within the skin, or overlapping, only a movement against
+//! the normal is a hit. A movement without a hit never comes deeper than where it began, since along the normal the
+//! separation of convex shapes does not shrink.
 
 use super::core::{Core, Fraction, Grid, cross, from_grid, to_grid};
 use super::distance::distance;
@@ -14,32 +14,34 @@ use crate::body::POLYGON_VERTICES_MAX;
 use crate::fx;
 use crate::math::{Fx, Unit, Vec2};
 
-/// Distance in metres that a moving shape keeps.
+/// Distance in metres that a moving shape keeps from others.
 pub(crate) const SKIN: Fx = fx!(0.0001);
 
-/// How far from the skin a shape still is in contact: more than the rounding of a hit, which is 0.2 µm.
+/// Distance beyond the skin within which a shape is still in contact: more than the rounding error of a hit, 0.2 µm.
 const TOLERANCE: Fx = fx!(0.000002);
 
-/// Approach that is due to rounding, for each metre of a movement and once more: it is sliding along.
+/// Shift that gives the approach which counts as rounding error of sliding: 2^-24 m per metre of movement, plus 2^-24
+/// m.
 const SLIDING: u32 = 24;
 
-/// Where a moving shape touches another.
+/// Hit of a moving shape on another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct ShapeHit {
-    /// Of the translation, 0 to 1, rounded down to 2^-32.
+    /// Fraction of the translation, 0 to 1, rounded down to 2^-32.
     pub(crate) fraction: Fx,
-    /// The same, fine enough to say which of two hits is the first.
+    /// The fraction with more bits, enough to order two hits.
     pub(crate) order: Fraction,
-    /// The movement up to there: exact where the fraction of a long translation is not.
+    /// Displacement up to the hit: exact, where the fraction of a long translation is not.
     pub(crate) travelled: Vec2<Fx>,
-    /// The nearest point on the surface of A, about the origin of the cores.
+    /// Nearest point on the surface of A, relative to the origin of the cores.
     pub(crate) point: Vec2<Fx>,
-    /// From A to B.
+    /// Unit vector from A to B.
     pub(crate) normal: Vec2<Unit>,
 }
 
-/// How far B can move along `translation` before it is within [`SKIN`] of A; `None` if it never is. Starting there or
-/// overlapping, the fraction is 0 if B moves against the normal, the shortest way out; else there is no hit.
+/// Casts B along `translation` until it is within [`SKIN`] of A; `None` if it never is. If B starts within the skin or
+/// overlapping, the fraction is 0 if B moves against the normal, which is the shortest way out; otherwise there is no
+/// hit.
 pub(crate) fn cast_shape(a: &Core, b: &Core, translation: Vec2<Fx>) -> Option<ShapeHit> {
     let translation = to_grid(translation);
     let start = distance(a, b);
@@ -65,8 +67,8 @@ pub(crate) fn cast_shape(a: &Core, b: &Core, translation: Vec2<Fx>) -> Option<Sh
     })
 }
 
-/// `A - B` of two outlines, counter-clockwise: the edges of A and the reversed ones of B, which are those of `-B`,
-/// merged by angle from the lowest vertex on.
+/// Minkowski difference `A - B` of two outlines, counter-clockwise: the edges of A and of `-B` (the reversed edges of
+/// B), merged by angle, starting from the lowest vertex.
 fn difference(a: &[Vec2<Grid>], b: &[Vec2<Grid>]) -> ([Vec2<Grid>; 2 * POLYGON_VERTICES_MAX], usize) {
     let lowest = |points: &[Vec2<Grid>], sign: i64| {
         let key = |i: &usize| (points[*i].y * sign, points[*i].x * sign);
@@ -103,7 +105,7 @@ fn difference(a: &[Vec2<Grid>], b: &[Vec2<Grid>]) -> ([Vec2<Grid>; 2 * POLYGON_V
     (merged, count.max(1))
 }
 
-/// Whether the angle of a vector, from 0 up to a full turn, is less than that of another.
+/// Whether the angle of `u`, from 0 to below a full turn, is less than that of `v`.
 fn is_before(u: Vec2<Grid>, v: Vec2<Grid>) -> bool {
     let lower_half = |v: Vec2<Grid>| v.y < 0 || (v.y == 0 && v.x < 0);
     match (lower_half(u), lower_half(v)) {
@@ -115,13 +117,13 @@ fn is_before(u: Vec2<Grid>, v: Vec2<Grid>) -> bool {
 
 #[cfg(test)]
 mod tests {
-    //! Against steps of the distance, which never pass a contact.
+    //! Tests against repeated advances by the distance, which never pass a contact.
 
     use super::super::core::samples;
     use super::*;
     use crate::math::{Rng, fx_div, fx_mul};
 
-    /// How far B gets in steps of its distance: within a micrometre of the skin.
+    /// Distance that B moves in steps of its distance from A, within a micrometre of the skin. `Err` if undecided.
     fn stepped(a: &Core, b: &Core, translation: Vec2<Fx>) -> Result<Option<Fx>, ()> {
         let length = translation.length();
         let (mut way, mut nearest) = (Fx::ZERO, Fx::MAX);
@@ -168,7 +170,7 @@ mod tests {
         assert!(hits > 1_500 && misses > 8_000 && grazing < 500, "{hits} {misses} {grazing}");
     }
 
-    /// From where a shape was stopped it leaves and slides freely, and does not move on.
+    /// From where a shape was stopped it leaves and slides freely, and does not advance further.
     #[test]
     fn a_stopped_shape_leaves_and_slides_but_does_not_go_on() {
         let mut rng = Rng::new(2);
@@ -184,14 +186,15 @@ mod tests {
             assert_eq!(cast_shape(&a, &b, -translation), None, "{hit:?} {a:?} {b:?}");
             assert_eq!(cast_shape(&a, &b, translation - into), None, "{hit:?} {a:?} {b:?}");
             if into.length() > fx!(0.0001) {
-                let again = cast_shape(&a, &b, translation).expect("it is still in the way");
+                let again =
+                    cast_shape(&a, &b, translation).expect("a second cast should hit the same obstacle");
                 assert_eq!(again.fraction, Fx::ZERO, "{hit:?} {a:?} {b:?}");
             }
         }
-        assert!(stopped > 2_000, "{stopped}");
+        assert!(stopped > 2_000, "expected over 2000 hits, got {stopped}");
     }
 
-    /// What is let through from a contact does not come deeper.
+    /// A movement from contact without a hit does not deepen the overlap.
     #[test]
     fn movement_that_starts_in_contact_never_deepens_it() {
         let mut rng = Rng::new(3);
@@ -210,7 +213,7 @@ mod tests {
                 assert!(gap >= start - fx!(0.000001), "{gap} from {start}: {a:?} {b:?} {translation:?}");
             }
         }
-        assert!(free > 2_000, "{free}");
+        assert!(free > 2_000, "expected over 2000 movements without a hit, got {free}");
     }
 
     #[test]
@@ -228,7 +231,7 @@ mod tests {
             assert!(gap.abs() < fx!(0.000001), "{gap} {hit:?} {a:?} {b:?}");
             assert_eq!(cast_shape(&a, &b, -translation), None, "{hit:?} {a:?} {b:?}");
         }
-        assert!(hits > 500, "{hits}");
+        assert!(hits > 500, "expected over 500 hits, got {hits}");
     }
 
     #[test]
@@ -262,6 +265,6 @@ mod tests {
             let gap = distance(&a, &b.moved(to_grid(hit.travelled))).distance - SKIN;
             assert!(gap.abs() < fx!(0.0000003), "{gap} {hit:?} {a:?} {b:?}");
         }
-        assert!(hits > 3_000, "{hits}");
+        assert!(hits > 3_000, "expected over 3000 hits, got {hits}");
     }
 }

@@ -1,6 +1,6 @@
-//! Incremental sweep and prune (D. Baraff, 1992): boxes are kept sorted by their lower end on one axis and swept
-//! in that order; only those that overlap on this axis are compared on the other. Boxes move little in a tick,
-//! so the order of the last one is nearly right and an insertion sort repairs it in nearly linear time.
+//! Incremental sweep and prune (D. Baraff, 1992). Boxes are sorted by their lower end on one axis and swept in that
+//! order; only boxes that overlap on this axis are compared on the other. Boxes move little in a tick, so the last
+//! order is nearly sorted, and an insertion sort restores it in nearly linear time.
 
 use alloc::vec::Vec;
 
@@ -15,18 +15,18 @@ enum Axis {
     Y,
 }
 
-/// The order found in the last sweep: a cache.
+/// Sweep and prune structure. The order of the last sweep is a cache.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SweepAndPrune {
     axis: Axis,
     boxes: BoxList,
-    /// Slots in the order of their boxes' lower ends, then newcomers.
+    /// Slots in the order of their boxes' lower ends, followed by slots added since the last sweep.
     order: Vec<u32>,
-    /// For each slot, whether it is in the order. A removed one stays there until the next sweep.
+    /// For each slot, whether it is in `order`. A removed slot stays there until the next sweep.
     ordered: Vec<bool>,
-    /// How many slots have been appended since the last sweep.
+    /// Number of slots added since the last sweep.
     newcomers: usize,
-    /// The boxes in order, for the sweep.
+    /// Boxes in order, for the sweep.
     sorted: Vec<Interval>,
 }
 
@@ -62,8 +62,8 @@ impl SweepAndPrune {
         let axis = self.best_axis();
         let turned = core::mem::replace(&mut self.axis, axis) != axis;
         self.copy_boxes();
-        // The old order says nothing about the other axis, and many newcomers at once are in none: an insertion
-        // sort would be quadratic.
+        // After a change of axis, or with many new boxes at once, the order is not nearly sorted, and an insertion sort
+        // would be quadratic.
         if turned || self.newcomers > 64 {
             self.sorted.sort_unstable_by_key(Interval::key);
         }
@@ -72,7 +72,7 @@ impl SweepAndPrune {
         self.sweep(found);
     }
 
-    /// The axis on which the boxes are spread out more.
+    /// Axis with the larger spread of boxes.
     fn best_axis(&self) -> Axis {
         let mean = |value: fn(Aabb) -> Fx| {
             let sum: i128 = self.boxes.iter().map(|(_, fat)| i128::from(value(fat).to_bits())).sum();
@@ -87,7 +87,7 @@ impl SweepAndPrune {
         if y > x { Axis::Y } else { Axis::X }
     }
 
-    /// Copies the boxes in the order of the last sweep, without those that are gone.
+    /// Copies the boxes in the order of the last sweep, dropping removed slots.
     fn copy_boxes(&mut self) {
         self.sorted.clear();
         for &slot in &self.order {
@@ -145,7 +145,7 @@ impl Interval {
         }
     }
 
-    /// The slot breaks ties, so that the order is total.
+    /// Sort key. The slot breaks ties, so that the order is total.
     fn key(&self) -> (Fx, u32) {
         (self.lower, self.slot)
     }

@@ -1,19 +1,19 @@
-//! When two moving, turning shapes first come within a distance of each other.
+//! Time of impact: when two moving, rotating shapes first come within a distance of each other.
 //!
-//! Conservative advancement (B. Mirtich, "Impulse-based Dynamic Simulation of Rigid Body Systems", 1996), along the
-//! axis of the present separation: with the axis `n` fixed, a vertex at `r` from its body's centre moves by
+//! Conservative advancement (B. Mirtich, "Impulse-based Dynamic Simulation of Rigid Body Systems", 1996) along the axis
+//! of the current separation. With the axis `n` fixed, a vertex at `r` from its body's centre moves by
 //!
 //! ```text
 //! n . (p(h) - p(0)) >= (n . d + theta n . perp(r)) h - theta^2 |r| h^2 / 2
 //! ```
 //!
-//! in the part `h` of the tick, for a displacement `d` and a turn by `theta`. The separation along any axis is a
-//! lower bound of the true one, so as long as these parabolas stay above the target nothing has been passed. The
-//! linear term makes a body that slides, rolls or spins beside a surface free to go on, where the usual bound on
-//! the speed of its points would stop it again and again; root finding on separating axes (E. Catto, "Continuous
-//! Collision", GDC 2013) takes as few steps but proves nothing between them.
+//! in the fraction `h` of the tick, for a displacement `d` and a rotation by `theta`. The separation along any axis is
+//! a lower bound of the true separation, so while these parabolas stay above the target no contact has been passed. The
+//! linear term lets a body that slides, rolls or spins beside a surface advance freely, where the usual bound on the
+//! speed of its points would stop it repeatedly. Root finding on separating axes (E. Catto, "Continuous Collision", GDC
+//! 2013) takes as few steps but proves nothing between them.
 //!
-//! Separation is signed: past contact it is minus the depth, which changes no faster than the shapes move.
+//! Separation is signed: after contact it is the negative depth, which changes no faster than the shapes move.
 
 use super::core::{Core, Grid, along, from_grid, to_fx, to_grid};
 use super::distance::{Distance, distance};
@@ -21,36 +21,37 @@ use super::segment::clip;
 use crate::fx;
 use crate::math::{Angle, Fx, Rot, TAU, Unit, Vec2, fx_mul, round_shift_wide, saturate_wide};
 
-/// How close in metres to the target a contact is found.
+/// Largest distance in metres from the target at which a contact counts as found.
 pub(crate) const TOLERANCE: Fx = fx!(0.00005);
 
-/// Steps before the search gives up: nine of ten searches take at most 5. Only faces that hover at the target while
-/// they turn by a large part of a turn need so many, about one in a thousand of random set-ups in contact.
+/// Largest number of steps before the search gives up; nine of ten searches take at most 5. Only faces that stay near
+/// the target while they rotate by a large part of a turn need so many: about one in a thousand random set-ups in
+/// contact.
 const STEPS_MAX: u32 = 48;
 
-/// The largest turn in radians of a shape that is not a disc about its body's centre, and the largest reach in metres
-/// of one that turns. With these `theta^2 |r|` fits.
+/// Largest rotation in radians of a shape that is not a disc about its body's centre, and largest reach in metres of a
+/// rotating shape. With these limits `theta^2 |r|` fits its type.
 const TURN_MAX: Fx = fx!(1024);
 const REACH_MAX: Fx = fx!(1024);
 
-/// The movement of a body in a tick.
+/// Motion of a body in a tick.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sweep {
-    /// Its centre of mass at the start, in the world.
+    /// Centre of mass at the start, in the world.
     pub(crate) start: Vec2<Fx>,
-    /// And at the end.
+    /// Centre of mass at the end, in the world.
     pub(crate) end: Vec2<Fx>,
-    /// How far it turns, in units of 2^-32 turn, counter-clockwise. May be more than a turn.
+    /// Rotation over the tick, in units of 2^-32 turn, counter-clockwise. May exceed a turn.
     pub(crate) turn: i64,
 }
 
 impl Sweep {
-    /// A body that does not move.
+    /// Sweep of a body that does not move.
     pub(crate) fn fixed(at: Vec2<Fx>) -> Self {
         Sweep { start: at, end: at, turn: 0 }
     }
 
-    /// Its movement after a fraction of the tick: the displacement of the centre and the rotation since the start.
+    /// Displacement of the centre and rotation from the start to a fraction of the tick.
     pub(crate) fn at(&self, fraction: Fx) -> (Vec2<Fx>, Rot) {
         let turned = round_shift_wide(i128::from(self.turn) * i128::from(fraction.to_bits()), Fx::FRAC_NBITS);
         let rotation = Rot::from_angle(Angle::from_turns(Fx::from_bits(saturate_wide(turned))));
@@ -58,28 +59,29 @@ impl Sweep {
     }
 }
 
-/// How two movements end.
+/// Result of a time of impact search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum TimeOfImpact {
-    /// They never come within the target.
+    /// The shapes never come within the target.
     Separated,
-    /// They come within the target after this fraction of the tick, and not before.
+    /// The shapes first come within the target after this fraction of the tick.
     Hit { fraction: Fx },
-    /// They start so deep in each other that no side is the right one.
+    /// The shapes start so deep in each other that no side is the right one.
     Overlapped,
-    /// The search gave up: they do not come within the target before this fraction of the tick.
+    /// The search gave up: the shapes do not come within the target before this fraction of the tick.
     Failed { fraction: Fx },
 }
 
-/// When the surfaces of two shapes first come within `target` metres; a negative target is a depth. The shapes are
-/// given as they are posed at the start, each about its own body's centre of mass. B is the one to protect.
+/// Time at which the surfaces of two shapes first come within `target` metres; a negative target is a depth. The cores
+/// are posed as at the start, each relative to its own body's centre of mass. B is the shape to protect.
 ///
 /// With a target of 0 or more a body that slides from one floor to the next, flush with it, stops at the seam. A depth
-/// such as a quarter of B's inner radius lets it pass, and leaves the rest to the solver.
+/// such as a quarter of B's inner radius lets the body pass, and leaves the rest to the solver.
 ///
-/// Shapes that start within the target, in contact, may go on to slide, roll or separate, and to sink deeper, but not
-/// through: their target is half-way from where they are to three quarters of the inner radius of B (of A if B has
-/// none), so that the centre of B does not pass the surface of A. Deeper than that is [`TimeOfImpact::Overlapped`].
+/// Shapes that start within the target, in contact, may slide, roll, separate, or sink deeper, but not pass through.
+/// Their target is half-way from the initial separation to a depth of three quarters of the inner radius of B (of A if
+/// B has none), so that the centre of B does not pass the surface of A. A deeper start gives
+/// [`TimeOfImpact::Overlapped`].
 pub(crate) fn time_of_impact(a: (&Core, &Sweep), b: (&Core, &Sweep), target: Fx) -> TimeOfImpact {
     let between = b.1.start - a.1.start;
     let moved = (b.1.end - b.1.start).length().saturating_add((a.1.end - a.1.start).length());
@@ -135,7 +137,7 @@ fn radii(a: &Core, b: &Core) -> Fx {
     to_fx(a.radius + b.radius)
 }
 
-/// The target of shapes that start in contact: see [`time_of_impact`]. `None` if they are too deep already.
+/// Target for shapes that start in contact: see [`time_of_impact`]. `None` if they are too deep already.
 fn target_of_contact(a: &Core, b: &Core, separation: Fx) -> Option<Fx> {
     let inner = Some(b.inner_radius()).filter(|&inner| inner > 0).unwrap_or_else(|| a.inner_radius());
     let deepest = fx_mul(inner, fx!(-0.75));
@@ -143,7 +145,7 @@ fn target_of_contact(a: &Core, b: &Core, separation: Fx) -> Option<Fx> {
     (start > deepest).then(|| (start + deepest) / 2)
 }
 
-/// A long segment is cut to what B, at `b`, may meet: a normal has not enough bits for its far ends.
+/// Clips a long segment A to the part that B, at `b`, may meet: a unit normal has too few bits for its far ends.
 fn near((a, sweep): (&Core, &Sweep), b: Vec2<Fx>, window: Fx) -> Option<Core> {
     match *a.points() {
         [p, q] if sweep.turn == 0 => {
@@ -154,27 +156,28 @@ fn near((a, sweep): (&Core, &Sweep), b: Vec2<Fx>, window: Fx) -> Option<Core> {
     }
 }
 
-/// A shape that moves.
+/// A moving shape.
 struct Mover {
     core: Core,
     sweep: Sweep,
-    /// Its body's centre at the start, from that of B.
+    /// Centre of its body at the start, relative to that of B.
     centre: Vec2<Fx>,
     displacement: Vec2<Fx>,
-    /// In radians; 0 for a disc that turns about its centre.
+    /// Rotation in radians; 0 for a disc that rotates about its centre.
     theta: Fx,
     /// `theta^2 |r| / 2` of the furthest vertex.
     curvature: Fx,
 }
 
-/// The core at some time, about B's centre at the start.
+/// The core at some time, relative to B's centre at the start.
 struct Posed {
     core: Core,
     centre: Vec2<Grid>,
 }
 
 impl Mover {
-    /// Of a core that reaches so far from its body's centre. `None` if it turns too far.
+    /// Creates a mover from a core whose furthest point is `reach` from its body's centre. `None` if it rotates too
+    /// far.
     fn new(core: Core, reach: Fx, sweep: &Sweep, centre: Vec2<Fx>) -> Option<Self> {
         let turn = i128::from(sweep.turn) * i128::from(TAU.to_bits());
         let theta = Fx::from_bits(saturate_wide(round_shift_wide(turn, Fx::FRAC_NBITS)));
@@ -194,8 +197,8 @@ impl Mover {
         Posed { core: core.moved(centre), centre }
     }
 
-    /// Where the vertices are along an axis and how fast they move, by `sign` -1 towards the other end of it. Vertices
-    /// that move alike are told by the first of them.
+    /// Positions and speeds of the vertices along an axis, both negated if `sign` is -1. If the shape does not rotate,
+    /// its vertices have equal speeds, and the one nearest to the other shape represents them all.
     fn tracks(&self, posed: &Posed, normal: Vec2<Unit>, sign: i64) -> Tracks {
         let wide = normal.widen();
         let speed = wide.dot(self.displacement);
@@ -215,15 +218,15 @@ impl Mover {
     }
 }
 
-/// The vertices of a shape along an axis: each at `x + v h`, less at most `curvature h^2`.
+/// Vertices of a shape along an axis: each is at `x + v h`, or behind that by at most `curvature h^2`.
 struct Tracks {
     count: usize,
     vertices: [(Fx, Fx); 8],
     curvature: Fx,
 }
 
-/// The part of the tick, at most `left`, in which no vertex of B comes nearer than `offset` to one of A. The axis
-/// points to B; A is seen from its other end, so that distances are sums.
+/// Fraction of the tick, at most `left`, in which no vertex of B comes nearer than `offset` to a vertex of A. The axis
+/// points to B. The tracks of A are negated, so that distances are sums.
 fn free_part(a: &Tracks, b: &Tracks, offset: Fx, left: Fx) -> Fx {
     let curvature = a.curvature.saturating_add(b.curvature);
     let mut free = left;
@@ -236,13 +239,14 @@ fn free_part(a: &Tracks, b: &Tracks, offset: Fx, left: Fx) -> Fx {
     free
 }
 
-/// The part of 0 to `end` in which `gap + speed h - curvature h^2` is not negative, rounded down.
+/// Largest fraction up to `end` in which `gap + speed h - curvature h^2` is not negative, rounded down.
 fn positive_part(gap: Fx, speed: Fx, curvature: Fx, end: Fx) -> Fx {
     if gap <= 0 {
         return Fx::ZERO;
     }
     let at_end = gap.saturating_add(fx_mul(speed.saturating_sub(fx_mul(curvature, end)), end));
-    // Concave, so it is positive between two ends where it is. A few units cover the rounding.
+    // The function is concave, so it is positive between two points where it is positive. A few units cover the
+    // rounding.
     if at_end > Fx::DELTA * 4 {
         return end;
     }

@@ -1,15 +1,15 @@
-//! A dynamic tree of boxes. Every box is a leaf, and an inner node has the box around its two children, so that a
-//! search leaves out whatever is below a box that it does not reach.
+//! Dynamic AABB tree. Every box is a leaf, and an inner node has the box around its two children, so that a search
+//! skips every subtree whose box it does not reach.
 //!
-//! The cost of a tree is the sum of its perimeters, to which the number of visits by a random search is
-//! proportional (J. Goldsmith, J. Salmon, 1987). A new leaf descends greedily to where it adds the least, and on the way
-//! back up, a child changes places with its sibling's child if that makes the perimeters smaller, as in Box2D v3.
-//! Neither bounds the height, and boxes inside of each other would make a chain. So heights of siblings differ by at
-//! most [`IMBALANCE_MAX`]: a relaxed AVL tree (G. Adelson-Velsky, E. Landis, 1962), in which an insertion or a removal
-//! changes heights by one and one exchange on each level repairs it.
+//! The cost of a tree is the sum of its perimeters, to which the number of visits of a random search is proportional
+//! (J. Goldsmith, J. Salmon, 1987). A new leaf descends greedily to the place that adds the least cost. On the way back
+//! up, a child is exchanged with a child of its sibling if that reduces the perimeters, as in Box2D v3. Neither step
+//! bounds the height, and nested boxes would make a chain. The heights of siblings therefore differ by at most
+//! [`IMBALANCE_MAX`]: a relaxed AVL tree (G. Adelson-Velsky, E. Landis, 1962), in which an insertion or a removal
+//! changes heights by one, and one exchange on each level restores the balance.
 //!
-//! Boxes that move a little only make those around them grow, and many at once are fitted again from the leaves up, or
-//! the whole tree is built anew: see `rebuild.rs`.
+//! A box that moves a little only enlarges its ancestors. If many boxes move at once, the tree is refitted from the
+//! leaves up, or rebuilt: see `rebuild.rs`.
 
 use alloc::vec::Vec;
 use core::ops::ControlFlow;
@@ -25,32 +25,32 @@ mod rebuild;
 #[cfg(test)]
 mod tests;
 
-/// No node.
+/// Index that stands for no node.
 const NONE: u32 = u32::MAX;
 
-/// By how much the heights of two siblings may differ: so much that a long ground may stay near the root, where the
-/// perimeters want it. With 4, the pairs of 10 000 boxes on top of some such grounds take several times as long.
+/// Largest difference of the heights of two siblings: large enough for a long ground to stay near the root, where the
+/// perimeters favour it. With 4, finding the pairs of 10 000 boxes on some such grounds takes several times as long.
 const IMBALANCE_MAX: u8 = 16;
 
-/// One node waits on each level of a search, and one more: enough for 2^31 boxes, see the test.
+/// Stack size of a search: one waiting node per level, plus one. Enough for 2^31 boxes, as a test proves.
 const STACK_LEN: usize = 192;
 
-/// The boxes of slots: a cache.
+/// AABB tree over slots: a cache, not part of the state.
 #[derive(Clone, Debug)]
 pub(crate) struct Tree {
     nodes: Vec<Node>,
     root: u32,
-    /// The first vacant node; its parent is the next one.
+    /// First vacant node. The `parent` of a vacant node is the next vacant one.
     vacant: u32,
-    /// The leaf of each slot, or none.
+    /// Leaf of each slot, or [`NONE`].
     leaves: Vec<u32>,
     len: u32,
-    /// The tree against itself.
+    /// Stacks for the traversal of the tree against itself.
     meetings: Meetings,
-    /// How many leaves have come to another place or gone since the last rebuild. While none has, every node is in use and
-    /// stored before its children.
+    /// Number of leaves relinked or removed since the last rebuild. While it is 0, every node is in use and stored
+    /// before its children.
     relinked: u32,
-    /// How many leaves have been moved out of their neighbourhood, and left where they are, since the last rebuild.
+    /// Number of leaves that left their neighbourhood since the last rebuild without being relinked.
     strays: u32,
     rebuilt: Rebuilt,
 }
@@ -61,11 +61,11 @@ struct Node {
     parent: u32,
     /// 0 for a leaf.
     height: u8,
-    /// That of everything below it, or its own.
+    /// Collision class of a leaf, or the common class of all leaves below.
     kin: Kin,
-    /// Whether there is something below it, or itself, of which pairs are asked for at the moment.
+    /// Whether the pairs of this leaf, or of a leaf below, are currently requested.
     marked: bool,
-    /// Of a leaf, its slot and nothing.
+    /// Children; for a leaf, its slot and [`NONE`].
     children: [u32; 2],
 }
 
@@ -95,7 +95,7 @@ impl Tree {
         match self.leaf_of(slot) {
             Some(leaf) if self.at(leaf).aabb == fat => {}
             Some(leaf) if self.stays_near(leaf, fat) => self.enlarge(leaf, fat),
-            // A few may stay where they do not belong: the tree keeps its order for the next refit.
+            // A few leaves may stay where they do not belong: the tree keeps its order for the next refit.
             Some(leaf) if self.strays < self.len / 8 => {
                 self.strays += 1;
                 self.enlarge(leaf, fat);
@@ -115,7 +115,7 @@ impl Tree {
         }
     }
 
-    /// Gives a slot another kin, if it has a box. The tree keeps its order.
+    /// Sets the collision class of a slot that has a box. The tree keeps its structure.
     pub(crate) fn set_kin(&mut self, slot: u32, kin: Kin) {
         if let Some(leaf) = self.leaf_of(slot).filter(|&leaf| self.at(leaf).kin != kin) {
             self.at_mut(leaf).kin = kin;
@@ -161,7 +161,7 @@ impl Tree {
         ControlFlow::Continue(())
     }
 
-    /// The boxes of inner nodes, each with its distance from the root, parents first.
+    /// Boxes of inner nodes, each with its depth, parents first.
     pub(crate) fn inner_boxes(&self) -> Vec<(Aabb, u32)> {
         let mut boxes = Vec::new();
         let mut waiting = Vec::from_iter((self.root != NONE).then_some((self.root, 0)));
@@ -175,7 +175,7 @@ impl Tree {
         boxes
     }
 
-    /// Gives a leaf another box where it is. Boxes around it only grow: they shrink in the next refit or rebuild.
+    /// Sets the box of a leaf in place. Ancestors only grow: they shrink in the next refit or rebuild.
     fn enlarge(&mut self, leaf: u32, fat: Aabb) {
         self.at_mut(leaf).aabb = fat;
         let mut at = self.at(leaf).parent;
@@ -186,7 +186,7 @@ impl Tree {
         }
     }
 
-    /// Puts a leaf into the tree.
+    /// Inserts a leaf into the tree.
     fn link(&mut self, leaf: u32) {
         self.relinked = self.relinked.saturating_add(1);
         if self.root == NONE {
@@ -202,7 +202,7 @@ impl Tree {
         self.repair(parent);
     }
 
-    /// Takes a leaf out of the tree: its sibling moves up.
+    /// Removes a leaf from the tree: its sibling replaces their parent.
     fn unlink(&mut self, leaf: u32) {
         self.relinked = self.relinked.saturating_add(1);
         let parent = self.at(leaf).parent;
@@ -219,8 +219,8 @@ impl Tree {
         self.repair(grandparent);
     }
 
-    /// The node beside which a new leaf adds least to the perimeters: those of a new parent around both, and what
-    /// the ancestors grow by. Descends to the child with the smaller bound while that promises better, and until the
+    /// Best sibling for a new leaf: the node that adds the least perimeter, counting a new parent around both and the
+    /// growth of the ancestors. Descends to the child with the smaller bound while that bound is better, and until the
     /// node is low enough to be a leaf's sibling.
     fn best_sibling(&self, fat: Aabb) -> u32 {
         let own = perimeter(fat);
@@ -234,11 +234,11 @@ impl Tree {
                 let node = self.at(child);
                 let around = perimeter(node.aabb.union(fat));
                 let cost = grown.saturating_add(around);
-                // Deeper down, at least the leaf itself and what the child grows by are added.
+                // Any deeper sibling adds at least the leaf itself and the growth of the child.
                 let bound = cost.saturating_sub(perimeter(node.aabb).saturating_sub(own));
                 (if node.is_leaf() { cost } else { bound }, node.height, child, around)
             });
-            // Of equals the lower one, so that boxes on top of each other make a bush and not a chain.
+            // Ties go to the lower child, so that coincident boxes make a bushy tree and not a chain.
             let (bound, _, child, child_around) = options[0].min(options[1]);
             if bound > best_cost && self.at(best).height <= IMBALANCE_MAX {
                 break;
@@ -252,15 +252,15 @@ impl Tree {
         best
     }
 
-    /// Whether a leaf may keep its place with a new box: no ancestor above a small neighbourhood grows.
+    /// Whether a leaf may stay in place with a new box: no ancestor above a small neighbourhood grows.
     fn stays_near(&self, leaf: u32, fat: Aabb) -> bool {
         let parent_of = |&at: &u32| Some(self.at(at).parent).filter(|&parent| parent != NONE);
-        // Lower, and most boxes that move have to be inserted anew; higher, and the tree wears out.
+        // With a lower level most moved boxes would be reinserted; with a higher one the tree would degrade.
         let neighbourhood = core::iter::successors(Some(leaf), parent_of).nth(4);
         neighbourhood.is_some_and(|at| self.at(at).aabb.contains(fat))
     }
 
-    /// Brings boxes, heights and kin up to date from a node upwards, until they are.
+    /// Updates boxes, heights and collision classes from a node upwards, until a node does not change.
     fn repair(&mut self, mut at: u32) {
         while at != NONE {
             let Node { aabb, height, kin, parent, .. } = *self.at(at);
@@ -275,7 +275,7 @@ impl Tree {
         }
     }
 
-    /// Box, height and kin of an inner node from its children.
+    /// Computes box, height and collision class of an inner node from its children.
     fn refit(&mut self, at: u32) {
         let [a, b] = self.at(at).children.map(|child| *self.at(child));
         let node = self.at_mut(at);
@@ -284,7 +284,7 @@ impl Tree {
         node.kin = a.kin.common(b.kin);
     }
 
-    /// If one child is too high, its higher child moves up in exchange for the other child.
+    /// Restores the balance of a node: if one child is too high, its higher child is exchanged with the other child.
     fn balance(&mut self, at: u32) {
         let [a, b] = self.at(at).children;
         let (low, high) = if self.at(a).height < self.at(b).height { (a, b) } else { (b, a) };
@@ -295,8 +295,8 @@ impl Tree {
         }
     }
 
-    /// Exchanges a child with a child of its sibling, if that makes the sibling smaller: the box of the node itself
-    /// stays the same. The height may differ by one from what it was, which the ancestors can put right.
+    /// Exchanges a child with a child of its sibling if that shrinks the sibling; the box of the node itself stays the
+    /// same. The height may differ by one from before, which the ancestors can compensate.
     fn tighten(&mut self, at: u32, height_before: u8) {
         let [a, b] = self.at(at).children;
         let (mut best_gain, mut best) = (0, None);
@@ -318,7 +318,7 @@ impl Tree {
         }
     }
 
-    /// Whether a node may have the first of three as a child and the other two as grandchildren.
+    /// Whether a node may have the first of three nodes as a child and the other two as grandchildren.
     fn stays_balanced(&self, three: [u32; 3], height_before: u8) -> bool {
         let [up, a, b] = three.map(|index| self.at(index).height);
         let sibling = 1 + a.max(b);
@@ -328,7 +328,7 @@ impl Tree {
             && height.abs_diff(height_before) <= 1
     }
 
-    /// Exchanges a child of a node with a child of the other one.
+    /// Exchanges a child of a node with a child of its sibling.
     fn exchange(&mut self, at: u32, child: u32, sibling: u32, up: u32) {
         self.replace_child(at, child, up);
         self.replace_child(sibling, up, child);
@@ -338,7 +338,7 @@ impl Tree {
         self.refit(at);
     }
 
-    /// Puts another node where a child was, or at the root. The other's link to its parent is left to the caller.
+    /// Replaces a child of a node, or the root. The caller sets the parent of the new child.
     fn replace_child(&mut self, parent: u32, old: u32, new: u32) {
         if parent == NONE {
             self.root = new;
@@ -387,7 +387,7 @@ impl Node {
     }
 }
 
-/// Half the perimeter in units of 2^-30 m: two of the widest boxes in the world still add up in 64 bits.
+/// Half the perimeter in units of 2^-30 m: the sum for two of the widest boxes still fits 64 bits.
 fn perimeter(aabb: Aabb) -> u64 {
     let Aabb { lower, upper } = aabb;
     (upper.x.to_bits().abs_diff(lower.x.to_bits()) >> 2)

@@ -1,12 +1,14 @@
-//! The separating axis test and the clipping of [`hull_hull`](crate::collision::hull_hull), of eight pairs at a time.
+//! SIMD kernel of [`hull_hull`](crate::collision::hull_hull) for boxes: separating axis test and clipping of eight
+//! pairs at a time.
 //!
-//! Along the normal `n` of a face of a box centred at `-d` from another, with `v` on that face and `w` the other's corners,
+//! For the face normal `n` of a box centred at `-d` from another box, with `v` a vertex on that face and `w` the
+//! vertices of the other box,
 //!
 //! ```text
 //! separation = |n . d| - n . v - max |n . w|
 //! ```
 //!
-//! of the face or of its opposite, whichever looks towards the other box.
+//! is the separation from the face or from its opposite, whichever faces the other box.
 
 use super::super::hull_hull::{CLIP_BITS, FACE_BITS, FINER, TOLERANCE};
 use super::{Batch, Found, Turned};
@@ -14,17 +16,17 @@ use crate::lanes::{Ints, Kernel, Lanes, WIDTH, shift};
 use crate::math::{Step, Unit};
 
 const UNIT: i32 = shift(Unit::FRAC_NBITS);
-/// From the product of a unit vector and a length to a step.
+/// Shift from the product of a unit vector and a length to a step.
 const TO_STEP: i32 = shift(FACE_BITS - Step::FRAC_NBITS);
 const CLIP: i32 = shift(CLIP_BITS);
 
 pub(super) struct Collide<'a> {
     pub(super) batches: &'a mut [Batch],
-    /// Of all boxes.
+    /// Faces of all boxes, by slot.
     pub(super) boxes: &'a [Turned],
 }
 
-/// A place or a direction in each lane.
+/// A position or direction in each lane.
 type Vector<T> = [T; 2];
 
 /// The first two normals and vertices of a box.
@@ -34,7 +36,7 @@ struct Corners<T> {
     v: [Vector<T>; 2],
 }
 
-/// One of the four edges of a box: whether it is the second or fourth, and whether it is opposite to the first two.
+/// One of the four edges of a box: the edge with index `second + 2 opposite`.
 #[derive(Clone, Copy)]
 struct Choice<M> {
     second: M,
@@ -48,26 +50,26 @@ struct Edge<T> {
     end: Vector<T>,
 }
 
-/// An end of the incident edge: how far along the reference edge from its start, as a length, and how far above, as a
-/// step.
+/// End of the incident edge: its position along the reference edge, as a length from the start of that edge, and its
+/// height above it, as a step.
 #[derive(Clone, Copy)]
 struct End<T> {
     along: T,
     above: T,
 }
 
-/// The reference edge as contact points see it.
+/// Reference edge, in the form that contact points need.
 struct Reference<T> {
     n: Vector<T>,
-    /// From the centre of A.
+    /// Start of the edge, from the centre of A.
     start: Vector<T>,
-    /// As steps: both radii, by how much the reference's is larger, and how far above it points may be.
+    /// As steps: sum of both radii, radius of the reference minus radius of the incident box, and speculative margin.
     radii: T,
     difference: T,
     margin: T,
 }
 
-/// A contact point: its anchor, separation and feature, if it is not too far.
+/// Contact point: anchor, separation and feature, and whether the point is beyond the margin.
 struct Point<T, M> {
     gone: M,
     numbers: [T; 4],
@@ -109,7 +111,7 @@ fn collide<L: Lanes<WIDTH>>(batch: &mut Batch, boxes: &[Turned]) {
     let from_reference = select_vector::<L>(swapped, negated::<L>(d), d);
     let to_incident = minus::<L>(from_reference, reference.start);
     let length = along::<L>(reference.n, minus::<L>(reference.end, reference.start));
-    // It runs against the reference edge.
+    // The incident edge runs against the reference edge.
     let upper = end::<L>(reference.n, plus::<L>(to_incident, incident.start));
     let lower = end::<L>(reference.n, plus::<L>(to_incident, incident.end));
     let mut open = L::either(L::greater(zero, upper.along), L::greater(lower.along, length));
@@ -130,7 +132,7 @@ fn collide<L: Lanes<WIDTH>>(batch: &mut Batch, boxes: &[Turned]) {
         [L::select(swapped, radius_b, radius_a), L::select(swapped, radius_a, radius_b)];
     let reference = Reference {
         n: reference.n,
-        // Anchors are from the centre of A.
+        // Anchors are relative to the centre of A.
         start: plus::<L>(reference.start, select_vector::<L>(swapped, d, [zero; 2])),
         radii: as_step::<L>(radii),
         difference: as_step::<L>(L::sub(radius_r, radius_i)),
@@ -148,7 +150,7 @@ fn collide<L: Lanes<WIDTH>>(batch: &mut Batch, boxes: &[Turned]) {
     L::store(normal[1], &mut found.normal[1]);
 }
 
-/// The point of a contact at an end of the incident edge.
+/// Contact point at an end of the incident edge.
 #[inline(always)]
 fn point<L: Lanes<WIDTH>>(
     reference: &Reference<L::Int>,
@@ -168,7 +170,7 @@ fn point<L: Lanes<WIDTH>>(
     }
 }
 
-/// See [`Feature`](crate::collision::Feature).
+/// Feature of a contact point, as in [`Feature`](crate::collision::Feature).
 #[inline(always)]
 fn feature<L: Lanes<WIDTH>>(swapped: L::Mask, of_reference: L::Int, of_incident: L::Int) -> L::Int {
     let of_a = L::select(swapped, of_incident, of_reference);
@@ -176,7 +178,7 @@ fn feature<L: Lanes<WIDTH>>(swapped: L::Mask, of_reference: L::Int, of_incident:
     L::add(L::low(L::mul(of_a, L::splat(1 << 8))), of_b)
 }
 
-/// Writes the points that are there, of each pair the first one first.
+/// Stores the valid points of each pair, in order, at the front.
 #[inline(always)]
 fn store<L: Lanes<WIDTH>>(
     first: &Point<L::Int, L::Mask>,
@@ -207,7 +209,7 @@ fn corners<L: Lanes<WIDTH>>(boxes: &[Turned], at: &[u32; WIDTH]) -> Corners<L::I
     Corners { n: [[n0x, n0y], [n1x, n1y]], v: [[v0x, v0y], [v1x, v1y]] }
 }
 
-/// The face of `a` that is furthest from `b`, of equal ones the first, and how far.
+/// Face of `a` with the largest separation from `b`, and that separation. Ties go to the face with the lower index.
 #[inline(always)]
 fn best_face<L: Lanes<WIDTH>>(
     a: &Corners<L::Int>,
@@ -216,7 +218,7 @@ fn best_face<L: Lanes<WIDTH>>(
 ) -> (Choice<L::Mask>, L::Wide) {
     let (opposite_0, separation_0) = further_of_opposite::<L>(a.n[0], a.v[0], b, d);
     let (opposite_1, separation_1) = further_of_opposite::<L>(a.n[1], a.v[1], b, d);
-    // Where they are equal, the second one is the first only if it comes before the opposite of the other.
+    // On a tie the second candidate wins only if its index is lower: it is face 1 and the first candidate is face 2.
     let ahead = L::greater(L::to_int(opposite_1), L::to_int(opposite_0));
     let advantage = L::mul(L::to_int(ahead), L::splat(-1));
     let second = L::greater_wide(L::add_wide(separation_1, advantage), separation_0);
@@ -224,7 +226,7 @@ fn best_face<L: Lanes<WIDTH>>(
     (Choice { second, opposite }, L::max_wide(separation_0, separation_1))
 }
 
-/// Whether the opposite of a face looks towards `b` rather than the face does, and how far it is.
+/// Whether the opposite of a face faces `b`, and the separation of the face or its opposite, whichever faces `b`.
 #[inline(always)]
 fn further_of_opposite<L: Lanes<WIDTH>>(
     n: Vector<L::Int>,
@@ -238,7 +240,7 @@ fn further_of_opposite<L: Lanes<WIDTH>>(
     (L::greater_wide(nothing::<L>(), towards), separation)
 }
 
-/// The edge whose normal is most opposed to `n`: of equal ones the first.
+/// Edge whose normal is most opposed to `n`. Ties go to the edge with the lower index.
 #[inline(always)]
 fn most_opposed<L: Lanes<WIDTH>>(of: &Corners<L::Int>, n: Vector<L::Int>) -> Choice<L::Mask> {
     let [cosine_0, cosine_1] = [dot::<L>(of.n[0], n), dot::<L>(of.n[1], n)];
@@ -260,33 +262,33 @@ fn edge<L: Lanes<WIDTH>>(of: &Corners<L::Int>, Choice { second, opposite }: Choi
     }
 }
 
-/// The edge behind one of four.
+/// Index of the edge after an edge, of four.
 #[inline(always)]
 fn next<L: Lanes<WIDTH>>(edge: L::Int) -> L::Int {
     L::select(L::greater(edge, L::splat(2)), L::splat(0), L::add(edge, L::splat(1)))
 }
 
-/// Which of the four edges it is.
+/// Index of the edge, 0 to 3.
 #[inline(always)]
 fn index<L: Lanes<WIDTH>>(Choice { second, opposite }: Choice<L::Mask>) -> L::Int {
     let (second, opposite) = (L::to_int(second), L::to_int(opposite));
     L::sub(L::sub(L::sub(L::splat(0), second), opposite), opposite)
 }
 
-/// Where a place from the start of the reference edge is.
+/// Coordinates of a position, given from the start of the reference edge.
 #[inline(always)]
 fn end<L: Lanes<WIDTH>>(n: Vector<L::Int>, place: Vector<L::Int>) -> End<L::Int> {
     End { along: along::<L>(n, place), above: L::narrow::<TO_STEP>(dot::<L>(n, place)) }
 }
 
-/// `t . p`, for `t` the normal turned a quarter.
+/// `t . p`, for `t` the normal rotated by a quarter turn.
 #[inline(always)]
 fn along<L: Lanes<WIDTH>>(n: Vector<L::Int>, p: Vector<L::Int>) -> L::Int {
     L::narrow::<UNIT>(L::sub_wide(L::mul(n[0], p[1]), L::mul(n[1], p[0])))
 }
 
-/// Whether a corner of the incident box, of an edge to another, and an end of the reference edge are nearest to each
-/// other: each beyond the end of the other edge.
+/// Whether a corner of the incident box and an end of the reference edge are nearest to each other: each lies beyond
+/// the end of the other edge. The incident edge runs from `corner` to `other`.
 #[inline(always)]
 fn nearest_at_corner<L: Lanes<WIDTH>>(length: L::Int, corner: End<L::Int>, other: End<L::Int>) -> L::Mask {
     let zero = L::splat(0);
@@ -299,8 +301,8 @@ fn nearest_at_corner<L: Lanes<WIDTH>>(length: L::Int, corner: End<L::Int>, other
     L::either(before, behind)
 }
 
-/// How far above the reference edge an end is after it has been moved by `past`, if that is positive, along its edge,
-/// which spans more.
+/// Height above the reference edge of an end, after moving it by `past` along its own edge if `past` is positive. The
+/// incident edge spans `span` along the reference edge, which is more than `past`.
 #[inline(always)]
 fn clipped<L: Lanes<WIDTH>>(end: End<L::Int>, other: End<L::Int>, past: L::Int, span: L::Int) -> L::Int {
     let (mut fractions, mut spans) = (Ints::ZERO, Ints::ZERO);
@@ -315,20 +317,20 @@ fn clipped<L: Lanes<WIDTH>>(end: End<L::Int>, other: End<L::Int>, past: L::Int, 
     L::add(end.above, L::narrow::<CLIP>(way))
 }
 
-/// `past / span`, both positive; of a lane that is left to others anything.
+/// `past / span` of positive operands. Any value for a lane that is left to the scalar path.
 #[inline(always)]
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most 1")]
 fn part(past: i32, span: i32) -> i32 {
     (((past as u64) << CLIP) / span.max(1) as u64) as i32
 }
 
-/// A length with the fraction bits of a step.
+/// Converts a length to the fraction bits of a step.
 #[inline(always)]
 fn as_step<L: Lanes<WIDTH>>(length: L::Int) -> L::Int {
     L::low(L::mul(length, L::splat(1 << FINER)))
 }
 
-/// A step with the fraction bits of a length, rounded down.
+/// Converts a step to the fraction bits of a length, rounded down.
 #[inline(always)]
 fn as_length<L: Lanes<WIDTH>>(step: L::Int) -> L::Int {
     let half = L::splat(1 << (FINER - 1));

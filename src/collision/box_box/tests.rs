@@ -1,4 +1,4 @@
-//! Boxes in lanes against the narrow phase of any two hulls.
+//! Tests the SIMD box path against the scalar narrow phase of any two hulls.
 
 use super::*;
 use crate::body::{Body, BodyDef, MassProperties, Polygon, ShapeDef};
@@ -9,13 +9,13 @@ use crate::math::{Angle, Rng, Rot, narrow};
 use alloc::format;
 use alloc::vec::Vec;
 
-/// A box of any size that lanes take, some with round corners, some that slant a little; and how far it reaches.
+/// A random box within the size limit of the SIMD path, some with round corners, some slanted; and its half extents.
 fn random_box(rng: &mut Rng) -> (Polygon, Vec2<Fx>) {
-    // In whole millimetres, or nearly, so that opposite corners are exactly opposite.
+    // In whole multiples of 1/1024 m, so that opposite corners are exactly opposite.
     let size_max = [1850, 1850, 500, 250][rng.below(4) as usize];
     let mut size = || i64::from(50 + rng.below(size_max - 50));
     let (width, height) = (size(), size());
-    // Some are as long as they may be.
+    // Some boxes have the largest allowed length.
     let (width, height) = if rng.below(8) == 0 { (2750, 50) } else { (width, height) };
     let slant = if rng.below(4) == 0 { height / 20 } else { 0 };
     let corner = |x: i64, y: i64| Vec2::new(fx!(1) * x / 1024, fx!(1) * y / 1024);
@@ -26,7 +26,7 @@ fn random_box(rng: &mut Rng) -> (Polygon, Vec2<Fx>) {
     (polygon.rounded(radius).expect("valid"), Vec2::new(width + radius, height + radius))
 }
 
-/// Two boxes that touch or are about to: in piles most are turned by nearly nothing or by right angles.
+/// Two boxes that touch or nearly touch. As in piles, most are rotated by nearly zero or by right angles.
 fn random_pair(rng: &mut Rng) -> (PosedShape, PosedShape) {
     let ((a, reach_a), (b, reach_b)) = (random_box(rng), random_box(rng));
     let turned = match rng.below(4) {
@@ -63,7 +63,7 @@ fn lanes_find_what_is_found_one_by_one() {
     let (mut pairs_seen, mut points, mut left) = (0, [0; 3], 0);
     let mut batch = BoxPairs::default();
     for _ in 0..20_000 {
-        // One to ten: more than a batch.
+        // One to ten pairs: more than a batch.
         let pairs: Vec<_> = (0..=rng.below(10)).map(|_| random_pair(&mut rng)).collect();
         let widest = if rng.below(16) == 0 { fx!(2) } else { fx!(0.2) };
         let margins: Vec<_> = pairs.iter().map(|_| narrow(rng.range(fx!(0.005), widest))).collect();
@@ -71,7 +71,7 @@ fn lanes_find_what_is_found_one_by_one() {
             collide_near(a, b, margin, &mut AxisHint::default(), &mut SatCounters::default())
         });
         let expected: Vec<_> = expected.collect();
-        // Slots in another order than the pairs.
+        // Slots are in a different order from the pairs.
         let slots_of = |place: usize| (63 - 3 * u32::try_from(place).unwrap(), u32::try_from(place).unwrap());
         let mut boxes = SmallBoxes::default();
         boxes.resize(64);
@@ -97,25 +97,32 @@ fn lanes_find_what_is_found_one_by_one() {
                     left += 1;
                     continue;
                 }
-                let [found] = manifolds[..] else { panic!("one manifold, not {manifolds:?}") };
-                // Of no points the rest is of no interest; of others all is, for a contact may be compared as a whole.
+                let [found] = manifolds[..] else { panic!("expected one manifold, got {manifolds:?}") };
+                // Manifolds without points may differ in their other fields. With points all fields count, because
+                // contacts may be compared as a whole.
                 let same = found == *expected || found.points().is_empty() && expected.points().is_empty();
-                assert!(same, "{backend:?}: {found:?} is not {expected:?}: {:?}", pairs[i]);
+                assert!(same, "{backend:?}: expected {expected:?}, got {found:?}: {:?}", pairs[i]);
                 points[found.points().len()] += 1;
             }
             pairs_seen += pairs.len();
         }
     }
-    assert!(points.iter().all(|&count| count > pairs_seen / 20), "{points:?} of {pairs_seen}");
-    assert!(left > 0 && left < pairs_seen / 10, "{left} of {pairs_seen} were left");
+    assert!(
+        points.iter().all(|&count| count > pairs_seen / 20),
+        "each point count should be frequent: {points:?} of {pairs_seen}"
+    );
+    assert!(
+        left > 0 && left < pairs_seen / 10,
+        "under a tenth of {pairs_seen} pairs should be left to the scalar path, not {left}"
+    );
 }
 
-/// A body about its own origin.
+/// A body whose centre of mass is its origin.
 fn body_at_rest() -> Body {
     Body::new(&BodyDef::dynamic(), MassProperties::immovable())
 }
 
-/// Whatever way it is turned, a box is the one that would be posed there anew.
+/// Rotating a box gives the same faces as posing it at that rotation from scratch.
 #[test]
 fn a_box_that_is_turned_is_posed_as_if_anew() {
     let mut rng = Rng::new(8);
@@ -139,7 +146,7 @@ fn a_box_that_is_turned_is_posed_as_if_anew() {
             assert_eq!(format!("{:?}", boxes.turned), format!("{:?}", fresh.turned));
         }
     }
-    // One that its body swings around is left to others.
+    // A box that is not centred on its body's centre of mass is left to the scalar path.
     let shape = ShapeDef::new(Polygon::square(fx!(1)).expect("valid")).offset(fx!(1), fx!(0));
     let posed = PosedShape::of_geometry(&shape.geometry, Vec2::ZERO, Rot::IDENTITY);
     boxes.place(0, &posed, posed.as_centred_box(&shape, &body_at_rest()));

@@ -1,5 +1,5 @@
-//! All kinds against each other while boxes come, go and move, and their queries against exact arithmetic on every
-//! box, in a small world and in one as large as the format.
+//! Compares all broad phase kinds with each other while boxes are inserted, removed and moved, and compares their
+//! queries with exact arithmetic on every box, in a small world and in one that fills the number range.
 
 use super::*;
 use crate::body::Filter;
@@ -10,7 +10,7 @@ use alloc::vec;
 const KINDS: [BroadPhaseKind; 3] =
     [BroadPhaseKind::Tree, BroadPhaseKind::SweepAndPrune, BroadPhaseKind::BruteForce];
 
-/// A grid of 2^16 units of the last place, so that the oracle's products fit into 128 bits.
+/// A random coordinate on a grid of 2^16 units of the last place, so that the oracle's products fit 128 bits.
 fn random_fx(rng: &mut Rng, half: i64) -> Fx {
     let step = 1 << 16;
     let range = (Fx::from_bits(-(half / step)), Fx::from_bits(half / step));
@@ -31,7 +31,7 @@ fn random_box(rng: &mut Rng, world: i64) -> Aabb {
     Aabb::new(corner, corner).union(Aabb::new(corner, corner).translated(random_vector(rng, size)))
 }
 
-/// Half the size of worlds in units of the last place: 8 m, 2^30 m, and all that there is.
+/// Half the world size in units of the last place: 8 m, 2^30 m, and the whole number range.
 const WORLDS: [i64; 3] = [8 << 32, 1 << 62, i64::MAX];
 
 fn random_kin(rng: &mut Rng, count: u32) -> Kin {
@@ -39,7 +39,7 @@ fn random_kin(rng: &mut Rng, count: u32) -> Kin {
     Filter { group, ..Filter::default() }.kin()
 }
 
-/// Boxes by slot, and the three kinds that are to hold the same.
+/// Boxes by slot, and the three broad phase kinds, which must contain the same boxes.
 struct Crowd {
     boxes: Vec<Option<Aabb>>,
     kin: Vec<Kin>,
@@ -99,7 +99,7 @@ impl Crowd {
         self.occupied().filter(|&(_, fat)| wanted(fat)).map(|(slot, _)| slot).collect()
     }
 
-    /// Straight from the definition.
+    /// Expected pairs, computed directly from the definition.
     fn pairs(&self, moved: Moved<'_>, accept: impl Fn(Pair) -> bool) -> Vec<Pair> {
         let has_moved = |slot| match moved {
             Moved::All => true,
@@ -131,14 +131,15 @@ fn all_kinds_find_the_same_pairs_while_boxes_move() {
                 (2..8, Some(fat)) => {
                     crowd.set(slot, fat.translated(random_vector(&mut rng, 1 << 32)));
                 }
-                // Few of most rounds, nearly all of some.
+                // Few class changes in most rounds, nearly all slots in some.
                 (8, Some(_)) => crowd.set_kin(slot, random_kin(&mut rng, 3)),
                 (9..19, Some(_)) if round % 10 == 0 => {
                     crowd.set_kin(slot, random_kin(&mut rng, 1 + u32::from(round > 150)));
                 }
                 _ => {}
             }
-            // The tree searches for few and compares itself with itself for many.
+            // The tree searches for each moved box if there are few, and traverses itself against itself if there are
+            // many.
             if rng.below(if round % 2 == 0 { 40 } else { 4 }) == 0 {
                 moved.extend([rng.below(150), rng.below(150)]);
                 moved.push(moved[0]);
@@ -147,7 +148,7 @@ fn all_kinds_find_the_same_pairs_while_boxes_move() {
         if round % 50 == 49 {
             crowd.refill();
         }
-        // From a few of them to all.
+        // From a few of the boxes to all.
         let share = rng.below(8);
         let many: Vec<_> = crowd.occupied().filter(|_| rng.below(8) < share).collect();
         let shift = random_vector(&mut rng, 1 << 32);
@@ -173,10 +174,10 @@ fn all_kinds_find_the_same_pairs_while_boxes_move() {
             total += expected.len();
         }
     }
-    assert!(total > 3000, "only {total} pairs");
+    assert!(total > 3000, "expected over 3000 pairs, got {total}");
 }
 
-/// Boxes on top of each other have more pairs than anybody wants to store.
+/// Coincident boxes have far more pairs than the limit; the surplus is not stored.
 #[test]
 fn pairs_beyond_the_limit_take_no_memory() {
     let mut crowd = Crowd::new(400);
@@ -185,7 +186,7 @@ fn pairs_beyond_the_limit_take_no_memory() {
         let mut found = Vec::new();
         assert!(kind.pairs(Moved::All, |_| true, 100, &mut found));
         assert_eq!(found, (1..=100).map(|b| (0, b)).collect::<Vec<Pair>>());
-        assert!(found.capacity() < 1000, "{}", found.capacity());
+        assert!(found.capacity() < 1000, "expected a capacity below 1000 pairs, got {}", found.capacity());
     }
 }
 
@@ -217,8 +218,8 @@ fn overlaps_are_those_of_every_box() {
     }
 }
 
-/// When the moving area first touches the box, as a fraction `n / d` with `d > 0`. On each axis the time at which it
-/// touches is an interval; all is in units of 2^-16 m, so that products of two fit.
+/// Time at which the moving area first touches the box, as a fraction `n / d` with `d > 0`. On each axis the times of
+/// contact form an interval. All values are in units of 2^-16 m, so that products of two fit.
 fn first_touch(area: Aabb, translation: Vec2<Fx>, fat: Aabb) -> Option<(i128, i128)> {
     let bits = |x: Fx| i128::from(x.to_bits() >> 16);
     let mut start = (0, 1);
@@ -267,14 +268,17 @@ fn a_moving_area_misses_nothing_on_its_way() {
                     Unit::ONE
                 });
                 found.sort_unstable();
-                assert!(found.windows(2).all(|pair| pair[0] < pair[1]), "each once");
+                assert!(found.windows(2).all(|pair| pair[0] < pair[1]), "each slot should be visited once");
                 assert!(touched.iter().all(|slot| found.binary_search(slot).is_ok()), "{:?}", kind.kind());
                 hits += touched.len();
                 visits += found.len();
             }
         }
     }
-    assert!(hits > 1000 && visits < hits + hits / 100, "{hits} of {visits} are touched");
+    assert!(
+        hits > 1000 && visits < hits + hits / 100,
+        "expected few visits beyond {hits} hits, got {visits}"
+    );
 }
 
 #[test]
@@ -286,7 +290,7 @@ fn the_closest_hit_is_found_while_the_way_shrinks() {
         for _ in 0..200 {
             let area = Aabb::from_points([random_vector(&mut rng, world)]).expect("a point");
             let translation = random_vector(&mut rng, world);
-            // Up to the next unit, so that no hit is cut off.
+            // Rounded up to the next unit, so that no hit is cut off.
             let fraction_of = |fat: Aabb| {
                 let (n, d) = first_touch(area, translation, fat)?;
                 let bits = (n << Unit::FRAC_NBITS).div_euclid(d) + 1;
@@ -313,7 +317,7 @@ fn the_closest_hit_is_found_while_the_way_shrinks() {
             all += crowd.slots_where(|fat| fraction_of(fat).is_some()).len();
         }
     }
-    assert!(visits < all / 2, "{visits} visits for {all} boxes on the way");
+    assert!(visits < all / 2, "expected under half of {all} boxes to be visited, got {visits} visits");
 }
 
 #[test]
@@ -323,7 +327,7 @@ fn what_is_near_is_found_while_the_radius_shrinks() {
         let nearest = point.max(fat.lower).min(fat.upper);
         let axis = |a: Fx, b: Fx| u128::from(a.to_bits().abs_diff(b.to_bits()) >> 1);
         let (x, y) = (axis(point.x, nearest.x), axis(point.y, nearest.y));
-        // In units of two, rounded up, so that every distance in the world fits.
+        // In units of 2, rounded up, so that every distance in the world fits.
         let root = (x * x + y * y).isqrt() + 1;
         Fx::from_bits(i64::try_from(root.saturating_mul(2)).unwrap_or(i64::MAX))
     };
@@ -342,7 +346,7 @@ fn what_is_near_is_found_while_the_radius_shrinks() {
                 });
                 found.sort_unstable();
                 assert!(radius >= Fx::ZERO || found.is_empty());
-                assert!(found.windows(2).all(|pair| pair[0] < pair[1]), "each once");
+                assert!(found.windows(2).all(|pair| pair[0] < pair[1]), "each slot should be visited once");
                 assert!(within.iter().all(|slot| found.binary_search(slot).is_ok()), "{:?}", kind.kind());
                 let far = |&slot: &u32| {
                     let fat = crowd.boxes[slot as usize].expect("occupied");

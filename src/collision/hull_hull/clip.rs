@@ -1,7 +1,7 @@
 //! Clipping of the incident edge of one outline against the reference face of another.
 //!
-//! All that follows happens in the frame of the face: where a vertex is along it, and how far above. A contact point
-//! is half-way between the surfaces, at the clipped place:
+//! Everything is computed in the frame of the face: the position of a vertex along the face, and its height above the
+//! face. A contact point is half-way between the surfaces, at the clipped position:
 //!
 //! ```text
 //! anchor = v1 + t along + n (above + rA - rB) / 2,    separation = above - rA - rB
@@ -13,13 +13,14 @@ use crate::collision::manifold::{Feature, Manifold, ManifoldPoint};
 use crate::collision::pose::Hull;
 use crate::math::{Length, Step, Unit, Vec2, round_shift, saturate};
 
-/// How many fraction bits a step has more than a length.
+/// Number of fraction bits of a step beyond those of a length.
 pub(in crate::collision) const FINER: u32 = Step::FRAC_NBITS - Length::FRAC_NBITS;
 
-/// The fraction bits of where an edge is clipped: edges are at most 570 m long, and its product with one has 63 bits.
+/// Fraction bits of the clip fraction: edges are at most 570 m long, and the product of an edge and the fraction has 63
+/// bits.
 pub(in crate::collision) const CLIP_BITS: u32 = 26;
 
-/// One end of an edge, about the start of the reference edge, in units of `Length` and `Step` that do not saturate.
+/// End of an edge relative to the start of the reference edge, in unsaturated units of `Length` and `Step`.
 #[derive(Clone, Copy)]
 struct End {
     vertex: usize,
@@ -27,7 +28,7 @@ struct End {
     above: i64,
 }
 
-/// Clips the incident edge of `b` against a face of `a`. Anchors are about the centre of `a`.
+/// Clips the incident edge of `b` against a face of `a`. Anchors are relative to the centre of `a`.
 pub(in crate::collision) fn clip(
     a: &Hull,
     b: &Hull,
@@ -42,8 +43,8 @@ pub(in crate::collision) fn clip(
         End { vertex: face.edge, along: 0, above: 0 },
         End { vertex: next, along: along(normal, between(v1, a.vertex(next))), above: 0 },
     );
-    // Both outlines run counter-clockwise, so the incident edge runs against the reference edge: its second
-    // vertex is the lower end.
+    // Both outlines run counter-clockwise, so the incident edge runs against the reference edge: its second vertex is
+    // the lower end.
     let to_b = between(v1, d);
     let end_of_b = |vertex: usize| {
         let position = b.vertex(vertex);
@@ -53,8 +54,9 @@ pub(in crate::collision) fn clip(
     let edge_of_b = |edge: usize| (end_of_b(edge), end_of_b(b.next(edge)));
     let mut incident = incident_edge(b, normal);
     let (mut upper, mut lower) = edge_of_b(incident);
-    // Of an outline that hardly bends, the edge most against the face may lie beside it, and a neighbour before it. Where
-    // outlines are apart, the nearest corner is one of that edge.
+    // On an outline with small bends the edge most opposed to the face may lie beside the face, with a neighbouring
+    // edge in front of it. For separate outlines the nearest corner is an end of the most opposed edge, so no neighbour
+    // is tried.
     let neighbours = if apart { 0 } else { b.faces() };
     for _ in 0..neighbours {
         let neighbour = if upper.along < first.along {
@@ -74,8 +76,8 @@ pub(in crate::collision) fn clip(
     let context = Clip { a, b, d, face: face.edge, margin };
     let corners = if apart { nearest_corners(first, last, upper, lower) } else { None };
     if upper.along < first.along || lower.along > last.along {
-        // Outlines that overlap deeply may have no incident edge beside the face. Their deepest corner still pushes
-        // them apart.
+        // Deeply overlapping outlines may have no incident edge beside the face. Their deepest corner still pushes them
+        // apart.
         let (end_a, end_b) = if upper.along < first.along { (first, upper) } else { (last, lower) };
         return match corners {
             Some((vertex_a, vertex_b)) => context.corner(&Gap::between(&context, vertex_a, vertex_b)),
@@ -85,8 +87,8 @@ pub(in crate::collision) fn clip(
     let low = if lower.along < first.along { clipped(lower, upper, first.along) } else { lower };
     let high = if upper.along > last.along { clipped(upper, lower, last.along) } else { upper };
     if let Some((vertex_a, vertex_b)) = corners {
-        // Rounded edges that are nearly parallel are nearest at a corner too, but rest on both ends: there the
-        // corners are no nearer than the clipped edge, nor further than the face.
+        // Rounded edges that are nearly parallel are nearest at corners too, but rest on both ends: there the corners
+        // are no nearer than the clipped edge, and no further than the face.
         let gap = Gap::between(&context, vertex_a, vertex_b);
         let distance = step_bits(gap.distance);
         let nearer = low.above.min(high.above);
@@ -98,8 +100,8 @@ pub(in crate::collision) fn clip(
     context.face([(first.vertex, low), (last.vertex, high)])
 }
 
-/// The corners that are nearest to each other, if those are what is nearest of two edges that are apart: each lies
-/// beyond the end of the other edge.
+/// The two corners that are nearest to each other, if they are the nearest features of two separate edges: each corner
+/// lies beyond the end of the other edge.
 fn nearest_corners(first: End, last: End, upper: End, lower: End) -> Option<(End, End)> {
     let beyond_incident = |a: End, b: End, other: End| {
         let from_b = |end: End| (end.along - b.along, (end.above - b.above) >> FINER);
@@ -118,7 +120,7 @@ fn nearest_corners(first: End, last: End, upper: End, lower: End) -> Option<(End
     })
 }
 
-/// The edge whose normal is most opposed to `normal`: of equal ones the first.
+/// Edge whose normal is most opposed to `normal`; the first one in case of a tie.
 #[inline]
 fn incident_edge(b: &Hull, normal: Vec2<Unit>) -> usize {
     let cosine = |n: Vec2<Unit>| dot(n, normal);
@@ -132,8 +134,9 @@ fn incident_edge(b: &Hull, normal: Vec2<Unit>) -> usize {
     b.normals().iter().map(|&n| cosine(n)).enumerate().reduce(nearer).map_or(0, |(edge, _)| edge)
 }
 
-/// Whether an outline turns by less than an eighth of a turn from an edge to its neighbour. Where it turns by more, the face
-/// of the neighbour wins over one that is beside it by more than a millimetre.
+/// Whether an outline turns by less than an eighth of a turn from an edge to its neighbour. If it turns by more, and
+/// the edge lies beside the reference face by more than a millimetre, the neighbour's face wins the separating axis
+/// test.
 fn bends_little(b: &Hull, edge: usize, neighbour: usize) -> bool {
     const COS_EIGHTH: i64 = (Unit::lit("0.70711").to_bits() as i64) << Unit::FRAC_NBITS;
     dot(b.normal(edge), b.normal(neighbour)) > COS_EIGHTH
@@ -145,27 +148,27 @@ fn dot(a: Vec2<Unit>, b: Vec2<Unit>) -> i64 {
     i64::from(a.x.to_bits()) * i64::from(b.x.to_bits()) + i64::from(a.y.to_bits()) * i64::from(b.y.to_bits())
 }
 
-/// From one position to another, in units of `Length`: one bit more than that holds.
+/// Vector from one position to another, in units of `Length`: one bit more than a `Length` can store.
 #[inline]
 fn between(from: Vec2<Length>, to: Vec2<Length>) -> (i64, i64) {
     let apart = |from: Length, to: Length| i64::from(to.to_bits()) - i64::from(from.to_bits());
     (apart(from.x, to.x), apart(from.y, to.y))
 }
 
-/// How far along the face with a normal, in units of `Length`: `t . p` for `t` the normal turned a quarter.
+/// Position along the face with a normal, in units of `Length`: `t . p`, for `t` the normal rotated by a quarter turn.
 #[inline]
 fn along(n: Vec2<Unit>, p: (i64, i64)) -> i64 {
     round_shift(i64::from(n.x.to_bits()) * p.1 - i64::from(n.y.to_bits()) * p.0, Unit::FRAC_NBITS)
 }
 
-/// How far above the face with a normal, in units of `Step`: `n . p`.
+/// Height above the face with a normal, in units of `Step`: `n . p`.
 #[inline]
 fn above(n: Vec2<Unit>, p: (i64, i64)) -> i64 {
     let above = i64::from(n.x.to_bits()) * p.0 + i64::from(n.y.to_bits()) * p.1;
     round_shift(above, FACE_BITS - Step::FRAC_NBITS)
 }
 
-/// Moves an end along its edge to where it passes a limit, which is between it and the other end.
+/// Moves an end along its edge to a limit, which lies between it and the other end.
 #[inline]
 fn clipped(end: End, other: End, limit: i64) -> End {
     let fraction = ((limit - end.along) << CLIP_BITS) / (other.along - end.along);
@@ -179,13 +182,13 @@ fn clipped(end: End, other: End, limit: i64) -> End {
 struct Clip<'a> {
     a: &'a Hull,
     b: &'a Hull,
-    /// From the centre of A to that of B.
+    /// Vector from the centre of A to the centre of B.
     d: Vec2<Length>,
     face: usize,
     margin: Length,
 }
 
-/// What is between two corners.
+/// Gap between two corners.
 struct Gap {
     vertices: (usize, usize),
     normal: Vec2<Unit>,
@@ -202,7 +205,7 @@ impl Gap {
 }
 
 impl Clip<'_> {
-    /// Contact points of clipped incident ends, each with the vertex of A that it is next to.
+    /// Contact points of clipped incident ends, each with the vertex of A that it is paired with.
     #[inline(always)]
     fn face<const N: usize>(&self, ends: [(usize, End); N]) -> Manifold {
         let (normal, start) = (self.a.normal(self.face), self.a.vertex(self.face));
@@ -213,7 +216,7 @@ impl Clip<'_> {
         manifold
     }
 
-    /// Contact between two corners, along the line that joins them.
+    /// Contact point between two corners, along the line that joins them.
     fn corner(&self, gap: &Gap) -> Manifold {
         let mut manifold = Manifold::new(gap.normal);
         let end = End { vertex: gap.vertices.1, along: 0, above: step_bits(gap.distance) };
@@ -221,7 +224,8 @@ impl Clip<'_> {
         manifold
     }
 
-    /// Adds the contact at an end of B, given about a place on A's outline, radii not counted, if it is near enough.
+    /// Adds the contact point at an end of B, given relative to a point on A's outline without radii, if it is within
+    /// the margin.
     #[inline(always)]
     fn push(&self, manifold: &mut Manifold, start: Vec2<Length>, (vertex, end): (usize, End)) {
         let (radius_a, radius_b) = (step_bits(self.a.radius), step_bits(self.b.radius));
@@ -229,7 +233,7 @@ impl Clip<'_> {
         if separation > step_bits(self.margin) {
             return;
         }
-        // A's surface is at `radius_a` above the outline and B's at `above - radius_b`.
+        // A's surface is at `radius_a` above its outline, and B's at `above - radius_b`.
         let middle = round_shift(end.above + radius_a - radius_b, FINER + 1);
         let (x, y) = (i64::from(manifold.normal.x.to_bits()), i64::from(manifold.normal.y.to_bits()));
         let moved = |from: Length, by: i64| {

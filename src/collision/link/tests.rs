@@ -1,4 +1,4 @@
-//! Chains against a naive oracle: the distance to a line through points, by brute force in 64 bits.
+//! Tests chains against a naive oracle: the distance from a polyline, by brute force in 64 bits.
 
 use alloc::vec::Vec;
 
@@ -45,7 +45,7 @@ fn random_mover(rng: &mut Rng) -> Geometry {
     }
 }
 
-/// The corners of a circle or hull in the world, and its radius.
+/// Vertices of a circle or hull in the world, and its radius.
 fn corners(shape: &PosedShape) -> (Vec<Vec2<Fx>>, Fx) {
     match &shape.outline {
         Outline::Circle { radius } => (alloc::vec![shape.centre], widen(*radius)),
@@ -57,7 +57,7 @@ fn corners(shape: &PosedShape) -> (Vec<Vec2<Fx>>, Fx) {
     }
 }
 
-/// Smallest distance of an outline's corners and edges from those of a line through points.
+/// Smallest distance between the vertices and edges of an outline and those of a polyline.
 fn distance(outline: &[Vec2<Fx>], line: &[Vec2<Fx>]) -> Fx {
     let from_line = outline.iter().flat_map(|&corner| {
         line.windows(2).map(move |link| closest_point_on_segment(corner, link[0], link[1]).distance(corner))
@@ -76,7 +76,7 @@ fn crosses(outline: &[Vec2<Fx>], line: &[Vec2<Fx>]) -> bool {
     })
 }
 
-/// A line through random points that turns by less than a right angle at each, so that it does not come back.
+/// A random polyline that turns by less than a right angle at each point, so that it does not return to itself.
 fn random_line(rng: &mut Rng) -> Vec<Vec2<Fx>> {
     let mut heading = rng.angle();
     let mut points = alloc::vec![Vec2::new(rng.range(fx!(-1), fx!(1)), rng.range(fx!(-1), fx!(1)))];
@@ -89,8 +89,8 @@ fn random_line(rng: &mut Rng) -> Vec<Vec2<Fx>> {
     points
 }
 
-/// Wherever something is near a chain but does not cross it, some link has a contact, which is no further than the
-/// chain; and for a circle the nearest contact is as far as the chain.
+/// If a shape is near a chain and does not cross it, some link has a contact that is no further than the chain; for a
+/// circle the nearest contact is exactly as far as the chain.
 #[test]
 fn a_chain_has_no_holes() {
     let mut rng = Rng::new(1);
@@ -112,20 +112,23 @@ fn a_chain_has_no_holes() {
         if expected < margin - fx!(0.001) {
             near += 1;
             let contact = contact.unwrap_or(Fx::MAX);
-            assert!(contact <= expected + fx!(0.001), "{contact}, not {expected}: {mover:?} on {line:?}");
+            assert!(
+                contact <= expected + fx!(0.001),
+                "expected {expected}, got {contact}: {mover:?} on {line:?}"
+            );
             let is_circle = matches!(mover.outline, Outline::Circle { .. });
             assert!(
                 !is_circle || expected > 0 || contact >= expected - fx!(0.00001),
-                "{contact}, not {expected}"
+                "expected {expected}, got {contact}"
             );
         } else {
             far += 1;
         }
     }
-    assert!(near > 3_000 && far > 10_000, "{near} near, {far} far");
+    assert!(near > 3_000 && far > 10_000, "both cases should be frequent: {near} near, {far} far");
 }
 
-/// Over a flat chain every normal is the chain's own, from either side and wherever the shape is along it.
+/// On a flat chain every contact normal is the chain's own, from either side and wherever the shape is along the chain.
 #[test]
 fn a_flat_chain_only_pushes_straight() {
     let mut rng = Rng::new(2);
@@ -152,10 +155,10 @@ fn a_flat_chain_only_pushes_straight() {
             assert!(up > Unit::lit("0.9999999"), "{:?}: {mover:?} over {:?}", manifold.normal, link.outline);
         }
     }
-    assert!(contacts > 10_000, "only {contacts}");
+    assert!(contacts > 10_000, "expected over 10000 contacts, got {contacts}");
 }
 
-/// A link without neighbours is a segment.
+/// A link without neighbours collides like a segment.
 #[test]
 fn a_single_link_is_a_segment() {
     let mut rng = Rng::new(3);
@@ -174,14 +177,14 @@ fn a_single_link_is_a_segment() {
         let (of_link, of_segment) = (found(&link, &mover, fx!(0.05)), found(&segment, &mover, fx!(0.05)));
         assert_eq!(of_link.points().len(), of_segment.points().len(), "{mover:?} on {line:?}");
         let (Some(a), Some(b)) = (nearest(&of_link), nearest(&of_segment)) else { continue };
-        // A line inside a polygon may leave it on either side.
+        // A segment inside a polygon may push it to either side.
         if b < -radius {
             continue;
         }
         compared += 1;
-        assert!((a - b).abs() < fx!(0.0000005), "{a} and {b}: {mover:?} on {line:?}");
+        assert!((a - b).abs() < fx!(0.0000005), "link {a}, segment {b}: {mover:?} on {line:?}");
         let difference: Vec2<Length> = (of_link.normal - of_segment.normal).convert();
         assert!(difference.length() < Length::lit("0.001"), "{mover:?} on {line:?}");
     }
-    assert!(compared > 2_000, "only {compared}");
+    assert!(compared > 2_000, "expected over 2000 comparisons, got {compared}");
 }

@@ -1,4 +1,4 @@
-//! Against the separation at many moments of the tick.
+//! Tests the time of impact against the separation at many moments of the tick.
 
 use super::super::core::samples;
 use super::*;
@@ -73,10 +73,13 @@ fn no_contact_is_passed_and_none_is_invented() {
             assert!(found > target - fx!(0.000001), "{found} {target} at {sample} of {free}: {a:?} {b:?}");
         }
     }
-    assert!(hits > 1_500 && separated > 6_000 && failed < 5, "{hits} {separated} {failed} {started}");
+    assert!(
+        hits > 1_500 && separated > 6_000 && failed < 5,
+        "hits {hits}, separated {separated}, failed {failed}, in contact at the start {started}"
+    );
 }
 
-/// From contact: what comes back as free never lets the centre of B pass.
+/// Starting in contact, the fraction that is reported as free never lets the centre of B pass the surface of A.
 #[test]
 fn contact_is_left_or_deepened_but_not_passed() {
     let mut rng = Rng::new(2);
@@ -85,7 +88,7 @@ fn contact_is_left_or_deepened_but_not_passed() {
         let (a, b) = (samples::core(&mut rng), samples::core(&mut rng));
         let (sweep_a, sweep_b) = (random_sweep(&mut rng), random_sweep(&mut rng));
         let start = distance(&a, &b.moved(to_grid(sweep_b.start - sweep_a.start)));
-        // Moved so that it starts about the contact.
+        // Moved so that it starts near contact.
         let shift = start.normal.widen().scale(rng.range(fx!(-0.02), fx!(0.005)) - start.distance);
         let sweep_b = Sweep { start: sweep_b.start + shift, end: sweep_b.end + shift, ..sweep_b };
         let (a, b) = ((&a, &sweep_a), (&b, &sweep_b));
@@ -117,7 +120,10 @@ fn contact_is_left_or_deepened_but_not_passed() {
             assert!(!has_inside || found > limit - fx!(0.000001), "{found} {limit} {a:?} {b:?}");
         }
     }
-    assert!(hits > 5_000 && free_to_go > 5_000 && failed < 25, "{hits} {free_to_go} {overlapped} {failed}");
+    assert!(
+        hits > 5_000 && free_to_go > 5_000 && failed < 25,
+        "hits {hits}, free {free_to_go}, overlapped {overlapped}, failed {failed}"
+    );
 }
 
 #[test]
@@ -136,14 +142,14 @@ fn a_bullet_and_a_thin_rod_do_not_pass_a_wall() {
     let spin = Sweep { turn: turn(fx!(0.83)), ..Sweep::fixed(ORIGIN) };
     let pinned = Sweep::fixed(at(fx!(0.9), fx!(0.4)));
     let hit = time_of_impact((&pin, &pinned), (&rod, &spin), Fx::ZERO);
-    // The pin is at 0.418 rad; the two surfaces are 0.02 / 0.985 rad wide.
+    // The pin is at 0.418 rad; its radius and the half thickness of the rod take up 0.02 / 0.985 rad.
     assert!(
         matches!(hit, TimeOfImpact::Hit { fraction } if (fraction - fx!(0.479)).abs() < fx!(0.001)),
         "{hit:?}"
     );
 }
 
-/// On a floor as long as the world, sloped so that its normal is rounded.
+/// The floor is as long as the world, and sloped so that its normal is rounded.
 #[test]
 fn what_rests_or_slides_or_rolls_on_a_floor_is_free() {
     let far = at(fx!(1000000000), fx!(333333333.25));
@@ -167,7 +173,7 @@ fn what_rests_or_slides_or_rolls_on_a_floor_is_free() {
             let ball = Core::disc(ORIGIN, fx!(0.25));
             let roll = time_of_impact((&floor, &still), (&ball, &along(start, turn(fx!(27)))), fx!(0.005));
             assert_eq!(roll, TimeOfImpact::Separated, "{sunk} {speed}");
-            // Another floor begins flush with the first one.
+            // A second floor begins flush with the first one.
             let next = Core::from_points([at(fx!(1236), Fx::ZERO), at(fx!(1240), Fx::ZERO)], Fx::ZERO);
             let next = next.rotated(rotation);
             let seam = time_of_impact((&next, &still), (&shape, &along(start, 0)), fx!(-0.05));

@@ -1,4 +1,4 @@
-//! Which boxes overlap each other.
+//! Pairs of overlapping boxes in a tree.
 
 use alloc::vec::Vec;
 
@@ -6,11 +6,11 @@ use super::{NONE, Node, Tree};
 use crate::body::Kin;
 use crate::collision::broad_phase::Pair;
 
-/// How many pairs are found before they are told.
+/// Number of found pairs that are buffered before they are reported.
 const FOUND_MAX: usize = 256;
 
-/// Whether two boxes overlap is as good as random, and a branch that is taken wrongly costs more than to write what nobody
-/// wants: a pair is written in any case, and counted if it is wanted.
+/// Branch-free list of pairs. Whether two boxes overlap is nearly random, and a mispredicted branch costs more than an
+/// unnecessary store: a pair is always written, and counted only if it is wanted.
 #[derive(Clone, Debug, Default)]
 pub(super) struct PairList {
     pairs: Vec<Pair>,
@@ -45,16 +45,17 @@ impl PairList {
     }
 }
 
-/// Pairs of nodes that are to be looked at, and of slots that have been found.
+/// Stack of node pairs to visit, and buffer of slot pairs found.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Meetings {
-    /// Two nodes that overlap and of which at least one has children, or one that has some and meets itself.
+    /// Pairs of overlapping nodes of which at least one is an inner node, and inner nodes paired with themselves.
     waiting: PairList,
     found: PairList,
 }
 
 impl Meetings {
-    /// Of each two nodes that overlap, one of them wanted, leaves are a pair, and others have something to be looked at later.
+    /// For each pair of overlapping nodes of which at least one is wanted: reports two leaves, and pushes any other
+    /// pair.
     #[inline(always)]
     fn meet<const N: usize>(&mut self, pairs: [[(u32, &Node); 2]; N], wanted: impl Fn(&Node) -> bool) {
         let (mut found, mut waiting) = ([((NONE, NONE), false); N], [((NONE, NONE), false); N]);
@@ -72,19 +73,19 @@ impl Meetings {
 }
 
 impl Tree {
-    /// Calls `found` with every pair of overlapping boxes once, but for most of those of one kin.
+    /// Calls `found` with every pair of overlapping boxes once, except for most pairs within one collision class.
     pub(crate) fn each_pair(&mut self, found: impl FnMut(Pair)) {
         self.meet_itself(|_| true, found);
     }
 
-    /// The same of pairs with at least one of some slots.
+    /// Like [`Tree::each_pair`], for pairs with at least one of some slots.
     pub(crate) fn each_pair_of(&mut self, slots: &[u32], found: impl FnMut(Pair)) {
         slots.iter().for_each(|&slot| self.mark(slot, true));
         self.meet_itself(|node| node.marked, found);
         slots.iter().for_each(|&slot| self.mark(slot, false));
     }
 
-    /// Marks a leaf and all that it is below, or takes the marks away.
+    /// Sets or clears the mark of a leaf and its ancestors.
     fn mark(&mut self, slot: u32, marked: bool) {
         let mut at = self.leaf_of(slot).unwrap_or(NONE);
         while at != NONE && self.at(at).marked != marked {
@@ -93,7 +94,7 @@ impl Tree {
         }
     }
 
-    /// The tree against itself, but for two nodes of which neither is wanted.
+    /// Traverses the tree against itself, skipping pairs of nodes of which neither is wanted.
     #[inline(always)]
     fn meet_itself(&mut self, wanted: impl Fn(&Node) -> bool, mut found: impl FnMut(Pair)) {
         let mut meetings = core::mem::take(&mut self.meetings);

@@ -1,19 +1,18 @@
-//! Whole trees at once, when many boxes have moved. First the boxes of the nodes are fitted again, from the leaves up;
-//! if the tree has become worse by that, it is built anew from the top: the boxes are halved at the median of their
-//! centres, again and again, so that the height is the logarithm of their number. Nodes are stored in the order of a
-//! search.
+//! Refit and rebuild of whole trees, when many boxes have moved. First the boxes of the nodes are refitted from the
+//! leaves up. If this makes the tree too costly, it is rebuilt from the top: the boxes are split repeatedly at the
+//! median of their centres, so that the height is the logarithm of their number. Nodes are stored in depth-first order.
 
 use alloc::vec::Vec;
 
 use super::{NONE, Node, Tree, perimeter};
 use crate::math::Aabb;
 
-/// What is kept from one rebuild for the next.
+/// Cost of the last rebuild, and buffers that are reused.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Rebuilt {
-    /// The cost of the tree when it was new.
+    /// Cost of the tree after the last rebuild.
     cost: u64,
-    /// The nodes before: each rebuild exchanges them with the new ones.
+    /// Old nodes: each rebuild swaps them with the new ones.
     nodes: Vec<Node>,
     loose: Vec<Loose>,
     waiting: Vec<Part>,
@@ -21,7 +20,7 @@ pub(super) struct Rebuilt {
     below: Vec<u32>,
 }
 
-/// A leaf that is not in the tree yet: its centre on a grid of 2^32 cells a side around all of them, and its node.
+/// A leaf that is not in the tree yet: its centre on a grid of 2^32 cells per side around all leaves, and its node.
 #[derive(Clone, Copy, Debug)]
 struct Loose {
     x: u32,
@@ -29,7 +28,7 @@ struct Loose {
     leaf: u32,
 }
 
-/// Some of the loose leaves, which are to become the next child of a node.
+/// A range of the loose leaves that becomes the next child of a node.
 #[derive(Clone, Copy, Debug)]
 struct Part {
     start: usize,
@@ -43,7 +42,7 @@ impl Tree {
         self.nodes.clear();
         self.leaves.clear();
         self.vacant = NONE;
-        // The slots are told apart first: of one that comes twice, the last box stays.
+        // Duplicate slots are resolved first: the last box of a slot is kept.
         for (slot, fat) in boxes {
             self.leaves.resize(self.leaves.len().max(slot as usize + 1), NONE);
             match self.leaf_of(slot) {
@@ -54,7 +53,7 @@ impl Tree {
         self.rebuild();
     }
 
-    /// Moves the boxes of many slots, which have one.
+    /// Sets the boxes of many slots.
     pub(crate) fn set_many(&mut self, boxes: impl ExactSizeIterator<Item = (u32, Aabb)>) {
         if boxes.len() + (self.strays as usize) < self.len() / 16 {
             boxes.for_each(|(slot, fat)| self.set(slot, fat));
@@ -66,14 +65,14 @@ impl Tree {
                 None => self.set(slot, fat),
             }
         }
-        // An old tree of which much has changed, or that costs a quarter more than it did, is worth a new one.
+        // Rebuilds a tree of which more than a quarter was relinked, or whose cost has grown by a quarter.
         if self.relinked > self.len / 4 || self.refit_all() / 5 > self.rebuilt.cost / 4 {
             self.rebuild();
         }
         self.strays = 0;
     }
 
-    /// Boxes and heights of all inner nodes. Returns the cost of the tree.
+    /// Refits all inner nodes, and returns the cost of the tree.
     fn refit_all(&mut self) -> u64 {
         if self.relinked == 0 {
             let count = u32::try_from(self.nodes.len()).expect("fewer than 2^32 nodes");
@@ -95,7 +94,7 @@ impl Tree {
         cost
     }
 
-    /// The inner ones of some nodes, children before their parents.
+    /// Refits the inner nodes among the given nodes, children before their parents, and returns their cost.
     fn refit_each(&mut self, nodes: impl Iterator<Item = u32>) -> u64 {
         let mut cost = 0_u64;
         for index in nodes {
@@ -107,7 +106,7 @@ impl Tree {
         cost
     }
 
-    /// Builds the tree anew around the leaves that there are.
+    /// Rebuilds the tree from its leaves.
     pub(super) fn rebuild(&mut self) {
         let mut rebuilt = core::mem::take(&mut self.rebuilt);
         core::mem::swap(&mut self.nodes, &mut rebuilt.nodes);
@@ -117,17 +116,17 @@ impl Tree {
         (self.root, self.vacant) = (NONE, NONE);
         self.len = u32::try_from(rebuilt.loose.len()).expect("fewer than 2^31 shapes");
         self.build(&mut rebuilt);
-        // Children have been stored behind their parents.
+        // Children are stored after their parents.
         (self.relinked, self.strays) = (0, 0);
         rebuilt.cost = self.refit_all();
         self.rebuilt = rebuilt;
     }
 
-    /// Stores the nodes, inner ones without boxes and heights.
+    /// Stores the nodes; inner nodes have no boxes and heights yet.
     fn build(&mut self, Rebuilt { nodes, loose, waiting, .. }: &mut Rebuilt) {
         waiting.clear();
         waiting.push(Part { start: 0, end: loose.len(), parent: NONE });
-        // Parts wait for their parent's first half to be done.
+        // Depth first: the second half waits until the first is done.
         while let Some(Part { start, end, parent }) = waiting.pop() {
             let node = match loose[start..end] {
                 [] => continue,
@@ -148,7 +147,7 @@ impl Tree {
 }
 
 impl Rebuilt {
-    /// Lists the leaves of the old nodes.
+    /// Collects the leaves of the old nodes.
     fn collect(&mut self, leaves: &[u32]) {
         let Rebuilt { nodes, loose, .. } = self;
         let present = || leaves.iter().filter(|&&leaf| leaf != NONE);
@@ -172,8 +171,8 @@ impl Rebuilt {
     }
 }
 
-/// Two halves on either side of the median along the axis on which the centres are farther apart. Returns where the
-/// second begins.
+/// Splits a range at the median along the axis on which the centres are spread further. Returns the start of the second
+/// half.
 fn halve(part: &mut [Loose]) -> usize {
     let middle = part.len() / 2;
     let least_most = (u32::MAX, u32::MIN);

@@ -1,4 +1,4 @@
-//! The tree is sound after whatever happens to it, and no order of boxes makes it deep.
+//! Tests that the tree stays valid under any sequence of changes, and that no order of boxes makes it deep.
 
 use super::*;
 use crate::body::Filter;
@@ -11,48 +11,54 @@ impl Tree {
         self.nodes.iter().filter(|node| !node.is_leaf()).map(|node| perimeter(node.aabb) >> 16).sum()
     }
 
-    /// Panics unless links, boxes, heights and the free list are as they should be. Returns the height.
+    /// Panics unless links, boxes, heights and the free list are valid. Returns the height.
     fn validate(&self) -> u8 {
         let mut reached = 0;
         let mut stack = Vec::new();
         if self.root != NONE {
-            assert_eq!(self.at(self.root).parent, NONE, "the root has no parent");
+            assert_eq!(self.at(self.root).parent, NONE, "the root should have no parent");
             stack.push(self.root);
         }
         while let Some(index) = stack.pop() {
             reached += 1;
             let node = self.at(index);
             if node.is_leaf() {
-                assert_eq!(self.leaf_of(node.children[0]), Some(index), "a slot knows its leaf");
+                assert_eq!(self.leaf_of(node.children[0]), Some(index), "a slot should map to its leaf");
                 continue;
             }
             let [a, b] = node.children.map(|child| self.at(child));
-            assert!(node.aabb.contains(a.aabb.union(b.aabb)), "the box is around the children");
-            assert!(!node.marked, "marks are taken away");
+            assert!(
+                node.aabb.contains(a.aabb.union(b.aabb)),
+                "a box should contain the boxes of its children"
+            );
+            assert!(!node.marked, "marks should be cleared after use");
             assert_eq!(node.kin, a.kin.common(b.kin));
             let is_in_order = node.children.iter().all(|&child| child > index);
-            assert!(self.relinked > 0 || is_in_order, "while no leaf has moved, parents come first");
+            assert!(
+                self.relinked > 0 || is_in_order,
+                "while no leaf was relinked, parents should come first"
+            );
             assert_eq!(node.height, 1 + a.height.max(b.height));
-            assert!(a.height.abs_diff(b.height) <= IMBALANCE_MAX, "siblings are balanced");
+            assert!(a.height.abs_diff(b.height) <= IMBALANCE_MAX, "siblings should be balanced");
             for child in node.children {
-                assert_eq!(self.at(child).parent, index, "a child knows its parent");
+                assert_eq!(self.at(child).parent, index, "a child should refer to its parent");
                 stack.push(child);
             }
         }
         let leaves = self.leaves.iter().filter(|&&leaf| leaf != NONE).count();
         assert_eq!(leaves, self.len());
-        assert_eq!(reached, (2 * leaves).saturating_sub(1), "every leaf hangs in the tree");
+        assert_eq!(reached, (2 * leaves).saturating_sub(1), "every leaf should be reachable");
         let mut vacant = 0;
         let mut at = self.vacant;
         while at != NONE {
             vacant += 1;
             at = self.at(at).parent;
         }
-        assert_eq!(reached + vacant, self.nodes.len(), "every node is in use or vacant");
+        assert_eq!(reached + vacant, self.nodes.len(), "every node should be in use or vacant");
         if self.root == NONE { 0 } else { self.at(self.root).height }
     }
 
-    /// The pairs of some slots, from the definition.
+    /// Expected pairs of some slots, computed from the definition.
     fn pairs_of(&self, slots: &[u32]) -> Vec<Pair> {
         let present = || (0u32..).zip(&self.leaves).filter(|&(_, &leaf)| leaf != NONE);
         let boxes = || present().map(|(slot, &leaf)| (slot, self.at(leaf).aabb));
@@ -74,7 +80,7 @@ fn square(x: Fx, y: Fx, half: Fx) -> Aabb {
     Aabb::new(corner, corner).expanded(half)
 }
 
-/// The fewest boxes that make a tree of some height: one child is as high as it can be and the other as low.
+/// Computes the smallest number of boxes in a tree of some height: one child is as high as possible, the other as low.
 #[test]
 fn the_stack_holds_a_search_of_the_highest_tree() {
     let imbalance = IMBALANCE_MAX as usize;
@@ -84,7 +90,10 @@ fn the_stack_holds_a_search_of_the_highest_tree() {
         fewest.push(fewest[height - 1] + lower);
     }
     let most = fewest[STACK_LEN - 2];
-    assert!(most > u64::from(u32::MAX) / 2, "{most} boxes fill the stack");
+    assert!(
+        most > u64::from(u32::MAX) / 2,
+        "the stack should hold a tree of 2^31 boxes, but {most} boxes fill it"
+    );
 }
 
 #[test]
@@ -118,7 +127,7 @@ fn it_stays_sound_while_boxes_come_go_and_move() {
             all.retain(|&(a, b)| {
                 kin_of(a).common(kin_of(b)) == Kin::NONE || found.binary_search(&(a, b)).is_ok()
             });
-            assert_eq!(found, all, "none is left out but of one kin");
+            assert_eq!(found, all, "only pairs within one collision class may be left out");
             pairs += found.len();
         }
         tree.validate();
@@ -126,7 +135,7 @@ fn it_stays_sound_while_boxes_come_go_and_move() {
     }
     (0..100).for_each(|slot| tree.remove(slot));
     assert_eq!((tree.validate(), tree.len(), tree.root), (0, 0, NONE));
-    assert!(pairs > 1000, "only {pairs} pairs");
+    assert!(pairs > 1000, "expected over 1000 pairs, got {pairs}");
 }
 
 #[test]
@@ -153,7 +162,7 @@ fn orders_that_could_make_a_chain_do_not() {
         }
         tree.validate();
         tree.rebuild();
-        assert_eq!(tree.validate(), 10, "{name}: the logarithm of 1000");
+        assert_eq!(tree.validate(), 10, "{name}: the height after a rebuild should be the logarithm of 1000");
         for slot in 0..999 {
             tree.remove(slot);
         }
@@ -161,7 +170,7 @@ fn orders_that_could_make_a_chain_do_not() {
     }
 }
 
-/// A city of boxes in random order: as good as it gets is 14.
+/// Boxes spread over an area in random order: the smallest possible height is 14.
 #[test]
 fn ordinary_boxes_make_a_low_tree() {
     let mut rng = Rng::new(2);
@@ -170,10 +179,10 @@ fn ordinary_boxes_make_a_low_tree() {
         tree.set(slot, square(rng.range(fx!(-300), fx!(300)), rng.range(fx!(0), fx!(60)), fx!(0.5)));
     }
     let height = tree.validate();
-    assert!(height <= 24, "{height}");
+    assert!(height <= 24, "the height should be at most 24, not {height}");
 }
 
-/// Boxes that move together keep the tree as good as it is; those that change places make it bad, and it is built anew.
+/// Boxes that move together keep the tree's quality; boxes that change places degrade it, and cause a rebuild.
 #[test]
 fn many_boxes_at_once_keep_the_tree_sound_and_tight() {
     let mut rng = Rng::new(3);
@@ -191,6 +200,10 @@ fn many_boxes_at_once_keep_the_tree_sound_and_tight() {
         (0..30).for_each(|_| tree.set_kin(rng.below(1000), random_kin(&mut rng)));
         tree.validate();
         // A few strays wait for the next refit.
-        assert!(tree.strays > 0 || tree.cost() < fresh * 3 / 2, "{round}: {} of {fresh}", tree.cost());
+        assert!(
+            tree.strays > 0 || tree.cost() < fresh * 3 / 2,
+            "round {round}: cost {} of {fresh}",
+            tree.cost()
+        );
     }
 }
