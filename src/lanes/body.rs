@@ -1,27 +1,26 @@
-//! What the kernels see of a body: its velocity and how far it has come within the tick.
+//! Body data that the solver kernels read and write: velocity, and displacement within the tick.
 
 use core::cell::Cell;
 
 use crate::math::{Shift, Speed, Vec2};
 
-/// The index of the body that stands for all those that nothing moves. Their mass fraction is 0, so that it never
-/// changes.
+/// Index of the body that stands for all bodies that nothing moves. Their mass fraction is 0, so it never changes.
 pub(crate) const GROUND: u32 = 0;
 
-/// A body in the solver. Bodies that nothing moves have mass fraction 0 in every row, so that they are read and
-/// written like the others and never change.
+/// A body in the solver. Bodies that nothing moves have mass fraction 0 in every row, so that kernels read and write
+/// them like the others and they never change.
 ///
-/// Two halves of 16 bytes, which wide kernels load as a whole.
+/// The layout is two halves of 16 bytes, each of which the SIMD kernels load as a whole.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(C, align(32))]
 pub(crate) struct SolverBody {
     pub(crate) velocity: Vec2<Speed>,
-    /// `u = k w`.
+    /// Angular velocity times the radius of gyration, `u = k w`.
     pub(crate) spin: Speed,
     pub(crate) velocity_padding: i32,
     /// Displacement of the centre of mass since the start of the tick.
     pub(crate) shift: Vec2<Shift>,
-    /// `k dtheta` since the start of the tick.
+    /// Rotation since the start of the tick, times the radius of gyration, `k dtheta`.
     pub(crate) turn: Shift,
     pub(crate) shift_padding: i32,
 }
@@ -29,33 +28,33 @@ pub(crate) struct SolverBody {
 const _: () = assert!(size_of::<SolverBody>() == 32, "two halves of 16 bytes");
 
 impl SolverBody {
-    /// Sets the velocity, which is in range.
+    /// Sets the velocity, which must be in range.
     #[inline(always)]
     pub(crate) fn set_motion(&mut self, x: i32, y: i32, spin: i32) {
         self.velocity = Vec2::new(Speed::from_bits(x), Speed::from_bits(y));
         self.spin = Speed::from_bits(spin);
     }
 
-    /// Sets how far it has come.
+    /// Sets the displacement since the start of the tick.
     #[inline(always)]
     pub(crate) fn set_shift(&mut self, x: i32, y: i32, turn: i32) {
         self.shift = Vec2::new(Shift::from_bits(x), Shift::from_bits(y));
         self.turn = Shift::from_bits(turn);
     }
 
-    /// Bodies that several lanes, and several threads, read and write.
+    /// Bodies as cells, which several lanes and several threads read and write.
     pub(crate) fn cells(bodies: &mut [Self]) -> &[Cell<Self>] {
         Cell::from_mut(bodies).as_slice_of_cells()
     }
 
-    /// Velocity, spin and padding: 16 bytes, aligned to 32.
+    /// Pointer to velocity, spin and padding: 16 bytes, aligned to 32.
     #[allow(dead_code, reason = "only vectors load it whole")]
     #[inline(always)]
     pub(crate) fn velocity_bits(body: &Cell<Self>) -> *mut i32 {
         body.as_ptr().cast()
     }
 
-    /// Shift, turn and padding: 16 bytes, aligned to 16.
+    /// Pointer to displacement, rotation and padding: 16 bytes, aligned to 16.
     #[allow(dead_code, reason = "only vectors load it whole")]
     #[inline(always)]
     pub(crate) fn shift_bits(body: &Cell<Self>) -> *mut i32 {

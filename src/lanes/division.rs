@@ -1,6 +1,6 @@
-//! Quotients of single numbers: what vectors without a division of their own come down to.
+//! Scalar division, for vector instruction sets without an integer division.
 
-/// `1 / d`, both with 30 fraction bits, rounded down; of less than 1 as of 1.
+/// `1 / d`, both with 30 fraction bits, rounded down; `d` is clamped to at least 1.
 #[inline(always)]
 #[expect(
     clippy::cast_possible_truncation,
@@ -11,7 +11,7 @@ pub(super) fn reciprocal(d: i64) -> i32 {
     ((1u64 << 60) / d.max(1 << 30) as u64) as i32
 }
 
-/// The entries `g11, g12, g22` of `G = K^-1` with 30 fraction bits, from those of `K - I` with 46.
+/// Entries `g11, g12, g22` of `G = K^-1` with 30 fraction bits, from the entries of `K - I` with 46.
 #[inline(always)]
 #[expect(
     clippy::cast_possible_truncation,
@@ -22,9 +22,9 @@ pub(super) fn reciprocal(d: i64) -> i32 {
 pub(super) fn inverse([xx, xy, yy]: [i64; 3]) -> [i32; 3] {
     const ONE: i64 = 1 << 46;
     let (k11, k22) = (ONE + xx, ONE + yy);
-    // 92 fraction bits, of which 30 are kept.
+    // The products have 92 fraction bits, of which 30 are kept.
     let det = ((i128::from(k11) * i128::from(k22) - i128::from(xy) * i128::from(xy)) >> 62) as u64;
-    // Normalised to 32 bits: its reciprocal then has 31, and products fit 64.
+    // The determinant is normalised to 32 bits: its reciprocal then has 31, and products fit 64.
     let excess = 32u32.saturating_sub((det | 1).leading_zeros());
     let reciprocal = ((1u64 << 62) / (det >> excess).max(1 << 29)) as i64;
     let entry = |value: i64| ((((value >> (16 + excess)) * reciprocal) + (1 << 31)) >> 32) as i32;

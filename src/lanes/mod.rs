@@ -1,11 +1,12 @@
-//! Several rows at a time: the integer operations that the wide kernels are written in.
+//! SIMD abstraction: the integer operations in which the wide kernels are written.
 //!
-//! A kernel is one generic function over [`Lanes`]; a backend is one implementation of it. `Scalar<1>` solves a row
-//! alone, the others eight rows that have no body in common, in which no lane looks at another: so every backend gives
-//! the same bits, and the scalar one is the oracle of the rest. Only 32-bit numbers and their 64-bit products occur,
-//! because the widening multiplication 32 x 32 -> 64 is what all processors have (`vpmuldq`, `smull`, `i64x2.extmul`).
+//! A kernel is one generic function over [`Lanes`]; a backend is one implementation of that trait. `Scalar<1>`
+//! processes one row, the others eight rows that share no body, and no lane depends on another. Every backend therefore
+//! gives the same bits, and the scalar backend is the test oracle of the others. Only 32-bit numbers and their 64-bit
+//! products occur, because all processors have the widening multiplication 32 x 32 -> 64 (`vpmuldq`, `smull`,
+//! `i64x2.extmul`).
 
-// Besides plain integers, the vectors of whichever processor the program is compiled for.
+// Besides the scalar backend, only the vector backends of the target architecture are compiled.
 mod body;
 mod division;
 #[cfg_attr(target_arch = "x86_64", path = "x86.rs")]
@@ -26,10 +27,10 @@ pub(crate) use shared::Shared;
 
 use core::cell::Cell;
 
-/// How many rows a wide kernel solves at a time, on every machine.
+/// Number of rows that a wide kernel processes at a time, on every machine.
 pub(crate) const WIDTH: usize = 8;
 
-/// A number for each of `N` rows, aligned for the widest load.
+/// One number for each of `N` rows, aligned for the widest load.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(32))]
 pub(crate) struct Ints<const N: usize>(pub(crate) [i32; N]);
@@ -38,18 +39,18 @@ impl<const N: usize> Ints<N> {
     pub(crate) const ZERO: Self = Ints([0; N]);
 }
 
-/// Fraction bits to shift by.
+/// Converts a number of fraction bits to a shift count.
 #[expect(clippy::cast_possible_wrap, reason = "at most 64")]
 pub(crate) const fn shift(fraction_bits: u32) -> i32 {
     fraction_bits as i32
 }
 
-/// Four numbers of a body, loaded at once.
+/// Four numbers of a body, loaded together.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(C, align(16))]
 pub(crate) struct Quad(pub(crate) [i32; 4]);
 
-/// The three components of a motion: along x, along y, and turning.
+/// Components of a linear and angular velocity or displacement: along x, along y, and rotation.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Motion<T> {
     pub(crate) x: T,
@@ -60,9 +61,9 @@ pub(crate) struct Motion<T> {
 /// `N` lanes of 32-bit integers. Sums and differences wrap unless they are named otherwise.
 pub(crate) trait Lanes<const N: usize>: Copy {
     type Int: Copy;
-    /// Products.
+    /// 64-bit products.
     type Wide: Copy;
-    /// A truth value for each lane.
+    /// A boolean per lane.
     type Mask: Copy;
 
     fn load(from: &Ints<N>) -> Self::Int;
@@ -82,17 +83,17 @@ pub(crate) trait Lanes<const N: usize>: Copy {
     fn both(a: Self::Mask, b: Self::Mask) -> Self::Mask;
     fn either(a: Self::Mask, b: Self::Mask) -> Self::Mask;
     fn any(mask: Self::Mask) -> bool;
-    /// A bit for each lane, the first one lowest.
+    /// Bit mask of the lanes, the first lane in the lowest bit.
     fn bits(mask: Self::Mask) -> u32;
-    /// In how many lanes it is true.
+    /// Number of lanes that are true.
     fn count(mask: Self::Mask) -> u32;
     fn select(mask: Self::Mask, yes: Self::Int, no: Self::Int) -> Self::Int;
-    /// -1 where it is true, 0 where it is not.
+    /// -1 in lanes that are true, 0 in the others.
     fn to_int(mask: Self::Mask) -> Self::Int;
     /// Whether a number is negative.
     fn negative(a: Self::Int) -> Self::Mask;
 
-    /// The exact product.
+    /// The exact 64-bit product.
     fn mul(a: Self::Int, b: Self::Int) -> Self::Wide;
     fn add_wide(a: Self::Wide, b: Self::Wide) -> Self::Wide;
     fn sub_wide(a: Self::Wide, b: Self::Wide) -> Self::Wide;
@@ -100,23 +101,23 @@ pub(crate) trait Lanes<const N: usize>: Copy {
     fn abs_wide(a: Self::Wide) -> Self::Wide;
     /// `a > b`.
     fn greater_wide(a: Self::Wide, b: Self::Wide) -> Self::Mask;
-    /// `a / 2^SHIFT`, rounded to nearest, ties towards +infinity, of a number that then fits 32 bits. `SHIFT` is 1 to
-    /// 32.
+    /// `a / 2^SHIFT`, rounded to nearest, ties towards +infinity; the result must fit 32 bits. `SHIFT` is 1 to 32.
     fn narrow<const SHIFT: i32>(a: Self::Wide) -> Self::Int;
-    /// The same of any number that rounding does not take out of its format, saturated, and where it was. `SHIFT` is 1 to 31.
+    /// Like [`Lanes::narrow`], but saturated, with a mask of the lanes that saturated. Adding the rounding constant
+    /// must not overflow 64 bits. `SHIFT` is 1 to 31.
     fn narrow_saturating<const SHIFT: i32>(a: Self::Wide) -> (Self::Int, Self::Mask);
 
-    /// `a / 2^shift` of each lane, rounded to nearest, ties towards +infinity, saturated. `shift` is 1 to 61 and `a` at
-    /// most 2^62 in magnitude.
+    /// `a / 2^shift` with a shift per lane, rounded to nearest, ties towards +infinity, saturated. `shift` is 1 to 61,
+    /// and the magnitude of `a` is at most 2^62.
     fn narrow_by(a: Self::Wide, shift: Self::Int) -> Self::Int;
 
-    /// The lowest 32 bits, as a number between -2^31 and 2^31: what `narrow::<32>` leaves.
+    /// The lowest 32 bits, as a signed number: the remainder that `narrow::<32>` drops.
     fn low(a: Self::Wide) -> Self::Int;
 
-    /// `a / 2^SHIFT` rounded down, of numbers that are not negative. `SHIFT` is 1 to 63.
+    /// `a / 2^SHIFT` of non-negative numbers, rounded down. `SHIFT` is 1 to 63.
     fn shift_down<const SHIFT: i32>(a: Self::Wide) -> Self::Wide;
 
-    /// `1 / d`, both with 30 fraction bits, rounded down: of numbers below 2^46, and of less than 1 as of 1.
+    /// `1 / d`, both with 30 fraction bits, rounded down. `d` is below 2^46, and clamped to at least 1.
     #[inline(always)]
     fn reciprocal(d: Self::Wide) -> Self::Int {
         let mut quotients = Ints::ZERO;
@@ -127,8 +128,8 @@ pub(crate) trait Lanes<const N: usize>: Copy {
         Self::load(&quotients)
     }
 
-    /// The entries `g11, g12, g22` of `G = K^-1` with 30 fraction bits, from those of `K - I` with 46: of what point blocks
-    /// have, whose determinants are 1 to 2^27.
+    /// Entries `g11, g12, g22` of `G = K^-1` with 30 fraction bits, from the entries of `K - I` with 46. `K` is the
+    /// matrix of a point constraint, whose determinant is 1 to 2^27.
     #[inline(always)]
     fn inverse(entries: [Self::Wide; 3]) -> [Self::Int; 3] {
         let [xx, xy, yy] =
@@ -143,41 +144,41 @@ pub(crate) trait Lanes<const N: usize>: Copy {
     fn to_array(a: Self::Wide) -> [i64; N];
     fn load_wide(from: &[i64; N]) -> Self::Wide;
 
-    /// The numbers of several places: the first of each, the second of each, and so on.
+    /// Gathers the quads at several indices, transposed: the first numbers, the second numbers, and so on.
     #[inline(always)]
     fn quads(from: &[Quad], at: &[u32; N]) -> [Self::Int; 4] {
-        // `map` would not be inlined into code for other instructions.
+        // `map` would not be inlined into functions with other target features.
         let mut rows = [&from[at[0] as usize]; N];
         for (row, &at) in rows.iter_mut().zip(at) {
             *row = &from[at as usize];
         }
         Self::transposed(rows)
     }
-    /// The first number of each row, the second of each, and so on.
+    /// Transposes quads: the first number of each row, the second of each row, and so on.
     fn transposed(rows: [&Quad; N]) -> [Self::Int; 4];
-    /// The velocities of bodies.
+    /// Gathers the velocities of bodies.
     fn velocities(bodies: &[Cell<SolverBody>], at: &[u32; N]) -> Motion<Self::Int>;
-    /// How far bodies have come in the tick.
+    /// Gathers the displacements of bodies since the start of the tick.
     fn shifts(bodies: &[Cell<SolverBody>], at: &[u32; N]) -> Motion<Self::Int>;
-    /// Sets the velocities of bodies, but for those at [`GROUND`].
+    /// Scatters velocities to bodies, except those at [`GROUND`].
     fn set_velocities(bodies: &[Cell<SolverBody>], at: &[u32; N], velocities: Motion<Self::Int>);
-    /// Sets how far bodies have come, but for those at the ground's place.
+    /// Scatters displacements to bodies, except those at [`GROUND`].
     fn set_shifts(bodies: &[Cell<SolverBody>], at: &[u32; N], shifts: Motion<Self::Int>);
 }
 
-/// What can be done with any lanes.
+/// A computation that is generic over the lanes.
 pub(crate) trait Kernel<const N: usize> {
-    /// Must be `#[inline(always)]`, and so must whatever it calls with lanes: only then is it compiled for the
-    /// instructions of its backend.
+    /// Must be `#[inline(always)]`, as must every function that it calls with lanes: only then is it compiled with the
+    /// target features of the backend.
     fn run<L: Lanes<N>>(self);
 }
 
-/// A backend that this machine has: the best one, unless another is asked for.
+/// A backend that is available on this machine; by default the best one.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Machine(Backend);
 
 impl Machine {
-    /// `None` if the machine does not have it.
+    /// Returns `None` if the backend is not available on this machine.
     pub(crate) fn new(backend: Backend) -> Option<Self> {
         Backend::available().find(|&available| available == backend).map(Machine)
     }
@@ -191,7 +192,7 @@ impl Machine {
         self.0 != Backend::Scalar
     }
 
-    /// Runs a kernel.
+    /// Runs a kernel with the backend.
     #[inline]
     pub(crate) fn run(self, kernel: impl Kernel<WIDTH>) {
         match self.0 {
@@ -201,25 +202,25 @@ impl Machine {
     }
 }
 
-/// How the solver computes. It changes how fast, never what.
+/// SIMD backend of the solver. It changes the speed, never the result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Backend {
-    /// In plain integers: everywhere.
+    /// Plain integers, on every machine.
     Scalar,
-    /// In vectors of 256 bits: most x86-64 processors since 2013.
+    /// 256-bit vectors, on most x86-64 processors since 2013.
     Avx2,
-    /// In vectors of 512 bits: most x86-64 servers since 2017, and desktop processors with AVX-512.
+    /// 512-bit vectors, on most x86-64 servers since 2017 and on desktop processors with AVX-512.
     Avx512,
-    /// In vectors of 128 bits: every 64-bit Arm processor.
+    /// 128-bit vectors, on every 64-bit Arm processor.
     Neon,
-    /// In vectors of 128 bits: WebAssembly, compiled with `-C target-feature=+simd128`.
+    /// 128-bit vectors of WebAssembly, if compiled with `-C target-feature=+simd128`.
     Simd128,
 }
 
 impl Backend {
-    /// Every backend that this machine can run, the best one last. Without the feature `std` only what the program was
-    /// compiled for is known.
+    /// Every backend that this machine can run, the best one last. Without the feature `std` only backends whose target
+    /// features are enabled at compile time are listed.
     pub fn available() -> impl Iterator<Item = Backend> {
         core::iter::once(Backend::Scalar).chain(Native::backends())
     }

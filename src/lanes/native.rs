@@ -1,4 +1,4 @@
-//! No vectors: for processors that no other file here is for.
+//! Fallback without vectors, for target architectures that have no backend.
 
 use super::{Backend, Kernel, Scalar, WIDTH};
 

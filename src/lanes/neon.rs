@@ -1,4 +1,4 @@
-//! Eight lanes in two vectors of 128 bits, and their products in four.
+//! NEON backend: eight lanes in two vectors of 128 bits, and their products in four.
 #![expect(unsafe_code, reason = "vendor intrinsics")]
 
 use core::arch::aarch64::*;
@@ -8,8 +8,8 @@ use super::body::{GROUND, SolverBody};
 use super::scalar::map;
 use super::{Backend, Ints, Kernel, Lanes, Motion, Quad, WIDTH};
 
-/// NEON instructions. This file is only compiled for processors that have them: every `unsafe` here is an instruction
-/// that is there.
+/// NEON instructions. This file is only compiled for targets that have them, so every intrinsic in an `unsafe` block is
+/// available.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Neon;
 
@@ -27,7 +27,7 @@ impl Neon {
 
 type Ints32 = [int32x4_t; 2];
 
-/// Two products each: of the lanes 0 and 1, 2 and 3, 4 and 5, 6 and 7.
+/// Two products per vector: lanes 0 and 1, 2 and 3, 4 and 5, 6 and 7.
 type Products = [int64x2_t; 4];
 
 type Masks = [uint32x4_t; 2];
@@ -40,14 +40,14 @@ impl Lanes<WIDTH> for Neon {
     #[inline(always)]
     fn load(from: &Ints<WIDTH>) -> Ints32 {
         let (low, high) = from.0.split_at(4);
-        // SAFETY: see `Neon`; 16 bytes each.
+        // SAFETY: see `Neon`; loads 16 bytes each.
         unsafe { [vld1q_s32(low.as_ptr()), vld1q_s32(high.as_ptr())] }
     }
 
     #[inline(always)]
     fn store(value: Ints32, to: &mut Ints<WIDTH>) {
         let (low, high) = to.0.split_at_mut(4);
-        // SAFETY: see `Neon`; 16 bytes each.
+        // SAFETY: see `Neon`; stores 16 bytes each.
         unsafe {
             vst1q_s32(low.as_mut_ptr(), value[0]);
             vst1q_s32(high.as_mut_ptr(), value[1]);
@@ -128,9 +128,9 @@ impl Lanes<WIDTH> for Neon {
 
     #[inline(always)]
     fn bits(mask: Masks) -> u32 {
-        // Lanes 0 to 3, and 4 to 7.
+        // Bit values of lanes 0 to 3, and 4 to 7.
         const PLACES: [[u32; 4]; 2] = [[1, 2, 4, 8], [16, 32, 64, 128]];
-        // SAFETY: see `Neon`; 16 bytes each.
+        // SAFETY: see `Neon`; loads 16 bytes each.
         let places = map(mask, PLACES, |mask, places| unsafe { vandq_u32(mask, vld1q_u32(places.as_ptr())) });
         // SAFETY: see `Neon`.
         unsafe { vaddvq_u32(vorrq_u32(places[0], places[1])) }
@@ -138,7 +138,7 @@ impl Lanes<WIDTH> for Neon {
 
     #[inline(always)]
     fn count([low, high]: Masks) -> u32 {
-        // SAFETY: see `Neon`. True is -1.
+        // SAFETY: see `Neon`. True is -1, so the sum is minus the count.
         unsafe { vaddvq_s32(vreinterpretq_s32_u32(vaddq_u32(low, high))).unsigned_abs() }
     }
 
@@ -209,7 +209,7 @@ impl Lanes<WIDTH> for Neon {
 
     #[inline(always)]
     fn narrow_saturating<const SHIFT: i32>(a: Products) -> (Ints32, Masks) {
-        // SAFETY: see `Neon`. What saturation has changed did not fit.
+        // SAFETY: see `Neon`. A number that saturation has changed did not fit.
         let four = |low, high| unsafe {
             let (low, high) = (vrshrq_n_s64::<SHIFT>(low), vrshrq_n_s64::<SHIFT>(high));
             let narrow = vqmovn_high_s64(vqmovn_s64(low), high);
@@ -223,7 +223,7 @@ impl Lanes<WIDTH> for Neon {
 
     #[inline(always)]
     fn narrow_by(a: Products, shift: Ints32) -> Ints32 {
-        // SAFETY: see `Neon`. A rounding shift to the left by a negative number is one to the right.
+        // SAFETY: see `Neon`. A rounding left shift by a negative count is a rounding right shift.
         let four = |low, high, shift| unsafe {
             let shift = vnegq_s32(shift);
             let low = vrshlq_s64(low, vmovl_s32(vget_low_s32(shift)));
@@ -244,7 +244,7 @@ impl Lanes<WIDTH> for Neon {
     fn to_array(a: Products) -> [i64; WIDTH] {
         let mut array = [0; WIDTH];
         for (to, a) in array.chunks_exact_mut(2).zip(a) {
-            // SAFETY: see `Neon`; 16 bytes.
+            // SAFETY: see `Neon`; stores 16 bytes.
             unsafe { vst1q_s64(to.as_mut_ptr(), a) };
         }
         array
@@ -258,25 +258,25 @@ impl Lanes<WIDTH> for Neon {
 
     #[inline(always)]
     fn load_wide(from: &[i64; WIDTH]) -> Products {
-        // SAFETY: see `Neon`; 16 bytes each.
+        // SAFETY: see `Neon`; loads 16 bytes each.
         core::array::from_fn(|i| unsafe { vld1q_s64(from[2 * i..2 * i + 2].as_ptr()) })
     }
 
     #[inline(always)]
     fn transposed(rows: [&Quad; WIDTH]) -> [Ints32; 4] {
-        // SAFETY: see `Neon`; 16 bytes.
+        // SAFETY: see `Neon`; loads 16 bytes.
         columns(rows.map(|row| unsafe { vld1q_s32(row.0.as_ptr()) }))
     }
 
     #[inline(always)]
     fn velocities(bodies: &[Cell<SolverBody>], at: &[u32; WIDTH]) -> Motion<Ints32> {
-        // SAFETY: see `Neon`; the first 16 bytes of a body.
+        // SAFETY: see `Neon`; loads the first 16 bytes of a body.
         motion(at.map(|at| unsafe { vld1q_s32(SolverBody::velocity_bits(&bodies[at as usize])) }))
     }
 
     #[inline(always)]
     fn shifts(bodies: &[Cell<SolverBody>], at: &[u32; WIDTH]) -> Motion<Ints32> {
-        // SAFETY: see `Neon`; the last 16 bytes of a body.
+        // SAFETY: see `Neon`; loads the last 16 bytes of a body.
         motion(at.map(|at| unsafe { vld1q_s32(SolverBody::shift_bits(&bodies[at as usize])) }))
     }
 
@@ -291,7 +291,7 @@ impl Lanes<WIDTH> for Neon {
     }
 }
 
-/// Writes three numbers of all bodies, and a 0, to where each body has them, but for the ground.
+/// Scatters three numbers and a 0 to each body, except the ground.
 #[inline(always)]
 fn set_motions(at: &[u32; WIDTH], v: Motion<Ints32>, place: impl Fn(u32) -> *mut i32) {
     // SAFETY: see `Neon`.
@@ -299,20 +299,20 @@ fn set_motions(at: &[u32; WIDTH], v: Motion<Ints32>, place: impl Fn(u32) -> *mut
     for (half, at) in at.chunks_exact(4).enumerate() {
         let rows = transposed([v.x[half], v.y[half], v.turn[half], zero]);
         for (&at, row) in at.iter().zip(rows).filter(|&(&at, _)| at != GROUND) {
-            // SAFETY: see `Neon`; 16 bytes of a body.
+            // SAFETY: see `Neon`; stores 16 bytes of a body.
             unsafe { vst1q_s32(place(at), row) };
         }
     }
 }
 
-/// From four numbers of each body to the first three of all.
+/// Transposes rows of four numbers, and drops the last column.
 #[inline(always)]
 fn motion(rows: [int32x4_t; WIDTH]) -> Motion<Ints32> {
     let [x, y, turn, _] = columns(rows);
     Motion { x, y, turn }
 }
 
-/// From four numbers of each body to each of the four of all.
+/// Transposes rows of four numbers into columns over all lanes.
 #[inline(always)]
 fn columns(rows: [int32x4_t; WIDTH]) -> [Ints32; 4] {
     let low = transposed([rows[0], rows[1], rows[2], rows[3]]);

@@ -1,12 +1,12 @@
-//! What will soon be looked at.
+//! Cache prefetch.
 
-/// Brings a value into the cache: a hint that changes nothing, for processors whose compiler has a way to give it.
+/// Prefetches a value into the cache: a hint without effect on the result. Does nothing on other architectures.
 #[cfg(target_arch = "x86_64")]
 #[inline(always)]
 #[expect(unsafe_code, reason = "vendor intrinsics")]
 pub(crate) fn prefetch<T>(of: &T) {
     use core::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
-    /// The bytes that a processor reads at a time.
+    /// Size of a cache line in bytes.
     const LINE: usize = 64;
     let start = core::ptr::from_ref(of).cast::<i8>();
     let ask = |offset| {
@@ -19,7 +19,7 @@ pub(crate) fn prefetch<T>(of: &T) {
         ask(offset);
         offset += LINE;
     }
-    // What is not aligned to a line may end in one more.
+    // A value that is not aligned to a line may extend into one more.
     if align_of::<T>() < LINE.min(size_of::<T>()) {
         ask(size_of::<T>() - 1);
     }

@@ -1,4 +1,4 @@
-//! Lanes in plain integers.
+//! Scalar backend: lanes as arrays of plain integers.
 
 use core::cell::Cell;
 
@@ -6,7 +6,7 @@ use super::body::{GROUND, SolverBody};
 use super::{Ints, Lanes, Motion, Quad};
 use crate::math::{round_shift, saturate};
 
-/// Arrays of `N` numbers.
+/// Backend with arrays of `N` numbers.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Scalar<const N: usize>;
 
@@ -150,7 +150,7 @@ impl<const N: usize> Lanes<N> for Scalar<N> {
     }
 
     #[inline(always)]
-    #[expect(clippy::cast_possible_truncation, reason = "it fits, as the trait says")]
+    #[expect(clippy::cast_possible_truncation, reason = "the trait requires that the result fits")]
     fn narrow<const SHIFT: i32>(a: [i64; N]) -> [i32; N] {
         a.map(|a| (a.wrapping_add(1 << (SHIFT - 1)) >> SHIFT) as i32)
     }
@@ -159,7 +159,7 @@ impl<const N: usize> Lanes<N> for Scalar<N> {
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
-        reason = "compared afterwards; a shift"
+        reason = "the value is compared afterwards; a shift count is not negative"
     )]
     fn narrow_saturating<const SHIFT: i32>(a: [i64; N]) -> ([i32; N], [bool; N]) {
         let rounded = a.map(|a| round_shift(a, SHIFT as u32));
@@ -167,13 +167,13 @@ impl<const N: usize> Lanes<N> for Scalar<N> {
     }
 
     #[inline(always)]
-    #[expect(clippy::cast_sign_loss, reason = "a shift")]
+    #[expect(clippy::cast_sign_loss, reason = "a shift count is not negative")]
     fn narrow_by(a: [i64; N], shift: [i32; N]) -> [i32; N] {
         map(a, shift, |a, shift| saturate(round_shift(a, shift as u32)))
     }
 
     #[inline(always)]
-    #[expect(clippy::cast_possible_truncation, reason = "that is what it is for")]
+    #[expect(clippy::cast_possible_truncation, reason = "truncation is the purpose")]
     fn low(a: [i64; N]) -> [i32; N] {
         a.map(|a| a as i32)
     }

@@ -1,22 +1,22 @@
-//! Bodies that several threads work on.
-#![expect(unsafe_code, reason = "what colours promise is not in the types")]
+//! Solver bodies that several threads access.
+#![expect(unsafe_code, reason = "the guarantee of graph colouring is not expressed in the types")]
 
 use core::cell::Cell;
 
 use super::body::SolverBody;
 
-/// Bodies of which no thread changes one that another looks at.
+/// Bodies shared between threads, under the condition that no thread writes a body that another thread accesses.
 #[derive(Clone, Copy)]
 pub(crate) struct Shared<'a>(&'a [Cell<SolverBody>]);
 
-// SAFETY: who makes one has promised that no body is changed by one thread and looked at by another.
+// SAFETY: the creator guarantees that no body is written by one thread and accessed by another.
 unsafe impl Send for Shared<'_> {}
-// SAFETY: the same.
+// SAFETY: as above.
 unsafe impl Sync for Shared<'_> {}
 
 impl<'a> Shared<'a> {
-    /// Bodies for the batches of one colour: no two of its constraints touch the same body that any impulse changes, and
-    /// batches write only those ([`super::Lanes::set_velocities`] leaves out the ground).
+    /// Shares the bodies between the batches of one colour. No two constraints of a colour have a common body that
+    /// impulses can change, and batches write only such bodies ([`super::Lanes::set_velocities`] skips the ground).
     pub(crate) fn within_a_colour(bodies: &'a [Cell<SolverBody>]) -> Self {
         Shared(bodies)
     }

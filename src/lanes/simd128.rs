@@ -1,4 +1,4 @@
-//! Eight lanes in two vectors of 128 bits, and their products in four.
+//! WebAssembly backend: eight lanes in two vectors of 128 bits, and their products in four.
 #![expect(unsafe_code, reason = "loads and stores of vectors")]
 
 use core::arch::wasm32::*;
@@ -8,8 +8,8 @@ use super::body::{GROUND, SolverBody};
 use super::scalar::{Scalar, map};
 use super::{Backend, Ints, Kernel, Lanes, Motion, Quad, WIDTH};
 
-/// The vector instructions of WebAssembly. This file is only compiled for programs that use them: a machine which has
-/// none refuses such a program as a whole.
+/// Vector instructions of WebAssembly. This file is only compiled for programs that use them; a machine without them
+/// rejects such a program as a whole.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Simd128;
 
@@ -27,7 +27,7 @@ impl Simd128 {
 
 type Ints32 = [v128; 2];
 
-/// Two products each: of the lanes 0 and 1, 2 and 3, 4 and 5, 6 and 7.
+/// Two products per vector: lanes 0 and 1, 2 and 3, 4 and 5, 6 and 7.
 type Products = [v128; 4];
 
 impl Lanes<WIDTH> for Simd128 {
@@ -38,14 +38,14 @@ impl Lanes<WIDTH> for Simd128 {
     #[inline(always)]
     fn load(from: &Ints<WIDTH>) -> Ints32 {
         let (low, high) = from.0.split_at(4);
-        // SAFETY: 16 bytes each.
+        // SAFETY: loads 16 bytes each.
         unsafe { [v128_load(low.as_ptr().cast()), v128_load(high.as_ptr().cast())] }
     }
 
     #[inline(always)]
     fn store(value: Ints32, to: &mut Ints<WIDTH>) {
         let (low, high) = to.0.split_at_mut(4);
-        // SAFETY: 16 bytes each.
+        // SAFETY: stores 16 bytes each.
         unsafe {
             v128_store(low.as_mut_ptr().cast(), value[0]);
             v128_store(high.as_mut_ptr().cast(), value[1]);
@@ -70,7 +70,7 @@ impl Lanes<WIDTH> for Simd128 {
     #[inline(always)]
     fn add_saturating(a: Ints32, b: Ints32) -> Ints32 {
         map(a, b, |a, b| {
-            // It overflows where both signs differ from that of the sum.
+            // The sum overflows where its sign differs from both signs.
             let sum = i32x4_add(a, b);
             limited(sum, v128_and(v128_xor(a, sum), v128_xor(b, sum)), a)
         })
@@ -79,7 +79,7 @@ impl Lanes<WIDTH> for Simd128 {
     #[inline(always)]
     fn sub_saturating(a: Ints32, b: Ints32) -> Ints32 {
         map(a, b, |a, b| {
-            // It overflows where the signs differ and that of the difference is not the first's.
+            // The difference overflows where the signs differ and its own sign is not that of `a`.
             let difference = i32x4_sub(a, b);
             limited(difference, v128_and(v128_xor(a, b), v128_xor(a, difference)), a)
         })
@@ -186,7 +186,7 @@ impl Lanes<WIDTH> for Simd128 {
     fn narrow_saturating<const SHIFT: i32>(a: Products) -> (Ints32, Ints32) {
         let a = rounded::<SHIFT>(a);
         let four = |a, b| {
-            // It fits if all bits above those kept equal the highest that is.
+            // A number fits if all bits above those kept equal the sign bit of the result.
             let low = shifted::<SHIFT>(a, b);
             let high = i32x4_shuffle::<1, 3, 5, 7>(a, b);
             let out = i32x4_ne(i32x4_shr(high, (SHIFT - 1).unsigned_abs()), sign(low));
@@ -198,7 +198,7 @@ impl Lanes<WIDTH> for Simd128 {
 
     #[inline(always)]
     fn narrow_by(a: Products, shift: Ints32) -> Ints32 {
-        // No lane has a shift of its own here.
+        // There is no shift with a count per lane.
         let mut shifts = Ints::ZERO;
         Self::store(shift, &mut shifts);
         Self::load(&Ints(Scalar::<WIDTH>::narrow_by(Self::to_array(a), shifts.0)))
@@ -220,7 +220,7 @@ impl Lanes<WIDTH> for Simd128 {
     }
 
     #[inline(always)]
-    #[expect(clippy::cast_sign_loss, reason = "a shift")]
+    #[expect(clippy::cast_sign_loss, reason = "a shift count is not negative")]
     fn shift_down<const SHIFT: i32>(a: Products) -> Products {
         a.map(|a| i64x2_shr(a, SHIFT as u32))
     }
@@ -232,19 +232,19 @@ impl Lanes<WIDTH> for Simd128 {
 
     #[inline(always)]
     fn transposed(rows: [&Quad; WIDTH]) -> [Ints32; 4] {
-        // SAFETY: 16 bytes.
+        // SAFETY: loads 16 bytes.
         columns(rows.map(|row| unsafe { v128_load(row.0.as_ptr().cast()) }))
     }
 
     #[inline(always)]
     fn velocities(bodies: &[Cell<SolverBody>], at: &[u32; WIDTH]) -> Motion<Ints32> {
-        // SAFETY: the first 16 bytes of a body.
+        // SAFETY: loads the first 16 bytes of a body.
         motion(at.map(|at| unsafe { v128_load(SolverBody::velocity_bits(&bodies[at as usize]).cast()) }))
     }
 
     #[inline(always)]
     fn shifts(bodies: &[Cell<SolverBody>], at: &[u32; WIDTH]) -> Motion<Ints32> {
-        // SAFETY: the last 16 bytes of a body.
+        // SAFETY: loads the last 16 bytes of a body.
         motion(at.map(|at| unsafe { v128_load(SolverBody::shift_bits(&bodies[at as usize]).cast()) }))
     }
 
@@ -259,26 +259,26 @@ impl Lanes<WIDTH> for Simd128 {
     }
 }
 
-/// Writes three numbers of all bodies, and a 0, to where each body has them, but for the ground.
+/// Scatters three numbers and a 0 to each body, except the ground.
 #[inline(always)]
 fn set_motions(at: &[u32; WIDTH], v: Motion<Ints32>, place: impl Fn(u32) -> *mut i32) {
     let zero = i32x4_splat(0);
     for (half, at) in at.chunks_exact(4).enumerate() {
         let rows = transposed([v.x[half], v.y[half], v.turn[half], zero]);
         for (&at, row) in at.iter().zip(rows).filter(|&(&at, _)| at != GROUND) {
-            // SAFETY: 16 bytes of a body.
+            // SAFETY: stores 16 bytes of a body.
             unsafe { v128_store(place(at).cast(), row) };
         }
     }
 }
 
-/// -1 where a number is negative.
+/// -1 in lanes that are negative, 0 in the others.
 #[inline(always)]
 fn sign(a: v128) -> v128 {
     i32x4_shr(a, 31)
 }
 
-/// A result, or the limit on the side of `toward` where `overflows` is negative.
+/// The result, or the limit with the sign of `toward` in lanes where `overflows` is negative.
 #[inline(always)]
 fn limited(result: v128, overflows: v128, toward: v128) -> v128 {
     let limit = v128_xor(sign(toward), i32x4_splat(i32::MAX));
@@ -290,21 +290,21 @@ fn rounded<const SHIFT: i32>(a: Products) -> Products {
     a.map(|a| i64x2_add(a, i64x2_splat(1 << (SHIFT - 1))))
 }
 
-/// The 32 bits above the lowest `SHIFT`: a logical shift brings the same ones there as an arithmetic one.
+/// The 32 bits above the lowest `SHIFT`. A logical shift is enough: these bits equal those of an arithmetic shift.
 #[inline(always)]
 fn shifted<const SHIFT: i32>(a: v128, b: v128) -> v128 {
     let shift = |a| u64x2_shr(a, SHIFT.unsigned_abs());
     i32x4_shuffle::<0, 2, 4, 6>(shift(a), shift(b))
 }
 
-/// From four numbers of each body to the first three of all.
+/// Transposes rows of four numbers, and drops the last column.
 #[inline(always)]
 fn motion(rows: [v128; WIDTH]) -> Motion<Ints32> {
     let [x, y, turn, _] = columns(rows);
     Motion { x, y, turn }
 }
 
-/// From four numbers of each body to each of the four of all.
+/// Transposes rows of four numbers into columns over all lanes.
 #[inline(always)]
 fn columns(rows: [v128; WIDTH]) -> [Ints32; 4] {
     let low = transposed([rows[0], rows[1], rows[2], rows[3]]);

@@ -1,9 +1,9 @@
-//! Every backend against plain integers, on numbers of all sizes.
+//! Tests every backend against the scalar backend, on numbers of all sizes.
 
 use super::*;
 use crate::math::Rng;
 
-/// Small numbers, large ones, and the ends of the format.
+/// A random number: small, large, or an end of the range.
 fn random(rng: &mut Rng) -> i32 {
     match rng.below(8) {
         0 => i32::MIN,
@@ -17,7 +17,7 @@ fn randoms(rng: &mut Rng) -> Ints<WIDTH> {
     Ints(core::array::from_fn(|_| random(rng)))
 }
 
-/// All operations on the same numbers, as plain integers.
+/// Kernel that applies all operations to the same numbers.
 struct Operations<'a> {
     a: Ints<WIDTH>,
     b: Ints<WIDTH>,
@@ -67,7 +67,7 @@ impl Kernel<WIDTH> for Operations<'_> {
             keep(L::narrow_saturating::<31>(wide).0);
             keep(L::low(wide));
         }
-        // Whatever rounding does not take out of its format.
+        // Any number to which the rounding constant can be added without overflow.
         let wide = L::load_wide(&core::array::from_fn(|i| {
             (i64::from(self.a.0[i]) << 31).saturating_add(i64::from(self.b.0[i])).saturating_mul(2) / 2
         }));
@@ -81,12 +81,12 @@ impl Kernel<WIDTH> for Operations<'_> {
         keep(L::narrow_by(L::mul(a, b), L::load(&shifts)));
         let quads: std::vec::Vec<_> = (0..WIDTH).map(|i| Quad([self.a.0[i], self.b.0[i], 3, -4])).collect();
         L::quads(&quads, &[7, 0, 3, 3, 1, 2, 6, 5]).into_iter().for_each(&mut keep);
-        // What fits.
+        // A result that fits 32 bits.
         keep(L::narrow::<30>(L::mul(quarter, L::splat(1 << 30))));
     }
 }
 
-/// Quotients, and the determinants and inverses that they are for.
+/// Kernel of the divisions and matrix inverses.
 struct Divisions<'a> {
     divisors: [i64; WIDTH],
     entries: [[i64; WIDTH]; 3],
@@ -103,7 +103,7 @@ impl Kernel<WIDTH> for Divisions<'_> {
     }
 }
 
-/// The entries of `K - I` with 46 fraction bits, of two bodies with mass fractions and lever ratios of all sizes.
+/// Entries of `K - I` with 46 fraction bits, for two bodies with mass fractions and lever ratios of all sizes.
 fn entries(rng: &mut Rng) -> [i64; 3] {
     let a = i64::from(rng.below(1 << 30) + 1) >> rng.below(31);
     let mut sum = [0; 3];
@@ -121,7 +121,7 @@ fn every_backend_divides_as_plain_integers_do() {
     let mut rng = Rng::new(2);
     for round in 0..200_000u32 {
         let divisors = core::array::from_fn(|lane| match lane {
-            // Powers of two, quotients without a rest, and what is next to both.
+            // Powers of two, exact quotients, and the neighbours of both.
             0 | 1 => (1i64 << (round % 47).max(1)) + i64::from(rng.below(3)) - 1,
             2 | 3 => (1i64 << 60) / (i64::from(rng.below(1 << 30)) + 1) + i64::from(rng.below(3)) - 1,
             _ => i64::from(rng.next_u32()) << 14 >> rng.below(46),
@@ -139,7 +139,10 @@ fn every_backend_divides_as_plain_integers_do() {
         assert!(results.iter().all(|result| *result == results[0]), "{divisors:?} {entries:?}: {results:?}");
         for (quotient, d) in results[0][0].into_iter().zip(divisors) {
             let (quotient, d) = (i128::from(quotient), i128::from(d.max(1 << 30)));
-            assert!(quotient * d <= 1 << 60 && (quotient + 1) * d > 1 << 60, "{d}");
+            assert!(
+                quotient * d <= 1 << 60 && (quotient + 1) * d > 1 << 60,
+                "1 / {d} should be rounded down"
+            );
         }
     }
 }
@@ -161,7 +164,7 @@ fn every_backend_computes_what_plain_integers_do() {
     }
 }
 
-/// Reads bodies and quads, and writes bodies, at eight places.
+/// Kernel that reads bodies and quads, and writes bodies, at eight indices.
 struct Places<'a> {
     quads: &'a [Quad],
     bodies: &'a [Cell<SolverBody>],
@@ -192,15 +195,21 @@ fn places_that_are_not_there_are_refused() {
             std::panic::catch_unwind(std::panic::AssertUnwindSafe(run)).is_err()
         };
         for (quads, bodies) in [(10, 10), (0, 10)] {
-            assert!(!is_refused(quads, bodies, [0, 9, 1, 2, 0, 3, 4, 5]), "{backend:?}");
+            assert!(
+                !is_refused(quads, bodies, [0, 9, 1, 2, 0, 3, 4, 5]),
+                "{backend:?} should accept valid indices"
+            );
             for lane in 0..WIDTH {
                 for outside in [10, 1 << 31, u32::MAX] {
                     let mut at = [1; WIDTH];
                     at[lane] = outside;
-                    assert!(is_refused(quads, bodies, at), "{backend:?}, {outside} in {lane}");
+                    assert!(
+                        is_refused(quads, bodies, at),
+                        "{backend:?} should reject index {outside} in lane {lane}"
+                    );
                 }
             }
         }
-        assert!(is_refused(0, 0, [0; WIDTH]), "{backend:?}");
+        assert!(is_refused(0, 0, [0; WIDTH]), "{backend:?} should reject empty slices");
     }
 }

@@ -1,4 +1,4 @@
-//! The vectors of x86-64 processors, the widest that this one has.
+//! Vector backends of x86-64: AVX2 and AVX-512, detected at run time.
 #![expect(unsafe_code, reason = "vendor intrinsics")]
 
 #[path = "x86/avx2.rs"]
@@ -14,7 +14,7 @@ use avx512::Avx512;
 
 pub(super) struct Native;
 
-/// Whether the processor has all of these features: by asking it, or by what the program is compiled for.
+/// Whether the processor has all of these features: detected at run time with `std`, otherwise by the target features.
 macro_rules! has {
     ($($feature:tt),+) => {{
         #[cfg(feature = "std")]
@@ -32,7 +32,7 @@ impl Native {
         avx2.into_iter().chain(wide.then_some(Backend::Avx512))
     }
 
-    /// Runs a kernel on a processor that has been asked whether it has this backend.
+    /// Runs a kernel on a processor that has been detected to have this backend.
     pub(super) fn run(backend: Backend, kernel: impl Kernel<WIDTH>) {
         #[target_feature(enable = "avx2")]
         unsafe fn with_avx2(kernel: impl Kernel<WIDTH>) {
@@ -42,7 +42,7 @@ impl Native {
         unsafe fn with_avx512(kernel: impl Kernel<WIDTH>) {
             kernel.run::<Avx512>();
         }
-        // SAFETY: only a `Machine` that has a backend runs kernels with it.
+        // SAFETY: a `Machine` is only created for a backend that the processor has.
         unsafe {
             match backend {
                 Backend::Avx512 => with_avx512(kernel),

@@ -1,4 +1,5 @@
-//! Eight lanes in vectors of 256 bits. A product of eight is two vectors: those of the even and of the odd lanes.
+//! AVX2 backend: eight lanes in vectors of 256 bits. Eight products are two vectors: one of the even and one of the odd
+//! lanes.
 #![expect(unsafe_code, reason = "vendor intrinsics")]
 
 #[path = "avx2/rows.rs"]
@@ -12,8 +13,8 @@ use super::super::{Ints, Lanes, Motion, Quad, WIDTH};
 use super::records::Records;
 use rows::{motion, set_motions, transposed};
 
-/// The processor's AVX2 instructions. Only a [`super::super::Machine`] that has them runs kernels with it: every
-/// `unsafe` here is an instruction that is there then.
+/// AVX2 instructions. Only a [`super::super::Machine`] that has them runs kernels with this backend, so every intrinsic
+/// in an `unsafe` block is available.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Avx2;
 
@@ -23,7 +24,7 @@ pub(super) struct Products {
     odd: __m256i,
 }
 
-/// Even lanes from one vector, odd ones from another.
+/// Combines the even lanes of one vector with the odd lanes of another.
 #[inline(always)]
 fn interleave(even: __m256i, odd: __m256i) -> __m256i {
     // SAFETY: see `Avx2`.
@@ -37,13 +38,13 @@ impl Lanes<WIDTH> for Avx2 {
 
     #[inline(always)]
     fn load(from: &Ints<WIDTH>) -> __m256i {
-        // SAFETY: see `Avx2`; 32 bytes, aligned to 32.
+        // SAFETY: see `Avx2`; loads 32 bytes, aligned to 32.
         unsafe { _mm256_load_si256(from.0.as_ptr().cast()) }
     }
 
     #[inline(always)]
     fn store(value: __m256i, to: &mut Ints<WIDTH>) {
-        // SAFETY: see `Avx2`; 32 bytes, aligned to 32.
+        // SAFETY: see `Avx2`; stores 32 bytes, aligned to 32.
         unsafe { _mm256_store_si256(to.0.as_mut_ptr().cast(), value) }
     }
 
@@ -67,7 +68,7 @@ impl Lanes<WIDTH> for Avx2 {
 
     #[inline(always)]
     fn add_saturating(a: __m256i, b: __m256i) -> __m256i {
-        // SAFETY: see `Avx2`. It overflows where both signs differ from that of the sum.
+        // SAFETY: see `Avx2`. The sum overflows where its sign differs from both signs.
         unsafe {
             let sum = _mm256_add_epi32(a, b);
             let overflows = _mm256_and_si256(_mm256_xor_si256(a, sum), _mm256_xor_si256(b, sum));
@@ -77,7 +78,7 @@ impl Lanes<WIDTH> for Avx2 {
 
     #[inline(always)]
     fn sub_saturating(a: __m256i, b: __m256i) -> __m256i {
-        // SAFETY: see `Avx2`. It overflows where the signs differ and that of the difference is not the first's.
+        // SAFETY: see `Avx2`. The difference overflows where the signs differ and its own sign is not that of `a`.
         unsafe {
             let difference = _mm256_sub_epi32(a, b);
             let overflows = _mm256_and_si256(_mm256_xor_si256(a, b), _mm256_xor_si256(a, difference));
@@ -128,7 +129,7 @@ impl Lanes<WIDTH> for Avx2 {
     }
 
     #[inline(always)]
-    #[expect(clippy::cast_sign_loss, reason = "eight bits")]
+    #[expect(clippy::cast_sign_loss, reason = "the mask has eight bits")]
     fn bits(mask: __m256i) -> u32 {
         // SAFETY: see `Avx2`.
         unsafe { _mm256_movemask_ps(_mm256_castsi256_ps(mask)) as u32 }
@@ -158,7 +159,7 @@ impl Lanes<WIDTH> for Avx2 {
 
     #[inline(always)]
     fn mul(a: __m256i, b: __m256i) -> Products {
-        // SAFETY: see `Avx2`. It multiplies the even lanes.
+        // SAFETY: see `Avx2`. The instruction multiplies the even lanes.
         unsafe {
             let odd = |v| _mm256_castps_si256(_mm256_movehdup_ps(_mm256_castsi256_ps(v)));
             Products { even: multiplied(a, b), odd: multiplied(odd(a), odd(b)) }
@@ -203,7 +204,7 @@ impl Lanes<WIDTH> for Avx2 {
     fn narrow_saturating<const SHIFT: i32>(a: Products) -> (__m256i, __m256i) {
         let a = rounded::<SHIFT>(a);
         let low = shifted::<SHIFT>(a);
-        // SAFETY: see `Avx2`. It fits if all bits above those kept equal the highest that is.
+        // SAFETY: see `Avx2`. A number fits if all bits above those kept equal the sign bit of the result.
         unsafe {
             let high = interleave(_mm256_srli_epi64::<32>(a.even), a.odd);
             let above = _mm256_sra_epi32(high, _mm_cvtsi32_si128(SHIFT - 1));
@@ -241,7 +242,7 @@ impl Lanes<WIDTH> for Avx2 {
 
     #[inline(always)]
     fn load_wide(from: &[i64; WIDTH]) -> Products {
-        // SAFETY: see `Avx2`; 32 bytes each.
+        // SAFETY: see `Avx2`; loads 32 bytes each.
         unsafe {
             let front = _mm256_loadu_si256(from.as_ptr().cast());
             let back = _mm256_loadu_si256(from.as_ptr().add(4).cast());
@@ -266,7 +267,7 @@ impl Lanes<WIDTH> for Avx2 {
     #[inline(always)]
     fn to_array(a: Products) -> [i64; WIDTH] {
         let mut array = [0i64; WIDTH];
-        // SAFETY: see `Avx2`; 32 bytes each.
+        // SAFETY: see `Avx2`; stores 32 bytes each.
         unsafe {
             let (low, high) = (_mm256_unpacklo_epi64(a.even, a.odd), _mm256_unpackhi_epi64(a.even, a.odd));
             let front = _mm256_permute2x128_si256::<0x20>(low, high);
@@ -298,14 +299,14 @@ impl Lanes<WIDTH> for Avx2 {
     }
 }
 
-/// The larger of two numbers of 64 bits.
+/// Maximum of 64-bit numbers.
 #[inline(always)]
 fn larger(a: __m256i, b: __m256i) -> __m256i {
     // SAFETY: see `Avx2`.
     unsafe { _mm256_blendv_epi8(b, a, _mm256_cmpgt_epi64(a, b)) }
 }
 
-/// The magnitudes of numbers of 64 bits.
+/// Absolute value of 64-bit numbers.
 #[inline(always)]
 fn magnitude(a: __m256i) -> __m256i {
     // SAFETY: see `Avx2`. `-a` is `!a + 1`.
@@ -315,9 +316,9 @@ fn magnitude(a: __m256i) -> __m256i {
     }
 }
 
-/// The products of the even lanes. The compiler knows the instruction as a product of sign-extended numbers, takes the
-/// extension out of loops and past branches, and then no longer sees that 64-bit products are not needed: a fifth of the
-/// time of a kernel.
+/// Products of the even lanes, in inline assembly. The compiler models the intrinsic as a product of sign-extended
+/// numbers, hoists the extension out of loops and past branches, and then no longer recognises that a full 64-bit
+/// product is not needed. That costs a fifth of the time of a kernel.
 #[inline]
 #[target_feature(enable = "avx2")]
 unsafe fn multiplied(a: __m256i, b: __m256i) -> __m256i {
@@ -335,14 +336,14 @@ unsafe fn multiplied(a: __m256i, b: __m256i) -> __m256i {
     product
 }
 
-/// A result, or the limit on the side of `sign` where it overflows.
+/// The result, or the limit with the sign of `sign` in lanes where `overflows` is negative.
 #[inline(always)]
 fn limited(result: __m256i, overflows: __m256i, sign: __m256i) -> __m256i {
     // SAFETY: see `Avx2`.
     unsafe {
         let limit = _mm256_xor_si256(_mm256_srai_epi32::<31>(sign), _mm256_set1_epi32(i32::MAX));
         let lanes = |v| _mm256_castsi256_ps(v);
-        // By the sign of a lane.
+        // `blendv_ps` selects by the sign bit of a lane.
         _mm256_castps_si256(_mm256_blendv_ps(lanes(result), lanes(limit), lanes(overflows)))
     }
 }
@@ -356,7 +357,7 @@ fn rounded<const SHIFT: i32>(a: Products) -> Products {
     }
 }
 
-/// The 32 bits above the lowest `SHIFT`: a logical shift brings the same ones there as an arithmetic one.
+/// The 32 bits above the lowest `SHIFT`. A logical shift is enough: these bits equal those of an arithmetic shift.
 #[inline(always)]
 fn shifted<const SHIFT: i32>(a: Products) -> __m256i {
     // SAFETY: see `Avx2`.
@@ -367,7 +368,7 @@ fn shifted<const SHIFT: i32>(a: Products) -> __m256i {
     }
 }
 
-/// `a / 2^shift`, rounded down. Only positive numbers of 64 bits can be shifted: 2^62 is added before.
+/// `a / 2^shift`, rounded down. AVX2 has only a logical shift of 64-bit numbers, so 2^62 is added first.
 #[inline(always)]
 fn shifted_by(a: __m256i, shift: __m256i) -> __m256i {
     // SAFETY: see `Avx2`.

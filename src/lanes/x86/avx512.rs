@@ -1,5 +1,5 @@
-//! Eight lanes in vectors of 512 bits: each number is the lower half of 64 bits, and the upper half may be anything. So a
-//! product of eight is one vector, its factors need not be moved, and what is left of it after a shift is a number again.
+//! AVX-512 backend: eight lanes in vectors of 512 bits. Each number is the lower half of 64 bits, and the upper half is
+//! undefined. Eight products are then one vector, factors need no shuffling, and a shifted product is a number again.
 #![expect(unsafe_code, reason = "vendor intrinsics")]
 
 #[path = "avx512/division.rs"]
@@ -12,12 +12,12 @@ use super::super::body::SolverBody;
 use super::super::{Ints, Lanes, Motion, Quad, WIDTH};
 use super::records::Records;
 
-/// The processor's AVX-512 instructions. Only a [`super::super::Machine`] that has them runs kernels with it: every
-/// `unsafe` here is an instruction that is there then.
+/// AVX-512 instructions. Only a [`super::super::Machine`] that has them runs kernels with this backend, so every
+/// intrinsic in an `unsafe` block is available.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Avx512;
 
-/// The bits of a mask that belong to lanes: one for every second number of 32 bits. The others may be anything.
+/// Bits of a mask that belong to lanes: one for every second 32-bit number. The other bits are undefined.
 const LANES: u16 = 0x5555;
 
 impl Lanes<WIDTH> for Avx512 {
@@ -27,13 +27,13 @@ impl Lanes<WIDTH> for Avx512 {
 
     #[inline(always)]
     fn load(from: &Ints<WIDTH>) -> __m512i {
-        // SAFETY: see `Avx512`; 32 bytes, aligned to 32.
+        // SAFETY: see `Avx512`; loads 32 bytes, aligned to 32.
         unsafe { _mm512_cvtepu32_epi64(_mm256_load_si256(from.0.as_ptr().cast())) }
     }
 
     #[inline(always)]
     fn store(value: __m512i, to: &mut Ints<WIDTH>) {
-        // SAFETY: see `Avx512`; 32 bytes, aligned to 32.
+        // SAFETY: see `Avx512`; stores 32 bytes, aligned to 32.
         unsafe { _mm256_store_si256(to.0.as_mut_ptr().cast(), _mm512_cvtepi64_epi32(value)) }
     }
 
@@ -57,7 +57,7 @@ impl Lanes<WIDTH> for Avx512 {
 
     #[inline(always)]
     fn add_saturating(a: __m512i, b: __m512i) -> __m512i {
-        // SAFETY: see `Avx512`. It overflows where both signs differ from that of the sum.
+        // SAFETY: see `Avx512`. The sum overflows where its sign differs from both signs.
         unsafe {
             let sum = _mm512_add_epi32(a, b);
             let overflows = _mm512_and_si512(_mm512_xor_si512(a, sum), _mm512_xor_si512(b, sum));
@@ -67,7 +67,7 @@ impl Lanes<WIDTH> for Avx512 {
 
     #[inline(always)]
     fn sub_saturating(a: __m512i, b: __m512i) -> __m512i {
-        // SAFETY: see `Avx512`. It overflows where the signs differ and that of the difference is not the first's.
+        // SAFETY: see `Avx512`. The difference overflows where the signs differ and its own sign is not that of `a`.
         unsafe {
             let difference = _mm512_sub_epi32(a, b);
             let overflows = _mm512_and_si512(_mm512_xor_si512(a, b), _mm512_xor_si512(a, difference));
@@ -174,7 +174,7 @@ impl Lanes<WIDTH> for Avx512 {
     }
 
     #[inline(always)]
-    #[expect(clippy::cast_possible_truncation, reason = "a bit for each second of 16")]
+    #[expect(clippy::cast_possible_truncation, reason = "one bit for every second of 16")]
     fn greater_wide(a: __m512i, b: __m512i) -> __mmask16 {
         // SAFETY: see `Avx512`.
         unsafe { _pdep_u32(_mm512_cmpgt_epi64_mask(a, b).into(), LANES.into()) as __mmask16 }
@@ -182,7 +182,7 @@ impl Lanes<WIDTH> for Avx512 {
 
     #[inline(always)]
     fn narrow<const SHIFT: i32>(a: __m512i) -> __m512i {
-        // What a logical shift brings to the lower half is what an arithmetic one does.
+        // In the lower half a logical shift gives the same bits as an arithmetic shift.
         Self::shift_down::<SHIFT>(with_half::<SHIFT>(a))
     }
 
@@ -194,7 +194,7 @@ impl Lanes<WIDTH> for Avx512 {
 
     #[inline(always)]
     fn narrow_by(a: __m512i, shift: __m512i) -> __m512i {
-        // SAFETY: see `Avx512`. Half of what one is after the shift comes by one shift less.
+        // SAFETY: see `Avx512`. The rounding constant, half a unit of the result, is 1 shifted by one less.
         unsafe {
             let shift = _mm512_maskz_mov_epi32(LANES, shift);
             let one = _mm512_set1_epi64(1);
@@ -227,14 +227,14 @@ impl Lanes<WIDTH> for Avx512 {
     #[inline(always)]
     fn to_array(a: __m512i) -> [i64; WIDTH] {
         let mut array = [0; WIDTH];
-        // SAFETY: see `Avx512`; 64 bytes.
+        // SAFETY: see `Avx512`; stores 64 bytes.
         unsafe { _mm512_storeu_si512(array.as_mut_ptr().cast(), a) };
         array
     }
 
     #[inline(always)]
     fn load_wide(from: &[i64; WIDTH]) -> __m512i {
-        // SAFETY: see `Avx512`; 64 bytes.
+        // SAFETY: see `Avx512`; loads 64 bytes.
         unsafe { _mm512_loadu_si512(from.as_ptr().cast()) }
     }
 
@@ -270,7 +270,7 @@ impl Lanes<WIDTH> for Avx512 {
     }
 }
 
-/// The products of the lower halves: an instruction of its own for the reason that [`super::avx2`] has.
+/// Products of the lower halves, in inline assembly for the reason given in [`super::avx2`].
 #[inline]
 #[target_feature(enable = "avx512f")]
 unsafe fn multiplied(a: __m512i, b: __m512i) -> __m512i {
@@ -288,7 +288,7 @@ unsafe fn multiplied(a: __m512i, b: __m512i) -> __m512i {
     product
 }
 
-/// A result, or the limit on the side of `sign` where it overflows.
+/// The result, or the limit with the sign of `sign` in lanes where `overflows` is set.
 #[inline(always)]
 fn limited(result: __m512i, overflows: __mmask16, sign: __m512i) -> __m512i {
     // SAFETY: see `Avx512`.
@@ -304,10 +304,10 @@ fn with_half<const SHIFT: i32>(a: __m512i) -> __m512i {
     unsafe { _mm512_add_epi64(a, _mm512_set1_epi64(1 << (SHIFT - 1))) }
 }
 
-/// Numbers of 64 bits kept within 32, and where they were not.
+/// Saturates 64-bit numbers to 32 bits, and returns a mask of the lanes that saturated.
 #[inline(always)]
 fn saturated(a: __m512i) -> (__m512i, __mmask16) {
-    // SAFETY: see `Avx512`. A number fits if its upper half is the sign of the lower one.
+    // SAFETY: see `Avx512`. A number fits if its upper half equals the sign of its lower half.
     unsafe {
         let upper = upper_halves(a);
         let out = _mm512_cmpneq_epi32_mask(upper, _mm512_srai_epi32::<31>(a));
@@ -315,24 +315,24 @@ fn saturated(a: __m512i) -> (__m512i, __mmask16) {
     }
 }
 
-/// The upper half of each number of 64 bits as a number.
+/// Upper halves of 64-bit numbers, moved to the lower halves.
 #[inline(always)]
 fn upper_halves(a: __m512i) -> __m512i {
     // SAFETY: see `Avx512`.
     unsafe { _mm512_srli_epi64::<32>(a) }
 }
 
-/// Three numbers of all bodies, from where each body has them.
+/// Gathers three numbers of each body.
 #[inline(always)]
 fn motion<T>(bodies: &Records<'_, T>, place: impl Fn(&T) -> *mut i32) -> Motion<__m512i> {
     let [x, y, turn, _] = transposed(|lane| place(bodies.get(lane)).cast_const());
     Motion { x, y, turn }
 }
 
-/// The first of four numbers in each lane, the second in each, and so on, from where each lane has them.
+/// Gathers rows of four numbers, transposed: the first number of each lane, the second of each lane, and so on.
 #[inline(always)]
 fn transposed(row: impl Fn(usize) -> *const i32) -> [__m512i; 4] {
-    // SAFETY: see `Avx512`; 16 bytes, aligned to 16.
+    // SAFETY: see `Avx512`; loads 16 bytes, aligned to 16.
     unsafe {
         let row = |lane: usize| _mm_load_si128(row(lane).cast());
         let two = |lane: usize| _mm256_set_m128i(row(lane + 2), row(lane));
@@ -343,10 +343,10 @@ fn transposed(row: impl Fn(usize) -> *const i32) -> [__m512i; 4] {
     }
 }
 
-/// Writes three numbers of all bodies, and a 0, to where each body has them, but for the ground.
+/// Scatters three numbers and a 0 to each body, except the ground.
 #[inline(always)]
 fn set_motions<T>(bodies: &Records<'_, T>, v: Motion<__m512i>, place: impl Fn(&T) -> *mut i32) {
-    // SAFETY: see `Avx512`; 16 bytes of a body.
+    // SAFETY: see `Avx512`; stores 16 bytes of a body.
     unsafe {
         let front = _mm512_mask_shuffle_epi32::<0b10_10_00_00>(v.x, !LANES, v.y);
         let back = _mm512_maskz_mov_epi32(LANES, v.turn);

@@ -1,4 +1,4 @@
-//! Eight records of many, which lanes read and write.
+//! Bounds-checked access to eight records by index.
 #![expect(unsafe_code, reason = "vendor intrinsics")]
 
 use core::arch::x86_64::*;
@@ -6,33 +6,33 @@ use core::arch::x86_64::*;
 use super::super::WIDTH;
 use super::super::body::GROUND;
 
-/// Eight records of many.
+/// Eight records of a slice, by index.
 pub(super) struct Records<'a, T> {
     all: &'a [T],
     at: &'a [u32; WIDTH],
 }
 
 impl<'a, T> Records<'a, T> {
-    /// Looks at all eight places at once: a check for each of them took as long as what is done with its record.
+    /// Checks all eight indices at once: a check per index took as long as processing the record.
     #[inline(always)]
-    #[expect(clippy::cast_possible_wrap, reason = "compared without a sign")]
+    #[expect(clippy::cast_possible_wrap, reason = "compared as unsigned")]
     pub(super) fn new(all: &'a [T], at: &'a [u32; WIDTH]) -> Self {
         let last = u32::try_from(all.len().saturating_sub(1)).unwrap_or(u32::MAX);
-        // SAFETY: see `super::avx2::Avx2`; 32 bytes.
+        // SAFETY: see `super::avx2::Avx2`; loads 32 bytes.
         let outside = unsafe {
             let at = _mm256_loadu_si256(at.as_ptr().cast());
             let within = _mm256_min_epu32(at, _mm256_set1_epi32(last as i32));
             _mm256_movemask_epi8(_mm256_cmpeq_epi32(at, within)) != -1
         };
-        assert!(!(outside || all.is_empty()), "places of records that are there");
+        assert!(!(outside || all.is_empty()), "every index should be within the records");
         Records { all, at }
     }
 
-    /// Whether the ground is among them.
+    /// Whether the ground is among the indices.
     #[inline(always)]
     fn has_ground(&self) -> bool {
         const { assert!(GROUND == 0) };
-        // SAFETY: see `super::avx2::Avx2`; 32 bytes.
+        // SAFETY: see `super::avx2::Avx2`; loads 32 bytes.
         unsafe {
             let at = _mm256_loadu_si256(self.at.as_ptr().cast());
             _mm256_movemask_epi8(_mm256_cmpeq_epi32(at, _mm256_setzero_si256())) != 0
@@ -41,15 +41,15 @@ impl<'a, T> Records<'a, T> {
 
     #[inline(always)]
     pub(super) fn get(&self, lane: usize) -> &'a T {
-        // Read by itself: the compiler would take the place out of the vector that `new` has looked at, by the units of
-        // the processor that kernels wait for.
+        // A volatile read: otherwise the compiler would extract the index from the vector that `new` has checked, which
+        // occupies the execution units on which the kernels depend.
         let at: *const u32 = &self.at[lane];
-        // SAFETY: a place that can be read; `new` has seen that a record is there.
+        // SAFETY: the index can be read, and `new` has checked that it is within the slice.
         unsafe { self.all.get_unchecked(at.read_volatile() as usize) }
     }
 
-    /// Does something with each of eight bodies but those at the ground's place. Most batches are away from it: then no
-    /// lane has to be asked.
+    /// Calls `each` with every body except those at the ground's index. Most batches do not contain the ground, so that
+    /// no lane needs a check.
     #[inline(always)]
     pub(super) fn each_but_the_ground(&self, mut each: impl FnMut(usize, &'a T)) {
         let has_ground = self.has_ground();

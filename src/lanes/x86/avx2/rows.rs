@@ -1,4 +1,4 @@
-//! What lies together in memory, as lanes: four numbers of each of eight records are four vectors.
+//! Gather and scatter of records: the four numbers of each of eight records become four vectors.
 #![expect(unsafe_code, reason = "vendor intrinsics")]
 
 use core::arch::x86_64::*;
@@ -6,10 +6,10 @@ use core::arch::x86_64::*;
 use super::super::records::Records;
 use super::Motion;
 
-/// Writes three numbers of all bodies, and a 0, to where each body has them, but for the ground.
+/// Scatters three numbers and a 0 to each body, except the ground.
 #[inline(always)]
 pub(super) fn set_motions<T>(bodies: &Records<'_, T>, v: Motion<__m256i>, place: impl Fn(&T) -> *mut i32) {
-    // SAFETY: see `super::Avx2`; 16 bytes of a body.
+    // SAFETY: see `super::Avx2`; stores 16 bytes of a body.
     unsafe {
         let zero = _mm256_setzero_si256();
         let (xy_low, xy_high) = (_mm256_unpacklo_epi32(v.x, v.y), _mm256_unpackhi_epi32(v.x, v.y));
@@ -29,17 +29,17 @@ pub(super) fn set_motions<T>(bodies: &Records<'_, T>, v: Motion<__m256i>, place:
     }
 }
 
-/// Three numbers of all bodies, from where each body has them.
+/// Gathers three numbers of each body.
 #[inline(always)]
 pub(super) fn motion<T>(bodies: &Records<'_, T>, place: impl Fn(&T) -> *mut i32) -> Motion<__m256i> {
     let [x, y, turn, _] = transposed(|lane| place(bodies.get(lane)).cast_const());
     Motion { x, y, turn }
 }
 
-/// The first of four numbers in each lane, the second in each, and so on, from where each lane has them.
+/// Gathers rows of four numbers, transposed: the first number of each lane, the second of each lane, and so on.
 #[inline(always)]
 pub(super) fn transposed(row: impl Fn(usize) -> *const i32) -> [__m256i; 4] {
-    // SAFETY: see `super::Avx2`; 16 bytes, aligned to 16.
+    // SAFETY: see `super::Avx2`; loads 16 bytes, aligned to 16.
     unsafe {
         let row = |lane: usize| _mm_load_si128(row(lane).cast());
         let pair = |lane: usize| _mm256_set_m128i(row(lane + 4), row(lane));

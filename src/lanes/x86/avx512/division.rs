@@ -1,9 +1,9 @@
 //! Quotients of eight numbers at a time, in integers:
 //!
 //! ```text
-//! x  = 2^62 / m           of the highest 32 bits m of a divisor, along a chord of the curve: right to 10 bits
-//! x' = x (2 - x m)        Newton's step: 20 bits
-//! q' = q + (1 - q d) x'   40 bits, of which a quotient has at most 34: at most 1 from it
+//! x  = 2^62 / m           for the highest 32 bits m of a divisor, on a chord of the curve: 10 correct bits
+//! x' = x (2 - x m)        Newton step: 20 correct bits
+//! q' = q + (1 - q d) x'   40 correct bits; a quotient has at most 34, so its error is at most 1
 //! ```
 #![expect(unsafe_code, reason = "vendor intrinsics")]
 
@@ -11,12 +11,12 @@ use core::arch::x86_64::*;
 
 use super::{LANES, multiplied};
 
-/// How many chords, of as many leading bits of a mantissa.
+/// Number of chords; the leading bits of a mantissa select one.
 const CHORDS: usize = 16;
-/// The bits of a mantissa that say where on its chord it is.
+/// Number of mantissa bits that give the position on the chord.
 const REST: u32 = 27;
 
-/// `2^62 / m` where each chord begins, less 1, so that all fit 31 bits; and by how much it falls.
+/// `2^62 / m` at the start of each chord, less 1, so that all values fit 31 bits; and the decrease along the chord.
 const STARTS: [i32; CHORDS] = CURVE.0;
 const FALLS: [i32; CHORDS] = CURVE.1;
 const CURVE: ([i32; CHORDS], [i32; CHORDS]) = {
@@ -32,14 +32,14 @@ const CURVE: ([i32; CHORDS], [i32; CHORDS]) = {
     (starts, falls)
 };
 
-/// `2^60 / d` of numbers with 30 fraction bits up to 2^46, as [`super::super::super::division::reciprocal`].
+/// `2^60 / d` for `d` with 30 fraction bits, up to 2^46, like [`super::super::super::division::reciprocal`].
 #[inline(always)]
 pub(super) fn reciprocal(d: __m512i) -> __m512i {
     // SAFETY: see `super::Avx512`.
     quotient::<60>(unsafe { _mm512_max_epi64(d, _mm512_set1_epi64(1 << 30)) })
 }
 
-/// `G = K^-1`, as [`super::super::super::division::inverse`].
+/// `G = K^-1`, like [`super::super::super::division::inverse`].
 ///
 /// ```text
 /// k = H 2^32 + l,    det = (H11 H22 - H12^2) 2^64 + (H11 l22 + H22 l11 - 2 H12 l12) 2^32 + l11 l22 - l12^2
@@ -73,7 +73,7 @@ pub(super) fn inverse([xx, xy, yy]: [__m512i; 3]) -> [__m512i; 3] {
     }
 }
 
-/// `2^BITS / d` rounded down: of divisors from 2^29 to 2^46, and such that it has at most 34 bits.
+/// `2^BITS / d`, rounded down, for divisors from 2^29 to 2^46 and quotients of at most 34 bits.
 #[inline(always)]
 fn quotient<const BITS: u32>(d: __m512i) -> __m512i {
     // SAFETY: see `super::Avx512`.
@@ -81,7 +81,7 @@ fn quotient<const BITS: u32>(d: __m512i) -> __m512i {
         let less = |from: u32, a| _mm512_sub_epi64(_mm512_set1_epi64(from.into()), a);
         let spare = _mm512_lzcnt_epi64(d);
         let m = _mm512_srli_epi64::<32>(_mm512_sllv_epi64(d, spare));
-        // The index is what is left of its lowest bits: that of the chord.
+        // The permutation uses the lowest bits of an index; these are the number of the chord.
         let chord = _mm512_srli_epi64::<REST>(m);
         let looked_up = |table: &[i32; CHORDS]| {
             _mm512_maskz_permutexvar_epi32(LANES, chord, _mm512_loadu_si512(table.as_ptr().cast()))
