@@ -1,11 +1,11 @@
-//! Axis-aligned boxes. Comparisons and unions are exact; sums saturate at the edge of the world.
+//! Axis-aligned bounding boxes. Comparisons and unions are exact; sums saturate at the edge of the world.
 
 use serde::{Deserialize, Serialize};
 
 use super::formats::Fx;
 use super::vec2::Vec2;
 
-/// An axis-aligned bounding box in metres. Its borders belong to it: boxes that touch overlap.
+/// An axis-aligned bounding box in metres. The border belongs to the box: boxes that touch overlap.
 ///
 /// ```
 /// use lockstep2d::{fx, math::{Aabb, Vec2}};
@@ -17,38 +17,39 @@ use super::vec2::Vec2;
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Aabb {
-    /// The corner with the smallest coordinates.
+    /// Corner with the smallest coordinates.
     pub lower: Vec2<Fx>,
-    /// The corner with the largest coordinates.
+    /// Corner with the largest coordinates.
     pub upper: Vec2<Fx>,
 }
 
 impl Aabb {
-    /// A box that overlaps no valid one.
+    /// An invalid box that overlaps no valid box.
     pub(crate) const NOWHERE: Self =
         Aabb { lower: Vec2::new(Fx::MAX, Fx::MAX), upper: Vec2::new(Fx::MIN, Fx::MIN) };
 
-    /// A box from its lower and upper corner, taken as given: see [`is_valid`](Self::is_valid).
+    /// Creates a box from its lower and upper corner, without a check: see [`is_valid`](Self::is_valid).
     #[inline]
     #[must_use]
     pub const fn new(lower: Vec2<Fx>, upper: Vec2<Fx>) -> Self {
         Aabb { lower, upper }
     }
 
-    /// The smallest box around some points; `None` when there are none.
+    /// Smallest box around points; `None` if there are no points.
     #[must_use]
     pub fn from_points(points: impl IntoIterator<Item = Vec2<Fx>>) -> Option<Self> {
         points.into_iter().map(|point| Aabb::new(point, point)).reduce(Self::union)
     }
 
-    /// Whether the lower corner is nowhere above the upper one. The methods below expect this of their boxes.
+    /// Whether no coordinate of the lower corner exceeds that of the upper corner. The other methods require valid
+    /// boxes.
     #[inline]
     #[must_use]
     pub fn is_valid(self) -> bool {
         self.lower.x <= self.upper.x && self.lower.y <= self.upper.y
     }
 
-    /// The smallest box around this one whose corners are multiples of `2^shift` units of the format.
+    /// Smallest box around this one whose corners are multiples of `2^shift` units of the format.
     #[inline]
     #[must_use]
     pub(crate) fn rounded_out(self, shift: u32) -> Self {
@@ -80,22 +81,22 @@ impl Aabb {
             & (other.upper.y <= self.upper.y)
     }
 
-    /// Whether the point lies inside the box.
+    /// Whether a point lies inside the box.
     #[inline]
     #[must_use]
     pub fn contains_point(self, point: Vec2<Fx>) -> bool {
         self.contains(Aabb::new(point, point))
     }
 
-    /// The smallest box around both.
+    /// Smallest box around both boxes.
     #[inline]
     #[must_use]
     pub fn union(self, other: Self) -> Self {
         Aabb::new(self.lower.min(other.lower), self.upper.max(other.upper))
     }
 
-    /// The box grown by a margin in metres on all sides, saturated. A negative margin shrinks it, and can
-    /// leave it invalid.
+    /// Returns the box grown by a margin in metres on all sides, saturated. A negative margin shrinks the box, and can
+    /// make it invalid.
     #[inline]
     #[must_use]
     pub fn expanded(self, margin: Fx) -> Self {
@@ -103,7 +104,7 @@ impl Aabb {
         Aabb::new(self.lower - margin, self.upper + margin)
     }
 
-    /// The same of a box in the world and a margin that is not out of all proportion to it: what cannot overflow need not
+    /// Like [`Aabb::expanded`], for a box and a margin within the world: such a sum cannot overflow, so it does not
     /// saturate.
     #[inline]
     #[must_use]
@@ -112,14 +113,14 @@ impl Aabb {
         Aabb::new(self.lower.wrapping_sub(margin), self.upper.wrapping_add(margin))
     }
 
-    /// The box moved by an offset in metres, saturated.
+    /// Returns the box translated by an offset in metres, saturated.
     #[inline]
     #[must_use]
     pub fn translated(self, offset: Vec2<Fx>) -> Self {
         Aabb::new(self.lower + offset, self.upper + offset)
     }
 
-    /// The smallest box around the box at both ends of a displacement in metres, saturated.
+    /// Swept AABB: the smallest box around the box at both ends of a displacement in metres, saturated.
     #[inline]
     #[must_use]
     pub fn swept(self, displacement: Vec2<Fx>) -> Self {
@@ -129,7 +130,7 @@ impl Aabb {
         )
     }
 
-    /// The centre in metres, rounded down.
+    /// Centre in metres, rounded down.
     #[inline]
     #[must_use]
     pub fn centre(self) -> Vec2<Fx> {
@@ -144,7 +145,7 @@ impl Aabb {
     }
 }
 
-/// `floor((a + b) / 2)` without the carry.
+/// `floor((a + b) / 2)` without overflow.
 #[inline]
 const fn midpoint(a: Fx, b: Fx) -> Fx {
     let (a, b) = (a.to_bits(), b.to_bits());
@@ -153,7 +154,7 @@ const fn midpoint(a: Fx, b: Fx) -> Fx {
 
 #[cfg(test)]
 mod tests {
-    //! Against membership of every point of a small grid.
+    //! Tests against the membership of every point of a small grid.
 
     use super::*;
     use crate::fx;

@@ -1,11 +1,11 @@
 //! Angles as a fraction of a turn.
 //!
-//! `turns = bits / 2^32`: addition wraps as the circle does, so a rotation never drifts out of range, needs
-//! no renormalising, and the angle between two bodies is a subtraction (against an `atan2` per joint for a
-//! rotation stored as a complex number).
+//! `turns = bits / 2^32`. Addition wraps as the circle does, so a rotation never drifts out of range and needs no
+//! renormalisation, and the angle between two bodies is a subtraction. A rotation stored as a complex number would need
+//! an `atan2` per joint.
 //!
-//! Resolution 2^-32 turn = 1.46e-9 rad. Sine and cosine are within 0.8 units of 2^-30, the direction of a
-//! vector within 0.7 units of 2^-32 turn.
+//! The resolution is 2^-32 turn = 1.46e-9 rad. Sine and cosine are within 0.8 units of 2^-30, and the direction of a
+//! vector is within 0.7 units of 2^-32 turn.
 
 use core::ops::{Add, AddAssign, Neg, Sub, SubAssign};
 
@@ -19,12 +19,12 @@ use super::vec2::Vec2;
 pub const PI: Fx = Fx::from_bits(13_493_037_705);
 /// 2 pi: radians in a turn.
 pub const TAU: Fx = Fx::from_bits(26_986_075_409);
-/// Radians in a degree. Its rounding error grows with each multiplication: prefer [`Angle::from_degrees`].
+/// Radians in a degree. Each multiplication scales its rounding error: prefer [`Angle::from_degrees`].
 pub const DEGREE: Fx = Fx::from_bits(74_961_321);
 
 /// An angle, counter-clockwise, as a fraction of a turn. Sums and differences wrap.
 ///
-/// There is no order: on a circle, compare signed differences.
+/// Angles have no order: compare signed differences instead.
 ///
 /// ```
 /// use lockstep2d::{fx, math::{Angle, Vec2}};
@@ -39,7 +39,7 @@ pub const DEGREE: Fx = Fx::from_bits(74_961_321);
 pub struct Angle(u32);
 
 impl Angle {
-    /// The direction of the x axis.
+    /// Direction of the x axis.
     pub const ZERO: Self = Angle(0);
     /// 45 degrees.
     pub const EIGHTH: Self = Angle(1 << 29);
@@ -48,50 +48,50 @@ impl Angle {
     /// 180 degrees.
     pub const HALF: Self = Angle(1 << 31);
 
-    /// An angle from units of 2^-32 turn.
+    /// Creates an angle from units of 2^-32 turn.
     #[inline]
     #[must_use]
     pub const fn from_bits(bits: u32) -> Self {
         Angle(bits)
     }
 
-    /// The angle in units of 2^-32 turn.
+    /// Returns the angle in units of 2^-32 turn.
     #[inline]
     #[must_use]
     pub const fn to_bits(self) -> u32 {
         self.0
     }
 
-    /// A part of a rotation given in units of 2^-32 turns, which may be more than a turn.
+    /// A fraction of a rotation given in units of 2^-32 turn, which may exceed a turn.
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "angles wrap")]
     pub(crate) const fn from_wide_turns(turns: i64, fraction: Fx) -> Self {
         let part = super::formats::round_shift_wide(turns as i128 * fraction.to_bits() as i128, 32);
         Self::from_bits(part as u32)
     }
 
-    /// Units of 2^-32 turns in radians.
+    /// Converts units of 2^-32 turn to radians.
     pub(crate) const fn turns_to_radians(turns: i64) -> Fx {
         super::formats::fx_mul(Fx::from_bits(turns), TAU)
     }
 
-    /// An angle from turns: exact, whole turns are dropped.
+    /// Creates an angle from turns: exact, whole turns are dropped.
     #[inline]
     #[must_use]
     pub const fn from_turns(turns: Fx) -> Self {
         Angle(low_bits(turns.to_bits()))
     }
 
-    /// An angle from radians: rounded to nearest, whole turns are dropped.
+    /// Creates an angle from radians: rounded to nearest, whole turns are dropped.
     #[inline]
     #[must_use]
     #[expect(clippy::cast_possible_truncation, reason = "a 127-bit product shifted by 66")]
     pub const fn from_radians(radians: Fx) -> Self {
-        /// 1 / (2 pi) in units of 2^-66: its error is below 1/16 of a result unit even for 2^31 rad.
+        /// 1 / (2 pi) in units of 2^-66. Its error is below 1/16 of a result unit even for 2^31 rad.
         const TURNS: i128 = 11_743_562_013_128_004_906;
         Angle(low_bits(round_shift_wide(radians.to_bits() as i128 * TURNS, 66) as i64))
     }
 
-    /// An angle from degrees: rounded to nearest (halves away from zero), whole turns are dropped.
+    /// Creates an angle from degrees: rounded to nearest (halves away from zero), whole turns are dropped.
     #[inline]
     #[must_use]
     pub const fn from_degrees(degrees: Fx) -> Self {
@@ -107,7 +107,7 @@ impl Angle {
         Angle(low_bits(bits / 360 + carry))
     }
 
-    /// The angle in radians, above -pi and up to pi, rounded to nearest.
+    /// Angle in radians, above -pi and up to pi, rounded to nearest.
     #[inline]
     #[must_use]
     #[expect(clippy::cast_possible_truncation, reason = "at most 2^31 * 2 pi")]
@@ -117,28 +117,28 @@ impl Angle {
         Fx::from_bits(round_shift_wide(self.signed() as i128 * RADIANS, 60) as i64)
     }
 
-    /// The angle in degrees, above -180 and up to 180: exact.
+    /// Angle in degrees, above -180 and up to 180: exact.
     #[inline]
     #[must_use]
     pub const fn to_degrees(self) -> Fx {
         Fx::from_bits(self.signed() * 360)
     }
 
-    /// The angle in turns, above -1/2 and up to 1/2: exact.
+    /// Angle in turns, above -1/2 and up to 1/2: exact.
     #[inline]
     #[must_use]
     pub const fn to_turns(self) -> Fx {
         Fx::from_bits(self.signed())
     }
 
-    /// Sine, within 0.8 units of 2^-30; odd, and exact at the quarter turns.
+    /// Sine, within 0.8 units of 2^-30. It is an odd function, and exact at the quarter turns.
     #[inline]
     #[must_use]
     pub const fn sin(self) -> Unit {
         Unit::from_bits(sine(self.0))
     }
 
-    /// Cosine: the sine a quarter turn later, bit for bit.
+    /// Cosine, computed as the sine of the angle plus a quarter turn.
     #[inline]
     #[must_use]
     pub const fn cos(self) -> Unit {
@@ -152,27 +152,23 @@ impl Angle {
         (self.sin(), self.cos())
     }
 
-    /// The direction of a vector, within 0.7 units of 2^-32 turn; exact on the axes and the diagonals. The
-    /// zero vector has direction [`Angle::ZERO`].
+    /// Direction of a vector, within 0.7 units of 2^-32 turn; exact on the axes and the diagonals. The direction of the
+    /// zero vector is [`Angle::ZERO`].
     #[inline]
     #[must_use]
     pub const fn of(vector: Vec2<Fx>) -> Self {
         Angle(arc_tangent(vector.x.to_bits(), vector.y.to_bits()))
     }
 
-    /// Units of 2^-32 turn, above minus and up to plus one half turn.
+    /// Angle in units of 2^-32 turn, above minus one half turn and up to plus one half turn.
     const fn signed(self) -> i64 {
         let bits = signed(self.0) as i64;
         if self.0 == Self::HALF.0 { -bits } else { bits }
     }
 }
 
-/// Whole turns are multiples of 2^32: the low half is the angle.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "wrapping is the meaning of an angle"
-)]
+/// Drops whole turns, which are multiples of 2^32.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "angles wrap by definition")]
 const fn low_bits(bits: i64) -> u32 {
     bits as u32
 }
@@ -233,7 +229,7 @@ mod tests {
         assert_eq!(Angle::from_bits((1 << 31) + 1).to_turns(), fx!(-0.5) + Fx::DELTA);
         assert!((DEGREE * 180 - PI).abs().to_bits() <= 90 && (PI * 2 - TAU).abs().to_bits() <= 1);
 
-        // One unit is 8.4e-8 degrees: 179 of 360 round down, 180 of them away from zero.
+        // One unit is 8.4e-8 degrees: 179 of 360 parts round down, 180 parts round away from zero.
         let units = |degrees: i64| Angle::from_degrees(Fx::from_bits(degrees)).to_bits();
         assert_eq!([179, 180, -179, -180].map(units), [0, 1, 0, u32::MAX]);
 
@@ -262,8 +258,8 @@ mod tests {
             let angle = rng.angle();
             let (sin, cos) = angle.sin_cos();
             let apart = (Angle::of(Vec2::new(cos, sin).widen()) - angle).to_turns();
-            // 0.79 sqrt 2 units of 2^-30 across the direction are 0.71 units of 2^-32 turn; plus 0.68 and
-            // rounding.
+            // An error of 0.79 sqrt 2 units of 2^-30 across the direction is 0.71 units of 2^-32 turn. Add 0.68 for the
+            // direction, and the rounding.
             assert!(apart.abs().to_bits() <= 1, "{angle:?} {apart}");
         }
     }

@@ -1,24 +1,24 @@
-//! The number formats, one alias for each quantity, and the operations that move between them.
+//! Number formats, one alias per quantity, and the operations that convert between them.
 //!
-//! Every operation here rounds once, to nearest (ties towards +infinity), and saturates instead of wrapping,
-//! in every build profile. The binary point of the result is inferred from its type, so the compiler checks
-//! the scales: `let s: Separation = mul(length, unit);` cannot be off by a shift.
+//! Every operation here rounds once, to nearest (ties towards +infinity), and saturates instead of wrapping, in every
+//! build profile. The binary point of the result is inferred from its type, so the compiler checks the scales: `let s:
+//! Separation = mul(length, unit);` cannot be off by a shift.
 //!
-//! The ranges were settled with a floating-point probe over the benchmark scenes; `docs/DESIGN.md` has the
-//! largest value seen of each quantity.
+//! The ranges were chosen with a floating-point probe over the benchmark scenes; `docs/DESIGN.md` has the largest value
+//! of each quantity.
 
 use fixed::types::extra::{LeEqU32, U18, U20, U21, U22, U24, U26, U27, U30, U32};
 use fixed::{FixedI32, FixedI64};
 
 /// World position in metres and every public scalar: ±2.1e9, resolution 0.23 nm.
 pub type Fx = FixedI64<U32>;
-/// A vertex about its shape's own centre, or a lever arm, in metres: ±512, resolution 0.24 µm.
+/// A vertex relative to its shape's centre, or a lever arm, in metres: ±512, resolution 0.24 µm.
 pub type Length = FixedI32<U22>;
-/// A speed in m/s: linear velocity, `u = k w`, and the impulse of a row as a speed: ±1024, resolution 4.8e-7.
+/// A speed in m/s: ±1024, resolution 4.8e-7. Used for linear velocity, `u = k w`, and the impulse of a row as a speed.
 pub type Speed = FixedI32<U21>;
-/// Displacement within one step, and the separation of a contact, in metres: ±16, resolution 7.5 nm.
+/// Displacement within one step, or separation of a contact, in metres: ±16, resolution 7.5 nm.
 pub type Step = FixedI32<U27>;
-/// How far a body has come within a tick, in metres: ±32, resolution 15 nm. It is kept within ±16, so that the
+/// Displacement of a body within a tick, in metres: ±32, resolution 15 nm. Values are kept within ±16, so that the
 /// difference of two fits.
 pub type Shift = FixedI32<U26>;
 /// Component of a unit vector, sine, cosine, mass fraction or gain: ±2, resolution 9.3e-10.
@@ -27,14 +27,14 @@ pub type Unit = FixedI32<U30>;
 pub type Ratio = FixedI32<U24>;
 /// Rate at which a constraint error is turned into speed, in 1/s: ±8192, resolution 3.8e-6.
 pub type Rate = FixedI32<U18>;
-/// Friction limit of a tangent row for each unit of its normal row, `mu Dt / Dn`: ±2048, resolution 9.5e-7.
+/// Friction limit of a tangent row per unit of its normal row, `mu Dt / Dn`: ±2048, resolution 9.5e-7.
 pub type Grip = FixedI32<U20>;
 
 /// `x / 2^shift`, rounded to nearest, ties towards +infinity. `shift` may be 0.
 #[inline]
 #[must_use]
 pub const fn round_shift(x: i64, shift: u32) -> i64 {
-    // Dropping all but one bit before one half is added cannot overflow.
+    // All bits but one are dropped before one half is added, so that the sum cannot overflow.
     if shift == 0 { x } else { ((x >> (shift - 1)) + 1) >> 1 }
 }
 
@@ -45,7 +45,7 @@ pub const fn round_shift_wide(x: i128, shift: u32) -> i128 {
     if shift == 0 { x } else { ((x >> (shift - 1)) + 1) >> 1 }
 }
 
-/// The nearest `i32`.
+/// Saturates to `i32`.
 #[inline]
 #[must_use]
 #[expect(clippy::cast_possible_truncation, reason = "clamped to the range of i32 first")]
@@ -59,7 +59,7 @@ pub const fn saturate(x: i64) -> i32 {
     }
 }
 
-/// The nearest `i64`.
+/// Saturates to `i64`.
 #[inline]
 #[must_use]
 #[expect(clippy::cast_possible_truncation, reason = "clamped to the range of i64 first")]
@@ -76,13 +76,13 @@ pub const fn saturate_wide(x: i128) -> i64 {
 /// `n / d` rounded to nearest, halves away from zero, saturated. `d` must not be 0.
 #[inline]
 #[must_use]
-#[expect(clippy::cast_possible_wrap, reason = "compared with the largest first")]
+#[expect(clippy::cast_possible_wrap, reason = "compared with the largest value first")]
 pub const fn div_round(n: i128, d: i128) -> i128 {
     let negative = (n < 0) != (d < 0);
     let (n, d) = (n.unsigned_abs(), d.unsigned_abs());
     let floor = n / d;
     let remainder = n - floor * d;
-    // Comparing what is left, rather than adding d / 2 to n, cannot overflow.
+    // Comparing the remainder, rather than adding d / 2 to n, cannot overflow.
     let quotient = if remainder >= d - remainder { floor + 1 } else { floor };
     match (quotient > i128::MAX as u128, negative) {
         (true, true) => i128::MIN,
@@ -92,7 +92,7 @@ pub const fn div_round(n: i128, d: i128) -> i128 {
     }
 }
 
-/// A fixed-point product with a result format of the caller's choice: `a b`, rounded once, saturated.
+/// `a b` in a result format of the caller's choice, rounded once, saturated.
 #[inline]
 #[must_use]
 pub fn mul<A: LeEqU32, B: LeEqU32, C: LeEqU32>(a: FixedI32<A>, b: FixedI32<B>) -> FixedI32<C> {
@@ -102,7 +102,7 @@ pub fn mul<A: LeEqU32, B: LeEqU32, C: LeEqU32>(a: FixedI32<A>, b: FixedI32<B>) -
     )))
 }
 
-/// `a x + b y`, rounded once, saturated: a dot product of parts.
+/// `a x + b y`, rounded once, saturated.
 #[inline]
 #[must_use]
 pub fn mul_add<A: LeEqU32, B: LeEqU32, C: LeEqU32>(
@@ -116,14 +116,14 @@ pub fn mul_add<A: LeEqU32, B: LeEqU32, C: LeEqU32>(
     FixedI32::from_bits(saturate(round_shift(ax.saturating_add(by), const { shift::<A, B, C>() })))
 }
 
-/// Bits to drop from a product of formats `A` and `B` to reach format `C`.
+/// Number of bits to drop from a product of formats `A` and `B` to reach format `C`.
 const fn shift<A: LeEqU32, B: LeEqU32, C: LeEqU32>() -> u32 {
     let product = A::U32 + B::U32;
-    assert!(product >= C::U32, "the product has fewer fraction bits than the result");
+    assert!(product >= C::U32, "a product should have at least as many fraction bits as the result");
     product - C::U32
 }
 
-/// The same value in another 32-bit format: rounded, saturated.
+/// Converts to another 32-bit format: rounded to nearest, saturated.
 #[inline]
 #[must_use]
 pub fn convert<A: LeEqU32, B: LeEqU32>(a: FixedI32<A>) -> FixedI32<B> {
@@ -135,14 +135,14 @@ pub fn convert<A: LeEqU32, B: LeEqU32>(a: FixedI32<A>) -> FixedI32<B> {
     }))
 }
 
-/// A world quantity in a 32-bit format: rounded, saturated.
+/// Converts a world quantity to a 32-bit format: rounded to nearest, saturated.
 #[inline]
 #[must_use]
 pub fn narrow<A: LeEqU32>(a: Fx) -> FixedI32<A> {
     FixedI32::from_bits(saturate(round_shift(a.to_bits(), 32 - A::U32)))
 }
 
-/// A 32-bit quantity as a world quantity: exact.
+/// Converts a 32-bit quantity to a world quantity: exact.
 #[inline]
 #[must_use]
 pub fn widen<A: LeEqU32>(a: FixedI32<A>) -> Fx {
@@ -156,17 +156,17 @@ pub const fn fx_mul(a: Fx, b: Fx) -> Fx {
     Fx::from_bits(round_product(a.to_bits() as i128 * b.to_bits() as i128))
 }
 
-/// A sum of products of world quantities as one: rounded to nearest, saturated.
+/// Converts a sum of products of world quantities to a world quantity: rounded to nearest, saturated.
 #[inline]
-#[expect(clippy::cast_possible_truncation, reason = "compared with what has been cut off")]
+#[expect(clippy::cast_possible_truncation, reason = "the truncated bits are compared")]
 pub(super) const fn round_product(x: i128) -> i64 {
-    // In units of half the resolution. Nearly always that fits 64 bits, and is rounded there.
+    // `halves` is in units of half the resolution. Nearly always it fits 64 bits, and is rounded there.
     let halves = x >> 31;
     let low = halves as i64;
     if low as i128 == halves { (low >> 1) + (low & 1) } else { saturate_wide(round_shift_wide(x, 32)) }
 }
 
-/// `a / b`, rounded to nearest, saturated; `None` when `b` is 0.
+/// `a / b`, rounded to nearest, saturated; `None` if `b` is 0.
 #[inline]
 #[must_use]
 pub const fn fx_div(a: Fx, b: Fx) -> Option<Fx> {
@@ -180,11 +180,11 @@ pub const fn fx_div(a: Fx, b: Fx) -> Option<Fx> {
 #[inline]
 #[must_use]
 pub const fn ratio(numerator: i64, denominator: i64) -> Fx {
-    assert!(denominator != 0, "a ratio needs a denominator");
+    assert!(denominator != 0, "the denominator of a ratio must not be 0");
     Fx::from_bits(saturate_wide(div_round((numerator as i128) << 32, denominator as i128)))
 }
 
-/// A fixed-point constant from a decimal literal or a fraction, evaluated at compile time without floats.
+/// Creates a fixed-point constant from a decimal literal or a fraction, evaluated at compile time without floats.
 ///
 /// ```
 /// use lockstep2d::{fx, math::Fx};

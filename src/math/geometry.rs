@@ -1,27 +1,27 @@
-//! Exact planar predicates: on which side, inside or outside, crossing or not.
+//! Exact planar predicates: orientation, point in polygon, segment intersection.
 //!
-//! All follow from the sign of `(b - a) x (c - a)`, computed without rounding for any coordinates of the
-//! world, so neighbouring answers never contradict each other (J. R. Shewchuk, "Adaptive Precision
-//! Floating-Point Arithmetic and Fast Robust Geometric Predicates", 1997, has what goes wrong otherwise).
-//! Only points that are returned are rounded: once, to nearest, ties towards +infinity.
+//! All are based on the sign of `(b - a) x (c - a)`, computed without rounding for any world coordinates, so that
+//! results for neighbouring inputs never contradict each other (J. R. Shewchuk, "Adaptive Precision Floating-Point
+//! Arithmetic and Fast Robust Geometric Predicates", 1997, describes the failures otherwise). Only points that are
+//! returned are rounded: once, to nearest, ties towards +infinity.
 
 use super::formats::Fx;
 use super::vec2::Vec2;
 use super::wide::{Difference, point_at};
 use core::cmp::Ordering;
 
-/// Which way a path through three points turns.
+/// Direction in which a path through three points turns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Orientation {
-    /// To the right.
+    /// The path turns to the right.
     Clockwise,
-    /// Not at all: the points lie on a line, or some of them coincide.
+    /// The points lie on a line, or some of them coincide.
     Collinear,
-    /// To the left.
+    /// The path turns to the left.
     CounterClockwise,
 }
 
-/// Which way the path from `a` over `b` to `c` turns: exact.
+/// Orientation of the path from `a` over `b` to `c`: exact.
 ///
 /// ```
 /// use lockstep2d::{fx, math::{Orientation, Vec2, orientation}};
@@ -38,11 +38,11 @@ pub fn orientation(a: Vec2<Fx>, b: Vec2<Fx>, c: Vec2<Fx>) -> Orientation {
     }
 }
 
-/// Whether a point lies in a simple polygon, convex or not, wound either way: exact. Its border and its
-/// corners belong to it. Fewer than three corners are a segment, a point or nothing.
+/// Whether a point lies in a simple polygon, convex or not, of either winding: exact. The border and the corners belong
+/// to the polygon. Fewer than three corners are a segment, a point or the empty set.
 ///
-/// Counts the edges that a ray to the right crosses. An edge has its lower end and not its upper one, so a
-/// ray through a corner counts it once where the border passes, and twice or never where it turns back.
+/// Counts the edges that a ray to the right crosses. An edge includes its lower end and not its upper one, so a ray
+/// through a corner counts it once where the border crosses the ray, and twice or never where the border turns back.
 ///
 /// ```
 /// use lockstep2d::{fx, math::{Vec2, point_in_polygon}};
@@ -73,9 +73,9 @@ pub fn point_in_polygon(corners: &[Vec2<Fx>], point: Vec2<Fx>) -> bool {
     inside
 }
 
-/// Where two segments meet, ends included: `None` exactly when they share no point. The point is rounded to
-/// nearest, and the same whichever segment comes first and whichever way each runs; but if they overlap along
-/// a line, it is the first shared point on the way from `a0` to `a1`.
+/// Intersection of two segments, ends included: `None` exactly if they share no point. The point is rounded to nearest,
+/// and does not depend on the order of the segments or of their ends. If the segments overlap along a line, it is the
+/// first shared point on the way from `a0` to `a1`.
 ///
 /// ```
 /// use lockstep2d::{fx, math::{Vec2, segment_intersection}};
@@ -88,7 +88,7 @@ pub fn point_in_polygon(corners: &[Vec2<Fx>], point: Vec2<Fx>) -> bool {
 /// ```
 #[must_use]
 pub fn segment_intersection(a0: Vec2<Fx>, a1: Vec2<Fx>, b0: Vec2<Fx>, b1: Vec2<Fx>) -> Option<Vec2<Fx>> {
-    // a0 + s a = b0 + t b has s = (b0 - a0) x b / (a x b) and t = (b0 - a0) x a / (a x b).
+    // a0 + s a = b0 + t b gives s = (b0 - a0) x b / (a x b) and t = (b0 - a0) x a / (a x b).
     let (a, b, between) = (Difference::new(a0, a1), Difference::new(b0, b1), Difference::new(a0, b0));
     let determinant = a.cross(b);
     if determinant.sign() == Ordering::Equal {
@@ -98,19 +98,19 @@ pub fn segment_intersection(a0: Vec2<Fx>, a1: Vec2<Fx>, b0: Vec2<Fx>, b1: Vec2<F
     point_at(b0, b, between.cross(a), determinant).map(|_| on_a)
 }
 
-/// The case of segments on parallel lines, or of no length.
+/// Intersection of segments on parallel lines, or of zero length.
 fn parallel_intersection(a0: Vec2<Fx>, a1: Vec2<Fx>, b0: Vec2<Fx>, b1: Vec2<Fx>) -> Option<Vec2<Fx>> {
     if on_segment(a0, b0, b1) {
         return Some(a0);
     }
-    // Since a0 is outside b, a shared stretch begins at the nearer end of b.
+    // Since a0 is outside of b, a shared part begins at the nearer end of b.
     [b0, b1]
         .into_iter()
         .filter(|&end| on_segment(end, a0, a1))
         .min_by_key(|&end| Difference::new(a0, end).manhattan())
 }
 
-/// The point of a segment, ends included, that is nearest to `point`: the exact one, rounded.
+/// Point of a segment, ends included, that is nearest to `point`: the exact point, rounded to nearest.
 ///
 /// ```
 /// use lockstep2d::{fx, math::{Vec2, closest_point_on_segment}};
@@ -133,7 +133,7 @@ fn on_segment(point: Vec2<Fx>, a: Vec2<Fx>, b: Vec2<Fx>) -> bool {
     in_box(point, a, b) && orientation(a, b, point) == Orientation::Collinear
 }
 
-/// Whether a point lies in the box between two corners.
+/// Whether a point lies in the box between two opposite corners.
 fn in_box(point: Vec2<Fx>, a: Vec2<Fx>, b: Vec2<Fx>) -> bool {
     let (lower, upper) = (a.min(b), a.max(b));
     lower.x <= point.x && point.x <= upper.x && lower.y <= point.y && point.y <= upper.y

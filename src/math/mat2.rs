@@ -1,4 +1,4 @@
-//! 2x2 matrices: `(M v)_i = sum_j a_ij v_j`, each component an exact sum of two products, rounded once.
+//! 2x2 matrices: `(M v)_i = sum_j a_ij v_j`, where each component is an exact sum of two products, rounded once.
 
 use fixed::FixedI32;
 use fixed::types::extra::LeEqU32;
@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::formats::{Fx, div_round, mul_add, saturate_wide};
 use super::vec2::Vec2;
 
-/// A 2x2 matrix over any of the formats; the digits of an entry are its row and its column.
+/// A 2x2 matrix over any of the formats. The digits in an entry's name are its row and its column.
 ///
 /// ```
 /// use lockstep2d::{fx, math::{Mat2, Vec2}};
@@ -29,13 +29,13 @@ pub struct Mat2<T> {
 }
 
 impl<T> Mat2<T> {
-    /// A matrix from its rows.
+    /// Creates a matrix from its rows.
     #[inline]
     pub const fn new(a11: T, a12: T, a21: T, a22: T) -> Self {
         Mat2 { a11, a12, a21, a22 }
     }
 
-    /// The matrix mirrored at its diagonal.
+    /// Transpose of the matrix.
     #[inline]
     #[must_use]
     pub fn transpose(self) -> Self {
@@ -60,7 +60,7 @@ impl<A: LeEqU32> Mat2<FixedI32<A>> {
 }
 
 impl Mat2<Fx> {
-    /// The matrix that changes nothing.
+    /// The identity matrix.
     pub const IDENTITY: Self = Mat2::new(Fx::ONE, Fx::ZERO, Fx::ZERO, Fx::ONE);
 
     /// `M v`, rounded once, saturated.
@@ -77,14 +77,14 @@ impl Mat2<Fx> {
         Vec2::new(self.a11, self.a12).cross(Vec2::new(self.a21, self.a22))
     }
 
-    /// `M^-1`, each entry divided by the exact determinant and rounded once, saturated; `None` when the
-    /// determinant is exactly 0.
+    /// `M^-1`, with each entry divided by the exact determinant and rounded once, saturated; `None` if the determinant
+    /// is exactly 0.
     #[must_use]
     pub const fn inverse(self) -> Option<Self> {
         let Mat2 { a11, a12, a21, a22 } = self;
         let plus = a11.to_bits() as i128 * a22.to_bits() as i128;
         let minus = a12.to_bits() as i128 * a21.to_bits() as i128;
-        // In units of 2^-64. It leaves i128 by one unit when all entries are at the edge of their range.
+        // In units of 2^-64. It exceeds i128 by one unit if all entries are at the ends of their range.
         let determinant = plus.saturating_sub(minus);
         if determinant == 0 {
             return None;
@@ -98,7 +98,7 @@ impl Mat2<Fx> {
     }
 }
 
-/// An entry in units of 2^-32 over a determinant in units of 2^-64.
+/// Quotient of an entry in units of 2^-32 and a determinant in units of 2^-64.
 const fn quotient(entry: i128, determinant: i128) -> Fx {
     Fx::from_bits(saturate_wide(div_round(entry.saturating_mul(1 << 64), determinant)))
 }
@@ -120,8 +120,8 @@ mod tests {
             if m.determinant().abs() < fx!(0.5) {
                 continue;
             }
-            // Half a unit in each entry of the inverse meets |M v| <= 128; half a unit in M v meets entries
-            // <= 16.
+            // An error of half a unit in each entry of the inverse is multiplied by |M v| <= 128; half a unit in M v is
+            // multiplied by entries <= 16.
             let there = m.inverse().unwrap().apply(m.apply(v)) - v;
             assert!(
                 there.x.abs().to_bits() <= 145 && there.y.abs().to_bits() <= 145,

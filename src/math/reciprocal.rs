@@ -1,7 +1,7 @@
-//! `1 / x` with 31 significant bits whatever the size of `x`.
+//! `1 / x` with 31 significant bits for any size of `x`.
 //!
-//! A fixed binary point would give the reciprocal of a 500 m radius 15 bits and overflow at 2 mm; a mantissa and
-//! a shift serve both, and a multiplication by them is one widening 32-bit product on any machine.
+//! A fixed binary point would give the reciprocal of a 500 m radius 15 bits and overflow at 2 mm. A mantissa and a
+//! shift cover both, and a multiplication by them is one widening 32-bit product on any machine.
 
 use fixed::FixedI32;
 use fixed::types::extra::LeEqU32;
@@ -12,36 +12,36 @@ use super::formats::{Fx, div_round, round_shift, round_shift_wide, saturate, sat
 /// The reciprocal of a positive number: `mantissa / 2^shift`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Reciprocal {
-    /// 0, or 2^30 to 2^31 - 1.
+    /// Mantissa: 0, or 2^30 to 2^31 - 1.
     mantissa: i32,
-    /// 0 to 63.
+    /// Shift: 0 to 63.
     shift: u32,
 }
 
 impl Reciprocal {
-    /// The reciprocal of a length without end: what does not turn has this for its radius of gyration.
+    /// Reciprocal of an infinite length, the radius of gyration of a body that does not rotate.
     pub const ZERO: Self = Reciprocal { mantissa: 0, shift: 0 };
 
-    /// `1 / x`, to a relative 2^-31. `x` must be at least 2^-30 and below 2^30.
+    /// `1 / x`, with a relative error of 2^-31. `x` must be at least 2^-30 and below 2^30.
     ///
     /// # Panics
     /// If `x` is not in that range.
     #[must_use]
     pub const fn of(x: Fx) -> Self {
         let bits = x.to_bits();
-        assert!(bits >= 4 && bits < 1 << 62, "the reciprocal of a number between 2^-30 and 2^30");
+        assert!(bits >= 4 && bits < 1 << 62, "a reciprocal needs a number from 2^-30 to below 2^30");
         // 2^(width-1) <= bits < 2^width, so 2^(width+30) / bits is above 2^30 and at most 2^31.
         let width = 64 - bits.leading_zeros();
         let quotient = div_round(1 << (width + 30), bits as i128);
-        // 2^31 itself, for a power of two, becomes 2^31 - 1.
+        // The quotient 2^31, of a power of two, becomes 2^31 - 1.
         let mantissa = saturate(super::formats::saturate_wide(quotient));
         Reciprocal { mantissa, shift: width + 30 - 32 }
     }
 
-    /// The reciprocal of a positive integer.
+    /// Reciprocal of a positive integer.
     ///
     /// # Panics
-    /// If `n` is not positive, or 2^30 and more.
+    /// If `n` is 0, or at least 2^30.
     #[must_use]
     pub const fn of_integer(n: u32) -> Self {
         Self::of(Fx::from_bits((n as i64) << 32))
@@ -60,7 +60,7 @@ impl Reciprocal {
         })
     }
 
-    /// `a / x` of a world quantity, rounded once, saturated.
+    /// `a / x` for a world quantity, rounded once, saturated.
     #[inline]
     pub(crate) fn times_wide(self, a: Fx) -> Fx {
         let product = i128::from(a.to_bits()) * i128::from(self.mantissa);
@@ -68,14 +68,14 @@ impl Reciprocal {
         Fx::from_bits(saturate_wide(rounded))
     }
 
-    /// The mantissa, 0 or 2^30 to 2^31 - 1, and the exponent, 0 to 63: `mantissa / 2^shift`.
+    /// Mantissa, 0 or 2^30 to 2^31 - 1, and exponent, 0 to 63: the reciprocal is `mantissa / 2^shift`.
     #[inline]
     #[expect(clippy::cast_possible_wrap, reason = "at most 63")]
     pub(crate) const fn parts(self) -> (i32, i32) {
         (self.mantissa, self.shift as i32)
     }
 
-    /// `a / x` exactly: the product and its number of fraction bits beyond those of `a`.
+    /// Exact `a / x`: the product, and its number of fraction bits beyond those of `a`.
     #[inline]
     pub(crate) fn times_exact<A: LeEqU32>(self, a: FixedI32<A>) -> (i64, u32) {
         (i64::from(a.to_bits()) * i64::from(self.mantissa), self.shift)
@@ -107,7 +107,7 @@ mod tests {
             for bits in [(1i64 << exponent) - 1, 1 << exponent, (1 << exponent) + 1] {
                 let Reciprocal { mantissa, shift } = Reciprocal::of(Fx::from_bits(bits));
                 assert!(mantissa >= 1 << 30, "{bits}");
-                // mantissa / 2^shift = 2^32 / bits, so the product is 2^(shift+32) to a relative 2^-30.
+                // mantissa / 2^shift = 2^32 / bits, so the product is 2^(shift+32) with a relative error of 2^-30.
                 let product = i128::from(mantissa) * i128::from(bits);
                 let error = (product - (1i128 << (shift + 32))).abs();
                 assert!(error <= product >> 30, "{bits}: {error}");

@@ -1,19 +1,19 @@
-//! Random numbers that are part of the simulated state.
+//! Pseudo-random numbers that are part of the simulated state.
 //!
-//! PCG-XSH-RR 64/32 (M. O'Neill, "PCG: A Family of Simple Fast Space-Efficient Statistically Good Algorithms
-//! for Random Number Generation", 2014): `s <- 6364136223846793005 s + i`, with an output permutation of the
-//! old `s`. 16 bytes of state, period 2^64, and 2^63 independent streams. Chosen over xoshiro256** for half
-//! the state to snapshot and hash. Not for secrets.
+//! PCG-XSH-RR 64/32 (M. O'Neill, "PCG: A Family of Simple Fast Space-Efficient Statistically Good Algorithms for Random
+//! Number Generation", 2014): `s <- 6364136223846793005 s + i`, with an output permutation of the old `s`. It has 16
+//! bytes of state, period 2^64, and 2^63 independent streams. It was chosen over xoshiro256** because it has half the
+//! state to snapshot and hash. It is not cryptographically secure.
 //!
-//! Bounded numbers are unbiased (D. Lemire, "Fast Random Integer Generation in an Interval", 2019), so they
-//! may draw more than once; how often depends on the state alone.
+//! Bounded numbers are unbiased (D. Lemire, "Fast Random Integer Generation in an Interval", 2019), so they may draw
+//! more than once; the number of draws depends on the state alone.
 
 use serde::{Deserialize, Serialize};
 
 use super::angle::Angle;
 use super::formats::Fx;
 
-/// A random number generator. Keep it in the game state, so that it rolls back and is hashed with it.
+/// A random number generator. It belongs in the game state, so that it is rolled back and hashed with the state.
 ///
 /// ```
 /// use lockstep2d::{fx, math::Rng};
@@ -23,7 +23,7 @@ use super::formats::Fx;
 /// assert!(fx!(1) <= height && height < fx!(2.5));
 /// assert_eq!(again.range(fx!(1), fx!(2.5)), height);
 /// ```
-// Not `Copy`: drawing from an unnoticed copy repeats numbers.
+// Not `Copy`: an accidental copy would repeat numbers.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Rng {
     state: u64,
@@ -31,13 +31,13 @@ pub struct Rng {
 }
 
 impl Rng {
-    /// A generator on the stream the reference implementation uses by default.
+    /// Creates a generator on the default stream of the reference implementation.
     #[must_use]
     pub const fn new(seed: u64) -> Self {
         Self::with_stream(seed, 721_347_520_444_481_703)
     }
 
-    /// One of 2^63 independent generators for each seed: the top bit of `stream` is ignored.
+    /// Creates one of 2^63 independent generators per seed. The top bit of `stream` is ignored.
     #[must_use]
     pub const fn with_stream(seed: u64, stream: u64) -> Self {
         let mut rng = Rng { state: 0, increment: (stream << 1) | 1 };
@@ -47,23 +47,23 @@ impl Rng {
         rng
     }
 
-    /// A uniform 32-bit number.
+    /// Draws a uniform 32-bit number.
     #[inline]
     pub const fn next_u32(&mut self) -> u32 {
         let state = self.state;
         self.step();
-        // The top five bits say how far to turn 32 of the best others.
+        // The top five bits give the rotation of 32 of the other bits.
         low_half(((state >> 18) ^ state) >> 27).rotate_right((state >> 59) as u32)
     }
 
-    /// A uniform 64-bit number: two draws, the first is the upper half.
+    /// Draws a uniform 64-bit number from two 32-bit draws, the first of which is the upper half.
     #[inline]
     pub const fn next_u64(&mut self) -> u64 {
         let high = self.next_u32() as u64;
         high << 32 | self.next_u32() as u64
     }
 
-    /// A uniform number from 0 to below `bound`; 0 for the bound 0.
+    /// Draws a uniform number from 0 to below `bound`; 0 for the bound 0.
     #[inline]
     pub const fn below(&mut self, bound: u32) -> u32 {
         let mut product = self.next_u32() as u64 * bound as u64;
@@ -91,38 +91,38 @@ impl Rng {
         (product >> 64) as u64
     }
 
-    /// A uniform number from `low` to below `high`, in steps of 2^-32; `low` when there is none.
+    /// Draws a uniform number from `low` to below `high`, in steps of 2^-32; `low` if the range is empty.
     #[inline]
     pub const fn range(&mut self, low: Fx, high: Fx) -> Fx {
         let (low, high) = (low.to_bits(), high.to_bits());
         let span = if low < high { low.abs_diff(high) } else { 0 };
-        // The sum stays below `high`; it wraps only on the way, when the span is over half the range of `Fx`.
+        // The sum stays below `high`; intermediate values wrap only if the span exceeds half the range of `Fx`.
         Fx::from_bits(low.wrapping_add_unsigned(self.below_u64(span)))
     }
 
-    /// A uniform angle.
+    /// Draws a uniform angle.
     #[inline]
     pub const fn angle(&mut self) -> Angle {
         Angle::from_bits(self.next_u32())
     }
 
-    /// True in `numerator` of `denominator` cases on average; with a denominator of 0, never.
+    /// Returns true with probability `numerator / denominator`; never for a denominator of 0.
     #[inline]
     pub const fn chance(&mut self, numerator: u32, denominator: u32) -> bool {
         self.below(denominator) < numerator && denominator != 0
     }
 
-    /// Puts the items into a random order, each order equally likely (Fisher and Yates).
+    /// Shuffles the items, with each order equally likely (Fisher and Yates).
     #[expect(clippy::cast_possible_truncation, reason = "below an index, hence an index")]
     pub fn shuffle<T>(&mut self, items: &mut [T]) {
         for last in (1..items.len()).rev() {
-            // Always 64 bits, so that pointer width does not change what is drawn.
+            // Always 64 bits, so that the draws do not depend on the pointer width.
             let chosen = self.below_u64(last as u64 + 1) as usize;
             items.swap(last, chosen);
         }
     }
 
-    /// The next state. Deserialising may bring an even increment, which would shorten the period.
+    /// Advances the state. A deserialized increment may be even, which would shorten the period, so bit 0 is set here.
     #[inline]
     const fn step(&mut self) {
         self.state = self.state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(self.increment | 1);
@@ -130,7 +130,7 @@ impl Rng {
 }
 
 #[inline]
-#[expect(clippy::cast_possible_truncation, reason = "the lower half is asked for")]
+#[expect(clippy::cast_possible_truncation, reason = "only the lower half is wanted")]
 const fn low_half(x: u64) -> u32 {
     x as u32
 }
@@ -152,8 +152,8 @@ mod tests {
     #[test]
     fn every_remainder_is_equally_likely() {
         let mut rng = Rng::new(1);
-        // The first bound rejects nearly half of the draws; without that, results below 2^30 would be twice
-        // as likely.
+        // The first bound rejects nearly half of the draws; without rejection, results below 2^30 would be twice as
+        // likely.
         for (bound, buckets) in [(3 << 30, 3), (6, 6), (1000, 10)] {
             let mut counts = [0_i64; 10];
             for _ in 0..60_000 {
@@ -163,7 +163,10 @@ mod tests {
             let expected = 60_000 / i64::from(buckets);
             let counts = &counts[..buckets as usize];
             // Five standard deviations of a bucket are below 5 sqrt(expected).
-            assert!(counts.iter().all(|n| (n - expected).pow(2) < 25 * expected), "{bound}: {counts:?}");
+            assert!(
+                counts.iter().all(|n| (n - expected).pow(2) < 25 * expected),
+                "bound {bound} is biased: {counts:?}"
+            );
         }
     }
 
@@ -201,10 +204,13 @@ mod tests {
             let order: usize = items[0] * 2 + usize::from(items[1] > items[2]);
             counts[order] += 1;
         }
-        assert!(counts.iter().all(|n| (n - 1000).abs() < 150), "{counts:?}");
+        assert!(
+            counts.iter().all(|n| (n - 1000).abs() < 150),
+            "each order should occur about 1000 times: {counts:?}"
+        );
     }
 
-    /// Computed by a second implementation in Python. Changing any of these numbers breaks replays.
+    /// The expected values come from a second implementation in Python. Changing any of these numbers breaks replays.
     #[test]
     fn golden() {
         let mut rng = Rng::new(5);

@@ -1,9 +1,8 @@
 //! Square roots, lengths and unit vectors.
 //!
-//! Lengths are the integer square root of an exact sum of squares, rounded to nearest: there is no error
-//! beyond the half unit of the result. Unit vectors are `v y` with `y = 1 / |v|` from Newton's iteration `y
-//! <- y (3 - n y^2) / 2`, which needs no division; each component is within 0.76 units of 2^-30, whatever the
-//! length of `v`, and vectors along an axis are exact.
+//! A length is the integer square root of an exact sum of squares, rounded to nearest, so its error is at most half a
+//! unit. A unit vector is `v y` with `y = 1 / |v|` from Newton's iteration `y <- y (3 - n y^2) / 2`, which needs no
+//! division. Each component is within 0.76 units of 2^-30 for any length of `v`, and vectors along an axis are exact.
 
 use fixed::FixedI32;
 use fixed::types::extra::LeEqU32;
@@ -11,7 +10,7 @@ use fixed::types::extra::LeEqU32;
 use super::formats::{Fx, Unit};
 use super::vec2::Vec2;
 
-/// The square root, rounded to nearest; `None` for a negative number.
+/// Square root, rounded to nearest; `None` for a negative number.
 ///
 /// ```
 /// use lockstep2d::{fx, math::sqrt};
@@ -34,7 +33,7 @@ pub const fn sqrt(x: Fx) -> Option<Fx> {
 /// ```
 #[must_use]
 pub const fn hypot(x: Fx, y: Fx) -> Fx {
-    // Much stands still, or moves along an axis.
+    // Fast path for zero vectors and vectors along an axis, which are frequent.
     if x.to_bits() == 0 {
         return y.saturating_abs();
     }
@@ -45,43 +44,42 @@ pub const fn hypot(x: Fx, y: Fx) -> Fx {
 }
 
 impl Vec2<Fx> {
-    /// The length, rounded to nearest, saturated.
+    /// Length of the vector, rounded to nearest, saturated.
     #[inline]
     #[must_use]
     pub const fn length(self) -> Fx {
         hypot(self.x, self.y)
     }
 
-    /// Whether the length is more than a limit. Most vectors are longer by far, or by far not: those need no root.
+    /// Whether the length exceeds a limit. Most vectors are far longer or far shorter than the limit, and need no root.
     #[inline]
     pub(crate) fn is_longer_than(self, limit: Fx) -> bool {
         let (x, y) = (self.x.saturating_abs(), self.y.saturating_abs());
         x.max(y) > limit || (x.saturating_add(y) > limit && self.length() > limit)
     }
 
-    /// The square of the length, rounded to nearest, saturated (from 46 341 m on).
+    /// Square of the length, rounded to nearest; saturates from 46 341 m.
     #[inline]
     #[must_use]
     pub const fn length_squared(self) -> Fx {
         self.dot(self)
     }
 
-    /// The distance between two points, rounded to nearest, saturated.
+    /// Distance between two points, rounded to nearest, saturated.
     #[must_use]
     pub const fn distance(self, other: Self) -> Fx {
         let x = self.x.to_bits().abs_diff(other.x.to_bits());
         let y = self.y.to_bits().abs_diff(other.y.to_bits());
-        // A difference of 2^63 or more saturates the distance by itself; smaller ones have squares that fit.
+        // A difference of 2^63 or more saturates the distance by itself; smaller differences have squares that fit.
         if (x | y) >> 63 != 0 { Fx::MAX } else { saturated(sqrt_rounded_wide(sum_of_squares_wide(x, y))) }
     }
 
-    /// The vector of length 1 in the same direction, each component within 0.76 units of 2^-30; `None` for
-    /// zero.
+    /// Unit vector in the same direction, each component within 0.76 units of 2^-30; `None` for zero.
     #[inline]
     #[must_use]
     pub const fn normalized(self) -> Option<Vec2<Unit>> {
         let (x, y) = (self.x.to_bits(), self.y.to_bits());
-        // What fits 32 bits has the same direction there, bit for bit: all shifts are exact.
+        // A vector that fits 32 bits has the same direction there, bit for bit, because all shifts are exact.
         if let (Some(x), Some(y)) = (narrowed(x), narrowed(y)) {
             return match polar(x, y) {
                 Some((direction, _)) => Some(direction),
@@ -92,7 +90,7 @@ impl Vec2<Fx> {
         if sum == 0 {
             return None;
         }
-        // An even shift brings the sum to 128 bits, so its root, and with it each component, to 64.
+        // An even shift normalises the sum to 128 bits, so that its root, and each component, has 64.
         let shift = sum.leading_zeros() & !1;
         let scale = inverse_root(high_half(sum << shift)) as u128;
         let x_part = high_half(((x.unsigned_abs() << (shift / 2)) as u128 * scale) << 32);
@@ -100,7 +98,7 @@ impl Vec2<Fx> {
         Some(Vec2::new(unit(x_part, x < 0), unit(y_part, y < 0)))
     }
 
-    /// [`normalized`](Self::normalized) and [`length`](Self::length) at once; `None` for zero.
+    /// Returns [`normalized`](Self::normalized) and [`length`](Self::length); `None` for zero.
     #[inline]
     #[must_use]
     pub const fn normalized_with_length(self) -> Option<(Vec2<Unit>, Fx)> {
@@ -112,7 +110,7 @@ impl Vec2<Fx> {
 }
 
 impl<A: LeEqU32> Vec2<FixedI32<A>> {
-    /// The length, rounded to nearest, saturated.
+    /// Length of the vector, rounded to nearest, saturated.
     #[inline]
     #[must_use]
     pub fn length(self) -> FixedI32<A> {
@@ -122,15 +120,14 @@ impl<A: LeEqU32> Vec2<FixedI32<A>> {
         ))))
     }
 
-    /// The vector of length 1 in the same direction, each component within 0.76 units of 2^-30; `None` for
-    /// zero.
+    /// Unit vector in the same direction, each component within 0.76 units of 2^-30; `None` for zero.
     #[inline]
     #[must_use]
     pub fn normalized(self) -> Option<Vec2<Unit>> {
         self.normalized_with_length().map(|(direction, _)| direction)
     }
 
-    /// [`normalized`](Self::normalized) and [`length`](Self::length) at once, for little more than the
+    /// Returns [`normalized`](Self::normalized) and [`length`](Self::length) at little more than the cost of the
     /// former; `None` for zero.
     #[inline]
     #[must_use]
@@ -140,14 +137,14 @@ impl<A: LeEqU32> Vec2<FixedI32<A>> {
     }
 }
 
-/// `(x, y) / |(x, y)|` and `|(x, y)|` with 64-bit products only.
+/// `(x, y) / |(x, y)|` and `|(x, y)|`, computed with 64-bit products only.
 #[inline]
 const fn polar(x: i32, y: i32) -> Option<(Vec2<Unit>, i32)> {
     let sum = sum_of_squares(x, y);
     if sum == 0 {
         return None;
     }
-    // An even shift brings the sum to 64 bits, so its root, and with it each component, to 32.
+    // An even shift normalises the sum to 64 bits, so that its root, and each component, has 32.
     let shift = sum.leading_zeros() & !1;
     let scale = inverse_root(sum << shift);
     let x_part = ((x.unsigned_abs() as u64) << (shift / 2)) * scale;
@@ -158,40 +155,40 @@ const fn polar(x: i32, y: i32) -> Option<(Vec2<Unit>, i32)> {
     ))
 }
 
-/// `sqrt(n)` rounded to nearest, from `2^63 / sqrt(n 2^shift)` within 0.51.
+/// `sqrt(n)`, rounded to nearest, from `2^63 / sqrt(n 2^shift)` with an error of at most 0.51.
 #[inline]
 const fn root_from_inverse(n: u64, shift: u32, inverse: u64) -> u64 {
-    // m / sqrt(m) for m = n 2^shift. The error of the inverse makes at most 0.51 here, rounding another half:
-    // the nearest root is at most one away.
+    // Computes m / sqrt(m) for m = n 2^shift. The error of the inverse contributes at most 0.51, rounding another half,
+    // so the nearest root is at most one away.
     let m = n << shift;
     let product = (m >> 32) * inverse + (((m & 0xffff_ffff) * inverse) >> 32); // sqrt(m) in units of 2^-31
     let drop = 31 + shift / 2;
     let root = (product + (1 << (drop - 1))) >> drop;
-    // n is an integer, so it is nearest to a root when (root - 1/2)^2 < n < (root + 1/2)^2, without the
-    // quarters.
+    // n is an integer, so `root` is nearest to its square root if (root - 1/2)^2 < n < (root + 1/2)^2, where the
+    // quarters can be dropped.
     let root = if root * root - root >= n { root - 1 } else { root };
     if root * root + root < n { root + 1 } else { root }
 }
 
-/// The same number in 32 bits, if it fits.
+/// Returns the number in 32 bits if it fits.
 #[inline]
-#[expect(clippy::cast_possible_truncation, reason = "compared with what it is made of")]
+#[expect(clippy::cast_possible_truncation, reason = "compared with the original")]
 const fn narrowed(x: i64) -> Option<i32> {
     let low = x as i32;
     if low as i64 == x { Some(low) } else { None }
 }
 
-/// A component from its magnitude in units of 2^-63 (at most 1 and an error far below the final rounding).
+/// Component from its magnitude in units of 2^-63, which is at most 1 plus an error far below the final rounding.
 #[inline]
 const fn unit(magnitude: u64, negative: bool) -> Unit {
     let rounded = ((magnitude + (1 << 32)) >> 33) as i32;
     Unit::from_bits(if negative { -rounded } else { rounded })
 }
 
-/// `2^63 / sqrt(n)` within 0.51, for `n >= 2^62`.
+/// `2^63 / sqrt(n)` with an error of at most 0.51, for `n >= 2^62`.
 ///
-/// With `m = n / 2^64` this is `1 / sqrt(m)` between 1 and 2. A parabola starts with a relative error of
-/// 2.4e-2; each step makes `1.5 e^2` of an error `e`: 8.7e-4, 1.2e-6, 2e-12.
+/// With `m = n / 2^64` this is `1 / sqrt(m)` between 1 and 2. The initial parabola has a relative error of 2.4e-2; each
+/// step turns an error `e` into `1.5 e^2`: 8.7e-4, 1.2e-6, 2e-12.
 #[inline]
 #[expect(
     clippy::cast_possible_wrap,
@@ -199,15 +196,14 @@ const fn unit(magnitude: u64, negative: bool) -> Unit {
     reason = "the residual is taken modulo 2^64, the sum is positive"
 )]
 const fn inverse_root(n: u64) -> u64 {
-    /// Minimax by Remez exchange, relative error as weight; units of 2^-30.
+    /// Minimax by Remez exchange, weighted by relative error, in units of 2^-30.
     const START: [u64; 3] = [2_867_787_663, 3_527_624_814, 1_759_398_854];
     let m = n >> 32; // units of 2^-32
     let mut y = START[0] - ((m * (START[1] - ((m * START[2]) >> 32))) >> 32); // units of 2^-30
     y = (y * ((3 << 30) - ((((y * y) >> 30) * m) >> 32))) >> 31;
     y = (y * ((3 << 30) - ((((y * y) >> 30) * m) >> 32))) >> 31;
 
-    // The last step keeps the residual `1 - m y^2`, which is small, and so survives modulo 2^64: the one is
-    // 2^76.
+    // The last step uses the residual `1 - m y^2`, which is small and therefore exact modulo 2^64; the 1 is 2^76.
     let root = m * y + (((n & 0xffff_ffff) * y) >> 32); // m y in units of 2^-62
     let residual = (root >> 16).wrapping_mul(y).wrapping_neg() as i64; // units of 2^-76
     let correction = (y as i64 * (residual >> 32) + (1 << 43)) >> 44; // y residual / 2 in units of 2^-31
@@ -231,8 +227,7 @@ const fn sum_of_squares_wide(x: u64, y: u64) -> u128 {
 #[inline]
 const fn sqrt_rounded(n: u64) -> u64 {
     let root = n.isqrt();
-    // n is an integer, so it lies above (root + 1/2)^2 = root^2 + root + 1/4 exactly when it exceeds the
-    // first two terms.
+    // n is an integer, so it exceeds (root + 1/2)^2 = root^2 + root + 1/4 exactly if it exceeds the first two terms.
     if n - root * root > root { root + 1 } else { root }
 }
 
@@ -243,15 +238,15 @@ const fn sqrt_rounded_wide(n: u128) -> u128 {
     if n - root * root > root { root + 1 } else { root }
 }
 
-/// `sqrt(n)` rounded down, for `n <= 2^127`: without the divisions of `u128::isqrt`, which take most of its time.
+/// `sqrt(n)`, rounded down, for `n <= 2^127`. Avoids the divisions of `u128::isqrt`, which take most of its time.
 #[inline]
 #[expect(clippy::cast_possible_wrap, clippy::cast_sign_loss, reason = "the residual is taken modulo 2^128")]
 const fn root_wide(n: u128) -> u128 {
     if n == 0 {
         return 0;
     }
-    // `m / sqrt(m)` for the upper half of `n 2^shift` has 32 bits; what is left of `n` makes them 63, as
-    // `(n - r^2) / (2 sqrt(n))`; the exact squares decide about the last.
+    // `m / sqrt(m)` for the upper half of `n 2^shift` has 32 bits. The rest of `n` extends it to 63 bits, as
+    // `(n - r^2) / (2 sqrt(n))`. Exact squares decide the last unit.
     let shift = n.leading_zeros() & !1;
     let m = high_half(n << shift);
     let inverse = inverse_root(m); // 2^63 / sqrt(m)
@@ -267,15 +262,15 @@ const fn root_wide(n: u128) -> u128 {
     root
 }
 
-/// The nearest world quantity to a magnitude in its units.
-#[expect(clippy::cast_possible_truncation, reason = "compared with the largest first")]
+/// Saturates a magnitude in world units to a world quantity.
+#[expect(clippy::cast_possible_truncation, reason = "compared with the largest value first")]
 const fn saturated(bits: u128) -> Fx {
     if bits > i64::MAX as u128 { Fx::MAX } else { Fx::from_bits(bits as i64) }
 }
 
-/// The nearest `i32` to a magnitude.
+/// Saturates a magnitude to `i32`.
 #[inline]
-#[expect(clippy::cast_possible_truncation, reason = "compared with the largest first")]
+#[expect(clippy::cast_possible_truncation, reason = "compared with the largest value first")]
 const fn saturated_narrow(bits: u64) -> i32 {
     if bits > i32::MAX as u64 { i32::MAX } else { bits as i32 }
 }

@@ -1,7 +1,7 @@
 //! A rotation as the cosine and sine of its angle: `R v = (c x - s y, s x + c y)`.
 //!
-//! Derived from an [`Angle`], never integrated: the state is the angle, so the length of `(c, s)` is 1 within
-//! two units of 2^-30 and does not drift. Each component of a result is a sum of two exact products, rounded
+//! A rotation is derived from an [`Angle`] and never integrated. The state is the angle, so the length of `(c, s)` is 1
+//! within two units of 2^-30 and does not drift. Each component of a result is a sum of two exact products, rounded
 //! once.
 
 use fixed::FixedI32;
@@ -29,10 +29,10 @@ pub struct Rot {
 }
 
 impl Rot {
-    /// The rotation by nothing.
+    /// The identity rotation.
     pub const IDENTITY: Self = Rot { cos: Unit::ONE, sin: Unit::ZERO };
 
-    /// The rotation by an angle.
+    /// Creates the rotation by an angle.
     #[inline]
     #[must_use]
     pub const fn from_angle(angle: Angle) -> Self {
@@ -40,7 +40,7 @@ impl Rot {
         Rot { cos, sin }
     }
 
-    /// The rotations by several angles. With the loops inlined where they are called, they become vectors.
+    /// Creates the rotations by several angles. Inlined into the caller, the loop is vectorised.
     #[inline(always)]
     pub(crate) fn from_angles<const N: usize>(angles: &[Angle; N]) -> [Self; N] {
         let mut rotations = [Rot::IDENTITY; N];
@@ -50,14 +50,14 @@ impl Rot {
         rotations
     }
 
-    /// The rotation the other way: exact.
+    /// Inverse rotation: exact.
     #[inline]
     #[must_use]
     pub const fn inverse(self) -> Self {
         Rot { cos: self.cos, sin: self.sin.saturating_neg() }
     }
 
-    /// The rotated vector: each component rounded once, saturated.
+    /// Rotates a vector; each component is rounded once, saturated.
     #[inline]
     #[must_use]
     pub fn apply<F: LeEqU32>(self, v: Vec2<FixedI32<F>>) -> Vec2<FixedI32<F>> {
@@ -65,28 +65,28 @@ impl Rot {
         Vec2::new(mul_add(self.cos, v.x, minus_sin, v.y), mul_add(self.sin, v.x, self.cos, v.y))
     }
 
-    /// The vector rotated the other way: each component rounded once, saturated.
+    /// Rotates a vector by the inverse; each component is rounded once, saturated.
     #[inline]
     #[must_use]
     pub fn apply_inverse<F: LeEqU32>(self, v: Vec2<FixedI32<F>>) -> Vec2<FixedI32<F>> {
         self.inverse().apply(v)
     }
 
-    /// The rotated vector in world format: each component rounded once, saturated.
+    /// Rotates a vector in world format; each component is rounded once, saturated.
     #[inline]
     #[must_use]
     pub const fn apply_wide(self, v: Vec2<Fx>) -> Vec2<Fx> {
         self.apply_and_move(v, Vec2::new(Fx::ZERO, Fx::ZERO))
     }
 
-    /// The vector in world format rotated the other way: each component rounded once, saturated.
+    /// Rotates a vector in world format by the inverse; each component is rounded once, saturated.
     #[inline]
     #[must_use]
     pub const fn apply_inverse_wide(self, v: Vec2<Fx>) -> Vec2<Fx> {
         self.inverse().apply_wide(v)
     }
 
-    /// The rotation by this and then by another angle: the sum of the angles, each component rounded once.
+    /// Rotation by this and then by another rotation, which adds the angles; each component is rounded once.
     #[inline]
     #[must_use]
     pub fn then(self, other: Self) -> Self {
@@ -94,7 +94,7 @@ impl Rot {
         Rot { cos, sin }
     }
 
-    /// `R v + offset`: each component rounded once, saturated once.
+    /// `R v + offset`; each component is rounded once and saturated once.
     #[inline]
     pub(super) const fn apply_and_move(self, v: Vec2<Fx>, offset: Vec2<Fx>) -> Vec2<Fx> {
         let (cos, sin) = (self.cos.to_bits() as i128, self.sin.to_bits() as i128);
@@ -146,8 +146,8 @@ mod tests {
             assert!(apart.x.abs() <= Length::DELTA && apart.y.abs() <= Length::DELTA, "{turn:?} {v:?}");
             assert!((wide.x - Fx::from_num(turn.apply(v).x)).abs() <= narrow_half());
             let back = turn.apply_inverse(turn.apply(v)) - v;
-            // 1.4 units of rounding, and cos^2 + sin^2 is off by at most 2.24 units of 2^-30: for 300 m 2.7
-            // units.
+            // Rounding contributes 1.4 units, and cos^2 + sin^2 is off by at most 2.24 units of 2^-30: 2.7 units for
+            // 300 m.
             assert!(back.x.abs().to_bits() <= 4 && back.y.abs().to_bits() <= 4, "{turn:?} {v:?} {back:?}");
         }
     }
@@ -164,7 +164,7 @@ mod tests {
             let (a, b) = (rng.angle(), rng.angle());
             let both = Rot::from_angle(a).then(Rot::from_angle(b));
             let sum = Rot::from_angle(a + b);
-            // 0.79 units of each factor, twice; half a unit of the product; 0.79 of the sum.
+            // Each factor contributes 0.79 units, the product half a unit, and the sum 0.79.
             let apart = (both.cos - sum.cos).abs().max((both.sin - sum.sin).abs());
             assert!(apart.to_bits() <= 3, "{a:?} {b:?} {apart}");
         }

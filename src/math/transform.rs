@@ -6,7 +6,7 @@ use super::formats::Fx;
 use super::rot::Rot;
 use super::vec2::Vec2;
 
-/// A rotation followed by a translation: body coordinates to world coordinates.
+/// A rotation followed by a translation, from body to world coordinates.
 ///
 /// ```
 /// use lockstep2d::{fx, math::{Angle, Rot, Transform, Vec2}};
@@ -17,32 +17,32 @@ use super::vec2::Vec2;
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Transform {
-    /// Where the origin goes, in metres.
+    /// Image of the origin, in metres.
     pub position: Vec2<Fx>,
-    /// The rotation about the origin, applied first.
+    /// Rotation about the origin, applied first.
     pub rotation: Rot,
 }
 
 impl Transform {
-    /// The pose that moves nothing.
+    /// The identity transform.
     pub const IDENTITY: Self = Transform { position: Vec2::new(Fx::ZERO, Fx::ZERO), rotation: Rot::IDENTITY };
 
-    /// A pose from its parts.
+    /// Creates a transform from a position and a rotation.
     #[inline]
     #[must_use]
     pub const fn new(position: Vec2<Fx>, rotation: Rot) -> Self {
         Transform { position, rotation }
     }
 
-    /// A point from body to world coordinates: each component rounded once, saturated.
+    /// Transforms a point from body to world coordinates; each component is rounded once, saturated.
     #[inline]
     #[must_use]
     pub const fn apply(self, point: Vec2<Fx>) -> Vec2<Fx> {
         self.rotation.apply_and_move(point, self.position)
     }
 
-    /// A point from world to body coordinates: each component rounded once. The difference to the position
-    /// saturates first, which matters only to points more than 2.1e9 m away.
+    /// Transforms a point from world to body coordinates; each component is rounded once. The difference from the
+    /// position saturates first, which only affects points more than 2.1e9 m away.
     #[inline]
     #[must_use]
     pub fn apply_inverse(self, point: Vec2<Fx>) -> Vec2<Fx> {
@@ -66,8 +66,7 @@ mod tests {
             let there = Transform::new(far, rotation).apply(point);
             assert_eq!(there - far, rotation.apply_wide(point));
             let back = Transform::new(far, rotation).apply_inverse(there) - point;
-            // cos^2 + sin^2 is off by at most 2.24 units of 2^-30: for 100 m 896 units of 2^-32, and
-            // rounding.
+            // cos^2 + sin^2 is off by at most 2.24 units of 2^-30: 896 units of 2^-32 for 100 m, plus rounding.
             assert!(back.x.abs().to_bits() <= 898 && back.y.abs().to_bits() <= 898, "{back:?}");
         }
     }

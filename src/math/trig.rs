@@ -1,37 +1,37 @@
-//! Sine, cosine and arc tangent on integers.
+//! Sine, cosine and arc tangent in integer arithmetic.
 //!
-//! `sin(pi x / 2) = x (c0 - c1 z + c2 z^2 - ... - c5 z^5)` with `z = x^2`, for `x` in one quarter turn,
-//! folded from the whole turn by symmetry: the sine is exactly odd, the cosine exactly even, and both are
-//! exact at the quarter turns. `atan(t) = t (c0 - c1 z + ... + c6 z^6)` for `|t| <= tan(1/16 turn)`, reached
-//! by folding the plane at the diagonal and by `atan t = pi/4 - atan((1 - t) / (1 + t))`.
+//! `sin(pi x / 2) = x (c0 - c1 z + c2 z^2 - ... - c5 z^5)` with `z = x^2`, for `x` in one quarter turn. The whole turn
+//! is folded to it by symmetry: the sine is exactly odd, the cosine exactly even, and both are exact at the quarter
+//! turns. `atan(t) = t (c0 - c1 z + ... + c6 z^6)` for `|t| <= tan(1/16 turn)`. The plane is folded at the diagonal and
+//! by `atan t = pi/4 - atan((1 - t) / (1 + t))`.
 //!
-//! The coefficients are minimax (Remez exchange with 50 digits, absolute error of the result as weight; the
-//! sine's under the constraint that it is 1 at the quarter turn), then rounded to the scale given at each.
-//! The two leading ones of the sine were moved by one unit where a sweep showed a smaller error. A table with
-//! interpolation would need 130 KiB for the same error; CORDIC loops 30 times.
+//! The coefficients are minimax (Remez exchange with 50 digits, weighted by the absolute error of the result; those of
+//! the sine under the constraint that it is 1 at the quarter turn), then rounded to the scale given at each. The two
+//! leading coefficients of the sine were moved by one unit where a sweep showed a smaller error. A table with
+//! interpolation would need 130 KiB for the same error; CORDIC takes 30 iterations.
 //!
-//! Largest error: sine and cosine 0.79 units of 2^-30 (over all 2^32 angles), arc tangent 0.68 units of 2^-32
-//! turn (over 2e8 random vectors).
+//! Largest error: 0.79 units of 2^-30 for sine and cosine (over all 2^32 angles), 0.68 units of 2^-32 turn for the arc
+//! tangent (over 2e8 random vectors).
 
 /// A quarter turn in units of 2^-32 turn.
 const QUARTER: u32 = 1 << 30;
 
-/// Sine of `angle` (2^-32 turn) in units of 2^-30. Without branches: bodies point anywhere, so none could be
-/// predicted.
+/// Sine of `angle` (in units of 2^-32 turn) in units of 2^-30. Branch-free: angles of bodies are arbitrary, so branches
+/// would be unpredictable.
 #[inline]
 pub(super) const fn sine(angle: u32) -> i32 {
     let angle = signed(angle);
     // x and half a turn minus x have the same sine.
     let folded = QUARTER - angle.unsigned_abs().abs_diff(QUARTER);
-    let minus = angle >> 31; // all bits of a negative angle
+    let minus = angle >> 31; // all bits set for a negative angle
     (sine_of_quarter_turn(folded) ^ minus) - minus
 }
 
 /// Sine of an angle from 0 to one quarter turn, `0 <= angle <= 2^30`, in units of 2^-30.
 #[inline]
 const fn sine_of_quarter_turn(angle: u32) -> i32 {
-    /// Units of 2^-33, 2^-32, 2^-35, 2^-39, 2^-44, 2^-48: each product below just fits 64 bits. All but the
-    /// last contain one half, so that dropping bits rounds.
+    /// In units of 2^-33, 2^-32, 2^-35, 2^-39, 2^-44 and 2^-48: each product below just fits 64 bits. All but the last
+    /// coefficient contain one half, so that dropping bits rounds.
     const C: [u64; 6] =
         [13_493_037_702, 2_774_394_650, 2_738_216_371, 2_573_744_741, 2_818_456_289, 961_408_605];
     let x = angle as u64;
@@ -44,8 +44,8 @@ const fn sine_of_quarter_turn(angle: u32) -> i32 {
     ((x * sum + (1 << 32)) >> 33) as i32
 }
 
-/// The direction of `(x, y)` in units of 2^-32 turn, counter-clockwise from the x axis; 0 for the zero
-/// vector. Exact on the axes and the diagonals.
+/// Direction of `(x, y)` in units of 2^-32 turn, counter-clockwise from the x axis; 0 for the zero vector. Exact on the
+/// axes and the diagonals.
 pub(super) const fn arc_tangent(x: i64, y: i64) -> u32 {
     let (width, height) = (x.unsigned_abs(), y.unsigned_abs());
     let steep = height > width;
@@ -55,15 +55,15 @@ pub(super) const fn arc_tangent(x: i64, y: i64) -> u32 {
     if y < 0 { half.wrapping_neg() } else { half }
 }
 
-/// `atan(short / long)` in units of 2^-32 turn, for `short <= long`; 0 when both are 0.
+/// `atan(short / long)` in units of 2^-32 turn, for `short <= long`; 0 if both are 0.
 const fn eighth_turn(short: u64, long: u64) -> u32 {
-    /// Units of 2^-35.
+    /// In units of 2^-35.
     const C: [u64; 7] =
         [5_468_522_204, 1_822_840_555, 1_093_692_894, 780_888_461, 602_750_356, 457_771_138, 249_084_370];
     if long == 0 {
         return 0;
     }
-    // The top bit of `long` goes to bit 62, so that the sum of two fits.
+    // The top bit of `long` is moved to bit 62, so that the sum of both fits.
     let spare = long.leading_zeros();
     let (short, long) =
         if spare == 0 { (short >> 1, long >> 1) } else { (short << (spare - 1), long << (spare - 1)) };
@@ -71,8 +71,7 @@ const fn eighth_turn(short: u64, long: u64) -> u32 {
     let from_diagonal = short > (long >> 7) * 53;
     let (numerator, denominator) = if from_diagonal { (long - short, long + short) } else { (short, long) };
 
-    // 32 bits of quotient from one 64-bit division: the quotient is below one half, so the doubled numerator
-    // fits.
+    // One 64-bit division gives 32 bits of quotient: the quotient is below one half, so the doubled numerator fits.
     let spare = denominator.leading_zeros();
     let divisor = (denominator << spare) >> 31;
     let t = (((numerator << spare) << 1) + divisor / 2) / divisor;
@@ -88,16 +87,16 @@ const fn eighth_turn(short: u64, long: u64) -> u32 {
     if from_diagonal { QUARTER / 2 - angle } else { angle }
 }
 
-/// The same angle between minus and plus one half turn.
+/// Converts an angle to the range between minus and plus one half turn.
 #[inline]
-#[expect(clippy::cast_possible_wrap, reason = "wrapping is the meaning of an angle")]
+#[expect(clippy::cast_possible_wrap, reason = "angles wrap by definition")]
 pub(super) const fn signed(angle: u32) -> i32 {
     angle as i32
 }
 
 #[cfg(test)]
 mod tests {
-    //! Against Taylor series in units of 2^-60 on 128-bit integers, whose own error is below 2^-54.
+    //! Tests against Taylor series in 128-bit integers in units of 2^-60, with an error below 2^-54.
 
     use super::*;
     use crate::math::Rng;
@@ -122,7 +121,7 @@ mod tests {
         (sin, cos)
     }
 
-    /// A stride through the whole turn, and everything near each eighth of it.
+    /// Angles with a constant stride over the whole turn, and all angles near each eighth of it.
     fn angles() -> impl Iterator<Item = u32> {
         let all = (0..60_000_u32).map(|i| i.wrapping_mul(71_583));
         let borders = (0..8_u32)
@@ -137,16 +136,23 @@ mod tests {
             let (sin, _) = slow_sin_cos(angle);
             largest = largest.max((i128::from(sine(angle)) * (1 << 30) - sin).abs());
         }
-        // In thousandths of 2^-30. A smaller one than in the module's docs, as this sweep is not exhaustive.
+        // In thousandths of 2^-30. The limit is below that of the module's docs, as this sweep is not exhaustive.
         let thousandths = (largest * 1000) >> 30;
-        assert!((500..=789).contains(&thousandths), "{thousandths}");
+        assert!(
+            (500..=789).contains(&thousandths),
+            "the largest error should be 500 to 789 thousandths, not {thousandths}"
+        );
     }
 
     #[test]
     fn symmetries_are_exact() {
         for angle in angles() {
-            assert_eq!(sine(angle.wrapping_neg()), -sine(angle), "odd at {angle}");
-            assert_eq!(sine((2 * QUARTER).wrapping_sub(angle)), sine(angle), "mirrored at {angle}");
+            assert_eq!(sine(angle.wrapping_neg()), -sine(angle), "the sine should be odd at {angle}");
+            assert_eq!(
+                sine((2 * QUARTER).wrapping_sub(angle)),
+                sine(angle),
+                "the sine should be symmetric at {angle}"
+            );
             assert!(sine(angle).abs() <= 1 << 30);
         }
         assert_eq!([0, 1, 2, 3].map(|quarters| sine(quarters * QUARTER)), [0, 1 << 30, 0, -1 << 30]);
@@ -156,21 +162,24 @@ mod tests {
     fn cosine_and_sine_are_on_the_circle() {
         for angle in angles() {
             let (sin, cos) = (i64::from(sine(angle)), i64::from(sine(angle.wrapping_add(QUARTER))));
-            // Twice 0.79 sqrt 2 units.
+            // The tolerance is twice 0.79 sqrt 2 units.
             let excess = sin * sin + cos * cos - (1 << 60);
             assert!(excess.abs() * 100 <= 224 << 30, "{angle}: {excess}");
         }
     }
 
-    /// How far `arc_tangent` is off, in thousandths of 2^-32 turn.
+    /// Error of `arc_tangent` in thousandths of 2^-32 turn.
     fn arc_tangent_error(x: i64, y: i64) -> i128 {
         let (sin, cos) = slow_sin_cos(arc_tangent(x, y));
-        // Enlarged, so that the integer root below is good to 50 bits.
+        // Scaled up, so that the integer root below is accurate to 50 bits.
         let shift = (x.unsigned_abs() | y.unsigned_abs()).leading_zeros().saturating_sub(1);
         let (x, y) = (i128::from(x) << shift, i128::from(y) << shift);
         let length = (x.unsigned_abs().pow(2) + y.unsigned_abs().pow(2)).isqrt();
         let length = i128::try_from(length).expect("64 bits");
-        assert!((cos * x + sin * y) / length > ONE / 2, "the direction of ({x}, {y})");
+        assert!(
+            (cos * x + sin * y) / length > ONE / 2,
+            "the direction of ({x}, {y}) should be roughly right"
+        );
         ((cos * y - sin * x) / length).abs() * 1000 / (TAU >> 32)
     }
 
@@ -188,7 +197,7 @@ mod tests {
                 largest = largest.max(arc_tangent_error(x, y));
             }
         }
-        // The borders of the reduction: tan(1/16 turn) is 0.41421, and 53/128 is where the formula changes.
+        // The borders of the range reduction: tan(1/16 turn) is 0.41421, and the formula changes at 53/128.
         for long in [128_i64, 1 << 31, 1 << 40, i64::MAX] {
             for near in -200..200 {
                 for short in [long / 128 * 53 + near, long + near.min(0), near] {
@@ -197,7 +206,10 @@ mod tests {
                 }
             }
         }
-        assert!((500..=680).contains(&largest), "{largest}");
+        assert!(
+            (500..=680).contains(&largest),
+            "the largest error should be 500 to 680 thousandths, not {largest}"
+        );
     }
 
     #[test]

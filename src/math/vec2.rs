@@ -1,4 +1,4 @@
-//! A 2D vector over any of the formats.
+//! 2D vectors over any of the formats.
 
 use core::ops::{Add, AddAssign, Neg, Sub, SubAssign};
 
@@ -22,14 +22,14 @@ use super::formats::{
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[repr(C)]
 pub struct Vec2<T> {
-    /// Horizontal component, growing to the right.
+    /// Horizontal component, positive to the right.
     pub x: T,
-    /// Vertical component, growing upwards.
+    /// Vertical component, positive upwards.
     pub y: T,
 }
 
 impl<T> Vec2<T> {
-    /// A vector from its components.
+    /// Creates a vector from its components.
     #[inline]
     pub const fn new(x: T, y: T) -> Self {
         Vec2 { x, y }
@@ -78,21 +78,21 @@ impl<T: Fixed> Vec2<T> {
     /// The zero vector.
     pub const ZERO: Self = Vec2::new(T::ZERO, T::ZERO);
 
-    /// The vector turned a quarter turn counter-clockwise: `(-y, x)`.
+    /// Vector rotated by a quarter turn counter-clockwise: `(-y, x)`.
     #[inline]
     #[must_use]
     pub fn perp(self) -> Self {
         Vec2::new(self.y.saturating_neg(), self.x)
     }
 
-    /// The smaller of each component.
+    /// Component-wise minimum.
     #[inline]
     #[must_use]
     pub fn min(self, other: Self) -> Self {
         Vec2::new(Ord::min(self.x, other.x), Ord::min(self.y, other.y))
     }
 
-    /// The larger of each component.
+    /// Component-wise maximum.
     #[inline]
     #[must_use]
     pub fn max(self, other: Self) -> Self {
@@ -122,14 +122,14 @@ impl<A: LeEqU32> Vec2<FixedI32<A>> {
         Vec2::new(mul(self.x, s), mul(self.y, s))
     }
 
-    /// The same vector in another 32-bit format: rounded, saturated.
+    /// Converts to another 32-bit format: rounded to nearest, saturated.
     #[inline]
     #[must_use]
     pub fn convert<B: LeEqU32>(self) -> Vec2<FixedI32<B>> {
         Vec2::new(convert(self.x), convert(self.y))
     }
 
-    /// The same vector in world format: exact.
+    /// Converts to world format: exact.
     #[inline]
     #[must_use]
     pub fn widen(self) -> Vec2<Fx> {
@@ -138,19 +138,19 @@ impl<A: LeEqU32> Vec2<FixedI32<A>> {
 }
 
 impl Vec2<Fx> {
-    /// The sum where it is known not to overflow, at a fraction of the cost; the same in every build profile if it does.
+    /// Sum that must not overflow, at a fraction of the cost. On overflow it wraps, in every build profile.
     #[inline]
     pub(crate) fn wrapping_add(self, other: Self) -> Self {
         Vec2::new(self.x.wrapping_add(other.x), self.y.wrapping_add(other.y))
     }
 
-    /// The difference where it is known not to overflow.
+    /// Difference that must not overflow. On overflow it wraps, in every build profile.
     #[inline]
     pub(crate) fn wrapping_sub(self, other: Self) -> Self {
         Vec2::new(self.x.wrapping_sub(other.x), self.y.wrapping_sub(other.y))
     }
 
-    /// The same vector in a 32-bit format: rounded, saturated.
+    /// Converts to a 32-bit format: rounded to nearest, saturated.
     #[inline]
     #[must_use]
     pub fn narrow<A: LeEqU32>(self) -> Vec2<FixedI32<A>> {
@@ -178,7 +178,7 @@ impl Vec2<Fx> {
         Vec2::new(fx_mul(self.x, s), fx_mul(self.y, s))
     }
 
-    /// `self + (other - self) t`, rounded once, saturated. A `t` outside 0 to 1 extrapolates.
+    /// `self + (other - self) t`, rounded once, saturated. Extrapolates for `t` outside of 0 to 1.
     #[inline]
     #[must_use]
     pub const fn lerp(self, other: Self, t: Unit) -> Self {
@@ -190,18 +190,18 @@ impl Vec2<Fx> {
 const fn sum_of_products(a: Fx, x: Fx, b: Fx, y: Fx, sign: i128) -> Fx {
     let ax = a.to_bits() as i128 * x.to_bits() as i128;
     let by = b.to_bits() as i128 * y.to_bits() as i128;
-    // Two products of 64-bit numbers stay within 127 bits, but for the corner where all four are `i64::MIN`.
+    // Two products of 64-bit numbers stay within 127 bits, except if all four numbers are `i64::MIN`.
     Fx::from_bits(round_product(ax.saturating_add(sign * by)))
 }
 
-/// `a (1 - t) + b t`, rounded once, saturated. The 128-bit sum has no difference that could overflow.
+/// `a (1 - t) + b t`, rounded once, saturated. The 128-bit sum contains no difference that could overflow.
 const fn interpolate(a: Fx, b: Fx, t: Unit) -> Fx {
     let t = t.to_bits() as i128;
     let sum = a.to_bits() as i128 * ((1 << Unit::FRAC_NBITS) - t) + b.to_bits() as i128 * t;
     Fx::from_bits(saturate_wide(round_shift_wide(sum, Unit::FRAC_NBITS)))
 }
 
-/// The unit vectors along the axes.
+/// Unit vectors along the axes.
 impl Vec2<Unit> {
     /// `(1, 0)`.
     pub const X: Self = Vec2::new(Unit::ONE, Unit::ZERO);

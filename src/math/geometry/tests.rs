@@ -1,6 +1,6 @@
-//! Every predicate against rational arithmetic on a small grid, where touching, crossing at corners and
-//! overlapping are common; then the same figures enlarged and moved to the edge of the world, where a product
-//! has 130 bits.
+//! Tests every predicate against rational arithmetic on a small grid, where touching, crossing at corners and
+//! overlapping are common; then with the same figures scaled and moved to the edge of the world, where a product has
+//! 130 bits.
 
 use super::*;
 use crate::fx;
@@ -10,7 +10,7 @@ use alloc::vec::Vec;
 /// A grid point: coordinates of at most 6.
 type Grid = (i128, i128);
 
-/// Where a figure is placed: `grid * scale + offset`, in units of 2^-32 m.
+/// Placements of a figure: `grid * scale + offset`, in units of 2^-32 m.
 const PLACES: [(i128, i128); 5] =
     [(1, 0), (3, i64::MIN as i128 + 18), (1 << 33, 7), ((1 << 60) + 1, 5), ((1 << 60) - 77, 1 << 60)];
 
@@ -19,7 +19,7 @@ fn place((x, y): Grid, (scale, offset): (i128, i128)) -> Vec2<Fx> {
     Vec2::new(bits(x), bits(y))
 }
 
-/// `numerator / denominator` of a grid step from `from`, rounded to nearest, ties up.
+/// Point at `numerator / denominator` between two grid points, rounded to nearest, ties up.
 fn point_between(from: Grid, to: Grid, n: i128, d: i128, placed: (i128, i128)) -> Vec2<Fx> {
     let (n, d) = (n * d.signum(), d.abs());
     let part = |from: i128, to: i128| {
@@ -52,7 +52,7 @@ fn orientation_is_the_sign_of_the_exact_area() {
         let at = PLACES[round % PLACES.len()];
         assert_eq!(orientation(place(a, at), place(b, at), place(c, at)), expected, "{a:?} {b:?} {c:?}");
     }
-    // One unit off a line across the whole world.
+    // Points one unit off a line across the whole world.
     let (low, high) = (Vec2::new(Fx::MIN, Fx::MIN), Vec2::new(Fx::MAX, Fx::MAX));
     let above = Vec2::new(Fx::ZERO, Fx::DELTA);
     assert_eq!(orientation(low, high, above), Orientation::CounterClockwise);
@@ -60,7 +60,7 @@ fn orientation_is_the_sign_of_the_exact_area() {
     assert_eq!(orientation(low, high, Vec2::new(Fx::ZERO, Fx::ZERO)), Orientation::Collinear);
 }
 
-/// All shared points of two grid segments as fractions along the first: the ends of the shared stretch.
+/// First shared point of two grid segments, as a fraction along the first segment.
 fn shared(a0: Grid, a1: Grid, b0: Grid, b1: Grid) -> Option<(i128, i128)> {
     let (a, b) = ((a1.0 - a0.0, a1.1 - a0.1), (b1.0 - b0.0, b1.1 - b0.1));
     let determinant = a.0 * b.1 - a.1 * b.0;
@@ -71,7 +71,7 @@ fn shared(a0: Grid, a1: Grid, b0: Grid, b1: Grid) -> Option<(i128, i128)> {
         let t = between.0 * a.1 - between.1 * a.0;
         return (unit(s, determinant) && unit(t, determinant)).then_some((s, determinant));
     }
-    // Parallel: walk along a in steps that hit every grid point on it.
+    // Parallel segments: steps along `a` that visit every grid point on it.
     let steps = a.0.abs().max(a.1.abs()).max(1);
     (0..=steps).find_map(|step| {
         let exact =
@@ -105,14 +105,14 @@ fn segments_meet_where_rational_arithmetic_says() {
             assert_eq!(segment_intersection(q0, q1, p0, p1), expected);
         }
     }
-    assert!(hits > 5000 && parallel > 500, "{hits} {parallel}");
+    assert!(hits > 5000 && parallel > 500, "both cases should be frequent: {hits} hits, {parallel} parallel");
 }
 
 #[test]
 fn the_diagonals_of_the_world_meet() {
     let [a, b, c, d] = [(Fx::MIN, Fx::MIN), (Fx::MAX, Fx::MAX), (Fx::MIN, Fx::MAX), (Fx::MAX, Fx::MIN)]
         .map(|(x, y)| Vec2::new(x, y));
-    // Exactly at minus half a unit, and ties go up.
+    // The exact value is minus half a unit, and ties round up.
     assert_eq!(segment_intersection(a, b, c, d), Some(Vec2::new(Fx::ZERO, Fx::ZERO)));
     assert_eq!(segment_intersection(b, a, d, c), Some(Vec2::new(Fx::ZERO, Fx::ZERO)));
     assert_eq!(closest_point_on_segment(c, a, b), Vec2::new(Fx::ZERO, Fx::ZERO));
@@ -135,7 +135,7 @@ fn the_closest_point_is_the_rounded_projection() {
     }
 }
 
-/// A polygon that sees its centre from every corner: grid points in order of their direction.
+/// A star-shaped polygon about the origin: grid points in order of their direction.
 fn star(rng: &mut Rng) -> Option<Vec<Grid>> {
     let mut corners: Vec<Grid> = (0..3 + rng.below(8)).map(|_| draw(rng)).filter(|&p| p != (0, 0)).collect();
     let lower_half = |p: Grid| (p.1, p.0) < (0, 0);
@@ -167,12 +167,12 @@ fn a_star_is_the_union_of_its_triangles() {
             inside += u32::from(expected);
         }
     }
-    assert!(inside > 5000, "{inside}");
+    assert!(inside > 5000, "expected over 5000 points inside, got {inside}");
 }
 
 #[test]
 fn combs_and_their_teeth() {
-    // Teeth up, so that a ray to the right passes corners that turn back, and runs along edges.
+    // The teeth point up, so that a ray to the right passes corners that turn back, and runs along edges.
     let comb = [(0, 0), (6, 0), (6, 3), (5, 1), (4, 3), (3, 3), (2, 1), (1, 3), (0, 1)];
     let picture = [
         // x = -1 to 7, from y = 4 down to -1

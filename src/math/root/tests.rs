@@ -1,11 +1,11 @@
-//! Roots against the squares on either side, unit vectors against a long division and an integer root with 33
+//! Tests roots against the neighbouring squares, and unit vectors against a long division and an integer root with 33
 //! more bits.
 
 use super::*;
 use crate::fx;
 use crate::math::{Length, Rng, Speed, Step};
 
-/// Numbers of every magnitude and sign.
+/// A random number of any magnitude and sign.
 fn draw(rng: &mut Rng) -> i64 {
     let shift = rng.below(64);
     i64::from_ne_bytes(rng.next_u64().to_ne_bytes()) >> shift
@@ -17,7 +17,7 @@ fn is_nearest_root(root: u128, n: u128) -> bool {
 }
 
 fn bits(x: Fx) -> u128 {
-    u128::try_from(x.to_bits()).expect("a length is not negative")
+    u128::try_from(x.to_bits()).expect("a length should not be negative")
 }
 
 const EXTREMES: [i64; 9] = [0, 1, -1, 2, 1 << 32, i64::MAX, -i64::MAX, i64::MIN, i64::MIN + 2];
@@ -77,11 +77,11 @@ fn slow_component(part: u64, sum: u128) -> u128 {
     quotient.isqrt()
 }
 
-/// The larger error of the components, in thousandths of 2^-30.
+/// Larger error of the two components, in thousandths of 2^-30.
 fn unit_error(x: i64, y: i64, unit: Vec2<Unit>) -> u128 {
     let sum = u128::from(x.unsigned_abs()).pow(2) + u128::from(y.unsigned_abs()).pow(2);
     let error = |part: i64, result: Unit| {
-        assert!(result.to_bits() == 0 || (result < 0) == (part < 0), "the sign of {part}");
+        assert!(result.to_bits() == 0 || (result < 0) == (part < 0), "the sign should be that of {part}");
         (u128::from(result.to_bits().unsigned_abs()) << 33).abs_diff(slow_component(part.unsigned_abs(), sum))
     };
     (error(x, unit.x).max(error(y, unit.y)) * 1000) >> 33
@@ -96,7 +96,7 @@ fn unit_vectors_are_within_076_units() {
         largest = largest.max(unit_error(x, y, unit));
         if let (Ok(x32), Ok(y32)) = (i32::try_from(x), i32::try_from(y)) {
             let narrow = Vec2::new(Length::from_bits(x32), Length::from_bits(y32));
-            assert_eq!(narrow.normalized(), Some(unit), "the narrow path agrees at ({x}, {y})");
+            assert_eq!(narrow.normalized(), Some(unit), "the narrow path should agree at ({x}, {y})");
         }
     };
     for _ in 0..50_000 {
@@ -112,7 +112,10 @@ fn unit_vectors_are_within_076_units() {
         check(x, i64::MIN);
         check(x.max(-i64::MAX) / 2, x.max(-i64::MAX) / 2 + 1);
     }
-    assert!((500..=760).contains(&largest), "{largest}");
+    assert!(
+        (500..=760).contains(&largest),
+        "the largest error should be 500 to 760 thousandths, not {largest}"
+    );
 }
 
 #[test]
@@ -120,7 +123,7 @@ fn the_inverse_root_is_within_its_bound() {
     let mut rng = Rng::new(4);
     let edges = [1 << 62, (1 << 62) + 1, (1 << 63) - 1, 1 << 63, u64::MAX];
     for n in edges.into_iter().chain((0..50_000).map(|_| rng.next_u64() | 1 << 62)) {
-        // 2^63 / sqrt(n) = sqrt(2^126 / n); both sides times 100 and squared.
+        // 2^63 / sqrt(n) = sqrt(2^126 / n); both sides are multiplied by 100 and squared.
         let y = u128::from(inverse_root(n)) * 100;
         let squared = |y: u128| (y * y) >> 6;
         // (100 y)^2 n is 10^4 2^126 = 2^139: dropping 16 bits of each side makes it fit.
@@ -135,7 +138,7 @@ fn the_root_from_the_inverse_is_nearest_where_rounding_turns() {
     let mut rng = Rng::new(6);
     for _ in 0..50_000 {
         let root = (rng.next_u64() >> (33 + rng.below(31))).max(1);
-        // root^2 + root still rounds down to root, and one more rounds up.
+        // root^2 + root still rounds down to root, and the next integer rounds up.
         for n in [root * root, root * root + root, root * root + root + 1] {
             let shift = n.leading_zeros() & !1;
             let found = root_from_inverse(n, shift, inverse_root(n << shift));
@@ -164,7 +167,7 @@ fn narrow_lengths_are_nearest_or_saturated() {
     let check = |x: i32, y: i32| {
         let v = Vec2::new(Speed::from_bits(x), Speed::from_bits(y));
         let sum = u128::from(x.unsigned_abs()).pow(2) + u128::from(y.unsigned_abs()).pow(2);
-        let length = u128::try_from(v.length().to_bits()).expect("a length is not negative");
+        let length = u128::try_from(v.length().to_bits()).expect("a length should not be negative");
         assert!(is_nearest_root(length, sum) || (v.length() == Speed::MAX && sum > length * length), "{v:?}");
         assert_eq!(
             v.normalized_with_length().map(|(_, length)| length),
@@ -205,14 +208,14 @@ fn what_is_longer_than_a_limit_has_a_greater_length() {
     let mut undecided = 0;
     for _ in 0..20_000 {
         let v = Vec2::new(rng.range(fx!(-3), fx!(3)), rng.range(fx!(-3), fx!(3)));
-        // At the length itself, next to it, and anywhere.
+        // The length itself, its neighbours, and a random limit.
         for limit in [v.length(), v.length() - Fx::DELTA, v.length() + Fx::DELTA, rng.range(fx!(-1), fx!(5))]
         {
             assert_eq!(v.is_longer_than(limit), v.length() > limit, "{v:?} {limit}");
             undecided += u32::from(v.x.abs().max(v.y.abs()) <= limit && v.x.abs() + v.y.abs() > limit);
         }
     }
-    assert!(undecided > 20_000, "{undecided} needed a root");
+    assert!(undecided > 20_000, "expected over 20000 cases that need a root, got {undecided}");
     for v in [Vec2::ZERO, Vec2::new(Fx::MIN, Fx::MIN), Vec2::new(Fx::MAX, fx!(0))] {
         for limit in [Fx::MIN, -Fx::DELTA, fx!(0), Fx::MAX - Fx::DELTA, Fx::MAX] {
             assert_eq!(v.is_longer_than(limit), v.length() > limit, "{v:?} {limit}");
