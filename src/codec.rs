@@ -1,6 +1,6 @@
-//! The canonical bytes of a value: its serde encoding with bincode 2, little-endian, fixed-width integers.
+//! Canonical encoding of a value: its serde encoding with bincode 2, little-endian, fixed-width integers.
 //!
-//! `docs/FORMAT.md` spells the layout out, so that it can be read without bincode.
+//! `docs/FORMAT.md` specifies the layout, so that it can be read without bincode.
 
 use alloc::vec::Vec;
 use core::fmt;
@@ -12,22 +12,22 @@ type Layout = Configuration<LittleEndian, Fixint>;
 
 const LAYOUT: Layout = bincode::config::standard().with_little_endian().with_fixed_int_encoding();
 
-/// Bytes that are not the canonical encoding of the expected value.
+/// Error of decoding bytes that are not the canonical encoding of the expected value.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum DecodeError {
-    /// The bytes do not describe such a value.
+    /// The bytes are not a valid encoding of the expected type.
     Invalid {
-        /// What the decoder ran into.
+        /// Message of the decoder.
         why: alloc::string::String,
     },
     /// The value ends before the bytes do.
     TrailingBytes {
-        /// How many bytes are left over.
+        /// Number of bytes after the value.
         count: u64,
     },
-    /// There are more bytes than [`decode`] accepts.
+    /// There are more than [`DECODE_BYTES_MAX`] bytes.
     TooLong {
-        /// How many.
+        /// Number of bytes.
         count: u64,
     },
 }
@@ -46,10 +46,10 @@ impl fmt::Display for DecodeError {
 
 impl core::error::Error for DecodeError {}
 
-/// Appends the canonical bytes of `value` to `bytes`.
+/// Appends the canonical encoding of `value` to `bytes`.
 ///
 /// # Panics
-/// If the type's `Serialize` refuses the value, which the derived ones never do.
+/// If the type's `Serialize` returns an error, which derived implementations never do.
 pub fn encode_into<T: Serialize + ?Sized>(value: &T, bytes: &mut Vec<u8>) {
     struct Append<'a>(&'a mut Vec<u8>);
     impl bincode::enc::write::Writer for Append<'_> {
@@ -59,10 +59,10 @@ pub fn encode_into<T: Serialize + ?Sized>(value: &T, bytes: &mut Vec<u8>) {
         }
     }
     bincode::serde::encode_into_writer(value, Append(bytes), LAYOUT)
-        .expect("a value that serde can describe");
+        .expect("`Serialize` should not return an error");
 }
 
-/// The canonical bytes of `value`.
+/// Returns the canonical encoding of `value`.
 #[must_use]
 pub fn encode<T: Serialize + ?Sized>(value: &T) -> Vec<u8> {
     let mut bytes = Vec::new();
@@ -70,24 +70,24 @@ pub fn encode<T: Serialize + ?Sized>(value: &T) -> Vec<u8> {
     bytes
 }
 
-/// Most bytes that [`decode`] accepts: 256 MiB.
+/// Largest number of bytes that [`decode`] accepts: 256 MiB.
 pub const DECODE_BYTES_MAX: usize = 256 << 20;
 
-/// The value whose canonical bytes these are, all of them.
+/// Decodes a value whose canonical encoding is all of `bytes`.
 ///
-/// A length prefix is not believed: what is allocated for a string is at most the next larger of 4 KiB, 1 MiB and
-/// 256 MiB above the number of bytes that there are, and for a list of values a small multiple of that number, but up to
-/// 1 MiB for each list that is begun, before its values are there.
-/// Two kinds of types defeat this and must not be decoded from a stranger's bytes: lists of values that take no
-/// bytes, whose length nothing bounds, and types that contain themselves, whose depth nothing bounds.
+/// A length prefix is not trusted. For a string, the allocation is at most the smallest of 4 KiB, 1 MiB and 256 MiB
+/// that is not less than the number of bytes given. For a list of values it is at most a small multiple of the number
+/// of bytes given, plus up to 1 MiB for each list that has begun, before its values are read. Two kinds of types defeat
+/// these limits and must not be decoded from untrusted bytes: lists of values that take no bytes, whose length is
+/// unbounded, and recursive types, whose depth is unbounded.
 ///
 /// # Errors
-/// [`DecodeError`] when the bytes are not exactly one such value.
+/// [`DecodeError`] if the bytes are not exactly the encoding of one such value.
 pub fn decode<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, DecodeError> {
     const SMALL: usize = 4 << 10;
     const MEDIUM: usize = 1 << 20;
-    // bincode allocates the announced length of a string before it looks whether the bytes are there, unless
-    // that exceeds a limit. The limit is part of the type, hence the steps.
+    // bincode allocates the announced length of a string before it checks that the bytes are present, unless the length
+    // exceeds a limit. The limit is a type parameter, hence the steps.
     let count = bytes.len();
     if count <= SMALL {
         decode_within::<T, SMALL>(bytes)
@@ -119,7 +119,11 @@ mod tests {
     fn values_come_back_at_every_length() {
         for length in [0, 1, 4087, 4088, 4089, (1 << 20) - 8, (1 << 20) - 7, 3 << 20] {
             let text = "x".repeat(length);
-            assert_eq!(decode::<String>(&encode(&text)), Ok(text), "a string of {length} bytes");
+            assert_eq!(
+                decode::<String>(&encode(&text)),
+                Ok(text),
+                "a string of {length} bytes should round-trip"
+            );
         }
     }
 
@@ -127,11 +131,15 @@ mod tests {
     fn a_string_that_is_not_there_is_not_allocated() {
         for length in [1, 1 << 20, 1 << 40, u64::MAX] {
             let decoded = decode::<String>(&length.to_le_bytes());
-            assert!(matches!(decoded, Err(DecodeError::Invalid { .. })), "a string of {length} bytes");
+            assert!(
+                matches!(decoded, Err(DecodeError::Invalid { .. })),
+                "a missing string of {length} bytes"
+            );
         }
     }
 
-    /// Little more is allocated than there is: a length far above that is refused for its size, not for what follows.
+    /// The allocation is limited by the number of bytes given: a length far above it is rejected because of its size,
+    /// not because of the missing bytes.
     #[test]
     fn an_announced_length_is_limited_by_how_much_there_is() {
         for (count, announced) in

@@ -1,47 +1,47 @@
-//! The 128-bit state hash.
+//! 128-bit state hash.
 //!
-//! XXH3-128 is fast and well mixed but not cryptographic: it finds accidents, not forgers. Where someone gains
-//! by a collision (a cache key, a signature) hash the bytes with BLAKE3 or SHA-256 instead.
+//! XXH3-128 is fast and well mixed but not cryptographic: it detects accidental differences, not forgery. Where an
+//! attacker could gain from a collision (a cache key, a signature), hash the bytes with BLAKE3 or SHA-256 instead.
 
 use alloc::vec::Vec;
 use core::fmt;
 
 use serde::{Deserialize, Serialize};
 
-/// A 128-bit digest, shown as 32 hexadecimal digits.
+/// A 128-bit digest, displayed as 32 hexadecimal digits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct StateHash(pub u128);
 
 impl StateHash {
-    /// The XXH3-128 digest of some bytes.
+    /// Returns the XXH3-128 digest of bytes.
     #[must_use]
     pub fn of_bytes(bytes: &[u8]) -> Self {
         StateHash(twox_hash::XxHash3_128::oneshot(bytes))
     }
 
-    /// The digest of a value's canonical bytes.
+    /// Returns the digest of a value's canonical encoding.
     #[must_use]
     pub fn of<T: Serialize + ?Sized>(value: &T) -> Self {
         Self::of_bytes(&crate::codec::encode(value))
     }
 
-    /// The digest of a sequence of digests, in order.
+    /// Returns the digest of a sequence of digests, in order.
     #[must_use]
     pub fn of_digests(digests: impl IntoIterator<Item = StateHash>) -> Self {
         let bytes: Vec<u8> = digests.into_iter().flat_map(StateHash::bytes).collect();
         Self::of_bytes(&bytes)
     }
 
-    /// The bytes of this digest within another, the same on every machine.
+    /// Bytes of this digest as input of another digest, the same on every machine.
     #[cfg(not(lockstep2d_broken))]
     fn bytes(self) -> [u8; 16] {
         self.0.to_le_bytes()
     }
 
-    /// Two mistakes that no x86-64 machine notices, to show that `tests/cross/run broken` does: the order of bytes and
-    /// the width of `usize` are those of the machine.
+    /// Deliberately wrong version for the canary `tests/cross/run broken`: it contains two mistakes that have no effect
+    /// on x86-64, the machine's byte order and the machine's width of `usize`.
     #[cfg(lockstep2d_broken)]
-    #[allow(clippy::cast_possible_truncation, reason = "one of the mistakes")]
+    #[allow(clippy::cast_possible_truncation, reason = "a deliberate mistake")]
     fn bytes(self) -> Vec<u8> {
         let halves = [self.0 as usize, (self.0 >> 64) as usize];
         halves.into_iter().flat_map(usize::to_ne_bytes).collect()
@@ -63,12 +63,13 @@ mod tests {
         assert_eq!(alloc::format!("{}", StateHash(0xab)), "000000000000000000000000000000ab");
     }
 
-    /// With and without vector instructions: the values are those of the reference implementation in C, xxHash 0.8.
+    /// Tests with and without vector instructions: the expected values are from the reference implementation in C,
+    /// xxHash 0.8.
     #[test]
     fn digests_of_all_lengths_are_those_of_the_reference() {
         let byte = |i: u32| u8::try_from((i * i + 7 * i + 13 * (i >> 8)) & 0xff).expect("masked");
         let bytes: Vec<u8> = (0..4096).map(byte).collect();
-        // Around each limit at which the algorithm changes, and at many places within a stripe and a block.
+        // Lengths around each limit at which the algorithm changes, and at many positions within a stripe and a block.
         let lengths = (0..600).chain((600..4096).step_by(61));
         let all = StateHash::of_digests(lengths.map(|length| StateHash::of_bytes(&bytes[..length])));
         assert_eq!(all, StateHash(0x895a_7f64_9a6f_6e88_c604_0708_9b0a_5435));

@@ -1,18 +1,18 @@
 //! lockstep2d: a deterministic fixed-point 2D physics and lockstep engine.
 //!
 //! The same setup and the same inputs give the same state hash after every tick, on every machine, because no
-//! floating-point number takes part. Saved replays prove it.
+//! floating-point number takes part. Saved replays verify it.
 //!
-//! - [`world`]: start here. [`world::World`] holds bodies, shapes and joints and steps them.
-//! - [`body`]: what to spawn. [`solver`]: joints and settings. [`collision`]: what contacts look like.
+//! - [`world`]: start here. [`world::World`] owns bodies, shapes and joints and steps them.
+//! - [`body`]: definitions of bodies and shapes. [`solver`]: joints and settings. [`collision`]: contact manifolds.
 //! - [`math`]: numbers, vectors and angles, also for a game's own rules; [`fx!`] writes constants.
-//! - [`lockstep`]: [`lockstep::Game`], the seam that recording, verifying and tools are generic over.
+//! - [`lockstep`]: [`lockstep::Game`], the trait over which recording, verification and tools are generic.
 //! - [`replay`]: writes, reads and verifies replay files.
-//! - [`report`]: what a peer writes when states differ, and who departed, when and where.
-//! - [`check`]: plays a game in many ways that must make no difference, for tests and fuzzers.
-//! - [`inspect`]: any value as named fields, and what differs between two.
-//! - [`draw`]: pictures of a world. [`scenes`]: worlds that tests, replays and tools share.
-//! - [`hash`] and [`codec`]: what a state hash is made of.
+//! - [`report`]: the report that a peer writes when states differ, and its analysis: which peer diverged, when and where.
+//! - [`check`]: runs a game in many ways that must give the same result, for tests and fuzzers.
+//! - [`inspect`]: converts any value to named fields, and compares two values.
+//! - [`draw`]: renders a world. [`scenes`]: worlds that tests, replays and tools share.
+//! - [`hash`] and [`codec`]: the state hash and the canonical encoding that it covers.
 //!
 //! ```
 //! use lockstep2d::{body::{BodyDef, Geometry, ShapeDef}, fx, world::World};
@@ -53,11 +53,11 @@ pub mod solver;
 mod threads;
 pub mod world;
 
-/// Names the arithmetic of the engine. It changes whenever the same inputs give another state, and replays and
-/// snapshots carry it: one made with other semantics is refused, not misread.
+/// Version of the engine's arithmetic. It changes whenever the same inputs give a different state. Replays and
+/// snapshots store it; a file with another version is rejected, not misread.
 pub const SEMANTICS: u32 = 7;
 
-/// The code of the README compiles and runs.
+/// Compiles and runs the code of the README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 mod readme {}

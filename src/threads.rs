@@ -1,18 +1,18 @@
-//! Threads to share the work of a tick among. How many there are changes how fast, never what: work is divided into
-//! jobs that do not look at each other's results.
+//! Thread pool for the work of a tick. The number of threads changes the speed, never the result: work is divided into
+//! jobs that do not read each other's results.
 
-/// The threads of a world: its own one only, unless the feature `parallel` is on and more are asked for.
+/// Threads of a world: only the calling thread, unless the feature `parallel` is enabled and more are requested.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Threads {
     #[cfg(feature = "parallel")]
     pool: Option<alloc::sync::Arc<rayon::ThreadPool>>,
 }
 
-/// How many jobs to make for each thread: more than one, because some take longer than others.
+/// Number of jobs per thread: more than one, because some jobs take longer than others.
 const JOBS_PER_THREAD: usize = 4;
 
 impl Threads {
-    /// A number of threads, at least 1.
+    /// Creates a pool of `count` threads, at least 1. Returns `None` if the threads cannot be started.
     #[cfg(feature = "parallel")]
     pub(crate) fn new(count: usize) -> Option<Self> {
         if count <= 1 {
@@ -22,20 +22,21 @@ impl Threads {
         Some(Threads { pool: Some(alloc::sync::Arc::new(pool)) })
     }
 
-    /// How many there are.
+    /// Number of threads.
     #[cfg(feature = "parallel")]
     pub(crate) fn count(&self) -> usize {
         self.pool.as_ref().map_or(1, |pool| pool.current_num_threads())
     }
 
-    /// How many there are.
+    /// Number of threads.
     #[cfg(not(feature = "parallel"))]
-    #[expect(clippy::unused_self, reason = "the same function as with the feature")]
+    #[expect(clippy::unused_self, reason = "same signature as with the feature")]
     pub(crate) const fn count(&self) -> usize {
         1
     }
 
-    /// How many of `count` things one job should do, and never fewer than `least`: all of them for one thread.
+    /// Number of items, of `count`, that one job should process: all of them for one thread, otherwise at least
+    /// `least`.
     pub(crate) fn share(&self, count: usize, least: usize) -> usize {
         match self.count() {
             1 => count.max(1),
@@ -43,7 +44,7 @@ impl Threads {
         }
     }
 
-    /// Does something on one of the threads. Jobs that are handed out from there cost much less than from elsewhere.
+    /// Runs `work` on a thread of the pool. Spawning jobs from there costs much less than from outside.
     #[cfg(feature = "parallel")]
     pub(crate) fn install(&self, work: impl FnOnce() + Send) {
         match &self.pool {
@@ -52,14 +53,14 @@ impl Threads {
         }
     }
 
-    /// Does something on one of the threads.
+    /// Runs `work` on the calling thread.
     #[cfg(not(feature = "parallel"))]
-    #[expect(clippy::unused_self, reason = "the same function as with the feature")]
+    #[expect(clippy::unused_self, reason = "same signature as with the feature")]
     pub(crate) fn install(&self, work: impl FnOnce() + Send) {
         work();
     }
 
-    /// Does every job, in an order that is not said, and returns the sum of what they count.
+    /// Runs every job, in an unspecified order, and returns the sum of their results.
     #[cfg(feature = "parallel")]
     pub(crate) fn run<J: Send>(
         &self,
@@ -71,7 +72,7 @@ impl Threads {
         let Some(pool) = &self.pool else { return jobs.map(work).sum() };
         let mut jobs = jobs;
         let Some(first) = jobs.next() else { return 0 };
-        // A single job, as small worlds have, is not worth waking another thread for.
+        // Small worlds have a single job, which is not worth waking another thread.
         let Some(second) = jobs.next() else { return work(first) };
         let (work, total) = (&work, &AtomicU64::new(0));
         pool.scope(|scope| {
@@ -84,9 +85,9 @@ impl Threads {
         total.load(Ordering::Relaxed)
     }
 
-    /// Does every job, in an order that is not said, and returns the sum of what they count.
+    /// Runs every job, in an unspecified order, and returns the sum of their results.
     #[cfg(not(feature = "parallel"))]
-    #[expect(clippy::unused_self, reason = "the same function as with the feature")]
+    #[expect(clippy::unused_self, reason = "same signature as with the feature")]
     pub(crate) fn run<J: Send>(
         &self,
         jobs: impl Iterator<Item = J> + Send,

@@ -1,4 +1,4 @@
-//! [`Compound`]: the parts of a list, map, struct or variant.
+//! [`Compound`]: collects the parts of a list, map, struct or variant.
 
 use alloc::string::String;
 
@@ -8,14 +8,14 @@ use serde::ser;
 use super::serializer::{Collector, InspectError, key};
 use super::value::Value;
 
-/// A value with parts that are being collected.
+/// A compound value whose parts are being collected.
 pub(super) struct Compound<'a> {
     collector: &'a mut Collector,
-    /// The name of the variant, which its fields are under.
+    /// Name of the variant, if the value is one.
     variant: Option<&'static str>,
-    /// A fixed-point number and how many fraction bits it has, if known: its one part is the number.
+    /// `Some` for a fixed-point number, with its number of fraction bits if known. Its only part is the raw number.
     fixed: Option<Option<u32>>,
-    /// How many parts there have been.
+    /// Number of parts so far.
     count: u64,
     key: String,
 }
@@ -46,7 +46,7 @@ impl<'a> Compound<'a> {
         let bits = super::fields(value)?.first().and_then(|field| field.value.bits());
         match bits {
             Some(bits) => self.collector.push(Value::Fixed { bits, fraction_bits }),
-            // More than 127 bits, or somebody else's struct of that name.
+            // A number of more than 127 bits, or an unrelated struct of that name.
             None => self.collector.named(name, value)?,
         }
         Ok(())

@@ -1,4 +1,4 @@
-//! [`Decimal`]: a fixed-point number in decimal, with as many digits as tell it from its neighbours.
+//! [`Decimal`]: a fixed-point number in decimal, with enough digits to distinguish it from its neighbours.
 
 use core::fmt;
 
@@ -6,15 +6,15 @@ use core::fmt;
 pub(super) struct Decimal {
     negative: bool,
     whole: u128,
-    /// The fraction times 10 to the number of digits.
+    /// The fraction times 10^`digits`.
     fraction: u128,
     digits: usize,
 }
 
 impl Decimal {
-    /// `None` where 128 bits are too few.
+    /// Returns `None` if the computation exceeds 128 bits.
     pub(super) fn new(bits: i128, fraction_bits: u32) -> Option<Self> {
-        // log10(2) is a little less than 4/13; one digit more than that many places tells neighbours apart.
+        // log10(2) is a little less than 4/13; one digit more than that many distinguishes neighbours.
         let digits = fraction_bits * 4 / 13 + u32::from(fraction_bits > 0);
         let scale = 10u128.checked_pow(digits)?;
         let one = 1u128.checked_shl(fraction_bits)?;

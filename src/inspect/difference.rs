@@ -1,4 +1,4 @@
-//! What differs between two lists of fields.
+//! Comparison of two lists of fields.
 
 use alloc::collections::{BTreeMap, BTreeSet};
 use alloc::vec::Vec;
@@ -7,13 +7,13 @@ use core::ops::Range;
 
 use super::value::{Field, Value};
 
-/// A field that two values do not have in common.
+/// A field whose value differs between two lists, or that only one of them has.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Difference {
     field: Field,
-    /// What the first has there, if anything.
+    /// Value in the first list; `None` if the field is missing.
     pub a: Option<Value>,
-    /// What the second has there.
+    /// Value in the second list; `None` if the field is missing.
     pub b: Option<Value>,
 }
 
@@ -23,7 +23,7 @@ impl Difference {
         Difference { field: field.clone(), a: a.map(value), b: b.map(value) }
     }
 
-    /// Where it is; of one side, if the other has no such field. See [`Field::path`], and the other names there.
+    /// The field, with its path and names: see [`Field::path`]. From the second list if the first does not have it.
     #[must_use]
     pub fn field(&self) -> &Field {
         &self.field
@@ -47,8 +47,8 @@ impl fmt::Display for OrNothing<'_> {
     }
 }
 
-/// The fields that are not the same in both lists or are missing from one, in the order of the first; what only the
-/// second has comes where it has it.
+/// Returns the fields that differ or are missing from one list, in the order of the first list. Fields that only the
+/// second list has are placed by their position in the second list.
 #[must_use]
 pub fn differences(a: &[Field], b: &[Field]) -> Vec<Difference> {
     let (places_a, places_b) = (places(a), places(b));
@@ -71,7 +71,7 @@ pub fn differences(a: &[Field], b: &[Field]) -> Vec<Difference> {
     found
 }
 
-/// A path, and how often it has been there before: a map may have two keys that are written the same.
+/// A path, and the number of earlier fields with the same path: a map may have two keys with the same text.
 type Place<'a> = (&'a str, u32);
 
 fn places(fields: &[Field]) -> Vec<Place<'_>> {
@@ -85,7 +85,7 @@ fn places(fields: &[Field]) -> Vec<Place<'_>> {
     places
 }
 
-/// The fields in a range of the second list that the first does not have.
+/// Fields in a range of the second list that the first list does not have.
 fn only_in_b<'a>(
     b: &'a [Field],
     places: &'a [Place<'a>],

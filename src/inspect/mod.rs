@@ -1,7 +1,7 @@
-//! Any value as a list of named fields, and what differs between two of them.
+//! Converts any value to a list of named fields, and compares two such lists.
 //!
-//! A field has a path, as in `world.bodies.body 12v1.velocity.x`, and a [`Value`] that keeps the raw bits beside a
-//! readable form. Whatever has a `Serialize` can be looked at: it is asked for the form that it has for people.
+//! A field has a path, such as `world.bodies.body 12v1.velocity.x`, and a [`Value`] that keeps the raw bits beside a
+//! readable form. Every type that implements `Serialize` can be inspected; its human-readable serialization is used.
 //!
 //! ```
 //! use lockstep2d::{fx, inspect::{differences, fields}, math::Vec2};
@@ -31,16 +31,16 @@ use serde::Serialize;
 
 use serializer::Collector;
 
-/// How deep values may be nested.
+/// Largest nesting depth of a value.
 pub const DEPTH_MAX: u32 = 128;
 
-/// All fields of a value, in the order in which it is serialised.
+/// Returns all fields of a value, in serialization order.
 ///
-/// An `Option` is its value or `none`, a variant its name and its fields, and an empty list or map a field of its own, so
-/// that two values with the same fields are the same value.
+/// An `Option` gives its value or `none`, a variant its name and its fields, and an empty list or map a field of its
+/// own, so that two values with the same fields are equal.
 ///
 /// # Errors
-/// [`InspectError`] if the value refuses to be serialised or is nested deeper than [`DEPTH_MAX`].
+/// [`InspectError`] if the value's `Serialize` returns an error or the value is nested deeper than [`DEPTH_MAX`].
 pub fn fields<T: Serialize + ?Sized>(value: &T) -> Result<Vec<Field>, InspectError> {
     let mut collector = Collector::default();
     collector.nested(value)?;

@@ -13,16 +13,16 @@ use super::compound::Compound;
 use super::value::{Field, Value};
 use crate::math::Angle;
 
-/// Why a value cannot be looked at.
+/// Error of inspecting a value.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct InspectError {
-    /// What its `Serialize` says, or that it is nested too deep.
+    /// Message of the value's `Serialize`, or that the value is nested too deep.
     pub why: String,
 }
 
 impl fmt::Display for InspectError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "a value that cannot be looked at: {}", self.why)
+        write!(f, "the value cannot be inspected: {}", self.why)
     }
 }
 
@@ -34,14 +34,14 @@ impl serde::ser::Error for InspectError {
     }
 }
 
-/// What is known on the way through a value.
+/// State of the traversal of a value.
 #[derive(Default)]
 pub(super) struct Collector {
     fields: Vec<Field>,
     path: String,
     thing: Option<(usize, usize)>,
     depth: u32,
-    /// The type of the value at hand. It is for display only: what it is called decides how a number is written.
+    /// Type name of the current value. For display only: it decides how a number is written.
     kind: &'static str,
 }
 
@@ -58,7 +58,7 @@ impl Collector {
         self.fields.push(Field { path: self.path.clone(), thing: self.thing, value });
     }
 
-    /// Adds a value at the path as it is.
+    /// Adds a value at the current path.
     pub(super) fn nested<T: Serialize + ?Sized>(&mut self, value: &T) -> Result<(), InspectError> {
         if self.depth == DEPTH_MAX {
             return Err(InspectError { why: format!("nested deeper than {DEPTH_MAX}") });
@@ -76,12 +76,12 @@ impl Collector {
         self.within(|path| push_name(path, name), value)
     }
 
-    /// Adds a value under a number.
+    /// Adds a value under an index.
     pub(super) fn numbered<T: Serialize + ?Sized>(&mut self, at: u64, value: &T) -> Result<(), InspectError> {
         self.within(|path| path.push_str(&format!("[{at}]")), value)
     }
 
-    /// Adds the entry of a map: the outermost are the things that a report names.
+    /// Adds an entry of a map. The entries of the outermost map are the objects that a report names.
     pub(super) fn entry<T: Serialize + ?Sized>(&mut self, key: &str, value: &T) -> Result<(), InspectError> {
         let (outer, section) = (self.thing, self.path.len());
         let length = section + usize::from(section > 0) + key.len();
@@ -103,7 +103,8 @@ impl Collector {
         result
     }
 
-    /// The fraction bits of the fixed-point number at hand. The type's name spells them as binary digits, `B1` and `B0`.
+    /// Number of fraction bits of the current fixed-point number. Its type name spells the number as binary digits,
+    /// `B1` and `B0`.
     pub(super) fn fraction_bits(&self) -> Option<u32> {
         let name = self.kind.trim_start_matches('&').strip_prefix("fixed::")?;
         let digits = name.split(|c: char| !c.is_alphanumeric()).filter_map(|word| match word {
@@ -123,7 +124,7 @@ fn push_name(path: &mut String, name: &str) {
     path.push_str(name);
 }
 
-/// A key as text: its only value, or all of them.
+/// A map key as text: its only value, or all its values.
 pub(super) fn key<T: Serialize + ?Sized>(key: &T) -> Result<String, InspectError> {
     let parts = super::fields(key)?.into_iter().map(|field| match field.value {
         Value::Text(text) => text,
@@ -178,19 +179,13 @@ impl<'a> Serializer for &'a mut Collector {
         Ok(())
     }
 
-    #[expect(
-        clippy::disallowed_types,
-        reason = "a serializer has to have this method; only the bits are kept"
-    )]
+    #[expect(clippy::disallowed_types, reason = "the trait requires this method; only the bits are kept")]
     fn serialize_f32(self, number: f32) -> Result<(), InspectError> {
         self.push(Value::Float(number.to_bits().into()));
         Ok(())
     }
 
-    #[expect(
-        clippy::disallowed_types,
-        reason = "a serializer has to have this method; only the bits are kept"
-    )]
+    #[expect(clippy::disallowed_types, reason = "the trait requires this method; only the bits are kept")]
     fn serialize_f64(self, number: f64) -> Result<(), InspectError> {
         self.push(Value::Float(number.to_bits()));
         Ok(())
@@ -204,7 +199,7 @@ impl<'a> Serializer for &'a mut Collector {
     fn serialize_some<T: Serialize + ?Sized>(self, value: &T) -> Result<(), InspectError> {
         let before = self.count();
         self.nested(value)?;
-        // `Some(None)` is not `None`.
+        // `Some(None)` must differ from `None`.
         if let [Field { value: value @ Value::Name("none" | "some none"), .. }] = &mut self.fields[before..] {
             *value = Value::Name("some none");
         }

@@ -1,3 +1,5 @@
+//! Tests the fields of every kind of value, differences between values, the paths of fields, and the depth limit.
+
 use alloc::collections::BTreeMap;
 use alloc::string::{String, ToString};
 use alloc::vec;
@@ -50,7 +52,7 @@ fn everything() -> Everything {
 }
 
 fn of<T: Serialize>(value: &T) -> Vec<Field> {
-    fields(value).expect("nothing refuses")
+    fields(value).expect("serialization should succeed")
 }
 
 fn lines<T: Serialize>(value: &T) -> Vec<String> {
@@ -85,13 +87,13 @@ fn every_kind_of_value_has_its_fields() {
     assert_eq!(lines(&Kind::One(1)), [" = One", "One = 1"]);
 }
 
-/// The names of types spell the number of fraction bits.
+/// Type names spell the number of fraction bits.
 #[test]
 fn every_format_is_known_by_its_fraction_bits() {
     fn bits<T: Serialize>(value: T) -> Option<u32> {
         match of(&value)[0].value {
             Value::Fixed { fraction_bits, .. } => fraction_bits,
-            ref other => panic!("{other:?}"),
+            ref other => panic!("expected a fixed-point number, got {other:?}"),
         }
     }
     let found = [
@@ -177,7 +179,7 @@ fn depth_is_limited() {
         chain = Chain(Some(alloc::boxed::Box::new(chain)));
     }
     assert!(matches!(fields(&chain), Err(InspectError { why }) if why.contains("deep")));
-    // Dropped piece by piece, as its own drop would recurse.
+    // Dropped iteratively, because the derived drop would recurse.
     while let Some(next) = chain.0.take() {
         chain = *next;
     }

@@ -8,7 +8,7 @@ use core::fmt;
 use super::decimal::Decimal;
 use crate::math::Angle;
 
-/// A value that has no parts, exactly.
+/// A value without parts, stored exactly.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Value {
     /// True or false.
@@ -19,27 +19,27 @@ pub enum Value {
     Signed(i128),
     /// A fixed-point number.
     Fixed {
-        /// The number times 2 to the number of its fraction bits.
+        /// The number times 2^`fraction_bits`.
         bits: i128,
-        /// How many fraction bits it has, if that is known.
+        /// Number of fraction bits, if known.
         fraction_bits: Option<u32>,
     },
     /// An angle.
     Angle(Angle),
-    /// Floating-point numbers, by their bits: a game may show one, though none belongs into a state.
+    /// A floating-point number, by its bits. A game may display one, though none belongs in its state.
     Float(u64),
     /// Text.
     Text(String),
     /// Bytes.
     Bytes(Vec<u8>),
-    /// One of several names: a variant, or `none`.
+    /// A name: that of a variant, or `none`.
     Name(&'static str),
-    /// A list, map or struct without a part.
+    /// A list, map or struct without parts.
     Empty,
 }
 
 impl Value {
-    /// The raw integer behind a number, an angle or a truth value.
+    /// Raw integer of a number, an angle or a boolean; `None` for other values, and for integers above 127 bits.
     #[must_use]
     pub fn bits(&self) -> Option<i128> {
         match self {
@@ -54,7 +54,8 @@ impl Value {
 }
 
 impl Value {
-    /// A fixed-point number in decimal, with as many digits as tell it from its neighbours; `None` of other values.
+    /// A fixed-point number in decimal, with enough digits to distinguish it from its neighbours; `None` for other
+    /// values.
     #[must_use]
     pub fn decimal(&self) -> Option<String> {
         match self {
@@ -103,27 +104,26 @@ impl fmt::Display for Value {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Field {
     pub(super) path: String,
-    /// How many bytes of the path name the thing that it is a field of, and how many of these where that is.
+    /// Number of bytes of the path that name the enclosing object, and number of those that name its section.
     pub(super) thing: Option<(usize, usize)>,
-    /// What is there.
+    /// Value of the field.
     pub value: Value,
 }
 
 impl Field {
-    /// Where it is: names separated by dots, and numbers in brackets. Empty if the value has no parts.
+    /// Path: names separated by dots, and indices in brackets. Empty if the inspected value has no parts.
     #[must_use]
     pub fn path(&self) -> &str {
         &self.path
     }
 
-    /// The path of the thing that it is a field of, such as `world.bodies.body 12v1`: that of the outermost entry of a
-    /// map.
+    /// Path of the object that contains the field, such as `world.bodies.body 12v1`: an entry of the outermost map.
     #[must_use]
     pub fn thing(&self) -> Option<&str> {
         self.thing.map(|(end, _)| &self.path[..end])
     }
 
-    /// The section that it is in, such as `world.bodies`: the path of the outermost map, or else the first name.
+    /// Section that contains the field, such as `world.bodies`: the path of the outermost map, or else the first name.
     #[must_use]
     pub fn section(&self) -> &str {
         let end = match self.thing {
@@ -133,7 +133,7 @@ impl Field {
         &self.path[..end]
     }
 
-    /// What it is called within its thing, such as `velocity.x`.
+    /// Name of the field within its object, such as `velocity.x`.
     #[must_use]
     pub fn name(&self) -> &str {
         match self.thing {

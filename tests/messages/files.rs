@@ -82,7 +82,7 @@ fn comparisons() {
         ),
         (
             CompareError::Inspect(InspectError { why: "nested too deep".into() }),
-            "a value that cannot be looked at: nested too deep",
+            "the value cannot be inspected: nested too deep",
         ),
     ]);
     says([
