@@ -133,7 +133,7 @@ mod tests {
             let decoded = decode::<String>(&length.to_le_bytes());
             assert!(
                 matches!(decoded, Err(DecodeError::Invalid { .. })),
-                "a missing string of {length} bytes"
+                "a missing string of {length} bytes should be rejected"
             );
         }
     }

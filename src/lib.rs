@@ -8,7 +8,7 @@
 //! - [`math`]: numbers, vectors and angles, also for a game's own rules; [`fx!`] writes constants.
 //! - [`lockstep`]: [`lockstep::Game`], the trait over which recording, verification and tools are generic.
 //! - [`replay`]: writes, reads and verifies replay files.
-//! - [`report`]: the report that a peer writes when states differ, and its analysis: which peer diverged, when and where.
+//! - [`report`]: the report that a peer writes when states differ, and its analysis: who diverged, when and where.
 //! - [`check`]: runs a game in many ways that must give the same result, for tests and fuzzers.
 //! - [`inspect`]: converts any value to named fields, and compares two values.
 //! - [`draw`]: renders a world. [`scenes`]: worlds that tests, replays and tools share.

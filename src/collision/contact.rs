@@ -6,7 +6,7 @@ use super::broad_phase::Pair;
 use super::manifold::Feature;
 use crate::math::Speed;
 
-/// A pair of shapes whose fat boxes overlap.
+/// A pair of shapes whose fat AABBs overlap.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Contact {
     /// Shape slots, the smaller first. Contacts are sorted by this key.

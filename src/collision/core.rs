@@ -195,7 +195,7 @@ pub(super) fn length(v: Vec2<Grid>) -> Grid {
     Grid::from_bits(raw(v).length().to_bits())
 }
 
-/// Unit vector of a vector; `None` for zero.
+/// Unit vector in the direction of a vector; `None` for zero.
 pub(super) fn direction(v: Vec2<Grid>) -> Option<Vec2<Unit>> {
     raw(v).normalized()
 }

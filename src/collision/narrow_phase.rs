@@ -199,7 +199,7 @@ mod tests {
             for _ in 0..2 {
                 let found = collide(&a, &b, margin, &mut hint, &mut counters);
                 assert_eq!(found.points(), plain.points());
-                assert!(found.points().is_empty() || found == plain, "{found:?} is not {plain:?}");
+                assert!(found.points().is_empty() || found == plain, "expected {plain:?}, got {found:?}");
                 let other = random_pose(&mut rng);
                 collide_near(&a, &other, margin, &mut hint, &mut SatCounters::default());
             }

@@ -210,7 +210,10 @@ mod tests {
             for i in 1..=16_i64 {
                 let moved = b.moved(to_grid(translation.scale(Fx::from_num(i) / 16)));
                 let gap = distance(&a, &moved).distance;
-                assert!(gap >= start - fx!(0.000001), "{gap} from {start}: {a:?} {b:?} {translation:?}");
+                assert!(
+                    gap >= start - fx!(0.000001),
+                    "the gap should not shrink from {start} to {gap}: {a:?} {b:?} {translation:?}"
+                );
             }
         }
         assert!(free > 2_000, "expected over 2000 movements without a hit, got {free}");

@@ -59,7 +59,7 @@ pub(crate) struct Tree {
 struct Node {
     aabb: Aabb,
     parent: u32,
-    /// 0 for a leaf.
+    /// Height above the leaves; 0 for a leaf.
     height: u8,
     /// Collision class of a leaf, or the common class of all leaves below.
     kin: Kin,

@@ -25,7 +25,7 @@ pub(crate) struct SolverBody {
     pub(crate) shift_padding: i32,
 }
 
-const _: () = assert!(size_of::<SolverBody>() == 32, "two halves of 16 bytes");
+const _: () = assert!(size_of::<SolverBody>() == 32, "a solver body should be two halves of 16 bytes");
 
 impl SolverBody {
     /// Sets the velocity, which must be in range.
@@ -48,14 +48,14 @@ impl SolverBody {
     }
 
     /// Pointer to velocity, spin and padding: 16 bytes, aligned to 32.
-    #[allow(dead_code, reason = "only vectors load it whole")]
+    #[allow(dead_code, reason = "only the vector backends load it as a whole")]
     #[inline(always)]
     pub(crate) fn velocity_bits(body: &Cell<Self>) -> *mut i32 {
         body.as_ptr().cast()
     }
 
     /// Pointer to displacement, rotation and padding: 16 bytes, aligned to 16.
-    #[allow(dead_code, reason = "only vectors load it whole")]
+    #[allow(dead_code, reason = "only the vector backends load it as a whole")]
     #[inline(always)]
     pub(crate) fn shift_bits(body: &Cell<Self>) -> *mut i32 {
         Self::velocity_bits(body).wrapping_add(4)

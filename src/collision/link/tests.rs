@@ -53,7 +53,7 @@ fn corners(shape: &PosedShape) -> (Vec<Vec2<Fx>>, Fx) {
             let vertices = hull.vertices().iter().map(|vertex| shape.centre + vertex.widen());
             (vertices.collect(), widen(hull.radius))
         }
-        Outline::Segment { .. } | Outline::Link(_) => unreachable!("not a mover"),
+        Outline::Segment { .. } | Outline::Link(_) => unreachable!("a mover should be a circle or a hull"),
     }
 }
 

@@ -54,8 +54,8 @@ pub(super) struct Meetings {
 }
 
 impl Meetings {
-    /// For each pair of overlapping nodes of which at least one is wanted: reports two leaves, and pushes any other
-    /// pair.
+    /// Visits pairs of nodes that overlap and of which at least one is wanted: reports a pair of leaves, and pushes any
+    /// other pair.
     #[inline(always)]
     fn meet<const N: usize>(&mut self, pairs: [[(u32, &Node); 2]; N], wanted: impl Fn(&Node) -> bool) {
         let (mut found, mut waiting) = ([((NONE, NONE), false); N], [((NONE, NONE), false); N]);

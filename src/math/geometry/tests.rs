@@ -15,7 +15,8 @@ const PLACES: [(i128, i128); 5] =
     [(1, 0), (3, i64::MIN as i128 + 18), (1 << 33, 7), ((1 << 60) + 1, 5), ((1 << 60) - 77, 1 << 60)];
 
 fn place((x, y): Grid, (scale, offset): (i128, i128)) -> Vec2<Fx> {
-    let bits = |v: i128| Fx::from_bits(i64::try_from(v * scale + offset).expect("a place within the world"));
+    let bits =
+        |v: i128| Fx::from_bits(i64::try_from(v * scale + offset).expect("a position within the world"));
     Vec2::new(bits(x), bits(y))
 }
 
@@ -25,7 +26,7 @@ fn point_between(from: Grid, to: Grid, n: i128, d: i128, placed: (i128, i128)) -
     let part = |from: i128, to: i128| {
         let exact = placed.0 * (from * d + (to - from) * n);
         let rounded = (2 * exact + d).div_euclid(2 * d) + placed.1;
-        Fx::from_bits(i64::try_from(rounded).expect("a place within the world"))
+        Fx::from_bits(i64::try_from(rounded).expect("a position within the world"))
     };
     Vec2::new(part(from.0, to.0), part(from.1, to.1))
 }
