@@ -12,7 +12,7 @@ pub const POLYGON_VERTICES_MAX: usize = 8;
 
 /// Largest extent of a shape from its centre on each axis of its own frame, radius included, in metres. Rotated by any
 /// angle, the shape stays within 156 m. If the boxes of two shapes are at most 15 m apart, a vertex of one is at most
-/// three times that and 15 m from a vertex of the other, which is within the range of [`Length`].
+/// three times 156 m plus 15 m from a vertex of the other, which is within the range of [`Length`].
 pub const SHAPE_EXTENT_MAX: Fx = crate::fx!(110);
 
 /// Smallest edge length in metres, about 2000 units of [`Length`]: a shorter edge has no reliable direction.

@@ -20,8 +20,8 @@ pub(crate) const SKIN: Fx = fx!(0.0001);
 /// Distance beyond the skin within which a shape is still in contact: more than the rounding error of a hit, 0.2 µm.
 const TOLERANCE: Fx = fx!(0.000002);
 
-/// Shift that gives the approach which counts as rounding error of sliding: 2^-24 m per metre of movement, plus 2^-24
-/// m.
+/// Right shift that gives the tolerance for sliding: an approach of 2^-24 m per metre of movement, plus 2^-24 m, counts
+/// as a rounding error.
 const SLIDING: u32 = 24;
 
 /// Hit of a moving shape on another.
