@@ -27,6 +27,8 @@ pub(crate) struct Pose {
 
 /// A body in the world.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[doc(alias = "RigidBody")]
+#[doc(alias = "rigid_body")]
 pub struct Body {
     pub(crate) kind: BodyKind,
     /// Centre of mass in the world.

@@ -10,8 +10,12 @@ use crate::math::{Angle, Fx, Vec2};
 
 /// How a body moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[doc(alias = "BodyType")]
+#[doc(alias = "RigidBodyType")]
 pub enum BodyKind {
     /// Does not move: ground and walls.
+    #[doc(alias = "static")]
+    #[doc(alias = "StaticBody")]
     Fixed,
     /// Moves with its velocity alone: lifts and doors. It pushes dynamic bodies and nothing pushes it.
     Kinematic,
@@ -27,6 +31,10 @@ pub enum BodyKind {
 /// let ground = BodyDef::fixed();
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[doc(alias = "RigidBody")]
+#[doc(alias = "RigidBodyBuilder")]
+#[doc(alias = "RigidBodyDesc")]
+#[doc(alias = "rigid_body")]
 pub struct BodyDef {
     /// How the body moves.
     pub kind: BodyKind,
@@ -70,6 +78,9 @@ impl BodyDef {
 
     /// Creates a definition of a fixed body, which does not move.
     #[must_use]
+    #[doc(alias = "static")]
+    #[doc(alias = "StaticBody")]
+    #[doc(alias = "static_body")]
     pub const fn fixed() -> Self {
         Self::new(BodyKind::Fixed)
     }

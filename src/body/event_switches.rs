@@ -11,6 +11,7 @@ pub struct EventSwitches {
     /// them if either shape enables them.
     pub hit: bool,
     /// Detection by sensors.
+    #[doc(alias = "trigger")]
     pub sensor: bool,
 }
 

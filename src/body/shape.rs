@@ -36,6 +36,10 @@ pub const DENSITY_MAX: Fx = fx!(1048576);
 /// # Ok::<(), lockstep2d::body::GeometryError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[doc(alias = "Collider")]
+#[doc(alias = "ColliderBuilder")]
+#[doc(alias = "ColliderDesc")]
+#[doc(alias = "FixtureDef")]
 pub struct ShapeDef {
     /// Geometry about the shape's centre.
     pub geometry: Geometry,
@@ -58,6 +62,8 @@ pub struct ShapeDef {
     pub one_way: Option<Angle>,
     /// Whether the shape is a sensor, which detects overlaps and generates no contact response. Sensors do not detect
     /// each other, and sensors of fixed bodies do not detect fixed bodies.
+    #[doc(alias = "trigger")]
+    #[doc(alias = "is_trigger")]
     pub sensor: bool,
     /// Events in which the shape takes part.
     pub events: EventSwitches,
@@ -140,6 +146,8 @@ impl ShapeDef {
 
     /// Makes the shape a sensor, which detects overlaps without pushing.
     #[must_use]
+    #[doc(alias = "trigger")]
+    #[doc(alias = "is_trigger")]
     pub fn sensor(mut self) -> Self {
         self.sensor = true;
         self
@@ -196,6 +204,8 @@ fn check_reach(geometry: &Geometry, offset: Vec2<Fx>, reach_max: Fx) -> Result<(
 
 /// A shape in the world.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[doc(alias = "Collider")]
+#[doc(alias = "Fixture")]
 pub struct Shape {
     pub(crate) body: BodyId,
     /// Boxed, so that the fields that steps change lie close together: the cost of saving them is memory traffic.
@@ -257,6 +267,8 @@ impl Shape {
 
     /// Whether the shape is a sensor.
     #[must_use]
+    #[doc(alias = "trigger")]
+    #[doc(alias = "is_trigger")]
     pub const fn is_sensor(&self) -> bool {
         self.def.sensor
     }
