@@ -53,7 +53,7 @@ fn faults() {
         ),
         (
             Fault::Verdict(verdict),
-            "the recording does not verify: malformed: at byte 0: this is no replay file",
+            "the recording does not verify: malformed: at byte 0: this is not a replay file",
         ),
         (Fault::Unrecordable(RecordError::TickRate), "the recording cannot be finished: a tick rate of zero"),
     ]);
@@ -133,7 +133,7 @@ fn failures() {
         (CheckError::Record(RecordError::TickRate), "nothing to check: a tick rate of zero"),
         (
             CheckError::Replay(Verdict::Malformed { offset: 0, flaw: Flaw::Magic }),
-            "nothing to check: malformed: at byte 0: this is no replay file",
+            "nothing to check: malformed: at byte 0: this is not a replay file",
         ),
     ]);
     let error = CheckError::Failed(Box::new(failure.clone()));

@@ -78,7 +78,7 @@ fn comparisons() {
         ),
         (
             CompareError::Replay { side: Side::B, verdict: verdict.clone() },
-            "the replay of B: malformed: at byte 0: this is no replay file",
+            "the replay of B: malformed: at byte 0: this is not a replay file",
         ),
         (
             CompareError::Inspect(InspectError { why: "nested too deep".into() }),
@@ -91,7 +91,7 @@ fn comparisons() {
         (EvidenceError::Unknown, "neither a report nor a replay nor a snapshot"),
     ]);
     says([
-        (TraceError::Replay(verdict), "malformed: at byte 0: this is no replay file"),
+        (TraceError::Replay(verdict), "malformed: at byte 0: this is not a replay file"),
         (TraceError::Record(RecordError::TickRate), "a tick rate of zero"),
     ]);
 }
