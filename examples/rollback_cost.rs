@@ -72,7 +72,7 @@ fn main() -> Result<(), WorldError> {
         }
         steps.push(step / TICKS);
         saves.push(hundredths(save, step));
-        // The same ticks again, each with its save and hash.
+        // Simulates these ticks again, each with its save and hash.
         let frame = timed(|| {
             world.restore(&start);
             for slot in kept.iter_mut().skip(TICKS as usize) {

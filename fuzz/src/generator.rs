@@ -14,9 +14,9 @@ use crate::{calm, joints, settings, shapes};
 
 /// Generates commands, and keeps handles that have become stale.
 pub struct Generator {
-    /// What the scene is built around.
+    /// Centre of the scene.
     middle: Vec2<Fx>,
-    /// Whether nobody does anything for most of the time, so that much falls asleep.
+    /// Whether most ticks have no commands, so that many bodies fall asleep.
     lulls: bool,
     bodies: Vec<BodyId>,
     shapes: Vec<ShapeId>,

@@ -88,7 +88,7 @@ impl<'a> Source<'a> {
         self.below(n) == n - 1
     }
 
-    /// One of the values.
+    /// Picks one of the values.
     pub fn pick<T: Copy>(&mut self, values: &[T]) -> T {
         values[self.below(values.len())]
     }

@@ -116,7 +116,7 @@ pub struct Options {
     pub every: u64,
     /// Maximum rollback depth in ticks, up to 64.
     pub rollback_max: u32,
-    /// Which depths are played at a tick.
+    /// The depths that are played at a tick.
     pub depths: Depths,
     /// Whether the phases of the physics step are compared, too.
     pub phases: Phases,

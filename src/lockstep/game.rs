@@ -39,7 +39,7 @@ impl core::error::Error for SetupError {}
 pub trait Game: Sized {
     /// Everything that the first tick depends on: level, seed, options.
     type Setup: Serialize + DeserializeOwned;
-    /// What one player contributes to one tick. `Default` is "nothing pressed".
+    /// Input of one player for one tick. `Default` is "nothing pressed".
     type Input: Clone + Default + PartialEq + Serialize + DeserializeOwned;
     /// Complete copy of the state, which [`Game::load`] restores. It is complete, so that it can be sent to a late
     /// joiner and compared with another machine's. In human-readable formats its field names are those shown in desync

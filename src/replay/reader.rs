@@ -88,7 +88,7 @@ impl<'a> InputBlock<'a> {
     }
 }
 
-/// What the file states about the end of the game.
+/// The trailer of a file: its statements about the end of the game.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Trailer {
     /// Number of ticks in the game.

@@ -42,7 +42,7 @@ pub fn bisect<G: Game>(
     {
         found.notes.push(format!(
             "the ticks between {last} and {first} are unknown: a trace of them, from the program that wrote \
-                 the replay, tells the rest"
+                 the replay, narrows the difference down"
         ));
     }
     Ok(found)

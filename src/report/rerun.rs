@@ -146,7 +146,7 @@ struct Beside<'a, 'k, G: Game> {
     states: Option<States<G::Save>>,
     /// The same, if one of the states is only presumed.
     presumed: Option<States<G::Save>>,
-    /// Reason why an earlier state is not available.
+    /// Reason why the states of an earlier tick could not be used.
     obstacle: Option<String>,
 }
 

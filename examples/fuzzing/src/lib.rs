@@ -2,7 +2,6 @@
 //!
 //! A player that reaches for fruit gets the first one nearby. The fruit is kept in a `HashMap`, whose iteration order
 //! is random, so the result is only deterministic while at most one piece is nearby.
-//! matter in every map: as long as only one is near, all is well.
 
 use lockstep2d::hash::StateHash;
 use lockstep2d::lockstep::{Game, RulesId, SetupError};

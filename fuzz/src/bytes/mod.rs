@@ -2,7 +2,6 @@
 //!
 //! The first byte of an input determines the meaning of the rest: a file, or changes to a valid file, with or without
 //! repaired checksums.
-//! checksums repaired.
 
 pub mod packet;
 pub mod replay;

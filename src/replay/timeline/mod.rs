@@ -70,7 +70,7 @@ pub enum SeekError {
     Keyframe {
         /// Tick of the keyframe.
         tick: u64,
-        /// What is wrong with the keyframe.
+        /// Reason.
         why: String,
     },
     /// After seeking backwards, the game computed another state than the first time: saving and loading it loses state.
