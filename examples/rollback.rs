@@ -1,5 +1,5 @@
-//! Rollback: a tick is simulated with a predicted input, and again when the actual input arrives. Run with `cargo run
-//! --example rollback`.
+//! Rollback: a tick is simulated with a predicted input, and again when the actual input arrives. Run with
+//! `cargo run --example rollback`.
 
 use lockstep2d::fx;
 use lockstep2d::lockstep::{Game, Sandbox, SetupError};

@@ -79,14 +79,14 @@ pub fn run(bytes: &[u8]) -> Option<u64> {
         if let Some(before) = before.filter(|before| *before > fx!(-15)) {
             assert!(
                 (least - before).abs() <= ERROR,
-                "{least} m in contact, {before} m apart at {position:?} {angle:?}: {still:?} {moving:?}"
+                "separation {least} m, but distance {before} m, at {position:?} {angle:?}: {still:?} {moving:?}"
             );
         }
         if let Some((swapped, _)) = second.contact() {
             let other = separation(&swapped);
             assert!(
                 (least - other).abs() <= ERROR,
-                "{least} m and, exchanged, {other} m at {position:?} {angle:?}: {still:?} {moving:?}"
+                "separation {least} m, but {other} m exchanged, at {position:?} {angle:?}: {still:?} {moving:?}"
             );
         } else {
             assert!(least > config.touching_distance() - ERROR, "no contact with the shapes exchanged");
@@ -133,18 +133,28 @@ fn distances(pair: &Pair) {
     let size = (there.point_a - there.point_b).length();
     let error = DISTANCE_ERROR + (size + fx!(250)) / PARTS;
     let difference = (there.distance - back.distance).abs();
-    assert!(difference <= error, "{} m, and {} m back", there.distance, back.distance);
+    assert!(
+        difference <= error,
+        "the distance is {} m, and {} m with the shapes exchanged",
+        there.distance,
+        back.distance
+    );
     let length = there.normal.widen().length();
     assert!((length - Fx::ONE).abs() < Fx::from_bits(16), "a normal of length {length}");
     if there.distance > fx!(0.001) {
         let between = there.point_a.distance(there.point_b);
         assert!(
             (between - there.distance).abs() <= fx!(0.000001),
-            "{between} m between, {} m apart",
+            "the nearest points are {between} m apart, but the distance is {} m",
             there.distance
         );
         let same: Unit = there.normal.dot(back.normal);
-        assert!(same < Unit::ZERO, "{:?} there, {:?} back", there.normal, back.normal);
+        assert!(
+            same < Unit::ZERO,
+            "the normal is {:?}, and {:?} with the shapes exchanged",
+            there.normal,
+            back.normal
+        );
     }
 }
 

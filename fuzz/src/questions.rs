@@ -190,7 +190,7 @@ impl Asked<'_> {
                     Fx::ZERO
                 }
             };
-            assert!(!self.ordinary || difference <= TOLERANCE, "{there:?} and back {back:?}");
+            assert!(!self.ordinary || difference <= TOLERANCE, "distance {there:?}, but {back:?} exchanged");
         }
         !found.is_empty()
     }

@@ -62,7 +62,7 @@ impl<G: Game> Lane<G> {
     pub(super) fn step(&mut self, now: &Now<'_, G>) -> Result<(), Box<Finding>> {
         self.arrange();
         if self.way == Way::Again {
-            // The reference run was polled for its work, too.
+            // The reference run was polled for its work, and this replica must match it exactly.
             let _work = self.game.work(now.inputs);
         }
         let phases = step(&mut self.game, now.inputs, now.options.phases);

@@ -10,7 +10,7 @@ use crate::lockstep::{Game, History};
 use crate::replay::{CHECKPOINT_INTERVAL, Limits, RecordError, Recorder, Rerun, Step, Verdict};
 
 /// A game that is recorded with the state hash, the save and the phase digests of its last ticks. The result is a
-/// [`DesyncReport`] without a different checkpoint; [`bisect`](super::bisect) compares it with the running engine.
+/// [`DesyncReport`] that names no desync; [`bisect`](super::bisect) compares it with the running engine.
 ///
 /// A replay has one hash per second, which tells the second in which two engines diverge. The trace of that second,
 /// made by the engine that wrote the replay, tells the tick, the phase, the body and the field.
