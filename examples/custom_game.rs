@@ -1,4 +1,4 @@
-//! A game of its own that records itself and verifies the recording: `cargo run --example custom_game`.
+//! A custom game that records itself and verifies the recording: `cargo run --example custom_game`.
 
 mod tug;
 
@@ -14,7 +14,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let left = if tick % 120 < 60 { -2 } else { 0 };
         recording.step(&[left, 3])?;
     }
-    println!("after {} ticks at {:.3} m", recording.ticks(), recording.game().position().x);
+    println!("after {} ticks the ball is at {:.3} m", recording.ticks(), recording.game().position().x);
     let file = recording.finish()?;
     println!("{} bytes: {}", file.len(), verify::<Tug>(&file, &Limits::default()));
     Ok(())

@@ -1,6 +1,6 @@
-//! Plays the golden scenes in each way in which this machine can compute, and compares with the committed hashes:
-//! `goldens short|goldens|all`. What `tests/cross/run` runs on other processors; the constants are in the program, so it needs
-//! no files.
+//! Plays the golden scenes on every backend of this machine and compares the results with the committed hashes:
+//! `goldens short|goldens|all`. `tests/cross/run` runs this program on other processors. The hashes and replays are
+//! compiled in, so it needs no files.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::process::ExitCode;
@@ -14,17 +14,17 @@ const GOLDENS: &str = include_str!("../tests/goldens.txt");
 const BACKENDS: &str = include_str!("../tests/backends.txt");
 const SHORT: &str = include_str!("../tests/cross/short.txt");
 
-/// Recordings made elsewhere: read, checked and played again they end in their goldens.
+/// Replays recorded on another machine, each of which must verify and end in its golden hash.
 const REPLAYS: [(&str, &[u8]); 3] = [
     ("bridge", include_bytes!("../replays/bridge.replay")),
     ("game", include_bytes!("../replays/game.replay")),
     ("ragdoll", include_bytes!("../replays/ragdoll.replay")),
 ];
 
-/// The seed of the golden scenes.
+/// Seed of the golden scenes.
 const SEED: u64 = 1;
 
-/// The hashes of each scene: after so many ticks, this.
+/// For each scene, the expected hashes after given numbers of ticks.
 type Hashes<'a> = BTreeMap<&'a str, BTreeSet<(u64, &'a str)>>;
 
 fn main() -> ExitCode {
@@ -51,7 +51,7 @@ fn main() -> ExitCode {
     if all_equal { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
 
-/// The lines of the present semantics: semantics, scene, ticks, hash.
+/// Parses the lines of the current semantics: semantics, scene, ticks, hash.
 fn hashes(text: &str) -> Hashes<'_> {
     let mut hashes = Hashes::new();
     for line in text.lines() {
@@ -64,7 +64,7 @@ fn hashes(text: &str) -> Hashes<'_> {
     hashes
 }
 
-/// Plays a scene and compares wherever there is a hash, once per line of output.
+/// Plays a scene and compares it with every hash, one line of output each.
 fn play(name: &str, backend: Backend, hashes: &BTreeSet<(u64, &str)>) -> bool {
     let scene = Scene::find(name).expect("a scene of this crate");
     let mut game = Sandbox::new(&scene.setup(SEED)).expect("the scenes of this crate are valid");
@@ -80,7 +80,7 @@ fn play(name: &str, backend: Backend, hashes: &BTreeSet<(u64, &str)>) -> bool {
     equal
 }
 
-/// Verifies a committed recording.
+/// Verifies a committed replay.
 fn check(name: &str, replay: &[u8]) -> bool {
     let golden = hashes(GOLDENS)[name].first().copied().expect("a golden for each replay");
     let (ticks, end) = match verify::<Sandbox>(replay, &Limits::default()) {
@@ -90,7 +90,7 @@ fn check(name: &str, replay: &[u8]) -> bool {
     (ticks == golden.0) & compare("replay", name, ticks, golden.1, &end)
 }
 
-/// Prints how a run ended, and whether that is as it should be.
+/// Prints the result of a run and whether it is equal to the golden.
 fn compare(how: &str, name: &str, ticks: u64, known: &str, found: &str) -> bool {
     let verdict = if known == found { "equal" } else { "DIFFERENT" };
     println!("{how:<8} {name:<16} {ticks:>4} {found} {verdict}");

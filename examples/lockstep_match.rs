@@ -1,5 +1,5 @@
-//! Two players in lockstep: a tick is played when both inputs are there.
-//! `cargo run --features ggrs --example lockstep_match`.
+//! Two players in lockstep: a tick is played when both inputs have arrived.
+//! Run with `cargo run --features ggrs --example lockstep_match`.
 #![expect(clippy::disallowed_types, reason = "the clock of this process")]
 
 mod tug;
@@ -15,7 +15,7 @@ use tug::Tug;
 const TICKS: u64 = 300;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    // With `Udp::bind("0.0.0.0:7000")?` in place of a port, each peer can be a process of its own.
+    // With `Udp::bind("0.0.0.0:7000")?` instead of a port, each peer can be a separate process.
     let network = Network::new(Weather { latency: Duration::from_millis(30), ..Weather::default() }, 1);
     let options = Options::lockstep();
     let mut peers = [
@@ -31,7 +31,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             while let Some(event) = peer.next_event() {
                 println!("seat {:?}: {event:?}", peer.seat());
             }
-            // Each pushes the ball its own way, now and then.
+            // The players push the ball in opposite directions for one of every two seconds.
             let force = if peer.seat() == Some(0) { 3 } else { -2 };
             let push = if peer.tick() % 120 < 60 { force } else { 0 };
             while peer.is_due() && peer.advance(push)? {}

@@ -1,4 +1,4 @@
-//! Rollback: a tick is simulated with a guessed input, and again when the true one arrives.
+//! Rollback: a tick is simulated with a predicted input, and again when the actual input arrives. Run with
 //! `cargo run --example rollback`.
 
 use lockstep2d::fx;
@@ -7,7 +7,7 @@ use lockstep2d::math::Vec2;
 use lockstep2d::scenes::Scene;
 use lockstep2d::world::Command;
 
-/// What the player does, who in this example pushes once.
+/// The player's input: a single push in this example.
 fn true_input(game: &Sandbox, tick: u64) -> Vec<Command> {
     let pushed = game.world().bodies().filter(|(_, body)| body.is_dynamic()).take(usize::from(tick == 55));
     pushed
@@ -23,14 +23,15 @@ fn main() -> Result<(), SetupError> {
     let scene = Scene::find("box_stack").expect("a scene of the engine");
     let setup = scene.setup(0);
 
-    // The peer on whose machine the input is known at once.
+    // The peer that knows the input at once.
     let mut peer = Sandbox::new(&setup)?;
     for tick in 0..60 {
         let input = true_input(&peer, tick);
         peer.step(&[input]);
     }
 
-    // Here the inputs of the last ten ticks are late. Until they come, nobody seems to do anything.
+    // The inputs of the last ten ticks are late on this machine. Until they arrive, the prediction is that the player
+    // does nothing.
     let mut here = Sandbox::new(&setup)?;
     for _ in 0..50 {
         here.step(&[vec![]]);
@@ -48,6 +49,6 @@ fn main() -> Result<(), SetupError> {
         here.step(&[input]);
     }
     println!("resimulated {}", here.state_hash());
-    println!("the same: {}", here.state_hash() == peer.state_hash());
+    println!("equal: {}", here.state_hash() == peer.state_hash());
     Ok(())
 }

@@ -1,5 +1,5 @@
-//! What rollback costs at 1000 bodies that touch each other: a save and a hash as a share of a step, and a frame in which
-//! 8 ticks are played again, in steps. `cargo run --release --example rollback_cost`.
+//! Measures the cost of rollback with 1000 touching bodies: a save and a hash as a share of a step, and a frame in
+//! which 8 ticks are simulated again, in steps. Run with `cargo run --release --example rollback_cost`.
 
 use std::time::Duration;
 
@@ -8,11 +8,11 @@ use lockstep2d::fx;
 use lockstep2d::math::Fx;
 use lockstep2d::world::World;
 
-/// How far a rollback goes.
+/// Number of ticks that a rollback simulates again.
 const TICKS: u32 = 8;
 const ROUNDS: u32 = 41;
 
-/// Balls and boxes that are poured into a trough of 40 columns.
+/// Creates balls and boxes that fall into a trough in 40 columns.
 fn pile() -> Result<World, WorldError> {
     let mut world = World::default();
     for (x, y, half_x, half_y) in [(0, -1, 30, 1), (-12, 20, 1, 20), (12, 20, 1, 20)] {
@@ -47,7 +47,7 @@ fn median<T: Ord + Copy>(mut values: Vec<T>) -> T {
     values[values.len() / 2]
 }
 
-/// `part` of `whole` in hundredths.
+/// Ratio of `part` to `whole` in hundredths.
 fn hundredths(part: Duration, whole: Duration) -> u128 {
     part.as_nanos() * 100 / whole.as_nanos().max(1)
 }
@@ -60,7 +60,7 @@ fn main() -> Result<(), WorldError> {
     let (mut steps, mut saves, mut frames) = (Vec::new(), Vec::new(), Vec::new());
     let mut kept = vec![world.save(); 16];
     for _ in 0..ROUNDS {
-        // A tick as it is without late inputs, eight times, remembered as a rollback game does.
+        // Eight ticks without late inputs, each saved as in a game with rollback.
         let (mut step, mut save) = (Duration::ZERO, Duration::ZERO);
         let start = world.save();
         for slot in kept.iter_mut().take(TICKS as usize) {
@@ -72,7 +72,7 @@ fn main() -> Result<(), WorldError> {
         }
         steps.push(step / TICKS);
         saves.push(hundredths(save, step));
-        // The same ticks again, each with its save and hash.
+        // Simulates these ticks again, each with its save and hash.
         let frame = timed(|| {
             world.restore(&start);
             for slot in kept.iter_mut().skip(TICKS as usize) {

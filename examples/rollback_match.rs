@@ -1,4 +1,4 @@
-//! Two players with rollback: late inputs are guessed, and wrong guesses played again.
+//! Two players with rollback: late inputs are predicted, and ticks with wrong predictions are rolled back. Run with
 //! `cargo run --features ggrs --example rollback_match`.
 #![expect(clippy::disallowed_types, reason = "the clock of this process")]
 
@@ -15,7 +15,7 @@ use tug::Tug;
 const TICKS: u64 = 300;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    // With `Udp::bind("0.0.0.0:7000")?` in place of a port, each peer can be a process of its own.
+    // With `Udp::bind("0.0.0.0:7000")?` instead of a port, each peer can be a separate process.
     let network =
         Network::new(Weather { latency: Duration::from_millis(60), loss: 10, ..Weather::default() }, 1);
     let options = Options::rollback();
@@ -32,7 +32,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             while let Some(event) = peer.next_event() {
                 println!("seat {:?}: {event:?}", peer.seat());
             }
-            // Each pushes the ball its own way, now and then.
+            // The players push the ball in opposite directions for one of every two seconds.
             let force = if peer.seat() == Some(0) { 3 } else { -2 };
             let push = if peer.tick() % 120 < 60 { force } else { 0 };
             while peer.is_due() && peer.advance(push)? {}

@@ -1,4 +1,4 @@
-//! Two players, and one who comes later and only watches. `cargo run --features ggrs --example spectator`.
+//! Two players and a spectator that joins late. Run with `cargo run --features ggrs --example spectator`.
 #![expect(clippy::disallowed_types, reason = "the clock of this process")]
 
 mod tug;
@@ -26,7 +26,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             while peer.is_due() && peer.advance(1)? {}
         }
         if peers.len() == 2 && peers[0].tick() >= 120 {
-            // It starts with a state of the match and the inputs since, and catches up.
+            // The spectator receives a state of the match and the inputs since then, and catches up.
             peers.push(Peer::watch(&(), options, network.port(2), 0)?);
         }
         if let [player, _, watcher] = &peers[..]

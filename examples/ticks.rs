@@ -1,4 +1,5 @@
-//! Steps a scene: `ticks SCENE COUNT [scalar|avx2|avx512|neon|simd128]`. What `.ci/instructions` counts the instructions of.
+//! Steps a scene: `ticks SCENE COUNT [scalar|avx2|avx512|neon|simd128]`. `.ci/instructions` counts the instructions of
+//! this program.
 
 use std::process::ExitCode;
 
@@ -20,7 +21,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// Steps the scene that the words name, and tells how it ends.
+/// Steps the scene named by the arguments and returns a summary.
 fn run(words: &[String]) -> Result<String, String> {
     let (name, count, backend) = match words {
         [name, count] => (name, count, Backend::best()),

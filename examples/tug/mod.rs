@@ -1,4 +1,4 @@
-//! The game of the examples: two players push one ball; its distance from the start is what the replay claims.
+//! The game used by the examples: two players push one ball. Its claim is the ball's distance from the start.
 
 use lockstep2d::body::{BodyDef, BodyId, Geometry, ShapeDef, WorldError};
 use lockstep2d::fx;
@@ -21,7 +21,7 @@ impl Tug {
         Ok(Tug { world, ball })
     }
 
-    /// Where the ball is.
+    /// Position of the ball.
     pub(crate) fn position(&self) -> Vec2<Fx> {
         self.world.body(self.ball).map_or(Vec2::ZERO, |body| body.position())
     }
@@ -29,7 +29,7 @@ impl Tug {
 
 impl Game for Tug {
     type Setup = ();
-    /// How hard a player pushes to the right, in N.
+    /// Force with which a player pushes to the right, in N.
     type Input = i8;
     type Save = Snapshot;
 
@@ -49,12 +49,12 @@ impl Game for Tug {
 
     fn step(&mut self, inputs: &[i8]) {
         let force = inputs.iter().map(|&push| Fx::from(push)).sum();
-        // The ball is always there; if it were not, a player could do nothing about it.
+        // The ball always exists, so the command cannot fail.
         let _ = self.world.apply_force(self.ball, Vec2::new(force, fx!(0)), self.position());
         self.world.step();
     }
 
-    /// `ball` never changes, so the state of the world is all there is.
+    /// `ball` never changes, so the world is the complete state.
     fn state_hash(&self) -> StateHash {
         self.world.state_hash()
     }

@@ -1,4 +1,4 @@
-//! Crowds in worlds that find pairs in different ways. See `broad_phases`.
+//! Crowds in worlds with different broad phases. See `broad_phases`.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

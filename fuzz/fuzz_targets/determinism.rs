@@ -1,4 +1,4 @@
-//! Arbitrary scenes and commands: several ways to run them, one course of hashes. See `lockstep`.
+//! Arbitrary scenes and commands, run in several variants that must have equal hashes. See `lockstep`.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -1,4 +1,4 @@
-//! Peers in the middle of a match who get what nobody sent, in bounded memory. See `matches`.
+//! Peers of a running match that receive forged packets, in bounded memory. See `matches`.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
@@ -7,10 +7,10 @@ use lockstep2d_fuzz::{allocations, matches};
 #[global_allocator]
 static ALLOCATOR: allocations::Counting = allocations::Counting;
 
-/// Most bytes at one time: the largest state that one newcomer takes (64 MiB), and little besides.
+/// Maximum memory in bytes: the largest state that one joining peer accepts (64 MiB), plus a little.
 const MEMORY_MAX: usize = 80 << 20;
 
 fuzz_target!(|bytes: &[u8]| {
     let (_, peak) = allocations::peak_of(|| matches::run(bytes));
-    assert!(peak <= MEMORY_MAX, "{peak} bytes at one time");
+    assert!(peak <= MEMORY_MAX, "{peak} bytes at one time, at most {MEMORY_MAX} are allowed");
 });

@@ -1,4 +1,4 @@
-//! Two shapes that jump about each other. See `pairs`.
+//! Two shapes at changing relative positions. See `pairs`.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

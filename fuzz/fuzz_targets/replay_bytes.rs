@@ -1,4 +1,4 @@
-//! Files for the verifier, a few kilobytes each. See `bytes::replay`.
+//! Replay files of a few kilobytes for the verifier. See `bytes::replay`.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
@@ -7,10 +7,10 @@ use lockstep2d_fuzz::{allocations, bytes::replay};
 #[global_allocator]
 static ALLOCATOR: allocations::Counting = allocations::Counting;
 
-/// Most bytes at one time: a world and its scratch, for a file of a few kilobytes.
+/// Maximum memory in bytes: a world and its scratch, for a file of a few kilobytes.
 const MEMORY_MAX: usize = 4 << 20;
 
 fuzz_target!(|bytes: &[u8]| {
     let (_, peak) = allocations::peak_of(|| replay::run(bytes));
-    assert!(peak <= MEMORY_MAX, "{peak} bytes at one time");
+    assert!(peak <= MEMORY_MAX, "{peak} bytes at one time, at most {MEMORY_MAX} are allowed");
 });

@@ -1,4 +1,4 @@
-//! Replays that no recorder has written: a verdict, never `Match`, in bounded time and memory. See `verdicts`.
+//! Forged replays: the verifier must return a verdict other than `Match`, in bounded time and memory. See `verdicts`.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
@@ -7,10 +7,10 @@ use lockstep2d_fuzz::{allocations, verdicts};
 #[global_allocator]
 static ALLOCATOR: allocations::Counting = allocations::Counting;
 
-/// Most bytes that a file within the limits may make the verifier and the recorder allocate.
+/// Maximum bytes that the verifier and the recorder may allocate for a file within the limits.
 const MEMORY_MAX: usize = 256 << 20;
 
 fuzz_target!(|bytes: &[u8]| {
     let (_, peak) = allocations::peak_of(|| verdicts::run(bytes));
-    assert!(peak <= MEMORY_MAX, "{peak} bytes at one time");
+    assert!(peak <= MEMORY_MAX, "{peak} bytes at one time, at most {MEMORY_MAX} are allowed");
 });

@@ -1,4 +1,4 @@
-//! Files for the comparison of reports, a few kilobytes each. See `bytes::report`.
+//! Report files of a few kilobytes for the comparison. See `bytes::report`.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
@@ -7,10 +7,10 @@ use lockstep2d_fuzz::{allocations, bytes::report};
 #[global_allocator]
 static ALLOCATOR: allocations::Counting = allocations::Counting;
 
-/// Most bytes at one time: some worlds and their scratch, for a file of a few kilobytes.
+/// Maximum memory in bytes: some worlds and their scratch, for a file of a few kilobytes.
 const MEMORY_MAX: usize = 8 << 20;
 
 fuzz_target!(|bytes: &[u8]| {
     let (_, peak) = allocations::peak_of(|| report::run(bytes));
-    assert!(peak <= MEMORY_MAX, "{peak} bytes at one time");
+    assert!(peak <= MEMORY_MAX, "{peak} bytes at one time, at most {MEMORY_MAX} are allowed");
 });

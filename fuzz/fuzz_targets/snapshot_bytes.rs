@@ -1,4 +1,4 @@
-//! Bytes for worlds, a few kilobytes each. See `bytes::snapshot`.
+//! Snapshot files of a few kilobytes. See `bytes::snapshot`.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
@@ -7,10 +7,10 @@ use lockstep2d_fuzz::{allocations, bytes::snapshot};
 #[global_allocator]
 static ALLOCATOR: allocations::Counting = allocations::Counting;
 
-/// Most bytes at one time: two worlds and their scratch, for a file of a few kilobytes.
+/// Maximum memory in bytes: two worlds and their scratch, for a file of a few kilobytes.
 const MEMORY_MAX: usize = 4 << 20;
 
 fuzz_target!(|bytes: &[u8]| {
     let (_, peak) = allocations::peak_of(|| snapshot::run(bytes));
-    assert!(peak <= MEMORY_MAX, "{peak} bytes at one time");
+    assert!(peak <= MEMORY_MAX, "{peak} bytes at one time, at most {MEMORY_MAX} are allowed");
 });

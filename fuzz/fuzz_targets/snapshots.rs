@@ -1,4 +1,4 @@
-//! Bytes of worlds that no world has written: an error, or a world that lives on. See `snapshots`.
+//! Forged snapshots: reading must return an error or a world that can be stepped. See `snapshots`.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -1,5 +1,6 @@
-//! Broad phases side by side: worlds that differ in how pairs are found have equal states, events and numbers of pairs.
-//! Crowds that come, go, jump and change size, so that trees are rebuilt and lists are sorted anew.
+//! Compares broad phases: worlds that differ only in their broad phase must have equal states, events and numbers of
+//! pairs. The worlds contain crowds of bodies that are spawned, despawned, teleported and resized, so that trees are
+//! rebuilt and lists are sorted again.
 
 use lockstep2d::body::{BodyDef, BodyId, BodyKind, Geometry, ShapeDef};
 use lockstep2d::collision::BroadPhaseKind;
@@ -11,12 +12,12 @@ use crate::generator::{self, Generator};
 use crate::shapes;
 use crate::source::Source;
 
-/// Most work of a run, as [`generator::cost`] counts it.
+/// Maximum cost of a run, as counted by [`generator::cost`].
 const COST_MAX: u64 = 120_000;
-/// Most shapes: brute force compares each with each.
+/// Maximum number of shapes, because brute force compares every shape with every other.
 const SHAPES_MAX: usize = 600;
 
-/// Runs the crowd that the bytes describe. Says how many pairs it has seen.
+/// Runs the crowd that the bytes describe. Returns the number of pairs, summed over the ticks.
 ///
 /// # Panics
 /// When the worlds differ.
@@ -45,7 +46,7 @@ pub fn run(bytes: &[u8]) -> u64 {
                 assert_eq!(world.execute(command), outcome, "{command:?}");
             }
         }
-        // The last one changes its mind.
+        // The last world switches between broad phases.
         if source.one_in(4) {
             let kinds = [BroadPhaseKind::Tree, BroadPhaseKind::SweepAndPrune, BroadPhaseKind::BruteForce];
             worlds[3].set_broad_phase(source.pick(&kinds));
@@ -68,10 +69,10 @@ pub fn run(bytes: &[u8]) -> u64 {
     pairs
 }
 
-/// Many bodies for few bytes.
+/// A crowd of many bodies from few bytes of input.
 struct Crowd {
     rng: Rng,
-    /// How far it is spread.
+    /// Half the width of the area in which bodies are placed.
     reach: Fx,
     shape: ShapeDef,
     kind: BodyKind,
@@ -84,7 +85,7 @@ impl Crowd {
             1 => ShapeDef::new(Geometry::Circle { radius: source.thousandths(2, 3000) }),
             _ => shapes::calm_shape(source),
         };
-        // Who only notices others is no work for the solver.
+        // Sensors cost the solver no work.
         shape.sensor = source.one_in(2);
         let reaches = [fx!(10), fx!(3), fx!(30), fx!(300), fx!(100000), fx!(1000000000)];
         let kind = source.pick(&[BodyKind::Dynamic, BodyKind::Dynamic, BodyKind::Kinematic, BodyKind::Fixed]);
@@ -131,7 +132,7 @@ impl Crowd {
         commands
     }
 
-    /// A command for one of so many bodies.
+    /// Adds a command for one in `one_of` bodies, chosen at random.
     fn each(
         &mut self,
         world: &World,
@@ -161,7 +162,7 @@ impl Crowd {
         let reach = self.reach;
         let mut position = Vec2::new(self.rng.range(-reach, reach), self.rng.range(-reach, reach));
         if self.rng.chance(1, 8) {
-            // In lines and columns, where boxes have equal ends.
+            // Places bodies in rows and columns, so that boxes share bounds.
             position = Vec2::new(self.rng.range(fx!(-4), fx!(4)).round(), position.y.round());
         }
         Place { position, angle: if self.rng.chance(1, 2) { self.rng.angle() } else { Default::default() } }

@@ -1,6 +1,7 @@
-//! Ordinary scenes: moderate sizes, masses and speeds; piles, containers, drums and chains, in which much touches
-//! and nothing should reach a clamp. One in five hundred does; those looked at all have joints. A chain that is spawned
-//! across a pile has boxes wedged between its links, and joints and contacts cannot both have their way.
+//! Ordinary scenes: moderate sizes, masses and speeds; piles, containers, drums and chains, with many contacts and no
+//! values that should reach a clamp. One scene in five hundred reaches a clamp nevertheless. All such scenes that were
+//! examined have joints: a chain spawned across a pile has boxes wedged between its links, so that its joints and
+//! contacts contradict each other.
 
 use lockstep2d::body::{BodyDef, BodyId, BodyKind, Geometry, ShapeDef};
 use lockstep2d::fx;
@@ -13,10 +14,10 @@ use crate::shapes::{calm_chain, calm_shape, half_extents};
 use crate::source::Source;
 use crate::{joints, settings};
 
-/// Where the floor is, below the middle of the scene.
+/// Height of the floor, relative to the centre of the scene.
 const FLOOR: Fx = fx!(-1);
 
-/// Settings that a game would choose.
+/// Typical settings of a game.
 pub fn config(source: &mut Source<'_>) -> Config {
     let mut config = Config { tick_rate: source.pick(&[60, 60, 60, 30, 120]), ..Config::default() };
     config.solver.sub_steps = source.pick(&[4, 4, 4, 8, 2]);
@@ -38,7 +39,7 @@ pub fn config(source: &mut Source<'_>) -> Config {
     config
 }
 
-/// Something to stand on, a pile on it, and perhaps another or a chain.
+/// Adds ground, a pile on it, and sometimes another pile or a chain.
 pub fn setup(source: &mut Source<'_>, middle: Vec2<Fx>, commands: &mut Vec<Command>) {
     ground(source, middle, commands);
     pile(source, middle, commands);
@@ -75,7 +76,7 @@ fn ground(source: &mut Source<'_>, middle: Vec2<Fx>, commands: &mut Vec<Command>
             spawn(fixed, &[line((fx!(-8), slope), (fx!(0), fx!(0))), line((fx!(0), fx!(0)), (fx!(8), slope))])
         }
         _ => {
-            // A drum: four walls that turn about the point three metres above the floor.
+            // A drum: four walls that rotate about a point three metres above the floor.
             let (lying, standing) = ((fx!(4), fx!(0.25)), (fx!(0.25), fx!(4)));
             let walls = [
                 rectangle(lying, fx!(0), fx!(-3.25)),
@@ -89,7 +90,7 @@ fn ground(source: &mut Source<'_>, middle: Vec2<Fx>, commands: &mut Vec<Command>
     });
 }
 
-/// A floor whose surface runs, a platform that lets things pass from below, and a sensor around both.
+/// A floor with a conveyor surface, a one-way platform that lets bodies pass from below, and a sensor around both.
 fn belt(source: &mut Source<'_>) -> [ShapeDef; 3] {
     let floor = rectangle((fx!(8), fx!(0.5)), fx!(0), fx!(-0.5));
     let platform = rectangle((fx!(1.5), fx!(0.1)), source.thousandths(-2000, 2000), fx!(1.5));
@@ -100,7 +101,7 @@ fn belt(source: &mut Source<'_>) -> [ShapeDef; 3] {
     ]
 }
 
-/// Equal bodies in rows, next to each other or a little apart.
+/// Adds equal bodies in rows, next to each other or slightly apart.
 pub(crate) fn pile(source: &mut Source<'_>, middle: Vec2<Fx>, commands: &mut Vec<Command>) {
     let shape = calm_shape(source);
     let count = source.pick(&[12, 8, 16, 14, 10, 12, 20, 28]);
@@ -116,7 +117,7 @@ pub(crate) fn pile(source: &mut Source<'_>, middle: Vec2<Fx>, commands: &mut Vec
     let corner =
         middle + Vec2::new(source.thousandths(-2000, 0), FLOOR + source.pick(&[fx!(0), fx!(0.5), fx!(2)]));
     let asleep = source.one_in(6);
-    // Half a second of rest is much of a short scene.
+    // The half second that bodies need to fall asleep is a large part of a short scene, so some get a high sleep speed.
     let sleep_speed = source.pick(&[fx!(0.05), fx!(0.5), fx!(2)]);
     for index in 0..count {
         let (column, row) = (Fx::from(index % columns), Fx::from(index / columns));
@@ -132,7 +133,7 @@ pub(crate) fn pile(source: &mut Source<'_>, middle: Vec2<Fx>, commands: &mut Vec
     }
 }
 
-/// Bodies hinged to each other, the first one perhaps to the ground.
+/// Adds bodies joined in a chain, whose first one is usually joined to the ground.
 fn chain(source: &mut Source<'_>, middle: Vec2<Fx>, commands: &mut Vec<Command>) {
     let slot = |commands: &[Command]| {
         let spawned = commands.iter().filter(|command| matches!(command, Command::Spawn { .. })).count();
@@ -160,7 +161,7 @@ fn chain(source: &mut Source<'_>, middle: Vec2<Fx>, commands: &mut Vec<Command>)
     }
 }
 
-/// A moderate change.
+/// Adds a moderate change.
 pub fn command(
     source: &mut Source<'_>,
     world: &World,
@@ -224,7 +225,7 @@ pub fn command(
     });
 }
 
-/// A joint between a body and the next one, at the point between them.
+/// A joint between a body and the next one, anchored at the point between them.
 fn neighbours(source: &mut Source<'_>, world: &World, body: BodyId) -> Option<JointDef> {
     let (other, there) = world.bodies().find(|(id, _)| id.index() > body.index())?;
     let here = world.body(body)?;
@@ -233,12 +234,12 @@ fn neighbours(source: &mut Source<'_>, world: &World, body: BodyId) -> Option<Jo
     let (a, b) = (anchor(here), anchor(there));
     let mut joint =
         JointDef::new(body, other, joints::calm_kind(source)).anchor_a(a.x, a.y).anchor_b(b.x, b.y);
-    // So that what holds the angle has nothing to correct.
+    // The rest angle is the current one, so that joints that hold the angle have nothing to correct.
     joint.frame_b.angle = here.angle() - there.angle();
     Some(joints::finish(source, joint))
 }
 
-/// Another way of taking part in the simulation.
+/// Changes how a body, shape or joint takes part in the simulation.
 fn change(source: &mut Source<'_>, world: &World, body: BodyId, commands: &mut Vec<Command>) {
     let here = world.body(body).map_or(Vec2::ZERO, |body| body.position());
     let some_shape = world.body(body).and_then(|body| body.shapes().first());

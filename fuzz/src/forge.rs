@@ -1,12 +1,12 @@
-//! A forger: takes a replay apart by `docs/FORMAT.md`, changes it and puts it together again with all checksums
-//! and the chain hash repaired.
+//! A replay forger: takes a replay apart according to `docs/FORMAT.md`, changes it and puts it together again with all
+//! checksums and the chain hash repaired.
 
 use lockstep2d::hash::StateHash;
 
 use crate::source::Source;
 
 const TRAILER: u8 = 3;
-/// Where the trailer's payload holds the chain hash.
+/// Position of the chain hash in the trailer's payload.
 const CHAIN: std::ops::Range<usize> = 24..40;
 
 /// The parts of a replay, without checksums.
@@ -17,7 +17,7 @@ pub struct Forged {
 }
 
 impl Forged {
-    /// Takes apart a replay that a recorder has written.
+    /// Takes apart a replay written by a recorder.
     ///
     /// # Panics
     /// For any other bytes.
@@ -36,7 +36,7 @@ impl Forged {
         Forged { header, blocks }
     }
 
-    /// The file with every checksum and the chain hash repaired.
+    /// Puts the file together with all checksums and the chain hash repaired.
     #[must_use]
     pub fn put_together(&self) -> Vec<u8> {
         let mut file = self.header.clone();
@@ -57,7 +57,7 @@ impl Forged {
         file
     }
 
-    /// Changes one thing.
+    /// Makes one change.
     pub fn change(&mut self, source: &mut Source<'_>) {
         let index = source.below(self.blocks.len());
         match source.below(8) {
@@ -81,7 +81,7 @@ impl Forged {
     }
 }
 
-/// Makes the checksums and the chain hash right of whatever bytes are laid out like a replay.
+/// Corrects the checksums and the chain hash of any bytes with the structure of a replay.
 pub fn repair(file: &mut Vec<u8>) {
     let length = |file: &[u8], at: usize| {
         let bytes = file.get(at..at + 4)?.first_chunk()?;
@@ -112,7 +112,7 @@ pub fn repair(file: &mut Vec<u8>) {
     }
 }
 
-/// Changes, adds, removes or copies a few bytes.
+/// Changes, inserts, removes or copies a few bytes.
 pub fn mutate(source: &mut Source<'_>, bytes: &mut Vec<u8>) {
     let at = source.below(bytes.len());
     match source.below(7) {
@@ -120,7 +120,7 @@ pub fn mutate(source: &mut Source<'_>, bytes: &mut Vec<u8>) {
         0 => bytes[at] ^= 1 << source.below(8),
         1 => bytes[at] = source.byte(),
         2 => {
-            // A number at an edge of its range, as wide as any field.
+            // Writes a number near a limit, in the width of a field.
             let number = source.edge().to_bits().to_le_bytes();
             let width = source.pick(&[8, 4, 2]).min(bytes.len() - at);
             bytes[at..at + width].copy_from_slice(&number[..width]);

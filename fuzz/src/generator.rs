@@ -1,7 +1,7 @@
-//! Scenes and what is done to them: settings, and commands for a world as it is at the moment.
+//! Generates scenes: settings, and commands for the current state of a world.
 //!
-//! Three of four scenes are ordinary ones ([`crate::calm`]). The others, made here, are wild: everything may be at
-//! or beyond its limits. Most bodies are small and close together, so that most of them really touch.
+//! Three of four scenes are ordinary ones ([`crate::calm`]). The others, made here, are wild: everything may be at or
+//! beyond its limits. Most bodies are small and close together, so that most of them touch.
 
 use lockstep2d::body::{BodyDef, BodyId, JointId, ShapeDef, ShapeId, WORLD_EXTENT_MAX};
 use lockstep2d::math::{Fx, Rng, Vec2};
@@ -12,18 +12,18 @@ use lockstep2d::{codec, fx};
 use crate::source::Source;
 use crate::{calm, joints, settings, shapes};
 
-/// Generates commands, and remembers handles that have gone stale.
+/// Generates commands, and keeps handles that have become stale.
 pub struct Generator {
-    /// What the scene is built around.
+    /// Centre of the scene.
     middle: Vec2<Fx>,
-    /// Whether nobody does anything for most of the time, so that much falls asleep.
+    /// Whether most ticks have no commands, so that many bodies fall asleep.
     lulls: bool,
     bodies: Vec<BodyId>,
     shapes: Vec<ShapeId>,
     joints: Vec<JointId>,
 }
 
-/// Decides whether the scene is an ordinary one, and its settings, mostly valid ones.
+/// Decides whether the scene is an ordinary one, and its settings, which are mostly valid.
 pub fn config(source: &mut Source<'_>) -> Config {
     let calm = !source.one_in(4);
     source.set_calm(calm);
@@ -84,10 +84,10 @@ fn wild_config(source: &mut Source<'_>) -> Config {
 }
 
 impl Generator {
-    /// A generator for a new scene.
+    /// Creates a generator for a new scene.
     pub fn new(source: &mut Source<'_>) -> Self {
         let edge = WORLD_EXTENT_MAX - fx!(3);
-        // At the edge of the world bodies are clamped, which counts as a fault.
+        // Bodies are clamped at the edge of the world, which counts as a fault.
         let places = [Fx::ZERO, Fx::ZERO, Fx::ZERO, fx!(1000000000), edge, -edge];
         let far = source.pick(if source.is_calm() { &places[..4] } else { &places });
         let middle = Vec2::new(far, if source.one_in(2) { far } else { Fx::ZERO });
@@ -95,7 +95,7 @@ impl Generator {
         Generator { middle, lulls, bodies: Vec::new(), shapes: Vec::new(), joints: Vec::new() }
     }
 
-    /// What the scene starts with: mostly a floor and a heap of bodies, often with an ordinary pile among them.
+    /// The commands of the first tick: mostly a floor and a heap of bodies, often with an ordinary pile.
     pub fn setup(&mut self, source: &mut Source<'_>) -> Vec<Command> {
         let mut commands = Vec::new();
         if source.is_calm() {
@@ -122,7 +122,7 @@ impl Generator {
         commands
     }
 
-    /// Commands for a tick.
+    /// The commands of a tick.
     pub fn tick(&mut self, source: &mut Source<'_>, world: &World) -> Vec<Command> {
         let mut commands = Vec::new();
         if self.lulls && world.tick() % 64 >= 12 {
@@ -154,7 +154,7 @@ impl Generator {
             10..=17 => self.push(source, body),
             18 => Command::SetGravity { gravity: source.mostly_vec(-30_000, 30_000) },
             19 | 20 => {
-                // What a kinematic body can reach within a tick.
+                // A target that a kinematic body can reach within a tick.
                 let here = world.body(body).map_or(self.middle, |body| body.position());
                 let reach = if source.one_in(6) { 20_000 } else { 300 };
                 let position = here + source.mostly_vec(-reach, reach);
@@ -179,7 +179,7 @@ impl Generator {
         });
     }
 
-    /// Forces, velocities and places.
+    /// A force, impulse, velocity or position.
     fn push(&self, source: &mut Source<'_>, body: BodyId) -> Command {
         let place = |source: &mut Source<'_>| {
             if source.one_in(12) { source.mostly_vec(-5000, 5000) } else { self.near(source, 3000) }
@@ -219,7 +219,7 @@ impl Generator {
         self.middle + Vec2::new(source.thousandths(-reach, reach), source.thousandths(-reach, reach))
     }
 
-    /// Many bodies of a kind at once, for few bytes: at one point, or scattered around it.
+    /// Adds many equal bodies, for few bytes of input: at one point, or scattered around it.
     fn heap(&self, source: &mut Source<'_>, commands: &mut Vec<Command>) {
         let count = source.pick(&[12, 5, 20, 14, 3, 16, 8, 12, 1, 12, 18, 16, 10, 14, 40, 80]);
         let asleep = source.one_in(6);
@@ -296,7 +296,7 @@ impl Generator {
         Command::AddJointEach { joint, ends }
     }
 
-    /// Something else about a joint: rarely its bodies, which is refused.
+    /// A changed joint: rarely other bodies, which is refused.
     fn altered_joint(&mut self, source: &mut Source<'_>, world: &World) -> Command {
         let joint = self.joint(source, world);
         let mut def = self.joint_def(source, world);
@@ -310,7 +310,7 @@ impl Generator {
         Command::SetJoint { joint, def }
     }
 
-    /// Mostly a body that is there, sometimes one that has been, sometimes one that never was.
+    /// A body: mostly an existing one, sometimes a despawned one, sometimes a handle that was never valid.
     fn body(&mut self, source: &mut Source<'_>, world: &World) -> BodyId {
         let present: Vec<BodyId> = world.bodies().map(|(id, _)| id).collect();
         handle(source, &present, &mut self.bodies)
@@ -327,7 +327,7 @@ impl Generator {
     }
 }
 
-/// A shape of which one thing is different, or all.
+/// A shape with one property changed, or all.
 fn altered_shape(source: &mut Source<'_>, world: &World, shape: ShapeId) -> ShapeDef {
     let fresh = shapes::shape(source);
     let Some(mut def) = world.shape(shape).map(|shape| *shape.def()) else { return fresh };
@@ -362,7 +362,7 @@ fn handle<H: Copy + serde_handle::Handle>(source: &mut Source<'_>, present: &[H]
     chosen
 }
 
-/// Handles from bytes, as they come in a file.
+/// Handles decoded from bytes, as in a file.
 pub(crate) mod serde_handle {
     use super::{BodyId, JointId, ShapeId, codec};
 
@@ -382,7 +382,7 @@ pub(crate) mod serde_handle {
     of_bytes!(BodyId, ShapeId, JointId);
 }
 
-/// How much a tick of a world costs, roughly: what keeps a fuzzed scene from running for minutes.
+/// Approximate cost of a tick of a world, used to keep a fuzzed scene from running for minutes.
 #[must_use]
 pub fn cost(world: &World) -> u64 {
     let solver = world.config().solver;

@@ -1,5 +1,5 @@
-//! Packets that a peer might send who knows all that is said in a match: any packet with fields that are right,
-//! nearly right, or at an edge of their range.
+//! Forges packets of an attacker that can read all packets of a match: any packet with fields that are correct, nearly
+//! correct, or at a limit of their range.
 
 use std::collections::VecDeque;
 
@@ -11,14 +11,14 @@ use crate::forge::mutate;
 use crate::source::Source;
 use crate::wire::{Body, Input, Message, Packet, Plan, Refused};
 
-/// The address of nobody.
+/// An address that no peer has.
 pub const STRANGER: u32 = 9;
-/// How many packets, and how many numbers of a kind, are remembered.
+/// Maximum numbers of packets, and of values of each kind, that are kept.
 const PACKETS: usize = 64;
 const NUMBERS: usize = 8;
 const EDGES: [u64; 8] = [0, 1, u64::MAX, u64::MAX - 1, 1 << 63, (1 << 63) - 1, 1 << 32, (1 << 31) - 1];
 
-/// What somebody has heard who hears everything.
+/// Values seen by an eavesdropper that reads all packets.
 #[derive(Debug, Default)]
 pub struct Known {
     /// The last packets: sender, receiver, bytes.
@@ -30,7 +30,7 @@ pub struct Known {
     frames: Vec<i32>,
     pings: Vec<u128>,
     words: Vec<u32>,
-    /// Senders of GGRS's messages, and how they sign.
+    /// Senders of GGRS messages, with their magic numbers.
     magics: Vec<(u32, u16)>,
     terms: Vec<Terms>,
 }
@@ -45,7 +45,7 @@ fn note<T: PartialEq>(list: &mut Vec<T>, value: T) {
 }
 
 impl Known {
-    /// Hears a packet.
+    /// Records a packet.
     pub fn hear(&mut self, from: u32, to: u32, bytes: &[u8]) {
         if self.packets.len() == PACKETS {
             self.packets.pop_front();
@@ -90,20 +90,20 @@ impl Known {
     }
 }
 
-/// Makes packets from what is known.
+/// Makes packets from recorded values.
 pub struct Forger<'a, 'b> {
-    /// Decides.
+    /// Source of decisions.
     pub source: &'a mut Source<'b>,
-    /// What is known.
+    /// The recorded values.
     pub known: &'a Known,
-    /// In whose name.
+    /// The claimed sender.
     pub from: u32,
-    /// For whom.
+    /// The receiver.
     pub to: u32,
 }
 
 impl Forger<'_, '_> {
-    /// One that is known, mostly the newest.
+    /// A recorded value, mostly one of the newest.
     fn recall<T: Clone>(&mut self, list: &[T]) -> Option<T> {
         let back = self.source.below(list.len().min(3)) + 1;
         if self.source.one_in(10) { None } else { list.get(list.len().checked_sub(back)?).cloned() }
@@ -145,7 +145,7 @@ impl Forger<'_, '_> {
         }
     }
 
-    /// A state of the game and its hash.
+    /// A state of the game.
     fn state(&mut self) -> u64 {
         self.source.below(3) as u64
     }
@@ -263,7 +263,7 @@ impl Forger<'_, '_> {
         Packet::Inputs { nonce, from: self.tick(), ticks: inputs, committed: self.tick() }
     }
 
-    /// A message of GGRS: one that was heard, with some fields changed, or a new one.
+    /// Any GGRS message, possibly with changed bytes.
     fn message(&mut self) -> Vec<u8> {
         let magics = self.known.magics.iter().rev();
         let magic = magics.filter(|(from, _)| *from == self.from).map(|(_, magic)| *magic).next();
@@ -307,7 +307,7 @@ impl Forger<'_, '_> {
         input
     }
 
-    /// The last inputs that were said in this name to this peer.
+    /// The last inputs sent from the claimed sender to the receiver.
     fn heard_input(&self) -> Option<Input> {
         let way = |packet: &&(u32, u32, Vec<u8>)| (packet.0, packet.1) == (self.from, self.to);
         self.known.packets.iter().rev().filter(way).find_map(|(_, _, bytes)| {
@@ -319,7 +319,7 @@ impl Forger<'_, '_> {
         })
     }
 
-    /// Inputs of some frames: a run of zeros or ones, or as many of some length, not compressed.
+    /// Encoded inputs of some frames: a run of zeros or ones, or uncompressed inputs of some length.
     fn frames(&mut self) -> Vec<u8> {
         if self.source.one_in(3) {
             let length =
@@ -337,7 +337,7 @@ impl Forger<'_, '_> {
     }
 }
 
-/// Seven bits a byte, the lowest first.
+/// Encodes seven bits per byte, lowest bits first.
 fn varint(mut value: usize) -> Vec<u8> {
     let mut bytes = Vec::new();
     while value >= 128 {

@@ -1,4 +1,5 @@
-//! Hulls of points, against the slow definition: an edge is a pair of points that has all others to its left.
+//! Compares hulls with a slow implementation of the definition: an edge is a pair of points with all others to its
+//! left.
 
 use lockstep2d::body::{Polygon, SHAPE_EXTENT_MAX};
 use lockstep2d::math::{Fx, Length, Rng, Vec2};
@@ -7,15 +8,15 @@ use num_traits::Signed;
 
 use crate::source::Source;
 
-/// Shortest edge, in units of `Length`: half a millimetre.
+/// Minimum length of an edge, in units of `Length`: half a millimetre.
 const EDGE_MIN: i64 = (1 << 22) / 2000;
 
 type Point = Vec2<Length>;
 
-/// Makes a hull of some points. Says whether there is one.
+/// Makes the hull of some points. Returns whether there is one.
 ///
 /// # Panics
-/// When it is not the hull, when the order of the points or their number matters, or when one that is valid is refused.
+/// When it is not the hull, when the order or repetition of the points matters, or when a valid hull is refused.
 pub fn run(bytes: &[u8]) -> bool {
     let mut source = Source::new(bytes);
     let points = points(&mut source);
@@ -24,27 +25,34 @@ pub fn run(bytes: &[u8]) -> bool {
     let mut others = points.clone();
     Rng::new(source.word()).shuffle(&mut others);
     others.extend_from_slice(&points[..source.below(points.len() + 1)]);
-    // Of several faults, the first is told.
-    assert_eq!(found.as_ref().ok(), Polygon::hull(&others).as_ref().ok(), "the order of the points matters");
+    // Of several errors only the first is reported, and it may depend on the order, so only hulls are compared.
+    assert_eq!(
+        found.as_ref().ok(),
+        Polygon::hull(&others).as_ref().ok(),
+        "the hull must not depend on the order of the points"
+    );
     let in_range = |value: Fx| (-SHAPE_EXTENT_MAX..=SHAPE_EXTENT_MAX).contains(&value);
     let legal = points.iter().all(|point| in_range(point.x) && in_range(point.y));
     let corners = if legal { slow_hull(&narrow) } else { Vec::new() };
     let Ok(hull) = found else {
         let valid = (3..=8).contains(&corners.len()) && corners.iter().all(|(a, b)| length_is_legal(*a, *b));
-        assert!(!valid, "a hull of {points:?} is refused: {found:?}");
+        assert!(!valid, "a valid hull of {points:?} is refused: {found:?}");
         return false;
     };
-    assert!(legal, "points out of range: {points:?}");
+    assert!(legal, "points out of range are accepted: {points:?}");
     let vertices = hull.vertices();
     assert_eq!(vertices.len(), corners.len(), "the hull of {points:?}");
     for (at, &vertex) in vertices.iter().enumerate() {
         let next = vertices[(at + 1) % vertices.len()];
-        assert!(corners.contains(&(vertex, next)), "{vertex:?} to {next:?} is no edge of {points:?}");
+        assert!(
+            corners.contains(&(vertex, next)),
+            "{vertex:?} to {next:?} is not an edge of the hull of {points:?}"
+        );
         assert_normal(hull.normals()[at], vertex, next);
     }
     let wide: Vec<_> = vertices.iter().map(|vertex| vertex.widen()).collect();
-    assert_eq!(Polygon::new(&wide), Ok(hull), "a hull is a polygon");
-    assert_eq!(Polygon::hull(&wide), Ok(hull), "a hull is its own hull");
+    assert_eq!(Polygon::new(&wide), Ok(hull), "the vertices of a hull make the same polygon");
+    assert_eq!(Polygon::hull(&wide), Ok(hull), "the hull of a hull's vertices is the same hull");
     true
 }
 
@@ -57,12 +65,12 @@ fn points(source: &mut Source<'_>) -> Vec<Vec2<Fx>> {
             0 => Vec2::new(Fx::from(source.below(4) as i32), Fx::from(source.below(4) as i32)),
             1 => source.mostly_vec(-reach, reach),
             2 => {
-                // About a circle.
+                // Points on a circle.
                 let turned = lockstep2d::math::Rot::from_angle(source.angle());
                 turned.apply_wide(Vec2::new(lockstep2d::math::ratio(reach, 1000), Fx::ZERO))
             }
             _ => {
-                // Next to a line.
+                // Points next to a line.
                 let along = source.thousandths(-reach, reach);
                 Vec2::new(along, along + Fx::from_bits(i64::from(source.byte()) << 8))
             }
@@ -75,7 +83,7 @@ fn cross(a: Point, b: Point, c: Point) -> BigInt {
     difference(a.x, b.x) * difference(a.y, c.y) - difference(a.y, b.y) * difference(a.x, c.x)
 }
 
-/// The edges of the hull: all points are to the left of each, or on it.
+/// The edges of the hull: all points are to the left of each edge, or on it.
 fn slow_hull(points: &[Point]) -> Vec<(Point, Point)> {
     let mut edges = Vec::new();
     for &a in points {
@@ -97,14 +105,14 @@ fn is_between(c: Point, a: Point, b: Point) -> bool {
     (low.x..=high.x).contains(&c.x) && (low.y..=high.y).contains(&c.y)
 }
 
-/// The length as it is rounded is at least the smallest.
+/// Whether the rounded length of an edge is at least the minimum.
 fn length_is_legal(a: Point, b: Point) -> bool {
     let difference = |from: Length, to: Length| BigInt::from(to.to_bits()) - from.to_bits();
     let square = difference(a.x, b.x).pow(2) + difference(a.y, b.y).pow(2);
     square > BigInt::from(EDGE_MIN + 1).pow(2)
 }
 
-/// Across the edge, to its right, within the rounding of a unit vector.
+/// Checks that a normal is perpendicular to its edge within the rounding of a unit vector, and points to the right.
 fn assert_normal(normal: Vec2<lockstep2d::math::Unit>, a: Point, b: Point) {
     let (x, y) = (BigInt::from(normal.x.to_bits()), BigInt::from(normal.y.to_bits()));
     let (dx, dy) = (BigInt::from(b.x.to_bits()) - a.x.to_bits(), BigInt::from(b.y.to_bits()) - a.y.to_bits());

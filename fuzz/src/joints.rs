@@ -1,4 +1,4 @@
-//! Joints of every kind: mostly with moderate limits, drives and springs, sometimes beyond what is allowed.
+//! Generates joints of every kind: mostly with moderate limits, drives and springs, sometimes beyond what is allowed.
 
 use lockstep2d::body::BodyId;
 use lockstep2d::fx;
@@ -25,7 +25,7 @@ pub fn joint(source: &mut Source<'_>, a: BodyId, b: BodyId) -> JointDef {
     finish(source, def)
 }
 
-/// What has nothing to do with the kind: thresholds, and whether the bodies collide.
+/// Sets the properties that all kinds share: thresholds, and whether the bodies collide.
 pub fn finish(source: &mut Source<'_>, mut def: JointDef) -> JointDef {
     def.collide_connected = source.one_in(2);
     if source.one_in(4) {
@@ -39,7 +39,7 @@ pub fn finish(source: &mut Source<'_>, mut def: JointDef) -> JointDef {
     def
 }
 
-/// What joins them.
+/// A joint kind with its parameters, valid or not.
 pub fn kind(source: &mut Source<'_>) -> JointKind {
     match source.below(9) {
         0 | 1 => Revolute { limit: limit(source), motor: drive(source), spring: spring(source) }.into(),
@@ -61,7 +61,7 @@ fn limit(source: &mut Source<'_>) -> Option<Limit> {
     })
 }
 
-/// A force or torque up to which something pushes.
+/// A maximum force or torque.
 fn most(source: &mut Source<'_>) -> Fx {
     match source.below(4) {
         0 => Fx::MAX,
@@ -125,7 +125,7 @@ fn motor(source: &mut Source<'_>) -> Motor {
     joint
 }
 
-/// A joint of bodies that are next to each other, with anchors at one point. Each kind holds or moves them gently.
+/// A joint kind for neighbouring bodies with anchors at the same point. Each kind holds or moves them gently.
 pub fn calm_kind(source: &mut Source<'_>) -> JointKind {
     let strength = source.thousandths(1000, 20_000);
     let speed = source.thousandths(-3000, 3000);

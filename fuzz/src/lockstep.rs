@@ -1,5 +1,5 @@
-//! One scene run in ways that must not differ: as it is and rolled back, and beside it in another way: with another
-//! broad phase, through bytes or without caches, or with another broad phase and one of these.
+//! Runs one scene in variants that must not differ: a plain world that is rolled back once, and a second world with
+//! another broad phase, reloaded from bytes, or without caches, or with another broad phase and one of the latter two.
 
 use std::sync::Mutex;
 
@@ -10,47 +10,47 @@ use lockstep2d::world::{Command, Events, Motion, Snapshot, World};
 use crate::generator::{self, Generator};
 use crate::source::Source;
 
-/// Most work of a run, as [`generator::cost`] counts it: some three times that of an ordinary one.
+/// Maximum cost of a run, as counted by [`generator::cost`]: about three times the cost of an ordinary run.
 const COST_MAX: u64 = 60_000;
-/// Ticks after which a state is left for good at the latest, or returned to.
+/// Maximum depth of the rollback, in ticks.
 const ROLLBACK_MAX: usize = 30;
-/// Every how many ticks the invariants are checked, besides after commands and at the end: they are most of the work
-/// in a small world, and what breaks one of them stays broken.
+/// Interval in ticks of the invariant checks, in addition to those after commands and at the end. The checks are most
+/// of the work in a small world, and a broken invariant stays broken.
 const CHECK_INTERVAL: u64 = 8;
 
-/// What a run has seen.
+/// Statistics of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Seen {
     /// Ticks simulated.
     pub ticks: u64,
     /// Touching contacts, summed over the ticks.
     pub touching: u64,
-    /// Most touching contacts at the end of a tick.
+    /// Maximum number of touching contacts at the end of a tick.
     pub most_touching: u64,
-    /// Commands carried out.
+    /// Commands executed.
     pub done: u64,
     /// Commands refused.
     pub refused: u64,
-    /// Clamps of the solver.
+    /// Faults: values clamped by the solver.
     pub faults: u64,
     /// Bodies that fell asleep.
     pub slept: u64,
-    /// Shapes that sensors noticed.
+    /// Shapes detected by sensors.
     pub noticed: u64,
-    /// Hits, and joints above their threshold.
+    /// Hit events, and events of joints above their threshold.
     pub hits: u64,
-    /// Whether the scene is an ordinary one, which should have none.
+    /// Whether the scene is an ordinary one, which should have no faults.
     pub calm: bool,
 }
 
-/// A way of running that must make no difference.
+/// A variant that must not change the result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Way {
     broad_phase: BroadPhaseKind,
     disturbance: Disturbance,
 }
 
-/// What happens to a world between ticks now and then.
+/// A disturbance of the second world between ticks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Disturbance {
     None,
@@ -58,7 +58,7 @@ enum Disturbance {
     ClearedScratch,
 }
 
-/// All but the way of the plain world.
+/// All variants except that of the plain world.
 const WAYS: [Way; 8] = {
     use BroadPhaseKind::{BruteForce, SweepAndPrune, Tree};
     use Disturbance::{ClearedScratch, None, ThroughBytes};
@@ -77,7 +77,7 @@ const WAYS: [Way; 8] = {
     ]
 };
 
-/// The worlds that must stay equal.
+/// The two worlds that must stay equal.
 struct Variants {
     plain: World,
     way: Way,
@@ -87,12 +87,13 @@ struct Variants {
 /// Runs the scene that the bytes describe.
 ///
 /// # Panics
-/// When the variants differ, an invariant breaks, or a refused command has changed something.
+/// When the variants differ, an invariant is broken, or a refused command has changed the world.
 pub fn run(bytes: &[u8]) -> Seen {
     play(bytes, |_| ())
 }
 
-/// The same, with a fault that the comparison has to find: in a crowd, a bit of one body of one world flips.
+/// Same as [`run`], with a planted fault that the comparison has to find: in a crowd, one bit of one body of the second
+/// world flips.
 ///
 /// # Panics
 /// Always, if the scene has a crowd.
@@ -104,7 +105,7 @@ pub fn run_with_a_fault(bytes: &[u8]) {
         if touching > 12
             && let Some(&body) = bodies.get(7)
         {
-            // Refused while the body sleeps.
+            // The flip is refused while the body sleeps.
             let _ = other.flip_bit(body, Motion::ALL[0], 0);
         }
     });
@@ -158,7 +159,7 @@ fn play(bytes: &[u8], mut meddle: impl FnMut(&mut Variants)) -> Seen {
 }
 
 impl Seen {
-    /// Counts what a tick has brought.
+    /// Adds the statistics of a tick.
     fn see(&mut self, world: &World) {
         let touching = world.contacts().filter(|contact| contact.touching).count() as u64;
         let events = world.events();
@@ -170,7 +171,7 @@ impl Seen {
         self.hits += (events.hits.len() + events.joints.len()) as u64;
     }
 
-    /// Whether this is a run of 60 ticks or more in which ten contacts or more touched at one time.
+    /// Whether this is a run of 60 ticks or more with at least ten touching contacts at one time.
     #[must_use]
     pub fn is_full(&self) -> bool {
         self.ticks >= 60 && self.most_touching >= 10
@@ -184,7 +185,7 @@ impl Way {
         world
     }
 
-    /// What must not make a difference.
+    /// Applies the disturbance of the variant, which must not change the result.
     fn disturb(self, source: &mut Source<'_>, world: &mut World) {
         match self.disturbance {
             Disturbance::ThroughBytes if source.below(4) == 0 => {
@@ -206,9 +207,12 @@ impl Variants {
                 Ok(_) => seen.done += 1,
                 Err(error) => {
                     seen.refused += 1;
-                    // The other has not seen the command yet.
+                    // The second world has not executed the command yet.
                     let changed = plain.digest().differing(&other.digest());
-                    assert!(changed.is_empty(), "refused ({error}), yet changed {changed:?}: {command:?}");
+                    assert!(
+                        changed.is_empty(),
+                        "a refused command ({error}) changed {changed:?}: {command:?}"
+                    );
                 }
             }
             assert_eq!(other.execute(command), outcome, "{way:?}: {command:?}");
@@ -233,14 +237,14 @@ impl Variants {
     }
 }
 
-/// A state, and what followed it.
+/// A state, and the ticks that followed it.
 struct Rollback {
     save: Snapshot,
     ticks: Vec<(Vec<Command>, StateHash, Events)>,
 }
 
 impl Rollback {
-    /// Returns to the state, in a world whose caches are those of a later one, and plays the same again.
+    /// Restores the state in the world of a later tick, with that world's caches, and plays the same ticks again.
     fn repeat(self, world: &mut World) {
         world.restore(&self.save);
         for (commands, hash, events) in &self.ticks {
@@ -254,7 +258,7 @@ impl Rollback {
     }
 }
 
-/// Holds a world to its invariants.
+/// Checks the invariants of a world.
 fn check(world: &World, after: &dyn std::fmt::Debug) {
     if let Err(violation) = world.validate() {
         panic!("{violation}, after {after:?}");
@@ -262,7 +266,7 @@ fn check(world: &World, after: &dyn std::fmt::Debug) {
     let pairs: Vec<_> =
         world.contacts().map(|contact| (contact.shape_a.index(), contact.shape_b.index())).collect();
     assert!(pairs.is_sorted_by(|a, b| a < b), "contacts are not sorted");
-    assert!(pairs.iter().all(|(a, b)| a < b), "a contact is the wrong way round");
+    assert!(pairs.iter().all(|(a, b)| a < b), "the shapes of a contact are not in ascending order");
     let events = world.events();
     let sorted = events.contact_begin.is_sorted() && events.contact_end.is_sorted();
     assert!(sorted, "contact events are not sorted");
@@ -280,7 +284,7 @@ struct Total {
     runs: u64,
     /// Runs of 60 ticks or more.
     long: u64,
-    /// Those of them with ten or more contacts that touch at one time.
+    /// Long runs with ten or more touching contacts at one time.
     full: u64,
     touching: u64,
     ticks: u64,
@@ -289,7 +293,7 @@ struct Total {
     faulty: [u64; 2],
 }
 
-/// Adds a run to the figures that are printed now and then when `FUZZ_FIGURES` is set.
+/// Adds a run to the statistics, which are printed regularly if `FUZZ_FIGURES` is set.
 pub fn count(seen: Seen) {
     let Ok(mut total) = TOTAL.lock() else { return };
     total.runs += 1;

@@ -1,4 +1,4 @@
-//! Contacts and distances of two shapes, against all axes and all pairs of features in big integers.
+//! Compares contacts and distances of two shapes with a search over all axes and all pairs of features in big integers.
 
 use lockstep2d::body::{BodyDef, Geometry, Polygon, ShapeDef};
 use lockstep2d::math::{Angle, Fx, Rot, Step, Vec2};
@@ -12,35 +12,36 @@ use crate::source::Source;
 /// A point in units of 2^-32 m.
 type Point = [BigInt; 2];
 
-/// How far a manifold's separation may be from the exact one, in micrometres. Between two faces the choice is B's only if
-/// it is better by half a millimetre; and outlines that are nearer than that count as touching.
+/// Maximum error of a manifold's separation in micrometres. The face of shape B is only chosen if its separation is
+/// better by half a millimetre, and outlines closer than that count as touching.
 const CONTACT_ERROR: i64 = 1_001;
-/// How far the distance of two shapes may be: 20 nm, and a unit of `Length` by which a turned vertex is rounded.
+/// Maximum error of a distance in micrometres: 20 nm, plus one unit of `Length` by which a rotated vertex is rounded.
 const DISTANCE_ERROR: i64 = 1;
 
-/// A shape in the world: what is within `radius` of the convex hull of one, two or more points, counter-clockwise.
+/// A shape in world coordinates: all points within `radius` of the convex hull of `points`, which are
+/// counter-clockwise.
 struct Solid {
     points: Vec<Point>,
     radius: BigInt,
 }
 
-/// What two shapes are.
+/// The relation of two shapes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Seen {
     /// The shapes are not valid.
     Refused,
-    /// Apart, with no contact.
+    /// Apart, without a contact.
     Apart,
-    /// Near enough for a contact, without overlap.
+    /// Close enough for a contact, but not touching.
     Near,
-    /// They overlap.
+    /// The contact is touching.
     Overlapping,
 }
 
-/// Puts two shapes into a world and looks at their contact.
+/// Puts two shapes into a world and checks their distance and contact.
 ///
 /// # Panics
-/// When distance or contact differ from the exact ones by more than is documented.
+/// When distance or contact differ from the exact ones by more than the documented error.
 pub fn run(bytes: &[u8]) -> Seen {
     let mut source = Source::new(bytes);
     let config = Config { gravity: Vec2::ZERO, sleeping: false, ..Config::default() };
@@ -74,7 +75,7 @@ pub fn run(bytes: &[u8]) -> Seen {
     let found = integer(distance.distance.to_bits()) + &radii;
     assert!(is_within(&exact, &found, DISTANCE_ERROR), "distance {}: {}", distance.distance, what());
 
-    // Of two segments there are no contacts.
+    // There are no contacts between two segments.
     let is_segment = |geometry: &Geometry| matches!(geometry, Geometry::Segment { .. });
     if is_segment(&def_a) && is_segment(&def_b) {
         return Seen::Apart;
@@ -89,7 +90,7 @@ pub fn run(bytes: &[u8]) -> Seen {
     let manifold = contact.manifold;
     let least = manifold.points().iter().map(|point| point.separation).min().expect("a contact has points");
     let found = integer(Fx::from(least).to_bits()) + &radii;
-    // What is deeper than a separation can say is told as the deepest there is.
+    // A separation beyond the range of its type is reported as the minimum of the type.
     let saturated = least == Step::MIN;
     let right = match saturated {
         true => exact <= signed_square(&(found + micrometres(CONTACT_ERROR))),
@@ -101,12 +102,16 @@ pub fn run(bytes: &[u8]) -> Seen {
     for point in manifold.points().iter().filter(|_| !saturated) {
         let place = manifold.origin + point.anchor.widen();
         let place = [BigInt::from(place.x.to_bits()), BigInt::from(place.y.to_bits())];
-        // Half-way between the surfaces, half a separation from either.
+        // Contact points are half-way between the surfaces, at half the separation from each.
         let half = BigInt::from(Fx::from(point.separation).to_bits().abs() / 2);
         for solid in [&solid_a, &solid_b] {
             let allowed = integer(&solid.radius + &half) + micrometres(CONTACT_ERROR);
             let off = solid.square_distance(&place);
-            assert!(off <= &allowed * &allowed, "a point is not on the shapes: {}", what());
+            assert!(
+                off <= &allowed * &allowed,
+                "a contact point is not half-way between the surfaces: {}",
+                what()
+            );
         }
     }
     if contact.touching { Seen::Overlapping } else { Seen::Near }
@@ -116,7 +121,7 @@ fn micrometres(count: i64) -> Exact {
     Exact::new(BigInt::from(count) << 32, BigInt::from(1_000_000))
 }
 
-/// Any geometry but a link, up to some decimetres times `scale`.
+/// Any geometry except a link, up to some decimetres times `scale`.
 fn geometry(source: &mut Source<'_>, scale: i64) -> Option<Geometry> {
     let size = |source: &mut Source<'_>| source.thousandths(2, 500 * scale);
     let point = |source: &mut Source<'_>| {
@@ -166,7 +171,7 @@ impl Solid {
         Solid { points, radius: radius.to_bits().into() }
     }
 
-    /// Its edges; of two points, there and back; of one, none.
+    /// The edges. Two points make two edges, one in each direction; a single point makes none.
     fn edges(&self) -> impl Iterator<Item = (&Point, &Point)> {
         let count = self.points.len();
         (0..count)
@@ -174,7 +179,7 @@ impl Solid {
             .map(move |at| (&self.points[at], &self.points[(at + 1) % count]))
     }
 
-    /// The square of the distance of a point from the points' hull: 0 inside.
+    /// Squared distance of a point from the hull of the points: 0 inside.
     fn square_distance(&self, point: &Point) -> Exact {
         if self.points.len() > 2 && self.edges().all(|(a, b)| !cross(a, b, point).is_negative()) {
             return Exact::zero();
@@ -212,16 +217,16 @@ fn square_from_edge(a: &Point, b: &Point, point: &Point) -> Exact {
     }
 }
 
-/// `x |x|`, which grows with `x`.
+/// `x |x|`, which is monotonic in `x`.
 fn signed_square(x: &Exact) -> Exact {
     x * x.abs()
 }
 
-/// How far the hulls of the points are apart or, negative, how far they have to move apart: as a signed square.
+/// Distance of the hulls of the points, or the negative penetration depth, as a signed square.
 fn separation(a: &Solid, b: &Solid) -> Exact {
     let of_axes = |a: &Solid, b: &Solid| {
         let face = |(start, end): (&Point, &Point)| {
-            // To the right of an edge is outside.
+            // The right side of an edge is outside.
             let nearest = b.points.iter().map(|point| -cross(start, end, point)).min()?;
             Some(Exact::new(&nearest * nearest.abs(), square(start, end)))
         };
@@ -232,7 +237,7 @@ fn separation(a: &Solid, b: &Solid) -> Exact {
         [(a, b), (b, a)].into_iter().flat_map(|(a, b)| a.points.iter().map(|point| b.square_distance(point)));
     let apart = apart.min().unwrap_or_else(Exact::zero);
     match deepest {
-        // Two lines that cross are nearest at no end; two on one line have no axis across.
+        // Crossing segments are not nearest at an end point; collinear segments have no separating axis across them.
         Some(deepest) if !deepest.is_positive() && (deepest.is_negative() || apart.is_zero()) => deepest,
         _ => apart,
     }

@@ -1,5 +1,5 @@
-//! Peers play a match while a third party, who hears everything, sends them what it likes: noise, packets of the match
-//! cut, repeated or changed, and with right checksums any packet at all, in its own name and in that of others.
+//! Peers play a match while an attacker, who reads all packets, sends arbitrary ones: noise, packets of the match
+//! truncated, repeated or changed, and with correct checksums any packet, under its own address and those of others.
 
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -15,14 +15,14 @@ use crate::memory::Memory;
 use crate::source::Source;
 use crate::wire;
 
-/// How many times the peers are called.
+/// Number of turns in which the peers are updated.
 const TURNS: u8 = 160;
-/// How often each peer reads in a turn.
+/// Number of updates per peer and turn.
 const ROUNDS: usize = 3;
-/// When the third peer asks to take part, or to watch.
+/// Turn in which the third peer asks to join or to watch.
 const NEWCOMER: u8 = 10;
 
-/// A port at which somebody listens.
+/// A port whose outgoing packets are recorded.
 struct Tapped {
     port: Port,
     address: u32,
@@ -40,38 +40,38 @@ impl Transport<u32> for Tapped {
     }
 }
 
-/// What has happened.
+/// Statistics of a match.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Seen {
-    /// Ticks that host and player have played with everybody's inputs.
+    /// Ticks with confirmed inputs of host and player.
     pub ticks: u64,
-    /// Packets of the third party.
+    /// Packets of the attacker.
     pub packets: u64,
-    /// Whether somebody has stopped: packets with right checksums can do that.
+    /// Whether a peer has stopped, which forged packets can cause.
     pub stopped: bool,
-    /// Whether somebody has seen another state: they can do that, too.
+    /// Whether a peer has detected a divergence, which forged packets can cause, too.
     pub diverged: bool,
-    /// Whether somebody has joined a match that was under way, or watched it.
+    /// Whether a peer has joined or watched the running match.
     pub late: bool,
 }
 
-/// A match and its enemy.
+/// A match and its attacker.
 struct Match {
     options: Options,
     network: Network,
     known: Rc<RefCell<Known>>,
-    /// By address; gone if it had to stop.
+    /// Peers by address; `None` for a peer that has stopped.
     peers: [Option<Peer<Memory, u32, Tapped>>; 3],
-    /// Whether the enemy can make a packet look right.
+    /// Whether the attacker can make correct checksums.
     forges: bool,
     seen: Seen,
 }
 
-/// A match of a few dozen ticks, disturbed as the bytes say.
+/// Plays a match of a few dozen ticks, disturbed as the bytes describe.
 ///
 /// # Panics
-/// When a peer does, when its report or replay is not worth reading, or when packets that nobody can mistake for
-/// genuine ones make the peers stop or differ.
+/// When a peer panics, when its report or replay is invalid, or when packets without a correct checksum make the peers
+/// stop or differ.
 pub fn run(bytes: &[u8]) -> Seen {
     let mut source = Source::new(bytes);
     let options = match source.below(4) {
@@ -131,29 +131,29 @@ impl Match {
             while let Some(event) = peer.next_event() {
                 let calm =
                     matches!(event, Event::Joined { .. } | Event::Interrupted { .. } | Event::Resumed { .. });
-                assert!(calm || self.forges, "noise has made {event:?}");
+                assert!(calm || self.forges, "without forged packets there must be no {event:?}");
                 if let Event::Diverged(divergence) = event
                     && !self.seen.diverged
                 {
                     self.seen.diverged = true;
                     let report = DesyncReport::from_bytes(&peer.report(&divergence), &Limits::default());
-                    assert!(report.is_ok(), "a peer's own report: {report:?}");
+                    assert!(report.is_ok(), "a peer's own report must be valid: {report:?}");
                 }
             }
         }
     }
 
-    /// Lets each peer do something; who cannot go on is gone.
+    /// Calls `act` for each peer; a peer that returns an error is removed.
     fn each(&mut self, mut act: impl FnMut(&mut Peer<Memory, u32, Tapped>) -> Result<(), NetError>) {
         for peer in &mut self.peers {
             if let Some(Err(error)) = peer.as_mut().map(&mut act) {
-                assert!(self.forges, "noise has stopped a match: {error}");
+                assert!(self.forges, "a peer stopped without forged packets: {error}");
                 (*peer, self.seen.stopped) = (None, true);
             }
         }
     }
 
-    /// Sends somebody something.
+    /// Sends a packet of the attacker to a peer.
     fn disturb(&mut self, source: &mut Source<'_>) {
         let present: Vec<_> = (0..3).filter(|at| self.peers[*at as usize].is_some()).collect();
         if present.is_empty() {
@@ -178,7 +178,7 @@ impl Match {
             _ => Forger { source, known: &known, from, to }.packet().write(),
         };
         drop(known);
-        // A genuine packet in another's name is a forged one.
+        // A genuine packet from another address would be a forgery.
         let from = if !self.forges && wire::is_right(&packet) { sender } else { from };
         if self.forges {
             wire::repair(&mut packet);
@@ -193,13 +193,16 @@ impl Match {
             seen.ticks = host.confirmed().min(player.confirmed());
             seen.late = third.as_ref().is_some_and(|third| third.seat().is_some() || third.tick() > 0);
             let hash = |peer: &Peer<Memory, u32, Tapped>| Some(peer.history().get(seen.ticks)?.hash);
-            assert!(forges || hash(host) == hash(player), "the peers differ");
+            assert!(forges || hash(host) == hash(player), "the states of the peers must be equal");
         }
         for peer in peers.into_iter().flatten() {
             let Ok(replay) = peer.finish(u64::MAX) else { continue };
             let verdict = verify::<Memory>(&replay, &Limits::default());
-            // Who joins late has none.
-            assert!(replay.is_empty() || verdict.is_match(), "a peer's own replay, {options:?}: {verdict}");
+            // A late joiner has no replay.
+            assert!(
+                replay.is_empty() || verdict.is_match(),
+                "a peer's own replay must match, {options:?}: {verdict}"
+            );
         }
         seen
     }

@@ -1,9 +1,9 @@
-//! A game that is next to nothing, but remembers everything.
+//! A minimal game whose state depends on all inputs so far.
 
 use lockstep2d::hash::StateHash;
 use lockstep2d::lockstep::{Game, RulesId, SetupError};
 
-/// The game: all inputs so far, in one number.
+/// The game. Its state combines all inputs so far into one number.
 #[derive(Clone, Debug)]
 pub struct Memory {
     sum: u64,

@@ -1,5 +1,5 @@
-//! Two shapes that jump about each other: what their contact is does not depend on what was found before, nor on vectors,
-//! nor, but for a tie, on which of them comes first.
+//! Two shapes at changing relative positions: their contact must not depend on caches, on SIMD or, except for ties, on
+//! the order of the shapes.
 
 use lockstep2d::body::{BodyDef, BodyId, Geometry, ShapeDef, ShapeId};
 use lockstep2d::collision::BroadPhaseKind;
@@ -11,10 +11,11 @@ use lockstep2d::world::{Backend, Config, World};
 use crate::source::Source;
 use crate::{generator, shapes};
 
-/// How far separations may differ from each other and from distances: half a millimetre by which a face has to be better
-/// than that of the other shape, and as much within which outlines count as touching.
+/// Maximum difference between two separations, and between a separation and a distance, in metres: a face must be
+/// better than that of the other shape by half a millimetre, and outlines within another half a millimetre count as
+/// touching.
 const ERROR: Fx = fx!(0.001001);
-/// How far the distance may be another one with the shapes exchanged, twice 20 nm, and a part of their size.
+/// Maximum difference in metres between the distances with the shapes exchanged: twice 20 nm, and a part of their size.
 const DISTANCE_ERROR: Fx = fx!(0.00000005);
 const PARTS: i64 = 1_000_000_000;
 
@@ -22,15 +23,15 @@ const PARTS: i64 = 1_000_000_000;
 #[derive(Clone)]
 struct Pair {
     world: World,
-    /// The one that is fixed, the one that moves.
+    /// The fixed body and the moving body.
     bodies: [BodyId; 2],
     shapes: [ShapeId; 2],
 }
 
-/// Lets one shape jump about another. Returns how many contacts there were; `None` if the shapes are refused.
+/// Moves one shape around another. Returns the number of contacts; `None` if the shapes are refused.
 ///
 /// # Panics
-/// When caches, vectors or the order matter, or a contact is not one.
+/// When the result depends on caches, SIMD or the order, or when a contact is invalid.
 pub fn run(bytes: &[u8]) -> Option<u64> {
     let mut source = Source::new(bytes);
     let wild = generator::config(&mut source);
@@ -40,9 +41,9 @@ pub fn run(bytes: &[u8]) -> Option<u64> {
     let mut second = Pair::new(config, still, moving, true)?;
     let mut bare = first.clone();
     bare.world.set_broad_phase(BroadPhaseKind::BruteForce);
-    // Boxes one pair after the other: the others may have them in lanes.
+    // This world tests boxes one pair at a time, while the others may test several in SIMD lanes.
     let scalar = bare.world.set_backend(Backend::Scalar);
-    assert!(scalar, "every machine has it");
+    assert!(scalar, "every machine has the scalar backend");
     let mut contacts = 0;
     for _ in 0..1 + source.below(8) {
         let reach = source.pick(&[500, 1500, 500, 5000, 0, 120_000]);
@@ -58,8 +59,12 @@ pub fn run(bytes: &[u8]) -> Option<u64> {
             pair.world.step();
         }
         let (found, again) = (first.contact(), bare.contact());
-        assert_eq!(found, again, "caches or vectors decide");
-        assert_eq!(first.world.state_hash(), bare.world.state_hash(), "caches or vectors decide");
+        assert_eq!(found, again, "the contact must not depend on caches or SIMD");
+        assert_eq!(
+            first.world.state_hash(),
+            bare.world.state_hash(),
+            "the state must not depend on caches or SIMD"
+        );
         let Some((manifold, _)) = found else { continue };
         contacts += 1;
         check(&manifold);
@@ -74,14 +79,14 @@ pub fn run(bytes: &[u8]) -> Option<u64> {
         if let Some(before) = before.filter(|before| *before > fx!(-15)) {
             assert!(
                 (least - before).abs() <= ERROR,
-                "{least} m in contact, {before} m apart at {position:?} {angle:?}: {still:?} {moving:?}"
+                "separation {least} m, but distance {before} m, at {position:?} {angle:?}: {still:?} {moving:?}"
             );
         }
         if let Some((swapped, _)) = second.contact() {
             let other = separation(&swapped);
             assert!(
                 (least - other).abs() <= ERROR,
-                "{least} m and, exchanged, {other} m at {position:?} {angle:?}: {still:?} {moving:?}"
+                "separation {least} m, but {other} m exchanged, at {position:?} {angle:?}: {still:?} {moving:?}"
             );
         } else {
             assert!(least > config.touching_distance() - ERROR, "no contact with the shapes exchanged");
@@ -109,42 +114,52 @@ impl Pair {
 
     fn place(&mut self, position: Vec2<Fx>, angle: Angle) {
         let [_, moving] = self.bodies;
-        // Beyond the end of the world it stays where it is.
+        // The command is refused beyond the end of the world, and the body stays in place.
         let _ = self.world.set_transform(moving, position, angle);
-        self.world.set_velocity(moving, Vec2::ZERO, Fx::ZERO).expect("no velocity is valid");
+        self.world.set_velocity(moving, Vec2::ZERO, Fx::ZERO).expect("a velocity of zero is valid");
     }
 
-    /// The contact, from the fixed shape to the other one.
+    /// The contact, directed from the fixed shape to the other one.
     fn contact(&self) -> Option<(Manifold, bool)> {
         let contact = self.world.contacts().next()?;
         Some((*contact.manifold, contact.touching))
     }
 }
 
-/// Exchanged, the distance is the same and the normal the opposite, where there is no tie.
+/// Checks that with the shapes exchanged the distance is equal and, except for ties, the normal is opposite.
 fn distances(pair: &Pair) {
     let [a, b] = pair.shapes;
     let (Some(there), Some(back)) = (pair.world.distance(a, b), pair.world.distance(b, a)) else { return };
     let size = (there.point_a - there.point_b).length();
     let error = DISTANCE_ERROR + (size + fx!(250)) / PARTS;
     let difference = (there.distance - back.distance).abs();
-    assert!(difference <= error, "{} m, and {} m back", there.distance, back.distance);
+    assert!(
+        difference <= error,
+        "the distance is {} m, and {} m with the shapes exchanged",
+        there.distance,
+        back.distance
+    );
     let length = there.normal.widen().length();
     assert!((length - Fx::ONE).abs() < Fx::from_bits(16), "a normal of length {length}");
     if there.distance > fx!(0.001) {
         let between = there.point_a.distance(there.point_b);
         assert!(
             (between - there.distance).abs() <= fx!(0.000001),
-            "{between} m between, {} m apart",
+            "the nearest points are {between} m apart, but the distance is {} m",
             there.distance
         );
         let same: Unit = there.normal.dot(back.normal);
-        assert!(same < Unit::ZERO, "{:?} there, {:?} back", there.normal, back.normal);
+        assert!(
+            same < Unit::ZERO,
+            "the normal is {:?}, and {:?} with the shapes exchanged",
+            there.normal,
+            back.normal
+        );
     }
 }
 
-/// Whether a polygon has a corner at which its outline goes on, or comes back, almost in the same direction: normals are
-/// not exact enough to tell beside which of the two edges something is.
+/// Whether a polygon has a corner at which its outline continues, or returns, in almost the same direction: normals are
+/// not precise enough to decide which of the two edges is nearest.
 fn is_thin(def: &ShapeDef) -> bool {
     let Geometry::Polygon(polygon) = &def.geometry else { return false };
     let normals = polygon.normals();

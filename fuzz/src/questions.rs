@@ -1,5 +1,5 @@
-//! Queries against what they promise: the broad phase decides nothing, however long it has followed a changing world,
-//! and in ordinary scenes every answer agrees with the distances of all shapes, one by one.
+//! Checks queries: the results must not depend on the broad phase or its history, and in ordinary scenes every result
+//! must agree with the distances of all shapes, one by one.
 
 use lockstep2d::body::{Geometry, Polygon, ShapeId};
 use lockstep2d::collision::BroadPhaseKind;
@@ -11,15 +11,15 @@ use crate::generator::{self, Generator};
 use crate::shapes;
 use crate::source::Source;
 
-/// Most work of a run, as [`generator::cost`] counts it.
+/// Maximum cost of a run, as counted by [`generator::cost`].
 const COST_MAX: u64 = 60_000;
-/// What two ways to a point may differ by, in metres.
+/// Maximum difference in metres between two ways to compute a point.
 const TOLERANCE: Fx = fx!(0.005);
 
-/// Asks about the scene that the bytes describe. Says how many answers were not empty.
+/// Runs queries in the scene that the bytes describe. Returns the number of results that were not empty.
 ///
 /// # Panics
-/// When an answer is wrong.
+/// When a result is wrong.
 pub fn run(bytes: &[u8]) -> u64 {
     let mut source = Source::new(bytes);
     let config = generator::config(&mut source);
@@ -33,7 +33,7 @@ pub fn run(bytes: &[u8]) -> u64 {
         for command in &commands {
             assert_eq!(world.execute(command), sweep.execute(command), "{command:?}");
         }
-        // Between commands and the next tick as well as after it.
+        // Queries are tested between commands and the next tick, and after the tick.
         if source.one_in(3) {
             answers += ask(&mut source, &world, &sweep);
         }
@@ -49,13 +49,13 @@ pub fn run(bytes: &[u8]) -> u64 {
     answers
 }
 
-/// One world with its caches as they have become, and with others.
+/// One world with different broad phases: the tree and sweep and prune with their history, and brute force.
 struct Asked<'a> {
     world: &'a World,
     sweep: &'a World,
     brute_force: World,
     filter: QueryFilter,
-    /// Whether sizes and places are such that rounding is small.
+    /// Whether sizes and positions are moderate, so that rounding errors are small.
     ordinary: bool,
 }
 
@@ -93,15 +93,15 @@ fn filter(source: &mut Source<'_>, world: &World) -> QueryFilter {
 }
 
 impl Asked<'_> {
-    /// The same answer from all three.
+    /// Runs a query on all three worlds and checks that the results are equal.
     fn same<A: PartialEq + std::fmt::Debug>(&self, ask: impl Fn(&World) -> A) -> A {
         let answer = ask(self.world);
-        assert_eq!(answer, ask(&self.brute_force), "by the tree, and by brute force");
-        assert_eq!(answer, ask(self.sweep), "by the tree, and by sweep and prune");
+        assert_eq!(answer, ask(&self.brute_force), "the tree and brute force differ");
+        assert_eq!(answer, ask(self.sweep), "the tree and sweep and prune differ");
         answer
     }
 
-    /// What a query sees, by the book.
+    /// The shapes that a query can find, by the definition of its filter.
     fn seen(&self) -> impl Iterator<Item = ShapeId> {
         self.world.shapes().filter_map(|(id, shape)| {
             let (filter, own) = (self.filter, shape.filter());
@@ -111,13 +111,13 @@ impl Asked<'_> {
         })
     }
 
-    /// Whether a shape's body takes part: others are not seen.
+    /// Whether a shape's body is enabled; queries ignore other shapes.
     fn is_enabled(&self, shape: ShapeId) -> bool {
         let body = self.world.shape(shape).and_then(|shape| self.world.body(shape.body()));
         body.is_some_and(|body| body.is_enabled())
     }
 
-    /// Somewhere: mostly near a shape.
+    /// A position, mostly near a shape.
     fn place(&self, source: &mut Source<'_>) -> Vec2<Fx> {
         if !self.ordinary && source.one_in(6) {
             return Vec2::new(source.edge(), source.edge());
@@ -142,29 +142,28 @@ impl Asked<'_> {
         Some(Probe::new(shape.geometry, self.place(source)).ok()?.turned(source.angle()))
     }
 
-    /// How far a point is from a shape.
+    /// The distance of a point from a shape.
     fn distance(&self, point: Vec2<Fx>, shape: ShapeId) -> Fx {
         let radius = fx!(0.002);
         let probe = Probe::new(Geometry::Circle { radius }, point).expect("a valid size");
-        self.world
-            .probe_distance(&probe, shape)
-            .expect("a shape that is there")
-            .distance
-            .saturating_add(radius)
+        self.world.probe_distance(&probe, shape).expect("the shape exists").distance.saturating_add(radius)
     }
 
-    /// Everything that is in is found, and nothing that is out.
+    /// Checks that every shape inside is found, and no shape outside.
     fn check_found(&self, found: &[ShapeId], distance: impl Fn(ShapeId) -> Fx) {
-        assert!(found.is_sorted_by(|a, b| a < b), "not in slot order");
+        assert!(found.is_sorted_by(|a, b| a < b), "the shapes must be in slot order");
         if self.ordinary {
             for shape in self.seen() {
                 let (away, is_found) = (distance(shape), found.contains(&shape));
-                assert!(away <= TOLERANCE || !is_found, "{shape} is found, {away} m away");
-                assert!(away >= -TOLERANCE || is_found, "{shape} is not found, {away} m away");
+                assert!(away <= TOLERANCE || !is_found, "{shape} is found at a distance of {away} m");
+                assert!(away >= -TOLERANCE || is_found, "{shape} is not found at a distance of {away} m");
             }
         }
         let seen: Vec<_> = self.seen().collect();
-        assert!(found.iter().all(|shape| seen.contains(shape)), "what the filter does not see");
+        assert!(
+            found.iter().all(|shape| seen.contains(shape)),
+            "shapes excluded by the filter must not be found"
+        );
     }
 
     fn points(&self, source: &mut Source<'_>) -> bool {
@@ -177,7 +176,7 @@ impl Asked<'_> {
     fn probes(&self, source: &mut Source<'_>) -> bool {
         let Some(probe) = self.probe(source) else { return false };
         let found = self.same(|world| world.overlap_shape(&probe, self.filter));
-        let distance = |shape| self.world.probe_distance(&probe, shape).expect("it is there").distance;
+        let distance = |shape| self.world.probe_distance(&probe, shape).expect("the shape exists").distance;
         self.check_found(&found, distance);
         let (a, b) = (source.below(self.world.shape_count()), source.below(self.world.shape_count()));
         let shape = |nth| self.world.shapes().nth(nth).map(|(id, _)| id);
@@ -191,7 +190,7 @@ impl Asked<'_> {
                     Fx::ZERO
                 }
             };
-            assert!(!self.ordinary || difference <= TOLERANCE, "{there:?} and back {back:?}");
+            assert!(!self.ordinary || difference <= TOLERANCE, "distance {there:?}, but {back:?} exchanged");
         }
         !found.is_empty()
     }
@@ -203,7 +202,8 @@ impl Asked<'_> {
         let half = (area.upper - area.lower).scale(fx!(0.5));
         let probe = Polygon::rectangle(half.x, half.y).ok();
         if let Some(probe) = probe.and_then(|probe| Probe::new(probe, area.centre()).ok()) {
-            let distance = |shape| self.world.probe_distance(&probe, shape).expect("it is there").distance;
+            let distance =
+                |shape| self.world.probe_distance(&probe, shape).expect("the shape exists").distance;
             self.check_found(&found, distance);
         }
         !found.is_empty()
@@ -217,12 +217,16 @@ impl Asked<'_> {
             match (&found, least) {
                 (Some((_, found)), Some(least)) => {
                     let error = (found.distance - least).abs();
-                    assert!(error <= TOLERANCE, "{} m away, not {least}", found.distance);
+                    assert!(
+                        error <= TOLERANCE,
+                        "the closest shape is {} m away, expected {least} m",
+                        found.distance
+                    );
                 }
-                (Some(found), None) => panic!("{found:?}, where nothing is"),
+                (Some(found), None) => panic!("there is no shape, but the query found {found:?}"),
                 (None, least) => {
                     let far = least.is_none_or(|least| least >= within - TOLERANCE);
-                    assert!(far, "nothing within {within} m, yet {least:?}");
+                    assert!(far, "nothing is found within {within} m, but the least distance is {least:?}");
                 }
             }
         }
@@ -233,10 +237,10 @@ impl Asked<'_> {
         let (origin, way) = (self.place(source), self.way(source));
         let hits = self.same(|world| world.cast_ray_all(origin, way, self.filter));
         let first = self.same(|world| world.cast_ray(origin, way, self.filter));
-        assert_eq!(first, hits.first().copied(), "the first of all");
+        assert_eq!(first, hits.first().copied(), "the single hit must be the first of all hits");
         assert_eq!(self.same(|world| world.cast_ray_any(origin, way, self.filter)), first.is_some());
-        // Equal fractions may be those of hits that are told apart before they are rounded.
-        assert!(hits.is_sorted_by_key(|hit| hit.fraction), "not in the order of the ray");
+        // Hits with equal rounded fractions may have been ordered by the fractions before rounding.
+        assert!(hits.is_sorted_by_key(|hit| hit.fraction), "hits must be in ascending order of the fraction");
         let seen: Vec<_> = self.seen().collect();
         for hit in &hits {
             assert!(seen.contains(&hit.shape) && (Fx::ZERO..=Fx::ONE).contains(&hit.fraction), "{hit:?}");
@@ -251,7 +255,7 @@ impl Asked<'_> {
                 let hit = hits.iter().find(|hit| hit.shape == shape);
                 assert!(
                     hit.is_some_and(|hit| hit.fraction <= fraction),
-                    "{shape} at {fraction}, not {hit:?}"
+                    "{shape} is reached at {fraction}, but the hit is {hit:?}"
                 );
             }
         }
@@ -263,7 +267,10 @@ impl Asked<'_> {
         let way = self.way(source);
         let hit = self.same(|world| world.cast_shape(&probe, way, self.filter));
         if let Some(hit) = hit {
-            assert!(self.seen().any(|shape| shape == hit.shape), "what the filter does not see");
+            assert!(
+                self.seen().any(|shape| shape == hit.shape),
+                "shapes excluded by the filter must not be hit"
+            );
             assert!((Fx::ZERO..=Fx::ONE).contains(&hit.fraction), "{hit:?}");
         }
         if !self.ordinary {
@@ -272,7 +279,7 @@ impl Asked<'_> {
         let at = |step| probe.position() + way.scale(step);
         let distance = |point, shape| {
             let there = self.world.probe_distance(&probe.at(point), shape);
-            there.expect("a shape that is there").distance
+            there.expect("the shape exists").distance
         };
         if let Some(hit) = hit {
             let away = distance(probe.position() + hit.travelled, hit.shape);
@@ -281,17 +288,20 @@ impl Asked<'_> {
         }
         let touched_before = |shape| distance(probe.position(), shape) <= TOLERANCE;
         for (fraction, shape) in self.samples(at, distance).filter(|(_, shape)| !touched_before(*shape)) {
-            assert!(hit.is_some_and(|hit| hit.fraction <= fraction), "{shape} at {fraction}, not {hit:?}");
+            assert!(
+                hit.is_some_and(|hit| hit.fraction <= fraction),
+                "{shape} is reached at {fraction}, but the hit is {hit:?}"
+            );
         }
         hit.is_some()
     }
 
-    /// What a mover meets, and what comes of it with planes as soft and as far away as they may be.
+    /// Tests the planes found for a mover, and the plane solver with arbitrary push limits and separations.
     fn planes(&self, source: &mut Source<'_>) -> bool {
         let Some(probe) = self.probe(source) else { return false };
         let within = source.mostly(0, 2000);
         let mut planes = self.same(|world| world.collide_mover(&probe, within, self.filter));
-        assert!(planes.is_sorted_by_key(|plane| plane.shape), "not in slot order");
+        assert!(planes.is_sorted_by_key(|plane| plane.shape), "the planes must be in slot order");
         for plane in &mut planes {
             if source.one_in(4) {
                 plane.push_limit = source.mostly(0, 1000);
@@ -306,7 +316,7 @@ impl Asked<'_> {
         !planes.is_empty()
     }
 
-    /// A character that walks for a few ticks.
+    /// Moves a character for a few ticks.
     fn walks(&self, source: &mut Source<'_>) -> bool {
         let shape = if self.ordinary { shapes::calm_shape(source) } else { shapes::shape(source) };
         let Ok(mover) = Mover::new(shape.geometry) else { return false };
@@ -323,7 +333,8 @@ impl Asked<'_> {
         met
     }
 
-    /// Where something that moves is well inside of a shape, in sixteen places of its way. Links may let it pass.
+    /// Shapes that a moving point or probe is well inside of, at 17 samples of its path. Links are left out, because
+    /// they may be passable.
     fn samples<'a>(
         &'a self,
         at: impl Fn(Fx) -> Vec2<Fx> + 'a,

@@ -1,4 +1,4 @@
-//! Two peers of one game of which one departs, their reports, and what a liar makes of the second one.
+//! Compares the reports of two peers of a game, one of which diverged and may have forged its report.
 
 use lockstep2d::codec;
 use lockstep2d::hash::StateHash;
@@ -13,11 +13,11 @@ use crate::generator;
 use crate::source::Source;
 use crate::verdicts;
 
-/// Magic, format, semantics, length.
+/// Size of the header: magic, format, semantics, length.
 const HEADER_LEN: usize = 24;
 const HASH_LEN: usize = 16;
 
-/// What follows the header of a report, by `docs/FORMAT.md`.
+/// The body of a report, after the header, as described in `docs/FORMAT.md`.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct Body {
     rules: (String, u32),
@@ -31,7 +31,7 @@ struct Body {
     replay: Vec<u8>,
 }
 
-/// How a tick went, by the same document.
+/// The phase digests of a tick, as described in the same document.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct Phases {
     digests: Vec<StateHash>,
@@ -40,7 +40,7 @@ struct Phases {
     length: u64,
 }
 
-/// The bit that fails on one side.
+/// The bit that flips on one side.
 #[derive(Clone, Copy)]
 struct Flip {
     tick: u64,
@@ -49,17 +49,17 @@ struct Flip {
     bit: u32,
 }
 
-/// A game as it was played once.
+/// Setup and inputs of a game.
 struct Course {
     setup: SandboxSetup,
     inputs: Vec<Vec<Command>>,
     interval: u32,
 }
 
-/// Reads two files and compares them, if they can be. Returns what came of it, in a word.
+/// Reads two files and compares them, if possible. Returns the result as one word.
 ///
 /// # Panics
-/// When a changed report is read without its hash repaired, or when a side is blamed that followed the rules.
+/// When a changed report is read without its hash repaired, or when a side that followed the rules is blamed.
 pub fn run(bytes: &[u8]) -> &'static str {
     let mut source = Source::new(bytes);
     let way = source.below(8);
@@ -97,16 +97,19 @@ pub fn run(bytes: &[u8]) -> &'static str {
     let left = match Evidence::read(file, &limits) {
         Ok(left) => left,
         Err(error) => {
-            assert!(changed || original.len() as u64 > limits.file_bytes, "a peer's own report: {error}");
+            assert!(
+                changed || original.len() as u64 > limits.file_bytes,
+                "a peer's own report must be valid: {error}"
+            );
             return "refused";
         }
     };
-    assert!(way != 2 || !changed, "a changed report was read");
+    assert!(way != 2 || !changed, "a changed report must be refused");
     let found = match compare::<Sandbox>(&left, &right, &limits) {
         Ok(found) => found,
         Err(_) => return "not compared",
     };
-    // The right side has followed the rules, whatever the other one says.
+    // The right side has followed the rules, whatever the other report contains.
     assert!(!matches!(found.blame, Blame::Side(Side::B) | Blame::Both), "{found:?}");
     let mirrored = compare::<Sandbox>(&right, &left, &limits).map(|found| found.blame);
     let same = match (found.blame, &mirrored) {
@@ -114,7 +117,7 @@ pub fn run(bytes: &[u8]) -> &'static str {
         (blame, Ok(mirrored)) => blame == *mirrored,
         (_, Err(_)) => false,
     };
-    assert!(same, "{:?} from one side, {mirrored:?} from the other", found.blame);
+    assert!(same, "the blame is {:?}, but {mirrored:?} with the sides exchanged", found.blame);
     match found.blame {
         Blame::Nobody => "nobody",
         Blame::Side(_) if found.explanation.is_some() => "explained",
@@ -143,7 +146,7 @@ impl Course {
         Course { setup, inputs, interval }
     }
 
-    /// The report of a peer that plays it, right or with a bit that fails.
+    /// Creates the report of a peer that plays the game, with or without a bit flip.
     fn report(&self, source: &mut Source<'_>, flip: Option<Flip>) -> DesyncReport {
         let (mut recorder, mut game) =
             Recorder::<Sandbox>::start(&self.setup, self.interval).expect("a valid setup");
@@ -171,7 +174,7 @@ impl Course {
     }
 }
 
-/// A report with another body and the hash repaired.
+/// Replaces the body of a report and repairs the hash.
 fn seal(file: &[u8], body: &[u8]) -> Vec<u8> {
     let mut sealed = file[..HEADER_LEN - 8].to_vec();
     sealed.extend((body.len() as u64).to_le_bytes());
@@ -181,7 +184,7 @@ fn seal(file: &[u8], body: &[u8]) -> Vec<u8> {
     sealed
 }
 
-/// Changes one thing; `replay` is the genuine one.
+/// Makes one change; `replay` is the genuine replay.
 fn forge(source: &mut Source<'_>, body: &mut Body, replay: &[u8]) {
     let at = source.below(body.history.len());
     match source.below(13) {

@@ -1,4 +1,4 @@
-//! What bodies are like, apart from their shapes.
+//! Generates settings of bodies.
 
 use lockstep2d::body::{BodyKind, BodySettings, Continuous, MassSource, MotionLocks};
 use lockstep2d::fx;
@@ -21,7 +21,7 @@ pub fn settings(source: &mut Source<'_>) -> BodySettings {
     settings
 }
 
-/// Settings that a game would choose.
+/// Typical settings of a game.
 pub fn calm_settings(source: &mut Source<'_>) -> BodySettings {
     let mut settings = BodySettings::default();
     if source.one_in(4) {
@@ -42,7 +42,7 @@ fn gentle(source: &mut Source<'_>, settings: &mut BodySettings) {
     settings.may_sleep = !source.one_in(8);
 }
 
-/// What moves a body: mostly everything.
+/// A body kind, mostly dynamic.
 pub fn kind(source: &mut Source<'_>) -> BodyKind {
     source.pick(&[
         BodyKind::Dynamic,
@@ -64,7 +64,7 @@ pub fn mass(source: &mut Source<'_>) -> MassSource {
     }
 }
 
-/// A moderate mass, near the origin.
+/// A moderate mass, centred near the origin.
 pub fn calm_mass(source: &mut Source<'_>) -> MassSource {
     if source.one_in(3) {
         return MassSource::Shapes;

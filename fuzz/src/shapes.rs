@@ -1,4 +1,4 @@
-//! Shapes: mostly 0.1 to 2 m, sometimes at the limits, sometimes beyond them.
+//! Generates shapes: mostly 0.1 to 2 m, sometimes at the limits, sometimes beyond them.
 
 use lockstep2d::body::{Chain, EventSwitches, Filter, Geometry, Material, Mixing, Polygon, ShapeDef, Sides};
 use lockstep2d::codec;
@@ -29,7 +29,7 @@ pub fn shape(source: &mut Source<'_>) -> ShapeDef {
     def
 }
 
-/// Makes few shapes sensors or one-way, and lets many tell of hits.
+/// Makes a few shapes sensors or one-way, and lets many report hits.
 fn role(source: &mut Source<'_>, def: &mut ShapeDef) {
     match source.below(12) {
         0 | 1 => def.events.hit = true,
@@ -43,7 +43,7 @@ fn role(source: &mut Source<'_>, def: &mut ShapeDef) {
     }
 }
 
-/// A shape of an ordinary scene: 0.2 to 1 m, about as dense as the others.
+/// A shape of an ordinary scene: 0.2 to 1 m, with similar densities.
 pub fn calm_shape(source: &mut Source<'_>) -> ShapeDef {
     let geometry = match source.below(10) {
         8 | 9 => {
@@ -90,7 +90,7 @@ fn calm_surface(source: &mut Source<'_>, geometry: Geometry) -> ShapeDef {
     def
 }
 
-/// A chain as it is for grounds: the links between points at even distances, 8 m to either side.
+/// A chain for the ground: links between evenly spaced points, 8 m to either side.
 pub fn calm_chain(source: &mut Source<'_>) -> Vec<ShapeDef> {
     let stretches = source.pick(&[8, 4, 16, 1, 2]);
     let point = |source: &mut Source<'_>, index: i64| {
@@ -98,7 +98,7 @@ pub fn calm_chain(source: &mut Source<'_>) -> Vec<ShapeDef> {
         Vec2::new(x, source.thousandths(-300, 300))
     };
     let mut points: Vec<_> = (0..=stretches).map(|index| point(source, index)).collect();
-    // One-sided grounds are solid from above if they run from right to left.
+    // One-sided chains are solid from above if they run from right to left.
     let one_sided = source.one_in(3);
     if one_sided {
         points.reverse();
@@ -108,7 +108,7 @@ pub fn calm_chain(source: &mut Source<'_>) -> Vec<ShapeDef> {
     chain.links().expect("points that are apart")
 }
 
-/// A chain of any points, or nothing.
+/// A chain of arbitrary points; empty if it is invalid.
 pub fn chain(source: &mut Source<'_>) -> Vec<ShapeDef> {
     let points: Vec<_> = (0..2 + source.below(10)).map(|_| source.mostly_vec(-4000, 4000)).collect();
     let materials = [material(source)];
@@ -125,13 +125,13 @@ pub fn chain(source: &mut Source<'_>) -> Vec<ShapeDef> {
     chain.links().unwrap_or_default()
 }
 
-/// Whether a polygon is no needle.
+/// Whether a polygon is not too thin.
 fn is_plump(polygon: &Polygon) -> bool {
     let half = half_extents(&ShapeDef::new(*polygon));
     half.x > lockstep2d::fx!(0.1) && half.y > lockstep2d::fx!(0.1)
 }
 
-/// How far a shape reaches from its body's origin, on each axis.
+/// Maximum extent of a shape from its body's origin, on each axis.
 #[must_use]
 pub fn half_extents(shape: &ShapeDef) -> Vec2<Fx> {
     let reach = match &shape.geometry {
@@ -186,7 +186,7 @@ pub fn geometry(source: &mut Source<'_>) -> Geometry {
     }
 }
 
-/// A link with any neighbours or none, folded back on itself as well.
+/// A link with arbitrary neighbours or none, possibly folded back on itself.
 fn link(source: &mut Source<'_>) -> Geometry {
     let (a, b) = (source.mostly_vec(-3000, 0), source.mostly_vec(0, 3000));
     let neighbour = |source: &mut Source<'_>, other: Vec2<Fx>| match source.below(4) {
@@ -207,7 +207,7 @@ fn rounded(source: &mut Source<'_>, polygon: Option<Polygon>) -> Geometry {
     polygon.and_then(|polygon| polygon.rounded(radius).ok()).map_or(fallback(), Geometry::Polygon)
 }
 
-/// The largest, the smallest and the thinnest.
+/// A very large, very small or very thin geometry.
 fn extreme(source: &mut Source<'_>) -> Geometry {
     let size = |source: &mut Source<'_>| source.pick(&[2, 3, 120_000, 119_999, 100_000, 17_000, 1, 64_000]);
     let length = |thousandths: i64| lockstep2d::math::ratio(thousandths, 1000);
@@ -245,7 +245,7 @@ fn extreme(source: &mut Source<'_>) -> Geometry {
     }
 }
 
-/// A polygon as a file stores it: any vertices at all that the decoder accepts.
+/// A polygon as stored in a file: any vertices that the decoder accepts.
 fn stored_polygon(source: &mut Source<'_>) -> Option<Polygon> {
     let grid = source.pick(&[1i32 << 22, 1 << 12, 1 << 28, 1]);
     let count = 3 + source.below(6);

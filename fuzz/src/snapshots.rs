@@ -1,4 +1,4 @@
-//! Bytes of worlds that no world has written.
+//! Reads forged snapshots.
 
 use lockstep2d::collision::BroadPhaseKind;
 use lockstep2d::hash::StateHash;
@@ -9,17 +9,17 @@ use crate::generator::{self, Generator};
 use crate::mirror::State;
 use crate::source::Source;
 
-/// Magic, format, semantics, length.
+/// Size of the header: magic, format, semantics, length.
 const HEADER_BYTES: usize = 24;
 const HASH_BYTES: usize = 16;
-/// Most work of a tick, as [`generator::cost`] counts it.
+/// Maximum cost of a tick, as counted by [`generator::cost`].
 const COST_MAX: u64 = 30_000;
 
-/// Reads what the bytes describe: bytes as they are, or those of a small scene with single fields or single bytes
-/// changed, and repaired. Says whether a world came of it.
+/// Reads the snapshot that the bytes describe: the bytes themselves, or the snapshot of a small scene with single
+/// fields or bytes changed and the hash repaired. Returns whether it is accepted.
 ///
 /// # Panics
-/// When a world that was accepted breaks an invariant or differs from itself within ten ticks.
+/// When an accepted world breaks an invariant or depends on its caches within ten ticks.
 pub fn run(bytes: &[u8]) -> bool {
     let mut source = Source::new(bytes);
     if source.one_in(32) {
@@ -71,7 +71,7 @@ fn mutate_state(source: &mut Source<'_>, snapshot: &mut Vec<u8>) {
     snapshot.splice(HEADER_BYTES..end, state);
 }
 
-/// Makes length and hash of a snapshot, or of a report, fit the rest.
+/// Corrects length and hash of a snapshot or a report.
 pub(crate) fn repair(snapshot: &mut [u8]) {
     if snapshot.len() < HEADER_BYTES + HASH_BYTES {
         return;
@@ -83,7 +83,7 @@ pub(crate) fn repair(snapshot: &mut [u8]) {
     snapshot[end..].copy_from_slice(&hash.0.to_le_bytes());
 }
 
-/// Whether the bytes are a world; if so it has to live on like any other.
+/// Reads the bytes. If they are a world, it has to stay valid and independent of its caches.
 fn accept(bytes: &[u8], mut player: Option<(&mut Source<'_>, &mut Generator)>) -> bool {
     let Ok(mut world) = World::from_bytes(bytes) else { return false };
     assert_eq!(world.validate(), Ok(()), "an accepted world is valid");

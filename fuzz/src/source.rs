@@ -1,16 +1,16 @@
-//! Decisions drawn from the fuzzer's bytes. When the bytes end every decision is the first one, so that a short
-//! input is a short scene.
+//! Decisions drawn from the fuzzer's bytes. When the bytes end, every decision is the first option, so that a short
+//! input makes a short scene.
 
 use arbitrary::Unstructured;
 use lockstep2d::math::{Angle, Fx, Vec2};
 
-/// Bytes turned into decisions.
+/// Turns bytes into decisions.
 pub struct Source<'a> {
     bytes: Unstructured<'a>,
     calm: bool,
 }
 
-/// Numbers at and around which formats and limits end.
+/// Numbers at or near the limits of formats and parameters.
 const EDGES: [i64; 24] = [
     0,
     1,
@@ -39,18 +39,18 @@ const EDGES: [i64; 24] = [
 ];
 
 impl<'a> Source<'a> {
-    /// Decisions from some bytes.
+    /// Creates a source of decisions from bytes.
     #[must_use]
     pub fn new(bytes: &'a [u8]) -> Self {
         Source { bytes: Unstructured::new(bytes), calm: false }
     }
 
-    /// Whether [`Source::mostly`] keeps away from edges from now on.
+    /// Sets whether [`Source::mostly`] avoids limits from now on.
     pub fn set_calm(&mut self, calm: bool) {
         self.calm = calm;
     }
 
-    /// Whether it does.
+    /// Whether [`Source::mostly`] avoids limits.
     #[must_use]
     pub fn is_calm(&self) -> bool {
         self.calm
@@ -62,7 +62,7 @@ impl<'a> Source<'a> {
         self.bytes.is_empty()
     }
 
-    /// All bytes that are left.
+    /// The remaining bytes.
     #[must_use]
     pub fn rest(self) -> &'a [u8] {
         self.bytes.take_rest()
@@ -78,17 +78,17 @@ impl<'a> Source<'a> {
         self.bytes.arbitrary().unwrap_or(0)
     }
 
-    /// A number below `bound`, 0 when that is 0.
+    /// A number below `bound`; 0 if `bound` is 0.
     pub fn below(&mut self, bound: usize) -> usize {
         self.bytes.int_in_range(0..=bound.saturating_sub(1)).unwrap_or(0)
     }
 
-    /// True once in `n` times, and never when the bytes have ended.
+    /// True once in `n` times; false if no bytes are left.
     pub fn one_in(&mut self, n: usize) -> bool {
         self.below(n) == n - 1
     }
 
-    /// One of some values.
+    /// Picks one of the values.
     pub fn pick<T: Copy>(&mut self, values: &[T]) -> T {
         values[self.below(values.len())]
     }
@@ -99,7 +99,7 @@ impl<'a> Source<'a> {
         lockstep2d::math::ratio(value, 1000)
     }
 
-    /// A number at or near the end of some format or limit, or any at all.
+    /// A number at or near a limit, or any number.
     pub fn edge(&mut self) -> Fx {
         let bits = match self.below(3) {
             0 => self.pick(&EDGES),
@@ -109,7 +109,7 @@ impl<'a> Source<'a> {
         Fx::from_bits(bits)
     }
 
-    /// A number from `low` to `high`, often one of the two or next to it.
+    /// A number from `low` to `high`, often at or next to one of them.
     pub fn within(&mut self, low: i64, high: i64) -> i64 {
         match self.below(8) {
             0 => self.bytes.int_in_range(low..=high).unwrap_or(low),
@@ -123,17 +123,17 @@ impl<'a> Source<'a> {
         }
     }
 
-    /// Mostly a number from `low` to `high` thousandths, sometimes an edge unless the source is calm.
+    /// Mostly a number from `low` to `high` thousandths, sometimes one near a limit unless the source is calm.
     pub fn mostly(&mut self, low: i64, high: i64) -> Fx {
         if !self.calm && self.one_in(24) { self.edge() } else { self.thousandths(low, high) }
     }
 
-    /// A vector of such numbers.
+    /// A vector of two [`Source::mostly`] numbers.
     pub fn mostly_vec(&mut self, low: i64, high: i64) -> Vec2<Fx> {
         Vec2::new(self.mostly(low, high), self.mostly(low, high))
     }
 
-    /// A rotation: a multiple of a quarter turn, or any.
+    /// An angle: a multiple of a quarter turn, a multiple of 1/256 turn, or any.
     pub fn angle(&mut self) -> Angle {
         match self.below(3) {
             0 => Angle::from_bits((self.byte() as u32 & 3) << 30),

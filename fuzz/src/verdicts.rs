@@ -1,4 +1,4 @@
-//! Replays that no recorder has written, and replays of hostile players that one has.
+//! Verifies forged replays, and recorded replays of extreme scenes.
 
 use lockstep2d::lockstep::{Sandbox, SandboxSetup};
 use lockstep2d::replay::{Limits, Recording, Verdict, verify};
@@ -8,7 +8,7 @@ use crate::forge::{Forged, mutate};
 use crate::generator::{self, Generator};
 use crate::source::Source;
 
-/// What a fuzzed file may cost: well below a second.
+/// Limits that keep the verification of a file well below a second.
 #[must_use]
 pub fn limits() -> Limits {
     Limits {
@@ -24,10 +24,10 @@ pub fn limits() -> Limits {
     }
 }
 
-/// Verifies what the bytes describe.
+/// Verifies the file that the bytes describe.
 ///
 /// # Panics
-/// When a file that was changed is a `Match`, or one that was not is not.
+/// When a changed file is a `Match`, or an unchanged one is not.
 pub fn run(bytes: &[u8]) -> Verdict {
     let mut source = Source::new(bytes);
     let way = source.below(8);
@@ -50,19 +50,19 @@ pub fn run(bytes: &[u8]) -> Verdict {
     let verdict = verify::<Sandbox>(&file, &limits());
     if file == original {
         let good = matches!(verdict, Verdict::Match { .. } | Verdict::LimitExceeded { .. });
-        assert!(good, "a recorder's own file: {verdict}");
+        assert!(good, "a recorder's own file must match: {verdict}");
     } else {
-        assert!(!verdict.is_match(), "a changed file is a match");
+        assert!(!verdict.is_match(), "a changed file must not match");
     }
     verdict
 }
 
-/// A small scene, and whoever gives commands in it.
+/// A small scene, and the generator of its commands.
 pub(crate) fn scene(source: &mut Source<'_>) -> (SandboxSetup, Generator) {
     let config = generator::config(source);
     let config = World::new(config).map(|_| config).unwrap_or_default();
     let mut generator = Generator::new(source);
-    // A setup is refused as a whole, so commands that fail are left out of it.
+    // A setup with a failing command is refused, so failing commands are removed.
     let mut world = World::new(config).expect("checked");
     let mut commands = generator.setup(source);
     commands.retain(|command| world.execute(command).is_ok());
@@ -70,7 +70,7 @@ pub(crate) fn scene(source: &mut Source<'_>) -> (SandboxSetup, Generator) {
     (SandboxSetup { config, commands }, generator)
 }
 
-/// The replay of such a scene.
+/// Records a replay of such a scene.
 fn record(source: &mut Source<'_>) -> Vec<u8> {
     let (setup, mut generator) = scene(source);
     let interval = 1 + source.below(9) as u32;
@@ -87,5 +87,5 @@ fn record(source: &mut Source<'_>) -> Vec<u8> {
             break;
         }
     }
-    recording.finish().expect("no claims")
+    recording.finish().expect("the sandbox has no claims")
 }

@@ -1,4 +1,4 @@
-//! What peers say to each other, as `lockstep2d::net` and GGRS lay it out: to be read, and to be forged.
+//! Copies of the packet layouts of `lockstep2d::net` and GGRS, to read and forge packets.
 
 use lockstep2d::codec;
 use lockstep2d::hash::StateHash;
@@ -27,7 +27,7 @@ pub enum Packet {
     Session { session: u64, message: Vec<u8> },
 }
 
-/// Why somebody may not take part.
+/// Reason why a peer is refused.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[allow(missing_docs)]
 pub enum Refused {
@@ -37,7 +37,7 @@ pub enum Refused {
     Other(String),
 }
 
-/// A session to come.
+/// A proposed session.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[allow(missing_docs)]
 pub struct Plan {
@@ -55,7 +55,7 @@ pub struct Message {
     pub body: Body,
 }
 
-/// What it says.
+/// The body of a GGRS message.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[allow(missing_docs)]
 pub enum Body {
@@ -69,11 +69,11 @@ pub enum Body {
     KeepAlive,
 }
 
-/// Inputs of some frames, run-length coded.
+/// Inputs of some frames, run-length encoded.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[allow(missing_docs)]
 pub struct Input {
-    /// Of each player, whether it has left and its last frame.
+    /// For each player, whether it is disconnected and its last frame.
     pub connections: Vec<(bool, i32)>,
     pub disconnect_requested: bool,
     pub start_frame: i32,
@@ -82,13 +82,13 @@ pub struct Input {
 }
 
 impl Packet {
-    /// The packet that these bytes are, whatever their checksum.
+    /// Decodes a packet without checking its checksum.
     #[must_use]
     pub fn read(bytes: &[u8]) -> Option<Self> {
         codec::decode(bytes.get(CHECKSUM_BYTES..)?).ok()
     }
 
-    /// Its bytes, with a right checksum.
+    /// Encodes the packet with a correct checksum.
     #[must_use]
     pub fn write(&self) -> Vec<u8> {
         let mut bytes = vec![0; CHECKSUM_BYTES];
@@ -103,13 +103,13 @@ fn checksum(packet: &[u8]) -> Option<[u8; CHECKSUM_BYTES]> {
     hash.0.to_le_bytes().first_chunk().copied()
 }
 
-/// Whether the checksum is right.
+/// Whether the checksum is correct.
 #[must_use]
 pub fn is_right(packet: &[u8]) -> bool {
     checksum(packet).is_some_and(|sum| packet.starts_with(&sum))
 }
 
-/// Makes it right.
+/// Corrects the checksum.
 pub fn repair(packet: &mut [u8]) {
     if let Some(sum) = checksum(packet) {
         packet[..CHECKSUM_BYTES].copy_from_slice(&sum);

@@ -1,4 +1,4 @@
-//! That the targets for bytes get somewhere, and quickly.
+//! Checks that the targets whose input is a file or packet reach many results, and prints their speed.
 
 use std::collections::BTreeMap;
 
@@ -12,7 +12,7 @@ fn inputs(count: u64) -> impl Iterator<Item = Vec<u8>> {
     })
 }
 
-/// How often each answer comes.
+/// Counts the occurrences of each result.
 fn answers<T: Ord + std::fmt::Debug>(count: u64, run: impl Fn(&[u8]) -> T) -> BTreeMap<T, u64> {
     let start = std::time::Instant::now();
     let mut answers = BTreeMap::new();
@@ -30,7 +30,7 @@ fn replays_are_judged() {
     for file in replay::originals() {
         let plain = [&[0], file.as_slice()].concat();
         let repaired = [&[1], file.as_slice()].concat();
-        assert_eq!(replay::run(&plain), replay::run(&repaired), "a repair changes nothing");
+        assert_eq!(replay::run(&plain), replay::run(&repaired), "repairing a valid file does not change it");
     }
 }
 
@@ -60,15 +60,15 @@ fn packets_are_heard() {
     assert!(answers.len() >= 3, "{answers:?}");
 }
 
-/// Writes the files from which the fuzzer starts. `cargo test --test bytes -- --ignored`
+/// Writes the initial seeds of the fuzzer: `cargo test --test bytes -- --ignored`.
 #[test]
 #[ignore = "writes into the tree"]
 fn write_seeds() {
     let seeds = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("seeds");
     let write = |target: &str, name: &str, bytes: &[u8]| {
         let folder = seeds.join(target);
-        std::fs::create_dir_all(&folder).expect("a folder");
-        std::fs::write(folder.join(name), bytes).expect("a file");
+        std::fs::create_dir_all(&folder).expect("the folder can be created");
+        std::fs::write(folder.join(name), bytes).expect("the file can be written");
     };
     let targets = [
         ("replay_bytes", replay::originals()),

@@ -1,11 +1,11 @@
-//! The seeds, one after the other, without the fuzzer: for machines that have no nightly compiler, and for coverage.
+//! Runs all seeds without the fuzzer: for machines without a nightly compiler, and for coverage.
 
 use lockstep2d_fuzz::{
     broad_phases, bytes, hulls, lockstep, manifolds, matches, maths, pairs, questions, reports, snapshots,
     verdicts,
 };
 
-/// Runs the seeds of a target, and says how many there are.
+/// Runs the seeds of a target, and checks that there are more than five.
 fn run<T>(target: &str, run: impl Fn(&[u8]) -> T) {
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("seeds").join(target);
     let mut count = 0;

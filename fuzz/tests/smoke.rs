@@ -1,5 +1,5 @@
-//! A few hundred random inputs for each target, without the fuzzer: that the targets themselves work, and that
-//! their scenes are full of contacts.
+//! Runs hundreds to thousands of random inputs per target without the fuzzer: checks that the targets work, and that
+//! their scenes have many contacts.
 
 use lockstep2d::math::Rng;
 use lockstep2d_fuzz::{

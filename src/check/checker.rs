@@ -1,4 +1,4 @@
-//! [`Checker`]: a straight run, and every other way beside it, tick by tick.
+//! [`Checker`]: simulates a reference run and one replica per variant beside it, tick by tick.
 
 use alloc::boxed::Box;
 use alloc::vec::Vec;
@@ -11,23 +11,23 @@ use crate::lockstep::{Game, SetupError};
 use crate::replay::{Limit, Verdict};
 use crate::world::PhaseDigest;
 
-/// What has been checked, and found good.
+/// Result of a check that found no fault.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Checked {
-    /// The ticks that were played.
+    /// Number of ticks played.
     pub ticks: u64,
-    /// The hash after them.
+    /// Hash after the last tick.
     pub hash: StateHash,
-    /// The ways in which they were played, beside the straight one.
+    /// The variants in which they were played, in addition to the reference run.
     pub ways: Vec<Way>,
-    /// The ticks that were simulated, in all ways together.
+    /// Number of ticks simulated, in all variants together.
     pub simulated: u64,
 }
 
-/// A game that is checked as it is played, for those who do not have all inputs beforehand; all ways but
-/// [`Way::Recorded`].
+/// A game that is checked while it is played, for callers that do not have all inputs beforehand. Supports all variants
+/// but [`Way::Recorded`].
 ///
-/// Once something is found, that is all it is good for.
+/// After the first finding it must not be used any more.
 pub struct Checker<'s, G: Game> {
     setup: &'s G::Setup,
     options: Options,
@@ -35,17 +35,17 @@ pub struct Checker<'s, G: Game> {
     hash: StateHash,
     tick: u64,
     work: u64,
-    /// What the phases of the last tick have left behind, if they are compared.
+    /// Digests of the phases of the last tick, if phases are compared.
     phases: Vec<PhaseDigest>,
-    /// Empty before the tick from which on it is checked.
+    /// Empty before the tick at which checking begins.
     lanes: Vec<Lane<G>>,
 }
 
 impl<'s, G: Game> Checker<'s, G> {
-    /// The game before its first tick.
+    /// Creates the game before its first tick.
     ///
     /// # Errors
-    /// [`SetupError`] if the setup starts no game.
+    /// [`SetupError`] if the setup cannot start a game.
     pub fn new(setup: &'s G::Setup, options: &Options) -> Result<Self, SetupError> {
         let straight = G::new(setup)?;
         let hash = straight.state_hash();
@@ -62,28 +62,28 @@ impl<'s, G: Game> Checker<'s, G> {
         })
     }
 
-    /// The straight run as of now.
+    /// The reference run at the current tick.
     #[must_use]
     pub fn game(&self) -> &G {
         &self.straight
     }
 
-    /// How many ticks have been played.
+    /// Number of ticks played.
     #[must_use]
     pub fn tick(&self) -> u64 {
         self.tick
     }
 
-    /// How many ticks have been simulated, in all ways together.
+    /// Number of ticks simulated, in all variants together.
     #[must_use]
     pub fn simulated(&self) -> u64 {
         self.tick + self.lanes.iter().map(|lane| lane.steps).sum::<u64>()
     }
 
-    /// Plays one tick in every way.
+    /// Plays one tick in every variant.
     ///
     /// # Errors
-    /// [`Finding`], the first.
+    /// The first [`Finding`].
     pub fn step(&mut self, inputs: &[G::Input]) -> Result<(), Box<Finding>> {
         self.begin()?;
         self.check_work(inputs)?;
@@ -103,10 +103,10 @@ impl<'s, G: Game> Checker<'s, G> {
         self.lanes.iter_mut().try_for_each(|lane| lane.step(&now))
     }
 
-    /// What is to be seen only at the end.
+    /// Runs the checks that are only possible at the end.
     ///
     /// # Errors
-    /// [`Finding`], the first.
+    /// The first [`Finding`].
     pub fn finish(mut self) -> Result<Checked, Box<Finding>> {
         self.begin()?;
         let mut lanes = core::mem::take(&mut self.lanes);
@@ -122,7 +122,7 @@ impl<'s, G: Game> Checker<'s, G> {
         Now { setup, options, straight, inputs, hash: *hash, tick: *tick, phases, claims: Vec::new() }
     }
 
-    /// Starts all ways, at the tick from which on is checked.
+    /// Starts the replicas of all variants, at the tick at which checking begins.
     fn begin(&mut self) -> Result<(), Box<Finding>> {
         if self.tick != self.options.from || !self.lanes.is_empty() {
             return Ok(());
@@ -155,7 +155,7 @@ impl<'s, G: Game> Checker<'s, G> {
     }
 }
 
-/// Plays a tick and says what its phases have left behind, if that is wanted.
+/// Plays a tick and returns the digests of its phases, if phases are compared.
 pub(super) fn step<G: Game>(game: &mut G, inputs: &[G::Input], phases: Phases) -> Vec<PhaseDigest> {
     if phases == Phases::Compared
         && let Some(world) = game.world_mut()
@@ -169,7 +169,7 @@ pub(super) fn step<G: Game>(game: &mut G, inputs: &[G::Input], phases: Phases) -
     }
 }
 
-/// Another game from the same setup.
+/// Creates another game from the same setup.
 pub(super) fn another<G: Game>(setup: &G::Setup, way: Way, tick: u64) -> Result<G, Box<Finding>> {
     G::new(setup).map_err(|error| Box::new(Finding::new(way, Fault::Refused { why: error.why }, tick)))
 }

@@ -1,7 +1,7 @@
-//! [`Exchanges`]: does the hash see everything that influences the future?
+//! [`Exchanges`]: tests whether the hash covers all state that influences future ticks.
 //!
-//! From a save and one of another tick a third is made: the first, with a byte or a few from the second. If the state
-//! that it is loaded into has the hash of the first all the same, then it must also have its future.
+//! One byte or a run of bytes in a save is replaced by the bytes of a save of another tick. If the state loaded from
+//! the changed save has the hash of the original, then its future must be the same, too.
 
 use alloc::boxed::Box;
 use alloc::collections::VecDeque;
@@ -16,16 +16,16 @@ use crate::codec;
 use crate::hash::StateHash;
 use crate::lockstep::Game;
 
-/// Every how many ticks a save is kept, beside some at the start.
+/// Interval in ticks between kept saves, in addition to some at the start.
 const INTERVAL: u64 = 16;
-/// For how many ticks its future is compared.
+/// Number of ticks for which the futures are compared.
 const FUTURE: usize = 48;
-/// How many saves of other ticks there are to take bytes from.
+/// Maximum number of saves of other ticks to take bytes from.
 const DONORS_MAX: usize = 6;
-/// Most exchanges that are tried with one save.
+/// Maximum number of exchanges tried with one save.
 const TRIES_MAX: usize = 32;
 
-/// The saves of some ticks, and what followed.
+/// Saves of some ticks, and the inputs that followed.
 pub(super) struct Exchanges<G: Game> {
     moments: VecDeque<Moment<G>>,
     donors: VecDeque<Vec<u8>>,
@@ -46,7 +46,7 @@ impl<G: Game> Default for Exchanges<G> {
 }
 
 impl<G: Game> Exchanges<G> {
-    /// Takes note of the state after a tick.
+    /// Records the state after a tick.
     pub(super) fn disturb(
         &mut self,
         game: &G,
@@ -68,7 +68,7 @@ impl<G: Game> Exchanges<G> {
         Ok(())
     }
 
-    /// Examines the saves that are left, with as much future as there is.
+    /// Examines the remaining saves, with the ticks that followed them.
     pub(super) fn finish(&mut self, game: &G, now: &Now<'_, G>, steps: &mut u64) -> Result<(), Box<Finding>> {
         self.add_donor(&codec::encode(&game.save()));
         core::mem::take(&mut self.moments).iter().try_for_each(|moment| self.examine(moment, now, steps))
@@ -82,13 +82,13 @@ impl<G: Game> Exchanges<G> {
     }
 
     fn examine(&self, moment: &Moment<G>, now: &Now<'_, G>, steps: &mut u64) -> Result<(), Box<Finding>> {
-        // The world has a hash of its own, which sees all of it.
+        // The bytes of the physics world are left out: the world's own hash covers all of them.
         let world = world_in::<G>(moment, now)?;
         let exchanges = self.donors.iter().flat_map(|donor| exchanges(&moment.bytes, donor));
         let mut exchanges: Vec<_> = exchanges.filter(|(range, _)| !overlap(range, &world)).collect();
         exchanges.sort_by(|a, b| (a.0.start, a.0.end, &a.1).cmp(&(b.0.start, b.0.end, &b.1)));
         exchanges.dedup();
-        // Of too many, others each time.
+        // If there are more exchanges than are tried, each save starts at a different one.
         let turn = usize::try_from(moment.tick).unwrap_or(0).wrapping_mul(7) % exchanges.len().max(1);
         exchanges.rotate_left(turn);
         for (range, replacement) in exchanges.into_iter().take(TRIES_MAX) {
@@ -102,7 +102,8 @@ impl<G: Game> Exchanges<G> {
         Ok(())
     }
 
-    /// After how many ticks two states with the same hash have another one, and their saves before.
+    /// The number of ticks after which two states with the same hash have different hashes, and their saves before
+    /// these ticks.
     #[expect(clippy::type_complexity, reason = "it is taken apart at once")]
     fn futures_differ(
         &self,
@@ -114,7 +115,7 @@ impl<G: Game> Exchanges<G> {
         let Some((mut b, saved_b)) = loaded::<G>(changed, now)? else {
             return Ok(None);
         };
-        // A `load` that puts such a field right has seen it.
+        // If `load` corrects the changed bytes, they do not influence the future.
         if b.state_hash() != moment.hash || codec::encode(&b.save()) != changed {
             return Ok(None);
         }
@@ -133,7 +134,7 @@ impl<G: Game> Exchanges<G> {
     }
 }
 
-/// A game and the save that it was loaded from, if these bytes are one.
+/// Loads a save into a new game, if the bytes are the canonical encoding of a save.
 fn loaded<G: Game>(bytes: &[u8], now: &Now<'_, G>) -> Result<Option<(G, G::Save)>, Box<Finding>> {
     let Ok(save) = codec::decode::<G::Save>(bytes) else {
         return Ok(None);
@@ -146,7 +147,7 @@ fn loaded<G: Game>(bytes: &[u8], now: &Now<'_, G>) -> Result<Option<(G, G::Save)
     Ok(Some((game, save)))
 }
 
-/// Where the bytes of the physics world are in a save; nowhere if there is none.
+/// Range of the bytes of the physics world in a save; empty if there is none.
 fn world_in<G: Game>(moment: &Moment<G>, now: &Now<'_, G>) -> Result<Range<usize>, Box<Finding>> {
     let Some((mut game, _)) = loaded::<G>(&moment.bytes, now)? else {
         return Ok(0..0);
@@ -162,7 +163,7 @@ fn overlap(a: &Range<usize>, b: &Range<usize>) -> bool {
     a.start < b.end && b.start < a.end
 }
 
-/// What can be taken over from a save of the same length: every byte that differs, and every run of them.
+/// The possible exchanges with a save of the same length: every single byte that differs and every run of such bytes.
 fn exchanges(bytes: &[u8], donor: &[u8]) -> Vec<(Range<usize>, Vec<u8>)> {
     let mut found = Vec::new();
     if bytes.len() != donor.len() {

@@ -1,4 +1,4 @@
-//! [`Failure`]: what is wrong, with a replay that shows it.
+//! [`Failure`]: a fault of a game, with a replay that reproduces it.
 
 use alloc::boxed::Box;
 use alloc::vec::Vec;
@@ -8,20 +8,21 @@ use super::finding::Finding;
 use crate::lockstep::InputError;
 use crate::replay::{RecordError, Verdict};
 
-/// What is wrong with a game, with a replay that shows it.
+/// A fault of a game, with a replay that reproduces it.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Failure {
-    /// What is wrong in the log as it was given.
+    /// The finding in the log as it was given.
     pub finding: Finding,
-    /// The same of the replay.
+    /// The finding in the minimised replay.
     pub minimised: Finding,
-    /// A replay file with as few ticks and inputs as could be found; [`check_replay`](super::check_replay) shows the
-    /// failure again. If a run does not repeat itself, its checkpoints may differ from those of the next run.
+    /// A replay file with as few ticks and inputs as could be found; [`check_replay`](super::check_replay) reproduces
+    /// the failure. If the game is not deterministic between runs, its checkpoints may differ from those of the next
+    /// run.
     pub replay: Vec<u8>,
-    /// How many ticks it has.
+    /// Number of ticks in the replay.
     pub ticks: u64,
-    /// How often it has failed in the same way, and out of how many times. A game that draws on a random iteration order
-    /// does not always fail.
+    /// Number of runs of the replay that failed in the same way, and number of runs. A game that depends on a random
+    /// iteration order does not always fail.
     pub failed: (u32, u32),
 }
 
@@ -33,26 +34,26 @@ impl fmt::Display for Failure {
     }
 }
 
-/// As [`Display`](fmt::Display): what a test shows that unwraps.
+/// Same as [`Display`](fmt::Display), for the output of a test that unwraps.
 impl fmt::Debug for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{self}")
     }
 }
 
-/// Why a log of inputs has not passed.
+/// Reason why a log of inputs did not pass.
 #[derive(Clone, PartialEq, Eq)]
 pub enum CheckError {
-    /// No replay can hold this setup and these inputs, or no game starts from it.
+    /// The setup cannot start a game, or a replay cannot represent this setup and these inputs.
     Record(RecordError),
-    /// The file is no replay of this game, or costs too much.
+    /// The file is not a replay of this game, or exceeds a limit.
     Replay(Verdict),
-    /// Something is wrong with the game.
+    /// The game has a fault.
     Failed(Box<Failure>),
 }
 
 impl CheckError {
-    /// What is wrong with the game, if something is.
+    /// The fault of the game, if there is one.
     #[must_use]
     pub fn failure(&self) -> Option<&Failure> {
         match self {
@@ -72,7 +73,7 @@ impl fmt::Display for CheckError {
     }
 }
 
-/// As [`Display`](fmt::Display): what a test shows that unwraps.
+/// Same as [`Display`](fmt::Display), for the output of a test that unwraps.
 impl fmt::Debug for CheckError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{self}")

@@ -1,4 +1,4 @@
-//! [`Finding`]: what is wrong, where, and at which tick.
+//! [`Finding`]: a fault, its variant and its tick.
 
 use alloc::string::String;
 use alloc::vec::Vec;
@@ -11,51 +11,51 @@ use crate::inspect::{Difference, differences, fields};
 use crate::replay::{RecordError, Verdict};
 use crate::world::Phase;
 
-/// What is wrong with a way of playing.
+/// The fault of a variant.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Fault {
-    /// The hash after the tick is not that of the straight run.
+    /// The hash after the tick differs from the reference run.
     Hash,
-    /// The hash is, but a phase of the physics step has left something else behind.
+    /// The hash agrees, but the digest of a phase of the physics step differs.
     Phase,
-    /// Loading a save gives a state with another hash than the one that was saved.
+    /// Loading a save leads to a state with another hash than the saved state.
     Loaded,
-    /// A save that was decoded is encoded to other bytes.
+    /// Encoding a decoded save leads to other bytes.
     Encoding,
-    /// A save that was loaded is saved as other bytes.
+    /// Saving a loaded state leads to other bytes.
     SavedAgain,
-    /// The bytes of a save are not read.
+    /// The bytes of a save cannot be decoded.
     Unreadable {
-        /// Why.
+        /// Reason.
         why: String,
     },
-    /// The setup starts a game once, and not another time.
+    /// The setup started a game the first time but not the next.
     Refused {
-        /// Why.
+        /// Reason.
         why: String,
     },
-    /// The same question, asked twice, has two answers: of `state_hash`, `work`, `claims` or `save`.
+    /// Two consecutive calls of `state_hash`, `work`, `claims` or `save` return different results.
     Answers {
-        /// What was asked for.
+        /// Name of the function.
         of: &'static str,
     },
-    /// Two states have the same hash and, with the same inputs, different futures.
+    /// Two states have the same hash but different futures under the same inputs.
     Unhashed,
-    /// The recording of the game does not verify.
+    /// The recording of the game fails verification.
     Verdict(Verdict),
     /// The game cannot be recorded to its end.
     Unrecordable(RecordError),
 }
 
-/// The inputs with which a game was played before it was rolled back.
+/// The predicted inputs with which a game was played before it was rolled back.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Guess {
-    /// The right ones.
+    /// The actual inputs.
     Right,
     /// Nothing pressed.
     Default,
-    /// Those of the tick before, held.
+    /// The inputs of the previous tick, held.
     Held,
 }
 
@@ -63,24 +63,25 @@ impl Guess {
     pub(super) const ALL: [Guess; 3] = [Guess::Right, Guess::Default, Guess::Held];
 }
 
-/// What is wrong, where, and at which tick.
+/// A fault, its variant and its tick.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Finding {
-    /// How it was played.
+    /// The variant.
     pub way: Way,
-    /// What is wrong.
+    /// The fault.
     pub fault: Fault,
-    /// After how many ticks.
+    /// Number of ticks after which the fault exists.
     pub tick: u64,
-    /// How many ticks had been played when it showed: more, if the game had been rolled back.
+    /// Number of ticks played when the fault was detected: more than `tick` after a rollback.
     pub played: u64,
-    /// The phase of the physics step after which something differs first, if phases are compared; `None` also if
-    /// something differed before the step.
+    /// The first phase of the physics step whose digest differs, if phases are compared; `None` also if a difference
+    /// existed before the step.
     pub phase: Option<Phase>,
-    /// By how many ticks it had been rolled back, and after which guess.
+    /// Depth of the rollback in ticks, and the predicted inputs before it.
     pub rollback: Option<(u32, Guess)>,
-    /// What differs: the straight run, or what was saved, has `a`, and this way, or what came back, has `b`. Empty if the
-    /// states cannot be had or have the same saves: then what differs is not saved.
+    /// The fields that differ. `a` is the reference run or the saved state, `b` is the variant or the loaded state.
+    /// Empty if the states are not available, or if their saves are equal: then the difference is in state that is not
+    /// saved.
     pub differences: Vec<Difference>,
 }
 
@@ -89,47 +90,48 @@ impl Finding {
         Finding { way, fault, tick, played: tick, phase: None, rollback: None, differences: Vec::new() }
     }
 
-    /// With what differs in two saves.
+    /// Adds the differences between two saves.
     pub(super) fn with_saves<S: Serialize>(self, a: &S, b: &S) -> Self {
         let found = fields(a).ok().zip(fields(b).ok()).map(|(a, b)| differences(&a, &b));
         Finding { differences: found.unwrap_or_default(), ..self }
     }
 
-    /// What it usually is.
+    /// The most frequent cause of the fault.
     #[must_use]
     pub const fn hint(&self) -> &'static str {
         match (self.way, &self.fault) {
             (Way::Again, _) | (_, Fault::Refused { .. }) => {
-                "a HashMap or HashSet that is iterated, a static or thread-local, an address, a clock, or memory that is \
-                 not initialised"
+                "a HashMap or HashSet that is iterated, a static or thread-local, an address, a clock, or \
+                 uninitialised memory"
             }
             (_, Fault::Answers { .. }) | (Way::Asked | Way::Unasked, Fault::Hash) => {
-                "something that changes when it is asked for: a Cell, a static, or a HashMap in what is answered"
+                "state that changes when it is read: a Cell, a static, or a HashMap in the result"
             }
             (_, Fault::Unhashed) => "a field that `state_hash` leaves out and `step` reads",
             (_, Fault::Encoding | Fault::SavedAgain) => {
-                "a HashMap or HashSet in the save, a `load` that does not bring all of it back, or a Serialize \
-                 and a Deserialize that are no inverses"
+                "a HashMap or HashSet in the save, a `load` that does not restore all of it, or a Serialize \
+                 and a Deserialize that are not inverses"
             }
-            (_, Fault::Unreadable { .. }) => "a Serialize and a Deserialize that do not fit each other",
-            (Way::Reloaded, _) => "a field that is missing from `Save`, or that `load` does not bring back",
+            (_, Fault::Unreadable { .. }) => "a Serialize and a Deserialize that do not match",
+            (Way::Reloaded, _) => "a field that is missing from `Save`, or that `load` does not restore",
             (Way::RolledBack, _) => {
-                "a cache or a field that `load` leaves as it was, saved or not: it is right in a new game and wrong in one that \
-                 has lived"
+                "a cache or a field that `load` does not restore, saved or not: it is right in a new game and \
+                 stale in a game that has already run"
             }
-            (_, Fault::Verdict(Verdict::LimitExceeded { .. })) => "`work` answers more than the limits allow",
+            (_, Fault::Verdict(Verdict::LimitExceeded { .. })) => "`work` returns more than the limits allow",
             (_, Fault::Verdict(_) | Fault::Unrecordable(_)) => {
-                "claims with the same name or that change, or a setup or input that does not survive its encoding"
+                "claims that share a name or change between calls, or a setup or input that does not survive \
+                 its encoding"
             }
             _ => {
-                "the game depends on what is no state of its world, such as the order in which `contacts` come, or on a \
-                  world of its own beside it; if not, it is a fault of the engine"
+                "the game depends on data that is not state of its world, such as the order of `contacts`, or on a \
+                 second world of its own; if not, it is a fault of the engine"
             }
         }
     }
 }
 
-/// Most differences that are shown.
+/// Maximum number of differences that are printed.
 const SHOWN: usize = 8;
 
 impl fmt::Display for Finding {
@@ -153,7 +155,7 @@ impl fmt::Display for Finding {
             more => write!(f, "\n    and {more} more")?,
         }
         if self.differences.is_empty() && matches!(fault, Fault::Hash | Fault::Loaded) {
-            write!(f, "\n    the saves are the same: what differs is not saved")?;
+            write!(f, "\n    the saves are equal: the difference is in state that is not saved")?;
         }
         write!(f, "\nusually {}", self.hint())
     }
@@ -170,20 +172,20 @@ impl fmt::Display for InPhase {
 impl fmt::Display for Fault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Fault::Hash => write!(f, "the state hash is not that of the straight run"),
-            Fault::Phase => write!(f, "something else was left behind than in the straight run"),
+            Fault::Hash => write!(f, "the state hash differs from the reference run"),
+            Fault::Phase => write!(f, "the results differ from the reference run"),
             Fault::Loaded => {
-                write!(f, "the state that was loaded has not the hash of the one that was saved")
+                write!(f, "the loaded state has another hash than the saved state")
             }
-            Fault::Encoding => write!(f, "the save has other bytes after it was decoded and encoded"),
-            Fault::SavedAgain => write!(f, "the state that was loaded is saved as other bytes"),
-            Fault::Unreadable { why } => write!(f, "the bytes of the save are not read: {why}"),
-            Fault::Refused { why } => write!(f, "the setup starts no game any more: {why}"),
-            Fault::Answers { of } => write!(f, "`{of}` gives two answers to the same question"),
+            Fault::Encoding => write!(f, "the save has other bytes after decoding and encoding"),
+            Fault::SavedAgain => write!(f, "saving the loaded state leads to other bytes"),
+            Fault::Unreadable { why } => write!(f, "the save cannot be decoded: {why}"),
+            Fault::Refused { why } => write!(f, "the setup can no longer start a game: {why}"),
+            Fault::Answers { of } => write!(f, "two consecutive calls of `{of}` return different results"),
             Fault::Unhashed => {
                 write!(
                     f,
-                    "a state with the same hash and another save has come to another hash with the same inputs"
+                    "two states with the same hash but different saves reach different hashes with the same inputs"
                 )
             }
             Fault::Verdict(verdict) => write!(f, "the recording does not verify: {verdict}"),

@@ -1,4 +1,4 @@
-//! [`Lane`]: one way to play, beside the straight run.
+//! [`Lane`]: a replica that plays one variant beside the reference run.
 
 use alloc::boxed::Box;
 use alloc::string::{String, ToString};
@@ -14,35 +14,35 @@ use crate::hash::StateHash;
 use crate::lockstep::Game;
 use crate::world::PhaseDigest;
 
-/// The straight run after a tick.
+/// The reference run after a tick.
 pub(super) struct Now<'a, G: Game> {
     pub(super) setup: &'a G::Setup,
     pub(super) options: &'a Options,
     pub(super) straight: &'a G,
     /// The inputs of the tick.
     pub(super) inputs: &'a [G::Input],
-    /// The hash after it.
+    /// Hash after the tick.
     pub(super) hash: StateHash,
-    /// Ticks that have been played.
+    /// Number of ticks played.
     pub(super) tick: u64,
-    /// What the phases of the tick have left behind, if they are compared.
+    /// Digests of the phases of the tick, if phases are compared.
     pub(super) phases: &'a [PhaseDigest],
-    /// What it claims, once it has ended.
+    /// The claims, once the game has ended.
     pub(super) claims: Vec<(String, i64)>,
 }
 
-/// One way to play, beside the straight run.
+/// A replica that plays one variant beside the reference run.
 pub(super) struct Lane<G: Game> {
     pub(super) way: Way,
     game: G,
-    /// Ticks that it has simulated.
+    /// Number of ticks simulated by this replica.
     pub(super) steps: u64,
     past: Past<G>,
     exchanges: Exchanges<G>,
 }
 
 impl<G: Game> Lane<G> {
-    /// A game that is where the straight run is.
+    /// Creates a game with the state of the reference run.
     pub(super) fn begin(way: Way, now: &Now<'_, G>) -> Result<Self, Box<Finding>> {
         let mut game = another::<G>(now.setup, way, now.tick)?;
         if now.tick > 0 {
@@ -57,11 +57,12 @@ impl<G: Game> Lane<G> {
         Ok(lane)
     }
 
-    /// Plays the tick that the straight run has played, compares, and does what must not matter.
+    /// Plays the tick that the reference run has played, compares the results, and performs the variant's extra
+    /// operation.
     pub(super) fn step(&mut self, now: &Now<'_, G>) -> Result<(), Box<Finding>> {
         self.arrange();
         if self.way == Way::Again {
-            // Whatever the straight run is asked for.
+            // The reference run was polled for its work, and this replica must match it exactly.
             let _work = self.game.work(now.inputs);
         }
         let phases = step(&mut self.game, now.inputs, now.options.phases);
@@ -103,7 +104,8 @@ impl<G: Game> Lane<G> {
         Finding::new(self.way, fault, now.tick)
     }
 
-    /// Chooses how the world computes. A game may have made another world meanwhile, so it is chosen before every tick.
+    /// Configures the world for the variant. A game may replace its world at any time, so this is repeated before every
+    /// tick.
     fn arrange(&mut self) {
         let Some(world) = self.game.world_mut() else {
             return;
@@ -138,7 +140,7 @@ impl<G: Game> Lane<G> {
         }
     }
 
-    /// Asks everything that can be asked for, twice.
+    /// Polls hash, work, claims and save twice.
     fn ask(&self, now: &Now<'_, G>) -> Result<(), Box<Finding>> {
         let answers = || {
             let game = &self.game;
@@ -153,7 +155,7 @@ impl<G: Game> Lane<G> {
         }
     }
 
-    /// Through bytes into a new game.
+    /// Encodes the state, decodes it and loads it into a new game.
     fn reload(&mut self, now: &Now<'_, G>) -> Result<(), Box<Finding>> {
         let save = self.game.save();
         let bytes = codec::encode(&save);

@@ -1,4 +1,4 @@
-//! The inputs of every tick, shared by the logs that are made of one.
+//! The inputs of every tick. Logs derived from each other share them.
 
 use alloc::rc::Rc;
 use alloc::vec;
@@ -11,13 +11,13 @@ use crate::replay::{
     CHECKPOINT_INTERVAL, Flaw, Limits, ReadError, Reader, Recording, Rerun, TickInputs, Verdict,
 };
 
-/// The checkpoint interval of the replays that are made here.
+/// Checkpoint interval of the replays that are recorded here.
 pub(super) const INTERVAL: u32 = CHECKPOINT_INTERVAL;
 
 /// The inputs of every player for one tick.
 pub(super) type Inputs<G> = Rc<[<G as Game>::Input]>;
 
-/// The inputs of every tick, as they come back from their bytes.
+/// The inputs of every tick, as decoded from their bytes.
 pub(super) struct Log<G: Game> {
     pub(super) players: u32,
     pub(super) ticks: Vec<Inputs<G>>,
@@ -34,7 +34,7 @@ impl<G: Game> Log<G> {
         Ok(())
     }
 
-    /// Other ticks of the same players.
+    /// A log of other ticks with the same number of players.
     pub(super) fn of(&self, ticks: Vec<Inputs<G>>) -> Self {
         Log { players: self.players, ticks }
     }
@@ -43,12 +43,12 @@ impl<G: Game> Log<G> {
         self.ticks.len() as u64
     }
 
-    /// Nothing pressed.
+    /// Default inputs for all players.
     pub(super) fn nothing(&self) -> Inputs<G> {
         vec![G::Input::default(); self.players as usize].into()
     }
 
-    /// Its replay, as far as it can be recorded.
+    /// Records a replay of the log, up to the first tick that cannot be recorded.
     pub(super) fn record(&self, setup: &G::Setup) -> Vec<u8> {
         let Ok(mut recording) = Recording::<G>::start(setup, INTERVAL) else {
             return Vec::new();
@@ -73,7 +73,7 @@ pub(super) struct Logged<G: Game> {
 
 /// Reads the first `to` ticks of a replay.
 pub(super) fn read<G: Game>(file: &[u8], limits: &Limits, to: u64) -> Result<Logged<G>, CheckError> {
-    // It scans the file and starts the game: what is left may be read.
+    // This scans the file and starts the game, so that errors of the following calls are exceptional.
     let players = Rerun::<G>::open(file, limits)?.game().players();
     let refused = |error: ReadError| CheckError::Replay(error.into());
     let mut ticks = TickInputs::open(file, limits).map_err(refused)?;

@@ -1,4 +1,4 @@
-//! Makes a log that fails shorter: delta debugging over ticks, then over inputs.
+//! Minimises a failing log: delta debugging over ticks, then over inputs.
 
 use alloc::boxed::Box;
 use alloc::vec::Vec;
@@ -11,10 +11,10 @@ use super::options::{Depths, Options, Way};
 use crate::lockstep::Game;
 use crate::replay::{Recording, Verdict, verify};
 
-/// How many runs from the start are compared when it is a matter of chance whether two of them differ.
+/// Number of replicas that are compared with the reference run when a failure may be random.
 const AGAIN: usize = 4;
 
-/// Plays a log in all ways.
+/// Plays a log in all variants.
 pub(super) fn run<G: Game>(
     setup: &G::Setup,
     log: &Log<G>,
@@ -70,7 +70,7 @@ fn record<G: Game>(setup: &G::Setup, log: &Log<G>, options: &Options) -> Result<
     }
 }
 
-/// The failure that a finding in a log comes down to.
+/// Reduces a finding in a log to a failure with a minimal replay.
 pub(super) fn minimise<G: Game>(
     setup: &G::Setup,
     log: &Log<G>,
@@ -84,7 +84,7 @@ pub(super) fn minimise<G: Game>(
     }
     let mut search = Search { setup, options: options.clone(), spent: 0, need: 0 };
     let way = finding.way;
-    // Whatever is random shows in any way: then that is what to say.
+    // A random failure can appear in any variant, so [`Way::Again`] is tried first and reported if it fails.
     let (finding, best) = [Way::Again, way]
         .into_iter()
         .find_map(|way| search.begin(log, way, &finding))
@@ -105,7 +105,7 @@ fn first<G: Game>(log: &Log<G>, ticks: u64) -> Log<G> {
     log.of(log.ticks.iter().zip(0..ticks.max(1)).map(|(inputs, _)| inputs.clone()).collect())
 }
 
-/// A log that fails, and how often.
+/// A failing log, and the number of its failing runs.
 struct Attempt<G: Game> {
     ticks: Vec<Inputs<G>>,
     finding: Finding,
@@ -114,16 +114,16 @@ struct Attempt<G: Game> {
 
 struct Search<'s, G: Game> {
     setup: &'s G::Setup,
-    /// Only what fails.
+    /// Options restricted to the failing variant.
     options: Options,
-    /// Ticks that were simulated.
+    /// Number of ticks simulated.
     spent: u64,
-    /// How often a log has to fail.
+    /// Number of failing runs that a candidate needs.
     need: u32,
 }
 
 impl<G: Game> Search<'_, G> {
-    /// Looks whether a log fails in one way alone, and how often.
+    /// Tests whether a log fails in one variant alone, and how often.
     fn begin(&mut self, log: &Log<G>, way: Way, finding: &Finding) -> Option<(Finding, Attempt<G>)> {
         let ways = if way == Way::Again { [way; AGAIN].to_vec() } else { [way].to_vec() };
         self.options = Options { ways, from: 0, every: 1, depths: Depths::Each, ..self.options.clone() };
@@ -132,7 +132,7 @@ impl<G: Game> Search<'_, G> {
         }
         self.need = 1;
         let of_cut = self.attempt(first(log, finding.played).ticks, log);
-        // What fails by chance may fail more often with more ticks.
+        // A random failure may occur more often in a longer log.
         self.need = of_cut.as_ref().map_or(0, |found| found.failed) + 1;
         let of_all = match self.need <= self.options.repeats {
             true => self.attempt(log.ticks.clone(), log),
@@ -145,8 +145,8 @@ impl<G: Game> Search<'_, G> {
         Some((finding, found))
     }
 
-    /// Plays some ticks as often as it takes to know whether they fail often enough. They are then cut where the last
-    /// of these runs has failed.
+    /// Plays a candidate until it is known whether it fails often enough. The candidate is then cut after the last
+    /// failing tick of these runs.
     fn attempt(&mut self, mut ticks: Vec<Inputs<G>>, log: &Log<G>) -> Option<Attempt<G>> {
         let repeats = self.options.repeats.max(1);
         let candidate = log.of(ticks.clone());
@@ -171,7 +171,7 @@ impl<G: Game> Search<'_, G> {
         self.spent >= self.options.budget
     }
 
-    /// Leaves out ticks, then inputs, then single players' inputs, for as long as that helps.
+    /// Removes ticks, then all inputs of ticks, then inputs of single players, as long as the log becomes smaller.
     fn shrink(&mut self, log: &Log<G>, mut best: Attempt<G>) -> Attempt<G> {
         loop {
             let before = weight(&best.ticks);
@@ -183,7 +183,7 @@ impl<G: Game> Search<'_, G> {
                     replaced(ticks, from, to, |inputs| without(inputs, player))
                 });
             }
-            // What is held needs fewer words than what changes.
+            // Held inputs are simpler than changing ones.
             self.pass(log, &mut best, &|ticks, from, to| {
                 let held = ticks[from.checked_sub(1)?].clone();
                 replaced(ticks, from, to, |_| held.clone())
@@ -194,11 +194,11 @@ impl<G: Game> Search<'_, G> {
         }
     }
 
-    /// Tries a change on all of the log, then on halves, quarters and so on, and keeps what still fails.
+    /// Applies a change to the whole log, then to halves, quarters and so on, and keeps the results that still fail.
     fn pass(&mut self, log: &Log<G>, best: &mut Attempt<G>, change: &Change<'_, G>) {
         let mut size = best.ticks.len();
         while size > 0 {
-            // From the end: what comes early has more influence.
+            // Starts at the end, because early ticks influence more of the game.
             let mut to = best.ticks.len();
             while to > 0 && !self.is_spent() {
                 let from = to.saturating_sub(size);
@@ -214,7 +214,7 @@ impl<G: Game> Search<'_, G> {
     }
 }
 
-/// A log with something else from one tick to another; `None` if that cannot be.
+/// A change of the ticks between two indices; `None` if it is not possible.
 type Change<'a, G> = dyn Fn(&[Inputs<G>], usize, usize) -> Option<Vec<Inputs<G>>> + 'a;
 
 fn replaced<I: Clone>(ticks: &[I], from: usize, to: usize, with: impl Fn(&I) -> I) -> Option<Vec<I>> {
@@ -222,7 +222,7 @@ fn replaced<I: Clone>(ticks: &[I], from: usize, to: usize, with: impl Fn(&I) -> 
     Some([&ticks[..from], &changed, &ticks[to..]].concat())
 }
 
-/// Inputs without those of a player.
+/// Replaces the input of a player by the default one.
 fn without<I: Clone + Default>(inputs: &alloc::rc::Rc<[I]>, player: usize) -> alloc::rc::Rc<[I]> {
     let mut inputs = inputs.to_vec();
     if let Some(input) = inputs.get_mut(player) {
@@ -231,7 +231,7 @@ fn without<I: Clone + Default>(inputs: &alloc::rc::Rc<[I]>, player: usize) -> al
     inputs.into()
 }
 
-/// How much there is in a log: ticks, then inputs that are not nothing, then changes.
+/// Size of a log in lexicographic order: ticks, inputs that are not the default, changes between ticks.
 fn weight<I: Default + PartialEq>(ticks: &[alloc::rc::Rc<[I]>]) -> (usize, usize, usize) {
     let nothing = I::default();
     let inputs = ticks.iter().flat_map(|inputs| inputs.iter());

@@ -1,9 +1,10 @@
-//! Checks a game: plays a log of inputs in many ways that must make no difference, and says which of them does.
+//! Checks a game: plays a log of inputs in many variants that must not change the result, and reports the first that
+//! does.
 //!
-//! [`check`] takes a [`Game`] and an input log. It plays the log straight, and beside it in every [`Way`] of
-//! [`Options::ways`]: once more from the start, through bytes at every tick, rolled back by 1 to 8 ticks, with caches
-//! dropped, on other threads and so on. After every tick all of them must have the same hash. If one has not, there is a
-//! [`Failure`]: the way, the tick, the fields that differ, and a replay that is as short as it could be made.
+//! [`check`] takes a [`Game`] and an input log. It plays the log in a reference run, and beside it in every variant
+//! ([`Way`]) of [`Options::ways`]: again from the start, encoded and reloaded at every tick, rolled back by 1 to 8
+//! ticks, with caches cleared, on other thread counts and so on. After every tick all variants must have the same hash.
+//! If one differs, the result is a [`Failure`]: the variant, the tick, the fields that differ, and a minimised replay.
 //!
 //! ```
 //! use lockstep2d::{check::{self, Options}, lockstep::{Game, Sandbox, SandboxSetup}, math::Rng};
@@ -15,12 +16,12 @@
 //! ```
 //!
 //! [`random_inputs`] and [`inputs_from_bytes`] make logs for any game, for plain tests and for a fuzzer;
-//! [`check_replay`] takes a replay instead. `docs/FUZZING.md` says what each failure means.
+//! [`check_replay`] takes a replay instead. `docs/FUZZING.md` explains each failure.
 //!
-//! # What it does not do
+//! # Limitations
 //!
 //! A panic of the game's code is not caught: it passes through to the caller, whose test or fuzzer reports it with its
-//! input. What needs another machine, compiler or process is not seen either.
+//! input. Differences between machines, compilers or processes are not detected.
 
 mod checker;
 mod exchange;
@@ -46,14 +47,14 @@ use crate::lockstep::Game;
 use crate::replay::{Recorder, Verdict};
 use log::{INTERVAL, Log, Logged};
 
-/// Plays a game from a setup with the inputs of every tick, in every [`Way`] of the options.
+/// Plays a game from a setup with the inputs of every tick, in every variant ([`Way`]) of the options.
 ///
-/// With the default options that costs some twenty plain runs of the log. `inputs` has a list for each tick, with an
+/// With the default options this costs about twenty plain runs of the log. `inputs` has a list for each tick, with an
 /// input for each player.
 ///
 /// # Errors
-/// [`CheckError::Failed`] with what is wrong with the game; [`CheckError::Record`] if no game starts from this setup, or
-/// the inputs are not one for each player: what no replay can hold.
+/// [`CheckError::Failed`] with the fault of the game; [`CheckError::Record`] if the setup cannot start a game, or if
+/// there is not exactly one input per player, so that a replay cannot represent them.
 pub fn check<G: Game>(
     setup: &G::Setup,
     inputs: &[Vec<G::Input>],
@@ -67,11 +68,12 @@ pub fn check<G: Game>(
     check_log(setup, &log, options)
 }
 
-/// The same for the setup and the inputs of a replay, whatever its checkpoints say, from [`Options::from`] to
-/// [`Options::to`].
+/// Checks a game with the setup and the inputs of a replay, from [`Options::from`] to [`Options::to`]. Its checkpoints
+/// are ignored.
 ///
 /// # Errors
-/// As [`check`]; [`CheckError::Replay`] if the file is no replay of this game or costs more than the limits allow.
+/// Same as [`check`]; [`CheckError::Replay`] if the file is not a replay of this game or costs more than the limits
+/// allow.
 pub fn check_replay<G: Game>(file: &[u8], options: &Options) -> Result<Checked, CheckError> {
     let Logged { setup, log } = log::read::<G>(file, &options.limits, options.to)?;
     match check_log(&setup, &log, options) {

@@ -1,4 +1,4 @@
-//! [`Options`]: what is checked, and how much it may cost.
+//! [`Options`]: the extent and cost of a check.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -8,39 +8,39 @@ use crate::collision::BroadPhaseKind;
 use crate::replay::Limits;
 use crate::world::Backend;
 
-/// A way to play the same inputs that must come to the same.
+/// A variant of playing the same inputs that must lead to the same states.
 ///
-/// Those that do something to a [`World`](crate::world::World) are left out for a game that has none to show
+/// Variants that act on a [`World`](crate::world::World) are skipped for a game that does not expose one
 /// ([`Game::world_mut`](crate::lockstep::Game::world_mut)).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Way {
-    /// Once more from the start, in the same process: random iteration orders, global state, addresses and clocks show.
+    /// Again from the start, in the same process: detects random iteration orders, global state, addresses and clocks.
     Again,
-    /// Hash, work, claims and save are asked for twice after every tick: asking must change nothing.
+    /// Hash, work, claims and save are polled twice after every tick: polling must not change the state.
     Asked,
-    /// The hash is asked for after the last tick only: not asking must change nothing either.
+    /// The hash is polled after the last tick only: skipping the poll must not change the state either.
     Unasked,
-    /// After every tick the save is encoded, decoded, and loaded into a new game, which plays on.
+    /// After every tick the state is saved, encoded, decoded and loaded into a new game, which continues.
     Reloaded,
-    /// After every tick the game goes back by some ticks and plays them again, also after wrong guesses.
+    /// After every tick the game is rolled back by some ticks and plays them again, also after wrong predictions.
     RolledBack,
-    /// All caches of the world are dropped after every tick.
+    /// All caches of the world are cleared after every tick.
     ClearedScratch,
-    /// The solver computes in another way.
+    /// The solver runs on another backend.
     Backend(Backend),
-    /// Pairs are found in another way.
+    /// The broad phase uses another algorithm.
     BroadPhase(BroadPhaseKind),
-    /// Another number of threads shares a tick; left out without the feature `parallel`.
+    /// A tick runs on another number of threads; skipped without the feature `parallel`.
     Threads(usize),
-    /// Bytes of a save are exchanged for those of another tick: if the hash does not see that, it must not matter.
+    /// Bytes of a save are swapped for those of another tick: if the hash does not change, the future must not either.
     Exchanged,
     /// The game is recorded and its replay verified, claims included.
     Recorded,
 }
 
 impl Way {
-    /// All ways that this machine has.
+    /// All variants available on this machine.
     #[must_use]
     pub fn all() -> Vec<Way> {
         let mut ways = vec![
@@ -62,7 +62,7 @@ impl Way {
         ways
     }
 
-    /// Whether it does something to the world of a game.
+    /// Whether the variant acts on the world of a game.
     pub(super) const fn needs_world(self) -> bool {
         matches!(self, Way::ClearedScratch | Way::Backend(_) | Way::BroadPhase(_) | Way::Threads(_))
     }
@@ -72,70 +72,70 @@ impl fmt::Display for Way {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Way::Again => write!(f, "played again"),
-            Way::Asked => write!(f, "asked for hash, work, claims and save"),
-            Way::Unasked => write!(f, "not asked for its hash"),
-            Way::Reloaded => write!(f, "through bytes into a new game"),
+            Way::Asked => write!(f, "with hash, work, claims and save polled twice"),
+            Way::Unasked => write!(f, "with the hash polled only at the end"),
+            Way::Reloaded => write!(f, "reloaded from bytes into a new game"),
             Way::RolledBack => write!(f, "rolled back"),
             Way::ClearedScratch => write!(f, "with cleared scratch"),
             Way::Backend(backend) => write!(f, "with the backend {backend:?}"),
             Way::BroadPhase(kind) => write!(f, "with the broad phase {kind:?}"),
             Way::Threads(count) => write!(f, "on {count} threads"),
-            Way::Exchanged => write!(f, "with bytes of another tick in its save"),
+            Way::Exchanged => write!(f, "with bytes of another tick swapped into its save"),
             Way::Recorded => write!(f, "recorded and verified"),
         }
     }
 }
 
-/// By how many ticks [`Way::RolledBack`] goes back.
+/// The rollback depths of [`Way::RolledBack`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Depths {
-    /// By one number of ticks with one guess, the next at the next tick: all of them within 24 ticks, for some eight
-    /// steps a tick.
+    /// One depth with one prediction at a time, the next at the next tick: all combinations within 24 ticks, at a cost
+    /// of about eight steps per tick.
     #[default]
     InTurn,
-    /// By each number of ticks with each guess, every time: 180 steps a tick.
+    /// All depths with all predictions every time: 180 steps per tick.
     Each,
 }
 
-/// Whether the phases of the physics step are compared as well.
+/// Whether the phases of the physics step are compared, too.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Phases {
     /// Only the states between ticks.
     #[default]
     Ignored,
-    /// After each phase the world and what its later phases work with; a tick takes several times as long.
+    /// Compares the world and the inputs of the later phases after each phase. A tick takes several times as long.
     Compared,
 }
 
-/// What is checked, and how much it may cost.
+/// The extent and cost of a check.
 #[derive(Clone, Debug)]
 pub struct Options {
-    /// The ways to play.
+    /// The variants to play.
     pub ways: Vec<Way>,
-    /// Every how many ticks the state goes through bytes, is rolled back, or loses its caches; at least 1.
+    /// Interval in ticks at which the state is reloaded, rolled back or loses its caches; at least 1.
     pub every: u64,
-    /// By how many ticks it is rolled back at most, up to 64.
+    /// Maximum rollback depth in ticks, up to 64.
     pub rollback_max: u32,
-    /// Which of these numbers of ticks in one go.
+    /// The depths that are played at a tick.
     pub depths: Depths,
-    /// Whether the phases of the physics step are compared as well.
+    /// Whether the phases of the physics step are compared, too.
     pub phases: Phases,
-    /// The tick from which on it is checked; before it, the game is only played.
+    /// The tick at which checking begins; before it, only the reference run is played.
     pub from: u64,
-    /// The tick up to which a log is played, if it is that long.
+    /// The tick at which the check ends, if the log is longer.
     pub to: u64,
-    /// How often a shorter log is played to see how often it fails, at least 1. A log that fails by chance, because of a
-    /// `HashMap`, is made shorter only as long as it fails as often as before.
+    /// Number of runs of each shortened log, to measure how often it fails; at least 1. A log that fails randomly, because
+    /// of a `HashMap`, is shortened only while it fails as often as before.
     pub repeats: u32,
-    /// Ticks that may be simulated to make a failing log shorter. With 0 it ends with the tick that fails,
-    /// and is not played again.
+    /// Maximum number of ticks simulated to minimise a failing log. With 0 the log is only cut after the failing tick,
+    /// and not played again.
     pub budget: u64,
-    /// What a replay may cost: one that is checked, and one that is recorded.
+    /// Limits of the replays that are checked and recorded.
     pub limits: Limits,
 }
 
 impl Default for Options {
-    /// Everything at every tick: for logs of some hundred ticks.
+    /// Checks everything at every tick: suitable for logs of some hundred ticks.
     fn default() -> Self {
         Options {
             ways: Way::all(),
@@ -153,20 +153,20 @@ impl Default for Options {
 }
 
 impl Options {
-    /// The same with only some ways.
+    /// Restricts the options to some variants.
     #[must_use]
     pub fn only(self, ways: &[Way]) -> Self {
         Options { ways: ways.to_vec(), ..self }
     }
 
-    /// The same without a way.
+    /// Removes a variant.
     #[must_use]
     pub fn without(mut self, way: Way) -> Self {
         self.ways.retain(|kept| *kept != way);
         self
     }
 
-    /// The same for a longer log: what costs most is done every so many ticks.
+    /// Sets the interval of the expensive operations in ticks, for longer logs.
     #[must_use]
     pub fn every(self, ticks: u64) -> Self {
         Options { every: ticks.max(1), ..self }

@@ -1,4 +1,4 @@
-//! [`Past`]: the last ticks of a game that is rolled back.
+//! [`Past`]: the last ticks of the replica that is rolled back.
 
 use alloc::boxed::Box;
 use alloc::collections::VecDeque;
@@ -11,15 +11,15 @@ use super::options::{Depths, Way};
 use crate::hash::StateHash;
 use crate::lockstep::Game;
 
-/// Most ticks that are kept.
+/// Maximum number of kept ticks.
 const DEPTH_MAX: u32 = 64;
 
-/// The last ticks of a game that is rolled back.
+/// The last ticks of the replica that is rolled back.
 pub(super) struct Past<G: Game> {
     moments: VecDeque<Moment<G>>,
 }
 
-/// A state, and the inputs that have led to it.
+/// A state, and the inputs that led to it.
 struct Moment<G: Game> {
     inputs: Vec<G::Input>,
     save: G::Save,
@@ -32,11 +32,11 @@ impl<G: Game> Default for Past<G> {
     }
 }
 
-/// A rollback by some ticks, after a guess.
+/// Depth of a rollback in ticks, and the prediction before it.
 type Rollback = (u32, Guess);
 
 impl<G: Game> Past<G> {
-    /// Takes note of the state after a tick, and rolls back.
+    /// Records the state after a tick, and rolls back.
     pub(super) fn disturb(
         &mut self,
         game: &mut G,
@@ -53,7 +53,7 @@ impl<G: Game> Past<G> {
         }
         for (depth, guess) in rollbacks(now.options.depths, depth_max, now.tick) {
             let last = self.moments.len() - 1;
-            // Near the start there is less to go back by.
+            // Near the start the depth is limited by the number of ticks played.
             let depth = depth.min(u32::try_from(last).unwrap_or(u32::MAX));
             if depth > 0 {
                 *steps += u64::from(depth) * if guess == Guess::Right { 1 } else { 2 };
@@ -63,7 +63,8 @@ impl<G: Game> Past<G> {
         Ok(())
     }
 
-    /// Goes back to a moment and plays up to now: first as guessed, then as it was.
+    /// Rolls back to a moment and plays up to the current tick: first with the predicted inputs, then with the actual
+    /// ones.
     fn roll_back(
         &self,
         game: &mut G,
@@ -97,7 +98,7 @@ impl<G: Game> Past<G> {
     }
 }
 
-/// The rollbacks of a tick.
+/// The rollbacks to perform at a tick.
 fn rollbacks(depths: Depths, depth_max: u32, tick: u64) -> Vec<Rollback> {
     let each = |depth: u32| Guess::ALL.into_iter().map(move |guess| (depth, guess));
     match depths {

@@ -1,4 +1,4 @@
-//! Inputs of any game from any bytes: for a fuzzer, and for plain tests with random numbers.
+//! Generates inputs of any game from bytes: for a fuzzer, and for plain tests with random numbers.
 
 use alloc::string::String;
 use alloc::vec;
@@ -10,12 +10,13 @@ use serde::de::{self, DeserializeSeed, Deserializer, IntoDeserializer, Visitor};
 use crate::lockstep::{EncodedInputs, Game};
 use crate::math::Rng;
 
-/// Inputs for some players, tick by tick, from any bytes. Every list of bytes is a log, and a small change of the bytes
-/// is mostly a small change of the log.
+/// Generates inputs for some players, tick by tick, from bytes. Every byte string is a log, and a small change of the
+/// bytes mostly makes a small change of the log.
 ///
-/// The first of the bytes of a tick says whether inputs are held, for up to 16 ticks, or whether one player or all have
-/// new ones. These are made by the input's own `Deserialize`: the bytes choose variants, lengths and numbers, so that lists are short
-/// and numbers often small or the largest. An input that refuses what it gets is the default one.
+/// The first byte of a tick decides whether inputs are held, for up to 16 ticks, or whether one player or all players
+/// get new ones. New inputs are made by the input's own `Deserialize`: the bytes choose variants, lengths and numbers,
+/// such that lists are short and numbers are often small or near the maximum. An input whose `Deserialize` fails is
+/// replaced by the default.
 #[must_use]
 pub fn inputs_from_bytes<G: Game>(players: u32, bytes: &[u8]) -> Vec<Vec<G::Input>> {
     let mut source = Source { bytes, depth: 0 };
@@ -38,7 +39,7 @@ pub fn inputs_from_bytes<G: Game>(players: u32, bytes: &[u8]) -> Vec<Vec<G::Inpu
     log
 }
 
-/// Random inputs for some players and a number of ticks. The same seed gives the same.
+/// Generates random inputs for some players and a number of ticks. The same seed gives the same inputs.
 #[must_use]
 pub fn random_inputs<G: Game>(players: u32, ticks: u64, rng: &mut Rng) -> Vec<Vec<G::Input>> {
     let mut log = Vec::new();
@@ -50,7 +51,7 @@ pub fn random_inputs<G: Game>(players: u32, ticks: u64, rng: &mut Rng) -> Vec<Ve
     log
 }
 
-/// The inputs as they come back from their bytes.
+/// Encodes and decodes the inputs.
 fn canonical<I>(inputs: Vec<I>, players: u32) -> Vec<I>
 where
     I: Clone + Default + serde::Serialize + de::DeserializeOwned,
@@ -61,10 +62,10 @@ where
     }
 }
 
-/// How deep values may be nested.
+/// Maximum nesting depth of values.
 const DEPTH_MAX: u32 = 32;
 
-/// Bytes that answer every question of a `Deserialize`; zeros when they have ended.
+/// Bytes that answer all requests of a `Deserialize`; zeros after their end.
 struct Source<'a> {
     bytes: &'a [u8],
     depth: u32,
@@ -86,16 +87,16 @@ impl Source<'_> {
         I::deserialize(self).unwrap_or_default()
     }
 
-    /// Up to so many bits: mostly a small number, or one near an end of its range.
+    /// An integer of up to `count` bits: mostly small, or near an end or the middle of its range.
     fn bits(&mut self, count: u32) -> u128 {
         if count <= 8 {
             return self.byte().into();
         }
         match self.byte() % 8 {
             0..=3 => self.byte().into(),
-            // Negative, of a signed one.
+            // A small negative number, if the type is signed.
             4 => !u128::from(self.byte()),
-            // Around the halves of its range.
+            // Around the middle of the unsigned range, where a signed type has its limits.
             5 => (1u128 << (count - 1)).wrapping_add(u128::from(self.byte())).wrapping_sub(128),
             _ => (0..count / 8).fold(0, |bits, _| bits << 8 | u128::from(self.byte())),
         }
@@ -153,7 +154,7 @@ impl<'de> Deserializer<'de> for &mut Source<'_> {
     }
 
     fn deserialize_any<V: Visitor<'de>>(self, _: V) -> Result<V::Value, Error> {
-        Err(de::Error::custom("the bytes do not say what they are"))
+        Err(de::Error::custom("the bytes are not self-describing"))
     }
 
     fn deserialize_bool<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
@@ -267,7 +268,7 @@ impl<'de> Deserializer<'de> for &mut Source<'_> {
     }
 }
 
-/// The values of a list, struct or map that are left.
+/// The remaining values of a list, struct or map.
 struct List<'s, 'a> {
     source: &'s mut Source<'a>,
     left: usize,

@@ -1,21 +1,21 @@
-//! [`Bar`]: a length to compare others with.
+//! [`Bar`]: a scale bar.
 
 use alloc::format;
 use alloc::string::String;
 
 use crate::math::{Fx, ratio};
 
-/// A bar that shows how long a round length is in a picture.
+/// A scale bar of a round length.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Bar {
-    /// In metres.
+    /// Length in metres.
     pub length: Fx,
-    /// The length with its unit.
+    /// Length with its unit.
     pub label: String,
 }
 
 impl Bar {
-    /// The longest that fits of 1, 2 or 5 times a power of ten millimetres, or `None` if not even 1 mm does.
+    /// Returns the longest fitting bar of 1, 2 or 5 times a power of ten millimetres, or `None` if not even 1 mm fits.
     #[must_use]
     pub fn up_to(fits: impl Fn(Fx) -> bool) -> Option<Self> {
         let lengths = (0u32..13).flat_map(|power| [1i64, 2, 5].map(|digit| digit * 10i64.pow(power)));

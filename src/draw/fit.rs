@@ -1,4 +1,4 @@
-//! The part of a world that is worth seeing.
+//! Chooses the part of a world to show.
 
 use alloc::vec::Vec;
 
@@ -8,21 +8,20 @@ use crate::fx;
 use crate::math::{Aabb, Fx, Vec2};
 use crate::world::World;
 
-/// Bodies within four times this distance of the others belong to the scene, in metres.
+/// Minimum radius of a scene in metres: bodies within four times this distance of the median belong to it.
 const SCENE_REACH_MIN: Fx = fx!(16);
-/// Ground is looked for within so many sizes of what moves, unless that is further than [`GROUND_REACH`].
+/// Ground is included within this many scene sizes of the scene, unless that is further than [`GROUND_REACH`].
 const GROUND_SIZES: i64 = 12;
-/// Ground is looked for at least this far from a scene that is as large, in metres: a ball is worth less without
-/// the floor that it falls to, but one can no longer see it beside a floor that is further away.
+/// Minimum search distance for ground, in metres, unless the scene is larger. A falling ball should be shown with the
+/// floor below it, but not with a floor so far away that the ball becomes invisible.
 const GROUND_REACH: Fx = fx!(16);
-/// Without anything that moves, only fixed shapes up to this size count, in metres.
+/// Maximum size, in metres, of a fixed shape that is shown if no body can move.
 const FIXED_SIZE_MAX: Fx = fx!(512);
 
 /// The window around all bodies that can move, their joints, and the ground near them, with a margin.
 ///
-/// A body far away from all others is left out, since it would make the rest too small to see. Of fixed shapes
-/// that are larger than the scene only the nearest part is shown. Bodies count as they are now, so the window
-/// moves with them.
+/// A body far away from all others is left out, because it would make the rest too small to see. Of fixed shapes larger
+/// than the scene only the nearest part is shown. The current positions count, so the window moves with the bodies.
 #[must_use]
 pub fn fit(world: &World) -> Aabb {
     let moving = world.bodies().filter(|(_, body)| body.kind() != BodyKind::Fixed);
@@ -35,7 +34,7 @@ pub fn fit(world: &World) -> Aabb {
             .unwrap_or_default(),
     };
     let side = longest_side(window);
-    // An empty world, or a single point in it.
+    // The world is empty or contains only a single point.
     if side == Fx::ZERO { window.expanded(fx!(5)) } else { window.expanded(side / 12) }
 }
 
@@ -48,8 +47,8 @@ fn bounds_of(world: &World, body: &Body) -> Aabb {
     boxes.reduce(Aabb::union).unwrap_or(Aabb::new(centre, centre))
 }
 
-/// The box around those that belong together. In the order of their distance from the median, the first one that
-/// is four times as far away as any before it does not, nor does anything behind it.
+/// The box around the bodies that form the scene. Bodies are sorted by distance from the median. The first body that is
+/// more than four times as far away as all before it is left out, together with all bodies after it.
 fn scene_of(mut boxes: Vec<Aabb>) -> Option<Aabb> {
     let middle = |component: fn(Vec2<Fx>) -> Fx| {
         let mut values: Vec<Fx> = boxes.iter().map(|aabb| component(aabb.centre())).collect();
@@ -71,7 +70,7 @@ fn scene_of(mut boxes: Vec<Aabb>) -> Option<Aabb> {
     near.reduce(Aabb::union)
 }
 
-/// The box around a scene, the anchors that hold it and the ground that it stands on.
+/// The box around a scene, its joint anchors and the ground near it.
 fn with_surroundings(world: &World, scene: Aabb) -> Aabb {
     let side = longest_side(scene);
     let reach = side.saturating_mul_int(GROUND_SIZES).min(side.max(GROUND_REACH));

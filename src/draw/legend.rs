@@ -1,4 +1,4 @@
-//! [`Legend`]: what a picture of a world says in words.
+//! [`Legend`]: the text of a picture of a world.
 
 use alloc::format;
 use alloc::string::String;
@@ -9,19 +9,19 @@ use crate::hash::StateHash;
 use crate::math::{Fx, widen};
 use crate::world::World;
 
-/// What a picture of a world says in words, below its title.
+/// The text of a picture of a world, below its title.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Legend {
-    /// Tick, how much there is, and how well contacts and joints hold it.
+    /// Tick, numbers of bodies and contacts, and the largest errors of contacts and joints.
     pub figures: String,
-    /// Of the state.
+    /// State hash of the world.
     pub hash: StateHash,
-    /// What can be seen, each with its colour as `0xRRGGBB`.
+    /// Names of the styles in the picture, each with its colour as `0xRRGGBB`.
     pub names: Vec<(&'static str, u32)>,
 }
 
 impl Legend {
-    /// Of a picture in which these styles can be seen, in the order in which they are painted.
+    /// Creates the legend of a picture with these styles, given in the order in which they are painted.
     #[must_use]
     pub fn of(world: &World, styles: impl IntoIterator<Item = Style>) -> Self {
         let overlaps =
@@ -38,13 +38,13 @@ impl Legend {
         let paints = styles.into_iter().map(|style| style.paint());
         let mut names: Vec<_> = paints.map(|paint| (paint.name, paint.stroke)).collect();
         names.retain(|(name, _)| !name.is_empty());
-        // Styles of many hues have one name.
+        // The styles of different hues share one name.
         names.dedup_by_key(|(name, _)| *name);
         Legend { figures, hash: world.state_hash(), names }
     }
 }
 
-/// Of a length in metres; what does not reach anything is 0.
+/// A length in metres, converted to millimetres; negative lengths become 0.
 fn millimetres(length: Fx) -> Fx {
     length.max(Fx::ZERO).saturating_mul_int(1000)
 }

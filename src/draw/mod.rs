@@ -1,15 +1,15 @@
 //! Pictures of a world: plain primitives for any renderer, and an SVG of a tick.
 //!
-//! [`primitives`] says *what* there is to see, in world coordinates and with a meaning ([`Style`]) instead of a
-//! colour, so that a window, a browser and the SVG here show the same things. [`svg`] is one such renderer.
-//! Drawing reads a world and cannot change it.
+//! [`primitives`] describes the visible things in world coordinates, with a meaning ([`Style`]) instead of a colour, so
+//! that a window, a browser and the SVG output show the same picture. [`svg`] is one such renderer. Drawing reads a
+//! world and cannot change it.
 //!
-//! Contacts are those that the last tick has solved: they were found before the bodies moved, so that at a fast
-//! body they lag behind the outline by the motion of one tick. Directly after [`World::restore`],
-//! [`World::from_bytes`] or the removal of a shape there are none until the next tick.
+//! The contacts are those solved in the last tick. They were found before the bodies moved, so the contacts of a fast
+//! body lag behind its outline by the motion of one tick. Directly after [`World::restore`], [`World::from_bytes`] or
+//! the removal of a shape there are no contacts until the next tick.
 //!
-//! Even here nothing is a float: the same world gives the same text on every machine, so that two pictures can
-//! be compared with `diff`.
+//! Drawing uses no floating-point numbers, either: the same world gives the same text on every machine, so that two
+//! pictures can be compared with `diff`.
 //!
 //! ```
 //! use lockstep2d::{body::{BodyDef, Geometry, ShapeDef}, fx, world::World};

@@ -1,41 +1,41 @@
-//! [`Paint`]: how styles look, the same in every renderer.
+//! [`Paint`]: the appearance of styles, the same in every renderer.
 
 use super::primitive::{Hue, Proximity, Style};
 
-/// How a style is painted, on a ground as bright as paper.
+/// Appearance of a style on a light background.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Paint {
-    /// What to call it in a legend; empty where another one of the same meaning says it.
+    /// Name in a legend; empty if another style with the same meaning is named there.
     pub name: &'static str,
-    /// Of lines, marks and text, as `0xRRGGBB`.
+    /// Colour of lines, marks and text, as `0xRRGGBB`.
     pub stroke: u32,
-    /// Of what lines enclose.
+    /// Fill of the enclosed area.
     pub fill: Option<Fill>,
-    /// Width of lines and size of marks in hundredths of a pixel, where bodies are large.
+    /// Width of lines and size of marks in hundredths of a pixel, for large bodies.
     pub width: u16,
 }
 
-/// A colour that something shines through.
+/// A translucent colour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Fill {
-    /// As `0xRRGGBB`.
+    /// Colour as `0xRRGGBB`.
     pub colour: u32,
-    /// In percent.
+    /// Opacity in percent.
     pub opacity: u8,
 }
 
-/// What is behind everything, as `0xRRGGBB`.
+/// Background colour, as `0xRRGGBB`.
 pub const PAPER: u32 = 0xfafaf7;
 
-/// Colours that can be told apart, by [`Hue::index`]: those of P. Tol's qualitative schemes, which most people with a
-/// colour vision deficiency can tell apart too, in an order in which neighbours differ much.
+/// Distinguishable colours, by [`Hue::index`]. They are taken from P. Tol's qualitative schemes, which are also
+/// distinguishable with most colour vision deficiencies, in an order in which neighbours differ strongly.
 const HUES: [u32; Hue::COUNT as usize] = [
     0x4477aa, 0xee6677, 0x228833, 0xccbb44, 0x66ccee, 0xaa3377, 0xee7733, 0x009988, 0x332288, 0x999933,
     0xcc3311, 0x882255,
 ];
 
 impl Style {
-    /// How it is painted.
+    /// The appearance of this style.
     #[must_use]
     pub const fn paint(self) -> Paint {
         match self {

@@ -1,4 +1,4 @@
-//! Primitives as the path data of SVG.
+//! Converts primitives to SVG path data.
 
 use alloc::string::String;
 use core::fmt::{Arguments, Write};
@@ -7,12 +7,12 @@ use super::primitive::Form;
 use super::screen::{Pixel, Screen};
 use crate::math::{Aabb, Fx, Unit, Vec2, round_shift, widen};
 
-/// Adds formatted text.
+/// Appends formatted text.
 pub(super) fn push(text: &mut String, arguments: Arguments<'_>) {
     text.write_fmt(arguments).expect("a String takes any text");
 }
 
-/// Adds what can be seen of a form to path data. `direction_length` is how long a [`Form::Direction`] is.
+/// Appends the visible part of a form to path data. `direction_length` is the length of a [`Form::Direction`].
 pub(super) fn add(path: &mut String, form: &Form, screen: &Screen, direction_length: Pixel) {
     match form {
         Form::Point(place) => add_point(path, *place, screen),
@@ -27,7 +27,7 @@ pub(super) fn add(path: &mut String, form: &Form, screen: &Screen, direction_len
     }
 }
 
-/// A line of no length: with round caps it is a dot that stays as large when the picture is enlarged.
+/// Adds a line of zero length: with round caps it is a dot whose size does not change when the picture is enlarged.
 fn add_point(path: &mut String, place: Vec2<Fx>, screen: &Screen) {
     if screen.seen.contains_point(place) {
         let (x, y) = screen.place(place);
@@ -35,7 +35,7 @@ fn add_point(path: &mut String, place: Vec2<Fx>, screen: &Screen) {
     }
 }
 
-/// Not a path but an element of its own, a little above the place.
+/// Adds a text element, not a path, slightly above the position.
 fn add_label(elements: &mut String, place: Vec2<Fx>, text: &str, screen: &Screen) {
     if screen.seen.contains_point(place) {
         let (x, y) = screen.place(place);
@@ -89,7 +89,7 @@ fn add_polygon(path: &mut String, vertices: &[Vec2<Fx>], radius: Fx, screen: &Sc
             let (x, y) = screen.place(from);
             push(path, format_args!("{command}{x} {y}"));
         } else {
-            // The edge moved outwards, then the corner at its end.
+            // The edge moved outwards, followed by the arc of the corner at its end.
             let out = outward(from, to, radius);
             let ((x, y), (end_x, end_y)) = (screen.place(from + out), screen.place(to + out));
             let after = vertices[(i + 2) % vertices.len()];
@@ -101,7 +101,7 @@ fn add_polygon(path: &mut String, vertices: &[Vec2<Fx>], radius: Fx, screen: &Sc
     path.push('z');
 }
 
-/// The offset of an edge of a counter-clockwise polygon that is rounded.
+/// Outward offset of an edge of a rounded counter-clockwise polygon.
 fn outward(from: Vec2<Fx>, to: Vec2<Fx>, radius: Fx) -> Vec2<Fx> {
     let Some(normal) = (from - to).perp().normalized() else { return Vec2::ZERO };
     let scale = |unit: Unit| crate::math::fx_mul(widen(unit), radius);

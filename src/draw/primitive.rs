@@ -1,4 +1,4 @@
-//! What a picture is made of, as plain data.
+//! The primitives that a picture consists of, as plain data.
 
 use alloc::string::String;
 use alloc::vec::Vec;
@@ -6,7 +6,7 @@ use alloc::vec::Vec;
 use crate::body::{BodyId, JointId, ShapeId};
 use crate::math::{Aabb, Fx, Unit, Vec2};
 
-/// What to draw.
+/// The kinds of things to draw.
 ///
 /// ```
 /// use lockstep2d::draw::Layers;
@@ -17,25 +17,25 @@ use crate::math::{Aabb, Fx, Unit, Vec2};
 pub struct Layers {
     /// The shapes of all bodies.
     pub outlines: bool,
-    /// Bodies that can only fall asleep together, in one colour.
+    /// Outlines in the colour of their island, whose bodies can only fall asleep together.
     pub islands: bool,
-    /// The fat boxes that the broad phase sees.
+    /// Fat boxes, as stored in the broad phase.
     pub fat_boxes: bool,
-    /// The boxes in which the broad phase has put those, and those in turn.
+    /// Boxes of the inner nodes of the broad phase.
     pub broad_phase: bool,
-    /// Where shapes touch or are about to.
+    /// Contact points, touching or speculative.
     pub contact_points: bool,
-    /// In which direction they push, from the contact points.
+    /// Contact normals, drawn from the contact points.
     pub contact_normals: bool,
-    /// How hard they push and rub.
+    /// Normal and friction forces at the contact points.
     pub contact_forces: bool,
-    /// Contact points in the colours of the groups in which they are solved.
+    /// Contact points in the colours of the groups in which the solver processes them.
     pub solver_colours: bool,
-    /// Anchors of joints, the gap between them, and lines to the bodies that they hold.
+    /// Joint anchors, the gaps between them, and lines to the bodies that they connect.
     pub joints: bool,
-    /// How wide the gaps of joints are, as text.
+    /// Sizes of the joint gaps, as text.
     pub joint_errors: bool,
-    /// Centres of mass of the bodies that can move.
+    /// Centres of mass of bodies that can move.
     pub centres_of_mass: bool,
     /// Velocities of the centres of mass.
     pub velocities: bool,
@@ -44,10 +44,10 @@ pub struct Layers {
 }
 
 impl Layers {
-    /// Nothing.
+    /// No layers.
     pub const NONE: Self = Self::each(false);
 
-    /// Everything.
+    /// All layers.
     pub const ALL: Self = Self::each(true);
 
     const fn each(shown: bool) -> Self {
@@ -68,7 +68,7 @@ impl Layers {
         }
     }
 
-    /// Every layer by the name of its field, in the order in which they lie on each other.
+    /// All layers by field name, in painting order.
     #[must_use]
     pub fn named(&mut self) -> [(&'static str, &mut bool); 13] {
         [
@@ -88,7 +88,7 @@ impl Layers {
         ]
     }
 
-    /// What is shown, in parts that lie on each other: within one, nothing hides anything.
+    /// Splits the layers into groups in painting order. Within a group nothing hides anything else.
     #[must_use]
     pub fn stacked(self) -> [Layers; 5] {
         let Layers { outlines, islands, broad_phase, fat_boxes, joints, joint_errors, .. } = self;
@@ -105,7 +105,7 @@ impl Layers {
 }
 
 impl Default for Layers {
-    /// Outlines, fat boxes, contacts with their normals, joints and centres of mass: what nearly every fault shows in.
+    /// Outlines, fat boxes, contact points and normals, joints and centres of mass: they show most faults.
     fn default() -> Self {
         Layers {
             outlines: true,
@@ -119,96 +119,95 @@ impl Default for Layers {
     }
 }
 
-/// A thing to draw.
+/// A primitive to draw.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Primitive {
-    /// What it means; the renderer has the colours.
+    /// Meaning of the primitive; the renderer chooses the colours.
     pub style: Style,
-    /// What it belongs to, for picking and highlighting.
+    /// The object that the primitive belongs to, for picking and highlighting.
     pub subject: Subject,
-    /// What it looks like.
+    /// Geometry of the primitive.
     pub form: Form,
 }
 
-/// What a primitive means. Styles are in the order in which they are painted: what is small and explains the rest lies
-/// on top.
+/// Meaning of a primitive. Styles are in painting order: small, explanatory marks are on top.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Style {
-    /// The outline of a shape of a fixed body, or the radius that shows how a circle is turned.
+    /// The outline of a shape of a fixed body, or the radius that shows the rotation of a circle.
     Fixed,
-    /// The same of a kinematic body.
+    /// Same as [`Style::Fixed`] for a kinematic body.
     Kinematic,
-    /// The same of a dynamic body that is awake.
+    /// Same as [`Style::Fixed`] for a dynamic body that is awake.
     Dynamic,
-    /// The same of a dynamic body that sleeps.
+    /// Same as [`Style::Fixed`] for a dynamic body that is asleep.
     Asleep,
-    /// The outline of a shape again, in the colour of its island.
+    /// The outline of a shape in the colour of its island.
     Island(Hue),
-    /// A box of the broad phase around others; of the smallest depth around all.
+    /// The box of an inner node of the broad phase; nodes at the lowest depth enclose all others.
     BroadPhase,
-    /// The box that the broad phase sees of a shape.
+    /// The fat box of a shape in the broad phase.
     FatBox,
-    /// From a joint's anchor to the centre of mass of the body that it holds there.
+    /// A line from a joint's anchor to the centre of mass of the body.
     JointArm,
-    /// From the centre of mass to where the body would be in a tenth of a second.
+    /// A line from the centre of mass to its predicted position in a tenth of a second.
     Velocity,
     /// The centre of mass of a body.
     CentreOfMass,
     /// An anchor of a joint.
     JointAnchor,
-    /// From one anchor of a joint to the other, where both should be in one place.
+    /// A line between the two anchors of a joint that should coincide.
     JointGap,
-    /// How far the anchors of a joint are apart.
+    /// The distance between the anchors of a joint, as text.
     JointError,
     /// The direction in which a contact pushes its shape B.
     ContactNormal(Proximity),
     /// A contact point.
     ContactPoint(Proximity),
-    /// How hard a contact point pushes shape B. The length is 0.2 m times the square root of the acceleration that it
-    /// gives in units of 10 m/s²: 0.2 m under a box at rest, and not 20 m under a hundred of them.
+    /// The normal force at a contact point on shape B. The length is 0.2 m times the square root of the resulting
+    /// acceleration in units of 10 m/s²: 0.2 m below a box at rest, but only 2 m instead of 20 m below a hundred boxes.
     ContactForce,
-    /// How hard it rubs, to the same scale.
+    /// The friction force at a contact point, to the same scale.
     ContactFriction,
-    /// A contact point, in the colour of the group in which it is solved.
+    /// A contact point, in the colour of the group in which the solver processes it.
     SolverGroup(Hue),
-    /// A contact point that is solved by itself, since its bodies have too many contacts.
+    /// A contact point that is solved outside of all groups, because its bodies have too many contacts.
     SolverOverflow,
     /// The id of a body.
     Id,
 }
 
-/// One of [`Hue::COUNT`] colours that can be told apart, for what has a number and no meaning.
+/// One of [`Hue::COUNT`] distinguishable colours, for things that have a number but no meaning.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Hue(u8);
 
 impl Hue {
-    /// How many there are.
+    /// Number of hues.
     pub const COUNT: u8 = 12;
 
-    /// The colour of a number; those of 0 and of 12 are the same.
+    /// The hue of a number. Hues repeat: 0 and 12 have the same.
     #[must_use]
     pub const fn of(number: usize) -> Self {
         #[expect(clippy::cast_possible_truncation, reason = "less than 12")]
         Hue((number % Self::COUNT as usize) as u8)
     }
 
-    /// Which one it is, less than [`Hue::COUNT`].
+    /// Index of the hue, less than [`Hue::COUNT`].
     #[must_use]
     pub const fn index(self) -> u8 {
         self.0
     }
 }
 
-/// Whether a contact point pushes yet.
+/// Whether a contact point is touching or only speculative.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Proximity {
-    /// Further apart: it is there so that fast shapes do not pass through each other.
+    /// Further apart: a speculative contact, which prevents fast shapes from tunnelling.
     Speculative,
-    /// No further apart than a quarter of the speculative distance, as contact events have it.
+    /// At most a quarter of the speculative distance apart, the threshold that contact events use.
     Touching,
 }
 
-/// What a primitive belongs to.
+/// The object that a primitive belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Subject {
     /// A body.
@@ -219,14 +218,14 @@ pub enum Subject {
     Contact(ShapeId, ShapeId),
     /// A joint.
     Joint(JointId),
-    /// Nothing in particular.
+    /// The world as a whole.
     World,
 }
 
-/// What a primitive looks like, in world coordinates in metres.
+/// Geometry of a primitive, in world coordinates in metres.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Form {
-    /// A mark of the renderer's size and shape.
+    /// A mark whose size and shape the renderer chooses.
     Point(Vec2<Fx>),
     /// A straight line.
     Line {
@@ -235,34 +234,34 @@ pub enum Form {
         /// The other end.
         to: Vec2<Fx>,
     },
-    /// A line of the renderer's length, so that it can be seen at any scale.
+    /// A line whose length the renderer chooses, so that it is visible at any scale.
     Direction {
-        /// Where it starts.
+        /// Start of the line.
         from: Vec2<Fx>,
-        /// Where it points, of length 1.
+        /// Unit vector along the line.
         direction: Vec2<Unit>,
     },
-    /// Text of the renderer's size, beside a place.
+    /// Text beside a position, whose size the renderer chooses.
     Label {
-        /// Where it belongs.
+        /// Position that the text belongs to.
         at: Vec2<Fx>,
-        /// What it says.
+        /// The text.
         text: String,
     },
     /// An axis-aligned box.
     Box(Aabb),
     /// A circle.
     Circle {
-        /// Its centre.
+        /// Centre.
         centre: Vec2<Fx>,
-        /// Its radius.
+        /// Radius.
         radius: Fx,
     },
-    /// A convex polygon, or a line with a radius if it has two vertices.
+    /// A convex polygon, or a line with a radius if there are two vertices.
     Polygon {
-        /// Counter-clockwise.
+        /// Vertices in counter-clockwise order.
         vertices: Vec<Vec2<Fx>>,
-        /// How far the outline lies outside of the edges, with round corners about the vertices.
+        /// Distance of the outline from the edges, with round corners around the vertices.
         radius: Fx,
     },
 }

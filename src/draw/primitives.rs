@@ -1,4 +1,4 @@
-//! What there is to see in a world, as plain data.
+//! Collects the primitives of a world, as plain data.
 
 use alloc::format;
 use alloc::vec::Vec;
@@ -10,17 +10,17 @@ use crate::fx;
 use crate::math::{Fx, Unit, Vec2, fx_mul, widen};
 use crate::world::{ContactView, SolverColour, World};
 
-/// A velocity is drawn as the way that the body makes in this time, in seconds: at 10 m/s one metre, the size of
-/// a typical body. Longer ones hide the scene, shorter ones cannot be told from a point.
+/// A velocity is drawn as the displacement in this time, in seconds: one metre at 10 m/s, the size of a typical body.
+/// Longer lines hide the scene, shorter ones are hard to tell from points.
 const VELOCITY_TIME: Fx = fx!(0.1);
 
-/// How long the force is that accelerates by [`FORCE_UNIT`], in metres: shorter than a typical body.
+/// Drawn length of the force that accelerates by [`FORCE_UNIT`], in metres: shorter than a typical body.
 const FORCE_LENGTH: Fx = fx!(0.2);
-/// About what gravity is, in m/s².
+/// Approximate gravity, in m/s².
 const FORCE_UNIT: i64 = 10;
 
-/// Everything that some layers show of a world: the boxes of the broad phase, then body by body, islands, contacts and
-/// joints, each in slot order.
+/// Collects all primitives of some layers of a world: the boxes of the broad phase, then the bodies, islands, contacts
+/// and joints, each in slot order.
 #[must_use]
 pub fn primitives(world: &World, layers: Layers) -> Vec<Primitive> {
     let mut found = Vec::new();
@@ -28,7 +28,7 @@ pub fn primitives(world: &World, layers: Layers) -> Vec<Primitive> {
     found
 }
 
-/// [`primitives`] one by one, without memory for all of them: a large world has a hundred thousand.
+/// Same as [`primitives`] one by one, without storing all of them: a large world has a hundred thousand.
 pub fn each_primitive(world: &World, layers: Layers, found: Found<'_>) {
     if layers.broad_phase {
         for (aabb, _) in world.broad_phase_boxes() {
@@ -55,7 +55,7 @@ pub fn each_primitive(world: &World, layers: Layers, found: Found<'_>) {
     }
 }
 
-/// What is done with each primitive.
+/// Callback for each primitive.
 type Found<'a> = &'a mut dyn FnMut(Primitive);
 
 fn primitive(style: Style, subject: Subject, form: Form) -> Primitive {
@@ -104,7 +104,7 @@ fn add_outlines(world: &World, (id, body): (BodyId, &Body), style: Style, found:
     let rotation = body.rotation();
     let mut add = |form| found(primitive(style, subject, form));
     for shape in body.shapes().iter().filter_map(|&id| world.shape(id)) {
-        // What collision detection sees, so that a picture cannot hide a fault of the pose.
+        // The outline is the one used by collision detection, so that a picture cannot hide an error of the pose.
         let PosedShape { centre, outline, .. } = PosedShape::new(&shape.def, body, rotation);
         match outline {
             Outline::Circle { radius } => {
@@ -124,7 +124,7 @@ fn add_outlines(world: &World, (id, body): (BodyId, &Body), style: Style, found:
     }
 }
 
-/// Each island in a colour of its own, that of its first body, so that it keeps it while it grows.
+/// Adds each island in the colour of its first body, so that it keeps its colour while it grows.
 fn add_islands(world: &World, found: Found<'_>) {
     for island in world.islands() {
         let Some(first) = island.first() else { continue };
@@ -180,10 +180,10 @@ fn add_forces(contact: &ContactView<'_>, add: &mut impl FnMut(Style, Form)) {
     }
 }
 
-/// In metres, with the sign of the acceleration, to 16 bits after the point; see [`Style::ContactForce`].
+/// Length of a force in metres, with the sign of the acceleration, to 16 fractional bits; see [`Style::ContactForce`].
 fn force_length(acceleration: Fx) -> Fx {
     let units = (acceleration / FORCE_UNIT).to_bits();
-    // The root has half as many bits after the point.
+    // The root has half as many fractional bits.
     let root = Fx::saturating_from_num(units.unsigned_abs().isqrt()) / (1 << (Fx::FRAC_NBITS / 2));
     fx_mul(root, if acceleration < Fx::ZERO { -FORCE_LENGTH } else { FORCE_LENGTH })
 }
@@ -206,8 +206,8 @@ fn add_joint(world: &World, id: JointId, layers: Layers, found: Found<'_>) {
     }
     let (body_a, body_b) = joint.def().bodies();
     for (body, anchor) in [(body_a, anchor_a), (body_b, anchor_b)] {
-        // Where the centre of a fixed body is means nothing: often all of them share one body, and their arms
-        // would meet in a point at the other end of the scene.
+        // The centre of a fixed body has no meaning: often all joints share one fixed body, and their lines would meet
+        // in a point far outside of the scene.
         if let Some(body) = world.body(body).filter(|body| body.kind() != BodyKind::Fixed) {
             add(Style::JointArm, Form::Line { from: anchor, to: body.centre_of_mass() });
         }

@@ -1,15 +1,16 @@
-//! From the world to the picture: `p = (x - centre) pixels / metres`, with y turned over.
+//! Transformation from the world to the picture: `p = (x - centre) pixels / metres`, with y flipped.
 //!
-//! In whole hundredths of a pixel: no screen shows less, and integers print alike everywhere. The scale is a
-//! fraction of two integers because as one number it would have no digits left for a window as wide as the world.
+//! Coordinates are integers in hundredths of a pixel: no screen shows less, and integers print alike everywhere. The
+//! scale is a fraction of two integers, because a single fixed-point number would have no digits left for a window as
+//! wide as the world.
 
 use core::fmt;
 
 use crate::fx;
 use crate::math::{Aabb, Fx, Vec2, div_round, saturate_wide, segment_intersection};
 
-/// The narrowest window, in metres. In a narrower one the largest shapes (120 m) get coordinates of more than
-/// 2^23 pixels, from where on common renderers (cairo) overflow.
+/// Minimum width of the window in metres. In a narrower one the largest shapes (120 m) get coordinates of more than
+/// 2^23 pixels, at which common renderers (cairo) overflow.
 const WINDOW_MIN: Fx = fx!(0.02);
 
 /// A coordinate or length in hundredths of a pixel.
@@ -17,7 +18,7 @@ const WINDOW_MIN: Fx = fx!(0.02);
 pub(super) struct Pixel(pub(super) i64);
 
 impl fmt::Display for Pixel {
-    /// Without zeros at the end: most of a large picture are its numbers.
+    /// Omits trailing zeros: most of the text of a large picture is numbers.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let hundredths = self.0.unsigned_abs();
         let (whole, rest) = (hundredths / 100, hundredths % 100);
@@ -32,17 +33,18 @@ impl fmt::Display for Pixel {
     }
 }
 
-/// A window of the world on an area of pixels.
+/// Maps a window of the world to an area of pixels.
 pub(super) struct Screen {
-    /// What is in the middle.
+    /// World position at the middle of the picture.
     centre: Vec2<Fx>,
-    /// In whole pixels.
+    /// Size of the picture in whole pixels.
     size: (u32, u32),
-    /// So many pixels ...
+    /// Numerator of the scale, in pixels.
     pixels: i128,
-    /// ... are so many units of [`Fx`].
+    /// Denominator of the scale, in units of [`Fx`].
     units: i128,
-    /// What can be seen and a little more: what is cut off at its border is cut off outside of the picture.
+    /// The visible part of the world, slightly enlarged, so that lines clipped at its border end outside of the
+    /// picture.
     pub(super) seen: Aabb,
 }
 
@@ -64,7 +66,7 @@ impl Screen {
         Screen { centre, size, pixels, units, seen: Aabb::new(centre - reach, centre + reach) }
     }
 
-    /// Where a world position is.
+    /// Picture coordinates of a world position.
     pub(super) fn place(&self, point: Vec2<Fx>) -> (Pixel, Pixel) {
         let from = |value: Fx, centre: Fx| i128::from(value.to_bits()) - i128::from(centre.to_bits());
         let x = self.scaled(from(point.x, self.centre.x));
@@ -73,7 +75,7 @@ impl Screen {
         (Pixel(middle(self.size.0).saturating_add(x)), Pixel(middle(self.size.1).saturating_sub(y)))
     }
 
-    /// How long a length in metres is.
+    /// Picture length of a length in metres.
     pub(super) fn length(&self, length: Fx) -> Pixel {
         Pixel(self.scaled(length.to_bits().into()))
     }
@@ -82,7 +84,7 @@ impl Screen {
         saturate_wide(div_round(units * self.pixels * 100, self.units))
     }
 
-    /// The part of a line that can be seen.
+    /// The visible part of a line.
     pub(super) fn clipped(&self, from: Vec2<Fx>, to: Vec2<Fx>) -> Option<(Vec2<Fx>, Vec2<Fx>)> {
         let Aabb { lower, upper } = self.seen;
         if self.seen.contains_point(from) && self.seen.contains_point(to) {
@@ -92,7 +94,8 @@ impl Screen {
         let borders = (0..4).map(|i| (corners[i], corners[(i + 1) % 4]));
         let crossings = borders.filter_map(|(start, end)| segment_intersection(from, to, start, end));
         let ends = [from, to].into_iter().filter(|&end| self.seen.contains_point(end));
-        // Through a corner, both borders give the same point; two different ones are the ends of what is seen.
+        // A line through a corner crosses two borders at the same point. Two different points are the ends of the
+        // visible part.
         let mut points = ends.chain(crossings);
         let first = points.next()?;
         Some((first, points.max_by_key(|&point| first.distance(point))?))
@@ -123,7 +126,10 @@ mod tests {
         assert_eq!(screen.place(Vec2::ZERO), (Pixel(50_000), Pixel(25_000)));
         assert_eq!(screen.place(Vec2::new(fx!(1), fx!(5))), (Pixel(55_000), Pixel(0)));
         assert_eq!(screen.length(fx!(0.5)), Pixel(2500));
-        assert!(screen.seen.contains_point(Vec2::new(fx!(10), fx!(-5))), "as wide as the area");
+        assert!(
+            screen.seen.contains_point(Vec2::new(fx!(10), fx!(-5))),
+            "the window has the aspect ratio of the picture"
+        );
     }
 
     #[test]

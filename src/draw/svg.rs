@@ -1,8 +1,8 @@
-//! A tick as an SVG document.
+//! Draws a tick as an SVG document.
 //!
-//! One path for each body, with its id as a tooltip, and one path for all things of any other style: a picture of
-//! 5000 boxes at rest stays at about two megabytes. Points are lines without length, and no stroke scales, so that
-//! one can enlarge a picture in a browser and still see where exactly two shapes touch.
+//! Each body has one path with its id as a tooltip, and each other style has one path for all its primitives: a picture
+//! of 5000 boxes at rest takes about two megabytes. Points are lines of zero length, and strokes do not scale, so that
+//! a picture can be enlarged in a browser to see exactly where two shapes touch.
 
 use alloc::collections::BTreeMap;
 use alloc::string::String;
@@ -22,7 +22,7 @@ use crate::world::World;
 /// Height of the legend in pixels: two lines of text.
 const LEGEND_HEIGHT: u32 = 42;
 
-/// Draws the world as it is, with y upwards. The same world and view give the same text on every machine.
+/// Draws the current state of the world, with y upwards. The same world and view give the same text on every machine.
 #[must_use]
 pub fn svg(world: &World, view: &View) -> String {
     let (width, height) = (view.width.clamp(64, 16384), view.height.clamp(64, 16384));
@@ -46,7 +46,7 @@ pub fn svg(world: &World, view: &View) -> String {
         ),
     );
     add_legend(&mut text, world, view, &layers);
-    // An inner picture clips what it holds, without an id that could clash in a page with several pictures.
+    // A nested picture clips its contents. It needs no id, which could clash in a page with several pictures.
     push(
         &mut text,
         format_args!(
@@ -64,14 +64,14 @@ pub fn svg(world: &World, view: &View) -> String {
     text
 }
 
-/// How large marks are: as large as one likes to see them, but smaller than the bodies that they lie on.
+/// Size of marks: scaled down for small bodies, so that marks stay smaller than the bodies below them.
 struct Marks {
-    /// The mean half extent of what moves on the screen.
+    /// Mean half extent of moving shapes on the screen, in hundredths of a pixel.
     body: i64,
 }
 
 impl Marks {
-    /// From this mean half extent on, in hundredths of a pixel, marks are largest.
+    /// Half extent at which marks reach their maximum size, in hundredths of a pixel.
     const BODY_LARGE: i64 = 2400;
 
     fn of(world: &World, screen: &Screen) -> Self {
@@ -93,7 +93,7 @@ impl Marks {
     }
 }
 
-/// The elements of every style that can be seen, in the order in which they are painted.
+/// The elements of all visible styles, in painting order.
 fn sorted_by_style(world: &World, view: &View, screen: &Screen, marks: &Marks) -> BTreeMap<Style, String> {
     let mut layers = BTreeMap::<Style, String>::new();
     let normal_length = marks.scaled(1800);
@@ -122,7 +122,7 @@ fn sorted_by_style(world: &World, view: &View, screen: &Screen, marks: &Marks) -
     layers
 }
 
-/// Whether each body has a path of its own.
+/// Whether each body has its own path.
 fn has_tooltip(style: Style) -> bool {
     matches!(style, Style::Fixed | Style::Kinematic | Style::Dynamic | Style::Asleep | Style::Island(_))
 }
@@ -166,7 +166,7 @@ fn add_legend(text: &mut String, world: &World, view: &View, layers: &BTreeMap<S
     text.push_str("</text>\n</g>\n");
 }
 
-/// A bar of 1, 2 or 5 times a power of ten metres, a tenth to a quarter of the picture wide.
+/// Adds a bar of 1, 2 or 5 times a power of ten metres, a tenth to a quarter of the picture wide.
 fn add_scale_bar(text: &mut String, screen: &Screen, (width, height): (u32, u32)) {
     let Some(Bar { length, label }) = Bar::up_to(|bar| screen.length(bar).0 <= i64::from(width) * 25) else {
         return;
@@ -184,7 +184,7 @@ fn add_scale_bar(text: &mut String, screen: &Screen, (width, height): (u32, u32)
     );
 }
 
-/// Adds text in which nothing is markup. Characters that XML does not allow at all become U+FFFD.
+/// Appends text with all markup escaped. Characters that XML does not allow become U+FFFD.
 fn add_escaped(text: &mut String, raw: &str) {
     for character in raw.chars() {
         match character {

@@ -1,11 +1,11 @@
-//! What a picture shows, and how large it is.
+//! The content and size of a picture.
 
 use alloc::string::String;
 
 use super::primitive::Layers;
 use crate::math::Aabb;
 
-/// How to draw a picture.
+/// Options of a picture.
 ///
 /// ```
 /// use lockstep2d::{draw::{Frame, View}, fx, math::{Aabb, Vec2}};
@@ -14,32 +14,33 @@ use crate::math::Aabb;
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct View {
-    /// Width in pixels, 64 to 16384; what is outside of this range is moved to its border.
+    /// Width in pixels, clamped to 64 to 16384.
     pub width: u32,
-    /// Height in pixels, legend included, 64 to 16384 as well.
+    /// Height in pixels, including the legend, clamped to 64 to 16384.
     pub height: u32,
-    /// Which part of the world to show.
+    /// The part of the world to show.
     pub frame: Frame,
-    /// What to draw.
+    /// The layers to draw.
     pub layers: Layers,
-    /// Shown before the legend.
+    /// Title, shown before the legend.
     pub title: String,
 }
 
 impl Default for View {
-    /// 960 x 720 pixels of what is worth seeing, without a title.
+    /// 960 x 720 pixels of the automatically chosen window, without a title.
     fn default() -> Self {
         View { width: 960, height: 720, frame: Frame::Fit, layers: Layers::default(), title: String::new() }
     }
 }
 
-/// Which part of the world a picture shows.
+/// The part of the world that a picture shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Frame {
-    /// The window that [`fit`](super::fit()) finds.
+    /// The window chosen by [`fit`](super::fit()).
     Fit,
-    /// At least this window, in the middle. Windows narrower than 2 cm are shown as 2 cm.
+    /// This window, centred, and more of the world on the longer side of the picture. Windows narrower than 2 cm are
+    /// shown as 2 cm.
     ///
-    /// For several ticks of one scene give the same window to all.
+    /// Use the same window for several ticks of one scene.
     Window(Aabb),
 }

@@ -9,7 +9,7 @@ use serde::{Serialize, de::DeserializeOwned};
 use crate::hash::StateHash;
 use crate::world::World;
 
-/// Which rules a replay was made with. Bump `version` whenever the same inputs give another state.
+/// Identifies the rules that a replay was made with. Bump `version` whenever the same inputs lead to another state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RulesId {
     /// A short name, at most 64 bytes.
@@ -18,10 +18,10 @@ pub struct RulesId {
     pub version: u32,
 }
 
-/// A setup from which no game can start.
+/// A setup that cannot start a game.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SetupError {
-    /// What is wrong with it.
+    /// Reason why the game refuses the setup.
     pub why: String,
 }
 
@@ -39,63 +39,66 @@ impl core::error::Error for SetupError {}
 pub trait Game: Sized {
     /// Everything that the first tick depends on: level, seed, options.
     type Setup: Serialize + DeserializeOwned;
-    /// What one player contributes to one tick. `Default` is "nothing pressed".
+    /// Input of one player for one tick. `Default` is "nothing pressed".
     type Input: Clone + Default + PartialEq + Serialize + DeserializeOwned;
-    /// A copy of the state that [`Game::load`] returns to: all of it, so that it can be sent to someone who was not
-    /// there, and compared with another machine's. In a format for people its names are those of a report.
+    /// Complete copy of the state, which [`Game::load`] restores. It is complete, so that it can be sent to a late
+    /// joiner and compared with another machine's. In human-readable formats its field names are those shown in desync
+    /// reports.
     type Save: Clone + Serialize + DeserializeOwned;
 
     /// The name and version of the rules.
     const RULES: RulesId;
 
-    /// The game before its first tick.
+    /// Creates the game before its first tick.
     ///
     /// # Errors
-    /// [`SetupError`] when the setup, which may come from a stranger's file, is not playable.
+    /// [`SetupError`] when the setup is not playable. It may come from an untrusted file.
     fn new(setup: &Self::Setup) -> Result<Self, SetupError>;
 
-    /// Number of players; constant over a game, at most 64.
+    /// Number of players; constant during a game, at most 64.
     fn players(&self) -> u32;
 
-    /// Ticks per second; constant over a game.
+    /// Ticks per second; constant during a game.
     fn tick_rate(&self) -> u32;
 
     /// Advances one tick. `inputs` has one entry for each player, in player order.
     ///
-    /// Inputs may come from a stranger's file: an impossible one must be ignored, not panic.
+    /// Inputs may come from an untrusted file: an impossible input must be ignored, not panic.
     fn step(&mut self, inputs: &[Self::Input]);
 
-    /// The hash of everything that influences the future.
+    /// Hash of all state that influences future ticks.
     fn state_hash(&self) -> StateHash;
 
-    /// A copy of the state.
+    /// Copies the state.
     fn save(&self) -> Self::Save;
 
-    /// Returns to a saved state.
+    /// Restores a saved state.
     fn load(&mut self, save: &Self::Save);
 
-    /// An upper bound of the cost of the next tick in work units, so that a verifier can limit what a stranger's
-    /// file makes it compute. The sandbox counts bodies, contacts and joints, times sub-steps.
+    /// Upper bound of the cost of the next tick in work units, which lets a verifier limit what an untrusted file makes
+    /// it compute. The sandbox counts bodies, contacts and joints, times sub-steps.
     fn work(&self, inputs: &[Self::Input]) -> u64;
 
-    /// What a seat contributes in every tick in which nobody sits on it: before its player has come, and after they
-    /// have left. "Nothing pressed", unless the game wants to know: then an input that no player can send.
+    /// Input of a seat without a player, in every tick before its player has joined and after they have left. The
+    /// default is "nothing pressed". A game that has to tell absence from idleness returns an input that no player can
+    /// send.
     ///
-    /// It is an input like any other. It stands in the replay, and so everybody agrees on when a player left.
+    /// It is an ordinary input and is recorded in the replay, so all peers agree on the tick at which a player left.
     #[must_use]
     fn absent() -> Self::Input {
         Self::Input::default()
     }
 
-    /// The physics world, if there is one, for tools that look into it. They change it only in games of their own.
+    /// The physics world, if the game has one, for inspection tools. A tool modifies the world only in a game that it
+    /// created itself.
     fn world_mut(&mut self) -> Option<&mut World> {
         None
     }
 
-    /// What the game reports of itself at the end of a replay, such as a score or a time: at most 256 values with
+    /// Results that the game reports at the end of a replay, such as a score or a time: at most 256 values with
     /// different names of 1 to 64 bytes.
     ///
-    /// A replay states them where they are read without playing it; a verifier compares them with its own.
+    /// A replay stores them, so that they can be read without playing it. A verifier compares them with its own.
     fn claims(&self) -> Vec<(String, i64)> {
         Vec::new()
     }

@@ -1,27 +1,28 @@
-//! [`History`]: the last seconds of a game, so that a divergence which is noticed late can be looked at where it began.
+//! [`History`]: saves of the last seconds of a game, so that a divergence that is detected late can be examined at its
+//! first tick.
 
 use alloc::collections::VecDeque;
 
 use super::Game;
 use crate::hash::StateHash;
 
-/// A game after some tick.
+/// The game after a given tick.
 #[derive(Clone, Debug)]
 pub struct Past<S> {
-    /// How many ticks had been played.
+    /// Number of ticks played.
     pub tick: u64,
-    /// The hash of the state.
+    /// Hash of the state.
     pub hash: StateHash,
-    /// A copy of it.
+    /// Copy of the state.
     pub save: S,
 }
 
-/// Ticks that a history keeps beyond what it promises: so many may be repeated by a rollback, whose mispredictions push
-/// older ticks out.
+/// Ticks kept in addition to the promised two seconds: mispredicted ticks push out older ones, and a rollback may
+/// discard up to this many ticks.
 const ROLLBACK_TICKS: u32 = 16;
 
-/// The saves and state hashes of the last ticks. Saves of a world share what has not changed, so that a few seconds cost
-/// little more than what every step changes.
+/// Saves and state hashes of the last ticks. Saves of a world share unchanged data, so a few seconds of them cost
+/// little more memory than the data that the steps change.
 ///
 /// ```
 /// use lockstep2d::lockstep::{Game, History, Sandbox, SandboxSetup};
@@ -37,33 +38,33 @@ const ROLLBACK_TICKS: u32 = 16;
 /// ```
 #[derive(Clone, Debug)]
 pub struct History<G: Game> {
-    /// In ascending order of their ticks.
+    /// In ascending order of ticks.
     ticks: VecDeque<Past<G::Save>>,
     length: u64,
 }
 
 impl<G: Game> History<G> {
-    /// An empty history that is going to have at least the last two seconds of a game, if rollbacks repeat no more than
-    /// 16 ticks.
+    /// Creates an empty history with room for at least the last two seconds of a game, given that rollbacks repeat at
+    /// most 16 ticks.
     #[must_use]
     pub fn new(game: &G) -> Self {
         Self::of_ticks(game.tick_rate().saturating_mul(2).saturating_add(ROLLBACK_TICKS))
     }
 
-    /// An empty history that is going to have as many of the last ticks, at least 1.
+    /// Creates an empty history with room for the last `length` ticks, at least 1.
     #[must_use]
     pub fn of_ticks(length: u32) -> Self {
         History { ticks: VecDeque::new(), length: length.max(1).into() }
     }
 
-    /// How many ticks it has at most.
+    /// Maximum number of ticks kept.
     #[must_use]
     pub fn capacity(&self) -> u64 {
         self.length
     }
 
-    /// Remembers the game after `tick` ticks. What was known of this tick and all later ones is forgotten: a rollback
-    /// repeats ticks, and what followed the mispredicted ones never happened.
+    /// Stores the game after `tick` ticks. Entries of this tick and of later ticks are removed: a rollback repeats
+    /// ticks, and the states after mispredicted ticks are not part of the game.
     pub fn push(&mut self, tick: u64, save: G::Save, hash: StateHash) {
         if let Some(before) = tick.checked_sub(1) {
             self.truncate(before);
@@ -76,30 +77,30 @@ impl<G: Game> History<G> {
         self.ticks.push_back(Past { tick, hash, save });
     }
 
-    /// The game after `tick` ticks, if it is known.
+    /// The entry after `tick` ticks, if it is kept.
     #[must_use]
     pub fn get(&self, tick: u64) -> Option<&Past<G::Save>> {
         let index = self.ticks.partition_point(|past| past.tick < tick);
         self.ticks.get(index).filter(|past| past.tick == tick)
     }
 
-    /// Forgets everything after `tick`.
+    /// Removes all entries after `tick`.
     pub fn truncate(&mut self, tick: u64) {
         self.ticks.truncate(self.ticks.partition_point(|past| past.tick <= tick));
     }
 
-    /// Everything that is known, in ascending order of the ticks.
+    /// All entries, in ascending order of ticks.
     pub fn iter(&self) -> impl DoubleEndedIterator<Item = &Past<G::Save>> {
         self.ticks.iter()
     }
 
-    /// The first tick that is known.
+    /// The first tick kept.
     #[must_use]
     pub fn oldest(&self) -> Option<u64> {
         self.ticks.front().map(|past| past.tick)
     }
 
-    /// The last tick that is known.
+    /// The last tick kept.
     #[must_use]
     pub fn newest(&self) -> Option<u64> {
         self.ticks.back().map(|past| past.tick)
@@ -113,7 +114,7 @@ mod tests {
     use super::super::{RulesId, SetupError};
     use super::*;
 
-    /// A game with nothing in it but a save.
+    /// A game without state, to test the history alone.
     struct Toy;
 
     impl Game for Toy {

@@ -1,4 +1,4 @@
-//! [`InputLog`]: every tick's inputs in memory, and the bytes that inputs have.
+//! [`InputLog`]: the inputs of every tick in memory, and the canonical encoding of inputs.
 
 use alloc::vec::Vec;
 use core::fmt;
@@ -7,10 +7,10 @@ use serde::{Serialize, de::DeserializeOwned};
 
 use crate::codec;
 
-/// Why inputs cannot be logged.
+/// Reason why inputs cannot be logged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum InputError {
-    /// Not one input for each player.
+    /// The number of inputs is not the number of players.
     Count {
         /// Number of players.
         players: u32,
@@ -32,10 +32,10 @@ impl fmt::Display for InputError {
 
 impl core::error::Error for InputError {}
 
-/// The inputs of all players for one tick, as bytes and as they come back from the bytes.
+/// The inputs of all players for one tick, as canonical bytes and as decoded from these bytes.
 ///
-/// A type may lose something in its encoding. What is simulated is always the decoded value, so that the peer or
-/// the verifier who only ever sees bytes simulates the same.
+/// An encoding may be lossy. The simulation always uses the decoded value, so that peers and verifiers, who receive
+/// only bytes, simulate the same.
 #[derive(Clone, Debug)]
 pub struct EncodedInputs<I> {
     bytes: Vec<u8>,
@@ -43,10 +43,11 @@ pub struct EncodedInputs<I> {
 }
 
 impl<I: Serialize + DeserializeOwned> EncodedInputs<I> {
-    /// Encodes the inputs of all players and decodes them again.
+    /// Encodes the inputs of all players, then decodes the bytes.
     ///
     /// # Errors
-    /// [`InputError`] when there is not one for each player, or they do not come back.
+    /// [`InputError`] when there is not exactly one input per player, or when they do not survive encoding and
+    /// decoding.
     pub fn new(inputs: &[I], players: u32) -> Result<Self, InputError> {
         let count = inputs.len() as u64;
         if count != u64::from(players) {
@@ -57,20 +58,20 @@ impl<I: Serialize + DeserializeOwned> EncodedInputs<I> {
         Ok(EncodedInputs { bytes, inputs })
     }
 
-    /// The canonical bytes of every player's input, one after the other.
+    /// Canonical bytes of all players' inputs, one after the other.
     #[must_use]
     pub fn bytes(&self) -> &[u8] {
         &self.bytes
     }
 
-    /// The inputs, to step a game with.
+    /// The decoded inputs, to step a game with.
     #[must_use]
     pub fn inputs(&self) -> &[I] {
         &self.inputs
     }
 }
 
-/// The canonical bytes of every player's input, one after the other.
+/// Encodes all players' inputs, one after the other.
 fn encode_inputs<I: Serialize>(inputs: &[I]) -> Vec<u8> {
     let mut bytes = Vec::new();
     for input in inputs {
@@ -79,19 +80,19 @@ fn encode_inputs<I: Serialize>(inputs: &[I]) -> Vec<u8> {
     bytes
 }
 
-/// The inputs of `players` players from their canonical bytes.
+/// Decodes the inputs of `players` players from their canonical bytes.
 pub(crate) fn decode_inputs<I>(bytes: &[u8], players: u32) -> Result<Vec<I>, InputError>
 where
     I: Serialize + DeserializeOwned,
 {
-    // With its length in front it is the canonical encoding of a list.
+    // The bytes with the list length in front are the canonical encoding of a list.
     let mut list = u64::from(players).to_le_bytes().to_vec();
     list.extend_from_slice(bytes);
     let inputs: Vec<I> = codec::decode(&list).map_err(|_| InputError::NotCanonical)?;
     if encode_inputs(&inputs) == bytes { Ok(inputs) } else { Err(InputError::NotCanonical) }
 }
 
-/// The inputs of every tick so far, in memory; ticks in a row with the same inputs are kept once.
+/// The inputs of all ticks so far, in memory. Consecutive ticks with the same inputs are stored once.
 ///
 /// ```
 /// use lockstep2d::lockstep::InputLog;
@@ -112,34 +113,34 @@ pub struct InputLog<I> {
 
 #[derive(Clone, Debug)]
 struct LoggedRun<I> {
-    /// The tick after the last of the run.
+    /// The tick after the last tick of the run.
     end: u64,
     inputs: EncodedInputs<I>,
 }
 
 impl<I: Serialize + DeserializeOwned> InputLog<I> {
-    /// An empty log for some number of players.
+    /// Creates an empty log for a given number of players.
     #[must_use]
     pub fn new(players: u32) -> Self {
         InputLog { players, runs: Vec::new() }
     }
 
-    /// How many ticks are logged.
+    /// Number of logged ticks.
     #[must_use]
     pub fn ticks(&self) -> u64 {
         self.runs.last().map_or(0, |run| run.end)
     }
 
-    /// How many runs they make.
+    /// Number of runs, each of consecutive ticks with the same inputs.
     #[must_use]
     pub fn runs(&self) -> usize {
         self.runs.len()
     }
 
-    /// Logs the inputs of the next tick and returns those to step the game with: encoded and decoded again.
+    /// Logs the inputs of the next tick and returns the inputs to step the game with: encoded and decoded.
     ///
     /// # Errors
-    /// [`InputError`] when they cannot be logged; the log is as it was.
+    /// [`InputError`] when they cannot be logged; the log is then unchanged.
     pub fn push(&mut self, inputs: &[I]) -> Result<&[I], InputError> {
         let inputs = EncodedInputs::new(inputs, self.players)?;
         let end = self.ticks() + 1;
@@ -157,7 +158,7 @@ impl<I: Serialize + DeserializeOwned> InputLog<I> {
         self.runs.get(index).map(|run| run.inputs.inputs())
     }
 
-    /// Forgets all but the first `ticks` ticks.
+    /// Removes all ticks but the first `ticks`.
     pub fn truncate(&mut self, ticks: u64) {
         let keep = self.runs.partition_point(|run| run.end <= ticks);
         let start = keep.checked_sub(1).map_or(0, |before| self.runs[before].end);
@@ -181,7 +182,7 @@ mod tests {
     }
 
     fn values_of(log: &InputLog<u8>) -> Vec<u8> {
-        assert_eq!(log.get(log.ticks()), None, "one tick too far");
+        assert_eq!(log.get(log.ticks()), None, "the log ends at `ticks()`");
         (0..log.ticks()).map(|tick| log.get(tick).expect("a logged tick")[0]).collect()
     }
 
@@ -201,8 +202,8 @@ mod tests {
             let kept = &values[..ticks.min(values.len())];
             let mut log = log_of(&values);
             log.truncate(ticks as u64);
-            assert_eq!(values_of(&log), kept, "after a cut to {ticks}");
-            assert_eq!(log.runs(), log_of(kept).runs(), "after a cut to {ticks}");
+            assert_eq!(values_of(&log), kept, "after truncating to {ticks}");
+            assert_eq!(log.runs(), log_of(kept).runs(), "after truncating to {ticks}");
             assert_eq!(log.push(&[9]), Ok(&[9][..]));
             assert_eq!(log.ticks(), kept.len() as u64 + 1);
         }
@@ -221,7 +222,7 @@ mod tests {
         for bad in [&[5, 1, 6][..], &[5, 1, 6, 0, 0], &[5, 1, 6, 2], &[]] {
             assert_eq!(decode_inputs::<(u8, bool)>(bad, 2), Err(InputError::NotCanonical), "{bad:?}");
         }
-        // A set that is out of order decodes, but nobody encodes it so.
+        // A set out of order decodes, but it is not the canonical encoding.
         type Set = alloc::collections::BTreeSet<u8>;
         let sorted = [2, 0, 0, 0, 0, 0, 0, 0, 3, 4];
         assert_eq!(decode_inputs::<Set>(&sorted, 1), Ok(alloc::vec![Set::from([3, 4])]));

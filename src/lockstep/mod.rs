@@ -1,4 +1,5 @@
-//! What makes a simulation a lockstep game: [`Game`], the seam that every tool is generic over.
+//! The [`Game`] trait, over which recording, verification, rollback and the tools are generic, with input logs, state
+//! history and the sandbox.
 
 mod game;
 mod history;

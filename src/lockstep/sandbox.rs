@@ -10,9 +10,9 @@ use crate::body::{BodyId, BodyKind};
 use crate::hash::StateHash;
 use crate::world::{Command, Config, Snapshot, World};
 
-/// A physics world that one player changes by commands.
+/// A physics world that one player modifies by commands.
 ///
-/// A command that the world refuses, for example because its body is gone, is skipped and counted.
+/// A command that the world refuses, for example because its body no longer exists, is skipped and counted.
 ///
 /// ```
 /// use lockstep2d::lockstep::{Game, Sandbox, SandboxSetup};
@@ -27,21 +27,22 @@ pub struct Sandbox {
     refused: u64,
 }
 
-/// Most work units of a setup's commands: some two seconds. A million bodies of one shape take 12 million.
+/// Maximum work units of a setup's commands: about two seconds. A million bodies of one shape take 12 million.
 const SETUP_WORK_MAX: u64 = 100_000_000;
 
-/// Pairs for each body that are solved eight at a time. A heap that nobody forces together has up to six.
+/// Pairs per body that are assumed to be solved in SIMD batches of eight. A heap that is not forced together has up to
+/// six pairs per body.
 const PAIRS_PER_BODY: u64 = 32;
 
-/// What a pair beyond those costs, in pairs: measured on a thousand squares in one place.
+/// Cost of a pair beyond [`PAIRS_PER_BODY`], in ordinary pairs: measured on a thousand squares at the same position.
 const CROWDED_WORK: u64 = 64;
 
-/// How a sandbox begins.
+/// Initial state of a sandbox.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SandboxSetup {
     /// The world's settings.
     pub config: Config,
-    /// What is in it before the first tick.
+    /// Commands that create the contents of the world before the first tick.
     pub commands: Vec<Command>,
 }
 
@@ -50,7 +51,7 @@ pub struct SandboxSetup {
 pub struct SandboxSave {
     /// The world.
     pub world: Snapshot,
-    /// How many commands it has refused.
+    /// Number of refused commands.
     pub refused: u64,
 }
 
@@ -61,13 +62,13 @@ impl Sandbox {
         &self.world
     }
 
-    /// The world, to change what is no state: caches and the broad phase. Any other change is not in the log of
-    /// inputs, and a replay of it diverges.
+    /// Mutable access to the world, to configure what is not state: caches and the broad phase. Any other change is
+    /// missing from the input log, so a replay diverges.
     pub fn world_mut(&mut self) -> &mut World {
         &mut self.world
     }
 
-    /// How many commands the world has refused.
+    /// Number of commands that the world has refused.
     #[must_use]
     pub const fn refused(&self) -> u64 {
         self.refused
@@ -81,7 +82,8 @@ impl Game for Sandbox {
 
     const RULES: RulesId = RulesId { name: "sandbox", version: 1 };
 
-    /// A setup is refused if its settings or any of its commands are: unlike a player's, they are not guesses.
+    /// Refuses a setup if its settings or any of its commands are refused: unlike a player's commands, the commands of
+    /// a setup are not predictions that may fail.
     fn new(setup: &SandboxSetup) -> Result<Self, SetupError> {
         let mut world = World::new(setup.config).map_err(|error| SetupError { why: format!("{error}") })?;
         let mut work = 0u64;
@@ -132,15 +134,15 @@ impl Game for Sandbox {
         Some(&mut self.world)
     }
 
-    /// Bodies, pairs and joints times what is done for each in a tick. Shapes that have just been put on top of
-    /// each other make pairs that are not there yet: as many as the world allows, in the worst case, for which
-    /// the broad phase compares each with each.
+    /// Bodies, shapes, pairs and joints, times the solver's sub-steps and iterations. Shapes that were just placed on
+    /// top of each other make pairs that do not exist yet: in the worst case as many as the world allows, for which the
+    /// broad phase compares every shape with every other.
     fn work(&self, inputs: &[Vec<Command>]) -> u64 {
         let world = &self.world;
         let commands = inputs.iter().flatten();
         let added: u64 = commands.clone().map(shapes_added).sum();
         let changes: u64 = commands.clone().map(|command| command_work(world, command)).sum();
-        // Each shape that a body gets makes the next one dearer.
+        // The cost of adding a shape grows with the number of shapes that the body already has.
         let grown =
             count(commands.clone().filter(|command| matches!(command, Command::AddShape { .. })).count());
         let changes = changes.saturating_add(grown.saturating_mul(grown) * 4);
@@ -150,7 +152,7 @@ impl Game for Sandbox {
         let constraints = count(world.pair_count()).saturating_add(count(world.joint_count()));
         let solver = world.config().solver;
         let rounds = u64::from(solver.sub_steps) * u64::from(solver.iterations);
-        // In a heap of bodies inside each other, contacts find no place among others to be solved with.
+        // In a heap of overlapping bodies, many contacts find no free place in a SIMD batch.
         let crowded = count(world.pair_count()).saturating_sub(bodies.saturating_mul(PAIRS_PER_BODY));
         let constraints = constraints.saturating_add(crowded.saturating_mul(CROWDED_WORK));
         let solved = bodies.saturating_add(shapes).saturating_add(constraints).saturating_mul(rounds);
@@ -185,7 +187,7 @@ fn is_kinematic(world: &World, body: BodyId) -> bool {
     world.body(body).is_some_and(|body| body.kind() == BodyKind::Kinematic)
 }
 
-/// What a command looks through: the shapes of its body, and for removals all contacts and joints.
+/// Work of a command: it visits the shapes of its body, and a removal visits all contacts and joints.
 fn command_work(world: &World, command: &Command) -> u64 {
     let shapes_of = |body: BodyId| 4 * count(world.body(body).map_or(0, |body| body.shapes().len()));
     let removal = || count(world.pair_count()).saturating_add(count(world.joint_count()));
@@ -204,7 +206,7 @@ fn command_work(world: &World, command: &Command) -> u64 {
         Command::SetShape { shape, .. } => 8 + removal() + shapes_beside(*shape),
         Command::SetKind { body, .. } => 4 + shapes_of(*body) + removal(),
         Command::SetBody { body, .. } | Command::SetMass { body, .. } => 4 + shapes_of(*body),
-        // What is joined to it may have to be woken.
+        // Bodies joined to this one may have to be woken.
         Command::SetTransform { body, .. } => 4 + shapes_of(*body) + count(world.joint_count()),
         Command::SetVelocity { body, .. } | Command::MoveTo { body, .. } if is_kinematic(world, *body) => {
             1 + count(world.joint_count())

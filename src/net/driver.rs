@@ -1,4 +1,4 @@
-//! [`Driver`]: does what a GGRS session asks for.
+//! [`Driver`]: executes the requests of a GGRS session.
 
 use alloc::collections::VecDeque;
 use alloc::vec;
@@ -14,26 +14,27 @@ use crate::lockstep::{EncodedInputs, Game, History};
 use crate::replay::{RecordError, Recorder};
 use crate::report::{Desync, DesyncReport};
 
-/// For how long inputs are kept for those who join later, in seconds.
+/// Number of seconds for which inputs are kept for late joiners.
 const KEPT_SECONDS: u64 = 60;
 
-/// A peer had another state after some tick.
+/// A peer had another state after a tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Divergence {
-    /// How many ticks had been played.
+    /// Number of ticks played.
     pub tick: u64,
-    /// The seat of the peer that differs.
+    /// Seat of the peer whose hash differs.
     pub seat: u32,
-    /// The hash here.
+    /// Hash of this peer.
     pub ours: StateHash,
-    /// The hash there.
+    /// Hash of the other peer.
     pub theirs: StateHash,
 }
 
 /// A game, its recent states and its replay, driven by the requests of a GGRS session of any kind: peer to peer,
 /// spectator or sync test.
 ///
-/// The inputs of a tick count for the replay when [`Driver::commit`] says that no rollback will change them.
+/// The inputs of a tick are written to the replay after [`Driver::commit`] has declared that no rollback will change
+/// them.
 ///
 /// ```
 /// use ggrs::{PlayerType, SessionBuilder};
@@ -70,43 +71,42 @@ pub struct Divergence {
 /// ```
 pub struct Driver<G: Game> {
     game: G,
-    /// Ticks that the game has played.
+    /// Number of ticks that the game has played.
     tick: u64,
-    /// The tick of the session's frame 0.
+    /// Tick of the session's frame 0.
     base: u64,
-    /// The seat of each of the session's players.
+    /// Seat of each of the session's players.
     seats: Vec<u32>,
     history: History<G>,
-    /// The inputs of the ticks from `first_input` on.
+    /// Inputs of the ticks from `first_input` on.
     inputs: VecDeque<EncodedInputs<G::Input>>,
     first_input: u64,
-    /// Ticks whose inputs are final.
+    /// Number of ticks whose inputs are final.
     committed: u64,
     recorder: Option<Recorder<G>>,
-    /// What was taken of the replay, for reports.
+    /// The part of the replay that has been taken, kept for reports.
     taken: Vec<u8>,
-    /// Whether inputs carry hashes, and how many ticks apart these are.
+    /// Interval in ticks between the hashes that inputs carry, if they carry any.
     echo_interval: Option<u64>,
     divergences: Vec<Divergence>,
-    /// What seats have said of late, the newest last: hashes after some tick.
+    /// Checksum reports received from the seats, newest last.
     heard: VecDeque<(u32, Echo)>,
 }
 
-/// How many hashes of each seat are remembered.
+/// Number of checksum reports that are kept per seat.
 const HEARD: usize = 16;
 
 impl<G: NetGame> Driver<G> {
     /// Starts the game and its replay; every seat is a player of the session, in order.
     ///
     /// # Errors
-    /// [`RecordError`] when the setup starts no game, or none that a replay can hold.
+    /// [`RecordError`] when the setup cannot start a game, or when a replay cannot represent that game.
     pub fn start(setup: &G::Setup, checkpoint_interval: u32) -> Result<Self, RecordError> {
         let (recorder, game) = Recorder::start(setup, checkpoint_interval)?;
         Ok(Driver { recorder: Some(recorder), ..Self::of(game, 0) })
     }
 
-    /// Goes on with a game that others have played up to some tick. There is no replay of it: its beginning is
-    /// unknown here.
+    /// Continues a game that others have played up to `tick`. It has no replay, because the earlier inputs are unknown.
     #[must_use]
     pub fn resume(game: G, tick: u64) -> Self {
         Self::of(game, tick)
@@ -132,15 +132,15 @@ impl<G: NetGame> Driver<G> {
         }
     }
 
-    /// Lets inputs carry the hash of every `interval`-th tick: for sessions without prediction, which never compare
-    /// checksums.
+    /// Makes inputs carry the hash of every `interval`-th tick. This is needed for sessions without prediction, which
+    /// never compare checksums.
     #[must_use]
     pub fn with_echo(mut self, interval: u64) -> Self {
         self.echo_interval = Some(interval.max(1));
         self
     }
 
-    /// Remembers the states of at least this many ticks; to be said before the first.
+    /// Keeps the states of at least this many ticks. Must be called before the first tick.
     pub(super) fn remember(&mut self, ticks: u32) {
         if self.history.capacity() < u64::from(ticks) {
             self.history = History::of_ticks(ticks);
@@ -148,19 +148,19 @@ impl<G: NetGame> Driver<G> {
         }
     }
 
-    /// The game, as far as it has been played, perhaps with predicted inputs.
+    /// The current state of the game, which may depend on predicted inputs.
     #[must_use]
     pub const fn game(&self) -> &G {
         &self.game
     }
 
-    /// How many ticks have been played, the predicted ones among them.
+    /// Number of ticks played, including predicted ones.
     #[must_use]
     pub const fn tick(&self) -> u64 {
         self.tick
     }
 
-    /// How many ticks are final.
+    /// Number of final ticks.
     #[must_use]
     pub const fn committed(&self) -> u64 {
         self.committed
@@ -172,13 +172,13 @@ impl<G: NetGame> Driver<G> {
         &self.history
     }
 
-    /// The tick of a session's frame.
+    /// The tick of a frame of the session.
     #[must_use]
     pub fn tick_of(&self, frame: Frame) -> u64 {
         self.base + u64::try_from(frame).unwrap_or(0)
     }
 
-    /// A local player's input, as a session wants it: as it will be after its encoding, and in lockstep with a hash.
+    /// Converts a local player's input for a session: encoded and decoded, and in lockstep with a hash.
     #[must_use]
     pub fn local_input(&self, input: G::Input) -> Wire<G::Input> {
         Wire { input: canonical(input).unwrap_or_default(), echo: self.echo().unwrap_or_default() }
@@ -190,10 +190,10 @@ impl<G: NetGame> Driver<G> {
         Some(Echo { tick, hash: self.history.get(tick)?.hash })
     }
 
-    /// Does what a session asks for, in order.
+    /// Executes the requests of a session in order.
     ///
     /// # Errors
-    /// [`DriverError`] when it asks for what cannot be done, which a session of GGRS that plays this game does not.
+    /// [`DriverError`] when a request is impossible. A GGRS session that plays this game makes no such requests.
     pub fn fulfil<A: Address>(
         &mut self,
         requests: Vec<GgrsRequest<GgrsConfig<G, A>>>,
@@ -212,7 +212,7 @@ impl<G: NetGame> Driver<G> {
         Ok(())
     }
 
-    /// Returns to the state after `tick` ticks.
+    /// Restores the state after `tick` ticks.
     fn rewind(&mut self, tick: u64) -> Result<(), DriverError> {
         let moment = self.history.get(tick).ok_or(DriverError::NoState { tick })?;
         self.game.load(&moment.save);
@@ -242,8 +242,8 @@ impl<G: NetGame> Driver<G> {
         Ok(())
     }
 
-    /// Takes note of the hash that a seat's peer had after some tick; hashes inside inputs are taken note of anyway. With a
-    /// session of your own, pass on what `GgrsEvent::DesyncDetected` says.
+    /// Receives the hash that a seat's peer had after a tick. Hashes inside inputs are received automatically. With a
+    /// session of your own, pass on the data of `GgrsEvent::DesyncDetected`.
     pub fn hear(&mut self, seat: u32, echo: Echo) {
         if echo.tick == 0 || self.heard.contains(&(seat, echo)) {
             return;
@@ -261,7 +261,7 @@ impl<G: NetGame> Driver<G> {
     /// Plays a tick with the inputs of all seats.
     ///
     /// # Errors
-    /// [`DriverError`] when there is not one input for each seat.
+    /// [`DriverError`] when there is not exactly one input per seat.
     pub fn step(&mut self, inputs: &[G::Input]) -> Result<(), DriverError> {
         let players = self.game.players();
         let inputs = EncodedInputs::new(inputs, players)
@@ -273,21 +273,21 @@ impl<G: NetGame> Driver<G> {
         Ok(())
     }
 
-    /// The divergences that have become known since this was last asked.
+    /// Returns the divergences detected since the last call.
     pub fn take_divergences(&mut self) -> Vec<Divergence> {
         core::mem::take(&mut self.divergences)
     }
 
-    /// Says that the first `ticks` ticks will not be played again: their inputs go into the replay.
+    /// Declares that the first `ticks` ticks will not be rolled back any more: their inputs go into the replay.
     ///
     /// # Errors
-    /// [`DriverError::Record`] when the replay cannot hold them.
+    /// [`DriverError::Record`] when the replay cannot represent them.
     pub fn commit(&mut self, ticks: u64) -> Result<(), DriverError> {
         while self.committed < ticks.min(self.tick) {
             let tick = self.committed;
             if let Some(mut recorder) = self.recorder.take() {
                 let recorded = self.record(tick, &mut recorder);
-                // What has been recorded so far is still worth writing.
+                // The ticks recorded so far are kept.
                 self.recorder = Some(recorder);
                 recorded?;
             }
@@ -312,25 +312,26 @@ impl<G: NetGame> Driver<G> {
         Ok(())
     }
 
-    /// The inputs of all seats in some tick, if they are remembered.
+    /// The inputs of all seats in a tick, if they are kept.
     pub(super) fn inputs_of(&self, tick: u64) -> Option<&EncodedInputs<G::Input>> {
         self.inputs.get(usize::try_from(tick.checked_sub(self.first_input)?).ok()?)
     }
 
-    /// Goes on from tick `base` with a new session, whose players have these seats.
+    /// Continues from tick `base` with a new session, whose players have these seats.
     ///
     /// # Errors
-    /// [`DriverError::NoState`] when that tick is not remembered.
+    /// [`DriverError::NoState`] when the state of that tick is not kept.
     pub fn restart(&mut self, base: u64, seats: Vec<u32>) -> Result<(), DriverError> {
         self.rewind(base)?;
-        // What was said of later ticks is said of what never happened.
+        // Reports about later ticks refer to states that have been rolled back.
         self.heard.retain(|(_, echo)| echo.tick <= base);
         self.base = base;
         self.seats = seats;
         Ok(())
     }
 
-    /// Finished bytes of the replay, to be appended to its file; handed out once. None without a replay.
+    /// Takes the finished bytes of the replay, to be appended to its file. Every byte is returned once. Empty without a
+    /// replay.
     #[must_use]
     pub fn take_replay(&mut self) -> Vec<u8> {
         let bytes = self.recorder.as_mut().map(Recorder::take_bytes).unwrap_or_default();
@@ -338,9 +339,10 @@ impl<G: NetGame> Driver<G> {
         bytes
     }
 
-    /// What this peer knows of a divergence, for a file: `diff` tells from two of them who departed, when and where.
+    /// Creates this peer's report of a divergence, to be written to a file. Given two reports, `diff` tells which peer
+    /// diverged, when and where.
     ///
-    /// `seats` are played here; `known` ticks have been played with everybody's true inputs.
+    /// `seats` are played by this peer; `known` ticks have been simulated with the confirmed inputs of all players.
     #[must_use]
     pub fn report(&self, divergence: &Divergence, seats: Vec<u32>, known: u64) -> DesyncReport {
         let players = self.game.players();
@@ -354,7 +356,7 @@ impl<G: NetGame> Driver<G> {
         DesyncReport::new(&found, &self.history, self.replay_so_far(known).unwrap_or_default())
     }
 
-    /// The replay with all inputs of the first `known` ticks, some of which may not be committed.
+    /// The replay with the inputs of the first `known` ticks, some of which may not be committed.
     fn replay_so_far(&self, known: u64) -> Option<Vec<u8>> {
         let mut recorder = self.recorder.clone()?;
         for tick in self.committed..known {
@@ -364,10 +366,10 @@ impl<G: NetGame> Driver<G> {
         Some([&self.taken[..], &recorder.so_far(state)].concat())
     }
 
-    /// Ends the replay after the last committed tick, and returns the bytes that were not yet taken.
+    /// Ends the replay after the last committed tick, and returns the bytes that have not been taken yet.
     ///
     /// # Errors
-    /// [`DriverError`] when the state after that tick is not remembered, or the game's claims cannot be recorded.
+    /// [`DriverError`] when the state after that tick is not kept, or the game's claims cannot be recorded.
     pub fn finish(mut self) -> Result<Vec<u8>, DriverError> {
         self.rewind(self.committed)?;
         let recorder = self.recorder.take();
@@ -375,7 +377,7 @@ impl<G: NetGame> Driver<G> {
     }
 }
 
-/// The input as it comes back from its encoding.
+/// Encodes and decodes an input.
 fn canonical<I: Copy + Serialize + DeserializeOwned>(input: I) -> Option<I> {
     EncodedInputs::new(&[input], 1).ok()?.inputs().first().copied()
 }

@@ -1,36 +1,36 @@
-//! [`DriverError`]: what cannot be done for a session.
+//! [`DriverError`]: reasons why a session's request cannot be executed.
 
 use core::fmt;
 
 use crate::replay::RecordError;
 
-/// Something that a session should not have asked for.
+/// A request that a session should not have made.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum DriverError {
-    /// A state that is no longer, or not yet, remembered.
+    /// The state is not kept any more, or does not exist yet.
     NoState {
-        /// How many ticks lead to it.
+        /// Number of ticks before the state.
         tick: u64,
     },
-    /// Inputs for another number of players than were seated.
+    /// The number of inputs is not the number of seated players.
     Players {
-        /// How many players have seats.
+        /// Number of seated players.
         seated: u64,
-        /// How many inputs came.
+        /// Number of inputs received.
         inputs: u64,
     },
-    /// The replay refuses what was played.
+    /// The inputs cannot be recorded in the replay.
     Record(RecordError),
 }
 
 impl fmt::Display for DriverError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            DriverError::NoState { tick } => write!(f, "the state after {tick} ticks is not remembered"),
+            DriverError::NoState { tick } => write!(f, "the state after {tick} ticks is not kept"),
             DriverError::Players { seated, inputs } => {
                 write!(f, "{inputs} inputs for {seated} seated players")
             }
-            DriverError::Record(error) => write!(f, "the replay cannot go on: {error}"),
+            DriverError::Record(error) => write!(f, "the replay cannot be continued: {error}"),
         }
     }
 }

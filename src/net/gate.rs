@@ -1,7 +1,8 @@
-//! [`Gate`]: keeps from GGRS the messages that it would panic on, or that would let a peer decide alone who has left.
+//! [`Gate`]: validates messages before GGRS reads them. It drops messages on which GGRS would panic, and removes those
+//! parts with which a peer could decide alone which player has left.
 //!
-//! GGRS reads what it is sent with the trust that peers of one game have in each other. The messages of one remote pass
-//! here first: those that no GGRS would have sent are dropped.
+//! GGRS trusts the messages of the peers of a game. All messages of one remote pass through this validator first; those
+//! that GGRS could not have sent are dropped.
 
 use alloc::collections::VecDeque;
 use alloc::vec::Vec;
@@ -14,7 +15,7 @@ use serde::{Deserialize, Serialize};
 use super::options::INPUT_DELAY_MAX;
 use super::transport::PACKET_BYTES_MAX;
 
-/// The layout of GGRS's messages, version 0.13.
+/// Layout of GGRS's messages, version 0.13.
 #[derive(Serialize, Deserialize)]
 struct Shadow {
     magic: u16,
@@ -48,25 +49,25 @@ struct Connection {
     last_frame: i32,
 }
 
-/// Frames that a peer can be ahead: GGRS has room for 128.
+/// Maximum number of frames that a peer can be ahead: GGRS has room for 128.
 const FRAMES_AHEAD: i32 = 96;
-/// Bytes that the inputs of one message can have, unpacked.
+/// Maximum number of bytes of the unpacked inputs in one message.
 const INPUT_BYTES_MAX: usize = 64 << 10;
-/// After how long inputs, or a question before the first, are sent again if there are no newer ones: when all wait for a
-/// lost packet, nobody has any.
+/// Retransmission interval of inputs, and of the synchronisation request before the first input. Without
+/// retransmission, peers that all wait for a lost packet would have no newer inputs to send.
 const SEND_AGAIN: Duration = Duration::from_millis(50);
-/// How many of our pings are remembered.
+/// Number of own pings that are kept.
 const PINGS: usize = 16;
 
-/// What is known of one remote in one session.
+/// State of the message validator for one remote in one session.
 #[derive(Debug)]
 pub(super) struct Gate {
     players: usize,
-    /// The newest frame whose input has passed; -1 before the first.
+    /// The newest frame whose input has been accepted; -1 before the first.
     last_frame: i32,
-    /// Pings that were sent and not answered.
+    /// Pings that have been sent and not been answered.
     pings: VecDeque<u128>,
-    /// The last message to the remote that it has to get, and when it was sent.
+    /// The last message to the remote that must not be lost, and the time at which it was sent.
     needed: Option<(Duration, Vec<u8>)>,
 }
 
@@ -75,7 +76,7 @@ impl Gate {
         Gate { players, last_frame: -1, pings: VecDeque::new(), needed: None }
     }
 
-    /// Takes note of a message to the remote, and gives its bytes.
+    /// Encodes a message to the remote and records it.
     pub(super) fn send(&mut self, message: &Message, now: Duration) -> Option<Vec<u8>> {
         let bytes = layout().serialize(message).ok()?;
         match layout().deserialize(&bytes).map(|shadow: Shadow| shadow.body) {
@@ -91,21 +92,20 @@ impl Gate {
         Some(bytes)
     }
 
-    /// What the remote has to get once more, if it may have been lost. GGRS itself waits for four times as long, by the
-    /// clock.
+    /// The message to retransmit, if one is due. GGRS itself waits four times as long, measured by the system clock.
     pub(super) fn send_again(&mut self, now: Duration) -> Option<Vec<u8>> {
         let (sent, bytes) = self.needed.as_mut().filter(|(sent, _)| now >= *sent + SEND_AGAIN)?;
         *sent = now;
         Some(bytes.clone())
     }
 
-    /// A message of the remote, if GGRS can bear it. `frame` is the one that is played here.
+    /// Decodes a message of the remote, if it is safe to pass to GGRS. `frame` is the current local frame.
     pub(super) fn receive(&mut self, bytes: &[u8], frame: i32) -> Option<Message> {
         let mut shadow: Shadow = layout().deserialize(bytes).ok()?;
         let frames = -1..=frame.saturating_add(FRAMES_AHEAD);
         match &mut shadow.body {
             Body::Input(input) => self.check_input(input, frame)?,
-            // The round trip would be the age of the universe.
+            // An unknown pong would give an absurd round-trip time.
             Body::QualityReply { pong } => {
                 let known = self.pings.iter().position(|ping| ping == pong)?;
                 self.pings.remove(known);
@@ -119,7 +119,7 @@ impl Gate {
     }
 
     fn check_input(&mut self, input: &mut Input, frame: i32) -> Option<()> {
-        // Who has left is agreed upon elsewhere: GGRS lets each peer end with another frame.
+        // Peers agree on departures in `leaving.rs`, because GGRS could let each peer end a player at another frame.
         input.disconnect_requested = false;
         input.connections.iter_mut().for_each(|connection| connection.disconnected = false);
         let frames = -1..=frame.saturating_add(FRAMES_AHEAD);
@@ -149,7 +149,7 @@ fn layout() -> impl ggrs_bincode::Options {
         .reject_trailing_bytes()
 }
 
-/// How many inputs there are, each behind its length in two bytes; `None` if the last is cut.
+/// Number of inputs, each preceded by its length in two bytes; `None` if the last one is incomplete.
 fn count_inputs(mut bytes: &[u8]) -> Option<usize> {
     let mut count = 0;
     while let Some((length, rest)) = bytes.split_first_chunk() {
@@ -159,10 +159,10 @@ fn count_inputs(mut bytes: &[u8]) -> Option<usize> {
     bytes.is_empty().then_some(count)
 }
 
-/// Undoes the run-length coding of `bitfield-rle`, up to [`INPUT_BYTES_MAX`] bytes.
+/// Decodes the run-length encoding of `bitfield-rle`, up to [`INPUT_BYTES_MAX`] bytes.
 ///
-/// A head is a varint: its lowest bit says whether a run of equal bytes follows, the next whether of ones; the rest is
-/// the number of bytes.
+/// Every part starts with a varint. Its lowest bit tells whether a run of equal bytes follows, and the next bit whether
+/// these are ones. The other bits are the number of bytes.
 fn unpack(mut bytes: &[u8]) -> Option<Vec<u8>> {
     let mut unpacked = Vec::new();
     while !bytes.is_empty() {
@@ -182,7 +182,7 @@ fn unpack(mut bytes: &[u8]) -> Option<Vec<u8>> {
     Some(unpacked)
 }
 
-/// Seven bits a byte, the lowest first; at most four bytes.
+/// Reads a varint with seven bits per byte, lowest bits first; at most four bytes.
 fn varint(bytes: &mut &[u8]) -> Option<u32> {
     let mut value = 0;
     for shift in [0, 7, 14, 21] {

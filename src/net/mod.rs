@@ -1,17 +1,18 @@
 //! Multiplayer for any [`Game`](crate::lockstep::Game): every peer plays the same game, and only inputs are sent.
 //!
-//! [GGRS](https://docs.rs/ggrs) exchanges the inputs, guesses those that are late, and says what to play again. This
-//! module adds what it lacks:
+//! [GGRS](https://docs.rs/ggrs) exchanges the inputs, predicts late ones, and requests rollbacks. This module adds the
+//! missing parts:
 //!
-//! - [`Driver`] does what a GGRS session of any kind asks for, and keeps the recent states and the replay. With your own
-//!   session and sockets it is all that you need.
-//! - [`Peer`] is a whole participant. It compares [`Terms`] before the first tick, seats players who come later, lets
-//!   all agree on when somebody left, compares states, and knows how fast to play. It brings its own GGRS sessions.
-//! - [`Transport`] carries packets: [`Udp`], a [`Network`] in memory for tests, or yours.
+//! - [`Driver`] executes the requests of any GGRS session, and keeps the recent states and the replay. It is all you
+//!   need with your own session and sockets.
+//! - [`Peer`] is a complete participant. It compares [`Terms`] in the handshake, admits late joiners, makes all peers
+//!   agree on the tick at which a player left, compares states, and adapts the tick rate. It creates its own GGRS
+//!   sessions.
+//! - [`Transport`] carries packets: [`Udp`], a simulated [`Network`] in memory for tests, or your own.
 //!
-//! Nothing here reads a clock: the time is passed to [`Peer::update`]. GGRS does read it, for its timeouts.
+//! This module never reads a clock: the time is passed to [`Peer::update`]. GGRS reads the clock for its timeouts.
 //!
-//! `docs/MULTIPLAYER.md` tells how matches go, and what to do in the face of a divergence.
+//! `docs/MULTIPLAYER.md` explains the course of a match and what to do after a divergence.
 //!
 //! ```no_run
 //! # use lockstep2d::lockstep::Game;

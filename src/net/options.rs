@@ -1,4 +1,4 @@
-//! [`Options`]: how a peer takes part.
+//! [`Options`]: options of a peer.
 
 use core::fmt;
 use core::time::Duration;
@@ -7,15 +7,16 @@ use serde::{Deserialize, Serialize};
 
 use crate::replay::CHECKPOINT_INTERVAL;
 
-/// How peers stay together.
+/// Synchronisation mode of the peers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Mode {
-    /// A tick is played when everyone's input for it is there. Nothing is ever taken back, and a late packet is felt by
-    /// all. For games whose step is dear or that do not mind some delay.
+    /// A tick is played when the inputs of all players have arrived. Nothing is ever rolled back, and a late packet
+    /// delays all players. Suitable for games with an expensive step or that tolerate some delay.
     Lockstep,
-    /// Missing inputs are guessed, and ticks that were played with a wrong guess are played again.
+    /// Missing inputs are predicted, and ticks that were played with a wrong prediction are rolled back and played
+    /// again.
     Rollback {
-        /// How many ticks may be guessed, 1 to 32.
+        /// Maximum number of predicted ticks, 1 to 32.
         window: u8,
     },
 }
@@ -29,40 +30,40 @@ impl fmt::Display for Mode {
     }
 }
 
-/// How a peer takes part. The mode has to be the same for all.
+/// Options of a peer. The mode has to be the same for all peers.
 ///
-/// The defaults suit games at 60 ticks a second between peers on one continent.
+/// The defaults suit games at 60 ticks per second between peers on one continent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Options {
-    /// How peers stay together.
+    /// Synchronisation mode.
     pub mode: Mode,
-    /// After how many ticks a local input takes effect, at most [`INPUT_DELAY_MAX`]. It hides as many ticks of latency.
+    /// Delay of local inputs in ticks, at most [`INPUT_DELAY_MAX`]. It hides the same number of ticks of latency.
     pub input_delay: u8,
-    /// After how long a silent peer counts as gone.
+    /// Time without messages after which a peer counts as disconnected.
     pub timeout: Duration,
-    /// How many ticks apart states are compared, at least 1.
+    /// Interval in ticks at which states are compared, at least 1.
     pub check_interval: u32,
-    /// Ticks per block of the replay.
+    /// Number of ticks per block of the replay.
     pub checkpoint_interval: u32,
-    /// How many players the first tick waits for, the host among them.
+    /// Number of players to wait for before the first tick, including the host.
     pub start_with: u32,
-    /// How many ticks a peer that joins later plays at most in one update, to catch up.
+    /// Maximum number of ticks that a late joiner plays in one update, to catch up.
     pub catch_up: u32,
 }
 
-/// Longest input delay, in ticks.
+/// Maximum input delay, in ticks.
 pub const INPUT_DELAY_MAX: u8 = 15;
-/// Widest prediction window, in ticks.
+/// Maximum prediction window, in ticks.
 pub(super) const WINDOW_MAX: u8 = 32;
 
 impl Options {
-    /// Rollback by up to 8 ticks, with inputs delayed by 2.
+    /// Rollback by up to 8 ticks, with an input delay of 2.
     #[must_use]
     pub const fn rollback() -> Self {
         Options { mode: Mode::Rollback { window: 8 }, input_delay: 2, ..Self::lockstep() }
     }
 
-    /// Lockstep, with inputs delayed by 4 ticks.
+    /// Lockstep, with an input delay of 4 ticks.
     #[must_use]
     pub const fn lockstep() -> Self {
         Options {
@@ -76,13 +77,13 @@ impl Options {
         }
     }
 
-    /// Waits for some number of players before the first tick.
+    /// Sets the number of players to wait for before the first tick.
     #[must_use]
     pub const fn start_with(self, players: u32) -> Self {
         Options { start_with: players, ..self }
     }
 
-    /// How many ticks may be guessed.
+    /// Maximum number of predicted ticks.
     pub(super) fn window(&self) -> u8 {
         match self.mode {
             Mode::Lockstep => 0,
@@ -94,13 +95,13 @@ impl Options {
         self.input_delay.min(INPUT_DELAY_MAX)
     }
 
-    /// How many ticks a peer can be ahead of what another one knows: that many of its last ticks are not final before
-    /// it has heard more.
+    /// Maximum number of ticks that a peer can be ahead of what another one has confirmed. This many of its last ticks
+    /// are not final.
     pub(super) fn doubt(&self) -> u64 {
         u64::from(self.window()) + u64::from(INPUT_DELAY_MAX) + 2
     }
 
-    /// How many states have to be remembered: one that is final, and all those since.
+    /// Number of states to keep: a final one, and all later ones.
     pub(super) fn memory(&self) -> u32 {
         2 * (u32::from(self.window()) + u32::from(INPUT_DELAY_MAX) + 2)
     }

@@ -1,7 +1,7 @@
-//! What peers say to each other, and the bytes of it.
+//! The packets that peers exchange, and their encoding.
 //!
-//! A packet is a checksum and the canonical encoding of a [`Packet`]. What does not decode, is too long or has another
-//! checksum is dropped without a word, as networks do.
+//! A packet is a checksum followed by the canonical encoding of a [`Packet`]. A packet that does not decode, is too
+//! long or has a wrong checksum is dropped silently, like a packet lost by the network.
 
 use alloc::string::String;
 use alloc::vec::Vec;
@@ -14,53 +14,55 @@ use super::wire::Address;
 use crate::codec;
 use crate::hash::StateHash;
 
-/// Names a session: a stretch of ticks that the same players play.
+/// Identifies a session: a range of ticks played by the same players.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub(super) struct SessionId(pub(super) u64);
 
-/// Names one attempt of one peer to take part.
+/// Identifies one attempt of one peer to join.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Nonce(pub(super) u64);
 
-/// Why somebody may not take part.
+/// Reason why a peer is refused.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) enum Refused {
-    /// The terms are others: here are the right ones.
+    /// The handshake parameters differ; these are the right ones.
     Terms(Terms),
-    /// All seats are taken, or too many others are about to join.
+    /// All seats are taken, or too many peers are joining.
     Full,
-    /// The state reached by catching up is another one.
+    /// The state after catching up has another hash.
     Diverged { tick: u64 },
-    /// Anything that is not in this list.
+    /// Any other reason.
     Other(String),
 }
 
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) enum Packet<A> {
-    /// A peer wants to take part, or to watch.
+    /// A peer asks to join or to watch.
     Hello { nonce: Nonce, terms: Terms, seat: Option<u32>, watch: bool },
-    /// It may not.
+    /// The request is refused.
     Refused { nonce: Nonce, why: Refused },
-    /// Somebody else decides.
+    /// Another peer decides about requests.
     Redirect { nonce: Nonce, to: A },
-    /// It may, and begins with the state after `tick` ticks, which has this hash and `length` bytes.
+    /// The request is accepted. The peer begins with the state after `tick` ticks, which has this hash and `length`
+    /// bytes.
     Welcome { nonce: Nonce, tick: u64, hash: StateHash, length: u64 },
-    /// It asks for that state's bytes from `offset` on.
+    /// The joining peer requests the bytes of that state from `offset` on.
     WantState { nonce: Nonce, offset: u64 },
-    /// Some of them.
+    /// A piece of that state.
     State { nonce: Nonce, offset: u64, bytes: Vec<u8> },
-    /// It asks for inputs from tick `from` on.
+    /// The joining peer requests inputs from tick `from` on.
     WantInputs { nonce: Nonce, from: u64 },
-    /// The inputs of some ticks from `from` on, each all seats' with its length in front; and how many ticks are final.
+    /// The inputs of ticks from `from` on, one list per tick with the encoded inputs of all seats, and the number of
+    /// final ticks.
     Inputs { nonce: Nonce, from: u64, ticks: Vec<Vec<u8>>, committed: u64 },
-    /// It has caught up, and its state after `tick` ticks has this hash.
+    /// The joining peer has caught up, and its state after `tick` ticks has this hash.
     Ready { nonce: Nonce, tick: u64, hash: StateHash },
-    /// The next session.
+    /// A proposed session.
     Plan { parent: SessionId, plan: Plan<A> },
-    /// The plan is known.
+    /// The proposed session is acknowledged.
     Agreed { plan: SessionId },
-    /// The seats in `gone` have left this session, of which the sender has final inputs for `ticks` ticks.
-    /// `settled` if it has gone on since: then it needs no answer, and `ticks` is where it went on from.
+    /// The seats in `gone` have left this session, for which the sender has the final inputs of `ticks` ticks. If
+    /// `settled`, the sender has already continued without them from tick `ticks` on, and needs no answer.
     Gone { session: SessionId, gone: u64, ticks: u64, settled: bool },
     /// The sender leaves.
     Bye { session: SessionId },
@@ -68,15 +70,16 @@ pub(super) enum Packet<A> {
     Session { session: SessionId, message: Vec<u8> },
 }
 
-/// A session to come.
+/// A proposed session.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Plan<A> {
     pub(super) session: SessionId,
-    /// Its first tick.
+    /// First tick.
     pub(super) base: u64,
-    /// The seat of who reads this.
+    /// Seat of the receiver.
     pub(super) seat: u32,
-    /// Who plays, in ascending order of seats, but for the reader; the sender does not know its own address.
+    /// The players except the receiver, in ascending order of seats. The sender has no address, because it does not
+    /// know its own.
     pub(super) others: Vec<(u32, Option<A>)>,
 }
 

@@ -1,14 +1,14 @@
-//! [`Presence`]: whether something still comes from a remote.
+//! [`Presence`]: liveness of a remote.
 
 use core::time::Duration;
 
 use super::session::SessionEvent;
 
-/// For how long nothing has come from a remote.
+/// Time without messages from a remote.
 ///
-/// GGRS would read the clock, on which this machine may have slept or been busy while others spoke: here time counts as
-/// far as somebody listened. And it marks a player whom it misses as gone in the middle of a tick, which is an assertion
-/// of its own if that player has sent inputs for all ticks that were played.
+/// GGRS would measure it by the system clock, although this machine may have been asleep or busy while messages were
+/// waiting. Here, time counts only while this machine reads messages. GGRS also disconnects a player in the middle of a
+/// tick, which fails one of its own assertions if that player has sent inputs for all ticks played.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Presence {
     silent: Duration,
@@ -16,13 +16,13 @@ pub(super) struct Presence {
 }
 
 impl Presence {
-    /// Something has come.
+    /// A message has arrived.
     pub(super) fn hear(&mut self) {
         self.silent = Duration::ZERO;
     }
 
-    /// Time has passed since it was last listened, of which no more than an eighth of the timeout counts. What
-    /// that means for the player at `seat`; that it is lost is said until it is heard.
+    /// Adds the time since the last call, of which at most an eighth of the timeout counts. Returns the resulting event
+    /// for the player at `seat`. A lost player is reported in every call until a message arrives.
     pub(super) fn listen(&mut self, seat: u32, passed: Duration, timeout: Duration) -> Option<SessionEvent> {
         self.silent += passed.min(timeout / 8);
         if self.silent > timeout {
@@ -45,7 +45,8 @@ mod tests {
 
     const TIMEOUT: Duration = Duration::from_secs(2);
 
-    /// What is said when it is listened at these times, in milliseconds, and something comes at those.
+    /// The events when `listen` is called at the times `polls` and messages arrive at the times `messages`, in
+    /// milliseconds.
     fn events(polls: &[u64], messages: &[u64]) -> Vec<(u64, SessionEvent)> {
         let mut presence = Presence::default();
         let mut last = 0;

@@ -1,4 +1,4 @@
-//! [`Session`]: a stretch of ticks that the same players play, with GGRS inside.
+//! [`Session`]: a range of ticks played by the same players, on top of a GGRS session.
 
 use alloc::collections::{BTreeMap, BTreeSet};
 use alloc::sync::Arc;
@@ -19,33 +19,33 @@ use super::presence::Presence;
 use super::wire::{Address, Echo, GgrsConfig, NetGame};
 use crate::hash::StateHash;
 
-/// Who plays from which tick on.
+/// Membership of a session, and its first tick.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Roster<A> {
     pub(super) session: SessionId,
-    /// The first tick.
+    /// First tick.
     pub(super) base: u64,
-    /// Our own seat.
+    /// Seat of this peer.
     pub(super) seat: u32,
-    /// The others, in ascending order of seats.
+    /// The other players, in ascending order of seats.
     pub(super) others: Vec<(u32, A)>,
 }
 
 impl<A: Address> Roster<A> {
-    /// Names the session that follows `parent`: all who agree on these numbers come to the same name.
+    /// Derives the id of the session that follows `parent`: peers that agree on the arguments get the same id.
     pub(super) fn id(parent: SessionId, base: u64, seats: u64, salt: u64) -> SessionId {
         let hash = StateHash::of(&(parent, base, seats, salt)).0;
         SessionId(u64::try_from(hash & u128::from(u64::MAX)).unwrap_or(0))
     }
 
-    /// All seats, in ascending order: the place in this list is the handle of GGRS.
+    /// All seats, in ascending order: the index in this list is the GGRS player handle.
     pub(super) fn seats(&self) -> Vec<u32> {
         let mut seats: Vec<_> = self.others.iter().map(|(seat, _)| *seat).chain([self.seat]).collect();
         seats.sort_unstable();
         seats
     }
 
-    /// All seats as bits.
+    /// All seats, as bits.
     pub(super) fn mask(&self) -> u64 {
         self.seats().iter().fold(0, |mask, seat| mask | seat_bit(*seat))
     }
@@ -54,7 +54,7 @@ impl<A: Address> Roster<A> {
         self.others.iter().find(|(_, other)| other == address).map(|(seat, _)| *seat)
     }
 
-    /// The player who decides who may join.
+    /// Whether this peer is the leader, which decides about joins.
     pub(super) fn leads(&self) -> bool {
         self.others.first().is_none_or(|(seat, _)| self.seat < *seat)
     }
@@ -67,18 +67,18 @@ pub(super) const fn seat_bit(seat: u32) -> u64 {
     }
 }
 
-/// What has happened in a session.
+/// An event of a session.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum SessionEvent {
-    /// Somebody has answered once more, of the few times that it takes before ticks can be played.
+    /// A peer has answered one of the handshake messages that GGRS exchanges before the first tick.
     Answered,
-    /// Nothing comes from this seat.
+    /// No messages arrive from this seat.
     Interrupted(u32),
-    /// Something comes again.
+    /// Messages arrive again.
     Resumed(u32),
-    /// Nothing has come for too long. Said again and again.
+    /// No messages have arrived for the whole timeout. Reported repeatedly.
     Lost(u32),
-    /// The peer of this seat has another hash after some tick.
+    /// The peer of this seat has reported a hash.
     Said(u32, Echo),
 }
 
@@ -89,19 +89,19 @@ pub(super) struct Session<G: NetGame, A: Address> {
     gates: BTreeMap<A, Gate>,
     presences: BTreeMap<A, Presence>,
     timeout: Duration,
-    /// When it was last listened to.
+    /// Time of the last poll.
     polled: Duration,
     synchronised: BTreeSet<A>,
-    /// A player was lost: from then on what GGRS calls confirmed is without them.
+    /// Whether a player was lost. From then on GGRS's confirmed frames leave out that player.
     lost: bool,
-    /// Ticks that have been played with everybody's true inputs.
+    /// Number of ticks simulated with the confirmed inputs of all players.
     confirmed: u64,
 }
 
-/// When GGRS may say that a player is gone: that is for [`Presence`] to say.
+/// Disconnect timeout of GGRS: disabled, because [`Presence`] detects lost players.
 const NEVER: Duration = Duration::from_secs(u32::MAX as u64);
 
-/// What GGRS takes for a socket.
+/// In-memory socket handed to GGRS.
 struct Mail<A> {
     incoming: Vec<(A, Message)>,
     outgoing: Vec<(A, Message)>,
@@ -157,7 +157,7 @@ impl<G: NetGame, A: Address> Session<G, A> {
         })
     }
 
-    /// Takes a message of GGRS from a peer.
+    /// Receives a GGRS message from a peer.
     pub(super) fn receive(&mut self, from: &A, message: &[u8]) {
         let frame = self.p2p.current_frame();
         let Some(message) = self.gates.get_mut(from).and_then(|gate| gate.receive(message, frame)) else {
@@ -169,7 +169,7 @@ impl<G: NetGame, A: Address> Session<G, A> {
         lock(&self.mail).incoming.push((from.clone(), message));
     }
 
-    /// The messages that are to be sent.
+    /// The messages to send.
     pub(super) fn send(&mut self, now: Duration) -> Vec<(A, Vec<u8>)> {
         let outgoing = mem::take(&mut lock(&self.mail).outgoing);
         let gates = &mut self.gates;
@@ -183,13 +183,14 @@ impl<G: NetGame, A: Address> Session<G, A> {
         packets
     }
 
-    /// Lets GGRS read its messages and write new ones.
+    /// Lets GGRS process received messages and create new ones.
     pub(super) fn poll(&mut self, now: Duration) -> Vec<SessionEvent> {
         self.p2p.poll_remote_clients();
         let mut events = self.events();
         let passed = now.saturating_sub(self.polled);
         self.polled = now;
-        // Who has not yet answered is waited for in another way: that takes long in bad weather.
+        // Peers that have not answered yet are waited for in `leaving.rs`: with high packet loss the handshake takes
+        // long.
         let others = self.roster.others.iter().filter(|(_, address)| self.synchronised.contains(address));
         for (seat, address) in others {
             let presence = self.presences.get_mut(address);
@@ -229,13 +230,13 @@ impl<G: NetGame, A: Address> Session<G, A> {
         self.p2p.current_state() == ggrs::SessionState::Running
     }
 
-    /// The seats that have not answered yet.
+    /// The seats that have not answered yet, as bits.
     pub(super) fn silent(&self) -> u64 {
         let silent = self.roster.others.iter().filter(|(_, address)| !self.synchronised.contains(address));
         silent.fold(0, |mask, (seat, _)| mask | seat_bit(*seat))
     }
 
-    /// Plays a tick, if one can be played. `driver` has to be at this session.
+    /// Plays a tick, if possible. `driver` has to be in this session.
     pub(super) fn advance(
         &mut self,
         driver: &mut Driver<G>,
@@ -248,7 +249,7 @@ impl<G: NetGame, A: Address> Session<G, A> {
         let requests = self.p2p.advance_frame()?;
         driver.fulfil(requests)?;
         let events = self.events();
-        // Only now have rollbacks been made for all that has come.
+        // All rollbacks for the received inputs have been made at this point.
         if !self.lost {
             let known = u64::try_from(self.p2p.confirmed_frame() + 1).unwrap_or(0);
             self.confirmed = self.confirmed.max((self.roster.base + known).min(driver.tick()));
@@ -256,17 +257,17 @@ impl<G: NetGame, A: Address> Session<G, A> {
         Ok(events)
     }
 
-    /// How many ticks, from the first of the game on, have been played with everybody's true inputs.
+    /// Number of ticks, counted from the start of the game, simulated with the confirmed inputs of all players.
     pub(super) const fn confirmed(&self) -> u64 {
         self.confirmed
     }
 
-    /// Whether everybody plays: then nobody is left in the session before.
+    /// Whether all peers play in this session, so that none is left in the previous one.
     pub(super) const fn is_established(&self) -> bool {
         self.confirmed > self.roster.base
     }
 
-    /// How many ticks this peer is ahead of the slowest other.
+    /// Number of ticks that this peer is ahead of the slowest other peer.
     pub(super) fn ahead(&self) -> u32 {
         u32::try_from(self.p2p.frames_ahead()).unwrap_or(0)
     }

@@ -1,4 +1,4 @@
-//! [`Terms`]: what peers have to agree on before the first tick.
+//! [`Terms`]: handshake parameters, on which peers have to agree before the first tick.
 
 use alloc::string::String;
 use alloc::vec::Vec;
@@ -11,46 +11,46 @@ use crate::codec;
 use crate::hash::StateHash;
 use crate::lockstep::Game;
 
-/// What a peer plays. Two peers that differ in any of it would not come to the same states.
+/// Handshake parameters of a peer. Peers that differ in any of them would reach different states.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Terms {
-    /// The engine's semantics, [`SEMANTICS`](crate::SEMANTICS).
+    /// Version of the engine's semantics, [`SEMANTICS`](crate::SEMANTICS).
     pub semantics: u32,
-    /// The name of the game's rules.
+    /// Name of the game's rules.
     pub rules: String,
-    /// The version of the rules.
+    /// Version of the rules.
     pub rules_version: u32,
-    /// The hash of the setup.
+    /// Hash of the setup.
     pub setup: StateHash,
     /// Ticks per second.
     pub tick_rate: u32,
     /// Number of seats.
     pub players: u32,
-    /// How the peers stay together.
+    /// Synchronisation mode.
     pub mode: Mode,
 }
 
-/// In what two peers differ.
+/// The handshake parameters in which two peers differ.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TermsMismatch {
-    /// What is different.
+    /// All differences.
     pub differences: Vec<TermsDifference>,
 }
 
-/// One thing in which two peers differ.
+/// A handshake parameter in which two peers differ.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TermsDifference {
-    /// Its name.
+    /// Name of the parameter.
     pub what: &'static str,
-    /// What it is here.
+    /// Value of this peer.
     pub ours: String,
-    /// What it is there.
+    /// Value of the other peer.
     pub theirs: String,
 }
 
 impl fmt::Display for TermsMismatch {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "the peers do not play the same:")?;
+        write!(f, "the peers have different handshake parameters:")?;
         for (at, TermsDifference { what, ours, theirs }) in self.differences.iter().enumerate() {
             let comma = if at > 0 { "," } else { "" };
             write!(f, "{comma} {what} {ours} here and {theirs} there")?;
@@ -62,7 +62,7 @@ impl fmt::Display for TermsMismatch {
 impl core::error::Error for TermsMismatch {}
 
 impl Terms {
-    /// The terms of a game.
+    /// The handshake parameters of a game.
     pub(super) fn of<G: Game>(game: &G, setup: &G::Setup, options: &Options) -> Self {
         Terms {
             semantics: crate::SEMANTICS,
@@ -75,10 +75,10 @@ impl Terms {
         }
     }
 
-    /// Compares them with a peer's.
+    /// Compares the parameters with those of another peer.
     ///
     /// # Errors
-    /// [`TermsMismatch`] names everything that is different.
+    /// [`TermsMismatch`] with all differences.
     pub fn agree(&self, theirs: &Terms) -> Result<(), TermsMismatch> {
         let mut differences = Vec::new();
         let mut compare = |what, ours: &dyn fmt::Display, theirs: &dyn fmt::Display| {

@@ -1,4 +1,4 @@
-//! [`Transport`]: packets out and in. [`Udp`] is one, [`Network`](super::Network) another for tests.
+//! [`Transport`]: sends and receives packets. Implementations are [`Udp`] and, for tests, [`Network`](super::Network).
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -6,18 +6,18 @@ use core::fmt;
 use std::io;
 use std::net::{SocketAddr, ToSocketAddrs, UdpSocket};
 
-/// Longest packet, in bytes. Only a game with long inputs comes near: GGRS sends all those that were not acknowledged in
+/// Maximum length of a packet in bytes. Only games with long inputs come near: GGRS sends all unacknowledged inputs in
 /// one message.
 pub const PACKET_BYTES_MAX: usize = 16 << 10;
-/// What passes through most networks in one piece: packets of our own making are no longer.
+/// Maximum length of packets composed by this crate, in bytes: most networks pass it without fragmentation.
 pub(super) const PACKET_BYTES_AIM: usize = 1200;
 
-/// Carries packets between peers: it may lose, double, delay and reorder them, and anybody may send some.
+/// Carries packets between peers. Packets may be lost, duplicated, delayed and reordered, and may come from anybody.
 pub trait Transport<A> {
-    /// Sends a packet of at most [`PACKET_BYTES_MAX`] bytes, or does not.
+    /// Sends a packet of at most [`PACKET_BYTES_MAX`] bytes, or drops it.
     fn send(&mut self, packet: &[u8], to: &A);
 
-    /// The next packet that has come, and from where. Does not wait.
+    /// The next received packet and its sender. Does not block.
     fn receive(&mut self) -> Option<(A, Vec<u8>)>;
 }
 
@@ -37,17 +37,17 @@ impl Udp {
     /// Opens a socket; port 0 lets the system choose one.
     ///
     /// # Errors
-    /// Whatever the system has against it.
+    /// Errors of the operating system.
     pub fn bind(address: impl ToSocketAddrs) -> io::Result<Self> {
         let socket = UdpSocket::bind(address)?;
         socket.set_nonblocking(true)?;
         Ok(Udp { socket, buffer: vec![0; PACKET_BYTES_MAX] })
     }
 
-    /// Where it is bound.
+    /// The local address of the socket.
     ///
     /// # Errors
-    /// Whatever the system says.
+    /// Errors of the operating system.
     pub fn local_address(&self) -> io::Result<SocketAddr> {
         self.socket.local_addr()
     }
@@ -55,7 +55,7 @@ impl Udp {
 
 impl Transport<SocketAddr> for Udp {
     fn send(&mut self, packet: &[u8], to: &SocketAddr) {
-        // A packet that is not sent is a lost packet, and those are sent again.
+        // A packet that cannot be sent counts as lost, and lost packets are retransmitted.
         let _ = self.socket.send_to(packet, to);
     }
 
@@ -63,7 +63,7 @@ impl Transport<SocketAddr> for Udp {
         loop {
             match self.socket.recv_from(&mut self.buffer) {
                 Ok((length, from)) => return Some((from, self.buffer.get(..length)?.to_vec())),
-                // An earlier packet did not arrive: not the end of what is there.
+                // An earlier packet was not delivered. More received packets may be waiting.
                 Err(error) if error.kind() == io::ErrorKind::ConnectionReset => {}
                 Err(error) if error.kind() == io::ErrorKind::ConnectionRefused => {}
                 Err(_) => return None,

@@ -1,4 +1,4 @@
-//! [`Network`]: a network in memory, as bad as one likes, for tests.
+//! [`Network`]: a simulated network in memory with configurable link conditions, for tests.
 
 use alloc::collections::{BTreeMap, BTreeSet, VecDeque};
 use alloc::sync::Arc;
@@ -9,20 +9,20 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use super::transport::Transport;
 use crate::math::Rng;
 
-/// What a network does to packets.
+/// Link conditions of a simulated network.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Weather {
-    /// How long a packet takes at least.
+    /// Minimum latency of a packet.
     pub latency: Duration,
-    /// How much longer it may take; packets overtake each other.
+    /// Maximum additional latency. Packets may be reordered.
     pub jitter: Duration,
-    /// Of a hundred packets, how many are lost.
+    /// Packet loss in percent.
     pub loss: u32,
-    /// Of a hundred packets, how many arrive twice.
+    /// Duplicated packets in percent.
     pub doubled: u32,
 }
 
-/// A network in memory. Its time is what it is told.
+/// A simulated network in memory. The caller sets its time.
 ///
 /// ```
 /// use core::time::Duration;
@@ -42,11 +42,11 @@ pub struct Network(Arc<Mutex<Air>>);
 #[derive(Debug)]
 struct Air {
     weather: Weather,
-    /// From whom to whom nothing comes.
+    /// Pairs of sender and receiver between which all packets are lost.
     cut: BTreeSet<(u32, u32)>,
     rng: Rng,
     now: Duration,
-    /// Packets on their way, by the time of their arrival and the order in which they were sent.
+    /// Packets under way, by time of arrival and order of sending.
     flying: BTreeMap<(Duration, u64), Letter>,
     sent: u64,
     arrived: BTreeMap<u32, VecDeque<(u32, Vec<u8>)>>,
@@ -59,7 +59,7 @@ struct Letter {
     bytes: Vec<u8>,
 }
 
-/// An end of a [`Network`], with a number for an address.
+/// An endpoint of a [`Network`], with a number as its address.
 #[derive(Clone, Debug)]
 pub struct Port {
     network: Network,
@@ -67,7 +67,7 @@ pub struct Port {
 }
 
 impl Network {
-    /// A network of which the seed decides what is lost.
+    /// Creates a network. The seed determines the random losses and delays.
     #[must_use]
     pub fn new(weather: Weather, seed: u64) -> Self {
         Network(Arc::new(Mutex::new(Air {
@@ -81,28 +81,28 @@ impl Network {
         })))
     }
 
-    /// The end with this address.
+    /// The endpoint with this address.
     #[must_use]
     pub fn port(&self, address: u32) -> Port {
         Port { network: self.clone(), address }
     }
 
-    /// Lets it be `now`.
+    /// Sets the time.
     pub fn set_time(&self, now: Duration) {
         self.air().now = now;
     }
 
-    /// Changes the weather, for packets that are sent from now on.
+    /// Changes the link conditions for packets sent from now on.
     pub fn set_weather(&self, weather: Weather) {
         self.air().weather = weather;
     }
 
-    /// Loses all packets that are sent from one address to another, until [`Network::mend`].
+    /// Drops all packets from one address to another, until [`Network::mend`].
     pub fn cut(&self, from: u32, to: u32) {
         self.air().cut.insert((from, to));
     }
 
-    /// Lets packets pass everywhere again.
+    /// Removes all cuts.
     pub fn mend(&self) {
         self.air().cut.clear();
     }

@@ -1,4 +1,4 @@
-//! What GGRS carries for this engine: inputs, and in lockstep a hash of the past beside them.
+//! The input type that GGRS carries: the game's input, and in lockstep a state hash.
 
 use core::fmt::Debug;
 use core::hash::Hash;
@@ -9,12 +9,12 @@ use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use crate::hash::StateHash;
 use crate::lockstep::Game;
 
-/// A game that can be played over a network: its inputs are small and plain, as GGRS wants them.
+/// A game that can be played over a network: its inputs are small and plain, as GGRS requires.
 pub trait NetGame: Game<Input: Copy + Send + Sync> + Send + 'static {}
 
 impl<G: Game<Input: Copy + Send + Sync> + Send + 'static> NetGame for G {}
 
-/// How a peer is found: a socket address, or whatever the transport uses.
+/// Address of a peer: a socket address, or whatever the transport uses.
 pub trait Address: Clone + Ord + Hash + Debug + Serialize + DeserializeOwned + Send + Sync + 'static {}
 
 impl<A> Address for A where
@@ -22,23 +22,23 @@ impl<A> Address for A where
 {
 }
 
-/// The state hash that a peer had after some tick.
+/// A checksum report: the state hash that a peer had after a tick.
 ///
-/// Without prediction GGRS never asks for a save, and so never compares checksums. In lockstep every input carries the
-/// hash of a recent tick instead; as all peers see all inputs, all see who is alone. With prediction the inputs carry
-/// none: it would be another one in each tick, and no prediction would ever be right.
+/// Without prediction GGRS never requests a save, and so never compares checksums. In lockstep every input carries the
+/// hash of a recent tick instead; as all peers receive all inputs, all of them can find the diverged peer. With
+/// prediction the inputs carry no hash: it would change in each tick, and no prediction of an input would be right.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Echo {
-    /// How many ticks had been played; 0 if there is no hash.
+    /// Number of ticks played; 0 if there is no hash.
     pub tick: u64,
-    /// The hash after them.
+    /// Hash after these ticks.
     pub hash: StateHash,
 }
 
-/// A player's input of one tick, as GGRS sends it.
+/// A player's input for one tick, as sent by GGRS.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Wire<I> {
-    /// What the game gets.
+    /// The input of the game.
     pub input: I,
     /// In lockstep, the sender's hash of a recent tick.
     pub echo: Echo,
@@ -46,7 +46,7 @@ pub struct Wire<I> {
 
 /// The types of a GGRS session that plays `G` between peers with addresses `A`.
 ///
-/// GGRS keeps no states ([`Driver`](super::Driver) does): its cells hold checksums only.
+/// GGRS keeps no states, because [`Driver`](super::Driver) does: its cells hold checksums only.
 pub struct GgrsConfig<G, A>(PhantomData<fn() -> (G, A)>);
 
 impl<G: NetGame, A: Address> ggrs::Config for GgrsConfig<G, A> {

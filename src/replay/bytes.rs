@@ -1,11 +1,11 @@
-//! Reading and writing the format's numbers: little-endian, and LEB128 for those that are mostly small.
+//! Encoding of the format's numbers: little-endian, and LEB128 for numbers that are mostly small.
 
 use alloc::vec::Vec;
 
 use super::flaw::Flaw;
 use super::reader::ReadError;
 
-/// Reads fields one after the other and knows where in the file it is.
+/// Reads fields one after the other and tracks the offset in the file.
 #[derive(Clone, Debug)]
 pub(super) struct Cursor<'a> {
     rest: &'a [u8],
@@ -13,12 +13,12 @@ pub(super) struct Cursor<'a> {
 }
 
 impl<'a> Cursor<'a> {
-    /// A cursor over a part of the file that begins at `offset`.
+    /// Creates a cursor over a part of the file that begins at `offset`.
     pub(super) fn new(bytes: &'a [u8], offset: u64) -> Self {
         Cursor { rest: bytes, offset }
     }
 
-    /// Where in the file the next byte is.
+    /// Offset of the next byte in the file.
     pub(super) fn offset(&self) -> u64 {
         self.offset
     }
@@ -27,7 +27,7 @@ impl<'a> Cursor<'a> {
         self.rest.is_empty()
     }
 
-    /// The next `count` bytes, or `None` when there are not as many.
+    /// The next `count` bytes, or `None` when fewer are left.
     pub(super) fn take(&mut self, count: usize) -> Option<&'a [u8]> {
         let (taken, rest) = self.rest.split_at_checked(count)?;
         self.rest = rest;
@@ -58,7 +58,7 @@ impl<'a> Cursor<'a> {
         self.array().map(i64::from_le_bytes)
     }
 
-    /// A number in LEB128, in its one shortest form, which keeps the encoding of a log unique.
+    /// Reads a number in LEB128. Only the shortest form is accepted, so that the encoding of a log is unique.
     pub(super) fn varint(&mut self) -> Result<u32, ReadError> {
         let start = self.offset;
         let mut value: u64 = 0;
@@ -102,7 +102,7 @@ mod tests {
             put_varint(value, &mut bytes);
             let mut cursor = Cursor::new(&bytes, 0);
             assert_eq!(cursor.varint(), Ok(value));
-            assert!(cursor.is_empty(), "{value} has bytes left over");
+            assert!(cursor.is_empty(), "{value} leaves bytes unread");
         }
         let mut bytes = Vec::new();
         put_varint(300, &mut bytes);
@@ -113,10 +113,10 @@ mod tests {
     fn a_varint_has_one_form() {
         let number = Err(ReadError::Malformed { offset: 7, flaw: Flaw::Number });
         for padded in [&[0x80, 0x00][..], &[0xff, 0x80, 0x00]] {
-            assert_eq!(Cursor::new(padded, 7).varint(), number, "{padded:?} is longer than it need be");
+            assert_eq!(Cursor::new(padded, 7).varint(), number, "{padded:?} is not the shortest form");
         }
         for over in [&[0xff, 0xff, 0xff, 0xff, 0x10][..], &[0xff, 0xff, 0xff, 0xff, 0xff, 0x01]] {
-            assert_eq!(Cursor::new(over, 7).varint(), number, "{over:?} is more than a u32");
+            assert_eq!(Cursor::new(over, 7).varint(), number, "{over:?} exceeds u32");
         }
         let cut = Err(ReadError::Malformed { offset: 7, flaw: Flaw::BlockCut });
         assert_eq!(Cursor::new(&[0xff, 0xff], 7).varint(), cut);

@@ -1,11 +1,11 @@
-//! [`Flaw`]: what is wrong with the bytes of a replay.
+//! [`Flaw`]: the reasons why the bytes of a replay are malformed.
 
 use alloc::string::String;
 use core::fmt;
 
 use super::format::{CLAIM_NAME_BYTES_MAX, CLAIMS_MAX, PLAYERS_MAX, RULES_NAME_BYTES_MAX};
 
-/// Why a file is no replay, or not one that a recorder could have written.
+/// Reason why a file is not a replay, or not a replay that a recorder could have written.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Flaw {
     /// The first bytes are not [`MAGIC`](super::MAGIC).
@@ -14,54 +14,54 @@ pub enum Flaw {
     HeaderCut,
     /// The name of the rules is empty, too long or not UTF-8.
     RulesName,
-    /// The header's checksum is not that of its bytes.
+    /// The header does not match its checksum.
     HeaderChecksum,
-    /// More players than a game can have.
+    /// The header states more players than a game can have.
     Players {
-        /// How many the header states.
+        /// Number of players in the header.
         count: u32,
     },
-    /// No ticks in a second.
+    /// The tick rate is zero.
     TickRate,
-    /// No ticks in a block.
+    /// The checkpoint interval is zero.
     CheckpointInterval,
     /// The setup's bytes are not the canonical encoding of a setup.
     Setup,
     /// The game cannot start from this setup.
     SetupRefused {
-        /// The game's reason.
+        /// Reason given by the game.
         why: String,
     },
-    /// The game made from the setup has another number of players than the header states.
+    /// The game created from the setup has another number of players than the header states.
     PlayersDisagree {
-        /// As the header has it.
+        /// Players in the header.
         header: u32,
-        /// As the game has it.
+        /// Players of the game.
         game: u32,
     },
-    /// The game made from the setup has another tick rate than the header states.
+    /// The game created from the setup has another tick rate than the header states.
     TickRateDisagrees {
-        /// As the header has it.
+        /// Tick rate in the header.
         header: u32,
-        /// As the game has it.
+        /// Tick rate of the game.
         game: u32,
     },
-    /// A kind of block that this version does not have.
+    /// A block has a kind that this version does not define.
     BlockKind {
-        /// The kind.
+        /// The kind found.
         kind: u8,
     },
-    /// A block's checksum is not that of the bytes before it.
+    /// A block does not match its checksum.
     BlockChecksum,
     /// A block ends in the middle of a field.
     BlockCut,
-    /// A number is not written in its shortest form, or is too large.
+    /// A number is not in its shortest form, or is too large.
     Number,
-    /// A block without a tick.
+    /// A block has no ticks.
     EmptyBlock,
-    /// A run of no ticks.
+    /// A run has no ticks.
     EmptyRun,
-    /// Two neighbouring runs with the same inputs, which are one run.
+    /// Two consecutive runs have the same inputs and should be a single run.
     SplitRun,
     /// A block has more ticks than the header's checkpoint interval.
     BlockTicks {
@@ -70,33 +70,34 @@ pub enum Flaw {
         /// The checkpoint interval.
         interval: u32,
     },
-    /// A block of inputs follows one with fewer ticks than the interval, which only the last may have.
+    /// A block of inputs follows a block with fewer ticks than the interval, although only the last block may be
+    /// shorter.
     BlockAfterLast,
     /// The bytes of a run are not the canonical encoding of one input for each player.
     Inputs,
-    /// The trailer states another number of ticks than the blocks have.
+    /// The trailer states another number of ticks than the blocks contain.
     Ticks {
-        /// As the trailer has it.
+        /// Ticks in the trailer.
         trailer: u64,
-        /// As the blocks have it.
+        /// Ticks in the blocks.
         blocks: u64,
     },
-    /// The trailer's chain hash is not that of the header and the blocks.
+    /// The trailer's chain hash does not match the header and the blocks.
     Chain,
-    /// More claims than a trailer may have.
+    /// The trailer has more claims than are allowed.
     Claims {
-        /// How many it states.
+        /// Number of claims in the trailer.
         count: u32,
     },
     /// The name of a claim is empty, too long or not UTF-8.
     ClaimName,
-    /// The claims are not in ascending order of their names, each name once.
+    /// The claims are not in strictly ascending order of their names.
     ClaimOrder,
     /// Bytes follow the last claim.
     TrailerLength,
     /// Bytes follow the trailer.
     TrailingBytes {
-        /// How many.
+        /// Number of bytes.
         count: u64,
     },
 }
@@ -104,7 +105,7 @@ pub enum Flaw {
 impl fmt::Display for Flaw {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Flaw::Magic => write!(f, "this is no replay file"),
+            Flaw::Magic => write!(f, "this is not a replay file"),
             Flaw::HeaderCut => write!(f, "the file ends inside the header"),
             Flaw::RulesName => {
                 write!(f, "the name of the rules is not 1 to {RULES_NAME_BYTES_MAX} bytes of UTF-8")
@@ -113,26 +114,28 @@ impl fmt::Display for Flaw {
             Flaw::Players { count } => write!(f, "{count} players, at most {PLAYERS_MAX} are possible"),
             Flaw::TickRate => write!(f, "a tick rate of zero"),
             Flaw::CheckpointInterval => write!(f, "a checkpoint interval of zero"),
-            Flaw::Setup => write!(f, "the setup is not one of this game"),
+            Flaw::Setup => write!(f, "the setup is not a valid setup of this game"),
             Flaw::SetupRefused { why } => write!(f, "the setup cannot start a game: {why}"),
             Flaw::PlayersDisagree { header, game } => {
-                write!(f, "the header states {header} players, its setup makes a game of {game}")
+                write!(f, "the header states {header} players, its setup makes a game with {game}")
             }
             Flaw::TickRateDisagrees { header, game } => {
-                write!(f, "the header states {header} ticks per second, its setup makes a game of {game}")
+                write!(f, "the header states {header} ticks per second, its setup makes a game with {game}")
             }
             Flaw::BlockKind { kind } => write!(f, "a block of unknown kind {kind}"),
             Flaw::BlockChecksum => write!(f, "the block does not match its checksum"),
             Flaw::BlockCut => write!(f, "the block ends in the middle of a field"),
-            Flaw::Number => write!(f, "a number in a form that no recorder writes"),
+            Flaw::Number => write!(f, "a number is too large or not in its shortest form"),
             Flaw::EmptyBlock => write!(f, "a block without a tick"),
             Flaw::EmptyRun => write!(f, "a run of no ticks"),
             Flaw::SplitRun => write!(f, "two neighbouring runs have the same inputs"),
             Flaw::BlockTicks { ticks, interval } => {
                 write!(f, "{ticks} ticks in a block, at a checkpoint interval of {interval}")
             }
-            Flaw::BlockAfterLast => write!(f, "a block of inputs follows the short one that ends a game"),
-            Flaw::Inputs => write!(f, "these are not the inputs of all players of this game"),
+            Flaw::BlockAfterLast => {
+                write!(f, "a block of inputs follows a block shorter than the checkpoint interval")
+            }
+            Flaw::Inputs => write!(f, "the bytes are not one valid input of this game for each player"),
             Flaw::Ticks { trailer, blocks } => {
                 write!(f, "the trailer states {trailer} ticks, the blocks have {blocks}")
             }

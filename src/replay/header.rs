@@ -1,4 +1,4 @@
-//! The header: which game, started how.
+//! The header of a replay: identifies the game and its setup.
 
 use alloc::vec::Vec;
 
@@ -9,26 +9,26 @@ use super::limits::{Limit, Limits};
 use super::reader::ReadError;
 use crate::hash::StateHash;
 
-/// What a replay says before its first tick.
+/// The header fields of a replay, ahead of its first tick.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Header<'a> {
-    /// The engine's semantics, [`SEMANTICS`](crate::SEMANTICS) for this one.
+    /// Version of the engine's semantics; [`SEMANTICS`](crate::SEMANTICS) for this engine.
     pub semantics: u32,
-    /// The version of the game's rules.
+    /// Version of the game's rules.
     pub rules_version: u32,
     /// Number of players.
     pub players: u32,
     /// Ticks per second.
     pub tick_rate: u32,
-    /// Ticks in every block of inputs but the last, which may have fewer.
+    /// Ticks in every block of inputs. Only the last block may have fewer.
     pub checkpoint_interval: u32,
-    /// The name of the game's rules.
+    /// Name of the game's rules.
     pub rules_name: &'a str,
-    /// The canonical bytes of the game's setup.
+    /// Canonical bytes of the game's setup.
     pub setup: &'a [u8],
 }
 
-/// Offsets of the fields that a verdict may point at.
+/// Offsets of the fields that a verdict may refer to.
 pub(super) mod offset {
     pub(in crate::replay) const PLAYERS: u64 = 20;
     pub(in crate::replay) const TICK_RATE: u64 = 24;
@@ -37,7 +37,7 @@ pub(super) mod offset {
     pub(in crate::replay) const RULES_NAME: u64 = 40;
 }
 
-/// A header read from a file, with what the rest of the file starts from.
+/// A header read from a file, with the initial hashes for the rest of the file.
 #[derive(Clone, Debug)]
 pub(super) struct ReadHeader<'a> {
     pub(super) header: Header<'a>,
@@ -45,19 +45,19 @@ pub(super) struct ReadHeader<'a> {
     pub(super) start: StateHash,
     pub(super) inputs_digest: StateHash,
     pub(super) chain: StateHash,
-    /// Bytes of the header, its checksum among them.
+    /// Length of the header in bytes, including its checksum.
     pub(super) length: usize,
 }
 
 impl<'a> Header<'a> {
-    /// Where in the file the setup's bytes begin.
+    /// Offset of the setup's bytes in the file.
     pub(super) fn setup_offset(&self) -> u64 {
         offset::RULES_NAME + self.rules_name.len() as u64
     }
 
-    /// The header's bytes up to the start checkpoint, which needs their digest.
+    /// Encodes the header up to the start checkpoint, whose hash includes the digest of these bytes.
     ///
-    /// The caller has checked that the name and the setup are not too long.
+    /// The caller has checked the lengths of the name and the setup.
     pub(super) fn encode(&self) -> Vec<u8> {
         let Header { semantics, rules_version, players, tick_rate, checkpoint_interval, rules_name, setup } =
             *self;
@@ -144,7 +144,7 @@ fn take<'a>(cursor: &mut Cursor<'a>, count: u32) -> Option<&'a [u8]> {
     cursor.take(usize::try_from(count).ok()?)
 }
 
-/// The bytes of the file that the cursor has passed.
+/// The bytes of the file before the cursor.
 fn before<'a>(file: &'a [u8], cursor: &Cursor<'_>) -> &'a [u8] {
     let passed = usize::try_from(cursor.offset()).expect("an offset inside a slice");
     &file[..passed]

@@ -1,33 +1,34 @@
-//! [`Limits`]: how much a stranger's file may cost.
+//! [`Limits`]: bounds on the cost of reading and playing an untrusted file.
 
 use core::fmt;
 
 use super::format::{BLOCK_BYTES_MAX, BLOCK_TICKS_MAX, PLAYERS_MAX, SETUP_BYTES_MAX};
 use super::reader::ReadError;
 
-/// How large a replay may be and how much it may compute.
+/// Bounds on the size of a replay and on its computing time.
 ///
-/// The default lets through what any honest game records in a day and stops one file after some minutes of
-/// computing. A server that knows its game narrows it: to a race of ten minutes and two players, for example.
+/// The default accepts anything that an ordinary game records in a day and stops a file after some minutes of
+/// computing. A server that knows its game should narrow the limits, for example to a race of ten minutes and two
+/// players.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Limits {
-    /// Bytes of the whole file.
+    /// Size of the whole file in bytes.
     pub file_bytes: u64,
-    /// Bytes of the encoded setup.
+    /// Size of the encoded setup in bytes.
     pub setup_bytes: u32,
-    /// Players.
+    /// Number of players.
     pub players: u32,
-    /// Bytes of a block's payload.
+    /// Size of a block's payload in bytes.
     pub block_bytes: u32,
-    /// Ticks between two checkpoints, which is also the longest run.
+    /// Ticks between two checkpoints, which is also the maximum length of a run.
     pub block_ticks: u32,
-    /// Ticks of the whole game.
+    /// Ticks in the whole game.
     pub ticks: u64,
-    /// Bodies in the game's world, at the start and after every tick, if it shows one
-    /// ([`Game::world_mut`](crate::lockstep::Game::world_mut)). Between two looks, `setup_bytes` and `tick_work` bound
-    /// them.
+    /// Bodies in the game's world, checked at the start and after every tick, if the game exposes a world
+    /// ([`Game::world_mut`](crate::lockstep::Game::world_mut)). Between two checks, `setup_bytes` and `tick_work` bound
+    /// their number.
     pub bodies: u64,
-    /// Work units of one tick, as [`Game::work`](crate::lockstep::Game::work) counts them.
+    /// Work units of one tick, as counted by [`Game::work`](crate::lockstep::Game::work).
     pub tick_work: u64,
     /// Work units of the whole game.
     pub total_work: u64,
@@ -43,9 +44,9 @@ impl Default for Limits {
             block_ticks: BLOCK_TICKS_MAX,
             // A day at 60 Hz.
             ticks: 24 * 60 * 60 * 60,
-            // As many as a world can hold.
+            // Maximum number of bodies in a world.
             bodies: 1 << 20,
-            // A unit of the sandbox is some 25 ns: a quarter of a second, and eight minutes.
+            // A work unit of the sandbox takes about 25 ns, so these are a quarter of a second and eight minutes.
             tick_work: 10_000_000,
             total_work: 20_000_000_000,
         }
@@ -92,7 +93,7 @@ impl Limit {
         }
     }
 
-    /// Refuses a value above `max`.
+    /// Returns an error for a value above `max`.
     pub(super) fn check(self, value: impl Into<u64>, max: impl Into<u64>) -> Result<(), ReadError> {
         let (value, max) = (value.into(), max.into());
         if value > max { Err(ReadError::LimitExceeded { limit: self, value, max }) } else { Ok(()) }

@@ -1,27 +1,27 @@
-//! Replay files: recording, reading and verifying. Bytes in, bytes out; `docs/FORMAT.md` gives the layout.
+//! Replay files: recording, reading and verifying. All functions work on bytes in memory; `docs/FORMAT.md` gives the
+//! layout.
 //!
-//! A replay is a setup and the inputs of every tick. [`Recording`] steps a game and writes one as it goes,
-//! [`verify`] plays it again and answers with a [`Verdict`]. A [`Timeline`] goes to any tick of it, forwards and
-//! backwards.
+//! A replay is a setup and the inputs of every tick. [`Recording`] steps a game and writes its replay at the same time.
+//! [`verify`] simulates a replay and returns a [`Verdict`]. A [`Timeline`] seeks to any tick, forwards and backwards.
 //!
 //! # What `Match` means
 //!
-//! The file is whole, and under these rules and this engine its setup and its inputs lead, tick for tick, to the
-//! end state and the claims that it states. This holds for any file from anywhere, because the verifier believes
-//! nothing but the setup and the inputs: the rest it works out again and compares.
+//! The file is complete, and under these rules and this engine its setup and its inputs lead, tick by tick, to the end
+//! state and the claims that it states. This holds for a file from any source, because the verifier trusts only the
+//! setup and the inputs: it recomputes everything else and compares.
 //!
 //! # What it does not mean
 //!
-//! None of the hashes is keyed, so it does not say who played, or that a file is the one that was once recorded:
-//! whoever can run the game can write another true replay. What cannot happen by accident, or by editing inputs
-//! and repairing checksums, is a file that keeps the hashes of its original and tells another story. Every
-//! checkpoint is a hash of the state *and* of all inputs so far ([`checkpoint_hash`]), so that even an input
-//! which the game ignores is bound. To prove authorship, sign the file's bytes.
+//! None of the hashes is keyed, so a match does not prove who played or that the file is the original recording: anyone
+//! who can run the game can write another valid replay. Neither an accident nor editing inputs and repairing checksums
+//! can produce a file that keeps the hashes of its original but contains other inputs. Every checkpoint is a hash of
+//! the state *and* of all inputs so far ([`checkpoint_hash`]), so that even an input that the game ignores is covered.
+//! To prove authorship, sign the file's bytes.
 //!
-//! # How little is believed
+//! # Untrusted files
 //!
-//! [`Limits`] are checked before anything is allocated or stepped. A file is scanned to its end (lengths,
-//! checksums, chain, run lengths) before the game is even started, so that a damaged one costs no simulation.
+//! [`Limits`] are checked before any allocation or simulation. A file is scanned to its end (lengths, checksums, chain,
+//! run lengths) before the game is started, so that a damaged file costs no simulation.
 
 mod bytes;
 mod flaw;

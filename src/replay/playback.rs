@@ -1,4 +1,4 @@
-//! [`Playback`]: plays a replay again, tick by tick, and [`verify`], which does so to the end.
+//! [`Playback`]: a verified replay, simulated tick by tick, and [`verify`], which runs it to its end.
 
 use alloc::collections::BTreeMap;
 use alloc::string::String;
@@ -15,7 +15,7 @@ use crate::codec;
 use crate::lockstep::Game;
 use crate::world::World;
 
-/// Plays a replay again and says what it is worth.
+/// Simulates a replay and returns the verdict on it.
 #[must_use]
 pub fn verify<G: Game>(file: &[u8], limits: &Limits) -> Verdict {
     let mut playback = match Playback::<G>::open(file, limits) {
@@ -31,23 +31,23 @@ pub fn verify<G: Game>(file: &[u8], limits: &Limits) -> Verdict {
     }
 }
 
-/// What a step of a [`Playback`] did.
+/// Result of a step of a [`Playback`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Step {
-    /// The game is one tick further.
+    /// The game advanced by one tick.
     Ticked,
-    /// There are no more ticks.
+    /// There are no ticks left.
     Ended,
 }
 
-/// A replay being played again: a [`Rerun`] that is compared with what the file states.
+/// A verified replay: a [`Rerun`] whose states are compared with the checkpoints of the file.
 pub struct Playback<'a, G: Game> {
     rerun: Rerun<'a, G>,
     ending: Ending,
     failed: Option<Verdict>,
 }
 
-/// How the file ends, known before the first tick is played.
+/// The end of the file, known before the first tick is played.
 #[derive(Clone, Debug)]
 pub(super) struct Ending {
     pub(super) ticks: u64,
@@ -55,11 +55,11 @@ pub(super) struct Ending {
 }
 
 impl<'a, G: Game> Playback<'a, G> {
-    /// Scans the whole file, starts the game and compares the start.
+    /// Scans the whole file, starts the game and compares the start checkpoint.
     ///
     /// # Errors
-    /// The [`Verdict`] when there is nothing to play: the file is malformed, too large, of another game, or its
-    /// setup starts another state.
+    /// The [`Verdict`] when nothing can be played: the file is malformed, exceeds a limit, belongs to another game, or
+    /// its setup leads to another start state.
     pub fn open(file: &'a [u8], limits: &Limits) -> Result<Self, Verdict> {
         let (rerun, ending) = Rerun::<G>::open_to_end(file, limits)?;
         let reader = rerun.place().inputs.reader();
@@ -69,48 +69,48 @@ impl<'a, G: Game> Playback<'a, G> {
         Ok(Playback { rerun, ending, failed: None })
     }
 
-    /// The game as of now.
+    /// The game at the current tick.
     #[must_use]
     pub fn game(&self) -> &G {
         self.rerun.game()
     }
 
-    /// The physics world of the game as of now, if it has one, to look at.
+    /// The game's physics world at the current tick, if it has one, for inspection.
     pub fn world(&mut self) -> Option<&World> {
         self.rerun.world()
     }
 
-    /// The game as of now, to keep.
+    /// Returns the game at the current tick.
     #[must_use]
     pub fn into_game(self) -> G {
         self.rerun.into_game()
     }
 
-    /// How many ticks have been played.
+    /// Number of ticks played.
     #[must_use]
     pub fn tick(&self) -> u64 {
         self.rerun.tick()
     }
 
-    /// The inputs that the last tick was played with; before the first, none.
+    /// The inputs of the last tick played; empty before the first tick.
     #[must_use]
     pub fn inputs(&self) -> &[G::Input] {
         self.rerun.inputs()
     }
 
-    /// The work units of all ticks so far, as [`Game::work`] counts them.
+    /// Work units of all ticks played, as counted by [`Game::work`].
     #[must_use]
     pub fn work(&self) -> u64 {
         self.rerun.work()
     }
 
-    /// How many ticks the file has, as far as it is whole.
+    /// Number of ticks in the complete blocks of the file.
     #[must_use]
     pub fn ticks(&self) -> u64 {
         self.rerun.ticks()
     }
 
-    /// What the file states of its end, if it is complete. Only a [`Verdict::Match`] makes it true.
+    /// The trailer, if the file is complete. Its statements are true only if the verdict is [`Verdict::Match`].
     #[must_use]
     pub fn trailer(&self) -> Option<&Trailer> {
         self.ending.trailer.as_ref()
@@ -119,7 +119,8 @@ impl<'a, G: Game> Playback<'a, G> {
     /// Plays one tick and, at the end of a block, compares the checkpoint.
     ///
     /// # Errors
-    /// The [`Verdict`] when the inputs are not this game's, cost too much, or lead elsewhere. It is final.
+    /// The [`Verdict`] when the inputs are not valid for this game, exceed a work limit, or lead to another state. The
+    /// verdict is final.
     pub fn step(&mut self) -> Result<Step, Verdict> {
         if let Some(verdict) = &self.failed {
             return Err(verdict.clone());
@@ -131,9 +132,9 @@ impl<'a, G: Game> Playback<'a, G> {
         result
     }
 
-    /// The verdict on the file, given that all its ticks have been played.
+    /// Returns the verdict on the file, to be called after all ticks have been played.
     ///
-    /// Before the end it can be nothing better than `Incomplete`.
+    /// Before the end of the file the best verdict is `Incomplete`.
     #[must_use]
     pub fn conclude(self) -> Verdict {
         if let Some(verdict) = self.failed {
@@ -143,8 +144,8 @@ impl<'a, G: Game> Playback<'a, G> {
         let Some(trailer) = self.ending.trailer.filter(|trailer| trailer.ticks == ticks) else {
             return Verdict::Incomplete { ticks, hash };
         };
-        // The last checkpoint already binds this state, so a final hash that differs is not another course
-        // that the game took but a statement about it.
+        // The last checkpoint already covers this state, so a different final hash is a wrong statement in the trailer
+        // and not a divergence of the game.
         if trailer.final_hash != hash {
             let difference = ClaimDifference::FinalHash { claimed: trailer.final_hash, actual: hash };
             return Verdict::ClaimMismatch { ticks, hash, difference };
@@ -164,23 +165,23 @@ impl<'a, G: Game> Playback<'a, G> {
         }
         let (tick, inputs) = (self.tick(), &self.rerun.place().inputs);
         let block_ticks = inputs.finished_block().map_or(0, |block| u64::from(block.ticks));
-        // All blocks before have been compared.
+        // All earlier blocks have been compared.
         Err(Verdict::Diverged { last_equal: Some(tick - block_ticks), first_different: tick })
     }
 
-    /// Whether the state is that of the checkpoint, if the file has one of this tick.
+    /// Whether the state matches the checkpoint of this tick; true if the file has none at this tick.
     pub(super) fn agrees(&self) -> bool {
         self.rerun.place().inputs.finished_block().is_none_or(|block| {
             checkpoint_hash(self.game().state_hash(), block.inputs_digest) == block.checkpoint
         })
     }
 
-    /// Where in the file it is.
+    /// The current position in the file.
     pub(super) fn place(&self) -> &Place<'a> {
         self.rerun.place()
     }
 
-    /// Goes where it has been.
+    /// Restores an earlier state and position.
     pub(super) fn go(&mut self, save: &G::Save, place: Place<'a>) {
         self.rerun.go(save, place);
         self.failed = None;
@@ -215,13 +216,13 @@ pub(super) fn check_rules<G: Game>(header: &Header<'_>) -> Result<(), Verdict> {
     Ok(())
 }
 
-/// A game that shows no world has no bodies to count.
+/// Checks the number of bodies. A game that exposes no world counts as having none.
 pub(super) fn check_bodies<G: Game>(game: &mut G, limits: &Limits) -> Result<(), ReadError> {
     let bodies = game.world_mut().map_or(0, |world| world.body_count());
     Limit::Bodies.check(u64::try_from(bodies).unwrap_or(u64::MAX), limits.bodies)
 }
 
-/// The setup, if it is written as this program writes it.
+/// Decodes the setup, which must be in canonical encoding.
 pub(super) fn decode_setup<G: Game>(header: &Header<'_>) -> Result<G::Setup, Verdict> {
     codec::decode(header.setup)
         .ok()
@@ -229,7 +230,7 @@ pub(super) fn decode_setup<G: Game>(header: &Header<'_>) -> Result<G::Setup, Ver
         .ok_or(Verdict::Malformed { offset: header.setup_offset(), flaw: Flaw::Setup })
 }
 
-/// The game before its first tick, if it is the one that the header describes.
+/// Creates the game before its first tick and checks that it matches the header.
 pub(super) fn start<G: Game>(header: &Header<'_>) -> Result<G, Verdict> {
     let malformed = |offset, flaw| Verdict::Malformed { offset, flaw };
     let setup = decode_setup::<G>(header)?;
@@ -246,7 +247,7 @@ pub(super) fn start<G: Game>(header: &Header<'_>) -> Result<G, Verdict> {
     Ok(game)
 }
 
-/// The first name, in order, whose value is not the same on both sides.
+/// The first name, in ascending order, whose value differs between the two sides.
 fn first_difference(claimed: Vec<(String, i64)>, actual: Vec<(String, i64)>) -> Option<ClaimDifference> {
     let claimed: BTreeMap<String, i64> = claimed.into_iter().collect();
     let actual: BTreeMap<String, i64> = actual.into_iter().collect();

@@ -1,7 +1,7 @@
-//! [`Reader`]: the structure of a replay, block by block, without knowing the game.
+//! [`Reader`]: reads the structure of a replay, block by block, independently of the game.
 //!
-//! Everything that can be judged without stepping the game is judged here: lengths, checksums, the chain, run
-//! lengths, the order of the blocks, the trailer's counts.
+//! It checks everything that can be checked without stepping the game: lengths, checksums, the chain, run lengths, the
+//! order of the blocks, the trailer's counts.
 
 use alloc::string::String;
 use alloc::vec::Vec;
@@ -17,28 +17,28 @@ use super::limits::{Limit, Limits};
 use super::runs::Runs;
 use crate::hash::StateHash;
 
-/// Why a file, or the rest of it, cannot be read.
+/// Reason why a file, or the rest of it, cannot be read.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ReadError {
-    /// No recorder writes such bytes.
+    /// The bytes are not what a recorder writes.
     Malformed {
-        /// Where in the file.
+        /// Offset in the file.
         offset: u64,
-        /// What is wrong there.
+        /// The flaw at this offset.
         flaw: Flaw,
     },
     /// The file is larger than the reader allows.
     LimitExceeded {
-        /// In what.
+        /// The limit.
         limit: Limit,
-        /// What the file has.
+        /// Value in the file.
         value: u64,
-        /// What is allowed.
+        /// Maximum allowed value.
         max: u64,
     },
     /// The file has another version of the format.
     OtherFormat {
-        /// Its version.
+        /// Version of the file.
         version: u32,
     },
 }
@@ -57,25 +57,25 @@ impl fmt::Display for ReadError {
 
 impl core::error::Error for ReadError {}
 
-/// What follows the header, one after the other.
+/// A part of the file after the header.
 #[derive(Clone, Debug)]
 pub enum Part<'a> {
     /// The inputs of some ticks.
     Inputs(InputBlock<'a>),
     /// The end of a complete file.
     Trailer(Trailer),
-    /// The file ends before its trailer: a recorder was stopped, or is still at work.
+    /// The file ends before its trailer: its recorder was stopped or is still running.
     Cut,
 }
 
 /// A block of inputs.
 #[derive(Clone, Debug)]
 pub struct InputBlock<'a> {
-    /// How many ticks it has, at least one.
+    /// Number of ticks, at least one.
     pub ticks: u32,
-    /// The checkpoint after its last tick.
+    /// Checkpoint after the block's last tick.
     pub checkpoint: StateHash,
-    /// The digest of all inputs up to its last tick.
+    /// Digest of all inputs up to the block's last tick.
     pub inputs_digest: StateHash,
     runs: Runs<'a>,
 }
@@ -88,16 +88,16 @@ impl<'a> InputBlock<'a> {
     }
 }
 
-/// What the file says about its end.
+/// The trailer of a file: its statements about the end of the game.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Trailer {
-    /// Ticks of the game.
+    /// Number of ticks in the game.
     pub ticks: u64,
-    /// The hash of the state after the last tick.
+    /// Hash of the state after the last tick.
     pub final_hash: StateHash,
-    /// The hash of the header and all blocks of inputs.
+    /// Hash of the header and all blocks of inputs.
     pub chain: StateHash,
-    /// What the game reports of itself, in ascending order of the names.
+    /// Results that the game reports, in ascending order of names.
     pub claims: Vec<(String, i64)>,
 }
 
@@ -115,7 +115,7 @@ pub struct Reader<'a> {
     next: Next,
 }
 
-/// What the next block may be.
+/// The kinds of block allowed next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Next {
     InputsOrTrailer,
@@ -128,7 +128,7 @@ impl<'a> Reader<'a> {
     /// Reads the header.
     ///
     /// # Errors
-    /// [`ReadError`] when the header is not one, or announces more than `limits` allow.
+    /// [`ReadError`] when the header is malformed or exceeds `limits`.
     pub fn open(file: &'a [u8], limits: &Limits) -> Result<Self, ReadError> {
         Limit::FileBytes.check(file.len() as u64, limits.file_bytes)?;
         let ReadHeader { header, start, inputs_digest, chain, length } = Header::read(file, limits)?;
@@ -151,25 +151,25 @@ impl<'a> Reader<'a> {
         &self.header
     }
 
-    /// The checkpoint before the first tick.
+    /// Checkpoint before the first tick.
     #[must_use]
     pub fn start(&self) -> StateHash {
         self.start
     }
 
-    /// The digest of the setup and all inputs read so far.
+    /// Digest of the setup and all inputs read so far.
     #[must_use]
     pub fn inputs_digest(&self) -> StateHash {
         self.inputs_digest
     }
 
-    /// Ticks read so far.
+    /// Number of ticks read so far.
     #[must_use]
     pub fn ticks(&self) -> u64 {
         self.ticks
     }
 
-    /// Where the next block begins.
+    /// Offset of the next block in the file.
     #[must_use]
     pub fn offset(&self) -> u64 {
         self.offset as u64
@@ -178,7 +178,7 @@ impl<'a> Reader<'a> {
     /// The next block, and `None` after a [`Part::Trailer`] or [`Part::Cut`].
     ///
     /// # Errors
-    /// [`ReadError`] when the block is not one, or is larger than allowed. Asked again, the answer is the same.
+    /// [`ReadError`] when the block is malformed or exceeds a limit. Further calls return the same error.
     pub fn next_part(&mut self) -> Result<Option<Part<'a>>, ReadError> {
         if self.next == Next::Nothing {
             return Ok(None);
@@ -196,7 +196,7 @@ impl<'a> Reader<'a> {
         Ok(Some(part))
     }
 
-    /// The next block's payload, or `None` when the file ends before the block does.
+    /// Reads the next block and checks its checksum. Returns `None` when the file ends inside the block.
     fn frame(&self) -> Result<Option<Block<'a>>, ReadError> {
         let start = self.offset as u64;
         let rest = &self.file[self.offset..];
@@ -245,7 +245,7 @@ impl<'a> Reader<'a> {
         Ok(InputBlock { ticks, checkpoint, inputs_digest: self.inputs_digest, runs })
     }
 
-    /// Walks over all runs of a block.
+    /// Counts the ticks of all runs of a block.
     fn count_ticks(&self, mut runs: Runs<'a>, offset: u64) -> Result<u32, ReadError> {
         let interval = self.header.checkpoint_interval;
         let mut ticks: u32 = 0;
@@ -288,12 +288,12 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// A block whose checksum holds.
+/// A block whose checksum matches.
 struct Block<'a> {
     kind: u8,
     payload: &'a [u8],
     payload_offset: u64,
-    /// The chain with this block in it.
+    /// The chain including this block.
     chain: StateHash,
     end: usize,
 }

@@ -1,4 +1,4 @@
-//! [`Recorder`]: writes a replay as the game runs.
+//! [`Recorder`]: writes a replay while the game runs.
 
 use alloc::string::String;
 use alloc::vec::Vec;
@@ -16,21 +16,21 @@ use crate::codec;
 use crate::hash::StateHash;
 use crate::lockstep::{EncodedInputs, Game, InputError};
 
-/// A good checkpoint interval: one second at 60 Hz. Shorter costs bytes (29 per block), longer loses more in a
-/// crash and finds a divergence less exactly.
+/// Recommended checkpoint interval: one second at 60 Hz. A shorter interval costs bytes (29 per block). A longer
+/// interval loses more ticks in a crash and locates a divergence less precisely.
 pub const CHECKPOINT_INTERVAL: u32 = 60;
 
-/// Most bytes of a number in LEB128.
+/// Maximum length of a u32 in LEB128, in bytes.
 const VARINT_BYTES_MAX: usize = 5;
 
-/// Why something cannot be recorded. The recorder is as it was before.
+/// Reason why something cannot be recorded. The recorder is then unchanged.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum RecordError {
     /// The name of the rules is empty or too long.
     RulesName,
     /// The game has more players than a replay can hold.
     Players {
-        /// How many.
+        /// Number of players.
         count: u32,
     },
     /// The game's tick rate is zero.
@@ -44,24 +44,24 @@ pub enum RecordError {
     Setup,
     /// The game cannot start from the setup.
     SetupRefused {
-        /// The game's reason.
+        /// Reason given by the game.
         why: String,
     },
     /// The encoded setup is too long.
     SetupLength {
-        /// Its length in bytes.
+        /// Length in bytes.
         bytes: u64,
     },
     /// The inputs cannot be recorded.
     Inputs(InputError),
-    /// The inputs of this block are too long together.
+    /// The inputs of this block exceed the maximum payload.
     BlockLength {
-        /// Their length in bytes.
+        /// Length in bytes.
         bytes: u64,
     },
-    /// A block is full, and its checkpoint was not given.
+    /// The block is full, and its checkpoint has not been given.
     CheckpointDue,
-    /// Two claims have the same name, or a name is empty or too long, or there are too many.
+    /// Two claims have the same name, a name is empty or too long, or there are too many claims.
     Claims,
 }
 
@@ -76,9 +76,9 @@ impl fmt::Display for RecordError {
             }
             RecordError::TickRate => write!(f, "a tick rate of zero"),
             RecordError::CheckpointInterval { ticks } => {
-                write!(f, "a checkpoint interval of {ticks} ticks, possible are 1 to {BLOCK_TICKS_MAX}")
+                write!(f, "a checkpoint interval of {ticks} ticks, expected 1 to {BLOCK_TICKS_MAX}")
             }
-            RecordError::Setup => write!(f, "the setup is another one after encoding and decoding"),
+            RecordError::Setup => write!(f, "the setup changes when it is encoded and decoded"),
             RecordError::SetupRefused { why } => write!(f, "the setup cannot start a game: {why}"),
             RecordError::SetupLength { bytes } => {
                 write!(f, "a setup of {bytes} bytes, at most {SETUP_BYTES_MAX} are possible")
@@ -87,7 +87,9 @@ impl fmt::Display for RecordError {
             RecordError::BlockLength { bytes } => {
                 write!(f, "a block of {bytes} bytes, at most {BLOCK_BYTES_MAX} are possible")
             }
-            RecordError::CheckpointDue => write!(f, "the block is full and waits for its checkpoint"),
+            RecordError::CheckpointDue => {
+                write!(f, "the block is full, its checkpoint must be given before the next tick")
+            }
             RecordError::Claims => write!(
                 f,
                 "at most {CLAIMS_MAX} claims with different names of 1 to {CLAIM_NAME_BYTES_MAX} bytes are possible"
@@ -98,18 +100,18 @@ impl fmt::Display for RecordError {
 
 impl core::error::Error for RecordError {}
 
-/// Writes the replay of a game that someone else steps; [`Recording`](super::Recording) does both.
+/// Writes the replay of a game that the caller steps; [`Recording`](super::Recording) does both.
 ///
-/// Finished bytes are fetched with [`Recorder::take_bytes`], to be appended to a file at any time: after the
-/// header and after every block they are a valid prefix. In a game with rollback, record confirmed ticks only.
+/// Finished bytes are fetched with [`Recorder::take_bytes`] and can be appended to a file at any time: after the header
+/// and after every block they are a valid prefix of a replay. In a game with rollback, record confirmed ticks only.
 pub struct Recorder<G: Game> {
     players: u32,
     checkpoint_interval: u32,
-    /// Header and whole blocks that were not yet taken.
+    /// Header and complete blocks that have not been taken yet.
     finished: Vec<u8>,
     chain: StateHash,
     inputs_digest: StateHash,
-    /// The encoded runs of the block at hand, but for the last.
+    /// Encoded runs of the current block, except the last run.
     runs: Vec<u8>,
     last_run: Option<(EncodedInputs<G::Input>, u32)>,
     block_ticks: u32,
@@ -131,10 +133,10 @@ impl<G: Game> Clone for Recorder<G> {
 impl<G: Game> Recorder<G> {
     /// Starts the game that `setup` describes, and its replay.
     ///
-    /// The game is made from the setup as a verifier will decode it.
+    /// The game is created from the encoded and decoded setup, as in a verifier.
     ///
     /// # Errors
-    /// [`RecordError`] when the setup starts no game, or none that a replay can hold.
+    /// [`RecordError`] when the setup cannot start a game, or when a replay cannot represent that game.
     pub fn start(setup: &G::Setup, checkpoint_interval: u32) -> Result<(Self, G), RecordError> {
         let setup = codec::encode(setup);
         let (game, header) = first_state::<G>(&setup, checkpoint_interval)?;
@@ -161,17 +163,17 @@ impl<G: Game> Recorder<G> {
         Ok((recorder, game))
     }
 
-    /// How many ticks have been recorded.
+    /// Number of recorded ticks.
     #[must_use]
     pub fn ticks(&self) -> u64 {
         self.ticks
     }
 
-    /// Records the inputs of the next tick and returns those to step the game with: encoded and decoded again, as
-    /// a verifier will see them.
+    /// Records the inputs of the next tick and returns the inputs to step the game with: encoded and decoded, as in a
+    /// verifier.
     ///
     /// # Errors
-    /// [`RecordError`] when they cannot be recorded; then the tick must not be played.
+    /// [`RecordError`] when they cannot be recorded; the tick must then not be played.
     pub fn record(&mut self, inputs: &[G::Input]) -> Result<&[G::Input], RecordError> {
         if self.is_checkpoint_due() {
             return Err(RecordError::CheckpointDue);
@@ -203,21 +205,21 @@ impl<G: Game> Recorder<G> {
         self.block_ticks == self.checkpoint_interval
     }
 
-    /// Finishes a full block with the state hash after its last tick. Without a full block, nothing happens.
+    /// Finishes a full block with the state hash after its last tick. Does nothing if the block is not full.
     pub fn checkpoint(&mut self, state: StateHash) {
         if self.is_checkpoint_due() {
             self.finish_block(state);
         }
     }
 
-    /// The bytes that are finished, to be appended to the file; they are handed out once.
+    /// Takes the finished bytes, to be appended to the file. Every byte is returned once.
     #[must_use]
     pub fn take_bytes(&mut self) -> Vec<u8> {
         core::mem::take(&mut self.finished)
     }
 
-    /// The bytes that were not yet taken, and the block at hand as if the game ended here with this state: put behind
-    /// what was taken, a replay of all ticks so far. The recorder goes on as if nobody had asked.
+    /// The bytes that have not been taken yet, followed by the current block as if the game ended here with this state.
+    /// Appended to the bytes already taken, they are a replay of all ticks so far. The recorder is unchanged.
     #[must_use]
     pub fn so_far(&self, state: StateHash) -> Vec<u8> {
         let mut copy = self.clone();
@@ -227,7 +229,7 @@ impl<G: Game> Recorder<G> {
         copy.finished
     }
 
-    /// Writes the last block and the trailer, and returns all bytes that were not yet taken.
+    /// Writes the last block and the trailer, and returns all bytes that have not been taken yet.
     ///
     /// # Errors
     /// [`RecordError::Claims`] when the game's claims cannot be recorded.
@@ -246,7 +248,7 @@ impl<G: Game> Recorder<G> {
         Ok(self.finished)
     }
 
-    /// Bytes of the payload, at most, if a run of these inputs is added.
+    /// Upper bound of the payload in bytes after a run of these inputs is added.
     fn block_length_with(
         &self,
         added: &EncodedInputs<G::Input>,
@@ -281,7 +283,7 @@ impl<G: Game> Recorder<G> {
     }
 }
 
-/// The game before its first tick, and the header of its replay.
+/// Creates the game before its first tick and the header of its replay.
 fn first_state<G: Game>(setup: &[u8], checkpoint_interval: u32) -> Result<(G, Header<'_>), RecordError> {
     let rules_name = G::RULES.name;
     if rules_name.is_empty() || rules_name.len() > RULES_NAME_BYTES_MAX as usize {
@@ -317,7 +319,7 @@ fn first_state<G: Game>(setup: &[u8], checkpoint_interval: u32) -> Result<(G, He
     Ok((game, header))
 }
 
-/// The claims as a trailer holds them, in ascending order of their names.
+/// Encodes the claims for the trailer, in ascending order of names.
 fn encode_claims(mut claims: Vec<(String, i64)>) -> Result<Vec<u8>, RecordError> {
     claims.sort();
     let are_distinct = claims.windows(2).all(|pair| pair[0].0 != pair[1].0);

@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 use super::recorder::{RecordError, Recorder};
 use crate::lockstep::Game;
 
-/// A game that is recorded as it runs.
+/// A game that is recorded while it runs.
 ///
 /// ```text
 /// let mut recording = Recording::<MyGame>::start(&setup, CHECKPOINT_INTERVAL)?;
@@ -24,28 +24,28 @@ impl<G: Game> Recording<G> {
     /// Starts the game that `setup` describes, with a checkpoint every `checkpoint_interval` ticks.
     ///
     /// # Errors
-    /// [`RecordError`] when the setup starts no game, or none that a replay can hold.
+    /// [`RecordError`] when the setup cannot start a game, or when a replay cannot represent that game.
     pub fn start(setup: &G::Setup, checkpoint_interval: u32) -> Result<Self, RecordError> {
         let (recorder, game) = Recorder::start(setup, checkpoint_interval)?;
         Ok(Recording { game, recorder })
     }
 
-    /// The game as of now.
+    /// The game at the current tick.
     #[must_use]
     pub fn game(&self) -> &G {
         &self.game
     }
 
-    /// How many ticks have been played.
+    /// Number of ticks played.
     #[must_use]
     pub fn ticks(&self) -> u64 {
         self.recorder.ticks()
     }
 
-    /// Plays one tick with the inputs as a verifier will decode them.
+    /// Plays one tick with the inputs as a verifier decodes them.
     ///
     /// # Errors
-    /// [`RecordError`] when the inputs cannot be recorded; then the tick is not played.
+    /// [`RecordError`] when the inputs cannot be recorded; the tick is then not played.
     pub fn step(&mut self, inputs: &[G::Input]) -> Result<(), RecordError> {
         let inputs = self.recorder.record(inputs)?;
         self.game.step(inputs);
@@ -55,13 +55,13 @@ impl<G: Game> Recording<G> {
         Ok(())
     }
 
-    /// The bytes that are finished, to be appended to the file; they are handed out once.
+    /// Takes the finished bytes, to be appended to the file. Every byte is returned once.
     #[must_use]
     pub fn take_bytes(&mut self) -> Vec<u8> {
         self.recorder.take_bytes()
     }
 
-    /// Ends the replay and returns all bytes that were not yet taken.
+    /// Ends the replay and returns all bytes that have not been taken yet.
     ///
     /// # Errors
     /// [`RecordError::Claims`] when the game's claims cannot be recorded.

@@ -1,4 +1,4 @@
-//! [`Rerun`]: plays the inputs of a replay again, whatever its checkpoints say.
+//! [`Rerun`]: a raw replay, which simulates recorded inputs without comparing checkpoints.
 
 use alloc::vec::Vec;
 
@@ -10,25 +10,25 @@ use super::verdict::Verdict;
 use crate::lockstep::{Game, decode_inputs};
 use crate::world::World;
 
-/// A replay whose inputs are played again. Unlike a [`Playback`](super::Playback) it compares nothing: it is what the
-/// running engine makes of these inputs.
+/// A raw replay: simulates the inputs of a file. Unlike a [`Playback`](super::Playback) it compares nothing, so its
+/// states are those that the running engine computes from these inputs.
 pub struct Rerun<'a, G: Game> {
     game: G,
     limits: Limits,
     place: Place<'a>,
-    /// What `inputs` were decoded from.
+    /// Bytes that `inputs` were decoded from.
     encoded: Option<&'a [u8]>,
     inputs: Vec<G::Input>,
-    /// How many ticks the file has, as far as it is whole.
+    /// Number of ticks in the complete blocks of the file.
     length: u64,
 }
 
-/// Where in a replay a rerun is: all of it but the game.
+/// Position in a replay: the state of a raw replay without the game.
 #[derive(Clone, Debug)]
 pub(super) struct Place<'a> {
     pub(super) inputs: TickInputs<'a>,
     pub(super) tick: u64,
-    /// Work units up to here.
+    /// Work units of all ticks up to here.
     pub(super) work: u64,
 }
 
@@ -36,12 +36,12 @@ impl<'a, G: Game> Rerun<'a, G> {
     /// Scans the whole file and starts the game.
     ///
     /// # Errors
-    /// The [`Verdict`] when there is nothing to play: the file is malformed, too large, or of another game.
+    /// The [`Verdict`] when nothing can be played: the file is malformed, exceeds a limit, or belongs to another game.
     pub fn open(file: &'a [u8], limits: &Limits) -> Result<Self, Verdict> {
         Self::open_to_end(file, limits).map(|(rerun, _)| rerun)
     }
 
-    /// [`Rerun::open`], with what the scan has found at the end.
+    /// Does the same as [`Rerun::open`] and also returns the end of the file found by the scan.
     pub(super) fn open_to_end(file: &'a [u8], limits: &Limits) -> Result<(Self, Ending), Verdict> {
         let inputs = TickInputs::open(file, limits)?;
         let ending = scan(inputs.reader().clone())?;
@@ -53,42 +53,42 @@ impl<'a, G: Game> Rerun<'a, G> {
         Ok((Rerun { game, limits, place, encoded: None, inputs: Vec::new(), length }, ending))
     }
 
-    /// The game as of now.
+    /// The game at the current tick.
     #[must_use]
     pub fn game(&self) -> &G {
         &self.game
     }
 
-    /// The physics world of the game as of now, if it has one, to look at.
+    /// The game's physics world at the current tick, if it has one, for inspection.
     pub fn world(&mut self) -> Option<&World> {
         self.game.world_mut().map(|world| &*world)
     }
 
-    /// The game as of now, to keep.
+    /// Returns the game at the current tick.
     #[must_use]
     pub fn into_game(self) -> G {
         self.game
     }
 
-    /// How many ticks have been played.
+    /// Number of ticks played.
     #[must_use]
     pub fn tick(&self) -> u64 {
         self.place.tick
     }
 
-    /// The work units of all ticks so far, as [`Game::work`] counts them.
+    /// Work units of all ticks played, as counted by [`Game::work`].
     #[must_use]
     pub fn work(&self) -> u64 {
         self.place.work
     }
 
-    /// The inputs that the last tick was played with; before the first, none.
+    /// The inputs of the last tick played; empty before the first tick.
     #[must_use]
     pub fn inputs(&self) -> &[G::Input] {
         &self.inputs
     }
 
-    /// How many ticks the file has, as far as it is whole.
+    /// Number of ticks in the complete blocks of the file.
     #[must_use]
     pub fn ticks(&self) -> u64 {
         self.length
@@ -97,7 +97,7 @@ impl<'a, G: Game> Rerun<'a, G> {
     /// Plays one tick.
     ///
     /// # Errors
-    /// The [`Verdict`] when the inputs are not this game's or cost too much.
+    /// The [`Verdict`] when the inputs are not valid for this game or exceed a work limit.
     pub fn step(&mut self) -> Result<Step, Verdict> {
         if self.read_inputs()? == Step::Ended {
             return Ok(Step::Ended);
@@ -106,7 +106,7 @@ impl<'a, G: Game> Rerun<'a, G> {
         Ok(Step::Ticked)
     }
 
-    /// Fetches the inputs of the next tick, which has to be played or skipped then.
+    /// Reads the inputs of the next tick. The caller must then play or skip that tick.
     pub(crate) fn read_inputs(&mut self) -> Result<Step, Verdict> {
         let Some(run) = self.place.inputs.next_tick()? else {
             return Ok(Step::Ended);
@@ -125,7 +125,7 @@ impl<'a, G: Game> Rerun<'a, G> {
         self.play_with(G::step)
     }
 
-    /// The same with a `step` that does more than to step.
+    /// Plays the tick whose inputs were read, with a custom `step` function.
     pub(crate) fn play_with<T>(&mut self, step: impl FnOnce(&mut G, &[G::Input]) -> T) -> Result<T, Verdict> {
         let work = self.game.work(&self.inputs);
         Limit::TickWork.check(work, self.limits.tick_work)?;
@@ -137,32 +137,33 @@ impl<'a, G: Game> Rerun<'a, G> {
         Ok(done)
     }
 
-    /// Counts the tick whose inputs were read as played: another game with the same state has played it.
+    /// Counts the tick whose inputs were read as played, for a tick that another game with the same state has played.
     pub(crate) fn skip(&mut self) {
         self.place.tick += 1;
     }
 
-    /// The canonical bytes of the inputs that were read last.
+    /// Canonical bytes of the inputs that were read last.
     pub(crate) fn encoded(&self) -> Option<&'a [u8]> {
         self.encoded
     }
 
-    /// The game as of now, for tools that look into its world.
+    /// Mutable access to the game at the current tick, for tools that inspect its world.
     pub(crate) fn game_mut(&mut self) -> &mut G {
         &mut self.game
     }
 
-    /// The setup that the game was started from.
+    /// Decodes the setup that the game was started from.
     pub(crate) fn setup(&self) -> Result<G::Setup, Verdict> {
         decode_setup::<G>(self.place.inputs.reader().header())
     }
 
-    /// Where it is.
+    /// The current position in the file.
     pub(super) fn place(&self) -> &Place<'a> {
         &self.place
     }
 
-    /// Goes where it, or another rerun of the same file, has been. [`Rerun::inputs`] are none then.
+    /// Restores a state and position of this raw replay or of another one of the same file. [`Rerun::inputs`] is then
+    /// empty.
     pub(super) fn go(&mut self, save: &G::Save, place: Place<'a>) {
         self.game.load(save);
         self.place = place;

@@ -1,4 +1,4 @@
-//! The runs of a block: ticks in a row with the same inputs.
+//! The runs of a block: consecutive ticks with the same inputs.
 
 use alloc::vec::Vec;
 
@@ -6,19 +6,19 @@ use super::bytes::{Cursor, put_varint};
 use super::flaw::Flaw;
 use super::reader::ReadError;
 
-/// Some ticks in a row with the same inputs.
+/// Consecutive ticks with the same inputs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Run<'a> {
-    /// How many ticks, at least one.
+    /// Number of ticks, at least one.
     pub ticks: u32,
-    /// The canonical bytes of every player's input for one tick, in player order.
+    /// Canonical bytes of all players' inputs for one tick, in player order.
     pub encoded: &'a [u8],
-    /// Where in the file the run begins.
+    /// Offset of the run in the file.
     pub offset: u64,
 }
 
 impl Run<'_> {
-    /// Appends the run as a block holds it.
+    /// Appends a run in the encoding of a block.
     pub(super) fn write(ticks: u32, encoded: &[u8], bytes: &mut Vec<u8>) {
         put_varint(ticks, bytes);
         put_varint(u32::try_from(encoded.len()).expect("a length that was checked"), bytes);
@@ -26,7 +26,7 @@ impl Run<'_> {
     }
 }
 
-/// Reads the runs of a block one after the other, refusing what could have been written in another way.
+/// Reads the runs of a block one after the other and accepts only their canonical encoding.
 #[derive(Clone, Debug)]
 pub struct Runs<'a> {
     cursor: Cursor<'a>,
@@ -41,7 +41,7 @@ impl<'a> Runs<'a> {
     /// The next run, or `None` at the end of the block.
     ///
     /// # Errors
-    /// [`ReadError::Malformed`] for bytes that no recorder writes. A block from a [`Reader`](super::Reader) has
+    /// [`ReadError::Malformed`] for bytes that no recorder writes. A block from a [`Reader`](super::Reader) contains
     /// none.
     pub fn next_run(&mut self) -> Result<Option<Run<'a>>, ReadError> {
         if self.cursor.is_empty() {

@@ -8,29 +8,29 @@ use super::runs::{Run, Runs};
 #[derive(Clone, Debug)]
 pub struct TickInputs<'a> {
     reader: Reader<'a>,
-    /// The block at hand, and its ticks yet to come.
+    /// The current block, and the number of its ticks that are still to come.
     block: Option<InputBlock<'a>>,
     block_left: u32,
     runs: Runs<'a>,
-    /// The run at hand, with its ticks yet to come.
+    /// The current run, with the number of its ticks that are still to come.
     run: Option<Run<'a>>,
 }
 
 impl<'a> TickInputs<'a> {
-    /// The inputs from the first tick on.
+    /// Opens a replay at its first tick.
     ///
     /// # Errors
-    /// [`ReadError`] for a header that is none.
+    /// [`ReadError`] when the header is malformed.
     pub fn open(file: &'a [u8], limits: &Limits) -> Result<Self, ReadError> {
         let reader = Reader::open(file, limits)?;
         Ok(TickInputs { reader, block: None, block_left: 0, runs: Runs::new(&[], 0), run: None })
     }
 
-    /// The run that the next tick belongs to, with the ticks that are left of it; that tick is then passed. `None` at the
-    /// end of what is whole.
+    /// Advances by one tick and returns the run that the tick belongs to, with the number of ticks left in it including
+    /// this one. Returns `None` at the end of the complete blocks.
     ///
     /// # Errors
-    /// [`ReadError`] when the next block is none.
+    /// [`ReadError`] when the next block is malformed.
     pub fn next_tick(&mut self) -> Result<Option<Run<'a>>, ReadError> {
         loop {
             if let Some(run) = self.run.as_mut().filter(|run| run.ticks > 0) {
@@ -50,13 +50,13 @@ impl<'a> TickInputs<'a> {
         }
     }
 
-    /// The block whose last tick was the last that was passed: its checkpoint is of the state after that tick.
+    /// The block whose last tick was just read. Its checkpoint belongs to the state after that tick.
     #[must_use]
     pub fn finished_block(&self) -> Option<&InputBlock<'a>> {
         self.block.as_ref().filter(|_| self.block_left == 0)
     }
 
-    /// The reader, behind the block at hand.
+    /// The reader, positioned after the current block.
     pub(super) fn reader(&self) -> &Reader<'a> {
         &self.reader
     }

@@ -1,4 +1,4 @@
-//! [`Verdict`]: what a verifier says of a file.
+//! [`Verdict`]: the result of verifying a file.
 
 use alloc::string::String;
 use core::fmt;
@@ -8,101 +8,101 @@ use super::limits::Limit;
 use super::reader::ReadError;
 use crate::hash::StateHash;
 
-/// What a verifier says of a file. Only `Match` is good.
+/// Result of verifying a file. Only `Match` means that the file is valid.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// The setup and the inputs lead to every checkpoint, the end state and the claims of the file.
+    /// The setup and the inputs lead to every checkpoint, to the end state and to the claims of the file.
     Match {
-        /// Ticks of the game.
+        /// Number of ticks in the game.
         ticks: u64,
-        /// The hash of its last state.
+        /// Hash of the last state.
         hash: StateHash,
     },
-    /// All checkpoints agree, but the trailer says something else about the end.
+    /// All checkpoints agree, but the trailer states something else about the end.
     ClaimMismatch {
-        /// Ticks of the game.
+        /// Number of ticks in the game.
         ticks: u64,
-        /// The hash of its last state, as played again.
+        /// Hash of the last state, as simulated by the verifier.
         hash: StateHash,
-        /// The first thing that is not so.
+        /// The first difference.
         difference: ClaimDifference,
     },
-    /// Played again, the game takes another course; it leaves the recorded one after `last_equal`.
+    /// The simulation diverges from the recorded game after `last_equal`.
     Diverged {
-        /// The tick of the last checkpoint that agrees; `None` if not even the start does.
+        /// Tick of the last checkpoint that agrees; `None` if the start checkpoint already differs.
         last_equal: Option<u64>,
-        /// The tick of the first checkpoint that does not.
+        /// Tick of the first checkpoint that differs.
         first_different: u64,
     },
-    /// The file ends before its trailer. What is there agrees.
+    /// The file ends before its trailer. Everything before agrees.
     Incomplete {
-        /// Ticks that could be played again: those of the blocks that are whole.
+        /// Number of ticks in the complete blocks, all of which were played.
         ticks: u64,
-        /// The hash of the state after them.
+        /// Hash of the state after these ticks.
         hash: StateHash,
     },
-    /// No recorder writes such bytes.
+    /// The bytes are not what a recorder writes.
     Malformed {
-        /// Where in the file.
+        /// Offset in the file.
         offset: u64,
-        /// What is wrong there.
+        /// The flaw at this offset.
         flaw: Flaw,
     },
-    /// The file is larger, or computes more, than the verifier allows.
+    /// The file is larger, or costs more computing, than the verifier allows.
     LimitExceeded {
-        /// In what.
+        /// The limit.
         limit: Limit,
-        /// What the file has, or at least has.
+        /// Value in the file, or a lower bound of it.
         value: u64,
-        /// What is allowed.
+        /// Maximum allowed value.
         max: u64,
     },
-    /// The file may be good, but this program cannot tell.
+    /// The file may be valid, but this program cannot verify it.
     Unverifiable {
-        /// What it lacks.
+        /// The reason.
         why: Mismatch,
     },
 }
 
-/// Something that a trailer says and the game does not.
+/// A statement in the trailer that differs from the game.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ClaimDifference {
-    /// The hash of the last state.
+    /// The hash of the last state differs.
     FinalHash {
-        /// As the trailer has it.
+        /// Hash in the trailer.
         claimed: StateHash,
-        /// As the game has it.
+        /// Hash of the game.
         actual: StateHash,
     },
-    /// A value that the game reports of itself.
+    /// A value that the game reports differs.
     Value {
-        /// Its name.
+        /// Name of the value.
         name: String,
-        /// As the trailer has it.
+        /// Value in the trailer.
         claimed: Option<i64>,
-        /// As the game has it.
+        /// Value of the game.
         actual: Option<i64>,
     },
 }
 
-/// What a file was made with and this program is not.
+/// Version of the format, engine or rules that the file needs and this program does not have.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Mismatch {
-    /// Another version of the file format.
+    /// The file format has another version.
     Format {
-        /// That of the file.
+        /// Version of the file.
         file: u32,
-        /// That of this program.
+        /// Version of this program.
         here: u32,
     },
-    /// Other semantics of the engine.
+    /// The engine has other semantics.
     Semantics {
-        /// Those of the file.
+        /// Semantics of the file.
         file: u32,
-        /// Those of this program.
+        /// Semantics of this program.
         here: u32,
     },
-    /// Another game, or another version of its rules.
+    /// The file belongs to another game, or to another version of its rules.
     Rules {
         /// Name and version in the file.
         file: (String, u32),
@@ -118,7 +118,7 @@ impl Verdict {
         matches!(self, Verdict::Match { .. })
     }
 
-    /// The verdict in one word, as tools print it.
+    /// The verdict as one word, as printed by tools.
     #[must_use]
     pub fn name(&self) -> &'static str {
         match self {
@@ -132,7 +132,7 @@ impl Verdict {
         }
     }
 
-    /// How many ticks were played again to reach it, as far as it tells.
+    /// Number of ticks played to reach the verdict, as far as the verdict contains it.
     #[must_use]
     pub fn ticks(&self) -> u64 {
         match self {
@@ -144,7 +144,7 @@ impl Verdict {
         }
     }
 
-    /// The hash of the last state that was reached along the recorded course.
+    /// Hash of the last state, if all states up to it agreed with the recording.
     #[must_use]
     pub fn hash(&self) -> Option<StateHash> {
         match self {
@@ -179,7 +179,7 @@ impl fmt::Display for Verdict {
                 write!(f, "diverged: equal at tick {tick}, different at tick {first_different}")
             }
             Verdict::Diverged { last_equal: None, first_different } => {
-                write!(f, "diverged: different at tick {first_different}, where it starts")
+                write!(f, "diverged: different at tick {first_different}, the start")
             }
             Verdict::Incomplete { ticks, .. } => {
                 write!(f, "incomplete: the first {ticks} ticks agree, then the file ends without a trailer")

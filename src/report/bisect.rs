@@ -1,4 +1,4 @@
-//! [`bisect`]: where a course leaves the running engine's, or another replay's.
+//! [`bisect`]: finds the tick at which a trajectory diverges from the running engine's, or from another replay's.
 
 use alloc::format;
 
@@ -10,19 +10,19 @@ use super::rerun::{self, Effort};
 use crate::lockstep::Game;
 use crate::replay::Limits;
 
-/// Finds the first tick at which a course leaves another one, the stage of that tick, and what differs then, the thing to
-/// blame first. That costs a save and a hash of each tick beyond playing it once; with the search for a single bit that could
-/// explain all of it, less than playing everything three times.
+/// Finds the first tick at which two trajectories differ, the stage of that tick, and the differences, the probable
+/// origin first. Beyond playing the inputs once, this costs a save and a hash per tick. Including the search for a
+/// single bit flip that explains all differences, it costs less than playing everything three times.
 ///
-/// Without `b`, the other course is that of the running engine with the same inputs. A replay tells only between which of
-/// its checkpoints that was left; the [`Trace`](super::Trace) of these ticks, from the engine that has written it, tells
-/// the rest. A desync report is such a trace of the last seconds.
+/// Without `b`, the other trajectory is that of the running engine with the same inputs. A replay only tells between
+/// which of its checkpoints the trajectories diverge. The [`Trace`](super::Trace) of these ticks, made by the engine
+/// that wrote the replay, tells the tick. A desync report is such a trace of the last seconds.
 ///
-/// With `b`, both are the same match on two machines, or two replays of whatever setups and inputs: those are played
-/// again, until the states differ.
+/// With `b`, both files are the same match on two machines, or two replays of any setups and inputs, which are
+/// simulated until the states differ.
 ///
 /// # Errors
-/// [`CompareError`] when there is nothing to compare or to play.
+/// [`CompareError`] when the files cannot be compared or played.
 pub fn bisect<G: Game>(
     a: &Evidence,
     b: Option<&Evidence>,
@@ -41,9 +41,9 @@ pub fn bisect<G: Game>(
         && last + 1 < first
     {
         found.notes.push(format!(
-                "nothing is known of the ticks between {last} and {first}: their trace, from the program that wrote \
-                 the replay, tells the rest"
-            ));
+            "the ticks between {last} and {first} are unknown: a trace of them, from the program that wrote \
+                 the replay, narrows the difference down"
+        ));
     }
     Ok(found)
 }

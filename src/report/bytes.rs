@@ -1,4 +1,4 @@
-//! A report as bytes. `docs/FORMAT.md` has the layout.
+//! Encoding of a report as bytes. `docs/FORMAT.md` gives the layout.
 
 use alloc::vec::Vec;
 use core::fmt;
@@ -9,65 +9,66 @@ use crate::codec::{self, DecodeError};
 use crate::hash::StateHash;
 use crate::replay::{Limits, PLAYERS_MAX, RULES_NAME_BYTES_MAX};
 
-/// The first eight bytes of a report, modelled like those of a replay.
+/// The first eight bytes of a report, modelled on those of a replay.
 pub const REPORT_MAGIC: [u8; 8] = *b"\x89L2R\r\n\x1a\n";
 
-/// The version of the layout.
+/// Version of the layout.
 pub const REPORT_FORMAT_VERSION: u32 = 2;
 
-/// Magic, format, semantics, length.
+/// Size of the header: magic, format, semantics, length.
 const HEADER_LEN: usize = 8 + 4 + 4 + 8;
-/// The hash at the end.
+/// Size of the hash at the end.
 const HASH_LEN: usize = 16;
 
-/// Bytes that are no report.
+/// Reason why bytes are not a report.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ReportError {
-    /// They do not start like a report.
+    /// The bytes do not start with [`REPORT_MAGIC`].
     NotAReport,
-    /// The layout is of another version.
+    /// The layout has another version.
     Format {
         /// The version found.
         found: u32,
     },
-    /// There are more than the reader allows.
+    /// There are more bytes than the reader allows.
     TooLong {
-        /// How many there are.
+        /// Number of bytes.
         bytes: u64,
-        /// How many are allowed.
+        /// Maximum number of bytes.
         max: u64,
     },
-    /// There are fewer or more bytes than announced.
+    /// The number of bytes is not the number announced in the header.
     Length {
-        /// How many the header announces, itself included.
+        /// Number of bytes that the header announces, including the header.
         announced: u64,
-        /// How many there are.
+        /// Number of bytes found.
         found: u64,
     },
-    /// The hash at the end does not belong to the bytes before it.
+    /// The hash at the end does not match the bytes before it.
     Hash,
     /// The body does not decode.
     Decode(DecodeError),
-    /// The body is one that nobody writes.
+    /// The body decodes, but no writer produces it.
     Invalid(ReportFlaw),
 }
 
-/// What is wrong with the body of a report.
+/// Flaw in the body of a report.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ReportFlaw {
     /// The name of the rules is empty or too long.
     RulesName,
-    /// More players than a game can have.
+    /// The report states more players than a game can have.
     Players,
-    /// The seats are not in ascending order, or there is no such seat.
+    /// The seats are not in ascending order, or one of them does not exist.
     Seats,
-    /// There is not one hash, known or not, for each seat.
+    /// The number of hashes, known or unknown, is not the number of seats.
     Hashes,
     /// The ticks of the history are not in ascending order.
     History,
-    /// The ticks of the saves are not in ascending order, or there is one that is not in the history.
+    /// The ticks of the saves are not in ascending order, or one of them is not in the history.
     Saves,
-    /// The same of the digests of phases, or one tick has more of them than [`PHASE_DIGESTS_MAX`].
+    /// The ticks of the phase digests are not in ascending order, one of them is not in the history, or one has more
+    /// than [`PHASE_DIGESTS_MAX`] digests.
     Phases,
 }
 
@@ -76,9 +77,7 @@ impl fmt::Display for ReportFlaw {
         f.write_str(match self {
             ReportFlaw::RulesName => "the name of the rules is empty or too long",
             ReportFlaw::Players => "more players than a game can have",
-            ReportFlaw::Seats => {
-                "the seats are not in ascending order, or there are others than the game has"
-            }
+            ReportFlaw::Seats => "the seats are not in ascending order, or one of them does not exist",
             ReportFlaw::Hashes => "there is not one hash for each seat",
             ReportFlaw::History => "the ticks of the history are not in ascending order",
             ReportFlaw::Saves => "the ticks of the saves are not ascending ticks of the history",
@@ -110,7 +109,7 @@ impl fmt::Display for ReportError {
 impl core::error::Error for ReportError {}
 
 impl DesyncReport {
-    /// The bytes of a report file.
+    /// Encodes the report as the bytes of a file.
     #[must_use]
     pub fn to_bytes(&self) -> Vec<u8> {
         let mut bytes = REPORT_MAGIC.to_vec();
@@ -125,8 +124,9 @@ impl DesyncReport {
         bytes
     }
 
-    /// The report that [`DesyncReport::to_bytes`] has written. Of the limits, that of the file's bytes counts: what is
-    /// allocated is a small multiple of the bytes that there are. The saves and the replay in it are not yet judged.
+    /// Decodes a report written by [`DesyncReport::to_bytes`]. Of the limits, only `file_bytes` applies: memory
+    /// allocation is bounded by a small multiple of the file's length. The saves and the replay in the report are not
+    /// checked yet.
     ///
     /// # Errors
     /// [`ReportError`] for any other bytes.

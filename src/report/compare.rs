@@ -1,4 +1,4 @@
-//! [`compare`]: two files, and the inputs played again.
+//! [`compare`]: compares two files by simulating their inputs again.
 
 use alloc::vec::Vec;
 use core::fmt;
@@ -14,26 +14,26 @@ use crate::lockstep::{Game, decode_inputs};
 use crate::replay::{Limits, Mismatch, ReadError, Reader, TickInputs, Verdict};
 use crate::world::World;
 
-/// Why two files cannot be compared.
+/// Reason why two files cannot be compared.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum CompareError {
     /// A snapshot of a world can only be compared with another one.
     Kinds,
-    /// A report is of another engine or of another game.
+    /// A report was made by another engine or another game.
     Unverifiable {
-        /// Which.
+        /// The file.
         side: Side,
-        /// What this program lacks.
+        /// The difference to this program.
         why: Mismatch,
     },
-    /// A replay, or that in a report, cannot be read or played.
+    /// A replay, or the replay in a report, cannot be read or played.
     Replay {
-        /// Which.
+        /// The file.
         side: Side,
-        /// What is wrong.
+        /// The verdict on the replay.
         verdict: Verdict,
     },
-    /// A save, setup or input refuses to be looked at.
+    /// A save, setup or input cannot be inspected.
     Inspect(InspectError),
 }
 
@@ -56,13 +56,13 @@ impl From<InspectError> for CompareError {
     }
 }
 
-/// Finds out in what two reports, replays or snapshots differ first, and who departed.
+/// Finds the first difference between two reports, replays or snapshots, and the side that diverged.
 ///
-/// The replay's inputs are played again with the running engine, within the limits. With `G` any game will do if both are
-/// snapshots.
+/// The inputs of the replay are simulated again by the running engine, within the limits. If both files are snapshots,
+/// `G` may be any game.
 ///
 /// # Errors
-/// [`CompareError`] when the files cannot be compared at all. What is only not to be found out is a note.
+/// [`CompareError`] when the files cannot be compared at all. A part of the result that cannot be determined is a note.
 pub fn compare<G: Game>(a: &Evidence, b: &Evidence, limits: &Limits) -> Result<Comparison, CompareError> {
     if let (Evidence::World(a), Evidence::World(b)) = (a, b) {
         return compare_worlds(a, b);
@@ -81,7 +81,8 @@ pub(super) fn compare_worlds(a: &World, b: &World) -> Result<Comparison, Compare
     Ok(Comparison { things: suspect::things(found), ..Comparison::new() })
 }
 
-/// What both sides know, without B the running engine's as well, and what is to be seen of it without playing.
+/// Collects the data of both sides (of the running engine, if there is no B) and the differences that need no
+/// simulation.
 pub(super) fn survey<'a, G: Game>(
     a: &'a Evidence,
     b: Option<&'a Evidence>,
@@ -141,7 +142,7 @@ fn check_rules<G: Game>(report: &DesyncReport) -> Result<(), Mismatch> {
     Ok(())
 }
 
-/// How the setups of two replays differ.
+/// The differences between the setups of two replays.
 fn setup_differences<G: Game>(
     known: &[Known<'_>; 2],
     limits: &Limits,
@@ -156,7 +157,7 @@ fn setup_differences<G: Game>(
     }
     let mut listed = Vec::new();
     for setup in setups {
-        // What does not decode differs as bytes.
+        // A setup that does not decode is compared as bytes.
         listed.push(match codec::decode::<G::Setup>(setup) {
             Ok(setup) => fields(&setup)?,
             Err(_) => fields(setup)?,
@@ -166,7 +167,7 @@ fn setup_differences<G: Game>(
     Ok(found)
 }
 
-/// The first tick and seat whose input is not the same in two replays.
+/// The first tick and seat whose inputs differ between two replays.
 fn input_difference<G: Game>(
     known: &[Known<'_>; 2],
     limits: &Limits,

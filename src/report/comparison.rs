@@ -1,4 +1,4 @@
-//! [`Comparison`]: what two files tell together.
+//! [`Comparison`]: the differences between two files.
 
 use alloc::string::String;
 use alloc::vec::Vec;
@@ -11,17 +11,17 @@ use crate::inspect::Difference;
 /// One of two files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Side {
-    /// The first.
+    /// The first file.
     A,
-    /// The second.
+    /// The second file.
     B,
 }
 
 impl Side {
-    /// Both, in order.
+    /// Both sides, in order.
     pub const BOTH: [Side; 2] = [Side::A, Side::B];
 
-    /// 0 or 1.
+    /// Index of the side, 0 or 1.
     #[must_use]
     pub const fn index(self) -> usize {
         match self {
@@ -40,99 +40,101 @@ impl fmt::Display for Side {
     }
 }
 
-/// Who left the course that the setup and the inputs lead to on the running engine.
+/// The side that diverged from the trajectory that the running engine computes from the setup and the inputs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Blame {
-    /// Nobody has.
+    /// Neither side diverged.
     Nobody,
-    /// One side has, the other has not.
+    /// One side diverged, the other did not.
     Side(Side),
-    /// Both have: if they agree with each other, this engine or these rules are not theirs.
+    /// Both sides diverged. If they agree with each other, they used another engine or other rules than this program.
     Both,
-    /// It cannot be known: there are no inputs to play again, or they are not the same.
+    /// Unknown, because there are no inputs to simulate, or because the inputs differ.
     Unknown,
 }
 
-/// How one side compares with the rerun of the inputs.
+/// Comparison of one side with the rerun of the inputs.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Course {
-    /// The seats that this side plays, as its report says.
+    /// The seats that this side plays, according to its report.
     pub seats: Vec<u32>,
-    /// The last tick before it departs, or of all, at which its state is known to be that of the rerun.
+    /// The last tick before this side diverges, or of all, at which its state is known to equal the rerun.
     pub equal_until: Option<u64>,
-    /// The first tick at which its state is known not to be that of the rerun.
+    /// The first tick at which its state is known to differ from the rerun.
     pub departs: Option<u64>,
 }
 
-/// The first input in which two replays differ.
+/// The first input that differs between two replays.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct InputDifference {
-    /// After how many ticks: the input is that of the next one.
+    /// Number of ticks before the input: the input is that of the next tick.
     pub tick: u64,
-    /// Whose.
+    /// Seat of the input.
     pub seat: u32,
-    /// How it differs.
+    /// The differences.
     pub differences: Vec<Difference>,
 }
 
-/// Something that two states do not have in common or that differs in them: a body, a contact, an entry of any map, or a
-/// section that has none.
+/// A subject of comparison that exists on one side only or differs between two states: a body, a contact, an entry of
+/// any map, or a section without entries.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Thing {
-    /// Where it is, such as `world.bodies.body 12v1`.
+    /// Path of the subject, such as `world.bodies.body 12v1`.
     pub path: String,
-    /// The section that it is in, such as `world.bodies`.
+    /// Section that contains the subject, such as `world.bodies`.
     pub section: String,
-    /// How it differs.
+    /// The differences.
     pub differences: Vec<Difference>,
 }
 
-/// One flipped bit between two ticks, with which the rules lead exactly to what the side to blame has.
+/// A single bit flip between two ticks after which the rules lead exactly to the state of the diverged side.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Explanation {
-    /// After how many ticks it flipped.
+    /// Number of ticks after which the bit flipped.
     pub tick: u64,
-    /// The path of the body.
+    /// Path of the body.
     pub path: String,
-    /// The number of the bit, from the lowest.
+    /// Index of the bit, counted from the lowest.
     pub bit: u32,
-    /// What that changed then: first the number that the bit is in. A is what it was and B what it became.
+    /// The changes by the flip, first the number that contains the bit. A is before the flip, B is after it.
     pub differences: Vec<Difference>,
 }
 
-/// What two reports, replays or snapshots tell together.
+/// Result of comparing two reports, replays or snapshots.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Comparison {
-    /// The last tick before the first difference, or of all, at which both states are known to be the same.
+    /// The last tick before the first difference at which both states are known to be equal; without a difference, the
+    /// last of all.
     pub last_equal: Option<u64>,
     /// The first tick at which the states are known to differ.
     pub first_different: Option<u64>,
-    /// How the setups differ; if they do, [`compare`](super::compare) compares nothing else.
+    /// Differences between the setups. If there are any, [`compare`](super::compare) compares nothing else.
     pub setup: Vec<Difference>,
-    /// The first input that differs. [`compare`](super::compare) compares states up to there.
+    /// The first input that differs. [`compare`](super::compare) compares states up to its tick.
     pub input: Option<InputDifference>,
-    /// How A and B compare with the rerun.
+    /// Comparisons of A and B with the rerun.
     pub courses: [Course; 2],
-    /// How many ticks of the inputs were played again.
+    /// Number of ticks simulated in the rerun.
     pub rerun: Option<u64>,
-    /// Who departed.
+    /// The side that diverged.
     pub blame: Blame,
-    /// At which tick `things` were compared: the first at which both states can be had.
+    /// The tick at which `things` were compared: the first different tick at which both states are available.
     pub tick: Option<u64>,
-    /// What differs in the states: what is to blame for it first, if that is known, then the bodies whose motion differs
-    /// most.
+    /// The subjects that differ. The origin of the differences is first, if it is known, then the bodies whose motion
+    /// differs most.
     pub things: Vec<Thing>,
-    /// In which part of the tick that led to `first_different` the states parted.
+    /// The stage of the tick that led to `first_different` at which the states diverged.
     pub stage: Option<Stage>,
-    /// If they parted before the step of the world: what differed when it began. B is the side to blame, A the rerun.
+    /// If the states diverged before the step of the world: the differences at the start of the step. B is the diverged
+    /// side, A the rerun.
     pub began: Vec<Thing>,
-    /// What explains all of it.
+    /// A single bit flip that explains all differences.
     pub explanation: Option<Explanation>,
-    /// The checkpoint that a report was written for.
+    /// The checkpoint for which a report was written.
     pub checkpoint: Option<u64>,
-    /// Which seats agree there, the largest group first.
+    /// The seats that agree at the checkpoint, largest group first.
     pub groups: Vec<Group>,
-    /// What could not be found out, and why.
+    /// The parts of the result that could not be determined, with reasons.
     pub notes: Vec<String>,
 }
 
@@ -157,7 +159,7 @@ impl Comparison {
         }
     }
 
-    /// Whether nothing differs, as far as both go.
+    /// Whether nothing differs in the ticks that both files cover.
     #[must_use]
     pub fn is_equal(&self) -> bool {
         self.setup.is_empty()
@@ -167,7 +169,7 @@ impl Comparison {
             && self.courses.iter().all(|course| course.departs.is_none())
     }
 
-    /// The sections in which the states differ, in order.
+    /// The sections that contain differences, in order.
     #[must_use]
     pub fn sections(&self) -> Vec<&str> {
         let mut sections: Vec<&str> = Vec::new();

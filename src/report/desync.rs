@@ -1,4 +1,4 @@
-//! [`DesyncReport`]: what a peer writes when states differ.
+//! [`DesyncReport`]: the file that a peer writes on a desync.
 
 use alloc::collections::BTreeMap;
 use alloc::string::String;
@@ -11,45 +11,45 @@ use crate::codec;
 use crate::hash::StateHash;
 use crate::lockstep::{Game, History, Past, RulesId};
 
-/// Most bytes of saves that a report takes along.
+/// Maximum bytes of saves in a report.
 pub const SAVES_BYTES_MAX: usize = 32 << 20;
 
-/// A checkpoint at which the peers of a game do not have the same state.
+/// A checkpoint at which the peers of a game have different states.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Desync {
     /// Number of players.
     pub players: u32,
-    /// After how many ticks.
+    /// Number of ticks after which the states differ.
     pub tick: u64,
-    /// How many ticks have been played with everybody's true inputs: all of them without prediction. What a history has
-    /// beyond them rests on guesses, and is no evidence.
+    /// Number of ticks simulated with the confirmed inputs of all players; without prediction, all ticks. Later entries
+    /// of a history depend on predicted inputs and are not evidence.
     pub known: u64,
-    /// The seats that this peer plays, in ascending order; none of a spectator.
+    /// The seats that this peer plays, in ascending order; empty for a spectator.
     pub seats: Vec<u32>,
-    /// For each seat the state hash that its peer has, as far as it has said so. This peer's own are taken from its
-    /// history.
+    /// The state hash reported by the peer of each seat, if it has been received. This peer's own hash is taken from
+    /// its history.
     pub hashes: Vec<Option<StateHash>>,
 }
 
 /// Seats whose peers have the same state.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Group {
-    /// The hash of that state.
+    /// Hash of that state.
     pub hash: StateHash,
     /// The seats, in ascending order.
     pub seats: Vec<u32>,
 }
 
-/// What a peer knows when states differ: two of them tell together who departed, when and where.
+/// The data of one peer at a desync. Two reports together tell which peer diverged, when and where.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DesyncReport {
-    /// The engine's semantics.
+    /// Version of the engine's semantics.
     pub semantics: u32,
-    /// Everything else.
+    /// The rest of the report.
     pub(super) body: Body,
 }
 
-/// What follows the header of a report.
+/// The body of a report, which follows its header.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Body {
     pub(super) rules_name: String,
@@ -58,27 +58,27 @@ pub(super) struct Body {
     pub(super) seats: Vec<u32>,
     pub(super) tick: u64,
     pub(super) hashes: Vec<Option<StateHash>>,
-    /// State hashes, in ascending order of the ticks.
+    /// State hashes, in ascending order of ticks.
     pub(super) history: Vec<(u64, StateHash)>,
-    /// The canonical bytes of saves, in ascending order of the ticks.
+    /// Canonical bytes of saves, in ascending order of ticks.
     pub(super) saves: Vec<(u64, Vec<u8>)>,
-    /// What the phases of the tick that led there have left behind, in ascending order of the ticks.
+    /// Phase digests of the steps that led to these ticks, in ascending order of ticks.
     pub(super) phases: Vec<(u64, TickPhases)>,
     pub(super) replay: Vec<u8>,
 }
 
 impl DesyncReport {
-    /// The report of a peer: `replay` has the inputs of the known ticks, for example from
+    /// Creates the report of a peer. `replay` contains the inputs of the known ticks, for example from
     /// [`Recorder::so_far`](crate::replay::Recorder::so_far).
     ///
-    /// Of each tick it has the hash. Of saves it has as many as fit into [`SAVES_BYTES_MAX`]: those of the tick at which
-    /// the states differ and before it, the newest first, then those after it.
+    /// The report contains the hash of every tick, and as many saves as fit into [`SAVES_BYTES_MAX`]: first those of
+    /// the different tick and before it, newest first, then those after it.
     #[must_use]
     pub fn new<G: Game>(found: &Desync, history: &History<G>, replay: Vec<u8>) -> Self {
         Self::within(SAVES_BYTES_MAX, found, history, replay)
     }
 
-    /// [`DesyncReport::new`] with at most so many bytes of saves.
+    /// Same as [`DesyncReport::new`] with at most `bytes_max` bytes of saves.
     #[must_use]
     pub fn within<G: Game>(bytes_max: usize, found: &Desync, history: &History<G>, replay: Vec<u8>) -> Self {
         let Desync { players, tick, known, ref seats, ref hashes } = *found;
@@ -113,7 +113,7 @@ impl DesyncReport {
         self
     }
 
-    /// The name and version of the rules.
+    /// Name and version of the rules.
     #[must_use]
     pub fn rules(&self) -> (&str, u32) {
         (&self.body.rules_name, self.body.rules_version)
@@ -125,25 +125,26 @@ impl DesyncReport {
         self.body.players
     }
 
-    /// The seats that the peer who wrote it plays.
+    /// The seats played by the peer that wrote the report.
     #[must_use]
     pub fn seats(&self) -> &[u32] {
         &self.body.seats
     }
 
-    /// The checkpoint at which the states were seen to differ: after how many ticks.
+    /// The checkpoint at which the states were found to differ, as a number of ticks.
     #[must_use]
     pub fn tick(&self) -> u64 {
         self.body.tick
     }
 
-    /// For each seat the hash that its peer had at that checkpoint, as far as known.
+    /// The hash that the peer of each seat had at that checkpoint, if known.
     #[must_use]
     pub fn hashes(&self) -> &[Option<StateHash>] {
         &self.body.hashes
     }
 
-    /// Which seats agree at that checkpoint: the largest group first. Of three peers or more, that shows who departed.
+    /// The seats that agree at that checkpoint, largest group first. With three peers or more, this shows which peer
+    /// diverged.
     #[must_use]
     pub fn groups(&self) -> Vec<Group> {
         let mut groups: BTreeMap<StateHash, Vec<u32>> = BTreeMap::new();
@@ -157,38 +158,39 @@ impl DesyncReport {
         groups
     }
 
-    /// The state hash after each tick that the peer remembers, in ascending order of the ticks.
+    /// The state hash after each tick in the peer's history, in ascending order of ticks.
     #[must_use]
     pub fn history(&self) -> &[(u64, StateHash)] {
         &self.body.history
     }
 
-    /// The canonical bytes of the game's save after some ticks, in ascending order.
+    /// Canonical bytes of the game's saves, in ascending order of ticks.
     #[must_use]
     pub fn saves(&self) -> &[(u64, Vec<u8>)] {
         &self.body.saves
     }
 
-    /// How ticks went, in ascending order of the ticks that they led to. Only a [`Trace`](super::Trace) tells.
+    /// Phase digests of steps, by the ticks that they led to, in ascending order. Only a [`Trace`](super::Trace)
+    /// contains them.
     #[must_use]
     pub fn phases(&self) -> &[(u64, TickPhases)] {
         &self.body.phases
     }
 
-    /// How many ticks of the history have no save, because the report would have become too large.
+    /// Number of ticks in the history without a save, because the report would have become too large.
     #[must_use]
     pub fn saves_left_out(&self) -> usize {
         self.body.history.len().saturating_sub(self.body.saves.len())
     }
 
-    /// The replay up to when the report was written: the bytes of a file.
+    /// The replay up to the time of the report, as the bytes of a file.
     #[must_use]
     pub fn replay(&self) -> &[u8] {
         &self.body.replay
     }
 }
 
-/// The saves that a report takes along.
+/// Selects and encodes the saves of a report.
 fn saves<S: Serialize>(bytes_max: usize, tick: u64, states: &[&Past<S>]) -> Vec<(u64, Vec<u8>)> {
     let until = states.iter().rev().filter(|past| past.tick <= tick);
     let after = states.iter().filter(|past| past.tick > tick);

@@ -1,7 +1,7 @@
-//! Two replays with other setups or other inputs, both played by the running engine.
+//! Comparison of two replays with different setups or inputs, both simulated by the running engine.
 //!
-//! As long as the states and the inputs are the same, one game stands for both. So all that this costs beyond playing one
-//! replay are the ticks with other inputs.
+//! As long as the states and the inputs are equal, one game serves both sides. Only ticks with different inputs cost
+//! more than playing one replay.
 
 use alloc::format;
 
@@ -14,7 +14,7 @@ use crate::inspect::{differences, fields};
 use crate::lockstep::Game;
 use crate::replay::{Limits, Rerun, Step, Verdict};
 
-/// Plays both until their states differ, and fills in what that tells.
+/// Plays both replays until their states differ, and fills in the comparison.
 pub(super) fn run<G: Game>(
     known: &[Known<'_>; 2],
     limits: &Limits,
@@ -61,7 +61,7 @@ struct Duel<'f, 'a, G: Game> {
 }
 
 impl<G: Game> Duel<'_, '_, G> {
-    /// Plays a tick. Up to now the states are the same, and A's game stands for both.
+    /// Plays a tick. The states are equal before it, and A's game serves both sides.
     fn step(&mut self) -> Result<Step, DuelError> {
         let of = |side| move |verdict| DuelError::Verdict(side, verdict);
         let a = self.a.read_inputs().map_err(of(Side::A))?;
@@ -92,7 +92,7 @@ impl<G: Game> Duel<'_, '_, G> {
         Ok(Step::Ticked)
     }
 
-    /// Compares the states as of now.
+    /// Compares the states at the current tick.
     fn compare(&mut self, tick: u64) -> Result<(), CompareError> {
         let (a, b) = (self.a.game(), self.b.game());
         if a.state_hash() == b.state_hash() {

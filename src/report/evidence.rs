@@ -1,4 +1,4 @@
-//! [`Evidence`]: a file that tells something of how a game went.
+//! [`Evidence`]: a file that contains states or hashes of a game.
 
 use alloc::boxed::Box;
 use alloc::collections::BTreeMap;
@@ -15,22 +15,22 @@ use crate::world::{SnapshotError, World};
 /// A file that can be compared with another one.
 #[derive(Clone, Debug)]
 pub enum Evidence {
-    /// What a peer wrote when states differed.
+    /// The report that a peer wrote on a desync.
     Report(Box<DesyncReport>),
-    /// The bytes of a replay, which are judged when they are played.
+    /// The bytes of a replay, which are checked when it is played.
     Replay(Vec<u8>),
-    /// A world, from the bytes of a snapshot.
+    /// A world, read from the bytes of a snapshot.
     World(Box<World>),
 }
 
-/// Bytes that are no evidence.
+/// Reason why bytes are not evidence.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum EvidenceError {
-    /// A report that is damaged.
+    /// A damaged report.
     Report(ReportError),
-    /// A snapshot that is damaged.
+    /// A damaged snapshot.
     World(SnapshotError),
-    /// None of the three.
+    /// Neither a report nor a replay nor a snapshot.
     Unknown,
 }
 
@@ -47,10 +47,10 @@ impl fmt::Display for EvidenceError {
 impl core::error::Error for EvidenceError {}
 
 impl Evidence {
-    /// Reads a file: the first bytes tell which kind it is.
+    /// Reads a file. Its first bytes determine the kind.
     ///
     /// # Errors
-    /// [`EvidenceError`] for bytes that are none of the three.
+    /// [`EvidenceError`] for bytes that are neither a report nor a replay nor a snapshot.
     pub fn read(bytes: Vec<u8>, limits: &Limits) -> Result<Self, EvidenceError> {
         if bytes.starts_with(&replay::MAGIC) {
             return Ok(Evidence::Replay(bytes));
@@ -67,37 +67,37 @@ impl Evidence {
     }
 }
 
-/// What somebody says of a state.
+/// A hash that a file states for a tick.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Said {
     hash: StateHash,
-    /// Of a checkpoint, the digest of the inputs that it binds as well.
+    /// For a checkpoint, the digest of the inputs that is combined with the state hash.
     inputs: Option<StateHash>,
 }
 
 impl Said {
-    /// Whether it is said of the state with that hash.
+    /// Whether the stated hash matches a state hash.
     pub(super) fn is(&self, state: StateHash) -> bool {
         self.hash == self.inputs.map_or(state, |inputs| checkpoint_hash(state, inputs))
     }
 }
 
-/// What one side knows of the course of a game.
+/// The data of one side about the trajectory of a game.
 #[derive(Default)]
 pub(super) struct Known<'a> {
     pub(super) seats: &'a [u32],
-    /// State hashes by their ticks.
+    /// State hashes by tick.
     pub(super) states: BTreeMap<u64, StateHash>,
     /// Checkpoints of a replay.
     checkpoints: BTreeMap<u64, Said>,
     pub(super) saves: BTreeMap<u64, &'a [u8]>,
-    /// How the tick went that led there.
+    /// Phase digests of the step that led to a tick.
     pub(super) phases: BTreeMap<u64, &'a TickPhases>,
-    /// Whether this side is the running engine, which has whatever the rerun has.
+    /// Whether this side is the running engine, whose states are those of the rerun.
     is_rerun: bool,
-    /// Of a report without a replay, nothing.
+    /// Empty for a report without a replay.
     pub(super) replay: &'a [u8],
-    /// How many ticks the replay has.
+    /// Number of ticks in the replay.
     pub(super) ticks: u64,
 }
 
@@ -111,7 +111,7 @@ impl<'a> Known<'a> {
         Ok(known)
     }
 
-    /// The running engine, playing the inputs that another side knows.
+    /// The side of the running engine, which plays the inputs of another side.
     pub(super) fn of_rerun(&self) -> Self {
         Known { replay: self.replay, ticks: self.ticks, is_rerun: true, ..Known::default() }
     }
@@ -138,7 +138,7 @@ impl<'a> Known<'a> {
         Ok(known)
     }
 
-    /// Whether this side had that state after so many ticks, if it has said so.
+    /// Whether this side had that state after `tick` ticks; `None` if it states no hash.
     pub(super) fn had(&self, tick: u64, state: StateHash) -> Option<bool> {
         if self.is_rerun {
             return Some(true);
@@ -147,29 +147,29 @@ impl<'a> Known<'a> {
         self.said(tick).map(|said| said.is(state) && by_checkpoint)
     }
 
-    /// What this side has said of its state after so many ticks.
+    /// The hash that this side states for a tick.
     pub(super) fn said(&self, tick: u64) -> Option<Said> {
         let state = self.states.get(&tick).map(|state| Said { hash: *state, inputs: None });
         state.or_else(|| self.checkpoints.get(&tick).copied())
     }
 
-    /// Whether both sides had the same state after so many ticks, if both have said so.
+    /// Whether both sides had the same state after `tick` ticks; `None` if one of them states no hash.
     pub(super) fn same(&self, other: &Self, tick: u64) -> Option<bool> {
         if let Some((a, b)) = self.states.get(&tick).zip(other.states.get(&tick)) {
             return Some(a == b);
         }
         let (a, b) = self.checkpoints.get(&tick).zip(other.checkpoints.get(&tick))?;
-        // With other digests (another interval in the header) the checkpoints cannot be compared.
+        // Checkpoints with different input digests (another interval in the header) cannot be compared.
         (a.inputs == b.inputs).then_some(a.hash == b.hash)
     }
 
-    /// The last tick of which it has said anything.
+    /// The last tick for which this side states a hash.
     pub(super) fn last(&self) -> u64 {
         let last = |tick: Option<&u64>| tick.copied().unwrap_or(0);
         last(self.states.keys().next_back()).max(last(self.checkpoints.keys().next_back()))
     }
 
-    /// All ticks of which it has said something.
+    /// All ticks for which this side states a hash.
     pub(super) fn ticks_known(&self) -> impl Iterator<Item = u64> {
         self.states.keys().chain(self.checkpoints.keys()).copied()
     }

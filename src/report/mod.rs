@@ -1,14 +1,14 @@
-//! What a peer writes when states differ, and what two of such files tell together: who departed, when and where.
+//! Desync reports, and the comparison of two of them: which side diverged, when and where.
 //!
-//! A peer keeps a [`History`](crate::lockstep::History) of the last seconds. When a hash of another peer is not its own,
-//! it writes a [`DesyncReport`]: hashes and saves of these ticks, and the replay so far. [`compare`] takes two reports,
-//! replays or snapshots and plays the confirmed inputs again. A side whose states are not those of this rerun has
-//! departed from the rules; that is known with two peers, too.
+//! A peer keeps a [`History`](crate::lockstep::History) of the last seconds. When it receives a hash that differs from
+//! its own, it writes a [`DesyncReport`]: hashes and saves of these ticks, and the replay so far. [`compare`] takes two
+//! reports, replays or snapshots and simulates the confirmed inputs again. A side whose states differ from this rerun
+//! has diverged from the rules. This works with two peers, too.
 //!
-//! [`bisect`] asks the same of a single file: where did its course leave that of the running engine? For that a [`Trace`]
-//! has more than a replay.
+//! [`bisect`] examines a single file: where does its trajectory diverge from that of the running engine? A [`Trace`]
+//! contains more data for this than a replay.
 //!
-//! In everything here *tick t* is the state after *t* ticks, as in replays: tick 0 is the start.
+//! In this module *tick t* is the state after *t* ticks, as in replays: tick 0 is the start.
 
 mod bisect;
 mod bytes;

@@ -1,4 +1,5 @@
-//! In which part of a tick two courses parted, and with what: known if the side to blame has noted how its tick went.
+//! Finds the stage of a tick at which two trajectories diverged, and the differences there, if the diverged side has
+//! recorded the phase digests of that tick.
 
 use alloc::string::String;
 
@@ -9,7 +10,7 @@ use super::suspect::{self, WrongTick};
 use crate::inspect::{Difference, InspectError, differences, fields};
 use crate::lockstep::Game;
 
-/// Plays the tick as it should have gone, and compares.
+/// Simulates the tick from the last equal state, and compares the phases.
 pub(super) fn find<G: Game>(
     wrong: &WrongTick<G>,
     theirs: &TickPhases,
@@ -33,12 +34,13 @@ pub(super) fn find<G: Game>(
     Ok(())
 }
 
-/// The bit in which two states differ, if there is only one.
+/// The bit in which two states differ, if there is exactly one.
 fn flipped_bit<G: Game>(
     wrong: &WrongTick<G>,
     differences: &[Difference],
 ) -> Result<Option<Explanation>, InspectError> {
-    // A view shows the angular velocity beside the spin, and whatever moves a body may give its shapes other boxes.
+    // Derived fields: the angular velocity is shown beside the spin, and a change of a body's motion may change the
+    // boxes of its shapes.
     let derived = ["angular_velocity", "fat.lower.x", "fat.lower.y", "fat.upper.x", "fat.upper.y"];
     let stored = |difference: &&Difference| !derived.contains(&difference.field().name());
     let mut stored = differences.iter().filter(stored);
@@ -48,7 +50,7 @@ fn flipped_bit<G: Game>(
     let Some(bit) = suspect::flipped_bit(only) else {
         return Ok(None);
     };
-    // The world is somewhere in what the game saves.
+    // The path of the world within the game's save is not known here, so the end of the path is compared.
     let place = only.field().thing().unwrap_or(only.field().section());
     let saved = fields(&wrong.before)?;
     let path = saved.iter().filter_map(|field| field.thing()).find(|path| path.ends_with(place));

@@ -1,4 +1,4 @@
-//! [`TickPhases`]: how a tick went, phase by phase.
+//! [`TickPhases`]: digests of the phases of a tick.
 
 use alloc::vec::Vec;
 
@@ -9,33 +9,32 @@ use crate::hash::StateHash;
 use crate::lockstep::Game;
 use crate::world::{Phase, Snapshot, World};
 
-/// Most digests of phases that a report has of one tick.
+/// Maximum number of phase digests per tick in a report.
 pub const PHASE_DIGESTS_MAX: usize = 1024;
 
-/// What the phases of one tick have found and left behind; see
-/// [`World::phase_digests`](crate::world::World::phase_digests).
+/// Digests of the phases of one tick; see [`World::phase_digests`](crate::world::World::phase_digests).
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct TickPhases {
-    /// The digests, in order.
+    /// The digests, in the order of the phases.
     pub digests: Vec<StateHash>,
-    /// The bytes of the world with which its step began, where they are not those after the tick before.
+    /// The bytes of the world at the start of its step, as differences to the world after the previous tick.
     start: Vec<Patch>,
-    /// How many bytes there are.
+    /// Length of the world at the start of its step, in bytes.
     start_length: u64,
 }
 
-/// Bytes that are not those of another world.
+/// Bytes that differ from those of another world.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 struct Patch {
     at: u64,
     bytes: Vec<u8>,
 }
 
-/// Equal bytes between two patches that are not worth a new one.
+/// Maximum number of equal bytes between two differences in the same patch.
 const GAP: usize = 16;
 
 impl TickPhases {
-    /// Plays a tick and notes how it goes; nothing of a game without a world.
+    /// Plays a tick and records its phases; empty for a game without a world.
     pub(super) fn of<G: Game>(game: &mut G, inputs: &[G::Input]) -> Self {
         let Some(world) = game.world_mut() else {
             game.step(inputs);
@@ -54,7 +53,8 @@ impl TickPhases {
         TickPhases { digests, start: patches(&before, &start), start_length: start.len() as u64 }
     }
 
-    /// The world with which the step began, given the one after the tick before; `None` if what is noted is no world.
+    /// Restores the world at the start of the step, given the world after the previous tick; `None` if the recorded
+    /// bytes are not a world.
     pub(super) fn start(&self, before: &World) -> Option<World> {
         let mut bytes = before.to_bytes();
         let patched: usize = self.start.iter().map(|patch| patch.bytes.len()).sum();
@@ -71,8 +71,8 @@ impl TickPhases {
         World::from_bytes(&bytes).ok()
     }
 
-    /// In which part of the tick another course with the same start has parted from this one; `None` if nobody has noted
-    /// it.
+    /// The stage of the tick at which another trajectory with the same start diverged from this one; `None` if either
+    /// side has no digests.
     pub(super) fn parting(&self, other: &Self) -> Option<Stage> {
         if self.digests.is_empty() || other.digests.is_empty() {
             return None;
@@ -80,7 +80,7 @@ impl TickPhases {
         let Some(first) = self.digests.iter().zip(&other.digests).position(|(a, b)| a != b) else {
             return Some(Stage::AfterStep);
         };
-        // A world that is stepped several times in a tick notes the phases as often.
+        // A world that is stepped several times in a tick has several sequences of digests.
         Some(match Phase::ALL.get((first % (Phase::ALL.len() + 1)).wrapping_sub(1)) {
             Some(phase) => Stage::Phase(*phase),
             None => Stage::BeforeStep,
@@ -94,7 +94,7 @@ fn bytes_of(snapshot: &Snapshot) -> Vec<u8> {
     world.to_bytes()
 }
 
-/// Where `new` has other bytes than `old`.
+/// The differences of `new` to `old`.
 fn patches(old: &[u8], new: &[u8]) -> Vec<Patch> {
     let differs = |at: usize| old.get(at) != new.get(at);
     let mut patches = Vec::new();

@@ -1,4 +1,4 @@
-//! Playing the inputs again beside what both sides say of each tick.
+//! Simulates the inputs of the files again and compares every tick with the hashes of both sides.
 
 use alloc::format;
 use alloc::string::String;
@@ -15,17 +15,17 @@ use crate::inspect::{differences, fields};
 use crate::lockstep::Game;
 use crate::replay::{Limits, Rerun, Step};
 
-/// How much is played.
+/// Amount of simulation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Effort {
-    /// All that either side knows, and a while of trying what could explain a difference.
+    /// Plays all ticks that either side knows, and searches for an explanation of a difference up to a fixed limit.
     Thorough,
-    /// As far as it takes to find the first difference, and so much to explain it that both together cost less than
-    /// playing all ticks three times.
+    /// Plays up to the first difference, and limits the search for an explanation such that both together cost less
+    /// than playing all ticks three times.
     Bounded,
 }
 
-/// Fills in the states, the courses and the blame of a comparison.
+/// Fills in the states, the trajectories and the blame of a comparison.
 pub(super) fn run<G: Game>(
     known: &[Known<'_>; 2],
     limits: &Limits,
@@ -49,13 +49,13 @@ fn play<G: Game>(
     effort: Effort,
     found: &mut Comparison,
 ) -> Result<(), CompareError> {
-    // Behind an input that differs, so do the states.
+    // After a different input the states differ, too.
     let horizon = found.input.as_ref().map_or(u64::MAX, |input| input.tick);
     compare_directly(known, horizon, found);
     let side = if known[0].ticks < known[1].ticks { Side::B } else { Side::A };
     let replay = known[side.index()].replay;
     if replay.is_empty() {
-        found.notes.push("there are no inputs to play again, so nobody is to blame".into());
+        found.notes.push("there are no inputs to simulate again, so the diverged side is unknown".into());
         if let Some(first) = found.first_different {
             compare_saves_alone::<G>(known, first, found)?;
         }
@@ -78,7 +78,7 @@ fn play<G: Game>(
     .run(until)
 }
 
-/// What is to be seen without playing: the first tick of which both say something else.
+/// Compares the hashes of both sides without simulation, up to the first tick at which they differ.
 fn compare_directly(known: &[Known<'_>; 2], horizon: u64, found: &mut Comparison) {
     let mut ticks: Vec<u64> = known.iter().flat_map(|known| known.ticks_known()).collect();
     ticks.sort_unstable();
@@ -108,7 +108,7 @@ fn compare_saves_alone<G: Game>(
     let in_both = |tick: &u64| known[1].saves.contains_key(tick);
     let tick = known[0].saves.range(first..).map(|(tick, _)| *tick).find(in_both);
     let Some(tick) = tick else {
-        found.notes.push("the files do not have the states that differ".into());
+        found.notes.push("the files do not contain the states that differ".into());
         return Ok(());
     };
     let state = |side: Side| decode::<G>(side, tick, known[side.index()].saves[&tick]);
@@ -122,12 +122,13 @@ fn compare_saves_alone<G: Game>(
     Ok(())
 }
 
-/// The states of both sides after some tick.
+/// The states of both sides after a tick.
 struct States<S> {
     tick: u64,
     states: [S; 2],
-    /// The side that has said nothing of this tick, and that is taken to have been where the rerun is: nobody who has
-    /// departed comes back, so that this holds if it is there later.
+    /// The side that states no hash for this tick and is presumed to have had the state of the rerun. A side that has
+    /// diverged does not converge again, so the presumption is right if this side equals the rerun at this tick or
+    /// later.
     presumed: Option<Side>,
 }
 
@@ -137,15 +138,15 @@ struct Beside<'a, 'k, G: Game> {
     effort: Effort,
     found: &'a mut Comparison,
     rerun: Rerun<'k, G>,
-    /// The state of the rerun one tick ago.
+    /// State of the rerun before the current tick.
     previous: Option<G::Save>,
-    /// The tick in which the first side that departs did so.
+    /// The tick in which the first diverging side diverged.
     wrong: Option<WrongTick<G>>,
-    /// The states at the first tick that differs and of which they can be had.
+    /// The states at the first different tick at which both are available.
     states: Option<States<G::Save>>,
-    /// The same, where one of them is only presumed.
+    /// The same, if one of the states is only presumed.
     presumed: Option<States<G::Save>>,
-    /// Why not earlier.
+    /// Reason why the states of an earlier tick could not be used.
     obstacle: Option<String>,
 }
 
@@ -169,13 +170,13 @@ impl<G: Game> Beside<'_, '_, G> {
             }
         }
         self.found.rerun = Some(self.rerun.tick());
-        // The files may go further than the inputs do.
+        // The files may contain more ticks than the replay has inputs for.
         let equal = equal.filter(|equal| self.found.first_different.is_none_or(|first| *equal < first));
         self.found.last_equal = self.found.last_equal.max(equal);
         self.conclude()
     }
 
-    /// Whether what is still to come can tell nothing that was asked for.
+    /// Whether the remaining ticks cannot change the result.
     fn is_enough(&self) -> bool {
         let tick = self.rerun.tick();
         let has_departed = |side: &usize| self.found.courses[*side].departs.is_some();
@@ -184,7 +185,7 @@ impl<G: Game> Beside<'_, '_, G> {
         self.effort == Effort::Bounded && departed.is_some_and(|side| self.states.is_some() || has_told(side))
     }
 
-    /// Compares the rerun as of now with what both sides say.
+    /// Compares the current state of the rerun with the hashes of both sides.
     fn look(&mut self, direct: Option<u64>) {
         let (tick, hash) = (self.rerun.tick(), self.rerun.game().state_hash());
         let had = [0, 1].map(|side: usize| self.known[side].had(tick, hash));
@@ -220,7 +221,7 @@ impl<G: Game> Beside<'_, '_, G> {
         }
     }
 
-    /// Takes the states of both sides, if they can be had now.
+    /// Stores the states of both sides, if both are available at the current tick.
     fn take_states(&mut self, had: [Option<bool>; 2]) {
         let tick = self.rerun.tick();
         let mut states = Vec::new();
@@ -287,7 +288,7 @@ impl<G: Game> Beside<'_, '_, G> {
         if let Some(theirs) = &wrong.phases {
             origin::find(&wrong, theirs, &mut game, found)?;
         }
-        // Otherwise it is known that nothing had flipped before, or what.
+        // Otherwise it is already known which bit flipped before the step, or that none did.
         if found.stage.is_none_or(|stage| stage == Stage::BeforeStep) && found.began.is_empty() {
             suspect::explain(&wrong, game, work.min(limits.total_work), found)?;
         }

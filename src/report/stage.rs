@@ -1,23 +1,23 @@
-//! [`Stage`]: in which part of a tick two courses part.
+//! [`Stage`]: the stage of a tick at which two trajectories diverge.
 
 use core::fmt;
 
 use crate::world::Phase;
 
-/// The first part of a tick after which two states that were equal before it are not.
+/// The first stage of a tick after which two states differ that were equal before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Stage {
-    /// Before the world's step: what the rules have made of the inputs, or what came from outside.
+    /// Before the world's step: in what the rules compute from the inputs, or by a change from outside.
     BeforeStep,
     /// In a phase of the world's step.
     Phase(Phase),
-    /// After the world's step, or in what is not in the world.
+    /// After the world's step, or in state outside the world.
     AfterStep,
 }
 
 impl Stage {
-    /// In one word, as tools print it for other programs.
+    /// The stage as one word, as printed by tools for other programs.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -43,7 +43,7 @@ impl fmt::Display for Stage {
             Stage::Phase(Phase::Prepare) => "in the preparation of constraints",
             Stage::Phase(Phase::Solve) => "in the solver",
             Stage::Phase(Phase::Finalise) => "in the finalisation of poses",
-            Stage::Phase(Phase::Sleep) => "where islands fall asleep",
+            Stage::Phase(Phase::Sleep) => "while putting islands to sleep",
             Stage::Phase(Phase::Report) => "in the report of events",
             Stage::AfterStep => "after the step of the world",
         })

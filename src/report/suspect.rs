@@ -1,8 +1,9 @@
-//! Which of many differing bodies everything began with.
+//! Finds the body in which a difference originated, among many bodies that differ.
 //!
-//! In the tick in which a body gets a wrong velocity, it passes it on to all that it touches: dozens of bodies differ, and
-//! the largest difference need not be where it began. So the list is put in order of how much the motion differs, and
-//! then it is tried: if one flipped bit in the last state that was right leads to exactly the wrong state, that bit it was.
+//! A body with a wrong velocity affects all bodies it touches in the same tick: dozens of bodies differ, and the
+//! largest difference need not be at the origin. The list is therefore sorted by the difference in motion, and then
+//! single bit flips in the last correct state are tried. A flip that leads to exactly the wrong state is the
+//! explanation.
 
 use alloc::collections::BTreeMap;
 use alloc::format;
@@ -17,25 +18,25 @@ use crate::inspect::{Difference, InspectError, Value, differences, fields};
 use crate::lockstep::Game;
 use crate::world::Motion;
 
-/// Most work units that are spent on trying, if the limits allow as many: some ten seconds.
+/// Maximum work units spent on trying bit flips, if the limits allow as many: about ten seconds.
 pub(super) const WORK_MAX: u64 = 400_000_000;
-/// Work units that a try costs at least, as the state is loaded and hashed.
+/// Minimum work units of a try, because the state is loaded and hashed.
 const TRY_WORK: u64 = 1000;
 
-/// A tick that has gone wrong on one side.
+/// A tick in which one side diverged.
 pub(super) struct WrongTick<G: Game> {
-    /// The last tick that was right, and the state after it.
+    /// The last correct tick, and the state after it.
     pub(super) tick: u64,
     pub(super) before: G::Save,
-    /// The inputs that led from it to the wrong one.
+    /// The inputs that led from that state to the wrong one.
     pub(super) inputs: Vec<G::Input>,
-    /// What came of them on the side that is to blame.
+    /// The wrong state, as a hash stated by the diverged side.
     pub(super) wrong: Said,
-    /// How the tick went there, if that is known.
+    /// Phase digests of the wrong tick, if available.
     pub(super) phases: Option<TickPhases>,
 }
 
-/// Puts things into sections and bodies, those whose motion differs most first.
+/// Groups differences by section and body, sorted by the difference in motion, largest first.
 pub(super) fn things(differences: Vec<Difference>) -> Vec<Thing> {
     let mut things: Vec<Thing> = Vec::new();
     let mut places = BTreeMap::new();
@@ -53,7 +54,7 @@ pub(super) fn things(differences: Vec<Difference>) -> Vec<Thing> {
     things
 }
 
-/// By how many units the motion of a body differs; 0 of everything else.
+/// Difference of a body's motion, in units of the last bit; 0 for anything else.
 fn disturbance(thing: &Thing) -> u128 {
     let is_motion = |difference: &&Difference| {
         Motion::SPEEDS.iter().any(|motion| difference.field().name() == motion.name())
@@ -62,22 +63,22 @@ fn disturbance(thing: &Thing) -> u128 {
     thing.differences.iter().filter(is_motion).map(units).sum()
 }
 
-/// The bits of two numbers that differ; `None` if one is missing or no number.
+/// The bits of two numbers that differ; `None` if one is missing or not a number.
 fn both_bits(difference: &Difference) -> Option<(i128, i128)> {
     let bits = |value: &Option<Value>| value.as_ref().and_then(|value| value.bits());
     bits(&difference.a).zip(bits(&difference.b))
 }
 
-/// The bit in which two numbers differ, if it is a single one.
+/// The bit in which two numbers differ, if there is exactly one.
 pub(super) fn flipped_bit(difference: &Difference) -> Option<u32> {
     let (a, b) = both_bits(difference)?;
     let changed = a ^ b;
-    // The sign stands in all bits above a number's own.
+    // The sign occupies all bits above the width of the number.
     let is_sign = changed.leading_ones() + changed.trailing_zeros() == i128::BITS;
     (changed.count_ones() == 1 || is_sign).then(|| changed.trailing_zeros())
 }
 
-/// Looks for the bit that explains everything, and puts its body and field first.
+/// Searches for the bit flip that explains all differences, and moves its body and field to the front.
 pub(super) fn explain<G: Game>(
     wrong: &WrongTick<G>,
     mut game: G,
@@ -90,7 +91,7 @@ pub(super) fn explain<G: Game>(
         && is_known
         && flipped_bit(only).is_some()
     {
-        // The bit is there to be seen.
+        // The differences already show the bit.
         return Ok(());
     }
     let suspects = if is_known { suspects(&found.things) } else { everybody(&mut game, &wrong.before) };
@@ -103,7 +104,7 @@ pub(super) fn explain<G: Game>(
         let first = &mut found.things[0].differences;
         first.sort_by_key(|difference| difference.field().name() != motion.name());
     }
-    // As it was before it flipped, and as it became.
+    // The state before and after the flip.
     game.load(&wrong.before);
     if when == When::After {
         game.step(&wrong.inputs);
@@ -121,24 +122,26 @@ pub(super) fn explain<G: Game>(
     Ok(())
 }
 
-/// On which side of a tick a bit may have flipped.
+/// Whether a bit may have flipped before or after the tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum When {
     Before,
     After,
 }
 
-/// A bit that may have flipped.
+/// A candidate for the flipped bit.
 struct Suspect {
     path: String,
     motion: Motion,
     bit: u32,
     when: When,
-    /// How far from the difference that is seen, in powers of two times 256: the lower, the sooner it is tried.
+    /// Distance of the bit's value from the observed difference, as a base-2 logarithm times 256. Candidates at the
+    /// lowest distance are tried first.
     distance: u32,
 }
 
-/// Every bit of the bodies that differ. Most of a flip stays in its number, as long as nothing else is hit hard by it.
+/// All bits of the bodies that differ. Unless the flip causes a strong collision, most of the difference stays in the
+/// number whose bit flipped.
 fn suspects(things: &[Thing]) -> Vec<Suspect> {
     let mut suspects = Vec::new();
     for thing in things.iter().filter(|thing| handle(&thing.path).is_some()) {
@@ -159,15 +162,15 @@ fn suspects(things: &[Thing]) -> Vec<Suspect> {
     suspects
 }
 
-/// The logarithm of a number to base 2, times 256, within 25 units; of 0 there is none.
+/// Base-2 logarithm of a number times 256, with an error of at most 25 units; `None` for 0.
 fn log2(number: u128) -> Option<u32> {
     let whole = number.checked_ilog2()?;
-    // Behind the leading one, as if the logarithm were straight between powers of two.
+    // The bits after the leading one, which interpolate linearly between powers of two.
     let fraction = number << (127 - whole) << 1 >> 120;
     Some((whole << 8) + u32::try_from(fraction).unwrap_or(0))
 }
 
-/// Every bit of every body, before and after the tick.
+/// All bits of all bodies, before and after the tick.
 fn everybody<G: Game>(game: &mut G, before: &G::Save) -> Vec<Suspect> {
     game.load(before);
     let Some(world) = game.world_mut() else {
@@ -186,7 +189,7 @@ fn everybody<G: Game>(game: &mut G, before: &G::Save) -> Vec<Suspect> {
     suspects
 }
 
-/// The first suspect that leads to the wrong state.
+/// The first candidate that leads to the wrong state.
 fn search<G: Game>(wrong: &WrongTick<G>, game: &mut G, suspects: Vec<Suspect>, work: u64) -> Option<Suspect> {
     game.load(&wrong.before);
     let step_work = game.work(&wrong.inputs).max(TRY_WORK);
@@ -194,10 +197,10 @@ fn search<G: Game>(wrong: &WrongTick<G>, game: &mut G, suspects: Vec<Suspect>, w
     let right = game.save();
     let mut left = work;
     suspects.into_iter().find(|suspect| {
-        // A state is loaded and hashed as well.
+        // Cost of loading and hashing a state.
         let loading = step_work / 2;
         let price = if suspect.when == When::Before { step_work + loading } else { loading };
-        // Whoever comes cheaper may still be tried.
+        // A cheaper candidate may still fit into the budget.
         let Some(rest) = left.checked_sub(price) else {
             return false;
         };
@@ -221,7 +224,7 @@ fn handle(path: &str) -> Option<(u32, u32)> {
     Some((slot.parse().ok()?, generation.parse().ok()?))
 }
 
-/// Flips a bit of the body of that path, if there is one and it can have that speed.
+/// Flips a bit of a body's motion; `None` if the path has no body or the resulting speed is invalid.
 fn flip<G: Game>(game: &mut G, path: &str, motion: Motion, bit: u32) -> Option<()> {
     let handle = handle(path)?;
     let world = game.world_mut()?;

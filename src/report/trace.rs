@@ -1,4 +1,4 @@
-//! [`Trace`]: a game that is recorded with all that is needed to tell afterwards where its course left another one.
+//! [`Trace`]: a recorded game with the data needed to find out later where its trajectory diverged from another one.
 
 use alloc::collections::VecDeque;
 use alloc::vec::Vec;
@@ -9,11 +9,11 @@ use super::phases::TickPhases;
 use crate::lockstep::{Game, History};
 use crate::replay::{CHECKPOINT_INTERVAL, Limits, RecordError, Recorder, Rerun, Step, Verdict};
 
-/// A game that is recorded with the state hash, the save and the phases of its last ticks. What becomes of it is a
-/// [`DesyncReport`] that names no checkpoint as different: [`bisect`](super::bisect) compares it with the running engine.
+/// A game that is recorded with the state hash, the save and the phase digests of its last ticks. The result is a
+/// [`DesyncReport`] that names no desync; [`bisect`](super::bisect) compares it with the running engine.
 ///
-/// A replay has a hash every second, and so tells the second in which two engines part. The trace of that second, written
-/// by the engine that wrote the replay, tells the tick, the phase, the body and the field.
+/// A replay has one hash per second, which tells the second in which two engines diverge. The trace of that second,
+/// made by the engine that wrote the replay, tells the tick, the phase, the body and the field.
 ///
 /// ```
 /// use lockstep2d::lockstep::{Sandbox, SandboxSetup};
@@ -40,10 +40,10 @@ pub struct Trace<G: Game> {
 }
 
 impl<G: Game> Trace<G> {
-    /// Starts the game that `setup` describes; the last `ticks` ticks are going to be remembered.
+    /// Starts the game that `setup` describes and keeps the data of its last `ticks` ticks.
     ///
     /// # Errors
-    /// [`RecordError`] when the setup starts no game, or none that a replay can hold.
+    /// [`RecordError`] when the setup cannot start a game, or when a replay cannot represent that game.
     pub fn start(setup: &G::Setup, ticks: u32) -> Result<Self, RecordError> {
         let (recorder, game) = Recorder::start(setup, CHECKPOINT_INTERVAL)?;
         let mut memory = Memory::new(ticks);
@@ -51,22 +51,22 @@ impl<G: Game> Trace<G> {
         Ok(Trace { game, recorder, replay: Vec::new(), memory })
     }
 
-    /// The game as of now.
+    /// The game at the current tick.
     #[must_use]
     pub fn game(&self) -> &G {
         &self.game
     }
 
-    /// How many ticks have been played.
+    /// Number of ticks played.
     #[must_use]
     pub fn ticks(&self) -> u64 {
         self.recorder.ticks()
     }
 
-    /// Plays one tick with the inputs as a verifier will decode them.
+    /// Plays one tick with the inputs as a verifier decodes them.
     ///
     /// # Errors
-    /// [`RecordError`] when the inputs cannot be recorded; then the tick is not played.
+    /// [`RecordError`] when the inputs cannot be recorded; the tick is then not played.
     pub fn step(&mut self, inputs: &[G::Input]) -> Result<(), RecordError> {
         let inputs = self.recorder.record(inputs)?;
         let phases = TickPhases::of(&mut self.game, inputs);
@@ -78,18 +78,18 @@ impl<G: Game> Trace<G> {
         Ok(())
     }
 
-    /// What there is to tell, with a replay of all ticks so far.
+    /// Creates the report of the last ticks, with a replay of all ticks so far.
     #[must_use]
     pub fn report(&self) -> DesyncReport {
         let replay = [self.replay.as_slice(), &self.recorder.so_far(self.game.state_hash())].concat();
         self.memory.report(&self.game, self.ticks(), replay)
     }
 
-    /// Plays the inputs of a replay again, up to tick `until` at most, and tells how the running engine went through the
-    /// last `ticks` ticks, whatever the checkpoints of the file say.
+    /// Simulates the inputs of a replay, up to tick `until` at most, and reports the last `ticks` ticks as the running
+    /// engine computes them. The checkpoints of the file are ignored.
     ///
     /// # Errors
-    /// [`TraceError`] when there is nothing to play or it costs too much.
+    /// [`TraceError`] when nothing can be played or a limit is exceeded.
     pub fn of_replay(
         file: &[u8],
         limits: &Limits,
@@ -124,7 +124,7 @@ impl<G: Game> Trace<G> {
     }
 }
 
-/// The last ticks of a game.
+/// Data of the last ticks of a game.
 struct Memory<G: Game> {
     history: History<G>,
     phases: VecDeque<(u64, TickPhases)>,
@@ -153,12 +153,12 @@ impl<G: Game> Memory<G> {
     }
 }
 
-/// Why a replay cannot be traced.
+/// Reason why a replay cannot be traced.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum TraceError {
-    /// It cannot be played.
+    /// The replay cannot be played.
     Replay(Verdict),
-    /// It cannot be recorded anew.
+    /// The replay cannot be recorded again.
     Record(RecordError),
 }
 

@@ -1,5 +1,5 @@
-//! Builds a setup command by command. Commands name bodies by handles, so each is carried out on a world of the
-//! builder's own to learn them.
+//! Builds a setup command by command. Commands refer to bodies by handles, so the builder executes each command on a
+//! world of its own to obtain the handles.
 
 use alloc::vec::Vec;
 
@@ -10,7 +10,7 @@ use crate::math::{Fx, Vec2};
 use crate::solver::JointDef;
 use crate::world::{Command, Config, Outcome, Place, World};
 
-/// A setup in the making.
+/// A setup under construction.
 ///
 /// ```
 /// use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, fx, scenes::Builder, world::Config};
@@ -28,7 +28,7 @@ pub struct Builder {
 }
 
 impl Builder {
-    /// An empty setup. Invalid settings are reported when a game is made of it.
+    /// Creates an empty setup. Invalid settings are reported when a game is created from it.
     #[must_use]
     pub fn new(config: Config) -> Self {
         let world = World::new(config).unwrap_or_default();
@@ -38,7 +38,7 @@ impl Builder {
     /// Adds any command.
     ///
     /// # Errors
-    /// When the world refuses it.
+    /// [`WorldError`] when the world refuses the command.
     pub fn command(&mut self, command: Command) -> Result<Outcome, WorldError> {
         let outcome = self.world.execute(&command)?;
         self.setup.commands.push(command);
@@ -48,29 +48,29 @@ impl Builder {
     /// Adds a body.
     ///
     /// # Errors
-    /// When the world refuses it.
+    /// [`WorldError`] when the world refuses the body.
     pub fn spawn(&mut self, body: BodyDef, shapes: &[ShapeDef]) -> Result<BodyId, WorldError> {
         match self.command(Command::Spawn { body, shapes: shapes.to_vec() })? {
             Outcome::Body(id) => Ok(id),
-            other => unreachable!("a spawned body, not {other:?}"),
+            other => unreachable!("expected a spawned body, got {other:?}"),
         }
     }
 
     /// Adds a joint.
     ///
     /// # Errors
-    /// When the world refuses it.
+    /// [`WorldError`] when the world refuses the joint.
     pub fn joint(&mut self, joint: impl Into<JointDef>) -> Result<JointId, WorldError> {
         match self.command(Command::AddJoint { joint: joint.into() })? {
             Outcome::Joint(id) => Ok(id),
-            other => unreachable!("a joint, not {other:?}"),
+            other => unreachable!("expected a joint, got {other:?}"),
         }
     }
 
-    /// Adds a body of the same definition at every place, unturned.
+    /// Adds a body of the same definition at every position, with the angle of the definition.
     ///
     /// # Errors
-    /// When the world refuses one.
+    /// [`WorldError`] when the world refuses a body.
     pub fn spawn_each(
         &mut self,
         body: BodyDef,
@@ -80,14 +80,14 @@ impl Builder {
         let places = positions.into_iter().map(|position| Place { position, angle: body.angle }).collect();
         match self.command(Command::SpawnEach { body, shapes: shapes.to_vec(), places })? {
             Outcome::Bodies(ids) => Ok(ids),
-            other => unreachable!("spawned bodies, not {other:?}"),
+            other => unreachable!("expected spawned bodies, got {other:?}"),
         }
     }
 
     /// Adds a joint of the same definition between every pair of bodies.
     ///
     /// # Errors
-    /// When the world refuses one.
+    /// [`WorldError`] when the world refuses a joint.
     pub fn joint_each(
         &mut self,
         joint: impl Into<JointDef>,
@@ -95,18 +95,19 @@ impl Builder {
     ) -> Result<Vec<JointId>, WorldError> {
         match self.command(Command::AddJointEach { joint: joint.into(), ends })? {
             Outcome::Joints(ids) => Ok(ids),
-            other => unreachable!("joints, not {other:?}"),
+            other => unreachable!("expected joints, got {other:?}"),
         }
     }
 
-    /// The setup.
+    /// Returns the setup.
     #[must_use]
     pub fn finish(self) -> SandboxSetup {
         self.setup
     }
 }
 
-/// The scenes of this crate are valid: a failure is a programmer's error, found by the test that builds them all.
+/// Builds a scene of this crate. They are valid: a failure is a programming error, found by the test that builds all of
+/// them.
 pub(super) fn build(
     config: Config,
     fill: impl FnOnce(&mut Builder) -> Result<(), WorldError>,
@@ -116,7 +117,7 @@ pub(super) fn build(
     builder.finish()
 }
 
-/// A rectangle from half extents.
+/// A rectangle with the given half extents.
 pub(super) fn rectangle(half_width: Fx, half_height: Fx) -> Result<ShapeDef, WorldError> {
     Ok(ShapeDef::new(Polygon::rectangle(half_width, half_height)?))
 }
@@ -131,7 +132,7 @@ pub(super) fn weightless() -> Config {
     Config { gravity: Vec2::ZERO, ..Config::default() }
 }
 
-/// Settings of scenes that measure work: nothing falls asleep.
+/// Settings of scenes that measure performance: sleeping is off.
 pub(super) fn sleepless() -> Config {
     Config { sleeping: false, ..Config::default() }
 }

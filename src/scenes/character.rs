@@ -1,4 +1,4 @@
-//! A character on its way through a level, moved by queries: a kinematic body that is sent after it.
+//! A character that moves through a level by queries. A kinematic body follows it.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -40,19 +40,19 @@ fn level() -> Vec<Vec2<Fx>> {
     points.into_iter().map(|(x, y)| Vec2::new(x, y)).collect()
 }
 
-/// 1.4 m high.
+/// The character: a capsule 1.4 m high.
 fn pill() -> Result<Geometry, WorldError> {
     Ok(Geometry::capsule(Vec2::new(fx!(0), fx!(-0.4)), Vec2::new(fx!(0), fx!(0.4)), fx!(0.3))?)
 }
 
-/// Speed in m/s to the right from a tick on.
+/// Horizontal speed in m/s to the right, from the given tick on.
 const SPEEDS: [(u64, Fx); 6] =
     [(0, fx!(0)), (60, fx!(-8)), (120, fx!(3)), (300, fx!(6)), (600, fx!(-6)), (880, fx!(0))];
 
 /// Ticks of jumps: against the wall, on the slope, under the ceiling, at the steep slope, up the steps.
 const JUMPS: [u64; 5] = [100, 330, 440, 520, 700];
 
-/// What the player does: the commands that move the character.
+/// The script: the commands that move the character.
 fn play(tick: u64, game: &Sandbox) -> Option<Vec<Command>> {
     let world = game.world();
     let (id, body) = world.bodies().next()?;
@@ -72,10 +72,10 @@ fn play(tick: u64, game: &Sandbox) -> Option<Vec<Command>> {
     Some(remember(id, world.move_character(&mover, &state, filter).state).into())
 }
 
-/// A bit of the body's user data; the others are the speed upwards, whose last bit does not matter.
+/// Lowest bit of the body's user data. The other bits are the upward speed, whose lowest bit is insignificant.
 const ON_GROUND: u64 = 1;
 
-/// The character, from the body and what it carries.
+/// Reads the state of the character from its body and the body's user data.
 fn recall(body: &Body) -> MoverState {
     let upwards = Fx::from_ne_bytes((body.user_data() & !ON_GROUND).to_ne_bytes());
     MoverState { velocity: Vec2::new(Fx::ZERO, upwards), ..MoverState::at(body.position()) }

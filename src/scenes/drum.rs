@@ -1,4 +1,4 @@
-//! A turning drum, and bodies that come and go: what never comes to rest.
+//! Scenes that never come to rest: a rotating drum, and bodies that are spawned and despawned.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -34,7 +34,8 @@ pub(super) const DRUM: Scene =
     })
     .golden(300);
 
-/// A ring of 36 plates between 10 and 11 m, 10 degrees and one of overlap each, and 4 paddles inside.
+/// A ring of 36 plates between 10 and 11 m, 11 degrees each, of which one overlaps the next plate, and 4 paddles
+/// inside.
 fn drum_shapes() -> Result<Vec<ShapeDef>, WorldError> {
     let mut shapes = Vec::new();
     for i in 0..36 {
@@ -47,7 +48,7 @@ fn drum_shapes() -> Result<Vec<ShapeDef>, WorldError> {
     Ok(shapes)
 }
 
-/// A piece of a ring, from one angle in degrees to another, between two radii, with straight sides.
+/// A segment of a ring with straight sides, between two angles in degrees and two radii.
 pub(super) fn plate(degrees: (Fx, Fx), radii: (Fx, Fx)) -> Result<ShapeDef, WorldError> {
     let corner = |degrees: Fx, radius: Fx| {
         Rot::from_angle(Angle::from_degrees(degrees)).apply_wide(Vec2::new(radius, Fx::ZERO))
@@ -59,7 +60,7 @@ pub(super) fn plate(degrees: (Fx, Fx), radii: (Fx, Fx)) -> Result<ShapeDef, Worl
 
 pub(super) const SPAWNING: Scene = Scene {
     name: "spawning",
-    about: "bodies come, are kicked and go again, all by commands",
+    about: "bodies are spawned, kicked and despawned by commands",
     ticks: 600,
     golden_ticks: 600,
     setup: |_| {
@@ -71,7 +72,8 @@ pub(super) const SPAWNING: Scene = Scene {
     script: spawn_kick_despawn,
 };
 
-/// Every 6th tick a body falls in; once there are 40, one is removed; every 50th tick the first is kicked.
+/// Every 6th tick a body is spawned. Once there are 40, one is despawned every 6th tick. Every 50th tick the first is
+/// kicked.
 fn spawn_kick_despawn(tick: u64, game: &Sandbox) -> Vec<Command> {
     let mut rng = Rng::new(tick);
     let dynamic: Vec<_> = game.world().bodies().filter(|(_, body)| body.is_dynamic()).collect();

@@ -1,4 +1,4 @@
-//! One or two bodies, whose motion a textbook predicts.
+//! Scenes of one or two bodies whose motion has a textbook solution.
 
 use super::Scene;
 use super::builder::{build, floor, rectangle, weightless};
@@ -33,7 +33,7 @@ pub(super) const BOUNCING_BALL: Scene = Scene::new(
 pub(super) const HEAD_ON: Scene = Scene::new(
     "head_on",
     120,
-    "two balls meet head-on, one three times as heavy: momentum and energy stay",
+    "two balls meet head-on, one three times as heavy: momentum and energy are conserved",
     |_| {
         build(weightless(), |scene| {
             let ball = ShapeDef::new(Geometry::circle(fx!(0.5))?).restitution(fx!(1));
@@ -48,7 +48,7 @@ pub(super) const HEAD_ON: Scene = Scene::new(
 pub(super) const OBLIQUE: Scene = Scene::new(
     "oblique",
     120,
-    "a spinning box hits another off centre: linear and angular momentum stay",
+    "a spinning box hits another off centre: linear and angular momentum are conserved",
     |_| {
         build(weightless(), |scene| {
             let square = rectangle(fx!(0.5), fx!(0.5))?.restitution(fx!(0.5));

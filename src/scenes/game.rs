@@ -1,4 +1,4 @@
-//! About as much as a game has on its screen.
+//! A scene with as many bodies as a typical game shows.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -14,7 +14,7 @@ use crate::world::{Command, Config};
 
 pub(super) const GAME: Scene = Scene {
     name: "game",
-    about: "100 random polygons and 50 discs in a box that someone shakes",
+    about: "100 random polygons and 50 discs in a box that is shaken",
     ticks: 900,
     golden_ticks: 400,
     setup: |seed| {
@@ -39,7 +39,7 @@ pub(super) const GAME: Scene = Scene {
     script: shake,
 };
 
-/// Every 5 s all bodies are thrown upwards, each in a direction of its own.
+/// Every 5 s all bodies are thrown upwards, each in a random direction.
 fn shake(tick: u64, game: &Sandbox) -> Vec<Command> {
     if tick == 0 || !tick.is_multiple_of(300) {
         return vec![];

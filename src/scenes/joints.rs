@@ -10,7 +10,7 @@ use crate::math::{Angle, Fx, Rot, Vec2, fx_mul};
 use crate::solver::{JointDef, Revolute};
 use crate::world::Config;
 
-/// A shape that collides with nothing.
+/// Makes a shape collide with nothing.
 fn ghost(shape: ShapeDef) -> ShapeDef {
     shape.filter(Filter { category: 2, mask: 0, group: 0 })
 }
@@ -36,17 +36,17 @@ pub(super) const LONG_ARM: Scene = Scene::new(
     "long_arm",
     600,
     "the same rod with its pin 16 radii of gyration away: 92 m/s on a circle",
-    // 16 / sqrt(12)
+    // 16 / sqrt(12) m.
     |_| rod(fx!(4.618802153517)),
 );
 
-/// A rod of 1 m and 1 kg whose pin is `arm` metres from its centre, at 20 rad/s, without gravity.
+/// A rod of 1 m and 1 kg, pinned `arm` metres from its centre, at 20 rad/s, without gravity.
 fn rod(arm: Fx) -> crate::lockstep::SandboxSetup {
     build(weightless(), |scene| {
         let pivot = scene.spawn(BodyDef::fixed(), &[])?;
         let shape = rectangle(fx!(0.5), fx!(0.02))?;
         let omega = fx!(20);
-        // k = 1 / sqrt(12): a thin rod.
+        // Radius of gyration of a thin rod: 1 / sqrt(12).
         let mass = MassSource::Given { mass: fx!(1), centre: Vec2::ZERO, gyration: fx!(0.288675134595) };
         let body = BodyDef::dynamic().position(arm, fx!(0)).velocity(fx!(0), fx_mul(omega, arm));
         let rod = scene.spawn(body.angular_velocity(omega).mass(mass), &[ghost(shape)])?;
@@ -61,7 +61,7 @@ pub(super) const CHAIN: Scene =
             let anchor = scene.spawn(BodyDef::fixed(), &[])?;
             let link = ghost(rectangle(fx!(0.5), fx!(0.125))?);
             let last = row(scene, anchor, link, fx!(0), 100)?;
-            // A link weighs 0.25 kg, and this 25: a square of 2.5 m, pinned at its edge.
+            // A link weighs 0.25 kg. This weight is 25 kg: a square of 5 m x 5 m, pinned at the middle of a side.
             let weight = ghost(rectangle(fx!(2.5), fx!(2.5))?);
             let body = scene.spawn(BodyDef::dynamic().position(fx!(102.5), fx!(0)), &[weight])?;
             scene.joint(pin(last, body).anchor_a(fx!(0.5), fx!(0)).anchor_b(fx!(-2.5), fx!(0)))?;
@@ -90,7 +90,7 @@ fn pin(a: BodyId, b: BodyId) -> JointDef {
     JointDef::new(a, b, Revolute::new())
 }
 
-/// Pieces of a metre in a row, the first pinned to the origin of a body at `x`. Returns the last one.
+/// Adds a row of pieces of 1 m, the first pinned to the origin of a body at `x`. Returns the last piece.
 fn row(scene: &mut Builder, start: BodyId, piece: ShapeDef, x: Fx, count: i32) -> Result<BodyId, WorldError> {
     let places = (0..count).map(|i| Vec2::new(x + Fx::from_num(i) + fx!(0.5), fx!(0)));
     let pieces = scene.spawn_each(BodyDef::dynamic(), &[piece], places)?;
@@ -101,7 +101,7 @@ fn row(scene: &mut Builder, start: BodyId, piece: ShapeDef, x: Fx, count: i32) -
     Ok(last)
 }
 
-/// Each with the next one.
+/// Pairs each body with the next one.
 fn neighbours(ids: &[BodyId]) -> Vec<(BodyId, BodyId)> {
     ids.windows(2).map(|pair| (pair[0], pair[1])).collect()
 }
@@ -129,7 +129,7 @@ fn fill_grid(scene: &mut Builder) -> Result<(), WorldError> {
     scene.joint_each(joint, down)?;
     let mut across = Vec::new();
     for (k, pair) in (1..).zip(columns.windows(2)) {
-        // Two held discs side by side have nothing to join.
+        // Two fixed discs side by side need no joint.
         let from = usize::from(is_held(k) && is_held(k - 1));
         across.extend(pair[0].iter().copied().zip(pair[1].iter().copied()).skip(from));
     }

@@ -1,4 +1,4 @@
-//! Machines that turn and churn what is in them.
+//! Machines that rotate and churn their contents.
 
 use alloc::vec::Vec;
 
@@ -21,7 +21,7 @@ pub(super) const SPINNER: Scene = Scene::new(
     "a rotor of 40 m stirs 6076 bodies in a ring that overlap at the start",
     |_| {
         build(Config::default(), |scene| {
-            // Clockwise, and so solid from inside.
+            // Clockwise, so that the one-sided chain is solid from the inside.
             let point = |i: i32| {
                 let direction = Rot::from_angle(Angle::from_degrees(Fx::from_num(-i)));
                 Vec2::new(fx!(0), fx!(32)) + direction.apply_wide(Vec2::new(fx!(40), fx!(0)))
@@ -41,7 +41,7 @@ pub(super) const SPINNER: Scene = Scene::new(
 )
 .golden(20);
 
-/// In rows of 92 from the bottom up, in turn a capsule, a disc and a square.
+/// Fills the ring in rows of 92 from the bottom up, with capsules, discs and squares in turn.
 fn fill_ring(scene: &mut Builder) -> Result<(), WorldError> {
     let (a, b) = (Vec2::new(fx!(-0.25), fx!(0)), Vec2::new(fx!(0.25), fx!(0)));
     let capsule = Geometry::capsule(a, b, fx!(0.25))?;
@@ -92,7 +92,8 @@ pub(super) const WASHER: Scene =
     })
     .golden(20);
 
-/// A ring of 36 plates between 16 and 18 m that overlap by a degree at both ends, and 4 paddles inside.
+/// A ring of 36 plates between 16 and 18 m, each overlapping its neighbours by a degree at both ends, and 4 paddles
+/// inside.
 fn washer_shapes() -> Result<Vec<ShapeDef>, WorldError> {
     let mut shapes = Vec::new();
     for i in 0..36 {

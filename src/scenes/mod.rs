@@ -21,23 +21,23 @@ pub use builder::Builder;
 use crate::lockstep::{Sandbox, SandboxSetup};
 use crate::world::Command;
 
-/// A scene: a setup, and what a player does in it.
+/// A scene: a setup, and a script of the player's commands.
 #[derive(Clone, Copy, Debug)]
 pub struct Scene {
-    /// Its name, also of its replay.
+    /// Name of the scene and of its replay.
     pub name: &'static str,
-    /// What it shows, in a line.
+    /// One-line description.
     pub about: &'static str,
-    /// How long it is, in ticks.
+    /// Length in ticks.
     pub ticks: u64,
-    /// How long its golden replay is, in ticks: so that it is verified in a second or two.
+    /// Length of its golden replay in ticks, short enough to be verified in a second or two.
     pub golden_ticks: u64,
     setup: fn(seed: u64) -> SandboxSetup,
     script: fn(tick: u64, game: &Sandbox) -> Vec<Command>,
 }
 
 impl Scene {
-    /// A scene in which nobody does anything.
+    /// Creates a scene without commands.
     const fn new(
         name: &'static str,
         ticks: u64,
@@ -47,31 +47,31 @@ impl Scene {
         Scene { name, about, ticks, golden_ticks: ticks, setup, script: |_, _| Vec::new() }
     }
 
-    /// The same with a shorter golden.
+    /// Sets a shorter length for the golden replay.
     const fn golden(self, ticks: u64) -> Self {
         Scene { golden_ticks: ticks, ..self }
     }
 
-    /// The scene of a name.
+    /// Finds a scene by name.
     #[must_use]
     pub fn find(name: &str) -> Option<&'static Scene> {
         ALL.iter().find(|scene| scene.name == name)
     }
 
-    /// What it starts from. Only scenes that are random depend on the seed.
+    /// The setup. Only random scenes depend on the seed.
     #[must_use]
     pub fn setup(&self, seed: u64) -> SandboxSetup {
         (self.setup)(seed)
     }
 
-    /// What the player does in a tick, given the game before it.
+    /// The player's commands in a tick, given the game before it.
     #[must_use]
     pub fn commands(&self, tick: u64, game: &Sandbox) -> Vec<Command> {
         (self.script)(tick, game)
     }
 }
 
-/// Every scene.
+/// All scenes.
 pub const ALL: &[Scene] = &[
     elementary::FREE_FALL,
     elementary::BOUNCING_BALL,

@@ -1,4 +1,4 @@
-//! Stacks, pyramids and heaps: what the solver has to hold up.
+//! Stacks, pyramids and heaps, which test how well the solver supports weight.
 
 use super::Scene;
 use super::builder::{Builder, build, floor, rectangle, sleepless};
@@ -55,7 +55,8 @@ fn pyramid(scene: &mut Builder, base: i32) -> Result<(), WorldError> {
     Ok(())
 }
 
-/// Of unit boxes in rows, from the left end of the lowest: `x = (i + 1) / 2 + (j - i)`, `y = (2 i + 1) / 2`.
+/// Positions of unit boxes in rows, from the left end of the lowest row: `x = (i + 1) / 2 + (j - i)`,
+/// `y = (2 i + 1) / 2`.
 fn pyramid_places(left: Vec2<Fx>, base: i32) -> impl Iterator<Item = Vec2<Fx>> {
     let place = move |i: i32, j: i32| {
         left + Vec2::new(Fx::from_num(i + 1) / 2 + Fx::from_num(j - i), Fx::from_num(2 * i + 1) / 2)
@@ -113,7 +114,7 @@ pub(super) fn random_polygon(rng: &mut Rng) -> Polygon {
             })
             .collect();
         let rounding = if rng.below(3) == 0 { rng.range(fx!(0.02), fx!(0.1)) } else { Fx::ZERO };
-        // Slivers are possible games but poor pictures.
+        // Slivers are valid but hard to see in pictures.
         let wide_enough = |polygon: &Polygon| {
             polygon.vertices().iter().zip(polygon.normals()).all(|(&vertex, &normal)| {
                 let depth = |other: &Vec2<crate::math::Length>| -> crate::math::Length {

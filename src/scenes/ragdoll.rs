@@ -11,36 +11,36 @@ use crate::math::{Angle, Fx, PI, Vec2, fx_mul};
 use crate::solver::{JointDef, Revolute};
 use crate::world::Config;
 
-/// What solid ground is, and what ragdolls are.
+/// Collision categories of the ground and of ragdolls.
 const GROUND: u64 = 1;
 const RAGDOLL_CATEGORY: u64 = 2;
 
-/// A part of a ragdoll: a vertical capsule, and the hinge that it hangs by. Heights are in metres above the place of
-/// the ragdoll.
+/// A part of a ragdoll: a vertical capsule, and the hinge that connects it to its parent. Heights are in metres above
+/// the origin of the ragdoll.
 pub(super) struct Bone {
-    /// Which bone it is joined to.
+    /// Index of the parent bone.
     pub(super) parent: usize,
     height: Fx,
-    /// The lower and the upper end of the capsule's line, from its height.
+    /// Lower and upper end of the capsule's segment, relative to `height`.
     ends: (Fx, Fx),
     radius: Fx,
-    /// Of the hinge.
+    /// Height of the hinge.
     pivot: Fx,
-    /// In units of pi.
+    /// Hinge limits in units of pi.
     limit: (Fx, Fx),
-    /// Of the largest friction torque.
+    /// Scale of the maximum friction torque.
     strength: Fx,
     extra: Extra,
 }
 
-/// What only some bones have.
+/// Additional properties of some bones.
 enum Extra {
     None,
-    /// It is slowed down by air.
+    /// Linear damping.
     Damped,
     /// A foot.
     Foot,
-    /// It is slowed down by air, and by nature bent by an eighth of a turn.
+    /// Linear damping, and a rest angle of an eighth of a turn.
     Bent,
 }
 
@@ -87,7 +87,7 @@ const fn lower_arm(upper: usize) -> Bone {
     )
 }
 
-/// Parents come before their children.
+/// The bones. Parents come before their children.
 pub(super) const BONES: [Bone; 11] = [
     HIP,
     TORSO,
@@ -110,7 +110,7 @@ impl Bone {
         self
     }
 
-    /// Its body, without a place.
+    /// Body definition, without a position.
     pub(super) fn body(&self) -> BodyDef {
         let damping = match self.extra {
             Extra::Damped | Extra::Bent => fx!(0.1),
@@ -119,12 +119,12 @@ impl Bone {
         BodyDef::dynamic().linear_damping(damping).sleep_speed(fx!(0.1))
     }
 
-    /// Where it is in a ragdoll at a place.
+    /// Position of the bone for a ragdoll at `place`.
     pub(super) fn position(&self, place: Vec2<Fx>) -> Vec2<Fx> {
         place + Vec2::new(fx!(0), self.height)
     }
 
-    /// Its shapes. Those of one ragdoll share a group and do not collide with each other.
+    /// Shapes of the bone. The shapes of one ragdoll share a group and do not collide with each other.
     pub(super) fn shapes(&self, ragdoll: i32) -> Result<Vec<ShapeDef>, WorldError> {
         let filter = Filter { category: RAGDOLL_CATEGORY, mask: GROUND | RAGDOLL_CATEGORY, group: -ragdoll };
         let (low, high) = (Vec2::new(fx!(0), self.ends.0), Vec2::new(fx!(0), self.ends.1));
@@ -144,7 +144,7 @@ impl Bone {
         Ok(vec![capsule, foot])
     }
 
-    /// What joins it to its parent.
+    /// Joint to the parent.
     pub(super) fn joint(&self, parent: BodyId, own: BodyId) -> JointDef {
         let (lower, upper) = self.limit;
         let hinge = Revolute::new()

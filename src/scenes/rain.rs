@@ -1,4 +1,4 @@
-//! Ragdolls that rain on five floors and are taken away again: bodies and joints that come and go all the time.
+//! Ragdolls rain on five floors and are removed again: bodies and joints are created and destroyed all the time.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -12,17 +12,17 @@ use crate::lockstep::Sandbox;
 use crate::math::{Angle, Fx, Vec2};
 use crate::world::{Command, Config, Place};
 
-/// Columns that stand at a time.
+/// Number of columns that exist at a time.
 const COLUMNS: u64 = 40;
 const FLOORS: u32 = 5;
-/// Ragdolls that fall on a floor in one column.
+/// Number of ragdolls that fall on a floor in one column.
 const GROUP: u32 = 5;
-/// Every so many ticks a column comes.
+/// Interval in ticks at which columns are added.
 const INTERVAL: u64 = 8;
 
 pub(super) const RAIN: Scene = Scene {
     name: "rain",
-    about: "25 ragdolls come every 8 ticks, and from the 41st time on as many go",
+    about: "every 8 ticks 25 ragdolls are added, and from the 41st time on as many are removed",
     ticks: 1000,
     golden_ticks: 60,
     setup: |_| {
@@ -47,18 +47,18 @@ pub(super) const RAIN: Scene = Scene {
     },
 };
 
-/// The ragdolls of a column, numbered over all columns; one of each number for every floor.
+/// Numbers of the ragdolls of a column, counted over all columns. Each number is used once on every floor.
 const fn ragdolls(column: u32) -> core::ops::Range<u32> {
     column * GROUP..(column + 1) * GROUP
 }
 
-/// What the user data of a body says: its ragdoll's number and its bone. 0 is the floor.
+/// User data of a body: number of its ragdoll and index of its bone. The floor has 0.
 fn mark(ragdoll: u32, bone: usize) -> u64 {
     u64::from(ragdoll) * BONES.len() as u64 + bone as u64 + 1
 }
 
-/// The ragdolls of a column in their places, disabled and without joints. Handles of new bodies are known a tick later,
-/// and that is when [`release`] can name them.
+/// Spawns the ragdolls of a column, disabled and without joints. The handles of new bodies are known one tick later,
+/// when [`release`] joins and enables them.
 fn announce(column: u32) -> Result<Vec<Command>, WorldError> {
     let mut commands = Vec::new();
     for (ragdoll, i) in ragdolls(column).zip(0..) {
@@ -77,7 +77,7 @@ fn announce(column: u32) -> Result<Vec<Command>, WorldError> {
     Ok(commands)
 }
 
-/// Removes the ragdolls that fell when it was last this column's turn, and joins and enables those that wait.
+/// Removes the ragdolls of the previous round in this column, and joins and enables the new ones.
 fn release(column: u32, game: &Sandbox) -> Vec<Command> {
     let marks = mark(column * GROUP, 0)..mark((column + 1) * GROUP, 0);
     let of_column = game.world().bodies().filter(|(_, body)| marks.contains(&body.user_data()));
@@ -88,7 +88,7 @@ fn release(column: u32, game: &Sandbox) -> Vec<Command> {
         new.into_iter().map(|(id, body)| (body.user_data(), body.position().y, id)).collect();
     waiting.sort_unstable();
     let bodies: Vec<BodyId> = waiting.into_iter().map(|(_, _, id)| id).collect();
-    // Now those of one ragdoll and bone are next to each other, from the lowest floor to the highest.
+    // The bodies of one ragdoll and bone are now adjacent, from the lowest floor to the highest.
     let floors = FLOORS as usize;
     for (index, bone) in BONES.iter().enumerate().skip(1) {
         let mut ends = Vec::new();

@@ -1,4 +1,4 @@
-//! Scenes are what they are said to be.
+//! Tests that the scenes have the documented sizes, and tests of the engine that need these scenes.
 
 use alloc::vec::Vec;
 
@@ -25,7 +25,7 @@ fn every_scene_starts_and_has_a_setup_that_fits_a_replay() {
         let bytes = crate::codec::encode(&setup).len();
         assert!(bytes < 1 << 20, "{}: a setup of {bytes} bytes", scene.name);
         assert!(Sandbox::new(&setup).is_ok(), "{}", scene.name);
-        assert_eq!(Scene::find(scene.name).map(|found| found.about), Some(scene.about), "a name for each");
+        assert_eq!(Scene::find(scene.name).map(|found| found.about), Some(scene.about), "names are unique");
     }
 }
 
@@ -46,7 +46,7 @@ fn benchmarks_have_the_size_that_they_have_elsewhere() {
     }
 }
 
-/// The script alone, without time: ragdolls come complete and whole, and old ones go.
+/// Executes the script without stepping: complete ragdolls are added, and old ones are removed.
 #[test]
 fn forty_columns_of_ragdolls_stand_at_a_time() {
     let mut game = open("rain");
@@ -70,7 +70,7 @@ fn forty_columns_of_ragdolls_stand_at_a_time() {
     assert_eq!(world.faults(), 0);
 }
 
-/// What the narrow phase of a tick has to do with: shapes where they are, and those whose fat boxes overlap.
+/// Input of the narrow phase in a tick: posed shapes, and the pairs whose fat boxes overlap.
 struct Near {
     shapes: Vec<PosedShape>,
     pairs: Vec<(usize, usize)>,
@@ -92,7 +92,7 @@ impl Near {
         Near { shapes: posed.collect(), pairs }
     }
 
-    /// How many contact points there are, with the box reject and an axis remembered for every pair.
+    /// Number of contact points, with the box reject and a cached separating axis for every pair.
     #[inline(never)]
     fn with_reject_and_axis(
         &self,
@@ -108,7 +108,7 @@ impl Near {
         points.sum()
     }
 
-    /// The same without either.
+    /// Number of contact points without box reject and cached axis.
     #[inline(never)]
     fn without(&self, margin: Length) -> usize {
         let points = self.pairs.iter().map(|&(a, b)| {
@@ -119,8 +119,8 @@ impl Near {
     }
 }
 
-/// What the cached axis and the box reject save, on the pairs that the hundred polygons really have. Under
-/// `valgrind --tool=callgrind` the two functions of [`Near`] tell by how many instructions.
+/// Measures how many axis searches the cached axis and the box reject save on the pairs of the hundred polygons. The
+/// instruction counts of the two functions of [`Near`] can be measured with `valgrind --tool=callgrind`.
 #[test]
 fn reject_and_axis_spare_a_hundred_polygons_most_searches() {
     let mut game = open("hundred_polygons");
@@ -136,16 +136,16 @@ fn reject_and_axis_spare_a_hundred_polygons_most_searches() {
     let fast: usize =
         ticks.iter().map(|near| near.with_reject_and_axis(margin, &mut hints, &mut counters)).sum();
     let plain: usize = ticks.iter().map(|near| near.without(margin)).sum();
-    assert_eq!(fast, plain, "neither changes a result");
+    assert_eq!(fast, plain, "the box reject and the cached axis do not change the result");
     let pairs: usize = ticks.iter().map(|near| near.pairs.len()).sum();
-    // A pair has two points at most. Of those without contact most are spared.
+    // A pair has at most two points. Most searches of pairs without contact must be saved.
     let (searches, touching) = (counters.searches as usize, fast.div_ceil(2));
     let spared = fast > 10_000 && (searches - touching) * 2 < pairs - touching;
     assert!(spared, "{fast} points, {pairs} pairs, {counters:?}");
 }
 
-/// Boxes, hinges, motors and rolling: what contacts push is what their impulses amount to, but for the
-/// rounding of some twenty changes of each row.
+/// Boxes, hinges, motors and rolling: the accumulated velocity change of the contacts equals the sum of their impulses,
+/// except for the rounding of about twenty changes per row.
 #[test]
 fn pushes_are_what_the_impulses_amount_to() {
     for (name, ticks) in [("pyramid", 30), ("bridge", 120), ("ragdoll", 90), ("drum", 120), ("slope", 60)] {
@@ -158,13 +158,13 @@ fn pushes_are_what_the_impulses_amount_to() {
             let (error, largest) = game.world().push_error();
             (worst, most) = (worst.max(error), most.max(largest));
         }
-        assert!(worst <= 100, "{name}: {worst} units apart");
-        assert!(most > 10_000, "{name}: contacts push at {most} units");
+        assert!(worst <= 100, "{name}: the velocity change differs from the impulses by {worst} units");
+        assert!(most > 10_000, "{name}: the largest velocity change is only {most} units");
     }
 }
 
-/// A box that cannot move along x is pushed along x by the ball that leans on it: what its lock takes away again is no
-/// push that is missing.
+/// A box that is locked along x is pushed along x by a ball that leans on it. The velocity that the lock removes again
+/// must not count as a missing velocity change.
 #[test]
 fn pushes_are_known_of_what_is_locked() {
     let mut world = World::default();
@@ -181,5 +181,8 @@ fn pushes_are_known_of_what_is_locked() {
         let (error, largest) = world.push_error();
         (worst, most) = (worst.max(error), most.max(largest));
     }
-    assert!(worst <= 100 && most > 100_000, "{worst} units apart at {most} units");
+    assert!(
+        worst <= 100 && most > 100_000,
+        "the velocity change of {most} units differs from the impulses by {worst} units"
+    );
 }

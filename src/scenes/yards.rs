@@ -1,4 +1,4 @@
-//! Yards full of debris that something ploughs through or that falls in from above.
+//! Yards full of debris, hit by a ram, stirred by a pusher or filled from above.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -12,7 +12,7 @@ use crate::math::{Angle, Fx, Rot, Vec2, fx_mul, widen};
 use crate::world::{Command, Config};
 
 pub(super) const SMASH: Scene =
-    Scene::new("smash", 300, "a heavy box hits a block of 9600 that sleep, without gravity", |_| {
+    Scene::new("smash", 300, "a heavy box hits a block of 9600 sleeping boxes, without gravity", |_| {
         build(weightless(), |scene| {
             let ram = rectangle(fx!(4), fx!(4))?.density(fx!(8));
             scene.spawn(BodyDef::dynamic().position(fx!(-20), fx!(0)).velocity(fx!(40), fx!(0)), &[ram])?;
@@ -24,7 +24,7 @@ pub(super) const SMASH: Scene =
     })
     .golden(90);
 
-/// Places in columns from left to right, each from the bottom up.
+/// Positions in columns from left to right, each from the bottom up.
 pub(super) fn grid(
     columns: i32,
     rows: i32,
@@ -37,14 +37,14 @@ pub(super) fn grid(
     (0..columns).flat_map(move |column| (0..rows).map(move |row| place(column, row)))
 }
 
-/// Every other place to the right, the ones between to the left.
+/// Shifts every other position to the right by `first`, and those between to the left.
 fn staggered(places: impl Iterator<Item = Vec2<Fx>>, first: Fx) -> impl Iterator<Item = Vec2<Fx>> {
     places
         .enumerate()
         .map(move |(index, place)| place + Vec2::new(if index % 2 == 0 { first } else { -first }, Fx::ZERO))
 }
 
-/// A ground of boxes that overlap a little, and walls of such boxes at its ends.
+/// A ground of slightly overlapping boxes, with walls of the same boxes at its ends.
 fn yard(half_width: i32, wall_height: i32) -> Result<Vec<ShapeDef>, WorldError> {
     let (flat, upright) = (rectangle(fx!(0.55), fx!(0.5))?, rectangle(fx!(0.5), fx!(0.55))?);
     let ground = (-half_width..=half_width).map(|x| flat.offset(Fx::from_num(x), fx!(0)));
@@ -54,7 +54,7 @@ fn yard(half_width: i32, wall_height: i32) -> Result<Vec<ShapeDef>, WorldError> 
 
 pub(super) const JUNKYARD: Scene = Scene {
     name: "junkyard",
-    about: "8000 pentagons rain into a yard, where a pusher goes to and fro",
+    about: "8000 pentagons rain into a yard, where a pusher moves back and forth",
     ticks: 800,
     golden_ticks: 40,
     setup: |_| build(Config::default(), fill_junkyard),
@@ -70,7 +70,7 @@ fn fill_junkyard(scene: &mut Builder) -> Result<(), WorldError> {
     Ok(())
 }
 
-/// Five points on a circle, each a golden angle after the one before: an irregular pentagon.
+/// Five points on a circle, each a golden angle after the previous one: an irregular pentagon.
 fn golden_pentagon() -> Result<Polygon, WorldError> {
     // pi (sqrt(5) - 1)
     let step = Angle::from_radians(fx!(3.883222077451));
@@ -83,11 +83,11 @@ fn golden_pentagon() -> Result<Polygon, WorldError> {
     Ok(Polygon::hull(&points)?)
 }
 
-/// The pusher is at `60 sin(t / 5)` metres.
+/// The script: moves the pusher to `x = 60 sin(t / 5)` metres.
 fn push_junk(tick: u64, game: &Sandbox) -> Vec<Command> {
     let pusher = game.world().bodies().find(|(_, body)| body.kind() == BodyKind::Kinematic);
     let Some((body, _)) = pusher else { return vec![] };
-    // 300 ticks are 5 s, and so one radian.
+    // 300 ticks are 5 s, which is one radian.
     let phase = Angle::from_radians(crate::math::ratio(i64::try_from(tick).unwrap_or(i64::MAX), 300));
     let position = Vec2::new(fx_mul(fx!(60), widen(phase.sin())), fx!(0));
     vec![Command::MoveTo { body, position, angle: Angle::ZERO }]

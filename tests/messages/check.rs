@@ -22,15 +22,15 @@ fn differing(count: usize) -> Vec<Difference> {
 fn ways() {
     says([
         (Way::Again, "played again"),
-        (Way::Asked, "asked for hash, work, claims and save"),
-        (Way::Unasked, "not asked for its hash"),
-        (Way::Reloaded, "through bytes into a new game"),
+        (Way::Asked, "with hash, work, claims and save polled twice"),
+        (Way::Unasked, "with the hash polled only at the end"),
+        (Way::Reloaded, "reloaded from bytes into a new game"),
         (Way::RolledBack, "rolled back"),
         (Way::ClearedScratch, "with cleared scratch"),
         (Way::Backend(Backend::Scalar), "with the backend Scalar"),
         (Way::BroadPhase(BroadPhaseKind::BruteForce), "with the broad phase BruteForce"),
         (Way::Threads(3), "on 3 threads"),
-        (Way::Exchanged, "with bytes of another tick in its save"),
+        (Way::Exchanged, "with bytes of another tick swapped into its save"),
         (Way::Recorded, "recorded and verified"),
     ]);
 }
@@ -39,21 +39,21 @@ fn ways() {
 fn faults() {
     let verdict = Verdict::Malformed { offset: 0, flaw: Flaw::Magic };
     says([
-        (Fault::Hash, "the state hash is not that of the straight run"),
-        (Fault::Phase, "something else was left behind than in the straight run"),
-        (Fault::Loaded, "the state that was loaded has not the hash of the one that was saved"),
-        (Fault::Encoding, "the save has other bytes after it was decoded and encoded"),
-        (Fault::SavedAgain, "the state that was loaded is saved as other bytes"),
-        (Fault::Unreadable { why: "a bad tag".into() }, "the bytes of the save are not read: a bad tag"),
-        (Fault::Refused { why: "no floor".into() }, "the setup starts no game any more: no floor"),
-        (Fault::Answers { of: "work" }, "`work` gives two answers to the same question"),
+        (Fault::Hash, "the state hash differs from the reference run"),
+        (Fault::Phase, "the results differ from the reference run"),
+        (Fault::Loaded, "the loaded state has another hash than the saved state"),
+        (Fault::Encoding, "the save has other bytes after decoding and encoding"),
+        (Fault::SavedAgain, "saving the loaded state leads to other bytes"),
+        (Fault::Unreadable { why: "a bad tag".into() }, "the save cannot be decoded: a bad tag"),
+        (Fault::Refused { why: "no floor".into() }, "the setup can no longer start a game: no floor"),
+        (Fault::Answers { of: "work" }, "two consecutive calls of `work` return different results"),
         (
             Fault::Unhashed,
-            "a state with the same hash and another save has come to another hash with the same inputs",
+            "two states with the same hash but different saves reach different hashes with the same inputs",
         ),
         (
             Fault::Verdict(verdict),
-            "the recording does not verify: malformed: at byte 0: this is no replay file",
+            "the recording does not verify: malformed: at byte 0: this is not a replay file",
         ),
         (Fault::Unrecordable(RecordError::TickRate), "the recording cannot be finished: a tick rate of zero"),
     ]);
@@ -65,9 +65,9 @@ fn a_finding_says_where() {
     (found.rollback, found.phase) = (Some((1, Guess::Held)), Some(Phase::Solve));
     found.differences = differing(2);
     let text = found.to_string();
-    let start = "rolled back by 1 tick after guessing that inputs are held: after tick 9, phase Solve, the state hash is \
-                 not that of the straight run\n    [0]: 1 | 2\n    [1]: 1 | 2\nusually a cache or a field that `load` \
-                 leaves as it was";
+    let start = "rolled back by 1 tick after guessing that inputs are held: after tick 9, phase Solve, the state \
+                 hash differs from the reference run\n    [0]: 1 | 2\n    [1]: 1 | 2\nusually a cache or a field \
+                 that `load` does not restore";
     assert!(text.starts_with(start), "{text}");
     found.rollback = Some((3, Guess::Default));
     assert!(found.to_string().starts_with("rolled back by 3 ticks after guessing default inputs: "));
@@ -78,7 +78,7 @@ fn a_finding_says_where() {
 #[test]
 fn a_finding_is_not_endless() {
     let mut found = finding(Way::Again, Fault::Hash);
-    let same = "\n    the saves are the same: what differs is not saved\nusually a HashMap";
+    let same = "\n    the saves are equal: the difference is in state that is not saved\nusually a HashMap";
     assert!(found.to_string().contains(same), "{found}");
     found.differences = differing(1000);
     let text = found.to_string();
@@ -92,18 +92,18 @@ fn what_it_usually_is() {
     let too_much = Verdict::LimitExceeded { limit: lockstep2d::replay::Limit::TickWork, value: 2, max: 1 };
     let all = [
         (Way::Again, Fault::Hash, "a HashMap or HashSet that is iterated"),
-        (Way::Asked, Fault::Answers { of: "save" }, "something that changes when it is asked for"),
-        (Way::Unasked, Fault::Hash, "something that changes when it is asked for"),
+        (Way::Asked, Fault::Answers { of: "save" }, "state that changes when it is read"),
+        (Way::Unasked, Fault::Hash, "state that changes when it is read"),
         (Way::Exchanged, Fault::Unhashed, "a field that `state_hash` leaves out"),
         (Way::Reloaded, Fault::Encoding, "a HashMap or HashSet in the save"),
         (
             Way::Reloaded,
             Fault::Unreadable { why: String::new() },
-            "a Serialize and a Deserialize that do not fit",
+            "a Serialize and a Deserialize that do not match",
         ),
         (Way::Reloaded, Fault::Hash, "a field that is missing from `Save`"),
-        (Way::RolledBack, Fault::Hash, "a cache or a field that `load` leaves as it was"),
-        (Way::Recorded, Fault::Verdict(too_much), "`work` answers more than the limits allow"),
+        (Way::RolledBack, Fault::Hash, "a cache or a field that `load` does not restore"),
+        (Way::Recorded, Fault::Verdict(too_much), "`work` returns more than the limits allow"),
     ];
     for (way, fault, expected) in all {
         let hint = finding(way, fault.clone()).hint();
@@ -133,7 +133,7 @@ fn failures() {
         (CheckError::Record(RecordError::TickRate), "nothing to check: a tick rate of zero"),
         (
             CheckError::Replay(Verdict::Malformed { offset: 0, flaw: Flaw::Magic }),
-            "nothing to check: malformed: at byte 0: this is no replay file",
+            "nothing to check: malformed: at byte 0: this is not a replay file",
         ),
     ]);
     let error = CheckError::Failed(Box::new(failure.clone()));

@@ -51,7 +51,7 @@ fn reports() {
         (ReportError::Invalid(ReportFlaw::Players), "more players than a game can have"),
         (
             ReportError::Invalid(ReportFlaw::Seats),
-            "the seats are not in ascending order, or there are others than the game has",
+            "the seats are not in ascending order, or one of them does not exist",
         ),
         (ReportError::Invalid(ReportFlaw::Hashes), "there is not one hash for each seat"),
         (ReportError::Invalid(ReportFlaw::History), "the ticks of the history are not in ascending order"),
@@ -78,7 +78,7 @@ fn comparisons() {
         ),
         (
             CompareError::Replay { side: Side::B, verdict: verdict.clone() },
-            "the replay of B: malformed: at byte 0: this is no replay file",
+            "the replay of B: malformed: at byte 0: this is not a replay file",
         ),
         (
             CompareError::Inspect(InspectError { why: "nested too deep".into() }),
@@ -91,7 +91,7 @@ fn comparisons() {
         (EvidenceError::Unknown, "neither a report nor a replay nor a snapshot"),
     ]);
     says([
-        (TraceError::Replay(verdict), "malformed: at byte 0: this is no replay file"),
+        (TraceError::Replay(verdict), "malformed: at byte 0: this is not a replay file"),
         (TraceError::Record(RecordError::TickRate), "a tick rate of zero"),
     ]);
 }
@@ -105,7 +105,7 @@ fn stages() {
         (Stage::Phase(Phase::Prepare), "prepare", "in the preparation of constraints"),
         (Stage::Phase(Phase::Solve), "solve", "in the solver"),
         (Stage::Phase(Phase::Finalise), "finalise", "in the finalisation of poses"),
-        (Stage::Phase(Phase::Sleep), "sleep", "where islands fall asleep"),
+        (Stage::Phase(Phase::Sleep), "sleep", "while putting islands to sleep"),
         (Stage::Phase(Phase::Report), "report", "in the report of events"),
         (Stage::AfterStep, "after_step", "after the step of the world"),
     ];

@@ -13,9 +13,9 @@ use crate::says;
 #[test]
 fn drivers() {
     says([
-        (DriverError::NoState { tick: 12 }, "the state after 12 ticks is not remembered"),
+        (DriverError::NoState { tick: 12 }, "the state after 12 ticks is not kept"),
         (DriverError::Players { seated: 2, inputs: 3 }, "3 inputs for 2 seated players"),
-        (DriverError::Record(RecordError::TickRate), "the replay cannot go on: a tick rate of zero"),
+        (DriverError::Record(RecordError::TickRate), "the replay cannot be continued: a tick rate of zero"),
     ]);
 }
 
@@ -28,17 +28,17 @@ fn peers() {
     assert_eq!(NetError::from(GgrsError::SpectatorTooFarBehind).to_string(), too_far);
     says([
         (NetError::from(RecordError::TickRate), "a tick rate of zero"),
-        (NetError::from(DriverError::NoState { tick: 12 }), "the state after 12 ticks is not remembered"),
+        (NetError::from(DriverError::NoState { tick: 12 }), "the state after 12 ticks is not kept"),
         (
             NetError::Terms(TermsMismatch { differences }),
-            "the peers do not play the same: semantics 3 here and 2 there, players 4 here and 2 there",
+            "the peers have different handshake parameters: semantics 3 here and 2 there, players 4 here and 2 there",
         ),
         (NetError::Full, "all seats are taken"),
-        (NetError::Diverged { tick: 60 }, "another state than the others' after tick 60"),
-        (NetError::State { why: "a bad tag".into() }, "the state that was sent cannot be used: a bad tag"),
+        (NetError::Diverged { tick: 60 }, "the state after tick 60 differs from that of the other peers"),
+        (NetError::State { why: "a bad tag".into() }, "the received state cannot be used: a bad tag"),
         (NetError::Refused { why: "all seats are taken".into() }, "refused: all seats are taken"),
         (NetError::NoAnswer, "no answer"),
-        (NetError::Dropped, "the others have gone on without this peer, which was silent for too long"),
+        (NetError::Dropped, "the other peers have continued without this one, which was silent for too long"),
     ]);
     says([(Mode::Lockstep, "lockstep"), (Mode::Rollback { window: 8 }, "rollback by up to 8 ticks")]);
 }

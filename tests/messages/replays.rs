@@ -13,22 +13,22 @@ use crate::says;
 #[test]
 fn flaws_of_the_header() {
     says([
-        (Flaw::Magic, "this is no replay file"),
+        (Flaw::Magic, "this is not a replay file"),
         (Flaw::HeaderCut, "the file ends inside the header"),
         (Flaw::RulesName, "the name of the rules is not 1 to 64 bytes of UTF-8"),
         (Flaw::HeaderChecksum, "the header does not match its checksum"),
         (Flaw::Players { count: 65 }, "65 players, at most 64 are possible"),
         (Flaw::TickRate, "a tick rate of zero"),
         (Flaw::CheckpointInterval, "a checkpoint interval of zero"),
-        (Flaw::Setup, "the setup is not one of this game"),
+        (Flaw::Setup, "the setup is not a valid setup of this game"),
         (Flaw::SetupRefused { why: "no floor".into() }, "the setup cannot start a game: no floor"),
         (
             Flaw::PlayersDisagree { header: 3, game: 2 },
-            "the header states 3 players, its setup makes a game of 2",
+            "the header states 3 players, its setup makes a game with 2",
         ),
         (
             Flaw::TickRateDisagrees { header: 30, game: 60 },
-            "the header states 30 ticks per second, its setup makes a game of 60",
+            "the header states 30 ticks per second, its setup makes a game with 60",
         ),
     ]);
 }
@@ -39,13 +39,13 @@ fn flaws_of_blocks() {
         (Flaw::BlockKind { kind: 99 }, "a block of unknown kind 99"),
         (Flaw::BlockChecksum, "the block does not match its checksum"),
         (Flaw::BlockCut, "the block ends in the middle of a field"),
-        (Flaw::Number, "a number in a form that no recorder writes"),
+        (Flaw::Number, "a number is too large or not in its shortest form"),
         (Flaw::EmptyBlock, "a block without a tick"),
         (Flaw::EmptyRun, "a run of no ticks"),
         (Flaw::SplitRun, "two neighbouring runs have the same inputs"),
         (Flaw::BlockTicks { ticks: 61, interval: 60 }, "61 ticks in a block, at a checkpoint interval of 60"),
-        (Flaw::BlockAfterLast, "a block of inputs follows the short one that ends a game"),
-        (Flaw::Inputs, "these are not the inputs of all players of this game"),
+        (Flaw::BlockAfterLast, "a block of inputs follows a block shorter than the checkpoint interval"),
+        (Flaw::Inputs, "the bytes are not one valid input of this game for each player"),
     ]);
 }
 
@@ -111,13 +111,16 @@ fn verdicts() {
         ),
         (
             Verdict::Diverged { last_equal: None, first_different: 0 },
-            "diverged: different at tick 0, where it starts",
+            "diverged: different at tick 0, the start",
         ),
         (
             Verdict::Incomplete { ticks: all, hash },
             "incomplete: the first 9 ticks agree, then the file ends without a trailer",
         ),
-        (Verdict::Malformed { offset: 3, flaw: Flaw::Magic }, "malformed: at byte 3: this is no replay file"),
+        (
+            Verdict::Malformed { offset: 3, flaw: Flaw::Magic },
+            "malformed: at byte 3: this is not a replay file",
+        ),
         (
             Verdict::Unverifiable { why: Mismatch::Format { file: 2, here: 1 } },
             "unverifiable: made in version 2 of the file format, this program reads 1",
@@ -155,9 +158,9 @@ fn recording() {
         (RecordError::TickRate, "a tick rate of zero"),
         (
             RecordError::CheckpointInterval { ticks: 0 },
-            "a checkpoint interval of 0 ticks, possible are 1 to 3600",
+            "a checkpoint interval of 0 ticks, expected 1 to 3600",
         ),
-        (RecordError::Setup, "the setup is another one after encoding and decoding"),
+        (RecordError::Setup, "the setup changes when it is encoded and decoded"),
         (RecordError::SetupRefused { why: "no floor".into() }, "the setup cannot start a game: no floor"),
         (
             RecordError::SetupLength { bytes: 16_777_217 },
@@ -169,7 +172,7 @@ fn recording() {
             RecordError::BlockLength { bytes: 16_777_218 },
             "a block of 16777218 bytes, at most 16777216 are possible",
         ),
-        (RecordError::CheckpointDue, "the block is full and waits for its checkpoint"),
+        (RecordError::CheckpointDue, "the block is full, its checkpoint must be given before the next tick"),
         (RecordError::Claims, "at most 256 claims with different names of 1 to 64 bytes are possible"),
     ]);
 }
@@ -180,12 +183,12 @@ fn seeking() {
         (SeekError::NoSuchTick { tick: 11, ticks: 10 }, "there are 10 ticks, and no tick 11"),
         (
             SeekError::Replay(Verdict::Malformed { offset: 0, flaw: Flaw::Magic }),
-            "malformed: at byte 0: this is no replay file",
+            "malformed: at byte 0: this is not a replay file",
         ),
         (SeekError::Keyframe { tick: 60, why: "a bad tag".into() }, "the keyframe of tick 60: a bad tag"),
         (
             SeekError::Forgetful { tick: 8 },
-            "played again after going back, tick 8 is another one: saving and loading this game loses something",
+            "after seeking backwards, tick 8 has another state: saving and loading this game loses state",
         ),
     ]);
 }
@@ -193,14 +196,14 @@ fn seeking() {
 #[test]
 fn keyframes() {
     says([
-        (KeyframesError::NotKeyframes, "no file of keyframes"),
+        (KeyframesError::NotKeyframes, "this is not a file of keyframes"),
         (KeyframesError::Format { found: 9 }, "format version 9, this engine reads 1"),
         (KeyframesError::Semantics { found: 2 }, "made with engine semantics 2, this program has 7"),
         (
             KeyframesError::Rules { name: "shove".into(), version: 8 },
             "made with the rules \"shove\" version 8, which are not those of this program",
         ),
-        (KeyframesError::OtherReplay, "they are keyframes of another replay"),
+        (KeyframesError::OtherReplay, "the keyframes belong to another replay"),
         (KeyframesError::Length { announced: 90, found: 80 }, "80 bytes where 90 are announced"),
         (KeyframesError::Hash, "the hash does not match the bytes"),
         (
@@ -214,7 +217,7 @@ fn keyframes() {
         ),
         (
             KeyframesError::Invalid(KeyframesFlaw::Checkpoint),
-            "a keyframe at a tick of which the replay has no checkpoint",
+            "a keyframe at a tick without a checkpoint in the replay",
         ),
     ]);
 }

@@ -98,7 +98,7 @@ fn wrong_keyframes_are_refused_and_left_alone() {
     let damaged = folder.write("damaged", &damaged);
     for (path, why) in [
         (&keyframes, "keyframes of another replay; delete it"),
-        (&garbage, "no file of keyframes"),
+        (&garbage, "this is not a file of keyframes"),
         (&damaged, "the hash does not match"),
         (&folder.path(""), "cannot read"),
     ] {

@@ -89,7 +89,7 @@ fn every_verdict_has_its_json() {
 
     let expected = json!({
         "verdict": "malformed", "ticks": 0, "hash": null,
-        "offset": 0, "why": "this is no replay file",
+        "offset": 0, "why": "this is not a replay file",
     });
     assert_eq!(json_of("malformed", b"not a replay", Exit::NoMatch), expected);
 

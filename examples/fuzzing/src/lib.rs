@@ -1,7 +1,7 @@
-//! A game with a mistake in it, for `docs/FUZZING.md`: two players walk over a field and pick fruit.
+//! A game with a mistake, for `docs/FUZZING.md`: two players walk over a field and pick fruit.
 //!
-//! Whoever reaches for fruit gets the first that is near. It is kept in a `HashMap`, and which one is first is another
-//! matter in every map: as long as only one is near, all is well.
+//! A player that reaches for fruit gets the first one nearby. The fruit is kept in a `HashMap`, whose iteration order
+//! is random, so the result is only deterministic while at most one piece is nearby.
 
 use lockstep2d::hash::StateHash;
 use lockstep2d::lockstep::{Game, RulesId, SetupError};
@@ -12,24 +12,24 @@ use serde::{Deserialize, Serialize};
 #[expect(clippy::disallowed_types, reason = "the planted mistake that fuzzing has to find")]
 type Fruit = std::collections::HashMap<(i16, i16), u32>;
 
-/// What one player does in a tick.
+/// Input of one player for one tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Action {
     /// Nothing.
     #[default]
     Rest,
-    /// Walks by up to a step along each axis.
+    /// Walks by up to one step along each axis.
     Walk {
-        /// To the right.
+        /// Sign of the step to the right.
         x: i8,
-        /// Upwards.
+        /// Sign of the step upwards.
         y: i8,
     },
-    /// Picks fruit that is at most two steps away along each axis.
+    /// Picks one piece of fruit at most two steps away along each axis.
     Reach,
 }
 
-/// Two players and the fruit that is left.
+/// Two players and the remaining fruit.
 pub struct Harvest {
     players: [Player; 2],
     fruit: Fruit,
@@ -37,7 +37,7 @@ pub struct Harvest {
     tick: u64,
 }
 
-/// Where a player is and what they have.
+/// Position of a player and the weight of the picked fruit.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct Player {
     x: i16,
@@ -45,19 +45,19 @@ pub struct Player {
     weight: u64,
 }
 
-/// A copy of everything.
+/// Complete copy of the state.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Save {
     players: [Player; 2],
-    /// Sorted, so that the same fruit is always the same bytes.
+    /// Sorted, so that the same fruit always has the same encoding.
     fruit: Vec<((i16, i16), u32)>,
     rng: Rng,
     tick: u64,
 }
 
-/// Steps from the middle to the edge of the field.
+/// Steps from the centre to the edge of the field.
 const EDGE: i16 = 12;
-/// Most fruit that lies around.
+/// Maximum number of pieces of fruit on the field.
 const FRUIT_MAX: usize = 40;
 
 impl Game for Harvest {
@@ -100,7 +100,7 @@ impl Game for Harvest {
                 }
                 Action::Reach => {
                     let is_near = |(x, y): (i16, i16)| (x - player.x).abs() <= 2 && (y - player.y).abs() <= 2;
-                    // Here it is: the first in an order that is random.
+                    // The mistake has its effect here: `find` returns the first match in random order.
                     let found = self.fruit.keys().copied().find(|place| is_near(*place));
                     let weight = found.and_then(|place| self.fruit.remove(&place));
                     player.weight += u64::from(weight.unwrap_or(0));

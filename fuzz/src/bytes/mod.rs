@@ -1,8 +1,7 @@
-//! The targets that take files and packets as they come: most of them are refused within microseconds, so that
-//! millions can be tried.
+//! Targets whose input is a file or packet. Most inputs are refused within microseconds, so that millions can be tried.
 //!
-//! The first byte of an input says what the rest is: a file, or changes to one that is good, with or without its
-//! checksums repaired.
+//! The first byte of an input determines the meaning of the rest: a file, or changes to a valid file, with or without
+//! repaired checksums.
 
 pub mod packet;
 pub mod replay;
@@ -12,14 +11,14 @@ pub mod snapshot;
 use crate::forge::mutate;
 use crate::source::Source;
 
-/// A file made of an input.
+/// A file made from an input.
 struct Attempt<'a> {
     file: Vec<u8>,
-    /// The file that it is a changed copy of, if it is one.
+    /// The file before the changes, if it is a changed copy.
     original: Option<&'a [u8]>,
 }
 
-/// Makes a file of an input; `originals` are good ones, and `repair` makes all checksums right.
+/// Makes a file from an input. `originals` are valid files, and `repair` corrects all checksums.
 fn attempt<'a>(bytes: &[u8], originals: &'a [Vec<u8>], repair: impl Fn(&mut Vec<u8>)) -> Attempt<'a> {
     let Some((&mode, rest)) = bytes.split_first() else {
         return Attempt { file: Vec::new(), original: None };
@@ -41,7 +40,7 @@ fn attempt<'a>(bytes: &[u8], originals: &'a [Vec<u8>], repair: impl Fn(&mut Vec<
     Attempt { file, original }
 }
 
-/// Changes a few bytes, or puts a piece of another file into this one.
+/// Changes a few bytes, or copies a piece of another file into this one.
 fn change(source: &mut Source<'_>, file: &mut Vec<u8>, originals: &[Vec<u8>]) {
     if !source.one_in(8) {
         return mutate(source, file);

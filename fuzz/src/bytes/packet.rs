@@ -1,7 +1,8 @@
-//! Packets for peers who wait, join, watch and play.
+//! Sends packets to peers that wait, join, watch and play.
 //!
-//! Peers are dear, so many inputs go to the same ones. When one makes a peer panic, all inputs that these have had are
-//! written to a folder: given in this order to the target, they do it again, if no secret of the peers matters.
+//! Peers are expensive to create, so many inputs go to the same ones. When an input makes a peer panic, all inputs
+//! since the peers were created are written to a folder. Given to the target in this order, they reproduce the panic,
+//! unless it depends on random numbers of the peers.
 
 use std::cell::RefCell;
 use std::collections::VecDeque;
@@ -20,23 +21,23 @@ use crate::memory::Memory;
 use crate::source::Source;
 use crate::wire;
 
-/// How many inputs the same peers get at most.
+/// Maximum number of inputs for the same peers.
 const INPUTS_PER_STAGE: usize = 256;
-/// Who waits for players, who plays with whom, who wants to join and who to watch: by address.
+/// Addresses of the peers: one waits for players, two play with each other, one wants to join, one wants to watch.
 const WAITING: usize = 0;
 const PLAYING: [usize; 2] = [1, 2];
 const JOINING: usize = 3;
 const WATCHING: usize = 4;
 const PEERS: usize = 5;
 
-/// Inputs since the peers were made.
+/// Inputs since the peers were created.
 static PAST: Mutex<Vec<Vec<u8>>> = Mutex::new(Vec::new());
 
 thread_local! {
     static STAGE: RefCell<Option<Stage>> = const { RefCell::new(None) };
 }
 
-/// What is on its way to a peer, and what it has sent.
+/// Packets on their way to a peer, and packets that it has sent.
 #[derive(Default)]
 struct Box {
     incoming: VecDeque<(u32, Vec<u8>)>,
@@ -56,20 +57,21 @@ impl Transport<u32> for Post {
     }
 }
 
-/// Peers, and somebody who hears all they say.
+/// The peers, and an eavesdropper that reads all their packets.
 struct Stage {
     peers: Vec<(Peer<Memory, u32, Post>, Post)>,
     known: Known,
     now: Duration,
     inputs: usize,
-    /// Whether a peer has got a packet with a right checksum that none of the others has sent.
+    /// Whether a peer has received a packet with a correct checksum that no other peer has sent.
     forged: bool,
 }
 
-/// Gives a packet to a peer. Returns what became of the peer, in a word.
+/// Sends a packet to a peer. Returns the effect on the peer as one word.
 ///
 /// # Panics
-/// When a peer does, when what it writes is not worth reading, or when it goes wrong without a right checksum.
+/// When a peer panics, when it writes an invalid report or replay, or when it fails without having received a forged
+/// packet.
 pub fn run(bytes: &[u8]) -> &'static str {
     STAGE.with_borrow_mut(|place| {
         if place.as_ref().is_none_or(|stage| stage.inputs >= INPUTS_PER_STAGE) {
@@ -103,18 +105,18 @@ impl Stage {
         let peers = peers.expect("a valid setup").into_iter().zip(posts).collect();
         let mut stage =
             Stage { peers, known: Known::default(), now: Duration::ZERO, inputs: 0, forged: false };
-        // Until the match is under way.
+        // Plays until the match has started.
         for turn in 0..40 {
             stage.now += Duration::from_millis(25);
             for at in PLAYING {
-                stage.turn(at, turn).expect("nobody disturbs");
+                stage.turn(at, turn).expect("no packets are forged yet");
                 stage.deliver(at, |to| PLAYING.contains(&(to as usize)));
             }
         }
         let ticks = PLAYING.map(|at| stage.peers[at].0.tick());
         assert!(ticks.iter().all(|tick| *tick > 3), "the match is under way: {ticks:?}");
         for at in [WAITING, JOINING, WATCHING] {
-            stage.turn(at, 0).expect("nobody disturbs");
+            stage.turn(at, 0).expect("no packets are forged yet");
             stage.deliver(at, |_| false);
         }
         stage
@@ -129,7 +131,7 @@ impl Stage {
         Ok(())
     }
 
-    /// Notes what a peer has said, and brings some of it to others.
+    /// Records the packets that a peer has sent, and delivers some of them.
     fn deliver(&mut self, from: usize, arrives: impl Fn(u32) -> bool) {
         let said = std::mem::take(&mut self.peers[from].1.0.borrow_mut().outgoing);
         for (to, packet) in said {
@@ -161,24 +163,24 @@ impl Stage {
         self.forged |= heard;
         self.now += Duration::from_micros(if heard { 500 } else { 50 });
         if let Err(error) = self.turn(at, mode) {
-            assert!(self.forged, "noise has stopped a peer: {error}");
+            assert!(self.forged, "a peer stopped without a forged packet: {error}");
             return "stopped";
         }
-        // A peer answers whom it wants, and its partner still hears it.
+        // Peers that play keep receiving each other's packets.
         self.deliver(at, |to| PLAYING.contains(&at) && PLAYING.contains(&(to as usize)));
         let (peer, _) = &mut self.peers[at];
         let mut became = if heard { "heard" } else { "dropped" };
         while let Some(event) = peer.next_event() {
             if let Event::Diverged(divergence) = event {
                 let report = DesyncReport::from_bytes(&peer.report(&divergence), &Limits::default());
-                assert!(report.is_ok(), "a peer's own report: {report:?}");
+                assert!(report.is_ok(), "a peer's own report must be valid: {report:?}");
                 became = "diverged";
             }
         }
         became
     }
 
-    /// A packet that a peer might get who is known to somebody who hears all.
+    /// A packet that an eavesdropper could send to a peer.
     fn forged(&self, source: &mut Source<'_>, to: usize, change: bool) -> Vec<u8> {
         let from = source.pick(&[0, 1, 2, STRANGER]);
         let mut packet = if source.one_in(3) {
@@ -196,12 +198,12 @@ impl Stage {
         packet
     }
 
-    /// What the peers have written has to be good.
+    /// Checks the replays written by the peers.
     fn finish(self) {
         for (peer, _) in self.peers {
             let Ok(replay) = peer.finish(u64::MAX) else { continue };
             let verdict = verify::<Memory>(&replay, &Limits::default());
-            assert!(replay.is_empty() || verdict.is_match(), "a peer's own replay: {verdict}");
+            assert!(replay.is_empty() || verdict.is_match(), "a peer's own replay must match: {verdict}");
         }
     }
 }
@@ -218,7 +220,7 @@ fn forget_inputs() {
     }
 }
 
-/// Lets a panic write what led to it into a folder.
+/// Installs a panic hook that writes the inputs since the peers were created to a folder.
 pub fn keep_inputs_of_a_panic() {
     let before = std::panic::take_hook();
     std::panic::set_hook(std::boxed::Box::new(move |panic| {

@@ -1,4 +1,4 @@
-//! Files for the verifier.
+//! Replay files for the verifier.
 
 use std::sync::LazyLock;
 
@@ -13,7 +13,7 @@ use crate::forge;
 use crate::generator::spawn;
 use crate::memory::Memory;
 
-/// What a file may cost: some tens of microseconds.
+/// Limits that keep an execution within some tens of microseconds.
 pub(super) const LIMITS: Limits = Limits {
     file_bytes: 8 << 10,
     setup_bytes: 4 << 10,
@@ -26,7 +26,7 @@ pub(super) const LIMITS: Limits = Limits {
     total_work: 4000,
 };
 
-/// Recordings of both games, whole and cut.
+/// Recordings of both games, complete and truncated.
 static ORIGINALS: LazyLock<Vec<Vec<u8>>> = LazyLock::new(|| {
     let memory = record::<Memory>(&(), 3, &[[1, 2, 3], [1, 2, 3], [4, 5, 6], [0, 255, 0], [9, 9, 9]]);
     let empty = record::<Sandbox>(&SandboxSetup::default(), 2, &[[vec![]], [vec![]], [vec![]]]);
@@ -36,7 +36,7 @@ static ORIGINALS: LazyLock<Vec<Vec<u8>>> = LazyLock::new(|| {
     vec![memory, sandbox, empty, cut]
 });
 
-/// Two balls above each other, of which one is pushed.
+/// A setup of two balls, one above the other, of which one is pushed.
 pub(super) fn ball() -> (SandboxSetup, [[Vec<Command>; 1]; 5]) {
     let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).expect("a valid radius"));
     let low = spawn(BodyDef::fixed(), &[ball]);
@@ -46,19 +46,19 @@ pub(super) fn ball() -> (SandboxSetup, [[Vec<Command>; 1]; 5]) {
     (setup, [[vec![]], [vec![]], [vec![push.clone()]], [vec![push]], [vec![]]])
 }
 
-/// The replay of a game.
+/// Records a game.
 pub(super) fn record<G: Game>(setup: &G::Setup, interval: u32, ticks: &[impl AsRef<[G::Input]>]) -> Vec<u8> {
     let mut recording = Recording::<G>::start(setup, interval).expect("a valid setup");
     for inputs in ticks {
         recording.step(inputs.as_ref()).expect("inputs that can be recorded");
     }
-    recording.finish().expect("no claims")
+    recording.finish().expect("both games have valid claims")
 }
 
-/// Verifies a file.
+/// Verifies a file and returns the name of the verdict.
 ///
 /// # Panics
-/// When a file is a `Match` that is not, byte for byte, what a recorder writes of the same inputs.
+/// When the verdict is `Match`, but a recorder writes other bytes for the same inputs.
 pub fn run(bytes: &[u8]) -> &'static str {
     let attempt = attempt(bytes, &ORIGINALS, forge::repair);
     let verdict = match judge::<Memory>(&attempt.file) {
@@ -66,19 +66,19 @@ pub fn run(bytes: &[u8]) -> &'static str {
         verdict => verdict,
     };
     let changed = attempt.original.is_some_and(|original| original != attempt.file);
-    assert!(!changed || !verdict.is_match(), "a changed file is a match");
+    assert!(!changed || !verdict.is_match(), "a changed file must not match");
     verdict.name()
 }
 
 fn judge<G: Game>(file: &[u8]) -> Verdict {
     let verdict = verify::<G>(file, &LIMITS);
     if verdict.is_match() {
-        assert_eq!(again::<G>(file), file, "a match that no recorder writes");
+        assert_eq!(again::<G>(file), file, "a recorder writes a matching file byte for byte");
     }
     verdict
 }
 
-/// What a recorder writes of the inputs in a file.
+/// Records the inputs of a file again.
 fn again<G: Game>(file: &[u8]) -> Vec<u8> {
     let reader = Reader::open(file, &LIMITS).expect("a match");
     let setup: G::Setup = codec::decode(reader.header().setup).expect("a match");
@@ -90,7 +90,7 @@ fn again<G: Game>(file: &[u8]) -> Vec<u8> {
     recording.finish().expect("a match")
 }
 
-/// The good files, for seeds.
+/// The valid files, for seeds.
 pub fn originals() -> &'static [Vec<u8>] {
     &ORIGINALS
 }

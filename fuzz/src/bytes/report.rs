@@ -1,4 +1,4 @@
-//! Files for the comparison of reports.
+//! Report files for the comparison.
 
 use std::sync::LazyLock;
 
@@ -12,7 +12,7 @@ use super::replay::{LIMITS, ball};
 use crate::memory::Memory;
 use crate::snapshots::repair;
 
-/// Reports of both games, the first of each right, the second of a peer that departed after two ticks.
+/// Reports of both games: for each game a correct one, and one of a peer that diverged after two ticks.
 static ORIGINALS: LazyLock<Vec<Vec<u8>>> = LazyLock::new(|| {
     let memory = |fail: bool| {
         report::<Memory>(&(), &[[1, 2, 3], [1, 2, 3], [4, 5, 6], [0, 255, 0]], |game, tick| {
@@ -29,16 +29,18 @@ static ORIGINALS: LazyLock<Vec<Vec<u8>>> = LazyLock::new(|| {
                 && tick == 2
                 && let Some(body) = { world.bodies().map(|(id, _)| id).nth(1) }
             {
-                world.flip_bit(body, Motion::ALL[0], 20).expect("a body that is there");
+                world.flip_bit(body, Motion::ALL[0], 20).expect("the body exists");
             }
         })
     };
     vec![memory(false), memory(true), sandbox(false), sandbox(true)]
 });
 
-/// What those who follow the rules say: the first and the third.
+/// The reports of the peers that follow the rules: the first and the third.
 static RIGHT: LazyLock<[Evidence; 2]> = LazyLock::new(|| {
-    [0, 2].map(|at: usize| Evidence::read(ORIGINALS[at].clone(), &LIMITS).expect("a peer's own report"))
+    [0, 2].map(|at: usize| {
+        Evidence::read(ORIGINALS[at].clone(), &LIMITS).expect("a peer's own report is valid")
+    })
 });
 
 fn report<G: Game>(
@@ -64,10 +66,10 @@ fn report<G: Game>(
     DesyncReport::within(4000, &desync, &history, replay).to_bytes()
 }
 
-/// Reads a file and compares it with a right report. Returns what came of it, in a word.
+/// Reads a file and compares it with a correct report. Returns the result as one word.
 ///
 /// # Panics
-/// When a report is not what its own bytes say, or a side is blamed that followed the rules.
+/// When an accepted report has another encoding, or a side that followed the rules is blamed.
 pub fn run(bytes: &[u8]) -> &'static str {
     let attempt = attempt(bytes, &ORIGINALS, |file| repair(file));
     if let Ok(report) = DesyncReport::from_bytes(&attempt.file, &LIMITS) {
@@ -90,7 +92,7 @@ fn judge<G: Game>(left: &Evidence, right: &Evidence) -> Option<Blame> {
     Some(found.blame)
 }
 
-/// The good files, for seeds.
+/// The valid files, for seeds.
 pub fn originals() -> &'static [Vec<u8>] {
     &ORIGINALS
 }

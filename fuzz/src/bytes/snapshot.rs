@@ -1,4 +1,4 @@
-//! Bytes for [`World::from_bytes`].
+//! Input of [`World::from_bytes`].
 
 use std::sync::LazyLock;
 
@@ -12,10 +12,10 @@ use super::attempt;
 use crate::generator;
 use crate::snapshots::repair;
 
-/// Most work of a tick, as [`generator::cost`] counts it.
+/// Maximum cost of a tick, as counted by [`generator::cost`].
 const COST_MAX: u64 = 1000;
 
-/// Worlds: empty, with two bodies that touch, jointed, asleep, with vacant slots.
+/// Snapshots of five worlds: empty, with two touching bodies, jointed, asleep, with vacant slots.
 static ORIGINALS: LazyLock<Vec<Vec<u8>>> = LazyLock::new(|| {
     let empty = World::new(Config::default()).expect("valid");
     let mut touching = empty.clone();
@@ -35,15 +35,15 @@ static ORIGINALS: LazyLock<Vec<Vec<u8>>> = LazyLock::new(|| {
     let mut vacant = touching.clone();
     let line = Geometry::Segment { a: Vec2::ZERO, b: Vec2::new(fx!(1), fx!(0)) };
     let gone = vacant.spawn(&BodyDef::kinematic(), &[ShapeDef::new(line)]).expect("valid");
-    vacant.despawn(gone).expect("there");
-    vacant.despawn(low).expect("there");
+    vacant.despawn(gone).expect("the body exists");
+    vacant.despawn(low).expect("the body exists");
     [empty, touching, jointed, asleep, vacant].map(|world| world.to_bytes()).to_vec()
 });
 
-/// Reads a world, and lets it go on for two ticks if it is one. Says whether it is.
+/// Reads a world and, if it is valid, steps it twice. Returns whether it is valid.
 ///
 /// # Panics
-/// When a world that was accepted has another encoding, breaks an invariant, or depends on its caches.
+/// When an accepted world has another encoding, breaks an invariant, or depends on its caches.
 pub fn run(bytes: &[u8]) -> bool {
     let attempt = attempt(bytes, &ORIGINALS, |file| repair(file));
     let Ok(mut world) = World::from_bytes(&attempt.file) else { return false };
@@ -57,12 +57,12 @@ pub fn run(bytes: &[u8]) -> bool {
         bare.clear_scratch();
         bare.step();
         assert_eq!(world.validate(), Ok(()), "a valid world stays valid");
-        assert_eq!(world.state_hash(), bare.state_hash(), "a world depends on its caches");
+        assert_eq!(world.state_hash(), bare.state_hash(), "a world must not depend on its caches");
     }
     true
 }
 
-/// The good files, for seeds.
+/// The valid files, for seeds.
 pub fn originals() -> &'static [Vec<u8>] {
     &ORIGINALS
 }

@@ -1,5 +1,5 @@
-//! The operations of `lockstep2d::math`, one after the other, held to exact fractions: rounded as documented, within
-//! the documented error, saturated at the ends.
+//! Checks the operations of `lockstep2d::math` against exact fractions: rounded as documented, within the documented
+//! error, saturated at the limits.
 
 pub(crate) mod exact;
 
@@ -11,7 +11,7 @@ mod roots;
 use crate::source::Source;
 use lockstep2d::math::{Fx, Vec2};
 
-/// Tries operations until the bytes end. Returns how many.
+/// Tries operations until the bytes end. Returns their number.
 ///
 /// # Panics
 /// When a result is not the documented one.
@@ -30,7 +30,7 @@ pub fn run(bytes: &[u8]) -> u64 {
     tried
 }
 
-/// Any number: at an edge, ordinary, or with few bits.
+/// Any number: near a limit, ordinary, or with few bits.
 fn number(source: &mut Source<'_>) -> Fx {
     match source.below(3) {
         0 => source.edge(),
@@ -43,7 +43,7 @@ fn vector(source: &mut Source<'_>) -> Vec2<Fx> {
     Vec2::new(number(source), number(source))
 }
 
-/// 32 bits, often at an edge.
+/// A 32-bit number, often at a limit.
 fn small(source: &mut Source<'_>) -> i32 {
     match source.below(3) {
         0 => source.pick(&[0, 1, -1, i32::MAX, i32::MIN, i32::MIN + 1, 1 << 30, -(1 << 30)]),

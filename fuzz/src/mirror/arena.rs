@@ -1,4 +1,4 @@
-//! Slots: values with generations, and which slots are vacant.
+//! Slots: values with generations, and the list of vacant slots.
 
 use serde::{Deserialize, Serialize};
 
@@ -19,7 +19,7 @@ pub(super) struct Arena<T> {
 }
 
 impl<T> Arena<T> {
-    /// The slot number of some value.
+    /// The index of an occupied slot.
     pub(super) fn pick(&self, source: &mut Source<'_>) -> Option<usize> {
         let occupied = |(index, slot): (usize, &Slot<T>)| slot.value.is_some().then_some(index);
         let occupied: Vec<usize> = self.slots.iter().enumerate().filter_map(occupied).collect();
@@ -38,13 +38,13 @@ impl<T> Arena<T> {
         self.slots.iter_mut().filter_map(|slot| slot.value.as_mut())
     }
 
-    /// A value in a new slot.
+    /// Adds a value in a new slot.
     pub(super) fn add(&mut self, value: T) -> Handle {
         self.slots.push(Slot { generation: 0, value: Some(value) });
         self.handle(self.slots.len() - 1)
     }
 
-    /// Takes a value out as a world does.
+    /// Removes a value as a world does.
     pub(super) fn remove(&mut self, index: usize) -> Option<T> {
         let slot = self.slots.get_mut(index)?;
         let value = slot.value.take()?;
@@ -57,7 +57,7 @@ impl<T> Arena<T> {
         Some(value)
     }
 
-    /// Another order of vacant slots, one more of them, or one whose generations are used up.
+    /// Changes the order of vacant slots, or adds a vacant slot or one whose generations are used up.
     pub(super) fn alter_vacancies(&mut self, source: &mut Source<'_>) {
         match source.below(4) {
             0 => {

@@ -37,7 +37,7 @@ pub(super) struct Shape {
 }
 
 impl Body {
-    /// Stops it as far as its kind and locks ask for.
+    /// Clears motion, forces and target as the body's kind, sleep and locks require.
     fn rest(&mut self) {
         if self.kind != BodyKind::Dynamic {
             (self.force, self.torque) = ((0, 0), 0);
@@ -108,7 +108,7 @@ impl State {
         self.weigh(index)
     }
 
-    /// Lets a body's mass follow from its shapes, as a new world would, and the boxes of its shapes if it is fixed.
+    /// Computes a body's mass from its shapes as a new world does, and for a fixed body the boxes of its shapes.
     pub(super) fn weigh(&mut self, index: usize) -> Option<()> {
         let body = self.bodies.get(index)?.clone();
         let shapes: Vec<_> =
@@ -147,7 +147,7 @@ impl State {
             8 => shape.def.events = fresh.events,
             9 => shape.def.material.surface_speed = Fx::from_bits(source.within(-(400 << 32), 400 << 32)),
             10 => {
-                // A box that has nothing to do with the shape, as large as it likes.
+                // A box of any size that is unrelated to the shape.
                 let (a, b) = (pair(source, i64::MIN, i64::MAX), pair(source, i64::MIN, i64::MAX));
                 shape.fat = Aabb::new(vector(a).min(vector(b)), vector(a).max(vector(b)));
             }

@@ -1,4 +1,4 @@
-//! Contacts, those that rest, and those that have ended.
+//! Contacts, sleeping contacts, and contacts that have ended.
 
 use serde::{Deserialize, Serialize};
 
@@ -71,7 +71,7 @@ impl State {
         Some(())
     }
 
-    /// A contact that rests although it should not, or that does not although it should.
+    /// Moves a contact from the active to the sleeping contacts, or back, so that its place is wrong.
     fn alter_resting(&mut self, source: &mut Source<'_>) -> Option<()> {
         let (from, to) = match source.one_in(2) {
             true => (&mut self.contacts, &mut self.resting),

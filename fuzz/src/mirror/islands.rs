@@ -1,4 +1,4 @@
-//! What sleeps, and together with what.
+//! Sleeping islands.
 
 use lockstep2d::body::BodyKind;
 use serde::{Deserialize, Serialize};
@@ -12,7 +12,7 @@ pub(super) struct Island {
 }
 
 impl State {
-    /// Lets a body sleep, wakes an island, or changes who sleeps with whom.
+    /// Puts a body to sleep, wakes an island, or changes the membership of islands.
     pub(super) fn alter_sleep(&mut self, source: &mut Source<'_>) -> Option<()> {
         match source.below(5) {
             0 | 1 => {
@@ -28,7 +28,7 @@ impl State {
                 self.merge(from, to)
             }
             _ => {
-                // Somebody leaves to sleep alone.
+                // Moves a body to an island of its own.
                 let island = self.islands.pick(source)?;
                 let slots = &mut self.islands.get(island)?.bodies;
                 let at = source.below(slots.len());

@@ -22,7 +22,7 @@ fn body_id((slot, generation): Handle) -> BodyId {
 }
 
 impl Joint {
-    /// Takes over another name of a body.
+    /// Replaces a body's handle.
     pub(super) fn rename(&mut self, old: Handle, new: Handle) {
         for end in [&mut self.def.body_a, &mut self.def.body_b] {
             if *end == body_id(old) {

@@ -1,5 +1,5 @@
-//! A world's state with all its fields in reach: the layout of `docs/FORMAT.md`, to change single fields of a
-//! snapshot and leave the rest valid.
+//! A copy of the layout of a world's state in `docs/FORMAT.md`, with all fields accessible, to change single fields of
+//! a snapshot and leave the rest valid.
 
 mod arena;
 mod bodies;
@@ -20,7 +20,7 @@ use contacts::{Contact, Reported};
 use islands::Island;
 use joints::Joint;
 
-/// Magic, format, semantics, length.
+/// Size of the header: magic, format, semantics, length.
 const HEADER_BYTES: usize = 24;
 const HASH_BYTES: usize = 16;
 
@@ -44,10 +44,10 @@ pub struct State {
     rng: (u64, u64),
 }
 
-/// The largest components of a velocity and of an impulse, in raw units of `Speed`.
+/// Maximum components of a velocity and of an impulse, in raw units of `Speed`.
 const SPEED_MAX: i64 = 511 << 21;
 const IMPULSE_MAX: i64 = 1023 << 21;
-/// How far away a centre of mass may be, in raw units of `Fx`.
+/// Maximum coordinates of a centre of mass, in raw units of `Fx`.
 const CENTRE_MAX: i64 = ((1 << 30) + 1024) << 32;
 const REACH_MAX: i64 = 128 << 32;
 
@@ -64,7 +64,7 @@ fn vector((x, y): (i64, i64)) -> Vec2<Fx> {
 }
 
 impl State {
-    /// The state in the bytes of a world.
+    /// Decodes the state of a world.
     ///
     /// # Panics
     /// When the layout is not the one described here.
@@ -73,18 +73,18 @@ impl State {
         let bytes = world.to_bytes();
         let state = &bytes[HEADER_BYTES..bytes.len() - HASH_BYTES];
         let mirror: State = codec::decode(state).expect("the layout of a world's state");
-        debug_assert_eq!(codec::encode(&mirror), state, "the layout of a world's state");
+        debug_assert_eq!(codec::encode(&mirror), state, "encoding the decoded state gives the same bytes");
         mirror
     }
 
-    /// The encoding of the state, without header and hash.
+    /// Encodes the state, without header and hash.
     #[must_use]
     pub fn encode(&self) -> Vec<u8> {
         codec::encode(self)
     }
 
-    /// Changes something in a way that is often valid. Nothing is changed when there is nothing to change, or
-    /// when a body's mass would not follow from its shapes.
+    /// Makes a change that is often valid. Nothing is changed when there is nothing to change, or when a body's mass
+    /// cannot be computed from its shapes.
     pub fn alter(&mut self, source: &mut Source<'_>) {
         let before = self.clone();
         if self.try_alter(source).is_none() {
@@ -138,7 +138,7 @@ impl State {
         if source.one_in(2) {
             self.config.pair_limit = source.below(30) as u32;
         }
-        // The boxes of fixed shapes follow from the settings.
+        // The boxes of fixed shapes depend on the settings.
         (0..self.bodies.slots.len()).try_for_each(|index| match self.bodies.get(index) {
             Some(_) => self.weigh(index),
             None => Some(()),
@@ -158,7 +158,7 @@ impl State {
         }
     }
 
-    /// Another generation for a slot and for all that name it.
+    /// Changes the generation of a slot and of all handles that refer to it.
     fn alter_generation(&mut self, source: &mut Source<'_>) -> Option<()> {
         let generation = source.within(0, u32::MAX.into()) as u32;
         match source.below(4) {

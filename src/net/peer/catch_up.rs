@@ -1,4 +1,4 @@
-//! The way into a match: ask, load a state, play the inputs since, faster than the others.
+//! Late join: asks for a seat, loads a state, and plays the inputs since then faster than real time.
 
 use alloc::collections::VecDeque;
 use alloc::string::ToString;
@@ -15,24 +15,24 @@ use crate::net::packet::{Nonce, Packet, Refused};
 use crate::net::transport::Transport;
 use crate::net::wire::{Address, NetGame};
 
-/// Bytes of a state in one packet.
+/// Size of a piece of a state in one packet, in bytes.
 pub(super) const PIECE_BYTES: usize = 1024;
-/// Most bytes of a state: what a stranger may make us allocate.
+/// Maximum size of a state in bytes: bounds the memory that an untrusted peer can make this one allocate.
 const STATE_BYTES_MAX: u64 = 64 << 20;
-/// How many pieces of a state are asked for at a time.
+/// Number of pieces of a state that are requested at a time.
 const PIECES_AT_ONCE: usize = 32;
-/// How many ticks a peer may be behind what is final, to be as good as up to date.
+/// Number of ticks behind the final ones at which a peer counts as up to date.
 const ALMOST: u64 = 4;
-/// How many ticks a spectator stays behind, so as not to stutter.
+/// Number of ticks that a spectator stays behind, to avoid stutter.
 const WATCH_BEHIND: usize = 12;
-/// Most ticks that wait to be played: more are not asked for. Each came in a packet: they have 32 MiB at most.
+/// Maximum number of queued ticks; no more are requested. Each arrived in a packet, so they take 32 MiB at most.
 const QUEUE_MAX: usize = 2000;
-/// No match is that long: what is counted from here on does not overflow.
+/// Maximum tick of a match, so that sums of ticks do not overflow.
 const TICK_MAX: u64 = 1 << 48;
-/// How often those are asked who are not heard of, before they count as gone: times the timeout.
+/// Number of timeouts without an answer after which the contact counts as gone.
 const PATIENCE: u32 = 4;
 
-/// A peer without a seat.
+/// State of a peer without a seat.
 pub(super) struct CatchUp<A> {
     contact: A,
     nonce: Nonce,
@@ -58,7 +58,7 @@ impl<A: Address> CatchUp<A> {
         CatchUp { watch: true, ..Self::play(contact, nonce, None) }
     }
 
-    /// Whether it is open yet with which tick the match begins here.
+    /// Whether the first tick of the match is still unknown to this peer.
     pub(super) fn is_loading(&self) -> bool {
         !matches!(self.stage, Stage::Following { .. })
     }
@@ -69,7 +69,7 @@ impl<A: Address> CatchUp<A> {
 }
 
 impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
-    /// Asks for what is missing, and plays what is there.
+    /// Requests what is missing, and plays what has arrived.
     pub(super) fn catch_up(&mut self) -> Result<(), NetError> {
         let Some(joining) = &mut self.catch_up else { return Ok(()) };
         let heard = *joining.heard.get_or_insert(self.now);
@@ -190,7 +190,8 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
         bytes[offset..end].copy_from_slice(piece);
         missing.remove(at);
         if !missing.is_empty() {
-            // When half of what was asked for is there, the rest may be on its way, but there is room for more.
+            // When half of the requested pieces have arrived, there is room to request more, while the others may be
+            // under way.
             if missing.len() % (PIECES_AT_ONCE / 2) == 0 {
                 joining.asked = None;
             }
@@ -231,7 +232,7 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
         }
     }
 
-    /// Plays queued ticks: as many as may be while there are many, otherwise one at a time.
+    /// Plays queued ticks: up to the limit per update when catching up, and in real time as a spectator.
     fn follow(&mut self) -> Result<(), NetError> {
         let period = Duration::from_secs(1) / self.terms.tick_rate;
         let until = self.next.as_ref().map_or(u64::MAX, |next| next.roster.base);

@@ -1,4 +1,4 @@
-//! [`NetError`]: why a peer cannot go on.
+//! [`NetError`]: reasons why a peer cannot continue.
 
 use alloc::string::String;
 use core::fmt;
@@ -9,37 +9,37 @@ use crate::net::error::DriverError;
 use crate::net::terms::TermsMismatch;
 use crate::replay::RecordError;
 
-/// Why a peer cannot go on.
+/// Reason why a peer cannot continue.
 #[derive(Clone, Debug, PartialEq)]
 pub enum NetError {
-    /// No game starts, or its replay cannot be written.
+    /// The setup cannot start a game, or the replay cannot be written.
     Record(RecordError),
-    /// The game cannot do what the session asks for.
+    /// The game cannot execute a request of the session.
     Driver(DriverError),
-    /// GGRS refuses.
+    /// GGRS returned an error.
     Ggrs(GgrsError),
-    /// The others play something else.
+    /// The handshake parameters of the other peers differ.
     Terms(TermsMismatch),
     /// There is no free seat.
     Full,
-    /// The state that was reached by catching up is not that of the others.
+    /// The state after catching up differs from that of the other peers.
     Diverged {
-        /// How many ticks had been played.
+        /// Number of ticks played.
         tick: u64,
     },
-    /// The state that was sent is not one of this game.
+    /// The received state is not a state of this game.
     State {
-        /// What is wrong with it.
+        /// Reason.
         why: String,
     },
-    /// The peer that was asked has said no.
+    /// The contacted peer refused.
     Refused {
-        /// Why.
+        /// Reason.
         why: String,
     },
-    /// Nobody has answered.
+    /// No peer answered.
     NoAnswer,
-    /// The others count this peer as gone: it was silent for too long. It may join again.
+    /// The other peers have disconnected this peer, because it was silent for too long. It may join again.
     Dropped,
 }
 
@@ -51,12 +51,14 @@ impl fmt::Display for NetError {
             NetError::Ggrs(error) => error.fmt(f),
             NetError::Terms(mismatch) => mismatch.fmt(f),
             NetError::Full => write!(f, "all seats are taken"),
-            NetError::Diverged { tick } => write!(f, "another state than the others' after tick {tick}"),
-            NetError::State { why } => write!(f, "the state that was sent cannot be used: {why}"),
+            NetError::Diverged { tick } => {
+                write!(f, "the state after tick {tick} differs from that of the other peers")
+            }
+            NetError::State { why } => write!(f, "the received state cannot be used: {why}"),
             NetError::Refused { why } => write!(f, "refused: {why}"),
             NetError::NoAnswer => write!(f, "no answer"),
             NetError::Dropped => {
-                write!(f, "the others have gone on without this peer, which was silent for too long")
+                write!(f, "the other peers have continued without this one, which was silent for too long")
             }
         }
     }

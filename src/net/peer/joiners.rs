@@ -1,4 +1,4 @@
-//! The other side of [`super::catch_up`]: what somebody who wants to join is given.
+//! Serves joining peers and spectators: the counterpart of [`super::catch_up`].
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -15,16 +15,16 @@ use crate::net::terms::Terms;
 use crate::net::transport::{PACKET_BYTES_AIM, Transport};
 use crate::net::wire::{Address, NetGame};
 
-/// Most peers that may be on their way in, or watch, at a time.
+/// Maximum number of joining and watching peers at a time.
 const JOINERS_MAX: usize = 32;
-/// Bytes that a packet needs besides inputs.
+/// Bytes of a packet in addition to inputs.
 const INPUTS_HEAD: usize = 100;
-/// How many packets of inputs answer one question: who is far away gets more than it plays in a round trip.
+/// Maximum number of packets with inputs per request: distant peers receive more ticks than they play in a round trip.
 const PACKETS_AT_ONCE: usize = 4;
-/// Bytes of a list's length.
+/// Bytes of the length of a list.
 const LENGTH_BYTES: usize = 8;
 
-/// Somebody who wants to take part, or watches.
+/// A peer that is joining or watching.
 pub(super) struct Joiner<A> {
     pub(super) address: A,
     nonce: Nonce,
@@ -32,16 +32,17 @@ pub(super) struct Joiner<A> {
     watch: bool,
     tick: u64,
     hash: StateHash,
-    /// The state after `tick` ticks; empty before the first, which everybody has.
+    /// The state after `tick` ticks; empty before the first tick, which every peer has.
     state: Arc<[u8]>,
     heard: Duration,
-    /// Has caught up.
+    /// Whether the peer has caught up.
     pub(super) ready: bool,
 }
 
 impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
     pub(super) fn greet(&mut self, from: &A, nonce: Nonce, terms: &Terms, seat: Option<u32>, watch: bool) {
-        // A player who asks for a seat has come back before it was missed: it will be, and then it can have its seat.
+        // A player that asks for a seat has reconnected before its disconnection was noticed. It gets its seat after
+        // the timeout.
         let plays = |session: &Session<G, A>| session.roster.seat_of(from).is_some();
         if self.catch_up.is_some() || self.session.as_ref().is_some_and(plays) {
             return;
@@ -49,7 +50,7 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
         if let Err(_mismatch) = self.terms.agree(terms) {
             return self.say(&Packet::Refused { nonce, why: Refused::Terms(self.terms.clone()) }, from);
         }
-        // Who may play is decided by one alone.
+        // Only the leader decides about requests to play.
         if !watch
             && let Some(session) = &self.session
             && !session.roster.leads()
@@ -71,7 +72,7 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
     }
 
     fn invite(&mut self, from: &A, nonce: Nonce, wanted: Option<u32>, watch: bool) -> Result<(), Refused> {
-        // An earlier attempt of the same peer.
+        // Drops an earlier attempt of the same peer.
         self.joiners.retain(|known| known.address != *from);
         if self.joiners.len() >= JOINERS_MAX || !watch && self.free_seats() == 0 {
             return Err(Refused::Full);
@@ -95,14 +96,14 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
         Ok(())
     }
 
-    /// The seats that nobody has, as bits.
+    /// The free seats, as bits.
     pub(super) fn free_seats(&self) -> u64 {
         let seats = (0..self.terms.players).fold(0, |mask, seat| mask | seat_bit(seat));
         let taken = self.next.as_ref().or(self.session.as_ref()).map_or(1, |session| session.roster.mask());
         seats & !taken
     }
 
-    /// Whether who has this address plays, or is about to.
+    /// Whether the peer with this address plays, or is about to.
     fn is_seated(&self, address: &A) -> bool {
         let sessions = [&self.session, &self.next].into_iter().flatten();
         sessions.into_iter().any(|session| session.roster.seat_of(address).is_some())
@@ -128,7 +129,8 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
     pub(super) fn give_inputs(&mut self, from: &A, nonce: Nonce, tick: u64) {
         let Some(joiner) = self.joiner(from, nonce) else { return self.say_forgotten(from, nonce) };
         let watch = joiner.watch;
-        // Once everybody has entered a session, nothing before it changes any more; who is to enter it needs all of that.
+        // Once all peers have entered a session, the ticks before it are final. A peer that is about to enter needs all
+        // of them.
         let entered = self.session.as_ref().filter(|session| !watch || session.is_established());
         let base = entered.map_or(0, |session| session.roster.base);
         let committed = self.driver.committed().max(base);
@@ -147,7 +149,7 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
         }
     }
 
-    /// The inputs of some ticks, as many as go into a packet, but of one tick at least.
+    /// The inputs of as many ticks as fit into a packet, but of at least one.
     fn inputs_between(&self, first: u64, end: u64) -> Vec<Vec<u8>> {
         let mut ticks = Vec::new();
         let mut room = PACKET_BYTES_AIM - INPUTS_HEAD;
@@ -166,9 +168,9 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
         self.say(&Packet::Refused { nonce, why: Refused::Other("silent or behind for too long".into()) }, to);
     }
 
-    /// Tells those who load, follow or watch that this peer leaves.
+    /// Tells joining and watching peers that this peer leaves.
     pub(super) fn say_bye_to_joiners(&mut self) {
-        let why = || Refused::Other("the player who was asked has left".into());
+        let why = || Refused::Other("the contacted player has left".into());
         let packet = |joiner: &Joiner<A>| {
             (joiner.address.clone(), Packet::Refused { nonce: joiner.nonce, why: why() })
         };
@@ -180,7 +182,7 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
 
     pub(super) fn take_ready(&mut self, from: &A, nonce: Nonce, tick: u64, hash: StateHash) {
         let ours = self.driver.history().get(tick).map(|moment| moment.hash);
-        // Somebody else may have been faster.
+        // Another peer may have taken the last seat.
         let late = self.free_seats() == 0 && !self.is_seated(from);
         let Some(joiner) = self.joiner(from, nonce) else { return };
         match ours {
@@ -190,17 +192,17 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
             }
             Some(ours) if ours == hash => joiner.ready = !joiner.watch,
             Some(_) => self.say(&Packet::Refused { nonce, why: Refused::Diverged { tick } }, from),
-            // Too long ago to tell: it is not up to date.
+            // The tick is too old to compare: the peer is not up to date.
             None => {}
         }
     }
 
-    /// Looks after those who want to join: forgets the silent, and seats those who have caught up.
+    /// Removes silent joiners, and proposes a session for those that have caught up.
     pub(super) fn admit(&mut self) -> Result<(), NetError> {
         let patience = 2 * self.options.timeout;
         let now = self.now;
         self.joiners.retain(|joiner| now <= joiner.heard + patience);
-        // Who has entered asks for nothing more.
+        // A peer that has entered the session sends no more requests.
         if let Some(session) = self.session.as_ref().filter(|session| session.is_established()) {
             let plays = |joiner: &Joiner<A>| session.roster.seat_of(&joiner.address).is_some();
             self.joiners.retain(|joiner| !plays(joiner));
@@ -221,7 +223,7 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
 }
 
 impl<G: NetGame, A: Address> Session<G, A> {
-    /// Where a plan is sent to.
+    /// Addresses of the other players, to which a proposed session is sent.
     pub(super) fn addresses(&self) -> Vec<A> {
         self.roster.others.iter().map(|(_, address)| address.clone()).collect()
     }

@@ -1,9 +1,11 @@
-//! Players who leave: the others agree on the last tick that all of them know, and go on from there.
+//! Departure of players: the other peers agree on the last tick for which all of them have all inputs, and continue
+//! from there.
 //!
-//! GGRS would let each peer decide alone after which input a player has left, and with three or more they may decide
-//! differently, as the last packets reach some and not others. Here, who misses a player stops and tells the others up
-//! to which tick it has everybody's inputs. They stop and do the same. When all have said so of the same players, the
-//! smallest of these ticks is the first of a session without them. Every peer remembers the state before it.
+//! With GGRS alone, each peer would decide after which input a player has left, and with three or more peers the
+//! decisions may differ, as the last packets reach only some of them. Here, a peer that misses a player stops and tells
+//! the others the tick up to which it has the inputs of all players. They stop and do the same. When all have reported
+//! the same departed players, the smallest of these ticks is the first tick of a session without them. Every peer keeps
+//! the state before it.
 
 use alloc::collections::BTreeMap;
 use alloc::vec::Vec;
@@ -15,31 +17,31 @@ use crate::net::session::{Roster, Session, seat_bit};
 use crate::net::transport::Transport;
 use crate::net::wire::{Address, NetGame};
 
-/// The way out of a session that somebody has left.
+/// State of the departure agreement of a session.
 pub(super) struct Leaving {
-    /// The seats that are empty, as bits.
+    /// The departed seats, as bits.
     gone: u64,
-    /// Ticks that are known here.
+    /// Number of ticks with confirmed inputs at this peer.
     ticks: u64,
-    /// What the others have said: seats that are empty, ticks that they know.
+    /// Reports of the other peers: departed seats, and ticks with confirmed inputs.
     heard: BTreeMap<u32, (u64, u64)>,
     since: Duration,
     said: Option<Duration>,
 }
 
-/// What was said last of a session that is over, for those who have not heard it.
+/// Result of the last departure agreement, for peers that have not received it.
 pub(super) struct Settled {
     session: SessionId,
     gone: u64,
-    /// The first tick of the session that followed.
+    /// First tick of the following session.
     base: u64,
 }
 
-/// How many times a leaving player says so.
+/// Number of times a leaving player sends its goodbye.
 const BYES: usize = 3;
 
 impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
-    /// Stops the session because these seats are empty.
+    /// Stops the session because these seats have departed.
     pub(super) fn begin_leaving(&mut self, gone: u64) {
         let Some(session) = &self.session else { return };
         match &mut self.leaving {
@@ -47,7 +49,7 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
             None => {
                 let (ticks, since) = (session.confirmed(), self.now);
                 self.leaving = Some(Leaving { gone, ticks, heard: BTreeMap::new(), since, said: None });
-                // Who was about to join will ask again.
+                // Joining peers will ask again.
                 self.abandoned = self.next.take().map(|next| next.roster.session).or(self.abandoned);
                 self.planned = None;
             }
@@ -97,7 +99,7 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
         let Some(seat) = current.roster.seat_of(from) else { return Ok(()) };
         if gone & seat_bit(current.roster.seat) != 0 {
             return match &self.past {
-                // The others have not entered it after all.
+                // The other peers have not entered the session after all.
                 Some(past) if settled && !current.is_established() => {
                     let past = past.roster.session;
                     self.fall_back(past);
@@ -109,7 +111,7 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
         self.begin_leaving(gone & current.roster.mask());
         let Some(leaving) = &mut self.leaving else { return Ok(()) };
         if settled && ticks <= leaving.ticks {
-            // It has heard all whom it has gone on with, and we may have missed one of them.
+            // The sender has the reports of all peers it continued with. One of them may not have reached this peer.
             leaving.gone = gone;
             return self.go_on_without(ticks);
         }
@@ -117,7 +119,7 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
         Ok(())
     }
 
-    /// Returns to the session before, if somebody has not come along and not everybody plays in this one.
+    /// Returns to the previous session, if the peers have not all entered the current one.
     fn fall_back(&mut self, session: SessionId) {
         let established = self.session.as_ref().is_some_and(Session::is_established);
         let is_past = self.past.as_ref().is_some_and(|past| past.roster.session == session);
@@ -128,7 +130,7 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
         }
     }
 
-    /// Looks for players who have not come along, and ends the session when everybody has said what they know.
+    /// Detects players that did not enter the session, and ends the session when all reports agree.
     pub(super) fn settle(&mut self) -> Result<(), NetError> {
         let timeout = self.options.timeout;
         let Some(session) = &self.session else { return Ok(()) };
@@ -144,7 +146,7 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
             let agrees = |seat: &u32| leaving.heard.get(seat).is_some_and(|(gone, _)| *gone == leaving.gone);
             left.filter(|seat| !agrees(seat)).fold(0, |mask, seat| mask | seat_bit(seat))
         };
-        // Who says that somebody is gone has to be believed, or the peers would never agree.
+        // Reports about departed players have to be trusted, because the peers could not agree otherwise.
         leaving.gone =
             leaving.heard.values().fold(leaving.gone, |mask, (gone, _)| mask | gone & roster.mask());
         if leaving.gone & seat_bit(roster.seat) != 0 {
@@ -172,15 +174,15 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
         leaving.said = Some(self.now);
         let Leaving { gone, ticks, .. } = *leaving;
         let packet = Packet::Gone { session: session.roster.session, gone, ticks, settled: false };
-        // Those who are gone hear it too: they may only have been silent.
+        // The departed peers receive it, too: they may only have been silent.
         for to in session.addresses() {
             self.say(&packet, &to);
         }
     }
 
-    /// Begins a session without those who are gone at `base`, the first tick that somebody does not know.
+    /// Begins a session without the departed players at `base`, the first tick that a peer has no inputs for.
     fn go_on_without(&mut self, base: u64) -> Result<(), NetError> {
-        // Once more for those who wait for it.
+        // Reports once more, for peers that are still waiting.
         if let Some(leaving) = &mut self.leaving {
             leaving.said = None;
         }

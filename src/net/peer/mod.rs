@@ -1,4 +1,4 @@
-//! [`Peer`]: one participant of a match, from the first packet to the finished replay.
+//! [`Peer`]: one participant of a match, from the handshake to the finished replay.
 
 mod catch_up;
 mod error;
@@ -28,74 +28,75 @@ use super::wire::{Address, NetGame};
 use crate::codec;
 use crate::lockstep::History;
 
-/// How long to wait before something that may have been lost is said again.
+/// Retransmission interval.
 const RESEND: Duration = Duration::from_millis(50);
-/// Most packets that one update reads: the rest waits for the next.
+/// Maximum number of packets read in one update; the rest is read in the next.
 const PACKETS_PER_UPDATE: usize = 2000;
 
-/// What a peer tells its game.
+/// An event that a peer reports to its game.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Event {
     /// From this tick on, the player of this seat takes part.
     Joined {
-        /// Whose seat.
+        /// The seat.
         seat: u32,
-        /// The first tick.
+        /// First tick.
         tick: u64,
     },
-    /// From this tick on, this seat is empty. All peers say the same tick.
+    /// From this tick on, this seat is empty. All peers report the same tick.
     Left {
-        /// Whose seat.
+        /// The seat.
         seat: u32,
-        /// The first tick.
+        /// First tick.
         tick: u64,
     },
-    /// Nothing has come from this seat for a while.
+    /// No messages have arrived from this seat for a while.
     Interrupted {
-        /// Whose seat.
+        /// The seat.
         seat: u32,
     },
-    /// Something comes from this seat again.
+    /// Messages from this seat arrive again.
     Resumed {
-        /// Whose seat.
+        /// The seat.
         seat: u32,
     },
-    /// Another peer has another state. Write [`Peer::report`] to a file: it says what is needed to find out why.
+    /// Another peer has another state. Write [`Peer::report`] to a file: it contains the data needed to find the cause.
     Diverged(Divergence),
 }
 
 /// One participant of a match: hosts it, joins it, or watches it.
 ///
 /// It owns the game and decides when a tick can be played; the caller owns the clock and the transport. Call
-/// [`Peer::update`] often, and [`Peer::advance`] whenever [`Peer::is_due`] says so.
+/// [`Peer::update`] often, and [`Peer::advance`] whenever [`Peer::is_due`] returns true.
 ///
-/// The host has the lowest seat at first, and admits players to empty seats at any time. When it leaves, the player
-/// with the next lowest seat does that: nobody is needed.
+/// The host has the lowest seat at first, and admits players to free seats at any time. When it leaves, the player with
+/// the next lowest seat takes over, so no single player is required.
 pub struct Peer<G: NetGame, A: Address, T: Transport<A>> {
     transport: T,
     options: Options,
     terms: Terms,
-    /// The canonical bytes of the setup.
+    /// Canonical bytes of the setup.
     setup: Vec<u8>,
     driver: Driver<G>,
     now: Duration,
-    /// When the next tick is due.
+    /// Time at which the next tick is due.
     next_tick: Duration,
-    /// Of a peer that has no seat yet, or never will.
+    /// State of a peer that has no seat yet, or a spectator.
     catch_up: Option<CatchUp<A>>,
-    /// What the first session follows, where this peer is the host and plays nothing yet.
+    /// Initial session id of a host that has no session yet.
     root: Option<SessionId>,
     session: Option<Session<G, A>>,
-    /// When it was entered, or, until all play in it, when somebody last answered: that takes long in bad weather.
+    /// Time at which the session was entered, or, while not all peers have entered it, of the last answer: with high
+    /// packet loss this takes long.
     awaited_since: Duration,
-    /// The session that is agreed upon and not yet entered.
+    /// The agreed session that has not been entered yet.
     next: Option<Session<G, A>>,
     planned: Option<Planned<A>>,
-    /// The session before, while others may still be in it.
+    /// The previous session, while other peers may still be in it.
     past: Option<Session<G, A>>,
     leaving: Option<Leaving>,
     settled: Option<Settled>,
-    /// The last session that was agreed upon and is not played after all.
+    /// The last session that was agreed upon but is not played.
     abandoned: Option<SessionId>,
     joiners: Vec<Joiner<A>>,
     events: VecDeque<Event>,
@@ -105,17 +106,17 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
     /// Opens a match and waits for [`Options::start_with`] players.
     ///
     /// # Errors
-    /// [`NetError`] when the setup starts no game.
+    /// [`NetError`] when the setup cannot start a game.
     pub fn host(setup: &G::Setup, options: Options, transport: T) -> Result<Self, NetError> {
         let mut peer = Self::new(setup, options, transport)?;
         peer.root = Some(SessionId(random()));
         Ok(peer)
     }
 
-    /// Asks the peer at `contact` for a seat, a certain one if it is free.
+    /// Asks the peer at `contact` for a seat. `seat` is preferred if it is free.
     ///
     /// # Errors
-    /// [`NetError`] when the setup starts no game.
+    /// [`NetError`] when the setup cannot start a game.
     pub fn join(
         setup: &G::Setup,
         options: Options,
@@ -131,7 +132,7 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
     /// Asks the peer at `contact` to watch.
     ///
     /// # Errors
-    /// [`NetError`] when the setup starts no game.
+    /// [`NetError`] when the setup cannot start a game.
     pub fn watch(setup: &G::Setup, options: Options, transport: T, contact: A) -> Result<Self, NetError> {
         let mut peer = Self::new(setup, options, transport)?;
         peer.catch_up = Some(CatchUp::watch(contact, Nonce(random())));
@@ -169,10 +170,10 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
         })
     }
 
-    /// Reads what has come and sends what is to be sent. `now` is the time since any moment in the past.
+    /// Reads all received packets and sends what is due. `now` is the time since a fixed moment in the past.
     ///
     /// # Errors
-    /// [`NetError`] when this peer cannot go on: it was refused, or dropped, or nobody answers.
+    /// [`NetError`] when this peer cannot continue: it was refused or disconnected, or no peer answers.
     pub fn update(&mut self, now: Duration) -> Result<(), NetError> {
         self.now = self.now.max(now);
         for _ in 0..PACKETS_PER_UPDATE {
@@ -193,7 +194,7 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
     fn receive(&mut self, from: &A, packet: Packet<A>) -> Result<(), NetError> {
         match packet {
             Packet::Session { session, message } => {
-                // One that is left reads nothing any more: its mail would pile up.
+                // A session with departed players reads no more messages: they would pile up.
                 let current = self.session.as_mut().filter(|_| self.leaving.is_none());
                 let mut sessions = current.into_iter().chain(&mut self.next).chain(&mut self.past);
                 let of = sessions.find(|known| known.roster.session == session);
@@ -221,7 +222,7 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
     }
 
     fn poll_sessions(&mut self) {
-        // Its players may still miss something of ours; what it says is no longer of interest.
+        // Players of the previous session may still need messages of this peer. Its events do not matter any more.
         if let Some(past) = &mut self.past {
             past.poll(self.now);
         }
@@ -270,13 +271,14 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
         plays && self.now >= self.next_tick
     }
 
-    /// Plays a tick with the local player's input, if the others let it. Returns whether one was played.
+    /// Plays a tick with the local player's input, if the inputs of the other peers allow it. Returns whether a tick
+    /// was played.
     ///
-    /// In rollback, some earlier ticks may be played again. Ticks of a peer that is ahead of others take a little
-    /// longer, so that nobody has to wait abruptly; one that was held up catches up by up to eight ticks.
+    /// With rollback, earlier ticks may be played again. A peer that is ahead of others plays its ticks slightly
+    /// slower, so that no peer has to stop abruptly. A peer that was held up catches up by up to eight ticks.
     ///
     /// # Errors
-    /// [`NetError`] when the game or its replay cannot go on.
+    /// [`NetError`] when the game or its replay cannot continue.
     pub fn advance(&mut self, input: G::Input) -> Result<bool, NetError> {
         if self.leaving.is_some() {
             return Ok(false);
@@ -300,24 +302,24 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
         Ok(played)
     }
 
-    /// The next thing to know, oldest first.
+    /// The next event, oldest first.
     pub fn next_event(&mut self) -> Option<Event> {
         self.events.pop_front()
     }
 
-    /// The game as it is now; in rollback, perhaps after guessed inputs.
+    /// The current state of the game; with rollback it may depend on predicted inputs.
     #[must_use]
     pub const fn game(&self) -> &G {
         self.driver.game()
     }
 
-    /// How many ticks have been played, the guessed ones among them.
+    /// Number of ticks played, including predicted ones.
     #[must_use]
     pub const fn tick(&self) -> u64 {
         self.driver.tick()
     }
 
-    /// How many ticks have been played with everybody's true inputs.
+    /// Number of ticks simulated with the confirmed inputs of all players.
     #[must_use]
     pub fn confirmed(&self) -> u64 {
         self.session.as_ref().map_or(self.driver.committed(), Session::confirmed)
@@ -329,21 +331,21 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
         self.driver.history()
     }
 
-    /// What this peer knows of a divergence, as bytes for a file. Two of them, from any two peers, tell who departed, when
-    /// and where: `lockstep2d diff`, or [`report::compare`](crate::report::compare).
+    /// This peer's report of a divergence, as bytes for a file. The reports of any two peers tell which peer diverged,
+    /// when and where: `lockstep2d diff`, or [`report::compare`](crate::report::compare).
     #[must_use]
     pub fn report(&self, divergence: &Divergence) -> Vec<u8> {
         let seats = self.seat().into_iter().collect();
         self.driver.report(divergence, seats, self.confirmed()).to_bytes()
     }
 
-    /// The own seat, once there is one.
+    /// The seat of this peer, once it has one.
     #[must_use]
     pub fn seat(&self) -> Option<u32> {
         self.session.as_ref().map(|session| session.roster.seat)
     }
 
-    /// The seats that players have at the moment, in ascending order.
+    /// The seats that have players, in ascending order.
     #[must_use]
     pub fn seats(&self) -> Vec<u32> {
         self.session.as_ref().map(|session| session.roster.seats()).unwrap_or_default()
@@ -354,21 +356,21 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
         &mut self.transport
     }
 
-    /// Finished bytes of the replay, to be appended to its file; handed out once.
+    /// Takes the finished bytes of the replay, to be appended to its file. Every byte is returned once.
     ///
-    /// There is none of a match that was joined after its first tick.
+    /// A peer that joined the match after its first tick has no replay.
     #[must_use]
     pub fn take_replay(&mut self) -> Vec<u8> {
-        // What has been written may be the beginning of another match than the one that is joined.
+        // While loading, the recorded bytes may be the beginning of another match than the one being joined.
         let unsure = self.catch_up.as_ref().is_some_and(CatchUp::is_loading);
         if unsure { Vec::new() } else { self.driver.take_replay() }
     }
 
-    /// Leaves the match and ends the replay after `ticks` ticks, or after the last that is known from everybody.
-    /// Returns the bytes of the replay that were not yet taken.
+    /// Leaves the match and ends the replay after `ticks` ticks, or after the last tick with confirmed inputs of all
+    /// players. Returns the bytes of the replay that have not been taken yet.
     ///
     /// # Errors
-    /// [`NetError`] when the replay cannot be ended.
+    /// [`NetError`] when the replay cannot be finished.
     pub fn finish(mut self, ticks: u64) -> Result<Vec<u8>, NetError> {
         self.say_bye();
         self.say_bye_to_joiners();
@@ -378,7 +380,7 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
     }
 }
 
-/// A number that nobody else has: not part of any state.
+/// A random number that is not part of any state.
 fn random() -> u64 {
     RandomState::new().hash_one(0)
 }

@@ -1,4 +1,4 @@
-//! Who plays from which tick on: made by one, known to all, entered when the tick is reached.
+//! Session changes: proposed by the leader, acknowledged by all peers, entered at a fixed tick.
 
 use alloc::collections::BTreeSet;
 use alloc::vec::Vec;
@@ -11,7 +11,7 @@ use crate::net::session::{Roster, Session, seat_bit};
 use crate::net::transport::Transport;
 use crate::net::wire::{Address, NetGame};
 
-/// A plan that not everybody has confirmed yet.
+/// A proposed session that not all peers have acknowledged.
 pub(super) struct Planned<A> {
     parent: SessionId,
     session: SessionId,
@@ -19,11 +19,11 @@ pub(super) struct Planned<A> {
     said: Option<Duration>,
 }
 
-/// How many seconds before its first tick a session is announced.
+/// Time in seconds between the proposal of a session and its first tick.
 const LEAD_SECONDS: u64 = 1;
 
 impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
-    /// Plans a session of those who play and those who are ready to.
+    /// Proposes a session of the current players and the joiners that have caught up.
     pub(super) fn plan_for_joiners(&mut self) -> Result<(), NetError> {
         let (parent, seat, mut others) = match (&self.session, self.root) {
             (Some(session), _) => {
@@ -58,7 +58,7 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
         Ok(())
     }
 
-    /// Tells those who have not confirmed it.
+    /// Retransmits the proposal to peers that have not acknowledged it.
     pub(super) fn repeat_plan(&mut self) {
         let Some(planned) = &mut self.planned else { return };
         let of = |session: &&Session<G, A>| session.roster.session == planned.session;
@@ -114,7 +114,7 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
         Ok(())
     }
 
-    /// The roster of a plan, if it is one that can be played.
+    /// The membership of a proposed session, if it is valid.
     fn roster_of(&self, from: &A, plan: Plan<A>) -> Option<Roster<A>> {
         let Plan { session, base, seat, others } = plan;
         let others: Vec<_> = others
@@ -129,7 +129,7 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
         (ascending && seated && distinct).then_some(Roster { session, base, seat, others })
     }
 
-    /// Goes over to the next session, when its first tick is reached.
+    /// Enters the next session when its first tick is reached.
     pub(super) fn enter_next(&mut self) -> Result<(), NetError> {
         self.drop_past();
         let Some(next) = &self.next else { return Ok(()) };
@@ -149,10 +149,10 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
         Ok(())
     }
 
-    /// Puts a session in the place of the one at hand, which is returned.
+    /// Replaces the current session and returns it.
     pub(super) fn enter(&mut self, next: Session<G, A>) -> Result<Option<Session<G, A>>, NetError> {
         let Roster { base: tick, .. } = next.roster;
-        // What is committed is in the replay and stays; honest peers do not ask for less.
+        // Committed ticks are in the replay and cannot be rolled back. Correct peers never propose an earlier tick.
         if tick < self.driver.committed() {
             return Err(DriverError::NoState { tick }.into());
         }
@@ -173,7 +173,7 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
         Ok(self.session.replace(next))
     }
 
-    /// The session before is of no use any more when everybody plays in this one.
+    /// Drops the previous session when all peers play in the current one.
     fn drop_past(&mut self) {
         if self.session.as_ref().is_some_and(Session::is_established) {
             self.past = None;

@@ -1,4 +1,4 @@
-//! Keyframes as a file beside the replay. `docs/FORMAT.md` has the layout.
+//! The file of keyframes, stored beside a replay. `docs/FORMAT.md` gives the layout.
 
 use alloc::string::String;
 use alloc::vec::Vec;
@@ -13,65 +13,65 @@ use crate::codec::{self, DecodeError};
 use crate::hash::StateHash;
 use crate::lockstep::Game;
 
-/// The first eight bytes of a file of keyframes, modelled like those of a replay.
+/// The first eight bytes of a file of keyframes, modelled on those of a replay.
 pub const KEYFRAMES_MAGIC: [u8; 8] = *b"\x89L2K\r\n\x1a\n";
 
-/// The version of the layout.
+/// Version of the layout.
 pub const KEYFRAMES_FORMAT_VERSION: u32 = 1;
 
-/// Most bytes that keyframes take together: their file can then be decoded at once.
+/// Maximum bytes of all keyframes together, small enough for their file to be decoded at once.
 pub const KEYFRAMES_BYTES_MAX: usize = 192 << 20;
 
-/// Magic, format, semantics, length.
+/// Size of the header: magic, format, semantics, length.
 const HEADER_LEN: usize = 8 + 4 + 4 + 8;
-/// The hash at the end.
+/// Size of the hash at the end.
 const HASH_LEN: usize = 16;
 
-/// Bytes that are no keyframes of this replay.
+/// Reason why bytes are not keyframes of this replay.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum KeyframesError {
-    /// They do not start like a file of keyframes.
+    /// The bytes do not start with [`KEYFRAMES_MAGIC`].
     NotKeyframes,
-    /// The layout is of another version.
+    /// The layout has another version.
     Format {
         /// The version found.
         found: u32,
     },
-    /// They are of another version of the engine.
+    /// The keyframes were made by an engine with other semantics.
     Semantics {
         /// The semantics found.
         found: u32,
     },
-    /// They are of another game, or another version of its rules.
+    /// The keyframes belong to another game, or to another version of its rules.
     Rules {
         /// The name found.
         name: String,
         /// The version found.
         version: u32,
     },
-    /// They are of another replay, or of this one when it had other bytes.
+    /// The keyframes belong to another replay, or to this replay before its bytes changed.
     OtherReplay,
-    /// There are fewer or more bytes than announced.
+    /// The number of bytes is not the number announced in the header.
     Length {
-        /// How many the header announces, itself included.
+        /// Number of bytes that the header announces, including the header.
         announced: u64,
-        /// How many there are.
+        /// Number of bytes found.
         found: u64,
     },
-    /// The hash at the end does not belong to the bytes before it.
+    /// The hash at the end does not match the bytes before it.
     Hash,
     /// The body does not decode.
     Decode(DecodeError),
-    /// The body is one that nobody writes.
+    /// The body decodes, but no writer produces it.
     Invalid(KeyframesFlaw),
 }
 
-/// What is wrong with keyframes that decode.
+/// Flaw in keyframes that decode.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum KeyframesFlaw {
     /// The interval is zero.
     Interval,
-    /// The ticks are not multiples of the interval in ascending order, from 1 to the end of the replay.
+    /// The ticks are not strictly ascending multiples of the interval from 1 to the end of the replay.
     Ticks,
     /// The replay has no checkpoint at one of the ticks.
     Checkpoint,
@@ -82,7 +82,7 @@ impl fmt::Display for KeyframesFlaw {
         f.write_str(match self {
             KeyframesFlaw::Interval => "an interval of zero",
             KeyframesFlaw::Ticks => "the ticks are not ascending multiples of the interval within the replay",
-            KeyframesFlaw::Checkpoint => "a keyframe at a tick of which the replay has no checkpoint",
+            KeyframesFlaw::Checkpoint => "a keyframe at a tick without a checkpoint in the replay",
         })
     }
 }
@@ -90,7 +90,7 @@ impl fmt::Display for KeyframesFlaw {
 impl fmt::Display for KeyframesError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            KeyframesError::NotKeyframes => write!(f, "no file of keyframes"),
+            KeyframesError::NotKeyframes => write!(f, "this is not a file of keyframes"),
             KeyframesError::Format { found } => {
                 write!(f, "format version {found}, this engine reads {KEYFRAMES_FORMAT_VERSION}")
             }
@@ -103,7 +103,7 @@ impl fmt::Display for KeyframesError {
                     "made with the rules {name:?} version {version}, which are not those of this program"
                 )
             }
-            KeyframesError::OtherReplay => write!(f, "they are keyframes of another replay"),
+            KeyframesError::OtherReplay => write!(f, "the keyframes belong to another replay"),
             KeyframesError::Length { announced, found } => {
                 write!(f, "{found} bytes where {announced} are announced")
             }
@@ -116,19 +116,19 @@ impl fmt::Display for KeyframesError {
 
 impl core::error::Error for KeyframesError {}
 
-/// What follows the header.
+/// The body, which follows the header.
 #[derive(Serialize, Deserialize)]
 pub(super) struct Body {
     rules_name: String,
     rules_version: u32,
-    /// The hash of the replay's bytes.
+    /// Hash of the replay's bytes.
     replay: StateHash,
     pub(super) interval: u64,
-    /// In ascending order of the ticks.
+    /// In ascending order of ticks.
     saves: Vec<(u64, Save)>,
 }
 
-/// The canonical bytes of a save: the same layout as that of a list of u8, read and written in one go.
+/// Canonical bytes of a save. Encoded like a list of u8, but read and written as one slice.
 struct Save(Vec<u8>);
 
 impl Serialize for Save {
@@ -161,7 +161,7 @@ impl Visitor<'_> for SaveBytes {
     }
 }
 
-/// The bytes of a file of keyframes.
+/// Encodes the keyframes as the bytes of a file.
 pub(super) fn encode<G: Game>(replay: &[u8], keyframes: &Keyframes<'_>) -> Vec<u8> {
     let at_checkpoints = keyframes.iter().filter(|frame| frame.place.inputs.finished_block().is_some());
     let body = Body {
@@ -183,7 +183,7 @@ pub(super) fn encode<G: Game>(replay: &[u8], keyframes: &Keyframes<'_>) -> Vec<u
     bytes
 }
 
-/// The body of a file of keyframes of this replay. The saves are not yet judged.
+/// Decodes the body of a file of keyframes of this replay. The saves are not checked yet.
 pub(super) fn decode<G: Game>(replay: &[u8], bytes: &[u8]) -> Result<Body, KeyframesError> {
     let header: &[u8; HEADER_LEN] = bytes.first_chunk().ok_or(KeyframesError::NotKeyframes)?;
     let number = |at: usize| u32::from_le_bytes([header[at], header[at + 1], header[at + 2], header[at + 3]]);
@@ -223,7 +223,7 @@ pub(super) fn decode<G: Game>(replay: &[u8], bytes: &[u8]) -> Result<Body, Keyfr
     Ok(body)
 }
 
-/// The keyframes at their places in a replay of `ticks` ticks that begins at `start`.
+/// Assigns the keyframes to their positions in a replay of `ticks` ticks that begins at `start`.
 pub(super) fn place<'a>(
     start: &Place<'a>,
     ticks: u64,

@@ -1,29 +1,29 @@
-//! [`Keyframes`]: saved states, evenly spread, within a budget.
+//! [`Keyframes`]: evenly spaced saved states within a memory budget.
 
 use alloc::collections::BTreeMap;
 use alloc::vec::Vec;
 
 use super::super::rerun::Place;
 
-/// A state that was saved.
+/// A saved state with its position in the replay.
 #[derive(Clone, Debug)]
 pub(super) struct Keyframe<'a> {
     pub(super) place: Place<'a>,
-    /// The canonical bytes of the game's save.
+    /// Canonical bytes of the game's save.
     pub(super) save: Vec<u8>,
 }
 
 impl Keyframe<'_> {
-    /// What it takes, its place included: never 0.
+    /// Memory in bytes, including the position; never 0.
     pub(super) fn bytes(&self) -> usize {
         self.save.len() + size_of::<Self>()
     }
 }
 
-/// Keyframes at multiples of the interval, by their ticks. Not every multiple need have one.
+/// Keyframes by tick, at multiples of the interval. A multiple may be without a keyframe.
 #[derive(Debug)]
 pub(super) struct Keyframes<'a> {
-    /// That of tick 0, which always stays.
+    /// Keyframe of tick 0, which is never removed.
     first: Keyframe<'a>,
     later: BTreeMap<u64, Keyframe<'a>>,
     interval: u64,
@@ -52,17 +52,17 @@ impl<'a> Keyframes<'a> {
         core::iter::once(&self.first).chain(self.later.values())
     }
 
-    /// The last one up to a tick.
+    /// The last keyframe at or before a tick.
     pub(super) fn latest(&self, tick: u64) -> &Keyframe<'a> {
         self.later.range(..=tick).next_back().map_or(&self.first, |(_, frame)| frame)
     }
 
-    /// Whether one is missing here.
+    /// Whether this tick should have a keyframe and has none.
     pub(super) fn is_due(&self, tick: u64) -> bool {
         tick > 0 && tick.is_multiple_of(self.interval) && !self.later.contains_key(&tick)
     }
 
-    /// Adds one where one is due; elsewhere it is dropped.
+    /// Inserts a keyframe if one is due at its tick, otherwise drops it.
     pub(super) fn insert(&mut self, frame: Keyframe<'a>) {
         if self.is_due(frame.place.tick) {
             self.bytes += frame.bytes();
@@ -73,7 +73,7 @@ impl<'a> Keyframes<'a> {
         }
     }
 
-    /// Doubles the interval.
+    /// Doubles the interval and removes the keyframes that are not multiples of it.
     fn thin_out(&mut self) {
         self.interval = self.interval.saturating_mul(2);
         let interval = self.interval;

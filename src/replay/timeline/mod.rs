@@ -1,15 +1,17 @@
-//! [`Timeline`]: a replay in which one can go to any tick, forwards and backwards.
+//! [`Timeline`]: a replay that can seek to any tick, forwards and backwards.
 //!
-//! A deterministic game cannot be run backwards, but it can be run again from a state that was kept. Two kinds are kept:
+//! A deterministic game cannot be run backwards, but it can be run forwards again from a saved state. Two kinds of
+//! saved states are kept:
 //!
-//! - *Keyframes*, one every [`interval`](Timeline::interval) ticks, as the canonical bytes of the game's save. When they
-//!   have used up their budget, the interval doubles and every second one goes, so that those that stay are evenly
-//!   spread. Whatever has been played once is therefore less than an interval of simulation away, for good.
-//! - A *trail* of saves just behind where one steps backwards, so that the ticks between two keyframes are simulated
-//!   once and not once for every step.
+//! - *Keyframes*, one every [`interval`](Timeline::interval) ticks, as the canonical bytes of the game's save. When
+//!   they exceed their memory budget, the interval doubles and every second keyframe is removed, so that the remaining
+//!   ones are evenly spaced. Any tick that has been played once therefore stays less than one interval of simulation
+//!   away.
+//! - A *trail* of saves before the current tick while stepping backwards, so that the ticks between two keyframes are
+//!   simulated once and not once per step.
 //!
-//! A keyframe is kept as bytes although a save in memory may share most of itself with others: bytes can be counted,
-//! whatever a game's saves are made of, and they go into a file as they are.
+//! A keyframe is stored as bytes, although saves in memory may share most of their data. Bytes can be counted, whatever
+//! a game's saves consist of, and they can be written to a file unchanged.
 
 mod bytes;
 mod keyframes;
@@ -32,14 +34,14 @@ use crate::codec;
 use crate::lockstep::Game;
 use crate::world::World;
 
-/// How much a [`Timeline`] keeps.
+/// Memory settings of a [`Timeline`].
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TimelineOptions {
-    /// Ticks from one keyframe to the next, at least 1. It is rounded down to whole blocks of the replay, if it is longer
-    /// than one, since the replay has checkpoints there that a keyframe is compared with.
+    /// Ticks between keyframes, at least 1. An interval longer than a block of the replay is rounded down to whole
+    /// blocks, because keyframes are compared with the replay's checkpoints, which are at the ends of blocks.
     pub interval: u32,
-    /// Bytes that all keyframes may take together, at most [`KEYFRAMES_BYTES_MAX`]. The trail may take about a quarter as
-    /// much again. The keyframe of tick 0 is kept in any case.
+    /// Maximum bytes of all keyframes together, at most [`KEYFRAMES_BYTES_MAX`]. The trail may use about a quarter of
+    /// that in addition. The keyframe of tick 0 is always kept.
     pub bytes: usize,
 }
 
@@ -50,29 +52,30 @@ impl Default for TimelineOptions {
     }
 }
 
-/// Why a [`Timeline`] cannot go somewhere.
+/// Reason why a [`Timeline`] cannot seek to a tick.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum SeekError {
-    /// The replay ends before.
+    /// The replay is shorter.
     NoSuchTick {
-        /// Where to go.
+        /// The tick to seek to.
         tick: u64,
-        /// How many ticks there are.
+        /// Number of ticks in the replay.
         ticks: u64,
     },
-    /// The replay cannot be played as far: its inputs are not this game's, cost too much, or lead elsewhere.
+    /// The replay cannot be played up to that tick: its inputs are not valid for this game, exceed a work limit, or
+    /// lead to another state.
     Replay(Verdict),
-    /// A keyframe is none of this replay. It comes from a file of keyframes, or saving and loading this game loses
-    /// something.
+    /// The state of a keyframe does not belong to this replay. The keyframe comes from a wrong file of keyframes, or
+    /// saving and loading this game loses state.
     Keyframe {
-        /// After how many ticks it is said to be.
+        /// Tick of the keyframe.
         tick: u64,
-        /// What is wrong with it.
+        /// Reason.
         why: String,
     },
-    /// After going back, the game has taken another course than the first time: saving and loading it loses something.
+    /// After seeking backwards, the game computed another state than the first time: saving and loading it loses state.
     Forgetful {
-        /// The tick of the first checkpoint that is not the same any more.
+        /// Tick of the first checkpoint that no longer matches.
         tick: u64,
     },
 }
@@ -85,7 +88,7 @@ impl fmt::Display for SeekError {
             SeekError::Keyframe { tick, why } => write!(f, "the keyframe of tick {tick}: {why}"),
             SeekError::Forgetful { tick } => write!(
                 f,
-                "played again after going back, tick {tick} is another one: saving and loading this game loses something"
+                "after seeking backwards, tick {tick} has another state: saving and loading this game loses state"
             ),
         }
     }
@@ -93,7 +96,7 @@ impl fmt::Display for SeekError {
 
 impl core::error::Error for SeekError {}
 
-/// A replay in which one can go to any tick. *Tick t* is the state after *t* ticks.
+/// A replay that can seek to any tick. *Tick t* is the state after *t* ticks.
 ///
 /// ```
 /// use lockstep2d::lockstep::{Game, Sandbox, SandboxSetup};
@@ -120,16 +123,16 @@ pub struct Timeline<'a, G: Game> {
     trail: Trail<'a, G::Save>,
     played: u64,
     simulated: u64,
-    /// The first tick that cannot be reached, and why.
+    /// The first tick that cannot be reached, and the reason.
     failed: Option<(u64, Verdict)>,
 }
 
 impl<'a, G: Game> Timeline<'a, G> {
-    /// Scans the whole file and starts the game; nothing is played.
+    /// Scans the whole file and starts the game; no tick is played.
     ///
     /// # Errors
-    /// The [`Verdict`] when there is nothing to play: the file is malformed, too large, of another game, or its setup
-    /// starts another state.
+    /// The [`Verdict`] when nothing can be played: the file is malformed, exceeds a limit, belongs to another game, or
+    /// its setup leads to another start state.
     pub fn open(file: &'a [u8], options: &TimelineOptions, limits: &Limits) -> Result<Self, Verdict> {
         let playback = Playback::<G>::open(file, limits)?;
         let place = playback.place().clone();
@@ -142,66 +145,67 @@ impl<'a, G: Game> Timeline<'a, G> {
         Ok(Timeline { file, playback, keyframes, trail, played: 0, simulated: 0, failed })
     }
 
-    /// The game as of now.
+    /// The game at the current tick.
     #[must_use]
     pub fn game(&self) -> &G {
         self.playback.game()
     }
 
-    /// The physics world of the game as of now, if it has one, to look at.
+    /// The game's physics world at the current tick, if it has one, for inspection.
     pub fn world(&mut self) -> Option<&World> {
         self.playback.world()
     }
 
-    /// Where it is.
+    /// The current tick.
     #[must_use]
     pub fn tick(&self) -> u64 {
         self.playback.tick()
     }
 
-    /// How many ticks the replay has, as far as it is whole.
+    /// Number of ticks in the complete blocks of the file.
     #[must_use]
     pub fn ticks(&self) -> u64 {
         self.playback.ticks()
     }
 
-    /// Up to which tick the replay has been played without a gap, with all its checkpoints the same.
+    /// The tick up to which the replay has been played without a gap, with all checkpoints equal.
     #[must_use]
     pub fn played(&self) -> u64 {
         self.played
     }
 
-    /// How many ticks have been simulated altogether, repeated ones among them: what going about has cost.
+    /// Number of ticks simulated in total, including repeated ones: the cost of all seeking.
     #[must_use]
     pub fn simulated(&self) -> u64 {
         self.simulated
     }
 
-    /// Ticks from one keyframe to the next. It grows when they have used up their budget.
+    /// Ticks between keyframes. The interval grows when the keyframes exceed their memory budget.
     #[must_use]
     pub fn interval(&self) -> u64 {
         self.keyframes.interval()
     }
 
-    /// The ticks of the keyframes, in ascending order, 0 among them.
+    /// Ticks of the keyframes, in ascending order, including 0.
     pub fn keyframes(&self) -> impl Iterator<Item = u64> {
         self.keyframes.iter().map(|frame| frame.place.tick)
     }
 
-    /// Goes to a tick. Where the replay has been played already, that costs less than an [`interval`](Self::interval) of
-    /// simulation; where it has not, it is played.
+    /// Seeks to a tick. Ticks that have been played before cost less than one [`interval`](Self::interval) of
+    /// simulation; others are played.
     ///
     /// Every checkpoint on the way is compared.
     ///
     /// # Errors
-    /// [`SeekError`]. If the replay cannot be played as far, the game is where that was found; one can still go to every
-    /// tick before. Where there is no such tick or no such keyframe, it is where it was.
+    /// [`SeekError`]. If the replay cannot be played up to `tick`, the game stays at the tick where that was found, and
+    /// all earlier ticks remain reachable. If there is no such tick or its keyframe is wrong, the current tick does not
+    /// change.
     pub fn seek(&mut self, tick: u64) -> Result<(), SeekError> {
         if tick > self.ticks() {
             return Err(SeekError::NoSuchTick { tick, ticks: self.ticks() });
         }
         self.check_reachable(tick)?;
-        // Who goes back a little is going to go back more.
+        // A short seek backwards is usually followed by more of them.
         let goes_back = self.tick().checked_sub(tick).is_some_and(|by| (1..self.interval()).contains(&by));
         self.go_to_latest_before(tick)?;
         while self.tick() < tick {
@@ -213,11 +217,11 @@ impl<'a, G: Game> Timeline<'a, G> {
         Ok(())
     }
 
-    /// Goes one tick further. That is always simulated, so that what a tick leaves behind beside the state, such as its
-    /// contact points, is there to be seen.
+    /// Advances by one tick. The tick is always simulated, so that results of a step that are not state, such as
+    /// contact points, are available.
     ///
     /// # Errors
-    /// As [`Timeline::seek`]. At the end it stays where it is and says [`Step::Ended`].
+    /// Same as [`Timeline::seek`]. At the end the tick does not change and the result is [`Step::Ended`].
     pub fn step(&mut self) -> Result<Step, SeekError> {
         if self.tick() == self.ticks() {
             return Ok(Step::Ended);
@@ -226,11 +230,11 @@ impl<'a, G: Game> Timeline<'a, G> {
         self.play_tick().map(|()| Step::Ticked)
     }
 
-    /// Goes one tick back. The first time in an interval that may cost an interval of simulation, and then, in memory
-    /// enough, nothing.
+    /// Goes back by one tick. The first step back in an interval may cost one interval of simulation; given enough
+    /// memory, further steps back cost none.
     ///
     /// # Errors
-    /// As [`Timeline::seek`]. At the start it stays where it is and says [`Step::Ended`].
+    /// Same as [`Timeline::seek`]. At the start the tick does not change and the result is [`Step::Ended`].
     pub fn step_back(&mut self) -> Result<Step, SeekError> {
         match self.tick().checked_sub(1) {
             Some(before) => self.seek(before).map(|()| Step::Ticked),
@@ -238,35 +242,36 @@ impl<'a, G: Game> Timeline<'a, G> {
         }
     }
 
-    /// Plays what has not been played, which leaves keyframes everywhere, and comes back.
+    /// Plays all ticks that have not been played, which creates all keyframes, and returns to the current tick.
     ///
     /// # Errors
-    /// As [`Timeline::seek`].
+    /// Same as [`Timeline::seek`].
     pub fn play_all(&mut self) -> Result<(), SeekError> {
         let here = self.tick();
         self.seek(self.played)?;
-        // Not by `seek`, which would pass over what a file's keyframes spare.
+        // `seek` would skip ticks for which keyframes were loaded from a file.
         while self.tick() < self.ticks() {
             self.play_tick()?;
         }
         self.seek(here)
     }
 
-    /// The keyframes as the bytes of a file, for [`Timeline::use_keyframes`] another time. It has those for which the
-    /// replay has a checkpoint: all, unless the interval is shorter than the replay's blocks.
+    /// Encodes the keyframes as the bytes of a file, for a later [`Timeline::use_keyframes`]. Only keyframes at
+    /// checkpoints of the replay are included: all of them, unless the interval is shorter than the replay's blocks.
     #[must_use]
     pub fn keyframes_to_bytes(&self) -> Vec<u8> {
         bytes::encode::<G>(self.file, &self.keyframes)
     }
 
-    /// Puts keyframes from a file, of [`Timeline::keyframes_to_bytes`], in the place of those that there are.
+    /// Replaces the keyframes by those of a file written by [`Timeline::keyframes_to_bytes`].
     ///
-    /// The interval becomes a multiple of the file's. A keyframe is decoded when it is needed, and has to have the state
-    /// of the replay's own checkpoint. That is no verdict on the replay: nothing shows that its inputs lead there. What
-    /// has been played is [`Timeline::played`].
+    /// The interval becomes a multiple of the file's. A keyframe is decoded when it is needed, and its state has to
+    /// match the replay's own checkpoint. This does not verify the replay, because it does not show that the inputs
+    /// lead to these states. [`Timeline::played`] tells how far the replay has been simulated.
     ///
     /// # Errors
-    /// [`KeyframesError`] for any other bytes, or those of another replay. The keyframes are then as they were.
+    /// [`KeyframesError`] for any other bytes, and for keyframes of another replay. The current keyframes are then
+    /// unchanged.
     pub fn use_keyframes(&mut self, bytes: &[u8]) -> Result<(), KeyframesError> {
         let body = bytes::decode::<G>(self.file, bytes)?;
         let interval = body.interval.saturating_mul(self.interval().div_ceil(body.interval));
@@ -287,7 +292,7 @@ impl<'a, G: Game> Timeline<'a, G> {
         }
     }
 
-    /// Goes to the last tick up to `tick` that costs no simulation.
+    /// Restores the latest saved state at or before `tick`, unless the current state is at least as late.
     fn go_to_latest_before(&mut self, tick: u64) -> Result<(), SeekError> {
         let frame = self.keyframes.latest(tick);
         let kept = self.trail.latest(tick);
@@ -315,10 +320,10 @@ impl<'a, G: Game> Timeline<'a, G> {
             return Ok(());
         }
         self.playback.go(&back, here);
-        Err(SeekError::Keyframe { tick, why: "its state is not that of the replay's checkpoint".into() })
+        Err(SeekError::Keyframe { tick, why: "its state does not match the replay's checkpoint".into() })
     }
 
-    /// Keeps where it is, for steps backwards.
+    /// Saves the current state for steps backwards.
     fn leave_trail(&mut self) {
         let length = (self.keyframes.bytes_max() / 4) / self.keyframes.latest(self.tick()).bytes();
         let length = u64::try_from(length).unwrap_or(u64::MAX).max(2);

@@ -1,4 +1,5 @@
-//! Any inputs, in every way that must make no difference. A panic is a finding, whether of the game or of the check.
+//! Plays arbitrary inputs in all variants that must lead to the same states. A panic of the game or of the check is a
+//! finding.
 #![no_main]
 
 use std::fs;
@@ -23,7 +24,7 @@ fuzz_target!(|bytes: &[u8]| {
         Err(CheckError::Failed(failure)) => {
             let name = "failure.replay";
             let written = fs::write(name, &failure.replay).map_or("not written", |()| name);
-            panic!("{failure}\nthe replay: {written}");
+            panic!("{failure}\nthe replay file: {written}");
         }
         Err(error) => panic!("{error}"),
     }
