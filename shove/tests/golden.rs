@@ -1,4 +1,4 @@
-//! The committed matches verify, end in the committed hashes, and are what the bots still play.
+//! The committed matches verify, end in the committed hashes, and equal a new recording of their bots.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -7,7 +7,7 @@ use std::process::Command;
 use lockstep2d::replay::{Limits, Verdict, verify};
 use lockstep2d_shove::Shove;
 
-/// Scene, and state hash after 3000 ticks with seed 1, for the present semantics and version of the rules.
+/// Scene, and state hash after 3000 ticks with seed 1, for the current semantics and version of the rules.
 const GOLDENS: [(&str, &str); 3] = [
     ("duel", "1323f1f9f80b55f8f8b2008534b8608d"),
     ("match", "61328a69898eb39d11fd6e187fc841bc"),
@@ -45,7 +45,7 @@ fn every_replay_is_what_its_bots_play() {
         let file = std::env::temp_dir().join(format!("shove-{}-{scene}.replay", std::process::id()));
         let recorded = shove().args(["record", scene, "--seed", "1", "-o"]).arg(&file).output();
         assert!(recorded.expect("the binary runs").status.success(), "{scene}");
-        let bytes = fs::read(&file).expect("what was just written");
+        let bytes = fs::read(&file).expect("the recording was just written");
         let _ = fs::remove_file(&file);
         let committed = fs::read(replay(scene)).expect("a replay for each golden");
         assert!(bytes == committed, "{scene}: the recording differs from the committed one");
