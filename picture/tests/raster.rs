@@ -116,7 +116,10 @@ fn bodies_are_where_they_are_and_nowhere_else() {
         let layers = Layers { outlines: true, ..Layers::NONE };
         world(&mut list, game.world(), layers, &camera, &Brush::suiting(game.world(), &camera));
         let [outside, inside] = check(&raster(&list, SIZE, paper), &game, &camera, paper, 0);
-        assert!(outside > 500 && inside > 20, "{scene}: {outside} outside and {inside} inside");
+        assert!(
+            outside > 500 && inside > 20,
+            "{scene}: checked only {outside} pixels outside and {inside} inside"
+        );
     }
 }
 
@@ -145,7 +148,7 @@ fn a_page_shows_the_same_below_its_legend() {
     }
     let image = raster(&bare, (900, 400), Colour::hex(0));
     let [outside, inside] = check(&image, &game, &camera, Colour::hex(PAPER), top);
-    assert!(outside > 1000 && inside > 100, "{outside} outside and {inside} inside");
+    assert!(outside > 1000 && inside > 100, "checked only {outside} pixels outside and {inside} inside");
 }
 
 /// Shapes that extend far beyond the window must not overflow the rasteriser's coordinates.

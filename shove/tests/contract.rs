@@ -19,7 +19,7 @@ fn played_by(
     ticks: u64,
     mut players: impl FnMut(u64, &Shove) -> Vec<Pad>,
 ) -> Vec<(Vec<Pad>, StateHash)> {
-    let mut game = Shove::new(setup).expect("playable");
+    let mut game = Shove::new(setup).expect("the setup should be valid");
     let mut log = Vec::new();
     for tick in 0..ticks {
         let pads = players(tick, &game);
@@ -35,7 +35,7 @@ fn play_again(
     log: &[(Vec<Pad>, StateHash)],
     mut before: impl FnMut(usize, &mut Shove),
 ) -> Shove {
-    let mut game = Shove::new(setup).expect("playable");
+    let mut game = Shove::new(setup).expect("the setup should be valid");
     for (tick, (pads, hash)) in log.iter().enumerate() {
         before(tick, &mut game);
         game.step(pads);
@@ -46,7 +46,7 @@ fn play_again(
 
 /// Returns a random byte as a pad.
 fn hostile(rng: &mut Rng) -> Pad {
-    Pad(u8::try_from(rng.below(256)).expect("a byte"))
+    Pad(u8::try_from(rng.below(256)).expect("below 256"))
 }
 
 fn hostile_log(setup: &Setup, ticks: u64) -> Vec<(Vec<Pad>, StateHash)> {
@@ -111,8 +111,8 @@ fn a_save_survives_as_bytes_in_another_game() {
         play_again(&setup, &log, |tick, game| {
             if tick % 10 == 0 {
                 let bytes = encode(&game.save());
-                let save: Save = decode(&bytes).expect("own bytes");
-                let mut other = Shove::new(&setup).expect("playable");
+                let save: Save = decode(&bytes).expect("the bytes of a save should decode");
+                let mut other = Shove::new(&setup).expect("the setup should be valid");
                 other.load(&save);
                 assert_eq!(other.state_hash(), game.state_hash(), "tick {tick}");
                 assert_eq!(encode(&other.save()), bytes, "tick {tick}");
@@ -133,11 +133,13 @@ fn damaged_saves_are_refused_or_played_without_panic() {
         let mut bytes = bytes.clone();
         // Most of the damage is in the rules, which follow the world in the save.
         let back = if rng.chance(3, 4) { 80 } else { bytes.len() };
-        let at =
-            bytes.len() - 1 - usize::try_from(rng.below(u32::try_from(back).expect("short"))).expect("short");
+        let at = bytes.len()
+            - 1
+            - usize::try_from(rng.below(u32::try_from(back).expect("the save should be shorter than 4 GiB")))
+                .expect("the save should be shorter than 4 GiB");
         bytes[at] = rng.next_u32().to_le_bytes()[0];
         let Ok(save) = decode::<Save>(&bytes) else { continue };
-        let mut game = Shove::new(&setup).expect("playable");
+        let mut game = Shove::new(&setup).expect("the setup should be valid");
         game.load(&save);
         for _ in 0..5 {
             let pads: Vec<_> = (0..4).map(|_| hostile(&mut rng)).collect();
@@ -156,7 +158,7 @@ fn rolling_back_leaves_no_trace() {
     for (setup, log) in logs() {
         let mut rng = Rng::new(setup.seed);
         let mut tick = 0;
-        let mut game = Shove::new(&setup).expect("playable");
+        let mut game = Shove::new(&setup).expect("the setup should be valid");
         while tick < log.len() {
             let depth = 1 + usize::try_from(rng.below(8)).expect("below 8");
             let save = game.save();
@@ -177,7 +179,7 @@ fn rolling_back_leaves_no_trace() {
 #[test]
 fn missing_and_surplus_pads_are_no_trouble() {
     let setup = Setup { seats: 2, ..Setup::default() };
-    let mut game = Shove::new(&setup).expect("playable");
+    let mut game = Shove::new(&setup).expect("the setup should be valid");
     for tick in 0..300 {
         game.step(&vec![Pad::RIGHT; tick % 6]);
     }

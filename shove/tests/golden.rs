@@ -25,7 +25,7 @@ fn shove() -> Command {
 #[test]
 fn every_replay_matches_and_ends_in_its_golden() {
     for (scene, golden) in GOLDENS {
-        let bytes = fs::read(replay(scene)).expect("a replay for each golden");
+        let bytes = fs::read(replay(scene)).expect("each golden should have a replay");
         match verify::<Shove>(&bytes, &Limits::default()) {
             Verdict::Match { ticks, hash } => {
                 assert_eq!((ticks, hash.to_string().as_str()), (3000, golden), "{scene}");
@@ -34,7 +34,7 @@ fn every_replay_matches_and_ends_in_its_golden() {
         }
     }
     let folder = replay("match").with_file_name("");
-    let outcome = shove().arg("verify").arg(folder).output().expect("the binary runs");
+    let outcome = shove().arg("verify").arg(folder).output().expect("the binary should run");
     let text = String::from_utf8_lossy(&outcome.stdout).into_owned();
     assert!(outcome.status.success() && text.contains("3 of 3 files match"), "{text}");
 }
@@ -44,10 +44,10 @@ fn every_replay_is_what_its_bots_play() {
     for (scene, _) in GOLDENS {
         let file = std::env::temp_dir().join(format!("shove-{}-{scene}.replay", std::process::id()));
         let recorded = shove().args(["record", scene, "--seed", "1", "-o"]).arg(&file).output();
-        assert!(recorded.expect("the binary runs").status.success(), "{scene}");
+        assert!(recorded.expect("the binary should run").status.success(), "{scene}");
         let bytes = fs::read(&file).expect("the recording was just written");
         let _ = fs::remove_file(&file);
-        let committed = fs::read(replay(scene)).expect("a replay for each golden");
+        let committed = fs::read(replay(scene)).expect("each golden should have a replay");
         assert!(bytes == committed, "{scene}: the recording differs from the committed one");
     }
 }
@@ -55,7 +55,7 @@ fn every_replay_is_what_its_bots_play() {
 #[test]
 fn a_tick_is_drawn() {
     let picture = shove().arg("export").arg(replay("match")).args(["--tick", "100", "--svg"]).output();
-    let picture = picture.expect("the binary runs");
+    let picture = picture.expect("the binary should run");
     assert!(picture.status.success());
     let text = String::from_utf8_lossy(&picture.stdout).into_owned();
     assert!(text.starts_with("<svg ") && text.contains("round 1 · Fight"), "{text}");

@@ -1,5 +1,5 @@
 //! A damaged or forged replay of this game never verifies as another match: see the engine's test of the same name.
-#![expect(clippy::unwrap_used, reason = "the files of this repository are good")]
+#![expect(clippy::unwrap_used, reason = "the files of this repository are valid")]
 
 #[path = "../../tests/mutated/judge.rs"]
 mod judge;

@@ -97,7 +97,7 @@ mod tests {
         assert_eq!((kept.len(), kept[0], kept[100]), (101, 0, 40_000));
         for pair in kept.windows(2) {
             let (gap, age) = (pair[1] - pair[0], 40_000 - pair[0]);
-            assert!(gap <= 40 + age / 8, "{gap} ticks at {age}");
+            assert!(gap <= 40 + age / 8, "gap of {gap} ticks at an age of {age} ticks");
         }
     }
 
