@@ -1,4 +1,4 @@
-//! The engines side by side in a scene, in interleaved rounds.
+//! Compares the engines in a scene, in interleaved rounds.
 
 use anyhow::{Context, Result, bail, ensure};
 use indicatif::ProgressBar;
@@ -12,89 +12,91 @@ use crate::stats::{geometric_mean, median, quartiles};
 /// Steps of each engine before the first round.
 const WARM_UP: u64 = 20;
 
-/// What to compare.
+/// Parameters of a comparison.
 #[derive(Clone, Copy, Debug)]
 pub struct Plan {
     /// Runs of each engine.
     pub rounds: usize,
-    /// Of each engine.
+    /// Threads of each engine.
     pub threads: usize,
-    /// Fewer steps than the scene has.
+    /// Most steps; `None` for the full length of the scene.
     pub steps: Option<u64>,
 }
 
 impl Plan {
-    /// Units of progress of a scene.
+    /// Number of runs for a scene, warm-ups included; the unit of the progress bar.
     pub fn runs(&self) -> u64 {
         ((self.rounds + 1) * Kind::ALL.len()) as u64
     }
 }
 
-/// A value of each engine.
+/// A value for each engine.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Each<T> {
-    /// lockstep2d's.
+    /// Value of lockstep2d.
     pub ours: T,
-    /// Box2D's.
+    /// Value of Box2D.
     pub box2d: T,
-    /// rapier2d's.
+    /// Value of rapier2d.
     pub rapier: T,
 }
 
-/// A scene's results: one line of JSON. Ratios are our time over the other's: less than 1 is faster than it.
+/// Results of a scene: one line of JSON. Ratios are lockstep2d's time over the other engine's: less than 1 means that
+/// lockstep2d is faster.
 #[derive(Clone, Debug, Serialize)]
 pub struct SceneResult {
-    /// Its name.
+    /// Name of the scene.
     pub scene: String,
-    /// How many were simulated, the first one not timed.
+    /// Number of simulated steps, of which the first is not timed.
     pub steps: usize,
     /// Runs of each engine.
     pub rounds: usize,
-    /// Of each engine.
+    /// Threads of each engine.
     pub threads: usize,
-    /// lockstep2d's ms per step: CPU time, or time on the clock with more threads than one; median of the rounds.
+    /// Time per step of lockstep2d in ms, median of the rounds: CPU time with one thread, wall-clock time with more.
     pub ms: f64,
-    /// Box2D's.
+    /// Time per step of Box2D in ms, measured like `ms`.
     pub box2d_ms: f64,
-    /// rapier2d's.
+    /// Time per step of rapier2d in ms, measured like `ms`.
     pub rapier_ms: Option<f64>,
-    /// Median of the rounds' ratios.
+    /// Median of the rounds' ratios to Box2D.
     pub vs_box2d: f64,
-    /// First and third quartile of the same.
+    /// First and third quartile of the rounds' ratios to Box2D.
     pub vs_box2d_quartiles: [f64; 2],
-    /// Median of the rounds' ratios.
+    /// Median of the rounds' ratios to rapier2d.
     pub vs_rapier: Option<f64>,
-    /// First and third quartile of the same.
+    /// First and third quartile of the rounds' ratios to rapier2d.
     pub vs_rapier_quartiles: Option<[f64; 2]>,
-    /// Time on the clock in ms per step.
+    /// Wall-clock time in ms per step.
     pub wall_ms: Each<Option<f64>>,
-    /// CPU time of bodies and joints that come and go, in ms per step: in no other number.
+    /// CPU time of the commands between steps, such as creating bodies and joints, in ms per step. No other value
+    /// includes it.
     pub commands_ms: Each<Option<f64>>,
-    /// After the last step.
+    /// State after the last step.
     pub end: Each<Option<EndState>>,
-    /// What it costs to keep a whole world.
+    /// Cost of saving, restoring and hashing a whole world.
     pub keeping: Each<Option<Keeping>>,
-    /// Why an engine is missing.
+    /// Reasons why engines are missing.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub missing: Vec<String>,
 }
 
-/// The last line of JSON.
+/// Summary of all scenes: the last line of JSON.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Summary {
-    /// True: tells it from a scene's line.
+    /// Always true, to distinguish the summary from the line of a scene.
     pub summary: bool,
-    /// How many scenes it is over.
+    /// Number of scenes.
     pub scenes: usize,
-    /// Of the scenes' medians.
+    /// Geometric mean of the scenes' median ratios to Box2D.
     pub geomean_vs_box2d: Option<f64>,
-    /// Of the scenes' medians, where rapier2d runs.
+    /// Geometric mean of the scenes' median ratios to rapier2d, over the scenes in which it runs.
     pub geomean_vs_rapier: Option<f64>,
-    /// The largest of the scenes' medians.
+    /// Largest of the scenes' median ratios to Box2D.
     pub worst_vs_box2d: Option<f64>,
 }
 
-/// The runs of one engine.
+/// Runs of one engine.
 #[derive(Default)]
 struct Runs {
     times: Vec<Times>,
@@ -103,7 +105,7 @@ struct Runs {
 }
 
 impl Runs {
-    /// The times that ratios are made of.
+    /// Returns the times used for ratios: CPU times with one thread, wall-clock times with more.
     fn compared(&self, threads: usize) -> Vec<f64> {
         self.times.iter().map(|times| if threads == 1 { times.cpu } else { times.wall }).collect()
     }
@@ -193,7 +195,7 @@ fn result(
     })
 }
 
-/// The geometric means.
+/// Summarises the results of all scenes.
 pub fn summary(results: &[SceneResult]) -> Summary {
     let to_box2d: Vec<_> = results.iter().map(|result| result.vs_box2d).collect();
     let to_rapier: Vec<_> = results.iter().filter_map(|result| result.vs_rapier).collect();
@@ -206,7 +208,7 @@ pub fn summary(results: &[SceneResult]) -> Summary {
     }
 }
 
-/// A line of JSON.
+/// Formats a value as a line of JSON.
 pub fn line(value: &impl Serialize) -> Result<String> {
-    serde_json::to_string(value).context("results are plain data")
+    serde_json::to_string(value).context("cannot write the result as JSON")
 }

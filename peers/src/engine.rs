@@ -1,4 +1,4 @@
-//! What the benchmark asks of an engine, and what it reads from it.
+//! [`Engine`]: the interface that the benchmark uses to drive an engine and to read its state.
 
 use anyhow::Result;
 use lockstep2d::body::{BodyId, Polygon};
@@ -23,10 +23,10 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// All of them.
+    /// All engines, in the order of a round.
     pub const ALL: [Kind; 3] = [Kind::Ours, Kind::Box2d, Kind::Rapier];
 
-    /// Its name.
+    /// Name of the engine.
     pub const fn name(self) -> &'static str {
         match self {
             Kind::Ours => "lockstep2d",
@@ -35,7 +35,7 @@ impl Kind {
         }
     }
 
-    /// A world with the scene's setup in it.
+    /// Builds a world with the scene's setup.
     pub fn build(self, script: &Script, threads: usize) -> Result<Box<dyn Engine>> {
         let mut engine: Box<dyn Engine> = match self {
             Kind::Ours => Box::new(Ours::new(&script.config, threads)?),
@@ -49,128 +49,129 @@ impl Kind {
     }
 }
 
-/// A body, as every engine can report it.
+/// State of a body that every engine can report.
 #[derive(Clone, Copy, Debug)]
 pub struct BodyState {
-    /// Whether forces move it.
+    /// Whether the body is dynamic.
     pub dynamic: bool,
-    /// Whether it is simulated.
+    /// Whether the body is enabled and not asleep.
     pub awake: bool,
-    /// In kg.
+    /// Mass in kg.
     pub mass: f64,
     /// Centre of mass in metres.
     pub centre: [f64; 2],
-    /// In m/s.
+    /// Velocity of the centre of mass, in m/s.
     pub velocity: [f64; 2],
 }
 
-/// How much there is.
+/// Number of objects in a world.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Counts {
-    /// All kinds of bodies.
+    /// Bodies of all kinds.
     pub bodies: usize,
-    /// A chain counts as its links.
+    /// Shapes; each link of a chain counts.
     pub shapes: usize,
     /// Joints.
     pub joints: usize,
 }
 
-/// What touches.
+/// Contacts of a world.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Contacts {
     /// Pairs of shapes with contact points.
     pub pairs: usize,
-    /// The deepest penetration in metres, or 0, as the engine found it in its last step.
+    /// Deepest penetration in metres as found by the engine's last step, or 0.
     pub deepest: f64,
 }
 
-/// What a world consists of, to compare engines by.
+/// Contents of a world, for checking that the engines simulate the same scene.
 #[derive(Clone, Copy, Debug)]
 pub struct Inventory {
-    /// How much there is.
+    /// Number of objects.
     pub counts: Counts,
-    /// Of all dynamic bodies, in kg.
+    /// Total mass of all dynamic bodies, in kg.
     pub mass: f64,
 }
 
 impl Inventory {
-    /// That of a world.
+    /// Returns the inventory of a world.
     pub fn of(engine: &dyn Engine) -> Self {
         let bodies = engine.bodies();
         let mass = bodies.iter().filter(|body| body.dynamic).map(|body| body.mass).sum();
         Inventory { counts: engine.counts(), mass }
     }
 
-    /// Whether another world is made of the same things. Engines approximate the mass of rounded corners.
+    /// Returns whether another world has the same counts, and the same mass up to 0.5 %: engines approximate the mass
+    /// of rounded corners.
     pub fn is_like(&self, other: &Inventory) -> bool {
         self.counts == other.counts && (self.mass - other.mass).abs() <= 0.005 * self.mass
     }
 }
 
-/// A world in some engine.
+/// World in one of the engines.
 pub trait Engine {
-    /// Does what a command did to the scene's own world.
+    /// Executes a recorded command, with the handles of its recorded outcome.
     fn apply(&mut self, event: &Event) -> Result<()>;
 
-    /// 1/60 s in 4 sub-steps.
+    /// Advances by one step with the scene's configuration: 1/60 s in 4 sub-steps.
     fn step(&mut self);
 
-    /// Every body that is not fixed, in the order of lockstep2d's slots.
+    /// Returns every body that is not fixed, in the order of lockstep2d's slots.
     fn bodies(&self) -> Vec<BodyState>;
 
-    /// How much there is.
+    /// Returns the number of objects.
     fn counts(&self) -> Counts;
 
-    /// What touches.
+    /// Returns the contacts.
     fn contacts(&self) -> Contacts;
 
-    /// The largest distance of a joint's two anchors, in metres, unless there are no joints.
+    /// Returns the largest distance between the two anchors of a joint, in metres; `None` without joints.
     fn joint_gap(&self) -> Option<f64>;
 
-    /// Saves the world, replacing what was saved before.
+    /// Saves the world, replacing the previous save.
     fn save(&mut self);
 
-    /// Size of what was saved, as bytes for a file.
+    /// Size of the saved world as a file, in bytes.
     fn saved_bytes(&self) -> usize;
 
-    /// Returns to what was saved.
+    /// Restores the saved world.
     fn restore(&mut self) -> Result<()>;
 
-    /// A hash of all that influences the future, if the engine has one.
+    /// Returns a hash of all state that influences later steps; `None` if the engine has none.
     fn hash(&self) -> Option<u128>;
 }
 
-/// An engine's number as a float.
+/// Converts a fixed-point number to a float.
 pub fn float(x: Fx) -> f64 {
     x.to_num()
 }
 
-/// A vector as floats.
+/// Converts a vector to floats.
 pub fn floats(v: Vec2<Fx>) -> [f64; 2] {
     [float(v.x), float(v.y)]
 }
 
-/// The same in single precision, which both peers compute in.
+/// Converts a vector to single precision, with which Box2D and rapier2d compute.
 pub fn singles(v: Vec2<Fx>) -> [f32; 2] {
     [v.x.to_num(), v.y.to_num()]
 }
 
-/// The corners of a polygon, moved.
+/// Returns the corners of a polygon, moved by an offset.
 pub fn corners(polygon: &Polygon, offset: Vec2<Fx>) -> Vec<[f32; 2]> {
     let moved = |vertex: &Vec2<Length>| singles(vertex.widen() + offset);
     polygon.vertices().iter().map(moved).collect()
 }
 
-/// Values by slot of lockstep2d's handles: the peers' own handles.
+/// Map from lockstep2d's body handles, by slot, to the handles of another engine.
 pub struct Slots<T>(Vec<Option<T>>);
 
 impl<T: Copy> Slots<T> {
-    /// None yet.
+    /// Creates an empty map.
     pub const fn new() -> Self {
         Slots(Vec::new())
     }
 
-    /// Sets that of a body.
+    /// Sets the value of a body.
     pub fn insert(&mut self, id: BodyId, value: T) {
         let index = id.index() as usize;
         if self.0.len() <= index {
@@ -179,20 +180,20 @@ impl<T: Copy> Slots<T> {
         self.0[index] = Some(value);
     }
 
-    /// That of a body.
+    /// Returns the value of a body.
     pub fn get(&self, id: BodyId) -> Result<T> {
         let found = self.0.get(id.index() as usize).copied().flatten();
         found.ok_or_else(|| anyhow::anyhow!("no body {id}"))
     }
 
-    /// Removes that of a body.
+    /// Removes and returns the value of a body.
     pub fn remove(&mut self, id: BodyId) -> Result<T> {
         let value = self.get(id)?;
         self.0[id.index() as usize] = None;
         Ok(value)
     }
 
-    /// All of them.
+    /// Returns all values, in slot order.
     pub fn iter(&self) -> impl Iterator<Item = T> {
         self.0.iter().copied().flatten()
     }

@@ -1,4 +1,5 @@
-//! How the time of a step grows with the number of bodies: the `p` of `n^p`, in worlds that are as dense at any size.
+//! Measures how the time of a step grows with the number of bodies `n`: the exponent `p` of `n^p`, in worlds with the
+//! same density of contacts at every size.
 
 use anyhow::{Result, anyhow};
 use indicatif::ProgressBar;
@@ -15,60 +16,60 @@ use crate::measure::run;
 use crate::script::Script;
 use crate::stats::{median, power};
 
-/// A world of any size.
+/// World that can be built in any size.
 #[derive(Clone, Copy)]
 pub struct World {
-    /// What it is called.
+    /// Name of the world.
     pub name: &'static str,
-    /// What is in it, about so many bodies.
+    /// Builds the world with about this number of bodies.
     pub setup: fn(bodies: u32) -> Result<SandboxSetup, WorldError>,
 }
 
-/// All of them.
+/// All worlds.
 pub const WORLDS: [World; 3] = [
     World { name: "pyramids", setup: pyramids },
     World { name: "drums", setup: drums },
     World { name: "churn", setup: churn },
 ];
 
-/// What to measure.
+/// Parameters of a measurement.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    /// How many bodies, about.
+    /// Approximate numbers of bodies.
     pub sizes: Vec<u32>,
-    /// Steps that are timed.
+    /// Number of timed steps.
     pub steps: u64,
-    /// Steps before them.
+    /// Number of steps before the timed ones.
     pub untimed: u64,
     /// Runs of each engine at each size.
     pub rounds: usize,
 }
 
-/// A world in an engine at every size.
+/// Results of a world in one engine, at every size.
 #[derive(Clone, Debug, Serialize)]
 pub struct Growth {
-    /// Its name.
+    /// Name of the world.
     pub world: &'static str,
-    /// The engine's name.
+    /// Name of the engine.
     pub engine: &'static str,
-    /// From small to large.
+    /// Results in the order of the sizes.
     pub points: Vec<Point>,
-    /// The exponent that fits best.
+    /// Exponent of the best fit.
     pub p: f64,
 }
 
-/// A world at one size.
+/// Result of a world at one size.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Point {
-    /// Dynamic bodies.
+    /// Number of dynamic bodies.
     pub bodies: usize,
-    /// Pairs with contact points at the end.
+    /// Number of pairs with contact points at the end.
     pub contacts: usize,
-    /// CPU time of a step.
+    /// CPU time of a step, in ms.
     pub ms: f64,
 }
 
-/// Measures a world in every engine, in turn.
+/// Measures a world in every engine, in interleaved rounds.
 pub fn measure(world: World, plan: &Plan, progress: &ProgressBar) -> Result<Vec<Growth>> {
     let World { name, setup } = world;
     let mut growths =
@@ -103,7 +104,7 @@ fn config() -> Config {
     Config { sleeping: false, pair_limit: 1 << 20, ..Config::default() }
 }
 
-/// Pyramids of 55 boxes side by side, 20 on a shelf: the tiles of `many_pyramids`.
+/// Pyramids of 55 boxes, 20 side by side on each shelf, like the pyramids of `many_pyramids`.
 fn pyramids(bodies: u32) -> Result<SandboxSetup, WorldError> {
     let pyramids = (bodies / 55).max(1);
     let mut scene = Builder::new(config());
@@ -124,7 +125,7 @@ fn pyramids(bodies: u32) -> Result<SandboxSetup, WorldError> {
     Ok(scene.finish())
 }
 
-/// Square drums of 484 boxes and balls each, side by side.
+/// Square drums with 484 boxes and balls each, side by side.
 fn drums(bodies: u32) -> Result<SandboxSetup, WorldError> {
     let mut scene = Builder::new(config());
     for drum in 0..(bodies / DRUM).max(1) {
@@ -134,21 +135,22 @@ fn drums(bodies: u32) -> Result<SandboxSetup, WorldError> {
     Ok(scene.finish())
 }
 
-/// Bodies in one of many drums.
+/// Number of bodies in each drum of `drums`.
 const DRUM: u32 = 484;
 
-/// One drum, as large as it has to be. Unlike many small ones, a larger one has a deeper pile, and work of another kind.
+/// A single drum whose size depends on the number of bodies. Unlike many small drums, a larger drum has a deeper
+/// pile, and so a different mix of work.
 fn churn(bodies: u32) -> Result<SandboxSetup, WorldError> {
     let mut scene = Builder::new(config());
     add_drum(&mut scene, Vec2::ZERO, bodies)?;
     Ok(scene.finish())
 }
 
-/// A square drum full of boxes and balls, that starts on its edge and turns. Its speed is that of the same Froude
-/// number at any size.
+/// Adds a rotating square drum full of boxes and balls, initially turned by 30 degrees. Its angular velocity gives
+/// the same Froude number at any size.
 fn add_drum(scene: &mut Builder, centre: Vec2<Fx>, bodies: u32) -> Result<(), WorldError> {
     let side = bodies.isqrt().max(2);
-    // The grid of bodies fits into the drum when that is turned by 30 degrees.
+    // The drum is large enough for the upright grid of bodies to fit into it when it is turned by 30 degrees.
     let apart = fx!(0.255);
     let half_grid = apart * i64::from(side) / 2;
     let half = half_grid * fx!(1.45) + fx!(0.5);
@@ -174,7 +176,7 @@ fn add_drum(scene: &mut Builder, centre: Vec2<Fx>, bodies: u32) -> Result<(), Wo
     Ok(())
 }
 
-/// Results for people.
+/// Formats the results as a table.
 pub fn table(growths: &[Growth]) -> String {
     let mut text = format!("{:9} {:10} {:>6}  ms per step (bodies, contacts)\n", "world", "engine", "p");
     for Growth { world, engine, points, p } in growths {

@@ -1,5 +1,5 @@
-//! How many instructions a step of lockstep2d takes at each size, counted by callgrind: unlike times, counts know nothing
-//! of caches or of what else a machine does.
+//! Counts the instructions of a step of lockstep2d at each size with callgrind. Unlike times, the counts do not
+//! depend on caches or on other load of the machine.
 
 use std::process::Command;
 
@@ -10,27 +10,28 @@ use serde::Serialize;
 use crate::growth::{Plan, World};
 use crate::stats::power;
 
-/// A world at every size.
+/// Results of a world at every size.
 #[derive(Clone, Debug, Serialize)]
 pub struct Growth {
-    /// Its name.
+    /// Name of the world.
     pub world: &'static str,
-    /// From small to large.
+    /// Results in the order of the sizes.
     pub points: Vec<Point>,
-    /// The exponent that fits best.
+    /// Exponent of the best fit.
     pub p: f64,
 }
 
-/// A world at one size.
+/// Result of a world at one size.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Point {
-    /// Dynamic bodies.
+    /// Number of dynamic bodies.
     pub bodies: usize,
-    /// Millions of instructions in a step.
+    /// Instructions of a step, in millions.
     pub millions: f64,
 }
 
-/// Counts a world at every size: what a run takes more than one that ends before the steps that count.
+/// Counts the instructions of a world at every size, as the difference between a full run and a run that ends before
+/// the timed steps.
 pub fn measure(world: World, plan: &Plan) -> Result<Growth> {
     let mut points = Vec::new();
     for &size in &plan.sizes {
@@ -42,23 +43,24 @@ pub fn measure(world: World, plan: &Plan) -> Result<Growth> {
     Ok(Growth { world: world.name, points, p })
 }
 
-/// The number of bodies and of instructions of this program under callgrind, when all that it does is [`step`].
+/// Runs this program under callgrind with [`step`] only. Returns the number of bodies and of instructions.
 fn count(world: World, size: u32, steps: u64) -> Result<(usize, f64)> {
     let output = Command::new("valgrind")
         .args(["--tool=callgrind", "--callgrind-out-file=/dev/null"])
         .arg(std::env::current_exe()?)
         .args(["step", world.name, &size.to_string(), &steps.to_string()])
         .output()
-        .context("valgrind does not start: is it installed?")?;
+        .context("cannot start valgrind: is it installed?")?;
     let log = String::from_utf8_lossy(&output.stderr);
     ensure!(output.status.success(), "{} of {size}: {log}", world.name);
     let bodies = String::from_utf8_lossy(&output.stdout).trim().parse()?;
     let collected = log.lines().find_map(|line| line.split_once("Collected : "));
-    let (_, collected) = collected.with_context(|| format!("callgrind has counted nothing: {log}"))?;
+    let (_, collected) =
+        collected.with_context(|| format!("callgrind reported no instruction count: {log}"))?;
     Ok((bodies, collected.trim().parse()?))
 }
 
-/// Makes a world of a size, steps it, and returns how many dynamic bodies it has.
+/// Builds a world, steps it, and returns its number of dynamic bodies.
 pub fn step(world: World, size: u32, steps: u64) -> Result<usize> {
     let setup = (world.setup)(size).map_err(|error| anyhow!("{} of {size}: {error}", world.name))?;
     let mut game = Sandbox::new(&setup).map_err(|error| anyhow!("{error}"))?;
@@ -66,7 +68,7 @@ pub fn step(world: World, size: u32, steps: u64) -> Result<usize> {
     Ok(game.world().bodies().filter(|(_, body)| body.is_dynamic()).count())
 }
 
-/// Results for people.
+/// Formats the results as a table.
 pub fn table(growths: &[Growth]) -> String {
     let mut text = format!("{:9} {:>6}  million instructions per step (bodies)\n", "world", "p");
     for Growth { world, points, p } in growths {

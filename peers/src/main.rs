@@ -1,4 +1,4 @@
-//! The benchmark scenes side by side in lockstep2d, Box2D 3.2 and rapier2d. `README.md` has the commands, and
+//! Compares lockstep2d with Box2D 3.2 and rapier2d in the benchmark scenes. `README.md` describes the commands, and
 //! `docs/PERFORMANCE.md` of the repository the method and the results.
 
 mod box2d;
@@ -35,66 +35,66 @@ struct Arguments {
 
 #[derive(clap::Subcommand)]
 enum Command {
-    /// How the time of a step grows with the number of bodies
+    /// Measures how the time of a step grows with the number of bodies
     Growth(GrowthArguments),
-    /// Steps one of the worlds of `growth`: what that counts the instructions of
+    /// Steps one of the worlds of `growth`, which runs this under valgrind to count its instructions
     #[command(hide = true)]
     Step { world: String, bodies: u32, steps: u64 },
-    /// What rollback costs in lockstep2d
+    /// Measures the cost of rollback in lockstep2d
     Rollback(RollbackArguments),
 }
 
 #[derive(clap::Args)]
 struct GrowthArguments {
-    /// Sizes, in bodies
+    /// Approximate numbers of bodies
     #[arg(long, value_delimiter = ',', default_values_t = [1000, 4000, 16000, 64000],
         value_parser = clap::value_parser!(u32).range(110..=250_000))]
     bodies: Vec<u32>,
-    /// Steps that are timed
+    /// Number of timed steps
     #[arg(long, default_value_t = 30, value_parser = clap::value_parser!(u64).range(1..))]
     steps: u64,
-    /// Steps before them
+    /// Number of steps before the timed ones
     #[arg(long, default_value_t = 60)]
     untimed: u64,
-    /// Runs of each engine in turn
+    /// Runs of each engine, interleaved
     #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u16).range(1..))]
     rounds: u16,
-    /// Instructions of lockstep2d instead of the time of all engines: one round under valgrind, which is slow
+    /// Count instructions of lockstep2d instead of the time of all engines: one round under valgrind, which is slow
     #[arg(long, conflicts_with = "rounds")]
     instructions: bool,
-    /// Lines of JSON instead of a table
+    /// Print lines of JSON instead of a table
     #[arg(long)]
     json: bool,
 }
 
 #[derive(clap::Args)]
 struct RollbackArguments {
-    /// Only these scenes, repeated or separated by commas
+    /// Run only these scenes, repeated or separated by commas
     #[arg(long = "scene", value_delimiter = ',', value_parser = PossibleValuesParser::new(script::SCENES))]
     scenes: Vec<String>,
-    /// At most this many steps of each scene, for a quick look
+    /// Most steps of each scene, for a quick run
     #[arg(long, value_parser = clap::value_parser!(u64).range(9..))]
     steps: Option<u64>,
-    /// Lines of JSON instead of a table
+    /// Print lines of JSON instead of a table
     #[arg(long)]
     json: bool,
 }
 
 #[derive(clap::Args)]
 struct ScenesArguments {
-    /// Only these scenes, repeated or separated by commas
+    /// Run only these scenes, repeated or separated by commas
     #[arg(long = "scene", value_delimiter = ',', value_parser = PossibleValuesParser::new(script::SCENES))]
     scenes: Vec<String>,
-    /// Runs of each engine in turn
+    /// Runs of each engine, interleaved
     #[arg(long, default_value_t = 7, value_parser = clap::value_parser!(u16).range(1..))]
     rounds: u16,
-    /// Threads of each engine; ratios are of CPU time with one, and of time on the clock with more
+    /// Threads of each engine; ratios compare CPU time with one thread, and wall-clock time with more
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=32))]
     threads: u16,
-    /// At most this many steps of each scene, for a quick look
+    /// Most steps of each scene, for a quick run
     #[arg(long, value_parser = clap::value_parser!(u64).range(2..))]
     steps: Option<u64>,
-    /// Lines of JSON instead of tables: one for each scene, and a summary
+    /// Print lines of JSON instead of tables: one for each scene, and a summary
     #[arg(long)]
     json: bool,
 }
@@ -106,7 +106,7 @@ fn main() -> Result<()> {
         Some(Command::Growth(arguments)) => measure_growth(arguments),
         Some(Command::Step { world, bodies, steps }) => {
             let world = growth::WORLDS.into_iter().find(|known| known.name == world);
-            let world = world.context("a world of `growth`")?;
+            let world = world.context("the world should be one of the worlds of `growth`")?;
             println!("{}", instructions::step(world, *bodies, *steps)?);
             Ok(())
         }
@@ -114,7 +114,7 @@ fn main() -> Result<()> {
     }
 }
 
-/// The scenes that are named, or all.
+/// Returns the named scenes, or all scenes if none is named.
 fn names(some: &[String]) -> Vec<&str> {
     if some.is_empty() { script::SCENES.into() } else { some.iter().map(String::as_str).collect() }
 }
@@ -167,7 +167,7 @@ fn measure_growth(arguments: &GrowthArguments) -> Result<()> {
     print_growths(&growths, growth::table, arguments.json)
 }
 
-/// As lines of JSON, or as a table.
+/// Prints results as lines of JSON or as a table.
 fn print_growths<T: Serialize>(growths: &[T], table: fn(&[T]) -> String, json: bool) -> Result<()> {
     if !json {
         print!("{}", table(growths));
@@ -208,7 +208,7 @@ fn measure_rollback(arguments: &RollbackArguments) -> Result<()> {
     Ok(())
 }
 
-/// A bar on stderr, if that is a terminal.
+/// Creates a progress bar on stderr, visible only if stderr is a terminal.
 fn progress(length: u64) -> Result<ProgressBar> {
     let style = ProgressStyle::with_template("{bar:30} {pos}/{len} runs, {eta} left  {msg}")?;
     Ok(ProgressBar::new(length).with_style(style))

@@ -1,4 +1,4 @@
-//! One run of one engine: how long its steps take, what the end looks like, what saving costs.
+//! Measures one run of one engine: the time of its steps, its end state, and the cost of saving.
 
 use std::time::Instant;
 
@@ -9,62 +9,62 @@ use crate::engine::{Engine, Kind};
 use crate::script::Script;
 use crate::stats::median;
 
-/// Times of a run in ms per step, the first ones left out.
+/// Times of a run in ms per step, without the untimed first steps.
 #[derive(Clone, Copy, Debug)]
 pub struct Times {
-    /// Of the calling thread's CPU.
+    /// CPU time of the calling thread.
     pub cpu: f64,
-    /// On the clock.
+    /// Wall-clock time.
     pub wall: f64,
-    /// CPU time of what happens between steps: bodies and joints that come and go.
+    /// CPU time of the commands between steps, such as creating bodies and joints.
     pub commands: f64,
 }
 
-/// What the world looks like after the last step.
+/// State of a world after the last step.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct EndState {
     /// Height of the highest dynamic body's centre of mass, in metres.
     pub top: f64,
-    /// Height of the lowest one, in metres: what falls through the floor shows here.
+    /// Height of the lowest dynamic body's centre of mass, in metres: shows bodies that fall through the floor.
     pub bottom: f64,
-    /// In mm, as found in the last step.
+    /// Deepest penetration in mm, as found in the last step.
     pub deepest_mm: f64,
-    /// Over all dynamic bodies, in m/s; what sleeps stands still.
+    /// Mean speed over all dynamic bodies, in m/s; sleeping bodies count as 0.
     pub mean_speed: f64,
-    /// In m/s.
+    /// Largest speed of a dynamic body, in m/s.
     pub max_speed: f64,
     /// Pairs of shapes with contact points.
     pub contacts: usize,
-    /// The largest distance of two anchors in mm.
+    /// Largest distance between the two anchors of a joint, in mm.
     pub joint_gap_mm: Option<f64>,
-    /// Dynamic bodies that are simulated.
+    /// Number of awake dynamic bodies.
     pub awake: usize,
 }
 
-/// What it costs to keep a whole world, at its end state.
+/// Cost of saving, restoring and hashing a whole world in its end state.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Keeping {
-    /// CPU time in ms.
+    /// CPU time of a save, in ms.
     pub save_ms: f64,
-    /// CPU time in ms.
+    /// CPU time of a restore, in ms.
     pub restore_ms: f64,
-    /// CPU time in ms, if the engine has a hash of the whole state.
+    /// CPU time of a hash, in ms, if the engine has a hash of the whole state.
     pub hash_ms: Option<f64>,
-    /// As bytes for a file.
+    /// Size of the world as a file, in bytes.
     pub bytes: usize,
-    /// The same by body that is not fixed.
+    /// `bytes` per body that is not fixed.
     pub bytes_per_body: f64,
 }
 
-/// The calling thread's CPU time in ms.
+/// Returns the CPU time of the calling thread, in ms.
 pub fn thread_ms() -> f64 {
     let mut time = libc::timespec { tv_sec: 0, tv_nsec: 0 };
-    // SAFETY: the pointer is to a whole timespec.
+    // SAFETY: the pointer is to a valid timespec.
     unsafe { libc::clock_gettime(libc::CLOCK_THREAD_CPUTIME_ID, &raw mut time) };
     time.tv_sec as f64 * 1e3 + time.tv_nsec as f64 * 1e-6
 }
 
-/// How long something takes: CPU time in ms, and its result.
+/// Runs a function; returns its CPU time in ms and its result.
 pub fn timed<T>(work: impl FnOnce() -> T) -> (f64, T) {
     let start = thread_ms();
     let result = work();
@@ -90,7 +90,7 @@ pub fn run(kind: Kind, script: &Script, threads: usize) -> Result<(Times, Box<dy
     Ok((times, engine))
 }
 
-/// What a world looks like.
+/// Measures the end state of a world.
 pub fn end_state(engine: &dyn Engine) -> EndState {
     let bodies = engine.bodies();
     let dynamic: Vec<_> = bodies.iter().filter(|body| body.dynamic).collect();
@@ -112,7 +112,7 @@ pub fn end_state(engine: &dyn Engine) -> EndState {
     }
 }
 
-/// Saves, restores and hashes a few times.
+/// Measures the median cost of a save, a restore and a hash over five repetitions.
 pub fn keeping(engine: &mut dyn Engine) -> Result<Keeping> {
     let (mut save, mut restore, mut hash) = (Vec::new(), Vec::new(), Vec::new());
     for _ in 0..5 {

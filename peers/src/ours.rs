@@ -1,4 +1,4 @@
-//! lockstep2d behind the benchmark's interface.
+//! Adapter from lockstep2d to the benchmark's interface.
 
 use anyhow::{Context, Result, anyhow, ensure};
 use lockstep2d::body::BodyKind;
@@ -7,17 +7,17 @@ use lockstep2d::world::{Config, Snapshot, World};
 use crate::engine::{BodyState, Contacts, Counts, Engine, float, floats};
 use crate::script::Event;
 
-/// A world of lockstep2d.
+/// World of lockstep2d.
 pub struct Ours {
     world: World,
     saved: Option<Snapshot>,
 }
 
 impl Ours {
-    /// An empty world.
+    /// Creates an empty world.
     pub fn new(config: &Config, threads: usize) -> Result<Self> {
         let mut world = World::new(*config).map_err(|error| anyhow!("{error}"))?;
-        ensure!(world.set_threads(threads), "{threads} threads cannot be had");
+        ensure!(world.set_threads(threads), "lockstep2d cannot use {threads} threads");
         Ok(Ours { world, saved: None })
     }
 }
@@ -25,7 +25,7 @@ impl Ours {
 impl Engine for Ours {
     fn apply(&mut self, (command, outcome): &Event) -> Result<()> {
         let made = self.world.execute(command).map_err(|error| anyhow!("{error}"))?;
-        ensure!(made == *outcome, "made {made:?}, recorded {outcome:?}");
+        ensure!(made == *outcome, "the command gave {made:?}, but {outcome:?} was recorded");
         Ok(())
     }
 

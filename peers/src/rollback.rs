@@ -1,5 +1,5 @@
-//! What rollback costs in lockstep2d: a save and a hash every tick, and from time to time a restore and the last ticks
-//! again.
+//! Measures the cost of rollback in lockstep2d: a save and a hash in every tick, and a restore followed by a
+//! resimulation of the last ticks.
 
 use anyhow::{Result, anyhow};
 use lockstep2d::body::{BodyDef, Polygon, ShapeDef};
@@ -13,48 +13,48 @@ use crate::measure::timed;
 use crate::script::{Event, Script};
 use crate::stats::median;
 
-/// How far a rollback goes.
+/// Number of ticks of a rollback.
 const TICKS: usize = 8;
-/// How often everything is measured.
+/// Repetitions of the measurement.
 const TIMES: usize = 5;
 
-/// A scene's costs, at its end.
+/// Costs of a scene near its end.
 #[derive(Clone, Debug, Serialize)]
 pub struct Cost {
-    /// Its name.
+    /// Name of the scene.
     pub scene: String,
-    /// CPU time of a step, in the mean of the ticks that are rolled back.
+    /// CPU time of a step, in ms: mean over the ticks that are rolled back.
     pub step_ms: f64,
-    /// CPU time.
+    /// CPU time of a save, in ms.
     pub save_ms: f64,
-    /// CPU time.
+    /// CPU time of a hash, in ms.
     pub hash_ms: f64,
-    /// CPU time.
+    /// CPU time of a restore, in ms.
     pub restore_ms: f64,
-    /// A save and a hash, in percent of a step.
+    /// CPU time of a save and a hash, in percent of a step.
     pub save_and_hash_percent: f64,
-    /// Restoring and simulating 8 ticks again, saves and hashes included, in steps.
+    /// CPU time of a restore and a resimulation of 8 ticks with their saves and hashes, in units of a step.
     pub rollback_steps: f64,
-    /// Memory of a save.
+    /// Memory of a save that it does not share, in bytes.
     pub save_bytes: usize,
-    /// The same by dynamic body.
+    /// `save_bytes` per dynamic body.
     pub save_bytes_per_body: f64,
-    /// Length of `World::to_bytes`.
+    /// Length of `World::to_bytes`, in bytes.
     pub file_bytes: usize,
 }
 
-/// Memory of a save, by what is in the world.
+/// Memory of a save per object, in bytes.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Bytes {
-    /// A dynamic body with one shape, far from others.
+    /// Per dynamic body with one shape and without contacts.
     pub body: f64,
-    /// A pair of shapes with contact points.
+    /// Per pair of shapes with contact points.
     pub contact: f64,
-    /// A hinge.
+    /// Per hinge.
     pub joint: f64,
 }
 
-/// Costs of a scene near its end.
+/// Measures the costs of a scene near its end.
 pub fn cost(name: &str, steps: Option<u64>) -> Result<Cost> {
     let script = Script::of_scene(name, steps)?;
     let mut world = built(&script)?;
@@ -72,7 +72,7 @@ pub fn cost(name: &str, steps: Option<u64>) -> Result<Cost> {
         for (tick, events) in last.iter().enumerate() {
             execute(&mut world, events)?;
             let (stepping, ()) = timed(|| world.step());
-            // A game keeps as many saves as it may roll back, and uses their memory again.
+            // Like a game, this keeps one save per tick of the rollback window and reuses its memory.
             let (saving, ()) = timed(|| world.save_into(&mut saves[tick]));
             let (hashing, _) = timed(|| world.state_hash());
             resimulating += stepping + saving + hashing;
@@ -82,7 +82,7 @@ pub fn cost(name: &str, steps: Option<u64>) -> Result<Cost> {
         }
         rollback.push(restoring + resimulating);
     }
-    // Ticks differ: in some of them bodies or joints come.
+    // The median is taken per tick, because ticks differ: in some of them bodies or joints are created.
     let step_ms = steps.iter().map(|times| median(times)).sum::<f64>() / TICKS as f64;
     let [save_ms, hash_ms, restore_ms] = [&save, &hash, &restore].map(|times| median(times));
     let save_bytes = save_bytes(&world);
@@ -120,12 +120,13 @@ fn advance(world: &mut World, events: &[Event]) -> Result<()> {
     Ok(())
 }
 
-/// What a save keeps for itself, beside what it shares with the world.
+/// Returns the memory of a save that it does not share with the world, in bytes.
 fn save_bytes(world: &World) -> usize {
     world.save().rollback_bytes()
 }
 
-/// What a body, a contact and a joint take: from worlds of bodies alone, of contacts and of joints.
+/// Measures the memory of a body, a contact and a joint in a save, from worlds with bodies only, with contacts and with
+/// joints.
 pub fn bytes() -> Result<Bytes> {
     let few = save_bytes(&scattered(1000)?) as f64;
     let many = save_bytes(&scattered(9000)?) as f64;
@@ -143,7 +144,7 @@ pub fn bytes() -> Result<Bytes> {
     Ok(Bytes { body, contact, joint: joints / world.joint_count() as f64 })
 }
 
-/// Boxes that are 10 m apart, after a step.
+/// Returns a world of boxes 10 m apart, after one step.
 fn scattered(count: u32) -> Result<World> {
     let mut scene = Builder::new(Config { gravity: Vec2::ZERO, ..Config::default() });
     let fill = |scene: &mut Builder| {
@@ -159,7 +160,7 @@ fn scattered(count: u32) -> Result<World> {
     Ok(world)
 }
 
-/// Heads of [`row`].
+/// Returns the column heads of [`row`].
 pub fn head() -> String {
     format!(
         "{:14} {:>8} {:>8} {:>8} {:>10} {:>11} {:>14} {:>11} {:>11} {:>10}",
@@ -176,7 +177,7 @@ pub fn head() -> String {
     )
 }
 
-/// A scene for people.
+/// Formats the costs of a scene as a table row.
 pub fn row(cost: &Cost) -> String {
     format!(
         "{:14} {:8.2} {:8.3} {:8.3} {:10.3} {:11.1} {:14.2} {:11} {:11.0} {:10}",
@@ -205,7 +206,7 @@ mod tests {
     }
 
     #[test]
-    #[ignore = "counts the memory of the whole process: run it alone"]
+    #[ignore = "measures the memory of the whole process: run it alone"]
     fn bytes_are_told_apart() {
         let bytes = bytes().unwrap();
         for part in [bytes.body, bytes.contact, bytes.joint] {

@@ -1,8 +1,8 @@
-//! A scene as a list of commands, recorded once: what every engine is built and driven from.
+//! [`Script`]: a scene as a list of recorded commands, from which every engine is built and driven.
 //!
-//! Commands name bodies by lockstep2d's handles, and those that spawn something make new ones. So each command is
-//! carried out on a world that is never stepped, and kept together with what it made. The scenes' scripts do not look
-//! at where bodies went, only at which there are, so the same list serves every engine.
+//! Commands refer to bodies by lockstep2d's handles, and commands that spawn bodies create new handles. So each
+//! command is executed once on a world that is never stepped, and stored together with its outcome. The scripts of
+//! the scenes depend only on which bodies exist, not on where they are, so the same list serves every engine.
 
 use anyhow::{Context, Result, anyhow};
 use lockstep2d::lockstep::{Game, Sandbox, SandboxSetup};
@@ -23,23 +23,23 @@ pub const SCENES: [&str; 10] = [
     "compounds",
 ];
 
-/// A command and what it made.
+/// Command and its outcome.
 pub type Event = (Command, Outcome);
 
-/// A scene to run.
+/// Recorded scene.
 pub struct Script {
-    /// The settings of its world.
+    /// Configuration of the world.
     pub config: Config,
-    /// What is in it at the start.
+    /// Commands that build the scene.
     pub setup: Vec<Event>,
-    /// What happens before each step.
+    /// Commands before each step.
     pub ticks: Vec<Vec<Event>>,
-    /// How many of the first steps are not timed.
+    /// Number of first steps that are not timed.
     pub untimed: usize,
 }
 
 impl Script {
-    /// A scene by name, for its own number of steps or fewer.
+    /// Records a scene by name, for its full number of steps or at most `most_steps`.
     pub fn of_scene(name: &str, most_steps: Option<u64>) -> Result<Self> {
         let scene = Scene::find(name).ok_or_else(|| anyhow!("no scene {name}"))?;
         let steps = most_steps.map_or(scene.ticks, |most| most.min(scene.ticks));
@@ -47,7 +47,7 @@ impl Script {
             .with_context(|| format!("scene {name}"))
     }
 
-    /// A setup in which nothing happens.
+    /// Records a setup without later commands.
     pub fn of_setup(setup: SandboxSetup, steps: u64) -> Result<Self> {
         Self::record(setup, steps, |_, _| Vec::new())
     }
@@ -68,12 +68,12 @@ impl Script {
         Ok(Script { config: setup.config, setup: setup_events, ticks, untimed: 1 })
     }
 
-    /// The same with another number of first steps that are not timed.
+    /// Sets the number of first steps that are not timed.
     pub fn untimed(self, untimed: usize) -> Self {
         Script { untimed, ..self }
     }
 
-    /// How many steps it has.
+    /// Returns the number of steps.
     pub fn steps(&self) -> usize {
         self.ticks.len()
     }
@@ -82,7 +82,7 @@ impl Script {
 fn execute(game: &mut Sandbox, commands: Vec<Command>) -> Result<Vec<Event>> {
     let mut events = Vec::new();
     for command in commands {
-        // What is sent somewhere has to be there for the next such command, without a step.
+        // The world is never stepped, so a body that is moved must be at its target at once, for the next `MoveTo`.
         let at_once = match command {
             Command::MoveTo { body, position, angle } => Command::SetTransform { body, position, angle },
             ref other => other.clone(),
@@ -106,6 +106,6 @@ mod tests {
         }
         let rain = Script::of_scene("rain", Some(20)).unwrap();
         let busy: Vec<_> = (0..20).filter(|&tick| !rain.ticks[tick].is_empty()).collect();
-        assert_eq!(busy, [0, 7, 8, 15, 16], "ragdolls are announced and released");
+        assert_eq!(busy, [0, 7, 8, 15, 16], "ragdolls should be spawned disabled and enabled later");
     }
 }

@@ -1,6 +1,6 @@
-//! Middles, spreads and powers.
+//! Quantiles, geometric means and power-law fits.
 
-/// The value below which a fraction of the values lie, interpolated. NaN of nothing.
+/// Returns the value below which a fraction of the values lie, interpolated linearly; NaN for an empty slice.
 pub fn quantile(values: &[f64], fraction: f64) -> f64 {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
@@ -10,23 +10,23 @@ pub fn quantile(values: &[f64], fraction: f64) -> f64 {
     below + (above - below) * (at - at.floor())
 }
 
-/// The middle one.
+/// Returns the median; NaN for an empty slice.
 pub fn median(values: &[f64]) -> f64 {
     quantile(values, 0.5)
 }
 
-/// The first and the third quartile.
+/// Returns the first and the third quartile.
 pub fn quartiles(values: &[f64]) -> [f64; 2] {
     [quantile(values, 0.25), quantile(values, 0.75)]
 }
 
-/// The geometric mean of positive values, if there are any.
+/// Returns the geometric mean of positive values; `None` for an empty slice.
 pub fn geometric_mean(values: &[f64]) -> Option<f64> {
     let sum: f64 = values.iter().map(|value| value.ln()).sum();
     (!values.is_empty()).then(|| (sum / values.len() as f64).exp())
 }
 
-/// The `p` of `y = c x^p`, by least squares of the logarithms.
+/// Fits `y = c x^p` by least squares of the logarithms, and returns `p`.
 pub fn power(points: &[(f64, f64)]) -> f64 {
     let count = points.len() as f64;
     let logs: Vec<_> = points.iter().map(|(x, y)| (x.ln(), y.ln())).collect();

@@ -1,4 +1,4 @@
-//! Results for people.
+//! Formats the results as tables.
 
 use crate::compare::{Each, SceneResult, Summary};
 use crate::measure::{EndState, Keeping};
@@ -11,7 +11,7 @@ fn spread(quartiles: Option<[f64; 2]>) -> String {
     quartiles.map_or_else(|| "-".into(), |[low, high]| format!("{low:.2}-{high:.2}"))
 }
 
-/// The heads of [`times`].
+/// Returns the column heads of [`times`].
 pub fn times_head() -> String {
     format!(
         "{:14} {:>9} {:>9} {:>9} {:>9} {:>11} {:>10} {:>11}",
@@ -19,7 +19,7 @@ pub fn times_head() -> String {
     )
 }
 
-/// A row of times.
+/// Formats the times of a scene as a table row.
 pub fn times(result: &SceneResult) -> String {
     format!(
         "{:14} {:9.2} {:9.2} {:>9} {:9.2} {:>11} {:>10} {:>11}",
@@ -34,7 +34,7 @@ pub fn times(result: &SceneResult) -> String {
     )
 }
 
-/// The last row of times.
+/// Formats the summary as the last row of the times.
 pub fn summary(summary: &Summary) -> String {
     format!(
         "{:14} {:>39} {:>22}",
@@ -55,7 +55,7 @@ fn rows<T>(scene: &str, each: &Each<Option<T>>, row: impl Fn(&T) -> String) -> S
     text
 }
 
-/// What the ends look like.
+/// Formats the end states as a table.
 pub fn ends(results: &[SceneResult]) -> String {
     let mut text = format!(
         "{:14} {:6} {:>8} {:>8} {:>9} {:>9} {:>9} {:>9} {:>9} {:>7}\n",
@@ -89,7 +89,7 @@ pub fn ends(results: &[SceneResult]) -> String {
     text
 }
 
-/// What saving, restoring and hashing cost.
+/// Formats the costs of saving, restoring and hashing as a table.
 pub fn keeping(results: &[SceneResult]) -> String {
     let mut text = format!(
         "{:14} {:6} {:>9} {:>11} {:>9} {:>11}\n",

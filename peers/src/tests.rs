@@ -1,4 +1,4 @@
-//! The engines start from the same world, and go about the same way.
+//! The engines start from the same world and simulate it in nearly the same way.
 
 use crate::compare::{self, Plan};
 use crate::engine::{Engine, Inventory, Kind};
@@ -6,7 +6,7 @@ use crate::measure::{end_state, keeping, run};
 use crate::script::{SCENES, Script};
 use indicatif::ProgressBar;
 
-/// A scene after its commands of the first ticks, without a step.
+/// Builds a scene and applies the commands of all recorded ticks, without a step.
 fn built(kind: Kind, script: &Script) -> Box<dyn Engine> {
     let mut engine = kind.build(script, 1).unwrap();
     for event in script.ticks.iter().flatten() {
@@ -45,7 +45,7 @@ fn places_and_masses_agree_after_a_step() {
             assert!(our_inventory.is_like(&inventory), "{name}: {our_inventory:?}, {inventory:?}");
             for (a, b) in ours.bodies().iter().zip(peer.bodies()) {
                 let distance = (a.centre[0] - b.centre[0]).hypot(a.centre[1] - b.centre[1]);
-                // The bodies of the spinner overlap at the start, and each engine pushes them apart its own way.
+                // The bodies of the spinner overlap at the start, and each engine resolves the overlap in its own way.
                 assert!(!a.dynamic || distance < 0.02 || name == "spinner", "{name}: {a:?}, {b:?}");
             }
         }

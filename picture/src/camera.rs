@@ -1,29 +1,31 @@
-//! [`Camera`]: from the world to the screen and back.
+//! [`Camera`]: transforms world coordinates to screen coordinates and back.
 
 use lockstep2d::math::{Aabb, Fx, Vec2};
 
-/// Fewest and most pixels for a metre: from a world of a billion metres on a small screen to a micrometre a pixel.
+/// Smallest scale, in pixels per metre: a world of a billion metres on a small screen.
 const SCALE_MIN: f64 = 1e-8;
+/// Largest scale, in pixels per metre: a micrometre per pixel.
 const SCALE_MAX: f64 = 1e6;
 
-/// What is cut off, is cut off so far outside of what is seen, in pixels: strokes are wide.
+/// Clipping happens this far outside the visible area, in pixels, because strokes have a width.
 const MARGIN: f64 = 16.0;
 
-/// Which part of a world is seen, upright: y is upwards in the world and downwards on the screen.
+/// Visible part of a world, without rotation: y points up in the world and down on the screen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
-    /// What is in the middle. Fixed-point, so that a world far from its origin is drawn as precisely.
+    /// World point in the middle of the area. Fixed-point, so that a world far from its origin is drawn with the same
+    /// precision.
     pub centre: Vec2<Fx>,
-    /// Pixels for a metre.
+    /// Pixels per metre.
     pub scale: f64,
-    /// The middle of the area in which it is seen, in pixels.
+    /// Centre of the screen area, in pixels.
     pub middle: [f64; 2],
-    /// Half of the size of that area, in pixels.
+    /// Half the size of the screen area, in pixels.
     pub half: [f64; 2],
 }
 
 impl Camera {
-    /// Shows a window of the world as large as it fits into an area of the screen: upper left corner and size in pixels.
+    /// Fits a window of the world into an area of the screen, given by its upper left corner and size in pixels.
     #[must_use]
     pub fn new(window: Aabb, corner: [f32; 2], size: [f32; 2]) -> Self {
         let [width, height] = size.map(|side| f64::from(side.max(1.0)));
@@ -34,22 +36,22 @@ impl Camera {
         Camera { centre: window.centre(), scale, middle, half: [width / 2.0, height / 2.0] }
     }
 
-    /// Where a place is on the screen.
+    /// Converts a world point to screen coordinates.
     #[must_use]
     pub fn place(&self, point: Vec2<Fx>) -> [f32; 2] {
-        // Subtracted before anything is rounded to 24 bits.
+        // The difference is taken in fixed point, before rounding to the 24 bits of an `f32`.
         let x = difference(point.x, self.centre.x) * self.scale;
         let y = difference(point.y, self.centre.y) * self.scale;
         [(self.middle[0] + x) as f32, (self.middle[1] - y) as f32]
     }
 
-    /// How long a length is on the screen, in pixels.
+    /// Converts a length in the world to pixels.
     #[must_use]
     pub fn length(&self, length: Fx) -> f32 {
         (metres(length) * self.scale) as f32
     }
 
-    /// Which place is at a point of the screen; as near as the numbers of the world go.
+    /// Converts screen coordinates to a world point, saturating at the range of `Fx`.
     #[must_use]
     pub fn point(&self, [x, y]: [f32; 2]) -> Vec2<Fx> {
         let x = (f64::from(x) - self.middle[0]) / self.scale;
@@ -60,13 +62,13 @@ impl Camera {
         Vec2::new(far(self.centre.x, x), far(self.centre.y, y))
     }
 
-    /// Moves what is seen by pixels, as a hand would move a sheet of paper.
+    /// Moves the picture by this many pixels.
     pub fn pan(&mut self, [x, y]: [f32; 2]) {
         let [left, up] = [self.middle[0] - f64::from(x), self.middle[1] - f64::from(y)];
         self.centre = self.point([left as f32, up as f32]);
     }
 
-    /// Makes everything larger by a factor about a point of the screen, which stays where it is.
+    /// Multiplies the scale by a factor. The world point at `about`, in screen coordinates, stays in place.
     pub fn zoom(&mut self, factor: f32, about: [f32; 2]) {
         let fixed = self.point(about);
         self.scale = (self.scale * f64::from(factor)).clamp(SCALE_MIN, SCALE_MAX);
@@ -74,7 +76,7 @@ impl Camera {
         self.pan([about[0] - now[0], about[1] - now[1]]);
     }
 
-    /// Whether a mark of a size, in pixels, can be seen at a place on the screen.
+    /// Returns whether a mark of this size, in pixels, at a screen position is visible.
     #[must_use]
     pub fn sees(&self, [x, y]: [f32; 2], size: f32) -> bool {
         let beside =
@@ -82,7 +84,7 @@ impl Camera {
         beside(x, self.middle[0], self.half[0]) && beside(y, self.middle[1], self.half[1])
     }
 
-    /// Whether the box around some places on the screen can be seen.
+    /// Returns whether the bounding box of some screen positions is visible.
     #[must_use]
     pub fn sees_any(&self, points: &[[f32; 2]]) -> bool {
         let beyond = |axis: usize| {
@@ -95,8 +97,8 @@ impl Camera {
         !(points.is_empty() || beyond(0) || beyond(1))
     }
 
-    /// The part of a line on the screen that can be seen (Liang and Barsky, "A New Concept and Method for Line Clipping",
-    /// 1984): a line to the other end of the world has coordinates that no screen takes.
+    /// Clips a line to the visible area (Liang and Barsky, "A New Concept and Method for Line Clipping", 1984): the
+    /// coordinates of a line across the whole world are too large for a rasteriser.
     #[must_use]
     pub fn clipped(&self, [from, to]: [[f32; 2]; 2]) -> Option<[[f32; 2]; 2]> {
         if self.sees(from, MARGIN as f32) && self.sees(to, MARGIN as f32) {
@@ -129,7 +131,7 @@ fn metres(length: Fx) -> f64 {
 fn difference(a: Fx, b: Fx) -> f64 {
     let difference = match a.to_bits().checked_sub(b.to_bits()) {
         Some(bits) => bits as f64,
-        // Two places may be further apart than a world is wide.
+        // The distance of two points may exceed the range of the fixed-point format.
         None => a.to_bits() as f64 - b.to_bits() as f64,
     };
     difference / (1i64 << Fx::FRAC_NBITS) as f64
@@ -181,7 +183,8 @@ mod tests {
     #[test]
     fn lines_are_cut_where_the_picture_ends() {
         let camera = camera(fx!(0));
-        let [from, to] = camera.clipped([[-1e9, 250.0], [1e9, 250.0]]).expect("it goes through");
+        let [from, to] =
+            camera.clipped([[-1e9, 250.0], [1e9, 250.0]]).expect("the line should cross the area");
         assert!((from[0] - 84.0).abs() < 1.0 && (to[0] - 1116.0).abs() < 1.0, "{from:?} {to:?}");
         assert_eq!(camera.clipped([[-1e9, 900.0], [1e9, 900.0]]), None);
         assert_eq!(camera.clipped([[0.0, -500.0], [-500.0, 0.0]]), None);

@@ -1,8 +1,8 @@
-//! [`glyph`]: what the characters of a bitmap font look like.
+//! [`glyph`]: the glyphs of a bitmap font.
 //!
-//! The font is Noto Sans Mono with the characters of Latin-1, 7 x 16 pixels each. A few others that are usual in
-//! English text are shown as the nearest of these; whatever else there is, as a box, so that one sees that something
-//! is missing.
+//! The font is Noto Sans Mono with the characters of Latin-1, 7 x 16 pixels each. A few other characters that are
+//! common in English text are replaced by the most similar one. Any further character is drawn as a hollow box, so
+//! that its absence is visible.
 
 use noto_sans_mono_bitmap::{FontWeight, RasterHeight, get_raster, get_raster_width};
 
@@ -11,17 +11,17 @@ use crate::text::{CELL_HEIGHT, CELL_WIDTH};
 const WEIGHT: FontWeight = FontWeight::Regular;
 const SIZE: RasterHeight = RasterHeight::Size16;
 
-/// Width of every glyph in pixels: that of a cell at scale 1.
+/// Width of every glyph in pixels, equal to the width of a text cell at scale 1.
 pub const GLYPH_WIDTH: usize = get_raster_width(WEIGHT, SIZE);
-/// Height of every glyph in pixels: that of a cell at scale 1.
+/// Height of every glyph in pixels, equal to the height of a text cell at scale 1.
 pub const GLYPH_HEIGHT: usize = SIZE.val();
 
 const _: () = assert!(GLYPH_WIDTH as f32 == CELL_WIDTH && GLYPH_HEIGHT as f32 == CELL_HEIGHT);
 
-/// How much of each pixel a character covers, from 0 to 255: rows from top to bottom, each from left to right.
+/// Coverage of each pixel by a character, from 0 to 255: rows from top to bottom, each from left to right.
 pub type Glyph = [[u8; GLYPH_WIDTH]; GLYPH_HEIGHT];
 
-/// What a character looks like.
+/// Returns the glyph of a character.
 #[must_use]
 pub fn glyph(character: char) -> Glyph {
     let Some(raster) = get_raster(nearest(character), WEIGHT, SIZE) else { return MISSING };
@@ -32,7 +32,7 @@ pub fn glyph(character: char) -> Glyph {
     glyph
 }
 
-/// The character of the font that is closest to one that it lacks, or the same.
+/// Returns the most similar character of the font for a character that it lacks, or else the character itself.
 fn nearest(character: char) -> char {
     match character {
         '\u{2010}'..='\u{2015}' | '\u{2212}' => '-',
@@ -45,7 +45,7 @@ fn nearest(character: char) -> char {
     }
 }
 
-/// A hollow box.
+/// Glyph of a missing character: a hollow box.
 const MISSING: Glyph = {
     let mut glyph = [[0; GLYPH_WIDTH]; GLYPH_HEIGHT];
     let mut y = 2;
@@ -75,14 +75,14 @@ mod tests {
         for character in ('!'..='~').chain("·°±²³µ×äöüßéñ§÷¿".chars()) {
             let glyph = glyph(character);
             assert_ne!(glyph, MISSING, "{character:?}");
-            assert!(ink(glyph) > 100, "{character:?} cannot be seen");
+            assert!(ink(glyph) > 100, "{character:?} should be visible");
         }
         assert_eq!(ink(glyph(' ')), 0);
     }
 
     #[test]
     fn what_the_font_lacks_can_be_seen() {
-        assert_eq!(glyph('\u{2212}'), glyph('-'), "the minus sign is a hyphen");
+        assert_eq!(glyph('\u{2212}'), glyph('-'), "the minus sign should look like a hyphen");
         for character in ['語', '\u{1f600}', '\u{0}', '\n'] {
             assert_eq!(glyph(character), MISSING, "{character:?}");
         }
@@ -94,7 +94,7 @@ mod tests {
         let all: Vec<(char, Glyph)> = ('!'..='~').map(|character| (character, glyph(character))).collect();
         for (at, (a, first)) in all.iter().enumerate() {
             for (b, second) in &all[at + 1..] {
-                assert_ne!(first, second, "{a:?} and {b:?}");
+                assert_ne!(first, second, "{a:?} and {b:?} should differ");
             }
         }
     }

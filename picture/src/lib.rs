@@ -1,11 +1,11 @@
-//! Pictures of a world: a list of what to draw, in pixels and colours, for any renderer.
+//! Renders a world into a draw list of pixels and colours, for any renderer.
 //!
-//! `lockstep2d::draw` says what there is to see and what it means; here it gets a place on a screen ([`Camera`]), a
-//! colour ([`paint`]), and becomes polygons, lines and text ([`DrawList`]). A window, a web page and a picture file show
-//! the same list.
+//! `lockstep2d::draw` produces primitives and their meaning. This crate gives them a position on the screen
+//! ([`Camera`]) and a colour ([`paint`]), and turns them into polygons, lines and text ([`DrawList`]). A window, a
+//! web page and a picture file show the same list.
 //!
-//! Floating-point numbers are used from here on: nothing that is drawn flows back into a simulation.
-#![expect(clippy::disallowed_types, reason = "floats are what screens take")]
+//! This crate uses floating-point numbers: nothing that is drawn flows back into a simulation.
+#![expect(clippy::disallowed_types, reason = "drawing uses floats")]
 
 mod camera;
 mod colour;

@@ -1,49 +1,49 @@
-//! [`DrawList`]: what to draw, in the order in which to draw it.
+//! [`DrawList`]: polygons, lines and text in drawing order.
 
 use crate::colour::Colour;
 
-/// Where the points of an [`Item`] are in [`DrawList::points`].
+/// Range of the points of an [`Item`] in the list's point array, read by [`DrawList::points`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Points {
-    /// The first.
+    /// Index of the first point.
     pub first: u32,
-    /// How many.
+    /// Number of points.
     pub count: u32,
 }
 
-/// A convex polygon or a line.
+/// Convex polygon or line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Item {
-    /// Its corners.
+    /// Corners.
     pub points: Points,
-    /// Of its inside; [`Colour::NONE`] for lines.
+    /// Colour of the inside; [`Colour::NONE`] for lines.
     pub fill: Colour,
-    /// Of its border.
+    /// Colour of the border or line.
     pub stroke: Colour,
-    /// Of the border, in pixels.
+    /// Width of the border or line, in pixels.
     pub width: f32,
-    /// Whether the border goes on from the last point to the first.
+    /// Whether the border is closed by an edge from the last point to the first.
     pub closed: bool,
 }
 
-/// A line of text, in the cells of a monospaced font (see [`CELL_WIDTH`](crate::CELL_WIDTH)).
+/// Line of text, in the cells of a monospaced font (see [`CELL_WIDTH`](crate::CELL_WIDTH)).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Text {
-    /// After how many items it is drawn.
+    /// Number of items that are drawn before the text.
     pub after: u32,
-    /// Its upper left corner, in pixels.
+    /// Upper left corner, in pixels.
     pub at: [f32; 2],
-    /// Height of a line in pixels, as a factor of [`CELL_HEIGHT`](crate::CELL_HEIGHT).
+    /// Size, as a factor of [`CELL_HEIGHT`](crate::CELL_HEIGHT).
     pub scale: f32,
-    /// Its colour.
+    /// Colour.
     pub colour: Colour,
-    /// What it says.
+    /// The text.
     pub text: String,
 }
 
-/// What to draw, in pixels from the upper left corner, y downwards; what is last lies on top.
+/// List of items and texts to draw, in pixels from the upper left corner with y pointing down. Later ones lie on top.
 ///
-/// It keeps its memory from frame to frame: [`DrawList::clear`] it and fill it again.
+/// [`DrawList::clear`] keeps the memory, so that one list can be filled again in each frame.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DrawList {
     points: Vec<[f32; 2]>,
@@ -52,26 +52,26 @@ pub struct DrawList {
 }
 
 impl DrawList {
-    /// Takes everything out.
+    /// Removes all items and texts, and keeps the memory.
     pub fn clear(&mut self) {
         self.points.clear();
         self.items.clear();
         self.texts.clear();
     }
 
-    /// All polygons and lines.
+    /// Returns all polygons and lines.
     #[must_use]
     pub fn items(&self) -> &[Item] {
         &self.items
     }
 
-    /// All lines of text, in the order of [`Text::after`].
+    /// Returns all lines of text, in the order of [`Text::after`].
     #[must_use]
     pub fn texts(&self) -> &[Text] {
         &self.texts
     }
 
-    /// The corners of an item.
+    /// Returns the corners of an item.
     #[must_use]
     pub fn points(&self, item: &Item) -> &[[f32; 2]] {
         let first = item.points.first as usize;
@@ -108,7 +108,7 @@ impl DrawList {
         self.texts.push(Text { after, at, scale, colour, text: text.into() });
     }
 
-    /// Takes the last polygon or line out again.
+    /// Removes the last polygon or line.
     pub(crate) fn undo(&mut self) {
         if let Some(item) = self.items.pop() {
             self.points.truncate(item.points.first as usize);

@@ -1,4 +1,4 @@
-//! [`page`]: a picture of a world with all that explains it, as in an SVG.
+//! [`page`]: a picture of a world with a legend and a scale bar, in the same layout as `lockstep2d::draw::svg`.
 
 use lockstep2d::draw::{Bar, Frame, Legend, PAPER, Style, View, fit, primitives};
 use lockstep2d::world::World;
@@ -9,21 +9,23 @@ use crate::list::DrawList;
 use crate::paint::{Brush, paint};
 use crate::text::{CELL_WIDTH, width_of};
 
-/// Of all text that names nothing with a colour.
+/// Colour of all text except the names of styles.
 const INK: Colour = Colour::hex(0x222222);
-/// Of the ground on which the legend stands.
+/// Background colour of the legend.
 const WHITE: Colour = Colour::hex(0xffffff);
-/// From one line of the legend to the next.
+/// Line height of the legend, in pixels.
 const LINE: f32 = 17.0;
-/// Around the legend.
+/// Margin around the legend, in pixels.
 const MARGIN: f32 = 8.0;
-/// Characters of figures without the title, and of a hash with the names of a few styles: as long as they usually are.
+/// Typical length of the figures without the title, in characters.
 const FIGURES: usize = 100;
+/// Length of the hash, in characters.
 const HASH: usize = 34;
+/// Typical length of the name of a style, in characters.
 const NAME: usize = 12;
 
-/// Draws a world as `lockstep2d::draw::svg` does, in the same size and with the same words: what is seen of it, a bar
-/// for lengths, and above them the legend, in as many lines as the width makes necessary.
+/// Draws a world like `lockstep2d::draw::svg`, with the same size and the same words: the visible part of the world, a
+/// scale bar, and above them the legend, wrapped to the width.
 pub fn page(list: &mut DrawList, world: &World, view: &View) {
     let size = [view.width.clamp(64, 16384) as f32, view.height.clamp(64, 16384) as f32];
     let window = match view.frame {
@@ -31,7 +33,7 @@ pub fn page(list: &mut DrawList, world: &World, view: &View) {
         Frame::Window(window) => window,
     };
     let mut found = primitives(world, view.layers);
-    // Stable: what is of one style stays in the order of slots.
+    // A stable sort keeps the primitives of a style in slot order.
     found.sort_by_key(|primitive| primitive.style);
     let top = height_of_legend(view, size[0]).min(size[1] / 2.0);
     let camera = Camera::new(window, [0.0, top], [size[0], size[1] - top]);
@@ -46,12 +48,13 @@ pub fn page(list: &mut DrawList, world: &World, view: &View) {
         }
     }
     add_bar(list, &camera, size);
-    // Over what reaches beyond the picture.
+    // Covers primitives that extend above the picture area.
     list.rectangle([0.0, 0.0], [size[0], top], WHITE);
     add_legend(list, &Legend::of(world, styles), &view.title, size[0]);
 }
 
-/// As many lines as the legend usually needs, whatever the figures of this tick: an animation must not jump.
+/// Height of the legend, from typical lengths instead of the figures of this tick, so that it stays the same in all
+/// frames of an animation.
 fn height_of_legend(view: &View, width: f32) -> f32 {
     let columns = ((width - 2.0 * MARGIN) / CELL_WIDTH).max(1.0) as usize;
     let title = view.title.chars().count().next_multiple_of(8);
@@ -60,11 +63,11 @@ fn height_of_legend(view: &View, width: f32) -> f32 {
     lines as f32 * LINE + MARGIN
 }
 
-/// The title with the figures, and below them the hash with the names of what is seen.
+/// Adds the title with the figures, and below them the hash with the names of the visible styles.
 fn add_legend(list: &mut DrawList, legend: &Legend, title: &str, width: f32) {
     let mut pen = Pen { at: [MARGIN, 2.0], width };
     if !title.is_empty() {
-        // There is one weight of letters: twice is bold.
+        // The font has one weight: drawing the title twice with a small offset makes it bold.
         let title = format!("{title} · ");
         list.text([pen.at[0] + 0.6, pen.at[1]], 1.0, INK, title.clone());
         pen.write(list, &title, INK);
@@ -79,7 +82,7 @@ fn add_legend(list: &mut DrawList, legend: &Legend, title: &str, width: f32) {
     }
 }
 
-/// Writes from left to right, and goes on in the next line.
+/// Writes text from left to right and wraps at the width.
 struct Pen {
     at: [f32; 2],
     width: f32,
@@ -100,7 +103,7 @@ impl Pen {
     }
 }
 
-/// A bar of up to a quarter of the picture, in its lower left corner.
+/// Adds a scale bar of up to a quarter of the picture's width, in its lower left corner.
 fn add_bar(list: &mut DrawList, camera: &Camera, [width, height]: [f32; 2]) {
     let Some(Bar { length, label }) = Bar::up_to(|length| camera.length(length) <= width / 4.0) else {
         return;

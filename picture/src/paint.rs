@@ -1,4 +1,4 @@
-//! A world, painted: what `lockstep2d::draw` says there is to see, in its colours.
+//! Paints the primitives of `lockstep2d::draw` into a draw list, in the colours of their styles.
 
 use std::f32::consts::TAU;
 
@@ -10,17 +10,17 @@ use crate::camera::Camera;
 use crate::colour::Colour;
 use crate::list::DrawList;
 
-/// How long a direction is, in pixels.
+/// Length of a direction, in pixels.
 const DIRECTION_LENGTH: f32 = 18.0;
-/// From this size on, in pixels, marks are as large as they are meant to be: a mark should be smaller than what it lies
-/// on.
+/// Body size, in pixels, from which on marks have their full size. Marks on smaller bodies shrink, so that a mark stays
+/// smaller than the body.
 const LARGE: f32 = 24.0;
-/// Marks do not become smaller than a sixth of that.
+/// Smallest scale factor of marks.
 const SCALE_MIN: f32 = 1.0 / 6.0;
-/// Text on what is smaller than this, in pixels, would be a heap of letters.
+/// Body size, in pixels, below which labels are left out, because they would overlap.
 const TEXT_SIZE_MIN: f32 = 7.0;
 
-/// The corners of a mark: from so small a disc it cannot be told.
+/// Corners of a point mark. At this size an octagon is not distinguishable from a disc.
 const OCTAGON: [[f32; 2]; 8] = {
     let (far, near) = (0.923_879_5, 0.382_683_43);
     [
@@ -35,15 +35,15 @@ const OCTAGON: [[f32; 2]; 8] = {
     ]
 };
 
-/// Of a mark with a smaller radius, in pixels, every other corner is enough.
+/// Radius, in pixels, below which a mark is drawn with only every other corner.
 const TINY: f32 = 1.5;
 
-/// How a picture is painted.
+/// Settings for painting a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Brush {
-    /// What marks and lines are multiplied by, from 1/6 to 1: they get smaller with the bodies that they lie on.
+    /// Scale factor of marks and line widths, from 1/6 to 1, smaller for small bodies.
     pub marks: f32,
-    /// A tint in place of all colours: for what is shown beside another world.
+    /// Single colour that replaces all others, for a world that is drawn over another one.
     pub tint: Option<Colour>,
 }
 
@@ -54,7 +54,7 @@ impl Default for Brush {
 }
 
 impl Brush {
-    /// The one that suits the bodies that can be seen: marks are smaller where bodies are.
+    /// Returns a brush whose marks fit the mean size of the dynamic bodies on the screen.
     #[must_use]
     pub fn suiting(world: &World, camera: &Camera) -> Self {
         let moving = world.bodies().filter(|(_, body)| body.is_dynamic());
@@ -69,14 +69,14 @@ impl Brush {
     }
 }
 
-/// Draws some layers of a world, one upon the other.
+/// Draws some layers of a world on top of each other.
 pub fn world(list: &mut DrawList, world: &World, layers: Layers, camera: &Camera, brush: &Brush) {
     for layers in layers.stacked() {
         each_primitive(world, layers, &mut |primitive| paint(list, &primitive, camera, brush));
     }
 }
 
-/// Draws one thing that there is to see.
+/// Draws one primitive, if it is visible.
 pub fn paint(list: &mut DrawList, primitive: &Primitive, camera: &Camera, brush: &Brush) {
     let Look { stroke, fill, width } = Look::of(primitive.style, brush);
     match &primitive.form {
@@ -131,7 +131,7 @@ pub fn paint(list: &mut DrawList, primitive: &Primitive, camera: &Camera, brush:
     }
 }
 
-/// A style as a brush paints it.
+/// Colours and line width of a style, as painted by a brush.
 struct Look {
     stroke: Colour,
     fill: Colour,
@@ -159,7 +159,7 @@ fn add_line(list: &mut DrawList, ends: [[f32; 2]; 2], camera: &Camera, stroke: C
     }
 }
 
-/// Adds a polygon, if it can be seen.
+/// Adds a polygon if it is visible.
 fn add_polygon(
     list: &mut DrawList,
     points: impl IntoIterator<Item = [f32; 2]>,
@@ -181,17 +181,17 @@ fn disc([x, y]: [f32; 2], radius: f32, sides: u32) -> impl Iterator<Item = [f32;
     })
 }
 
-/// So many that one does not see them: the chord is a quarter of a pixel off at most.
+/// Number of sides with which a circle looks round: the chords are at most a quarter of a pixel off the circle.
 fn sides_of(radius: f32) -> u32 {
     (radius.max(0.0).sqrt() * 4.5).clamp(8.0, 128.0) as u32
 }
 
-/// The outline of a polygon, or a rod, with round corners.
+/// Returns the outline of a polygon, or a capsule, with rounded corners.
 fn rounded(vertices: &[Vec2<Fx>], radius: Fx, camera: &Camera) -> Vec<[f32; 2]> {
     let radius = camera.length(radius);
     let corners: Vec<[f32; 2]> = vertices.iter().map(|&vertex| camera.place(vertex)).collect();
     let count = corners.len();
-    // On the screen a polygon that is counter-clockwise in the world still is, seen with y upwards.
+    // Angles are measured with y pointing up, so that a counter-clockwise polygon in the world stays counter-clockwise.
     let direction = |from: [f32; 2], to: [f32; 2]| (from[1] - to[1]).atan2(to[0] - from[0]);
     let sides = sides_of(radius) as f32;
     let mut outline = Vec::new();
@@ -272,6 +272,6 @@ mod tests {
         let huge = Form::Circle { centre: far, radius: fx!(98) };
         let primitive = Primitive { style: Style::Dynamic, subject, form: huge };
         paint(&mut list, &primitive, &camera(), &Brush::default());
-        assert_eq!(list.items().len(), 1, "its border is in the picture");
+        assert_eq!(list.items().len(), 1, "a circle with its border in the picture should be drawn");
     }
 }

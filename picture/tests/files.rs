@@ -1,7 +1,7 @@
-//! What is written as a picture or an animation is what decoders show, in the time that it should take, and takes no
-//! more memory however long it is.
-#![expect(clippy::unwrap_used, reason = "what goes wrong in a helper fails the test")]
-#![expect(clippy::disallowed_types, reason = "floats are what screens take")]
+//! Written pictures and animations decode to the same pixels with the right frame durations; misuse and write errors
+//! are reported.
+#![expect(clippy::unwrap_used, reason = "a failed unwrap in a helper fails the test")]
+#![expect(clippy::disallowed_types, reason = "drawing uses floats")]
 
 mod common;
 
@@ -15,7 +15,7 @@ const SIZE: (u32, u32) = (120, 80);
 const WHITE: Colour = Colour::hex(0xffffff);
 const THIRTY: Pace = Pace { ticks: 2, tick_rate: 60 };
 
-/// A square that moves by whole pixels, and text that changes: a dozen colours.
+/// Square that moves by whole pixels, and text that changes: a dozen colours.
 fn flat(frame: u32) -> Image {
     let mut list = DrawList::default();
     list.rectangle([0.0, 60.0], [120.0, 20.0], Colour::hex(0xdddcd6));
@@ -35,11 +35,11 @@ fn a_png_is_the_image() {
         let parts = info.color_type.samples();
         assert_eq!(parts, if image.is_opaque() { 3 } else { 4 });
         let expected = image.rgba().chunks(4).flat_map(|pixel| &pixel[..parts]);
-        assert!(pixels.iter().eq(expected), "other pixels");
+        assert!(pixels.iter().eq(expected), "the decoded pixels should equal the image");
     }
 }
 
-/// What a decoder shows after each frame, and for how many hundredths of a second.
+/// Returns the picture that a decoder shows after each frame, and its duration in hundredths of a second.
 fn decoded_gif(bytes: &[u8]) -> Vec<(Vec<[u8; 3]>, u16)> {
     let mut options = DecodeOptions::new();
     options.set_color_output(ColorOutput::RGBA);
@@ -76,7 +76,7 @@ fn rgb(image: &Image) -> Vec<[u8; 3]> {
 
 #[test]
 fn a_gif_of_few_colours_is_exact() {
-    // One frame twice: nothing changes.
+    // The last frame appears twice, so that one frame has no change.
     let images: Vec<Image> = (0..30).map(|frame| flat(frame.min(28))).collect();
     let bytes = gif_of(&images, THIRTY);
     let frames = decoded_gif(&bytes);
@@ -85,10 +85,14 @@ fn a_gif_of_few_colours_is_exact() {
         assert!(*pixels == rgb(image), "frame {at}");
     }
     let delays: Vec<u16> = frames.iter().map(|(_, delay)| *delay).collect();
-    assert_eq!(delays.iter().map(|&delay| u32::from(delay)).sum::<u32>(), 100, "30 frames are a second");
+    assert_eq!(
+        delays.iter().map(|&delay| u32::from(delay)).sum::<u32>(),
+        100,
+        "30 frames should last one second"
+    );
     assert_eq!(delays[..6], [3, 4, 3, 3, 4, 3]);
     let whole: usize = images.iter().map(|image| gif_of(std::slice::from_ref(image), THIRTY).len()).sum();
-    assert!(bytes.len() * 4 < whole * 3, "{} bytes, and {whole} for 30 single pictures", bytes.len());
+    assert!(bytes.len() * 4 < whole * 3, "{} bytes, but {whole} bytes for 30 single pictures", bytes.len());
 }
 
 #[test]
@@ -115,14 +119,19 @@ fn colours_that_were_expected_are_written_once() {
     frames.iter().step_by(10).for_each(|frame| animation.expect(frame));
     frames.iter().for_each(|frame| animation.add(frame).unwrap());
     animation.finish().unwrap();
-    assert!(bytes.len() + 40 * 3 * 256 < plain.len(), "{} and {}", bytes.len(), plain.len());
+    assert!(
+        bytes.len() + 40 * 3 * 256 < plain.len(),
+        "{} bytes with announced colours, {} without",
+        bytes.len(),
+        plain.len()
+    );
     let shown = decoded_gif(&bytes);
     assert_eq!(shown.len(), 60);
     for ((pixels, _), image) in shown.iter().zip(&frames) {
         let expected = rgb(image);
         let channels = pixels.iter().flatten().zip(expected.iter().flatten());
         let error = channels.map(|(a, b)| u64::from(a.abs_diff(*b)));
-        assert!(error.sum::<u64>() < 3 * 2 * 120 * 80, "a mean error of more than 2");
+        assert!(error.sum::<u64>() < 3 * 2 * 120 * 80, "the mean error should be below 2");
     }
 }
 
@@ -134,12 +143,12 @@ fn a_gif_of_many_colours_is_close() {
         let errors = pixels.iter().flatten().zip(expected.iter().flatten());
         let errors: Vec<u32> = errors.map(|(a, b)| u32::from(a.abs_diff(*b))).collect();
         let mean = f64::from(errors.iter().sum::<u32>()) / errors.len() as f64;
-        assert!(mean < 2.0, "a mean error of {mean}");
-        assert!(*errors.iter().max().unwrap() <= 60, "an error of {:?}", errors.iter().max());
+        assert!(mean < 2.0, "the mean error should be below 2: {mean}");
+        assert!(*errors.iter().max().unwrap() <= 60, "no error should exceed 60: {:?}", errors.iter().max());
     }
 }
 
-/// What a decoder shows after each frame, and for what part of a second.
+/// Returns the picture that a decoder shows after each frame, and its duration in seconds as a fraction.
 fn decoded_apng(bytes: &[u8]) -> Vec<(Vec<u8>, (u16, u16))> {
     let mut reader = png::Decoder::new(Cursor::new(bytes)).read_info().unwrap();
     let count = reader.info().animation_control().unwrap().num_frames;
@@ -155,7 +164,7 @@ fn decoded_apng(bytes: &[u8]) -> Vec<(Vec<u8>, (u16, u16))> {
             if control.blend_op == png::BlendOp::Source || pixel[3] == 255 {
                 shown[at..at + 4].copy_from_slice(pixel);
             } else {
-                assert_eq!(pixel, [0; 4], "all or nothing");
+                assert_eq!(pixel, [0; 4], "blended pixels should be opaque or fully transparent");
             }
         }
         frames.push((shown.clone(), (control.delay_num, control.delay_den)));
@@ -194,15 +203,15 @@ fn what_is_no_animation_is_refused() {
     let mut apng = Animation::apng(Vec::new(), THIRTY, 2);
     apng.add(&flat(0)).unwrap();
     assert!(apng.add(&other).is_err());
-    assert!(apng.finish().is_err(), "a frame is missing");
+    assert!(apng.finish().is_err(), "finishing with a missing frame should fail");
     let mut apng = Animation::apng(Vec::new(), THIRTY, 1);
     apng.add(&flat(0)).unwrap();
-    assert!(apng.add(&flat(0)).is_err(), "a frame too much");
+    assert!(apng.add(&flat(0)).is_err(), "adding more frames than announced should fail");
     assert!(Animation::gif(Vec::new(), THIRTY).finish().is_err());
     assert!(Animation::apng(Vec::new(), THIRTY, 0).finish().is_err());
 }
 
-/// Takes so many bytes, and then none.
+/// Writer that accepts this number of bytes and then fails as a full disk.
 struct Full(usize);
 
 impl std::io::Write for Full {

@@ -1,14 +1,15 @@
-//! Writing an animation takes no more memory however long it is. A process of its own, so that nothing else counts.
+//! The memory for writing an animation does not grow with its length. This is a separate test binary, so that no
+//! other test adds to the peak memory of the process.
 #![cfg(target_os = "linux")]
-#![expect(clippy::unwrap_used, reason = "what goes wrong in a helper fails the test")]
-#![expect(clippy::disallowed_types, reason = "floats are what screens take")]
+#![expect(clippy::unwrap_used, reason = "a failed unwrap in a helper fails the test")]
+#![expect(clippy::disallowed_types, reason = "drawing uses floats")]
 
 mod common;
 
 use common::colourful;
 use lockstep2d_picture::{Animation, Pace};
 
-/// The most memory that this process has had, in KiB.
+/// Returns the peak memory of this process, in KiB.
 fn memory_peak() -> u64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap();
     let line = status.lines().find(|line| line.starts_with("VmHWM:")).unwrap();
@@ -28,7 +29,7 @@ fn memory_does_not_grow_with_the_frames() {
     (0..50).for_each(&mut add);
     let before = memory_peak();
     (50..550).for_each(&mut add);
-    // 500 frames are 19 MB of pixels.
+    // The pixels of 500 frames would take 19 MB.
     let grown = memory_peak() - before;
-    assert!(grown < 4000, "{grown} KiB more");
+    assert!(grown < 4000, "memory grew by {grown} KiB");
 }

@@ -1,6 +1,6 @@
-//! A world that is painted shows its bodies where they are, and nothing where there is none.
-#![expect(clippy::unwrap_used, reason = "what goes wrong in a helper fails the test")]
-#![expect(clippy::disallowed_types, reason = "floats are what screens take")]
+//! A rendered world shows its bodies at their positions, and only the background elsewhere.
+#![expect(clippy::unwrap_used, reason = "a failed unwrap in a helper fails the test")]
+#![expect(clippy::disallowed_types, reason = "drawing uses floats")]
 
 use lockstep2d::draw::{Form, Frame, Layers, PAPER, Style, View, fit, primitives};
 use lockstep2d::lockstep::{Game, Sandbox};
@@ -10,7 +10,7 @@ use lockstep2d_picture::{Brush, Camera, Colour, DrawList, Image, page, raster, w
 
 const SIZE: (u32, u32) = (400, 300);
 
-/// A scene after so many ticks.
+/// Returns a scene after this number of ticks.
 fn played(name: &str, ticks: u64) -> Sandbox {
     let scene = Scene::find(name).unwrap();
     let mut game = Sandbox::new(&scene.setup(1)).unwrap();
@@ -21,7 +21,7 @@ fn played(name: &str, ticks: u64) -> Sandbox {
     game
 }
 
-/// A colour on another, as a rasteriser mixes them, give or take what it rounds.
+/// Returns whether a colour is the blend of two others, up to a rounding error of 2 per channel.
 fn is_mixed(found: Colour, above: Colour, below: Colour) -> bool {
     let share = f32::from(above.opacity) / 255.0;
     (0..3).all(|channel| {
@@ -30,7 +30,7 @@ fn is_mixed(found: Colour, above: Colour, below: Colour) -> bool {
     })
 }
 
-/// Whether a point lies so far inside of a polygon that no border reaches it; in pixels, whatever its orientation.
+/// Returns whether a point lies inside a polygon by more than `margin` pixels, for either orientation of the polygon.
 fn is_inside(corners: &[[f32; 2]], [x, y]: [f32; 2], margin: f32) -> bool {
     let sides = corners.iter().zip(corners.iter().cycle().skip(1));
     let distances: Vec<f32> = sides
@@ -43,8 +43,9 @@ fn is_inside(corners: &[[f32; 2]], [x, y]: [f32; 2], margin: f32) -> bool {
         || distances.iter().all(|&distance| distance < -margin)
 }
 
-/// Every pixel of a picture against the primitives, through the camera: inside of exactly one polygon or disc it has
-/// that one's fill, outside of all the colour of the paper.
+/// Compares a grid of pixels (every third in each direction) with the primitives, transformed by the camera. A pixel
+/// inside exactly one polygon or circle has its fill colour; a pixel outside all of them has the colour of the paper.
+/// Returns the numbers of pixels checked outside and inside.
 fn check(image: &Image, game: &Sandbox, camera: &Camera, paper: Colour, top: u32) -> [u32; 2] {
     let outlines = primitives(game.world(), Layers { outlines: true, ..Layers::NONE });
     let mut counts = [0, 0];
@@ -70,7 +71,7 @@ fn check(image: &Image, game: &Sandbox, camera: &Camera, paper: Colour, top: u32
                         let distance = (at[0] - centre[0]).hypot(at[1] - centre[1]);
                         cover(&|margin| distance < radius - margin);
                     }
-                    // Radii of circles, and what is round: too near to tell.
+                    // Pixels near a line, such as the radius marks of circles, are not checked.
                     Form::Line { from, to } => {
                         let (from, to) = (camera.place(*from), camera.place(*to));
                         let along = [to[0] - from[0], to[1] - from[1]];
@@ -82,13 +83,13 @@ fn check(image: &Image, game: &Sandbox, camera: &Camera, paper: Colour, top: u32
                             (at[0] - from[0] - along[0] * share, at[1] - from[1] - along[1] * share);
                         near += u32::from(dx.hypot(dy) < 2.0);
                     }
-                    other => panic!("{other:?} is not in these scenes"),
+                    other => panic!("these scenes should not contain {other:?}"),
                 }
             }
             let found = image.pixel(x, y).unwrap();
             match (&inside[..], near) {
                 ([], 0) => {
-                    assert_eq!(found, paper, "nothing is at {at:?}");
+                    assert_eq!(found, paper, "the paper should be visible at {at:?}");
                     counts[0] += 1;
                 }
                 ([style], 0) => {
@@ -115,7 +116,10 @@ fn bodies_are_where_they_are_and_nowhere_else() {
         let layers = Layers { outlines: true, ..Layers::NONE };
         world(&mut list, game.world(), layers, &camera, &Brush::suiting(game.world(), &camera));
         let [outside, inside] = check(&raster(&list, SIZE, paper), &game, &camera, paper, 0);
-        assert!(outside > 500 && inside > 20, "{scene}: {outside} outside and {inside} inside");
+        assert!(
+            outside > 500 && inside > 20,
+            "{scene}: checked only {outside} pixels outside and {inside} inside"
+        );
     }
 }
 
@@ -130,24 +134,24 @@ fn a_page_shows_the_same_below_its_legend() {
     page(&mut list, game.world(), &view);
     let image = raster(&list, (900, 400), Colour::hex(0));
     let top = (0..400).find(|&y| image.pixel(890, y) == Some(Colour::hex(PAPER))).unwrap();
-    assert_eq!(top, 42, "as in an SVG");
+    assert_eq!(top, 42, "the legend should be as high as in an SVG");
     let camera = Camera::new(window, [0.0, top as f32], [900.0, (400 - top) as f32]);
     let words: String = list.texts().iter().map(|text| text.text.as_str()).collect();
     let hash = game.world().state_hash().to_string();
     for word in ["pyramid", "tick 60 ", "deepest overlap", &hash, "fixed", "asleep"] {
-        assert!(words.contains(word), "{word} in {words}");
+        assert!(words.contains(word), "{word:?} should be in {words:?}");
     }
-    // Without the bar, which lies on the picture.
+    // Leaves out the scale bar, which lies on the picture.
     let mut bare = DrawList::default();
     for item in list.items().iter().filter(|item| item.stroke != Colour::hex(0x222222)) {
         bare.polygon(list.points(item).to_vec(), item.fill, item.stroke, item.width);
     }
     let image = raster(&bare, (900, 400), Colour::hex(0));
     let [outside, inside] = check(&image, &game, &camera, Colour::hex(PAPER), top);
-    assert!(outside > 1000 && inside > 100, "{outside} outside and {inside} inside");
+    assert!(outside > 1000 && inside > 100, "checked only {outside} pixels outside and {inside} inside");
 }
 
-/// Something far away must not hide the rest, or come back on the other side.
+/// Shapes that extend far beyond the window must not overflow the rasteriser's coordinates.
 #[test]
 fn a_narrow_window_of_a_wide_world_is_drawn() {
     let game = played("box_stack", 1);

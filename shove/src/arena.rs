@@ -1,8 +1,8 @@
-//! What lies in the world beside the players: platform, mill, bumpers, plates and crates.
+//! Builds the arena: platform, mill, bumpers, plates and crates, and places the players in it.
 //!
-//! From the middle outwards, in metres: the mill's flails reach to 4.4, bumpers stand at 5.4, the first crates lie at 6.2,
-//! plates at 7.2, players start at 8.1, more crates lie at 10, and the platform ends at 12: at first, for in the end it is
-//! within the mill's reach.
+//! Distances from the centre, in metres: the mill's flails reach to 4.4, bumpers stand at 5.4, the inner crates lie
+//! at 6.2, plates at 7.2, players start at 8.1, the outer crates lie at 10. The platform ends at 12 at first; when it
+//! has crumbled completely, its edge is within the reach of the mill.
 
 use lockstep2d::body::{
     Body, BodyDef, BodyId, EventSwitches, Filter, Geometry, Polygon, ShapeDef, WorldError,
@@ -14,33 +14,36 @@ use lockstep2d::world::{Config, World};
 
 /// Ticks per second.
 pub(crate) const TICK_RATE: u32 = 60;
-/// The radius of the whole platform, in metres.
+/// Radius of the whole platform, in metres.
 pub const START_RADIUS: Fx = fx!(12);
-/// How much of the radius crumbles at once.
+/// Width of the ring that crumbles at a time, in metres.
 const RING: Fx = fx!(0.5);
-/// How many rings of the platform crumble in a round.
+/// Number of rings of the platform that crumble in a round.
 pub(crate) const RINGS: u8 = 15;
 
+/// Distance of the players' start positions from the centre, in metres.
 const START_RING: Fx = fx!(8.1);
+/// Radius of a player, in metres.
 const PLAYER_RADIUS: Fx = fx!(0.5);
-/// A pair of flails swings at 2 rad/s.
+/// Angular velocity of the mill, in rad/s.
 const MILL_SPEED: Fx = fx!(2);
+/// Largest torque of the mill's motor, in N m.
 const MILL_TORQUE: Fx = fx!(400);
 
-/// What a body is in the game, kept in its user data.
+/// Role of a body in the game, stored in its user data.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
-    /// The floor: a picture, which touches nothing.
+    /// The floor: only drawn, collides with nothing.
     Platform,
-    /// A player, with the seat.
+    /// A player on the seat of this index.
     Player(u8),
-    /// Something to push around, which falls like players.
+    /// A crate, which can be pushed around and falls like a player.
     Crate,
-    /// What kicks.
+    /// A bumper, which kicks bodies that hit it.
     Bumper,
-    /// What charges the dash.
+    /// A plate, which recharges the dash of a player.
     Plate,
-    /// The bar in the middle, and its flails.
+    /// The bar in the centre, and its flails.
     Mill,
 }
 
@@ -58,7 +61,7 @@ impl Role {
         }
     }
 
-    /// The role of a body of the game.
+    /// Returns the role of a body of the game.
     #[must_use]
     pub fn of(body: &Body) -> Role {
         match body.user_data() {
@@ -74,17 +77,17 @@ impl Role {
     }
 }
 
-/// The radius of the platform without its outermost rings.
+/// Returns the radius of the platform without this number of outer rings, in metres.
 pub(crate) fn radius(rings_lost: u8) -> Fx {
     START_RADIUS.saturating_sub(RING.saturating_mul_int(rings_lost.into()))
 }
 
-/// A point in polar coordinates.
+/// Converts polar coordinates to a point.
 fn polar(radius: Fx, angle: Angle) -> Vec2<Fx> {
     Rot::from_angle(angle).apply_wide(Vec2::new(radius, Fx::ZERO))
 }
 
-/// The angle of one of `count` equal parts of a turn.
+/// Returns the angle `index / count` of a full turn.
 fn part(index: u8, count: u8) -> Angle {
     Angle::from_turns(Fx::from_num(index) / i64::from(count))
 }
@@ -93,7 +96,7 @@ fn at(def: BodyDef, place: Vec2<Fx>, role: Role) -> BodyDef {
     def.position(place.x, place.y).user_data(role.user_data())
 }
 
-/// The world before the first round: all but players and crates.
+/// Builds the world before the first round: everything except players and crates.
 pub(crate) fn build() -> Result<World, WorldError> {
     let mut world = World::new(Config {
         tick_rate: TICK_RATE,
@@ -120,7 +123,7 @@ pub(crate) fn build() -> Result<World, WorldError> {
     Ok(world)
 }
 
-/// A bar that a motor turns about the origin, and a flail at either end.
+/// Adds a bar that a motor turns about the origin, with a flail at each end.
 fn build_mill(world: &mut World) -> Result<(), WorldError> {
     let axle = world.spawn(&at(BodyDef::fixed(), Vec2::ZERO, Role::Mill), &[])?;
     let bar = ShapeDef::new(Polygon::rectangle(fx!(2.2), fx!(0.2))?).density(fx!(4));
@@ -133,7 +136,7 @@ fn build_mill(world: &mut World) -> Result<(), WorldError> {
     Ok(())
 }
 
-/// Three links of half a metre and a ball, straight outwards at first.
+/// Adds a flail, initially pointing straight outwards: three links of 0.5 m and a ball.
 fn hang_flail(world: &mut World, bar: BodyId, side: Fx) -> Result<(), WorldError> {
     let link = Geometry::capsule(Vec2::new(fx!(-0.2), fx!(0)), Vec2::new(fx!(0.2), fx!(0)), fx!(0.08))?;
     let link = ShapeDef::new(link).density(fx!(6));
@@ -152,7 +155,7 @@ fn hang_flail(world: &mut World, bar: BodyId, side: Fx) -> Result<(), WorldError
     Ok(())
 }
 
-/// Clears the crates away and lays them out anew: 8 between the bumpers and 12 near the edge.
+/// Removes the old crates and places new ones: 8 between the bumpers and 12 near the edge.
 pub(crate) fn lay_crates(world: &mut World, rng: &mut Rng) -> Result<(), WorldError> {
     let found = world.bodies().filter(|(_, body)| Role::of(body) == Role::Crate);
     let old: Vec<_> = found.map(|(id, _)| id).collect();
@@ -170,7 +173,7 @@ pub(crate) fn lay_crates(world: &mut World, rng: &mut Rng) -> Result<(), WorldEr
     Ok(())
 }
 
-/// Puts a player on one of `count` starting places, which begin at an angle.
+/// Creates a player's body at one of `count` evenly spaced start positions, counted from the angle `first`.
 pub(crate) fn place_player(
     world: &mut World,
     seat: u8,
@@ -182,14 +185,14 @@ pub(crate) fn place_player(
     world.spawn(&at(def, polar(START_RING, first + part(place, count)), Role::Player(seat)), &[disc])
 }
 
-/// Gives the picture of the platform its radius.
+/// Sets the drawn radius of the platform.
 pub(crate) fn draw_platform(world: &mut World, radius: Fx) -> Result<(), WorldError> {
     let shape = world.bodies().find(|(_, body)| Role::of(body) == Role::Platform);
     let Some(&shape) = shape.and_then(|(_, body)| body.shapes().first()) else { return Ok(()) };
     world.set_geometry(shape, Geometry::circle(radius)?)
 }
 
-/// Takes what has left the platform out of the world, and says which seats are among it.
+/// Removes players and crates that have left the platform, and returns the seats of the removed players.
 pub(crate) fn drop_outside(world: &mut World, radius: Fx) -> Vec<u8> {
     let falls = |body: &Body| {
         matches!(Role::of(body), Role::Player(_) | Role::Crate) && body.centre_of_mass().length() > radius
@@ -198,7 +201,7 @@ pub(crate) fn drop_outside(world: &mut World, radius: Fx) -> Vec<u8> {
     let outside: Vec<_> = found.map(|(id, body)| (id, Role::of(body))).collect();
     let mut seats = Vec::new();
     for (id, role) in outside {
-        // It has just been found there.
+        // Cannot fail: the body has just been found in the world.
         let _ = world.despawn(id);
         if let Role::Player(seat) = role {
             seats.push(seat);

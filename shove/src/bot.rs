@@ -1,4 +1,4 @@
-//! [`Bot`]: somebody to play against, and to test with.
+//! [`Bot`]: computer player, as an opponent and for tests.
 
 use lockstep2d::fx;
 use lockstep2d::math::{Fx, Rng, Vec2, fx_mul};
@@ -8,22 +8,22 @@ use crate::pad::Pad;
 use crate::setup::Setup;
 use crate::view::Player;
 
-/// A player that sees the match and nothing else. The same seed, seat and matches give the same pads.
+/// Computer player. Its pads depend only on its seed, its seat and the states of the match.
 ///
-/// It tries to be further inside than its opponent, pushes it outwards from there, and turns back before the edge.
+/// It tries to be closer to the centre than its opponent, pushes the opponent outwards, and turns back before the edge.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Bot {
     seat: usize,
     rng: Rng,
-    /// How far from the edge it turns back, in metres: how brave it is.
+    /// Distance from the edge at which it turns back, in metres.
     caution: Fx,
     pad: Pad,
-    /// Ticks for which it holds the pad: nobody changes their mind sixty times a second.
+    /// Ticks for which it keeps the current pad, so that it does not decide anew in every tick.
     hold: u32,
 }
 
 impl Bot {
-    /// A bot for a seat.
+    /// Creates a bot for a seat.
     #[must_use]
     pub fn new(seed: u64, seat: u8) -> Self {
         let mut rng = Rng::with_stream(seed, seat.into());
@@ -31,13 +31,13 @@ impl Bot {
         Bot { seat: seat.into(), rng, caution, pad: Pad::default(), hold: 0 }
     }
 
-    /// A bot for each seat of a match, with its seed.
+    /// Creates a bot for each seat of a match, with the seed of the match.
     #[must_use]
     pub fn each(setup: &Setup) -> Vec<Bot> {
         (0..setup.seats).map(|seat| Bot::new(setup.seed, seat)).collect()
     }
 
-    /// What it does in the next tick. To be asked once a tick.
+    /// Returns the pad for the next tick. To be called once per tick.
     pub fn pad(&mut self, game: &Shove) -> Pad {
         if self.hold > 0 {
             self.hold -= 1;
@@ -52,7 +52,7 @@ impl Bot {
     }
 
     fn decide(&mut self, game: &Shove, me: &Player) -> Pad {
-        // Where it will be in a third of a second.
+        // Predicted position in 0.3 s.
         let soon = me.position + me.velocity.scale(fx!(0.3));
         let margin = game.radius().saturating_sub(soon.length());
         if margin < self.caution {
@@ -60,7 +60,8 @@ impl Bot {
             return if margin < Fx::ZERO { back.with(Pad::DASH) } else { back };
         }
         let distance = |other: &Player| other.position.distance(me.position);
-        // Of equally near ones the next one round the table, so that not everybody goes for the first.
+        // Among equally close opponents it takes the next seat after its own, so that not all bots attack the first
+        // seat.
         let others = (1..game.seats()).filter_map(|next| game.player((self.seat + next) % game.seats()));
         let others = others.filter(Player::is_alive);
         let Some(other) = others.min_by_key(distance) else {
@@ -77,7 +78,7 @@ impl Bot {
         let way = there - me.position;
         let distance = way.length();
         let outwards = other.position.normalized().map_or(Vec2::ZERO, Vec2::widen);
-        // How far it is inside of the other, along the push.
+        // Component of the way to the opponent that points outwards, away from the centre.
         let inside = way.dot(outwards);
         if inside > fx_mul(distance, fx!(0.4)) {
             let push = Pad::towards(way);

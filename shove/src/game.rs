@@ -1,4 +1,4 @@
-//! [`Shove`]: the game.
+//! [`Shove`]: the game as an implementation of [`Game`].
 
 use lockstep2d::body::{Body, BodyId, ShapeId, WorldError};
 use lockstep2d::fx;
@@ -13,15 +13,16 @@ use crate::pad::Pad;
 use crate::rules::Rules;
 use crate::setup::Setup;
 
-/// How a player speeds up, in m/s²; damping ends it at 7.5 m/s.
+/// Acceleration of a player, in m/s²; damping limits the speed to 7.5 m/s.
 const ACCELERATION: Fx = fx!(9);
-/// What a dash adds, in m/s, and ticks until the next one.
+/// Velocity change of a dash, in m/s.
 const DASH: Fx = fx!(8);
+/// Ticks until the next dash.
 const RECHARGE: u8 = 75;
-/// What a bumper adds, in m/s.
+/// Velocity change by a bumper, in m/s.
 const KICK: Fx = fx!(5);
 
-/// A match.
+/// State of a match.
 #[derive(Clone, Debug)]
 pub struct Shove {
     pub(crate) setup: Setup,
@@ -29,7 +30,7 @@ pub struct Shove {
     pub(crate) rules: Rules,
 }
 
-/// A copy of the state of a match.
+/// Saved state of a match.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Save {
     world: Snapshot,
@@ -37,7 +38,7 @@ pub struct Save {
 }
 
 impl Save {
-    /// How many bytes of memory it takes for itself, without what it shares with other saves.
+    /// Returns the memory of this save in bytes, without the memory that it shares with other saves.
     #[must_use]
     pub fn rollback_bytes(&self) -> usize {
         self.world.rollback_bytes() + size_of::<Rules>()
@@ -45,7 +46,7 @@ impl Save {
 }
 
 impl Shove {
-    /// What the player of a seat does: speed up, dash.
+    /// Applies a pad to the player of a seat: acceleration and dash.
     fn drive(&mut self, seat: usize, pad: Pad) -> Result<(), WorldError> {
         let Some(seat) = self.rules.seats.get_mut(seat) else { return Ok(()) };
         seat.recharge = seat.recharge.saturating_sub(1);
@@ -60,13 +61,13 @@ impl Shove {
         Ok(())
     }
 
-    /// The body of a shape, and what it is.
+    /// Returns the body of a shape, and its role.
     fn owner(&self, shape: ShapeId) -> Option<(BodyId, Role)> {
         let id = self.world.shape(shape)?.body();
         Some((id, Role::of(self.world.body(id)?)))
     }
 
-    /// Bumpers kick what has hit them.
+    /// Applies the kick of bumpers to the bodies that have hit them.
     fn kick(&mut self) -> Result<(), WorldError> {
         let kicked = |shape, bumper, away: Vec2<Unit>| {
             let ((body, _), (_, role)) = (self.owner(shape)?, self.owner(bumper)?);
@@ -86,7 +87,7 @@ impl Shove {
         Ok(())
     }
 
-    /// Plates charge the dash of who has just come over them.
+    /// Recharges the dash of players that have just entered a plate.
     fn charge(&mut self) {
         for event in &self.world.events().sensor_begin {
             if let Some((_, Role::Player(seat))) = self.owner(event.visitor)
@@ -97,7 +98,8 @@ impl Shove {
         }
     }
 
-    /// A tick, up to the first change that the world refuses: none, unless the state came from a stranger.
+    /// Advances the rules and applies the pads, up to the first change that the world refuses. It refuses none,
+    /// unless the state was loaded from an untrusted save.
     fn try_step(&mut self, pads: &[Pad]) -> Result<(), WorldError> {
         self.rules.advance(&mut self.world, self.setup.rounds)?;
         if self.rules.is_on() {
@@ -136,8 +138,8 @@ impl Game for Shove {
             self.rules.seat(&mut self.world, seat, present);
         }
         let pads = &inputs[..inputs.len().min(self.seats())];
-        // A world that a stranger has made up may refuse what follows. The tick then goes on without it, on every
-        // machine alike.
+        // A world from an untrusted save may refuse these changes. The tick then continues without them, in the same
+        // way on every machine.
         let _ = self.try_step(pads);
         self.world.step();
         self.charge();
@@ -163,8 +165,9 @@ impl Game for Shove {
         Some(&mut self.world)
     }
 
-    /// Like the sandbox's: what is solved, and pairs that are not there yet. A new round may add every player and
-    /// crate.
+    /// Upper bound of the work, computed like that of the sandbox: bodies and existing constraints times the iterations
+    /// of the solver, plus the square of the number of shapes for new pairs, because a new round may add all players and
+    /// crates.
     fn work(&self, _: &[Pad]) -> u64 {
         let count = |n: usize| u64::try_from(n).unwrap_or(u64::MAX);
         let limits = self.world.config();

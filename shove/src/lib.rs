@@ -1,11 +1,11 @@
 //! Shove: two to four players push each other off a platform that crumbles.
 //!
-//! Seen from above. A player is a disc that a [`Pad`] of one byte drives and that can dash now and then. In the middle a
-//! mill swings two flails, bumpers kick what hits them, plates charge the dash of who comes over them, and crates lie
-//! around. Whoever's centre leaves the platform has fallen, and all who still stand get a point. The last one wins the
-//! round, unless time is up before.
+//! The view is from above. A player is a disc, controlled by a [`Pad`] of one byte; it can dash when the dash is
+//! recharged. In the centre a mill swings two flails, bumpers kick bodies that hit them, plates recharge the dash of
+//! players that enter them, and crates lie around. A player whose centre leaves the platform has fallen, and each
+//! player still standing gets a point. The last player standing wins the round, unless the time runs out first.
 //!
-//! It is small on purpose: everything that lockstep, rollback, late join and the viewer are shown with plays it.
+//! The game is small on purpose. It is the example for lockstep, rollback, late join and the viewer.
 //!
 //! ```
 //! use lockstep2d::lockstep::Game;
@@ -40,5 +40,5 @@ pub use rules::Phase;
 pub use setup::{Setup, UnplayableSetup};
 pub use view::Player;
 
-/// Most players of a game.
+/// Most players of a match.
 pub const SEATS_MAX: usize = 4;

@@ -1,4 +1,4 @@
-//! Matches over a network: how one begins, and what both `shove play` and a window do in every moment of it.
+//! Network matches: entering a match, and the update loop shared by `shove play` and the viewer.
 
 use std::fmt;
 use std::io;
@@ -10,41 +10,41 @@ use crate::game::Shove;
 use crate::pad::Pad;
 use crate::setup::Setup;
 
-/// How to take part in a match.
+/// Way to enter a match.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Way<A> {
-    /// Opens one.
+    /// Hosts a new match.
     Host,
-    /// Asks for a seat.
+    /// Joins a match as a player.
     Join {
-        /// Somebody who takes part.
+        /// Address of any participant.
         contact: A,
-        /// The seat, if not any.
+        /// Requested seat; any free seat if `None`.
         seat: Option<u32>,
     },
-    /// Looks on.
+    /// Joins a match as a spectator.
     Watch {
-        /// Somebody who takes part.
+        /// Address of any participant.
         contact: A,
     },
 }
 
-/// A participant over UDP.
+/// Peer of a match over UDP.
 pub type UdpPeer = Peer<Shove, SocketAddr, Udp>;
 
-/// Why one cannot take part in a match.
+/// Reason why a match cannot be entered.
 #[derive(Debug)]
 pub enum OnlineError {
-    /// What was given as an address is none.
+    /// An address is invalid or cannot be resolved.
     Address {
-        /// What was given.
+        /// The address as given.
         address: String,
-        /// What the system says; nothing if there simply is no such address.
+        /// Error of the system; `None` if the lookup succeeded without a result.
         why: Option<io::Error>,
     },
-    /// The system gives no socket.
+    /// The socket cannot be opened.
     Socket(io::Error),
-    /// No match starts.
+    /// The match cannot start.
     Net(NetError),
 }
 
@@ -62,10 +62,10 @@ impl fmt::Display for OnlineError {
 impl std::error::Error for OnlineError {}
 
 impl<A> Way<A> {
-    /// Takes part in this way.
+    /// Enters a match in this way.
     ///
     /// # Errors
-    /// [`NetError`] when the setup starts no game.
+    /// [`NetError`] if the setup is invalid.
     pub fn enter<T: Transport<A>>(
         self,
         setup: &Setup,
@@ -84,10 +84,10 @@ impl<A> Way<A> {
 }
 
 impl Way<&str> {
-    /// Takes part over UDP; packets come in at the address `bind`, or else at any free port.
+    /// Enters a match over UDP. The socket is bound to the address `bind`, or to any free port without it.
     ///
     /// # Errors
-    /// [`OnlineError`] when there is no such address, no socket, or the setup starts no game.
+    /// [`OnlineError`] if an address cannot be resolved, the socket cannot be opened, or the setup is invalid.
     pub fn enter_udp(
         self,
         bind: Option<&str>,
@@ -114,10 +114,10 @@ fn resolve(address: &str) -> Result<SocketAddr, OnlineError> {
     found.next().ok_or_else(|| error(None))
 }
 
-/// Plays all ticks that are due, each with the pad that `pad` gives for the game and the own seat.
+/// Plays all ticks that are due. `pad` returns the local player's pad for a game state and the local seat.
 ///
 /// # Errors
-/// [`NetError`] when the match cannot go on.
+/// [`NetError`] if the match cannot continue.
 pub fn play_due<A: Address, T: Transport<A>>(
     peer: &mut Peer<Shove, A, T>,
     mut pad: impl FnMut(&Shove, u8) -> Pad,
@@ -131,13 +131,13 @@ pub fn play_due<A: Address, T: Transport<A>>(
     Ok(())
 }
 
-/// What has happened, in a line for people.
+/// Describes an event in a line for the user.
 #[must_use]
 pub fn describe(event: &Event) -> String {
     match event {
         Event::Joined { seat, tick } => format!("seat {seat} plays from tick {tick}"),
         Event::Left { seat, tick } => format!("seat {seat} is empty from tick {tick}"),
-        Event::Interrupted { seat } => format!("nothing comes from seat {seat}"),
+        Event::Interrupted { seat } => format!("no messages from seat {seat}"),
         Event::Resumed { seat } => format!("seat {seat} is back"),
         Event::Diverged(Divergence { tick, seat, ours, theirs }) => {
             format!("after tick {tick} the state is {ours} here and {theirs} at seat {seat}")

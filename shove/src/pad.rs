@@ -1,10 +1,9 @@
-//! [`Pad`]: what one player contributes to one tick, in a byte.
+//! [`Pad`]: the input of one player for one tick, in one byte.
 
 use lockstep2d::math::{Angle, Fx, Unit, Vec2};
 use serde::{Deserialize, Serialize};
 
-/// The buttons that are down, one bit each. What they cannot mean does nothing: bits 5 and 6, and of two opposite
-/// directions both.
+/// Buttons that are down, one bit each. Bits 5 and 6 are ignored, and two opposite directions cancel each other.
 ///
 /// ```
 /// use lockstep2d::math::Vec2;
@@ -17,20 +16,20 @@ use serde::{Deserialize, Serialize};
 pub struct Pad(pub u8);
 
 impl Pad {
-    /// Towards -x.
+    /// Direction -x.
     pub const LEFT: Pad = Pad(1);
-    /// Towards +x.
+    /// Direction +x.
     pub const RIGHT: Pad = Pad(1 << 1);
-    /// Towards +y.
+    /// Direction +y.
     pub const UP: Pad = Pad(1 << 2);
-    /// Towards -y.
+    /// Direction -y.
     pub const DOWN: Pad = Pad(1 << 3);
-    /// A sudden push in the direction that is held.
+    /// Dash: an impulse in the held direction.
     pub const DASH: Pad = Pad(1 << 4);
-    /// Nobody sits here. No player sends it; bit 7 with any other bit means nothing.
+    /// The seat is empty. No player sends this; bit 7 together with any other bit is ignored.
     pub const ABSENT: Pad = Pad(1 << 7);
 
-    /// The eight directions, counter-clockwise from +x.
+    /// Pads of the eight directions, counter-clockwise from +x.
     const COMPASS: [Pad; 8] = [
         Pad::RIGHT,
         Pad::RIGHT.with(Pad::UP),
@@ -42,38 +41,38 @@ impl Pad {
         Pad::DOWN.with(Pad::RIGHT),
     ];
 
-    /// These buttons and those.
+    /// Returns the union of two sets of buttons.
     #[must_use]
     pub const fn with(self, other: Pad) -> Pad {
         Pad(self.0 | other.0)
     }
 
-    /// Whether all of these buttons are down.
+    /// Returns whether all of these buttons are down.
     #[must_use]
     pub const fn has(self, buttons: Pad) -> bool {
         self.0 & buttons.0 == buttons.0
     }
 
-    /// Whether nobody sits here.
+    /// Returns whether the seat is empty.
     #[must_use]
     pub const fn is_absent(self) -> bool {
         self.0 == Pad::ABSENT.0
     }
 
-    /// Where it points, as a unit vector; `None` in the middle.
+    /// Returns the direction as a unit vector; `None` if no direction is held or opposite ones cancel.
     #[must_use]
     pub fn direction(self) -> Option<Vec2<Unit>> {
         let axis = |plus, minus| Fx::from_num(i32::from(self.has(plus)) - i32::from(self.has(minus)));
         Vec2::new(axis(Pad::RIGHT, Pad::LEFT), axis(Pad::UP, Pad::DOWN)).normalized()
     }
 
-    /// The pad that points nearest to a direction; in the middle for the zero vector.
+    /// Returns the pad closest to a direction; no direction for the zero vector.
     #[must_use]
     pub fn towards(direction: Vec2<Fx>) -> Pad {
         if direction == Vec2::ZERO {
             return Pad::default();
         }
-        // A sixteenth of a turn further, an eighth begins where the pad changes.
+        // Adding a sixteenth of a turn aligns the boundaries between pads with multiples of an eighth of a turn.
         let sixteenth = Angle::from_bits(1 << 28);
         let eighth = (Angle::of(direction) + sixteenth).to_bits() >> 29;
         Pad::COMPASS[eighth as usize]
@@ -87,7 +86,7 @@ mod tests {
     #[test]
     fn every_direction_is_pointed_at_by_its_pad() {
         for pad in Pad::COMPASS {
-            let direction = pad.direction().expect("a direction");
+            let direction = pad.direction().expect("each pad of the compass has a direction");
             assert_eq!(Pad::towards(direction.widen()), pad);
         }
         assert_eq!(Pad::towards(Vec2::ZERO), Pad::default());

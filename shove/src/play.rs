@@ -1,4 +1,4 @@
-//! `shove play`: a match over UDP, in which a bot has the pad.
+//! `shove play`: a match over UDP, in which a bot controls the local player.
 
 use std::error::Error;
 use std::fs::File;
@@ -14,50 +14,50 @@ use lockstep2d_cli::Exit;
 use lockstep2d_shove::online::{self, UdpPeer};
 use lockstep2d_shove::{Bot, Setup};
 
-/// How long a peer stays for those who have not heard everything, when its match is over.
+/// Time for which a peer stays connected after the end of its match, so that the other peers receive everything.
 const LINGER: Duration = Duration::from_secs(2);
 
-/// Plays a match over UDP: a bot has the pad.
+/// Plays a match over UDP, with a bot as the local player.
 ///
-/// Exits with 0 after the last tick, with 1 if states differ, with 2 when the match cannot be played.
+/// Exit code: 0 after the last tick, 1 if states differ, 2 if the match cannot be played.
 #[derive(Debug, Args)]
 struct Arguments {
     #[command(flatten)]
     way: Way,
-    /// Where packets come in, if not at any free port.
+    /// Local address of the socket; any free port if not given.
     #[arg(long, value_name = "ADDRESS")]
     bind: Option<String>,
-    /// The seat to ask for.
+    /// Requested seat; any free seat if not given.
     #[arg(long)]
     seat: Option<u32>,
-    /// How many players the first tick waits for; of interest to the host only.
+    /// Number of players that the first tick waits for; used by the host only.
     #[arg(long, default_value_t = 2)]
     players: u32,
-    /// Seats of the match.
+    /// Number of seats of the match.
     #[arg(long, default_value_t = 4)]
     seats: u8,
-    /// What the placing of players and crates is drawn from.
+    /// Random seed for the placement of players and crates.
     #[arg(long, default_value_t = 0)]
     seed: u64,
-    /// Waits for late inputs instead of guessing them.
+    /// Waits for late inputs instead of predicting them.
     #[arg(long)]
     lockstep: bool,
-    /// After how many ticks an input takes effect.
+    /// Ticks until an input takes effect.
     #[arg(long, value_name = "TICKS")]
     input_delay: Option<u8>,
-    /// After how long a silent player counts as gone.
+    /// Time without messages after which a player counts as disconnected, in seconds.
     #[arg(long, value_name = "SECONDS", default_value_t = 2)]
     timeout: u64,
-    /// Ends after so many ticks; otherwise the match goes on until somebody stops it.
+    /// Ends after this number of ticks; without it the match runs until it is stopped.
     #[arg(long)]
     ticks: Option<u64>,
-    /// Where to write the replay.
+    /// File for the replay.
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
-    /// Where to write a report when states differ.
+    /// File for a divergence report, written if states differ.
     #[arg(long, value_name = "FILE")]
     report: Option<PathBuf>,
-    /// Writes one line of JSON at the end.
+    /// Prints one line of JSON at the end.
     #[arg(long)]
     json: bool,
 }
@@ -65,23 +65,23 @@ struct Arguments {
 #[derive(Debug, Args)]
 #[group(required = true, multiple = false)]
 struct Way {
-    /// Opens a match at this address.
+    /// Hosts a match at this address.
     #[arg(long, value_name = "ADDRESS")]
     host: Option<String>,
-    /// Takes part in the match at this address.
+    /// Joins the match at this address.
     #[arg(long, value_name = "ADDRESS")]
     join: Option<String>,
-    /// Watches the match at this address.
+    /// Joins the match at this address as a spectator.
     #[arg(long, value_name = "ADDRESS")]
     watch: Option<String>,
 }
 
-/// How it is called.
+/// Returns the definition of the subcommand.
 pub(crate) fn command() -> Command {
     Arguments::augment_args(Command::new("play"))
 }
 
-/// Plays as the arguments say.
+/// Runs the subcommand.
 pub(crate) fn run(matches: &ArgMatches) -> Exit {
     let arguments = match Arguments::from_arg_matches(matches) {
         Ok(arguments) => arguments,
@@ -109,7 +109,7 @@ fn play(arguments: &Arguments) -> Result<Option<Divergence>, Box<dyn Error>> {
     let mut written = 0;
     while peer.confirmed() < ticks {
         if let Err(error) = peer.update(clock.now()) {
-            // Without players there is nothing more to see.
+            // For a spectator, the end of the connection to the players is the regular end of the match.
             if !watches || peer.tick() == 0 {
                 return Err(error.into());
             }
@@ -122,7 +122,8 @@ fn play(arguments: &Arguments) -> Result<Option<Divergence>, Box<dyn Error>> {
         while let Some(event) = peer.next_event() {
             if let Event::Diverged(found) = event {
                 let first = *diverged.get_or_insert(found);
-                // Of the same tick, more is known each time that somebody says what they have.
+                // The report is written again for each peer that reports its state of that tick, with more data each
+                // time.
                 if let Some(path) = arguments.report.as_ref().filter(|_| found.tick == first.tick) {
                     std::fs::write(path, peer.report(&first))?;
                 }
@@ -141,7 +142,7 @@ fn play(arguments: &Arguments) -> Result<Option<Divergence>, Box<dyn Error>> {
     let hash = peer.history().get(ticks).map(|moment| moment.hash);
     say_end(arguments, &peer, ticks, hash, diverged);
     let end = clock.now() + LINGER;
-    // Others may still miss something of ours; what becomes of them does not matter any more.
+    // Other peers may still miss messages of this one. Their events and states do not matter any more.
     while !watches && clock.now() < end && peer.update(clock.now()).is_ok() {
         thread::sleep(Duration::from_millis(5));
     }
@@ -149,7 +150,7 @@ fn play(arguments: &Arguments) -> Result<Option<Divergence>, Box<dyn Error>> {
     if let Some(file) = &mut file {
         file.write_all(&rest)?;
         if written + rest.len() == 0 {
-            eprintln!("no replay: the first ticks were played without this peer");
+            eprintln!("no replay: this peer was not in the match from the first tick");
         }
     }
     Ok(diverged)
@@ -189,7 +190,7 @@ fn say_end(
     }
 }
 
-/// The time since the match was opened.
+/// Time since the match was entered.
 struct Clock(#[expect(clippy::disallowed_types, reason = "the clock of this process")] std::time::Instant);
 
 impl Clock {

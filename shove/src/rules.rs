@@ -1,4 +1,4 @@
-//! What a match remembers beside the world, and how rounds follow each other.
+//! [`Rules`]: the state of a match besides the world, and the sequence of rounds and phases.
 
 use lockstep2d::body::{BodyId, WorldError};
 use lockstep2d::math::Rng;
@@ -8,60 +8,63 @@ use serde::{Deserialize, Serialize};
 use crate::SEATS_MAX;
 use crate::arena;
 
-/// Ticks before a round in which nobody can move, of a round, and after it.
+/// Ticks before a round in which nobody can move.
 const READY: u16 = 60;
+/// Most ticks of a round.
 const FIGHT: u16 = 1200;
+/// Ticks after a round.
 const PAUSE: u16 = 75;
-/// Ticks into a round at which the first ring of the platform crumbles, and between two rings.
+/// Ticks into a round until the first ring of the platform crumbles.
 const FIRST_RING: u16 = 180;
+/// Ticks between two rings.
 const RING: u16 = 60;
 
-/// What is going on.
+/// Phase of a match.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Phase {
-    /// A round is about to begin: everybody stands still.
+    /// A round is about to begin; players cannot move.
     Ready,
-    /// A round.
+    /// A round is being played.
     Fight,
     /// A round has ended.
     Pause,
-    /// The match has ended. The world goes on, without players' moves.
+    /// The match has ended. The world runs on, but players cannot move.
     Over,
 }
 
-/// A seat, taken or not. One above the number of players is never taken.
+/// Seat of the match, taken or empty. Seats above the number of players stay empty.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Seat {
-    /// Whether somebody sits there.
+    /// Whether the seat is taken.
     pub(crate) present: bool,
-    /// Their body, until it falls.
+    /// Body of the player, until it falls.
     pub(crate) body: Option<BodyId>,
     /// Ticks until the next dash.
     pub(crate) recharge: u8,
-    /// One point for each player whom they have outlived.
+    /// Score: one point for each player that fell while this player was standing.
     pub(crate) score: u32,
     /// Rounds won.
     pub(crate) won: u32,
 }
 
-/// The state of a match beside its world.
+/// State of a match besides its world.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Rules {
     pub(crate) seats: [Seat; SEATS_MAX],
-    /// The number of the round, from 1; 0 before the first.
+    /// Number of the round, counted from 1; 0 before the first round that counts.
     pub(crate) round: u8,
     pub(crate) phase: Phase,
-    /// Ticks until the phase ends by itself.
+    /// Ticks until the phase ends by time.
     pub(crate) ticks_left: u16,
-    /// Rings that have crumbled.
+    /// Number of rings that have crumbled.
     pub(crate) rings: u8,
-    /// How many began the round. With fewer than two it is practice, and does not count.
+    /// Number of players at the start of the round. With fewer than two, the round is practice and does not count.
     starters: u8,
     rng: Rng,
 }
 
 impl Rules {
-    /// Before the first tick: a round begins as soon as it is known who is there.
+    /// State before the first tick, which begins a round with the players that are present.
     pub(crate) fn new(seed: u64) -> Self {
         Rules {
             seats: [Seat::default(); SEATS_MAX],
@@ -82,24 +85,24 @@ impl Rules {
         self.starters < 2
     }
 
-    /// Whether players move.
+    /// Returns whether players can move.
     pub(crate) fn is_on(&self) -> bool {
         matches!(self.phase, Phase::Fight | Phase::Pause)
     }
 
-    /// Somebody sits down or gets up. Who leaves takes their body along, which is no fall; who comes gets one at the
-    /// next round, which begins at once if there was nobody to play against.
+    /// Updates the presence of a player. The body of a player who leaves is removed, which does not count as a fall.
+    /// A player who joins gets a body in the next round, which begins at once if the current one is practice.
     pub(crate) fn seat(&mut self, world: &mut World, seat: usize, present: bool) {
         let Some(seat) = self.seats.get_mut(seat) else { return };
         seat.present = present;
         if let Some(body) = seat.body.filter(|_| !present) {
-            // It can only fail if the body is gone already.
+            // Fails only if the body no longer exists.
             let _ = world.despawn(body);
             seat.body = None;
         }
     }
 
-    /// Counts a tick down, and goes on to the next phase when it is time.
+    /// Counts down a tick, and enters the next phase when it is due.
     pub(crate) fn advance(&mut self, world: &mut World, rounds: u8) -> Result<(), WorldError> {
         self.ticks_left = self.ticks_left.saturating_sub(1);
         let (present, standing) = (self.count(|seat| seat.present), self.count(|seat| seat.body.is_some()));
@@ -126,7 +129,7 @@ impl Rules {
         }
     }
 
-    /// Everything is laid out anew, and everybody who is there gets a body.
+    /// Resets the arena, and gives each present player a new body.
     fn begin_round(&mut self, world: &mut World) -> Result<(), WorldError> {
         self.starters = self.count(|seat| seat.present);
         self.round = self.round.saturating_add(u8::from(!self.is_practice()));
@@ -160,7 +163,7 @@ impl Rules {
         }
     }
 
-    /// As the round goes on, the platform loses rings.
+    /// Removes the next ring of the platform when it is due.
     fn crumble(&mut self, world: &mut World) -> Result<(), WorldError> {
         let elapsed = FIGHT.saturating_sub(self.ticks_left);
         let due = elapsed >= FIRST_RING && (elapsed - FIRST_RING).is_multiple_of(RING);
@@ -171,7 +174,7 @@ impl Rules {
         Ok(())
     }
 
-    /// Some have fallen: whoever still stands gets a point for each, while it counts.
+    /// Records players that have fallen. During a round, each player still standing gets a point per fallen player.
     pub(crate) fn fall(&mut self, fallen: &[u8]) {
         for &seat in fallen {
             if let Some(seat) = self.seats.get_mut(usize::from(seat)) {

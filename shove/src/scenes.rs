@@ -1,9 +1,9 @@
-//! Matches of bots, to record.
+//! Matches of bots, for recording.
 
 use lockstep2d_cli::{Catalogue, Scene, SceneInfo};
 use lockstep2d_shove::{Bot, Pad, Setup, Shove};
 
-/// The matches that `record` knows.
+/// Catalogue of the matches that `record` can record.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Matches;
 
@@ -15,7 +15,7 @@ impl Catalogue<Shove> for Matches {
         vec![
             info("duel", "two bots"),
             info("match", "four bots"),
-            info("guests", "four bots that come and go"),
+            info("guests", "four bots that join and leave"),
         ]
     }
 
@@ -39,7 +39,8 @@ impl Catalogue<Shove> for Matches {
     }
 }
 
-/// Each comes some seconds after the one before, and leaves for 5 s in every 25 s.
+/// Returns whether a bot is in the match: each joins 200 ticks after the previous one, and leaves for the last 300 of
+/// every 1500 ticks.
 fn guest_is_there(seat: u64, tick: u64) -> bool {
     let arrival = 200 * seat;
     tick >= arrival && (tick - arrival) % 1500 < 1200

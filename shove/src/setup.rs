@@ -1,48 +1,48 @@
-//! [`Setup`]: what a match starts from.
+//! [`Setup`]: parameters of a match.
 
 use std::fmt;
 
 use lockstep2d::lockstep::SetupError;
 use serde::{Deserialize, Serialize};
 
-/// How a match begins.
+/// Parameters of a match.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Setup {
-    /// Players, 2 to 4.
+    /// Number of seats, 2 to 4.
     pub seats: u8,
-    /// Rounds that have a winner or run out of time, 1 to 99; then the match is over.
+    /// Number of rounds, 1 to 99, after which the match ends. Practice rounds do not count.
     pub rounds: u8,
-    /// What the placing of players and crates is drawn from.
+    /// Random seed for the placement of players and crates.
     pub seed: u64,
 }
 
 impl Default for Setup {
-    /// Four players and 99 rounds.
+    /// Four seats, 99 rounds, seed 0.
     fn default() -> Self {
         Setup { seats: 4, rounds: 99, seed: 0 }
     }
 }
 
-/// Why a match cannot start.
+/// Reason why a match cannot start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum UnplayableSetup {
-    /// There are 2 to 4 seats.
+    /// The number of seats is not in 2 to 4.
     Seats {
-        /// How many were asked for.
+        /// Requested number of seats.
         seats: u8,
     },
-    /// There are 1 to 99 rounds.
+    /// The number of rounds is not in 1 to 99.
     Rounds {
-        /// How many were asked for.
+        /// Requested number of rounds.
         rounds: u8,
     },
 }
 
 impl Setup {
-    /// Checks that a match can start from it.
+    /// Checks that all parameters are in range.
     ///
     /// # Errors
-    /// [`UnplayableSetup`], with what is out of range.
+    /// [`UnplayableSetup`] with the value that is out of range.
     pub fn check(&self) -> Result<(), UnplayableSetup> {
         let Setup { seats, rounds, seed: _ } = *self;
         if !(2..=4).contains(&seats) {
@@ -58,7 +58,7 @@ impl Setup {
 impl fmt::Display for UnplayableSetup {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            UnplayableSetup::Seats { seats } => write!(f, "two to four can play, not {seats}"),
+            UnplayableSetup::Seats { seats } => write!(f, "a match has 2 to 4 seats, not {seats}"),
             UnplayableSetup::Rounds { rounds } => write!(f, "a match has 1 to 99 rounds, not {rounds}"),
         }
     }

@@ -1,4 +1,4 @@
-//! What can be seen of a match: everything that a bot, a window or a score table asks for.
+//! Read access to a match, for bots, windows and score tables.
 
 use lockstep2d::body::{Body, BodyId};
 use lockstep2d::math::{Fx, Vec2};
@@ -9,27 +9,27 @@ use crate::game::Shove;
 use crate::rules::Phase;
 use crate::setup::Setup;
 
-/// How a player stands.
+/// Current state of a player.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Player {
-    /// Whether somebody sits on the seat.
+    /// Whether the seat is taken.
     pub present: bool,
-    /// The body, while it stands on the platform.
+    /// Body of the player, while it stands on the platform.
     pub body: Option<BodyId>,
-    /// Where it is, in metres; zero without a body.
+    /// Position in metres; zero without a body.
     pub position: Vec2<Fx>,
-    /// How fast it is, in m/s; zero without a body.
+    /// Velocity in m/s; zero without a body.
     pub velocity: Vec2<Fx>,
-    /// Ticks until it can dash.
+    /// Ticks until the next dash.
     pub recharge: u32,
-    /// Points: one for each player whom it has outlived.
+    /// Score: one point for each player that fell while this player was standing.
     pub score: u32,
     /// Rounds won.
     pub won: u32,
 }
 
 impl Player {
-    /// Whether it stands on the platform.
+    /// Returns whether the player stands on the platform.
     #[must_use]
     pub fn is_alive(&self) -> bool {
         self.body.is_some()
@@ -37,25 +37,25 @@ impl Player {
 }
 
 impl Shove {
-    /// What the match started from.
+    /// Returns the parameters of the match.
     #[must_use]
     pub const fn setup(&self) -> &Setup {
         &self.setup
     }
 
-    /// The world; [`Role::of`](crate::Role::of) tells what its bodies are.
+    /// Returns the world; [`Role::of`](crate::Role::of) gives the roles of its bodies.
     #[must_use]
     pub const fn world(&self) -> &World {
         &self.world
     }
 
-    /// The number of seats.
+    /// Returns the number of seats.
     #[must_use]
     pub fn seats(&self) -> usize {
         self.setup.seats.into()
     }
 
-    /// The player on a seat; `None` above the number of seats.
+    /// Returns the player on a seat, counted from 0; `None` if there is no such seat.
     #[must_use]
     pub fn player(&self, seat: usize) -> Option<Player> {
         let seat = self.rules.seats.get(seat).filter(|_| seat < self.seats())?;
@@ -71,30 +71,30 @@ impl Shove {
         })
     }
 
-    /// The players of all seats.
+    /// Returns the players of all seats, in seat order.
     pub fn players_in_order(&self) -> impl Iterator<Item = Player> {
         (0..self.seats()).filter_map(|seat| self.player(seat))
     }
 
-    /// The radius of what is left of the platform, in metres.
+    /// Returns the current radius of the platform, in metres.
     #[must_use]
     pub fn radius(&self) -> Fx {
         arena::radius(self.rules.rings)
     }
 
-    /// The number of the round, from 1; 0 before the first that counts.
+    /// Returns the number of the round, counted from 1; 0 before the first round that counts.
     #[must_use]
     pub const fn round(&self) -> u8 {
         self.rules.round
     }
 
-    /// What is going on.
+    /// Returns the current phase.
     #[must_use]
     pub const fn phase(&self) -> Phase {
         self.rules.phase
     }
 
-    /// Ticks until the phase ends by itself.
+    /// Returns the ticks until the phase ends by time.
     #[must_use]
     pub const fn ticks_left(&self) -> u16 {
         self.rules.ticks_left

@@ -1,5 +1,5 @@
-//! What every user of a `Game` relies on, shown on this one: the same pads give the same hashes, whatever is saved,
-//! loaded and encoded in between, and whatever the pads are.
+//! The contract of [`Game`], tested with this game: the same pads give the same hashes, whatever the pads are and
+//! whatever is saved, loaded and encoded in between.
 
 use lockstep2d::check::{self, Options, Phases};
 use lockstep2d::codec::{decode, encode};
@@ -8,7 +8,7 @@ use lockstep2d::lockstep::Game;
 use lockstep2d::math::Rng;
 use lockstep2d_shove::{Bot, Pad, Save, Setup, Shove};
 
-/// The pads of a match of bots, and the hash after each tick.
+/// Plays a match of bots; returns the pads and the hash of each tick.
 fn played(setup: &Setup, ticks: u64) -> Vec<(Vec<Pad>, StateHash)> {
     let mut bots = Bot::each(setup);
     played_by(setup, ticks, |_, game| bots.iter_mut().map(|bot| bot.pad(game)).collect())
@@ -19,7 +19,7 @@ fn played_by(
     ticks: u64,
     mut players: impl FnMut(u64, &Shove) -> Vec<Pad>,
 ) -> Vec<(Vec<Pad>, StateHash)> {
-    let mut game = Shove::new(setup).expect("playable");
+    let mut game = Shove::new(setup).expect("the setup should be valid");
     let mut log = Vec::new();
     for tick in 0..ticks {
         let pads = players(tick, &game);
@@ -29,13 +29,13 @@ fn played_by(
     log
 }
 
-/// Plays a log again, and does something to the game before each tick.
+/// Plays a log again, calls `before` with the game before each tick, and checks every hash.
 fn play_again(
     setup: &Setup,
     log: &[(Vec<Pad>, StateHash)],
     mut before: impl FnMut(usize, &mut Shove),
 ) -> Shove {
-    let mut game = Shove::new(setup).expect("playable");
+    let mut game = Shove::new(setup).expect("the setup should be valid");
     for (tick, (pads, hash)) in log.iter().enumerate() {
         before(tick, &mut game);
         game.step(pads);
@@ -44,9 +44,9 @@ fn play_again(
     game
 }
 
-/// Any byte, from somebody who has never seen a pad.
+/// Returns a random byte as a pad.
 fn hostile(rng: &mut Rng) -> Pad {
-    Pad(u8::try_from(rng.below(256)).expect("a byte"))
+    Pad(u8::try_from(rng.below(256)).expect("below 256"))
 }
 
 fn hostile_log(setup: &Setup, ticks: u64) -> Vec<(Vec<Pad>, StateHash)> {
@@ -54,7 +54,7 @@ fn hostile_log(setup: &Setup, ticks: u64) -> Vec<(Vec<Pad>, StateHash)> {
     played_by(setup, ticks, |_, _| (0..setup.seats).map(|_| hostile(&mut rng)).collect())
 }
 
-/// Seats that come and go at any time, whole tables at once among them.
+/// Plays a match in which bots join and leave at random ticks, sometimes all at once.
 fn restless_log(setup: &Setup, ticks: u64) -> Vec<(Vec<Pad>, StateHash)> {
     let mut rng = Rng::new(setup.seed);
     let mut bots = Bot::each(setup);
@@ -93,7 +93,7 @@ fn the_same_pads_give_the_same_hashes() {
 fn caches_do_not_matter() {
     for (setup, log) in logs() {
         let mut saved = None;
-        // Loading forgets what is no state.
+        // Loading a save clears the caches outside the state.
         play_again(&setup, &log, |tick, game| {
             let save = game.save();
             if tick % 7 == 0 {
@@ -111,8 +111,8 @@ fn a_save_survives_as_bytes_in_another_game() {
         play_again(&setup, &log, |tick, game| {
             if tick % 10 == 0 {
                 let bytes = encode(&game.save());
-                let save: Save = decode(&bytes).expect("own bytes");
-                let mut other = Shove::new(&setup).expect("playable");
+                let save: Save = decode(&bytes).expect("the bytes of a save should decode");
+                let mut other = Shove::new(&setup).expect("the setup should be valid");
                 other.load(&save);
                 assert_eq!(other.state_hash(), game.state_hash(), "tick {tick}");
                 assert_eq!(encode(&other.save()), bytes, "tick {tick}");
@@ -131,13 +131,15 @@ fn damaged_saves_are_refused_or_played_without_panic() {
     let mut played = 0;
     for _ in 0..2000 {
         let mut bytes = bytes.clone();
-        // Most of the damage where the rules are, behind the world.
+        // Most of the damage is in the rules, which follow the world in the save.
         let back = if rng.chance(3, 4) { 80 } else { bytes.len() };
-        let at =
-            bytes.len() - 1 - usize::try_from(rng.below(u32::try_from(back).expect("short"))).expect("short");
+        let at = bytes.len()
+            - 1
+            - usize::try_from(rng.below(u32::try_from(back).expect("the save should be shorter than 4 GiB")))
+                .expect("the save should be shorter than 4 GiB");
         bytes[at] = rng.next_u32().to_le_bytes()[0];
         let Ok(save) = decode::<Save>(&bytes) else { continue };
-        let mut game = Shove::new(&setup).expect("playable");
+        let mut game = Shove::new(&setup).expect("the setup should be valid");
         game.load(&save);
         for _ in 0..5 {
             let pads: Vec<_> = (0..4).map(|_| hostile(&mut rng)).collect();
@@ -149,13 +151,14 @@ fn damaged_saves_are_refused_or_played_without_panic() {
     assert!(played > 100, "{played}");
 }
 
-/// As rollback does: some ticks with pads that were guessed wrong, back, and again with the right ones.
+/// Simulates rollback: plays some ticks with mispredicted pads, loads the save, and plays them again with the right
+/// pads.
 #[test]
 fn rolling_back_leaves_no_trace() {
     for (setup, log) in logs() {
         let mut rng = Rng::new(setup.seed);
         let mut tick = 0;
-        let mut game = Shove::new(&setup).expect("playable");
+        let mut game = Shove::new(&setup).expect("the setup should be valid");
         while tick < log.len() {
             let depth = 1 + usize::try_from(rng.below(8)).expect("below 8");
             let save = game.save();
@@ -176,7 +179,7 @@ fn rolling_back_leaves_no_trace() {
 #[test]
 fn missing_and_surplus_pads_are_no_trouble() {
     let setup = Setup { seats: 2, ..Setup::default() };
-    let mut game = Shove::new(&setup).expect("playable");
+    let mut game = Shove::new(&setup).expect("the setup should be valid");
     for tick in 0..300 {
         game.step(&vec![Pad::RIGHT; tick % 6]);
     }
@@ -187,16 +190,16 @@ fn missing_and_surplus_pads_are_no_trouble() {
     assert_eq!(game.state_hash(), other.state_hash());
 }
 
-/// Bots and any bytes, in every way that must make no difference.
+/// The determinism checker passes for pads of bots and for random pads.
 #[test]
 fn every_way_to_play_comes_to_the_same() {
     for setup in setups() {
         let by_bots: Vec<_> = played(&setup, 60).into_iter().map(|(pads, _)| pads).collect();
         let options = Options { phases: Phases::Compared, ..Options::default() };
-        check::check::<Shove>(&setup, &by_bots, &options).expect("a good game");
+        check::check::<Shove>(&setup, &by_bots, &options).expect("the game should pass the check");
         let random = check::random_inputs::<Shove>(setup.seats.into(), 200, &mut Rng::new(setup.seed));
-        let checked =
-            check::check::<Shove>(&setup, &random, &Options::default().every(4)).expect("a good game");
+        let checked = check::check::<Shove>(&setup, &random, &Options::default().every(4))
+            .expect("the game should pass the check");
         assert_eq!(checked.ticks, 200);
     }
 }

@@ -1,4 +1,4 @@
-//! The committed matches verify, end in the committed hashes, and are what the bots still play.
+//! The committed matches verify, end in the committed hashes, and equal a new recording of their bots.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -7,7 +7,7 @@ use std::process::Command;
 use lockstep2d::replay::{Limits, Verdict, verify};
 use lockstep2d_shove::Shove;
 
-/// Scene, and state hash after 3000 ticks with seed 1, for the present semantics and version of the rules.
+/// Scene, and state hash after 3000 ticks with seed 1, for the current semantics and version of the rules.
 const GOLDENS: [(&str, &str); 3] = [
     ("duel", "1323f1f9f80b55f8f8b2008534b8608d"),
     ("match", "61328a69898eb39d11fd6e187fc841bc"),
@@ -25,7 +25,7 @@ fn shove() -> Command {
 #[test]
 fn every_replay_matches_and_ends_in_its_golden() {
     for (scene, golden) in GOLDENS {
-        let bytes = fs::read(replay(scene)).expect("a replay for each golden");
+        let bytes = fs::read(replay(scene)).expect("each golden should have a replay");
         match verify::<Shove>(&bytes, &Limits::default()) {
             Verdict::Match { ticks, hash } => {
                 assert_eq!((ticks, hash.to_string().as_str()), (3000, golden), "{scene}");
@@ -34,7 +34,7 @@ fn every_replay_matches_and_ends_in_its_golden() {
         }
     }
     let folder = replay("match").with_file_name("");
-    let outcome = shove().arg("verify").arg(folder).output().expect("the binary runs");
+    let outcome = shove().arg("verify").arg(folder).output().expect("the binary should run");
     let text = String::from_utf8_lossy(&outcome.stdout).into_owned();
     assert!(outcome.status.success() && text.contains("3 of 3 files match"), "{text}");
 }
@@ -44,10 +44,10 @@ fn every_replay_is_what_its_bots_play() {
     for (scene, _) in GOLDENS {
         let file = std::env::temp_dir().join(format!("shove-{}-{scene}.replay", std::process::id()));
         let recorded = shove().args(["record", scene, "--seed", "1", "-o"]).arg(&file).output();
-        assert!(recorded.expect("the binary runs").status.success(), "{scene}");
-        let bytes = fs::read(&file).expect("what was just written");
+        assert!(recorded.expect("the binary should run").status.success(), "{scene}");
+        let bytes = fs::read(&file).expect("the recording was just written");
         let _ = fs::remove_file(&file);
-        let committed = fs::read(replay(scene)).expect("a replay for each golden");
+        let committed = fs::read(replay(scene)).expect("each golden should have a replay");
         assert!(bytes == committed, "{scene}: the recording differs from the committed one");
     }
 }
@@ -55,7 +55,7 @@ fn every_replay_is_what_its_bots_play() {
 #[test]
 fn a_tick_is_drawn() {
     let picture = shove().arg("export").arg(replay("match")).args(["--tick", "100", "--svg"]).output();
-    let picture = picture.expect("the binary runs");
+    let picture = picture.expect("the binary should run");
     assert!(picture.status.success());
     let text = String::from_utf8_lossy(&picture.stdout).into_owned();
     assert!(text.starts_with("<svg ") && text.contains("round 1 · Fight"), "{text}");

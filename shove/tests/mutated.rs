@@ -1,5 +1,5 @@
-//! Damaged and forged replays of this game: see the engine's test of the same name.
-#![expect(clippy::unwrap_used, reason = "the files of this repository are good")]
+//! A damaged or forged replay of this game never verifies as another match: see the engine's test of the same name.
+#![expect(clippy::unwrap_used, reason = "the files of this repository are valid")]
 
 #[path = "../../tests/mutated/judge.rs"]
 mod judge;
@@ -10,7 +10,7 @@ mod mutation;
 
 use lockstep2d_shove::Shove;
 
-/// How many files the test makes, unless told otherwise: matches are long.
+/// Default number of mutated files. It is small because the matches are long.
 const FILES: u64 = 300;
 
 #[test]

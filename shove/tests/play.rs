@@ -1,6 +1,7 @@
-//! Matches between processes, over UDP on this machine.
+//! Matches between processes, over UDP on the loopback interface: all peers end in the same state, and their replays
+//! verify.
 
-#![expect(clippy::unwrap_used, reason = "what fails here is the test")]
+#![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
 use std::fs;
 use std::net::UdpSocket;
@@ -12,10 +13,10 @@ use std::time::Duration;
 use lockstep2d::replay::{Limits, Part, Reader, Verdict, verify};
 use lockstep2d_shove::{Pad, Shove};
 
-/// In seconds: how long a busy machine may leave a process without a core.
+/// Disconnect timeout in seconds, long enough for a process that gets no CPU time on a busy machine.
 const TIMEOUT: &str = "8";
 
-/// A folder of its own that goes when the test does.
+/// Temporary folder of a test, removed on drop.
 struct Folder(PathBuf);
 
 impl Folder {
@@ -36,7 +37,7 @@ impl Drop for Folder {
     }
 }
 
-/// An address that nobody listens to at the moment.
+/// Returns an address with a free port.
 fn free_address() -> String {
     UdpSocket::bind("127.0.0.1:0").unwrap().local_addr().unwrap().to_string()
 }
@@ -63,7 +64,7 @@ fn hash_of(output: &Output) -> String {
     line["hash"].as_str().unwrap_or_else(|| panic!("{}", text(output))).to_owned()
 }
 
-/// Opens a match for four and starts all of them.
+/// Starts a host and three joining players of a match.
 fn four(folder: &Folder, modes: &[&str], ticks: &str) -> Vec<Child> {
     let address = free_address();
     let common = [modes, &["--players", "4", "--ticks", ticks]].concat();
@@ -74,7 +75,7 @@ fn four(folder: &Folder, modes: &[&str], ticks: &str) -> Vec<Child> {
     children
 }
 
-/// The pads of each tick of a replay, the end of which may be missing.
+/// Returns the pads of each tick of a replay, which may be truncated.
 fn pads(replay: &[u8]) -> Vec<Vec<u8>> {
     let mut pads = Vec::new();
     let mut reader = Reader::open(replay, &Limits::default()).unwrap();
@@ -87,7 +88,7 @@ fn pads(replay: &[u8]) -> Vec<Vec<u8>> {
     pads
 }
 
-/// Waits until the replay that is being written has some ticks.
+/// Waits until a replay that is being written has this number of ticks.
 fn wait_for_ticks(replay: &Path, ticks: usize) {
     let has_them =
         |replay: Vec<u8>| Reader::open(&replay, &Limits::default()).is_ok() && pads(&replay).len() >= ticks;
@@ -95,7 +96,7 @@ fn wait_for_ticks(replay: &Path, ticks: usize) {
         thread::sleep(Duration::from_millis(100));
         fs::read(replay).is_ok_and(has_them)
     });
-    assert!(done, "no {ticks} ticks in two minutes");
+    assert!(done, "the replay should have {ticks} ticks within two minutes");
 }
 
 #[test]
@@ -142,7 +143,7 @@ fn a_killed_process_leaves_a_valid_replay_and_the_others_agree_when() {
             assert!(matches!(verdict, Verdict::Match { ticks: 900, .. }), "{name}: {verdict}");
             assert_eq!(pads(replay), all);
         }
-        // The killed one has seen a beginning of what the others have, and nothing else.
+        // The replay of the killed process is a prefix of the others' replays.
         let seen = pads(&cut);
         assert!(seen.len() >= 120 && all.starts_with(&seen), "{name}: {} ticks", seen.len());
         let absent = lockstep2d::codec::encode(&Pad::ABSENT)[0];

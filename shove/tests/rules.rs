@@ -1,13 +1,13 @@
-//! The rules, as a player sees them.
+//! The rules of the game, tested through its public interface.
 
 use lockstep2d::lockstep::Game;
 use lockstep2d_shove::{Bot, Pad, Phase, Setup, Shove, UnplayableSetup};
 
 fn game(seats: u8, rounds: u8) -> Shove {
-    Shove::new(&Setup { seats, rounds, seed: 3 }).expect("playable")
+    Shove::new(&Setup { seats, rounds, seed: 3 }).expect("the setup should be valid")
 }
 
-/// Steps with the same pads until something is so, at most for a minute.
+/// Steps with the same pads until `done` holds, at most for one minute of game time.
 fn step_until(game: &mut Shove, pads: &[Pad], done: impl Fn(&Shove) -> bool) {
     for _ in 0..3600 {
         if done(game) {
@@ -15,7 +15,7 @@ fn step_until(game: &mut Shove, pads: &[Pad], done: impl Fn(&Shove) -> bool) {
         }
         game.step(pads);
     }
-    panic!("a minute was not enough");
+    panic!("the condition should hold within one minute");
 }
 
 fn alive(game: &Shove) -> usize {
@@ -45,12 +45,12 @@ fn setups_out_of_range_are_refused() {
 fn who_runs_off_the_platform_falls_and_the_others_score() {
     let mut game = game(3, 99);
     step_until(&mut game, &[NONE; 3], |game| game.phase() == Phase::Fight);
-    // Straight outwards.
-    let out = Pad::towards(game.player(1).expect("a player").position);
+    // The pad points straight outwards.
+    let out = Pad::towards(game.player(1).expect("the seat should exist").position);
     step_until(&mut game, &[NONE, out, NONE], |game| alive(game) == 2);
     assert_eq!(scores(&game), [1, 0, 1]);
-    assert!(!game.player(1).expect("a player").is_alive());
-    let out = Pad::towards(game.player(0).expect("a player").position);
+    assert!(!game.player(1).expect("the seat should exist").is_alive());
+    let out = Pad::towards(game.player(0).expect("the seat should exist").position);
     step_until(&mut game, &[out, NONE, NONE], |game| game.phase() == Phase::Pause);
     assert_eq!(scores(&game), [1, 0, 2]);
     let won: Vec<_> = game.players_in_order().map(|player| player.won).collect();
@@ -63,25 +63,28 @@ fn who_runs_off_the_platform_falls_and_the_others_score() {
 fn nobody_moves_before_a_round() {
     let mut game = game(2, 99);
     game.step(&[Pad::UP; 2]);
-    let before = game.player(0).expect("a player").position;
+    let before = game.player(0).expect("the seat should exist").position;
     for _ in 0..30 {
         game.step(&[Pad::UP.with(Pad::DASH); 2]);
     }
-    assert_eq!((game.phase(), game.player(0).expect("a player").position), (Phase::Ready, before));
+    assert_eq!(
+        (game.phase(), game.player(0).expect("the seat should exist").position),
+        (Phase::Ready, before)
+    );
 }
 
 #[test]
 fn a_dash_has_to_charge() {
     let mut game = game(2, 99);
     step_until(&mut game, &[NONE; 2], |game| game.phase() == Phase::Fight);
-    let pad = Pad::towards(-game.player(0).expect("a player").position).with(Pad::DASH);
-    let speed = |game: &Shove| game.player(0).expect("a player").velocity.length();
+    let pad = Pad::towards(-game.player(0).expect("the seat should exist").position).with(Pad::DASH);
+    let speed = |game: &Shove| game.player(0).expect("the seat should exist").velocity.length();
     game.step(&[pad, NONE]);
     let first = speed(&game);
     assert!(first > 7, "{first}");
     game.step(&[pad, NONE]);
-    assert!(speed(&game) < first.saturating_add(first / 8), "no second dash");
-    assert!(game.player(0).expect("a player").recharge > 0);
+    assert!(speed(&game) < first.saturating_add(first / 8), "a second dash should not be possible yet");
+    assert!(game.player(0).expect("the seat should exist").recharge > 0);
 }
 
 #[test]
@@ -89,11 +92,14 @@ fn who_leaves_takes_the_body_along_and_comes_back_with_the_next_round() {
     let mut game = game(3, 99);
     step_until(&mut game, &[NONE; 3], |game| game.phase() == Phase::Fight);
     game.step(&[NONE, Pad::ABSENT, NONE]);
-    let player = game.player(1).expect("a seat");
+    let player = game.player(1).expect("the seat should exist");
     assert!(!player.present && !player.is_alive());
     assert_eq!((alive(&game), scores(&game)), (2, vec![0, 0, 0]));
     game.step(&[NONE; 3]);
-    assert!(game.player(1).expect("a seat").present && alive(&game) == 2, "not within the round");
+    assert!(
+        game.player(1).expect("the seat should exist").present && alive(&game) == 2,
+        "a returning player should get no body within the round"
+    );
     let round = game.round();
     step_until(&mut game, &[NONE; 3], |game| game.round() > round);
     assert_eq!(alive(&game), 3);
@@ -107,12 +113,16 @@ fn who_is_alone_practises_until_somebody_comes() {
     }
     assert_eq!((alive(&game), game.round()), (0, 0));
     game.step(&[NONE, Pad::ABSENT]);
-    assert_eq!((alive(&game), game.round()), (1, 0), "at once");
+    assert_eq!((alive(&game), game.round()), (1, 0), "practice should begin at once");
     step_until(&mut game, &[Pad::UP, Pad::ABSENT], |game| alive(game) == 0);
     step_until(&mut game, &[Pad::UP, Pad::ABSENT], |game| alive(game) == 1);
-    assert_eq!(game.round(), 0, "practice does not count");
+    assert_eq!(game.round(), 0, "practice rounds should not count");
     game.step(&[NONE; 2]);
-    assert_eq!((alive(&game), game.round(), game.phase()), (2, 1, Phase::Ready), "at once");
+    assert_eq!(
+        (alive(&game), game.round(), game.phase()),
+        (2, 1, Phase::Ready),
+        "the first round should begin at once"
+    );
     assert_eq!(scores(&game), [0, 0]);
 }
 
@@ -135,11 +145,11 @@ fn bots_finish_rounds_and_differ() {
     let (mut rounds, mut draws) = (0, 0);
     for seed in 0..5 {
         let setup = Setup { seed, ..Setup::default() };
-        let mut game = Shove::new(&setup).expect("playable");
+        let mut game = Shove::new(&setup).expect("the setup should be valid");
         let mut bots = Bot::each(&setup);
         for _ in 0..3600 {
             let pads: Vec<_> = bots.iter_mut().map(|bot| bot.pad(&game)).collect();
-            assert!(pads.iter().all(|pad| pad.0 < 32), "only real buttons");
+            assert!(pads.iter().all(|pad| pad.0 < 32), "bots should press only defined buttons");
             game.step(&pads);
         }
         rounds += game.round();

@@ -1,4 +1,4 @@
-//! The commands for replays, on a committed match: a game of its own, with four players and claims.
+//! The replay commands work with this game: tested on a committed match with four players and claims.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -12,16 +12,16 @@ fn replay() -> String {
     format!("{}/replays/match.replay", env!("CARGO_MANIFEST_DIR"))
 }
 
-/// What the command prints, if it succeeds.
+/// Runs the command, which should succeed, and returns its output.
 fn shove(arguments: &[&str]) -> String {
     let outcome =
-        Command::new(env!("CARGO_BIN_EXE_shove")).args(arguments).output().expect("the binary runs");
+        Command::new(env!("CARGO_BIN_EXE_shove")).args(arguments).output().expect("the binary should run");
     let messages = String::from_utf8_lossy(&outcome.stderr).into_owned();
     assert!(outcome.status.success(), "{arguments:?}: {messages}");
-    String::from_utf8(outcome.stdout).expect("UTF-8")
+    String::from_utf8(outcome.stdout).expect("the output should be UTF-8")
 }
 
-/// A path for a test, with nothing there.
+/// Returns a path for a test at which no file exists.
 fn path(name: &str) -> PathBuf {
     let path = std::env::temp_dir().join(format!("shove-{}-{name}", std::process::id()));
     let _ = fs::remove_file(&path);
@@ -29,15 +29,16 @@ fn path(name: &str) -> PathBuf {
 }
 
 fn text(path: &Path) -> &str {
-    path.to_str().expect("a path of this test")
+    path.to_str().expect("the path should be UTF-8")
 }
 
 #[test]
 fn a_match_can_be_gone_through() {
-    let bytes = fs::read(replay()).expect("a committed replay");
-    let mut playback = Playback::<Shove>::open(&bytes, &Limits::default()).expect("a match");
+    let bytes = fs::read(replay()).expect("the committed replay should be readable");
+    let mut playback =
+        Playback::<Shove>::open(&bytes, &Limits::default()).expect("the replay should be valid");
     while playback.tick() < 1990 {
-        playback.step().expect("a match");
+        playback.step().expect("the replay should be valid");
     }
     let keyframes = path("keyframes");
     let arguments = ["seek", &replay(), "--tick", "2000", "--back", "10", "--keyframes", text(&keyframes)];
@@ -66,18 +67,21 @@ fn a_match_can_be_gone_through() {
 #[test]
 fn a_match_can_end_otherwise() {
     let (new, then) = (path("fork.replay"), path("pads"));
-    fs::write(&then, "[1,2,3,4]\n[17,1,0,0]\n").expect("a folder for temporary files");
+    fs::write(&then, "[1,2,3,4]\n[17,1,0,0]\n").expect("the temporary folder should be writable");
     let out =
         shove(&["fork", &replay(), "--tick", "700", "--then", text(&then), "--idle", "98", "-o", text(&new)]);
     assert!(out.contains("700 ticks of ") && out.contains(" and 100 more"), "{out}");
-    let whole = fs::read(&new).expect("what was written");
+    let whole = fs::read(&new).expect("the fork was just written");
     let verdict = verify::<Shove>(&whole, &Limits::default());
     assert!(matches!(verdict, Verdict::Match { ticks: 800, .. }), "{verdict}");
 
     let (cut, trimmed) = (path("cut.replay"), path("trimmed.replay"));
-    fs::write(&cut, &whole[..whole.len() * 9 / 10]).expect("a folder for temporary files");
+    fs::write(&cut, &whole[..whole.len() * 9 / 10]).expect("the temporary folder should be writable");
     shove(&["trim", text(&cut), "-o", text(&trimmed)]);
-    let verdict = verify::<Shove>(&fs::read(&trimmed).expect("what was written"), &Limits::default());
+    let verdict = verify::<Shove>(
+        &fs::read(&trimmed).expect("the trimmed replay was just written"),
+        &Limits::default(),
+    );
     assert!(verdict.is_match() && verdict.ticks().is_multiple_of(60) && verdict.ticks() > 300, "{verdict}");
     for file in [new, then, cut, trimmed] {
         let _ = fs::remove_file(file);

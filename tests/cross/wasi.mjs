@@ -1,5 +1,5 @@
-// Runs a WebAssembly program in node that reads nothing and writes text: `node wasi.mjs FILE [ARGUMENT...]`. Node has a
-// `node:wasi` of its own, which some versions let write to memory that is no longer the program's after it has grown.
+// Runs a WebAssembly program in node that takes arguments and writes text: `node wasi.mjs FILE [ARGUMENT...]`. This
+// replaces `node:wasi`, which in some versions of node writes to a stale buffer after the program's memory has grown.
 import { readFileSync, writeSync } from "node:fs";
 import process from "node:process";
 
@@ -8,7 +8,7 @@ const OK = 0, BAD_FILE = 8;
 class Exit extends Error {}
 
 let memory;
-// Views are made anew for each call: the memory may have grown.
+// Views are created anew for each call, because growing the memory detaches the old buffer.
 const bytes = () => new Uint8Array(memory.buffer);
 const set = (at, number) => new DataView(memory.buffer).setUint32(at, number, true);
 const get = (at) => new DataView(memory.buffer).getUint32(at, true);

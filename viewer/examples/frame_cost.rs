@@ -1,10 +1,10 @@
-//! What a frame costs: the mean CPU time of the draw list of large_pyramid's 5050 bodies, and of making triangles of it, with the layers that a window shows at
-//! first, with contacts, and with all.
+//! Measures the cost of a frame in the scene `large_pyramid` with 5050 bodies: the mean CPU time of filling the draw
+//! list and of building its triangles, with the initial layers, with each layer alone, and with all layers.
 //!
 //! ```text
 //! cargo run --release -p lockstep2d-viewer --example frame_cost
 //! ```
-#![expect(clippy::disallowed_types, reason = "it measures")]
+#![expect(clippy::disallowed_types, reason = "measures time")]
 
 use std::error::Error;
 use std::time::{Duration, Instant};
@@ -15,7 +15,7 @@ use lockstep2d_viewer::{App, Event, Key, LAYER_KEYS};
 
 const FRAMES: u32 = 200;
 const SIZE: [f32; 2] = [1280.0, 960.0];
-/// The keys of the layers that a window shows at first.
+/// Keys of the layers that are on at the start.
 const AT_FIRST: [char; 2] = ['1', '5'];
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -28,10 +28,10 @@ fn main() -> Result<(), Box<dyn Error>> {
         app.advance(Duration::from_secs(1) / 60);
     }
     app.handle(Event::Pressed(Key::Space));
-    measure(&mut app, "as a window shows it at first");
+    measure(&mut app, "initial layers");
     let mut layers = Layers::NONE;
     let names = layers.named().map(|(name, _)| name);
-    // Those that are shown at first are switched off, each alone is switched on, and then all are.
+    // Turns the initial layers off, measures each layer alone, and then all layers together.
     press(&mut app, &AT_FIRST);
     for (name, key) in names.into_iter().zip(LAYER_KEYS) {
         press(&mut app, &[key]);
@@ -57,7 +57,7 @@ fn measure(app: &mut App, what: &str) {
     println!("{what:32} {:6} items  list {list:5.2} ms  triangles {triangles:5.2} ms", items.items().len());
 }
 
-/// How long something takes in the mean, in milliseconds.
+/// Returns the mean time of a function, in milliseconds.
 fn mean_of(mut make: impl FnMut()) -> f64 {
     let (start, wall) = (cpu_time(), Instant::now());
     (0..FRAMES).for_each(|_| make());
@@ -65,7 +65,7 @@ fn mean_of(mut make: impl FnMut()) -> f64 {
     time.as_secs_f64() * 1e3 / f64::from(FRAMES)
 }
 
-/// The CPU time of this thread, where the system tells it: on Linux, in steps of some milliseconds.
+/// Returns the CPU time of this thread if the system provides it: on Linux, with a resolution of a few milliseconds.
 fn cpu_time() -> Option<Duration> {
     let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
     text.split(' ').next()?.parse().ok().map(Duration::from_nanos)

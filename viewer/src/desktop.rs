@@ -18,24 +18,24 @@ mod shove;
 #[derive(Debug, Parser)]
 #[command(name = "lockstep2d-viewer", version)]
 struct Args {
-    /// A replay or a snapshot. Without one, a live sandbox is shown.
+    /// Replay or snapshot to show. Without a file, a live sandbox is shown.
     file: Option<PathBuf>,
-    /// Another one, to be compared with it.
+    /// Second replay or snapshot, compared with the first.
     #[arg(requires = "file")]
     other: Option<PathBuf>,
-    /// The scene of the live sandbox: `--list` says which there are.
+    /// Scene of the live sandbox; `--list` shows the names.
     #[arg(long, value_name = "NAME", conflicts_with = "file", default_value = window::FIRST_SCENE)]
     scene: String,
-    /// What a scene, or a match, that has something random in it is made from; 0 unless told.
+    /// Random seed of the scene or match [default: 0].
     #[arg(long, value_name = "NUMBER", global = true)]
     seed: Option<u64>,
     /// Lists the scenes.
     #[arg(long)]
     list: bool,
-    /// Where the replay of what is played live is saved: at the end, and when one asks for it.
+    /// File that the replay of a live scene or match is saved to: at the end, and with the key `s`.
     #[arg(short, long, value_name = "FILE", global = true)]
     output: Option<PathBuf>,
-    /// Does what a file says instead of waiting for a person: docs of `lockstep2d_viewer::script`.
+    /// Runs a script instead of taking user input: see the docs of `lockstep2d_viewer::script`.
     #[arg(long, value_name = "FILE", global = true)]
     script: Option<PathBuf>,
     /// Width and height of the window.
@@ -45,7 +45,7 @@ struct Args {
     game: Option<Game>,
 }
 
-/// What is no file and no scene.
+/// Subcommands that show neither a file nor a scene.
 #[derive(Debug, Subcommand)]
 enum Game {
     Shove(shove::Shove),
@@ -59,7 +59,7 @@ fn size(text: &str) -> Result<[u16; 2], String> {
         .ok_or_else(|| "should be a width and a height from 64 to 8192, such as 1120x720".to_owned())
 }
 
-/// Exit codes are those of the command `lockstep2d`: 0, or 2 for trouble.
+/// Runs the program. Exit codes are those of the command `lockstep2d`: 0 for success, 2 for an error.
 pub(crate) fn main() -> ExitCode {
     match run(Args::parse()) {
         Ok(()) => ExitCode::SUCCESS,
@@ -70,7 +70,7 @@ pub(crate) fn main() -> ExitCode {
     }
 }
 
-/// What went wrong, for people.
+/// Error message for the user.
 struct Trouble(String);
 
 impl fmt::Display for Trouble {
@@ -93,9 +93,9 @@ fn run(args: Args) -> Result<(), Trouble> {
             Some(Script::parse(&text).map_err(|error| trouble(path, &error))?)
         }
     };
-    // Nothing that is global can be in conflict with what is not.
+    // clap cannot declare a conflict between a global argument and one that is not global.
     if args.seed.is_some() && args.file.is_some() {
-        return Err(Trouble("--seed is for scenes and matches: a file has what it was made from".to_owned()));
+        return Err(Trouble("--seed is for scenes and matches: a file contains its own seed".to_owned()));
     }
     let seed = args.seed.unwrap_or_default();
     let mut app = App::default();
@@ -109,7 +109,7 @@ fn run(args: Args) -> Result<(), Trouble> {
         }
         (None, None) if app.show_scene(&args.scene, seed) => {}
         (None, None) => {
-            return Err(Trouble(format!("there is no scene {:?}: --list says which there are", args.scene)));
+            return Err(Trouble(format!("there is no scene {:?}: --list shows the names", args.scene)));
         }
     }
     #[cfg(target_os = "linux")]
@@ -134,7 +134,7 @@ fn trouble(path: &Path, error: &dyn fmt::Display) -> Trouble {
 mod tests {
     use clap::CommandFactory;
 
-    /// As far as there are debug assertions: it is they that check.
+    /// clap checks the arguments with debug assertions, so this tests nothing in a build without them.
     #[test]
     fn the_arguments_go_together() {
         super::Args::command().debug_assert();

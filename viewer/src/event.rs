@@ -1,35 +1,35 @@
-//! [`Event`]: what a person does.
+//! [`Event`]: input from the user.
 
-/// What a person does, or a script in their place. Positions are pixels from the upper left corner.
+/// Input event, from the user or from a script. Positions are pixels from the upper left corner of the window.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Event {
-    /// The window has this size now.
+    /// The window was resized to this width and height, in pixels.
     Resized([f32; 2]),
     /// A key went down.
     Pressed(Key),
     /// A key went up.
     Released(Key),
-    /// The pointer is here now.
+    /// The pointer moved to this position.
     Moved([f32; 2]),
-    /// A button of the pointer went down.
+    /// A pointer button went down.
     Down(Button),
-    /// A button of the pointer went up.
+    /// A pointer button went up.
     Up(Button),
-    /// The wheel was turned, by notches: positive is away from the person.
+    /// The wheel was turned by this number of notches: positive is away from the user.
     Wheel(f32),
     /// A file was dropped on the window.
     Dropped {
-        /// Its name, to be shown.
+        /// File name, for display.
         name: String,
-        /// What is in it.
+        /// Contents of the file.
         bytes: Vec<u8>,
     },
 }
 
-/// A key: letters and digits as characters in lower case, the others by name.
+/// Key of the keyboard: letters and digits as lower-case characters, other keys by name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Key {
-    /// A letter, a digit or another character: the one on the key, without Shift.
+    /// Letter, digit or other printed character that the key gives without Shift.
     Character(char),
     /// The space bar.
     Space,
@@ -41,21 +41,21 @@ pub enum Key {
     Up,
     /// The down arrow.
     Down,
-    /// To the start.
+    /// The Home key.
     Home,
-    /// To the end.
+    /// The End key.
     End,
-    /// A longer way back.
+    /// The Page Up key.
     PageUp,
-    /// A longer way forward.
+    /// The Page Down key.
     PageDown,
-    /// Confirms.
+    /// The Enter key.
     Enter,
-    /// Gives up.
+    /// The Escape key.
     Escape,
-    /// Removes.
+    /// The Delete key.
     Delete,
-    /// To the next.
+    /// The Tab key.
     Tab,
     /// Either Shift key.
     Shift,
@@ -63,13 +63,13 @@ pub enum Key {
     Control,
 }
 
-/// A button of the pointer.
+/// Button of the pointer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Button {
-    /// The first, also a touch.
+    /// The left button, or a touch.
     Left,
-    /// The wheel as a button.
+    /// The wheel pressed as a button.
     Middle,
-    /// The other.
+    /// The right button.
     Right,
 }

@@ -1,8 +1,8 @@
-//! The viewer without its window: what it shows, and what keys and the pointer do to it.
+//! The viewer without its window: the content that it shows and its reaction to keys and the pointer.
 //!
-//! [`App`] takes [`Event`]s and time, and fills a [`DrawList`](lockstep2d_picture::DrawList); it knows no window, no
-//! clock and no files. A window, a web page, a script and a test drive it alike.
-#![expect(clippy::disallowed_types, reason = "floats are what screens take")]
+//! [`App`] takes [`Event`]s and elapsed time, and fills a [`DrawList`](lockstep2d_picture::DrawList). It does not
+//! depend on a window, a clock or files, so a window, a web page, a script and a test all drive it in the same way.
+#![expect(clippy::disallowed_types, reason = "drawing uses floats")]
 
 mod app;
 mod event;

@@ -1,5 +1,5 @@
-//! The viewer in a window, or on a web page.
-#![expect(clippy::disallowed_types, reason = "floats are what screens take")]
+//! The viewer program, in a window or on a web page.
+#![expect(clippy::disallowed_types, reason = "drawing uses floats")]
 
 #[cfg(not(target_arch = "wasm32"))]
 mod desktop;

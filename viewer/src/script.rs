@@ -1,20 +1,20 @@
-//! [`Script`]: what a person would do, in a text file.
+//! [`Script`]: user input in a text file.
 //!
-//! One instruction a line; empty lines and what follows a `#` at the start of a line mean nothing:
+//! One instruction per line. Empty lines and lines that start with `#` are ignored.
 //!
-//! | instruction | what it does |
+//! | instruction | effect |
 //! |---|---|
-//! | `press KEY`, `release KEY` | a key goes down, or up |
-//! | `key KEY` | both |
-//! | `move X Y` | the pointer goes there, in pixels from the upper left corner |
-//! | `down BUTTON`, `up BUTTON` | a button of the pointer: `left`, `middle`, `right` |
-//! | `click X Y` | the pointer goes there, and its left button goes down and up |
-//! | `wheel NOTCHES` | the wheel turns, away from the person if positive |
-//! | `drop PATH` | a file is dropped |
-//! | `frames COUNT` | so many frames go by, a 60th of a second each, however long they take |
-//! | `screenshot PATH` | what is to be seen is written to a PNG file |
-//! | `report` | a line about what is to be seen |
-//! | `quit` | the end |
+//! | `press KEY`, `release KEY` | presses or releases a key |
+//! | `key KEY` | presses and releases a key |
+//! | `move X Y` | moves the pointer, in pixels from the upper left corner |
+//! | `down BUTTON`, `up BUTTON` | presses or releases a pointer button: `left`, `middle`, `right` |
+//! | `click X Y` | moves the pointer and clicks with the left button |
+//! | `wheel NOTCHES` | turns the wheel, away from the user if positive |
+//! | `drop PATH` | drops a file on the window |
+//! | `frames COUNT` | runs this number of frames of 1/60 s each, however long they take in real time |
+//! | `screenshot PATH` | writes the current picture to a PNG file |
+//! | `report` | prints a line that describes what is shown |
+//! | `quit` | ends the program |
 //!
 //! A key is a character, or `space`, `left`, `right`, `up`, `down`, `home`, `end`, `pageup`, `pagedown`, `enter`,
 //! `escape`, `delete`, `tab`, `shift` or `control`.
@@ -25,32 +25,32 @@ use std::time::Duration;
 
 use crate::event::{Button, Event, Key};
 
-/// How long a frame is in a script: a 60th of a second.
+/// Duration of a frame in a script: 1/60 s.
 pub const FRAME: Duration = Duration::from_nanos(16_666_667);
 
 /// Most frames of one instruction: an hour.
 const FRAMES_MAX: u32 = 216_000;
 
-/// What a person would do.
+/// List of instructions that replaces user input.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Script {
     steps: Vec<Step>,
 }
 
-/// What to do next.
+/// Instruction of a script.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Step {
-    /// Something for the viewer.
+    /// Sends an event to the viewer.
     Event(Event),
-    /// The file with this path is dropped.
+    /// Drops the file with this path on the window.
     Drop(String),
-    /// Time passes: so many times [`FRAME`], each followed by a picture.
+    /// Runs this number of frames, [`FRAME`] each.
     Frames(u32),
-    /// A picture for the file with this path.
+    /// Writes a picture to the file with this path.
     Screenshot(String),
-    /// A line about what is to be seen.
+    /// Prints a line that describes what is shown.
     Report,
-    /// The end.
+    /// Ends the program.
     Quit,
 }
 
@@ -58,7 +58,7 @@ impl Script {
     /// Reads a script.
     ///
     /// # Errors
-    /// [`ScriptError`] for the first line that is no instruction.
+    /// [`ScriptError`] for the first line that is not a valid instruction.
     pub fn parse(text: &str) -> Result<Self, ScriptError> {
         let mut steps = Vec::new();
         for (at, line) in text.lines().enumerate() {
@@ -70,7 +70,7 @@ impl Script {
         Ok(Script { steps })
     }
 
-    /// What it does, in order.
+    /// Returns the instructions, in order.
     #[must_use]
     pub fn steps(&self) -> &[Step] {
         &self.steps
@@ -85,27 +85,27 @@ impl FromStr for Script {
     }
 }
 
-/// Why a text is no script.
+/// Error in a script.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ScriptError {
-    /// The line, counted from 1.
+    /// Line number, counted from 1.
     pub line: usize,
-    /// What is wrong with it.
+    /// Cause of the error.
     pub flaw: ScriptFlaw,
 }
 
-/// What is wrong with a line of a script.
+/// Cause of an error in a script.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ScriptFlaw {
-    /// There is no such instruction.
+    /// Unknown instruction.
     UnknownInstruction(String),
-    /// It should have had so many arguments.
+    /// Wrong number of arguments; this number was expected.
     WrongCount(usize),
-    /// There is no such key.
+    /// Unknown key.
     UnknownKey(String),
-    /// There is no such button.
+    /// Unknown button.
     UnknownButton(String),
-    /// Not a number, or one that is too large.
+    /// Not a number, or a number out of range.
     NotANumber(String),
 }
 
@@ -122,7 +122,7 @@ impl fmt::Display for ScriptFlaw {
             ScriptFlaw::WrongCount(count) => write!(f, "the instruction takes {count} arguments"),
             ScriptFlaw::UnknownKey(word) => write!(f, "there is no key {word:?}"),
             ScriptFlaw::UnknownButton(word) => write!(f, "there is no button {word:?}"),
-            ScriptFlaw::NotANumber(word) => write!(f, "{word:?} is not a number that can be used here"),
+            ScriptFlaw::NotANumber(word) => write!(f, "{word:?} is not a number or out of range"),
         }
     }
 }
@@ -166,7 +166,7 @@ fn one(rest: &str) -> Result<&str, ScriptFlaw> {
     if is_one { Ok(rest) } else { Err(ScriptFlaw::WrongCount(1)) }
 }
 
-/// All of the rest of the line: a path may have spaces in it.
+/// Takes the rest of the line as a path, which may contain spaces.
 fn path(rest: &str) -> Result<String, ScriptFlaw> {
     if rest.is_empty() { Err(ScriptFlaw::WrongCount(1)) } else { Ok(rest.to_owned()) }
 }

@@ -1,4 +1,4 @@
-//! Going back shows what there was, contact points and all other layers too.
+//! Seeking back shows the same picture as before, in all layers, contact points included.
 
 use std::path::Path;
 
@@ -8,7 +8,8 @@ use lockstep2d_viewer::{App, Event, Key, LAYER_KEYS};
 
 const TICKS: usize = 100;
 
-/// Everything that is drawn but the list of layers and the lines of text above it, which say how far it is verified.
+/// Returns everything drawn except the layer list and the lines of text above it, which show the progress of
+/// verification.
 fn world(app: &mut App) -> DrawList {
     let list = app.draw();
     let mut world = DrawList::default();
@@ -27,13 +28,14 @@ fn world(app: &mut App) -> DrawList {
 
 fn press(app: &mut App, key: Key) {
     app.handle(Event::Pressed(key));
-    // A place far away takes several frames.
+    // Seeking to a distant tick takes several frames.
     (0..200).for_each(|_| app.advance(FRAME));
 }
 
-/// With all layers but the broad phase, whose structure is no state: it depends on the way by which one came to a tick.
+/// Checks all layers except the broad phase, whose tree is not part of the state: it depends on how the tick was
+/// reached.
 ///
-/// Goes forwards tick by tick, and then back, far back, and forwards again.
+/// Steps forwards tick by tick, then back, then seeks to the start and forwards again.
 fn goes_back(mut app: App) {
     app.handle(Event::Resized([900.0, 700.0]));
     LAYER_KEYS
@@ -47,7 +49,7 @@ fn goes_back(mut app: App) {
         press(&mut app, Key::Right);
         seen.push(world(&mut app));
     }
-    assert!(seen[TICKS] != seen[0], "something moves");
+    assert!(seen[TICKS] != seen[0], "the scene should move");
     let name = app.report().name;
     let check = |app: &mut App, tick: usize| {
         assert_eq!(app.report().tick, tick as u64, "{name}");

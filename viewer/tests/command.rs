@@ -1,12 +1,12 @@
-//! What the command says before there is a window.
-#![expect(clippy::unwrap_used, reason = "what fails here is the test")]
+//! Command-line behaviour before a window is opened: `--list` and error messages.
+#![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
 use std::path::PathBuf;
 use std::process::{Command, Output};
 
 fn viewer(args: &[&str]) -> (Option<i32>, String, String) {
     let mut command = Command::new(env!("CARGO_BIN_EXE_lockstep2d-viewer"));
-    // Nobody is to see these windows.
+    // Without a display, no test opens a window.
     command.env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY").args(args);
     let Output { status, stdout, stderr } = command.output().unwrap();
     let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
@@ -35,7 +35,10 @@ fn it_says_that_nobody_answers() {
         let output = command.env_remove("WAYLAND_DISPLAY").env("DISPLAY", display).output().unwrap();
         let errors = String::from_utf8(output.stderr).unwrap();
         assert_eq!(output.status.code(), Some(2), "{errors}");
-        assert!(errors.contains(&format!("nothing answers at DISPLAY={display}")), "{errors}");
+        assert!(
+            errors.contains(&format!("no X server accepts connections at DISPLAY={display}")),
+            "{errors}"
+        );
     }
 }
 
@@ -44,7 +47,7 @@ fn it_says_what_is_wrong() {
     let garbage = file("garbage.replay", b"no replay at all");
     let script = file("bad-script.txt", b"frames 3\n\njump 5\n");
     let cases: [(&[&str], &str); 8] = [
-        (&["--scene", "nowhere"], "--list says which there are"),
+        (&["--scene", "nowhere"], "--list shows the names"),
         (&["no such file"], "no such file: "),
         (&[&garbage], "garbage.replay: neither a report nor a replay nor a snapshot"),
         (&["--script", &script], "bad-script.txt: line 3: there is no instruction \"jump\""),
@@ -54,7 +57,7 @@ fn it_says_what_is_wrong() {
         (&["--scene", "pyramid"], "no display"),
     ];
     for (args, expected) in cases {
-        // Elsewhere than on Linux, windows need no such variable.
+        // Only on Linux does a window need an environment variable.
         if expected == "no display" && !cfg!(target_os = "linux") {
             continue;
         }

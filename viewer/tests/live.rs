@@ -1,6 +1,6 @@
-//! Live worlds: whatever one does in them is a replay that verifies.
+//! Live worlds: the replay of a session verifies, whatever the user does in it.
 
-#![expect(clippy::unwrap_used, reason = "what fails here is the test")]
+#![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
 use lockstep2d::body::{BodyDef, BodyId, BodyKind, Geometry, ShapeDef};
 use lockstep2d::fx;
@@ -29,18 +29,18 @@ fn open(scene: &str, seed: u64) -> Live {
     Live::scene(Scene::find(scene).unwrap(), seed).unwrap()
 }
 
-/// The replay so far, which has to be that of everything that is on the tape.
+/// Checks that the saved replay verifies and covers every recorded tick.
 fn check_replay(live: &mut Live, what: &str) {
     let file = live.save_replay().unwrap().unwrap();
     let (here, ticks) = (live.tick(), live.recorded());
-    assert_eq!(live.waiting(), 0, "on the way to the end it would be done");
+    assert_eq!(live.waiting(), 0, "queued acts would be carried out when seeking to the end");
     live.seek(ticks).unwrap();
     let expected = Verdict::Match { ticks, hash: live.hash() };
     assert_eq!(verify::<Sandbox>(&file, &Limits::default()), expected, "{what}");
     live.seek(here).unwrap();
 }
 
-/// A place within some metres of a body, or anywhere.
+/// Returns a random point within 0.5 m of a body on each axis, or sometimes anywhere.
 fn somewhere(rng: &mut Rng, world: &World) -> Vec2<Fx> {
     let count = u32::try_from(world.body_count()).unwrap();
     let offset = |rng: &mut Rng, by: Fx| Vec2::new(rng.range(-by, by), rng.range(-by, by));
@@ -68,8 +68,8 @@ fn random_act(rng: &mut Rng, world: &World) -> Act {
     }
 }
 
-/// Plays, acts, goes about in time and saves, as it comes. Returns how often a course was dropped for another, and how
-/// often something was held.
+/// Plays, acts, seeks and saves at random. Returns how often recorded ticks were dropped, and how often a body was
+/// held.
 fn play_about(live: &mut Live, seed: u64, ticks: u64) -> (usize, usize) {
     let rng = &mut Rng::new(seed);
     let (mut played, mut cuts, mut held) = (0, 0, 0);
@@ -106,10 +106,10 @@ fn a_hundred_random_sessions_verify() {
         play(&mut live, 1);
         check_replay(&mut live, &format!("{scene}, seed {seed}"));
     }
-    assert!(cuts > 100 && held > 100, "{cuts} courses dropped, {held} times something was held");
+    assert!(cuts > 100 && held > 100, "recording cut {cuts} times, body held {held} times");
 }
 
-/// What the tape says of a session is what one has seen: every tick that is gone back to has the hash that it had.
+/// Every tick that is sought again has the hash that it had when it was played.
 #[test]
 fn going_back_shows_what_was_there() {
     for seed in 0..6 {
@@ -130,12 +130,12 @@ fn going_back_shows_what_was_there() {
             live.seek(tick).unwrap();
             assert_eq!((live.tick(), live.hash()), (tick, seen[usize::try_from(tick).unwrap()]), "{scene}");
         }
-        assert_eq!(live.recorded(), 200, "nobody has acted");
+        assert_eq!(live.recorded(), 200, "seeking without acts should not cut the recording");
         check_replay(&mut live, scene);
     }
 }
 
-/// A disc of a metre and a half high above the ground, without gravity.
+/// Live world without gravity that contains only a circle of radius 0.5 m at (0, 2).
 fn one_disc() -> (Live, BodyId) {
     let disc = ShapeDef::new(Geometry::circle(fx!(0.5)).unwrap());
     let spawn = Command::Spawn { body: BodyDef::dynamic().position(fx!(0), fx!(2)), shapes: vec![disc] };
@@ -179,7 +179,11 @@ fn a_dragged_body_comes_along_and_is_thrown() {
     assert!(thrown.x < fx!(-5), "{thrown:?}");
     play(&mut live, 10);
     assert_eq!((anchors(&mut live), live.world().joint_count(), live.held()), (0, 0, None));
-    assert_eq!(live.world().body(disc).unwrap().velocity(), thrown, "nothing holds it any more");
+    assert_eq!(
+        live.world().body(disc).unwrap().velocity(),
+        thrown,
+        "a released body should keep its velocity"
+    );
     check_replay(&mut live, "thrown");
 }
 
@@ -201,7 +205,7 @@ fn the_hand_is_empty_when_what_it_held_is_gone() {
     live.act(Act::Delete(Aim::at(MIDDLE)));
     play(&mut live, 2);
     assert_eq!((live.held(), live.world().body_count(), live.world().joint_count()), (None, 0, 0));
-    // The other way round, in one tick.
+    // Grab and delete in the same tick.
     let (mut live, _) = one_disc();
     live.act(Act::Grab(Aim::at(MIDDLE)));
     live.act(Act::Delete(Aim::at(MIDDLE)));
@@ -215,14 +219,18 @@ fn who_goes_back_lets_go() {
     live.act(Act::Grab(Aim::at(MIDDLE)));
     play(&mut live, 20);
     live.seek(10).unwrap();
-    assert_eq!((live.held(), anchors(&mut live)), (None, 1), "as it was then");
-    // The tape goes on as recorded, and at its end nobody holds anything.
+    assert_eq!(
+        (live.held(), anchors(&mut live)),
+        (None, 1),
+        "the anchor of that tick should still be there, and nothing held"
+    );
+    // The recorded ticks play unchanged; in the first live tick the abandoned anchor is removed.
     live.act(Act::DragTo(ELSEWHERE));
     play(&mut live, 10);
     assert_eq!((live.recorded(), anchors(&mut live)), (20, 1));
     play(&mut live, 1);
     assert_eq!((live.recorded(), anchors(&mut live)), (21, 0));
-    // And where something else is done, too.
+    // The same holds after an act that cuts the recording.
     live.seek(10).unwrap();
     live.act(Act::Gravity(Vec2::new(fx!(0), fx!(-1))));
     play(&mut live, 2);
@@ -242,19 +250,19 @@ fn only_an_act_that_does_something_cuts_the_tape() {
     play(&mut live, 5);
     assert_eq!((live.tick(), live.recorded(), live.waiting()), (15, 30, 0));
     live.act(Act::explode(ELSEWHERE));
-    assert_eq!((live.recorded(), live.waiting()), (30, 1), "it waits for the next tick");
+    assert_eq!((live.recorded(), live.waiting()), (30, 1), "the act should wait for the next tick");
     play(&mut live, 1);
     assert_eq!((live.tick(), live.recorded(), live.waiting()), (16, 16, 0));
     live.act(Act::explode(ELSEWHERE));
     live.seek(3).unwrap();
-    assert_eq!(live.waiting(), 0, "what has not been done is not done elsewhere");
+    assert_eq!(live.waiting(), 0, "seeking back should drop queued acts");
 }
 
 #[test]
 fn what_the_world_refuses_breaks_nothing() {
     let disc = ShapeDef::new(Geometry::circle(fx!(0.5)).unwrap());
     let spawn = Command::Spawn { body: BodyDef::dynamic(), shapes: vec![disc] };
-    // There is no room for an anchor.
+    // The body limit leaves no room for an anchor.
     let config = Config { body_limit: 1, ..Config::default() };
     let mut live = Live::new("full", &SandboxSetup { config, commands: vec![spawn] }).unwrap();
     live.act(Act::Grab(Aim::at(Vec2::ZERO)));

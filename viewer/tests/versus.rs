@@ -1,11 +1,8 @@
-//! The small game for people: keys become pads, whatever happens is a replay that verifies, and matches over a network
-//! stay equal.
+//! The shove game with people: keys become pads, every match gives a replay that verifies, and the peers of a network
+//! match stay equal.
 
-#![expect(clippy::unwrap_used, reason = "what fails here is the test")]
-#![expect(
-    clippy::disallowed_types,
-    reason = "a clock for what is played in real time, floats for what is drawn"
-)]
+#![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
+#![expect(clippy::disallowed_types, reason = "network matches run in real time, and drawing uses floats")]
 
 use std::time::{Duration, Instant};
 
@@ -18,7 +15,7 @@ use lockstep2d_shove::{Pad, Phase, START_RADIUS, Setup, Shove};
 use lockstep2d_viewer::versus::{Chair, Online, SEAT_COLOURS, Side, Versus};
 use lockstep2d_viewer::{Event, Key, Source};
 
-/// The pads of every tick of a replay.
+/// Returns the pads of every tick of a replay.
 fn pads(replay: &[u8]) -> Vec<Vec<Pad>> {
     let mut rerun = Rerun::<Shove>::open(replay, &Limits::default()).unwrap();
     let mut pads = vec![];
@@ -74,7 +71,10 @@ fn keys_of_two_players_become_their_pads() {
                 assert!(versus.handle(&Event::Pressed(key)));
             }
         }
-        assert!(!versus.handle(&Event::Pressed(Key::Space)), "not one of theirs");
+        assert!(
+            !versus.handle(&Event::Pressed(Key::Space)),
+            "the space bar should not be a key of the players"
+        );
         let pad = |seat| {
             let held = down.iter().filter(|held| held.0 == seat);
             held.fold(Pad::default(), |pad, held| pad.with(held.2))
@@ -116,11 +116,11 @@ fn bots_and_empty_chairs_fill_the_table() {
     let file = check_replay(&mut versus);
     let pads = pads(&file);
     assert!(pads.iter().all(|pads| pads[1].is_absent() && pads[0] == Pad::default()));
-    assert!(pads.iter().any(|pads| pads[2] != Pad::default()), "the bot does something");
-    assert!(Versus::new(Setup::default(), &chairs[..1]).is_err(), "nobody to play against");
+    assert!(pads.iter().any(|pads| pads[2] != Pad::default()), "the bot should press something");
+    assert!(Versus::new(Setup::default(), &chairs[..1]).is_err(), "a match with one seat should be refused");
 }
 
-/// What is drawn on top: of everybody who stands a disc in the colour of the seat, and everybody's score.
+/// The overlay has a disc in the seat's colour for each player who has not fallen, and a score for each seat.
 #[test]
 fn players_and_scores_are_seen() {
     let mut versus = Versus::for_two(1, 2).unwrap();
@@ -149,16 +149,16 @@ fn players_and_scores_are_seen() {
 
 type Guest = Online<u32, Port>;
 
-/// Two participants around a network in memory, which play until both have got as far.
+/// Plays a match over an in-memory network until every participant has confirmed this number of ticks.
 fn play_online(network: &Network, guests: &mut [Guest], ticks: u64, mut act: impl FnMut(&mut [Guest])) {
     let (mut now, mut last_turn) = (Duration::ZERO, Instant::now());
     while guests.iter().any(|guest| guest.peer().confirmed() < ticks) {
-        // On a machine that is too slow for it, time passes more slowly.
+        // On a machine that is too slow, simulated time runs slower than real time.
         let passed = last_turn.elapsed().min(Duration::from_millis(20));
         (now, last_turn) = (now + passed, Instant::now());
         assert!(
             now < Duration::from_secs(40),
-            "only {:?}",
+            "{ticks} ticks should be confirmed within 40 s; the participants are at {:?}",
             guests.iter().map(Source::tick).collect::<Vec<_>>()
         );
         network.set_time(now);
@@ -178,7 +178,7 @@ fn two_keyboards_far_apart_play_the_same_match() {
     let host = Way::Host.enter(&setup, options, network.port(0)).unwrap();
     let guest = Way::Join { contact: 0, seat: None }.enter(&setup, options, network.port(1)).unwrap();
     let mut guests = [Online::new(host), Online::new(guest)];
-    assert!(guests[0].save_replay().unwrap().is_err(), "nothing has been played");
+    assert!(guests[0].save_replay().unwrap().is_err(), "saving should fail before the first tick");
     let rng = &mut Rng::new(1);
     play_online(&network, &mut guests, 300, |guests| {
         let key = KEYS[rng.below(11) as usize].1;
@@ -201,7 +201,7 @@ fn two_keyboards_far_apart_play_the_same_match() {
     assert_eq!(ours[..both], theirs[..both]);
     for seat in 0..2 {
         let pressed = ours.iter().filter(|pads| pads[seat] != Pad::default()).count();
-        assert!(pressed > 20, "seat {seat} has pressed something in {pressed} ticks");
+        assert!(pressed > 20, "seat {seat} pressed buttons in only {pressed} ticks");
     }
 }
 
@@ -224,6 +224,6 @@ fn somebody_who_cannot_come_in_says_why() {
     }
     let why = refused.unwrap();
     assert!(why.contains("number of seats"), "{why}");
-    assert_eq!(guest.advance(Duration::from_millis(10)), Ok(true), "and once is enough");
+    assert_eq!(guest.advance(Duration::from_millis(10)), Ok(true), "the error should be returned only once");
     assert!(guest.status().contains(&why), "{}", guest.status());
 }

@@ -1,4 +1,4 @@
-// A headless Chromium, talked to over a pipe: no packages, no open port.
+// Drives a headless Chromium over a pipe, without npm packages and without an open port.
 import { spawn } from "node:child_process";
 import { mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
@@ -12,7 +12,7 @@ export class Browser {
     #waiting = new Map();
     #last = 0;
     #session;
-    // What the page complains about.
+    // Exceptions and error messages of the page.
     complaints = [];
 
     static async open(url, [width, height]) {
@@ -36,7 +36,7 @@ export class Browser {
     #start() {
         this.#profile = mkdtempSync(join(tmpdir(), "viewer-"));
         const flags = ["--headless=new", "--remote-debugging-pipe", `--user-data-dir=${this.#profile}`, "--no-first-run",
-            // There is no graphics card, and often one is root in a container.
+            // Test machines have no GPU, and in a container the user is often root.
             "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist", "--no-sandbox",
             "--disable-dev-shm-usage"];
         const program = process.env.CHROMIUM ?? "chromium";
@@ -81,7 +81,7 @@ export class Browser {
         return this.#send(method, params, this.#session);
     }
 
-    // The value of a JavaScript expression in the page.
+    // Evaluates a JavaScript expression in the page.
     async evaluate(expression) {
         const options = { expression, awaitPromise: true, returnByValue: true };
         const { result, exceptionDetails } = await this.send("Runtime.evaluate", options);
@@ -91,7 +91,7 @@ export class Browser {
         return result.value;
     }
 
-    // Waits until a function of what an expression gives is true, and gives it.
+    // Evaluates an expression in the page repeatedly until `holds` is true of its value, and returns the value.
     async until(expression, holds, what) {
         const end = Date.now() + TIMEOUT;
         let value;
@@ -102,7 +102,7 @@ export class Browser {
             }
             await new Promise((resolve) => setTimeout(resolve, 50));
         } while (Date.now() < end);
-        throw new Error(`${what}: not after ${TIMEOUT / 1000} s, but ${JSON.stringify(value)}`);
+        throw new Error(`${what}: not reached within ${TIMEOUT / 1000} s, last value ${JSON.stringify(value)}`);
     }
 
     async press(key, code = key) {

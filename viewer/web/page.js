@@ -1,11 +1,11 @@
-// What connects the page with the viewer: files go in, a line about what is shown comes out.
+// Connects the page with the viewer: passes files in, and displays the report lines that the viewer logs.
 //
-// ?file=URL opens a file, ?scene=NAME a scene.
+// ?file=URL opens a file, ?scene=NAME opens a scene.
 "use strict";
 
 const element = (id) => document.getElementById(id);
 
-// Written with a capital, as the library names them.
+// Verdict names, which are shown with a capital letter as in the library.
 const VERDICTS = /\b(match|claim mismatch|diverged|incomplete|malformed|limit exceeded|unverifiable)\b/;
 
 function report([name, tick, ticks, hash, status]) {
@@ -30,7 +30,7 @@ function fail(message) {
     element("verdict").textContent = message;
 }
 
-// Hands bytes to the viewer, as if they had been dropped on a window.
+// Copies bytes into the viewer's memory, as miniquad does with a dropped file.
 function give(bytes) {
     const start = wasm_exports.allocate_vec_u8(bytes.length);
     new Uint8Array(wasm_memory.buffer, start, bytes.length).set(bytes);
@@ -59,7 +59,7 @@ async function showUrl(url) {
     show(url.split("/").pop(), new Uint8Array(await answer.arrayBuffer()));
 }
 
-// Instead of miniquad's way, which takes names to be as many bytes as letters.
+// Replaces miniquad's drop handler, which assumes that a file name has as many bytes as characters.
 window.addEventListener("drop", (event) => {
     event.preventDefault();
     event.stopImmediatePropagation();
@@ -67,7 +67,7 @@ window.addEventListener("drop", (event) => {
 }, { capture: true });
 element("file").addEventListener("change", (event) => showFiles(Array.from(event.target.files)));
 
-// The first frame is when the viewer listens.
+// Opens the file or scene of the URL, once, after the viewer's first report: only then does it accept files.
 let started = false;
 function start() {
     if (started) {
@@ -94,7 +94,7 @@ miniquad_add_plugin({
                 return info(text);
             }
             LINES[kind](fields);
-            // Not now: this is called by the viewer, which takes nothing while it speaks.
+            // Deferred: this runs inside a call from the viewer, which cannot be re-entered.
             setTimeout(start);
         };
         imports.env.console_error = (text) => fail(UTF8ToString(text));

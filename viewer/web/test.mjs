@@ -1,8 +1,9 @@
-// The viewer in a browser, against the command `lockstep2d`:
+// Compares the viewer in a browser with the command `lockstep2d`:
 //
 //     node viewer/web/test.mjs PAGE_DIRECTORY COMMAND SCREENSHOT_DIRECTORY
 //
-// A golden is dropped on the page, its verdict and hashes are compared with what the command says; then damaged ones.
+// Drops a golden replay on the page and compares its verdict and hashes with the command's output; then damaged
+// replays.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { createServer } from "node:http";
@@ -46,7 +47,7 @@ function serve() {
     return new Promise((done) => server.listen(0, "127.0.0.1", () => done(server)));
 }
 
-// As a person would: what is dragged comes from outside of the browser.
+// Drops a file on the page, as a drag from outside the browser.
 async function drop(browser, file) {
     const data = { items: [], files: [file], dragOperationsMask: 1 };
     for (const type of ["dragEnter", "dragOver", "drop"]) {
@@ -65,25 +66,25 @@ async function scrubsAndMatches(browser) {
 
     await browser.press("End");
     let state = await settled(browser, ticks);
-    assert.equal(state.hash, end, "the final hash is the native one");
-    assert.ok(state.status.includes(end) && state.status.includes("Match"), "as text with the role of a status");
+    assert.equal(state.hash, end, "the final hash should equal the native one");
+    assert.ok(state.status.includes(end) && state.status.includes("Match"), "the status should show hash and verdict");
 
-    // Keys: back by ten single ticks, to the start, on by a second and a tick.
+    // Keys: ten single ticks back, to the start, one second and one tick forward.
     for (let back = 1; back <= 10; back++) {
         await browser.press("ArrowLeft");
         await settled(browser, ticks - back);
     }
     state = await browser.evaluate(STATE);
-    assert.equal(state.hash, hashAt(GOLDEN, ticks - 10), "ten ticks back");
+    assert.equal(state.hash, hashAt(GOLDEN, ticks - 10), "hash ten ticks before the end");
     await browser.press("Home");
     state = await settled(browser, 0);
-    assert.equal(state.hash, hashAt(GOLDEN, 0), "the start");
+    assert.equal(state.hash, hashAt(GOLDEN, 0), "hash at the start");
     await browser.press("PageDown");
     await browser.press("ArrowRight");
     state = await settled(browser, 61);
-    assert.equal(state.hash, hashAt(GOLDEN, 61), "a second and a tick");
+    assert.equal(state.hash, hashAt(GOLDEN, 61), "hash at tick 61");
 
-    // The timeline is the bar 12 pixels above the lower border of the canvas.
+    // The timeline bar is 12 pixels above the lower border of the canvas.
     const [width, height] = await browser.evaluate(
         "[document.getElementById('glcanvas').clientWidth, document.getElementById('glcanvas').clientHeight]");
     const place = (part) => [12 + part * (width - 24), height - 18];
@@ -95,11 +96,11 @@ async function scrubsAndMatches(browser) {
         state = await browser.until(STATE, near, `scrubbed to ${part} of ${ticks}`);
     }
     await browser.mouse("mouseReleased", ...place(0.4));
-    assert.equal(state.hash, hashAt(GOLDEN, state.tick), "where the pointer scrubbed to");
-    console.log(`scrubbed to tick ${state.tick}: ${state.hash}, as the command says`);
+    assert.equal(state.hash, hashAt(GOLDEN, state.tick), "hash at the tick that the pointer scrubbed to");
+    console.log(`scrubbed to tick ${state.tick}: ${state.hash}, equal to the command's`);
 }
 
-// How many colours there are, and how much of the picture is not the most frequent one.
+// Takes a screenshot and checks that it is not blank: it has many colours, and none fills almost all of the picture.
 async function look(browser, name) {
     const bytes = await browser.screenshot();
     writeFileSync(join(pictures, name), bytes);
@@ -131,7 +132,7 @@ async function refuses(browser) {
         try {
             return native("verify", "--json", file);
         } catch (error) {
-            // It does not match: exit code 1, and the verdict.
+            // The replay does not match: the command exits with code 1 and prints the verdict.
             return JSON.parse(error.stdout);
         }
     };
@@ -151,14 +152,14 @@ async function refuses(browser) {
     for (const [name, bytes] of Object.entries(cases)) {
         const file = write(name, bytes);
         const { verdict, why } = verdictOf(file);
-        // Not only replays can be dropped.
+        // Reports and snapshots can be dropped too, so the message for an unknown file names all three kinds.
         const reasons = name === "garbage.replay" ? ["neither a report nor a replay nor a snapshot"]
             : [verdict, why ?? ""];
         await drop(browser, file);
         const says = ({ status }) => status.includes(name) &&
             reasons.every((reason) => status.toLowerCase().includes(reason.toLowerCase()));
         const shown = await browser.until(STATE, says, `${name}: ${reasons}`);
-        assert.doesNotMatch(shown.verdict, /Match/, "no verdict on another file beside it");
+        assert.doesNotMatch(shown.verdict, /Match/, "the error should not be shown beside the verdict of another file");
         console.log(`${name}: ${shown.verdict}`);
     }
 }
@@ -182,14 +183,14 @@ async function main() {
         await browser.send("Page.navigate", { url: `${address}?scene=pyramid` });
         await browser.until(STATE, ({ name, tick }) => name === "pyramid" && tick > 0, "?scene=");
         await look(browser, "pyramid.png");
-        assert.deepEqual(browser.complaints, [], "the page complains about nothing");
+        assert.deepEqual(browser.complaints, [], "the page should log no errors");
     } finally {
         await browser?.close();
         server.close();
     }
 }
 
-main().then(() => console.log("the page shows what it should"), (error) => {
+main().then(() => console.log("all page tests passed"), (error) => {
     console.error(error);
     process.exitCode = 1;
 });

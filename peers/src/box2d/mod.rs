@@ -1,4 +1,4 @@
-//! Box2D behind the benchmark's interface.
+//! Adapter from Box2D to the benchmark's interface.
 
 mod shapes;
 
@@ -11,7 +11,7 @@ use lockstep2d::world::{Command, Config, Outcome, Place};
 use crate::engine::{BodyState, Contacts, Counts, Engine, Slots};
 use crate::script::Event;
 
-/// A world of Box2D.
+/// World of Box2D.
 pub struct Box2d {
     world: b2WorldId,
     config: Config,
@@ -21,17 +21,17 @@ pub struct Box2d {
     saved: Vec<u8>,
 }
 
-// SAFETY, for every block below: the world exists from `new` to `drop`, the handles in `bodies` are of bodies that
-// exist in it, and nothing else has access to them.
+// SAFETY, for every block below: the world exists from `new` to `drop`, the handles in `bodies` refer to bodies that
+// exist in it, and no other code has access to them.
 
 impl Box2d {
-    /// An empty world.
+    /// Creates an empty world.
     pub fn new(config: &Config, threads: usize) -> Result<Self> {
-        ensure!(config.solver.iterations == 1, "more than one iteration");
+        ensure!(config.solver.iterations == 1, "more than one solver iteration is not supported");
         let ContactTuning::Soft { hertz, damping_ratio, push_speed } = config.solver.contact else {
-            bail!("contacts that are not soft");
+            bail!("only soft contacts are supported");
         };
-        // SAFETY: takes nothing.
+        // SAFETY: takes no arguments.
         let mut def = unsafe { b2DefaultWorldDef() };
         def.gravity = shapes::vector(config.gravity);
         def.restitutionThreshold = config.solver.restitution_threshold.to_num();
@@ -43,7 +43,7 @@ impl Box2d {
         def.enableSleep = config.sleeping;
         def.enableContinuous = config.continuous;
         def.workerCount = i32::try_from(threads)?;
-        // SAFETY: the definition is complete; the logger takes any message.
+        // SAFETY: the definition is complete; the log function accepts any message.
         let world = unsafe {
             b2SetLogFcn(Some(quiet));
             b2CreateWorld(&def)
@@ -108,7 +108,7 @@ impl Engine for Box2d {
                 // SAFETY: see above.
                 unsafe { b2Body_SetTargetTransform(body, target, self.time_step, true) };
             }
-            (other, _) => bail!("Box2D's adapter does not know {other:?}"),
+            (other, _) => bail!("the Box2D adapter does not support {other:?}"),
         }
         Ok(())
     }
@@ -152,7 +152,7 @@ impl Engine for Box2d {
     fn contacts(&self) -> Contacts {
         let mut found = Contacts::default();
         for body in self.bodies.iter() {
-            // SAFETY: see above; the buffer has the capacity that is asked for.
+            // SAFETY: see above; the buffer has the capacity that is passed.
             let contacts = unsafe {
                 if b2Body_GetType(body) == b2BodyType_b2_staticBody {
                     continue;
@@ -175,7 +175,7 @@ impl Engine for Box2d {
     }
 
     fn joint_gap(&self) -> Option<f64> {
-        // SAFETY: joints whose bodies are gone are left out.
+        // SAFETY: joints that were destroyed with their bodies are skipped.
         let gap = |&joint: &b2JointId| unsafe {
             if !b2Joint_IsValid(joint) {
                 return None;
@@ -188,7 +188,7 @@ impl Engine for Box2d {
     }
 
     fn save(&mut self) {
-        // SAFETY: see above; the buffer has the length that is given.
+        // SAFETY: see above; the buffer has the length that is passed.
         unsafe {
             let needed = b2World_Snapshot(self.world, std::ptr::null_mut(), 0);
             self.saved.resize(usize::try_from(needed).unwrap_or(0), 0);
@@ -202,9 +202,9 @@ impl Engine for Box2d {
 
     fn restore(&mut self) -> Result<()> {
         let length = i32::try_from(self.saved.len())?;
-        // SAFETY: see above; the bytes are those of a snapshot of this world.
+        // SAFETY: see above; the bytes are a snapshot of this world.
         let restored = unsafe { b2World_Restore(self.world, self.saved.as_ptr(), length) };
-        ensure!(restored, "Box2D refuses its snapshot");
+        ensure!(restored, "Box2D refused its own snapshot");
         Ok(())
     }
 
@@ -213,12 +213,13 @@ impl Engine for Box2d {
     }
 }
 
-/// Drops what Box2D has to say: it would be between the results, and in the times.
+/// Discards Box2D's log messages, which would mix with the results and distort the times.
 unsafe extern "C" fn quiet(_message: *const std::ffi::c_char) {}
 
-/// Two bodies that both move report their contact twice: it is counted for the first one.
+/// Returns whether a contact is counted for this body. A contact between two non-static bodies is reported by both of
+/// them, and is counted for body A only.
 fn counts_for(body: b2BodyId, contact: &b2ContactData) -> bool {
-    // SAFETY: shapes of a contact of the last step exist.
+    // SAFETY: the shapes of a contact of the last step exist.
     unsafe {
         let (a, b) = (b2Shape_GetBody(contact.shapeIdA), b2Shape_GetBody(contact.shapeIdB));
         let still = |id| b2Body_GetType(id) == b2BodyType_b2_staticBody;

@@ -1,4 +1,4 @@
-//! Bodies, shapes and joints of a scene as Box2D defines them.
+//! Converts bodies, shapes and joints of a scene to Box2D definitions.
 
 use anyhow::{Context, Result, bail, ensure};
 use boxdd_sys::ffi::*;
@@ -9,22 +9,22 @@ use lockstep2d::world::{Config, Place};
 
 use crate::engine::{corners, singles};
 
-/// A vector.
+/// Converts a vector.
 pub fn vector(v: Vec2<Fx>) -> b2Vec2 {
     let [x, y] = singles(v);
     b2Vec2 { x, y }
 }
 
-/// A rotation.
+/// Converts a rotation.
 pub fn rotation(angle: Angle) -> b2Rot {
     b2Rot { c: angle.cos().to_num(), s: angle.sin().to_num() }
 }
 
-/// A body at a place.
+/// Converts a body with its pose.
 pub fn body_def(body: &BodyDef, place: Place) -> Result<b2BodyDef> {
-    ensure!(matches!(body.mass, MassSource::Shapes), "masses that are given");
+    ensure!(matches!(body.mass, MassSource::Shapes), "explicit masses are not supported");
     let settings = &body.settings;
-    // SAFETY: takes nothing.
+    // SAFETY: takes no arguments.
     let mut def = unsafe { b2DefaultBodyDef() };
     def.type_ = match body.kind {
         BodyKind::Fixed => b2BodyType_b2_staticBody,
@@ -46,10 +46,10 @@ pub fn body_def(body: &BodyDef, place: Place) -> Result<b2BodyDef> {
     Ok(def)
 }
 
-/// Adds a shape. Events other than hits stay off, as they are by default in Box2D: that is in its favour.
+/// Adds a shape. Events other than hit events stay off, which is the default of Box2D and makes it faster.
 pub fn add_shape(body: b2BodyId, shape: &ShapeDef) -> Result<()> {
-    ensure!(!shape.sensor && shape.one_way.is_none(), "sensors and one-way shapes");
-    // SAFETY: takes nothing.
+    ensure!(!shape.sensor && shape.one_way.is_none(), "sensors and one-way shapes are not supported");
+    // SAFETY: takes no arguments.
     let mut def = unsafe { b2DefaultShapeDef() };
     def.density = shape.density.to_num();
     def.material.friction = shape.material.friction.to_num();
@@ -58,7 +58,7 @@ pub fn add_shape(body: b2BodyId, shape: &ShapeDef) -> Result<()> {
     def.filter = b2Filter { categoryBits: filter.category, maskBits: filter.mask, groupIndex: filter.group };
     def.enableHitEvents = shape.events.hit;
     let at = |point: Vec2<Fx>| vector(point + shape.offset);
-    // SAFETY: the body is one of a world that exists; every function copies the definition and the geometry.
+    // SAFETY: the body belongs to an existing world; every function copies the definition and the geometry.
     unsafe {
         match &shape.geometry {
             Geometry::Circle { radius } => {
@@ -76,12 +76,16 @@ pub fn add_shape(body: b2BodyId, shape: &ShapeDef) -> Result<()> {
                 let points: Vec<_> =
                     corners(polygon, shape.offset).into_iter().map(|[x, y]| b2Vec2 { x, y }).collect();
                 let hull = b2ComputeHull(points.as_ptr(), i32::try_from(points.len())?);
-                ensure!(usize::try_from(hull.count)? == points.len(), "a hull that Box2D changes");
+                ensure!(
+                    usize::try_from(hull.count)? == points.len(),
+                    "Box2D should keep all corners of a polygon in its hull"
+                );
                 b2CreatePolygonShape(body, &def, &b2MakePolygon(&hull, polygon.radius().to_num()));
             }
             Geometry::Link { a, b, before, after, sides } => {
-                ensure!(*sides == Sides::Right, "two-sided chains");
-                let (before, after) = before.zip(*after).context("a link at the end of a chain")?;
+                ensure!(*sides == Sides::Right, "two-sided chains are not supported");
+                let (before, after) =
+                    before.zip(*after).context("the end links of open chains are not supported")?;
                 let segment = b2Segment { point1: at(*a), point2: at(*b) };
                 let link = b2ChainSegment { ghost1: at(before), segment, ghost2: at(after), chainId: -1 };
                 b2CreateChainSegmentShape(body, &def, &link);
@@ -95,10 +99,10 @@ fn frame(frame: &JointFrame) -> b2Transform {
     b2Transform { p: vector(frame.anchor), q: rotation(frame.angle) }
 }
 
-/// A joint between two bodies. The scenes have hinges only.
+/// Converts a joint between two bodies. The scenes contain only revolute joints.
 pub fn joint_def(joint: &JointDef, ends: [b2BodyId; 2], config: &Config) -> Result<b2RevoluteJointDef> {
-    let JointKind::Revolute(hinge) = &joint.kind else { bail!("joints that are no hinges") };
-    // SAFETY: takes nothing.
+    let JointKind::Revolute(hinge) = &joint.kind else { bail!("only revolute joints are supported") };
+    // SAFETY: takes no arguments.
     let mut def = unsafe { b2DefaultRevoluteJointDef() };
     [def.base.bodyIdA, def.base.bodyIdB] = ends;
     def.base.localFrameA = frame(&joint.frame_a);

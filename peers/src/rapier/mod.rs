@@ -1,4 +1,4 @@
-//! rapier2d behind the benchmark's interface.
+//! Adapter from rapier2d to the benchmark's interface.
 
 mod shapes;
 
@@ -14,25 +14,25 @@ use rapier2d::prelude::*;
 use crate::engine::{BodyState, Contacts, Counts, Engine, Slots};
 use crate::script::Event;
 
-/// A world of rapier2d.
+/// World of rapier2d.
 pub struct Rapier {
     world: PhysicsWorld,
     config: Config,
     threads: usize,
     bodies: Slots<RigidBodyHandle>,
-    /// Links beyond the first of each chain: they are one collider.
+    /// Number of links beyond the first of each chain, because a chain is one collider.
     extra_links: usize,
-    /// What is to sleep after the first step, which wakes all whose contacts begin in it.
+    /// Bodies to put to sleep after the first step, because new contacts in that step wake them.
     to_sleep: Vec<RigidBodyHandle>,
     saved: Vec<u8>,
 }
 
 impl Rapier {
-    /// An empty world.
+    /// Creates an empty world.
     pub fn new(config: &Config, threads: usize) -> Result<Self> {
-        ensure!(config.solver.iterations == 1, "more than one iteration");
+        ensure!(config.solver.iterations == 1, "more than one solver iteration is not supported");
         let ContactTuning::Soft { hertz, damping_ratio, push_speed } = config.solver.contact else {
-            bail!("contacts that are not soft");
+            bail!("only soft contacts are supported");
         };
         let softness = |hertz: f32| SpringCoefficients {
             natural_frequency: hertz,
@@ -44,7 +44,7 @@ impl Rapier {
         parameters.dt = 1.0 / config.tick_rate as f32;
         parameters.num_solver_iterations = usize::try_from(config.solver.sub_steps)?;
         parameters.contact_softness = softness(hertz.to_num());
-        // As in the other two engines.
+        // Contacts with static bodies are twice as stiff, as in the other two engines.
         parameters.static_contact_softness = softness(2.0 * hertz.to_num::<f32>());
         parameters.normalized_max_corrective_velocity = push_speed.to_num();
         parameters.normalized_max_linear_velocity = config.solver.speed_max.to_num();
@@ -101,7 +101,7 @@ impl Rapier {
 
     fn body_mut(&mut self, id: BodyId) -> Result<&mut RigidBody> {
         let handle = self.bodies.get(id)?;
-        self.world.bodies.get_mut(handle).context("a body that is gone")
+        self.world.bodies.get_mut(handle).context("the body does not exist")
     }
 }
 
@@ -122,7 +122,7 @@ impl Engine for Rapier {
             }
             (Command::Despawn { body }, _) => {
                 let handle = self.bodies.remove(*body)?;
-                self.world.remove_body(handle).context("a body that is gone")?;
+                self.world.remove_body(handle).context("the body does not exist")?;
             }
             (Command::Enable { body }, _) => self.body_mut(*body)?.set_enabled(true),
             (Command::MoveTo { body, position, angle }, _) => {
@@ -134,7 +134,7 @@ impl Engine for Rapier {
                 body.set_linvel(way * rate, true);
                 body.set_angvel(turn * rate, true);
             }
-            (other, _) => bail!("rapier2d's adapter does not know {other:?}"),
+            (other, _) => bail!("the rapier2d adapter does not support {other:?}"),
         }
         Ok(())
     }
@@ -194,7 +194,8 @@ impl Engine for Rapier {
 
     fn save(&mut self) {
         self.saved.clear();
-        encode_into_std_write(&self.world, &mut self.saved, legacy()).expect("a buffer takes everything");
+        encode_into_std_write(&self.world, &mut self.saved, legacy())
+            .expect("writing to a buffer cannot fail");
     }
 
     fn saved_bytes(&self) -> usize {

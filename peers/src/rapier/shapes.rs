@@ -1,4 +1,4 @@
-//! Bodies, shapes and joints of a scene as rapier2d defines them.
+//! Converts bodies, shapes and joints of a scene to rapier2d definitions.
 
 use anyhow::{Context, Result, bail, ensure};
 use lockstep2d::body::{
@@ -11,7 +11,7 @@ use rapier2d::prelude::*;
 
 use crate::engine::{corners, singles};
 
-/// A vector.
+/// Converts a vector.
 pub fn vector(v: Vec2<Fx>) -> Vector {
     let [x, y] = singles(v);
     Vector::new(x, y)
@@ -21,9 +21,10 @@ fn radians(angle: Angle) -> f32 {
     angle.to_radians().to_num()
 }
 
-/// A body at a place. There is no switch for the whole world that keeps bodies awake.
+/// Converts a body with its pose. Sleeping is disabled per body, because rapier2d has no such switch for the whole
+/// world.
 pub fn body(def: &BodyDef, place: Place, config: &Config) -> Result<RigidBodyBuilder> {
-    ensure!(matches!(def.mass, MassSource::Shapes), "masses that are given");
+    ensure!(matches!(def.mass, MassSource::Shapes), "explicit masses are not supported");
     let settings = &def.settings;
     let kind = match def.kind {
         BodyKind::Fixed => RigidBodyType::Fixed,
@@ -43,7 +44,7 @@ pub fn body(def: &BodyDef, place: Place, config: &Config) -> Result<RigidBodyBui
         .enabled(def.enabled))
 }
 
-/// The shapes of a body: the links of a chain become one polyline.
+/// Converts the shapes of a body. The links of a chain become one polyline.
 pub fn colliders(shapes: &[ShapeDef]) -> Result<Vec<ColliderBuilder>> {
     let mut colliders = Vec::new();
     let is_link = |shape: &&ShapeDef| matches!(shape.geometry, Geometry::Link { .. });
@@ -61,7 +62,7 @@ fn polyline(links: &[&ShapeDef]) -> Result<ColliderBuilder> {
     let (mut points, mut segments) = (Vec::new(), Vec::new());
     for link in links {
         let Geometry::Link { a, b, sides: Sides::Right, .. } = link.geometry else {
-            bail!("two-sided chains");
+            bail!("two-sided chains are not supported");
         };
         let mut index = |point: Vec2<Fx>| {
             let point = vector(point + link.offset);
@@ -77,7 +78,7 @@ fn polyline(links: &[&ShapeDef]) -> Result<ColliderBuilder> {
 }
 
 fn collider(shape: &ShapeDef) -> Result<ColliderBuilder> {
-    ensure!(!shape.sensor && shape.one_way.is_none(), "sensors and one-way shapes");
+    ensure!(!shape.sensor && shape.one_way.is_none(), "sensors and one-way shapes are not supported");
     let at = |point: Vec2<Fx>| vector(point + shape.offset);
     let density = shape.density.to_num();
     let collider = match &shape.geometry {
@@ -91,18 +92,18 @@ fn collider(shape: &ShapeDef) -> Result<ColliderBuilder> {
         Geometry::Polygon(polygon) => {
             let points = corners(polygon, shape.offset);
             let radius = polygon.radius().to_num();
-            // rapier2d leaves the rounding out of the mass.
+            // rapier2d ignores the rounding radius in the mass.
             let mass = density * rounded_area(&points, radius);
             let collider = match upright_box(&points) {
                 Some((centre, [hx, hy])) if radius == 0.0 => {
                     ColliderBuilder::cuboid(hx, hy).translation(centre)
                 }
                 Some((centre, [hx, hy])) => ColliderBuilder::round_cuboid(hx, hy, radius).translation(centre),
-                None => convex(points, radius).context("a polygon that rapier2d refuses")?,
+                None => convex(points, radius).context("rapier2d refused a polygon")?,
             };
             collider.mass(mass)
         }
-        Geometry::Link { .. } => bail!("a link on its own"),
+        Geometry::Link { .. } => bail!("chain links are converted to a polyline, not one by one"),
     };
     Ok(collider)
 }
@@ -116,7 +117,8 @@ fn convex(points: Vec<[f32; 2]>, radius: f32) -> Option<ColliderBuilder> {
     }
 }
 
-/// `A + P r + pi r^2`, with the area and the perimeter of a convex polygon.
+/// Returns the area of a convex polygon rounded by a radius `r`: `A + P r + pi r^2`, with its area `A` and perimeter
+/// `P`.
 fn rounded_area(points: &[[f32; 2]], radius: f32) -> f32 {
     let next = points.iter().cycle().skip(1);
     let sides = points.iter().zip(next).map(|(a, b)| {
@@ -126,7 +128,8 @@ fn rounded_area(points: &[[f32; 2]], radius: f32) -> f32 {
     sides.sum::<f32>() + std::f32::consts::PI * radius * radius
 }
 
-/// Centre and half extents of a polygon that is a rectangle along the axes: rapier2d has a type of its own for it.
+/// Returns the centre and half extents of a polygon that is an axis-aligned rectangle, for which rapier2d has a
+/// separate shape type.
 fn upright_box(points: &[[f32; 2]]) -> Option<(Vector, [f32; 2])> {
     let [a, b, c, d] = points else { return None };
     let turned = |i: usize, j: usize| a[i] == b[i] && c[i] == d[i] && b[j] == c[j] && d[j] == a[j];
@@ -140,8 +143,11 @@ fn upright_box(points: &[[f32; 2]]) -> Option<(Vector, [f32; 2])> {
 
 fn with_material(collider: ColliderBuilder, shape: &ShapeDef) -> Result<ColliderBuilder> {
     let material = &shape.material;
-    ensure!(material.friction_mixing == Mixing::GeometricMean, "friction mixed otherwise");
-    ensure!(material.restitution_mixing == Mixing::Maximum, "restitution mixed otherwise");
+    ensure!(
+        material.friction_mixing == Mixing::GeometricMean,
+        "only geometric-mean friction mixing is supported"
+    );
+    ensure!(material.restitution_mixing == Mixing::Maximum, "only maximum restitution mixing is supported");
     Ok(collider
         .friction(material.friction.to_num())
         .friction_combine_rule(CoefficientCombineRule::GeometricMean)
@@ -150,11 +156,11 @@ fn with_material(collider: ColliderBuilder, shape: &ShapeDef) -> Result<Collider
         .collision_groups(groups(&shape.filter)))
 }
 
-/// Bits of a category in rapier2d; the others number those who do not collide among themselves.
+/// Bits used for categories in rapier2d; the other 28 bits stand for negative group numbers.
 const CATEGORY_BITS: u32 = 0xF;
 
-/// rapier2d has no group numbers, only 32 categories. A negative group becomes one of 28 categories that leaves itself
-/// out, in turn: ragdolls that share one are at least 30 m apart.
+/// Converts a collision filter. rapier2d has no group numbers, only 32 categories. A negative group becomes one of 28
+/// categories, in rotation, that does not collide with itself. Ragdolls that share a category are at least 30 m apart.
 fn groups(filter: &Filter) -> InteractionGroups {
     let numbered = |bits: u64| (bits & u64::from(u32::MAX)) as u32;
     let (mut memberships, mut accepted) = (numbered(filter.category), numbered(filter.mask));
@@ -172,11 +178,12 @@ fn groups(filter: &Filter) -> InteractionGroups {
     InteractionGroups::new(memberships, accepted, InteractionTestMode::And)
 }
 
-/// A joint, as stiff as rapier2d's are by default: with 60 Hz and a damping ratio of 2 the cloth of `joint_grid` is at
-/// 13 m/s after 100 steps, where the other engines' is at 1.4. An axis has one motor, so a spring goes before a motor,
-/// which are both in a ragdoll's hinges: their friction is left out.
+/// Converts a joint, with rapier2d's default stiffness: with 60 Hz and a damping ratio of 2, the cloth of
+/// `joint_grid` moves at 13 m/s after 100 steps, compared with 1.4 m/s in the other engines. rapier2d has one motor
+/// per axis, so a spring takes precedence over a motor. The hinges of a ragdoll have both, so their friction is left
+/// out.
 pub fn joint(def: &JointDef) -> Result<GenericJoint> {
-    let JointKind::Revolute(hinge) = &def.kind else { bail!("joints that are no hinges") };
+    let JointKind::Revolute(hinge) = &def.kind else { bail!("only revolute joints are supported") };
     let frame = |frame: &JointFrame| Pose::new(vector(frame.anchor), radians(frame.angle));
     let mut joint = GenericJointBuilder::new(JointAxesMask::LOCKED_REVOLUTE_AXES)
         .local_frame1(frame(&def.frame_a))
@@ -195,7 +202,7 @@ pub fn joint(def: &JointDef) -> Result<GenericJoint> {
             damping,
         );
     } else if let Some(motor) = hinge.motor {
-        // So stiff that only the torque limits it, as in the other engines.
+        // The factor is so large that only the maximum torque limits the motor, as in the other engines.
         joint = joint
             .motor_model(JointAxis::AngX, MotorModel::AccelerationBased)
             .motor_velocity(JointAxis::AngX, motor.speed.to_num(), 1e6)

@@ -1,4 +1,4 @@
-//! Animations as PNG files.
+//! Writes animations as animated PNG (APNG) files.
 
 use std::io::{self, Write};
 
@@ -9,16 +9,16 @@ use super::region::Region;
 use super::{failed, invalid};
 use crate::raster::Image;
 
-/// An animated PNG that is being written.
+/// Writer of an animated PNG.
 pub(super) struct Apng<W: Write> {
     pace: Pace,
-    /// That are yet to come.
+    /// Number of frames that are still to be added.
     frames: u32,
     state: State<W>,
 }
 
 enum State<W: Write> {
-    /// The size comes with the first frame.
+    /// Nothing written yet: the header needs the size of the first frame.
     Empty(Option<W>),
     Begun {
         writer: Writer<W>,
@@ -33,7 +33,7 @@ impl<W: Write> Apng<W> {
 
     pub(super) fn add(&mut self, frame: &Image) -> io::Result<()> {
         if self.frames == 0 {
-            return Err(invalid("one frame more than there were to be"));
+            return Err(invalid("more frames than announced"));
         }
         match &mut self.state {
             State::Empty(writer) => {
@@ -43,7 +43,7 @@ impl<W: Write> Apng<W> {
             }
             State::Begun { writer, shown } => {
                 if (frame.width(), frame.height()) != (shown.width(), shown.height()) {
-                    return Err(invalid("a frame of another size"));
+                    return Err(invalid("all frames must have the same size"));
                 }
                 write_changes(writer, shown, frame)?;
                 shown.clone_from(frame);
@@ -56,7 +56,7 @@ impl<W: Write> Apng<W> {
     pub(super) fn finish(self) -> io::Result<()> {
         match self.state {
             State::Begun { writer, .. } if self.frames == 0 => writer.finish().map_err(failed),
-            _ => Err(invalid("fewer frames than there were to be")),
+            _ => Err(invalid("fewer frames than announced")),
         }
     }
 }
@@ -73,8 +73,8 @@ fn begin<W: Write>(writer: W, pace: Pace, frames: u32, frame: &Image) -> io::Res
     Ok(writer)
 }
 
-/// Writes what has changed. Where nothing has, opaque frames have nothing at all, which takes the least space;
-/// others are written as they are.
+/// Writes the bounding rectangle of the changed pixels. In an opaque frame, unchanged pixels inside it are transparent,
+/// which compresses best; a frame with transparency replaces all pixels of the rectangle.
 fn write_changes<W: Write>(writer: &mut Writer<W>, shown: &Image, frame: &Image) -> io::Result<()> {
     let has_changed = |pixel: usize| colour(shown, pixel) != colour(frame, pixel);
     let region = Region::around((frame.width(), frame.height()), has_changed);
@@ -84,7 +84,7 @@ fn write_changes<W: Write>(writer: &mut Writer<W>, shown: &Image, frame: &Image)
         .pixels(frame.width())
         .flat_map(|pixel| if is_opaque && !has_changed(pixel) { &nothing[..] } else { colour(frame, pixel) });
     let changes: Vec<u8> = changes.copied().collect();
-    // Where the last one was must not count with the size of the next.
+    // Otherwise the encoder would check the new dimension against the old position.
     writer.reset_frame_position().map_err(failed)?;
     writer.set_frame_dimension(region.width, region.height).map_err(failed)?;
     writer.set_frame_position(region.left, region.top).map_err(failed)?;
@@ -92,7 +92,7 @@ fn write_changes<W: Write>(writer: &mut Writer<W>, shown: &Image, frame: &Image)
     writer.write_image_data(&changes).map_err(failed)
 }
 
-/// Red, green, blue and opacity of a pixel.
+/// Returns red, green, blue and opacity of a pixel.
 fn colour(image: &Image, pixel: usize) -> &[u8] {
     &image.rgba()[pixel * 4..pixel * 4 + 4]
 }

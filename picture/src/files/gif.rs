@@ -1,4 +1,4 @@
-//! Animations as GIF files.
+//! Writes animations as GIF files.
 
 use std::borrow::Cow;
 use std::io::{self, Write};
@@ -11,17 +11,17 @@ use super::palette::{Counts, Palette};
 use super::region::Region;
 use crate::raster::Image;
 
-/// A GIF that is being written.
+/// Writer of a GIF.
 pub(super) struct Gif<W: Write> {
     pace: Pace,
     frames: u64,
-    /// What there will be, as far as it is known before.
+    /// Colours of the frames that were announced with [`Gif::expect`].
     samples: Counts,
     state: State<W>,
 }
 
 enum State<W: Write> {
-    /// Size and palette come with the first frame.
+    /// Nothing written yet: the header needs the size and the colours of the first frame.
     Empty(Option<W>),
     Begun(Box<Begun<W>>),
 }
@@ -30,9 +30,9 @@ struct Begun<W: Write> {
     encoder: Encoder<W>,
     size: (u32, u32),
     palette: Palette,
-    /// Whether that is not the one at the beginning of the file, so that frames have to bring it.
+    /// Whether the palette differs from the global one in the header, so that each frame has to contain it.
     is_local: bool,
-    /// What a decoder shows.
+    /// Picture that a decoder shows after the last frame.
     shown: Vec<[u8; 3]>,
 }
 
@@ -63,7 +63,7 @@ impl<W: Write> Gif<W> {
 
     pub(super) fn finish(self) -> io::Result<()> {
         match self.state {
-            State::Empty(_) => Err(invalid("an animation has at least one frame")),
+            State::Empty(_) => Err(invalid("an animation needs at least one frame")),
             State::Begun(begun) => begun.encoder.into_inner().map_err(failed)?.flush(),
         }
     }
@@ -85,7 +85,7 @@ impl<W: Write> Begun<W> {
 
     fn add(&mut self, delay: u16, frame: &Image) -> io::Result<()> {
         if (frame.width(), frame.height()) != self.size {
-            return Err(invalid("a frame of another size"));
+            return Err(invalid("all frames must have the same size"));
         }
         let counts = Counts::of(colours(frame));
         if !self.palette.suits(&counts) {
@@ -125,7 +125,7 @@ impl<W: Write> Begun<W> {
 fn sides(width: u32, height: u32) -> io::Result<[u16; 2]> {
     match (u16::try_from(width), u16::try_from(height)) {
         (Ok(width), Ok(height)) => Ok([width, height]),
-        _ => Err(invalid("larger than a GIF can be")),
+        _ => Err(invalid("a GIF can have at most 65535 pixels per side")),
     }
 }
 

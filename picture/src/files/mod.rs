@@ -1,4 +1,4 @@
-//! Images and animations as files: PNG, APNG and GIF.
+//! Writes images and animations as files: PNG, APNG and GIF.
 
 mod apng;
 mod gif;
@@ -13,9 +13,10 @@ use crate::raster::Image;
 
 pub use pace::Pace;
 
-/// An animation that repeats for ever, written frame by frame: however many there are, it holds two of them.
+/// Animation that repeats forever, written frame by frame. At most two frames are in memory, however many there are.
 ///
-/// Of each frame only the rectangle in which something has changed is written, and in that only the pixels that have.
+/// For each frame, only the bounding rectangle of the changed pixels is written. Unchanged pixels inside it are
+/// transparent where the format allows it.
 pub struct Animation<W: Write>(Format<W>);
 
 enum Format<W: Write> {
@@ -24,19 +25,19 @@ enum Format<W: Write> {
 }
 
 impl<W: Write> Animation<W> {
-    /// A GIF: up to 255 colours are written as they are, of more the nearest of 255 that are chosen from the frame.
-    /// It has no opacity: whatever shines through is taken as opaque.
+    /// Starts a GIF. Up to 255 colours are exact; a frame with more colours is reduced to the nearest of 255 colours
+    /// chosen from it. GIF has no partial opacity: translucent pixels become opaque.
     pub fn gif(writer: W, pace: Pace) -> Self {
         Animation(Format::Gif(gif::Gif::new(writer, pace)))
     }
 
-    /// An animated PNG of so many frames, in all colours.
+    /// Starts an animated PNG with this number of frames, with exact colours.
     pub fn apng(writer: W, pace: Pace, frames: u32) -> Self {
         Animation(Format::Apng(Box::new(apng::Apng::new(writer, pace, frames))))
     }
 
-    /// Prepares for a frame that is likely to come, in any size: a GIF has the colours of those that were expected
-    /// before the first frame once for all, and has to repeat those of others.
+    /// Announces the colours of a later frame, of any size. A GIF stores the colours announced before the first frame
+    /// once in a global palette; frames with other colours each need their own palette.
     pub fn expect(&mut self, frame: &Image) {
         match &mut self.0 {
             Format::Gif(gif) => gif.expect(frame),
@@ -44,12 +45,12 @@ impl<W: Write> Animation<W> {
         }
     }
 
-    /// Adds a frame. All frames are as large as the first.
+    /// Adds a frame. All frames must have the size of the first.
     ///
     /// # Errors
     ///
-    /// Those of the writer; [`io::ErrorKind::InvalidInput`] for a frame of another size, or one more than an APNG was
-    /// to have.
+    /// Errors of the writer; [`io::ErrorKind::InvalidInput`] for a frame of another size, for a side too long for a
+    /// GIF, or for more frames than announced for an APNG.
     pub fn add(&mut self, frame: &Image) -> io::Result<()> {
         match &mut self.0 {
             Format::Gif(gif) => gif.add(frame),
@@ -57,12 +58,12 @@ impl<W: Write> Animation<W> {
         }
     }
 
-    /// Writes the end, and returns the writer; without it the file is not whole.
+    /// Writes the end of the file. Without this call the file is incomplete.
     ///
     /// # Errors
     ///
-    /// Those of the writer; [`io::ErrorKind::InvalidInput`] if there is no frame, or an APNG has fewer than it was to
-    /// have.
+    /// Errors of the writer; [`io::ErrorKind::InvalidInput`] if there is no frame, or fewer frames than announced for
+    /// an APNG.
     pub fn finish(self) -> io::Result<()> {
         match self.0 {
             Format::Gif(gif) => gif.finish(),
@@ -75,7 +76,7 @@ fn invalid(why: &str) -> io::Error {
     io::Error::new(io::ErrorKind::InvalidInput, why)
 }
 
-/// What a failure of the PNG encoder is, with the writer's own error in it if there was one.
+/// Converts an error of the PNG encoder; an I/O error of the writer is passed on unchanged.
 fn failed(error: png::EncodingError) -> io::Error {
     match error {
         png::EncodingError::IoError(error) => error,

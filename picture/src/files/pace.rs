@@ -1,16 +1,17 @@
-//! [`Pace`].
+//! [`Pace`]: duration of the frames of an animation.
 
-/// How long each frame is shown: for so many ticks of a game.
+/// Duration of each frame, in ticks of a game.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Pace {
-    /// Ticks from one frame to the next. 0 counts as 1.
+    /// Ticks per frame. 0 counts as 1.
     pub ticks: u32,
-    /// Ticks of a second. 0 counts as 1.
+    /// Ticks per second. 0 counts as 1.
     pub tick_rate: u32,
 }
 
 impl Pace {
-    /// How long a frame is shown in hundredths of a second, such that no rounding adds up. `frame` counts from 0.
+    /// Returns the duration of a frame in hundredths of a second. Rounding errors do not accumulate over the frames.
+    /// `frame` counts from 0.
     pub(super) fn hundredths(self, frame: u64) -> u16 {
         let end = |frames: u64| {
             let (ticks, rate) = (u128::from(self.ticks.max(1)), u128::from(self.tick_rate.max(1)));
@@ -19,7 +20,7 @@ impl Pace {
         u16::try_from(end(frame + 1) - end(frame)).unwrap_or(u16::MAX)
     }
 
-    /// How long a frame is shown in seconds, as a fraction of small numbers.
+    /// Returns the duration of a frame in seconds, as numerator and denominator, shortened to 16 bits if necessary.
     pub(super) fn fraction(self) -> (u16, u16) {
         let (mut above, mut below) = (self.ticks.max(1), self.tick_rate.max(1));
         let common = gcd(above, below);

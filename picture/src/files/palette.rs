@@ -1,9 +1,9 @@
-//! [`Palette`]: at most 255 colours for a frame, and one that is none.
+//! [`Palette`]: at most 255 colours for a frame, and a transparent one.
 //!
-//! Pictures of a world have few colours, and edges between them. Up to 255 are kept as they are. Of more, those of the
-//! large areas are kept, since a shade more or less on these is what one sees, and the others are divided into boxes
-//! of which each has one colour: the box with the largest sum of squared errors is halved at its mean, along the
-//! channel in which the sum is largest, until there are enough.
+//! Pictures of a world have few colours, plus the shades of antialiased edges. Up to 255 colours are kept exactly. If
+//! there are more, the most frequent ones are kept, because a shift in the shade of a large area is visible. The
+//! others are divided into boxes, each with one mean colour: the box with the largest sum of squared errors is split
+//! at its mean, along the channel with the largest error, until there are enough boxes.
 
 use std::collections::BTreeMap;
 
@@ -11,16 +11,16 @@ type Rgb = [u8; 3];
 
 /// Most colours, with one index left for pixels that stay as they were.
 const COLOURS_MAX: usize = 255;
-/// So many of the most frequent colours are kept as they are, if there are too many.
+/// Number of the most frequent colours that are kept exactly if there are too many colours.
 const KEPT: usize = 96;
-/// A palette suits as long as no colour is further from it in any channel, other than in stray pixels.
+/// Largest error per channel, except for stray pixels, with which an existing palette is used for a frame.
 const ERROR_MAX: u8 = 24;
-/// In a frame of so many pixels, one of a colour is a stray pixel.
+/// A colour is stray if it has at most one pixel per this number of pixels of the frame.
 const PIXELS_OF_A_STRAY: u64 = 20_000;
-/// Most colours of which the nearest is remembered.
+/// Most colours in the cache of nearest colours.
 const REMEMBERED_MAX: usize = 1 << 16;
 
-/// How often each colour is there.
+/// Number of pixels of each colour.
 #[derive(Default)]
 pub(super) struct Counts {
     counts: BTreeMap<Rgb, u64>,
@@ -54,10 +54,10 @@ impl Counts {
     }
 }
 
-/// Colours with indices.
+/// Colours and their indices.
 pub(super) struct Palette {
     colours: Vec<Rgb>,
-    /// The index of each of them, and of the nearest to others.
+    /// Index of each colour of the palette, and cached index of the nearest one for other colours.
     nearest: BTreeMap<Rgb, u8>,
 }
 
@@ -78,7 +78,7 @@ impl Palette {
         palette
     }
 
-    /// Whether a frame looks good with it. If few colours are enough for the frame, they have to be these.
+    /// Returns whether the palette represents a frame well enough. A frame with at most 255 colours must be exact.
     pub(super) fn suits(&mut self, counts: &Counts) -> bool {
         let is_exact = counts.counts.len() <= COLOURS_MAX;
         let stray = counts.pixels / PIXELS_OF_A_STRAY;
@@ -90,7 +90,7 @@ impl Palette {
         })
     }
 
-    /// The index of the colour that is nearest.
+    /// Returns the index of the nearest colour.
     pub(super) fn index(&mut self, colour: Rgb) -> u8 {
         if let Some(&index) = self.nearest.get(&colour) {
             return index;
@@ -111,23 +111,23 @@ impl Palette {
         self.colours.get(usize::from(index)).copied().unwrap_or_default()
     }
 
-    /// The index for pixels that stay as they were.
+    /// Returns the transparent index, for pixels that do not change.
     pub(super) fn transparent(&self) -> u8 {
         u8::try_from(self.colours.len()).unwrap_or(u8::MAX)
     }
 
-    /// Red, green and blue of all indices.
+    /// Returns red, green and blue of all indices.
     pub(super) fn table(&self) -> Vec<u8> {
         self.colours.iter().chain(&[[0; 3]]).flatten().copied().collect()
     }
 
-    /// Forgets all but its own colours.
+    /// Clears the cache down to the palette's own colours.
     fn remember(&mut self) {
         self.nearest = self.colours.iter().copied().zip(0..=u8::MAX).collect();
     }
 }
 
-/// Divides colours into boxes; the mean of each, and how many pixels it has.
+/// Divides colours into at most `count` boxes. Returns the mean colour and the number of pixels of each box.
 fn boxes(colours: Vec<(Rgb, u64)>, count: usize) -> Vec<(Rgb, u64)> {
     let mut boxes = vec![Box::of(colours)];
     while boxes.len() < count {
@@ -144,8 +144,9 @@ struct Box {
     colours: Vec<(Rgb, u64)>,
     pixels: u64,
     mean: Rgb,
-    /// The channel with the largest sum of squared errors, and that sum.
+    /// Channel with the largest sum of squared errors.
     channel: usize,
+    /// Sum of squared errors of that channel.
     error: u64,
 }
 
@@ -154,7 +155,7 @@ impl Box {
         let pixels: u64 = colours.iter().map(|(_, count)| count).sum();
         let sum =
             |channel: usize| colours.iter().map(|(colour, count)| u64::from(colour[channel]) * count).sum();
-        // Rounded down, so that it halves every box that has an error.
+        // Rounded down, so that splitting at the mean leaves no side empty if the box has an error.
         let mean = [0, 1, 2].map(|channel| u64::checked_div(sum(channel), pixels).unwrap_or(0) as u8);
         let error = |channel: usize| -> u64 {
             let errors = colours
@@ -186,7 +187,7 @@ mod tests {
         );
         assert_eq!((palette.transparent(), palette.table().len()), (255, 256 * 3));
         assert!(palette.suits(&counts));
-        assert!(!palette.suits(&Counts::of([[1, 2, 3]].into_iter())), "a shade that is missing");
+        assert!(!palette.suits(&Counts::of([[1, 2, 3]].into_iter())), "a missing shade should not suit");
     }
 
     #[test]
@@ -202,7 +203,7 @@ mod tests {
             let index = palette.index(colour);
             assert_eq!(palette.colour(index), colour);
         }
-        // 159 boxes of 4096 places: 3 in each direction.
+        // 159 boxes for 4096 colours: about 3 colours of the grid per box in each direction.
         for colour in edges {
             let index = palette.index(colour);
             let found = palette.colour(index);

@@ -1,6 +1,6 @@
-//! [`Region`]: where something has changed.
+//! [`Region`]: bounding rectangle of the changed pixels.
 
-/// A rectangle of pixels.
+/// Rectangle of pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Region {
     pub(super) left: u32,
@@ -10,8 +10,9 @@ pub(super) struct Region {
 }
 
 impl Region {
-    /// The rectangle around all pixels of an image of a width for which `has_changed` is true, given their numbers in
-    /// the order of rows. If nothing has changed, it is the first pixel: a frame cannot be empty.
+    /// Returns the bounding rectangle of all pixels of an image for which `has_changed` is true. Its argument is the
+    /// index of a pixel in row order. If nothing has changed, the result is the first pixel, because a frame cannot
+    /// be empty.
     pub(super) fn around((width, height): (u32, u32), has_changed: impl Fn(usize) -> bool) -> Self {
         let columns = width as usize;
         let row = |y: u32| y as usize * columns..(y as usize + 1) * columns;
@@ -23,7 +24,7 @@ impl Region {
         let (mut left, mut right) = (columns, 0);
         for y in top..=bottom {
             let start = row(y).start;
-            // Only what would widen it.
+            // Only columns outside the current range can widen the rectangle.
             left = (0..left).find(|x| has_changed(start + x)).unwrap_or(left);
             right = (right..columns).rfind(|x| has_changed(start + x)).unwrap_or(right);
         }
@@ -31,7 +32,7 @@ impl Region {
         Region { left, top, width: right + 1 - left, height: bottom + 1 - top }
     }
 
-    /// The numbers of its pixels in an image of a width.
+    /// Returns the indices of its pixels in an image of this width.
     pub(super) fn pixels(self, width: u32) -> impl Iterator<Item = usize> {
         let rows = self.top..self.top + self.height;
         rows.flat_map(move |y| {
@@ -48,7 +49,7 @@ mod tests {
     #[test]
     fn it_is_as_small_as_it_can_be() {
         let (width, height) = (7u32, 5u32);
-        // Every pair of pixels, and every single one.
+        // Every pair of pixels, and every single pixel.
         for a in 0..35usize {
             for b in 0..35usize {
                 let region = Region::around((width, height), |pixel| pixel == a || pixel == b);

@@ -1,4 +1,4 @@
-//! An image as a PNG file.
+//! Writes an image as a PNG file.
 
 use std::io::{self, Write};
 
@@ -8,11 +8,11 @@ use super::failed;
 use crate::raster::Image;
 
 impl Image {
-    /// Writes a PNG file: in RGB, or if something shines through, in RGBA.
+    /// Writes a PNG file: in RGB, or in RGBA if the image is not opaque.
     ///
     /// # Errors
     ///
-    /// Those of the writer.
+    /// Errors of the writer.
     pub fn write_png(&self, writer: impl Write) -> io::Result<()> {
         let mut encoder = Encoder::new(writer, self.width(), self.height());
         encoder.set_depth(BitDepth::Eight);
@@ -29,11 +29,12 @@ impl Image {
         png.finish().map_err(failed)
     }
 
-    /// The bytes of a PNG file.
+    /// Returns the bytes of a PNG file.
     #[must_use]
     pub fn to_png(&self) -> Vec<u8> {
         let mut bytes = Vec::new();
-        self.write_png(&mut bytes).expect("a Vec takes all bytes, and the image has as many as it says");
+        self.write_png(&mut bytes)
+            .expect("writing to a Vec cannot fail, and the image has the right number of bytes");
         bytes
     }
 }

@@ -1,15 +1,15 @@
-//! What of a polygon or a line is near the image.
+//! Clips polygons and lines to the surroundings of the image.
 //!
-//! The rasteriser counts in fixed-point pixels: points a billion pixels away would overflow, and a floor or a chain
-//! of a world easily reaches so far on a screen that is zoomed in.
+//! The rasteriser uses fixed-point pixel coordinates, which overflow for points a billion pixels away. A floor or a
+//! chain of a world easily extends that far when the camera is zoomed in.
 
 use tiny_skia::{Path, PathBuilder};
 
-/// Points within so many pixels of the image are left where they are; further ones are cut off there, where not even
-/// a border as wide would be seen.
+/// Distance from the image at which shapes are clipped, in pixels: far enough that the clipped border stays invisible
+/// for strokes up to this width.
 const MARGIN: f32 = 2048.0;
 
-/// The image, and what is near it.
+/// The image and the margin around it.
 pub(super) struct Area {
     size: [f32; 2],
 }
@@ -19,7 +19,8 @@ impl Area {
         Area { size: [width as f32, height as f32] }
     }
 
-    /// Whether the box around points and a border is anywhere on the image. Nothing is where a coordinate is no number.
+    /// Returns whether the bounding box of points, extended by a margin, overlaps the image. Returns `false` if a
+    /// coordinate is not finite.
     pub(super) fn is_touched(&self, points: &[[f32; 2]], margin: f32) -> bool {
         let margin = margin.min(MARGIN);
         !points.is_empty()
@@ -31,17 +32,17 @@ impl Area {
             })
     }
 
-    /// Whether some of the points are too far away.
+    /// Returns whether some of the points lie outside the margin.
     pub(super) fn is_exceeded(&self, points: &[[f32; 2]]) -> bool {
         points.iter().any(|&point| self.sides().iter().any(|side| !side.has(point)))
     }
 
-    /// The part of a convex polygon that is near, side by side (Sutherland and Hodgman).
+    /// Clips a convex polygon to the area, one side after the other (Sutherland and Hodgman).
     pub(super) fn polygon(&self, points: &[[f32; 2]]) -> Vec<[f32; 2]> {
         self.sides().iter().fold(points.to_vec(), |points, side| side.cut(&points))
     }
 
-    /// The parts of a line through points that are near.
+    /// Clips a line through points to the area; the result may consist of several parts.
     pub(super) fn lines(&self, points: &[[f32; 2]], closed: bool) -> Option<Path> {
         let mut path = PathBuilder::new();
         let back = closed.then(|| points.first()).flatten();
@@ -54,7 +55,7 @@ impl Area {
         path.finish()
     }
 
-    /// The part of a line that is near, side by side.
+    /// Clips a line segment to the area, one side after the other.
     fn segment(&self, mut from: [f32; 2], mut to: [f32; 2]) -> Option<[[f32; 2]; 2]> {
         for side in self.sides() {
             match (side.has(from), side.has(to)) {
@@ -67,7 +68,7 @@ impl Area {
         Some([from, to])
     }
 
-    /// What is near lies on the inner side of all of these.
+    /// Returns the four half planes whose intersection is the area.
     fn sides(&self) -> [Side; 4] {
         let [width, height] = self.size;
         let low = |axis| Side { axis, sign: -1.0, bound: -MARGIN };
@@ -76,7 +77,7 @@ impl Area {
     }
 }
 
-/// A half plane in which a coordinate goes up to a bound, or if the sign is negative, down to it.
+/// Half plane in which a coordinate is at most the bound, or at least the bound if the sign is negative.
 struct Side {
     axis: usize,
     sign: f32,
@@ -88,7 +89,8 @@ impl Side {
         (point[self.axis] - self.bound) * self.sign <= 0.0
     }
 
-    /// Where a line from one side to the other meets the bound, which it does exactly, however long it is.
+    /// Returns the point where a line crosses the bound. Its coordinate on that axis is exact, however long the line
+    /// is.
     fn crossing(&self, from: [f32; 2], to: [f32; 2]) -> [f32; 2] {
         let (a, b) = (from.map(f64::from), to.map(f64::from));
         let share = (f64::from(self.bound) - a[self.axis]) / (b[self.axis] - a[self.axis]);
@@ -97,7 +99,7 @@ impl Side {
         crossing
     }
 
-    /// What of a convex polygon is inside.
+    /// Returns the part of a convex polygon inside the half plane.
     fn cut(&self, points: &[[f32; 2]]) -> Vec<[f32; 2]> {
         let mut kept = Vec::with_capacity(points.len() + 2);
         for (i, &to) in points.iter().enumerate() {

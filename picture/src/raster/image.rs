@@ -1,10 +1,10 @@
-//! [`Image`].
+//! [`Image`]: pixels in memory.
 
 use tiny_skia::Pixmap;
 
 use crate::colour::Colour;
 
-/// Pixels in rows from top to bottom, each from left to right.
+/// Image of 8-bit RGBA pixels, in rows from top to bottom, each from left to right.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Image {
     width: u32,
@@ -34,13 +34,13 @@ impl Image {
         self.height
     }
 
-    /// Red, green, blue and opacity of each pixel in turn, not premultiplied.
+    /// Returns red, green, blue and opacity of each pixel in turn, not premultiplied.
     #[must_use]
     pub fn rgba(&self) -> &[u8] {
         &self.rgba
     }
 
-    /// A pixel, or `None` outside of the image.
+    /// Returns a pixel, or `None` outside the image.
     #[must_use]
     pub fn pixel(&self, x: u32, y: u32) -> Option<Colour> {
         if x >= self.width || y >= self.height {
@@ -51,7 +51,7 @@ impl Image {
         Some(Colour { rgb: [red, green, blue], opacity })
     }
 
-    /// Whether nothing shines through.
+    /// Returns whether every pixel is opaque.
     #[must_use]
     pub fn is_opaque(&self) -> bool {
         self.rgba.chunks_exact(4).all(|pixel| pixel[3] == 255)

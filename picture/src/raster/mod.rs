@@ -1,4 +1,4 @@
-//! [`raster`]: a list as pixels, without a screen.
+//! [`raster`]: renders a list into pixels in memory, without a screen.
 
 mod clip;
 mod image;
@@ -15,11 +15,11 @@ pub use image::Image;
 /// Longest side of an image, in pixels.
 pub const SIDE_MAX: u32 = 16384;
 
-/// Draws a list on a background, with smooth edges. The sides of the image are moved into 1 to [`SIDE_MAX`].
+/// Draws a list on a background, with antialiased edges. The sides of the image are clamped to 1 to [`SIDE_MAX`].
 #[must_use]
 pub fn raster(list: &DrawList, (width, height): (u32, u32), background: Colour) -> Image {
     let (width, height) = (width.clamp(1, SIDE_MAX), height.clamp(1, SIDE_MAX));
-    let mut pixels = Pixmap::new(width, height).expect("neither side is 0 or too long");
+    let mut pixels = Pixmap::new(width, height).expect("both sides are clamped to the valid range");
     pixels.fill(colour(background));
     let area = Area::of(width, height);
     let mut texts = list.texts().iter().peekable();
@@ -67,7 +67,7 @@ fn draw(pixels: &mut Pixmap, item: &Item, points: &[[f32; 2]], area: &Area) {
     }
 }
 
-/// Whether a line goes on from its last point to the first.
+/// Whether a line is closed from its last point to the first.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Ends {
     Loose,
@@ -136,7 +136,11 @@ mod tests {
         list.rectangle([0.0; 2], [20.0, 20.0], RED);
         list.text([0.0, 0.0], 1.0, WHITE, "\u{0}");
         let image = raster(&list, (20, 20), WHITE);
-        assert_eq!((at(1, 2, &image), at(3, 6, &image)), (WHITE, RED), "a box of text on red");
+        assert_eq!(
+            (at(1, 2, &image), at(3, 6, &image)),
+            (WHITE, RED),
+            "expected the white outline and the red inside of a glyph box"
+        );
         list.rectangle([0.0; 2], [20.0, 20.0], BLUE);
         let image = raster(&list, (20, 20), WHITE);
         assert!((0..400).all(|i| at(i % 20, i / 20, &image) == BLUE));
@@ -153,7 +157,8 @@ mod tests {
         assert!(image.is_opaque() && !clear.is_opaque());
     }
 
-    /// What reaches a billion pixels to either side is drawn as what ends at the border.
+    /// Shapes that extend a billion pixels and more to either side look the same as shapes that end just outside the
+    /// image.
     #[test]
     fn far_corners_change_nothing_that_is_seen() {
         let wide = |reach: f32| {

@@ -1,8 +1,8 @@
-//! Pictures that are hard on what writes them.
+//! Pictures with many colours, as a hard case for the file writers.
 
 use lockstep2d_picture::{Colour, DrawList, Image, raster};
 
-/// Polygons that turn, each with a colour of its own and smooth edges: far more colours than a GIF can have.
+/// Rotating polygons, each with its own colour and antialiased edges: far more colours than a GIF can have.
 pub(crate) fn colourful(frame: u32, size: (u32, u32)) -> Image {
     let mut list = DrawList::default();
     for i in 0..40u32 {

@@ -1,4 +1,4 @@
-//! [`Comparison`]: a second replay over the first, and where they part.
+//! [`Comparison`]: a second replay drawn over the first, and their first difference.
 
 use lockstep2d::body::{Body, BodyId};
 use lockstep2d::inspect::{differences, fields};
@@ -7,22 +7,23 @@ use lockstep2d::world::World;
 use super::player::slice_of;
 use crate::source::Source;
 
-/// The second of two sources that are shown at the same tick.
+/// Second of two sources that are shown at the same tick.
 pub(super) struct Comparison {
     pub(super) other: Box<dyn Source>,
-    /// Both once more: they look for the first tick at which states differ while others are shown.
+    /// Second copies of both sources, which search for the first differing tick independently of the shown tick.
+    /// `None` when the search has ended.
     scouts: Option<[Box<dyn Source>; 2]>,
     pub(super) first: Option<First>,
     searched: u64,
 }
 
-/// Where two sources part.
+/// First difference between two sources.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct First {
     pub(super) tick: u64,
-    /// The first body that is not the same, in the order of slots; `None` if something else is not.
+    /// The first body that differs, in slot order; `None` if no body differs but other state does.
     pub(super) body: Option<BodyId>,
-    /// The first of its fields, with both values.
+    /// The first differing field of that body, with both values.
     pub(super) field: String,
 }
 
@@ -31,7 +32,7 @@ impl Comparison {
         Comparison { other, scouts: Some(scouts), first: None, searched: 0 }
     }
 
-    /// Looks for the first difference for a while.
+    /// Continues the search for the first difference, by a limited number of ticks per call.
     pub(super) fn think(&mut self) {
         let Some([a, b]) = &mut self.scouts else { return };
         let (mut left, first) = (slice_of(a.world()), a.first());
@@ -54,13 +55,15 @@ impl Comparison {
         self.searched = a.tick().max(first);
     }
 
-    /// What is known so far.
+    /// Result of the search so far, as text.
     pub(super) fn status(&self) -> String {
         let name = self.other.name();
         match (&self.first, &self.scouts) {
-            (Some(First { tick, field, .. }), _) => format!("{name}: they part at tick {tick}: {field}"),
+            (Some(First { tick, field, .. }), _) => {
+                format!("{name}: first difference at tick {tick}: {field}")
+            }
             (None, Some(_)) => format!("{name}: compared up to tick {}, no difference", self.searched),
-            (None, None) => format!("{name}: the same up to tick {}", self.searched),
+            (None, None) => format!("{name}: identical up to tick {}", self.searched),
         }
     }
 }
@@ -71,14 +74,14 @@ impl First {
         let (a, b) = (a.world(), b.world());
         let body = differing(a, b).next();
         let field = match body {
-            None => "something else than bodies".into(),
+            None => "all bodies are equal, other state differs".into(),
             Some(id) => format!("body {id}: {}", first_field(a.body(id), b.body(id))),
         };
         First { tick, body, field }
     }
 }
 
-/// The bodies that two worlds do not have alike, in the order of slots.
+/// Returns the bodies that differ between two worlds, in slot order.
 pub(super) fn differing<'a>(a: &'a World, b: &'a World) -> impl Iterator<Item = BodyId> + 'a {
     let not_in_b = a.bodies().filter(|&(id, body)| b.body(id) != Some(body)).map(|(id, _)| id);
     let only_in_b = b.bodies().filter(|&(id, _)| a.body(id).is_none()).map(|(id, _)| id);

@@ -1,4 +1,4 @@
-//! What a person's hand does in a live world, with the pointer and with keys.
+//! Actions of the user in a live world, with the pointer and with keys.
 
 use lockstep2d::fx;
 use lockstep2d::math::{Fx, Vec2};
@@ -9,22 +9,22 @@ use crate::event::Key;
 use crate::live::{Act, Aim, Form, Playground};
 use crate::source::Source;
 
-/// How far beside a body the pointer may be, in pixels.
+/// Largest distance from the pointer to a body that is grabbed or deleted, in pixels.
 const REACH: f32 = 6.0;
 
-/// Strength of gravity, in m/s².
+/// Magnitude of gravity, in m/s².
 const GRAVITY: Fx = fx!(10);
 
-/// The directions that a person goes through.
+/// Directions of gravity, in the order in which the key `g` steps through them; y points up.
 const GRAVITIES: [(Fx, Fx); 5] =
     [(fx!(0), fx!(-1)), (fx!(0), fx!(0)), (fx!(0), fx!(1)), (fx!(-1), fx!(0)), (fx!(1), fx!(0))];
 
-/// What is chosen, and what is about to be put somewhere.
+/// Selected form and gravity, and the body that is being drawn.
 #[derive(Debug, Default)]
 pub(super) struct Hand {
     form: usize,
     gravity: usize,
-    /// Where a new body was begun.
+    /// Start point of the body that is being drawn, in world coordinates.
     begun: Option<Vec2<Fx>>,
 }
 
@@ -46,19 +46,19 @@ impl Hand {
         playground.act(Act::DragTo(camera.point(at)));
     }
 
-    /// The place at which a new body begins.
+    /// Starts drawing a new body at this screen position.
     pub(super) fn begin(&mut self, camera: &Camera, at: [f32; 2]) {
         self.begun = Some(camera.point(at));
     }
 
-    /// Puts the body that was begun there, as large as the way.
+    /// Creates the body: the drag from its start point to `at` gives its size.
     pub(super) fn put(&mut self, playground: &mut dyn Playground, camera: &Camera, at: [f32; 2]) {
         if let Some(begun) = self.begun.take() {
             playground.act(Act::Spawn { form: self.form(), at: begun, to: camera.point(at) });
         }
     }
 
-    /// What a key does. `false` if nothing.
+    /// Performs the action of a key. Returns `false` if the key has none here.
     pub(super) fn press(
         &mut self,
         key: Key,
@@ -80,7 +80,7 @@ impl Hand {
         true
     }
 
-    /// The band at which a body is held, and the body that is begun.
+    /// Draws the line from the grabbed body to the pointer and the line of a body that is being drawn.
     pub(super) fn draw(&self, list: &mut DrawList, source: &mut dyn Source, camera: &Camera, at: [f32; 2]) {
         let Some(held) = source.playground().map(|playground| playground.held()) else { return };
         if let Some(held) = held

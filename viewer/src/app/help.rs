@@ -1,4 +1,4 @@
-//! What keys and the pointer do.
+//! Help overlay: the actions of keys and the pointer.
 
 use lockstep2d_picture::{CELL_HEIGHT, DrawList, width_of};
 
@@ -6,28 +6,28 @@ use super::theme;
 
 const LINES: &[(&str, &str)] = &[
     ("space", "play, pause"),
-    ("left, right", "one tick back, further; with shift ten"),
-    ("page up, down", "a second back, further"),
-    ("home, end", "to the start, to the end"),
-    ("up, down", "twice as fast, half as fast"),
-    ("1 ... 0 c v i", "layers; or click them"),
+    ("left, right", "one tick back, forward; ten with shift"),
+    ("page up, down", "one second back, forward"),
+    ("home, end", "go to the start, to the end"),
+    ("up, down", "double, halve the speed"),
+    ("1 ... 0 c v i", "toggle layers; or click them"),
     ("wheel, + -", "zoom"),
     ("drag", "pan"),
-    ("click", "select a body: all that there is to know of it"),
+    ("click", "select a body and show all its fields"),
     ("f", "follow the selected body"),
-    ("r", "see everything again"),
-    ("j", "to the first difference of two replays"),
+    ("r", "show the whole scene"),
+    ("j", "go to the first difference of two replays"),
     ("h", "this list"),
     ("", ""),
     ("", "in a live world:"),
-    ("drag", "a body, and throw it"),
-    ("right drag", "a new body, as large as the way"),
-    ("b", "disc, box, polygon, rod"),
+    ("drag", "move a body, and throw it"),
+    ("right drag", "draw a new body"),
+    ("b", "form of new bodies: disc, box, polygon, rod"),
     ("x, delete", "remove the body under the pointer"),
     ("e", "explosion at the pointer"),
     ("g", "gravity: down, none, up, left, right"),
-    ("[ ]", "the scene before, the next scene"),
-    ("s", "save what was done as a replay"),
+    ("[ ]", "previous scene, next scene"),
+    ("s", "save the recording as a replay"),
 ];
 
 pub(super) fn draw(list: &mut DrawList, [width, height]: [f32; 2]) {

@@ -1,4 +1,4 @@
-//! What keys and the pointer do.
+//! Event handling: maps keys and pointer events to actions of the app.
 
 use crate::event::{Button, Event, Key};
 use crate::live::Act;
@@ -9,10 +9,10 @@ use super::inspector::body_at;
 use super::layers;
 use super::timeline::Bar;
 
-/// So far the pointer may move while a button is down and it is still a click, in pixels.
+/// Largest distance between press and release of a button that still counts as a click, in pixels.
 const CLICK: f32 = 4.0;
 
-/// Where the pointer is, and what it is doing.
+/// Position of the pointer and the drag in progress.
 #[derive(Debug, Default)]
 pub(super) struct Pointer {
     pub(super) at: [f32; 2],
@@ -24,13 +24,13 @@ pub(super) struct Pointer {
 enum Doing {
     #[default]
     Nothing,
-    /// A button is down since it was there: perhaps a click.
+    /// The button went down at this position; a click unless the pointer moves further.
     Pressing([f32; 2]),
-    /// Moves the world.
+    /// Moves the view.
     Panning,
-    /// Goes along the timeline.
+    /// Moves along the timeline.
     Scrubbing,
-    /// Holds a body since it was there: perhaps a click too.
+    /// Drags a body since the button went down at this position; also a click if the pointer does not move further.
     Dragging([f32; 2]),
     /// Draws a new body.
     Spawning,
@@ -41,7 +41,7 @@ fn is_click(from: [f32; 2], to: [f32; 2]) -> bool {
 }
 
 impl App {
-    /// Takes notice of what a person does.
+    /// Handles an input event. The source gets it first: a game takes its own keys.
     pub fn handle(&mut self, event: Event) {
         if self.source.as_mut().is_some_and(|source| source.handle(&event)) {
             return;
@@ -55,7 +55,7 @@ impl App {
             Event::Up(_) => self.up(),
             Event::Wheel(notches) => self.turn(notches),
             Event::Dropped { name, bytes } => {
-                // Both show what is wrong.
+                // Both functions show the error themselves.
                 let _shown = match self.pointer.shift {
                     true => self.compare_with(&name, bytes),
                     false => self.show_file(&name, bytes),
@@ -65,7 +65,7 @@ impl App {
     }
 
     fn press(&mut self, key: Key) {
-        // It has been read: what there is to say about what is shown comes back.
+        // A key press dismisses the message, so that the status of the source shows again.
         self.message = None;
         if layers::switch(&mut self.layers, key) {
             return;
@@ -91,14 +91,14 @@ impl App {
         }
     }
 
-    /// Acts in a live world. `false` if that is not what the key is for.
+    /// Performs the action of a key in a live world. Returns `false` if there is none.
     fn act(&mut self, key: Key) -> bool {
         let App { source: Some(source), view, hand, pointer, size, .. } = self else { return false };
         let camera = view.camera(source.world(), *size);
         source.playground().is_some_and(|playground| hand.press(key, playground, &camera, pointer.at))
     }
 
-    /// Goes to another tick.
+    /// Handles the keys that play, pause or go to another tick.
     fn travel(&mut self, key: Key) {
         let App { source: Some(source), player, pointer, comparison, .. } = self else { return };
         let second = i64::from(source.tick_rate());
@@ -208,7 +208,7 @@ impl App {
         player.go_to(Bar::new(*size, source.as_ref()).tick_at(pointer.at[0]));
     }
 
-    /// Selects the body under the pointer, or none.
+    /// Selects the body under the pointer; clears the selection if there is none.
     fn select(&mut self) {
         let App { source: Some(source), view, size, pointer, inspector, .. } = self else { return };
         let camera = view.camera(source.world(), *size);

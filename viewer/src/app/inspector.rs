@@ -1,4 +1,4 @@
-//! [`Inspector`]: everything about one body.
+//! [`Inspector`]: panel with all fields of the selected body, its contacts and joints.
 
 use lockstep2d::body::{BodyId, ShapeId};
 use lockstep2d::inspect::{Value, fields};
@@ -8,21 +8,21 @@ use lockstep2d_picture::{CELL_HEIGHT, Camera, DrawList, width_of};
 
 use super::theme;
 
-/// Width of the panel in characters.
+/// Width of the panel, in characters.
 const COLUMNS: usize = 58;
-/// How far beside a body one may click, in pixels.
+/// Largest distance from a click to the body that it selects, in pixels.
 const REACH: f32 = 6.0;
 
-/// Which body is looked at, and which part of the list is seen.
+/// Selected body and scroll position.
 #[derive(Debug, Default)]
 pub(super) struct Inspector {
     pub(super) body: Option<BodyId>,
-    /// Lines above the panel.
+    /// Number of lines scrolled off the top of the panel.
     scrolled: usize,
 }
 
-/// The body at a place on the screen, or one right beside it. Where several overlap, the one in the last slot, which is
-/// painted on top.
+/// Returns the body at a screen position, or else the closest one within [`REACH`]. Where several bodies overlap, the
+/// one in the last slot, because it is painted on top.
 pub(super) fn body_at(world: &World, camera: &Camera, at: [f32; 2]) -> Option<BodyId> {
     let point = camera.point(at);
     let beside = {
@@ -44,13 +44,13 @@ impl Inspector {
         }
     }
 
-    /// Where the panel is, if there is one: its corner and its size.
+    /// Upper left corner and size of the panel, in pixels; `None` if no body is selected.
     pub(super) fn area(&self, [width, height]: [f32; 2]) -> Option<([f32; 2], [f32; 2])> {
         let wide = width_of("x", 1.0) * COLUMNS as f32;
         self.body.map(|_| ([(width - wide - 12.0).max(0.0), 12.0], [wide, (height - 90.0).max(CELL_HEIGHT)]))
     }
 
-    /// Whether a place is on the panel.
+    /// Returns whether a screen position is on the panel.
     pub(super) fn holds(&self, at: [f32; 2], size: [f32; 2]) -> bool {
         self.area(size).is_some_and(|([x, y], [width, height])| {
             (x..x + width).contains(&at[0]) && (y..y + height).contains(&at[1])
@@ -83,15 +83,16 @@ impl Inspector {
     }
 }
 
-/// Every field of a body, of its shapes, and what touches and holds it: a name and a value for each line, and lines
-/// without a value as headings.
+/// Lists every field of a body and of its shapes, then its contacts and joints. Each line is a name and a value; a line
+/// with an empty value is a heading.
 pub(super) fn describe(world: &World, id: BodyId) -> Vec<(String, String)> {
     let Some(body) = world.body(id) else {
-        return vec![(format!("body {id} is not there at this tick"), String::new())];
+        return vec![(format!("body {id} does not exist at this tick"), String::new())];
     };
     let mut lines = vec![(format!("body {id}"), String::new())];
     add_fields(&mut lines, body);
-    // Its spin stands for it: a speed at the radius of gyration.
+    // The fields contain the scaled angular velocity (a speed at the radius of gyration), not the angular velocity
+    // itself.
     let bits = body.angular_velocity().to_bits().into();
     lines.push(("angular_velocity".into(), Value::Fixed { bits, fraction_bits: Some(32) }.to_string()));
     for &shape in body.shapes() {

@@ -1,4 +1,4 @@
-//! The overlays, and the keys that switch them.
+//! The overlay layers and the keys that toggle them.
 
 use lockstep2d::draw::Layers;
 use lockstep2d_picture::{CELL_HEIGHT, DrawList, width_of};
@@ -6,13 +6,13 @@ use lockstep2d_picture::{CELL_HEIGHT, DrawList, width_of};
 use super::theme;
 use crate::event::Key;
 
-/// The key of each layer, in the order of [`Layers::named`].
+/// Key of each layer, in the order of [`Layers::named`].
 pub const LAYER_KEYS: [char; 13] = ['1', '2', '3', '4', '5', '6', '7', '8', '9', '0', 'c', 'v', 'i'];
 
-/// What a window shows at first: what one sees of a game, and what its engine makes of it at the press of a key.
+/// Layers that are on at the start: those that a game would show. The debug layers start off.
 pub(super) const AT_FIRST: Layers = Layers { outlines: true, joints: true, ..Layers::NONE };
 
-/// Switches the layer of a key. `false` if it has none.
+/// Toggles the layer of a key. Returns `false` if the key has no layer.
 pub(super) fn switch(layers: &mut Layers, key: Key) -> bool {
     let place = LAYER_KEYS.iter().position(|&of_layer| key == Key::Character(of_layer));
     let named = layers.named();
@@ -25,10 +25,10 @@ pub(super) fn switch(layers: &mut Layers, key: Key) -> bool {
     }
 }
 
-/// The list of layers: where it is, and how to draw and click it.
+/// List of layers on the screen, which can be clicked.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LayerList {
-    /// The upper left corner, in pixels.
+    /// Upper left corner, in pixels.
     pub(super) corner: [f32; 2],
 }
 
@@ -49,7 +49,7 @@ impl LayerList {
         }
     }
 
-    /// The key of the layer at a place.
+    /// Returns the key of the layer at a screen position.
     pub(super) fn key_at(self, [x, y]: [f32; 2]) -> Option<Key> {
         let [width, height] = Self::size();
         let (x, y) = (x - self.corner[0], y - self.corner[1]);

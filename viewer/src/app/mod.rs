@@ -1,4 +1,4 @@
-//! [`App`]: everything between a person and a world.
+//! [`App`]: the viewer's state, between input events and the draw list.
 
 mod compare;
 mod hand;
@@ -32,7 +32,7 @@ use layers::LayerList;
 use player::Player;
 use view::View;
 
-/// The viewer: it takes notice of [`Event`](crate::Event)s, lets time pass, and says what there is to see.
+/// The viewer: handles [`Event`](crate::Event)s, advances with elapsed time, and draws into a [`DrawList`].
 ///
 /// ```
 /// use std::time::Duration;
@@ -43,20 +43,20 @@ use view::View;
 /// app.handle(Event::Resized([800.0, 600.0]));
 /// app.advance(Duration::from_secs(1));
 /// app.handle(Event::Pressed(Key::Space));
-/// assert!(app.draw().items().len() > 100, "a box for each body, and the rest");
+/// assert!(app.draw().items().len() > 100, "at least one item for each body");
 /// assert!(app.report().to_string().starts_with("pyramid"));
 /// ```
 pub struct App {
     source: Option<Box<dyn Source>>,
     comparison: Option<Comparison>,
-    /// The file that is shown, to open it again beside another one.
+    /// Name and contents of the shown file, kept to open the file again for a comparison.
     file: Option<(String, &'static [u8])>,
-    /// What the last thing that went wrong, or was saved, has to say.
+    /// Message about the last error or the last save.
     message: Option<String>,
     player: Player,
     view: View,
     layers: Layers,
-    /// Where the layers were last listed, to be clicked.
+    /// Layer list as last drawn, for hit tests; `None` if it was not drawn.
     layer_list: Option<LayerList>,
     inspector: Inspector,
     hand: Hand,
@@ -67,30 +67,30 @@ pub struct App {
     requests: Vec<Request>,
 }
 
-/// What somebody with files has to do.
+/// Request to the host of the app, which has access to files.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Request {
     /// Write a file.
     Save {
-        /// What to call it.
+        /// File name.
         name: String,
-        /// What is in it.
+        /// Contents of the file.
         bytes: Vec<u8>,
     },
 }
 
-/// What is shown, in words: for a line of text beside the picture, and for tests.
+/// Description of what is shown, for a line of text beside the picture and for tests.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Report {
-    /// What is shown.
+    /// Name of the source; "nothing" if there is no source.
     pub name: String,
-    /// Where it is.
+    /// The current tick.
     pub tick: u64,
-    /// The last tick, if there is one.
+    /// The last tick; `None` if the source has no end.
     pub ticks: Option<u64>,
-    /// The hash of the state.
+    /// Hash of the state at the current tick; `None` if there is no source.
     pub hash: Option<StateHash>,
-    /// Whether it verifies, what went wrong.
+    /// Verdict of a replay, errors and other messages.
     pub status: String,
 }
 
@@ -104,7 +104,7 @@ impl fmt::Display for Report {
 }
 
 impl Default for App {
-    /// With nothing to show yet.
+    /// App without a source.
     fn default() -> Self {
         App {
             source: None,
@@ -127,7 +127,7 @@ impl Default for App {
 }
 
 impl App {
-    /// Shows something, from its start.
+    /// Shows a source from its start, and resets the view, the selection and the player.
     pub fn show(&mut self, source: Box<dyn Source>) {
         self.source = Some(source);
         (self.comparison, self.file, self.message) = (None, None, None);
@@ -135,12 +135,12 @@ impl App {
         (self.inspector, self.hand, self.pointer) = <_>::default();
     }
 
-    /// Shows a file: a replay, a report of a divergence, or a snapshot.
+    /// Shows a file: a replay, a divergence report or a snapshot.
     ///
     /// # Errors
-    /// [`OpenError`], which is shown too. What was there before stays.
+    /// [`OpenError`], which is also shown as a message. The previous source then stays.
     pub fn show_file(&mut self, name: &str, bytes: Vec<u8>) -> Result<(), OpenError> {
-        // What is shown borrows the file for as long as the program runs.
+        // A source borrows its file for `'static`: the bytes stay allocated until the program ends.
         let bytes: &'static [u8] = bytes.leak();
         let source = self.noted(name, open(name, bytes))?;
         self.show(source);
@@ -148,17 +148,18 @@ impl App {
         Ok(())
     }
 
-    /// Shows a second file over the one that is shown, at the same ticks, and looks for the first difference.
+    /// Shows a second file over the current one, at the same ticks, and searches for the first difference. Without a
+    /// current file, the file is shown alone.
     ///
     /// # Errors
-    /// [`OpenError`], which is shown too. What was there before stays.
+    /// [`OpenError`], which is also shown as a message. The previous source then stays.
     pub fn compare_with(&mut self, name: &str, bytes: Vec<u8>) -> Result<(), OpenError> {
         let Some((first, first_bytes)) = self.file.clone() else { return self.show_file(name, bytes) };
         let bytes: &'static [u8] = bytes.leak();
         let other = self.noted(name, open(name, bytes))?;
         let mut scouts = [open(&first, first_bytes)?, open(name, bytes)?];
         self.message = None;
-        // A snapshot begins later than a replay.
+        // A snapshot may start at a later tick than a replay.
         let start = scouts.iter().map(|scout| scout.first()).max().unwrap_or(0);
         for scout in &mut scouts {
             if let Err(error) = scout.seek(start) {
@@ -170,7 +171,7 @@ impl App {
         Ok(())
     }
 
-    /// Shows a scene in which one can act. `false` if there is none of this name.
+    /// Shows a live scene, in which the user can act. Returns `false` if there is no scene of this name.
     pub fn show_scene(&mut self, name: &str, seed: u64) -> bool {
         let Some(scene) = Scene::find(name) else { return false };
         match Live::scene(scene, seed) {
@@ -180,7 +181,7 @@ impl App {
         true
     }
 
-    /// Lets time pass.
+    /// Advances by elapsed real time: plays the source and continues background work.
     pub fn advance(&mut self, time: Duration) {
         let Some(source) = &mut self.source else { return };
         source.think();
@@ -194,13 +195,13 @@ impl App {
         self.follow_with_other();
     }
 
-    /// What there is to see now.
+    /// Draws the current state and returns the draw list.
     pub fn draw(&mut self) -> &DrawList {
         screen::draw(self);
         &self.list
     }
 
-    /// What is shown, in words.
+    /// Describes what is shown.
     #[must_use]
     pub fn report(&self) -> Report {
         let Some(source) = &self.source else {
@@ -212,22 +213,23 @@ impl App {
             tick: source.tick(),
             ticks: source.ticks(),
             hash: Some(source.hash()),
-            // A verdict beside what went wrong with another file would seem to be about that one.
+            // The message stands alone: beside an error about another file, the verdict of the shown file would seem to
+            // be about that other file.
             status: self.message.clone().unwrap_or_else(|| self.remarks().join(" · ")),
         }
     }
 
-    /// What somebody with files has to do since the last time.
+    /// Takes the requests made since the last call.
     pub fn take_requests(&mut self) -> Vec<Request> {
         std::mem::take(&mut self.requests)
     }
 
-    /// Shows a message, such as what went wrong with a file that was to be saved.
+    /// Shows a message, such as an error while saving a file.
     pub fn tell(&mut self, message: String) {
         self.message = Some(message);
     }
 
-    /// What there is to say about what is shown, and about what has just been done.
+    /// Status of the source, status of the comparison and the current message, without empty ones.
     fn remarks(&self) -> Vec<String> {
         let source = self.source.as_ref().map(|source| source.status());
         let comparison = self.comparison.as_ref().map(Comparison::status);
@@ -235,7 +237,7 @@ impl App {
         all.into_iter().flatten().filter(|remark| !remark.is_empty()).collect()
     }
 
-    /// Shows what went wrong with a file.
+    /// Shows the error, if there is one, as a message about the file `name`.
     fn noted<T>(&mut self, name: &str, result: Result<T, OpenError>) -> Result<T, OpenError> {
         result.inspect_err(|error| self.message = Some(format!("{name}: {error}")))
     }
@@ -248,7 +250,7 @@ impl App {
         }
     }
 
-    /// Shows the scene that is so many further in the list, round and round.
+    /// Shows the scene `by` places further in the list, which wraps around.
     fn show_neighbour(&mut self, by: usize) {
         let name = self.source.as_ref().map_or("", |source| source.name());
         let here = scenes::ALL.iter().position(|scene| scene.name == name).unwrap_or(0);
@@ -256,12 +258,12 @@ impl App {
         self.show_scene(next, 0);
     }
 
-    /// Asks for a replay of what is shown to be saved, if it is something that is recorded.
+    /// Requests that the recording of the source is saved as a replay; shows a message if the source records nothing.
     pub fn save(&mut self) {
         let Some(source) = &mut self.source else { return };
         let name = format!("{}.replay", source.name());
         match source.save_replay() {
-            None => self.message = Some("nothing is recorded here that could be saved".into()),
+            None => self.message = Some("nothing to save: this source is not recorded".into()),
             Some(Ok(bytes)) => {
                 self.message = Some(format!("{name}: {} ticks saved", source.recorded()));
                 self.requests.push(Request::Save { name, bytes });

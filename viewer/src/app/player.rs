@@ -1,4 +1,4 @@
-//! [`Player`]: which tick is shown when.
+//! [`Player`]: playback state and speed, and seeking to a tick.
 
 use std::time::Duration;
 
@@ -6,21 +6,21 @@ use lockstep2d::world::World;
 
 use crate::source::{Source, SourceError};
 
-/// Slowest and fastest, as powers of two.
+/// Slowest and fastest playback speed, as exponents of two.
 const SPEEDS: std::ops::RangeInclusive<i32> = -5..=5;
 
-/// What is played at a time, in bodies and pairs: about ten milliseconds.
+/// Budget of work per frame, in the unit of [`slice_of`]: about ten milliseconds.
 const SLICE: u64 = 60_000;
 
-/// Plays a source, or goes to a tick.
+/// Plays a source, or seeks to a tick.
 #[derive(Debug)]
 pub(super) struct Player {
     pub(super) playing: bool,
-    /// Twice as fast for each.
+    /// Playback speed as an exponent of two.
     speed: i32,
-    /// Ticks that are due; a part of one waits for the next frame.
+    /// Ticks that are due; the fraction is carried over to the next frame.
     due: f64,
-    /// Where to go to, in several frames if it is far.
+    /// Tick to seek to; a distant one takes several frames.
     goal: Option<u64>,
 }
 
@@ -31,7 +31,7 @@ impl Default for Player {
 }
 
 impl Player {
-    /// Plays or stops; from another tick if one is named.
+    /// Toggles between playing and paused; seeks to `from` first if it is given.
     pub(super) fn toggle(&mut self, from: Option<u64>) {
         self.playing = !self.playing;
         self.goal = from;
@@ -41,7 +41,7 @@ impl Player {
         self.speed = (self.speed + by).clamp(*SPEEDS.start(), *SPEEDS.end());
     }
 
-    /// As a person reads it.
+    /// Playback speed as text, such as `2x` or `1/4x`.
     pub(super) fn speed(&self) -> String {
         match self.speed {
             speed @ 0.. => format!("{}x", 1 << speed),
@@ -49,24 +49,24 @@ impl Player {
         }
     }
 
-    /// Goes to a tick and stays there.
+    /// Pauses, and seeks to a tick.
     pub(super) fn go_to(&mut self, tick: u64) {
         (self.playing, self.goal) = (false, Some(tick));
     }
 
-    /// Goes some ticks further or back and stays there.
+    /// Pauses, and seeks by a number of ticks, relative to the current goal if there is one. Stays within the source.
     pub(super) fn go_by(&mut self, ticks: i64, source: &dyn Source) {
         let from = self.goal.unwrap_or(source.tick());
         let end = source.ticks().unwrap_or(u64::MAX);
         self.go_to(from.saturating_add_signed(ticks).clamp(source.first(), end));
     }
 
-    /// Where it is on the way to.
+    /// Tick that is being sought, if any.
     pub(super) fn goal(&self) -> Option<u64> {
         self.goal
     }
 
-    /// Plays what is due. After an error it stands still.
+    /// Plays the ticks that are due after `time`, or continues to seek. Pauses after an error.
     pub(super) fn advance(&mut self, time: Duration, source: &mut dyn Source) -> Result<(), SourceError> {
         let result = self.try_advance(time, source);
         if result.is_err() {
@@ -86,7 +86,7 @@ impl Player {
         } else if self.playing {
             self.due += time.as_secs_f64() * f64::from(source.tick_rate()) * f64::from(self.speed).exp2();
             let due = (self.due as u64).min(slice);
-            // What does not fit into a frame is not caught up on: it only becomes slower.
+            // Ticks that exceed the budget of a frame are dropped, so that playback slows down instead of catching up.
             self.due = self.due.fract();
             let end = source.ticks().unwrap_or(u64::MAX);
             source.seek(source.tick().saturating_add(due).min(end))?;
@@ -96,7 +96,8 @@ impl Player {
     }
 }
 
-/// How many ticks of a world are played in a frame at most, at least one.
+/// Most ticks of a world that are played in a frame, at least one. The cost of a tick is taken as 100 plus one per
+/// body plus two per pair.
 pub(super) fn slice_of(world: &World) -> u64 {
     SLICE / (100 + world.body_count() as u64 + 2 * world.pair_count() as u64).min(SLICE)
 }

@@ -1,4 +1,4 @@
-//! What there is to see, from back to front.
+//! Draws the screen, from back to front.
 
 use lockstep2d::body::BodyId;
 use lockstep2d::draw::{Form, Layers, Primitive, Style, Subject, primitives};
@@ -12,13 +12,13 @@ use super::{App, help, theme};
 
 const LEFT: f32 = 12.0;
 const TOP: f32 = 8.0;
-/// Most characters in a row of text: a status may be long.
+/// Most characters in a row of text; a longer status is wrapped.
 const COLUMNS_MAX: usize = 120;
 
-/// Where the list of layers is, unless the lines of text above reach as far.
+/// Top of the layer list, in pixels, unless the lines of text above it end lower.
 const LAYERS_TOP: f32 = 136.0;
 
-/// Fills the list.
+/// Fills the draw list.
 pub(super) fn draw(app: &mut App) {
     let (report, remarks) = (app.report(), app.remarks());
     let App { source, comparison, player, view, layers, inspector, hand, pointer, size, list, .. } = app;
@@ -59,7 +59,7 @@ pub(super) fn draw(app: &mut App) {
     lines.push((theme::FAINT, "h: help".into()));
     let bottom = draw_lines(list, &lines, *size);
     let layer_list = LayerList { corner: [LEFT, LAYERS_TOP.max(bottom + CELL_HEIGHT / 2.0)] };
-    // A small window has no room for it; the keys work.
+    // In a small window the layer list is left out; its keys still work.
     let fits = source.is_some() && layer_list.corner[1] + LayerList::size()[1] < size[1] - CELL_HEIGHT * 3.0;
     app.layer_list = fits.then_some(layer_list);
     if let Some(layer_list) = app.layer_list {
@@ -70,7 +70,7 @@ pub(super) fn draw(app: &mut App) {
     }
 }
 
-/// Good, bad or neither: verdicts begin with their names.
+/// Colour of a status line: a verdict is recognised by its name.
 fn colour_of(status: &str) -> Colour {
     let bad = ["diverged", "malformed", "incomplete", "claim mismatch", "limit exceeded", "unverifiable"];
     match status {
@@ -80,7 +80,7 @@ fn colour_of(status: &str) -> Colour {
     }
 }
 
-/// Draws lines of text, and says where they end.
+/// Draws lines of text, and returns the y coordinate of their lower edge.
 fn draw_lines(list: &mut DrawList, lines: &[(Colour, String)], [width, _]: [f32; 2]) -> f32 {
     let columns = (((width - 2.0 * LEFT) / width_of("x", 1.0)) as usize).clamp(1, COLUMNS_MAX);
     let rows: Vec<_> = lines
@@ -96,13 +96,14 @@ fn draw_lines(list: &mut DrawList, lines: &[(Colour, String)], [width, _]: [f32;
     TOP + height
 }
 
-/// A line in rows of so many characters at most.
+/// Splits a line into rows of at most `columns` characters.
 fn wrapped(line: &str, columns: usize) -> Vec<String> {
     let characters: Vec<char> = line.chars().collect();
     characters.chunks(columns.max(1)).map(|row| row.iter().collect()).collect()
 }
 
-/// Draws the second world over the first, and rings the bodies that are not the same.
+/// Draws the second world over the first, and circles the bodies that differ; the first difference gets a thicker
+/// circle.
 fn draw_other(
     list: &mut DrawList,
     shown: &World,

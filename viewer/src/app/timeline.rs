@@ -1,15 +1,16 @@
-//! The bar on which one sees where one is, and goes elsewhere.
+//! Timeline bar: shows the current tick, and is clicked or dragged to seek.
 
 use lockstep2d_picture::DrawList;
 
 use super::theme;
 use crate::source::Source;
 
-/// Distance from the borders of the window, and height of the bar, in pixels.
+/// Distance of the bar from the borders of the window, in pixels.
 const MARGIN: f32 = 12.0;
+/// Height of the bar, in pixels.
 const HEIGHT: f32 = 14.0;
 
-/// Where the bar is.
+/// Position of the bar in pixels, and the range of ticks that it spans.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Bar {
     left: f32,
@@ -27,18 +28,18 @@ impl Bar {
     }
 
     pub(super) fn holds(self, [x, y]: [f32; 2]) -> bool {
-        // A little more than one sees: it is thin.
+        // The clickable area is larger than the drawn bar, which is thin.
         (self.left - 4.0..=self.left + self.width + 4.0).contains(&x)
             && (self.top - 6.0..=self.top + HEIGHT + MARGIN).contains(&y)
     }
 
-    /// The tick at a place, the nearest one outside of the bar.
+    /// Returns the tick at an x coordinate, clamped to the range of the bar.
     pub(super) fn tick_at(self, x: f32) -> u64 {
         let part = (f64::from((x - self.left) / self.width)).clamp(0.0, 1.0);
         self.first + (part * self.ticks() + 0.5) as u64
     }
 
-    /// Where a tick is.
+    /// Returns the x coordinate of a tick.
     fn place_of(self, tick: u64) -> f32 {
         let part = tick.saturating_sub(self.first) as f64 / self.ticks().max(1.0);
         self.left + self.width * part.min(1.0) as f32

@@ -1,4 +1,4 @@
-//! [`View`]: which part of the world is seen.
+//! [`View`]: the visible part of the world.
 
 use lockstep2d::body::BodyId;
 use lockstep2d::draw::fit;
@@ -6,20 +6,20 @@ use lockstep2d::math::Aabb;
 use lockstep2d::world::World;
 use lockstep2d_picture::Camera;
 
-/// How much a notch of the wheel, or a press of a key, enlarges.
+/// Zoom factor of one notch of the wheel or one key press.
 const ZOOM: f32 = 1.2;
 
-/// The camera, and whom it follows.
+/// The camera, and the body that it follows.
 #[derive(Debug, Default)]
 pub(super) struct View {
     camera: Option<Camera>,
-    /// Of the area in which the world is seen, in pixels.
+    /// Size of the window, in pixels.
     size: [f32; 2],
     pub(super) followed: Option<BodyId>,
 }
 
 impl View {
-    /// The camera as of now: at first it shows all that there is.
+    /// Returns the current camera. The first camera shows the whole world.
     pub(super) fn camera(&mut self, world: &World, size: [f32; 2]) -> Camera {
         if self.size != size {
             self.resize(size);
@@ -31,7 +31,7 @@ impl View {
         *self.camera.insert(camera)
     }
 
-    /// Shows all that there is again.
+    /// Returns to a view of the whole world, and stops following a body.
     pub(super) fn reset(&mut self) {
         (self.camera, self.followed) = (None, None);
     }
@@ -41,12 +41,12 @@ impl View {
         self.camera.iter_mut().for_each(|camera| camera.pan(by));
     }
 
-    /// Makes everything larger, or smaller, about a point of the screen.
+    /// Zooms about a point of the screen.
     pub(super) fn zoom(&mut self, notches: f32, about: [f32; 2]) {
         self.camera.iter_mut().for_each(|camera| camera.zoom(ZOOM.powf(notches), about));
     }
 
-    /// What is in the middle stays there, as large as it is.
+    /// Adapts the camera to a new window size. The centre and the scale stay the same.
     fn resize(&mut self, size: [f32; 2]) {
         self.size = size;
         let fresh = Camera::new(Aabb::default(), [0.0; 2], size);

@@ -1,26 +1,27 @@
-//! Whether there is anywhere to put a window: the windowing library ends the program where there is not.
+//! Checks for a display before a window is opened: without a display, the windowing library aborts the program.
 
 use std::env;
 use std::os::linux::net::SocketAddrExt;
 use std::os::unix::net::{SocketAddr, UnixStream};
 use std::path::PathBuf;
 
-/// Looks for a display.
+/// Checks that `DISPLAY` or `WAYLAND_DISPLAY` is set and that a local X server accepts connections.
 ///
 /// # Errors
-/// What is missing, for people.
+/// A message for the user that says what is missing.
 pub(super) fn check() -> Result<(), String> {
     let set = |name: &str| env::var(name).ok().filter(|value| !value.is_empty());
     match (set("DISPLAY"), set("WAYLAND_DISPLAY")) {
         (None, None) => Err("no display: neither DISPLAY nor WAYLAND_DISPLAY is set".to_owned()),
         (Some(display), None) if !answers(&display) => {
-            Err(format!("no display: nothing answers at DISPLAY={display}"))
+            Err(format!("no display: no X server accepts connections at DISPLAY={display}"))
         }
         _ => Ok(()),
     }
 }
 
-/// Whether an X server listens there. Those of other machines are taken at their word.
+/// Returns whether an X server listens at `display`. Displays on other hosts are not contacted: any well-formed name
+/// passes.
 fn answers(display: &str) -> bool {
     let Some(number) = display.strip_prefix(':').or_else(|| display.strip_prefix("unix:")) else {
         return !display.starts_with('/') && display.contains(':');

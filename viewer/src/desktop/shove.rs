@@ -1,4 +1,4 @@
-//! `shove`: the small game, for people.
+//! `shove`: command-line arguments of the shove game.
 
 use clap::Args;
 use lockstep2d::net::Options;
@@ -9,34 +9,34 @@ use lockstep2d_viewer::versus::{Online, Versus};
 
 use super::Trouble;
 
-/// Plays shove: two people at one keyboard, or each at their own over a network.
+/// Plays shove: two people at one keyboard, or several over a network.
 ///
-/// One plays with W, A, S, D, and F or Shift to dash, the other with the arrows, and Enter or Control. Who has the keyboard
-/// alone may use both.
+/// One player uses W, A, S, D, and F or Shift to dash, the other the arrows, and Enter or Control to dash. In a
+/// network match both sets of keys control the local player.
 #[derive(Debug, Args)]
 pub(super) struct Shove {
-    /// Opens a match at this address, such as 0.0.0.0:7000, and waits for the players.
+    /// Hosts a match at this address, such as 0.0.0.0:7000, and waits for the players.
     #[arg(long, value_name = "ADDRESS", group = "way")]
     host: Option<String>,
-    /// Takes part in the match at this address.
+    /// Joins the match at this address.
     #[arg(long, value_name = "ADDRESS", group = "way")]
     join: Option<String>,
-    /// Watches the match at this address.
+    /// Joins the match at this address as a spectator.
     #[arg(long, value_name = "ADDRESS", group = "way")]
     watch: Option<String>,
-    /// Bots beside the two at one keyboard, at most 2.
+    /// Number of bots in a match at one keyboard, at most 2.
     #[arg(long, default_value_t = 1, conflicts_with = "way", value_parser = clap::value_parser!(u8).range(..=2))]
     bots: u8,
-    /// How many players the first tick of a match over a network waits for.
+    /// Number of players that a network match waits for before its first tick.
     #[arg(long, default_value_t = 2, requires = "host", value_parser = clap::value_parser!(u32).range(1..=4))]
     players: u32,
-    /// Waits for late inputs instead of guessing them. All take the same.
+    /// Waits for late inputs instead of predicting them. All peers must make the same choice.
     #[arg(long, requires = "way")]
     lockstep: bool,
 }
 
 impl Shove {
-    /// The match, before its first tick.
+    /// Opens the match, before its first tick.
     pub(super) fn open(&self, seed: u64) -> Result<Box<dyn Source>, Trouble> {
         let setup = Setup { seed, ..Setup::default() };
         let options = if self.lockstep { Options::lockstep() } else { Options::rollback() };

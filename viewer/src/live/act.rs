@@ -1,29 +1,29 @@
-//! [`Act`]: what a person does to a live world, with the pointer and with keys.
+//! [`Act`]: user actions in a live world, with the pointer and with keys.
 
 use lockstep2d::body::BodyId;
 use lockstep2d::fx;
 use lockstep2d::math::{Fx, Vec2};
 use lockstep2d::world::Explosion;
 
-/// What to spawn.
+/// Form of a body to spawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Form {
-    /// A disc.
+    /// Circle.
     #[default]
     Circle,
-    /// A rectangle.
+    /// Rectangle.
     Box,
-    /// A convex polygon, another one each time.
+    /// Convex polygon, random each time.
     Polygon,
-    /// A rod with round ends.
+    /// Capsule: a rod with round ends.
     Capsule,
 }
 
 impl Form {
-    /// All of them, in the order in which a person goes through them.
+    /// All forms, in the order in which the key `b` steps through them.
     pub const ALL: [Form; 4] = [Form::Circle, Form::Box, Form::Polygon, Form::Capsule];
 
-    /// What a person calls it.
+    /// Returns the name for display.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -35,84 +35,85 @@ impl Form {
     }
 }
 
-/// A place that a person points at, in metres in the world.
+/// Point that the user points at, in metres in world coordinates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Aim {
-    /// Where.
+    /// The point.
     pub at: Vec2<Fx>,
-    /// How far beside it a body may be that is meant, if there is none right there: a few pixels.
+    /// Largest distance of a body that is picked if none contains the point, in metres: a few pixels on the screen.
     pub within: Fx,
 }
 
 impl Aim {
-    /// Exactly there.
+    /// Aims at exactly this point.
     #[must_use]
     pub const fn at(at: Vec2<Fx>) -> Self {
         Aim { at, within: Fx::ZERO }
     }
 }
 
-/// What a person does to a live world. Places are in metres in the world.
+/// User action in a live world. Points are in metres in world coordinates.
 ///
-/// Acts take effect in the next tick, in their order. One that makes no sense then, such as dragging nothing, does
-/// nothing; neither does one that the world refuses.
+/// Acts take effect in the next tick, in their order. An act has no effect if it makes no sense in that tick, such as
+/// dragging without a grabbed body, or if the world refuses it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Act {
-    /// Takes hold of the dynamic body there, if there is one. What was held before is let go.
+    /// Grabs the dynamic body at this point, if there is one. A body that was held before is released.
     Grab(Aim),
-    /// Pulls what is held towards a place, by the point at which it was grabbed.
+    /// Pulls the held body towards a point, by the point at which it was grabbed.
     DragTo(Vec2<Fx>),
-    /// Lets go; the body keeps its velocity, and so is thrown.
+    /// Releases the held body, which keeps its velocity, so that it can be thrown.
     Release,
-    /// Adds a dynamic body in the middle of `at`, as large as the way from there `to` where the pointer was let go: a
-    /// radius, half a width and half a height, or, of a capsule, its one end. With no way to speak of it has half a metre.
+    /// Adds a dynamic body. The drag from `at` to `to` gives the radius of a circle or polygon, half the width and
+    /// half the height of a box, or the two ends of a capsule. A drag shorter than 0.05 m gives the default size of
+    /// 0.5 m.
     Spawn {
-        /// Which.
+        /// Form of the body.
         form: Form,
-        /// Its middle; of a capsule one end.
+        /// Centre of the body; one end of a capsule.
         at: Vec2<Fx>,
-        /// Gives its size.
+        /// End of the drag.
         to: Vec2<Fx>,
     },
-    /// Removes the body there, of any kind.
+    /// Removes the body at this point, of any kind.
     Delete(Aim),
     /// Sets gravity, in m/s².
     Gravity(Vec2<Fx>),
-    /// Pushes everything near a place away from it. [`Act::explode`] has settings that suit most scenes.
+    /// Pushes all bodies near a point away from it. [`Act::explode`] has settings that suit most scenes.
     Explode(Explosion),
 }
 
 impl Act {
-    /// An explosion at a place that throws a block of a metre and a kilogram at 10 m/s, and reaches 8 m far.
+    /// Explosion at a point with a range of 8 m: it throws a 1 m block of 1 kg at 10 m/s.
     #[must_use]
     pub const fn explode(at: Vec2<Fx>) -> Self {
         Act::Explode(Explosion { radius: fx!(4), falloff: fx!(4), ..Explosion::new(at, fx!(10)) })
     }
 }
 
-/// What the pointer holds.
+/// Body held by the pointer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Held {
     /// The body.
     pub body: BodyId,
-    /// By which point, in the body's own frame, in metres.
+    /// Point at which the body was grabbed, in the body's frame, in metres.
     pub point: Vec2<Fx>,
-    /// Where the pointer pulls it, in metres in the world.
+    /// Target point of the pointer, in world coordinates, in metres.
     pub towards: Vec2<Fx>,
 }
 
-/// A world that one can act in.
+/// World that the user can act in.
 pub trait Playground {
-    /// Does something in the next tick. One may do several things before.
+    /// Queues an act for the next tick. Several acts may be queued.
     ///
-    /// If that tick has been played already, because one has gone back, it is played anew with the act in place of what
-    /// was done in it, and what came after is dropped. Going to another tick drops what has not been done yet, and lets
-    /// go of what is held.
+    /// If the next tick is already recorded, because the user went back, it is played again with the queued acts in
+    /// place of the recorded ones, and all later ticks are dropped. Going back to an earlier tick drops queued acts
+    /// and releases the held body.
     fn act(&mut self, act: Act);
 
-    /// What the pointer holds now; `None` also between the act and the tick that carries it out.
+    /// Returns the held body; `None` also between the grab and the tick that carries it out.
     fn held(&self) -> Option<Held>;
 
-    /// How many things have been asked for and not been done yet: while it is paused they wait.
+    /// Number of queued acts. They wait while the world is paused.
     fn waiting(&self) -> usize;
 }

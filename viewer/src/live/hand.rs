@@ -1,11 +1,12 @@
-//! [`Hand`]: turns what a person does into commands.
+//! [`Hand`]: turns user actions into commands.
 //!
-//! A dragged body hangs on a spring from an anchor: a kinematic body without shapes that is moved to where the pointer
-//! is, as Box2D's mouse joint does. All of it is commands, so that it is in the log. A command does not say what handle
-//! its body will get; the anchor is found by its user data a tick later, and only then joined.
+//! A spring joint connects a dragged body to an anchor: a kinematic body without shapes that follows the pointer,
+//! like Box2D's mouse joint. All steps are commands, so that the input log contains them. A command does not tell the
+//! handle of the body that it creates; so the anchor is found by its user data one tick later, and the joint is added
+//! then.
 //!
-//! The hand may forget, for example when someone goes back in time. Anchors that are still there then are litter, and
-//! swept up as soon as the world goes on.
+//! After a seek to another tick, the hand no longer knows its anchors. Anchors left in the world are then removed in
+//! the next live tick.
 
 use lockstep2d::body::{Body, BodyDef, BodyId, BodyKind};
 use lockstep2d::fx;
@@ -17,23 +18,25 @@ use super::act::{Act, Aim, Held};
 use super::pick::pick;
 use super::spawn::spawn;
 
-/// In the upper half of the user data of anchors and their joints; a number is in the lower.
+/// Upper half of the user data of anchors and their joints; the lower half is a serial number.
 const MARK: u64 = 0x6861_6e64 << 32;
-/// The spring on which a body hangs: frequency in Hz, damping ratio, and largest force for each kilogram, in m/s².
+/// Frequency of the drag spring, in Hz.
 const HERTZ: Fx = fx!(5);
+/// Damping ratio of the drag spring.
 const DAMPING_RATIO: Fx = fx!(1);
+/// Largest force of the drag spring per kilogram of the body, in m/s².
 const STRENGTH: i64 = 1000;
-/// The torque that keeps a dragged body from spinning about, for each kilogram and metre of its radius of gyration: as
-/// much as a quarter of its weight on that radius.
+/// Friction torque that damps the rotation of a dragged body, per kilogram and metre of radius of gyration, in m/s²:
+/// the torque of a quarter of its weight at that radius.
 const GRIP: Fx = fx!(2.5);
 
-/// What the pointer does.
+/// State of the pointer as a grabbing hand.
 #[derive(Debug)]
 pub(super) struct Hand {
     hold: Hold,
-    /// How often something has been grabbed.
+    /// Number of grabs so far, used as the serial number of anchors.
     grabs: u32,
-    /// Whether there may be anchors that nobody holds.
+    /// Whether the world may contain anchors that are no longer held.
     litter: bool,
     rng: Rng,
 }
@@ -41,18 +44,20 @@ pub(super) struct Hand {
 #[derive(Clone, Copy, Debug)]
 enum Hold {
     Nothing,
-    /// An anchor has been asked for.
+    /// The command that creates the anchor has been issued.
     Reaching(Grip),
-    /// The anchor is there, and its joint has been asked for.
+    /// The anchor exists, and the command that creates its joint has been issued.
     Holding(Grip, BodyId),
 }
 
 #[derive(Clone, Copy, Debug)]
 struct Grip {
     body: BodyId,
-    /// Where on the body, in its own frame.
+    /// Grabbed point, in the body's frame, in metres.
     point: Vec2<Fx>,
+    /// Target point of the pointer, in world coordinates, in metres.
     towards: Vec2<Fx>,
+    /// User data of the anchor and its joint.
     mark: u64,
 }
 
@@ -61,7 +66,7 @@ impl Hand {
         Hand { hold: Hold::Nothing, grabs: 0, litter: false, rng: Rng::new(seed) }
     }
 
-    /// What it has got hold of.
+    /// Returns the held body.
     pub(super) fn held(&self) -> Option<Held> {
         match self.hold {
             Hold::Holding(grip, _) => {
@@ -71,13 +76,13 @@ impl Hand {
         }
     }
 
-    /// Lets go of everything without a command: the world has become another one.
+    /// Releases the held body without a command, because the world was replaced by another state.
     pub(super) fn forget(&mut self) {
         self.hold = Hold::Nothing;
         self.litter = true;
     }
 
-    /// What is to be done for an act in the next tick.
+    /// Appends the commands that carry out an act in the next tick.
     pub(super) fn act(&mut self, act: Act, world: &World, commands: &mut Vec<Command>) {
         match act {
             Act::Grab(aim) => {
@@ -100,16 +105,16 @@ impl Hand {
         }
     }
 
-    /// Goes on with what was begun in ticks before. To be asked in every tick, before its acts.
+    /// Continues grabs begun in earlier ticks. To be called in every live tick, before its acts.
     pub(super) fn follow(&mut self, world: &World, commands: &mut Vec<Command>) {
         match self.hold {
             Hold::Nothing => {}
             Hold::Reaching(grip) => match find_anchor(world, grip.mark) {
                 Some(anchor) => self.join(grip, anchor, world, commands),
-                // The world had no room for it.
+                // The world had no room for the anchor.
                 None => self.hold = Hold::Nothing,
             },
-            // The joint goes with the body, and whoever sees it can remove it.
+            // The joint disappears with the body, and other code may remove it too.
             Hold::Holding(grip, anchor) => {
                 if !world.joints().any(|(_, joint)| joint.def().user_data == grip.mark) {
                     self.drop_anchor(anchor, commands);
@@ -126,13 +131,13 @@ impl Hand {
         }
     }
 
-    /// Moves the anchor after the pointer. To be asked in every tick, after its acts.
+    /// Moves the anchor to the pointer. To be called in every live tick, after its acts.
     pub(super) fn pull(&self, world: &World, commands: &mut Vec<Command>) {
         let Hold::Holding(grip, id) = self.hold else { return };
         let Some(anchor) = world.body(id) else { return };
         let config = world.config();
         let way = grip.towards - anchor.position();
-        // No further than a kinematic body gets in a tick, with room for rounding.
+        // At most half the distance that a kinematic body can move in a tick, which leaves room for rounding.
         let reach = config.solver.speed_max / (2 * i64::from(config.tick_rate));
         let way = match way.normalized_with_length() {
             Some((direction, length)) if length > reach => direction.widen().scale(reach),
@@ -171,9 +176,9 @@ impl Hand {
     fn release(&mut self, commands: &mut Vec<Command>) {
         match std::mem::replace(&mut self.hold, Hold::Nothing) {
             Hold::Nothing => {}
-            // It has no handle yet.
+            // The handle of the anchor is not known yet.
             Hold::Reaching(_) => self.litter = true,
-            // Its joint goes with it, and the body wakes.
+            // Removing the anchor removes its joint and wakes the body.
             Hold::Holding(_, anchor) => commands.push(Command::Despawn { body: anchor }),
         }
     }
@@ -188,7 +193,7 @@ fn find_anchor(world: &World, mark: u64) -> Option<BodyId> {
     world.bodies().find(|(_, body)| body.user_data() == mark && is_anchor(body)).map(|(id, _)| id)
 }
 
-/// Whether a body is an anchor of this or of an earlier hand.
+/// Returns whether a body is an anchor, of this hand or of an earlier one.
 fn is_anchor(body: &Body) -> bool {
     body.kind() == BodyKind::Kinematic && body.shapes().is_empty() && body.user_data() >> 32 == MARK >> 32
 }

@@ -1,4 +1,4 @@
-//! [`Live`]: a world that one can act in while it runs.
+//! [`Live`]: a world that the user can act in while it runs.
 
 mod act;
 mod hand;
@@ -17,11 +17,11 @@ use crate::source::{Source, SourceError};
 use crate::tape::{Tape, TapeError};
 use hand::Hand;
 
-/// A sandbox that one acts in, and its history.
+/// Sandbox that the user acts in, and its recording.
 ///
-/// Everything that happens is on a tape: one can pause, step back and go to any tick since the start. Who then only plays
-/// on sees the same again, as recorded. Only an [`Act`] that changes something cuts the tape there, and drops what came
-/// after. The tape is a replay at any time, which verifies.
+/// Every tick is recorded, so that the user can pause, step back and go to any tick since the start. Playing on from
+/// an earlier tick shows the recorded ticks again. An [`Act`] that issues commands there cuts the recording and drops
+/// the later ticks. The recording can be saved as a replay at any time, and that replay verifies.
 ///
 /// ```
 /// use lockstep2d::scenes::Scene;
@@ -44,36 +44,37 @@ pub struct Live {
     tape: Tape<Sandbox>,
     hand: Hand,
     acts: Vec<Act>,
-    /// What there is to say about the last act.
+    /// Message about the last act.
     note: Option<&'static str>,
 }
 
 impl Live {
-    /// A scene; what its script does goes on.
+    /// Starts a scene. Its scripted commands run in every tick.
     ///
     /// # Errors
-    /// [`RecordError`] when it is none that a replay can hold.
+    /// [`RecordError`] if a replay cannot hold the scene.
     pub fn scene(scene: &'static Scene, seed: u64) -> Result<Self, RecordError> {
         let live = Self::new(scene.name, &scene.setup(seed))?;
         Ok(Live { scene: Some(scene), ..live })
     }
 
-    /// A world of any setup.
+    /// Starts a world from any setup.
     ///
     /// # Errors
-    /// [`RecordError`] when nothing can start from it, or nothing that a replay can hold.
+    /// [`RecordError`] if the setup is invalid or a replay cannot hold it.
     pub fn new(name: impl Into<String>, setup: &SandboxSetup) -> Result<Self, RecordError> {
         let tape = Tape::start(setup, |save: &SandboxSave| save.world.rollback_bytes())?;
         Ok(Live { name: name.into(), scene: None, tape, hand: Hand::new(0), acts: Vec::new(), note: None })
     }
 
-    /// The sandbox as of now.
+    /// Returns the sandbox at the current tick.
     #[must_use]
     pub fn game(&self) -> &Sandbox {
         self.tape.game()
     }
 
-    /// Plays one tick: with what there is to do, or else as it is on the tape.
+    /// Plays one tick: a live tick with the queued acts, or the recorded tick if there is one and the acts issue no
+    /// commands.
     fn step(&mut self) -> Result<(), TapeError> {
         let world = self.tape.game().world();
         let goes_on = self.tape.is_at_end();
@@ -97,10 +98,10 @@ impl Live {
         let all = [[script.clone(), done].concat()];
         self.note = None;
         match self.tape.play(&all) {
-            // More than a replay can hold: without what was done there is at least the script.
+            // More than a replay can hold: play the tick without the user's commands, with the scene's script only.
             Err(TapeError::TooMuch | TapeError::Record(_)) if all[0].len() > script.len() => {
                 self.hand.forget();
-                self.note = Some("too much at once: nothing was done");
+                self.note = Some("too many commands in one tick: they were dropped");
                 if self.tape.is_at_end() { self.tape.play(&[script]) } else { self.tape.replay_tick() }
             }
             result => result,
@@ -110,7 +111,7 @@ impl Live {
 
 impl Playground for Live {
     fn act(&mut self, act: Act) {
-        // Only the last of several places to drag to matters.
+        // Of consecutive drag targets only the last matters.
         if let (Act::DragTo(_), Some(Act::DragTo(_))) = (act, self.acts.last()) {
             self.acts.pop();
         }
@@ -143,7 +144,7 @@ impl Source for Live {
         self.tape.tick()
     }
 
-    /// It goes on for ever.
+    /// Always `None`: a live world has no last tick.
     fn ticks(&self) -> Option<u64> {
         None
     }
@@ -156,8 +157,8 @@ impl Source for Live {
         self.tape.game().tick_rate()
     }
 
-    /// Forwards it plays: what there is to do is done in the next tick, and beyond what has been played the world goes
-    /// on. Backwards, what there is to do is forgotten, and what is held is let go.
+    /// Seeking forwards plays: queued acts are carried out in the next tick, and the world runs on beyond the recorded
+    /// ticks. Seeking backwards drops queued acts and releases the held body.
     fn seek(&mut self, tick: u64) -> Result<(), SourceError> {
         if tick < self.tick() {
             self.acts.clear();

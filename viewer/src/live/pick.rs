@@ -1,4 +1,4 @@
-//! What is under the pointer.
+//! Picks the body under the pointer.
 
 use lockstep2d::body::{Body, BodyId, Geometry, ShapeId};
 use lockstep2d::math::{Fx, Vec2};
@@ -6,22 +6,22 @@ use lockstep2d::world::{Probe, QueryFilter, World};
 
 use super::act::Aim;
 
-/// A body, and the place on it that is meant.
+/// Picked body and the picked point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Picked {
     pub(super) body: BodyId,
-    /// In the world, in metres.
+    /// In world coordinates, in metres.
     pub(super) point: Vec2<Fx>,
 }
 
-/// The body that someone points at, among those that are wanted: the uppermost right there, or else the nearest. Solid
-/// ones come before sensors.
+/// Picks the body at `aim` among those for which `wanted` holds: the topmost one that contains the point, or else the
+/// nearest within reach. Solid shapes come before sensors.
 pub(super) fn pick(world: &World, aim: Aim, wanted: impl Fn(&Body) -> bool) -> Option<Picked> {
     let solid = QueryFilter::default();
     let all = QueryFilter { sensors: true, ..solid };
     let is_wanted = |shape: &ShapeId| owner(world, *shape).and_then(|id| world.body(id)).is_some_and(&wanted);
     [solid, all].into_iter().find_map(|filter| {
-        // What is in a larger slot is drawn later.
+        // Bodies in later slots are drawn on top.
         let here = world.overlap_point(aim.at, filter).into_iter().rev().find(is_wanted);
         let here = here.and_then(|shape| Some(Picked { body: owner(world, shape)?, point: aim.at }));
         here.or_else(|| nearest(world, aim, filter, is_wanted))
@@ -52,7 +52,7 @@ mod tests {
 
     use super::*;
 
-    /// A disc of 1 m at the origin above another one in the same place, and a sensor over all.
+    /// Two circles of 1 m radius at the origin, one drawn above the other, inside a larger sensor.
     fn world() -> Result<(World, [BodyId; 3]), WorldError> {
         let mut world = World::default();
         let disc = ShapeDef::new(Geometry::circle(fx!(1))?);
@@ -81,7 +81,7 @@ mod tests {
         let (world, [_, upper, _]) = world().unwrap();
         let aim = |x, within| Aim { at: Vec2::new(x, fx!(0)), within };
         let picked = pick(&world, aim(fx!(1.25), fx!(0.5)), Body::is_dynamic);
-        let Some(Picked { body, point }) = picked else { panic!("a body") };
+        let Some(Picked { body, point }) = picked else { panic!("expected a body") };
         assert!(body == upper && point.distance(Vec2::new(fx!(1), fx!(0))) < fx!(0.001), "{point:?}");
         assert_eq!(pick(&world, aim(fx!(1.6), fx!(0.5)), Body::is_dynamic), None);
     }

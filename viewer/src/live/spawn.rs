@@ -1,4 +1,4 @@
-//! What a person spawns.
+//! Builds the spawn command of a body that the user draws.
 
 use lockstep2d::body::{BodyDef, Geometry, GeometryError, Polygon, ShapeDef};
 use lockstep2d::fx;
@@ -7,15 +7,16 @@ use lockstep2d::world::Command;
 
 use super::act::Form;
 
-/// Radius or half width of what was placed by a click, in metres.
+/// Radius or half width of a body placed by a click, in metres.
 const SIZE: Fx = fx!(0.5);
-/// A drag that is shorter, in metres, is a click.
+/// Drags shorter than this, in metres, count as clicks.
 const CLICK: Fx = fx!(0.05);
-/// The smallest half side and the largest size, in metres.
+/// Smallest half side, in metres.
 const HALF_MIN: Fx = fx!(0.02);
+/// Largest size, in metres.
 const SIZE_MAX: Fx = fx!(50);
 
-/// The command that spawns something between two places, if there is a shape of that size.
+/// Returns the command that spawns a body drawn from `at` to `to`; `None` if no valid shape has that size.
 pub(super) fn spawn(form: Form, at: Vec2<Fx>, to: Vec2<Fx>, rng: &mut Rng) -> Option<Command> {
     let way = to - at;
     let size = way.length();
@@ -40,7 +41,7 @@ fn rectangle(corner: Option<Vec2<Fx>>) -> Result<Geometry, GeometryError> {
     Polygon::rectangle(width, height).map(Geometry::from)
 }
 
-/// Three to eight corners, not all equally far from the middle.
+/// Random convex polygon with three to eight corners, at 0.6 to 1 times the radius from the centre.
 fn polygon(radius: Fx, rng: &mut Rng) -> Result<Polygon, GeometryError> {
     let corners = 3 + rng.below(6);
     let points: Vec<_> = (0..corners)
@@ -51,11 +52,11 @@ fn polygon(radius: Fx, rng: &mut Rng) -> Result<Polygon, GeometryError> {
             Rot::from_angle(Angle::from_turns(part)).apply_wide(Vec2::new(distance, Fx::ZERO))
         })
         .collect();
-    // In a thin one two corners may be too close, and a regular one will do.
+    // If two corners are too close for a hull, a regular polygon replaces it.
     Polygon::hull(&points).or_else(|_| Polygon::regular(corners, radius))
 }
 
-/// From one end to the other, a fifth as wide as it is long.
+/// Capsule along the drag, with a radius of a fifth of its length.
 fn capsule(at: Vec2<Fx>, way: Option<Vec2<Fx>>, length: Fx) -> (BodyDef, Result<Geometry, GeometryError>) {
     let half = (length / 2).max(HALF_MIN);
     let radius = (length / 5).max(HALF_MIN);
@@ -95,7 +96,7 @@ mod tests {
         let Some(Command::Spawn { shapes, .. }) =
             spawn(Form::Box, Vec2::ZERO, Vec2::new(fx!(-2), fx!(1)), &mut Rng::new(1))
         else {
-            panic!("a box");
+            panic!("expected a box");
         };
         assert_eq!(shapes[0], ShapeDef::new(Polygon::rectangle(fx!(2), fx!(1)).expect("a rectangle")));
     }

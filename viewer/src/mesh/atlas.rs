@@ -1,16 +1,18 @@
-//! [`Atlas`]: all glyphs in one image.
+//! [`Atlas`]: texture atlas of all glyphs.
 
 use lockstep2d_picture::{GLYPH_HEIGHT, GLYPH_WIDTH, glyph};
 
-/// A glyph and a pixel of nothing on its right and below, so that no neighbour shines in where text is enlarged.
+/// Size of a slot: a glyph and one empty pixel on its right and below, so that no neighbour bleeds in when text is
+/// magnified.
 const SLOT: [usize; 2] = [GLYPH_WIDTH + 1, GLYPH_HEIGHT + 1];
 const COLUMNS: usize = 16;
-/// Latin-1, and the dashes, quotes and spaces of U+2000 to U+203F.
+/// Number of Latin-1 characters, which come first.
 const LATIN: usize = 0x100;
+/// First of the 64 characters that follow: the dashes, quotes and spaces of U+2000 to U+203F.
 const PUNCTUATION: u32 = 0x2000;
 const SLOTS: usize = LATIN + 0x40;
 
-/// All glyphs in one image: white, as opaque as a glyph covers a pixel.
+/// Image of all glyphs: white pixels, with the coverage by the glyph as opacity.
 #[derive(Clone, Debug)]
 pub struct Atlas {
     /// Red, green, blue and opacity of each pixel, rows from top to bottom.
@@ -39,7 +41,7 @@ impl Atlas {
     /// Height in pixels.
     pub const HEIGHT: usize = SLOTS.div_ceil(COLUMNS) * SLOT[1];
 
-    /// Where a character is: its upper left and lower right corners, as fractions of the image.
+    /// Returns the upper left and lower right corners of a character, as fractions of the image.
     pub(super) fn place(character: char) -> [[f32; 2]; 2] {
         let [left, top] = corner(slot(character));
         let fraction = |x: usize, y: usize| [x as f32 / Atlas::WIDTH as f32, y as f32 / Atlas::HEIGHT as f32];
@@ -51,7 +53,7 @@ fn corner(slot: usize) -> [usize; 2] {
     [slot % COLUMNS * SLOT[0], slot / COLUMNS * SLOT[1]]
 }
 
-/// What is not there is shown as the character 0, which no font has.
+/// Slot of a character. A character that the atlas lacks gets slot 0, the glyph for missing characters.
 fn slot(character: char) -> usize {
     let code = u32::from(character);
     match character {

@@ -1,4 +1,4 @@
-//! Making a mesh of a list.
+//! Builds a mesh from a draw list.
 
 use lockstep2d_picture::{CELL_HEIGHT, CELL_WIDTH, Colour, DrawList, Item, Text};
 
@@ -7,13 +7,13 @@ use super::{Atlas, Chunk, Mesh, Screen, Vertex};
 
 type Point = [f32; 2];
 
-/// A sample that covers all of a pixel.
+/// Sample of full coverage.
 const WHOLE: [f32; 3] = [0.0, 1.0, 0.0];
-/// Points of a line that are turned into a strip at once, each of them into four corners at most.
+/// Most points of a line that become one strip; each becomes at most four corners.
 const RUN: usize = Chunk::VERTICES / 4 - 2;
 
 impl Mesh {
-    /// Makes triangles of all that can be seen of a list.
+    /// Builds the triangles of all visible items of a list.
     pub fn build(&mut self, list: &DrawList, screen: &Screen) {
         self.clear();
         let mut texts = list.texts().iter().peekable();
@@ -35,7 +35,7 @@ impl Mesh {
         let bordered = !item.stroke.is_none() && item.width > 0.0;
         if item.closed && !item.fill.is_none() && points.len() > 2 {
             if bordered && item.width >= screen.pixel {
-                // The border lies on the edge and is smooth on both sides.
+                // The border covers the edge of the area and is antialiased on both sides.
                 self.area(points, item.fill);
             } else {
                 match regular(points) {
@@ -62,7 +62,8 @@ impl Mesh {
         chunk.indices.extend(fan.flatten().map(|index| first + index));
     }
 
-    /// A regular polygon, around its middle: how deep inside it a pixel is grows evenly from its edge.
+    /// Adds a regular polygon as a fan around its centre. The depth of a pixel inside the polygon, and so the
+    /// antialiasing, is interpolated linearly from the edge to the centre.
     fn disc(&mut self, points: &[Point], disc: Disc, fill: Colour, pixel: f32) {
         let [x, y] = disc.middle;
         let scale = 1.0 + pixel / 2.0 / disc.inner;
@@ -74,7 +75,7 @@ impl Mesh {
             let position = [x + (point[0] - x) * scale, y + (point[1] - y) * scale];
             Vertex { position, sample: [0.0; 3], colour }
         }));
-        // At most as many as a disc has corners.
+        // A disc has at most 64 corners.
         let count = points.len() as u16;
         let mut last = middle + count;
         for next in middle + 1..=middle + count {
@@ -83,13 +84,13 @@ impl Mesh {
         }
     }
 
-    /// An area whose edge fades from half a pixel inside to half a pixel outside.
+    /// Adds an area whose edge fades from half a pixel inside to half a pixel outside.
     fn smooth_area(&mut self, points: &[Point], fill: Colour, pixel: f32) {
         if points.len() > RUN || !self.strip.follow(points, true) {
             return;
         }
         let corners = std::mem::take(&mut self.strip.corners);
-        // Left of the way along the edge is outside, where y grows downwards and the way goes round with the clock.
+        // The left side of a clockwise outline is outside, in coordinates where y points down.
         let half = if turns_left(points) { -pixel / 2.0 } else { pixel / 2.0 };
         let (chunk, first) = self.room(2 * corners.len());
         let colour = bytes(fill);
@@ -105,7 +106,7 @@ impl Mesh {
         self.strip.corners = corners;
     }
 
-    /// A single segment, which most lines are: the same as a [`Self::stroke`] of two points.
+    /// Adds a single segment. Fast path for most lines, with the same result as a [`Self::stroke`] of two points.
     fn segment(&mut self, [a, b]: [Point; 2], item: &Item, pixel: f32) {
         let [x, y] = [b[0] - a[0], b[1] - a[1]];
         let length = (x * x + y * y).sqrt();
@@ -144,7 +145,7 @@ impl Mesh {
         self.strip.corners = corners;
     }
 
-    /// A line with more corners than a chunk has room for, in pieces.
+    /// Adds, in pieces, a line with more corners than fit in a chunk.
     fn long_stroke(&mut self, points: &[Point], item: &Item, pixel: f32) {
         let mut from = 0;
         while from + 1 < points.len() {
@@ -187,23 +188,24 @@ impl Mesh {
     }
 }
 
-/// Colour of a line, and half its width and half a pixel more, in pixels of the screen.
+/// Returns the colour of a line, and half its width plus half a pixel, in screen pixels.
 fn pen(item: &Item, pixel: f32) -> ([u8; 4], f32) {
-    // Lines thinner than a pixel are a pixel wide and fainter.
+    // A line thinner than a pixel is drawn one pixel wide, with its opacity reduced in proportion.
     let width = item.width / pixel;
     let mut colour = bytes(item.stroke);
     colour[3] = (f32::from(colour[3]) * width.min(1.0)).round() as u8;
     (colour, width.max(1.0) / 2.0 + 0.5)
 }
 
-/// A regular polygon: what marks and balls are drawn as.
+/// Regular polygon, the form in which marks and circles are drawn.
 struct Disc {
     middle: Point,
-    /// How far its edges are from the middle.
+    /// Distance of the edges from the centre.
     inner: f32,
 }
 
-/// Whether all corners are on a circle, and all edges of one length, to a hundredth.
+/// Recognises a regular polygon of 5 to 64 corners: all corners on a circle and all edges of the same length, to
+/// about a hundredth of the edge length.
 fn regular(points: &[Point]) -> Option<Disc> {
     if !(5..=64).contains(&points.len()) {
         return None;
@@ -226,9 +228,10 @@ fn regular(points: &[Point]) -> Option<Disc> {
     (inner > 0.0).then_some(Disc { middle, inner })
 }
 
-/// Whether a shape can touch the screen: not where a coordinate is not a number.
+/// Returns whether the bounds of a shape overlap the screen. A shape with a coordinate that is not finite is not
+/// visible.
 fn is_visible(points: &[Point], width: f32, screen: &Screen) -> bool {
-    // A mitre is at most 2.2 times half as wide as the line.
+    // A mitre extends at most 2.2 half-widths of the line.
     let margin = 1.1 * width + 2.0 * screen.pixel;
     let mut seen = [[false; 2]; 2];
     for point in points {
@@ -243,16 +246,16 @@ fn is_visible(points: &[Point], width: f32, screen: &Screen) -> bool {
     seen == [[true; 2]; 2]
 }
 
-/// Triangles of a convex polygon; `None` where indices do not reach.
+/// Triangle fan of a convex polygon; `None` if it has no corners or too many for 16-bit indices.
 fn fan(corners: usize) -> Option<impl Iterator<Item = [u16; 3]>> {
     let last =
         u16::try_from(corners.checked_sub(1)?).ok().filter(|&last| usize::from(last) < Chunk::VERTICES)?;
     Some((1..last).map(|corner| [0, corner, corner + 1]))
 }
 
-/// Triangles between the two sides of a strip: corners alternate between them.
+/// Appends the triangles between the two sides of a strip, whose corners alternate between the sides.
 fn ribbon(indices: &mut Vec<u16>, first: u16, pairs: usize, closed: bool) {
-    // A chunk has room for them.
+    // The corners fit in a chunk, so their number fits in 16 bits.
     let pairs = pairs as u16;
     let mut quad = |a: u16, b: u16| {
         let [a, b] = [first + 2 * a, first + 2 * b];

@@ -1,15 +1,16 @@
-//! [`Mesh`]: a draw list as triangles, for a graphics card.
+//! [`Mesh`]: a draw list as triangles, for the GPU.
 //!
-//! Everything is drawn in order by one kind of triangle, so that text, outlines and areas can lie on top of each other.
-//! What a pixel is covered by is computed where it is drawn, from a [`Vertex::sample`]: for shapes
+//! All items use the same vertex format and are drawn in list order, so that text, outlines and areas can overlap in
+//! any order. The fragment shader computes the coverage of a pixel from the interpolated [`Vertex::sample`]. For
+//! shapes it is
 //!
 //! ```text
 //! coverage = clamp(reach - |distance|, 0, 1)
 //! ```
 //!
-//! with the distance from the middle of a line in pixels of the screen and a reach of half its width and half a pixel
-//! more: edges are smooth over one pixel, and a line takes two triangles a segment. For text it is what the glyph has
-//! there, in the [`Atlas`].
+//! where `distance` is the distance from the centre line in screen pixels, and `reach` is half the line width plus
+//! half a pixel. So edges are antialiased over one pixel, and a line takes two triangles per segment. For text, the
+//! coverage is the opacity of the glyph's pixel in the [`Atlas`].
 
 mod atlas;
 mod build;
@@ -19,11 +20,11 @@ mod tests;
 
 pub use atlas::Atlas;
 
-/// A corner of a triangle.
+/// Vertex of a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct Vertex {
-    /// Where it is, in the units of the list.
+    /// Position, in the units of the draw list.
     pub position: [f32; 2],
     /// `[distance, reach, 0]` for shapes; `[u, v, 1]` for text, where u and v are fractions of the atlas.
     pub sample: [f32; 3],
@@ -31,44 +32,44 @@ pub struct Vertex {
     pub colour: [u8; 4],
 }
 
-/// As much of a mesh as 16-bit indices reach.
+/// Part of a mesh that 16-bit indices can address.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Chunk {
-    /// Corners.
+    /// Vertices.
     pub vertices: Vec<Vertex>,
-    /// Triangles: three corners each.
+    /// Triangles: three vertex indices each.
     pub indices: Vec<u16>,
 }
 
 impl Chunk {
-    /// Most corners of a chunk.
+    /// Most vertices of a chunk.
     pub const VERTICES: usize = 1 << 15;
-    /// Most indices of a chunk: an area without a border, the hungriest of all shapes, has 4.5 for a corner.
+    /// Most indices of a chunk. The shape with the most indices per vertex is an area without a border, with 4.5.
     pub const INDICES: usize = 5 * Chunk::VERTICES;
 }
 
 /// The screen that a mesh is for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Screen {
-    /// Its width and height in the units of the list.
+    /// Width and height, in the units of the draw list.
     pub size: [f32; 2],
-    /// How large a pixel is in these units: 0.5 where a screen has twice as many as one reckons with.
+    /// Size of a screen pixel in these units, such as 0.5 on a high-DPI screen with a scale factor of 2.
     pub pixel: f32,
 }
 
-/// A draw list as triangles, in the order in which to draw them.
+/// Draw list as triangles, in drawing order.
 ///
-/// It keeps its memory from frame to frame.
+/// The memory is reused from frame to frame.
 #[derive(Clone, Debug, Default)]
 pub struct Mesh {
     chunks: Vec<Chunk>,
-    /// How many of them are in use.
+    /// Number of chunks in use.
     used: usize,
     strip: strip::Strip,
 }
 
 impl Mesh {
-    /// What to draw.
+    /// Returns the chunks, in drawing order.
     #[must_use]
     pub fn chunks(&self) -> &[Chunk] {
         &self.chunks[..self.used]
@@ -82,7 +83,8 @@ impl Mesh {
         self.used = 0;
     }
 
-    /// A chunk with room for so many corners, at most [`Chunk::VERTICES`], and how many it has already.
+    /// Returns a chunk with room for this number of vertices, at most [`Chunk::VERTICES`], and the number of vertices
+    /// that it already has.
     fn room(&mut self, vertices: usize) -> (&mut Chunk, u16) {
         let full = |chunk: &Chunk| chunk.vertices.len() + vertices > Chunk::VERTICES;
         if self.used == 0 || full(&self.chunks[self.used - 1]) {
@@ -92,7 +94,7 @@ impl Mesh {
             self.used += 1;
         }
         let chunk = &mut self.chunks[self.used - 1];
-        // Below 2^15, or there would be no room.
+        // At most 2^15, the capacity of a chunk.
         let first = chunk.vertices.len() as u16;
         (chunk, first)
     }

@@ -1,28 +1,28 @@
-//! [`Strip`]: the corners of a line, moved to its sides.
+//! [`Strip`]: the corners of a line with their sideways offsets (mitre joins).
 
 type Point = [f32; 2];
 
-/// Sharper corners than this are cut off: 1 + the cosine of the angle by which a line turns. At a turn by 126 degrees a
-/// mitre is 2.2 times as long as the line is half wide; in sharper ones it would be a thorn.
+/// Mitre limit, as 1 + the cosine of the angle by which a line turns; corners with a smaller value get no mitre. At the
+/// limit, a turn by 126 degrees, a mitre extends 2.2 half-widths; at sharper corners it would be a long spike.
 const SHARP: f32 = 0.4;
 
-/// Segments shorter than this, in the units of a list, have no direction.
+/// Segments up to this length, in the units of the draw list, are skipped because they have no reliable direction.
 pub(super) const SHORTEST: f32 = 1e-3;
 
-/// The corners of a line, with the direction from its middle to its left side: of length 1 along the line, longer where
-/// it turns, so that the sides stay as far apart as the line is wide.
+/// Corners of a line, each with the offset from the centre line to the left side for a half-width of 1. The offset is
+/// longer where the line turns, so that the line keeps its width.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Strip {
-    /// Points, each further than nothing from the one before.
+    /// Points of the line, without those closer than [`SHORTEST`] to their predecessor.
     points: Vec<Point>,
-    /// Of the segment that begins at each point; to its left.
+    /// Left unit normal of the segment that starts at each point.
     normals: Vec<Point>,
-    /// Points and sideways directions. A sharp corner is there twice.
+    /// Points and sideways offsets. A sharp corner appears twice.
     pub(super) corners: Vec<(Point, Point)>,
 }
 
 impl Strip {
-    /// Follows a line through points. `false` if it has no length.
+    /// Computes the corners of a line through points. Returns `false` if the line has no length.
     pub(super) fn follow(&mut self, points: &[Point], closed: bool) -> bool {
         self.points.clear();
         self.normals.clear();
@@ -33,7 +33,7 @@ impl Strip {
         let Some(&first) = self.points.first() else { return false };
         if closed {
             self.add(first);
-            // The way back to the first point is the last segment.
+            // The segment back to the first point is the last one; the duplicate of the first point is removed.
             if self.points.len() > 1 {
                 self.points.pop();
             }

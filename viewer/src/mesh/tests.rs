@@ -1,4 +1,4 @@
-//! Meshes, drawn by a few lines here, against what the shapes of the list cover.
+//! Compares meshes, rasterised by a simple software renderer, with the exact coverage of the shapes in the list.
 
 use lockstep2d_picture::{CELL_HEIGHT, CELL_WIDTH, Colour, DrawList, glyph};
 
@@ -19,7 +19,8 @@ fn mesh_of(list: &DrawList, screen: &Screen) -> Mesh {
     mesh
 }
 
-/// How white each pixel of a black screen becomes: what the shader does, at the middle of each pixel.
+/// Renders a list in white on a black screen and returns the brightness of each pixel. Evaluates the same formula as
+/// the shader, at the centre of each pixel.
 fn drawn(list: &DrawList) -> Vec<f32> {
     let mesh = mesh_of(list, &SCREEN);
     let atlas = Atlas::default();
@@ -44,7 +45,8 @@ fn sample(corners: [&Vertex; 3], point: [f32; 2]) -> Option<[f32; 3]> {
     let cross =
         |a: [f32; 2], b: [f32; 2], c: [f32; 2]| (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
     let area = cross(a, b, c);
-    // Shared edges belong to one triangle only: a little off the middle, no point of these tests lies on one.
+    // A point on a shared edge must count for one triangle only: sampling slightly off the pixel centre keeps all
+    // points of these tests off the edges.
     let point = [point[0] + 1.3e-3, point[1] + 2.7e-3];
     let weights = [cross(point, b, c), cross(a, point, c), cross(a, b, point)].map(|part| part / area);
     let inside = area != 0.0 && weights.iter().all(|&weight| weight >= 0.0);
@@ -60,7 +62,7 @@ fn coverage(atlas: &Atlas, [u, v, text]: [f32; 3]) -> f32 {
     f32::from(atlas.pixels[(y * Atlas::WIDTH + x) * 4 + 3]) / 255.0
 }
 
-/// Compares every pixel with a function of its middle.
+/// Compares every pixel with the expected coverage at its centre.
 fn assert_covers(list: &DrawList, tolerance: f32, expected: impl Fn([f32; 2]) -> f32) {
     for (at, pixel) in drawn(list).into_iter().enumerate() {
         let point = [(at % SIDE) as f32 + 0.5, (at / SIDE) as f32 + 0.5];
@@ -69,7 +71,7 @@ fn assert_covers(list: &DrawList, tolerance: f32, expected: impl Fn([f32; 2]) ->
     }
 }
 
-/// How far a point is from a segment, and whether it is beside it rather than beyond its ends.
+/// Returns the distance of a point from a segment, and whether the closest point lies between the ends.
 fn distance([px, py]: [f32; 2], [ax, ay]: [f32; 2], [bx, by]: [f32; 2]) -> (f32, bool) {
     let [x, y] = [bx - ax, by - ay];
     let along = ((px - ax) * x + (py - ay) * y) / (x * x + y * y);
@@ -117,18 +119,18 @@ fn a_thin_line_is_faint() {
 fn an_area_with_a_border_and_one_without() {
     let mut list = DrawList::default();
     list.polygon(BOX, WHITE, Colour::NONE, 0.0);
-    // Corners are cut by a pixel's fraction.
+    // The antialiased edge cuts off corners by a fraction of a pixel.
     assert_covers(&list, 0.3, |point| (depth(point) + 0.5).clamp(0.0, 1.0));
     let backwards = BOX.into_iter().rev();
     let mut other = DrawList::default();
     other.polygon(backwards, WHITE, Colour::NONE, 0.0);
     for (a, b) in drawn(&list).into_iter().zip(drawn(&other)) {
-        assert!((a - b).abs() < 0.01, "the way round makes no difference");
+        assert!((a - b).abs() < 0.01, "the direction of the outline should make no difference");
     }
 
     list.clear();
     list.polygon(BOX, WHITE, WHITE, 3.0);
-    // Outside its corners, a mitre reaches further than three halves of a pixel.
+    // At the corners, mitres extend further than half the border width of 1.5 pixels.
     let near_corner =
         |point| BOX.iter().any(|&corner| distance(point, corner, [corner[0] + 0.1, corner[1]]).0 < 4.0);
     for (at, pixel) in drawn(&list).into_iter().enumerate() {
@@ -152,7 +154,7 @@ fn discs_are_round_whatever_their_size() {
         let middle = [31.3, 30.8];
         let mut list = DrawList::default();
         list.polygon(disc(middle, radius, corners), WHITE, Colour::NONE, 0.0);
-        // The edges are nearer than the corners.
+        // The edges of the polygon are closer to the centre than its corners.
         let tolerance = 0.02 + radius * (1.0 - (std::f32::consts::PI / corners as f32).cos());
         assert_covers(&list, tolerance, |point| {
             let depth = radius - distance(point, middle, [middle[0] + 1e-3, middle[1]]).0;
@@ -175,9 +177,9 @@ fn a_line_is_as_wide_behind_a_corner_and_cut_off_behind_a_sharp_one() {
     list.line(points, WHITE, 3.0);
     let pixels = drawn(&list);
     let at = |x: usize, y: usize| pixels[y * SIDE + x];
-    assert!(at(33, 33) > 0.2, "the mitre");
+    assert!(at(33, 33) > 0.2, "the corner should have a mitre");
     assert!([12, 20, 28].iter().all(|&x| at(x, 31) == 1.0 && at(x, 32) == 1.0 && at(x, 34) < 0.6));
-    assert!((0..5).all(|y| at(32, y) == 0.0), "no thorn above the turn by almost half a circle");
+    assert!((0..5).all(|y| at(32, y) == 0.0), "a turn by almost 180 degrees should have no mitre");
 }
 
 #[test]
@@ -240,7 +242,7 @@ fn long_lines_and_long_lists_take_several_chunks() {
     assert!(mesh.chunks().len() > 15, "{}", mesh.chunks().len());
     let boxes = mesh.chunks().iter().flat_map(|chunk| &chunk.vertices);
     let corners = boxes.filter(|vertex| BOX.contains(&vertex.position)).count();
-    assert_eq!(corners, 80_000, "the corners of every area");
+    assert_eq!(corners, 80_000, "expected the four corners of each of the 20 000 areas");
 }
 
 #[test]
@@ -250,7 +252,7 @@ fn half_the_size_of_a_pixel_is_half_the_width_of_a_smooth_edge() {
     let mesh = mesh_of(&list, &Screen { pixel: 0.5, ..SCREEN });
     let vertices = &mesh.chunks()[0].vertices;
     assert!(vertices.iter().all(|vertex| (vertex.position[1] - 20.0).abs() == 1.25));
-    assert!(vertices.iter().all(|vertex| vertex.sample[1] == 2.5), "in pixels of the screen");
+    assert!(vertices.iter().all(|vertex| vertex.sample[1] == 2.5), "the reach should be in screen pixels");
 }
 
 #[test]

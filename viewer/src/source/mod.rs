@@ -1,4 +1,4 @@
-//! [`Source`]: what can be shown.
+//! [`Source`]: something that the viewer can show.
 
 mod open;
 mod replay;
@@ -18,31 +18,31 @@ use lockstep2d_picture::{Camera, DrawList};
 use crate::event::Event;
 use crate::live::Playground;
 
-/// Something with a world at every tick: a replay, a snapshot, a live game.
+/// Something that has a world at every tick: a replay, a snapshot or a live game.
 ///
 /// *Tick t* is the state after *t* ticks.
 pub trait Source {
-    /// What to call it: the name of a file or a scene.
+    /// Name for display: of the file or the scene.
     fn name(&self) -> &str;
 
-    /// The world as of now.
+    /// World at the current tick.
     fn world(&mut self) -> &World;
 
-    /// The hash of the whole state as of now.
+    /// Hash of the whole state at the current tick.
     fn hash(&self) -> StateHash;
 
-    /// Where it is.
+    /// The current tick.
     fn tick(&self) -> u64;
 
-    /// The first tick that one can go to.
+    /// The first tick that can be sought.
     fn first(&self) -> u64 {
         0
     }
 
-    /// The last tick that one can go to; `None` if it goes on for ever.
+    /// The last tick that can be sought; `None` if the source has no end.
     fn ticks(&self) -> Option<u64>;
 
-    /// How many ticks there are so far: what a timeline shows. Of what goes on for ever, those that have been played.
+    /// The last tick on the timeline: for a source without an end, the last tick played so far.
     fn recorded(&self) -> u64 {
         self.ticks().unwrap_or_else(|| self.tick())
     }
@@ -50,63 +50,63 @@ pub trait Source {
     /// Ticks per second.
     fn tick_rate(&self) -> u32;
 
-    /// Goes to a tick.
+    /// Seeks to a tick.
     ///
     /// # Errors
-    /// [`SourceError`] where there is no such tick; then it is at the last one that it could reach.
+    /// [`SourceError`] if the tick cannot be reached; the source is then at the last tick that it could reach.
     fn seek(&mut self, tick: u64) -> Result<(), SourceError>;
 
-    /// What there is to say about it: whether it verifies, scores.
+    /// Status text, such as the verdict of a replay or the scores of a match; may be empty.
     fn status(&self) -> String {
         String::new()
     }
 
-    /// What one can do in it with a pointer, if it is a live sandbox.
+    /// Returns the interface for user actions, if the source is a live sandbox.
     fn playground(&mut self) -> Option<&mut dyn Playground> {
         None
     }
 
-    /// Takes notice of what a person does, before anybody else does. `true` if it was meant for nobody else: for the keys
-    /// of a game's players.
+    /// Handles an input event before the viewer does. Returns `true` if the source consumed the event, such as a key
+    /// of a game's player.
     fn handle(&mut self, _event: &Event) -> bool {
         false
     }
 
-    /// Lets time pass for what goes by its own clock, such as a match over a network. `true` if it does: then nobody
-    /// but itself makes it go on, and one cannot pause it.
+    /// Advances a source that runs by its own clock, such as a network match. Returns `true` if the source does; then
+    /// the viewer does not play it, and it cannot be paused.
     ///
     /// # Errors
-    /// [`SourceError`] when it cannot go on.
+    /// [`SourceError`] if the source cannot continue.
     fn advance(&mut self, _time: Duration) -> Result<bool, SourceError> {
         Ok(false)
     }
 
-    /// Draws on top of the world what belongs to the game: scores, colours of players.
+    /// Draws the game's own graphics on top of the world: scores, colours of players.
     fn decorate(&mut self, _list: &mut DrawList, _camera: &Camera) {}
 
-    /// A replay file of everything so far, if it is something that is recorded.
+    /// Returns a replay file of everything so far; `None` if the source is not recorded.
     ///
     /// # Errors
-    /// [`SourceError`] when there is none to be had.
+    /// [`SourceError`] if no replay can be made.
     fn save_replay(&mut self) -> Option<Result<Vec<u8>, SourceError>> {
         None
     }
 
-    /// Uses a little time to find out more about itself, such as whether a replay verifies. `true` while there is more.
+    /// Does a small amount of background work, such as verifying a replay. Returns `true` while work remains.
     fn think(&mut self) -> bool {
         false
     }
 }
 
-/// Why a tick cannot be shown.
+/// Error of a source, as a message for the user.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SourceError(
-    /// For people.
+    /// The message.
     pub String,
 );
 
 impl SourceError {
-    /// The same as another error says.
+    /// Takes over the message of another error.
     pub(crate) fn of(error: impl fmt::Display) -> Self {
         SourceError(error.to_string())
     }

@@ -1,4 +1,4 @@
-//! A file, whatever it is, as something to look at.
+//! Opens a file of any supported kind as a source.
 
 use std::fmt;
 
@@ -12,14 +12,14 @@ use super::replay::Replay;
 use super::snapshot::Snapshot;
 use crate::versus;
 
-/// A file that cannot be shown, and why.
+/// Reason why a file cannot be shown.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum OpenError {
-    /// A replay that cannot be played at all.
+    /// The file is a replay of which no tick can be played.
     Replay(Verdict),
-    /// Something else that is damaged or unknown.
+    /// The file is damaged or of an unknown kind.
     File(EvidenceError),
-    /// A report of a divergence that has no replay in it.
+    /// The file is a divergence report that contains no replay.
     EmptyReport,
 }
 
@@ -28,19 +28,21 @@ impl fmt::Display for OpenError {
         match self {
             OpenError::Replay(verdict) => verdict.fmt(f),
             OpenError::File(error) => error.fmt(f),
-            OpenError::EmptyReport => write!(f, "a report without a replay: there is nothing to play"),
+            OpenError::EmptyReport => write!(f, "the report contains no replay: there is nothing to play"),
         }
     }
 }
 
 impl std::error::Error for OpenError {}
 
-/// Opens a replay, a report of a divergence (the replay in it) or a snapshot. The first bytes tell which it is.
+/// Opens a replay, a divergence report (the replay in it) or a snapshot. The first bytes of the file determine its
+/// kind.
 ///
-/// The bytes live as long as the program: what is shown borrows them, and a person does not open thousands.
+/// The bytes stay allocated until the program ends, because the source borrows them; a user does not open enough
+/// files for this to matter.
 ///
 /// # Errors
-/// [`OpenError`] for anything else, and for what is damaged from the start.
+/// [`OpenError`] for other kinds of files, and for files that are damaged from the start.
 pub fn open(name: &str, bytes: &'static [u8]) -> Result<Box<dyn Source>, OpenError> {
     let limits = Limits::default();
     match Evidence::read(bytes.to_vec(), &limits).map_err(OpenError::File)? {
@@ -57,6 +59,6 @@ fn open_replay(name: &str, bytes: &'static [u8], limits: &Limits) -> Result<Box<
         let replay = Replay::<Shove>::open(name, bytes, limits).map_err(OpenError::Replay)?;
         return Ok(Box::new(replay.decorated(versus::decorate)));
     }
-    // What no game here plays, the sandbox refuses with a reason.
+    // A replay of an unknown game is refused by the sandbox, with a reason.
     Ok(Box::new(Replay::<Sandbox>::open(name, bytes, limits).map_err(OpenError::Replay)?))
 }

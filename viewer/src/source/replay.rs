@@ -1,4 +1,4 @@
-//! A replay to look at.
+//! [`Replay`]: a replay file as a source.
 
 use lockstep2d::hash::StateHash;
 use lockstep2d::lockstep::Game;
@@ -8,32 +8,33 @@ use lockstep2d_picture::{Camera, DrawList};
 
 use super::{Source, SourceError};
 
-/// Ticks from one keyframe to the next: to go back takes less than that many ticks, half a second of large scenes.
+/// Interval between keyframes, in ticks. Seeking backwards replays fewer ticks than this: half a second in large
+/// scenes.
 const INTERVAL: u32 = 60;
 
-/// How much is verified at a time, in work units: some milliseconds.
+/// Amount that is verified per frame, in work units: a few milliseconds.
 const THINK_WORK: u64 = 100_000;
 
-/// A replay of a game that has a world: verified while one looks at it.
+/// Replay of a game that has a world. It is verified in the background while it is shown.
 pub struct Replay<G: Game> {
     name: String,
     timeline: Timeline<'static, G>,
-    /// The verifier, until there is a verdict.
+    /// The verifier; `None` once there is a verdict.
     check: Option<Box<Playback<'static, G>>>,
     verdict: Option<Verdict>,
-    /// What is shown of a game without a world.
+    /// Empty world, shown for a game without a world.
     nothing: World,
     decorate: Decorate<G>,
 }
 
-/// Draws on top of the world what belongs to a game.
+/// Draws a game's own graphics on top of the world.
 type Decorate<G> = fn(&G, &mut DrawList, &Camera);
 
 impl<G: Game> Replay<G> {
     /// Opens a replay.
     ///
     /// # Errors
-    /// The [`Verdict`] if nothing of it can be played.
+    /// The [`Verdict`] if no tick of it can be played.
     pub fn open(name: &str, bytes: &'static [u8], limits: &Limits) -> Result<Self, Verdict> {
         let options = TimelineOptions { interval: INTERVAL, ..TimelineOptions::default() };
         let timeline = Timeline::open(bytes, &options, limits)?;
@@ -48,13 +49,13 @@ impl<G: Game> Replay<G> {
         })
     }
 
-    /// Draws something on top of the world: scores, colours of players.
+    /// Sets the function that draws on top of the world: scores, colours of players.
     #[must_use]
     pub fn decorated(self, decorate: Decorate<G>) -> Self {
         Replay { decorate, ..self }
     }
 
-    /// The game as of now.
+    /// Returns the game at the current tick.
     #[must_use]
     pub fn game(&self) -> &G {
         self.timeline.game()
@@ -64,7 +65,7 @@ impl<G: Game> Replay<G> {
         if tick == self.timeline.tick() {
             return Ok(());
         }
-        // From the tick before, so that what is no state, such as contact points, is there to be seen.
+        // Steps from the tick before, so that derived data outside the state, such as contact points, is available.
         let Some(before) = tick.checked_sub(1) else {
             return self.timeline.seek(tick).map_err(SourceError::of);
         };

@@ -1,4 +1,4 @@
-//! A snapshot to look at: a world that one can let go on.
+//! [`Snapshot`]: a snapshot file as a source; the world can run on from it.
 
 use std::collections::BTreeMap;
 
@@ -7,14 +7,14 @@ use lockstep2d::world::{self, World};
 
 use super::{Source, SourceError};
 
-/// Ticks from one save to the next.
+/// Initial interval between saves, in ticks.
 const INTERVAL: u64 = 30;
-/// Most saves: then every second one goes.
+/// Most saves. When there are more, every second one is dropped and the interval doubles.
 const SAVES_MAX: usize = 256;
 
-/// A world from a snapshot, and what becomes of it when nobody does anything.
+/// World of a snapshot, which runs on without any input.
 ///
-/// *Tick t* is that of the world, so the first is that of the snapshot.
+/// *Tick t* is tick *t* of the world, so the first tick is that of the snapshot.
 pub struct Snapshot {
     name: String,
     world: World,
@@ -84,7 +84,7 @@ impl Source for Snapshot {
     fn seek(&mut self, tick: u64) -> Result<(), SourceError> {
         let tick = tick.max(self.first);
         if tick < self.world.tick() {
-            // From a tick before, so that contacts are there to be seen.
+            // Restores a save before `tick` and steps to it, so that contact points are available.
             let before = tick.saturating_sub(1).max(self.first);
             if let Some((_, save)) = self.saves.range(..=before).next_back() {
                 self.world.restore(save);
@@ -98,9 +98,9 @@ impl Source for Snapshot {
 
     fn status(&self) -> String {
         match self.tick() == self.first {
-            true => "a snapshot".into(),
+            true => "at the snapshot".into(),
             false => {
-                format!("{} ticks after the snapshot, if nobody does anything", self.tick() - self.first)
+                format!("{} ticks after the snapshot, simulated without input", self.tick() - self.first)
             }
         }
     }

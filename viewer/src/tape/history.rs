@@ -1,16 +1,18 @@
-//! [`History`]: saves of a game to go back to.
+//! [`History`]: saves of a game, for seeking backwards.
 
 use std::collections::BTreeMap;
 
-/// How many saves there are at most, whatever they take: looking through them has to cost nothing.
+/// Most saves, however small they are, because each new save may scan all of them.
 const FRAMES_MAX: usize = 2048;
-/// Within so many ticks of where one is, saves are as dense as anywhere: ten seconds at 60 Hz.
+/// Distance from the current tick, in ticks, that is added to the age of a save: within it saves are about equally
+/// dense. Ten seconds at 60 Hz.
 const NEAR: u64 = 600;
 
-/// Saves of a game after some ticks, within a budget.
+/// Saves of a game at some ticks, within a memory budget.
 ///
-/// When it is used up, those go whose loss is felt the least: the further from where one is, the further apart they may
-/// be. So a step back costs little, and going back far costs in proportion to how far it is.
+/// When the budget is used up, the least useful saves are dropped: the gap between saves may grow in proportion to
+/// their distance from the current tick. So a single step back is cheap, and seeking far back costs in proportion to
+/// the distance.
 pub(super) struct History<S> {
     frames: BTreeMap<u64, Frame<S>>,
     bytes: usize,
@@ -23,13 +25,13 @@ struct Frame<S> {
 }
 
 impl<S> History<S> {
-    /// The save before the first tick, which always stays.
+    /// Creates a history with the save before the first tick, which is never dropped.
     pub(super) fn new(first: S, bytes_max: usize) -> Self {
         let frames = BTreeMap::from([(0, Frame { save: first, bytes: 0 })]);
         History { frames, bytes: 0, bytes_max }
     }
 
-    /// The last save up to a tick.
+    /// Returns the last save at or before a tick.
     pub(super) fn latest(&self, tick: u64) -> Option<(u64, &S)> {
         self.frames.range(..=tick).next_back().map(|(tick, frame)| (*tick, &frame.save))
     }
@@ -38,7 +40,8 @@ impl<S> History<S> {
         self.frames.contains_key(&tick)
     }
 
-    /// Keeps a save that takes so many bytes of its own, and drops others for it that are of less use to who is `here`.
+    /// Adds a save that takes `bytes` of unshared memory, and drops the saves that are least useful from tick `here`
+    /// until the budget holds.
     pub(super) fn keep(&mut self, tick: u64, save: S, bytes: usize, here: u64) {
         if self.has(tick) {
             return;
@@ -51,7 +54,7 @@ impl<S> History<S> {
         }
     }
 
-    /// Forgets everything after a tick.
+    /// Drops all saves after a tick.
     pub(super) fn truncate(&mut self, tick: u64) {
         if let Some(next) = tick.checked_add(1) {
             let cut = self.frames.split_off(&next);
@@ -65,7 +68,8 @@ impl<S> History<S> {
         }
     }
 
-    /// Neither the first nor the last: that without which the gap is the smallest for its distance.
+    /// Returns the save to drop, never the first or the last: the one whose removal leaves the smallest gap relative
+    /// to its distance from tick `here`.
     fn least_useful(&self, here: u64) -> Option<u64> {
         let (before, at, after) =
             (self.frames.keys(), self.frames.keys().skip(1), self.frames.keys().skip(2));
@@ -93,7 +97,7 @@ mod tests {
         assert_eq!((kept.len(), kept[0], kept[100]), (101, 0, 40_000));
         for pair in kept.windows(2) {
             let (gap, age) = (pair[1] - pair[0], 40_000 - pair[0]);
-            assert!(gap <= 40 + age / 8, "{gap} ticks at {age}");
+            assert!(gap <= 40 + age / 8, "gap of {gap} ticks at an age of {age} ticks");
         }
     }
 

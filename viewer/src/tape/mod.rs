@@ -1,4 +1,4 @@
-//! [`Tape`]: a game that is recorded while it is played, in which one can go back and take another course.
+//! [`Tape`]: a game that is recorded while it is played, and can be continued differently from any recorded tick.
 
 mod history;
 
@@ -10,50 +10,51 @@ use lockstep2d::replay::{CHECKPOINT_INTERVAL, Limits, RecordError, Recorder};
 
 use history::History;
 
-/// Ticks from one save to the next.
+/// Interval between saves, in ticks.
 const SAVE_INTERVAL: u64 = 4;
-/// Bytes that the saves may take.
+/// Memory budget of the saves, in bytes.
 const SAVES_BYTES: usize = 256 << 20;
 
-/// A game and everything that has been done in it. *Tick t* is the state after *t* ticks.
+/// Game and the recording of all its inputs. *Tick t* is the state after *t* ticks.
 ///
-/// One can go to any tick up to the last that was played. [`Tape::replay_tick`] plays on with the inputs that are there,
-/// [`Tape::play`] with other ones, and drops those.
+/// Every tick up to the last recorded one can be sought. [`Tape::replay_tick`] plays on with the recorded inputs.
+/// [`Tape::play`] plays on with new inputs and drops the recorded ones that follow.
 pub(crate) struct Tape<G: Game> {
     game: G,
     tick: u64,
-    /// The recorder before the first tick, to record anew what is left after a cut.
+    /// Recorder before the first tick, for recording the remaining ticks again after a cut.
     blank: Recorder<G>,
-    /// It has recorded all ticks of the log.
+    /// Recorder that has recorded all ticks of the log.
     recorder: Recorder<G>,
     log: InputLog<G::Input>,
-    /// The state hashes that the recorder has been given.
+    /// State hashes of all checkpoints given to the recorder.
     checkpoints: Vec<StateHash>,
-    /// The work units up to each tick.
+    /// Cumulative work units up to each tick.
     work: Vec<u64>,
     history: History<G::Save>,
+    /// Returns the unshared memory of a save, in bytes.
     weigh: fn(&G::Save) -> usize,
-    /// The game after the last tick, while it is not there.
+    /// State after the last recorded tick, while the game is at an earlier tick.
     end: Option<G::Save>,
 }
 
-/// Why a tape does not go where it should.
+/// Error of a tape.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) enum TapeError {
-    /// A tick that has not been played.
+    /// The tick has not been recorded.
     NoSuchTick { tick: u64, ticks: u64 },
-    /// These inputs cost more than a verifier grants a stranger's file.
+    /// The inputs cost more work in a tick than the default limits of a verifier allow.
     TooMuch,
-    /// Inputs that cannot be recorded.
+    /// The inputs cannot be recorded.
     Record(RecordError),
-    /// The tape does not hold what was put on it.
+    /// The input log refuses the inputs.
     Log(InputError),
-    /// Played again, a tick is another one: saving and loading this game loses something.
+    /// Playing a recorded tick again gave another hash: saving and loading this game loses state.
     Forgetful { tick: u64 },
 }
 
 impl<G: Game> Tape<G> {
-    /// Starts a game. `weigh` says how much memory a save takes that it shares with no other.
+    /// Starts a game. `weigh` returns the memory that a save does not share with other saves, in bytes.
     pub(crate) fn start(setup: &G::Setup, weigh: fn(&G::Save) -> usize) -> Result<Self, RecordError> {
         let (recorder, game) = Recorder::<G>::start(setup, CHECKPOINT_INTERVAL)?;
         Ok(Tape {
@@ -70,32 +71,32 @@ impl<G: Game> Tape<G> {
         })
     }
 
-    /// The game as of now.
+    /// Returns the game at the current tick.
     pub(crate) fn game(&self) -> &G {
         &self.game
     }
 
-    /// Where it is.
+    /// The current tick.
     pub(crate) fn tick(&self) -> u64 {
         self.tick
     }
 
-    /// How many ticks have been played.
+    /// Number of recorded ticks.
     pub(crate) fn ticks(&self) -> u64 {
         self.log.ticks()
     }
 
-    /// Whether no tick has been played after this one.
+    /// Returns whether the current tick is the last recorded one.
     pub(crate) fn is_at_end(&self) -> bool {
         self.tick == self.ticks()
     }
 
-    /// The work units of all ticks that have been played, as a verifier counts them.
+    /// Work units of all recorded ticks, as a verifier counts them.
     pub(crate) fn work(&self) -> u64 {
         self.work.last().copied().unwrap_or(0)
     }
 
-    /// Plays the next tick. If it has been played already, that and everything after it is dropped.
+    /// Plays and records the next tick. If it is already recorded, it and all later ticks are dropped first.
     pub(crate) fn play(&mut self, inputs: &[G::Input]) -> Result<(), TapeError> {
         let work = self.game.work(inputs);
         if work > Limits::default().tick_work {
@@ -118,17 +119,18 @@ impl<G: Game> Tape<G> {
         Ok(())
     }
 
-    /// Plays the next tick with the inputs that it has been played with before.
+    /// Plays the next tick with its recorded inputs.
     pub(crate) fn replay_tick(&mut self) -> Result<(), TapeError> {
         self.replay_towards(self.tick + 1)
     }
 
-    /// Goes to a tick that has been played.
+    /// Seeks to a recorded tick.
     pub(crate) fn seek(&mut self, tick: u64) -> Result<(), TapeError> {
         if tick > self.ticks() {
             return Err(TapeError::NoSuchTick { tick, ticks: self.ticks() });
         }
-        // From a tick before, so that what is no state, such as contact points and events, is there to be seen.
+        // Starts from an earlier tick, so that derived data outside the state, such as contact points and events, is
+        // available.
         let latest = self.history.latest(tick.saturating_sub(1));
         let elsewhere = latest.filter(|(from, _)| !(*from..=tick).contains(&self.tick));
         if let Some((from, save)) = elsewhere.map(|(from, save)| (from, save.clone())) {
@@ -144,7 +146,7 @@ impl<G: Game> Tape<G> {
         Ok(())
     }
 
-    /// A replay file of all ticks that have been played, wherever it is.
+    /// Returns a replay file of all recorded ticks, whatever the current tick is.
     pub(crate) fn to_replay(&self) -> Result<Vec<u8>, RecordError>
     where
         G: Clone,
@@ -182,7 +184,7 @@ impl<G: Game> Tape<G> {
         }
     }
 
-    /// Drops all ticks after this one.
+    /// Drops all recorded ticks after the current one.
     fn cut(&mut self) -> Result<(), TapeError> {
         let mut recorder = self.blank.clone();
         let mut checkpoints = self.checkpoints.iter();
@@ -209,14 +211,16 @@ impl<G: Game> Tape<G> {
 impl fmt::Display for TapeError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            TapeError::NoSuchTick { tick, ticks } => write!(f, "there are {ticks} ticks, and no tick {tick}"),
-            TapeError::TooMuch => write!(f, "a tick that costs more than a replay may cost"),
+            TapeError::NoSuchTick { tick, ticks } => {
+                write!(f, "tick {tick} is not recorded: there are {ticks} ticks")
+            }
+            TapeError::TooMuch => write!(f, "the tick costs more work than a replay may contain"),
             TapeError::Record(error) => error.fmt(f),
             TapeError::Log(error) => error.fmt(f),
             TapeError::Forgetful { tick } => {
                 write!(
                     f,
-                    "played again, tick {tick} is another one: saving and loading this game loses something"
+                    "tick {tick} has another hash when it is played again: saving and loading this game loses state"
                 )
             }
         }

@@ -1,4 +1,5 @@
-//! What belongs to the game and not to its physics: whose player is whose, scores, dashes, what is left of the platform.
+//! Draws the parts of the game that are not physics: seat colours, scores, the recharge of dashes, the edge of the
+//! platform.
 
 use std::f32::consts::TAU;
 
@@ -9,22 +10,23 @@ use lockstep2d::world::World;
 use lockstep2d_picture::{CELL_HEIGHT, Camera, Colour, DrawList, width_of};
 use lockstep2d_shove::{Phase, Player, START_RADIUS, Shove};
 
-/// The colours of the seats: told apart also by those who do not see all colours.
+/// Colours of the seats, distinguishable with colour blindness.
 pub const SEAT_COLOURS: [Colour; 4] =
     [Colour::hex(0xe6_9f00), Colour::hex(0x56_b4e9), Colour::hex(0x00_9e73), Colour::hex(0xcc_79a7)];
 
-/// To be seen on paper and in the dark.
+/// Neutral grey, visible on light and dark backgrounds.
 const NEUTRAL: Colour = Colour::hex(0x8a_8f98);
-/// Behind the scores, whose colours are too bright for paper, and of the line above them.
+/// Background of the scores, whose colours are too bright for a light background.
 const PLATE: Colour = Colour::hex(0x14_181d);
+/// Colour of the headline above the scores.
 const TITLE: Colour = Colour::hex(0xe4_e7eb);
-/// Corners of a circle.
+/// Number of segments of a circle.
 const CORNERS: u16 = 48;
-/// Ticks that a dash takes to recharge.
+/// Recharge time of a dash, in ticks.
 const RECHARGE: f32 = 75.0;
 
-/// Draws the edge of the platform, the players in the colours of their seats with the state of their dashes, and the
-/// scores above.
+/// Draws the edge of the platform, the players in the colours of their seats with the recharge of their dashes, and the
+/// scores.
 pub fn decorate(game: &Shove, list: &mut DrawList, camera: &Camera) {
     draw_platform(game, list, camera);
     for (seat, player) in game.players_in_order().enumerate() {
@@ -33,13 +35,13 @@ pub fn decorate(game: &Shove, list: &mut DrawList, camera: &Camera) {
     draw_scores(game, list, camera);
 }
 
-/// The round and what is going on in it, in a line.
+/// Returns a line with the round and its phase.
 pub(super) fn headline(game: &Shove) -> String {
     let seconds = u32::from(game.ticks_left()).div_ceil(game.tick_rate());
     let present = game.players_in_order().filter(|player| player.present).count();
     let phase = match game.phase() {
-        Phase::Over => return "the match is over".into(),
-        _ if present == 0 => return "nobody is here".into(),
+        Phase::Over => return "match over".into(),
+        _ if present == 0 => return "no players".into(),
         Phase::Ready => format!("ready in {seconds}"),
         Phase::Fight => format!("{seconds} s left"),
         Phase::Pause => "next round soon".into(),
@@ -50,7 +52,7 @@ pub(super) fn headline(game: &Shove) -> String {
     }
 }
 
-/// Where it was, and where it ends now.
+/// Draws the original edge of the platform and the current one.
 fn draw_platform(game: &Shove, list: &mut DrawList, camera: &Camera) {
     let ring = |radius| arc(camera, Vec2::ZERO, camera.length(radius), 1.0);
     list.line(ring(START_RADIUS), NEUTRAL.with_opacity(90), 1.0);
@@ -65,7 +67,7 @@ fn draw_player(world: &World, seat: usize, player: &Player, list: &mut DrawList,
     let radius = camera.length(radius_of(world, body));
     let disc = arc(camera, player.position, radius, 1.0);
     list.polygon(disc.skip(1), colour, Colour::hex(0x00_0000).with_opacity(160), 1.5);
-    // Full when it can dash.
+    // Full circle when the dash is ready.
     let charge = 1.0 - (player.recharge as f32 / RECHARGE).min(1.0);
     if charge > 0.0 {
         let width = if player.recharge == 0 { 3.0 } else { 1.5 };
@@ -86,7 +88,7 @@ fn radius_of(world: &World, body: &Body) -> Fx {
     }
 }
 
-/// Above the platform, or at the upper edge where there is no room above it.
+/// Draws the scores above the platform, or at the upper edge of the window if there is no room above the platform.
 fn draw_scores(game: &Shove, list: &mut DrawList, camera: &Camera) {
     let [middle, top] = camera.place(Vec2::new(Fx::ZERO, START_RADIUS));
     let top = (top - 3.0 * CELL_HEIGHT).max(2.0 * CELL_HEIGHT);
@@ -106,7 +108,8 @@ fn draw_scores(game: &Shove, list: &mut DrawList, camera: &Camera) {
     }
 }
 
-/// The number of a seat and its points, in brackets if the player has fallen, and a dash if nobody is there.
+/// Returns the colour and the score text of a seat: its number and points, with the points in brackets if the player
+/// has fallen, and a dash if the seat is empty.
 fn score((seat, player): (usize, Player)) -> (Colour, String) {
     let points = match player {
         Player { present: false, .. } => "-".into(),
@@ -116,7 +119,7 @@ fn score((seat, player): (usize, Player)) -> (Colour, String) {
     (SEAT_COLOURS[seat % SEAT_COLOURS.len()], format!("{}: {points}", seat + 1))
 }
 
-/// A part of a circle, clockwise from the top, closed if it is whole; the radius in pixels.
+/// Returns an arc of `part` of a full circle, clockwise from the top, with the radius in pixels.
 fn arc(camera: &Camera, centre: Vec2<Fx>, radius: f32, part: f32) -> impl Iterator<Item = [f32; 2]> {
     let [x, y] = camera.place(centre);
     (0..=CORNERS).map(move |corner| {

@@ -1,36 +1,36 @@
-//! [`Keys`]: a pad from the keyboard.
+//! [`Keys`]: a player's [`Pad`] from the keyboard.
 
 use lockstep2d_shove::Pad;
 
 use crate::event::{Event, Key};
 
-/// Which keys a player has.
+/// Set of keys that a player uses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
     /// W, A, S and D, and Shift or F to dash.
     Left,
     /// The arrows, and Enter or Control to dash.
     Right,
-    /// Those of both sides: for who has the keyboard alone.
+    /// The keys of both sides, for a player alone at the keyboard.
     Both,
 }
 
-/// The keys of one player, some of them down.
+/// Keys of one player that are currently down.
 #[derive(Clone, Debug)]
 pub struct Keys {
     side: Side,
-    /// Keys of this player that are down: two of them may do the same.
+    /// Keys that are down. Two keys may stand for the same button.
     down: Vec<Key>,
 }
 
 impl Keys {
-    /// None is down.
+    /// Starts with no key down.
     #[must_use]
     pub const fn new(side: Side) -> Self {
         Keys { side, down: Vec::new() }
     }
 
-    /// Takes notice of a key that goes down or up. `true` if it is one of this player's.
+    /// Handles a key that goes down or up. Returns `true` if it is a key of this player.
     pub fn handle(&mut self, event: &Event) -> bool {
         let (Event::Pressed(key) | Event::Released(key)) = event else { return false };
         if button(self.side, *key).is_none() {
@@ -43,7 +43,7 @@ impl Keys {
         true
     }
 
-    /// What is down at the moment.
+    /// Returns the buttons that are down.
     #[must_use]
     pub fn pad(&self) -> Pad {
         let buttons = self.down.iter().filter_map(|key| button(self.side, *key));
@@ -90,7 +90,10 @@ mod tests {
         let mut keys = Keys::new(Side::Both);
         let press = |key| Event::Pressed(key);
         assert!(keys.handle(&press(Key::Character('w'))) && keys.handle(&press(Key::Up)));
-        assert!(keys.handle(&press(Key::Up)), "again, as keyboards do");
+        assert!(
+            keys.handle(&press(Key::Up)),
+            "a repeated press should be accepted, as keyboards repeat keys"
+        );
         assert!(keys.handle(&press(Key::Control)));
         assert_eq!(keys.pad(), Pad::UP.with(Pad::DASH));
         assert!(keys.handle(&Event::Released(Key::Up)));

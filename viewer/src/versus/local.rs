@@ -1,4 +1,4 @@
-//! [`Versus`]: a match on one machine.
+//! [`Versus`]: a match at one computer.
 
 use lockstep2d::hash::StateHash;
 use lockstep2d::lockstep::Game;
@@ -13,21 +13,22 @@ use crate::event::Event;
 use crate::source::{Source, SourceError};
 use crate::tape::{Tape, TapeError};
 
-/// Who sits on a seat.
+/// Controller of a seat.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Chair {
     /// A person with these keys.
     Person(Side),
     /// A bot.
     Bot,
-    /// Nobody.
+    /// No player.
     Empty,
 }
 
-/// A match of people at one keyboard, and of bots.
+/// Match of people at one keyboard and bots.
 ///
-/// As in a live sandbox, everything is on a tape: one can go back to any tick. There it is played again as recorded, until
-/// one of the people presses one of their keys: then the match goes on from there, and what came after is dropped.
+/// As in a live sandbox, every tick is recorded and any tick can be sought. Recorded ticks are played again until a
+/// person presses one of the players' keys: the match then continues live from there, and the later recorded ticks
+/// are dropped.
 pub struct Versus {
     tape: Tape<Shove>,
     players: Vec<Player>,
@@ -40,10 +41,10 @@ enum Player {
 }
 
 impl Versus {
-    /// A match of `chairs.len()` seats, 2 to 4.
+    /// Starts a match of `chairs.len()` seats, 2 to 4.
     ///
     /// # Errors
-    /// [`RecordError`] when there are not as many, or the setup is unplayable otherwise.
+    /// [`RecordError`] if the number of seats is out of range or the setup is invalid in another way.
     pub fn new(setup: Setup, chairs: &[Chair]) -> Result<Self, RecordError> {
         let setup = Setup { seats: u8::try_from(chairs.len()).unwrap_or(u8::MAX), ..setup };
         let tape = Tape::start(&setup, Save::rollback_bytes)?;
@@ -55,7 +56,7 @@ impl Versus {
         Ok(Versus { tape, players: (0..).zip(chairs).map(player).collect() })
     }
 
-    /// Two people at one keyboard, the first on the left side of it, and as many bots.
+    /// Starts a match of two people at one keyboard, the first on its left side, and this number of bots, at most 2.
     ///
     /// # Errors
     /// As [`Versus::new`].
@@ -65,7 +66,7 @@ impl Versus {
         Self::new(Setup { seed, ..Setup::default() }, &chairs)
     }
 
-    /// The match as of now.
+    /// Returns the match at the current tick.
     #[must_use]
     pub fn game(&self) -> &Shove {
         self.tape.game()
@@ -115,7 +116,7 @@ impl Source for Versus {
         self.tape.tick()
     }
 
-    /// It goes on for ever: after the last round, the world does.
+    /// Always `None`: the world runs on after the last round.
     fn ticks(&self) -> Option<u64> {
         None
     }
@@ -128,7 +129,7 @@ impl Source for Versus {
         self.tape.game().tick_rate()
     }
 
-    /// Forwards it plays; backwards it only looks.
+    /// Seeking forwards plays; seeking backwards keeps the recording.
     fn seek(&mut self, tick: u64) -> Result<(), SourceError> {
         if tick < self.tick() {
             return self.tape.seek(tick).map_err(SourceError::of);
@@ -144,7 +145,7 @@ impl Source for Versus {
     }
 
     fn handle(&mut self, event: &Event) -> bool {
-        // Everybody sees it: nobody may miss that a key goes up.
+        // All players get the event, so that none misses the release of a key.
         let taken = self.players.iter_mut().map(|player| match player {
             Player::Person(keys) => keys.handle(event),
             _ => false,

@@ -1,4 +1,4 @@
-//! The small game for people: two on one keyboard ([`Versus`]), or over a network ([`Online`]).
+//! The shove game for people: two at one keyboard ([`Versus`]), or over a network ([`Online`]).
 
 mod decorate;
 mod keys;

@@ -1,4 +1,4 @@
-//! [`Online`]: a match over a network, with the keyboard as this player's pad.
+//! [`Online`]: a network match, with the local player at the keyboard.
 
 use std::net::SocketAddr;
 use std::time::Duration;
@@ -17,28 +17,28 @@ use super::keys::{Keys, Side};
 use crate::event::Event;
 use crate::source::{Source, SourceError};
 
-/// One participant of a match: hosts it, joins it or watches it.
+/// Participant of a network match: its host, another player or a spectator.
 ///
-/// It goes by its own clock, which is that of all participants; one can neither pause it nor go back in it. What is seen
-/// may be a guess of the last few ticks. The replay has only what is known from everybody.
+/// The match runs by the clock that all participants share, so it can neither be paused nor sought. The last few
+/// ticks shown may be predicted. The replay contains only ticks with confirmed inputs of all players.
 pub struct Online<A: Address, T: Transport<A>> {
     peer: Peer<Shove, A, T>,
     now: Duration,
     keys: Keys,
-    /// The replay up to where it has been taken from the peer.
+    /// Part of the replay that has been taken from the peer so far.
     replay: Vec<u8>,
     diverged: Option<Divergence>,
-    /// The last thing that the peer has told.
+    /// Text of the peer's last event.
     told: Option<String>,
-    /// Why it does not go on.
+    /// Error that ended the match.
     ended: Option<NetError>,
 }
 
 impl Online<SocketAddr, Udp> {
-    /// Takes part over UDP; packets come in at the address `bind`, or else at any free port.
+    /// Enters a match over UDP. The socket is bound to the address `bind`, or to any free port without it.
     ///
     /// # Errors
-    /// [`OnlineError`] when there is no such address, no socket, or the setup starts no game.
+    /// [`OnlineError`] if an address cannot be resolved, the socket cannot be opened, or the setup is invalid.
     pub fn udp(
         way: Way<&str>,
         bind: Option<&str>,
@@ -50,30 +50,30 @@ impl Online<SocketAddr, Udp> {
 }
 
 impl<A: Address, T: Transport<A>> Online<A, T> {
-    /// Takes the part of a peer that has just been made.
+    /// Wraps a new peer.
     #[must_use]
     pub fn new(peer: Peer<Shove, A, T>) -> Self {
         let (keys, replay) = (Keys::new(Side::Both), Vec::new());
         Online { peer, now: Duration::ZERO, keys, replay, diverged: None, told: None, ended: None }
     }
 
-    /// The peer.
+    /// Returns the peer.
     #[must_use]
     pub const fn peer(&self) -> &Peer<Shove, A, T> {
         &self.peer
     }
 
-    /// The first divergence, if there was one.
+    /// Returns the first divergence, if there was one.
     #[must_use]
     pub const fn diverged(&self) -> Option<&Divergence> {
         self.diverged.as_ref()
     }
 
-    /// Leaves the match, which tells the others, and ends the replay; it is empty if this peer was not there from the
-    /// first tick.
+    /// Leaves the match, notifies the other peers, and returns the finished replay. It is empty if this peer was not
+    /// in the match from the first tick.
     ///
     /// # Errors
-    /// [`NetError`] when the replay cannot be ended.
+    /// [`NetError`] if the replay cannot be finished.
     pub fn leave(self) -> Result<Vec<u8>, NetError> {
         let rest = self.peer.finish(u64::MAX)?;
         Ok([self.replay, rest].concat())
@@ -93,10 +93,11 @@ impl<A: Address, T: Transport<A>> Online<A, T> {
         Ok(())
     }
 
-    /// A whole replay of what there is: the match goes on, and so it has to be recorded anew.
+    /// Returns a complete replay of the confirmed ticks so far. The match is still being recorded, so the ticks are
+    /// played again into a second recording.
     fn replay_so_far(&self) -> Result<Vec<u8>, SourceError> {
         if self.replay.is_empty() {
-            return Err(SourceError("this match has no replay here, or not yet".into()));
+            return Err(SourceError("this peer has no replay of the match, or not yet".into()));
         }
         let mut rerun = Rerun::<Shove>::open(&self.replay, &Limits::default()).map_err(SourceError::of)?;
         let setup = *rerun.game().setup();
@@ -136,7 +137,9 @@ impl<A: Address, T: Transport<A>> Source for Online<A, T> {
 
     fn seek(&mut self, tick: u64) -> Result<(), SourceError> {
         let is_here = tick == self.tick();
-        is_here.then_some(()).ok_or_else(|| SourceError("a match goes by its own clock".into()))
+        is_here
+            .then_some(())
+            .ok_or_else(|| SourceError("a network match runs by its own clock and cannot be sought".into()))
     }
 
     fn handle(&mut self, event: &Event) -> bool {

@@ -1,4 +1,4 @@
-//! [`Host`]: files, and the time between frames, on a desktop.
+//! [`Host`]: file access and frame pacing on a desktop.
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -7,7 +7,7 @@ use lockstep2d_viewer::{App, Event, Request};
 
 use super::WindowError;
 
-/// What is around the window.
+/// Desktop environment of the window.
 pub(super) struct Host {
     output: Option<PathBuf>,
 }
@@ -17,8 +17,8 @@ impl Host {
         Host { output }
     }
 
-    /// Does what the viewer asks for. What cannot be written is said on the screen: nobody wants to lose what they did
-    /// because a disk is full.
+    /// Carries out the viewer's requests. A failed write is shown as a message and does not end the program, so that
+    /// a full disk does not cost the user the session.
     pub(super) fn serve(&self, app: &mut App) -> Result<(), WindowError> {
         if let Err(error) = self.save(app) {
             app.tell(format!("not saved: {error}"));
@@ -26,7 +26,7 @@ impl Host {
         Ok(())
     }
 
-    /// Saves what is recorded, where that was asked for from the start.
+    /// Saves the recording at the end, if an output file was named on the command line.
     pub(super) fn finish(&self, app: &mut App) -> Result<(), WindowError> {
         if self.output.is_some() {
             app.save();
@@ -44,14 +44,14 @@ impl Host {
         Ok(())
     }
 
-    /// A file that was dropped.
+    /// Opens a dropped file.
     pub(super) fn open(&self, app: &mut App, name: String, bytes: Vec<u8>) {
         app.handle(Event::Dropped { name, bytes });
     }
 
-    /// Waits a little where the screen does not make frames wait for it, as no virtual screen does.
+    /// Sleeps if the display does not pace the frames, as with a virtual display. Times are in seconds.
     pub(super) fn pace(&self, elapsed: f64) {
-        /// Shorter frames than of the fastest screens.
+        /// Frames shorter than this are faster than any display.
         const HASTE: f64 = 1.0 / 250.0;
         if elapsed < HASTE {
             std::thread::sleep(Duration::from_secs_f64(1.0 / 60.0 - elapsed));
@@ -59,7 +59,7 @@ impl Host {
     }
 }
 
-/// The path of a file in this folder that is not there yet: nobody has said that another one may be overwritten.
+/// Returns a path in the current directory at which no file exists, so that no file is overwritten.
 fn free_path(name: &str) -> PathBuf {
     let (stem, ending) = name.rsplit_once('.').unwrap_or((name, "replay"));
     let numbered = (2..).map(|number| format!("{stem}-{number}.{ending}"));

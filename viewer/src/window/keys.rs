@@ -1,16 +1,16 @@
-//! Keys and buttons, as miniquad names them.
+//! Translates miniquad's keys, buttons and wheel to those of the viewer.
 
 use lockstep2d_viewer::{Button, Key};
 use miniquad::{KeyCode, MouseButton};
 
-/// Which keys are down.
+/// Keys that are down.
 #[derive(Debug, Default)]
 pub(super) struct Keyboard {
     down: Vec<KeyCode>,
 }
 
 impl Keyboard {
-    /// A key goes down, or is held for so long that it repeats. The key, if that is for the viewer.
+    /// Handles a key that goes down or repeats. Returns the key if the viewer should get the event.
     pub(super) fn down(&mut self, code: KeyCode, repeat: bool) -> Option<Key> {
         let key = key(code)?;
         if !self.down.contains(&code) {
@@ -19,7 +19,8 @@ impl Keyboard {
         (!repeat || repeats(key)).then_some(key)
     }
 
-    /// A key goes up. The key, unless another one of the same meaning is still down, as there are two Shift keys.
+    /// Handles a key that goes up. Returns the key, unless another key of the same meaning is still down (there are
+    /// two Shift keys).
     pub(super) fn up(&mut self, code: KeyCode) -> Option<Key> {
         self.down.retain(|&down| down != code);
         let key = key(code)?;
@@ -27,19 +28,19 @@ impl Keyboard {
         (!held).then_some(key)
     }
 
-    /// All keys go up.
+    /// Releases all keys, and returns them.
     pub(super) fn release(&mut self) -> Vec<Key> {
         self.down.drain(..).filter_map(key).collect()
     }
 }
 
-/// Keys that go a step each time; the others switch things, which would flicker.
+/// Returns whether a held key repeats: keys that step do, keys that toggle something do not.
 fn repeats(key: Key) -> bool {
     let steps = [Key::Left, Key::Right, Key::Up, Key::Down, Key::PageUp, Key::PageDown];
     steps.contains(&key) || matches!(key, Key::Character(',' | '.' | '+' | '-' | '='))
 }
 
-/// A key, or `None` for those that nobody asks about.
+/// Translates a key; `None` for keys that the viewer does not use.
 fn key(code: KeyCode) -> Option<Key> {
     Some(match code {
         KeyCode::Space => Key::Space,
@@ -62,7 +63,7 @@ fn key(code: KeyCode) -> Option<Key> {
 }
 
 fn character(code: KeyCode) -> Option<char> {
-    // The codes of these keys are those of their characters.
+    // The code of a printable key is the ASCII code of its character.
     let ascii = u8::try_from(code as u16).ok().map(char::from).filter(char::is_ascii_graphic);
     ascii.map(|character| character.to_ascii_lowercase()).or(match code {
         KeyCode::KpAdd => Some('+'),
@@ -84,7 +85,7 @@ fn character(code: KeyCode) -> Option<char> {
     })
 }
 
-/// A button, or `None` for those that nobody asks about.
+/// Translates a pointer button; `None` for buttons that the viewer does not use.
 pub(super) fn button(button: MouseButton) -> Option<Button> {
     match button {
         MouseButton::Left => Some(Button::Left),
@@ -94,7 +95,7 @@ pub(super) fn button(button: MouseButton) -> Option<Button> {
     }
 }
 
-/// What miniquad says when a wheel is turned by a notch: a line, or the distance by which a page would scroll.
+/// Wheel movement that miniquad reports for one notch: one line, or the scroll distance of the platform.
 const NOTCH: f32 = if cfg!(target_arch = "wasm32") {
     100.0
 } else if cfg!(target_os = "windows") {
@@ -103,7 +104,7 @@ const NOTCH: f32 = if cfg!(target_arch = "wasm32") {
     1.0
 };
 
-/// By how many notches a wheel was turned. At most ten at once.
+/// Converts a wheel movement to notches, clamped to ten.
 pub(super) fn notches(turned: f32) -> f32 {
     let notches = turned / NOTCH;
     if notches.is_finite() { notches.clamp(-10.0, 10.0) } else { 0.0 }

@@ -1,4 +1,4 @@
-//! The window: miniquad's events for the viewer, and its draw list on the screen.
+//! The window: passes miniquad's events to the viewer, and draws its draw list on the screen.
 
 #[cfg_attr(target_arch = "wasm32", path = "page.rs")]
 mod host;
@@ -20,23 +20,23 @@ use miniquad::conf::{Conf, LinuxBackend, Platform};
 use host::Host;
 use stage::Stage;
 
-/// Something lively to begin with.
+/// Default scene.
 pub(crate) const FIRST_SCENE: &str = "ragdoll";
 
-/// What a window is to be.
+/// Options of the window.
 pub(crate) struct Options {
     /// Width and height.
     pub(crate) size: [u16; 2],
-    /// What to do instead of waiting for a person.
+    /// Script that replaces user input.
     pub(crate) script: Option<Script>,
-    /// Where to save what is recorded.
+    /// File to save the recording to.
     pub(crate) output: Option<PathBuf>,
 }
 
-/// Why a window was closed that nobody closed.
+/// Error that closed the window.
 #[derive(Debug)]
 pub(crate) enum WindowError {
-    /// The graphics driver takes no shader.
+    /// The graphics driver refuses the shader.
     Graphics(miniquad::ShaderError),
     /// A file could not be read or written.
     #[cfg(not(target_arch = "wasm32"))]
@@ -55,10 +55,10 @@ impl fmt::Display for WindowError {
 
 impl std::error::Error for WindowError {}
 
-/// How the window ended.
+/// Result of the window, shared with the event handler.
 type Outcome = Rc<RefCell<Result<(), WindowError>>>;
 
-/// Shows the viewer in a window until it is closed. In a browser, it returns at once and goes on by itself.
+/// Shows the viewer in a window until it is closed. In a browser, this returns at once and the viewer keeps running.
 pub(crate) fn show(app: App, options: Options) -> Result<(), WindowError> {
     let [width, height] = options.size.map(i32::from);
     let conf = Conf {

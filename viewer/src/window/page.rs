@@ -1,6 +1,6 @@
-//! [`Host`]: the page that a browser shows the viewer on.
+//! [`Host`]: the web page around the viewer.
 //!
-//! The page reads lines from the log, fields separated by tabs, of which the first says what the line is:
+//! The page reads lines from the log. Fields are separated by tabs, and the first field gives the kind of line:
 //!
 //! ```text
 //! lockstep2d.report  name  tick  last tick or nothing  hash or nothing  status
@@ -14,10 +14,10 @@ use lockstep2d_viewer::{App, Event, Report, Request};
 
 use super::WindowError;
 
-/// A file of this kind is a wish of the page: to see the scene that it is named after.
+/// Extension of an empty file by which the page requests the scene of that name.
 const SCENE: &str = ".scene";
 
-/// The page.
+/// The web page.
 pub(super) struct Host {
     last: std::cell::RefCell<Option<Report>>,
 }
@@ -27,11 +27,11 @@ impl Host {
         Host { last: None.into() }
     }
 
-    /// Does what the viewer asks for, and tells the page what it shows.
+    /// Carries out the viewer's requests, and reports to the page what the viewer shows when that has changed.
     pub(super) fn serve(&self, app: &mut App) -> Result<(), WindowError> {
         for Request::Save { name, bytes } in app.take_requests() {
             let digits = bytes.iter().fold(String::new(), |mut digits, byte| {
-                // A string takes everything.
+                // Writing to a string cannot fail.
                 let _written = write!(digits, "{byte:02x}");
                 digits
             });
@@ -53,7 +53,7 @@ impl Host {
         self.serve(app)
     }
 
-    /// A file that was dropped, or a wish of the page.
+    /// Opens a dropped file, or the scene that the page requests.
     pub(super) fn open(&self, app: &mut App, name: String, bytes: Vec<u8>) {
         match name.strip_suffix(SCENE) {
             Some(scene) if bytes.is_empty() && app.show_scene(scene, 0) => {}
@@ -61,16 +61,17 @@ impl Host {
         }
     }
 
-    /// Browsers ask for frames themselves.
+    /// Does nothing: the browser paces the frames.
     pub(super) fn pace(&self, _elapsed: f64) {}
 }
 
-/// The macro formats nothing where its text is the only argument.
+/// Writes a line to the log. The format string is needed because the macro does not format its text if that is the only
+/// argument.
 fn say(line: &str) {
     miniquad::info!("{}", line);
 }
 
-/// Without what separates fields, and without what ends a line for the log.
+/// Replaces control characters, such as the tab that separates fields and the end of a line, by spaces.
 fn field(text: &str) -> String {
     text.replace(char::is_control, " ")
 }

@@ -1,4 +1,4 @@
-//! [`Performance`]: a script, played in the window.
+//! [`Performance`]: runs a script in the window.
 
 use std::io;
 use std::path::Path;
@@ -11,10 +11,10 @@ use super::WindowError;
 use super::renderer::Picture;
 use super::stage::Stage;
 
-/// A script, and how far it has come.
+/// Running script.
 pub(super) struct Performance {
     steps: std::vec::IntoIter<Step>,
-    /// Frames of the last instruction that are still to come.
+    /// Remaining frames of the current `frames` instruction.
     frames: u32,
 }
 
@@ -23,7 +23,7 @@ impl Performance {
         Performance { steps: script.steps().to_vec().into_iter(), frames: 0 }
     }
 
-    /// Does what comes before the next picture. `false` at the end.
+    /// Runs the instructions before the next frame. Returns `false` at the end of the script.
     pub(super) fn frame(&mut self, stage: &mut Stage) -> Result<bool, WindowError> {
         loop {
             if self.frames > 0 {

@@ -1,4 +1,4 @@
-//! [`Renderer`]: meshes on the screen, and in a picture.
+//! [`Renderer`]: draws meshes on the screen and into pictures.
 
 use lockstep2d_viewer::mesh::{Atlas, Chunk, Mesh, Screen, Vertex};
 use miniquad::{
@@ -32,7 +32,7 @@ void main() {
     gl_FragColor = vec4(paint.rgb, paint.a * mix(shape, glyph, at.z));
 }";
 
-/// What shows where nothing is drawn.
+/// Clears the target to opaque black before drawing.
 const BACKGROUND: PassAction =
     PassAction::Clear { color: Some((0.0, 0.0, 0.0, 1.0)), depth: None, stencil: None };
 
@@ -41,11 +41,12 @@ pub(super) struct Renderer {
     context: Box<dyn RenderingBackend>,
     pipeline: Pipeline,
     atlas: TextureId,
-    /// Vertices and indices of each chunk: one pair would have to be waited for before it is written again.
+    /// Vertex and index buffers, one pair per chunk: a single pair would stall on each chunk until the GPU has read the
+    /// previous one.
     buffers: Vec<[BufferId; 2]>,
 }
 
-/// A picture: red, green, blue and opacity of each pixel, rows from top to bottom.
+/// Picture: red, green, blue and opacity of each pixel, rows from top to bottom.
 #[cfg(not(target_arch = "wasm32"))]
 pub(super) struct Picture {
     pub(super) width: u32,
@@ -70,7 +71,7 @@ impl Renderer {
         };
         let blending = PipelineParams {
             color_blend: over(BlendFactor::Value(BlendValue::SourceAlpha)),
-            // The screen stays opaque: a browser shows the page behind it otherwise.
+            // Keeps the canvas opaque: a browser would otherwise blend it with the page behind it.
             alpha_blend: over(BlendFactor::One),
             ..PipelineParams::default()
         };
@@ -88,7 +89,7 @@ impl Renderer {
         self.context.commit_frame();
     }
 
-    /// Draws a mesh into a picture: the same shader, and the same pixels as on the screen.
+    /// Draws a mesh into a picture, with the same shader and the same pixels as on the screen.
     #[cfg(not(target_arch = "wasm32"))]
     pub(super) fn picture(&mut self, mesh: &Mesh, screen: &Screen, [width, height]: [u32; 2]) -> Picture {
         self.upload(mesh);
@@ -101,7 +102,7 @@ impl Renderer {
         let mut pixels = vec![0; row * height as usize];
         self.context.texture_read_pixels(texture, &mut pixels);
         self.context.delete_render_pass(pass);
-        // Rows come from bottom to top.
+        // OpenGL returns the rows from bottom to top.
         let rows: Vec<u8> = pixels.chunks_exact(row.max(1)).rev().flatten().copied().collect();
         Picture { width, height, pixels: rows }
     }

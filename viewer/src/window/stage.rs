@@ -1,4 +1,4 @@
-//! [`Stage`]: what happens in each frame.
+//! [`Stage`]: miniquad's event handler, which runs each frame.
 
 use std::time::Duration;
 
@@ -14,7 +14,7 @@ use super::performance::Performance;
 use super::renderer::Renderer;
 use super::{Outcome, WindowError};
 
-/// Longest time that passes between two frames: after a pause, a world does not run to catch up.
+/// Longest time step between two frames, in seconds: after a longer pause the world does not catch up.
 const PAUSE_MAX: f64 = 0.25;
 
 /// The viewer and its window.
@@ -24,7 +24,7 @@ pub(super) struct Stage {
     pub(super) mesh: Mesh,
     pub(super) screen: Screen,
     keyboard: Keyboard,
-    /// When the last frame was, in seconds of the wall clock.
+    /// Time of the last frame, in seconds of the wall clock.
     last: f64,
     #[cfg(not(target_arch = "wasm32"))]
     performance: Option<Performance>,
@@ -32,7 +32,7 @@ pub(super) struct Stage {
     outcome: Outcome,
 }
 
-/// Where the graphics driver takes no shader.
+/// Event handler that does nothing, used if the graphics driver refuses the shader.
 struct Nothing;
 
 impl EventHandler for Nothing {
@@ -76,7 +76,7 @@ impl Stage {
         Box::new(stage)
     }
 
-    /// A place in the units of a draw list, of which a screen with many pixels has fewer.
+    /// Converts a position in screen pixels to the units of the draw list, which are larger on a high-DPI screen.
     fn place(&self, x: f32, y: f32) -> [f32; 2] {
         [x, y].map(|at| at * self.screen.pixel)
     }
@@ -86,7 +86,7 @@ impl Stage {
         self.app.handle(Event::Moved(place));
     }
 
-    /// What comes before the next picture. `false` at the end.
+    /// Updates the app before the next frame. Returns `false` at the end of a script.
     fn go_on(&mut self) -> Result<bool, WindowError> {
         #[cfg(not(target_arch = "wasm32"))]
         if let Some(mut performance) = self.performance.take() {
@@ -105,7 +105,7 @@ impl Stage {
         window::order_quit();
     }
 
-    /// Time passes as it does on the clock.
+    /// Advances the app by the real time since the last frame.
     fn live(&mut self) {
         let now = date::now();
         let elapsed = (now - self.last).clamp(0.0, PAUSE_MAX);
@@ -173,7 +173,7 @@ impl EventHandler for Stage {
         }
     }
 
-    /// Another window has the keyboard now, and nobody will say when keys go up.
+    /// Releases all keys: another window has the keyboard focus now and receives the key releases.
     fn window_minimized_event(&mut self) {
         for key in self.keyboard.release() {
             self.app.handle(Event::Released(key));

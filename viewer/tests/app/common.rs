@@ -1,4 +1,4 @@
-//! Apps to begin with, and what tests ask of them.
+//! Helpers that create apps, drive them and query their output.
 
 use std::time::Duration;
 
@@ -11,7 +11,7 @@ use lockstep2d_viewer::{App, Button, Event, Key, LAYER_KEYS};
 
 pub(crate) const SIZE: [f32; 2] = [1000.0, 700.0];
 
-/// A replay of a scene, in which somebody does something more at some ticks.
+/// Records a replay of a scene, with extra commands at some ticks.
 pub(crate) fn replay(scene: &str, ticks: u64, more: impl Fn(u64, &Sandbox) -> Vec<Command>) -> Vec<u8> {
     let scene = Scene::find(scene).unwrap();
     let mut recording = Recording::<Sandbox>::start(&scene.setup(0), 60).unwrap();
@@ -48,7 +48,7 @@ pub(crate) fn click(app: &mut App, at: [f32; 2]) {
     app.handle(Event::Up(Button::Left));
 }
 
-/// Goes to a tick step by step or at once, whatever it takes.
+/// Runs frames until the app shows a tick.
 pub(crate) fn wait_for(app: &mut App, tick: u64) {
     for _ in 0..10_000 {
         if app.report().tick == tick {
@@ -56,10 +56,10 @@ pub(crate) fn wait_for(app: &mut App, tick: u64) {
         }
         frames(app, 1);
     }
-    panic!("tick {tick} is not reached: {}", app.report());
+    panic!("tick {tick} should be reached: {}", app.report());
 }
 
-/// Until the verdict is there.
+/// Runs frames until the status starts with `start`, and returns the status.
 pub(crate) fn wait_for_status(app: &mut App, start: &str) -> String {
     for _ in 0..10_000 {
         let status = app.report().status;
@@ -68,22 +68,22 @@ pub(crate) fn wait_for_status(app: &mut App, start: &str) -> String {
         }
         frames(app, 1);
     }
-    panic!("no {start}: {}", app.report());
+    panic!("the status should start with {start:?}: {}", app.report());
 }
 
-/// The key that switches a layer, by the name of the layer.
+/// Returns the key that toggles the layer of this name.
 pub(crate) fn layer(name: &str) -> Key {
     let mut layers = Layers::NONE;
     let place = layers.named().iter().position(|(named, _)| *named == name).unwrap();
     Key::Character(LAYER_KEYS[place])
 }
 
-/// All lines of text on the screen.
+/// Returns all texts on the screen.
 pub(crate) fn texts(app: &mut App) -> Vec<String> {
     app.draw().texts().iter().map(|text| text.text.clone()).collect()
 }
 
-/// The hash of the sandbox's state after so many ticks of a replay.
+/// Returns the state hash at a tick of a sandbox replay.
 pub(crate) fn hash_at(file: &[u8], tick: u64) -> lockstep2d::hash::StateHash {
     let mut playback = lockstep2d::replay::Playback::<Sandbox>::open(file, &Default::default()).unwrap();
     while playback.tick() < tick {

@@ -1,4 +1,4 @@
-//! Two replays, one over the other.
+//! Comparing two replays finds and shows their first difference.
 
 use lockstep2d::fx;
 use lockstep2d::math::Vec2;
@@ -7,7 +7,7 @@ use lockstep2d_viewer::{Event, Key};
 
 use super::common::{app_of, frames, press, replay, texts, wait_for};
 
-/// Somebody pushes the fifth body before tick 90.
+/// Replay in which the fifth dynamic body gets an impulse in the tick after tick 90.
 fn pushed() -> Vec<u8> {
     replay("box_stack", 200, |tick, game| {
         let fifth = game.world().bodies().filter(|(_, body)| body.is_dynamic()).nth(4).unwrap();
@@ -22,11 +22,11 @@ fn the_first_tick_body_and_field_that_differ_are_found_and_shown() {
     app.compare_with("pushed.replay", pushed()).unwrap();
     let found = (0..1000).find_map(|_| {
         frames(&mut app, 1);
-        Some(app.report().status).filter(|status| status.contains("part at tick"))
+        Some(app.report().status).filter(|status| status.contains("first difference at tick"))
     });
     let found = found.unwrap();
-    assert!(found.contains("part at tick 91: body "), "{found}");
-    assert!(found.contains("(bits "), "both values: {found}");
+    assert!(found.contains("first difference at tick 91: body "), "{found}");
+    assert!(found.contains("(bits "), "the status should show both values: {found}");
     press(&mut app, Key::Character('j'));
     wait_for(&mut app, 91);
     let rings = |app: &mut lockstep2d_viewer::App| {
@@ -39,7 +39,7 @@ fn the_first_tick_body_and_field_that_differ_are_found_and_shown() {
     assert!(rings(&mut app) >= 1);
     press(&mut app, Key::Left);
     wait_for(&mut app, 90);
-    assert_eq!(rings(&mut app), 0, "nothing differs yet");
+    assert_eq!(rings(&mut app), 0, "no body should be circled before the first difference");
 }
 
 #[test]
@@ -50,6 +50,6 @@ fn the_same_replay_twice_has_no_difference() {
     app.handle(Event::Dropped { name: "again.replay".into(), bytes: file });
     app.handle(Event::Released(Key::Shift));
     frames(&mut app, 500);
-    assert!(app.report().status.contains("the same up to tick 200"), "{}", app.report());
-    assert!(texts(&mut app).iter().any(|line| line.contains("the same up to tick 200")));
+    assert!(app.report().status.contains("identical up to tick 200"), "{}", app.report());
+    assert!(texts(&mut app).iter().any(|line| line.contains("identical up to tick 200")));
 }

@@ -1,4 +1,4 @@
-//! Files: verdicts, what is damaged, snapshots.
+//! Opening files: the verdicts of replays, damaged files, snapshots.
 
 use lockstep2d::body::{BodyDef, Geometry, ShapeDef};
 use lockstep2d::fx;
@@ -15,8 +15,8 @@ fn a_replay_is_verified_while_one_looks_at_it() {
     let mut app = app_of(file.clone());
     let status = wait_for_status(&mut app, "match");
     assert_eq!(status, format!("match: 200 ticks, final hash {}", hash_at(&file, 200)));
-    assert!(texts(&mut app).contains(&status), "it is on the screen");
-    assert_eq!(app.report().tick, 0, "it has not moved");
+    assert!(texts(&mut app).contains(&status), "the verdict should be on the screen");
+    assert_eq!(app.report().tick, 0, "verifying should not move the shown tick");
 }
 
 #[test]
@@ -40,7 +40,10 @@ fn what_is_damaged_says_what_is_wrong_as_the_verifier_does() {
             Err(OpenError::EmptyReport) => panic!("{place}"),
             Ok(()) => assert!(status.contains(&verdict.to_string()), "{place}: {status}"),
         }
-        assert!(texts(&mut app).iter().any(|line| status.starts_with(line.as_str())), "it is on the screen");
+        assert!(
+            texts(&mut app).iter().any(|line| status.starts_with(line.as_str())),
+            "the status should be on the screen"
+        );
     }
 }
 
@@ -49,9 +52,9 @@ fn a_message_makes_way_for_the_verdict_at_the_next_key() {
     let mut app = app_of(replay("pyramid", 60, |_, _| vec![]));
     wait_for_status(&mut app, "match");
     press(&mut app, Key::Character('s'));
-    assert_eq!(app.report().status, "nothing is recorded here that could be saved");
+    assert_eq!(app.report().status, "nothing to save: this source is not recorded");
     frames(&mut app, 10);
-    assert!(app.report().status.starts_with("nothing is recorded"), "it stays until then");
+    assert!(app.report().status.starts_with("nothing to save"), "the message should stay until the next key");
     press(&mut app, Key::Right);
     assert!(app.report().status.starts_with("match"), "{}", app.report());
 }

@@ -1,4 +1,4 @@
-//! Live sessions, by the events that a window sends.
+//! Live sessions driven by window events: whatever the user does, the saved replay verifies.
 
 use lockstep2d::lockstep::Sandbox;
 use lockstep2d::math::Rng;
@@ -26,7 +26,7 @@ fn saved(app: &mut App) -> Vec<u8> {
     }
 }
 
-/// More often where most bodies are.
+/// Returns a random position, more often where most bodies are.
 fn somewhere(rng: &mut Rng) -> [f32; 2] {
     let mut side = |size: f32| size * (rng.below(1000) + rng.below(1000)) as f32 / 2000.0;
     let x = side(SIZE[0]);
@@ -64,19 +64,19 @@ fn a_session_of_random_pointer_actions_verifies_whatever_they_are() {
             }
         }
         app.handle(Event::Up(Button::Left));
-        // What is still to be done on the way there is done.
+        // Seeking to the end carries out the queued acts.
         press(&mut app, Key::End);
         frames(&mut app, 200);
         let file = saved(&mut app);
         let verdict = verify::<Sandbox>(&file, &Limits::default());
         let Verdict::Match { ticks, hash } = verdict else { panic!("seed {seed}, {scene}: {verdict}") };
-        // Where it ends is what one has seen there.
+        // The replay ends in the state that is shown.
         assert_eq!((app.report().tick, app.report().hash), (ticks, Some(hash)), "seed {seed}, {scene}");
         let mut untouched = live(scene);
         wait_for(&mut untouched, ticks);
         touched += u32::from(untouched.report().hash != Some(hash));
     }
-    assert!(touched > 90, "{touched} of 100 sessions did something");
+    assert!(touched > 90, "only {touched} of 100 sessions changed the scene");
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! What is on the screen.
+//! The screen shows layers, the fields of a selected body, the followed body and the help.
 
 use lockstep2d::draw::Layers;
 use lockstep2d_picture::DrawList;
@@ -21,7 +21,7 @@ fn size_of(list: &DrawList) -> usize {
 #[test]
 fn every_layer_adds_something_and_takes_it_away_again() {
     let mut app = app();
-    // As close as labels need it.
+    // Zoom in far enough for labels to be drawn.
     app.handle(Event::Moved(SIZE.map(|side| side / 2.0)));
     app.handle(Event::Wheel(3.0));
     for (name, shown) in (Layers { outlines: true, joints: true, ..Layers::NONE }).named() {
@@ -50,7 +50,7 @@ fn a_click_in_the_list_of_layers_switches_one() {
 fn a_click_on_a_body_shows_all_its_fields_as_decimals_and_bits() {
     let file = replay("box_stack", 100, |_, _| vec![]);
     let mut app = app_of(file.clone());
-    // Ids say where bodies are.
+    // The id labels give the positions of the bodies.
     press(&mut app, layer("ids"));
     frames(&mut app, 1);
     let labels: Vec<_> =
@@ -94,7 +94,10 @@ fn the_camera_follows_a_body_and_lets_go() {
     press(&mut app, Key::Left);
     frames(&mut app, 2);
     let shown = app.draw().texts().iter().find(|text| text.text == label.text).unwrap().clone();
-    assert!((shown.at[1] + 14.0 - SIZE[1] / 2.0).abs() > 1.0, "it has moved on its own");
+    assert!(
+        (shown.at[1] + 14.0 - SIZE[1] / 2.0).abs() > 1.0,
+        "after a reset the camera should not follow the body"
+    );
 }
 
 #[test]
@@ -106,7 +109,7 @@ fn dragging_pans_and_the_wheel_zooms_about_the_pointer() {
     let label = labels.min_by(|a, b| middle(a.at).total_cmp(&middle(b.at))).unwrap().text.clone();
     let place = |app: &mut App| {
         let at = app.draw().texts().iter().find(|text| text.text == label).unwrap().at;
-        // Of what it belongs to.
+        // Position of the labelled body.
         [at[0] - 3.0, at[1] + 14.0]
     };
     let far = place(&mut app);

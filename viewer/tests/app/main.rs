@@ -1,6 +1,6 @@
-//! The viewer, driven as a window drives it: by events and time.
-#![expect(clippy::unwrap_used, reason = "what fails here is the test")]
-#![expect(clippy::disallowed_types, reason = "floats are what screens take")]
+//! The viewer without a window, driven by events and time as a window would drive it.
+#![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
+#![expect(clippy::disallowed_types, reason = "drawing uses floats")]
 
 mod common;
 mod compare;

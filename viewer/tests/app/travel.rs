@@ -1,4 +1,4 @@
-//! Playing, stepping back, scrubbing.
+//! Playing, stepping back and scrubbing lead to the right ticks with the right hashes.
 
 use lockstep2d_viewer::{Button, Event, Key};
 
@@ -24,7 +24,7 @@ fn a_replay_plays_at_its_rate_and_stops_at_its_end() {
     assert!(texts(&mut app).iter().any(|line| line.ends_with("paused")), "{:?}", texts(&mut app));
     press(&mut app, Key::Space);
     frames(&mut app, 3);
-    assert!(app.report().tick < 10, "played again from the start");
+    assert!(app.report().tick < 10, "playing at the end should start again from the first tick");
 }
 
 #[test]
@@ -38,7 +38,10 @@ fn every_tick_has_its_hash_whichever_way_one_comes() {
         press(&mut app, key);
         wait_for(&mut app, tick);
         assert_eq!(app.report().hash, Some(hash_at(&file, tick)), "tick {tick}");
-        assert!(texts(&mut app).contains(&hash_at(&file, tick).to_string()), "it is on the screen");
+        assert!(
+            texts(&mut app).contains(&hash_at(&file, tick).to_string()),
+            "the hash should be on the screen"
+        );
     }
     app.handle(Event::Pressed(Key::Shift));
     press(&mut app, Key::Left);
@@ -46,7 +49,7 @@ fn every_tick_has_its_hash_whichever_way_one_comes() {
     wait_for(&mut app, 50);
 }
 
-/// With everything that is no state, such as contacts, which a mere return to a saved state would not have.
+/// Includes derived data outside the state, such as contact points, which restoring a save alone does not bring back.
 #[test]
 fn ten_ticks_back_everything_is_seen_as_it_was() {
     let mut app = app_of(file());
@@ -83,7 +86,7 @@ fn the_timeline_leads_to_any_tick() {
     let mut app = app_of(file.clone());
     let bar = SIZE[1] - 18.0;
     for (x, tick) in [(500.0, 150), (12.0, 0), (988.0, 300), (-50.0, 0), (256.0, 75)] {
-        // From inside of the bar, so that it is taken hold of, to a place that may lie outside.
+        // The drag starts inside the bar, and may end outside.
         app.handle(Event::Moved([500.0, bar]));
         app.handle(Event::Down(Button::Left));
         app.handle(Event::Moved([x, bar - 200.0]));

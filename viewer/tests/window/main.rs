@@ -1,7 +1,11 @@
-//! The window on a virtual screen: what is really there, against draw lists and replays.
+//! The window on a virtual screen: compares the real pixels with draw lists and replays.
 //!
-//! `viewer/test-window` installs what it needs and starts the screen.
-#![expect(clippy::unwrap_used, clippy::disallowed_types, reason = "tests may panic, and look at pixels")]
+//! `viewer/test-window` installs the required packages and starts the screen.
+#![expect(
+    clippy::unwrap_used,
+    clippy::disallowed_types,
+    reason = "tests may panic, and pixel positions are floats"
+)]
 
 mod overlays;
 mod picture;

@@ -1,4 +1,4 @@
-//! Each overlay: its pixels are where the draw list has them, in its colours, and nowhere else.
+//! Each overlay layer changes the pixels that the draw list covers, to the same colours, and no others.
 
 use std::collections::BTreeSet;
 
@@ -7,11 +7,12 @@ use lockstep2d_viewer::LAYER_KEYS;
 use super::picture::Picture;
 use super::run::{app, directory, golden, play, play_without_window};
 
-/// A tick at which there is something to see in every layer.
+/// Replay that has something to show in every layer after [`SECONDS`] seconds.
 const SCENE: &str = "bridge.replay";
 const SECONDS: usize = 2;
 
-/// Goes to the tick, and switches off what is on at first: a screenshot, and one with each layer alone.
+/// Script that seeks to the tick, turns the initial layers off, and takes a screenshot without layers and one with each
+/// layer alone.
 fn script() -> String {
     let forward = "key pagedown\n".repeat(SECONDS);
     let mut script =
@@ -35,17 +36,17 @@ fn each_overlay_is_what_the_draw_list_says() {
     for key in LAYER_KEYS {
         let (on, off) = (shot(&key.to_string()), shot(&format!("{key}-off")));
         let (drawn, _) = (expected.next().unwrap(), expected.next().unwrap());
-        assert_eq!(off, none, "layer {key} goes away");
+        assert_eq!(off, none, "layer {key} should leave nothing behind when it is turned off");
         let share = if ['6', 'i'].contains(&key) { LABELS } else { SHAPES };
         assert_alike(&format!("layer {key}"), &on, &drawn, share);
 
-        // Beside the list of layers, in which a star appears.
+        // Leaves out the layer list, where a star marks the layer.
         let in_world = |place: &[usize; 2]| place[0] > 180 || place[1] > 320;
         let changed = |a: &Picture, b: &Picture, step| -> BTreeSet<_> {
             a.differing(b, step).filter(in_world).collect()
         };
         let (seen, meant) = (changed(&on, &none, 24), changed(&drawn, &drawn_none, 24));
-        // What is faint may be fainter in one of them.
+        // A faint pixel may be fainter in one of the two pictures, so the match is made against a lower threshold.
         let (all_seen, all_meant) = (changed(&on, &none, 4), changed(&drawn, &drawn_none, 4));
         println!("layer {key}: {} pixels change, {} in the draw list", seen.len(), meant.len());
         assert!(seen.len() > 30, "layer {key}: only {} pixels change", seen.len());
@@ -62,16 +63,16 @@ fn is_near(places: &BTreeSet<[usize; 2]>, [x, y]: [usize; 2]) -> bool {
     (y.saturating_sub(1)..=y + 1).any(|y| (x.saturating_sub(1)..=x + 1).any(|x| places.contains(&[x, y])))
 }
 
-/// One pixel in so many may be quite different: where lines cross, and more where there is small text, whose letters one
-/// rasteriser puts on whole pixels.
+/// One pixel in this many may differ by a large amount, because of crossing lines. More may in layers with small
+/// text, whose letters only one of the two rasterisers aligns to whole pixels.
 const SHAPES: usize = 1000;
 const LABELS: usize = 200;
 
-/// Two rasterisers agree but for how they smooth edges.
+/// Asserts that the pictures of two rasterisers agree, apart from the antialiasing of edges.
 fn assert_alike(what: &str, shown: &Picture, drawn: &Picture, share: usize) {
     let far = shown.differing(drawn, 64).count();
     let near = shown.differing(drawn, 12).count();
     println!("{what}: {far} pixels differ by more than 64, {near} by more than 12 of {}", shown.pixels.len());
-    assert!(far * share <= shown.pixels.len(), "{what}: {far} pixels are quite different");
-    assert!(near * 50 <= shown.pixels.len(), "{what}: {near} pixels are different");
+    assert!(far * share <= shown.pixels.len(), "{what}: {far} pixels differ by more than 64");
+    assert!(near * 50 <= shown.pixels.len(), "{what}: {near} pixels differ by more than 12");
 }

@@ -1,4 +1,4 @@
-//! [`Picture`]: pixels, read and compared.
+//! [`Picture`]: reads and compares the pixels of a picture.
 
 use std::fs::File;
 use std::io::BufReader;
@@ -29,20 +29,24 @@ impl Picture {
         self.pixels[y * self.width + x]
     }
 
-    /// The places of the pixels that differ from those of another picture by more than a step of a channel.
+    /// Returns the positions of the pixels that differ from those of another picture by more than `step` in a channel.
     pub(crate) fn differing<'a>(
         &'a self,
         other: &'a Self,
         step: u8,
     ) -> impl Iterator<Item = [usize; 2]> + 'a {
-        assert_eq!((self.width, self.pixels.len()), (other.width, other.pixels.len()), "sizes");
+        assert_eq!(
+            (self.width, self.pixels.len()),
+            (other.width, other.pixels.len()),
+            "the pictures should have the same size"
+        );
         let pairs = self.pixels.iter().zip(&other.pixels).enumerate();
         let different = pairs.filter(move |(_, (a, b))| distance(**a, **b) > step);
         different.map(|(at, _)| [at % self.width, at / self.width])
     }
 }
 
-/// The largest difference of a channel.
+/// Returns the largest difference over the channels.
 pub(crate) fn distance(a: [u8; 3], b: [u8; 3]) -> u8 {
     (0..3).map(|channel| a[channel].abs_diff(b[channel])).max().unwrap()
 }

@@ -1,4 +1,4 @@
-//! Running the program, and the same script without a window.
+//! Runs a script in the program, and the same script without a window.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -11,7 +11,7 @@ use super::picture::Picture;
 
 pub(crate) const SIZE: [usize; 2] = [960, 640];
 
-/// A directory of its own for each test.
+/// Creates a separate directory for a test.
 pub(crate) fn directory(test: &str) -> PathBuf {
     let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(test);
     std::fs::create_dir_all(&path).unwrap();
@@ -31,14 +31,14 @@ pub(crate) fn command(directory: &Path, script: &str, args: &[&str]) -> Command 
     command
 }
 
-/// Runs a script in the window. The lines that it reports.
+/// Runs a script in the window, and returns the lines that it reports.
 pub(crate) fn play(directory: &Path, script: &str, args: &[&str]) -> Vec<String> {
     let Output { status, stdout, stderr } = command(directory, script, args).output().unwrap();
     assert!(status.success(), "{status}: {}", String::from_utf8_lossy(&stderr));
     String::from_utf8(stdout).unwrap().lines().map(str::to_owned).collect()
 }
 
-/// Runs a script without a window, and gives every screenshot as a rasteriser for files draws it.
+/// Runs a script without a window, and returns each screenshot as drawn by the software rasteriser.
 pub(crate) fn play_without_window(mut app: App, script: &str) -> Vec<Picture> {
     play_without_window_in(&mut app, script)
 }

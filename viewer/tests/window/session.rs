@@ -1,4 +1,4 @@
-//! A live session in the window, saved.
+//! Saving a live session from the window.
 
 use std::process::Output;
 
@@ -38,7 +38,7 @@ fn no_file_is_overwritten_that_nobody_has_named() {
 fn a_file_that_cannot_be_written_closes_no_window() {
     let script = "frames 5\nkey s\nframes 5\nreport\n";
     let mut command = command(&directory("unwritable"), script, &["--scene", "pyramid"]);
-    // Where nobody can write.
+    // No file can be created in /proc.
     let Output { status, stdout, .. } = command.current_dir("/proc").output().unwrap();
     let report = String::from_utf8(stdout).unwrap();
     assert!(status.success() && report.contains("not saved: pyramid.replay: "), "{status} {report}");

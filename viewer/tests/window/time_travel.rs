@@ -1,4 +1,4 @@
-//! Stepping back shows what there was.
+//! Stepping back shows the same pixels as before.
 
 use lockstep2d_picture::{CELL_HEIGHT, CELL_WIDTH, glyph};
 use lockstep2d_viewer::App;
@@ -6,7 +6,7 @@ use lockstep2d_viewer::App;
 use super::picture::{Picture, distance};
 use super::run::{app, directory, golden, play};
 
-/// All layers but the broad phase, whose structure is no state: all of them must come back.
+/// Keys of all layers that are compared: not the broad phase, whose tree is not part of the state and may differ.
 const ALL: &str = "key 2\nkey 4\nkey 6\nkey 7\nkey 8\nkey 9\nkey 0\nkey c\nkey v\nkey i\n";
 
 #[test]
@@ -16,7 +16,8 @@ fn ten_ticks_back_is_pixel_for_pixel_what_it_was() {
         let (directory, replay) = (directory("back"), golden(replay));
         let ten = |key: &str| format!("key {key}\nframes 2\n").repeat(10);
         let (right, left) = (ten("right"), ten("left"));
-        // Verified first, for what there is to say of that changes. A frame is a tick: forwards by playing, then by steps, and back by steps.
+        // The first 400 frames complete the verification, whose progress would change the picture. Each frame is one
+        // tick: forwards by playing, then forwards and back by single steps.
         let script = format!(
             "{ALL}key space\nkey home\nframes 400\nkey space\nframes 100\nkey space\nscreenshot played.png\nreport\n\
              {right}screenshot further.png\nreport\n{left}screenshot back.png\nreport\n\
@@ -43,9 +44,9 @@ fn the_hash_is_on_the_screen() {
     let script = "key space\nkey home\nkey pagedown\nframes 30\nscreenshot hash.png\nreport\n";
     let reports = play(&directory, script, &[replay.to_str().unwrap()]);
     let hash = reports[0].split(" · ").nth(2).unwrap();
-    assert_eq!(hash, hash_at(app(&replay), 60), "the same without a window");
+    assert_eq!(hash, hash_at(app(&replay), 60), "the hash should equal that of a run without a window");
 
-    // Where the draw list has it, every pixel of every digit.
+    // Checks every pixel of every digit at the position in the draw list.
     let mut app = app(&replay);
     app.handle(lockstep2d_viewer::Event::Resized(super::run::SIZE.map(|side| side as f32)));
     let place = app.draw().texts().iter().find(|text| text.text.len() == 32).unwrap().clone();
