@@ -1,4 +1,4 @@
-//! The committed replays verify, end in the committed constants, and are what the scenes still record.
+//! The committed replays verify, end in the committed hashes, and equal what their scenes record.
 
 mod common;
 
