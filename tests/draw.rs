@@ -54,7 +54,7 @@ fn every_layer_has_its_primitives() {
         (Style::ContactPoint(Proximity::Speculative), 0),
         (Style::ContactNormal(Proximity::Touching), 2),
         (Style::ContactNormal(Proximity::Speculative), 0),
-        // Only one anchor has an arm, because the post's anchor is at its centre.
+        // Fixed bodies such as the post have no arm.
         (Style::JointArm, 1),
         (Style::JointAnchor, 2),
         (Style::JointGap, 1),
