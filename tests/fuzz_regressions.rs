@@ -250,7 +250,7 @@ fn a_snapshot_that_hides_the_floor_from_the_broad_phase_is_refused() {
 
 #[test]
 fn a_snapshot_of_a_kinematic_body_that_rests_and_moves_is_refused() {
-    // When the body stopped, its contacts were not marked as resting.
+    // When such a body stopped, its contacts were kept a tick longer than in a world without caches.
     let mut world = weightless();
     world.spawn(&BodyDef::kinematic().position(fx!(3.25), fx!(0)), &[]).unwrap();
     world.step();
@@ -293,7 +293,7 @@ fn many_fixed_shapes_at_one_point_wake_nobody_for_long() {
 
 #[test]
 fn a_shape_that_comes_wakes_who_lies_where_it_comes() {
-    // Only bodies that touch the new shape wake, not those that touch other shapes of its body.
+    // Only overlaps of the new shape are searched, not those of all shapes of its body.
     let mut world = World::default();
     let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).unwrap());
     let ground = world.spawn(&BodyDef::fixed(), &[ball]).unwrap();
