@@ -24,7 +24,7 @@ fn replays() -> Vec<(String, Vec<u8>)> {
 fn every_replay_matches_and_ends_in_its_golden() {
     let goldens = common::goldens();
     let replays = replays();
-    assert_eq!(replays.len(), goldens.len(), "a replay for each golden");
+    assert_eq!(replays.len(), goldens.len(), "expected a replay for each golden");
     for (name, bytes) in replays {
         let golden = goldens.iter().find(|golden| golden.scene == name).expect("a golden for each replay");
         match verify::<Sandbox>(&bytes, &Limits::default()) {

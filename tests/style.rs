@@ -60,7 +60,7 @@ fn fails(files: &[Source], rule: impl Fn(&Source) -> Vec<String>) -> Vec<String>
 }
 
 fn check(files: &[Source], rule: impl Fn(&Source) -> Vec<String>) {
-    assert!(!files.is_empty(), "no files were found");
+    assert!(!files.is_empty(), "expected files to check");
     let wrong = fails(files, rule);
     assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
 }
@@ -135,7 +135,7 @@ fn machine_paths(file: &Source) -> Vec<String> {
             let starts =
                 |at: usize| !text[..at].ends_with(|c: char| c.is_alphanumeric() || "._-/}*".contains(c));
             if text.match_indices(&path).any(|(at, _)| starts(at)) {
-                wrong.push(format!("{line}: a path of one machine, {path}"));
+                wrong.push(format!("{line}: a path that depends on the machine, {path}"));
             }
         }
     }

@@ -68,7 +68,7 @@ fn everything_slides_over_a_flat_chain_of_1000_links() {
                     assert!(fastest < fx!(0.05), "{name} at {speed} m/s: {fastest} m/s up or down");
                     let travelled = world.body(body).expect("there").position().x;
                     let free = speed * 800 / 60;
-                    // Rounded corners that meet the vertices gain or lose speed: 0.03 % of the distance.
+                    // Rounded corners that meet the vertices gain or lose speed, which changes the distance by 0.03 %.
                     assert!(friction > 0 || (travelled - free).abs() < fx!(0.03), "{name}: {travelled} m");
                     assert_eq!(world.faults(), 0);
                 }

@@ -135,7 +135,7 @@ fn the_end_cannot_be_restated() {
         hash: actual,
         difference: ClaimDifference::Value { name: name.into(), claimed, actual: actual_value },
     };
-    // 2 claims: 4 "half" 8 bytes, 3 "sum" 8 bytes.
+    // Layout: count 2; length 4, "half", 8 bytes of value; length 3, "sum", 8 bytes of value.
     let count = CHAIN.end;
     let (half, sum) = (count + 1, count + 1 + 13);
     assert_eq!(forged(|forged| forged.trailer()[sum + 4] ^= 64), value("sum", Some(40 ^ 64), Some(40)));
