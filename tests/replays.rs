@@ -36,7 +36,7 @@ fn every_replay_matches_and_ends_in_its_golden() {
     }
 }
 
-/// Recording a scene anew gives the committed file byte for byte, so replays and scenes cannot drift apart.
+/// Recording a scene again gives the committed file byte for byte, so replays and scenes cannot drift apart.
 #[test]
 fn every_replay_is_what_its_scene_records() {
     for (name, bytes) in replays() {

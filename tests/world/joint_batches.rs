@@ -1,4 +1,4 @@
-//! Joint batches that are kept between ticks give the same results as batches that are prepared anew every tick.
+//! Joint batches that are kept between ticks give the same results as batches that are prepared again every tick.
 
 use lockstep2d::body::{BodyDef, BodyId, BodyKind, MassSource};
 use lockstep2d::fx;
