@@ -1,4 +1,4 @@
-//! A step allocates nothing once the buffers have grown to the size of the scene.
+//! A step allocates nothing once its buffers have grown to the size of the scene.
 
 mod common;
 
@@ -10,7 +10,7 @@ use lockstep2d::scenes::Scene;
 use lockstep2d::solver::{JointDef, Revolute, Threshold};
 use lockstep2d::world::{Config, Snapshot, World};
 
-/// The system's memory, which counts for each thread what that thread asks for.
+/// System allocator that counts allocations and bytes for each thread.
 mod counting {
     #![expect(unsafe_code, reason = "the trait of allocators is unsafe")]
 
@@ -32,38 +32,38 @@ mod counting {
         BYTES.set(BYTES.get() + bytes);
     }
 
-    /// How often this thread has asked for memory.
+    /// Returns the number of allocations of this thread.
     pub(super) fn count() -> usize {
         COUNT.get()
     }
 
-    /// How many bytes it has asked for.
+    /// Returns the number of bytes that this thread has allocated.
     pub(super) fn bytes() -> usize {
         BYTES.get()
     }
 
-    // SAFETY: as the system's, which does it all.
+    // SAFETY: forwards to the system allocator.
     unsafe impl GlobalAlloc for Counting {
         unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
             add(layout.size());
-            // SAFETY: as the caller's.
+            // SAFETY: the caller upholds the contract of `alloc`.
             unsafe { System.alloc(layout) }
         }
 
         unsafe fn dealloc(&self, memory: *mut u8, layout: Layout) {
-            // SAFETY: as the caller's.
+            // SAFETY: the caller upholds the contract of `dealloc`.
             unsafe { System.dealloc(memory, layout) }
         }
 
         unsafe fn realloc(&self, memory: *mut u8, layout: Layout, size: usize) -> *mut u8 {
             add(size);
-            // SAFETY: as the caller's.
+            // SAFETY: the caller upholds the contract of `realloc`.
             unsafe { System.realloc(memory, layout, size) }
         }
     }
 }
 
-/// How often the steps of some ticks allocate, after others.
+/// Returns the number of allocations in `ticks` steps that follow `warm_up` steps.
 fn allocations(world: &mut World, warm_up: u64, ticks: u64) -> usize {
     (0..warm_up).for_each(|_| world.step());
     let before = counting::count();
@@ -71,7 +71,7 @@ fn allocations(world: &mut World, warm_up: u64, ticks: u64) -> usize {
     counting::count() - before
 }
 
-/// A scene in which nobody does anything.
+/// Returns the initial world of a scene, to be stepped without commands.
 fn world_of(name: &str) -> World {
     let scene = Scene::find(name).expect("a scene of this crate");
     let mut game = Sandbox::new(&scene.setup(common::SEED)).expect("the scenes of this crate are valid");
@@ -88,7 +88,7 @@ fn the_counter_counts() {
 
 #[test]
 fn piles_and_joints_at_rest_allocate_nothing() {
-    // A hundred polygons fall for a while before they rest.
+    // The hundred polygons need several seconds to come to rest.
     for (name, warm_up) in
         [("pyramid", 60), ("large_pyramid", 60), ("joint_grid", 60), ("hundred_polygons", 400)]
     {
@@ -96,7 +96,7 @@ fn piles_and_joints_at_rest_allocate_nothing() {
     }
 }
 
-/// A hanging chain in which the world asks what each joint bears.
+/// A hanging chain whose joints are checked against thresholds.
 #[test]
 fn joints_with_thresholds_allocate_nothing() {
     let config = Config { sleeping: false, ..Config::default() };
@@ -115,11 +115,11 @@ fn joints_with_thresholds_allocate_nothing() {
     assert_eq!(allocations(&mut world, 60, 60), 0);
 }
 
-/// Bodies are packed in the step and copied by the save, each time in the memory of the time before: 52 bytes for each. What
-/// a save asks for is lists of digests, of half a byte for each body, shape and joint.
+/// Bodies are packed in the step and copied by the save, into reused buffers: 52 bytes per body. A save allocates only
+/// lists of digests, half a byte per body, shape and joint.
 #[test]
 fn saving_every_tick_allocates_no_room_for_bodies() {
-    // A world at rest, one in which nearly everything sleeps, and one of hinges.
+    // A pile at rest, a world in which nearly all bodies sleep, and a grid of hinges.
     for (name, warm_up) in [("large_pyramid", 60), ("smash", 20), ("joint_grid", 60)] {
         let mut world = world_of(name);
         (0..warm_up).for_each(|_| world.step());
@@ -132,15 +132,15 @@ fn saving_every_tick_allocates_no_room_for_bodies() {
             let per_body = (counting::bytes() - bytes) / world.body_count();
             if tick >= 8 {
                 assert_eq!(stepped - before, 0, "{name}, tick {tick}");
-                // Debug builds pack all bodies once more, to compare.
+                // Debug builds pack all bodies once more, for comparison.
                 let is_lean = cfg!(debug_assertions) || per_body < 5;
-                assert!(is_lean, "{per_body} bytes for each body of {name}, tick {tick}");
+                assert!(is_lean, "{per_body} bytes per body of {name}, tick {tick}");
             }
         }
     }
 }
 
-/// What churns reaches a new largest number of this or that now and then, ever more rarely.
+/// In a changing scene, some buffer reaches a new maximum from time to time, with decreasing frequency.
 #[test]
 fn a_drum_allocates_only_for_new_records() {
     let growths = allocations(&mut world_of("drum"), 120, 240);

@@ -1,5 +1,5 @@
-//! How the solver computes changes how fast, never what: with every backend of this machine and on any number of
-//! threads, the large scenes end in the hashes of `tests/backends.txt`.
+//! SIMD backend and thread count never affect results: on every backend of this machine and on any number of threads,
+//! the large scenes end in the hashes of `tests/backends.txt`.
 
 mod common;
 
@@ -11,7 +11,7 @@ use lockstep2d::world::{Backend, StepStats, World};
 
 const HASHES: &str = "tests/backends.txt";
 
-/// The scenes, and for how many ticks. The block of `smash` takes a while to arrive.
+/// Scenes with their numbers of ticks. The block of `smash` takes a while to arrive.
 const SCENES: [(&str, u64); 10] = [
     ("large_pyramid", 60),
     ("many_pyramids", 60),
@@ -25,11 +25,11 @@ const SCENES: [(&str, u64); 10] = [
     ("compounds", 60),
 ];
 
-/// The hash at the end of a scene, and what has been counted in its last tick.
+/// Returns the hash at the end of a scene, and the statistics of its last tick.
 fn end_of(name: &str, ticks: u64, choose: impl FnOnce(&mut World) -> bool) -> (String, StepStats) {
     let scene = Scene::find(name).expect("a scene of this crate");
     let mut game = Sandbox::new(&scene.setup(common::SEED)).expect("the scenes of this crate are valid");
-    assert!(choose(game.world_mut()), "this machine cannot compute like that");
+    assert!(choose(game.world_mut()), "this machine does not support the requested backend or thread count");
     for tick in 0..ticks {
         let commands = scene.commands(tick, &game);
         game.step(&[commands]);
@@ -38,7 +38,7 @@ fn end_of(name: &str, ticks: u64, choose: impl FnOnce(&mut World) -> bool) -> (S
     (game.state_hash().to_string(), *game.world().stats())
 }
 
-/// Runs all scenes in each of several ways, which have to agree with each other and with the file.
+/// Runs all scenes in each of several ways, whose results must equal each other and the file.
 fn all_end_in_their_hashes<Way: Copy + Debug>(ways: &[Way], choose: fn(&mut World, Way) -> bool) {
     let known = common::goldens_of(HASHES);
     let mut wrong = Vec::new();
@@ -56,11 +56,11 @@ fn all_end_in_their_hashes<Way: Copy + Debug>(ways: &[Way], choose: fn(&mut Worl
     }
     assert!(
         wrong.is_empty(),
-        "the arithmetic has changed, in the same way for all. If that is meant: raise lockstep2d::SEMANTICS and \
+        "the arithmetic has changed, equally in all variants. If this is intended, raise lockstep2d::SEMANTICS and \
          add these lines to {HASHES}.\n{}",
         wrong.join("\n")
     );
-    assert_eq!(known.len(), SCENES.len(), "{HASHES} has a line for each scene");
+    assert_eq!(known.len(), SCENES.len(), "expected a line for each scene in {HASHES}");
 }
 
 #[test]
@@ -69,7 +69,7 @@ fn every_backend_ends_in_the_same_hashes() {
     all_end_in_their_hashes(&backends, World::set_backend);
 }
 
-/// One thread is what the test above has.
+/// The test of the backends covers one thread.
 #[test]
 #[cfg(feature = "parallel")]
 fn any_number_of_threads_ends_in_the_same_hashes() {

@@ -1,4 +1,4 @@
-//! A character that queries move enters nothing, falls through nothing, and gets where its rules say.
+//! Characters moved by queries never overlap a shape, never fall through ground, and move as their settings say.
 
 use lockstep2d::body::{BodyDef, BodyId, Chain, Geometry, Polygon, ShapeDef};
 use lockstep2d::fx;
@@ -11,7 +11,7 @@ fn at(x: Fx, y: Fx) -> Vec2<Fx> {
     Vec2::new(x, y)
 }
 
-/// A pill of 1.4 m about its middle.
+/// A capsule 1.4 m high, centred at the origin.
 fn pill() -> Mover {
     let pill = Geometry::capsule(at(fx!(0), fx!(-0.4)), at(fx!(0), fx!(0.4)), fx!(0.3)).expect("valid");
     Mover::new(pill).expect("valid")
@@ -24,14 +24,14 @@ fn chain(points: &[(Fx, Fx)]) -> World {
     world
 }
 
-/// The distance of a mover from the nearest shape.
+/// Returns the distance between a mover and the nearest shape.
 fn clearance(world: &World, mover: &Mover, position: Vec2<Fx>) -> Fx {
     let probe = mover.probe(position);
     let distances = world.shapes().map(|(id, _)| world.probe_distance(&probe, id).expect("there").distance);
     distances.min().expect("a level")
 }
 
-/// Walks for some ticks under gravity, and returns every state.
+/// Walks for a number of ticks under gravity, and returns every state.
 fn walk(world: &World, mover: &Mover, from: MoverState, speed: Fx, ticks: u32) -> Vec<MoverState> {
     let mut state = from;
     let step = |_| {
@@ -66,11 +66,11 @@ fn the_character_of_the_scene_enters_nothing() {
     }
     assert_eq!(game.refused(), 0);
     assert!(least > fx!(0.00005), "{least}");
-    // It has run against the left wall, and not come up the steep slope, which begins at 20 m, but for a jump.
+    // It has reached the left wall. It has passed the foot of the steep slope at 20 m only by a jump.
     assert!((way.0 - fx!(-9.7)).abs() < fx!(0.001), "{way:?}");
     assert!(way.1 > fx!(19.7) && way.1 < fx!(20.6), "{way:?}");
-    assert!(trace[595].y < trace[560].y - fx!(0.1), "it slides down: {:?}", trace[595]);
-    // It is back on the plateau or beyond: it has come up the steps again.
+    assert!(trace[595].y < trace[560].y - fx!(0.1), "expected the character to slide down: {:?}", trace[595]);
+    // It is back on or beyond the plateau, so it has climbed the steps again.
     assert!(trace[870].x < fx!(5), "{:?}", trace[870]);
 }
 
@@ -86,18 +86,18 @@ fn slopes_up_to_the_limit_are_ground_and_steeper_ones_are_walls() {
         let end = states[179];
         assert!(end.is_on_ground(), "{degrees}: {end:?}");
         if degrees <= 45 {
-            // Nearly 6 m along the slope, at full speed: the corner is cut by the round foot.
+            // Nearly 6 m along the slope at full speed: the round foot cuts the corner.
             let up = end.position.y - fx!(0.7);
             let expected = fx_mul(fx!(6), Fx::from_num(angle.sin()));
             assert!((up - expected).abs() < fx!(0.3), "{degrees}: {up} {expected}");
-            // It stands without sliding, and comes down again on the ground.
+            // It stands without sliding, and walks down without leaving the ground.
             let still = walk(&world, &mover, end, fx!(0), 120)[119];
             assert!(still.position.distance(end.position) < fx!(0.0005), "{degrees}: {still:?} {end:?}");
             let down = walk(&world, &mover, still, fx!(-3), 120);
             assert!(down.iter().all(MoverState::is_on_ground), "{degrees}");
         } else {
             assert!(end.position.y < fx!(0.72), "{degrees}: {end:?}");
-            // Put on the slope it slides down.
+            // Placed on the slope, it slides down.
             let middle = at(top.x / 2, top.y / 2) + Rot::from_angle(angle).apply_wide(at(fx!(0), fx!(0.71)));
             let mut state = MoverState::at(middle);
             for _ in 0..60 {
@@ -134,7 +134,7 @@ fn steps_are_taken_up_to_their_height() {
             assert!(end.position.y > fx!(3.19), "{what} at {speed}: {end:?}");
             let low = walk(&world, &mover.step_height(fx!(0.24)), start, speed, ticks);
             assert!(low[low.len() - 1].position.y < fx!(0.75), "{what} at {speed}: {:?}", low[low.len() - 1]);
-            // Down again, on the ground all the way; a box has to leave a step before it can come down.
+            // It walks down without leaving the ground; a box must leave a step before it can descend.
             let down =
                 walk(&world, &mover.step_height(fx!(0.26)).snap_distance(fx!(0.3)), end, -speed, ticks);
             assert!(down[down.len() - 1].position.y < fx!(0.71), "{what} at {speed}");
@@ -171,7 +171,10 @@ fn jumps_end_at_ceilings_and_pass_platforms_from_below() {
         state.velocity.y -= fx!(1 / 6);
         state = world.move_character(&pill(), &state, QueryFilter::default()).state;
         highest = highest.max(state.position.y);
-        assert!(highest < fx!(3.7998) || state.velocity.y <= 0, "the ceiling takes the speed, {tick}");
+        assert!(
+            highest < fx!(3.7998) || state.velocity.y <= 0,
+            "tick {tick}: expected the ceiling to stop the jump"
+        );
     }
     assert!((highest - fx!(3.7999)).abs() < fx!(0.0001), "{highest}");
     assert!(state.is_on_ground() && (state.position.y - fx!(2.2001)).abs() < fx!(0.00001), "{state:?}");
@@ -183,7 +186,7 @@ fn one_way_shapes_are_jumped_through_and_stood_upon() {
     let slab = ShapeDef::new(Polygon::rectangle(fx!(2), fx!(0.25)).expect("valid")).one_way(Angle::QUARTER);
     world.spawn(&BodyDef::fixed().position(fx!(0), fx!(1.5)), &[slab]).expect("valid");
     let mut state = MoverState::at(at(fx!(0), fx!(0.7001)));
-    // 3 m/s are not enough: it turns round within the slab, and falls back.
+    // A jump of 3 m/s is too slow: the character turns round inside the slab and falls back.
     for (speed, end) in [(fx!(3), fx!(0.7001)), (fx!(8), fx!(2.4501))] {
         state.velocity.y = speed;
         for _ in 0..150 {
@@ -194,7 +197,7 @@ fn one_way_shapes_are_jumped_through_and_stood_upon() {
     }
 }
 
-/// Random levels of boxes, circles, capsules and lines, random walks: no shape is ever entered.
+/// Random walks through random levels of boxes, circles, capsules and segments: no shape is ever entered.
 #[test]
 fn random_walks_enter_nothing() {
     let mut rng = Rng::new(3);
@@ -250,7 +253,7 @@ fn random_shape(rng: &mut Rng) -> Geometry {
     }
 }
 
-/// What comes over a character pushes it out, if there is room.
+/// A shape that moves into a character pushes it out if there is room.
 #[test]
 fn a_lift_that_comes_up_takes_the_character_along() {
     let mut world = chain(&[(fx!(-20), fx!(0)), (fx!(20), fx!(0))]);

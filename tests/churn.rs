@@ -1,5 +1,5 @@
-//! Ten thousand bodies come and go in random order: no stale handle resolves, and a restore in the middle goes on
-//! bit-identically.
+//! Ten thousand bodies are created and destroyed in random order: no stale handle resolves, and a world restored midway
+//! continues bit-identically.
 
 use lockstep2d::body::{BodyDef, BodyId, Geometry, JointId, Polygon, ShapeDef, ShapeId, WorldError};
 use lockstep2d::fx;
@@ -7,7 +7,7 @@ use lockstep2d::math::Rng;
 use lockstep2d::solver::{JointDef, Revolute};
 use lockstep2d::world::World;
 
-/// A world under churn, with every handle it ever gave.
+/// A world under churn, with every handle that it has issued.
 struct Churn {
     world: World,
     rng: Rng,
@@ -90,7 +90,7 @@ fn ten_thousand_bodies_come_and_go() {
     let mut twin: Option<World> = None;
     while churn.spawned < 10_000 {
         let rng_before = churn.rng.clone();
-        // Crowds are kept small so that the test is about handles, not about heaps.
+        // The number of bodies is limited, because the test is about handles, not about large piles.
         while churn.alive.len() > 150 {
             churn.despawn();
         }
@@ -111,7 +111,7 @@ fn ten_thousand_bodies_come_and_go() {
     assert!(churn.gone.len() > 9000 && churn.joints.len() > 500, "{} joints", churn.joints.len());
 }
 
-/// From here on both worlds get the same changes for a while, and stay equal.
+/// Applies the same changes to both worlds for a while, and expects them to stay equal.
 fn replay_on_twin(churn: &mut Churn, twin: &mut World) {
     for _ in 0..500 {
         let mut other = Churn {
@@ -128,7 +128,7 @@ fn replay_on_twin(churn: &mut Churn, twin: &mut World) {
         churn.world.step();
         other.world.step();
         *twin = other.world;
-        assert_eq!(churn.alive, other.alive, "the same handles are given");
+        assert_eq!(churn.alive, other.alive, "expected the same handles");
         assert_eq!(churn.world.state_hash(), twin.state_hash());
     }
 }

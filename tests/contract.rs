@@ -1,6 +1,6 @@
-//! The contract of determinism, for every scene: two runs, a restore from bytes at every tick, dropped caches
-//! and another broad phase give the same hash after every tick; and that hash is the one in `tests/goldens.txt`,
-//! in every build profile and on every machine.
+//! The contract of determinism, for every scene: two runs, restores from bytes at every tick, rollbacks, cleared caches
+//! and another broad phase give the same hash and events after every tick. The final hash is the one in
+//! `tests/goldens.txt`, in every build profile and on every machine.
 
 mod common;
 
@@ -13,13 +13,13 @@ use lockstep2d::lockstep::{Game, Sandbox};
 use lockstep2d::scenes::{self, Scene};
 use lockstep2d::world::{Events, World};
 
-/// What a run shows from outside after every tick.
+/// Observable results of a run after every tick.
 struct Trace {
     hashes: Vec<StateHash>,
     events: Vec<Events>,
 }
 
-/// Runs a scene; `disturb` may do before each tick whatever must not change a thing.
+/// Runs a scene; `disturb` runs before each tick and must not affect results.
 fn trace(scene: &Scene, ticks: u64, mut disturb: impl FnMut(u64, &mut Sandbox)) -> Trace {
     let mut game = Sandbox::new(&scene.setup(common::SEED)).expect("the scenes of this crate are valid");
     let mut trace = Trace { hashes: vec![game.state_hash()], events: vec![] };
@@ -45,7 +45,7 @@ fn assert_same(scene: &Scene, what: &str, trace: &Trace, reference: &Trace) {
     assert_eq!(differing, None, "{}: {what} changes the events of this tick", scene.name);
 }
 
-/// Every scene, for as long as its golden but at most 300 ticks, with the trace of an undisturbed run.
+/// Runs `hold` for every scene, with its golden's number of ticks but at most 300, and the trace of an undisturbed run.
 fn each_scene(mut hold: impl FnMut(&Scene, u64, &Trace)) {
     static UNDISTURBED: OnceLock<Vec<(&Scene, u64, Trace)>> = OnceLock::new();
     let runs = UNDISTURBED.get_or_init(|| {
@@ -112,7 +112,7 @@ fn scratch_may_be_cleared_before_any_tick() {
 #[test]
 fn the_broad_phase_makes_no_difference() {
     each_scene(|scene, ticks, reference| {
-        // Brute force compares each shape with each: a few ticks of the largest scenes are enough.
+        // Brute force compares all pairs of shapes, so only a few ticks of the largest scenes are simulated.
         let start = Sandbox::new(&scene.setup(common::SEED)).expect("the scenes of this crate are valid");
         let ticks = if start.world().shape_count() > 2000 { 5 } else { ticks };
         let brute_force = |tick: u64, game: &mut Sandbox| {
@@ -124,7 +124,7 @@ fn the_broad_phase_makes_no_difference() {
     });
 }
 
-/// "Run twice and compare" finds no mistake that is made twice: a committed constant does.
+/// Comparing two runs misses an error that both runs make; a committed hash catches it.
 #[test]
 fn every_scene_ends_in_its_golden() {
     let goldens = goldens();
@@ -142,8 +142,8 @@ fn every_scene_ends_in_its_golden() {
     }
     assert!(
         wrong.is_empty(),
-        "the arithmetic has changed. If that is meant: raise lockstep2d::SEMANTICS, add these lines to \
-         tests/goldens.txt, record replays/ anew (`replays/record`), and say \"hashes change: yes\" \
+        "the arithmetic has changed. If this is intended: raise lockstep2d::SEMANTICS, add these lines to \
+         tests/goldens.txt, record replays/ again (`replays/record`), and say \"hashes change: yes\" \
          in CHANGELOG.md.\n{}",
         wrong.join("\n")
     );

@@ -1,4 +1,4 @@
-//! Pictures show what is there, look the same every time, and change nothing.
+//! Pictures show the state of the world, are reproducible, and do not change the world.
 
 use lockstep2d::body::{BodyDef, BodyKind, Geometry, Polygon, ShapeDef, WorldError};
 use lockstep2d::draw::{
@@ -11,8 +11,8 @@ use lockstep2d::world::{Config, World};
 
 const GROUND_TOP: Fx = fx!(0);
 
-/// A ground, a box at rest on it, a pendulum, and a lift: after a second the box has two contact points. All fall a
-/// little to the side, so that friction holds the box.
+/// A ground, a box at rest on it, a pendulum, and a lift: after a second the box has two contact points. Gravity is
+/// tilted, so that friction holds the box.
 fn scene() -> World {
     build_scene().expect("a valid scene")
 }
@@ -46,7 +46,7 @@ fn every_layer_has_its_primitives() {
     let found = primitives(&scene(), Layers::ALL);
     let expected = [
         (Style::Fixed, 1),
-        // A box, and a circle with its radius.
+        // A box, and a circle with its radius line.
         (Style::Dynamic, 3),
         (Style::Kinematic, 1),
         (Style::FatBox, 4),
@@ -54,7 +54,7 @@ fn every_layer_has_its_primitives() {
         (Style::ContactPoint(Proximity::Speculative), 0),
         (Style::ContactNormal(Proximity::Touching), 2),
         (Style::ContactNormal(Proximity::Speculative), 0),
-        // The post is fixed.
+        // Fixed bodies such as the post have no arm.
         (Style::JointArm, 1),
         (Style::JointAnchor, 2),
         (Style::JointGap, 1),
@@ -63,7 +63,7 @@ fn every_layer_has_its_primitives() {
     for (style, expected) in expected {
         assert_eq!(count(&found, style), expected, "{style:?}");
     }
-    assert!(count(&found, Style::Velocity) >= 2, "bob and lift move");
+    assert!(count(&found, Style::Velocity) >= 2, "expected velocities of the bob and the lift");
 }
 
 #[test]
@@ -86,7 +86,7 @@ fn primitives_are_where_the_world_is() {
                 assert!((place.x.abs() - fx!(0.5)).abs() < fx!(0.005), "{place:?}");
             }
             (Style::ContactNormal(_), Form::Direction { direction, .. }) => {
-                assert!(direction.y > Fx::lit("0.999"), "from the ground up: {direction:?}");
+                assert!(direction.y > Fx::lit("0.999"), "expected an upward normal: {direction:?}");
             }
             (Style::JointGap, Form::Line { from, to }) => assert!(from.distance(*to) < fx!(0.01)),
             (Style::CentreOfMass, Form::Point(place)) => {
@@ -95,7 +95,10 @@ fn primitives_are_where_the_world_is() {
             }
             (Style::Dynamic, Form::Line { from, to }) => {
                 let radius = from.distance(*to);
-                assert!((radius - fx!(0.25)).abs() < fx!(0.0001), "the bob's: {radius}");
+                assert!(
+                    (radius - fx!(0.25)).abs() < fx!(0.0001),
+                    "expected the radius of the bob, found {radius}"
+                );
             }
             _ => {}
         }
@@ -166,10 +169,10 @@ fn a_picture_has_an_element_for_each_body_and_style() {
     let picture = svg(&scene(), &view);
     // The four bodies, and the two dynamic ones again as islands.
     assert_eq!(picture.matches("<title>body ").count(), 4 + 2);
-    // Those; boxes of the broad phase, fat boxes, arm, velocity, centres, anchors, gap, normals, points, forces, friction
-    // and the colour of the solver; the scale bar.
+    // Those, plus: boxes of the broad phase, fat boxes, arm, velocity, centres, anchors, gap, normals, points, forces,
+    // friction and the solver's graph colour; then the scale bar.
     assert_eq!(picture.matches("<path ").count(), 4 + 2 + 12 + 1);
-    // The ids of all bodies but the ground, whose centre lies below the picture, and the error of the joint.
+    // The ids of all bodies except the ground, whose centre lies below the picture, and the error of the joint.
     assert_eq!(picture.matches(" dy=\"-3\">").count(), 4 + 1);
     assert!(picture.len() < 8000, "{} bytes", picture.len());
 }
@@ -178,7 +181,7 @@ fn a_picture_has_an_element_for_each_body_and_style() {
 fn what_cannot_be_seen_is_left_out() {
     let far = Aabb::new(Vec2::new(fx!(500), fx!(500)), Vec2::new(fx!(501), fx!(501)));
     let picture = svg(&scene(), &View { frame: Frame::Window(far), ..View::default() });
-    assert_eq!(picture.matches("<path ").count(), 1, "only the scale bar");
+    assert_eq!(picture.matches("<path ").count(), 1, "expected only the scale bar");
 }
 
 #[test]
@@ -188,8 +191,8 @@ fn the_fit_holds_what_matters() {
     for (_, body) in world.bodies().filter(|(_, body)| body.kind() != BodyKind::Fixed) {
         assert!(window.contains_point(body.centre_of_mass()));
     }
-    assert!(window.contains_point(Vec2::new(fx!(3), fx!(4))), "the pivot of the pendulum");
-    assert!(window.upper.x - window.lower.x < fx!(15), "not the whole ground: {window:?}");
+    assert!(window.contains_point(Vec2::new(fx!(3), fx!(4))), "expected the pivot of the pendulum");
+    assert!(window.upper.x - window.lower.x < fx!(15), "expected less than the whole ground: {window:?}");
 
     let runaway = ShapeDef::new(Geometry::circle(fx!(1)).unwrap());
     world.spawn(&BodyDef::dynamic().position(fx!(0), fx!(-1000000)), &[runaway]).unwrap();
@@ -210,18 +213,18 @@ fn the_fit_shows_the_ground_below_what_falls() {
     assert!(window.upper.y < fx!(12), "{window:?}");
 }
 
-/// Tags are closed in order, attributes are quoted, and text has no raw markup.
+/// Expects tags to be closed in order, attributes to be quoted, and text to contain no raw markup.
 fn check_well_formed(document: &str) {
     let mut open: Vec<&str> = Vec::new();
     let mut rest = document;
     let mut roots = 0;
     while let Some(start) = rest.find('<') {
         check_text(&rest[..start]);
-        let end = start + rest[start..].find('>').expect("a tag ends");
+        let end = start + rest[start..].find('>').expect("a tag has an end");
         let tag = &rest[start + 1..end];
         rest = &rest[end + 1..];
         if let Some(name) = tag.strip_prefix('/') {
-            assert_eq!(open.pop(), Some(name), "closed in order");
+            assert_eq!(open.pop(), Some(name), "expected tags to be closed in order");
             continue;
         }
         let empty = tag.ends_with('/');
@@ -238,7 +241,7 @@ fn check_well_formed(document: &str) {
             open.push(name);
         }
     }
-    assert!(open.is_empty() && roots == 1 && rest.trim().is_empty(), "one element holds all");
+    assert!(open.is_empty() && roots == 1 && rest.trim().is_empty(), "expected one root element");
 }
 
 fn check_text(text: &str) {

@@ -1,4 +1,4 @@
-//! Contact events: every touch is told once, however short, and ended once.
+//! Contact events: each contact, however short, has exactly one begin and one end event.
 
 use std::collections::BTreeSet;
 
@@ -9,13 +9,13 @@ use lockstep2d::math::{Fx, Rng, Vec2};
 use lockstep2d::scenes::Scene;
 use lockstep2d::world::{Config, ContactEvent, World};
 
-/// Keeps the pairs that touch, as the events tell it.
+/// Updates the set of touching pairs from the events of a tick.
 fn follow(world: &World, touching: &mut BTreeSet<ContactEvent>) {
     for event in &world.events().contact_end {
-        assert!(touching.remove(event), "{event:?} ends without having begun");
+        assert!(touching.remove(event), "{event:?} ended without having begun");
     }
     for event in &world.events().contact_begin {
-        assert!(touching.insert(*event), "{event:?} begins twice");
+        assert!(touching.insert(*event), "{event:?} began twice");
     }
     assert!(world.events().contact_begin.is_sorted() && world.events().contact_end.is_sorted());
 }
@@ -33,13 +33,17 @@ fn begins_and_ends_are_balanced_and_sorted() {
             let told = game.world().contacts().filter(|contact| contact.touching);
             let now: BTreeSet<_> =
                 told.map(|c| ContactEvent { shape_a: c.shape_a, shape_b: c.shape_b }).collect();
-            assert!(now.is_subset(&touching), "{name}, tick {tick}: a touch that no event has told");
+            assert!(now.is_subset(&touching), "{name}, tick {tick}: a touching contact has no begin event");
         }
-        assert!(touching.len() > 20, "{name}: only {} pairs", touching.len());
+        assert!(
+            touching.len() > 20,
+            "{name}: expected more than 20 touching pairs, found {}",
+            touching.len()
+        );
     }
 }
 
-/// Balls that hit off centre and are apart again before the next tick.
+/// Balls that hit off centre and separate before the next tick.
 #[test]
 fn a_touch_between_two_ticks_is_told() {
     let mut rng = Rng::new(1);
@@ -59,9 +63,9 @@ fn a_touch_between_two_ticks_is_told() {
         }
         let deflected = world.body(a).expect("there").velocity() != Vec2::new(speed, Fx::ZERO);
         hits += usize::from(deflected);
-        assert_eq!(told, usize::from(deflected), "case {case}: {told} touches at {speed} m/s");
+        assert_eq!(told, usize::from(deflected), "case {case}: {told} begin events at {speed} m/s");
     }
-    assert!(hits > 150, "only {hits} hits");
+    assert!(hits > 150, "expected more than 150 hits, found {hits}");
 }
 
 #[test]
@@ -83,6 +87,6 @@ fn a_removed_shape_ends_its_touches_at_the_next_tick() {
         let mut touching = touching.clone();
         world.step();
         follow(&world, &mut touching);
-        assert!(touching.is_empty(), "the end is told, also by a world restored in between");
+        assert!(touching.is_empty(), "expected the end event, also after a restore");
     }
 }

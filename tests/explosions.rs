@@ -1,4 +1,5 @@
-//! Explosions push as theory says: each shape by its width, faded by its distance, at its nearest point.
+//! Explosion impulses follow theory: proportional to a shape's width, reduced by its distance, applied at its nearest
+//! point.
 
 use lockstep2d::body::{BodyDef, BodyId, Filter, Geometry, MassSource, Polygon, ShapeDef, WorldError};
 use lockstep2d::fx;
@@ -31,7 +32,7 @@ fn near(a: Vec2<Fx>, b: Vec2<Fx>) -> bool {
 fn a_ball_is_pushed_by_its_diameter_and_its_distance() {
     let explosion = Explosion { radius: fx!(3), falloff: fx!(2), ..Explosion::new(Vec2::ZERO, fx!(10)) };
     let ball = Geometry::circle(fx!(0.5)).expect("valid");
-    // The surface is half a metre nearer than the centre: 10 N s / m * 1 m / 2 kg.
+    // The surface is half a metre nearer than the centre. Speed without falloff: 10 N s / m * 1 m / 2 kg.
     for (distance, speed) in [
         (fx!(1), fx!(5)),
         (fx!(3.5), fx!(5)),
@@ -64,7 +65,8 @@ fn a_ball_is_pushed_by_its_diameter_and_its_distance() {
 fn the_push_is_as_wide_as_the_shape_and_meets_the_nearest_point() {
     let mut world = weightless();
     let plank = Polygon::rectangle(fx!(0.1), fx!(1)).expect("valid");
-    // Its nearest point is its lower corner's height: straight to the right of the centre of the explosion.
+    // Its nearest point lies straight to the right of the centre of the explosion, half a metre below the plank's
+    // centre.
     let high = spawn(&mut world, plank, fx!(2.1), fx!(0.5));
     let capsule = Geometry::capsule(at(fx!(0), fx!(-1)), at(fx!(0), fx!(1)), fx!(0.25)).expect("valid");
     let pill = spawn(&mut world, capsule, fx!(-2.25), fx!(0));
@@ -75,7 +77,7 @@ fn the_push_is_as_wide_as_the_shape_and_meets_the_nearest_point() {
         fx!(2),
     );
     world.explode(&Explosion { radius: fx!(2.5), ..Explosion::new(Vec2::ZERO, fx!(10)) }).expect("valid");
-    // 2 m high; pushed half a metre below its centre: w = r x P / (m k²) = -(-0.5) * 20 / 2.
+    // The plank is 2 m high and pushed half a metre below its centre: w = r x P / (m k²) = -(-0.5) * 20 / 2.
     assert!(near(velocity(&world, high), at(fx!(10), fx!(0))), "{:?}", velocity(&world, high));
     let spin = world.body(high).expect("there").angular_velocity();
     assert!((spin - fx!(5)).abs() < fx!(0.00001), "{spin}");
@@ -90,7 +92,7 @@ fn from_within_a_shape_it_pushes_towards_its_middle() {
     world.explode(&Explosion::new(Vec2::ZERO, fx!(10))).expect("valid");
     assert!(near(velocity(&world, id), at(fx!(10), fx!(0))), "{:?}", velocity(&world, id));
     assert_eq!(world.body(id).expect("there").angular_velocity(), 0);
-    // From the very middle it goes somewhere.
+    // At the exact centre the direction is arbitrary, but fixed.
     let mut world = weightless();
     let id = spawn(&mut world, Geometry::circle(fx!(1)).expect("valid"), fx!(0), fx!(0));
     world.explode(&Explosion::new(Vec2::ZERO, fx!(10))).expect("valid");

@@ -1,7 +1,7 @@
-//! One test for each finding of a fuzz target (`fuzz/`), by its smallest case.
+//! Regression tests: one minimal case for each finding of a fuzz target (`fuzz/`).
 //!
-//! Each of them is a promise about outside data: a typed error or a world that goes on, never a panic, and
-//! caches that never decide anything.
+//! Each test is a promise about untrusted data: a typed error or a valid world, never a panic, and results that do not
+//! depend on caches.
 
 use lockstep2d::body::{BodyDef, Geometry, MassSource, Polygon, ShapeDef, WORLD_EXTENT_MAX};
 use lockstep2d::lockstep::{Game, Sandbox, SandboxSetup};
@@ -14,7 +14,7 @@ fn weightless() -> World {
     World::new(Config { gravity: Vec2::ZERO, ..Config::default() }).expect("valid")
 }
 
-/// Steps a world and a copy of it without caches, and compares them after every tick.
+/// Steps a world and a copy without caches, and expects equal digests after every tick.
 fn caches_decide_nothing(world: &mut World, ticks: u64) {
     let mut bare = world.clone();
     for _ in 0..ticks {
@@ -28,7 +28,7 @@ fn caches_decide_nothing(world: &mut World, ticks: u64) {
 
 #[test]
 fn an_outline_that_goes_back_on_itself_is_refused() {
-    // Every vertex is an end of every edge, so none was ever found on the wrong side of one; the mass was then
+    // Every vertex is an endpoint of every edge, so no vertex was found on the wrong side of an edge. The mass was then
     // divided by an area of zero.
     let there_and_back = [(0, 0), (1, 0), (0, 0), (1, 0)].map(|(x, y)| Vec2::new(Fx::from(x), Fx::from(y)));
     assert!(Polygon::new(&there_and_back).is_err());
@@ -53,7 +53,7 @@ fn a_body_put_back_inside_the_world_takes_its_shapes_along() {
 
 #[test]
 fn a_removed_shape_moves_the_others_as_their_caches_say() {
-    // The centre of mass moves, and with it, by a rounding, the place of the shapes that stay.
+    // The centre of mass moves, and rounding moves the remaining shapes with it.
     let mut world = weightless();
     for turn in 1..40 {
         let ball = |x, y| ShapeDef::new(Geometry::circle(fx!(0.3)).unwrap()).offset(x, y);
@@ -105,7 +105,7 @@ fn the_last_tick_of_all_is_followed_by_no_panic() {
 
 #[test]
 fn a_large_ball_is_pushed_out_of_the_floor() {
-    // Distances of more than 16 m saturate, the radius as well, and their difference said "just touching".
+    // Distances of more than 16 m saturated, and so did the radius; their difference was then a separation of zero.
     let mut world = weightless();
     let floor = ShapeDef::new(Polygon::rectangle(fx!(100), fx!(50)).unwrap());
     world.spawn(&BodyDef::fixed().position(fx!(0), fx!(-50)), &[floor]).unwrap();
@@ -115,7 +115,7 @@ fn a_large_ball_is_pushed_out_of_the_floor() {
         world.step();
     }
     let height = world.body(ball).unwrap().position().y;
-    assert!(height > fx!(39), "still at {height}");
+    assert!(height > fx!(39), "expected the ball to be pushed out, at {height}");
 }
 
 #[test]
@@ -124,10 +124,10 @@ fn a_large_ball_beside_a_corner_does_not_touch_it() {
     let block = ShapeDef::new(Polygon::square(fx!(10)).unwrap());
     world.spawn(&BodyDef::fixed().position(fx!(-10), fx!(-10)), &[block]).unwrap();
     let ball = ShapeDef::new(Geometry::circle(fx!(50)).unwrap());
-    // 63 m from the corner, although the boxes overlap.
+    // 63 m from the corner, although the AABBs overlap.
     world.spawn(&BodyDef::dynamic().position(fx!(45), fx!(45)), &[ball]).unwrap();
     world.step();
-    assert!(world.events().contact_begin.is_empty(), "13 m apart");
+    assert!(world.events().contact_begin.is_empty(), "expected no contact at a distance of 13 m");
 }
 
 #[test]
@@ -141,13 +141,13 @@ fn a_ball_deep_inside_a_large_block_leaves_by_the_nearest_face() {
         world.step();
     }
     let x = world.body(ball).unwrap().position().x;
-    assert!(x > fx!(70), "pushed to {x}");
+    assert!(x > fx!(70), "expected the ball to be pushed right, at {x}");
 }
 
 #[test]
 fn impulses_that_grow_over_sub_steps_are_no_overflow() {
-    // What accumulates over several updates of at most 512 m/s is applied at once when the next sub-step starts.
-    // Balls at one point, where each pushes all others, in gravity that only the speed limit stops.
+    // An impulse accumulates over several updates of at most 512 m/s and is applied at once when the next sub-step
+    // starts. The balls start in one place, where each pushes all others, and the gravity reaches the speed limit.
     let gravity = Vec2::new(fx!(0), fx!(-100000));
     let mut world = World::new(Config { gravity, tick_rate: 20, ..Config::default() }).unwrap();
     let floor = ShapeDef::new(Polygon::rectangle(fx!(20), fx!(1)).unwrap());
@@ -167,8 +167,8 @@ fn impulses_that_grow_over_sub_steps_are_no_overflow() {
 
 #[test]
 fn turns_and_levers_at_their_limits_are_no_overflow() {
-    // Bodies that spin about far-away centres and part: nothing stops them within the tick, and how far they have
-    // come is the sum of two products that filled 63 bits each, and of a third one.
+    // Bodies that rotate about far-away centres and separate: nothing stops them within the tick. Their displacement is
+    // the sum of two products that fill 63 bits each, and a third one.
     let sides = [1i64, -1];
     for (arm_a, arm_b, turn_a, turn_b) in sides
         .into_iter()
@@ -193,8 +193,8 @@ fn turns_and_levers_at_their_limits_are_no_overflow() {
 
 #[test]
 fn joints_that_pull_with_all_they_have_leave_no_velocity_at_the_end_of_its_format() {
-    // Both axes of a hinge push at once, and together move one of them by more than 512 m/s: such a sum saturates,
-    // and the magnitude of the smallest number has no sign to spare.
+    // Both axes of a hinge push at once, and together change the velocity of one of them by more than 512 m/s. Such a
+    // sum saturates, and the magnitude of the smallest number does not fit a signed number.
     for turn in 0..64u32 {
         let mut world = weightless();
         let post = world.spawn(&BodyDef::fixed(), &[]).unwrap();
@@ -209,7 +209,7 @@ fn joints_that_pull_with_all_they_have_leave_no_velocity_at_the_end_of_its_forma
     }
 }
 
-/// The bytes of a world after an edit, with the hash at the end repaired.
+/// Returns the bytes of a world after an edit, with the hash at the end repaired.
 fn forged(world: &World, edit: impl FnOnce(&mut Vec<u8>)) -> Vec<u8> {
     let mut bytes = world.to_bytes();
     edit(&mut bytes);
@@ -219,10 +219,10 @@ fn forged(world: &World, edit: impl FnOnce(&mut Vec<u8>)) -> Vec<u8> {
     bytes
 }
 
-/// Overwrites the first place where a number stands.
+/// Overwrites the first occurrence of a number.
 fn overwrite(bytes: &mut [u8], old: Fx, new: Fx) {
     let old = old.to_bits().to_le_bytes();
-    let at = bytes.windows(8).position(|window| window == old).expect("the number is there");
+    let at = bytes.windows(8).position(|window| window == old).expect("the number occurs");
     bytes[at..at + 8].copy_from_slice(&new.to_bits().to_le_bytes());
 }
 
@@ -250,14 +250,14 @@ fn a_snapshot_that_hides_the_floor_from_the_broad_phase_is_refused() {
 
 #[test]
 fn a_snapshot_of_a_kinematic_body_that_rests_and_moves_is_refused() {
-    // When it stopped, nobody was told that its contacts rest.
+    // When such a body stopped, its contacts were kept a tick longer than in a world without caches.
     let mut world = weightless();
     world.spawn(&BodyDef::kinematic().position(fx!(3.25), fx!(0)), &[]).unwrap();
     world.step();
     let push = |bytes: &mut Vec<u8>| {
         let place = fx!(3.25).to_bits().to_le_bytes();
         let body = bytes.windows(8).position(|window| window == place).expect("the body is there");
-        // Two coordinates and an angle, then the velocity.
+        // The velocity follows two coordinates and an angle.
         bytes[body + 20..body + 24].copy_from_slice(&1000i32.to_le_bytes());
     };
     let refusal = World::from_bytes(&forged(&world, push)).unwrap_err().to_string();
@@ -283,7 +283,7 @@ fn many_shapes_added_in_one_tick_are_work() {
 
 #[test]
 fn many_fixed_shapes_at_one_point_wake_nobody_for_long() {
-    // Each looked at all before it for somebody to wake, and remembered those that never sleep: a minute for 20 000.
+    // Each shape searched all earlier ones for bodies to wake and cached those that never sleep: a minute for 20 000.
     let places = vec![Place { position: Vec2::ZERO, angle: Angle::ZERO }; 50_000];
     let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).unwrap());
     let spawn = Command::SpawnEach { body: BodyDef::fixed(), shapes: vec![ball], places };
@@ -293,7 +293,7 @@ fn many_fixed_shapes_at_one_point_wake_nobody_for_long() {
 
 #[test]
 fn a_shape_that_comes_wakes_who_lies_where_it_comes() {
-    // Only the new shape is looked at, not all that its body has.
+    // Only overlaps of the new shape are searched, not those of all shapes of its body.
     let mut world = World::default();
     let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).unwrap());
     let ground = world.spawn(&BodyDef::fixed(), &[ball]).unwrap();
@@ -306,7 +306,7 @@ fn a_shape_that_comes_wakes_who_lies_where_it_comes() {
 
 #[test]
 fn kinematic_bodies_that_start_to_move_are_work() {
-    // Each looks through all joints for sleepers that are joined to it.
+    // Each of them searches all joints for sleeping bodies to wake.
     let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).unwrap());
     let mut setup = SandboxSetup { config: Config::default(), commands: Vec::new() };
     for kind in [BodyDef::kinematic(), BodyDef::dynamic().asleep()] {
@@ -330,8 +330,8 @@ fn kinematic_bodies_that_start_to_move_are_work() {
 
 #[test]
 fn contacts_that_have_parted_do_not_rest() {
-    // Whoever is pushed out of an overlap leaves its box within the tick. Told to sleep then, before anybody has looked
-    // at the pairs again, it took contacts along that had parted: they rested until the caches were dropped.
+    // A body that is pushed out of an overlap leaves its box within the tick. If it was put to sleep before the pairs
+    // were updated, its contacts that had separated were kept as sleeping contacts until the caches were cleared.
     let mut rng = lockstep2d::math::Rng::new(1);
     for _ in 0..40 {
         let gravity = Vec2::new(fx!(25), fx!(-40));
@@ -357,7 +357,7 @@ fn contacts_that_have_parted_do_not_rest() {
 
 #[test]
 fn a_body_that_a_joint_drags_out_of_range_is_not_slow() {
-    // At 30 Hz or less a displacement may saturate on both axes, and the sum of their squares overflowed.
+    // At 30 Hz or less a displacement may saturate on both axes, and the sum of the squares overflowed.
     for tick_rate in [10, 20, 30] {
         let mut config = Config { tick_rate, ..Config::default() };
         config.solver.sub_steps = (60 / tick_rate).max(4);
@@ -374,8 +374,9 @@ fn a_body_that_a_joint_drags_out_of_range_is_not_slow() {
 
 #[test]
 fn a_shape_in_the_slot_of_one_that_slept_has_its_own_surface() {
-    // What falls asleep takes its contacts out of the list in which removed shapes were looked for, and the surface of a
-    // pair was known by its slots: it was taken for that of a shape that came into the slot before the next tick.
+    // The contacts of a body that falls asleep leave the list that is searched for removed shapes, and the surface of a
+    // pair was cached by its slots. The cached surface was then used for a new shape that reused the slot before the
+    // next tick.
     let mut world = World::default();
     let ground = ShapeDef::new(Polygon::rectangle(fx!(20), fx!(1)).unwrap());
     world.spawn(&BodyDef::fixed().position(fx!(0), fx!(-1)), &[ground]).unwrap();
@@ -391,7 +392,8 @@ fn a_shape_in_the_slot_of_one_that_slept_has_its_own_surface() {
 
 #[test]
 fn a_circle_in_line_with_a_turned_capsule_is_beyond_its_end() {
-    // Rounding put the centre between the two sides of the capsule, and the contact a radius deep: at every fourth angle.
+    // At every fourth angle, rounding put the centre between the two sides of the capsule, and the contact was a radius
+    // deep.
     let ends = [fx!(-0.03), fx!(-0.5)].map(|along| Vec2::new(along, along));
     let capsule = Geometry::capsule(ends[0], ends[1], fx!(0.018)).expect("valid");
     let ball = Geometry::circle(fx!(0.007)).expect("valid");
@@ -414,7 +416,7 @@ fn a_circle_in_line_with_a_turned_capsule_is_beyond_its_end() {
 
 #[test]
 fn a_bar_below_an_outline_that_hardly_bends_touches_it_where_it_is() {
-    // The edge that was most against the bar's side lay beside the bar, and so did the contact.
+    // The edge that most opposed the bar's side lay beside the bar, and so did the contact.
     let corners =
         [(fx!(-0.5), fx!(-0.5)), (fx!(-0.37), fx!(-0.5)), (fx!(0.182), fx!(-0.499)), (fx!(-0.5), fx!(0.394))];
     let outline = Polygon::new(&corners.map(|(x, y)| Vec2::new(x, y))).expect("convex");

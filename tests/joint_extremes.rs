@@ -1,5 +1,5 @@
-//! Whatever a joint is asked to do, and wherever its bodies are put: the world stays valid, and a restored one goes on
-//! the same.
+//! Extreme joints: with any valid joint settings and body positions, the world stays valid and a restored world
+//! continues identically.
 
 use lockstep2d::body::{BodyDef, BodyId, MassSource};
 use lockstep2d::fx;
@@ -9,7 +9,7 @@ use lockstep2d::solver::{
 };
 use lockstep2d::world::World;
 
-/// Small, ordinary, or as large as it may be.
+/// Returns a small, ordinary or maximal size.
 fn size(rng: &mut Rng, most: Fx) -> Fx {
     match rng.below(4) {
         0 => rng.range(Fx::ZERO, fx!(0.001)),

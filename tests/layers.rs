@@ -1,5 +1,5 @@
-//! The layers: each module of the library uses only those below it. `use` lines and paths in the code are read,
-//! tests included, and a path upwards fails.
+//! Module layering: each module of the library uses only the modules below it. The test reads `use` lines and paths in
+//! the code, including unit tests, and fails on any path that leads to a higher layer.
 //!
 //! ```text
 //!           net
@@ -20,7 +20,7 @@ mod source;
 
 use source::{Token, files, tokens};
 
-/// Every module of the library, and what it may use besides itself.
+/// Every module of the library with the modules that it may use besides itself.
 const LAYERS: &[(&str, &[&str])] = &[
     ("math", &[]),
     ("codec", &[]),
@@ -47,7 +47,7 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("scenes", &["math", "codec", "hash", "body", "collision", "solver", "world", "lockstep"]),
 ];
 
-/// What the root of the crate has besides modules: everyone may use it.
+/// Items of the crate root that are not modules: every module may use them.
 const ROOT: &[&str] = &["fx", "SEMANTICS"];
 
 #[test]
@@ -56,15 +56,15 @@ fn every_module_uses_only_the_layers_below_it() {
     let mut checked = 0;
     for file in files("src", &["rs"]) {
         let place = module_of(&file.path);
-        // The root names all modules, and does nothing else.
+        // The root declares all modules and contains nothing else.
         if !place.is_empty() {
             checked += 1;
             wrong
                 .extend(upward_uses(&place, &file.text).iter().map(|found| format!("{}:{found}", file.path)));
         }
     }
-    assert!(checked > 50, "only {checked} files were found");
-    assert!(wrong.is_empty(), "paths against the layers of tests/layers.rs:\n{}", wrong.join("\n"));
+    assert!(checked > 50, "expected more than 50 source files, found {checked}");
+    assert!(wrong.is_empty(), "uses that violate the layers in tests/layers.rs:\n{}", wrong.join("\n"));
 }
 
 #[test]
@@ -72,12 +72,12 @@ fn a_layer_below_lists_no_layer_above_it() {
     for (at, (module, below)) in LAYERS.iter().enumerate() {
         for used in *below {
             let listed_before = LAYERS[..at].iter().any(|(name, _)| name == used);
-            assert!(listed_before, "{module} may use {used}, which is not further down in the list");
+            assert!(listed_before, "{module} may use {used}, which is not listed before it");
         }
     }
 }
 
-/// The canary: wrong code must be found, whatever form its path has.
+/// The canary: a forbidden use must be found in every form that a path can have.
 #[test]
 fn wrong_directions_are_found() {
     let found = |place: &[&str], code: &str| {
@@ -110,19 +110,19 @@ fn wrong_directions_are_found() {
     ] {
         assert_eq!(found(&["body", "arena"], right), 0, "{right}");
     }
-    assert_eq!(found(&["draw"], "use crate::lockstep::Game;"), 1, "draw is beside lockstep");
-    assert_eq!(found(&["replay", "verdict"], "use crate::scenes::ALL;"), 1, "scenes are beside replay");
-    assert_eq!(found(&["toys"], ""), 1, "a module without a layer");
+    assert_eq!(found(&["draw"], "use crate::lockstep::Game;"), 1, "draw and lockstep are siblings");
+    assert_eq!(found(&["replay", "verdict"], "use crate::scenes::ALL;"), 1, "scenes and replay are siblings");
+    assert_eq!(found(&["toys"], ""), 1, "a module without a layer is an error");
 }
 
-/// The path of a file's module: `world`, `step` for `src/world/step.rs`. Empty for the root.
+/// Returns the path of a file's module: `world`, `step` for `src/world/step.rs`. The path of the root is empty.
 fn module_of(path: &str) -> Vec<String> {
     let path = path.trim_start_matches("src/").trim_end_matches(".rs");
     let parts = path.split('/').filter(|part| !matches!(*part, "mod" | "lib"));
     parts.map(String::from).collect()
 }
 
-/// The uses of modules that a module must not use, each as `line: what`.
+/// Returns the forbidden uses in a module, each as `line: message`.
 fn upward_uses(place: &[String], code: &str) -> Vec<String> {
     let module = place[0].as_str();
     let Some((_, below)) = LAYERS.iter().find(|(name, _)| *name == module) else {
@@ -134,12 +134,12 @@ fn upward_uses(place: &[String], code: &str) -> Vec<String> {
     wrong.map(|used| format!("{}: {module} uses {}", used.line, used.text)).collect()
 }
 
-/// Everything that is named by a path from the root of the crate: after `crate::`, or after enough `super::`.
-/// `depth` is how many modules the file is below the root.
+/// Returns every name that follows a path to the crate root: `crate::`, or as many `super::` as lead to the root.
+/// `depth` is the number of modules between the file and the root.
 fn used_from_root(tokens: &[Token], depth: usize) -> Vec<Token> {
     let text = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
     let mut used = Vec::new();
-    // For each open brace, whether it is an inline module's.
+    // For each open brace: whether it opens an inline module.
     let mut braces = Vec::new();
     for at in 0..tokens.len() {
         match text(at) {
@@ -159,7 +159,7 @@ fn used_from_root(tokens: &[Token], depth: usize) -> Vec<Token> {
     used
 }
 
-/// The first names of a path's tails: `a` of `a::b`, or `a` and `c` of `{a::{b, x}, c}`.
+/// Returns the first names of a path's tails: `a` of `a::b`, `a` and `c` of `{a::{b, x}, c}`.
 fn heads(tokens: &[Token], start: usize) -> Vec<Token> {
     if tokens[start].text != "{" {
         return vec![tokens[start].clone()];

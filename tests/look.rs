@@ -1,5 +1,5 @@
-//! What tools look at agrees with theory: forces of contacts, islands, errors of joints, boxes of the broad phase.
-#![expect(clippy::unwrap_used, reason = "a test may stop where a scene cannot be built")]
+//! Inspection functions agree with theory: contact forces, islands, joint errors, boxes of the broad phase.
+#![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
 use lockstep2d::body::{BodyDef, BodyId, Geometry, Polygon, ShapeDef};
 use lockstep2d::collision::BroadPhaseKind;
@@ -26,7 +26,7 @@ fn run(world: &mut World, ticks: u32) {
     (0..ticks).for_each(|_| world.step());
 }
 
-/// The sum of the forces of all points: normal and friction.
+/// Returns the sums of the normal and friction forces of all contact points.
 fn sum_of_forces(world: &World) -> (Fx, Fx) {
     let forces = world.contacts().flat_map(|contact| contact.forces().map(|(_, f)| f).collect::<Vec<_>>());
     forces.fold((Fx::ZERO, Fx::ZERO), |(normal, friction), f| (normal + f.normal, friction + f.friction))
@@ -34,7 +34,7 @@ fn sum_of_forces(world: &World) -> (Fx, Fx) {
 
 fn assert_near(found: Fx, expected: Fx, relative: Fx) {
     let error = (found - expected).abs();
-    assert!(error <= expected.abs().saturating_mul(relative), "{found} instead of {expected}");
+    assert!(error <= expected.abs().saturating_mul(relative), "{found}, expected {expected}");
 }
 
 #[test]
@@ -75,7 +75,7 @@ fn each_box_of_a_stack_bears_those_above() {
     }
 }
 
-/// `F = m a`: a box that slides to the right on the ground is pushed to the left.
+/// `F = m a`: friction pushes a box that slides to the right to the left.
 #[test]
 fn friction_is_what_slows_a_sliding_box() {
     let mut world = empty();
@@ -87,9 +87,9 @@ fn friction_is_what_slows_a_sliding_box() {
     let (before, mass) = (world.body(body).unwrap().velocity().x, world.body(body).unwrap().mass());
     world.step();
     let slowed = (world.body(body).unwrap().velocity().x - before) * 60;
-    assert!(slowed < fx!(-1), "it slides");
+    assert!(slowed < fx!(-1), "expected the box to be slowed by friction");
     let contact = world.contacts().next().unwrap();
-    // From the ground, in the smaller slot, to the box: the normal turned counter-clockwise is to the left.
+    // The normal points from the ground, in the smaller slot, to the box; turned counter-clockwise it points left.
     assert!(contact.manifold.normal.y > 0);
     let (_, friction) = sum_of_forces(&world);
     assert_near(friction, -mass * slowed, fx!(0.001));
@@ -140,7 +140,7 @@ fn the_solver_has_touching_contacts_in_independent_groups() {
         for shape in [contact.shape_a, contact.shape_b] {
             let body = world.shape(shape).unwrap().body();
             let dynamic = world.body(body).unwrap().is_dynamic();
-            assert!(!dynamic || taken.insert((group, body)), "{body} twice in group {group}");
+            assert!(!dynamic || taken.insert((group, body)), "{body} occurs twice in group {group}");
         }
     }
     assert!(groups.len() >= 3, "{groups:?}");
@@ -194,7 +194,7 @@ fn the_broad_phase_has_boxes_around_all_of_what_they_hold() {
         square(&mut world, Fx::from_num(i % 10) * 3, Fx::from_num(i / 10) * 3);
     }
     let boxes = world.broad_phase_boxes();
-    assert_eq!(boxes.len(), 49, "a binary tree");
+    assert_eq!(boxes.len(), 49, "expected the inner nodes of a binary tree");
     let (root, 0) = boxes[0] else { panic!("the root comes first") };
     let all = world.shapes().map(|(_, shape)| shape.fat_aabb()).reduce(Aabb::union).unwrap();
     assert!(root.contains(all));

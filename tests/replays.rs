@@ -1,4 +1,4 @@
-//! The committed replays verify, end in the committed constants, and are what the scenes still record.
+//! The committed replays verify, end in the committed hashes, and equal what their scenes record.
 
 mod common;
 
@@ -24,7 +24,7 @@ fn replays() -> Vec<(String, Vec<u8>)> {
 fn every_replay_matches_and_ends_in_its_golden() {
     let goldens = common::goldens();
     let replays = replays();
-    assert_eq!(replays.len(), goldens.len(), "a replay for each golden");
+    assert_eq!(replays.len(), goldens.len(), "expected a replay for each golden");
     for (name, bytes) in replays {
         let golden = goldens.iter().find(|golden| golden.scene == name).expect("a golden for each replay");
         match verify::<Sandbox>(&bytes, &Limits::default()) {
@@ -36,7 +36,7 @@ fn every_replay_matches_and_ends_in_its_golden() {
     }
 }
 
-/// Recording a scene anew gives the committed file byte for byte, so replays and scenes cannot drift apart.
+/// Recording a scene again gives the committed file byte for byte, so replays and scenes cannot drift apart.
 #[test]
 fn every_replay_is_what_its_scene_records() {
     for (name, bytes) in replays() {

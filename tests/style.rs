@@ -1,21 +1,21 @@
-//! Rules of the code base that no lint checks, each with a canary that breaks it.
+//! Rules of the code base that no lint checks, each with a canary that violates it.
 
 mod source;
 
 use source::{Source, Token, files, tokens};
 
-/// Longest file of the library, in lines: what does not fit is two things.
+/// Largest number of lines of a library file: a longer file has more than one subject.
 const LINES_MAX: usize = 400;
 
-/// Words that have no place in the library, and why.
+/// Words that are not allowed in the library, and why.
 const BANNED: &[(&str, &str)] = &[
     ("f32", "floating point differs between machines"),
     ("f64", "floating point differs between machines"),
-    ("HashMap", "its order is random"),
-    ("HashSet", "its order is random"),
-    ("Instant", "time is passed in"),
-    ("SystemTime", "time is passed in"),
-    ("unsafe", "only vectors need it"),
+    ("HashMap", "its iteration order is random"),
+    ("HashSet", "its iteration order is random"),
+    ("Instant", "time is a parameter"),
+    ("SystemTime", "time is a parameter"),
+    ("unsafe", "only SIMD code needs it"),
     ("todo", "finish it"),
     ("unimplemented", "finish it"),
     ("dbg", "a library does not print"),
@@ -25,12 +25,12 @@ const BANNED: &[(&str, &str)] = &[
     ("eprintln", "a library does not print"),
 ];
 
-/// Words for floating-point numbers, and who may use them: pictures are not simulated, and a serializer has to have a
-/// method for them.
+/// Floating-point types, and the paths that may use them: drawing is not simulation, and a serializer must implement
+/// methods for them.
 const FLOATS: &[&str] = &["f32", "f64"];
 const ALLOWED_FLOATS: &[&str] = &["src/draw/", "src/inspect/serializer.rs"];
 
-/// The files that may use `unsafe`: vector instructions, hints to caches, and bodies that threads share.
+/// Files that may use `unsafe`: SIMD instructions, prefetch hints, and bodies shared between threads.
 const ALLOWED_UNSAFE: &[&str] = &[
     "src/lanes/x86.rs",
     "src/lanes/x86/avx2.rs",
@@ -44,14 +44,14 @@ const ALLOWED_UNSAFE: &[&str] = &[
     "src/lanes/shared.rs",
 ];
 
-/// Says why an `unsafe` there is sound, at most so many lines above it.
+/// Comment that gives the reason for an `unsafe`, at most `REASON_ABOVE` lines above it.
 const REASON: &str = "// SAFETY: ";
 const REASON_ABOVE: usize = 3;
 
-/// Where the state is defined.
+/// Folders that define state.
 const STATE_FOLDERS: &[&str] = &["src/body/", "src/collision/", "src/lanes/", "src/solver/", "src/world/"];
 
-/// Folders at the root of somebody's machine.
+/// Top-level folders that occur in paths of a single machine.
 const MACHINE_FOLDERS: &[&str] = &["home", "root", "Users", "tmp", "mnt", "opt", "srv", "var", "work"];
 
 fn fails(files: &[Source], rule: impl Fn(&Source) -> Vec<String>) -> Vec<String> {
@@ -60,7 +60,7 @@ fn fails(files: &[Source], rule: impl Fn(&Source) -> Vec<String>) -> Vec<String>
 }
 
 fn check(files: &[Source], rule: impl Fn(&Source) -> Vec<String>) {
-    assert!(!files.is_empty(), "no files were found");
+    assert!(!files.is_empty(), "expected files to check");
     let wrong = fails(files, rule);
     assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
 }
@@ -89,7 +89,7 @@ fn may_be_unsafe(file: &Source) -> bool {
     ALLOWED_UNSAFE.contains(&file.path.as_str())
 }
 
-/// `unsafe` that nothing explains. An `unsafe fn` asks for a reason where it is called.
+/// Finds `unsafe` without a reason. An `unsafe fn` needs none: its callers give the reason.
 fn unexplained_unsafe(file: &Source) -> Vec<String> {
     let lines: Vec<_> = file.text.lines().collect();
     let explained = |line: usize| {
@@ -101,7 +101,7 @@ fn unexplained_unsafe(file: &Source) -> Vec<String> {
     wrong.map(|pair| format!("{}: unsafe without a reason", pair[0].line)).collect()
 }
 
-/// `usize` in a type that derives its encoding, whose width is then that of the machine.
+/// Finds `usize` in a type that derives its encoding, because its width depends on the machine.
 fn machine_width_in_state(file: &Source) -> Vec<String> {
     let tokens = tokens(&file.text);
     let mut wrong = Vec::new();
@@ -114,7 +114,7 @@ fn machine_width_in_state(file: &Source) -> Vec<String> {
         if list.filter(is("Serialize")).count() == 0 {
             continue;
         }
-        // The item ends with the brace that closes it, or with a semicolon if it has none.
+        // The item ends with its closing brace, or with a semicolon if it has no braces.
         let mut depth = 0;
         let item = tokens[at..].iter().skip_while(|token| token.text != "]").skip(1).take_while(|token| {
             depth += i32::from(matches!(token.text.as_str(), "{" | "(" | "["));
@@ -135,7 +135,7 @@ fn machine_paths(file: &Source) -> Vec<String> {
             let starts =
                 |at: usize| !text[..at].ends_with(|c: char| c.is_alphanumeric() || "._-/}*".contains(c));
             if text.match_indices(&path).any(|(at, _)| starts(at)) {
-                wrong.push(format!("{line}: a path of one machine, {path}"));
+                wrong.push(format!("{line}: a path that depends on the machine, {path}"));
             }
         }
     }
@@ -170,7 +170,10 @@ fn unsafe_is_where_it_may_be_and_says_why() {
     check(&files, unexplained_unsafe);
     for path in ALLOWED_UNSAFE {
         let file = files.iter().find(|file| file.path == *path).expect("a file of the list");
-        assert!(tokens(&file.text).iter().any(|token| token.text == "unsafe"), "{path} needs it no longer");
+        assert!(
+            tokens(&file.text).iter().any(|token| token.text == "unsafe"),
+            "{path} no longer needs unsafe"
+        );
     }
     let path = ALLOWED_UNSAFE[0];
     assert_eq!(canary(path, "unsafe { a() }", banned_words), 0);

@@ -1,4 +1,4 @@
-//! Inputs from any bytes.
+//! Input logs from arbitrary bytes and from random numbers.
 
 use std::collections::BTreeSet;
 
@@ -41,6 +41,10 @@ fn random_inputs_reach_every_command() {
     assert_eq!(log.len(), 5000);
     let name = |command: &Command| format!("{command:?}").split([' ', '{', '(']).next().unwrap().to_owned();
     let names: BTreeSet<String> = log.iter().flatten().flatten().map(name).collect();
-    assert!(names.len() > 20, "only {names:?}");
-    assert_eq!(log, random_inputs::<Sandbox>(1, 5000, &mut Rng::new(2)), "the same seed gives the same");
+    assert!(names.len() > 20, "expected more than 20 kinds of commands, found {names:?}");
+    assert_eq!(
+        log,
+        random_inputs::<Sandbox>(1, 5000, &mut Rng::new(2)),
+        "expected the same log from the same seed"
+    );
 }

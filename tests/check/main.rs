@@ -1,7 +1,7 @@
-//! Games with a planted mistake are found out, each by the way that is there for it; games without one are not.
-#![expect(clippy::unwrap_used, reason = "what goes wrong in a helper fails the test")]
+//! Games with a planted fault fail the check in the variant that detects this kind of fault; correct games pass.
+#![expect(clippy::unwrap_used, reason = "a failed unwrap in a helper fails the test")]
 
-#[expect(unreachable_pub, reason = "elsewhere it is a library")]
+#[expect(unreachable_pub, reason = "the file is a library in its own package")]
 #[path = "../../examples/fuzzing/src/lib.rs"]
 mod harvest;
 mod inputs;

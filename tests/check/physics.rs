@@ -1,4 +1,4 @@
-//! Games with a physics world: what is no state of it must not decide anything.
+//! Games with a physics world: data that is not part of its state must not affect results.
 
 use lockstep2d::body::{BodyDef, BodyId, Geometry, Polygon, ShapeDef};
 use lockstep2d::check::{Depths, Fault, Options, Phases, Way, check, check_replay};
@@ -8,11 +8,11 @@ use lockstep2d::lockstep::{Game, RulesId, SetupError};
 use lockstep2d::math::{Fx, Vec2};
 use lockstep2d::world::{Config, Snapshot, World};
 
-/// What is wrong.
+/// Values of `MISTAKE`.
 const NOTHING: u8 = 0;
-/// The contacts that the world happens to know decide, which are none after a restore.
+/// The step depends on the world's current contacts, of which there are none after a restore.
 const CONTACTS: u8 = 1;
-/// A wind that is not saved.
+/// The wind is not saved.
 const WIND: u8 = 2;
 
 /// A ball that is kicked about in a pit.
@@ -85,7 +85,7 @@ impl<const MISTAKE: u8> Game for Pit<MISTAKE> {
     }
 }
 
-/// A kick in tick 31.
+/// Returns inputs with a kick in tick 31.
 fn inputs() -> Vec<Vec<bool>> {
     (0..60).map(|tick| vec![tick == 30]).collect()
 }
@@ -96,7 +96,7 @@ fn a_good_game_with_a_world_passes() {
     let checked = check::<Pit<NOTHING>>(&(), &inputs(), &options).unwrap();
     assert!(checked.ways.iter().any(|way| matches!(way, Way::BroadPhase(_))));
     assert_eq!(checked.ways.iter().any(|way| matches!(way, Way::Threads(_))), cfg!(feature = "parallel"));
-    assert_eq!(checked.ways.len(), options.ways.len(), "all ways are gone");
+    assert_eq!(checked.ways.len(), options.ways.len(), "expected all variants to be checked");
 }
 
 #[test]
@@ -109,7 +109,8 @@ fn who_reads_what_is_no_state_is_found() {
     }
 }
 
-/// The body and its velocity are named, and two ticks are left: one with the kick, and one that feels it anew.
+/// The report names the body and its velocity. The minimised log has two ticks: one with the kick, and one in which the
+/// lost wind matters.
 #[test]
 fn the_body_and_the_field_are_named() {
     let options = Options::default().only(&[Way::Again, Way::Reloaded]);
@@ -122,7 +123,7 @@ fn the_body_and_the_field_are_named() {
     assert!(check_replay::<Pit<WIND>>(&failure.replay, &Options::default()).is_err());
 }
 
-/// Who is rolled back to before the kick still has the wind.
+/// A game that is rolled back to before the kick keeps the wind.
 #[test]
 fn a_rollback_shows_before_it_has_happened() {
     let error = check::<Pit<WIND>>(&(), &inputs(), &Options::default()).unwrap_err();
@@ -132,7 +133,7 @@ fn a_rollback_shows_before_it_has_happened() {
     assert_eq!((failure.ticks, failure.failed), (1, (4, 4)), "{failure}");
 }
 
-/// The bonus of a game is lost before the step begins, which is then no phase of it.
+/// The wind is lost before the step begins, so no phase of the step differs first.
 #[test]
 fn phases_are_compared() {
     let options = Options { phases: Phases::Compared, ..Options::default() }.only(&[Way::Reloaded]);

@@ -1,4 +1,4 @@
-//! Every mistake is found, by the way that is there for it.
+//! Every planted fault is found, by the variant that detects this kind of fault.
 
 use lockstep2d::check::{
     CheckError, Depths, Failure, Fault, Options, Way, check, check_replay, random_inputs,
@@ -8,7 +8,7 @@ use lockstep2d::replay::Verdict;
 
 use super::toy::Toy;
 
-/// The failure of a toy, which its replay shows again.
+/// Returns the failure of a toy, whose replay must reproduce it.
 fn failure<const MISTAKE: usize>() -> Failure {
     let inputs = random_inputs::<Toy<MISTAKE>>(2, 300, &mut Rng::new(1));
     let failure = match check::<Toy<MISTAKE>>(&(), &inputs, &Options::default()) {
@@ -24,7 +24,7 @@ fn failure<const MISTAKE: usize>() -> Failure {
     failure
 }
 
-/// The names of the fields that differ.
+/// Returns the paths of the fields that differ.
 fn fields(failure: &Failure) -> Vec<&str> {
     failure.minimised.differences.iter().map(|difference| difference.field().path()).collect()
 }
@@ -59,7 +59,7 @@ fn a_good_game_passes() {
 fn a_field_that_the_save_lacks_is_found() {
     let failure = failure::<1>();
     assert_eq!(found(&failure), (Way::Reloaded, &Fault::Loaded));
-    // Two walk up to each other, and one hits.
+    // The minimised log has two players who walk up to each other, and one hit.
     assert!((3..=5).contains(&failure.ticks), "{failure}");
     assert!(failure.to_string().contains("what differs is not saved"), "{failure}");
 }
@@ -103,7 +103,7 @@ fn a_memory_that_load_leaves_is_found() {
 fn a_hash_that_changes_the_state_is_found() {
     let counts = failure::<7>();
     assert!(matches!(found(&counts).0, Way::Asked | Way::Unasked), "{counts}");
-    // Whoever asks every time sees nothing.
+    // The fault is invisible if the hash is polled after every tick.
     let tidies = failure::<8>();
     assert_eq!(found(&tidies), (Way::Unasked, &Fault::Hash));
     assert_eq!(tidies.ticks, 8);

@@ -1,11 +1,12 @@
-//! The planted mistake of `examples/fuzzing`: the order of a `HashMap`, which differs from map to map.
+//! The planted fault of `examples/fuzzing`: the iteration order of a `HashMap`, which differs from map to map.
 
 use lockstep2d::check::{Options, Way, check, check_replay, random_inputs};
 use lockstep2d::math::Rng;
 
 use super::harvest::Harvest;
 
-/// Random logs find it, and the replay that is left has little more than two fruits and somebody who reaches for them.
+/// Random logs find the fault, and the minimised replay is little more than two fruits and a player who reaches for
+/// them.
 #[test]
 fn random_logs_find_the_order_of_a_hash_map() {
     let mut rng = Rng::new(3);
@@ -13,8 +14,8 @@ fn random_logs_find_the_order_of_a_hash_map() {
         let inputs = random_inputs::<Harvest>(2, 200, &mut rng);
         check::<Harvest>(&7, &inputs, &Options::default()).err()
     });
-    let failure = failure.expect("it is found");
-    let failure = failure.failure().expect("it is a fault of the game");
+    let failure = failure.expect("expected the fault to be found");
+    let failure = failure.failure().expect("expected a fault of the game");
     println!("{failure}");
     assert_eq!(failure.minimised.way, Way::Again, "{failure}");
     assert!(failure.ticks < 120, "{failure}");
@@ -23,5 +24,5 @@ fn random_logs_find_the_order_of_a_hash_map() {
 
     let options = Options::default().only(&[Way::Again; 4]);
     let fails = (0..8).filter(|_| check_replay::<Harvest>(&failure.replay, &options).is_err()).count();
-    assert!(fails >= 4, "it fails {fails} times out of 8");
+    assert!(fails >= 4, "expected at least 4 failures out of 8, found {fails}");
 }

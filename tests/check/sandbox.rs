@@ -1,11 +1,11 @@
-//! The sandbox is a good game.
+//! The sandbox passes the check.
 
 use lockstep2d::check::{Options, Phases, Way, check, random_inputs};
 use lockstep2d::lockstep::{Game, Sandbox, SandboxSetup};
 use lockstep2d::math::Rng;
 use lockstep2d::scenes;
 
-/// Shapes of the largest scene that is played: all ways together take twenty times as long as one.
+/// Largest number of shapes of a scene in this test: all variants together take twenty times as long as one.
 const SHAPES_MAX: usize = 300;
 
 #[test]
@@ -30,7 +30,7 @@ fn every_scene_passes() {
         assert!(checked.ways.contains(&Way::ClearedScratch));
         passed += 1;
     }
-    assert!(passed > 12, "only {passed} scenes are small enough");
+    assert!(passed > 12, "expected more than 12 small scenes, found {passed}");
 }
 
 #[test]

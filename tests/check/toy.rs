@@ -1,4 +1,4 @@
-//! A small game, with one mistake of many.
+//! A small game with one of many planted faults.
 
 use std::cell::Cell;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -7,48 +7,48 @@ use lockstep2d::hash::StateHash;
 use lockstep2d::lockstep::{Game, RulesId, SetupError};
 use serde::{Deserialize, Serialize};
 
-/// What is wrong with a [`Toy`].
+/// The planted fault of a [`Toy`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Mistake {
     None,
-    /// The save has no cooldowns.
+    /// The save lacks the cooldowns.
     SaveLacksField,
-    /// Neither the save nor the hash has cooldowns.
+    /// The save and the hash lack the cooldowns.
     BothLackField,
-    /// The hash has no cooldowns.
+    /// The hash lacks the cooldowns.
     HashLacksField,
-    /// A counter that all games share decides.
+    /// A counter shared by all games affects the state.
     Global,
-    /// `load` leaves the total as it was, which `step` trusts.
+    /// `load` does not recompute the total, which `step` uses.
     LoadKeepsCache,
-    /// `step` remembers the last hit and only notices that another player is at it.
+    /// `step` caches the last hit, and invalidates it only when another player hits.
     StaleMemory,
-    /// Every question for the hash is counted in the state.
+    /// Each call of `state_hash` is counted in the state.
     HashCounts,
-    /// A question for the hash tidies up.
+    /// A call of `state_hash` changes the next step.
     HashTidies,
-    /// A set in the save.
+    /// The save contains an unordered set.
     SaveIsUnordered,
-    /// One more with every question.
+    /// Claims count the calls.
     ClaimsCount,
-    /// One more with every question.
+    /// Work counts the calls.
     WorkCounts,
-    /// Two claims with the same name.
+    /// Two claims have the same name.
     ClaimsTwice,
-    /// A claim of a shared counter.
+    /// A claim depends on a shared counter.
     ClaimsGlobal,
-    /// Refuses what it wrote itself.
+    /// The save cannot be decoded.
     Unreadable,
-    /// More work than any verifier allows.
+    /// The work exceeds every limit.
     WorkIsHuge,
 }
 
-/// Two players walk a line and hit each other. Shots need time to cool down.
+/// Two players walk along a line and hit each other. A player needs time to cool down after a hit.
 pub(crate) struct Toy<const MISTAKE: usize> {
     state: State,
-    /// The sum of the places: a cache.
+    /// Sum of the places: a cache.
     total: i64,
-    /// Who hit last, and for how much: a cache.
+    /// Player and strength of the last hit: a cache.
     last_hit: Option<(usize, u32)>,
     asked: Cell<u32>,
     tidy: Cell<bool>,
@@ -71,7 +71,7 @@ pub(crate) struct Save {
 }
 
 /// A set without an order, and its encoding.
-#[expect(clippy::disallowed_types, reason = "a planted mistake")]
+#[expect(clippy::disallowed_types, reason = "a planted fault")]
 type Unordered = std::collections::HashSet<u64>;
 
 mod unordered {
@@ -88,7 +88,7 @@ mod unordered {
     }
 }
 
-/// A byte that is written as 2 and read up to 1, if that is the mistake.
+/// A byte that is encoded as 2 if that is the planted fault, although decoding accepts at most 1.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 #[serde(try_from = "u8")]
 pub(crate) struct Flag(u8);
@@ -101,7 +101,7 @@ impl TryFrom<u8> for Flag {
     }
 }
 
-/// Bit 0: to the right, bit 1: to the left, bit 2: hits.
+/// Bit 0: right, bit 1: left, bit 2: hit.
 pub(crate) type Pad = u8;
 
 static SHARED: AtomicU32 = AtomicU32::new(0);

@@ -1,24 +1,24 @@
-//! What tests share: the committed constants.
-#![allow(dead_code, reason = "each test binary uses a part")]
+//! Shared by test binaries: the committed hashes.
+#![allow(dead_code, reason = "each test binary uses only some of these items")]
 
 use std::path::PathBuf;
 
-/// The seed of the golden scenes.
+/// Seed of the golden scenes.
 pub(crate) const SEED: u64 = 1;
 
-/// The hash of a scene after some ticks, for the present semantics.
+/// Hash of a scene after a number of ticks, for the current semantics.
 pub(crate) struct Golden {
     pub(crate) scene: String,
     pub(crate) ticks: u64,
     pub(crate) hash: String,
 }
 
-/// The lines of `tests/goldens.txt` that belong to the present semantics.
+/// Returns the lines of `tests/goldens.txt` for the current semantics.
 pub(crate) fn goldens() -> Vec<Golden> {
     goldens_of("tests/goldens.txt")
 }
 
-/// The lines of a file of hashes that belong to the present semantics: semantics, scene, ticks, hash.
+/// Returns the lines of a file of hashes for the current semantics: semantics, scene, ticks, hash.
 pub(crate) fn goldens_of(file: &str) -> Vec<Golden> {
     let text = std::fs::read_to_string(root().join(file)).expect("a file of hashes");
     let semantics = lockstep2d::SEMANTICS.to_string();
@@ -32,12 +32,12 @@ pub(crate) fn goldens_of(file: &str) -> Vec<Golden> {
                 ticks: ticks.parse().expect("a number of ticks"),
                 hash: hash.to_owned(),
             },
-            _ => panic!("four words, not {words:?}"),
+            _ => panic!("expected four words, found {words:?}"),
         })
         .collect()
 }
 
-/// The folder of the workspace.
+/// Returns the root folder of the repository.
 pub(crate) fn root() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR"))
 }

@@ -1,4 +1,4 @@
-//! What a check of a game has found.
+//! Messages about the findings of a check.
 
 use lockstep2d::check::{CheckError, Failure, Fault, Finding, Guess, Way};
 use lockstep2d::collision::BroadPhaseKind;
@@ -12,7 +12,7 @@ fn finding(way: Way, fault: Fault) -> Finding {
     Finding { way, fault, tick: 9, played: 9, phase: None, rollback: None, differences: Vec::new() }
 }
 
-/// As many fields as are asked for.
+/// Returns `count` differing fields.
 fn differing(count: usize) -> Vec<Difference> {
     let (a, b) = (fields(&vec![1; count]).expect("numbers"), fields(&vec![2; count]).expect("numbers"));
     differences(&a, &b)
@@ -86,7 +86,7 @@ fn a_finding_is_not_endless() {
     assert!(lines < 50 && text.contains(&format!("\n    and {} more\n", 1000 - lines)), "{text}");
 }
 
-/// Every mistake has a remedy of its own.
+/// Each fault has its own hint.
 #[test]
 fn what_it_usually_is() {
     let too_much = Verdict::LimitExceeded { limit: lockstep2d::replay::Limit::TickWork, value: 2, max: 1 };

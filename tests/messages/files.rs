@@ -1,4 +1,4 @@
-//! Snapshots, reports, and what is found in them.
+//! Messages about snapshots and reports, and about flaws in them.
 
 use lockstep2d::codec::{DECODE_BYTES_MAX, DecodeError};
 use lockstep2d::inspect::{InspectError, Value, differences, fields};

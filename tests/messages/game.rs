@@ -1,4 +1,4 @@
-//! A game that says nothing of itself but what it has to.
+//! A game that implements only the required items of `Game`.
 
 use lockstep2d::hash::StateHash;
 use lockstep2d::lockstep::{Game, RulesId, SetupError};
@@ -6,7 +6,7 @@ use lockstep2d::replay::{Limits, Recording, verify};
 
 use crate::says;
 
-/// Counts what is pressed.
+/// Adds up all inputs.
 struct Bare {
     pressed: u32,
 }
@@ -73,7 +73,7 @@ fn the_least_of_games_can_be_replayed() {
 #[test]
 fn what_a_game_need_not_say() {
     let mut game = Bare::new(&0).expect("valid");
-    assert_eq!(Bare::absent(), 0, "nobody presses nothing");
+    assert_eq!(Bare::absent(), 0, "expected the input of an absent player to be 0");
     assert!(game.world_mut().is_none());
     assert!(game.claims().is_empty());
 }

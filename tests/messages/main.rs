@@ -1,4 +1,4 @@
-//! What errors say to those who read them: every sentence, with its values.
+//! Error messages: the exact sentence of every error, with its values.
 
 mod check;
 mod files;
@@ -10,7 +10,7 @@ mod world;
 
 use std::fmt::Display;
 
-/// Compares what values say with what they should.
+/// Compares the `Display` output of values with the expected text.
 #[track_caller]
 fn says<T: Display>(table: impl IntoIterator<Item = (T, &'static str)>) {
     for (value, expected) in table {

@@ -1,4 +1,4 @@
-//! Peers, and the socket between them.
+//! Messages about peers, and the UDP socket.
 
 use std::net::SocketAddr;
 use std::thread::sleep;
@@ -43,7 +43,7 @@ fn peers() {
     says([(Mode::Lockstep, "lockstep"), (Mode::Rollback { window: 8 }, "rollback by up to 8 ticks")]);
 }
 
-/// What comes within a second.
+/// Waits for a packet for up to a second.
 fn wait_for(socket: &mut Udp) -> Option<(SocketAddr, Vec<u8>)> {
     (0..1000).find_map(|_| {
         let packet = socket.receive();
@@ -60,7 +60,7 @@ fn a_socket_carries_packets_both_ways() {
     let [a, b] = &mut sockets;
     let (at_a, at_b) = (a.local_address().expect("bound"), b.local_address().expect("bound"));
     assert!(format!("{a:?}").contains(&at_a.port().to_string()), "{a:?}");
-    assert_eq!(a.receive(), None, "nothing has come, and nobody waits");
+    assert_eq!(a.receive(), None, "expected `receive` to return at once without a packet");
     a.send(b"to and", &at_b);
     assert_eq!(wait_for(b), Some((at_a, b"to and".to_vec())));
     b.send(b"fro", &at_a);
@@ -76,5 +76,5 @@ fn what_cannot_be_sent_is_lost() {
     socket.send(&vec![0; 100_000], &here);
     socket.send(b"arrives", &here);
     assert_eq!(wait_for(&mut socket), Some((here, b"arrives".to_vec())));
-    assert!(Udp::bind(here).is_err(), "the port is taken");
+    assert!(Udp::bind(here).is_err(), "expected binding a used port to fail");
 }

@@ -1,4 +1,4 @@
-//! Replays: what is wrong with a file, and what became of its verification.
+//! Messages about replays: flaws of files, and verdicts.
 
 use lockstep2d::codec::DecodeError;
 use lockstep2d::hash::StateHash;

@@ -1,4 +1,4 @@
-//! Shapes, bodies, joints and settings.
+//! Messages about shapes, bodies, joints and settings.
 
 use lockstep2d::body::{BodyId, GeometryError, JointId, ShapeId, WorldError};
 use lockstep2d::codec;
@@ -7,7 +7,7 @@ use lockstep2d::world::{Section, Violation};
 
 use crate::says;
 
-/// The handles of slot 7, where two have been before.
+/// Encoded handle of slot 7 in generation 2.
 const SLOT_7: [u8; 8] = [7, 0, 0, 0, 2, 0, 0, 0];
 
 #[test]

@@ -1,4 +1,4 @@
-//! Many files made of a few good ones, and what has come of them.
+//! Mutates files derived from a few valid ones, and counts the answers of their readers.
 
 use std::collections::BTreeMap;
 use std::time::Duration;
@@ -10,14 +10,14 @@ use lockstep2d::replay::{Limits, Reader, TickInputs, Verdict, verify};
 use crate::memory;
 use crate::mutation::{below, mutate, repair};
 
-/// A hang.
+/// Time limit for one file: longer counts as a hang.
 const SECONDS_MAX: u64 = 5;
-/// Most memory that reading or playing one of these files may take at one time.
+/// Largest peak memory use for one file, in bytes.
 const MEMORY_MAX: usize = 32 << 20;
-/// Largest files that most mutations are tried on, and how often a larger one is taken: once in so many times.
+/// Largest size of a small file in bytes; one mutation in `LARGE_ONE_IN` picks a larger file.
 const SMALL: usize = 6000;
 const LARGE_ONE_IN: u32 = 50;
-/// What a verdict was given on, apart from the bytes.
+/// Decoded content of a replay, with its verdict.
 #[derive(PartialEq, Eq)]
 struct Course {
     setup: Vec<u8>,
@@ -38,18 +38,18 @@ impl Course {
     }
 }
 
-/// What has come of many files.
+/// Counts of answers, and the largest costs, over many files.
 #[derive(Default)]
 pub(crate) struct Figures {
     pub(crate) answers: BTreeMap<String, u64>,
     slowest: Duration,
-    /// Most bytes at one time, and the same in multiples of a file's bytes.
+    /// Peak memory use in bytes, and as a multiple of the file's size.
     memory: usize,
     multiple: usize,
 }
 
 impl Figures {
-    /// Reads a file, looks at clock and memory, and counts the answer.
+    /// Reads a file, checks the time and memory limits, and counts the answer.
     pub(crate) fn count<T>(
         &mut self,
         file: &[u8],
@@ -80,7 +80,7 @@ impl Figures {
     }
 }
 
-/// How long this thread has computed, which the load of the machine does not change.
+/// Returns the CPU time of this thread, which does not depend on the load of the machine.
 fn time_used() -> Duration {
     let figures = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
     match figures.split(' ').next().and_then(|nanoseconds| nanoseconds.parse().ok()) {
@@ -89,18 +89,18 @@ fn time_used() -> Duration {
     }
 }
 
-#[expect(clippy::disallowed_types, reason = "a hang is a matter of time")]
+#[expect(clippy::disallowed_types, reason = "detecting hangs needs the clock")]
 fn started() -> std::time::Instant {
     static START: std::sync::OnceLock<std::time::Instant> = std::sync::OnceLock::new();
     *START.get_or_init(std::time::Instant::now)
 }
 
-/// How many files a test makes: `few`, unless told otherwise.
+/// Returns the number of files per test: `MUTATIONS` if it is set, `few` otherwise.
 pub(crate) fn files_wanted(few: u64) -> u64 {
     std::env::var("MUTATIONS").ok().and_then(|count| count.parse().ok()).unwrap_or(few)
 }
 
-/// Changes one of some files in one to three ways, and repairs half of them.
+/// Changes a random file in one to three ways, and repairs its checksums in half of the cases.
 pub(crate) fn mutated(rng: &mut Rng, originals: &[Vec<u8>]) -> Vec<u8> {
     let (small, large): (Vec<_>, Vec<_>) = originals.iter().partition(|file| file.len() <= SMALL);
     let kind = if rng.below(LARGE_ONE_IN) == 0 && !large.is_empty() { large } else { small };
@@ -116,7 +116,7 @@ pub(crate) fn mutated(rng: &mut Rng, originals: &[Vec<u8>]) -> Vec<u8> {
     file
 }
 
-/// Changes replays and verifies them: what is a match has the setup, the inputs, the ticks and the end of one of them.
+/// Mutates and verifies replays: an accepted one must have the setup, inputs and verdict of an original.
 pub(crate) fn check_replays<G: Game>(originals: &[Vec<u8>], few: u64) {
     let limits = Limits::default();
     let verdicts = originals.iter().map(|file| (file, verify::<G>(file, &limits)));
@@ -128,11 +128,15 @@ pub(crate) fn check_replays<G: Game>(originals: &[Vec<u8>], few: u64) {
         let verdict = figures.count(&file, || verify::<G>(&file, &limits), name);
         if verdict.is_match() {
             let course = Course::of(&file, verdict);
-            assert!(courses.contains(&course), "file {number} is a match of its own");
+            assert!(courses.contains(&course), "file {number} is accepted, but differs from every original");
         }
     }
     figures.print("replays");
     for verdict in ["match", "diverged", "incomplete", "malformed"] {
-        assert!(figures.answers.contains_key(verdict), "no file is {verdict}: {:?}", figures.answers);
+        assert!(
+            figures.answers.contains_key(verdict),
+            "expected a file with the verdict {verdict}: {:?}",
+            figures.answers
+        );
     }
 }

@@ -1,8 +1,8 @@
-//! Files as they come from a bad disk, a bad network or a bad person: thousands of them, made of good ones. What reads
-//! them gives an answer in bounded time and memory, and never takes one for what it is not.
+//! Mutated files: thousands of damaged or forged files, derived from valid ones. Their readers answer in bounded time
+//! and memory, and never accept a file as something else.
 //!
-//! `MUTATIONS=100000 cargo test --release --test mutated -- --nocapture` is the long run, with figures.
-#![expect(clippy::unwrap_used, reason = "the files of this repository are good")]
+//! `MUTATIONS=100000 cargo test --release --test mutated -- --nocapture` is the long run and prints figures.
+#![expect(clippy::unwrap_used, reason = "the files of this repository are valid")]
 
 #[path = "../common/mod.rs"]
 mod common;
@@ -19,13 +19,13 @@ use lockstep2d::world::{SnapshotError, World};
 
 use judge::{Figures, check_replays, files_wanted, mutated};
 
-/// How many files each test makes, unless told otherwise.
+/// Default number of files per test.
 const FILES: u64 = 2000;
-/// Largest files that are mutated: larger ones only cost time.
+/// Largest size of a mutated file, in bytes: larger files only take longer.
 const LARGEST: usize = 60_000;
-/// Ticks that an accepted world has to live.
+/// Ticks that an accepted world must survive.
 const TICKS: u32 = 3;
-/// A snapshot makes us take at most so many times its bytes.
+/// Largest memory use of reading a snapshot, as a multiple of its size.
 const SNAPSHOT_MULTIPLE: usize = 100;
 
 #[test]
@@ -39,7 +39,7 @@ fn a_mutated_replay_is_never_another_match() {
     check_replays::<Sandbox>(&originals, FILES);
 }
 
-/// The bytes of each scene's world, soon after its beginning.
+/// Returns the bytes of each scene's world after 40 ticks.
 fn snapshots() -> Vec<Vec<u8>> {
     let mut snapshots = vec![World::default().to_bytes()];
     for scene in lockstep2d::scenes::ALL {
@@ -65,7 +65,7 @@ fn a_mutated_snapshot_is_refused_or_a_world() {
             Err(error) => format!("{error:?}").split([' ', '(']).next().unwrap_or_default().to_string(),
         };
         let Ok(mut world) = figures.count(&file, || World::from_bytes(&file), name) else { continue };
-        assert!(world.to_bytes() == file, "file {number} has another encoding");
+        assert!(world.to_bytes() == file, "file {number} is accepted, but encodes differently");
         let live = || {
             for _ in 0..TICKS {
                 world.step();
@@ -78,7 +78,7 @@ fn a_mutated_snapshot_is_refused_or_a_world() {
     assert!(figures.answers.len() >= 6, "{:?}", figures.answers);
 }
 
-/// A vacant slot has nothing but its generation in a file, and room for a whole body in memory.
+/// A vacant slot takes only its generation in a file, but room for a whole body in memory.
 #[test]
 fn what_a_snapshot_takes_is_bounded_by_its_bytes() {
     let mut world = World::default();

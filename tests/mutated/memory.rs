@@ -1,4 +1,4 @@
-//! The system's memory, which knows for each thread how much of it that thread has had at one time.
+//! Global allocator that tracks the peak memory use of each thread.
 #![expect(unsafe_code, reason = "the trait of allocators is unsafe")]
 
 use std::alloc::{GlobalAlloc, Layout, System};
@@ -14,7 +14,7 @@ thread_local! {
     static PEAK: Cell<usize> = const { Cell::new(0) };
 }
 
-/// What `work` returns, and the most bytes that it had at one time.
+/// Returns the result of `work` and its peak memory use in bytes.
 pub(crate) fn peak_of<T>(work: impl FnOnce() -> T) -> (T, usize) {
     let before = IN_USE.get();
     PEAK.set(before);
@@ -28,17 +28,17 @@ fn took(bytes: usize) {
     PEAK.set(PEAK.get().max(in_use));
 }
 
-// SAFETY: as the system's, which does it all. Larger buffers are moved, so that both count while they are copied.
+// SAFETY: forwards to the system allocator. `realloc` is the default, which moves: both buffers count while it copies.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         took(layout.size());
-        // SAFETY: as the caller's.
+        // SAFETY: the caller upholds the contract of `alloc`.
         unsafe { System.alloc(layout) }
     }
 
     unsafe fn dealloc(&self, memory: *mut u8, layout: Layout) {
         IN_USE.set(IN_USE.get().saturating_sub(layout.size()));
-        // SAFETY: as the caller's.
+        // SAFETY: the caller upholds the contract of `dealloc`.
         unsafe { System.dealloc(memory, layout) }
     }
 }

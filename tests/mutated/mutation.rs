@@ -1,21 +1,21 @@
-//! What may happen to a file: by accident, or by somebody who knows its layout.
+//! Mutations of files: accidental damage, and edits by somebody who knows the format.
 
 use lockstep2d::hash::StateHash;
 use lockstep2d::math::Rng;
 
-/// Bytes of a replay's checksums, and of the hash at the end of a snapshot.
+/// Size of a checksum in a replay, and of the hash at the end of a snapshot, in bytes.
 const CHECKSUM: usize = 8;
 const HASH: usize = 16;
-/// Magic, format, semantics, length.
+/// Size of magic, format, semantics and length, in bytes.
 const SNAPSHOT_HEADER: usize = 24;
 const TRAILER: u8 = 3;
-/// Where the trailer's payload holds the chain hash.
+/// Range of the chain hash in the trailer's payload.
 const CHAIN: std::ops::Range<usize> = 24..40;
-/// Numbers that are an end of something.
+/// Boundary values of integer types and limits.
 const EDGES: [u64; 12] =
     [0, 1, 2, 127, 128, 255, 65_535, 1 << 20, 1 << 24, (1 << 31) - 1, 0xffff_ffff, u64::MAX];
 
-/// What was done to a file.
+/// Kind of a mutation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Mutation {
     Bits,
@@ -39,7 +39,7 @@ const ALL: [Mutation; 8] = [
     Mutation::Length,
 ];
 
-/// Changes a file in one way; `others` are files of which pieces may come.
+/// Applies one random mutation to a file; `others` supplies pieces to splice in.
 pub(crate) fn mutate(rng: &mut Rng, file: &mut Vec<u8>, others: &[Vec<u8>]) -> Mutation {
     let mutation = ALL[below(rng, ALL.len())];
     let length = file.len();
@@ -63,7 +63,7 @@ pub(crate) fn mutate(rng: &mut Rng, file: &mut Vec<u8>, others: &[Vec<u8>]) -> M
             let other = &others[below(rng, others.len())];
             let (at, from) = (below(rng, length), below(rng, other.len()));
             if rng.below(2) == 0 {
-                // The beginning of one and the end of another.
+                // The beginning of one file and the end of another.
                 file.truncate(at);
                 file.extend_from_slice(&other[from..]);
             } else {
@@ -86,7 +86,7 @@ pub(crate) fn mutate(rng: &mut Rng, file: &mut Vec<u8>, others: &[Vec<u8>]) -> M
             file[start..end].rotate_left(middle - start);
         }
         Mutation::Length => {
-            // A number at the beginning of some part, where lengths are, or anywhere.
+            // Overwrites a number at the beginning of a part, where lengths are, or anywhere.
             let places = boundaries(file);
             let part = places[below(rng, places.len())];
             let at = [part, below(rng, length), below(rng, length.min(100))][below(rng, 3)].min(length);
@@ -102,12 +102,12 @@ pub(crate) fn mutate(rng: &mut Rng, file: &mut Vec<u8>, others: &[Vec<u8>]) -> M
     mutation
 }
 
-/// A number below `bound`; 0 when that is 0.
+/// Returns a number below `bound`, or 0 if `bound` is 0.
 pub(crate) fn below(rng: &mut Rng, bound: usize) -> usize {
     usize::try_from(rng.below_u64(bound as u64)).unwrap_or(0)
 }
 
-/// Some stretch of a file, often between two of its parts.
+/// Returns a random range of a file, often exactly one part.
 fn part(rng: &mut Rng, file: &[u8]) -> (usize, usize) {
     let places = boundaries(file);
     if rng.below(2) == 0 && places.len() > 1 {
@@ -118,7 +118,7 @@ fn part(rng: &mut Rng, file: &[u8]) -> (usize, usize) {
     (start, (start + 1 + below(rng, 100)).min(file.len()))
 }
 
-/// Where the parts of a replay or a snapshot begin, and where the last one ends.
+/// Returns where the parts of a replay or a snapshot begin, and where the last part ends.
 fn boundaries(file: &[u8]) -> Vec<usize> {
     let mut places = vec![0];
     if is_snapshot(file) {
@@ -146,12 +146,12 @@ fn number(file: &[u8], at: usize) -> Option<usize> {
     usize::try_from(u32::from_le_bytes(*bytes)).ok()
 }
 
-/// Where a replay's header has its checksum.
+/// Returns the offset of the checksum that follows a replay's header.
 fn replay_header(file: &[u8]) -> Option<usize> {
     Some(56 + number(file, 32)? + number(file, 36)?)
 }
 
-/// Makes right what a forger can who knows the format and not the game: lengths, checksums and hashes of bytes.
+/// Recomputes lengths, checksums and hashes, which a forger can do who knows the format but not the game.
 pub(crate) fn repair(file: &mut [u8]) {
     if is_snapshot(file) { repair_snapshot(file) } else { repair_replay(file).unwrap_or(()) }
 }

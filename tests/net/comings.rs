@@ -1,4 +1,4 @@
-//! Peers that come when the others already play, that watch, and that may not.
+//! Late joins, rejoins, spectators, and joins that are refused.
 
 use lockstep2d::net::{Event, NetError, Options, Peer, Weather};
 use lockstep2d::replay::Verdict;
@@ -24,7 +24,7 @@ fn check_late(weather: Weather, seed: u64) {
             "{}",
             table.describe()
         );
-        // Each of them goes over to the new session in its own time, at the same tick.
+        // Each peer enters the new session in its own time, but at the same tick.
         let all = table.play(10, |table| (0..4).all(|at| joins(table, at, 3).is_some()));
         assert!(all, "{}", table.describe());
         let tick = joins(&table, 0, 3).unwrap();
@@ -42,7 +42,7 @@ fn check_late(weather: Weather, seed: u64) {
         let replays = table.finish(end);
         assert!(matches!(verdict(&replays[0]), Verdict::Match { .. }));
         assert!(replays[1..3].iter().all(|replay| *replay == replays[0]), "replays differ");
-        assert!(replays[3].is_empty(), "a replay without its beginning");
+        assert!(replays[3].is_empty(), "a peer that joined late must not write a replay");
     }
 }
 
@@ -74,7 +74,7 @@ fn a_new_host_admits_players() {
     assert!(table.play(40, |table| table.all_confirmed(60)));
     table.kill(0).finish(0).unwrap();
     assert!(table.play(20, |table| table.peers[2].as_ref().unwrap().seats() == [1, 2]));
-    // It asks one who does not decide, and is sent on.
+    // The contact is not the host, so it redirects the joining peer to the host.
     let port = table.network.port(7);
     let late = Peer::join(&Setup::default(), Options::rollback(), port, 2, None).unwrap();
     table.sit(late);

@@ -1,4 +1,4 @@
-//! Two things that go wrong at once, and peers that stop for a while.
+//! Two failures at once, and peers that stop for a while.
 
 use std::thread;
 use std::time::Duration;
@@ -15,7 +15,7 @@ fn of(table: &Table, at: usize) -> &Player {
     table.peers[at].as_ref().unwrap()
 }
 
-/// Lets time pass.
+/// Runs the match for some time.
 fn pass(table: &mut Table, milliseconds: u64) {
     table.play_for(Duration::from_millis(milliseconds));
 }
@@ -52,7 +52,7 @@ fn a_peer_that_dies_while_the_others_agree_on_another_splits_nobody() {
         assert!(table.play(40, |table| table.all_confirmed(60)));
         table.kill(3);
         pass(&mut table, 1500);
-        // What the second one says when the first is missed reaches one of the others only.
+        // The message in which peer 2 reports the departure reaches only one of the other peers.
         table.network.cut(2, 1);
         pass(&mut table, 900);
         table.kill(2);
@@ -101,7 +101,7 @@ fn a_lost_packet_does_not_hold_up_lockstep_for_long() {
     assert!(ticks > 120, "{ticks} ticks in 5 s");
 }
 
-/// Whatever happens, in the end everybody plays with the others or knows why not.
+/// After any sequence of failures, each peer plays with the others or reports why it cannot.
 fn anything(seed: u64) {
     let mut rng = Rng::new(seed);
     let options = MODES[usize::from(seed.is_multiple_of(2))]();
@@ -151,16 +151,19 @@ fn anything(seed: u64) {
     let mut seats = None;
     for (at, peer) in table.peers.iter().enumerate() {
         let told = format!("{seed} {log:?} peer {at}: {}", table.describe());
-        assert!(!table.events[at].iter().any(|event| matches!(event, Event::Diverged(_))), "false: {told}");
+        assert!(
+            !table.events[at].iter().any(|event| matches!(event, Event::Diverged(_))),
+            "false divergence: {told}"
+        );
         let fair = match &table.errors[at] {
             None | Some(NetError::NoAnswer | NetError::Dropped | NetError::Full) => true,
             Some(error) => matches!(error, NetError::Refused { .. }),
         };
-        assert!(fair, "error: {told}");
+        assert!(fair, "unexpected error: {told}");
         let Some(peer) = peer.as_ref().filter(|_| table.errors[at].is_none()) else { continue };
-        assert!(peer.confirmed() > ticks[at] + 30, "stuck: {told}");
+        assert!(peer.confirmed() > ticks[at] + 30, "no progress: {told}");
         let same = *seats.get_or_insert_with(|| peer.seats()) == peer.seats();
-        assert!(same, "split: {told}");
+        assert!(same, "peers disagree about the seats: {told}");
     }
     let end = table.peers.iter().flatten().map(Peer::confirmed).max().unwrap();
     for (at, error) in table.errors.iter().enumerate() {
@@ -179,7 +182,7 @@ fn anything(seed: u64) {
 }
 
 #[test]
-#[ignore = "a minute"]
+#[ignore = "takes a minute"]
 fn whatever_happens_nobody_is_stuck_or_alone() {
     let first: u64 = std::env::var("SEED").ok().and_then(|seed| seed.parse().ok()).unwrap_or(0);
     thread::scope(|scope| {

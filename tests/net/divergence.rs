@@ -1,4 +1,5 @@
-//! A peer whose memory fails: it is noticed soon, and the reports say where, when and by what.
+//! A peer with a memory fault is detected within two checkpoints, and the reports name the peer, the tick and the
+//! field.
 
 use std::thread;
 
@@ -45,7 +46,8 @@ fn check(options: Options, seed: u64) {
     assert!(seen, "{fault:?}: {}", table.describe());
 
     let other = (faulty + 1) % players;
-    // Who differs from all others hears of all of them; in lockstep everybody does.
+    // The faulty peer differs from all other peers and receives all their hashes; in lockstep every peer receives all
+    // hashes.
     let told = |at: u32, first: &Divergence| {
         let report = table.peers[at as usize].as_ref().unwrap().report(first);
         DesyncReport::from_bytes(&report, &Limits::default()).unwrap()
@@ -59,7 +61,10 @@ fn check(options: Options, seed: u64) {
     for at in [faulty, other] {
         let first = found(&table, at as usize).unwrap();
         let checkpoints = (first.tick - fault.tick) / u64::from(options.check_interval);
-        assert!(first.tick >= fault.tick && checkpoints < 2, "{fault:?} was noticed as {first:?}");
+        assert!(
+            first.tick >= fault.tick && checkpoints < 2,
+            "{fault:?} was not detected within two checkpoints: {first:?}"
+        );
         let report = table.peers[at as usize].as_ref().unwrap().report(&first);
         sides.push(Evidence::read(report, &Limits::default()).unwrap());
     }
@@ -71,7 +76,7 @@ fn check(options: Options, seed: u64) {
     assert_eq!(told.courses[0].seats, [seat], "{what}");
     assert_eq!(told.things.len(), 1, "{what}");
     let differences = &told.things[0].differences;
-    // The view of a spin is its bits, and the angular velocity that they mean.
+    // A fault in the spin shows up as two fields: its raw bits, and the angular velocity derived from them.
     let derived = usize::from(fault.motion == Motion::Spin);
     assert_eq!(
         (differences.len(), differences[0].field().name()),

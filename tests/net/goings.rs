@@ -1,4 +1,4 @@
-//! Peers that vanish, leave, or are cut off.
+//! Peers that vanish, leave, or are disconnected.
 
 use lockstep2d::net::{Event, NetError, Weather};
 use lockstep2d::replay::{Limits, Part, Reader, Verdict};
@@ -7,7 +7,7 @@ use super::matches::{MODES, STORM, verdict};
 use super::pushers::EMPTY;
 use super::table::Table;
 
-/// The tick from which on seat `seat` is empty in a replay.
+/// Returns the tick at which the player of seat `gone` left.
 fn left_at(events: &[Event], gone: u32) -> Option<u64> {
     events.iter().find_map(|event| match event {
         Event::Left { seat, tick } if *seat == gone => Some(*tick),
@@ -19,7 +19,7 @@ fn check_goings(weather: Weather, gone: usize, seed: u64) {
     for options in MODES {
         let mut table = Table::of(4, options(), weather, seed);
         assert!(table.play(40, |table| table.all_confirmed(60)), "{}", table.describe());
-        // Not all of them have heard the last words of it.
+        // The peer vanishes; its last messages have not reached all other peers.
         table.kill(gone);
         let ended = table.play(60, |table| table.all_confirmed(220));
         assert!(ended, "{}", table.describe());
@@ -34,12 +34,18 @@ fn check_goings(weather: Weather, gone: usize, seed: u64) {
         assert!(replays.iter().all(|(_, replay)| *replay == replays[0].1), "replays differ");
         let inputs = inputs_of(&replays[0].1, gone);
         let tick = usize::try_from(ticks[0].unwrap()).unwrap();
-        assert!(inputs[..tick].iter().all(|input| *input != EMPTY), "gone too early");
-        assert!(inputs[tick..].iter().all(|input| *input == EMPTY), "still there");
+        assert!(
+            inputs[..tick].iter().all(|input| *input != EMPTY),
+            "the seat is empty before the departure tick"
+        );
+        assert!(
+            inputs[tick..].iter().all(|input| *input == EMPTY),
+            "the seat is not empty after the departure tick"
+        );
     }
 }
 
-/// The inputs of a seat in each tick of a replay.
+/// Returns the input of a seat in each tick of a replay.
 fn inputs_of(replay: &[u8], seat: usize) -> Vec<u8> {
     let mut inputs = Vec::new();
     let mut reader = Reader::open(replay, &Limits::default()).unwrap();
@@ -68,7 +74,7 @@ fn a_peer_that_leaves_is_not_waited_for() {
     let mut table = Table::of(3, MODES[1](), Weather::default(), 6);
     assert!(table.play(40, |table| table.all_confirmed(60)));
     table.kill(1).finish(60).unwrap();
-    // Sooner than anybody would notice.
+    // The departure message is faster than the timeout.
     let noticed = table.play(1, |table| left_at(&table.events[0], 1).is_some());
     assert!(noticed, "{}", table.describe());
     assert!(table.play(20, |table| table.all_confirmed(150)), "{}", table.describe());

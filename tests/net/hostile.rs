@@ -1,4 +1,4 @@
-//! Packets that no honest peer sends, with right checksums. `fuzz/src/packets.rs` sends any.
+//! Malicious packets with valid checksums. `fuzz/src/packets.rs` sends arbitrary ones.
 
 use std::time::Duration;
 
@@ -12,7 +12,7 @@ use super::pushers::{Pushers, Setup};
 use super::table::Table;
 
 const CHECKSUM_BYTES: usize = 8;
-/// The variants of a packet.
+/// Packet variants.
 const WELCOME: u32 = 3;
 const STATE: u32 = 5;
 const GONE: u32 = 11;
@@ -25,7 +25,7 @@ fn send(from: u32, to: u32, network: &Network, packet: impl Serialize) {
     network.port(from).send(&[&checksum[..CHECKSUM_BYTES], &body].concat(), &to);
 }
 
-/// The first packet that waits for `port` and is of this kind.
+/// Returns the first packet waiting at `port` that satisfies `is`.
 fn receive<T: DeserializeOwned>(port: &mut Port, is: impl Fn(&T) -> bool) -> T {
     let packets = std::iter::from_fn(|| port.receive());
     let read = |(_, bytes): (u32, Vec<u8>)| {
@@ -37,7 +37,7 @@ fn receive<T: DeserializeOwned>(port: &mut Port, is: impl Fn(&T) -> bool) -> T {
 
 #[test]
 fn nobody_begins_at_the_end_of_time() {
-    // Adding to the tick overflowed.
+    // Regression: adding to a tick near the limit overflowed.
     for tick in [u64::MAX, u64::MAX - 3, 1 << 63] {
         let network = Network::new(Weather::default(), 1);
         let setup = Setup::default();
@@ -58,7 +58,7 @@ fn nobody_begins_at_the_end_of_time() {
 
 #[test]
 fn what_is_in_the_replay_is_not_taken_back() {
-    // The states went back, and the replay did not.
+    // Regression: the states were rolled back, but the replay was not.
     let mut table = Table::of(2, Options::rollback(), Weather::default(), 1);
     assert!(table.play(40, |table| table.all_confirmed(100)), "{}", table.describe());
     drop(table.kill(1));

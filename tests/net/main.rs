@@ -1,7 +1,7 @@
-//! Matches over networks that lose, delay, double and reorder packets, and peers that come and go.
+//! Whole matches over networks that lose, delay, duplicate and reorder packets, with peers that join and leave.
 
-#![expect(clippy::unwrap_used, reason = "what fails here is the test")]
-#![expect(clippy::disallowed_types, reason = "GGRS reads the clock, and so matches take their time")]
+#![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
+#![expect(clippy::disallowed_types, reason = "GGRS reads the clock, so matches run in real time")]
 
 mod comings;
 mod disasters;

@@ -1,4 +1,4 @@
-//! Whole matches: equal hashes, replays that verify, the same inputs in all of them.
+//! Whole matches: equal hashes, and equal replays that verify.
 
 use std::thread;
 use std::time::Duration;
@@ -38,7 +38,7 @@ fn four_peers_play_the_same_in_calm_weather() {
     }
 }
 
-/// GGRS reads the clock, so matches take the time that they take; many run at once.
+/// GGRS reads the clock, so matches run in real time; many run in parallel.
 #[test]
 fn fifty_matches_in_a_storm_end_alike() {
     let tempest = Weather { latency: Duration::from_millis(100), ..STORM };

@@ -1,4 +1,4 @@
-//! Matches that are unusual: many players or one, odd rates, windows and delays, clocks that jump.
+//! Unusual matches: one player or eight, extreme tick rates, windows and input delays, clocks that jump.
 
 use std::thread;
 use std::time::Duration;
@@ -10,7 +10,7 @@ use super::matches::{MODES, STORM, verdict};
 use super::pushers::Setup;
 use super::table::Table;
 
-/// A match between peers of which each has its own options.
+/// Creates a match in which each peer has its own options.
 fn open(setup: &Setup, options: &[Options], weather: Weather, seed: u64) -> Table {
     let mut table = Table::new(weather, seed);
     for (address, options) in (0..).zip(options) {
@@ -24,7 +24,7 @@ fn open(setup: &Setup, options: &[Options], weather: Weather, seed: u64) -> Tabl
     table
 }
 
-/// Plays to this tick, without divergences or departures, to replays that verify and are the same.
+/// Plays to a tick without divergences or departures, and expects equal replays that verify.
 fn check(mut table: Table, ticks: u64, mut each_turn: impl FnMut(&mut Table)) {
     let done = table.play(40, |table| {
         each_turn(table);
@@ -125,7 +125,7 @@ fn who_plays_alone_is_joined() {
 fn two_matches_do_not_mix() {
     let mut table = Table::of(3, Options::rollback(), Weather::default(), 43);
     assert!(table.play(20, |table| table.all_confirmed(60)));
-    // Another match at the same addresses, to which the first one's packets still come.
+    // A second match at the same addresses, which still receives packets of the first one.
     let late = Weather { latency: Duration::from_millis(400), ..Weather::default() };
     table.network.set_weather(late);
     table.play(1, |_| false);

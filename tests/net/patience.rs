@@ -1,4 +1,4 @@
-//! What a match has to bear for a long time, or often.
+//! Matches survive long or repeated disturbances: outages, slow handshakes, repeated departures and joins.
 
 use std::time::Duration;
 
@@ -9,7 +9,7 @@ use super::matches::{MODES, verdict};
 use super::pushers::Setup;
 use super::table::Table;
 
-/// Nothing at all comes through for some time, but for less than the timeout.
+/// A total outage that is shorter than the timeout disconnects nobody.
 #[test]
 fn a_hole_in_the_network_is_no_end() {
     for options in MODES {
@@ -31,7 +31,7 @@ fn a_hole_in_the_network_is_no_end() {
     }
 }
 
-/// GGRS has peers answer each other five times before it plays; here that takes five times as long as the timeout.
+/// The GGRS handshake takes five round trips, which last five times as long as the timeout here.
 #[test]
 fn who_answers_slowly_is_not_silent() {
     for options in MODES {
@@ -44,7 +44,7 @@ fn who_answers_slowly_is_not_silent() {
     }
 }
 
-/// A player goes and comes back, again and again, always to the same seat.
+/// A player leaves and rejoins repeatedly, always in the same seat.
 #[test]
 fn a_player_comes_and_goes_ten_times() {
     let options = Options::rollback();

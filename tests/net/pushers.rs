@@ -1,4 +1,4 @@
-//! A small game for network tests: discs in a box, each pushed by a seat.
+//! A small game for network tests: discs in a box, each pushed by the player of a seat.
 
 use std::cell::Cell;
 
@@ -10,7 +10,7 @@ use lockstep2d::math::{Fx, Rng, Vec2};
 use lockstep2d::world::{Config, Motion, Snapshot, World};
 use serde::{Deserialize, Serialize};
 
-/// How a game begins.
+/// Initial conditions of a game.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Setup {
     pub(crate) players: u32,
@@ -31,7 +31,7 @@ pub(crate) struct Pushers {
     fault: Option<Fault>,
 }
 
-/// A bit that flips when a tick has been played, each time that it is played.
+/// A bit that flips after a tick, whenever that tick is simulated.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Fault {
     pub(crate) tick: u64,
@@ -41,11 +41,11 @@ pub(crate) struct Fault {
 }
 
 thread_local! {
-    /// What is wrong with the next game that is made in this thread.
+    /// Fault for the next game that this thread creates.
     pub(crate) static FAULT: Cell<Option<Fault>> = const { Cell::new(None) };
 }
 
-/// The bit of a seat without a player.
+/// Input bit of a seat without a player.
 pub(crate) const EMPTY: u8 = 1 << 7;
 
 impl Pushers {
@@ -79,7 +79,7 @@ impl Game for Pushers {
 
     fn new(setup: &Setup) -> Result<Self, SetupError> {
         if !(1..=8).contains(&setup.players) || !(1..=240).contains(&setup.tick_rate) {
-            return Err(SetupError { why: "1 to 8 players, 1 to 240 ticks a second".into() });
+            return Err(SetupError { why: "expected 1 to 8 players and 1 to 240 ticks a second".into() });
         }
         Pushers::build(setup).map_err(|error| SetupError { why: error.to_string() })
     }
@@ -99,7 +99,7 @@ impl Game for Pushers {
             };
             let push = if input & EMPTY != 0 { Vec2::ZERO } else { Vec2::new(axis(1, 2), axis(4, 8)) };
             let at = self.world.body(*disc).map_or(Vec2::ZERO, |body| body.centre_of_mass());
-            // The discs stay where they are.
+            // The discs are never despawned, so the force is never refused.
             let _ = self.world.apply_force(*disc, push, at);
         }
         self.world.step();
@@ -133,7 +133,7 @@ impl Game for Pushers {
     }
 }
 
-/// What a bot presses: another direction every few ticks.
+/// Returns a bot's input: a new direction every seven ticks.
 pub(crate) fn bot(seat: u32, tick: u64) -> u8 {
     let phase = u32::try_from(tick / 7).unwrap_or(0);
     let mut rng = Rng::with_stream(u64::from(seat), u64::from(phase));

@@ -1,6 +1,6 @@
-//! A session without clock and network: any legal sequence of requests, drawn from a seed.
+//! Drives `Driver` without a clock or network, through random legal sequences of GGRS requests drawn from a seed.
 //!
-//! Each peer of a match has its own script. What they share is the truth: everybody's inputs, and when somebody left.
+//! Each peer of a match has its own script. All scripts share the true inputs and the frames at which players leave.
 
 use ggrs::{GameStateCell, GgrsRequest, InputStatus};
 use lockstep2d::hash::StateHash;
@@ -13,11 +13,11 @@ use super::pushers::{Pushers, Setup, bot};
 
 type Request = GgrsRequest<GgrsConfig<Pushers, u32>>;
 
-/// What really happens.
+/// Ground truth: the real inputs, and the frames at which players leave.
 struct Truth {
     setup: Setup,
     frames: u32,
-    /// From which frame on a player is gone.
+    /// For each player, the first frame without it; `u32::MAX` if it stays.
     leaves: Vec<u32>,
 }
 
@@ -39,17 +39,17 @@ impl Truth {
     }
 }
 
-/// One peer: what it knows of the truth, and what it has guessed.
+/// One peer: the inputs that it has received and those that it has predicted.
 struct Script<'a> {
     truth: &'a Truth,
     rng: Rng,
-    /// Guessed frames at most; none in lockstep.
+    /// Largest number of predicted frames; 0 in lockstep.
     window: u32,
-    /// The frame to be played next.
+    /// Next frame to play.
     frame: u32,
-    /// Of each player, up to which frame the inputs are known.
+    /// For each player, the number of frames whose inputs have arrived.
     known: Vec<u32>,
-    /// What was played, by frame, since the last frame that is known of all.
+    /// Inputs that each frame was last played with.
     played: Vec<Vec<(u8, InputStatus)>>,
 }
 
@@ -59,7 +59,7 @@ impl<'a> Script<'a> {
         Script { truth, rng: Rng::new(seed), window, frame: 0, known, played: vec![] }
     }
 
-    /// Frames whose inputs are known of all.
+    /// Returns the number of frames whose inputs have arrived from all players.
     fn confirmed(&self) -> u32 {
         self.known.iter().copied().min().unwrap_or(0).min(self.frame)
     }
@@ -81,7 +81,7 @@ impl<'a> Script<'a> {
         let inputs: Vec<_> = players.map(|player| self.guess(player, frame)).collect();
         self.played.truncate(frame as usize);
         self.played.push(inputs.clone());
-        // The hash that a peer sends is its own, which is here everybody's.
+        // A peer sends its own hash; all peers have the same hash here.
         let wire = |(input, status)| (Wire { echo: driver.local_input(input).echo, input }, status);
         GgrsRequest::AdvanceFrame { inputs: inputs.into_iter().map(wire).collect() }
     }
@@ -90,8 +90,8 @@ impl<'a> Script<'a> {
         GgrsRequest::SaveGameState { cell: GameStateCell::default(), frame: i32::try_from(frame).unwrap() }
     }
 
-    /// Hears something, plays again what was wrong, and goes on if it may. Makes its requests one at a time, as the
-    /// hashes in them depend on those before.
+    /// Receives random inputs, resimulates frames that were played with wrong predictions, and plays the next frame if
+    /// the mode allows it. Requests are issued one at a time because the hashes in them depend on earlier ones.
     fn turn(&mut self, driver: &mut Driver<Pushers>) {
         for player in 0..self.known.len() {
             let more = self.rng.below(4);
@@ -135,7 +135,7 @@ impl<'a> Script<'a> {
     }
 }
 
-/// What a peer would write if another one said that it has another state.
+/// Returns the report that a peer would write if another peer reported a different hash.
 fn report(driver: &Driver<Pushers>, confirmed: u32) -> DesyncReport {
     let tick = u64::from(confirmed);
     let said = Divergence { tick, seat: 1, ours: StateHash::of(&0), theirs: StateHash::of(&1) };
@@ -156,13 +156,17 @@ fn check(seed: u64) {
         let mut halfway = None;
         while script.confirmed() < truth.frames {
             script.turn(&mut driver);
-            // Reports take long to compare: not in every script.
+            // Comparing reports is slow, so only every tenth seed does it.
             if seed.is_multiple_of(10) && script.frame >= truth.frames / 2 {
                 halfway.get_or_insert_with(|| report(&driver, script.confirmed()));
             }
         }
         driver.commit(truth.frames.into()).unwrap();
-        assert_eq!(driver.take_divergences(), [], "seed {seed}: a false report");
+        assert_eq!(
+            driver.take_divergences(),
+            [],
+            "seed {seed}: a divergence was reported although all peers agree"
+        );
         assert_eq!(driver.committed(), u64::from(truth.frames));
         let replay = [driver.take_replay(), driver.finish().unwrap()].concat();
         let verdict = verify::<Pushers>(&replay, &Limits::default());
@@ -170,7 +174,11 @@ fn check(seed: u64) {
         if let Some(halfway) = halfway {
             let [halfway, whole] = [Evidence::Report(Box::new(halfway)), Evidence::Replay(replay.clone())];
             let told = compare::<Pushers>(&halfway, &whole, &Limits::default()).unwrap();
-            assert_eq!(told.blame, Blame::Nobody, "seed {seed}, peer {peer}: a guess was reported: {told:?}");
+            assert_eq!(
+                told.blame,
+                Blame::Nobody,
+                "seed {seed}, peer {peer}: expected no blame, as only predicted frames differ: {told:?}"
+            );
         }
         replays.push(format!("{verdict}"));
     }

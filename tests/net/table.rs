@@ -1,5 +1,5 @@
-//! Peers around a network in memory, in a time of their own: it passes as fast as outside, since GGRS repeats itself by the
-//! clock, but more slowly where the machine is too slow for all that happens in it.
+//! Peers around an in-memory network with simulated time. The time passes as fast as real time, since GGRS retransmits
+//! by the real clock, but more slowly on a machine that cannot keep up.
 
 use std::time::{Duration, Instant};
 
@@ -16,12 +16,12 @@ pub(crate) struct Table {
     pub(crate) events: Vec<Vec<Event>>,
     pub(crate) errors: Vec<Option<NetError>>,
     pub(crate) replays: Vec<Vec<u8>>,
-    /// The clock of all.
+    /// Simulated time that all peers see.
     pub(crate) now: Duration,
     last_turn: Instant,
 }
 
-/// Most time that passes in a turn: one that takes longer keeps nobody waiting.
+/// Largest simulated duration of a turn: a turn that takes longer in real time causes no timeouts.
 const TURN_MAX: Duration = Duration::from_millis(20);
 
 impl Table {
@@ -38,7 +38,7 @@ impl Table {
         }
     }
 
-    /// A host and its guests; peer `n` has the address `n`.
+    /// Creates a host and `count - 1` guests; peer `n` has the address `n`.
     pub(crate) fn of(count: u32, options: Options, weather: Weather, seed: u64) -> Self {
         let mut table = Table::new(weather, seed);
         let setup = Setup::default();
@@ -61,17 +61,17 @@ impl Table {
         self.replays.push(vec![]);
     }
 
-    /// The peer vanishes without a word.
+    /// Removes a peer without a departure message.
     pub(crate) fn kill(&mut self, at: usize) -> Player {
         self.peers[at].take().unwrap()
     }
 
-    /// Plays until `done` says so, at most some seconds.
+    /// Plays until `done` returns true, for at most `seconds`.
     pub(crate) fn play(&mut self, seconds: u64, done: impl FnMut(&mut Table) -> bool) -> bool {
         self.play_until(self.now + Duration::from_secs(seconds), done)
     }
 
-    /// Plays for some time.
+    /// Plays for a duration.
     pub(crate) fn play_for(&mut self, time: Duration) {
         self.play_until(self.now + time, |_| false);
     }
@@ -115,7 +115,7 @@ impl Table {
         }
     }
 
-    /// Whether all peers know everything up to this tick.
+    /// Returns whether all peers have confirmed everything up to a tick.
     pub(crate) fn all_confirmed(&self, tick: u64) -> bool {
         self.peers.iter().flatten().all(|peer| peer.confirmed() >= tick)
     }
@@ -126,13 +126,13 @@ impl Table {
         format!("{peers:?} {:?} {:?}", self.errors, self.events)
     }
 
-    /// The hash that each peer had after a tick, of those who remember it.
+    /// Returns the hashes after a tick of all peers that still have it in their history.
     pub(crate) fn hashes(&self, tick: u64) -> Vec<StateHash> {
         let peers = self.peers.iter().flatten();
         peers.filter_map(|peer| Some(peer.history().get(tick)?.hash)).collect()
     }
 
-    /// Ends all replays after this tick and returns them.
+    /// Ends all replays after a tick and returns them.
     pub(crate) fn finish(mut self, tick: u64) -> Vec<Vec<u8>> {
         for (peer, replay) in self.peers.iter_mut().zip(&mut self.replays) {
             if let Some(peer) = peer.take() {

@@ -1,11 +1,11 @@
-//! Capsules rest, roll and swing as pills of the same mass do.
+//! Capsules come to rest, pile up, collide and roll as theory predicts.
 
 use lockstep2d::body::{BodyDef, BodyId, Geometry, Polygon, ShapeDef};
 use lockstep2d::fx;
 use lockstep2d::math::{Angle, Fx, Vec2};
 use lockstep2d::world::World;
 
-/// A capsule along the x axis with its round ends about (±half, 0).
+/// A capsule along the x axis whose round ends have their centres at (±half, 0).
 fn pill(half: Fx, radius: Fx) -> ShapeDef {
     let end = Vec2::new(half, fx!(0));
     ShapeDef::new(Geometry::capsule(-end, end, radius).expect("valid"))
@@ -25,7 +25,7 @@ fn a_capsule_lies_on_two_points_and_rests() {
     let mut world = World::default();
     floor(&mut world);
     let body = fall(&mut world, fx!(0), fx!(1.5), Angle::from_degrees(fx!(20)), pill(fx!(0.8), fx!(0.25)));
-    // Of a body that sleeps there are no contacts, so the last ones count.
+    // Sleeping bodies have no contacts, so the last contacts before sleep are checked.
     let mut points = Vec::new();
     for _ in 0..600 {
         world.step();
@@ -39,8 +39,8 @@ fn a_capsule_lies_on_two_points_and_rests() {
     assert_eq!(world.faults(), 0);
 }
 
-/// One heap in a hundred keeps a body or two rocking against a wall, whatever the semantics (20 to 21 of 2400 heaps that
-/// fall from heights a millimetre apart, at 0.05 to 0.4 m/s).
+/// With every semantics, about one heap in a hundred keeps one or two bodies rocking against a wall: 20 or 21 of 2400
+/// heaps, dropped from heights a millimetre apart, with speeds of 0.05 to 0.4 m/s.
 #[test]
 fn capsules_pile_up_on_boxes_circles_and_segments() {
     let speeds = [0, 1, 2, 3, 4, 5].map(|millimetres| {
@@ -54,7 +54,7 @@ fn capsules_pile_up_on_boxes_circles_and_segments() {
     assert!(restless <= 1 && speeds.iter().all(|&speed| speed < fx!(0.5)), "{speeds:?} m/s");
 }
 
-/// 40 bodies that have had 20 seconds to come to rest between two walls.
+/// Returns a world of 40 bodies that have had 20 seconds to come to rest between two walls.
 fn heap(height: Fx) -> World {
     let mut world = World::default();
     let ends = [Vec2::new(fx!(-20), fx!(0)), Vec2::new(fx!(20), fx!(0))];
@@ -78,7 +78,7 @@ fn heap(height: Fx) -> World {
     world
 }
 
-/// In line with each other, capsules have no face that tells them apart. 1D elastic collision of equal masses.
+/// Collinear capsules collide at their round ends, without a common face: 1D elastic collision of equal masses.
 #[test]
 fn capsules_in_line_exchange_velocities() {
     let mut world =
@@ -95,7 +95,7 @@ fn capsules_in_line_exchange_velocities() {
     assert!(target.distance(Vec2::new(fx!(4), fx!(0))) < fx!(0.001), "{target:?}");
 }
 
-/// An upright capsule stands on one point, and falls over.
+/// A nearly upright capsule rests on one point, falls over, and rolls.
 #[test]
 fn an_upright_capsule_rolls_along_when_it_is_pushed() {
     let mut world = World::default();

@@ -1,11 +1,11 @@
-//! What slides or rolls over a chain feels no seam, whatever its shape and speed.
+//! Shapes that slide or roll over a chain have no ghost collisions at its vertices, at any speed.
 
 use lockstep2d::body::{BodyDef, BodyId, Chain, Geometry, MassSource, Polygon, ShapeDef};
 use lockstep2d::fx;
 use lockstep2d::math::{Angle, Fx, Rng, Rot, Vec2, fx_mul};
 use lockstep2d::world::{Config, World};
 
-/// Everything half a metre high below its centre.
+/// Returns shapes to launch; all but the small ball extend half a metre below their centres.
 fn movers() -> [(&'static str, ShapeDef); 5] {
     let square =
         |half, radius| Polygon::square(half).and_then(|square| square.rounded(radius)).expect("valid");
@@ -23,7 +23,7 @@ fn height(name: &str) -> Fx {
     if name == "small ball" { fx!(0.1) } else { fx!(0.5) }
 }
 
-/// 1001 points from right to left at height 0, 10 to 50 cm apart.
+/// Returns 1001 points from right to left at height 0, 10 to 50 cm apart.
 fn flat() -> Vec<Vec2<Fx>> {
     let mut rng = Rng::new(1);
     let mut x = fx!(290);
@@ -34,7 +34,7 @@ fn flat() -> Vec<Vec2<Fx>> {
     points.collect()
 }
 
-/// The deepest overlap with a link in metres.
+/// Returns the deepest overlap with a link in metres.
 fn deepest_in_chain(world: &World) -> Fx {
     let is_link = |id| matches!(world.shape(id).map(|shape| shape.geometry()), Some(Geometry::Link { .. }));
     let contacts = world.contacts().filter(|contact| is_link(contact.shape_a) || is_link(contact.shape_b));
@@ -68,7 +68,7 @@ fn everything_slides_over_a_flat_chain_of_1000_links() {
                     assert!(fastest < fx!(0.05), "{name} at {speed} m/s: {fastest} m/s up or down");
                     let travelled = world.body(body).expect("there").position().x;
                     let free = speed * 800 / 60;
-                    // Rounded corners that meet the vertices give and take a little: 0.03 % of the way.
+                    // Rounded corners that meet the vertices gain or lose speed, which changes the distance by 0.03 %.
                     assert!(friction > 0 || (travelled - free).abs() < fx!(0.03), "{name}: {travelled} m");
                     assert_eq!(world.faults(), 0);
                 }
@@ -77,8 +77,8 @@ fn everything_slides_over_a_flat_chain_of_1000_links() {
     }
 }
 
-/// An arc of radius 100 m, 200 m long in 1000 links: a valley about (0, 100), or a hill about (0, -100). Seen from
-/// above, its points run from right to left.
+/// Returns an arc of radius 100 m and length 200 m in 1000 links: a valley around (0, 100), or a hill around (0, -100).
+/// The points run from right to left, so the upper side is solid.
 fn arc(hill: bool) -> Vec<Vec2<Fx>> {
     let points = (0..=1000i32).map(|i| {
         let turn = Angle::from_radians(Fx::from_num(500 - i) / 500);
@@ -89,8 +89,8 @@ fn arc(hill: bool) -> Vec<Vec2<Fx>> {
     points.collect()
 }
 
-/// Without friction, the speed follows from the height, and the way leads along the arc. A chord of 0.2 m is 0.05 mm
-/// below its arc.
+/// Without friction, the radial velocity is zero and the path follows the arc. A chord of 0.2 m is 0.05 mm below its
+/// arc.
 #[test]
 fn everything_follows_a_gentle_arc() {
     for (hill, speeds) in [(false, [fx!(1), fx!(5), fx!(20)]), (true, [fx!(1), fx!(5), fx!(10)])] {
@@ -126,7 +126,7 @@ fn everything_follows_a_gentle_arc() {
     }
 }
 
-/// Over a ground that goes up and down, at every angle, no shape gains energy or gets through.
+/// On rough ground with slopes of every angle, no shape gains energy or gets through.
 #[test]
 fn a_rough_closed_chain_keeps_everything_inside() {
     let mut rng = Rng::new(5);
@@ -157,7 +157,7 @@ fn a_rough_closed_chain_keeps_everything_inside() {
     }
 }
 
-/// From below a one-sided ground is not there.
+/// A one-sided chain is passable from below.
 #[test]
 fn a_one_sided_chain_lets_through_from_the_other_side() {
     let points = [Vec2::new(fx!(5), fx!(0)), Vec2::new(fx!(0), fx!(0)), Vec2::new(fx!(-5), fx!(0))];
@@ -176,7 +176,7 @@ fn a_one_sided_chain_lets_through_from_the_other_side() {
     }
 }
 
-/// Corners of every kind still stop what runs into them: a pit with vertical walls and a sharp ridge in the middle.
+/// Corners of every kind are solid: a pit with vertical walls and a sharp ridge in the middle.
 #[test]
 fn corners_are_solid() {
     let at = |x: i32, y: i32| Vec2::new(Fx::from(x), Fx::from(y));
@@ -208,8 +208,8 @@ fn corners_are_solid() {
     }
 }
 
-/// Beyond a neighbour's far end its line says nothing: a plank over a crest, with its end across the next valley,
-/// rests on the valley's far side, and a ray that clears the crest meets it.
+/// A neighbour's line affects the ghost-collision filter only up to its far end. A plank over a crest, with its end
+/// across the next valley, rests on the valley's far side, and a ray that clears the crest hits the far side.
 #[test]
 fn what_reaches_over_a_crest_meets_the_far_side() {
     let points = [(20, -10), (4, 1), (0, -1), (-10, 1), (-30, 1)]
@@ -230,7 +230,7 @@ fn what_reaches_over_a_crest_meets_the_far_side() {
         for _ in 0..180 {
             world.step();
             let tip = world.body(plank).expect("there").transform().apply(Vec2::new(fx!(-12), fx!(-0.1)));
-            // The far side from (0, -1) to (-10, 1).
+            // The far side runs from (0, -1) to (-10, 1).
             let ground = fx!(-1) - tip.x / 5;
             assert!(tip.y > ground - fx!(0.05), "the tip is at {tip:?}");
         }

@@ -1,4 +1,4 @@
-//! Two bodies that meet: impulses are equal and opposite, so momentum stays.
+//! Collisions of two bodies: impulses are equal and opposite, so momentum is conserved.
 
 use lockstep2d::body::BodyKind;
 use lockstep2d::fx;
@@ -11,7 +11,7 @@ fn momentum(world: &World) -> Vec2<Fx> {
     world.bodies().fold(Vec2::ZERO, |sum, (_, body)| sum + body.velocity().scale(body.mass()))
 }
 
-/// About the origin: `sum m r x v + I w`.
+/// Returns the angular momentum about the origin: `sum m r x v + I w`.
 fn angular_momentum(world: &World) -> Fx {
     world.bodies().fold(Fx::ZERO, |sum, (_, body)| {
         let orbital = fx_mul(body.mass(), body.centre_of_mass().cross(body.velocity()));
@@ -36,8 +36,8 @@ fn momentum_stays_in_every_tick_of_a_collision() {
     }
 }
 
-/// Contact points keep their lever arms for a tick, so angular momentum may be off by the impulse times the
-/// distance that the bodies move against each other meanwhile: `|P| |v_rel| dt`.
+/// Lever arms are constant within a tick, so angular momentum may deviate by the impulse times the relative motion of
+/// the bodies in a tick: `|P| |v_rel| dt`.
 #[test]
 fn angular_momentum_stays_within_impulse_times_motion_in_a_tick() {
     let mut game = open("oblique");
@@ -47,7 +47,7 @@ fn angular_momentum_stays_within_impulse_times_motion_in_a_tick() {
     run(&mut game, 120, |_, _| {});
     let (id, old, mass) = bodies[0];
     let impulse = fx_mul(mass, game.world().body(id).expect("still there").velocity().distance(old));
-    assert!(impulse > fx!(1), "they have met");
+    assert!(impulse > fx!(1), "expected a collision");
     let bound = fx_mul(impulse, relative) / 60;
     let error = (angular_momentum(game.world()) - before).abs();
     assert!(error <= bound, "angular momentum off by {error}, more than {bound}");
@@ -61,14 +61,14 @@ fn an_elastic_collision_exchanges_velocities_as_the_textbook_says() {
     run(&mut game, 120, |_, _| {});
     let velocities: Vec<_> = game.world().bodies().map(|(_, body)| body.velocity()).collect();
     for (velocity, expected) in velocities.into_iter().zip([fx!(-5), fx!(1)]) {
-        assert!((velocity.x - expected).abs() < fx!(0.0001), "{velocity:?}, not {expected} m/s");
+        assert!((velocity.x - expected).abs() < fx!(0.0001), "{velocity:?}, expected {expected} m/s");
         assert!(velocity.y.abs() < fx!(0.0001));
     }
     let gained = energy(game.world()) - before;
-    assert!(gained.abs() < before / 10_000, "energy changed by {gained} J of {before} J");
+    assert!(gained.abs() < before / 10_000, "energy changed from {before} J by {gained} J");
 }
 
-/// The balls start inside a block: each leaves by the nearest side.
+/// Balls that start inside a block leave it by the nearest side.
 #[test]
 fn a_ball_inside_a_block_is_pushed_out_not_through() {
     let mut game = open("ball_in_box");
@@ -79,8 +79,12 @@ fn a_ball_inside_a_block_is_pushed_out_not_through() {
         .filter(|(_, body)| body.kind() == BodyKind::Dynamic)
         .map(|(_, body)| body.position())
         .collect();
-    assert!(balls[0].y > fx!(1.24), "through the top: {:?}", balls[0]);
-    assert!(balls[1].y < fx!(-1.24), "through the bottom: {:?}", balls[1]);
-    assert!(balls[2].x > fx!(3.24), "through the right side: {:?}", balls[2]);
-    assert!(balls[3].y > fx!(1.24), "from just above the middle through the top: {:?}", balls[3]);
+    assert!(balls[0].y > fx!(1.24), "expected the ball above the top, at {:?}", balls[0]);
+    assert!(balls[1].y < fx!(-1.24), "expected the ball below the bottom, at {:?}", balls[1]);
+    assert!(balls[2].x > fx!(3.24), "expected the ball beyond the right side, at {:?}", balls[2]);
+    assert!(
+        balls[3].y > fx!(1.24),
+        "expected the ball from just above the middle above the top, at {:?}",
+        balls[3]
+    );
 }

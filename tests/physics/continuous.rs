@@ -1,11 +1,11 @@
-//! Fast bodies do not pass through thin walls.
+//! Continuous collision: fast bodies do not tunnel through thin walls.
 
 use lockstep2d::body::{BodyDef, Geometry, Polygon, ShapeDef};
 use lockstep2d::fx;
 use lockstep2d::math::{Angle, Fx, Rng, Rot, Vec2, fx_mul};
 use lockstep2d::world::{Config, World};
 
-/// A shape of 5 cm.
+/// Returns a shape 5 cm in size.
 fn small(kind: u32) -> ShapeDef {
     let geometry = match kind {
         0 => Geometry::circle(fx!(0.025)),
@@ -15,7 +15,7 @@ fn small(kind: u32) -> ShapeDef {
     ShapeDef::new(geometry.expect("valid"))
 }
 
-/// A wall of 1 cm, turned by an angle, through the origin, and its normal.
+/// Spawns a wall 1 cm thick through the origin, rotated by an angle, and returns its normal.
 fn wall(world: &mut World, angle: Angle) -> Vec2<Fx> {
     let wall = ShapeDef::new(Polygon::rectangle(fx!(100), fx!(0.005)).expect("valid"));
     world.spawn(&BodyDef::fixed().angle(angle), &[wall]).expect("valid");
@@ -60,7 +60,7 @@ fn a_thin_rod_that_spins_does_not_pass_a_wall() {
         let mut world = weightless();
         let normal = wall(&mut world, Angle::ZERO);
         let rod = ShapeDef::new(Polygon::rectangle(fx!(1), fx!(0.01)).expect("valid"));
-        // It starts beside the wall and sweeps into it.
+        // The rod starts above the wall and rotates into it.
         let tilt = rng.range(fx!(0.05), fx!(1.5));
         let height = fx_mul(fx!(1.02), Angle::from_radians(tilt).sin().into()) + fx!(0.03);
         let spin = if rng.chance(1, 2) { fx!(50) } else { fx!(-50) };

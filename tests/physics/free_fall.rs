@@ -1,4 +1,4 @@
-//! Free fall is semi-implicit Euler, `v' = v + g h`, `x' = x + h v'`, to the last bit.
+//! Free fall is semi-implicit Euler, `v' = v + g h`, `x' = x + h v'`, bit for bit.
 
 use lockstep2d::body::BodyId;
 use lockstep2d::fx;
@@ -11,13 +11,14 @@ fn only_body(world: &World) -> BodyId {
     world.bodies().next().expect("a body").0
 }
 
-/// `g h` and every `v h` are rounded to nearest once, in the formats of the kernel; everything else is exact.
+/// `g h` and every `v h` are rounded to nearest once, in the number formats of the kernel; all other operations are
+/// exact.
 #[test]
 fn ten_seconds_equal_the_recurrence_exactly() {
     let mut game = open("free_fall");
     let body = only_body(game.world());
     let step_of = |v: Speed| {
-        // v / 240 with 5 more fraction bits than a speed has.
+        // v / 240 with 5 more fraction bits than a speed.
         let bits = div_round(i128::from(v.to_bits()) << 5, 240);
         Shift::from_bits(bits.try_into().expect("a small step"))
     };
@@ -34,8 +35,8 @@ fn ten_seconds_equal_the_recurrence_exactly() {
     });
 }
 
-/// The closed form of the recurrence is `x_n = g h^2 n (n + 1) / 2`. What is rounded makes less than 2 mm in 10 s
-/// and 500 m.
+/// The closed form of the recurrence is `x_n = g h^2 n (n + 1) / 2`. Rounding errors are less than 2 mm in 10 s and 500
+/// m.
 #[test]
 fn ten_seconds_are_within_2_mm_of_the_closed_form() {
     let mut game = open("free_fall");
@@ -44,10 +45,10 @@ fn ten_seconds_are_within_2_mm_of_the_closed_form() {
     let n = 2400i64;
     let expected = lockstep2d::math::ratio(-10 * n * (n + 1), 2 * 240 * 240);
     let y = game.world().body(body).expect("still there").position().y;
-    assert!((y - expected).abs() < fx!(0.002), "{y} m, not {expected} m");
+    assert!((y - expected).abs() < fx!(0.002), "{y} m, expected {expected} m");
 }
 
-/// Without gravity nothing changes speed, and distance is speed times time.
+/// Without gravity, velocity is constant and distance is speed times time.
 #[test]
 fn a_thrown_body_keeps_its_velocity() {
     use lockstep2d::body::{BodyDef, Geometry, ShapeDef};
@@ -63,15 +64,16 @@ fn a_thrown_body_keeps_its_velocity() {
     let distance = body.position().distance(Vec2::new(fx!(180), fx!(-240)));
     assert!(
         distance < fx!(0.00011),
-        "{distance} m off after a minute and 300 m: 14400 roundings of 3.7 nm at most"
+        "error of {distance} m after 60 s and 300 m, expected at most 14400 roundings of 3.7 nm"
     );
     let turned = body.angle().to_radians();
-    // 60 rad are 10 turns less 2.8319 rad. 3.7 nm at k = 0.35 m are 1.05e-8 rad, 14400 times 1.5e-4.
+    // 60 rad are 10 turns minus 2.8319 rad. The error bound is 3.7 nm at k = 0.35 m, 1.05e-8 rad, 14400 times: 1.5e-4
+    // rad.
     assert!((turned - fx!(-2.831853072)).abs() < fx!(0.0002), "{turned} rad");
 }
 
-/// The other Euler: why ours is the semi-implicit one. A ball on a spring of 1 rad/s for 100 s: explicit Euler
-/// multiplies its energy by `(1 + h^2)` in every step, semi-implicit Euler keeps it.
+/// The reason for semi-implicit Euler. A ball on a spring of 1 rad/s for 100 s: explicit Euler multiplies its energy by
+/// `(1 + h^2)` in every step, semi-implicit Euler conserves it.
 #[test]
 fn explicit_euler_gains_energy_and_semi_implicit_does_not() {
     let h = fx!(1 / 60);
@@ -85,6 +87,9 @@ fn explicit_euler_gains_energy_and_semi_implicit_does_not() {
         let v = v - mul(h, x);
         semi = (x + mul(h, v), v);
     }
-    assert!(energy(explicit.0, explicit.1) > fx!(2.5), "(1 + 1/3600)^6000 = e^(5/3) times 0.5 J");
+    assert!(
+        energy(explicit.0, explicit.1) > fx!(2.5),
+        "expected the energy of explicit Euler to be (1 + 1/3600)^6000 = e^(5/3) times 0.5 J"
+    );
     assert!((energy(semi.0, semi.1) - fx!(0.5)).abs() < fx!(0.01));
 }

@@ -1,4 +1,4 @@
-//! A bench for joints: bodies of a given mass without shapes, and one joint to look at.
+//! Test bench for joints: bodies of a given mass without shapes, and one joint to measure.
 
 use lockstep2d::body::{BodyDef, BodyId, JointId, MassSource};
 use lockstep2d::fx;
@@ -12,11 +12,11 @@ pub(crate) struct Bench {
     pub(crate) b: BodyId,
 }
 
-/// What holds the other end of a joint.
+/// Body at the other end of a joint.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Ground {
     Fixed,
-    /// A body of some mass in kg.
+    /// Dynamic body with this mass in kg.
     Free(Fx),
 }
 
@@ -24,7 +24,7 @@ pub(crate) enum Ground {
 pub(crate) const RATE: i64 = 240;
 
 impl Bench {
-    /// A in the origin, and B of 2 kg and a radius of gyration of 0.5 m at a place and angle.
+    /// Creates A at the origin, and B with 2 kg and a radius of gyration of 0.5 m at a position and angle.
     pub(crate) fn new(ground: Ground, gravity: Fx, place: Vec2<Fx>, angle: Fx) -> Self {
         Self::with_mass(ground, gravity, (fx!(2), fx!(0.5)), place, angle)
     }
@@ -36,7 +36,7 @@ impl Bench {
         place: Vec2<Fx>,
         angle: Fx,
     ) -> Self {
-        // What creeps to its target would fall asleep on the way.
+        // Sleeping is off, because a body that creeps to its target would fall asleep on the way.
         let config = Config { gravity: Vec2::new(fx!(0), gravity), sleeping: false, ..Config::default() };
         let mut world = World::new(config).expect("valid");
         let given = |mass, gyration| MassSource::Given { mass, centre: Vec2::ZERO, gyration };
@@ -54,27 +54,27 @@ impl Bench {
         self.world.add_joint(&def).expect("valid")
     }
 
-    /// Steps, and checks that nothing was clamped.
+    /// Steps, calls `look` after every tick, and expects that the solver has clamped nothing.
     pub(crate) fn run(&mut self, ticks: u64, mut look: impl FnMut(u64, &World)) {
         for tick in 0..ticks {
             self.world.step();
             look(tick, &self.world);
         }
         assert_eq!(self.world.validate(), Ok(()));
-        assert_eq!(self.world.faults(), 0, "a clamp of the solver has changed a result");
+        assert_eq!(self.world.faults(), 0, "expected no clamped or saturated value in the solver");
     }
 }
 
 pub(crate) fn close(found: Fx, expected: Fx, within: Fx, what: &str) {
-    assert!((found - expected).abs() <= within, "{what}: {found}, not {expected}");
+    assert!((found - expected).abs() <= within, "{what}: {found}, expected {expected}");
 }
 
-/// What a joint moves of two masses or inertias: `1 / (1 / a + 1 / b)`.
+/// Returns the effective value of two masses or inertias: `1 / (1 / a + 1 / b)`.
 pub(crate) fn reduced(a: Fx, b: Fx) -> Fx {
     lockstep2d::math::fx_div(lockstep2d::math::fx_mul(a, b), a + b).expect("positive")
 }
 
-/// Grounds for B, with what a joint moves of its 2 kg and of its 0.5 kg m² on each.
+/// Returns grounds for B, each with the effective mass and inertia for B's 2 kg and 0.5 kg m².
 pub(crate) fn grounds() -> [(Ground, Fx, Fx); 3] {
     // A has a radius of gyration of 0.4 m.
     let free = |mass: Fx| (Ground::Free(mass), reduced(fx!(2), mass), reduced(fx!(0.5), mass * 4 / 25));

@@ -1,4 +1,4 @@
-//! What joints hold stays where it is.
+//! Joints hold their bodies in place and bear the loads that theory predicts.
 
 use lockstep2d::body::{BodyDef, MassSource};
 use lockstep2d::fx;
@@ -31,14 +31,14 @@ fn a_rod_is_a_pendulum() {
     close(period, small + small / 1600, small / 200, "s");
 }
 
-/// A slider at 30 degrees to the horizontal, its load 1 m off the axis: it slides as on a frictionless slope, and does
-/// not turn.
+/// A slider at 30 degrees to the horizontal, with its load 1 m off the axis, slides as on a frictionless slope and does
+/// not rotate.
 #[test]
 fn a_slider_slides_down_its_slope_and_does_not_turn() {
     for ground in [Ground::Fixed, Ground::Free(fx!(1000000))] {
         let mut bench = Bench::new(ground, fx!(-10), Vec2::ZERO, fx!(0));
         if let Ground::Free(_) = ground {
-            // Falling together with its ground, it would not slide.
+            // Gravity would accelerate the ground as well, so only the load gets a force.
             bench.world.set_gravity(Vec2::ZERO).expect("valid");
         }
         let tilt = Angle::from_degrees(fx!(-30));
@@ -59,12 +59,12 @@ fn a_slider_slides_down_its_slope_and_does_not_turn() {
             });
         }
         let along = bench.world.joint_translation(joint).expect("there").x;
-        // g/2 sin 30 t^2, plus half a sub-step of the semi-implicit step.
+        // g/2 sin 30 t^2, plus half a sub-step because of the semi-implicit integration.
         close(along, fx!(10), fx!(0.05), "m");
     }
 }
 
-/// Planks of 1 m and 1 kg, welded end to end and to a wall.
+/// Planks of 1 m and 1 kg, welded end to end and to a wall. Returns the world and the height of the tip.
 fn cantilever(planks: i64, kind: Weld) -> (World, Fx) {
     let mut bench = Bench::new(Ground::Fixed, fx!(-10), Vec2::new(fx!(0), fx!(100)), fx!(0));
     let mass = MassSource::Given { mass: fx!(1), centre: Vec2::ZERO, gyration: fx!(0.29) };
@@ -89,7 +89,7 @@ fn a_cantilever_of_rigid_welds_hardly_bends() {
         for (id, _) in world.joints() {
             assert!(world.joint_length(id).expect("there") < fx!(0.01));
         }
-        // The wall bears all of it: 10 N for each, and their torque.
+        // The wall bears the whole load: 10 N per plank, and its torque.
         let (first, _) = world.joints().next().expect("there");
         let (force, torque) = world.joint_force(first).expect("there");
         let planks = Fx::from_num(planks);
@@ -98,8 +98,9 @@ fn a_cantilever_of_rigid_welds_hardly_bends() {
     }
 }
 
-/// At rest a soft joint gives way to a load `m g` of a mass `m` by `g / omega^2`, as a spring does. The upper hinge of
-/// two rods bears both, at 60 Hz; of one alone, which is mounted, at twice that, so that it gives way a quarter as much.
+/// At rest a soft joint yields to a load `m g` on a mass `m` by `g / omega^2`, as a spring does. With two rods, the
+/// upper hinge bears both at 60 Hz. With one rod, it is an anchored hinge with twice that frequency, and yields a
+/// quarter as much.
 #[test]
 fn a_hinge_sags_as_its_stiffness_says_and_a_mount_is_twice_as_stiff() {
     let sag = |rods: i64| {
@@ -124,7 +125,7 @@ fn a_hinge_sags_as_its_stiffness_says_and_a_mount_is_twice_as_stiff() {
     close(sag(2), soft * 2, soft / 50, "m");
 }
 
-/// A wheel of 2 kg on a spring of 3 Hz under gravity settles where the spring bears it: `g / omega^2` below.
+/// A wheel of 2 kg on a spring of 3 Hz comes to rest `g / omega^2` below the spring's target.
 #[test]
 fn a_wheel_sinks_into_its_suspension() {
     let mut bench = Bench::new(Ground::Fixed, fx!(-10), Vec2::ZERO, fx!(0));
@@ -137,13 +138,14 @@ fn a_wheel_sinks_into_its_suspension() {
         lowest = lowest.min(at.x);
         assert!(at.y.abs() < fx!(0.001), "{} m off the axis", at.y);
     });
-    // 10 / (6 pi)^2, and over it by exp(-pi zeta / sqrt(1 - zeta^2)) = 0.372 at first.
+    // The deflection is 10 / (6 pi)^2; the first overshoot is exp(-pi zeta / sqrt(1 - zeta^2)) = 0.372 of it.
     let sunk = fx!(0.028145);
     close(bench.world.joint_translation(joint).expect("there").x, -sunk, sunk / 100, "m at rest");
     close(lowest, -fx_mul(sunk, fx!(1.372)), sunk / 20, "m at first");
 }
 
-/// Every joint with bodies of 100 to 1, from 1 cm to 50 m, a billion metres out: nothing is clamped and nothing opens.
+/// Joints of every kind with mass ratios of 100, sizes of 1 cm to 50 m, a billion metres from the origin: nothing is
+/// clamped and no joint opens.
 #[test]
 fn joints_work_at_any_size_and_place() {
     let kinds = |size: Fx| -> [JointKind; 8] {
@@ -167,7 +169,7 @@ fn joints_work_at_any_size_and_place() {
     };
     let origin = Vec2::new(fx!(1000000000), fx!(-1000000000));
     for size in [fx!(0.01), fx!(0.1), fx!(1), fx!(50)] {
-        // A hundredfold weight hangs some centimetres lower, whatever the size.
+        // A mass ratio of 100 makes a joint sag by some centimetres, whatever its size.
         let under = if size < fx!(0.1) { (1, 1) } else { (1, 100) };
         for (kind, masses) in kinds(size).into_iter().flat_map(|kind| [(kind, under), (kind, (100, 1))]) {
             let mut bench = Bench::new(Ground::Fixed, fx!(-10), Vec2::new(fx!(0), fx!(100)), fx!(0));

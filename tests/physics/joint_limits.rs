@@ -8,8 +8,8 @@ use lockstep2d::world::World;
 
 use crate::joint_bench::{Bench, Ground, close, grounds};
 
-/// Drives a joint up and then down, with an acceleration of 300 m/s² or rad/s², and looks whether it goes to both ends
-/// and no further.
+/// Drives a joint up and then down, with an acceleration of 300 m/s² or rad/s², and expects it to reach both ends and
+/// go no further.
 fn stays(
     kind: impl Fn(Fx, Fx, Fx) -> JointKind,
     place: Vec2<Fx>,
@@ -25,7 +25,7 @@ fn stays(
                 let x = at(world, joint);
                 assert!(lower - slack <= x && x <= upper + slack, "{ground:?}, tick {tick}: {x}");
             });
-            close(at(&bench.world, joint), end, slack, "driven to its end");
+            close(at(&bench.world, joint), end, slack, "position at the limit");
         }
     }
 }
@@ -33,7 +33,7 @@ fn stays(
 #[test]
 fn a_hinge_stops_at_its_limits() {
     let angle = |world: &World, id| world.joint_angle(id).expect("there");
-    // The second is more than a turn either way.
+    // The second range is more than a turn in both directions.
     for (lower, upper) in [(fx!(-0.5), fx!(0.75)), (fx!(-9), fx!(8))] {
         let kind = |speed, _, torque| Revolute::new().limit(lower, upper).motor(speed, torque).into();
         stays(kind, Vec2::ZERO, (lower, upper), angle);
@@ -46,7 +46,7 @@ fn a_slider_and_a_suspension_stop_at_their_limits() {
     let (place, range) = (Vec2::new(fx!(1), fx!(0)), (fx!(0.5), fx!(2)));
     let kind = |speed, force, _| Prismatic::new().limit(range.0, range.1).motor(speed, force).into();
     stays(kind, place, range, translation);
-    // A spring takes the place of the motor, from 10 m away.
+    // The suspension is driven by a spring instead of a motor, with a target 10 m away.
     let kind =
         |speed: Fx, _, _| Wheel::new().limit(range.0, range.1).spring(fx!(1), fx!(0.1), speed * 2).into();
     stays(kind, place, range, translation);
@@ -60,7 +60,7 @@ fn a_distance_stops_at_its_limits() {
     stays(kind, Vec2::new(fx!(1.2), fx!(1.6)), range, length);
 }
 
-/// A rod of 2 kg falls from the horizontal onto a stop below, again and again: limit and hinge hold.
+/// A rod of 2 kg falls from the horizontal onto a stop below: limit and hinge hold.
 #[test]
 fn a_limit_bears_a_falling_rod() {
     let mut bench = Bench::new(Ground::Fixed, fx!(-10), Vec2::new(fx!(2), fx!(0)), fx!(0));
@@ -70,17 +70,17 @@ fn a_limit_bears_a_falling_rod() {
     bench.run(300, |_, world| {
         lowest = lowest.min(world.joint_angle(joint).expect("there"));
         let gap = world.joint_length(joint).expect("there");
-        // When it hits the stop at 8 m/s: limit and hinge are solved one after the other.
+        // The gap is largest at the impact at 8 m/s, because limit and hinge are solved one after the other.
         assert!(gap < fx!(0.03), "gap {gap} m");
     });
     assert!(lowest > fx!(-1.02), "{lowest} rad");
     let (force, torque) = bench.world.joint_force(joint).expect("there");
-    // At rest the hinge carries the weight, 20 N, and the stop its torque, 20 N times 2 m cos 1.
+    // At rest the hinge carries the weight, 20 N, and the stop carries its torque, 20 N times 2 m cos 1.
     close(force.y, fx!(20), fx!(0.2), "N");
     close(torque, fx!(21.612), fx!(0.3), "N m");
 }
 
-/// A rope of 3 m: free fall until it is taut, and then no further.
+/// A rope of 3 m: free fall until it is taut, and no further.
 #[test]
 fn a_rope_is_slack_and_then_taut() {
     let mut bench = Bench::new(Ground::Fixed, fx!(-10), Vec2::new(fx!(0), fx!(-1)), fx!(0));
@@ -91,7 +91,7 @@ fn a_rope_is_slack_and_then_taut() {
         if tick < 36 {
             assert!(
                 body.velocity().y < fx!(-0.16) * i64::try_from(tick + 1).expect("few"),
-                "tick {tick}: slack"
+                "tick {tick}: expected free fall on a slack rope"
             );
         }
         longest = longest.max(world.joint_length(joint).expect("there"));
@@ -113,9 +113,9 @@ fn the_angle_of_a_hinge_counts_turns() {
         ticks += 1;
         assert!(ticks < 200);
     }
-    // A quarter turn behind, at 0.5 rad in a tick.
+    // It starts a quarter turn behind, and turns 0.5 rad in a tick.
     close(fx!(0.5) * ticks, turns + TAU / 4, fx!(1), "rad");
-    // And back, to a limit that is 9 turns away.
+    // It turns back, to a limit 9 turns away.
     let mut bench = Bench::new(Ground::Fixed, fx!(0), Vec2::ZERO, fx!(0));
     let nine = TAU * 9;
     let kind = Revolute::new().limit(-nine, nine).spring(fx!(0.5), fx!(1), -nine * 2);

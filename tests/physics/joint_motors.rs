@@ -1,4 +1,4 @@
-//! Motors reach their speed, and no force or torque is larger than allowed.
+//! Motors reach their speed, and no force or torque exceeds its limit.
 
 use lockstep2d::body::{BodyDef, JointId, Polygon, ShapeDef};
 use lockstep2d::fx;
@@ -8,14 +8,14 @@ use lockstep2d::world::World;
 
 use crate::joint_bench::{Bench, Ground, close, grounds};
 
-/// What a joint moves.
+/// Whether a joint accelerates a mass or an inertia.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Load {
     Mass,
     Inertia,
 }
 
-/// A motor that would need 2 s accelerates as `max / mass` says, and at last reaches its speed.
+/// A motor that needs 2 s accelerates at `max / mass`, and finally reaches its speed.
 fn accelerates(
     kind: impl Fn(Fx, Fx) -> JointKind,
     place: Vec2<Fx>,
@@ -32,7 +32,7 @@ fn accelerates(
             close(speed(world, joint), expected, expected / 100, &what);
         });
         bench.run(90, |_, _| {});
-        close(speed(&bench.world, joint), fx!(2), fx!(0.0002), "speed at last");
+        close(speed(&bench.world, joint), fx!(2), fx!(0.0002), "final speed");
     }
 }
 
@@ -55,7 +55,7 @@ fn motors_have_the_acceleration_of_theory() {
     accelerates(kind, Vec2::ZERO, Load::Mass, drift);
 }
 
-/// A lever of 2 kg, 1 m from its hinge, weighs 20 N m: a motor of 18 lets it down, one of 22 lifts it.
+/// A lever of 2 kg, 1 m from its hinge, has a torque of 20 N m: a motor of 18 N m yields, one of 22 N m lifts it.
 #[test]
 fn a_motor_stalls_under_a_larger_load() {
     for (torque, rises) in [(fx!(18), false), (fx!(22), true)] {
@@ -69,7 +69,7 @@ fn a_motor_stalls_under_a_larger_load() {
         let angle = bench.world.joint_angle(joint).expect("there");
         assert_eq!(angle > fx!(0), rises, "{torque} N m: {angle} rad");
     }
-    // The same on a slider: 20 N of weight.
+    // The same load on a slider: a weight of 20 N.
     for (force, rises) in [(fx!(18), false), (fx!(22), true)] {
         let mut bench = Bench::new(Ground::Fixed, fx!(-10), Vec2::ZERO, fx!(0));
         let kind = Prismatic::new().motor(fx!(1), force);
@@ -77,13 +77,13 @@ fn a_motor_stalls_under_a_larger_load() {
         let joint = bench.join(def);
         bench.run(30, |_, _| {});
         let height = bench.world.joint_translation(joint).expect("there").x;
-        // Net force 2 N on 2 kg: 1 m/s² for half a second.
+        // A net force of 2 N on 2 kg: 1 m/s² for half a second.
         close(height.abs(), fx!(0.125), fx!(0.005), "m");
         assert_eq!(height > fx!(0), rises);
     }
 }
 
-/// A box of 4 kg on a floor with friction 0.5: 20 N hold it.
+/// A box of 4 kg on a floor with friction 0.5 is held by 20 N.
 #[test]
 fn dragging_with_less_than_friction_does_not_move_a_box() {
     for (force, moves) in [(fx!(18), false), (fx!(24), true)] {
@@ -103,7 +103,7 @@ fn dragging_with_less_than_friction_does_not_move_a_box() {
         });
         let x = bench.world.body(body).expect("there").position().x;
         if moves {
-            // 4 N on 4 kg, more or less: 1 m/s² for 2 s.
+            // About 4 N on 4 kg: 1 m/s² for 2 s.
             assert!(x > fx!(1) && x < fx!(4), "{force} N: {x} m");
         } else {
             assert!(x.abs() < fx!(0.01), "{force} N: {x} m");
@@ -111,7 +111,7 @@ fn dragging_with_less_than_friction_does_not_move_a_box() {
     }
 }
 
-/// With friction, a limit and a spring, as in the joints of a ragdoll: comes to rest between its limits.
+/// A hinge with friction, a limit and a spring, as in a ragdoll, comes to rest between its limits.
 #[test]
 fn a_stiff_joint_comes_to_rest() {
     let mut bench = Bench::new(Ground::Fixed, fx!(-10), Vec2::new(fx!(0.3), fx!(0)), fx!(0));

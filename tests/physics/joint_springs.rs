@@ -1,5 +1,5 @@
-//! Springs follow the implicit step of a damped oscillator, sub-step by sub-step:
-//! `v' = (v - h omega^2 x) / (1 + 2 zeta h omega + h^2 omega^2)`, `x' = x + h v'`. Only rounding differs.
+//! Springs follow the implicit integration of a damped oscillator, sub-step by sub-step: `v' = (v - h omega^2 x) / (1 +
+//! 2 zeta h omega + h^2 omega^2)`, `x' = x + h v'`. Only rounding differs.
 
 use lockstep2d::body::JointId;
 use lockstep2d::fx;
@@ -9,7 +9,7 @@ use lockstep2d::world::World;
 
 use crate::joint_bench::{Bench, Ground, RATE};
 
-/// The recurrence, a tick of four sub-steps at a time.
+/// Reference recurrence; a tick has four sub-steps.
 struct Oscillator {
     x: Fx,
     v: Fx,
@@ -30,7 +30,7 @@ impl Oscillator {
     }
 }
 
-/// Follows a stretch of 0.5 for three periods and more.
+/// Compares a spring, stretched by 0.5 at the start, to the recurrence for 200 ticks: at least three periods.
 fn follows(
     kind: impl Fn(Fx, Fx) -> JointKind,
     place: Vec2<Fx>,
@@ -107,7 +107,7 @@ fn a_motor_pulls_its_frames_together_as_theory_says() {
     follows(kind, Vec2::new(fx!(0), fx!(0.5)), fx!(0), apart);
 }
 
-/// With the anchor away from the centre the point gives way by turning too: at rest it has come all the way.
+/// An off-centre anchor lets the body rotate as well; at rest the spring has reached its target.
 #[test]
 fn a_spring_on_an_arm_comes_to_rest_where_it_pulls() {
     let mut bench = Bench::new(Ground::Fixed, fx!(0), Vec2::new(fx!(3), fx!(1)), fx!(1));

@@ -1,4 +1,4 @@
-//! Hinges hold, and what swings on them neither gains energy nor loses too much.
+//! Hinges hold, and bodies that swing on them neither gain energy nor lose too much.
 
 use lockstep2d::fx;
 use lockstep2d::math::{Fx, PI, fx_mul, sqrt};
@@ -66,7 +66,7 @@ fn a_grid_of_19_800_hinges_stays_calm() {
     });
 }
 
-/// Potential energy is measured from the height of the hinge, where everything starts at rest: 0.
+/// Potential energy is measured from the height of the hinge, where all bodies start at rest, so it starts at 0.
 #[test]
 fn a_chain_carries_a_hundredfold_weight() {
     let mut game = open("chain");
@@ -77,14 +77,14 @@ fn a_chain_carries_a_hundredfold_weight() {
     });
 }
 
-/// A thin rod about its end: `T = 2 pi sqrt(2 L / (3 g))`, times `1 + a^2 / 16` at an amplitude of `a`.
+/// A thin rod about its end: `T = 2 pi sqrt(2 L / (3 g))`, times `1 + a^2 / 16` at an amplitude `a`.
 #[test]
 fn a_pendulum_swings_with_the_period_of_theory() {
     let mut game = open("pendulum");
     let body = game.world().bodies().last().expect("a rod").0;
     let pivot_height = fx!(0);
     let lowest = |world: &lockstep2d::world::World| {
-        // Energy above hanging at rest: the centre is 0.5 m below the hinge.
+        // Energy above that of hanging at rest, with the centre 0.5 m below the hinge.
         let rod = world.body(body).expect("still there");
         energy(world) + fx_mul(rod.mass() * 10, fx!(0.5) - pivot_height)
     };
@@ -93,7 +93,7 @@ fn a_pendulum_swings_with_the_period_of_theory() {
     run(&mut game, 3600, |tick, world| {
         let x = world.body(body).expect("still there").position().x;
         if last < Fx::ZERO && x >= Fx::ZERO {
-            // Interpolated between ticks.
+            // The time of the crossing is interpolated between ticks.
             let part = lockstep2d::math::fx_div(x, x - last).expect("it moves");
             crossings.push((Fx::from_num(tick + 1) - part) / 60);
         }
@@ -106,6 +106,10 @@ fn a_pendulum_swings_with_the_period_of_theory() {
     let over_g = (fx!(1.0016) / 12 + fx!(0.25)) / 5;
     let small = fx_mul(PI * 2, sqrt(over_g).expect("positive"));
     let theory = small + small / 1600;
-    assert!((period - theory).abs() < theory / 200, "{period} s, not {theory} s");
-    assert!(lowest(game.world()) >= start - start / 10, "{} J left of {start} J", lowest(game.world()));
+    assert!((period - theory).abs() < theory / 200, "{period} s, expected {theory} s");
+    assert!(
+        lowest(game.world()) >= start - start / 10,
+        "expected to lose at most a tenth of the energy: {} J left of {start} J",
+        lowest(game.world())
+    );
 }

@@ -1,5 +1,5 @@
-//! What is joined stays joined, what rests falls asleep, and what is in a box stays there, within 1.2 times what
-//! Box2D 3.2 shows in the same scenes.
+//! Joints stay closed, resting bodies fall asleep, and bodies stay in their boxes: errors are within 1.2 times those of
+//! Box2D 3.2 in the same scenes.
 
 use lockstep2d::body::Body;
 use lockstep2d::fx;
@@ -10,7 +10,7 @@ use lockstep2d::world::World;
 
 use super::{deepest, joint_gap, open, speed_max};
 
-/// Plays a scene with its script, and looks at the world after every tick.
+/// Plays a scene with its script and calls `look` with the world after every tick.
 fn play(name: &str, ticks: u64, mut look: impl FnMut(u64, &World)) -> Sandbox {
     let scene = Scene::find(name).expect("a scene");
     let mut game = open(name);
@@ -45,7 +45,7 @@ fn a_bridge_of_50_planks_bears_ten_boxes() {
         assert!(speed_max(world) <= fx!(16.6), "tick {tick}: {} m/s", speed_max(world));
         assert!(deepest(world) <= fx!(0.22), "tick {tick}: overlap {} m", deepest(world));
     });
-    // Ten boxes stretch it so that it sags by 4 m.
+    // The weight of ten boxes makes the bridge sag by 4 m.
     assert!(dynamic(game.world()).all(|body| body.position().y > fx!(-6)));
     assert!(deepest(game.world()) <= fx!(0.004), "overlap {} m", deepest(game.world()));
 }
@@ -67,7 +67,7 @@ fn nothing_leaves_a_turning_box() {
         assert!(joint_gap(world) <= fx!(0.001), "tick {tick}: gap {} m", joint_gap(world));
     });
     let container = dynamic(game.world()).next().expect("the first");
-    // 125 degrees after 5 s at 25 degrees per second.
+    // The angle after 5 s at 25 degrees per second is 125 degrees.
     let angle = container.angle().to_degrees();
     assert!((angle - fx!(125)).abs() < fx!(0.5), "{angle} degrees");
     let inside = |body: &Body| {

@@ -1,5 +1,5 @@
-//! Physics against theory. Each file holds one kind of motion and says what theory predicts; the goldens under
-//! `replays/` are frozen only after these hold.
+//! Physics against theory. Each file covers one kind of motion and states what theory predicts. The goldens and
+//! `replays/` may change only while these tests pass.
 
 mod capsule;
 mod chain;
@@ -25,23 +25,23 @@ use lockstep2d::math::{Fx, fx_mul};
 use lockstep2d::scenes::Scene;
 use lockstep2d::world::World;
 
-/// The scene of a name, before its first tick.
+/// Returns the scene of a name, before its first tick.
 fn open(name: &str) -> Sandbox {
     let scene = Scene::find(name).unwrap_or_else(|| panic!("no scene {name}"));
     Sandbox::new(&scene.setup(1)).expect("the scenes of this crate are valid")
 }
 
-/// Runs a scene in which nobody does anything, and looks at the world after every tick.
+/// Runs a scene without commands and calls `look` with the world after every tick.
 fn run(game: &mut Sandbox, ticks: u64, mut look: impl FnMut(u64, &World)) {
     for tick in 0..ticks {
         game.step(&[vec![]]);
         look(tick, game.world());
     }
     assert_eq!(game.world().validate(), Ok(()));
-    assert_eq!(game.world().faults(), 0, "a clamp of the solver has changed a result");
+    assert_eq!(game.world().faults(), 0, "expected no clamped or saturated value in the solver");
 }
 
-/// Kinetic and potential energy of all dynamic bodies in J.
+/// Returns the kinetic and potential energy of all dynamic bodies in J.
 fn energy(world: &World) -> Fx {
     let gravity = world.config().gravity;
     let of = |body: &lockstep2d::body::Body| {
@@ -54,18 +54,18 @@ fn energy(world: &World) -> Fx {
         .fold(Fx::ZERO, |a, b| a + b)
 }
 
-/// The largest gap of a joint in metres.
+/// Returns the largest gap of a joint in metres.
 fn joint_gap(world: &World) -> Fx {
     let gap = |id| world.joint_anchors(id).map_or(Fx::ZERO, |(a, b)| a.distance(b));
     world.joints().map(|(id, _)| gap(id)).max().unwrap_or(Fx::ZERO)
 }
 
-/// The fastest dynamic body's speed in m/s.
+/// Returns the speed of the fastest dynamic body in m/s.
 fn speed_max(world: &World) -> Fx {
     speeds(world).max().unwrap_or(Fx::ZERO)
 }
 
-/// The mean speed of dynamic bodies in m/s.
+/// Returns the mean speed of dynamic bodies in m/s.
 fn speed_mean(world: &World) -> Fx {
     let sum = speeds(world).fold(Fx::ZERO, |a, b| a + b);
     sum / i64::try_from(speeds(world).count().max(1)).expect("a small number")
@@ -75,7 +75,7 @@ fn speeds(world: &World) -> impl Iterator<Item = Fx> {
     world.bodies().filter(|(_, body)| body.is_dynamic()).map(|(_, body)| body.velocity().length())
 }
 
-/// The deepest overlap of a contact in metres.
+/// Returns the deepest overlap of a contact in metres.
 fn deepest(world: &World) -> Fx {
     let depth = |point: &lockstep2d::collision::ManifoldPoint| -Fx::from(point.separation);
     world.contacts().flat_map(|contact| contact.manifold.points()).map(depth).max().unwrap_or(Fx::ZERO)

@@ -1,4 +1,4 @@
-//! One-way platforms: a floor from above, nothing from below.
+//! One-way platforms: solid from above, passable from below.
 
 use lockstep2d::body::{BodyDef, BodyId, Geometry, Polygon, ShapeDef};
 use lockstep2d::fx;
@@ -9,7 +9,7 @@ fn up() -> Angle {
     Angle::from_degrees(fx!(90))
 }
 
-/// Platforms with their tops at height 0.
+/// Returns platforms whose tops are at height 0.
 fn platforms() -> [ShapeDef; 3] {
     let slab =
         |half: Fx| ShapeDef::new(Polygon::rectangle(fx!(4), half).expect("valid")).offset(fx!(0), -half);
@@ -35,12 +35,12 @@ fn height(world: &World, body: BodyId) -> Fx {
     world.body(body).expect("there").position().y
 }
 
-/// Jumps from 3 m below with enough speed to get through (10 m/s reach 5 m), or half-way.
+/// Bodies jump from 3 m below, fast enough to get through (10 m/s reach 5 m) or only half-way.
 #[test]
 fn what_jumps_through_lands_and_what_turns_round_half_way_falls_back() {
     for platform in platforms() {
         for (name, shape) in movers() {
-            // From -3 m, 7.7 m/s come up to 0 m: the middle is then level with the top.
+            // 7.7 m/s reach 0 m from -3 m: the centre is then level with the top.
             for (speed, lands) in [(fx!(10), true), (fx!(30), true), (fx!(7.75), false), (fx!(6.9), false)] {
                 let mut world = World::default();
                 world.spawn(&BodyDef::fixed(), &[platform]).expect("valid");
@@ -53,7 +53,7 @@ fn what_jumps_through_lands_and_what_turns_round_half_way_falls_back() {
                 let y = height(&world, body);
                 let rests = (y - fx!(0.5)).abs() < fx!(0.01);
                 let what = format!(
-                    "{name} at {speed} m/s on {:?}: came to {below} m, is at {y} m",
+                    "{name} at {speed} m/s on {:?}: highest at {below} m, now at {y} m",
                     platform.geometry
                 );
                 assert!(if lands { rests } else { y < fx!(-50) }, "{what}");
@@ -101,7 +101,7 @@ fn it_holds_what_falls_on_it_and_a_pile_on_top() {
     }
 }
 
-/// A box that slides from one platform to the next stays on top.
+/// Shapes that slide from one platform to the next stay on top.
 #[test]
 fn flush_platforms_carry_over_their_seams() {
     for (name, shape) in movers() {
@@ -120,7 +120,7 @@ fn flush_platforms_carry_over_their_seams() {
     }
 }
 
-/// The direction turns with the body: a door that opens to the left.
+/// The direction rotates with the body: a door that opens to the left.
 #[test]
 fn the_direction_belongs_to_the_body() {
     let platform = platforms()[0];
@@ -139,7 +139,7 @@ fn the_direction_belongs_to_the_body() {
     }
 }
 
-/// A restored world knows what is passing.
+/// A restored world keeps the pairs that are passing through.
 #[test]
 fn passing_survives_a_snapshot() {
     let mut world = World::default();
@@ -149,7 +149,7 @@ fn passing_survives_a_snapshot() {
         world.step();
     }
     let y = height(&world, body);
-    assert!(y > fx!(-0.3), "half-way through, at {y} m");
+    assert!(y > fx!(-0.3), "expected the body half-way through, at {y} m");
     let mut restored = World::from_bytes(&world.to_bytes()).expect("its own bytes");
     for _ in 0..60 {
         world.step();

@@ -1,12 +1,12 @@
-//! A bouncing ball: restitution `e` returns `e` of the speed, so `e^2` of the height.
+//! A bouncing ball: restitution `e` returns a fraction `e` of the speed, so `e^2` of the height.
 
 use lockstep2d::body::{BodyDef, Geometry, Polygon, ShapeDef};
 use lockstep2d::fx;
 use lockstep2d::math::{Fx, fx_mul, sqrt};
 use lockstep2d::world::World;
 
-/// Drops a ball of restitution `e` from a height and returns the heights of its first `count` rebounds: the
-/// highest positions between two impacts, of the ball's lowest point.
+/// Drops a ball of restitution `e` from a height and returns the heights of its rebounds: the highest positions of the
+/// ball's lowest point between two impacts.
 fn rebounds(e: Fx, height: Fx, ticks: u32) -> Vec<Fx> {
     let mut world = World::default();
     let floor = ShapeDef::new(Polygon::rectangle(fx!(20), fx!(1)).expect("valid"));
@@ -32,7 +32,7 @@ fn rebounds(e: Fx, height: Fx, ticks: u32) -> Vec<Fx> {
     heights
 }
 
-/// The speed of impact is known to a tick: what gravity adds in the tick of the impact is lost, `e^2 H 2 g dt / v`.
+/// The time of impact is known to one tick: the velocity that gravity adds in that tick is lost, `e^2 H 2 g dt / v`.
 #[test]
 fn a_rebound_returns_the_square_of_the_restitution() {
     let g = fx!(10);
@@ -61,14 +61,14 @@ fn a_rebound_returns_the_square_of_the_restitution() {
 fn no_rebound_is_higher_than_the_one_before() {
     for e in [fx!(0.3), fx!(0.8), fx!(0.95), fx!(0.99), fx!(1)] {
         let heights = rebounds(e, fx!(10), 60 * 300);
-        assert!(!heights.is_empty(), "e {e} does not bounce");
+        assert!(!heights.is_empty(), "e {e}: expected a rebound");
         for (i, pair) in heights.windows(2).enumerate() {
             assert!(pair[1] <= pair[0], "e {e}, rebound {}: {} m after {} m", i + 1, pair[1], pair[0]);
         }
     }
 }
 
-/// A box that lands flat leaves flat, at `e` of its speed: its two points bounce together.
+/// A box that lands flat bounces flat, at a fraction `e` of its speed: its two contact points bounce together.
 #[test]
 fn a_box_that_lands_flat_does_not_spin_or_gain_energy() {
     for (half_width, half_height) in [(fx!(0.3), fx!(0.8)), (fx!(0.5), fx!(0.5)), (fx!(1), fx!(0.2))] {
@@ -89,7 +89,7 @@ fn a_box_that_lands_flat_does_not_spin_or_gain_energy() {
                     highest = highest.max(body.position().y - half_height);
                 }
                 let spin = body.angular_velocity().abs();
-                // The second impact, after tick 70 at the earliest, no longer finds it quite flat.
+                // The box may no longer be quite flat at its second impact, which is after tick 70 or later.
                 let bound = if tick < 70 { fx!(0.02) } else { fx!(0.2) };
                 assert!(spin < bound, "{half_width} x {half_height}, e {e}, tick {tick}: {spin} rad/s");
             }

@@ -1,4 +1,5 @@
-//! What slides or rolls over flush blocks feels no seam between them, although each pair of shapes is on its own.
+//! Shapes that slide or roll over flush blocks have no ghost collisions at the seams, although each pair of shapes is
+//! solved separately.
 
 use lockstep2d::body::{BodyDef, Geometry, Polygon, ShapeDef};
 use lockstep2d::fx;
@@ -12,7 +13,7 @@ enum Ground {
     Segments,
 }
 
-/// A thousand blocks of half a metre, or lines as long, with their tops at height 0.
+/// Spawns a thousand blocks of half a metre, or segments of that length, with their tops at height 0.
 fn ground(world: &mut World, ground: Ground) {
     let block = ShapeDef::new(Polygon::square(fx!(0.25)).expect("valid"));
     let x = |i: i32| Fx::from_num(i) / 2 - fx!(5);
@@ -36,7 +37,7 @@ fn ground(world: &mut World, ground: Ground) {
     }
 }
 
-/// The largest vertical speed and the way, of a shape that starts to slide at a height.
+/// Returns the largest vertical speed and the distance of a shape that starts to slide at a height.
 fn slide(kind: Ground, shape: ShapeDef, height: Fx, speed: Fx) -> (Fx, Fx) {
     let mut world = World::default();
     ground(&mut world, kind);
@@ -82,7 +83,7 @@ fn everything_slides_over_flush_blocks() {
     }
 }
 
-/// Thin plates on a floor still run into each other, and so does a box into a step that is no seam.
+/// Thin plates on a floor still collide, and a box still collides with a step that is not a seam.
 #[test]
 fn thin_plates_and_low_steps_are_not_passed_by() {
     let mut world = World::default();
@@ -105,5 +106,8 @@ fn thin_plates_and_low_steps_are_not_passed_by() {
     let velocity = |id| world.body(id).expect("there").velocity();
     assert!(velocity(first).distance(velocity(second)) < fx!(0.1), "{:?}", velocity(second));
     assert!((velocity(second).x - fx!(1)).abs() < fx!(0.05), "{:?}", velocity(second));
-    assert!(world.body(third).expect("there").position().x > fx!(-18.51), "stopped by a step of 2 cm");
+    assert!(
+        world.body(third).expect("there").position().x > fx!(-18.51),
+        "expected a step of 2 cm to stop the box"
+    );
 }

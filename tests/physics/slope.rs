@@ -1,12 +1,12 @@
-//! A box on a slope stays while `tan(angle)` is below the friction coefficient, and otherwise slides with
-//! `a = g (sin - mu cos)`.
+//! A box on a slope stays if `tan(angle)` is below the friction coefficient, and otherwise slides with `a = g (sin - mu
+//! cos)`.
 
 use lockstep2d::body::{BodyDef, Geometry, Polygon, ShapeDef};
 use lockstep2d::fx;
 use lockstep2d::math::{Angle, Fx, Vec2, fx_mul, widen};
 use lockstep2d::world::World;
 
-/// Distance slid along a slope in `seconds`, and the velocity then, for a box or a very flat plank.
+/// Returns the distance that a box slides along a slope in `seconds`, and its final speed.
 fn slide(degrees: Fx, friction: Fx, seconds: i64, ground: Ground) -> (Fx, Fx) {
     let angle = Angle::from_degrees(degrees);
     let (sin, cos) = (widen(angle.sin()), widen(angle.cos()));
@@ -61,7 +61,7 @@ fn a_box_slides_with_the_textbook_acceleration_above_it() {
             let (_, speed) = slide(degrees, friction, 5, ground);
             let expected = acceleration * 5;
             let error = (speed - expected).abs();
-            assert!(error < expected / 100, "{degrees} degrees: {speed} m/s, not {expected}");
+            assert!(error < expected / 100, "{degrees} degrees: {speed} m/s, expected {expected}");
         }
     }
 }

@@ -1,11 +1,11 @@
-//! Surfaces that resist rolling, and surfaces that run.
+//! Rolling resistance, and surface speed (conveyors).
 
 use lockstep2d::body::{BodyDef, BodyId, Geometry, Polygon, ShapeDef};
 use lockstep2d::fx;
 use lockstep2d::math::{Angle, Fx, Vec2, fx_mul, widen};
 use lockstep2d::world::World;
 
-/// A world with a fixed ground along the x axis, inclined; and things launched along it.
+/// A world with an inclined fixed ground.
 fn world(angle: Angle, ground: ShapeDef) -> World {
     let mut world = World::default();
     world.spawn(&BodyDef::fixed().angle(angle), &[ground]).expect("valid");
@@ -44,7 +44,7 @@ fn speed(world: &World, body: BodyId) -> Fx {
     world.body(body).expect("there").velocity().x
 }
 
-/// `a = c g / (1 + k^2 / r^2) = 2/3 c g` of a disc, until it rests.
+/// A disc decelerates by `a = c g / (1 + k^2 / r^2) = 2/3 c g` until it rests.
 #[test]
 fn a_ball_slows_down_by_the_law_of_rolling_resistance() {
     for radius in [fx!(0.1), fx!(0.5), fx!(3)] {
@@ -62,14 +62,18 @@ fn a_ball_slows_down_by_the_law_of_rolling_resistance() {
                 assert!(error < fx!(0.03), "r {radius}, c {resistance}: {error} m/s off {expected}");
                 step(&mut world, 60 * 80);
                 let body = world.body(body).expect("there");
-                assert!(body.velocity().length() < fx!(0.0001), "at rest after all: {:?}", body.velocity());
+                assert!(
+                    body.velocity().length() < fx!(0.0001),
+                    "expected the ball to be at rest: {:?}",
+                    body.velocity()
+                );
                 assert!(body.angular_velocity().abs() < fx!(0.001));
             }
         }
     }
 }
 
-/// A ball stays on a slope while `tan(angle)` is below the resistance.
+/// A ball stays on a slope if `tan(angle)` is below the rolling resistance.
 #[test]
 fn a_ball_stays_on_a_slope_that_is_flatter_than_its_resistance() {
     for (degrees, stays) in [(fx!(5), true), (fx!(7), false)] {
@@ -91,7 +95,7 @@ fn a_ball_stays_on_a_slope_that_is_flatter_than_its_resistance() {
     }
 }
 
-/// Two wheels that touch slow each other down, and keep their angular momentum.
+/// Two touching wheels slow each other down and conserve their total angular momentum.
 #[test]
 fn resistance_between_two_wheels_is_equal_and_opposite() {
     let mut world =
@@ -133,7 +137,7 @@ fn a_box_on_a_belt_reaches_its_speed() {
     }
 }
 
-/// Below its angle of friction a belt carries a box uphill at its speed.
+/// On a slope below its angle of friction, a belt carries a box uphill at the speed of the belt.
 #[test]
 fn a_belt_carries_uphill() {
     let angle = Angle::from_degrees(fx!(20));
@@ -143,11 +147,11 @@ fn a_belt_carries_uphill() {
     step(&mut world, 300);
     let velocity = world.body(body).expect("there").velocity();
     let expected = Vec2::new(widen(angle.cos()), widen(angle.sin())).scale(fx!(2));
-    assert!(velocity.distance(expected) < fx!(0.001), "{velocity:?}, not {expected:?}");
+    assert!(velocity.distance(expected) < fx!(0.001), "{velocity:?}, expected {expected:?}");
 }
 
-/// A ball on a belt rolls on the spot in the end: its surface runs with the belt, `w r = v_belt - v`, and what it got
-/// while slipping it keeps. `v = v_belt / 3`.
+/// A ball on a belt finally rolls, `w r = v_belt - v`, and keeps the velocity that it gained while slipping: `v =
+/// v_belt / 3`.
 #[test]
 fn a_ball_on_a_belt_takes_a_third_of_its_speed() {
     let mut world = world(Angle::ZERO, line().surface_speed(fx!(3)));
@@ -158,7 +162,7 @@ fn a_ball_on_a_belt_takes_a_third_of_its_speed() {
     assert!((spin - fx!(4)).abs() < fx!(0.02), "{spin} rad/s");
 }
 
-/// A belt that touches from above: the lower side of a shape runs the other way.
+/// A belt above a body: the lower side of a shape runs the opposite way.
 #[test]
 fn the_lower_side_of_a_belt_runs_back() {
     let mut world =

@@ -1,4 +1,5 @@
-//! A world in which everything happens: bodies of all kinds and shapes come, go, move, sleep and change.
+//! A world with random changes: bodies of all kinds and their shapes are created, destroyed, moved, changed and put to
+//! sleep.
 
 use lockstep2d::body::{
     BodyDef, BodyId, BodyKind, Chain, Filter, Geometry, Polygon, ShapeDef, ShapeId, WorldError,
@@ -10,7 +11,7 @@ use lockstep2d::world::World;
 pub(crate) struct Churn {
     pub(crate) world: World,
     pub(crate) rng: Rng,
-    /// Where everything is about.
+    /// Centre of the region in which bodies are placed.
     pub(crate) centre: Vec2<Fx>,
     bodies: Vec<BodyId>,
 }
@@ -67,7 +68,7 @@ impl Churn {
         if self.rng.chance(1, 6) { shape.sensor() } else { shape }
     }
 
-    /// A random change; some are refused.
+    /// Applies a random change, which may be refused.
     pub(crate) fn change(&mut self) {
         let outcome = self.try_change();
         let allowed = |error: &WorldError| {
@@ -146,7 +147,7 @@ impl Churn {
     }
 }
 
-/// A point of a hilly line from right to left.
+/// Returns point `i` of a hilly line from right to left.
 fn across(i: usize, height: Fx) -> Vec2<Fx> {
     Vec2::new(fx!(11) - Fx::from_num(i) * 2, height)
 }

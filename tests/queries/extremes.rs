@@ -1,5 +1,4 @@
-//! Queries at the ends of all ranges: no panic, the same answer from every broad phase, and the right one where it is
-//! plain.
+//! Queries with extreme values: no panic, equal answers from every broad phase, and correct answers in simple cases.
 
 use super::{Query, twins};
 use lockstep2d::body::{BodyDef, Geometry, Polygon, ShapeDef};
@@ -75,7 +74,7 @@ fn boxes_that_are_no_boxes_hold_nothing() {
     assert_eq!(world.overlap_box(all, filter).len(), world.shape_count());
     assert_eq!(world.overlap_box(Aabb::new(all.upper, all.lower), filter), []);
     assert_eq!(world.overlap_box(Aabb::new(at(fx!(5), fx!(0)), at(fx!(4), fx!(9))), filter), []);
-    // A point and a line are boxes.
+    // A point and a line are valid boxes.
     let point = Aabb::new(at(fx!(50), fx!(50)), at(fx!(50), fx!(50)));
     let line = Aabb::new(at(fx!(-300), fx!(111)), at(fx!(300), fx!(111)));
     assert!(world.overlap_box(point, filter).len() >= 2);
@@ -86,7 +85,7 @@ fn boxes_that_are_no_boxes_hold_nothing() {
 #[test]
 fn a_ray_across_the_world_tells_neighbours_apart() {
     let mut world = World::default();
-    // The fraction of such a ray counts in quarters of a metre.
+    // The fraction of such a long ray has a resolution of a quarter of a metre.
     let ball = ShapeDef::new(Geometry::circle(fx!(0.01)).expect("valid"));
     for x in [fx!(1000.06), fx!(1000.03), fx!(1000)] {
         world.spawn(&BodyDef::fixed().position(x, fx!(0)), &[ball]).expect("valid");

@@ -1,5 +1,5 @@
-//! Queries find what looking at every shape finds, in the order that they promise, whatever the broad phase, in a world
-//! where everything changes, at the origin and far away.
+//! Queries agree with a brute-force oracle, in the documented order and with every broad phase, in a world that changes
+//! randomly, both at the origin and far away.
 
 mod churn;
 mod extremes;
@@ -13,7 +13,7 @@ use lockstep2d::math::{Aabb, Fx, Rng, Vec2, fx_mul};
 use lockstep2d::world::{CastHit, Probe, Proximity, QueryFilter, RayHit, World};
 use oracle::{Solid, TOLERANCE, along, seen};
 
-/// What is asked.
+/// A query with its parameters.
 #[derive(Clone, Copy, Debug)]
 enum Query {
     Ray { origin: Vec2<Fx>, translation: Vec2<Fx> },
@@ -73,7 +73,7 @@ fn random_filter(churn: &mut Churn) -> QueryFilter {
     QueryFilter { mask, sensors: churn.rng.chance(1, 2), except, ..QueryFilter::default() }
 }
 
-/// The same world with other caches.
+/// Returns copies of a world with different broad phases or caches.
 fn twins(world: &World) -> Vec<World> {
     let with = |kind| {
         let mut twin = world.clone();
@@ -91,7 +91,7 @@ fn twins(world: &World) -> Vec<World> {
     ]
 }
 
-/// What the oracle has been able to say.
+/// Counts of the queries and of those that the oracle could check.
 #[derive(Default, Debug)]
 struct Tally {
     queries: u32,
@@ -167,11 +167,11 @@ fn check(world: &World, filter: QueryFilter, query: Query, answer: &Answer, tall
                 }
             }
         }
-        _ => unreachable!("the answer to another query"),
+        _ => unreachable!("the answer belongs to a different query"),
     }
 }
 
-/// A list has what is nearer than the tolerance, nothing that is further away, and the order of slots.
+/// A list must contain all shapes nearer than the tolerance and none further away, in slot order.
 fn check_list(
     solids: &[Solid],
     found: &[ShapeId],
@@ -180,7 +180,10 @@ fn check_list(
     tally: &mut Tally,
 ) {
     assert!(found.is_sorted());
-    assert!(found.iter().all(|id| solids.iter().any(|solid| solid.id == *id)), "unseen: {found:?}");
+    assert!(
+        found.iter().all(|id| solids.iter().any(|solid| solid.id == *id)),
+        "expected only shapes that pass the filter: {found:?}"
+    );
     tally.found += u32::from(!found.is_empty());
     for solid in solids {
         let gap = distance(solid);
@@ -198,7 +201,7 @@ fn check_ray(solid: &Solid, origin: Vec2<Fx>, translation: Vec2<Fx>, all: &[RayH
     let hit = all.iter().find(|hit| hit.shape == solid.id);
     tally.rays += 1;
     let Some(hit) = hit else {
-        // A miss by less than the tolerance counts as traced.
+        // The oracle counts a miss by less than the tolerance as a hit.
         let Some(reached) = traced else { return };
         for i in 0..=64 {
             let point = along(origin, translation, (reached + fx!(0.00001) * i).min(translation.length()));
@@ -208,8 +211,8 @@ fn check_ray(solid: &Solid, origin: Vec2<Fx>, translation: Vec2<Fx>, all: &[RayH
     };
     let surface = solid.distance(hit.point);
     assert!(surface < TOLERANCE, "{surface} {hit:?}");
-    let Some(way) = traced else { panic!("{hit:?} is not on the way") };
-    // The traced way ends a little above the surface: further from the hit, the flatter the ray is.
+    let Some(way) = traced else { panic!("{hit:?} is not on the ray") };
+    // The oracle stops slightly above the surface: the flatter the ray, the further from the hit.
     let steep = -translation.normalized().unwrap_or(Vec2::X).widen().dot(hit.normal.widen());
     let apart = (way - fx_mul(hit.fraction, translation.length())).abs();
     if hit.fraction > 0 && steep > fx!(0.05) {
@@ -243,7 +246,7 @@ fn check_cast(
     for _ in 0..100 {
         let free = gap(way).expect("solids") - skin;
         if free < fx!(0.000001) {
-            // Ended by a contact, or by passing one closely.
+            // The cast ended at a contact, or the probe passes a shape closely.
             tally.casts += u32::from(hit.is_some());
             break;
         }
@@ -278,7 +281,7 @@ fn queries_are_as_exact_far_from_the_origin() {
     }
 }
 
-/// Stacked copies are met at the same time: the one in the first slot counts.
+/// Coincident shapes are hit at the same fraction: the shape in the lowest slot is returned.
 #[test]
 fn of_equals_the_first_slot_is_found() {
     use lockstep2d::body::{BodyDef, Geometry, ShapeDef};
@@ -303,7 +306,7 @@ fn of_equals_the_first_slot_is_found() {
     assert!(ray.len() == 20 && ray.iter().all(|hit| hit.fraction == 0 && hit.normal == Vec2::ZERO));
 }
 
-/// What counts for a line that is solid from one side is where a probe is, not where its origin is.
+/// For a one-sided link, the position of the probe's shape decides the side, not its origin.
 #[test]
 fn a_probe_above_its_origin_lands_on_a_one_sided_chain() {
     use lockstep2d::body::{BodyDef, Chain, Geometry};

@@ -1,4 +1,4 @@
-//! Changes to what is already there: each one is refused for its reason, and the world keeps its hash.
+//! Invalid changes to existing bodies, shapes and joints are refused with a typed error, and the world keeps its hash.
 
 use lockstep2d::body::{BodyDef, BodyKind, BodySettings, MassSource, ShapeDef, WorldError};
 use lockstep2d::fx;
@@ -77,7 +77,7 @@ fn what_a_kind_of_body_cannot_do_is_refused() {
     for body in [floor, lift] {
         stage.refuses(Command::Sleep { body }, wrong_kind);
     }
-    // 1 km within a tick, and beyond the end of the world.
+    // 1 km in one tick, and a target outside the world.
     let position = Vec2::new(fx!(1000), fx!(0));
     stage.refuses(Command::MoveTo { body: lift, position, angle }, fast);
     stage.refuses(Command::MoveTo { body: lift, position: Vec2::new(Fx::MIN, Fx::MAX), angle }, far);
@@ -131,7 +131,7 @@ fn changes_to_shapes_out_of_range_are_refused() {
     }
     let point = lockstep2d::body::Geometry::Capsule { a: Vec2::ZERO, b: Vec2::ZERO, radius: fx!(1) };
     stage.refuses(set(ShapeDef { geometry: point, ..old }), |error| matches!(error, WorldError::Geometry(_)));
-    // Spinning, the ball must not become a wheel of 100 m.
+    // A spinning ball must not grow to a radius of 100 m, as its speed would exceed the limit.
     stage.world.set_velocity(stage.ball, Vec2::ZERO, fx!(50)).expect("valid");
     let large = lockstep2d::body::Geometry::Circle { radius: fx!(100) };
     stage.refuses(set(ShapeDef { geometry: large, ..old }), fast);
@@ -159,7 +159,7 @@ fn changes_to_joints_out_of_range_are_refused() {
     stage.refuses(Command::SetJoint { joint, def: old }, |error| matches!(error, WorldError::StaleJoint(_)));
 }
 
-/// Of many bodies or joints at once, none is added when one is refused, whichever it is.
+/// A command for many bodies or joints adds none of them if any one is refused.
 #[test]
 fn one_of_many_refuses_all() {
     let mut stage = Stage::new();

@@ -1,4 +1,4 @@
-//! Bad input gets a typed error and leaves the world as it was.
+//! Invalid commands get a typed error and leave the world unchanged.
 
 mod changes;
 
@@ -18,7 +18,7 @@ fn ball() -> ShapeDef {
     ShapeDef::new(Geometry::circle(fx!(0.5)).expect("valid"))
 }
 
-/// A world with a fixed floor, a kinematic lift, a ball, and a handle of a ball that is gone.
+/// A world with a fixed floor, a kinematic lift, a ball, and a stale handle of a removed ball.
 struct Stage {
     world: World,
     floor: lockstep2d::body::BodyId,
@@ -41,18 +41,18 @@ impl Stage {
         Stage { world, floor, lift, ball, gone }
     }
 
-    /// The command is refused with this error, the world keeps its hash, and goes on like one that was not asked.
+    /// Expects a command to be refused with a matching error, without any effect on the state or on the following tick.
     fn refuses(&mut self, command: Command, matches: impl Fn(&WorldError) -> bool) {
         let before = self.world.state_hash();
         let mut unasked = self.world.clone();
         let error = self.world.execute(&command).expect_err("refused");
-        assert!(matches(&error), "{command:?} gave {error:?}");
+        assert!(matches(&error), "{command:?} was refused with {error:?}");
         assert!(!error.to_string().is_empty());
         assert_eq!(self.world.state_hash(), before, "{command:?} has changed the world");
         assert_eq!(self.world.validate(), Ok(()));
         self.world.step();
         unasked.step();
-        assert_eq!(self.world.state_hash(), unasked.state_hash(), "{command:?} has changed what follows");
+        assert_eq!(self.world.state_hash(), unasked.state_hash(), "{command:?} has changed the next tick");
     }
 }
 
@@ -116,7 +116,7 @@ fn bodies_out_of_range_are_refused() {
     let gyration = |error: &WorldError| matches!(error, WorldError::GyrationOutOfRange { .. });
     stage.refuses(spawn(BodyDef::dynamic().mass(given(fx!(1), fx!(0))), ball()), gyration);
     stage.refuses(spawn(BodyDef::dynamic().mass(given(fx!(1), Fx::MAX)), ball()), gyration);
-    // The fields are public, so a shape that its constructor refuses can still be asked for.
+    // The fields are public, so a command can contain a shape that its constructor refuses.
     let flat = ShapeDef { geometry: Geometry::Circle { radius: fx!(0) }, ..ball() };
     stage.refuses(spawn(BodyDef::dynamic(), flat), |error| matches!(error, WorldError::Geometry(_)));
 }
@@ -299,7 +299,7 @@ fn a_body_that_reaches_too_far_or_would_spin_too_fast_is_refused() {
     let plank = ShapeDef::new(Polygon::rectangle(fx!(100), fx!(1)).expect("valid"));
     stage.refuses(spawn(BodyDef::dynamic(), plank.offset(fx!(60), fx!(0))), reach);
     stage.refuses(Command::AddShape { body: ball, shape: plank.offset(fx!(0), fx!(128)) }, reach);
-    // 50 rad/s are 18 m/s of a ball of 0.35 m radius of gyration, but far too fast with a heavy arm of 30 m.
+    // 50 rad/s are 18 m/s at the ball's radius of gyration of 0.35 m, but too fast with a heavy arm of 30 m.
     stage.world.set_velocity(ball, Vec2::ZERO, fx!(50)).expect("valid");
     let arm = self::ball().offset(fx!(60), fx!(0)).density(fx!(1));
     stage.refuses(Command::AddShape { body: ball, shape: arm }, |error| {
@@ -310,7 +310,7 @@ fn a_body_that_reaches_too_far_or_would_spin_too_fast_is_refused() {
     });
 }
 
-/// A kinematic body keeps its angular velocity whatever is attached to it.
+/// A kinematic body keeps its angular velocity when a shape is attached.
 #[test]
 fn a_shape_does_not_change_how_a_kinematic_body_turns() {
     let mut stage = Stage::new();

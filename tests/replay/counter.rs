@@ -1,4 +1,4 @@
-//! A game small enough to see through: two players add to a sum.
+//! A minimal game: two players add to a sum.
 
 use lockstep2d::hash::StateHash;
 use lockstep2d::lockstep::{Game, RulesId, SetupError};
@@ -17,7 +17,7 @@ pub(crate) struct Input {
     pub(crate) add: i8,
     /// Ignored by the rules.
     pub(crate) wink: bool,
-    /// Lost in the encoding.
+    /// Not encoded.
     #[serde(skip)]
     pub(crate) mood: u8,
 }
@@ -26,7 +26,7 @@ pub(crate) struct Input {
 pub(crate) struct Counter {
     pub(crate) sum: i64,
     pub(crate) tick: u64,
-    /// Moods that were ever seen: 0, unless a game is stepped with inputs that were not decoded.
+    /// Sum of all moods: 0, unless the game is stepped with inputs that were not decoded.
     pub(crate) moods: u64,
 }
 
@@ -72,7 +72,7 @@ impl Game for Counter {
         *self = save.clone();
     }
 
-    /// One unit, and one for each step that is added.
+    /// One unit, plus one for each unit of change of the sum.
     fn work(&self, inputs: &[Input]) -> u64 {
         1 + inputs.iter().map(|input| u64::from(input.add.unsigned_abs())).sum::<u64>()
     }
@@ -90,7 +90,7 @@ pub(crate) fn add(first: i8, second: i8) -> [Input; 2] {
     [Input { add: first, ..Input::default() }, Input { add: second, ..Input::default() }]
 }
 
-/// Inputs that change now and then, and hold in between.
+/// Returns inputs that change every few ticks and hold in between.
 pub(crate) fn inputs_at(tick: u64) -> [Input; 2] {
     let step = i8::try_from(tick / 5 % 7).unwrap() - 3;
     let mut inputs = add(step, 1);

@@ -1,6 +1,5 @@
-//! A forger: takes a replay apart by `docs/FORMAT.md`, with no help from the library, and puts it together again
-//! with all checksums and the chain hash repaired. What it does not repair is what a forger without the game
-//! cannot: checkpoints and the final hash.
+//! A forger: splits a replay as `docs/FORMAT.md` specifies, without the library, and reassembles it with repaired
+//! checksums and chain hash. Checkpoints and the final hash are not repaired, as this requires the game.
 
 use lockstep2d::hash::StateHash;
 
@@ -8,14 +7,14 @@ pub(crate) const INPUTS: u8 = 1;
 pub(crate) const KEYFRAME: u8 = 2;
 pub(crate) const TRAILER: u8 = 3;
 
-/// Where the trailer's payload holds the chain hash.
+/// Range of the chain hash in the trailer's payload.
 pub(crate) const CHAIN: std::ops::Range<usize> = 24..40;
 
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Forged {
-    /// Without its checksum.
+    /// Header without its checksum.
     pub(crate) header: Vec<u8>,
-    /// Kind and payload.
+    /// Kind and payload of each block.
     pub(crate) blocks: Vec<(u8, Vec<u8>)>,
 }
 
@@ -31,11 +30,11 @@ impl Forged {
             blocks.push((file[at + 4], file[at + 5..at + 5 + length].to_vec()));
             at += 5 + length + 8;
         }
-        assert_eq!(at, file.len(), "the last block ends where the file does");
+        assert_eq!(at, file.len(), "expected the last block to end at the end of the file");
         Forged { header, blocks }
     }
 
-    /// The file with every checksum and the chain hash repaired.
+    /// Returns the file with every checksum and the chain hash repaired.
     pub(crate) fn put_together(&self) -> Vec<u8> {
         let mut file = self.header.clone();
         let mut chain = StateHash::of_bytes(&file).0;
@@ -55,7 +54,7 @@ impl Forged {
         file
     }
 
-    /// The payload of block number `index`.
+    /// Returns the payload of block number `index`.
     pub(crate) fn payload(&mut self, index: usize) -> &mut Vec<u8> {
         &mut self.blocks[index].1
     }
@@ -64,13 +63,13 @@ impl Forged {
         &mut self.blocks.last_mut().unwrap().1
     }
 
-    /// Makes the trailer state another number of ticks.
+    /// Makes the trailer state a different number of ticks.
     pub(crate) fn set_ticks(&mut self, ticks: u64) {
         self.trailer()[..8].copy_from_slice(&ticks.to_le_bytes());
     }
 }
 
-/// The file after `change`, with all checksums repaired.
+/// Returns the file after `change`, with all checksums repaired.
 pub(crate) fn forge(file: &[u8], change: impl FnOnce(&mut Forged)) -> Vec<u8> {
     let mut forged = Forged::take_apart(file);
     change(&mut forged);

@@ -1,5 +1,4 @@
-//! A replay that was recorded matches; one that was cut or damaged never does; and the bytes are those of
-//! `docs/FORMAT.md`.
+//! A recorded replay matches; a truncated or damaged one never does; and the bytes are as `docs/FORMAT.md` specifies.
 
 use lockstep2d::hash::StateHash;
 use lockstep2d::lockstep::Game;
@@ -8,7 +7,7 @@ use lockstep2d::replay::{Flaw, Limits, Playback, Recording, Step, Verdict};
 use crate::counter::{Counter, add, inputs_at, setup};
 use crate::{record, verdict};
 
-/// The state hash after `ticks` ticks, without a replay.
+/// Returns the state hash after `ticks` ticks, simulated without a replay.
 fn hash_after(ticks: u64) -> StateHash {
     let mut game = Counter::new(&setup()).unwrap();
     for tick in 0..ticks {
@@ -39,13 +38,13 @@ fn a_file_cut_at_any_byte_is_incomplete_or_malformed() {
             }
             Verdict::Malformed { flaw: Flaw::HeaderCut, offset } => {
                 assert_eq!(offset, length as u64);
-                assert!(ticks_seen.is_empty(), "after the header no cut is malformed, at {length}");
+                assert!(ticks_seen.is_empty(), "a cut after the header must be incomplete, at {length}");
             }
             other => panic!("cut at {length}: {other}"),
         }
     }
     ticks_seen.dedup();
-    assert_eq!(ticks_seen, [0, 10, 20, 30, 35], "every whole block counts");
+    assert_eq!(ticks_seen, [0, 10, 20, 30, 35], "expected the ticks of every whole block");
 }
 
 #[test]
@@ -78,7 +77,7 @@ fn what_is_not_a_replay_is_malformed() {
     assert_eq!(verdict(b"\x89PNG\r\n\x1a\n and so on"), magic);
     let file = record(5, 10, inputs_at);
     let as_text: Vec<u8> = file.iter().copied().filter(|byte| *byte != b'\r').collect();
-    assert_eq!(verdict(&as_text), magic, "line endings rewritten");
+    assert_eq!(verdict(&as_text), magic, "a file with rewritten line endings");
 }
 
 #[test]
@@ -112,14 +111,14 @@ fn the_bytes_are_those_of_the_document() {
     let documented = example_of(include_str!("../../docs/FORMAT.md"));
     assert!(
         written == documented,
-        "the example in docs/FORMAT.md is no longer what is written. If the layout was meant to change, bump \
-         FORMAT_VERSION; if the state hash was, bump SEMANTICS; then put this there:\n{}",
+        "the example in docs/FORMAT.md differs from the encoding. If the layout change is intended, raise \
+         FORMAT_VERSION; if the state hash changed, raise SEMANTICS; then replace it by:\n{}",
         hex_lines(&written)
     );
     assert!(verdict(&documented).is_match());
 }
 
-/// The bytes of the document's `hex` block: everything before a line's `|`.
+/// Returns the bytes of the document's `hex` block: the digits before each line's `|`.
 fn example_of(document: &str) -> Vec<u8> {
     let (_, rest) = document.split_once("```hex\n").expect("an example in the document");
     let (block, _) = rest.split_once("```").expect("an end of the example");

@@ -1,5 +1,5 @@
-//! A forger repairs all checksums but cannot run the game: whatever he changes, the file never matches. And what
-//! no recorder writes is refused for the right reason.
+//! A forger repairs all checksums but cannot run the game: no forged file matches. Content that no recorder writes is
+//! refused with the right flaw.
 
 use lockstep2d::hash::StateHash;
 use lockstep2d::replay::{ClaimDifference, FORMAT_VERSION, Flaw, Limits, Mismatch, Playback, Step, Verdict};
@@ -8,12 +8,12 @@ use crate::counter::{Counter, inputs_at};
 use crate::forge::{CHAIN, Forged, INPUTS, KEYFRAME, TRAILER, forge};
 use crate::{record, verdict};
 
-/// Three full blocks of ten ticks, one of five, and the trailer.
+/// A replay of three full blocks of ten ticks, one of five, and the trailer.
 fn original() -> Vec<u8> {
     record(35, 10, inputs_at)
 }
 
-/// The verdict on the original with a change that the forger has covered up.
+/// Returns the verdict on the original after a change with repaired checksums.
 fn forged(change: impl FnOnce(&mut Forged)) -> Verdict {
     verdict(&forge(&original(), change))
 }
@@ -29,7 +29,11 @@ fn assert_flaw(verdict: Verdict, expected: Flaw) {
 fn the_forger_repairs_perfectly() {
     let file = original();
     assert_eq!(forge(&file, |_| {}), file);
-    assert_eq!(forge(&file, |forged| forged.trailer()[CHAIN].fill(0)), file, "the chain hash is repaired");
+    assert_eq!(
+        forge(&file, |forged| forged.trailer()[CHAIN].fill(0)),
+        file,
+        "expected the chain hash to be repaired"
+    );
 }
 
 #[test]
@@ -44,7 +48,7 @@ fn no_flipped_bit_matches_even_with_checksums_repaired() {
     for (index, (kind, payload)) in intact.blocks.iter().enumerate() {
         for bit in 0..payload.len() * 8 {
             if *kind == TRAILER && CHAIN.contains(&(bit / 8)) {
-                continue; // Repaired again.
+                continue; // The chain hash is repaired.
             }
             let mut forged = intact.clone();
             forged.payload(index)[bit / 8] ^= 1 << (bit % 8);
@@ -56,7 +60,7 @@ fn no_flipped_bit_matches_even_with_checksums_repaired() {
 
 #[test]
 fn an_input_that_the_game_ignores_is_bound_all_the_same() {
-    // The wink of the first player in the first run: ticks, length, add, wink, add, wink.
+    // The wink of the first player in the first run. Layout: ticks, length, add, wink, add, wink.
     let verdict = forged(|forged| forged.payload(0)[3] ^= 1);
     assert_eq!(verdict, Verdict::Diverged { last_equal: Some(0), first_different: 10 });
 }
@@ -87,7 +91,7 @@ fn a_cut_file_that_diverges_is_diverged() {
     });
     let diverged = Verdict::Diverged { last_equal: Some(10), first_different: 20 };
     assert_eq!(verdict(&file), diverged);
-    assert_eq!(verdict(&file[..file.len() - 1]), diverged, "cut inside the third block");
+    assert_eq!(verdict(&file[..file.len() - 1]), diverged, "truncated inside the third block");
     let first_only = forge(&file, |forged| forged.blocks.truncate(1));
     assert!(matches!(verdict(&first_only), Verdict::Incomplete { ticks: 10, .. }));
 }
@@ -109,7 +113,7 @@ fn ticks_cannot_be_added_removed_or_moved() {
     }
     let swapped = forged(|forged| forged.blocks.swap(0, 1));
     assert_eq!(swapped, Verdict::Diverged { last_equal: Some(0), first_different: 10 });
-    // The last block, of one run of five ticks, becomes one of four.
+    // The last block has one run of five ticks, which becomes four.
     let shorter = forged(|forged| {
         assert_eq!(forged.payload(3)[0], 5);
         forged.payload(3)[0] = 4;
@@ -131,7 +135,7 @@ fn the_end_cannot_be_restated() {
         hash: actual,
         difference: ClaimDifference::Value { name: name.into(), claimed, actual: actual_value },
     };
-    // 2 claims: 4 "half" 8 bytes, 3 "sum" 8 bytes.
+    // Layout: count 2; length 4, "half", 8 bytes of value; length 3, "sum", 8 bytes of value.
     let count = CHAIN.end;
     let (half, sum) = (count + 1, count + 1 + 13);
     assert_eq!(forged(|forged| forged.trailer()[sum + 4] ^= 64), value("sum", Some(40 ^ 64), Some(40)));
@@ -146,11 +150,15 @@ fn the_end_cannot_be_restated() {
 
 #[test]
 fn what_could_be_written_otherwise_is_refused() {
-    let run = [0xfd, 0, 1, 0]; // -3 and 1, as in the first five ticks
+    let run = [0xfd, 0, 1, 0]; // -3 and 1, as in the first run of ticks
     let replace_first = |with: &[u8]| {
         forged(|forged| {
             let payload = forged.payload(0);
-            assert_eq!(payload[..6], [[4, 4].as_slice(), &run].concat(), "four ticks, then a wink");
+            assert_eq!(
+                payload[..6],
+                [[4, 4].as_slice(), &run].concat(),
+                "expected four ticks before the wink"
+            );
             payload.splice(..6, with.iter().copied());
         })
     };
@@ -162,7 +170,7 @@ fn what_could_be_written_otherwise_is_refused() {
     assert_flaw(replace_first(&padded), Flaw::Number);
     let longer = [[9, 4].as_slice(), &run].concat();
     assert_flaw(replace_first(&longer), Flaw::BlockTicks { ticks: 15, interval: 10 });
-    assert_flaw(replace_first(&[4, 4, 0xfd, 2, 1, 0]), Flaw::Inputs); // a bool of 2
+    assert_flaw(replace_first(&[4, 4, 0xfd, 2, 1, 0]), Flaw::Inputs); // a bool with the value 2
     assert_flaw(replace_first(&[4, 3, 0xfd, 0, 1]), Flaw::Inputs);
     assert_flaw(replace_first(&[4, 5, 0xfd, 0, 1, 0, 0]), Flaw::Inputs);
     assert_flaw(replace_first(&[4, 0]), Flaw::Inputs);
@@ -207,7 +215,7 @@ fn a_trailer_out_of_shape_is_refused() {
 
 #[test]
 fn a_chain_hash_of_another_file_is_refused() {
-    // The forger's last checksum is over the trailer as it is, so only the chain hash inside is wrong.
+    // The last checksum covers the changed trailer, so only the chain hash inside it is wrong.
     let file = original();
     let trailer = Forged::take_apart(&file).blocks.pop().unwrap().1;
     let payload = file.len() - 8 - trailer.len();

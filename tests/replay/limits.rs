@@ -1,4 +1,5 @@
-//! What a stranger's file may cost: each limit holds exactly, and memory follows the file, not its length fields.
+//! The cost of untrusted files: each limit holds exactly, and memory use follows the size of the file, not its length
+//! fields.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -13,7 +14,7 @@ fn verdict(file: &[u8], limits: &Limits) -> Verdict {
     verify::<Counter>(file, limits)
 }
 
-/// The file matches when the limit is what it needs, and exceeds it by one when it is one less.
+/// Expects the file to match when the limit equals the need, and to exceed a limit that is one lower.
 fn assert_exact(file: &[u8], limit: Limit, needed: u64, set: impl Fn(&mut Limits, u64)) {
     let mut limits = Limits::default();
     set(&mut limits, needed);
@@ -26,7 +27,7 @@ fn assert_exact(file: &[u8], limit: Limit, needed: u64, set: impl Fn(&mut Limits
 #[test]
 fn each_limit_is_exact() {
     let narrow = |value: u64| u32::try_from(value).unwrap();
-    // 35 ticks of |3| + |1| + 1 units.
+    // 35 ticks of |-3| + |1| + 1 units.
     let file = record(35, 10, |_| add(-3, 1));
     let length = file.len() as u64;
     assert_exact(&file, Limit::FileBytes, length, |limits, max| limits.file_bytes = max);
@@ -42,7 +43,7 @@ fn each_limit_is_exact() {
 
 #[test]
 fn limits_come_before_the_rest_of_the_file() {
-    // A length beyond the limit is refused even where the file ends at once.
+    // A length beyond the limit is refused even if the file ends right after it.
     let file = record(35, 10, inputs_at);
     let head = 40 + 7 + 13 + 16 + 8;
     let mut cut = file[..head].to_vec();
@@ -56,7 +57,7 @@ fn limits_come_before_the_rest_of_the_file() {
     assert_eq!(verdict(&huge_setup, &Limits::default()), Verdict::LimitExceeded { limit, value, max });
 }
 
-/// Counts the bytes that this thread holds, and the most it ever held.
+/// Tracks the bytes that this thread holds, and their peak.
 struct Counting;
 
 thread_local! {
@@ -66,7 +67,7 @@ thread_local! {
 
 #[expect(
     unsafe_code,
-    reason = "an allocator is unsafe by nature; this one only counts what the system's does"
+    reason = "the trait of allocators is unsafe; this one counts and forwards to the system's"
 )]
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
@@ -85,7 +86,7 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-/// The most bytes that `work` held at a time.
+/// Returns the peak memory use of `work` in bytes.
 fn most_held(work: impl FnOnce()) -> usize {
     let before = HELD.get();
     MOST.set(before);
@@ -96,15 +97,15 @@ fn most_held(work: impl FnOnce()) -> usize {
 #[test]
 fn memory_follows_the_file_and_not_its_length_fields() {
     let file = record(35, 10, inputs_at);
-    assert!(most_held(|| drop(vec![0_u8; 5000])) >= 5000, "the counter counts");
+    assert!(most_held(|| drop(vec![0_u8; 5000])) >= 5000, "expected the allocator to count");
     let bound = 16 * 1024;
     let honest = most_held(|| assert!(verdict(&file, &Limits::default()).is_match()));
-    assert!(honest < bound, "an honest file of {} bytes took {honest}", file.len());
+    assert!(honest < bound, "a valid file of {} bytes took {honest} bytes", file.len());
     let assert_small = |damaged: &[u8], what: &str| {
         let took = most_held(|| drop(verdict(damaged, &Limits::default())));
         assert!(took < bound, "{took} bytes for {what}");
     };
-    // Any four bytes made a huge number, with the checksums as they were and repaired.
+    // Each four bytes are overwritten by a huge number, without and with repaired checksums.
     for high in [0x7f, 0x3f, 0x00] {
         let huge = [0xff, 0xff, 0xff, high];
         for at in 0..file.len() - 4 {

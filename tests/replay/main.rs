@@ -1,6 +1,6 @@
-//! Replay files as a stranger sees them: through the public API and `docs/FORMAT.md` only.
+//! Replay files, tested through the public API and `docs/FORMAT.md` only.
 
-#![expect(clippy::unwrap_used, reason = "what goes wrong in a helper fails the test")]
+#![expect(clippy::unwrap_used, reason = "a failed unwrap in a helper fails the test")]
 
 mod counter;
 mod forge;

@@ -1,4 +1,4 @@
-//! What a reader says of where it is.
+//! The reader reports its position, and errors at the right offset; limits of header fields are exact.
 
 use lockstep2d::hash::StateHash;
 use lockstep2d::lockstep::SetupError;
@@ -19,7 +19,7 @@ fn it_knows_how_far_it_has_read() {
         assert_eq!(reader.ticks(), ticks);
         offsets.push(reader.offset());
     }
-    // A block is as long as its first four bytes say, after them, its kind and its checksum.
+    // The first four bytes of a block give its length; the length bytes, kind and checksum come in addition.
     for pair in offsets.windows(2) {
         let start = usize::try_from(pair[0]).unwrap();
         let length = u32::from_le_bytes(file[start..start + 4].try_into().unwrap());
@@ -43,7 +43,7 @@ fn a_refused_setup_says_why() {
     assert_eq!(error.to_string(), "the setup cannot start a game: no floor");
 }
 
-/// The header of a replay with another name of its rules.
+/// Returns a replay with a different rules name in its header.
 fn with_name(name: &str) -> Vec<u8> {
     forge(&record(5, 3, inputs_at), |forged| {
         let length = u32::from_le_bytes(forged.header[32..36].try_into().unwrap()) as usize;
@@ -83,8 +83,8 @@ fn a_chain_hash_that_is_wrong_is_named_where_it_stands() {
     let payload = usize::try_from(reader.offset()).unwrap() + 5;
     let mut forged = Forged::take_apart(&file);
     let ticks = forged.trailer()[..8].to_vec();
-    assert_eq!(file[payload..payload + 8], ticks, "the trailer begins here");
-    // The checksum of a block covers its chain hash too, so that it is repaired by hand.
+    assert_eq!(file[payload..payload + 8], ticks, "expected the trailer here");
+    // The block's checksum covers the chain hash, so the checksum is repaired by hand.
     file[payload + CHAIN.start] ^= 1;
     let start = payload - 5;
     let end = file.len() - 8;

@@ -1,5 +1,5 @@
-//! The recorder hands out bytes as the game runs, simulates what it wrote, and writes nothing that a verifier
-//! would refuse.
+//! The recorder returns its bytes while the game runs, steps the game with the inputs as encoded, and writes nothing
+//! that a verifier would refuse.
 
 use lockstep2d::hash::StateHash;
 use lockstep2d::lockstep::{Game, InputError, RulesId, SetupError};
@@ -21,10 +21,10 @@ fn what_was_appended_is_always_a_valid_prefix() {
         }
         recording.step(&inputs_at(tick)).unwrap();
         file.extend(recording.take_bytes());
-        assert!(recording.take_bytes().is_empty(), "bytes are handed out once");
+        assert!(recording.take_bytes().is_empty(), "expected the bytes only once");
     }
     file.extend(recording.finish().unwrap());
-    assert_eq!(file, record(35, 10, inputs_at), "the same as when taken all at once");
+    assert_eq!(file, record(35, 10, inputs_at), "expected the same bytes as from one recording");
     assert!(verdict(&file).is_match());
 }
 
@@ -34,7 +34,7 @@ fn the_game_is_stepped_with_what_was_written() {
     moody[0].mood = 9;
     let mut direct = Counter::new(&setup()).unwrap();
     direct.step(&moody);
-    assert_eq!(direct.moods, 9, "the mood would have made a difference");
+    assert_eq!(direct.moods, 9, "expected the mood to change the state");
 
     let mut recording = Recording::<Counter>::start(&setup(), 10).unwrap();
     recording.step(&moody).unwrap();
@@ -89,7 +89,7 @@ fn what_cannot_start_is_refused() {
     assert_eq!(refused(&long, 10), RecordError::SetupLength { bytes: (17 << 20) + 12 });
 }
 
-/// A game whose input is text, so that a block can grow, and which claims what it is told to.
+/// A game whose input is text, so that a block can grow, and whose claims come from its setup.
 struct Scribe {
     claims: Vec<(String, i64)>,
 }
@@ -145,7 +145,7 @@ fn a_block_is_never_longer_than_a_verifier_takes() {
         Err(RecordError::BlockLength { bytes }) => assert!(bytes > 16 << 20, "{bytes}"),
         other => panic!("{other:?}"),
     }
-    assert_eq!(recording.ticks(), written, "the tick was refused");
+    assert_eq!(recording.ticks(), written, "expected the refused tick not to count");
     recording.step(&[format!("{page}2")]).unwrap();
     recording.step(&["short".into()]).unwrap();
     let file = recording.finish().unwrap();

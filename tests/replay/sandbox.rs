@@ -1,5 +1,4 @@
-//! The sandbox on file: every command can be recorded, whether the world carries it out or refuses it, and a replay is
-//! a match all the same.
+//! Sandbox replays: every command can be recorded, whether the world accepts or refuses it, and the replay matches.
 
 use lockstep2d::body::{BodyDef, BodyId, BodyKind, BodySettings, Geometry, MassSource, Polygon, ShapeDef};
 use lockstep2d::fx;
@@ -27,7 +26,7 @@ fn setup() -> SandboxSetup {
     SandboxSetup { config: Config::default(), commands }
 }
 
-/// Every command on a body, with values that it may refuse.
+/// Returns every command on a body, with values that may be refused.
 fn commands(world: &World, body: BodyId, value: Fx) -> Vec<Command> {
     let vector = Vec2::new(value, value.saturating_neg());
     let position = world.body(body).map_or(Vec2::ZERO, |body| body.position());
@@ -114,7 +113,7 @@ fn many_bodies_in_one_command_are_work() {
     assert_eq!(verdict.name(), "limit_exceeded", "{verdict}");
 }
 
-/// Bodies inside each other cost far more than the same ones side by side, and a limit has to see it.
+/// Overlapping bodies are far more work than the same bodies side by side, so that limits apply to them.
 #[test]
 fn a_heap_in_one_place_is_dear() {
     let work = |apart: i32| {
@@ -128,5 +127,5 @@ fn a_heap_in_one_place_is_dear() {
         game.step(&[vec![]]);
         game.work(&[vec![]])
     };
-    assert!(work(0) > 50 * work(3), "{} instead of {}", work(0), work(3));
+    assert!(work(0) > 50 * work(3), "expected 50 times the work: {} and {}", work(0), work(3));
 }

@@ -1,4 +1,4 @@
-//! A setup has one encoding, on the way in and on the way out.
+//! Setups with more than one encoding are refused, both when recording and when verifying.
 
 use std::collections::BTreeSet;
 use std::marker::PhantomData;
@@ -11,7 +11,7 @@ use serde::{Deserialize, Deserializer, Serialize};
 
 use crate::forge::forge;
 
-/// A game without players in which nothing happens, from any setup.
+/// A game without players and without changes, from any setup.
 struct Still<S>(PhantomData<S>);
 
 impl<S: Serialize + DeserializeOwned> Game for Still<S> {
@@ -48,7 +48,7 @@ impl<S: Serialize + DeserializeOwned> Game for Still<S> {
     }
 }
 
-/// A number that grows each time it is decoded.
+/// A number that increases each time it is decoded.
 #[derive(Serialize)]
 struct Growing(u8);
 

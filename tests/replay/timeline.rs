@@ -1,5 +1,5 @@
-//! A timeline goes to any tick, and what it finds there is what a straight playback finds; going there costs at most two
-//! intervals of simulation; what it keeps stays within its budget; and no file of keyframes passes for another one.
+//! A timeline seeks to any tick, and finds the same state as a straight playback. A seek simulates at most two
+//! intervals, the keyframes stay within their memory budget, and no invalid keyframe file is used.
 
 use lockstep2d::codec;
 use lockstep2d::hash::StateHash;
@@ -20,7 +20,7 @@ fn open<'a, G: Game>(file: &'a [u8], interval: u32, bytes: usize) -> Timeline<'a
     Timeline::open(file, &options, &Limits::default()).unwrap()
 }
 
-/// The state hash of every tick, by playing straight on.
+/// Returns the state hash of every tick of a straight playback.
 fn hashes<G: Game>(file: &[u8]) -> Vec<StateHash> {
     let mut playback = Playback::<G>::open(file, &Limits::default()).unwrap();
     let mut hashes = vec![playback.game().state_hash()];
@@ -53,10 +53,10 @@ fn any_tick_of_a_hundred_thousand_is_two_intervals_away() {
     const TICKS: u64 = 100_000;
     let file = record(TICKS, 60, inputs_at);
     let hashes = hashes::<Counter>(&file);
-    // With room for all keyframes, with room for a hundred, and where an interval is no whole number of blocks.
+    // Room for all keyframes, room for a hundred, and an interval that is not a multiple of the block length.
     for (interval, bytes) in [(300, 64 << 20), (60, 50_000), (37, 64 << 20), (1000, 64 << 20)] {
         let mut timeline = open::<Counter>(&file, interval, bytes);
-        assert_eq!((timeline.simulated(), timeline.ticks()), (0, TICKS), "opening plays nothing");
+        assert_eq!((timeline.simulated(), timeline.ticks()), (0, TICKS), "expected no simulation on opening");
         timeline.play_all().unwrap();
         assert_eq!((timeline.tick(), timeline.played(), timeline.simulated()), (0, TICKS, TICKS));
         let mut rng = Rng::new(7);
@@ -73,7 +73,7 @@ fn any_tick_of_a_hundred_thousand_is_two_intervals_away() {
             "{longest} ticks at an interval of {}",
             timeline.interval()
         );
-        assert!(longest > timeline.interval() / 2, "the test has not tried the far ends");
+        assert!(longest > timeline.interval() / 2, "expected a seek of more than half an interval");
         assert!(bytes < 1 << 20 || timeline.interval() <= u64::from(interval), "{}", timeline.interval());
     }
 }
@@ -116,7 +116,7 @@ fn worlds_come_back_at_every_tick() {
         assert_eq!(timeline.step_back(), Ok(Step::Ended));
         assert!(
             timeline.simulated() - before <= ticks,
-            "every tick once more: {}",
+            "expected at most one more simulation of each tick: {}",
             timeline.simulated() - before
         );
         assert_eq!((timeline.tick(), timeline.step()), (0, Ok(Step::Ticked)));
@@ -126,7 +126,7 @@ fn worlds_come_back_at_every_tick() {
 #[test]
 fn steps_backwards_are_cheap_in_little_memory_too() {
     let file = record(20_000, 60, inputs_at);
-    // Room for some 100 keyframes, and 30 saves behind the cursor.
+    // Room for about 100 keyframes, and 30 saves behind the cursor.
     let mut timeline = open::<Counter>(&file, 60, 40_000);
     timeline.seek(20_000).unwrap();
     let interval = timeline.interval();
@@ -216,13 +216,13 @@ fn keyframes_of_a_file_spare_the_way() {
         timeline.seek(tick).unwrap();
         assert_eq!(timeline.game().state_hash(), hashes[at(tick)]);
         assert!(timeline.simulated() < 40, "tick {tick}: {}", timeline.simulated());
-        assert!(timeline.played() < 40, "what was not played is not called played");
+        assert!(timeline.played() < 40, "skipped ticks must not count as played");
         let before = timeline.simulated();
         timeline.play_all().unwrap();
         assert_eq!((timeline.played(), timeline.tick()), (400, tick));
-        assert!((360..440).contains(&(timeline.simulated() - before)), "all of it, and the way back");
+        assert!((360..440).contains(&(timeline.simulated() - before)), "expected all ticks and the way back");
     }
-    // Another interval: as many of them as fit it.
+    // With a different interval, the keyframes that fit it are used.
     for (interval, then) in [(20, 40), (40, 40), (60, 80), (100, 120)] {
         let mut timeline = open::<Sandbox>(&file, interval, 64 << 20);
         timeline.use_keyframes(&bytes).unwrap();
@@ -241,7 +241,7 @@ fn keyframes_of_an_interval_within_blocks_are_those_at_checkpoints() {
     assert_eq!(timeline.keyframes().collect::<Vec<_>>(), [0, 20, 40, 60, 80, 100]);
 }
 
-/// The layout of `docs/FORMAT.md`, written without help.
+/// Encodes a keyframe file as `docs/FORMAT.md` specifies, without the library.
 fn keyframes(replay: &[u8], interval: u64, saves: &[(u64, Counter)]) -> Vec<u8> {
     let saves: Vec<(u64, Vec<u8>)> = saves.iter().map(|(tick, save)| (*tick, codec::encode(save))).collect();
     of_body(&(("counter", 3u32), StateHash::of_bytes(replay), interval, saves))
@@ -263,7 +263,7 @@ fn refused(file: &[u8], keyframes: &[u8]) -> KeyframesError {
     let mut timeline = open::<Counter>(file, 10, 1 << 20);
     let error = timeline.use_keyframes(keyframes).unwrap_err();
     timeline.seek(35).unwrap();
-    assert_eq!(timeline.game().tick, 35, "it goes on without them");
+    assert_eq!(timeline.game().tick, 35, "expected seeking without keyframes to work");
     error
 }
 
@@ -277,7 +277,7 @@ fn what_is_no_file_of_keyframes_is_refused() {
         saves.push((tick, timeline.game().clone()));
     }
     let good = timeline.keyframes_to_bytes();
-    assert_eq!(good, keyframes(&file, 10, &saves), "the layout is that of the documentation");
+    assert_eq!(good, keyframes(&file, 10, &saves), "expected the layout of the document");
 
     for cut in 0..good.len() {
         refused(&file, &good[..cut]);
@@ -317,7 +317,7 @@ fn what_is_no_file_of_keyframes_is_refused() {
     }
 }
 
-/// A forger can repair every hash of the file, but not what the replay says of the state.
+/// A forger can repair every hash of the file, but cannot match the replay's checkpoints.
 #[test]
 fn a_keyframe_with_another_state_is_found_when_it_is_used() {
     let file = record(35, 10, inputs_at);
@@ -327,7 +327,7 @@ fn a_keyframe_with_another_state_is_found_when_it_is_used() {
     timeline.seek(7).unwrap();
     let there = timeline.game().clone();
     assert!(matches!(timeline.seek(25), Err(SeekError::Keyframe { tick: 20, .. })));
-    assert_eq!((timeline.tick(), timeline.game()), (7, &there), "it stays where it was");
+    assert_eq!((timeline.tick(), timeline.game()), (7, &there), "expected the timeline to stay where it was");
     timeline.seek(19).unwrap();
 
     let garbage =
@@ -365,10 +365,10 @@ fn damaged_keyframes_with_repaired_hashes_never_lead_elsewhere() {
             }
         }
     }
-    assert!(led > 100, "most damage is elsewhere: {led}");
+    assert!(led > 100, "expected more than 100 seeks to succeed, found {led}");
 }
 
-/// A counter that also adds what it saw last, and does not save it.
+/// A counter with a hidden value that affects the sum and is not saved.
 struct Forgetful {
     counter: Counter,
     last: i64,

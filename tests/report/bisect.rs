@@ -1,4 +1,4 @@
-//! The tick, the stage, the body and the field of one bit that flips at random, for less than three verifications.
+//! Bisection finds the tick, the stage, the body and the field of a random bit flip in less than three verifications.
 
 use std::cell::Cell;
 
@@ -18,7 +18,7 @@ thread_local! {
     static STEPS: Cell<u64> = const { Cell::new(0) };
 }
 
-/// A yard that counts how often it is stepped, and in which a bit may flip.
+/// A yard that counts its steps, with an optional bit flip.
 struct Faulty<const FAULTY: bool>(Yard);
 
 impl<const FAULTY: bool> Faulty<FAULTY> {
@@ -86,7 +86,7 @@ fn inputs(tick: u64) -> Vec<u8> {
     (0..u64::from(PLAYERS)).map(|player| inputs_at(tick, player)).collect()
 }
 
-/// A flip that is possible, and the path of its body.
+/// Returns a random flip that changes the state, and the path of its body.
 fn random_flip(rng: &mut Rng, seed: u64) -> (Flip, String) {
     let mut below = |n: u32| rng.next_u32() % n;
     loop {
@@ -106,7 +106,7 @@ fn random_flip(rng: &mut Rng, seed: u64) -> (Flip, String) {
         let before = yard.state_hash();
         let Some(path) = flip.apply(&mut yard) else { continue };
         assert_ne!(yard.state_hash(), before);
-        // What a tick swallows, nobody can find.
+        // Skips flips that the step erases, because they leave no trace.
         if flip.when == When::Before {
             yard.step(&inputs(flip.tick - 1));
             let mut right = Yard::new(&seed).unwrap();
@@ -123,7 +123,7 @@ fn evidence(bytes: Vec<u8>) -> Evidence {
     Evidence::read(bytes, &Limits::default()).unwrap()
 }
 
-/// Path and name of the field that is to blame.
+/// Returns path and name of the blamed field.
 fn culprit(found: &Comparison) -> (String, String) {
     if let Some(told) = &found.explanation {
         return (told.path.clone(), told.differences[0].field().name().into());
@@ -153,7 +153,7 @@ fn a_flipped_bit_is_found_in_its_trace_for_less_than_three_verifications() {
         assert_eq!(culprit(&found), (path.clone(), flip.motion.name().into()), "{what}");
     }
     println!("at most {worst} steps, verification takes {TICKS}");
-    assert!(worst < 3 * TICKS, "{worst} steps instead of {TICKS}");
+    assert!(worst < 3 * TICKS, "expected less than three verifications of {TICKS} ticks, took {worst} steps");
 }
 
 #[test]
@@ -172,13 +172,13 @@ fn a_replay_tells_the_second_and_the_trace_of_that_second_the_rest() {
     assert!(last < flip.tick && flip.tick <= first && first == last + 60, "{found:?}");
     assert!(found.notes.last().unwrap().contains("their trace"), "{found:?}");
 
-    // The faulty program plays its replay again.
+    // The faulty program simulates its own replay again.
     let trace = Trace::<Faulty<true>>::of_replay(&replay, &limits, first, 60).unwrap();
     assert_eq!((trace.tick(), trace.history().len()), (first, 61));
     let found = bisect::<Sound>(&evidence(trace.to_bytes()), None, &limits).unwrap();
     assert_eq!(found.first_different, Some(flip.tick), "{found:?}");
     assert_eq!(culprit(&found), (path, flip.motion.name().into()), "{found:?}");
-    // A program without the fault finds nothing in its own trace of the same file.
+    // A program without the fault finds no difference in its own trace of the same replay.
     let own = Trace::<Sound>::of_replay(&replay, &limits, u64::MAX, 60).unwrap();
     assert!(bisect::<Sound>(&evidence(own.to_bytes()), None, &limits).unwrap().is_equal());
 }
@@ -196,9 +196,9 @@ fn checkpoints_of_every_tick_tell_the_tick() {
         let found = bisect::<Sound>(&replay, None, &Limits::default()).unwrap();
         assert!(STEPS.get() < 3 * TICKS);
         assert_eq!(found.first_different, Some(flip.tick), "{found:?}");
-        // There are too many bits to try them all, but what is told is true.
+        // The bits are too many to try them all, but a blamed body must be the right one.
         let told = found.explanation.map(|told| told.path);
-        assert!(told.as_ref().is_none_or(|told| *told == path), "{told:?} instead of {path}");
+        assert!(told.as_ref().is_none_or(|told| *told == path), "blamed {told:?} instead of {path}");
     }
 }
 
@@ -213,7 +213,7 @@ fn sandbox(seed: u64) -> SandboxSetup {
     setup
 }
 
-/// Two replays that differ in one command, by one bit of a speed.
+/// Bisects two replays that differ in one command, by one bit of a velocity.
 #[test]
 fn of_two_replays_the_tick_after_the_first_other_command_is_found() {
     let mut rng = Rng::new(9);
@@ -251,14 +251,15 @@ fn of_two_replays_the_tick_after_the_first_other_command_is_found() {
     }
 }
 
-/// What is found by playing two games all the way and comparing every tick.
+/// The first difference is the first tick whose states differ, even if inputs differ earlier.
 #[test]
 fn replays_whose_states_meet_again_part_where_every_tick_says_so() {
     let record = |kicks: &[(u64, i32)]| {
         let mut recording = Recording::<Sandbox>::start(&sandbox(0), 60).unwrap();
         for now in 0..120 {
             let kick = kicks.iter().find(|(tick, _)| *tick == now);
-            // A random number is drawn and put back: other inputs, the same state. Or a refused command, which counts.
+            // Kick 0 sets the gravity to its current value: different inputs, the same state. Other kicks change the
+            // gravity.
             let commands = match kick {
                 Some((_, 0)) => {
                     vec![Command::SetGravity { gravity: recording.game().world().config().gravity }]

@@ -1,4 +1,5 @@
-//! Who departed, when, where and by what: in a yard of sixty bodies of which one gets a wrong bit.
+//! Comparing reports identifies the diverged peer, the tick, the body and the field after a bit flip in a yard of sixty
+//! bodies.
 
 use lockstep2d::hash::StateHash;
 use lockstep2d::inspect::{Difference, Value};
@@ -12,7 +13,7 @@ use crate::yard::{BODIES, Flip, Peer, When, Yard};
 
 const CHECKPOINT: u64 = 10;
 
-/// Reads a report as if it came in a file.
+/// Reads a report back from its bytes.
 fn evidence(report: &DesyncReport) -> Evidence {
     Evidence::read(report.to_bytes(), &Limits::default()).unwrap()
 }
@@ -21,7 +22,7 @@ pub(crate) fn compared(a: &Evidence, b: &Evidence) -> Comparison {
     compare::<Yard>(a, b, &Limits::default()).unwrap()
 }
 
-/// Plays until a checkpoint differs and some ticks more, and writes reports.
+/// Simulates until a checkpoint differs, then seven more ticks, and returns the reports.
 fn reports(peers: &mut [Peer; 3], until: u64) -> Option<[DesyncReport; 3]> {
     let mut found = None;
     while peers[0].tick < until {
@@ -52,14 +53,14 @@ fn random_flip(rng: &mut Rng, when: When) -> Flip {
     }
 }
 
-/// In how many bits two numbers differ.
+/// Returns the number of bits in which the two values differ.
 fn flipped_bits(difference: &Difference) -> u32 {
     let bits = |value: &Option<Value>| value.as_ref().and_then(Value::bits).unwrap();
     (bits(&difference.a) ^ bits(&difference.b)).count_ones()
 }
 
-/// Cases of a flip in one peer's game, each of them told by the reports of that peer and of another one. Returns how many
-/// flips the solver swallowed without a trace.
+/// Flips a bit in one peer's game and compares the reports of that peer and another one, for `count` flips. Returns the
+/// number of further flips that were impossible or left no trace.
 fn cases(seed: u64, count: u32, when: When) -> u32 {
     let mut rng = Rng::new(seed);
     let (mut told, mut swallowed, mut largest) = (0, 0, 0);
@@ -92,12 +93,12 @@ fn cases(seed: u64, count: u32, when: When) -> u32 {
                 assert_eq!(flipped_bits(&first.differences[0]), 1, "{what}");
                 &first.differences[0]
             }
-            // It was passed on to nothing, and needs no explanation.
+            // The flip affected only its own body, so no explanation is needed.
             When::Before if found.explanation.is_none() => {
                 assert_eq!((found.things.len(), first.differences.len()), (1, 1), "{what}");
                 &first.differences[0]
             }
-            // The tick itself may have made the flipped number right again, and others wrong.
+            // The step may have restored the flipped field and changed other fields.
             When::Before => {
                 let explanation = found.explanation.as_ref().expect(&what);
                 assert_eq!((explanation.tick, &explanation.path), (flip.tick - 1, &body), "{what}");
@@ -114,7 +115,7 @@ fn cases(seed: u64, count: u32, when: When) -> u32 {
         assert_eq!(seats, [others.as_slice(), &[faulty]], "{what}");
     }
     if when == When::Before {
-        assert!(largest > 20, "at most {largest} things differed: nothing was passed on");
+        assert!(largest > 20, "expected a flip to spread to more than 20 objects, found {largest}");
     }
     swallowed
 }
@@ -124,16 +125,16 @@ fn a_bit_that_flips_after_a_step_is_found() {
     cases(1, 100, When::After);
 }
 
-/// All that touches the body differs in the same tick; the bit is found by trying. Some flips make no difference at all.
-/// In two parts, for two processors.
+/// All bodies that touch the faulty body differ in the same tick, so the bit is found by trying flips. Some flips leave
+/// no trace. Split into two tests that run in parallel.
 #[test]
 fn a_bit_that_flips_before_a_step_is_found() {
-    assert!(cases(2, 50, When::Before) < 50, "most flips are to make a difference");
+    assert!(cases(2, 50, When::Before) < 50, "expected most flips to change the state");
 }
 
 #[test]
 fn a_bit_that_flips_before_another_step_is_found() {
-    assert!(cases(3, 50, When::Before) < 50, "most flips are to make a difference");
+    assert!(cases(3, 50, When::Before) < 50, "expected most flips to change the state");
 }
 
 #[test]
@@ -148,7 +149,7 @@ fn peers_that_agree_are_equal() {
     assert!(compared(&replays[0], &replays[1]).is_equal());
 }
 
-/// A replay has checkpoints only: the tick is known to their distance, and of the states nothing.
+/// A replay has checkpoints only: the tick is known to one checkpoint interval, and the fields are unknown.
 #[test]
 fn replays_tell_who_departed_between_which_checkpoints() {
     let flip = Flip { tick: 60, when: When::After, body: 9, motion: Motion::VelocityY, bit: 12 };
@@ -160,13 +161,13 @@ fn replays_tell_who_departed_between_which_checkpoints() {
     assert_eq!(found.blame, Blame::Side(Side::B));
     assert!(found.things.is_empty() && !found.notes.is_empty());
 
-    // With the report of the one that is to blame, everything is known.
+    // With the report of the diverged peer, the tick and the field are known.
     let report = peers[1].report(1, 75, Vec::new());
     let found = compared(&replays[0], &evidence(&report));
     assert_eq!((found.first_different, found.blame), (Some(60), Blame::Side(Side::B)));
     assert_eq!(found.things.len(), 1, "{:?}", found.things);
 
-    // With that of the other one, it is known what the states should have been.
+    // With the report of the correct peer, only the correct states are known.
     let report = peers[0].report(0, 75, Vec::new());
     let found = compared(&evidence(&report), &replays[1]);
     assert_eq!((found.first_different, found.blame), (Some(75), Blame::Side(Side::B)));
@@ -187,7 +188,11 @@ fn other_inputs_and_other_setups_are_named() {
     let found = compared(&a, &b);
     let input = found.input.clone().unwrap();
     assert_eq!((input.tick, input.seat, input.differences.len()), (33, 2, 1));
-    assert_eq!((found.first_different, found.blame), (None, Blame::Nobody), "the same up to there");
+    assert_eq!(
+        (found.first_different, found.blame),
+        (None, Blame::Nobody),
+        "expected no difference before the different input"
+    );
     assert!(!found.is_equal());
 
     let c = Evidence::Replay(Peer::new(4, None).replay());

@@ -1,4 +1,4 @@
-//! The view of a state leaves nothing out: states that differ in any bit differ in a field.
+//! The field view of a state is complete: states that differ in any bit differ in a field.
 
 use lockstep2d::hash::StateHash;
 use lockstep2d::inspect::{Field, differences, fields};
@@ -23,7 +23,10 @@ fn whatever_bit_of_a_state_differs_is_a_field() {
         let bytes = game.world().to_bytes();
         let before = view(game.world());
         let copy = World::from_bytes(&bytes).unwrap();
-        assert!(differences(&before, &view(&copy)).is_empty(), "{name}: equal worlds look equal");
+        assert!(
+            differences(&before, &view(&copy)).is_empty(),
+            "{name}: equal worlds must have no differences"
+        );
         let mut told = 0;
         for _ in 0..400 {
             let mut changed = bytes.clone();
@@ -31,12 +34,12 @@ fn whatever_bit_of_a_state_differs_is_a_field() {
             changed[24 + rng.next_u32() as usize % (state - 24)] ^= 1 << (rng.next_u32() % 8);
             let hash = StateHash::of_bytes(&changed[..state]);
             changed[state..].copy_from_slice(&hash.0.to_le_bytes());
-            // Most bits make a state that is impossible.
+            // Most changed bits give an invalid state.
             let Ok(other) = World::from_bytes(&changed) else { continue };
             let found = differences(&before, &view(&other));
-            assert!(!found.is_empty(), "{name}: a bit that is not in the view");
+            assert!(!found.is_empty(), "{name}: a changed bit is missing from the view");
             told += 1;
         }
-        assert!(told > 50, "{name}: only {told} states were possible");
+        assert!(told > 50, "{name}: expected more than 50 valid states, found {told}");
     }
 }

@@ -1,4 +1,4 @@
-//! Reports as bytes: what was written comes back, and anything else is refused.
+//! Encoding of reports: valid reports survive a round trip, and anything else is refused.
 
 use lockstep2d::codec;
 use lockstep2d::hash::StateHash;
@@ -18,7 +18,7 @@ fn read(bytes: &[u8]) -> Result<DesyncReport, ReportError> {
     DesyncReport::from_bytes(bytes, &Limits::default())
 }
 
-/// Bytes whose hash is right again.
+/// Returns the bytes with a recomputed hash.
 fn repaired(mut bytes: Vec<u8>) -> Vec<u8> {
     let end = bytes.len() - 16;
     let hash = StateHash::of_bytes(&bytes[..end]);
@@ -33,12 +33,16 @@ fn a_report_comes_back() {
     assert_eq!(read(&report.to_bytes()), Ok(report.clone()));
     assert_eq!((report.rules(), report.players(), report.tick()), (("yard", 1), PLAYERS, 120));
     let own = peer.history.get(120).unwrap().hash;
-    assert_eq!(report.hashes(), [Some(StateHash(1)), Some(own), None], "its own hash is known");
-    assert!(report.history().len() >= 120, "two seconds");
+    assert_eq!(
+        report.hashes(),
+        [Some(StateHash(1)), Some(own), None],
+        "expected the reporting peer's own hash"
+    );
+    assert!(report.history().len() >= 120, "expected a history of at least two seconds");
     assert_eq!(report.saves_left_out(), 0);
 }
 
-/// The saves nearest to the checkpoint that differs are the ones that tell most.
+/// Saves are kept nearest to the differing checkpoint first, as these are the most informative.
 #[test]
 fn a_report_that_would_be_large_leaves_saves_out() {
     let peer = peer();
@@ -70,7 +74,10 @@ fn what_no_peer_writes_is_refused() {
     assert_eq!(with(players, 2), Err(ReportError::Invalid(ReportFlaw::Hashes)));
     let seat = players + 4 + 8;
     assert_eq!(with(seat, 3), Err(ReportError::Invalid(ReportFlaw::Seats)));
-    assert!(matches!(with(24 + 7, 1), Err(ReportError::Decode(_))), "an endless name");
+    assert!(
+        matches!(with(24 + 7, 1), Err(ReportError::Decode(_))),
+        "the length of the name exceeds the file"
+    );
     let mut damaged = bytes.clone();
     damaged[100] ^= 1;
     assert_eq!(read(&damaged), Err(ReportError::Hash));
@@ -82,7 +89,7 @@ fn what_no_peer_writes_is_refused() {
     }
 }
 
-/// Whatever is wrong in a report whose hash is right, a comparison ends with an answer or an error.
+/// For any damage to a report with a valid hash, a comparison ends with a result or an error.
 #[test]
 fn hostile_reports_are_no_danger() {
     let mut peer = Peer::new(1, None);
@@ -95,7 +102,7 @@ fn hostile_reports_are_no_danger() {
     for _ in 0..300 {
         let mut bytes = bytes.clone();
         for _ in 0..1 + rng.next_u32() % 3 {
-            // Mostly what is in front of the saves, where the structure is.
+            // Two thirds of the changes hit the structure in front of the saves.
             let reach = if rng.next_u32().is_multiple_of(3) { bytes.len() - 40 } else { 700 };
             let at = 24 + rng.next_u32() as usize % (reach - 24);
             bytes[at] ^= 1 << (rng.next_u32() % 8);
@@ -105,5 +112,5 @@ fn hostile_reports_are_no_danger() {
             compared += u32::from(compare::<Yard>(&evidence, &other, &limits).is_ok());
         }
     }
-    assert!(compared > 20, "only {compared} were readable");
+    assert!(compared > 20, "expected more than 20 comparable reports, found {compared}");
 }

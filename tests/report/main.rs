@@ -1,5 +1,5 @@
-//! What two peers tell together after their states have become different.
-#![expect(clippy::unwrap_used, reason = "what goes wrong in a helper fails the test")]
+//! Desync reports: comparing the evidence of two peers whose states diverged finds the peer, the tick and the field.
+#![expect(clippy::unwrap_used, reason = "a failed unwrap in a helper fails the test")]
 
 mod bisect;
 mod compare;

@@ -1,4 +1,4 @@
-//! A yard full of balls and boxes that players push: a game with dozens of touching bodies.
+//! A game with dozens of touching bodies: a yard full of balls and boxes that players push.
 
 use lockstep2d::body::{BodyDef, Geometry, Polygon, ShapeDef, WorldError};
 use lockstep2d::fx;
@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 
 pub(crate) const PLAYERS: u32 = 3;
 
-/// Bodies that can move.
+/// Number of dynamic bodies.
 pub(crate) const BODIES: usize = 60;
 
 pub(crate) struct Yard {
@@ -107,26 +107,26 @@ pub(crate) fn inputs_at(tick: u64, player: u64) -> u8 {
     rng.next_u32().to_le_bytes()[0]
 }
 
-/// When in a tick a bit flips.
+/// Whether a bit flips before or after the step of its tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum When {
     Before,
     After,
 }
 
-/// A bit that flips on the way to a tick, each time that this tick is played.
+/// A bit that flips whenever its tick is simulated.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Flip {
     pub(crate) tick: u64,
     pub(crate) when: When,
-    /// Which of the dynamic bodies.
+    /// Index among the dynamic bodies.
     pub(crate) body: usize,
     pub(crate) motion: Motion,
     pub(crate) bit: u32,
 }
 
 impl Flip {
-    /// Flips the bit, if a body may have that speed.
+    /// Flips the bit and returns the body's path, or `None` if the resulting speed would be out of range.
     pub(crate) fn apply(&self, game: &mut Yard) -> Option<String> {
         let body = game.world.bodies().filter(|(_, body)| body.is_dynamic()).nth(self.body)?.0;
         game.world.flip_bit(body, self.motion, self.bit).ok()?;
@@ -142,7 +142,7 @@ pub(crate) struct Peer {
     replay: Vec<u8>,
     flip: Option<Flip>,
     pub(crate) tick: u64,
-    /// The body whose bit flipped.
+    /// Path of the body whose bit flipped.
     pub(crate) flipped: Option<String>,
 }
 
@@ -155,7 +155,7 @@ impl Peer {
         Peer { game, history, recorder, replay, flip, tick: 0, flipped: None }
     }
 
-    /// Plays a tick that is not confirmed yet.
+    /// Simulates a tick without recording it.
     fn play(&mut self, inputs: &[u8]) {
         let next = self.tick + 1;
         let flip = |when| move |flip: &Flip| flip.tick == next && flip.when == when;
@@ -174,7 +174,8 @@ impl Peer {
         (0..u64::from(PLAYERS)).map(|player| inputs_at(self.tick, player)).collect()
     }
 
-    /// Plays and records a tick, after having played it wrong with guessed inputs now and then.
+    /// Simulates and records a tick; every seventh tick first simulates four ticks with predicted inputs and rolls
+    /// back.
     pub(crate) fn advance(&mut self) {
         let start = self.tick;
         if start % 7 == 3 {

@@ -1,4 +1,4 @@
-//! The bytes of every command and of everything in one, put together by the tables of `docs/FORMAT.md`.
+//! The encodings of every command and of its parts are as the tables of `docs/FORMAT.md` specify.
 
 use lockstep2d::body::{
     BodyDef, BodyId, BodyKind, BodySettings, Continuous, EventSwitches, Filter, Geometry, JointId,
@@ -14,7 +14,7 @@ use lockstep2d::solver::{
 };
 use lockstep2d::world::{Command, Config, Explosion, Place, World};
 
-/// Bytes written by the tables of the document.
+/// Expected bytes, written field by field as in the tables of the document.
 #[derive(Clone, Default)]
 struct Written(Vec<u8>);
 
@@ -34,7 +34,7 @@ impl Written {
         self
     }
 
-    /// World quantities, in halves.
+    /// World quantities, in units of one half.
     fn fx(mut self, halves: &[i64]) -> Self {
         for half in halves {
             self.0.extend((half << 31).to_le_bytes());
@@ -49,7 +49,7 @@ impl Written {
         self
     }
 
-    /// An `Option` of world quantities, in halves.
+    /// An `Option` of world quantities, in units of one half.
     fn some(self, halves: &[i64]) -> Self {
         self.u8(1).fx(halves)
     }
@@ -75,7 +75,7 @@ struct Handles {
     joint: JointId,
 }
 
-/// Handles of a world that has had two bodies with a shape in the same slot, and a joint.
+/// Returns handles of a world in which a second body and shape reuse a slot, with a joint.
 fn handles() -> Result<Handles, WorldError> {
     let mut world = World::default();
     let ball = ShapeDef::new(Geometry::circle(fx!(1))?);
@@ -96,7 +96,7 @@ fn shape_id() -> Written {
     w().u32(0).u32(1)
 }
 
-/// A rounded triangle with something else than the default everywhere.
+/// A rounded triangle in which no setting has its default.
 fn polygon() -> (ShapeDef, Written) {
     let material = Material {
         friction: fx!(0.5),
@@ -147,7 +147,7 @@ fn mass() -> (MassSource, Written) {
     (MassSource::Given { mass: fx!(2), centre, gyration: fx!(0.5) }, w().u32(1).fx(&[4, 2, -1, 1]))
 }
 
-/// A joint of each kind between two bodies, with some of its parts and then the others.
+/// Joints of each kind between two bodies, with different optional parts present.
 fn joints(handles: &Handles) -> Vec<(JointDef, Written)> {
     let (one, two, three) = (fx!(1), fx!(2), fx!(3));
     let distance = Distance::rod(one).limit(one, two).motor(one, two).spring(one, two, three);
@@ -193,7 +193,7 @@ fn geometries() -> [(Geometry, Written); 4] {
     ]
 }
 
-/// Every command, in the order of the document's table.
+/// Returns every command with its bytes, in the order of the document's table.
 fn cases(handles: &Handles) -> Vec<(Command, Written)> {
     let &Handles { body, other, shape, joint } = handles;
     let vector = Vec2::new(fx!(1), fx!(-0.5));

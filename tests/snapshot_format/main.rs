@@ -1,5 +1,5 @@
-//! The bytes of a world and of commands are those of `docs/FORMAT.md`: read here without the engine's decoder, by
-//! what the document says alone.
+//! The bytes of worlds and commands are as `docs/FORMAT.md` specifies: a reader that follows the document, without the
+//! engine's decoder, reads them.
 
 mod commands;
 mod reader;
@@ -14,8 +14,8 @@ use lockstep2d::world::{Config, Section, World};
 
 use reader::Reader;
 
-/// A ball that is pinned where it rests on a line, a capsule that sleeps there, and the used slots of a triangle that is
-/// gone.
+/// A ball pinned by a joint while it rests on a line, a capsule asleep on the line, and the vacant slots of a removed
+/// triangle.
 fn example() -> Result<World, WorldError> {
     let config =
         Config { body_limit: 100, shape_limit: 100, joint_limit: 100, pair_limit: 100, ..Config::default() };
@@ -48,8 +48,8 @@ fn the_bytes_of_a_world_are_those_of_the_document() {
     let (documented, _) = rest.split_once("```").expect("an end of the example");
     assert!(
         documented == reader.listing,
-        "the example in docs/FORMAT.md is no longer what is written. If the layout was meant to change, raise the \
-         format version of snapshots; if the arithmetic was, raise SEMANTICS; then put this there:\n{}",
+        "the example in docs/FORMAT.md differs from the encoding. If the layout change is intended, raise the \
+         format version of snapshots; if the arithmetic changed, raise SEMANTICS; then replace it by:\n{}",
         reader.listing
     );
     assert_eq!(World::from_bytes(&bytes).map(|world| world.state_hash()), Ok(world.state_hash()));
@@ -66,20 +66,20 @@ fn the_state_hash_is_made_of_the_sections() {
         }
         let refused = StateHash::of_bytes(&game.refused().to_le_bytes());
         let expected = hash_of_hashes(&[game.world().state_hash(), refused]);
-        assert_eq!(game.state_hash(), expected, "the sandbox binds its count of refused commands");
+        assert_eq!(game.state_hash(), expected, "the hash must include the count of refused commands");
         scenes.push(game.world().clone());
     }
     for world in scenes {
         let bytes = world.to_bytes();
         let mut reader = Reader::new(&bytes);
         let mut sections = reader.world();
-        // In the bytes, islands come before contacts.
+        // Islands come before contacts in the bytes.
         sections.sort_by_key(|(section, _)| *section);
         let read = World::from_bytes(&bytes).expect("what was written");
-        assert_eq!(read.digest(), world.digest(), "digests do not depend on what has been saved before");
+        assert_eq!(read.digest(), world.digest(), "digests must not depend on earlier saves");
         let digests = world.digest().sections;
         assert!(sections.iter().map(|(section, _)| section).eq(digests.iter().map(|(section, _)| section)));
-        // The other sections are hashed in pages.
+        // Only these two sections are hashed as a whole; the others are hashed in pages.
         for ((section, range), (_, digest)) in sections.into_iter().zip(&digests) {
             if matches!(section, Section::World | Section::Random) {
                 assert_eq!(*digest, StateHash::of_bytes(&bytes[range]), "{section}");

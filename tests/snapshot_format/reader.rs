@@ -1,4 +1,4 @@
-//! A reader of a world's bytes that knows nothing but the tables of `docs/FORMAT.md`.
+//! A reader of a world's bytes that implements only the tables of `docs/FORMAT.md`.
 
 use std::fmt::Display;
 use std::ops::Range;
@@ -6,7 +6,7 @@ use std::ops::Range;
 use lockstep2d::hash::StateHash;
 use lockstep2d::world::Section;
 
-/// Reads a world's bytes from front to back and writes down what each of them is.
+/// Reads a world's bytes from front to back and lists the meaning of each field.
 pub(crate) struct Reader<'a> {
     bytes: &'a [u8],
     at: usize,
@@ -35,7 +35,7 @@ impl<'a> Reader<'a> {
 
     fn number<const N: usize, T: Display + Copy>(&mut self, name: &str, from: fn([u8; N]) -> T) -> T {
         let mut bytes = [0; N];
-        let show = |taken: &[u8]| from(taken.try_into().expect("as many as asked for")).to_string();
+        let show = |taken: &[u8]| from(taken.try_into().expect("as many bytes as requested")).to_string();
         bytes.copy_from_slice(self.take(N, name, show));
         from(bytes)
     }
@@ -64,18 +64,18 @@ impl<'a> Reader<'a> {
         self.number(name, i64::from_le_bytes)
     }
 
-    /// One byte, and the value if it is 1.
+    /// Reads one byte, and the value if the byte is 1.
     fn option(&mut self, name: &str, value: impl FnOnce(&mut Self)) {
         match self.u8(name) {
             0 => {}
             present => {
-                assert_eq!(present, 1, "{name}: 0 or 1");
+                assert_eq!(present, 1, "{name}: expected 0 or 1");
                 value(self);
             }
         }
     }
 
-    /// Fixed-point numbers side by side, of 4 or 8 bytes each.
+    /// Adjacent fixed-point numbers of 4 or 8 bytes each.
     fn fixed(&mut self, name: &str, count: usize, bytes: usize, fraction_bits: u32) {
         self.take(count * bytes, name, |taken| {
             let number = |chunk: &[u8]| {
@@ -311,7 +311,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// The whole file; the result says which bytes each section of the state is.
+    /// Reads the whole file and returns the byte range of each section of the state.
     pub(crate) fn world(&mut self) -> Vec<(Section, Range<usize>)> {
         self.take(8, "magic, LS2DWRLD", |_| String::new());
         assert_eq!(self.u32("format version"), 2);
@@ -344,12 +344,12 @@ impl<'a> Reader<'a> {
         let hash = StateHash::of_bytes(&self.bytes[..self.at]);
         let stored = self.take(16, "hash of all bytes before it", |_| String::new());
         assert_eq!(stored, hash.0.to_le_bytes());
-        assert_eq!(self.at, self.bytes.len(), "nothing follows");
+        assert_eq!(self.at, self.bytes.len(), "expected no bytes after the hash");
         sections
     }
 }
 
-/// `bits / 2^fraction_bits` in decimal with at most six digits after the point, towards zero.
+/// Formats `bits / 2^fraction_bits` in decimal with at most six fractional digits, rounded towards zero.
 fn decimal(bits: i64, fraction_bits: u32) -> String {
     let sign = if bits < 0 { "-" } else { "" };
     let micro = (u128::from(bits.unsigned_abs()) * 1_000_000) >> fraction_bits;

@@ -5,19 +5,19 @@ use std::path::{Path, PathBuf};
 
 /// A text file of this repository.
 pub(crate) struct Source {
-    /// From the root of the repository, with `/` on every system.
+    /// Path relative to the root of the repository, with `/` on every system.
     pub(crate) path: String,
     pub(crate) text: String,
 }
 
-/// A word or a punctuation mark of a Rust file. Comments and the contents of literals are none.
+/// A word or a punctuation mark of a Rust file. Comments and the contents of literals produce no tokens.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Token {
     pub(crate) text: String,
     pub(crate) line: usize,
 }
 
-/// The files below a folder of the repository with one of these extensions (`""` is none), sorted by path.
+/// Returns the files below a folder of the repository with one of these extensions (`""` means none), sorted by path.
 pub(crate) fn files(folder: &str, extensions: &[&str]) -> Vec<Source> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut paths = Vec::new();
@@ -80,7 +80,7 @@ fn token_length(rest: &str, first: char) -> usize {
             let hashes = after_word.len() - after_word.trim_start_matches('#').len();
             let end = format!("\"{}", &after_word[..hashes]);
             let text = after_word[hashes..].strip_prefix('"').map(|text| text.find(&end));
-            // `r#name` is a word.
+            // `r#name` is a raw identifier.
             text.map_or(word, |found| word + hashes + 1 + found.expect("the end of a raw string") + end.len())
         }
         _ if is_word(first) => word,
@@ -103,7 +103,7 @@ fn block_comment(rest: &str) -> usize {
     at
 }
 
-/// Up to and with the closing quote.
+/// Returns the length up to and including the closing quote.
 fn quoted(text: &str, quote: char) -> usize {
     let mut escaped = false;
     for (at, c) in text.char_indices() {
@@ -115,7 +115,7 @@ fn quoted(text: &str, quote: char) -> usize {
     text.len()
 }
 
-/// `'a'` and `'\n'` are literals, `'a` is a lifetime.
+/// Returns the length of a literal such as `'a'` or `'\n'`, or 1 for the quote of a lifetime.
 fn char_or_lifetime(rest: &str) -> usize {
     let mut chars = rest.chars().skip(1);
     match (chars.next(), chars.next()) {

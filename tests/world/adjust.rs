@@ -1,4 +1,4 @@
-//! Changes at run time: what each one does, and that a refused one does nothing.
+//! Changes at run time: each setter has its documented effect, and a refused command changes nothing.
 
 use lockstep2d::body::{
     BodyDef, BodyId, BodyKind, BodySettings, Geometry, MassSource, Material, ShapeDef, ShapeId, WorldError,
@@ -11,7 +11,7 @@ use lockstep2d::world::{Command, Config, World};
 use super::{ball, rectangle, run, shape_of, spawn, square, weightless, world_with_floor};
 
 fn close(a: Fx, b: Fx) {
-    assert!((a - b).abs() < fx!(0.001), "{a} is not {b}");
+    assert!((a - b).abs() < fx!(0.001), "{a} differs from {b}");
 }
 
 #[test]
@@ -26,7 +26,7 @@ fn settings_take_effect() {
     let settings = BodySettings { gravity_scale: fx!(0), linear_damping: fx!(1), ..settings };
     world.set_body(id, &settings).expect("valid");
     run(&mut world, 60);
-    // e^-1 of 5 m/s; the implicit step is a little slower.
+    // e^-1 of 5 m/s; the implicit damping decays slightly more slowly.
     let left = world.body(id).expect("there").velocity().y;
     assert!((left - fx!(1.843)).abs() < fx!(0.01), "{left}");
     world.set_user_data(id, 7).expect("there");
@@ -43,7 +43,7 @@ fn a_given_mass_keeps_place_and_motion() {
     let body = world.body(id).expect("there");
     assert_eq!((body.position(), body.mass()), (Vec2::new(fx!(3), fx!(4)), fx!(10)));
     close(body.angular_velocity(), fx!(2));
-    // The new centre of mass is 0.25 m above the old one, and moves as that point of the body did.
+    // The new centre of mass is 0.25 m above the old one, and gets the velocity of that point of the body.
     close(body.velocity().x, fx!(0.5));
     close(body.velocity_at(Vec2::new(fx!(3), fx!(4))).x, fx!(1));
     world.set_mass(id, MassSource::Shapes).expect("valid");
@@ -71,8 +71,11 @@ fn a_body_changes_its_kind_and_back() {
         (fx!(1), held)
     );
     run(&mut world, 120);
-    assert!(world.body(id).expect("there").position().y < fx!(1), "it has fallen onto the floor");
-    // What the floor held falls with it when it becomes a body like any other.
+    assert!(
+        world.body(id).expect("there").position().y < fx!(1),
+        "expected the box to have fallen onto the floor"
+    );
+    // Once the floor is dynamic, it falls together with the box on it.
     world.set_kind(floor, BodyKind::Dynamic).expect("valid");
     run(&mut world, 60);
     assert!(world.body(floor).expect("there").position().y < fx!(-4));
@@ -104,7 +107,11 @@ fn a_disabled_body_is_not_there_until_it_is_enabled() {
     world.set_geometry(shape_of(&world, id), ball(fx!(0.2)).geometry).expect("valid");
     run(&mut world, 2);
     world.enable(id).expect("there");
-    assert_eq!(world.body(id).expect("there").velocity().x, fx!(1), "it goes on as it was");
+    assert_eq!(
+        world.body(id).expect("there").velocity().x,
+        fx!(1),
+        "expected the velocity from before the body was disabled"
+    );
     run(&mut world, 60);
     close(world.body(id).expect("there").position().y, fx!(0.2));
     let late = spawn(&mut world, BodyDef::dynamic().position(fx!(-9), fx!(5)).disabled(), ball(fx!(0.3)));
@@ -157,14 +164,14 @@ fn a_kinematic_body_goes_where_it_is_told_and_stops() {
     assert_eq!((body.position(), body.angle(), body.velocity()), (place, angle, Vec2::ZERO));
     run(&mut world, 5);
     assert_eq!(world.body(lift).expect("there").position(), place);
-    // A velocity or a teleport takes the place of a target.
+    // Setting a velocity or a transform replaces the target of `move_to`.
     world.move_to(lift, Vec2::ZERO, Angle::ZERO).expect("valid");
     world.set_velocity(lift, Vec2::new(fx!(6), fx!(0)), fx!(0)).expect("valid");
     run(&mut world, 2);
     close(world.body(lift).expect("there").position().x, fx!(0.323));
 }
 
-/// What is pushed by a moved body moves with it.
+/// A dynamic body that is pushed by a kinematic target motion gets the velocity of the pusher.
 #[test]
 fn a_kinematic_body_pushes_on_its_way() {
     let mut world = weightless();
@@ -179,7 +186,7 @@ fn a_kinematic_body_pushes_on_its_way() {
     assert!(body.position().x > fx!(1.97), "{}", body.position().x);
 }
 
-/// A world with one of everything, in which a command is refused.
+/// A world with a body of each kind, a joint and stale handles, in which commands are refused.
 struct Stage {
     world: World,
     floor: BodyId,
@@ -205,17 +212,22 @@ impl Stage {
         Stage { world, floor, lift, ball, gone, gone_shape }
     }
 
-    /// Refused while awake and while asleep; neither the world nor what follows is changed.
+    /// Expects a command to be refused while the ball is awake and while it sleeps, without any effect on the state or
+    /// on the following tick.
     fn refuses(&mut self, command: &Command, matches: fn(&WorldError) -> bool) {
         for _ in 0..2 {
             let mut unasked = self.world.clone();
             let error = self.world.execute(command).expect_err("refused");
-            assert!(matches(&error), "{command:?} gave {error:?}");
+            assert!(matches(&error), "{command:?} was refused with {error:?}");
             assert_eq!(self.world.state_hash(), unasked.state_hash(), "{command:?} has changed the world");
             for world in [&mut self.world, &mut unasked] {
                 run(world, 1);
             }
-            assert_eq!(self.world.state_hash(), unasked.state_hash(), "{command:?} has changed what follows");
+            assert_eq!(
+                self.world.state_hash(),
+                unasked.state_hash(),
+                "{command:?} has changed the next tick"
+            );
             self.world.sleep(self.ball).expect("dynamic");
         }
         self.world.wake(self.ball).expect("there");

@@ -1,4 +1,4 @@
-//! A source of random changes to a small and crowded world: of every kind, valid and not.
+//! Generator of random commands for a small and crowded world: commands of every kind, valid and invalid.
 
 use lockstep2d::body::{
     BodyDef, BodyId, BodyKind, BodySettings, Continuous, EventSwitches, Filter, JointId, MassSource,
@@ -13,7 +13,7 @@ use lockstep2d::world::{Command, Config, Explosion, World};
 
 use super::{ball, capsule, rectangle, square};
 
-/// Random commands for a world.
+/// Generator of random commands.
 #[derive(Clone)]
 pub(crate) struct Churn {
     rng: Rng,
@@ -24,7 +24,7 @@ impl Churn {
         Churn { rng: Rng::new(seed) }
     }
 
-    /// A floor, two walls and a lift, in a world whose settings are drawn, too.
+    /// Creates a world with random settings: a floor, two walls, a sensor, a lift and 15 random bodies.
     pub(crate) fn world(&mut self) -> World {
         let rng = &mut self.rng;
         let config = Config {
@@ -51,7 +51,7 @@ impl Churn {
         world
     }
 
-    /// The commands of a tick: bursts and lulls, so that bodies fall asleep and are woken.
+    /// Returns the commands of a tick, in bursts and lulls, so that bodies fall asleep and are woken.
     pub(crate) fn commands(&mut self, world: &World) -> Vec<Command> {
         let cycle = u64::from(world.config().tick_rate) * 2;
         let count = match world.tick() % cycle < cycle / 4 {
@@ -155,7 +155,7 @@ impl Churn {
         Vec2::new(self.signed(fx!(5)), self.rng.range(fx!(0), fx!(3)))
     }
 
-    /// Mostly upright, so that boxes come to rest.
+    /// Returns an angle that is usually zero, so that boxes come to rest.
     fn angle(&mut self) -> Angle {
         if self.rng.chance(1, 3) { self.rng.angle() } else { Angle::ZERO }
     }
@@ -216,7 +216,7 @@ impl Churn {
         self.changed_shape(shape)
     }
 
-    /// Something about a shape is different, or nothing.
+    /// Returns a shape that differs from `def` in at most one setting.
     fn changed_shape(&mut self, mut def: ShapeDef) -> ShapeDef {
         let rng = &mut self.rng;
         match rng.below(13) {
@@ -240,7 +240,7 @@ impl Churn {
     fn joint(&mut self, world: &World) -> Option<JointDef> {
         let (a, b) = (self.any_body(world)?, self.any_body(world)?);
         let (pose_a, pose_b) = (world.body(a)?.transform(), world.body(b)?.transform());
-        // Where B is, so that nothing is torn.
+        // The anchor is at B's origin, so that the joint starts without an error.
         let anchor = pose_a.apply_inverse(pose_b.apply(Vec2::ZERO));
         let mut def = JointDef::new(a, b, self.joint_kind()).anchor_a(anchor.x, anchor.y);
         if self.rng.chance(1, 3) {

@@ -1,5 +1,5 @@
-//! Whatever is done to the caches, and whichever broad phase finds the pairs, nobody sees a difference: six worlds get
-//! the same changes, and after every tick have the same hash and have told the same events.
+//! Neither the caches nor the choice of broad phase affect results: six worlds receive the same commands, and must have
+//! the same hash and events after every tick.
 
 use lockstep2d::collision::BroadPhaseKind;
 use lockstep2d::world::{Command, ContactEvent, Events, SensorEvent, World};
@@ -7,16 +7,16 @@ use std::collections::BTreeSet;
 
 use super::churn::Churn;
 
-/// What is done to a world between its ticks that must not matter.
+/// A treatment of a world between its ticks that must not affect results.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Way {
     BruteForce,
     SweepAndPrune,
-    /// All caches are dropped before every tick and after every command.
+    /// Clears all caches before every tick and after every command.
     Cleared,
-    /// It is written and read before every tick.
+    /// Encodes and decodes the world before every tick.
     Bytes,
-    /// It is saved, goes astray for three ticks, and is restored.
+    /// Saves the world, simulates three ticks with other commands, and restores it.
     RolledBack,
 }
 
@@ -60,7 +60,7 @@ impl Way {
     }
 }
 
-/// What has begun and not ended.
+/// Contacts and sensor overlaps that have begun and not ended.
 #[derive(Default)]
 struct Open {
     contacts: BTreeSet<ContactEvent>,
@@ -70,36 +70,39 @@ struct Open {
 impl Open {
     fn follow(&mut self, events: &Events) {
         for event in &events.contact_end {
-            assert!(self.contacts.remove(event), "{event:?} ends without having begun");
+            assert!(self.contacts.remove(event), "{event:?} ended without having begun");
         }
         for event in &events.contact_begin {
-            assert!(self.contacts.insert(*event), "{event:?} begins twice");
+            assert!(self.contacts.insert(*event), "{event:?} began twice");
         }
         for event in &events.sensor_end {
-            assert!(self.visits.remove(event), "{event:?} ends without having begun");
+            assert!(self.visits.remove(event), "{event:?} ended without having begun");
         }
         for event in &events.sensor_begin {
-            assert!(self.visits.insert(*event), "{event:?} begins twice");
+            assert!(self.visits.insert(*event), "{event:?} began twice");
         }
     }
 
-    /// Nothing stays open between shapes that are gone.
+    /// Expects that every open contact and overlap is between shapes that exist.
     fn check(&self, world: &World) {
         let ends = self.contacts.iter().flat_map(|event| [event.shape_a, event.shape_b]);
         let ends = ends.chain(self.visits.iter().flat_map(|event| [event.sensor, event.visitor]));
-        ends.for_each(|shape| assert!(world.shape(shape).is_some(), "shape {shape} has left something open"));
+        ends.for_each(|shape| {
+            assert!(world.shape(shape).is_some(), "shape {shape} was removed without end events")
+        });
     }
 }
 
-/// Executes a command on the first world: the invariants hold after it, and a refused one changes nothing.
+/// Executes a command on the first world and expects that the invariants hold and that a refused command changes
+/// nothing.
 fn execute_checked(world: &mut World, command: &Command) {
     let before = world.state_hash();
     let refused = world.execute(command).is_err();
     assert_eq!(world.validate(), Ok(()), "{command:?}");
-    assert!(!refused || world.state_hash() == before, "{command:?} was refused and has changed the world");
+    assert!(!refused || world.state_hash() == before, "{command:?} was refused, but changed the world");
 }
 
-/// How much has happened, so that the test does not pass because nothing did.
+/// Event counts, to prove that the test has covered them.
 #[derive(Debug, Default)]
 struct Seen {
     slept: usize,
@@ -153,7 +156,7 @@ fn nothing_that_is_done_to_the_caches_is_seen() {
     assert!(slept > 300 && woken > 80 && visits > 400 && contacts > 1500 && hits > 400, "{seen:?}");
 }
 
-/// The same for as long as one likes: `SEEDS=1000..3000 cargo test --test world -- --ignored many`.
+/// The same test for a chosen range of seeds: `SEEDS=1000..3000 cargo test --test world -- --ignored many`.
 #[test]
 #[ignore = "takes minutes"]
 fn nothing_that_is_done_to_the_caches_is_seen_with_many_seeds() {

@@ -1,4 +1,4 @@
-//! Events: hits, contacts and moves, in the documented order, and again whenever a tick is simulated again.
+//! Hit, contact and move events, in the documented order, and equal when a tick is simulated again.
 
 use lockstep2d::body::{BodyDef, EventSwitches, ShapeDef};
 use lockstep2d::fx;
@@ -11,7 +11,7 @@ fn hitting(shape: ShapeDef) -> ShapeDef {
     shape.events(EventSwitches { hit: true, ..EventSwitches::default() })
 }
 
-/// All hits of some ticks.
+/// Collects the hits of a number of ticks.
 fn hits(world: &mut World, ticks: u32) -> Vec<HitEvent> {
     let mut hits = Vec::new();
     for _ in 0..ticks {
@@ -34,7 +34,7 @@ fn a_hit_tells_where_how_fast_and_which_way() {
     assert_eq!((hit.shape_a, hit.shape_b), (shape_of(&world, left), shape_of(&world, right)));
     assert!((hit.approach_speed - fx!(9)).abs() < fx!(0.0001), "{}", hit.approach_speed);
     assert!(hit.normal.x > fx!(0.9999) && hit.normal.y.abs() < fx!(0.001), "{:?}", hit.normal);
-    // They meet after 3 m at 9 m/s, when the left one has come 2 m: at x = 0.5, give or take a tick.
+    // They meet after closing 3 m at 9 m/s, when the left ball has moved 2 m: at x = 0.5 m, to within a tick of motion.
     assert!((hit.point.x - fx!(0.5)).abs() < fx!(0.2) && hit.point.y.abs() < fx!(0.01), "{:?}", hit.point);
 }
 
@@ -47,7 +47,11 @@ fn a_hit_on_a_moving_wall_counts_the_wall_and_only_the_normal() {
     let told = hits(&mut world, 60);
     assert_eq!(told.len(), 1);
     assert!((told[0].approach_speed - fx!(5)).abs() < fx!(0.001), "{}", told[0].approach_speed);
-    assert!(told[0].normal.y > fx!(0.9999), "from the wall, which is A: {:?}", told[0].normal);
+    assert!(
+        told[0].normal.y > fx!(0.9999),
+        "expected a normal from the wall, which is A: {:?}",
+        told[0].normal
+    );
 }
 
 #[test]
@@ -60,8 +64,12 @@ fn slow_or_unwanted_hits_are_not_told() {
         hits(&mut world, 120).len()
     };
     assert_eq!(thrown(fx!(2), hitting(ball(fx!(0.5))), fx!(1)), 1);
-    assert_eq!(thrown(fx!(2), ball(fx!(0.5)), fx!(1)), 0, "switched off by default");
-    assert_eq!(thrown(fx!(2), hitting(ball(fx!(0.5))), fx!(2.1)), 0, "below the world's threshold");
+    assert_eq!(thrown(fx!(2), ball(fx!(0.5)), fx!(1)), 0, "hit events are off by default");
+    assert_eq!(
+        thrown(fx!(2), hitting(ball(fx!(0.5))), fx!(2.1)),
+        0,
+        "the speed is below the world's threshold"
+    );
     assert_eq!(thrown(fx!(0.9), hitting(ball(fx!(0.5))), fx!(1)), 0);
 }
 
@@ -81,12 +89,12 @@ fn contact_events_may_be_switched_off_and_on() {
     };
     let (floor, shape) = (rectangle(fx!(5), fx!(1)), square(fx!(0.5)));
     assert_eq!(landing(floor, shape).2, 1);
-    assert_eq!(landing(floor.events(silent), shape).2, 1, "one of them is enough");
+    assert_eq!(landing(floor.events(silent), shape).2, 1, "events of one shape are enough");
     assert_eq!(landing(floor, shape.events(silent)).2, 1);
     let (mut world, id, told) = landing(floor.events(silent), shape.events(silent));
     assert_eq!(told, 0);
 
-    // Switched on, a contact that lasts begins; switched off, it ends.
+    // Switching events on begins an existing contact; switching them off ends it.
     let id = shape_of(&world, id);
     world.set_shape(id, &shape).expect("valid");
     run(&mut world, 1);
@@ -136,7 +144,7 @@ fn lists_are_sorted_and_the_same_when_simulated_again() {
         assert!(told.hits.is_sorted_by_key(pair) && told.moved.is_sorted_by_key(|event| event.body));
         let after = world.state_hash();
         world.restore(&before);
-        assert_eq!(world.events().moved.len(), 0, "a restored world has no last tick");
+        assert_eq!(world.events().moved.len(), 0, "a restored world has no events");
         run(&mut world, 1);
         assert_eq!((world.events(), world.state_hash()), (&told, after));
     }

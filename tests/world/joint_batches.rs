@@ -1,4 +1,4 @@
-//! Joints that are prepared once and then go on from tick to tick, against a world that prepares them anew.
+//! Joint batches that are kept between ticks give the same results as batches that are prepared again every tick.
 
 use lockstep2d::body::{BodyDef, BodyId, BodyKind, MassSource};
 use lockstep2d::fx;
@@ -24,7 +24,7 @@ fn random_kind(rng: &mut Rng) -> JointKind {
     }
 }
 
-/// A net of bodies, some of them fixed or kinematic, with joints of all kinds.
+/// Creates a net of dynamic, kinematic and fixed bodies with joints of all kinds.
 fn net(rng: &mut Rng) -> World {
     let (mut world, floor) = world_with_floor();
     let mut bodies = vec![floor];
@@ -57,7 +57,7 @@ fn given(rng: &mut Rng) -> MassSource {
     MassSource::Given { mass: rng.range(fx!(1), fx!(9)), centre, gyration: rng.range(fx!(0.2), fx!(1)) }
 }
 
-/// One of the changes that joints depend on.
+/// Applies a random change that invalidates prepared joints, and adds a joint.
 fn change(world: &mut World, rng: &mut Rng) {
     let bodies: Vec<BodyId> = world.bodies().map(|(id, _)| id).collect();
     let joints: Vec<_> = world.joints().map(|(id, joint)| (id, *joint.def())).collect();
@@ -92,7 +92,7 @@ fn joints_that_go_on_are_those_that_are_prepared_anew() {
         let mut anew = world.clone();
         let mut saved = world.save();
         for tick in 0..150 {
-            // Between two changes ticks go on from each other.
+            // Without a change, batches of the last tick are reused.
             if rng.below(4) == 0 {
                 let mut same = rng.clone();
                 change(&mut world, &mut rng);

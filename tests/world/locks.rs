@@ -1,4 +1,4 @@
-//! Locked axes and rotations: what cannot move that way does not, and the rest follows theory.
+//! Locked axes and rotations: a locked degree of freedom stays at zero, and the remaining motion follows theory.
 
 use lockstep2d::body::{BodyDef, BodySettings, MotionLocks};
 use lockstep2d::fx;
@@ -7,10 +7,10 @@ use lockstep2d::math::{Angle, Fx, Vec2};
 use super::{ball, rectangle, run, spawn, square, weightless, world_with_floor};
 
 fn close(a: Fx, b: Fx, tolerance: Fx) {
-    assert!((a - b).abs() < tolerance, "{a} is not {b}");
+    assert!((a - b).abs() < tolerance, "{a} differs from {b}");
 }
 
-/// Without rotation, a ball that hits a box of its mass off centre hands over all of its velocity along the normal.
+/// Without rotation, a ball that hits a box of equal mass off centre transfers all of its velocity along the normal.
 #[test]
 fn a_box_that_does_not_turn_takes_the_whole_momentum() {
     let mut world = weightless();
@@ -29,7 +29,7 @@ fn a_box_that_does_not_turn_takes_the_whole_momentum() {
     close(b.velocity().y, fx!(0), fx!(0.001));
 }
 
-/// The same with a box that turns: it takes `2 / (1 / m1 + 1 / m2 + d² / I)` of `v`, and turns.
+/// The box may rotate: the impulse is `2 v / (1 / m1 + 1 / m2 + d² / I)`, and the box turns.
 #[test]
 fn a_box_that_turns_takes_less() {
     let mut world = weightless();
@@ -79,11 +79,11 @@ fn a_locked_axis_holds_whatever_pushes() {
         let end = world.body(id).expect("there").position();
         let (held, free) = if locked_x { (end.x, end.y) } else { (end.y - fx!(3), end.x) };
         assert_eq!(held, Fx::ZERO);
-        assert!(free.abs() > fx!(0.5), "the other axis is free: {free}");
+        assert!(free.abs() > fx!(0.5), "expected motion along the free axis: {free}");
     }
 }
 
-/// A slider between a wall and a ball: the ball bounces off the locked axis as off a wall.
+/// A ball bounces off a body with all axes locked as off a wall.
 #[test]
 fn a_ball_comes_back_from_a_locked_axis() {
     let mut world = weightless();
@@ -93,7 +93,11 @@ fn a_ball_comes_back_from_a_locked_axis() {
     run(&mut world, 120);
     assert_eq!(world.body(post).expect("there").position(), Vec2::ZERO);
     let left = world.body(thrown).expect("there");
-    assert!(left.position().x < fx!(-0.9), "it does not get through: {}", left.position().x);
+    assert!(
+        left.position().x < fx!(-0.9),
+        "expected the ball to stay in front of the post: x = {}",
+        left.position().x
+    );
     assert!(left.velocity().x <= fx!(0.01), "{}", left.velocity().x);
 }
 
@@ -124,5 +128,5 @@ fn locks_may_change_while_it_moves() {
     world.set_body(id, &BodySettings::default()).expect("valid");
     world.apply_angular_impulse(id, fx!(1)).expect("dynamic");
     run(&mut world, 60);
-    assert!(world.body(id).expect("there").angle() != Angle::ZERO, "it turns again");
+    assert!(world.body(id).expect("there").angle() != Angle::ZERO, "expected the body to turn again");
 }

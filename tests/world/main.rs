@@ -1,4 +1,4 @@
-//! The world as its user sees it: sleep, sensors, events, and changes at run time. Each file holds one of them.
+//! Public behaviour of `World`: sleep, sensors, events, snapshots, and changes at run time. One file per subject.
 
 mod adjust;
 mod churn;
@@ -41,7 +41,7 @@ fn world_with_floor() -> (World, BodyId) {
     (world, floor)
 }
 
-/// A world in which nothing falls.
+/// A world without gravity.
 fn weightless() -> World {
     World::new(Config { gravity: Vec2::ZERO, ..Config::default() }).expect("valid")
 }
@@ -58,7 +58,7 @@ fn is_asleep(world: &World, body: BodyId) -> bool {
     world.body(body).expect("there").is_asleep()
 }
 
-/// Steps, checking the invariants after every tick.
+/// Steps, and validates the invariants after every tick.
 fn run(world: &mut World, ticks: u32) {
     for _ in 0..ticks {
         world.step();

@@ -1,4 +1,4 @@
-//! What the phases of a tick leave behind.
+//! Digests after each phase of a tick: equal for equal states, and without effect on the simulation.
 
 use lockstep2d::lockstep::{Game, Sandbox};
 use lockstep2d::scenes::Scene;

@@ -1,4 +1,4 @@
-//! Snapshots: whatever happened between a save and a restore, and whatever they share, the state comes back.
+//! Snapshots: a restore brings back the saved state, whatever happened since and whatever the snapshots share.
 
 use lockstep2d::codec;
 use lockstep2d::collision::BroadPhaseKind;
@@ -12,7 +12,7 @@ use super::churn::Churn;
 use super::{ball, shape_of, spawn, square, weightless, world_with_floor};
 use lockstep2d::body::{BodyDef, Filter};
 
-/// The hash of a world that knows nothing but its bytes.
+/// Decodes a world from its bytes, so that its digest is computed without caches.
 fn recomputed(world: &World) -> World {
     World::from_bytes(&world.to_bytes()).expect("its own bytes")
 }
@@ -20,11 +20,11 @@ fn recomputed(world: &World) -> World {
 fn assert_is(world: &World, saved: &(Snapshot, Vec<u8>), what: &str) {
     let (snapshot, bytes) = saved;
     assert_eq!(world.state_hash(), snapshot.state_hash(), "{what}");
-    assert!(world.to_bytes() == *bytes, "{what}: the bytes are others");
+    assert!(world.to_bytes() == *bytes, "{what}: the encoded bytes differ");
     assert_eq!(world.validate(), Ok(()), "{what}");
 }
 
-/// The cached digest is that of the state after every command and every step, refused or not.
+/// The cached digest equals a recomputed one after every command and every step, refused commands included.
 #[test]
 fn what_is_known_of_a_world_follows_every_change() {
     for seed in 100..108 {
@@ -44,8 +44,8 @@ fn what_is_known_of_a_world_follows_every_change() {
     }
 }
 
-/// Jumps between snapshots that were taken at different times, backwards and forwards, over bodies, shapes and joints that
-/// have come, gone and changed; and goes on from each as from the first time.
+/// Restores random snapshots, earlier and later, across bodies, shapes and joints that were created, destroyed and
+/// changed, and replays the following ticks from each with the same results.
 #[test]
 fn a_world_jumps_between_its_snapshots() {
     for seed in 200..216 {
@@ -77,7 +77,7 @@ fn a_world_jumps_between_its_snapshots() {
                 assert_is(&world, &saves[tick + 1], &format!("seed {seed}, {from} to {tick}"));
             }
         }
-        // Into a world that has never heard of any of this.
+        // Restores into a world with a different history.
         let mut other = world_with_floor().0;
         other.restore(&saves[70].0);
         assert_is(&other, &saves[70], "another world");
@@ -85,8 +85,8 @@ fn a_world_jumps_between_its_snapshots() {
     }
 }
 
-/// Shapes that leave each other out because of their filters are never looked for in pairs. They are again after whatever
-/// gives them other filters.
+/// Shapes whose filters exclude each other are never searched for pairs. A filter change or a restore must bring the
+/// pairs back.
 #[test]
 fn crowds_that_leave_each_other_out_come_back_together() {
     let mut world = weightless();
@@ -120,13 +120,13 @@ fn crowds_that_leave_each_other_out_come_back_together() {
             }
         }
     }
-    // One that is let in collides with its neighbours on both sides.
+    // A single shape with the default filter collides with its neighbours on both sides.
     world.set_filter(ids[20], together).expect("there");
     world.step();
     assert_eq!(world.pair_count(), 2);
 }
 
-/// A snapshot that is saved into again and again is the same as a new one.
+/// Saving into a used snapshot gives the same result as a new snapshot.
 #[test]
 fn a_reused_snapshot_is_as_good_as_new() {
     let mut churn = Churn::new(7);
@@ -149,7 +149,7 @@ fn a_reused_snapshot_is_as_good_as_new() {
     }
 }
 
-/// What is saved of a body, a contact and a joint takes few bytes in every scene, and rolling back eight ticks brings the
+/// Snapshots of every scene are within a byte limit per body, pair and joint, and rolling back eight ticks gives the
 /// same hashes again.
 #[test]
 fn snapshots_of_every_scene_are_small_and_come_back() {
@@ -190,24 +190,24 @@ fn snapshots_go_to_other_threads() {
     sent(&world);
 }
 
-/// The hash does not depend on whether and when a world was saved or hashed.
+/// Random numbers drawn and changes to a clone change the hash; a restore brings the saved hash back.
 #[test]
 fn random_numbers_and_clones_are_hashed_as_they_are() {
     let (mut world, _) = world_with_floor();
     let body = spawn(&mut world, BodyDef::dynamic().position(fx!(0), fx!(3)), square(fx!(0.5)));
     let (before, snapshot) = (world.state_hash(), world.save());
     world.rng().next_u32();
-    assert_ne!(world.state_hash(), before, "a number was drawn");
+    assert_ne!(world.state_hash(), before, "drawing a random number must change the hash");
     let mut twin = world.clone();
     twin.set_user_data(body, 3).expect("there");
-    assert_ne!(twin.state_hash(), world.state_hash(), "the twin is marked");
+    assert_ne!(twin.state_hash(), world.state_hash(), "user data must change the hash");
     twin.set_velocity(body, Vec2::new(fx!(1), fx!(0)), fx!(0)).expect("slow enough");
     twin.restore(&snapshot);
     world.restore(&snapshot);
     assert_eq!((twin.state_hash(), world.state_hash()), (before, before));
 }
 
-/// A snapshot travels as the bytes of its world, and is checked on arrival like these.
+/// Snapshots survive encoding and decoding, and damaged or truncated bytes are refused.
 #[test]
 fn snapshots_come_back_from_their_bytes() {
     for name in ["ragdoll", "game", "box_stack"] {
@@ -232,8 +232,8 @@ fn snapshots_come_back_from_their_bytes() {
         for at in (0..bytes.len() - 8).step_by(bytes.len() / 100) {
             let mut damaged = bytes.clone();
             damaged[at] ^= 1;
-            assert!(codec::decode::<SandboxSave>(&damaged).is_err(), "{name}: byte {at} is another one");
-            assert!(codec::decode::<SandboxSave>(&bytes[..at]).is_err(), "{name}: cut after {at} bytes");
+            assert!(codec::decode::<SandboxSave>(&damaged).is_err(), "{name}: byte {at} was changed");
+            assert!(codec::decode::<SandboxSave>(&bytes[..at]).is_err(), "{name}: truncated to {at} bytes");
         }
     }
 }

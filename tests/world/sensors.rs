@@ -1,4 +1,4 @@
-//! Sensors notice what they overlap and touch nothing.
+//! Sensors report overlaps and never collide.
 
 use lockstep2d::body::{BodyDef, BodyId, EventSwitches, Filter, ShapeDef};
 use lockstep2d::fx;
@@ -7,7 +7,7 @@ use lockstep2d::world::{SensorEvent, World};
 
 use super::{ball, is_asleep, rectangle, run, shape_of, spawn, square, weightless, world_with_floor};
 
-/// Follows how often visits began and ended.
+/// Sensor events collected over several ticks.
 #[derive(Debug, Default, PartialEq)]
 struct Log {
     begun: Vec<SensorEvent>,
@@ -73,7 +73,7 @@ fn a_moving_sensor_notices_all_kinds() {
     }
 }
 
-/// A sensor alone has mass as any other shape; given, it is independent of the sizes here.
+/// A sensor contributes mass like any other shape; a given mass does not depend on the shape's size.
 fn mass() -> lockstep2d::body::MassSource {
     lockstep2d::body::MassSource::Given { mass: fx!(1), centre: Vec2::ZERO, gyration: fx!(1) }
 }
@@ -84,7 +84,11 @@ fn fixed_bodies_and_sensors_are_not_noticed() {
     spawn(&mut world, BodyDef::fixed(), zone());
     spawn(&mut world, BodyDef::fixed(), ball(fx!(0.25)));
     spawn(&mut world, BodyDef::dynamic().velocity(fx!(0.1), fx!(0)).mass(mass()), zone());
-    assert_eq!(Log::of(&mut world, 5).counts(), (1, 0), "only the ball, by the sensor that moves");
+    assert_eq!(
+        Log::of(&mut world, 5).counts(),
+        (1, 0),
+        "expected one event, of the ball in the moving sensor"
+    );
 }
 
 #[test]
@@ -99,27 +103,27 @@ fn kinematic_visitors_are_noticed_wherever_they_stop() {
     assert_eq!(Log::of(&mut world, 10), Log::default());
     for _ in 0..2 {
         world.move_to(visitor, inside, Angle::ZERO).expect("valid");
-        assert_eq!(Log::of(&mut world, 10), begin, "moved there");
+        assert_eq!(Log::of(&mut world, 10), begin, "moved inside");
         world.move_to(visitor, outside, Angle::ZERO).expect("valid");
-        assert_eq!(Log::of(&mut world, 10), end, "moved away");
+        assert_eq!(Log::of(&mut world, 10), end, "moved outside");
         world.set_transform(visitor, inside, Angle::ZERO).expect("valid");
-        assert_eq!(Log::of(&mut world, 10), begin, "put there");
+        assert_eq!(Log::of(&mut world, 10), begin, "teleported inside");
         world.set_transform(visitor, outside, Angle::ZERO).expect("valid");
-        assert_eq!(Log::of(&mut world, 10), end, "put elsewhere");
+        assert_eq!(Log::of(&mut world, 10), end, "teleported outside");
         world.set_transform(sensor, outside, Angle::ZERO).expect("valid");
-        assert_eq!(Log::of(&mut world, 10), begin, "the sensor is put over it");
+        assert_eq!(Log::of(&mut world, 10), begin, "the sensor was teleported over the visitor");
         world.set_transform(sensor, inside, Angle::ZERO).expect("valid");
-        assert_eq!(Log::of(&mut world, 10), end, "and back");
+        assert_eq!(Log::of(&mut world, 10), end, "the sensor was teleported back");
     }
     world.despawn(visitor).expect("there");
     let inside = spawn(&mut world, BodyDef::kinematic(), ball(fx!(0.25)));
     let event = visit(&world, sensor, inside);
-    assert_eq!(Log::of(&mut world, 10).begun, [event], "spawned there");
+    assert_eq!(Log::of(&mut world, 10).begun, [event], "spawned inside");
     world.set_kind(inside, lockstep2d::body::BodyKind::Fixed).expect("valid");
-    assert_eq!(Log::of(&mut world, 10).ended, [event], "fixed bodies do not notice each other");
+    assert_eq!(Log::of(&mut world, 10).ended, [event], "a pair of fixed bodies has no sensor events");
 }
 
-/// A box asleep on the floor inside a sensor.
+/// Creates a box asleep on the floor inside a sensor.
 fn sleeper_inside() -> (World, BodyId, BodyId, SensorEvent) {
     let (mut world, _) = world_with_floor();
     let sensor = spawn(&mut world, BodyDef::kinematic().position(fx!(0), fx!(1.3)), zone());
@@ -135,7 +139,7 @@ fn a_sleeping_visitor_stays_inside() {
     let (mut world, _, visitor, event) = sleeper_inside();
     assert_eq!(Log::of(&mut world, 30), Log::default());
     world.wake(visitor).expect("there");
-    assert_eq!(Log::of(&mut world, 60), Log::default(), "waking is no event");
+    assert_eq!(Log::of(&mut world, 60), Log::default(), "waking causes no sensor event");
     world.set_velocity(visitor, Vec2::new(fx!(0), fx!(9)), fx!(0)).expect("valid");
     assert_eq!(Log::of(&mut world, 20).ended, [event]);
 }
@@ -190,7 +194,7 @@ fn a_sensor_that_becomes_solid_pushes() {
     assert_eq!((world.events().sensor_end.len(), world.events().contact_begin.len()), (1, 1));
     run(&mut world, 120);
     let x = world.body(visitor).expect("there").position().x;
-    assert!(x > fx!(1.48), "pushed out to {x}");
+    assert!(x > fx!(1.48), "expected the box to be pushed out; x = {x}");
     world.set_shape(shape, &solid.sensor()).expect("valid");
     run(&mut world, 1);
     assert_eq!(world.events().contact_end.len(), 1);
@@ -210,8 +214,8 @@ fn filters_and_switches_hide_from_sensors() {
     assert_eq!(noticed(zone(), ball(fx!(0.2)).events(hidden)), 0);
     assert_eq!(noticed(zone().filter(Filter { mask: 1, ..other }), ball(fx!(0.2)).filter(other)), 0);
     assert_eq!(noticed(zone().filter(Filter { mask: 2, ..other }), ball(fx!(0.2)).filter(other)), 1);
-    // Switches of contacts say nothing about sensors.
+    // Contact and hit switches do not affect sensors.
     let silent = EventSwitches { contact: false, hit: false, sensor: true };
     assert_eq!(noticed(zone().events(silent), ball(fx!(0.2)).events(silent)), 1);
-    assert_eq!(noticed(zone(), rectangle(fx!(30), Fx::ONE)), 1, "one that is larger than the sensor");
+    assert_eq!(noticed(zone(), rectangle(fx!(30), Fx::ONE)), 1, "a visitor larger than the sensor");
 }

@@ -1,4 +1,4 @@
-//! Sleep: what rests stops, costs nothing, and is woken by whatever concerns it.
+//! Sleeping: bodies at rest fall asleep, are not simulated, and wake whenever something affects them.
 
 use lockstep2d::body::{BodyDef, BodyId, BodySettings, Filter};
 use lockstep2d::fx;
@@ -8,7 +8,7 @@ use lockstep2d::world::{Config, Section, World};
 
 use super::{ball, is_asleep, rectangle, run, shape_of, spawn, square, world_with_floor};
 
-/// Three boxes on top of each other on a floor, the lowest first, asleep.
+/// Creates a stack of three boxes asleep on a floor, the lowest first.
 fn sleeping_stack() -> (World, BodyId, [BodyId; 3]) {
     let (mut world, floor) = world_with_floor();
     let boxes = [fx!(0.5), fx!(1.5), fx!(2.5)]
@@ -18,7 +18,7 @@ fn sleeping_stack() -> (World, BodyId, [BodyId; 3]) {
     (world, floor, boxes)
 }
 
-/// All of the stack wakes, at once or in the next tick, and after a second or three sleeps again unless it fell.
+/// Applies a change to a sleeping stack, and expects all of its boxes to be awake after one tick.
 fn wakes(change: impl FnOnce(&mut World, BodyId, [BodyId; 3])) -> World {
     let (mut world, floor, boxes) = sleeping_stack();
     change(&mut world, floor, boxes);
@@ -30,12 +30,12 @@ fn wakes(change: impl FnOnce(&mut World, BodyId, [BodyId; 3])) -> World {
     world
 }
 
-/// Nothing that a user could see changes, and nothing is simulated.
+/// Expects that ticks change nothing but the tick counter, and simulate no bodies.
 fn assert_still(world: &mut World, ticks: u32) {
     let before = world.digest();
     let places: Vec<_> = world.bodies().map(|(_, body)| (body.position(), body.angle())).collect();
     run(world, ticks);
-    assert_eq!(before.differing(&world.digest()), [Section::World], "only the tick has changed");
+    assert_eq!(before.differing(&world.digest()), [Section::World], "expected only the tick to change");
     let after: Vec<_> = world.bodies().map(|(_, body)| (body.position(), body.angle())).collect();
     assert_eq!(places, after);
     assert_eq!((world.stats().bodies, world.stats().pairs, world.stats().contacts), (0, 0, 0));
@@ -54,7 +54,7 @@ fn a_stack_sleeps_after_half_a_second_at_rest() {
         run(&mut world, 1);
         told.extend(world.events().moved.iter().filter(|event| event.fell_asleep).map(|event| event.body));
     }
-    assert_eq!(told, [lower, upper], "both at once, and once");
+    assert_eq!(told, [lower, upper], "expected both bodies to fall asleep once");
     assert_eq!(world.awake_body_count(), 0);
     let island = world.body(lower).expect("there").island();
     assert_eq!(island, world.body(upper).expect("there").island());
@@ -108,7 +108,7 @@ fn a_support_that_goes_wakes_what_rests_on_it() {
         let mut world = world;
         run(&mut world, 60);
         let highest = world.bodies().filter(|(_, body)| body.is_dynamic()).map(|(_, b)| b.position().y).max();
-        assert!(highest.expect("some") < fx!(0), "they fall through");
+        assert!(highest.expect("some") < fx!(0), "expected the stack to fall");
     };
     fell(wakes(|world, floor, _| world.despawn(floor).expect("there")));
     fell(wakes(|world, floor, _| world.remove_shape(shape(world, floor)).expect("there")));
@@ -124,7 +124,7 @@ fn a_support_that_goes_wakes_what_rests_on_it() {
         let def = world.shape(id).expect("there").def().sensor();
         world.set_shape(id, &def).expect("valid");
     }));
-    // What remains of the stack wakes when its lowest box is gone.
+    // The remaining boxes wake when the lowest one is despawned.
     wakes(|world, _, [lowest, ..]| world.despawn(lowest).expect("there"));
 }
 
@@ -136,9 +136,9 @@ fn a_body_that_comes_wakes_what_it_touches() {
         run(&mut world, 1);
         !is_asleep(&world, boxes[0])
     });
-    // 2.7 m of fall take 0.73 s.
+    // A fall of 2.7 m takes 0.73 s.
     assert!(woken.is_some_and(|tick| (40..46).contains(&tick)), "{woken:?}");
-    assert!(boxes.iter().all(|id| !is_asleep(&world, *id)), "together");
+    assert!(boxes.iter().all(|id| !is_asleep(&world, *id)), "expected the whole stack to wake");
 }
 
 #[test]
@@ -149,7 +149,7 @@ fn a_body_that_passes_by_wakes_nothing() {
     assert!(boxes.iter().all(|id| is_asleep(&world, *id)));
 }
 
-/// A box asleep on a kinematic platform.
+/// Creates a box asleep on a kinematic platform.
 fn sleeper_on_platform() -> (World, BodyId, BodyId) {
     let mut world = World::default();
     let platform = spawn(&mut world, BodyDef::kinematic(), rectangle(fx!(3), fx!(0.5)));
@@ -163,7 +163,7 @@ fn sleeper_on_platform() -> (World, BodyId, BodyId) {
 fn a_platform_that_begins_to_move_wakes_its_rider_and_keeps_it_awake() {
     for by_target in [false, true] {
         let (mut world, platform, rider) = sleeper_on_platform();
-        // Slower than what counts as rest.
+        // Below the sleep speed.
         let creep = fx!(0.03);
         for tick in 1..=120 {
             if by_target {
@@ -179,11 +179,11 @@ fn a_platform_that_begins_to_move_wakes_its_rider_and_keeps_it_awake() {
         assert!((carried - fx!(0.06)).abs() < fx!(0.005), "{carried}");
         world.set_velocity(platform, Vec2::ZERO, fx!(0)).expect("valid");
         run(&mut world, 60);
-        assert!(is_asleep(&world, rider), "at rest again");
+        assert!(is_asleep(&world, rider), "expected the box to sleep again");
     }
 }
 
-/// A pendulum at rest under a kinematic or fixed anchor.
+/// A pendulum at rest under a kinematic or fixed anchor wakes when the anchor moves or is disabled.
 #[test]
 fn what_hangs_from_a_body_wakes_when_it_moves() {
     let hung = |anchor: BodyDef| {
@@ -244,7 +244,7 @@ fn each_body_has_its_own_threshold() {
     assert!(!is_asleep(&world, lively) && is_asleep(&world, sleepy) && !is_asleep(&world, never));
     world.set_velocity(never, Vec2::ZERO, fx!(0)).expect("valid");
     run(&mut world, 60);
-    assert!(!is_asleep(&world, never), "not even at rest");
+    assert!(!is_asleep(&world, never), "a sleep speed of 0 must prevent sleep, even at rest");
 }
 
 #[test]
@@ -273,7 +273,10 @@ fn a_body_may_be_put_to_sleep_in_the_air_with_all_that_it_touches() {
     assert!(world.sleep(floor).is_err());
     world.wake(boxes[0]).expect("there");
     world.sleep(boxes[2]).expect("dynamic");
-    assert!(boxes.iter().all(|id| is_asleep(&world, *id)), "also before the next tick");
+    assert!(
+        boxes.iter().all(|id| is_asleep(&world, *id)),
+        "expected the whole stack to sleep before the next tick"
+    );
     world.wake(boxes[0]).expect("there");
     world = World::from_bytes(&world.to_bytes()).expect("its own bytes");
     run(&mut world, 2);
@@ -284,7 +287,7 @@ fn a_body_may_be_put_to_sleep_in_the_air_with_all_that_it_touches() {
     assert_eq!(world.validate(), Ok(()));
 }
 
-/// Each domino sleeps for itself, and all of them wake in the tick in which the first is touched.
+/// Each domino sleeps in its own island, and all of them wake in the tick in which the first one is set in motion.
 #[test]
 fn a_row_of_sleepers_wakes_in_one_tick() {
     let mut world = super::weightless();
