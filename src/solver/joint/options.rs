@@ -62,6 +62,33 @@ impl Soft {
     }
 }
 
+/// Builder methods of a joint: each sets the optional field of its own name to the value after the arrow, which is made of
+/// the method's arguments.
+macro_rules! option_builders {
+    ($($(#[$doc:meta])* $field:ident($($argument:ident),+) => $value:expr;)+) => {
+        $(
+            $(#[$doc])*
+            #[must_use]
+            pub const fn $field(mut self, $($argument: Fx),+) -> Self {
+                self.$field = Some($value);
+                self
+            }
+        )+
+    };
+}
+pub(super) use option_builders;
+
+/// Checks the options that most joints have, or names the first that is out of range.
+pub(super) fn check_options(
+    limit: Option<Limit>,
+    motor: Option<Drive>,
+    spring: Option<Spring>,
+) -> Result<(), WorldError> {
+    Limit::check(limit)?;
+    Drive::check(motor)?;
+    Spring::check(spring)
+}
+
 /// Checks that what a joint has is in range, or names it.
 pub(super) fn check(in_range: bool, what: &'static str) -> Result<(), WorldError> {
     if in_range { Ok(()) } else { Err(WorldError::JointOutOfRange { what }) }
