@@ -311,6 +311,34 @@ pub(super) mod samples {
         core(rng).moved(to_grid(vector(rng, spread)))
     }
 
+    /// The distance along a path of `length` metres at which something on it reaches a surface, within 2e-7 m, or `None`.
+    /// `gap_at` gives its distance from the surface, which is as far as it may go on without passing it. A path that passes
+    /// within 2e-6 m of the surface without reaching it is undecided.
+    pub(in crate::collision) fn march(
+        length: Fx,
+        mut gap_at: impl FnMut(Fx) -> Fx,
+    ) -> Result<Option<Fx>, ()> {
+        let (mut travelled, mut nearest) = (Fx::ZERO, Fx::MAX);
+        for _ in 0..2000 {
+            let gap = gap_at(travelled);
+            nearest = nearest.min(gap);
+            if gap < fx!(0.0000002) {
+                return Ok(Some(travelled));
+            }
+            travelled += gap;
+            if travelled > length {
+                return if nearest < fx!(0.000002) { Err(()) } else { Ok(None) };
+            }
+        }
+        Err(())
+    }
+
+    /// The points whose coordinates are at an edge of the world or of their format.
+    pub(in crate::collision) fn extremes() -> impl Iterator<Item = Vec2<Fx>> {
+        let ends = [Fx::MIN, fx!(-1073741824), fx!(1073741824), Fx::MAX];
+        ends.into_iter().flat_map(move |x| ends.map(|y| Vec2::new(x, y)))
+    }
+
     /// The points as world vectors.
     pub(in crate::collision) fn world_points(core: &Core) -> Vec<Vec2<Fx>> {
         core.points().iter().map(|&point| from_grid(point)).collect()
