@@ -4,6 +4,7 @@ use std::fmt;
 use std::io::Write;
 
 use anstyle::{AnsiColor, Style};
+use serde::Serialize;
 
 use crate::error::CommandError;
 
@@ -25,6 +26,11 @@ impl Console<'_> {
         self.out.write_all(format!("{line}\n").as_bytes()).map_err(CommandError::Output)
     }
 
+    /// Writes a result as one JSON document.
+    pub(crate) fn json(&mut self, document: &impl Serialize) -> Result<(), CommandError> {
+        self.line(json_text(document))
+    }
+
     /// Writes a line that is no result, such as a summary beside machine-readable output.
     pub(crate) fn note(&mut self, note: impl fmt::Display) {
         // When not even messages can be written, there is nowhere left to say so.
@@ -40,4 +46,9 @@ impl Console<'_> {
     pub(crate) fn error(&mut self, error: impl fmt::Display) {
         self.note(format_args!("{BAD}error:{BAD:#} {error}"));
     }
+}
+
+/// A value of strings and numbers as JSON.
+pub(crate) fn json_text(value: &impl Serialize) -> String {
+    serde_json::to_string(value).expect("strings and numbers have a JSON form")
 }

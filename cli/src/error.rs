@@ -2,14 +2,13 @@
 
 use std::fmt;
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use lockstep2d::inspect::InspectError;
 use lockstep2d::replay::{KeyframesError, RecordError, SeekError, Verdict};
 use lockstep2d::report::{CompareError, EvidenceError, TraceError};
 
 use crate::exit::Exit;
-
 use crate::files::{EXTENSION, Shown};
 
 /// Why a command had to stop.
@@ -62,6 +61,21 @@ pub(crate) enum CommandError {
 }
 
 impl CommandError {
+    /// Makes an error of what went wrong in reading the file at `path`.
+    pub(crate) fn read(path: &Path) -> impl Fn(io::Error) -> Self {
+        move |error| CommandError::Read { path: path.to_path_buf(), error }
+    }
+
+    /// Makes an error of what went wrong in writing the file at `path`.
+    pub(crate) fn write(path: &Path) -> impl Fn(io::Error) -> Self {
+        move |error| CommandError::Write { path: path.to_path_buf(), error }
+    }
+
+    /// Makes an error of a verdict on the replay at `path`, or of why there is none.
+    pub(crate) fn replay<V: Into<Verdict>>(path: &Path) -> impl Fn(V) -> Self {
+        move |verdict| CommandError::Replay { path: path.to_path_buf(), verdict: verdict.into() }
+    }
+
     /// How a command that stops for this ends.
     pub(crate) fn exit(&self) -> Exit {
         match self {

@@ -30,14 +30,9 @@ pub(crate) fn read_from(stream: impl Read, expected: u64, bytes_max: u64) -> io:
     Ok(bytes)
 }
 
-/// The bytes of a file that a command cannot do without; see [`read`].
-pub(crate) fn load(path: &Path, bytes_max: u64) -> Result<Vec<u8>, CommandError> {
-    read(path, bytes_max).map_err(|error| CommandError::Read { path: path.to_path_buf(), error })
-}
-
 /// Writes a file.
 pub(crate) fn save(path: &Path, bytes: &[u8]) -> Result<(), CommandError> {
-    fs::write(path, bytes).map_err(|error| CommandError::Write { path: path.to_path_buf(), error })
+    fs::write(path, bytes).map_err(CommandError::write(path))
 }
 
 /// A path for a line of text: a name with a line break in it must not pass for a line of its own.

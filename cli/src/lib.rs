@@ -30,7 +30,9 @@
 
 mod commands;
 mod console;
+mod context;
 mod counts;
+mod draft;
 mod energy;
 mod error;
 mod exit;

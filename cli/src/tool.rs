@@ -4,14 +4,14 @@ use std::ffi::OsString;
 use std::io::{IsTerminal, Write};
 use std::process::ExitCode;
 
-use clap::{ArgMatches, Command, FromArgMatches, Subcommand};
+use clap::{ArgMatches, Command};
 use lockstep2d::draw::View;
 use lockstep2d::lockstep::Game;
 use lockstep2d::replay::Limits;
 
-use crate::commands::{Common, OfScenes};
+use crate::commands::{Row, table};
 use crate::console::Console;
-use crate::error::CommandError;
+use crate::context::{CommandResult, Context};
 use crate::exit::Exit;
 use crate::scenes::Catalogue;
 
@@ -95,52 +95,51 @@ impl<G: Game> Tool<G> {
         self.run_on(arguments, Console { out, err, is_terminal: false })
     }
 
-    fn run_on<A>(&self, arguments: impl IntoIterator<Item = A>, mut console: Console<'_>) -> Exit
+    fn run_on<'a, A>(&'a self, arguments: impl IntoIterator<Item = A>, mut console: Console<'a>) -> Exit
     where
         A: Into<OsString> + Clone,
     {
-        let matches = match self.command().try_get_matches_from(arguments) {
+        let table = table(self.catalogue.is_some());
+        let matches = match self.command(&table).try_get_matches_from(arguments) {
             Ok(matches) => matches,
             Err(usage) => return explain(&usage, &mut console),
         };
-        match self.dispatch(&matches, &mut console) {
+        let mut context = Context { tool: self, console };
+        match self.dispatch(&matches, &table, &mut context) {
             Ok(exit) => exit,
             Err(error) => {
                 if !error.is_reader_gone() {
-                    console.error(&error);
+                    context.console.error(&error);
                 }
                 error.exit()
             }
         }
     }
 
-    fn command(&self) -> Command {
+    fn command(&self, table: &[Row<G>]) -> Command {
         let rules = G::RULES;
         let engine = lockstep2d::SEMANTICS;
-        let mut command = Common::augment_subcommands(Command::new(rules.name));
-        if self.catalogue.is_some() {
-            command = OfScenes::augment_subcommands(command);
-        }
-        let command = command
+        Command::new(rules.name)
             .about(format!("Tools for the replays of {}", rules.name))
             .version(format!("rules version {}, engine semantics {engine}", rules.version))
             .subcommand_required(true)
-            .arg_required_else_help(true);
-        command.subcommands(self.own.iter().map(|(own, _)| own.clone()))
+            .arg_required_else_help(true)
+            .subcommands(table.iter().map(|row| &row.command))
+            .subcommands(self.own.iter().map(|(own, _)| own))
     }
 
-    fn dispatch(&self, matches: &ArgMatches, console: &mut Console<'_>) -> Result<Exit, CommandError> {
+    fn dispatch(
+        &self,
+        matches: &ArgMatches,
+        table: &[Row<G>],
+        context: &mut Context<'_, G>,
+    ) -> CommandResult {
         let Some((name, of_command)) = matches.subcommand() else { return Ok(Exit::Trouble) };
         if let Some((_, run)) = self.own.iter().find(|(own, _)| own.get_name() == name) {
             return Ok(run(of_command));
         }
-        let described = "clap matched what these types describe";
-        match &self.catalogue {
-            Some(catalogue) if OfScenes::has_subcommand(name) => {
-                OfScenes::from_arg_matches(matches).expect(described).run(catalogue.as_ref(), console)
-            }
-            _ => Common::from_arg_matches(matches).expect(described).run(self, console),
-        }
+        let row = table.iter().find(|row| row.command.get_name() == name);
+        (row.expect("clap matched a command of the table").run)(of_command, context)
     }
 }
 

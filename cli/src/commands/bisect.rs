@@ -4,13 +4,11 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use lockstep2d::lockstep::Game;
-use lockstep2d::replay::Limits;
 use lockstep2d::report::bisect;
 
-use super::diff::{self, json, text};
-use crate::console::Console;
+use super::diff;
+use crate::context::{CommandResult, Context};
 use crate::error::CommandError;
-use crate::exit::Exit;
 
 /// Find the tick, its stage, the body and the field in which a course leaves another
 #[derive(Args, Debug)]
@@ -27,27 +25,14 @@ pub(crate) struct Arguments {
     a: PathBuf,
     /// What to compare it with, instead of this program
     b: Option<PathBuf>,
-    /// Print one JSON document, with all that differs
-    #[arg(long)]
-    json: bool,
-    /// How many of the bodies and other things that differ to show
-    #[arg(long, default_value_t = 10, value_name = "N")]
-    things: usize,
+    #[command(flatten)]
+    printed: diff::Printed,
 }
 
-pub(crate) fn run<G: Game>(
-    arguments: &Arguments,
-    limits: &Limits,
-    console: &mut Console<'_>,
-) -> Result<Exit, CommandError> {
-    let a = diff::read(&arguments.a, limits)?;
-    let b = arguments.b.as_ref().map(|b| diff::read(b, limits)).transpose()?;
-    let found = bisect::<G>(&a, b.as_ref(), limits).map_err(CommandError::Compare)?;
+pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) -> CommandResult {
+    let a = diff::read(&arguments.a, context)?;
+    let b = arguments.b.as_ref().map(|b| diff::read(b, context)).transpose()?;
+    let found = bisect::<G>(&a, b.as_ref(), context.limits()).map_err(CommandError::Compare)?;
     let other = arguments.b.as_deref().unwrap_or(Path::new("this program"));
-    if arguments.json {
-        console.line(json::document(&arguments.a, other, &found))?;
-    } else {
-        console.line(text::Text { found: &found, sides: [&arguments.a, other], things: arguments.things })?;
-    }
-    Ok(if found.is_equal() { Exit::Success } else { Exit::NoMatch })
+    arguments.printed.print(&found, [&arguments.a, other], &mut context.console)
 }

@@ -4,16 +4,15 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use lockstep2d::lockstep::Game;
-use lockstep2d::replay::Limits;
-use lockstep2d::report::{Evidence, compare};
+use lockstep2d::report::{Comparison, Evidence, compare};
 
 use crate::console::Console;
+use crate::context::{CommandResult, Context};
 use crate::error::CommandError;
 use crate::exit::Exit;
-use crate::files;
 
 pub(super) mod json;
-pub(super) mod text;
+mod text;
 
 /// Say in what two reports, replays or snapshots differ first, and who departed
 #[derive(Args, Debug)]
@@ -27,6 +26,13 @@ pub(crate) struct Arguments {
     a: PathBuf,
     /// What to compare it with
     b: PathBuf,
+    #[command(flatten)]
+    printed: Printed,
+}
+
+/// How to print a comparison.
+#[derive(Args, Debug)]
+pub(super) struct Printed {
     /// Print one JSON document, with all that differs
     #[arg(long)]
     json: bool,
@@ -35,23 +41,32 @@ pub(crate) struct Arguments {
     things: usize,
 }
 
-pub(crate) fn run<G: Game>(
-    arguments: &Arguments,
-    limits: &Limits,
-    console: &mut Console<'_>,
-) -> Result<Exit, CommandError> {
-    let (a, b) = (read(&arguments.a, limits)?, read(&arguments.b, limits)?);
-    let found = compare::<G>(&a, &b, limits).map_err(CommandError::Compare)?;
-    if arguments.json {
-        console.line(json::document(&arguments.a, &arguments.b, &found))?;
-    } else {
-        let sides = [arguments.a.as_path(), arguments.b.as_path()];
-        console.line(text::Text { found: &found, sides, things: arguments.things })?;
+impl Printed {
+    /// Prints what two files, A first, differ in.
+    pub(super) fn print(
+        &self,
+        found: &Comparison,
+        sides: [&Path; 2],
+        console: &mut Console<'_>,
+    ) -> CommandResult {
+        if self.json {
+            console.line(json::document(sides, found))?;
+        } else {
+            console.line(text::Text { found, sides, things: self.things })?;
+        }
+        Ok(if found.is_equal() { Exit::Success } else { Exit::NoMatch })
     }
-    Ok(if found.is_equal() { Exit::Success } else { Exit::NoMatch })
 }
 
-pub(super) fn read(path: &Path, limits: &Limits) -> Result<Evidence, CommandError> {
-    let bytes = files::load(path, limits.file_bytes)?;
-    Evidence::read(bytes, limits).map_err(|error| CommandError::Evidence { path: path.to_path_buf(), error })
+pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) -> CommandResult {
+    let (a, b) = (read(&arguments.a, context)?, read(&arguments.b, context)?);
+    let found = compare::<G>(&a, &b, context.limits()).map_err(CommandError::Compare)?;
+    arguments.printed.print(&found, [&arguments.a, &arguments.b], &mut context.console)
+}
+
+/// Reads a file that can be compared with another one.
+pub(super) fn read<G: Game>(path: &Path, context: &Context<'_, G>) -> Result<Evidence, CommandError> {
+    let bytes = context.load(path)?;
+    Evidence::read(bytes, context.limits())
+        .map_err(|error| CommandError::Evidence { path: path.to_path_buf(), error })
 }

@@ -6,14 +6,13 @@ use clap::Args;
 use lockstep2d::draw::{Layers, View};
 use lockstep2d::lockstep::Game;
 use lockstep2d::math::Aabb;
-use lockstep2d::replay::{Limits, Playback, Verdict};
+use lockstep2d::replay::{Limits, Playback};
 use lockstep2d::report::Evidence;
 use lockstep2d::world::World;
 
 use crate::console::Console;
+use crate::context::{CommandResult, Context};
 use crate::error::CommandError;
-use crate::exit::Exit;
-use crate::files;
 
 mod animation;
 mod format;
@@ -72,20 +71,12 @@ pub(crate) struct Arguments {
     window: Option<Aabb>,
 }
 
-/// How a game wants to be seen.
-pub(crate) type ViewOf<G> = fn(&G) -> View;
-
-pub(crate) fn run<G: Game>(
-    arguments: &Arguments,
-    view: Option<ViewOf<G>>,
-    limits: &Limits,
-    console: &mut Console<'_>,
-) -> Result<Exit, CommandError> {
+pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) -> CommandResult {
     let format = arguments.formats.chosen(arguments.output.as_deref())?;
     arguments.check(format)?;
-    let bytes = files::load(&arguments.file, limits.file_bytes)?;
+    let (bytes, limits) = (context.load(&arguments.file)?, context.limits());
     if let Ok(Evidence::World(world)) = Evidence::read(bytes.clone(), limits) {
-        return export_world(&world, format, arguments, console);
+        return export_world(&world, format, arguments, &mut context.console);
     }
     let mut replay = Replay::<G>::open(&bytes, arguments, limits)?;
     match format {
@@ -93,20 +84,18 @@ pub(crate) fn run<G: Game>(
             let tick = arguments.tick.unwrap_or(replay.playback.ticks());
             replay.check(tick)?;
             replay.play_to(tick)?;
-            let view = arguments.view(replay.view(view));
-            still::write(replay.world()?, &view, format, arguments, console)
+            let view = arguments.view(replay.view(context.tool.view));
+            still::write(replay.world()?, &view, format, arguments, &mut context.console)
         }
-        Format::Gif | Format::Apng => {
-            animation::write(&bytes, replay, view, format, (arguments, limits), console)
-        }
+        Format::Gif | Format::Apng => animation::write(&bytes, replay, format, arguments, context),
         Format::Json => {
             let (first, last) = replay.range(arguments)?;
             let every = arguments.every.unwrap_or(1);
-            Output::write(arguments.output.as_deref(), console, |output| {
+            Output::write(arguments.output.as_deref(), &mut context.console, |output| {
                 json::write(replay, (first..=last).step_by(every as usize), output)
             })
         }
-        Format::Plot => plot::write(replay, arguments, console),
+        Format::Plot => plot::write(replay, arguments, &mut context.console),
     }
 }
 
@@ -115,7 +104,7 @@ fn export_world(
     format: Format,
     arguments: &Arguments,
     console: &mut Console<'_>,
-) -> Result<Exit, CommandError> {
+) -> CommandResult {
     if arguments.tick.is_some_and(|tick| tick != world.tick()) {
         return Err(CommandError::NothingThere { what: "other tick than its own".into() });
     }
@@ -172,8 +161,7 @@ struct Replay<'a, G: Game> {
 impl<'a, G: Game> Replay<'a, G> {
     fn open(bytes: &'a [u8], arguments: &'a Arguments, limits: &Limits) -> Result<Self, CommandError> {
         let path = &arguments.file;
-        let refused = |verdict| CommandError::Replay { path: path.clone(), verdict };
-        Ok(Replay { playback: Playback::open(bytes, limits).map_err(refused)?, path })
+        Ok(Replay { playback: Playback::open(bytes, limits).map_err(CommandError::replay(path))?, path })
     }
 
     /// The first and the last tick that are asked for.
@@ -197,14 +185,13 @@ impl<'a, G: Game> Replay<'a, G> {
 
     /// Plays on until after `tick` ticks.
     fn play_to(&mut self, tick: u64) -> Result<(), CommandError> {
-        let refused = |verdict: Verdict| CommandError::Replay { path: self.path.clone(), verdict };
         while self.playback.tick() < tick {
-            self.playback.step().map_err(refused)?;
+            self.playback.step().map_err(CommandError::replay(self.path))?;
         }
         Ok(())
     }
 
-    fn view(&self, view: Option<ViewOf<G>>) -> View {
+    fn view(&self, view: Option<fn(&G) -> View>) -> View {
         view.map_or_else(View::default, |view| view(self.playback.game()))
     }
 

@@ -9,7 +9,7 @@ use lockstep2d::lockstep::Game;
 use lockstep2d::replay::Limits;
 use serde::Serialize;
 
-use crate::console::Console;
+use crate::context::{CommandResult, Context};
 use crate::error::CommandError;
 use crate::exit::Exit;
 use crate::files::{self, Shown};
@@ -44,12 +44,8 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
-pub(crate) fn run<G: Game>(
-    arguments: &Arguments,
-    limits: &Limits,
-    console: &mut Console<'_>,
-) -> Result<Exit, CommandError> {
-    let bytes = files::load(&arguments.file, limits.file_bytes)?;
+pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) -> CommandResult {
+    let (bytes, limits) = (context.load(&arguments.file)?, context.limits());
     let of_file = |error: CopyError| error.of_file(&arguments.file);
     let mut copy = Copy::<G>::new(&bytes, arguments.tick, limits).map_err(of_file)?;
     let kept = copy.ticks();
@@ -74,10 +70,12 @@ pub(crate) fn run<G: Game>(
     if arguments.json {
         let file = arguments.output.display().to_string();
         let line = Line { file, ticks, kept, added, hash: hash.to_string() };
-        console.line(serde_json::to_string(&line).expect("strings and numbers have a JSON form"))?;
+        context.console.json(&line)?;
     } else {
         let (old, new) = (Shown(&arguments.file), Shown(&arguments.output));
-        console.line(format_args!("{new}: {kept} ticks of {old} and {added} more, final hash {hash}"))?;
+        context
+            .console
+            .line(format_args!("{new}: {kept} ticks of {old} and {added} more, final hash {hash}"))?;
     }
     Ok(Exit::Success)
 }
@@ -93,16 +91,16 @@ struct Line {
 
 /// Plays a tick for each line of inputs.
 fn play_lines<G: Game>(copy: &mut Copy<G>, path: &Path, limits: &Limits) -> Result<(), CommandError> {
-    let read_error = |error| CommandError::Read { path: path.to_path_buf(), error };
+    let read_error = CommandError::read(path);
     let source: Box<dyn Read> = if path == Path::new("-") {
         Box::new(io::stdin().lock())
     } else {
-        Box::new(File::open(path).map_err(read_error)?)
+        Box::new(File::open(path).map_err(&read_error)?)
     };
     // JSON takes some ten times the bytes that inputs have in a replay.
     let lines = BufReader::new(source.take(limits.file_bytes.saturating_mul(16))).lines();
     for (number, line) in (1..).zip(lines) {
-        let line = line.map_err(read_error)?;
+        let line = line.map_err(&read_error)?;
         if line.trim().is_empty() {
             continue;
         }

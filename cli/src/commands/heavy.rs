@@ -1,7 +1,6 @@
 //! `heavy`: plays a replay and, at every tick, takes the game through bytes into a new one that plays on beside it.
 
 use std::fmt;
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -11,7 +10,8 @@ use lockstep2d::replay::{Limits, TickInputs};
 use serde_json::{Value as Json, json};
 
 use super::diff;
-use crate::console::{BAD, Console, GOOD};
+use crate::console::{BAD, GOOD};
+use crate::context::{CommandResult, Context};
 use crate::error::CommandError;
 use crate::exit::Exit;
 use crate::files::{self, Shown};
@@ -48,13 +48,9 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
-pub(crate) fn run<G: Game>(
-    arguments: &Arguments,
-    limits: &Limits,
-    console: &mut Console<'_>,
-) -> Result<Exit, CommandError> {
+pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) -> CommandResult {
     let path = || arguments.file.clone();
-    let bytes = files::load(&arguments.file, limits.file_bytes)?;
+    let (bytes, limits) = (context.load(&arguments.file)?, context.limits());
     let result = match check_replay::<G>(&bytes, &options(arguments, limits)) {
         Ok(checked) if checked.ticks < arguments.from.max(arguments.to.unwrap_or(0)) => {
             let tick = arguments.from.max(arguments.to.unwrap_or(0));
@@ -66,14 +62,13 @@ pub(crate) fn run<G: Game>(
         Err(CheckError::Record(error)) => return Err(CommandError::Record(error)),
     };
     if let (Err(failure), Some(output)) = (&result, &arguments.output) {
-        fs::write(output, &failure.replay)
-            .map_err(|error| CommandError::Write { path: output.clone(), error })?;
+        files::save(output, &failure.replay)?;
     }
     let outcome = Outcome { arguments, result: result.as_ref().map_err(AsRef::as_ref) };
     if arguments.json {
-        console.line(outcome.document())?;
+        context.console.line(outcome.document())?;
     } else {
-        console.line(&outcome)?;
+        context.console.line(&outcome)?;
     }
     Ok(if result.is_ok() { Exit::Success } else { Exit::NoMatch })
 }

@@ -6,12 +6,11 @@ use clap::Args;
 use lockstep2d::codec;
 use lockstep2d::inspect::fields;
 use lockstep2d::lockstep::Game;
-use lockstep2d::replay::{Limits, Playback};
+use lockstep2d::replay::Playback;
 use lockstep2d::report::{DesyncReport, Evidence, EvidenceError};
 
-use crate::console::Console;
+use crate::context::{CommandResult, Context};
 use crate::error::CommandError;
-use crate::exit::Exit;
 use crate::files;
 
 mod replay;
@@ -51,31 +50,28 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
-pub(crate) fn run<G: Game>(
-    arguments: &Arguments,
-    limits: &Limits,
-    console: &mut Console<'_>,
-) -> Result<Exit, CommandError> {
-    let bytes = files::load(&arguments.file, limits.file_bytes)?;
+pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) -> CommandResult {
+    let bytes = context.load(&arguments.file)?;
     let path = || arguments.file.clone();
-    match Evidence::read(bytes.clone(), limits) {
+    match Evidence::read(bytes.clone(), context.limits()) {
         Ok(Evidence::Replay(bytes)) if arguments.wants_state() => {
-            state_of_replay::<G>(&bytes, arguments, limits)?.print(arguments, console)
+            state_of_replay(&bytes, arguments, context)?.print(arguments, &mut context.console)
         }
         Ok(Evidence::Report(report)) if arguments.wants_state() => {
-            state_of_report::<G>(&report, arguments, limits)?.print(arguments, console)
+            state_of_report(&report, arguments, context)?.print(arguments, &mut context.console)
         }
         Ok(Evidence::World(world)) if arguments.wants_state() => {
             let fields = fields(&world.save())?;
             State { tick: Some(world.tick()), hash: Some(world.state_hash()), fields }
-                .print(arguments, console)
+                .print(arguments, &mut context.console)
         }
-        Ok(Evidence::Replay(bytes)) => replay::print::<G>(&bytes, arguments, limits, console),
-        Ok(Evidence::Report(report)) => report::print::<G>(&report, arguments, limits, console),
-        Ok(Evidence::World(world)) => world::print(&world, bytes.len(), arguments, console),
+        Ok(Evidence::Replay(bytes)) => replay::print(&bytes, arguments, context),
+        Ok(Evidence::Report(report)) => report::print(&report, arguments, context),
+        Ok(Evidence::World(world)) => world::print(&world, bytes.len(), arguments, &mut context.console),
         Err(error @ EvidenceError::Unknown) => match codec::decode::<G::Save>(&bytes) {
             Ok(save) if codec::encode(&save) == bytes => {
-                State { tick: None, hash: None, fields: fields(&save)? }.print(arguments, console)
+                State { tick: None, hash: None, fields: fields(&save)? }
+                    .print(arguments, &mut context.console)
             }
             _ => Err(CommandError::Evidence { path: path(), error }),
         },
@@ -93,16 +89,16 @@ impl Arguments {
 fn state_of_replay<G: Game>(
     bytes: &[u8],
     arguments: &Arguments,
-    limits: &Limits,
+    context: &Context<'_, G>,
 ) -> Result<State, CommandError> {
-    let refused = |verdict| CommandError::Replay { path: arguments.file.clone(), verdict };
-    let mut playback = Playback::<G>::open(bytes, limits).map_err(refused)?;
+    let refused = CommandError::replay(&arguments.file);
+    let mut playback = Playback::<G>::open(bytes, context.limits()).map_err(&refused)?;
     let (tick, ticks) = (arguments.tick.unwrap_or(0), playback.ticks());
     if tick > ticks {
         return Err(CommandError::NoSuchTick { path: arguments.file.clone(), tick, ticks });
     }
     while playback.tick() < tick {
-        playback.step().map_err(refused)?;
+        playback.step().map_err(&refused)?;
     }
     let fields = fields(&playback.game().save())?;
     Ok(State { tick: Some(tick), hash: Some(playback.game().state_hash()), fields })
@@ -112,7 +108,7 @@ fn state_of_replay<G: Game>(
 fn state_of_report<G: Game>(
     report: &DesyncReport,
     arguments: &Arguments,
-    limits: &Limits,
+    context: &Context<'_, G>,
 ) -> Result<State, CommandError> {
     let tick = arguments.tick.unwrap_or(report.tick());
     let saved = report.saves().iter().find(|(saved, _)| *saved == tick);
@@ -120,7 +116,7 @@ fn state_of_report<G: Game>(
         if report.replay().is_empty() {
             return Err(CommandError::NothingThere { what: format!("state of tick {tick}") });
         }
-        return state_of_replay::<G>(report.replay(), arguments, limits);
+        return state_of_replay(report.replay(), arguments, context);
     };
     let save: G::Save =
         codec::decode(save).map_err(|error| CommandError::State { why: error.to_string() })?;

@@ -1,17 +1,18 @@
 //! `seek`: goes to a tick of a replay, and back from there.
 
-use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, value_parser};
 use lockstep2d::codec;
 use lockstep2d::lockstep::Game;
-use lockstep2d::replay::{KEYFRAMES_BYTES_MAX, Limits, SeekError, Timeline, TimelineOptions};
+use lockstep2d::replay::{KEYFRAMES_BYTES_MAX, SeekError, Timeline, TimelineOptions};
 use serde::Serialize;
 
 use crate::console::Console;
+use crate::context::{CommandResult, Context};
 use crate::counts::Counts;
+use crate::draft;
 use crate::error::CommandError;
 use crate::exit::Exit;
 use crate::files::{self, Shown};
@@ -50,22 +51,18 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
-pub(crate) fn run<G: Game>(
-    arguments: &Arguments,
-    limits: &Limits,
-    console: &mut Console<'_>,
-) -> Result<Exit, CommandError> {
-    let bytes = files::load(&arguments.file, limits.file_bytes)?;
+pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) -> CommandResult {
+    let bytes = context.load(&arguments.file)?;
     let options = TimelineOptions { interval: arguments.interval, ..TimelineOptions::default() };
-    let mut timeline = Timeline::<G>::open(&bytes, &options, limits)
-        .map_err(|verdict| CommandError::Replay { path: arguments.file.clone(), verdict })?;
+    let mut timeline = Timeline::<G>::open(&bytes, &options, context.limits())
+        .map_err(CommandError::replay(&arguments.file))?;
     if let Some(path) = &arguments.keyframes {
         use_keyframes(&mut timeline, path)?;
     }
     let known = timeline.keyframes().count();
     let result = go(&mut timeline, arguments);
     if let Some(path) = arguments.keyframes.as_ref().filter(|_| timeline.keyframes().count() != known) {
-        replace(path, &timeline.keyframes_to_bytes())?;
+        draft::replace(path, &timeline.keyframes_to_bytes())?;
     }
     let (there, back) = result?;
 
@@ -83,9 +80,9 @@ pub(crate) fn run<G: Game>(
         keyframe_interval: timeline.interval(),
     };
     if arguments.json {
-        console.line(serde_json::to_string(&found).expect("strings and numbers have a JSON form"))?;
+        context.console.json(&found)?;
     } else {
-        found.print(arguments, console)?;
+        found.print(arguments, &mut context.console)?;
     }
     Ok(Exit::Success)
 }
@@ -115,20 +112,11 @@ fn use_keyframes<G: Game>(timeline: &mut Timeline<'_, G>, path: &Path) -> Result
     let bytes = match files::read(path, (KEYFRAMES_BYTES_MAX + (1 << 20)) as u64) {
         Ok(bytes) => bytes,
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(()),
-        Err(error) => return Err(CommandError::Read { path: path.to_path_buf(), error }),
+        Err(error) => return Err(CommandError::read(path)(error)),
     };
     timeline
         .use_keyframes(&bytes)
         .map_err(|error| CommandError::Keyframes { path: path.to_path_buf(), error })
-}
-
-/// Writes a file in one piece: whoever is interrupted leaves the old one.
-fn replace(path: &Path, bytes: &[u8]) -> Result<(), CommandError> {
-    let mut unfinished = path.to_path_buf().into_os_string();
-    unfinished.push(".unfinished");
-    let unfinished = PathBuf::from(unfinished);
-    files::save(&unfinished, bytes)?;
-    fs::rename(&unfinished, path).map_err(|error| CommandError::Write { path: path.to_path_buf(), error })
 }
 
 /// What there is at a tick, and what it has cost to go there.

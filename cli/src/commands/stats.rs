@@ -5,13 +5,14 @@ use std::path::PathBuf;
 use clap::Args;
 use lockstep2d::hash::StateHash;
 use lockstep2d::lockstep::Game;
-use lockstep2d::replay::{Limits, Playback, Step};
+use lockstep2d::replay::{Playback, Step};
 
 use crate::console::Console;
+use crate::context::{CommandResult, Context};
 use crate::error::CommandError;
 use crate::exit::Exit;
 use crate::figures;
-use crate::files::{self, Shown};
+use crate::files::Shown;
 
 /// Play a replay and say how much there was in each tick
 #[derive(Args, Debug)]
@@ -29,14 +30,10 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
-pub(crate) fn run<G: Game>(
-    arguments: &Arguments,
-    limits: &Limits,
-    console: &mut Console<'_>,
-) -> Result<Exit, CommandError> {
-    let refused = |verdict| CommandError::Replay { path: arguments.file.clone(), verdict };
-    let bytes = files::load(&arguments.file, limits.file_bytes)?;
-    let mut playback = Playback::<G>::open(&bytes, limits).map_err(refused)?;
+pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) -> CommandResult {
+    let refused = CommandError::replay(&arguments.file);
+    let bytes = context.load(&arguments.file)?;
+    let mut playback = Playback::<G>::open(&bytes, context.limits()).map_err(&refused)?;
     let mut summary = Summary::default();
     let failed = loop {
         let work_before = playback.work();
@@ -48,15 +45,15 @@ pub(crate) fn run<G: Game>(
         let mut figures = vec![("work", playback.work() - work_before)];
         figures.extend(playback.world().into_iter().flat_map(figures::of));
         if arguments.json {
-            console.line(line(playback.tick(), playback.game().state_hash(), &figures))?;
+            context.console.line(line(playback.tick(), playback.game().state_hash(), &figures))?;
         }
         summary.add(playback.tick(), &figures);
     };
     if !arguments.json {
         let (file, ticks) = (Shown(&arguments.file), summary.ticks);
         let hash = playback.game().state_hash();
-        console.line(format_args!("{file}: {ticks} ticks, state {hash}"))?;
-        summary.print(console)?;
+        context.console.line(format_args!("{file}: {ticks} ticks, state {hash}"))?;
+        summary.print(&mut context.console)?;
     }
     failed.map_or(Ok(Exit::Success), |verdict| Err(refused(verdict)))
 }

@@ -4,10 +4,9 @@ use std::path::PathBuf;
 
 use clap::Args;
 use lockstep2d::lockstep::Game;
-use lockstep2d::replay::Limits;
 use lockstep2d::report::Trace;
 
-use crate::console::Console;
+use crate::context::{CommandResult, Context};
 use crate::error::CommandError;
 use crate::exit::Exit;
 use crate::files::{self, Shown};
@@ -32,19 +31,15 @@ pub(crate) struct Arguments {
     output: PathBuf,
 }
 
-pub(crate) fn run<G: Game>(
-    arguments: &Arguments,
-    limits: &Limits,
-    console: &mut Console<'_>,
-) -> Result<Exit, CommandError> {
+pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) -> CommandResult {
     let Arguments { file, to, ticks, output } = arguments;
-    let bytes = files::load(file, limits.file_bytes)?;
-    let traced = Trace::<G>::of_replay(&bytes, limits, to.unwrap_or(u64::MAX), *ticks);
+    let bytes = context.load(file)?;
+    let traced = Trace::<G>::of_replay(&bytes, context.limits(), to.unwrap_or(u64::MAX), *ticks);
     let report = traced.map_err(|error| CommandError::Trace { path: file.clone(), error })?;
     files::save(output, &report.to_bytes())?;
     let (known, left_out) = (report.history().len(), report.saves_left_out());
     let first = report.history().first().map_or(0, |(tick, _)| *tick);
-    console.line(format_args!(
+    context.console.line(format_args!(
         "{}: ticks {first} to {}, {} of {known} states",
         Shown(output),
         report.tick(),

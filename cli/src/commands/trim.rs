@@ -7,7 +7,8 @@ use lockstep2d::lockstep::Game;
 use lockstep2d::replay::{Limits, Part, ReadError, Reader, Verdict};
 use serde::Serialize;
 
-use crate::console::{Console, DOUBTFUL};
+use crate::console::DOUBTFUL;
+use crate::context::{CommandResult, Context};
 use crate::error::CommandError;
 use crate::exit::Exit;
 use crate::files::{self, Shown};
@@ -35,15 +36,9 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
-pub(crate) fn run<G: Game>(
-    arguments: &Arguments,
-    limits: &Limits,
-    console: &mut Console<'_>,
-) -> Result<Exit, CommandError> {
-    let bytes = files::load(&arguments.file, limits.file_bytes)?;
-    let refused =
-        |error: ReadError| CommandError::Replay { path: arguments.file.clone(), verdict: error.into() };
-    let (whole, damage) = whole_part(&bytes, limits).map_err(refused)?;
+pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) -> CommandResult {
+    let (bytes, limits) = (context.load(&arguments.file)?, context.limits());
+    let (whole, damage) = whole_part(&bytes, limits).map_err(CommandError::replay(&arguments.file))?;
     let most = arguments.ticks.unwrap_or(u64::MAX);
     let of_file = |error: CopyError| error.of_file(&arguments.file);
     let (copy, damage) = match Copy::<G>::new(whole, most, limits) {
@@ -62,12 +57,12 @@ pub(crate) fn run<G: Game>(
         let file = arguments.output.display().to_string();
         let line =
             Line { file, ticks, hash: hash.to_string(), left_out: damage.map(|verdict| verdict.to_string()) };
-        console.line(serde_json::to_string(&line).expect("strings and numbers have a JSON form"))?;
+        context.console.json(&line)?;
     } else {
         let (old, new) = (Shown(&arguments.file), Shown(&arguments.output));
-        console.line(format_args!("{new}: {ticks} ticks of {old}, final hash {hash}"))?;
+        context.console.line(format_args!("{new}: {ticks} ticks of {old}, final hash {hash}"))?;
         if let Some(verdict) = damage {
-            console.note(format_args!("{DOUBTFUL}left out:{DOUBTFUL:#} {old}: {verdict}"));
+            context.console.note(format_args!("{DOUBTFUL}left out:{DOUBTFUL:#} {old}: {verdict}"));
         }
     }
     Ok(Exit::Success)

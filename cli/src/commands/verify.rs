@@ -12,6 +12,7 @@ use lockstep2d::lockstep::Game;
 use lockstep2d::replay::Limits;
 
 use crate::console::{BAD, Console, DOUBTFUL, GOOD};
+use crate::context::{CommandResult, Context};
 use crate::error::CommandError;
 use crate::exit::Exit;
 use crate::files::{self, OneLine, Shown};
@@ -92,21 +93,14 @@ impl LimitArguments {
     }
 }
 
-pub(crate) fn run<G: Game>(
-    arguments: &Arguments,
-    limits: &Limits,
-    console: &mut Console<'_>,
-) -> Result<Exit, CommandError> {
-    let limits = arguments.limits.over(limits);
-    let open = |folder: &PathBuf| {
-        let unwritable = |error| CommandError::Write { path: folder.clone(), error };
-        Cache::open(folder, G::RULES, &limits).map_err(unwritable)
-    };
+pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) -> CommandResult {
+    let limits = arguments.limits.over(context.limits());
+    let open = |folder: &PathBuf| Cache::open(folder, G::RULES, &limits).map_err(CommandError::write(folder));
     let cache = arguments.cache.as_ref().map(open).transpose()?;
     let verifier = Verifier { judge: judge::judge::<G>, cache, limits, shared: Shared::default() };
     let jobs = arguments.jobs.map_or_else(processors, usize::from);
     let tasks = Tasks::new(&arguments.paths, arguments.shard);
-    let mut display = Display::new(arguments.json, console, &verifier.shared);
+    let mut display = Display::new(arguments.json, &mut context.console, &verifier.shared);
     pool::in_order(
         jobs,
         tasks,
@@ -141,10 +135,7 @@ struct Verified {
 
 impl Verifier {
     fn verify(&self, path: PathBuf) -> Result<Verified, CommandError> {
-        let bytes = match self.read(&path) {
-            Ok(bytes) => bytes,
-            Err(error) => return Err(CommandError::Read { path, error }),
-        };
+        let bytes = self.read(&path).map_err(CommandError::read(&path))?;
         let Some(cache) = &self.cache else {
             let report = (self.judge)(&bytes, &self.limits, &self.shared);
             return Ok(Verified { path, report, cached: false, unkept: None });
@@ -226,7 +217,7 @@ impl<'a, 'c> Display<'a, 'c> {
         if let Some(error) = unkept.as_ref().filter(|_| !self.is_cache_failing) {
             // Once is enough: what fails for one file fails for the others.
             self.is_cache_failing = true;
-            let warning = format!("the cache keeps nothing: {error}");
+            let warning = format!("verdicts cannot be cached: {error}");
             self.progress.aside(|| self.console.warning(warning));
         }
         self.progress.aside(|| match self.json {
@@ -235,7 +226,7 @@ impl<'a, 'c> Display<'a, 'c> {
         })
     }
 
-    fn finish(mut self) -> Result<Exit, CommandError> {
+    fn finish(mut self) -> CommandResult {
         self.progress.finish();
         self.totals.elapsed = self.clock.elapsed();
         if self.json {

@@ -6,7 +6,7 @@ use lockstep2d::inspect::{Difference, Value};
 use lockstep2d::report::{Blame, Comparison, Course, Group, Side, Thing};
 use serde_json::{Value as Json, json};
 
-pub(in crate::commands) fn document(a: &Path, b: &Path, found: &Comparison) -> String {
+pub(super) fn document([a, b]: [&Path; 2], found: &Comparison) -> String {
     let thing = |thing: &Thing| json!({"path": thing.path, "section": thing.section, "fields": fields(&thing.differences)});
     let things: Vec<Json> = found.things.iter().map(thing).collect();
     let began: Vec<Json> = found.began.iter().map(thing).collect();
@@ -61,7 +61,7 @@ fn blame(blame: Blame) -> &'static str {
 }
 
 /// Fields that differ, with both values.
-pub(crate) fn fields(differences: &[Difference]) -> Vec<Json> {
+pub(in crate::commands) fn fields(differences: &[Difference]) -> Vec<Json> {
     let field = |difference: &Difference| {
         json!({
             "path": difference.field().path(),

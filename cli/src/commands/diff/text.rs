@@ -10,10 +10,10 @@ use crate::console::{BAD, DOUBTFUL, GOOD};
 use crate::files::Shown;
 
 /// A comparison, and of how many things it shows how they differ.
-pub(in crate::commands) struct Text<'a> {
-    pub(in crate::commands) found: &'a Comparison,
-    pub(in crate::commands) sides: [&'a Path; 2],
-    pub(in crate::commands) things: usize,
+pub(super) struct Text<'a> {
+    pub(super) found: &'a Comparison,
+    pub(super) sides: [&'a Path; 2],
+    pub(super) things: usize,
 }
 
 impl fmt::Display for Text<'_> {

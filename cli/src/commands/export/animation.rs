@@ -4,15 +4,13 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use lockstep2d::draw::{Frame, View, fit};
 use lockstep2d::lockstep::Game;
 use lockstep2d::math::Aabb;
-use lockstep2d::replay::Limits;
 use lockstep2d_picture::{Animation, DrawList, Image, Pace};
 
 use super::format::Format;
 use super::still::image;
-use super::{Arguments, Output, Replay, ViewOf};
-use crate::console::Console;
+use super::{Arguments, Output, Replay};
+use crate::context::{CommandResult, Context};
 use crate::error::CommandError;
-use crate::exit::Exit;
 
 /// Unless someone says otherwise, an animation has no more frames a second: more are hard to see.
 const FRAME_RATE_MAX: u32 = 30;
@@ -32,20 +30,19 @@ const SAMPLES_OF_A_PICTURE: usize = 10;
 pub(super) fn write<G: Game>(
     bytes: &[u8],
     mut replay: Replay<'_, G>,
-    view: Option<ViewOf<G>>,
     format: Format,
-    (arguments, limits): (&Arguments, &Limits),
-    console: &mut Console<'_>,
-) -> Result<Exit, CommandError> {
+    arguments: &Arguments,
+    context: &mut Context<'_, G>,
+) -> CommandResult {
     let frames = Frames::of(&replay, arguments)?;
     if format == Format::Gif && frames.pace.ticks.saturating_mul(GIF_RATE_MAX) < frames.pace.tick_rate {
-        console.warning("more than 50 frames a second: most programs show such a GIF slowly");
+        context.console.warning("more than 50 frames a second: most programs show such a GIF slowly");
     }
-    let progress = Progress::new(console.is_terminal, frames.count);
-    let mut camera = Camera::new(&mut replay, view, arguments)?;
+    let progress = Progress::new(context.console.is_terminal, frames.count);
+    let mut camera = Camera::new(&mut replay, context.tool.view, arguments)?;
     let samples = camera.look_at(&mut replay, &frames)?;
-    let mut replay = Replay::<G>::open(bytes, arguments, limits)?;
-    Output::write(arguments.output.as_deref(), console, |output| {
+    let mut replay = Replay::<G>::open(bytes, arguments, context.limits())?;
+    Output::write(arguments.output.as_deref(), &mut context.console, |output| {
         let (to, failed) = output.parts();
         let mut animation = match format {
             Format::Apng => Animation::apng(to, frames.pace, frames.count),
@@ -76,10 +73,7 @@ impl Frames {
         let (first, last) = replay.range(arguments)?;
         let tick_rate = replay.playback.game().tick_rate();
         let ticks = arguments.every.unwrap_or_else(|| tick_rate.div_ceil(FRAME_RATE_MAX).max(1));
-        let Some(span) = last.checked_sub(first) else {
-            return Err(CommandError::NothingThere { what: format!("tick from {first} to {last}") });
-        };
-        let count = u32::try_from(span / u64::from(ticks) + 1).unwrap_or(u32::MAX);
+        let count = u32::try_from((last - first) / u64::from(ticks) + 1).unwrap_or(u32::MAX);
         Ok(Frames { first, last, pace: Pace { ticks, tick_rate }, count })
     }
 
@@ -99,7 +93,7 @@ impl Frames {
 
 /// Which part of the world is shown, in which size.
 struct Camera<'a, G: Game> {
-    view: Option<ViewOf<G>>,
+    view: Option<fn(&G) -> View>,
     arguments: &'a Arguments,
     size: (u32, u32),
     /// Unless the game or the arguments say it. It stands still.
@@ -110,7 +104,7 @@ impl<'a, G: Game> Camera<'a, G> {
     /// All frames are as large as the first. Its sides are those of the game's own picture, unless the arguments say it.
     fn new(
         replay: &mut Replay<'_, G>,
-        view: Option<ViewOf<G>>,
+        view: Option<fn(&G) -> View>,
         arguments: &'a Arguments,
     ) -> Result<Self, CommandError> {
         replay.world()?;

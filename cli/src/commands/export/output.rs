@@ -1,10 +1,12 @@
 //! [`Output`]: where results go, which in a file are whole or not there.
 
-use std::fs::{self, File};
+use std::fs::File;
 use std::io::{self, BufWriter, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use crate::console::Console;
+use crate::context::CommandResult;
+use crate::draft::Draft;
 use crate::error::CommandError;
 use crate::exit::Exit;
 
@@ -21,14 +23,14 @@ impl Output<'_> {
         path: Option<&Path>,
         console: &mut Console<'_>,
         write: impl FnOnce(&mut Output<'_>) -> Result<(), CommandError>,
-    ) -> Result<Exit, CommandError> {
+    ) -> CommandResult {
         let Some(path) = path else {
             write(&mut Output { to: console.out, path: None })?;
             return Ok(Exit::Success);
         };
         let draft = Draft::of(path);
-        let failed = |error| CommandError::Write { path: path.to_path_buf(), error };
-        let mut buffer = BufWriter::new(File::create(&draft.at).map_err(failed)?);
+        let failed = CommandError::write(path);
+        let mut buffer = BufWriter::new(File::create(&draft.at).map_err(&failed)?);
         write(&mut Output { to: &mut buffer, path: Some(path) })?;
         let file = buffer.into_inner().map_err(|error| failed(error.into_error()))?;
         drop(file);
@@ -49,41 +51,7 @@ impl Output<'_> {
 
 fn explain(path: Option<&Path>, error: io::Error) -> CommandError {
     match path {
-        Some(path) => CommandError::Write { path: path.to_path_buf(), error },
+        Some(path) => CommandError::write(path)(error),
         None => CommandError::Output(error),
-    }
-}
-
-/// A file that is being written, gone with the value unless it was published.
-struct Draft {
-    at: PathBuf,
-    is_own: bool,
-}
-
-impl Draft {
-    fn of(path: &Path) -> Self {
-        // What is no file, such as /dev/stdout, cannot be replaced by one.
-        let is_own = !fs::metadata(path).is_ok_and(|there| !there.is_file());
-        let mut at = path.to_path_buf().into_os_string();
-        if is_own {
-            at.push(".unfinished");
-        }
-        Draft { at: at.into(), is_own }
-    }
-
-    fn publish(mut self, path: &Path) -> io::Result<()> {
-        if self.is_own {
-            fs::rename(&self.at, path)?;
-            self.is_own = false;
-        }
-        Ok(())
-    }
-}
-
-impl Drop for Draft {
-    fn drop(&mut self) {
-        if self.is_own {
-            let _ = fs::remove_file(&self.at);
-        }
     }
 }

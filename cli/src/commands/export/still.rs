@@ -7,8 +7,7 @@ use lockstep2d_picture::{Colour, DrawList, Image, page, raster};
 use super::format::Format;
 use super::{Arguments, Output};
 use crate::console::Console;
-use crate::error::CommandError;
-use crate::exit::Exit;
+use crate::context::CommandResult;
 
 /// Writes a picture of a world as an SVG document, or else as a PNG file.
 pub(super) fn write(
@@ -17,7 +16,7 @@ pub(super) fn write(
     format: Format,
     arguments: &Arguments,
     console: &mut Console<'_>,
-) -> Result<Exit, CommandError> {
+) -> CommandResult {
     Output::write(arguments.output.as_deref(), console, |output| match format {
         Format::Svg => output.line(draw::svg(world, view).trim_end()),
         _ => {

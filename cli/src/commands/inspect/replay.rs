@@ -9,6 +9,7 @@ use serde_json::{Value as Json, json};
 use super::state::{field_json, field_text};
 use super::{Arguments, shown};
 use crate::console::{BAD, Console, DOUBTFUL, GOOD};
+use crate::context::{CommandResult, Context};
 use crate::error::CommandError;
 use crate::exit::Exit;
 use crate::files::Shown;
@@ -16,18 +17,17 @@ use crate::files::Shown;
 pub(super) fn print<G: Game>(
     bytes: &[u8],
     arguments: &Arguments,
-    limits: &Limits,
-    console: &mut Console<'_>,
-) -> Result<Exit, CommandError> {
-    let summary = Summary::read::<G>(bytes, limits)
-        .map_err(|error| CommandError::Replay { path: arguments.file.clone(), verdict: error.into() })?;
+    context: &mut Context<'_, G>,
+) -> CommandResult {
+    let read = Summary::read::<G>(bytes, context.limits());
+    let summary = read.map_err(CommandError::replay(&arguments.file))?;
     if arguments.json {
         let mut document = summary.document();
         document["file"] = arguments.file.display().to_string().into();
-        console.line(document)?;
+        context.console.line(document)?;
     } else {
         let file = format!("{}", Shown(&arguments.file));
-        summary.print(&format!("{file}: replay"), arguments, console)?;
+        summary.print(&format!("{file}: replay"), arguments, &mut context.console)?;
     }
     Ok(summary.exit())
 }
@@ -133,7 +133,7 @@ impl Summary {
             End::Damaged(error) => {
                 let error = shown(&error.to_string());
                 console.line(format_args!(
-                    "{title}, {BAD}damaged{BAD:#} {error}; in front of that it is whole"
+                    "{title}, {BAD}damaged{BAD:#} {error}; the part before that is intact"
                 ))?;
             }
         }

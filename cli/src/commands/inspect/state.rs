@@ -6,6 +6,7 @@ use serde_json::{Value as Json, json};
 
 use super::{Arguments, shown};
 use crate::console::Console;
+use crate::context::CommandResult;
 use crate::error::CommandError;
 use crate::exit::Exit;
 
@@ -17,11 +18,7 @@ pub(super) struct State {
 }
 
 impl State {
-    pub(super) fn print(
-        self,
-        arguments: &Arguments,
-        console: &mut Console<'_>,
-    ) -> Result<Exit, CommandError> {
+    pub(super) fn print(self, arguments: &Arguments, console: &mut Console<'_>) -> CommandResult {
         let State { tick, hash, fields } = self;
         let fields: Vec<&Field> = fields.iter().filter(|field| is_wanted(field, arguments)).collect();
         if fields.is_empty() {

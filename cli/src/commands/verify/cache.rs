@@ -11,6 +11,7 @@ use lockstep2d::replay::{FORMAT_VERSION, Limits};
 use serde::{Deserialize, Serialize};
 
 use super::report::Report;
+use crate::console::json_text;
 
 /// Goes up whenever an entry means something else, or a verdict is another for the same bytes, rules and semantics.
 const VERSION: u32 = 1;
@@ -126,7 +127,7 @@ fn context(rules: RulesId, limits: &Limits) -> Hash {
 }
 
 fn checksum(key: &Hash, report: &Report) -> String {
-    let text = serde_json::to_string(report).expect("strings and numbers have a JSON form");
+    let text = json_text(report);
     let mut hasher = blake3::Hasher::new();
     hasher.update(key.as_bytes()).update(text.as_bytes());
     hasher.finalize().to_string()

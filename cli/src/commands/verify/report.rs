@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
 
 use super::panics::Panic;
+use crate::console::json_text;
 
 /// What a file's bytes are worth: a function of them, the limits and the program.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -93,7 +94,7 @@ impl Report {
         let (ticks, hash, bytes) = (*ticks, hash.as_deref(), *bytes);
         let file = file.display().to_string();
         let line = Whole { file, verdict, ticks, hash, bytes, cached, details };
-        serde_json::to_string(&line).expect("strings and numbers have a JSON form")
+        json_text(&line)
     }
 }
 

@@ -49,7 +49,7 @@ impl<'a> Tasks<'a> {
                 let name = path.file_name().map_or(path, Path::new);
                 self.shard.takes(name).then(|| Ok(path.to_path_buf()))
             }
-            Err(error) => Some(Err(CommandError::Read { path: path.to_path_buf(), error })),
+            Err(error) => Some(Err(CommandError::read(path)(error))),
         }
     }
 }
@@ -61,9 +61,7 @@ impl FolderTasks<'_> {
             match found {
                 Ok(path) if !shard.takes(path.strip_prefix(self.path).unwrap_or(&path)) => {}
                 Ok(path) => return Some(Ok(path)),
-                Err(error) => {
-                    return Some(Err(CommandError::Read { path: error.path, error: error.error }));
-                }
+                Err(error) => return Some(Err(CommandError::read(&error.path)(error.error))),
             }
         }
         let is_empty = !std::mem::replace(&mut self.is_any, true);

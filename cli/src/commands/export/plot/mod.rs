@@ -15,9 +15,8 @@ use lockstep2d::world::World;
 
 use super::{Arguments, Output, Replay};
 use crate::console::Console;
+use crate::context::CommandResult;
 use crate::energy::Measures;
-use crate::error::CommandError;
-use crate::exit::Exit;
 use crate::figures;
 
 use axis::Unit;
@@ -37,11 +36,8 @@ pub(super) fn write<G: Game>(
     mut replay: Replay<'_, G>,
     arguments: &Arguments,
     console: &mut Console<'_>,
-) -> Result<Exit, CommandError> {
+) -> CommandResult {
     let (first, last) = replay.range(arguments)?;
-    if first > last {
-        return Err(CommandError::NothingThere { what: format!("tick from {first} to {last}") });
-    }
     let mut panels = panels(first, last);
     let (mut joints, mut ticks) = (0, first..=last);
     let hash = loop {
