@@ -1,4 +1,4 @@
-//! [`Draft`]: a file that appears when all of it is written.
+//! [`Draft`]: a temporary file that replaces its target when all of it is written.
 
 use std::fs;
 use std::io;
@@ -7,17 +7,17 @@ use std::path::{Path, PathBuf};
 use crate::error::CommandError;
 use crate::files;
 
-/// A file that is being written, gone with the value unless it was published.
+/// A file that is being written. It is deleted when the value is dropped, unless it was published.
 pub(crate) struct Draft {
-    /// Where to write it.
+    /// The path to write to.
     pub(crate) at: PathBuf,
     is_own: bool,
 }
 
 impl Draft {
-    /// The draft of the file at `path`, in its folder.
+    /// The draft for the file at `path`, in the same folder.
     pub(crate) fn of(path: &Path) -> Self {
-        // What is no file, such as /dev/stdout, cannot be replaced by one.
+        // A target that is not a regular file, such as /dev/stdout, is written directly.
         let is_own = !fs::metadata(path).is_ok_and(|there| !there.is_file());
         let mut at = path.to_path_buf().into_os_string();
         if is_own {
@@ -26,7 +26,7 @@ impl Draft {
         Draft { at: at.into(), is_own }
     }
 
-    /// Puts the draft in the place of the file at `path`.
+    /// Renames the draft to `path`.
     pub(crate) fn publish(mut self, path: &Path) -> io::Result<()> {
         if self.is_own {
             fs::rename(&self.at, path)?;
@@ -44,7 +44,7 @@ impl Drop for Draft {
     }
 }
 
-/// Writes a file in one piece: a run that fails or is interrupted leaves the old one.
+/// Writes a file through a draft: a run that fails or is interrupted leaves the old file.
 pub(crate) fn replace(path: &Path, bytes: &[u8]) -> Result<(), CommandError> {
     let draft = Draft::of(path);
     files::save(&draft.at, bytes)?;

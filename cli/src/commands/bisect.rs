@@ -1,4 +1,4 @@
-//! `bisect`: finds the tick, its stage, the body and the field in which a course leaves another.
+//! `bisect`: finds the tick, stage, body and field in which two runs first differ.
 
 use std::path::{Path, PathBuf};
 
@@ -10,20 +10,20 @@ use super::diff;
 use crate::context::{CommandResult, Context};
 use crate::error::CommandError;
 
-/// Find the tick, its stage, the body and the field in which a course leaves another
+/// Find the tick, stage, body and field in which two runs first differ
 #[derive(Args, Debug)]
 #[command(
-    after_help = "Without B, the other course is that of this program with the same inputs. A replay has one hash a \
-                        second, so it tells the second; a trace of that second, written by the program that wrote \
-                        the replay (see the command trace), tells the rest. With B, replays may have other inputs or \
-                        setups: both are played until their states differ. Tick t is the state after t ticks.\n\n\
-                        Exit code: 0 when nothing differs, 1 when something does, 2 for wrong usage, or files that \
-                        cannot be read or compared."
+    after_help = "Without B, A is compared with a run of this program on the same inputs. A replay has one hash a \
+                        second, so only the second of the first difference can be found. A trace of that second, \
+                        written with `trace` by the program that wrote the replay, gives the tick, phase, body and \
+                        field. With B, replays may have different inputs or setups: both are played until their states \
+                        differ. Tick t is the state after t ticks.\n\nExit code: 0 when nothing differs, 1 when \
+                        something does, 2 for wrong usage, or files that cannot be read or compared."
 )]
 pub(crate) struct Arguments {
     /// A replay, a trace or a report of a divergence
     a: PathBuf,
-    /// What to compare it with, instead of this program
+    /// A file to compare it with [default: a run of this program]
     b: Option<PathBuf>,
     #[command(flatten)]
     printed: diff::Printed,

@@ -1,4 +1,4 @@
-//! `diff`: says in what two reports, replays or snapshots differ first, and who departed.
+//! `diff`: prints the first difference between two reports, replays or snapshots, and which side diverged.
 
 use std::path::{Path, PathBuf};
 
@@ -14,35 +14,35 @@ use crate::exit::Exit;
 pub(super) mod json;
 mod text;
 
-/// Say in what two reports, replays or snapshots differ first, and who departed
+/// Print the first difference between two reports, replays or snapshots, and which side diverged
 #[derive(Args, Debug)]
 #[command(
-    after_help = "The inputs of the replays are played again: who has other states than these lead to, has \
-                        departed. Tick t is the state after t ticks.\n\nExit code: 0 when nothing differs, 1 when \
+    after_help = "The inputs of the replays are played again: a side whose states differ from the result has \
+                        diverged. Tick t is the state after t ticks.\n\nExit code: 0 when nothing differs, 1 when \
                         something does, 2 for wrong usage, or files that cannot be read or compared."
 )]
 pub(crate) struct Arguments {
     /// A report of a divergence, a replay, or a snapshot of a world
     a: PathBuf,
-    /// What to compare it with
+    /// The file to compare it with
     b: PathBuf,
     #[command(flatten)]
     printed: Printed,
 }
 
-/// How to print a comparison.
+/// Options for printing a comparison.
 #[derive(Args, Debug)]
 pub(super) struct Printed {
-    /// Print one JSON document, with all that differs
+    /// Print all differences as one JSON document
     #[arg(long)]
     json: bool,
-    /// How many of the bodies and other things that differ to show
+    /// Most bodies, joints and other parts of the state to show
     #[arg(long, default_value_t = 10, value_name = "N")]
     things: usize,
 }
 
 impl Printed {
-    /// Prints what two files, A first, differ in.
+    /// Prints a comparison of two files, A first.
     pub(super) fn print(
         &self,
         found: &Comparison,
@@ -64,7 +64,7 @@ pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) 
     arguments.printed.print(&found, [&arguments.a, &arguments.b], &mut context.console)
 }
 
-/// Reads a file that can be compared with another one.
+/// Reads a replay, report or snapshot to compare.
 pub(super) fn read<G: Game>(path: &Path, context: &Context<'_, G>) -> Result<Evidence, CommandError> {
     let bytes = context.load(path)?;
     Evidence::read(bytes, context.limits())

@@ -20,10 +20,10 @@ use crate::scenes::Scene;
 pub(crate) struct Arguments {
     /// The name of the scene, as `scenes` lists it
     scene: String,
-    /// For how many ticks; every scene has a number of its own
+    /// Number of ticks [default: depends on the scene]
     #[arg(long)]
     ticks: Option<u64>,
-    /// What random choices of the scene begin with
+    /// Seed of the scene's random choices
     #[arg(long, default_value_t = 0)]
     seed: u64,
     /// The file to write
@@ -44,7 +44,7 @@ pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) 
     Ok(Exit::Success)
 }
 
-/// Appends to the file as the game runs, so that a game that is interrupted leaves a valid beginning.
+/// Appends to the file as the game runs, so that an interrupted run leaves a valid incomplete replay.
 fn write<G: Game>(mut scene: Scene<G>, ticks: u64, path: &Path) -> Result<StateHash, CommandError> {
     let write_error = CommandError::write(path);
     let mut recording = Recording::<G>::start(&scene.setup, CHECKPOINT_INTERVAL)?;

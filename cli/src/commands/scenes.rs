@@ -1,4 +1,4 @@
-//! `scenes`: lists what can be recorded.
+//! `scenes`: lists the scenes that can be recorded.
 
 use clap::Args;
 use lockstep2d::lockstep::Game;

@@ -1,4 +1,4 @@
-//! `seek`: goes to a tick of a replay, and back from there.
+//! `seek`: goes to a tick of a replay, and back from there, with keyframes.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -17,33 +17,33 @@ use crate::error::CommandError;
 use crate::exit::Exit;
 use crate::files::{self, Shown};
 
-/// Go to a tick of a replay and say what is there
+/// Go to a tick of a replay and describe its state
 #[derive(Args, Debug)]
 #[command(
-    after_help = "Tick t is the state after t ticks; 0 is the start.\n\nA file of keyframes is written on the first \
-                        run and used, and added to, on later ones: then seeking costs no more than what lies between \
-                        two keyframes. Each has the state that the replay itself states for its tick. It is no verdict: \
-                        only `verify` tells whether the inputs lead there.\n\nExit code: 0 when the tick was reached, 1 \
-                        when the replay cannot be played as far, 2 for wrong usage, a file that cannot be read or \
-                        written, or keyframes of another replay."
+    after_help = "Tick t is the state after t ticks; 0 is the start.\n\nThe keyframe file is written on the first run; \
+                        later runs use it and add to it. Seeking then simulates at most the ticks between two \
+                        keyframes. Every keyframe must have the state hash that the replay states for its tick. This \
+                        does not verify the replay: only `verify` checks that the inputs lead to these states.\n\nExit \
+                        code: 0 when the tick was reached, 1 when the replay cannot be played up to the tick, 2 for \
+                        wrong usage, a file that cannot be read or written, or keyframes of another replay."
 )]
 pub(crate) struct Arguments {
     /// The replay
     file: PathBuf,
-    /// After how many ticks; 0 is the start
+    /// The tick to go to; 0 is the start
     #[arg(long, value_name = "N")]
     tick: u64,
-    /// Then go back one tick at a time, so many times
+    /// Then step back K times, one tick at a time
     #[arg(long, value_name = "K", default_value_t = 0)]
     back: u64,
-    /// A file of keyframes beside the replay
+    /// The keyframe file of the replay; it is written if it does not exist
     #[arg(long, value_name = "FILE")]
     keyframes: Option<PathBuf>,
-    /// Ticks from one keyframe to the next
+    /// Number of ticks between keyframes
     #[arg(long, value_name = "TICKS", default_value_t = TimelineOptions::default().interval,
           value_parser = value_parser!(u32).range(1..))]
     interval: u32,
-    /// Write the game's save there, in canonical bytes
+    /// Write the game's save to this file, in its canonical encoding
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     /// Print one JSON document
@@ -87,7 +87,7 @@ pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) 
     Ok(Exit::Success)
 }
 
-/// Goes where it was asked to go; how many ticks were simulated on the way there and on the way back.
+/// Goes to the requested tick, then back. Returns the numbers of ticks simulated on the way there and on the way back.
 fn go<G: Game>(timeline: &mut Timeline<'_, G>, arguments: &Arguments) -> Result<(u64, u64), CommandError> {
     let path = || arguments.file.clone();
     let explain = |error| match error {
@@ -106,9 +106,9 @@ fn go<G: Game>(timeline: &mut Timeline<'_, G>, arguments: &Arguments) -> Result<
     Ok((there, timeline.simulated() - there))
 }
 
-/// Takes over the keyframes of a file, if there is one.
+/// Loads the keyframes of a file, if it exists.
 fn use_keyframes<G: Game>(timeline: &mut Timeline<'_, G>, path: &Path) -> Result<(), CommandError> {
-    // Beside the saves there are some bytes for each, and for the file.
+    // 1 MiB beyond the saves is enough for the headers of the file and of each keyframe.
     let bytes = match files::read(path, (KEYFRAMES_BYTES_MAX + (1 << 20)) as u64) {
         Ok(bytes) => bytes,
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(()),
@@ -119,7 +119,7 @@ fn use_keyframes<G: Game>(timeline: &mut Timeline<'_, G>, path: &Path) -> Result
         .map_err(|error| CommandError::Keyframes { path: path.to_path_buf(), error })
 }
 
-/// What there is at a tick, and what it has cost to go there.
+/// The description of a tick, and the numbers of ticks simulated to reach it.
 #[derive(Serialize)]
 struct Found {
     file: String,

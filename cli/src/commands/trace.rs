@@ -1,4 +1,4 @@
-//! `trace`: plays a replay and writes all that `bisect` needs of its last ticks.
+//! `trace`: plays a replay and writes the states and phases of its last ticks, for `bisect`.
 
 use std::path::PathBuf;
 
@@ -14,16 +14,17 @@ use crate::files::{self, Shown};
 /// Play a replay and write the states and phases of some ticks, for bisect
 #[derive(Args, Debug)]
 #[command(
-    after_help = "The inputs are played again by this program, whatever the checkpoints of the file say. Another \
-                        program that bisects the trace tells in which tick, phase, body and field the two part."
+    after_help = "This program plays the inputs again; checkpoints of the file are not checked. A program of another \
+                        platform can `bisect` the trace to find the tick, phase, body and field in which the two first \
+                        differ."
 )]
 pub(crate) struct Arguments {
     /// The replay
     file: PathBuf,
-    /// The last tick to trace; without it, the end
+    /// The last tick to trace [default: the end]
     #[arg(long, value_name = "TICK")]
     to: Option<u64>,
-    /// How many ticks before it to trace
+    /// Number of ticks before it to trace
     #[arg(long, default_value_t = 120)]
     ticks: u32,
     /// The file to write

@@ -1,4 +1,4 @@
-//! `trim`: makes what is whole of a replay complete.
+//! `trim`: makes a complete replay of the intact part of another one.
 
 use std::path::PathBuf;
 
@@ -14,18 +14,18 @@ use crate::exit::Exit;
 use crate::files::{self, Shown};
 use crate::rewriting::{Copy, CopyError};
 
-/// Make a complete replay of what is whole of a cut or damaged one
+/// Make a complete replay of the intact part of a cut or damaged one
 #[derive(Args, Debug)]
 #[command(
-    after_help = "Kept are the blocks in front of the first damage that lead to the checkpoints that the replay \
-                        states. The new replay is verified before it is written. It begins where the old one does.\
-                        \n\nExit code: 0 when it was written, 1 when there is nothing to keep, 2 for wrong usage, or files \
-                        that cannot be read or written."
+    after_help = "Blocks are kept up to the first that is damaged or whose inputs do not lead to its checkpoint. The \
+                        start cannot be trimmed. The new replay is verified before it is written.\n\nExit code: 0 when \
+                        it was written, 1 when there is nothing to keep, 2 for wrong usage, or files that cannot be \
+                        read or written."
 )]
 pub(crate) struct Arguments {
     /// The replay
     file: PathBuf,
-    /// Keep at most so many ticks
+    /// Most ticks to keep
     #[arg(long, value_name = "N")]
     ticks: Option<u64>,
     /// The file to write
@@ -51,7 +51,7 @@ pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) 
     let (replay, hash) = copy.finish(&arguments.output, limits)?;
     files::save(&arguments.output, &replay)?;
 
-    // What is behind the last tick that was asked for is of no interest.
+    // Damage after the last requested tick does not matter.
     let damage = damage.filter(|_| ticks < most);
     if arguments.json {
         let file = arguments.output.display().to_string();
@@ -76,7 +76,7 @@ struct Line {
     left_out: Option<String>,
 }
 
-/// The header and the blocks that are whole, and what is wrong behind them.
+/// The header and the intact blocks, and what is wrong with the block after them.
 fn whole_part<'a>(bytes: &'a [u8], limits: &Limits) -> Result<(&'a [u8], Option<Verdict>), ReadError> {
     let mut reader = Reader::open(bytes, limits)?;
     let mut end = reader.offset();

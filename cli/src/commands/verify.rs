@@ -1,4 +1,4 @@
-//! `verify`: plays replays again and prints a verdict for each.
+//! `verify`: plays replays again and prints a verdict for each file.
 
 use std::fmt;
 use std::io;
@@ -35,47 +35,47 @@ use shard::Shard;
 use tasks::Tasks;
 use totals::Totals;
 
-/// Play replays again and print a verdict for each
+/// Play replays again and print a verdict for each file
 #[derive(Args, Debug)]
 #[command(after_help = "Exit code: 0 when all match, 1 when any does not, 2 for wrong usage, a path that \
-                        cannot be read, or nothing to verify. docs/VERIFYING.md has more.")]
+                        cannot be read, or nothing to verify. See docs/VERIFYING.md.")]
 pub(crate) struct Arguments {
-    /// Replays, folders with files named *.replay at any depth, or - for one from standard input
+    /// Replays, folders that contain *.replay files at any depth, or - for a replay from standard input
     #[arg(required = true, value_name = "PATH")]
     paths: Vec<PathBuf>,
     /// Print a line of JSON for each file
     #[arg(long)]
     json: bool,
-    /// Verify so many files at a time [default: one for each processor]
+    /// Number of files to verify in parallel [default: number of processors]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     jobs: Option<u16>,
-    /// Verify only the I-th of N parts of the files, from 1 to N
+    /// Verify only the I-th of N parts of the files, counted from 1
     #[arg(long, value_name = "I/N", default_value_t = Shard::WHOLE, hide_default_value = true)]
     shard: Shard,
-    /// Keep verdicts in this folder, and do not play again what it knows
+    /// Cache verdicts in this folder, and do not play files again whose verdict is cached
     #[arg(long, value_name = "DIR")]
     cache: Option<PathBuf>,
     #[command(flatten)]
     limits: LimitArguments,
 }
 
-/// What a file may cost, where it differs from what the game's tools allow anyway.
+/// Limits of one file that override the limits of the tool.
 #[derive(Args, Debug)]
 #[command(next_help_heading = "Limits of one file")]
 struct LimitArguments {
-    /// Bytes of the file
+    /// Most bytes of the file
     #[arg(long, value_name = "N")]
     max_bytes: Option<u64>,
-    /// Ticks
+    /// Most ticks
     #[arg(long, value_name = "N")]
     max_ticks: Option<u64>,
-    /// Bodies in its world at a time
+    /// Most bodies in its world at a time
     #[arg(long, value_name = "N")]
     max_bodies: Option<u64>,
-    /// Work units of one tick, as the game counts them
+    /// Most work units of one tick, as the game counts them
     #[arg(long, value_name = "N")]
     max_tick_work: Option<u64>,
-    /// Work units of all ticks
+    /// Most work units of all ticks together
     #[arg(long, value_name = "N")]
     max_work: Option<u64>,
 }
@@ -115,7 +115,7 @@ fn processors() -> usize {
     thread::available_parallelism().map_or(1, NonZeroUsize::get)
 }
 
-/// What each thread does with a file.
+/// Verifies one file, on any thread.
 struct Verifier {
     judge: fn(&[u8], &Limits, &Shared) -> Option<Report>,
     limits: Limits,
@@ -123,13 +123,13 @@ struct Verifier {
     shared: Shared,
 }
 
-/// A file and what it is worth.
+/// A file and its report.
 struct Verified {
     path: PathBuf,
-    /// `None` if nobody waits for it any more.
+    /// `None` if verification was stopped.
     report: Option<Report>,
     cached: bool,
-    /// Why it could not be kept.
+    /// Why the report could not be cached.
     unkept: Option<io::Error>,
 }
 
@@ -159,7 +159,7 @@ impl Verifier {
     }
 }
 
-/// What is printed, line by line.
+/// Prints the results line by line, and the summary.
 struct Display<'a, 'c> {
     json: bool,
     console: &'a mut Console<'c>,
@@ -185,7 +185,7 @@ impl<'a, 'c> Display<'a, 'c> {
         }
     }
 
-    /// Shows a result, or how far things are.
+    /// Prints a result, or without one only updates the progress line.
     fn show(&mut self, result: Option<Result<Verified, CommandError>>) -> Result<(), CommandError> {
         match result {
             None => {}
@@ -196,7 +196,7 @@ impl<'a, 'c> Display<'a, 'c> {
         Ok(())
     }
 
-    /// Shows that something is not verified: a file in its place among the lines as well.
+    /// Prints an error. With `--json`, a file that cannot be read also gets a line among the results.
     fn trouble(&mut self, error: &CommandError) -> Result<(), CommandError> {
         self.exit = Exit::Trouble;
         if let (true, CommandError::Read { path, error }) = (self.json, error) {
@@ -215,7 +215,7 @@ impl<'a, 'c> Display<'a, 'c> {
             self.exit = self.exit.max(Exit::NoMatch);
         }
         if let Some(error) = unkept.as_ref().filter(|_| !self.is_cache_failing) {
-            // Once is enough: what fails for one file fails for the others.
+            // Warn only once: the cause is the same for all files.
             self.is_cache_failing = true;
             let warning = format!("verdicts cannot be cached: {error}");
             self.progress.aside(|| self.console.warning(warning));
@@ -238,7 +238,7 @@ impl<'a, 'c> Display<'a, 'c> {
     }
 }
 
-/// How long it has taken. The time is shown and never reaches a simulation.
+/// Measures the elapsed time. The time is shown and never reaches a simulation.
 #[expect(clippy::disallowed_types, reason = "the time is shown to the user and never reaches a simulation")]
 struct Clock(std::time::Instant);
 
@@ -253,7 +253,7 @@ impl Clock {
     }
 }
 
-/// A file and its verdict, for people.
+/// A file and its verdict as readable text.
 struct Line<'a> {
     path: &'a Path,
     report: &'a Report,

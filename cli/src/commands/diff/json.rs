@@ -1,4 +1,4 @@
-//! A comparison as JSON.
+//! A comparison as a JSON document.
 
 use std::path::Path;
 
@@ -60,7 +60,7 @@ fn blame(blame: Blame) -> &'static str {
     }
 }
 
-/// Fields that differ, with both values.
+/// Differing fields, each with both values.
 pub(in crate::commands) fn fields(differences: &[Difference]) -> Vec<Json> {
     let field = |difference: &Difference| {
         json!({
@@ -73,7 +73,7 @@ pub(in crate::commands) fn fields(differences: &[Difference]) -> Vec<Json> {
     differences.iter().map(field).collect()
 }
 
-/// A value as people read it and, of a number, its bits: as text, since they may be more than JSON's numbers hold.
+/// A value as readable text and, for a number, its bits as text, since they may exceed the range of JSON numbers.
 fn value(value: Option<&Value>) -> Json {
     value.map_or(
         Json::Null,

@@ -12,21 +12,21 @@ use super::{Arguments, Output, Replay};
 use crate::context::{CommandResult, Context};
 use crate::error::CommandError;
 
-/// Unless someone says otherwise, an animation has no more frames a second: more are hard to see.
+/// Most frames a second by default: more are hard to see.
 const FRAME_RATE_MAX: u32 = 30;
-/// Width of an animation, unless someone says otherwise: it is moved about more than looked at closely.
+/// Default width of an animation in pixels. It is smaller than that of a picture, to keep files small.
 const WIDTH: u32 = 640;
-/// More frames a second than this are shown slowly by most programs: the shortest time that they take is 2/100 s.
+/// Highest frame rate at which most programs show a GIF: their shortest frame time is 2/100 s.
 const GIF_RATE_MAX: u32 = 50;
-/// So many ticks are looked at for a window in which all of them fit.
+/// Number of ticks that are sampled to find a window in which all of them fit.
 const SAMPLES: u64 = 100;
-/// Of so many of these there is a picture, for its colours.
+/// Number of samples for each sample picture, from which the palette is made.
 const SAMPLES_OF_A_PICTURE: usize = 10;
 
 /// Writes a range of ticks as an animation.
 ///
-/// A replay is played twice: first to see what there will be, and that it can be played at all, before anything is
-/// written.
+/// The replay is played twice. The first pass finds the window and the colours, and checks that the replay can be
+/// played before anything is written.
 pub(super) fn write<G: Game>(
     bytes: &[u8],
     mut replay: Replay<'_, G>,
@@ -59,12 +59,12 @@ pub(super) fn write<G: Game>(
     })
 }
 
-/// Which ticks are shown, and for how long each.
+/// The ticks that are shown, and the duration of each.
 struct Frames {
     first: u64,
     last: u64,
     pace: Pace,
-    /// How many there are.
+    /// Number of frames.
     count: u32,
 }
 
@@ -81,7 +81,7 @@ impl Frames {
         (0..u64::from(self.count)).map(|frame| self.first + frame * u64::from(self.pace.ticks))
     }
 
-    /// A few of all ticks, the first and the last among them.
+    /// At most `SAMPLES` + 1 of the ticks, the first and the last among them.
     fn samples(&self) -> impl Iterator<Item = u64> {
         let step = (self.last - self.first).div_ceil(SAMPLES).max(1);
         (0..SAMPLES)
@@ -91,17 +91,18 @@ impl Frames {
     }
 }
 
-/// Which part of the world is shown, in which size.
+/// The part of the world that is shown, and the size of the picture.
 struct Camera<'a, G: Game> {
     view: Option<fn(&G) -> View>,
     arguments: &'a Arguments,
     size: (u32, u32),
-    /// Unless the game or the arguments say it. It stands still.
+    /// The fitted window, which is the same for all frames. It applies unless the game or the arguments set one.
     window: Option<Aabb>,
 }
 
 impl<'a, G: Game> Camera<'a, G> {
-    /// All frames are as large as the first. Its sides are those of the game's own picture, unless the arguments say it.
+    /// All frames have the same size. Its aspect ratio is that of the game's own view, unless the arguments set both
+    /// sides.
     fn new(
         replay: &mut Replay<'_, G>,
         view: Option<fn(&G) -> View>,
@@ -122,8 +123,8 @@ impl<'a, G: Game> Camera<'a, G> {
         Ok(Camera { view, arguments, size, window: None })
     }
 
-    /// Finds a window in which there is room for what is worth seeing at any time; a few pictures, which have nearly all
-    /// colours.
+    /// Finds a window that fits the world at all sampled ticks. Returns a few sample pictures, which have nearly all
+    /// colours of the animation.
     fn look_at(&mut self, replay: &mut Replay<'_, G>, frames: &Frames) -> Result<Vec<Image>, CommandError> {
         let mut window: Option<Aabb> = None;
         let mut pictures = Vec::new();
@@ -139,7 +140,7 @@ impl<'a, G: Game> Camera<'a, G> {
         Ok(pictures)
     }
 
-    /// The picture of the tick at which a replay is.
+    /// The picture of the current tick of a replay.
     fn picture(&self, replay: &mut Replay<'_, G>, list: &mut DrawList) -> Result<Image, CommandError> {
         let (width, height) = self.size;
         let mut view = View { width, height, ..self.arguments.view(replay.view(self.view)) };
@@ -150,7 +151,7 @@ impl<'a, G: Game> Camera<'a, G> {
     }
 }
 
-/// How far it is, for who watches a terminal.
+/// A progress bar on a terminal.
 struct Progress(Option<ProgressBar>);
 
 impl Progress {

@@ -1,4 +1,4 @@
-//! [`Output`]: where results go, which in a file are whole or not there.
+//! [`Output`]: the destination of an export. A file appears only when all of it is written.
 
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
@@ -10,15 +10,15 @@ use crate::draft::Draft;
 use crate::error::CommandError;
 use crate::exit::Exit;
 
-/// Where results go, and what a failure to write them is.
+/// The destination of an export: a file or the standard output.
 pub(super) struct Output<'a> {
     to: &'a mut dyn Write,
     path: Option<&'a Path>,
 }
 
 impl Output<'_> {
-    /// Has something written to a file, or to the standard output. A file appears when all of it is written: whoever
-    /// fails or is interrupted leaves what was there before.
+    /// Calls `write` with a file as destination, or without `path` with the standard output. The file appears when all
+    /// of it is written: a run that fails or is interrupted leaves the old file.
     pub(super) fn write(
         path: Option<&Path>,
         console: &mut Console<'_>,
@@ -42,7 +42,7 @@ impl Output<'_> {
         writeln!(self.to, "{line}").map_err(|error| explain(self.path, error))
     }
 
-    /// Where to write bytes, and what a failure to do so is.
+    /// The stream to write bytes to, and a function that wraps its errors.
     pub(super) fn parts(&mut self) -> (&mut dyn Write, impl Fn(io::Error) -> CommandError) {
         let path = self.path;
         (self.to, move |error| explain(path, error))

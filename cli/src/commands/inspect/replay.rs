@@ -1,4 +1,4 @@
-//! A replay, without playing it.
+//! The description of a replay, without playing it.
 
 use lockstep2d::codec;
 use lockstep2d::inspect::{Field, fields};
@@ -32,7 +32,7 @@ pub(super) fn print<G: Game>(
     Ok(summary.exit())
 }
 
-/// What can be said of a replay without playing it.
+/// What is known of a replay without playing it.
 pub(super) struct Summary {
     semantics: u32,
     rules: (String, u32),
@@ -48,20 +48,20 @@ pub(super) struct Summary {
     end: End,
 }
 
-/// Bytes of the parts of a file.
+/// Lengths of the parts of a file in bytes.
 #[derive(Default)]
 struct Bytes {
     header: u64,
     setup: u64,
     inputs: u64,
     trailer: u64,
-    /// Behind what is whole.
+    /// After the intact part.
     rest: u64,
 }
 
 enum Setup {
     Fields(Vec<Field>),
-    /// It cannot be read, or is another game's.
+    /// It cannot be decoded, or belongs to another game.
     Unknown,
 }
 
@@ -180,7 +180,7 @@ impl Summary {
         }
     }
 
-    /// The duration in hundredths of a second, rounded.
+    /// The duration in hundredths of a second, rounded to nearest.
     fn hundredths(&self) -> u128 {
         let rate = u128::from(self.tick_rate.max(1));
         (u128::from(self.ticks) * 200 + rate) / (2 * rate)
@@ -221,7 +221,7 @@ impl Summary {
     }
 }
 
-/// Why this program cannot verify a file made with these, if it cannot.
+/// Why this program cannot verify a file made with this semantics and these rules, if so.
 pub(super) fn mismatch<G: Game>(semantics: u32, name: &str, version: u32) -> Option<Mismatch> {
     if semantics != lockstep2d::SEMANTICS {
         return Some(Mismatch::Semantics { file: semantics, here: lockstep2d::SEMANTICS });
@@ -234,7 +234,7 @@ fn setup<G: Game>(rules: (&str, u32), bytes: &[u8]) -> Setup {
     if rules != (G::RULES.name, G::RULES.version) {
         return Setup::Unknown;
     }
-    // Other semantics may have another form of it.
+    // Another version of the engine may encode setups differently.
     let decoded = codec::decode::<G::Setup>(bytes).ok().filter(|setup| codec::encode(setup) == bytes);
     decoded.and_then(|setup| fields(&setup).ok()).map_or(Setup::Unknown, Setup::Fields)
 }

@@ -1,4 +1,4 @@
-//! A report of a divergence.
+//! The description of a report of a divergence.
 
 use lockstep2d::lockstep::Game;
 use lockstep2d::report::{DesyncReport, Group};

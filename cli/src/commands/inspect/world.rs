@@ -1,4 +1,4 @@
-//! A snapshot of a world.
+//! The description of a snapshot of a world.
 
 use lockstep2d::world::World;
 use serde_json::json;
