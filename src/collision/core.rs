@@ -311,9 +311,9 @@ pub(super) mod samples {
         core(rng).moved(to_grid(vector(rng, spread)))
     }
 
-    /// The distance along a path of `length` metres at which something on it reaches a surface, within 2e-7 m, or `None`.
-    /// `gap_at` gives its distance from the surface, which is as far as it may go on without passing it. A path that passes
-    /// within 2e-6 m of the surface without reaching it is undecided.
+    /// The distance along a path of `length` metres at which something on it reaches a surface, within 2e-7 m, or
+    /// `None`. `gap_at` gives its distance from the surface, which is as far as it may go on without passing it. A path
+    /// that passes within 2e-6 m of the surface without reaching it is undecided.
     pub(in crate::collision) fn march(
         length: Fx,
         mut gap_at: impl FnMut(Fx) -> Fx,

@@ -1,5 +1,5 @@
-//! The envelope of files that hold one value: magic, version of the layout, semantics, length of the body, body, and the
-//! hash of all bytes before it. `docs/FORMAT.md` has the layout.
+//! The envelope of files that hold one value: magic, version of the layout, semantics, length of the body, body, and
+//! the hash of all bytes before it. `docs/FORMAT.md` has the layout.
 
 use alloc::vec::Vec;
 

@@ -60,7 +60,8 @@ impl<I: Serialize + DeserializeOwned> EncodedInputs<I> {
         Ok(EncodedInputs { bytes, inputs })
     }
 
-    /// Encodes the inputs of all players and, unless their bytes are those of `last`, decodes them again. `None` if they are.
+    /// Encodes the inputs of all players and, unless their bytes are those of `last`, decodes them again. `None` if
+    /// they are.
     ///
     /// # Errors
     /// As [`EncodedInputs::new`].

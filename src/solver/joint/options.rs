@@ -33,8 +33,8 @@ pub struct Drive {
     pub max: Fx,
 }
 
-/// A damped spring with a target. Its frequency is that of bodies that nothing else holds: a body that a hinge makes turn
-/// about a point away from its centre of mass swings more slowly.
+/// A damped spring with a target. Its frequency is that of bodies that nothing else holds: a body that a hinge makes
+/// turn about a point away from its centre of mass swings more slowly.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Spring {
     /// Frequency without damping in Hz, above 0, up to 1000. The time step makes springs above a tenth of the sub-step
@@ -62,8 +62,8 @@ impl Soft {
     }
 }
 
-/// Builder methods of a joint: each sets the optional field of its own name to the value after the arrow, which is made of
-/// the method's arguments.
+/// Builder methods of a joint: each sets the optional field of its own name to the value after the arrow, which is made
+/// of the method's arguments.
 macro_rules! option_builders {
     ($($(#[$doc:meta])* $field:ident($($argument:ident),+) => $value:expr;)+) => {
         $(
