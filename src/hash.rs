@@ -3,10 +3,14 @@
 //! XXH3-128 is fast and well mixed but not cryptographic: it detects accidental differences, not forgery. Where an
 //! attacker could gain from a collision (a cache key, a signature), hash the bytes with BLAKE3 or SHA-256 instead.
 
+mod envelope;
+
 use alloc::vec::Vec;
 use core::fmt;
 
 use serde::{Deserialize, Serialize};
+
+pub(crate) use envelope::{Envelope, EnvelopeError};
 
 /// A 128-bit digest, displayed as 32 hexadecimal digits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]

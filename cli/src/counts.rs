@@ -1,15 +1,15 @@
-//! [`Counts`]: what is in a world.
+//! [`Counts`]: the numbers of bodies, shapes, joints and pairs in a world.
 
 use std::fmt;
 
 use lockstep2d::world::World;
 use serde::Serialize;
 
-/// What is in a world.
+/// Numbers of bodies, shapes, joints and pairs in a world.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub(crate) struct Counts {
     pub(crate) bodies: usize,
-    /// Bodies that are simulated.
+    /// Bodies that are simulated: neither fixed, disabled nor asleep.
     pub(crate) awake: usize,
     pub(crate) asleep: usize,
     pub(crate) shapes: usize,

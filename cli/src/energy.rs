@@ -1,7 +1,7 @@
-//! [`Measures`]: what of a world has to stay the same, or small.
+//! [`Measures`]: quantities of a world that should be conserved or stay small.
 //!
-//! These are for pictures, not for comparisons, and so they are floats. Only what IEEE 754 defines to the last bit is
-//! done with them, so that the same replay gives the same plot on every machine.
+//! They are floats because they are only drawn. Only operations that IEEE 754 rounds exactly are used, so that the same
+//! replay gives the same plot on every machine.
 #![expect(
     clippy::disallowed_types,
     clippy::float_arithmetic,
@@ -11,16 +11,16 @@
 use lockstep2d::math::{Fx, widen};
 use lockstep2d::world::World;
 
-/// What of a world has to stay the same, or small.
+/// Quantities of a world that should be conserved or stay small.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Measures {
-    /// Of all bodies, in J.
+    /// Kinetic energy of all enabled dynamic bodies, in J.
     pub(crate) kinetic: f64,
-    /// Of all bodies that fall, in J; 0 at the origin.
+    /// Potential energy of all enabled dynamic bodies, in J; 0 at the origin.
     pub(crate) potential: f64,
-    /// The deepest of all contacts, in metres; 0 if none overlaps.
+    /// Depth of the deepest contact, in metres; 0 if no shapes overlap.
     pub(crate) overlap: f64,
-    /// The widest of all joints, in metres.
+    /// Largest distance between the two anchors of a joint, in metres.
     pub(crate) gap: f64,
 }
 

@@ -1,59 +1,58 @@
-//! [`CommandError`]: why a command had to stop.
+//! [`CommandError`]: the errors that stop a command.
 
 use std::fmt;
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use lockstep2d::inspect::InspectError;
 use lockstep2d::replay::{KeyframesError, RecordError, SeekError, Verdict};
 use lockstep2d::report::{CompareError, EvidenceError, TraceError};
 
 use crate::exit::Exit;
-
 use crate::files::{EXTENSION, Shown};
 
-/// Why a command had to stop.
+/// An error that stops a command.
 #[derive(Debug)]
 pub(crate) enum CommandError {
-    /// Our own output cannot be written.
+    /// The standard output cannot be written.
     Output(io::Error),
     /// A file cannot be read.
     Read { path: PathBuf, error: io::Error },
-    /// A folder has no replays.
+    /// A folder contains no replays.
     NothingToVerify { path: PathBuf },
-    /// There is only one standard input.
+    /// The standard input is named more than once.
     InputTwice,
     /// A file cannot be written.
     Write { path: PathBuf, error: io::Error },
-    /// There is no such scene.
+    /// There is no scene of this name.
     UnknownScene { name: String, known: Vec<&'static str> },
     /// The scene cannot be recorded.
     Record(RecordError),
-    /// A replay ends before the tick that was asked for.
+    /// A replay ends before the requested tick.
     NoSuchTick { path: PathBuf, tick: u64, ticks: u64 },
-    /// A replay cannot be played as far as was asked for.
+    /// A replay cannot be played as far as requested.
     Replay { path: PathBuf, verdict: Verdict },
-    /// A keyframe is none of the replay.
+    /// A keyframe does not belong to the replay, or the game does not restore it exactly.
     Keyframe { path: PathBuf, error: SeekError },
-    /// A file has no keyframes of the replay.
+    /// A keyframe file is damaged or belongs to another replay.
     Keyframes { path: PathBuf, error: KeyframesError },
-    /// A line of inputs has none for every player.
+    /// A line of inputs does not have one valid input for each player.
     Inputs { path: PathBuf, line: u64, why: String },
-    /// A state has no form for people, or none in JSON.
+    /// A state cannot be decoded, or has no human-readable or JSON form.
     State { why: String },
-    /// There is nothing under the name that was asked for.
+    /// The state has no such body, field or tick.
     NothingThere { what: String },
-    /// The game shows no world of which there could be pictures.
+    /// The game does not expose its world, so it cannot be drawn.
     NoPictures,
-    /// Neither an option nor the name of a file says in which format to write.
+    /// Neither an option nor a file extension selects an output format.
     NoFormat,
-    /// What is no text cannot go to a terminal.
+    /// A binary format needs an output file.
     NoOutput { format: &'static str },
-    /// An option makes no sense in a format.
+    /// An option does not apply to the output format.
     Useless { option: &'static str, format: &'static str },
-    /// A file has one state, of which the format makes nothing.
+    /// A file has only one state, and the format needs several.
     OneState { path: PathBuf, format: &'static str },
-    /// A file is nothing that can be compared.
+    /// A file is not a replay, report or snapshot.
     Evidence { path: PathBuf, error: EvidenceError },
     /// A replay cannot be traced.
     Trace { path: PathBuf, error: TraceError },
@@ -62,7 +61,22 @@ pub(crate) enum CommandError {
 }
 
 impl CommandError {
-    /// How a command that stops for this ends.
+    /// Returns a function that wraps an error of reading the file at `path`.
+    pub(crate) fn read(path: &Path) -> impl Fn(io::Error) -> Self {
+        move |error| CommandError::Read { path: path.to_path_buf(), error }
+    }
+
+    /// Returns a function that wraps an error of writing the file at `path`.
+    pub(crate) fn write(path: &Path) -> impl Fn(io::Error) -> Self {
+        move |error| CommandError::Write { path: path.to_path_buf(), error }
+    }
+
+    /// Returns a function that wraps a verdict on the replay at `path`.
+    pub(crate) fn replay<V: Into<Verdict>>(path: &Path) -> impl Fn(V) -> Self {
+        move |verdict| CommandError::Replay { path: path.to_path_buf(), verdict: verdict.into() }
+    }
+
+    /// The exit code of a command that stops with this error.
     pub(crate) fn exit(&self) -> Exit {
         match self {
             CommandError::Replay { .. } | CommandError::Trace { .. } => Exit::NoMatch,
@@ -70,7 +84,7 @@ impl CommandError {
         }
     }
 
-    /// Whether whoever read our output has gone, as `head` does, and nobody is left to tell.
+    /// Whether the reader of the output has closed the pipe, as `head` does. Such an error is not printed.
     pub(crate) fn is_reader_gone(&self) -> bool {
         matches!(self, CommandError::Output(error) if error.kind() == io::ErrorKind::BrokenPipe)
     }
@@ -96,15 +110,16 @@ impl fmt::Display for CommandError {
             CommandError::Replay { path, verdict } => write!(f, "{}: {verdict}", Shown(path)),
             CommandError::Keyframe { path, error } => write!(f, "{}: {error}", Shown(path)),
             CommandError::Keyframes { path, error } => {
-                write!(f, "{}: {error}; delete it to have it written anew", Shown(path))
+                write!(f, "{}: {error}; delete it to have it written again", Shown(path))
             }
             CommandError::Inputs { path, line, why } => write!(f, "{}, line {line}: {why}", Shown(path)),
             CommandError::State { why } => write!(f, "cannot show the state: {why}"),
             CommandError::NothingThere { what } => write!(f, "there is no {what} in this state"),
-            CommandError::NoPictures => write!(f, "this game shows no world, so there are no pictures of it"),
+            CommandError::NoPictures => write!(f, "this game shows no world, so it cannot be drawn"),
             CommandError::NoFormat => write!(
                 f,
-                "in which format? Say --svg, --png, --gif, --apng, --json or --plot, or -o with a name that ends in one"
+                "no format given: use --svg, --png, --gif, --apng, --json or --plot, or -o with a name that ends in \
+                 one"
             ),
             CommandError::NoOutput { format } => write!(f, "{format} needs a file to write: -o FILE"),
             CommandError::Useless { option, format } => write!(f, "{option} makes no sense with {format}"),

@@ -1,15 +1,16 @@
-//! [`Exit`]: how a command ended.
+//! [`Exit`]: the outcome of a command as an exit code.
 
 use std::process::ExitCode;
 
-/// How a command ended, as scripts see it.
+/// The outcome of a command, as scripts see it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Exit {
-    /// Done; all files match, or nothing differs. Exit code 0.
+    /// The command succeeded; all files match, or nothing differs. Exit code 0.
     Success,
     /// A file does not match, or something differs. Exit code 1.
     NoMatch,
-    /// Wrong usage, a path that cannot be read or written, files that cannot be compared, or nothing to do. Exit code 2.
+    /// Wrong usage, a path that cannot be read or written, files that cannot be compared, or nothing to do. Exit code
+    /// 2.
     Trouble,
 }
 

@@ -1,10 +1,10 @@
-//! What there is in a world, and what a tick did, in numbers.
+//! Figures of a world: its counts, and the statistics of its last tick.
 
 use lockstep2d::world::World;
 
 use crate::counts::Counts;
 
-/// What there is in a world, and what the last tick did.
+/// The counts of a world and the statistics of its last tick, by name.
 pub(crate) fn of(world: &World) -> [(&'static str, u64); 13] {
     let Counts { bodies, awake, asleep, shapes, joints, pairs } = Counts::of(world);
     let stats = world.stats();

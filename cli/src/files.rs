@@ -1,4 +1,4 @@
-//! Reading replay files, without trusting their size, and showing their names.
+//! Reading files of untrusted size, writing files, and printing untrusted names.
 
 use std::fmt;
 use std::fs::{self, File};
@@ -10,17 +10,17 @@ use crate::error::CommandError;
 /// The extension of replay files in folders.
 pub(crate) const EXTENSION: &str = "replay";
 
-/// The bytes of a file, but at most one more than `bytes_max`, which is enough to see that it is too large.
+/// Reads a file, but at most `bytes_max + 1` bytes, which is enough to see that it is too large.
 pub(crate) fn read(path: &Path, bytes_max: u64) -> io::Result<Vec<u8>> {
     let file = File::open(path)?;
     let expected = file.metadata()?.len();
     read_from(file, expected, bytes_max)
 }
 
-/// The bytes of a stream that may have `expected`, but at most one more than `bytes_max`.
+/// Reads a stream, but at most `bytes_max + 1` bytes. `expected` is an estimate of its length.
 pub(crate) fn read_from(stream: impl Read, expected: u64, bytes_max: u64) -> io::Result<Vec<u8>> {
     let end = bytes_max.saturating_add(1);
-    // The byte more is for finding the end, without which a growing list doubles.
+    // One extra byte of capacity: finding the end would otherwise double the capacity.
     let expected = expected.min(bytes_max).saturating_add(1);
     let mut bytes = Vec::new();
     if usize::try_from(expected).map_or(true, |expected| bytes.try_reserve_exact(expected).is_err()) {
@@ -30,17 +30,12 @@ pub(crate) fn read_from(stream: impl Read, expected: u64, bytes_max: u64) -> io:
     Ok(bytes)
 }
 
-/// The bytes of a file that a command cannot do without; see [`read`].
-pub(crate) fn load(path: &Path, bytes_max: u64) -> Result<Vec<u8>, CommandError> {
-    read(path, bytes_max).map_err(|error| CommandError::Read { path: path.to_path_buf(), error })
-}
-
 /// Writes a file.
 pub(crate) fn save(path: &Path, bytes: &[u8]) -> Result<(), CommandError> {
-    fs::write(path, bytes).map_err(|error| CommandError::Write { path: path.to_path_buf(), error })
+    fs::write(path, bytes).map_err(CommandError::write(path))
 }
 
-/// A path for a line of text: a name with a line break in it must not pass for a line of its own.
+/// Shows a path on one line: control characters, such as line breaks, are escaped.
 pub(crate) struct Shown<'a>(pub(crate) &'a Path);
 
 impl fmt::Display for Shown<'_> {
@@ -49,7 +44,7 @@ impl fmt::Display for Shown<'_> {
     }
 }
 
-/// Text from a stranger that stays on its line.
+/// Shows untrusted text on one line: control characters are escaped.
 pub(crate) struct OneLine<'a>(pub(crate) &'a str);
 
 impl fmt::Display for OneLine<'_> {

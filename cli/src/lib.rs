@@ -1,4 +1,4 @@
-//! The command-line tools as a library: a game gets them for its own rules in one line of `main`.
+//! The command-line tools for replays as a library: a game gets them for its own rules with one line in `main`.
 //!
 //! ```no_run
 //! # mod my_game {
@@ -25,12 +25,14 @@
 //! }
 //! ```
 //!
-//! That gives `verify`, `diff`, `bisect`, `trace`, `heavy`, `inspect`, `seek`, `fork`, `trim`, `stats` and `export`. A game that has scenes to record says
-//! so to a [`Tool`], which then has `scenes` and `record` as well; one that wants to be seen in its own way says how.
+//! This gives `verify`, `diff`, `bisect`, `trace`, `heavy`, `inspect`, `seek`, `fork`, `trim`, `stats` and `export`.
+//! [`Tool::with_scenes`] adds `scenes` and `record`; [`Tool::with_view`] sets how pictures show the game.
 
 mod commands;
 mod console;
+mod context;
 mod counts;
+mod draft;
 mod energy;
 mod error;
 mod exit;
@@ -51,7 +53,7 @@ pub use sandbox::SandboxScenes;
 pub use scenes::{Catalogue, Scene, SceneInfo, Script};
 pub use tool::Tool;
 
-/// The tools for a game without scenes and pictures, with the arguments of this process.
+/// Runs the tools of a game without scenes and with the default view, with the arguments of this process.
 #[must_use]
 pub fn run<G: Game>() -> ExitCode {
     Tool::<G>::new().run()

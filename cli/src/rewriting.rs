@@ -1,4 +1,4 @@
-//! Making a new replay out of one that is there: what `fork` and `trim` have in common.
+//! [`Copy`]: a replay that is recorded again from the beginning of another one. Shared by `fork` and `trim`.
 
 use std::path::Path;
 
@@ -9,22 +9,22 @@ use lockstep2d::replay::{Limits, Playback, Reader, RecordError, Recorder, Step, 
 
 use crate::error::CommandError;
 
-/// A game that has been played up to some tick of a replay, and the new replay of it.
+/// A game that was played up to some tick of a replay, and the recorder of its new replay.
 pub(crate) struct Copy<G: Game> {
     game: G,
     recorder: Recorder<G>,
 }
 
-/// Why there is no copy.
+/// Why a replay cannot be copied.
 pub(crate) enum CopyError {
-    /// The replay can be played as far as `ticks`, and no further.
+    /// The replay can be played for `ticks` ticks, and no further.
     Replay { ticks: u64, verdict: Verdict },
-    /// A part of it cannot be recorded.
+    /// Its setup or inputs cannot be recorded.
     Record(RecordError),
 }
 
 impl<G: Game> Copy<G> {
-    /// Plays the first `ticks` ticks of a replay, all of them if it has fewer, and records them anew.
+    /// Plays the first `ticks` ticks of a replay, or all if it has fewer, and records them again.
     pub(crate) fn new(file: &[u8], ticks: u64, limits: &Limits) -> Result<Self, CopyError> {
         let unplayable = |verdict| CopyError::Replay { ticks: 0, verdict };
         let mut playback = Playback::<G>::open(file, limits).map_err(unplayable)?;
@@ -53,7 +53,7 @@ impl<G: Game> Copy<G> {
         Ok(Copy { game: playback.into_game(), recorder })
     }
 
-    /// How many ticks it has.
+    /// Number of recorded ticks.
     pub(crate) fn ticks(&self) -> u64 {
         self.recorder.ticks()
     }
@@ -63,7 +63,7 @@ impl<G: Game> Copy<G> {
         self.game.players()
     }
 
-    /// Goes on for a tick.
+    /// Records and plays one more tick.
     pub(crate) fn step(&mut self, inputs: &[G::Input]) -> Result<(), RecordError> {
         self.game.step(self.recorder.record(inputs)?);
         if self.recorder.is_checkpoint_due() {
@@ -72,8 +72,8 @@ impl<G: Game> Copy<G> {
         Ok(())
     }
 
-    /// The bytes of a complete replay, after it has been verified, and the hash of its last state. `output` is where it
-    /// is going to be.
+    /// Completes and verifies the replay. Returns its bytes and the hash of its last state. `output` is the path that
+    /// errors name.
     pub(crate) fn finish(self, output: &Path, limits: &Limits) -> Result<(Vec<u8>, StateHash), CommandError> {
         let bytes = self.recorder.finish(&self.game)?;
         match verify::<G>(&bytes, limits) {
@@ -84,7 +84,7 @@ impl<G: Game> Copy<G> {
 }
 
 impl CopyError {
-    /// What a command says that cannot do without.
+    /// The error of a command that needs the copy of the replay at `path`.
     pub(crate) fn of_file(self, path: &Path) -> CommandError {
         match self {
             CopyError::Replay { verdict, .. } => CommandError::Replay { path: path.to_path_buf(), verdict },

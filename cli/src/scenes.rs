@@ -7,30 +7,30 @@ pub type Script<G> = Box<dyn FnMut(u64, &G) -> Vec<<G as Game>::Input>>;
 
 /// The scenes of a game.
 pub trait Catalogue<G: Game> {
-    /// What there is, in the order in which to list it.
+    /// All scenes, in the order in which to list them.
     fn scenes(&self) -> Vec<SceneInfo>;
 
-    /// The scene of this name, or `None` if there is none. The same name and seed give the same scene.
+    /// Opens the scene of this name, or returns `None` if there is none. The same name and seed give the same scene.
     fn open(&self, name: &str, seed: u64) -> Option<Scene<G>>;
 }
 
-/// What a list says of a scene.
+/// The description of a scene.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SceneInfo {
-    /// Its name.
+    /// The name.
     pub name: &'static str,
-    /// What it shows, in a line.
+    /// What it shows, in one line.
     pub about: &'static str,
-    /// For how many ticks it is recorded if nobody says otherwise.
+    /// The default number of ticks to record.
     pub ticks: u64,
 }
 
-/// A scene to record.
+/// A scene that can be recorded.
 pub struct Scene<G: Game> {
-    /// What the game starts from.
+    /// The setup of the game.
     pub setup: G::Setup,
-    /// For how many ticks it is recorded if nobody says otherwise.
+    /// The default number of ticks to record.
     pub ticks: u64,
-    /// What the players do.
+    /// The inputs of the players.
     pub script: Script<G>,
 }

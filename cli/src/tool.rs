@@ -1,17 +1,17 @@
-//! [`Tool`]: the commands that a game has, and which of them was asked for.
+//! [`Tool`]: the commands of a game, and their dispatch.
 
 use std::ffi::OsString;
 use std::io::{IsTerminal, Write};
 use std::process::ExitCode;
 
-use clap::{ArgMatches, Command, FromArgMatches, Subcommand};
+use clap::{ArgMatches, Command};
 use lockstep2d::draw::View;
 use lockstep2d::lockstep::Game;
 use lockstep2d::replay::Limits;
 
-use crate::commands::{Common, OfScenes};
+use crate::commands::{Row, table};
 use crate::console::Console;
-use crate::error::CommandError;
+use crate::context::{CommandResult, Context};
 use crate::exit::Exit;
 use crate::scenes::Catalogue;
 
@@ -24,11 +24,11 @@ pub struct Tool<G: Game> {
     pub(crate) limits: Limits,
     pub(crate) catalogue: Option<Box<dyn Catalogue<G>>>,
     pub(crate) view: Option<fn(&G) -> View>,
-    /// Commands of the game's own.
+    /// Commands that the game has added.
     own: Vec<(Command, OwnCommand)>,
 }
 
-/// Does what a command of a game's own is asked to.
+/// Runs a command that the game has added.
 type OwnCommand = fn(&ArgMatches) -> Exit;
 
 impl<G: Game> Default for Tool<G> {
@@ -38,51 +38,51 @@ impl<G: Game> Default for Tool<G> {
 }
 
 impl<G: Game> Tool<G> {
-    /// The tools that every game has: `verify`, `diff`, `bisect`, `trace`, `heavy`, `inspect`, `seek`, `fork`, `trim`,
-    /// `stats` and `export`.
+    /// The commands that every game has: `verify`, `diff`, `bisect`, `trace`, `heavy`, `inspect`, `seek`, `fork`,
+    /// `trim`, `stats` and `export`.
     #[must_use]
     pub fn new() -> Self {
         Tool { limits: Limits::default(), catalogue: None, view: None, own: Vec::new() }
     }
 
-    /// Sets how much a replay may cost.
+    /// Sets the limits of what a replay may cost.
     #[must_use]
     pub fn with_limits(self, limits: Limits) -> Self {
         Tool { limits, ..self }
     }
 
-    /// Adds `scenes` and `record`.
+    /// Adds the commands `scenes` and `record`.
     #[must_use]
     pub fn with_scenes(self, catalogue: impl Catalogue<G> + 'static) -> Self {
         Tool { catalogue: Some(Box::new(catalogue)), ..self }
     }
 
-    /// Sets what `export` shows of a game's world ([`Game::world_mut`]) unless its arguments say otherwise: part, layers,
-    /// size and title. Without it that is what is worth seeing, as [`View::default`] has it.
+    /// Sets the default view of `export` on the game's world ([`Game::world_mut`]): window, layers, size and title.
+    /// Arguments of the command override it. Without it, [`View::default`] applies.
     #[must_use]
     pub fn with_view(self, view: fn(&G) -> View) -> Self {
         Tool { view: Some(view), ..self }
     }
 
-    /// Adds a command of the game's own; `run` does what its arguments say, and prints for itself.
+    /// Adds a command of the game's own. `run` gets its arguments and prints its own output.
     #[must_use]
     pub fn with_command(mut self, command: Command, run: fn(&ArgMatches) -> Exit) -> Self {
         self.own.push((command, run));
         self
     }
 
-    /// Does what the arguments of this process say, with colours where a terminal shows them.
+    /// Runs the command that the arguments of this process select, with colours on terminals.
     #[must_use]
     pub fn run(&self) -> ExitCode {
-        // Not locked: a game on another thread may print or panic, and would wait for ever.
+        // The streams stay unlocked: a game that prints or panics on another thread would deadlock.
         let (mut out, mut err) = (anstream::stdout(), anstream::stderr());
         let is_terminal = std::io::stderr().is_terminal();
         let console = Console { out: &mut out, err: &mut err, is_terminal };
         self.run_on(std::env::args_os(), console).into()
     }
 
-    /// Does what `arguments` say, the first of which is the program's name. Results go to `out`, messages to
-    /// `err`, both with ANSI colours.
+    /// Runs the command that `arguments` select, the first of which is the program's name. Results go to `out`,
+    /// messages to `err`, both with ANSI colours.
     pub fn run_with<A>(
         &self,
         arguments: impl IntoIterator<Item = A>,
@@ -95,56 +95,55 @@ impl<G: Game> Tool<G> {
         self.run_on(arguments, Console { out, err, is_terminal: false })
     }
 
-    fn run_on<A>(&self, arguments: impl IntoIterator<Item = A>, mut console: Console<'_>) -> Exit
+    fn run_on<'a, A>(&'a self, arguments: impl IntoIterator<Item = A>, mut console: Console<'a>) -> Exit
     where
         A: Into<OsString> + Clone,
     {
-        let matches = match self.command().try_get_matches_from(arguments) {
+        let table = table(self.catalogue.is_some());
+        let matches = match self.command(&table).try_get_matches_from(arguments) {
             Ok(matches) => matches,
             Err(usage) => return explain(&usage, &mut console),
         };
-        match self.dispatch(&matches, &mut console) {
+        let mut context = Context { tool: self, console };
+        match self.dispatch(&matches, &table, &mut context) {
             Ok(exit) => exit,
             Err(error) => {
                 if !error.is_reader_gone() {
-                    console.error(&error);
+                    context.console.error(&error);
                 }
                 error.exit()
             }
         }
     }
 
-    fn command(&self) -> Command {
+    fn command(&self, table: &[Row<G>]) -> Command {
         let rules = G::RULES;
         let engine = lockstep2d::SEMANTICS;
-        let mut command = Common::augment_subcommands(Command::new(rules.name));
-        if self.catalogue.is_some() {
-            command = OfScenes::augment_subcommands(command);
-        }
-        let command = command
+        Command::new(rules.name)
             .about(format!("Tools for the replays of {}", rules.name))
             .version(format!("rules version {}, engine semantics {engine}", rules.version))
             .subcommand_required(true)
-            .arg_required_else_help(true);
-        command.subcommands(self.own.iter().map(|(own, _)| own.clone()))
+            .arg_required_else_help(true)
+            .subcommands(table.iter().map(|row| &row.command))
+            .subcommands(self.own.iter().map(|(own, _)| own))
     }
 
-    fn dispatch(&self, matches: &ArgMatches, console: &mut Console<'_>) -> Result<Exit, CommandError> {
+    fn dispatch(
+        &self,
+        matches: &ArgMatches,
+        table: &[Row<G>],
+        context: &mut Context<'_, G>,
+    ) -> CommandResult {
         let Some((name, of_command)) = matches.subcommand() else { return Ok(Exit::Trouble) };
         if let Some((_, run)) = self.own.iter().find(|(own, _)| own.get_name() == name) {
             return Ok(run(of_command));
         }
-        let described = "clap matched what these types describe";
-        match &self.catalogue {
-            Some(catalogue) if OfScenes::has_subcommand(name) => {
-                OfScenes::from_arg_matches(matches).expect(described).run(catalogue.as_ref(), console)
-            }
-            _ => Common::from_arg_matches(matches).expect(described).run(self, console),
-        }
+        let row = table.iter().find(|row| row.command.get_name() == name);
+        (row.expect("clap matched a command of the table").run)(of_command, context)
     }
 }
 
-/// Shows the help that was asked for, or says what is wrong with the arguments.
+/// Prints the requested help or version, or the error in the arguments.
 fn explain(usage: &clap::Error, console: &mut Console<'_>) -> Exit {
     let text = usage.render();
     if usage.use_stderr() {

@@ -1,4 +1,4 @@
-//! [`Walk`]: the replays in a folder and all folders in it, in order, however many there are.
+//! [`Walk`]: iterates over the replays in a folder tree, in order and with bounded memory.
 
 use std::collections::BTreeMap;
 use std::ffi::OsString;
@@ -8,33 +8,33 @@ use std::path::{Path, PathBuf};
 
 use crate::files::EXTENSION;
 
-/// Most names of one folder that are held at a time. A folder with more is listed once for each so many.
+/// Most names of one folder that are held at a time. A larger folder is listed again for each batch of this size.
 const NAMES_MAX: usize = 4096;
 
-/// The replays in a folder and all folders in it, in the order of their paths, component by component.
+/// The replays in a folder and its subfolders, in the order of their paths, compared component by component.
 ///
-/// Links to folders are not followed: they may lead in circles. Neither is what is no regular file a replay: a pipe
-/// that is named like one would wait for ever.
+/// Links to folders are not followed, because they may form cycles. Only regular files count as replays: reading a pipe
+/// with the name of a replay would block for ever.
 ///
-/// A file that comes while the walk goes on is found or not, but never twice.
+/// A file that is created during the walk may be found or not, but is never found twice.
 pub(crate) struct Walk {
-    /// The folder at hand, and those on the way to it.
+    /// The current folder, last, and its ancestors.
     folders: Vec<Folder>,
     names_max: usize,
 }
 
-/// What is left of one folder.
+/// The remaining entries of one folder.
 struct Folder {
     path: PathBuf,
-    /// The next names, and whether each is a folder.
+    /// The next names in order, and whether each is a folder.
     names: BTreeMap<OsString, bool>,
-    /// The last name that was taken.
+    /// The last name that was returned.
     last: Option<OsString>,
-    /// Whether there is nothing after `names`.
+    /// Whether the folder has no entries after `names`.
     is_listed: bool,
 }
 
-/// Something that cannot be listed or looked at.
+/// A folder that cannot be listed, or an entry whose metadata cannot be read.
 pub(crate) struct WalkError {
     pub(crate) path: PathBuf,
     pub(crate) error: io::Error,
@@ -81,7 +81,7 @@ impl Folder {
         Folder { path, names: BTreeMap::new(), last: None, is_listed: false }
     }
 
-    /// The next path, and whether it is a folder.
+    /// Returns the next path, and whether it is a folder.
     fn next(&mut self, names_max: usize) -> io::Result<Option<(PathBuf, bool)>> {
         if self.names.is_empty() && !self.is_listed {
             self.list(names_max)?;
@@ -94,7 +94,7 @@ impl Folder {
         Ok(Some((path, is_folder)))
     }
 
-    /// Finds the first names after the last that was taken.
+    /// Lists the folder and keeps the first `names_max` names after the last one that was returned.
     fn list(&mut self, names_max: usize) -> io::Result<()> {
         self.is_listed = true;
         for entry in fs::read_dir(&self.path)? {

@@ -5,60 +5,16 @@ use lockstep2d::hash::StateHash;
 
 use crate::source::Source;
 
-const TRAILER: u8 = 3;
-/// Position of the chain hash in the trailer's payload.
-const CHAIN: std::ops::Range<usize> = 24..40;
+#[path = "../../tests/replay/forge.rs"]
+#[allow(dead_code, reason = "the tests of the library use more of it")]
+mod forged;
 
-/// The parts of a replay, without checksums.
-#[derive(Clone, Debug)]
-pub struct Forged {
-    header: Vec<u8>,
-    blocks: Vec<(u8, Vec<u8>)>,
-}
+pub(crate) use forged::Forged;
+use forged::{CHAIN, TRAILER};
 
 impl Forged {
-    /// Takes apart a replay written by a recorder.
-    ///
-    /// # Panics
-    /// For any other bytes.
-    #[must_use]
-    pub fn take_apart(file: &[u8]) -> Self {
-        let u32_at = |at: usize| u32::from_le_bytes(file[at..at + 4].try_into().expect("4 bytes")) as usize;
-        let mut at = 40 + u32_at(32) + u32_at(36) + 16;
-        let header = file[..at].to_vec();
-        at += 8;
-        let mut blocks = Vec::new();
-        while at < file.len() {
-            let length = u32_at(at);
-            blocks.push((file[at + 4], file[at + 5..at + 5 + length].to_vec()));
-            at += 5 + length + 8;
-        }
-        Forged { header, blocks }
-    }
-
-    /// Puts the file together with all checksums and the chain hash repaired.
-    #[must_use]
-    pub fn put_together(&self) -> Vec<u8> {
-        let mut file = self.header.clone();
-        let mut chain = StateHash::of_bytes(&file).0;
-        file.extend(&chain.to_le_bytes()[..8]);
-        for (kind, payload) in &self.blocks {
-            let mut block = (payload.len() as u32).to_le_bytes().to_vec();
-            block.push(*kind);
-            block.extend(payload);
-            if *kind == TRAILER && payload.len() >= CHAIN.end {
-                block[5..][CHAIN].copy_from_slice(&chain.to_le_bytes());
-            }
-            let block_hash = StateHash::of_bytes(&block).0;
-            chain = StateHash::of_bytes(&[chain.to_le_bytes(), block_hash.to_le_bytes()].concat()).0;
-            file.extend(&block);
-            file.extend(&chain.to_le_bytes()[..8]);
-        }
-        file
-    }
-
     /// Makes one change.
-    pub fn change(&mut self, source: &mut Source<'_>) {
+    pub(crate) fn change(&mut self, source: &mut Source<'_>) {
         let index = source.below(self.blocks.len());
         match source.below(8) {
             0 => mutate(source, &mut self.header),

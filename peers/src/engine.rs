@@ -1,8 +1,10 @@
 //! [`Engine`]: the interface that the benchmark uses to drive an engine and to read its state.
 
-use anyhow::Result;
-use lockstep2d::body::{BodyId, Polygon};
-use lockstep2d::math::{Fx, Length, Vec2};
+use anyhow::{Result, bail};
+use lockstep2d::body::{BodyDef, BodyId, Polygon, ShapeDef};
+use lockstep2d::math::{Angle, Fx, Length, Vec2};
+use lockstep2d::solver::JointDef;
+use lockstep2d::world::{Command, Outcome, Place};
 use serde::Serialize;
 
 use crate::box2d::Box2d;
@@ -105,6 +107,47 @@ impl Inventory {
     /// of rounded corners.
     pub fn is_like(&self, other: &Inventory) -> bool {
         self.counts == other.counts && (self.mass - other.mass).abs() <= 0.005 * self.mass
+    }
+}
+
+/// The operations from which a scene is built in another engine.
+pub trait Builder {
+    /// The engine's name.
+    const NAME: &str;
+
+    /// Creates a body with its shapes at a place, under the id that lockstep2d gave it.
+    fn spawn(&mut self, id: BodyId, body: &BodyDef, shapes: &[ShapeDef], place: Place) -> Result<()>;
+
+    /// Creates a joint between two bodies, A first.
+    fn join(&mut self, joint: &JointDef, bodies: (BodyId, BodyId)) -> Result<()>;
+
+    /// Removes a body.
+    fn despawn(&mut self, body: BodyId) -> Result<()>;
+
+    /// Enables a body.
+    fn enable(&mut self, body: BodyId) -> Result<()>;
+
+    /// Gives a kinematic body the velocity that moves it there within a tick.
+    fn move_to(&mut self, body: BodyId, position: Vec2<Fx>, angle: Angle) -> Result<()>;
+}
+
+/// Executes a recorded command in another engine.
+pub fn build<B: Builder>(builder: &mut B, event: &Event) -> Result<()> {
+    match event {
+        (Command::Spawn { body, shapes }, Outcome::Body(id)) => {
+            builder.spawn(*id, body, shapes, Place { position: body.position, angle: body.angle })
+        }
+        (Command::SpawnEach { body, shapes, places }, Outcome::Bodies(ids)) => {
+            ids.iter().zip(places).try_for_each(|(id, place)| builder.spawn(*id, body, shapes, *place))
+        }
+        (Command::AddJoint { joint }, _) => builder.join(joint, joint.bodies()),
+        (Command::AddJointEach { joint, ends }, _) => {
+            ends.iter().try_for_each(|ends| builder.join(joint, *ends))
+        }
+        (Command::Despawn { body }, _) => builder.despawn(*body),
+        (Command::Enable { body }, _) => builder.enable(*body),
+        (Command::MoveTo { body, position, angle }, _) => builder.move_to(*body, *position, *angle),
+        (other, _) => bail!("the {} adapter does not support {other:?}", B::NAME),
     }
 }
 

@@ -312,6 +312,34 @@ pub(super) mod samples {
         core(rng).moved(to_grid(vector(rng, spread)))
     }
 
+    /// Sphere tracing: the distance in metres along a path of `length` metres at which it reaches a surface, within
+    /// 2e-7 m; `None` if it does not. `gap_at` returns the distance from the surface at a position on the path. A path
+    /// that passes within 2e-6 m of the surface without reaching it is undecided, an error.
+    pub(in crate::collision) fn march(
+        length: Fx,
+        mut gap_at: impl FnMut(Fx) -> Fx,
+    ) -> Result<Option<Fx>, ()> {
+        let (mut travelled, mut nearest) = (Fx::ZERO, Fx::MAX);
+        for _ in 0..2000 {
+            let gap = gap_at(travelled);
+            nearest = nearest.min(gap);
+            if gap < fx!(0.0000002) {
+                return Ok(Some(travelled));
+            }
+            travelled += gap;
+            if travelled > length {
+                return if nearest < fx!(0.000002) { Err(()) } else { Ok(None) };
+            }
+        }
+        Err(())
+    }
+
+    /// Points whose coordinates are at a bound of the world or of the format.
+    pub(in crate::collision) fn extremes() -> impl Iterator<Item = Vec2<Fx>> {
+        let ends = [Fx::MIN, fx!(-1073741824), fx!(1073741824), Fx::MAX];
+        ends.into_iter().flat_map(move |x| ends.map(|y| Vec2::new(x, y)))
+    }
+
     /// Points of a core as world vectors.
     pub(in crate::collision) fn world_points(core: &Core) -> Vec<Vec2<Fx>> {
         core.points().iter().map(|&point| from_grid(point)).collect()

@@ -144,20 +144,10 @@ mod tests {
     /// passes within 2e-6 m of the surface without reaching it is undecided: `Err`.
     fn trace(shape: &Core, origin: Vec2<Fx>, translation: Vec2<Fx>) -> Result<Option<Fx>, ()> {
         let length = translation.length();
-        let (mut way, mut nearest) = (Fx::ZERO, Fx::MAX);
-        for _ in 0..2000 {
+        samples::march(length, |way| {
             let at = origin + translation.scale(fx_div(way, length).unwrap());
-            let gap = distance(shape, &Core::point(at)).distance;
-            nearest = nearest.min(gap);
-            if gap < fx!(0.0000002) {
-                return Ok(Some(way));
-            }
-            way += gap;
-            if way > length {
-                return if nearest < fx!(0.000002) { Err(()) } else { Ok(None) };
-            }
-        }
-        Err(())
+            distance(shape, &Core::point(at)).distance
+        })
     }
 
     #[test]
@@ -259,14 +249,12 @@ mod tests {
 
     #[test]
     fn nothing_overflows_at_the_edge_of_the_world() {
-        let ends = [Fx::MIN, fx!(-1073741824), fx!(1073741824), Fx::MAX];
-        let corners = || ends.into_iter().flat_map(|x| ends.map(|y| Vec2::new(x, y)));
-        for p in corners() {
-            for q in corners() {
+        for p in samples::extremes() {
+            for q in samples::extremes() {
                 for radius in [fx!(0), fx!(110), Fx::MAX] {
                     let shape = Core::from_points([p, q], radius);
-                    for origin in corners() {
-                        for translation in corners() {
+                    for origin in samples::extremes() {
+                        for translation in samples::extremes() {
                             cast_ray(&shape, origin, translation);
                         }
                     }

@@ -126,20 +126,10 @@ mod tests {
     /// Distance that B moves in steps of its distance from A, within a micrometre of the skin. `Err` if undecided.
     fn stepped(a: &Core, b: &Core, translation: Vec2<Fx>) -> Result<Option<Fx>, ()> {
         let length = translation.length();
-        let (mut way, mut nearest) = (Fx::ZERO, Fx::MAX);
-        for _ in 0..2000 {
+        samples::march(length, |way| {
             let moved = b.moved(to_grid(translation.scale(fx_div(way, length).unwrap())));
-            let gap = distance(a, &moved).distance - SKIN;
-            nearest = nearest.min(gap);
-            if gap < fx!(0.0000002) {
-                return Ok(Some(way));
-            }
-            way += gap;
-            if way > length {
-                return if nearest < fx!(0.000002) { Err(()) } else { Ok(None) };
-            }
-        }
-        Err(())
+            distance(a, &moved).distance - SKIN
+        })
     }
 
     #[test]
@@ -239,12 +229,10 @@ mod tests {
 
     #[test]
     fn nothing_overflows_at_the_edge_of_the_world() {
-        let ends = [Fx::MIN, fx!(-1073741824), fx!(1073741824), Fx::MAX];
-        let corners = || ends.into_iter().flat_map(|x| ends.map(|y| Vec2::new(x, y)));
-        for p in corners() {
-            for q in corners() {
-                for start in corners() {
-                    for translation in corners() {
+        for p in samples::extremes() {
+            for q in samples::extremes() {
+                for start in samples::extremes() {
+                    for translation in samples::extremes() {
                         let ball = Core::disc(start, fx!(110));
                         cast_shape(&Core::from_points([p, q], fx!(110)), &ball, translation);
                         cast_shape(&ball, &Core::from_points([p, q], Fx::MAX), translation);

@@ -49,13 +49,32 @@ impl<I: Serialize + DeserializeOwned> EncodedInputs<I> {
     /// [`InputError`] when there is not exactly one input per player, or when they do not survive encoding and
     /// decoding.
     pub fn new(inputs: &[I], players: u32) -> Result<Self, InputError> {
-        let count = inputs.len() as u64;
-        if count != u64::from(players) {
-            return Err(InputError::Count { players, inputs: count });
-        }
-        let bytes = encode_inputs(inputs);
+        Self::from_bytes(encode_checked(inputs, players)?, players)
+    }
+
+    /// Decodes the canonical bytes of `players` inputs.
+    ///
+    /// # Errors
+    /// [`InputError::NotCanonical`] when the bytes are not the canonical bytes of `players` inputs.
+    pub(crate) fn from_bytes(bytes: Vec<u8>, players: u32) -> Result<Self, InputError> {
         let inputs = decode_inputs(&bytes, players)?;
         Ok(EncodedInputs { bytes, inputs })
+    }
+
+    /// Encodes the inputs of all players. Returns `None` if the bytes equal those of `last`; otherwise decodes them.
+    ///
+    /// # Errors
+    /// As [`EncodedInputs::new`].
+    pub(crate) fn new_after(
+        last: Option<&Self>,
+        inputs: &[I],
+        players: u32,
+    ) -> Result<Option<Self>, InputError> {
+        let bytes = encode_checked(inputs, players)?;
+        if last.is_some_and(|last| last.bytes == bytes) {
+            return Ok(None);
+        }
+        Self::from_bytes(bytes, players).map(Some)
     }
 
     /// Canonical bytes of all players' inputs, one after the other.
@@ -68,6 +87,16 @@ impl<I: Serialize + DeserializeOwned> EncodedInputs<I> {
     #[must_use]
     pub fn inputs(&self) -> &[I] {
         &self.inputs
+    }
+}
+
+/// Canonical bytes of all players' inputs, after checking that there is one per player.
+fn encode_checked<I: Serialize>(inputs: &[I], players: u32) -> Result<Vec<u8>, InputError> {
+    let count = inputs.len() as u64;
+    if count == u64::from(players) {
+        Ok(encode_inputs(inputs))
+    } else {
+        Err(InputError::Count { players, inputs: count })
     }
 }
 
@@ -142,20 +171,49 @@ impl<I: Serialize + DeserializeOwned> InputLog<I> {
     /// # Errors
     /// [`InputError`] when they cannot be logged; the log is then unchanged.
     pub fn push(&mut self, inputs: &[I]) -> Result<&[I], InputError> {
-        let inputs = EncodedInputs::new(inputs, self.players)?;
-        let end = self.ticks() + 1;
-        match self.runs.last_mut() {
-            Some(run) if run.inputs.bytes() == inputs.bytes() => run.end = end,
-            _ => self.runs.push(LoggedRun { end, inputs }),
+        let last = self.runs.last().map(|run| &run.inputs);
+        let new = EncodedInputs::new_after(last, inputs, self.players)?;
+        Ok(self.extend(new))
+    }
+
+    /// Logs the inputs of the next tick, which are already encoded, and returns them.
+    ///
+    /// # Errors
+    /// [`InputError::Count`] when there is not exactly one input per player; the log is then unchanged.
+    pub fn push_encoded(&mut self, inputs: &EncodedInputs<I>) -> Result<&[I], InputError>
+    where
+        I: Clone,
+    {
+        let count = inputs.inputs().len() as u64;
+        if count != u64::from(self.players) {
+            return Err(InputError::Count { players: self.players, inputs: count });
         }
-        Ok(self.runs.last().map_or(&[], |run| run.inputs.inputs()))
+        let is_same = self.runs.last().is_some_and(|run| run.inputs.bytes() == inputs.bytes());
+        Ok(self.extend((!is_same).then(|| inputs.clone())))
+    }
+
+    /// Adds a tick with new inputs, or with those of the tick before, and returns its inputs.
+    fn extend(&mut self, new: Option<EncodedInputs<I>>) -> &[I] {
+        let end = self.ticks() + 1;
+        match (new, self.runs.last_mut()) {
+            (Some(inputs), _) => self.runs.push(LoggedRun { end, inputs }),
+            (None, Some(run)) => run.end = end,
+            (None, None) => {}
+        }
+        self.runs.last().map_or(&[], |run| run.inputs.inputs())
     }
 
     /// The inputs of tick number `tick`, counted from 0.
     #[must_use]
     pub fn get(&self, tick: u64) -> Option<&[I]> {
+        self.get_encoded(tick).map(EncodedInputs::inputs)
+    }
+
+    /// The inputs of tick number `tick`, counted from 0, with their bytes.
+    #[must_use]
+    pub fn get_encoded(&self, tick: u64) -> Option<&EncodedInputs<I>> {
         let index = self.runs.partition_point(|run| run.end <= tick);
-        self.runs.get(index).map(|run| run.inputs.inputs())
+        self.runs.get(index).map(|run| &run.inputs)
     }
 
     /// Removes all ticks but the first `ticks`.

@@ -228,14 +228,21 @@ impl<G: NetGame> Driver<G> {
             let (seated, inputs) = (self.seats.len() as u64, inputs.len() as u64);
             return Err(DriverError::Players { seated, inputs });
         }
-        let mut of_seat = vec![G::absent(); self.game.players() as usize];
-        for (seat, (wire, status)) in self.seats.iter().zip(inputs) {
-            let Some(input) = of_seat.get_mut(*seat as usize) else { continue };
-            if *status != InputStatus::Disconnected {
-                *input = canonical(wire.input).unwrap_or_default();
+        let of_all_seats = |change: fn(G::Input) -> G::Input| {
+            let mut of_seat = vec![G::absent(); self.game.players() as usize];
+            for (seat, (wire, status)) in self.seats.iter().zip(inputs) {
+                let Some(input) = of_seat.get_mut(*seat as usize) else { continue };
+                if *status != InputStatus::Disconnected {
+                    *input = change(wire.input);
+                }
             }
-        }
-        self.step(&of_seat)?;
+            of_seat
+        };
+        // An input that does not survive its encoding counts as the default, with every peer.
+        let encoded = self
+            .encode(&of_all_seats(|input| input))
+            .or_else(|_| self.encode(&of_all_seats(|input| canonical(input).unwrap_or_default())))?;
+        self.step_encoded(encoded);
         for (at, (wire, _)) in inputs.iter().enumerate() {
             self.hear(self.seats[at], wire.echo);
         }
@@ -263,14 +270,22 @@ impl<G: NetGame> Driver<G> {
     /// # Errors
     /// [`DriverError`] when there is not exactly one input per seat.
     pub fn step(&mut self, inputs: &[G::Input]) -> Result<(), DriverError> {
-        let players = self.game.players();
-        let inputs = EncodedInputs::new(inputs, players)
-            .map_err(|error| DriverError::Record(RecordError::Inputs(error)))?;
+        let inputs = self.encode(inputs)?;
+        self.step_encoded(inputs);
+        Ok(())
+    }
+
+    fn encode(&self, inputs: &[G::Input]) -> Result<EncodedInputs<G::Input>, DriverError> {
+        let encoded = EncodedInputs::new(inputs, self.game.players());
+        encoded.map_err(|error| DriverError::Record(RecordError::Inputs(error)))
+    }
+
+    /// Plays a tick with the inputs of all seats, of which there must be one for each.
+    pub(super) fn step_encoded(&mut self, inputs: EncodedInputs<G::Input>) {
         self.game.step(inputs.inputs());
         self.tick += 1;
         self.history.push(self.tick, self.game.save(), self.game.state_hash());
         self.inputs.push_back(inputs);
-        Ok(())
     }
 
     /// Returns the divergences detected since the last call.
@@ -303,7 +318,7 @@ impl<G: NetGame> Driver<G> {
 
     fn record(&self, tick: u64, recorder: &mut Recorder<G>) -> Result<(), DriverError> {
         let inputs = self.inputs_of(tick).ok_or(DriverError::NoState { tick })?;
-        recorder.record(inputs.inputs()).map_err(DriverError::Record)?;
+        recorder.record_encoded(inputs).map_err(DriverError::Record)?;
         if recorder.is_checkpoint_due() {
             let tick = tick + 1;
             let moment = self.history.get(tick).ok_or(DriverError::NoState { tick })?;

@@ -178,25 +178,45 @@ impl<G: Game> Recorder<G> {
         if self.is_checkpoint_due() {
             return Err(RecordError::CheckpointDue);
         }
-        let encoded = EncodedInputs::new(inputs, self.players).map_err(RecordError::Inputs)?;
-        let (run, ticks) = match self.last_run.take() {
-            Some((run, ticks)) if run.bytes() == encoded.bytes() => (run, ticks),
-            previous => {
-                let bytes = self.block_length_with(&encoded, previous.as_ref());
-                if bytes > BLOCK_BYTES_MAX as usize {
-                    self.last_run = previous;
-                    return Err(RecordError::BlockLength { bytes: bytes as u64 });
-                }
-                if let Some((run, ticks)) = previous {
-                    Run::write(ticks, run.bytes(), &mut self.runs);
-                }
-                (encoded, 0)
+        let last = self.last_run.as_ref().map(|(run, _)| run);
+        let new = EncodedInputs::new_after(last, inputs, self.players).map_err(RecordError::Inputs)?;
+        self.extend(new)
+    }
+
+    /// Records the inputs of the next tick, which have been encoded already.
+    ///
+    /// # Errors
+    /// [`RecordError`] when they cannot be recorded.
+    pub fn record_encoded(&mut self, inputs: &EncodedInputs<G::Input>) -> Result<(), RecordError> {
+        if self.is_checkpoint_due() {
+            return Err(RecordError::CheckpointDue);
+        }
+        let count = inputs.inputs().len() as u64;
+        if count != u64::from(self.players) {
+            return Err(RecordError::Inputs(InputError::Count { players: self.players, inputs: count }));
+        }
+        let is_same = self.last_run.as_ref().is_some_and(|(run, _)| run.bytes() == inputs.bytes());
+        self.extend((!is_same).then(|| inputs.clone()))?;
+        Ok(())
+    }
+
+    /// Adds a tick with new inputs, or with those of the tick before, and returns its inputs.
+    fn extend(&mut self, new: Option<EncodedInputs<G::Input>>) -> Result<&[G::Input], RecordError> {
+        if let Some(new) = new {
+            let bytes = self.block_length_with(&new);
+            if bytes > BLOCK_BYTES_MAX as usize {
+                return Err(RecordError::BlockLength { bytes: bytes as u64 });
             }
-        };
+            if let Some((run, ticks)) = self.last_run.replace((new, 0)) {
+                Run::write(ticks, run.bytes(), &mut self.runs);
+            }
+        }
         self.block_ticks += 1;
         self.ticks += 1;
-        let (run, _) = self.last_run.insert((run, ticks + 1));
-        Ok(run.inputs())
+        Ok(self.last_run.as_mut().map_or(&[], |(run, ticks)| {
+            *ticks += 1;
+            run.inputs()
+        }))
     }
 
     /// Whether the block is full, so that [`Recorder::checkpoint`] must be called before the next tick.
@@ -249,13 +269,9 @@ impl<G: Game> Recorder<G> {
     }
 
     /// Upper bound of the payload in bytes after a run of these inputs is added.
-    fn block_length_with(
-        &self,
-        added: &EncodedInputs<G::Input>,
-        previous: Option<&(EncodedInputs<G::Input>, u32)>,
-    ) -> usize {
+    fn block_length_with(&self, added: &EncodedInputs<G::Input>) -> usize {
         let run_length = |encoded: &EncodedInputs<G::Input>| encoded.bytes().len() + 2 * VARINT_BYTES_MAX;
-        let previous = previous.map_or(0, |(encoded, _)| run_length(encoded));
+        let previous = self.last_run.as_ref().map_or(0, |(encoded, _)| run_length(encoded));
         self.runs.len() + previous + run_length(added) + HASH_BYTES
     }
 

@@ -5,8 +5,8 @@ use core::fmt;
 
 use super::desync::{Body, DesyncReport};
 use super::phases::PHASE_DIGESTS_MAX;
-use crate::codec::{self, DecodeError};
-use crate::hash::StateHash;
+use crate::codec::DecodeError;
+use crate::hash::{Envelope, EnvelopeError};
 use crate::replay::{Limits, PLAYERS_MAX, RULES_NAME_BYTES_MAX};
 
 /// The first eight bytes of a report, modelled on those of a replay.
@@ -15,10 +15,7 @@ pub const REPORT_MAGIC: [u8; 8] = *b"\x89L2R\r\n\x1a\n";
 /// Version of the layout.
 pub const REPORT_FORMAT_VERSION: u32 = 2;
 
-/// Size of the header: magic, format, semantics, length.
-const HEADER_LEN: usize = 8 + 4 + 4 + 8;
-/// Size of the hash at the end.
-const HASH_LEN: usize = 16;
+const ENVELOPE: Envelope = Envelope { magic: REPORT_MAGIC, format: REPORT_FORMAT_VERSION };
 
 /// Reason why bytes are not a report.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -108,20 +105,23 @@ impl fmt::Display for ReportError {
 
 impl core::error::Error for ReportError {}
 
+impl From<EnvelopeError> for ReportError {
+    fn from(error: EnvelopeError) -> Self {
+        match error {
+            EnvelopeError::Magic => ReportError::NotAReport,
+            EnvelopeError::Format { found } => ReportError::Format { found },
+            EnvelopeError::Length { announced, found } => ReportError::Length { announced, found },
+            EnvelopeError::Hash => ReportError::Hash,
+            EnvelopeError::Decode(error) => ReportError::Decode(error),
+        }
+    }
+}
+
 impl DesyncReport {
     /// Encodes the report as the bytes of a file.
     #[must_use]
     pub fn to_bytes(&self) -> Vec<u8> {
-        let mut bytes = REPORT_MAGIC.to_vec();
-        bytes.extend_from_slice(&REPORT_FORMAT_VERSION.to_le_bytes());
-        bytes.extend_from_slice(&self.semantics.to_le_bytes());
-        bytes.extend_from_slice(&[0; 8]);
-        codec::encode_into(&self.body, &mut bytes);
-        let length = (bytes.len() - HEADER_LEN) as u64;
-        bytes[HEADER_LEN - 8..HEADER_LEN].copy_from_slice(&length.to_le_bytes());
-        let hash = StateHash::of_bytes(&bytes);
-        bytes.extend_from_slice(&hash.0.to_le_bytes());
-        bytes
+        ENVELOPE.seal(self.semantics, &self.body)
     }
 
     /// Decodes a report written by [`DesyncReport::to_bytes`]. Of the limits, only `file_bytes` applies: memory
@@ -131,31 +131,14 @@ impl DesyncReport {
     /// # Errors
     /// [`ReportError`] for any other bytes.
     pub fn from_bytes(bytes: &[u8], limits: &Limits) -> Result<Self, ReportError> {
+        let opened = ENVELOPE.open(bytes)?;
         let found = bytes.len() as u64;
-        let header: &[u8; HEADER_LEN] = bytes.first_chunk().ok_or(ReportError::NotAReport)?;
-        let number =
-            |at: usize| u32::from_le_bytes([header[at], header[at + 1], header[at + 2], header[at + 3]]);
-        if header[..8] != REPORT_MAGIC {
-            return Err(ReportError::NotAReport);
-        }
-        if number(8) != REPORT_FORMAT_VERSION {
-            return Err(ReportError::Format { found: number(8) });
-        }
         if found > limits.file_bytes {
             return Err(ReportError::TooLong { bytes: found, max: limits.file_bytes });
         }
-        let length = u64::from(number(16)) | u64::from(number(20)) << 32;
-        let announced = length.saturating_add((HEADER_LEN + HASH_LEN) as u64);
-        if announced != found {
-            return Err(ReportError::Length { announced, found });
-        }
-        let (covered, hash) = bytes.split_at(bytes.len() - HASH_LEN);
-        if StateHash::of_bytes(covered).0.to_le_bytes() != *hash {
-            return Err(ReportError::Hash);
-        }
-        let body: Body = codec::decode(&covered[HEADER_LEN..]).map_err(ReportError::Decode)?;
+        let body: Body = opened.decode()?;
         body.check().map_err(ReportError::Invalid)?;
-        Ok(DesyncReport { semantics: number(12), body })
+        Ok(DesyncReport { semantics: opened.semantics, body })
     }
 }
 

@@ -7,17 +7,14 @@ use super::World;
 use super::state::State;
 use super::validate::Violation;
 use crate::SEMANTICS;
-use crate::codec::{self, DecodeError};
-use crate::hash::StateHash;
+use crate::codec::DecodeError;
+use crate::hash::{Envelope, EnvelopeError};
 
 /// Starts the bytes of a world.
 const MAGIC: [u8; 8] = *b"LS2DWRLD";
 /// Version of the layout of these bytes.
 const FORMAT: u32 = 2;
-/// Magic, format, semantics, length.
-const HEADER_LEN: usize = 8 + 4 + 4 + 8;
-/// The hash at the end.
-const HASH_LEN: usize = 16;
+const ENVELOPE: Envelope = Envelope { magic: MAGIC, format: FORMAT };
 
 /// Bytes from which no world can be made.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -71,6 +68,18 @@ impl fmt::Display for SnapshotError {
 
 impl core::error::Error for SnapshotError {}
 
+impl From<EnvelopeError> for SnapshotError {
+    fn from(error: EnvelopeError) -> Self {
+        match error {
+            EnvelopeError::Magic => SnapshotError::NotASnapshot,
+            EnvelopeError::Format { found } => SnapshotError::Format { found },
+            EnvelopeError::Length { announced, found } => SnapshotError::Length { announced, found },
+            EnvelopeError::Hash => SnapshotError::Hash,
+            EnvelopeError::Decode(error) => SnapshotError::Decode(error),
+        }
+    }
+}
+
 impl World {
     /// The state as portable bytes: header, canonical encoding, hash. `docs/FORMAT.md` has the layout.
     #[must_use]
@@ -84,28 +93,11 @@ impl World {
     /// [`SnapshotError`] for any other bytes. Nothing is believed before it is checked: memory is bounded by the
     /// number of bytes, and an impossible state is refused.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, SnapshotError> {
-        let header: &[u8; HEADER_LEN] = bytes.first_chunk().ok_or(SnapshotError::NotASnapshot)?;
-        let number =
-            |at: usize| u32::from_le_bytes([header[at], header[at + 1], header[at + 2], header[at + 3]]);
-        if header[..8] != MAGIC {
-            return Err(SnapshotError::NotASnapshot);
+        let opened = ENVELOPE.open(bytes)?;
+        if opened.semantics != SEMANTICS {
+            return Err(SnapshotError::Semantics { found: opened.semantics });
         }
-        if number(8) != FORMAT {
-            return Err(SnapshotError::Format { found: number(8) });
-        }
-        if number(12) != SEMANTICS {
-            return Err(SnapshotError::Semantics { found: number(12) });
-        }
-        let length = u64::from(number(16)) | u64::from(number(20)) << 32;
-        let announced = length.saturating_add((HEADER_LEN + HASH_LEN) as u64);
-        if announced != bytes.len() as u64 {
-            return Err(SnapshotError::Length { announced, found: bytes.len() as u64 });
-        }
-        let (covered, hash) = bytes.split_at(bytes.len() - HASH_LEN);
-        if StateHash::of_bytes(covered).0.to_le_bytes() != *hash {
-            return Err(SnapshotError::Hash);
-        }
-        let state: State = codec::decode(&covered[HEADER_LEN..]).map_err(SnapshotError::Decode)?;
+        let state: State = opened.decode()?;
         state.validate().map_err(SnapshotError::Invalid)?;
         Ok(World::of(state, Default::default()))
     }
@@ -113,15 +105,5 @@ impl World {
 
 /// [`World::to_bytes`] of a state.
 pub(super) fn state_to_bytes(state: &State) -> Vec<u8> {
-    let mut bytes = Vec::new();
-    bytes.extend_from_slice(&MAGIC);
-    bytes.extend_from_slice(&FORMAT.to_le_bytes());
-    bytes.extend_from_slice(&SEMANTICS.to_le_bytes());
-    bytes.extend_from_slice(&[0; 8]);
-    codec::encode_into(state, &mut bytes);
-    let length = (bytes.len() - HEADER_LEN) as u64;
-    bytes[HEADER_LEN - 8..HEADER_LEN].copy_from_slice(&length.to_le_bytes());
-    let hash = StateHash::of_bytes(&bytes);
-    bytes.extend_from_slice(&hash.0.to_le_bytes());
-    bytes
+    ENVELOPE.seal(SEMANTICS, state)
 }

@@ -82,6 +82,36 @@ impl Game for Counter {
     }
 }
 
+/// Methods of a game that has a counter in the field `$counter` and differs from it in its other methods.
+macro_rules! like_its_counter {
+    ($counter:tt) => {
+        fn players(&self) -> u32 {
+            self.$counter.players()
+        }
+
+        fn tick_rate(&self) -> u32 {
+            self.$counter.tick_rate()
+        }
+
+        fn state_hash(&self) -> ::lockstep2d::hash::StateHash {
+            self.$counter.state_hash()
+        }
+
+        fn save(&self) -> Self::Save {
+            self.$counter.save()
+        }
+
+        fn load(&mut self, save: &Self::Save) {
+            self.$counter.load(save);
+        }
+
+        fn work(&self, inputs: &[Self::Input]) -> u64 {
+            self.$counter.work(inputs)
+        }
+    };
+}
+pub(crate) use like_its_counter;
+
 pub(crate) fn setup() -> Setup {
     Setup { start: 5, label: "a".into() }
 }

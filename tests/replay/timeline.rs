@@ -11,7 +11,7 @@ use lockstep2d::replay::{
 };
 use lockstep2d::scenes;
 
-use crate::counter::{Counter, Input, Setup, add, inputs_at, setup};
+use crate::counter::{Counter, Input, Setup, add, inputs_at, like_its_counter, setup};
 use crate::forge::forge;
 use crate::record;
 
@@ -385,34 +385,12 @@ impl Game for Forgetful {
         Ok(Forgetful { counter: Counter::new(setup)?, last: 0 })
     }
 
-    fn players(&self) -> u32 {
-        self.counter.players()
-    }
-
-    fn tick_rate(&self) -> u32 {
-        self.counter.tick_rate()
-    }
+    like_its_counter!(counter);
 
     fn step(&mut self, inputs: &[Input]) {
         self.counter.step(inputs);
         self.counter.sum += self.last;
         self.last = 1 + self.counter.sum % 5;
-    }
-
-    fn state_hash(&self) -> StateHash {
-        self.counter.state_hash()
-    }
-
-    fn save(&self) -> Counter {
-        self.counter.clone()
-    }
-
-    fn load(&mut self, save: &Counter) {
-        self.counter = save.clone();
-    }
-
-    fn work(&self, inputs: &[Input]) -> u64 {
-        self.counter.work(inputs)
     }
 }
 

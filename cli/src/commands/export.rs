@@ -1,4 +1,4 @@
-//! `export`: plays a replay and writes what is there in another format.
+//! `export`: plays a replay and writes its states as pictures, animations, plots or JSON.
 
 use std::path::PathBuf;
 
@@ -6,14 +6,13 @@ use clap::Args;
 use lockstep2d::draw::{Layers, View};
 use lockstep2d::lockstep::Game;
 use lockstep2d::math::Aabb;
-use lockstep2d::replay::{Limits, Playback, Verdict};
+use lockstep2d::replay::{Limits, Playback};
 use lockstep2d::report::Evidence;
 use lockstep2d::world::World;
 
 use crate::console::Console;
+use crate::context::{CommandResult, Context};
 use crate::error::CommandError;
-use crate::exit::Exit;
-use crate::files;
 
 mod animation;
 mod format;
@@ -26,36 +25,36 @@ mod still;
 use format::{Format, Formats};
 use output::Output;
 
-/// Play a replay and write what is there as a picture, an animation, a plot or JSON
+/// Play a replay and write its states as a picture, an animation, a plot or JSON
 #[derive(Args, Debug)]
 #[command(
-    after_help = "The format can be left out where the name of the file to write ends in it. Tick t is the state after t \
-                        ticks; 0 is the start. A picture is of one tick, the last unless --tick says otherwise, an \
-                        animation, a plot and JSON of all from --from to --to. A line of JSON has the tick, the state \
-                        hash and the game's save in its form for people; a fixed-point number is its bits, and beside \
-                        them a decimal. Of a snapshot of a world there is a picture, or a line of JSON.\n\nExit code: 0 \
-                        when it was written, 1 when the replay cannot be played as far, 2 for wrong usage, or files \
-                        that cannot be read or written."
+    after_help = "The format can be omitted if the output file name ends in it. Tick t is the state after t ticks; 0 \
+                        is the start. A picture shows one tick, by default the last. An animation, a plot and JSON \
+                        cover the ticks --from to --to. A line of JSON has the tick, the state hash and the game's \
+                        save in readable form; a fixed-point number is given as bits and as a decimal. A snapshot of a \
+                        world can be written as a picture or as a line of JSON.\n\nExit code: 0 when it was written, 1 \
+                        when the replay cannot be played up to the tick, 2 for wrong usage, or files that cannot be \
+                        read or written."
 )]
 pub(crate) struct Arguments {
     /// The replay, or a snapshot of a world
     file: PathBuf,
     #[command(flatten)]
     formats: Formats,
-    /// The file to write; JSON, SVG and plots go to the standard output without it
+    /// The file to write [default for JSON, SVG and plots: the standard output]
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
-    /// After how many ticks, instead of at the end
+    /// The tick to write [default: the last for a picture, all for JSON]
     #[arg(long, value_name = "N")]
     tick: Option<u64>,
-    /// The first tick, instead of the start
+    /// The first tick [default: the start]
     #[arg(long, value_name = "TICK", conflicts_with = "tick")]
     from: Option<u64>,
-    /// The last tick, instead of the end
+    /// The last tick [default: the end]
     #[arg(long, value_name = "TICK", conflicts_with = "tick")]
     to: Option<u64>,
-    /// Ticks from one frame, or line of JSON, to the next; so many that there are 30 frames a second at most, unless
-    /// said otherwise
+    /// Number of ticks between frames or lines of JSON [default: 1 for JSON; for animations, the smallest with at most
+    /// 30 frames a second]
     #[arg(long, value_name = "TICKS", value_parser = clap::value_parser!(u32).range(1..))]
     every: Option<u32>,
     /// Width in pixels
@@ -64,28 +63,20 @@ pub(crate) struct Arguments {
     /// Height in pixels
     #[arg(long, value_name = "PIXELS", value_parser = clap::value_parser!(u32).range(64..=16384))]
     height: Option<u32>,
-    /// What to draw, by its names with commas between them, or `all`, or `none`
+    /// Names of the layers to draw, separated by commas, or `all`, or `none`
     #[arg(long, value_name = "NAMES", value_parser = options::layers)]
     layers: Option<Layers>,
-    /// Which part of the world to draw: two opposite corners in metres
+    /// The part of the world to draw, as two opposite corners in metres
     #[arg(long, value_name = "X0,Y0,X1,Y1", value_parser = options::window, allow_hyphen_values = true)]
     window: Option<Aabb>,
 }
 
-/// How a game wants to be seen.
-pub(crate) type ViewOf<G> = fn(&G) -> View;
-
-pub(crate) fn run<G: Game>(
-    arguments: &Arguments,
-    view: Option<ViewOf<G>>,
-    limits: &Limits,
-    console: &mut Console<'_>,
-) -> Result<Exit, CommandError> {
+pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) -> CommandResult {
     let format = arguments.formats.chosen(arguments.output.as_deref())?;
     arguments.check(format)?;
-    let bytes = files::load(&arguments.file, limits.file_bytes)?;
+    let (bytes, limits) = (context.load(&arguments.file)?, context.limits());
     if let Ok(Evidence::World(world)) = Evidence::read(bytes.clone(), limits) {
-        return export_world(&world, format, arguments, console);
+        return export_world(&world, format, arguments, &mut context.console);
     }
     let mut replay = Replay::<G>::open(&bytes, arguments, limits)?;
     match format {
@@ -93,20 +84,18 @@ pub(crate) fn run<G: Game>(
             let tick = arguments.tick.unwrap_or(replay.playback.ticks());
             replay.check(tick)?;
             replay.play_to(tick)?;
-            let view = arguments.view(replay.view(view));
-            still::write(replay.world()?, &view, format, arguments, console)
+            let view = arguments.view(replay.view(context.tool.view));
+            still::write(replay.world()?, &view, format, arguments, &mut context.console)
         }
-        Format::Gif | Format::Apng => {
-            animation::write(&bytes, replay, view, format, (arguments, limits), console)
-        }
+        Format::Gif | Format::Apng => animation::write(&bytes, replay, format, arguments, context),
         Format::Json => {
             let (first, last) = replay.range(arguments)?;
             let every = arguments.every.unwrap_or(1);
-            Output::write(arguments.output.as_deref(), console, |output| {
+            Output::write(arguments.output.as_deref(), &mut context.console, |output| {
                 json::write(replay, (first..=last).step_by(every as usize), output)
             })
         }
-        Format::Plot => plot::write(replay, arguments, console),
+        Format::Plot => plot::write(replay, arguments, &mut context.console),
     }
 }
 
@@ -115,7 +104,7 @@ fn export_world(
     format: Format,
     arguments: &Arguments,
     console: &mut Console<'_>,
-) -> Result<Exit, CommandError> {
+) -> CommandResult {
     if arguments.tick.is_some_and(|tick| tick != world.tick()) {
         return Err(CommandError::NothingThere { what: "other tick than its own".into() });
     }
@@ -134,7 +123,7 @@ fn export_world(
 }
 
 impl Arguments {
-    /// Refuses options that the format has no use for.
+    /// Refuses options that do not apply to the format.
     fn check(&self, format: Format) -> Result<(), CommandError> {
         let is_still = matches!(format, Format::Svg | Format::Png);
         let is_animation = matches!(format, Format::Gif | Format::Apng);
@@ -155,7 +144,7 @@ impl Arguments {
         }
     }
 
-    /// What the game wants to show, as the arguments have it.
+    /// The game's own view, changed by the arguments.
     fn view(&self, game: View) -> View {
         let (width, height) = (self.width.unwrap_or(game.width), self.height.unwrap_or(game.height));
         let frame = self.window.map_or(game.frame, lockstep2d::draw::Frame::Window);
@@ -163,7 +152,7 @@ impl Arguments {
     }
 }
 
-/// A replay that is played up to the ticks that are asked for.
+/// A replay that is played on demand up to a tick.
 struct Replay<'a, G: Game> {
     playback: Playback<'a, G>,
     path: &'a PathBuf,
@@ -172,11 +161,10 @@ struct Replay<'a, G: Game> {
 impl<'a, G: Game> Replay<'a, G> {
     fn open(bytes: &'a [u8], arguments: &'a Arguments, limits: &Limits) -> Result<Self, CommandError> {
         let path = &arguments.file;
-        let refused = |verdict| CommandError::Replay { path: path.clone(), verdict };
-        Ok(Replay { playback: Playback::open(bytes, limits).map_err(refused)?, path })
+        Ok(Replay { playback: Playback::open(bytes, limits).map_err(CommandError::replay(path))?, path })
     }
 
-    /// The first and the last tick that are asked for.
+    /// The first and the last requested tick.
     fn range(&self, arguments: &Arguments) -> Result<(u64, u64), CommandError> {
         let first = arguments.tick.or(arguments.from).unwrap_or(0);
         let last = arguments.tick.or(arguments.to).unwrap_or(self.playback.ticks());
@@ -188,23 +176,22 @@ impl<'a, G: Game> Replay<'a, G> {
         Ok((first, last))
     }
 
-    /// Refuses a tick that is not there.
+    /// Refuses a tick after the end.
     fn check(&self, tick: u64) -> Result<(), CommandError> {
         let ticks = self.playback.ticks();
         let path = || self.path.clone();
         if tick > ticks { Err(CommandError::NoSuchTick { path: path(), tick, ticks }) } else { Ok(()) }
     }
 
-    /// Plays on until after `tick` ticks.
+    /// Plays on up to tick `tick`.
     fn play_to(&mut self, tick: u64) -> Result<(), CommandError> {
-        let refused = |verdict: Verdict| CommandError::Replay { path: self.path.clone(), verdict };
         while self.playback.tick() < tick {
-            self.playback.step().map_err(refused)?;
+            self.playback.step().map_err(CommandError::replay(self.path))?;
         }
         Ok(())
     }
 
-    fn view(&self, view: Option<ViewOf<G>>) -> View {
+    fn view(&self, view: Option<fn(&G) -> View>) -> View {
         view.map_or_else(View::default, |view| view(self.playback.game()))
     }
 

@@ -1,4 +1,4 @@
-//! `fork`: the beginning of a replay, with another end.
+//! `fork`: writes a replay with the beginning of another one and a different end.
 
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read};
@@ -9,31 +9,31 @@ use lockstep2d::lockstep::Game;
 use lockstep2d::replay::Limits;
 use serde::Serialize;
 
-use crate::console::Console;
+use crate::context::{CommandResult, Context};
 use crate::error::CommandError;
 use crate::exit::Exit;
 use crate::files::{self, Shown};
 use crate::rewriting::{Copy, CopyError};
 
-/// Write a new replay with the beginning of another one
+/// Write a replay with the beginning of another one and a different end
 #[derive(Args, Debug)]
 #[command(
-    after_help = "It begins like the old one up to tick N, goes on with the inputs of --then, then with --idle \
-                        ticks, and ends there. A line of inputs is a JSON array with one entry for each player; an empty \
-                        line is skipped. The new replay is verified before it is written.\n\nExit code: 0 when it was \
-                        written, 1 when the old replay cannot be played as far or the new one would not match, 2 for \
-                        wrong usage, or files that cannot be read or written."
+    after_help = "The new replay has the first N ticks of the old one, then one tick for each line of --then, then \
+                        --idle ticks without input. A line is a JSON array with one input for each player; empty lines \
+                        are skipped. The new replay is verified before it is written.\n\nExit code: 0 when it was \
+                        written, 1 when the old replay cannot be played up to tick N or the new one would not match, 2 \
+                        for wrong usage, or files that cannot be read or written."
 )]
 pub(crate) struct Arguments {
     /// The replay
     file: PathBuf,
-    /// How many of its ticks to take over
+    /// Number of ticks to keep
     #[arg(long, value_name = "N")]
     tick: u64,
-    /// The inputs to go on with, a line of JSON for each tick; - is the standard input
+    /// The inputs that follow, one line of JSON for each tick; - is the standard input
     #[arg(long, value_name = "FILE")]
     then: Option<PathBuf>,
-    /// For how many ticks to go on with nothing pressed
+    /// Number of ticks without input to add
     #[arg(long, value_name = "K", default_value_t = 0)]
     idle: u64,
     /// The file to write
@@ -44,12 +44,8 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
-pub(crate) fn run<G: Game>(
-    arguments: &Arguments,
-    limits: &Limits,
-    console: &mut Console<'_>,
-) -> Result<Exit, CommandError> {
-    let bytes = files::load(&arguments.file, limits.file_bytes)?;
+pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) -> CommandResult {
+    let (bytes, limits) = (context.load(&arguments.file)?, context.limits());
     let of_file = |error: CopyError| error.of_file(&arguments.file);
     let mut copy = Copy::<G>::new(&bytes, arguments.tick, limits).map_err(of_file)?;
     let kept = copy.ticks();
@@ -61,7 +57,7 @@ pub(crate) fn run<G: Game>(
         play_lines(&mut copy, path, limits)?;
     }
     let idle = vec![G::Input::default(); usize::try_from(copy.players()).unwrap_or(0)];
-    // A verifier with these limits would not play more.
+    // A verifier with these limits would refuse more ticks.
     let idle_ticks = arguments.idle.min(limits.ticks.saturating_sub(copy.ticks()).saturating_add(1));
     for _ in 0..idle_ticks {
         copy.step(&idle)?;
@@ -74,10 +70,12 @@ pub(crate) fn run<G: Game>(
     if arguments.json {
         let file = arguments.output.display().to_string();
         let line = Line { file, ticks, kept, added, hash: hash.to_string() };
-        console.line(serde_json::to_string(&line).expect("strings and numbers have a JSON form"))?;
+        context.console.json(&line)?;
     } else {
         let (old, new) = (Shown(&arguments.file), Shown(&arguments.output));
-        console.line(format_args!("{new}: {kept} ticks of {old} and {added} more, final hash {hash}"))?;
+        context
+            .console
+            .line(format_args!("{new}: {kept} ticks of {old} and {added} more, final hash {hash}"))?;
     }
     Ok(Exit::Success)
 }
@@ -91,18 +89,18 @@ struct Line {
     hash: String,
 }
 
-/// Plays a tick for each line of inputs.
+/// Plays one tick for each line of inputs.
 fn play_lines<G: Game>(copy: &mut Copy<G>, path: &Path, limits: &Limits) -> Result<(), CommandError> {
-    let read_error = |error| CommandError::Read { path: path.to_path_buf(), error };
+    let read_error = CommandError::read(path);
     let source: Box<dyn Read> = if path == Path::new("-") {
         Box::new(io::stdin().lock())
     } else {
-        Box::new(File::open(path).map_err(read_error)?)
+        Box::new(File::open(path).map_err(&read_error)?)
     };
-    // JSON takes some ten times the bytes that inputs have in a replay.
+    // Inputs take some ten times as many bytes in JSON as in a replay.
     let lines = BufReader::new(source.take(limits.file_bytes.saturating_mul(16))).lines();
     for (number, line) in (1..).zip(lines) {
-        let line = line.map_err(read_error)?;
+        let line = line.map_err(&read_error)?;
         if line.trim().is_empty() {
             continue;
         }

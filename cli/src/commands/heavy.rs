@@ -1,7 +1,7 @@
-//! `heavy`: plays a replay and, at every tick, takes the game through bytes into a new one that plays on beside it.
+//! `heavy`: plays a replay and, at every tick, saves the game to bytes and restores it into a new game that plays on
+//! beside the first one.
 
 use std::fmt;
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -11,15 +11,16 @@ use lockstep2d::replay::{Limits, TickInputs};
 use serde_json::{Value as Json, json};
 
 use super::diff;
-use crate::console::{BAD, Console, GOOD};
+use crate::console::{BAD, GOOD};
+use crate::context::{CommandResult, Context};
 use crate::error::CommandError;
 use crate::exit::Exit;
 use crate::files::{self, Shown};
 
-/// Play a replay, and at every tick save it to bytes, restore them into a new game, and compare
+/// Play a replay, and at every tick save the game to bytes, restore it into a new game, and compare
 ///
-/// The new game plays on beside the first one: after every phase of the physics step and after every tick both must be in
-/// the same state. What the replay's own checkpoints say is for `verify`.
+/// The new game plays on beside the first one: after every phase of the physics step and after every tick both must
+/// have the same state. Checkpoints of the replay are not checked; `verify` does that.
 #[derive(Args, Debug)]
 #[command(
     after_help = "Exit code: 0 when nothing differs, 1 when something does or the replay cannot be played, 2 for \
@@ -28,19 +29,19 @@ use crate::files::{self, Shown};
 pub(crate) struct Arguments {
     /// The replay
     file: PathBuf,
-    /// The tick from which on to compare; before it the game is only played
+    /// The first tick to compare; up to there the game is only played
     #[arg(long, default_value_t = 0, value_name = "TICK")]
     from: u64,
-    /// The tick up to which to play
+    /// The last tick to play [default: the end]
     #[arg(long, value_name = "TICK")]
     to: Option<u64>,
-    /// Roll back by 1 to 8 ticks as well, also after wrong guesses
+    /// Also roll back by 1 to 8 ticks, with right and wrong input predictions
     #[arg(long)]
     rollback: bool,
-    /// Play in every other way that must make no difference, too: without caches, with other broad phases and so on
+    /// Also play every other variant that must give the same states: without caches, with other broad phases and so on
     #[arg(long)]
     all: bool,
-    /// Write a replay that fails and is as short as could be found
+    /// On failure, write the shortest failing replay that could be found
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     /// Print one JSON document
@@ -48,13 +49,9 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
-pub(crate) fn run<G: Game>(
-    arguments: &Arguments,
-    limits: &Limits,
-    console: &mut Console<'_>,
-) -> Result<Exit, CommandError> {
+pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) -> CommandResult {
     let path = || arguments.file.clone();
-    let bytes = files::load(&arguments.file, limits.file_bytes)?;
+    let (bytes, limits) = (context.load(&arguments.file)?, context.limits());
     let result = match check_replay::<G>(&bytes, &options(arguments, limits)) {
         Ok(checked) if checked.ticks < arguments.from.max(arguments.to.unwrap_or(0)) => {
             let tick = arguments.from.max(arguments.to.unwrap_or(0));
@@ -66,14 +63,13 @@ pub(crate) fn run<G: Game>(
         Err(CheckError::Record(error)) => return Err(CommandError::Record(error)),
     };
     if let (Err(failure), Some(output)) = (&result, &arguments.output) {
-        fs::write(output, &failure.replay)
-            .map_err(|error| CommandError::Write { path: output.clone(), error })?;
+        files::save(output, &failure.replay)?;
     }
     let outcome = Outcome { arguments, result: result.as_ref().map_err(AsRef::as_ref) };
     if arguments.json {
-        console.line(outcome.document())?;
+        context.console.line(outcome.document())?;
     } else {
-        console.line(&outcome)?;
+        context.console.line(&outcome)?;
     }
     Ok(if result.is_ok() { Exit::Success } else { Exit::NoMatch })
 }
@@ -81,7 +77,7 @@ pub(crate) fn run<G: Game>(
 fn options(arguments: &Arguments, limits: &Limits) -> Options {
     let mut options = Options::default();
     if !arguments.all {
-        // A game that does not repeat itself is not to be blamed on the save.
+        // A game that is not deterministic is told apart from a save that loses something.
         options.ways = vec![Way::Again, Way::Reloaded];
         options.ways.extend(arguments.rollback.then_some(Way::RolledBack));
     }
@@ -95,7 +91,7 @@ fn options(arguments: &Arguments, limits: &Limits) -> Options {
     }
 }
 
-/// How many ticks a replay has whose inputs have been read.
+/// Number of ticks of a replay, as far as its inputs can be read.
 fn ticks(file: &[u8], limits: &Limits) -> u64 {
     let Ok(mut inputs) = TickInputs::open(file, limits) else {
         return 0;
@@ -107,7 +103,7 @@ fn ticks(file: &[u8], limits: &Limits) -> u64 {
     ticks
 }
 
-/// What has come of it.
+/// The result of the check, for printing.
 struct Outcome<'a> {
     arguments: &'a Arguments,
     result: Result<&'a Checked, &'a Failure>,
@@ -136,7 +132,7 @@ impl fmt::Display for Outcome<'_> {
     }
 }
 
-/// A finding, whose texts may be a stranger's and must not reach the terminal as they are.
+/// A finding with each of its lines escaped, since its texts may come from an untrusted file.
 struct Lines<'a>(&'a Finding);
 
 impl fmt::Display for Lines<'_> {

@@ -1,4 +1,4 @@
-//! `inspect`: says what a file is, without playing it, and what a state is made of.
+//! `inspect`: describes a file without playing it, and lists the fields of a state.
 
 use std::path::{Path, PathBuf};
 
@@ -6,12 +6,11 @@ use clap::Args;
 use lockstep2d::codec;
 use lockstep2d::inspect::fields;
 use lockstep2d::lockstep::Game;
-use lockstep2d::replay::{Limits, Playback};
+use lockstep2d::replay::Playback;
 use lockstep2d::report::{DesyncReport, Evidence, EvidenceError};
 
-use crate::console::Console;
+use crate::context::{CommandResult, Context};
 use crate::error::CommandError;
-use crate::exit::Exit;
 use crate::files;
 
 mod replay;
@@ -21,61 +20,58 @@ mod world;
 
 use state::State;
 
-/// Say what is in a replay, a snapshot of a world or a report of a divergence
+/// Describe a replay, a snapshot of a world or a report of a divergence
 #[derive(Args, Debug)]
 #[command(
-    after_help = "Without --tick nothing is played, and files of other games and engines can be looked at as \
-                        well; of a damaged replay what is whole is shown. Tick t is the state after t ticks; 0 is the \
-                        start. A snapshot, and a save that `seek` has written, have one state: any of --tick, --body and \
-                        --path shows it.\n\nExit code: 0 when the file is whole, even if it only is the beginning of a \
-                        replay, 1 when a replay is damaged or cannot be played as far, 2 for wrong usage, or a file that \
-                        is nothing of this or cannot be read."
+    after_help = "Without --tick nothing is played, so files of other games and other versions of the engine can be \
+                        described, too. For a damaged replay, the intact part is described. Tick t is the state after \
+                        t ticks; 0 is the start. A snapshot, or a save written by `seek`, has one state, which any of \
+                        --tick, --body and --path selects.\n\nExit code: 0 when the file is intact, even if it is an \
+                        incomplete replay, 1 when a replay is damaged or cannot be played up to the tick, 2 for wrong \
+                        usage, or a file of another kind or that cannot be read."
 )]
 pub(crate) struct Arguments {
     /// The file
     file: PathBuf,
-    /// List all fields of the state after so many ticks
+    /// List all fields of the state after N ticks
     #[arg(long, value_name = "N")]
     tick: Option<u64>,
-    /// Of these the fields of a body only, such as 12v1 or 12
+    /// List only the fields of this body, such as 12v1 or 12
     #[arg(long, value_name = "ID")]
     body: Option<String>,
-    /// Of these the fields only whose path begins so, as in world.bodies
+    /// List only fields whose path starts with this, such as world.bodies
     #[arg(long, value_name = "PREFIX", conflicts_with = "body")]
     path: Option<String>,
-    /// Show at most so many fields of a setup
+    /// Most fields of a setup to show
     #[arg(long, value_name = "N", default_value_t = 20)]
     fields: usize,
-    /// Print one JSON document, with all that there is
+    /// Print everything as one JSON document
     #[arg(long)]
     json: bool,
 }
 
-pub(crate) fn run<G: Game>(
-    arguments: &Arguments,
-    limits: &Limits,
-    console: &mut Console<'_>,
-) -> Result<Exit, CommandError> {
-    let bytes = files::load(&arguments.file, limits.file_bytes)?;
+pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) -> CommandResult {
+    let bytes = context.load(&arguments.file)?;
     let path = || arguments.file.clone();
-    match Evidence::read(bytes.clone(), limits) {
+    match Evidence::read(bytes.clone(), context.limits()) {
         Ok(Evidence::Replay(bytes)) if arguments.wants_state() => {
-            state_of_replay::<G>(&bytes, arguments, limits)?.print(arguments, console)
+            state_of_replay(&bytes, arguments, context)?.print(arguments, &mut context.console)
         }
         Ok(Evidence::Report(report)) if arguments.wants_state() => {
-            state_of_report::<G>(&report, arguments, limits)?.print(arguments, console)
+            state_of_report(&report, arguments, context)?.print(arguments, &mut context.console)
         }
         Ok(Evidence::World(world)) if arguments.wants_state() => {
             let fields = fields(&world.save())?;
             State { tick: Some(world.tick()), hash: Some(world.state_hash()), fields }
-                .print(arguments, console)
+                .print(arguments, &mut context.console)
         }
-        Ok(Evidence::Replay(bytes)) => replay::print::<G>(&bytes, arguments, limits, console),
-        Ok(Evidence::Report(report)) => report::print::<G>(&report, arguments, limits, console),
-        Ok(Evidence::World(world)) => world::print(&world, bytes.len(), arguments, console),
+        Ok(Evidence::Replay(bytes)) => replay::print(&bytes, arguments, context),
+        Ok(Evidence::Report(report)) => report::print(&report, arguments, context),
+        Ok(Evidence::World(world)) => world::print(&world, bytes.len(), arguments, &mut context.console),
         Err(error @ EvidenceError::Unknown) => match codec::decode::<G::Save>(&bytes) {
             Ok(save) if codec::encode(&save) == bytes => {
-                State { tick: None, hash: None, fields: fields(&save)? }.print(arguments, console)
+                State { tick: None, hash: None, fields: fields(&save)? }
+                    .print(arguments, &mut context.console)
             }
             _ => Err(CommandError::Evidence { path: path(), error }),
         },
@@ -89,30 +85,31 @@ impl Arguments {
     }
 }
 
-/// The state after the tick that was asked for, or at the start.
+/// The state after the requested tick, by default at the start.
 fn state_of_replay<G: Game>(
     bytes: &[u8],
     arguments: &Arguments,
-    limits: &Limits,
+    context: &Context<'_, G>,
 ) -> Result<State, CommandError> {
-    let refused = |verdict| CommandError::Replay { path: arguments.file.clone(), verdict };
-    let mut playback = Playback::<G>::open(bytes, limits).map_err(refused)?;
+    let refused = CommandError::replay(&arguments.file);
+    let mut playback = Playback::<G>::open(bytes, context.limits()).map_err(&refused)?;
     let (tick, ticks) = (arguments.tick.unwrap_or(0), playback.ticks());
     if tick > ticks {
         return Err(CommandError::NoSuchTick { path: arguments.file.clone(), tick, ticks });
     }
     while playback.tick() < tick {
-        playback.step().map_err(refused)?;
+        playback.step().map_err(&refused)?;
     }
     let fields = fields(&playback.game().save())?;
     Ok(State { tick: Some(tick), hash: Some(playback.game().state_hash()), fields })
 }
 
-/// The state that a report has of a tick: what its peer had, which need not be what its replay leads to.
+/// The state of a tick as the report's peer had it, which may differ from what its replay leads to. Without a save of
+/// that tick, the state is computed from the replay.
 fn state_of_report<G: Game>(
     report: &DesyncReport,
     arguments: &Arguments,
-    limits: &Limits,
+    context: &Context<'_, G>,
 ) -> Result<State, CommandError> {
     let tick = arguments.tick.unwrap_or(report.tick());
     let saved = report.saves().iter().find(|(saved, _)| *saved == tick);
@@ -120,7 +117,7 @@ fn state_of_report<G: Game>(
         if report.replay().is_empty() {
             return Err(CommandError::NothingThere { what: format!("state of tick {tick}") });
         }
-        return state_of_replay::<G>(report.replay(), arguments, limits);
+        return state_of_replay(report.replay(), arguments, context);
     };
     let save: G::Save =
         codec::decode(save).map_err(|error| CommandError::State { why: error.to_string() })?;
@@ -128,7 +125,7 @@ fn state_of_report<G: Game>(
     Ok(State { tick: Some(tick), hash: known.map(|(_, hash)| *hash), fields: fields(&save)? })
 }
 
-/// A text from a file, which must not reach a terminal as it is.
+/// Text from an untrusted file, escaped for a terminal.
 fn shown(text: &str) -> String {
     files::Shown(Path::new(text)).to_string()
 }

@@ -2,28 +2,28 @@
 
 use std::fs::File;
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use lockstep2d::hash::StateHash;
 use lockstep2d::lockstep::Game;
 use lockstep2d::replay::{CHECKPOINT_INTERVAL, Recording};
 
-use crate::console::Console;
+use crate::context::{CommandResult, Context};
 use crate::error::CommandError;
 use crate::exit::Exit;
 use crate::files::Shown;
-use crate::scenes::{Catalogue, Scene};
+use crate::scenes::Scene;
 
 /// Play a scene and write its replay
 #[derive(Args, Debug)]
 pub(crate) struct Arguments {
     /// The name of the scene, as `scenes` lists it
     scene: String,
-    /// For how many ticks; every scene has a number of its own
+    /// Number of ticks [default: depends on the scene]
     #[arg(long)]
     ticks: Option<u64>,
-    /// What random choices of the scene begin with
+    /// Seed of the scene's random choices
     #[arg(long, default_value_t = 0)]
     seed: u64,
     /// The file to write
@@ -31,11 +31,8 @@ pub(crate) struct Arguments {
     output: PathBuf,
 }
 
-pub(crate) fn run<G: Game>(
-    arguments: &Arguments,
-    catalogue: &dyn Catalogue<G>,
-    console: &mut Console<'_>,
-) -> Result<Exit, CommandError> {
+pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) -> CommandResult {
+    let catalogue = context.catalogue();
     let Some(scene) = catalogue.open(&arguments.scene, arguments.seed) else {
         let known = catalogue.scenes().into_iter().map(|scene| scene.name).collect();
         return Err(CommandError::UnknownScene { name: arguments.scene.clone(), known });
@@ -43,19 +40,19 @@ pub(crate) fn run<G: Game>(
     let ticks = arguments.ticks.unwrap_or(scene.ticks);
     let hash = write(scene, ticks, &arguments.output)?;
     let file = Shown(&arguments.output);
-    console.line(format_args!("{file}: recorded {ticks} ticks, final hash {hash}"))?;
+    context.console.line(format_args!("{file}: recorded {ticks} ticks, final hash {hash}"))?;
     Ok(Exit::Success)
 }
 
-/// Appends to the file as the game runs, so that a game that is interrupted leaves a valid beginning.
-fn write<G: Game>(mut scene: Scene<G>, ticks: u64, path: &PathBuf) -> Result<StateHash, CommandError> {
-    let write_error = |error| CommandError::Write { path: path.clone(), error };
+/// Appends to the file as the game runs, so that an interrupted run leaves a valid incomplete replay.
+fn write<G: Game>(mut scene: Scene<G>, ticks: u64, path: &Path) -> Result<StateHash, CommandError> {
+    let write_error = CommandError::write(path);
     let mut recording = Recording::<G>::start(&scene.setup, CHECKPOINT_INTERVAL)?;
-    let mut file = File::create(path).map_err(write_error)?;
+    let mut file = File::create(path).map_err(&write_error)?;
     for tick in 0..ticks {
         let inputs = (scene.script)(tick, recording.game());
         recording.step(&inputs)?;
-        file.write_all(&recording.take_bytes()).map_err(write_error)?;
+        file.write_all(&recording.take_bytes()).map_err(&write_error)?;
     }
     let hash = recording.game().state_hash();
     file.write_all(&recording.finish()?).map_err(write_error)?;

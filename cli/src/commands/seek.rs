@@ -1,48 +1,49 @@
-//! `seek`: goes to a tick of a replay, and back from there.
+//! `seek`: goes to a tick of a replay, and back from there, with keyframes.
 
-use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, value_parser};
 use lockstep2d::codec;
 use lockstep2d::lockstep::Game;
-use lockstep2d::replay::{KEYFRAMES_BYTES_MAX, Limits, SeekError, Timeline, TimelineOptions};
+use lockstep2d::replay::{KEYFRAMES_BYTES_MAX, SeekError, Timeline, TimelineOptions};
 use serde::Serialize;
 
 use crate::console::Console;
+use crate::context::{CommandResult, Context};
 use crate::counts::Counts;
+use crate::draft;
 use crate::error::CommandError;
 use crate::exit::Exit;
 use crate::files::{self, Shown};
 
-/// Go to a tick of a replay and say what is there
+/// Go to a tick of a replay and describe its state
 #[derive(Args, Debug)]
 #[command(
-    after_help = "Tick t is the state after t ticks; 0 is the start.\n\nA file of keyframes is written on the first \
-                        run and used, and added to, on later ones: then seeking costs no more than what lies between \
-                        two keyframes. Each has the state that the replay itself states for its tick. It is no verdict: \
-                        only `verify` tells whether the inputs lead there.\n\nExit code: 0 when the tick was reached, 1 \
-                        when the replay cannot be played as far, 2 for wrong usage, a file that cannot be read or \
-                        written, or keyframes of another replay."
+    after_help = "Tick t is the state after t ticks; 0 is the start.\n\nThe keyframe file is written on the first run; \
+                        later runs use it and add to it. Seeking then simulates at most the ticks between two \
+                        keyframes. Every keyframe must have the state hash that the replay states for its tick. This \
+                        does not verify the replay: only `verify` checks that the inputs lead to these states.\n\nExit \
+                        code: 0 when the tick was reached, 1 when the replay cannot be played up to the tick, 2 for \
+                        wrong usage, a file that cannot be read or written, or keyframes of another replay."
 )]
 pub(crate) struct Arguments {
     /// The replay
     file: PathBuf,
-    /// After how many ticks; 0 is the start
+    /// The tick to go to; 0 is the start
     #[arg(long, value_name = "N")]
     tick: u64,
-    /// Then go back one tick at a time, so many times
+    /// Then step back K times, one tick at a time
     #[arg(long, value_name = "K", default_value_t = 0)]
     back: u64,
-    /// A file of keyframes beside the replay
+    /// The keyframe file of the replay; it is written if it does not exist
     #[arg(long, value_name = "FILE")]
     keyframes: Option<PathBuf>,
-    /// Ticks from one keyframe to the next
+    /// Number of ticks between keyframes
     #[arg(long, value_name = "TICKS", default_value_t = TimelineOptions::default().interval,
           value_parser = value_parser!(u32).range(1..))]
     interval: u32,
-    /// Write the game's save there, in canonical bytes
+    /// Write the game's save to this file, in its canonical encoding
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     /// Print one JSON document
@@ -50,22 +51,18 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
-pub(crate) fn run<G: Game>(
-    arguments: &Arguments,
-    limits: &Limits,
-    console: &mut Console<'_>,
-) -> Result<Exit, CommandError> {
-    let bytes = files::load(&arguments.file, limits.file_bytes)?;
+pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) -> CommandResult {
+    let bytes = context.load(&arguments.file)?;
     let options = TimelineOptions { interval: arguments.interval, ..TimelineOptions::default() };
-    let mut timeline = Timeline::<G>::open(&bytes, &options, limits)
-        .map_err(|verdict| CommandError::Replay { path: arguments.file.clone(), verdict })?;
+    let mut timeline = Timeline::<G>::open(&bytes, &options, context.limits())
+        .map_err(CommandError::replay(&arguments.file))?;
     if let Some(path) = &arguments.keyframes {
         use_keyframes(&mut timeline, path)?;
     }
     let known = timeline.keyframes().count();
     let result = go(&mut timeline, arguments);
     if let Some(path) = arguments.keyframes.as_ref().filter(|_| timeline.keyframes().count() != known) {
-        replace(path, &timeline.keyframes_to_bytes())?;
+        draft::replace(path, &timeline.keyframes_to_bytes())?;
     }
     let (there, back) = result?;
 
@@ -83,14 +80,14 @@ pub(crate) fn run<G: Game>(
         keyframe_interval: timeline.interval(),
     };
     if arguments.json {
-        console.line(serde_json::to_string(&found).expect("strings and numbers have a JSON form"))?;
+        context.console.json(&found)?;
     } else {
-        found.print(arguments, console)?;
+        found.print(arguments, &mut context.console)?;
     }
     Ok(Exit::Success)
 }
 
-/// Goes where it was asked to go; how many ticks were simulated on the way there and on the way back.
+/// Goes to the requested tick, then back. Returns the numbers of ticks simulated on the way there and on the way back.
 fn go<G: Game>(timeline: &mut Timeline<'_, G>, arguments: &Arguments) -> Result<(u64, u64), CommandError> {
     let path = || arguments.file.clone();
     let explain = |error| match error {
@@ -109,29 +106,20 @@ fn go<G: Game>(timeline: &mut Timeline<'_, G>, arguments: &Arguments) -> Result<
     Ok((there, timeline.simulated() - there))
 }
 
-/// Takes over the keyframes of a file, if there is one.
+/// Loads the keyframes of a file, if it exists.
 fn use_keyframes<G: Game>(timeline: &mut Timeline<'_, G>, path: &Path) -> Result<(), CommandError> {
-    // Beside the saves there are some bytes for each, and for the file.
+    // 1 MiB beyond the saves is enough for the headers of the file and of each keyframe.
     let bytes = match files::read(path, (KEYFRAMES_BYTES_MAX + (1 << 20)) as u64) {
         Ok(bytes) => bytes,
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(()),
-        Err(error) => return Err(CommandError::Read { path: path.to_path_buf(), error }),
+        Err(error) => return Err(CommandError::read(path)(error)),
     };
     timeline
         .use_keyframes(&bytes)
         .map_err(|error| CommandError::Keyframes { path: path.to_path_buf(), error })
 }
 
-/// Writes a file in one piece: whoever is interrupted leaves the old one.
-fn replace(path: &Path, bytes: &[u8]) -> Result<(), CommandError> {
-    let mut unfinished = path.to_path_buf().into_os_string();
-    unfinished.push(".unfinished");
-    let unfinished = PathBuf::from(unfinished);
-    files::save(&unfinished, bytes)?;
-    fs::rename(&unfinished, path).map_err(|error| CommandError::Write { path: path.to_path_buf(), error })
-}
-
-/// What there is at a tick, and what it has cost to go there.
+/// The description of a tick, and the numbers of ticks simulated to reach it.
 #[derive(Serialize)]
 struct Found {
     file: String,

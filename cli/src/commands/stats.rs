@@ -1,42 +1,39 @@
-//! `stats`: how much there was in each tick of a replay.
+//! `stats`: figures of every tick of a replay.
 
 use std::path::PathBuf;
 
 use clap::Args;
 use lockstep2d::hash::StateHash;
 use lockstep2d::lockstep::Game;
-use lockstep2d::replay::{Limits, Playback, Step};
+use lockstep2d::replay::{Playback, Step};
 
 use crate::console::Console;
+use crate::context::{CommandResult, Context};
 use crate::error::CommandError;
 use crate::exit::Exit;
 use crate::figures;
-use crate::files::{self, Shown};
+use crate::files::Shown;
 
-/// Play a replay and say how much there was in each tick
+/// Play a replay and print figures of its ticks: work, bodies, contacts and so on
 #[derive(Args, Debug)]
 #[command(
-    after_help = "Work is what the game allows for the next tick in front of it, in work units; faults are clamps \
-                        that changed a result. Tick t is the state after t ticks, or what was done on the way to it.\
-                        \n\nExit code: 0 when all of it was played, 1 when it cannot be played to its end, 2 for wrong \
-                        usage, or a file that cannot be read."
+    after_help = "Work is the game's estimate of the cost of a tick, made before the tick, in work units. Faults are \
+                        results that were clamped. Figures of tick t are of the state after t ticks, and of the step \
+                        that led to it.\n\nExit code: 0 when all of it was played, 1 when it cannot be played to its \
+                        end, 2 for wrong usage, or a file that cannot be read."
 )]
 pub(crate) struct Arguments {
     /// The replay
     file: PathBuf,
-    /// Print a line of JSON for each tick, instead of the largest and the mean
+    /// Print a line of JSON for each tick, instead of the largest and mean values
     #[arg(long)]
     json: bool,
 }
 
-pub(crate) fn run<G: Game>(
-    arguments: &Arguments,
-    limits: &Limits,
-    console: &mut Console<'_>,
-) -> Result<Exit, CommandError> {
-    let refused = |verdict| CommandError::Replay { path: arguments.file.clone(), verdict };
-    let bytes = files::load(&arguments.file, limits.file_bytes)?;
-    let mut playback = Playback::<G>::open(&bytes, limits).map_err(refused)?;
+pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) -> CommandResult {
+    let refused = CommandError::replay(&arguments.file);
+    let bytes = context.load(&arguments.file)?;
+    let mut playback = Playback::<G>::open(&bytes, context.limits()).map_err(&refused)?;
     let mut summary = Summary::default();
     let failed = loop {
         let work_before = playback.work();
@@ -48,27 +45,27 @@ pub(crate) fn run<G: Game>(
         let mut figures = vec![("work", playback.work() - work_before)];
         figures.extend(playback.world().into_iter().flat_map(figures::of));
         if arguments.json {
-            console.line(line(playback.tick(), playback.game().state_hash(), &figures))?;
+            context.console.line(line(playback.tick(), playback.game().state_hash(), &figures))?;
         }
         summary.add(playback.tick(), &figures);
     };
     if !arguments.json {
         let (file, ticks) = (Shown(&arguments.file), summary.ticks);
         let hash = playback.game().state_hash();
-        console.line(format_args!("{file}: {ticks} ticks, state {hash}"))?;
-        summary.print(console)?;
+        context.console.line(format_args!("{file}: {ticks} ticks, state {hash}"))?;
+        summary.print(&mut context.console)?;
     }
     failed.map_or(Ok(Exit::Success), |verdict| Err(refused(verdict)))
 }
 
-/// A line of JSON, in the order of the table. The names are ours and need no escapes.
+/// A line of JSON, in the order of the table. The names are fixed and need no escapes.
 fn line(tick: u64, hash: StateHash, figures: &[(&str, u64)]) -> String {
     let mut line = format!("{{\"tick\":{tick},\"hash\":\"{hash}\"");
     line.extend(figures.iter().map(|(name, value)| format!(",\"{name}\":{value}")));
     line + "}"
 }
 
-/// All ticks together.
+/// The figures of all ticks, summarised.
 #[derive(Default)]
 struct Summary {
     ticks: u64,
@@ -79,7 +76,7 @@ struct Figure {
     name: &'static str,
     total: u128,
     largest: u64,
-    /// The first tick with the largest.
+    /// The first tick with the largest value.
     tick: u64,
 }
 

@@ -1,13 +1,12 @@
-//! `trace`: plays a replay and writes all that `bisect` needs of its last ticks.
+//! `trace`: plays a replay and writes the states and phases of its last ticks, for `bisect`.
 
 use std::path::PathBuf;
 
 use clap::Args;
 use lockstep2d::lockstep::Game;
-use lockstep2d::replay::Limits;
 use lockstep2d::report::Trace;
 
-use crate::console::Console;
+use crate::context::{CommandResult, Context};
 use crate::error::CommandError;
 use crate::exit::Exit;
 use crate::files::{self, Shown};
@@ -15,16 +14,17 @@ use crate::files::{self, Shown};
 /// Play a replay and write the states and phases of some ticks, for bisect
 #[derive(Args, Debug)]
 #[command(
-    after_help = "The inputs are played again by this program, whatever the checkpoints of the file say. Another \
-                        program that bisects the trace tells in which tick, phase, body and field the two part."
+    after_help = "This program plays the inputs again; checkpoints of the file are not checked. A program of another \
+                        platform can `bisect` the trace to find the tick, phase, body and field in which the two first \
+                        differ."
 )]
 pub(crate) struct Arguments {
     /// The replay
     file: PathBuf,
-    /// The last tick to trace; without it, the end
+    /// The last tick to trace [default: the end]
     #[arg(long, value_name = "TICK")]
     to: Option<u64>,
-    /// How many ticks before it to trace
+    /// Number of ticks before it to trace
     #[arg(long, default_value_t = 120)]
     ticks: u32,
     /// The file to write
@@ -32,19 +32,15 @@ pub(crate) struct Arguments {
     output: PathBuf,
 }
 
-pub(crate) fn run<G: Game>(
-    arguments: &Arguments,
-    limits: &Limits,
-    console: &mut Console<'_>,
-) -> Result<Exit, CommandError> {
+pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) -> CommandResult {
     let Arguments { file, to, ticks, output } = arguments;
-    let bytes = files::load(file, limits.file_bytes)?;
-    let traced = Trace::<G>::of_replay(&bytes, limits, to.unwrap_or(u64::MAX), *ticks);
+    let bytes = context.load(file)?;
+    let traced = Trace::<G>::of_replay(&bytes, context.limits(), to.unwrap_or(u64::MAX), *ticks);
     let report = traced.map_err(|error| CommandError::Trace { path: file.clone(), error })?;
     files::save(output, &report.to_bytes())?;
     let (known, left_out) = (report.history().len(), report.saves_left_out());
     let first = report.history().first().map_or(0, |(tick, _)| *tick);
-    console.line(format_args!(
+    context.console.line(format_args!(
         "{}: ticks {first} to {}, {} of {known} states",
         Shown(output),
         report.tick(),

@@ -1,4 +1,4 @@
-//! `trim`: makes what is whole of a replay complete.
+//! `trim`: makes a complete replay of the intact part of another one.
 
 use std::path::PathBuf;
 
@@ -7,24 +7,25 @@ use lockstep2d::lockstep::Game;
 use lockstep2d::replay::{Limits, Part, ReadError, Reader, Verdict};
 use serde::Serialize;
 
-use crate::console::{Console, DOUBTFUL};
+use crate::console::DOUBTFUL;
+use crate::context::{CommandResult, Context};
 use crate::error::CommandError;
 use crate::exit::Exit;
 use crate::files::{self, Shown};
 use crate::rewriting::{Copy, CopyError};
 
-/// Make a complete replay of what is whole of a cut or damaged one
+/// Make a complete replay of the intact part of a cut or damaged one
 #[derive(Args, Debug)]
 #[command(
-    after_help = "Kept are the blocks in front of the first damage that lead to the checkpoints that the replay \
-                        states. The new replay is verified before it is written. It begins where the old one does.\
-                        \n\nExit code: 0 when it was written, 1 when there is nothing to keep, 2 for wrong usage, or files \
-                        that cannot be read or written."
+    after_help = "Blocks are kept up to the first that is damaged or whose inputs do not lead to its checkpoint. The \
+                        start cannot be trimmed. The new replay is verified before it is written.\n\nExit code: 0 when \
+                        it was written, 1 when there is nothing to keep, 2 for wrong usage, or files that cannot be \
+                        read or written."
 )]
 pub(crate) struct Arguments {
     /// The replay
     file: PathBuf,
-    /// Keep at most so many ticks
+    /// Most ticks to keep
     #[arg(long, value_name = "N")]
     ticks: Option<u64>,
     /// The file to write
@@ -35,15 +36,9 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
-pub(crate) fn run<G: Game>(
-    arguments: &Arguments,
-    limits: &Limits,
-    console: &mut Console<'_>,
-) -> Result<Exit, CommandError> {
-    let bytes = files::load(&arguments.file, limits.file_bytes)?;
-    let refused =
-        |error: ReadError| CommandError::Replay { path: arguments.file.clone(), verdict: error.into() };
-    let (whole, damage) = whole_part(&bytes, limits).map_err(refused)?;
+pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) -> CommandResult {
+    let (bytes, limits) = (context.load(&arguments.file)?, context.limits());
+    let (whole, damage) = whole_part(&bytes, limits).map_err(CommandError::replay(&arguments.file))?;
     let most = arguments.ticks.unwrap_or(u64::MAX);
     let of_file = |error: CopyError| error.of_file(&arguments.file);
     let (copy, damage) = match Copy::<G>::new(whole, most, limits) {
@@ -56,18 +51,18 @@ pub(crate) fn run<G: Game>(
     let (replay, hash) = copy.finish(&arguments.output, limits)?;
     files::save(&arguments.output, &replay)?;
 
-    // What is behind the last tick that was asked for is of no interest.
+    // Damage after the last requested tick does not matter.
     let damage = damage.filter(|_| ticks < most);
     if arguments.json {
         let file = arguments.output.display().to_string();
         let line =
             Line { file, ticks, hash: hash.to_string(), left_out: damage.map(|verdict| verdict.to_string()) };
-        console.line(serde_json::to_string(&line).expect("strings and numbers have a JSON form"))?;
+        context.console.json(&line)?;
     } else {
         let (old, new) = (Shown(&arguments.file), Shown(&arguments.output));
-        console.line(format_args!("{new}: {ticks} ticks of {old}, final hash {hash}"))?;
+        context.console.line(format_args!("{new}: {ticks} ticks of {old}, final hash {hash}"))?;
         if let Some(verdict) = damage {
-            console.note(format_args!("{DOUBTFUL}left out:{DOUBTFUL:#} {old}: {verdict}"));
+            context.console.note(format_args!("{DOUBTFUL}left out:{DOUBTFUL:#} {old}: {verdict}"));
         }
     }
     Ok(Exit::Success)
@@ -81,7 +76,7 @@ struct Line {
     left_out: Option<String>,
 }
 
-/// The header and the blocks that are whole, and what is wrong behind them.
+/// The header and the intact blocks, and what is wrong with the block after them.
 fn whole_part<'a>(bytes: &'a [u8], limits: &Limits) -> Result<(&'a [u8], Option<Verdict>), ReadError> {
     let mut reader = Reader::open(bytes, limits)?;
     let mut end = reader.offset();

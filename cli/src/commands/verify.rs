@@ -1,4 +1,4 @@
-//! `verify`: plays replays again and prints a verdict for each.
+//! `verify`: plays replays again and prints a verdict for each file.
 
 use std::fmt;
 use std::io;
@@ -12,6 +12,7 @@ use lockstep2d::lockstep::Game;
 use lockstep2d::replay::Limits;
 
 use crate::console::{BAD, Console, DOUBTFUL, GOOD};
+use crate::context::{CommandResult, Context};
 use crate::error::CommandError;
 use crate::exit::Exit;
 use crate::files::{self, OneLine, Shown};
@@ -34,47 +35,47 @@ use shard::Shard;
 use tasks::Tasks;
 use totals::Totals;
 
-/// Play replays again and print a verdict for each
+/// Play replays again and print a verdict for each file
 #[derive(Args, Debug)]
 #[command(after_help = "Exit code: 0 when all match, 1 when any does not, 2 for wrong usage, a path that \
-                        cannot be read, or nothing to verify. docs/VERIFYING.md has more.")]
+                        cannot be read, or nothing to verify. See docs/VERIFYING.md.")]
 pub(crate) struct Arguments {
-    /// Replays, folders with files named *.replay at any depth, or - for one from standard input
+    /// Replays, folders that contain *.replay files at any depth, or - for a replay from standard input
     #[arg(required = true, value_name = "PATH")]
     paths: Vec<PathBuf>,
     /// Print a line of JSON for each file
     #[arg(long)]
     json: bool,
-    /// Verify so many files at a time [default: one for each processor]
+    /// Number of files to verify in parallel [default: number of processors]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     jobs: Option<u16>,
-    /// Verify only the I-th of N parts of the files, from 1 to N
+    /// Verify only the I-th of N parts of the files, counted from 1
     #[arg(long, value_name = "I/N", default_value_t = Shard::WHOLE, hide_default_value = true)]
     shard: Shard,
-    /// Keep verdicts in this folder, and do not play again what it knows
+    /// Cache verdicts in this folder, and do not play files again whose verdict is cached
     #[arg(long, value_name = "DIR")]
     cache: Option<PathBuf>,
     #[command(flatten)]
     limits: LimitArguments,
 }
 
-/// What a file may cost, where it differs from what the game's tools allow anyway.
+/// Limits of one file that override the limits of the tool.
 #[derive(Args, Debug)]
 #[command(next_help_heading = "Limits of one file")]
 struct LimitArguments {
-    /// Bytes of the file
+    /// Most bytes of the file
     #[arg(long, value_name = "N")]
     max_bytes: Option<u64>,
-    /// Ticks
+    /// Most ticks
     #[arg(long, value_name = "N")]
     max_ticks: Option<u64>,
-    /// Bodies in its world at a time
+    /// Most bodies in its world at a time
     #[arg(long, value_name = "N")]
     max_bodies: Option<u64>,
-    /// Work units of one tick, as the game counts them
+    /// Most work units of one tick, as the game counts them
     #[arg(long, value_name = "N")]
     max_tick_work: Option<u64>,
-    /// Work units of all ticks
+    /// Most work units of all ticks together
     #[arg(long, value_name = "N")]
     max_work: Option<u64>,
 }
@@ -92,21 +93,14 @@ impl LimitArguments {
     }
 }
 
-pub(crate) fn run<G: Game>(
-    arguments: &Arguments,
-    limits: &Limits,
-    console: &mut Console<'_>,
-) -> Result<Exit, CommandError> {
-    let limits = arguments.limits.over(limits);
-    let open = |folder: &PathBuf| {
-        let unwritable = |error| CommandError::Write { path: folder.clone(), error };
-        Cache::open(folder, G::RULES, &limits).map_err(unwritable)
-    };
+pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) -> CommandResult {
+    let limits = arguments.limits.over(context.limits());
+    let open = |folder: &PathBuf| Cache::open(folder, G::RULES, &limits).map_err(CommandError::write(folder));
     let cache = arguments.cache.as_ref().map(open).transpose()?;
     let verifier = Verifier { judge: judge::judge::<G>, cache, limits, shared: Shared::default() };
     let jobs = arguments.jobs.map_or_else(processors, usize::from);
     let tasks = Tasks::new(&arguments.paths, arguments.shard);
-    let mut display = Display::new(arguments.json, console, &verifier.shared);
+    let mut display = Display::new(arguments.json, &mut context.console, &verifier.shared);
     pool::in_order(
         jobs,
         tasks,
@@ -121,7 +115,7 @@ fn processors() -> usize {
     thread::available_parallelism().map_or(1, NonZeroUsize::get)
 }
 
-/// What each thread does with a file.
+/// Verifies one file, on any thread.
 struct Verifier {
     judge: fn(&[u8], &Limits, &Shared) -> Option<Report>,
     limits: Limits,
@@ -129,22 +123,19 @@ struct Verifier {
     shared: Shared,
 }
 
-/// A file and what it is worth.
+/// A file and its report.
 struct Verified {
     path: PathBuf,
-    /// `None` if nobody waits for it any more.
+    /// `None` if verification was stopped.
     report: Option<Report>,
     cached: bool,
-    /// Why it could not be kept.
+    /// Why the report could not be cached.
     unkept: Option<io::Error>,
 }
 
 impl Verifier {
     fn verify(&self, path: PathBuf) -> Result<Verified, CommandError> {
-        let bytes = match self.read(&path) {
-            Ok(bytes) => bytes,
-            Err(error) => return Err(CommandError::Read { path, error }),
-        };
+        let bytes = self.read(&path).map_err(CommandError::read(&path))?;
         let Some(cache) = &self.cache else {
             let report = (self.judge)(&bytes, &self.limits, &self.shared);
             return Ok(Verified { path, report, cached: false, unkept: None });
@@ -168,7 +159,7 @@ impl Verifier {
     }
 }
 
-/// What is printed, line by line.
+/// Prints the results line by line, and the summary.
 struct Display<'a, 'c> {
     json: bool,
     console: &'a mut Console<'c>,
@@ -194,7 +185,7 @@ impl<'a, 'c> Display<'a, 'c> {
         }
     }
 
-    /// Shows a result, or how far things are.
+    /// Prints a result, or without one only updates the progress line.
     fn show(&mut self, result: Option<Result<Verified, CommandError>>) -> Result<(), CommandError> {
         match result {
             None => {}
@@ -205,7 +196,7 @@ impl<'a, 'c> Display<'a, 'c> {
         Ok(())
     }
 
-    /// Shows that something is not verified: a file in its place among the lines as well.
+    /// Prints an error. With `--json`, a file that cannot be read also gets a line among the results.
     fn trouble(&mut self, error: &CommandError) -> Result<(), CommandError> {
         self.exit = Exit::Trouble;
         if let (true, CommandError::Read { path, error }) = (self.json, error) {
@@ -224,9 +215,9 @@ impl<'a, 'c> Display<'a, 'c> {
             self.exit = self.exit.max(Exit::NoMatch);
         }
         if let Some(error) = unkept.as_ref().filter(|_| !self.is_cache_failing) {
-            // Once is enough: what fails for one file fails for the others.
+            // Warn only once: the cause is the same for all files.
             self.is_cache_failing = true;
-            let warning = format!("the cache keeps nothing: {error}");
+            let warning = format!("verdicts cannot be cached: {error}");
             self.progress.aside(|| self.console.warning(warning));
         }
         self.progress.aside(|| match self.json {
@@ -235,7 +226,7 @@ impl<'a, 'c> Display<'a, 'c> {
         })
     }
 
-    fn finish(mut self) -> Result<Exit, CommandError> {
+    fn finish(mut self) -> CommandResult {
         self.progress.finish();
         self.totals.elapsed = self.clock.elapsed();
         if self.json {
@@ -247,7 +238,7 @@ impl<'a, 'c> Display<'a, 'c> {
     }
 }
 
-/// How long it has taken. The time is shown and never reaches a simulation.
+/// Measures the elapsed time. The time is shown and never reaches a simulation.
 #[expect(clippy::disallowed_types, reason = "the time is shown to the user and never reaches a simulation")]
 struct Clock(std::time::Instant);
 
@@ -262,7 +253,7 @@ impl Clock {
     }
 }
 
-/// A file and its verdict, for people.
+/// A file and its verdict as readable text.
 struct Line<'a> {
     path: &'a Path,
     report: &'a Report,

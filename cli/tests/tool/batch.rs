@@ -1,4 +1,4 @@
-//! `verify` with many files: jobs, parts, standard input, the order of the lines.
+//! `verify` with many files: jobs, shards, standard input, and the order of the lines.
 
 use std::cell::Cell;
 use std::collections::{BTreeMap, BTreeSet};
@@ -23,7 +23,7 @@ fn explode(now: bool) {
     assert!(!now, "in a setup");
 }
 
-/// The counter, but it panics, and cannot be sent to another thread.
+/// A counter that panics at the input [`FUSE`], and that is not `Send`.
 pub(crate) struct Bomb(Rc<Cell<Counter>>);
 
 impl Bomb {
@@ -86,7 +86,7 @@ pub(crate) fn run_bomb(arguments: &[&str]) -> Outcome {
     run_tool_of(&Tool::<Bomb>::new(), arguments)
 }
 
-/// A replay in which [`Bomb`] panics after so many ticks.
+/// A replay in which [`Bomb`] panics after `ticks` ticks.
 pub(crate) fn fuse(ticks: u64) -> Vec<u8> {
     let mut recording = Recording::<Counter>::start(&setup(), 10).unwrap();
     for tick in 0..ticks {
@@ -96,7 +96,7 @@ pub(crate) fn fuse(ticks: u64) -> Vec<u8> {
     recording.finish().unwrap()
 }
 
-/// The file of this number, and its verdict.
+/// A file that depends on `number`, and its verdict.
 fn file(number: u64) -> (Vec<u8>, &'static str) {
     let mut good = replay(number * 31 % 400);
     let length = good.len();
@@ -115,7 +115,7 @@ fn file(number: u64) -> (Vec<u8>, &'static str) {
     }
 }
 
-/// A folder of many small files, with their verdicts in the order of their paths.
+/// A folder of `count` small files, and their paths and verdicts in path order.
 fn folder(test: &str, count: u64) -> (Folder, Vec<(String, &'static str)>) {
     let folder = Folder::new(test);
     let (mut expected, mut folders) = (Vec::new(), ["a", "a/b", "c", "."]);
@@ -162,7 +162,7 @@ fn any_number_of_jobs_prints_the_same() {
         let together = run_bomb(&["verify", "--jobs", jobs, &path]);
         assert_eq!(for_people(&together), alone_for_people, "{jobs}");
     }
-    assert_eq!(run_bomb(&["verify", &path]).exit, Exit::NoMatch, "as many as there are processors");
+    assert_eq!(run_bomb(&["verify", &path]).exit, Exit::NoMatch, "the default number of jobs");
     for wrong in ["0", "-1", "many", "100000"] {
         assert_eq!(run_bomb(&["verify", "--jobs", wrong, &path]).exit, Exit::Trouble, "{wrong}");
     }
@@ -194,7 +194,7 @@ fn every_file_is_in_one_part() {
         for part in 1..=count {
             let outcome = run_bomb(&["verify", "--json", "--shard", &format!("{part}/{count}"), &path]);
             if outcome.out.is_empty() {
-                assert_eq!(outcome.exit, Exit::Success, "nothing in {part}/{count}");
+                assert_eq!(outcome.exit, Exit::Success, "an empty shard {part}/{count} is a success");
                 assert!(outcome.err.starts_with("0 of 0 files match"), "{}", outcome.err);
             }
             for line in outcome.out.lines() {
@@ -209,7 +209,7 @@ fn every_file_is_in_one_part() {
     }
     fs::create_dir(folder.path("empty")).unwrap();
     let nothing = run_bomb(&["verify", "--shard", "1/2", &folder.path("empty")]);
-    assert_eq!(nothing.exit, Exit::Trouble, "a folder without files is a mistake in any part");
+    assert_eq!(nothing.exit, Exit::Trouble, "a folder without replays is an error in every shard");
 }
 
 #[test]
@@ -233,12 +233,12 @@ fn a_part_does_not_depend_on_where_the_folder_is_or_what_else_is_there() {
     assert!(taken(&folder, "").is_superset(&before));
 }
 
-/// Runs the sandbox's command with something to read.
+/// Runs the sandbox's command with `input` as its standard input. Returns its output and exit code.
 fn with_input(arguments: &[&str], input: &[u8]) -> (String, Option<i32>) {
     let mut command = Command::new(env!("CARGO_BIN_EXE_lockstep2d"));
     command.args(arguments).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::null());
     let mut child = command.spawn().unwrap();
-    // It reads no further than it may, and is then gone.
+    // The command may exit before it has read everything, so a write error is expected.
     let _ = child.stdin.take().unwrap().write_all(input);
     let output = child.wait_with_output().unwrap();
     (String::from_utf8(output.stdout).unwrap(), output.status.code())
@@ -261,7 +261,7 @@ fn a_replay_comes_from_standard_input() {
     assert_eq!(code, Some(0));
 
     let (out, code) = with_input(&["verify", "-", "-"], &bytes);
-    assert_eq!((out.lines().count(), code), (2, Some(2)), "there is only one");
+    assert_eq!((out.lines().count(), code), (2, Some(2)), "standard input can be read only once");
 }
 
 #[test]

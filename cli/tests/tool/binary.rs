@@ -1,4 +1,4 @@
-//! The `lockstep2d` binary as a process: exit codes and streams, whatever its game.
+//! The `lockstep2d` binary as a process: exit codes, and which stream gets what.
 
 use std::process::{Command, Output};
 

@@ -1,4 +1,4 @@
-//! `bisect` and `trace`: from a replay that diverges to the bit, with files and exit codes.
+//! `bisect` and `trace`: files, results and exit codes.
 
 use lockstep2d::lockstep::{Sandbox, SandboxSetup};
 use lockstep2d::replay::Recording;
@@ -13,7 +13,7 @@ fn ragdoll() -> SandboxSetup {
     Scene::find("ragdoll").unwrap().setup(0)
 }
 
-/// A replay of some ticks, in one of which a body gets another speed, if that is wanted.
+/// A replay of 50 ticks. In tick `kicked`, if given, a command changes the velocity of a body.
 fn replay(kicked: Option<u64>) -> Vec<u8> {
     let mut recording = Recording::<Sandbox>::start(&ragdoll(), 20).unwrap();
     for tick in 0..50 {

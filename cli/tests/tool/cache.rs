@@ -1,4 +1,4 @@
-//! `verify --cache`: what is known is not played again, and nothing else is believed.
+//! `verify --cache`: a file with a cached verdict is not played again, and a damaged entry is never used.
 
 use std::fs;
 use std::path::PathBuf;
@@ -12,7 +12,7 @@ use crate::batch::{fuse, run_bomb};
 use crate::counter::Counter;
 use crate::{Folder, Outcome, replay, run, run_tool};
 
-/// The lines without `cached`, and how many had it.
+/// The lines without their field `cached`, and the number of lines in which it was true.
 fn uncached(outcome: &Outcome) -> (Vec<Value>, usize) {
     let mut lines: Vec<Value> = outcome.out.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
     let taken = lines.iter_mut().map(|line| line.as_object_mut().unwrap().remove("cached").unwrap());
@@ -27,7 +27,7 @@ fn entries(folder: &Folder) -> Vec<PathBuf> {
     entries
 }
 
-/// Files of several verdicts.
+/// Writes five files, with several different verdicts.
 fn files(folder: &Folder) {
     let good = replay(35);
     folder.write("in/good.replay", &good);
@@ -48,12 +48,12 @@ fn a_second_run_knows_what_the_first_has_found() {
     let arguments = ["verify", "--json", "--jobs", "1", "--cache", &cache, &path];
     let (first, second) = (run(&arguments), run(&arguments));
     assert_eq!(uncached(&plain).1, 0);
-    assert_eq!(uncached(&first), (uncached(&plain).0, 1), "two files are the same");
+    assert_eq!(uncached(&first), (uncached(&plain).0, 1), "two files have the same bytes");
     assert_eq!(uncached(&second), (uncached(&plain).0, 5));
     assert_eq!((first.exit, second.exit), (Exit::NoMatch, Exit::NoMatch));
     assert!(second.err.contains("; 5 known from the cache; 0 ticks in "), "{}", second.err);
     let count = fs::read_dir(&cache).unwrap().count();
-    assert_eq!(count, 4, "one file for each content, nothing else");
+    assert_eq!(count, 4, "one entry for each distinct content, and no other file");
 
     let for_people = |arguments: &[&str]| {
         let outcome = run(arguments);
@@ -74,7 +74,7 @@ fn a_damaged_entry_is_ignored_and_written_anew() {
         entries(&folder).into_iter().map(|path| (path.clone(), fs::read(path).unwrap())).collect();
     let restored = || whole.iter().all(|(path, bytes)| fs::read(path).unwrap() == *bytes);
 
-    // Every bit of one entry, now and then every other damage.
+    // Every fifth bit of one entry is flipped, then the entry is cut or replaced.
     let (victim, bytes) = &whole[0];
     for bit in (0..bytes.len() * 8).step_by(5) {
         let mut damaged = bytes.clone();
@@ -88,7 +88,7 @@ fn a_damaged_entry_is_ignored_and_written_anew() {
         assert_eq!(uncached(&run(&arguments)).0, plain);
         assert!(restored());
     }
-    // An entry under another's name, and a folder in an entry's place.
+    // An entry under the name of another entry, and a folder in the place of an entry.
     fs::copy(&whole[1].0, victim).unwrap();
     assert_eq!(uncached(&run(&arguments)).0, plain);
     assert!(restored());
@@ -96,7 +96,7 @@ fn a_damaged_entry_is_ignored_and_written_anew() {
     fs::create_dir(victim).unwrap();
     let outcome = run(&arguments);
     assert_eq!(uncached(&outcome).0, plain);
-    assert!(outcome.err.starts_with("warning: the cache keeps nothing: "), "{}", outcome.err);
+    assert!(outcome.err.starts_with("warning: verdicts cannot be cached: "), "{}", outcome.err);
 }
 
 #[test]
@@ -115,12 +115,15 @@ fn other_limits_are_other_questions() {
     {
         let flag = format!("--max-{flag}");
         let (limited, cached) = with(&[&flag, number]);
-        assert!(cached <= 2, "{flag}: some files are the same, as far as they are read");
+        assert!(
+            cached <= 2,
+            "{flag}: at most the files that are equal as far as they are read share an entry"
+        );
         assert_eq!(limited, uncached(&run(&["verify", "--json", &path, &flag, number])).0, "{flag}");
         assert_eq!(with(&[&flag, number]), (limited, 5), "{flag}");
     }
     assert!(entries(&folder).len() > 5 * same - 5);
-    // What a flag says again is the same question, and those of the tool count too.
+    // A flag that repeats the default has the same cache key. Limits of the tool are part of the key, too.
     let default = Limits::default().ticks.to_string();
     assert_eq!(with(&["--max-ticks", &default]).1, 5);
     let tool = Tool::<Counter>::new().with_limits(Limits { players: 3, ..Limits::default() });
@@ -158,7 +161,7 @@ fn a_cache_is_shared() {
             });
         }
     });
-    assert_eq!(entries(&folder).len(), 30, "no drafts are left");
+    assert_eq!(entries(&folder).len(), 30, "no temporary files are left");
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! `diff`: what differs first, who departed, and the exit code.
+//! `diff`: the first difference, the side that diverged, and the exit code.
 
 use lockstep2d::lockstep::{Game, History};
 use lockstep2d::replay::Recorder;
@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 use crate::counter::{Counter, inputs_at, setup};
 use crate::{Folder, replay, run};
 
-/// The report of a peer that plays a seat, and whose sum grows by itself after a tick.
+/// The report of the peer on `seat`. If `wrong` is given, the peer's sum is off by one from that tick on.
 fn report(seat: u32, wrong: Option<u64>) -> DesyncReport {
     let (mut recorder, mut game) = Recorder::<Counter>::start(&setup(), 10).unwrap();
     let mut history = History::new(&game);
@@ -40,7 +40,7 @@ fn reports_name_the_tick_the_peer_and_the_field() {
         "A: {a} (seat 0)\n\
          B: {b} (seat 1)\n\
          different at tick 24, equal at tick 23\n\
-         played again up to tick 35: B departed (seat 1) at tick 24\n\
+         played again up to tick 35: B diverged (seat 1) at tick 24\n\
          states after tick 24: 1 thing differs in sum\n  sum\n    sum: 3 | 4\n"
     );
     assert_eq!((outcome.out.as_str(), outcome.exit), (expected.as_str(), Exit::NoMatch));

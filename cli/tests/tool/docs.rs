@@ -1,11 +1,11 @@
-//! The examples of `docs/REPLAYS.md` print what it says.
+//! The console examples of `docs/REPLAYS.md` are run and print what the page shows.
 
 use std::path::Path;
 use std::process::Command;
 
 use crate::Folder;
 
-/// A line of a shell and what it prints; `...` stands for any number of lines.
+/// A shell command and its expected output. A line `...` stands for any number of lines.
 struct Example {
     line: String,
     output: Vec<String>,
@@ -26,7 +26,7 @@ fn examples(text: &str) -> Vec<Example> {
     examples
 }
 
-/// Whether the lines are those expected.
+/// Whether `lines` match the expected output.
 fn fits(expected: &[String], lines: &[&str]) -> bool {
     match expected.split_first() {
         None => lines.is_empty(),

@@ -1,4 +1,4 @@
-//! `export`: the picture after a tick, and states as JSON.
+//! `export`: SVG pictures of a tick, and states as JSON.
 
 use std::fs;
 
@@ -13,7 +13,7 @@ use serde_json::{Value, json};
 use crate::counter::{Counter, inputs_at, setup};
 use crate::{Folder, golden, replay, run, run_sandbox, run_tool_of};
 
-/// The sandbox after so many ticks of one of its replays.
+/// The sandbox after `ticks` ticks of one of the repository's replays.
 fn played(scene: &str, ticks: u64) -> Sandbox {
     let file = fs::read(golden(scene)).unwrap();
     let mut playback = Playback::<Sandbox>::open(&file, &Limits::default()).unwrap();
@@ -33,10 +33,7 @@ fn a_tick_is_drawn() {
     let ticks = Playback::<Sandbox>::open(&file, &Limits::default()).unwrap().ticks();
     let last = played("bouncing_ball", ticks);
     let outcome = run_sandbox(&["export", &golden("bouncing_ball"), "--svg"]);
-    assert!(
-        outcome.out == draw::svg(last.world(), &View::default()),
-        "the last tick unless one says otherwise"
-    );
+    assert!(outcome.out == draw::svg(last.world(), &View::default()), "the default is the last tick");
 }
 
 #[test]
@@ -119,8 +116,8 @@ fn what_cannot_be_written_is_explained() {
         (vec!["export", &bad, "--plot"], Exit::NoMatch, "malformed: at byte 0"),
         (vec!["export", &counter, "--svg"], Exit::NoMatch, "unverifiable"),
         (vec!["export", &missing, "--tick", "0", "--svg"], Exit::Trouble, "cannot read"),
-        (vec!["export", &file, "--tick", "0"], Exit::Trouble, "in which format?"),
-        (vec!["export", &file, "-o", &unknown], Exit::Trouble, "in which format?"),
+        (vec!["export", &file, "--tick", "0"], Exit::Trouble, "no format given"),
+        (vec!["export", &file, "-o", &unknown], Exit::Trouble, "no format given"),
         (vec!["export", &file, "--png"], Exit::Trouble, "--png needs a file to write"),
         (vec!["export", &file, "--png", "-o", &nowhere], Exit::Trouble, "cannot write"),
         (vec!["export", &file, "--tick", "0", "--svg", "--json"], Exit::Trouble, "cannot be used with"),
@@ -168,7 +165,7 @@ fn what_cannot_be_written_is_explained() {
     }
     let left: Vec<_> =
         fs::read_dir(folder.path("")).unwrap().map(|entry| entry.unwrap().file_name()).collect();
-    assert_eq!(left.len(), 2, "only the replays: {left:?}");
+    assert_eq!(left.len(), 2, "only the two replays are left: {left:?}");
 }
 
 #[test]
@@ -201,7 +198,7 @@ fn states_are_lines_of_json() {
     assert_eq!(fs::read_to_string(&to).unwrap(), outcome.out);
 }
 
-/// Every fixed-point number of a world has its bits and a decimal, also within variants.
+/// Every fixed-point number of a world has its bits and a decimal, also inside enum variants.
 #[test]
 fn numbers_of_a_world_have_bits_and_a_decimal() {
     let outcome = run_sandbox(&["export", &golden("ragdoll"), "--json", "--tick", "60"]);

@@ -1,4 +1,4 @@
-//! `export` to PNG, GIF and APNG: what a decoder shows is the picture of each tick, at the pace of the game.
+//! `export` to PNG, GIF and APNG: the decoded frames are the pictures of the ticks, at the pace of the game.
 
 use std::fs;
 use std::io::Cursor;
@@ -14,7 +14,7 @@ use lockstep2d_picture::{Colour, DrawList, Image, page, raster};
 
 use crate::{Folder, golden, run_sandbox};
 
-/// The picture after each of some ticks of a replay.
+/// The pictures of a replay after each of `ticks`.
 fn pictures(file: &[u8], ticks: &[u64], view: &View) -> Vec<Image> {
     let mut playback = Playback::<Sandbox>::open(file, &Limits::default()).unwrap();
     let mut pictures = Vec::new();
@@ -29,7 +29,8 @@ fn pictures(file: &[u8], ticks: &[u64], view: &View) -> Vec<Image> {
     pictures
 }
 
-/// The window around what is seen at any of some ticks: there are less than a hundred, or one in so many is looked at.
+/// The window that fits the world over a range of ticks, from at most about a hundred sampled ticks, the last among
+/// them.
 fn window(file: &[u8], mut ticks: RangeInclusive<u64>) -> Aabb {
     let step = usize::try_from((ticks.end() - ticks.start()).div_ceil(100).max(1)).unwrap();
     let last = *ticks.end();
@@ -149,7 +150,7 @@ fn more_frames_than_a_gif_can_show_are_pointed_out() {
     assert!(outcome.err.contains("more than 50 frames a second"), "{}", outcome.err);
 }
 
-/// A replay whose course is another than it says, somewhere in the middle.
+/// A replay that is damaged in the middle.
 fn wrong() -> Vec<u8> {
     let scene = Scene::find("box_stack").unwrap();
     let mut recording = Recording::<Sandbox>::start(&scene.setup(1), 10).unwrap();
@@ -159,7 +160,7 @@ fn wrong() -> Vec<u8> {
     }
     let mut bytes = recording.finish().unwrap();
     let middle = bytes.len() / 2;
-    // A checksum or a checkpoint finds it.
+    // A checksum or a checkpoint detects the damage.
     (middle..middle + 40).for_each(|at| bytes[at] ^= 0x55);
     bytes
 }
@@ -179,10 +180,10 @@ fn a_damaged_replay_leaves_no_file() {
         assert_eq!(fs::read_to_string(&to).unwrap(), "what was there before", "{format}");
         fs::remove_file(&to).unwrap();
     }
-    assert_eq!(fs::read_dir(folder.path("")).unwrap().count(), 1, "nothing unfinished");
+    assert_eq!(fs::read_dir(folder.path("")).unwrap().count(), 1, "no unfinished file is left");
 }
 
-/// The most memory that this process has had, in KiB.
+/// Peak resident memory of a process, in KiB.
 #[cfg(target_os = "linux")]
 fn memory_peak(pid: u32) -> Option<u64> {
     let status = fs::read_to_string(format!("/proc/{pid}/status")).ok()?;
@@ -190,7 +191,7 @@ fn memory_peak(pid: u32) -> Option<u64> {
     line.split_whitespace().nth(1)?.parse().ok()
 }
 
-/// The tool as a process of its own, so that other tests do not count.
+/// Runs the tool as its own process, so that memory of other tests does not count.
 #[cfg(target_os = "linux")]
 #[test]
 fn memory_does_not_grow_with_the_frames() {
@@ -211,7 +212,7 @@ fn memory_does_not_grow_with_the_frames() {
         peak
     };
     let (few, many) = (peak(50), peak(500));
-    // 450 frames are 550 MB of pixels.
+    // The pixels of 450 more frames would be 550 MB.
     assert!(many < few + 10_000, "{few} KiB for 50 frames, {many} KiB for 500");
 }
 
@@ -232,7 +233,7 @@ fn layers_choose_what_is_drawn() {
         let expected = &pictures(&bytes, &[40], &View { layers, ..View::default() })[0];
         let (_, _, pixels) = decoded(&fs::read(&to).unwrap());
         assert!(expected.rgba().chunks(4).flat_map(|pixel| &pixel[..3]).eq(&pixels), "{names}");
-        assert!(!seen.contains(&pixels), "{names} looks like another");
+        assert!(!seen.contains(&pixels), "{names} gives the same pixels as other layers");
         seen.push(pixels);
     }
 }

@@ -1,5 +1,9 @@
-//! `export --plot`: XML that parses, with curves that say what theory says.
-#![expect(clippy::disallowed_types, clippy::float_arithmetic, reason = "plots are read as they are drawn")]
+//! `export --plot`: the SVG is well-formed XML, and its curves agree with the worlds and with theory.
+#![expect(
+    clippy::disallowed_types,
+    clippy::float_arithmetic,
+    reason = "plots are drawn and read back as floats"
+)]
 
 use lockstep2d::lockstep::Sandbox;
 use lockstep2d::replay::{Limits, Playback, Step};
@@ -7,7 +11,7 @@ use lockstep2d_cli::Exit;
 
 use crate::{golden, run_sandbox};
 
-/// The names of all elements that begin, in order, if each ends and all attributes are quoted.
+/// The names of all start tags, in order. Checks that every element is closed and every attribute quoted.
 fn elements(xml: &str) -> Vec<&str> {
     let (mut open, mut found, mut rest) = (Vec::new(), Vec::new(), xml);
     while let Some((before, after)) = rest.split_once('<') {
@@ -29,7 +33,7 @@ fn elements(xml: &str) -> Vec<&str> {
     found
 }
 
-/// A curve in its own unit, read from its pixels and the numbers of its axis, in order of time.
+/// The values of a curve in time order, in its own unit: computed from its pixels and the labels of its axis.
 fn curve(svg: &str, name: &str) -> Vec<f64> {
     let panels = svg.split("<g>").skip(1);
     let panel = panels.into_iter().find(|panel| panel.contains(&format!("class=\"{name}\""))).unwrap();
@@ -80,7 +84,7 @@ fn it_is_xml_with_a_curve_for_everything() {
     elements(&plot("free_fall", &["--from", "7", "--to", "7"]));
 }
 
-/// The curves against the worlds that they are of.
+/// Curves are compared with the values of the played worlds.
 #[test]
 fn curves_have_the_extremes_of_what_they_show() {
     let file = std::fs::read(golden("ragdoll")).unwrap();
@@ -103,7 +107,7 @@ fn curves_have_the_extremes_of_what_they_show() {
         let found = curve(&svg, name);
         assert_eq!(found.len(), expected.len(), "{name}");
         let (_, highest) = extremes(expected);
-        // A hundredth of a pixel of some 110.
+        // Coordinates have a resolution of 0.01 pixels, and a panel is some 110 pixels high.
         let tolerance = highest / 2000.0;
         for (tick, (found, expected)) in found.iter().zip(expected).enumerate() {
             assert!((found - expected).abs() <= tolerance, "{name} at tick {tick}: {found}, not {expected}");
@@ -113,8 +117,8 @@ fn curves_have_the_extremes_of_what_they_show() {
     }
 }
 
-/// What falls freely keeps its energy, up to what a step of the integrator errs: it loses or wins `m g² t h / 2` over a
-/// time t with steps of h.
+/// A body in free fall keeps its energy up to the error of the integrator, which is `m g² t h / 2` over a time t with
+/// time step h.
 #[test]
 fn energy_in_free_fall_is_constant() {
     let svg = plot("free_fall", &[]);
@@ -126,8 +130,8 @@ fn energy_in_free_fall_is_constant() {
     assert!(still < fast / 100.0, "from {still} to {fast}");
 }
 
-/// A pendulum turns potential energy into kinetic and back, and loses little: at the height where it was let go it has
-/// none of the latter.
+/// A pendulum turns potential energy into kinetic energy and back with small losses. At the height of its release its
+/// kinetic energy is 0.
 #[test]
 fn energy_of_a_pendulum_goes_back_and_forth() {
     let svg = plot("pendulum", &[]);
@@ -147,7 +151,7 @@ fn the_same_replay_gives_the_same_plot() {
     assert!(plot("bridge", &[]) == plot("bridge", &[]));
 }
 
-/// `docs/pictures/make` makes all pictures that are there, and of the SVGs every byte.
+/// `docs/pictures/make` reproduces all pictures of the documentation, the SVGs byte for byte.
 #[cfg(unix)]
 #[test]
 fn the_pictures_of_the_documentation_can_be_made_anew() {
@@ -172,7 +176,7 @@ fn the_pictures_of_the_documentation_can_be_made_anew() {
         if name.ends_with(".svg") {
             assert!(kept == anew, "{name} is not what docs/pictures/make makes: run it");
         } else {
-            // Floats draw these: the same to the eye, and with the same size in pixels.
+            // Raster pictures are drawn with floats: only their header and approximate size are compared.
             assert_eq!(kept[..10], anew[..10], "{name}");
             assert!(kept.len().abs_diff(anew.len()) < kept.len() / 5, "{name}");
         }

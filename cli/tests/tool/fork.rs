@@ -1,4 +1,4 @@
-//! `fork`: another end to the same beginning, which verifies.
+//! `fork`: the new replay has the old beginning and another end, and verifies.
 
 use std::fs;
 
@@ -70,9 +70,9 @@ fn commands_of_the_sandbox_come_from_json() {
         world.bodies().any(|(_, body)| body.velocity().y > 0)
     };
     (0..60).for_each(|_| assert_eq!(playback.step(), Ok(Step::Ticked)));
-    assert!(!rises(&playback), "it falls");
+    assert!(!rises(&playback), "it falls at first");
     (0..61).for_each(|_| assert_eq!(playback.step(), Ok(Step::Ticked)));
-    assert!(rises(&playback), "it falls up");
+    assert!(rises(&playback), "it rises after gravity is reversed");
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! `heavy`: good games hold, and of a bad one the tick is said.
+//! `heavy`: a correct game passes, and for a game with an incomplete save the tick of the first difference is reported.
 
 use std::fs;
 
@@ -10,7 +10,7 @@ use serde_json::Value as Json;
 
 use super::{Folder, Outcome, run, run_tool_of};
 
-/// A game that counts its ticks, and forgets to save how many there were of which it has a bonus.
+/// A game that counts ticks, bonuses and points, and leaves its bonuses out of its save.
 struct Forgetful {
     tick: u64,
     bonus: u64,
@@ -63,7 +63,7 @@ impl Game for Forgetful {
     }
 }
 
-/// The replay of a game whose player gets a bonus in tick 20 and uses it in tick 71.
+/// The replay of a game whose player gets a bonus in tick 20 and scores with it in tick 71.
 fn forgetful() -> Vec<u8> {
     let mut recording = Recording::<Forgetful>::start(&(), 10).unwrap();
     for tick in 1..=90 {
@@ -116,7 +116,7 @@ fn the_tick_of_a_fault_is_said() {
     );
     assert_eq!(document["minimised"], Json::Null);
 
-    // Before it happens and without what came before, there is nothing to see.
+    // No difference up to tick 70, nor if comparing starts at tick 71, after the bonus.
     for more in [["--to", "70"], ["--from", "71"]] {
         assert_eq!(heavy(&folder, &forgetful(), &more).exit, Exit::Success, "{more:?}");
     }
@@ -144,7 +144,7 @@ fn what_cannot_be_played_is_refused() {
     assert!(done.err.contains("has 20 ticks, there is no tick 21"), "{}", done.err);
     assert_eq!(run(&["heavy", &path, "--to", "21"]).exit, Exit::Trouble);
     assert_eq!(run(&["heavy", "nowhere.replay"]).exit, Exit::Trouble);
-    // Another game's, and none at all.
+    // A replay of another game, and a file that is no replay.
     assert_eq!(heavy(&folder, &super::replay(20), &[]).exit, Exit::NoMatch);
     assert_eq!(heavy(&folder, b"no replay", &[]).exit, Exit::NoMatch);
 }

@@ -1,4 +1,4 @@
-//! `verify` and files that ask for too much, or for another program, or make the game panic.
+//! `verify` with files that exceed a limit, need another program, or make the game panic.
 
 use lockstep2d::body::{BodyDef, Polygon, ShapeDef};
 use lockstep2d::fx;
@@ -9,7 +9,7 @@ use lockstep2d_cli::{Exit, Tool};
 use serde_json::{Value, json};
 
 use crate::batch::{fuse, run_bomb};
-use crate::counter::{add, setup};
+use crate::counter::{add, like_its_counter, setup};
 use crate::{Counter, Folder, replay, run, run_tool_of};
 
 fn line(out: &str) -> Value {
@@ -19,7 +19,7 @@ fn line(out: &str) -> Value {
 #[test]
 fn every_limit_has_its_flag() {
     let folder = Folder::new("flags");
-    // 20 ticks of work 1 + 1 + 1, all told 60.
+    // 20 ticks with 1 + 1 + 1 work units each: 60 in total.
     let mut recording = Recording::<Counter>::start(&setup(), 10).unwrap();
     for _ in 0..20 {
         recording.step(&add(1, -1)).unwrap();
@@ -47,7 +47,7 @@ fn every_limit_has_its_flag() {
     }
 }
 
-/// A sandbox that starts with three bodies, has five after four ticks, then four.
+/// A replay of the sandbox with three bodies at the start, five after four ticks, then four.
 fn crowd() -> Vec<u8> {
     let ball = || Command::Spawn {
         body: BodyDef::dynamic(),
@@ -80,7 +80,7 @@ fn bodies_are_counted_at_the_start_and_after_every_tick() {
     }
     let text = run_tool_of(&tool, &["verify", "--max-bodies", "4", &file]).out;
     assert!(text.contains("limit exceeded: 5 bodies, at most 4 are allowed"), "{text}");
-    // A game that shows no world has none.
+    // Without `Game::world_mut`, a game counts as having no bodies.
     let other = folder.write("counter.replay", &replay(3));
     assert_eq!(run(&["verify", "--max-bodies", "0", &other]).exit, Exit::Success);
 }
@@ -104,7 +104,7 @@ fn a_panic_is_said_and_hides_no_other() {
     assert_eq!(line, expected);
 
     let outcome = run_bomb(&["verify", &file]);
-    assert_eq!(outcome.out.lines().count(), 2, "the message stays on its line: {}", outcome.out);
+    assert_eq!(outcome.out.lines().count(), 2, "the message is escaped to stay on one line: {}", outcome.out);
     assert!(outcome.out.contains("panicked: the game, after 12 ticks, at "), "{}", outcome.out);
     assert!(outcome.out.contains("somebody\\nadded 13"), "{}", outcome.out);
 }
@@ -119,7 +119,7 @@ fn a_setup_may_panic_as_well() {
     assert_eq!((line["verdict"].as_str(), line["ticks"].as_u64()), (Some("panicked"), Some(0)));
 }
 
-/// The counter with other rules.
+/// Defines a game that is the counter under another rules identifier.
 macro_rules! other_rules {
     ($name:ident, $rules:expr) => {
         struct $name(Counter);
@@ -133,26 +133,11 @@ macro_rules! other_rules {
             fn new(setup: &Self::Setup) -> Result<Self, lockstep2d::lockstep::SetupError> {
                 Counter::new(setup).map($name)
             }
-            fn players(&self) -> u32 {
-                self.0.players()
-            }
-            fn tick_rate(&self) -> u32 {
-                self.0.tick_rate()
-            }
+
+            like_its_counter!(0);
+
             fn step(&mut self, inputs: &[Self::Input]) {
                 self.0.step(inputs);
-            }
-            fn state_hash(&self) -> lockstep2d::hash::StateHash {
-                self.0.state_hash()
-            }
-            fn save(&self) -> Counter {
-                self.0.save()
-            }
-            fn load(&mut self, save: &Counter) {
-                self.0.load(save);
-            }
-            fn work(&self, inputs: &[Self::Input]) -> u64 {
-                self.0.work(inputs)
             }
         }
     };
@@ -166,7 +151,7 @@ fn what_cannot_be_verified_says_what_it_needs() {
     let folder = Folder::new("needs");
     let later = Recording::<Later>::start(&setup(), 10).unwrap().finish().unwrap();
     let renamed = Recording::<Renamed>::start(&setup(), 10).unwrap().finish().unwrap();
-    // Semantics 2, with the checksum of the header repaired: the checksum is that of the bytes before it.
+    // Semantics 2, with the header's checksum (of the bytes before it) repaired.
     let mut older = Recording::<Counter>::start(&setup(), 10).unwrap().take_bytes();
     let end = older.len() - 8;
     older[12] = 2;

@@ -1,4 +1,4 @@
-//! `inspect`: what a file is, and the fields of a state.
+//! `inspect`: the description of a file, and the fields of a state.
 
 use lockstep2d::lockstep::{Game, History};
 use lockstep2d::replay::Recorder;
@@ -67,7 +67,7 @@ fn what_is_whole_of_a_replay_is_described() {
         let (found, exit) = json_of(&[&folder.write("damaged", &damaged)]);
         let ticks = found["ticks"].as_u64().unwrap();
         assert!(ticks >= last && (ticks % 10 == 0 || ticks == 35), "{ticks}");
-        // A length may now point behind the end.
+        // A damaged length may point beyond the end, so that the file looks cut.
         assert!(found["end"] == "damaged" && exit == Exit::NoMatch || found["end"] == "cut", "{found}");
         last = ticks;
     }
@@ -76,7 +76,7 @@ fn what_is_whole_of_a_replay_is_described() {
     damaged[140] ^= 0x10;
     let outcome = run(&["inspect", &folder.write("damaged", &damaged)]);
     assert!(outcome.out.contains(": replay, damaged at byte "), "{}", outcome.out);
-    assert!(outcome.out.contains("; in front of that it is whole\n"), "{}", outcome.out);
+    assert!(outcome.out.contains("; the part before that is intact\n"), "{}", outcome.out);
 }
 
 #[test]
@@ -96,7 +96,7 @@ fn files_of_other_rules_and_engines_are_described() {
     assert!(outcome.out.contains("engine semantics 77, "), "{}", outcome.out);
     assert!(outcome.out.contains("cannot verify it: made with engine semantics 77"), "{}", outcome.out);
     let outcome = run(&["inspect", &file, "--tick", "3"]);
-    assert_eq!(outcome.exit, Exit::NoMatch, "a state has to be played");
+    assert_eq!(outcome.exit, Exit::NoMatch, "the state of a tick needs a replay that can be played");
 
     let mut other = replay(35);
     other[8] = 9;
@@ -202,7 +202,11 @@ fn reports_are_described_with_their_states() {
 
     let sum = history.get(33).unwrap().save.sum;
     let outcome = run(&["inspect", &file, "--tick", "33", "--path", "sum"]);
-    assert!(outcome.out.ends_with(&format!("\nsum: {sum}\n")), "what the peer had: {}", outcome.out);
+    assert!(
+        outcome.out.ends_with(&format!("\nsum: {sum}\n")),
+        "the state saved by the peer: {}",
+        outcome.out
+    );
     let outcome = run(&["inspect", &file, "--tick", "5", "--path", "tick"]);
-    assert!(outcome.out.ends_with("\ntick: 5\n"), "from the replay: {}", outcome.out);
+    assert!(outcome.out.ends_with("\ntick: 5\n"), "the state computed from the replay: {}", outcome.out);
 }

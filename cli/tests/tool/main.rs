@@ -1,5 +1,6 @@
-//! The tools of a game that is not ours, end to end: arguments in, files, output and exit codes out.
-#![expect(clippy::unwrap_used, reason = "what goes wrong in a helper fails the test")]
+//! End-to-end tests of the command-line tools, run for the test game `Counter` and for the sandbox: arguments in;
+//! files, output and exit codes out.
+#![expect(clippy::unwrap_used, reason = "a failure in a helper fails the test")]
 
 #[path = "../../../tests/replay/counter.rs"]
 mod counter;
@@ -34,14 +35,14 @@ use lockstep2d_cli::{Catalogue, Exit, Scene, SceneInfo, Tool};
 
 use counter::{Counter, Setup, inputs_at, setup};
 
-/// What a command did.
+/// The exit and the output of a command.
 struct Outcome {
     exit: Exit,
     out: String,
     err: String,
 }
 
-/// Runs the tools of the counter without a terminal.
+/// Runs the tools of the counter, with output that is not a terminal.
 fn run(arguments: &[&str]) -> Outcome {
     run_tool(&Tool::new().with_scenes(Scenes), arguments)
 }
@@ -55,7 +56,7 @@ fn run_tool(tool: &Tool<Counter>, arguments: &[&str]) -> Outcome {
     run_tool_of(tool, arguments)
 }
 
-/// The same with the tools of any game.
+/// Runs the tools of any game.
 fn run_tool_of<G: Game>(tool: &Tool<G>, arguments: &[&str]) -> Outcome {
     let (mut out, mut err) = (anstream::StripStream::new(Vec::new()), anstream::StripStream::new(Vec::new()));
     let arguments = ["counter"].into_iter().chain(arguments.iter().copied());
@@ -86,7 +87,7 @@ impl Catalogue<Counter> for Scenes {
     }
 }
 
-/// A replay of the counter.
+/// A complete replay of the counter, with a checkpoint every 10 ticks.
 fn replay(ticks: u64) -> Vec<u8> {
     let mut recording = Recording::<Counter>::start(&setup(), 10).unwrap();
     for tick in 0..ticks {
@@ -100,7 +101,7 @@ fn golden(scene: &str) -> String {
     format!("{}/../replays/{scene}.replay", env!("CARGO_MANIFEST_DIR"))
 }
 
-/// A folder of its own for a test, gone with the value.
+/// A temporary folder for one test. It is deleted when the value is dropped.
 struct Folder(PathBuf);
 
 impl Folder {
@@ -110,12 +111,12 @@ impl Folder {
         Folder(path)
     }
 
-    /// The path of something in it.
+    /// The path of an entry of the folder.
     fn path(&self, name: &str) -> String {
         self.0.join(name).to_str().unwrap().to_string()
     }
 
-    /// Writes a file in it, and the folders on the way.
+    /// Writes a file in the folder, creates its parent folders, and returns its path.
     fn write(&self, name: &str, bytes: &[u8]) -> String {
         let path = self.path(name);
         fs::create_dir_all(Path::new(&path).parent().unwrap()).unwrap();

@@ -1,4 +1,4 @@
-//! `scenes` and `record`: what can be recorded, and that it verifies.
+//! `scenes` and `record`: scenes are listed, and a recorded scene verifies.
 
 use std::fs;
 

@@ -1,4 +1,4 @@
-//! `seek`: the state of a tick, what it costs to go there, and the file of keyframes.
+//! `seek`: the state at a tick, the number of ticks simulated to reach it, and the keyframe file.
 
 use std::fs;
 
@@ -77,7 +77,7 @@ fn keyframes_are_written_once_and_used_and_added_to() {
     assert_eq!(seek(420), 420);
     let first = fs::read(&keyframes).unwrap();
     assert_eq!(seek(419), 19);
-    assert_eq!(fs::read(&keyframes).unwrap(), first, "nothing new, nothing written");
+    assert_eq!(fs::read(&keyframes).unwrap(), first, "the file is not rewritten without new keyframes");
     assert_eq!(seek(950), 550);
     assert_eq!((seek(949), seek(99), seek(100), seek(0)), (49, 99, 0, 0));
     assert!(!fs::exists(folder.path("a.keyframes.unfinished")).unwrap());

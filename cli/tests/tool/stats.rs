@@ -1,4 +1,4 @@
-//! `stats`: figures of every tick, and the largest of each.
+//! `stats`: the figures of every tick, and the largest and mean of each.
 
 use lockstep2d::lockstep::{Game, Sandbox};
 use lockstep2d::replay::{Limits, Playback, Step};

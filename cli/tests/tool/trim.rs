@@ -1,4 +1,4 @@
-//! `trim`: what is whole of a replay becomes complete.
+//! `trim`: the intact part of a cut or damaged replay becomes a complete replay.
 
 use std::fs;
 
@@ -10,7 +10,8 @@ use serde_json::Value;
 use crate::counter::{Counter, inputs_at, setup};
 use crate::{Folder, golden, replay, run, run_sandbox};
 
-/// Trims bytes and verifies what comes out: its ticks, and what was said on the error stream.
+/// Trims a file and verifies the result. Returns its ticks and the text of the error stream, or `None` if nothing could
+/// be kept.
 fn trimmed(folder: &Folder, bytes: &[u8], more: &[&str]) -> Option<(u64, String)> {
     let (file, new) = (folder.write("a.replay", bytes), folder.path("new.replay"));
     let outcome = run(&[&["trim", &file, "-o", &new], more].concat());
@@ -39,10 +40,10 @@ fn a_replay_that_is_cut_anywhere_becomes_complete() {
     for length in 0..=whole.len() {
         match trimmed(&folder, &whole[..length], &[]) {
             Some((ticks, message)) => {
-                assert_eq!(message, "", "to be cut is no damage");
+                assert_eq!(message, "", "a cut file is not reported as damaged");
                 kept.push(ticks);
             }
-            None => assert!(kept.is_empty(), "only the header has to be whole"),
+            None => assert!(kept.is_empty(), "every file with an intact header can be trimmed"),
         }
     }
     kept.dedup();
@@ -58,7 +59,7 @@ fn in_front_of_damage_it_is_kept() {
         let mut damaged = whole.clone();
         damaged[at] ^= 1;
         if let Some((ticks, message)) = trimmed(&folder, &damaged, &[]) {
-            // A length that points behind the end makes a file that is cut.
+            // A damaged length that points beyond the end makes the file look cut.
             assert!(message.is_empty() || message.contains("left out:"), "{message}");
             kept.push(ticks);
         }
@@ -81,7 +82,7 @@ fn a_complete_replay_stays_or_becomes_shorter() {
     assert_eq!(fs::read(&new).unwrap(), fs::read(golden("chain")).unwrap());
 }
 
-/// The checksums are right, but from some tick on the states are others.
+/// The checksums are right, but from tick 25 on the recorded states are wrong.
 #[test]
 fn where_a_replay_leaves_the_rules_it_ends() {
     let folder = Folder::new("trim-diverged");

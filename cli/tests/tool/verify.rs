@@ -1,17 +1,16 @@
-//! `verify`: a line per file, a summary, the exit code.
+//! `verify`: one line for each file, the summary, and the exit code.
 
 use std::fs;
 
-use lockstep2d::hash::StateHash;
 use lockstep2d::lockstep::{Game, RulesId, SetupError};
 use lockstep2d::replay::{Limits, Recorder, Recording};
 use lockstep2d_cli::{Exit, Tool};
 use serde_json::{Value, json};
 
-use crate::counter::{Counter, Input, Setup, inputs_at, setup};
+use crate::counter::{Counter, Input, Setup, inputs_at, like_its_counter, setup};
 use crate::{Folder, replay, run, run_tool};
 
-/// The lines of JSON that `verify --json` prints, and how it ends.
+/// The JSON lines that `verify --json` prints, and its exit.
 fn verify_json(paths: &[&str]) -> (Vec<Value>, Exit) {
     let arguments: Vec<&str> = [&["verify", "--json"], paths].concat();
     let outcome = run(&arguments);
@@ -111,7 +110,7 @@ fn every_verdict_has_its_json() {
 
 #[test]
 fn a_file_that_diverges_says_where() {
-    // A recorder that is given the hash of another state stands for a machine that computed something else.
+    // Hashes of a changed state stand for a machine that computed something else.
     let folder = Folder::new("diverged");
     let (mut recorder, mut game) = Recorder::<Counter>::start(&setup(), 2).unwrap();
     for tick in 0..6 {
@@ -132,7 +131,7 @@ fn a_file_that_diverges_says_where() {
     assert!(outcome.out.contains("diverged: equal at tick 2, different at tick 4"), "{}", outcome.out);
 }
 
-/// A counter that lies about its sum, and is the counter in everything else.
+/// A counter that claims a wrong sum and is the counter otherwise.
 struct Liar(Counter);
 
 impl Game for Liar {
@@ -146,32 +145,10 @@ impl Game for Liar {
         Counter::new(setup).map(Liar)
     }
 
-    fn players(&self) -> u32 {
-        self.0.players()
-    }
-
-    fn tick_rate(&self) -> u32 {
-        self.0.tick_rate()
-    }
+    like_its_counter!(0);
 
     fn step(&mut self, inputs: &[Input]) {
         self.0.step(inputs);
-    }
-
-    fn state_hash(&self) -> StateHash {
-        self.0.state_hash()
-    }
-
-    fn save(&self) -> Counter {
-        self.0.save()
-    }
-
-    fn load(&mut self, save: &Counter) {
-        self.0.load(save);
-    }
-
-    fn work(&self, inputs: &[Input]) -> u64 {
-        self.0.work(inputs)
     }
 
     fn claims(&self) -> Vec<(String, i64)> {
@@ -216,7 +193,7 @@ fn what_cannot_be_read_is_trouble_and_hides_no_other() {
     let outcome = run(&["verify", &missing, &bad, &good]);
     assert_eq!(outcome.exit, Exit::Trouble);
     assert!(outcome.err.starts_with(&format!("error: cannot read {missing}: ")), "{}", outcome.err);
-    assert_eq!(outcome.out.lines().count(), 3, "the other two, and the summary");
+    assert_eq!(outcome.out.lines().count(), 3, "the lines of the other two files, and the summary");
 
     let (lines, exit) = verify_json(&[&missing, &good]);
     assert_eq!((lines.len(), exit), (2, Exit::Trouble));

@@ -5,10 +5,11 @@ mod shapes;
 use anyhow::{Result, bail, ensure};
 use boxdd_sys::ffi::*;
 use lockstep2d::body::{BodyDef, BodyId, ShapeDef};
+use lockstep2d::math::{Angle, Fx, Vec2};
 use lockstep2d::solver::{ContactTuning, JointDef};
-use lockstep2d::world::{Command, Config, Outcome, Place};
+use lockstep2d::world::{Config, Place};
 
-use crate::engine::{BodyState, Contacts, Counts, Engine, Slots};
+use crate::engine::{BodyState, Builder, Contacts, Counts, Engine, Slots, build};
 use crate::script::Event;
 
 /// World of Box2D.
@@ -52,6 +53,17 @@ impl Box2d {
         let (bodies, joints, saved) = (Slots::new(), Vec::new(), Vec::new());
         Ok(Box2d { world, config: *config, time_step, bodies, joints, saved })
     }
+}
+
+impl Drop for Box2d {
+    fn drop(&mut self) {
+        // SAFETY: see above.
+        unsafe { b2DestroyWorld(self.world) };
+    }
+}
+
+impl Builder for Box2d {
+    const NAME: &str = "Box2D";
 
     fn spawn(&mut self, id: BodyId, body: &BodyDef, shapes: &[ShapeDef], place: Place) -> Result<()> {
         let def = shapes::body_def(body, place)?;
@@ -68,49 +80,33 @@ impl Box2d {
         self.joints.push(unsafe { b2CreateRevoluteJoint(self.world, &def) });
         Ok(())
     }
-}
 
-impl Drop for Box2d {
-    fn drop(&mut self) {
+    fn despawn(&mut self, body: BodyId) -> Result<()> {
+        let body = self.bodies.remove(body)?;
         // SAFETY: see above.
-        unsafe { b2DestroyWorld(self.world) };
+        unsafe { b2DestroyBody(body) };
+        Ok(())
+    }
+
+    fn enable(&mut self, body: BodyId) -> Result<()> {
+        let body = self.bodies.get(body)?;
+        // SAFETY: see above.
+        unsafe { b2Body_Enable(body) };
+        Ok(())
+    }
+
+    fn move_to(&mut self, body: BodyId, position: Vec2<Fx>, angle: Angle) -> Result<()> {
+        let target = b2Transform { p: shapes::vector(position), q: shapes::rotation(angle) };
+        let body = self.bodies.get(body)?;
+        // SAFETY: see above.
+        unsafe { b2Body_SetTargetTransform(body, target, self.time_step, true) };
+        Ok(())
     }
 }
 
 impl Engine for Box2d {
     fn apply(&mut self, event: &Event) -> Result<()> {
-        match event {
-            (Command::Spawn { body, shapes }, Outcome::Body(id)) => {
-                self.spawn(*id, body, shapes, Place { position: body.position, angle: body.angle })?;
-            }
-            (Command::SpawnEach { body, shapes, places }, Outcome::Bodies(ids)) => {
-                for (id, place) in ids.iter().zip(places) {
-                    self.spawn(*id, body, shapes, *place)?;
-                }
-            }
-            (Command::AddJoint { joint }, _) => self.join(joint, joint.bodies())?,
-            (Command::AddJointEach { joint, ends }, _) => {
-                ends.iter().try_for_each(|ends| self.join(joint, *ends))?;
-            }
-            (Command::Despawn { body }, _) => {
-                let body = self.bodies.remove(*body)?;
-                // SAFETY: see above.
-                unsafe { b2DestroyBody(body) };
-            }
-            (Command::Enable { body }, _) => {
-                let body = self.bodies.get(*body)?;
-                // SAFETY: see above.
-                unsafe { b2Body_Enable(body) };
-            }
-            (Command::MoveTo { body, position, angle }, _) => {
-                let target = b2Transform { p: shapes::vector(*position), q: shapes::rotation(*angle) };
-                let body = self.bodies.get(*body)?;
-                // SAFETY: see above.
-                unsafe { b2Body_SetTargetTransform(body, target, self.time_step, true) };
-            }
-            (other, _) => bail!("the Box2D adapter does not support {other:?}"),
-        }
-        Ok(())
+        build(self, event)
     }
 
     fn step(&mut self) {

@@ -6,12 +6,13 @@ use anyhow::{Context, Result, bail, ensure};
 use bincode::config::legacy;
 use bincode::serde::{decode_from_slice, encode_into_std_write};
 use lockstep2d::body::{BodyDef, BodyId, Geometry, ShapeDef};
+use lockstep2d::math::{Angle, Fx, Vec2};
 use lockstep2d::solver::{ContactTuning, JointDef};
-use lockstep2d::world::{Command, Config, Outcome, Place};
+use lockstep2d::world::{Config, Place};
 use rapier2d::pipeline::PhysicsWorld;
 use rapier2d::prelude::*;
 
-use crate::engine::{BodyState, Contacts, Counts, Engine, Slots};
+use crate::engine::{BodyState, Builder, Contacts, Counts, Engine, Slots, build};
 use crate::script::Event;
 
 /// World of rapier2d.
@@ -73,6 +74,15 @@ impl Rapier {
         Ok(())
     }
 
+    fn body_mut(&mut self, id: BodyId) -> Result<&mut RigidBody> {
+        let handle = self.bodies.get(id)?;
+        self.world.bodies.get_mut(handle).context("the body does not exist")
+    }
+}
+
+impl Builder for Rapier {
+    const NAME: &str = "rapier2d";
+
     fn spawn(&mut self, id: BodyId, def: &BodyDef, shapes: &[ShapeDef], place: Place) -> Result<()> {
         let mut body = shapes::body(def, place, &self.config)?.build();
         body.activation_mut().normalized_linear_threshold =
@@ -99,44 +109,32 @@ impl Rapier {
         Ok(())
     }
 
-    fn body_mut(&mut self, id: BodyId) -> Result<&mut RigidBody> {
-        let handle = self.bodies.get(id)?;
-        self.world.bodies.get_mut(handle).context("the body does not exist")
+    fn despawn(&mut self, body: BodyId) -> Result<()> {
+        let handle = self.bodies.remove(body)?;
+        self.world.remove_body(handle).context("the body does not exist")?;
+        Ok(())
+    }
+
+    fn enable(&mut self, body: BodyId) -> Result<()> {
+        self.body_mut(body)?.set_enabled(true);
+        Ok(())
+    }
+
+    fn move_to(&mut self, body: BodyId, position: Vec2<Fx>, angle: Angle) -> Result<()> {
+        let rate = self.config.tick_rate as f32;
+        let target = Pose::new(shapes::vector(position), angle.to_radians().to_num());
+        let body = self.body_mut(body)?;
+        let way = target.translation - body.translation();
+        let turn = (target.rotation * body.rotation().inverse()).angle();
+        body.set_linvel(way * rate, true);
+        body.set_angvel(turn * rate, true);
+        Ok(())
     }
 }
 
 impl Engine for Rapier {
     fn apply(&mut self, event: &Event) -> Result<()> {
-        match event {
-            (Command::Spawn { body, shapes }, Outcome::Body(id)) => {
-                self.spawn(*id, body, shapes, Place { position: body.position, angle: body.angle })?;
-            }
-            (Command::SpawnEach { body, shapes, places }, Outcome::Bodies(ids)) => {
-                for (id, place) in ids.iter().zip(places) {
-                    self.spawn(*id, body, shapes, *place)?;
-                }
-            }
-            (Command::AddJoint { joint }, _) => self.join(joint, joint.bodies())?,
-            (Command::AddJointEach { joint, ends }, _) => {
-                ends.iter().try_for_each(|ends| self.join(joint, *ends))?;
-            }
-            (Command::Despawn { body }, _) => {
-                let handle = self.bodies.remove(*body)?;
-                self.world.remove_body(handle).context("the body does not exist")?;
-            }
-            (Command::Enable { body }, _) => self.body_mut(*body)?.set_enabled(true),
-            (Command::MoveTo { body, position, angle }, _) => {
-                let rate = self.config.tick_rate as f32;
-                let target = Pose::new(shapes::vector(*position), angle.to_radians().to_num());
-                let body = self.body_mut(*body)?;
-                let way = target.translation - body.translation();
-                let turn = (target.rotation * body.rotation().inverse()).angle();
-                body.set_linvel(way * rate, true);
-                body.set_angvel(turn * rate, true);
-            }
-            (other, _) => bail!("the rapier2d adapter does not support {other:?}"),
-        }
-        Ok(())
+        build(self, event)
     }
 
     fn step(&mut self) {

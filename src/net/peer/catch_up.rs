@@ -9,7 +9,7 @@ use core::time::Duration;
 use super::{NetError, Peer, RESEND};
 use crate::codec;
 use crate::hash::StateHash;
-use crate::lockstep::decode_inputs;
+use crate::lockstep::EncodedInputs;
 use crate::net::driver::Driver;
 use crate::net::packet::{Nonce, Packet, Refused};
 use crate::net::transport::Transport;
@@ -250,9 +250,9 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
             }
             let doubt = if joining.watch { 0 } else { self.options.doubt() };
             let Some(bytes) = queue.pop_front() else { return Ok(()) };
-            let inputs = decode_inputs::<G::Input>(&bytes, self.terms.players)
+            let inputs = EncodedInputs::from_bytes(bytes, self.driver.game().players())
                 .map_err(|error| NetError::State { why: error.to_string() })?;
-            self.driver.step(&inputs)?;
+            self.driver.step_encoded(inputs);
             self.driver.commit(self.driver.tick().saturating_sub(doubt))?;
         }
         Ok(())

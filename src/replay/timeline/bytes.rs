@@ -9,8 +9,8 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::super::rerun::Place;
 use super::keyframes::{Keyframe, Keyframes};
-use crate::codec::{self, DecodeError};
-use crate::hash::StateHash;
+use crate::codec::DecodeError;
+use crate::hash::{Envelope, EnvelopeError, StateHash};
 use crate::lockstep::Game;
 
 /// The first eight bytes of a file of keyframes, modelled on those of a replay.
@@ -22,10 +22,7 @@ pub const KEYFRAMES_FORMAT_VERSION: u32 = 1;
 /// Maximum bytes of all keyframes together, small enough for their file to be decoded at once.
 pub const KEYFRAMES_BYTES_MAX: usize = 192 << 20;
 
-/// Size of the header: magic, format, semantics, length.
-const HEADER_LEN: usize = 8 + 4 + 4 + 8;
-/// Size of the hash at the end.
-const HASH_LEN: usize = 16;
+const ENVELOPE: Envelope = Envelope { magic: KEYFRAMES_MAGIC, format: KEYFRAMES_FORMAT_VERSION };
 
 /// Reason why bytes are not keyframes of this replay.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -116,6 +113,18 @@ impl fmt::Display for KeyframesError {
 
 impl core::error::Error for KeyframesError {}
 
+impl From<EnvelopeError> for KeyframesError {
+    fn from(error: EnvelopeError) -> Self {
+        match error {
+            EnvelopeError::Magic => KeyframesError::NotKeyframes,
+            EnvelopeError::Format { found } => KeyframesError::Format { found },
+            EnvelopeError::Length { announced, found } => KeyframesError::Length { announced, found },
+            EnvelopeError::Hash => KeyframesError::Hash,
+            EnvelopeError::Decode(error) => KeyframesError::Decode(error),
+        }
+    }
+}
+
 /// The body, which follows the header.
 #[derive(Serialize, Deserialize)]
 pub(super) struct Body {
@@ -171,41 +180,16 @@ pub(super) fn encode<G: Game>(replay: &[u8], keyframes: &Keyframes<'_>) -> Vec<u
         interval: keyframes.interval(),
         saves: at_checkpoints.map(|frame| (frame.place.tick, Save(frame.save.clone()))).collect(),
     };
-    let mut bytes = KEYFRAMES_MAGIC.to_vec();
-    bytes.extend_from_slice(&KEYFRAMES_FORMAT_VERSION.to_le_bytes());
-    bytes.extend_from_slice(&crate::SEMANTICS.to_le_bytes());
-    bytes.extend_from_slice(&[0; 8]);
-    codec::encode_into(&body, &mut bytes);
-    let length = (bytes.len() - HEADER_LEN) as u64;
-    bytes[HEADER_LEN - 8..HEADER_LEN].copy_from_slice(&length.to_le_bytes());
-    let hash = StateHash::of_bytes(&bytes);
-    bytes.extend_from_slice(&hash.0.to_le_bytes());
-    bytes
+    ENVELOPE.seal(crate::SEMANTICS, &body)
 }
 
 /// Decodes the body of a file of keyframes of this replay. The saves are not checked yet.
 pub(super) fn decode<G: Game>(replay: &[u8], bytes: &[u8]) -> Result<Body, KeyframesError> {
-    let header: &[u8; HEADER_LEN] = bytes.first_chunk().ok_or(KeyframesError::NotKeyframes)?;
-    let number = |at: usize| u32::from_le_bytes([header[at], header[at + 1], header[at + 2], header[at + 3]]);
-    if header[..8] != KEYFRAMES_MAGIC {
-        return Err(KeyframesError::NotKeyframes);
+    let opened = ENVELOPE.open(bytes)?;
+    if opened.semantics != crate::SEMANTICS {
+        return Err(KeyframesError::Semantics { found: opened.semantics });
     }
-    if number(8) != KEYFRAMES_FORMAT_VERSION {
-        return Err(KeyframesError::Format { found: number(8) });
-    }
-    if number(12) != crate::SEMANTICS {
-        return Err(KeyframesError::Semantics { found: number(12) });
-    }
-    let length = u64::from(number(16)) | u64::from(number(20)) << 32;
-    let (announced, found) = (length.saturating_add((HEADER_LEN + HASH_LEN) as u64), bytes.len() as u64);
-    if announced != found {
-        return Err(KeyframesError::Length { announced, found });
-    }
-    let (covered, hash) = bytes.split_at(bytes.len() - HASH_LEN);
-    if StateHash::of_bytes(covered).0.to_le_bytes() != *hash {
-        return Err(KeyframesError::Hash);
-    }
-    let body: Body = codec::decode(&covered[HEADER_LEN..]).map_err(KeyframesError::Decode)?;
+    let body: Body = opened.decode()?;
     if (body.rules_name.as_str(), body.rules_version) != (G::RULES.name, G::RULES.version) {
         return Err(KeyframesError::Rules { name: body.rules_name, version: body.rules_version });
     }

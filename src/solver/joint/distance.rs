@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::options::{Drive, Limit, Spring, check, is_sane};
+use super::options::{Drive, Limit, Spring, check, check_options, is_sane, option_builders};
 use super::parts::{Direction, Parts, slot};
 use crate::body::WorldError;
 use crate::fx;
@@ -45,40 +45,21 @@ impl Distance {
         Self::new().limit(Fx::ZERO, length)
     }
 
-    /// Sets the range of the length in metres.
-    #[must_use]
-    pub const fn limit(mut self, lower: Fx, upper: Fx) -> Self {
-        self.limit = Some(Limit { lower, upper });
-        self
-    }
-
-    /// Sets a speed in m/s to grow apart with, and the largest force in N.
-    #[must_use]
-    pub const fn motor(mut self, speed: Fx, max_force: Fx) -> Self {
-        self.motor = Some(Drive { speed, max: max_force });
-        self
-    }
-
-    /// Sets a length in metres to swing about, with a frequency in Hz.
-    #[must_use]
-    pub const fn spring(mut self, hertz: Fx, damping_ratio: Fx, length: Fx) -> Self {
-        self.spring = Some(Spring { hertz, damping_ratio, target: length });
-        self
-    }
-
-    /// Sets the least and the largest force of the spring in N, positive apart.
-    #[must_use]
-    pub const fn spring_force(mut self, lower: Fx, upper: Fx) -> Self {
-        self.spring_force = Some(Limit { lower, upper });
-        self
+    option_builders! {
+        /// Sets the range of the length in metres.
+        limit(lower, upper) => Limit { lower, upper };
+        /// Sets a speed in m/s to grow apart with, and the largest force in N.
+        motor(speed, max_force) => Drive { speed, max: max_force };
+        /// Sets a length in metres to swing about, with a frequency in Hz.
+        spring(hertz, damping_ratio, length) => Spring { hertz, damping_ratio, target: length };
+        /// Sets the least and the largest force of the spring in N, positive apart.
+        spring_force(lower, upper) => Limit { lower, upper };
     }
 
     pub(super) fn validate(&self) -> Result<(), WorldError> {
         check(self.rod.is_none_or(|length| length >= ROD_MIN && is_sane(length)), "length")?;
-        Limit::check(self.limit)?;
         check(self.limit.is_none_or(|limit| limit.lower >= Fx::ZERO), "limit")?;
-        Drive::check(self.motor)?;
-        Spring::check(self.spring)?;
+        check_options(self.limit, self.motor, self.spring)?;
         check(self.spring.is_none_or(|spring| spring.target >= Fx::ZERO), "spring")?;
         check(
             self.spring_force.is_none_or(|force| force.lower <= Fx::ZERO && Fx::ZERO <= force.upper),

@@ -4,7 +4,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::options::{Drive, Limit, Soft, check, is_sane};
+use super::options::{Drive, Limit, Soft, check, is_sane, option_builders};
 use super::parts::{Direction, Parts, slot};
 use crate::body::WorldError;
 use crate::math::{Fx, Vec2};
@@ -57,25 +57,15 @@ impl Motor {
         self
     }
 
-    /// Sets an angular velocity in rad/s to go for, and the largest torque in N m.
-    #[must_use]
-    pub const fn angular(mut self, speed: Fx, max_torque: Fx) -> Self {
-        self.angular = Some(Drive { speed, max: max_torque });
-        self
-    }
-
-    /// Sets a spring between the anchors, with a frequency in Hz and a largest force in N.
-    #[must_use]
-    pub const fn linear_spring(mut self, hertz: Fx, damping_ratio: Fx, max_force: Fx) -> Self {
-        self.linear_spring = Some(Pull { soft: Soft { hertz, damping_ratio }, max: max_force });
-        self
-    }
-
-    /// Sets a spring between the angles, with a frequency in Hz and a largest torque in N m.
-    #[must_use]
-    pub const fn angular_spring(mut self, hertz: Fx, damping_ratio: Fx, max_torque: Fx) -> Self {
-        self.angular_spring = Some(Pull { soft: Soft { hertz, damping_ratio }, max: max_torque });
-        self
+    option_builders! {
+        /// Sets an angular velocity in rad/s to go for, and the largest torque in N m.
+        angular(speed, max_torque) => Drive { speed, max: max_torque };
+        /// Sets a spring between the anchors, with a frequency in Hz and a largest force in N.
+        linear_spring(hertz, damping_ratio, max_force) =>
+            Pull { soft: Soft { hertz, damping_ratio }, max: max_force };
+        /// Sets a spring between the angles, with a frequency in Hz and a largest torque in N m.
+        angular_spring(hertz, damping_ratio, max_torque) =>
+            Pull { soft: Soft { hertz, damping_ratio }, max: max_torque };
     }
 
     pub(super) fn validate(&self) -> Result<(), WorldError> {

@@ -33,8 +33,8 @@ pub struct Drive {
     pub max: Fx,
 }
 
-/// A damped spring with a target. Its frequency is that of bodies that nothing else holds: a body that a hinge makes turn
-/// about a point away from its centre of mass swings more slowly.
+/// A damped spring with a target. Its frequency is that of bodies that nothing else holds: a body that a hinge makes
+/// turn about a point away from its centre of mass swings more slowly.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Spring {
     /// Frequency without damping in Hz, above 0, up to 1000. The time step makes springs above a tenth of the sub-step
@@ -60,6 +60,33 @@ impl Soft {
     pub(crate) const fn towards(self, target: Fx) -> Spring {
         Spring { hertz: self.hertz, damping_ratio: self.damping_ratio, target }
     }
+}
+
+/// Builder methods of a joint: each sets the optional field of its own name to the value after the arrow, which is made
+/// of the method's arguments.
+macro_rules! option_builders {
+    ($($(#[$doc:meta])* $field:ident($($argument:ident),+) => $value:expr;)+) => {
+        $(
+            $(#[$doc])*
+            #[must_use]
+            pub const fn $field(mut self, $($argument: Fx),+) -> Self {
+                self.$field = Some($value);
+                self
+            }
+        )+
+    };
+}
+pub(super) use option_builders;
+
+/// Checks the options that most joints have, or names the first that is out of range.
+pub(super) fn check_options(
+    limit: Option<Limit>,
+    motor: Option<Drive>,
+    spring: Option<Spring>,
+) -> Result<(), WorldError> {
+    Limit::check(limit)?;
+    Drive::check(motor)?;
+    Spring::check(spring)
 }
 
 /// Checks that what a joint has is in range, or names it.

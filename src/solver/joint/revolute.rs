@@ -7,7 +7,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::hinge::AngleParts;
-use super::options::{Drive, Limit, Spring};
+use super::options::{Drive, Limit, Spring, check_options, option_builders};
 use crate::body::WorldError;
 use crate::math::Fx;
 
@@ -36,31 +36,17 @@ impl Revolute {
         Revolute { limit: None, motor: None, spring: None }
     }
 
-    /// Sets the range of the angle in radians.
-    #[must_use]
-    pub const fn limit(mut self, lower: Fx, upper: Fx) -> Self {
-        self.limit = Some(Limit { lower, upper });
-        self
-    }
-
-    /// Sets an angular velocity in rad/s to go for, and the largest torque in N m.
-    #[must_use]
-    pub const fn motor(mut self, speed: Fx, max_torque: Fx) -> Self {
-        self.motor = Some(Drive { speed, max: max_torque });
-        self
-    }
-
-    /// Sets an angle in radians to swing about, with a frequency in Hz.
-    #[must_use]
-    pub const fn spring(mut self, hertz: Fx, damping_ratio: Fx, target: Fx) -> Self {
-        self.spring = Some(Spring { hertz, damping_ratio, target });
-        self
+    option_builders! {
+        /// Sets the range of the angle in radians.
+        limit(lower, upper) => Limit { lower, upper };
+        /// Sets an angular velocity in rad/s to go for, and the largest torque in N m.
+        motor(speed, max_torque) => Drive { speed, max: max_torque };
+        /// Sets an angle in radians to swing about, with a frequency in Hz.
+        spring(hertz, damping_ratio, target) => Spring { hertz, damping_ratio, target };
     }
 
     pub(super) fn validate(&self) -> Result<(), WorldError> {
-        Limit::check(self.limit)?;
-        Drive::check(self.motor)?;
-        Spring::check(self.spring)
+        check_options(self.limit, self.motor, self.spring)
     }
 
     /// Its rows on the angle.

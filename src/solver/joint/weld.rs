@@ -6,7 +6,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::hinge::AngleParts;
-use super::options::Soft;
+use super::options::{Soft, option_builders};
 use super::parts::{Direction, Parts, slot};
 use crate::body::WorldError;
 use crate::math::Fx;
@@ -27,18 +27,11 @@ impl Weld {
         Weld { linear: None, angular: None }
     }
 
-    /// Lets the anchors swing apart, with a frequency in Hz.
-    #[must_use]
-    pub const fn linear(mut self, hertz: Fx, damping_ratio: Fx) -> Self {
-        self.linear = Some(Soft { hertz, damping_ratio });
-        self
-    }
-
-    /// Lets the angle swing, with a frequency in Hz.
-    #[must_use]
-    pub const fn angular(mut self, hertz: Fx, damping_ratio: Fx) -> Self {
-        self.angular = Some(Soft { hertz, damping_ratio });
-        self
+    option_builders! {
+        /// Lets the anchors swing apart, with a frequency in Hz.
+        linear(hertz, damping_ratio) => Soft { hertz, damping_ratio };
+        /// Lets the angle swing, with a frequency in Hz.
+        angular(hertz, damping_ratio) => Soft { hertz, damping_ratio };
     }
 
     pub(super) fn validate(&self) -> Result<(), WorldError> {

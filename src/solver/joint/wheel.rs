@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::options::{Drive, Limit, Spring};
+use super::options::{Drive, Limit, Spring, check_options, option_builders};
 use super::parts::{Direction, Parts, slot};
 use crate::body::WorldError;
 use crate::math::Fx;
@@ -25,31 +25,17 @@ impl Wheel {
         Wheel { limit: None, motor: None, spring: None }
     }
 
-    /// Sets the range of the translation in metres.
-    #[must_use]
-    pub const fn limit(mut self, lower: Fx, upper: Fx) -> Self {
-        self.limit = Some(Limit { lower, upper });
-        self
-    }
-
-    /// Sets an angular velocity in rad/s to go for, and the largest torque in N m.
-    #[must_use]
-    pub const fn motor(mut self, speed: Fx, max_torque: Fx) -> Self {
-        self.motor = Some(Drive { speed, max: max_torque });
-        self
-    }
-
-    /// Sets a translation in metres to swing about, with a frequency in Hz.
-    #[must_use]
-    pub const fn spring(mut self, hertz: Fx, damping_ratio: Fx, target: Fx) -> Self {
-        self.spring = Some(Spring { hertz, damping_ratio, target });
-        self
+    option_builders! {
+        /// Sets the range of the translation in metres.
+        limit(lower, upper) => Limit { lower, upper };
+        /// Sets an angular velocity in rad/s to go for, and the largest torque in N m.
+        motor(speed, max_torque) => Drive { speed, max: max_torque };
+        /// Sets a translation in metres to swing about, with a frequency in Hz.
+        spring(hertz, damping_ratio, target) => Spring { hertz, damping_ratio, target };
     }
 
     pub(super) fn validate(&self) -> Result<(), WorldError> {
-        Limit::check(self.limit)?;
-        Drive::check(self.motor)?;
-        Spring::check(self.spring)
+        check_options(self.limit, self.motor, self.spring)
     }
 
     pub(super) fn prepare(&self, parts: &mut Parts<'_>) {

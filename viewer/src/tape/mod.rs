@@ -5,7 +5,7 @@ mod history;
 use std::fmt;
 
 use lockstep2d::hash::StateHash;
-use lockstep2d::lockstep::{Game, InputError, InputLog};
+use lockstep2d::lockstep::{EncodedInputs, Game, InputError, InputLog};
 use lockstep2d::replay::{CHECKPOINT_INTERVAL, Limits, RecordError, Recorder};
 
 use history::History;
@@ -105,8 +105,10 @@ impl<G: Game> Tape<G> {
         if !self.is_at_end() {
             self.cut()?;
         }
-        self.recorder.record(inputs).map_err(TapeError::Record)?;
-        let inputs = self.log.push(inputs).map_err(TapeError::Log)?;
+        let inputs = EncodedInputs::new(inputs, self.game.players())
+            .map_err(|error| TapeError::Record(RecordError::Inputs(error)))?;
+        self.recorder.record_encoded(&inputs).map_err(TapeError::Record)?;
+        let inputs = self.log.push_encoded(&inputs).map_err(TapeError::Log)?;
         self.work.push(self.work.last().map_or(work, |before| before.saturating_add(work)));
         self.game.step(inputs);
         self.tick += 1;
@@ -189,8 +191,9 @@ impl<G: Game> Tape<G> {
         let mut recorder = self.blank.clone();
         let mut checkpoints = self.checkpoints.iter();
         for tick in 0..self.tick {
-            let inputs = self.log.get(tick).unwrap_or_default();
-            recorder.record(inputs).map_err(TapeError::Record)?;
+            if let Some(inputs) = self.log.get_encoded(tick) {
+                recorder.record_encoded(inputs).map_err(TapeError::Record)?;
+            }
             if recorder.is_checkpoint_due()
                 && let Some(hash) = checkpoints.next()
             {

@@ -1,4 +1,4 @@
-//! A comparison as JSON.
+//! A comparison as a JSON document.
 
 use std::path::Path;
 
@@ -6,7 +6,7 @@ use lockstep2d::inspect::{Difference, Value};
 use lockstep2d::report::{Blame, Comparison, Course, Group, Side, Thing};
 use serde_json::{Value as Json, json};
 
-pub(in crate::commands) fn document(a: &Path, b: &Path, found: &Comparison) -> String {
+pub(super) fn document([a, b]: [&Path; 2], found: &Comparison) -> String {
     let thing = |thing: &Thing| json!({"path": thing.path, "section": thing.section, "fields": fields(&thing.differences)});
     let things: Vec<Json> = found.things.iter().map(thing).collect();
     let began: Vec<Json> = found.began.iter().map(thing).collect();
@@ -60,8 +60,8 @@ fn blame(blame: Blame) -> &'static str {
     }
 }
 
-/// Fields that differ, with both values.
-pub(crate) fn fields(differences: &[Difference]) -> Vec<Json> {
+/// Differing fields, each with both values.
+pub(in crate::commands) fn fields(differences: &[Difference]) -> Vec<Json> {
     let field = |difference: &Difference| {
         json!({
             "path": difference.field().path(),
@@ -73,7 +73,7 @@ pub(crate) fn fields(differences: &[Difference]) -> Vec<Json> {
     differences.iter().map(field).collect()
 }
 
-/// A value as people read it and, of a number, its bits: as text, since they may be more than JSON's numbers hold.
+/// A value as readable text and, for a number, its bits as text, since they may exceed the range of JSON numbers.
 fn value(value: Option<&Value>) -> Json {
     value.map_or(
         Json::Null,

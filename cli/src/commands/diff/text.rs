@@ -1,4 +1,4 @@
-//! A comparison for people.
+//! A comparison as readable text.
 
 use std::fmt;
 use std::path::Path;
@@ -9,11 +9,11 @@ use lockstep2d::report::{Blame, Comparison, Course, Group, Side, Thing};
 use crate::console::{BAD, DOUBTFUL, GOOD};
 use crate::files::Shown;
 
-/// A comparison, and of how many things it shows how they differ.
-pub(in crate::commands) struct Text<'a> {
-    pub(in crate::commands) found: &'a Comparison,
-    pub(in crate::commands) sides: [&'a Path; 2],
-    pub(in crate::commands) things: usize,
+/// A comparison, printed with the differing fields of at most `things` parts of the state.
+pub(super) struct Text<'a> {
+    pub(super) found: &'a Comparison,
+    pub(super) sides: [&'a Path; 2],
+    pub(super) things: usize,
 }
 
 impl fmt::Display for Text<'_> {
@@ -70,15 +70,15 @@ impl Text<'_> {
             }
             (Some(until), Blame::Side(side)) => {
                 let course = &found.courses[side.index()];
-                write!(f, "\nplayed again up to tick {until}: {BAD}{side} departed{BAD:#}{}", Seats(course))?;
+                write!(f, "\nplayed again up to tick {until}: {BAD}{side} diverged{BAD:#}{}", Seats(course))?;
                 course.departs.map_or(Ok(()), |tick| write!(f, " at tick {tick}"))?;
             }
             (Some(until), Blame::Both) => {
                 let [a, b] = [0, 1].map(|side: usize| found.courses[side].departs.unwrap_or_default());
                 write!(
                     f,
-                    "\nplayed again up to tick {until}: {BAD}both departed{BAD:#}, A at tick {a}, B at tick {b}; are \
-                     these rules and this engine theirs?"
+                    "\nplayed again up to tick {until}: {BAD}both diverged{BAD:#}, A at tick {a}, B at tick {b}; check \
+                     that both were made with these rules and this engine"
                 )?;
             }
         }
@@ -141,7 +141,7 @@ impl Text<'_> {
     }
 }
 
-/// The name of a field within its thing and both values.
+/// The name of a differing field and both values.
 struct Line<'a>(&'a Difference);
 
 impl fmt::Display for Line<'_> {
@@ -155,7 +155,7 @@ impl fmt::Display for Line<'_> {
             "" => "value",
             name => name,
         };
-        // Names and texts of a stranger's file must not reach the terminal as they are.
+        // Names and texts of an untrusted file are escaped before they reach the terminal.
         let text = format!("{name}: {} | {}", value(&difference.a), value(&difference.b));
         write!(f, "{}", Shown(Path::new(&text)))
     }

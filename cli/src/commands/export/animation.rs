@@ -4,48 +4,45 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use lockstep2d::draw::{Frame, View, fit};
 use lockstep2d::lockstep::Game;
 use lockstep2d::math::Aabb;
-use lockstep2d::replay::Limits;
 use lockstep2d_picture::{Animation, DrawList, Image, Pace};
 
 use super::format::Format;
 use super::still::image;
-use super::{Arguments, Output, Replay, ViewOf};
-use crate::console::Console;
+use super::{Arguments, Output, Replay};
+use crate::context::{CommandResult, Context};
 use crate::error::CommandError;
-use crate::exit::Exit;
 
-/// Unless someone says otherwise, an animation has no more frames a second: more are hard to see.
+/// Most frames a second by default: more are hard to see.
 const FRAME_RATE_MAX: u32 = 30;
-/// Width of an animation, unless someone says otherwise: it is moved about more than looked at closely.
+/// Default width of an animation in pixels. It is smaller than that of a picture, to keep files small.
 const WIDTH: u32 = 640;
-/// More frames a second than this are shown slowly by most programs: the shortest time that they take is 2/100 s.
+/// Highest frame rate at which most programs show a GIF: their shortest frame time is 2/100 s.
 const GIF_RATE_MAX: u32 = 50;
-/// So many ticks are looked at for a window in which all of them fit.
+/// Number of ticks that are sampled to find a window in which all of them fit.
 const SAMPLES: u64 = 100;
-/// Of so many of these there is a picture, for its colours.
+/// Number of samples for each sample picture, from which the palette is made.
 const SAMPLES_OF_A_PICTURE: usize = 10;
 
 /// Writes a range of ticks as an animation.
 ///
-/// A replay is played twice: first to see what there will be, and that it can be played at all, before anything is
-/// written.
+/// The replay is played twice. The first pass finds the window and the colours, and checks that the replay can be
+/// played before anything is written.
 pub(super) fn write<G: Game>(
     bytes: &[u8],
     mut replay: Replay<'_, G>,
-    view: Option<ViewOf<G>>,
     format: Format,
-    (arguments, limits): (&Arguments, &Limits),
-    console: &mut Console<'_>,
-) -> Result<Exit, CommandError> {
+    arguments: &Arguments,
+    context: &mut Context<'_, G>,
+) -> CommandResult {
     let frames = Frames::of(&replay, arguments)?;
     if format == Format::Gif && frames.pace.ticks.saturating_mul(GIF_RATE_MAX) < frames.pace.tick_rate {
-        console.warning("more than 50 frames a second: most programs show such a GIF slowly");
+        context.console.warning("more than 50 frames a second: most programs show such a GIF slowly");
     }
-    let progress = Progress::new(console.is_terminal, frames.count);
-    let mut camera = Camera::new(&mut replay, view, arguments)?;
+    let progress = Progress::new(context.console.is_terminal, frames.count);
+    let mut camera = Camera::new(&mut replay, context.tool.view, arguments)?;
     let samples = camera.look_at(&mut replay, &frames)?;
-    let mut replay = Replay::<G>::open(bytes, arguments, limits)?;
-    Output::write(arguments.output.as_deref(), console, |output| {
+    let mut replay = Replay::<G>::open(bytes, arguments, context.limits())?;
+    Output::write(arguments.output.as_deref(), &mut context.console, |output| {
         let (to, failed) = output.parts();
         let mut animation = match format {
             Format::Apng => Animation::apng(to, frames.pace, frames.count),
@@ -62,12 +59,12 @@ pub(super) fn write<G: Game>(
     })
 }
 
-/// Which ticks are shown, and for how long each.
+/// The ticks that are shown, and the duration of each.
 struct Frames {
     first: u64,
     last: u64,
     pace: Pace,
-    /// How many there are.
+    /// Number of frames.
     count: u32,
 }
 
@@ -76,10 +73,7 @@ impl Frames {
         let (first, last) = replay.range(arguments)?;
         let tick_rate = replay.playback.game().tick_rate();
         let ticks = arguments.every.unwrap_or_else(|| tick_rate.div_ceil(FRAME_RATE_MAX).max(1));
-        let Some(span) = last.checked_sub(first) else {
-            return Err(CommandError::NothingThere { what: format!("tick from {first} to {last}") });
-        };
-        let count = u32::try_from(span / u64::from(ticks) + 1).unwrap_or(u32::MAX);
+        let count = u32::try_from((last - first) / u64::from(ticks) + 1).unwrap_or(u32::MAX);
         Ok(Frames { first, last, pace: Pace { ticks, tick_rate }, count })
     }
 
@@ -87,7 +81,7 @@ impl Frames {
         (0..u64::from(self.count)).map(|frame| self.first + frame * u64::from(self.pace.ticks))
     }
 
-    /// A few of all ticks, the first and the last among them.
+    /// At most `SAMPLES` + 1 of the ticks, the first and the last among them.
     fn samples(&self) -> impl Iterator<Item = u64> {
         let step = (self.last - self.first).div_ceil(SAMPLES).max(1);
         (0..SAMPLES)
@@ -97,20 +91,21 @@ impl Frames {
     }
 }
 
-/// Which part of the world is shown, in which size.
+/// The part of the world that is shown, and the size of the picture.
 struct Camera<'a, G: Game> {
-    view: Option<ViewOf<G>>,
+    view: Option<fn(&G) -> View>,
     arguments: &'a Arguments,
     size: (u32, u32),
-    /// Unless the game or the arguments say it. It stands still.
+    /// The fitted window, which is the same for all frames. It applies unless the game or the arguments set one.
     window: Option<Aabb>,
 }
 
 impl<'a, G: Game> Camera<'a, G> {
-    /// All frames are as large as the first. Its sides are those of the game's own picture, unless the arguments say it.
+    /// All frames have the same size. Its aspect ratio is that of the game's own view, unless the arguments set both
+    /// sides.
     fn new(
         replay: &mut Replay<'_, G>,
-        view: Option<ViewOf<G>>,
+        view: Option<fn(&G) -> View>,
         arguments: &'a Arguments,
     ) -> Result<Self, CommandError> {
         replay.world()?;
@@ -128,8 +123,8 @@ impl<'a, G: Game> Camera<'a, G> {
         Ok(Camera { view, arguments, size, window: None })
     }
 
-    /// Finds a window in which there is room for what is worth seeing at any time; a few pictures, which have nearly all
-    /// colours.
+    /// Finds a window that fits the world at all sampled ticks. Returns a few sample pictures, which have nearly all
+    /// colours of the animation.
     fn look_at(&mut self, replay: &mut Replay<'_, G>, frames: &Frames) -> Result<Vec<Image>, CommandError> {
         let mut window: Option<Aabb> = None;
         let mut pictures = Vec::new();
@@ -145,7 +140,7 @@ impl<'a, G: Game> Camera<'a, G> {
         Ok(pictures)
     }
 
-    /// The picture of the tick at which a replay is.
+    /// The picture of the current tick of a replay.
     fn picture(&self, replay: &mut Replay<'_, G>, list: &mut DrawList) -> Result<Image, CommandError> {
         let (width, height) = self.size;
         let mut view = View { width, height, ..self.arguments.view(replay.view(self.view)) };
@@ -156,7 +151,7 @@ impl<'a, G: Game> Camera<'a, G> {
     }
 }
 
-/// How far it is, for who watches a terminal.
+/// A progress bar on a terminal.
 struct Progress(Option<ProgressBar>);
 
 impl Progress {

@@ -1,4 +1,4 @@
-//! [`Format`]: as what a replay is written.
+//! [`Format`]: the output formats of `export`.
 
 use std::path::Path;
 
@@ -6,7 +6,7 @@ use clap::Args;
 
 use crate::error::CommandError;
 
-/// As what a replay is written.
+/// An output format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Format {
     Svg,
@@ -17,7 +17,7 @@ pub(super) enum Format {
     Plot,
 }
 
-/// The options that choose among them.
+/// The options that select a format.
 #[derive(Args, Debug)]
 #[group(multiple = false)]
 pub(super) struct Formats {
@@ -33,7 +33,7 @@ pub(super) struct Formats {
     /// An animation as an animated PNG file
     #[arg(long)]
     apng: bool,
-    /// The states of one or more ticks as JSON, a line for each
+    /// The states of one or more ticks as JSON, one line for each tick
     #[arg(long)]
     json: bool,
     /// Energy, overlaps, contacts, awake bodies and joint gaps over time, as an SVG document
@@ -42,7 +42,7 @@ pub(super) struct Formats {
 }
 
 impl Formats {
-    /// The one that was asked for, or that the name of the file to write ends in.
+    /// The selected format, or else the one that the extension of the output file names.
     pub(super) fn chosen(&self, output: Option<&Path>) -> Result<Format, CommandError> {
         let Formats { svg, png, gif, apng, json, plot } = *self;
         let asked = [
@@ -77,7 +77,7 @@ fn by_extension(output: Option<&Path>) -> Option<Format> {
 }
 
 impl Format {
-    /// The option that asks for it.
+    /// The option that selects the format.
     pub(super) fn option(self) -> &'static str {
         match self {
             Format::Svg => "--svg",

@@ -9,7 +9,7 @@ use serde_json::Value;
 use super::{Output, Replay};
 use crate::error::CommandError;
 
-/// Writes a line for each of some ticks.
+/// Writes one line for each of `ticks`.
 pub(super) fn write<G: Game>(
     mut replay: Replay<'_, G>,
     ticks: impl Iterator<Item = u64>,
@@ -23,7 +23,7 @@ pub(super) fn write<G: Game>(
     Ok(())
 }
 
-/// The tick comes first, for whoever looks at the beginning of a long line.
+/// A line of JSON. The tick comes first, so that the beginning of a long line identifies it.
 pub(super) fn line<S: Serialize>(tick: u64, hash: StateHash, save: &S) -> Result<String, CommandError> {
     let mut state =
         serde_json::to_value(save).map_err(|error| CommandError::State { why: error.to_string() })?;
@@ -34,7 +34,7 @@ pub(super) fn line<S: Serialize>(tick: u64, hash: StateHash, save: &S) -> Result
     Ok(format!("{{\"tick\":{tick},\"hash\":\"{hash}\",\"state\":{state}}}"))
 }
 
-/// Puts a decimal beside the bits of each fixed-point number. `numbers` are sorted by their paths.
+/// Adds a decimal beside the bits of each fixed-point number. `numbers` are sorted by their paths.
 fn add_decimals(value: &mut Value, path: &mut String, numbers: &[Field]) {
     let length = path.len();
     match value {
@@ -50,7 +50,7 @@ fn add_decimals(value: &mut Value, path: &mut String, numbers: &[Field]) {
             let is_single = entries.len() == 1;
             for (name, entry) in entries {
                 push_name(path, name);
-                // JSON puts the fields of a variant below its name; in a path they are beside it.
+                // JSON nests the fields of an enum variant under its name; paths do not contain that name.
                 if is_single && !is_beginning(path, numbers) {
                     path.truncate(length);
                 }

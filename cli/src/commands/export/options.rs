@@ -1,9 +1,9 @@
-//! Options that are more than a number.
+//! Parsers of the options for layers and windows.
 
 use lockstep2d::draw::Layers;
 use lockstep2d::math::{Aabb, Fx, Vec2};
 
-/// Layers by the names of the fields of [`Layers`].
+/// Parses layers: names of fields of [`Layers`] separated by commas, `all` or `none`.
 pub(super) fn layers(text: &str) -> Result<Layers, String> {
     match text {
         "all" => return Ok(Layers::ALL),
@@ -24,11 +24,11 @@ pub(super) fn layers(text: &str) -> Result<Layers, String> {
     Ok(layers)
 }
 
-/// A window by two opposite corners.
+/// Parses a window: the coordinates of two opposite corners, separated by commas.
 pub(super) fn window(text: &str) -> Result<Aabb, String> {
     let numbers: Vec<Fx> = text
         .split(',')
-        .map(|number| number.trim().parse().map_err(|_| format!("{number:?} is no length in metres")))
+        .map(|number| number.trim().parse().map_err(|_| format!("{number:?} is not a length in metres")))
         .collect::<Result<_, _>>()?;
     let &[x0, y0, x1, y1] = &numbers[..] else {
         return Err("a window is four numbers with commas between them".into());

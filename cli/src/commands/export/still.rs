@@ -1,4 +1,4 @@
-//! A picture of one tick.
+//! Pictures of one tick.
 
 use lockstep2d::draw::{self, View};
 use lockstep2d::world::World;
@@ -7,17 +7,16 @@ use lockstep2d_picture::{Colour, DrawList, Image, page, raster};
 use super::format::Format;
 use super::{Arguments, Output};
 use crate::console::Console;
-use crate::error::CommandError;
-use crate::exit::Exit;
+use crate::context::CommandResult;
 
-/// Writes a picture of a world as an SVG document, or else as a PNG file.
+/// Writes a picture of a world: an SVG document for [`Format::Svg`], a PNG file for any other format.
 pub(super) fn write(
     world: &World,
     view: &View,
     format: Format,
     arguments: &Arguments,
     console: &mut Console<'_>,
-) -> Result<Exit, CommandError> {
+) -> CommandResult {
     Output::write(arguments.output.as_deref(), console, |output| match format {
         Format::Svg => output.line(draw::svg(world, view).trim_end()),
         _ => {
@@ -27,7 +26,7 @@ pub(super) fn write(
     })
 }
 
-/// A picture of a world in pixels. The list is cleared and used again.
+/// Rasterises a picture of a world. `list` is cleared and reused.
 pub(super) fn image(list: &mut DrawList, world: &World, view: &View) -> Image {
     list.clear();
     page(list, world, view);

@@ -1,4 +1,4 @@
-//! A replay, without playing it.
+//! The description of a replay, without playing it.
 
 use lockstep2d::codec;
 use lockstep2d::inspect::{Field, fields};
@@ -9,6 +9,7 @@ use serde_json::{Value as Json, json};
 use super::state::{field_json, field_text};
 use super::{Arguments, shown};
 use crate::console::{BAD, Console, DOUBTFUL, GOOD};
+use crate::context::{CommandResult, Context};
 use crate::error::CommandError;
 use crate::exit::Exit;
 use crate::files::Shown;
@@ -16,23 +17,22 @@ use crate::files::Shown;
 pub(super) fn print<G: Game>(
     bytes: &[u8],
     arguments: &Arguments,
-    limits: &Limits,
-    console: &mut Console<'_>,
-) -> Result<Exit, CommandError> {
-    let summary = Summary::read::<G>(bytes, limits)
-        .map_err(|error| CommandError::Replay { path: arguments.file.clone(), verdict: error.into() })?;
+    context: &mut Context<'_, G>,
+) -> CommandResult {
+    let read = Summary::read::<G>(bytes, context.limits());
+    let summary = read.map_err(CommandError::replay(&arguments.file))?;
     if arguments.json {
         let mut document = summary.document();
         document["file"] = arguments.file.display().to_string().into();
-        console.line(document)?;
+        context.console.line(document)?;
     } else {
         let file = format!("{}", Shown(&arguments.file));
-        summary.print(&format!("{file}: replay"), arguments, console)?;
+        summary.print(&format!("{file}: replay"), arguments, &mut context.console)?;
     }
     Ok(summary.exit())
 }
 
-/// What can be said of a replay without playing it.
+/// What is known of a replay without playing it.
 pub(super) struct Summary {
     semantics: u32,
     rules: (String, u32),
@@ -48,20 +48,20 @@ pub(super) struct Summary {
     end: End,
 }
 
-/// Bytes of the parts of a file.
+/// Lengths of the parts of a file in bytes.
 #[derive(Default)]
 struct Bytes {
     header: u64,
     setup: u64,
     inputs: u64,
     trailer: u64,
-    /// Behind what is whole.
+    /// After the intact part.
     rest: u64,
 }
 
 enum Setup {
     Fields(Vec<Field>),
-    /// It cannot be read, or is another game's.
+    /// It cannot be decoded, or belongs to another game.
     Unknown,
 }
 
@@ -133,7 +133,7 @@ impl Summary {
             End::Damaged(error) => {
                 let error = shown(&error.to_string());
                 console.line(format_args!(
-                    "{title}, {BAD}damaged{BAD:#} {error}; in front of that it is whole"
+                    "{title}, {BAD}damaged{BAD:#} {error}; the part before that is intact"
                 ))?;
             }
         }
@@ -180,7 +180,7 @@ impl Summary {
         }
     }
 
-    /// The duration in hundredths of a second, rounded.
+    /// The duration in hundredths of a second, rounded to nearest.
     fn hundredths(&self) -> u128 {
         let rate = u128::from(self.tick_rate.max(1));
         (u128::from(self.ticks) * 200 + rate) / (2 * rate)
@@ -221,7 +221,7 @@ impl Summary {
     }
 }
 
-/// Why this program cannot verify a file made with these, if it cannot.
+/// Why this program cannot verify a file made with this semantics and these rules, if so.
 pub(super) fn mismatch<G: Game>(semantics: u32, name: &str, version: u32) -> Option<Mismatch> {
     if semantics != lockstep2d::SEMANTICS {
         return Some(Mismatch::Semantics { file: semantics, here: lockstep2d::SEMANTICS });
@@ -234,7 +234,7 @@ fn setup<G: Game>(rules: (&str, u32), bytes: &[u8]) -> Setup {
     if rules != (G::RULES.name, G::RULES.version) {
         return Setup::Unknown;
     }
-    // Other semantics may have another form of it.
+    // Another version of the engine may encode setups differently.
     let decoded = codec::decode::<G::Setup>(bytes).ok().filter(|setup| codec::encode(setup) == bytes);
     decoded.and_then(|setup| fields(&setup).ok()).map_or(Setup::Unknown, Setup::Fields)
 }

@@ -1,13 +1,12 @@
-//! A report of a divergence.
+//! The description of a report of a divergence.
 
 use lockstep2d::lockstep::Game;
-use lockstep2d::replay::Limits;
 use lockstep2d::report::{DesyncReport, Group};
 use serde_json::{Value as Json, json};
 
 use super::replay::{Summary, mismatch};
 use super::{Arguments, shown};
-use crate::console::Console;
+use crate::context::{CommandResult, Context};
 use crate::error::CommandError;
 use crate::exit::Exit;
 use crate::files::Shown;
@@ -15,17 +14,15 @@ use crate::files::Shown;
 pub(super) fn print<G: Game>(
     report: &DesyncReport,
     arguments: &Arguments,
-    limits: &Limits,
-    console: &mut Console<'_>,
-) -> Result<Exit, CommandError> {
-    let replay =
-        match report.replay() {
-            [] => None,
-            bytes => Some(Summary::read::<G>(bytes, limits).map_err(|error| CommandError::Replay {
-                path: arguments.file.clone(),
-                verdict: error.into(),
-            })?),
-        };
+    context: &mut Context<'_, G>,
+) -> CommandResult {
+    let replay = match report.replay() {
+        [] => None,
+        bytes => {
+            Some(Summary::read::<G>(bytes, context.limits()).map_err(CommandError::replay(&arguments.file))?)
+        }
+    };
+    let console = &mut context.console;
     let exit = replay.as_ref().map_or(Exit::Success, Summary::exit);
     if arguments.json {
         console.line(document::<G>(report, arguments, replay.as_ref()))?;

@@ -1,4 +1,4 @@
-//! The fields of a state.
+//! The list of the fields of a state.
 
 use lockstep2d::hash::StateHash;
 use lockstep2d::inspect::Field;
@@ -6,10 +6,11 @@ use serde_json::{Value as Json, json};
 
 use super::{Arguments, shown};
 use crate::console::Console;
+use crate::context::CommandResult;
 use crate::error::CommandError;
 use crate::exit::Exit;
 
-/// A state, as far as it is known where it comes from.
+/// The fields of a state, with its tick and hash if they are known.
 pub(super) struct State {
     pub(super) tick: Option<u64>,
     pub(super) hash: Option<StateHash>,
@@ -17,11 +18,7 @@ pub(super) struct State {
 }
 
 impl State {
-    pub(super) fn print(
-        self,
-        arguments: &Arguments,
-        console: &mut Console<'_>,
-    ) -> Result<Exit, CommandError> {
+    pub(super) fn print(self, arguments: &Arguments, console: &mut Console<'_>) -> CommandResult {
         let State { tick, hash, fields } = self;
         let fields: Vec<&Field> = fields.iter().filter(|field| is_wanted(field, arguments)).collect();
         if fields.is_empty() {
@@ -63,13 +60,13 @@ fn what(arguments: &Arguments) -> String {
     }
 }
 
-/// A field on a line. The names and texts may be a stranger's.
+/// A field on one line, escaped, since names and texts may come from an untrusted file.
 pub(super) fn field_text(field: &Field) -> String {
     let path = if field.path().is_empty() { "value" } else { field.path() };
     shown(&format!("{path}: {}", field.value))
 }
 
-/// A value as people read it and, of a number, its bits: as text, since they may be more than JSON's numbers hold.
+/// A value as readable text and, for a number, its bits as text, since they may exceed the range of JSON numbers.
 pub(super) fn field_json(field: &Field) -> Json {
     let bits = field.value.bits().map(|bits| bits.to_string());
     json!({"path": field.path(), "text": field.value.to_string(), "bits": bits})

@@ -1,12 +1,12 @@
-//! A snapshot of a world.
+//! The description of a snapshot of a world.
 
 use lockstep2d::world::World;
 use serde_json::json;
 
 use super::Arguments;
 use crate::console::Console;
+use crate::context::CommandResult;
 use crate::counts::Counts;
-use crate::error::CommandError;
 use crate::exit::Exit;
 use crate::files::Shown;
 
@@ -15,7 +15,7 @@ pub(super) fn print(
     bytes: usize,
     arguments: &Arguments,
     console: &mut Console<'_>,
-) -> Result<Exit, CommandError> {
+) -> CommandResult {
     let (tick, hash, counts) = (world.tick(), world.state_hash(), Counts::of(world));
     let (rate, semantics) = (world.config().tick_rate, lockstep2d::SEMANTICS);
     if arguments.json {

@@ -1,4 +1,4 @@
-//! [`Cache`]: a folder of reports, so that no file is played twice.
+//! [`Cache`]: a folder of cached reports, so that no file is played twice.
 
 use std::fs::{self, File};
 use std::hash::{BuildHasher, Hasher, RandomState};
@@ -11,61 +11,65 @@ use lockstep2d::replay::{FORMAT_VERSION, Limits};
 use serde::{Deserialize, Serialize};
 
 use super::report::Report;
+use crate::console::json_text;
 
-/// Goes up whenever an entry means something else, or a verdict is another for the same bytes, rules and semantics.
+/// Version of the cache. Incremented when the meaning of an entry changes, or the verdict for the same bytes, rules and
+/// semantics.
 const VERSION: u32 = 1;
 
-/// Most bytes of an entry that are read: more than 256 claims take.
+/// Most bytes of an entry that are read: enough for 256 claims.
 const ENTRY_BYTES_MAX: u64 = 1 << 20;
 
-/// A folder with a file for every report, named by all that the report depends on.
+/// A folder with one file for each report, named by a hash of everything that the report depends on.
 ///
-/// Any number of processes may share it, on several machines too: an entry appears whole or not at all, and whoever writes
-/// it writes the same. What cannot be read, or is damaged, is as good as absent.
+/// Any number of processes may share it, also on several machines: an entry appears complete or not at all, and all
+/// writers of an entry write the same bytes. An entry that is damaged or cannot be read counts as absent.
 pub(super) struct Cache {
     folder: PathBuf,
-    /// What is the same for all files: the program and the limits.
+    /// Hash of what is the same for all files: the program and the limits.
     context: Hash,
 }
 
-/// The content of an entry.
+/// The contents of an entry.
 #[derive(Serialize, Deserialize)]
 struct Entry {
     report: Report,
-    /// Of the key and the report: damage, or an entry under another's name.
+    /// Hash of the key and the report. It detects damage, and entries under the name of another entry.
     checksum: String,
 }
 
 impl Cache {
-    /// Makes the folder if there is none.
+    /// Opens the cache and creates the folder if it does not exist.
     ///
     /// # Errors
-    /// When that is not possible.
+    /// When the folder cannot be created.
     pub(super) fn open(folder: &Path, rules: RulesId, limits: &Limits) -> io::Result<Self> {
         fs::create_dir_all(folder)?;
         Ok(Cache { folder: folder.to_path_buf(), context: context(rules, limits) })
     }
 
-    /// What identifies the report on these bytes.
+    /// The key of the report on a file of these bytes.
     pub(super) fn key(&self, bytes: &[u8]) -> Hash {
         let mut hasher = blake3::Hasher::new();
         hasher.update(self.context.as_bytes()).update(blake3::hash(bytes).as_bytes());
         hasher.finalize()
     }
 
+    /// The cached report of a key, if there is an undamaged entry.
     pub(super) fn get(&self, key: &Hash) -> Option<Report> {
         let mut text = String::new();
         File::open(self.path(key)).ok()?.take(ENTRY_BYTES_MAX).read_to_string(&mut text).ok()?;
         let entry: Entry = serde_json::from_str(&text).ok()?;
-        // Some damage makes no other report of it, such as to the name of a field that may be missing.
+        // The checksum does not cover damage that decodes to the same report, such as a changed name of an optional
+        // field.
         let is_whole = serde_json::to_string(&entry).ok()? == text;
         (is_whole && entry.checksum == checksum(key, &entry.report)).then_some(entry.report)
     }
 
-    /// Keeps a report.
+    /// Writes the entry of a report.
     ///
     /// # Errors
-    /// When it cannot be written. Nothing depends on that.
+    /// When it cannot be written. Verdicts do not depend on the cache.
     pub(super) fn put(&self, key: &Hash, report: Report) -> io::Result<()> {
         let entry = Entry { checksum: checksum(key, &report), report };
         let text = serde_json::to_string(&entry)?;
@@ -85,9 +89,9 @@ impl Cache {
     }
 }
 
-/// All that a verdict depends on besides the bytes.
+/// Hash of everything but the file's bytes that a verdict depends on.
 fn context(rules: RulesId, limits: &Limits) -> Hash {
-    // Taken apart in full, so that a new limit cannot be forgotten here.
+    // Exhaustive destructuring: a new limit does not compile until it is hashed here.
     let Limits {
         file_bytes,
         setup_bytes,
@@ -120,13 +124,13 @@ fn context(rules: RulesId, limits: &Limits) -> Hash {
     for number in numbers {
         hasher.update(&number.to_le_bytes());
     }
-    // The only part whose length varies, and the last.
+    // The only part of variable length, so it comes last.
     hasher.update(name);
     hasher.finalize()
 }
 
 fn checksum(key: &Hash, report: &Report) -> String {
-    let text = serde_json::to_string(report).expect("strings and numbers have a JSON form");
+    let text = json_text(report);
     let mut hasher = blake3::Hasher::new();
     hasher.update(key.as_bytes()).update(text.as_bytes());
     hasher.finalize().to_string()

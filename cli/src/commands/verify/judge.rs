@@ -1,4 +1,4 @@
-//! [`judge`]: plays one file again, whatever it does.
+//! [`judge`]: plays one file and reports on it; panics of the game are caught.
 
 use std::cell::Cell;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -9,19 +9,19 @@ use lockstep2d::replay::{FORMAT_VERSION, Limits, Mismatch, Playback, Reader, Ste
 use super::panics;
 use super::report::{Needs, Report};
 
-/// Every how many ticks the others are looked at, and told of.
+/// Number of ticks between checks of the stop flag and updates of the tick counter.
 const TICKS_BETWEEN: u64 = 64;
 
-/// What all threads know of each other.
+/// State that all threads share.
 #[derive(Debug, Default)]
 pub(super) struct Shared {
-    /// Nobody waits for results any more.
+    /// Set when no more results are needed.
     pub(super) stop: AtomicBool,
-    /// Ticks that were played, those of files at hand but for the last few.
+    /// Ticks that were played, without the last few of the files being played.
     pub(super) ticks: AtomicU64,
 }
 
-/// What a file is worth; `None` if told to stop before that is known.
+/// Plays a file and returns its report, or `None` if it was stopped.
 pub(super) fn judge<G: Game>(bytes: &[u8], limits: &Limits, shared: &Shared) -> Option<Report> {
     let tick = Cell::new(0);
     let length = u64::try_from(bytes.len()).unwrap_or(u64::MAX);
@@ -59,7 +59,7 @@ fn play<G: Game>(bytes: &[u8], limits: &Limits, shared: &Shared, tick: &Cell<u64
     }
 }
 
-/// What it takes to verify a file that this program cannot.
+/// The versions that a file needs which this program cannot verify.
 fn needs(bytes: &[u8], limits: &Limits, verdict: &Verdict) -> Option<Needs> {
     match verdict {
         Verdict::Unverifiable { why: Mismatch::Format { file, .. } } => {

@@ -1,29 +1,29 @@
-//! [`catch`]: lets a game panic on a stranger's file without taking the others with it.
+//! [`catch`]: catches a panic of the game, so that the other files are still verified.
 
 use std::any::Any;
 use std::cell::{Cell, RefCell};
 use std::panic::{self, AssertUnwindSafe, PanicHookInfo};
 use std::sync::Once;
 
-/// Most characters of a panic's message that are kept. It may quote the file.
+/// Most characters of a panic message that are kept. The message may quote the file.
 const MESSAGE_CHARS_MAX: usize = 400;
 
 /// A panic that was caught.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Panic {
     pub(super) message: String,
-    /// File, line and column of the program, if the panic was this thread's own.
+    /// File, line and column in the source, if the panic started on this thread.
     pub(super) location: Option<String>,
 }
 
 thread_local! {
-    /// Whether a panic of this thread will be caught.
+    /// Whether a panic on this thread will be caught.
     static IS_CAUGHT: Cell<bool> = const { Cell::new(false) };
-    /// Where this thread's last panic was.
+    /// Location of the last panic on this thread.
     static LOCATION: RefCell<Option<String>> = const { RefCell::new(None) };
 }
 
-/// Does `work`, or says how it panicked; nothing is printed then. What it has changed must not be used any more.
+/// Runs `work`. A panic is returned instead of printed; whatever `work` was changing must not be used afterwards.
 pub(super) fn catch<T>(work: impl FnOnce() -> T) -> Result<T, Panic> {
     listen();
     IS_CAUGHT.set(true);
@@ -32,7 +32,7 @@ pub(super) fn catch<T>(work: impl FnOnce() -> T) -> Result<T, Panic> {
     result.map_err(|payload| Panic { message: message(payload.as_ref()), location: LOCATION.take() })
 }
 
-/// Notes where caught panics are, and leaves all others to whoever has listened so far.
+/// Installs a panic hook that records the location of caught panics and passes all others to the previous hook.
 fn listen() {
     static LISTENING: Once = Once::new();
     LISTENING.call_once(|| {

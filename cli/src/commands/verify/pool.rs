@@ -1,5 +1,4 @@
-//! [`in_order`]: does many tasks on several threads, a bounded number at a time, and shows the results in the order of the
-//! tasks.
+//! [`in_order`]: runs tasks on several threads and shows the results in the order of the tasks, with bounded memory.
 
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -7,23 +6,23 @@ use std::sync::{Mutex, mpsc};
 use std::thread;
 use std::time::Duration;
 
-/// Most tasks that are begun before the first of them is shown: what a long one holds up. Their results are held.
+/// Most tasks that are started before the result of the first of them is shown. Their results are held in memory while
+/// a long task runs.
 const AHEAD_MAX: u64 = 1024;
 
-/// How long nothing happens before that is shown too.
+/// Interval of `show(None)` calls while there is no result.
 const MOMENT: Duration = Duration::from_millis(100);
 
-/// Bytes of a thread's stack: those of a main thread, for which a game may have been written. What is not touched
-/// takes no memory.
+/// Stack size of a thread in bytes: that of a main thread, which a game may rely on. Untouched pages take no memory.
 const STACK_BYTES: usize = 8 << 20;
 
-/// Does `work` with each of `tasks` on `jobs` threads, and `show`s every result once all before it were shown; now and
-/// then, when there is none, it shows `None`.
+/// Calls `work` with each of `tasks` on `jobs` threads, and `show` with the results in the order of the tasks. While
+/// there is no result, calls `show` with `None` from time to time.
 ///
-/// An error of `show` ends it: `stop` is set, and what is not yet begun is left. Work that takes long looks at `stop`.
+/// After an error of `show`, `stop` is set and no more tasks are started. Long-running work should check `stop`.
 ///
 /// # Errors
-/// That of `show`.
+/// The error of `show`.
 pub(super) fn in_order<T: Send, R: Send, E>(
     jobs: usize,
     tasks: impl Iterator<Item = T>,
@@ -48,7 +47,7 @@ pub(super) fn in_order<T: Send, R: Send, E>(
             let builder = thread::Builder::new().stack_size(STACK_BYTES);
             match builder.spawn_scoped(scope, move || worker(results)) {
                 Ok(handle) => workers.push(handle),
-                // The system gives no more. Fewer do it as well.
+                // The system refuses more threads: continue with fewer.
                 Err(_) => break,
             }
         }
@@ -66,18 +65,18 @@ pub(super) fn in_order<T: Send, R: Send, E>(
     })
 }
 
-/// The next task, once there is one; `None` when there will be none.
+/// Waits for the next task. Returns `None` when there are no more tasks, or after `stop`.
 fn next<T>(tasks: &Mutex<mpsc::Receiver<T>>, stop: &AtomicBool) -> Option<T> {
     let task = tasks.lock().ok()?.recv().ok()?;
     (!stop.load(Ordering::Relaxed)).then_some(task)
 }
 
-/// Where in the order the work is.
+/// The progress of the work, and results that are not yet shown.
 struct Order<I, R> {
     tasks: I,
     begun: u64,
     shown: u64,
-    /// Results that have overtaken others.
+    /// Results that wait for earlier results.
     waiting: BTreeMap<u64, R>,
 }
 
@@ -90,7 +89,7 @@ impl<T, R, I: Iterator<Item = T>> Order<I, R> {
         show: &mut impl FnMut(Option<R>) -> Result<(), E>,
     ) -> Result<(), E> {
         loop {
-            // One for one, so that listing a large folder holds nothing up.
+            // Start one task per iteration, so that listing a large folder does not delay results.
             let room = self.begun - self.shown < AHEAD_MAX;
             let is_begun = room && self.begin(tasks);
             if !is_begun && self.begun == self.shown {
@@ -101,7 +100,7 @@ impl<T, R, I: Iterator<Item = T>> Order<I, R> {
                 Ok((number, result)) => {
                     self.waiting.insert(number, result);
                 }
-                // Only a defect of this program ends a worker. Waiting for its result would not end.
+                // A worker ends early only because of a bug. Its result would never arrive.
                 Err(_) if !is_begun && is_any_gone() => return Ok(()),
                 Err(_) if !is_begun => show(None)?,
                 Err(_) => {}
@@ -113,7 +112,7 @@ impl<T, R, I: Iterator<Item = T>> Order<I, R> {
         }
     }
 
-    /// Hands out one more task; false if there is none.
+    /// Starts one more task. Returns false if there is none.
     fn begin(&mut self, tasks: &mpsc::Sender<(u64, T)>) -> bool {
         let Some(task) = self.tasks.next() else {
             return false;
@@ -131,7 +130,7 @@ mod tests {
 
     use super::*;
 
-    /// Takes longer for some numbers than for others.
+    /// Work whose duration depends on the number.
     fn work(number: u64) -> u64 {
         let mut value = number;
         for _ in 0..(number * 7919 % 13) * 2000 {
@@ -163,7 +162,7 @@ mod tests {
 
     #[test]
     fn no_more_is_begun_than_can_be_held() {
-        // The first task waits for as many as may be begun.
+        // The first task waits until as many tasks are started as the limit allows.
         let begun = AtomicU64::new(0);
         let (all, limit) = (4 * AHEAD_MAX, AHEAD_MAX);
         let task = |number: u64| {

@@ -1,4 +1,4 @@
-//! [`Progress`]: how far `verify` is, for who watches a terminal.
+//! [`Progress`]: the progress line of `verify` on a terminal.
 
 use std::sync::atomic::Ordering;
 use std::time::Duration;
@@ -8,15 +8,14 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use super::judge::Shared;
 use super::totals::{Totals, rate};
 
-/// How often it is drawn anew, at most.
+/// Highest redraw rate in Hz.
 const PER_SECOND: u8 = 10;
 
-/// A line below the results that says how far things are. How much is to come is not known: folders are listed as one
-/// goes.
+/// A progress line below the results. The total is unknown, because folders are listed during verification.
 pub(super) struct Progress(Option<ProgressBar>);
 
 impl Progress {
-    /// Nothing is drawn unless `is_shown`.
+    /// Creates the line; nothing is drawn unless `is_shown`.
     pub(super) fn new(is_shown: bool) -> Self {
         Progress(is_shown.then(|| {
             let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr_with_hz(PER_SECOND));
@@ -34,7 +33,7 @@ impl Progress {
         }
     }
 
-    /// Prints something else, out of the way of the line.
+    /// Hides the line while `print` runs.
     pub(super) fn aside<T>(&self, print: impl FnOnce() -> T) -> T {
         match &self.0 {
             Some(bar) => bar.suspend(print),

@@ -1,4 +1,4 @@
-//! [`Report`]: what is known of a file's bytes, as it is printed and as the cache keeps it.
+//! [`Report`]: the verdict on a file's bytes, as it is printed and cached.
 
 use std::io;
 use std::path::Path;
@@ -8,22 +8,23 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
 
 use super::panics::Panic;
+use crate::console::json_text;
 
-/// What a file's bytes are worth: a function of them, the limits and the program.
+/// The verdict on a file's bytes with its details. It depends on nothing but the bytes, the limits and the program.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Report {
-    /// For people: the verdict's words, a colon, the rest.
+    /// Readable text: the verdict, a colon, the details.
     pub(super) text: String,
     pub(super) verdict: String,
     pub(super) ticks: u64,
     hash: Option<String>,
-    /// Bytes of the file, as far as it was read: at most one more than allowed.
+    /// Number of bytes read from the file: at most one more than the limit.
     bytes: u64,
-    /// What there is for this verdict only, by name.
+    /// Fields that only this verdict has, by name.
     details: Map<String, Value>,
 }
 
-/// What it takes to verify a file. Another version of the format hides the rest.
+/// The versions that a file needs. All but the format are unknown if the format is another version.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub(super) struct Needs {
     pub(super) format: u32,
@@ -32,11 +33,11 @@ pub(super) struct Needs {
     pub(super) rules_version: Option<u32>,
 }
 
-/// The verdict on a file that made the game panic. It is not the library's: there a panic goes on to the caller.
+/// The verdict on a file that made the game panic. The library has no such verdict: there, a panic reaches the caller.
 const PANICKED: &str = "panicked";
 
 impl Report {
-    /// `claims` are those of the trailer, `needs` what an unverifiable file asks for.
+    /// `claims` are those of the trailer, `needs` the versions that an unverifiable file needs.
     pub(super) fn new(bytes: u64, verdict: &Verdict, claims: &[(String, i64)], needs: Option<Needs>) -> Self {
         let mut text = verdict.to_string();
         if verdict.is_match() && !claims.is_empty() {
@@ -65,18 +66,18 @@ impl Report {
         self.verdict == "match"
     }
 
-    /// Whether the file is not bad, as far as one can tell.
+    /// Whether the file may be good although it does not match.
     pub(super) fn is_doubtful(&self) -> bool {
         matches!(self.verdict.as_str(), "incomplete" | "unverifiable")
     }
 
-    /// Whether another run must come to the same. A panic may have been the machine's fault, and the defect be mended
-    /// without another version of the rules.
+    /// Whether every other run gives the same report. A panic may be the machine's fault, and its bug may be fixed
+    /// without a new version of the rules.
     pub(super) fn is_final(&self) -> bool {
         self.verdict != PANICKED
     }
 
-    /// One line of JSON.
+    /// The report as one line of JSON.
     pub(super) fn json(&self, file: &Path, cached: bool) -> String {
         #[derive(Serialize)]
         struct Whole<'a> {
@@ -93,7 +94,7 @@ impl Report {
         let (ticks, hash, bytes) = (*ticks, hash.as_deref(), *bytes);
         let file = file.display().to_string();
         let line = Whole { file, verdict, ticks, hash, bytes, cached, details };
-        serde_json::to_string(&line).expect("strings and numbers have a JSON form")
+        json_text(&line)
     }
 }
 

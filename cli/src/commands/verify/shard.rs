@@ -1,15 +1,15 @@
-//! [`Shard`]: one of several parts of the files, for several processes or machines.
+//! [`Shard`]: one of several parts of the files, to split a verification between processes or machines.
 
 use std::fmt;
 use std::path::Path;
 use std::str::FromStr;
 
-/// One part of `count`, numbered from 1 as test runners do.
+/// One part of `count`, numbered from 1, as test runners do.
 ///
-/// A file's part follows from a hash of its path below the argument that it was found through, and from nothing else: not
-/// from what other files there are. So no two processes that list a folder at different times, while files come and
-/// go, both take a file or both leave it out, and a file stays in its part when others come, with whatever that part's
-/// machine has in its cache. The price is balance: parts of 1000 files differ by some thirty.
+/// The part of a file depends only on a hash of its path below the argument through which it was found, and not on
+/// other files. Two processes that list a changing folder at different times therefore never both take or both skip a
+/// file. A file also stays in its part, where its verdict may be cached, when other files are added. The price is
+/// balance: parts of 1000 files differ by some thirty.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Shard {
     index: u32,
@@ -25,8 +25,8 @@ impl Shard {
     }
 }
 
-/// The part, from 0, of the file of this name: its first eight bytes of BLAKE3, as a little-endian number, modulo
-/// `count`. The components of the path are joined by `/` on every system.
+/// The part, counted from 0, of the file at a path: the first eight bytes of the path's BLAKE3 hash as a little-endian
+/// number, modulo `count`. The components of the path are joined by `/` on every system.
 fn part(below: &Path, count: u32) -> u64 {
     let mut hasher = blake3::Hasher::new();
     for (position, component) in below.components().enumerate() {
@@ -48,11 +48,12 @@ impl FromStr for Shard {
             let number = |text: &str| text.parse().ok().filter(|_| digits(text));
             Some(Shard { index: number(index)?, count: number(count)? })
         });
-        let shard = numbers.ok_or("a part is written as its number, a slash and how many there are: 2/5")?;
+        let shard =
+            numbers.ok_or("expected the number of the part, a slash and the number of parts, such as 2/5")?;
         if (1..=shard.count).contains(&shard.index) {
             Ok(shard)
         } else {
-            Err("parts are numbered from 1 to how many there are")
+            Err("parts are numbered from 1 to the number of parts")
         }
     }
 }
@@ -79,7 +80,7 @@ mod tests {
                 assert_eq!(takers.len(), 1, "{path} of {count}");
                 files[takers[0].index as usize - 1] += 1;
             }
-            // Ten standard deviations.
+            // Within ten standard deviations.
             let (fair, spread) = (2000 / count, 10 * (2000 / count).isqrt().max(1));
             let parts = &files[..count as usize];
             assert!(parts.iter().all(|files| files.abs_diff(fair) <= spread), "{count}: {parts:?}");

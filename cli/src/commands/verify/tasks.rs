@@ -1,4 +1,4 @@
-//! [`Tasks`]: the files to verify, found as they are needed.
+//! [`Tasks`]: the files to verify, listed on demand.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -7,10 +7,10 @@ use super::shard::Shard;
 use crate::error::CommandError;
 use crate::walk::Walk;
 
-/// What stands for the standard input.
+/// The argument that stands for the standard input.
 pub(super) const INPUT: &str = "-";
 
-/// The files that the arguments stand for, and what went wrong in finding them, in order.
+/// The files that the arguments name, and errors in finding them, in order.
 pub(super) struct Tasks<'a> {
     arguments: std::slice::Iter<'a, PathBuf>,
     shard: Shard,
@@ -18,11 +18,11 @@ pub(super) struct Tasks<'a> {
     is_input_taken: bool,
 }
 
-/// What is left of a folder.
+/// The remaining files of a folder.
 struct FolderTasks<'a> {
     path: &'a Path,
     walk: Walk,
-    /// Whether anything was found, be it of another part.
+    /// Whether any file was found, also of another part.
     is_any: bool,
 }
 
@@ -31,7 +31,7 @@ impl<'a> Tasks<'a> {
         Tasks { arguments: arguments.iter(), shard, folder: None, is_input_taken: false }
     }
 
-    /// A file that is named is taken whatever its extension.
+    /// Starts an argument. A file that is named directly is taken whatever its extension.
     fn open(&mut self, path: &'a Path) -> Option<Result<PathBuf, CommandError>> {
         if path.as_os_str() == INPUT {
             let again = std::mem::replace(&mut self.is_input_taken, true);
@@ -49,7 +49,7 @@ impl<'a> Tasks<'a> {
                 let name = path.file_name().map_or(path, Path::new);
                 self.shard.takes(name).then(|| Ok(path.to_path_buf()))
             }
-            Err(error) => Some(Err(CommandError::Read { path: path.to_path_buf(), error })),
+            Err(error) => Some(Err(CommandError::read(path)(error))),
         }
     }
 }
@@ -61,9 +61,7 @@ impl FolderTasks<'_> {
             match found {
                 Ok(path) if !shard.takes(path.strip_prefix(self.path).unwrap_or(&path)) => {}
                 Ok(path) => return Some(Ok(path)),
-                Err(error) => {
-                    return Some(Err(CommandError::Read { path: error.path, error: error.error }));
-                }
+                Err(error) => return Some(Err(CommandError::read(&error.path)(error.error))),
             }
         }
         let is_empty = !std::mem::replace(&mut self.is_any, true);

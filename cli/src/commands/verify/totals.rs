@@ -1,4 +1,4 @@
-//! [`Totals`]: what all files come to.
+//! [`Totals`]: the summary of all files.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -6,16 +6,16 @@ use std::time::Duration;
 
 use super::report::Report;
 
-/// What all files come to.
+/// The summary of all files.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Totals {
     pub(super) files: u64,
     pub(super) matches: u64,
-    /// Files that do not match, by verdict.
+    /// Numbers of files that do not match, by verdict.
     others: BTreeMap<String, u64>,
-    /// Files that were not played, since an earlier run has.
+    /// Files whose report came from the cache.
     cached: u64,
-    /// Ticks that were played.
+    /// Ticks that were played in this run.
     ticks: u64,
     pub(super) elapsed: Duration,
 }
@@ -36,7 +36,7 @@ impl Totals {
     }
 }
 
-/// How many ticks a second these are.
+/// Ticks per second.
 pub(super) fn rate(ticks: u64, elapsed: Duration) -> u128 {
     u128::from(ticks) * 1_000_000_000 / elapsed.as_nanos().max(1)
 }

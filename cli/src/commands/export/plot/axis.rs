@@ -1,17 +1,18 @@
-//! [`Axis`]: round numbers, and the units that they are in.
+//! [`Axis`]: round tick marks of an axis, and [`Unit`]: the unit of its labels.
 
-/// What a value is, and so in which units it can be shown.
+/// A physical quantity, which determines the possible units.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Unit {
-    /// In J.
+    /// An energy in J.
     Energy,
-    /// In metres.
+    /// A length in metres.
     Length,
+    /// A number without a unit.
     Count,
 }
 
 impl Unit {
-    /// The largest unit of which there is at least one in a value: how much it is, and its name.
+    /// The largest unit that is not larger than the value: its size and its name.
     pub(super) fn fitting(self, value: f64) -> (f64, &'static str) {
         let units: &[(f64, &str)] = match self {
             Unit::Energy => &[(0.001, "mJ"), (1.0, "J"), (1e3, "kJ"), (1e6, "MJ"), (1e9, "GJ")],
@@ -23,31 +24,31 @@ impl Unit {
     }
 }
 
-/// Round numbers that enclose a range: 1, 2 or 5 times a power of ten apart.
+/// Round numbers that enclose a range. Their step is 1, 2 or 5 times a power of ten.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Axis {
-    /// How far apart.
+    /// Difference between neighbouring numbers.
     pub(super) step: f64,
-    /// The first of them, in steps from 0.
+    /// The first number, in steps from 0.
     first: i64,
-    /// The last of them.
+    /// The last number, in steps from 0.
     last: i64,
-    /// Digits after the point.
+    /// Digits after the decimal point.
     digits: usize,
 }
 
 impl Axis {
-    /// For a range, with at most so many steps, and at least one. A range that is a point begins or ends at 0.
+    /// An axis around a range, with 1 to `steps_max` steps. A range of one point is extended to 0.
     pub(super) fn around(low: f64, high: f64, steps_max: i64) -> Self {
         Self::with_power(-15, low, high, steps_max)
     }
 
-    /// The same in whole numbers.
+    /// An axis of whole numbers around a range.
     pub(super) fn around_counts(low: f64, high: f64, steps_max: i64) -> Self {
         Self::with_power(0, low, high, steps_max)
     }
 
-    /// With steps from a power of ten on.
+    /// An axis whose step is at least `10^power_min`.
     fn with_power(power_min: i32, low: f64, high: f64, steps_max: i64) -> Self {
         let (low, high) = match (low, high) {
             (0.0, 0.0) => (0.0, 1.0),
@@ -57,9 +58,9 @@ impl Axis {
         let powers = power_min..=30;
         let rounds = powers.flat_map(|power| [1, 2, 5].map(|digit| (digit, power)));
         let mut axes = rounds.map(|(digit, power)| {
-            // Read as a number it is the nearest that there is, which a product would not be.
+            // Parsing gives the nearest float, which multiplying by powers of ten would not.
             let step: f64 = format!("{digit}e{power}").parse().unwrap_or(1.0);
-            // What does not fit has far too many steps, and saturates.
+            // The casts saturate: such an axis has far too many steps anyway.
             let (first, last) = ((low / step).floor() as i64, (high / step).ceil() as i64);
             Axis { step, first, last, digits: usize::try_from(-power).unwrap_or(0) }
         });
@@ -67,17 +68,17 @@ impl Axis {
         fitting.unwrap_or(Axis { step: 1.0, first: 0, last: 1, digits: 0 })
     }
 
-    /// Where it begins.
+    /// The lower end.
     pub(super) fn low(&self) -> f64 {
         self.first as f64 * self.step
     }
 
-    /// Where it ends.
+    /// The upper end.
     pub(super) fn high(&self) -> f64 {
         self.last as f64 * self.step
     }
 
-    /// Its numbers, and what to write beside them.
+    /// The numbers and their labels.
     pub(super) fn numbers(&self) -> impl Iterator<Item = (f64, String)> {
         (self.first..=self.last).map(|steps| {
             let value = steps as f64 * self.step;

@@ -1,49 +1,49 @@
-//! [`Chart`]: curves as an SVG document.
+//! [`Chart`]: draws curves as an SVG document.
 
 use std::fmt::Write;
 
 use super::axis::{Axis, Unit};
 use super::curve::Curve;
 
-/// Width in pixels, unless someone says otherwise.
+/// Default width in pixels.
 pub(super) const WIDTH: u32 = 960;
-/// Height of a panel, its title included, unless someone says otherwise.
+/// Default height of a panel in pixels, its title included.
 const PANEL: u32 = 150;
-/// Above the panels.
+/// Space above the panels in pixels.
 const TOP: u32 = 30;
-/// Below them, for the time.
+/// Space below the panels in pixels, for the time axis.
 const BOTTOM: u32 = 42;
-/// Left of the curves, for numbers, and right of them.
+/// Space left of the curves in pixels, for labels, and right of them.
 const LEFT: f64 = 72.0;
 const RIGHT: f64 = 16.0;
-/// Above the curves of a panel, for its title, and below them.
+/// Space above the curves of a panel in pixels, for its title, and below them.
 const TITLE: f64 = 22.0;
 const GAP: f64 = 14.0;
-/// Most intervals of an axis.
+/// Most steps of the vertical axis, and of the time axis.
 const STEPS_UP: i64 = 4;
 const STEPS_ALONG: i64 = 10;
 
-/// Curves over one stretch of time, panel below panel.
+/// Panels of curves over a range of ticks, one below the other.
 pub(super) struct Chart {
     pub(super) title: String,
     pub(super) panels: Vec<Panel>,
-    /// The ticks from which and to which curves go.
+    /// The first and the last tick.
     pub(super) first: u64,
     pub(super) last: u64,
-    /// Ticks a second.
+    /// Ticks per second.
     pub(super) rate: u32,
     pub(super) width: u32,
     pub(super) height: Option<u32>,
 }
 
-/// Curves with one unit.
+/// Curves with a common unit and axis.
 pub(super) struct Panel {
     pub(super) title: &'static str,
     pub(super) unit: Unit,
     pub(super) curves: Vec<Curve>,
 }
 
-/// Where something is drawn, in pixels.
+/// The rectangle of a panel's curves, in pixels.
 struct Area {
     left: f64,
     right: f64,
@@ -129,7 +129,7 @@ impl Chart {
         text.push_str("</g>\n");
     }
 
-    /// What is shown, in which unit, and of each curve its colour and how high it goes.
+    /// Adds a panel's title and unit, and for each curve its colour and maximum.
     fn add_title(&self, text: &mut String, panel: &Panel, area: &Area, (size, unit): (f64, &str)) {
         let in_unit = if unit.is_empty() { String::new() } else { format!(" in {unit}") };
         push(
@@ -158,7 +158,7 @@ impl Chart {
         text.push_str("</text>\n");
     }
 
-    /// The axis below all panels.
+    /// Adds the time axis below all panels.
     fn add_time(&self, text: &mut String, area: &Area) {
         let rate = f64::from(self.rate);
         let axis = Axis::around(self.first as f64 / rate, self.last as f64 / rate, STEPS_ALONG);
@@ -198,7 +198,7 @@ fn push(text: &mut String, arguments: std::fmt::Arguments<'_>) {
     text.write_fmt(arguments).expect("a String takes any text");
 }
 
-/// Text in which nothing is markup. Characters that XML does not allow become U+FFFD.
+/// Escapes text for XML. Characters that XML does not allow become U+FFFD.
 fn escaped(raw: &str) -> String {
     let mut text = String::new();
     for character in raw.chars() {
@@ -232,7 +232,7 @@ mod tests {
             height: Some(TOP + BOTTOM + 136),
         };
         let svg = chart.svg();
-        // From 72 to 472 across; from 52 down to 152 for 10 to -10.
+        // x goes from 72 to 472 for ticks 0 to 4; y from 52 for value 10 to 152 for -10.
         assert!(
             svg.contains("points=\"72.00,102.00 172.00,77.00 272.00,52.00 372.00,152.00 472.00,89.50\""),
             "{svg}"

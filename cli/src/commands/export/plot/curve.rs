@@ -1,10 +1,10 @@
-//! [`Curve`]: values over ticks, in as many points as one can see.
+//! [`Curve`]: values over ticks, reduced to the number of points that a plot can show.
 
-/// Most columns that have points of their own.
+/// Most columns.
 const COLUMNS: u64 = 1000;
 
-/// Values over ticks, however many: of those that fall into one column of pixels the first, the lowest, the highest and
-/// the last are kept, so that no extreme is lost.
+/// Values over any number of ticks. Of the values in one column, the first, lowest, highest and last are kept, so that
+/// no extreme is lost.
 pub(super) struct Curve {
     pub(super) name: &'static str,
     pub(super) colour: &'static str,
@@ -13,7 +13,7 @@ pub(super) struct Curve {
     columns: Vec<Column>,
 }
 
-/// Ticks with their values.
+/// The kept points of one column, as ticks and values.
 struct Column {
     at: u64,
     first: (u64, f64),
@@ -48,14 +48,14 @@ impl Curve {
         }
     }
 
-    /// Adds to all values.
+    /// Adds `by` to all values.
     pub(super) fn shift(&mut self, by: f64) {
         for Column { first, lowest, highest, last, .. } in &mut self.columns {
             [first, lowest, highest, last].into_iter().for_each(|point| point.1 += by);
         }
     }
 
-    /// Ticks and values to draw, in order.
+    /// The points to draw, in time order.
     pub(super) fn points(&self) -> Vec<(u64, f64)> {
         let mut points = Vec::new();
         for Column { first, lowest, highest, last, .. } in &self.columns {

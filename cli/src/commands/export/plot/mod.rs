@@ -1,4 +1,4 @@
-//! How a game goes, as curves over time.
+//! `export --plot`: energy, overlap, contact points, awake bodies and joint gaps over time.
 #![expect(
     clippy::disallowed_types,
     clippy::float_arithmetic,
@@ -15,16 +15,15 @@ use lockstep2d::world::World;
 
 use super::{Arguments, Output, Replay};
 use crate::console::Console;
+use crate::context::CommandResult;
 use crate::energy::Measures;
-use crate::error::CommandError;
-use crate::exit::Exit;
 use crate::figures;
 
 use axis::Unit;
 use chart::{Chart, Panel};
 use curve::Curve;
 
-/// Colours that can be told apart, also without red or green.
+/// Colours that people with red-green colour blindness can tell apart, too.
 const BLUE: &str = "#1f5f9e";
 const ORANGE: &str = "#d95f0e";
 const INK: &str = "#333333";
@@ -37,11 +36,8 @@ pub(super) fn write<G: Game>(
     mut replay: Replay<'_, G>,
     arguments: &Arguments,
     console: &mut Console<'_>,
-) -> Result<Exit, CommandError> {
+) -> CommandResult {
     let (first, last) = replay.range(arguments)?;
-    if first > last {
-        return Err(CommandError::NothingThere { what: format!("tick from {first} to {last}") });
-    }
     let mut panels = panels(first, last);
     let (mut joints, mut ticks) = (0, first..=last);
     let hash = loop {
@@ -53,7 +49,7 @@ pub(super) fn write<G: Game>(
             curve.add(tick, value);
         }
     };
-    // Only differences of potential energy mean something; from where it is lowest, they can be seen.
+    // Only differences of potential energy are meaningful: its lowest value is drawn as 0.
     if let [potential, _, total] = &mut panels[0].curves[..] {
         let lowest = potential.lowest();
         [potential, total].into_iter().for_each(|curve| curve.shift(-lowest));
@@ -69,7 +65,7 @@ pub(super) fn write<G: Game>(
     Output::write(arguments.output.as_deref(), console, |output| output.line(document.trim_end()))
 }
 
-/// Joints come last: not every world has some.
+/// The panel of joints comes last: it is removed for worlds without joints.
 fn panels(first: u64, last: u64) -> Vec<Panel> {
     let curve = |name, colour| Curve::new(name, colour, first, last);
     let panel = |title, unit, curves| Panel { title, unit, curves };
@@ -86,7 +82,7 @@ fn panels(first: u64, last: u64) -> Vec<Panel> {
     ]
 }
 
-/// What the curves have after a tick, in their order.
+/// The values of all curves at the current tick, in the order of the curves.
 fn values(world: &World) -> [f64; 7] {
     let Measures { kinetic, potential, overlap, gap } = Measures::of(world);
     let figures = figures::of(world);
