@@ -115,8 +115,8 @@ fn joints_with_thresholds_allocate_nothing() {
     assert_eq!(allocations(&mut world, 60, 60), 0);
 }
 
-/// Bodies are packed in the step and copied by the save, each time in the memory of the time before: 52 bytes for each. What
-/// a save asks for is lists of digests, of half a byte for each body, shape and joint.
+/// A save packs 52 bytes for each body into the memory of the snapshot that it replaces. It allocates lists of digests
+/// only, which take half a byte for each body, shape and joint.
 #[test]
 fn saving_every_tick_allocates_no_room_for_bodies() {
     // A world at rest, one in which nearly everything sleeps, and one of hinges.
@@ -132,7 +132,7 @@ fn saving_every_tick_allocates_no_room_for_bodies() {
             let per_body = (counting::bytes() - bytes) / world.body_count();
             if tick >= 8 {
                 assert_eq!(stepped - before, 0, "{name}, tick {tick}");
-                // Debug builds pack all bodies once more, to compare.
+                // Debug builds pack resting contacts once more, to compare.
                 let is_lean = cfg!(debug_assertions) || per_body < 5;
                 assert!(is_lean, "{per_body} bytes for each body of {name}, tick {tick}");
             }

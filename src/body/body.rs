@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::arena::{IslandId, ShapeId};
 use super::body_def::{BodyDef, BodyKind};
 use super::mass::{MassProperties, MassSource};
+use super::rest_ticks::RestTicks;
 use super::settings::BodySettings;
 use super::shape_list::{self, ShapeList};
 use crate::math::{
@@ -45,8 +46,7 @@ pub struct Body {
     pub(crate) mass: MassProperties,
     pub(crate) settings: BodySettings,
     pub(crate) enabled: bool,
-    /// For how many ticks it has been slow enough to sleep, or has been at rest if it is kinematic, up to 1.
-    pub(crate) rest_ticks: u32,
+    pub(crate) rest_ticks: RestTicks,
     /// The sleeping island it belongs to, unless it is awake.
     pub(crate) island: Option<IslandId>,
     /// Where the coming tick takes it, if it is kinematic and has been told so.
@@ -72,7 +72,7 @@ impl Body {
             mass,
             settings: def.settings,
             enabled: def.enabled,
-            rest_ticks: 0,
+            rest_ticks: RestTicks::NONE,
             island: None,
             target: None,
             shapes: ShapeList::new(),
@@ -216,7 +216,7 @@ impl Body {
     pub(crate) fn is_active(&self) -> bool {
         match self.kind {
             BodyKind::Fixed => false,
-            BodyKind::Kinematic => self.rest_ticks == 0 || self.is_moving(),
+            BodyKind::Kinematic => !self.rest_ticks.has_settled() || self.is_moving(),
             BodyKind::Dynamic => self.enabled && self.island.is_none(),
         }
     }
