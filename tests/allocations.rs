@@ -115,8 +115,8 @@ fn joints_with_thresholds_allocate_nothing() {
     assert_eq!(allocations(&mut world, 60, 60), 0);
 }
 
-/// Bodies are packed in the step and copied by the save, into reused buffers: 52 bytes per body. A save allocates only
-/// lists of digests, half a byte per body, shape and joint.
+/// A save packs 52 bytes for each body into the memory of the snapshot that it replaces. It allocates only lists of
+/// digests, half a byte per body, shape and joint.
 #[test]
 fn saving_every_tick_allocates_no_room_for_bodies() {
     // A pile at rest, a world in which nearly all bodies sleep, and a grid of hinges.
@@ -132,7 +132,7 @@ fn saving_every_tick_allocates_no_room_for_bodies() {
             let per_body = (counting::bytes() - bytes) / world.body_count();
             if tick >= 8 {
                 assert_eq!(stepped - before, 0, "{name}, tick {tick}");
-                // Debug builds pack all bodies once more, for comparison.
+                // Debug builds pack sleeping contacts once more, for comparison.
                 let is_lean = cfg!(debug_assertions) || per_body < 5;
                 assert!(is_lean, "{per_body} bytes per body of {name}, tick {tick}");
             }

@@ -1,6 +1,10 @@
 //! Module layering: each module of the library uses only the modules below it. The test reads `use` lines and paths in
 //! the code, including unit tests, and fails on any path that leads to a higher layer.
 //!
+//! Inside a module that has folders, each folder uses only the folders that are listed for it, and files of different
+//! folders do not depend on each other in a circle. Here tests are left out, and a path through a re-export counts as a
+//! path to the file that defines the item. Calls of methods are not seen, only paths.
+//!
 //! ```text
 //!           net
 //!          report   check
@@ -16,8 +20,11 @@
 //! math, hash, codec, threads, inspect
 //! ```
 
+#[path = "source/paths.rs"]
+mod paths;
 mod source;
 
+use paths::{Crate, module_of, modules};
 use source::{Token, files, tokens};
 
 /// Every module of the library with the modules that it may use besides itself.
@@ -47,6 +54,23 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("scenes", &["math", "codec", "hash", "body", "collision", "solver", "world", "lockstep"]),
 ];
 
+/// For each module with folders, its folders and which of the module's other folders each may use. `.` are the files that
+/// are in no folder.
+const FOLDERS: &[(&str, &[(&str, &[&str])])] = &[(
+    "world",
+    &[
+        // The state stores resting contacts with their packed form, and the world its caches and its digest.
+        (".", &["cache", "snapshot"]),
+        ("cache", &["."]),
+        ("islands", &[".", "cache"]),
+        ("snapshot", &[".", "cache"]),
+        ("edit", &[".", "cache", "islands"]),
+        ("query", &["."]),
+        ("view", &[".", "cache", "islands"]),
+        ("step", &[".", "cache", "islands", "snapshot"]),
+    ],
+)];
+
 /// Items of the crate root that are not modules: every module may use them.
 const ROOT: &[&str] = &["fx", "SEMANTICS"];
 
@@ -75,6 +99,115 @@ fn a_layer_below_lists_no_layer_above_it() {
             assert!(listed_before, "{module} may use {used}, which is not listed before it");
         }
     }
+}
+
+#[test]
+fn every_folder_uses_only_the_folders_listed_for_it() {
+    let sources = Crate::new(&modules(&files("src", &["rs"])));
+    let wrong: Vec<_> =
+        FOLDERS.iter().flat_map(|&(module, rules)| wrong_uses(&sources, module, rules)).collect();
+    assert!(wrong.is_empty(), "paths against the folders of tests/layers.rs:\n{}", wrong.join("\n"));
+}
+
+#[test]
+fn files_of_different_folders_form_no_circle() {
+    let sources = Crate::new(&modules(&files("src", &["rs"])));
+    let wrong: Vec<_> = FOLDERS.iter().flat_map(|&(module, _)| circles(&sources, module)).collect();
+    assert!(wrong.is_empty(), "files that depend on each other:\n{}", wrong.join("\n"));
+}
+
+/// The canary of the folder rules.
+#[test]
+fn wrong_folders_and_circles_are_found() {
+    let rules: &[(&str, &[&str])] = &[(".", &["b"]), ("a", &["."]), ("b", &["."])];
+    let sources = |files: &[(&str, &str)]| {
+        let files: Vec<_> = files.iter().map(|(path, text)| (module_of(path), text.to_string())).collect();
+        Crate::new(&files)
+    };
+    let wrong = |files: &[(&str, &str)]| {
+        let sources = sources(files);
+        (wrong_uses(&sources, "m", rules).len(), circles(&sources, "m").len())
+    };
+    let root = ("src/m/mod.rs", "mod a; mod b; pub use b::Shown; pub(crate) use a::x::Inner;");
+    let a = ("src/m/a/mod.rs", "mod x;");
+    let b = ("src/m/b/mod.rs", "mod y; pub use y::Shown;");
+    let with = |x: &'static str, y: &'static str| {
+        wrong(&[root, a, b, ("src/m/a/x.rs", x), ("src/m/b/y.rs", y), ("src/m/c.rs", "pub struct Base;")])
+    };
+    assert_eq!(with("use crate::m::c::Base;", "use super::super::c::Base; pub struct Shown;"), (0, 0));
+    for used in [
+        "use crate::m::b::Shown;",
+        "use crate::m::Shown;",
+        "use super::super::b::y::{Shown as Other};",
+        "use crate::m::{c::Base, b::{self, Shown}};",
+        "fn f() { crate::m::b::y::Shown; }",
+    ] {
+        let (uses, _) = with(used, "pub struct Shown;");
+        assert!(uses > 0, "{used}");
+    }
+    assert_eq!(with("mod tests { use crate::m::Shown; }", "pub struct Shown;"), (0, 0), "a test");
+    // Each alone is allowed, but together they form a circle.
+    let circle = [root, a, b, ("src/m/b/y.rs", "use crate::m::c::Base; pub struct Shown;")];
+    let there = ("src/m/c.rs", "use super::b::Shown; pub struct Base;");
+    let there_and_back: Vec<_> = circle.iter().copied().chain([there]).collect();
+    assert_eq!(wrong(&there_and_back), (0, 1));
+    // A re-export that its own module uses is a dependency of that module.
+    let own = [
+        ("src/m/mod.rs", "mod b; pub struct Base(b::Holder);"),
+        ("src/m/b/mod.rs", "mod y; pub use y::Shown; pub struct Holder(Shown);"),
+        ("src/m/b/y.rs", "use crate::m::Base; pub struct Shown;"),
+    ];
+    assert_eq!(wrong(&own), (0, 1));
+    let unlisted = wrong(&[root, ("src/m/d/x.rs", "use crate::m::c::Base;"), ("src/m/c.rs", "")]);
+    assert_eq!(unlisted.0, 1, "a folder without a rule");
+    let same_folder = [("src/m/a/x.rs", "use super::z::Z;"), ("src/m/a/z.rs", "use super::x::X;")];
+    assert_eq!(wrong(&same_folder), (0, 0), "a circle within a folder");
+}
+
+/// The folder of a file of a module: `a` for `m/a/x.rs` and `m/a/mod.rs`, `.` for `m/c.rs` and `m/mod.rs`.
+fn folder_of<'a>(place: &'a [String], sources: &Crate) -> &'a str {
+    let is_folder = |name: &String| {
+        place.len() > 2
+            || sources.modules().any(|other| other.len() > 2 && other[0] == place[0] && other[1] == *name)
+    };
+    place.get(1).filter(|name| is_folder(name)).map_or(".", String::as_str)
+}
+
+/// The paths of a module's files that lead to a folder that they must not use.
+fn wrong_uses(sources: &Crate, module: &str, rules: &[(&str, &[&str])]) -> Vec<String> {
+    let mut wrong = Vec::new();
+    for place in sources.modules().filter(|place| place.first().is_some_and(|name| name == module)) {
+        let folder = folder_of(place, sources);
+        let Some((_, allowed)) = rules.iter().find(|(name, _)| *name == folder) else {
+            wrong.push(format!("{}: the folder {folder} has no rule", place.join("/")));
+            continue;
+        };
+        for (used, line) in sources.dependencies(place) {
+            if used[0] != module {
+                continue;
+            }
+            let other = folder_of(&used, sources);
+            if other != folder && !allowed.contains(&other) {
+                wrong.push(format!("{}:{line}: {folder} uses {}", place.join("/"), used.join("/")));
+            }
+        }
+    }
+    wrong
+}
+
+/// The circles of a module's files that are not within one folder.
+fn circles(sources: &Crate, module: &str) -> Vec<String> {
+    let circles = sources
+        .circles()
+        .into_iter()
+        .map(|circle| circle.into_iter().filter(|place| place[0] == module).collect::<Vec<_>>());
+    let spans = |circle: &Vec<Vec<String>>| {
+        let folders = circle.iter().map(|place| folder_of(place, sources));
+        folders.collect::<std::collections::BTreeSet<_>>().len() > 1
+    };
+    let named =
+        |circle: Vec<Vec<String>>| circle.iter().map(|place| place.join("/")).collect::<Vec<_>>().join(" ");
+    circles.filter(spans).map(named).collect()
 }
 
 /// The canary: a forbidden use must be found in every form that a path can have.
@@ -115,14 +248,7 @@ fn wrong_directions_are_found() {
     assert_eq!(found(&["toys"], ""), 1, "a module without a layer is an error");
 }
 
-/// Returns the path of a file's module: `world`, `step` for `src/world/step.rs`. The path of the root is empty.
-fn module_of(path: &str) -> Vec<String> {
-    let path = path.trim_start_matches("src/").trim_end_matches(".rs");
-    let parts = path.split('/').filter(|part| !matches!(*part, "mod" | "lib"));
-    parts.map(String::from).collect()
-}
-
-/// Returns the forbidden uses in a module, each as `line: message`.
+/// Uses of modules that a module must not use, each as `line: what`.
 fn upward_uses(place: &[String], code: &str) -> Vec<String> {
     let module = place[0].as_str();
     let Some((_, below)) = LAYERS.iter().find(|(name, _)| *name == module) else {

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::arena::{IslandId, ShapeId};
 use super::body_def::{BodyDef, BodyKind};
 use super::mass::{MassProperties, MassSource};
+use super::rest_ticks::RestTicks;
 use super::settings::BodySettings;
 use super::shape_list::{self, ShapeList};
 use crate::math::{
@@ -48,9 +49,7 @@ pub struct Body {
     pub(crate) mass: MassProperties,
     pub(crate) settings: BodySettings,
     pub(crate) enabled: bool,
-    /// Number of ticks for which the body has been slow enough to sleep. For a kinematic body: number of ticks at rest,
-    /// at most 1.
-    pub(crate) rest_ticks: u32,
+    pub(crate) rest_ticks: RestTicks,
     /// Sleeping island of the body; `None` while it is awake.
     pub(crate) island: Option<IslandId>,
     /// Pose that a kinematic body reaches in the next tick, if one was set.
@@ -76,7 +75,7 @@ impl Body {
             mass,
             settings: def.settings,
             enabled: def.enabled,
-            rest_ticks: 0,
+            rest_ticks: RestTicks::NONE,
             island: None,
             target: None,
             shapes: ShapeList::new(),
@@ -220,7 +219,7 @@ impl Body {
     pub(crate) fn is_active(&self) -> bool {
         match self.kind {
             BodyKind::Fixed => false,
-            BodyKind::Kinematic => self.rest_ticks == 0 || self.is_moving(),
+            BodyKind::Kinematic => !self.rest_ticks.has_settled() || self.is_moving(),
             BodyKind::Dynamic => self.enabled && self.island.is_none(),
         }
     }

@@ -82,20 +82,26 @@ pub(crate) enum TimeOfImpact {
 /// Their target is half-way from the initial separation to a depth of three quarters of the inner radius of B (of A if
 /// B has none), so that the centre of B does not pass the surface of A. A deeper start gives
 /// [`TimeOfImpact::Overlapped`].
-pub(crate) fn time_of_impact(a: (&Core, &Sweep), b: (&Core, &Sweep), target: Fx) -> TimeOfImpact {
-    let between = b.1.start - a.1.start;
-    let moved = (b.1.end - b.1.start).length().saturating_add((a.1.end - a.1.start).length());
-    let reach_b = to_fx(b.0.reach());
-    let reach = moved.saturating_add(reach_b).saturating_add(radii(a.0, b.0)).saturating_add(target);
-    let Some(core_a) = near(a, between, reach.saturating_add(Fx::ONE)) else {
+pub(crate) fn time_of_impact(
+    a: &Core,
+    sweep_a: &Sweep,
+    b: &Core,
+    sweep_b: &Sweep,
+    target: Fx,
+) -> TimeOfImpact {
+    let between = sweep_b.start - sweep_a.start;
+    let moved = (sweep_b.end - sweep_b.start).length().saturating_add((sweep_a.end - sweep_a.start).length());
+    let reach_b = to_fx(b.reach());
+    let reach = moved.saturating_add(reach_b).saturating_add(radii(a, b)).saturating_add(target);
+    let Some(core_a) = near(a, sweep_a, between, reach.saturating_add(Fx::ONE)) else {
         return TimeOfImpact::Separated;
     };
     let reach_a = to_fx(core_a.reach());
     if between.is_longer_than(reach.saturating_add(reach_a)) {
         return TimeOfImpact::Separated;
     }
-    let movers = Mover::new(core_a, reach_a, a.1, -between).zip(Mover::new(*b.0, reach_b, b.1, Vec2::ZERO));
-    match movers {
+    let mover_a = Mover::new(core_a, reach_a, sweep_a, -between);
+    match mover_a.zip(Mover::new(*b, reach_b, sweep_b, Vec2::ZERO)) {
         Some((a, b)) => advance(&a, &b, target),
         None => TimeOfImpact::Failed { fraction: Fx::ZERO },
     }
@@ -146,7 +152,7 @@ fn target_of_contact(a: &Core, b: &Core, separation: Fx) -> Option<Fx> {
 }
 
 /// Clips a long segment A to the part that B, at `b`, may meet: a unit normal has too few bits for its far ends.
-fn near((a, sweep): (&Core, &Sweep), b: Vec2<Fx>, window: Fx) -> Option<Core> {
+fn near(a: &Core, sweep: &Sweep, b: Vec2<Fx>, window: Fx) -> Option<Core> {
     match *a.points() {
         [p, q] if sweep.turn == 0 => {
             let (p, q) = clip(from_grid(p) - b, from_grid(q) - b, window)?;

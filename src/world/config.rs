@@ -1,4 +1,4 @@
-//! World settings.
+//! Settings of a world.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,7 +7,7 @@ use crate::fx;
 use crate::math::{Aabb, Fx, Vec2};
 use crate::solver::SolverSettings;
 
-/// Settings of a world, fixed when it is made, except for gravity.
+/// Settings of a world. They do not change after it is created, except for gravity.
 ///
 /// ```
 /// use lockstep2d::{fx, math::Vec2, world::{Config, World}};
@@ -17,38 +17,39 @@ use crate::solver::SolverSettings;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Config {
-    /// Ticks per second, 10 to 1000. An integer, so that no time step is ever rounded.
+    /// Ticks per second, 10 to 1000. An integer, so that no time step is rounded.
     pub tick_rate: u32,
-    /// Gravity in m/s², ±100 000 on each axis.
+    /// Gravity in m/s², within ±100 000 on each axis.
     pub gravity: Vec2<Fx>,
-    /// How the solver runs.
+    /// Settings of the solver.
     pub solver: SolverSettings,
-    /// Shapes this near to each other, in metres, already have contact points; 0.001 to 1. Larger margins follow
-    /// from the speeds at the start of the tick.
+    /// Distance in metres at which shapes get contact points before they touch, 0.001 to 1. Pairs that approach each
+    /// other get a larger margin, which follows from their speeds at the start of the tick.
     pub speculative_distance: Fx,
-    /// How much larger than needed the boxes of the broad phase are made at most, in metres, 0.001 to 10: larger ones
-    /// change less often but give more pairs. At most a sixteenth of the shape's own extent.
+    /// Largest margin of the fat boxes in the broad phase in metres, 0.001 to 10. The margin of a shape is at most a
+    /// sixteenth of its own extent. A larger margin refits boxes less often, but gives more pairs.
     pub fat_margin: Fx,
     /// Whether bodies at rest fall asleep.
     pub sleeping: bool,
-    /// Whether fast bodies are swept against what they might pass through; see [`crate::body::Continuous`].
+    /// Whether fast bodies are swept against shapes that they might pass through; see [`crate::body::Continuous`].
+    #[doc(alias = "ccd")]
     pub continuous: bool,
-    /// Approach speed in m/s from which a contact is a hit, 0 to 400.
+    /// Lowest approach speed of a hit event in m/s, 0 to 400.
     pub hit_speed: Fx,
-    /// Most bodies the world may hold, at most 2^20.
+    /// Largest number of bodies, at most 2^20.
     pub body_limit: u32,
-    /// Most shapes the world may hold, at most 2^20.
+    /// Largest number of shapes, at most 2^20.
     pub shape_limit: u32,
-    /// Most joints the world may hold, at most 2^20.
+    /// Largest number of joints, at most 2^20.
     pub joint_limit: u32,
-    /// Most pairs of near shapes that are looked at in a tick, at most 2^20. Of more, those in the smallest slots
-    /// are taken and the tick counts as faulty: a bound on time and memory for worlds that come from strangers,
-    /// where every shape may lie on every other.
+    /// Largest number of pairs of near shapes in a tick, at most 2^20. If there are more, those in the smallest slots
+    /// are processed, and the tick counts as a fault. This bounds time and memory for untrusted worlds, in which every
+    /// shape may overlap every other one.
     pub pair_limit: u32,
 }
 
 impl Default for Config {
-    /// 60 Hz, gravity (0, -10), 4 soft sub-steps.
+    /// 60 Hz, gravity (0, -10) m/s², 4 sub-steps with soft contacts.
     fn default() -> Self {
         Config {
             tick_rate: 60,
@@ -68,21 +69,21 @@ impl Default for Config {
 }
 
 impl Config {
-    /// Shapes nearer than this, in metres, begin to touch: a quarter of the speculative distance, so that a
-    /// contact that wobbles does not begin and end in turn.
+    /// Distance in metres below which shapes begin to touch: a quarter of the speculative distance, beyond which they
+    /// cease to. The difference keeps a wobbling contact from beginning and ending in turn.
     #[must_use]
     pub fn touching_distance(&self) -> Fx {
         self.speculative_distance / 4
     }
 
-    /// The margin of the fat box of a shape that moves.
+    /// Margin in metres of the fat box of a shape with the given AABB on a body that can move.
     pub(crate) fn margin_of(&self, bounds: Aabb) -> Fx {
-        // Of a box in the world.
+        // The box is in the world, so that the difference does not overflow.
         let half = bounds.upper.wrapping_sub(bounds.centre());
         (half.x.max(half.y) / 16).min(self.fat_margin)
     }
 
-    /// For how many ticks a body has to be slow before it sleeps: half a second.
+    /// Number of ticks for which a body has to be slow before it may fall asleep: half a second.
     #[must_use]
     pub const fn ticks_to_sleep(&self) -> u32 {
         self.tick_rate.div_ceil(2)
@@ -91,7 +92,7 @@ impl Config {
     /// Checks every setting.
     ///
     /// # Errors
-    /// [`WorldError::Setting`] with the name of the first one that is out of range.
+    /// [`WorldError::Setting`] with the name of the first setting that is out of range.
     pub fn validate(&self) -> Result<(), WorldError> {
         let Config {
             tick_rate,
@@ -126,6 +127,7 @@ impl Config {
     }
 }
 
+/// Whether a gravity in m/s² is in range.
 pub(crate) fn check_gravity(gravity: Vec2<Fx>) -> bool {
     let range = fx!(-100000)..=fx!(100000);
     range.contains(&gravity.x) && range.contains(&gravity.y)

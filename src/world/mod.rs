@@ -1,62 +1,43 @@
 //! The world: bodies, shapes and joints that advance together, tick by tick.
+//!
+//! | folder | content |
+//! |---|---|
+//! | `step` | one tick, one file for each stage |
+//! | `edit` | changes between ticks: creating, removing, setters, forces, commands |
+//! | `query` | rays, casts, overlaps, characters |
+//! | `view` | read-only views of contacts, joints and islands |
+//! | `snapshot` | saving, restoring, bytes, digests, validation |
+//! | `islands` | waking and putting to sleep, for the step and for edits |
+//! | `cache` | caches, buffers and results of the last tick |
+//!
+//! `tests/layers.rs` has the direction in which these folders may use each other.
 
-mod adjust;
-mod bytes;
-mod change;
-mod character;
-mod command;
+mod cache;
 mod config;
-mod contact_view;
-mod contacts;
-mod continuous;
-mod digest;
+mod derived;
+mod edit;
 mod events;
-mod explosion;
-mod fault;
-mod island_view;
 mod islands;
-mod joint_links;
-mod joint_view;
-mod look_ahead;
-mod manifolds;
-mod mover_planes;
-mod moves;
-mod outlook;
-mod pairs;
-mod phases;
-mod probe;
-mod push;
+mod movement;
 mod query;
-mod rollback;
-mod scratch;
+mod snapshot;
 mod state;
 mod stats;
 mod step;
-mod stress;
 mod timestep;
-mod validate;
 mod view;
 
-pub use bytes::SnapshotError;
-pub use change::Place;
-pub use character::{Moved, Mover, MoverState};
-pub use command::{Command, Outcome};
 pub use config::Config;
-pub use contact_view::{ContactForce, ContactView, SolverColour};
-use digest::Hashed;
-pub use digest::{Section, WorldDigest};
+pub use edit::{Command, Explosion, Motion, Outcome, Place};
 pub use events::{ContactEvent, Events, HitEvent, JointEvent, MoveEvent, SensorEvent};
-pub use explosion::Explosion;
-pub use fault::Motion;
-pub use mover_planes::{MoverPlane, clip_velocity, solve_planes};
-use phases::Noted;
-pub use phases::PhaseDigest;
-pub use probe::Probe;
-pub use query::{CastHit, Proximity, QueryFilter, RayHit};
-pub use rollback::Snapshot;
+pub use query::{
+    CastHit, Moved, Mover, MoverPlane, MoverState, Probe, Proximity, QueryFilter, RayHit, clip_velocity,
+    solve_planes,
+};
+pub use snapshot::{PhaseDigest, Section, Snapshot, SnapshotError, Violation, WorldDigest};
 pub use stats::{Phase, StepStats};
 pub use timestep::FixedTimestep;
-pub use validate::Violation;
+pub use view::{ContactForce, ContactView, SolverColour};
 
 use alloc::vec::Vec;
 
@@ -67,14 +48,14 @@ pub use crate::solver::Backend;
 use crate::solver::{Joint, Machine};
 #[cfg(feature = "parallel")]
 use crate::threads::Threads;
-use scratch::Scratch;
+use cache::Scratch;
+use snapshot::{HashedState, PhaseLog};
 use state::State;
 
 /// A physics world.
 ///
-/// Everything that influences the future is its state, which is what [`World::state_hash`], [`World::save`] and
-/// [`World::to_bytes`] see. The same changes in the same order give the same hash after every tick, on every
-/// machine.
+/// Its state is everything that influences the future: what [`World::state_hash`], [`World::save`] and
+/// [`World::to_bytes`] cover. The same edits in the same order give the same hash after every tick on every machine.
 ///
 /// ```
 /// use lockstep2d::{body::{BodyDef, Geometry, Polygon, ShapeDef}, fx, world::{Config, World}};
@@ -92,11 +73,12 @@ use state::State;
 /// # Ok::<(), lockstep2d::body::WorldError>(())
 /// ```
 #[derive(Clone, Debug)]
+#[doc(alias = "physics world")]
 pub struct World {
-    state: Hashed,
+    state: HashedState,
     scratch: Scratch,
-    /// What each phase of the last tick has left behind, if somebody wants to know.
-    phases: Option<Noted>,
+    /// Digests after each phase, if they are recorded.
+    phases: Option<PhaseLog>,
 }
 
 impl Default for World {
@@ -110,16 +92,17 @@ impl World {
     /// An empty world.
     ///
     /// # Errors
-    /// [`WorldError::Setting`] when a setting is out of range.
+    /// [`WorldError::Setting`] if a setting is out of range.
     pub fn new(config: Config) -> Result<Self, WorldError> {
         config.validate()?;
         Ok(World::of(State::new(config), BroadPhaseKind::default()))
     }
 
+    /// A world with a valid state and new caches.
     fn of(mut state: State, broad_phase: BroadPhaseKind) -> Self {
         state.keep_pages();
         let scratch = Scratch::new(broad_phase, &state);
-        World { state: Hashed::new(state), scratch, phases: None }
+        World { state: HashedState::new(state), scratch, phases: None }
     }
 
     /// The settings.
@@ -135,48 +118,51 @@ impl World {
         self.scratch.solver.clone().push_error(&crate::solver::Tuning::new(solver, *gravity, *tick_rate))
     }
 
-    /// Ticks since the world was made.
+    /// Number of ticks since the world was created.
     #[must_use]
     pub const fn tick(&self) -> u64 {
         self.state.get().tick
     }
 
-    /// How often a clamp of the solver has changed a result since the world was made. It never goes back to 0,
-    /// and is 0 as long as speeds, impulses and displacements stay in their ranges.
+    /// Number of results that a clamp has changed since the world was created, plus one for every tick in which
+    /// [`Config::pair_limit`] left pairs out. Never decreases. 0 as long as speeds, impulses and displacements stay in
+    /// their ranges.
     #[must_use]
     pub const fn faults(&self) -> u64 {
         self.state.get().faults
     }
 
-    /// A body, while it is in the world.
+    /// Returns a body, or `None` if it is not in the world.
+    #[doc(alias = "rigid body")]
     #[must_use]
     pub fn body(&self, id: BodyId) -> Option<&Body> {
         self.state.bodies.get(id)
     }
 
-    /// A shape, while it is in the world.
+    /// Returns a shape, or `None` if it is not in the world.
+    #[doc(alias = "collider")]
     #[must_use]
     pub fn shape(&self, id: ShapeId) -> Option<&Shape> {
         self.state.shapes.get(id)
     }
 
-    /// A joint, while it is in the world.
+    /// Returns a joint, or `None` if it is not in the world.
     #[must_use]
     pub fn joint(&self, id: JointId) -> Option<&Joint> {
         self.state.joints.get(id)
     }
 
-    /// All bodies in slot order.
+    /// Returns all bodies in slot order.
     pub fn bodies(&self) -> impl Iterator<Item = (BodyId, &Body)> {
         self.state.bodies.iter()
     }
 
-    /// All shapes in slot order.
+    /// Returns all shapes in slot order.
     pub fn shapes(&self) -> impl Iterator<Item = (ShapeId, &Shape)> {
         self.state.shapes.iter()
     }
 
-    /// All joints in slot order.
+    /// Returns all joints in slot order.
     pub fn joints(&self) -> impl Iterator<Item = (JointId, &Joint)> {
         self.state.joints.iter()
     }
@@ -199,77 +185,80 @@ impl World {
         self.state.joints.len()
     }
 
-    /// Number of bodies that are simulated: those awake, and kinematic ones.
+    /// Number of enabled bodies that are kinematic, or dynamic and awake: those that a tick simulates.
     #[must_use]
     pub fn awake_body_count(&self) -> usize {
-        let works = |body: &Body| body.enabled && body.kind() != BodyKind::Fixed && !body.is_asleep();
-        self.state.bodies.iter().filter(|(_, body)| works(body)).count()
+        let is_simulated = |body: &Body| body.enabled && body.kind() != BodyKind::Fixed && !body.is_asleep();
+        self.state.bodies.iter().filter(|(_, body)| is_simulated(body)).count()
     }
 
-    /// Number of pairs of shapes near each other, one of them awake: what the next tick's cost depends on, with bodies and joints.
+    /// Number of pairs of shapes whose fat boxes overlap and of which one is active. Together with the numbers of
+    /// bodies and joints it determines the cost of the next tick.
     #[must_use]
     pub fn pair_count(&self) -> usize {
         self.state.contacts.len()
     }
 
-    /// What happened in the last tick.
+    /// The events of the last tick.
     #[must_use]
     pub const fn events(&self) -> &Events {
-        &self.scratch.events
+        &self.scratch.results.events
     }
 
-    /// Counters of the last tick.
+    /// Statistics of the last tick.
     #[must_use]
     pub const fn stats(&self) -> &StepStats {
-        &self.scratch.stats
+        &self.scratch.results.stats
     }
 
-    /// The world's random numbers: part of the state, so that a rollback rolls them back too.
+    /// The world's random number generator. It is part of the state, so that a rollback restores it.
     pub fn rng(&mut self) -> &mut Rng {
         &mut self.state.rng
     }
 
-    /// The boxes in which the broad phase has put those of the shapes, each with its distance from the root: what queries
-    /// and pairs have to descend through. A cache, so that it depends on the past, and a copy of this world may have
-    /// others. Only [`BroadPhaseKind::Tree`] has any.
+    /// Returns the inner boxes of the broad phase, each with its depth in the tree, for tools. The tree is a cache that
+    /// depends on the history, so that a copy of this world may have other boxes. Only [`BroadPhaseKind::Tree`] has
+    /// any.
     #[must_use]
     pub fn broad_phase_boxes(&self) -> Vec<(Aabb, u32)> {
-        self.scratch.broad_phase.inner_boxes()
+        self.scratch.shapes.broad_phase().inner_boxes()
     }
 
-    /// Drops every cache. No hash changes by it: the next tick only takes longer.
+    /// Drops and rebuilds every cache. Does not change any hash; the next tick only takes longer.
     pub fn clear_scratch(&mut self) {
-        self.set_broad_phase(self.scratch.broad_phase.kind());
+        self.set_broad_phase(self.scratch.shapes.broad_phase().kind());
     }
 
-    /// Chooses how overlapping pairs are found. No hash changes by it.
+    /// Sets the algorithm that finds overlapping fat boxes. Does not change any hash.
     pub fn set_broad_phase(&mut self, kind: BroadPhaseKind) {
-        let solver = self.scratch.solver.emptied();
-        self.scratch = Scratch { solver, ..Scratch::new(kind, &self.state) };
+        self.scratch.rebuild(kind, &self.state);
     }
 
-    /// How many threads share a tick.
+    /// Number of threads that share a tick.
     #[must_use]
     pub fn threads(&self) -> usize {
         self.scratch.solver.threads.count()
     }
 
-    /// Shares every tick among a number of threads, from 1. No hash changes by it. Returns whether they could be had; if
-    /// not, nothing changes. It pays for thousands of bodies. Clones of the world use the same threads.
+    /// Sets the number of threads that share a tick, at least 1. Does not change any hash. Returns whether the threads
+    /// could be created; if not, nothing changes. Worth while for thousands of bodies. Clones of the world use the same
+    /// threads.
     #[cfg(feature = "parallel")]
     pub fn set_threads(&mut self, count: usize) -> bool {
         let threads = Threads::new(count);
         threads.map(|threads| self.scratch.solver.threads = threads).is_some()
     }
 
-    /// How the solver computes: the best way that this machine has, unless [`World::set_backend`] chose another.
+    /// The instruction set that the solver uses: the best one of this machine, unless [`World::set_backend`] chose
+    /// another.
     #[must_use]
     pub fn backend(&self) -> Backend {
         self.scratch.solver.machine.backend()
     }
 
-    /// Chooses how the solver computes. No hash changes by it. Returns whether this machine can; if not, nothing
-    /// changes.
+    /// Sets the instruction set that the solver uses. Does not change any hash. Returns whether this machine has it; if
+    /// not, nothing changes.
+    #[doc(alias = "SIMD")]
     pub fn set_backend(&mut self, backend: Backend) -> bool {
         let machine = Machine::new(backend);
         machine.inspect(|&machine| self.scratch.solver.machine = machine).is_some()

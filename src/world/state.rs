@@ -1,4 +1,4 @@
-//! The state: everything that influences the future, and nothing else.
+//! The state of a world: everything that influences the future, and nothing else.
 
 use alloc::vec::Vec;
 
@@ -6,24 +6,24 @@ use serde::{Deserialize, Serialize};
 
 use super::config::Config;
 use super::events::ContactEvent;
-use super::rollback::Resting;
+use super::snapshot::Resting;
 use crate::body::{Arena, Body, BodyId, Handle, IslandId, JointId, Shape, ShapeId};
 use crate::collision::{Contact, Pair};
 use crate::math::Rng;
 use crate::solver::Joint;
 
-/// Bodies that fell asleep together and wake together.
+/// A sleeping island: bodies that fell asleep together and wake together.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Island {
-    /// Body slots, sorted.
+    /// Slots of the bodies, sorted.
     pub(crate) bodies: Vec<u32>,
 }
 
-/// A pair of shapes as events name it.
+/// A pair of shapes in the form in which events name it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Reported {
     pub(crate) shapes: ContactEvent,
-    /// Which of its shapes is a sensor.
+    /// Which of the shapes is a sensor, if any.
     pub(crate) sensor: Option<Side>,
 }
 
@@ -34,27 +34,27 @@ pub(crate) enum Side {
     B,
 }
 
-/// Everything that influences the future. It derives its encoding, so that a new field is in the hash, in
-/// snapshots and in files without anyone having to remember it.
+/// Everything that influences the future. Its encoding is derived, so that a new field is part of the hash, of
+/// snapshots and of files without further code.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct State {
     pub(crate) config: Config,
-    /// Ticks since the world was made.
+    /// Number of ticks since the world was created.
     pub(crate) tick: u64,
-    /// How often a clamp has changed a result; see [`super::World::faults`].
+    /// Number of results that a clamp has changed; see [`super::World::faults`].
     pub(crate) faults: u64,
     pub(crate) bodies: Arena<Body, BodyId>,
     pub(crate) shapes: Arena<Shape, ShapeId>,
     pub(crate) joints: Arena<Joint, JointId>,
-    /// What sleeps, and together with what.
+    /// Sleeping islands.
     pub(crate) islands: Arena<Island, IslandId>,
-    /// Near pairs of which a body is active, sorted by pair.
+    /// Contacts with an active body, sorted by pair.
     pub(crate) contacts: Vec<Contact>,
-    /// Contacts that a tick does not look at, because their bodies sleep or nothing moves them, sorted by pair.
+    /// Contacts without an active body, sorted by pair. A tick does not process them.
     pub(crate) resting: Resting,
-    /// Whether there are more pairs than [`Config::pair_limit`].
+    /// Whether there were more pairs than [`Config::pair_limit`] at the last pair update.
     pub(crate) pairs_left_out: bool,
-    /// Contacts that ended because a shape was removed since the last tick, for the events of the next one.
+    /// Contacts that ended since the last tick because a shape was removed or changed, for the events of the next tick.
     pub(crate) removed_contacts: Vec<Reported>,
     pub(crate) rng: Rng,
 }
@@ -77,7 +77,7 @@ impl State {
         }
     }
 
-    /// Makes room for the copies that snapshots share, after it has been decoded.
+    /// Allocates the pages that snapshots share. Called once for a new or decoded state.
     pub(crate) fn keep_pages(&mut self) {
         self.bodies.keep_pages();
         self.shapes.keep_pages();
@@ -85,12 +85,12 @@ impl State {
         self.islands.keep_pages();
     }
 
-    /// The bodies of a pair of shapes.
+    /// The bodies of two shapes in occupied slots.
     pub(crate) fn bodies_of(&self, (a, b): Pair) -> (&Body, &Body) {
         (self.body_of(a), self.body_of(b))
     }
 
-    /// The body of an occupied shape slot.
+    /// The body of the shape in an occupied slot.
     pub(crate) fn body_of(&self, shape: u32) -> &Body {
         self.bodies.at(self.shapes.at(shape).body().slot())
     }
@@ -104,13 +104,13 @@ impl State {
         }
     }
 
-    /// A contact as events name it, if its shapes take part in them.
+    /// A contact in the form in which events name it, if its shapes have contact or sensor events.
     pub(crate) fn reported(&self, contact: &Contact) -> Option<Reported> {
         let (a, b) = contact.shapes;
         let sensor = self.sensor_of(contact.shapes);
-        let wanted =
+        let has_events =
             sensor.is_some() || self.shapes.at(a).def.events.contact || self.shapes.at(b).def.events.contact;
-        wanted.then(|| Reported { shapes: self.contact_event(contact), sensor })
+        has_events.then(|| Reported { shapes: self.contact_event(contact), sensor })
     }
 
     /// The event of a contact between two occupied shape slots.

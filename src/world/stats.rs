@@ -1,22 +1,22 @@
-//! Counters of the last tick, for tuning and tests. They are not part of the state.
+//! Phases of a tick, and statistics for tuning and tests. Statistics are not part of the state.
 
 /// The phases of a tick, in order; see [`super::World::step_observed`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum Phase {
-    /// Fat boxes, pairs of them, and what they wake.
+    /// Refits fat boxes, updates pairs, wakes islands by contact.
     BroadPhase,
-    /// Manifolds.
+    /// Finds manifolds.
     NarrowPhase,
-    /// Constraints.
+    /// Prepares constraints.
     Prepare,
-    /// Sub-steps and restitution.
+    /// Runs the sub-steps and restitution.
     Solve,
-    /// Contact events, poses, sweeps of fast bodies.
+    /// Reports contacts, moves bodies, sweeps fast bodies, checks joint thresholds.
     Finalise,
-    /// Islands that fall asleep.
+    /// Puts islands to sleep.
     Sleep,
-    /// Events and counters.
+    /// Reports moves and statistics.
     Report,
 }
 
@@ -33,30 +33,31 @@ impl Phase {
     ];
 }
 
-/// What the last tick did.
+/// Statistics of the last tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct StepStats {
-    /// Bodies that were simulated: those awake, and kinematic ones.
+    /// Number of simulated bodies: enabled bodies that are kinematic, or dynamic and awake.
     pub bodies: u32,
-    /// Joints that were solved.
+    /// Number of solved joints.
     pub joints: u32,
-    /// Pairs of shapes whose fat boxes overlap.
+    /// Number of pairs of shapes whose fat boxes overlap and of which one is active.
     pub pairs: u32,
-    /// Pairs with contact points.
+    /// Number of pairs with contact points, without sensors.
     pub contacts: u32,
-    /// Contact points.
+    /// Number of contact points.
     pub points: u32,
-    /// Contact points that continue one of the tick before, and its impulse.
+    /// Number of contact points that were warm-started: that continue a point of the tick before and its impulse.
     pub points_kept: u32,
-    /// Contact points that pushed in the tick before and are gone, although their shapes still have contact.
+    /// Number of contact points with an impulse in the tick before that are gone although their shapes still touch.
     pub points_lost: u32,
-    /// Pairs of polygons whose separating axis of the tick before was still one. Two small boxes are never among them.
+    /// Number of polygon pairs that the cached separating axis of the tick before still separates. Pairs of small boxes
+    /// are never among them.
     pub axis_hits: u32,
-    /// Pairs of polygons that got the whole test.
+    /// Number of polygon pairs that needed a full separating axis test.
     pub axis_searches: u32,
-    /// Fast bodies that were stopped on their way; see [`crate::body::Continuous`].
+    /// Number of fast bodies that continuous collision has stopped; see [`crate::body::Continuous`].
     pub impacts: u32,
-    /// Clamps that changed a result.
+    /// Number of results that a clamp has changed.
     pub faults: u64,
 }

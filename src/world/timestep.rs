@@ -1,6 +1,6 @@
-//! From real time to ticks (G. Fiedler, "Fix Your Timestep!", 2004).
+//! Fixed time steps from real time (G. Fiedler, "Fix Your Timestep!", 2004).
 
-/// Turns elapsed real time into whole ticks. Time is passed in, in nanoseconds: the engine has no clock.
+/// Converts elapsed real time to whole ticks. The game passes the time in, in nanoseconds: the engine has no clock.
 ///
 /// ```
 /// use lockstep2d::world::FixedTimestep;
@@ -12,33 +12,33 @@
 pub struct FixedTimestep {
     tick_rate: u32,
     ticks_max: u32,
-    /// Time not yet simulated, in nanoseconds times the tick rate, so that nothing is ever rounded.
+    /// Time not yet simulated in nanoseconds times the tick rate: an integer, so that nothing is rounded.
     remainder: u64,
 }
 
-/// A second in nanoseconds: a tick, in the units of the remainder.
+/// One tick in the unit of the remainder: nanoseconds per second.
 const TICK: u64 = 1_000_000_000;
 
 impl FixedTimestep {
-    /// Most ticks that one call asks for, unless set otherwise.
+    /// Default of [`FixedTimestep::ticks_max`].
     pub const DEFAULT_TICKS_MAX: u32 = 8;
 
-    /// For a world of `tick_rate` ticks per second, at least 1.
+    /// A time step for a world with `tick_rate` ticks per second. 0 counts as 1.
     #[must_use]
     pub const fn new(tick_rate: u32) -> Self {
         let tick_rate = if tick_rate == 0 { 1 } else { tick_rate };
         FixedTimestep { tick_rate, ticks_max: Self::DEFAULT_TICKS_MAX, remainder: 0 }
     }
 
-    /// Sets the most ticks that one call may ask for. Time beyond them is dropped, so that a machine too slow for
-    /// real time slows down instead of falling behind for ever.
+    /// Sets the largest number of ticks that one call of [`FixedTimestep::advance`] returns. Time beyond them is
+    /// dropped, so that a machine that is too slow for real time slows down instead of falling behind for ever.
     #[must_use]
     pub const fn ticks_max(mut self, ticks: u32) -> Self {
         self.ticks_max = ticks;
         self
     }
 
-    /// Adds elapsed time and returns how many ticks to simulate now.
+    /// Adds elapsed time in nanoseconds and returns the number of ticks to simulate now.
     pub fn advance(&mut self, elapsed_nanoseconds: u64) -> u32 {
         let total = self.remainder.saturating_add(elapsed_nanoseconds.saturating_mul(self.tick_rate.into()));
         self.remainder = total % TICK;
@@ -46,10 +46,10 @@ impl FixedTimestep {
         u32::try_from(ticks).unwrap_or(self.ticks_max)
     }
 
-    /// How far real time is from the last tick to the next one, in billionths: to interpolate what is drawn.
+    /// Returns the time since the last tick in billionths of a tick, for interpolation of what is drawn.
     #[must_use]
     pub const fn interpolation_billionths(&self) -> u32 {
-        #[expect(clippy::cast_possible_truncation, reason = "less than a billion")]
+        #[expect(clippy::cast_possible_truncation, reason = "the remainder is below 10^9")]
         let billionths = self.remainder as u32;
         billionths
     }
@@ -62,7 +62,7 @@ mod tests {
     #[test]
     fn no_time_is_lost_between_calls() {
         let mut timestep = FixedTimestep::new(60);
-        // 1000 frames of 7 ms are 7 s are 420 ticks, although no frame is a whole number of ticks.
+        // 1000 frames of 7 ms are 420 ticks, although no frame is a whole number of ticks.
         let ticks: u32 = (0..1000).map(|_| timestep.advance(7_000_000)).sum();
         assert_eq!(ticks, 420);
         assert_eq!(timestep.interpolation_billionths(), 0);

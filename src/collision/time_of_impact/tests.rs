@@ -20,12 +20,12 @@ fn rectangle(half_width: Fx, half_height: Fx) -> Core {
     Core::from_points([at(-x, -y), at(x, -y), at(x, y), at(-x, y)], Fx::ZERO)
 }
 
-fn separation(a: (&Core, &Sweep), b: (&Core, &Sweep), fraction: Fx) -> Fx {
-    let pose = |(core, sweep): (&Core, &Sweep)| {
+fn separation(a: &Core, sweep_a: &Sweep, b: &Core, sweep_b: &Sweep, fraction: Fx) -> Fx {
+    let pose = |core: &Core, sweep: &Sweep| {
         let (moved, rotation) = sweep.at(fraction);
-        core.rotated(rotation).moved(to_grid(sweep.start - a.1.start + moved))
+        core.rotated(rotation).moved(to_grid(sweep.start - sweep_a.start + moved))
     };
-    distance(&pose(a), &pose(b)).distance
+    distance(&pose(a, sweep_a), &pose(b, sweep_b)).distance
 }
 
 fn fractions(count: i64) -> impl Iterator<Item = Fx> {
@@ -48,29 +48,34 @@ fn no_contact_is_passed_and_none_is_invented() {
         let (a, b) = (samples::core(&mut rng), samples::core(&mut rng));
         let (sweep_a, sweep_b) = (random_sweep(&mut rng), random_sweep(&mut rng));
         let target = rng.range(fx!(-0.01), fx!(0.02));
-        let (a, b) = ((&a, &sweep_a), (&b, &sweep_b));
-        if separation(a, b, Fx::ZERO) <= target + TOLERANCE {
+        if separation(&a, &sweep_a, &b, &sweep_b, Fx::ZERO) <= target + TOLERANCE {
             started += 1;
             continue;
         }
-        let free = match time_of_impact(a, b, target) {
+        let free = match time_of_impact(&a, &sweep_a, &b, &sweep_b, target) {
             TimeOfImpact::Separated => Fx::ONE,
             TimeOfImpact::Hit { fraction } => {
                 hits += 1;
-                let found = separation(a, b, fraction);
-                assert!(found <= target + TOLERANCE + fx!(0.000001), "{found} {target} {a:?} {b:?}");
+                let found = separation(&a, &sweep_a, &b, &sweep_b, fraction);
+                assert!(
+                    found <= target + TOLERANCE + fx!(0.000001),
+                    "{found} {target} {a:?} {sweep_a:?} {b:?} {sweep_b:?}"
+                );
                 fraction
             }
             TimeOfImpact::Failed { fraction } => {
                 failed += 1;
                 fraction
             }
-            TimeOfImpact::Overlapped => panic!("{a:?} {b:?}"),
+            TimeOfImpact::Overlapped => panic!("{a:?} {sweep_a:?} {b:?} {sweep_b:?}"),
         };
         separated += u32::from(free == Fx::ONE);
         for sample in fractions(200) {
-            let found = separation(a, b, fx_mul(sample, free));
-            assert!(found > target - fx!(0.000001), "{found} {target} at {sample} of {free}: {a:?} {b:?}");
+            let found = separation(&a, &sweep_a, &b, &sweep_b, fx_mul(sample, free));
+            assert!(
+                found > target - fx!(0.000001),
+                "{found} {target} at {sample} of {free}: {a:?} {sweep_a:?} {b:?} {sweep_b:?}"
+            );
         }
     }
     assert!(
@@ -91,16 +96,18 @@ fn contact_is_left_or_deepened_but_not_passed() {
         // Moved so that it starts near contact.
         let shift = start.normal.widen().scale(rng.range(fx!(-0.02), fx!(0.005)) - start.distance);
         let sweep_b = Sweep { start: sweep_b.start + shift, end: sweep_b.end + shift, ..sweep_b };
-        let (a, b) = ((&a, &sweep_a), (&b, &sweep_b));
-        let first = separation(a, b, Fx::ZERO);
+        let first = separation(&a, &sweep_a, &b, &sweep_b, Fx::ZERO);
         if first > fx!(0.005) {
             continue;
         }
-        let free = match time_of_impact(a, b, fx!(0.005)) {
+        let free = match time_of_impact(&a, &sweep_a, &b, &sweep_b, fx!(0.005)) {
             TimeOfImpact::Separated => Fx::ONE,
             TimeOfImpact::Hit { fraction } => {
                 hits += 1;
-                assert!(separation(a, b, fraction) < first, "{a:?} {b:?}");
+                assert!(
+                    separation(&a, &sweep_a, &b, &sweep_b, fraction) < first,
+                    "{a:?} {sweep_a:?} {b:?} {sweep_b:?}"
+                );
                 fraction
             }
             TimeOfImpact::Failed { fraction } => {
@@ -113,11 +120,14 @@ fn contact_is_left_or_deepened_but_not_passed() {
             }
         };
         free_to_go += u32::from(free == Fx::ONE);
-        let limit = fx_mul(b.0.inner_radius().max(Fx::DELTA), fx!(-0.75)).min(Fx::ZERO);
+        let limit = fx_mul(b.inner_radius().max(Fx::DELTA), fx!(-0.75)).min(Fx::ZERO);
         for sample in fractions(100) {
-            let found = separation(a, b, fx_mul(sample, free));
-            let has_inside = b.0.inner_radius() > Fx::ZERO;
-            assert!(!has_inside || found > limit - fx!(0.000001), "{found} {limit} {a:?} {b:?}");
+            let found = separation(&a, &sweep_a, &b, &sweep_b, fx_mul(sample, free));
+            let has_inside = b.inner_radius() > Fx::ZERO;
+            assert!(
+                !has_inside || found > limit - fx!(0.000001),
+                "{found} {limit} {a:?} {sweep_a:?} {b:?} {sweep_b:?}"
+            );
         }
     }
     assert!(
@@ -132,7 +142,7 @@ fn a_bullet_and_a_thin_rod_do_not_pass_a_wall() {
     let fixed = Sweep::fixed(at(fx!(3), fx!(0)));
     let bullet = rectangle(fx!(0.025), fx!(0.025));
     let flight = Sweep { start: ORIGIN, end: at(fx!(6.7), fx!(0.3)), turn: turn(fx!(2)) };
-    let hit = time_of_impact((&wall, &fixed), (&bullet, &flight), fx!(0.005));
+    let hit = time_of_impact(&wall, &fixed, &bullet, &flight, fx!(0.005));
     assert!(
         matches!(hit, TimeOfImpact::Hit { fraction } if fraction > fx!(0.43) && fraction < fx!(0.45)),
         "{hit:?}"
@@ -141,7 +151,7 @@ fn a_bullet_and_a_thin_rod_do_not_pass_a_wall() {
     let pin = Core::disc(ORIGIN, fx!(0.01));
     let spin = Sweep { turn: turn(fx!(0.83)), ..Sweep::fixed(ORIGIN) };
     let pinned = Sweep::fixed(at(fx!(0.9), fx!(0.4)));
-    let hit = time_of_impact((&pin, &pinned), (&rod, &spin), Fx::ZERO);
+    let hit = time_of_impact(&pin, &pinned, &rod, &spin, Fx::ZERO);
     // The pin is at 0.418 rad; its radius and the half thickness of the rod take up 0.02 / 0.985 rad.
     assert!(
         matches!(hit, TimeOfImpact::Hit { fraction } if (fraction - fx!(0.479)).abs() < fx!(0.001)),
@@ -165,24 +175,24 @@ fn what_rests_or_slides_or_rolls_on_a_floor_is_free() {
                 Sweep { start: moved, end: moved + slope.scale(speed), turn }
             };
             let shape = rectangle(fx!(0.5), fx!(0.25)).rotated(rotation);
-            let slide = time_of_impact((&floor, &still), (&shape, &along(start, 0)), fx!(0.005));
+            let slide = time_of_impact(&floor, &still, &shape, &along(start, 0), fx!(0.005));
             assert_eq!(slide, TimeOfImpact::Separated, "{sunk} {speed}");
             let wobble = along(start, turn(fx!(0.01)));
-            let slide = time_of_impact((&floor, &still), (&shape, &wobble), fx!(0.005));
+            let slide = time_of_impact(&floor, &still, &shape, &wobble, fx!(0.005));
             assert_eq!(slide, TimeOfImpact::Separated, "{sunk} {speed}");
             let ball = Core::disc(ORIGIN, fx!(0.25));
-            let roll = time_of_impact((&floor, &still), (&ball, &along(start, turn(fx!(27)))), fx!(0.005));
+            let roll = time_of_impact(&floor, &still, &ball, &along(start, turn(fx!(27))), fx!(0.005));
             assert_eq!(roll, TimeOfImpact::Separated, "{sunk} {speed}");
             // A second floor begins flush with the first one.
             let next = Core::from_points([at(fx!(1236), Fx::ZERO), at(fx!(1240), Fx::ZERO)], Fx::ZERO);
             let next = next.rotated(rotation);
-            let seam = time_of_impact((&next, &still), (&shape, &along(start, 0)), fx!(-0.05));
+            let seam = time_of_impact(&next, &still, &shape, &along(start, 0), fx!(-0.05));
             assert_eq!(seam, TimeOfImpact::Separated, "{sunk} {speed}");
             let down = along(start, 0);
             let down = Sweep { end: down.end - slope.perp().scale(fx!(3)), ..down };
-            let into = time_of_impact((&floor, &still), (&shape, &down), fx!(0.005));
+            let into = time_of_impact(&floor, &still, &shape, &down, fx!(0.005));
             let TimeOfImpact::Hit { fraction } = into else { panic!("{into:?} {sunk} {speed}") };
-            let depth = separation((&floor, &still), (&shape, &down), fraction);
+            let depth = separation(&floor, &still, &shape, &down, fraction);
             assert!(depth > fx!(-0.1875) && depth < fx!(0.00505), "{depth} {sunk} {speed}");
         }
     }
@@ -200,9 +210,9 @@ fn the_far_end_of_the_world_and_wild_spins_end_safely() {
                 let (still, wild) = (Sweep::fixed(start), Sweep { start, end, turn });
                 for target in [fx!(-1), fx!(1)] {
                     for core in [&rod, &line] {
-                        time_of_impact((core, &wild), (&rod, &still), target);
-                        time_of_impact((core, &still), (&rod, &wild), target);
-                        time_of_impact((core, &wild), (&line, &wild), target);
+                        time_of_impact(core, &wild, &rod, &still, target);
+                        time_of_impact(core, &still, &rod, &wild, target);
+                        time_of_impact(core, &wild, &line, &wild, target);
                     }
                 }
             }

@@ -1,0 +1,55 @@
+//! How long a body has been at rest.
+
+use serde::{Deserialize, Serialize};
+
+/// How long a body has been at rest, as one number in the state. The kind of the body decides its meaning:
+///
+/// | kind | value |
+/// |---|---|
+/// | fixed | 0 |
+/// | kinematic | 0 while it moves and until the first tick in which it stands still, then 1 |
+/// | dynamic | ticks for which it has been slow enough to sleep, at most [`ticks_to_sleep`]; 0 while it sleeps |
+///
+/// [`ticks_to_sleep`]: crate::world::Config::ticks_to_sleep
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(transparent)]
+pub(crate) struct RestTicks(u32);
+
+impl RestTicks {
+    /// Not at rest.
+    pub(crate) const NONE: Self = RestTicks(0);
+
+    /// The number in the state.
+    pub(crate) const fn to_bits(self) -> u32 {
+        self.0
+    }
+
+    pub(crate) const fn from_bits(bits: u32) -> Self {
+        RestTicks(bits)
+    }
+
+    /// Starts anew, for any kind of body.
+    pub(crate) fn reset(&mut self) {
+        self.0 = 0;
+    }
+
+    /// Counts a tick in which a dynamic body was slow, up to `limit` ticks.
+    pub(crate) fn count(&mut self, limit: u32) {
+        self.0 = self.0.saturating_add(1).min(limit);
+    }
+
+    /// Whether a dynamic body has been slow for `limit` ticks.
+    pub(crate) const fn has_reached(self, limit: u32) -> bool {
+        self.0 == limit
+    }
+
+    /// Records a tick in which a kinematic body stood still.
+    pub(crate) fn settle(&mut self) {
+        self.0 = 1;
+    }
+
+    /// Whether a kinematic body has stood still for a tick.
+    pub(crate) const fn has_settled(self) -> bool {
+        self.0 != 0
+    }
+}

@@ -1,0 +1,94 @@
+//! The bodies and joints that a tick simulates.
+
+use alloc::vec::Vec;
+
+use crate::body::{Body, BodyKind, Handle};
+use crate::world::state::State;
+
+/// Slots of the bodies and joints that a tick simulates, in ascending order. A cache of the state.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct AwakeSet {
+    /// Enabled bodies that are kinematic, or dynamic and awake.
+    bodies: Vec<u32>,
+    /// Joints with at least one awake dynamic body.
+    joints: Vec<u32>,
+    /// The joints among them that have a force or torque threshold.
+    with_threshold: Vec<u32>,
+    is_current: bool,
+    /// Whether the world may have kinematic bodies. Never false while there is one.
+    may_have_kinematic: bool,
+}
+
+impl AwakeSet {
+    pub(crate) fn new(state: &State) -> Self {
+        let mut set = AwakeSet::default();
+        set.look_for_kinematic(state);
+        set
+    }
+
+    /// Marks the set as outdated: a body or joint was added, removed, woken or put to sleep.
+    pub(crate) fn invalidate(&mut self) {
+        self.is_current = false;
+    }
+
+    /// Marks the set as outdated after a body was added or changed.
+    pub(crate) fn body_changed(&mut self, body: &Body) {
+        self.may_have_kinematic |= body.kind() == BodyKind::Kinematic;
+        self.invalidate();
+    }
+
+    /// Searches the state for kinematic bodies.
+    pub(crate) fn look_for_kinematic(&mut self, state: &State) {
+        self.may_have_kinematic = state.bodies.iter().any(|(_, body)| body.kind() == BodyKind::Kinematic);
+    }
+
+    /// Rebuilds the lists if they are outdated.
+    pub(crate) fn refresh(&mut self, state: &State) {
+        if core::mem::replace(&mut self.is_current, true) {
+            return;
+        }
+        self.bodies.clear();
+        let simulated = state.bodies.iter().filter(|(_, body)| is_simulated(body));
+        self.bodies.extend(simulated.map(|(id, _)| id.slot()));
+        self.joints.clear();
+        self.joints.extend(state.joints.iter().filter_map(|(id, joint)| {
+            let (a, b) = joint.def().bodies();
+            let (a, b) = (state.bodies.at(a.slot()), state.bodies.at(b.slot()));
+            let is_solved = a.enabled && b.enabled && joint.is_solved();
+            (is_solved && (is_awake(a) || is_awake(b))).then_some(id.slot())
+        }));
+        self.with_threshold.clear();
+        let has_threshold = |&&slot: &&u32| state.joints.at(slot).def().threshold.is_set();
+        self.with_threshold.extend(self.joints.iter().filter(has_threshold));
+    }
+
+    /// Slots of the bodies.
+    pub(crate) fn bodies(&self) -> &[u32] {
+        &self.bodies
+    }
+
+    /// Slots of the joints.
+    pub(crate) fn joints(&self) -> &[u32] {
+        &self.joints
+    }
+
+    /// Slots of the joints that have a force or torque threshold.
+    pub(crate) fn joints_with_threshold(&self) -> &[u32] {
+        &self.with_threshold
+    }
+
+    /// Whether the world may have kinematic bodies.
+    pub(crate) fn may_have_kinematic(&self) -> bool {
+        self.may_have_kinematic
+    }
+}
+
+/// Whether a tick simulates a body.
+fn is_simulated(body: &Body) -> bool {
+    body.enabled && body.kind() != BodyKind::Fixed && !body.is_asleep()
+}
+
+/// Whether a body is dynamic, enabled and awake.
+pub(crate) fn is_awake(body: &Body) -> bool {
+    body.is_dynamic() && body.enabled && !body.is_asleep()
+}

@@ -1,0 +1,132 @@
+//! Where pairs may have begun or ended since the last pair update.
+
+use alloc::vec::Vec;
+
+use crate::body::{Body, Handle};
+use crate::collision::{BroadPhase, Pair};
+use crate::math::Aabb;
+
+/// Record of what may have changed the set of pairs since the last pair update.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Changes {
+    /// The caches are new: every pair may have changed.
+    everything: bool,
+    /// A resting contact may have an active body again, or may have ended.
+    resting: bool,
+    /// Filters, sensors, kinds or joints have changed: pairs may not be allowed to collide any more.
+    rules: bool,
+    /// Slots of shapes with a new fat box, or whose body has become active or inactive. May repeat.
+    shapes: Vec<u32>,
+    /// Fat box of each shape at the last pair update: two shapes whose boxes overlapped then are no new pair.
+    /// [`Aabb::NOWHERE`] if something other than its box may give the shape new pairs.
+    last_boxes: Vec<Aabb>,
+}
+
+impl Changes {
+    /// Record for new caches: every pair has to be found.
+    pub(crate) fn everything() -> Self {
+        Changes { everything: true, ..Changes::default() }
+    }
+
+    /// Whether a pair update has anything to do.
+    pub(crate) fn any(&self) -> bool {
+        self.everything || self.resting || self.rules || !self.shapes.is_empty()
+    }
+
+    /// Whether the caches are new.
+    pub(crate) fn all(&self) -> bool {
+        self.everything
+    }
+
+    /// Whether resting contacts have to be checked.
+    pub(crate) fn concerns_resting(&self) -> bool {
+        self.everything || self.resting
+    }
+
+    /// Whether it has to be checked if pairs may still collide.
+    pub(crate) fn concerns_rules(&self) -> bool {
+        self.everything || self.rules
+    }
+
+    /// Slots of shapes with a new fat box, or whose body has become active or inactive. May repeat.
+    pub(crate) fn shapes(&self) -> &[u32] {
+        &self.shapes
+    }
+
+    /// Size in bytes of the list of shapes, which is all that a saved record has outside of its struct.
+    pub(crate) fn list_bytes(&self) -> usize {
+        size_of_val(&*self.shapes)
+    }
+
+    /// Records that resting contacts may have ended or may have an active body again.
+    pub(crate) fn resting_changed(&mut self) {
+        self.resting = true;
+    }
+
+    /// Records that filters, sensors, kinds or joints have changed.
+    pub(crate) fn rules_changed(&mut self) {
+        self.rules = true;
+    }
+
+    /// Records a new fat box.
+    pub(crate) fn box_changed(&mut self, shape: u32) {
+        self.shapes.push(shape);
+    }
+
+    /// Records that the shapes of a body may have new pairs although their fat boxes are the same.
+    pub(crate) fn body_changed(&mut self, body: &Body) {
+        for id in body.shapes() {
+            self.shapes.push(id.slot());
+            if let Some(last) = self.last_boxes.get_mut(id.slot() as usize) {
+                *last = Aabb::NOWHERE;
+            }
+        }
+    }
+
+    /// Whether a shape may have new pairs for another reason than a new fat box.
+    pub(crate) fn is_new(&self, shape: u32) -> bool {
+        self.last_boxes.get(shape as usize).is_none_or(|last| *last == Aabb::NOWHERE)
+    }
+
+    /// Whether the fat boxes of two shapes overlapped at the last pair update.
+    pub(crate) fn overlapped_before(&self, (a, b): Pair) -> bool {
+        match (self.last_boxes.get(a as usize), self.last_boxes.get(b as usize)) {
+            (Some(a), Some(b)) => a.overlaps(*b),
+            _ => false,
+        }
+    }
+
+    /// Empties the record after a pair update.
+    pub(crate) fn clear(&mut self, boxes: &BroadPhase, slot_count: usize) {
+        self.last_boxes.resize(slot_count, Aabb::NOWHERE);
+        if self.everything {
+            self.last_boxes.iter_mut().zip(0..).for_each(|(last, slot)| *last = boxes.fat(slot));
+        }
+        for &slot in &self.shapes {
+            self.last_boxes[slot as usize] = boxes.fat(slot);
+        }
+        (self.everything, self.resting, self.rules) = (false, false, false);
+        self.shapes.clear();
+    }
+
+    /// Copies the record into that of a snapshot, without the boxes of the last pair update.
+    pub(crate) fn save_into(&self, saved: &mut Self) {
+        let Changes { everything, resting, rules, shapes, last_boxes: _ } = self;
+        (saved.everything, saved.resting, saved.rules) = (*everything, *resting, *rules);
+        saved.shapes.clone_from(shapes);
+    }
+
+    /// Takes the record over from a snapshot whose state has just been restored.
+    pub(crate) fn restore(&mut self, saved: &Self, boxes: &BroadPhase, slot_count: usize) {
+        let Changes { everything, resting, rules, shapes, last_boxes } = self;
+        (*everything, *resting, *rules) = (saved.everything, saved.resting, saved.rules);
+        shapes.clone_from(&saved.shapes);
+        last_boxes.clear();
+        last_boxes.extend((0u32..).take(slot_count).map(|slot| boxes.fat(slot)));
+        for &slot in shapes.iter() {
+            if let Some(last) = last_boxes.get_mut(slot as usize) {
+                *last = Aabb::NOWHERE;
+            }
+        }
+    }
+}

@@ -1,0 +1,203 @@
+//! What the narrow phase finds and keeps from tick to tick.
+
+use alloc::vec::Vec;
+
+use super::motion::ClosingBound;
+use crate::collision::{AxisHint, BoxPairs, Contact, Manifold, SatCounters};
+use crate::solver::TouchingPair;
+use crate::world::events::HitEvent;
+
+/// Cache of the narrow phase. Manifolds and axes are indexed by a contact's place in the state, and so become invalid
+/// when contacts are reordered.
+#[derive(Clone, Debug)]
+pub(crate) struct ContactCache {
+    /// Output of the last narrow phase.
+    output: NarrowPhaseOutput,
+    /// Output of each job of a narrow phase.
+    parts: Vec<NarrowPhaseOutput>,
+    /// For each contact of the state, the axis that separated its shapes in the last tick. May be shorter or longer
+    /// than the list of contacts: the missing ones have no axis.
+    axes: Vec<AxisHint>,
+    /// The touching pairs of the tick before, sorted by pair: most of them still touch, with the same surface.
+    touched: Vec<TouchingPair>,
+    /// Whether surfaces may differ from those of the last tick.
+    surfaces_changed: bool,
+}
+
+/// The buffers of one narrow phase.
+pub(crate) struct NarrowPhaseBuffers<'a> {
+    /// For each contact, the axis that separated its shapes in the last tick.
+    pub(crate) axes: &'a mut [AxisHint],
+    /// An empty output for each job.
+    pub(crate) parts: &'a mut [NarrowPhaseOutput],
+    /// The touching pairs of the tick before whose surfaces are still valid, sorted by pair.
+    pub(crate) touched: &'a [TouchingPair],
+}
+
+/// Output of the narrow phase, or of one of its jobs, in the order of contacts.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct NarrowPhaseOutput {
+    /// Manifolds with at least one point.
+    pub(crate) manifolds: Vec<Manifold>,
+    /// For each manifold, the index of its contact in the state.
+    pub(crate) contacts: Vec<u32>,
+    /// The contacts among these that have a sensor.
+    pub(crate) sensors: Vec<u32>,
+    /// The contacts among these that the solver has to solve.
+    pub(crate) touching: Vec<TouchingPair>,
+    /// Fast approaches, which become hit events if the shapes push each other in this tick.
+    pub(crate) approaches: Vec<Approach>,
+    pub(crate) sat: SatCounters,
+    /// Buffer: contacts of the current block whose shapes may meet.
+    pub(crate) near: Vec<NearPair>,
+    /// Buffer: box pairs of the current block.
+    pub(crate) boxes: BoxPairs,
+}
+
+/// A contact whose shapes may meet within the tick.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct NearPair {
+    /// Index among the contacts of the job.
+    pub(crate) index: usize,
+    pub(crate) closing: ClosingBound,
+    /// Index among the box pairs of the block, if both shapes are small boxes.
+    pub(crate) box_pair: Option<usize>,
+}
+
+/// A contact whose shapes approach fast enough for a hit event.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Approach {
+    /// Index in the state.
+    pub(crate) contact: u32,
+    pub(crate) event: HitEvent,
+}
+
+impl ContactCache {
+    pub(crate) fn new() -> Self {
+        ContactCache {
+            output: NarrowPhaseOutput::default(),
+            parts: Vec::new(),
+            axes: Vec::new(),
+            touched: Vec::new(),
+            surfaces_changed: true,
+        }
+    }
+
+    /// Output of the last narrow phase. Empty after contacts were invalidated.
+    pub(crate) fn output(&self) -> &NarrowPhaseOutput {
+        &self.output
+    }
+
+    /// Drops everything that is indexed by contact, because contacts have been reordered.
+    pub(crate) fn invalidate(&mut self) {
+        self.output.clear();
+        self.axes.clear();
+    }
+
+    /// Drops cached surfaces at the next narrow phase, because materials or shapes may have changed.
+    pub(crate) fn invalidate_surfaces(&mut self) {
+        self.surfaces_changed = true;
+    }
+
+    /// Drops the cached surfaces of pairs for which `is_removed` holds: another shape may get the same slot before the
+    /// next tick.
+    pub(crate) fn remove_surfaces(&mut self, is_removed: impl Fn(&TouchingPair) -> bool) {
+        self.output.touching.retain(|pair| !is_removed(pair));
+    }
+
+    /// The separating axis of each of `count` contacts, for an operation that reorders the contacts.
+    pub(crate) fn axes(&mut self, count: usize) -> &mut Vec<AxisHint> {
+        self.axes.resize(count, AxisHint::default());
+        &mut self.axes
+    }
+
+    /// Starts a narrow phase over `contact_count` contacts with at least one job.
+    pub(crate) fn begin(&mut self, contact_count: usize, job_count: usize) -> NarrowPhaseBuffers<'_> {
+        let ContactCache { output, parts, axes, touched, surfaces_changed } = self;
+        axes.resize(contact_count, AxisHint::default());
+        core::mem::swap(&mut output.touching, touched);
+        if core::mem::take(surfaces_changed) {
+            touched.clear();
+        }
+        parts.resize_with(job_count, NarrowPhaseOutput::default);
+        // The memory of the last output is reused for the first job.
+        core::mem::swap(&mut parts[0], output);
+        parts.iter_mut().for_each(NarrowPhaseOutput::clear);
+        NarrowPhaseBuffers { axes, parts, touched }
+    }
+
+    /// Joins the outputs of the jobs in order.
+    pub(crate) fn finish(&mut self) {
+        let ContactCache { output, parts, .. } = self;
+        core::mem::swap(&mut parts[0], output);
+        parts[1..].iter().for_each(|part| output.append(part));
+    }
+
+    /// Moves the contacts for which `stays` is false from `contacts` to `removed`, with order preserved. Removes their
+    /// manifolds and axes.
+    pub(crate) fn split_off(
+        &mut self,
+        contacts: &mut Vec<Contact>,
+        removed: &mut Vec<Contact>,
+        stays: impl Fn(&Contact) -> bool,
+    ) {
+        self.axes.resize(contacts.len(), AxisHint::default());
+        let NarrowPhaseOutput { manifolds, contacts: indices, .. } = &mut self.output;
+        let (mut kept, mut next, mut kept_manifolds) = (0, 0, 0);
+        for index in 0..contacts.len() {
+            let stays = stays(&contacts[index]);
+            if indices.get(next).is_some_and(|&contact| contact as usize == index) {
+                if stays {
+                    manifolds.swap(kept_manifolds, next);
+                    indices[kept_manifolds] =
+                        indices[next] - u32::try_from(index - kept).expect("fewer than 2^32 contacts");
+                    kept_manifolds += 1;
+                }
+                next += 1;
+            }
+            if stays {
+                contacts.swap(kept, index);
+                self.axes.swap(kept, index);
+                kept += 1;
+            } else {
+                removed.push(contacts[index]);
+            }
+        }
+        contacts.truncate(kept);
+        self.axes.truncate(kept);
+        manifolds.truncate(kept_manifolds);
+        indices.truncate(kept_manifolds);
+    }
+}
+
+impl NarrowPhaseOutput {
+    /// Empties all lists and keeps their memory.
+    fn clear(&mut self) {
+        self.manifolds.clear();
+        self.contacts.clear();
+        self.sensors.clear();
+        self.touching.clear();
+        self.approaches.clear();
+        self.near.clear();
+        self.boxes.clear();
+        self.sat = SatCounters::default();
+    }
+
+    /// Appends the output of the next job.
+    fn append(&mut self, next: &NarrowPhaseOutput) {
+        let first = self.next_manifold();
+        let touching = next.touching.iter();
+        self.touching.extend(touching.map(|pair| TouchingPair { manifold: first + pair.manifold, ..*pair }));
+        self.manifolds.extend_from_slice(&next.manifolds);
+        self.contacts.extend_from_slice(&next.contacts);
+        self.sensors.extend_from_slice(&next.sensors);
+        self.approaches.extend_from_slice(&next.approaches);
+        self.sat.hint_hits += next.sat.hint_hits;
+        self.sat.searches += next.sat.searches;
+    }
+
+    /// Index of the next manifold.
+    fn next_manifold(&self) -> u32 {
+        u32::try_from(self.manifolds.len()).expect("fewer than 2^32 contacts")
+    }
+}

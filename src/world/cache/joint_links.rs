@@ -1,0 +1,121 @@
+//! The joints of each body, as linked lists in two arrays, so that adding or removing a joint allocates nothing.
+//!
+//! A cache of the state. The order within a list depends on the history of the world and is not visible outside.
+
+use alloc::vec::Vec;
+
+use crate::body::{BodyId, Handle, JointId};
+use crate::world::state::State;
+
+/// Marks the end of a list.
+const NONE: u32 = u32::MAX;
+
+/// The joints of each body.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct JointLinks {
+    /// By body slot: the slot of its first joint.
+    first: Vec<u32>,
+    /// By joint slot, for each of its two bodies: the slot of that body and of the next joint in that body's list.
+    next: Vec<[(u32, u32); 2]>,
+}
+
+impl JointLinks {
+    pub(crate) fn new(state: &State) -> Self {
+        let mut links = JointLinks::default();
+        for (id, joint) in state.joints.iter() {
+            links.add(id, joint.def().bodies());
+        }
+        links
+    }
+
+    /// Adds a joint of two bodies.
+    pub(crate) fn add(&mut self, joint: JointId, (a, b): (BodyId, BodyId)) {
+        let (joint, a, b) = (joint.slot(), a.slot(), b.slot());
+        grow(&mut self.next, joint, [(NONE, NONE); 2]);
+        grow(&mut self.first, a.max(b), NONE);
+        for (end, body) in [a, b].into_iter().enumerate() {
+            let first = core::mem::replace(&mut self.first[body as usize], joint);
+            self.next[joint as usize][end] = (body, first);
+        }
+    }
+
+    /// Removes a joint of two bodies.
+    pub(crate) fn remove(&mut self, joint: JointId, (a, b): (BodyId, BodyId)) {
+        for body in [a.slot(), b.slot()] {
+            let after = self.after(joint.slot(), body);
+            let mut at = self.first[body as usize];
+            if at == joint.slot() {
+                self.first[body as usize] = after;
+                continue;
+            }
+            while self.after(at, body) != joint.slot() {
+                at = self.after(at, body);
+            }
+            *self.after_mut(at, body) = after;
+        }
+    }
+
+    /// Returns the joints of a body in slot order.
+    pub(crate) fn of(&self, state: &State, body: BodyId) -> Vec<JointId> {
+        let first = self.first.get(body.slot() as usize).copied().filter(|&joint| joint != NONE);
+        let next = |&joint: &u32| Some(self.after(joint, body.slot())).filter(|&joint| joint != NONE);
+        let mut joints: Vec<u32> = core::iter::successors(first, next).collect();
+        joints.sort_unstable();
+        joints.into_iter().map(|slot| state.joints.handle_at(slot)).collect()
+    }
+
+    /// The slot of the joint that follows `joint` in the list of a body.
+    fn after(&self, joint: u32, body: u32) -> u32 {
+        let [a, b] = self.next[joint as usize];
+        if a.0 == body { a.1 } else { b.1 }
+    }
+
+    fn after_mut(&mut self, joint: u32, body: u32) -> &mut u32 {
+        let [a, b] = &mut self.next[joint as usize];
+        if a.0 == body { &mut a.1 } else { &mut b.1 }
+    }
+}
+
+fn grow<T: Copy>(list: &mut Vec<T>, index: u32, empty: T) {
+    list.resize(list.len().max(index as usize + 1), empty);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::body::{BodyDef, Geometry, ShapeDef};
+    use crate::fx;
+    use crate::math::Rng;
+    use crate::solver::{JointDef, Weld};
+    use crate::world::{Config, World};
+
+    #[test]
+    fn joints_are_those_that_name_the_body() {
+        let mut world = World::new(Config::default()).unwrap();
+        let disc = ShapeDef::new(Geometry::circle(fx!(1)).unwrap());
+        let mut bodies: Vec<_> = (0..9).map(|_| world.spawn(&BodyDef::dynamic(), &[disc]).unwrap()).collect();
+        let mut rng = Rng::new(1);
+        for round in 0..2000 {
+            let pick = |rng: &mut Rng| bodies[rng.below(9) as usize];
+            let (a, b) = (pick(&mut rng), pick(&mut rng));
+            if a != b && rng.chance(1, 2) {
+                world.add_joint(&JointDef::new(a, b, Weld::rigid())).unwrap();
+            } else if let Some(&joint) = world.scratch.joint_links.of(&world.state, a).first() {
+                world.remove_joint(joint).unwrap();
+            }
+            if round % 50 == 0 {
+                world.despawn(a).unwrap();
+                let place = bodies.iter().position(|&body| body == a).unwrap();
+                bodies[place] = world.spawn(&BodyDef::dynamic(), &[disc]).unwrap();
+            }
+            for &body in &bodies {
+                let named = |bodies: (BodyId, BodyId)| bodies.0 == body || bodies.1 == body;
+                let joints = world.state.joints.iter();
+                let expected: Vec<_> =
+                    joints.filter(|(_, joint)| named(joint.def().bodies())).map(|at| at.0).collect();
+                assert_eq!(world.scratch.joint_links.of(&world.state, body), expected);
+                assert_eq!(JointLinks::new(&world.state).of(&world.state, body), expected);
+            }
+        }
+    }
+}

@@ -1,0 +1,102 @@
+//! Working memory of a world: caches, buffers and the results of the last tick. Dropping all of it before any tick
+//! changes no hash.
+//!
+//! [`Scratch`] is a list of owners. An owner whose content can become invalid keeps its fields private, and its methods
+//! do the invalidating. Structs with public fields are buffers without such a state, or results.
+//!
+//! | owner | content | invalid when |
+//! |---|---|---|
+//! | [`ShapeCache`] | broad phases, poses, predicted motion | updated with every body and shape |
+//! | [`AwakeSet`] | slots of awake bodies and of their joints | something wakes, sleeps, is added or removed |
+//! | [`JointLinks`] | joints of each body | updated with every joint |
+//! | [`PairCache`] | which pairs may have changed, pairs kept apart by joints | see [`Changes`] |
+//! | [`ContactCache`] | manifolds, surfaces, cached separating axes | contacts are reordered, shapes redefined |
+//! | [`OriginCache`] | rotated offset of each body's origin | its key, compared at every use, differs |
+//! | [`Solver`] | constraints of the last tick | never read before the next tick prepares it |
+
+mod awake;
+mod changes;
+mod contacts;
+mod joint_links;
+mod motion;
+mod origins;
+mod pairs;
+mod poses;
+mod results;
+mod shapes;
+mod union_find;
+
+pub(crate) use awake::{AwakeSet, is_awake};
+pub(crate) use changes::Changes;
+pub(crate) use contacts::{Approach, ContactCache, NarrowPhaseBuffers, NarrowPhaseOutput, NearPair};
+pub(crate) use joint_links::JointLinks;
+pub(crate) use motion::{
+    ClosingBound, Margins, MotionCache, PASSAGE_MIN, PredictedMotion, ShapeMotion, Travel,
+};
+pub(crate) use origins::OriginCache;
+pub(crate) use pairs::{MergedContacts, NonCollidingPairs, PairCache, merge_sorted};
+pub(crate) use poses::{Extents, Poses};
+pub(crate) use results::{Sweeps, SweptBody, TickResults};
+pub(crate) use shapes::ShapeCache;
+pub(crate) use union_find::UnionFind;
+
+use super::state::State;
+use crate::collision::BroadPhaseKind;
+use crate::solver::Solver;
+
+/// Caches, buffers and results of the last tick.
+#[derive(Clone, Debug)]
+pub(crate) struct Scratch {
+    pub(crate) shapes: ShapeCache,
+    pub(crate) awake: AwakeSet,
+    pub(crate) joint_links: JointLinks,
+    pub(crate) pairs: PairCache,
+    pub(crate) contacts: ContactCache,
+    /// Buffer for finding islands.
+    pub(crate) union: UnionFind,
+    /// Buffers for continuous collision.
+    pub(crate) sweeps: Sweeps,
+    pub(crate) origins: OriginCache,
+    pub(crate) solver: Solver,
+    pub(crate) results: TickResults,
+}
+
+impl Scratch {
+    /// Builds the caches of a state. Manifolds, events and statistics are empty until the next tick.
+    pub(crate) fn new(kind: BroadPhaseKind, state: &State) -> Self {
+        Scratch {
+            shapes: ShapeCache::new(kind, state),
+            awake: AwakeSet::new(state),
+            joint_links: JointLinks::new(state),
+            pairs: PairCache::new(),
+            contacts: ContactCache::new(),
+            union: UnionFind::default(),
+            sweeps: Sweeps::default(),
+            origins: OriginCache::default(),
+            solver: Solver::default(),
+            results: TickResults::default(),
+        }
+    }
+
+    /// Builds all caches anew. Keeps the solver's backend and threads.
+    pub(crate) fn rebuild(&mut self, kind: BroadPhaseKind, state: &State) {
+        let solver = self.solver.emptied();
+        *self = Scratch { solver, ..Scratch::new(kind, state) };
+    }
+
+    /// Drops the results of the last tick, after the state was replaced by that of another tick.
+    pub(crate) fn clear_results(&mut self) {
+        self.contacts.invalidate();
+        self.contacts.invalidate_surfaces();
+        self.pairs.ended.clear();
+        self.results.clear();
+    }
+
+    /// Updates all caches after a body was added, enabled, redefined or moved by hand.
+    pub(crate) fn update_body(&mut self, state: &State, slot: u32) {
+        let body = state.bodies.at(slot);
+        self.shapes.update_body(state, slot);
+        self.pairs.changes.body_changed(body);
+        self.awake.body_changed(body);
+    }
+}

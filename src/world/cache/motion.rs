@@ -1,0 +1,271 @@
+//! Bounds and predicted motion of bodies and shapes.
+//!
+//! The narrow phase rejects most pairs because their shapes are too far apart to meet within the tick. What that test
+//! needs is computed once per tick and stored side by side, so that the test reads neither bodies nor outlines.
+
+use alloc::vec::Vec;
+
+use crate::body::{Body, Geometry, Handle, Shape};
+use crate::collision::{PosedShape, arm_of, margin_for, may_meet};
+use crate::fx;
+use crate::lanes::prefetch;
+use crate::math::{Aabb, Fx, Length, Reciprocal, Speed, Step, Vec2, fx_mul, narrow, saturate, widen};
+use crate::world::config::Config;
+use fixed::FixedI32;
+use fixed::types::extra::{U16, U24};
+
+/// A displacement within a tick in metres: ±128, resolution 6e-8.
+pub(crate) type Travel = FixedI32<U24>;
+
+/// Motion of a body within a tick at its velocity at the start of the tick.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct PredictedMotion {
+    /// Centre of mass at the start of the tick.
+    pub(crate) centre: Vec2<Fx>,
+    /// Displacement of the centre of mass: at most 52 m.
+    pub(crate) shift: Vec2<Travel>,
+    /// Rotation of the body, in radians.
+    pub(crate) turn: Travel,
+}
+
+impl PredictedMotion {
+    /// The motion of a body in a tick of `1 / tick_rate` seconds, whose reciprocal is passed in.
+    #[inline]
+    pub(crate) fn of(body: &Body, per_second: Reciprocal) -> Self {
+        let step = |speed: Speed| per_second.times(speed);
+        let shift = Vec2::new(step(body.velocity.x), step(body.velocity.y));
+        let omega = |spin| -> FixedI32<U16> { body.mass.inverse_gyration.times(spin) };
+        let turn = if body.spin == 0 { Travel::ZERO } else { per_second.times(omega(body.spin)) };
+        PredictedMotion { centre: body.centre, shift, turn }
+    }
+
+    /// Displacement of the point of the body that is at a world point.
+    pub(crate) fn shift_at(&self, point: Vec2<Fx>) -> Vec2<Travel> {
+        if self.turn == 0 {
+            return self.shift;
+        }
+        let arm: Vec2<Length> = (point - self.centre).narrow();
+        self.shift + arm.perp().scale(self.turn)
+    }
+
+    /// Absolute rotation in radians.
+    pub(crate) fn turned(&self) -> Fx {
+        widen(self.turn).saturating_abs()
+    }
+
+    /// Bound of the distance by which the body's rotation by `turn` radians moves any point of a shape: lever arm times
+    /// angle, and at most the diameter.
+    pub(crate) fn turn_reach(&self, turn: Fx, shape: &ShapeMotion) -> Fx {
+        if turn < Fx::DELTA * 64 || shape.disc {
+            return Fx::ZERO;
+        }
+        let centre = shape.bounds.centre();
+        // Shapes and centres of mass are in the world, so that no sum overflows.
+        let offset = centre.wrapping_sub(self.centre);
+        let half = shape.bounds.upper.wrapping_sub(centre);
+        let aside = offset.x.wrapping_abs().wrapping_add(offset.y.wrapping_abs());
+        let reach = half.x.wrapping_add(half.y).wrapping_add(aside);
+        fx_mul(reach, turn.min(fx!(2)))
+    }
+}
+
+/// Bounds and predicted motion of a shape, and the properties that the narrow phase needs of every pair: one cache
+/// line.
+#[derive(Clone, Copy, Debug, Default)]
+#[repr(align(64))]
+pub(crate) struct ShapeMotion {
+    pub(crate) bounds: Aabb,
+    /// Displacement of the body's centre of mass.
+    shift: Vec2<Travel>,
+    /// Bound of the distance by which the body's rotation moves any point of the shape.
+    pub(crate) turn: Travel,
+    /// Largest overlap with another shape at which the two may still pass by each other, as far as this shape's size
+    /// decides.
+    pub(crate) slack: Step,
+    /// Slot of the body.
+    pub(crate) body: u32,
+    /// Distance of the surface from the vertices.
+    pub(crate) radius: Length,
+    /// Whether it is a circle about its body's centre of mass, which rotation does not change.
+    pub(crate) disc: bool,
+    /// Whether it is solid and one of [`SmallBoxes`](crate::collision::SmallBoxes).
+    pub(crate) small_box: bool,
+    pub(crate) sensor: bool,
+    pub(crate) one_way: bool,
+    pub(crate) hit_events: bool,
+    /// Whether it is a sensor or has contact events.
+    pub(crate) is_reported: bool,
+}
+
+const _: () = assert!(size_of::<ShapeMotion>() == 64);
+
+impl ShapeMotion {
+    /// A shape that does not move.
+    fn at_rest(shape: &Shape, body: &Body, posed: &PosedShape) -> Self {
+        let bounds = posed.bounds;
+        let is_circle = matches!(shape.geometry(), Geometry::Circle { .. });
+        ShapeMotion {
+            bounds,
+            shift: Vec2::ZERO,
+            turn: Travel::ZERO,
+            slack: slack_of(bounds),
+            body: shape.body().slot(),
+            radius: narrow(posed.outline.radius()),
+            disc: is_circle && arm_of(&shape.def, body) == Vec2::ZERO,
+            small_box: posed.as_small_box().is_some() && !shape.is_sensor(),
+            sensor: shape.is_sensor(),
+            one_way: shape.one_way().is_some(),
+            hit_events: shape.def.events.hit,
+            is_reported: shape.is_sensor() || shape.def.events.contact,
+        }
+    }
+
+    /// The centre of the bounds, which is the centre of a shape that is a box.
+    #[inline]
+    pub(crate) fn centre(&self) -> Vec2<Fx> {
+        self.bounds.centre()
+    }
+
+    /// The vector from the centre of these bounds to that of another shape's.
+    #[inline]
+    pub(crate) fn offset_to(&self, other: &ShapeMotion) -> Vec2<Fx> {
+        // Both are in the world, so that no sum overflows.
+        let twice = |shape: &ShapeMotion| shape.bounds.lower.wrapping_add(shape.bounds.upper);
+        let Vec2 { x, y } = twice(other).wrapping_sub(twice(self));
+        Vec2::new(x >> 1, y >> 1)
+    }
+
+    /// Bound of the distance by which any two points of two shapes approach each other within the tick, in metres.
+    #[inline]
+    fn closing(&self, other: &ShapeMotion) -> Travel {
+        let apart = |a: Travel, b: Travel| (i64::from(b.to_bits()) - i64::from(a.to_bits())).abs();
+        let shift = apart(self.shift.x, other.shift.x) + apart(self.shift.y, other.shift.y);
+        Travel::from_bits(saturate(shift + i64::from(self.turn.to_bits()) + i64::from(other.turn.to_bits())))
+    }
+}
+
+/// Largest overlap in metres at which a shape with these bounds may still pass by another one.
+fn slack_of(bounds: Aabb) -> Step {
+    let half = bounds.extents();
+    narrow(half.x.max(half.y) / 16)
+}
+
+/// Speculative and touching distance of a world.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Margins {
+    pub(crate) speculative: Length,
+    pub(crate) touching: Step,
+}
+
+impl Margins {
+    pub(crate) fn of(config: &Config) -> Self {
+        Margins {
+            speculative: narrow(config.speculative_distance),
+            touching: narrow(config.touching_distance()),
+        }
+    }
+}
+
+/// Bound of how far two shapes approach each other within the tick.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ClosingBound {
+    /// Bound of the distance by which any two points of the shapes approach each other, in metres.
+    distance: Travel,
+    /// Speculative margin of the pair in metres: shapes that are at most this far apart get contact points.
+    pub(crate) margin: Length,
+}
+
+/// Shapes that approach each other by less than this in a tick, in metres, do not pass by each other.
+pub(crate) const PASSAGE_MIN: Step = Step::lit("0.0001");
+
+impl ClosingBound {
+    #[inline]
+    pub(crate) fn of(margins: &Margins, a: &ShapeMotion, b: &ShapeMotion) -> Self {
+        let distance = a.closing(b);
+        ClosingBound { distance, margin: margin_for(margins.speculative, distance) }
+    }
+
+    /// Whether the shapes approach each other so fast that they may pass by each other.
+    #[inline]
+    pub(crate) fn is_fast(self) -> bool {
+        self.distance > PASSAGE_MIN
+    }
+
+    /// Whether the shapes are so near that they may meet within the tick.
+    #[inline]
+    pub(crate) fn may_meet(self, a: &ShapeMotion, b: &ShapeMotion) -> bool {
+        may_meet(a.bounds, b.bounds, self.margin)
+    }
+}
+
+/// Bounds and predicted motion of all shapes and bodies, by slot. What is not in the awake set does not move.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct MotionCache {
+    bodies: Vec<PredictedMotion>,
+    shapes: Vec<ShapeMotion>,
+    /// Slots with a motion other than none.
+    moving_bodies: Vec<u32>,
+    moving_shapes: Vec<u32>,
+}
+
+impl MotionCache {
+    /// Starts a tick: nothing moves, and there are `body_slots` slots for bodies.
+    pub(super) fn begin(&mut self, body_slots: usize) {
+        for slot in self.moving_bodies.drain(..) {
+            self.bodies[slot as usize] = PredictedMotion::default();
+        }
+        for slot in self.moving_shapes.drain(..) {
+            let shape = &mut self.shapes[slot as usize];
+            (shape.shift, shape.turn) = (Vec2::ZERO, Travel::ZERO);
+        }
+        self.bodies.resize(body_slots, PredictedMotion::default());
+    }
+
+    /// Adds or replaces a shape that has been posed.
+    pub(super) fn set_shape(&mut self, slot: u32, shape: &Shape, body: &Body, posed: &PosedShape) {
+        if self.shapes.len() <= slot as usize {
+            self.shapes.resize(slot as usize + 1, ShapeMotion::default());
+        }
+        self.shapes[slot as usize] = ShapeMotion::at_rest(shape, body, posed);
+    }
+
+    /// Sets the bounds of a shape that has been moved.
+    pub(super) fn set_bounds(&mut self, shape: u32, bounds: Aabb) {
+        let shape = &mut self.shapes[shape as usize];
+        (shape.bounds, shape.slack) = (bounds, slack_of(bounds));
+    }
+
+    pub(super) fn set_motion(&mut self, body: u32, motion: PredictedMotion) {
+        self.bodies[body as usize] = motion;
+        self.moving_bodies.push(body);
+    }
+
+    pub(super) fn set_shape_motion(&mut self, slot: u32, shift: Vec2<Travel>, turn: Fx) {
+        let shape = &mut self.shapes[slot as usize];
+        (shape.shift, shape.turn) = (shift, narrow(turn));
+        self.moving_shapes.push(slot);
+    }
+
+    /// The shape in an occupied slot.
+    pub(crate) fn shape(&self, slot: u32) -> &ShapeMotion {
+        &self.shapes[slot as usize]
+    }
+
+    /// The predicted motion of a shape's body.
+    pub(crate) fn motion(&self, shape: &ShapeMotion) -> &PredictedMotion {
+        &self.bodies[shape.body as usize]
+    }
+
+    /// Prefetches a shape.
+    #[inline]
+    pub(crate) fn prefetch(&self, shape: u32) {
+        prefetch(&self.shapes[shape as usize]);
+    }
+
+    /// Prefetches the motions of the bodies of two shapes.
+    #[inline]
+    pub(crate) fn prefetch_motions(&self, a: &ShapeMotion, b: &ShapeMotion) {
+        prefetch(self.motion(a));
+        prefetch(self.motion(b));
+    }
+}

@@ -1,0 +1,136 @@
+//! What the pair update keeps from tick to tick, and its buffers.
+
+use alloc::vec::Vec;
+
+use super::changes::Changes;
+use crate::body::{BodyKind, Handle};
+use crate::collision::{AxisHint, Contact, Pair};
+use crate::world::state::State;
+
+/// Cache of the pair update.
+#[derive(Clone, Debug)]
+pub(crate) struct PairCache {
+    /// What may have changed the pairs since the last update.
+    pub(crate) changes: Changes,
+    pub(crate) non_colliding: NonCollidingPairs,
+    /// Result: contacts whose pair has ended since the last tick's events.
+    pub(crate) ended: Vec<Contact>,
+    pub(crate) buffers: PairBuffers,
+}
+
+impl PairCache {
+    pub(crate) fn new() -> Self {
+        PairCache {
+            changes: Changes::everything(),
+            non_colliding: NonCollidingPairs::default(),
+            ended: Vec::new(),
+            buffers: PairBuffers::default(),
+        }
+    }
+}
+
+/// Lists that are filled and read within one operation.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct PairBuffers {
+    /// Pairs that the broad phase has found.
+    pub(crate) pairs: Vec<Pair>,
+    /// Contacts to add to the active ones.
+    pub(crate) fresh: Vec<Contact>,
+    /// Contacts to add to the resting ones.
+    pub(crate) resting: Vec<Contact>,
+    pub(crate) merged: MergedContacts,
+}
+
+/// Contacts and the cached separating axis of each.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct MergedContacts {
+    pub(crate) contacts: Vec<Contact>,
+    pub(crate) axes: Vec<AxisHint>,
+}
+
+impl MergedContacts {
+    pub(crate) fn clear(&mut self) {
+        self.contacts.clear();
+        self.axes.clear();
+    }
+
+    pub(crate) fn push(&mut self, contact: Contact) {
+        self.contacts.push(contact);
+        self.axes.push(AxisHint::default());
+    }
+}
+
+/// Merges contacts into a list. Both are sorted by pair and have no pair in common.
+pub(crate) fn merge_sorted(contacts: &mut Vec<Contact>, new: &[Contact], buffer: &mut Vec<Contact>) {
+    if new.is_empty() {
+        return;
+    }
+    buffer.clear();
+    buffer.reserve(contacts.len() + new.len());
+    let mut old = contacts.iter().copied().peekable();
+    for contact in new {
+        while let Some(before) = old.next_if(|old| old.shapes < contact.shapes) {
+            buffer.push(before);
+        }
+        buffer.push(*contact);
+    }
+    buffer.extend(old);
+    core::mem::swap(contacts, buffer);
+}
+
+/// Pairs of bodies that a joint keeps from colliding. A cache of the joints.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct NonCollidingPairs {
+    /// Body slots, the smaller one first, sorted.
+    pairs: Vec<Pair>,
+    is_current: bool,
+}
+
+impl NonCollidingPairs {
+    /// Marks the list as outdated: a joint was added, removed or redefined.
+    pub(crate) fn invalidate(&mut self) {
+        self.is_current = false;
+    }
+
+    /// Rebuilds the list if it is outdated.
+    pub(crate) fn refresh(&mut self, state: &State) {
+        if core::mem::replace(&mut self.is_current, true) {
+            return;
+        }
+        let keeping_apart = state.joints.iter().filter(|(_, joint)| !joint.def().collide_connected);
+        self.pairs.clear();
+        self.pairs.extend(keeping_apart.map(|(_, joint)| {
+            let (a, b) = joint.def().bodies();
+            (a.slot().min(b.slot()), a.slot().max(b.slot()))
+        }));
+        self.pairs.sort_unstable();
+    }
+
+    /// Whether two shapes may ever have a contact. They need different, enabled bodies and filters that accept each
+    /// other. Then either one of them is a sensor that may notice the other, or one body is dynamic and no joint keeps
+    /// the bodies from colliding.
+    pub(crate) fn may_touch(&self, state: &State, (a, b): Pair) -> bool {
+        let (shape_a, shape_b) = (state.shapes.at(a), state.shapes.at(b));
+        let (slot_a, slot_b) = (shape_a.body().slot(), shape_b.body().slot());
+        if slot_a == slot_b || !shape_a.filter().accepts(shape_b.filter()) {
+            return false;
+        }
+        let (body_a, body_b) = (state.bodies.at(slot_a), state.bodies.at(slot_b));
+        if !(body_a.enabled && body_b.enabled) {
+            return false;
+        }
+        match (shape_a.is_sensor(), shape_b.is_sensor()) {
+            (true, true) => false,
+            (true, false) => shape_b.def.events.sensor && !both_fixed(body_a.kind, body_b.kind),
+            (false, true) => shape_a.def.events.sensor && !both_fixed(body_a.kind, body_b.kind),
+            (false, false) => {
+                let can_move = body_a.is_dynamic() || body_b.is_dynamic();
+                can_move && self.pairs.binary_search(&(slot_a.min(slot_b), slot_a.max(slot_b))).is_err()
+            }
+        }
+    }
+}
+
+fn both_fixed(a: BodyKind, b: BodyKind) -> bool {
+    a == BodyKind::Fixed && b == BodyKind::Fixed
+}

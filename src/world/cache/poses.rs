@@ -1,0 +1,145 @@
+//! The shapes of the world in world axes.
+
+use alloc::vec::Vec;
+use core::cell::LazyCell;
+
+use super::motion::MotionCache;
+use crate::body::{Body, Geometry, Handle};
+use crate::collision::{PosedShape, SmallBoxes};
+use crate::fx;
+use crate::lanes::prefetch;
+use crate::math::{Aabb, Fx, Vec2};
+use crate::world::state::State;
+
+/// Shapes in world axes, by shape slot. A cache of the state.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Poses {
+    shapes: Vec<Option<PosedShape>>,
+    /// Bounds and predicted motion of the same shapes.
+    motion: MotionCache,
+    /// The small boxes among them, in the layout of the SIMD kernel.
+    boxes: SmallBoxes,
+    /// By body slot.
+    extents: Vec<Extents>,
+}
+
+/// Size of the shapes of a body about its centre of mass, in metres. Rotation does not change it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Extents {
+    /// Radius of a disc inside the thinnest solid shape of the body; [`Fx::MAX`] if it has no solid shape.
+    pub(crate) core: Fx,
+    /// Largest distance of a point that moves when the body turns. A disc counts by its centre, because turning it does
+    /// not change what it covers.
+    pub(crate) reach: Fx,
+    /// Largest distance of any point.
+    pub(crate) radius: Fx,
+}
+
+impl Extents {
+    const NONE: Self = Extents { core: Fx::MAX, reach: Fx::ZERO, radius: Fx::ZERO };
+
+    fn of(state: &State, body: &Body) -> Self {
+        let shapes = body.shapes().iter().map(|id| state.shapes.at(id.slot()));
+        shapes.fold(Self::NONE, |extents, shape| {
+            // 10 µm of slack for the rounding of posed vertices.
+            let arm = (shape.offset() - body.local_centre_of_mass()).length().saturating_add(fx!(0.00001));
+            let Aabb { lower, upper } = shape.geometry().local_bounds();
+            let (size, turning) = match shape.geometry() {
+                Geometry::Circle { radius } => (*radius, Fx::ZERO),
+                _ => [(-lower).max(upper).length(); 2].into(),
+            };
+            let core = if shape.is_sensor() { Fx::MAX } else { PosedShape::inner_radius(shape.geometry()) };
+            Extents {
+                core: extents.core.min(core),
+                reach: extents.reach.max(arm.saturating_add(turning)),
+                radius: extents.radius.max(arm.saturating_add(size)),
+            }
+        })
+    }
+}
+
+impl Poses {
+    /// Poses the shapes of a body that was added, or whose shapes or mass were changed.
+    pub(crate) fn pose_body(&mut self, state: &State, slot: u32) {
+        self.shapes.resize_with(state.shapes.slot_count(), || None);
+        self.boxes.resize(state.shapes.slot_count());
+        self.extents.resize(state.bodies.slot_count(), Extents::NONE);
+        let body = state.bodies.at(slot);
+        let rotation = body.rotation();
+        for &id in body.shapes() {
+            let shape = state.shapes.at(id.slot());
+            let posed = PosedShape::new(&shape.def, body, rotation);
+            self.motion.set_shape(id.slot(), shape, body, &posed);
+            self.boxes.place(id.slot(), &posed, posed.as_centred_box(&shape.def, body));
+            self.shapes[id.slot() as usize] = Some(posed);
+        }
+        self.extents[slot as usize] = Extents::of(state, body);
+    }
+
+    /// Poses the shapes of a body again after it was translated and not rotated, as most falling and resting bodies
+    /// are.
+    pub(crate) fn shift_body(&mut self, body: &Body, by: Vec2<Fx>) {
+        for &id in body.shapes() {
+            let posed =
+                self.shapes[id.slot() as usize].as_mut().expect("every shape is posed when it is added");
+            posed.shift(by);
+            self.motion.set_bounds(id.slot(), posed.bounds);
+        }
+    }
+
+    /// Poses the shapes of a body again after it was moved.
+    pub(crate) fn move_body(&mut self, state: &State, body: &Body) {
+        let rotation = LazyCell::new(|| body.rotation());
+        for &id in body.shapes() {
+            let posed =
+                self.shapes[id.slot() as usize].as_mut().expect("every shape is posed when it is added");
+            if let Some(faces) = self.boxes.turn(id.slot(), &rotation) {
+                posed.turn_box(&faces, body.centre);
+            } else if self.motion.shape(id.slot()).disc {
+                posed.shift(body.centre.wrapping_sub(posed.centre));
+            } else {
+                posed.renew(&state.shapes.at(id.slot()).def, body, &rotation);
+                self.boxes.renew(id.slot(), posed);
+            }
+            self.motion.set_bounds(id.slot(), posed.bounds);
+        }
+    }
+
+    /// Whether a shape has been posed.
+    pub(crate) fn has(&self, shape: u32) -> bool {
+        self.shapes.get(shape as usize).is_some_and(Option::is_some)
+    }
+
+    /// The extents of the body in an occupied slot.
+    pub(crate) fn extents(&self, body: u32) -> Extents {
+        self.extents[body as usize]
+    }
+
+    /// Bounds and predicted motion.
+    #[inline]
+    pub(crate) fn motion(&self) -> &MotionCache {
+        &self.motion
+    }
+
+    pub(super) fn motion_mut(&mut self) -> &mut MotionCache {
+        &mut self.motion
+    }
+
+    /// The small boxes in the layout of the SIMD kernel.
+    #[inline]
+    pub(crate) fn boxes(&self) -> &SmallBoxes {
+        &self.boxes
+    }
+
+    /// Prefetches a shape.
+    #[inline]
+    pub(crate) fn prefetch(&self, shape: u32) {
+        prefetch(&self.shapes[shape as usize]);
+    }
+
+    /// The shape in an occupied slot.
+    #[inline]
+    pub(crate) fn at(&self, shape: u32) -> &PosedShape {
+        self.shapes[shape as usize].as_ref().expect("every shape is posed when it is added")
+    }
+}

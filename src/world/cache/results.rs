@@ -1,0 +1,40 @@
+//! What a tick reports, and the buffers of continuous collision.
+
+use alloc::vec::Vec;
+
+use crate::body::Pose;
+use crate::collision::Sweep;
+use crate::world::events::Events;
+use crate::world::stats::StepStats;
+
+/// Events and statistics of the last tick.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct TickResults {
+    pub(crate) events: Events,
+    pub(crate) stats: StepStats,
+}
+
+impl TickResults {
+    pub(crate) fn clear(&mut self) {
+        self.events.clear();
+        self.stats = StepStats::default();
+    }
+}
+
+/// Buffers for continuous collision. Nothing in them outlives a tick.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Sweeps {
+    /// Poses at the start of the tick of the bodies of the awake set, in its order.
+    pub(crate) starts: Vec<Pose>,
+    /// Bullets that wait until all other bodies have been moved.
+    pub(crate) bullets: Vec<SweptBody>,
+}
+
+/// A fast body that has not been moved yet.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SweptBody {
+    pub(crate) slot: u32,
+    pub(crate) sweep: Sweep,
+    /// The pose to which the solver has moved it.
+    pub(crate) end: Pose,
+}

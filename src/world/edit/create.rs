@@ -1,0 +1,181 @@
+//! Adding bodies, shapes and joints.
+
+use alloc::boxed::Box;
+use alloc::vec::Vec;
+
+use serde::{Deserialize, Serialize};
+
+use crate::body::{
+    Body, BodyDef, BodyId, BodyKind, Handle, JointId, SHAPES_PER_BODY_MAX, Shape, ShapeDef, ShapeId,
+    WorldError, check_position,
+};
+use crate::math::{Angle, Fx, Vec2};
+use crate::solver::{Joint, JointDef};
+use crate::world::World;
+use crate::world::derived::{fat_box, mass_of, offset_max};
+use crate::world::islands::{joints_changed, wake_body, wake_overlapping, wake_overlapping_shape};
+use crate::world::state::{Island, State};
+
+/// Position and rotation of a body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Place {
+    /// Position of the body's origin in the world, in metres.
+    pub position: Vec2<Fx>,
+    /// Rotation of the body.
+    pub angle: Angle,
+}
+
+impl World {
+    /// Adds a body with its shapes.
+    ///
+    /// # Errors
+    /// [`WorldError`] if a value is out of range, a dynamic body has no mass, or the world is full.
+    #[doc(alias = "create_body")]
+    #[doc(alias = "rigid body")]
+    pub fn spawn(&mut self, body: &BodyDef, shapes: &[ShapeDef]) -> Result<BodyId, WorldError> {
+        let config = self.state.config;
+        check_room(self.state.bodies.len(), 1, config.body_limit, "bodies")?;
+        check_room(self.state.shapes.len(), shapes.len(), config.shape_limit, "shapes")?;
+        check_shapes_of_body(shapes.len())?;
+        body.validate()?;
+        for shape in shapes {
+            shape.validate(offset_max(body.kind))?;
+        }
+        let mass = mass_of(body.kind, body.mass, &body.settings, shapes.iter())?;
+        self.check_velocity(body.velocity, body.angular_velocity, mass.gyration)?;
+        let asleep = body.asleep && body.enabled && body.kind == BodyKind::Dynamic && config.sleeping;
+        let mut body = Body::new(body, mass);
+        if asleep || body.kind() == BodyKind::Fixed {
+            body.stop();
+        }
+        let id = self.state.bodies.insert(body);
+        for shape in shapes {
+            self.insert_shape(id, shape);
+        }
+        if asleep {
+            let island = self.state.islands.insert(Island { bodies: alloc::vec![id.slot()] });
+            self.state.bodies.at_mut(id.slot()).island = Some(island);
+        }
+        self.scratch.update_body(&self.state, id.slot());
+        if !self.state.bodies.at(id.slot()).is_dynamic() {
+            wake_overlapping(&mut self.state, &mut self.scratch, id.slot());
+        }
+        Ok(id)
+    }
+
+    /// Adds a body with the same definition at every place. Shorter to record than a [`World::spawn`] for each.
+    ///
+    /// # Errors
+    /// Those of [`World::spawn`]. None of the bodies is added then.
+    pub fn spawn_each(
+        &mut self,
+        body: &BodyDef,
+        shapes: &[ShapeDef],
+        places: &[Place],
+    ) -> Result<Vec<BodyId>, WorldError> {
+        let config = self.state.config;
+        check_room(self.state.bodies.len(), places.len(), config.body_limit, "bodies")?;
+        let wanted = shapes.len().saturating_mul(places.len());
+        check_room(self.state.shapes.len(), wanted, config.shape_limit, "shapes")?;
+        for place in places {
+            check_position(place.position)?;
+        }
+        // Every other error would already occur with the first body.
+        places
+            .iter()
+            .map(|place| {
+                self.spawn(&BodyDef { position: place.position, angle: place.angle, ..*body }, shapes)
+            })
+            .collect()
+    }
+
+    /// Attaches a shape to a body. Unless the body's mass was given, it is computed anew from all shapes.
+    ///
+    /// # Errors
+    /// [`WorldError`] if the handle is stale, a value is out of range, or the world is full.
+    #[doc(alias = "collider")]
+    #[doc(alias = "fixture")]
+    pub fn add_shape(&mut self, body: BodyId, shape: &ShapeDef) -> Result<ShapeId, WorldError> {
+        check_room(self.state.shapes.len(), 1, self.state.config.shape_limit, "shapes")?;
+        let owner = self.state.bodies.get(body).ok_or(WorldError::StaleBody(body))?;
+        shape.validate(offset_max(owner.kind()))?;
+        check_shapes_of_body(owner.shapes.len() + 1)?;
+        let shapes = self.shape_defs(owner).chain([shape]);
+        let mass = mass_of(owner.kind(), *owner.mass_source, &owner.settings, shapes)?;
+        self.check_spin(owner, &mass)?;
+        wake_body(&mut self.state, &mut self.scratch, body.slot());
+        self.state.bodies.redefine(body.slot()).set_mass(mass);
+        let id = self.insert_shape(body, shape);
+        // The centre of mass may have moved, and the positions of the other shapes with it by a rounding.
+        self.scratch.update_body(&self.state, body.slot());
+        wake_overlapping_shape(&mut self.state, &mut self.scratch, id.slot());
+        Ok(id)
+    }
+
+    /// Connects two bodies by a joint.
+    ///
+    /// # Errors
+    /// [`WorldError`] if a handle is stale, both bodies are the same, neither is dynamic, an anchor is out of range, or
+    /// the world is full.
+    #[doc(alias = "create_joint")]
+    #[doc(alias = "constraint")]
+    pub fn add_joint(&mut self, def: &JointDef) -> Result<JointId, WorldError> {
+        check_room(self.state.joints.len(), 1, self.state.config.joint_limit, "joints")?;
+        self.check_joint(def)?;
+        Ok(self.insert_joint(*def))
+    }
+
+    /// Adds a joint with the same definition between every pair of bodies. Shorter to record than a
+    /// [`World::add_joint`] for each.
+    ///
+    /// # Errors
+    /// Those of [`World::add_joint`]. None of the joints is added then.
+    pub fn add_joint_each(
+        &mut self,
+        def: &JointDef,
+        ends: &[(BodyId, BodyId)],
+    ) -> Result<Vec<JointId>, WorldError> {
+        check_room(self.state.joints.len(), ends.len(), self.state.config.joint_limit, "joints")?;
+        let defs = || ends.iter().map(|&(a, b)| def.between(a, b));
+        for def in defs() {
+            self.check_joint(&def)?;
+        }
+        Ok(defs().map(|def| self.insert_joint(def)).collect())
+    }
+
+    fn check_joint(&self, def: &JointDef) -> Result<(), WorldError> {
+        def.validate()?;
+        let (a, b) = def.bodies();
+        let is_dynamic =
+            |id: BodyId| self.state.bodies.get(id).map(Body::is_dynamic).ok_or(WorldError::StaleBody(id));
+        if is_dynamic(a)? | is_dynamic(b)? { Ok(()) } else { Err(WorldError::JointWithoutDynamicBody) }
+    }
+
+    /// Adds a joint whose definition has been checked.
+    fn insert_joint(&mut self, def: JointDef) -> JointId {
+        let (a, b) = def.bodies();
+        let id = self.state.joints.insert(Joint::new(def));
+        self.scratch.joint_links.add(id, (a, b));
+        joints_changed(&mut self.state, &mut self.scratch, [a, b]);
+        id
+    }
+
+    /// Adds a shape whose definition has been checked. The caller has to update the caches of its body.
+    fn insert_shape(&mut self, body: BodyId, def: &ShapeDef) -> ShapeId {
+        let State { bodies, shapes, config, .. } = &mut *self.state;
+        let owner = bodies.redefine(body.slot());
+        let fat = fat_box(def, owner, config);
+        let id = shapes.insert(Shape { body, def: Box::new(*def), fat });
+        owner.shapes.push(id);
+        id
+    }
+}
+
+fn check_shapes_of_body(count: usize) -> Result<(), WorldError> {
+    check_room(count, 0, SHAPES_PER_BODY_MAX, "shapes of one body")
+}
+
+/// Checks that `more` values can be added to `count` existing ones.
+fn check_room(count: usize, more: usize, limit: u32, what: &'static str) -> Result<(), WorldError> {
+    if count.saturating_add(more) > limit as usize { Err(WorldError::Full { what, limit }) } else { Ok(()) }
+}

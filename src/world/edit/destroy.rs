@@ -1,0 +1,93 @@
+//! Removing bodies, shapes and joints.
+
+use alloc::vec::Vec;
+
+use crate::body::{BodyId, Handle, JointId, ShapeId, WorldError};
+use crate::collision::Pair;
+use crate::world::World;
+use crate::world::derived::mass_of;
+use crate::world::islands::{joints_changed, wake_overlapping};
+use crate::world::state::State;
+
+impl World {
+    /// Removes a body with its shapes and joints.
+    ///
+    /// # Errors
+    /// [`WorldError::StaleBody`] if it is not in the world.
+    #[doc(alias = "destroy_body")]
+    pub fn despawn(&mut self, id: BodyId) -> Result<(), WorldError> {
+        let body = self.state.bodies.get(id).ok_or(WorldError::StaleBody(id))?;
+        let shapes = body.shapes.clone();
+        for joint in self.scratch.joint_links.of(&self.state, id) {
+            self.remove_joint(joint)?;
+        }
+        wake_overlapping(&mut self.state, &mut self.scratch, id.slot());
+        self.delete_shapes(&shapes);
+        self.state.bodies.remove(id);
+        self.scratch.awake.invalidate();
+        Ok(())
+    }
+
+    /// Removes a shape. Unless the body's mass was given, it is computed anew from the remaining shapes.
+    ///
+    /// # Errors
+    /// [`WorldError`] if the handle is stale, or a dynamic body would be left without mass.
+    pub fn remove_shape(&mut self, id: ShapeId) -> Result<(), WorldError> {
+        let shape = self.state.shapes.get(id).ok_or(WorldError::StaleShape(id))?;
+        let body = shape.body();
+        let owner = self.state.bodies.at(body.slot());
+        let rest = owner.shapes.iter().filter(|&&other| other != id);
+        let rest = rest.map(|other| self.state.shapes.at(other.slot()).def());
+        let mass = mass_of(owner.kind(), *owner.mass_source, &owner.settings, rest)?;
+        self.check_spin(owner, &mass)?;
+        wake_overlapping(&mut self.state, &mut self.scratch, body.slot());
+        self.delete_shapes(&[id]);
+        let owner = self.state.bodies.redefine(body.slot());
+        owner.shapes.retain(|other| *other != id);
+        owner.set_mass(mass);
+        // The centre of mass has moved, and the positions of the other shapes with it by a rounding.
+        self.scratch.update_body(&self.state, body.slot());
+        Ok(())
+    }
+
+    /// Removes a joint.
+    ///
+    /// # Errors
+    /// [`WorldError::StaleJoint`] if it is not in the world.
+    #[doc(alias = "destroy_joint")]
+    pub fn remove_joint(&mut self, id: JointId) -> Result<(), WorldError> {
+        let joint = self.state.joints.remove(id).ok_or(WorldError::StaleJoint(id))?;
+        let (a, b) = joint.def.bodies();
+        self.scratch.joint_links.remove(id, (a, b));
+        joints_changed(&mut self.state, &mut self.scratch, [a, b]);
+        Ok(())
+    }
+
+    /// Removes shapes from everything except the list of their body.
+    fn delete_shapes(&mut self, ids: &[ShapeId]) {
+        self.end_contacts(ids);
+        for &id in ids {
+            self.scratch.shapes.remove(id.slot());
+            self.state.shapes.remove(id);
+        }
+    }
+
+    /// Ends the contacts of shapes that are about to be removed or changed. The next tick reports the ends.
+    pub(super) fn end_contacts(&mut self, ids: &[ShapeId]) {
+        let mut slots: Vec<u32> = ids.iter().map(|id| id.slot()).collect();
+        slots.sort_unstable();
+        let ends = |(a, b): Pair| slots.binary_search(&a).is_ok() || slots.binary_search(&b).is_ok();
+        let State { contacts, resting, .. } = &*self.state;
+        let before = contacts.len();
+        self.scratch.contacts.remove_surfaces(|pair| ends(pair.shapes));
+        let touching =
+            contacts.iter().chain(resting.iter()).filter(|contact| contact.touching && ends(contact.shapes));
+        let removed: Vec<_> = touching.filter_map(|contact| self.state.reported(contact)).collect();
+        self.state.removed_contacts.extend(removed);
+        self.state.contacts.retain(|contact| !ends(contact.shapes));
+        self.state.resting.retain(|contact| !ends(contact.shapes));
+        if self.state.contacts.len() < before {
+            self.scratch.contacts.invalidate();
+        }
+    }
+}

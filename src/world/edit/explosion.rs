@@ -1,0 +1,146 @@
+//! Explosions: impulses on all dynamic bodies near a point.
+//!
+//! ```text
+//! P = I(d) w n      w  width of the shape across n, as seen from the centre of the explosion
+//!                   I  impulse per metre: constant up to the radius, then falling linearly to 0 over the falloff
+//!                   n  unit vector away from the centre
+//! ```
+//!
+//! This follows Box2D's `b2World_Explode`. A shape at distance `d` gets the impulse at its nearest point. A pressure
+//! wave in two dimensions would decay as `1 / d`; the constant core and the linear falloff are what games ask for.
+
+use alloc::vec::Vec;
+
+use crate::body::{BodyId, Shape, WorldError, check_position};
+use crate::collision::{Core, contains_point, distance};
+use crate::fx;
+use crate::math::{Fx, Unit, Vec2, fx_div, fx_mul};
+use crate::world::World;
+
+/// Margin in metres on the search radius, larger than the rounding of distances, so that no shape in reach is missed.
+const SLACK: Fx = fx!(0.000001);
+
+impl World {
+    /// Applies an impulse away from the explosion's centre to every dynamic body near it, shape by shape in slot order,
+    /// and wakes it. Sensors and disabled bodies are left out. Speeds are clamped to their range.
+    ///
+    /// # Errors
+    /// [`WorldError::Setting`] if a value of the explosion is out of range, [`WorldError::PositionOutOfRange`] if its
+    /// centre is.
+    #[doc(alias = "blast")]
+    pub fn explode(&mut self, explosion: &Explosion) -> Result<(), WorldError> {
+        explosion.validate()?;
+        let mut slots = Vec::new();
+        let reach = explosion.radius + explosion.falloff + SLACK;
+        self.scratch.shapes.broad_phase().each_near(explosion.centre, reach, |slot| {
+            slots.push(slot);
+            reach
+        });
+        slots.sort_unstable();
+        for slot in slots {
+            self.push_shape(slot, explosion)?;
+        }
+        Ok(())
+    }
+
+    fn push_shape(&mut self, slot: u32, explosion: &Explosion) -> Result<(), WorldError> {
+        let shape = self.state.shapes.at(slot);
+        let body = shape.body();
+        if !explosion.pushes(shape) || !self.body(body).is_some_and(|body| body.is_dynamic() && body.enabled)
+        {
+            return Ok(());
+        }
+        let core = Core::of(self.scratch.shapes.poses().at(slot), explosion.centre);
+        match explosion.on(&core) {
+            Some(Push { impulse, point }) => self.push_body(body, impulse, point),
+            None => Ok(()),
+        }
+    }
+
+    fn push_body(&mut self, body: BodyId, impulse: Vec2<Fx>, point: Vec2<Fx>) -> Result<(), WorldError> {
+        self.dynamic_body(body)?.apply_impulse(impulse, point);
+        Ok(())
+    }
+}
+
+/// The impulse of an explosion on a shape.
+struct Push {
+    /// In N s.
+    impulse: Vec2<Fx>,
+    /// Point of application in the world, in metres.
+    point: Vec2<Fx>,
+}
+
+/// An explosion; see [`World::explode`].
+///
+/// ```
+/// use lockstep2d::{fx, math::Vec2, world::{Explosion, World}};
+/// let mut world = World::default();
+/// let at = Vec2::new(fx!(0), fx!(1));
+/// world.explode(&Explosion { radius: fx!(3), ..Explosion::new(at, fx!(10)) })?;
+/// # Ok::<(), lockstep2d::body::WorldError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub struct Explosion {
+    /// Centre in the world, in metres.
+    pub centre: Vec2<Fx>,
+    /// Distance from the centre in metres up to which the impulse is constant, 0 to 1000.
+    pub radius: Fx,
+    /// Distance in metres beyond the radius over which the impulse falls to 0, 0 to 1000.
+    pub falloff: Fx,
+    /// Impulse in N s per metre of a shape's width, ±2^20. A negative impulse pulls.
+    pub impulse_per_length: Fx,
+    /// Categories of the shapes that it acts on.
+    pub mask: u64,
+}
+
+impl Explosion {
+    /// An explosion with a radius of 1 m and a falloff of 1 m that acts on all categories.
+    #[must_use]
+    pub const fn new(centre: Vec2<Fx>, impulse_per_length: Fx) -> Self {
+        Explosion { centre, radius: Fx::ONE, falloff: Fx::ONE, impulse_per_length, mask: u64::MAX }
+    }
+
+    fn validate(&self) -> Result<(), WorldError> {
+        check_position(self.centre)?;
+        let distance = Fx::ZERO..=fx!(1000);
+        let strength = fx!(-1048576)..=fx!(1048576);
+        let valid = distance.contains(&self.radius)
+            && distance.contains(&self.falloff)
+            && strength.contains(&self.impulse_per_length);
+        if valid { Ok(()) } else { Err(WorldError::Setting { name: "explosion" }) }
+    }
+
+    fn pushes(&self, shape: &Shape) -> bool {
+        !shape.is_sensor() && shape.filter().category & self.mask != 0
+    }
+
+    /// The impulse on a shape that is given about the explosion's centre; `None` if it is out of reach.
+    fn on(&self, shape: &Core) -> Option<Push> {
+        let found = distance(shape, &Core::point(Vec2::ZERO));
+        let strength = self.at_distance(found.distance);
+        if strength == Fx::ZERO {
+            return None;
+        }
+        // If the centre is inside the shape, the nearest surface point does not give the direction: use the middle.
+        let inside = contains_point(shape, Vec2::ZERO);
+        let point = if inside { shape.middle() } else { found.point_a };
+        let away = if inside { point.normalized() } else { Some(-found.normal) };
+        let away: Vec2<Unit> = away.unwrap_or(Vec2::X);
+        let impulse = away.widen().scale(fx_mul(strength, shape.extent(away.perp())));
+        Some(Push { impulse, point: self.centre + point })
+    }
+
+    /// Impulse in N s per metre of width at a distance in metres from the centre.
+    fn at_distance(&self, distance: Fx) -> Fx {
+        let beyond = distance - self.radius;
+        if beyond <= Fx::ZERO {
+            return self.impulse_per_length;
+        }
+        if beyond >= self.falloff {
+            return Fx::ZERO;
+        }
+        let left = fx_div(self.falloff - beyond, self.falloff).unwrap_or(Fx::ZERO);
+        fx_mul(self.impulse_per_length, left)
+    }
+}

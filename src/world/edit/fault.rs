@@ -1,0 +1,108 @@
+//! Fault injection: flips one bit of a body, to test the detection of divergence.
+
+use crate::body::{BodyId, Handle, Pose, SPEED_MAX, WORLD_EXTENT_MAX, WorldError};
+use crate::math::{Angle, Fx, Speed};
+use crate::world::World;
+use crate::world::movement::move_body;
+
+/// A number of a body's velocity or pose.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Motion {
+    /// The horizontal velocity of its centre of mass.
+    VelocityX,
+    /// The vertical velocity of its centre of mass.
+    VelocityY,
+    /// The spin: radius of gyration times angular velocity.
+    Spin,
+    /// The x coordinate of its centre of mass.
+    CentreX,
+    /// The y coordinate of its centre of mass.
+    CentreY,
+    /// Its rotation.
+    Angle,
+}
+
+impl Motion {
+    /// All fields, speeds first.
+    pub const ALL: [Motion; 6] =
+        [Motion::VelocityX, Motion::VelocityY, Motion::Spin, Motion::CentreX, Motion::CentreY, Motion::Angle];
+
+    /// The three speeds.
+    pub const SPEEDS: [Motion; 3] = [Motion::VelocityX, Motion::VelocityY, Motion::Spin];
+
+    /// Returns the name of the field in the readable form of a snapshot.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Motion::VelocityX => "velocity.x",
+            Motion::VelocityY => "velocity.y",
+            Motion::Spin => "spin",
+            Motion::CentreX => "centre_of_mass.x",
+            Motion::CentreY => "centre_of_mass.y",
+            Motion::Angle => "angle",
+        }
+    }
+
+    /// Returns the number of bits of the field.
+    #[must_use]
+    pub fn bits(self) -> u32 {
+        match self {
+            Motion::CentreX | Motion::CentreY => 64,
+            _ => 32,
+        }
+    }
+}
+
+impl World {
+    /// Flips one bit of a number of an awake dynamic body, as failing memory would. Used to test the detection of
+    /// divergence. The lowest bit of a speed counts 2^-21 m/s, that of a coordinate 2^-32 m, that of the angle 2^-32
+    /// turns; see [`Motion::bits`].
+    ///
+    /// # Errors
+    /// [`WorldError`] if the handle is stale, the body is disabled, asleep or not dynamic, the bit does not exist, the
+    /// axis is locked, or the result is out of range. The world is then unchanged.
+    pub fn flip_bit(&mut self, id: BodyId, motion: Motion, bit: u32) -> Result<(), WorldError> {
+        let body = self.state.get().bodies.get(id).ok_or(WorldError::StaleBody(id))?;
+        let locks = body.settings.locks;
+        let locked = match motion {
+            Motion::VelocityX | Motion::CentreX => locks.x,
+            Motion::VelocityY | Motion::CentreY => locks.y,
+            Motion::Spin | Motion::Angle => locks.rotation,
+        };
+        let is_free = body.is_dynamic() && !body.is_asleep() && body.is_enabled() && !locked;
+        if !is_free || bit >= motion.bits() {
+            return Err(WorldError::WrongKind(id));
+        }
+        let mut pose = Pose { centre: body.centre, angle: body.angle };
+        match motion {
+            Motion::VelocityX | Motion::VelocityY | Motion::Spin => return self.flip_speed(id, motion, bit),
+            Motion::CentreX => pose.centre.x = flipped_place(pose.centre.x, bit)?,
+            Motion::CentreY => pose.centre.y = flipped_place(pose.centre.y, bit)?,
+            Motion::Angle => pose.angle = Angle::from_bits(pose.angle.to_bits() ^ 1 << bit),
+        }
+        let World { state, scratch, .. } = self;
+        move_body(state, scratch, id.slot(), pose);
+        Ok(())
+    }
+
+    fn flip_speed(&mut self, id: BodyId, motion: Motion, bit: u32) -> Result<(), WorldError> {
+        let body = self.state.bodies.at_mut(id.slot());
+        let number = match motion {
+            Motion::VelocityX => &mut body.velocity.x,
+            Motion::VelocityY => &mut body.velocity.y,
+            _ => &mut body.spin,
+        };
+        let flipped = Speed::from_bits(number.to_bits() ^ 1 << bit);
+        if !(-SPEED_MAX..=SPEED_MAX).contains(&flipped) {
+            return Err(WorldError::SpeedOutOfRange { value: flipped.into() });
+        }
+        *number = flipped;
+        Ok(())
+    }
+}
+
+fn flipped_place(place: Fx, bit: u32) -> Result<Fx, WorldError> {
+    let flipped = Fx::from_bits(place.to_bits() ^ 1 << bit);
+    let inside = (-WORLD_EXTENT_MAX..=WORLD_EXTENT_MAX).contains(&flipped);
+    if inside { Ok(flipped) } else { Err(WorldError::PositionOutOfRange { value: flipped }) }
+}

@@ -1,0 +1,157 @@
+//! Forces, impulses, velocities and poses of bodies. Each of these changes wakes the body.
+
+use alloc::boxed::Box;
+
+use crate::body::{Body, BodyId, BodyKind, Handle, Pose, WorldError, check_position};
+use crate::math::{Angle, Fx, Vec2};
+use crate::world::World;
+use crate::world::islands::{wake_body, wake_joined, wake_overlapping};
+
+impl World {
+    /// Applies a force in N to a dynamic body at a world point, in metres, for the next tick. Forces add up, and are
+    /// cleared by the tick.
+    ///
+    /// # Errors
+    /// [`WorldError`] if the handle is stale, or the body is not dynamic or is disabled.
+    pub fn apply_force(&mut self, id: BodyId, force: Vec2<Fx>, point: Vec2<Fx>) -> Result<(), WorldError> {
+        self.dynamic_body(id)?.apply_force(force, point);
+        Ok(())
+    }
+
+    /// Applies a force in N to a dynamic body at its centre of mass for the next tick.
+    ///
+    /// # Errors
+    /// [`WorldError`] if the handle is stale, or the body is not dynamic or is disabled.
+    pub fn apply_force_to_centre(&mut self, id: BodyId, force: Vec2<Fx>) -> Result<(), WorldError> {
+        let body = self.dynamic_body(id)?;
+        body.apply_force(force, body.centre);
+        Ok(())
+    }
+
+    /// Applies a torque in N m to a dynamic body for the next tick. Torques add up, and are cleared by the tick.
+    ///
+    /// # Errors
+    /// [`WorldError`] if the handle is stale, or the body is not dynamic or is disabled.
+    pub fn apply_torque(&mut self, id: BodyId, torque: Fx) -> Result<(), WorldError> {
+        let body = self.dynamic_body(id)?;
+        body.torque = body.torque.saturating_add(torque);
+        Ok(())
+    }
+
+    /// Changes the velocity of a dynamic body at once by an impulse in N s at a world point, in metres.
+    ///
+    /// # Errors
+    /// [`WorldError`] if the handle is stale, or the body is not dynamic or is disabled.
+    pub fn apply_impulse(
+        &mut self,
+        id: BodyId,
+        impulse: Vec2<Fx>,
+        point: Vec2<Fx>,
+    ) -> Result<(), WorldError> {
+        self.dynamic_body(id)?.apply_impulse(impulse, point);
+        Ok(())
+    }
+
+    /// Changes the velocity of a dynamic body at once by an impulse in N s at its centre of mass.
+    ///
+    /// # Errors
+    /// [`WorldError`] if the handle is stale, or the body is not dynamic or is disabled.
+    pub fn apply_impulse_to_centre(&mut self, id: BodyId, impulse: Vec2<Fx>) -> Result<(), WorldError> {
+        let body = self.dynamic_body(id)?;
+        body.apply_impulse(impulse, body.centre);
+        Ok(())
+    }
+
+    /// Changes the angular velocity of a dynamic body at once by an angular impulse in N m s.
+    ///
+    /// # Errors
+    /// [`WorldError`] if the handle is stale, or the body is not dynamic or is disabled.
+    pub fn apply_angular_impulse(&mut self, id: BodyId, impulse: Fx) -> Result<(), WorldError> {
+        self.dynamic_body(id)?.apply_angular_impulse(impulse);
+        Ok(())
+    }
+
+    /// Sets the velocity of a body's centre of mass in m/s and its angular velocity in rad/s.
+    ///
+    /// # Errors
+    /// [`WorldError`] if the handle is stale, the body is fixed, or a speed is above
+    /// [`crate::solver::SolverSettings::speed_max`].
+    pub fn set_velocity(&mut self, id: BodyId, velocity: Vec2<Fx>, angular: Fx) -> Result<(), WorldError> {
+        let body = self.state.bodies.get(id).ok_or(WorldError::StaleBody(id))?;
+        if body.kind() == BodyKind::Fixed {
+            return Err(WorldError::WrongKind(id));
+        }
+        self.check_velocity(velocity, angular, body.radius_of_gyration())?;
+        wake_body(&mut self.state, &mut self.scratch, id.slot());
+        let body = self.state.bodies.at_mut(id.slot());
+        let was_moving = body.is_moving();
+        body.target = None;
+        body.velocity = velocity.narrow();
+        body.set_angular_velocity(angular);
+        body.hold_locked_axes();
+        if !body.is_dynamic() && body.is_moving() && !was_moving {
+            wake_joined(&mut self.state, &mut self.scratch, id);
+        }
+        Ok(())
+    }
+
+    /// Sets the pose that a kinematic body has after the next tick: the position of its origin in metres, and its
+    /// rotation. The body gets the velocity that takes it there, pushes what it meets, and stops at the target unless
+    /// it is given another one. It rotates by the shorter way.
+    ///
+    /// # Errors
+    /// [`WorldError`] if the handle is stale, the body is not kinematic, the position is out of range, or it cannot be
+    /// reached within a tick below [`crate::solver::SolverSettings::speed_max`].
+    #[doc(alias = "set_target_transform")]
+    #[doc(alias = "move_kinematic")]
+    pub fn move_to(&mut self, id: BodyId, position: Vec2<Fx>, angle: Angle) -> Result<(), WorldError> {
+        check_position(position)?;
+        let body = self.state.bodies.get(id).ok_or(WorldError::StaleBody(id))?;
+        if body.kind() != BodyKind::Kinematic {
+            return Err(WorldError::WrongKind(id));
+        }
+        let rate = i64::from(self.state.config.tick_rate);
+        let mut there = body.clone();
+        there.set_transform(position, angle);
+        let (shift, turn) = (there.centre - body.centre, (angle - body.angle).to_radians());
+        let velocity = Vec2::new(shift.x.saturating_mul_int(rate), shift.y.saturating_mul_int(rate));
+        let angular = if body.turns() { turn.saturating_mul_int(rate) } else { Fx::ZERO };
+        self.set_velocity(id, velocity, angular)?;
+        let body = self.state.bodies.at_mut(id.slot());
+        if body.is_moving() {
+            body.target = Some(Box::new(Pose { centre: there.centre, angle }));
+            body.hold_locked_axes();
+        }
+        Ok(())
+    }
+
+    /// Moves a body's origin at once to a position in metres, with a rotation, regardless of what is in between.
+    /// Contacts and joints that persist keep their impulses.
+    ///
+    /// # Errors
+    /// [`WorldError`] if the handle is stale or the position is out of range.
+    #[doc(alias = "teleport")]
+    #[doc(alias = "set_position")]
+    pub fn set_transform(&mut self, id: BodyId, position: Vec2<Fx>, angle: Angle) -> Result<(), WorldError> {
+        check_position(position)?;
+        self.state.bodies.get(id).ok_or(WorldError::StaleBody(id))?;
+        wake_overlapping(&mut self.state, &mut self.scratch, id.slot());
+        wake_joined(&mut self.state, &mut self.scratch, id);
+        let body = self.state.bodies.at_mut(id.slot());
+        body.target = None;
+        body.set_transform(position, angle);
+        self.refit_body(id.slot());
+        wake_overlapping(&mut self.state, &mut self.scratch, id.slot());
+        Ok(())
+    }
+
+    /// Wakes a dynamic body and returns it.
+    pub(super) fn dynamic_body(&mut self, id: BodyId) -> Result<&mut Body, WorldError> {
+        let body = self.state.bodies.get(id).ok_or(WorldError::StaleBody(id))?;
+        if !body.is_dynamic() || !body.enabled {
+            return Err(WorldError::WrongKind(id));
+        }
+        wake_body(&mut self.state, &mut self.scratch, id.slot());
+        Ok(self.state.bodies.at_mut(id.slot()))
+    }
+}

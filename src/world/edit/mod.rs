@@ -1,0 +1,57 @@
+//! Changes to a world between ticks. Each change either happens or returns an error and leaves the world as it was.
+
+mod command;
+mod create;
+mod destroy;
+mod explosion;
+mod fault;
+mod forces;
+mod setters;
+
+pub use command::{Command, Outcome};
+pub use create::Place;
+pub use explosion::Explosion;
+pub use fault::Motion;
+
+use super::World;
+use super::derived::fat_box;
+use super::state::State;
+use crate::body::{Body, Handle, MassProperties, ShapeDef, WorldError};
+use crate::math::{Fx, Vec2, fx_mul};
+
+impl World {
+    /// The definitions of a body's shapes.
+    fn shape_defs<'a>(&'a self, body: &'a Body) -> impl Iterator<Item = &'a ShapeDef> + Clone {
+        body.shapes.iter().map(|id| self.state.shapes.at(id.slot()).def())
+    }
+
+    /// Checks a velocity in m/s and an angular velocity in rad/s of a body with a radius of gyration in metres.
+    fn check_velocity(&self, velocity: Vec2<Fx>, angular: Fx, gyration: Fx) -> Result<(), WorldError> {
+        let limit = self.state.config.solver.speed_limit(self.state.config.tick_rate);
+        for value in [velocity.length(), fx_mul(angular.saturating_abs(), gyration)] {
+            if value > limit {
+                return Err(WorldError::SpeedOutOfRange { value });
+            }
+        }
+        Ok(())
+    }
+
+    /// Checks that a body may keep its angular velocity with a new mass.
+    fn check_spin(&self, body: &Body, mass: &MassProperties) -> Result<(), WorldError> {
+        self.check_velocity(Vec2::ZERO, body.angular_velocity(), mass.gyration)
+    }
+
+    /// Gives the shapes of a body that was moved by hand or redefined new fat boxes, and updates the caches.
+    fn refit_body(&mut self, slot: u32) {
+        let State { bodies, shapes, config, .. } = &mut *self.state;
+        let body = bodies.at(slot);
+        for shape in &body.shapes {
+            // Snapshots store the fat boxes of fixed bodies with the definition, and the body may have ceased to be
+            // fixed.
+            let shape = shapes.redefine(shape.slot());
+            shape.fat = fat_box(&shape.def, body, config);
+        }
+        self.scratch.update_body(&self.state, slot);
+        self.scratch.pairs.changes.resting_changed();
+    }
+}

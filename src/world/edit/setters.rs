@@ -1,0 +1,279 @@
+//! Changing the properties of bodies, shapes, joints and the world.
+
+use alloc::vec::Vec;
+
+use crate::body::{
+    BodyId, BodyKind, BodySettings, Filter, Geometry, Handle, IslandId, JointId, MassSource, Material,
+    ShapeDef, ShapeId, WorldError,
+};
+use crate::math::{Fx, Vec2};
+use crate::solver::JointDef;
+use crate::world::World;
+use crate::world::config::check_gravity;
+use crate::world::derived::{mass_of, offset_max};
+use crate::world::islands::{
+    joints_changed, put_to_sleep, wake_body, wake_island, wake_joined, wake_overlapping,
+};
+
+impl World {
+    /// Replaces the settings of a body: read [`crate::body::Body::settings`], change a copy, and pass it here. Wakes
+    /// the body.
+    ///
+    /// # Errors
+    /// [`WorldError`] if the handle is stale or a value is out of range.
+    #[doc(alias = "gravity_scale")]
+    #[doc(alias = "damping")]
+    #[doc(alias = "bullet")]
+    pub fn set_body(&mut self, id: BodyId, settings: &BodySettings) -> Result<(), WorldError> {
+        let body = self.state.bodies.get(id).ok_or(WorldError::StaleBody(id))?;
+        settings.validate()?;
+        let mass = mass_of(body.kind(), *body.mass_source, settings, self.shape_defs(body))?;
+        wake_body(&mut self.state, &mut self.scratch, id.slot());
+        let body = self.state.bodies.redefine(id.slot());
+        body.settings = *settings;
+        body.set_mass(mass);
+        body.hold_locked_axes();
+        self.scratch.update_body(&self.state, id.slot());
+        Ok(())
+    }
+
+    /// Replaces the number that the game stores with a body. No result of the simulation depends on it.
+    ///
+    /// # Errors
+    /// [`WorldError::StaleBody`] if it is not in the world.
+    pub fn set_user_data(&mut self, id: BodyId, user_data: u64) -> Result<(), WorldError> {
+        self.state.bodies.get_mut(id).ok_or(WorldError::StaleBody(id))?.user_data = user_data;
+        Ok(())
+    }
+
+    /// Replaces the source of a body's mass. Keeps its pose, its angular velocity and the velocity of its material.
+    /// Wakes the body.
+    ///
+    /// # Errors
+    /// [`WorldError`] if the handle is stale, the mass is out of range, or the body rotates too fast for the new mass.
+    #[doc(alias = "density")]
+    #[doc(alias = "inertia")]
+    pub fn set_mass(&mut self, id: BodyId, source: MassSource) -> Result<(), WorldError> {
+        let body = self.state.bodies.get(id).ok_or(WorldError::StaleBody(id))?;
+        let mass = mass_of(body.kind(), source, &body.settings, self.shape_defs(body))?;
+        self.check_spin(body, &mass)?;
+        wake_body(&mut self.state, &mut self.scratch, id.slot());
+        let body = self.state.bodies.redefine(id.slot());
+        *body.mass_source = source;
+        body.set_mass(mass);
+        self.scratch.update_body(&self.state, id.slot());
+        Ok(())
+    }
+
+    /// Makes a body fixed, kinematic or dynamic. A body that becomes fixed stops, any other keeps its velocity.
+    ///
+    /// # Errors
+    /// [`WorldError`] if the handle is stale, a dynamic body would have no mass, a shape reaches too far for a body
+    /// that moves, the body rotates too fast for its mass, or a joint would be left without a dynamic body.
+    #[doc(alias = "static")]
+    #[doc(alias = "body type")]
+    pub fn set_kind(&mut self, id: BodyId, kind: BodyKind) -> Result<(), WorldError> {
+        let body = self.state.bodies.get(id).ok_or(WorldError::StaleBody(id))?;
+        for shape in self.shape_defs(body) {
+            shape.validate(offset_max(kind))?;
+        }
+        let mass = mass_of(kind, *body.mass_source, &body.settings, self.shape_defs(body))?;
+        self.check_spin(body, &mass)?;
+        let stays_dynamic = |other: BodyId| match other == id {
+            true => kind == BodyKind::Dynamic,
+            false => self.state.bodies.at(other.slot()).is_dynamic(),
+        };
+        for joint in self.scratch.joint_links.of(&self.state, id) {
+            let (a, b) = self.state.joints.at(joint.slot()).def().bodies();
+            if !stays_dynamic(a) && !stays_dynamic(b) {
+                return Err(WorldError::JointWithoutDynamicBody);
+            }
+        }
+        wake_overlapping(&mut self.state, &mut self.scratch, id.slot());
+        wake_joined(&mut self.state, &mut self.scratch, id);
+        let body = self.state.bodies.redefine(id.slot());
+        body.kind = kind;
+        body.target = None;
+        body.set_mass(mass);
+        if kind != BodyKind::Dynamic {
+            (body.force, body.torque) = (Vec2::ZERO, Fx::ZERO);
+        }
+        if kind == BodyKind::Fixed {
+            body.stop();
+        }
+        // Fat boxes of fixed shapes have another margin.
+        self.refit_body(id.slot());
+        self.scratch.pairs.changes.rules_changed();
+        wake_overlapping(&mut self.state, &mut self.scratch, id.slot());
+        Ok(())
+    }
+
+    /// Takes a body out of the simulation until [`World::enable`]. It keeps its pose and its velocity, but has no
+    /// contacts, its joints are not solved, and no query finds it.
+    ///
+    /// # Errors
+    /// [`WorldError::StaleBody`] if it is not in the world.
+    pub fn disable(&mut self, id: BodyId) -> Result<(), WorldError> {
+        let body = self.state.bodies.get(id).ok_or(WorldError::StaleBody(id))?;
+        if !body.enabled {
+            return Ok(());
+        }
+        let shapes = body.shapes.clone();
+        wake_overlapping(&mut self.state, &mut self.scratch, id.slot());
+        wake_joined(&mut self.state, &mut self.scratch, id);
+        self.end_contacts(&shapes);
+        for shape in shapes {
+            self.scratch.shapes.remove(shape.slot());
+        }
+        let body = self.state.bodies.redefine(id.slot());
+        body.enabled = false;
+        body.target = None;
+        (body.force, body.torque) = (Vec2::ZERO, Fx::ZERO);
+        self.scratch.awake.invalidate();
+        Ok(())
+    }
+
+    /// Puts a disabled body back into the simulation at its pose.
+    ///
+    /// # Errors
+    /// [`WorldError::StaleBody`] if it is not in the world.
+    pub fn enable(&mut self, id: BodyId) -> Result<(), WorldError> {
+        let body = self.state.bodies.get_mut(id).ok_or(WorldError::StaleBody(id))?;
+        if !body.enabled {
+            body.enabled = true;
+            self.scratch.update_body(&self.state, id.slot());
+            wake_joined(&mut self.state, &mut self.scratch, id);
+            wake_overlapping(&mut self.state, &mut self.scratch, id.slot());
+        }
+        Ok(())
+    }
+
+    /// Wakes a body with all bodies of its island.
+    ///
+    /// # Errors
+    /// [`WorldError::StaleBody`] if it is not in the world.
+    pub fn wake(&mut self, id: BodyId) -> Result<(), WorldError> {
+        self.state.bodies.get(id).ok_or(WorldError::StaleBody(id))?;
+        wake_body(&mut self.state, &mut self.scratch, id.slot());
+        Ok(())
+    }
+
+    /// Puts a dynamic body to sleep at any velocity, with all dynamic bodies that contacts and joints connect it to.
+    /// Does nothing if [`crate::world::Config::sleeping`] is off.
+    ///
+    /// # Errors
+    /// [`WorldError`] if the handle is stale, or the body is disabled or not dynamic.
+    pub fn sleep(&mut self, id: BodyId) -> Result<(), WorldError> {
+        let body = self.state.bodies.get(id).ok_or(WorldError::StaleBody(id))?;
+        if !body.is_dynamic() || !body.enabled {
+            return Err(WorldError::WrongKind(id));
+        }
+        if self.state.config.sleeping && !body.is_asleep() {
+            put_to_sleep(&mut self.state, &mut self.scratch, id.slot());
+        }
+        Ok(())
+    }
+
+    /// Replaces the definition of a shape: read [`crate::body::Shape::def`], change a copy, and pass it here. Unless
+    /// the body's mass was given, it is computed anew from its shapes. If the change makes the shape a sensor or a
+    /// solid shape, or switches its contact events, its contacts end; otherwise they last as long as the shapes touch.
+    ///
+    /// # Errors
+    /// [`WorldError`] if the handle is stale, a value is out of range, or a dynamic body would be left without mass.
+    #[doc(alias = "sensor")]
+    #[doc(alias = "trigger")]
+    pub fn set_shape(&mut self, id: ShapeId, def: &ShapeDef) -> Result<(), WorldError> {
+        let shape = self.state.shapes.get(id).ok_or(WorldError::StaleShape(id))?;
+        let slot = shape.body().slot();
+        let owner = self.state.bodies.at(slot);
+        def.validate(offset_max(owner.kind()))?;
+        let with = owner
+            .shapes
+            .iter()
+            .map(|other| if *other == id { def } else { &self.state.shapes.at(other.slot()).def });
+        let mass = mass_of(owner.kind(), *owner.mass_source, &owner.settings, with)?;
+        self.check_spin(owner, &mass)?;
+        // Every reported beginning of a contact needs its end.
+        let changes_events = (shape.def.sensor, shape.def.events.contact) != (def.sensor, def.events.contact);
+        wake_overlapping(&mut self.state, &mut self.scratch, slot);
+        if changes_events {
+            self.end_contacts(&[id]);
+        }
+        *self.state.shapes.redefine(id.slot()).def = *def;
+        self.state.bodies.redefine(slot).set_mass(mass);
+        self.refit_body(slot);
+        self.scratch.pairs.changes.rules_changed();
+        wake_overlapping(&mut self.state, &mut self.scratch, slot);
+        Ok(())
+    }
+
+    /// Replaces the geometry of a shape; see [`World::set_shape`].
+    ///
+    /// # Errors
+    /// Those of [`World::set_shape`].
+    pub fn set_geometry(&mut self, id: ShapeId, geometry: Geometry) -> Result<(), WorldError> {
+        self.change_shape(id, |def| def.geometry = geometry)
+    }
+
+    /// Replaces the material of a shape; see [`World::set_shape`].
+    ///
+    /// # Errors
+    /// Those of [`World::set_shape`].
+    pub fn set_material(&mut self, id: ShapeId, material: Material) -> Result<(), WorldError> {
+        self.change_shape(id, |def| def.material = material)
+    }
+
+    /// Replaces the collision filter of a shape; see [`World::set_shape`].
+    ///
+    /// # Errors
+    /// Those of [`World::set_shape`].
+    pub fn set_filter(&mut self, id: ShapeId, filter: Filter) -> Result<(), WorldError> {
+        self.change_shape(id, |def| def.filter = filter)
+    }
+
+    /// Replaces the definition of a shape by a changed copy.
+    fn change_shape(&mut self, id: ShapeId, change: impl FnOnce(&mut ShapeDef)) -> Result<(), WorldError> {
+        let mut def = *self.state.shapes.get(id).ok_or(WorldError::StaleShape(id))?.def;
+        change(&mut def);
+        self.set_shape(id, &def)
+    }
+
+    /// Replaces the definition of a joint except for its bodies: read [`crate::solver::Joint::def`], change a copy, and
+    /// pass it here. Its impulses are kept if it stays of the same kind. Wakes its bodies.
+    ///
+    /// # Errors
+    /// [`WorldError`] if the handle is stale, the bodies are different ones, or a value is out of range.
+    #[doc(alias = "motor")]
+    #[doc(alias = "spring")]
+    #[doc(alias = "limit")]
+    pub fn set_joint(&mut self, id: JointId, def: &JointDef) -> Result<(), WorldError> {
+        let joint = self.state.joints.get_mut(id).ok_or(WorldError::StaleJoint(id))?;
+        def.validate()?;
+        let (a, b) = joint.def.bodies();
+        if (a, b) != def.bodies() {
+            return Err(WorldError::JointOfOtherBodies(id));
+        }
+        joint.redefine(*def);
+        joints_changed(&mut self.state, &mut self.scratch, [a, b]);
+        Ok(())
+    }
+
+    /// Replaces the world's gravity, in m/s². Wakes everything.
+    ///
+    /// # Errors
+    /// [`WorldError::Setting`] if a component is not within ±100 000.
+    pub fn set_gravity(&mut self, gravity: Vec2<Fx>) -> Result<(), WorldError> {
+        if !check_gravity(gravity) {
+            return Err(WorldError::Setting { name: "gravity" });
+        }
+        let islands: Vec<IslandId> = self.state.islands.iter().map(|(id, _)| id).collect();
+        for island in islands {
+            wake_island(&mut self.state, &mut self.scratch, island);
+        }
+        for (_, body) in self.state.bodies.iter_mut().filter(|(_, body)| body.is_dynamic()) {
+            body.rest_ticks.reset();
+        }
+        self.state.config.gravity = gravity;
+        Ok(())
+    }
+}

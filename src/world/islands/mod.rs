@@ -1,0 +1,19 @@
+//! Sleeping islands: waking and putting to sleep, for the step and for edits between ticks.
+//!
+//! A body is sleepy once it has been slower than its `sleep_speed` for half a second. An island is a set of dynamic
+//! bodies that contacts and joints connect. It falls asleep when all its bodies are sleepy. It wakes as a whole:
+//! - when an active body comes into contact with one of its bodies,
+//! - when a force, impulse, velocity, pose or property of one of its bodies is changed by hand,
+//! - when a joint is added to or removed from one of its bodies,
+//! - when a body or shape whose fat box overlaps one of theirs is moved by hand, changed or removed,
+//! - when gravity changes.
+//!
+//! Bodies that touch, or are joined to, a moving kinematic body do not become sleepy.
+
+mod sleep;
+mod wake;
+
+pub(crate) use sleep::{put_to_sleep, sleep_calm_sets, unite, unite_connected, unite_touching};
+pub(crate) use wake::{
+    joints_changed, wake_body, wake_island, wake_joined, wake_overlapping, wake_overlapping_shape,
+};

@@ -1,0 +1,95 @@
+//! Finding islands and putting them to sleep.
+
+use alloc::vec::Vec;
+
+use crate::body::Handle;
+use crate::collision::Contact;
+use crate::math::{Fx, Vec2};
+use crate::world::cache::{Scratch, UnionFind, is_awake, merge_sorted};
+use crate::world::state::{Island, State};
+
+/// Puts a body to sleep with every awake body that contacts or joints connect it to.
+pub(crate) fn put_to_sleep(state: &mut State, scratch: &mut Scratch, slot: u32) {
+    scratch.awake.refresh(state);
+    unite_connected(state, scratch);
+    // Bodies that were woken since the last tick still have their contacts there.
+    unite_touching(state, &mut scratch.union, &state.resting);
+    let Scratch { awake, union, .. } = &mut *scratch;
+    let root = union.root(slot);
+    for &other in awake.bodies() {
+        if union.root(other) != root {
+            union.keep_awake(other);
+        }
+    }
+    sleep_calm_sets(state, scratch);
+}
+
+/// Unites the bodies of the awake set that contacts and joints of the last tick connect.
+pub(crate) fn unite_connected(state: &State, scratch: &mut Scratch) {
+    let Scratch { awake, union, .. } = scratch;
+    union.reset(awake.bodies(), state.bodies.slot_count());
+    for &joint in awake.joints() {
+        let (a, b) = state.joints.at(joint).def().bodies();
+        unite(state, union, a.slot(), b.slot());
+    }
+    unite_touching(state, union, &state.contacts);
+}
+
+/// Unites the bodies of every contact that has points.
+pub(crate) fn unite_touching(state: &State, union: &mut UnionFind, contacts: &[Contact]) {
+    for contact in contacts.iter().filter(|contact| contact.count > 0) {
+        let (a, b) = contact.shapes;
+        unite(state, union, state.shapes.at(a).body().slot(), state.shapes.at(b).body().slot());
+    }
+}
+
+/// Unites two bodies if both are dynamic and awake.
+pub(crate) fn unite(state: &State, union: &mut UnionFind, a: u32, b: u32) {
+    if is_awake(state.bodies.at(a)) && is_awake(state.bodies.at(b)) {
+        union.unite(a, b);
+    }
+}
+
+/// Makes a sleeping island of every set of bodies in the awake set that is not marked to stay awake.
+pub(crate) fn sleep_calm_sets(state: &mut State, scratch: &mut Scratch) {
+    let Scratch { awake, union, .. } = &mut *scratch;
+    let mut any = false;
+    for &slot in awake.bodies() {
+        let root = union.root(slot);
+        if union.stays_awake(root) {
+            continue;
+        }
+        // Slots are visited in order and the root is the smallest of its set, so that it has its island before the
+        // others.
+        let island = match state.bodies.at(root).island {
+            Some(island) => island,
+            None => state.islands.insert(Island { bodies: Vec::new() }),
+        };
+        state.islands.redefine(island.slot()).bodies.push(slot);
+        let body = state.bodies.at_mut(slot);
+        body.island = Some(island);
+        body.rest_ticks.reset();
+        body.stop();
+        (body.force, body.torque) = (Vec2::ZERO, Fx::ZERO);
+        any = true;
+    }
+    if any {
+        scratch.awake.invalidate();
+        // Fat boxes may have parted since the last pair update.
+        scratch.pairs.changes.resting_changed();
+        rest_contacts(state, scratch);
+    }
+}
+
+/// Moves the contacts without an active body to the resting ones, and drops their manifolds.
+fn rest_contacts(state: &mut State, scratch: &mut Scratch) {
+    let buffers = &mut scratch.pairs.buffers;
+    buffers.resting.clear();
+    let mut contacts = core::mem::take(&mut state.contacts);
+    scratch.contacts.split_off(&mut contacts, &mut buffers.resting, |contact| {
+        let (a, b) = state.bodies_of(contact.shapes);
+        a.is_active() || b.is_active()
+    });
+    state.contacts = contacts;
+    merge_sorted(&mut state.resting, &buffers.resting, &mut buffers.merged.contacts);
+}

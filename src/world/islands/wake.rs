@@ -1,0 +1,94 @@
+//! Waking bodies and islands.
+
+use alloc::vec::Vec;
+use core::ops::ControlFlow;
+
+use crate::body::{BodyId, BodyKind, Handle, IslandId};
+use crate::world::cache::Scratch;
+use crate::world::state::State;
+
+/// Wakes an island. Its resting contacts become active at the next pair update.
+pub(crate) fn wake_island(state: &mut State, scratch: &mut Scratch, island: IslandId) {
+    let Some(island) = state.islands.remove(island) else { return };
+    for slot in island.bodies {
+        let body = state.bodies.at_mut(slot);
+        body.island = None;
+        body.rest_ticks.reset();
+        scratch.pairs.changes.body_changed(body);
+    }
+    scratch.pairs.changes.resting_changed();
+    scratch.awake.invalidate();
+}
+
+/// Wakes a body with its island, and restarts its count of ticks at rest.
+pub(crate) fn wake_body(state: &mut State, scratch: &mut Scratch, slot: u32) {
+    let body = state.bodies.at_mut(slot);
+    let was_active = body.is_active();
+    body.rest_ticks.reset();
+    match body.island {
+        Some(island) => wake_island(state, scratch, island),
+        None if body.is_active() && !was_active => {
+            scratch.pairs.changes.body_changed(body);
+            scratch.pairs.changes.resting_changed();
+        }
+        None => {}
+    }
+}
+
+/// Wakes a body and every body with a shape whose fat box overlaps one of its own: for a body that is about to change
+/// or has just changed.
+pub(crate) fn wake_overlapping(state: &mut State, scratch: &mut Scratch, slot: u32) {
+    wake_body(state, scratch, slot);
+    for index in 0..state.bodies.at(slot).shapes().len() {
+        let shape = state.bodies.at(slot).shapes()[index];
+        wake_overlapping_shape(state, scratch, shape.slot());
+    }
+}
+
+/// Wakes every body with a shape whose fat box overlaps that of a shape.
+pub(crate) fn wake_overlapping_shape(state: &mut State, scratch: &mut Scratch, shape: u32) {
+    // Only sleeping bodies and kinematic bodies at rest can be woken. A world that is being set up mostly has neither,
+    // but may have many overlapping shapes.
+    if state.islands.len() == 0 && !scratch.awake.may_have_kinematic() {
+        return;
+    }
+    let mut neighbours = Vec::new();
+    scratch.shapes.broad_phase().each_overlap(state.shapes.at(shape).fat, |other| {
+        let slot = state.shapes.at(other).body().slot();
+        let body = state.bodies.at(slot);
+        if body.kind() != BodyKind::Fixed && !body.is_active() {
+            neighbours.push(slot);
+        }
+        ControlFlow::Continue(())
+    });
+    // The broad phase visits boxes in no defined order.
+    neighbours.sort_unstable();
+    for body in neighbours {
+        wake_body(state, scratch, body);
+    }
+}
+
+/// Wakes the bodies that are joined to a body.
+pub(crate) fn wake_joined(state: &mut State, scratch: &mut Scratch, id: BodyId) {
+    if state.islands.len() == 0 {
+        return;
+    }
+    for joint in scratch.joint_links.of(state, id) {
+        let (a, b) = state.joints.at(joint.slot()).def().bodies();
+        for body in [a, b] {
+            wake_body(state, scratch, body.slot());
+        }
+    }
+}
+
+/// Wakes two bodies between which a joint was added, removed or redefined, and lets the next pair update check whether
+/// their shapes may collide.
+pub(crate) fn joints_changed(state: &mut State, scratch: &mut Scratch, bodies: [BodyId; 2]) {
+    for id in bodies {
+        wake_body(state, scratch, id.slot());
+        scratch.pairs.changes.body_changed(state.bodies.at(id.slot()));
+    }
+    scratch.pairs.changes.rules_changed();
+    scratch.pairs.non_colliding.invalidate();
+    scratch.awake.invalidate();
+}

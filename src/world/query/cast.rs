@@ -1,0 +1,185 @@
+//! Rays and shape casts.
+
+use alloc::vec::Vec;
+
+use super::{Probe, QueryFilter, SLACK};
+use crate::body::ShapeId;
+use crate::collision::{Core, Fraction, ShapeHit, cast_ray, cast_shape};
+use crate::fx;
+use crate::math::{Aabb, Fx, Unit, Vec2, saturate};
+use crate::world::World;
+
+/// Where a ray meets a shape.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RayHit {
+    /// The shape.
+    pub shape: ShapeId,
+    /// Fraction of the ray's translation, 0 to 1.
+    pub fraction: Fx,
+    /// Point in the world, in metres.
+    pub point: Vec2<Fx>,
+    /// Outward normal of the surface. Zero if the ray starts inside the shape.
+    pub normal: Vec2<Unit>,
+}
+
+/// Where a moving shape meets another shape.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CastHit {
+    /// The shape that is met.
+    pub shape: ShapeId,
+    /// Fraction of the translation, 0 to 1.
+    pub fraction: Fx,
+    /// Displacement up to the hit, in metres.
+    pub travelled: Vec2<Fx>,
+    /// Point on the surface that is met, in the world, in metres.
+    pub point: Vec2<Fx>,
+    /// Outward normal of that surface.
+    pub normal: Vec2<Unit>,
+}
+
+impl World {
+    /// Returns the first shape that a ray meets, from a point along a translation in metres. Chain links that are solid
+    /// from one side let rays from the other side pass. One-way shapes let none pass.
+    ///
+    /// ```
+    /// use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, fx, math::Vec2, world::World};
+    /// let mut world = World::default();
+    /// let wall = ShapeDef::new(Polygon::rectangle(fx!(1), fx!(1))?);
+    /// world.spawn(&BodyDef::fixed().position(fx!(5), fx!(0)), &[wall])?;
+    /// let (eye, sight) = (Vec2::new(fx!(0), fx!(0)), Vec2::new(fx!(8), fx!(0)));
+    /// let hit = world.cast_ray(eye, sight, Default::default()).expect("a wall");
+    /// assert_eq!((hit.fraction, hit.point.x), (fx!(0.5), fx!(4)));
+    /// # Ok::<(), lockstep2d::body::WorldError>(())
+    /// ```
+    #[must_use]
+    #[doc(alias = "raycast")]
+    #[doc(alias = "ray_cast_closest")]
+    pub fn cast_ray(&self, origin: Vec2<Fx>, translation: Vec2<Fx>, filter: QueryFilter) -> Option<RayHit> {
+        let mut closest: Option<Ordered<RayHit>> = None;
+        self.each_hit(origin, translation, filter, |found| {
+            let best = earlier(closest, found, found.hit.shape, |best| best.shape);
+            closest = Some(best);
+            rounded_up(best.hit.fraction)
+        });
+        closest.map(|found| found.hit)
+    }
+
+    /// Returns every shape that a ray meets, in order along the ray.
+    #[must_use]
+    #[doc(alias = "raycast")]
+    pub fn cast_ray_all(&self, origin: Vec2<Fx>, translation: Vec2<Fx>, filter: QueryFilter) -> Vec<RayHit> {
+        let mut hits = Vec::new();
+        self.each_hit(origin, translation, filter, |hit| {
+            hits.push(hit);
+            Unit::ONE
+        });
+        hits.sort_unstable_by_key(|found: &Ordered<RayHit>| (found.order, found.hit.shape));
+        hits.into_iter().map(|found| found.hit).collect()
+    }
+
+    /// Whether a ray meets any shape. Cheaper than [`World::cast_ray`].
+    #[must_use]
+    #[doc(alias = "raycast")]
+    #[doc(alias = "line_of_sight")]
+    pub fn cast_ray_any(&self, origin: Vec2<Fx>, translation: Vec2<Fx>, filter: QueryFilter) -> bool {
+        let mut any = false;
+        self.each_hit(origin, translation, filter, |_| {
+            any = true;
+            Unit::ZERO
+        });
+        any
+    }
+
+    /// Returns the first shape that a probe meets as it moves along a translation in metres without rotation. The probe
+    /// stops 0.1 mm before it touches. A shape that it touches at the start stops it only if it moves into that shape.
+    /// A chain link that is solid from one side is met only by probes whose middle is on that side.
+    #[must_use]
+    #[doc(alias = "shapecast")]
+    #[doc(alias = "sweep test")]
+    pub fn cast_shape(&self, probe: &Probe, translation: Vec2<Fx>, filter: QueryFilter) -> Option<CastHit> {
+        self.first_along(probe, translation, filter, |_, _, _| true)
+    }
+
+    /// Returns the first shape that a probe meets among those for which `accept` holds. `accept` gets the shape, the
+    /// normal of the hit, and the two shapes at the start of the cast about the probe's position, the other shape
+    /// first.
+    pub(super) fn first_along(
+        &self,
+        probe: &Probe,
+        translation: Vec2<Fx>,
+        filter: QueryFilter,
+        accept: impl Fn(ShapeId, Vec2<Unit>, [&Core; 2]) -> bool,
+    ) -> Option<CastHit> {
+        let posed = probe.posed();
+        let origin = probe.position();
+        let moving = Core::of(&posed, origin);
+        let middle = origin + moving.middle();
+        let area = posed.bounds.expanded(fx!(0.001));
+        let mut closest: Option<Ordered<CastHit>> = None;
+        let mut interest = Unit::ONE;
+        self.scratch.shapes.broad_phase().each_along(area, translation, |slot| {
+            let posed = self.scratch.shapes.poses().at(slot);
+            let Some(shape) = self.seen(slot, filter).filter(|_| posed.is_solid_from(middle)) else {
+                return interest;
+            };
+            let other = Core::of(posed, origin);
+            let found = cast_shape(&other, &moving, translation)
+                .filter(|hit| accept(shape, hit.normal, [&other, &moving]));
+            if let Some(ShapeHit { fraction, order, travelled, point, normal }) = found {
+                let hit = CastHit { shape, fraction, travelled, point: origin + point, normal };
+                let best = earlier(closest, Ordered { order, hit }, shape, |best| best.shape);
+                closest = Some(best);
+                interest = rounded_up(best.hit.fraction);
+            }
+            interest
+        });
+        closest.map(|found| found.hit)
+    }
+
+    /// Calls `visit` with every hit of a ray, in no defined order. `visit` returns the fraction of the ray up to which
+    /// further hits are of interest.
+    fn each_hit(
+        &self,
+        origin: Vec2<Fx>,
+        translation: Vec2<Fx>,
+        filter: QueryFilter,
+        mut visit: impl FnMut(Ordered<RayHit>) -> Unit,
+    ) {
+        let mut interest = Unit::ONE;
+        let area = Aabb::new(origin, origin).expanded(SLACK);
+        self.scratch.shapes.broad_phase().each_along(area, translation, |slot| {
+            let posed = self.scratch.shapes.poses().at(slot);
+            if let Some(shape) = self.seen(slot, filter).filter(|_| posed.is_solid_from(origin)) {
+                let core = Core::of(posed, origin);
+                if let Some(hit) = cast_ray(&core, Vec2::ZERO, translation) {
+                    let (fraction, point, normal) = (hit.fraction, origin + hit.point, hit.normal);
+                    let (order, hit) = (hit.order, RayHit { shape, fraction, point, normal });
+                    interest = visit(Ordered { order, hit });
+                }
+            }
+            interest
+        });
+    }
+}
+
+/// A hit with its exact fraction, which has more digits than the public one.
+#[derive(Clone, Copy)]
+struct Ordered<H> {
+    order: Fraction,
+    hit: H,
+}
+
+/// Returns the earlier of two hits; of simultaneous ones that on the shape in the smaller slot.
+fn earlier<H: Copy>(
+    best: Option<Ordered<H>>,
+    found: Ordered<H>,
+    shape: ShapeId,
+    shape_of: impl Fn(&H) -> ShapeId,
+) -> Ordered<H> {
+    best.filter(|best| (best.order, shape_of(&best.hit)) <= (found.order, shape)).unwrap_or(found)
+}
+
+/// Converts a fraction to the format of the broad phase, rounded up so that no hit at the same fraction is missed.
+fn rounded_up(fraction: Fx) -> Unit {
+    Unit::from_bits(saturate((fraction.to_bits() >> 2) + 1)).min(Unit::ONE)
+}

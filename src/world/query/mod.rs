@@ -1,0 +1,77 @@
+//! Queries: where the shapes of a world are, between ticks. A query changes nothing, sees every enabled body at its
+//! current pose, and allocates nothing but its list of results.
+//!
+//! The order of results is part of the contract. Along a ray or a cast, results are ordered by their exact fraction
+//! before rounding, so that the nearer of two comes first on a ray of any length, and then by slot. All other results
+//! are in slot order.
+
+mod cast;
+mod character;
+mod mover_planes;
+mod overlap;
+mod probe;
+
+pub use cast::{CastHit, RayHit};
+pub use character::{Moved, Mover, MoverState};
+pub use mover_planes::{MoverPlane, clip_velocity, solve_planes};
+pub use overlap::Proximity;
+pub use probe::Probe;
+
+use super::World;
+use crate::body::{BodyId, Handle, ShapeId};
+use crate::fx;
+use crate::math::Fx;
+
+/// Largest distance in metres by which a shape can be found outside of its box, because queries round to a grid.
+const SLACK: Fx = fx!(0.000001);
+
+/// Which shapes a query sees: those whose filter accepts that of the query and is accepted by it.
+///
+/// ```
+/// use lockstep2d::world::QueryFilter;
+/// let solid = QueryFilter::default();
+/// let walls_only = QueryFilter { mask: 0b10, ..QueryFilter::default() };
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct QueryFilter {
+    /// Categories that the query belongs to.
+    pub category: u64,
+    /// Categories that the query sees.
+    pub mask: u64,
+    /// Whether the query sees sensors.
+    pub sensors: bool,
+    /// A body that the query does not see: usually the one that asks.
+    pub except: Option<BodyId>,
+}
+
+impl Default for QueryFilter {
+    /// Sees everything except sensors.
+    fn default() -> Self {
+        QueryFilter { category: u64::MAX, mask: u64::MAX, sensors: false, except: None }
+    }
+}
+
+impl QueryFilter {
+    /// Leaves out a body.
+    #[must_use]
+    pub const fn except(mut self, body: BodyId) -> Self {
+        self.except = Some(body);
+        self
+    }
+}
+
+impl World {
+    /// Whether a shape is in the world, on an enabled body.
+    fn is_present(&self, id: ShapeId) -> bool {
+        self.state.shapes.get(id).is_some() && self.state.body_of(id.slot()).enabled
+    }
+
+    /// Returns the handle of the shape in a slot if the query sees it.
+    fn seen(&self, slot: u32, filter: QueryFilter) -> Option<ShapeId> {
+        let shape = self.state.shapes.at(slot);
+        let accepted =
+            shape.filter().mask & filter.category != 0 && shape.filter().category & filter.mask != 0;
+        let wanted = (filter.sensors || !shape.is_sensor()) && filter.except != Some(shape.body());
+        (accepted && wanted).then(|| self.state.shapes.handle_at(slot))
+    }
+}

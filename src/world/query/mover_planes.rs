@@ -1,0 +1,326 @@
+//! Movement against planes: the surfaces near a shape that the game moves, as half-planes, and the translation that
+//! they allow.
+//!
+//! ```text
+//! minimise |x - target|²   subject to   s_i + n_i . x >= 0
+//! ```
+//!
+//! In two dimensions this takes few divisions. A plane with a limited push is soft: the mover may enter it. With soft
+//! planes the planes push along their normals in turn until nothing moves any more. A later push of a plane may reduce
+//! its accumulated push, but not below 0 (C. Hildreth, "A Quadratic Programming Procedure", 1957), as in Box2D v3's
+//! `b2SolvePlanes`.
+
+use alloc::vec::Vec;
+
+use serde::{Deserialize, Serialize};
+
+use super::overlap::{Proximity, proximity};
+use super::{Probe, QueryFilter};
+use crate::body::ShapeId;
+use crate::collision::Core;
+use crate::fx;
+use crate::math::{Fx, Unit, Vec2, fx_div};
+use crate::world::World;
+
+/// Largest number of rounds in which planes push in turn.
+const ITERATIONS_MAX: u32 = 64;
+
+/// The planes are solved when the pushes of a round change by less than this in total, in metres.
+const TOLERANCE: Fx = fx!(0.000001);
+
+/// Planes count as parallel if the sine of the angle between them is below this.
+const PARALLEL: Fx = fx!(0.000001);
+
+/// A surface near a mover, as a plane.
+#[doc(alias = "collision plane")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct MoverPlane {
+    /// The shape that the surface belongs to.
+    pub shape: ShapeId,
+    /// Outward normal, towards the mover.
+    pub normal: Vec2<Unit>,
+    /// Distance of the mover from the surface in metres, negative if they overlap.
+    pub separation: Fx,
+    /// Nearest point on the surface, in the world, in metres.
+    pub point: Vec2<Fx>,
+    /// Largest push in metres: [`Fx::MAX`] if the plane is rigid.
+    pub push_limit: Fx,
+    /// Push along the normal in metres, a result of [`solve_planes`]: 0 if the plane does not limit the translation.
+    pub push: Fx,
+}
+
+impl World {
+    /// Returns every shape within a distance in metres of a probe as a plane, in slot order. Chain links that are solid
+    /// from one side are left out if the probe's middle is on the other side. Empty if the distance is negative.
+    ///
+    /// ```
+    /// use lockstep2d::body::{BodyDef, Geometry, Polygon, ShapeDef};
+    /// use lockstep2d::world::{Probe, World, clip_velocity, solve_planes};
+    /// use lockstep2d::{fx, math::Vec2};
+    /// let mut world = World::default();
+    /// let floor = ShapeDef::new(Polygon::rectangle(fx!(9), fx!(1))?);
+    /// world.spawn(&BodyDef::fixed().position(fx!(0), fx!(-1)), &[floor])?;
+    ///
+    /// let ball = Probe::new(Geometry::circle(fx!(0.5))?, Vec2::new(fx!(0), fx!(0.75)))?;
+    /// let mut planes = world.collide_mover(&ball, fx!(1), Default::default());
+    /// let translation = solve_planes(Vec2::new(fx!(1), fx!(-1)), &mut planes);
+    /// assert_eq!(translation, Vec2::new(fx!(1), fx!(-0.25)));
+    /// let velocity = clip_velocity(Vec2::new(fx!(3), fx!(-5)), &planes);
+    /// assert_eq!(velocity, Vec2::new(fx!(3), fx!(0)));
+    /// # Ok::<(), lockstep2d::body::WorldError>(())
+    /// ```
+    #[must_use]
+    pub fn collide_mover(&self, probe: &Probe, within: Fx, filter: QueryFilter) -> Vec<MoverPlane> {
+        let posed = probe.posed();
+        let origin = probe.position();
+        let core = Core::of(&posed, origin);
+        let middle = origin + core.middle();
+        let mut planes: Vec<MoverPlane> = Vec::new();
+        if within < Fx::ZERO {
+            return planes;
+        }
+        self.each_overlapping(posed.bounds.expanded(within), filter, |shape, other| {
+            let Proximity { distance, normal, point_a, .. } =
+                proximity(&Core::of(other, origin), &core, origin);
+            if distance <= within && other.is_solid_from(middle) {
+                let (separation, point) = (distance, point_a);
+                let (push_limit, push) = (Fx::MAX, Fx::ZERO);
+                planes.push(MoverPlane { shape, normal, separation, point, push_limit, push });
+            }
+        });
+        planes.sort_unstable_by_key(|plane| plane.shape);
+        planes
+    }
+}
+
+/// Returns the translation in metres that is nearest to a wanted one and stays outside of all planes. Sets each plane's
+/// `push`.
+///
+/// If all planes are rigid and leave room, the result is exact except for rounding. If some are soft, or there is no
+/// room, the planes push in turn. A round reduces the error of two planes with normals `n` and `m` to `(n . m)²` of it,
+/// so that 64 rounds are enough if their normals are 25 degrees or more apart. In a sharper corner, or between two
+/// walls, the result may lie inside a plane: follow it with a cast, as [`World::move_character`] does.
+#[must_use]
+pub fn solve_planes(wanted: Vec2<Fx>, planes: &mut [MoverPlane]) -> Vec2<Fx> {
+    match nearest_outside(wanted, planes) {
+        Some(translation) => {
+            let out = translation - wanted;
+            for plane in planes {
+                let reached = plane.height(translation) <= TOLERANCE;
+                let push = plane.normal.widen().dot(out).max(Fx::ZERO);
+                plane.push = if reached { push } else { Fx::ZERO };
+            }
+            translation
+        }
+        None => pushed_in_turn(wanted, planes),
+    }
+}
+
+impl MoverPlane {
+    /// The separation in metres after a translation.
+    fn height(&self, translation: Vec2<Fx>) -> Fx {
+        self.separation.saturating_add(self.normal.widen().dot(translation))
+    }
+}
+
+/// The nearest point outside of rigid planes. Planes are added one by one: if the point so far is behind the new plane,
+/// the next point is on that plane (R. Seidel, "Small-Dimensional Linear Programming and Convex Hulls Made Easy",
+/// 1991). `None` if a plane is soft, or if no point is outside of all planes.
+fn nearest_outside(wanted: Vec2<Fx>, planes: &[MoverPlane]) -> Option<Vec2<Fx>> {
+    if planes.iter().any(|plane| plane.push_limit != Fx::MAX) {
+        return None;
+    }
+    let mut nearest = wanted;
+    for (i, plane) in planes.iter().enumerate() {
+        if plane.height(nearest) >= Fx::ZERO {
+            continue;
+        }
+        // The points of the plane are p + t d.
+        let n = plane.normal.widen();
+        let (p, d) = (wanted - n.scale(plane.height(wanted)), n.perp());
+        let (mut t_min, mut t_max) = (Fx::MIN, Fx::MAX);
+        for other in &planes[..i] {
+            let (height, slope) = (other.height(p), other.normal.widen().dot(d));
+            if slope.abs() < PARALLEL {
+                if height < -TOLERANCE {
+                    return None;
+                }
+                continue;
+            }
+            let t = fx_div(height.saturating_neg(), slope)?;
+            (t_min, t_max) = if slope > 0 { (t_min.max(t), t_max) } else { (t_min, t_max.min(t)) };
+        }
+        if t_min > t_max {
+            return None;
+        }
+        nearest = p + d.scale(Fx::ZERO.clamp(t_min, t_max));
+    }
+    Some(nearest)
+}
+
+/// The translation after planes have pushed in turn, each within its limit.
+fn pushed_in_turn(wanted: Vec2<Fx>, planes: &mut [MoverPlane]) -> Vec2<Fx> {
+    let mut translation = wanted;
+    for plane in &mut *planes {
+        plane.push = Fx::ZERO;
+    }
+    for _ in 0..ITERATIONS_MAX {
+        let mut moved = Fx::ZERO;
+        for plane in &mut *planes {
+            let wanted = plane.push.saturating_sub(plane.height(translation));
+            let push = wanted.min(plane.push_limit).max(Fx::ZERO);
+            let change = push - plane.push;
+            plane.push = push;
+            translation += plane.normal.widen().scale(change);
+            moved = moved.saturating_add(change.saturating_abs());
+        }
+        if moved < TOLERANCE {
+            break;
+        }
+    }
+    translation
+}
+
+/// Returns the velocity nearest to a given one that does not enter any rigid plane that has pushed. Unlike Box2D's
+/// `b2ClipVector` it does not depend on the order of the planes.
+#[must_use]
+pub fn clip_velocity(velocity: Vec2<Fx>, planes: &[MoverPlane]) -> Vec2<Fx> {
+    let rigid = planes.iter().filter(|plane| plane.push > Fx::ZERO && plane.push_limit == Fx::MAX);
+    clipped(velocity, rigid.map(|plane| plane.normal))
+}
+
+/// The vector nearest to `v` with no component against any of the normals. Such vectors form a cone, so that the result
+/// is `v` itself, its projection on one of the cone's two borders, or zero.
+pub(super) fn clipped(v: Vec2<Fx>, normals: impl Iterator<Item = Vec2<Unit>> + Clone) -> Vec2<Fx> {
+    // A projected vector keeps a component along the normal, because the normal is rounded.
+    let size = v.x.saturating_abs().max(v.y.saturating_abs());
+    let rounding = (size >> 26_u32) + Fx::DELTA * 4;
+    let is_free = |w: Vec2<Fx>| normals.clone().all(|n| n.widen().dot(w) >= -rounding);
+    if is_free(v) {
+        return v;
+    }
+    let across = |n: Vec2<Unit>| v - n.widen().scale(n.widen().dot(v));
+    let against = normals.clone().filter(|n| n.widen().dot(v) < -rounding);
+    against.map(across).filter(|&w| is_free(w)).max_by_key(|w| w.length()).unwrap_or(Vec2::ZERO)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::body::Handle;
+    use crate::math::{Angle, Rng, Rot};
+
+    fn plane(normal: Vec2<Unit>, separation: Fx) -> MoverPlane {
+        let (shape, point) = (ShapeId::from_parts(0, 0), Vec2::ZERO);
+        MoverPlane { shape, normal, separation, point, push_limit: Fx::MAX, push: Fx::ZERO }
+    }
+
+    /// Oracle: the nearest point outside of all planes is the target, its projection on one plane, or the intersection
+    /// of two.
+    fn nearest(target: Vec2<Fx>, planes: &[MoverPlane], slack: Fx) -> Option<Vec2<Fx>> {
+        let height = |plane: &MoverPlane, x: Vec2<Fx>| plane.separation + plane.normal.widen().dot(x);
+        let mut candidates = alloc::vec![target];
+        for p in planes {
+            candidates.push(target - p.normal.widen().scale(height(p, target)));
+            for q in planes {
+                let (n, m) = (p.normal.widen(), q.normal.widen());
+                let meet = crate::math::Mat2::new(n.x, n.y, m.x, m.y);
+                if meet.determinant().abs() > fx!(0.00001) {
+                    let inverse = meet.inverse().expect("not parallel");
+                    candidates.push(inverse.apply(Vec2::new(-p.separation, -q.separation)));
+                }
+            }
+        }
+        let outside = |x: &Vec2<Fx>| planes.iter().all(|plane| height(plane, *x) >= -slack);
+        candidates.into_iter().filter(outside).min_by_key(|x| x.distance(target))
+    }
+
+    /// `count` random normals, each `apart` to `apart + 25` degrees from the one before.
+    fn fan(rng: &mut Rng, count: u32, apart: i64) -> Vec<Vec2<Unit>> {
+        let mut turn = rng.angle();
+        let mut normals = Vec::new();
+        for _ in 0..count {
+            normals.push(Rot::from_angle(turn).apply(Vec2::X));
+            turn += Angle::from_degrees(Fx::from_num(apart) + rng.range(fx!(0), fx!(25)));
+        }
+        normals
+    }
+
+    #[test]
+    fn the_solved_translation_is_the_nearest_one_outside() {
+        let mut rng = Rng::new(1);
+        let (mut worst, mut exact) = (Fx::ZERO, 0);
+        for _ in 0..5000 {
+            let count = 1 + rng.below(5);
+            let mut planes: Vec<_> =
+                fan(&mut rng, count, 1).iter().map(|&n| plane(n, rng.range(fx!(-0.1), fx!(0.5)))).collect();
+            let target = Vec2::new(rng.range(fx!(-1), fx!(1)), rng.range(fx!(-1), fx!(1)));
+            let found = solve_planes(target, &mut planes);
+            let least = planes.iter().map(|plane| plane.height(found)).min().expect("planes");
+            assert!(least > fx!(-0.0000001), "{least} {target:?} {planes:?}");
+            // The oracle's slack moves the intersection of nearly parallel planes further.
+            let expected = nearest(target, &planes, fx!(0.00000001)).expect("the planes leave room");
+            worst = worst.max(found.distance(target) - expected.distance(target));
+            assert!(worst < fx!(0.000001), "{found:?} {expected:?} {target:?} {planes:?}");
+            exact += 1;
+        }
+        assert_eq!(exact, 5000);
+    }
+
+    /// Compares rigid planes with the same planes under a limit that no push reaches.
+    #[test]
+    fn planes_that_push_in_turn_get_there_too() {
+        let mut rng = Rng::new(2);
+        for _ in 0..5000 {
+            let mut planes: Vec<_> =
+                fan(&mut rng, 2, 25).iter().map(|&n| plane(n, rng.range(fx!(-0.1), fx!(0.5)))).collect();
+            let target = Vec2::new(rng.range(fx!(-1), fx!(1)), rng.range(fx!(-1), fx!(1)));
+            let exact = solve_planes(target, &mut planes);
+            planes.iter_mut().for_each(|plane| plane.push_limit = fx!(100));
+            let found = solve_planes(target, &mut planes);
+            assert!(found.distance(exact) < fx!(0.00002), "{found:?} {exact:?} {target:?} {planes:?}");
+        }
+    }
+
+    #[test]
+    fn a_clipped_velocity_is_the_nearest_that_is_free() {
+        let mut rng = Rng::new(3);
+        for _ in 0..5000 {
+            let mut normals = fan(&mut rng, 3, 5);
+            let velocity = Vec2::new(rng.range(fx!(-9), fx!(9)), rng.range(fx!(-9), fx!(9)));
+            let found = clipped(velocity, normals.iter().copied());
+            let still: Vec<_> = normals.iter().map(|&n| plane(n, Fx::ZERO)).collect();
+            let expected = nearest(velocity, &still, fx!(0.000001)).expect("zero is free");
+            let further = found.distance(velocity) - expected.distance(velocity);
+            assert!(further.abs() < fx!(0.00001), "{found:?} {expected:?} {still:?}");
+            assert!(still.iter().all(|plane| plane.height(found) > fx!(-0.000001)), "{found:?} {still:?}");
+            normals.reverse();
+            assert_eq!(clipped(velocity, normals.iter().copied()), found);
+        }
+    }
+
+    #[test]
+    fn soft_planes_give_way() {
+        let mut planes = [plane(Vec2::Y, Fx::ZERO)];
+        planes[0].push_limit = fx!(0.25);
+        assert_eq!(solve_planes(Vec2::new(fx!(1), fx!(-1)), &mut planes), Vec2::new(fx!(1), fx!(-0.75)));
+        assert_eq!(planes[0].push, fx!(0.25));
+        let velocity = Vec2::new(fx!(1), fx!(-1));
+        assert_eq!(clip_velocity(velocity, &planes), velocity);
+    }
+
+    #[test]
+    fn extreme_planes_do_not_panic() {
+        let extremes = [Fx::MIN, Fx::MAX, Fx::ZERO, -Fx::DELTA];
+        for a in extremes {
+            for b in extremes {
+                for limit in extremes {
+                    let mut planes = [plane(Vec2::X, a), plane(-Vec2::X, b), plane(Vec2::Y, a)];
+                    planes[1].push_limit = limit;
+                    let _ = solve_planes(Vec2::new(b, a), &mut planes);
+                    let _ = clip_velocity(Vec2::new(b, a), &planes);
+                }
+            }
+        }
+    }
+}

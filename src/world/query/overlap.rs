@@ -1,0 +1,150 @@
+//! Overlaps, nearest shapes and distances.
+
+use alloc::vec::Vec;
+use core::ops::ControlFlow;
+
+use super::{Probe, QueryFilter, SLACK};
+use crate::body::{Handle, ShapeId};
+use crate::collision::{Core, PosedShape, contains_point, distance, overlap};
+use crate::math::{Aabb, Fx, Unit, Vec2};
+use crate::world::World;
+
+/// The nearest points of two shapes, or of a shape and a point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Proximity {
+    /// Distance between the surfaces in metres. If the shapes overlap it is negative: the displacement that separates
+    /// them.
+    pub distance: Fx,
+    /// Point on the first surface, in the world, in metres.
+    pub point_a: Vec2<Fx>,
+    /// Point on the second surface, in the world, in metres.
+    pub point_b: Vec2<Fx>,
+    /// Unit vector from the first shape to the second.
+    pub normal: Vec2<Unit>,
+}
+
+impl World {
+    /// Returns every shape that overlaps a box, borders included. Empty if the box is not valid.
+    #[must_use]
+    #[doc(alias = "overlap_aabb")]
+    pub fn overlap_box(&self, area: Aabb, filter: QueryFilter) -> Vec<ShapeId> {
+        if !area.is_valid() {
+            return Vec::new();
+        }
+        let origin = area.centre();
+        let (lower, upper) = (area.lower - origin, area.upper - origin);
+        let corners = [lower, Vec2::new(upper.x, lower.y), upper, Vec2::new(lower.x, upper.y)];
+        let core = Core::from_points(corners, Fx::ZERO);
+        self.overlapping(area, filter, |posed| overlap(&Core::of(posed, origin), &core))
+    }
+
+    /// Returns every shape that overlaps a probe, borders included.
+    #[must_use]
+    pub fn overlap_shape(&self, probe: &Probe, filter: QueryFilter) -> Vec<ShapeId> {
+        let posed = probe.posed();
+        let origin = probe.position();
+        let core = Core::of(&posed, origin);
+        self.overlapping(posed.bounds, filter, |other| overlap(&Core::of(other, origin), &core))
+    }
+
+    /// Returns every shape that contains a point in the world, in metres, borders included.
+    #[must_use]
+    #[doc(alias = "point test")]
+    #[doc(alias = "pick")]
+    pub fn overlap_point(&self, point: Vec2<Fx>, filter: QueryFilter) -> Vec<ShapeId> {
+        self.overlapping(Aabb::new(point, point), filter, |posed| {
+            contains_point(&Core::of(posed, point), Vec2::ZERO)
+        })
+    }
+
+    /// Returns the shape nearest to a point, at most `within` metres away, and the nearest points, that of the query
+    /// first. A point inside a shape has a negative distance from it. `None` if `within` is negative; [`Fx::MAX`] finds
+    /// every shape.
+    #[must_use]
+    #[doc(alias = "nearest")]
+    pub fn closest(&self, point: Vec2<Fx>, within: Fx, filter: QueryFilter) -> Option<(ShapeId, Proximity)> {
+        if within < Fx::ZERO {
+            return None;
+        }
+        let here = Core::point(Vec2::ZERO);
+        let mut closest: Option<(ShapeId, Proximity)> = None;
+        self.scratch.shapes.broad_phase().each_near(point, within.saturating_add(SLACK), |slot| {
+            if let Some(shape) = self.seen(slot, filter) {
+                let other = Core::of(self.scratch.shapes.poses().at(slot), point);
+                let found = proximity(&here, &other, point);
+                let is_nearer =
+                    |best: &(ShapeId, Proximity)| (found.distance, shape) < (best.1.distance, best.0);
+                if found.distance <= within && closest.as_ref().is_none_or(is_nearer) {
+                    closest = Some((shape, found));
+                }
+            }
+            // After a negative distance the search goes on at radius 0: the point may be deeper inside another shape.
+            closest.map_or(within, |(_, best)| best.distance.max(Fx::ZERO)).saturating_add(SLACK)
+        });
+        closest
+    }
+
+    /// Returns the distance between two shapes and their nearest points. `None` if one of them was removed or is
+    /// disabled.
+    #[must_use]
+    pub fn distance(&self, a: ShapeId, b: ShapeId) -> Option<Proximity> {
+        (self.is_present(a) && self.is_present(b)).then_some(())?;
+        let poses = self.scratch.shapes.poses();
+        let (posed_a, posed_b) = (poses.at(a.slot()), poses.at(b.slot()));
+        let origin = posed_a.centre;
+        Some(proximity(&Core::of(posed_a, origin), &Core::of(posed_b, origin), origin))
+    }
+
+    /// Returns the distance between a probe and a shape and their nearest points, that of the probe first. `None` if
+    /// the shape was removed or is disabled.
+    #[must_use]
+    pub fn probe_distance(&self, probe: &Probe, shape: ShapeId) -> Option<Proximity> {
+        self.is_present(shape).then_some(())?;
+        let origin = probe.position();
+        let other = Core::of(self.scratch.shapes.poses().at(shape.slot()), origin);
+        Some(proximity(&Core::of(&probe.posed(), origin), &other, origin))
+    }
+
+    /// Returns the shapes near an area for which `overlaps` holds, in slot order.
+    fn overlapping(
+        &self,
+        area: Aabb,
+        filter: QueryFilter,
+        overlaps: impl Fn(&PosedShape) -> bool,
+    ) -> Vec<ShapeId> {
+        let mut found = Vec::new();
+        self.each_overlapping(area, filter, |shape, posed| {
+            if overlaps(posed) {
+                found.push(shape);
+            }
+        });
+        found.sort_unstable();
+        found
+    }
+
+    /// Calls `visit` with every shape whose box overlaps an area, and possibly with some others, in no defined order.
+    pub(super) fn each_overlapping(
+        &self,
+        area: Aabb,
+        filter: QueryFilter,
+        mut visit: impl FnMut(ShapeId, &PosedShape),
+    ) {
+        self.scratch.shapes.broad_phase().each_overlap(area.expanded(SLACK), |slot| {
+            if let Some(shape) = self.seen(slot, filter) {
+                visit(shape, self.scratch.shapes.poses().at(slot));
+            }
+            ControlFlow::Continue(())
+        });
+    }
+}
+
+/// The nearest points in the world of two shapes that are given about an origin.
+pub(super) fn proximity(a: &Core, b: &Core, origin: Vec2<Fx>) -> Proximity {
+    let found = distance(a, b);
+    Proximity {
+        distance: found.distance,
+        point_a: origin + found.point_a,
+        point_b: origin + found.point_b,
+        normal: found.normal,
+    }
+}

@@ -1,0 +1,61 @@
+//! Probes: shapes that are not in the world, for queries.
+
+use crate::body::{Geometry, GeometryError};
+use crate::collision::PosedShape;
+use crate::math::{Angle, Fx, Rot, Vec2};
+
+/// A shape for a query: a geometry with a position and a rotation.
+///
+/// ```
+/// use lockstep2d::{body::Polygon, fx, math::{Angle, Vec2}, world::Probe};
+/// let crate_ = Probe::new(Polygon::square(fx!(0.5))?, Vec2::new(fx!(3), fx!(1)))?.turned(Angle::EIGHTH);
+/// assert_eq!(crate_.at(Vec2::ZERO).position(), Vec2::ZERO);
+/// # Ok::<(), lockstep2d::body::GeometryError>(())
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Probe {
+    position: Vec2<Fx>,
+    geometry: Geometry,
+    rotation: Rot,
+}
+
+impl Probe {
+    /// A geometry with its centre at a position in the world, in metres.
+    ///
+    /// # Errors
+    /// [`GeometryError`] if its size is out of range.
+    pub fn new(geometry: impl Into<Geometry>, position: Vec2<Fx>) -> Result<Self, GeometryError> {
+        let geometry = geometry.into();
+        geometry.validate()?;
+        Ok(Probe { position, geometry, rotation: Rot::IDENTITY })
+    }
+
+    /// A probe with a geometry that has been validated.
+    pub(super) const fn of(geometry: Geometry, position: Vec2<Fx>) -> Self {
+        Probe { position, geometry, rotation: Rot::IDENTITY }
+    }
+
+    /// Sets the rotation.
+    #[must_use]
+    pub fn turned(mut self, angle: Angle) -> Self {
+        self.rotation = Rot::from_angle(angle);
+        self
+    }
+
+    /// Sets the position in the world, in metres.
+    #[must_use]
+    pub fn at(mut self, position: Vec2<Fx>) -> Self {
+        self.position = position;
+        self
+    }
+
+    /// The position of its centre in the world, in metres.
+    #[must_use]
+    pub const fn position(&self) -> Vec2<Fx> {
+        self.position
+    }
+
+    pub(super) fn posed(&self) -> PosedShape {
+        PosedShape::of_geometry(&self.geometry, self.position, self.rotation)
+    }
+}

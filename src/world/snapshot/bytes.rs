@@ -1,0 +1,111 @@
+//! Worlds as bytes, for files and networks.
+
+use alloc::vec::Vec;
+use core::fmt;
+
+use super::validate::Violation;
+use crate::SEMANTICS;
+use crate::codec::DecodeError;
+use crate::hash::{Envelope, EnvelopeError};
+use crate::world::World;
+use crate::world::state::State;
+
+/// The first bytes of every world.
+const MAGIC: [u8; 8] = *b"LS2DWRLD";
+/// Version of the layout.
+const FORMAT: u32 = 2;
+const ENVELOPE: Envelope = Envelope { magic: MAGIC, format: FORMAT };
+
+/// Why bytes were refused as a world.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum SnapshotError {
+    /// They do not start with the magic of a world.
+    NotASnapshot,
+    /// The layout has another version.
+    Format {
+        /// The version found.
+        found: u32,
+    },
+    /// They were made by an engine with other semantics and would not continue bit-identically.
+    Semantics {
+        /// The semantics id found.
+        found: u32,
+    },
+    /// There are fewer or more bytes than the header announces.
+    Length {
+        /// Number of bytes that the header announces, including the header.
+        announced: u64,
+        /// Number of bytes found.
+        found: u64,
+    },
+    /// The hash at the end does not match the bytes before it.
+    Hash,
+    /// The state does not decode.
+    Decode(DecodeError),
+    /// The state decodes but breaks an invariant.
+    Invalid(Violation),
+}
+
+impl fmt::Display for SnapshotError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            SnapshotError::NotASnapshot => write!(f, "not the bytes of a world"),
+            SnapshotError::Format { found } => {
+                write!(f, "format version {found}, this engine reads {FORMAT}")
+            }
+            SnapshotError::Semantics { found } => {
+                write!(f, "made with semantics {found}, this engine has {SEMANTICS}")
+            }
+            SnapshotError::Length { announced, found } => {
+                write!(f, "{found} bytes where {announced} are announced")
+            }
+            SnapshotError::Hash => write!(f, "the hash does not match the bytes"),
+            SnapshotError::Decode(error) => error.fmt(f),
+            SnapshotError::Invalid(violation) => write!(f, "an impossible state: {violation}"),
+        }
+    }
+}
+
+impl core::error::Error for SnapshotError {}
+
+impl From<EnvelopeError> for SnapshotError {
+    fn from(error: EnvelopeError) -> Self {
+        match error {
+            EnvelopeError::Magic => SnapshotError::NotASnapshot,
+            EnvelopeError::Format { found } => SnapshotError::Format { found },
+            EnvelopeError::Length { announced, found } => SnapshotError::Length { announced, found },
+            EnvelopeError::Hash => SnapshotError::Hash,
+            EnvelopeError::Decode(error) => SnapshotError::Decode(error),
+        }
+    }
+}
+
+impl World {
+    /// Returns the state as portable bytes: header, canonical encoding, hash. `docs/FORMAT.md` has the layout.
+    #[must_use]
+    #[doc(alias = "serialize")]
+    pub fn to_bytes(&self) -> Vec<u8> {
+        state_to_bytes(self.state.get())
+    }
+
+    /// Returns the world that [`World::to_bytes`] has written. Safe for untrusted bytes: the memory used is bounded by
+    /// their number, and a state that breaks an invariant is refused.
+    ///
+    /// # Errors
+    /// [`SnapshotError`] for any bytes that [`World::to_bytes`] cannot have written.
+    #[doc(alias = "deserialize")]
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, SnapshotError> {
+        let opened = ENVELOPE.open(bytes)?;
+        if opened.semantics != SEMANTICS {
+            return Err(SnapshotError::Semantics { found: opened.semantics });
+        }
+        let state: State = opened.decode()?;
+        state.validate().map_err(SnapshotError::Invalid)?;
+        Ok(World::of(state, Default::default()))
+    }
+}
+
+/// [`World::to_bytes`] of a state.
+pub(super) fn state_to_bytes(state: &State) -> Vec<u8> {
+    ENVELOPE.seal(SEMANTICS, state)
+}

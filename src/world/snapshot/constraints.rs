@@ -1,0 +1,174 @@
+//! Packed contacts and joints: what a tick changes of them.
+//!
+//! Each contact takes 8 bytes, its head: shape A (30 bits), shape B (29 bits), touching, passing, number of points (2
+//! bits), whether it has impulses. A second buffer has 24 bytes for each contact with impulses: normal and tangential
+//! impulse of both points and the rolling impulse (5 x i32), features (2 x u16).
+//!
+//! Each joint takes one byte of flags, which tell which of its six impulses are not 0 and whether its turns take 8
+//! bytes, then these impulses (i32 each) and the turns (i32 or i64).
+
+use alloc::vec::Vec;
+
+use super::packing::{Fields, Reader, Record, Writer, low_half, put_records};
+use crate::body::{Arena, JointId};
+use crate::collision::{Contact, PointImpulse};
+use crate::math::Speed;
+use crate::solver::Joint;
+
+const HEAD_BYTES: usize = 8;
+const IMPULSES_BYTES: usize = 24;
+/// Largest size of a joint.
+const JOINT_BYTES: usize = 1 + 6 * 4 + 8;
+/// Flags and size of a joint with the two impulses of its anchor point and no others.
+const HINGE: u8 = 0b11_0000;
+const HINGE_BYTES: usize = 1 + 3 * 4;
+/// Flag for turns of 8 bytes.
+const MANY_TURNS: u8 = 1 << 6;
+/// Number of impulses of a joint.
+const JOINT_IMPULSES: u8 = 6;
+
+/// Replaces the content of the two buffers by packed contacts.
+pub(super) fn pack_contacts(contacts: &[Contact], heads: &mut Vec<u8>, impulses: &mut Vec<u8>) {
+    let mut impulses = Writer::new(impulses, contacts.len() * IMPULSES_BYTES);
+    put_records(heads, contacts.len(), contacts, |contact, record: &mut Record<'_, HEAD_BYTES>| {
+        record.put(head(contact));
+        if has_impulses(contact) {
+            impulses.record(|record: &mut Record<'_, IMPULSES_BYTES>| {
+                for point in &contact.points {
+                    record.put(point.normal.to_bits());
+                    record.put(point.tangent.to_bits());
+                }
+                record.put(contact.rolling.to_bits());
+                contact.points.iter().for_each(|point| record.put(point.feature));
+            });
+        }
+    });
+}
+
+fn has_impulses(contact: &Contact) -> bool {
+    contact.count != 0 || contact.rolling != 0
+}
+
+/// The head of a contact. Slots are below 2^21, so that they fit.
+fn head(contact: &Contact) -> u64 {
+    let (a, b) = contact.shapes;
+    u64::from(a) << 34
+        | u64::from(b) << 5
+        | u64::from(contact.touching) << 4
+        | u64::from(contact.passing) << 3
+        | u64::from(contact.count.min(3)) << 1
+        | u64::from(has_impulses(contact))
+}
+
+/// Replaces a list by the packed contacts.
+pub(super) fn unpack_contacts(contacts: &mut Vec<Contact>, heads: &[u8], impulses: &[u8]) {
+    let (mut heads, mut impulses) = (Reader(heads), Reader(impulses));
+    contacts.clear();
+    contacts.reserve(heads.0.len() / HEAD_BYTES);
+    while !heads.is_empty() {
+        contacts.push(unpack_contact(heads.record(), &mut impulses));
+    }
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "masked to the bits that were packed")]
+#[inline(always)]
+fn unpack_contact(mut head: Fields<'_, HEAD_BYTES>, impulses: &mut Reader<'_>) -> Contact {
+    let head: u64 = head.take();
+    let bits = |shift: u32, count: u32| head >> shift & ((1 << count) - 1);
+    let mut contact = Contact::new((bits(34, 30) as u32, bits(5, 29) as u32));
+    contact.touching = bits(4, 1) != 0;
+    contact.passing = bits(3, 1) != 0;
+    contact.count = bits(1, 2) as u8;
+    if bits(0, 1) != 0 {
+        let mut impulses: Fields<'_, IMPULSES_BYTES> = impulses.record();
+        for point in &mut contact.points {
+            let (normal, tangent) = (Speed::from_bits(impulses.take()), Speed::from_bits(impulses.take()));
+            *point = PointImpulse { feature: 0, normal, tangent };
+        }
+        contact.rolling = Speed::from_bits(impulses.take());
+        contact.points.iter_mut().for_each(|point| point.feature = impulses.take());
+    }
+    contact
+}
+
+/// A copy of a joint without what a tick changes.
+pub(super) fn lasting_joint(joint: &Joint) -> Joint {
+    Joint::new(*joint.def)
+}
+
+/// Replaces the content of a buffer by packed joints.
+pub(super) fn pack_joints(joints: &Arena<Joint, JointId>, bytes: &mut Vec<u8>) {
+    let mut writer = Writer::new(bytes, joints.len() * JOINT_BYTES);
+    for (_, joint) in joints.iter() {
+        if let Some((x, y, turns)) = plain_hinge(joint) {
+            writer.record(|record: &mut Record<'_, HINGE_BYTES>| {
+                record.put(HINGE);
+                [x, y, turns].into_iter().for_each(|word| record.put(word));
+            });
+            continue;
+        }
+        let mut there = 0;
+        // Each word is written, and overwritten by the next one if it is 0: branches here would be unpredictable.
+        let (mut words, mut count) = ([0i32; 8], 0);
+        for (place, impulse) in (0..JOINT_IMPULSES).zip(joint.impulses.0) {
+            let bits = impulse.to_bits();
+            words[count] = bits;
+            count += usize::from(bits != 0);
+            there |= u8::from(bits != 0) << place;
+        }
+        let [low, high] = halves(joint.turns);
+        words[count] = low;
+        count += 1;
+        if joint.turns != i64::from(low) {
+            there |= MANY_TURNS;
+            words[count] = high;
+            count += 1;
+        }
+        writer.record(|record: &mut Record<'_, JOINT_BYTES>| {
+            record.put(there);
+            words.into_iter().for_each(|word| record.put(word));
+            record.truncate(1 + count * size_of::<i32>());
+        });
+    }
+}
+
+/// The two impulses and the turns of a joint that is held at its anchor point and has no other impulses, as most
+/// joints.
+#[inline(always)]
+fn plain_hinge(joint: &Joint) -> Option<(i32, i32, i32)> {
+    let low = low_half(joint.turns);
+    match joint.impulses.0.map(Speed::to_bits) {
+        [0, 0, 0, 0, x, y] if x != 0 && y != 0 && joint.turns == i64::from(low) => Some((x, y, low)),
+        _ => None,
+    }
+}
+
+/// The low and the high 32 bits.
+fn halves(turns: i64) -> [i32; 2] {
+    [low_half(turns), low_half(turns >> u32::BITS)]
+}
+
+/// Restores what was packed of the joints.
+pub(super) fn unpack_joints(joints: &mut Arena<Joint, JointId>, bytes: &[u8]) {
+    let mut reader = Reader(bytes);
+    for (_, joint) in joints.iter_mut() {
+        let there: u8 = reader.record::<1>().take();
+        if there == HINGE {
+            let mut words: Fields<'_, { HINGE_BYTES - 1 }> = reader.record();
+            let (x, y) = (Speed::from_bits(words.take()), Speed::from_bits(words.take()));
+            joint.impulses.0 = [Speed::ZERO, Speed::ZERO, Speed::ZERO, Speed::ZERO, x, y];
+            joint.turns = i64::from(words.take::<i32>());
+            continue;
+        }
+        let mut word = || -> i32 { reader.record::<4>().take() };
+        for (place, impulse) in (0..JOINT_IMPULSES).zip(&mut joint.impulses.0) {
+            let some = there >> place & 1 != 0;
+            *impulse = if some { Speed::from_bits(word()) } else { Speed::ZERO };
+        }
+        let low = word();
+        joint.turns = i64::from(low);
+        if there & MANY_TURNS != 0 {
+            joint.turns = i64::from(word()) << 32 | (joint.turns & 0xffff_ffff);
+        }
+    }
+}

@@ -1,0 +1,32 @@
+//! Copies of the state: in memory for rollback, as bytes for files and networks, as digests for comparison, and as a
+//! readable view for reports.
+//!
+//! A snapshot has two parts. What every tick changes (poses, velocities, fat boxes, impulses) is packed into buffers,
+//! whose layout is in the heads of `bodies.rs` and `constraints.rs`. Everything else is copied in pages of 32 slots,
+//! which snapshots share as long as nothing in them changes (`body/arena/pages.rs`). Digests are taken over the same
+//! bytes, so that hashing a saved state costs no more than reading it once.
+
+mod bodies;
+mod bytes;
+mod constraints;
+mod digest;
+mod encoding;
+mod packing;
+mod phase_log;
+mod resting;
+mod restore;
+mod rollback;
+mod save;
+mod state_view;
+#[cfg(test)]
+mod tests;
+mod validate;
+
+pub use bytes::SnapshotError;
+pub(crate) use digest::HashedState;
+pub use digest::{Section, WorldDigest};
+pub use phase_log::PhaseDigest;
+pub(crate) use phase_log::PhaseLog;
+pub(crate) use resting::Resting;
+pub use rollback::Snapshot;
+pub use validate::Violation;

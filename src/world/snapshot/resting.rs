@@ -1,0 +1,79 @@
+//! Resting contacts: packed once and shared by all snapshots until the list changes.
+
+use alloc::boxed::Box;
+use alloc::sync::Arc;
+use alloc::vec::Vec;
+use core::ops::{Deref, DerefMut};
+
+use once_cell::race::OnceBox;
+use serde::{Deserialize, Serialize};
+
+use super::constraints::{pack_contacts, unpack_contacts};
+use crate::collision::Contact;
+use crate::hash::StateHash;
+
+/// The contacts without an active body, sorted by pair, and their cached packed form. Mutable access drops the packed
+/// form.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[serde(transparent)]
+pub(crate) struct Resting {
+    contacts: Vec<Contact>,
+    #[serde(skip)]
+    packed: OnceBox<Arc<PackedContacts>>,
+}
+
+/// Packed contacts and their digest.
+#[derive(Debug, Default, PartialEq)]
+pub(super) struct PackedContacts {
+    heads: Vec<u8>,
+    impulses: Vec<u8>,
+    pub(super) digest: StateHash,
+}
+
+impl PackedContacts {
+    fn of(contacts: &[Contact]) -> Self {
+        let (mut heads, mut impulses) = (Vec::new(), Vec::new());
+        pack_contacts(contacts, &mut heads, &mut impulses);
+        let digest = StateHash::of_digests([&heads, &impulses].map(|bytes| StateHash::of_bytes(bytes)));
+        PackedContacts { heads, impulses, digest }
+    }
+}
+
+impl Resting {
+    /// Returns the packed contacts, and packs them if they have changed.
+    pub(super) fn share(&self) -> Arc<PackedContacts> {
+        let pack = || PackedContacts::of(&self.contacts);
+        let packed = self.packed.get_or_init(|| Box::new(Arc::new(pack())));
+        debug_assert_eq!(**packed, pack(), "resting contacts have changed since they were packed");
+        packed.clone()
+    }
+
+    /// Restores the contacts of a snapshot, unless they are the same already.
+    pub(super) fn restore(&mut self, packed: &Arc<PackedContacts>) {
+        if !self.packed.get().is_some_and(|known| Arc::ptr_eq(known, packed)) {
+            unpack_contacts(&mut self.contacts, &packed.heads, &packed.impulses);
+            self.packed = OnceBox::with_value(Box::new(packed.clone()));
+        }
+    }
+}
+
+impl PartialEq for Resting {
+    fn eq(&self, other: &Self) -> bool {
+        self.contacts == other.contacts
+    }
+}
+
+impl Deref for Resting {
+    type Target = Vec<Contact>;
+
+    fn deref(&self) -> &Vec<Contact> {
+        &self.contacts
+    }
+}
+
+impl DerefMut for Resting {
+    fn deref_mut(&mut self) -> &mut Vec<Contact> {
+        self.packed = OnceBox::new();
+        &mut self.contacts
+    }
+}

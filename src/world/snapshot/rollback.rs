@@ -1,0 +1,195 @@
+//! Snapshots in memory, cheap enough to save every tick.
+
+use alloc::sync::Arc;
+use alloc::vec::Vec;
+
+use super::bodies::{PackedBodies, lasting_body, lasting_shape};
+use super::constraints::{lasting_joint, pack_contacts, pack_joints};
+use super::digest::{Section, WorldDigest};
+use super::resting::PackedContacts;
+use crate::body::{Body, Shape, SharedArena};
+use crate::hash::StateHash;
+use crate::math::Rng;
+use crate::solver::Joint;
+use crate::world::cache::Changes;
+use crate::world::config::Config;
+use crate::world::state::{Island, Reported, State};
+
+/// A copy of a world's state, for [`World::restore`](crate::world::World::restore).
+///
+/// It shares what has not changed with the world and with other snapshots, and takes about 50 bytes for each body and
+/// 32 for each contact of its own: see [`Snapshot::rollback_bytes`]. It stores its [`Snapshot::state_hash`].
+#[derive(Clone, Debug)]
+pub struct Snapshot {
+    pub(super) rest: Rest,
+    pub(super) bodies: SharedArena<Body>,
+    pub(super) shapes: SharedArena<Shape>,
+    pub(super) joints: SharedArena<Joint>,
+    pub(super) islands: SharedArena<Island>,
+    pub(super) resting: Arc<PackedContacts>,
+    pub(super) packed: Packed,
+    /// Digest of all fields above.
+    pub(super) digest: WorldDigest,
+    /// What may have changed the pairs since the last pair update. Not part of the state, but with it the next pair
+    /// update of a restored world need not check every pair.
+    pub(super) changes: Changes,
+}
+
+/// The part of a state that is neither in an arena nor a contact.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Rest {
+    pub(super) config: Config,
+    pub(super) tick: u64,
+    pub(super) faults: u64,
+    pub(super) pairs_left_out: bool,
+    pub(super) removed_contacts: Vec<Reported>,
+    pub(super) rng: Rng,
+}
+
+/// What every tick changes, each kind of it as bytes or as the digest of these bytes.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Packed<T = Vec<u8>> {
+    pub(super) bodies: PackedBodies<T>,
+    pub(super) joints: T,
+    pub(super) contacts: T,
+    pub(super) impulses: T,
+}
+
+impl PartialEq for Snapshot {
+    fn eq(&self, other: &Self) -> bool {
+        self.digest == other.digest
+            && self.rest == other.rest
+            && self.packed == other.packed
+            && (&self.bodies, &self.shapes) == (&other.bodies, &other.shapes)
+            && (&self.joints, &self.islands) == (&other.joints, &other.islands)
+            && self.resting == other.resting
+    }
+}
+
+impl Snapshot {
+    /// Returns [`World::state_hash`](crate::world::World::state_hash) of the saved world, which was computed when it
+    /// was saved.
+    #[must_use]
+    pub fn state_hash(&self) -> StateHash {
+        self.digest.state_hash()
+    }
+
+    /// Returns [`World::digest`](crate::world::World::digest) of the saved world, which was computed when it was saved.
+    #[must_use]
+    pub fn digest(&self) -> WorldDigest {
+        self.digest
+    }
+
+    /// Returns the size of the snapshot in memory in bytes, without what it shares with the world and other snapshots.
+    #[must_use]
+    pub fn rollback_bytes(&self) -> usize {
+        let Snapshot {
+            rest,
+            bodies: _,
+            shapes: _,
+            joints: _,
+            islands: _,
+            resting: _,
+            packed,
+            digest: _,
+            changes,
+        } = self;
+        let Packed { bodies: PackedBodies { bodies, boxes }, joints, contacts, impulses } = packed;
+        let packed: usize = [bodies, boxes, joints, contacts, impulses].into_iter().map(Vec::len).sum();
+        let lists = size_of_val(&*rest.removed_contacts) + changes.list_bytes();
+        size_of::<Self>() + packed + lists
+    }
+
+    /// A snapshot with the settings of a state and nothing else.
+    pub(super) fn empty(state: &State) -> Self {
+        Snapshot {
+            rest: Rest::of(state),
+            bodies: SharedArena::default(),
+            shapes: SharedArena::default(),
+            joints: SharedArena::default(),
+            islands: SharedArena::default(),
+            resting: Arc::default(),
+            packed: Packed::default(),
+            digest: WorldDigest::NONE,
+            changes: Changes::default(),
+        }
+    }
+
+    /// The buffers that are not shared.
+    pub(super) fn buffers(&mut self) -> [&mut Vec<u8>; 5] {
+        let Packed { bodies: PackedBodies { bodies, boxes }, joints, contacts, impulses } = &mut self.packed;
+        [bodies, boxes, joints, contacts, impulses]
+    }
+
+    /// Replaces the snapshot by a copy of a state. Reuses its memory and keeps the pages that have not changed.
+    pub(super) fn take(&mut self, state: &State, changes: &Changes) {
+        // Destructured, so that a new field does not compile until it is saved.
+        let State {
+            config: _,
+            tick: _,
+            faults: _,
+            bodies,
+            shapes,
+            joints,
+            islands,
+            contacts,
+            resting,
+            pairs_left_out: _,
+            removed_contacts: _,
+            rng: _,
+        } = state;
+        self.rest = Rest::of(state);
+        bodies.share_into(&mut self.bodies, lasting_body);
+        shapes.share_into(&mut self.shapes, |shape| lasting_shape(shape, bodies));
+        joints.share_into(&mut self.joints, lasting_joint);
+        islands.share_into(&mut self.islands, Island::clone);
+        // Each buffer is hashed right after it is written, while it is in the cache.
+        let Packed { bodies: packed_bodies, joints: packed_joints, contacts: heads, impulses } =
+            &mut self.packed;
+        packed_bodies.pack(state);
+        let bodies = packed_bodies.digests();
+        pack_joints(joints, packed_joints);
+        let joints = StateHash::of_bytes(packed_joints);
+        pack_contacts(contacts, heads, impulses);
+        let [contacts, impulses] = [StateHash::of_bytes(heads), StateHash::of_bytes(impulses)];
+        self.resting = resting.share();
+        changes.save_into(&mut self.changes);
+        self.digest = self.digest_with(&Packed { bodies, joints, contacts, impulses });
+    }
+
+    /// The digest of the snapshot, given the digests of its packed buffers.
+    fn digest_with(&self, packed: &Packed<StateHash>) -> WorldDigest {
+        let Snapshot { rest, bodies, shapes, joints, islands, resting, packed: _, digest: _, changes: _ } =
+            self;
+        let Rest { config, tick, faults, pairs_left_out, removed_contacts, rng } = rest;
+        fn of(shared: impl Iterator<Item = StateHash>, packed: StateHash) -> StateHash {
+            StateHash::of_digests(shared.chain([packed]))
+        }
+        let ended = StateHash::of(&(pairs_left_out, removed_contacts));
+        let contacts = [ended, resting.digest, packed.contacts].into_iter();
+        WorldDigest {
+            sections: [
+                (Section::World, StateHash::of(&(config, tick, faults))),
+                (Section::Bodies, of(bodies.digests(), packed.bodies.bodies)),
+                (Section::Shapes, of(shapes.digests(), packed.bodies.boxes)),
+                (Section::Joints, of(joints.digests(), packed.joints)),
+                (Section::Contacts, of(contacts, packed.impulses)),
+                (Section::Islands, StateHash::of_digests(islands.digests())),
+                (Section::Random, StateHash::of(rng)),
+            ],
+        }
+    }
+}
+
+impl Rest {
+    fn of(state: &State) -> Self {
+        Rest {
+            config: state.config,
+            tick: state.tick,
+            faults: state.faults,
+            pairs_left_out: state.pairs_left_out,
+            removed_contacts: state.removed_contacts.clone(),
+            rng: state.rng.clone(),
+        }
+    }
+}

@@ -1,0 +1,161 @@
+//! Continuous collision: fast bodies are swept from their old pose to the one that the solver has computed, and stop
+//! where they first come too deep into a shape that they might otherwise pass through.
+//!
+//! Speculative contacts already stop most fast bodies. The sweep catches what they cannot predict, such as rotating
+//! rods and speed gained within the tick. A body that is stopped keeps its velocity and goes on in the next tick, when
+//! the contact exists from the start. It loses the rest of its displacement in this tick.
+
+use crate::body::{Body, BodyKind, Continuous, Handle, Pose, WORLD_EXTENT_MAX};
+use crate::collision::{Core, Sweep, TimeOfImpact, time_of_impact};
+use crate::fx;
+use crate::math::{Aabb, Angle, Fx, Rot, Vec2, fx_mul};
+use crate::world::cache::{Scratch, SweptBody};
+use crate::world::movement::move_body;
+use crate::world::state::State;
+
+/// A body that moves less than this in a tick, in metres, is not swept, however thin it is.
+const SWEPT_MIN: Fx = fx!(0.0005);
+
+/// Returns the sweep of a body if it moves so far that it may pass through something: if some point of it moves further
+/// than half of the inner radius of its thinnest shape. `turn` is its rotation in units of 2^-32 turns.
+pub(super) fn swept_body(
+    state: &State,
+    scratch: &Scratch,
+    slot: u32,
+    end: Pose,
+    turn: i64,
+) -> Option<SweptBody> {
+    let body = state.bodies.at(slot);
+    if !state.config.continuous || !body.is_dynamic() || body.settings.continuous == Continuous::Off {
+        return None;
+    }
+    let extents = scratch.shapes.poses().extents(slot);
+    let limit = SWEPT_MIN.max(extents.core / 2);
+    let shift = end.centre - body.centre;
+    let turned = match turn {
+        0 => Fx::ZERO,
+        _ => fx_mul(Angle::turns_to_radians(turn).saturating_abs(), extents.reach),
+    };
+    let is_fast = shift.is_longer_than(limit.saturating_sub(turned));
+    is_fast.then_some(SweptBody { slot, sweep: Sweep { start: body.centre, end: end.centre, turn }, end })
+}
+
+/// Moves a fast body along its sweep to the end or to the first impact.
+pub(super) fn sweep(state: &mut State, scratch: &mut Scratch, swept: &SweptBody) {
+    let impact = first_impact(state, scratch, swept);
+    let pose = impact.map_or(swept.end, |impact| pose_after(state, scratch, swept, impact));
+    scratch.results.stats.impacts += u32::from(impact.is_some());
+    move_body(state, scratch, swept.slot, pose);
+}
+
+/// An obstacle that stops a body. The order is by fraction, then by slot.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct Impact {
+    /// Fraction of the tick, 0 to 1.
+    fraction: Fx,
+    /// Slot of the shape that is met.
+    obstacle: u32,
+}
+
+/// The pose of a body after an impact: where the impact happens, and from there along with a kinematic obstacle, which
+/// continues its own movement. A dynamic obstacle has already been moved by the impact.
+fn pose_after(state: &State, scratch: &Scratch, swept: &SweptBody, impact: Impact) -> Pose {
+    let Sweep { start, end, turn } = swept.sweep;
+    let angle = state.bodies.at(swept.slot).angle + Angle::from_wide_turns(turn, impact.fraction);
+    let mut centre = start + (end - start).scale(impact.fraction);
+    if state.body_of(impact.obstacle).kind() == BodyKind::Kinematic {
+        let (_, obstacle) = obstacle_of(state, scratch, impact.obstacle);
+        centre += (obstacle.end - obstacle.start).scale(Fx::ONE - impact.fraction);
+    }
+    let edge = Vec2::new(WORLD_EXTENT_MAX, WORLD_EXTENT_MAX);
+    Pose { centre: centre.max(-edge).min(edge), angle }
+}
+
+/// The first obstacle that stops a body on its sweep.
+fn first_impact(state: &State, scratch: &Scratch, swept: &SweptBody) -> Option<Impact> {
+    let shapes = &scratch.shapes;
+    let body = state.bodies.at(swept.slot);
+    let is_bullet = is_bullet(body);
+    // Box around everything that the body's shapes cover at its start, at any rotation.
+    let disc = Aabb::new(body.centre, body.centre).expanded(shapes.poses().extents(swept.slot).radius);
+    let mut first: Option<Impact> = None;
+    for id in body.shapes() {
+        let motion = shapes.motion();
+        if motion.shape(id.slot()).sensor {
+            continue;
+        }
+        let posed = shapes.poses().at(id.slot());
+        // Computed for the first obstacle only: most fast bodies are far from any.
+        let mut core_and_target = None;
+        let start = if swept.sweep.turn == 0 { posed.bounds } else { disc };
+        let area = start.swept(swept.sweep.end - swept.sweep.start);
+        let obstacles = if is_bullet { shapes.broad_phase() } else { shapes.fixed_broad_phase() };
+        obstacles.each_overlap(area, |other| {
+            let other_shape = motion.shape(other);
+            let obstacle = state.bodies.at(other_shape.body);
+            // A moving obstacle was somewhere else during the tick: its current bounds do not rule it out.
+            let is_near =
+                other_shape.bounds.overlaps(area) || (is_bullet && obstacle.kind() != BodyKind::Fixed);
+            let is_solid = is_near && shapes.poses().at(other).is_solid_from(posed.centre);
+            if is_solid && stops(body, obstacle) && may_stop(state, scratch, id.slot(), other) {
+                let (there, movement) = obstacle_of(state, scratch, other);
+                let &mut (core, target) = core_and_target.get_or_insert_with(|| {
+                    let core = Core::of(posed, body.centre);
+                    // A quarter of the depth at which its centre would be on the surface, and at most 5 mm.
+                    (core, -(core.inner_radius() / 4).min(fx!(0.005)))
+                });
+                let fraction = match time_of_impact(&there, &movement, &core, &swept.sweep, target) {
+                    TimeOfImpact::Hit { fraction } => Some(fraction),
+                    // The fraction reached is safe. At 0 it is ignored, so that the body does not get stuck.
+                    TimeOfImpact::Failed { fraction } => Some(fraction).filter(|&fraction| fraction > 0),
+                    TimeOfImpact::Separated | TimeOfImpact::Overlapped => None,
+                };
+                let impact = fraction.map(|fraction| Impact { fraction, obstacle: other });
+                first = first.into_iter().chain(impact).min();
+            }
+            core::ops::ControlFlow::Continue(())
+        });
+    }
+    first
+}
+
+/// A shape about its body's centre as it was at the start of the tick, and the movement of that body within the tick.
+fn obstacle_of(state: &State, scratch: &Scratch, shape: u32) -> (Core, Sweep) {
+    let body = state.body_of(shape);
+    let core = Core::of(scratch.shapes.poses().at(shape), body.centre);
+    let stands = (core, Sweep::fixed(body.centre));
+    if body.kind() == BodyKind::Fixed {
+        return stands;
+    }
+    let slot = state.shapes.at(shape).body().slot();
+    let Ok(index) = scratch.awake.bodies().binary_search(&slot) else { return stands };
+    let start = scratch.sweeps.starts[index];
+    // The shorter way round. An obstacle that turns more than half a turn in a tick is not handled.
+    let turn = (body.angle - start.angle).to_turns().to_bits();
+    let core = core.rotated(Rot::from_angle(start.angle - body.angle));
+    (core, Sweep { start: start.centre, end: body.centre, turn })
+}
+
+/// Whether a body is swept against an obstacle.
+fn stops(body: &Body, obstacle: &Body) -> bool {
+    obstacle.kind() == BodyKind::Fixed || (is_bullet(body) && !is_bullet(obstacle))
+}
+
+/// Whether a body is swept against moving bodies as well.
+pub(super) fn is_bullet(body: &Body) -> bool {
+    body.settings.continuous == Continuous::Bullet
+}
+
+/// Whether shape `b` may stop shape `a`.
+fn may_stop(state: &State, scratch: &Scratch, a: u32, b: u32) -> bool {
+    let pair = (a.min(b), a.max(b));
+    // Whether a one-way shape lets the other one pass was decided at the start of the tick.
+    let is_passing = || {
+        if ![a, b].iter().any(|&shape| scratch.shapes.motion().shape(shape).one_way) {
+            return false;
+        }
+        let found = state.contacts.binary_search_by_key(&pair, |contact| contact.shapes);
+        found.is_ok_and(|index| state.contacts[index].passing)
+    };
+    !state.shapes.at(b).is_sensor() && scratch.pairs.non_colliding.may_touch(state, pair) && !is_passing()
+}

@@ -1,0 +1,48 @@
+//! Joints whose force or torque exceeds their threshold: they are reported, and removed if they break.
+
+use alloc::vec::Vec;
+
+use crate::body::Handle;
+use crate::math::{Fx, Vec2};
+use crate::solver::{Joint, Solver, Threshold, ThresholdAction, Tuning};
+use crate::world::cache::Scratch;
+use crate::world::events::JointEvent;
+use crate::world::islands::joints_changed;
+use crate::world::state::State;
+
+/// Compares the force and torque of each joint in the last sub-step with its threshold.
+pub(super) fn report_joints(state: &mut State, scratch: &mut Scratch, tuning: &Tuning) {
+    let Scratch { awake, results, solver, .. } = scratch;
+    // Joints break so rarely that this list is no buffer in the scratch memory.
+    let mut broken = Vec::new();
+    for &slot in awake.joints_with_threshold() {
+        let joint = state.joints.at(slot);
+        if let Some((force, torque)) = excess(state, solver, joint, tuning) {
+            let broke = joint.def().threshold.action == ThresholdAction::Break;
+            let id = state.joints.handle_at(slot);
+            results.events.joints.push(JointEvent { joint: id, force, torque, broke });
+            if broke {
+                broken.push(id);
+            }
+        }
+    }
+    for &id in &broken {
+        if let Some(joint) = state.joints.remove(id) {
+            let (a, b) = joint.def().bodies();
+            scratch.joint_links.remove(id, (a, b));
+            joints_changed(state, scratch, [a, b]);
+        }
+    }
+    scratch.awake.refresh(state);
+}
+
+/// Returns the force in N and the torque in N m of a joint if one of them is above its threshold.
+fn excess(state: &State, solver: &mut Solver, joint: &Joint, tuning: &Tuning) -> Option<(Vec2<Fx>, Fx)> {
+    let Threshold { force: force_max, torque: torque_max, action: _ } = joint.def().threshold;
+    let (a, b) = joint.def().bodies();
+    let (a, b) = (state.bodies.at(a.slot()), state.bodies.at(b.slot()));
+    let (force, torque) = solver.reaction(joint, (a, b), tuning);
+    let exceeds = force_max.is_some_and(|limit| force.length() > limit)
+        || torque_max.is_some_and(|limit| torque.saturating_abs() > limit);
+    exceeds.then_some((force, torque))
+}

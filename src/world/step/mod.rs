@@ -1,0 +1,99 @@
+//! One tick: [`World::step`] and its stages, one file each.
+
+mod contact_events;
+mod continuous;
+mod finalise;
+mod joint_thresholds;
+mod narrow_phase;
+mod pair_update;
+mod phases;
+mod refit;
+mod report;
+mod sleep;
+mod speculative;
+mod wake;
+
+use super::World;
+use super::cache::Scratch;
+use super::stats::Phase;
+use crate::solver::Tuning;
+use phases::PhaseView;
+
+impl World {
+    /// Advances the world by one tick of `1 / tick_rate` seconds.
+    #[doc(alias = "simulate")]
+    pub fn step(&mut self) {
+        if self.phases.is_some() {
+            self.step_with_phase_log();
+        } else {
+            self.advance(|_, _| {});
+        }
+    }
+
+    /// [`World::step`] with an observer that is called at the beginning of each phase, for profiles. The engine has no
+    /// clock.
+    ///
+    /// ```
+    /// # use lockstep2d::world::World;
+    /// let mut phases = Vec::new();
+    /// World::default().step_observed(|phase| phases.push(phase));
+    /// assert_eq!(phases.len(), 7);
+    /// ```
+    #[doc(alias = "profile")]
+    pub fn step_observed(&mut self, mut begin: impl FnMut(Phase)) {
+        self.advance(|phase, _| begin(phase));
+    }
+
+    /// The algorithm of a tick. `begin` is called at the beginning of each phase with a view of what the phases so far
+    /// have computed.
+    fn advance(&mut self, mut begin: impl FnMut(Phase, PhaseView<'_>)) {
+        let World { state, scratch, phases: _ } = self;
+        let state = &mut **state;
+        let settings = state.config.solver;
+        let tuning = Tuning::new(&settings, state.config.gravity, state.config.tick_rate);
+
+        begin(Phase::BroadPhase, PhaseView::of(state, scratch));
+        scratch.awake.refresh(state);
+        refit::refit_boxes(state, scratch);
+        pair_update::update_pairs(state, scratch);
+        if wake::wake_touched(state, scratch) {
+            // The contacts of the bodies that have woken.
+            pair_update::update_pairs(state, scratch);
+        }
+        scratch.awake.refresh(state);
+
+        begin(Phase::NarrowPhase, PhaseView::of(state, scratch));
+        narrow_phase::find_manifolds(state, scratch);
+
+        begin(Phase::Prepare, PhaseView::of(state, scratch));
+        let Scratch { solver, awake, contacts, .. } = scratch;
+        let found = contacts.output();
+        solver.prepare_bodies(&state.bodies, awake.bodies(), &tuning);
+        solver.prepare_joints(&state.joints, awake.joints(), &state.bodies, &tuning);
+        solver.prepare_contacts(&found.touching, &found.manifolds, &state.contacts);
+
+        begin(Phase::Solve, PhaseView { state, solver, awake, found });
+        let first_sub_step = state.tick.wrapping_mul(settings.sub_steps.into());
+        solver.threads.clone().install(|| {
+            for index in 0..settings.sub_steps {
+                solver.sub_step(first_sub_step.wrapping_add(index.into()), &tuning);
+            }
+            solver.apply_restitution(&tuning);
+        });
+        solver.store_impulses(&mut state.contacts, &mut state.joints);
+
+        begin(Phase::Finalise, PhaseView::of(state, scratch));
+        contact_events::report_contacts(state, scratch);
+        finalise::finalise_poses(state, scratch);
+        joint_thresholds::report_joints(state, scratch, &tuning);
+
+        begin(Phase::Sleep, PhaseView::of(state, scratch));
+        sleep::fall_asleep(state, scratch);
+
+        begin(Phase::Report, PhaseView::of(state, scratch));
+        report::report_moves(state, scratch);
+        report::count(state, scratch);
+        // A snapshot from outside may start the count anywhere.
+        state.tick = state.tick.wrapping_add(1);
+    }
+}

@@ -1,0 +1,262 @@
+//! Narrow phase: a manifold for every contact whose shapes may meet within the tick. Pairs of small boxes are collided
+//! eight at a time.
+
+use core::ops::Range;
+
+use super::speculative::{Side, SpeculativePair, approach};
+use crate::collision::{AxisHint, Contact, Manifold, Pair, SatCounters, collide, collide_near};
+use crate::lanes::Machine;
+use crate::math::{Length, Step, saturate, widen};
+use crate::solver::{Surface, TouchingPair};
+use crate::world::cache::{
+    Approach, ClosingBound, Margins, MotionCache, NarrowPhaseBuffers, NarrowPhaseOutput, NearPair, Poses,
+    Scratch,
+};
+use crate::world::events::{ContactEvent, HitEvent};
+use crate::world::state::State;
+
+/// Smallest number of contacts for a job of its own.
+const JOB_MIN: usize = 512;
+
+/// Contacts whose bounds are tested before the boxes among them are collided: enough that few SIMD lanes stay empty,
+/// few enough that their data stays in the cache.
+const BLOCK: usize = 64;
+
+/// Prefetch distance in contacts: shape B is a random access.
+const CONTACTS_AHEAD: usize = 8;
+
+/// Finds the manifolds of all contacts, and lists the pairs that the solver has to solve. The contacts are divided into
+/// jobs whose outputs are joined in order, so that the result does not depend on the number of jobs.
+pub(super) fn find_manifolds(state: &mut State, scratch: &mut Scratch) {
+    let Scratch { shapes, contacts: cache, solver, .. } = scratch;
+    let mut contacts = core::mem::take(&mut state.contacts);
+    let share = solver.threads.share(contacts.len(), JOB_MIN);
+    let job_count = contacts.len().div_ceil(share).max(1);
+    let NarrowPhaseBuffers { axes, parts, touched } = cache.begin(contacts.len(), job_count);
+    let (margins, machine) = (Margins::of(&state.config), solver.machine);
+    let narrow_phase = NarrowPhase { state, poses: shapes.poses(), touched, margins, machine };
+    let chunks = contacts.chunks_mut(share).zip(axes.chunks_mut(share));
+    let jobs = (0u32..).step_by(share).zip(chunks).zip(parts.iter_mut());
+    solver.threads.run(jobs, |((first, (contacts, axes)), output)| {
+        narrow_phase.run(Job { contacts, axes, first }, output);
+        0
+    });
+    cache.finish();
+    state.contacts = contacts;
+}
+
+/// What all jobs read.
+struct NarrowPhase<'a> {
+    state: &'a State,
+    poses: &'a Poses,
+    /// The touching pairs of the last tick, sorted by pair.
+    touched: &'a [TouchingPair],
+    margins: Margins,
+    machine: Machine,
+}
+
+/// A part of the contacts.
+struct Job<'a> {
+    contacts: &'a mut [Contact],
+    /// For each of the contacts, the axis that separated its shapes in the last tick.
+    axes: &'a mut [AxisHint],
+    /// Index of the first of the contacts in the state.
+    first: u32,
+}
+
+impl NarrowPhase<'_> {
+    fn run(&self, mut job: Job<'_>, output: &mut NarrowPhaseOutput) {
+        let Some(pair) = job.contacts.first().map(|contact| contact.shapes) else { return };
+        let mut touched = &self.touched[self.touched.partition_point(|touched| touched.shapes < pair)..];
+        for start in (0..job.contacts.len()).step_by(BLOCK) {
+            let block = start..job.contacts.len().min(start + BLOCK);
+            self.list_near(&mut job, block, output);
+            touched = self.find_touching(&mut job, touched, output);
+        }
+    }
+
+    /// Lists the contacts of a block whose shapes may meet, and collides the pairs of small boxes among them.
+    fn list_near(&self, job: &mut Job<'_>, block: Range<usize>, output: &mut NarrowPhaseOutput) {
+        let NarrowPhase { poses, margins, machine, .. } = self;
+        let NarrowPhaseOutput { near, boxes, .. } = output;
+        let motion = poses.motion();
+        near.clear();
+        boxes.clear();
+        for index in block {
+            if let Some(ahead) = job.contacts.get(index + CONTACTS_AHEAD) {
+                motion.prefetch(ahead.shapes.1);
+                poses.boxes().prefetch(ahead.shapes.1);
+            }
+            let contact = &mut job.contacts[index];
+            let (shape_a, shape_b) = (motion.shape(contact.shapes.0), motion.shape(contact.shapes.1));
+            let closing = ClosingBound::of(margins, shape_a, shape_b);
+            if !closing.may_meet(shape_a, shape_b) {
+                contact.passing = false;
+                continue;
+            }
+            let box_pair = if machine.has_vectors() && shape_a.small_box && shape_b.small_box {
+                let radii = [shape_a.radius, shape_b.radius];
+                boxes.push(contact.shapes, shape_a.offset_to(shape_b), radii, closing.margin)
+            } else {
+                None
+            };
+            if box_pair.is_none() {
+                poses.prefetch(contact.shapes.1);
+            }
+            if closing.is_fast() {
+                motion.prefetch_motions(shape_a, shape_b);
+            }
+            near.push(NearPair { index, closing, box_pair });
+        }
+        boxes.collide(*machine, poses.boxes());
+    }
+
+    /// Completes the manifolds of the near contacts of a block, keeps those that have points, and lists the touching
+    /// pairs. Returns the touching pairs of the last tick that come after the block.
+    fn find_touching<'t>(
+        &self,
+        job: &mut Job<'_>,
+        mut touched: &'t [TouchingPair],
+        output: &mut NarrowPhaseOutput,
+    ) -> &'t [TouchingPair] {
+        let NarrowPhase { state, poses, margins, .. } = self;
+        let NarrowPhaseOutput { near, boxes, contacts, sensors, manifolds, touching, approaches, sat } =
+            output;
+        let motion = poses.motion();
+        for &NearPair { index, closing, box_pair } in near.iter() {
+            let (contact, axis) = (&mut job.contacts[index], &mut job.axes[index]);
+            let (shape_a, shape_b) = (motion.shape(contact.shapes.0), motion.shape(contact.shapes.1));
+            let pair = SpeculativePair { margins, a: shape_a, b: shape_b, closing };
+            let is_found = box_pair.is_some_and(|at| boxes.append_to(manifolds, at, shape_a.centre()));
+            if is_found {
+                sat.searches += 1;
+            } else {
+                manifolds.push(manifold_of(poses, &pair, contact.shapes, axis, sat));
+            }
+            let place = u32::try_from(manifolds.len()).expect("fewer than 2^32 contacts") - 1;
+            let Some(manifold) = manifolds.last_mut() else { continue };
+            keep_reachable(state, poses, &pair, contact, manifold);
+            if manifold.points().is_empty() {
+                manifolds.pop();
+                continue;
+            }
+            let index = job.first + u32::try_from(index).expect("fewer than 2^32 contacts");
+            contacts.push(index);
+            if shape_a.sensor || shape_b.sensor {
+                sensors.push(index);
+                continue;
+            }
+            if shape_a.hit_events || shape_b.hit_events {
+                approaches.extend(fast_approach(state, motion, index, contact, manifold));
+            }
+            while touched.first().is_some_and(|touched| touched.shapes < contact.shapes) {
+                touched = &touched[1..];
+            }
+            let surface = match touched.first() {
+                Some(touched) if touched.shapes == contact.shapes => touched.surface,
+                _ => surface_of(state, poses, contact.shapes),
+            };
+            touching.push(TouchingPair {
+                contact: index,
+                manifold: place,
+                shapes: contact.shapes,
+                bodies: (shape_a.body, shape_b.body),
+                surface,
+            });
+        }
+        touched
+    }
+}
+
+/// Whether two shapes touch, or come so near within the tick that the solver has to solve their contact.
+pub(super) fn will_touch(state: &State, poses: &Poses, shapes: Pair) -> bool {
+    let found = state.contacts.binary_search_by_key(&shapes, |contact| contact.shapes);
+    let mut contact = found.map_or(Contact::new(shapes), |index| state.contacts[index]);
+    let margins = Margins::of(&state.config);
+    let (a, b) = (poses.motion().shape(shapes.0), poses.motion().shape(shapes.1));
+    let closing = ClosingBound::of(&margins, a, b);
+    let pair = SpeculativePair { margins: &margins, a, b, closing };
+    closing.may_meet(a, b) && {
+        let (mut axis, mut counters) = (AxisHint::default(), SatCounters::default());
+        let mut manifold = manifold_of(poses, &pair, shapes, &mut axis, &mut counters);
+        keep_reachable(state, poses, &pair, &mut contact, &mut manifold);
+        !manifold.points().is_empty()
+    }
+}
+
+/// The manifold of two shapes that may meet. A sensor has no speculative margin.
+#[inline(always)]
+fn manifold_of(
+    poses: &Poses,
+    pair: &SpeculativePair,
+    (a, b): Pair,
+    axis: &mut AxisHint,
+    counters: &mut SatCounters,
+) -> Manifold {
+    let (posed_a, posed_b) = (poses.at(a), poses.at(b));
+    if pair.a.sensor || pair.b.sensor {
+        return collide(posed_a, posed_b, Length::ZERO, axis, counters);
+    }
+    collide_near(posed_a, posed_b, pair.closing.margin, axis, counters)
+}
+
+/// Removes the points of two shapes that pass by each other, or through a one-way shape.
+#[inline(always)]
+fn keep_reachable(
+    state: &State,
+    poses: &Poses,
+    pair: &SpeculativePair,
+    contact: &mut Contact,
+    manifold: &mut Manifold,
+) {
+    let was_passing = core::mem::take(&mut contact.passing);
+    if manifold.points().is_empty() || pair.a.sensor || pair.b.sensor {
+        return;
+    }
+    let (a, b) = contact.shapes;
+    if pair.a.one_way || pair.b.one_way {
+        let side = |slot: u32| Side {
+            shape: state.shapes.at(slot),
+            body: state.body_of(slot),
+            posed: poses.at(slot),
+        };
+        contact.passing = pair.lets_pass([side(a), side(b)], manifold, was_passing);
+        if contact.passing {
+            *manifold = Manifold::NONE;
+            return;
+        }
+    }
+    // Few contacts need their posed shapes, which are large.
+    pair.keep_reachable(manifold, poses.motion(), || [poses.at(a), poses.at(b)]);
+}
+
+/// The common surface of two shapes.
+fn surface_of(state: &State, poses: &Poses, (a, b): Pair) -> Surface {
+    let side = |slot: u32| (state.shapes.at(slot).material(), poses.at(slot).outline.radius());
+    Surface::between(side(a), side(b))
+}
+
+/// Returns the hit event that a contact causes if its shapes push each other in this tick: if they approach faster than
+/// the hit speed.
+fn fast_approach(
+    state: &State,
+    motion: &MotionCache,
+    index: u32,
+    contact: &Contact,
+    manifold: &Manifold,
+) -> Option<Approach> {
+    let body_motion = |shape: u32| motion.motion(motion.shape(shape));
+    let (a, b) = contact.shapes;
+    let closing_at = approach(body_motion(a), body_motion(b), manifold);
+    let closings = manifold.points().iter().map(|point| (point, closing_at(point)));
+    let (point, closing) = closings.reduce(|a, b| if b.1 > a.1 { b } else { a })?;
+    let approach_speed =
+        widen(Step::from_bits(saturate(closing))).saturating_mul_int(state.config.tick_rate.into());
+    if approach_speed < state.config.hit_speed {
+        return None;
+    }
+    let point = manifold.origin + point.anchor.widen();
+    let ContactEvent { shape_a, shape_b } = state.contact_event(contact);
+    let event = HitEvent { shape_a, shape_b, point, normal: manifold.normal, approach_speed };
+    Some(Approach { contact: index, event })
+}

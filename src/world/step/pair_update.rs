@@ -1,0 +1,166 @@
+//! Pair update: brings the contacts of the state in line with the fat boxes.
+//!
+//! A contact exists for every pair of shapes whose fat boxes overlap and which may collide. The active ones, with at
+//! least one active body, are in `State::contacts`; the others are in `State::resting` until something moves. The
+//! result is a function of the state: [`Changes`](crate::world::cache::Changes) only says where to look for
+//! differences.
+
+use crate::collision::{Contact, Moved, Pair};
+use crate::world::cache::{Changes, MergedContacts, NonCollidingPairs, Scratch, ShapeCache, merge_sorted};
+use crate::world::state::State;
+
+/// Updates the contacts. Contacts whose pair has ended are added to the `ended` list of the pair cache.
+pub(super) fn update_pairs(state: &mut State, scratch: &mut Scratch) {
+    // Pairs that were left out at the limit enter as soon as there is room, whatever has made it.
+    if !(scratch.pairs.changes.any() || state.pairs_left_out) {
+        return;
+    }
+    scratch.pairs.non_colliding.refresh(state);
+    activate_resting(state, scratch);
+    let left_out = find_new(state, scratch);
+    merge_contacts(state, scratch);
+    keep_to_limit(state, scratch, left_out);
+    let Scratch { pairs, contacts, shapes, .. } = scratch;
+    if pairs.changes.concerns_rules() {
+        contacts.invalidate_surfaces();
+    }
+    pairs.changes.clear(shapes.broad_phase(), state.shapes.slot_count());
+}
+
+/// Moves the resting contacts that have an active body again to the fresh ones, and ends those whose boxes have parted
+/// or which may not collide any more. A resting contact can end if a kinematic body with a sensor was moved by hand.
+fn activate_resting(state: &mut State, scratch: &mut Scratch) {
+    let pairs = &mut scratch.pairs;
+    pairs.buffers.fresh.clear();
+    if state.resting.is_empty() || !pairs.changes.concerns_resting() {
+        return;
+    }
+    let mut resting = core::mem::take(&mut state.resting);
+    resting.retain(|contact| {
+        let (a, b) = contact.shapes;
+        let (body_a, body_b) = state.bodies_of(contact.shapes);
+        let overlaps = state.shapes.at(a).fat.overlaps(state.shapes.at(b).fat);
+        let is_near = overlaps && pairs.non_colliding.may_touch(state, contact.shapes);
+        let is_active = body_a.is_active() || body_b.is_active();
+        if !is_near {
+            pairs.ended.push(*contact);
+        } else if is_active {
+            pairs.buffers.fresh.push(*contact);
+        }
+        is_near && !is_active
+    });
+    state.resting = resting;
+}
+
+/// Adds a contact to the fresh ones for every pair that may be new. Returns whether pairs were left out at the limit.
+fn find_new(state: &State, scratch: &mut Scratch) -> bool {
+    let limit = state.config.pair_limit as usize;
+    let Scratch { shapes, pairs: cache, .. } = scratch;
+    let (changes, non_colliding) = (&cache.changes, &cache.non_colliding);
+    let (pairs, fresh) = (&mut cache.buffers.pairs, &mut cache.buffers.fresh);
+    let everything = changes.all() || state.pairs_left_out;
+    let moved = if everything { Moved::All } else { Moved::Slots(changes.shapes()) };
+    let accept = |pair: Pair| {
+        if !everything && changes.overlapped_before(pair) {
+            return false;
+        }
+        let (a, b) = state.bodies_of(pair);
+        (a.is_active() || b.is_active()) && non_colliding.may_touch(state, pair)
+    };
+    let left_out = shapes.find_pairs(moved, accept, limit, pairs);
+    let activated = fresh.len();
+    for &pair in pairs.iter() {
+        if fresh[..activated].binary_search_by_key(&pair, |contact| contact.shapes).is_err() {
+            fresh.push(Contact::new(pair));
+        }
+    }
+    fresh.sort_unstable_by_key(|contact| contact.shapes);
+    left_out
+}
+
+/// What the pair update does with an active contact.
+enum PairChange {
+    Stays,
+    /// Its fat boxes have parted, or its shapes may not collide any more.
+    Ends,
+    /// Neither of its bodies is active any more.
+    Rests,
+}
+
+impl PairChange {
+    fn of(
+        pair: Pair,
+        state: &State,
+        shapes: &ShapeCache,
+        changes: &Changes,
+        non_colliding: &NonCollidingPairs,
+    ) -> Self {
+        let (a, b) = pair;
+        let boxes = shapes.broad_phase();
+        let rules = changes.concerns_rules();
+        let anywhere = rules || changes.concerns_resting() || state.pairs_left_out;
+        if !(anywhere || boxes.has_moved(a) || boxes.has_moved(b)) {
+            return PairChange::Stays;
+        }
+        if !boxes.fat(a).overlaps(boxes.fat(b)) || (rules && !non_colliding.may_touch(state, pair)) {
+            return PairChange::Ends;
+        }
+        if !(anywhere || changes.is_new(a) || changes.is_new(b)) {
+            // Only fat boxes have changed.
+            return PairChange::Stays;
+        }
+        let (body_a, body_b) = state.bodies_of(pair);
+        if body_a.is_active() || body_b.is_active() { PairChange::Stays } else { PairChange::Rests }
+    }
+}
+
+/// Merges the fresh contacts into the active ones, and removes those that end or rest. Contacts between two such places
+/// are copied as one block together with their cached axes.
+fn merge_contacts(state: &mut State, scratch: &mut Scratch) {
+    let Scratch { shapes, pairs, contacts: cache, .. } = scratch;
+    let axes = cache.axes(state.contacts.len());
+    let (changes, non_colliding, ended) = (&pairs.changes, &pairs.non_colliding, &mut pairs.ended);
+    let (merged, resting) = (&mut pairs.buffers.merged, &mut pairs.buffers.resting);
+    merged.clear();
+    resting.clear();
+    let contacts = &state.contacts;
+    let mut fresh = pairs.buffers.fresh.iter().peekable();
+    let mut copied = 0;
+    let mut copy = |merged: &mut MergedContacts, end: usize, next: usize| {
+        merged.contacts.extend_from_slice(&contacts[copied..end]);
+        merged.axes.extend_from_slice(&axes[copied..end]);
+        copied = next;
+    };
+    for (index, contact) in contacts.iter().enumerate() {
+        if fresh.peek().is_some_and(|fresh| fresh.shapes <= contact.shapes) {
+            copy(merged, index, index);
+            while let Some(fresh) = fresh.next_if(|fresh| fresh.shapes < contact.shapes) {
+                merged.push(*fresh);
+            }
+            let _exists_already = fresh.next_if(|fresh| fresh.shapes == contact.shapes);
+        }
+        let removed = match PairChange::of(contact.shapes, state, shapes, changes, non_colliding) {
+            PairChange::Stays => continue,
+            PairChange::Ends => &mut *ended,
+            PairChange::Rests => &mut *resting,
+        };
+        removed.push(*contact);
+        copy(merged, index, index + 1);
+    }
+    copy(merged, contacts.len(), contacts.len());
+    fresh.for_each(|fresh| merged.push(*fresh));
+    core::mem::swap(&mut state.contacts, &mut merged.contacts);
+    core::mem::swap(axes, &mut merged.axes);
+    if !resting.is_empty() {
+        merge_sorted(&mut state.resting, resting, &mut merged.contacts);
+    }
+}
+
+/// Ends the contacts beyond the limit: those in the largest slots.
+fn keep_to_limit(state: &mut State, scratch: &mut Scratch, left_out: bool) {
+    let limit = state.config.pair_limit as usize;
+    state.pairs_left_out = left_out || state.contacts.len() > limit;
+    if state.contacts.len() > limit {
+        scratch.pairs.ended.extend(state.contacts.drain(limit..));
+    }
+}

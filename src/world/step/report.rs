@@ -1,0 +1,44 @@
+//! Move events and statistics of a tick.
+
+use crate::math::Vec2;
+use crate::world::cache::Scratch;
+use crate::world::events::MoveEvent;
+use crate::world::state::State;
+use crate::world::stats::StepStats;
+
+/// Lists the bodies that have moved in the tick or fallen asleep at its end, in slot order.
+pub(super) fn report_moves(state: &State, scratch: &mut Scratch) {
+    let Scratch { awake, solver, results, origins, .. } = scratch;
+    for &slot in awake.bodies() {
+        let body = state.bodies.at(slot);
+        let (fell_asleep, solved) = (body.is_asleep(), solver.body(slot));
+        if fell_asleep || solved.shift != Vec2::ZERO || solved.turn != 0 {
+            let (position, angle) = (origins.position(slot, body), body.angle());
+            debug_assert_eq!(position, body.position());
+            let body = state.bodies.handle_at(slot);
+            results.events.moved.push(MoveEvent { body, position, angle, fell_asleep });
+        }
+    }
+}
+
+/// Fills in the statistics of the tick, and adds its faults to those of the world.
+pub(super) fn count(state: &mut State, scratch: &mut Scratch) {
+    let Scratch { solver, results, contacts, awake, .. } = scratch;
+    let (stats, found) = (&mut results.stats, contacts.output());
+    let faults = solver.faults + u64::from(state.pairs_left_out);
+    state.faults = state.faults.saturating_add(faults);
+    let count = |length: usize| u32::try_from(length).unwrap_or(u32::MAX);
+    *stats = StepStats {
+        bodies: count(awake.bodies().len()),
+        joints: count(awake.joints().len()),
+        pairs: count(state.contacts.len()),
+        contacts: count(found.touching.len()),
+        points: solver.warm_starts.points,
+        points_kept: solver.warm_starts.kept,
+        points_lost: solver.warm_starts.lost,
+        axis_hits: found.sat.hint_hits,
+        axis_searches: found.sat.searches,
+        impacts: stats.impacts,
+        faults,
+    };
+}

@@ -1,0 +1,94 @@
+//! Falling asleep: counts for how long bodies have been at rest, and puts islands of sleepy bodies to sleep.
+
+use crate::body::{Body, BodyKind, Handle};
+use crate::math::{Shift, Speed, Vec2, narrow};
+use crate::solver::SolverBody;
+use crate::world::cache::Scratch;
+use crate::world::islands::{sleep_calm_sets, unite_connected};
+use crate::world::state::State;
+
+/// Updates the ticks at rest of all awake bodies, and puts every island to sleep whose bodies have been at rest long
+/// enough.
+pub(super) fn fall_asleep(state: &mut State, scratch: &mut Scratch) {
+    if !state.config.sleeping {
+        return;
+    }
+    let limit = state.config.ticks_to_sleep();
+    if scratch.awake.may_have_kinematic() {
+        keep_awake_on_moving_ground(state, scratch);
+        keep_awake_on_moving_anchors(state, scratch);
+    }
+    let Scratch { awake, solver, .. } = scratch;
+    let mut any_sleepy = false;
+    for &slot in awake.bodies() {
+        let body = state.bodies.at_mut(slot);
+        if body.is_dynamic() {
+            if is_slow(body, solver.body(slot), state.config.tick_rate) {
+                body.rest_ticks.count(limit);
+            } else {
+                body.rest_ticks.reset();
+            }
+        }
+        any_sleepy |= is_sleepy(body, limit);
+    }
+    if any_sleepy {
+        unite_connected(state, scratch);
+        let Scratch { awake, union, .. } = &mut *scratch;
+        for &slot in awake.bodies() {
+            if !is_sleepy(state.bodies.at(slot), limit) {
+                union.keep_awake(slot);
+            }
+        }
+        sleep_calm_sets(state, scratch);
+    }
+}
+
+/// Whether a body may fall asleep: it is dynamic and has been at rest for `limit` ticks.
+fn is_sleepy(body: &Body, limit: u32) -> bool {
+    body.is_dynamic() && body.rest_ticks.has_reached(limit)
+}
+
+/// Resets the ticks at rest of bodies that touch a moving kinematic body.
+fn keep_awake_on_moving_ground(state: &mut State, scratch: &Scratch) {
+    for pair in &scratch.contacts.output().touching {
+        let (a, b) = pair.bodies;
+        keep_awake_on(state, scratch, a, b);
+        keep_awake_on(state, scratch, b, a);
+    }
+}
+
+/// Resets the ticks at rest of bodies that are joined to a moving kinematic body.
+fn keep_awake_on_moving_anchors(state: &mut State, scratch: &Scratch) {
+    for &joint in scratch.awake.joints() {
+        let (a, b) = state.joints.at(joint).def().bodies();
+        keep_awake_on(state, scratch, a.slot(), b.slot());
+        keep_awake_on(state, scratch, b.slot(), a.slot());
+    }
+}
+
+/// Resets the ticks at rest of a body if `ground` is kinematic and has moved in this tick.
+fn keep_awake_on(state: &mut State, scratch: &Scratch, ground: u32, other: u32) {
+    // The velocity in the state is already 0 if the body has reached its target.
+    let has_moved = || {
+        let solved = scratch.solver.body(ground);
+        solved.velocity != Vec2::ZERO || solved.spin != 0
+    };
+    if state.bodies.at(ground).kind() == BodyKind::Kinematic && has_moved() {
+        state.bodies.at_mut(other).rest_ticks.reset();
+    }
+}
+
+/// Whether a body was slow in this tick. Both its velocity and its displacement count, because overlap is pushed out
+/// without leaving a velocity.
+fn is_slow(body: &Body, solved: &SolverBody, tick_rate: u32) -> bool {
+    let square = |x: i32| i64::from(x) * i64::from(x);
+    // Twice the speed at the radius of gyration is about the speed of the outline. Displacements may have saturated.
+    let fastest =
+        |x: i32, y: i32, turn: i32| square(x).saturating_add(square(y)).max(square(turn).saturating_mul(4));
+    let limit: Speed = narrow(body.settings.sleep_speed);
+    let reach: Shift = narrow(body.settings.sleep_speed / i64::from(tick_rate));
+    let (v, d) = (body.velocity, solved.shift);
+    body.settings.may_sleep
+        && fastest(v.x.to_bits(), v.y.to_bits(), body.spin.to_bits()) < square(limit.to_bits())
+        && fastest(d.x.to_bits(), d.y.to_bits(), solved.turn.to_bits()) < square(reach.to_bits())
+}

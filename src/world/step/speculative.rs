@@ -1,0 +1,155 @@
+//! Speculative contacts: which contact points bodies can reach within the tick at their velocities at its start.
+
+use crate::body::{Body, Shape};
+use crate::collision::{Manifold, ManifoldPoint, OneWay, Passage, PosedShape, pass_by};
+use crate::math::{Length, Rot, Step, Unit, Vec2, convert, saturate, widen};
+use crate::world::cache::{
+    ClosingBound, Margins, MotionCache, PASSAGE_MIN, PredictedMotion, ShapeMotion, Travel,
+};
+use fixed::FixedI32;
+use fixed::types::extra::{LeEqU32, U27};
+
+/// Returns a function that computes by how much two bodies approach each other in a tick at a point of their contact,
+/// along the normal. With `x` the translation, `t` the rotation and `r` the lever arm of each body,
+///
+/// ```text
+/// n.(xA - xB) + tA (rA x n) - tB (rB x n)
+/// ```
+///
+/// where `r` is the arm of the manifold's origin plus the anchor: each point adds `(tA - tB) (anchor x n)`. The result
+/// is in units of `Step` and does not saturate.
+#[inline]
+pub(super) fn approach(
+    a: &PredictedMotion,
+    b: &PredictedMotion,
+    manifold: &Manifold,
+) -> impl Fn(&ManifoldPoint) -> i64 + use<> {
+    let n = (raw(manifold.normal.x), raw(manifold.normal.y));
+    // Translations are at most 52 m, arms and anchors 725 m, rotations 128 rad: products of two have at most 62 bits.
+    let dot = (raw(a.shift.x) - raw(b.shift.x)) * n.0 + (raw(a.shift.y) - raw(b.shift.y)) * n.1;
+    let lever = move |r: Vec2<Length>| (raw(r.x) * n.1 - raw(r.y) * n.0) >> Unit::FRAC_NBITS;
+    let turned = move |turn: Travel, lever: i64| (raw(turn) * lever) >> TURN_BITS;
+    let by_turn = |motion: &PredictedMotion| {
+        if motion.turn == 0 || motion.centre == manifold.origin {
+            return 0;
+        }
+        // Both points are in the world, so that the difference does not overflow.
+        turned(motion.turn, lever(manifold.origin.wrapping_sub(motion.centre).narrow()))
+    };
+    let common =
+        (dot >> (Travel::FRAC_NBITS + Unit::FRAC_NBITS - Step::FRAC_NBITS)) + by_turn(a) - by_turn(b);
+    let turn = a.turn.saturating_sub(b.turn);
+    move |point| common + turned(turn, lever(point.anchor))
+}
+
+/// The bits of a number, widened for products.
+fn raw<A: LeEqU32>(x: FixedI32<A>) -> i64 {
+    i64::from(x.to_bits())
+}
+
+/// Fraction bits that the product of a rotation and a lever arm has in excess of a step.
+const TURN_BITS: u32 = Travel::FRAC_NBITS + Length::FRAC_NBITS - Step::FRAC_NBITS;
+
+/// Two shapes that may meet within the tick.
+pub(super) struct SpeculativePair<'a> {
+    pub(super) margins: &'a Margins,
+    pub(super) a: &'a ShapeMotion,
+    pub(super) b: &'a ShapeMotion,
+    pub(super) closing: ClosingBound,
+}
+
+/// One shape of a pair, its body, and its outline in the world.
+#[derive(Clone, Copy)]
+pub(super) struct Side<'a> {
+    pub(super) shape: &'a Shape,
+    pub(super) body: &'a Body,
+    pub(super) posed: &'a PosedShape,
+}
+
+impl<'a> Side<'a> {
+    /// The shape with its direction in world axes, if it is a one-way shape.
+    fn one_way(&self) -> Option<OneWay<'a>> {
+        let angle = self.shape.one_way()?;
+        let direction = Rot::from_angle(self.body.angle() + angle).apply(Vec2::X);
+        Some(OneWay { shape: self.posed, direction })
+    }
+}
+
+impl SpeculativePair<'_> {
+    /// Largest overlap in metres at which the shapes may still pass by each other.
+    fn slack(&self) -> Step {
+        self.margins.touching.min(self.a.slack).min(self.b.slack)
+    }
+
+    /// Removes the points that the bodies do not reach within the tick at their current velocities. Without this,
+    /// shapes that pass by each other at speed would catch on speculative contacts.
+    #[inline(always)]
+    pub(super) fn keep_reachable<'p>(
+        &self,
+        manifold: &mut Manifold,
+        motion: &MotionCache,
+        posed: impl FnOnce() -> [&'p PosedShape; 2],
+    ) {
+        let speculative: Step = convert(self.margins.speculative);
+        let is_ahead = |point: &ManifoldPoint| point.separation > speculative;
+        if self.closing.is_fast() || manifold.points().iter().any(is_ahead) {
+            self.drop_unreached(manifold, motion, posed);
+        }
+    }
+
+    #[inline(never)]
+    fn drop_unreached<'p>(
+        &self,
+        manifold: &mut Manifold,
+        motion: &MotionCache,
+        posed: impl FnOnce() -> [&'p PosedShape; 2],
+    ) {
+        let motions = [motion.motion(self.a), motion.motion(self.b)];
+        let closing_at = approach(motions[0], motions[1], manifold);
+        let (speculative, slack) = (raw::<U27>(convert(self.margins.speculative)), raw(self.slack()));
+        // Largest approach at a point that acts within the tick. Points that are deeper than the slack do not pass by,
+        // and do not count.
+        let mut fastest = 0;
+        manifold.retain(|point| {
+            let separation = raw(point.separation);
+            if separation < -slack {
+                return true;
+            }
+            let closing = closing_at(point);
+            let is_reached = separation <= speculative.max(closing + speculative);
+            // A quarter more, because a gap that just closes acts as well.
+            if is_reached && closing + closing / 4 > separation {
+                fastest = fastest.max(closing);
+            }
+            is_reached
+        });
+        let fastest = Step::from_bits(saturate(fastest));
+        if fastest > PASSAGE_MIN && self.passes_by(motions, posed(), manifold.normal, fastest) {
+            *manifold = Manifold::NONE;
+        }
+    }
+
+    /// Whether one of the shapes is a one-way shape that lets the other one pass.
+    pub(super) fn lets_pass(&self, [a, b]: [Side; 2], manifold: &Manifold, was_passing: bool) -> bool {
+        let slack = widen(self.slack());
+        a.one_way().is_some_and(|one_way| one_way.lets_pass(b.posed, manifold, was_passing, slack))
+            || b.one_way()
+                .is_some_and(|one_way| one_way.lets_pass(a.posed, &manifold.swapped(), was_passing, slack))
+    }
+
+    /// Whether the shapes pass by each other, with the slack, although a contact point closes by `closing` metres in
+    /// the tick.
+    fn passes_by(
+        &self,
+        [motion_a, motion_b]: [&PredictedMotion; 2],
+        [posed_a, posed_b]: [&PosedShape; 2],
+        normal: Vec2<Unit>,
+        closing: Step,
+    ) -> bool {
+        let shift = motion_b.shift_at(posed_b.centre) - motion_a.shift_at(posed_a.centre);
+        let turn = convert(self.a.turn.saturating_add(self.b.turn));
+        let passage =
+            Passage::new(shift.convert(), turn, convert(self.slack()), convert(closing / 8), normal);
+        pass_by(posed_a, posed_b, &passage)
+    }
+}

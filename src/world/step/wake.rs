@@ -1,0 +1,61 @@
+//! Waking by contact: islands that active bodies have come into contact with.
+
+use alloc::vec::Vec;
+
+use super::narrow_phase::will_touch;
+use crate::collision::{Contact, Moved, Pair};
+use crate::world::cache::Scratch;
+use crate::world::islands::wake_island;
+use crate::world::state::State;
+
+/// Wakes the islands that active bodies touch, then the islands that those touch, and so on. Each round looks only at
+/// the pairs of the bodies that the round before has woken. Returns whether anything has woken.
+pub(super) fn wake_touched(state: &mut State, scratch: &mut Scratch) -> bool {
+    if state.islands.len() == 0 {
+        return false;
+    }
+    let mut any = false;
+    let mut pairs = core::mem::take(&mut scratch.pairs.buffers.pairs);
+    list_pairs_with_sleepers(state, scratch, &mut pairs);
+    while !pairs.is_empty() {
+        let first_change = scratch.pairs.changes.shapes().len();
+        for &pair in &pairs {
+            // Another pair of this round may have woken the island already.
+            let (a, b) = state.bodies_of(pair);
+            let Some(island) = a.island.or(b.island) else { continue };
+            if will_touch(state, scratch.shapes.poses(), pair) {
+                wake_island(state, scratch, island);
+                any = true;
+            }
+        }
+        find_pairs_of_woken(state, scratch, first_change, &mut pairs);
+    }
+    scratch.pairs.buffers.pairs = pairs;
+    any
+}
+
+/// Lists the contacts of solid shapes that have a sleeping body.
+fn list_pairs_with_sleepers(state: &State, scratch: &Scratch, pairs: &mut Vec<Pair>) {
+    let motion = scratch.shapes.motion();
+    let has_sleeper = |contact: &&Contact| {
+        let (a, b) = (motion.shape(contact.shapes.0), motion.shape(contact.shapes.1));
+        let is_asleep = |body: u32| state.bodies.at(body).is_asleep();
+        !(a.sensor || b.sensor) && (is_asleep(a.body) || is_asleep(b.body))
+    };
+    pairs.clear();
+    pairs.extend(state.contacts.iter().filter(has_sleeper).map(|contact| contact.shapes));
+}
+
+/// Finds the pairs of solid shapes between the bodies that have woken since change number `first_change` and sleeping
+/// bodies.
+fn find_pairs_of_woken(state: &State, scratch: &mut Scratch, first_change: usize, pairs: &mut Vec<Pair>) {
+    let Scratch { shapes, pairs: cache, .. } = scratch;
+    let woken = Moved::Slots(&cache.changes.shapes()[first_change..]);
+    let accept = |pair: Pair| {
+        let (a, b) = state.bodies_of(pair);
+        a.is_asleep() != b.is_asleep()
+            && state.sensor_of(pair).is_none()
+            && cache.non_colliding.may_touch(state, pair)
+    };
+    shapes.find_pairs(woken, accept, state.config.pair_limit as usize, pairs);
+}

@@ -1,0 +1,112 @@
+//! Views of the contacts of the last tick.
+
+use core::fmt;
+
+use crate::body::ShapeId;
+use crate::collision::{Contact, Manifold, ManifoldPoint};
+use crate::fx;
+use crate::math::{Fx, Speed, fx_div, fx_mul, widen};
+pub use crate::solver::SolverColour;
+use crate::world::World;
+
+/// Two shapes in contact.
+#[derive(Clone, Copy)]
+pub struct ContactView<'a> {
+    /// The shape in the smaller slot.
+    pub shape_a: ShapeId,
+    /// The shape in the larger slot.
+    pub shape_b: ShapeId,
+    /// Whether the shapes touch. If not, the contact is speculative.
+    pub touching: bool,
+    /// Normal and contact points.
+    pub manifold: &'a Manifold,
+    world: &'a World,
+    contact: &'a Contact,
+}
+
+/// Leaves out the world.
+impl fmt::Debug for ContactView<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("ContactView")
+            .field("shape_a", &self.shape_a)
+            .field("shape_b", &self.shape_b)
+            .field("touching", &self.touching)
+            .field("normal", &self.manifold.normal)
+            .field("points", &self.manifold.points())
+            .finish_non_exhaustive()
+    }
+}
+
+/// Force of a contact point on shape B.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ContactForce {
+    /// Component along the normal in N, not negative.
+    pub normal: Fx,
+    /// Friction in N, along the normal rotated counter-clockwise by a right angle.
+    pub friction: Fx,
+}
+
+impl World {
+    /// Returns the contacts of the last tick that had points, sorted by pair, as the narrow phase found them at its
+    /// start. Manifolds are not part of the state: after a restore, or after the removal of a shape with contacts,
+    /// there are none until the next tick.
+    #[doc(alias = "manifold")]
+    pub fn contacts(&self) -> impl Iterator<Item = ContactView<'_>> {
+        let found = self.scratch.contacts.output();
+        found.contacts.iter().zip(&found.manifolds).map(|(&index, manifold)| {
+            let contact = &self.state.contacts[index as usize];
+            let event = self.state.contact_event(contact);
+            let (shape_a, shape_b) = (event.shape_a, event.shape_b);
+            ContactView { shape_a, shape_b, touching: contact.touching, manifold, world: self, contact }
+        })
+    }
+}
+
+impl ContactView<'_> {
+    /// Returns the force of each of the manifold's points in the last sub-step of the tick: 0 if the point did not
+    /// push. Between resting bodies it is the constant load.
+    pub fn forces(&self) -> impl Iterator<Item = (&ManifoldPoint, ContactForce)> {
+        let mass = self.reduced_mass();
+        self.accelerations().map(move |(point, [normal, friction])| {
+            (point, ContactForce { normal: fx_mul(normal, mass), friction: fx_mul(friction, mass) })
+        })
+    }
+
+    /// The forces per kilogram of the reduced mass, in m/s²: normal and friction.
+    pub(crate) fn accelerations(&self) -> impl Iterator<Item = (&ManifoldPoint, [Fx; 2])> {
+        let config = self.world.config();
+        let rate = config.tick_rate.saturating_mul(config.solver.sub_steps);
+        // An impulse is stored as the relative velocity that it would give to the centres of mass.
+        let per_second = move |p: Speed| widen(p).saturating_mul_int(rate.into());
+        self.manifold.points().iter().map(move |point| {
+            let p = self.contact.impulse_of(point.feature).unwrap_or_default();
+            (point, [per_second(p.normal), per_second(p.tangent)])
+        })
+    }
+
+    /// The colour of the solver's graph colouring that the contact had in the last tick. `None` if it was not solved,
+    /// as with a sensor.
+    #[must_use]
+    pub fn solver_colour(&self) -> Option<SolverColour> {
+        let touching = &self.world.scratch.contacts.output().touching;
+        let place = touching.binary_search_by_key(&self.contact.shapes, |pair| pair.shapes).ok()?;
+        self.world.scratch.solver.contact_colour(place)
+    }
+
+    /// The mass that a force between the two bodies accelerates: `mA mB / (mA + mB)` in kg. A body that is not dynamic
+    /// has an infinite mass. 0 if neither body is dynamic.
+    #[must_use]
+    pub fn reduced_mass(&self) -> Fx {
+        let (a, b) = self.world.state.bodies_of(self.contact.shapes);
+        match (a.is_dynamic(), b.is_dynamic()) {
+            (true, true) => {
+                let (light, heavy) = (a.mass().min(b.mass()), a.mass().max(b.mass()));
+                let ratio = fx_div(light, heavy).unwrap_or_default();
+                fx_div(light, ratio + fx!(1)).unwrap_or_default()
+            }
+            (true, false) => a.mass(),
+            (false, true) => b.mass(),
+            (false, false) => Fx::ZERO,
+        }
+    }
+}

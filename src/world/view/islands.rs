@@ -1,0 +1,38 @@
+//! Views of islands. The state stores sleeping islands only; those of awake bodies are found on demand.
+
+use alloc::collections::BTreeMap;
+use alloc::vec::Vec;
+
+use crate::body::{BodyId, Handle};
+use crate::world::World;
+use crate::world::cache::UnionFind;
+use crate::world::islands::{unite, unite_touching};
+
+impl World {
+    /// Returns the sets of dynamic bodies that fall asleep and wake together: those connected by contacts and joints of
+    /// the last tick, and sleeping islands. The bodies of a set are in slot order, and the sets are ordered by their
+    /// first body.
+    ///
+    /// For tools: every call computes the sets anew, in about the time of the sleep phase of a tick.
+    #[must_use]
+    pub fn islands(&self) -> Vec<Vec<BodyId>> {
+        let state = &self.state;
+        let members = state.bodies.iter().filter(|(_, body)| body.is_dynamic() && body.is_enabled());
+        let slots: Vec<u32> = members.map(|(id, _)| id.slot()).collect();
+        let mut union = UnionFind::default();
+        union.reset(&slots, state.bodies.slot_count());
+        for (_, joint) in state.joints.iter().filter(|(_, joint)| joint.is_solved()) {
+            let (a, b) = joint.def().bodies();
+            unite(state, &mut union, a.slot(), b.slot());
+        }
+        unite_touching(state, &mut union, &state.contacts);
+        for (_, island) in state.islands.iter() {
+            island.bodies.windows(2).for_each(|pair| union.unite(pair[0], pair[1]));
+        }
+        let mut islands = BTreeMap::<u32, Vec<BodyId>>::new();
+        for slot in slots {
+            islands.entry(union.root(slot)).or_default().push(state.bodies.handle_at(slot));
+        }
+        islands.into_values().collect()
+    }
+}

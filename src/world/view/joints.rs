@@ -1,0 +1,96 @@
+//! Views of joints, measured at the current poses of their bodies.
+
+use crate::body::{Body, JointId};
+use crate::math::{Fx, Vec2};
+use crate::solver::{Joint, JointKind, Tuning};
+use crate::world::World;
+
+impl World {
+    /// Returns the anchors of a joint in the world, in metres: that of body A, that of body B. `None`, as with all
+    /// these methods, if the joint is not in the world.
+    #[must_use]
+    pub fn joint_anchors(&self, id: JointId) -> Option<(Vec2<Fx>, Vec2<Fx>)> {
+        let (joint, a, b) = self.joint_and_bodies(id)?;
+        let def = joint.def();
+        Some((a.transform().apply(def.frame_a.anchor), b.transform().apply(def.frame_b.anchor)))
+    }
+
+    /// Returns the angle of B's frame in A's frame in radians, counter-clockwise. It counts full turns: the angle of a
+    /// wheel grows as it rolls.
+    #[must_use]
+    pub fn joint_angle(&self, id: JointId) -> Option<Fx> {
+        let (joint, a, b) = self.joint_and_bodies(id)?;
+        Some(joint.angle(a, b))
+    }
+
+    /// Returns the rate of the joint angle in rad/s.
+    #[must_use]
+    pub fn joint_angular_velocity(&self, id: JointId) -> Option<Fx> {
+        let (_, a, b) = self.joint_and_bodies(id)?;
+        Some(b.angular_velocity().saturating_sub(a.angular_velocity()))
+    }
+
+    /// Returns the position of B's anchor in A's frame of the joint, in metres: `x` is the translation of prismatic and
+    /// wheel joints.
+    #[must_use]
+    pub fn joint_translation(&self, id: JointId) -> Option<Vec2<Fx>> {
+        let (joint, a, _) = self.joint_and_bodies(id)?;
+        let (from, to) = self.joint_anchors(id)?;
+        Some(joint.axes(a).apply_inverse_wide(to - from))
+    }
+
+    /// Returns the velocity of B's anchor relative to A, in A's frame of the joint, in m/s.
+    #[must_use]
+    pub fn joint_velocity(&self, id: JointId) -> Option<Vec2<Fx>> {
+        let (joint, a, b) = self.joint_and_bodies(id)?;
+        let (_, anchor) = self.joint_anchors(id)?;
+        Some(joint.axes(a).apply_inverse_wide(b.velocity_at(anchor) - a.velocity_at(anchor)))
+    }
+
+    /// Returns the distance between the anchors in metres.
+    #[must_use]
+    pub fn joint_length(&self, id: JointId) -> Option<Fx> {
+        self.joint_anchors(id).map(|(a, b)| a.distance(b))
+    }
+
+    /// Returns the distance in metres by which the anchors violate the joint: the distance of the anchors of a revolute
+    /// or weld joint, the offset across the axis of a prismatic or wheel joint, the deviation from the rod or the
+    /// limits of a distance joint. Limits, springs and motors of other kinds do not count. `None` for motor and filter
+    /// joints.
+    #[doc(alias = "separation")]
+    #[must_use]
+    pub fn joint_error(&self, id: JointId) -> Option<Fx> {
+        match &self.joint(id)?.def().kind {
+            JointKind::Revolute(_) | JointKind::Weld(_) => self.joint_length(id),
+            JointKind::Prismatic(_) | JointKind::Wheel(_) => {
+                self.joint_translation(id).map(|translation| translation.y.saturating_abs())
+            }
+            JointKind::Distance(distance) => {
+                let length = self.joint_length(id)?;
+                let nearest = match (distance.rod, distance.limit) {
+                    (Some(rod), _) => rod,
+                    (None, Some(limit)) => length.max(limit.lower).min(limit.upper),
+                    (None, None) => length,
+                };
+                Some(length.saturating_sub(nearest).saturating_abs())
+            }
+            JointKind::Motor(_) | JointKind::Filter => None,
+        }
+    }
+
+    /// Returns the force in N that the joint exerted on B in the last sub-step, and the torque in N m about B's anchor.
+    #[doc(alias = "reaction force")]
+    #[must_use]
+    pub fn joint_force(&self, id: JointId) -> Option<(Vec2<Fx>, Fx)> {
+        let (joint, a, b) = self.joint_and_bodies(id)?;
+        let config = &self.state.config;
+        let tuning = Tuning::new(&config.solver, config.gravity, config.tick_rate);
+        Some(joint.reaction(a, b, &tuning))
+    }
+
+    fn joint_and_bodies(&self, id: JointId) -> Option<(&Joint, &Body, &Body)> {
+        let joint = self.joint(id)?;
+        let (a, b) = joint.def().bodies();
+        Some((joint, self.body(a)?, self.body(b)?))
+    }
+}
