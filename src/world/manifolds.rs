@@ -12,7 +12,7 @@ use super::state::State;
 use crate::collision::{AxisHint, BoxPairs, Contact, Manifold, Pair, SatCounters, collide, collide_near};
 use crate::lanes::Machine;
 use crate::math::{Length, Step, saturate, widen};
-use crate::solver::{Surface, TouchingPair};
+use crate::solver::{Surface, SurfaceSide, TouchingPair};
 
 /// Fewest contacts that are worth a job of their own.
 const JOB_MIN: usize = 512;
@@ -295,7 +295,10 @@ fn keep_reachable(
 }
 
 fn surface_of(state: &State, poses: &Poses, (a, b): Pair) -> Surface {
-    let side = |slot: u32| (state.shapes.at(slot).material(), poses.at(slot).outline.radius());
+    let side = |slot: u32| SurfaceSide {
+        material: state.shapes.at(slot).material(),
+        radius: poses.at(slot).outline.radius(),
+    };
     Surface::between(side(a), side(b))
 }
 
