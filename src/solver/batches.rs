@@ -1,11 +1,11 @@
 //! Batches of constraints of one kind, and how a stage of the solver runs over them.
 //!
-//! Contacts and hinges are solved in batches. No two constraints of a colour change the same body, so that the
-//! batches of a colour may be solved in any order and on several threads. What fits no colour is the overflow: it is
-//! solved one constraint after the other, by the same code for one lane.
+//! Contacts and hinges are solved in batches. No two constraints of a colour change the same body, so that the batches
+//! of a colour may be solved in any order and on several threads. Constraints that fit no colour are the overflow: they
+//! are solved one after the other, by the same code for one lane.
 //!
-//! A kind of constraint says what its batches consist of ([`BatchKind`]), and a stage what it does to one of them
-//! ([`Operation`]).
+//! Each kind of constraint defines the parts of its batches ([`BatchKind`]), and each stage of the solver an operation
+//! on one batch ([`Operation`]).
 
 use alloc::vec::Vec;
 use core::cell::Cell;
@@ -21,11 +21,11 @@ const BATCHES_PER_JOB: usize = 16;
 
 /// A kind of constraint, of which `N` are solved at a time.
 pub(super) trait BatchKind: Clone + Debug + 'static {
-    /// What every operation reads and writes.
+    /// The part that every operation reads and writes.
     type Batch<const N: usize>: Clone + Debug + Send;
-    /// What only some operations read. It lies apart, because memory is what the passes over large piles wait for.
+    /// The part that only some operations read. It lies apart, because passes over large piles are bound by memory.
     type Record<const N: usize>: Clone + Debug + Sync;
-    /// What only some batches have.
+    /// The part that only some batches have.
     type Extra<const N: usize>: Clone + Debug + Send;
 
     /// The indices of the bodies of each lane: those of A and those of B.
@@ -35,7 +35,7 @@ pub(super) trait BatchKind: Clone + Debug + 'static {
     fn has_extra<const N: usize>(batch: &Self::Batch<N>) -> bool;
 }
 
-/// What a stage of the solver does to each batch.
+/// An operation of the solver on one batch.
 pub(super) trait Operation<K: BatchKind>: Copy + Send + Sync {
     /// Must be `#[inline(always)]`: see [`Kernel::run`].
     fn apply<L: Lanes<N>, const N: usize>(
@@ -125,7 +125,7 @@ impl<K: BatchKind> BatchList<K> {
             start = end;
             let share = threads.share(colour.len(), BATCHES_PER_JOB);
             let jobs = colour.chunks_mut(share).zip(records.chunks(share)).map(|(batches, records)| {
-                // Mostly there are no extras, and to look at every batch costs a cache miss each.
+                // In most ticks there are no extras, and counting them costs a cache miss for each batch.
                 let has_extra = |batch: &&K::Batch<WIDTH>| K::has_extra(batch);
                 let count = if extras.is_empty() { 0 } else { batches.iter().filter(has_extra).count() };
                 let (own, others) = core::mem::take(&mut extras).split_at_mut(count);

@@ -55,7 +55,8 @@ impl SolverBody {
     }
 }
 
-/// The rotation of a body, `dtheta = turn / k`, in units of 2^-32 turns. A small body may spin more than once in a tick.
+/// The rotation of a body, `dtheta = turn / k`, in units of 2^-32 turns. A small body may spin more than once in a
+/// tick.
 pub(crate) fn turn_of(turn: Shift, inverse_gyration: Reciprocal) -> i64 {
     /// `1 / (2 pi)` with 63 fraction bits.
     const INVERSE_TAU: i128 = 1_467_945_251_641_000_613;

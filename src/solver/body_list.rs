@@ -16,7 +16,7 @@ pub(crate) struct BodyList {
     pub(super) bodies: Vec<SolverBody>,
     /// The pose of each body at the start of the tick.
     poses: Vec<Pose>,
-    /// What contacts need of each body.
+    /// The properties of each body that contacts depend on.
     facts: Vec<BodyFacts>,
     /// For each body slot, the index of its body in `bodies`: 0 if it is not among the bodies of the tick.
     indices: Vec<u32>,
@@ -108,7 +108,8 @@ impl BodyList {
         self.indices[slot as usize]
     }
 
-    /// The index of a body with a joint. Such a body does not share the ground's index, because joints need its rotation.
+    /// The index of a body with a joint. Such a body does not share the ground's index, because joints need its
+    /// rotation.
     pub(super) fn own_index_of(&mut self, slot: u32, body: &Body) -> u32 {
         if self.index_of(slot) == GROUND {
             self.push(slot, body, SolverBody::default(), BodyFacts::GROUND);

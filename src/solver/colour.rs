@@ -1,8 +1,8 @@
 //! Graph colouring: groups of constraints of which no two change the same body, so that the order inside a group cannot
 //! matter. A scalar, a wide and a threaded solver then give the same bits.
 //!
-//! Constraints are coloured greedily in the order of a hash of their shapes or of their joint: in sorted order the solver
-//! always sweeps the same way and a pyramid sways by 0.1 to 0.4 m, in hashed order by 0.006 m.
+//! Constraints are coloured greedily in the order of a hash of their shapes or of their joint: in sorted order the
+//! solver always sweeps the same way and a pyramid sways by 0.1 to 0.4 m, in hashed order by 0.006 m.
 
 use alloc::vec::Vec;
 
@@ -32,7 +32,7 @@ impl Node {
     }
 }
 
-/// How much there is to solve.
+/// The amount of work in a constraint: contacts with one point are small.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Size {
     Large,
@@ -71,7 +71,7 @@ impl Colouring {
         self.nodes.clear();
     }
 
-    /// Adds a constraint. The others will call it by its index, counted from 0.
+    /// Adds a constraint. Its index is the number of constraints that were added before it.
     #[inline]
     pub(super) fn add(&mut self, node: Node) {
         self.nodes.push(node);
@@ -121,8 +121,8 @@ impl Colouring {
         &self.order[..end]
     }
 
-    /// The other constraints, colour by colour and size by size. Empty groups are left out: most places of a small world
-    /// are empty, and the groups are iterated over many times in a tick.
+    /// The other constraints, colour by colour and size by size. Empty groups are left out: most places of a small
+    /// world are empty, and the groups are iterated over many times in a tick.
     pub(super) fn colours(&self) -> impl Iterator<Item = &[u32]> {
         let groups = self.ends.windows(2).map(|ends| &self.order[ends[0] as usize..ends[1] as usize]);
         groups.filter(|indices| !indices.is_empty())

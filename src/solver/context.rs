@@ -1,4 +1,4 @@
-//! What every stage of a sub-step is given, as Box2D's `b2StepContext`.
+//! The context that every stage of a sub-step is given, as `b2StepContext` of Box2D.
 
 use core::cell::Cell;
 
@@ -17,7 +17,7 @@ pub(super) enum Pass {
     Relax,
 }
 
-/// How the stages of a sub-step compute, the settings of the tick, and the bodies that the stages change.
+/// Backend, threads and settings of a tick, and the bodies that the stages change.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct StepContext<'a> {
     pub(super) machine: Machine,

@@ -11,8 +11,8 @@ pub(crate) const STEP_MAX: Speed = Speed::lit("512");
 /// Largest accumulated impulse, in m/s.
 pub(crate) const IMPULSE_MAX: Speed = Speed::lit("1023");
 
-/// Clamps an accumulated impulse to [`STEP_MAX`]. It has accumulated over several sub-steps, each within [`STEP_MAX`], and
-/// is applied at once to a velocity of up to [`SPEED_MAX`].
+/// Clamps an accumulated impulse to [`STEP_MAX`]. It has accumulated over several sub-steps, each within [`STEP_MAX`],
+/// and is applied at once to a velocity of up to [`SPEED_MAX`].
 #[inline]
 pub(crate) fn clamp_warm_start(lambda: &mut Speed, faults: &mut Faults) {
     let within = (*lambda).clamp(-STEP_MAX, STEP_MAX);

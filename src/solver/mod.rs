@@ -1,9 +1,9 @@
 //! The solver: sequential impulses in sub-steps, in a fixed order.
 //!
 //! [`Solver::sub_step`] lists the stages of a sub-step, those of E. Catto's soft step (Solver2D, `solve_soft_step.c`).
-//! Each stage has a file of its own: `integrate` for bodies, `push` for the warm start of contacts, `contact/warm_start`,
-//! `contact/solve`, `contact/relax` and `contact/restitution` for contacts, `joint/hinge` for hinges, and `joint/list` for
-//! all other joints.
+//! Each stage has a file of its own: `integrate` for bodies, `push` for the warm start of contacts,
+//! `contact/warm_start`, `contact/solve`, `contact/relax` and `contact/restitution` for contacts, `joint/hinge` for
+//! hinges, and `joint/list` for all other joints.
 //!
 //! A row removes velocity along one direction (`row`), a point block pins two points together (`point_block`). Contacts
 //! and hinges are solved in batches of eight (`batches`), by code that is written once for any number of lanes
@@ -57,8 +57,8 @@ use crate::threads::Threads;
 /// iteration in a sub-step leaves piles restless: the 20 x 20 pyramids of 55 boxes move at 0.27 m/s and are 5.8 mm deep
 /// in their first ticks, instead of 0.05 m/s and 1.5 mm.
 const COLD_ROUNDS: u32 = 4;
-/// Fewest contact points of a tick with more iterations. With fewer points little rests on anything else, and a few new
-/// ones are a landing, not a pile.
+/// Fewest contact points of a tick with more iterations. In worlds with fewer points little rests on other bodies, and
+/// a few new ones are a landing, not a pile.
 const COLD_POINTS: u32 = 256;
 
 /// The working memory of the solver. Its contents do not outlive a tick, its allocations do.

@@ -14,14 +14,14 @@
 //! vA -= GA d,  uA -= fA.d,  vB += GB d,  uB += fB.d
 //! ```
 //!
-//! `L` is the change of the relative velocity of the anchors by the impulse, and what is carried over from pose to pose:
-//! the new `G` drops the part of it that no longer acts along the arm. Carrying over the impulse `p = G L` instead
-//! multiplies that part by up to `e^2` (1100 m/s on a rod 40 radii of gyration long). Two scalar rows instead of the
-//! block gain energy in a swinging chain.
+//! `L` is the change of the relative velocity of the anchors by the impulse. `L` is carried over from pose to pose:
+//! the new `G` drops the part of it that no longer acts along the arm. Carrying over the impulse `p = G L`
+//! instead multiplies that part by up to `e^2` (1100 m/s on a rod 40 radii of gyration long). Two scalar rows instead
+//! of the block gain energy in a swinging chain.
 //!
-//! **The bias pass measures along the chord.** Displacements are straight while arms turn, which opens the joint by about
-//! half the square of the rotation. The velocity that closes it is that of the arm averaged over the predicted rotation
-//! `t = h u / k`, to third order
+//! **The bias pass measures along the chord.** Displacements are straight while arms turn, which opens the joint by
+//! about half the square of the rotation. The velocity that closes it is that of the arm averaged over the predicted
+//! rotation `t = h u / k`, to third order
 //!
 //! ```text
 //! eM = e + M (t/2 (-e_y, e_x) - t^2/6 e),   M = 1 + 0.6 impulseScale / massScale
@@ -29,8 +29,8 @@
 //! ```
 //!
 //! while the impulse still acts along the arm at the start, so that it costs no energy (the position constraint of
-//! RATTLE, H. Andersen 1983). `M` compensates for the softness, which would yield to the centrifugal force. The relax pass
-//! uses the arm at the start. Hinges do all this in batches (`joint/hinge`).
+//! RATTLE, H. Andersen 1983). `M` compensates for the softness, which would yield to the centrifugal force. The relax
+//! pass uses the arm at the start. Hinges do all this in batches (`joint/hinge`).
 
 use fixed::types::extra::U30;
 
@@ -148,8 +148,8 @@ impl PointBlock {
         self.apply(d, a, b, faults);
     }
 
-    /// Solves the block for one iteration with an impulse of limited length: `|p| <= p_max`, where `p = G L` is the impulse
-    /// times `mA + mB`.
+    /// Solves the block for one iteration with an impulse of limited length: `|p| <= p_max`, where `p = G L` is the
+    /// impulse times `mA + mB`.
     #[inline]
     #[expect(clippy::too_many_arguments, reason = "the quantities of the equations above")]
     pub(crate) fn solve_within(
@@ -245,8 +245,8 @@ mod tests {
     use crate::fx;
     use crate::math::{Fx, Reciprocal, Rng, Rot, narrow};
 
-    /// One update leaves the anchors at rest against each other but for rounding errors of up to 6e-5 m/s. With arms of up
-    /// to 16 radii of gyration on both sides they start at up to 330 m/s.
+    /// One update leaves the anchors at rest against each other but for rounding errors of up to 6e-5 m/s. With arms of
+    /// up to 16 radii of gyration on both sides they start at up to 330 m/s.
     #[test]
     fn an_update_brings_the_anchors_to_rest() {
         let mut rng = Rng::new(8);

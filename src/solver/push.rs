@@ -1,7 +1,7 @@
 //! Warm start of contacts, once for each body: the velocity change that contacts have accumulated is applied at once.
 //!
-//! The rows of contacts do not change within a tick. So the velocity change by the impulses that have accumulated in them
-//! is what contacts have changed of a body's velocity in the sub-step before, from their warm start to its end:
+//! The rows of contacts do not change within a tick. So the velocity change by the impulses that have accumulated in
+//! them is what contacts have changed of a body's velocity in the sub-step before, from their warm start to its end:
 //!
 //! ```text
 //! push = v - v_free,    v' = v_free' + push
@@ -23,7 +23,7 @@ use super::limits::Faults;
 use super::pair::Pair;
 use crate::lanes::{GROUND, Ints, Kernel, Lanes, Motion, WIDTH};
 
-/// What contacts have changed of the velocities of all bodies that they push.
+/// The velocity changes by contacts of all bodies that they push.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Pushes {
     groups: Vec<Group<WIDTH>>,
@@ -38,13 +38,14 @@ pub(super) struct Pushes {
 struct Group<const N: usize> {
     /// The indices of the bodies; the ground in lanes without one.
     at: [u32; N],
-    /// Whether anything but contacts changes the velocity of any of them between a warm start and the end of a sub-step.
+    /// Whether anything but contacts changes the velocity of any of them between a warm start and the end of a
+    /// sub-step.
     shared: bool,
     free: Motion<Ints<N>>,
     push: Motion<Ints<N>>,
 }
 
-/// What is done for all bodies in turn.
+/// An operation on all bodies in turn.
 #[derive(Clone, Copy, Debug)]
 enum Task {
     Measure,
@@ -89,8 +90,8 @@ impl Pushes {
         }
     }
 
-    /// Records the free velocities and pushes again what was pushed in the last sub-step. Returns whether there was one in
-    /// this tick: if not, nothing has been pushed.
+    /// Records the free velocities and applies the pushes of the last sub-step again. Returns whether there was a
+    /// sub-step in this tick: if not, nothing has been pushed.
     pub(super) fn apply(&mut self, context: &StepContext<'_>) -> bool {
         let was_known = self.known;
         if !self.groups.is_empty() {

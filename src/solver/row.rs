@@ -102,7 +102,8 @@ pub(crate) struct Row {
     f_b: Unit,
 }
 
-/// Largest lever ratio. Two of them times the largest spins leave 2^57 of 64 bits for the linear part of [`Row::along`].
+/// Largest lever ratio. Two of them times the largest spins leave 2^57 of 64 bits for the linear part of
+/// [`Row::along`].
 pub(super) const RATIO_MAX: Ratio = Ratio::lit("126");
 
 /// `D` of a row, 1 to 15 877, with 30 fraction bits.
@@ -233,8 +234,8 @@ impl Row {
         self.apply_wide(d.to_bits().into(), a, b, faults);
     }
 
-    /// As [`Self::apply`], in units of [`Speed`]: the difference of two accumulated impulses may be twice as large as the
-    /// type can hold.
+    /// As [`Self::apply`], in units of [`Speed`]: the difference of two accumulated impulses may be twice as large as
+    /// the type can hold.
     #[inline]
     fn apply_wide(&self, d: i64, a: &mut SolverBody, b: &mut SolverBody, faults: &mut Faults) {
         if d.unsigned_abs() <= u64::from(STEP_MAX.to_bits().unsigned_abs()) {
@@ -244,8 +245,8 @@ impl Row {
         }
     }
 
-    /// Applies an impulse of more than 512 m/s in steps: a bound may shrink, and what was pushed may come free, by more than
-    /// a velocity has room for.
+    /// Applies an impulse of more than 512 m/s in steps: a bound may shrink, and what was pushed may come free, by more
+    /// than a velocity has room for.
     #[cold]
     fn apply_in_steps(&self, mut d: i64, a: &mut SolverBody, b: &mut SolverBody, faults: &mut Faults) {
         let limit = i64::from(STEP_MAX.to_bits());

@@ -41,15 +41,16 @@ pub struct SolverSettings {
     pub iterations: u32,
     /// Method by which contacts remove overlap.
     pub contact: ContactTuning,
-    /// Stiffness of joints in Hz, at most a quarter of the sub-step rate. It is doubled for the anchors of a hinge or rigid
-    /// weld that holds a body without any other joint to a body that is not dynamic: no other joint has to yield there.
+    /// Stiffness of joints in Hz, at most a quarter of the sub-step rate. It is doubled for the anchors of a hinge or
+    /// rigid weld that holds a body without any other joint to a body that is not dynamic: no other joint has to yield
+    /// there.
     pub joint_hertz: Fx,
     /// Damping ratio of joints, 0 to 100.
     pub joint_damping_ratio: Fx,
     /// Approach speed in m/s below which nothing bounces.
     pub restitution_threshold: Fx,
-    /// Speed limit in m/s, at most 400. It also limits the radius of gyration times the angular velocity. Below 27 ticks per
-    /// second the limit is lower: [`DISTANCE_MAX`] in a tick.
+    /// Speed limit in m/s, at most 400. It also limits the radius of gyration times the angular velocity. Below 27
+    /// ticks per second the limit is lower: [`DISTANCE_MAX`] in a tick.
     pub speed_max: Fx,
 }
 
@@ -120,7 +121,8 @@ pub(crate) struct Tuning {
     pub(crate) contact_immovable: Softness,
     pub(crate) slop: Step,
     pub(crate) push_speed: Speed,
-    /// Softness of joints, and of the anchors of hinges that hold a body without any other joint to one that is not dynamic.
+    /// Softness of joints, and of the anchors of hinges that hold a body without any other joint to one that is not
+    /// dynamic.
     pub(crate) joint: Softness,
     pub(crate) mount: Softness,
     pub(crate) relax: bool,

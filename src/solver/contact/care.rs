@@ -1,9 +1,9 @@
 //! Overflow policies: how numbers are kept within their formats.
 //!
-//! [`Careful`] saturates every sum and counts a fault where a clamp changed a number. [`Calm`] does neither, and records
-//! whether all numbers were within bounds inside which no sum can overflow and no clamp can act. Nearly all contacts are
-//! within these bounds: nothing in them is fast, deep or pushed hard. A batch is solved by `Calm` first, and again by
-//! `Careful` if a number was out of bounds. Where the result of `Calm` is used, both give the same bits:
+//! [`Careful`] saturates every sum and counts a fault where a clamp changed a number. [`Calm`] does neither, and
+//! records whether all numbers were within bounds inside which no sum can overflow and no clamp can act. Nearly all
+//! contacts are within these bounds: nothing in them is fast, deep or pushed hard. A batch is solved by `Calm` first,
+//! and again by `Careful` if a number was out of bounds. Where the result of `Calm` is used, both give the same bits:
 //!
 //! ```text
 //! |vx|, |vy|, |u| < 64 at first, |d| < 4 for at most 10 rows       velocities stay below 104, spins below 84
@@ -44,7 +44,7 @@ pub(super) fn calm_at(rates: [Rate; 3]) -> bool {
     rates.into_iter().all(|rate| rate <= CALM_RATE)
 }
 
-/// An overflow policy: what is done where a number might leave its format.
+/// An overflow policy: the treatment of numbers that might overflow.
 pub(super) trait Care<L: Lanes<N>, const N: usize> {
     /// Checks the velocities that an iteration begins with, or displacements.
     #[inline(always)]
@@ -137,8 +137,8 @@ impl<L: Lanes<N>, const N: usize> Care<L, N> for Careful<'_> {
     }
 }
 
-/// Applies impulses of more than 512 m/s in steps. When a friction limit shrinks or a pushed shape comes free, an impulse
-/// may change by more than a velocity has room for.
+/// Applies impulses of more than 512 m/s in steps. When a friction limit shrinks or a pushed shape comes free, an
+/// impulse may change by more than a velocity has room for.
 #[cold]
 fn apply_in_steps<L: Lanes<N>, const N: usize>(
     pair: &mut Pair<L, N>,
@@ -157,8 +157,8 @@ fn apply_in_steps<L: Lanes<N>, const N: usize>(
 
 /// Checks no sum, and tells at the end whether all numbers were within their bounds.
 pub(super) struct Calm<L: Lanes<N>, const N: usize> {
-    /// The bitwise or of all numbers so far that must be within a bound, each with the bound added. The bound is a power
-    /// of two, so that a number within it sets no bit at or above twice the bound.
+    /// The bitwise or of all numbers so far that must be within a bound, each with the bound added. The bound is a
+    /// power of two, so that a number within it sets no bit at or above twice the bound.
     large: L::Int,
     small: L::Int,
 }
@@ -280,8 +280,8 @@ impl<L: Lanes<N>, const N: usize> Care<L, N> for Calm<L, N> {
     }
 }
 
-/// Changes velocities by impulses that have bits to spare. Multiplied by four, the result of a product is its upper half,
-/// which spares a shift.
+/// Changes velocities by impulses that have bits to spare. Multiplied by four, the result of a product is its upper
+/// half, which spares a shift.
 #[inline(always)]
 fn change<L: Lanes<N>, const N: usize>(pair: &mut Pair<L, N>, row: &Row<N>, d: L::Int) {
     let twice = L::add(d, d);

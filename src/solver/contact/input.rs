@@ -1,4 +1,4 @@
-//! What the rows of a contact are computed from, gathered from the narrow phase, the state and the body list.
+//! Gathers the inputs of a contact's rows from the narrow phase, the state and the body list.
 
 use super::super::TouchingPair;
 use super::super::body_list::{BodyList, GROUND};
@@ -155,8 +155,8 @@ mod tests {
     use crate::math::{Fx, Speed, Unit, Vec2};
     use alloc::vec::Vec;
 
-    /// The share of an impulse that a very heavy body takes rounds to nothing, but other contacts of the same colour must
-    /// not change the body meanwhile.
+    /// The share of an impulse that a very heavy body takes rounds to nothing, but other contacts of the same colour
+    /// must not change the body meanwhile.
     #[test]
     fn a_body_that_is_too_heavy_to_be_moved_is_still_one_that_changes() {
         let mut bodies: Arena<Body, BodyId> = Arena::default();

@@ -10,8 +10,8 @@
 //! ```
 //!
 //! Each operation on a batch has a file of its own, as has each stage of the solver: `warm_start`, `solve` (which has
-//! the equation above), `relax` and `restitution`. `prepare` fills the batches of a tick and `rows` computes their rows;
-//! `store` returns the impulses to the state. `care` has the two ways to keep numbers within their formats.
+//! the equation above), `relax` and `restitution`. `prepare` fills the batches of a tick and `rows` computes their
+//! rows; `store` returns the impulses to the state. `care` has the two ways to keep numbers within their formats.
 //!
 //! Differences of two velocities fit because each velocity is below 512 m/s; a sum that may not fit saturates. Lanes
 //! without a contact have gains of 0, so that nothing in them matters.
@@ -71,7 +71,7 @@ impl BatchKind for Contacts {
     }
 }
 
-/// How the impulses of the last tick were carried over.
+/// Counts of contact points by whether they start from an impulse of the last tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct WarmStarts {
     /// Points in contact.

@@ -197,7 +197,8 @@ impl<L: Lanes<N>, const N: usize> Long<L, N> {
 #[inline(always)]
 fn product<L: Lanes<N>, const N: usize>(x: L::Int, long: &Long<L, N>) -> L::Int {
     let Long { whole, part } = *long;
-    // The product with the whole part is exact, and both products have the sign of x: if one saturates, so does the sum.
+    // The product with the whole part is exact, and both products have the sign of x: if one saturates, so does the
+    // sum.
     let (whole, _) = L::narrow_saturating::<1>(L::mul(x, L::add(whole, whole)));
     L::add_saturating(whole, L::narrow::<30>(L::mul(x, part)))
 }

@@ -68,7 +68,7 @@ impl Operation<Contacts> for Solve {
     }
 }
 
-/// How a pass iterates. A copy for each pass is compiled, as `pass` is known where it is made.
+/// The parameters of an iteration. `pass` is a constant where it is set, so that each pass is compiled by itself.
 #[derive(Clone, Copy)]
 pub(super) struct Settings<'a> {
     pub(super) pass: Pass,
@@ -172,7 +172,7 @@ impl<L: Lanes<N>, const N: usize> Solved<L, N> {
     }
 }
 
-/// What the normal rows of a batch have in common in a pass: the bodies may touch there but not overlap.
+/// The parameters that the normal rows of a batch have in common in a pass.
 struct Normals<L: Lanes<N>, const N: usize> {
     pass: Pass,
     n: [L::Int; 2],

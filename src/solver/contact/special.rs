@@ -1,5 +1,5 @@
-//! What few contacts have: restitution, moving surfaces and rolling resistance. It lies apart from the batches, so that
-//! the other contacts do not carry it through the caches.
+//! Restitution, moving surfaces and rolling resistance. Few contacts have any of these, and their data lies apart from
+//! the batches, so that the other contacts do not carry it through the caches.
 
 use super::batch::Batch;
 use super::input::ContactSource;

@@ -144,8 +144,8 @@ mod tests {
     use crate::lanes::Scalar;
     use crate::math::Rng;
 
-    /// The shares of both points add up to the impulse along the tangent. Each is at most what its friction allows, and half
-    /// of the impulse where both points can have that much.
+    /// The shares of both points add up to the impulse along the tangent. Each is at most what its friction allows, and
+    /// half of the impulse where both points can have that much.
     #[test]
     fn friction_is_shared_out_by_halves_as_far_as_each_point_reaches() {
         let mut rng = Rng::new(31);

@@ -14,7 +14,7 @@ pub(crate) struct Surface {
     pub(crate) rolling_resistance: Fx,
 }
 
-/// What a shape contributes to a surface.
+/// The contribution of a shape to a surface.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SurfaceSide<'a> {
     pub(crate) material: &'a Material,

@@ -1,7 +1,7 @@
 //! Semi-implicit Euler: velocities first, then displacements from the new velocities.
 //!
-//! Eight bodies at a time where all of them are dynamic, free and within all limits (`kernel`), as most bodies are; one by
-//! one elsewhere.
+//! Eight bodies at a time where all of them are dynamic, free and within all limits (`kernel`), as most bodies are; one
+//! by one elsewhere.
 
 mod kernel;
 mod sub_step;
@@ -25,8 +25,8 @@ const SHIFT_MAX: Shift = Shift::lit("15.999");
 pub(super) struct Mover {
     /// Velocity change by gravity and applied force along x and y, and by applied torque.
     step: Quad,
-    /// Damping factors of the velocity and of the spin, `1 / (1 + h c)`: the implicit step, stable for any rate `c`. The
-    /// third number is negative if the body is not dynamic or has a locked axis.
+    /// Damping factors of the velocity and of the spin, `1 / (1 + h c)`: the implicit step, stable for any rate `c`.
+    /// The third number is negative if the body is not dynamic or has a locked axis.
     factors: Quad,
     index: u32,
     dynamic: bool,

@@ -48,8 +48,9 @@ impl SubStep {
         Shift::from_bits((quotient as i64 - BIAS as i64) as i32)
     }
 
-    /// [`Self::distance`] in lanes: a quotient `q` that is off by at most one is corrected by its remainder. The remainder
-    /// of the right quotient, `64 v + rate - 2 rate q`, is between 0 and `2 rate`, so that its lowest 32 bits suffice.
+    /// [`Self::distance`] in lanes: a quotient `q` that is off by at most one is corrected by its remainder. The
+    /// remainder of the right quotient, `64 v + rate - 2 rate q`, is between 0 and `2 rate`, so that its lowest 32 bits
+    /// suffice.
     #[inline(always)]
     pub(super) fn distances<L: Lanes<N>, const N: usize>(&self, speed: L::Int) -> L::Int {
         let double = L::splat(2 * self.rate);

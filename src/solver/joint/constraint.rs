@@ -27,9 +27,10 @@ pub(in crate::solver) struct JointSet {
     anchors: Vec<u32>,
     /// For each body of the tick, its place in `bodies`, from 1; 0 if it has no joint.
     places: Vec<u32>,
-    /// What the arrangement of joints needs of their bodies.
+    /// The properties of bodies that the arrangement of their joints depends on.
     bodies: Vec<End>,
-    /// How each of `bodies` turns. It is kept from tick to tick, and apart from `bodies` because every sub-step reads it.
+    /// The rotation coefficients of `bodies`. They are kept from tick to tick, and apart from `bodies` because every
+    /// sub-step reads them.
     turning: Vec<Turning>,
     /// For each body of the tick.
     turned: Vec<Turned>,
@@ -296,7 +297,7 @@ impl JointSet {
     }
 }
 
-/// How far a lever ratio that is averaged over a predicted rotation `t` moves: `half t` across itself, and `sixth t^2`
+/// The shift of a lever ratio that is averaged over a predicted rotation `t`: `half t` across itself, and `sixth t^2`
 /// along itself.
 #[derive(Clone, Copy)]
 struct Stretch {
@@ -304,6 +305,6 @@ struct Stretch {
     sixth: Unit,
 }
 
-/// Largest predicted rotation, in radians. Beyond a quarter of a radian the third order is no better than the second, and
-/// feeds energy to chains that one iteration does not solve.
+/// Largest predicted rotation, in radians. Beyond a quarter of a radian the third order is no better than the second,
+/// and feeds energy to chains that one iteration does not solve.
 const TURN_MAX: Unit = Unit::lit("0.25");

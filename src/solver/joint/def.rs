@@ -33,7 +33,7 @@ pub struct JointDef {
     pub frame_b: JointFrame,
     /// Whether the two bodies collide with each other.
     pub collide_connected: bool,
-    /// How the frames may move relative to each other.
+    /// The kind of joint: the relative motion that it allows.
     pub kind: JointKind,
     /// The load beyond which the joint is reported or breaks.
     pub threshold: Threshold,
@@ -50,7 +50,7 @@ pub struct JointFrame {
     pub angle: Angle,
 }
 
-/// How two frames may move relative to each other.
+/// The relative motion of two frames that a joint allows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum JointKind {
     /// The frames share their origin: a hinge.
@@ -71,19 +71,19 @@ pub enum JointKind {
 
 /// The load beyond which a joint is reported or breaks.
 ///
-/// It is compared with the load in the last sub-step of a tick. In the first tick of a joint that has to carry a load at
-/// once, the solver may overestimate the load by a third, because the joint has no impulse yet to start from.
+/// It is compared with the load in the last sub-step of a tick. In the first tick of a joint that has to carry a load
+/// at once, the solver may overestimate the load by a third, because the joint has no impulse yet to start from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Threshold {
     /// Largest force in N, 0 or more; `None` for no limit.
     pub force: Option<Fx>,
     /// Largest torque in N m, 0 or more; `None` for no limit.
     pub torque: Option<Fx>,
-    /// What happens beyond the threshold.
+    /// The action beyond the threshold.
     pub action: ThresholdAction,
 }
 
-/// What happens to a joint whose load exceeds its threshold.
+/// The action on a joint whose load exceeds its threshold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum ThresholdAction {
     /// The world reports it.

@@ -20,8 +20,8 @@ pub struct Distance {
     pub motor: Option<Drive>,
     /// Spring with a length in metres, 0 or more.
     pub spring: Option<Spring>,
-    /// Least and largest force of the spring in N, positive apart: with `lower` 0 it only pushes, with `upper` 0 it only
-    /// pulls.
+    /// Least and largest force of the spring in N, positive apart: with `lower` 0 it only pushes, with `upper` 0 it
+    /// only pulls.
     pub spring_force: Option<Limit>,
 }
 

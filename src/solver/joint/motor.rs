@@ -11,8 +11,8 @@ use crate::math::{Fx, Vec2};
 
 /// A motor joint: moves B's frame relative to A's with limited force and torque.
 ///
-/// With a speed of 0 it is friction against A, as on a table seen from above. With springs it pulls the frames onto each
-/// other: it drags B with the pointer, if A is a kinematic or fixed body that follows the pointer.
+/// With a speed of 0 it is friction against A, as on a table seen from above. With springs it pulls the frames onto
+/// each other: it drags B with the pointer, if A is a kinematic or fixed body that follows the pointer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Motor {
     /// Drives B's anchor to a velocity relative to A's.

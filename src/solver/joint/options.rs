@@ -33,8 +33,8 @@ pub struct Drive {
     pub max: Fx,
 }
 
-/// A damped spring with a target. Its frequency is that of two free bodies: a body on a hinge away from its centre of mass
-/// swings more slowly.
+/// A damped spring with a target. Its frequency is that of two free bodies: a body on a hinge away from its centre of
+/// mass swings more slowly.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Spring {
     /// Undamped frequency in Hz, above 0, up to 1000. Springs above a tenth of the sub-step rate are softer than that,

@@ -88,8 +88,8 @@ impl Ends {
     }
 
     /// The point at which an impulse does not turn the bodies against each other. If the angle is held too, rows on the
-    /// angle and rows at this point do not disturb each other. With the vector `c` from A's centre to B's, and A's share
-    /// `sA = iA / (iA + iB)` of the inverse inertias, the point is at `-sA c` from B's centre.
+    /// angle and rows at this point do not disturb each other. With the vector `c` from A's centre to B's, and A's
+    /// share `sA = iA / (iA + iB)` of the inverse inertias, the point is at `-sA c` from B's centre.
     fn balanced(&self, place: &Place, turned: &[Turned]) -> Place {
         let (share_a, _) = self.measure_angle(turned).row.shares();
         let (arm_a, arm_b) = (place.lever_a.arm.widen(), place.lever_b.arm.widen());

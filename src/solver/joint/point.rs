@@ -1,4 +1,5 @@
-//! The points of a joint: pulled together by a spring, or driven to a velocity. Joints whose points are pinned are hinges.
+//! The points of a joint: pulled together by a spring, or driven to a velocity. Joints whose points are pinned are
+//! hinges.
 
 use super::super::body::SolverBody;
 use super::super::context::Pass;
@@ -8,11 +9,11 @@ use super::super::softness::Softness;
 use super::place::Place;
 use crate::math::{Speed, Vec2};
 
-/// What a point is for.
+/// The function of a point.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum PointTask {
-    /// Pulls the anchors onto each other, with impulses times `mA + mB` of at most `max`, in the bias pass only, as spring
-    /// rows do.
+    /// Pulls the anchors onto each other, with impulses times `mA + mB` of at most `max`, in the bias pass only, as
+    /// spring rows do.
     Spring { softness: Softness, max: Speed },
     /// Drives their relative velocity to `velocity`, with impulses times `mA + mB` of at most `max`.
     Drive { velocity: Vec2<Speed>, max: Speed },

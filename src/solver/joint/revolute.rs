@@ -1,8 +1,8 @@
 //! The revolute joint: a point block whose arms and gains are both refreshed after every displacement.
 //!
 //! With gains older than their arms, long arms over-correct and explode; with arms that are kept for a tick, a grid of
-//! joints explodes (`docs/DESIGN.md` has the figures). Spring, motor and limits are rows on the angle, with the Jacobian
-//! `w_b - w_a`.
+//! joints explodes (`docs/DESIGN.md` has the figures). Spring, motor and limits are rows on the angle, with the
+//! Jacobian `w_b - w_a`.
 
 use serde::{Deserialize, Serialize};
 
@@ -13,13 +13,13 @@ use crate::math::Fx;
 
 /// A revolute joint, or hinge: pins A's anchor to B's.
 ///
-/// Under a steady force that would accelerate a body by `a`, the anchors of a hinge at rest come apart by `a / (2 pi f)^2`,
-/// where `f` is [`SolverSettings::joint_hertz`](crate::solver::SolverSettings::joint_hertz), or twice that for a body that
-/// has no other joint, on a body that is not dynamic. At 60 Hz the weight of a rotor opens its hinge by 18 µm, and by 70 µm
-/// if the rotor has another joint.
+/// Under a steady force that would accelerate a body by `a`, the anchors of a hinge at rest come apart by `a / (2 pi
+/// f)^2`, where `f` is [`SolverSettings::joint_hertz`](crate::solver::SolverSettings::joint_hertz), or twice that for a
+/// body that has no other joint, on a body that is not dynamic. At 60 Hz the weight of a rotor opens its hinge by 18
+/// µm, and by 70 µm if the rotor has another joint.
 ///
-/// The angle of the joint is that of B's frame in A's, in radians, counter-clockwise. It counts whole turns, so that a limit
-/// may be wider than one turn.
+/// The angle of the joint is that of B's frame in A's, in radians, counter-clockwise. It counts whole turns, so that a
+/// limit may be wider than one turn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Revolute {
     /// Range of the angle in radians.

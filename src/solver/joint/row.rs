@@ -1,6 +1,7 @@
 //! The scalar rows of a joint: springs, motors, limits, and rows that hold a position.
 //!
-//! With the position `x` along a direction, where angles and angular speeds are multiplied by the length `s` of the row:
+//! With the position `x` along a direction, where angles and angular speeds are multiplied by the length `s` of the
+//! row:
 //!
 //! ```text
 //! spring   d = -massScale (vn + biasRate (x - target)) - impulseScale L      bias pass only
@@ -12,9 +13,9 @@
 //!
 //! `L` is a speed. The impulse is `L / ((mA + mB) D)`, times `s` for an angle.
 //!
-//! **Springs are not solved in the relax pass.** In the bias pass a soft row is the implicit step of a damped spring from
-//! any state: `L' = -massScale (v + biasRate x)`. Solved again after the displacement, the row would take away another
-//! `massScale biasRate h` of the velocity, so that light springs come to rest too early.
+//! **Springs are not solved in the relax pass.** In the bias pass a soft row is the implicit step of a damped spring
+//! from any state: `L' = -massScale (v + biasRate x)`. Solved again after the displacement, the row would take away
+//! another `massScale biasRate h` of the velocity, so that light springs come to rest too early.
 
 use super::super::body::SolverBody;
 use super::super::context::Pass;
@@ -25,7 +26,7 @@ use super::super::softness::Softness;
 use super::parts::Direction;
 use crate::math::{Fx, Speed, fx_div, fx_mul, narrow, saturate_wide};
 
-/// What a row is for.
+/// The function of a row.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum RowTask {
     /// Drives the position to a target, with impulses times `mA + mB` within `lower..=upper`.

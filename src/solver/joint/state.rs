@@ -16,13 +16,13 @@ pub struct Joint {
     /// Boxed, so that the parts that every step changes lie close together: saving them is bound by memory.
     pub(crate) def: Box<JointDef>,
     pub(crate) impulses: JointImpulses,
-    /// The angle of B's frame in A's at the end of the last tick in which the joint was solved, with whole turns, in units
-    /// of 2^-32 turn.
+    /// The angle of B's frame in A's at the end of the last tick in which the joint was solved, with whole turns, in
+    /// units of 2^-32 turn.
     pub(crate) turns: i64,
 }
 
-/// The accumulated impulses of the last sub-step, for the warm start of the next: `L` of each row and point, by the slots
-/// of [`super::parts::slot`].
+/// The accumulated impulses of the last sub-step, for the warm start of the next: `L` of each row and point, by the
+/// slots of [`super::parts::slot`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct JointImpulses(pub(crate) [Speed; 6]);
 
@@ -63,8 +63,8 @@ impl Joint {
         &self.def
     }
 
-    /// The angle of B's frame in A's in units of 2^-32 turn: of all angles that differ by whole turns, the one nearest to
-    /// the last one.
+    /// The angle of B's frame in A's in units of 2^-32 turn: of all angles that differ by whole turns, the one nearest
+    /// to the last one.
     pub(crate) fn turns(&self, a: Angle, b: Angle) -> i64 {
         nearest_turns(self.turns, (b - a) + self.def.rest_angle())
     }

@@ -1,8 +1,8 @@
 //! The weld joint: a row on the angle and a point block at the anchors, each rigid or a spring.
 //!
 //! If the point block acted where its impulse does not turn the bodies against each other, as in a prismatic joint, a
-//! plank on a wall would sag a fifth as far. But the anchors of a loaded chain would open four times as wide, and a weld
-//! of 1 cm that carries a hundredfold weight would gain energy.
+//! plank on a wall would sag a fifth as far. But the anchors of a loaded chain would open four times as wide, and a
+//! weld of 1 cm that carries a hundredfold weight would gain energy.
 
 use serde::{Deserialize, Serialize};
 

@@ -1,5 +1,5 @@
-//! The velocity change that is applied at once is the one that contacts have made. The tests of `scenes` check the same for
-//! whole worlds with `push_error`.
+//! The velocity change that is applied at once is the one that contacts have made. The tests of `scenes` check the same
+//! for whole worlds with `push_error`.
 
 use std::vec::Vec;
 

@@ -1,14 +1,14 @@
 //! Rows on the angle between two bodies: `vn = s (w_b - w_a)`, with `e = s / k` and without linear part.
 //!
-//! `s` is a length that each row chooses: the one that makes `D = aA eA^2 + aB eB^2` about 1 keeps every coefficient small,
-//! whatever the masses and radii of gyration:
+//! `s` is a length that each row chooses: the one that makes `D = aA eA^2 + aB eB^2` about 1 keeps every coefficient
+//! small, whatever the masses and radii of gyration:
 //!
 //! ```text
 //! s^2 = 1 / (aA / kA^2 + aB / kB^2),  so that  f = a e / D <= sqrt(a) <= 1  and  e <= 1 / sqrt(a)
 //! ```
 //!
-//! `e` is kept to 100: it would be larger only if one body were 10 000 times as heavy as the other and still turned more
-//! easily. An angular impulse `P` is `L = P (mA + mB) D / s`, with inverse masses.
+//! `e` is kept to 100: it would be larger only if one body were 10 000 times as heavy as the other and still turned
+//! more easily. An angular impulse `P` is `L = P (mA + mB) D / s`, with inverse masses.
 
 use super::{Denominator, MassFractions, RATIO_MAX, Row, turning};
 use crate::math::{Length, Ratio, Reciprocal, Speed, Unit, div_round, mul, saturate, saturate_wide};
@@ -20,7 +20,7 @@ impl Row {
         b: Reciprocal,
         fractions: MassFractions,
     ) -> (Row, Denominator, Length) {
-        let s = angular_scale((a, fractions.a), (b, fractions.b));
+        let s = angular_scale([a, b], fractions);
         let ratio = |inverse_gyration: Reciprocal| -> Ratio {
             inverse_gyration.times::<_, fixed::types::extra::U24>(s).min(RATIO_MAX)
         };
@@ -52,23 +52,24 @@ fn quotient(n: i64, d: i64) -> i64 {
     }
 }
 
-/// `1 / sqrt(aA / kA^2 + aB / kB^2)`, at most a hundred radii of gyration of a body that turns. It only sets the units of
-/// a row, so that it need not be exact.
-fn angular_scale(a: (Reciprocal, Unit), b: (Reciprocal, Unit)) -> Length {
+/// `1 / sqrt(aA / kA^2 + aB / kB^2)`, at most a hundred radii of gyration of a body that turns. It only sets the units
+/// of a row, so that it need not be exact.
+fn angular_scale([a, b]: [Reciprocal; 2], fractions: MassFractions) -> Length {
     // 1 / k has 21 fraction bits, so that the sum has 72.
-    let inverse = |(inverse_gyration, fraction): (Reciprocal, Unit)| -> Speed {
+    let inverse = |inverse_gyration: Reciprocal, fraction: Unit| -> Speed {
         if fraction == 0 { Speed::ZERO } else { inverse_gyration.times(Unit::ONE) }
     };
-    let square = |end: (Reciprocal, Unit)| {
-        let inverse = u128::from(inverse(end).to_bits().unsigned_abs());
-        inverse * inverse * u128::from(end.1.to_bits().unsigned_abs())
+    let (a, b) = (inverse(a, fractions.a), inverse(b, fractions.b));
+    let square = |inverse: Speed, fraction: Unit| {
+        let inverse = u128::from(inverse.to_bits().unsigned_abs());
+        inverse * inverse * u128::from(fraction.to_bits().unsigned_abs())
     };
-    let sum = square(a) + square(b);
+    let sum = square(a, fractions.a) + square(b, fractions.b);
     if sum == 0 {
         return Length::ZERO;
     }
-    // Normalised to 31 or 32 bits by an even shift, so that the reciprocal has as many bits and its root half as many. The
-    // root is increased by more than its rounding error, so that `f` is not above 1.
+    // Normalised to 31 or 32 bits by an even shift, so that the reciprocal has as many bits and its root half as many.
+    // The root is increased by more than its rounding error, so that `f` is not above 1.
     let shift = (i64::from(128 - sum.leading_zeros()) - 31) & !1;
     let top = if shift >= 0 { sum >> shift } else { sum << -shift };
     let root = ((1u64 << 62) / u64::try_from(top).unwrap_or(u64::MAX).max(1)).isqrt();
@@ -76,7 +77,7 @@ fn angular_scale(a: (Reciprocal, Unit), b: (Reciprocal, Unit)) -> Length {
     // `2^(31 + shift/2) / sqrt(sum)`, and a length is `2^(22 + 36) / sqrt(sum)`.
     let up = 27 - shift / 2;
     let length = if up >= 0 { root << up } else { root >> -up };
-    let most = (100u64 << 43) / u64::from(inverse(a).max(inverse(b)).to_bits().unsigned_abs()).max(1);
+    let most = (100u64 << 43) / u64::from(a.max(b).to_bits().unsigned_abs()).max(1);
     Length::from_bits(i32::try_from(length.min(most.into())).unwrap_or(i32::MAX))
 }
 

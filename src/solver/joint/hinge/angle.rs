@@ -234,8 +234,8 @@ impl<const N: usize> AngleRows<N> {
         pair.turn(&self.f, L::sub(new, old), faults);
     }
 
-    /// As with contacts, a gap may close within this sub-step, and a gap that the bias pass has not closed is left to the
-    /// next sub-step.
+    /// As with contacts, a gap may close within this sub-step, and a gap that the bias pass has not closed is left to
+    /// the next sub-step.
     #[inline(always)]
     fn solve_limit<L: Lanes<N>>(
         &mut self,
@@ -287,8 +287,8 @@ fn softened<L: Lanes<N>, const N: usize>(
     L::narrow::<UNIT>(L::add_wide(L::mul(mass_scale, v), L::mul(impulse_scale, lambda)))
 }
 
-/// Relative velocity of B from A on the angle. It is a fault where the velocity does not fit in a lane with a row: one whose
-/// largest impulse is not 0.
+/// Relative velocity of B from A on the angle. It is a fault where the velocity does not fit in a lane with a row: one
+/// whose largest impulse is not 0.
 #[inline(always)]
 fn velocity<L: Lanes<N>, const N: usize>(
     e: &[Ints<N>; 2],

@@ -1,4 +1,4 @@
-//! What the rows on the angle of a hinge are computed from before its batch is filled.
+//! Compact copies of the rows on the angle of hinges, from which batches are filled.
 //!
 //! A position `x` on the angle becomes a velocity along the row: `2 pi s x` times a rate, in one product with a
 //! coefficient that is constant within a tick.
@@ -35,8 +35,8 @@ impl AngleParts {
     }
 }
 
-/// Results for earlier hinges. They take many divisions, and many joints are alike: all links of a chain, each knee of the
-/// ragdolls. A result depends on nothing but the key that it is stored with, so that it never expires.
+/// Results for earlier hinges. They take many divisions, and many joints are alike: all links of a chain, each knee of
+/// the ragdolls. A result depends on nothing but the key that it is stored with, so that it never expires.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Memo {
     /// Hertz, damping ratio and rate of the last spring, and its softness.

@@ -25,7 +25,7 @@ pub(in crate::solver) struct Batch<const N: usize> {
     pub(super) has_angle: bool,
 }
 
-/// What the points of a batch are computed from at each refresh, and where its results belong.
+/// The constants from which the points of a batch are refreshed, and the joints to which its results belong.
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
 pub(in crate::solver) struct Records<const N: usize> {
@@ -40,7 +40,7 @@ pub(in crate::solver) struct Records<const N: usize> {
     pub(super) rest: [Angle; N],
 }
 
-/// What does not change within a tick.
+/// The geometry of hinges, which is constant within a tick.
 #[derive(Clone, Debug)]
 pub(super) struct Shape<const N: usize> {
     /// Anchors from the centres of mass, in the frames of A and of B.

@@ -1,5 +1,5 @@
-//! What a hinge is computed from before its batch is filled. It is read from the state in the order of the state, so that
-//! only these compact copies are read in the order of colours.
+//! Compact copies of hinges, from which batches are filled. The state is read once in its own order, and only the
+//! copies are read in the order of colours.
 
 use super::super::super::body_list::GROUND;
 use super::super::super::colour::{Node, Size};
@@ -9,7 +9,7 @@ use super::super::state::Joint;
 use crate::body::Body;
 use crate::math::{Angle, Fx, Length, Ratio, Reciprocal, Shift, Speed, Unit, Vec2, round_shift, saturate};
 
-/// What joints need of a body.
+/// The properties of a body that its joints depend on.
 #[derive(Clone, Copy, Debug)]
 pub(in super::super) struct End {
     pub(in super::super) turning: Turning,
@@ -22,7 +22,7 @@ pub(in super::super) struct End {
     local_centre: Vec2<Fx>,
 }
 
-/// How a body with joints turns: the part that every sub-step reads.
+/// The rotation coefficients of a body with joints: the part that every sub-step reads.
 #[derive(Clone, Copy, Debug)]
 pub(in super::super) struct Turning {
     pub(in super::super) index: u32,

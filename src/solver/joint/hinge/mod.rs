@@ -1,7 +1,7 @@
 //! Hinges: joints that pin two points together, with or without rows on the angle, eight at a time.
 //!
-//! Revolute joints and rigid welds are hinges. Each operation on a batch has a file of its own: `refresh` computes lever
-//! ratios, gains and gaps at the present pose, `warm_start` and `solve` change velocities by the point block of
+//! Revolute joints and rigid welds are hinges. Each operation on a batch has a file of its own: `refresh` computes
+//! lever ratios, gains and gaps at the present pose, `warm_start` and `solve` change velocities by the point block of
 //! `point_block.rs`, and `angle` does all of this for the rows on the angle. `prepare` fills batches with the hinges of
 //! one colour each and returns their impulses to the state.
 
@@ -54,11 +54,11 @@ impl BatchKind for Hinges {
     }
 }
 
-/// How the bodies of a tick are turned, by their indices.
+/// The rotations of the bodies of a tick, by their indices.
 #[derive(Clone, Copy)]
 pub(super) struct Poses<'a> {
-    /// Cosine and sine of the rotation, and the terms by which a lever ratio that is averaged over the predicted rotation
-    /// moves across itself and along itself.
+    /// Cosine and sine of the rotation, and the terms by which a lever ratio that is averaged over the predicted
+    /// rotation moves across itself and along itself.
     pub(super) quads: &'a [Quad],
     pub(super) turned: &'a [Turned],
 }
@@ -88,8 +88,8 @@ pub(super) enum Expired {
 }
 
 impl HingeSet {
-    /// Invalidates parts of the batches, because bodies have moved. The next operation refreshes them batch by batch, so
-    /// that a batch is fetched from memory once for both.
+    /// Invalidates parts of the batches, because bodies have moved. The next operation refreshes them batch by batch,
+    /// so that a batch is fetched from memory once for both.
     pub(super) fn expire(&mut self, what: Expired) {
         self.expired = self.expired.max(what);
     }

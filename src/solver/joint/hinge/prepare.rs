@@ -52,8 +52,8 @@ impl HingeSet {
         }
     }
 
-    /// Adds batches of the hinges of a colour, given by their inputs. Hinges with rows on the angle have batches of their
-    /// own, and so have mounts: `is_alone` tells whether a body, by its index, has only one joint.
+    /// Adds batches of the hinges of a colour, given by their inputs. Hinges with rows on the angle have batches of
+    /// their own, and so have mounts: `is_alone` tells whether a body, by its index, has only one joint.
     pub(in super::super) fn push_colour(
         &mut self,
         indices: impl Iterator<Item = u32> + Clone,
@@ -106,8 +106,8 @@ fn count<T>(parts: &[T]) -> u32 {
 }
 
 impl<const N: usize> Batches<Hinges, N> {
-    /// Adds batches of hinges. No two of `N` successive hinges share a body that impulses change, and either all of them
-    /// have rows on the angle or none has.
+    /// Adds batches of hinges. No two of `N` successive hinges share a body that impulses change, and either all of
+    /// them have rows on the angle or none has.
     fn push(&mut self, inputs: &[Input], angle_inputs: &[AngleInput], indices: impl Iterator<Item = u32>) {
         let Batches { batches, records, extras, .. } = self;
         let mut lane = N;
@@ -213,8 +213,8 @@ impl<const N: usize> Shape<N> {
     }
 }
 
-/// A distance between centres with 52 fraction bits. Two arms reach 849 m, so that distances beyond 1024 m may be clamped:
-/// then no sum overflows.
+/// A distance between centres with 52 fraction bits. Two arms reach 849 m, so that distances beyond 1024 m may be
+/// clamped: then no sum overflows.
 fn widened(between: Fx) -> i64 {
     const FARTHEST: Fx = crate::fx!(1024);
     const EXTRA: u32 = Length::FRAC_NBITS + Unit::FRAC_NBITS - Fx::FRAC_NBITS;

@@ -7,8 +7,8 @@
 //! a e = hi 2^32 + lo,    a e e' = hi e' + round(lo e' / 2^32)       (46 fraction bits)
 //! ```
 //!
-//! because rounding `a e` to the format of `e` would cost 7 of its 24 bits. With 46 fraction bits the determinant may be
-//! the difference `K11 K22 - K12^2`: the parts that cancel are exact.
+//! because rounding `a e` to the format of `e` would cost 7 of its 24 bits. With 46 fraction bits the determinant may
+//! be the difference `K11 K22 - K12^2`: the parts that cancel are exact.
 
 use core::cell::Cell;
 
@@ -118,8 +118,8 @@ fn turned<L: Lanes<N>, const N: usize>(
     turned
 }
 
-/// The velocity that closes a gap, reversed. `gap` is the one at the start of the tick, with 52 fraction bits and exact,
-/// and `moved` the displacement since; their sum is rounded once.
+/// The velocity that closes a gap, reversed. `gap` is the one at the start of the tick, with 52 fraction bits and
+/// exact, and `moved` the displacement since; their sum is rounded once.
 #[inline(always)]
 fn closing<L: Lanes<N>, const N: usize>(gap: L::Wide, moved: L::Int, softness: &Softness) -> L::Int {
     const ARM: u32 = Length::FRAC_NBITS + Unit::FRAC_NBITS;

@@ -129,8 +129,8 @@ fn accumulate<L: Lanes<N>, const N: usize>(
     L::sub(new, old)
 }
 
-/// The lever ratios averaged over the predicted rotation, `e + M (t/2 (-e_y, e_x) - t^2/6 e)`. The quads have `M t/2` and
-/// `M t^2/6` of each body.
+/// The lever ratios averaged over the predicted rotation, `e + M (t/2 (-e_y, e_x) - t^2/6 e)`. The quads have `M t/2`
+/// and `M t^2/6` of each body.
 #[inline(always)]
 fn ratios_ahead<L: Lanes<N>, const N: usize>(
     e: &[Ints<N>; 2],

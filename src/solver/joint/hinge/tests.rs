@@ -1,4 +1,5 @@
-//! Batches of hinges give the same bits on every backend as one hinge at a time, and nearly those of the scalar point block.
+//! Batches of hinges give the same bits on every backend as one hinge at a time, and nearly those of the scalar point
+//! block.
 
 use std::vec;
 use std::vec::Vec;
@@ -30,7 +31,7 @@ struct Setting {
     fractions: Vec<MassFractions>,
 }
 
-/// How large the numbers of a setting are.
+/// The sizes of the numbers of a setting.
 #[derive(Clone, Copy)]
 struct Sizes {
     /// Size of the arms, in radii of gyration.
@@ -239,8 +240,9 @@ fn every_machine_solves_as_one_hinge_at_a_time() {
     assert!(faulty > 100, "{faulty} settings reach the clamps");
 }
 
-/// Lever ratios that are turned differ by a unit of 2^-24 from those that are computed anew. With arms of up to 16 radii of
-/// gyration on both sides the anchors start at up to 330 m/s, of which one iteration may leave a hundred-thousandth.
+/// Lever ratios that are turned differ by a unit of 2^-24 from those that are computed anew. With arms of up to 16
+/// radii of gyration on both sides the anchors start at up to 330 m/s, of which one iteration may leave a
+/// hundred-thousandth.
 #[test]
 fn a_point_is_solved_as_by_the_scalar_block() {
     let mut rng = Rng::new(2);
