@@ -1,4 +1,6 @@
-//! Bodies in the solver, apart from what lanes do with them: how they come in, and how one alone is changed.
+//! Bodies in the solver: how they are copied from the state, and how constraints outside of batches change them.
+
+use core::cell::Cell;
 
 use super::limits::{Faults, SPEED_MAX};
 use crate::body::Body;
@@ -15,8 +17,8 @@ impl SolverBody {
     pub(crate) fn set_velocity(&mut self, x: Speed, y: Speed, spin: Speed, faults: &mut Faults) {
         self.velocity = Vec2::new(x, y);
         self.spin = spin;
-        // One branch that is never taken, instead of three clamps. Sums that have saturated may be the smallest
-        // number, whose magnitude has no sign to spare.
+        // One branch that is never taken, instead of three clamps. A sum that has saturated may be the smallest number,
+        // whose magnitude does not fit a signed one.
         let fastest = x.unsigned_abs().max(y.unsigned_abs()).max(spin.unsigned_abs());
         if fastest > SPEED_MAX.unsigned_abs() {
             self.clamp(faults);
@@ -32,28 +34,29 @@ impl SolverBody {
         }
     }
 
-    /// The velocities the other way.
+    /// The body with its velocities reversed.
     pub(crate) fn reversed(&self) -> Self {
         SolverBody { velocity: -self.velocity, spin: self.spin.saturating_neg(), ..*self }
     }
 
-    /// Two different bodies of a slice, to change both.
+    /// Changes two different bodies of a list.
     #[inline]
-    pub(crate) fn pair(bodies: &mut [SolverBody], a: u32, b: u32) -> (&mut SolverBody, &mut SolverBody) {
-        let (a, b) = (a as usize, b as usize);
-        assert!(a != b, "a constraint is between two bodies");
-        if a < b {
-            let (front, back) = bodies.split_at_mut(b);
-            (&mut front[a], &mut back[0])
-        } else {
-            let (front, back) = bodies.split_at_mut(a);
-            (&mut back[0], &mut front[b])
-        }
+    pub(super) fn change_pair(
+        bodies: &[Cell<SolverBody>],
+        [a, b]: [u32; 2],
+        change: impl FnOnce(&mut SolverBody, &mut SolverBody),
+    ) {
+        assert!(a != b, "a constraint is between two bodies, not between {a} and {b}");
+        let (cell_a, cell_b) = (&bodies[a as usize], &bodies[b as usize]);
+        let (mut a, mut b) = (cell_a.get(), cell_b.get());
+        change(&mut a, &mut b);
+        cell_a.set(a);
+        cell_b.set(b);
     }
 }
 
-/// How far a body turns: `dtheta = turn / k`, in units of 2^-32 turns. It may be more than a turn: a small body may
-/// spin more than once in a tick.
+/// The rotation of a body, `dtheta = turn / k`, in units of 2^-32 turns. A small body may spin more than once in a
+/// tick.
 pub(crate) fn turn_of(turn: Shift, inverse_gyration: Reciprocal) -> i64 {
     /// `1 / (2 pi)` with 63 fraction bits.
     const INVERSE_TAU: i128 = 1_467_945_251_641_000_613;

@@ -1,4 +1,4 @@
-//! The bodies of a tick: those that something moves, and one more that stands for all others.
+//! The bodies of a tick: the active ones, and one more that stands for all others, the ground.
 
 use alloc::vec::Vec;
 
@@ -14,21 +14,21 @@ use crate::math::{Angle, Fx, Length, Ratio, Reciprocal, Vec2, round_shift, satur
 #[derive(Clone, Debug, Default)]
 pub(crate) struct BodyList {
     pub(super) bodies: Vec<SolverBody>,
-    /// Where each of them is at the start of the tick.
+    /// The pose of each body at the start of the tick.
     poses: Vec<Pose>,
-    /// What contacts are made of, for each of them.
+    /// The properties of each body that contacts depend on.
     facts: Vec<BodyFacts>,
-    /// For each body slot, where its body is in `bodies`: 0 if nothing moves it.
+    /// For each body slot, the index of its body in `bodies`: 0 if it is not among the bodies of the tick.
     indices: Vec<u32>,
-    /// The slots that have an index.
+    /// The slots of the bodies but the ground, in order.
     slots: Vec<u32>,
 }
 
-/// What does not change within a tick.
+/// The properties of a body that do not change within a tick.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct BodyFacts {
     centre: Vec2<Fx>,
-    /// 0 if no impulse moves it.
+    /// In kg; 0 if no impulse moves the body.
     pub(super) mass: Fx,
     pub(super) inverse_gyration: Reciprocal,
 }
@@ -44,16 +44,16 @@ impl BodyFacts {
         }
     }
 
-    /// From the centre of mass to a place; of what does not turn, anything.
+    /// From the centre of mass to a position. For bodies that do not turn the result does not matter.
     pub(super) fn arm_to(&self, place: Vec2<Fx>) -> Vec2<Length> {
-        // Both are in the world.
+        // Both are within the world, so that the difference fits.
         place.wrapping_sub(self.centre).narrow()
     }
 }
 
 /// `e = c / k` of an arm across a direction, at most [`RATIO_MAX`]. `1 / k` is `mantissa / 2^shift`, from the format of
 /// a length to that of a lever ratio.
-pub(super) fn lever_ratio([x, y]: [i32; 2], [n_x, n_y]: [i32; 2], (mantissa, shift): (i32, i32)) -> Ratio {
+pub(super) fn lever_ratio([x, y]: [i32; 2], [n_x, n_y]: [i32; 2], mantissa: i32, shift: i32) -> Ratio {
     let wide = |a: i32| i64::from(a);
     // An arm is below 2^31.5, so its product with a mantissa is below 2^63.
     let c = round_shift(wide(x) * wide(n_y) - wide(y) * wide(n_x), Ratio::FRAC_NBITS);
@@ -63,14 +63,14 @@ pub(super) fn lever_ratio([x, y]: [i32; 2], [n_x, n_y]: [i32; 2], (mantissa, shi
 }
 
 impl BodyList {
-    /// Starts anew with the bodies in the given slots.
+    /// Lists the bodies in the given slots.
     #[cfg(test)]
     pub(super) fn fill(&mut self, bodies: &Arena<Body, BodyId>, slots: &[u32]) {
         self.begin(bodies.slot_count());
         slots.iter().for_each(|&slot| self.add(slot, bodies.at(slot)));
     }
 
-    /// Starts anew without bodies, of a world with so many slots for them.
+    /// Starts a list without bodies, for a world with `slot_count` slots.
     pub(super) fn begin(&mut self, slot_count: usize) {
         for &slot in &self.slots {
             self.indices[slot as usize] = GROUND;
@@ -85,13 +85,13 @@ impl BodyList {
         self.facts.push(BodyFacts::GROUND);
     }
 
-    /// Takes a body that something moves.
+    /// Adds an active body.
     #[inline]
     pub(super) fn add(&mut self, slot: u32, body: &Body) {
-        self.push((slot, body), SolverBody::of(body), BodyFacts::of(body));
+        self.push(slot, body, SolverBody::of(body), BodyFacts::of(body));
     }
 
-    fn push(&mut self, (slot, source): (u32, &Body), body: SolverBody, facts: BodyFacts) {
+    fn push(&mut self, slot: u32, source: &Body, body: SolverBody, facts: BodyFacts) {
         self.indices[slot as usize] = u32::try_from(self.bodies.len()).expect("fewer than 2^32 bodies");
         self.slots.push(slot);
         self.bodies.push(body);
@@ -103,30 +103,31 @@ impl BodyList {
         self.bodies.len()
     }
 
-    /// Where the body of a slot is, from 1; 0 if nothing moves it.
+    /// The index of the body in a slot, from 1; 0 if it is not among the bodies of the tick.
     pub(super) fn index_of(&self, slot: u32) -> u32 {
         self.indices[slot as usize]
     }
 
-    /// The same for a body with a joint: it does not share the ground's place, because joints see how it is turned.
+    /// The index of a body with a joint. Such a body does not share the ground's index, because joints need its
+    /// rotation.
     pub(super) fn own_index_of(&mut self, slot: u32, body: &Body) -> u32 {
         if self.index_of(slot) == GROUND {
-            self.push((slot, body), SolverBody::default(), BodyFacts::GROUND);
+            self.push(slot, body, SolverBody::default(), BodyFacts::GROUND);
         }
         self.index_of(slot)
     }
 
-    /// The slots of the bodies that have an index of their own.
+    /// The slots of the bodies with an index of their own.
     pub(super) fn slots(&self) -> &[u32] {
         &self.slots
     }
 
-    /// Where the body at each index is at the start of the tick; the ground anywhere.
+    /// The pose of each body at the start of the tick; that of the ground does not matter.
     pub(super) fn poses(&self) -> &[Pose] {
         &self.poses
     }
 
-    /// The constants of the body at an index.
+    /// The constants of a body, by its index.
     pub(super) fn facts(&self, index: u32) -> &BodyFacts {
         &self.facts[index as usize]
     }

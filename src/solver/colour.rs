@@ -1,85 +1,89 @@
-//! Colours: groups of constraints of which no two touch the same dynamic body, so that inside a group the order
-//! cannot matter. That makes a scalar, a wide and a threaded solver give the same bits.
+//! Graph colouring: groups of constraints of which no two change the same body, so that the order inside a group cannot
+//! matter. A scalar, a wide and a threaded solver then give the same bits.
 //!
-//! Constraints are coloured greedily in the order of a hash of what they join: in sorted order the sweep always
-//! runs the same way and a pyramid sways by 0.1 to 0.4 m, in hashed order by 0.006 m.
+//! Constraints are coloured greedily in the order of a hash of their shapes or of their joint: in sorted order the
+//! solver always sweeps the same way and a pyramid sways by 0.1 to 0.4 m, in hashed order by 0.006 m.
 
 use alloc::vec::Vec;
 
 use super::body_list::GROUND;
 
-/// More colours than this would be nearly empty: what does not fit (a drum touched by hundreds of boxes) is one
-/// serial list before them, in its own order.
+/// Largest number of colours. More colours would be nearly empty: constraints that fit no colour (a drum touched by
+/// hundreds of boxes) are the overflow, a serial list before all colours, in its own order.
 const COLOURS_MAX: u8 = 24;
 
 const BUCKETS: usize = 256;
 
 /// A constraint to be coloured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Node {
-    /// Its bucket in the order in which constraints are coloured.
+pub(super) struct Node {
+    /// The bucket in the order in which constraints are coloured.
     bucket: u8,
-    /// Constraints of one colour that are of the same size are solved together.
+    /// Constraints of one colour and one size are solved together.
     size: Size,
-    /// The bodies that it changes: [`GROUND`] for one that it does not.
+    /// The bodies that the constraint changes: [`GROUND`] instead of a body that it does not change.
     bodies: [u32; 2],
 }
 
 impl Node {
-    /// The key stands for what the constraint joins.
-    pub(crate) fn new(key: u64, bodies: [u32; 2], size: Size) -> Self {
+    /// `key` identifies what the constraint joins.
+    pub(super) fn new(key: u64, bodies: [u32; 2], size: Size) -> Self {
         Node { bucket: bucket_of(key), size, bodies }
     }
 }
 
-/// How much there is to solve.
+/// The amount of work in a constraint: contacts with one point are small.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Size {
+pub(super) enum Size {
     Large,
     Small,
 }
 
-/// Where the solver has a contact: contacts of one colour are independent of each other.
+/// Where a contact is in the order of the solver.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SolverColour {
-    /// It is solved together with all others of this colour, from 0.
+    /// It is solved together with all other contacts of this colour, which are independent of it. Counted from 0.
     Group(u8),
     /// Its bodies have more contacts than there are colours: it is solved by itself, before all groups.
     Overflow,
 }
 
-/// Constraints to be solved at a time.
-pub(crate) enum Group<'a> {
-    /// One after the other.
-    Serial(&'a [u32]),
-    /// In any order: no two of them touch the same dynamic body.
-    Coloured(&'a [u32]),
-}
-
-/// Scratch of the colouring.
+/// Sorts constraints into colours, and keeps the last order.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Colouring {
+pub(super) struct Colouring {
+    /// The constraints to be sorted.
+    nodes: Vec<Node>,
+    /// The constraints that the present order belongs to. In most ticks of a resting world they are the same again.
+    ordered: Vec<Node>,
     /// For each body, the colours of its constraints so far, one bit each.
     used: Vec<u32>,
     hashed: Vec<u32>,
-    /// For each constraint, its place in the order.
+    /// For each constraint, its place in the order: see [`place_of`].
     places: Vec<u8>,
     order: Vec<u32>,
-    /// For each place in the order, where it ends.
+    /// For each place, where its constraints end in the order.
     ends: Vec<u32>,
-    /// What has been ordered. Most ticks of what rests ask for the same again.
-    nodes: Vec<Node>,
 }
 
 impl Colouring {
-    /// The order in which to solve: indices into `nodes`, the overflow first and then colour by colour.
-    pub(crate) fn order(&mut self, nodes: &[Node], body_slots: usize) -> &[u32] {
-        let Colouring { used, hashed, places, order, ends, nodes: ordered } = self;
+    /// Starts with no constraints.
+    pub(super) fn begin(&mut self) {
+        self.nodes.clear();
+    }
+
+    /// Adds a constraint. Its index is the number of constraints that were added before it.
+    #[inline]
+    pub(super) fn add(&mut self, node: Node) {
+        self.nodes.push(node);
+    }
+
+    /// Sorts the constraints into colours.
+    pub(super) fn sort(&mut self, body_slots: usize) {
+        let Colouring { nodes, ordered, used, hashed, places, order, ends } = self;
         if ordered == nodes {
-            return order;
+            return;
         }
-        ordered.clear();
-        ordered.extend_from_slice(nodes);
+        ordered.clone_from(nodes);
         used.clear();
         used.resize(body_slots, 0);
         counting_sort(nodes.len(), |i| nodes[i].bucket, hashed, ends);
@@ -91,12 +95,11 @@ impl Colouring {
             let colour = taken.trailing_ones().min(COLOURS_MAX.into());
             used[a as usize] |= 1 << colour;
             used[b as usize] |= 1 << colour;
-            // What does not change has no colour.
+            // Bodies that do not change have no colours.
             used[GROUND as usize] = 0;
             places[index as usize] = place_of(colour, size);
         }
         counting_sort(nodes.len(), |i| places[i], order, ends);
-        order
     }
 
     /// Whether any constraint of the last order changes a body.
@@ -104,7 +107,7 @@ impl Colouring {
         self.used.get(body as usize).is_some_and(|&colours| colours != 0)
     }
 
-    /// Where the last order has one of the nodes.
+    /// Where a constraint is in the last order, by its index.
     pub(super) fn colour_of(&self, node: usize) -> Option<SolverColour> {
         self.places.get(node).map(|&place| match place.checked_sub(1) {
             None => SolverColour::Overflow,
@@ -112,20 +115,21 @@ impl Colouring {
         })
     }
 
-    /// The last order, in the groups in which it may be solved. None of them is empty: most places of a small world are,
-    /// and whoever goes through the groups does so many times in a tick.
-    pub(crate) fn groups(&self) -> impl Iterator<Item = Group<'_>> {
-        let starts = core::iter::once(0).chain(self.ends.iter().copied());
-        let places = starts.zip(&self.ends).map(|(start, &end)| &self.order[start as usize..end as usize]);
-        let filled = places.enumerate().filter(|(_, indices)| !indices.is_empty());
-        filled.map(|(place, indices)| match place {
-            0 => Group::Serial(indices),
-            _ => Group::Coloured(indices),
-        })
+    /// The constraints of the last order that fit no colour, to be solved one after the other.
+    pub(super) fn overflow(&self) -> &[u32] {
+        let end = self.ends.first().map_or(0, |&end| end as usize);
+        &self.order[..end]
+    }
+
+    /// The other constraints, colour by colour and size by size. Empty groups are left out: most places of a small
+    /// world are empty, and the groups are iterated over many times in a tick.
+    pub(super) fn colours(&self) -> impl Iterator<Item = &[u32]> {
+        let groups = self.ends.windows(2).map(|ends| &self.order[ends[0] as usize..ends[1] as usize]);
+        groups.filter(|indices| !indices.is_empty())
     }
 }
 
-/// The overflow comes first, then the large and the small constraints of each colour.
+/// The place in the order: the overflow comes first, then the large and the small constraints of each colour.
 #[expect(clippy::cast_possible_truncation, reason = "at most COLOURS_MAX")]
 fn place_of(colour: u32, size: Size) -> u8 {
     match colour as u8 {
@@ -180,33 +184,25 @@ mod tests {
                 })
                 .collect();
             let mut colouring = Colouring::default();
-            let order = colouring.order(&nodes, bodies as usize + 1).to_vec();
-            let mut seen = order.clone();
+            nodes.iter().for_each(|&node| colouring.add(node));
+            colouring.sort(bodies as usize + 1);
+            let mut seen = colouring.order.clone();
             seen.sort_unstable();
             assert!(seen.iter().copied().eq(0..400));
-            let mut solved = Vec::new();
-            for group in colouring.groups() {
-                let indices = match group {
-                    Group::Serial(indices) => {
-                        assert!(solved.is_empty(), "the overflow comes first");
-                        assert!(indices.iter().all(|&i| colouring.places[i as usize] == 0));
-                        indices
+            let mut solved = colouring.overflow().to_vec();
+            assert!(solved.iter().all(|&i| colouring.places[i as usize] == 0));
+            for indices in colouring.colours() {
+                let mut bodies = std::collections::BTreeSet::new();
+                for node in indices.iter().map(|&i| nodes[i as usize]) {
+                    assert_eq!(node.size, nodes[indices[0] as usize].size);
+                    for body in node.bodies.into_iter().filter(|&body| body != GROUND) {
+                        assert!(bodies.insert(body), "body {body} twice in a colour");
                     }
-                    Group::Coloured(indices) => {
-                        let mut bodies = std::collections::BTreeSet::new();
-                        for node in indices.iter().map(|&i| nodes[i as usize]) {
-                            assert_eq!(node.size, nodes[indices[0] as usize].size);
-                            for body in node.bodies.into_iter().filter(|&body| body != GROUND) {
-                                assert!(bodies.insert(body), "body {body} twice in a colour");
-                            }
-                        }
-                        indices
-                    }
-                };
+                }
                 solved.extend_from_slice(indices);
             }
-            assert_eq!(solved, order, "groups follow the order");
-            assert!(colouring.places.contains(&0), "the hub overflows");
+            assert_eq!(solved, colouring.order, "the groups follow the order");
+            assert!(colouring.places.contains(&0), "the hub has more constraints than there are colours");
         }
     }
 }

@@ -1,4 +1,4 @@
-//! The bodies of a batch while it is solved, and what all wide kernels calculate with.
+//! The bodies of a batch while it is solved, and arithmetic that contacts and hinges share.
 
 use core::cell::Cell;
 
@@ -14,7 +14,7 @@ pub(super) const RATIO: i32 = shift(Ratio::FRAC_NBITS);
 /// 512 as a speed: half of what the format holds.
 pub(super) const HALF: i32 = 1 << 30;
 
-/// The velocities of two bodies in each lane. How impulses change them is with each kind of constraint.
+/// The velocities of two bodies in each lane. Each kind of constraint defines how impulses change them.
 pub(super) struct Pair<L: Lanes<N>, const N: usize> {
     pub(super) a: Motion<L::Int>,
     pub(super) b: Motion<L::Int>,
@@ -26,7 +26,7 @@ impl<L: Lanes<N>, const N: usize> Pair<L, N> {
         Pair { a: L::velocities(bodies, a), b: L::velocities(bodies, b) }
     }
 
-    /// How far two bodies in each lane have come, instead of their velocities.
+    /// Loads the displacements of two bodies in each lane instead of their velocities.
     #[inline(always)]
     pub(super) fn load_shifts(bodies: &[Cell<SolverBody>], [a, b]: &[[u32; N]; 2]) -> Self {
         Pair { a: L::shifts(bodies, a), b: L::shifts(bodies, b) }
@@ -38,7 +38,7 @@ impl<L: Lanes<N>, const N: usize> Pair<L, N> {
         L::set_velocities(bodies, b, self.b);
     }
 
-    /// Keeps every component within [`SPEED_MAX`].
+    /// Clamps every component to [`SPEED_MAX`], and counts what changes as faults.
     #[inline(always)]
     pub(super) fn keep_in_range(&mut self, faults: &mut Faults) {
         // One branch that is never taken, instead of six clamps.
@@ -62,7 +62,7 @@ impl<L: Lanes<N>, const N: usize> Pair<L, N> {
     }
 }
 
-/// Whether a number is not within a limit on either side.
+/// Where the magnitude of a number is above a limit.
 #[inline(always)]
 pub(super) fn beyond<L: Lanes<N>, const N: usize>(value: L::Int, limit: L::Int) -> L::Mask {
     L::either(L::greater(value, limit), L::greater(L::sub(L::splat(0), limit), value))

@@ -14,23 +14,23 @@
 //! vA -= GA d,  uA -= fA.d,  vB += GB d,  uB += fB.d
 //! ```
 //!
-//! `L` is the relative velocity of the anchors that the impulse makes, and what is carried from pose to pose: the
-//! new `G` drops the part of it that no longer acts along the arm. Carrying the impulse `p = G L` instead
-//! multiplies that part by up to `e^2` (1100 m/s on a rod 40 radii of gyration long). Two scalar rows instead of
-//! the block gain energy in a swinging chain.
+//! `L` is the change of the relative velocity of the anchors by the impulse. `L` is carried over from pose to pose:
+//! the new `G` drops the part of it that no longer acts along the arm. Carrying over the impulse `p = G L`
+//! instead multiplies that part by up to `e^2` (1100 m/s on a rod 40 radii of gyration long). Two scalar rows instead
+//! of the block gain energy in a swinging chain.
 //!
-//! **The solve pass looks along the chord.** Displacements are straight while arms turn, which opens the joint by
-//! about half the square of the turn. The velocity that closes it is the one of the arm averaged over the turn
-//! `t = h u / k` ahead, to third order
+//! **The bias pass measures along the chord.** Displacements are straight while arms turn, which opens the joint by
+//! about half the square of the rotation. The velocity that closes it is that of the arm averaged over the predicted
+//! rotation `t = h u / k`, to third order
 //!
 //! ```text
 //! eM = e + M (t/2 (-e_y, e_x) - t^2/6 e),   M = 1 + 0.6 impulseScale / massScale
 //! vr = vB - vA + eMB uB - eMA uA
 //! ```
 //!
-//! while the impulse still acts along the arm at the start, so that it costs no energy (the position constraint
-//! of RATTLE, H. Andersen 1983). `M` makes up for the softness that would give way to the centrifugal force.
-//! The relax pass uses the plain arm.
+//! while the impulse still acts along the arm at the start, so that it costs no energy (the position constraint of
+//! RATTLE, H. Andersen 1983). `M` compensates for the softness, which would yield to the centrifugal force. The relax
+//! pass uses the arm at the start. Hinges do all this in batches (`joint/hinge`).
 
 use fixed::types::extra::U30;
 
@@ -68,6 +68,14 @@ impl Symmetric<Unit> {
     }
 }
 
+/// The velocity that [`PointBlock::solve_within`] aims at, reversed.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct PointGoal {
+    pub(crate) bias: Vec2<Speed>,
+    /// A part that the softness does not scale.
+    pub(crate) push: Vec2<Speed>,
+}
+
 /// The block at one pose of its bodies.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct PointBlock {
@@ -91,7 +99,7 @@ impl PointBlock {
         };
         let (xx, xy, yy) = (sum(|e| e.x, |e| e.x), sum(|e| e.x, |e| e.y), sum(|e| e.y, |e| e.y));
         let product = |a: Ratio, b: Ratio| i128::from(a.to_bits()) * i128::from(b.to_bits());
-        // 24 fraction bits of `eA x eB` and of each fraction are enough: the term is never the smallest.
+        // 24 fraction bits of `eA x eB` suffice: this term is never the smallest.
         let cross = round_shift_wide(product(e_a.x, e_b.y) - product(e_a.y, e_b.x), 24);
         let shares = product_of_fractions(fractions);
         let both = round_shift_wide(cross * cross, 24) * shares;
@@ -106,7 +114,7 @@ impl PointBlock {
     /// Changes the velocities by an impulse `d`.
     #[inline]
     pub(crate) fn apply(&self, d: Vec2<Speed>, a: &mut SolverBody, b: &mut SolverBody, faults: &mut Faults) {
-        // A change of up to 512 on both axes may add up to 768: these sums saturate before they are clamped.
+        // Changes of up to 512 m/s on both axes may add up to 768 m/s: these sums saturate before they are clamped.
         let (v_a, v_b) = (a.velocity - self.g_a.apply(d), b.velocity + self.g_b.apply(d));
         a.set_velocity(v_a.x, v_a.y, a.spin.saturating_sub(self.f_a.dot(d)), faults);
         b.set_velocity(v_b.x, v_b.y, b.spin.saturating_add(self.f_b.dot(d)), faults);
@@ -117,8 +125,8 @@ impl PointBlock {
         (self.e_a, self.e_b)
     }
 
-    /// Solves the block for one iteration, with the lever ratios that measure velocity. `lambda` is the
-    /// accumulated `L`.
+    /// Solves the block for one iteration, measuring velocity with the given lever ratios. `lambda` is the accumulated
+    /// `L`.
     #[cfg(test)]
     #[expect(clippy::too_many_arguments, reason = "the quantities of the equations above")]
     pub(crate) fn solve(
@@ -140,20 +148,21 @@ impl PointBlock {
         self.apply(d, a, b, faults);
     }
 
-    /// Solves the block with an impulse of at most a length: `|p| <= p_max`, where `p = G L` is the impulse times
-    /// `mA + mB`. Besides the bias it takes a push, which is not scaled by the softness.
+    /// Solves the block for one iteration with an impulse of limited length: `|p| <= p_max`, where `p = G L` is the
+    /// impulse times `mA + mB`.
     #[inline]
     #[expect(clippy::too_many_arguments, reason = "the quantities of the equations above")]
     pub(crate) fn solve_within(
         &self,
         a: &mut SolverBody,
         b: &mut SolverBody,
-        (bias, push): (Vec2<Speed>, Vec2<Speed>),
+        goal: PointGoal,
         softness: &Softness,
         p_max: Speed,
         lambda: &mut Vec2<Speed>,
         faults: &mut Faults,
     ) {
+        let PointGoal { bias, push } = goal;
         let vr = self.velocity(a, b, self.ratios(), faults);
         let d_x = softness.impulse(vr.x, bias.x, lambda.x, faults).saturating_sub(push.x);
         let d_y = softness.impulse(vr.y, bias.y, lambda.y, faults).saturating_sub(push.y);
@@ -166,7 +175,7 @@ impl PointBlock {
         self.apply(d, a, b, faults);
     }
 
-    /// `L` with `|G L|` at most `p_max`, in the same direction.
+    /// `L`, shortened so that `|G L|` is at most `p_max`.
     fn shortened(&self, lambda: Vec2<Speed>, p_max: Speed) -> Vec2<Speed> {
         // The mass fractions add up to 1.
         let p = self.g_a.apply(lambda) + self.g_b.apply(lambda);
@@ -184,7 +193,7 @@ impl PointBlock {
         Vec2::new(part(lambda.x), part(lambda.y))
     }
 
-    /// `vr` with the lever ratios that measure it.
+    /// `vr`, measured with the given lever ratios.
     #[inline]
     fn velocity(
         &self,
@@ -221,9 +230,9 @@ fn accumulate(lambda: Speed, d: Speed, faults: &mut Faults) -> Speed {
     Speed::from_bits(saturate(within))
 }
 
-/// `[K22 -K12; -K12 K11] / det` with one division. Everything has 30 fraction bits.
+/// `[K22 -K12; -K12 K11] / det` with one division. All numbers have 30 fraction bits.
 fn inverse(k: &Symmetric<i64>, det: i64) -> Symmetric<Unit> {
-    // Normalise the determinant to 32 bits: its reciprocal then has 31, and products fit 64.
+    // With the determinant normalised to 32 bits, its reciprocal has 31 bits and products fit 64.
     let excess = (64 - det.leading_zeros()).saturating_sub(32);
     let reciprocal = (1i64 << 62) / (det >> excess);
     let entry = |value: i64| Unit::from_bits(saturate(round_shift((value >> excess) * reciprocal, 32)));
@@ -236,8 +245,8 @@ mod tests {
     use crate::fx;
     use crate::math::{Fx, Reciprocal, Rng, Rot, narrow};
 
-    /// One update leaves the anchors at rest against each other but for rounding. With arms of up to 16 radii of
-    /// gyration on both sides they start at up to 330 m/s, and 6e-5 m/s is two parts in ten million of that.
+    /// One update leaves the anchors at rest against each other but for rounding errors of up to 6e-5 m/s. With arms of
+    /// up to 16 radii of gyration on both sides they start at up to 330 m/s.
     #[test]
     fn an_update_brings_the_anchors_to_rest() {
         let mut rng = Rng::new(8);
@@ -262,7 +271,7 @@ mod tests {
             };
             let (mut a, mut b) = (body(), body());
             let (mut lambda, mut before) = (Vec2::ZERO, Vec2::ZERO);
-            // The second update finds what the first has left.
+            // The second update solves what the first has left.
             for _ in 0..2 {
                 before = lambda;
                 let (ratios, no_bias) = (block.ratios(), Vec2::ZERO);
@@ -275,7 +284,7 @@ mod tests {
         assert!(worst <= 128, "{worst} units left");
     }
 
-    /// However far it is asked to go, from rest an impulse changes momentum by no more than its bound.
+    /// From rest, an impulse changes momentum by no more than its bound, whatever velocity it aims at.
     #[test]
     fn an_impulse_of_limited_length_is_no_longer() {
         let mut rng = Rng::new(9);
@@ -295,10 +304,10 @@ mod tests {
             let (mut a, mut b) = (SolverBody::default(), SolverBody::default());
             let mut lambda = Vec2::ZERO;
             for _ in 0..3 {
-                let biases = (bias, Vec2::ZERO);
-                block.solve_within(&mut a, &mut b, biases, &Softness::RIGID, most, &mut lambda, &mut faults);
+                let goal = PointGoal { bias, push: Vec2::ZERO };
+                block.solve_within(&mut a, &mut b, goal, &Softness::RIGID, most, &mut lambda, &mut faults);
             }
-            // p = (vB - vA) / (aA + aB), whatever the shares.
+            // p = (vB - vA) / (aA + aB) for all mass fractions.
             let p = (b.velocity - a.velocity).widen().length();
             assert!(p <= Fx::from(most) + fx!(0.00001), "{p} of {most}");
         }

@@ -1,15 +1,15 @@
-//! How contacts apply their impulses again in all sub-steps of a tick but the first: all at once.
+//! Warm start of contacts, once for each body: the velocity change that contacts have accumulated is applied at once.
 //!
-//! The rows of contacts stay what they are for a whole tick. So what the impulses that have accumulated in them change of
-//! a body's velocity is what contacts have changed of it in the sub-step before, from their warm start to its end:
+//! The rows of contacts do not change within a tick. So the velocity change by the impulses that have accumulated in
+//! them is what contacts have changed of a body's velocity in the sub-step before, from their warm start to its end:
 //!
 //! ```text
 //! push = v - v_free,    v' = v_free' + push
 //! ```
 //!
-//! with the velocity `v_free` that the body would have without contacts. That is one sum for each body, where the rows
-//! would take a pass over all of them. Hinges, whose rows turn with their bodies, and locked axes change velocities
-//! meanwhile: that is taken into `v_free`.
+//! where `v_free` is the velocity that the body would have without contacts. That is one sum for each body instead of a
+//! pass over the rows of all contacts. Hinges, whose rows turn with their bodies, and locked axes change velocities in
+//! between: their changes are added to `v_free`.
 
 #[cfg(test)]
 mod tests;
@@ -18,11 +18,12 @@ use alloc::vec::Vec;
 use core::cell::Cell;
 
 use super::body::SolverBody;
+use super::context::StepContext;
 use super::limits::Faults;
 use super::pair::Pair;
-use crate::lanes::{GROUND, Ints, Kernel, Lanes, Machine, Motion, WIDTH};
+use crate::lanes::{GROUND, Ints, Kernel, Lanes, Motion, WIDTH};
 
-/// What contacts have changed of the velocities of all that they push.
+/// The velocity changes by contacts of all bodies that they push.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Pushes {
     groups: Vec<Group<WIDTH>>,
@@ -35,69 +36,87 @@ pub(super) struct Pushes {
 /// As many bodies as there are lanes.
 #[derive(Clone, Debug)]
 struct Group<const N: usize> {
-    /// Where they are among the bodies; the ground for none.
+    /// The indices of the bodies; the ground in lanes without one.
     at: [u32; N],
-    /// Whether anything but contacts changes the velocity of any of them between a warm start and the end of a sub-step.
+    /// Whether anything but contacts changes the velocity of any of them between a warm start and the end of a
+    /// sub-step.
     shared: bool,
     free: Motion<Ints<N>>,
     push: Motion<Ints<N>>,
 }
 
-/// What is done for all bodies in turn.
+/// An operation on all bodies in turn.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Task {
-    /// Find what contacts have changed in the last sub-step, if there was one in this tick.
+enum Task {
     Measure,
-    /// Remember the free velocities, and push again.
     Apply,
-    /// Something else is about to change velocities.
+    /// Subtracts the velocity from `v_free`.
     Suspend,
-    /// It has.
+    /// Adds the velocity to `v_free`.
     Resume,
 }
 
+/// A body that contacts change.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PushedBody {
+    pub(super) index: u32,
+    /// Whether something else changes its velocity while contacts are solved.
+    pub(super) shared: bool,
+}
+
 impl Pushes {
-    /// Starts a tick with the bodies that contacts change, and for each of them whether something else changes its
-    /// velocity while contacts are solved.
-    pub(super) fn begin(&mut self, bodies: impl Iterator<Item = (u32, bool)>) {
+    /// Starts a tick with the bodies that contacts change.
+    pub(super) fn begin(&mut self, bodies: impl Iterator<Item = PushedBody>) {
         let Pushes { groups, shared, known } = self;
         (*shared, *known) = (false, false);
         groups.clear();
-        for (number, (index, is_shared)) in bodies.enumerate() {
+        for (number, body) in bodies.enumerate() {
             let lane = number % WIDTH;
             if lane == 0 {
                 groups.push(Group::NONE);
             }
             if let Some(group) = groups.last_mut() {
-                group.at[lane] = index;
-                group.shared |= is_shared;
+                group.at[lane] = body.index;
+                group.shared |= body.shared;
             }
-            *shared |= is_shared;
+            *shared |= body.shared;
         }
     }
 
-    /// Whether what contacts change is known from a sub-step before.
-    pub(super) fn are_known(&self) -> bool {
-        self.known
+    /// Finds what contacts have changed in the last sub-step, if there was one in this tick.
+    pub(super) fn measure(&mut self, context: &StepContext<'_>) {
+        if self.known {
+            self.perform(Task::Measure, context);
+        }
     }
 
-    /// Does nothing where nothing is to do.
-    pub(super) fn perform(
-        &mut self,
-        task: Task,
-        machine: Machine,
-        bodies: &[Cell<SolverBody>],
-        faults: &mut Faults,
-    ) {
-        let is_needed = match task {
-            Task::Measure => self.known,
-            Task::Apply => !self.groups.is_empty(),
-            Task::Suspend | Task::Resume => self.shared,
-        };
-        if is_needed {
-            machine.run(Perform { groups: &mut self.groups, task, bodies, faults });
+    /// Records the free velocities and applies the pushes of the last sub-step again. Returns whether there was a
+    /// sub-step in this tick: if not, nothing has been pushed.
+    pub(super) fn apply(&mut self, context: &StepContext<'_>) -> bool {
+        let was_known = self.known;
+        if !self.groups.is_empty() {
+            self.perform(Task::Apply, context);
             self.known = true;
         }
+        was_known
+    }
+
+    /// Lets something other than contacts change velocities.
+    pub(super) fn exempt(&mut self, context: &StepContext<'_>, change: impl FnOnce()) {
+        if self.shared {
+            self.perform(Task::Suspend, context);
+        }
+        change();
+        if self.shared {
+            self.perform(Task::Resume, context);
+        }
+    }
+
+    fn perform(&mut self, task: Task, context: &StepContext<'_>) {
+        let mut faults = 0;
+        let (groups, bodies, faults_of_run) = (&mut self.groups, context.bodies, &mut faults);
+        context.machine.run(Perform { groups, task, bodies, faults: faults_of_run });
+        context.add_faults(faults);
     }
 }
 
@@ -126,7 +145,7 @@ impl<const N: usize> Kernel<N> for Perform<'_, N> {
                 Task::Apply => {
                     let v = L::velocities(bodies, at);
                     store::<L, N>(v, free);
-                    // The free velocity is within all limits.
+                    // The free velocity is within the limits already.
                     let mut pushed = Pair::<L, N> { a: v, b: sum::<L, N>(v, load::<L, N>(push)) };
                     pushed.keep_in_range(faults);
                     L::set_velocities(bodies, at, pushed.b);

@@ -1,4 +1,4 @@
-//! The row kernel: removes relative velocity along one direction between two bodies.
+//! The row: removes relative velocity along one direction between two bodies.
 //!
 //! With lever arms `c = r x n`, inverse masses `m` and radii of gyration `k` of bodies A and B, and angular
 //! velocity carried as the speed `u = k w` (E. Catto, "Iterative Dynamics with Temporal Coherence", 2005, in
@@ -6,7 +6,7 @@
 //!
 //! ```text
 //! e = c / k                                            lever ratio
-//! aA = mA / (mA + mB),  aB = 1 - aA                    mass fractions, 0 for a body that nothing moves
+//! aA = mA / (mA + mB),  aB = 1 - aA                    mass fractions, 0 for a body that no impulse moves
 //! D  = aA (1 + eA^2) + aB (1 + eB^2)                   1 or more
 //! g  = a / D,  f = g e                                 gains, at most 1 and 1/2
 //!
@@ -16,8 +16,8 @@
 //! vA -= gA d n,  uA -= fA d,  vB += gB d n,  uB += fB d
 //! ```
 //!
-//! `L` is the accumulated impulse divided by the effective mass: a speed. No sum of two clamped values leaves its
-//! type; every clamp that bites is counted as a fault.
+//! `L` is the accumulated impulse divided by the effective mass: a speed. No sum of two clamped values overflows; each
+//! clamp that changes a value is counted as a fault.
 
 mod angular;
 
@@ -31,7 +31,7 @@ use crate::math::{
     saturate, saturate_wide,
 };
 
-/// The mass fractions of a pair of bodies: how a push is shared.
+/// The mass fractions of a pair of bodies: the share of each in a change of the relative velocity.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct MassFractions {
     pub(crate) a: Unit,
@@ -39,20 +39,20 @@ pub(crate) struct MassFractions {
 }
 
 impl MassFractions {
-    /// `mA / (mA + mB)` of the inverse masses is `MB / (MA + MB)` of the masses.
+    /// With masses `M` instead of inverse masses, `mA / (mA + mB)` is `MB / (MA + MB)`.
     pub(crate) fn of(a: &Body, b: &Body) -> Self {
         let mass = |body: &Body| if body.is_dynamic() { body.mass() } else { Fx::ZERO };
         Self::of_masses(mass(a), mass(b))
     }
 
-    /// Of the masses in kg: 0 for a body that nothing moves.
+    /// `a` and `b` are the masses in kg, 0 for a body that no impulse moves.
     pub(crate) fn of_masses(a: Fx, b: Fx) -> Self {
         match (a.is_positive(), b.is_positive()) {
-            // Of equal bodies without a division.
+            // Equal masses need no division.
             (true, true) if a == b => MassFractions { a: Unit::ONE / 2, b: Unit::ONE / 2 },
             (true, true) => {
                 let (mass_a, mass_b) = (a.to_bits().unsigned_abs(), b.to_bits().unsigned_abs());
-                // Masses are below 2^62. Dropping all but 32 bits of the sum leaves room for 30 more.
+                // Masses are below 2^62. With the sum reduced to 32 bits there is room for 30 fraction bits.
                 let excess = (64 - (mass_a + mass_b).leading_zeros()).saturating_sub(32);
                 let (mass_a, mass_b) = (mass_a >> excess, mass_b >> excess);
                 let bits = (mass_b << 30) / (mass_a + mass_b);
@@ -66,7 +66,7 @@ impl MassFractions {
     }
 }
 
-/// `a e e'` with 30 fraction bits: at most 16 129. Rounding `a e` first would cost 7 of the 24 bits of `e`.
+/// `a e e'` with 30 fraction bits, at most 16 129. Rounding `a e` first would cost 7 of the 24 bits of `e`.
 #[inline]
 pub(super) fn turning(fraction: Unit, e: Ratio, other: Ratio) -> i64 {
     let square = i64::from(e.to_bits()) * i64::from(other.to_bits());
@@ -74,7 +74,7 @@ pub(super) fn turning(fraction: Unit, e: Ratio, other: Ratio) -> i64 {
     saturate_wide(round_shift_wide(wide, 48))
 }
 
-/// `f x` of a fraction, a gain or a component of a unit vector: never larger than `x`, so it needs no clamp.
+/// `f x` for a fraction, a gain or a component of a unit vector `f`: never larger than `x`, so that it needs no clamp.
 #[inline]
 #[expect(clippy::cast_possible_truncation, reason = "at most the speed itself")]
 fn part(fraction: Unit, speed: Speed) -> Speed {
@@ -82,7 +82,7 @@ fn part(fraction: Unit, speed: Speed) -> Speed {
     Speed::from_bits(round_shift(product, 30) as i32)
 }
 
-/// One body's end of a row or block: where it is pushed, and how easily it turns.
+/// Where a row or block acts on a body, and how easily the body turns.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Lever {
     /// From the centre of mass to the point.
@@ -102,11 +102,11 @@ pub(crate) struct Row {
     f_b: Unit,
 }
 
-/// Largest lever ratio. Two of them times the largest turns still leave 2^57 of 64 bits for the linear part of
+/// Largest lever ratio. Two of them times the largest spins leave 2^57 of 64 bits for the linear part of
 /// [`Row::along`].
 pub(super) const RATIO_MAX: Ratio = Ratio::lit("126");
 
-/// `D` of a row, with 30 fraction bits: 1 to 15 877.
+/// `D` of a row, 1 to 15 877, with 30 fraction bits.
 pub(crate) type Denominator = i64;
 
 impl Row {
@@ -126,7 +126,7 @@ impl Row {
         (Row { n, e_a, e_b, g_a, g_b, f_a: mul(g_a, e_a), f_b: mul(g_b, e_b) }, denominator)
     }
 
-    /// A row along which nothing moves.
+    /// A row whose impulses change nothing.
     pub(crate) const NONE: Self = Row {
         n: Vec2::new(Unit::ZERO, Unit::ZERO),
         e_a: Ratio::ZERO,
@@ -142,7 +142,7 @@ impl Row {
         ([self.e_a, self.e_b], [self.f_a, self.f_b])
     }
 
-    /// The row that measures the other way.
+    /// The row in the opposite direction.
     pub(crate) fn reversed(&self) -> Self {
         let Row { n, e_a, e_b, g_a, g_b, f_a, f_b } = *self;
         Row { n: -n, e_a: -e_a, e_b: -e_b, g_a, g_b, f_a: -f_a, f_b: -f_b }
@@ -160,9 +160,9 @@ impl Row {
         Speed::from_bits(vn)
     }
 
-    /// `n.d + eB tB - eA tA` in the format of its arguments: the one dot product of the kernel. The linear part
-    /// drops 6 bits to the scale of the angular part before the sum is rounded once. Differences have 33 bits, so
-    /// with a unit vector their dot product stays below 2^63.
+    /// `n.d + eB tB - eA tA` in the format of its arguments. The linear part drops 6 bits to the scale of the angular
+    /// part, and the sum is rounded once. Differences have 33 bits, so that their dot product with a unit vector stays
+    /// below 2^63.
     #[inline]
     fn along(&self, x: i64, y: i64, turn_a: i32, turn_b: i32) -> i64 {
         let linear = i64::from(self.n.x.to_bits()) * x + i64::from(self.n.y.to_bits()) * y;
@@ -190,8 +190,7 @@ impl Row {
         );
     }
 
-    /// Solves the row for one iteration. `lambda` is the accumulated `L`, kept within `lo..=hi`; the change `d` is
-    /// returned.
+    /// Solves the row for one iteration. `lambda` is the accumulated `L`, kept within `bounds`. Returns the change `d`.
     #[cfg(test)]
     #[expect(clippy::too_many_arguments, reason = "the quantities of the equation above, all 32-bit numbers")]
     pub(crate) fn solve(
@@ -208,8 +207,7 @@ impl Row {
         self.accumulate(softness.wanted(vn, bias, *lambda), bounds, lambda, a, b, faults)
     }
 
-    /// Adds an impulse in units of [`Speed`] to what has accumulated, as far as the bounds allow, and returns what was
-    /// added.
+    /// Accumulates an impulse in units of [`Speed`], as far as the bounds allow. Returns the change.
     #[inline]
     pub(crate) fn accumulate(
         &self,
@@ -236,7 +234,8 @@ impl Row {
         self.apply_wide(d.to_bits().into(), a, b, faults);
     }
 
-    /// The same in units of [`Speed`]: between two accumulated impulses there may be twice as much as fits the type.
+    /// As [`Self::apply`], in units of [`Speed`]: the difference of two accumulated impulses may be twice as large as
+    /// the type can hold.
     #[inline]
     fn apply_wide(&self, d: i64, a: &mut SolverBody, b: &mut SolverBody, faults: &mut Faults) {
         if d.unsigned_abs() <= u64::from(STEP_MAX.to_bits().unsigned_abs()) {
@@ -246,7 +245,8 @@ impl Row {
         }
     }
 
-    /// A friction limit may shrink, and what was pushed may come free, by more than a velocity has room for.
+    /// Applies an impulse of more than 512 m/s in steps: a bound may shrink, and what was pushed may come free, by more
+    /// than a velocity has room for.
     #[cold]
     fn apply_in_steps(&self, mut d: i64, a: &mut SolverBody, b: &mut SolverBody, faults: &mut Faults) {
         let limit = i64::from(STEP_MAX.to_bits());
@@ -258,13 +258,13 @@ impl Row {
     }
 }
 
-/// An accumulated impulse `p = L / D`, carried over as `L` for another `D`: a guess, so that to clamp it is no fault.
+/// `L = p D` for an accumulated impulse `p = L / D` of an earlier `D`. It is a guess, so that clamping it is no fault.
 pub(crate) fn lambda_of(p: Speed, denominator: Denominator) -> Speed {
     let bits = round_shift_wide(i128::from(p.to_bits()) * i128::from(denominator), 30);
     Speed::from_bits(saturate(saturate_wide(bits))).clamp(-IMPULSE_MAX, IMPULSE_MAX)
 }
 
-/// `p = L / D`: the impulse times `mA + mB`, which does not depend on the lever arms.
+/// `p = L / D`: the impulse times `mA + mB`. It does not depend on the lever arms.
 pub(crate) fn impulse_of(lambda: Speed, denominator: Denominator) -> Speed {
     let bits = div_round(i128::from(lambda.to_bits()) << 30, denominator.max(1).into());
     Speed::from_bits(saturate(saturate_wide(bits)))
@@ -287,7 +287,7 @@ mod tests {
         SolverBody { velocity, spin: random_speed(rng, limit), ..SolverBody::default() }
     }
 
-    /// An arm of up to three radii of gyration: what a convex shape can have.
+    /// An arm of up to 2.8 radii of gyration, as convex shapes have.
     fn random_lever(rng: &mut Rng) -> Lever {
         let gyration = rng.range(fx!(0.01), fx!(40));
         let reach = crate::math::fx_mul(gyration, rng.range(fx!(0), fx!(2.8)));
@@ -295,7 +295,7 @@ mod tests {
         Lever { arm, inverse_gyration: Reciprocal::of(gyration) }
     }
 
-    /// Shares from 1:1 to 1:10^6, or all of it.
+    /// Mass ratios from 1:1 to 1:2^30, or a body that no impulse moves.
     fn random_fractions(rng: &mut Rng) -> MassFractions {
         let a = match rng.below(4) {
             0 => Unit::ONE,
@@ -306,8 +306,7 @@ mod tests {
         MassFractions { a, b: Unit::ONE - a }
     }
 
-    /// One update leaves no relative velocity but what rounding makes of it: a row is solved to 5 units of
-    /// [`Speed`], 2.4e-6 m/s.
+    /// One update leaves no relative velocity but rounding errors of up to 5 units of [`Speed`], 2.4e-6 m/s.
     #[test]
     fn an_update_removes_the_relative_velocity() {
         let mut rng = Rng::new(4);
@@ -343,7 +342,7 @@ mod tests {
         }
     }
 
-    /// The clamps hold whatever the numbers are, and say so.
+    /// Velocities stay within their limits whatever the inputs are, and clamps count faults.
     #[test]
     fn extreme_systems_stay_in_range_and_are_counted() {
         let mut rng = Rng::new(6);

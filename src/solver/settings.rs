@@ -1,4 +1,4 @@
-//! How the one solver behaves: data, not code.
+//! Settings of the solver, and the same in the formats of its stages.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,50 +6,51 @@ use super::softness::Softness;
 use crate::fx;
 use crate::math::{Fx, Rate, Speed, Step, Vec2, narrow};
 
-/// How contacts remove overlap.
+/// Method by which contacts remove overlap.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum ContactTuning {
-    /// As stiff damped springs, with a relax pass that takes the push-out velocity away again.
+    /// Stiff damped springs, with a relax pass that takes the push-out velocity away again.
     Soft {
-        /// Stiffness in Hz, at most an eighth of the sub-step rate; doubled against bodies that nothing moves.
+        /// Stiffness in Hz, at most an eighth of the sub-step rate; doubled against bodies that are not dynamic.
         hertz: Fx,
         /// Damping ratio, 0 to 100.
         damping_ratio: Fx,
         /// Largest speed at which overlap is pushed out, in m/s.
         push_speed: Fx,
     },
-    /// By a share of the overlap beyond a slop in every sub-step (J. Baumgarte, 1972). Simpler and bouncier.
+    /// A share of the overlap beyond a slop is removed in every sub-step (J. Baumgarte, 1972). Simpler and bouncier.
     Baumgarte {
         /// Share of the overlap removed in a sub-step, 0 to 1.
         share: Fx,
-        /// Overlap that is left alone, in metres, so that contacts do not flicker.
+        /// Overlap that is not removed, in metres, so that contacts do not flicker.
         slop: Fx,
         /// Largest speed at which overlap is pushed out, in m/s.
         push_speed: Fx,
     },
 }
 
-/// Farthest that a body can move in a tick on each axis, in metres: what a displacement can hold.
+/// Largest displacement of a body in a tick along each axis, in metres.
 pub const DISTANCE_MAX: Fx = fx!(15);
 
-/// How the solver runs.
+/// Settings of the solver.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SolverSettings {
     /// Sub-steps in a tick, 1 to 64. Ticks per second times sub-steps is 60 to 4000.
     pub sub_steps: u32,
-    /// Iterations in a sub-step, 1 to 16. More sub-steps do more than more iterations.
+    /// Iterations in a sub-step, 1 to 16. Additional sub-steps improve the result more than additional iterations.
     pub iterations: u32,
-    /// How contacts remove overlap.
+    /// Method by which contacts remove overlap.
     pub contact: ContactTuning,
-    /// Stiffness of joints in Hz, at most a quarter of the sub-step rate. Twice that for the anchors of a hinge or rigid weld
-    /// that holds a body with no other joint to one that is not dynamic: nothing else has to give way there.
+    /// Stiffness of joints in Hz, at most a quarter of the sub-step rate. It is doubled for the anchors of a hinge or
+    /// rigid weld that holds a body without any other joint to a body that is not dynamic: no other joint has to yield
+    /// there.
     pub joint_hertz: Fx,
     /// Damping ratio of joints, 0 to 100.
     pub joint_damping_ratio: Fx,
     /// Approach speed in m/s below which nothing bounces.
     pub restitution_threshold: Fx,
-    /// Speed limit in m/s, also of the radius of gyration times the angular velocity; at most 400. Below 27 ticks per
-    /// second the limit is lower: [`DISTANCE_MAX`] in a tick.
+    /// Speed limit in m/s, at most 400. It also limits the radius of gyration times the angular velocity. Below 27
+    /// ticks per second the limit is lower: [`DISTANCE_MAX`] in a tick.
     pub speed_max: Fx,
 }
 
@@ -73,7 +74,7 @@ impl SolverSettings {
         self.speed_max.min(DISTANCE_MAX * i64::from(tick_rate))
     }
 
-    /// The name of a setting that is out of range, for a world of `tick_rate` ticks per second.
+    /// The name of the first setting that is out of range, for a world of `tick_rate` ticks per second.
     pub(crate) fn first_invalid(&self, tick_rate: u32) -> Option<&'static str> {
         let SolverSettings {
             sub_steps,
@@ -109,24 +110,25 @@ impl SolverSettings {
     }
 }
 
-/// The settings in kernel formats, for one tick.
+/// The settings in the formats of the solver, for one tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Tuning {
     /// Sub-steps per second.
     pub(crate) rate: u32,
     pub(crate) iterations: u32,
-    /// Of contacts between two dynamic bodies, and of those with a body that nothing moves.
+    /// Softness of contacts between two dynamic bodies, and of contacts with a body that is not dynamic.
     pub(crate) contact: Softness,
     pub(crate) contact_immovable: Softness,
     pub(crate) slop: Step,
     pub(crate) push_speed: Speed,
-    /// Of joints, and of what pins a mounted body: see [`super::joint`].
+    /// Softness of joints, and of the anchors of hinges that hold a body without any other joint to one that is not
+    /// dynamic.
     pub(crate) joint: Softness,
     pub(crate) mount: Softness,
     pub(crate) relax: bool,
     pub(crate) restitution_threshold: Speed,
     pub(crate) speed_max: Speed,
-    /// Change of velocity by gravity in a sub-step.
+    /// Velocity change by gravity in a sub-step.
     pub(crate) gravity_step: Vec2<Fx>,
 }
 
@@ -168,7 +170,7 @@ impl Tuning {
     }
 }
 
-/// `share` in every sub-step, as a rate per second.
+/// A share in every sub-step as a rate per second.
 fn fx_rate(share: Fx, rate: u32) -> Fx {
     crate::math::fx_mul(share, Fx::from_num(rate))
 }

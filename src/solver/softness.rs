@@ -1,5 +1,5 @@
-//! Soft constraints: a spring and damper that stays stable at any stiffness (E. Catto, "Soft Constraints", GDC
-//! 2011, and Solver2D), as three numbers.
+//! Soft constraints: springs and dampers that stay stable at any stiffness (E. Catto, "Soft Constraints", GDC 2011, and
+//! Solver2D), as three numbers.
 //!
 //! ```text
 //! omega = 2 pi hertz,  a1 = 2 zeta + h omega,  a2 = h omega a1,  a3 = 1 / (1 + a2)
@@ -10,7 +10,7 @@ use super::limits::{Faults, STEP_MAX};
 use crate::fx;
 use crate::math::{Fx, Rate, Speed, TAU, Unit, fx_div, fx_mul, narrow, round_shift, saturate};
 
-/// How a constraint error and an accumulated impulse turn into an impulse.
+/// The coefficients by which a constraint error and an accumulated impulse become an impulse.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Softness {
     pub(crate) bias_rate: Rate,
@@ -19,16 +19,16 @@ pub(crate) struct Softness {
 }
 
 impl Softness {
-    /// Solves the velocity exactly and leaves the error alone.
+    /// Solves the velocity exactly and ignores the position error.
     pub(crate) const RIGID: Self =
         Softness { bias_rate: Rate::ZERO, mass_scale: Unit::ONE, impulse_scale: Unit::ZERO };
 
-    /// Solves the velocity exactly and removes the error at a rate per second.
+    /// Solves the velocity exactly and removes the position error at a rate per second.
     pub(crate) const fn rigid_with_rate(bias_rate: Rate) -> Self {
         Softness { bias_rate, ..Self::RIGID }
     }
 
-    /// A spring of `hertz` and `damping_ratio`, solved `rate` times a second.
+    /// A spring of `hertz` and `damping_ratio` that is solved `rate` times per second.
     pub(crate) fn spring(hertz: Fx, damping_ratio: Fx, rate: u32) -> Self {
         let omega = fx_mul(TAU, hertz);
         let h_omega = omega / i64::from(rate);
@@ -36,27 +36,28 @@ impl Softness {
         let a2 = fx_mul(h_omega, a1);
         let a3 = fx_div(Fx::ONE, Fx::ONE.saturating_add(a2)).unwrap_or(Fx::ONE);
         let bias_rate = fx_div(omega, a1).unwrap_or(Fx::ZERO);
-        // They add up to 1 to the last bit, so that no kernel exceeds what it takes the mean of.
+        // The scales add up to exactly 1, so that a mean with these weights never exceeds the larger value.
         let impulse_scale = narrow(a3);
         Softness { bias_rate: narrow(bias_rate), mass_scale: Unit::ONE - impulse_scale, impulse_scale }
     }
 
-    /// `1 + 0.6 impulseScale / massScale`, at most 1.9: how much further a joint looks ahead so that its softness
-    /// gives way to only 0.4 of the centrifugal force. 0.5 leaves a gap of 8.4 mm on a rod with its anchor 40
-    /// radii of gyration away at 20 rad/s, 0.6 leaves 6.9 mm; at 1 chains of free bodies gain energy.
+    /// The factor by which a joint overestimates the predicted rotation, so that its softness yields to only 0.4 of the
+    /// centrifugal force: `1 + 0.6 impulseScale / massScale`, at most 1.9. On a rod with its anchor 40 radii of
+    /// gyration away at 20 rad/s, 0.5 leaves a gap of 8.4 mm and 0.6 a gap of 6.9 mm; with 1, chains of free bodies
+    /// gain energy.
     pub(crate) fn stretch(&self) -> Unit {
         let (impulse, mass) = (Fx::from(self.impulse_scale), Fx::from(self.mass_scale));
         let give = fx_mul(fx!(0.6), fx_div(impulse, mass).unwrap_or(Fx::ZERO));
         narrow(Fx::ONE.saturating_add(give.min(fx!(0.9))))
     }
 
-    /// The part of a spring's impulse that comes from its stretch, reversed: `massScale biasRate x`, which is about
-    /// `h omega^2 x`. The rate alone times a long stretch would leave the format.
+    /// The part of a spring's impulse that comes from its stretch, reversed: `massScale biasRate x`, about `h omega^2
+    /// x`. The bias rate alone times a long stretch would overflow.
     pub(crate) fn push(&self, stretch: Fx) -> Speed {
         narrow(fx_mul(fx_mul(stretch, self.bias_rate.into()), self.mass_scale.into()))
     }
 
-    /// `-massScale (v + bias) - impulseScale L` in units of [`Speed`], which it may exceed fourfold.
+    /// `-massScale (v + bias) - impulseScale L` in units of [`Speed`]. It may be four times the largest [`Speed`].
     #[inline]
     pub(crate) fn wanted(&self, v: Speed, bias: Speed, lambda: Speed) -> i64 {
         let error = i64::from(v.to_bits()) + i64::from(bias.to_bits());
@@ -65,7 +66,7 @@ impl Softness {
         round_shift(-wide, 30)
     }
 
-    /// The same, clamped to what one update may change.
+    /// [`Self::wanted`], clamped to the largest change of an impulse in one update.
     #[inline]
     pub(crate) fn impulse(&self, v: Speed, bias: Speed, lambda: Speed, faults: &mut Faults) -> Speed {
         let wanted = self.wanted(v, bias, lambda);

@@ -1,31 +1,33 @@
-//! Contacts as the kernels read them: `N` at a time, each number in a row of its own.
+//! Batches of contacts: `N` at a time, as a structure of arrays.
 
 use crate::lanes::{Ints, Lanes};
 
-/// `N` contacts of which no two change the same body, for one tick. Lanes without a contact have no gains, and stand
-/// between the ground and itself.
+/// `N` contacts of which no two change the same body, for one tick. Lanes without a contact have no gains, and their
+/// bodies are the ground.
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
 pub(in crate::solver) struct Batch<const N: usize> {
-    /// Where to read the bodies.
+    /// The indices from which the bodies are read.
     pub(super) bodies: [[u32; N]; 2],
-    /// Where to write them: the ground for those that no impulse changes.
+    /// The indices to which the bodies are written: the ground for a body that no impulse changes.
     pub(super) changed: [[u32; N]; 2],
-    /// The normal, from A to B, with the fraction bits of a lever ratio. The tangent is its perpendicular.
+    /// The normal, from A to B, with the fraction bits of a lever ratio. The tangent is perpendicular to it.
     pub(super) n_x: Ints<N>,
     pub(super) n_y: Ints<N>,
-    /// -1 where one of the bodies does not give way: such contacts are stiffer.
+    /// -1 where no impulse moves one of the bodies: such contacts are stiffer.
     pub(super) immovable: Ints<N>,
-    /// How many of the points have a contact in any lane. What is left of the others has no part in anything.
+    /// Number of points that have a contact in any lane. Points beyond it are stale and never read.
     pub(super) count: usize,
-    /// Whether any surface in it bounces, moves or resists rolling: then it has a [`super::special::Special`] as well.
+    /// Whether any surface in the batch bounces, moves or resists rolling: then the batch has a
+    /// [`super::special::Special`] as well.
     pub(super) special: bool,
-    /// Whether its rows, and what is special about it, can be those of [`super::care::Calm`] contacts.
+    /// Whether its rows and its surfaces are within the bounds of [`super::care::Calm`] contacts.
     pub(super) calm: bool,
-    /// For each point, in which lanes the shapes have pushed each other in this tick: one bit each.
+    /// For each point, a bit for each lane in which the shapes have pushed each other in this tick.
     pub(super) pushed: [u32; 2],
     pub(super) points: [Point<N>; 2],
-    /// Friction, half-way between the points: both would have the same row, for they lie on one line along the tangent.
+    /// Friction, half-way between the points. Both points would have the same row, since they lie on one line along the
+    /// tangent.
     pub(super) tangent: Row<N>,
     pub(super) tangent_lambda: Ints<N>,
 }
@@ -34,22 +36,22 @@ pub(in crate::solver) struct Batch<const N: usize> {
 #[derive(Clone, Debug)]
 pub(super) struct Point<const N: usize> {
     pub(super) normal: Row<N>,
-    /// At the start of the tick, in the format of a shift.
+    /// Separation at the start of the tick, in the format of a shift.
     pub(super) first_separation: Ints<N>,
-    /// Where the bodies are now.
+    /// Separation at the present positions.
     pub(super) separation: Ints<N>,
-    /// Friction limit for each unit of the normal impulse: `mu Dt / Dn`.
+    /// Friction limit per unit of the normal impulse: `mu Dt / Dn`.
     pub(super) grip: Ints<N>,
     pub(super) normal_lambda: Ints<N>,
 }
 
-/// `N` rows: lever ratios, and what an impulse of 1 changes. The linear part of a lever ratio is the direction, which
-/// the rows of a contact have in common.
+/// `N` rows: lever ratios, and what an impulse of 1 changes. The linear part of the Jacobian is the direction, which
+/// all rows of a contact along the same direction share.
 #[derive(Clone, Debug)]
 pub(super) struct Row<const N: usize> {
     pub(super) e_a: Ints<N>,
     pub(super) e_b: Ints<N>,
-    /// `g n` and `f` of each body.
+    /// `g n_x`, `g n_y` and `f` of each body.
     pub(super) a: [Ints<N>; 3],
     pub(super) b: [Ints<N>; 3],
 }
@@ -70,7 +72,7 @@ impl<const N: usize> Point<N> {
 }
 
 impl<const N: usize> Batch<N> {
-    /// No contact in any lane.
+    /// A batch without a contact in any lane.
     pub(super) const NONE: Self = Batch {
         bodies: [[0; N]; 2],
         changed: [[0; N]; 2],
@@ -86,12 +88,19 @@ impl<const N: usize> Batch<N> {
         tangent_lambda: Ints::ZERO,
     };
 
-    /// Forgets what is not written anew when contacts are put into a batch.
+    /// Resets what is not overwritten when contacts are put into the batch.
     #[inline(always)]
     pub(super) fn begin(&mut self) {
         self.bodies = Self::NONE.bodies;
         self.changed = Self::NONE.changed;
         (self.count, self.special, self.pushed) = (0, false, [0; 2]);
+    }
+
+    /// The normal and the tangent.
+    #[inline(always)]
+    pub(super) fn directions<L: Lanes<N>>(&self) -> ([L::Int; 2], [L::Int; 2]) {
+        let (x, y) = (L::load(&self.n_x), L::load(&self.n_y));
+        ([x, y], [L::sub(L::splat(0), y), x])
     }
 
     /// Sets the normal impulse of a point.

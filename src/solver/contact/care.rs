@@ -1,8 +1,9 @@
-//! How numbers are kept in their formats: by looking at each sum, or by knowing beforehand that none is too large.
+//! Overflow policies: how numbers are kept within their formats.
 //!
-//! Nearly all contacts are [`Calm`]: nothing in them is fast, deep or pushed hard, and then no sum can leave its format
-//! and no clamp can bite. So a batch is solved without a look at any sum, and solved again by [`Careful`] if it turns
-//! out not to have been calm after all. Both find the same numbers wherever calm ones are used:
+//! [`Careful`] saturates every sum and counts a fault where a clamp changed a number. [`Calm`] does neither, and
+//! records whether all numbers were within bounds inside which no sum can overflow and no clamp can act. Nearly all
+//! contacts are within these bounds: nothing in them is fast, deep or pushed hard. A batch is solved by `Calm` first,
+//! and again by `Careful` if a number was out of bounds. Where the result of `Calm` is used, both give the same bits:
 //!
 //! ```text
 //! |vx|, |vy|, |u| < 64 at first, |d| < 4 for at most 10 rows       velocities stay below 104, spins below 84
@@ -25,33 +26,33 @@ use crate::math::{Grip, Rate, Ratio, Shift, Speed};
 
 pub(super) const GRIP: i32 = shift(Grip::FRAC_NBITS);
 
-/// The longest lever ratio and the best grip of calm contacts.
+/// Largest lever ratio and largest grip of calm contacts.
 const CALM_RATIO: Ratio = Ratio::lit("3");
 const CALM_GRIP: Grip = Grip::lit("3.5");
-/// The highest rate at which calm separations are turned into speeds.
+/// Highest rate at which calm separations become speeds.
 const CALM_RATE: Rate = Rate::lit("512");
 
-/// The limit of speeds and impulses, 64 m/s, and of ways, 2 m: a power of two.
+/// Bound of speeds and impulses, 64 m/s, and of displacements, 2 m: a power of two.
 const LARGE_BITS: u32 = 6 + Speed::FRAC_NBITS;
 const _: () = assert!(LARGE_BITS == 1 + Shift::FRAC_NBITS);
-/// The limit of changes of an impulse, 4 m/s, and of separations that are pushed, 1/8 m.
+/// Bound of changes of an impulse, 4 m/s, and of separations that are pushed, 1/8 m.
 const SMALL_BITS: u32 = 2 + Speed::FRAC_NBITS;
 const _: () = assert!(SMALL_BITS + 3 == Shift::FRAC_NBITS);
 
-/// Whether contacts may be calm in a world whose separations are turned into speeds at such rates.
+/// Whether contacts may be calm in a world whose separations become speeds at these rates.
 pub(super) fn calm_at(rates: [Rate; 3]) -> bool {
     rates.into_iter().all(|rate| rate <= CALM_RATE)
 }
 
-/// What is done where a number might leave its format.
+/// An overflow policy: the treatment of numbers that might overflow.
 pub(super) trait Care<L: Lanes<N>, const N: usize> {
-    /// Looks at the velocities that an iteration begins with, or at how far bodies have come.
+    /// Checks the velocities that an iteration begins with, or displacements.
     #[inline(always)]
     fn see(&mut self, _: &Pair<L, N>) {}
-    /// Looks at an impulse that is there already.
+    /// Checks an accumulated impulse.
     #[inline(always)]
     fn see_impulse(&mut self, _: L::Int) {}
-    /// Looks at a separation.
+    /// Checks a separation.
     #[inline(always)]
     fn see_separation(&mut self, _: L::Int) {}
     /// `J v` as a speed.
@@ -60,7 +61,7 @@ pub(super) trait Care<L: Lanes<N>, const N: usize> {
     fn limit(wide: L::Wide) -> L::Int;
     fn add(a: L::Int, b: L::Int) -> L::Int;
     fn sub(a: L::Int, b: L::Int) -> L::Int;
-    /// A number kept within a limit on either side.
+    /// A number clamped to a limit on either side.
     fn clamp(value: L::Int, limit: L::Int) -> L::Int;
     /// An accumulated impulse along a normal.
     fn impulse(&mut self, wanted: L::Int) -> L::Int;
@@ -68,11 +69,11 @@ pub(super) trait Care<L: Lanes<N>, const N: usize> {
     fn moved(&mut self, separation: L::Int, wide: L::Wide) -> L::Int;
     /// Changes velocities by impulses `d`.
     fn apply(&mut self, pair: &mut Pair<L, N>, row: &Row<N>, d: L::Int);
-    /// Changes velocities by impulses that are there already.
+    /// Changes velocities by accumulated impulses.
     fn apply_again(&mut self, pair: &mut Pair<L, N>, row: &Row<N>, lambda: L::Int);
 }
 
-/// Looks at every sum, saturates it and counts what did not fit.
+/// Saturates every sum and counts each number that did not fit.
 pub(super) struct Careful<'a>(pub(super) &'a mut Faults);
 
 impl<L: Lanes<N>, const N: usize> Care<L, N> for Careful<'_> {
@@ -136,7 +137,8 @@ impl<L: Lanes<N>, const N: usize> Care<L, N> for Careful<'_> {
     }
 }
 
-/// A friction limit may shrink, and what was pushed may come free, by more than a velocity has room for.
+/// Applies impulses of more than 512 m/s in steps. When a friction limit shrinks or a pushed shape comes free, an
+/// impulse may change by more than a velocity has room for.
 #[cold]
 fn apply_in_steps<L: Lanes<N>, const N: usize>(
     pair: &mut Pair<L, N>,
@@ -153,10 +155,10 @@ fn apply_in_steps<L: Lanes<N>, const N: usize>(
     }
 }
 
-/// Looks at no sum, and says in the end whether none was too large.
+/// Checks no sum, and tells at the end whether all numbers were within their bounds.
 pub(super) struct Calm<L: Lanes<N>, const N: usize> {
-    /// All numbers that must be small so far, each with its limit added: what is within has no higher bit than twice
-    /// the limit, which is a power of two.
+    /// The bitwise or of all numbers so far that must be within a bound, each with the bound added. The bound is a
+    /// power of two, so that a number within it sets no bit at or above twice the bound.
     large: L::Int,
     small: L::Int,
 }
@@ -177,7 +179,7 @@ impl<L: Lanes<N>, const N: usize> Calm<L, N> {
         self.small = L::or(self.small, L::add(number, L::splat(1 << SMALL_BITS)));
     }
 
-    /// Whether the rows of a batch, and what is special about it, can be those of calm contacts.
+    /// Whether the rows of a batch and its surfaces are within the bounds.
     #[inline(always)]
     pub(super) fn suits(batch: &Batch<N>, special: Option<&Special<N>>) -> bool {
         let ratio = L::splat(CALM_RATIO.to_bits());
@@ -190,7 +192,7 @@ impl<L: Lanes<N>, const N: usize> Calm<L, N> {
         !(drags || L::any(wild))
     }
 
-    /// Whether everything seen was within its limit.
+    /// Whether all numbers were within their bounds.
     #[inline(always)]
     pub(super) fn held(&self) -> bool {
         let beyond = |seen: L::Int, bits: u32| {
@@ -200,7 +202,7 @@ impl<L: Lanes<N>, const N: usize> Calm<L, N> {
     }
 }
 
-/// Where a lever ratio of a row is longer than a limit.
+/// Where a lever ratio of a row is above a limit.
 #[inline(always)]
 fn long<L: Lanes<N>, const N: usize>(row: &Row<N>, limit: L::Int) -> L::Mask {
     L::either(beyond::<L, N>(L::load(&row.e_a), limit), beyond::<L, N>(L::load(&row.e_b), limit))
@@ -278,8 +280,8 @@ impl<L: Lanes<N>, const N: usize> Care<L, N> for Calm<L, N> {
     }
 }
 
-/// Changes velocities by impulses that have bits to spare, so that what is wanted of a product is its upper half: one
-/// shift less.
+/// Changes velocities by impulses that have bits to spare. Multiplied by four, the result of a product is its upper
+/// half, which spares a shift.
 #[inline(always)]
 fn change<L: Lanes<N>, const N: usize>(pair: &mut Pair<L, N>, row: &Row<N>, d: L::Int) {
     let twice = L::add(d, d);

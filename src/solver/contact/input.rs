@@ -1,30 +1,29 @@
-//! What is known of a contact before its rows are made: taken from the state in the order in which it lies there, so
-//! that only this compact copy is read in the order of colours.
+//! Gathers the inputs of a contact's rows from the narrow phase, the state and the body list.
 
 use super::super::TouchingPair;
 use super::super::body_list::{BodyList, GROUND};
 use super::super::colour::{Node, Size};
 use super::super::row::MassFractions;
-use super::{Surface, WarmStarts};
+use super::WarmStarts;
 use crate::collision::{Contact, Manifold, PointImpulse};
-use crate::lanes::Quad;
-use crate::math::{Length, Speed};
+use crate::lanes::{Quad, prefetch};
+use crate::math::Length;
 
-/// Where to look up what only special contacts have.
+/// The contacts of a tick, before they are put into batches.
 #[derive(Clone, Copy)]
-pub(super) struct Source<'a> {
-    pub(super) pairs: &'a [TouchingPair],
-    pub(super) contacts: &'a [Contact],
-    pub(super) list: &'a BodyList,
+pub(in crate::solver) struct ContactSource<'a> {
+    pub(in crate::solver) pairs: &'a [TouchingPair],
+    pub(in crate::solver) manifolds: &'a [Manifold],
+    /// The contacts of the state, with the impulses of the last tick.
+    pub(in crate::solver) contacts: &'a [Contact],
+    pub(in crate::solver) list: &'a BodyList,
 }
 
-/// A contact in two cache lines. What eight of them are computed from is in quads, which are read in lanes.
-#[derive(Clone, Copy, Debug, Default)]
-#[repr(C, align(64))]
+/// A lane of a batch that is being filled. The numbers of eight lanes are read as vectors, so they lie in quads.
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Input {
     pub(super) bodies: [u32; 2],
-    /// Where impulses change them: the ground for one that nothing moves. One that is only too heavy for its partner to
-    /// move it is changed by others, so that colours have to know of it.
+    /// The bodies that impulses change; the ground instead of a body that no impulse moves.
     pub(super) changed: [u32; 2],
     pub(super) contact: u32,
     pub(super) features: [u16; 2],
@@ -37,40 +36,66 @@ pub(super) struct Input {
     pub(super) gyrations: Quad,
     /// From the centres of mass of A and B to the manifold's origin.
     pub(super) to_origin: Quad,
-    /// From there to the two points.
+    /// From the manifold's origin to the two points.
     pub(super) anchors: Quad,
-    /// What the last tick has left: `p = L / D` along the normal of each point, and along the tangent.
+    /// Impulses of the last tick, `p = L / D`: along the normal of each point, and along the tangent.
     pub(super) carried: Quad,
     /// The separations of the points, in the format of a step, and the friction.
     pub(super) rest: Quad,
 }
 
-const _: () = assert!(size_of::<Input>() == 128, "two cache lines");
-
 impl Input {
+    /// A lane without a contact.
+    pub(super) const NONE: Self = Input {
+        bodies: [GROUND; 2],
+        changed: [GROUND; 2],
+        contact: 0,
+        features: [0; 2],
+        count: 0,
+        special: false,
+        shares: Quad([0; 4]),
+        gyrations: Quad([0; 4]),
+        to_origin: Quad([0; 4]),
+        anchors: Quad([0; 4]),
+        carried: Quad([0; 4]),
+        rest: Quad([0; 4]),
+    };
+}
+
+impl ContactSource<'_> {
+    /// A touching pair as it is coloured.
     #[inline]
-    pub(super) fn new(
-        pair: &TouchingPair,
-        manifold: &Manifold,
-        memory: &Contact,
-        list: &BodyList,
-        warm: &mut WarmStarts,
-    ) -> Self {
-        let bodies = [list.index_of(pair.bodies.0), list.index_of(pair.bodies.1)];
-        let [a, b] = bodies.map(|index| list.facts(index));
+    pub(super) fn node(&self, pair: &TouchingPair) -> Node {
+        let (a, b) = pair.shapes;
+        let size =
+            if self.manifolds[pair.manifold as usize].count() == 1 { Size::Small } else { Size::Large };
+        Node::new(u64::from(a) << 32 | u64::from(b), self.changed(self.bodies_of(pair)), size)
+    }
+
+    /// Prefetches what [`Self::gather`] reads of a pair: in the order of colours, contacts are random accesses.
+    #[inline(always)]
+    pub(super) fn prefetch(&self, index: u32) {
+        let pair = &self.pairs[index as usize];
+        prefetch(&self.manifolds[pair.manifold as usize]);
+        prefetch(&self.contacts[pair.contact as usize]);
+    }
+
+    /// Gathers what the rows of a touching pair are computed from.
+    #[inline(always)]
+    pub(super) fn gather(&self, pair: &TouchingPair, warm: &mut WarmStarts) -> Input {
+        let manifold = &self.manifolds[pair.manifold as usize];
+        let bodies = self.bodies_of(pair);
+        let [a, b] = bodies.map(|index| self.list.facts(index));
         let fractions = MassFractions::of_masses(a.mass, b.mass);
         let n = manifold.normal;
         let (inverse_a, inverse_b) = (a.inverse_gyration.parts(), b.inverse_gyration.parts());
         let (to_a, to_b) = (a.arm_to(manifold.origin), b.arm_to(manifold.origin));
         let [first, second] = manifold.both_points();
-        let [old_first, old_second] = carried_over(manifold, memory, warm);
+        let [old_first, old_second] = carried_over(manifold, &self.contacts[pair.contact as usize], warm);
         let tangent = old_first.tangent.saturating_add(old_second.tangent);
         Input {
             bodies,
-            changed: [
-                if a.mass.is_positive() { bodies[0] } else { GROUND },
-                if b.mass.is_positive() { bodies[1] } else { GROUND },
-            ],
+            changed: self.changed(bodies),
             contact: pair.contact,
             features: [first.feature.0, second.feature.0],
             count: manifold.count(),
@@ -91,16 +116,20 @@ impl Input {
         }
     }
 
-    /// The contact, to be coloured.
-    #[inline]
-    pub(super) fn node(&self, shapes: (u32, u32)) -> Node {
-        let key = u64::from(shapes.0) << 32 | u64::from(shapes.1);
-        let size = if self.count == 1 { Size::Small } else { Size::Large };
-        Node::new(key, self.changed, size)
+    #[inline(always)]
+    fn bodies_of(&self, pair: &TouchingPair) -> [u32; 2] {
+        [self.list.index_of(pair.bodies.0), self.list.index_of(pair.bodies.1)]
+    }
+
+    /// The bodies that impulses change. A body so heavy that its share of an impulse rounds to nothing counts as
+    /// changed: other contacts change it, so that the colours have to keep them apart.
+    #[inline(always)]
+    fn changed(&self, bodies: [u32; 2]) -> [u32; 2] {
+        bodies.map(|index| if self.list.facts(index).mass.is_positive() { index } else { GROUND })
     }
 }
 
-/// The impulse that each of the two points starts from: none if its feature was not there.
+/// The impulse that each of the two points starts from: none if its feature was not there in the last tick.
 #[inline]
 fn carried_over(manifold: &Manifold, memory: &Contact, warm: &mut WarmStarts) -> [PointImpulse; 2] {
     let points = manifold.points();
@@ -117,24 +146,17 @@ fn carried_over(manifold: &Manifold, memory: &Contact, warm: &mut WarmStarts) ->
     [first.unwrap_or_default(), second.unwrap_or_default()]
 }
 
-impl Surface {
-    /// Whether it asks for more than rows along the normal and the tangent.
-    fn is_special(&self) -> bool {
-        self.restitution.is_positive()
-            || self.surface_speed != Speed::ZERO
-            || self.rolling_resistance.is_positive()
-    }
-}
-
 #[cfg(test)]
 mod tests {
+    use super::super::Surface;
     use super::*;
     use crate::body::{Arena, Body, BodyDef, BodyId, MassProperties, MassSource};
     use crate::fx;
-    use crate::math::{Fx, Unit, Vec2};
+    use crate::math::{Fx, Speed, Unit, Vec2};
     use alloc::vec::Vec;
 
-    /// Its share of a push is rounded to nothing, but other contacts of the same colour must not change it meanwhile.
+    /// The share of an impulse that a very heavy body takes rounds to nothing, but other contacts of the same colour
+    /// must not change the body meanwhile.
     #[test]
     fn a_body_that_is_too_heavy_to_be_moved_is_still_one_that_changes() {
         let mut bodies: Arena<Body, BodyId> = Arena::default();
@@ -152,8 +174,13 @@ mod tests {
             rolling_resistance: Fx::ZERO,
         };
         let pair = TouchingPair { contact: 0, manifold: 0, shapes: (0, 1), bodies: (0, 1), surface };
-        let manifold = Manifold::new(Vec2::Y);
-        let input = Input::new(&pair, &manifold, &Contact::new((0, 1)), &list, &mut WarmStarts::default());
+        let source = ContactSource {
+            pairs: &[pair],
+            manifolds: &[Manifold::new(Vec2::Y)],
+            contacts: &[Contact::new((0, 1))],
+            list: &list,
+        };
+        let input = source.gather(&pair, &mut WarmStarts::default());
         assert_eq!(input.shares.0[2], 0);
         let changed: Vec<_> = input.changed.into_iter().filter(|&index| index != GROUND).collect();
         assert_eq!(changed, input.bodies);

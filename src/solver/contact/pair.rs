@@ -1,4 +1,4 @@
-//! How the impulses of a row change the bodies of a batch.
+//! Relative velocities along a row, and the velocity changes of its impulses.
 
 use super::super::pair::Pair;
 use super::batch::Row;
@@ -12,8 +12,8 @@ impl<L: Lanes<N>, const N: usize> Pair<L, N> {
         care.speed(along::<L, N>(&self.a, &self.b, n, row))
     }
 
-    /// Changes the velocities by impulses below 512: no sum leaves the format. The impulses come with some more fraction
-    /// bits, `SHIFT` less those of a gain.
+    /// Changes the velocities by impulses below 512 m/s, so that no sum overflows. The impulses have `SHIFT` less the
+    /// bits of a gain more fraction bits than a speed.
     #[inline(always)]
     pub(super) fn change<const SHIFT: i32>(&mut self, row: &Row<N>, d: L::Int) {
         let Motion { x, y, turn } = self.a;
@@ -32,13 +32,13 @@ impl<L: Lanes<N>, const N: usize> Pair<L, N> {
     }
 }
 
-/// What an impulse changes.
+/// The change by an impulse of one velocity component.
 #[inline(always)]
 fn part<L: Lanes<N>, const N: usize, const SHIFT: i32>(gain: &Ints<N>, d: L::Int) -> L::Int {
     L::narrow::<SHIFT>(L::mul(L::load(gain), d))
 }
 
-/// `n.(b - a) + eB uB - eA uA`, with 24 more fraction bits.
+/// `n.(b - a) + eB uB - eA uA`, with 24 more fraction bits than its arguments.
 #[inline(always)]
 pub(super) fn along<L: Lanes<N>, const N: usize>(
     a: &Motion<L::Int>,

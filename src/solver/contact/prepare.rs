@@ -1,101 +1,87 @@
-//! Fills batches with eight contacts at a time, in the order in which they are solved.
+//! Fills batches with the contacts of a tick, in the order in which they are solved.
 
-use alloc::vec::Vec;
-
-use super::super::TouchingPair;
-use super::super::body_list::BodyList;
-use super::super::colour::{Colouring, Group, Node};
+use super::super::batches::Batches;
+use super::super::colour::Colouring;
 use super::batch::Batch;
 use super::care::Calm;
-use super::input::{Input, Source};
+use super::input::{ContactSource, Input};
 use super::rows;
 use super::special::Special;
 use super::store::Records;
-use super::{Batches, ContactSet, WarmStarts};
-use crate::collision::{Contact, Manifold};
-use crate::lanes::{Kernel, Lanes, Machine, Scalar, WIDTH, prefetch};
+use super::{ContactSet, Contacts, WarmStarts};
+use crate::lanes::{Kernel, Lanes, Machine, Scalar, prefetch};
 use crate::math::Unit;
 
+/// Prefetch distances in batches: first the touching pairs, then what they refer to.
+const PAIRS_AHEAD: usize = 4;
+const MANIFOLDS_AHEAD: usize = 2;
+
 impl ContactSet {
-    /// Takes the contacts of a tick, and sorts them into colours.
+    /// Sorts the contacts of a tick into colours and makes their batches. Returns how their impulses were carried over.
     pub(in crate::solver) fn prepare(
         &mut self,
-        pairs: &[TouchingPair],
-        (manifolds, contacts): (&[Manifold], &[Contact]),
-        list: &BodyList,
-        (nodes, colouring): (&mut Vec<Node>, &mut Colouring),
+        source: &ContactSource<'_>,
+        colouring: &mut Colouring,
         machine: Machine,
-        warm: &mut WarmStarts,
-    ) {
-        let Self { serial, coloured, inputs } = self;
-        inputs.clear();
-        nodes.clear();
-        nodes.reserve(pairs.len());
-        inputs.extend(pairs.iter().map(|pair| {
-            let (manifold, memory) = (&manifolds[pair.manifold as usize], &contacts[pair.contact as usize]);
-            let input = Input::new(pair, manifold, memory, list, warm);
-            nodes.push(input.node(pair.shapes));
-            input
-        }));
-        colouring.order(nodes, list.len());
-        // For lanes without a contact.
-        inputs.push(Input::default());
-        let source = &Source { pairs, contacts, list };
-        Fill { batches: serial, inputs, source, colouring }.run::<Scalar<1>>();
-        machine.run(Fill { batches: coloured, inputs, source, colouring });
+    ) -> WarmStarts {
+        colouring.begin();
+        source.pairs.iter().for_each(|pair| colouring.add(source.node(pair)));
+        colouring.sort(source.list.len());
+        let mut warm = WarmStarts::default();
+        let warm_starts = &mut warm;
+        let colours = core::iter::once(colouring.overflow());
+        Fill { batches: &mut self.overflow, source, colours, warm_starts }.run::<Scalar<1>>();
+        let colours = colouring.colours();
+        machine.run(Fill { batches: &mut self.coloured, source, colours, warm_starts });
+        warm
     }
 }
 
-/// How many batches before it is read an input is asked for: in the order of colours they lie anywhere.
-const INPUTS_AHEAD: usize = 2;
-
-/// Fills the batches of `N` contacts.
-struct Fill<'a, const N: usize> {
-    batches: &'a mut Batches<N>,
-    /// One for each contact, and one more for none.
-    inputs: &'a [Input],
-    source: &'a Source<'a>,
-    colouring: &'a Colouring,
+/// Fills batches of `N` contacts, given the indices of the pairs of each colour.
+struct Fill<'a, I, const N: usize> {
+    batches: &'a mut Batches<Contacts, N>,
+    source: &'a ContactSource<'a>,
+    colours: I,
+    warm_starts: &'a mut WarmStarts,
 }
 
-impl<const N: usize> Kernel<N> for Fill<'_, N> {
+impl<'a, I: Iterator<Item = &'a [u32]>, const N: usize> Kernel<N> for Fill<'_, I, N> {
     #[inline(always)]
     fn run<L: Lanes<N>>(self) {
-        let Fill { batches, inputs, source, colouring } = self;
-        batches.special.clear();
-        batches.colours.clear();
+        let Fill { batches, source, colours, warm_starts } = self;
+        batches.extras.clear();
+        batches.colour_ends.clear();
         let mut count = 0;
-        for group in colouring.groups() {
-            let indices = match group {
-                Group::Serial(indices) if N == 1 => indices,
-                Group::Coloured(indices) if N == WIDTH => indices,
-                _ => continue,
-            };
+        for indices in colours {
             for (number, chunk) in indices.chunks(N).enumerate() {
-                for &index in indices.iter().skip((number + INPUTS_AHEAD) * N).take(N) {
-                    prefetch(&inputs[index as usize]);
+                for &index in indices.iter().skip((number + PAIRS_AHEAD) * N).take(N) {
+                    prefetch(&source.pairs[index as usize]);
                 }
-                batches.fill::<L>(count, inputs, source, chunk);
+                for &index in indices.iter().skip((number + MANIFOLDS_AHEAD) * N).take(N) {
+                    source.prefetch(index);
+                }
+                batches.fill::<L>(count, source, chunk, warm_starts);
                 count += 1;
             }
-            batches.colours.push(count);
+            batches.colour_ends.push(count);
         }
-        batches.truncate(count);
+        batches.batches.truncate(count);
+        batches.records.truncate(count);
     }
 }
 
-impl<const N: usize> Batches<N> {
-    /// Forgets all batches but the first so many.
-    fn truncate(&mut self, count: usize) {
-        self.batches.truncate(count);
-        self.records.truncate(count);
-    }
-
-    /// Makes a batch of up to `N` contacts, in the place of one of the last tick if there was one: nothing is written that
-    /// is written again, for memory cannot keep up.
+impl<const N: usize> Batches<Contacts, N> {
+    /// Makes a batch of up to `N` contacts, in the place of one of the last tick if there is one: what would be
+    /// overwritten is not initialised, because memory is the bottleneck.
     #[inline(always)]
-    fn fill<L: Lanes<N>>(&mut self, number: usize, inputs: &[Input], source: &Source<'_>, indices: &[u32]) {
-        let Batches { batches, special, records, .. } = self;
+    fn fill<L: Lanes<N>>(
+        &mut self,
+        number: usize,
+        source: &ContactSource<'_>,
+        indices: &[u32],
+        warm_starts: &mut WarmStarts,
+    ) {
+        let Batches { batches, records, extras, .. } = self;
         if number >= batches.len() {
             batches.push(Batch::NONE);
             records.push(Records::NONE);
@@ -103,9 +89,9 @@ impl<const N: usize> Batches<N> {
         let (batch, records) = (&mut batches[number], &mut records[number]);
         batch.begin();
         records.begin();
-        let mut chosen = [&inputs[inputs.len() - 1]; N];
-        for (lane, (input, &index)) in chosen.iter_mut().zip(indices).enumerate() {
-            *input = &inputs[index as usize];
+        let mut inputs = [Input::NONE; N];
+        for (lane, (input, &index)) in inputs.iter_mut().zip(indices).enumerate() {
+            *input = source.gather(&source.pairs[index as usize], warm_starts);
             batch.special |= input.special;
             batch.count = batch.count.max(input.count.into());
             for side in 0..2 {
@@ -114,16 +100,16 @@ impl<const N: usize> Batches<N> {
             }
             records.take(lane, input);
         }
-        rows::fill::<L, N>(&chosen, batch, &mut records.inverses);
-        let mut rest = None;
+        rows::fill::<L, N>(&inputs, batch, &mut records.inverses);
+        let mut special = None;
         if batch.special {
-            let rest = rest.insert(Special::NONE);
+            let special = special.insert(Special::NONE);
             for (lane, &index) in indices.iter().enumerate() {
                 let inverses = [0, 1].map(|point| Unit::from_bits(records.inverses.normals[point].0[lane]));
-                rest.fill(lane, source, index as usize, inverses);
+                special.fill(lane, source, index as usize, inverses);
             }
         }
-        batch.calm = Calm::<L, N>::suits(batch, rest.as_ref());
-        special.extend(rest);
+        batch.calm = Calm::<L, N>::suits(batch, special.as_ref());
+        extras.extend(special);
     }
 }

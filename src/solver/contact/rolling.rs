@@ -1,7 +1,7 @@
 //! Rolling resistance of a contact: one angular row, limited by the normal impulses.
 //!
-//! A wheel that deforms is pushed back in front of its axle: a torque of at most `R N` against rolling, with a length
-//! `R` and the normal force `N` (E. Catto uses the same model in Box2D 3). With the scale `s` of
+//! The ground pushes a wheel that deforms back in front of its axle: a torque of at most `R N` against rolling, with a
+//! length `R` and the normal force `N` (the model of Box2D 3). With the scale `s` of
 //! [`super::super::row::Row::angular`]:
 //!
 //! ```text
@@ -12,30 +12,32 @@
 
 use super::super::TouchingPair;
 use super::super::body_list::BodyList;
+use super::super::pair::{Pair, clamp};
 use super::super::row::{Denominator, MassFractions, Row as ScalarRow, impulse_of, lambda_of};
 use super::TANGENT_MAX;
 use super::batch::Row;
+use super::care::Care;
 use super::rows::grip;
-use crate::lanes::Ints;
+use crate::lanes::{Ints, Lanes};
 use crate::math::{Speed, Unit, fx_div, round_shift_wide, saturate_wide};
 
-/// The rolling rows of a batch. Few surfaces resist rolling, and the others should not carry rows for it through the
-/// caches.
+/// The rolling rows of a batch.
 #[derive(Clone, Debug)]
 pub(super) struct RollingRows<const N: usize> {
     pub(super) row: Row<N>,
-    /// Limit for each unit of a point's normal impulse: `R D / (s Dn)`.
+    /// Limit per unit of a point's normal impulse: `R D / (s Dn)`.
     pub(super) grips: [Ints<N>; 2],
     pub(super) lambda: Ints<N>,
     denominators: [Denominator; N],
 }
 
 impl<const N: usize> RollingRows<N> {
-    /// No rolling resistance in any lane.
+    /// Rows of a batch in which no lane has rolling resistance.
     pub(super) const NONE: Self =
         RollingRows { row: Row::NONE, grips: [Ints::ZERO; 2], lambda: Ints::ZERO, denominators: [0; N] };
 
-    /// `inverse_normals` are the reciprocals of the points' denominators, anything for a missing one.
+    /// Makes the row of a contact. `inverse_normals` are the reciprocals of its points' denominators; that of a missing
+    /// point does not matter.
     pub(super) fn fill(
         &mut self,
         lane: usize,
@@ -47,7 +49,7 @@ impl<const N: usize> RollingRows<N> {
         let [a, b] = [pair.bodies.0, pair.bodies.1].map(|slot| list.facts(list.index_of(slot)));
         let fractions = MassFractions::of_masses(a.mass, b.mass);
         let (row, denominator, scale) = ScalarRow::angular(a.inverse_gyration, b.inverse_gyration, fractions);
-        // Neither body turns if there is no scale.
+        // Without a scale neither body turns.
         let Some(length) = fx_div(pair.surface.rolling_resistance, scale.into()) else { return };
         let (e, f) = row.turning_parts();
         (self.row.e_a.0[lane], self.row.e_b.0[lane]) = (e[0].to_bits(), e[1].to_bits());
@@ -60,7 +62,22 @@ impl<const N: usize> RollingRows<N> {
         self.denominators[lane] = denominator;
     }
 
-    /// The impulse to carry over.
+    /// One iteration, with an impulse of at most `limit`.
+    #[inline(always)]
+    pub(super) fn solve<L: Lanes<N>>(
+        &mut self,
+        limit: L::Int,
+        pair: &mut Pair<L, N>,
+        care: &mut impl Care<L, N>,
+    ) {
+        let vn = pair.velocity([L::splat(0), L::splat(0)], &self.row, care);
+        let old = L::load(&self.lambda);
+        let new = clamp::<L, N>(L::sub_saturating(old, vn), limit);
+        L::store(new, &mut self.lambda);
+        care.apply(pair, &self.row, L::sub(new, old));
+    }
+
+    /// The impulse of a lane that the next tick starts from.
     pub(super) fn impulse(&self, lane: usize) -> Speed {
         impulse_of(Speed::from_bits(self.lambda.0[lane]), self.denominators[lane])
     }

@@ -1,4 +1,4 @@
-//! The rows of eight contacts at a time.
+//! Computes the rows of a batch of contacts.
 //!
 //! ```text
 //! c = r x n,   e = c / k,   D = aA (1 + eA^2) + aB (1 + eB^2),   g = a / D,   f = g e
@@ -22,13 +22,13 @@ use crate::math::{Fx, Grip, Length, Ratio, Shift, Step, narrow, round_shift_wide
 const UNIT_TO_RATIO: i32 = UNIT - RATIO;
 const STEP_TO_SHIFT: i32 = shift(Step::FRAC_NBITS - Shift::FRAC_NBITS);
 
-/// A body's end of the contacts.
+/// One body of each contact.
 #[derive(Clone, Copy)]
 struct End<L: Lanes<N>, const N: usize> {
     fraction: L::Int,
     /// From the centre of mass to the origin of the manifold.
     to_origin: [L::Int; 2],
-    /// `1 / k`, and by how much to shift what is multiplied by it to have a lever ratio.
+    /// `1 / k`, and the shift from a product with it to the format of a lever ratio.
     mantissa: L::Int,
     shift: L::Int,
 }
@@ -44,10 +44,10 @@ impl<const N: usize> Inverses<N> {
     pub(super) const NONE: Self = Inverses { normals: [Ints::ZERO; 2], tangent: Ints::ZERO };
 }
 
-/// Makes the rows of a batch.
+/// Computes the rows of a batch.
 #[inline(always)]
 pub(super) fn fill<L: Lanes<N>, const N: usize>(
-    inputs: &[&Input; N],
+    inputs: &[Input; N],
     batch: &mut Batch<N>,
     inverses: &mut Inverses<N>,
 ) {
@@ -73,7 +73,7 @@ pub(super) fn fill<L: Lanes<N>, const N: usize>(
         _ => [x0, y0],
     };
     let tangent = fill_row::<L, N>(&mut batch.tangent, t, &ends, middle, &mut inverses.tangent);
-    // Guesses, so that to clamp them is no fault.
+    // Impulses carried over are guesses, so that clamping them is no fault.
     let tangent_lambda = product::<L, N>(carried, &tangent);
     L::store(clamp::<L, N>(tangent_lambda, L::splat(TANGENT_MAX.to_bits())), &mut batch.tangent_lambda);
     let given = [([x0, y0], separation_0, normal_0), ([x1, y1], separation_1, normal_1)];
@@ -98,10 +98,10 @@ fn half_way<L: Lanes<N>, const N: usize>(a: L::Int, b: L::Int) -> L::Int {
     L::narrow::<1>(L::add_wide(L::mul(a, one), L::mul(b, one)))
 }
 
-/// The first number of a quad of each contact, the second, and so on.
+/// Transposes a quad of each contact: the first numbers of all contacts, the second numbers, and so on.
 #[inline(always)]
-fn columns<L: Lanes<N>, const N: usize>(inputs: &[&Input; N], quad: impl Fn(&Input) -> &Quad) -> [L::Int; 4] {
-    let mut rows = [quad(inputs[0]); N];
+fn columns<L: Lanes<N>, const N: usize>(inputs: &[Input; N], quad: impl Fn(&Input) -> &Quad) -> [L::Int; 4] {
+    let mut rows = [quad(&inputs[0]); N];
     for (row, input) in rows.iter_mut().zip(inputs) {
         *row = quad(input);
     }
@@ -109,16 +109,16 @@ fn columns<L: Lanes<N>, const N: usize>(inputs: &[&Input; N], quad: impl Fn(&Inp
 }
 
 impl<L: Lanes<N>, const N: usize> End<L, N> {
-    /// `exponent` is that of `1 / k`.
+    /// `mantissa` and `exponent` are those of `1 / k`.
     #[inline(always)]
     fn new(fraction: L::Int, to_origin: [L::Int; 2], mantissa: L::Int, exponent: L::Int) -> Self {
         const DIFFERENCE: i32 = shift(Ratio::FRAC_NBITS - Length::FRAC_NBITS);
-        // Only what does not turn has a smaller exponent, and its mantissa is 0.
+        // Only a body that does not turn has a smaller exponent, and then the mantissa is 0.
         let shift = L::max(L::sub(exponent, L::splat(DIFFERENCE)), L::splat(1));
         End { fraction, to_origin, mantissa, shift }
     }
 
-    /// The lever ratios of pushes in the direction `n` at points.
+    /// The lever ratios of impulses along `n` at the anchors.
     #[inline(always)]
     fn lever_ratio(&self, anchor: [L::Int; 2], n: [L::Int; 2]) -> L::Int {
         let x = L::add_saturating(anchor[0], self.to_origin[0]);
@@ -131,7 +131,7 @@ impl<L: Lanes<N>, const N: usize> End<L, N> {
         clamp::<L, N>(L::narrow_by(L::mul(c, self.mantissa), self.shift), L::splat(RATIO_MAX.to_bits()))
     }
 
-    /// The same of arms of more than 512 m.
+    /// [`Self::lever_ratio`] for arms of more than 512 m.
     #[cold]
     fn long_lever_ratio(&self, arm: [L::Int; 2], n: [L::Int; 2]) -> L::Int {
         let numbers = [arm[0], arm[1], n[0], n[1], self.mantissa, self.shift].map(|number| {
@@ -141,12 +141,12 @@ impl<L: Lanes<N>, const N: usize> End<L, N> {
         });
         let [x, y, n_x, n_y, mantissa, shift] = numbers;
         L::load(&Ints(core::array::from_fn(|i| {
-            lever_ratio([x[i], y[i]], [n_x[i], n_y[i]], (mantissa[i], shift[i])).to_bits()
+            lever_ratio([x[i], y[i]], [n_x[i], n_y[i]], mantissa[i], shift[i]).to_bits()
         })))
     }
 }
 
-/// Makes a row. Returns its denominators.
+/// Computes a row. Returns its denominators.
 #[inline(always)]
 fn fill_row<L: Lanes<N>, const N: usize>(
     row: &mut Row<N>,
@@ -176,7 +176,7 @@ fn fill_row<L: Lanes<N>, const N: usize>(
     Long::of(denominators)
 }
 
-/// Numbers from 0 to 2^45 with 30 fraction bits: too long for a lane.
+/// Numbers from 0 to 2^45 with 30 fraction bits, in two parts because they do not fit a lane.
 #[derive(Clone, Copy)]
 struct Long<L: Lanes<N>, const N: usize> {
     whole: L::Int,
@@ -197,7 +197,8 @@ impl<L: Lanes<N>, const N: usize> Long<L, N> {
 #[inline(always)]
 fn product<L: Lanes<N>, const N: usize>(x: L::Int, long: &Long<L, N>) -> L::Int {
     let Long { whole, part } = *long;
-    // The product with the whole is exact, and both have the sign of x: if one saturates, so does the sum.
+    // The product with the whole part is exact, and both products have the sign of x: if one saturates, so does the
+    // sum.
     let (whole, _) = L::narrow_saturating::<1>(L::mul(x, L::add(whole, whole)));
     L::add_saturating(whole, L::narrow::<30>(L::mul(x, part)))
 }

@@ -1,29 +1,29 @@
-//! What few contacts have: restitution, surfaces that move, and resistance to rolling. The others should not carry it
-//! through the caches.
+//! Restitution, moving surfaces and rolling resistance. Few contacts have any of these, and their data lies apart from
+//! the batches, so that the other contacts do not carry it through the caches.
 
 use super::batch::Batch;
-use super::input::Source;
+use super::input::ContactSource;
 use super::rolling::RollingRows;
 use crate::lanes::{Ints, Lanes};
 use crate::math::Unit;
 
-/// The rest of a batch of which some surface is special.
+/// The rest of a batch in which some surface is special.
 #[derive(Clone, Debug)]
-pub(super) struct Special<const N: usize> {
+pub(in crate::solver) struct Special<const N: usize> {
     pub(super) restitution: Ints<N>,
     /// For each point, the relative normal velocity when the shapes first pushed each other in this tick.
     pub(super) approach: [Ints<N>; 2],
     /// For each point, -1 where the shapes have pushed each other in this tick.
     pub(super) pushed: [Ints<N>; 2],
-    /// How fast the surfaces move against each other by themselves, against the tangent.
+    /// Relative speed of the surfaces by themselves, against the tangent.
     pub(super) surface_speed: Ints<N>,
-    /// Whether any of them resists rolling.
+    /// Whether any lane has rolling resistance.
     pub(super) rolls: bool,
     pub(super) rolling: RollingRows<N>,
 }
 
 impl<const N: usize> Special<N> {
-    /// Nothing special in any lane.
+    /// A batch in which no lane is special.
     pub(super) const NONE: Self = Special {
         restitution: Ints::ZERO,
         approach: [Ints::ZERO; 2],
@@ -33,12 +33,12 @@ impl<const N: usize> Special<N> {
         rolling: RollingRows::NONE,
     };
 
-    /// Takes a contact into a lane. `inverse_normals` are the reciprocals of its points' denominators, anything for a
-    /// missing one, which has no impulse.
+    /// Puts a contact into a lane. `inverse_normals` are the reciprocals of its points' denominators; that of a missing
+    /// point does not matter, as the point has no impulse.
     pub(super) fn fill(
         &mut self,
         lane: usize,
-        source: &Source<'_>,
+        source: &ContactSource<'_>,
         index: usize,
         inverse_normals: [Unit; 2],
     ) {
@@ -52,7 +52,7 @@ impl<const N: usize> Special<N> {
         }
     }
 
-    /// Remembers which points have pushed.
+    /// Records which points have pushed.
     #[inline(always)]
     pub(super) fn remember_pushes<L: Lanes<N>>(&mut self, batch: &Batch<N>) {
         for (point, pushed) in batch.points[..batch.count].iter().zip(&mut self.pushed) {

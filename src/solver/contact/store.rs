@@ -1,27 +1,32 @@
-//! Brings the impulses of batches back to their contacts.
+//! Returns the impulses of batches to the contacts of the state.
 
-use super::super::pair::UNIT;
-use super::Batches;
+use alloc::vec::Vec;
+
+use super::super::batches::Batches;
+use super::super::pair::{UNIT, clamp};
 use super::batch::Batch;
+use super::care::GRIP;
 use super::input::Input;
-use super::kernel;
 use super::rows::Inverses;
+use super::{ContactSet, Contacts};
 use crate::collision::{Contact, PointImpulse};
-use crate::lanes::{Ints, Kernel, Lanes, prefetch};
+use crate::lanes::{Ints, Kernel, Lanes, Machine, Scalar, prefetch};
 use crate::math::Speed;
 
-/// How many batches before its impulses are stored a contact is asked for: in the order of colours they lie anywhere.
+/// Prefetch distance in batches: in the order of colours, contacts are random accesses.
 const CONTACTS_AHEAD: usize = 2;
 
-/// What it takes to bring the impulses of a batch back to its contacts.
+/// Where the impulses of a batch belong, and how they are converted.
 #[derive(Clone, Debug)]
-pub(super) struct Records<const N: usize> {
-    /// How many lanes are used.
+pub(in crate::solver) struct Records<const N: usize> {
+    /// Number of lanes with a contact.
     len: u32,
+    /// The indices of the contacts in the state.
     contacts: [u32; N],
+    /// Number of points of each contact.
     counts: [u8; N],
     features: [[u16; 2]; N],
-    /// `1 / D` of its rows.
+    /// `1 / D` of the rows.
     pub(super) inverses: Inverses<N>,
 }
 
@@ -29,12 +34,13 @@ impl<const N: usize> Records<N> {
     pub(super) const NONE: Self =
         Records { len: 0, contacts: [0; N], counts: [0; N], features: [[0; 2]; N], inverses: Inverses::NONE };
 
-    /// Forgets the contacts of an earlier batch.
+    /// Removes the contacts of an earlier batch.
     #[inline(always)]
     pub(super) fn begin(&mut self) {
         self.len = 0;
     }
 
+    /// Puts a contact into the next lane.
     #[inline(always)]
     pub(super) fn take(&mut self, lane: usize, input: &Input) {
         self.len += 1;
@@ -43,16 +49,16 @@ impl<const N: usize> Records<N> {
         self.features[lane] = input.features;
     }
 
-    /// The lanes that are used, each with the index of its contact and its number of points.
-    pub(super) fn lanes(&self) -> impl Iterator<Item = (usize, usize, u8)> {
+    /// The lanes with a contact, each with the index of its contact and its number of points.
+    fn lanes(&self) -> impl Iterator<Item = (usize, usize, u8)> {
         let lanes = self.contacts.iter().zip(&self.counts).take(self.len as usize);
         lanes.enumerate().map(|(lane, (&contact, &count))| (lane, contact as usize, count))
     }
 
-    /// What is kept of the impulses of each point: `p = L / D`, along the normal and along the tangent.
+    /// The impulses of each point that the next tick starts from: `p = L / D`, along the normal and along the tangent.
     #[inline(always)]
     fn impulses<L: Lanes<N>>(&self, batch: &Batch<N>) -> [[Ints<N>; 2]; 2] {
-        let shares = kernel::shares_of_friction::<L, N>(batch);
+        let shares = shares_of_friction::<L, N>(batch);
         let mut impulses = [[Ints::ZERO; 2]; 2];
         for (i, [normal, tangent]) in impulses.iter_mut().enumerate() {
             let lambda = L::load(&batch.points[i].normal_lambda);
@@ -63,24 +69,55 @@ impl<const N: usize> Records<N> {
     }
 }
 
-/// Stores what is to be kept of the batches.
-pub(super) struct Store<'a, const N: usize> {
-    pub(super) batches: &'a Batches<N>,
-    pub(super) contacts: &'a mut [Contact],
-    /// Whether the shapes of each contact have pushed each other.
-    pub(super) pushed: &'a mut [bool],
+/// The share of each point in the impulse along the tangent: one half, as far as the friction of each allows.
+#[inline(always)]
+fn shares_of_friction<L: Lanes<N>, const N: usize>(batch: &Batch<N>) -> [L::Int; 2] {
+    let whole = L::load(&batch.tangent_lambda);
+    if batch.count != 2 {
+        return [whole, L::splat(0)];
+    }
+    let [first, second] = &batch.points;
+    let first = L::mul(L::load(&first.grip), L::load(&first.normal_lambda));
+    let second = L::mul(L::load(&second.grip), L::load(&second.normal_lambda));
+    let (first, _) = L::narrow_saturating::<GRIP>(first);
+    let (second, _) = L::narrow_saturating::<GRIP>(second);
+    let half = clamp::<L, N>(L::narrow::<1>(L::mul(whole, L::splat(1))), first);
+    let rest = clamp::<L, N>(L::sub(whole, half), second);
+    [L::sub(whole, rest), rest]
+}
+
+impl ContactSet {
+    /// Stores the impulses for the next tick. `pushed` tells of each contact whether its shapes have pushed each other.
+    pub(in crate::solver) fn store(
+        &self,
+        machine: Machine,
+        contacts: &mut [Contact],
+        pushed: &mut Vec<bool>,
+    ) {
+        pushed.clear();
+        pushed.resize(contacts.len(), false);
+        Store { batches: &self.overflow, contacts, pushed }.run::<Scalar<1>>();
+        machine.run(Store { batches: &self.coloured, contacts, pushed });
+    }
+}
+
+/// Stores the impulses of batches.
+struct Store<'a, const N: usize> {
+    batches: &'a Batches<Contacts, N>,
+    contacts: &'a mut [Contact],
+    pushed: &'a mut [bool],
 }
 
 impl<const N: usize> Kernel<N> for Store<'_, N> {
     #[inline(always)]
     fn run<L: Lanes<N>>(self) {
-        let Store { batches: Batches { batches, special, records, .. }, contacts, pushed } = self;
-        let mut special = special.iter();
+        let Store { batches: Batches { batches, records, extras, .. }, contacts, pushed } = self;
+        let mut extras = extras.iter();
         for (number, (batch, record)) in batches.iter().zip(records).enumerate() {
             for (_, index, _) in records.get(number + CONTACTS_AHEAD).into_iter().flat_map(Records::lanes) {
                 prefetch(&contacts[index]);
             }
-            let special = if batch.special { special.next() } else { None };
+            let special = if batch.special { extras.next() } else { None };
             let impulses = record.impulses::<L>(batch);
             for (lane, index, count) in record.lanes() {
                 let point = |i: usize| {
@@ -107,8 +144,8 @@ mod tests {
     use crate::lanes::Scalar;
     use crate::math::Rng;
 
-    /// Together the points have the whole impulse along the tangent, each no more than its friction allows, and half of it
-    /// where both may have that.
+    /// The shares of both points add up to the impulse along the tangent. Each is at most what its friction allows, and
+    /// half of the impulse where both points can have that much.
     #[test]
     fn friction_is_shared_out_by_halves_as_far_as_each_point_reaches() {
         let mut rng = Rng::new(31);
@@ -124,7 +161,7 @@ mod tests {
             let most = limits[0] + limits[1];
             let whole = i64::from(rng.below(2000)).min(2 * most) - most;
             batch.tangent_lambda.0[0] = i32::try_from(whole).expect("below 2000");
-            let shares = kernel::shares_of_friction::<Scalar<1>, 1>(&batch).map(|share| i64::from(share[0]));
+            let shares = shares_of_friction::<Scalar<1>, 1>(&batch).map(|share| i64::from(share[0]));
             assert_eq!(shares[0] + shares[1], whole);
             for (share, limit) in shares.into_iter().zip(limits) {
                 assert!(share.abs() <= limit, "{share} of {whole} within {limits:?}");

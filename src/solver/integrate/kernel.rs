@@ -1,4 +1,4 @@
-//! Integration of as many bodies at a time as there are lanes, if none of them is unusual.
+//! Integrates as many bodies at a time as there are lanes, unless one of them is unusual.
 
 use core::cell::Cell;
 
@@ -10,14 +10,14 @@ use super::{Mover, SHIFT_MAX};
 use crate::lanes::{Kernel, Lanes, Motion};
 use crate::math::{Speed, Unit};
 
-/// New velocities.
+/// Integrates velocities.
 pub(super) struct Velocities<'a> {
     pub(super) movers: &'a [Mover],
     pub(super) bodies: &'a [Cell<SolverBody>],
     pub(super) speed_max: Speed,
 }
 
-/// New displacements.
+/// Integrates displacements.
 pub(super) struct Displacements<'a> {
     pub(super) movers: &'a [Mover],
     pub(super) bodies: &'a [Cell<SolverBody>],
@@ -29,9 +29,8 @@ impl<const N: usize> Kernel<N> for Velocities<'_> {
     #[inline(always)]
     fn run<L: Lanes<N>>(self) {
         let Velocities { movers, bodies, speed_max } = self;
-        let speed_max_on_axis = on_axis(speed_max);
+        let limits = SpeedLimits { on_axis: on_axis(speed_max), turning: speed_max.to_bits() };
         for movers in movers.chunks(N) {
-            let limits = (L::splat(speed_max_on_axis), L::splat(speed_max.to_bits()));
             let is_done =
                 movers.first_chunk().is_some_and(|movers| velocities::<L, N>(movers, bodies, limits));
             if !is_done {
@@ -71,19 +70,28 @@ fn one_by_one(
     }
 }
 
-/// The largest speed along both axes at once that is within the limit: the limit over the square root of 2.
+/// Speeds below which no lane has to be limited.
+#[derive(Clone, Copy)]
+struct SpeedLimits {
+    /// Limit of each component of the velocity.
+    on_axis: i32,
+    /// Limit of the spin.
+    turning: i32,
+}
+
+/// Largest speed along both axes at once that is within the limit: the limit over the square root of 2.
 fn on_axis(speed_max: Speed) -> i32 {
     let square = u64::from(speed_max.unsigned_abs().to_bits()).pow(2);
     i32::try_from((square / 2).isqrt()).expect("less than the limit")
 }
 
-/// Does nothing, and says so, if any of the bodies is not just dynamic and free, or may be too fast: on an axis, or
-/// turning.
+/// Integrates the velocities of `N` bodies. Changes nothing and returns `false` if one of them is not dynamic, has a
+/// locked axis, or may be above a limit.
 #[inline(always)]
 fn velocities<L: Lanes<N>, const N: usize>(
     movers: &[Mover; N],
     bodies: &[Cell<SolverBody>],
-    (on_axis, turning): (L::Int, L::Int),
+    limits: SpeedLimits,
 ) -> bool {
     let [step_x, step_y, step_turn, _] = L::transposed(movers.each_ref().map(|mover| &mover.step));
     let [linear, angular, special, _] = L::transposed(movers.each_ref().map(|mover| &mover.factors));
@@ -91,6 +99,7 @@ fn velocities<L: Lanes<N>, const N: usize>(
     let Motion { x, y, turn } = L::velocities(bodies, &at);
     let [x, y] = [L::add_saturating(x, step_x), L::add_saturating(y, step_y)];
     let turn = L::add_saturating(turn, step_turn);
+    let (on_axis, turning) = (L::splat(limits.on_axis), L::splat(limits.turning));
     let fast = L::either(beyond::<L, N>(x, on_axis), beyond::<L, N>(y, on_axis));
     let unusual = L::either(L::negative(special), L::either(fast, beyond::<L, N>(turn, turning)));
     if L::any(unusual) {
@@ -106,17 +115,18 @@ fn velocities<L: Lanes<N>, const N: usize>(
     true
 }
 
-/// A damped speed, rounded towards 0, of one that has a sign to spare.
+/// A damped speed, rounded towards 0. The speed is not the smallest number, so that its magnitude fits.
 #[inline(always)]
 fn towards_rest<L: Lanes<N>, const N: usize>(speed: L::Int, factor: L::Int) -> L::Int {
     let reversed = L::sub(L::splat(0), speed);
     let size = L::mul(L::max(speed, reversed), factor);
-    // Half a unit less is rounded to the unit below.
+    // With half a unit less, rounding to nearest rounds down.
     let less = L::narrow::<UNIT>(L::sub_wide(size, L::mul(L::splat(1 << (UNIT - 1)), L::splat(1))));
     L::select(L::negative(speed), L::sub(L::splat(0), less), less)
 }
 
-/// Does nothing, and says so, if any of the bodies is not just dynamic and free, or would come too far in the tick.
+/// Integrates the displacements of `N` bodies. Changes nothing and returns `false` if one of them is not dynamic, has a
+/// locked axis, or would move too far in the tick.
 #[inline(always)]
 fn displacements<L: Lanes<N>, const N: usize>(
     movers: &[Mover; N],

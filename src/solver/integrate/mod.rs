@@ -1,31 +1,32 @@
-//! Semi-implicit Euler: velocities first, then displacements from the new velocities. Eight bodies at a time where all of
-//! them are dynamic, free and within all limits (`kernel`), as most are; one by one where not.
+//! Semi-implicit Euler: velocities first, then displacements from the new velocities.
+//!
+//! Eight bodies at a time where all of them are dynamic, free and within all limits (`kernel`), as most bodies are; one
+//! by one elsewhere.
 
 mod kernel;
 mod sub_step;
 #[cfg(test)]
 mod tests;
 
-use core::cell::Cell;
-
 use super::body::SolverBody;
+use super::context::StepContext;
 use super::limits::Faults;
 use super::settings::Tuning;
 use crate::body::{Body, BodyKind, BodySettings, MotionLocks};
-use crate::lanes::{Machine, Quad};
+use crate::lanes::Quad;
 use crate::math::{Fx, Shift, Speed, Unit, Vec2, fx_div, fx_mul, narrow, saturate};
 use sub_step::SubStep;
 
-/// How far a body comes in a tick, at most.
+/// Largest displacement of a body in a tick along each axis, in metres.
 const SHIFT_MAX: Shift = Shift::lit("15.999");
 
 /// A body that moves, and what changes its velocity in every sub-step of the tick.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Mover {
-    /// By gravity and applied force along x and y, and by applied torque.
+    /// Velocity change by gravity and applied force along x and y, and by applied torque.
     step: Quad,
-    /// What damping leaves of the velocity and of the spin, `1 / (1 + h c)`, the implicit step, stable for any rate `c`.
-    /// Negative in the third place if the body is not just dynamic and free.
+    /// Damping factors of the velocity and of the spin, `1 / (1 + h c)`: the implicit step, stable for any rate `c`.
+    /// The third number is negative if the body is not dynamic or has a locked axis.
     factors: Quad,
     index: u32,
     dynamic: bool,
@@ -69,12 +70,12 @@ impl Mover {
         }
     }
 
-    /// Where it is among the bodies of the tick.
+    /// The index of the body in the body list.
     pub(super) fn index(&self) -> u32 {
         self.index
     }
 
-    /// Whether it is not just dynamic and free.
+    /// Whether the body is not dynamic or has a locked axis.
     #[inline(always)]
     pub(super) fn is_special(&self) -> bool {
         let Quad([_, _, special, _]) = self.factors;
@@ -104,7 +105,7 @@ impl Mover {
         body.spin = body.spin.clamp(-speed_max, speed_max);
     }
 
-    /// Takes away what impulses have put along locked axes. Rotation is locked by a reciprocal gyration of 0.
+    /// Removes the velocity along locked axes. Rotation is locked by a reciprocal gyration of 0.
     fn hold_locked_axes(&self, body: &mut SolverBody) {
         if self.locks.x {
             body.velocity.x = Speed::ZERO;
@@ -118,7 +119,7 @@ impl Mover {
     fn integrate_displacement(&self, body: &mut SolverBody, sub_step: SubStep, faults: &mut Faults) {
         self.hold_locked_axes(body);
         let mut advance = |sum: &mut Shift, speed: Speed| {
-            // Each is below 32, and so is the sum unless impulses exceed the speed limit at less than 32 Hz.
+            // Each summand is below 32 m, and so is the sum unless impulses exceed the speed limit at less than 32 Hz.
             let wanted = sum.saturating_add(sub_step.distance(speed));
             *sum = wanted.clamp(-SHIFT_MAX, SHIFT_MAX);
             *faults += u64::from(*sum != wanted);
@@ -129,28 +130,22 @@ impl Mover {
     }
 }
 
-/// New velocities for all that move.
-pub(super) fn integrate_velocities(
-    movers: &[Mover],
-    bodies: &[Cell<SolverBody>],
-    machine: Machine,
-    tuning: &Tuning,
-) {
+/// Integrates the velocities of all bodies that move.
+pub(super) fn integrate_velocities(movers: &[Mover], context: &StepContext<'_>) {
+    let &StepContext { machine, bodies, tuning, .. } = context;
     machine.run(kernel::Velocities { movers, bodies, speed_max: tuning.speed_max });
 }
 
-/// New displacements from the new velocities.
-pub(super) fn integrate_displacements(
-    movers: &[Mover],
-    bodies: &[Cell<SolverBody>],
-    machine: Machine,
-    tuning: &Tuning,
-    faults: &mut Faults,
-) {
-    machine.run(kernel::Displacements { movers, bodies, sub_step: SubStep::of(tuning.rate), faults });
+/// Integrates displacements from the new velocities.
+pub(super) fn integrate_displacements(movers: &[Mover], context: &StepContext<'_>) {
+    let &StepContext { machine, bodies, tuning, .. } = context;
+    let mut faults = 0;
+    let sub_step = SubStep::of(tuning.rate);
+    machine.run(kernel::Displacements { movers, bodies, sub_step, faults: &mut faults });
+    context.add_faults(faults);
 }
 
-/// A damped speed, rounded towards 0: rounded to nearest it would creep on for ever.
+/// A damped speed, rounded towards 0: rounded to nearest, a body would creep on for ever.
 fn towards_rest(speed: Speed, factor: Unit) -> Speed {
     let product = i64::from(speed.to_bits()) * i64::from(factor.to_bits());
     Speed::from_bits(saturate(product / (1 << 30)))
@@ -163,8 +158,8 @@ fn damping_factor(damping: Fx, rate: u32) -> Unit {
     narrow(fx_div(Fx::ONE, Fx::ONE + damping / i64::from(rate)).unwrap_or(Fx::ONE))
 }
 
-/// Shortens a velocity to the limit, which is a setting and so no fault. Its components are within ±1024, so its
-/// square fits 64 bits.
+/// Shortens a velocity to the limit. The limit is a setting, so that this is no fault. The components are within ±1024
+/// m/s, so that the square fits 64 bits.
 fn limit_speed(velocity: &mut Vec2<Speed>, speed_max: Speed) {
     let square = |speed: Speed| i64::from(speed.to_bits()) * i64::from(speed.to_bits());
     if square(velocity.x).saturating_add(square(velocity.y)) <= square(speed_max) {

@@ -1,4 +1,4 @@
-//! What a speed is within a sub-step.
+//! The distance that a speed covers in a sub-step.
 
 use crate::lanes::Lanes;
 use crate::math::{Shift, Speed};
@@ -16,7 +16,7 @@ pub(super) struct SubStep {
 }
 
 impl SubStep {
-    /// Of so many in a second, 60 to 4000.
+    /// `rate` is the number of sub-steps per second, 60 to 4000.
     pub(super) fn of(rate: u32) -> Self {
         let divisor = 2 * u64::from(rate);
         let bits = |number: u64| i32::try_from(number).expect("at least 60 sub-steps in a second");
@@ -29,7 +29,7 @@ impl SubStep {
     }
 
     /// `v / rate`, rounded to nearest, ties towards +infinity, by a product instead of a division (T. Granlund,
-    /// P. Montgomery, 1994): the dividend is below 2^48, so that the product is too large by less than `2^48 d`, which
+    /// P. Montgomery, 1994). The dividend is below 2^48, so that the product is too large by less than `2^48 d`, which
     /// does not reach the next multiple of `2^64`.
     #[inline]
     #[expect(
@@ -48,12 +48,13 @@ impl SubStep {
         Shift::from_bits((quotient as i64 - BIAS as i64) as i32)
     }
 
-    /// The same in lanes, by a quotient that is off by one at most and a look at what it leaves: `64 v + rate` less
-    /// `2 rate q` is between 0 and `2 rate`, so that its lowest 32 bits are all of it.
+    /// [`Self::distance`] in lanes: a quotient `q` that is off by at most one is corrected by its remainder. The
+    /// remainder of the right quotient, `64 v + rate - 2 rate q`, is between 0 and `2 rate`, so that its lowest 32 bits
+    /// suffice.
     #[inline(always)]
     pub(super) fn distances<L: Lanes<N>, const N: usize>(&self, speed: L::Int) -> L::Int {
         let double = L::splat(2 * self.rate);
-        // 2^36 v / (2^31 rate), off by half a unit at most, is rounded by another half.
+        // 2^36 v / (2^31 rate) is off by at most half a unit, and rounding adds another half.
         let q = L::narrow::<31>(L::mul(speed, L::splat(self.coarse)));
         let dividend = L::add(L::low(L::mul(speed, L::splat(64))), L::splat(self.rate));
         let rest = L::sub(dividend, L::low(L::mul(q, double)));
@@ -78,7 +79,7 @@ mod tests {
             let ends = [i32::MIN, i32::MIN + 1, -1, 0, 1, i32::MAX - 1, i32::MAX];
             let random =
                 core::iter::repeat_with(|| i32::from_le_bytes(rng.next_u32().to_le_bytes())).take(50);
-            // Those just before, at and behind a tie.
+            // Speeds just before, at and after a tie.
             let ties: Vec<i32> = (0..50).map(|i| (i * i32::try_from(rate).unwrap()) / 64 - 40 + i).collect();
             for bits in random.collect::<Vec<_>>().into_iter().chain(ends).chain(ties) {
                 let rate = i64::from(rate);

@@ -1,18 +1,19 @@
-//! Eight bodies at a time, on every machine, against one by one.
+//! Integrating eight bodies at a time, on every backend, gives the same bits as one by one.
 
 use std::vec::Vec;
 
 use super::super::settings::SolverSettings;
 use super::*;
 use crate::fx;
-use crate::lanes::Backend;
+use crate::lanes::{Backend, Machine};
 use crate::math::Rng;
+use crate::threads::Threads;
 
 fn random_speed(rng: &mut Rng, size: Fx) -> Speed {
     narrow(rng.range(-size, size))
 }
 
-/// Mostly a body that is just dynamic and free.
+/// Mostly a dynamic body without locks.
 fn random_mover(index: u32, rng: &mut Rng) -> Mover {
     let one_in = |rng: &mut Rng, count| rng.below(count) == 0;
     let step = [0; 3].map(|_| random_speed(rng, fx!(1)).to_bits());
@@ -34,7 +35,7 @@ fn random_mover(index: u32, rng: &mut Rng) -> Mover {
 }
 
 fn random_body(rng: &mut Rng) -> SolverBody {
-    // At times near the limit of speed, and of the way of a tick.
+    // Now and then near the limits of speed and of the displacement in a tick.
     let (fast, far) = match rng.below(40) {
         0 => (fx!(511), fx!(15.999)),
         1 => (fx!(400), fx!(15.9)),
@@ -69,9 +70,10 @@ fn every_machine_integrates_as_one_body_at_a_time() {
         for backend in Backend::available() {
             let machine = Machine::new(backend).expect("available");
             let (mut wide, mut wide_faults) = (bodies.clone(), 0);
-            let cells = SolverBody::cells(&mut wide);
-            integrate_velocities(&movers, cells, machine, &tuning);
-            integrate_displacements(&movers, cells, machine, &tuning, &mut wide_faults);
+            let threads = Threads::default();
+            let context = StepContext::new(machine, &threads, &tuning, &mut wide, &mut wide_faults);
+            integrate_velocities(&movers, &context);
+            integrate_displacements(&movers, &context);
             assert_eq!(wide_faults, faults);
             assert!(wide.iter().map(numbers).eq(alone.iter().map(numbers)), "{backend:?}: {movers:?}");
         }
@@ -95,7 +97,9 @@ fn a_damped_speed_is_rounded_towards_rest_in_lanes_too() {
         let speed = Speed::from_bits(speed);
         let body = SolverBody { velocity: Vec2::new(speed, -speed), spin: speed, ..SolverBody::default() };
         let mut bodies = [body; 9];
-        integrate_velocities(&movers, SolverBody::cells(&mut bodies), Machine::default(), &tuning);
+        let (threads, mut faults) = (Threads::default(), 0);
+        let context = StepContext::new(Machine::default(), &threads, &tuning, &mut bodies, &mut faults);
+        integrate_velocities(&movers, &context);
         let expected = towards_rest(speed, Unit::from_bits(factor));
         let found = bodies.last().expect("nine");
         assert_eq!((found.velocity, found.spin), (Vec2::new(expected, -expected), expected));

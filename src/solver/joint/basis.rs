@@ -1,28 +1,27 @@
-//! What the arrangement of joints for the solver depends on, and how much of the last one still holds.
+//! Cache key of the arrangement of joints for the solver: in most ticks it is that of the tick before.
 
 use alloc::vec::Vec;
 
 use super::super::settings::Tuning;
 
-/// All that it depends on what is solved as what, in which order and with which masses: mostly it is the same from tick
-/// to tick.
+/// All that the arrangement depends on: which joint is solved as what, in which order and with which masses.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Basis {
-    /// `None` if nothing is known.
+    /// `None` before the first tick.
     definitions: Option<Definitions>,
-    /// How often joints had returned to what they were.
+    /// Number of times that joints had been restored.
     returns: u64,
-    /// The slots of the joints and of the bodies that something moves.
+    /// The slots of the joints and of the bodies of the tick.
     joints: Vec<u32>,
     bodies: Vec<u32>,
 }
 
-/// What is known of the joints of a tick.
+/// Which parts of the last arrangement are still valid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Known {
-    /// Everything is as the last tick has left it.
+    /// Everything.
     All,
-    /// But for impulses and turns, which have been restored.
+    /// Everything but impulses and angles, which have been restored.
     Arrangement,
     Nothing,
 }
@@ -36,7 +35,7 @@ pub(super) struct Definitions {
 }
 
 impl Basis {
-    /// Takes another one. Says what is still true.
+    /// Takes the key of a new tick. Returns what is still valid.
     pub(super) fn renew(
         &mut self,
         definitions: Definitions,

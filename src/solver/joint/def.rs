@@ -6,9 +6,9 @@ use super::{Distance, Motor, Prismatic, Revolute, Weld, Wheel};
 use crate::body::{BodyId, REACH_MAX, WorldError};
 use crate::math::{Angle, Fx, Vec2};
 
-/// What to connect two bodies with, and where.
+/// A joint between two bodies.
 ///
-/// Each body has a frame that belongs to the joint: an anchor and an angle. A joint says how B's frame may move in A's.
+/// The joint has a frame on each body: an anchor and an angle. Its kind defines how B's frame may move in A's.
 ///
 /// ```
 /// use lockstep2d::{body::BodyDef, fx, solver::{JointDef, Revolute}, world::World};
@@ -33,15 +33,15 @@ pub struct JointDef {
     pub frame_b: JointFrame,
     /// Whether the two bodies collide with each other.
     pub collide_connected: bool,
-    /// How the frames may move against each other.
+    /// The kind of joint: the relative motion that it allows.
     pub kind: JointKind,
-    /// What is too much for it.
+    /// The load beyond which the joint is reported or breaks.
     pub threshold: Threshold,
-    /// Not used by the engine, but part of the state and its hash.
+    /// A number for the game. The engine does not use it, but it is part of the state and its hash.
     pub user_data: u64,
 }
 
-/// A joint's end on a body.
+/// The frame of a joint on a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct JointFrame {
     /// Its origin in the body's frame, in metres, within ±128 on each axis.
@@ -50,40 +50,40 @@ pub struct JointFrame {
     pub angle: Angle,
 }
 
-/// How two frames may move against each other.
+/// The relative motion of two frames that a joint allows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum JointKind {
-    /// They share their origin: a hinge.
+    /// The frames share their origin: a hinge.
     Revolute(Revolute),
     /// B slides along A's x axis and does not turn: a lift, a drawer.
     Prismatic(Prismatic),
-    /// Their origins keep a distance: a rod, a rope, a spring.
+    /// The origins keep a distance: a rod, a rope, a spring.
     Distance(Distance),
-    /// They coincide: glue, rigid or soft.
+    /// The frames coincide: glue, rigid or soft.
     Weld(Weld),
     /// B slides along A's x axis and turns: a wheel on its suspension.
     Wheel(Wheel),
-    /// They are driven with limited force: friction from above, dragging with a pointer.
+    /// The frames are driven with limited force: top-down friction, dragging with a pointer.
     Motor(Motor),
-    /// They are free. Only keeps the bodies from colliding, unless [`JointDef::colliding`].
+    /// The frames are free. The joint only keeps the bodies from colliding, unless [`JointDef::colliding`].
     Filter,
 }
 
-/// How much a joint bears.
+/// The load beyond which a joint is reported or breaks.
 ///
-/// It is compared with what the joint bore in the last sub-step of a tick. In the first tick of a joint that has to
-/// carry a load at once this may be a third more than the load: it has no impulse yet to start from.
+/// It is compared with the load in the last sub-step of a tick. In the first tick of a joint that has to carry a load
+/// at once, the solver may overestimate the load by a third, because the joint has no impulse yet to start from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Threshold {
-    /// In N, 0 or more; `None` for any force.
+    /// Largest force in N, 0 or more; `None` for no limit.
     pub force: Option<Fx>,
-    /// In N m, 0 or more; `None` for any torque.
+    /// Largest torque in N m, 0 or more; `None` for no limit.
     pub torque: Option<Fx>,
-    /// What happens beyond.
+    /// The action beyond the threshold.
     pub action: ThresholdAction,
 }
 
-/// What happens to a joint that bears more than its threshold.
+/// The action on a joint whose load exceeds its threshold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum ThresholdAction {
     /// The world reports it.
@@ -93,10 +93,10 @@ pub enum ThresholdAction {
 }
 
 impl Threshold {
-    /// Bears anything.
+    /// No limit.
     pub const NONE: Self = Threshold { force: None, torque: None, action: ThresholdAction::Event };
 
-    /// Whether anything is too much.
+    /// Whether there is a limit.
     pub(crate) const fn is_set(&self) -> bool {
         self.force.is_some() || self.torque.is_some()
     }
@@ -158,21 +158,21 @@ impl JointDef {
         self
     }
 
-    /// Sets how much it bears.
+    /// Sets the load beyond which the joint is reported or breaks.
     #[must_use]
     pub const fn threshold(mut self, threshold: Threshold) -> Self {
         self.threshold = threshold;
         self
     }
 
-    /// Sets the game's own number.
+    /// Sets a number for the game.
     #[must_use]
     pub const fn user_data(mut self, user_data: u64) -> Self {
         self.user_data = user_data;
         self
     }
 
-    /// The same between other bodies.
+    /// The same joint between other bodies.
     #[must_use]
     pub const fn between(mut self, a: BodyId, b: BodyId) -> Self {
         (self.body_a, self.body_b) = (a, b);
@@ -190,7 +190,7 @@ impl JointDef {
         self.frame_b.angle - self.frame_a.angle
     }
 
-    /// Checks what does not depend on the world.
+    /// Checks everything that does not depend on the world.
     pub(crate) fn validate(&self) -> Result<(), WorldError> {
         if self.body_a == self.body_b {
             return Err(WorldError::JointToItself(self.body_a));

@@ -1,4 +1,5 @@
-//! The distance: one direction, from anchor to anchor, with the Jacobian `n.(v_b - v_a) + (r_b x n) w_b - (r_a x n) w_a`.
+//! The distance joint: rows along the line from anchor to anchor, with the Jacobian
+//! `n.(v_b - v_a) + (r_b x n) w_b - (r_a x n) w_a`.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,38 +9,39 @@ use crate::body::WorldError;
 use crate::fx;
 use crate::math::Fx;
 
-/// A rod, a rope, a spring, or a spring between stops.
+/// A distance joint: a rod, a rope, a spring, or a spring with limits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Distance {
-    /// A length in metres that is held rigidly, from 0.001 up.
+    /// Length in metres that is held rigidly, at least 0.001.
     pub rod: Option<Fx>,
     /// Range of the length in metres, 0 or more.
     pub limit: Option<Limit>,
-    /// Goes for a speed in m/s, of growing apart, with up to a force in N.
+    /// Motor along the line: its speed in m/s is positive apart, its limit is a force in N.
     pub motor: Option<Drive>,
-    /// Goes for a length in metres, 0 or more.
+    /// Spring with a length in metres, 0 or more.
     pub spring: Option<Spring>,
-    /// Least and largest force of the spring in N, positive apart: `lower` 0 only pushes, `upper` 0 only pulls.
+    /// Least and largest force of the spring in N, positive apart: with `lower` 0 it only pushes, with `upper` 0 it
+    /// only pulls.
     pub spring_force: Option<Limit>,
 }
 
-/// Shorter rods have no direction.
+/// Shortest rod in metres: a shorter one has no direction.
 const ROD_MIN: Fx = fx!(0.001);
 
 impl Distance {
-    /// Nothing yet: any length.
+    /// A joint that allows any length.
     #[must_use]
     pub const fn new() -> Self {
         Distance { rod: None, limit: None, motor: None, spring: None, spring_force: None }
     }
 
-    /// Keeps a length in metres.
+    /// Holds a length in metres.
     #[must_use]
     pub const fn rod(length: Fx) -> Self {
         Distance { rod: Some(length), ..Self::new() }
     }
 
-    /// Keeps a length in metres from being exceeded.
+    /// Limits the length in metres.
     #[must_use]
     pub const fn rope(length: Fx) -> Self {
         Self::new().limit(Fx::ZERO, length)
@@ -48,9 +50,9 @@ impl Distance {
     option_builders! {
         /// Sets the range of the length in metres.
         limit(lower, upper) => Limit { lower, upper };
-        /// Sets a speed in m/s to grow apart with, and the largest force in N.
+        /// Sets a speed in m/s, positive apart, and the largest force in N.
         motor(speed, max_force) => Drive { speed, max: max_force };
-        /// Sets a length in metres to swing about, with a frequency in Hz.
+        /// Sets a spring with a frequency in Hz and a length in metres.
         spring(hertz, damping_ratio, length) => Spring { hertz, damping_ratio, target: length };
         /// Sets the least and the largest force of the spring in N, positive apart.
         spring_force(lower, upper) => Limit { lower, upper };

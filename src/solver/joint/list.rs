@@ -1,46 +1,50 @@
 //! Joints that are solved one by one, with their rows and points.
+//!
+//! These are all joints but hinges, and they are solved before the hinges.
 
 use alloc::vec::Vec;
 
+use core::cell::Cell;
+
+use super::super::body::SolverBody;
+use super::super::context::{Pass, StepContext};
 use super::super::settings::Tuning;
 use super::def::JointKind;
 use super::parts::Parts;
-use super::place::Ends;
+use super::place::{Ends, Turned};
 use super::point::JointPoint;
 use super::row::JointRow;
-use super::state::Joint;
-use crate::body::Body;
+use super::state::{Joint, JointImpulses};
+use crate::body::{Arena, Body, JointId};
 
-/// Joints one after the other.
+/// Joints in the order in which they are solved.
 #[derive(Clone, Debug, Default)]
 pub(super) struct JointList {
-    pub(super) joints: Vec<JointConstraint>,
-    /// For each joint what every pass needs, so that the passes read little memory.
+    joints: Vec<JointConstraint>,
+    /// The part of each joint that every pass needs, so that the passes read little memory.
     links: Vec<Link>,
-    /// Of all joints in turn.
+    /// The rows of all joints in turn.
     rows: Vec<JointRow>,
+    /// The points of all joints in turn.
     points: Vec<JointPoint>,
 }
 
 #[derive(Clone, Copy, Debug)]
-pub(super) struct JointConstraint {
-    pub(super) slot: u32,
-    pub(super) ends: Ends,
-    /// How many rows and points come before its own in the list that it was first put into.
-    starts: (u32, u32),
+struct JointConstraint {
+    slot: u32,
+    ends: Ends,
 }
 
-/// The bodies of a joint, and how many rows and points are its own.
+/// The indices of a joint's bodies, and its numbers of rows and points.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Link {
-    pub(super) body_a: u32,
-    pub(super) body_b: u32,
+struct Link {
+    bodies: [u32; 2],
     rows: u16,
     points: u16,
 }
 
-/// Goes through joints with their rows and points.
-pub(super) struct Walk<'a> {
+/// Iterates over joints with their rows and points.
+struct Walk<'a> {
     links: core::slice::Iter<'a, Link>,
     rows: &'a mut [JointRow],
     points: &'a mut [JointPoint],
@@ -69,21 +73,21 @@ impl JointList {
         points.clear();
     }
 
-    /// Takes a joint that is no hinge, with the indices of its bodies.
+    /// Adds a joint that is no hinge, with its bodies and their indices.
     pub(super) fn push(
         &mut self,
         slot: u32,
         joint: &Joint,
-        a: (u32, &Body),
-        b: (u32, &Body),
+        indices: [u32; 2],
+        bodies: [&Body; 2],
         tuning: &Tuning,
     ) {
-        let starts = (count(&self.rows), count(&self.points));
+        let (rows_before, points_before) = (self.rows.len(), self.points.len());
         let mut parts = Parts {
             rows: &mut self.rows,
             points: &mut self.points,
             impulses: &joint.impulses,
-            masses: (a.1.mass(), b.1.mass()),
+            masses: (bodies[0].mass(), bodies[1].mass()),
             rate: tuning.rate,
         };
         match &joint.def.kind {
@@ -94,40 +98,73 @@ impl JointList {
             JointKind::Motor(kind) => kind.prepare(&mut parts),
             JointKind::Revolute(_) | JointKind::Filter => {}
         }
-        let (rows, points) = (share(&self.rows, starts.0), share(&self.points, starts.1));
-        self.links.push(Link { body_a: a.0, body_b: b.0, rows, points });
-        self.joints.push(JointConstraint { slot, ends: Ends::prepare(joint, a, b), starts });
+        let (rows, points) = (count(&self.rows[rows_before..]), count(&self.points[points_before..]));
+        self.links.push(Link { bodies: indices, rows, points });
+        self.joints.push(JointConstraint { slot, ends: Ends::prepare(joint, indices, bodies) });
     }
 
-    /// Appends a joint of another list.
-    pub(super) fn copy(&mut self, other: &Self, index: u32) {
-        let index = index as usize;
-        let (link, joint) = (other.links[index], other.joints[index]);
-        let (rows, points) = (joint.starts.0 as usize, joint.starts.1 as usize);
-        self.joints.push(joint);
-        self.links.push(link);
-        self.rows.extend_from_slice(&other.rows[rows..rows + usize::from(link.rows)]);
-        self.points.extend_from_slice(&other.points[points..points + usize::from(link.points)]);
+    /// Computes arms, gains and gaps at the present pose.
+    pub(super) fn refresh(&mut self, bodies: &[Cell<SolverBody>], turned: &[Turned], tuning: &Tuning) {
+        for (joint, (_, rows, points)) in self.walk_joints() {
+            let place = joint.ends.place(bodies, turned);
+            for point in points {
+                point.refresh(&place);
+            }
+            for row in rows {
+                row.refresh(&joint.ends.measure(row.direction, &place, turned), tuning);
+            }
+        }
     }
 
-    pub(super) fn walk(&mut self) -> Walk<'_> {
+    pub(super) fn warm_start(&mut self, context: &StepContext<'_>) {
+        let mut faults = 0;
+        for (link, rows, points) in self.walk() {
+            SolverBody::change_pair(context.bodies, link.bodies, |a, b| {
+                rows.iter_mut().for_each(|row| row.warm_start(a, b, &mut faults));
+                points.iter_mut().for_each(|point| point.warm_start(a, b, &mut faults));
+            });
+        }
+        context.add_faults(faults);
+    }
+
+    pub(super) fn solve(&mut self, pass: Pass, context: &StepContext<'_>) {
+        let mut faults = 0;
+        for (link, rows, points) in self.walk() {
+            SolverBody::change_pair(context.bodies, link.bodies, |a, b| {
+                rows.iter_mut().for_each(|row| row.solve(pass, context.tuning, a, b, &mut faults));
+                points.iter_mut().for_each(|point| point.solve(pass, a, b, &mut faults));
+            });
+        }
+        context.add_faults(faults);
+    }
+
+    /// Stores impulses and angles for the next tick.
+    pub(super) fn store(&mut self, joints: &mut Arena<Joint, JointId>, turned: &[Turned]) {
+        for (constraint, (_, rows, points)) in self.walk_joints() {
+            let joint = joints.at_mut(constraint.slot);
+            joint.turns = constraint.ends.turns(turned);
+            joint.impulses = JointImpulses::default();
+            for row in rows {
+                joint.impulses.0[usize::from(row.slot)] = row.lambda;
+            }
+            for point in points {
+                joint.impulses.set_point(point.slot, point.lambda);
+            }
+        }
+    }
+
+    fn walk(&mut self) -> Walk<'_> {
         Walk { links: self.links.iter(), rows: &mut self.rows, points: &mut self.points }
     }
 
-    /// The same, with the joints.
-    pub(super) fn walk_joints(
-        &mut self,
-    ) -> impl Iterator<Item = (&JointConstraint, <Walk<'_> as Iterator>::Item)> {
+    /// As [`Self::walk`], with the constants of the joints.
+    fn walk_joints(&mut self) -> impl Iterator<Item = (&JointConstraint, <Walk<'_> as Iterator>::Item)> {
         let JointList { joints, links, rows, points } = self;
         joints.iter().zip(Walk { links: links.iter(), rows, points })
     }
 }
 
-fn count<T>(parts: &[T]) -> u32 {
-    u32::try_from(parts.len()).expect("parts are counted in 32 bits")
-}
-
-/// How many there are more than there were.
-fn share<T>(parts: &[T], before: u32) -> u16 {
-    u16::try_from(parts.len() - before as usize).expect("a joint has a handful of parts")
+/// Number of parts of one joint.
+fn count<T>(parts: &[T]) -> u16 {
+    u16::try_from(parts.len()).expect("a joint has a handful of parts")
 }

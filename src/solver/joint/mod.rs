@@ -1,9 +1,9 @@
-//! Joints: what a user defines, what the state keeps, and the rows and point blocks that the kernels solve.
+//! Joints: what a user defines, what the state stores, and the rows and point blocks that the solver solves.
 //!
-//! A kind of joint only lists its parts: along which direction which row springs, drives, limits or holds, and which
-//! points are pinned. Everything else is the same for all but
-//! hinges, of which there are most by far: they are solved in wide batches of their own. Within a joint the order is E. Catto's (Box2D v3): springs,
-//! motors and limits first, and last what must not give way.
+//! A kind of joint only lists its parts (`parts`): which row is a spring, a motor, a limit or holds a position, along
+//! which direction, and which points are pinned. Everything else is common to all kinds but hinges, which are by far
+//! the most frequent and are solved in batches (`hinge`). Within a joint the order is that of Box2D v3: springs, motors
+//! and limits first, and the rigid parts last.
 
 mod basis;
 mod constraint;
@@ -24,7 +24,7 @@ mod state;
 mod weld;
 mod wheel;
 
-pub(super) use constraint::JointSet;
+pub(super) use constraint::{JointSet, JointSource};
 pub use def::{JointDef, JointFrame, JointKind, Threshold, ThresholdAction};
 pub use distance::Distance;
 pub use motor::{LinearDrive, Motor, Pull};

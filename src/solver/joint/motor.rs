@@ -1,6 +1,6 @@
-//! The motor: drives and springs with limited force on the angle and on the anchors, and nothing rigid.
+//! The motor joint: motors and springs with limited force on the angle and on the anchors, and nothing rigid.
 //!
-//! A force of limited magnitude in any direction bounds the length of a point block's impulse `p = G L`.
+//! A limit of the force in any direction bounds the length of the impulse `p = G L` of a point block.
 
 use serde::{Deserialize, Serialize};
 
@@ -9,28 +9,28 @@ use super::parts::{Direction, Parts, slot};
 use crate::body::WorldError;
 use crate::math::{Fx, Vec2};
 
-/// Moves B's frame against A's with limited force and torque.
+/// A motor joint: moves B's frame relative to A's with limited force and torque.
 ///
-/// Towards speed 0 it is friction against A, as on a table seen from above. With springs it pulls the frames onto each
-/// other: with the pointer as A, a kinematic or fixed body that is moved, it drags B.
+/// With a speed of 0 it is friction against A, as on a table seen from above. With springs it pulls the frames onto
+/// each other: it drags B with the pointer, if A is a kinematic or fixed body that follows the pointer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Motor {
-    /// Goes for a velocity of B's anchor against A's.
+    /// Drives B's anchor to a velocity relative to A's.
     pub linear: Option<LinearDrive>,
-    /// Goes for an angular velocity in rad/s with up to a torque in N m.
+    /// Drives B to an angular velocity relative to A in rad/s, with limited torque in N m.
     pub angular: Option<Drive>,
-    /// Pulls the anchors onto each other, with up to a force in N.
+    /// Pulls the anchors onto each other, with limited force in N.
     pub linear_spring: Option<Pull>,
-    /// Turns the frames parallel, with up to a torque in N m.
+    /// Turns the frames parallel, with limited torque in N m.
     pub angular_spring: Option<Pull>,
 }
 
-/// A motor in both directions.
+/// A motor along both axes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct LinearDrive {
-    /// In m/s along the axes of the world, within ±2^20.
+    /// Target velocity in m/s along the axes of the world, within ±2^20.
     pub velocity: Vec2<Fx>,
-    /// Largest force in N, 0 or more; [`Fx::MAX`] is without bound.
+    /// Largest force in N, 0 or more; [`Fx::MAX`] is unlimited.
     pub max_force: Fx,
 }
 
@@ -39,18 +39,18 @@ pub struct LinearDrive {
 pub struct Pull {
     /// Frequency and damping.
     pub soft: Soft,
-    /// Largest force in N or torque in N m, 0 or more; [`Fx::MAX`] is without bound.
+    /// Largest force in N or torque in N m, 0 or more; [`Fx::MAX`] is unlimited.
     pub max: Fx,
 }
 
 impl Motor {
-    /// Does nothing yet.
+    /// A joint without any part.
     #[must_use]
     pub const fn new() -> Self {
         Motor { linear: None, angular: None, linear_spring: None, angular_spring: None }
     }
 
-    /// Sets a velocity in m/s to go for, along the axes of the world, and the largest force in N.
+    /// Sets a target velocity in m/s along the axes of the world, and the largest force in N.
     #[must_use]
     pub const fn linear(mut self, velocity: Vec2<Fx>, max_force: Fx) -> Self {
         self.linear = Some(LinearDrive { velocity, max_force });
@@ -58,7 +58,7 @@ impl Motor {
     }
 
     option_builders! {
-        /// Sets an angular velocity in rad/s to go for, and the largest torque in N m.
+        /// Sets a target angular velocity in rad/s, and the largest torque in N m.
         angular(speed, max_torque) => Drive { speed, max: max_torque };
         /// Sets a spring between the anchors, with a frequency in Hz and a largest force in N.
         linear_spring(hertz, damping_ratio, max_force) =>

@@ -1,4 +1,4 @@
-//! What joints may have: limits, drives and springs.
+//! Limits, motors and springs of joints.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,15 +6,15 @@ use crate::body::WorldError;
 use crate::fx;
 use crate::math::Fx;
 
-/// Largest limit, target or speed of a joint: kernels saturate long before.
+/// Largest limit, target or speed of a joint: the solver saturates far below.
 const SIZE_MAX: Fx = fx!(1048576);
 /// Largest frequency of a spring in Hz, and largest damping ratio.
 const HERTZ_MAX: Fx = fx!(1000);
 const DAMPING_RATIO_MAX: Fx = fx!(100);
 
-/// A range that a joint may not leave: radians or metres, within ±2^20, the lower end not above the upper one.
+/// The range of a joint's position, in radians or metres, within ±2^20. The lower end is not above the upper one.
 ///
-/// As rigid as joints are: an acceleration `a` beyond the end presses it in by `a / (2 pi f)^2`, with the
+/// A limit is as stiff as joints are: a steady acceleration `a` against it exceeds it by `a / (2 pi f)^2`, with the
 /// [joint stiffness](crate::solver::SolverSettings::joint_hertz) `f`, at most a quarter of the sub-step rate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Limit {
@@ -24,39 +24,39 @@ pub struct Limit {
     pub upper: Fx,
 }
 
-/// A motor: goes for a speed with what force or torque it has. At speed 0 it is friction.
+/// A motor: drives the joint to a speed with limited force or torque. At speed 0 it is friction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Drive {
-    /// Of B against A in rad/s or m/s, within ±2^20.
+    /// Target speed of B relative to A in rad/s or m/s, within ±2^20.
     pub speed: Fx,
-    /// Largest torque in N m or force in N, 0 or more; [`Fx::MAX`] is without bound.
+    /// Largest torque in N m or force in N, 0 or more; [`Fx::MAX`] is unlimited.
     pub max: Fx,
 }
 
-/// A damped spring with a target. Its frequency is that of bodies that nothing else holds: a body that a hinge makes
-/// turn about a point away from its centre of mass swings more slowly.
+/// A damped spring with a target. Its frequency is that of two free bodies: a body on a hinge away from its centre of
+/// mass swings more slowly.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Spring {
-    /// Frequency without damping in Hz, above 0, up to 1000. The time step makes springs above a tenth of the sub-step
-    /// rate softer than that.
+    /// Undamped frequency in Hz, above 0, up to 1000. Springs above a tenth of the sub-step rate are softer than that,
+    /// because of the time step.
     pub hertz: Fx,
-    /// Damping ratio, 0 to 100: 1 stops without swinging over.
+    /// Damping ratio, 0 to 100: 1 is critical damping.
     pub damping_ratio: Fx,
-    /// Where it is at rest, in rad or m, within ±2^20.
+    /// Rest position in rad or m, within ±2^20.
     pub target: Fx,
 }
 
-/// How a joint gives way instead of holding rigidly.
+/// The softness of a joint that does not hold rigidly.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Soft {
-    /// Frequency without damping in Hz, above 0, up to 1000.
+    /// Undamped frequency in Hz, above 0, up to 1000.
     pub hertz: Fx,
     /// Damping ratio, 0 to 100.
     pub damping_ratio: Fx,
 }
 
 impl Soft {
-    /// As a spring towards a target.
+    /// A spring with this softness and a target.
     pub(crate) const fn towards(self, target: Fx) -> Spring {
         Spring { hertz: self.hertz, damping_ratio: self.damping_ratio, target }
     }
@@ -89,12 +89,12 @@ pub(super) fn check_options(
     Spring::check(spring)
 }
 
-/// Checks that what a joint has is in range, or names it.
+/// Returns an error that names `what`, unless it is in range.
 pub(super) fn check(in_range: bool, what: &'static str) -> Result<(), WorldError> {
     if in_range { Ok(()) } else { Err(WorldError::JointOutOfRange { what }) }
 }
 
-/// Whether a length, an angle or a speed is not absurd.
+/// Whether a length, an angle or a speed is within ±2^20.
 pub(super) fn is_sane(value: Fx) -> bool {
     (-SIZE_MAX..=SIZE_MAX).contains(&value)
 }

@@ -1,4 +1,4 @@
-//! The parts of a joint, as its kind lists them.
+//! The rows and points of a joint, as its kind lists them.
 
 use alloc::vec::Vec;
 
@@ -9,28 +9,29 @@ use super::row::{JointRow, RowTask};
 use super::state::JointImpulses;
 use crate::math::{Fx, Vec2, fx_div};
 
-/// Where the impulses of rows and points are kept in a joint's state, whatever parts it has. A point has two slots.
+/// The places of impulses in the state of a joint. A point has two slots.
 pub(super) mod slot {
     pub(in super::super) const SPRING: u8 = 0;
     pub(in super::super) const DRIVE: u8 = 1;
-    /// The lower limit, and then the upper one.
+    /// The lower limit; the upper one is in the next slot.
     pub(in super::super) const LIMIT: u8 = 2;
-    /// What holds the joint together: a point, or up to two rows.
+    /// The part that holds the joint together: a point, or up to two rows.
     pub(in super::super) const HOLD: u8 = 4;
 }
 
-/// What a row of a joint measures.
+/// The direction along which a row of a joint measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Direction {
     /// The angle of B's frame in A's.
     Angle,
-    /// How far B's anchor is along the x axis of A's frame.
+    /// The position of B's anchor along the x axis of A's frame.
     Along,
-    /// How far B's anchor is along the y axis of A's frame.
+    /// The position of B's anchor along the y axis of A's frame.
     Across,
-    /// The same where a push does not turn the bodies against each other, for joints that hold the angle too.
+    /// As `Across`, at the point where an impulse does not turn the bodies against each other: for joints that hold the
+    /// angle too.
     AcrossBalanced,
-    /// How far the anchors are apart.
+    /// The distance of the anchors.
     Apart,
 }
 
@@ -39,19 +40,19 @@ pub(super) struct Parts<'a> {
     pub(super) rows: &'a mut Vec<JointRow>,
     pub(super) points: &'a mut Vec<JointPoint>,
     pub(super) impulses: &'a JointImpulses,
-    /// Of the two bodies, in kg; 0 for one that nothing moves.
+    /// The masses of the two bodies in kg; 0 for a body that no impulse moves.
     pub(super) masses: (Fx, Fx),
     /// Sub-steps per second.
     pub(super) rate: u32,
 }
 
 impl Parts<'_> {
-    /// A spring, if there is one.
+    /// Adds a spring, if there is one.
     pub(super) fn spring(&mut self, direction: Direction, spring: Option<Spring>) {
         self.spring_within(direction, spring, Limit { lower: Fx::MIN, upper: Fx::MAX });
     }
 
-    /// A spring with a least and a largest force or torque, if there is one.
+    /// Adds a spring with a least and a largest force or torque, if there is one.
     pub(super) fn spring_within(&mut self, direction: Direction, spring: Option<Spring>, force: Limit) {
         if let Some(Spring { hertz, damping_ratio, target }) = spring {
             let softness = Softness::spring(hertz, damping_ratio, self.rate);
@@ -60,7 +61,7 @@ impl Parts<'_> {
         }
     }
 
-    /// A motor, if there is one.
+    /// Adds a motor, if there is one.
     pub(super) fn drive(&mut self, direction: Direction, drive: Option<Drive>) {
         if let Some(Drive { speed, max }) = drive {
             let task = RowTask::Drive { speed, max: self.impulse(max) };
@@ -68,7 +69,7 @@ impl Parts<'_> {
         }
     }
 
-    /// A lower and an upper limit, if there is one.
+    /// Adds a lower and an upper limit, if there is one.
     pub(super) fn limit(&mut self, direction: Direction, limit: Option<Limit>) {
         if let Some(Limit { lower, upper }) = limit {
             self.row(slot::LIMIT, direction, RowTask::Lower { bound: lower });
@@ -76,7 +77,7 @@ impl Parts<'_> {
         }
     }
 
-    /// What must not change.
+    /// Holds a position.
     pub(super) fn hold(&mut self, slot: u8, direction: Direction, target: Fx) {
         self.row(slot, direction, RowTask::Hold { target });
     }
@@ -88,7 +89,7 @@ impl Parts<'_> {
         self.point(slot, PointTask::Spring { softness, max });
     }
 
-    /// Pushes the anchors to a velocity against each other, with a largest force.
+    /// Drives the anchors to a relative velocity, with a largest force.
     pub(super) fn push(&mut self, velocity: Vec2<Fx>, max_force: Fx) {
         let max = crate::math::narrow(self.impulse(max_force));
         self.point(slot::HOLD, PointTask::Drive { velocity: velocity.narrow(), max });
@@ -108,7 +109,7 @@ impl Parts<'_> {
     }
 }
 
-/// The impulse of a force in a sub-step times `mA + mB`, the inverse masses: in m/s, or m²/s of a torque.
+/// The impulse of a force in a sub-step times `mA + mB`, the inverse masses: in m/s, or in m²/s for a torque.
 pub(super) fn impulse(force: Fx, masses: (Fx, Fx), rate: u32) -> Fx {
     let over = |mass: Fx| fx_div(force, mass).unwrap_or(Fx::ZERO);
     let per_second = over(masses.0).saturating_add(over(masses.1));

@@ -1,4 +1,6 @@
-//! Where the ends of a joint are, and what its rows measure there.
+//! The anchors of a joint at a pose of its bodies, and what its rows measure there.
+
+use core::cell::Cell;
 
 use super::super::body::SolverBody;
 use super::super::row::{Lever, MassFractions, Row};
@@ -9,17 +11,17 @@ use super::state::{Joint, radians};
 use crate::body::Body;
 use crate::math::{Angle, Fx, Length, Reciprocal, Rot, Unit, Vec2, round_shift, saturate};
 
-/// How a body with joints is turned, at the last refresh.
+/// The rotation of a body with joints at the last refresh.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Turned {
     pub(super) rotation: Rot,
     /// The angle of the rotation.
     pub(super) angle: Angle,
-    /// Since the start of the tick, in units of 2^-32 turn.
+    /// The rotation since the start of the tick, in units of 2^-32 turn.
     pub(super) turns: i64,
 }
 
-/// The ends of a joint, for one tick.
+/// The constants of a joint within a tick.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Ends {
     body_a: u32,
@@ -39,12 +41,13 @@ pub(super) struct Ends {
 }
 
 impl Ends {
-    pub(super) fn prepare(joint: &Joint, (slot_a, a): (u32, &Body), (slot_b, b): (u32, &Body)) -> Self {
+    /// `indices` are those of the bodies in the body list.
+    pub(super) fn prepare(joint: &Joint, indices: [u32; 2], [a, b]: [&Body; 2]) -> Self {
         let JointDef { frame_a, frame_b, .. } = &*joint.def;
         let axis = Rot::from_angle(frame_a.angle);
         Ends {
-            body_a: slot_a,
-            body_b: slot_b,
+            body_a: indices[0],
+            body_b: indices[1],
             local_a: (frame_a.anchor - a.local_centre_of_mass()).narrow(),
             local_b: (frame_b.anchor - b.local_centre_of_mass()).narrow(),
             inverse_gyration_a: a.mass.inverse_gyration,
@@ -62,14 +65,14 @@ impl Ends {
         self.turns.wrapping_add(b.turns).wrapping_sub(a.turns)
     }
 
-    /// Where the ends are at the present pose.
+    /// The anchors at the present pose.
     #[inline]
-    pub(super) fn place(&self, bodies: &[SolverBody], turned: &[Turned]) -> Place {
+    pub(super) fn place(&self, bodies: &[Cell<SolverBody>], turned: &[Turned]) -> Place {
         let (a, b) = (self.body_a as usize, self.body_b as usize);
         let arm_a = WideArm::rotated(turned[a].rotation, self.local_a);
         let arm_b = WideArm::rotated(turned[b].rotation, self.local_b);
-        let moved = (bodies[b].shift - bodies[a].shift).widen();
-        // Exact until it is rounded once: 20 bits fewer than the arms' 52 are the 32 of a world coordinate.
+        let moved = (bodies[b].get().shift - bodies[a].get().shift).widen();
+        // The sum is exact until it is rounded once: arms have 52 fraction bits, world coordinates 32.
         let gap = |between: Fx, moved: Fx, arms: i64| {
             between.saturating_add(moved).saturating_add(Fx::from_bits(round_shift(arms, 20)))
         };
@@ -84,16 +87,15 @@ impl Ends {
         }
     }
 
-    /// Where else the ends may be held if the angle is held too: a push there does not turn the bodies against each
-    /// other, so that angle and point are solved one after the other without disturbing each other. With the vector `c`
-    /// from A's centre to B's, and A's share `sA = iA / (iA + iB)` of the inverse inertias, that place is `-sA c` from
-    /// B's centre.
+    /// The point at which an impulse does not turn the bodies against each other. If the angle is held too, rows on the
+    /// angle and rows at this point do not disturb each other. With the vector `c` from A's centre to B's, and A's
+    /// share `sA = iA / (iA + iB)` of the inverse inertias, the point is at `-sA c` from B's centre.
     fn balanced(&self, place: &Place, turned: &[Turned]) -> Place {
         let (share_a, _) = self.measure_angle(turned).row.shares();
         let (arm_a, arm_b) = (place.lever_a.arm.widen(), place.lever_b.arm.widen());
         let between = arm_a + place.gap - arm_b;
         let arm = -between.scale(share_a.into());
-        // From the anchor to there, as B has it, and as A does.
+        // From the anchor to that point, in B and in A.
         let (to_b, apart) = (arm - arm_b, Angle::from_turns(Fx::from_bits(self.turns(turned))));
         let to_a = Rot::from_angle(-apart).apply_wide(to_b);
         let gap = place.gap + to_b - to_a;
@@ -105,7 +107,7 @@ impl Ends {
         }
     }
 
-    /// What a row along a direction measures at a place.
+    /// Measures along a direction.
     pub(super) fn measure(&self, direction: Direction, place: &Place, turned: &[Turned]) -> Measure {
         match direction {
             Direction::Angle => self.measure_angle(turned),
@@ -115,7 +117,7 @@ impl Ends {
                 self.measure_axis(self.axis.perp(), &self.balanced(place, turned), turned)
             }
             Direction::Apart => {
-                // Anchors on each other are as far apart in any direction.
+                // Anchors that coincide have no direction: any will do.
                 let n = place.gap.normalized().unwrap_or(self.axis);
                 let (row, denominator) = Row::prepare(n, place.lever_a, place.lever_b, place.fractions);
                 Measure { row, denominator, position: place.gap.length(), scale: Fx::ONE }
@@ -123,7 +125,7 @@ impl Ends {
         }
     }
 
-    /// An axis that turns with A moves a point of B against A even at its own place: A's arm reaches to B's anchor.
+    /// Measures along an axis of A. The axis turns with A about A's centre, so that A's arm reaches to B's anchor.
     fn measure_axis(&self, axis: Vec2<Unit>, place: &Place, turned: &[Turned]) -> Measure {
         let n = turned[self.body_a as usize].rotation.apply(axis);
         let arm = place.lever_a.arm + place.gap.narrow();
@@ -139,7 +141,7 @@ impl Ends {
     }
 }
 
-/// Where the ends of a joint are at one pose.
+/// The anchors of a joint at one pose.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Place {
     pub(super) lever_a: Lever,
@@ -149,8 +151,8 @@ pub(super) struct Place {
     pub(super) gap: Vec2<Fx>,
 }
 
-/// A rotated arm before it is rounded: 52 fraction bits. The gap is the small difference of two long arms, so
-/// they are subtracted first.
+/// A rotated arm before it is rounded, with 52 fraction bits. The gap is the small difference of two long arms, so that
+/// arms are subtracted before they are rounded.
 #[derive(Clone, Copy)]
 struct WideArm {
     x: i64,

@@ -1,19 +1,21 @@
-//! A joint's points: pulled by a spring, or pushed to a velocity. Those that are pinned are hinges.
+//! The points of a joint: pulled together by a spring, or driven to a velocity. Joints whose points are pinned are
+//! hinges.
 
 use super::super::body::SolverBody;
-use super::super::contact::Pass;
+use super::super::context::Pass;
 use super::super::limits::{Faults, clamp_warm_start};
-use super::super::point_block::PointBlock;
+use super::super::point_block::{PointBlock, PointGoal};
 use super::super::softness::Softness;
 use super::place::Place;
 use crate::math::{Speed, Vec2};
 
-/// What a point is for.
+/// The function of a point.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum PointTask {
-    /// Pulls the anchors onto each other, with impulses times `mA + mB` of a largest size. In the bias pass only, as for rows.
+    /// Pulls the anchors onto each other, with impulses times `mA + mB` of at most `max`, in the bias pass only, as
+    /// spring rows do.
     Spring { softness: Softness, max: Speed },
-    /// Brings their relative velocity to another, with impulses times `mA + mB` of a largest size.
+    /// Drives their relative velocity to `velocity`, with impulses times `mA + mB` of at most `max`.
     Drive { velocity: Vec2<Speed>, max: Speed },
 }
 
@@ -23,7 +25,7 @@ pub(super) struct JointPoint {
     pub(super) slot: u8,
     task: PointTask,
     pub(super) block: PointBlock,
-    /// A velocity that is asked for, reversed: of a spring, the part that comes from its stretch.
+    /// The target velocity, reversed; of a spring, the part of its impulse that comes from its stretch.
     bias: Vec2<Speed>,
     /// `L`, in world axes.
     pub(super) lambda: Vec2<Speed>,
@@ -35,7 +37,7 @@ impl JointPoint {
         JointPoint { slot, task, block, bias: Vec2::ZERO, lambda }
     }
 
-    /// Arms, gains and gap at the present pose.
+    /// Computes arms, gains and gap at the present pose.
     #[inline]
     pub(super) fn refresh(&mut self, place: &Place) {
         self.block = PointBlock::new(place.lever_a, place.lever_b, place.fractions);
@@ -59,13 +61,13 @@ impl JointPoint {
         let lambda = &mut self.lambda;
         match (&self.task, pass) {
             (PointTask::Spring { softness, max }, Pass::Bias) => {
-                let push = self.bias;
-                self.block.solve_within(a, b, (Vec2::ZERO, push), softness, *max, lambda, faults);
+                let goal = PointGoal { bias: Vec2::ZERO, push: self.bias };
+                self.block.solve_within(a, b, goal, softness, *max, lambda, faults);
             }
             (PointTask::Spring { .. }, Pass::Relax) => {}
             (PointTask::Drive { max, .. }, _) => {
-                let bias = (self.bias, Vec2::ZERO);
-                self.block.solve_within(a, b, bias, &Softness::RIGID, *max, lambda, faults);
+                let goal = PointGoal { bias: self.bias, push: Vec2::ZERO };
+                self.block.solve_within(a, b, goal, &Softness::RIGID, *max, lambda, faults);
             }
         }
     }

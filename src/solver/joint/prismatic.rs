@@ -1,9 +1,9 @@
-//! The slider: B moves along A's x axis and does not turn.
+//! The prismatic joint: B slides along A's x axis and does not turn.
 //!
-//! With the axis `n` fixed in A and `d` from A's anchor to B's, the rows along the axis have the Jacobian
-//! `n.(v_b - v_a) + (r_b x n) w_b - ((d + r_a) x n) w_a` (E. Catto, Box2D). What holds it are two rows: one on the angle,
-//! and one across the axis. The latter acts where it does not turn the bodies against each other: at B's anchor, the two
-//! disturb each other, and a slider with a mass ratio of 100 turns three to ten times as far.
+//! With the axis `n` fixed in A and `d` from A's anchor to B's, the rows along the axis have the Jacobian `n.(v_b -
+//! v_a) + (r_b x n) w_b - ((d + r_a) x n) w_a` (E. Catto, Box2D). Two rows hold the joint: one on the angle, and one
+//! across the axis. The latter acts where its impulse does not turn the bodies against each other. At B's anchor the
+//! two rows would disturb each other, and a slider with a mass ratio of 100 would turn three to ten times as far.
 
 use serde::{Deserialize, Serialize};
 
@@ -14,20 +14,20 @@ use crate::math::Fx;
 
 /// A slider: B's anchor stays on the x axis of A's frame, and B's frame parallel to A's.
 ///
-/// The translation of the joint is how far B's anchor is along that axis, in metres. It should stay within a hundred radii
-/// of gyration of either body: levers longer than that are cut off.
+/// The translation of the joint is the position of B's anchor along that axis, in metres. It should stay within a
+/// hundred radii of gyration of either body: longer lever arms are cut off.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Prismatic {
     /// Range of the translation in metres.
     pub limit: Option<Limit>,
-    /// Goes for a speed in m/s with up to a force in N.
+    /// Motor along the axis: speed in m/s, limit in N.
     pub motor: Option<Drive>,
-    /// Goes for a translation in metres.
+    /// Spring with a target translation in metres.
     pub spring: Option<Spring>,
 }
 
 impl Prismatic {
-    /// A slider without friction or end.
+    /// A slider without friction and limits.
     #[must_use]
     pub const fn new() -> Self {
         Prismatic { limit: None, motor: None, spring: None }
@@ -36,9 +36,9 @@ impl Prismatic {
     option_builders! {
         /// Sets the range of the translation in metres.
         limit(lower, upper) => Limit { lower, upper };
-        /// Sets a speed in m/s to go for, and the largest force in N.
+        /// Sets a target speed in m/s, and the largest force in N.
         motor(speed, max_force) => Drive { speed, max: max_force };
-        /// Sets a translation in metres to swing about, with a frequency in Hz.
+        /// Sets a spring with a frequency in Hz and a target translation in metres.
         spring(hertz, damping_ratio, target) => Spring { hertz, damping_ratio, target };
     }
 

@@ -1,8 +1,8 @@
-//! The hinge: a point block that is refreshed after every displacement, arms and gains together.
+//! The revolute joint: a point block whose arms and gains are both refreshed after every displacement.
 //!
-//! Gains older than their arms over-correct and explode at long arms, and arms kept for the tick blow a grid of
-//! joints up (`docs/DESIGN.md` has the figures). Spring, motor and limits are rows on the angle, with the Jacobian
-//! `w_b - w_a`.
+//! With gains older than their arms, long arms over-correct and explode; with arms that are kept for a tick, a grid of
+//! joints explodes (`docs/DESIGN.md` has the figures). Spring, motor and limits are rows on the angle, with the
+//! Jacobian `w_b - w_a`.
 
 use serde::{Deserialize, Serialize};
 
@@ -11,21 +11,22 @@ use super::options::{Drive, Limit, Spring, check_options, option_builders};
 use crate::body::WorldError;
 use crate::math::Fx;
 
-/// A hinge: pins A's anchor to B's.
+/// A revolute joint, or hinge: pins A's anchor to B's.
 ///
-/// Under a steady pull that would accelerate a body by `a`, the anchors of a hinge at rest come apart by `a / (2 pi f)^2`, where
-/// `f` is [`SolverSettings::joint_hertz`](crate::solver::SolverSettings::joint_hertz), or twice that for a body that has no other
-/// joint on one that is not dynamic: at 60 Hz its weight opens a rotor's hinge by 18 µm, and one with another joint by 70 µm.
+/// Under a steady force that would accelerate a body by `a`, the anchors of a hinge at rest come apart by `a / (2 pi
+/// f)^2`, where `f` is [`SolverSettings::joint_hertz`](crate::solver::SolverSettings::joint_hertz), or twice that for a
+/// body that has no other joint, on a body that is not dynamic. At 60 Hz the weight of a rotor opens its hinge by 18
+/// µm, and by 70 µm if the rotor has another joint.
 ///
-/// The angle of the joint is that of B's frame in A's, in radians, counter-clockwise. It counts turns, so a limit may be
-/// wider than one.
+/// The angle of the joint is that of B's frame in A's, in radians, counter-clockwise. It counts whole turns, so that a
+/// limit may be wider than one turn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Revolute {
     /// Range of the angle in radians.
     pub limit: Option<Limit>,
-    /// Goes for an angular velocity in rad/s with up to a torque in N m.
+    /// Motor on the angle: angular velocity in rad/s, limit in N m.
     pub motor: Option<Drive>,
-    /// Goes for an angle in radians.
+    /// Spring with a target angle in radians.
     pub spring: Option<Spring>,
 }
 
@@ -39,9 +40,9 @@ impl Revolute {
     option_builders! {
         /// Sets the range of the angle in radians.
         limit(lower, upper) => Limit { lower, upper };
-        /// Sets an angular velocity in rad/s to go for, and the largest torque in N m.
+        /// Sets a target angular velocity in rad/s, and the largest torque in N m.
         motor(speed, max_torque) => Drive { speed, max: max_torque };
-        /// Sets an angle in radians to swing about, with a frequency in Hz.
+        /// Sets a spring with a frequency in Hz and a target angle in radians.
         spring(hertz, damping_ratio, target) => Spring { hertz, damping_ratio, target };
     }
 

@@ -1,4 +1,6 @@
-//! How bodies with joints are turned, many at a time: plain loops, which a compiler makes vectors of.
+//! Computes the rotations of bodies with joints, many at a time, in plain loops that the compiler vectorises.
+
+use core::cell::Cell;
 
 use super::super::body::SolverBody;
 use super::hinge::Turning;
@@ -6,17 +8,17 @@ use super::place::Turned;
 use crate::lanes::{Kernel, Lanes, Quad};
 use crate::math::{Angle, Fx, Rot};
 
-/// How many bodies are turned at a time: a compiler makes a loop of them.
+/// Number of bodies in a loop.
 const BLOCK: usize = 32;
 
-/// Turns bodies to where the solver has brought them.
+/// Computes the rotations of bodies at their present poses.
 pub(super) struct Rotations<'a> {
     pub(super) turning: &'a [Turning],
-    /// All of these by the indices of bodies.
-    pub(super) bodies: &'a [SolverBody],
+    /// These three are indexed by bodies.
+    pub(super) bodies: &'a [Cell<SolverBody>],
     pub(super) turned: &'a mut [Turned],
     pub(super) quads: &'a mut [Quad],
-    /// Whether any body is turned to another angle than before.
+    /// Set if the angle of any body has changed.
     pub(super) any: &'a mut bool,
 }
 
@@ -28,7 +30,7 @@ impl<const N: usize> Kernel<N> for Rotations<'_> {
             let mut angles = [Angle::ZERO; BLOCK];
             for (angle, body) in angles.iter_mut().zip(block) {
                 let at = body.index as usize;
-                let turns = body.turns_of(bodies[at].turn);
+                let turns = body.turns_of(bodies[at].get().turn);
                 turned[at].turns = turns;
                 *angle = body.angle + Angle::from_turns(Fx::from_bits(turns));
                 *any |= turned[at].angle != *angle;

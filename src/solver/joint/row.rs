@@ -1,6 +1,7 @@
-//! A joint's scalar rows: springs, motors, limits, and what holds.
+//! The scalar rows of a joint: springs, motors, limits, and rows that hold a position.
 //!
-//! With the position `x` along a direction, `x` and speeds of an angle being multiplied by the length `s` of the row:
+//! With the position `x` along a direction, where angles and angular speeds are multiplied by the length `s` of the
+//! row:
 //!
 //! ```text
 //! spring   d = -massScale (vn + biasRate (x - target)) - impulseScale L      bias pass only
@@ -10,14 +11,14 @@
 //! hold     as a limit that is reached, with L of either sign
 //! ```
 //!
-//! `L` is an effective speed, and the impulse that it stands for is `L / ((mA + mB) D)`, times `s` for an angle.
+//! `L` is a speed. The impulse is `L / ((mA + mB) D)`, times `s` for an angle.
 //!
 //! **Springs are not solved in the relax pass.** In the bias pass a soft row is the implicit step of a damped spring
-//! whatever it starts from: `L' = -massScale (v + biasRate x)`. Solved again after the displacement, the same row takes
-//! another `massScale biasRate h` of the velocity away, so that light springs die early.
+//! from any state: `L' = -massScale (v + biasRate x)`. Solved again after the displacement, the row would take away
+//! another `massScale biasRate h` of the velocity, so that light springs come to rest too early.
 
 use super::super::body::SolverBody;
-use super::super::contact::Pass;
+use super::super::context::Pass;
 use super::super::limits::{Faults, IMPULSE_MAX};
 use super::super::row::{Denominator, Row};
 use super::super::settings::Tuning;
@@ -25,12 +26,12 @@ use super::super::softness::Softness;
 use super::parts::Direction;
 use crate::math::{Fx, Speed, fx_div, fx_mul, narrow, saturate_wide};
 
-/// What a row is for.
+/// The function of a row.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum RowTask {
-    /// Brings the position to a target, with impulses times `mA + mB` within a range.
+    /// Drives the position to a target, with impulses times `mA + mB` within `lower..=upper`.
     Spring { softness: Softness, target: Fx, lower: Fx, upper: Fx },
-    /// Brings the velocity to a speed, with impulses times `mA + mB` of a largest size.
+    /// Drives the velocity to a speed, with impulses times `mA + mB` of at most `max`.
     Drive { speed: Fx, max: Fx },
     /// Keeps the position from falling below a bound.
     Lower { bound: Fx },
@@ -47,7 +48,7 @@ pub(super) struct Measure {
     pub(super) denominator: Denominator,
     /// In m or rad.
     pub(super) position: Fx,
-    /// Length of the row's speeds for each of the position's: 1, or `s` for an angle.
+    /// Units of the row per unit of the position: 1, or `s` for an angle.
     pub(super) scale: Fx,
 }
 
@@ -58,9 +59,9 @@ pub(super) struct JointRow {
     pub(super) direction: Direction,
     task: RowTask,
     pub(super) row: Row,
-    /// A speed that is asked for against the row: of a spring, the part that comes from its stretch.
+    /// The target speed, reversed; of a spring, the part of its impulse that comes from its stretch.
     bias: Speed,
-    /// Whether a limit is not reached.
+    /// Whether the row is a limit that is not reached.
     open: bool,
     bounds: (Speed, Speed),
     pub(super) lambda: Speed,
@@ -72,7 +73,7 @@ impl JointRow {
         JointRow { slot, direction, task, row: Row::NONE, bias: Speed::ZERO, open: false, bounds, lambda }
     }
 
-    /// Jacobian, gains, bias and bounds at the present pose.
+    /// Computes Jacobian, gains, bias and bounds at the present pose.
     pub(super) fn refresh(&mut self, measure: &Measure, tuning: &Tuning) {
         let Measure { row, denominator, position, scale } = *measure;
         self.row = row;
@@ -97,12 +98,12 @@ impl JointRow {
             }
         }
         if denominator == 0 {
-            // Nothing can move this way.
+            // Neither body moves along this row.
             self.bounds = (Speed::ZERO, Speed::ZERO);
         }
     }
 
-    /// `gap` is what is left before the limit.
+    /// `gap` is the distance to the limit.
     fn refresh_limit(&mut self, gap: Fx, measure: &Measure, tuning: &Tuning) {
         let gap = fx_mul(gap, measure.scale);
         self.open = gap > Fx::ZERO;
@@ -128,11 +129,11 @@ impl JointRow {
         let (softness, bias, push) = match (&self.task, pass) {
             (RowTask::Spring { softness, .. }, Pass::Bias) => (softness, Speed::ZERO, self.bias),
             (RowTask::Spring { .. }, Pass::Relax) => return,
-            // As between shapes: a gap that the bias pass has not closed is left to the next sub-step.
+            // As with contacts, a gap that the bias pass has not closed is left to the next sub-step.
             (RowTask::Lower { .. } | RowTask::Upper { .. }, Pass::Relax) if self.open && self.lambda == 0 => {
                 return;
             }
-            // A gap so wide that `L` would fall below 0 asks for no more than that.
+            // A gap so wide that `L` would fall below 0 reduces `L` to 0.
             (RowTask::Lower { .. } | RowTask::Upper { .. }, _) if self.open => {
                 (&Softness::RIGID, self.bias.min(self.lambda.saturating_sub(vn)), Speed::ZERO)
             }
@@ -151,7 +152,7 @@ impl Measure {
     }
 }
 
-/// `L` of an impulse times `mA + mB`, within what can be accumulated, along a direction of a length.
+/// `L` of an impulse times `mA + mB`, clamped to the largest accumulated impulse. `scale` is that of the direction.
 pub(super) fn lambda_of(impulse: Fx, denominator: Denominator, scale: Fx) -> Speed {
     // The denominator has 30 fraction bits.
     let denominator = Fx::from_bits(saturate_wide(i128::from(denominator) << 2));

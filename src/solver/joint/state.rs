@@ -1,4 +1,4 @@
-//! Joints as the state keeps them.
+//! Joints as the state stores them.
 
 use alloc::boxed::Box;
 
@@ -13,20 +13,21 @@ use crate::math::{Angle, Fx, Rot, Speed, TAU, Vec2, fx_mul};
 /// A joint in the world.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Joint {
-    /// Elsewhere, so that what every step changes lies close together: saving it is a matter of memory.
+    /// Boxed, so that the parts that every step changes lie close together: saving them is bound by memory.
     pub(crate) def: Box<JointDef>,
     pub(crate) impulses: JointImpulses,
-    /// The angle of B's frame in A's when it was last looked at, in units of 2^-32 turn: which turn it is in.
+    /// The angle of B's frame in A's at the end of the last tick in which the joint was solved, with whole turns, in
+    /// units of 2^-32 turn.
     pub(crate) turns: i64,
 }
 
-/// The impulses of the last sub-step, to start the next from: `L` of each row and point, by the slots of
-/// [`super::parts::slot`].
+/// The accumulated impulses of the last sub-step, for the warm start of the next: `L` of each row and point, by the
+/// slots of [`super::parts::slot`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct JointImpulses(pub(crate) [Speed; 6]);
 
 impl JointImpulses {
-    /// Of the point in a slot and the next one.
+    /// The impulse of the point that has a slot and the one after it.
     pub(super) fn point(&self, slot: u8) -> Vec2<Speed> {
         let slot = usize::from(slot);
         Vec2::new(self.0[slot], self.0[slot + 1])
@@ -43,7 +44,7 @@ impl Joint {
         Joint { def: Box::new(def), impulses: JointImpulses::default(), turns: 0 }
     }
 
-    /// Takes another definition. Impulses mean the same as long as the kind is the same.
+    /// Changes the definition. Impulses are kept as long as the kind of joint is the same.
     pub(crate) fn redefine(&mut self, def: JointDef) {
         if core::mem::discriminant(&def.kind) != core::mem::discriminant(&self.def.kind) {
             self.impulses = JointImpulses::default();
@@ -51,29 +52,29 @@ impl Joint {
         *self.def = def;
     }
 
-    /// Whether the solver has to do with it.
+    /// Whether the solver has a constraint for the joint.
     pub(crate) fn is_solved(&self) -> bool {
         self.def.kind != JointKind::Filter
     }
 
-    /// What it was defined as, with all later changes.
+    /// The definition, with all later changes.
     #[must_use]
     pub const fn def(&self) -> &JointDef {
         &self.def
     }
 
-    /// The angle of B's frame in A's in units of 2^-32 turn: of all that are a whole number of turns apart, the nearest
+    /// The angle of B's frame in A's in units of 2^-32 turn: of all angles that differ by whole turns, the one nearest
     /// to the last one.
     pub(crate) fn turns(&self, a: Angle, b: Angle) -> i64 {
         nearest_turns(self.turns, (b - a) + self.def.rest_angle())
     }
 
-    /// The angle of B's frame in A's in radians, with all its turns.
+    /// The angle of B's frame in A's in radians, with whole turns.
     pub(crate) fn angle(&self, a: &Body, b: &Body) -> Fx {
         radians(self.turns(a.angle(), b.angle()))
     }
 
-    /// The axes of A's frame of the joint in the world.
+    /// The axes of the joint's frame on A, in the world.
     pub(crate) fn axes(&self, a: &Body) -> Rot {
         Rot::from_angle(a.angle() + self.def.frame_a.angle)
     }
@@ -84,19 +85,19 @@ impl Joint {
     }
 }
 
-/// The angle `now`, with so many turns that it is nearest to the last one in units of 2^-32 turn.
+/// The angle `now` with the number of whole turns that brings it nearest to `last`. Both are in units of 2^-32 turn.
 pub(super) fn nearest_turns(last: i64, now: Angle) -> i64 {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "whole turns are dropped")]
     let before = Angle::from_bits(last as u32);
     last.wrapping_add((now - before).to_turns().to_bits())
 }
 
-/// Units of 2^-32 turn in radians.
+/// Converts units of 2^-32 turn to radians.
 pub(super) fn radians(turns: i64) -> Fx {
     fx_mul(Fx::from_bits(turns), TAU)
 }
 
-/// Radians in units of 2^-32 turn.
+/// Converts radians to units of 2^-32 turn.
 pub(super) fn turns_of(radians: Fx) -> i64 {
     /// `1 / (2 pi)` with 63 fraction bits.
     const INVERSE_TAU: i128 = 1_467_945_251_641_000_613;

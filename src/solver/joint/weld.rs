@@ -1,7 +1,8 @@
-//! The weld: a row on the angle and a point block at the anchors, each rigid or a spring.
+//! The weld joint: a row on the angle and a point block at the anchors, each rigid or a spring.
 //!
-//! Held where a push does not turn the bodies, as a slider is, a plank on a wall sags a fifth as far. But the anchors of a
-//! loaded chain then open four times as wide, and a weld of 1 cm that carries a hundredfold weight gains energy.
+//! If the point block acted where its impulse does not turn the bodies against each other, as in a prismatic joint, a
+//! plank on a wall would sag a fifth as far. But the anchors of a loaded chain would open four times as wide, and a
+//! weld of 1 cm that carries a hundredfold weight would gain energy.
 
 use serde::{Deserialize, Serialize};
 
@@ -11,26 +12,26 @@ use super::parts::{Direction, Parts, slot};
 use crate::body::WorldError;
 use crate::math::Fx;
 
-/// Glue: B's frame stays on A's.
+/// A weld: B's frame stays on A's.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Weld {
-    /// How the anchors give way; `None` is rigid.
+    /// Softness of the anchors; `None` is rigid.
     pub linear: Option<Soft>,
-    /// How the angle gives way; `None` is rigid.
+    /// Softness of the angle; `None` is rigid.
     pub angular: Option<Soft>,
 }
 
 impl Weld {
-    /// A rigid weld: as rigid as the solver is.
+    /// A weld that is as rigid as joints are.
     #[must_use]
     pub const fn rigid() -> Self {
         Weld { linear: None, angular: None }
     }
 
     option_builders! {
-        /// Lets the anchors swing apart, with a frequency in Hz.
+        /// Makes the anchors soft, with a frequency in Hz.
         linear(hertz, damping_ratio) => Soft { hertz, damping_ratio };
-        /// Lets the angle swing, with a frequency in Hz.
+        /// Makes the angle soft, with a frequency in Hz.
         angular(hertz, damping_ratio) => Soft { hertz, damping_ratio };
     }
 
@@ -39,14 +40,14 @@ impl Weld {
         Soft::check(self.angular)
     }
 
-    /// Its row on the angle, if it is a hinge: if its anchors do not give way.
+    /// Its row on the angle, if it is a hinge: if its anchors are rigid.
     pub(super) fn angle_parts(&self) -> Option<AngleParts> {
         let spring = self.angular.map(|soft| soft.towards(Fx::ZERO));
         let parts = AngleParts { spring, held: spring.is_none(), drive: None, limit: None };
         self.linear.is_none().then_some(parts)
     }
 
-    /// What it is made of if its anchors give way.
+    /// Adds its parts, if its anchors are soft.
     pub(super) fn prepare(&self, parts: &mut Parts<'_>) {
         match self.angular {
             Some(soft) => parts.spring(Direction::Angle, Some(soft.towards(Fx::ZERO))),

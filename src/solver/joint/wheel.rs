@@ -1,4 +1,5 @@
-//! The wheel: a slider that may turn. Motor on the angle; spring and limits along the axis; one row across it.
+//! The wheel joint: a slider whose B may turn. The motor is on the angle, spring and limits are along the axis, and one
+//! row is across it.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,19 +8,19 @@ use super::parts::{Direction, Parts, slot};
 use crate::body::WorldError;
 use crate::math::Fx;
 
-/// A wheel on its suspension: B's anchor stays on the x axis of A's frame, and B turns.
+/// A wheel on its suspension: B's anchor stays on the x axis of A's frame, and B turns freely.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Wheel {
     /// Range of the translation in metres.
     pub limit: Option<Limit>,
-    /// Goes for an angular velocity in rad/s with up to a torque in N m.
+    /// Motor on the angle: angular velocity in rad/s, limit in N m.
     pub motor: Option<Drive>,
-    /// The suspension: goes for a translation in metres.
+    /// The suspension: a spring with a target translation in metres.
     pub spring: Option<Spring>,
 }
 
 impl Wheel {
-    /// A wheel that turns freely on an axis without suspension.
+    /// A wheel that turns and slides freely along the axis.
     #[must_use]
     pub const fn new() -> Self {
         Wheel { limit: None, motor: None, spring: None }
@@ -28,9 +29,9 @@ impl Wheel {
     option_builders! {
         /// Sets the range of the translation in metres.
         limit(lower, upper) => Limit { lower, upper };
-        /// Sets an angular velocity in rad/s to go for, and the largest torque in N m.
+        /// Sets a target angular velocity in rad/s, and the largest torque in N m.
         motor(speed, max_torque) => Drive { speed, max: max_torque };
-        /// Sets a translation in metres to swing about, with a frequency in Hz.
+        /// Sets a spring with a frequency in Hz and a target translation in metres.
         spring(hertz, damping_ratio, target) => Spring { hertz, damping_ratio, target };
     }
 

@@ -1,15 +1,29 @@
-//! Whether the account is right. Of whole worlds the tests of `scenes` ask for `push_error`.
+//! The velocity change that is applied at once is the one that contacts have made. The tests of `scenes` check the same
+//! for whole worlds with `push_error`.
 
 use std::vec::Vec;
 
 use super::*;
 use crate::fx;
-use crate::lanes::Backend;
-use crate::math::{Rng, Speed, narrow};
-use crate::solver::{Solver, Task as ContactTask, Tuning};
+use crate::lanes::{Backend, Machine};
+use crate::math::{Rng, Speed, Vec2, narrow};
+use crate::solver::settings::SolverSettings;
+use crate::solver::{Solver, Tuning, contact};
+use crate::threads::Threads;
 
-/// Not a multiple of the lanes, so that the last group is not full.
+/// Number of bodies. It is not a multiple of the lanes, so that the last group is not full.
 const COUNT: usize = 21;
+
+/// Calls a method of the account with a context.
+fn with_context<T>(
+    machine: Machine,
+    bodies: &mut [SolverBody],
+    faults: &mut Faults,
+    run: impl FnOnce(&StepContext<'_>) -> T,
+) -> T {
+    let tuning = Tuning::new(&SolverSettings::default(), Vec2::ZERO, 60);
+    run(&StepContext::new(machine, &Threads::default(), &tuning, bodies, faults))
+}
 
 fn change(bodies: &mut [SolverBody], by: &[[Speed; 3]]) {
     for (body, &[x, y, turn]) in bodies.iter_mut().zip(by) {
@@ -19,7 +33,15 @@ fn change(bodies: &mut [SolverBody], by: &[[Speed; 3]]) {
     }
 }
 
-/// What contacts have changed in a sub-step is changed again in the next one, and nothing else is.
+fn change_cells(bodies: &[Cell<SolverBody>], by: &[[Speed; 3]]) {
+    for (cell, by) in bodies.iter().zip(by) {
+        let mut body = [cell.get()];
+        change(&mut body, &[*by]);
+        cell.set(body[0]);
+    }
+}
+
+/// The changes by contacts in a sub-step are applied again in the next one, and no others.
 #[test]
 fn what_contacts_have_changed_is_changed_again() {
     let mut rng = Rng::new(7);
@@ -36,27 +58,30 @@ fn what_contacts_have_changed_is_changed_again() {
         let mut bodies = Vec::from([SolverBody::default(); COUNT + 1]);
         change(&mut bodies, &start);
         let (mut pushes, mut faults) = (Pushes::default(), 0);
-        pushes.begin((1..=COUNT).map(|index| (u32::try_from(index).expect("few"), index > 10)));
-        let mut perform = |task, bodies: &mut Vec<SolverBody>| {
-            pushes.perform(task, machine, SolverBody::cells(bodies), &mut faults);
-        };
+        pushes.begin(
+            (1..=COUNT)
+                .map(|index| PushedBody { index: u32::try_from(index).expect("few"), shared: index > 10 }),
+        );
         let by_joints = |numbers: &[[Speed; 3]]| -> Vec<[Speed; 3]> {
-            // Those in groups that nothing else changes are left alone.
+            // Only contacts change the bodies of groups that are not shared.
             numbers.iter().enumerate().map(|(i, &by)| if i > 10 { by } else { [Speed::ZERO; 3] }).collect()
         };
-        perform(Task::Measure, &mut bodies);
-        perform(Task::Apply, &mut bodies);
+        let was_known = with_context(machine, &mut bodies, &mut faults, |context| {
+            pushes.measure(context);
+            pushes.apply(context)
+        });
+        assert!(!was_known, "there was no sub-step before");
         change(&mut bodies, &warm);
         change(&mut bodies, &pushed);
-        perform(Task::Suspend, &mut bodies);
-        change(&mut bodies, &by_joints(&joints));
-        perform(Task::Resume, &mut bodies);
+        with_context(machine, &mut bodies, &mut faults, |context| {
+            pushes.exempt(context, || change_cells(context.bodies, &by_joints(&joints)));
+        });
         change(&mut bodies, &pushed_again);
-        perform(Task::Measure, &mut bodies);
+        with_context(machine, &mut bodies, &mut faults, |context| pushes.measure(context));
         change(&mut bodies, &outside);
         let mut wanted = bodies.clone();
         [warm, pushed, pushed_again].iter().for_each(|by| change(&mut wanted, by));
-        perform(Task::Apply, &mut bodies);
+        assert!(with_context(machine, &mut bodies, &mut faults, |context| pushes.apply(context)));
         let motions =
             |bodies: &[SolverBody]| -> Vec<_> { bodies.iter().map(|b| (b.velocity, b.spin)).collect() };
         assert_eq!(motions(&bodies), motions(&wanted), "{backend:?}");
@@ -64,32 +89,34 @@ fn what_contacts_have_changed_is_changed_again() {
     }
 }
 
-/// A push that is too fast for a body is cut short, and counted.
+/// A velocity change that takes a body beyond the speed limit is clamped, and counted as a fault.
 #[test]
 fn what_is_too_fast_is_a_fault() {
     let mut bodies = Vec::from([SolverBody::default(); 2]);
     let (mut pushes, mut faults) = (Pushes::default(), 0);
-    pushes.begin([(1, false)].into_iter());
+    pushes.begin([PushedBody { index: 1, shared: false }].into_iter());
     let fast = [[Speed::ZERO; 3], [Speed::lit("300"), Speed::ZERO, Speed::ZERO]];
-    let mut perform = |task, bodies: &mut Vec<SolverBody>| {
-        pushes.perform(task, Machine::default(), SolverBody::cells(bodies), &mut faults);
-    };
-    perform(Task::Apply, &mut bodies);
+    let machine = Machine::default();
+    with_context(machine, &mut bodies, &mut faults, |context| pushes.apply(context));
     change(&mut bodies, &fast);
-    perform(Task::Measure, &mut bodies);
-    perform(Task::Apply, &mut bodies);
+    with_context(machine, &mut bodies, &mut faults, |context| {
+        pushes.measure(context);
+        pushes.apply(context)
+    });
     assert_eq!(faults, 1);
     assert_eq!(bodies[1].velocity.x, crate::solver::limits::SPEED_MAX);
 }
 
 impl Solver {
-    /// By how much what contacts have pushed in the last sub-step differs at most from what the impulses in their rows
-    /// amount to, in units of a speed, and how much that is.
+    /// Largest difference between the velocity changes that contacts have made in the last sub-step and those by the
+    /// impulses in their rows, in units of a speed, and the largest of the latter.
     pub(crate) fn push_error(&mut self, tuning: &Tuning) -> (i32, i32) {
-        self.push(Task::Measure);
-        self.list.bodies.fill(SolverBody::default());
-        self.perform_serial(ContactTask::WarmStart, tuning);
-        self.perform_coloured(ContactTask::WarmStart, tuning);
+        let Solver { list, contacts, pushes, machine, threads, faults, .. } = self;
+        let context = &StepContext::new(*machine, threads, tuning, &mut list.bodies, faults);
+        pushes.measure(context);
+        context.bodies.iter().for_each(|body| body.set(SolverBody::default()));
+        contacts.run_overflow(contact::WarmStart, context);
+        contacts.run_coloured(contact::WarmStart, context);
         let (mut error, mut largest) = (0, 0);
         for group in &self.pushes.groups {
             for (lane, &index) in group.at.iter().enumerate() {

@@ -1,51 +1,51 @@
 //! Rows on the angle between two bodies: `vn = s (w_b - w_a)`, with `e = s / k` and without linear part.
 //!
-//! `s` is a length of the row's own. The one that makes `D = aA eA^2 + aB eB^2` about 1 keeps every coefficient small,
-//! whatever the masses and radii of gyration:
+//! `s` is a length that each row chooses: the one that makes `D = aA eA^2 + aB eB^2` about 1 keeps every coefficient
+//! small, whatever the masses and radii of gyration:
 //!
 //! ```text
 //! s^2 = 1 / (aA / kA^2 + aB / kB^2),  so that  f = a e / D <= sqrt(a) <= 1  and  e <= 1 / sqrt(a)
 //! ```
 //!
-//! `e` is held at 100: it is more only if one body is 10 000 times as heavy as the other and turns more easily
-//! nevertheless. An angular impulse `P` is `L = P (mA + mB) D / s`, with inverse masses.
+//! `e` is kept to 100: it would be larger only if one body were 10 000 times as heavy as the other and still turned
+//! more easily. An angular impulse `P` is `L = P (mA + mB) D / s`, with inverse masses.
 
 use super::{Denominator, MassFractions, RATIO_MAX, Row, turning};
 use crate::math::{Length, Ratio, Reciprocal, Speed, Unit, div_round, mul, saturate, saturate_wide};
 
 impl Row {
-    /// The row between two bodies, its denominator and `s`. The latter two are 0 when neither body turns.
+    /// The row between two bodies, its denominator and `s`. Denominator and `s` are 0 when neither body turns.
     pub(crate) fn angular(
         a: Reciprocal,
         b: Reciprocal,
         fractions: MassFractions,
     ) -> (Row, Denominator, Length) {
-        let s = angular_scale((a, fractions.a), (b, fractions.b));
+        let s = angular_scale([a, b], fractions);
         let ratio = |inverse_gyration: Reciprocal| -> Ratio {
             inverse_gyration.times::<_, fixed::types::extra::U24>(s).min(RATIO_MAX)
         };
         let (e_a, e_b) = (ratio(a), ratio(b));
         let denominator = turning(fractions.a, e_a, e_a) + turning(fractions.b, e_b, e_b);
         let gain = |fraction: Unit, e: Ratio| {
-            // 54 fraction bits over 30, and the rounding of a gain that is mostly 1.
+            // 54 fraction bits divided by 30.
             let product = i64::from(fraction.to_bits()) * i64::from(e.to_bits());
-            // No change of velocity may be larger than `L`: only impossible bodies exceed it.
+            // A change of velocity may not be larger than `L`: only physically impossible bodies reach this limit.
             Unit::from_bits(saturate(quotient(product, denominator.max(1)))).min(Unit::ONE)
         };
         let (f_a, f_b) = (gain(fractions.a, e_a), gain(fractions.b, e_b));
         (Row { e_a, e_b, f_a, f_b, ..Row::NONE }, denominator, s)
     }
 
-    /// Of a row on the angle: the shares of its velocity that A and B take. They add up to 1, unless neither turns.
+    /// The shares of A and B in a change of the relative angular velocity. They add up to 1, unless neither body turns.
     pub(crate) fn shares(&self) -> (Unit, Unit) {
         (mul(self.f_a, self.e_a), mul(self.f_b, self.e_b))
     }
 }
 
-/// `2^6 n / d` of numbers that are not negative, to nearest.
+/// `2^6 n / d` for numbers that are not negative, rounded to nearest.
 fn quotient(n: i64, d: i64) -> i64 {
     if n < 1 << 56 && d < 1 << 62 {
-        // The same in 64 bits.
+        // Here it fits 64 bits.
         ((n << 6) + d / 2) / d
     } else {
         saturate_wide(div_round(i128::from(n) << 6, d.into()))
@@ -53,22 +53,23 @@ fn quotient(n: i64, d: i64) -> i64 {
 }
 
 /// `1 / sqrt(aA / kA^2 + aB / kB^2)`, at most a hundred radii of gyration of a body that turns. It only sets the units
-/// of a row, so it need not be exact.
-fn angular_scale(a: (Reciprocal, Unit), b: (Reciprocal, Unit)) -> Length {
-    // 1 / k with 21 fraction bits, so 72 in the sum.
-    let inverse = |(inverse_gyration, fraction): (Reciprocal, Unit)| -> Speed {
+/// of a row, so that it need not be exact.
+fn angular_scale([a, b]: [Reciprocal; 2], fractions: MassFractions) -> Length {
+    // 1 / k has 21 fraction bits, so that the sum has 72.
+    let inverse = |inverse_gyration: Reciprocal, fraction: Unit| -> Speed {
         if fraction == 0 { Speed::ZERO } else { inverse_gyration.times(Unit::ONE) }
     };
-    let square = |end: (Reciprocal, Unit)| {
-        let inverse = u128::from(inverse(end).to_bits().unsigned_abs());
-        inverse * inverse * u128::from(end.1.to_bits().unsigned_abs())
+    let (a, b) = (inverse(a, fractions.a), inverse(b, fractions.b));
+    let square = |inverse: Speed, fraction: Unit| {
+        let inverse = u128::from(inverse.to_bits().unsigned_abs());
+        inverse * inverse * u128::from(fraction.to_bits().unsigned_abs())
     };
-    let sum = square(a) + square(b);
+    let sum = square(a, fractions.a) + square(b, fractions.b);
     if sum == 0 {
         return Length::ZERO;
     }
-    // Normalised to 31 or 32 bits by an even shift, so that its reciprocal has as many and the root of that half. More
-    // than it is rounded by, so that `f` is not above 1.
+    // Normalised to 31 or 32 bits by an even shift, so that the reciprocal has as many bits and its root half as many.
+    // The root is increased by more than its rounding error, so that `f` is not above 1.
     let shift = (i64::from(128 - sum.leading_zeros()) - 31) & !1;
     let top = if shift >= 0 { sum >> shift } else { sum << -shift };
     let root = ((1u64 << 62) / u64::try_from(top).unwrap_or(u64::MAX).max(1)).isqrt();
@@ -76,7 +77,7 @@ fn angular_scale(a: (Reciprocal, Unit), b: (Reciprocal, Unit)) -> Length {
     // `2^(31 + shift/2) / sqrt(sum)`, and a length is `2^(22 + 36) / sqrt(sum)`.
     let up = 27 - shift / 2;
     let length = if up >= 0 { root << up } else { root >> -up };
-    let most = (100u64 << 43) / u64::from(inverse(a).max(inverse(b)).to_bits().unsigned_abs()).max(1);
+    let most = (100u64 << 43) / u64::from(a.max(b).to_bits().unsigned_abs()).max(1);
     Length::from_bits(i32::try_from(length.min(most.into())).unwrap_or(i32::MAX))
 }
 
@@ -116,7 +117,7 @@ mod tests {
                 assert!(s == 0 && fractions.b == 0);
                 continue;
             }
-            // As fast as bodies turn: up to 20 rad/s, at up to 20 m/s and 200 of the row's.
+            // Up to 20 rad/s, with up to 20 m/s and up to 200 m/s along the row.
             let mut spin = |k: Fx, e: Ratio| {
                 let omega = rng.range(fx!(-20), fx!(20));
                 let most = fx_div(fx!(200), widen(e)).unwrap_or(fx!(20)).min(fx!(20));

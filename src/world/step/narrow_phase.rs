@@ -7,7 +7,7 @@ use super::speculative::{Side, SpeculativePair, approach};
 use crate::collision::{AxisHint, Contact, Manifold, Pair, SatCounters, collide, collide_near};
 use crate::lanes::Machine;
 use crate::math::{Length, Step, saturate, widen};
-use crate::solver::{Surface, TouchingPair};
+use crate::solver::{Surface, SurfaceSide, TouchingPair};
 use crate::world::cache::{
     Approach, ClosingBound, Margins, MotionCache, NarrowPhaseBuffers, NarrowPhaseOutput, NearPair, Poses,
     Scratch,
@@ -232,7 +232,10 @@ fn keep_reachable(
 
 /// The common surface of two shapes.
 fn surface_of(state: &State, poses: &Poses, (a, b): Pair) -> Surface {
-    let side = |slot: u32| (state.shapes.at(slot).material(), poses.at(slot).outline.radius());
+    let side = |slot: u32| SurfaceSide {
+        material: state.shapes.at(slot).material(),
+        radius: poses.at(slot).outline.radius(),
+    };
     Surface::between(side(a), side(b))
 }
 

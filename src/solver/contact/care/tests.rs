@@ -1,23 +1,23 @@
-//! Batches solved calmly against the same ones solved carefully, on every backend.
+//! Batches that are solved without checks end with the same bits as with all checks, on every backend.
 
+use super::super::super::batches::{BatchParts, Operation};
 use super::super::super::body::SolverBody;
 use super::super::super::settings::SolverSettings;
 use super::super::batch::Point;
 use super::super::input::Input;
-use super::super::kernel;
-use super::super::rows::{Inverses, fill};
-use super::super::{Pass, Sweep};
+use super::super::rows::fill;
+use super::super::store::Records;
+use super::super::{Constants, Contacts, Relax, Solve, Sweep, WarmStart};
 use super::*;
 use crate::fx;
-use crate::lanes::Quad;
-use crate::lanes::{Backend, Ints, Kernel, Machine, WIDTH};
+use crate::lanes::{Backend, Ints, Kernel, Machine, Quad, WIDTH};
 use crate::math::{Fx, Length, Reciprocal, Rng, Rot, Step, Vec2, narrow};
 use crate::solver::row::MassFractions;
 use crate::solver::settings::Tuning;
 use core::cell::Cell;
 use std::vec::Vec;
 
-/// A contact that may be calm, or just not.
+/// A contact that is within the bounds of calm ones, or just beyond.
 fn input(rng: &mut Rng, count: u8) -> Input {
     let n = Rot::from_angle(rng.angle()).apply(Vec2::X);
     let mass = |rng: &mut Rng| if rng.below(5) == 0 { fx!(0) } else { rng.range(fx!(0.1), fx!(20)) };
@@ -46,11 +46,11 @@ fn input(rng: &mut Rng, count: u8) -> Input {
         anchors: Quad(anchors),
         carried: Quad([speed(rng), speed(rng), speed(rng), 0]),
         rest: Quad([separations[0], separations[1], friction, 0]),
-        ..Input::default()
+        ..Input::NONE
     }
 }
 
-/// Mostly small, now and then large: in units of a speed.
+/// A number in the format of a speed, mostly small and now and then large.
 fn number(rng: &mut Rng, large: Fx, small: Fx) -> i32 {
     let limit = if rng.below(200) == 0 { large } else { small };
     let speed: Speed = narrow(rng.range(-limit, limit));
@@ -60,13 +60,12 @@ fn number(rng: &mut Rng, large: Fx, small: Fx) -> i32 {
 struct Trial<'a> {
     inputs: &'a [Input],
     bodies: Vec<SolverBody>,
-    steps: &'a [(Pass, Sweep)],
     calmly: bool,
-    constants: kernel::Constants,
+    constants: Constants,
     end: Option<End>,
 }
 
-/// What a trial ends with.
+/// The result of a trial.
 #[derive(Debug, PartialEq)]
 struct End {
     numbers: Vec<i32>,
@@ -75,24 +74,43 @@ struct End {
     calm: bool,
 }
 
+/// A batch to which operations are applied.
+struct Applied<'a> {
+    batch: Batch<WIDTH>,
+    record: Records<WIDTH>,
+    cells: &'a [Cell<SolverBody>],
+    faults: Faults,
+}
+
+impl Applied<'_> {
+    #[inline(always)]
+    fn apply<L: Lanes<WIDTH>>(&mut self, operation: impl Operation<Contacts>) {
+        let parts = BatchParts { batch: &mut self.batch, record: &self.record, extra: None };
+        operation.apply::<L, WIDTH>(parts, self.cells, &mut self.faults);
+    }
+}
+
 impl Kernel<WIDTH> for &mut Trial<'_> {
     #[inline(always)]
     fn run<L: Lanes<WIDTH>>(self) {
         let count = usize::from(self.inputs[0].count);
         let mut batch = Batch::<WIDTH> { count, ..Batch::NONE };
-        let mut inverses = Inverses::NONE;
-        fill::<L, WIDTH>(&core::array::from_fn(|lane| &self.inputs[lane]), &mut batch, &mut inverses);
+        let mut record = Records::NONE;
+        fill::<L, WIDTH>(&core::array::from_fn(|lane| self.inputs[lane]), &mut batch, &mut record.inverses);
         for lane in 0..WIDTH {
             let index = u32::try_from(lane).expect("eight");
             (batch.bodies[0][lane], batch.bodies[1][lane]) = (1 + 2 * index, 2 + 2 * index);
         }
         batch.changed = batch.bodies;
         batch.calm = self.calmly && Calm::<L, WIDTH>::suits(&batch, None);
-        let (mut faults, cells) = (0, SolverBody::cells(&mut self.bodies));
-        kernel::warm_start::<L, WIDTH>(&batch, None, cells, &mut faults);
-        for &how in self.steps {
-            kernel::solve::<L, WIDTH>(&mut batch, None, how, &self.constants, cells, &mut faults);
-        }
+        let (faults, cells) = (0, SolverBody::cells(&mut self.bodies));
+        let constants = self.constants;
+        let mut applied = Applied { batch, record, cells, faults };
+        applied.apply::<L>(WarmStart);
+        applied.apply::<L>(Solve { sweep: Sweep::Forward, constants });
+        applied.apply::<L>(Relax { sweep: Sweep::Backward, constants });
+        applied.apply::<L>(Solve { sweep: Sweep::Backward, constants });
+        let Applied { batch, faults, .. } = applied;
         let mut numbers = Vec::new();
         let mut take = |ints: &Ints<WIDTH>| numbers.extend_from_slice(&ints.0);
         for Point { normal_lambda, separation, .. } in &batch.points[..count] {
@@ -111,7 +129,7 @@ impl Kernel<WIDTH> for &mut Trial<'_> {
 fn calm_contacts_end_as_careful_ones() {
     let mut rng = Rng::new(29);
     let tuning = Tuning::new(&SolverSettings::default(), Vec2::ZERO, 60);
-    let constants = kernel::Constants::new(&tuning);
+    let constants = Constants::new(&tuning);
     let (mut calm, mut wild) = (0, 0);
     for round in 0..8000 {
         let count = 1 + u8::from(round % 3 != 0);
@@ -126,19 +144,11 @@ fn calm_contacts_end_as_careful_ones() {
                 body
             })
             .collect();
-        let steps =
-            [(Pass::Bias, Sweep::Forward), (Pass::Relax, Sweep::Backward), (Pass::Bias, Sweep::Backward)];
         for backend in Backend::available() {
             let machine = Machine::new(backend).expect("available");
             let run = |calmly: bool| {
-                let mut trial = Trial {
-                    inputs: &inputs,
-                    bodies: bodies.clone(),
-                    steps: &steps,
-                    calmly,
-                    constants,
-                    end: None,
-                };
+                let mut trial =
+                    Trial { inputs: &inputs, bodies: bodies.clone(), calmly, constants, end: None };
                 machine.run(&mut trial);
                 trial.end.expect("run")
             };

@@ -1,4 +1,4 @@
-//! The rows of every backend against the equations, one number at a time.
+//! The rows of every backend are those of the equations, computed here one number at a time.
 
 use super::super::super::row::MassFractions;
 use super::*;
@@ -13,7 +13,7 @@ fn grip_is_friction_times_the_ratio_of_denominators() {
     assert_eq!(grip(fx!(0.5), one), Grip::lit("0.5"));
     assert_eq!(grip(fx!(0.5), 4 * one), Grip::lit("2"));
     assert_eq!(grip(fx!(0.5), one / 4), Grip::lit("0.125"));
-    assert_eq!(grip(fx!(16), 16130 * one), Grip::MAX, "saturated, not wrapped");
+    assert_eq!(grip(fx!(16), 16130 * one), Grip::MAX, "the grip saturates and does not wrap");
 }
 
 struct FillRows<'a, const N: usize> {
@@ -36,11 +36,11 @@ impl<const N: usize> Kernel<N> for FillRows<'_, N> {
     #[inline(always)]
     fn run<L: Lanes<N>>(self) {
         let FillRows { inputs, made } = self;
-        fill::<L, N>(&core::array::from_fn(|lane| &inputs[lane]), &mut made.batch, &mut made.inverses);
+        fill::<L, N>(&core::array::from_fn(|lane| inputs[lane]), &mut made.batch, &mut made.inverses);
     }
 }
 
-/// What is in a format, its ends more often than by chance.
+/// A number of a format; its ends are more frequent than by chance.
 fn any(rng: &mut Rng, limit: i32) -> i32 {
     match rng.below(8) {
         0 => limit,
@@ -77,7 +77,7 @@ fn random_input(rng: &mut Rng) -> Input {
         anchors: quad(i32::MAX),
         carried: quad(i32::MAX),
         rest: Quad(quad(i32::MAX).0.map(i32::abs)),
-        ..Input::default()
+        ..Input::NONE
     }
 }
 
@@ -89,7 +89,7 @@ fn limited(x: i128, limit: i32) -> i32 {
     i32::try_from(x.clamp(-i128::from(limit), limit.into())).expect("clamped")
 }
 
-/// A row as the equations have it: lever ratios, gains of A and of B, denominator and its reciprocal.
+/// A row by the equations: lever ratios, gains of A and of B, denominator and its reciprocal.
 struct Naive {
     e: [i32; 2],
     gains: [[i32; 3]; 2],
@@ -97,7 +97,7 @@ struct Naive {
     inverse: i32,
 }
 
-/// Where a point is, or what is half-way between two.
+/// The anchor of a point, or the mean of two.
 fn anchor(input: &Input, points: &[usize]) -> [i32; 2] {
     [0, 1].map(|axis| {
         let sum: i128 = points.iter().map(|point| i128::from(input.anchors.0[2 * point + axis])).sum();
@@ -126,7 +126,7 @@ fn naive_row(input: &Input, anchor: [i32; 2], n: [i32; 2]) -> Naive {
     Naive { e, gains, denominator, inverse }
 }
 
-/// Every number that the equations define of a lane is the one in the batch.
+/// Checks that every number of a lane is the one that the equations define.
 fn check<const N: usize>(input: &Input, lane: usize, made: &Made<N>) {
     let Made { batch, inverses } = made;
     let Quad([x, y, fraction_a, fraction_b]) = input.shares;

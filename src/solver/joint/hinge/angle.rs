@@ -1,11 +1,11 @@
-//! The rows on the angle of `N` hinges: spring, motor and limits, in this order, as in `row.rs` of the joints.
+//! The rows on the angle of a batch of hinges: spring, motor and limits, in this order, as in `row.rs` of the joints.
 //!
 //! ```text
 //! vn = eB uB - eA uA,   w = massScale vn + push + impulseScale L,   L' = clamp(L - w, lo, hi),   d = L' - L
 //! uA -= fA d,  uB += fB d
 //! ```
 
-use super::super::super::contact::Pass;
+use super::super::super::context::Pass;
 use super::super::super::limits::Faults;
 use super::super::super::pair::{Pair, RATIO, UNIT, clamp};
 use super::super::super::softness::Softness;
@@ -19,20 +19,20 @@ use crate::math::{Fx, Speed, Unit, round_shift_wide, saturate, saturate_wide};
 /// The rows of a batch. Lanes without a row have no gains, or bounds of 0.
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
-pub(super) struct AngleRows<const N: usize> {
+pub(in crate::solver) struct AngleRows<const N: usize> {
     e: [Ints<N>; 2],
     f: [Ints<N>; 2],
     has_spring: bool,
     has_drive: bool,
     has_limit: bool,
-    /// Whether a spring's row holds in any lane: only then it is solved in the relax pass.
+    /// Whether a row holds the angle in any lane: only then spring rows are solved in the relax pass.
     holds: bool,
     spring: SpringRow<N>,
     drive: DriveRow<N>,
-    /// The lower and the upper one, which measures the other way.
+    /// The lower and the upper limit. The row of the upper one is reversed.
     limits: [LimitRow<N>; 2],
     limit_max: Ints<N>,
-    /// In units of 2^-32 turn.
+    /// Targets of the springs, in units of 2^-32 turn.
     targets: [i64; N],
     stiffness: [Fx; N],
     closed: [Fx; N],
@@ -46,7 +46,7 @@ struct SpringRow<const N: usize> {
     mass_scale: Ints<N>,
     impulse_scale: Ints<N>,
     push: Ints<N>,
-    /// -1 where it is no spring but holds.
+    /// -1 where the row holds the angle and is no spring.
     holds: Ints<N>,
 }
 
@@ -61,7 +61,7 @@ struct DriveRow<const N: usize> {
 struct LimitRow<const N: usize> {
     lambda: Ints<N>,
     push: Ints<N>,
-    /// -1 where it is not reached.
+    /// -1 where the limit is not reached.
     open: Ints<N>,
     bounds: [i64; N],
 }
@@ -132,7 +132,7 @@ impl<const N: usize> AngleRows<N> {
         }
     }
 
-    /// Puts impulses into a lane, each within what its row allows: 0 where there is none.
+    /// Puts impulses into a lane, each clamped to what its row allows: 0 where there is no row.
     pub(super) fn reload(&mut self, lane: usize, impulses: &JointImpulses) {
         let AngleRows { spring, drive, limits, limit_max, .. } = self;
         let within = |slot: u8, max: i32| impulses.0[usize::from(slot)].to_bits().clamp(-max, max);
@@ -143,14 +143,14 @@ impl<const N: usize> AngleRows<N> {
         }
     }
 
-    /// The impulses in a lane: of spring, motor, lower and upper limit.
+    /// The impulses in a lane: those of spring, motor, lower and upper limit.
     pub(super) fn impulses(&self, lane: usize) -> [Speed; 4] {
         let [lower, upper] = &self.limits;
         [&self.spring.lambda, &self.drive.lambda, &lower.lambda, &upper.lambda]
             .map(|lambda| Speed::from_bits(lambda.0[lane]))
     }
 
-    /// Positions at the present pose, from the angles at the start of the tick.
+    /// Computes positions at the present pose. `turns` are the angles of the joints at the start of the tick.
     pub(super) fn refresh(&mut self, turns: &[i64; N], [a, b]: &[[u32; N]; 2], turned: &[Turned]) {
         for lane in 0..N {
             let (a, b) = (&turned[a[lane] as usize], &turned[b[lane] as usize]);
@@ -214,7 +214,7 @@ impl<const N: usize> AngleRows<N> {
         }
     }
 
-    /// Springs are not solved in the relax pass.
+    /// Solves springs in the bias pass only, and rows that hold the angle in both passes.
     #[inline(always)]
     fn solve_spring<L: Lanes<N>>(&mut self, pass: Pass, pair: &mut Pair<L, N>, faults: &mut Faults) {
         let SpringRow { lambda, max, mass_scale, impulse_scale, push, holds } = &mut self.spring;
@@ -224,7 +224,7 @@ impl<const N: usize> AngleRows<N> {
         let vn = velocity::<L, N>(&self.e, solved, pair, faults);
         let w = match pass {
             Pass::Bias => {
-                let scales = (L::load(mass_scale), L::load(impulse_scale));
+                let scales = [L::load(mass_scale), L::load(impulse_scale)];
                 L::add_saturating(softened::<L, N>(scales, vn, old), L::load(push))
             }
             Pass::Relax => L::select(held, vn, L::splat(0)),
@@ -234,8 +234,8 @@ impl<const N: usize> AngleRows<N> {
         pair.turn(&self.f, L::sub(new, old), faults);
     }
 
-    /// As between shapes: a gap may close within this sub-step, and one that the bias pass has not closed is left to the
-    /// next.
+    /// As with contacts, a gap may close within this sub-step, and a gap that the bias pass has not closed is left to
+    /// the next sub-step.
     #[inline(always)]
     fn solve_limit<L: Lanes<N>>(
         &mut self,
@@ -249,7 +249,7 @@ impl<const N: usize> AngleRows<N> {
         let LimitRow { lambda, push, open, .. } = &mut self.limits[side];
         let max = L::load(&self.limit_max);
         let vn = velocity::<L, N>(&self.e, max, pair, faults);
-        // A velocity that has saturated has a sign to spare, less one unit.
+        // A velocity that has saturated may be the smallest number, whose negative does not fit.
         let vn = facing::<L, N>(side, L::max(vn, L::splat(-i32::MAX)));
         let (old, push, open) = (L::load(lambda), L::load(push), L::negative(L::load(open)));
         let w = match pass {
@@ -257,7 +257,7 @@ impl<const N: usize> AngleRows<N> {
                 let mass_scale =
                     L::select(open, L::splat(Unit::ONE.to_bits()), L::splat(softness.mass_scale.to_bits()));
                 let impulse_scale = L::select(open, zero, L::splat(softness.impulse_scale.to_bits()));
-                L::add_saturating(softened::<L, N>((mass_scale, impulse_scale), vn, old), push)
+                L::add_saturating(softened::<L, N>([mass_scale, impulse_scale], vn, old), push)
             }
             Pass::Relax => {
                 let w = L::add_saturating(vn, L::select(open, push, zero));
@@ -271,24 +271,24 @@ impl<const N: usize> AngleRows<N> {
     }
 }
 
-/// The row of the upper limit measures the other way.
+/// Reverses a number for the upper limit, whose row is reversed.
 #[inline(always)]
 fn facing<L: Lanes<N>, const N: usize>(side: usize, value: L::Int) -> L::Int {
     if side == 0 { value } else { L::sub(L::splat(0), value) }
 }
 
-/// `massScale v + impulseScale L`, of scales that add up to 1.
+/// `massScale v + impulseScale L`, where the scales add up to 1.
 #[inline(always)]
 fn softened<L: Lanes<N>, const N: usize>(
-    (mass_scale, impulse_scale): (L::Int, L::Int),
+    [mass_scale, impulse_scale]: [L::Int; 2],
     v: L::Int,
     lambda: L::Int,
 ) -> L::Int {
     L::narrow::<UNIT>(L::add_wide(L::mul(mass_scale, v), L::mul(impulse_scale, lambda)))
 }
 
-/// Relative velocity of B from A on the angle. A lane with a row, whose impulses have a largest size, in which it does not
-/// fit is a fault.
+/// Relative velocity of B from A on the angle. It is a fault where the velocity does not fit in a lane with a row: one
+/// whose largest impulse is not 0.
 #[inline(always)]
 fn velocity<L: Lanes<N>, const N: usize>(
     e: &[Ints<N>; 2],
@@ -305,7 +305,7 @@ fn velocity<L: Lanes<N>, const N: usize>(
     vn
 }
 
-/// The speed of so many turns, saturated.
+/// The speed of a number of turns, saturated.
 #[inline]
 fn speed_of(turns: i64, per_turn: Fx) -> i32 {
     const EXTRA: u32 = 32 + Fx::FRAC_NBITS - Speed::FRAC_NBITS;

@@ -1,7 +1,7 @@
-//! The rows on the angle of a hinge before its batch is filled.
+//! Compact copies of the rows on the angle of hinges, from which batches are filled.
 //!
 //! A position `x` on the angle becomes a velocity along the row: `2 pi s x` times a rate, in one product with a
-//! coefficient that does not change within a tick.
+//! coefficient that is constant within a tick.
 
 use alloc::vec::Vec;
 
@@ -18,11 +18,11 @@ use crate::math::{Fx, Ratio, Reciprocal, Speed, TAU, Unit, fx_mul, narrow};
 /// Largest impulse of a row on the angle. The difference of two fits the format.
 pub(super) const ANGLE_MAX: Speed = Speed::lit("511");
 
-/// What the angle of a hinge has, besides what holds its anchors together.
+/// The rows on the angle of a hinge.
 #[derive(Clone, Copy, Debug)]
 pub(in super::super) struct AngleParts {
     pub(in super::super) spring: Option<Spring>,
-    /// Whether it is held at 0, instead of a spring.
+    /// Whether the angle is held at 0, instead of by a spring.
     pub(in super::super) held: bool,
     pub(in super::super) drive: Option<Drive>,
     pub(in super::super) limit: Option<Limit>,
@@ -35,18 +35,18 @@ impl AngleParts {
     }
 }
 
-/// What has been found out about hinges. It takes many divisions, and mostly there are many joints alike: all links of a
-/// chain, each knee of the ragdolls. It depends on nothing but what it is kept with, so that it is true for ever.
+/// Results for earlier hinges. They take many divisions, and many joints are alike: all links of a chain, each knee of
+/// the ragdolls. A result depends on nothing but the key that it is stored with, so that it never expires.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Memo {
-    /// Of the last spring, hertz, damping ratio and rate, and what they make.
+    /// Hertz, damping ratio and rate of the last spring, and its softness.
     spring: Option<((Fx, Fx, u32), Softness)>,
-    /// By a hash of its bodies, what joins them.
+    /// Rows by the hash of their key.
     angulars: Vec<Option<Angular>>,
 }
 
 impl Memo {
-    /// There is room for the joints of a few machines: a power of two.
+    /// Logarithm of the number of rows that are kept: the joints of a few machines.
     const ANGULARS_BITS: u32 = 6;
 
     fn softness(&mut self, hertz: Fx, damping_ratio: Fx, rate: u32) -> Softness {
@@ -67,12 +67,12 @@ impl Memo {
     }
 }
 
-/// Two bodies alike to others, as far as the angle between them is concerned.
+/// All that a row on the angle between two bodies depends on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Joined {
-    /// `1 / k` and mass of each.
+    /// `1 / k` and mass of each body.
     bodies: [(Reciprocal, Fx); 2],
-    /// Of the motor between them.
+    /// Largest torque of the motor between them.
     torque: Fx,
     /// Sub-steps per second.
     rate: u32,
@@ -88,7 +88,7 @@ impl Joined {
     }
 }
 
-/// The row on the angle between two bodies, whatever it is for, and the impulse of a torque on it.
+/// The row on the angle between two bodies, and the largest impulses on it.
 #[derive(Clone, Copy, Debug)]
 struct Angular {
     joined: Joined,
@@ -123,14 +123,14 @@ pub(in super::super) struct AngleInput {
     pub(super) limit: Option<LimitInput>,
 }
 
-/// A spring, or what holds the angle.
+/// A spring, or a row that holds the angle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SpringInput {
     pub(super) mass_scale: Unit,
     pub(super) impulse_scale: Unit,
     /// In units of 2^-32 turn.
     pub(super) target: i64,
-    /// Speed for each turn away from the target.
+    /// Speed per turn away from the target.
     pub(super) stiffness: Fx,
     /// 0 if neither body turns.
     pub(super) max: Speed,
@@ -140,7 +140,7 @@ pub(super) struct SpringInput {
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct DriveInput {
-    /// The speed that it goes for, reversed.
+    /// The target speed, reversed.
     pub(super) bias: Speed,
     pub(super) max: Speed,
     pub(super) lambda: Speed,
@@ -151,7 +151,7 @@ pub(super) struct LimitInput {
     /// In units of 2^-32 turn.
     pub(super) lower: i64,
     pub(super) upper: i64,
-    /// Speed for each turn beyond a limit, and for each turn before it.
+    /// Speed per turn beyond a limit, and per turn before it.
     pub(super) closed: Fx,
     pub(super) open: Fx,
     /// 0 if neither body turns.
@@ -162,13 +162,13 @@ pub(super) struct LimitInput {
 impl AngleInput {
     pub(in super::super) fn new(
         parts: &AngleParts,
-        (a, b): (&End, &End),
+        ends: [&End; 2],
         impulses: &JointImpulses,
         memo: &mut Memo,
         tuning: &Tuning,
     ) -> Self {
         let Angular { joined: _, e, f, s, max, drive_max } = memo.angular(Joined {
-            bodies: [a, b].map(|end| (end.inverse_gyration, end.mass)),
+            bodies: ends.map(|end| (end.inverse_gyration, end.mass)),
             torque: parts.drive.map_or(Fx::ZERO, |drive| drive.max),
             rate: tuning.rate,
         });

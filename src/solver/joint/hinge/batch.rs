@@ -1,15 +1,16 @@
-//! Hinges as the kernels read them: `N` at a time, each number in a row of its own.
+//! Batches of hinges: `N` at a time, as a structure of arrays.
 
 use crate::lanes::Ints;
+use crate::math::Angle;
 
-/// `N` hinges of which no two change the same body, for one tick. Lanes without a hinge have no gains, and stand between
-/// the ground and itself.
+/// `N` hinges of which no two change the same body, for one tick. Lanes without a hinge have no gains, and their bodies
+/// are the ground.
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
-pub(super) struct Batch<const N: usize> {
-    /// Where to read the bodies.
+pub(in crate::solver) struct Batch<const N: usize> {
+    /// The indices from which the bodies are read.
     pub(super) bodies: [[u32; N]; 2],
-    /// Where to write them: the ground for those that no impulse changes.
+    /// The indices to which the bodies are written: the ground for a body that no impulse changes.
     pub(super) changed: [[u32; N]; 2],
     /// Lever ratios of A and of B.
     pub(super) e: [[Ints<N>; 2]; 2],
@@ -20,13 +21,27 @@ pub(super) struct Batch<const N: usize> {
     pub(super) bias: [Ints<N>; 2],
     /// `L`, in world axes.
     pub(super) lambda: [Ints<N>; 2],
-    /// The place of its rows on the angle, if any hinge in it has some.
-    pub(super) angle: Option<u32>,
+    /// Whether any hinge in the batch has rows on the angle: then the batch has [`super::angle::AngleRows`] as well.
+    pub(super) has_angle: bool,
 }
 
-/// What their points are made of: what does not change within a tick.
+/// The constants from which the points of a batch are refreshed, and the joints to which its results belong.
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
+pub(in crate::solver) struct Records<const N: usize> {
+    pub(super) shape: Shape<N>,
+    /// Number of lanes with a hinge.
+    pub(super) len: usize,
+    /// The slots of the joints.
+    pub(super) slots: [u32; N],
+    /// The angles of the joints at the start of the tick, and after the tick those at its end, in units of 2^-32 turn.
+    pub(super) turns: [i64; N],
+    /// The angles of the joints while no body is turned.
+    pub(super) rest: [Angle; N],
+}
+
+/// The geometry of hinges, which is constant within a tick.
+#[derive(Clone, Debug)]
 pub(super) struct Shape<const N: usize> {
     /// Anchors from the centres of mass, in the frames of A and of B.
     pub(super) arms: [[Ints<N>; 2]; 2],
@@ -39,7 +54,7 @@ pub(super) struct Shape<const N: usize> {
 }
 
 impl<const N: usize> Batch<N> {
-    /// No hinge in any lane.
+    /// A batch without a hinge in any lane.
     pub(super) const NONE: Self = Batch {
         bodies: [[0; N]; 2],
         changed: [[0; N]; 2],
@@ -48,12 +63,17 @@ impl<const N: usize> Batch<N> {
         f: [[Ints::ZERO; 2]; 2],
         bias: [Ints::ZERO; 2],
         lambda: [Ints::ZERO; 2],
-        angle: None,
+        has_angle: false,
     };
 }
 
+impl<const N: usize> Records<N> {
+    pub(super) const NONE: Self =
+        Records { shape: Shape::NONE, len: 0, slots: [0; N], turns: [0; N], rest: [Angle::ZERO; N] };
+}
+
 impl<const N: usize> Shape<N> {
-    pub(super) const NONE: Self = Shape {
+    const NONE: Self = Shape {
         arms: [[Ints::ZERO; 2]; 2],
         ratios: [[Ints::ZERO; 2]; 2],
         fractions: [Ints::ZERO; 2],

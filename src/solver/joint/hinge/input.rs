@@ -1,5 +1,5 @@
-//! What is known of a hinge before its batch is filled: taken from the state in the order in which it lies there, so
-//! that only this compact copy is read in the order of colours.
+//! Compact copies of hinges, from which batches are filled. The state is read once in its own order, and only the
+//! copies are read in the order of colours.
 
 use super::super::super::body_list::GROUND;
 use super::super::super::colour::{Node, Size};
@@ -9,28 +9,28 @@ use super::super::state::Joint;
 use crate::body::Body;
 use crate::math::{Angle, Fx, Length, Ratio, Reciprocal, Shift, Speed, Unit, Vec2, round_shift, saturate};
 
-/// A body with joints.
+/// The properties of a body that its joints depend on.
 #[derive(Clone, Copy, Debug)]
 pub(in super::super) struct End {
     pub(in super::super) turning: Turning,
     pub(in super::super) inverse_gyration: Reciprocal,
     /// 0 if no impulse moves it.
     pub(in super::super) mass: Fx,
-    /// How many joints it has.
+    /// Number of its joints.
     pub(in super::super) joints: u32,
     centre: Vec2<Fx>,
     local_centre: Vec2<Fx>,
 }
 
-/// How a body with joints turns: what every sub-step reads of it.
+/// The rotation coefficients of a body with joints: the part that every sub-step reads.
 #[derive(Clone, Copy, Debug)]
 pub(in super::super) struct Turning {
     pub(in super::super) index: u32,
     /// At the start of the tick.
     pub(in super::super) angle: Angle,
-    /// Units of 2^-32 turn for each unit of `k dtheta`.
+    /// Units of 2^-32 turn per unit of `k dtheta`.
     turns: Fx,
-    /// Radians in a sub-step for each m/s of the spin, times 2^9: what lies between the formats.
+    /// Radians in a sub-step per m/s of the spin, times 2^9, which is the ratio of the formats.
     ahead: Fx,
 }
 
@@ -54,45 +54,45 @@ impl End {
         }
     }
 
-    /// The index of the body; the ground if no impulse changes it.
+    /// The index of the body; the ground if no impulse changes the body.
     fn changed(&self) -> u32 {
         if self.mass > 0 { self.turning.index } else { GROUND }
     }
 }
 
 impl Turning {
-    /// How far it has turned, in units of 2^-32 turn.
+    /// The rotation since the start of the tick, in units of 2^-32 turn.
     #[inline]
     pub(in super::super) fn turns_of(&self, turn: Shift) -> i64 {
         product(turn.to_bits(), self.turns)
     }
 
-    /// How far it turns in a sub-step, in radians.
+    /// The rotation in a sub-step, in radians.
     #[inline]
     pub(in super::super) fn ahead_of(&self, spin: Speed) -> Unit {
         Unit::from_bits(saturate(product(spin.to_bits(), self.ahead)))
     }
 }
 
-/// In two parts, each of which fits 64 bits.
+/// A product in two parts, each of which fits 64 bits.
 fn product(number: i32, factor: Fx) -> i64 {
     let (number, high, low) = (i64::from(number), factor.to_bits() >> 32, factor.to_bits() & 0xFFFF_FFFF);
     number * high + round_shift(number * low, 32)
 }
 
-/// A joint between two bodies, to be coloured.
+/// A joint between two bodies as it is coloured.
 pub(in super::super) fn node(key: u32, a: &End, b: &End) -> Node {
     Node::new(key.into(), [a.changed(), b.changed()], Size::Large)
 }
 
-/// A hinge.
+/// A hinge that is to be put into a batch.
 #[derive(Clone, Copy, Debug)]
 pub(in super::super) struct Input {
     /// The slot of the joint.
     pub(super) slot: u32,
     pub(super) bodies: [u32; 2],
     pub(super) changed: [u32; 2],
-    /// The place of its rows on the angle, if it has some.
+    /// The index of its rows on the angle, if it has any.
     pub(super) angle: Option<u32>,
     /// Anchors from the centres of mass, in the frames of the bodies.
     pub(super) arms: [Vec2<Length>; 2],
@@ -102,13 +102,13 @@ pub(in super::super) struct Input {
     pub(super) between: Vec2<Fx>,
     /// The angle of the joint, in units of 2^-32 turn.
     pub(super) turns: i64,
-    /// The same while neither body is turned.
+    /// The angle of the joint while neither body is turned.
     pub(super) rest: Angle,
     pub(super) lambda: [i32; 2],
 }
 
 impl Input {
-    pub(in super::super) fn new(slot: u32, joint: &Joint, a: &End, b: &End, angle: Option<u32>) -> Self {
+    pub(in super::super) fn new(slot: u32, joint: &Joint, [a, b]: [&End; 2], angle: Option<u32>) -> Self {
         let arms = [(&joint.def.frame_a, a), (&joint.def.frame_b, b)]
             .map(|(frame, end)| arm(frame.anchor - end.local_centre));
         let lambda = joint.impulses.point(slot::HOLD);
@@ -127,7 +127,7 @@ impl Input {
         }
     }
 
-    /// The index of the body that it holds to one that nothing moves, if it does.
+    /// The index of the body that it holds, if no impulse moves the other body.
     pub(super) fn mounted(&self) -> Option<u32> {
         match self.changed {
             [GROUND, body] | [body, GROUND] if body != GROUND => Some(body),
@@ -136,14 +136,14 @@ impl Input {
     }
 }
 
-/// An anchor from the centre of mass. Both are within 128 m of the body's origin: no arm comes near what it is kept
-/// within, but the sums of the gap rely on it.
+/// An anchor from the centre of mass. Both are within 128 m of the body's origin, so that the clamp never acts, but the
+/// sums of the gap rely on its bound.
 fn arm(arm: Vec2<Fx>) -> Vec2<Length> {
     const ARM_MAX: Fx = crate::fx!(300);
     Vec2::new(arm.x.clamp(-ARM_MAX, ARM_MAX), arm.y.clamp(-ARM_MAX, ARM_MAX)).narrow()
 }
 
-/// The longest lever: averaged over a turn ahead it still fits the format.
+/// Largest length of a lever ratio: averaged over a predicted rotation it still fits the format.
 const LENGTH_MAX: Ratio = Ratio::lit("124");
 
 /// `(-r_y, r_x) / k`, no longer than [`LENGTH_MAX`].

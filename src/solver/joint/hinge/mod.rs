@@ -1,42 +1,64 @@
-//! Hinges: joints that pin two points together, with rows on the angle or without, eight at a time.
+//! Hinges: joints that pin two points together, with or without rows on the angle, eight at a time.
 //!
-//! Revolute joints and rigid welds are hinges. `input` is what is known of one, `prepare` fills batches with the hinges
-//! of one colour each, `kernel` solves the points and `angle` the rows. The hinges of bodies that have too many to be
-//! coloured are solved one by one, before all others.
+//! Revolute joints and rigid welds are hinges. Each operation on a batch has a file of its own: `refresh` computes
+//! lever ratios, gains and gaps at the present pose, `warm_start` and `solve` change velocities by the point block of
+//! `point_block.rs`, and `angle` does all of this for the rows on the angle. `prepare` fills batches with the hinges of
+//! one colour each and returns their impulses to the state.
 
 mod angle;
 mod angle_input;
 mod batch;
 mod input;
-mod kernel;
 mod pair;
 mod prepare;
+mod refresh;
+mod solve;
 #[cfg(test)]
 mod tests;
+mod warm_start;
 
 use alloc::vec::Vec;
-use core::cell::Cell;
 use core::mem;
 
-use super::super::body::SolverBody;
-use super::super::contact::Pass;
-use super::super::limits::Faults;
-use super::super::settings::Tuning;
+use super::super::batches::{BatchKind, BatchList};
+use super::super::context::{Pass, StepContext};
 use super::place::Turned;
-use crate::lanes::{Kernel, Lanes, Machine, Quad, Scalar, WIDTH};
+use crate::lanes::Quad;
 use angle::AngleRows;
 pub(super) use angle_input::AngleParts;
 use angle_input::{AngleInput, Memo};
-use batch::{Batch, Shape};
+use batch::{Batch, Records};
 use input::Input;
 pub(super) use input::{End, Turning, node};
-use kernel::Stiffness;
-use prepare::Records;
+use refresh::{Refresh, Stiffness};
+use solve::{Relax, Solve};
+use warm_start::WarmStart;
 
-/// How the bodies of a tick are turned, by their indices.
+/// The kind of constraint that a hinge is.
+#[derive(Clone, Debug)]
+pub(super) enum Hinges {}
+
+impl BatchKind for Hinges {
+    type Batch<const N: usize> = Batch<N>;
+    type Record<const N: usize> = Records<N>;
+    type Extra<const N: usize> = AngleRows<N>;
+
+    #[inline(always)]
+    fn bodies<const N: usize>(batch: &Batch<N>) -> &[[u32; N]; 2] {
+        &batch.bodies
+    }
+
+    #[inline(always)]
+    fn has_extra<const N: usize>(batch: &Batch<N>) -> bool {
+        batch.has_angle
+    }
+}
+
+/// The rotations of the bodies of a tick, by their indices.
 #[derive(Clone, Copy)]
 pub(super) struct Poses<'a> {
-    /// Cosine and sine, and how far a lever ratio averaged over the turn ahead is moved across itself and along itself.
+    /// Cosine and sine of the rotation, and the terms by which a lever ratio that is averaged over the predicted
+    /// rotation moves across itself and along itself.
     pub(super) quads: &'a [Quad],
     pub(super) turned: &'a [Turned],
 }
@@ -44,126 +66,63 @@ pub(super) struct Poses<'a> {
 /// The hinges of a tick.
 #[derive(Clone, Debug, Default)]
 pub(super) struct HingeSet {
-    /// What they are made of, in the order of the state.
+    /// The hinges in the order of the state, before they are put into batches.
     inputs: Vec<Input>,
     angles: Vec<AngleInput>,
     memo: Memo,
-    /// Those that fit no colour, in their own order.
-    serial: Batches<1>,
-    /// The others, colour by colour.
-    coloured: Batches<WIDTH>,
-    /// Those that hold a body which has no other joint to one that nothing moves.
-    mounts: Batches<WIDTH>,
-    /// What of the batches is no longer true.
+    hinges: BatchList<Hinges>,
+    /// Hinges that hold a body which has no other joint to one that no impulse moves. Their points are stiffer.
+    mounts: BatchList<Hinges>,
+    /// Which parts of the batches no longer match the poses of the bodies.
     expired: Expired,
 }
 
-/// What bodies that have moved leave of a batch.
+/// The parts of a batch that moved bodies invalidate.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Expired {
     #[default]
     Nothing,
-    /// No body has turned: lever ratios and gains are what they were.
+    /// No body has turned, so that lever ratios and gains are still right.
     Gaps,
     Everything,
 }
 
-/// Batches of hinges in the order in which they are solved.
-#[derive(Clone, Debug)]
-struct Batches<const N: usize> {
-    batches: Vec<Batch<N>>,
-    /// For each batch, what its points are made of.
-    shapes: Vec<Shape<N>>,
-    angles: Vec<AngleRows<N>>,
-    /// For each batch, where its results belong.
-    records: Vec<Records<N>>,
-}
-
-impl<const N: usize> Default for Batches<N> {
-    fn default() -> Self {
-        Batches { batches: Vec::new(), shapes: Vec::new(), angles: Vec::new(), records: Vec::new() }
-    }
-}
-
-/// What is done to all batches in turn.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Task {
-    WarmStart,
-    Solve(Pass),
-}
-
 impl HingeSet {
-    /// Bodies have moved: the next task finds arms, gains and gaps at the new poses, batch by batch, so that a batch is
-    /// fetched from memory once for both.
+    /// Invalidates parts of the batches, because bodies have moved. The next operation refreshes them batch by batch,
+    /// so that a batch is fetched from memory once for both.
     pub(super) fn expire(&mut self, what: Expired) {
         self.expired = self.expired.max(what);
     }
 
-    /// Performs a task for all of them.
-    pub(super) fn perform(
-        &mut self,
-        task: Task,
-        (poses, machine): (Poses<'_>, Machine),
-        tuning: &Tuning,
-        bodies: &[Cell<SolverBody>],
-        faults: &mut Faults,
-    ) {
-        let expired = mem::take(&mut self.expired);
-        let HingeSet { serial, coloured, mounts, .. } = self;
-        let stiffness = Stiffness { points: tuning.joint, limits: tuning.joint };
-        Perform { batches: serial, task, expired, stiffness, poses, bodies, faults }.run::<Scalar<1>>();
-        machine.run(Perform { batches: coloured, task, expired, stiffness, poses, bodies, faults });
-        let stiffness = Stiffness { points: tuning.mount, ..stiffness };
-        machine.run(Perform { batches: mounts, task, expired, stiffness, poses, bodies, faults });
+    pub(super) fn warm_start(&mut self, poses: Poses<'_>, context: &StepContext<'_>) {
+        let [refresh, refresh_mounts] = self.refreshes(poses, context);
+        self.hinges.run_overflow(WarmStart { refresh }, context);
+        self.hinges.run_coloured(WarmStart { refresh }, context);
+        self.mounts.run_coloured(WarmStart { refresh: refresh_mounts }, context);
     }
-}
 
-/// A task, for the batches of `N` hinges.
-struct Perform<'a, const N: usize> {
-    batches: &'a mut Batches<N>,
-    task: Task,
-    /// What is to be found anew before.
-    expired: Expired,
-    stiffness: Stiffness,
-    poses: Poses<'a>,
-    bodies: &'a [Cell<SolverBody>],
-    faults: &'a mut Faults,
-}
-
-impl<const N: usize> Kernel<N> for Perform<'_, N> {
-    #[inline(always)]
-    fn run<L: Lanes<N>>(self) {
-        match self.task {
-            // Named one by one, so that each is compiled for itself.
-            Task::WarmStart => self.each::<L>(Task::WarmStart),
-            Task::Solve(Pass::Bias) => self.each::<L>(Task::Solve(Pass::Bias)),
-            Task::Solve(Pass::Relax) => self.each::<L>(Task::Solve(Pass::Relax)),
-        }
-    }
-}
-
-impl<const N: usize> Perform<'_, N> {
-    #[inline(always)]
-    fn each<L: Lanes<N>>(self, task: Task) {
-        let Perform { batches, task: _, expired, stiffness, poses, bodies, faults } = self;
-        let Batches { batches, shapes, angles, records } = batches;
-        for ((batch, shape), records) in batches.iter_mut().zip(shapes).zip(records) {
-            if expired >= Expired::Gaps {
-                let quads = kernel::turns::<L, N>(batch, poses.quads);
-                kernel::refresh_gaps::<L, N>(batch, shape, &quads, bodies, &stiffness.points);
-                if expired == Expired::Everything {
-                    kernel::refresh_gains::<L, N>(batch, shape, &quads);
-                }
-                if let Some(place) = batch.angle {
-                    angles[place as usize].refresh(&records.turns, &batch.bodies, poses.turned);
-                }
+    pub(super) fn solve(&mut self, pass: Pass, poses: Poses<'_>, context: &StepContext<'_>) {
+        let [refresh, refresh_mounts] = self.refreshes(poses, context);
+        match pass {
+            Pass::Bias => {
+                self.hinges.run_overflow(Solve { refresh }, context);
+                self.hinges.run_coloured(Solve { refresh }, context);
+                self.mounts.run_coloured(Solve { refresh: refresh_mounts }, context);
             }
-            match task {
-                Task::WarmStart => kernel::warm_start::<L, N>(batch, angles, bodies, faults),
-                Task::Solve(pass) => {
-                    kernel::solve::<L, N>(batch, angles, pass, (stiffness, poses.quads), bodies, faults);
-                }
+            Pass::Relax => {
+                self.hinges.run_overflow(Relax { refresh }, context);
+                self.hinges.run_coloured(Relax { refresh }, context);
+                self.mounts.run_coloured(Relax { refresh: refresh_mounts }, context);
             }
         }
+    }
+
+    /// The refresh that the next operation has to do, for ordinary hinges and for mounts.
+    fn refreshes<'a>(&mut self, poses: Poses<'a>, context: &StepContext<'_>) -> [Refresh<'a>; 2] {
+        let (expired, tuning) = (mem::take(&mut self.expired), context.tuning);
+        [tuning.joint, tuning.mount].map(|points| {
+            let stiffness = Stiffness { points, limits: tuning.joint };
+            Refresh { expired, stiffness, poses }
+        })
     }
 }

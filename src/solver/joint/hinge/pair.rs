@@ -1,11 +1,11 @@
-//! How the impulses of a hinge change the bodies of a batch.
+//! The velocity changes by impulses of hinges.
 
 use super::super::super::limits::Faults;
 use super::super::super::pair::{HALF, Pair, UNIT, beyond, clamp};
 use super::batch::Batch;
 use crate::lanes::{Ints, Lanes, Motion};
 
-/// Two impulses of at most this, 362, change no velocity by 512 or more.
+/// Largest impulse, 362 m/s, of which two along different axes change no velocity by 512 m/s or more.
 const PLAIN_MAX: i32 = 362 << 21;
 
 impl<L: Lanes<N>, const N: usize> Pair<L, N> {
@@ -28,7 +28,7 @@ impl<L: Lanes<N>, const N: usize> Pair<L, N> {
         self.keep_in_range(faults);
     }
 
-    /// A change of up to 512 on both axes may add up to 768.
+    /// Changes of up to 512 m/s on both axes may add up to 768 m/s.
     #[cold]
     fn apply_saturating(&mut self, a: Motion<L::Int>, b: Motion<L::Int>) {
         let Motion { x, y, turn } = self.a;
@@ -56,7 +56,7 @@ impl<L: Lanes<N>, const N: usize> Pair<L, N> {
         self.keep_in_range(faults);
     }
 
-    /// A motor's limit may be on the other side, and what was held may come free.
+    /// Applies impulses of more than 512 m/s in steps: a motor may reverse, and what was held may come free.
     #[cold]
     fn turn_in_steps(&mut self, f: &[Ints<N>; 2], mut d: L::Int, faults: &mut Faults) {
         for _ in 0..3 {
@@ -67,7 +67,7 @@ impl<L: Lanes<N>, const N: usize> Pair<L, N> {
     }
 }
 
-/// What impulses at a point change.
+/// The velocity changes by impulses at a point.
 #[inline(always)]
 fn changes<L: Lanes<N>, const N: usize>(
     g: &[Ints<N>; 3],

@@ -1,112 +1,103 @@
-//! Fills batches with hinges in the order in which they are solved, and brings their impulses back.
+//! Fills batches with hinges in the order in which they are solved, and returns their impulses to the state.
 
+use super::super::super::batches::Batches;
 use super::super::super::body_list::GROUND;
-use super::super::super::colour::Group;
 use super::super::super::settings::Tuning;
 use super::super::parts::slot;
 use super::super::place::Turned;
 use super::super::state::{Joint, JointImpulses, nearest_turns};
 use super::angle::AngleRows;
-use super::batch::{Batch, Shape};
-use super::{AngleInput, AngleParts, Batches, End, Expired, HingeSet, Input};
+use super::batch::{Batch, Records, Shape};
+use super::{AngleInput, AngleParts, End, Expired, HingeSet, Hinges, Input};
 use crate::body::{Arena, JointId, Pose};
-use crate::math::{Angle, Fx, Length, Speed, Unit, Vec2};
-
-/// What it takes to bring the results of a batch back to its joints.
-#[derive(Clone, Debug)]
-pub(super) struct Records<const N: usize> {
-    /// How many lanes are used.
-    pub(super) len: usize,
-    pub(super) slots: [u32; N],
-    /// The angles of the joints at the start of the tick, and behind it at its end, in units of 2^-32 turn.
-    pub(super) turns: [i64; N],
-    /// The same while no body is turned.
-    rest: [Angle; N],
-}
+use crate::math::{Fx, Length, Speed, Unit, Vec2};
 
 impl HingeSet {
     pub(in super::super) fn clear(&mut self) {
-        let HingeSet { inputs, angles, memo: _, serial, coloured, mounts, expired } = self;
+        let HingeSet { inputs, angles, memo: _, hinges, mounts, expired } = self;
         *expired = Expired::Everything;
         inputs.clear();
         angles.clear();
-        serial.clear();
-        coloured.clear();
-        mounts.clear();
+        hinges.overflow.clear();
+        hinges.coloured.clear();
+        mounts.coloured.clear();
     }
 
-    /// Takes a hinge, and returns the index of its input.
+    /// Adds a hinge, and returns the index of its input.
     pub(in super::super) fn push_input(
         &mut self,
         slot: u32,
         joint: &Joint,
-        (a, b): (&End, &End),
+        ends: [&End; 2],
         parts: &AngleParts,
         tuning: &Tuning,
     ) -> u32 {
         let HingeSet { inputs, angles, memo, .. } = self;
         let angle = if parts.is_empty() { None } else { Some(count(angles)) };
-        let input = Input::new(slot, joint, a, b, angle);
+        let input = Input::new(slot, joint, ends, angle);
         if angle.is_some() {
-            angles.push(AngleInput::new(parts, (a, b), &joint.impulses, memo, tuning));
+            angles.push(AngleInput::new(parts, ends, &joint.impulses, memo, tuning));
         }
         inputs.push(input);
         count(inputs) - 1
     }
 
-    /// Adds the hinges of a group, given by their inputs. Those with rows on the angle keep to themselves, and so do mounts:
-    /// those of a body that no other joint holds, by its index.
-    pub(in super::super) fn push(
-        &mut self,
-        group: &Group<'_>,
-        input_of: impl Fn(u32) -> Option<u32>,
-        is_alone: impl Fn(u32) -> bool,
-    ) {
-        let HingeSet { inputs, angles, serial, coloured, mounts, .. } = self;
+    /// Adds batches of the hinges that fit no colour, given by their inputs.
+    pub(in super::super) fn push_overflow(&mut self, indices: impl Iterator<Item = u32> + Clone) {
+        let HingeSet { inputs, angles, hinges, .. } = self;
         for has_angle in [false, true] {
-            let wanted = |&index: &u32| inputs[index as usize].angle.is_some() == has_angle;
-            match group {
-                Group::Serial(indices) => {
-                    let indices = indices.iter().filter_map(|&index| input_of(index)).filter(wanted);
-                    serial.push(inputs, angles, indices);
-                }
-                Group::Coloured(indices) => {
-                    let is_mount = |&index: &u32| inputs[index as usize].mounted().is_some_and(&is_alone);
-                    let indices = indices.iter().filter_map(|&index| input_of(index)).filter(wanted);
-                    coloured.push(inputs, angles, indices.clone().filter(|index| !is_mount(index)));
-                    mounts.push(inputs, angles, indices.filter(is_mount));
-                }
-            }
+            let indices =
+                indices.clone().filter(|&index| inputs[index as usize].angle.is_some() == has_angle);
+            hinges.overflow.push(inputs, angles, indices);
         }
     }
 
-    /// The indices of the bodies that are mounted.
+    /// Adds batches of the hinges of a colour, given by their inputs. Hinges with rows on the angle have batches of
+    /// their own, and so have mounts: `is_alone` tells whether a body, by its index, has only one joint.
+    pub(in super::super) fn push_colour(
+        &mut self,
+        indices: impl Iterator<Item = u32> + Clone,
+        is_alone: impl Fn(u32) -> bool,
+    ) {
+        let HingeSet { inputs, angles, hinges, mounts, .. } = self;
+        for has_angle in [false, true] {
+            let indices =
+                indices.clone().filter(|&index| inputs[index as usize].angle.is_some() == has_angle);
+            let is_mount = |&index: &u32| inputs[index as usize].mounted().is_some_and(&is_alone);
+            hinges.coloured.push(inputs, angles, indices.clone().filter(|index| !is_mount(index)));
+            mounts.coloured.push(inputs, angles, indices.filter(is_mount));
+        }
+        hinges.coloured.end_colour();
+        mounts.coloured.end_colour();
+    }
+
+    /// The indices of the bodies that mounts hold.
     pub(in super::super) fn mounted(&self) -> impl Iterator<Item = u32> {
-        let Batches { batches, records, .. } = &self.mounts;
+        let Batches { batches, records, .. } = &self.mounts.coloured;
         batches.iter().zip(records).flat_map(|(Batch { changed: [a, b], .. }, records)| {
             a.iter().zip(b).take(records.len).map(|(&a, &b)| if a == GROUND { b } else { a })
         })
     }
 
-    /// What the joints have been restored to, instead of what the last tick has stored.
+    /// Takes the impulses and angles of joints that have been restored, instead of those that the last tick has stored.
     pub(in super::super) fn reload(&mut self, joints: &Arena<Joint, JointId>) {
-        self.serial.reload(joints);
-        self.coloured.reload(joints);
-        self.mounts.reload(joints);
+        self.hinges.overflow.reload(joints);
+        self.hinges.coloured.reload(joints);
+        self.mounts.coloured.reload(joints);
     }
 
-    /// What the last tick has stored, with the bodies where they are now.
+    /// Continues with the hinges of the last tick, with the bodies at their present poses.
     pub(in super::super) fn resume(&mut self, poses: &[Pose]) {
-        self.serial.resume(poses);
-        self.coloured.resume(poses);
-        self.mounts.resume(poses);
+        self.hinges.overflow.resume(poses);
+        self.hinges.coloured.resume(poses);
+        self.mounts.coloured.resume(poses);
     }
 
-    /// Keeps impulses and turns for the next tick.
+    /// Stores impulses and angles for the next tick.
     pub(in super::super) fn store(&mut self, joints: &mut Arena<Joint, JointId>, turned: &[Turned]) {
-        self.serial.store(joints, turned);
-        self.coloured.store(joints, turned);
-        self.mounts.store(joints, turned);
+        self.hinges.overflow.store(joints, turned);
+        self.hinges.coloured.store(joints, turned);
+        self.mounts.coloured.store(joints, turned);
     }
 }
 
@@ -114,52 +105,34 @@ fn count<T>(parts: &[T]) -> u32 {
     u32::try_from(parts.len()).expect("fewer than 2^32 joints")
 }
 
-impl<const N: usize> Batches<N> {
-    fn clear(&mut self) {
-        let Batches { batches, shapes, angles, records } = self;
-        batches.clear();
-        shapes.clear();
-        angles.clear();
-        records.clear();
-    }
-
-    /// Adds batches of hinges that no two of `N` in turn share a body that impulses change.
+impl<const N: usize> Batches<Hinges, N> {
+    /// Adds batches of hinges. No two of `N` successive hinges share a body that impulses change, and either all of
+    /// them have rows on the angle or none has.
     fn push(&mut self, inputs: &[Input], angle_inputs: &[AngleInput], indices: impl Iterator<Item = u32>) {
-        let Batches { batches, shapes, angles, records } = self;
+        let Batches { batches, records, extras, .. } = self;
         let mut lane = N;
         for index in indices {
             let input = &inputs[index as usize];
             if lane == N {
                 lane = 0;
-                let mut batch = Batch::NONE;
-                if input.angle.is_some() {
-                    batch.angle = Some(count(angles));
-                    angles.push(AngleRows::NONE);
-                }
-                batches.push(batch);
-                shapes.push(Shape::NONE);
-                records.push(Records { len: 0, slots: [0; N], turns: [0; N], rest: [Angle::ZERO; N] });
+                batches.push(Batch { has_angle: input.angle.is_some(), ..Batch::NONE });
+                records.push(Records::NONE);
+                extras.extend(input.angle.map(|_| AngleRows::NONE));
             }
-            let (Some(batch), Some(shape)) = (batches.last_mut(), shapes.last_mut()) else { return };
+            let (Some(batch), Some(records)) = (batches.last_mut(), records.last_mut()) else { return };
             batch.put(lane, input);
-            shape.put(lane, input);
-            if let (Some(place), Some(rows)) = (input.angle, angles.last_mut()) {
+            records.put(lane, input);
+            if let (Some(place), Some(rows)) = (input.angle, extras.last_mut()) {
                 rows.put(lane, &angle_inputs[place as usize]);
-            }
-            if let Some(records) = records.last_mut() {
-                records.len = lane + 1;
-                records.slots[lane] = input.slot;
-                records.turns[lane] = input.turns;
-                records.rest[lane] = input.rest;
             }
             lane += 1;
         }
     }
 
     fn reload(&mut self, joints: &Arena<Joint, JointId>) {
-        let Batches { batches, angles, records, .. } = self;
-        for (batch, records) in batches.iter_mut().zip(records) {
-            let mut rows = batch.angle.map(|place| &mut angles[place as usize]);
+        let mut extras = self.extras.iter_mut();
+        for (batch, records) in self.batches.iter_mut().zip(&mut self.records) {
+            let mut rows = if batch.has_angle { extras.next() } else { None };
             for lane in 0..records.len {
                 let joint = joints.at(records.slots[lane]);
                 let lambda = joint.impulses.point(slot::HOLD);
@@ -174,10 +147,10 @@ impl<const N: usize> Batches<N> {
     }
 
     fn resume(&mut self, poses: &[Pose]) {
-        for ((batch, shape), records) in self.batches.iter().zip(&mut self.shapes).zip(&mut self.records) {
+        for (batch, records) in self.batches.iter().zip(&mut self.records) {
             for lane in 0..records.len {
                 let [a, b] = [0, 1].map(|side: usize| poses[batch.bodies[side][lane] as usize]);
-                shape.put_between(lane, b.centre - a.centre);
+                records.shape.put_between(lane, b.centre - a.centre);
                 records.turns[lane] =
                     nearest_turns(records.turns[lane], (b.angle - a.angle) + records.rest[lane]);
             }
@@ -185,8 +158,9 @@ impl<const N: usize> Batches<N> {
     }
 
     fn store(&mut self, joints: &mut Arena<Joint, JointId>, turned: &[Turned]) {
+        let mut extras = self.extras.iter();
         for (batch, records) in self.batches.iter().zip(&mut self.records) {
-            let rows = batch.angle.map(|place| &self.angles[place as usize]);
+            let rows = if batch.has_angle { extras.next() } else { None };
             for lane in 0..records.len {
                 let joint = joints.at_mut(records.slots[lane]);
                 let [a, b] = [0, 1].map(|side: usize| turned[batch.bodies[side][lane] as usize].turns);
@@ -210,6 +184,16 @@ impl<const N: usize> Batch<N> {
     }
 }
 
+impl<const N: usize> Records<N> {
+    fn put(&mut self, lane: usize, input: &Input) {
+        self.len = lane + 1;
+        self.slots[lane] = input.slot;
+        self.turns[lane] = input.turns;
+        self.rest[lane] = input.rest;
+        self.shape.put(lane, input);
+    }
+}
+
 impl<const N: usize> Shape<N> {
     fn put(&mut self, lane: usize, input: &Input) {
         for side in 0..2 {
@@ -229,8 +213,8 @@ impl<const N: usize> Shape<N> {
     }
 }
 
-/// A distance between centres with 52 fraction bits. Two arms reach 849 m, so that beyond 1024 m it does not matter how
-/// far they are apart, and no sum leaves the format.
+/// A distance between centres with 52 fraction bits. Two arms reach 849 m, so that distances beyond 1024 m may be
+/// clamped: then no sum overflows.
 fn widened(between: Fx) -> i64 {
     const FARTHEST: Fx = crate::fx!(1024);
     const EXTRA: u32 = Length::FRAC_NBITS + Unit::FRAC_NBITS - Fx::FRAC_NBITS;

@@ -1,10 +1,13 @@
-//! The wide kernel on every machine and one hinge at a time, and against the scalar point block.
+//! Batches of hinges give the same bits on every backend as one hinge at a time, and nearly those of the scalar point
+//! block.
 
 use std::vec;
 use std::vec::Vec;
 
+use super::super::super::batches::Batches;
+use super::super::super::body::SolverBody;
 use super::super::super::body_list::GROUND;
-use super::super::super::colour::Group;
+use super::super::super::limits::Faults;
 use super::super::super::point_block::PointBlock;
 use super::super::super::row::{Lever, MassFractions, Row};
 use super::super::super::settings::{SolverSettings, Tuning};
@@ -13,8 +16,9 @@ use super::angle_input::{DriveInput, LimitInput, SpringInput};
 use super::input::ratios;
 use super::*;
 use crate::fx;
-use crate::lanes::Backend;
+use crate::lanes::{Backend, Machine};
 use crate::math::{Angle, Fx, Length, Reciprocal, Rng, Rot, Shift, Speed, Unit, Vec2, narrow};
+use crate::threads::Threads;
 
 /// Eight hinges, each between two bodies of its own, in some pose.
 #[derive(Clone)]
@@ -27,21 +31,21 @@ struct Setting {
     fractions: Vec<MassFractions>,
 }
 
-/// How large the numbers of a setting are.
+/// The sizes of the numbers of a setting.
 #[derive(Clone, Copy)]
 struct Sizes {
-    /// Of the arms, in radii of gyration.
+    /// Size of the arms, in radii of gyration.
     arm: Fx,
     speed: Fx,
     gap: Fx,
 }
 
-/// Of what occurs.
+/// Sizes that occur.
 const COMMON: Sizes = Sizes { arm: fx!(16), speed: fx!(10), gap: fx!(0.1) };
-/// Beyond every clamp.
+/// Sizes beyond every clamp.
 const EXTREME: Sizes = Sizes { arm: fx!(500), speed: fx!(511), gap: fx!(2000) };
 
-/// Mounts are as stiff as all others, to be compared with them.
+/// Mounts are as stiff as other hinges here, so that both can be compared.
 fn tuning() -> Tuning {
     let tuning = Tuning::new(&SolverSettings::default(), Vec2::new(fx!(0), fx!(-10)), 60);
     Tuning { mount: tuning.joint, ..tuning }
@@ -127,43 +131,49 @@ impl Setting {
         self.fractions.push(fractions);
     }
 
-    /// As in two sub-steps. Returns the faults.
+    /// Solves two sub-steps. Returns the faults.
     fn solve(&mut self, machine: Machine) -> Faults {
-        let (tuning, mut faults) = (tuning(), 0);
+        let (tuning, threads, mut faults) = (tuning(), Threads::default(), 0);
         let Setting { hinges, bodies, quads, turned, .. } = self;
+        let (poses, context) =
+            (Poses { quads, turned }, StepContext::new(machine, &threads, &tuning, bodies, &mut faults));
         for _ in 0..2 {
             hinges.expire(Expired::Everything);
-            for task in [Task::WarmStart, Task::Solve(Pass::Bias), Task::Solve(Pass::Relax)] {
-                hinges.perform(
-                    task,
-                    (Poses { quads, turned }, machine),
-                    &tuning,
-                    SolverBody::cells(bodies),
-                    &mut faults,
-                );
-            }
+            hinges.warm_start(poses, &context);
+            hinges.solve(Pass::Bias, poses, &context);
+            hinges.solve(Pass::Relax, poses, &context);
         }
+        faults
+    }
+
+    /// Solves one iteration of a relax pass. Returns the faults.
+    fn relax(&mut self) -> Faults {
+        let (tuning, threads, mut faults) = (tuning(), Threads::default(), 0);
+        let Setting { hinges, bodies, quads, turned, .. } = self;
+        let context = StepContext::new(Machine::default(), &threads, &tuning, bodies, &mut faults);
+        hinges.solve(Pass::Relax, Poses { quads, turned }, &context);
         faults
     }
 
     /// Impulses in the order of the slots.
     fn impulses(&self) -> Vec<(u32, Vec<i32>)> {
         let mut all = Vec::new();
-        self.hinges.serial.collect(&mut all);
-        self.hinges.coloured.collect(&mut all);
-        self.hinges.mounts.collect(&mut all);
+        self.hinges.hinges.overflow.collect(&mut all);
+        self.hinges.hinges.coloured.collect(&mut all);
+        self.hinges.mounts.coloured.collect(&mut all);
         all.sort();
         all
     }
 }
 
-impl<const N: usize> Batches<N> {
+impl<const N: usize> Batches<Hinges, N> {
     fn collect(&self, all: &mut Vec<(u32, Vec<i32>)>) {
+        let mut extras = self.extras.iter();
         for (batch, records) in self.batches.iter().zip(&self.records) {
+            let rows = if batch.has_angle { extras.next() } else { None };
             for lane in 0..records.len {
                 let mut impulses: Vec<i32> = batch.lambda.iter().map(|lambda| lambda.0[lane]).collect();
-                if let Some(place) = batch.angle {
-                    let rows = &self.angles[place as usize];
+                if let Some(rows) = rows {
                     impulses.extend(rows.impulses(lane).map(Speed::to_bits));
                 }
                 all.push((records.slots[lane], impulses));
@@ -213,13 +223,13 @@ fn every_machine_solves_as_one_hinge_at_a_time() {
         let setting = Setting::random(&mut rng, if i % 2 == 0 { COMMON } else { EXTREME });
         let order = [0, 1, 2, 3, 4, 5, 6, 7];
         let mut alone = setting.clone();
-        alone.hinges.push(&Group::Serial(&order), Some, |_| false);
+        alone.hinges.push_overflow(order.into_iter());
         let faults = alone.solve(Machine::default());
         faulty += u32::from(faults > 0);
         assert!(alone.bodies.iter().all(|body| body.velocity.x.abs() <= 511 && body.spin.abs() <= 511));
         for backend in Backend::available() {
             let mut wide = setting.clone();
-            wide.hinges.push(&Group::Coloured(&order), Some, |body| body % 3 == 0);
+            wide.hinges.push_colour(order.into_iter(), |body| body % 3 == 0);
             assert_eq!(wide.solve(Machine::new(backend).expect("available")), faults);
             assert_eq!(wide.impulses(), alone.impulses());
             for (wide, alone) in wide.bodies.iter().zip(&alone.bodies) {
@@ -230,8 +240,9 @@ fn every_machine_solves_as_one_hinge_at_a_time() {
     assert!(faulty > 100, "{faulty} settings reach the clamps");
 }
 
-/// Ratios that are turned instead of made anew differ by a unit of 2^-24. With arms of up to 16 radii of gyration on both
-/// sides the anchors start at up to 330 m/s, and a hundred-thousandth of that is what a sub-step's iteration may leave.
+/// Lever ratios that are turned differ by a unit of 2^-24 from those that are computed anew. With arms of up to 16
+/// radii of gyration on both sides the anchors start at up to 330 m/s, of which one iteration may leave a
+/// hundred-thousandth.
 #[test]
 fn a_point_is_solved_as_by_the_scalar_block() {
     let mut rng = Rng::new(2);
@@ -242,17 +253,10 @@ fn a_point_is_solved_as_by_the_scalar_block() {
             (input.angle, input.lambda) = (None, [0; 2]);
         }
         let before = setting.bodies.clone();
-        setting.hinges.push(&Group::Coloured(&[0, 1, 2, 3, 4, 5, 6, 7]), Some, |_| false);
-        let (tuning, machine, mut faults) = (tuning(), Machine::default(), 0);
-        let Setting { hinges, bodies, quads, turned, ends, fractions } = &mut setting;
-        hinges.expire(Expired::Everything);
-        hinges.perform(
-            Task::Solve(Pass::Relax),
-            (Poses { quads, turned }, machine),
-            &tuning,
-            SolverBody::cells(bodies),
-            &mut faults,
-        );
+        setting.hinges.push_colour(0..8, |_| false);
+        setting.hinges.expire(Expired::Everything);
+        let mut faults = setting.relax();
+        let Setting { bodies, ends, fractions, .. } = &setting;
         for (i, (&[a, b], &fractions)) in ends.iter().zip(fractions.iter()).enumerate() {
             let block = PointBlock::new(a, b, fractions);
             let (mut a, mut b) = (before[2 * i + 1], before[2 * i + 2]);
@@ -264,16 +268,9 @@ fn a_point_is_solved_as_by_the_scalar_block() {
                 worst = apart.into_iter().fold(worst, i32::max);
             }
         }
-        // What a second update still finds.
+        // A second update solves what the first has left.
         let first: Vec<_> = setting.impulses();
-        let Setting { hinges, bodies, quads, turned, .. } = &mut setting;
-        hinges.perform(
-            Task::Solve(Pass::Relax),
-            (Poses { quads, turned }, machine),
-            &tuning,
-            SolverBody::cells(bodies),
-            &mut faults,
-        );
+        faults += setting.relax();
         for ((_, first), (_, second)) in first.iter().zip(setting.impulses()) {
             let moved = first.iter().zip(second).map(|(first, second)| (second - first).abs());
             left = moved.fold(left, i32::max);

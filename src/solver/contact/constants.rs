@@ -1,0 +1,45 @@
+//! The settings of a tick as the operations on contacts use them.
+
+use super::super::settings::Tuning;
+use super::super::softness::Softness;
+use super::care::calm_at;
+use crate::math::{Rate, Shift};
+
+/// Settings in the formats of the lanes.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::solver) struct Constants {
+    /// Sub-steps per second, in the format of [`Rate`].
+    pub(super) rate: i32,
+    /// The widest gap or overlap whose speed fits its format.
+    pub(super) separation_max: i32,
+    /// Overlap that is not pushed out.
+    pub(super) slop: i32,
+    /// Largest speed at which overlap is pushed out.
+    pub(super) push_speed: i32,
+    /// Approach speed below which nothing bounces.
+    pub(super) restitution_threshold: i32,
+    /// Softness between two bodies that impulses move.
+    pub(super) soft: Softness,
+    /// Softness against a body that impulses do not move.
+    pub(super) stiff: Softness,
+    /// Whether the bounds of [`super::care::Calm`] hold for these settings.
+    pub(super) calm: bool,
+}
+
+impl Constants {
+    #[expect(clippy::cast_possible_truncation, reason = "a rate is at most 4000")]
+    pub(in crate::solver) fn new(tuning: &Tuning) -> Self {
+        let widest = (1023i64 << Shift::FRAC_NBITS) / i64::from(tuning.rate);
+        let rate = Rate::from_bits((i64::from(tuning.rate) << Rate::FRAC_NBITS) as i32);
+        Constants {
+            rate: rate.to_bits(),
+            separation_max: widest.min(i64::from(i32::MAX)) as i32,
+            slop: crate::math::convert::<_, fixed::types::extra::U26>(tuning.slop).to_bits(),
+            push_speed: tuning.push_speed.to_bits(),
+            restitution_threshold: tuning.restitution_threshold.to_bits(),
+            soft: tuning.contact,
+            stiff: tuning.contact_immovable,
+            calm: calm_at([rate, tuning.contact.bias_rate, tuning.contact_immovable.bias_rate]),
+        }
+    }
+}

@@ -1,0 +1,99 @@
+//! Restitution: what approached faster than the threshold and was pushed, leaves with `e` times the speed of approach.
+//!
+//! ```text
+//! L' = max(L - (vn + e v_approach), 0)          once in a tick, after the sub-steps
+//! ```
+//!
+//! The approach is observed before any warm start. Observed in between, the impulse of one contact looks like an
+//! approach to the next, and balls in a groove bounce for ever.
+
+use core::cell::Cell;
+
+use super::super::batches::{BatchParts, Operation};
+use super::super::body::SolverBody;
+use super::super::limits::{Faults, IMPULSE_MAX};
+use super::super::pair::{Pair, UNIT};
+use super::care::{Care, Careful};
+use super::special::Special;
+use super::{Constants, Contacts};
+use crate::lanes::Lanes;
+
+/// Iterations in which two points that bounce are solved against each other. After one, the first point leaves too
+/// fast: a tall box dropped flat gained a third of its energy, and spun. An iteration takes away at least 3/4 of the
+/// error for boxes of up to 1 to 3.
+const RESTITUTION_ITERATIONS: u32 = 12;
+
+/// Records the normal velocity of shapes that bounce, until they push each other.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::solver) struct ObserveApproach;
+
+impl Operation<Contacts> for ObserveApproach {
+    #[inline(always)]
+    fn apply<L: Lanes<N>, const N: usize>(
+        self,
+        parts: BatchParts<'_, Contacts, N>,
+        bodies: &[Cell<SolverBody>],
+        faults: &mut Faults,
+    ) {
+        let BatchParts { batch, extra: Some(special), .. } = parts else { return };
+        let care = &mut Careful(faults);
+        let pair = Pair::<L, N>::load(bodies, &batch.bodies);
+        let (n, _) = batch.directions::<L>();
+        let Special { approach, pushed, .. } = special;
+        for ((point, approach), pushed) in batch.points[..batch.count].iter().zip(approach).zip(pushed) {
+            let vn = pair.velocity(n, &point.normal, care);
+            let pushed = L::negative(L::load(pushed));
+            L::store(L::select(pushed, L::load(approach), vn), approach);
+        }
+    }
+}
+
+/// Lets shapes bounce.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::solver) struct ApplyRestitution {
+    pub(in crate::solver) constants: Constants,
+}
+
+impl Operation<Contacts> for ApplyRestitution {
+    #[inline(always)]
+    fn apply<L: Lanes<N>, const N: usize>(
+        self,
+        parts: BatchParts<'_, Contacts, N>,
+        bodies: &[Cell<SolverBody>],
+        faults: &mut Faults,
+    ) {
+        let BatchParts { batch, extra: Some(special), .. } = parts else { return };
+        let care = &mut Careful(faults);
+        let restitution = L::load(&special.restitution);
+        let (n, _) = batch.directions::<L>();
+        let constants = &self.constants;
+        let masks = [bounces::<L, N>(special, 0, constants), bounces::<L, N>(special, 1, constants)];
+        if !L::any(L::either(masks[0], masks[1])) {
+            return;
+        }
+        let mut pair = Pair::<L, N>::load(bodies, &batch.bodies);
+        for _ in 0..if batch.count == 2 { RESTITUTION_ITERATIONS } else { 1 } {
+            for (i, &mask) in masks.iter().enumerate().take(batch.count) {
+                let point = &mut batch.points[i];
+                let bounce = L::mul(restitution, L::load(&special.approach[i]));
+                let bounce = L::narrow::<UNIT>(bounce);
+                let error = L::add_saturating(pair.velocity(n, &point.normal, care), bounce);
+                let old = L::load(&point.normal_lambda);
+                let wanted = L::max(L::sub_saturating(old, error), L::splat(0));
+                let new = L::select(mask, L::min(wanted, L::splat(IMPULSE_MAX.to_bits())), old);
+                L::store(new, &mut point.normal_lambda);
+                care.apply(&mut pair, &point.normal, L::sub(new, old));
+            }
+        }
+        pair.store(bodies, &batch.changed);
+    }
+}
+
+/// Where a point approached fast enough, and was pushed.
+#[inline(always)]
+fn bounces<L: Lanes<N>, const N: usize>(special: &Special<N>, i: usize, constants: &Constants) -> L::Mask {
+    let threshold = L::splat(1 - constants.restitution_threshold);
+    let fast = L::greater(threshold, L::load(&special.approach[i]));
+    let pushed = L::negative(L::load(&special.pushed[i]));
+    L::both(L::both(fast, pushed), L::greater(L::load(&special.restitution), L::splat(0)))
+}

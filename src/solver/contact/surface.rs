@@ -1,0 +1,43 @@
+//! The surface of a contact: how the materials of two shapes combine.
+
+use crate::body::Material;
+use crate::math::{Fx, Grip, Speed, Unit, fx_mul, narrow};
+
+/// The common surface of two shapes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Surface {
+    pub(crate) friction: Grip,
+    pub(crate) restitution: Unit,
+    /// Relative speed of the two surfaces by themselves, in m/s.
+    pub(crate) surface_speed: Speed,
+    /// Largest torque per unit of normal force, in metres.
+    pub(crate) rolling_resistance: Fx,
+}
+
+/// The contribution of a shape to a surface.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SurfaceSide<'a> {
+    pub(crate) material: &'a Material,
+    /// The radius by which the shape is rounded, in metres.
+    pub(crate) radius: Fx,
+}
+
+impl Surface {
+    /// Mixes the materials of two shapes.
+    pub(crate) fn between(a: SurfaceSide<'_>, b: SurfaceSide<'_>) -> Self {
+        let resistance = a.material.rolling_resistance.max(b.material.rolling_resistance);
+        Surface {
+            friction: narrow(a.material.mixed_friction(b.material)),
+            restitution: narrow(a.material.mixed_restitution(b.material)),
+            surface_speed: narrow(a.material.surface_speed.saturating_add(b.material.surface_speed)),
+            rolling_resistance: fx_mul(resistance, a.radius.max(b.radius)),
+        }
+    }
+
+    /// Whether a contact needs more than rows along the normal and the tangent.
+    pub(super) fn is_special(&self) -> bool {
+        self.restitution.is_positive()
+            || self.surface_speed != Speed::ZERO
+            || self.rolling_resistance.is_positive()
+    }
+}

@@ -1,0 +1,189 @@
+//! Refresh: lever ratios, gains and gaps of hinges at the present pose.
+//!
+//! Lever ratios are turned in their body's frame, `e = R e0`, instead of computed anew from the arms: their length does
+//! not change. The products of `K` are exact in two parts of 32 bits before they are rounded,
+//!
+//! ```text
+//! a e = hi 2^32 + lo,    a e e' = hi e' + round(lo e' / 2^32)       (46 fraction bits)
+//! ```
+//!
+//! because rounding `a e` to the format of `e` would cost 7 of its 24 bits. With 46 fraction bits the determinant may
+//! be the difference `K11 K22 - K12^2`: the parts that cancel are exact.
+
+use core::cell::Cell;
+
+use super::super::super::body::SolverBody;
+use super::super::super::pair::{RATIO, UNIT, shift};
+use super::super::super::softness::Softness;
+use super::angle::AngleRows;
+use super::batch::{Batch, Records, Shape};
+use super::{Expired, Poses};
+use crate::lanes::{Ints, Lanes};
+use crate::math::{Length, Rate, Shift, Speed, Step, Unit};
+
+/// The softness of the rows of a batch.
+#[derive(Clone, Copy)]
+pub(super) struct Stiffness {
+    pub(super) points: Softness,
+    pub(super) limits: Softness,
+}
+
+/// Brings batches to the present pose, as far as they have expired.
+#[derive(Clone, Copy)]
+pub(super) struct Refresh<'a> {
+    pub(super) expired: Expired,
+    pub(super) stiffness: Stiffness,
+    pub(super) poses: Poses<'a>,
+}
+
+impl Refresh<'_> {
+    #[inline(always)]
+    pub(super) fn refresh<L: Lanes<N>, const N: usize>(
+        &self,
+        batch: &mut Batch<N>,
+        records: &Records<N>,
+        angle: Option<&mut AngleRows<N>>,
+        bodies: &[Cell<SolverBody>],
+    ) {
+        if self.expired >= Expired::Gaps {
+            let Refresh { stiffness, poses, .. } = self;
+            let quads = [L::quads(poses.quads, &batch.bodies[0]), L::quads(poses.quads, &batch.bodies[1])];
+            refresh_gaps::<L, N>(batch, &records.shape, &quads, bodies, &stiffness.points);
+            if self.expired == Expired::Everything {
+                refresh_gains::<L, N>(batch, &records.shape, &quads);
+            }
+            if let Some(rows) = angle {
+                rows.refresh(&records.turns, &batch.bodies, poses.turned);
+            }
+        }
+    }
+}
+
+/// Computes gaps at the present pose.
+#[inline(always)]
+fn refresh_gaps<L: Lanes<N>, const N: usize>(
+    batch: &mut Batch<N>,
+    shape: &Shape<N>,
+    quads: &[[L::Int; 4]; 2],
+    bodies: &[Cell<SolverBody>],
+    softness: &Softness,
+) {
+    let arms = [rotated::<L, N>(&quads[0], &shape.arms[0]), rotated::<L, N>(&quads[1], &shape.arms[1])];
+    let (a, b) = (L::shifts(bodies, &batch.bodies[0]), L::shifts(bodies, &batch.bodies[1]));
+    let moved = [L::sub(b.x, a.x), L::sub(b.y, a.y)];
+    for axis in 0..2 {
+        let between = L::load_wide(&shape.between[axis]);
+        let gap = L::add_wide(L::sub_wide(arms[1][axis], arms[0][axis]), between);
+        L::store(closing::<L, N>(gap, moved[axis], softness), &mut batch.bias[axis]);
+    }
+}
+
+/// Computes lever ratios and gains at the present pose.
+#[inline(always)]
+fn refresh_gains<L: Lanes<N>, const N: usize>(
+    batch: &mut Batch<N>,
+    shape: &Shape<N>,
+    quads: &[[L::Int; 4]; 2],
+) {
+    let e = [
+        turned::<L, N>(&mut batch.e[0], &quads[0], &shape.ratios[0]),
+        turned::<L, N>(&mut batch.e[1], &quads[1], &shape.ratios[1]),
+    ];
+    let fractions = [L::load(&shape.fractions[0]), L::load(&shape.fractions[1])];
+    let g = inverse::<L, N>(e, fractions);
+    for side in 0..2 {
+        fill_gains::<L, N>(batch, side, g, e[side], fractions[side]);
+    }
+}
+
+/// `R v` of the rotations of quads, with 30 more fraction bits.
+#[inline(always)]
+fn rotated<L: Lanes<N>, const N: usize>(quads: &[L::Int; 4], v: &[Ints<N>; 2]) -> [L::Wide; 2] {
+    let [c, s, ..] = *quads;
+    let (x, y) = (L::load(&v[0]), L::load(&v[1]));
+    [L::sub_wide(L::mul(c, x), L::mul(s, y)), L::add_wide(L::mul(s, x), L::mul(c, y))]
+}
+
+/// Lever ratios in world axes.
+#[inline(always)]
+fn turned<L: Lanes<N>, const N: usize>(
+    e: &mut [Ints<N>; 2],
+    quads: &[L::Int; 4],
+    ratios: &[Ints<N>; 2],
+) -> [L::Int; 2] {
+    let [x, y] = rotated::<L, N>(quads, ratios);
+    let turned = [L::narrow::<UNIT>(x), L::narrow::<UNIT>(y)];
+    L::store(turned[0], &mut e[0]);
+    L::store(turned[1], &mut e[1]);
+    turned
+}
+
+/// The velocity that closes a gap, reversed. `gap` is the one at the start of the tick, with 52 fraction bits and
+/// exact, and `moved` the displacement since; their sum is rounded once.
+#[inline(always)]
+fn closing<L: Lanes<N>, const N: usize>(gap: L::Wide, moved: L::Int, softness: &Softness) -> L::Int {
+    const ARM: u32 = Length::FRAC_NBITS + Unit::FRAC_NBITS;
+    const RATE: i32 = shift(Step::FRAC_NBITS + Rate::FRAC_NBITS - Speed::FRAC_NBITS);
+    let moved = L::mul(moved, L::splat(1 << (ARM - Shift::FRAC_NBITS)));
+    let (gap, _) = L::narrow_saturating::<{ shift(ARM - Step::FRAC_NBITS) }>(L::add_wide(gap, moved));
+    L::narrow_saturating::<RATE>(L::mul(gap, L::splat(softness.bias_rate.to_bits()))).0
+}
+
+/// A component `e` of a lever ratio, and `a e` in two parts: without its lowest 32 bits, and these bits.
+struct Parts<L: Lanes<N>, const N: usize> {
+    e: L::Int,
+    high: L::Int,
+    low: L::Int,
+}
+
+impl<L: Lanes<N>, const N: usize> Parts<L, N> {
+    #[inline(always)]
+    fn of(fraction: L::Int, e: L::Int) -> Self {
+        let wide = L::mul(fraction, e);
+        Parts { e, high: L::narrow::<32>(wide), low: L::low(wide) }
+    }
+}
+
+/// An entry of `K - I`: `aA eA eA' + aB eB eB'`, where `a` and `b` have the products with the fractions.
+#[inline(always)]
+fn entry<L: Lanes<N>, const N: usize>(
+    a: &Parts<L, N>,
+    other_a: &Parts<L, N>,
+    b: &Parts<L, N>,
+    other_b: &Parts<L, N>,
+) -> L::Wide {
+    let high = L::add_wide(L::mul(a.high, other_a.e), L::mul(b.high, other_b.e));
+    let low = L::add_wide(L::mul(a.low, other_a.e), L::mul(b.low, other_b.e));
+    L::add_wide(high, L::mul(L::narrow::<32>(low), L::splat(1)))
+}
+
+/// `G = K^-1`.
+#[inline(always)]
+fn inverse<L: Lanes<N>, const N: usize>([a, b]: [[L::Int; 2]; 2], fractions: [L::Int; 2]) -> [L::Int; 3] {
+    let (a_x, a_y) = (Parts::<L, N>::of(fractions[0], a[0]), Parts::<L, N>::of(fractions[0], a[1]));
+    let (b_x, b_y) = (Parts::<L, N>::of(fractions[1], b[0]), Parts::<L, N>::of(fractions[1], b[1]));
+    let xx = entry::<L, N>(&a_x, &a_x, &b_x, &b_x);
+    let xy = entry::<L, N>(&a_x, &a_y, &b_x, &b_y);
+    let yy = entry::<L, N>(&a_y, &a_y, &b_y, &b_y);
+    L::inverse([xx, xy, yy])
+}
+
+/// Computes the gains of the body on a side.
+#[inline(always)]
+fn fill_gains<L: Lanes<N>, const N: usize>(
+    batch: &mut Batch<N>,
+    side: usize,
+    g: [L::Int; 3],
+    e: [L::Int; 2],
+    fraction: L::Int,
+) {
+    let mut gains = [fraction; 3];
+    for i in 0..3 {
+        gains[i] = L::narrow::<UNIT>(L::mul(g[i], fraction));
+        L::store(gains[i], &mut batch.g[side][i]);
+    }
+    for i in 0..2 {
+        let wide = L::add_wide(L::mul(gains[i], e[0]), L::mul(gains[i + 1], e[1]));
+        L::store(L::narrow::<RATIO>(wide), &mut batch.f[side][i]);
+    }
+}

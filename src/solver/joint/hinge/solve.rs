@@ -1,0 +1,162 @@
+//! Solve: one iteration over the rows on the angle and over the point block of `point_block.rs`.
+//!
+//! ```text
+//! bias pass    vr = vB - vA + eMB uB - eMA uA,   w = massScale (vr + bias) + impulseScale L
+//! relax pass   vr = vB - vA + eB uB - eA uA,     w = vr
+//! L' = clamp(L - clamp(w, -512, 512), -1023, 1023),  d = L' - L
+//! vA -= GA d,  uA -= fA.d,  vB += GB d,  uB += fB.d
+//! ```
+
+use core::cell::Cell;
+
+use super::super::super::batches::{BatchParts, Operation};
+use super::super::super::body::SolverBody;
+use super::super::super::context::Pass;
+use super::super::super::limits::{Faults, IMPULSE_MAX, STEP_MAX};
+use super::super::super::pair::{Pair, RATIO, UNIT, beyond, clamp};
+use super::super::super::softness::Softness;
+use super::Hinges;
+use super::batch::Batch;
+use super::refresh::Refresh;
+use crate::lanes::{Ints, Lanes, Motion};
+use crate::math::Unit;
+
+/// One iteration with bias.
+#[derive(Clone, Copy)]
+pub(super) struct Solve<'a> {
+    pub(super) refresh: Refresh<'a>,
+}
+
+/// One iteration without bias.
+#[derive(Clone, Copy)]
+pub(super) struct Relax<'a> {
+    pub(super) refresh: Refresh<'a>,
+}
+
+impl Operation<Hinges> for Solve<'_> {
+    #[inline(always)]
+    fn apply<L: Lanes<N>, const N: usize>(
+        self,
+        parts: BatchParts<'_, Hinges, N>,
+        bodies: &[Cell<SolverBody>],
+        faults: &mut Faults,
+    ) {
+        solve::<L, N>(Pass::Bias, &self.refresh, parts, bodies, faults);
+    }
+}
+
+impl Operation<Hinges> for Relax<'_> {
+    #[inline(always)]
+    fn apply<L: Lanes<N>, const N: usize>(
+        self,
+        parts: BatchParts<'_, Hinges, N>,
+        bodies: &[Cell<SolverBody>],
+        faults: &mut Faults,
+    ) {
+        solve::<L, N>(Pass::Relax, &self.refresh, parts, bodies, faults);
+    }
+}
+
+#[inline(always)]
+fn solve<L: Lanes<N>, const N: usize>(
+    pass: Pass,
+    refresh: &Refresh<'_>,
+    parts: BatchParts<'_, Hinges, N>,
+    bodies: &[Cell<SolverBody>],
+    faults: &mut Faults,
+) {
+    let BatchParts { batch, record, extra: mut angle } = parts;
+    refresh.refresh::<L, N>(batch, record, angle.as_deref_mut(), bodies);
+    // Copies, so that the compiler sees that writing to the batch does not change them.
+    let (stiffness, quads) = (refresh.stiffness, refresh.poses.quads);
+    let mut pair = Pair::<L, N>::load(bodies, &batch.bodies);
+    if let Some(rows) = angle {
+        rows.solve(pass, &stiffness.limits, &mut pair, faults);
+    }
+    let (e_a, e_b) = match pass {
+        Pass::Bias => (
+            ratios_ahead::<L, N>(&batch.e[0], &L::quads(quads, &batch.bodies[0])),
+            ratios_ahead::<L, N>(&batch.e[1], &L::quads(quads, &batch.bodies[1])),
+        ),
+        Pass::Relax => (
+            [L::load(&batch.e[0][0]), L::load(&batch.e[0][1])],
+            [L::load(&batch.e[1][0]), L::load(&batch.e[1][1])],
+        ),
+    };
+    let Pair { a, b } = &pair;
+    let linear = [L::sub(b.x, a.x), L::sub(b.y, a.y)];
+    let vr = [
+        velocity::<L, N>(linear[0], e_a[0], e_b[0], &pair, faults),
+        velocity::<L, N>(linear[1], e_a[1], e_b[1], &pair, faults),
+    ];
+    let d = [
+        accumulate::<L, N>(batch, 0, vr[0], pass, &stiffness.points, faults),
+        accumulate::<L, N>(batch, 1, vr[1], pass, &stiffness.points, faults),
+    ];
+    pair.apply_at_point(batch, d, faults);
+    pair.store(bodies, &batch.changed);
+}
+
+/// Accumulates the impulse along an axis against a relative velocity, and returns its change.
+#[inline(always)]
+fn accumulate<L: Lanes<N>, const N: usize>(
+    batch: &mut Batch<N>,
+    axis: usize,
+    vr: L::Int,
+    pass: Pass,
+    softness: &Softness,
+    faults: &mut Faults,
+) -> L::Int {
+    let old = L::load(&batch.lambda[axis]);
+    let w = match pass {
+        Pass::Relax => vr,
+        Pass::Bias => {
+            let error = L::add_saturating(vr, L::load(&batch.bias[axis]));
+            let scales = [softness.mass_scale, softness.impulse_scale].map(Unit::to_bits);
+            let wide = L::add_wide(L::mul(L::splat(scales[0]), error), L::mul(L::splat(scales[1]), old));
+            L::narrow::<UNIT>(wide)
+        }
+    };
+    let step = L::splat(STEP_MAX.to_bits());
+    let wanted = L::sub_saturating(old, clamp::<L, N>(w, step));
+    let most = L::splat(IMPULSE_MAX.to_bits());
+    let out = L::either(beyond::<L, N>(w, step), beyond::<L, N>(wanted, most));
+    if L::any(out) {
+        *faults += u64::from(L::count(out));
+    }
+    let new = clamp::<L, N>(wanted, most);
+    L::store(new, &mut batch.lambda[axis]);
+    L::sub(new, old)
+}
+
+/// The lever ratios averaged over the predicted rotation, `e + M (t/2 (-e_y, e_x) - t^2/6 e)`. The quads have `M t/2`
+/// and `M t^2/6` of each body.
+#[inline(always)]
+fn ratios_ahead<L: Lanes<N>, const N: usize>(
+    e: &[Ints<N>; 2],
+    &[_, _, across, along]: &[L::Int; 4],
+) -> [L::Int; 2] {
+    let (x, y) = (L::load(&e[0]), L::load(&e[1]));
+    let back_x = L::add_wide(L::mul(y, across), L::mul(x, along));
+    let back_y = L::sub_wide(L::mul(y, along), L::mul(x, across));
+    [L::sub(x, L::narrow::<UNIT>(back_x)), L::sub(y, L::narrow::<UNIT>(back_y))]
+}
+
+/// Relative velocity of B from A along an axis. A lane in which it does not fit is a fault.
+#[inline(always)]
+fn velocity<L: Lanes<N>, const N: usize>(
+    linear: L::Int,
+    e_a: L::Int,
+    e_b: L::Int,
+    pair: &Pair<L, N>,
+    faults: &mut Faults,
+) -> L::Int {
+    let Pair { a: Motion { turn: turn_a, .. }, b: Motion { turn: turn_b, .. } } = *pair;
+    let angular = L::sub_wide(L::mul(e_b, turn_b), L::mul(e_a, turn_a));
+    let wide = L::add_wide(L::mul(linear, L::splat(1 << RATIO)), angular);
+    let (vr, out) = L::narrow_saturating::<RATIO>(wide);
+    if L::any(out) {
+        *faults += u64::from(L::count(out));
+    }
+    vr
+}
