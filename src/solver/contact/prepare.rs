@@ -101,15 +101,15 @@ impl<const N: usize> Batches<Contacts, N> {
             records.take(lane, input);
         }
         rows::fill::<L, N>(&inputs, batch, &mut records.inverses);
-        let mut special = None;
+        let mut extra = None;
         if batch.special {
-            let special = special.insert(Special::NONE);
+            let extra = extra.insert(Special::NONE);
             for (lane, &index) in indices.iter().enumerate() {
                 let inverses = [0, 1].map(|point| Unit::from_bits(records.inverses.normals[point].0[lane]));
-                special.fill(lane, source, index as usize, inverses);
+                extra.fill(lane, source, index as usize, inverses);
             }
         }
-        batch.calm = Calm::<L, N>::suits(batch, special.as_ref());
-        extras.extend(special);
+        batch.calm = Calm::<L, N>::suits(batch, extra.as_ref());
+        extras.extend(extra);
     }
 }
