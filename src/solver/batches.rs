@@ -38,19 +38,16 @@ pub(super) trait BatchKind: Clone + Debug + 'static {
 /// An operation of the solver on one batch.
 pub(super) trait Operation<K: BatchKind>: Copy + Send + Sync {
     /// Must be `#[inline(always)]`: see [`Kernel::run`].
-    fn apply<L: Lanes<N>, const N: usize>(
-        self,
-        parts: BatchParts<'_, K, N>,
-        bodies: &[Cell<SolverBody>],
-        faults: &mut Faults,
-    );
+    fn apply<L: Lanes<N>, const N: usize>(self, parts: BatchParts<'_, K, N>);
 }
 
-/// A batch with its record and its extra.
+/// A batch with its record and its extra, and the bodies and the count of faults that an operation changes.
 pub(super) struct BatchParts<'a, K: BatchKind, const N: usize> {
     pub(super) batch: &'a mut K::Batch<N>,
     pub(super) record: &'a K::Record<N>,
     pub(super) extra: Option<&'a mut K::Extra<N>>,
+    pub(super) bodies: &'a [Cell<SolverBody>],
+    pub(super) faults: &'a mut Faults,
 }
 
 /// All constraints of a kind.
@@ -167,7 +164,7 @@ impl<K: BatchKind, O: Operation<K>, const N: usize> Kernel<N> for Run<'_, K, O, 
                 prefetch(K::bodies(next));
             }
             let extra = if K::has_extra(batch) { extras.next() } else { None };
-            operation.apply::<L, N>(BatchParts { batch, record, extra }, bodies, faults);
+            operation.apply::<L, N>(BatchParts { batch, record, extra, bodies, faults });
         }
     }
 }

@@ -9,7 +9,7 @@
 //! vA -= gA d n,  uA -= fA d,  vB += gB d n,  uB += fB d
 //! ```
 //!
-//! Each operation on a batch has a file of its own, as has each stage of the solver: `warm_start`, `solve` (which has
+//! Each operation on a batch has a file of its own: `warm_start`, `solve` (which has
 //! the equation above), `relax` and `restitution`. `prepare` fills the batches of a tick and `rows` computes their
 //! rows; `store` returns the impulses to the state. `care` has the two ways to keep numbers within their formats.
 //!

@@ -12,8 +12,8 @@ impl<L: Lanes<N>, const N: usize> Pair<L, N> {
         care.speed(along::<L, N>(&self.a, &self.b, n, row))
     }
 
-    /// Changes the velocities by impulses below 512 m/s, so that no sum overflows. The impulses have `SHIFT` less the
-    /// bits of a gain more fraction bits than a speed.
+    /// Changes the velocities by impulses below 512 m/s, so that no sum overflows. `SHIFT` is the number of fraction bits
+    /// that a product of a gain and an impulse has more than a speed.
     #[inline(always)]
     pub(super) fn change<const SHIFT: i32>(&mut self, row: &Row<N>, d: L::Int) {
         let Motion { x, y, turn } = self.a;

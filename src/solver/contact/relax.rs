@@ -8,7 +8,6 @@ use core::cell::Cell;
 use super::super::batches::{BatchParts, Operation};
 use super::super::body::SolverBody;
 use super::super::context::Pass;
-use super::super::limits::Faults;
 use super::super::pair::Pair;
 use super::batch::Batch;
 use super::care::{Care, Careful};
@@ -26,14 +25,9 @@ pub(in crate::solver) struct Relax {
 
 impl Operation<Contacts> for Relax {
     #[inline(always)]
-    fn apply<L: Lanes<N>, const N: usize>(
-        self,
-        parts: BatchParts<'_, Contacts, N>,
-        bodies: &[Cell<SolverBody>],
-        faults: &mut Faults,
-    ) {
+    fn apply<L: Lanes<N>, const N: usize>(self, parts: BatchParts<'_, Contacts, N>) {
         let settings = solve::Settings { pass: Pass::Relax, sweep: self.sweep, constants: &self.constants };
-        solve::solve::<L, N>(parts.batch, parts.extra, settings, bodies, faults);
+        solve::solve::<L, N>(parts, settings);
     }
 }
 
@@ -43,14 +37,9 @@ pub(in crate::solver) struct Measure;
 
 impl Operation<Contacts> for Measure {
     #[inline(always)]
-    fn apply<L: Lanes<N>, const N: usize>(
-        self,
-        parts: BatchParts<'_, Contacts, N>,
-        bodies: &[Cell<SolverBody>],
-        _: &mut Faults,
-    ) {
+    fn apply<L: Lanes<N>, const N: usize>(self, parts: BatchParts<'_, Contacts, N>) {
         // Nothing in it counts as a fault.
-        measure::<L, N>(parts.batch, bodies, &mut Careful(&mut 0));
+        measure::<L, N>(parts.batch, parts.bodies, &mut Careful(&mut 0));
     }
 }
 

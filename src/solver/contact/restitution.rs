@@ -7,11 +7,8 @@
 //! The approach is observed before any warm start. Observed in between, the impulse of one contact looks like an
 //! approach to the next, and balls in a groove bounce for ever.
 
-use core::cell::Cell;
-
 use super::super::batches::{BatchParts, Operation};
-use super::super::body::SolverBody;
-use super::super::limits::{Faults, IMPULSE_MAX};
+use super::super::limits::IMPULSE_MAX;
 use super::super::pair::{Pair, UNIT};
 use super::care::{Care, Careful};
 use super::special::Special;
@@ -29,13 +26,8 @@ pub(in crate::solver) struct ObserveApproach;
 
 impl Operation<Contacts> for ObserveApproach {
     #[inline(always)]
-    fn apply<L: Lanes<N>, const N: usize>(
-        self,
-        parts: BatchParts<'_, Contacts, N>,
-        bodies: &[Cell<SolverBody>],
-        faults: &mut Faults,
-    ) {
-        let BatchParts { batch, extra: Some(special), .. } = parts else { return };
+    fn apply<L: Lanes<N>, const N: usize>(self, parts: BatchParts<'_, Contacts, N>) {
+        let BatchParts { batch, extra: Some(special), bodies, faults, .. } = parts else { return };
         let care = &mut Careful(faults);
         let pair = Pair::<L, N>::load(bodies, &batch.bodies);
         let (n, _) = batch.directions::<L>();
@@ -56,13 +48,8 @@ pub(in crate::solver) struct ApplyRestitution {
 
 impl Operation<Contacts> for ApplyRestitution {
     #[inline(always)]
-    fn apply<L: Lanes<N>, const N: usize>(
-        self,
-        parts: BatchParts<'_, Contacts, N>,
-        bodies: &[Cell<SolverBody>],
-        faults: &mut Faults,
-    ) {
-        let BatchParts { batch, extra: Some(special), .. } = parts else { return };
+    fn apply<L: Lanes<N>, const N: usize>(self, parts: BatchParts<'_, Contacts, N>) {
+        let BatchParts { batch, extra: Some(special), bodies, faults, .. } = parts else { return };
         let care = &mut Careful(faults);
         let restitution = L::load(&special.restitution);
         let (n, _) = batch.directions::<L>();

@@ -15,7 +15,6 @@ use core::cell::Cell;
 use super::super::batches::{BatchParts, Operation};
 use super::super::body::SolverBody;
 use super::super::context::Pass;
-use super::super::limits::Faults;
 use super::super::pair::{Pair, UNIT, beyond, clamp, shift};
 use super::batch::{Batch, Point};
 use super::care::{Calm, Care, Careful};
@@ -57,14 +56,9 @@ pub(in crate::solver) struct Solve {
 
 impl Operation<Contacts> for Solve {
     #[inline(always)]
-    fn apply<L: Lanes<N>, const N: usize>(
-        self,
-        parts: BatchParts<'_, Contacts, N>,
-        bodies: &[Cell<SolverBody>],
-        faults: &mut Faults,
-    ) {
+    fn apply<L: Lanes<N>, const N: usize>(self, parts: BatchParts<'_, Contacts, N>) {
         let settings = Settings { pass: Pass::Bias, sweep: self.sweep, constants: &self.constants };
-        solve::<L, N>(parts.batch, parts.extra, settings, bodies, faults);
+        solve::<L, N>(parts, settings);
     }
 }
 
@@ -78,13 +72,8 @@ pub(super) struct Settings<'a> {
 
 /// Iterates without a check of any sum if the batch is calm, and again with all checks if it turns out not to be.
 #[inline(always)]
-pub(super) fn solve<L: Lanes<N>, const N: usize>(
-    batch: &mut Batch<N>,
-    mut special: Option<&mut Special<N>>,
-    settings: Settings<'_>,
-    bodies: &[Cell<SolverBody>],
-    faults: &mut Faults,
-) {
+pub(super) fn solve<L: Lanes<N>, const N: usize>(parts: BatchParts<'_, Contacts, N>, settings: Settings<'_>) {
+    let BatchParts { batch, extra: mut special, bodies, faults, .. } = parts;
     if batch.calm && settings.constants.calm {
         let mut calm = Calm::<L, N>::new();
         let solved = iterate(batch, None, settings, bodies, &mut calm);

@@ -7,7 +7,6 @@ use core::cell::Cell;
 
 use super::super::batches::{BatchParts, Operation};
 use super::super::body::SolverBody;
-use super::super::limits::Faults;
 use super::super::pair::Pair;
 use super::Contacts;
 use super::batch::Batch;
@@ -21,13 +20,8 @@ pub(in crate::solver) struct WarmStart;
 
 impl Operation<Contacts> for WarmStart {
     #[inline(always)]
-    fn apply<L: Lanes<N>, const N: usize>(
-        self,
-        parts: BatchParts<'_, Contacts, N>,
-        bodies: &[Cell<SolverBody>],
-        faults: &mut Faults,
-    ) {
-        let BatchParts { batch, extra, .. } = parts;
+    fn apply<L: Lanes<N>, const N: usize>(self, parts: BatchParts<'_, Contacts, N>) {
+        let BatchParts { batch, extra, bodies, faults, .. } = parts;
         if batch.calm {
             let mut calm = Calm::<L, N>::new();
             let pair = warm_started(batch, bodies, &mut calm);

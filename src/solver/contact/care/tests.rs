@@ -85,8 +85,8 @@ struct Applied<'a> {
 impl Applied<'_> {
     #[inline(always)]
     fn apply<L: Lanes<WIDTH>>(&mut self, operation: impl Operation<Contacts>) {
-        let parts = BatchParts { batch: &mut self.batch, record: &self.record, extra: None };
-        operation.apply::<L, WIDTH>(parts, self.cells, &mut self.faults);
+        let Applied { batch, record, cells, faults } = self;
+        operation.apply::<L, WIDTH>(BatchParts { batch, record, extra: None, bodies: cells, faults });
     }
 }
 

@@ -7,10 +7,7 @@
 //! vA -= GA d,  uA -= fA.d,  vB += GB d,  uB += fB.d
 //! ```
 
-use core::cell::Cell;
-
 use super::super::super::batches::{BatchParts, Operation};
-use super::super::super::body::SolverBody;
 use super::super::super::context::Pass;
 use super::super::super::limits::{Faults, IMPULSE_MAX, STEP_MAX};
 use super::super::super::pair::{Pair, RATIO, UNIT, beyond, clamp};
@@ -35,37 +32,21 @@ pub(super) struct Relax<'a> {
 
 impl Operation<Hinges> for Solve<'_> {
     #[inline(always)]
-    fn apply<L: Lanes<N>, const N: usize>(
-        self,
-        parts: BatchParts<'_, Hinges, N>,
-        bodies: &[Cell<SolverBody>],
-        faults: &mut Faults,
-    ) {
-        solve::<L, N>(Pass::Bias, &self.refresh, parts, bodies, faults);
+    fn apply<L: Lanes<N>, const N: usize>(self, parts: BatchParts<'_, Hinges, N>) {
+        solve::<L, N>(Pass::Bias, &self.refresh, parts);
     }
 }
 
 impl Operation<Hinges> for Relax<'_> {
     #[inline(always)]
-    fn apply<L: Lanes<N>, const N: usize>(
-        self,
-        parts: BatchParts<'_, Hinges, N>,
-        bodies: &[Cell<SolverBody>],
-        faults: &mut Faults,
-    ) {
-        solve::<L, N>(Pass::Relax, &self.refresh, parts, bodies, faults);
+    fn apply<L: Lanes<N>, const N: usize>(self, parts: BatchParts<'_, Hinges, N>) {
+        solve::<L, N>(Pass::Relax, &self.refresh, parts);
     }
 }
 
 #[inline(always)]
-fn solve<L: Lanes<N>, const N: usize>(
-    pass: Pass,
-    refresh: &Refresh<'_>,
-    parts: BatchParts<'_, Hinges, N>,
-    bodies: &[Cell<SolverBody>],
-    faults: &mut Faults,
-) {
-    let BatchParts { batch, record, extra: mut angle } = parts;
+fn solve<L: Lanes<N>, const N: usize>(pass: Pass, refresh: &Refresh<'_>, parts: BatchParts<'_, Hinges, N>) {
+    let BatchParts { batch, record, extra: mut angle, bodies, faults } = parts;
     refresh.refresh::<L, N>(batch, record, angle.as_deref_mut(), bodies);
     // Copies, so that the compiler sees that writing to the batch does not change them.
     let (stiffness, quads) = (refresh.stiffness, refresh.poses.quads);

@@ -1,10 +1,7 @@
 //! Warm start: the accumulated impulses of hinges are applied first, each clamped to what may be applied at once.
 
-use core::cell::Cell;
-
 use super::super::super::batches::{BatchParts, Operation};
-use super::super::super::body::SolverBody;
-use super::super::super::limits::{Faults, STEP_MAX};
+use super::super::super::limits::STEP_MAX;
 use super::super::super::pair::{Pair, beyond, clamp};
 use super::Hinges;
 use super::refresh::Refresh;
@@ -17,13 +14,8 @@ pub(super) struct WarmStart<'a> {
 
 impl Operation<Hinges> for WarmStart<'_> {
     #[inline(always)]
-    fn apply<L: Lanes<N>, const N: usize>(
-        self,
-        parts: BatchParts<'_, Hinges, N>,
-        bodies: &[Cell<SolverBody>],
-        faults: &mut Faults,
-    ) {
-        let BatchParts { batch, record, extra: mut angle } = parts;
+    fn apply<L: Lanes<N>, const N: usize>(self, parts: BatchParts<'_, Hinges, N>) {
+        let BatchParts { batch, record, extra: mut angle, bodies, faults } = parts;
         self.refresh.refresh::<L, N>(batch, record, angle.as_deref_mut(), bodies);
         let mut pair = Pair::<L, N>::load(bodies, &batch.bodies);
         if let Some(rows) = angle {
