@@ -2,8 +2,11 @@
 //! the large scenes end in the hashes of `tests/backends.txt`.
 
 mod common;
+#[path = "common/sweep.rs"]
+mod sweep;
 
 use core::fmt::Debug;
+use std::sync::Mutex;
 
 use lockstep2d::lockstep::{Game, Sandbox};
 use lockstep2d::scenes::Scene;
@@ -38,11 +41,11 @@ fn end_of(name: &str, ticks: u64, choose: impl FnOnce(&mut World) -> bool) -> (S
     (game.state_hash().to_string(), *game.world().stats())
 }
 
-/// Runs all scenes in each of several ways, whose results must equal each other and the file.
-fn all_end_in_their_hashes<Way: Copy + Debug>(ways: &[Way], choose: fn(&mut World, Way) -> bool) {
+/// Runs all scenes in each of several ways, which have to agree with each other and with the file.
+fn all_end_in_their_hashes<Way: Copy + Debug + Sync>(ways: &[Way], choose: fn(&mut World, Way) -> bool) {
     let known = common::goldens_of(HASHES);
-    let mut wrong = Vec::new();
-    for (name, ticks) in SCENES {
+    let wrong = Mutex::new(Vec::new());
+    sweep::for_each(SCENES.to_vec(), |(name, ticks)| {
         let end_of = |way| end_of(name, ticks, |world| choose(world, way));
         let end = end_of(ways[0]);
         for &way in &ways[1..] {
@@ -51,9 +54,11 @@ fn all_end_in_their_hashes<Way: Copy + Debug>(ways: &[Way], choose: fn(&mut Worl
         let (hash, _) = end;
         let line = known.iter().find(|line| (line.scene.as_str(), line.ticks) == (name, ticks));
         if line.is_none_or(|line| line.hash != hash) {
+            let mut wrong = wrong.lock().expect("no check holds the lock");
             wrong.push(format!("{} {name} {ticks} {hash}", lockstep2d::SEMANTICS));
         }
-    }
+    });
+    let wrong = wrong.into_inner().expect("no check holds the lock");
     assert!(
         wrong.is_empty(),
         "the arithmetic has changed, equally in all variants. If this is intended, raise lockstep2d::SEMANTICS and \

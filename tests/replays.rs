@@ -1,6 +1,8 @@
 //! The committed replays verify, end in the committed hashes, and equal what their scenes record.
 
 mod common;
+#[path = "common/sweep.rs"]
+mod sweep;
 
 use lockstep2d::lockstep::Sandbox;
 use lockstep2d::replay::{CHECKPOINT_INTERVAL, Limits, Recording, Verdict, verify};
@@ -24,8 +26,8 @@ fn replays() -> Vec<(String, Vec<u8>)> {
 fn every_replay_matches_and_ends_in_its_golden() {
     let goldens = common::goldens();
     let replays = replays();
-    assert_eq!(replays.len(), goldens.len(), "expected a replay for each golden");
-    for (name, bytes) in replays {
+    assert_eq!(replays.len(), goldens.len(), "a replay for each golden");
+    sweep::for_each(replays, |(name, bytes)| {
         let golden = goldens.iter().find(|golden| golden.scene == name).expect("a golden for each replay");
         match verify::<Sandbox>(&bytes, &Limits::default()) {
             Verdict::Match { ticks, hash } => {
@@ -33,13 +35,13 @@ fn every_replay_matches_and_ends_in_its_golden() {
             }
             other => panic!("{name}: {other}"),
         }
-    }
+    });
 }
 
 /// Recording a scene again gives the committed file byte for byte, so replays and scenes cannot drift apart.
 #[test]
 fn every_replay_is_what_its_scene_records() {
-    for (name, bytes) in replays() {
+    sweep::for_each(replays(), |(name, bytes)| {
         let scene = Scene::find(&name).expect("a scene for each replay");
         let mut recording =
             Recording::<Sandbox>::start(&scene.setup(common::SEED), CHECKPOINT_INTERVAL).expect("valid");
@@ -49,5 +51,5 @@ fn every_replay_is_what_its_scene_records() {
         }
         let recorded = recording.finish().expect("the end");
         assert!(recorded == bytes, "{name}: the recording differs from replays/{name}.replay");
-    }
+    });
 }

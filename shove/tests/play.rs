@@ -3,6 +3,9 @@
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
+#[path = "../../tests/common/sweep.rs"]
+mod sweep;
+
 use std::fs;
 use std::net::UdpSocket;
 use std::path::{Path, PathBuf};
@@ -101,7 +104,7 @@ fn wait_for_ticks(replay: &Path, ticks: usize) {
 
 #[test]
 fn four_processes_end_alike_and_their_replays_verify() {
-    for (name, modes) in [("lockstep", &["--lockstep"][..]), ("rollback", &[])] {
+    sweep::at_once([("lockstep", &["--lockstep"][..]), ("rollback", &[])], |(name, modes)| {
         let folder = Folder::new(name);
         let outputs: Vec<_> =
             four(&folder, modes, "600").into_iter().map(|child| child.wait_with_output().unwrap()).collect();
@@ -116,12 +119,12 @@ fn four_processes_end_alike_and_their_replays_verify() {
             assert_eq!(hash.to_string(), hash_of(&outputs[0]));
             assert_eq!(pads(replay), pads(&replays[0]));
         }
-    }
+    });
 }
 
 #[test]
 fn a_killed_process_leaves_a_valid_replay_and_the_others_agree_when() {
-    for (name, modes) in [("kill-lockstep", &["--lockstep"][..]), ("kill-rollback", &[])] {
+    sweep::at_once([("kill-lockstep", &["--lockstep"][..]), ("kill-rollback", &[])], |(name, modes)| {
         let folder = Folder::new(name);
         let mut children = four(&folder, modes, "900");
         wait_for_ticks(&folder.file("2"), 120);
@@ -149,7 +152,7 @@ fn a_killed_process_leaves_a_valid_replay_and_the_others_agree_when() {
         let absent = lockstep2d::codec::encode(&Pad::ABSENT)[0];
         let last = all.last().unwrap();
         assert_eq!(last.iter().filter(|pad| **pad == absent).count(), 1, "{name}: {last:?}");
-    }
+    });
 }
 
 #[test]

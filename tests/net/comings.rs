@@ -5,6 +5,7 @@ use lockstep2d::replay::Verdict;
 
 use super::matches::{MODES, STORM, verdict};
 use super::pushers::Setup;
+use super::sweep;
 use super::table::Table;
 
 fn joins(table: &Table, at: usize, seat: u32) -> Option<u64> {
@@ -14,42 +15,42 @@ fn joins(table: &Table, at: usize, seat: u32) -> Option<u64> {
     })
 }
 
-fn check_late(weather: Weather, seed: u64) {
-    for options in MODES {
-        let mut table = Table::of(3, options(), weather, seed);
-        assert!(table.play(40, |table| table.all_confirmed(200)), "{}", table.describe());
-        table.sit(table.guest(9, options()));
-        assert!(
-            table.play(40, |table| table.peers[3].as_ref().unwrap().seat().is_some()),
-            "{}",
-            table.describe()
-        );
-        // Each peer enters the new session in its own time, but at the same tick.
-        let all = table.play(10, |table| (0..4).all(|at| joins(table, at, 3).is_some()));
-        assert!(all, "{}", table.describe());
-        let tick = joins(&table, 0, 3).unwrap();
-        assert!((0..4).all(|at| joins(&table, at, 3) == Some(tick)), "{}", table.describe());
-        let end = tick + 100;
-        let mut compared = 0;
-        let ended = table.play(60, |table| {
-            let known = table.peers.iter().flatten().map(|peer| peer.confirmed()).min().unwrap();
-            let hashes = table.hashes(known);
-            assert!(hashes.windows(2).all(|pair| pair[0] == pair[1]), "tick {known}");
-            compared += usize::from(known > tick && hashes.len() == 4);
-            table.all_confirmed(end)
-        });
-        assert!(ended && compared > 20, "{compared}: {}", table.describe());
-        let replays = table.finish(end);
-        assert!(matches!(verdict(&replays[0]), Verdict::Match { .. }));
-        assert!(replays[1..3].iter().all(|replay| *replay == replays[0]), "replays differ");
-        assert!(replays[3].is_empty(), "a peer that joined late must not write a replay");
-    }
+fn check_late(options: fn() -> Options, weather: Weather, seed: u64) {
+    let mut table = Table::of(3, options(), weather, seed);
+    assert!(table.play(40, |table| table.all_confirmed(200)), "{}", table.describe());
+    table.sit(table.guest(9, options()));
+    assert!(
+        table.play(40, |table| table.peers[3].as_ref().unwrap().seat().is_some()),
+        "{}",
+        table.describe()
+    );
+    // Each of them goes over to the new session in its own time, at the same tick.
+    let all = table.play(10, |table| (0..4).all(|at| joins(table, at, 3).is_some()));
+    assert!(all, "{}", table.describe());
+    let tick = joins(&table, 0, 3).unwrap();
+    assert!((0..4).all(|at| joins(&table, at, 3) == Some(tick)), "{}", table.describe());
+    let end = tick + 100;
+    let mut compared = 0;
+    let ended = table.play(60, |table| {
+        let known = table.peers.iter().flatten().map(|peer| peer.confirmed()).min().unwrap();
+        let hashes = table.hashes(known);
+        assert!(hashes.windows(2).all(|pair| pair[0] == pair[1]), "tick {known}");
+        compared += usize::from(known > tick && hashes.len() == 4);
+        table.all_confirmed(end)
+    });
+    assert!(ended && compared > 20, "{compared}: {}", table.describe());
+    let replays = table.finish(end);
+    assert!(matches!(verdict(&replays[0]), Verdict::Match { .. }));
+    assert!(replays[1..3].iter().all(|replay| *replay == replays[0]), "replays differ");
+    assert!(replays[3].is_empty(), "a replay without its beginning");
 }
 
 #[test]
 fn a_peer_joins_late_and_has_the_same_states() {
-    check_late(Weather::default(), 11);
-    check_late(STORM, 12);
+    let weathers = [(Weather::default(), 11), (STORM, 12)];
+    let cases =
+        MODES.into_iter().flat_map(|options| weathers.map(|(weather, seed)| (options, weather, seed)));
+    sweep::at_once(cases, |(options, weather, seed)| check_late(options, weather, seed));
 }
 
 #[test]
@@ -84,7 +85,7 @@ fn a_new_host_admits_players() {
 
 #[test]
 fn a_spectator_sees_the_same() {
-    for options in MODES {
+    sweep::at_once(MODES, |options| {
         let mut table = Table::of(2, options(), STORM, 15);
         assert!(table.play(40, |table| table.all_confirmed(100)));
         let port = table.network.port(8);
@@ -98,7 +99,7 @@ fn a_spectator_sees_the_same() {
             tick > 300
         });
         assert!(seen && compared > 20, "{compared}: {}", table.describe());
-    }
+    });
 }
 
 #[test]

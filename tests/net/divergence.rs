@@ -1,8 +1,6 @@
 //! A peer with a memory fault is detected within two checkpoints, and the reports name the peer, the tick and the
 //! field.
 
-use std::thread;
-
 use lockstep2d::math::Rng;
 use lockstep2d::net::{Divergence, Event, Mode, Options, Peer, Weather};
 use lockstep2d::replay::Limits;
@@ -11,6 +9,7 @@ use lockstep2d::world::Motion;
 
 use super::matches::MODES;
 use super::pushers::{FAULT, Fault, Pushers, Setup};
+use super::sweep;
 use super::table::Table;
 
 fn found(table: &Table, at: usize) -> Option<Divergence> {
@@ -87,11 +86,8 @@ fn check(options: Options, seed: u64) {
 
 #[test]
 fn a_bit_that_flips_is_noticed_within_two_checkpoints_and_named() {
-    for batch in 0..3 {
-        thread::scope(|scope| {
-            for seed in 0..16 {
-                scope.spawn(move || check(MODES[usize::from(seed % 2 == 1)](), 100 * batch + seed));
-            }
-        });
+    let seeds = sweep::sample((0..3).flat_map(|batch| (0..16).map(move |seed| 100 * batch + seed)), 3);
+    for seeds in seeds.chunks(16) {
+        sweep::at_once(seeds, |&seed| check(MODES[usize::from(seed % 2 == 1)](), seed));
     }
 }

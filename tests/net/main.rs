@@ -13,4 +13,6 @@ mod oddities;
 mod patience;
 mod pushers;
 mod scripted;
+#[path = "../common/sweep.rs"]
+mod sweep;
 mod table;

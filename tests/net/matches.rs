@@ -1,12 +1,12 @@
 //! Whole matches: equal hashes, and equal replays that verify.
 
-use std::thread;
 use std::time::Duration;
 
 use lockstep2d::net::{Event, Options, Weather};
 use lockstep2d::replay::{Limits, Verdict, verify};
 
 use super::pushers::Pushers;
+use super::sweep;
 use super::table::Table;
 
 pub(crate) const MODES: [fn() -> Options; 2] = [Options::lockstep, Options::rollback];
@@ -33,21 +33,18 @@ fn check_match(options: Options, weather: Weather, seed: u64, ticks: u64) {
 
 #[test]
 fn four_peers_play_the_same_in_calm_weather() {
-    for options in MODES {
-        check_match(options(), Weather::default(), 1, 200);
-    }
+    sweep::at_once(MODES, |options| check_match(options(), Weather::default(), 1, 200));
 }
 
 /// GGRS reads the clock, so matches run in real time; many run in parallel.
 #[test]
 fn fifty_matches_in_a_storm_end_alike() {
     let tempest = Weather { latency: Duration::from_millis(100), ..STORM };
-    for seeds in [0..25, 25..50] {
-        thread::scope(|scope| {
-            for seed in seeds {
-                let options = MODES[usize::from(seed % 2 == 0)]();
-                scope.spawn(move || check_match(options, tempest, seed, 300));
-            }
+    let seeds = sweep::sample(0..50, 7);
+    for seeds in seeds.chunks(25) {
+        sweep::at_once(seeds, |&seed| {
+            let options = MODES[usize::from(seed % 2 == 0)]();
+            check_match(options, tempest, seed, 300);
         });
     }
 }

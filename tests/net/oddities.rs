@@ -8,6 +8,7 @@ use lockstep2d::replay::Verdict;
 
 use super::matches::{MODES, STORM, verdict};
 use super::pushers::Setup;
+use super::sweep;
 use super::table::Table;
 
 /// Creates a match in which each peer has its own options.
@@ -40,12 +41,11 @@ fn check(mut table: Table, ticks: u64, mut each_turn: impl FnMut(&mut Table)) {
 
 #[test]
 fn one_player_and_eight() {
-    for players in [1, 8] {
-        for (seed, options) in (31..).zip(MODES) {
-            let setup = Setup { players, ..Setup::default() };
-            check(open(&setup, &vec![options(); players as usize], STORM, seed), 100, |_| ());
-        }
-    }
+    let cases = [1, 8].into_iter().flat_map(|players| (31..).zip(MODES).map(move |mode| (players, mode)));
+    sweep::at_once(cases, |(players, (seed, options))| {
+        let setup = Setup { players, ..Setup::default() };
+        check(open(&setup, &vec![options(); players as usize], STORM, seed), 100, |_| ());
+    });
 }
 
 #[test]
@@ -86,16 +86,16 @@ fn any_window_and_delay() {
 
 #[test]
 fn who_looks_rarely_plays_all_the_same() {
-    for (seed, options) in (37..).zip(MODES) {
+    sweep::at_once((37..).zip(MODES), |(seed, options)| {
         let setup = Setup { players: 2, ..Setup::default() };
         let table = open(&setup, &[options(); 2], Weather::default(), seed);
         check(table, 100, |table| table.now += Duration::from_millis(100));
-    }
+    });
 }
 
 #[test]
 fn a_clock_that_jumps_is_survived() {
-    for (seed, options) in (39..).zip(MODES) {
+    sweep::at_once((39..).zip(MODES), |(seed, options)| {
         let setup = Setup { players: 2, ..Setup::default() };
         let table = open(&setup, &[options(); 2], Weather::default(), seed);
         let mut jumped = false;
@@ -105,12 +105,12 @@ fn a_clock_that_jumps_is_survived() {
                 table.now += Duration::from_secs(10);
             }
         });
-    }
+    });
 }
 
 #[test]
 fn who_plays_alone_is_joined() {
-    for (seed, options) in (41..).zip(MODES) {
+    sweep::at_once((41..).zip(MODES), |(seed, options)| {
         let mut table = Table::of(1, options(), Weather::default(), seed);
         assert!(table.play(10, |table| table.all_confirmed(100)), "{}", table.describe());
         table.sit(table.guest(5, options()));
@@ -118,7 +118,7 @@ fn who_plays_alone_is_joined() {
         let both = |table: &mut Table| table.all_confirmed(tick) && table.hashes(tick).len() == 2;
         assert!(table.play(20, both), "{}", table.describe());
         assert!(table.hashes(tick).windows(2).all(|pair| pair[0] == pair[1]));
-    }
+    });
 }
 
 #[test]

@@ -7,12 +7,13 @@ use lockstep2d::replay::Verdict;
 
 use super::matches::{MODES, verdict};
 use super::pushers::Setup;
+use super::sweep;
 use super::table::Table;
 
 /// A total outage that is shorter than the timeout disconnects nobody.
 #[test]
 fn a_hole_in_the_network_is_no_end() {
-    for options in MODES {
+    sweep::at_once(MODES, |options| {
         let mut table = Table::of(3, options(), Weather::default(), 31);
         assert!(table.play(40, |table| table.all_confirmed(60)), "{}", table.describe());
         for millis in [300, 1400] {
@@ -28,20 +29,20 @@ fn a_hole_in_the_network_is_no_end() {
         let replays = table.finish(tick);
         assert!(matches!(verdict(&replays[0]), Verdict::Match { .. }));
         assert!(replays.iter().all(|replay| *replay == replays[0]), "replays differ");
-    }
+    });
 }
 
 /// The GGRS handshake takes five round trips, which last five times as long as the timeout here.
 #[test]
 fn who_answers_slowly_is_not_silent() {
-    for options in MODES {
+    sweep::at_once(MODES, |options| {
         let options = Options { timeout: Duration::from_millis(600), ..options() };
         let weather = Weather { latency: Duration::from_millis(300), ..Weather::default() };
         let mut table = Table::of(3, options, weather, 33);
         assert!(table.play(40, |table| table.all_confirmed(60)), "{}", table.describe());
         let left = |event: &Event| matches!(event, Event::Left { .. });
         assert!(!table.events.iter().flatten().any(left), "{}", table.describe());
-    }
+    });
 }
 
 /// A player leaves and rejoins repeatedly, always in the same seat.

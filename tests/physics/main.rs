@@ -19,6 +19,8 @@ mod rebound;
 mod seams;
 mod slope;
 mod surface;
+#[path = "../common/sweep.rs"]
+mod sweep;
 
 use lockstep2d::lockstep::{Game, Sandbox};
 use lockstep2d::math::{Fx, fx_mul};

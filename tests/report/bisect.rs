@@ -1,6 +1,9 @@
 //! Bisection finds the tick, the stage, the body and the field of a random bit flip in less than three verifications.
 
 use std::cell::Cell;
+use std::collections::BTreeSet;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use lockstep2d::body::{BodyDef, Geometry, ShapeDef};
 use lockstep2d::fx;
@@ -11,6 +14,7 @@ use lockstep2d::replay::{Limits, Recording, verify};
 use lockstep2d::report::{Comparison, Evidence, Stage, Trace, bisect};
 use lockstep2d::world::{Command, Motion, World};
 
+use crate::sweep;
 use crate::yard::{BODIES, Flip, PLAYERS, When, Yard, YardSave, inputs_at};
 
 thread_local! {
@@ -134,24 +138,31 @@ fn culprit(found: &Comparison) -> (String, String) {
 
 #[test]
 fn a_flipped_bit_is_found_in_its_trace_for_less_than_three_verifications() {
-    let mut rng = Rng::new(6);
-    let mut worst = 0;
-    for case in 0..100 {
-        let (flip, path) = random_flip(&mut rng, case);
+    let worst = AtomicU64::new(0);
+    let cases = sweep::sample(0..100, 7);
+    let drawn = Mutex::new(BTreeSet::new());
+    sweep::for_each(cases, |case| {
+        let (flip, path) = random_flip(&mut Rng::new(600 + case), case);
+        let when = if flip.when == When::Before { "before" } else { "after" };
+        drawn.lock().unwrap().extend([flip.motion.name(), when]);
         FLIP.set(Some(flip));
         let mut trace = Trace::<Faulty<true>>::start(&case, LENGTH).unwrap();
         (0..TICKS).for_each(|tick| trace.step(&inputs(tick)).unwrap());
         let trace = evidence(trace.report().to_bytes());
         STEPS.set(0);
         let found = bisect::<Sound>(&trace, None, &Limits::default()).unwrap();
-        worst = worst.max(STEPS.get());
+        worst.fetch_max(STEPS.get(), Ordering::Relaxed);
         let what = format!("{flip:?} of {path}");
         assert_eq!(found.first_different, Some(flip.tick), "{what}");
         assert_eq!(found.last_equal, Some(flip.tick - 1), "{what}");
         let stage = if flip.when == When::Before { Stage::BeforeStep } else { Stage::AfterStep };
         assert_eq!(found.stage, Some(stage), "{what}");
         assert_eq!(culprit(&found), (path.clone(), flip.motion.name().into()), "{what}");
-    }
+    });
+    // Every kind of motion, before and after the step.
+    let drawn = drawn.into_inner().unwrap();
+    assert_eq!(drawn.len(), Motion::ALL.len() + 2, "only {drawn:?}");
+    let worst = worst.into_inner();
     println!("at most {worst} steps, verification takes {TICKS}");
     assert!(worst < 3 * TICKS, "expected less than three verifications of {TICKS} ticks, took {worst} steps");
 }
@@ -216,8 +227,8 @@ fn sandbox(seed: u64) -> SandboxSetup {
 /// Bisects two replays that differ in one command, by one bit of a velocity.
 #[test]
 fn of_two_replays_the_tick_after_the_first_other_command_is_found() {
-    let mut rng = Rng::new(9);
-    for case in 0..40 {
+    sweep::for_each(sweep::sample(0..40, 7), |case| {
+        let mut rng = Rng::new(900 + case);
         let tick = u64::from(rng.next_u32()) % 200;
         let body = rng.next_u32() as usize % 12;
         let bit = rng.next_u32() % 20;
@@ -248,7 +259,7 @@ fn of_two_replays_the_tick_after_the_first_other_command_is_found() {
         assert!(thing.ends_with(&format!("body {body}v0")), "{thing} {name}");
         let found = bisect::<Sandbox>(&a, Some(&a), &Limits::default()).unwrap();
         assert!(found.is_equal() && found.last_equal == Some(260));
-    }
+    });
 }
 
 /// The first difference is the first tick whose states differ, even if inputs differ earlier.

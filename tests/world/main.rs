@@ -10,6 +10,8 @@ mod phases;
 mod rollback;
 mod sensors;
 mod sleeping;
+#[path = "../common/sweep.rs"]
+mod sweep;
 
 use lockstep2d::body::{BodyDef, BodyId, Geometry, Polygon, ShapeDef, ShapeId};
 use lockstep2d::fx;

@@ -9,6 +9,7 @@ use lockstep2d::scenes;
 use lockstep2d::world::{Command, Snapshot, World};
 
 use super::churn::Churn;
+use super::sweep;
 use super::{ball, shape_of, spawn, square, weightless, world_with_floor};
 use lockstep2d::body::{BodyDef, Filter};
 
@@ -27,7 +28,7 @@ fn assert_is(world: &World, saved: &(Snapshot, Vec<u8>), what: &str) {
 /// The cached digest equals a recomputed one after every command and every step, refused commands included.
 #[test]
 fn what_is_known_of_a_world_follows_every_change() {
-    for seed in 100..108 {
+    sweep::for_each((100..108).collect(), |seed| {
         let mut churn = Churn::new(seed);
         let mut world = churn.world();
         for tick in 0..150 {
@@ -41,14 +42,14 @@ fn what_is_known_of_a_world_follows_every_change() {
             let differing = world.digest().differing(&recomputed(&world).digest());
             assert!(differing.is_empty(), "seed {seed}, tick {tick}: {differing:?}");
         }
-    }
+    });
 }
 
 /// Restores random snapshots, earlier and later, across bodies, shapes and joints that were created, destroyed and
 /// changed, and replays the following ticks from each with the same results.
 #[test]
 fn a_world_jumps_between_its_snapshots() {
-    for seed in 200..216 {
+    sweep::for_each(sweep::sample(200..216, 3), |seed| {
         let mut churn = Churn::new(seed);
         let mut world = churn.world();
         let mut rng = Rng::new(seed);
@@ -82,7 +83,7 @@ fn a_world_jumps_between_its_snapshots() {
         other.restore(&saves[70].0);
         assert_is(&other, &saves[70], "another world");
         assert_eq!(other.save(), saves[70].0);
-    }
+    });
 }
 
 /// Shapes whose filters exclude each other are never searched for pairs. A filter change or a restore must bring the
@@ -153,7 +154,7 @@ fn a_reused_snapshot_is_as_good_as_new() {
 /// same hashes again.
 #[test]
 fn snapshots_of_every_scene_are_small_and_come_back() {
-    for scene in scenes::ALL {
+    sweep::for_each(scenes::ALL.iter().collect(), |scene| {
         let mut game = Sandbox::new(&scene.setup(1)).expect("the scenes of this crate are valid");
         let step = |game: &mut Sandbox, tick: u64| {
             let commands = scene.commands(tick, game);
@@ -179,7 +180,7 @@ fn snapshots_of_every_scene_are_small_and_come_back() {
         let first = run(&mut game);
         game.world_mut().restore(&snapshot);
         assert!(run(&mut game) == first, "{}", scene.name);
-    }
+    });
 }
 
 #[test]

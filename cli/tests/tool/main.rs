@@ -4,6 +4,8 @@
 
 #[path = "../../../tests/replay/counter.rs"]
 mod counter;
+#[path = "../../../tests/common/sweep.rs"]
+mod sweep;
 
 mod batch;
 mod binary;
