@@ -85,8 +85,8 @@ impl Geometry {
     ///
     /// # Errors
     /// When it is shorter than 2 mm or leaves the world.
-    pub fn segment(a: Vec2<Fx>, b: Vec2<Fx>) -> Result<Self, GeometryError> {
-        let segment = Geometry::Segment { a, b };
+    pub fn segment(a: impl Into<Vec2<Fx>>, b: impl Into<Vec2<Fx>>) -> Result<Self, GeometryError> {
+        let segment = Geometry::Segment { a: a.into(), b: b.into() };
         segment.validate().map(|()| segment)
     }
 
@@ -94,8 +94,12 @@ impl Geometry {
     ///
     /// # Errors
     /// When the centres are closer than 2 mm, the radius is below 2 mm, or it reaches further than 110 m on some axis.
-    pub fn capsule(a: Vec2<Fx>, b: Vec2<Fx>, radius: Fx) -> Result<Self, GeometryError> {
-        let capsule = Geometry::Capsule { a, b, radius };
+    pub fn capsule(
+        a: impl Into<Vec2<Fx>>,
+        b: impl Into<Vec2<Fx>>,
+        radius: Fx,
+    ) -> Result<Self, GeometryError> {
+        let capsule = Geometry::Capsule { a: a.into(), b: b.into(), radius };
         capsule.validate().map(|()| capsule)
     }
 

@@ -145,7 +145,8 @@ impl Polygon {
     ///
     /// # Errors
     /// When a vertex leaves the range.
-    pub fn translated(&self, by: Vec2<Fx>) -> Result<Self, GeometryError> {
+    pub fn translated(&self, by: impl Into<Vec2<Fx>>) -> Result<Self, GeometryError> {
+        let by = by.into();
         self.mapped(|vertex| vertex + by)
     }
 

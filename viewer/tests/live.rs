@@ -138,7 +138,7 @@ fn going_back_shows_what_was_there() {
 /// A disc of a metre and a half high above the ground, without gravity.
 fn one_disc() -> (Live, BodyId) {
     let disc = ShapeDef::new(Geometry::circle(fx!(0.5)).unwrap());
-    let spawn = Command::Spawn { body: BodyDef::dynamic().position(fx!(0), fx!(2)), shapes: vec![disc] };
+    let spawn = Command::Spawn { body: BodyDef::dynamic().position((fx!(0), fx!(2))), shapes: vec![disc] };
     let config = Config { gravity: Vec2::ZERO, ..Config::default() };
     let mut live = Live::new("one disc", &SandboxSetup { config, commands: vec![spawn] }).unwrap();
     let id = live.world().bodies().next().unwrap().0;
