@@ -18,7 +18,7 @@ fn pile() -> Result<World, WorldError> {
     for (x, y, half_x, half_y) in [(0, -1, 30, 1), (-12, 20, 1, 20), (12, 20, 1, 20)] {
         let wall = Polygon::rectangle(Fx::from_num(half_x), Fx::from_num(half_y))?;
         world.spawn(
-            &BodyDef::fixed().position(Fx::from_num(x), Fx::from_num(y)),
+            &BodyDef::fixed().position((Fx::from_num(x), Fx::from_num(y))),
             &[ShapeDef::new(wall).friction(fx!(0.3))],
         )?;
     }
@@ -30,7 +30,7 @@ fn pile() -> Result<World, WorldError> {
             0 => ShapeDef::new(Geometry::circle(fx!(0.25))?),
             _ => ShapeDef::new(Polygon::square(fx!(0.25))?),
         };
-        world.spawn(&BodyDef::dynamic().position(x, y).never_sleeps(), &[shape.friction(fx!(0.3))])?;
+        world.spawn(&BodyDef::dynamic().position((x, y)).never_sleeps(), &[shape.friction(fx!(0.3))])?;
     }
     Ok(world)
 }

@@ -19,7 +19,7 @@
 //!
 //! let mut world = World::default();
 //! let ball = ShapeDef::new(Geometry::circle(fx!(0.5))?);
-//! let ball = world.spawn(&BodyDef::dynamic().position(fx!(0), fx!(10)), &[ball])?;
+//! let ball = world.spawn(&BodyDef::dynamic().position((fx!(0), fx!(10))), &[ball])?;
 //! let saved = world.save();
 //! world.step();
 //! let hash = world.state_hash();

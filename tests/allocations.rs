@@ -105,10 +105,10 @@ fn joints_with_thresholds_allocate_nothing() {
     let mut above = world.spawn(&BodyDef::fixed(), &[disc]).expect("a valid body");
     let threshold = Threshold { force: Some(fx!(100000)), ..Threshold::NONE };
     for link in 1..=20 {
-        let body = BodyDef::dynamic().position(fx!(0), Fx::from_num(-link));
+        let body = BodyDef::dynamic().position((fx!(0), Fx::from_num(-link)));
         let body = world.spawn(&body, &[disc]).expect("a valid body");
         let joint =
-            JointDef::new(above, body, Revolute::default()).anchor_a(fx!(0), fx!(-1)).threshold(threshold);
+            JointDef::new(above, body, Revolute::default()).anchor_a((fx!(0), fx!(-1))).threshold(threshold);
         world.add_joint(&joint).expect("a valid joint");
         above = body;
     }

@@ -163,7 +163,7 @@ fn jumps_end_at_ceilings_and_pass_platforms_from_below() {
     let links = Chain::new(&platform).one_sided().links().expect("valid");
     world.spawn(&BodyDef::fixed(), &links).expect("valid");
     let ceiling = ShapeDef::new(Polygon::rectangle(fx!(3), fx!(0.5)).expect("valid"));
-    world.spawn(&BodyDef::fixed().position(fx!(0), fx!(5)), &[ceiling]).expect("valid");
+    world.spawn(&BodyDef::fixed().position((fx!(0), fx!(5))), &[ceiling]).expect("valid");
     let mut state = MoverState::at(at(fx!(0), fx!(0.7001)));
     state.velocity.y = fx!(12);
     let mut highest = Fx::MIN;
@@ -184,7 +184,7 @@ fn jumps_end_at_ceilings_and_pass_platforms_from_below() {
 fn one_way_shapes_are_jumped_through_and_stood_upon() {
     let mut world = chain(&[(fx!(-20), fx!(0)), (fx!(20), fx!(0))]);
     let slab = ShapeDef::new(Polygon::rectangle(fx!(2), fx!(0.25)).expect("valid")).one_way(Angle::QUARTER);
-    world.spawn(&BodyDef::fixed().position(fx!(0), fx!(1.5)), &[slab]).expect("valid");
+    world.spawn(&BodyDef::fixed().position((fx!(0), fx!(1.5))), &[slab]).expect("valid");
     let mut state = MoverState::at(at(fx!(0), fx!(0.7001)));
     // A jump of 3 m/s is too slow: the character turns round inside the slab and falls back.
     for (speed, end) in [(fx!(3), fx!(0.7001)), (fx!(8), fx!(2.4501))] {
@@ -213,10 +213,10 @@ fn random_walks_enter_nothing() {
         ];
         for (x, y, w, h) in walls {
             let wall = ShapeDef::new(Polygon::rectangle(w, h).expect("valid"));
-            world.spawn(&BodyDef::fixed().position(x, y), &[wall]).expect("valid");
+            world.spawn(&BodyDef::fixed().position((x, y)), &[wall]).expect("valid");
         }
         for _ in 0..30 {
-            let def = BodyDef::fixed().position(rng.range(fx!(-10), fx!(10)), rng.range(fx!(-10), fx!(10)));
+            let def = BodyDef::fixed().position((rng.range(fx!(-10), fx!(10)), rng.range(fx!(-10), fx!(10))));
             let shape = random_shape(&mut rng);
             world.spawn(&def.angle(rng.angle()), &[ShapeDef::new(shape)]).expect("valid");
         }
@@ -259,7 +259,7 @@ fn a_lift_that_comes_up_takes_the_character_along() {
     let mut world = chain(&[(fx!(-20), fx!(0)), (fx!(20), fx!(0))]);
     let plate = ShapeDef::new(Polygon::rectangle(fx!(2), fx!(0.5)).expect("valid"));
     let lift: BodyId =
-        world.spawn(&BodyDef::kinematic().position(fx!(0), fx!(-0.5)), &[plate]).expect("valid");
+        world.spawn(&BodyDef::kinematic().position((fx!(0), fx!(-0.5))), &[plate]).expect("valid");
     let mover = pill();
     let mut state = MoverState::at(at(fx!(0), fx!(0.7001)));
     for tick in 1..=120_i64 {

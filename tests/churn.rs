@@ -22,7 +22,7 @@ impl Churn {
     fn new() -> Self {
         let mut world = World::default();
         let floor = ShapeDef::new(Polygon::rectangle(fx!(30), fx!(1)).expect("valid"));
-        world.spawn(&BodyDef::fixed().position(fx!(0), fx!(-1)), &[floor]).expect("valid");
+        world.spawn(&BodyDef::fixed().position((fx!(0), fx!(-1))), &[floor]).expect("valid");
         let (alive, gone, gone_shapes, joints) = Default::default();
         Churn { world, rng: Rng::new(9), alive, gone, gone_shapes, joints, spawned: 0 }
     }
@@ -38,9 +38,9 @@ impl Churn {
 
     fn spawn(&mut self) {
         let rng = &mut self.rng;
-        let def = BodyDef::dynamic().position(rng.range(fx!(-25), fx!(25)), rng.range(fx!(0), fx!(30)));
+        let def = BodyDef::dynamic().position((rng.range(fx!(-25), fx!(25)), rng.range(fx!(0), fx!(30))));
         let ball = ShapeDef::new(Geometry::circle(rng.range(fx!(0.1), fx!(0.4))).expect("valid"));
-        let square = ShapeDef::new(Polygon::square(fx!(0.3)).expect("valid")).offset(fx!(0.3), fx!(0));
+        let square = ShapeDef::new(Polygon::square(fx!(0.3)).expect("valid")).offset((fx!(0.3), fx!(0)));
         let id = self.world.spawn(&def.angle(rng.angle()), &[ball, square][..rng.below(2) as usize + 1]);
         self.alive.push(id.expect("valid"));
         self.spawned += 1;

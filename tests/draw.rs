@@ -21,15 +21,15 @@ fn build_scene() -> Result<World, WorldError> {
     let gravity = Vec2::new(fx!(1), fx!(-10));
     let mut world = World::new(Config { gravity, sleeping: false, ..Config::default() })?;
     let slab = ShapeDef::new(Polygon::rectangle(fx!(100), fx!(1))?);
-    world.spawn(&BodyDef::fixed().position(fx!(0), fx!(-1)), &[slab])?;
+    world.spawn(&BodyDef::fixed().position((fx!(0), fx!(-1))), &[slab])?;
     let crate_ = ShapeDef::new(Polygon::square(fx!(0.5))?);
-    world.spawn(&BodyDef::dynamic().position(fx!(0), fx!(0.5)), &[crate_])?;
-    let post = world.spawn(&BodyDef::fixed().position(fx!(3), fx!(4)), &[])?;
+    world.spawn(&BodyDef::dynamic().position((fx!(0), fx!(0.5))), &[crate_])?;
+    let post = world.spawn(&BodyDef::fixed().position((fx!(3), fx!(4))), &[])?;
     let bob = ShapeDef::new(Geometry::circle(fx!(0.25))?);
-    let bob = world.spawn(&BodyDef::dynamic().position(fx!(4.5), fx!(4)), &[bob])?;
-    world.add_joint(&JointDef::new(post, bob, Revolute::new()).anchor_b(fx!(-1.5), fx!(0)))?;
+    let bob = world.spawn(&BodyDef::dynamic().position((fx!(4.5), fx!(4))), &[bob])?;
+    world.add_joint(&JointDef::new(post, bob, Revolute::new()).anchor_b((fx!(-1.5), fx!(0))))?;
     let lift = ShapeDef::new(Polygon::rectangle(fx!(0.5), fx!(0.1))?.rounded(fx!(0.1))?);
-    let lift_def = BodyDef::kinematic().position(fx!(-3), fx!(1)).velocity(fx!(0), fx!(1));
+    let lift_def = BodyDef::kinematic().position((fx!(-3), fx!(1))).velocity((fx!(0), fx!(1)));
     world.spawn(&lift_def, &[lift])?;
     for _ in 0..60 {
         world.step();
@@ -111,7 +111,7 @@ fn a_point_that_only_may_touch_is_told_apart() {
     let floor = Geometry::segment(Vec2::new(fx!(-5), fx!(0)), Vec2::new(fx!(5), fx!(0))).unwrap();
     world.spawn(&BodyDef::fixed(), &[ShapeDef::new(floor)]).unwrap();
     let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).unwrap());
-    let falling = BodyDef::dynamic().position(fx!(0), fx!(0.75)).velocity(fx!(0), fx!(-30));
+    let falling = BodyDef::dynamic().position((fx!(0), fx!(0.75))).velocity((fx!(0), fx!(-30)));
     world.spawn(&falling, &[ball]).unwrap();
     world.step();
     let found = primitives(&world, Layers::ALL);
@@ -195,7 +195,7 @@ fn the_fit_holds_what_matters() {
     assert!(window.upper.x - window.lower.x < fx!(15), "expected less than the whole ground: {window:?}");
 
     let runaway = ShapeDef::new(Geometry::circle(fx!(1)).unwrap());
-    world.spawn(&BodyDef::dynamic().position(fx!(0), fx!(-1000000)), &[runaway]).unwrap();
+    world.spawn(&BodyDef::dynamic().position((fx!(0), fx!(-1000000))), &[runaway]).unwrap();
     assert_eq!(fit(&world), window);
 }
 
@@ -206,7 +206,7 @@ fn the_fit_shows_the_ground_below_what_falls() {
     world.spawn(&BodyDef::fixed(), &[ShapeDef::new(slope)]).unwrap();
     assert!(fit(&world).contains_point(Vec2::ZERO));
     let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).unwrap());
-    let def = BodyDef::dynamic().position(fx!(70), fx!(9)).angle(Angle::EIGHTH);
+    let def = BodyDef::dynamic().position((fx!(70), fx!(9))).angle(Angle::EIGHTH);
     world.spawn(&def, &[ball]).unwrap();
     let window = fit(&world);
     assert!(window.contains_point(Vec2::new(fx!(70), fx!(0))), "{window:?}");

@@ -53,7 +53,7 @@ fn a_touch_between_two_ticks_is_told() {
         let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).expect("valid")).restitution(fx!(0.5));
         let speed = rng.range(fx!(5), fx!(80));
         let thrown =
-            BodyDef::dynamic().position(fx!(-5), rng.range(fx!(-0.9), fx!(0.9))).velocity(speed, fx!(0));
+            BodyDef::dynamic().position((fx!(-5), rng.range(fx!(-0.9), fx!(0.9)))).velocity((speed, fx!(0)));
         let a = world.spawn(&thrown, &[ball]).expect("valid");
         world.spawn(&BodyDef::dynamic(), &[ball]).expect("valid");
         let mut told = 0;
@@ -72,9 +72,9 @@ fn a_touch_between_two_ticks_is_told() {
 fn a_removed_shape_ends_its_touches_at_the_next_tick() {
     let mut world = World::default();
     let floor = ShapeDef::new(Polygon::rectangle(fx!(5), fx!(1)).expect("valid"));
-    world.spawn(&BodyDef::fixed().position(fx!(0), fx!(-1)), &[floor]).expect("valid");
+    world.spawn(&BodyDef::fixed().position((fx!(0), fx!(-1))), &[floor]).expect("valid");
     let square = ShapeDef::new(Polygon::square(fx!(0.5)).expect("valid"));
-    let body = world.spawn(&BodyDef::dynamic().position(fx!(0), fx!(0.5)), &[square]).expect("valid");
+    let body = world.spawn(&BodyDef::dynamic().position((fx!(0), fx!(0.5))), &[square]).expect("valid");
     let mut touching = BTreeSet::new();
     for _ in 0..30 {
         world.step();

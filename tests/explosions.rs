@@ -17,7 +17,7 @@ fn weightless() -> World {
 /// A body of 2 kg with a radius of gyration of 1 m.
 fn spawn(world: &mut World, shape: impl Into<Geometry>, x: Fx, y: Fx) -> BodyId {
     let mass = MassSource::Given { mass: fx!(2), centre: Vec2::ZERO, gyration: fx!(1) };
-    world.spawn(&BodyDef::dynamic().position(x, y).mass(mass), &[ShapeDef::new(shape)]).expect("valid")
+    world.spawn(&BodyDef::dynamic().position((x, y)).mass(mass), &[ShapeDef::new(shape)]).expect("valid")
 }
 
 fn velocity(world: &World, id: BodyId) -> Vec2<Fx> {
@@ -103,8 +103,9 @@ fn from_within_a_shape_it_pushes_towards_its_middle() {
 fn only_enabled_dynamic_bodies_of_the_mask_are_pushed_and_they_wake() {
     let mut world = weightless();
     let ball = ShapeDef::new(Geometry::circle(fx!(0.25)).expect("valid"));
-    let mut spawn =
-        |def: BodyDef, shape: ShapeDef| world.spawn(&def.position(fx!(1), fx!(0)), &[shape]).expect("valid");
+    let mut spawn = |def: BodyDef, shape: ShapeDef| {
+        world.spawn(&def.position((fx!(1), fx!(0))), &[shape]).expect("valid")
+    };
     let other = Filter { category: 2, mask: 0, group: 0 };
     let fixed = spawn(BodyDef::fixed(), ball);
     let kinematic = spawn(BodyDef::kinematic(), ball);
@@ -140,7 +141,7 @@ fn what_is_out_of_range_is_refused_and_extremes_stay_in_range() {
         let mass = MassSource::Given { mass: fx!(0.00001), centre: Vec2::ZERO, gyration: fx!(0.002) };
         let place = |rng: &mut Rng| rng.range(fx!(-100), fx!(100));
         let shape = ShapeDef::new(Polygon::rectangle(fx!(100), fx!(0.01)).expect("valid"));
-        let def = BodyDef::dynamic().position(place(&mut rng), place(&mut rng)).angle(rng.angle());
+        let def = BodyDef::dynamic().position((place(&mut rng), place(&mut rng))).angle(rng.angle());
         let def = if i % 2 == 0 { def.mass(mass) } else { def };
         world.spawn(&def, &[shape]).expect("valid");
     }

@@ -46,7 +46,7 @@ fn a_body_put_back_inside_the_world_takes_its_shapes_along() {
     // The centre of mass is outside the world and is clamped, although the body does not move.
     let mut world = weightless();
     let mass = MassSource::Given { mass: fx!(1), centre: Vec2::new(fx!(10), fx!(0)), gyration: fx!(1) };
-    let body = BodyDef::dynamic().position(WORLD_EXTENT_MAX, fx!(0)).mass(mass);
+    let body = BodyDef::dynamic().position((WORLD_EXTENT_MAX, fx!(0))).mass(mass);
     world.spawn(&body, &[ShapeDef::new(Geometry::circle(fx!(1)).unwrap())]).unwrap();
     caches_decide_nothing(&mut world, 3);
 }
@@ -56,9 +56,9 @@ fn a_removed_shape_moves_the_others_as_their_caches_say() {
     // The centre of mass moves, and rounding moves the remaining shapes with it.
     let mut world = weightless();
     for turn in 1..40 {
-        let ball = |x, y| ShapeDef::new(Geometry::circle(fx!(0.3)).unwrap()).offset(x, y);
+        let ball = |x, y| ShapeDef::new(Geometry::circle(fx!(0.3)).unwrap()).offset((x, y));
         let shapes = [ball(fx!(0.1), fx!(0.7)), ball(fx!(1.3), fx!(0.2)), ball(fx!(-0.9), fx!(-0.35))];
-        let body = BodyDef::dynamic().angle(Angle::from_bits(turn * 91_234_567)).velocity(fx!(50), fx!(3));
+        let body = BodyDef::dynamic().angle(Angle::from_bits(turn * 91_234_567)).velocity((fx!(50), fx!(3)));
         let body = world.spawn(&body, &shapes).unwrap();
         world.step();
         let first = world.body(body).unwrap().shapes()[0];
@@ -108,9 +108,9 @@ fn a_large_ball_is_pushed_out_of_the_floor() {
     // Distances of more than 16 m saturated, and so did the radius; their difference was then a separation of zero.
     let mut world = weightless();
     let floor = ShapeDef::new(Polygon::rectangle(fx!(100), fx!(50)).unwrap());
-    world.spawn(&BodyDef::fixed().position(fx!(0), fx!(-50)), &[floor]).unwrap();
+    world.spawn(&BodyDef::fixed().position((fx!(0), fx!(-50))), &[floor]).unwrap();
     let ball = ShapeDef::new(Geometry::circle(fx!(40)).unwrap());
-    let ball = world.spawn(&BodyDef::dynamic().position(fx!(0), fx!(35)), &[ball]).unwrap();
+    let ball = world.spawn(&BodyDef::dynamic().position((fx!(0), fx!(35))), &[ball]).unwrap();
     for _ in 0..300 {
         world.step();
     }
@@ -122,10 +122,10 @@ fn a_large_ball_is_pushed_out_of_the_floor() {
 fn a_large_ball_beside_a_corner_does_not_touch_it() {
     let mut world = weightless();
     let block = ShapeDef::new(Polygon::square(fx!(10)).unwrap());
-    world.spawn(&BodyDef::fixed().position(fx!(-10), fx!(-10)), &[block]).unwrap();
+    world.spawn(&BodyDef::fixed().position((fx!(-10), fx!(-10))), &[block]).unwrap();
     let ball = ShapeDef::new(Geometry::circle(fx!(50)).unwrap());
     // 63 m from the corner, although the AABBs overlap.
-    world.spawn(&BodyDef::dynamic().position(fx!(45), fx!(45)), &[ball]).unwrap();
+    world.spawn(&BodyDef::dynamic().position((fx!(45), fx!(45))), &[ball]).unwrap();
     world.step();
     assert!(world.events().contact_begin.is_empty(), "expected no contact at a distance of 13 m");
 }
@@ -136,7 +136,7 @@ fn a_ball_deep_inside_a_large_block_leaves_by_the_nearest_face() {
     let block = ShapeDef::new(Polygon::square(fx!(100)).unwrap());
     world.spawn(&BodyDef::fixed(), &[block]).unwrap();
     let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).unwrap());
-    let ball = world.spawn(&BodyDef::dynamic().position(fx!(70), fx!(0)), &[ball]).unwrap();
+    let ball = world.spawn(&BodyDef::dynamic().position((fx!(70), fx!(0))), &[ball]).unwrap();
     for _ in 0..60 {
         world.step();
     }
@@ -151,12 +151,12 @@ fn impulses_that_grow_over_sub_steps_are_no_overflow() {
     let gravity = Vec2::new(fx!(0), fx!(-100000));
     let mut world = World::new(Config { gravity, tick_rate: 20, ..Config::default() }).unwrap();
     let floor = ShapeDef::new(Polygon::rectangle(fx!(20), fx!(1)).unwrap());
-    world.spawn(&BodyDef::fixed().position(fx!(0), fx!(-1)), &[floor]).unwrap();
+    world.spawn(&BodyDef::fixed().position((fx!(0), fx!(-1))), &[floor]).unwrap();
     let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).unwrap());
     for i in 0..40 {
         let mass = if i % 2 == 0 { fx!(1000) } else { fx!(1) };
         let mass = MassSource::Given { mass, centre: Vec2::ZERO, gyration: fx!(0.3) };
-        let body = BodyDef::dynamic().position(fx!(0), Fx::from(i) / 10).mass(mass);
+        let body = BodyDef::dynamic().position((fx!(0), Fx::from(i) / 10)).mass(mass);
         world.spawn(&body, &[ball]).unwrap();
     }
     for _ in 0..60 {
@@ -182,7 +182,7 @@ fn turns_and_levers_at_their_limits_are_no_overflow() {
             let box_ = ShapeDef::new(Polygon::square(fx!(0.5)).unwrap()).friction(fx!(0));
             let centre = Vec2::new(fx!(0), fx!(128) * arm);
             let mass = MassSource::Given { mass: fx!(1), centre, gyration: fx!(0.002) };
-            let body = BodyDef::dynamic().position(fx!(0.5) * x, fx!(0)).velocity(fx!(20) * x, fx!(0));
+            let body = BodyDef::dynamic().position((fx!(0.5) * x, fx!(0))).velocity((fx!(20) * x, fx!(0)));
             world.spawn(&body.mass(mass).angular_velocity(fx!(199000) * turn), &[box_]).unwrap();
         }
         for _ in 0..3 {
@@ -199,9 +199,9 @@ fn joints_that_pull_with_all_they_have_leave_no_velocity_at_the_end_of_its_forma
         let mut world = weightless();
         let post = world.spawn(&BodyDef::fixed(), &[]).unwrap();
         let mass = MassSource::Given { mass: fx!(1), centre: Vec2::ZERO, gyration: fx!(0.4) };
-        let body = BodyDef::dynamic().position(fx!(400), fx!(400)).angle(Angle::from_bits(turn << 26));
-        let body = world.spawn(&body.velocity(fx!(-280), fx!(-280)).mass(mass), &[]).unwrap();
-        world.add_joint(&JointDef::new(post, body, Revolute::new()).anchor_b(fx!(4), fx!(0))).unwrap();
+        let body = BodyDef::dynamic().position((fx!(400), fx!(400))).angle(Angle::from_bits(turn << 26));
+        let body = world.spawn(&body.velocity((fx!(-280), fx!(-280))).mass(mass), &[]).unwrap();
+        world.add_joint(&JointDef::new(post, body, Revolute::new()).anchor_b((fx!(4), fx!(0)))).unwrap();
         for _ in 0..20 {
             world.step();
             world.validate().unwrap();
@@ -230,7 +230,7 @@ fn overwrite(bytes: &mut [u8], old: Fx, new: Fx) {
 fn a_snapshot_with_an_impossible_shape_is_refused_before_its_mass_is_summed() {
     let mut world = weightless();
     let ball =
-        ShapeDef::new(Geometry::circle(fx!(0.5)).unwrap()).offset(fx!(3.25), fx!(0)).density(fx!(7.125));
+        ShapeDef::new(Geometry::circle(fx!(0.5)).unwrap()).offset((fx!(3.25), fx!(0))).density(fx!(7.125));
     world.spawn(&BodyDef::dynamic(), &[ball, ball]).unwrap();
     for (old, new) in [(fx!(3.25), Fx::MAX), (fx!(3.25), Fx::MIN), (fx!(7.125), Fx::MAX)] {
         assert!(World::from_bytes(&forged(&world, |bytes| overwrite(bytes, old, new))).is_err());
@@ -252,7 +252,7 @@ fn a_snapshot_that_hides_the_floor_from_the_broad_phase_is_refused() {
 fn a_snapshot_of_a_kinematic_body_that_rests_and_moves_is_refused() {
     // When such a body stopped, its contacts were kept a tick longer than in a world without caches.
     let mut world = weightless();
-    world.spawn(&BodyDef::kinematic().position(fx!(3.25), fx!(0)), &[]).unwrap();
+    world.spawn(&BodyDef::kinematic().position((fx!(3.25), fx!(0))), &[]).unwrap();
     world.step();
     let push = |bytes: &mut Vec<u8>| {
         let place = fx!(3.25).to_bits().to_le_bytes();
@@ -297,9 +297,9 @@ fn a_shape_that_comes_wakes_who_lies_where_it_comes() {
     let mut world = World::default();
     let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).unwrap());
     let ground = world.spawn(&BodyDef::fixed(), &[ball]).unwrap();
-    let [near, far] = [fx!(10), fx!(20)].map(|x| BodyDef::dynamic().position(x, fx!(0)).asleep());
+    let [near, far] = [fx!(10), fx!(20)].map(|x| BodyDef::dynamic().position((x, fx!(0))).asleep());
     let (near, far) = (world.spawn(&near, &[ball]).unwrap(), world.spawn(&far, &[ball]).unwrap());
-    world.add_shape(ground, &ball.offset(fx!(10), fx!(0.5))).unwrap();
+    world.add_shape(ground, &ball.offset((fx!(10), fx!(0.5)))).unwrap();
     let sleeps = |body| world.body(body).unwrap().is_asleep();
     assert!(!sleeps(near) && sleeps(far));
 }
@@ -341,10 +341,11 @@ fn contacts_that_have_parted_do_not_rest() {
         let line = Geometry::segment(Vec2::new(fx!(-8), fx!(0)), Vec2::new(fx!(8), fx!(-1))).unwrap();
         world.spawn(&BodyDef::fixed(), &[ShapeDef::new(line)]).unwrap();
         let (a, b) = (Vec2::new(fx!(-0.53), fx!(-0.53)), Vec2::new(fx!(0.453), fx!(0.083)));
-        let pill = ShapeDef::new(Geometry::capsule(a, b, fx!(0.493)).unwrap()).offset(fx!(-0.8), fx!(0.662));
+        let pill =
+            ShapeDef::new(Geometry::capsule(a, b, fx!(0.493)).unwrap()).offset((fx!(-0.8), fx!(0.662)));
         for _ in 0..12 {
             let (x, y) = (rng.range(fx!(-2), fx!(2)), rng.range(fx!(-1), fx!(2)));
-            world.spawn(&BodyDef::dynamic().position(x, y).angle(rng.angle()), &[pill]).unwrap();
+            world.spawn(&BodyDef::dynamic().position((x, y)).angle(rng.angle()), &[pill]).unwrap();
         }
         for _ in 0..3 {
             world.step();
@@ -364,7 +365,7 @@ fn a_body_that_a_joint_drags_out_of_range_is_not_slow() {
         let mut world = World::new(config).unwrap();
         let pin = world.spawn(&BodyDef::fixed(), &[]).unwrap();
         let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).unwrap());
-        let def = BodyDef::dynamic().position(fx!(40), fx!(40)).lock_rotation();
+        let def = BodyDef::dynamic().position((fx!(40), fx!(40))).lock_rotation();
         let ball = world.spawn(&def, &[ball]).unwrap();
         world.add_joint(&JointDef::new(pin, ball, Revolute::new())).unwrap();
         caches_decide_nothing(&mut world, 20);
@@ -379,14 +380,14 @@ fn a_shape_in_the_slot_of_one_that_slept_has_its_own_surface() {
     // next tick.
     let mut world = World::default();
     let ground = ShapeDef::new(Polygon::rectangle(fx!(20), fx!(1)).unwrap());
-    world.spawn(&BodyDef::fixed().position(fx!(0), fx!(-1)), &[ground]).unwrap();
+    world.spawn(&BodyDef::fixed().position((fx!(0), fx!(-1))), &[ground]).unwrap();
     let square = |friction| ShapeDef::new(Polygon::square(fx!(0.5)).unwrap()).friction(friction);
-    let def = BodyDef::dynamic().position(fx!(0), fx!(0.5));
+    let def = BodyDef::dynamic().position((fx!(0), fx!(0.5)));
     let rough = world.spawn(&def, &[square(fx!(1))]).unwrap();
     (0..30).for_each(|_| world.step());
     world.sleep(rough).unwrap();
     world.despawn(rough).unwrap();
-    world.spawn(&def.velocity(fx!(5), fx!(0)), &[square(fx!(0))]).unwrap();
+    world.spawn(&def.velocity((fx!(5), fx!(0))), &[square(fx!(0))]).unwrap();
     caches_decide_nothing(&mut world, 2);
 }
 

@@ -90,7 +90,7 @@ fn body(rng: &mut Rng, world: &mut World) -> BodyId {
         1 => BodyDef::fixed(),
         _ => BodyDef::dynamic().mass(MassSource::Given { mass, centre, gyration }),
     };
-    let def = def.position(signed(rng, at()), signed(rng, at())).angle(rng.angle());
+    let def = def.position((signed(rng, at()), signed(rng, at()))).angle(rng.angle());
     world.spawn(&def, &[]).expect("valid")
 }
 
@@ -105,8 +105,8 @@ fn no_joint_breaks_the_world() {
             let pick = |rng: &mut Rng| bodies[rng.below(5) as usize];
             let reach = fx!(128);
             let def = JointDef::new(pick(&mut rng), pick(&mut rng), kind(&mut rng))
-                .anchor_a(signed(&mut rng, reach), signed(&mut rng, reach))
-                .anchor_b(signed(&mut rng, reach), signed(&mut rng, reach))
+                .anchor_a((signed(&mut rng, reach), signed(&mut rng, reach)))
+                .anchor_b((signed(&mut rng, reach), signed(&mut rng, reach)))
                 .angle_a(rng.angle());
             joints += u32::from(world.add_joint(&def).is_ok());
         }

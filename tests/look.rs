@@ -14,12 +14,12 @@ fn empty() -> World {
 
 fn slab(world: &mut World) -> BodyId {
     let slab = ShapeDef::new(Polygon::rectangle(fx!(50), fx!(1)).unwrap());
-    world.spawn(&BodyDef::fixed().position(fx!(0), fx!(-1)), &[slab]).unwrap()
+    world.spawn(&BodyDef::fixed().position((fx!(0), fx!(-1))), &[slab]).unwrap()
 }
 
 fn square(world: &mut World, x: Fx, y: Fx) -> BodyId {
     let square = ShapeDef::new(Polygon::square(fx!(0.5)).unwrap());
-    world.spawn(&BodyDef::dynamic().position(x, y), &[square]).unwrap()
+    world.spawn(&BodyDef::dynamic().position((x, y)), &[square]).unwrap()
 }
 
 fn run(world: &mut World, ticks: u32) {
@@ -81,7 +81,7 @@ fn friction_is_what_slows_a_sliding_box() {
     let mut world = empty();
     slab(&mut world);
     let square = ShapeDef::new(Polygon::square(fx!(0.5)).unwrap());
-    let def = BodyDef::dynamic().position(fx!(0), fx!(0.5)).velocity(fx!(10), fx!(0));
+    let def = BodyDef::dynamic().position((fx!(0), fx!(0.5))).velocity((fx!(10), fx!(0)));
     let body = world.spawn(&def, &[square]).unwrap();
     run(&mut world, 20);
     let (before, mass) = (world.body(body).unwrap().velocity().x, world.body(body).unwrap().mass());
@@ -150,7 +150,7 @@ fn the_solver_has_touching_contacts_in_independent_groups() {
 fn a_body_with_too_many_contacts_overflows() {
     let mut world = empty();
     let plate = ShapeDef::new(Polygon::rectangle(fx!(40), fx!(0.5)).unwrap());
-    world.spawn(&BodyDef::dynamic().position(fx!(0), fx!(-0.5)), &[plate]).unwrap();
+    world.spawn(&BodyDef::dynamic().position((fx!(0), fx!(-0.5))), &[plate]).unwrap();
     for i in 0..30 {
         square(&mut world, Fx::from_num(i * 2) - fx!(30), fx!(0.49));
     }
@@ -164,7 +164,7 @@ fn sensors_are_not_solved() {
     let mut world = empty();
     slab(&mut world);
     let ghost = ShapeDef::new(Geometry::circle(fx!(0.5)).unwrap()).sensor();
-    world.spawn(&BodyDef::dynamic().position(fx!(0), fx!(0.4)), &[ghost]).unwrap();
+    world.spawn(&BodyDef::dynamic().position((fx!(0), fx!(0.4))), &[ghost]).unwrap();
     world.step();
     assert!(world.contacts().all(|contact| contact.solver_colour().is_none()));
 }

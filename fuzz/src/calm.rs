@@ -55,12 +55,12 @@ fn line(a: (Fx, Fx), b: (Fx, Fx)) -> ShapeDef {
 }
 
 fn rectangle(half: (Fx, Fx), x: Fx, y: Fx) -> ShapeDef {
-    ShapeDef::new(lockstep2d::body::Polygon::rectangle(half.0, half.1).expect("a valid size")).offset(x, y)
+    ShapeDef::new(lockstep2d::body::Polygon::rectangle(half.0, half.1).expect("a valid size")).offset((x, y))
 }
 
 fn ground(source: &mut Source<'_>, middle: Vec2<Fx>, commands: &mut Vec<Command>) {
     let at = middle + Vec2::new(Fx::ZERO, FLOOR);
-    let fixed = BodyDef::fixed().position(at.x, at.y);
+    let fixed = BodyDef::fixed().position(at);
     commands.push(match source.below(7) {
         5 => spawn(fixed, &calm_chain(source)),
         6 => spawn(fixed, &belt(source)),
@@ -84,7 +84,7 @@ fn ground(source: &mut Source<'_>, middle: Vec2<Fx>, commands: &mut Vec<Command>
                 rectangle(standing, fx!(-3.75), fx!(0)),
                 rectangle(standing, fx!(3.75), fx!(0)),
             ];
-            let drum = BodyDef::kinematic().position(at.x, at.y + fx!(3));
+            let drum = BodyDef::kinematic().position((at.x, at.y + fx!(3)));
             spawn(drum.angular_velocity(source.thousandths(-1500, 1500)), &walls)
         }
     });
@@ -123,7 +123,7 @@ pub(crate) fn pile(source: &mut Source<'_>, middle: Vec2<Fx>, commands: &mut Vec
         let (column, row) = (Fx::from(index % columns), Fx::from(index / columns));
         let x = fx_mul(column, half.x * 2 + gap) + rng.range(-wobble, wobble.max(Fx::DELTA));
         let y = half.y + fx_mul(row, half.y * 2 + gap);
-        let mut body = BodyDef::dynamic().position(corner.x + x, corner.y + y);
+        let mut body = BodyDef::dynamic().position((corner.x + x, corner.y + y));
         if turned {
             body = body.angle(rng.angle());
         }
@@ -146,15 +146,14 @@ fn chain(source: &mut Source<'_>, middle: Vec2<Fx>, commands: &mut Vec<Command>)
     let mut before = None;
     if !source.one_in(4) {
         before = Some((slot(commands), Vec2::ZERO));
-        commands.push(spawn(BodyDef::fixed().position(start.x, start.y), &[]));
+        commands.push(spawn(BodyDef::fixed().position(start), &[]));
     }
     for link in 0..source.pick(&[5i32, 2, 10, 3]) {
         let body = slot(commands);
         let x = start.x + fx_mul(half.x, Fx::from(2 * link + 1));
-        commands.push(spawn(BodyDef::dynamic().position(x, start.y), &[shape]));
+        commands.push(spawn(BodyDef::dynamic().position((x, start.y)), &[shape]));
         if let Some((other, anchor)) = before {
-            let joint =
-                JointDef::new(other, body, kind).anchor_a(anchor.x, anchor.y).anchor_b(-half.x, Fx::ZERO);
+            let joint = JointDef::new(other, body, kind).anchor_a(anchor).anchor_b((-half.x, Fx::ZERO));
             commands.push(Command::AddJoint { joint });
         }
         before = Some((body, Vec2::new(half.x, Fx::ZERO)));
@@ -179,10 +178,10 @@ pub fn command(
         0..=2 => {
             let kind =
                 source.pick(&[BodyKind::Dynamic, BodyKind::Dynamic, BodyKind::Dynamic, BodyKind::Kinematic]);
-            let mut body = BodyDef::new(kind).position(above.x, above.y).angle(source.angle());
+            let mut body = BodyDef::new(kind).position(above).angle(source.angle());
             body.settings = settings::calm_settings(source);
             let velocity = vector(source, 4000);
-            spawn(body.velocity(velocity.x, velocity.y), &[calm_shape(source)])
+            spawn(body.velocity(velocity), &[calm_shape(source)])
         }
         3 => Command::Despawn { body },
         4 => {
@@ -233,7 +232,7 @@ fn neighbours(source: &mut Source<'_>, world: &World, body: BodyId) -> Option<Jo
     let anchor = |body: &lockstep2d::body::Body| body.transform().apply_inverse(between);
     let (a, b) = (anchor(here), anchor(there));
     let mut joint =
-        JointDef::new(body, other, joints::calm_kind(source)).anchor_a(a.x, a.y).anchor_b(b.x, b.y);
+        JointDef::new(body, other, joints::calm_kind(source)).anchor_a(a).anchor_b(b);
     // The rest angle is the current one, so that joints that hold the angle have nothing to correct.
     joint.frame_b.angle = here.angle() - there.angle();
     Some(joints::finish(source, joint))

@@ -103,7 +103,7 @@ impl Generator {
             return commands;
         }
         let position = self.middle + Vec2::new(fx!(0), fx!(-1));
-        let fixed = BodyDef::fixed().position(position.x, position.y);
+        let fixed = BodyDef::fixed().position(position);
         match source.below(5) {
             0..=2 => {
                 let floor = ShapeDef::new(lockstep2d::body::Geometry::Segment {
@@ -230,7 +230,7 @@ impl Generator {
         for _ in 0..count {
             let offset = Vec2::new(rng.range(-spread, spread), rng.range(-spread, spread));
             let (position, angle) = (centre + offset, rng.angle());
-            let mut def = BodyDef::dynamic().position(position.x, position.y);
+            let mut def = BodyDef::dynamic().position(position);
             if spread > Fx::ONE {
                 def = def.angle(angle);
             }

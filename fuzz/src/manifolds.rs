@@ -59,8 +59,8 @@ pub fn run(bytes: &[u8]) -> Seen {
     };
     let at_b = at_a + between;
     let (angle_a, angle_b) = (source.angle(), source.angle());
-    let a = BodyDef::fixed().position(at_a.x, at_a.y).angle(angle_a);
-    let b = BodyDef::dynamic().position(at_b.x, at_b.y).angle(angle_b);
+    let a = BodyDef::fixed().position(at_a).angle(angle_a);
+    let b = BodyDef::dynamic().position(at_b).angle(angle_b);
     let shapes = [(a, def_a), (b, def_b)].map(|(body, geometry)| {
         let body = world.spawn(&body, &[ShapeDef::new(geometry)]).ok()?;
         Some(world.body(body)?.shapes()[0])

@@ -155,7 +155,7 @@ fn add_drum(scene: &mut Builder, centre: Vec2<Fx>, bodies: u32) -> Result<(), Wo
     let half_grid = apart * i64::from(side) / 2;
     let half = half_grid * fx!(1.45) + fx!(0.5);
     let wall = |hx: Fx, hy: Fx, x: Fx, y: Fx| {
-        Polygon::rectangle(hx, hy).map(|wall| ShapeDef::new(wall).offset(x, y))
+        Polygon::rectangle(hx, hy).map(|wall| ShapeDef::new(wall).offset((x, y)))
     };
     let walls = [
         wall(fx!(0.5), half, half, fx!(0))?,
@@ -164,7 +164,7 @@ fn add_drum(scene: &mut Builder, centre: Vec2<Fx>, bodies: u32) -> Result<(), Wo
         wall(half, fx!(0.5), fx!(0), -half)?,
     ];
     let turning = lockstep2d::math::sqrt(fx!(2) / half).unwrap_or(fx!(0.4));
-    let drum = BodyDef::kinematic().position(centre.x, centre.y).angle(Angle::from_degrees(fx!(30)));
+    let drum = BodyDef::kinematic().position(centre).angle(Angle::from_degrees(fx!(30)));
     scene.spawn(drum.angular_velocity(turning), &walls)?;
     let at = |index: u32| Fx::from_num(index) * apart + apart / 2 - half_grid;
     let place = |i: u32| centre + Vec2::new(at(i % side), at(i / side));

@@ -93,7 +93,7 @@ fn part(index: u8, count: u8) -> Angle {
 }
 
 fn at(def: BodyDef, place: Vec2<Fx>, role: Role) -> BodyDef {
-    def.position(place.x, place.y).user_data(role.user_data())
+    def.position(place).user_data(role.user_data())
 }
 
 /// Builds the world before the first round: everything except players and crates.
@@ -148,7 +148,7 @@ fn hang_flail(world: &mut World, bar: BodyId, side: Fx) -> Result<(), WorldError
         let def = BodyDef::dynamic().never_sleeps().angular_damping(fx!(1));
         let outer = world.spawn(&at(def, middle + Vec2::new(reach, fx!(0)), Role::Mill), &[shape])?;
         let hinge = JointDef::new(inner, outer, Revolute::new());
-        let hinge = hinge.anchor_a(fx_mul(side, anchor), fx!(0)).anchor_b(fx_mul(side, -half), fx!(0));
+        let hinge = hinge.anchor_a((fx_mul(side, anchor), fx!(0))).anchor_b((fx_mul(side, -half), fx!(0)));
         world.add_joint(&hinge)?;
         (inner, anchor) = (outer, half);
     }

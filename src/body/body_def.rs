@@ -27,7 +27,7 @@ pub enum BodyKind {
 ///
 /// ```
 /// use lockstep2d::{body::BodyDef, fx};
-/// let ball = BodyDef::dynamic().position(fx!(0), fx!(10)).velocity(fx!(2), fx!(0));
+/// let ball = BodyDef::dynamic().position((fx!(0), fx!(10))).velocity((fx!(2), fx!(0)));
 /// let ground = BodyDef::fixed();
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -99,8 +99,8 @@ impl BodyDef {
 
     /// Sets the origin in the world, in metres.
     #[must_use]
-    pub const fn position(mut self, x: Fx, y: Fx) -> Self {
-        self.position = Vec2::new(x, y);
+    pub fn position(mut self, position: impl Into<Vec2<Fx>>) -> Self {
+        self.position = position.into();
         self
     }
 
@@ -113,8 +113,8 @@ impl BodyDef {
 
     /// Sets the velocity of the centre of mass, in m/s.
     #[must_use]
-    pub const fn velocity(mut self, x: Fx, y: Fx) -> Self {
-        self.velocity = Vec2::new(x, y);
+    pub fn velocity(mut self, velocity: impl Into<Vec2<Fx>>) -> Self {
+        self.velocity = velocity.into();
         self
     }
 

@@ -85,8 +85,8 @@ impl Geometry {
     ///
     /// # Errors
     /// If the segment is shorter than 2 mm or leaves the world.
-    pub fn segment(a: Vec2<Fx>, b: Vec2<Fx>) -> Result<Self, GeometryError> {
-        let segment = Geometry::Segment { a, b };
+    pub fn segment(a: impl Into<Vec2<Fx>>, b: impl Into<Vec2<Fx>>) -> Result<Self, GeometryError> {
+        let segment = Geometry::Segment { a: a.into(), b: b.into() };
         segment.validate().map(|()| segment)
     }
 
@@ -95,8 +95,12 @@ impl Geometry {
     /// # Errors
     /// If the centres are closer than 2 mm, the radius is below 2 mm, or the capsule extends further than 110 m on some
     /// axis.
-    pub fn capsule(a: Vec2<Fx>, b: Vec2<Fx>, radius: Fx) -> Result<Self, GeometryError> {
-        let capsule = Geometry::Capsule { a, b, radius };
+    pub fn capsule(
+        a: impl Into<Vec2<Fx>>,
+        b: impl Into<Vec2<Fx>>,
+        radius: Fx,
+    ) -> Result<Self, GeometryError> {
+        let capsule = Geometry::Capsule { a: a.into(), b: b.into(), radius };
         capsule.validate().map(|()| capsule)
     }
 

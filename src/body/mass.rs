@@ -218,7 +218,7 @@ mod tests {
         // k^2 = (w^2 + h^2) / 12 = 5 / 12
         close(fx_mul(properties.gyration, properties.gyration), fx!(5 / 12));
 
-        let disc = ShapeDef::new(Geometry::circle(fx!(2)).unwrap()).offset(fx!(1), fx!(-1));
+        let disc = ShapeDef::new(Geometry::circle(fx!(2)).unwrap()).offset((fx!(1), fx!(-1)));
         let properties = dynamic(&[disc]).unwrap();
         close(properties.mass, fx_mul(fx!(4), PI));
         close(fx_mul(properties.gyration, properties.gyration), fx!(2));
@@ -247,7 +247,7 @@ mod tests {
     #[test]
     fn a_rounded_rail_weighs_its_core_its_sides_and_four_quarter_discs() {
         let rail = Polygon::rectangle(fx!(0.4), fx!(20)).unwrap().rounded(fx!(0.2)).unwrap();
-        let properties = dynamic(&[ShapeDef::new(rail).density(fx!(3)).offset(fx!(1), fx!(2))]).unwrap();
+        let properties = dynamic(&[ShapeDef::new(rail).density(fx!(3)).offset((fx!(1), fx!(2)))]).unwrap();
         // 3 (0.8 * 40 + 0.2 * 81.6 + 0.04 pi); as a `Length`, 0.2 has an error of 5e-8, and so has 0.4.
         let expected = fx!(144.96) + fx_mul(fx!(0.12), PI);
         assert!(
@@ -260,9 +260,9 @@ mod tests {
 
     #[test]
     fn two_halves_weigh_like_the_whole() {
-        let half = |x| ShapeDef::new(Polygon::rectangle(fx!(0.5), fx!(0.5)).unwrap()).offset(x, fx!(4));
+        let half = |x| ShapeDef::new(Polygon::rectangle(fx!(0.5), fx!(0.5)).unwrap()).offset((x, fx!(4)));
         let halves = dynamic(&[half(fx!(-0.5)), half(fx!(0.5))]).unwrap();
-        let whole = ShapeDef::new(Polygon::rectangle(fx!(1), fx!(0.5)).unwrap()).offset(fx!(0), fx!(4));
+        let whole = ShapeDef::new(Polygon::rectangle(fx!(1), fx!(0.5)).unwrap()).offset((fx!(0), fx!(4)));
         let whole = dynamic(&[whole]).unwrap();
         close(halves.mass, whole.mass);
         close(halves.gyration, whole.gyration);

@@ -90,8 +90,8 @@ impl ShapeDef {
 
     /// Sets the centre in the body's frame, in metres.
     #[must_use]
-    pub fn offset(mut self, x: Fx, y: Fx) -> Self {
-        self.offset = Vec2::new(x, y);
+    pub fn offset(mut self, offset: impl Into<Vec2<Fx>>) -> Self {
+        self.offset = offset.into();
         self
     }
 

@@ -353,7 +353,7 @@ mod tests {
     use crate::math::Angle;
 
     fn core_of(geometry: Geometry, origin: Vec2<Fx>) -> Core {
-        let def = BodyDef::fixed().position(fx!(1000000003), fx!(-7)).angle(Angle::QUARTER);
+        let def = BodyDef::fixed().position((fx!(1000000003), fx!(-7))).angle(Angle::QUARTER);
         let body = Body::new(&def, MassProperties::immovable());
         Core::of(&PosedShape::new(&ShapeDef::new(geometry), &body, body.rotation()), origin)
     }

@@ -154,7 +154,7 @@ mod tests {
     use alloc::vec::Vec;
 
     fn posed(geometry: Geometry, position: Vec2<Fx>, angle: Angle) -> PosedShape {
-        let def = BodyDef::fixed().position(position.x, position.y).angle(angle);
+        let def = BodyDef::fixed().position(position).angle(angle);
         let body = Body::new(&def, MassProperties::immovable());
         PosedShape::new(&ShapeDef::new(geometry), &body, body.rotation())
     }

@@ -17,7 +17,7 @@
 //!
 //! let mut world = World::default();
 //! let ball = ShapeDef::new(Geometry::circle(fx!(0.5))?);
-//! world.spawn(&BodyDef::dynamic().position(fx!(0), fx!(10)), &[ball])?;
+//! world.spawn(&BodyDef::dynamic().position((fx!(0), fx!(10))), &[ball])?;
 //! let outlines = draw::primitives(&world, Layers { outlines: true, ..Layers::NONE });
 //! // The circle, and a radius that shows how it is turned.
 //! assert!(matches!(outlines[..], [

@@ -13,11 +13,14 @@ use super::formats::{
 
 /// A vector or a point. Sums and differences saturate.
 ///
+/// Pairs and arrays convert to vectors. Builders take `impl Into<Vec2<Fx>>`, so that a position may be a vector or a
+/// pair: `BodyDef::dynamic().position((fx!(0), fx!(10)))`.
+///
 /// ```
 /// use lockstep2d::{fx, math::Vec2};
 /// let a = Vec2::new(fx!(3), fx!(4));
 /// assert_eq!(a.length(), fx!(5));
-/// assert_eq!(a - Vec2::new(fx!(3), fx!(0)), Vec2::new(fx!(0), fx!(4)));
+/// assert_eq!(a - Vec2::new(fx!(3), fx!(0)), Vec2::from((fx!(0), fx!(4))));
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[repr(C)]
@@ -32,6 +35,20 @@ impl<T> Vec2<T> {
     /// Creates a vector from its components.
     #[inline]
     pub const fn new(x: T, y: T) -> Self {
+        Vec2 { x, y }
+    }
+}
+
+impl<T> From<(T, T)> for Vec2<T> {
+    #[inline]
+    fn from((x, y): (T, T)) -> Self {
+        Vec2 { x, y }
+    }
+}
+
+impl<T> From<[T; 2]> for Vec2<T> {
+    #[inline]
+    fn from([x, y]: [T; 2]) -> Self {
         Vec2 { x, y }
     }
 }

@@ -152,7 +152,7 @@ mod tests {
     fn a_start_comes_back_and_a_forged_one_is_refused() {
         let before = World::default();
         let mut changed = before.clone();
-        changed.spawn(&BodyDef::fixed().position(fx!(1), fx!(2)), &[]).expect("valid");
+        changed.spawn(&BodyDef::fixed().position((fx!(1), fx!(2))), &[]).expect("valid");
         let (old, new) = (before.to_bytes(), changed.to_bytes());
         let noted =
             TickPhases { digests: Vec::new(), start: patches(&old, &new), start_length: new.len() as u64 };

@@ -124,7 +124,7 @@ pub(super) fn rectangle(half_width: Fx, half_height: Fx) -> Result<ShapeDef, Wor
 
 /// A fixed floor whose top is at height 0.
 pub(super) fn floor(scene: &mut Builder, half_width: Fx) -> Result<BodyId, WorldError> {
-    scene.spawn(BodyDef::fixed().position(fx!(0), fx!(-1)), &[rectangle(half_width, fx!(1))?])
+    scene.spawn(BodyDef::fixed().position((fx!(0), fx!(-1))), &[rectangle(half_width, fx!(1))?])
 }
 
 /// Settings without gravity.

@@ -18,10 +18,10 @@ pub(super) const CHARACTER: Scene = Scene {
     golden_ticks: 900,
     setup: |_| {
         build(Config::default(), |scene| {
-            scene.spawn(BodyDef::kinematic().position(fx!(-5), fx!(2)), &[ShapeDef::new(pill()?)])?;
+            scene.spawn(BodyDef::kinematic().position((fx!(-5), fx!(2))), &[ShapeDef::new(pill()?)])?;
             scene.spawn(BodyDef::fixed(), &Chain::new(&level()).links()?)?;
             let ceiling = rectangle(fx!(1.5), fx!(0.25))?;
-            scene.spawn(BodyDef::fixed().position(fx!(15), fx!(3.85)), &[ceiling])?;
+            scene.spawn(BodyDef::fixed().position((fx!(15), fx!(3.85))), &[ceiling])?;
             Ok(())
         })
     },

@@ -15,7 +15,7 @@ use crate::world::{Command, Config};
 pub(super) const DRUM: Scene =
     Scene::new("drum", 600, "a drum with paddles churns 400 boxes, discs and polygons", |seed| {
         build(Config::default(), |scene| {
-            let drum = BodyDef::kinematic().position(fx!(0), fx!(10)).angular_velocity(fx!(0.6));
+            let drum = BodyDef::kinematic().position((fx!(0), fx!(10))).angular_velocity(fx!(0.6));
             scene.spawn(drum, &drum_shapes()?)?;
             let mut rng = Rng::new(seed);
             for i in 0..400 {
@@ -27,7 +27,7 @@ pub(super) const DRUM: Scene =
                     1 => ShapeDef::new(Geometry::circle(fx!(0.25))?).restitution(fx!(0.2)),
                     _ => ShapeDef::new(Polygon::regular(5, fx!(0.25))?.rounded(fx!(0.02))?),
                 };
-                scene.spawn(BodyDef::dynamic().position(x, y), &[shape])?;
+                scene.spawn(BodyDef::dynamic().position((x, y)), &[shape])?;
             }
             Ok(())
         })
@@ -79,7 +79,7 @@ fn spawn_kick_despawn(tick: u64, game: &Sandbox) -> Vec<Command> {
     let dynamic: Vec<_> = game.world().bodies().filter(|(_, body)| body.is_dynamic()).collect();
     let mut commands = vec![];
     if tick.is_multiple_of(6) {
-        let body = BodyDef::dynamic().position(rng.range(fx!(-6), fx!(6)), fx!(8)).angle(rng.angle());
+        let body = BodyDef::dynamic().position((rng.range(fx!(-6), fx!(6)), fx!(8))).angle(rng.angle());
         let shape = match rng.below(3) {
             0 => ShapeDef::new(random_polygon(&mut rng)),
             _ => Geometry::circle(rng.range(fx!(0.2), fx!(0.6)))

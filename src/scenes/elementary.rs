@@ -24,7 +24,7 @@ pub(super) const BOUNCING_BALL: Scene = Scene::new(
         build(Config::default(), |scene| {
             floor(scene, fx!(20))?;
             let ball = ShapeDef::new(Geometry::circle(fx!(0.5))?).restitution(fx!(0.8));
-            scene.spawn(BodyDef::dynamic().position(fx!(0), fx!(10.5)), &[ball])?;
+            scene.spawn(BodyDef::dynamic().position((fx!(0), fx!(10.5))), &[ball])?;
             Ok(())
         })
     },
@@ -37,9 +37,11 @@ pub(super) const HEAD_ON: Scene = Scene::new(
     |_| {
         build(weightless(), |scene| {
             let ball = ShapeDef::new(Geometry::circle(fx!(0.5))?).restitution(fx!(1));
-            scene.spawn(BodyDef::dynamic().position(fx!(-3), fx!(0)).velocity(fx!(4), fx!(0)), &[ball])?;
+            scene
+                .spawn(BodyDef::dynamic().position((fx!(-3), fx!(0))).velocity((fx!(4), fx!(0))), &[ball])?;
             let heavy = ball.density(fx!(3));
-            scene.spawn(BodyDef::dynamic().position(fx!(3), fx!(0)).velocity(fx!(-2), fx!(0)), &[heavy])?;
+            scene
+                .spawn(BodyDef::dynamic().position((fx!(3), fx!(0))).velocity((fx!(-2), fx!(0))), &[heavy])?;
             Ok(())
         })
     },
@@ -52,9 +54,9 @@ pub(super) const OBLIQUE: Scene = Scene::new(
     |_| {
         build(weightless(), |scene| {
             let square = rectangle(fx!(0.5), fx!(0.5))?.restitution(fx!(0.5));
-            let thrown = BodyDef::dynamic().position(fx!(-3), fx!(0.4)).velocity(fx!(6), fx!(-0.5));
+            let thrown = BodyDef::dynamic().position((fx!(-3), fx!(0.4))).velocity((fx!(6), fx!(-0.5)));
             scene.spawn(thrown.angular_velocity(fx!(2)), &[square])?;
-            let turned = BodyDef::dynamic().position(fx!(1), fx!(0)).angle(Angle::from_degrees(fx!(30)));
+            let turned = BodyDef::dynamic().position((fx!(1), fx!(0))).angle(Angle::from_degrees(fx!(30)));
             scene.spawn(turned, &[square])?;
             Ok(())
         })
@@ -76,7 +78,7 @@ pub(super) const SLOPE: Scene = Scene::new(
                 let square = rectangle(fx!(0.5), fx!(0.5))?.friction(friction);
                 let up = Vec2::new(-sin, cos);
                 let place = Vec2::new(cos, sin).scale(along) + up;
-                scene.spawn(BodyDef::dynamic().position(place.x, place.y).angle(angle), &[square])?;
+                scene.spawn(BodyDef::dynamic().position(place).angle(angle), &[square])?;
             }
             Ok(())
         })
@@ -94,7 +96,7 @@ pub(super) const BALL_IN_BOX: Scene = Scene::new(
             for (x, y) in
                 [(fx!(-1), fx!(0.6)), (fx!(1), fx!(-0.7)), (fx!(2.8), fx!(0.1)), (fx!(0), fx!(0.01))]
             {
-                scene.spawn(BodyDef::dynamic().position(x, y), &[ball])?;
+                scene.spawn(BodyDef::dynamic().position((x, y)), &[ball])?;
             }
             Ok(())
         })

@@ -22,7 +22,7 @@ pub(super) const GAME: Scene = Scene {
             let mut rng = Rng::new(seed);
             floor(scene, fx!(12))?;
             for side in [fx!(-11), fx!(11)] {
-                scene.spawn(BodyDef::fixed().position(side, fx!(20)), &[rectangle(fx!(1), fx!(20))?])?;
+                scene.spawn(BodyDef::fixed().position((side, fx!(20))), &[rectangle(fx!(1), fx!(20))?])?;
             }
             for i in 0..150 {
                 let shape = match i % 3 {
@@ -31,7 +31,7 @@ pub(super) const GAME: Scene = Scene {
                 };
                 let x = Fx::from_num(i % 9 - 4) * 2 + rng.range(fx!(-0.1), fx!(0.1));
                 let y = Fx::from_num(i / 9) * 2 + fx!(1);
-                scene.spawn(BodyDef::dynamic().position(x, y).angle(rng.angle()), &[shape])?;
+                scene.spawn(BodyDef::dynamic().position((x, y)).angle(rng.angle()), &[shape])?;
             }
             Ok(())
         })

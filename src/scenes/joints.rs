@@ -22,9 +22,9 @@ pub(super) const PENDULUM: Scene =
             let angle = Angle::from_radians(fx!(0.1));
             let hanging = Rot::from_angle(angle).apply_wide(Vec2::new(fx!(0), fx!(-0.5)));
             let rod = rectangle(fx!(0.02), fx!(0.5))?.density(fx!(25));
-            let body = BodyDef::dynamic().position(hanging.x, hanging.y).angle(angle);
+            let body = BodyDef::dynamic().position(hanging).angle(angle);
             let rod = scene.spawn(body, &[ghost(rod)])?;
-            scene.joint(JointDef::new(pivot, rod, Revolute::new()).anchor_b(fx!(0), fx!(0.5)))?;
+            scene.joint(JointDef::new(pivot, rod, Revolute::new()).anchor_b((fx!(0), fx!(0.5))))?;
             Ok(())
         })
     });
@@ -48,9 +48,9 @@ fn rod(arm: Fx) -> crate::lockstep::SandboxSetup {
         let omega = fx!(20);
         // Radius of gyration of a thin rod: 1 / sqrt(12).
         let mass = MassSource::Given { mass: fx!(1), centre: Vec2::ZERO, gyration: fx!(0.288675134595) };
-        let body = BodyDef::dynamic().position(arm, fx!(0)).velocity(fx!(0), fx_mul(omega, arm));
+        let body = BodyDef::dynamic().position((arm, fx!(0))).velocity((fx!(0), fx_mul(omega, arm)));
         let rod = scene.spawn(body.angular_velocity(omega).mass(mass), &[ghost(shape)])?;
-        scene.joint(JointDef::new(pivot, rod, Revolute::new()).anchor_b(-arm, fx!(0)))?;
+        scene.joint(JointDef::new(pivot, rod, Revolute::new()).anchor_b((-arm, fx!(0))))?;
         Ok(())
     })
 }
@@ -63,8 +63,8 @@ pub(super) const CHAIN: Scene =
             let last = row(scene, anchor, link, fx!(0), 100)?;
             // A link weighs 0.25 kg. This weight is 25 kg: a square of 5 m x 5 m, pinned at the middle of a side.
             let weight = ghost(rectangle(fx!(2.5), fx!(2.5))?);
-            let body = scene.spawn(BodyDef::dynamic().position(fx!(102.5), fx!(0)), &[weight])?;
-            scene.joint(pin(last, body).anchor_a(fx!(0.5), fx!(0)).anchor_b(fx!(-2.5), fx!(0)))?;
+            let body = scene.spawn(BodyDef::dynamic().position((fx!(102.5), fx!(0))), &[weight])?;
+            scene.joint(pin(last, body).anchor_a((fx!(0.5), fx!(0))).anchor_b((fx!(-2.5), fx!(0))))?;
             Ok(())
         })
     })
@@ -73,11 +73,11 @@ pub(super) const CHAIN: Scene =
 pub(super) const BRIDGE: Scene =
     Scene::new("bridge", 900, "ten boxes fall on a bridge of 50 planks between two posts", |_| {
         build(Config::default(), |scene| {
-            let post = |x| Ok::<_, WorldError>([rectangle(fx!(0.5), fx!(1))?.offset(x, fx!(0))]);
-            let left = scene.spawn(BodyDef::fixed().position(fx!(-25), fx!(0)), &post(fx!(-0.5))?)?;
-            let right = scene.spawn(BodyDef::fixed().position(fx!(25), fx!(0)), &post(fx!(0.5))?)?;
+            let post = |x| Ok::<_, WorldError>([rectangle(fx!(0.5), fx!(1))?.offset((x, fx!(0)))]);
+            let left = scene.spawn(BodyDef::fixed().position((fx!(-25), fx!(0))), &post(fx!(-0.5))?)?;
+            let right = scene.spawn(BodyDef::fixed().position((fx!(25), fx!(0))), &post(fx!(0.5))?)?;
             let last = row(scene, left, rectangle(fx!(0.5), fx!(0.125))?, fx!(-25), 50)?;
-            scene.joint(pin(last, right).anchor_a(fx!(0.5), fx!(0)))?;
+            scene.joint(pin(last, right).anchor_a((fx!(0.5), fx!(0))))?;
             let places = (0..10).map(|i| Vec2::new(Fx::from_num(4 * i - 18), fx!(2)));
             scene.spawn_each(BodyDef::dynamic(), &[rectangle(fx!(0.5), fx!(0.5))?], places)?;
             Ok(())
@@ -95,8 +95,8 @@ fn row(scene: &mut Builder, start: BodyId, piece: ShapeDef, x: Fx, count: i32) -
     let places = (0..count).map(|i| Vec2::new(x + Fx::from_num(i) + fx!(0.5), fx!(0)));
     let pieces = scene.spawn_each(BodyDef::dynamic(), &[piece], places)?;
     let (first, last) = (pieces[0], pieces[pieces.len() - 1]);
-    scene.joint(pin(start, first).anchor_b(fx!(-0.5), fx!(0)))?;
-    let joint = pin(first, last).anchor_a(fx!(0.5), fx!(0)).anchor_b(fx!(-0.5), fx!(0));
+    scene.joint(pin(start, first).anchor_b((fx!(-0.5), fx!(0))))?;
+    let joint = pin(first, last).anchor_a((fx!(0.5), fx!(0))).anchor_b((fx!(-0.5), fx!(0)));
     scene.joint_each(joint, neighbours(&pieces))?;
     Ok(last)
 }
@@ -125,7 +125,7 @@ fn fill_grid(scene: &mut Builder) -> Result<(), WorldError> {
         columns.push(column);
     }
     let down: Vec<_> = columns.iter().flat_map(|column| neighbours(column)).collect();
-    let joint = pin(down[0].0, down[0].1).anchor_a(fx!(0), fx!(-0.5)).anchor_b(fx!(0), fx!(0.5));
+    let joint = pin(down[0].0, down[0].1).anchor_a((fx!(0), fx!(-0.5))).anchor_b((fx!(0), fx!(0.5)));
     scene.joint_each(joint, down)?;
     let mut across = Vec::new();
     for (k, pair) in (1..).zip(columns.windows(2)) {
@@ -133,7 +133,7 @@ fn fill_grid(scene: &mut Builder) -> Result<(), WorldError> {
         let from = usize::from(is_held(k) && is_held(k - 1));
         across.extend(pair[0].iter().copied().zip(pair[1].iter().copied()).skip(from));
     }
-    let joint = pin(across[0].0, across[0].1).anchor_a(fx!(0.5), fx!(0)).anchor_b(fx!(-0.5), fx!(0));
+    let joint = pin(across[0].0, across[0].1).anchor_a((fx!(0.5), fx!(0))).anchor_b((fx!(-0.5), fx!(0)));
     scene.joint_each(joint, across)?;
     Ok(())
 }

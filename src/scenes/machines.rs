@@ -32,9 +32,10 @@ pub(super) const SPINNER: Scene = Scene::new(
             let ring = scene.spawn(BodyDef::fixed(), &ring)?;
             let rotor =
                 ShapeDef::new(Polygon::rectangle(fx!(0.4), fx!(20))?.rounded(fx!(0.2))?).friction(fx!(0));
-            let rotor = scene.spawn(BodyDef::dynamic().position(fx!(0), fx!(12)).never_sleeps(), &[rotor])?;
+            let rotor =
+                scene.spawn(BodyDef::dynamic().position((fx!(0), fx!(12))).never_sleeps(), &[rotor])?;
             let axle = Revolute::new().motor(fx!(5), Fx::MAX);
-            scene.joint(JointDef::new(ring, rotor, axle).anchor_a(fx!(0), fx!(12)))?;
+            scene.joint(JointDef::new(ring, rotor, axle).anchor_a((fx!(0), fx!(12))))?;
             fill_ring(scene)
         })
     },
@@ -60,15 +61,15 @@ pub(super) const TUMBLER: Scene =
             let ground = scene.spawn(BodyDef::fixed(), &[])?;
             let (upright, flat) = (rectangle(fx!(0.5), fx!(10))?, rectangle(fx!(10), fx!(0.5))?);
             let walls = [
-                upright.offset(fx!(10), fx!(0)),
-                upright.offset(fx!(-10), fx!(0)),
-                flat.offset(fx!(0), fx!(10)),
-                flat.offset(fx!(0), fx!(-10)),
+                upright.offset((fx!(10), fx!(0))),
+                upright.offset((fx!(-10), fx!(0))),
+                flat.offset((fx!(0), fx!(10))),
+                flat.offset((fx!(0), fx!(-10))),
             ];
             let walls = walls.map(|wall| wall.density(fx!(50)));
-            let container = scene.spawn(BodyDef::dynamic().position(fx!(0), fx!(10)), &walls)?;
+            let container = scene.spawn(BodyDef::dynamic().position((fx!(0), fx!(10))), &walls)?;
             let axle = Revolute::new().motor(TURNING, fx!(100000000));
-            scene.joint(JointDef::new(ground, container, axle).anchor_a(fx!(0), fx!(10)))?;
+            scene.joint(JointDef::new(ground, container, axle).anchor_a((fx!(0), fx!(10))))?;
             let (origin, apart) = (Vec2::new(fx!(-9), fx!(1)), Vec2::new(fx!(0.4), fx!(0.4)));
             let square = rectangle(fx!(0.125), fx!(0.125))?;
             scene.spawn_each(BodyDef::dynamic(), &[square], grid(45, 45, origin, apart))?;
@@ -80,8 +81,8 @@ pub(super) const TUMBLER: Scene =
 pub(super) const WASHER: Scene =
     Scene::new("washer", 500, "a drum with paddles washes 8100 boxes that report their hits", |_| {
         build(Config::default(), |scene| {
-            let drum = BodyDef::kinematic().position(fx!(0), fx!(10));
-            let drum = drum.velocity(fx!(0.001), fx!(-0.002)).angular_velocity(TURNING);
+            let drum = BodyDef::kinematic().position((fx!(0), fx!(10)));
+            let drum = drum.velocity((fx!(0.001), fx!(-0.002))).angular_velocity(TURNING);
             scene.spawn(drum, &washer_shapes()?)?;
             let events = EventSwitches { hit: true, ..EventSwitches::default() };
             let square = rectangle(fx!(0.1), fx!(0.1))?.events(events);

@@ -14,7 +14,7 @@ pub(super) const BOX_STACK: Scene =
             let square = rectangle(fx!(0.5), fx!(0.5))?;
             for i in 0..10 {
                 let y = Fx::from_num(i) + fx!(0.5);
-                scene.spawn(BodyDef::dynamic().position(fx!(0), y), &[square])?;
+                scene.spawn(BodyDef::dynamic().position((fx!(0), y)), &[square])?;
             }
             Ok(())
         })
@@ -25,8 +25,8 @@ pub(super) const HEAVY_ON_LIGHT: Scene =
         build(Config::default(), |scene| {
             floor(scene, fx!(20))?;
             let light = rectangle(fx!(0.5), fx!(0.5))?;
-            scene.spawn(BodyDef::dynamic().position(fx!(0), fx!(0.5)), &[light])?;
-            scene.spawn(BodyDef::dynamic().position(fx!(0), fx!(1.5)), &[light.density(fx!(100))])?;
+            scene.spawn(BodyDef::dynamic().position((fx!(0), fx!(0.5))), &[light])?;
+            scene.spawn(BodyDef::dynamic().position((fx!(0), fx!(1.5))), &[light.density(fx!(100))])?;
             Ok(())
         })
     });
@@ -90,13 +90,13 @@ pub(super) const HUNDRED_POLYGONS: Scene =
             let mut rng = Rng::new(seed);
             floor(scene, fx!(12))?;
             for side in [fx!(-11), fx!(11)] {
-                scene.spawn(BodyDef::fixed().position(side, fx!(10)), &[rectangle(fx!(1), fx!(10))?])?;
+                scene.spawn(BodyDef::fixed().position((side, fx!(10))), &[rectangle(fx!(1), fx!(10))?])?;
             }
             for i in 0..100 {
                 let shape = ShapeDef::new(random_polygon(&mut rng)).restitution(rng.range(fx!(0), fx!(0.3)));
                 let x = Fx::from_num(i % 8 - 4) * 2 + fx!(1) + rng.range(fx!(-0.2), fx!(0.2));
                 let y = Fx::from_num(i / 8) * 2 + fx!(2);
-                scene.spawn(BodyDef::dynamic().position(x, y).angle(rng.angle()), &[shape])?;
+                scene.spawn(BodyDef::dynamic().position((x, y)).angle(rng.angle()), &[shape])?;
             }
             Ok(())
         })

@@ -153,8 +153,8 @@ impl Bone {
             .spring(fx!(5), fx!(0.5), fx!(0));
         let bend = if matches!(self.extra, Extra::Bent) { Angle::EIGHTH } else { Angle::ZERO };
         JointDef::new(parent, own, hinge)
-            .anchor_a(fx!(0), self.pivot - BONES[self.parent].height)
-            .anchor_b(fx!(0), self.pivot - self.height)
+            .anchor_a((fx!(0), self.pivot - BONES[self.parent].height))
+            .anchor_b((fx!(0), self.pivot - self.height))
             .angle_a(bend)
     }
 }
@@ -167,13 +167,13 @@ pub(super) const RAGDOLL: Scene =
                 let half_width = fx!(2) - Fx::from_num(step) / 4;
                 let stair = rectangle(half_width, fx!(0.15))?;
                 let y = fx!(0.3) * step - fx!(0.15);
-                scene.spawn(BodyDef::fixed().position(half_width - fx!(4), y), &[stair])?;
+                scene.spawn(BodyDef::fixed().position((half_width - fx!(4), y)), &[stair])?;
             }
             let place = Vec2::new(fx!(-1.6), fx!(2));
             let mut bodies = Vec::new();
             for bone in &BONES {
                 let at = bone.position(place);
-                let own = scene.spawn(bone.body().position(at.x, at.y), &bone.shapes(1)?)?;
+                let own = scene.spawn(bone.body().position(at), &bone.shapes(1)?)?;
                 if let Some(&parent) = bodies.get(bone.parent) {
                     scene.joint(bone.joint(parent, own))?;
                 }

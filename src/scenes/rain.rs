@@ -31,7 +31,7 @@ pub(super) const RAIN: Scene = Scene {
             let mut floors = Vec::new();
             for floor in 0..FLOORS {
                 let place = |j: i32| (Fx::from_num(j) / 2 - fx!(125), Fx::from_num(45 * floor));
-                floors.extend((0..=500).map(place).map(|(x, y)| tile.offset(x, y)));
+                floors.extend((0..=500).map(place).map(|(x, y)| tile.offset((x, y))));
             }
             scene.spawn(BodyDef::fixed(), &floors)?;
             for command in announce(0)? {

@@ -169,11 +169,11 @@ fn pushes_are_what_the_impulses_amount_to() {
 fn pushes_are_known_of_what_is_locked() {
     let mut world = World::default();
     let floor = Polygon::rectangle(fx!(10), fx!(1)).unwrap();
-    world.spawn(&BodyDef::fixed().position(fx!(0), fx!(-1)), &[ShapeDef::new(floor)]).unwrap();
-    let mut locked = BodyDef::dynamic().position(fx!(0), fx!(0.5));
+    world.spawn(&BodyDef::fixed().position((fx!(0), fx!(-1))), &[ShapeDef::new(floor)]).unwrap();
+    let mut locked = BodyDef::dynamic().position((fx!(0), fx!(0.5)));
     locked.settings.locks.x = true;
     world.spawn(&locked, &[ShapeDef::new(Polygon::square(fx!(0.5)).unwrap())]).unwrap();
-    let ball = BodyDef::dynamic().position(fx!(-1.2), fx!(0.5)).velocity(fx!(3), fx!(0));
+    let ball = BodyDef::dynamic().position((fx!(-1.2), fx!(0.5))).velocity((fx!(3), fx!(0)));
     world.spawn(&ball, &[ShapeDef::new(Geometry::circle(fx!(0.5)).unwrap())]).unwrap();
     let (mut worst, mut most) = (0, 0);
     for _ in 0..30 {

@@ -15,7 +15,8 @@ pub(super) const SMASH: Scene =
     Scene::new("smash", 300, "a heavy box hits a block of 9600 sleeping boxes, without gravity", |_| {
         build(weightless(), |scene| {
             let ram = rectangle(fx!(4), fx!(4))?.density(fx!(8));
-            scene.spawn(BodyDef::dynamic().position(fx!(-20), fx!(0)).velocity(fx!(40), fx!(0)), &[ram])?;
+            scene
+                .spawn(BodyDef::dynamic().position((fx!(-20), fx!(0))).velocity((fx!(40), fx!(0))), &[ram])?;
             let (origin, apart) = (Vec2::new(fx!(30), fx!(-16)), Vec2::new(fx!(0.4), fx!(0.4)));
             let square = rectangle(fx!(0.2), fx!(0.2))?;
             scene.spawn_each(BodyDef::dynamic().asleep(), &[square], grid(120, 80, origin, apart))?;
@@ -47,8 +48,8 @@ fn staggered(places: impl Iterator<Item = Vec2<Fx>>, first: Fx) -> impl Iterator
 /// A ground of slightly overlapping boxes, with walls of the same boxes at its ends.
 fn yard(half_width: i32, wall_height: i32) -> Result<Vec<ShapeDef>, WorldError> {
     let (flat, upright) = (rectangle(fx!(0.55), fx!(0.5))?, rectangle(fx!(0.5), fx!(0.55))?);
-    let ground = (-half_width..=half_width).map(|x| flat.offset(Fx::from_num(x), fx!(0)));
-    let wall = |x: i32| (1..=wall_height).map(move |y| upright.offset(Fx::from_num(x), Fx::from_num(y)));
+    let ground = (-half_width..=half_width).map(|x| flat.offset((Fx::from_num(x), fx!(0))));
+    let wall = |x: i32| (1..=wall_height).map(move |y| upright.offset((Fx::from_num(x), Fx::from_num(y))));
     Ok(ground.chain(wall(-half_width)).chain(wall(half_width)).collect())
 }
 
@@ -66,7 +67,7 @@ fn fill_junkyard(scene: &mut Builder) -> Result<(), WorldError> {
     let (origin, apart) = (Vec2::new(fx!(-75), fx!(15)), Vec2::new(fx!(0.75), fx!(1)));
     let places = staggered(grid(200, 40, origin, apart), fx!(-0.1));
     scene.spawn_each(BodyDef::dynamic(), &[ShapeDef::new(golden_pentagon()?)], places)?;
-    scene.spawn(BodyDef::kinematic(), &[rectangle(fx!(2), fx!(4))?.offset(fx!(0), fx!(4))])?;
+    scene.spawn(BodyDef::kinematic(), &[rectangle(fx!(2), fx!(4))?.offset((fx!(0), fx!(4)))])?;
     Ok(())
 }
 

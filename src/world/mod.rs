@@ -62,9 +62,9 @@ use state::State;
 ///
 /// let mut world = World::new(Config::default())?;
 /// let floor = ShapeDef::new(Polygon::rectangle(fx!(20), fx!(1))?);
-/// world.spawn(&BodyDef::fixed().position(fx!(0), fx!(-1)), &[floor])?;
+/// world.spawn(&BodyDef::fixed().position((fx!(0), fx!(-1))), &[floor])?;
 /// let ball = ShapeDef::new(Geometry::circle(fx!(0.5))?);
-/// let ball = world.spawn(&BodyDef::dynamic().position(fx!(0), fx!(10)), &[ball])?;
+/// let ball = world.spawn(&BodyDef::dynamic().position((fx!(0), fx!(10))), &[ball])?;
 /// for _ in 0..300 {
 ///     world.step();
 /// }

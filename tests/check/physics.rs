@@ -36,8 +36,8 @@ impl<const MISTAKE: u8> Game for Pit<MISTAKE> {
         let floor = ShapeDef::new(Polygon::rectangle(fx!(20), fx!(1)).map_err(|e| refused(e.to_string()))?);
         let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).map_err(|e| refused(e.to_string()))?);
         let spawned = world
-            .spawn(&BodyDef::fixed().position(fx!(0), fx!(-1)), &[floor])
-            .and_then(|_| world.spawn(&BodyDef::dynamic().position(fx!(0), fx!(0.7)), &[ball]));
+            .spawn(&BodyDef::fixed().position((fx!(0), fx!(-1))), &[floor])
+            .and_then(|_| world.spawn(&BodyDef::dynamic().position((fx!(0), fx!(0.7))), &[ball]));
         let ball = spawned.map_err(|error| refused(error.to_string()))?;
         Ok(Pit { world, ball, wind: fx!(0), score: 0 })
     }

@@ -53,7 +53,7 @@ impl Pushers {
         let mut world = World::new(Config { gravity: Vec2::ZERO, ..Config::default() })?;
         for (x, y, half_x, half_y) in [(0, 6, 7, 1), (0, -6, 7, 1), (6, 0, 1, 7), (-6, 0, 1, 7)] {
             let wall = Polygon::rectangle(Fx::from_num(half_x), Fx::from_num(half_y))?;
-            let at = BodyDef::fixed().position(Fx::from_num(x), Fx::from_num(y));
+            let at = BodyDef::fixed().position((Fx::from_num(x), Fx::from_num(y)));
             world.spawn(&at, &[ShapeDef::new(wall)])?;
         }
         let mut rng = Rng::new(setup.seed);
@@ -61,10 +61,10 @@ impl Pushers {
         for at in 0..setup.players * 3 {
             let place = |n: u32| Fx::from_num(n) * 2 - fx!(3);
             let (x, y) = (place(at % 4), place(at / 4));
-            let body = BodyDef::dynamic().position(x, y).linear_damping(fx!(0.5));
+            let body = BodyDef::dynamic().position((x, y)).linear_damping(fx!(0.5));
             let velocity = Vec2::new(rng.range(fx!(-2), fx!(2)), rng.range(fx!(-2), fx!(2)));
             let disc = ShapeDef::new(Geometry::circle(fx!(0.6))?).restitution(fx!(0.8));
-            discs.push(world.spawn(&body.velocity(velocity.x, velocity.y), &[disc])?);
+            discs.push(world.spawn(&body.velocity(velocity), &[disc])?);
         }
         Ok(Pushers { world, discs, tick_rate: setup.tick_rate, fault: FAULT.take() })
     }

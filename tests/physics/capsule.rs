@@ -13,11 +13,11 @@ fn pill(half: Fx, radius: Fx) -> ShapeDef {
 
 fn floor(world: &mut World) {
     let floor = ShapeDef::new(Polygon::rectangle(fx!(50), fx!(1)).expect("valid"));
-    world.spawn(&BodyDef::fixed().position(fx!(0), fx!(-1)), &[floor]).expect("valid");
+    world.spawn(&BodyDef::fixed().position((fx!(0), fx!(-1))), &[floor]).expect("valid");
 }
 
 fn fall(world: &mut World, x: Fx, y: Fx, angle: Angle, shape: ShapeDef) -> BodyId {
-    world.spawn(&BodyDef::dynamic().position(x, y).angle(angle), &[shape]).expect("valid")
+    world.spawn(&BodyDef::dynamic().position((x, y)).angle(angle), &[shape]).expect("valid")
 }
 
 #[test]
@@ -59,7 +59,7 @@ fn heap(height: Fx) -> World {
     let mut world = World::default();
     let ends = [Vec2::new(fx!(-20), fx!(0)), Vec2::new(fx!(20), fx!(0))];
     let line = ShapeDef::new(Geometry::segment(ends[0], ends[1]).expect("valid"));
-    let wall = |x| ShapeDef::new(Polygon::rectangle(fx!(0.5), fx!(20)).expect("valid")).offset(x, fx!(0));
+    let wall = |x| ShapeDef::new(Polygon::rectangle(fx!(0.5), fx!(20)).expect("valid")).offset((x, fx!(0)));
     world.spawn(&BodyDef::fixed(), &[line, wall(fx!(-3)), wall(fx!(3))]).expect("valid");
     let others = [
         pill(fx!(0.4), fx!(0.2)),
@@ -84,7 +84,7 @@ fn capsules_in_line_exchange_velocities() {
     let mut world =
         World::new(lockstep2d::world::Config { gravity: Vec2::ZERO, ..Default::default() }).expect("valid");
     let shape = pill(fx!(0.5), fx!(0.25)).restitution(fx!(1));
-    let mover = BodyDef::dynamic().position(fx!(-3), fx!(0)).velocity(fx!(4), fx!(0));
+    let mover = BodyDef::dynamic().position((fx!(-3), fx!(0))).velocity((fx!(4), fx!(0)));
     let mover = world.spawn(&mover, &[shape]).expect("valid");
     let target = fall(&mut world, fx!(0), fx!(0), Angle::from_degrees(fx!(180)), shape);
     for _ in 0..60 {
@@ -100,7 +100,7 @@ fn capsules_in_line_exchange_velocities() {
 fn an_upright_capsule_rolls_along_when_it_is_pushed() {
     let mut world = World::default();
     floor(&mut world);
-    let def = BodyDef::dynamic().position(fx!(0), fx!(1)).angle(Angle::from_degrees(fx!(85)));
+    let def = BodyDef::dynamic().position((fx!(0), fx!(1))).angle(Angle::from_degrees(fx!(85)));
     let body = world.spawn(&def, &[pill(fx!(0.75), fx!(0.25))]).expect("valid");
     for _ in 0..600 {
         world.step();

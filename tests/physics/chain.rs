@@ -46,7 +46,7 @@ fn deepest_in_chain(world: &World) -> Fx {
 }
 
 fn launch(world: &mut World, shape: ShapeDef, place: Vec2<Fx>, velocity: Vec2<Fx>) -> BodyId {
-    let def = BodyDef::dynamic().position(place.x, place.y).velocity(velocity.x, velocity.y);
+    let def = BodyDef::dynamic().position(place).velocity(velocity);
     world.spawn(&def, &[shape]).expect("valid")
 }
 
@@ -110,7 +110,7 @@ fn everything_follows_a_gentle_arc() {
                 world.spawn(&BodyDef::fixed(), &chain).expect("valid");
                 let place = Vec2::new(fx!(0), height(name));
                 let turning = if hill { -speed } else { speed } / 100;
-                let def = BodyDef::dynamic().position(place.x, place.y).velocity(speed, fx!(0));
+                let def = BodyDef::dynamic().position(place).velocity((speed, fx!(0)));
                 let body =
                     world.spawn(&def.angular_velocity(turning), &[shape.friction(fx!(0))]).expect("valid");
                 let (mut fastest, mut furthest) = (Fx::ZERO, Fx::ZERO);
@@ -232,7 +232,7 @@ fn what_reaches_over_a_crest_meets_the_far_side() {
         let centre = Vec2::new(fx!(-9.6), fx!(0));
         let mass = MassSource::Given { mass: fx!(5), centre, gyration: fx!(7) };
         let plank = world
-            .spawn(&BodyDef::dynamic().position(fx!(5.5), fx!(1.3)).mass(mass), &[plank])
+            .spawn(&BodyDef::dynamic().position((fx!(5.5), fx!(1.3))).mass(mass), &[plank])
             .expect("valid");
         for _ in 0..180 {
             world.step();

@@ -38,7 +38,7 @@ fn five_centimetres_at_400_metres_per_second_never_pass_one_centimetre() {
         let place = normal.scale(height) + along.scale(offset);
         let course = Angle::from_degrees(rng.range(fx!(-89.5), fx!(89.5)));
         let down = Rot::from_angle(angle + course).apply_wide(Vec2::new(fx!(0), fx!(-399.9)));
-        let body = BodyDef::dynamic().position(place.x, place.y).angle(rng.angle()).velocity(down.x, down.y);
+        let body = BodyDef::dynamic().position(place).angle(rng.angle()).velocity(down);
         let spin = rng.range(fx!(-100), fx!(100));
         let body = world.spawn(&body.angular_velocity(spin), &[small(round % 3)]).expect("valid");
         for tick in 0..20 {
@@ -65,10 +65,10 @@ fn a_thin_rod_that_spins_does_not_pass_a_wall() {
         let height = fx_mul(fx!(1.02), Angle::from_radians(tilt).sin().into()) + fx!(0.03);
         let spin = if rng.chance(1, 2) { fx!(50) } else { fx!(-50) };
         let body = BodyDef::dynamic()
-            .position(rng.range(fx!(-3), fx!(3)), height)
+            .position((rng.range(fx!(-3), fx!(3)), height))
             .angle(Angle::from_radians(tilt))
             .angular_velocity(spin)
-            .velocity(fx!(0), rng.range(fx!(-5), fx!(0)));
+            .velocity((fx!(0), rng.range(fx!(-5), fx!(0))));
         let body = world.spawn(&body, &[rod]).expect("valid");
         for tick in 0..60 {
             world.step();
@@ -82,8 +82,8 @@ fn a_thin_rod_that_spins_does_not_pass_a_wall() {
 fn a_bullet_does_not_pass_a_thin_body() {
     let mut world = weightless();
     let plate = ShapeDef::new(Polygon::rectangle(fx!(0.005), fx!(1)).expect("valid")).density(fx!(10000));
-    world.spawn(&BodyDef::dynamic().position(fx!(3), fx!(0)), &[plate]).expect("valid");
-    let bullet = BodyDef::dynamic().velocity(fx!(390), fx!(0)).bullet();
+    world.spawn(&BodyDef::dynamic().position((fx!(3), fx!(0))), &[plate]).expect("valid");
+    let bullet = BodyDef::dynamic().velocity((fx!(390), fx!(0))).bullet();
     let bullet = world.spawn(&bullet, &[small(0)]).expect("valid");
     for _ in 0..10 {
         world.step();
@@ -97,9 +97,9 @@ fn a_bullet_does_not_pass_a_plate_that_comes_towards_it() {
         for speed in [fx!(1), fx!(5), fx!(20)] {
             let mut world = weightless();
             let plate = ShapeDef::new(Polygon::rectangle(fx!(0.005), fx!(5)).expect("valid"));
-            let def = BodyDef::kinematic().position(fx!(5), fx!(0)).velocity(-speed, fx!(0));
+            let def = BodyDef::kinematic().position((fx!(5), fx!(0))).velocity((-speed, fx!(0)));
             let plate = world.spawn(&def, &[plate]).expect("valid");
-            let bullet = BodyDef::dynamic().velocity(fx!(390), fx!(3)).bullet();
+            let bullet = BodyDef::dynamic().velocity((fx!(390), fx!(3))).bullet();
             let bullet = world.spawn(&bullet, &[small(kind)]).expect("valid");
             for tick in 0..30 {
                 world.step();

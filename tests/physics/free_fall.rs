@@ -54,7 +54,7 @@ fn a_thrown_body_keeps_its_velocity() {
     use lockstep2d::body::{BodyDef, Geometry, ShapeDef};
     let mut world = World::new(Config { gravity: Vec2::ZERO, ..Config::default() }).expect("valid");
     let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).expect("valid"));
-    let def = BodyDef::dynamic().velocity(fx!(3), fx!(-4)).angular_velocity(fx!(1));
+    let def = BodyDef::dynamic().velocity((fx!(3), fx!(-4))).angular_velocity(fx!(1));
     let id = world.spawn(&def, &[ball]).expect("valid");
     for _ in 0..3600 {
         world.step();

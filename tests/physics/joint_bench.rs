@@ -45,7 +45,7 @@ impl Bench {
             Ground::Free(mass) => BodyDef::dynamic().mass(given(mass, fx!(0.4))),
         };
         let a = world.spawn(&a, &[]).expect("valid");
-        let b = BodyDef::dynamic().mass(given(mass, gyration)).position(place.x, place.y);
+        let b = BodyDef::dynamic().mass(given(mass, gyration)).position(place);
         let b = world.spawn(&b.angle(Angle::from_radians(angle)), &[]).expect("valid");
         Bench { world, a, b }
     }

@@ -43,7 +43,7 @@ fn a_slider_slides_down_its_slope_and_does_not_turn() {
         }
         let tilt = Angle::from_degrees(fx!(-30));
         let def = JointDef::new(bench.a, bench.b, Prismatic::new()).angle_a(tilt).angle_b(tilt);
-        let def = def.anchor_a(fx!(0.6), fx!(0.8)).anchor_b(fx!(0.6), fx!(0.8));
+        let def = def.anchor_a((fx!(0.6), fx!(0.8))).anchor_b((fx!(0.6), fx!(0.8)));
         let joint = bench.join(def);
         let b = bench.b;
         for _ in 0..120 {
@@ -71,9 +71,9 @@ fn cantilever(planks: i64, kind: Weld) -> (World, Fx) {
     let (mut last, mut anchor) = (bench.a, fx!(0));
     for i in 0..planks {
         let at = Fx::from_num(i) + fx!(0.5);
-        let plank = BodyDef::dynamic().mass(mass).position(at, fx!(0));
+        let plank = BodyDef::dynamic().mass(mass).position((at, fx!(0)));
         let plank = bench.world.spawn(&plank, &[]).expect("valid");
-        bench.join(JointDef::new(last, plank, kind).anchor_a(anchor, fx!(0)).anchor_b(fx!(-0.5), fx!(0)));
+        bench.join(JointDef::new(last, plank, kind).anchor_a((anchor, fx!(0))).anchor_b((fx!(-0.5), fx!(0))));
         (last, anchor) = (plank, fx!(0.5));
     }
     bench.run(600, |_, _| {});
@@ -109,11 +109,11 @@ fn a_hinge_sags_as_its_stiffness_says_and_a_mount_is_twice_as_stiff() {
         let mut above = bench.a;
         let joints: Vec<_> = (0..rods)
             .map(|i| {
-                let rod = BodyDef::dynamic().mass(mass).position(fx!(0), -Fx::from_num(i) - fx!(0.5));
+                let rod = BodyDef::dynamic().mass(mass).position((fx!(0), -Fx::from_num(i) - fx!(0.5)));
                 let rod = bench.world.spawn(&rod, &[]).expect("valid");
                 let hangs_from = if i == 0 { fx!(0) } else { fx!(-0.5) };
                 let def = JointDef::new(core::mem::replace(&mut above, rod), rod, Revolute::new());
-                bench.join(def.anchor_a(fx!(0), hangs_from).anchor_b(fx!(0), fx!(0.5)))
+                bench.join(def.anchor_a((fx!(0), hangs_from)).anchor_b((fx!(0), fx!(0.5))))
             })
             .collect();
         bench.run(600, |_, _| {});
@@ -176,17 +176,17 @@ fn joints_work_at_any_size_and_place() {
             let body = |bench: &mut Bench, mass: i64, x: Fx| {
                 let mass =
                     MassSource::Given { mass: Fx::from_num(mass), centre: Vec2::ZERO, gyration: size / 2 };
-                let body = BodyDef::dynamic().mass(mass).position(origin.x + x, origin.y);
+                let body = BodyDef::dynamic().mass(mass).position((origin.x + x, origin.y));
                 bench.world.spawn(&body, &[]).expect("valid")
             };
-            let wall = bench.world.spawn(&BodyDef::fixed().position(origin.x, origin.y), &[]).expect("valid");
+            let wall = bench.world.spawn(&BodyDef::fixed().position(origin), &[]).expect("valid");
             let first = body(&mut bench, masses.0, size / 2);
             let second = body(&mut bench, masses.1, size * 3 / 2);
-            let hinge = JointDef::new(wall, first, Revolute::new()).anchor_b(-size / 2, fx!(0));
+            let hinge = JointDef::new(wall, first, Revolute::new()).anchor_b((-size / 2, fx!(0)));
             let hinge = bench.join(hinge);
-            let def = JointDef::new(first, second, kind).anchor_a(size / 2, fx!(0));
+            let def = JointDef::new(first, second, kind).anchor_a((size / 2, fx!(0)));
             let apart = matches!(kind, JointKind::Distance(_));
-            bench.join(def.anchor_b(if apart { size / 2 } else { -size / 2 }, fx!(0)));
+            bench.join(def.anchor_b((if apart { size / 2 } else { -size / 2 }, fx!(0))));
             bench.run(300, |tick, world| {
                 let gap = world.joint_length(hinge).expect("there");
                 assert!(

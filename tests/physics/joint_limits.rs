@@ -65,7 +65,7 @@ fn a_distance_stops_at_its_limits() {
 fn a_limit_bears_a_falling_rod() {
     let mut bench = Bench::new(Ground::Fixed, fx!(-10), Vec2::new(fx!(2), fx!(0)), fx!(0));
     let def = JointDef::new(bench.a, bench.b, Revolute::new().limit(fx!(-1), fx!(1)));
-    let joint = bench.join(def.anchor_b(fx!(-2), fx!(0)));
+    let joint = bench.join(def.anchor_b((fx!(-2), fx!(0))));
     let mut lowest = fx!(0);
     bench.run(300, |_, world| {
         lowest = lowest.min(world.joint_angle(joint).expect("there"));

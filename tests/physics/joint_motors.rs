@@ -61,7 +61,7 @@ fn a_motor_stalls_under_a_larger_load() {
     for (torque, rises) in [(fx!(18), false), (fx!(22), true)] {
         let mut bench = Bench::new(Ground::Fixed, fx!(-10), Vec2::new(fx!(1), fx!(0)), fx!(0));
         let def = JointDef::new(bench.a, bench.b, Revolute::new().motor(fx!(1), torque));
-        let joint = bench.join(def.anchor_b(fx!(-1), fx!(0)));
+        let joint = bench.join(def.anchor_b((fx!(-1), fx!(0))));
         bench.run(30, |tick, world| {
             let (_, exerted) = world.joint_force(joint).expect("there");
             assert!(exerted <= torque + fx!(0.05), "tick {tick}: {exerted} N m");
@@ -90,13 +90,14 @@ fn dragging_with_less_than_friction_does_not_move_a_box() {
         let mut bench = Bench::new(Ground::Fixed, fx!(-10), Vec2::new(fx!(0), fx!(50)), fx!(0));
         let surface = |shape: ShapeDef| shape.friction(fx!(0.5));
         let floor = surface(ShapeDef::new(Polygon::rectangle(fx!(20), fx!(1)).expect("valid")));
-        let floor_body = BodyDef::fixed().position(fx!(0), fx!(-1));
+        let floor_body = BodyDef::fixed().position((fx!(0), fx!(-1)));
         bench.world.spawn(&floor_body, &[floor]).expect("valid");
         let shape = surface(ShapeDef::new(Polygon::square(fx!(1)).expect("valid"))).density(fx!(1));
-        let body = bench.world.spawn(&BodyDef::dynamic().position(fx!(0), fx!(1)), &[shape]).expect("valid");
+        let body =
+            bench.world.spawn(&BodyDef::dynamic().position((fx!(0), fx!(1))), &[shape]).expect("valid");
         bench.run(60, |_, _| {});
         let kind = Motor::new().linear_spring(fx!(5), fx!(1), force);
-        let joint = bench.join(JointDef::new(bench.a, body, kind).anchor_a(fx!(6), fx!(1)));
+        let joint = bench.join(JointDef::new(bench.a, body, kind).anchor_a((fx!(6), fx!(1))));
         bench.run(120, |tick, world| {
             let (exerted, _) = world.joint_force(joint).expect("there");
             assert!(exerted.length() <= force + fx!(0.05), "tick {tick}: {} N", exerted.length());
@@ -117,7 +118,7 @@ fn a_stiff_joint_comes_to_rest() {
     let mut bench = Bench::new(Ground::Fixed, fx!(-10), Vec2::new(fx!(0.3), fx!(0)), fx!(0));
     let kind =
         Revolute::new().limit(fx!(-0.8), fx!(0.8)).motor(fx!(0), fx!(0.5)).spring(fx!(2), fx!(0.5), fx!(0.1));
-    let joint = bench.join(JointDef::new(bench.a, bench.b, kind).anchor_b(fx!(-0.3), fx!(0)));
+    let joint = bench.join(JointDef::new(bench.a, bench.b, kind).anchor_b((fx!(-0.3), fx!(0))));
     bench.run(300, |tick, world| {
         let angle = world.joint_angle(joint).expect("there");
         assert!(angle.abs() < fx!(0.816), "tick {tick}: {angle}");

@@ -113,7 +113,7 @@ fn a_spring_on_an_arm_comes_to_rest_where_it_pulls() {
     let mut bench = Bench::new(Ground::Fixed, fx!(0), Vec2::new(fx!(3), fx!(1)), fx!(1));
     let kind =
         Motor::new().linear_spring(fx!(4), fx!(0.7), fx!(100)).angular_spring(fx!(4), fx!(0.7), fx!(100));
-    let def = JointDef::new(bench.a, bench.b, kind).anchor_b(fx!(0.5), fx!(0.25)).angle_a(Angle::EIGHTH);
+    let def = JointDef::new(bench.a, bench.b, kind).anchor_b((fx!(0.5), fx!(0.25))).angle_a(Angle::EIGHTH);
     let joint = bench.join(def);
     bench.run(600, |_, _| {});
     let (length, angle) = (bench.world.joint_length(joint), bench.world.joint_angle(joint));

@@ -12,7 +12,7 @@ fn up() -> Angle {
 /// Returns platforms whose tops are at height 0.
 fn platforms() -> [ShapeDef; 3] {
     let slab =
-        |half: Fx| ShapeDef::new(Polygon::rectangle(fx!(4), half).expect("valid")).offset(fx!(0), -half);
+        |half: Fx| ShapeDef::new(Polygon::rectangle(fx!(4), half).expect("valid")).offset((fx!(0), -half));
     let end = Vec2::new(fx!(4), fx!(0));
     let line = ShapeDef::new(Geometry::segment(-end, end).expect("valid"));
     [slab(fx!(0.1)), slab(fx!(0.6)), line].map(|shape| shape.one_way(up()))
@@ -28,7 +28,9 @@ fn movers() -> [(&'static str, ShapeDef); 3] {
 }
 
 fn spawn(world: &mut World, shape: ShapeDef, y: Fx, speed: Fx) -> BodyId {
-    world.spawn(&BodyDef::dynamic().position(fx!(0.3), y).velocity(fx!(0), speed), &[shape]).expect("valid")
+    world
+        .spawn(&BodyDef::dynamic().position((fx!(0.3), y)).velocity((fx!(0), speed)), &[shape])
+        .expect("valid")
 }
 
 fn height(world: &World, body: BodyId) -> Fx {
@@ -107,9 +109,9 @@ fn flush_platforms_carry_over_their_seams() {
     for (name, shape) in movers() {
         let mut world = World::default();
         let slab = ShapeDef::new(Polygon::rectangle(fx!(0.5), fx!(0.1)).expect("valid")).one_way(up());
-        let slabs: Vec<_> = (0..100i32).map(|i| slab.offset(Fx::from_num(i) - fx!(5), fx!(-0.1))).collect();
+        let slabs: Vec<_> = (0..100i32).map(|i| slab.offset((Fx::from_num(i) - fx!(5), fx!(-0.1)))).collect();
         world.spawn(&BodyDef::fixed(), &slabs).expect("valid");
-        let def = BodyDef::dynamic().position(fx!(0), fx!(0.5)).velocity(fx!(5), fx!(0));
+        let def = BodyDef::dynamic().position((fx!(0), fx!(0.5))).velocity((fx!(5), fx!(0)));
         let body = world.spawn(&def, &[shape.friction(fx!(0))]).expect("valid");
         for _ in 0..900 {
             world.step();
@@ -128,7 +130,7 @@ fn the_direction_belongs_to_the_body() {
         let mut world = World::new(lockstep2d::world::Config { gravity: Vec2::ZERO, ..Default::default() })
             .expect("valid");
         world.spawn(&BodyDef::fixed().angle(up()), &[platform]).expect("valid");
-        let def = BodyDef::dynamic().position(-speed, fx!(0)).velocity(speed, fx!(0));
+        let def = BodyDef::dynamic().position((-speed, fx!(0))).velocity((speed, fx!(0)));
         let body = world.spawn(&def, &[movers()[0].1]).expect("valid");
         for _ in 0..180 {
             world.step();

@@ -96,10 +96,10 @@ fn stacks_stand_that_are_not_built_exactly() {
     ] {
         let mut world = World::default();
         let floor = ShapeDef::new(Polygon::rectangle(fx!(20), fx!(1)).expect("valid"));
-        world.spawn(&BodyDef::fixed().position(fx!(0), fx!(-1)), &[floor]).expect("valid");
+        world.spawn(&BodyDef::fixed().position((fx!(0), fx!(-1))), &[floor]).expect("valid");
         for i in 0..10 {
             let y = fx!(0.5) + gap + (fx!(1) + gap) * i;
-            world.spawn(&BodyDef::dynamic().position(fx!(0), y), &[shape]).expect("valid");
+            world.spawn(&BodyDef::dynamic().position((fx!(0), y)), &[shape]).expect("valid");
         }
         for tick in 0..3600 {
             world.step();

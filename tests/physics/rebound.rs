@@ -10,9 +10,9 @@ use lockstep2d::world::World;
 fn rebounds(e: Fx, height: Fx, ticks: u32) -> Vec<Fx> {
     let mut world = World::default();
     let floor = ShapeDef::new(Polygon::rectangle(fx!(20), fx!(1)).expect("valid"));
-    world.spawn(&BodyDef::fixed().position(fx!(0), fx!(-1)), &[floor]).expect("valid");
+    world.spawn(&BodyDef::fixed().position((fx!(0), fx!(-1))), &[floor]).expect("valid");
     let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).expect("valid")).restitution(e);
-    let def = BodyDef::dynamic().position(fx!(0), height + fx!(0.5));
+    let def = BodyDef::dynamic().position((fx!(0), height + fx!(0.5)));
     let ball = world.spawn(&def, &[ball]).expect("valid");
     let (mut heights, mut peak, mut rising) = (Vec::new(), Fx::ZERO, false);
     for _ in 0..ticks {
@@ -75,10 +75,10 @@ fn a_box_that_lands_flat_does_not_spin_or_gain_energy() {
         for e in [fx!(0.5), fx!(0.9), fx!(1)] {
             let mut world = World::default();
             let floor = ShapeDef::new(Polygon::rectangle(fx!(20), fx!(1)).expect("valid"));
-            world.spawn(&BodyDef::fixed().position(fx!(0), fx!(-1)), &[floor]).expect("valid");
+            world.spawn(&BodyDef::fixed().position((fx!(0), fx!(-1))), &[floor]).expect("valid");
             let shape =
                 ShapeDef::new(Polygon::rectangle(half_width, half_height).expect("valid")).restitution(e);
-            let def = BodyDef::dynamic().position(fx!(0), half_height + fx!(2));
+            let def = BodyDef::dynamic().position((fx!(0), half_height + fx!(2)));
             let body = world.spawn(&def, &[shape]).expect("valid");
             let (mut highest, mut bounced) = (Fx::ZERO, false);
             for tick in 0..100 {

@@ -20,7 +20,7 @@ fn ground(world: &mut World, ground: Ground) {
     let block = ShapeDef::new(Polygon::square(fx!(0.25)).expect("valid"));
     let x = |i: i32| Fx::from_num(i) / 2 - fx!(5);
     let blocks: Vec<_> = match ground {
-        Ground::OneBody | Ground::ManyBodies => (0..1000).map(|i| block.offset(x(i), fx!(-0.25))).collect(),
+        Ground::OneBody | Ground::ManyBodies => (0..1000).map(|i| block.offset((x(i), fx!(-0.25)))).collect(),
         Ground::Segments => {
             let line = |i| Geometry::segment(Vec2::new(x(i), fx!(0)), Vec2::new(x(i + 1), fx!(0)));
             (0..1000).map(|i| ShapeDef::new(line(i).expect("valid"))).collect()
@@ -30,7 +30,7 @@ fn ground(world: &mut World, ground: Ground) {
         Ground::ManyBodies => {
             for (i, _) in blocks.iter().enumerate() {
                 let at = x(i32::try_from(i).expect("few"));
-                world.spawn(&BodyDef::fixed().position(at, fx!(-0.25)), &[block]).expect("valid");
+                world.spawn(&BodyDef::fixed().position((at, fx!(-0.25))), &[block]).expect("valid");
             }
         }
         Ground::OneBody | Ground::Segments => {
@@ -43,7 +43,7 @@ fn ground(world: &mut World, ground: Ground) {
 fn slide(kind: Ground, shape: ShapeDef, height: Fx, speed: Fx) -> (Fx, Fx) {
     let mut world = World::default();
     ground(&mut world, kind);
-    let def = BodyDef::dynamic().position(fx!(0), height).velocity(speed, fx!(0));
+    let def = BodyDef::dynamic().position((fx!(0), height)).velocity((speed, fx!(0)));
     let body = world.spawn(&def, &[shape]).expect("valid");
     let mut fastest = Fx::ZERO;
     for _ in 0..1200 {
@@ -94,11 +94,11 @@ fn thin_plates_and_low_steps_are_not_passed_by() {
     let mut world = World::default();
     let floor = ShapeDef::new(Polygon::rectangle(fx!(50), fx!(1)).expect("valid")).friction(fx!(0));
     let step = ShapeDef::new(Polygon::rectangle(fx!(1), fx!(0.01)).expect("valid"));
-    let step = step.offset(fx!(-20), fx!(1.01));
-    world.spawn(&BodyDef::fixed().position(fx!(0), fx!(-1)), &[floor, step]).expect("valid");
+    let step = step.offset((fx!(-20), fx!(1.01)));
+    world.spawn(&BodyDef::fixed().position((fx!(0), fx!(-1))), &[floor, step]).expect("valid");
     let plate = ShapeDef::new(Polygon::rectangle(fx!(0.2), fx!(0.003)).expect("valid")).friction(fx!(0));
     let slide = |world: &mut World, shape, x, y, speed| {
-        let def = BodyDef::dynamic().position(x, y).velocity(speed, fx!(0));
+        let def = BodyDef::dynamic().position((x, y)).velocity((speed, fx!(0)));
         world.spawn(&def, &[shape]).expect("valid")
     };
     let first = slide(&mut world, plate, fx!(0), fx!(0.003), fx!(2));

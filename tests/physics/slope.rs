@@ -21,8 +21,7 @@ fn slide(degrees: Fx, friction: Fx, seconds: i64, ground: Ground) -> (Fx, Fx) {
     world.spawn(&BodyDef::fixed().angle(angle), &[ramp.friction(friction)]).expect("valid");
     let square = ShapeDef::new(Polygon::square(fx!(0.5)).expect("valid")).friction(friction);
     let start = Vec2::new(cos, sin).scale(fx!(80)) + Vec2::new(-sin, cos);
-    let body =
-        world.spawn(&BodyDef::dynamic().position(start.x, start.y).angle(angle), &[square]).expect("valid");
+    let body = world.spawn(&BodyDef::dynamic().position(start).angle(angle), &[square]).expect("valid");
     for _ in 0..60 * seconds {
         world.step();
     }

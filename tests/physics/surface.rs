@@ -18,7 +18,7 @@ fn line() -> ShapeDef {
 }
 
 fn block() -> ShapeDef {
-    ShapeDef::new(Polygon::rectangle(fx!(100), fx!(1)).expect("valid")).offset(fx!(0), fx!(-1))
+    ShapeDef::new(Polygon::rectangle(fx!(100), fx!(1)).expect("valid")).offset((fx!(0), fx!(-1)))
 }
 
 fn ball(radius: Fx) -> ShapeDef {
@@ -29,7 +29,7 @@ fn launch(world: &mut World, shape: ShapeDef, angle: Angle, height: Fx, speed: F
     let (sin, cos) = (widen(angle.sin()), widen(angle.cos()));
     let place = Vec2::new(-sin, cos).scale(height);
     let velocity = Vec2::new(cos, sin).scale(speed);
-    let def = BodyDef::dynamic().position(place.x, place.y).velocity(velocity.x, velocity.y);
+    let def = BodyDef::dynamic().position(place).velocity(velocity);
     world.spawn(&def.angle(angle).angular_velocity(spin), &[shape]).expect("valid")
 }
 
@@ -102,7 +102,7 @@ fn resistance_between_two_wheels_is_equal_and_opposite() {
         World::new(lockstep2d::world::Config { gravity: Vec2::ZERO, ..Default::default() }).expect("valid");
     let shape = |radius| ball(radius).friction(fx!(0)).rolling_resistance(fx!(0.5));
     let spawn = |world: &mut World, x: Fx, radius: Fx, v: Fx, spin: Fx| {
-        let def = BodyDef::dynamic().position(x, fx!(0)).velocity(v, fx!(0)).angular_velocity(spin);
+        let def = BodyDef::dynamic().position((x, fx!(0))).velocity((v, fx!(0))).angular_velocity(spin);
         world.spawn(&def, &[shape(radius)]).expect("valid")
     };
     let a = spawn(&mut world, fx!(-1), fx!(1), fx!(1), fx!(5));
@@ -169,9 +169,9 @@ fn the_lower_side_of_a_belt_runs_back() {
         World::new(lockstep2d::world::Config { gravity: Vec2::new(fx!(0), fx!(10)), ..Default::default() })
             .expect("valid");
     let belt = ShapeDef::new(Polygon::rectangle(fx!(100), fx!(1)).expect("valid")).surface_speed(fx!(2));
-    world.spawn(&BodyDef::fixed().position(fx!(0), fx!(1)), &[belt]).expect("valid");
+    world.spawn(&BodyDef::fixed().position((fx!(0), fx!(1))), &[belt]).expect("valid");
     let square = ShapeDef::new(Polygon::square(fx!(0.5)).expect("valid"));
-    let body = world.spawn(&BodyDef::dynamic().position(fx!(0), fx!(-0.5)), &[square]).expect("valid");
+    let body = world.spawn(&BodyDef::dynamic().position((fx!(0), fx!(-0.5))), &[square]).expect("valid");
     step(&mut world, 300);
     assert!((speed(&world, body) + fx!(2)).abs() < fx!(0.001), "{} m/s", speed(&world, body));
 }

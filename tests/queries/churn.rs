@@ -23,12 +23,12 @@ impl Churn {
         let hills: Vec<_> =
             (0..12).map(|_| churn.vector(fx!(10))).enumerate().map(|(i, p)| across(i, p.y / 8)).collect();
         let ground = Chain::new(&hills).links().expect("valid");
-        churn.world.spawn(&BodyDef::fixed().position(x, y - fx!(8)), &ground).expect("valid");
+        churn.world.spawn(&BodyDef::fixed().position((x, y - fx!(8))), &ground).expect("valid");
         let ledge = Chain::new(&hills[3..6]).one_sided().links().expect("valid");
-        churn.world.spawn(&BodyDef::fixed().position(x, y + fx!(2)), &ledge).expect("valid");
+        churn.world.spawn(&BodyDef::fixed().position((x, y + fx!(2))), &ledge).expect("valid");
         let far = Vec2::new(fx!(500000000), fx!(1000000));
         let long = ShapeDef::new(Geometry::segment(-far, far).expect("valid"));
-        churn.world.spawn(&BodyDef::fixed().position(x, y - fx!(12)), &[long]).expect("valid");
+        churn.world.spawn(&BodyDef::fixed().position((x, y - fx!(12))), &[long]).expect("valid");
         (0..30).for_each(|_| churn.change());
         churn
     }
@@ -64,7 +64,7 @@ impl Churn {
     fn shape(&mut self) -> ShapeDef {
         let filter = Filter { category: 1 << self.rng.below(3), mask: u64::MAX, group: 0 };
         let offset = self.vector(fx!(0.5));
-        let shape = ShapeDef::new(self.geometry()).offset(offset.x, offset.y).filter(filter);
+        let shape = ShapeDef::new(self.geometry()).offset(offset).filter(filter);
         if self.rng.chance(1, 6) { shape.sensor() } else { shape }
     }
 
@@ -128,7 +128,7 @@ impl Churn {
             1 => BodyDef::kinematic(),
             _ => BodyDef::dynamic(),
         };
-        let def = def.position(place.x, place.y).angle(self.rng.angle());
+        let def = def.position(place).angle(self.rng.angle());
         let shapes: Vec<_> = (0..1 + self.rng.below(3)).map(|_| self.shape()).collect();
         let id = self.world.spawn(&def, &shapes)?;
         self.bodies.push(id);

@@ -11,7 +11,7 @@ const FAR: Fx = fx!(1073741824);
 fn world() -> World {
     let mut world = World::default();
     let mut add = |geometry: Geometry, x: Fx, y: Fx| {
-        world.spawn(&BodyDef::fixed().position(x, y), &[ShapeDef::new(geometry)]).expect("valid");
+        world.spawn(&BodyDef::fixed().position((x, y)), &[ShapeDef::new(geometry)]).expect("valid");
     };
     let corner = Vec2::new(FAR, FAR);
     for (x, y) in [(fx!(0), fx!(0)), (FAR, -FAR), (-FAR, FAR), (FAR, FAR)] {
@@ -88,7 +88,7 @@ fn a_ray_across_the_world_tells_neighbours_apart() {
     // The fraction of such a long ray has a resolution of a quarter of a metre.
     let ball = ShapeDef::new(Geometry::circle(fx!(0.01)).expect("valid"));
     for x in [fx!(1000.06), fx!(1000.03), fx!(1000)] {
-        world.spawn(&BodyDef::fixed().position(x, fx!(0)), &[ball]).expect("valid");
+        world.spawn(&BodyDef::fixed().position((x, fx!(0))), &[ball]).expect("valid");
     }
     let (from, way) = (Vec2::new(-FAR, fx!(0)), Vec2::new(fx!(2147483647), fx!(0)));
     let hits = world.cast_ray_all(from, way, QueryFilter::default());

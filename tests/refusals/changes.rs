@@ -93,7 +93,7 @@ fn kinds_and_masses_that_a_body_cannot_have_are_refused() {
     let (floor, ball) = (stage.floor, stage.ball);
     let bare = stage.world.spawn(&BodyDef::fixed(), &[]).expect("valid");
     stage.refuses(Command::SetKind { body: bare, kind: BodyKind::Dynamic }, weightless);
-    let far_off = self::ball().offset(fx!(1000), fx!(0));
+    let far_off = self::ball().offset((fx!(1000), fx!(0)));
     let wide = stage.world.spawn(&BodyDef::fixed(), &[far_off]).expect("valid");
     let reach = |error: &WorldError| matches!(error, WorldError::OffsetOutOfRange { .. });
     stage.refuses(Command::SetKind { body: wide, kind: BodyKind::Kinematic }, reach);
@@ -118,7 +118,7 @@ fn changes_to_shapes_out_of_range_are_refused() {
     let set = |def| Command::SetShape { shape, def };
     stage.refuses(set(old.density(fx!(0))), weightless);
     stage.refuses(set(old.density(Fx::MIN)), |error| matches!(error, WorldError::DensityOutOfRange { .. }));
-    stage.refuses(set(old.offset(fx!(129), fx!(0))), |error| {
+    stage.refuses(set(old.offset((fx!(129), fx!(0)))), |error| {
         matches!(error, WorldError::OffsetOutOfRange { .. })
     });
     for def in [
@@ -148,7 +148,7 @@ fn changes_to_joints_out_of_range_are_refused() {
     let others = |error: &WorldError| matches!(error, WorldError::JointOfOtherBodies(id) if *id == joint);
     stage.refuses(Command::SetJoint { joint, def: old.between(ball, floor) }, others);
     stage.refuses(Command::SetJoint { joint, def: old.between(lift, ball) }, others);
-    stage.refuses(Command::SetJoint { joint, def: old.anchor_b(fx!(0), fx!(-129)) }, |error| {
+    stage.refuses(Command::SetJoint { joint, def: old.anchor_b((fx!(0), fx!(-129))) }, |error| {
         matches!(error, WorldError::OffsetOutOfRange { .. })
     });
     let def = JointDef { kind: Revolute::new().limit(fx!(2), fx!(1)).into(), ..old };

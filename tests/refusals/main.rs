@@ -31,10 +31,10 @@ impl Stage {
     fn new() -> Self {
         let mut world = World::default();
         let floor = world.spawn(&BodyDef::fixed(), &[ball()]).expect("valid");
-        let lift = world.spawn(&BodyDef::kinematic().position(fx!(5), fx!(0)), &[ball()]).expect("valid");
+        let lift = world.spawn(&BodyDef::kinematic().position((fx!(5), fx!(0))), &[ball()]).expect("valid");
         let gone = world.spawn(&BodyDef::dynamic(), &[ball()]).expect("valid");
         world.despawn(gone).expect("there");
-        let ball = world.spawn(&BodyDef::dynamic().position(fx!(0), fx!(1)), &[ball()]).expect("valid");
+        let ball = world.spawn(&BodyDef::dynamic().position((fx!(0), fx!(1))), &[ball()]).expect("valid");
         for _ in 0..10 {
             world.step();
         }
@@ -96,14 +96,14 @@ fn bodies_out_of_range_are_refused() {
     stage.refuses(spawn(BodyDef::fixed(), ball().density(Fx::MAX)), negative);
 
     let far = |error: &WorldError| matches!(error, WorldError::PositionOutOfRange { .. });
-    stage.refuses(spawn(BodyDef::dynamic().position(Fx::MAX, fx!(0)), ball()), far);
-    stage.refuses(spawn(BodyDef::fixed().position(fx!(0), Fx::MIN), ball()), far);
+    stage.refuses(spawn(BodyDef::dynamic().position((Fx::MAX, fx!(0))), ball()), far);
+    stage.refuses(spawn(BodyDef::fixed().position((fx!(0), Fx::MIN)), ball()), far);
     let fast = |error: &WorldError| matches!(error, WorldError::SpeedOutOfRange { .. });
-    stage.refuses(spawn(BodyDef::dynamic().velocity(fx!(300), fx!(300)), ball()), fast);
+    stage.refuses(spawn(BodyDef::dynamic().velocity((fx!(300), fx!(300))), ball()), fast);
     stage.refuses(spawn(BodyDef::dynamic().angular_velocity(Fx::MIN), ball()), fast);
     let offset = |error: &WorldError| matches!(error, WorldError::OffsetOutOfRange { .. });
-    stage.refuses(spawn(BodyDef::dynamic(), ball().offset(fx!(129), fx!(0))), offset);
-    stage.refuses(spawn(BodyDef::fixed(), ball().offset(Fx::MIN, fx!(0))), offset);
+    stage.refuses(spawn(BodyDef::dynamic(), ball().offset((fx!(129), fx!(0)))), offset);
+    stage.refuses(spawn(BodyDef::fixed(), ball().offset((Fx::MIN, fx!(0)))), offset);
     let material = |error: &WorldError| matches!(error, WorldError::MaterialOutOfRange);
     stage.refuses(spawn(BodyDef::dynamic(), ball().friction(fx!(-0.1))), material);
     stage.refuses(spawn(BodyDef::dynamic(), ball().restitution(fx!(1.1))), material);
@@ -172,7 +172,7 @@ fn what_a_body_cannot_do_is_refused() {
     stage.refuses(Command::AddJoint { joint: JointDef::new(floor, lift, Revolute::new()) }, |error| {
         matches!(error, WorldError::JointWithoutDynamicBody)
     });
-    let long = JointDef::new(floor, ball, Revolute::new()).anchor_a(fx!(300), fx!(0));
+    let long = JointDef::new(floor, ball, Revolute::new()).anchor_a((fx!(300), fx!(0)));
     stage.refuses(Command::AddJoint { joint: long }, |error| {
         matches!(error, WorldError::OffsetOutOfRange { .. })
     });
@@ -276,7 +276,7 @@ fn settings_out_of_range_are_named() {
 fn valid_extremes_are_accepted() {
     let mut world = World::default();
     let edge = fx!(1073741824);
-    let far = BodyDef::dynamic().position(edge, -edge).velocity(fx!(400), fx!(0));
+    let far = BodyDef::dynamic().position((edge, -edge)).velocity((fx!(400), fx!(0)));
     world.spawn(&far, &[ball()]).expect("the edge of the world");
     let line =
         Geometry::segment(Vec2::new(-edge, fx!(0)), Vec2::new(edge, fx!(0))).expect("as long as the world");
@@ -284,7 +284,7 @@ fn valid_extremes_are_accepted() {
     let everything = Filter { category: u64::MAX, mask: u64::MAX, group: i32::MIN };
     let rough = Material { friction: fx!(16), restitution: fx!(1), ..Material::default() };
     let shape = ShapeDef { filter: everything, material: rough, ..ball() };
-    world.spawn(&BodyDef::new(BodyKind::Kinematic).velocity(fx!(-400), fx!(0)), &[shape]).expect("valid");
+    world.spawn(&BodyDef::new(BodyKind::Kinematic).velocity((fx!(-400), fx!(0))), &[shape]).expect("valid");
     for _ in 0..60 {
         world.step();
         assert_eq!(world.validate(), Ok(()));
@@ -297,11 +297,11 @@ fn a_body_that_reaches_too_far_or_would_spin_too_fast_is_refused() {
     let ball = stage.ball;
     let reach = |error: &WorldError| matches!(error, WorldError::OffsetOutOfRange { .. });
     let plank = ShapeDef::new(Polygon::rectangle(fx!(100), fx!(1)).expect("valid"));
-    stage.refuses(spawn(BodyDef::dynamic(), plank.offset(fx!(60), fx!(0))), reach);
-    stage.refuses(Command::AddShape { body: ball, shape: plank.offset(fx!(0), fx!(128)) }, reach);
+    stage.refuses(spawn(BodyDef::dynamic(), plank.offset((fx!(60), fx!(0)))), reach);
+    stage.refuses(Command::AddShape { body: ball, shape: plank.offset((fx!(0), fx!(128))) }, reach);
     // 50 rad/s are 18 m/s at the ball's radius of gyration of 0.35 m, but too fast with a heavy arm of 30 m.
     stage.world.set_velocity(ball, Vec2::ZERO, fx!(50)).expect("valid");
-    let arm = self::ball().offset(fx!(60), fx!(0)).density(fx!(1));
+    let arm = self::ball().offset((fx!(60), fx!(0))).density(fx!(1));
     stage.refuses(Command::AddShape { body: ball, shape: arm }, |error| {
         matches!(error, WorldError::SpeedOutOfRange { .. })
     });
@@ -315,6 +315,6 @@ fn a_body_that_reaches_too_far_or_would_spin_too_fast_is_refused() {
 fn a_shape_does_not_change_how_a_kinematic_body_turns() {
     let mut stage = Stage::new();
     stage.world.set_velocity(stage.lift, Vec2::ZERO, fx!(10)).expect("valid");
-    stage.world.add_shape(stage.lift, &ball().offset(fx!(60), fx!(60))).expect("valid");
+    stage.world.add_shape(stage.lift, &ball().offset((fx!(60), fx!(60)))).expect("valid");
     assert_eq!(stage.world.body(stage.lift).expect("there").angular_velocity(), fx!(10));
 }

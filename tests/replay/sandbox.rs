@@ -15,7 +15,7 @@ fn ball() -> ShapeDef {
 fn setup() -> SandboxSetup {
     let mut commands = vec![
         Command::Spawn { body: BodyDef::fixed(), shapes: vec![ball()] },
-        Command::Spawn { body: BodyDef::kinematic().position(fx!(5), fx!(0)), shapes: vec![ball()] },
+        Command::Spawn { body: BodyDef::kinematic().position((fx!(5), fx!(0))), shapes: vec![ball()] },
     ];
     let places = (0..6).map(|x| Place { position: Vec2::new(Fx::from(x), fx!(2)), angle: Angle::ZERO });
     commands.push(Command::SpawnEach {
@@ -35,7 +35,7 @@ fn commands(world: &World, body: BodyId, value: Fx) -> Vec<Command> {
     let joint = JointDef::new(other, body, Revolute::new().motor(value, fx!(1)));
     let mut commands = vec![
         Command::Spawn {
-            body: BodyDef::dynamic().velocity(value, fx!(0)),
+            body: BodyDef::dynamic().velocity((value, fx!(0))),
             shapes: vec![ball().density(value)],
         },
         Command::SpawnEach {
@@ -43,7 +43,7 @@ fn commands(world: &World, body: BodyId, value: Fx) -> Vec<Command> {
             shapes: vec![ball().sensor()],
             places: vec![Place { position: vector, angle }],
         },
-        Command::AddShape { body, shape: ball().offset(value, fx!(0)) },
+        Command::AddShape { body, shape: ball().offset((value, fx!(0))) },
         Command::AddJoint { joint },
         Command::AddJointEach { joint, ends: vec![(body, other); 2] },
         Command::ApplyForce { body, force: vector, point: vector },
@@ -119,7 +119,7 @@ fn a_heap_in_one_place_is_dear() {
     let work = |apart: i32| {
         let square = ShapeDef::new(Polygon::square(fx!(0.5)).unwrap());
         let spawn = |place: i32| Command::Spawn {
-            body: BodyDef::dynamic().position(Fx::from_num(place * apart), fx!(0)),
+            body: BodyDef::dynamic().position((Fx::from_num(place * apart), fx!(0))),
             shapes: vec![square],
         };
         let commands = (0..200).map(spawn).collect();

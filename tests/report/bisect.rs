@@ -218,7 +218,7 @@ fn sandbox(seed: u64) -> SandboxSetup {
     let ball = ShapeDef::new(Geometry::circle(fx!(0.4)).unwrap());
     for place in 0..12 {
         let x = lockstep2d::math::Fx::from_num((place + seed) % 12) * 2;
-        let body = BodyDef::dynamic().position(x, fx!(3));
+        let body = BodyDef::dynamic().position((x, fx!(3)));
         setup.commands.push(Command::Spawn { body, shapes: vec![ball] });
     }
     setup

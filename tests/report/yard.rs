@@ -31,7 +31,7 @@ impl Yard {
         let mut world = World::new(Config { sleeping: false, ..Config::default() })?;
         for (x, y, w, h) in [(0, -1, 6, 1), (-6, 5, 1, 7), (6, 5, 1, 7)] {
             let wall = ShapeDef::new(Polygon::rectangle(Fx::from_num(w), Fx::from_num(h))?);
-            world.spawn(&BodyDef::fixed().position(Fx::from_num(x), Fx::from_num(y)), &[wall])?;
+            world.spawn(&BodyDef::fixed().position((Fx::from_num(x), Fx::from_num(y))), &[wall])?;
         }
         let mut rng = Rng::new(seed);
         for number in 0..BODIES {
@@ -43,7 +43,7 @@ impl Yard {
             };
             let (column, row) = (number % 8, number / 8);
             let x = Fx::from_num(column) - fx!(3.5) + Fx::from_bits(i64::from(rng.next_u32() >> 6));
-            let body = BodyDef::dynamic().position(x, Fx::from_num(row) + fx!(0.5));
+            let body = BodyDef::dynamic().position((x, Fx::from_num(row) + fx!(0.5)));
             world.spawn(&body, &[ShapeDef::new(shape)])?;
         }
         Ok(Yard { world, pushes: 0 })

@@ -112,7 +112,7 @@ fn polygon() -> (ShapeDef, Written) {
     let events = EventSwitches { contact: false, hit: true, sensor: false };
     let shape = ShapeDef { material, events, ..ShapeDef::new(triangle) };
     let shape =
-        shape.filter(filter).offset(fx!(3), fx!(4)).one_way(Angle::from_bits(11)).sensor().user_data(9);
+        shape.filter(filter).offset((fx!(3), fx!(4))).one_way(Angle::from_bits(11)).sensor().user_data(9);
     let one = 1 << 22;
     let bytes = w().u32(2).u64(3).i32(&[0, 0, 2 * one, 0, 0, 2 * one]).i32(&[one / 2]);
     let surface = w().fx(&[1]).u32(2).fx(&[2]).u32(3).fx(&[1, -14]);
@@ -136,8 +136,8 @@ fn settings() -> (BodySettings, Written) {
 fn body() -> (BodyDef, Written) {
     let (settings, settings_bytes) = settings();
     let (mass, mass_bytes) = mass();
-    let def = BodyDef::kinematic().position(fx!(5), fx!(6)).angle(Angle::from_bits(7)).mass(mass);
-    let def = def.velocity(fx!(1), fx!(2)).angular_velocity(fx!(3)).asleep().user_data(8);
+    let def = BodyDef::kinematic().position((fx!(5), fx!(6))).angle(Angle::from_bits(7)).mass(mass);
+    let def = def.velocity((fx!(1), fx!(2))).angular_velocity(fx!(3)).asleep().user_data(8);
     let bytes = w().u32(1).fx(&[10, 12]).u32(7).fx(&[2, 4, 6]).then(mass_bytes).then(settings_bytes);
     (BodyDef { settings, ..def }, bytes.u8(1).u8(1).u64(8))
 }
@@ -173,7 +173,8 @@ fn joints(handles: &Handles) -> Vec<(JointDef, Written)> {
     ];
     let threshold = Threshold { force: Some(one), torque: None, action: ThresholdAction::Break };
     let of_kind = |(kind, bytes): (JointKind, Written)| {
-        let def = JointDef::new(handles.other, handles.body, kind).anchor_a(one, two).anchor_b(three, two);
+        let def =
+            JointDef::new(handles.other, handles.body, kind).anchor_a((one, two)).anchor_b((three, two));
         let def = def.angle_a(Angle::from_bits(5)).colliding().threshold(threshold).user_data(12);
         let frames = w().fx(&[2, 4]).u32(5).fx(&[6, 4]).u32(0);
         let start = w().u32(0).u32(0).then(id()).then(frames).u8(1);

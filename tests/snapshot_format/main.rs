@@ -23,15 +23,15 @@ fn example() -> Result<World, WorldError> {
     let line = Geometry::segment(Vec2::new(fx!(-2), fx!(0)), Vec2::new(fx!(2), fx!(0)))?;
     let ground = world.spawn(&BodyDef::fixed(), &[ShapeDef::new(line)])?;
     let triangle = ShapeDef::new(Polygon::regular(3, fx!(1))?);
-    let removed = world.spawn(&BodyDef::dynamic().position(fx!(50), fx!(0)), &[triangle])?;
+    let removed = world.spawn(&BodyDef::dynamic().position((fx!(50), fx!(0))), &[triangle])?;
     let ball = ShapeDef::new(Geometry::circle(fx!(0.5))?).user_data(7);
-    let ball = world.spawn(&BodyDef::dynamic().position(fx!(1), fx!(0.5)), &[ball])?;
+    let ball = world.spawn(&BodyDef::dynamic().position((fx!(1), fx!(0.5))), &[ball])?;
     let pill = Geometry::capsule(Vec2::new(fx!(-0.5), fx!(0)), Vec2::new(fx!(0.5), fx!(0)), fx!(0.25))?;
-    let sleeper = BodyDef::dynamic().position(fx!(-1), fx!(0.25)).asleep();
+    let sleeper = BodyDef::dynamic().position((fx!(-1), fx!(0.25))).asleep();
     world.spawn(&sleeper, &[ShapeDef::new(pill)])?;
     world.despawn(removed)?;
     let hinge = Revolute::new().limit(fx!(-1), fx!(1));
-    world.add_joint(&JointDef::new(ground, ball, hinge).anchor_a(fx!(1), fx!(0.5)).colliding())?;
+    world.add_joint(&JointDef::new(ground, ball, hinge).anchor_a((fx!(1), fx!(0.5))).colliding())?;
     world.step();
     world.step();
     Ok(world)

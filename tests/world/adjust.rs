@@ -36,7 +36,8 @@ fn settings_take_effect() {
 #[test]
 fn a_given_mass_keeps_place_and_motion() {
     let mut world = weightless();
-    let def = BodyDef::dynamic().position(fx!(3), fx!(4)).velocity(fx!(1), fx!(0)).angular_velocity(fx!(2));
+    let def =
+        BodyDef::dynamic().position((fx!(3), fx!(4))).velocity((fx!(1), fx!(0))).angular_velocity(fx!(2));
     let id = spawn(&mut world, def, square(fx!(0.5)));
     let heavy = MassSource::Given { mass: fx!(10), centre: Vec2::new(fx!(0), fx!(0.25)), gyration: fx!(0.5) };
     world.set_mass(id, heavy).expect("valid");
@@ -54,7 +55,8 @@ fn a_given_mass_keeps_place_and_motion() {
 #[test]
 fn a_body_changes_its_kind_and_back() {
     let (mut world, floor) = world_with_floor();
-    let def = BodyDef::dynamic().position(fx!(0), fx!(5)).velocity(fx!(1), fx!(0)).angular_velocity(fx!(1));
+    let def =
+        BodyDef::dynamic().position((fx!(0), fx!(5))).velocity((fx!(1), fx!(0))).angular_velocity(fx!(1));
     let id = spawn(&mut world, def, square(fx!(0.5)));
     world.set_kind(id, BodyKind::Kinematic).expect("valid");
     run(&mut world, 60);
@@ -91,13 +93,13 @@ fn a_disabled_body_is_not_there_until_it_is_enabled() {
     let (mut world, _) = world_with_floor();
     let id = spawn(
         &mut world,
-        BodyDef::dynamic().position(fx!(0), fx!(2)).velocity(fx!(1), fx!(0)),
+        BodyDef::dynamic().position((fx!(0), fx!(2))).velocity((fx!(1), fx!(0))),
         square(fx!(0.5)),
     );
     world.disable(id).expect("there");
     world.disable(id).expect("nothing to do");
     let place = world.body(id).expect("there").position();
-    let through = spawn(&mut world, BodyDef::dynamic().position(fx!(0), fx!(4)), ball(fx!(0.3)));
+    let through = spawn(&mut world, BodyDef::dynamic().position((fx!(0), fx!(4))), ball(fx!(0.3)));
     run(&mut world, 90);
     assert_eq!(world.body(id).expect("there").position(), place);
     close(world.body(through).expect("there").position().y, fx!(0.3));
@@ -114,7 +116,7 @@ fn a_disabled_body_is_not_there_until_it_is_enabled() {
     );
     run(&mut world, 60);
     close(world.body(id).expect("there").position().y, fx!(0.2));
-    let late = spawn(&mut world, BodyDef::dynamic().position(fx!(-9), fx!(5)).disabled(), ball(fx!(0.3)));
+    let late = spawn(&mut world, BodyDef::dynamic().position((fx!(-9), fx!(5))).disabled(), ball(fx!(0.3)));
     run(&mut world, 30);
     assert_eq!(world.body(late).expect("there").position().y, fx!(5));
 }
@@ -123,8 +125,8 @@ fn a_disabled_body_is_not_there_until_it_is_enabled() {
 fn a_joint_to_a_disabled_body_does_not_pull() {
     let mut world = World::default();
     let post = world.spawn(&BodyDef::fixed(), &[]).expect("valid");
-    let bob = spawn(&mut world, BodyDef::dynamic().position(fx!(0), fx!(-1)), ball(fx!(0.3)));
-    world.add_joint(&JointDef::new(post, bob, Revolute::new()).anchor_b(fx!(0), fx!(1))).expect("valid");
+    let bob = spawn(&mut world, BodyDef::dynamic().position((fx!(0), fx!(-1))), ball(fx!(0.3)));
+    world.add_joint(&JointDef::new(post, bob, Revolute::new()).anchor_b((fx!(0), fx!(1)))).expect("valid");
     run(&mut world, 60);
     close(world.body(bob).expect("there").position().y, fx!(-1));
     world.disable(post).expect("there");
@@ -135,7 +137,7 @@ fn a_joint_to_a_disabled_body_does_not_pull() {
 #[test]
 fn shapes_take_what_they_are_given() {
     let (mut world, _) = world_with_floor();
-    let id = spawn(&mut world, BodyDef::dynamic().position(fx!(0), fx!(0.5)), square(fx!(0.5)));
+    let id = spawn(&mut world, BodyDef::dynamic().position((fx!(0), fx!(0.5))), square(fx!(0.5)));
     let shape = shape_of(&world, id);
     run(&mut world, 60);
     world.set_geometry(shape, rectangle(fx!(1), fx!(0.25)).geometry).expect("valid");
@@ -176,7 +178,7 @@ fn a_kinematic_body_goes_where_it_is_told_and_stops() {
 fn a_kinematic_body_pushes_on_its_way() {
     let mut world = weightless();
     let pusher = spawn(&mut world, BodyDef::kinematic(), square(fx!(0.5)));
-    let pushed = spawn(&mut world, BodyDef::dynamic().position(fx!(1.01), fx!(0)), square(fx!(0.5)));
+    let pushed = spawn(&mut world, BodyDef::dynamic().position((fx!(1.01), fx!(0))), square(fx!(0.5)));
     for tick in 1..=60 {
         world.move_to(pusher, Vec2::new(Fx::from_num(tick) / 60, fx!(0)), Angle::ZERO).expect("valid");
         run(&mut world, 1);
@@ -199,14 +201,15 @@ struct Stage {
 impl Stage {
     fn new(config: Config) -> Self {
         let mut world = World::new(config).expect("valid");
-        let floor = spawn(&mut world, BodyDef::fixed().position(fx!(0), fx!(-1)), rectangle(fx!(9), fx!(1)));
-        let lift = spawn(&mut world, BodyDef::kinematic().position(fx!(5), fx!(0)), ball(fx!(0.5)));
+        let floor =
+            spawn(&mut world, BodyDef::fixed().position((fx!(0), fx!(-1))), rectangle(fx!(9), fx!(1)));
+        let lift = spawn(&mut world, BodyDef::kinematic().position((fx!(5), fx!(0))), ball(fx!(0.5)));
         let gone = spawn(&mut world, BodyDef::dynamic(), ball(fx!(0.5)));
         let gone_shape = shape_of(&world, gone);
         world.despawn(gone).expect("there");
-        let ball = spawn(&mut world, BodyDef::dynamic().position(fx!(0), fx!(0.5)), ball(fx!(0.5)));
+        let ball = spawn(&mut world, BodyDef::dynamic().position((fx!(0), fx!(0.5))), ball(fx!(0.5)));
         world
-            .add_joint(&JointDef::new(floor, ball, Revolute::new()).anchor_a(fx!(0), fx!(1.5)))
+            .add_joint(&JointDef::new(floor, ball, Revolute::new()).anchor_a((fx!(0), fx!(1.5))))
             .expect("valid");
         run(&mut world, 10);
         Stage { world, floor, lift, ball, gone, gone_shape }
@@ -278,7 +281,7 @@ fn values_out_of_range_are_refused() {
     stage.refuses(&Command::SetShape { shape, def: valid.density(fx!(0)) }, is_mass);
     let flat = ShapeDef { geometry: Geometry::Circle { radius: fx!(0) }, ..valid };
     stage.refuses(&Command::SetShape { shape, def: flat }, |error| matches!(error, WorldError::Geometry(_)));
-    stage.refuses(&Command::SetShape { shape, def: valid.offset(fx!(200), fx!(0)) }, |error| {
+    stage.refuses(&Command::SetShape { shape, def: valid.offset((fx!(200), fx!(0))) }, |error| {
         matches!(error, WorldError::OffsetOutOfRange { .. })
     });
     let angle = Angle::ZERO;
@@ -313,7 +316,7 @@ fn kinds_that_a_body_cannot_have_are_refused() {
     });
     let edge = fx!(1000);
     let line = Geometry::segment(Vec2::new(-edge, fx!(0)), Vec2::new(edge, fx!(0))).expect("valid");
-    let ground = spawn(&mut stage.world, BodyDef::fixed().position(fx!(0), fx!(-9)), ShapeDef::new(line));
+    let ground = spawn(&mut stage.world, BodyDef::fixed().position((fx!(0), fx!(-9))), ShapeDef::new(line));
     stage.refuses(&Command::SetKind { body: ground, kind: BodyKind::Kinematic }, |error| {
         matches!(error, WorldError::OffsetOutOfRange { .. })
     });

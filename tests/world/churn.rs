@@ -37,13 +37,13 @@ impl Churn {
             ..Config::default()
         };
         let mut world = World::new(config).expect("valid");
-        let fixed = |x, y| BodyDef::fixed().position(x, y);
+        let fixed = |x, y| BodyDef::fixed().position((x, y));
         world.spawn(&fixed(fx!(0), fx!(-1)), &[rectangle(fx!(7), fx!(1))]).expect("valid");
         world.spawn(&fixed(fx!(-6), fx!(4)), &[rectangle(fx!(0.5), fx!(5))]).expect("valid");
         world.spawn(&fixed(fx!(6), fx!(4)), &[rectangle(fx!(0.5), fx!(5))]).expect("valid");
         let trigger = rectangle(fx!(2), fx!(1)).sensor();
         world.spawn(&fixed(fx!(-2), fx!(1)), &[trigger]).expect("valid");
-        world.spawn(&BodyDef::kinematic().position(fx!(3), fx!(0.3)), &[square(fx!(0.3))]).expect("valid");
+        world.spawn(&BodyDef::kinematic().position((fx!(3), fx!(0.3))), &[square(fx!(0.3))]).expect("valid");
         for _ in 0..15 {
             let (body, shapes) = (self.body(), self.shapes());
             let _refused_or_not = world.spawn(&body, &shapes);
@@ -170,7 +170,7 @@ impl Churn {
 
     fn body(&mut self) -> BodyDef {
         let at = self.place();
-        let mut def = BodyDef::new(self.kind()).position(at.x, at.y).angle(self.angle()).mass(self.mass());
+        let mut def = BodyDef::new(self.kind()).position(at).angle(self.angle()).mass(self.mass());
         def.settings = self.settings();
         def.asleep = self.rng.chance(1, 4);
         def.enabled = !self.rng.chance(1, 12);
@@ -242,7 +242,7 @@ impl Churn {
         let (pose_a, pose_b) = (world.body(a)?.transform(), world.body(b)?.transform());
         // The anchor is at B's origin, so that the joint starts without an error.
         let anchor = pose_a.apply_inverse(pose_b.apply(Vec2::ZERO));
-        let mut def = JointDef::new(a, b, self.joint_kind()).anchor_a(anchor.x, anchor.y);
+        let mut def = JointDef::new(a, b, self.joint_kind()).anchor_a(anchor);
         if self.rng.chance(1, 3) {
             let action = if self.rng.chance(1, 2) { ThresholdAction::Event } else { ThresholdAction::Break };
             let force = Some(self.rng.range(fx!(1), fx!(200)));

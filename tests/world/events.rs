@@ -24,9 +24,9 @@ fn hits(world: &mut World, ticks: u32) -> Vec<HitEvent> {
 #[test]
 fn a_hit_tells_where_how_fast_and_which_way() {
     let mut world = weightless();
-    let left = BodyDef::dynamic().position(fx!(-2), fx!(0)).velocity(fx!(6), fx!(0));
+    let left = BodyDef::dynamic().position((fx!(-2), fx!(0))).velocity((fx!(6), fx!(0)));
     let left = spawn(&mut world, left, hitting(ball(fx!(0.5))).restitution(fx!(1)));
-    let right = BodyDef::dynamic().position(fx!(2), fx!(0)).velocity(fx!(-3), fx!(0));
+    let right = BodyDef::dynamic().position((fx!(2), fx!(0))).velocity((fx!(-3), fx!(0)));
     let right = spawn(&mut world, right, ball(fx!(0.5)).restitution(fx!(1)));
     let told = hits(&mut world, 120);
     assert_eq!(told.len(), 1, "{told:?}");
@@ -41,8 +41,8 @@ fn a_hit_tells_where_how_fast_and_which_way() {
 #[test]
 fn a_hit_on_a_moving_wall_counts_the_wall_and_only_the_normal() {
     let mut world = weightless();
-    spawn(&mut world, BodyDef::kinematic().velocity(fx!(0), fx!(2)), rectangle(fx!(50), fx!(0.5)));
-    let thrown = BodyDef::dynamic().position(fx!(0), fx!(4)).velocity(fx!(7), fx!(-3));
+    spawn(&mut world, BodyDef::kinematic().velocity((fx!(0), fx!(2))), rectangle(fx!(50), fx!(0.5)));
+    let thrown = BodyDef::dynamic().position((fx!(0), fx!(4))).velocity((fx!(7), fx!(-3)));
     spawn(&mut world, thrown, hitting(ball(fx!(0.5))));
     let told = hits(&mut world, 60);
     assert_eq!(told.len(), 1);
@@ -60,7 +60,7 @@ fn slow_or_unwanted_hits_are_not_told() {
         let config = Config { gravity: Vec2::ZERO, hit_speed, ..Config::default() };
         let mut world = World::new(config).expect("valid");
         spawn(&mut world, BodyDef::fixed(), rectangle(fx!(5), fx!(1)));
-        spawn(&mut world, BodyDef::dynamic().position(fx!(0), fx!(2)).velocity(fx!(0), -speed), shape);
+        spawn(&mut world, BodyDef::dynamic().position((fx!(0), fx!(2))).velocity((fx!(0), -speed)), shape);
         hits(&mut world, 120).len()
     };
     assert_eq!(thrown(fx!(2), hitting(ball(fx!(0.5))), fx!(1)), 1);
@@ -78,8 +78,8 @@ fn contact_events_may_be_switched_off_and_on() {
     let silent = EventSwitches { contact: false, ..EventSwitches::default() };
     let landing = |floor: ShapeDef, shape: ShapeDef| {
         let mut world = World::default();
-        spawn(&mut world, BodyDef::fixed().position(fx!(0), fx!(-1)), floor);
-        let id = spawn(&mut world, BodyDef::dynamic().position(fx!(0), fx!(0.6)), shape);
+        spawn(&mut world, BodyDef::fixed().position((fx!(0), fx!(-1))), floor);
+        let id = spawn(&mut world, BodyDef::dynamic().position((fx!(0), fx!(0.6))), shape);
         let mut told = 0;
         for _ in 0..60 {
             run(&mut world, 1);
@@ -107,9 +107,9 @@ fn contact_events_may_be_switched_off_and_on() {
 #[test]
 fn moves_are_told_in_slot_order_of_what_moved() {
     let (mut world, floor) = world_with_floor();
-    let falling = spawn(&mut world, BodyDef::dynamic().position(fx!(0), fx!(9)), ball(fx!(0.5)));
-    let still = spawn(&mut world, BodyDef::kinematic().position(fx!(5), fx!(9)), ball(fx!(0.5)));
-    let turning = BodyDef::kinematic().position(fx!(9), fx!(9)).angular_velocity(fx!(1));
+    let falling = spawn(&mut world, BodyDef::dynamic().position((fx!(0), fx!(9))), ball(fx!(0.5)));
+    let still = spawn(&mut world, BodyDef::kinematic().position((fx!(5), fx!(9))), ball(fx!(0.5)));
+    let turning = BodyDef::kinematic().position((fx!(9), fx!(9))).angular_velocity(fx!(1));
     let turning = spawn(&mut world, turning, ball(fx!(0.5)));
     run(&mut world, 3);
     let told: Vec<_> = world.events().moved.iter().map(|event| event.body).collect();
@@ -130,7 +130,7 @@ fn lists_are_sorted_and_the_same_when_simulated_again() {
     let (mut world, _) = world_with_floor();
     for i in 0..40 {
         let (x, y) = (Fx::from_num(i % 8) - fx!(4), Fx::from_num(i / 8) * fx!(1.3) + fx!(1));
-        let def = BodyDef::dynamic().position(x, y).velocity(fx!(0), fx!(-3));
+        let def = BodyDef::dynamic().position((x, y)).velocity((fx!(0), fx!(-3)));
         let id = spawn(&mut world, def, hitting(ball(fx!(0.45))));
         world.add_shape(id, &square(fx!(0.6)).sensor().density(fx!(0))).expect("valid");
     }

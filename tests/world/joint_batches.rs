@@ -35,7 +35,7 @@ fn net(rng: &mut Rng) -> World {
             1 => BodyDef::fixed(),
             _ => BodyDef::dynamic(),
         };
-        bodies.push(world.spawn(&def.position(place.0, place.1), &[ball(fx!(0.3))]).expect("valid"));
+        bodies.push(world.spawn(&def.position(place), &[ball(fx!(0.3))]).expect("valid"));
     }
     for _ in 0..90 {
         add_joint(&mut world, &bodies, rng);
@@ -49,7 +49,7 @@ fn add_joint(world: &mut World, bodies: &[BodyId], rng: &mut Rng) {
     let (Some(body_a), Some(body_b)) = (world.body(a), world.body(b)) else { return };
     let anchor = body_a.transform().apply_inverse(body_b.position());
     let _refused_without_a_dynamic_body =
-        world.add_joint(&JointDef::new(a, b, random_kind(rng)).anchor_a(anchor.x, anchor.y));
+        world.add_joint(&JointDef::new(a, b, random_kind(rng)).anchor_a(anchor));
 }
 
 fn given(rng: &mut Rng) -> MassSource {

@@ -18,7 +18,7 @@ fn a_box_that_does_not_turn_takes_the_whole_momentum() {
     let target = spawn(&mut world, BodyDef::dynamic().lock_rotation(), shape);
     let radius = fx!(0.5);
     let ball = ball(radius).restitution(fx!(1)).friction(fx!(0)).density(fx!(5.09295817894));
-    let thrown = BodyDef::dynamic().position(fx!(-3), fx!(0.8)).velocity(fx!(5), fx!(0));
+    let thrown = BodyDef::dynamic().position((fx!(-3), fx!(0.8))).velocity((fx!(5), fx!(0)));
     let thrown = spawn(&mut world, thrown, ball);
     run(&mut world, 90);
     let (a, b) = (world.body(thrown).expect("there"), world.body(target).expect("there"));
@@ -35,7 +35,7 @@ fn a_box_that_turns_takes_less() {
     let mut world = weightless();
     let target = spawn(&mut world, BodyDef::dynamic(), square(fx!(1)).restitution(fx!(1)).friction(fx!(0)));
     let ball = ball(fx!(0.5)).restitution(fx!(1)).friction(fx!(0)).density(fx!(5.09295817894));
-    let thrown = BodyDef::dynamic().position(fx!(-3), fx!(0.8)).velocity(fx!(5), fx!(0));
+    let thrown = BodyDef::dynamic().position((fx!(-3), fx!(0.8))).velocity((fx!(5), fx!(0)));
     spawn(&mut world, thrown, ball);
     run(&mut world, 60);
     let body = world.body(target).expect("there");
@@ -63,9 +63,10 @@ fn impulses_and_torques_do_not_turn_what_does_not_turn() {
 fn a_locked_axis_holds_whatever_pushes() {
     for (locked_x, def) in [(true, BodyDef::dynamic().lock_x()), (false, BodyDef::dynamic().lock_y())] {
         let (mut world, _) = world_with_floor();
-        let id = spawn(&mut world, def.position(fx!(0), fx!(3)).velocity(fx!(1), fx!(1)), square(fx!(0.5)));
+        let id =
+            spawn(&mut world, def.position((fx!(0), fx!(3))).velocity((fx!(1), fx!(1))), square(fx!(0.5)));
         for tick in 0..120 {
-            let from = BodyDef::dynamic().position(fx!(-4), fx!(3.2)).velocity(fx!(20), fx!(-5));
+            let from = BodyDef::dynamic().position((fx!(-4), fx!(3.2))).velocity((fx!(20), fx!(-5)));
             if tick % 20 == 0 {
                 spawn(&mut world, from, ball(fx!(0.3)));
             }
@@ -88,7 +89,7 @@ fn a_locked_axis_holds_whatever_pushes() {
 fn a_ball_comes_back_from_a_locked_axis() {
     let mut world = weightless();
     let post = spawn(&mut world, BodyDef::dynamic().lock_x().lock_y().lock_rotation(), square(fx!(0.5)));
-    let thrown = BodyDef::dynamic().position(fx!(-3), fx!(0)).velocity(fx!(5), fx!(0));
+    let thrown = BodyDef::dynamic().position((fx!(-3), fx!(0))).velocity((fx!(5), fx!(0)));
     let thrown = spawn(&mut world, thrown, ball(fx!(0.5)).restitution(fx!(1)));
     run(&mut world, 120);
     assert_eq!(world.body(post).expect("there").position(), Vec2::ZERO);
@@ -105,7 +106,7 @@ fn a_ball_comes_back_from_a_locked_axis() {
 fn kinematic_bodies_keep_to_their_locks() {
     let mut world = weightless();
     let rail =
-        BodyDef::kinematic().lock_y().lock_rotation().velocity(fx!(1), fx!(1)).angular_velocity(fx!(1));
+        BodyDef::kinematic().lock_y().lock_rotation().velocity((fx!(1), fx!(1))).angular_velocity(fx!(1));
     let rail = spawn(&mut world, rail, rectangle(fx!(1), fx!(0.2)));
     run(&mut world, 60);
     world.move_to(rail, Vec2::new(fx!(1.5), fx!(0.5)), Angle::from_bits(1 << 29)).expect("valid");
@@ -117,7 +118,7 @@ fn kinematic_bodies_keep_to_their_locks() {
 #[test]
 fn locks_may_change_while_it_moves() {
     let mut world = weightless();
-    let def = BodyDef::dynamic().velocity(fx!(1), fx!(1)).angular_velocity(fx!(2));
+    let def = BodyDef::dynamic().velocity((fx!(1), fx!(1))).angular_velocity(fx!(2));
     let id = spawn(&mut world, def, square(fx!(0.5)));
     let locks = MotionLocks { x: true, y: false, rotation: true };
     world.set_body(id, &BodySettings { locks, ..BodySettings::default() }).expect("valid");

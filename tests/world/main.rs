@@ -38,7 +38,7 @@ fn capsule(half_length: Fx, radius: Fx) -> ShapeDef {
 /// A world with a fixed floor whose surface is at height 0.
 fn world_with_floor() -> (World, BodyId) {
     let mut world = World::default();
-    let floor = BodyDef::fixed().position(fx!(0), fx!(-1));
+    let floor = BodyDef::fixed().position((fx!(0), fx!(-1)));
     let floor = world.spawn(&floor, &[rectangle(fx!(50), fx!(1))]).expect("valid");
     (world, floor)
 }

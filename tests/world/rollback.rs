@@ -93,7 +93,7 @@ fn crowds_that_leave_each_other_out_come_back_together() {
     let mut world = weightless();
     let ids: Vec<_> = (0..40)
         .map(|i| {
-            let place = BodyDef::dynamic().position(fx!(0.8) * i, fx!(0));
+            let place = BodyDef::dynamic().position((fx!(0.8) * i, fx!(0)));
             let body = spawn(&mut world, place, ball(fx!(0.5)));
             shape_of(&world, body)
         })
@@ -195,7 +195,7 @@ fn snapshots_go_to_other_threads() {
 #[test]
 fn random_numbers_and_clones_are_hashed_as_they_are() {
     let (mut world, _) = world_with_floor();
-    let body = spawn(&mut world, BodyDef::dynamic().position(fx!(0), fx!(3)), square(fx!(0.5)));
+    let body = spawn(&mut world, BodyDef::dynamic().position((fx!(0), fx!(3))), square(fx!(0.5)));
     let (before, snapshot) = (world.state_hash(), world.save());
     world.rng().next_u32();
     assert_ne!(world.state_hash(), before, "drawing a random number must change the hash");

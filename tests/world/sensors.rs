@@ -44,7 +44,7 @@ fn a_visitor_that_passes_through_is_noticed_and_not_touched() {
         let mut world = weightless();
         let sensor = spawn(&mut world, def, zone());
         for visitor in [BodyDef::dynamic(), BodyDef::kinematic()] {
-            let visitor = visitor.position(fx!(-3), fx!(0)).velocity(fx!(4), fx!(0));
+            let visitor = visitor.position((fx!(-3), fx!(0))).velocity((fx!(4), fx!(0)));
             let visitor = spawn(&mut world, visitor, ball(fx!(0.25)));
             let log = Log::of(&mut world, 120);
             let event = visit(&world, sensor, visitor);
@@ -65,7 +65,7 @@ fn a_moving_sensor_notices_all_kinds() {
         {
             let mut world = weightless();
             let visitor = spawn(&mut world, visitor, ball(fx!(0.25)));
-            let sensor = kind.position(fx!(-3), fx!(0)).velocity(fx!(4), fx!(0));
+            let sensor = kind.position((fx!(-3), fx!(0))).velocity((fx!(4), fx!(0)));
             let sensor = spawn(&mut world, sensor, zone());
             let event = visit(&world, sensor, visitor);
             assert_eq!(Log::of(&mut world, 120), Log { begun: vec![event], ended: vec![event] });
@@ -83,7 +83,7 @@ fn fixed_bodies_and_sensors_are_not_noticed() {
     let mut world = weightless();
     spawn(&mut world, BodyDef::fixed(), zone());
     spawn(&mut world, BodyDef::fixed(), ball(fx!(0.25)));
-    spawn(&mut world, BodyDef::dynamic().velocity(fx!(0.1), fx!(0)).mass(mass()), zone());
+    spawn(&mut world, BodyDef::dynamic().velocity((fx!(0.1), fx!(0))).mass(mass()), zone());
     assert_eq!(
         Log::of(&mut world, 5).counts(),
         (1, 0),
@@ -95,7 +95,7 @@ fn fixed_bodies_and_sensors_are_not_noticed() {
 fn kinematic_visitors_are_noticed_wherever_they_stop() {
     let mut world = weightless();
     let sensor = spawn(&mut world, BodyDef::fixed(), zone());
-    let visitor = spawn(&mut world, BodyDef::kinematic().position(fx!(3), fx!(0)), ball(fx!(0.25)));
+    let visitor = spawn(&mut world, BodyDef::kinematic().position((fx!(3), fx!(0))), ball(fx!(0.25)));
     let event = visit(&world, sensor, visitor);
     let (inside, outside) = (Vec2::ZERO, Vec2::new(fx!(3), fx!(0)));
     let begin = Log { begun: vec![event], ended: vec![] };
@@ -126,8 +126,8 @@ fn kinematic_visitors_are_noticed_wherever_they_stop() {
 /// Creates a box asleep on the floor inside a sensor.
 fn sleeper_inside() -> (World, BodyId, BodyId, SensorEvent) {
     let (mut world, _) = world_with_floor();
-    let sensor = spawn(&mut world, BodyDef::kinematic().position(fx!(0), fx!(1.3)), zone());
-    let visitor = spawn(&mut world, BodyDef::dynamic().position(fx!(0), fx!(0.5)), square(fx!(0.5)));
+    let sensor = spawn(&mut world, BodyDef::kinematic().position((fx!(0), fx!(1.3))), zone());
+    let visitor = spawn(&mut world, BodyDef::dynamic().position((fx!(0), fx!(0.5))), square(fx!(0.5)));
     let event = visit(&world, sensor, visitor);
     assert_eq!(Log::of(&mut world, 90), Log { begun: vec![event], ended: vec![] });
     assert!(is_asleep(&world, visitor));
@@ -184,7 +184,7 @@ fn whatever_is_removed_ends_a_visit_once() {
 fn a_sensor_that_becomes_solid_pushes() {
     let mut world = weightless();
     let zone = spawn(&mut world, BodyDef::fixed(), zone());
-    let visitor = spawn(&mut world, BodyDef::dynamic().position(fx!(0.9), fx!(0)), square(fx!(0.5)));
+    let visitor = spawn(&mut world, BodyDef::dynamic().position((fx!(0.9), fx!(0))), square(fx!(0.5)));
     let event = visit(&world, zone, visitor);
     assert_eq!(Log::of(&mut world, 10).begun, [event]);
     let shape = shape_of(&world, zone);

@@ -12,7 +12,7 @@ use super::{ball, is_asleep, rectangle, run, shape_of, spawn, square, world_with
 fn sleeping_stack() -> (World, BodyId, [BodyId; 3]) {
     let (mut world, floor) = world_with_floor();
     let boxes = [fx!(0.5), fx!(1.5), fx!(2.5)]
-        .map(|y| spawn(&mut world, BodyDef::dynamic().position(fx!(0), y), square(fx!(0.5))));
+        .map(|y| spawn(&mut world, BodyDef::dynamic().position((fx!(0), y)), square(fx!(0.5))));
     run(&mut world, 120);
     assert!(boxes.iter().all(|id| is_asleep(&world, *id)));
     (world, floor, boxes)
@@ -45,8 +45,8 @@ fn assert_still(world: &mut World, ticks: u32) {
 #[test]
 fn a_stack_sleeps_after_half_a_second_at_rest() {
     let (mut world, _) = world_with_floor();
-    let lower = spawn(&mut world, BodyDef::dynamic().position(fx!(0), fx!(0.5)), square(fx!(0.5)));
-    let upper = spawn(&mut world, BodyDef::dynamic().position(fx!(0), fx!(1.5)), square(fx!(0.5)));
+    let lower = spawn(&mut world, BodyDef::dynamic().position((fx!(0), fx!(0.5))), square(fx!(0.5)));
+    let upper = spawn(&mut world, BodyDef::dynamic().position((fx!(0), fx!(1.5))), square(fx!(0.5)));
     run(&mut world, 29);
     assert!(!is_asleep(&world, lower) && !is_asleep(&world, upper));
     let mut told = Vec::new();
@@ -90,7 +90,7 @@ fn pushing_wakes() {
 fn joining_and_parting_wakes() {
     let world = wakes(|world, floor, [.., top]| {
         world
-            .add_joint(&JointDef::new(floor, top, Revolute::new()).anchor_a(fx!(0), fx!(3.5)))
+            .add_joint(&JointDef::new(floor, top, Revolute::new()).anchor_a((fx!(0), fx!(3.5))))
             .expect("valid");
     });
     let joint = world.joints().next().expect("one").0;
@@ -131,7 +131,7 @@ fn a_support_that_goes_wakes_what_rests_on_it() {
 #[test]
 fn a_body_that_comes_wakes_what_it_touches() {
     let (mut world, _, boxes) = sleeping_stack();
-    spawn(&mut world, BodyDef::dynamic().position(fx!(0), fx!(6)), ball(fx!(0.3)));
+    spawn(&mut world, BodyDef::dynamic().position((fx!(0), fx!(6))), ball(fx!(0.3)));
     let woken = (0..120).find(|_| {
         run(&mut world, 1);
         !is_asleep(&world, boxes[0])
@@ -144,7 +144,7 @@ fn a_body_that_comes_wakes_what_it_touches() {
 #[test]
 fn a_body_that_passes_by_wakes_nothing() {
     let (mut world, _, boxes) = sleeping_stack();
-    spawn(&mut world, BodyDef::dynamic().position(fx!(0.9), fx!(6)), ball(fx!(0.3)));
+    spawn(&mut world, BodyDef::dynamic().position((fx!(0.9), fx!(6))), ball(fx!(0.3)));
     run(&mut world, 60);
     assert!(boxes.iter().all(|id| is_asleep(&world, *id)));
 }
@@ -153,7 +153,7 @@ fn a_body_that_passes_by_wakes_nothing() {
 fn sleeper_on_platform() -> (World, BodyId, BodyId) {
     let mut world = World::default();
     let platform = spawn(&mut world, BodyDef::kinematic(), rectangle(fx!(3), fx!(0.5)));
-    let rider = spawn(&mut world, BodyDef::dynamic().position(fx!(0), fx!(1)), square(fx!(0.5)));
+    let rider = spawn(&mut world, BodyDef::dynamic().position((fx!(0), fx!(1))), square(fx!(0.5)));
     run(&mut world, 120);
     assert!(is_asleep(&world, rider));
     (world, platform, rider)
@@ -189,9 +189,9 @@ fn what_hangs_from_a_body_wakes_when_it_moves() {
     let hung = |anchor: BodyDef| {
         let mut world = World::default();
         let anchor = world.spawn(&anchor, &[]).expect("valid");
-        let bob = spawn(&mut world, BodyDef::dynamic().position(fx!(0), fx!(-2)), ball(fx!(0.3)));
+        let bob = spawn(&mut world, BodyDef::dynamic().position((fx!(0), fx!(-2))), ball(fx!(0.3)));
         world
-            .add_joint(&JointDef::new(anchor, bob, Revolute::new()).anchor_b(fx!(0), fx!(2)))
+            .add_joint(&JointDef::new(anchor, bob, Revolute::new()).anchor_b((fx!(0), fx!(2))))
             .expect("valid");
         run(&mut world, 60);
         assert!(is_asleep(&world, bob));
@@ -217,7 +217,7 @@ fn what_hangs_from_a_body_wakes_when_it_moves() {
 #[test]
 fn a_body_that_may_not_sleep_keeps_its_island_awake() {
     let (mut world, _) = world_with_floor();
-    let at = |x, y| BodyDef::dynamic().position(x, y);
+    let at = |x, y| BodyDef::dynamic().position((x, y));
     let below = spawn(&mut world, at(fx!(0), fx!(0.5)), square(fx!(0.5)));
     let mut insomniac = at(fx!(0), fx!(1.5));
     insomniac.settings.may_sleep = false;
@@ -234,7 +234,7 @@ fn a_body_that_may_not_sleep_keeps_its_island_awake() {
 fn each_body_has_its_own_threshold() {
     let mut world = super::weightless();
     let mut drifting = |y, sleep_speed| {
-        let mut def = BodyDef::dynamic().position(fx!(0), y).velocity(fx!(0.2), fx!(0));
+        let mut def = BodyDef::dynamic().position((fx!(0), y)).velocity((fx!(0.2), fx!(0)));
         def.settings.sleep_speed = sleep_speed;
         spawn(&mut world, def, ball(fx!(0.5)))
     };
@@ -251,8 +251,8 @@ fn each_body_has_its_own_threshold() {
 fn in_a_world_without_sleep_nobody_sleeps() {
     let config = Config { sleeping: false, ..Config::default() };
     let mut world = World::new(config).expect("valid");
-    spawn(&mut world, BodyDef::fixed().position(fx!(0), fx!(-1)), rectangle(fx!(9), fx!(1)));
-    let id = spawn(&mut world, BodyDef::dynamic().position(fx!(0), fx!(0.5)).asleep(), square(fx!(0.5)));
+    spawn(&mut world, BodyDef::fixed().position((fx!(0), fx!(-1))), rectangle(fx!(9), fx!(1)));
+    let id = spawn(&mut world, BodyDef::dynamic().position((fx!(0), fx!(0.5))).asleep(), square(fx!(0.5)));
     run(&mut world, 90);
     world.sleep(id).expect("nothing to do");
     assert!(!is_asleep(&world, id));
@@ -261,7 +261,7 @@ fn in_a_world_without_sleep_nobody_sleeps() {
 #[test]
 fn a_body_may_be_put_to_sleep_in_the_air_with_all_that_it_touches() {
     let (mut world, _) = world_with_floor();
-    let flying = BodyDef::dynamic().position(fx!(0), fx!(20)).velocity(fx!(1), fx!(1));
+    let flying = BodyDef::dynamic().position((fx!(0), fx!(20))).velocity((fx!(1), fx!(1)));
     let flying = spawn(&mut world, flying, ball(fx!(0.5)));
     world.apply_force_to_centre(flying, Vec2::new(fx!(5), fx!(5))).expect("valid");
     world.sleep(flying).expect("dynamic");
@@ -291,7 +291,7 @@ fn a_body_may_be_put_to_sleep_in_the_air_with_all_that_it_touches() {
 #[test]
 fn a_row_of_sleepers_wakes_in_one_tick() {
     let mut world = super::weightless();
-    let at = |x: i64| BodyDef::dynamic().position(Fx::from_num(x), fx!(0));
+    let at = |x: i64| BodyDef::dynamic().position((Fx::from_num(x), fx!(0)));
     let row: Vec<_> = (0..500).map(|x| spawn(&mut world, at(x).asleep(), square(fx!(0.5)))).collect();
     run(&mut world, 1);
     assert_eq!(world.stats().bodies, 0);

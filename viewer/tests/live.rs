@@ -138,7 +138,7 @@ fn going_back_shows_what_was_there() {
 /// Live world without gravity that contains only a circle of radius 0.5 m at (0, 2).
 fn one_disc() -> (Live, BodyId) {
     let disc = ShapeDef::new(Geometry::circle(fx!(0.5)).unwrap());
-    let spawn = Command::Spawn { body: BodyDef::dynamic().position(fx!(0), fx!(2)), shapes: vec![disc] };
+    let spawn = Command::Spawn { body: BodyDef::dynamic().position((fx!(0), fx!(2))), shapes: vec![disc] };
     let config = Config { gravity: Vec2::ZERO, ..Config::default() };
     let mut live = Live::new("one disc", &SandboxSetup { config, commands: vec![spawn] }).unwrap();
     let id = live.world().bodies().next().unwrap().0;

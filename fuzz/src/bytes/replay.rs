@@ -40,7 +40,7 @@ static ORIGINALS: LazyLock<Vec<Vec<u8>>> = LazyLock::new(|| {
 pub(super) fn ball() -> (SandboxSetup, [[Vec<Command>; 1]; 5]) {
     let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).expect("a valid radius"));
     let low = spawn(BodyDef::fixed(), &[ball]);
-    let high = spawn(BodyDef::dynamic().position(fx!(0.1), fx!(1.01)), &[ball]);
+    let high = spawn(BodyDef::dynamic().position((fx!(0.1), fx!(1.01))), &[ball]);
     let push = Command::SetGravity { gravity: lockstep2d::math::Vec2::new(fx!(1), fx!(-20)) };
     let setup = SandboxSetup { config: Config::default(), commands: vec![low, high] };
     (setup, [[vec![]], [vec![]], [vec![push.clone()]], [vec![push]], [vec![]]])

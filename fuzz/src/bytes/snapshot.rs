@@ -22,10 +22,10 @@ static ORIGINALS: LazyLock<Vec<Vec<u8>>> = LazyLock::new(|| {
     let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).expect("valid"));
     let square = ShapeDef::new(Polygon::rectangle(fx!(0.5), fx!(0.5)).expect("valid"));
     let low = touching.spawn(&BodyDef::fixed(), &[square]).expect("valid");
-    let high = touching.spawn(&BodyDef::dynamic().position(fx!(0), fx!(1)), &[ball]).expect("valid");
+    let high = touching.spawn(&BodyDef::dynamic().position((fx!(0), fx!(1))), &[ball]).expect("valid");
     touching.step();
     let mut jointed = touching.clone();
-    let hinge = JointDef::new(low, high, Revolute::default()).anchor_a(fx!(0), fx!(1));
+    let hinge = JointDef::new(low, high, Revolute::default()).anchor_a((fx!(0), fx!(1)));
     jointed.add_joint(&hinge).expect("valid");
     jointed.step();
     let mut asleep = touching.clone();

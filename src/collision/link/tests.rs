@@ -9,7 +9,7 @@ use crate::fx;
 use crate::math::{Angle, Fx, Length, Rng, Unit, Vec2, closest_point_on_segment, narrow, widen};
 
 fn posed(shape: &ShapeDef, position: Vec2<Fx>, angle: Angle) -> PosedShape {
-    let def = BodyDef::fixed().position(position.x, position.y).angle(angle);
+    let def = BodyDef::fixed().position(position).angle(angle);
     let body = Body::new(&def, MassProperties::immovable());
     PosedShape::new(shape, &body, body.rotation())
 }

@@ -16,9 +16,9 @@ use crate::math::{Angle, Fx, Vec2};
 /// let mut world = World::default();
 /// let post = world.spawn(&BodyDef::fixed(), &[])?;
 /// let plank = ShapeDef::new(Polygon::rectangle(fx!(1), fx!(0.1))?);
-/// let gate = world.spawn(&BodyDef::dynamic().position(fx!(1), fx!(0)), &[plank])?;
+/// let gate = world.spawn(&BodyDef::dynamic().position((fx!(1), fx!(0))), &[plank])?;
 /// let hinge = Revolute::new().limit(fx!(-0.5), fx!(1.5)).motor(fx!(2), fx!(40));
-/// world.add_joint(&JointDef::new(post, gate, hinge).anchor_b(fx!(-1), fx!(0)))?;
+/// world.add_joint(&JointDef::new(post, gate, hinge).anchor_b((fx!(-1), fx!(0))))?;
 /// # Ok::<(), lockstep2d::body::WorldError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -125,15 +125,15 @@ impl JointDef {
 
     /// Sets the anchor in A's frame, in metres.
     #[must_use]
-    pub const fn anchor_a(mut self, x: Fx, y: Fx) -> Self {
-        self.frame_a.anchor = Vec2::new(x, y);
+    pub fn anchor_a(mut self, anchor: impl Into<Vec2<Fx>>) -> Self {
+        self.frame_a.anchor = anchor.into();
         self
     }
 
     /// Sets the anchor in B's frame, in metres.
     #[must_use]
-    pub const fn anchor_b(mut self, x: Fx, y: Fx) -> Self {
-        self.frame_b.anchor = Vec2::new(x, y);
+    pub fn anchor_b(mut self, anchor: impl Into<Vec2<Fx>>) -> Self {
+        self.frame_b.anchor = anchor.into();
         self
     }
 

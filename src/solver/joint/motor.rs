@@ -52,8 +52,8 @@ impl Motor {
 
     /// Sets a target velocity in m/s along the axes of the world, and the largest force in N.
     #[must_use]
-    pub const fn linear(mut self, velocity: Vec2<Fx>, max_force: Fx) -> Self {
-        self.linear = Some(LinearDrive { velocity, max_force });
+    pub fn linear(mut self, velocity: impl Into<Vec2<Fx>>, max_force: Fx) -> Self {
+        self.linear = Some(LinearDrive { velocity: velocity.into(), max_force });
         self
     }
 

@@ -45,7 +45,7 @@ impl World {
     /// use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, fx, math::Vec2, world::World};
     /// let mut world = World::default();
     /// let wall = ShapeDef::new(Polygon::rectangle(fx!(1), fx!(1))?);
-    /// world.spawn(&BodyDef::fixed().position(fx!(5), fx!(0)), &[wall])?;
+    /// world.spawn(&BodyDef::fixed().position((fx!(5), fx!(0))), &[wall])?;
     /// let (eye, sight) = (Vec2::new(fx!(0), fx!(0)), Vec2::new(fx!(8), fx!(0)));
     /// let hit = world.cast_ray(eye, sight, Default::default()).expect("a wall");
     /// assert_eq!((hit.fraction, hit.point.x), (fx!(0.5), fx!(4)));

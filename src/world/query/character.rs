@@ -44,7 +44,7 @@ const HEIGHT_MAX: Fx = fx!(100);
 /// use lockstep2d::{fx, math::{Angle, Vec2}};
 /// let mut world = World::default();
 /// let floor = ShapeDef::new(Polygon::rectangle(fx!(50), fx!(1))?);
-/// world.spawn(&BodyDef::fixed().position(fx!(0), fx!(-1)), &[floor])?;
+/// world.spawn(&BodyDef::fixed().position((fx!(0), fx!(-1))), &[floor])?;
 ///
 /// let pill = Geometry::capsule(Vec2::new(fx!(0), fx!(0.3)), Vec2::new(fx!(0), fx!(1.5)), fx!(0.3))?;
 /// let mover = Mover::new(pill)?.slope_max(Angle::from_degrees(fx!(50))).step_height(fx!(0.3));

@@ -59,7 +59,7 @@ impl World {
     /// use lockstep2d::{fx, math::Vec2};
     /// let mut world = World::default();
     /// let floor = ShapeDef::new(Polygon::rectangle(fx!(9), fx!(1))?);
-    /// world.spawn(&BodyDef::fixed().position(fx!(0), fx!(-1)), &[floor])?;
+    /// world.spawn(&BodyDef::fixed().position((fx!(0), fx!(-1))), &[floor])?;
     ///
     /// let ball = Probe::new(Geometry::circle(fx!(0.5))?, Vec2::new(fx!(0), fx!(0.75)))?;
     /// let mut planes = world.collide_mover(&ball, fx!(1), Default::default());

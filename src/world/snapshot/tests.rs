@@ -16,7 +16,7 @@ fn chain(count: u32) -> (World, Vec<BodyId>) {
     let ball = ShapeDef::new(Geometry::circle(fx!(0.4)).expect("valid"));
     let bodies: Vec<BodyId> = (0..count)
         .map(|i| {
-            let def = BodyDef::dynamic().position(Fx::from_num(i), fx!(0));
+            let def = BodyDef::dynamic().position((Fx::from_num(i), fx!(0)));
             world.spawn(&def, &[ball]).expect("valid")
         })
         .collect();
@@ -92,8 +92,8 @@ fn contacts_of_every_kind_come_back() {
 fn forces_targets_and_sleepers_come_back() {
     let (mut world, bodies) = chain(40);
     world.sleep(bodies[3]).expect("dynamic");
-    let lift = world.spawn(&BodyDef::kinematic().position(fx!(0), fx!(5)), &[]).expect("valid");
-    let thrown = world.spawn(&BodyDef::dynamic().position(fx!(9), fx!(9)), &[ball()]).expect("valid");
+    let lift = world.spawn(&BodyDef::kinematic().position((fx!(0), fx!(5))), &[]).expect("valid");
+    let thrown = world.spawn(&BodyDef::dynamic().position((fx!(9), fx!(9))), &[ball()]).expect("valid");
     world.move_to(lift, Vec2::new(fx!(0), fx!(5.1)), crate::math::Angle::EIGHTH).expect("near");
     world.apply_force(thrown, Vec2::new(fx!(3), fx!(4)), Vec2::new(fx!(9), fx!(10))).expect("dynamic");
     there_and_back(&mut world);

@@ -155,7 +155,7 @@ impl Hand {
         let mark = MARK | u64::from(self.grabs);
         let point = body.transform().apply_inverse(picked.point);
         self.hold = Hold::Reaching(Grip { body: picked.body, point, towards: aim.at, mark });
-        let anchor = BodyDef::kinematic().position(picked.point.x, picked.point.y).user_data(mark);
+        let anchor = BodyDef::kinematic().position(picked.point).user_data(mark);
         commands.push(Command::Spawn { body: anchor, shapes: vec![] });
     }
 
@@ -166,9 +166,7 @@ impl Hand {
         let strength = body.mass().saturating_mul_int(STRENGTH);
         let friction = fx_mul(fx_mul(body.mass(), body.radius_of_gyration()), GRIP);
         let spring = Motor::new().linear_spring(HERTZ, DAMPING_RATIO, strength).angular(Fx::ZERO, friction);
-        let joint = JointDef::new(anchor, grip.body, spring)
-            .anchor_b(grip.point.x, grip.point.y)
-            .user_data(grip.mark);
+        let joint = JointDef::new(anchor, grip.body, spring).anchor_b(grip.point).user_data(grip.mark);
         commands.push(Command::AddJoint { joint });
         self.hold = Hold::Holding(grip, anchor);
     }

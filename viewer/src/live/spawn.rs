@@ -32,7 +32,7 @@ pub(super) fn spawn(form: Form, at: Vec2<Fx>, to: Vec2<Fx>, rng: &mut Rng) -> Op
 }
 
 fn upright(at: Vec2<Fx>) -> BodyDef {
-    BodyDef::dynamic().position(at.x, at.y)
+    BodyDef::dynamic().position(at)
 }
 
 fn rectangle(corner: Option<Vec2<Fx>>) -> Result<Geometry, GeometryError> {
