@@ -13,7 +13,7 @@ pub(super) fn report_moves(state: &State, scratch: &mut Scratch) {
         let body = state.bodies.at(slot);
         let (fell_asleep, solved) = (body.is_asleep(), solver.body(slot));
         if fell_asleep || solved.shift != Vec2::ZERO || solved.turn != 0 {
-            let (position, angle) = (origins.position((slot, body)), body.angle());
+            let (position, angle) = (origins.position(slot, body), body.angle());
             debug_assert_eq!(position, body.position());
             let body = state.bodies.handle_at(slot);
             results.events.moved.push(MoveEvent { body, position, angle, fell_asleep });
