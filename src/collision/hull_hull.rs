@@ -24,23 +24,6 @@ pub(super) const FACE_BITS: u32 = Unit::FRAC_NBITS + Length::FRAC_NBITS;
 /// [`TOLERANCE`] with [`FACE_BITS`] fraction bits.
 pub(super) const TOLERANCE_WIDE: i64 = (TOLERANCE.to_bits() as i64) << 25;
 
-/// The face that separated a pair in the last tick, if one did. Trying it first changes no result: any axis with a gap
-/// beyond the margin proves that there is no contact.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) enum AxisHint {
-    #[default]
-    None,
-    OfA(u8),
-    OfB(u8),
-}
-
-/// How often the hint saved the search.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) struct SatCounters {
-    pub(crate) hint_hits: u32,
-    pub(crate) searches: u32,
-}
-
 #[derive(Clone, Copy)]
 pub(super) struct Face {
     pub(super) edge: usize,
@@ -49,43 +32,17 @@ pub(super) struct Face {
 }
 
 /// `d` is the vector from the centre of A to the centre of B.
-pub(crate) fn collide(
-    a: &Hull,
-    b: &Hull,
-    d: Vec2<Length>,
-    margin: Length,
-    hint: &mut AxisHint,
-    counters: &mut SatCounters,
-) -> Manifold {
+pub(crate) fn collide(a: &Hull, b: &Hull, d: Vec2<Length>, margin: Length) -> Manifold {
     let radii = a.radius.saturating_add(b.radius);
     let reach = i64::from(margin.saturating_add(radii).to_bits()) << 30;
-    let hinted = match *hint {
-        // Lanes have no use for one, and what is counted should not tell them apart.
-        _ if a.is_small_box() && b.is_small_box() => i64::MIN,
-        AxisHint::OfA(edge) if usize::from(edge) < a.vertices().len() => {
-            face_separation(a, edge.into(), b, d)
-        }
-        AxisHint::OfB(edge) if usize::from(edge) < b.vertices().len() => {
-            face_separation(b, edge.into(), a, -d)
-        }
-        _ => i64::MIN,
-    };
-    if hinted > reach {
-        counters.hint_hits += 1;
-        return Manifold::NONE;
-    }
-    counters.searches += 1;
     let face_a = best_face(a, b, d);
     if face_a.separation > reach {
-        *hint = AxisHint::OfA(small(face_a.edge));
         return Manifold::NONE;
     }
     let face_b = best_face(b, a, -d);
     if face_b.separation > reach {
-        *hint = AxisHint::OfB(small(face_b.edge));
         return Manifold::NONE;
     }
-    *hint = AxisHint::None;
     let apart = are_apart(a, b, d, face_a, face_b);
     // Outlines that are apart need the true best face, which is next to the nearest corner.
     let preference = if apart { 0 } else { TOLERANCE_WIDE };
@@ -116,11 +73,6 @@ fn beyond_an_end(a: &Hull, b: &Hull, d: Vec2<Length>) -> bool {
     let along = |v: Vec2<Length>| x * i64::from(v.x.to_bits()) + y * i64::from(v.y.to_bits());
     let of_b = |from: Vec2<Length>| b.vertices().iter().map(move |&vertex| along(vertex) + along(d - from));
     of_b(start).all(|along| along < -TOLERANCE_WIDE) || of_b(end).all(|along| along > TOLERANCE_WIDE)
-}
-
-#[expect(clippy::cast_possible_truncation, reason = "at most 8 edges")]
-fn small(edge: usize) -> u8 {
-    edge as u8
 }
 
 /// The face of `a` that is furthest from `b`: of equal ones the first.

@@ -30,7 +30,6 @@ pub(crate) use broad_phase::{BroadPhase, Moved, Pair};
 pub(crate) use contact::{Contact, PointImpulse};
 pub(crate) use core::{Core, Fraction};
 pub(crate) use distance::{distance, overlap};
-pub(crate) use hull_hull::{AxisHint, SatCounters};
 pub(crate) use link::Link;
 pub use manifold::{Feature, Manifold, ManifoldPoint};
 pub(crate) use narrow_phase::{collide, collide_near, margin_for, may_meet};

@@ -1,6 +1,5 @@
 //! The narrow phase: every pair of outlines, listed.
 
-use super::hull_hull::{AxisHint, SatCounters};
 use super::link::Facing;
 use super::manifold::Manifold;
 use super::pose::{Hull, Outline, PosedShape};
@@ -31,48 +30,12 @@ pub(crate) fn may_meet(a: Aabb, b: Aabb, margin: Length) -> bool {
 }
 
 /// The contact of two posed shapes whose surfaces are at most `margin` metres apart.
-pub(crate) fn collide(
-    a: &PosedShape,
-    b: &PosedShape,
-    margin: Length,
-    hint: &mut AxisHint,
-    counters: &mut SatCounters,
-) -> Manifold {
-    if may_meet(a.bounds, b.bounds, margin) {
-        collide_near(a, b, margin, hint, counters)
-    } else {
-        Manifold::NONE
-    }
+pub(crate) fn collide(a: &PosedShape, b: &PosedShape, margin: Length) -> Manifold {
+    if may_meet(a.bounds, b.bounds, margin) { collide_near(a, b, margin) } else { Manifold::NONE }
 }
 
 /// [`collide`] without the reject, and its oracle.
-#[inline(always)]
-pub(crate) fn collide_near(
-    a: &PosedShape,
-    b: &PosedShape,
-    margin: Length,
-    hint: &mut AxisHint,
-    counters: &mut SatCounters,
-) -> Manifold {
-    // Most pairs.
-    if let (Outline::Polygon(hull_a), Outline::Polygon(hull_b)) = (&a.outline, &b.outline) {
-        let d = (b.centre - a.centre).narrow();
-        let mut manifold = hull_hull::collide(hull_a, hull_b, d, margin, hint, counters);
-        manifold.origin = a.centre;
-        return manifold;
-    }
-    collide_outlines(a, b, margin, hint, counters)
-}
-
-/// [`collide_near`] for any outlines.
-#[inline(never)]
-fn collide_outlines(
-    a: &PosedShape,
-    b: &PosedShape,
-    margin: Length,
-    hint: &mut AxisHint,
-    counters: &mut SatCounters,
-) -> Manifold {
+pub(crate) fn collide_near(a: &PosedShape, b: &PosedShape, margin: Length) -> Manifold {
     use Outline::{Circle, Link, Polygon, Segment};
     let d: Vec2<Length> = (b.centre - a.centre).narrow();
     // Each manifold is found about the centre of one shape: A's, unless only B has a centre near the contact.
@@ -86,7 +49,7 @@ fn collide_outlines(
             origin = b.centre;
             circle_hull::collide(hull, *radius, -d, margin).swapped()
         }
-        (Polygon(hull_a), Polygon(hull_b)) => hull_hull::collide(hull_a, hull_b, d, margin, hint, counters),
+        (Polygon(hull_a), Polygon(hull_b)) => hull_hull::collide(hull_a, hull_b, d, margin),
         (Segment { .. }, Circle { radius }) => {
             origin = b.centre;
             let Some(hull) = segment_about(a, b) else { return Manifold::NONE };
@@ -99,11 +62,11 @@ fn collide_outlines(
         (Segment { .. }, Polygon(hull_b)) => {
             origin = b.centre;
             let Some(hull_a) = segment_about(a, b) else { return Manifold::NONE };
-            hull_hull::collide(&hull_a, hull_b, Vec2::ZERO, margin, hint, counters)
+            hull_hull::collide(&hull_a, hull_b, Vec2::ZERO, margin)
         }
         (Polygon(hull_a), Segment { .. }) => {
             let Some(hull_b) = segment_about(b, a) else { return Manifold::NONE };
-            hull_hull::collide(hull_a, &hull_b, Vec2::ZERO, margin, hint, counters)
+            hull_hull::collide(hull_a, &hull_b, Vec2::ZERO, margin)
         }
         (Link(_), Circle { radius }) => {
             origin = b.centre;
@@ -148,7 +111,6 @@ fn link_facing(link: &PosedShape, other: &PosedShape, place: Vec2<Fx>) -> Option
 mod tests {
     use super::*;
     use crate::body::{Body, BodyDef, Geometry, MassProperties, Polygon, ShapeDef};
-    use crate::collision::SatCounters;
     use crate::collision::link::Link;
     use crate::math::{Angle, Rng, closest_point_on_segment, narrow};
     use alloc::vec::Vec;
@@ -185,26 +147,19 @@ mod tests {
     }
 
     #[test]
-    fn reject_and_cached_axis_change_no_result() {
+    fn reject_changes_no_result() {
         let mut rng = Rng::new(1);
-        let mut counters = SatCounters::default();
         let mut touching = 0;
         for _ in 0..200_000 {
             let (a, b) = (random_pose(&mut rng), random_pose(&mut rng));
             let margin = narrow(rng.range(fx!(0.005), fx!(0.2)));
-            let mut hint = AxisHint::default();
-            let plain = collide_near(&a, &b, margin, &mut hint, &mut SatCounters::default());
-            // `hint` now holds the separating axis, if there is one; another pair's is a wrong one.
-            for _ in 0..2 {
-                let found = collide(&a, &b, margin, &mut hint, &mut counters);
-                assert_eq!(found.points(), plain.points());
-                assert!(found.points().is_empty() || found == plain, "{found:?} is not {plain:?}");
-                let other = random_pose(&mut rng);
-                collide_near(&a, &other, margin, &mut hint, &mut SatCounters::default());
-            }
+            let plain = collide_near(&a, &b, margin);
+            let found = collide(&a, &b, margin);
+            assert_eq!(found.points(), plain.points());
+            assert!(found.points().is_empty() || found == plain, "{found:?} is not {plain:?}");
             touching += u32::from(!plain.points().is_empty());
         }
-        assert!(touching > 20_000 && counters.hint_hits > 10_000, "{touching} touch, {counters:?}");
+        assert!(touching > 20_000, "{touching} touch");
     }
 
     #[test]
@@ -261,7 +216,7 @@ mod tests {
                 continue;
             }
             let ((corners_a, radius_a), (corners_b, radius_b)) = (corners(&a), corners(&b));
-            let manifold = collide(&a, &b, margin, &mut AxisHint::default(), &mut SatCounters::default());
+            let manifold = collide(&a, &b, margin);
             let nearest = manifold.points().iter().map(|point| Fx::from(point.separation)).min();
             let expected = distance(&corners_a, &corners_b) - radius_a - radius_b;
             match nearest {
@@ -301,7 +256,7 @@ mod tests {
                 let a = posed(pill(), Vec2::new(fx!(7), fx!(2)), Angle::ZERO);
                 let b = posed(other, Vec2::new(fx!(10) + gap, fx!(2)), angle);
                 let margin = narrow(fx!(0.05));
-                let found = collide(&a, &b, margin, &mut AxisHint::default(), &mut SatCounters::default());
+                let found = collide(&a, &b, margin);
                 assert_eq!(found.points().len(), 1, "{other:?}, gap {gap}");
                 assert!(found.normal.x > Length::lit("0.999"), "{:?}", found.normal);
                 let error = widen(found.points()[0].separation) - gap;
@@ -318,7 +273,7 @@ mod tests {
         let mut compared = 0;
         for _ in 0..50_000 {
             let (a, b) = (random_pose(&mut rng), random_pose(&mut rng));
-            let collide = |a, b| collide(a, b, margin, &mut AxisHint::default(), &mut SatCounters::default());
+            let collide = |a, b| collide(a, b, margin);
             let (ab, ba) = (collide(&a, &b), collide(&b, &a));
             let same_axis = (ab.normal + ba.normal).length() < crate::math::Unit::lit("0.0001");
             if ab.points().is_empty() || !same_axis {

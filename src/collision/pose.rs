@@ -128,12 +128,6 @@ impl Hull {
         self.vertices.first_chunk().zip(self.normals.first_chunk())
     }
 
-    /// Whether it may be one of [`SmallBoxes`](super::SmallBoxes).
-    #[inline]
-    pub(crate) fn is_small_box(&self) -> bool {
-        self.is_small_box
-    }
-
     /// The index of the vertex after `i`, counter-clockwise.
     #[inline]
     pub(crate) fn next(&self, i: usize) -> usize {

@@ -51,11 +51,6 @@ pub struct StepStats {
     pub points_kept: u32,
     /// Number of contact points with an impulse in the tick before that are gone although their shapes still touch.
     pub points_lost: u32,
-    /// Number of polygon pairs that the cached separating axis of the tick before still separates. Pairs of small boxes
-    /// are never among them.
-    pub axis_hits: u32,
-    /// Number of polygon pairs that needed a full separating axis test.
-    pub axis_searches: u32,
     /// Number of fast bodies that continuous collision has stopped; see [`crate::body::Continuous`].
     pub impacts: u32,
     /// Number of results that a clamp has changed.

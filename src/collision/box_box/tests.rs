@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::body::{Body, BodyDef, MassProperties, Polygon, ShapeDef};
-use crate::collision::{AxisHint, SatCounters, collide_near};
+use crate::collision::collide_near;
 use crate::fx;
 use crate::lanes::Backend;
 use crate::math::{Angle, Rng, Rot, narrow};
@@ -67,9 +67,7 @@ fn lanes_find_what_is_found_one_by_one() {
         let pairs: Vec<_> = (0..=rng.below(10)).map(|_| random_pair(&mut rng)).collect();
         let widest = if rng.below(16) == 0 { fx!(2) } else { fx!(0.2) };
         let margins: Vec<_> = pairs.iter().map(|_| narrow(rng.range(fx!(0.005), widest))).collect();
-        let expected = pairs.iter().zip(&margins).map(|((a, b), &margin)| {
-            collide_near(a, b, margin, &mut AxisHint::default(), &mut SatCounters::default())
-        });
+        let expected = pairs.iter().zip(&margins).map(|((a, b), &margin)| collide_near(a, b, margin));
         let expected: Vec<_> = expected.collect();
         // Slots in another order than the pairs.
         let slots_of = |place: usize| (63 - 3 * u32::try_from(place).unwrap(), u32::try_from(place).unwrap());

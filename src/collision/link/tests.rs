@@ -3,7 +3,6 @@
 use alloc::vec::Vec;
 
 use crate::body::{Body, BodyDef, Chain, Geometry, MassProperties, Polygon, ShapeDef};
-use crate::collision::hull_hull::{AxisHint, SatCounters};
 use crate::collision::{Manifold, Outline, PosedShape, collide};
 use crate::fx;
 use crate::math::{Angle, Fx, Length, Rng, Unit, Vec2, closest_point_on_segment, narrow, widen};
@@ -15,13 +14,7 @@ fn posed(shape: &ShapeDef, position: Vec2<Fx>, angle: Angle) -> PosedShape {
 }
 
 fn found(a: &PosedShape, b: &PosedShape, margin: Fx) -> Manifold {
-    collide(
-        a,
-        b,
-        narrow::<fixed::types::extra::U22>(margin),
-        &mut AxisHint::default(),
-        &mut SatCounters::default(),
-    )
+    collide(a, b, narrow::<fixed::types::extra::U22>(margin))
 }
 
 fn nearest(manifold: &Manifold) -> Option<Fx> {

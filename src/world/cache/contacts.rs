@@ -3,21 +3,18 @@
 use alloc::vec::Vec;
 
 use super::motion::ClosingBound;
-use crate::collision::{AxisHint, BoxPairs, Contact, Manifold, SatCounters};
+use crate::collision::{BoxPairs, Contact, Manifold};
 use crate::solver::TouchingPair;
 use crate::world::events::HitEvent;
 
-/// Cache of the narrow phase. Manifolds and axes are indexed by a contact's place in the state, and so become invalid
-/// when contacts are reordered.
+/// Cache of the narrow phase. Manifolds are indexed by a contact's place in the state, and so become invalid when
+/// contacts are reordered.
 #[derive(Clone, Debug)]
 pub(crate) struct ContactCache {
     /// Output of the last narrow phase.
     output: NarrowPhaseOutput,
     /// Output of each job of a narrow phase.
     parts: Vec<NarrowPhaseOutput>,
-    /// For each contact of the state, the axis that separated its shapes in the last tick. May be shorter or longer
-    /// than the list of contacts: the missing ones have no axis.
-    axes: Vec<AxisHint>,
     /// The touching pairs of the tick before, sorted by pair: most of them still touch, with the same surface.
     touched: Vec<TouchingPair>,
     /// Whether surfaces may differ from those of the last tick.
@@ -26,8 +23,6 @@ pub(crate) struct ContactCache {
 
 /// The buffers of one narrow phase.
 pub(crate) struct NarrowPhaseBuffers<'a> {
-    /// For each contact, the axis that separated its shapes in the last tick.
-    pub(crate) axes: &'a mut [AxisHint],
     /// An empty output for each job.
     pub(crate) parts: &'a mut [NarrowPhaseOutput],
     /// The touching pairs of the tick before whose surfaces are still valid, sorted by pair.
@@ -47,7 +42,6 @@ pub(crate) struct NarrowPhaseOutput {
     pub(crate) touching: Vec<TouchingPair>,
     /// Fast approaches, which become hit events if the shapes push each other in this tick.
     pub(crate) approaches: Vec<Approach>,
-    pub(crate) sat: SatCounters,
     /// Buffer: contacts of the current block whose shapes may meet.
     pub(crate) near: Vec<NearPair>,
     /// Buffer: box pairs of the current block.
@@ -77,7 +71,6 @@ impl ContactCache {
         ContactCache {
             output: NarrowPhaseOutput::default(),
             parts: Vec::new(),
-            axes: Vec::new(),
             touched: Vec::new(),
             surfaces_changed: true,
         }
@@ -91,7 +84,6 @@ impl ContactCache {
     /// Drops everything that is indexed by contact, because contacts have been reordered.
     pub(crate) fn invalidate(&mut self) {
         self.output.clear();
-        self.axes.clear();
     }
 
     /// Drops cached surfaces at the next narrow phase, because materials or shapes may have changed.
@@ -105,16 +97,9 @@ impl ContactCache {
         self.output.touching.retain(|pair| !is_removed(pair));
     }
 
-    /// The separating axis of each of `count` contacts, for an operation that reorders the contacts.
-    pub(crate) fn axes(&mut self, count: usize) -> &mut Vec<AxisHint> {
-        self.axes.resize(count, AxisHint::default());
-        &mut self.axes
-    }
-
-    /// Starts a narrow phase over `contact_count` contacts with at least one job.
-    pub(crate) fn begin(&mut self, contact_count: usize, job_count: usize) -> NarrowPhaseBuffers<'_> {
-        let ContactCache { output, parts, axes, touched, surfaces_changed } = self;
-        axes.resize(contact_count, AxisHint::default());
+    /// Starts a narrow phase with at least one job.
+    pub(crate) fn begin(&mut self, job_count: usize) -> NarrowPhaseBuffers<'_> {
+        let ContactCache { output, parts, touched, surfaces_changed } = self;
         core::mem::swap(&mut output.touching, touched);
         if core::mem::take(surfaces_changed) {
             touched.clear();
@@ -123,7 +108,7 @@ impl ContactCache {
         // The memory of the last output is reused for the first job.
         core::mem::swap(&mut parts[0], output);
         parts.iter_mut().for_each(NarrowPhaseOutput::clear);
-        NarrowPhaseBuffers { axes, parts, touched }
+        NarrowPhaseBuffers { parts, touched }
     }
 
     /// Joins the outputs of the jobs in order.
@@ -134,14 +119,13 @@ impl ContactCache {
     }
 
     /// Moves the contacts for which `stays` is false from `contacts` to `removed`, with order preserved. Removes their
-    /// manifolds and axes.
+    /// manifolds.
     pub(crate) fn split_off(
         &mut self,
         contacts: &mut Vec<Contact>,
         removed: &mut Vec<Contact>,
         stays: impl Fn(&Contact) -> bool,
     ) {
-        self.axes.resize(contacts.len(), AxisHint::default());
         let NarrowPhaseOutput { manifolds, contacts: indices, .. } = &mut self.output;
         let (mut kept, mut next, mut kept_manifolds) = (0, 0, 0);
         for index in 0..contacts.len() {
@@ -157,14 +141,12 @@ impl ContactCache {
             }
             if stays {
                 contacts.swap(kept, index);
-                self.axes.swap(kept, index);
                 kept += 1;
             } else {
                 removed.push(contacts[index]);
             }
         }
         contacts.truncate(kept);
-        self.axes.truncate(kept);
         manifolds.truncate(kept_manifolds);
         indices.truncate(kept_manifolds);
     }
@@ -180,7 +162,6 @@ impl NarrowPhaseOutput {
         self.approaches.clear();
         self.near.clear();
         self.boxes.clear();
-        self.sat = SatCounters::default();
     }
 
     /// Appends the output of the next job.
@@ -192,8 +173,6 @@ impl NarrowPhaseOutput {
         self.contacts.extend_from_slice(&next.contacts);
         self.sensors.extend_from_slice(&next.sensors);
         self.approaches.extend_from_slice(&next.approaches);
-        self.sat.hint_hits += next.sat.hint_hits;
-        self.sat.searches += next.sat.searches;
     }
 
     /// Index of the next manifold.

@@ -10,8 +10,7 @@
 //! | [`AwakeSet`] | slots of awake bodies and of their joints | something wakes, sleeps, is added or removed |
 //! | [`JointLinks`] | joints of each body | updated with every joint |
 //! | [`PairCache`] | which pairs may have changed, pairs kept apart by joints | see [`Changes`] |
-//! | [`ContactCache`] | manifolds, surfaces, cached separating axes | contacts are reordered, shapes redefined |
-//! | [`OriginCache`] | rotated offset of each body's origin | its key, compared at every use, differs |
+//! | [`ContactCache`] | manifolds and surfaces of the last tick | contacts are reordered, shapes redefined |
 //! | [`Solver`] | constraints of the last tick | never read before the next tick prepares it |
 
 mod awake;
@@ -19,7 +18,6 @@ mod changes;
 mod contacts;
 mod joint_links;
 mod motion;
-mod origins;
 mod pairs;
 mod poses;
 mod results;
@@ -33,8 +31,7 @@ pub(crate) use joint_links::JointLinks;
 pub(crate) use motion::{
     ClosingBound, Margins, MotionCache, PASSAGE_MIN, PredictedMotion, ShapeMotion, Travel,
 };
-pub(crate) use origins::OriginCache;
-pub(crate) use pairs::{MergedContacts, NonCollidingPairs, PairCache, merge_sorted};
+pub(crate) use pairs::{NonCollidingPairs, PairCache, merge_sorted};
 pub(crate) use poses::{Extents, Poses};
 pub(crate) use results::{Sweeps, SweptBody, TickResults};
 pub(crate) use shapes::ShapeCache;
@@ -56,7 +53,6 @@ pub(crate) struct Scratch {
     pub(crate) union: UnionFind,
     /// Buffers for continuous collision.
     pub(crate) sweeps: Sweeps,
-    pub(crate) origins: OriginCache,
     pub(crate) solver: Solver,
     pub(crate) results: TickResults,
 }
@@ -72,7 +68,6 @@ impl Scratch {
             contacts: ContactCache::new(),
             union: UnionFind::default(),
             sweeps: Sweeps::default(),
-            origins: OriginCache::default(),
             solver: Solver::default(),
             results: TickResults::default(),
         }

@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 
 use super::changes::Changes;
 use crate::body::{BodyKind, Handle};
-use crate::collision::{AxisHint, Contact, Pair};
+use crate::collision::{Contact, Pair};
 use crate::world::state::State;
 
 /// Cache of the pair update.
@@ -38,26 +38,8 @@ pub(crate) struct PairBuffers {
     pub(crate) fresh: Vec<Contact>,
     /// Contacts to add to the resting ones.
     pub(crate) resting: Vec<Contact>,
-    pub(crate) merged: MergedContacts,
-}
-
-/// Contacts and the cached separating axis of each.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct MergedContacts {
-    pub(crate) contacts: Vec<Contact>,
-    pub(crate) axes: Vec<AxisHint>,
-}
-
-impl MergedContacts {
-    pub(crate) fn clear(&mut self) {
-        self.contacts.clear();
-        self.axes.clear();
-    }
-
-    pub(crate) fn push(&mut self, contact: Contact) {
-        self.contacts.push(contact);
-        self.axes.push(AxisHint::default());
-    }
+    /// Target of a merge.
+    pub(crate) merged: Vec<Contact>,
 }
 
 /// Merges contacts into a list. Both are sorted by pair and have no pair in common.

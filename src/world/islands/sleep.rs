@@ -91,5 +91,5 @@ fn rest_contacts(state: &mut State, scratch: &mut Scratch) {
         a.is_active() || b.is_active()
     });
     state.contacts = contacts;
-    merge_sorted(&mut state.resting, &buffers.resting, &mut buffers.merged.contacts);
+    merge_sorted(&mut state.resting, &buffers.resting, &mut buffers.merged);
 }

@@ -4,7 +4,7 @@
 use core::ops::Range;
 
 use super::speculative::{Side, SpeculativePair, approach};
-use crate::collision::{AxisHint, Contact, Manifold, Pair, SatCounters, collide, collide_near};
+use crate::collision::{Contact, Manifold, Pair, collide, collide_near};
 use crate::lanes::Machine;
 use crate::math::{Length, Step, saturate, widen};
 use crate::solver::{Surface, TouchingPair};
@@ -32,13 +32,12 @@ pub(super) fn find_manifolds(state: &mut State, scratch: &mut Scratch) {
     let mut contacts = core::mem::take(&mut state.contacts);
     let share = solver.threads.share(contacts.len(), JOB_MIN);
     let job_count = contacts.len().div_ceil(share).max(1);
-    let NarrowPhaseBuffers { axes, parts, touched } = cache.begin(contacts.len(), job_count);
+    let NarrowPhaseBuffers { parts, touched } = cache.begin(job_count);
     let (margins, machine) = (Margins::of(&state.config), solver.machine);
     let narrow_phase = NarrowPhase { state, poses: shapes.poses(), touched, margins, machine };
-    let chunks = contacts.chunks_mut(share).zip(axes.chunks_mut(share));
-    let jobs = (0u32..).step_by(share).zip(chunks).zip(parts.iter_mut());
-    solver.threads.run(jobs, |((first, (contacts, axes)), output)| {
-        narrow_phase.run(Job { contacts, axes, first }, output);
+    let jobs = (0u32..).step_by(share).zip(contacts.chunks_mut(share)).zip(parts.iter_mut());
+    solver.threads.run(jobs, |((first, contacts), output)| {
+        narrow_phase.run(Job { contacts, first }, output);
         0
     });
     cache.finish();
@@ -58,8 +57,6 @@ struct NarrowPhase<'a> {
 /// A part of the contacts.
 struct Job<'a> {
     contacts: &'a mut [Contact],
-    /// For each of the contacts, the axis that separated its shapes in the last tick.
-    axes: &'a mut [AxisHint],
     /// Index of the first of the contacts in the state.
     first: u32,
 }
@@ -120,18 +117,15 @@ impl NarrowPhase<'_> {
         output: &mut NarrowPhaseOutput,
     ) -> &'t [TouchingPair] {
         let NarrowPhase { state, poses, margins, .. } = self;
-        let NarrowPhaseOutput { near, boxes, contacts, sensors, manifolds, touching, approaches, sat } =
-            output;
+        let NarrowPhaseOutput { near, boxes, contacts, sensors, manifolds, touching, approaches } = output;
         let motion = poses.motion();
         for &NearPair { index, closing, box_pair } in near.iter() {
-            let (contact, axis) = (&mut job.contacts[index], &mut job.axes[index]);
+            let contact = &mut job.contacts[index];
             let (shape_a, shape_b) = (motion.shape(contact.shapes.0), motion.shape(contact.shapes.1));
             let pair = SpeculativePair { margins, a: shape_a, b: shape_b, closing };
             let is_found = box_pair.is_some_and(|at| boxes.append_to(manifolds, at, shape_a.centre()));
-            if is_found {
-                sat.searches += 1;
-            } else {
-                manifolds.push(manifold_of(poses, &pair, contact.shapes, axis, sat));
+            if !is_found {
+                manifolds.push(manifold_of(poses, &pair, contact.shapes));
             }
             let place = u32::try_from(manifolds.len()).expect("fewer than 2^32 contacts") - 1;
             let Some(manifold) = manifolds.last_mut() else { continue };
@@ -177,8 +171,7 @@ pub(super) fn will_touch(state: &State, poses: &Poses, shapes: Pair) -> bool {
     let closing = ClosingBound::of(&margins, a, b);
     let pair = SpeculativePair { margins: &margins, a, b, closing };
     closing.may_meet(a, b) && {
-        let (mut axis, mut counters) = (AxisHint::default(), SatCounters::default());
-        let mut manifold = manifold_of(poses, &pair, shapes, &mut axis, &mut counters);
+        let mut manifold = manifold_of(poses, &pair, shapes);
         keep_reachable(state, poses, &pair, &mut contact, &mut manifold);
         !manifold.points().is_empty()
     }
@@ -186,18 +179,12 @@ pub(super) fn will_touch(state: &State, poses: &Poses, shapes: Pair) -> bool {
 
 /// The manifold of two shapes that may meet. A sensor has no speculative margin.
 #[inline(always)]
-fn manifold_of(
-    poses: &Poses,
-    pair: &SpeculativePair,
-    (a, b): Pair,
-    axis: &mut AxisHint,
-    counters: &mut SatCounters,
-) -> Manifold {
+fn manifold_of(poses: &Poses, pair: &SpeculativePair, (a, b): Pair) -> Manifold {
     let (posed_a, posed_b) = (poses.at(a), poses.at(b));
     if pair.a.sensor || pair.b.sensor {
-        return collide(posed_a, posed_b, Length::ZERO, axis, counters);
+        return collide(posed_a, posed_b, Length::ZERO);
     }
-    collide_near(posed_a, posed_b, pair.closing.margin, axis, counters)
+    collide_near(posed_a, posed_b, pair.closing.margin)
 }
 
 /// Removes the points of two shapes that pass by each other, or through a one-way shape.

@@ -5,8 +5,10 @@
 //! result is a function of the state: [`Changes`](crate::world::cache::Changes) only says where to look for
 //! differences.
 
+use alloc::vec::Vec;
+
 use crate::collision::{Contact, Moved, Pair};
-use crate::world::cache::{Changes, MergedContacts, NonCollidingPairs, Scratch, ShapeCache, merge_sorted};
+use crate::world::cache::{Changes, NonCollidingPairs, Scratch, ShapeCache, merge_sorted};
 use crate::world::state::State;
 
 /// Updates the contacts. Contacts whose pair has ended are added to the `ended` list of the pair cache.
@@ -115,10 +117,9 @@ impl PairChange {
 }
 
 /// Merges the fresh contacts into the active ones, and removes those that end or rest. Contacts between two such places
-/// are copied as one block together with their cached axes.
+/// are copied as one block.
 fn merge_contacts(state: &mut State, scratch: &mut Scratch) {
-    let Scratch { shapes, pairs, contacts: cache, .. } = scratch;
-    let axes = cache.axes(state.contacts.len());
+    let Scratch { shapes, pairs, .. } = scratch;
     let (changes, non_colliding, ended) = (&pairs.changes, &pairs.non_colliding, &mut pairs.ended);
     let (merged, resting) = (&mut pairs.buffers.merged, &mut pairs.buffers.resting);
     merged.clear();
@@ -126,9 +127,8 @@ fn merge_contacts(state: &mut State, scratch: &mut Scratch) {
     let contacts = &state.contacts;
     let mut fresh = pairs.buffers.fresh.iter().peekable();
     let mut copied = 0;
-    let mut copy = |merged: &mut MergedContacts, end: usize, next: usize| {
-        merged.contacts.extend_from_slice(&contacts[copied..end]);
-        merged.axes.extend_from_slice(&axes[copied..end]);
+    let mut copy = |merged: &mut Vec<Contact>, end: usize, next: usize| {
+        merged.extend_from_slice(&contacts[copied..end]);
         copied = next;
     };
     for (index, contact) in contacts.iter().enumerate() {
@@ -149,10 +149,9 @@ fn merge_contacts(state: &mut State, scratch: &mut Scratch) {
     }
     copy(merged, contacts.len(), contacts.len());
     fresh.for_each(|fresh| merged.push(*fresh));
-    core::mem::swap(&mut state.contacts, &mut merged.contacts);
-    core::mem::swap(axes, &mut merged.axes);
+    core::mem::swap(&mut state.contacts, merged);
     if !resting.is_empty() {
-        merge_sorted(&mut state.resting, resting, &mut merged.contacts);
+        merge_sorted(&mut state.resting, resting, merged);
     }
 }
 
