@@ -11,7 +11,6 @@
 //! | [`JointLinks`] | joints of each body | updated with every joint |
 //! | [`PairCache`] | which pairs may have changed, pairs kept apart by joints | see [`Changes`] |
 //! | [`ContactCache`] | manifolds, surfaces, cached separating axes | contacts are reordered, shapes redefined |
-//! | [`OriginCache`] | rotated offset of each body's origin | its key, compared at every use, differs |
 //! | [`Solver`] | constraints of the last tick | never read before the next tick prepares it |
 
 mod awake;
@@ -19,7 +18,6 @@ mod changes;
 mod contacts;
 mod joint_links;
 mod motion;
-mod origins;
 mod pairs;
 mod poses;
 mod results;
@@ -33,7 +31,6 @@ pub(crate) use joint_links::JointLinks;
 pub(crate) use motion::{
     ClosingBound, Margins, MotionCache, PASSAGE_MIN, PredictedMotion, ShapeMotion, Travel,
 };
-pub(crate) use origins::OriginCache;
 pub(crate) use pairs::{MergedContacts, NonCollidingPairs, PairCache, merge_sorted};
 pub(crate) use poses::{Extents, Poses};
 pub(crate) use results::{Sweeps, SweptBody, TickResults};
@@ -56,7 +53,6 @@ pub(crate) struct Scratch {
     pub(crate) union: UnionFind,
     /// Buffers for continuous collision.
     pub(crate) sweeps: Sweeps,
-    pub(crate) origins: OriginCache,
     pub(crate) solver: Solver,
     pub(crate) results: TickResults,
 }
@@ -72,7 +68,6 @@ impl Scratch {
             contacts: ContactCache::new(),
             union: UnionFind::default(),
             sweeps: Sweeps::default(),
-            origins: OriginCache::default(),
             solver: Solver::default(),
             results: TickResults::default(),
         }

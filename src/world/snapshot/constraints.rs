@@ -19,9 +19,6 @@ const HEAD_BYTES: usize = 8;
 const IMPULSES_BYTES: usize = 24;
 /// Largest size of a joint.
 const JOINT_BYTES: usize = 1 + 6 * 4 + 8;
-/// Flags and size of a joint with the two impulses of its anchor point and no others.
-const HINGE: u8 = 0b11_0000;
-const HINGE_BYTES: usize = 1 + 3 * 4;
 /// Flag for turns of 8 bytes.
 const MANY_TURNS: u8 = 1 << 6;
 /// Number of impulses of a joint.
@@ -100,13 +97,6 @@ pub(super) fn lasting_joint(joint: &Joint) -> Joint {
 pub(super) fn pack_joints(joints: &Arena<Joint, JointId>, bytes: &mut Vec<u8>) {
     let mut writer = Writer::new(bytes, joints.len() * JOINT_BYTES);
     for (_, joint) in joints.iter() {
-        if let Some((x, y, turns)) = plain_hinge(joint) {
-            writer.record(|record: &mut Record<'_, HINGE_BYTES>| {
-                record.put(HINGE);
-                [x, y, turns].into_iter().for_each(|word| record.put(word));
-            });
-            continue;
-        }
         let mut there = 0;
         // Each word is written, and overwritten by the next one if it is 0: branches here would be unpredictable.
         let (mut words, mut count) = ([0i32; 8], 0);
@@ -132,17 +122,6 @@ pub(super) fn pack_joints(joints: &Arena<Joint, JointId>, bytes: &mut Vec<u8>) {
     }
 }
 
-/// The two impulses and the turns of a joint that is held at its anchor point and has no other impulses, as most
-/// joints.
-#[inline(always)]
-fn plain_hinge(joint: &Joint) -> Option<(i32, i32, i32)> {
-    let low = low_half(joint.turns);
-    match joint.impulses.0.map(Speed::to_bits) {
-        [0, 0, 0, 0, x, y] if x != 0 && y != 0 && joint.turns == i64::from(low) => Some((x, y, low)),
-        _ => None,
-    }
-}
-
 /// The low and the high 32 bits.
 fn halves(turns: i64) -> [i32; 2] {
     [low_half(turns), low_half(turns >> u32::BITS)]
@@ -153,13 +132,6 @@ pub(super) fn unpack_joints(joints: &mut Arena<Joint, JointId>, bytes: &[u8]) {
     let mut reader = Reader(bytes);
     for (_, joint) in joints.iter_mut() {
         let there: u8 = reader.record::<1>().take();
-        if there == HINGE {
-            let mut words: Fields<'_, { HINGE_BYTES - 1 }> = reader.record();
-            let (x, y) = (Speed::from_bits(words.take()), Speed::from_bits(words.take()));
-            joint.impulses.0 = [Speed::ZERO, Speed::ZERO, Speed::ZERO, Speed::ZERO, x, y];
-            joint.turns = i64::from(words.take::<i32>());
-            continue;
-        }
         let mut word = || -> i32 { reader.record::<4>().take() };
         for (place, impulse) in (0..JOINT_IMPULSES).zip(&mut joint.impulses.0) {
             let some = there >> place & 1 != 0;

@@ -8,13 +8,12 @@ use crate::world::stats::StepStats;
 
 /// Lists the bodies that have moved in the tick or fallen asleep at its end, in slot order.
 pub(super) fn report_moves(state: &State, scratch: &mut Scratch) {
-    let Scratch { awake, solver, results, origins, .. } = scratch;
+    let Scratch { awake, solver, results, .. } = scratch;
     for &slot in awake.bodies() {
         let body = state.bodies.at(slot);
         let (fell_asleep, solved) = (body.is_asleep(), solver.body(slot));
         if fell_asleep || solved.shift != Vec2::ZERO || solved.turn != 0 {
-            let (position, angle) = (origins.position(slot, body), body.angle());
-            debug_assert_eq!(position, body.position());
+            let (position, angle) = (body.position(), body.angle());
             let body = state.bodies.handle_at(slot);
             results.events.moved.push(MoveEvent { body, position, angle, fell_asleep });
         }
