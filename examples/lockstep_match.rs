@@ -7,7 +7,7 @@ mod tug;
 use std::error::Error;
 use std::time::{Duration, Instant};
 
-use lockstep2d::net::{Network, Options, Peer, Weather};
+use lockstep2d::net::{LinkConditions, NetOptions, Network, Peer};
 use lockstep2d::replay::{Limits, verify};
 
 use tug::Tug;
@@ -16,8 +16,9 @@ const TICKS: u64 = 300;
 
 fn main() -> Result<(), Box<dyn Error>> {
     // With `Udp::bind("0.0.0.0:7000")?` instead of a port, each peer can be a separate process.
-    let network = Network::new(Weather { latency: Duration::from_millis(30), ..Weather::default() }, 1);
-    let options = Options::lockstep();
+    let network =
+        Network::new(LinkConditions { latency: Duration::from_millis(30), ..LinkConditions::default() }, 1);
+    let options = NetOptions::lockstep();
     let mut peers = [
         Peer::<Tug, _, _>::host(&(), options, network.port(0))?,
         Peer::join(&(), options, network.port(1), 0, None)?,

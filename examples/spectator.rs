@@ -6,13 +6,14 @@ mod tug;
 use std::error::Error;
 use std::time::{Duration, Instant};
 
-use lockstep2d::net::{Network, Options, Peer, Weather};
+use lockstep2d::net::{LinkConditions, NetOptions, Network, Peer};
 
 use tug::Tug;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let network = Network::new(Weather { latency: Duration::from_millis(30), ..Weather::default() }, 1);
-    let options = Options::rollback();
+    let network =
+        Network::new(LinkConditions { latency: Duration::from_millis(30), ..LinkConditions::default() }, 1);
+    let options = NetOptions::rollback();
     let mut peers = vec![
         Peer::<Tug, _, _>::host(&(), options, network.port(0))?,
         Peer::join(&(), options, network.port(1), 0, None)?,

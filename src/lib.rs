@@ -41,7 +41,6 @@ pub mod collision;
 pub mod draw;
 pub mod hash;
 pub mod inspect;
-mod lanes;
 pub mod lockstep;
 pub mod math;
 #[cfg(feature = "ggrs")]
@@ -49,6 +48,7 @@ pub mod net;
 pub mod replay;
 pub mod report;
 pub mod scenes;
+mod simd;
 pub mod solver;
 mod threads;
 pub mod world;

@@ -42,14 +42,22 @@ fn end_of(name: &str, ticks: u64, choose: impl FnOnce(&mut World) -> bool) -> (S
 }
 
 /// Runs all scenes in each of several ways, which have to agree with each other and with the file.
-fn all_end_in_their_hashes<Way: Copy + Debug + Sync>(ways: &[Way], choose: fn(&mut World, Way) -> bool) {
+fn all_end_in_their_hashes<Variant: Copy + Debug + Sync>(
+    variants: &[Variant],
+    choose: fn(&mut World, Variant) -> bool,
+) {
     let known = common::goldens_of(HASHES);
     let wrong = Mutex::new(Vec::new());
     sweep::for_each(SCENES.to_vec(), |(name, ticks)| {
-        let end_of = |way| end_of(name, ticks, |world| choose(world, way));
-        let end = end_of(ways[0]);
-        for &way in &ways[1..] {
-            assert_eq!(end, end_of(way), "{name}: {:?} and {way:?} differ after {ticks} ticks", ways[0]);
+        let end_of = |variant| end_of(name, ticks, |world| choose(world, variant));
+        let end = end_of(variants[0]);
+        for &variant in &variants[1..] {
+            assert_eq!(
+                end,
+                end_of(variant),
+                "{name}: {:?} and {variant:?} differ after {ticks} ticks",
+                variants[0]
+            );
         }
         let (hash, _) = end;
         let line = known.iter().find(|line| (line.scene.as_str(), line.ticks) == (name, ticks));

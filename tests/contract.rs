@@ -21,12 +21,12 @@ struct Trace {
     events: Vec<Events>,
 }
 
-/// Runs a scene; `disturb` runs before each tick and must not affect results.
-fn trace(scene: &Scene, ticks: u64, mut disturb: impl FnMut(u64, &mut Sandbox)) -> Trace {
+/// Runs a scene; `perturb` runs before each tick and must not affect results.
+fn trace(scene: &Scene, ticks: u64, mut perturb: impl FnMut(u64, &mut Sandbox)) -> Trace {
     let mut game = Sandbox::new(&scene.setup(common::SEED)).expect("the scenes of this crate are valid");
     let mut trace = Trace { hashes: vec![game.state_hash()], events: vec![] };
     for tick in 0..ticks {
-        disturb(tick, &mut game);
+        perturb(tick, &mut game);
         let commands = scene.commands(tick, &game);
         game.step(&[commands]);
         trace.hashes.push(game.state_hash());

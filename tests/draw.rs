@@ -2,7 +2,7 @@
 
 use lockstep2d::body::{BodyDef, BodyKind, Geometry, Polygon, ShapeDef, WorldError};
 use lockstep2d::draw::{
-    Form, Frame, Layers, Primitive, Proximity, Style, Subject, View, fit, primitives, svg,
+    ContactProximity, Form, Frame, Layers, Primitive, Style, Subject, View, fit, primitives, svg,
 };
 use lockstep2d::fx;
 use lockstep2d::math::{Aabb, Angle, Fx, Vec2};
@@ -50,10 +50,10 @@ fn every_layer_has_its_primitives() {
         (Style::Dynamic, 3),
         (Style::Kinematic, 1),
         (Style::FatBox, 4),
-        (Style::ContactPoint(Proximity::Touching), 2),
-        (Style::ContactPoint(Proximity::Speculative), 0),
-        (Style::ContactNormal(Proximity::Touching), 2),
-        (Style::ContactNormal(Proximity::Speculative), 0),
+        (Style::ContactPoint(ContactProximity::Touching), 2),
+        (Style::ContactPoint(ContactProximity::Speculative), 0),
+        (Style::ContactNormal(ContactProximity::Touching), 2),
+        (Style::ContactNormal(ContactProximity::Speculative), 0),
         // Fixed bodies such as the post have no arm.
         (Style::JointArm, 1),
         (Style::JointAnchor, 2),
@@ -72,7 +72,7 @@ fn a_layer_that_is_off_shows_nothing() {
     assert_eq!(primitives(&world, Layers::NONE), []);
     assert_eq!(count(&primitives(&world, Layers::default()), Style::Velocity), 0);
     let points = primitives(&world, Layers { contact_points: true, ..Layers::NONE });
-    assert_eq!(count(&points, Style::ContactPoint(Proximity::Touching)), points.len());
+    assert_eq!(count(&points, Style::ContactPoint(ContactProximity::Touching)), points.len());
 }
 
 #[test]
@@ -115,9 +115,9 @@ fn a_point_that_only_may_touch_is_told_apart() {
     world.spawn(&falling, &[ball]).unwrap();
     world.step();
     let found = primitives(&world, Layers::ALL);
-    assert_eq!(count(&found, Style::ContactPoint(Proximity::Speculative)), 1);
-    assert_eq!(count(&found, Style::ContactNormal(Proximity::Speculative)), 1);
-    assert_eq!(count(&found, Style::ContactPoint(Proximity::Touching)), 0);
+    assert_eq!(count(&found, Style::ContactPoint(ContactProximity::Speculative)), 1);
+    assert_eq!(count(&found, Style::ContactNormal(ContactProximity::Speculative)), 1);
+    assert_eq!(count(&found, Style::ContactPoint(ContactProximity::Touching)), 0);
 }
 
 #[test]
@@ -138,11 +138,11 @@ fn after_a_restore_contacts_are_missing_until_the_next_tick() {
     let snapshot = world.save();
     world.restore(&snapshot);
     let found = primitives(&world, Layers::ALL);
-    assert_eq!(count(&found, Style::ContactPoint(Proximity::Touching)), 0);
+    assert_eq!(count(&found, Style::ContactPoint(ContactProximity::Touching)), 0);
     assert_eq!(count(&found, Style::FatBox), 4);
     world.step();
     let found = primitives(&world, Layers::ALL);
-    assert_eq!(count(&found, Style::ContactPoint(Proximity::Touching)), 2);
+    assert_eq!(count(&found, Style::ContactPoint(ContactProximity::Touching)), 2);
 }
 
 #[test]

@@ -7,7 +7,7 @@ use lockstep2d::body::{BodyDef, Geometry, MassSource, Polygon, ShapeDef, WORLD_E
 use lockstep2d::lockstep::{Game, Sandbox, SandboxSetup};
 use lockstep2d::math::{Angle, Fx, Vec2};
 use lockstep2d::solver::{JointDef, Revolute};
-use lockstep2d::world::{Command, Config, Place, World};
+use lockstep2d::world::{BodyPose, Command, Config, World};
 use lockstep2d::{codec, fx};
 
 fn weightless() -> World {
@@ -284,7 +284,7 @@ fn many_shapes_added_in_one_tick_are_work() {
 #[test]
 fn many_fixed_shapes_at_one_point_wake_nobody_for_long() {
     // Each shape searched all earlier ones for bodies to wake and cached those that never sleep: a minute for 20 000.
-    let places = vec![Place { position: Vec2::ZERO, angle: Angle::ZERO }; 50_000];
+    let places = vec![BodyPose { position: Vec2::ZERO, angle: Angle::ZERO }; 50_000];
     let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).unwrap());
     let spawn = Command::SpawnEach { body: BodyDef::fixed(), shapes: vec![ball], places };
     let game = Sandbox::new(&SandboxSetup { config: Config::default(), commands: vec![spawn] });

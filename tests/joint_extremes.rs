@@ -5,7 +5,8 @@ use lockstep2d::body::{BodyDef, BodyId, MassSource};
 use lockstep2d::fx;
 use lockstep2d::math::{Fx, Rng, Vec2};
 use lockstep2d::solver::{
-    Distance, Drive, JointDef, JointKind, Limit, Motor, Prismatic, Pull, Revolute, Soft, Spring, Weld, Wheel,
+    Distance, Drive, JointDef, JointKind, JointLimit, Motor, Prismatic, Pull, Revolute, Soft, Spring, Weld,
+    Wheel,
 };
 use lockstep2d::world::World;
 
@@ -30,9 +31,9 @@ fn maybe<T>(rng: &mut Rng, make: impl Fn(&mut Rng) -> T) -> Option<T> {
     (rng.below(2) == 0).then(|| make(rng))
 }
 
-fn limit(rng: &mut Rng) -> Limit {
+fn limit(rng: &mut Rng) -> JointLimit {
     let (a, b) = (signed(rng, SANE), signed(rng, SANE));
-    Limit { lower: a.min(b), upper: a.max(b) }
+    JointLimit { lower: a.min(b), upper: a.max(b) }
 }
 
 fn drive(rng: &mut Rng) -> Drive {
@@ -60,14 +61,14 @@ fn kind(rng: &mut Rng) -> JointKind {
         2 => Wheel { limit, motor, spring }.into(),
         3 => {
             let length = |x: Fx| x.abs();
-            let limit = limit.map(|Limit { lower, upper }| Limit {
+            let limit = limit.map(|JointLimit { lower, upper }| JointLimit {
                 lower: length(lower).min(length(upper)),
                 upper: length(lower).max(length(upper)),
             });
             let spring = spring.map(|spring| Spring { target: spring.target.abs(), ..spring });
             let rod = maybe(rng, |rng| size(rng, SANE).max(fx!(0.001)));
             let spring_force =
-                maybe(rng, |rng| Limit { lower: -size(rng, Fx::MAX), upper: size(rng, Fx::MAX) });
+                maybe(rng, |rng| JointLimit { lower: -size(rng, Fx::MAX), upper: size(rng, Fx::MAX) });
             Distance { rod, limit, motor, spring, spring_force }.into()
         }
         4 => Weld { linear: maybe(rng, soft), angular: maybe(rng, soft) }.into(),

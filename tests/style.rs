@@ -32,16 +32,16 @@ const ALLOWED_FLOATS: &[&str] = &["src/draw/", "src/inspect/serializer.rs"];
 
 /// Files that may use `unsafe`: SIMD instructions, prefetch hints, and bodies shared between threads.
 const ALLOWED_UNSAFE: &[&str] = &[
-    "src/lanes/x86.rs",
-    "src/lanes/x86/avx2.rs",
-    "src/lanes/x86/avx2/rows.rs",
-    "src/lanes/x86/avx512.rs",
-    "src/lanes/x86/avx512/division.rs",
-    "src/lanes/x86/records.rs",
-    "src/lanes/neon.rs",
-    "src/lanes/simd128.rs",
-    "src/lanes/prefetch.rs",
-    "src/lanes/shared.rs",
+    "src/simd/x86.rs",
+    "src/simd/x86/avx2.rs",
+    "src/simd/x86/avx2/rows.rs",
+    "src/simd/x86/avx512.rs",
+    "src/simd/x86/avx512/division.rs",
+    "src/simd/x86/records.rs",
+    "src/simd/neon.rs",
+    "src/simd/simd128.rs",
+    "src/simd/prefetch.rs",
+    "src/simd/shared.rs",
 ];
 
 /// Comment that gives the reason for an `unsafe`, at most `REASON_ABOVE` lines above it.
@@ -49,7 +49,7 @@ const REASON: &str = "// SAFETY: ";
 const REASON_ABOVE: usize = 3;
 
 /// Folders that define state.
-const STATE_FOLDERS: &[&str] = &["src/body/", "src/collision/", "src/lanes/", "src/solver/", "src/world/"];
+const STATE_FOLDERS: &[&str] = &["src/body/", "src/collision/", "src/simd/", "src/solver/", "src/world/"];
 
 /// Top-level folders that occur in paths of a single machine.
 const MACHINE_FOLDERS: &[&str] = &["home", "root", "Users", "tmp", "mnt", "opt", "srv", "var", "work"];
@@ -177,7 +177,7 @@ fn unsafe_is_where_it_may_be_and_says_why() {
     }
     let path = ALLOWED_UNSAFE[0];
     assert_eq!(canary(path, "unsafe { a() }", banned_words), 0);
-    assert_eq!(canary("src/lanes/mod.rs", "unsafe { a() }", banned_words), 1);
+    assert_eq!(canary("src/simd/mod.rs", "unsafe { a() }", banned_words), 1);
     assert_eq!(canary(path, "unsafe { a() }", unexplained_unsafe), 1);
     assert_eq!(canary(path, "// SAFETY: there.\nunsafe { a() }", unexplained_unsafe), 0);
     assert_eq!(canary(path, "// SAFETY: there.\n\n\n\nunsafe { a() }", unexplained_unsafe), 1);

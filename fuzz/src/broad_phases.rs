@@ -6,7 +6,7 @@ use lockstep2d::body::{BodyDef, BodyId, BodyKind, Geometry, ShapeDef};
 use lockstep2d::collision::BroadPhaseKind;
 use lockstep2d::fx;
 use lockstep2d::math::{Fx, Rng, Vec2};
-use lockstep2d::world::{Command, Place, World};
+use lockstep2d::world::{Command, BodyPose, World};
 
 use crate::generator::{self, Generator};
 use crate::shapes;
@@ -104,7 +104,7 @@ impl Crowd {
                 }
                 1 => self.each(world, 4, &mut commands, |_, body| Command::Despawn { body }),
                 2 | 3 => self.each(world, 3, &mut commands, |crowd, body| {
-                    let Place { position, angle } = crowd.place();
+                    let BodyPose { position, angle } = crowd.place();
                     Command::SetTransform { body, position, angle }
                 }),
                 4 => self.each(world, 2, &mut commands, |crowd, body| {
@@ -158,13 +158,13 @@ impl Crowd {
         }
     }
 
-    fn place(&mut self) -> Place {
+    fn place(&mut self) -> BodyPose {
         let reach = self.reach;
         let mut position = Vec2::new(self.rng.range(-reach, reach), self.rng.range(-reach, reach));
         if self.rng.chance(1, 8) {
             // Places bodies in rows and columns, so that boxes share bounds.
             position = Vec2::new(self.rng.range(fx!(-4), fx!(4)).round(), position.y.round());
         }
-        Place { position, angle: if self.rng.chance(1, 2) { self.rng.angle() } else { Default::default() } }
+        BodyPose { position, angle: if self.rng.chance(1, 2) { self.rng.angle() } else { Default::default() } }
     }
 }

@@ -7,7 +7,7 @@ use lockstep2d::body::{BodyDef, BodyId, BodyKind, Geometry, ShapeDef};
 use lockstep2d::fx;
 use lockstep2d::math::{Fx, Rng, Vec2, fx_mul};
 use lockstep2d::solver::{ContactTuning, JointDef};
-use lockstep2d::world::{Command, Config, Explosion, Place, World};
+use lockstep2d::world::{Command, Config, Explosion, BodyPose, World};
 
 use crate::generator::{serde_handle::Handle, spawn};
 use crate::shapes::{calm_chain, calm_shape, half_extents};
@@ -266,7 +266,7 @@ fn change(source: &mut Source<'_>, world: &World, body: BodyId, commands: &mut V
         },
         _ => {
             let count = 1 + source.below(4);
-            let place = |index: usize| Place {
+            let place = |index: usize| BodyPose {
                 position: here + Vec2::new(Fx::from_num(index), fx!(2)),
                 angle: lockstep2d::math::Angle::ZERO,
             };

@@ -6,7 +6,7 @@
 use lockstep2d::body::{BodyDef, BodyId, JointId, ShapeDef, ShapeId, WORLD_EXTENT_MAX};
 use lockstep2d::math::{Fx, Rng, Vec2};
 use lockstep2d::solver::{ContactTuning, JointDef, SolverSettings};
-use lockstep2d::world::{Command, Config, Explosion, Place, World};
+use lockstep2d::world::{Command, Config, Explosion, BodyPose, World};
 use lockstep2d::{codec, fx};
 
 use crate::source::Source;
@@ -278,7 +278,7 @@ impl Generator {
         let (body, shapes) = (self.body_def(source), Self::shapes_of_a_body(source));
         let place = |source: &mut Source<'_>| {
             let position = if source.one_in(16) { source.mostly_vec(0, 0) } else { self.near(source, 3000) };
-            Place { position, angle: source.angle() }
+            BodyPose { position, angle: source.angle() }
         };
         let places = (0..source.below(8)).map(|_| place(source)).collect();
         Command::SpawnEach { body, shapes, places }

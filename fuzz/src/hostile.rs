@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 
 use lockstep2d::codec;
 use lockstep2d::hash::StateHash;
-use lockstep2d::net::Terms;
+use lockstep2d::net::HandshakeParameters;
 
 use crate::forge::mutate;
 use crate::source::Source;
@@ -32,7 +32,7 @@ pub struct Known {
     words: Vec<u32>,
     /// Senders of GGRS messages, with their magic numbers.
     magics: Vec<(u32, u16)>,
-    terms: Vec<Terms>,
+    parameters: Vec<HandshakeParameters>,
 }
 
 fn note<T: PartialEq>(list: &mut Vec<T>, value: T) {
@@ -46,15 +46,15 @@ fn note<T: PartialEq>(list: &mut Vec<T>, value: T) {
 
 impl Known {
     /// Records a packet.
-    pub fn hear(&mut self, from: u32, to: u32, bytes: &[u8]) {
+    pub fn receive(&mut self, from: u32, to: u32, bytes: &[u8]) {
         if self.packets.len() == PACKETS {
             self.packets.pop_front();
         }
         self.packets.push_back((from, to, bytes.to_vec()));
         match Packet::read(bytes) {
-            Some(Packet::Hello { nonce, terms, .. }) => {
+            Some(Packet::Hello { nonce, parameters, .. }) => {
                 note(&mut self.nonces, nonce);
-                note(&mut self.terms, terms);
+                note(&mut self.parameters, parameters);
             }
             Some(Packet::Welcome { tick, hash, .. } | Packet::Ready { tick, hash, .. }) => {
                 note(&mut self.ticks, tick);
@@ -162,18 +162,18 @@ impl Forger<'_, '_> {
         self.source.pick(&[0, 1, 2, 3, 31, 32, 63, 64, u32::MAX])
     }
 
-    fn terms(&mut self) -> Option<Terms> {
+    fn parameters(&mut self) -> Option<HandshakeParameters> {
         let known = self.known;
-        let mut terms = known.terms.last()?.clone();
+        let mut parameters = known.parameters.last()?.clone();
         match self.source.below(12) {
-            0 => terms.semantics = self.number() as u32,
-            1 => terms.rules = "x".repeat(self.source.below(300)),
-            2 => terms.tick_rate = self.number() as u32,
-            3 => terms.players = self.number() as u32,
-            4 => terms.setup = self.hash(),
+            0 => parameters.semantics = self.number() as u32,
+            1 => parameters.rules = "x".repeat(self.source.below(300)),
+            2 => parameters.tick_rate = self.number() as u32,
+            3 => parameters.players = self.number() as u32,
+            4 => parameters.setup = self.hash(),
             _ => {}
         }
-        Some(terms)
+        Some(parameters)
     }
 
     fn bytes(&mut self) -> Vec<u8> {
@@ -212,10 +212,10 @@ impl Forger<'_, '_> {
         let nonce = self.nonce();
         match self.source.below(20) {
             0 | 1 => {
-                let Some(terms) = self.terms() else { return Packet::Agreed { plan: self.session() } };
+                let Some(parameters) = self.parameters() else { return Packet::Agreed { plan: self.session() } };
                 let seat = self.source.one_in(2).then(|| self.seat());
                 let nonce = if self.source.one_in(2) { self.number() } else { nonce };
-                Packet::Hello { nonce, terms, seat, watch: self.source.one_in(2) }
+                Packet::Hello { nonce, parameters, seat, watch: self.source.one_in(2) }
             }
             2 => Packet::Refused { nonce, why: self.why() },
             3 => Packet::Redirect { nonce, to: self.address() },
@@ -242,8 +242,8 @@ impl Forger<'_, '_> {
     }
 
     fn why(&mut self) -> Refused {
-        match (self.source.below(4), self.terms()) {
-            (0, Some(terms)) => Refused::Terms(terms),
+        match (self.source.below(4), self.parameters()) {
+            (0, Some(parameters)) => Refused::HandshakeParameters(parameters),
             (1, _) => Refused::Full,
             (2, _) => Refused::Diverged { tick: self.tick() },
             _ => Refused::Other("x".repeat(self.source.below(300))),

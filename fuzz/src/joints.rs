@@ -4,7 +4,7 @@ use lockstep2d::body::BodyId;
 use lockstep2d::fx;
 use lockstep2d::math::{Fx, Vec2};
 use lockstep2d::solver::{
-    Distance, Drive, JointDef, JointKind, Limit, LinearDrive, Motor, Prismatic, Pull, Revolute, Soft, Spring,
+    Distance, Drive, JointDef, JointKind, JointLimit, LinearDrive, Motor, Prismatic, Pull, Revolute, Soft, Spring,
     Threshold, ThresholdAction, Weld, Wheel,
 };
 
@@ -52,12 +52,12 @@ pub fn kind(source: &mut Source<'_>) -> JointKind {
     }
 }
 
-fn limit(source: &mut Source<'_>) -> Option<Limit> {
+fn limit(source: &mut Source<'_>) -> Option<JointLimit> {
     source.one_in(3).then(|| {
         let lower = source.mostly(-2000, 1000);
         let width = source.mostly(0, 3000);
         let upper = if source.one_in(8) { width } else { lower.saturating_add(width) };
-        Limit { lower, upper }
+        JointLimit { lower, upper }
     })
 }
 
@@ -91,7 +91,7 @@ fn spring(source: &mut Source<'_>) -> Option<Spring> {
 }
 
 fn distance(source: &mut Source<'_>) -> Distance {
-    let positive = |mut limit: Limit| {
+    let positive = |mut limit: JointLimit| {
         limit.lower = limit.lower.max(Fx::ZERO);
         limit.upper = limit.upper.max(limit.lower);
         limit
@@ -107,7 +107,7 @@ fn distance(source: &mut Source<'_>) -> Distance {
         spring.target = spring.target.saturating_abs();
         if source.one_in(2) {
             let (lower, upper) = (most(source).saturating_neg(), most(source));
-            joint.spring_force = Some(Limit { lower, upper });
+            joint.spring_force = Some(JointLimit { lower, upper });
         }
     }
     joint

@@ -5,7 +5,7 @@ use std::sync::Mutex;
 
 use lockstep2d::collision::BroadPhaseKind;
 use lockstep2d::hash::StateHash;
-use lockstep2d::world::{Command, Events, Motion, Snapshot, World};
+use lockstep2d::world::{Command, Events, BodyField, Snapshot, World};
 
 use crate::generator::{self, Generator};
 use crate::source::Source;
@@ -45,7 +45,7 @@ pub struct Seen {
 
 /// A variant that must not change the result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Way {
+struct Variant {
     broad_phase: BroadPhaseKind,
     disturbance: Disturbance,
 }
@@ -59,11 +59,11 @@ enum Disturbance {
 }
 
 /// All variants except that of the plain world.
-const WAYS: [Way; 8] = {
+const WAYS: [Variant; 8] = {
     use BroadPhaseKind::{BruteForce, SweepAndPrune, Tree};
     use Disturbance::{ClearedScratch, None, ThroughBytes};
-    const fn way(broad_phase: BroadPhaseKind, disturbance: Disturbance) -> Way {
-        Way { broad_phase, disturbance }
+    const fn way(broad_phase: BroadPhaseKind, disturbance: Disturbance) -> Variant {
+        Variant { broad_phase, disturbance }
     }
     [
         way(Tree, ThroughBytes),
@@ -80,7 +80,7 @@ const WAYS: [Way; 8] = {
 /// The two worlds that must stay equal.
 struct Variants {
     plain: World,
-    way: Way,
+    way: Variant,
     other: World,
 }
 
@@ -106,7 +106,7 @@ pub fn run_with_a_fault(bytes: &[u8]) {
             && let Some(&body) = bodies.get(7)
         {
             // The flip is refused while the body sleeps.
-            let _ = other.flip_bit(body, Motion::ALL[0], 0);
+            let _ = other.flip_bit(body, BodyField::ALL[0], 0);
         }
     });
 }
@@ -133,7 +133,7 @@ fn play(bytes: &[u8], mut meddle: impl FnMut(&mut Variants)) -> Seen {
         if tick == rollback_at {
             rollback = Some(Rollback { save: variants.plain.save(), ticks: Vec::new() });
         }
-        variants.way.disturb(&mut source, &mut variants.other);
+        variants.way.perturb(&mut source, &mut variants.other);
         variants.execute(&commands, &mut seen);
         meddle(&mut variants);
         let hash = variants.step();
@@ -178,7 +178,7 @@ impl Seen {
     }
 }
 
-impl Way {
+impl Variant {
     fn begin(self, plain: &World) -> World {
         let mut world = plain.clone();
         world.set_broad_phase(self.broad_phase);
@@ -186,7 +186,7 @@ impl Way {
     }
 
     /// Applies the disturbance of the variant, which must not change the result.
-    fn disturb(self, source: &mut Source<'_>, world: &mut World) {
+    fn perturb(self, source: &mut Source<'_>, world: &mut World) {
         match self.disturbance {
             Disturbance::ThroughBytes if source.below(4) == 0 => {
                 *world = World::from_bytes(&world.to_bytes()).expect("a world's own bytes");

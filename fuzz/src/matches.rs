@@ -5,7 +5,7 @@ use std::cell::RefCell;
 use std::rc::Rc;
 use std::time::Duration;
 
-use lockstep2d::net::{Event, Mode, NetError, Network, Options, Peer, Port, Transport, Weather};
+use lockstep2d::net::{Event, Mode, NetError, Network, NetOptions, Peer, Port, Transport, LinkConditions};
 use lockstep2d::replay::{Limits, verify};
 use lockstep2d::report::DesyncReport;
 
@@ -31,7 +31,7 @@ struct Tapped {
 
 impl Transport<u32> for Tapped {
     fn send(&mut self, packet: &[u8], to: &u32) {
-        self.known.borrow_mut().hear(self.address, *to, packet);
+        self.known.borrow_mut().receive(self.address, *to, packet);
         self.port.send(packet, to);
     }
 
@@ -57,7 +57,7 @@ pub struct Seen {
 
 /// A match and its attacker.
 struct Match {
-    options: Options,
+    options: NetOptions,
     network: Network,
     known: Rc<RefCell<Known>>,
     /// Peers by address; `None` for a peer that has stopped.
@@ -75,14 +75,14 @@ struct Match {
 pub fn run(bytes: &[u8]) -> Seen {
     let mut source = Source::new(bytes);
     let options = match source.below(4) {
-        0 => Options::lockstep(),
-        1 | 2 => Options::rollback(),
-        _ => Options { mode: Mode::Rollback { window: 32 }, input_delay: 15, ..Options::rollback() },
+        0 => NetOptions::lockstep(),
+        1 | 2 => NetOptions::rollback(),
+        _ => NetOptions { mode: Mode::Rollback { window: 32 }, input_delay: 15, ..NetOptions::rollback() },
     };
     let newcomer = source.below(3);
     let mut game = Match {
         options,
-        network: Network::new(Weather::default(), 1),
+        network: Network::new(LinkConditions::default(), 1),
         known: Rc::default(),
         peers: [None, None, None],
         forges: !source.one_in(4),
@@ -102,7 +102,7 @@ pub fn run(bytes: &[u8]) -> Seen {
         game.turn(turn);
         pause = match pause {
             0 if !source.is_empty() => {
-                game.disturb(&mut source);
+                game.perturb(&mut source);
                 source.pick(&[0, 0, 1, 2, 30])
             }
             _ => pause.max(1) - 1,
@@ -154,7 +154,7 @@ impl Match {
     }
 
     /// Sends a packet of the attacker to a peer.
-    fn disturb(&mut self, source: &mut Source<'_>) {
+    fn perturb(&mut self, source: &mut Source<'_>) {
         let present: Vec<_> = (0..3).filter(|at| self.peers[*at as usize].is_some()).collect();
         if present.is_empty() {
             return;

@@ -50,7 +50,7 @@ pub fn run(bytes: &[u8]) -> u64 {
 }
 
 /// One world with different broad phases: the tree and sweep and prune with their history, and brute force.
-struct Asked<'a> {
+struct HashPolled<'a> {
     world: &'a World,
     sweep: &'a World,
     brute_force: World,
@@ -63,7 +63,7 @@ fn ask(source: &mut Source<'_>, world: &World, sweep: &World) -> u64 {
     let mut brute_force = world.clone();
     brute_force.set_broad_phase(BroadPhaseKind::BruteForce);
     let mut asked =
-        Asked { world, sweep, brute_force, filter: QueryFilter::default(), ordinary: source.is_calm() };
+        HashPolled { world, sweep, brute_force, filter: QueryFilter::default(), ordinary: source.is_calm() };
     let mut answers = 0;
     for _ in 0..1 + source.below(4) {
         asked.filter = filter(source, world);
@@ -92,7 +92,7 @@ fn filter(source: &mut Source<'_>, world: &World) -> QueryFilter {
     filter
 }
 
-impl Asked<'_> {
+impl HashPolled<'_> {
     /// Runs a query on all three worlds and checks that the results are equal.
     fn same<A: PartialEq + std::fmt::Debug>(&self, ask: impl Fn(&World) -> A) -> A {
         let answer = ask(self.world);

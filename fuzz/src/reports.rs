@@ -5,7 +5,7 @@ use lockstep2d::hash::StateHash;
 use lockstep2d::lockstep::{Game, History, Sandbox, SandboxSetup};
 use lockstep2d::replay::Recorder;
 use lockstep2d::report::{Blame, Desync, DesyncReport, Evidence, Side, compare};
-use lockstep2d::world::{Command, Motion};
+use lockstep2d::world::{Command, BodyField};
 use serde::{Deserialize, Serialize};
 
 use crate::forge::{Forged, mutate};
@@ -45,12 +45,12 @@ struct Phases {
 struct Flip {
     tick: u64,
     body: usize,
-    motion: Motion,
+    motion: BodyField,
     bit: u32,
 }
 
 /// Setup and inputs of a game.
-struct Course {
+struct Trajectory {
     setup: SandboxSetup,
     inputs: Vec<Vec<Command>>,
     interval: u32,
@@ -64,11 +64,11 @@ pub fn run(bytes: &[u8]) -> &'static str {
     let mut source = Source::new(bytes);
     let way = source.below(8);
     let limits = verdicts::limits();
-    let course = Course::record(&mut source);
+    let course = Trajectory::record(&mut source);
     let flip = Flip {
         tick: source.below(course.inputs.len()) as u64,
         body: source.below(3),
-        motion: source.pick(&Motion::ALL),
+        motion: source.pick(&BodyField::ALL),
         bit: source.below(32) as u32,
     };
     let right = Evidence::Report(Box::new(course.report(&mut source, None)));
@@ -126,7 +126,7 @@ pub fn run(bytes: &[u8]) -> &'static str {
     }
 }
 
-impl Course {
+impl Trajectory {
     fn record(source: &mut Source<'_>) -> Self {
         let (setup, mut generator) = verdicts::scene(source);
         let interval = 1 + source.below(9) as u32;
@@ -143,7 +143,7 @@ impl Course {
                 break;
             }
         }
-        Course { setup, inputs, interval }
+        Trajectory { setup, inputs, interval }
     }
 
     /// Creates the report of a peer that plays the game, with or without a bit flip.

@@ -2,7 +2,7 @@
 
 use lockstep2d::codec;
 use lockstep2d::hash::StateHash;
-use lockstep2d::net::Terms;
+use lockstep2d::net::HandshakeParameters;
 use serde::{Deserialize, Serialize};
 
 const CHECKSUM_BYTES: usize = 8;
@@ -11,7 +11,7 @@ const CHECKSUM_BYTES: usize = 8;
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[allow(missing_docs)]
 pub enum Packet {
-    Hello { nonce: u64, terms: Terms, seat: Option<u32>, watch: bool },
+    Hello { nonce: u64, parameters: HandshakeParameters, seat: Option<u32>, watch: bool },
     Refused { nonce: u64, why: Refused },
     Redirect { nonce: u64, to: u32 },
     Welcome { nonce: u64, tick: u64, hash: StateHash, length: u64 },
@@ -31,7 +31,7 @@ pub enum Packet {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[allow(missing_docs)]
 pub enum Refused {
-    Terms(Terms),
+    HandshakeParameters(HandshakeParameters),
     Full,
     Diverged { tick: u64 },
     Other(String),

@@ -42,30 +42,30 @@ impl Filter {
     }
 
     /// Collision class of a shape.
-    pub(crate) fn kin(&self) -> Kin {
+    pub(crate) fn collision_class(&self) -> CollisionClass {
         let Filter { category, mask, group } = *self;
-        let kin = match group {
+        let class = match group {
             // Within one group neither category nor mask matters.
             ..0 => i64::from(group),
             // Within one category the mask of each shape excludes the other.
             0 if category.is_power_of_two() && mask & category == 0 => i64::from(1 + category.ilog2()),
             _ => 0,
         };
-        Kin(i16::try_from(kin).unwrap_or(0))
+        CollisionClass(i16::try_from(class).unwrap_or(0))
     }
 }
 
-/// Collision class: two shapes of the same class never collide with each other, unless the class is [`Kin::NONE`].
+/// Collision class: two shapes of the same class never collide with each other, unless the class is [`CollisionClass::NONE`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) struct Kin(i16);
+pub(crate) struct CollisionClass(i16);
 
-impl Kin {
+impl CollisionClass {
     /// Class of a shape that may collide with any other, and of a set of shapes that are not all of one class.
-    pub(crate) const NONE: Self = Kin(0);
+    pub(crate) const NONE: Self = CollisionClass(0);
 
     /// Class of the union of two sets.
     pub(crate) fn common(self, other: Self) -> Self {
-        if self == other { self } else { Kin::NONE }
+        if self == other { self } else { CollisionClass::NONE }
     }
 }
 
@@ -87,8 +87,8 @@ mod tests {
     }
 
     #[test]
-    fn kin_never_accept_each_other() {
-        let (mut kin, mut strangers) = (0, 0);
+    fn shapes_of_one_class_never_accept_each_other() {
+        let (mut related, mut unrelated) = (0, 0);
         let mut rng = Rng::new(8);
         let mut random = || {
             let mut bits = || u64::from(rng.below(16)) << (60 * rng.below(2));
@@ -98,17 +98,20 @@ mod tests {
         };
         for _ in 0..50_000 {
             let (a, b) = (random(), random());
-            if a.kin().common(b.kin()) == Kin::NONE {
-                strangers += u32::from(a.accepts(&b));
+            if a.collision_class().common(b.collision_class()) == CollisionClass::NONE {
+                unrelated += u32::from(a.accepts(&b));
             } else {
                 assert!(!a.accepts(&b), "{a:?} {b:?}");
-                kin += 1;
+                related += 1;
             }
         }
-        assert!(kin > 1000 && strangers > 1000, "both outcomes should be frequent: {kin} {strangers}");
+        assert!(
+            related > 1000 && unrelated > 1000,
+            "both outcomes should be frequent: {related} {unrelated}"
+        );
         let bullet = Filter { category: 1 << 63, mask: 1, group: 0 };
-        assert_ne!(bullet.kin(), Kin::NONE);
-        assert_ne!(Filter { group: -5, ..bullet }.kin(), bullet.kin());
-        assert_eq!(Filter::default().kin(), Kin::NONE);
+        assert_ne!(bullet.collision_class(), CollisionClass::NONE);
+        assert_ne!(Filter { group: -5, ..bullet }.collision_class(), bullet.collision_class());
+        assert_eq!(Filter::default().collision_class(), CollisionClass::NONE);
     }
 }

@@ -4,11 +4,11 @@ use alloc::boxed::Box;
 use alloc::vec::Vec;
 
 use super::finding::{Fault, Finding};
-use super::lane::{Lane, Now};
-use super::options::{Options, Phases, Way};
+use super::options::{CheckOptions, Phases, Variant};
+use super::replica::{Now, Replica};
 use crate::hash::StateHash;
 use crate::lockstep::{Game, SetupError};
-use crate::replay::{Limit, Verdict};
+use crate::replay::{LimitKind, Verdict};
 use crate::world::PhaseDigest;
 
 /// Result of a check that found no fault.
@@ -19,18 +19,18 @@ pub struct Checked {
     /// Hash after the last tick.
     pub hash: StateHash,
     /// The variants in which they were played, in addition to the reference run.
-    pub ways: Vec<Way>,
+    pub variants: Vec<Variant>,
     /// Number of ticks simulated, in all variants together.
     pub simulated: u64,
 }
 
 /// A game that is checked while it is played, for callers that do not have all inputs beforehand. Supports all variants
-/// but [`Way::Recorded`].
+/// but [`Variant::Recorded`].
 ///
 /// After the first finding it must not be used any more.
 pub struct Checker<'s, G: Game> {
     setup: &'s G::Setup,
-    options: Options,
+    options: CheckOptions,
     straight: G,
     hash: StateHash,
     tick: u64,
@@ -38,7 +38,7 @@ pub struct Checker<'s, G: Game> {
     /// Digests of the phases of the last tick, if phases are compared.
     phases: Vec<PhaseDigest>,
     /// Empty before the tick at which checking begins.
-    lanes: Vec<Lane<G>>,
+    replicas: Vec<Replica<G>>,
 }
 
 impl<'s, G: Game> Checker<'s, G> {
@@ -46,7 +46,7 @@ impl<'s, G: Game> Checker<'s, G> {
     ///
     /// # Errors
     /// [`SetupError`] if the setup cannot start a game.
-    pub fn new(setup: &'s G::Setup, options: &Options) -> Result<Self, SetupError> {
+    pub fn new(setup: &'s G::Setup, options: &CheckOptions) -> Result<Self, SetupError> {
         let straight = G::new(setup)?;
         let hash = straight.state_hash();
         let options = options.clone();
@@ -58,7 +58,7 @@ impl<'s, G: Game> Checker<'s, G> {
             tick: 0,
             work: 0,
             phases: Vec::new(),
-            lanes: Vec::new(),
+            replicas: Vec::new(),
         })
     }
 
@@ -77,7 +77,7 @@ impl<'s, G: Game> Checker<'s, G> {
     /// Number of ticks simulated, in all variants together.
     #[must_use]
     pub fn simulated(&self) -> u64 {
-        self.tick + self.lanes.iter().map(|lane| lane.steps).sum::<u64>()
+        self.tick + self.replicas.iter().map(|replica| replica.steps).sum::<u64>()
     }
 
     /// Plays one tick in every variant.
@@ -100,7 +100,7 @@ impl<'s, G: Game> Checker<'s, G> {
             phases: &self.phases,
             claims: Vec::new(),
         };
-        self.lanes.iter_mut().try_for_each(|lane| lane.step(&now))
+        self.replicas.iter_mut().try_for_each(|replica| replica.step(&now))
     }
 
     /// Runs the checks that are only possible at the end.
@@ -109,12 +109,12 @@ impl<'s, G: Game> Checker<'s, G> {
     /// The first [`Finding`].
     pub fn finish(mut self) -> Result<Checked, Box<Finding>> {
         self.begin()?;
-        let mut lanes = core::mem::take(&mut self.lanes);
+        let mut replicas = core::mem::take(&mut self.replicas);
         let now = Now { claims: self.straight.claims(), ..self.now(&[]) };
-        lanes.iter_mut().try_for_each(|lane| lane.finish(&now))?;
-        let ways = lanes.iter().map(|lane| lane.way).collect();
-        let simulated = self.tick + lanes.iter().map(|lane| lane.steps).sum::<u64>();
-        Ok(Checked { ticks: self.tick, hash: self.hash, ways, simulated })
+        replicas.iter_mut().try_for_each(|replica| replica.finish(&now))?;
+        let variants = replicas.iter().map(|replica| replica.variant).collect();
+        let simulated = self.tick + replicas.iter().map(|replica| replica.steps).sum::<u64>();
+        Ok(Checked { ticks: self.tick, hash: self.hash, variants, simulated })
     }
 
     fn now<'a>(&'a self, inputs: &'a [G::Input]) -> Now<'a, G> {
@@ -124,18 +124,20 @@ impl<'s, G: Game> Checker<'s, G> {
 
     /// Starts the replicas of all variants, at the tick at which checking begins.
     fn begin(&mut self) -> Result<(), Box<Finding>> {
-        if self.tick != self.options.from || !self.lanes.is_empty() {
+        if self.tick != self.options.from || !self.replicas.is_empty() {
             return Ok(());
         }
         let has_world = self.straight.world_mut().is_some();
-        let ways = self.options.ways.clone();
-        let ways = ways.into_iter().filter(|way| *way != Way::Recorded && (has_world || !way.needs_world()));
-        let mut lanes = Vec::new();
-        for way in ways {
+        let variants = self.options.variants.clone();
+        let variants = variants
+            .into_iter()
+            .filter(|variant| *variant != Variant::Recorded && (has_world || !variant.needs_world()));
+        let mut replicas = Vec::new();
+        for variant in variants {
             let now = self.now(&[]);
-            lanes.push(Lane::begin(way, &now)?);
+            replicas.push(Replica::begin(variant, &now)?);
         }
-        self.lanes = lanes;
+        self.replicas = replicas;
         Ok(())
     }
 
@@ -143,12 +145,14 @@ impl<'s, G: Game> Checker<'s, G> {
         let limits = &self.options.limits;
         let work = self.straight.work(inputs);
         self.work = self.work.saturating_add(work);
-        let spent =
-            [(Limit::TickWork, work, limits.tick_work), (Limit::TotalWork, self.work, limits.total_work)];
+        let spent = [
+            (LimitKind::TickWork, work, limits.tick_work),
+            (LimitKind::TotalWork, self.work, limits.total_work),
+        ];
         match spent.into_iter().find(|(_, value, max)| value > max) {
             Some((limit, value, max)) => {
                 let fault = Fault::Verdict(Verdict::LimitExceeded { limit, value, max });
-                Err(Box::new(Finding::new(Way::Recorded, fault, self.tick)))
+                Err(Box::new(Finding::new(Variant::Recorded, fault, self.tick)))
             }
             None => Ok(()),
         }
@@ -160,7 +164,7 @@ pub(super) fn step<G: Game>(game: &mut G, inputs: &[G::Input], phases: Phases) -
     if phases == Phases::Compared
         && let Some(world) = game.world_mut()
     {
-        world.note_phases();
+        world.log_phases();
     }
     game.step(inputs);
     match (phases, game.world_mut()) {
@@ -170,8 +174,8 @@ pub(super) fn step<G: Game>(game: &mut G, inputs: &[G::Input], phases: Phases) -
 }
 
 /// Creates another game from the same setup.
-pub(super) fn another<G: Game>(setup: &G::Setup, way: Way, tick: u64) -> Result<G, Box<Finding>> {
-    G::new(setup).map_err(|error| Box::new(Finding::new(way, Fault::Refused { why: error.why }, tick)))
+pub(super) fn another<G: Game>(setup: &G::Setup, variant: Variant, tick: u64) -> Result<G, Box<Finding>> {
+    G::new(setup).map_err(|error| Box::new(Finding::new(variant, Fault::Refused { why: error.why }, tick)))
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use core::fmt;
 
 use serde::Serialize;
 
-use super::options::Way;
+use super::options::Variant;
 use crate::inspect::{Difference, differences, fields};
 use crate::replay::{RecordError, Verdict};
 use crate::world::Phase;
@@ -67,7 +67,7 @@ impl Guess {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Finding {
     /// The variant.
-    pub way: Way,
+    pub variant: Variant,
     /// The fault.
     pub fault: Fault,
     /// Number of ticks after which the fault exists.
@@ -86,8 +86,8 @@ pub struct Finding {
 }
 
 impl Finding {
-    pub(super) fn new(way: Way, fault: Fault, tick: u64) -> Self {
-        Finding { way, fault, tick, played: tick, phase: None, rollback: None, differences: Vec::new() }
+    pub(super) fn new(variant: Variant, fault: Fault, tick: u64) -> Self {
+        Finding { variant, fault, tick, played: tick, phase: None, rollback: None, differences: Vec::new() }
     }
 
     /// Adds the differences between two saves.
@@ -99,12 +99,12 @@ impl Finding {
     /// The most frequent cause of the fault.
     #[must_use]
     pub const fn hint(&self) -> &'static str {
-        match (self.way, &self.fault) {
-            (Way::Again, _) | (_, Fault::Refused { .. }) => {
+        match (self.variant, &self.fault) {
+            (Variant::Again, _) | (_, Fault::Refused { .. }) => {
                 "a HashMap or HashSet that is iterated, a static or thread-local, an address, a clock, or \
                  uninitialised memory"
             }
-            (_, Fault::Answers { .. }) | (Way::Asked | Way::Unasked, Fault::Hash) => {
+            (_, Fault::Answers { .. }) | (Variant::HashPolled | Variant::HashUnpolled, Fault::Hash) => {
                 "state that changes when it is read: a Cell, a static, or a HashMap in the result"
             }
             (_, Fault::Unhashed) => "a field that `state_hash` leaves out and `step` reads",
@@ -113,8 +113,8 @@ impl Finding {
                  and a Deserialize that are not inverses"
             }
             (_, Fault::Unreadable { .. }) => "a Serialize and a Deserialize that do not match",
-            (Way::Reloaded, _) => "a field that is missing from `Save`, or that `load` does not restore",
-            (Way::RolledBack, _) => {
+            (Variant::Reloaded, _) => "a field that is missing from `Save`, or that `load` does not restore",
+            (Variant::RolledBack, _) => {
                 "a cache or a field that `load` does not restore, saved or not: it is right in a new game and \
                  stale in a game that has already run"
             }
@@ -136,8 +136,8 @@ const SHOWN: usize = 8;
 
 impl fmt::Display for Finding {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Finding { way, fault, tick, .. } = self;
-        write!(f, "{way}")?;
+        let Finding { variant, fault, tick, .. } = self;
+        write!(f, "{variant}")?;
         if let Some((depth, guess)) = self.rollback {
             write!(f, " by {depth} {}", if depth == 1 { "tick" } else { "ticks" })?;
             f.write_str(match guess {

@@ -8,7 +8,7 @@ use super::failure::CheckError;
 use crate::codec;
 use crate::lockstep::{EncodedInputs, Game, InputError, decode_inputs};
 use crate::replay::{
-    CHECKPOINT_INTERVAL, Flaw, Limits, ReadError, Reader, Recording, Rerun, TickInputs, Verdict,
+    CHECKPOINT_INTERVAL, Flaw, Limits, RawReplay, ReadError, Reader, Recording, TickInputs, Verdict,
 };
 
 /// Checkpoint interval of the replays that are recorded here.
@@ -74,7 +74,7 @@ pub(super) struct Logged<G: Game> {
 /// Reads the first `to` ticks of a replay.
 pub(super) fn read<G: Game>(file: &[u8], limits: &Limits, to: u64) -> Result<Logged<G>, CheckError> {
     // This scans the file and starts the game, so that errors of the following calls are exceptional.
-    let players = Rerun::<G>::open(file, limits)?.game().players();
+    let players = RawReplay::<G>::open(file, limits)?.game().players();
     let refused = |error: ReadError| CheckError::Replay(error.into());
     let mut ticks = TickInputs::open(file, limits).map_err(refused)?;
     let reader = Reader::open(file, limits).map_err(refused)?;

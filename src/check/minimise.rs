@@ -7,7 +7,7 @@ use super::checker::{Checked, Checker};
 use super::failure::Failure;
 use super::finding::{Fault, Finding};
 use super::log::{INTERVAL, Inputs, Log};
-use super::options::{Depths, Options, Way};
+use super::options::{CheckOptions, Depths, Variant};
 use crate::lockstep::Game;
 use crate::replay::{Recording, Verdict, verify};
 
@@ -18,7 +18,7 @@ const AGAIN: usize = 4;
 pub(super) fn run<G: Game>(
     setup: &G::Setup,
     log: &Log<G>,
-    options: &Options,
+    options: &CheckOptions,
 ) -> Result<Checked, Box<Finding>> {
     run_counted(setup, log, options, &mut 0)
 }
@@ -26,27 +26,27 @@ pub(super) fn run<G: Game>(
 fn run_counted<G: Game>(
     setup: &G::Setup,
     log: &Log<G>,
-    options: &Options,
+    options: &CheckOptions,
     simulated: &mut u64,
 ) -> Result<Checked, Box<Finding>> {
-    let refused = |why| Box::new(Finding::new(Way::Again, Fault::Refused { why }, 0));
+    let refused = |why| Box::new(Finding::new(Variant::Again, Fault::Refused { why }, 0));
     let mut checker = Checker::<G>::new(setup, options).map_err(|error| refused(error.why))?;
     let ticks = log.ticks.iter().zip(0..options.to).map(|(inputs, _)| inputs);
     let played = { ticks }.try_for_each(|inputs| checker.step(inputs));
     *simulated = simulated.saturating_add(checker.simulated());
     played?;
     let mut checked = checker.finish()?;
-    if options.ways.contains(&Way::Recorded) {
+    if options.variants.contains(&Variant::Recorded) {
         *simulated = simulated.saturating_add(2 * checked.ticks);
         record(setup, log, options)?;
-        checked.ways.push(Way::Recorded);
+        checked.variants.push(Variant::Recorded);
     }
     Ok(checked)
 }
 
 /// Records the game and verifies the recording.
-fn record<G: Game>(setup: &G::Setup, log: &Log<G>, options: &Options) -> Result<(), Box<Finding>> {
-    let found = |fault, tick| Err(Box::new(Finding::new(Way::Recorded, fault, tick)));
+fn record<G: Game>(setup: &G::Setup, log: &Log<G>, options: &CheckOptions) -> Result<(), Box<Finding>> {
+    let found = |fault, tick| Err(Box::new(Finding::new(Variant::Recorded, fault, tick)));
     let mut recording = match Recording::<G>::start(setup, INTERVAL) {
         Ok(recording) => recording,
         Err(error) => return found(Fault::Unrecordable(error), 0),
@@ -75,7 +75,7 @@ pub(super) fn minimise<G: Game>(
     setup: &G::Setup,
     log: &Log<G>,
     finding: Finding,
-    options: &Options,
+    options: &CheckOptions,
 ) -> Failure {
     if options.budget == 0 {
         let cut = first(log, finding.played);
@@ -83,11 +83,11 @@ pub(super) fn minimise<G: Game>(
         return Failure { finding, minimised, replay, ticks: cut.len(), failed: (1, 1) };
     }
     let mut search = Search { setup, options: options.clone(), spent: 0, need: 0 };
-    let way = finding.way;
-    // A random failure can appear in any variant, so [`Way::Again`] is tried first and reported if it fails.
-    let (finding, best) = [Way::Again, way]
+    let variant = finding.variant;
+    // A random failure can appear in any variant, so [`Variant::Again`] is tried first and reported if it fails.
+    let (finding, best) = [Variant::Again, variant]
         .into_iter()
-        .find_map(|way| search.begin(log, way, &finding))
+        .find_map(|variant| search.begin(log, variant, &finding))
         .unwrap_or_else(|| (finding.clone(), Attempt { ticks: log.ticks.clone(), finding, failed: 0 }));
     let best = if search.need > 0 { search.shrink(log, best) } else { best };
     let log = log.of(best.ticks);
@@ -115,7 +115,7 @@ struct Attempt<G: Game> {
 struct Search<'s, G: Game> {
     setup: &'s G::Setup,
     /// Options restricted to the failing variant.
-    options: Options,
+    options: CheckOptions,
     /// Number of ticks simulated.
     spent: u64,
     /// Number of failing runs that a candidate needs.
@@ -124,10 +124,11 @@ struct Search<'s, G: Game> {
 
 impl<G: Game> Search<'_, G> {
     /// Tests whether a log fails in one variant alone, and how often.
-    fn begin(&mut self, log: &Log<G>, way: Way, finding: &Finding) -> Option<(Finding, Attempt<G>)> {
-        let ways = if way == Way::Again { [way; AGAIN].to_vec() } else { [way].to_vec() };
-        self.options = Options { ways, from: 0, every: 1, depths: Depths::Each, ..self.options.clone() };
-        if finding.way != Way::RolledBack || way != finding.way {
+    fn begin(&mut self, log: &Log<G>, variant: Variant, finding: &Finding) -> Option<(Finding, Attempt<G>)> {
+        let variants = if variant == Variant::Again { [variant; AGAIN].to_vec() } else { [variant].to_vec() };
+        self.options =
+            CheckOptions { variants, from: 0, every: 1, depths: Depths::Each, ..self.options.clone() };
+        if finding.variant != Variant::RolledBack || variant != finding.variant {
             self.options.depths = Depths::InTurn;
         }
         self.need = 1;
@@ -141,7 +142,7 @@ impl<G: Game> Search<'_, G> {
         let found = of_all.or(of_cut);
         self.need = found.as_ref().map_or(0, |found| found.failed);
         let found = found?;
-        let finding = if way == finding.way { finding.clone() } else { found.finding.clone() };
+        let finding = if variant == finding.variant { finding.clone() } else { found.finding.clone() };
         Some((finding, found))
     }
 

@@ -2,15 +2,15 @@
 //! does.
 //!
 //! [`check`] takes a [`Game`] and an input log. It plays the log in a reference run, and beside it in every variant
-//! ([`Way`]) of [`Options::ways`]: again from the start, encoded and reloaded at every tick, rolled back by 1 to 8
+//! ([`Variant`]) of [`CheckOptions::variants`]: again from the start, encoded and reloaded at every tick, rolled back by 1 to 8
 //! ticks, with caches cleared, on other thread counts and so on. After every tick all variants must have the same hash.
 //! If one differs, the result is a [`Failure`]: the variant, the tick, the fields that differ, and a minimised replay.
 //!
 //! ```
-//! use lockstep2d::{check::{self, Options}, lockstep::{Game, Sandbox, SandboxSetup}, math::Rng};
+//! use lockstep2d::{check::{self, CheckOptions}, lockstep::{Game, Sandbox, SandboxSetup}, math::Rng};
 //!
 //! let inputs = check::random_inputs::<Sandbox>(1, 20, &mut Rng::new(7));
-//! let checked = check::check::<Sandbox>(&SandboxSetup::default(), &inputs, &Options::default())?;
+//! let checked = check::check::<Sandbox>(&SandboxSetup::default(), &inputs, &CheckOptions::default())?;
 //! assert_eq!(checked.ticks, 20);
 //! # Ok::<(), check::CheckError>(())
 //! ```
@@ -23,21 +23,21 @@
 //! A panic of the game's code is not caught: it passes through to the caller, whose test or fuzzer reports it with its
 //! input. Differences between machines, compilers or processes are not detected.
 
+mod byte_swap;
 mod checker;
-mod exchange;
 mod failure;
 mod finding;
-mod lane;
 mod log;
 mod minimise;
 mod options;
+mod replica;
 mod rollback;
 mod source;
 
 pub use checker::{Checked, Checker};
 pub use failure::{CheckError, Failure};
 pub use finding::{Fault, Finding, Guess};
-pub use options::{Depths, Options, Phases, Way};
+pub use options::{CheckOptions, Depths, Phases, Variant};
 pub use source::{inputs_from_bytes, random_inputs};
 
 use alloc::boxed::Box;
@@ -47,7 +47,7 @@ use crate::lockstep::Game;
 use crate::replay::{Recorder, Verdict};
 use log::{INTERVAL, Log, Logged};
 
-/// Plays a game from a setup with the inputs of every tick, in every variant ([`Way`]) of the options.
+/// Plays a game from a setup with the inputs of every tick, in every variant ([`Variant`]) of the options.
 ///
 /// With the default options this costs about twenty plain runs of the log. `inputs` has a list for each tick, with an
 /// input for each player.
@@ -58,7 +58,7 @@ use log::{INTERVAL, Log, Logged};
 pub fn check<G: Game>(
     setup: &G::Setup,
     inputs: &[Vec<G::Input>],
-    options: &Options,
+    options: &CheckOptions,
 ) -> Result<Checked, CheckError> {
     let (_, game) = Recorder::<G>::start(setup, INTERVAL)?;
     let mut log = Log::<G>::new(game.players());
@@ -68,13 +68,13 @@ pub fn check<G: Game>(
     check_log(setup, &log, options)
 }
 
-/// Checks a game with the setup and the inputs of a replay, from [`Options::from`] to [`Options::to`]. Its checkpoints
+/// Checks a game with the setup and the inputs of a replay, from [`CheckOptions::from`] to [`CheckOptions::to`]. Its checkpoints
 /// are ignored.
 ///
 /// # Errors
 /// Same as [`check`]; [`CheckError::Replay`] if the file is not a replay of this game or costs more than the limits
 /// allow.
-pub fn check_replay<G: Game>(file: &[u8], options: &Options) -> Result<Checked, CheckError> {
+pub fn check_replay<G: Game>(file: &[u8], options: &CheckOptions) -> Result<Checked, CheckError> {
     let Logged { setup, log } = log::read::<G>(file, &options.limits, options.to)?;
     match check_log(&setup, &log, options) {
         Err(CheckError::Failed(failure)) => Err(match failure.finding.fault {
@@ -85,7 +85,7 @@ pub fn check_replay<G: Game>(file: &[u8], options: &Options) -> Result<Checked, 
     }
 }
 
-fn check_log<G: Game>(setup: &G::Setup, log: &Log<G>, options: &Options) -> Result<Checked, CheckError> {
+fn check_log<G: Game>(setup: &G::Setup, log: &Log<G>, options: &CheckOptions) -> Result<Checked, CheckError> {
     match minimise::run(setup, log, options) {
         Ok(checked) => Ok(checked),
         Err(finding) => Err(CheckError::Failed(Box::new(minimise::minimise(setup, log, *finding, options)))),

@@ -1,4 +1,4 @@
-//! [`Options`]: the extent and cost of a check.
+//! [`CheckOptions`]: the extent and cost of a check.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -14,13 +14,13 @@ use crate::world::Backend;
 /// ([`Game::world_mut`](crate::lockstep::Game::world_mut)).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
-pub enum Way {
+pub enum Variant {
     /// Again from the start, in the same process: detects random iteration orders, global state, addresses and clocks.
     Again,
     /// Hash, work, claims and save are polled twice after every tick: polling must not change the state.
-    Asked,
+    HashPolled,
     /// The hash is polled after the last tick only: skipping the poll must not change the state either.
-    Unasked,
+    HashUnpolled,
     /// After every tick the state is saved, encoded, decoded and loaded into a new game, which continues.
     Reloaded,
     /// After every tick the game is rolled back by some ticks and plays them again, also after wrong predictions.
@@ -34,59 +34,63 @@ pub enum Way {
     /// A tick runs on another number of threads; skipped without the feature `parallel`.
     Threads(usize),
     /// Bytes of a save are swapped for those of another tick: if the hash does not change, the future must not either.
-    Exchanged,
+    ByteSwapped,
     /// The game is recorded and its replay verified, claims included.
     Recorded,
 }
 
-impl Way {
+impl Variant {
     /// All variants available on this machine.
     #[must_use]
-    pub fn all() -> Vec<Way> {
-        let mut ways = vec![
-            Way::Again,
-            Way::Asked,
-            Way::Unasked,
-            Way::Reloaded,
-            Way::RolledBack,
-            Way::ClearedScratch,
-            Way::BroadPhase(BroadPhaseKind::SweepAndPrune),
-            Way::BroadPhase(BroadPhaseKind::BruteForce),
-            Way::Exchanged,
-            Way::Recorded,
+    pub fn all() -> Vec<Variant> {
+        let mut variants = vec![
+            Variant::Again,
+            Variant::HashPolled,
+            Variant::HashUnpolled,
+            Variant::Reloaded,
+            Variant::RolledBack,
+            Variant::ClearedScratch,
+            Variant::BroadPhase(BroadPhaseKind::SweepAndPrune),
+            Variant::BroadPhase(BroadPhaseKind::BruteForce),
+            Variant::ByteSwapped,
+            Variant::Recorded,
         ];
-        ways.extend(Backend::available().filter(|backend| *backend != Backend::best()).map(Way::Backend));
+        variants
+            .extend(Backend::available().filter(|backend| *backend != Backend::best()).map(Variant::Backend));
         if cfg!(feature = "parallel") {
-            ways.extend([Way::Threads(2), Way::Threads(4)]);
+            variants.extend([Variant::Threads(2), Variant::Threads(4)]);
         }
-        ways
+        variants
     }
 
     /// Whether the variant acts on the world of a game.
     pub(super) const fn needs_world(self) -> bool {
-        matches!(self, Way::ClearedScratch | Way::Backend(_) | Way::BroadPhase(_) | Way::Threads(_))
+        matches!(
+            self,
+            Variant::ClearedScratch | Variant::Backend(_) | Variant::BroadPhase(_) | Variant::Threads(_)
+        )
     }
 }
 
-impl fmt::Display for Way {
+impl fmt::Display for Variant {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Way::Again => write!(f, "played again"),
-            Way::Asked => write!(f, "with hash, work, claims and save polled twice"),
-            Way::Unasked => write!(f, "with the hash polled only at the end"),
-            Way::Reloaded => write!(f, "reloaded from bytes into a new game"),
-            Way::RolledBack => write!(f, "rolled back"),
-            Way::ClearedScratch => write!(f, "with cleared scratch"),
-            Way::Backend(backend) => write!(f, "with the backend {backend:?}"),
-            Way::BroadPhase(kind) => write!(f, "with the broad phase {kind:?}"),
-            Way::Threads(count) => write!(f, "on {count} threads"),
-            Way::Exchanged => write!(f, "with bytes of another tick swapped into its save"),
-            Way::Recorded => write!(f, "recorded and verified"),
+            Variant::Again => write!(f, "played again"),
+            Variant::HashPolled => write!(f, "with hash, work, claims and save polled twice"),
+            Variant::HashUnpolled => write!(f, "with the hash polled only at the end"),
+            Variant::Reloaded => write!(f, "reloaded from bytes into a new game"),
+            Variant::RolledBack => write!(f, "rolled back"),
+            Variant::ClearedScratch => write!(f, "with cleared scratch"),
+            Variant::Backend(backend) => write!(f, "with the backend {backend:?}"),
+            Variant::BroadPhase(kind) => write!(f, "with the broad phase {kind:?}"),
+            Variant::Threads(count) => write!(f, "on {count} threads"),
+            Variant::ByteSwapped => write!(f, "with bytes of another tick swapped into its save"),
+            Variant::Recorded => write!(f, "recorded and verified"),
         }
     }
 }
 
-/// The rollback depths of [`Way::RolledBack`].
+/// The rollback depths of [`Variant::RolledBack`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Depths {
     /// One depth with one prediction at a time, the next at the next tick: all combinations within 24 ticks, at a cost
@@ -109,9 +113,9 @@ pub enum Phases {
 
 /// The extent and cost of a check.
 #[derive(Clone, Debug)]
-pub struct Options {
+pub struct CheckOptions {
     /// The variants to play.
-    pub ways: Vec<Way>,
+    pub variants: Vec<Variant>,
     /// Interval in ticks at which the state is reloaded, rolled back or loses its caches; at least 1.
     pub every: u64,
     /// Maximum rollback depth in ticks, up to 64.
@@ -134,11 +138,11 @@ pub struct Options {
     pub limits: Limits,
 }
 
-impl Default for Options {
+impl Default for CheckOptions {
     /// Checks everything at every tick: suitable for logs of some hundred ticks.
     fn default() -> Self {
-        Options {
-            ways: Way::all(),
+        CheckOptions {
+            variants: Variant::all(),
             every: 1,
             rollback_max: 8,
             depths: Depths::default(),
@@ -152,24 +156,24 @@ impl Default for Options {
     }
 }
 
-impl Options {
+impl CheckOptions {
     /// Restricts the options to some variants.
     #[must_use]
-    pub fn only(self, ways: &[Way]) -> Self {
-        Options { ways: ways.to_vec(), ..self }
+    pub fn only(self, variants: &[Variant]) -> Self {
+        CheckOptions { variants: variants.to_vec(), ..self }
     }
 
     /// Removes a variant.
     #[must_use]
-    pub fn without(mut self, way: Way) -> Self {
-        self.ways.retain(|kept| *kept != way);
+    pub fn without(mut self, variant: Variant) -> Self {
+        self.variants.retain(|kept| *kept != variant);
         self
     }
 
     /// Sets the interval of the expensive operations in ticks, for longer logs.
     #[must_use]
     pub fn every(self, ticks: u64) -> Self {
-        Options { every: ticks.max(1), ..self }
+        CheckOptions { every: ticks.max(1), ..self }
     }
 
     pub(super) fn is_due(&self, tick: u64) -> bool {

@@ -6,8 +6,8 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 use super::finding::{Fault, Finding, Guess};
-use super::lane::Now;
-use super::options::{Depths, Way};
+use super::options::{Depths, Variant};
+use super::replica::Now;
 use crate::hash::StateHash;
 use crate::lockstep::Game;
 
@@ -37,7 +37,7 @@ type Rollback = (u32, Guess);
 
 impl<G: Game> Past<G> {
     /// Records the state after a tick, and rolls back.
-    pub(super) fn disturb(
+    pub(super) fn perturb(
         &mut self,
         game: &mut G,
         now: &Now<'_, G>,
@@ -88,7 +88,7 @@ impl<G: Game> Past<G> {
             }
             if game.state_hash() != moment.hash {
                 let fault = if left < depth { Fault::Hash } else { Fault::Loaded };
-                let finding = Finding::new(Way::RolledBack, fault, now.tick - u64::from(left));
+                let finding = Finding::new(Variant::RolledBack, fault, now.tick - u64::from(left));
                 let finding = finding.with_saves(&moment.save, &game.save());
                 let rollback = Some((depth, guess));
                 return Err(Box::new(Finding { rollback, played: now.tick, ..finding }));

@@ -2,9 +2,11 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::broad_phase::Pair;
 use super::manifold::Feature;
 use crate::math::Speed;
+
+/// A pair of shape slots, the smaller one first.
+pub(crate) type Pair = (u32, u32);
 
 /// A pair of shapes whose fat AABBs overlap.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

@@ -46,7 +46,7 @@ pub use bar::Bar;
 pub use fit::fit;
 pub use legend::Legend;
 pub use paint::{Fill, PAPER, Paint};
-pub use primitive::{Form, Hue, Layers, Primitive, Proximity, Style, Subject};
+pub use primitive::{ContactProximity, Form, Hue, Layers, Primitive, Style, Subject};
 pub use primitives::{each_primitive, primitives};
 pub use svg::svg;
 pub use view::{Frame, View};

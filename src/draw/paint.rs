@@ -1,6 +1,6 @@
 //! [`Paint`]: the appearance of styles, the same in every renderer.
 
-use super::primitive::{Hue, Proximity, Style};
+use super::primitive::{ContactProximity, Hue, Style};
 
 /// Appearance of a style on a light background.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -52,10 +52,10 @@ impl Style {
             Style::JointAnchor => mark("anchor", 0x8e24aa, 700),
             Style::JointGap => mark("gap", 0xff4081, 300),
             Style::JointError => mark("", 0x6a1b9a, 100),
-            Style::ContactNormal(Proximity::Speculative) => mark("", 0xe69500, 130),
-            Style::ContactPoint(Proximity::Speculative) => mark("about to touch", 0xe69500, 500),
-            Style::ContactNormal(Proximity::Touching) => mark("", 0xc62828, 130),
-            Style::ContactPoint(Proximity::Touching) => mark("touching", 0xc62828, 500),
+            Style::ContactNormal(ContactProximity::Speculative) => mark("", 0xe69500, 130),
+            Style::ContactPoint(ContactProximity::Speculative) => mark("about to touch", 0xe69500, 500),
+            Style::ContactNormal(ContactProximity::Touching) => mark("", 0xc62828, 130),
+            Style::ContactPoint(ContactProximity::Touching) => mark("touching", 0xc62828, 500),
             Style::ContactForce => mark("force", 0xd500f9, 200),
             Style::ContactFriction => mark("friction", 0x00b8d4, 200),
             Style::SolverGroup(hue) => mark("solver colour", hue_of(hue), 700),

@@ -160,9 +160,9 @@ pub enum Style {
     /// The distance between the anchors of a joint, as text.
     JointError,
     /// The direction in which a contact pushes its shape B.
-    ContactNormal(Proximity),
+    ContactNormal(ContactProximity),
     /// A contact point.
-    ContactPoint(Proximity),
+    ContactPoint(ContactProximity),
     /// The normal force at a contact point on shape B. The length is 0.2 m times the square root of the resulting
     /// acceleration in units of 10 m/s²: 0.2 m below a box at rest, but only 2 m instead of 20 m below a hundred boxes.
     ContactForce,
@@ -200,7 +200,7 @@ impl Hue {
 
 /// Whether a contact point is touching or only speculative.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Proximity {
+pub enum ContactProximity {
     /// Further apart: a speculative contact, which prevents fast shapes from tunnelling.
     Speculative,
     /// At most a quarter of the speculative distance apart, the threshold that contact events use.

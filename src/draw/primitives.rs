@@ -3,7 +3,7 @@
 use alloc::format;
 use alloc::vec::Vec;
 
-use super::primitive::{Form, Hue, Layers, Primitive, Proximity, Style, Subject};
+use super::primitive::{ContactProximity, Form, Hue, Layers, Primitive, Style, Subject};
 use crate::body::{Body, BodyId, BodyKind, JointId};
 use crate::collision::{Link, ManifoldPoint, Outline, PosedShape};
 use crate::fx;
@@ -29,7 +29,7 @@ pub fn primitives(world: &World, layers: Layers) -> Vec<Primitive> {
 }
 
 /// Same as [`primitives`] one by one, without storing all of them: a large world has a hundred thousand.
-pub fn each_primitive(world: &World, layers: Layers, found: Found<'_>) {
+pub fn each_primitive(world: &World, layers: Layers, found: Sink<'_>) {
     if layers.broad_phase {
         for (aabb, _) in world.broad_phase_boxes() {
             found(primitive(Style::BroadPhase, Subject::World, Form::Box(aabb)));
@@ -56,13 +56,13 @@ pub fn each_primitive(world: &World, layers: Layers, found: Found<'_>) {
 }
 
 /// Callback for each primitive.
-type Found<'a> = &'a mut dyn FnMut(Primitive);
+type Sink<'a> = &'a mut dyn FnMut(Primitive);
 
 fn primitive(style: Style, subject: Subject, form: Form) -> Primitive {
     Primitive { style, subject, form }
 }
 
-fn add_body(world: &World, (id, body): (BodyId, &Body), layers: Layers, found: Found<'_>) {
+fn add_body(world: &World, (id, body): (BodyId, &Body), layers: Layers, found: Sink<'_>) {
     let subject = Subject::Body(id);
     if layers.outlines {
         add_outlines(world, (id, body), style_of(body), found);
@@ -99,7 +99,7 @@ fn style_of(body: &Body) -> Style {
     }
 }
 
-fn add_outlines(world: &World, (id, body): (BodyId, &Body), style: Style, found: Found<'_>) {
+fn add_outlines(world: &World, (id, body): (BodyId, &Body), style: Style, found: Sink<'_>) {
     let subject = Subject::Body(id);
     let rotation = body.rotation();
     let mut add = |form| found(primitive(style, subject, form));
@@ -125,7 +125,7 @@ fn add_outlines(world: &World, (id, body): (BodyId, &Body), style: Style, found:
 }
 
 /// Adds each island in the colour of its first body, so that it keeps its colour while it grows.
-fn add_islands(world: &World, found: Found<'_>) {
+fn add_islands(world: &World, found: Sink<'_>) {
     for island in world.islands() {
         let Some(first) = island.first() else { continue };
         let style = Style::Island(Hue::of(first.index() as usize));
@@ -136,7 +136,7 @@ fn add_islands(world: &World, found: Found<'_>) {
     }
 }
 
-fn add_contact(contact: &ContactView<'_>, touching_distance: Fx, layers: Layers, found: Found<'_>) {
+fn add_contact(contact: &ContactView<'_>, touching_distance: Fx, layers: Layers, found: Sink<'_>) {
     let subject = Subject::Contact(contact.shape_a, contact.shape_b);
     let manifold = contact.manifold;
     let colour = if layers.solver_colours { contact.solver_colour() } else { None };
@@ -144,7 +144,7 @@ fn add_contact(contact: &ContactView<'_>, touching_distance: Fx, layers: Layers,
     for &ManifoldPoint { anchor, separation, .. } in manifold.points() {
         let place = manifold.origin + anchor.widen();
         let touching = widen(separation) <= touching_distance;
-        let proximity = if touching { Proximity::Touching } else { Proximity::Speculative };
+        let proximity = if touching { ContactProximity::Touching } else { ContactProximity::Speculative };
         if layers.contact_normals {
             let form = Form::Direction { from: place, direction: manifold.normal };
             add(Style::ContactNormal(proximity), form);
@@ -192,7 +192,7 @@ fn stretched(vector: Vec2<Fx>, factor: Fx) -> Vec2<Fx> {
     Vec2::new(fx_mul(vector.x, factor), fx_mul(vector.y, factor))
 }
 
-fn add_joint(world: &World, id: JointId, layers: Layers, found: Found<'_>) {
+fn add_joint(world: &World, id: JointId, layers: Layers, found: Sink<'_>) {
     let (Some(joint), Some((anchor_a, anchor_b))) = (world.joint(id), world.joint_anchors(id)) else {
         return;
     };

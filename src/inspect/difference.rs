@@ -51,9 +51,9 @@ impl fmt::Display for OrNothing<'_> {
 /// second list has are placed by their position in the second list.
 #[must_use]
 pub fn differences(a: &[Field], b: &[Field]) -> Vec<Difference> {
-    let (places_a, places_b) = (places(a), places(b));
+    let (places_a, positions_b) = (places(a), places(b));
     let in_a: BTreeSet<_> = places_a.iter().collect();
-    let in_b: BTreeMap<_, usize> = places_b.iter().zip(0..).collect();
+    let in_b: BTreeMap<_, usize> = positions_b.iter().zip(0..).collect();
     let mut found = Vec::new();
     let mut passed = 0;
     for (field, place) in a.iter().zip(&places_a) {
@@ -61,20 +61,20 @@ pub fn differences(a: &[Field], b: &[Field]) -> Vec<Difference> {
             found.push(Difference::new(field, Some(field), None));
             continue;
         };
-        found.extend(only_in_b(b, &places_b, &in_a, passed..at));
+        found.extend(only_in_b(b, &positions_b, &in_a, passed..at));
         passed = passed.max(at);
         if b[at].value != field.value {
             found.push(Difference::new(field, Some(field), Some(&b[at])));
         }
     }
-    found.extend(only_in_b(b, &places_b, &in_a, passed..b.len()));
+    found.extend(only_in_b(b, &positions_b, &in_a, passed..b.len()));
     found
 }
 
 /// A path, and the number of earlier fields with the same path: a map may have two keys with the same text.
-type Place<'a> = (&'a str, u32);
+type FieldPosition<'a> = (&'a str, u32);
 
-fn places(fields: &[Field]) -> Vec<Place<'_>> {
+fn places(fields: &[Field]) -> Vec<FieldPosition<'_>> {
     let mut places = Vec::with_capacity(fields.len());
     let mut seen: BTreeMap<&str, u32> = BTreeMap::new();
     for field in fields {
@@ -88,8 +88,8 @@ fn places(fields: &[Field]) -> Vec<Place<'_>> {
 /// Fields in a range of the second list that the first list does not have.
 fn only_in_b<'a>(
     b: &'a [Field],
-    places: &'a [Place<'a>],
-    in_a: &'a BTreeSet<&Place<'a>>,
+    places: &'a [FieldPosition<'a>],
+    in_a: &'a BTreeSet<&FieldPosition<'a>>,
     range: Range<usize>,
 ) -> impl Iterator<Item = Difference> + 'a {
     let lacking = range.filter(|&at| !in_a.contains(&places[at]));

@@ -8,7 +8,7 @@ use alloc::vec::Vec;
 use serde::Serialize;
 
 use super::{Field, InspectError, Value, differences, fields};
-use crate::math::{Angle, Fx, Grip, Length, Rate, Ratio, Shift, Speed, Step, Unit, Vec2};
+use crate::math::{Angle, FrictionRatio, Fx, Length, Rate, Ratio, Shift, Speed, Step, Unit, Vec2};
 
 #[derive(Clone, Serialize)]
 enum Kind {
@@ -105,7 +105,7 @@ fn every_format_is_known_by_its_fraction_bits() {
         bits(Unit::ZERO),
         bits(Ratio::ZERO),
         bits(Rate::ZERO),
-        bits(Grip::ZERO),
+        bits(FrictionRatio::ZERO),
         bits([Fx::ZERO]),
         bits(fixed::types::I64F0::ZERO),
     ];

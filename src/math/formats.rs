@@ -28,7 +28,7 @@ pub type Ratio = FixedI32<U24>;
 /// Rate at which a constraint error is turned into speed, in 1/s: ±8192, resolution 3.8e-6.
 pub type Rate = FixedI32<U18>;
 /// Friction limit of a tangent row per unit of its normal row, `mu Dt / Dn`: ±2048, resolution 9.5e-7.
-pub type Grip = FixedI32<U20>;
+pub type FrictionRatio = FixedI32<U20>;
 
 /// `x / 2^shift`, rounded to nearest, ties towards +infinity. `shift` may be 0.
 #[inline]

@@ -20,8 +20,8 @@ mod wide;
 pub use aabb::Aabb;
 pub use angle::{Angle, DEGREE, PI, TAU};
 pub use formats::{
-    Fx, Grip, Length, Rate, Ratio, Shift, Speed, Step, Unit, convert, div_round, fx_div, fx_mul, mul,
-    mul_add, narrow, ratio, round_shift, round_shift_wide, saturate, saturate_wide, widen,
+    FrictionRatio, Fx, Length, Rate, Ratio, Shift, Speed, Step, Unit, convert, div_round, fx_div, fx_mul,
+    mul, mul_add, narrow, ratio, round_shift, round_shift_wide, saturate, saturate_wide, widen,
 };
 pub use geometry::{
     Orientation, closest_point_on_segment, orientation, point_in_polygon, segment_intersection,

@@ -8,7 +8,7 @@ use ggrs::{Frame, GgrsRequest, InputStatus};
 use serde::{Serialize, de::DeserializeOwned};
 
 use super::error::DriverError;
-use super::wire::{Address, Echo, GgrsConfig, NetGame, Wire};
+use super::wire::{Address, ChecksumReport, GgrsConfig, NetGame, Wire};
 use crate::hash::StateHash;
 use crate::lockstep::{EncodedInputs, Game, History};
 use crate::replay::{RecordError, Recorder};
@@ -90,7 +90,7 @@ pub struct Driver<G: Game> {
     echo_interval: Option<u64>,
     divergences: Vec<Divergence>,
     /// Checksum reports received from the seats, newest last.
-    heard: VecDeque<(u32, Echo)>,
+    heard: VecDeque<(u32, ChecksumReport)>,
 }
 
 /// Number of checksum reports that are kept per seat.
@@ -181,13 +181,13 @@ impl<G: NetGame> Driver<G> {
     /// Converts a local player's input for a session: encoded and decoded, and in lockstep with a hash.
     #[must_use]
     pub fn local_input(&self, input: G::Input) -> Wire<G::Input> {
-        Wire { input: canonical(input).unwrap_or_default(), echo: self.echo().unwrap_or_default() }
+        Wire { input: canonical(input).unwrap_or_default(), checksum: self.checksum().unwrap_or_default() }
     }
 
-    fn echo(&self) -> Option<Echo> {
+    fn checksum(&self) -> Option<ChecksumReport> {
         let interval = self.echo_interval?;
         let tick = self.tick - self.tick % interval;
-        Some(Echo { tick, hash: self.history.get(tick)?.hash })
+        Some(ChecksumReport { tick, hash: self.history.get(tick)?.hash })
     }
 
     /// Executes the requests of a session in order.
@@ -244,24 +244,24 @@ impl<G: NetGame> Driver<G> {
             .or_else(|_| self.encode(&of_all_seats(|input| canonical(input).unwrap_or_default())))?;
         self.step_encoded(encoded);
         for (at, (wire, _)) in inputs.iter().enumerate() {
-            self.hear(self.seats[at], wire.echo);
+            self.receive(self.seats[at], wire.checksum);
         }
         Ok(())
     }
 
     /// Receives the hash that a seat's peer had after a tick. Hashes inside inputs are received automatically. With a
     /// session of your own, pass on the data of `GgrsEvent::DesyncDetected`.
-    pub fn hear(&mut self, seat: u32, echo: Echo) {
-        if echo.tick == 0 || self.heard.contains(&(seat, echo)) {
+    pub fn receive(&mut self, seat: u32, checksum: ChecksumReport) {
+        if checksum.tick == 0 || self.heard.contains(&(seat, checksum)) {
             return;
         }
         if self.heard.len() == HEARD * self.seats.len() {
             self.heard.pop_front();
         }
-        self.heard.push_back((seat, echo));
-        let Some(ours) = self.history.get(echo.tick).map(|past| past.hash) else { return };
-        if ours != echo.hash {
-            self.divergences.push(Divergence { tick: echo.tick, seat, ours, theirs: echo.hash });
+        self.heard.push_back((seat, checksum));
+        let Some(ours) = self.history.get(checksum.tick).map(|past| past.hash) else { return };
+        if ours != checksum.hash {
+            self.divergences.push(Divergence { tick: checksum.tick, seat, ours, theirs: checksum.hash });
         }
     }
 
@@ -339,7 +339,7 @@ impl<G: NetGame> Driver<G> {
     pub fn restart(&mut self, base: u64, seats: Vec<u32>) -> Result<(), DriverError> {
         self.rewind(base)?;
         // Reports about later ticks refer to states that have been rolled back.
-        self.heard.retain(|(_, echo)| echo.tick <= base);
+        self.heard.retain(|(_, checksum)| checksum.tick <= base);
         self.base = base;
         self.seats = seats;
         Ok(())
@@ -362,8 +362,9 @@ impl<G: NetGame> Driver<G> {
     pub fn report(&self, divergence: &Divergence, seats: Vec<u32>, known: u64) -> DesyncReport {
         let players = self.game.players();
         let said = |seat| {
-            let said = self.heard.iter().find(|(of, echo)| *of == seat && echo.tick == divergence.tick);
-            said.map(|(_, echo)| echo.hash).or((seat == divergence.seat).then_some(divergence.theirs))
+            let said =
+                self.heard.iter().find(|(of, checksum)| *of == seat && checksum.tick == divergence.tick);
+            said.map(|(_, checksum)| checksum.hash).or((seat == divergence.seat).then_some(divergence.theirs))
         };
         let hashes = (0..players).map(said).collect();
         let known = known.clamp(self.committed, self.tick);

@@ -5,7 +5,7 @@
 //!
 //! - [`Driver`] executes the requests of any GGRS session, and keeps the recent states and the replay. It is all you
 //!   need with your own session and sockets.
-//! - [`Peer`] is a complete participant. It compares [`Terms`] in the handshake, admits late joiners, makes all peers
+//! - [`Peer`] is a complete participant. It compares [`HandshakeParameters`] in the handshake, admits late joiners, makes all peers
 //!   agree on the tick at which a player left, compares states, and adapts the tick rate. It creates its own GGRS
 //!   sessions.
 //! - [`Transport`] carries packets: [`Udp`], a simulated [`Network`] in memory for tests, or your own.
@@ -16,11 +16,11 @@
 //!
 //! ```no_run
 //! # use lockstep2d::lockstep::Game;
-//! # use lockstep2d::net::{NetError, NetGame, Options, Peer, Udp};
+//! # use lockstep2d::net::{NetError, NetGame, NetOptions, Peer, Udp};
 //! # fn read_pad<G: NetGame>() -> G::Input { G::Input::default() }
 //! # fn draw<G: NetGame>(_: &G) {}
 //! # fn play<MyGame: NetGame>(setup: &MyGame::Setup) -> Result<(), Box<dyn std::error::Error>> {
-//! let mut peer = Peer::<MyGame, _, _>::host(setup, Options::rollback(), Udp::bind("0.0.0.0:7000")?)?;
+//! let mut peer = Peer::<MyGame, _, _>::host(setup, NetOptions::rollback(), Udp::bind("0.0.0.0:7000")?)?;
 //! # let start = std::time::Instant::now();
 //! loop {
 //!     peer.update(start.elapsed())?;
@@ -33,22 +33,22 @@
 
 mod driver;
 mod error;
-mod gate;
+mod handshake;
+mod liveness;
+mod message_validator;
 mod options;
 mod packet;
 mod peer;
-mod presence;
 mod session;
-mod terms;
+mod simulated_network;
 mod transport;
-mod weather;
 mod wire;
 
 pub use driver::{Divergence, Driver};
 pub use error::DriverError;
-pub use options::{INPUT_DELAY_MAX, Mode, Options};
+pub use handshake::{HandshakeDifference, HandshakeMismatch, HandshakeParameters};
+pub use options::{INPUT_DELAY_MAX, Mode, NetOptions};
 pub use peer::{Event, NetError, Peer};
-pub use terms::{Terms, TermsDifference, TermsMismatch};
+pub use simulated_network::{LinkConditions, Network, Port};
 pub use transport::{PACKET_BYTES_MAX, Transport, Udp};
-pub use weather::{Network, Port, Weather};
-pub use wire::{Address, Echo, GgrsConfig, NetGame, Wire};
+pub use wire::{Address, ChecksumReport, GgrsConfig, NetGame, Wire};

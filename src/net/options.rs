@@ -1,4 +1,4 @@
-//! [`Options`]: options of a peer.
+//! [`NetOptions`]: options of a peer.
 
 use core::fmt;
 use core::time::Duration;
@@ -34,7 +34,7 @@ impl fmt::Display for Mode {
 ///
 /// The defaults suit games at 60 ticks per second between peers on one continent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Options {
+pub struct NetOptions {
     /// Synchronisation mode.
     pub mode: Mode,
     /// Delay of local inputs in ticks, at most [`INPUT_DELAY_MAX`]. It hides the same number of ticks of latency.
@@ -56,17 +56,17 @@ pub const INPUT_DELAY_MAX: u8 = 15;
 /// Maximum prediction window, in ticks.
 pub(super) const WINDOW_MAX: u8 = 32;
 
-impl Options {
+impl NetOptions {
     /// Rollback by up to 8 ticks, with an input delay of 2.
     #[must_use]
     pub const fn rollback() -> Self {
-        Options { mode: Mode::Rollback { window: 8 }, input_delay: 2, ..Self::lockstep() }
+        NetOptions { mode: Mode::Rollback { window: 8 }, input_delay: 2, ..Self::lockstep() }
     }
 
     /// Lockstep, with an input delay of 4 ticks.
     #[must_use]
     pub const fn lockstep() -> Self {
-        Options {
+        NetOptions {
             mode: Mode::Lockstep,
             input_delay: 4,
             timeout: Duration::from_secs(2),
@@ -80,7 +80,7 @@ impl Options {
     /// Sets the number of players to wait for before the first tick.
     #[must_use]
     pub const fn start_with(self, players: u32) -> Self {
-        Options { start_with: players, ..self }
+        NetOptions { start_with: players, ..self }
     }
 
     /// Maximum number of predicted ticks.

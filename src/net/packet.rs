@@ -8,7 +8,7 @@ use alloc::vec::Vec;
 
 use serde::{Deserialize, Serialize};
 
-use super::terms::Terms;
+use super::handshake::HandshakeParameters;
 use super::transport::PACKET_BYTES_MAX;
 use super::wire::Address;
 use crate::codec;
@@ -26,7 +26,7 @@ pub(super) struct Nonce(pub(super) u64);
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) enum Refused {
     /// The handshake parameters differ; these are the right ones.
-    Terms(Terms),
+    HandshakeParameters(HandshakeParameters),
     /// All seats are taken, or too many peers are joining.
     Full,
     /// The state after catching up has another hash.
@@ -38,7 +38,7 @@ pub(super) enum Refused {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) enum Packet<A> {
     /// A peer asks to join or to watch.
-    Hello { nonce: Nonce, terms: Terms, seat: Option<u32>, watch: bool },
+    Hello { nonce: Nonce, parameters: HandshakeParameters, seat: Option<u32>, watch: bool },
     /// The request is refused.
     Refused { nonce: Nonce, why: Refused },
     /// Another peer decides about requests.

@@ -11,17 +11,17 @@ use ggrs::{DesyncDetection, GgrsError, GgrsEvent, Message, NonBlockingSocket, P2
 use ggrs::{PlayerType, SessionBuilder};
 
 use super::driver::Driver;
-use super::gate::Gate;
-use super::options::Options;
+use super::liveness::Liveness;
+use super::message_validator::Gate;
+use super::options::NetOptions;
 use super::packet::SessionId;
 use super::peer::NetError;
-use super::presence::Presence;
-use super::wire::{Address, Echo, GgrsConfig, NetGame};
+use super::wire::{Address, ChecksumReport, GgrsConfig, NetGame};
 use crate::hash::StateHash;
 
 /// Membership of a session, and its first tick.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Roster<A> {
+pub(super) struct Membership<A> {
     pub(super) session: SessionId,
     /// First tick.
     pub(super) base: u64,
@@ -31,7 +31,7 @@ pub(super) struct Roster<A> {
     pub(super) others: Vec<(u32, A)>,
 }
 
-impl<A: Address> Roster<A> {
+impl<A: Address> Membership<A> {
     /// Derives the id of the session that follows `parent`: peers that agree on the arguments get the same id.
     pub(super) fn id(parent: SessionId, base: u64, seats: u64, salt: u64) -> SessionId {
         let hash = StateHash::of(&(parent, base, seats, salt)).0;
@@ -79,15 +79,15 @@ pub(super) enum SessionEvent {
     /// No messages have arrived for the whole timeout. Reported repeatedly.
     Lost(u32),
     /// The peer of this seat has reported a hash.
-    Said(u32, Echo),
+    Said(u32, ChecksumReport),
 }
 
 pub(super) struct Session<G: NetGame, A: Address> {
-    pub(super) roster: Roster<A>,
+    pub(super) membership: Membership<A>,
     p2p: P2PSession<GgrsConfig<G, A>>,
     mail: Arc<Mutex<Mail<A>>>,
-    gates: BTreeMap<A, Gate>,
-    presences: BTreeMap<A, Presence>,
+    validators: BTreeMap<A, Gate>,
+    liveness: BTreeMap<A, Liveness>,
     timeout: Duration,
     /// Time of the last poll.
     polled: Duration,
@@ -98,7 +98,7 @@ pub(super) struct Session<G: NetGame, A: Address> {
     confirmed: u64,
 }
 
-/// Disconnect timeout of GGRS: disabled, because [`Presence`] detects lost players.
+/// Disconnect timeout of GGRS: disabled, because [`Liveness`] detects lost players.
 const NEVER: Duration = Duration::from_secs(u32::MAX as u64);
 
 /// In-memory socket handed to GGRS.
@@ -124,8 +124,12 @@ fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
 }
 
 impl<G: NetGame, A: Address> Session<G, A> {
-    pub(super) fn new(roster: Roster<A>, options: &Options, tick_rate: u32) -> Result<Self, GgrsError> {
-        let seats = roster.seats();
+    pub(super) fn new(
+        membership: Membership<A>,
+        options: &NetOptions,
+        tick_rate: u32,
+    ) -> Result<Self, GgrsError> {
+        let seats = membership.seats();
         let mut builder = SessionBuilder::new()
             .with_num_players(seats.len())?
             .with_max_prediction_window(options.window().into())
@@ -135,23 +139,23 @@ impl<G: NetGame, A: Address> Session<G, A> {
             .with_disconnect_notify_delay(NEVER)
             .with_fps(usize::try_from(tick_rate).unwrap_or(usize::MAX))?;
         for (handle, seat) in seats.iter().enumerate() {
-            let address = roster.others.iter().find(|(other, _)| other == seat);
+            let address = membership.others.iter().find(|(other, _)| other == seat);
             let player =
                 address.map_or(PlayerType::Local, |(_, address)| PlayerType::Remote(address.clone()));
             builder = builder.add_player(player, handle)?;
         }
         let mail = Arc::new(Mutex::new(Mail { incoming: Vec::new(), outgoing: Vec::new() }));
         let p2p = builder.start_p2p_session(Mailbox(mail.clone()))?;
-        let others = roster.others.iter().map(|(_, address)| address.clone());
+        let others = membership.others.iter().map(|(_, address)| address.clone());
         Ok(Session {
-            gates: others.clone().map(|address| (address, Gate::new(seats.len()))).collect(),
-            presences: others.map(|address| (address, Presence::default())).collect(),
+            validators: others.clone().map(|address| (address, Gate::new(seats.len()))).collect(),
+            liveness: others.map(|address| (address, Liveness::default())).collect(),
             timeout: options.timeout,
             polled: Duration::ZERO,
             synchronised: BTreeSet::new(),
             lost: false,
-            confirmed: roster.base,
-            roster,
+            confirmed: membership.base,
+            membership,
             p2p,
             mail,
         })
@@ -160,11 +164,13 @@ impl<G: NetGame, A: Address> Session<G, A> {
     /// Receives a GGRS message from a peer.
     pub(super) fn receive(&mut self, from: &A, message: &[u8]) {
         let frame = self.p2p.current_frame();
-        let Some(message) = self.gates.get_mut(from).and_then(|gate| gate.receive(message, frame)) else {
+        let Some(message) =
+            self.validators.get_mut(from).and_then(|validator| validator.receive(message, frame))
+        else {
             return;
         };
-        if let Some(presence) = self.presences.get_mut(from) {
-            presence.hear();
+        if let Some(liveness) = self.liveness.get_mut(from) {
+            liveness.receive();
         }
         lock(&self.mail).incoming.push((from.clone(), message));
     }
@@ -172,13 +178,15 @@ impl<G: NetGame, A: Address> Session<G, A> {
     /// The messages to send.
     pub(super) fn send(&mut self, now: Duration) -> Vec<(A, Vec<u8>)> {
         let outgoing = mem::take(&mut lock(&self.mail).outgoing);
-        let gates = &mut self.gates;
+        let validators = &mut self.validators;
         let bytes = |(to, message): (A, Message)| {
-            let bytes = gates.get_mut(&to)?.send(&message, now)?;
+            let bytes = validators.get_mut(&to)?.send(&message, now)?;
             Some((to, bytes))
         };
         let mut packets: Vec<_> = outgoing.into_iter().filter_map(bytes).collect();
-        let again = gates.iter_mut().filter_map(|(to, gate)| Some((to.clone(), gate.send_again(now)?)));
+        let again = validators
+            .iter_mut()
+            .filter_map(|(to, validator)| Some((to.clone(), validator.send_again(now)?)));
         packets.extend(again);
         packets
     }
@@ -191,10 +199,10 @@ impl<G: NetGame, A: Address> Session<G, A> {
         self.polled = now;
         // Peers that have not answered yet are waited for in `leaving.rs`: with high packet loss the handshake takes
         // long.
-        let others = self.roster.others.iter().filter(|(_, address)| self.synchronised.contains(address));
+        let others = self.membership.others.iter().filter(|(_, address)| self.synchronised.contains(address));
         for (seat, address) in others {
-            let presence = self.presences.get_mut(address);
-            events.extend(presence.and_then(|presence| presence.listen(*seat, passed, self.timeout)));
+            let liveness = self.liveness.get_mut(address);
+            events.extend(liveness.and_then(|liveness| liveness.listen(*seat, passed, self.timeout)));
         }
         events
     }
@@ -202,7 +210,7 @@ impl<G: NetGame, A: Address> Session<G, A> {
     fn events(&mut self) -> Vec<SessionEvent> {
         let mut events = Vec::new();
         for event in self.p2p.events().collect::<Vec<_>>() {
-            let of = |address: &A| self.roster.seat_of(address);
+            let of = |address: &A| self.membership.seat_of(address);
             match event {
                 GgrsEvent::Synchronized { addr } => {
                     self.synchronised.insert(addr);
@@ -212,9 +220,9 @@ impl<G: NetGame, A: Address> Session<G, A> {
                     events.extend(of(&addr).map(SessionEvent::Lost));
                 }
                 GgrsEvent::DesyncDetected { frame, remote_checksum, addr, .. } => {
-                    let tick = self.roster.base + u64::try_from(frame).unwrap_or(0);
-                    let echo = Echo { tick, hash: StateHash(remote_checksum) };
-                    events.extend(of(&addr).map(|seat| SessionEvent::Said(seat, echo)));
+                    let tick = self.membership.base + u64::try_from(frame).unwrap_or(0);
+                    let checksum = ChecksumReport { tick, hash: StateHash(remote_checksum) };
+                    events.extend(of(&addr).map(|seat| SessionEvent::Said(seat, checksum)));
                 }
                 GgrsEvent::Synchronizing { .. } => events.push(SessionEvent::Answered),
                 GgrsEvent::NetworkInterrupted { .. }
@@ -232,7 +240,8 @@ impl<G: NetGame, A: Address> Session<G, A> {
 
     /// The seats that have not answered yet, as bits.
     pub(super) fn silent(&self) -> u64 {
-        let silent = self.roster.others.iter().filter(|(_, address)| !self.synchronised.contains(address));
+        let silent =
+            self.membership.others.iter().filter(|(_, address)| !self.synchronised.contains(address));
         silent.fold(0, |mask, (seat, _)| mask | seat_bit(*seat))
     }
 
@@ -252,7 +261,7 @@ impl<G: NetGame, A: Address> Session<G, A> {
         // All rollbacks for the received inputs have been made at this point.
         if !self.lost {
             let known = u64::try_from(self.p2p.confirmed_frame() + 1).unwrap_or(0);
-            self.confirmed = self.confirmed.max((self.roster.base + known).min(driver.tick()));
+            self.confirmed = self.confirmed.max((self.membership.base + known).min(driver.tick()));
         }
         Ok(events)
     }
@@ -264,7 +273,7 @@ impl<G: NetGame, A: Address> Session<G, A> {
 
     /// Whether all peers play in this session, so that none is left in the previous one.
     pub(super) const fn is_established(&self) -> bool {
-        self.confirmed > self.roster.base
+        self.confirmed > self.membership.base
     }
 
     /// Number of ticks that this peer is ahead of the slowest other peer.

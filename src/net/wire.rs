@@ -28,7 +28,7 @@ impl<A> Address for A where
 /// hash of a recent tick instead; as all peers receive all inputs, all of them can find the diverged peer. With
 /// prediction the inputs carry no hash: it would change in each tick, and no prediction of an input would be right.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Echo {
+pub struct ChecksumReport {
     /// Number of ticks played; 0 if there is no hash.
     pub tick: u64,
     /// Hash after these ticks.
@@ -41,7 +41,7 @@ pub struct Wire<I> {
     /// The input of the game.
     pub input: I,
     /// In lockstep, the sender's hash of a recent tick.
-    pub echo: Echo,
+    pub checksum: ChecksumReport,
 }
 
 /// The types of a GGRS session that plays `G` between peers with addresses `A`.

@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 use super::bytes::Cursor;
 use super::flaw::Flaw;
 use super::format::{FORMAT_VERSION, MAGIC, PLAYERS_MAX, RULES_NAME_BYTES_MAX, checksum};
-use super::limits::{Limit, Limits};
+use super::limits::{LimitKind, Limits};
 use super::reader::ReadError;
 use crate::hash::StateHash;
 
@@ -102,7 +102,7 @@ impl<'a> Header<'a> {
         if name_length == 0 || name_length > RULES_NAME_BYTES_MAX {
             return malformed(offset::RULES_NAME_LENGTH, Flaw::RulesName);
         }
-        Limit::SetupBytes.check(setup_length, limits.setup_bytes)?;
+        LimitKind::SetupBytes.check(setup_length, limits.setup_bytes)?;
 
         let name = take(&mut cursor, name_length).ok_or_else(cut)?;
         let setup = take(&mut cursor, setup_length).ok_or_else(cut)?;
@@ -135,8 +135,8 @@ impl<'a> Header<'a> {
         if self.checkpoint_interval == 0 {
             return malformed(offset::CHECKPOINT_INTERVAL, Flaw::CheckpointInterval);
         }
-        Limit::Players.check(self.players, limits.players)?;
-        Limit::BlockTicks.check(self.checkpoint_interval, limits.block_ticks)
+        LimitKind::Players.check(self.players, limits.players)?;
+        LimitKind::BlockTicks.check(self.checkpoint_interval, limits.block_ticks)
     }
 }
 

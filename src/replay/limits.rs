@@ -55,7 +55,7 @@ impl Default for Limits {
 
 /// Names one of the [`Limits`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Limit {
+pub enum LimitKind {
     /// [`Limits::file_bytes`]
     FileBytes,
     /// [`Limits::setup_bytes`]
@@ -76,20 +76,20 @@ pub enum Limit {
     TotalWork,
 }
 
-impl Limit {
+impl LimitKind {
     /// The name of the field in [`Limits`].
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
-            Limit::FileBytes => "file_bytes",
-            Limit::SetupBytes => "setup_bytes",
-            Limit::Players => "players",
-            Limit::BlockBytes => "block_bytes",
-            Limit::BlockTicks => "block_ticks",
-            Limit::Ticks => "ticks",
-            Limit::Bodies => "bodies",
-            Limit::TickWork => "tick_work",
-            Limit::TotalWork => "total_work",
+            LimitKind::FileBytes => "file_bytes",
+            LimitKind::SetupBytes => "setup_bytes",
+            LimitKind::Players => "players",
+            LimitKind::BlockBytes => "block_bytes",
+            LimitKind::BlockTicks => "block_ticks",
+            LimitKind::Ticks => "ticks",
+            LimitKind::Bodies => "bodies",
+            LimitKind::TickWork => "tick_work",
+            LimitKind::TotalWork => "total_work",
         }
     }
 
@@ -100,18 +100,18 @@ impl Limit {
     }
 }
 
-impl fmt::Display for Limit {
+impl fmt::Display for LimitKind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Limit::FileBytes => "bytes of the file",
-            Limit::SetupBytes => "bytes of the setup",
-            Limit::Players => "players",
-            Limit::BlockBytes => "bytes of a block",
-            Limit::BlockTicks => "ticks between checkpoints",
-            Limit::Ticks => "ticks",
-            Limit::Bodies => "bodies",
-            Limit::TickWork => "work units in one tick",
-            Limit::TotalWork => "work units",
+            LimitKind::FileBytes => "bytes of the file",
+            LimitKind::SetupBytes => "bytes of the setup",
+            LimitKind::Players => "players",
+            LimitKind::BlockBytes => "bytes of a block",
+            LimitKind::BlockTicks => "ticks between checkpoints",
+            LimitKind::Ticks => "ticks",
+            LimitKind::Bodies => "bodies",
+            LimitKind::TickWork => "work units in one tick",
+            LimitKind::TotalWork => "work units",
         })
     }
 }

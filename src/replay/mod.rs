@@ -28,15 +28,15 @@ mod flaw;
 mod format;
 mod header;
 mod limits;
-mod playback;
+mod raw_replay;
 mod reader;
 mod recorder;
 mod recording;
-mod rerun;
 mod runs;
 mod tick_inputs;
 mod timeline;
 mod verdict;
+mod verified_replay;
 
 pub use flaw::Flaw;
 pub use format::{
@@ -44,12 +44,11 @@ pub use format::{
     checkpoint_hash,
 };
 pub use header::Header;
-pub use limits::{Limit, Limits};
-pub use playback::{Playback, Step, verify};
+pub use limits::{LimitKind, Limits};
+pub use raw_replay::RawReplay;
 pub use reader::{InputBlock, Part, ReadError, Reader, Trailer};
 pub use recorder::{CHECKPOINT_INTERVAL, RecordError, Recorder};
 pub use recording::Recording;
-pub use rerun::Rerun;
 pub use runs::{Run, Runs};
 pub use tick_inputs::TickInputs;
 pub use timeline::{
@@ -57,3 +56,4 @@ pub use timeline::{
     Timeline, TimelineOptions,
 };
 pub use verdict::{ClaimDifference, Mismatch, Verdict};
+pub use verified_replay::{Step, VerifiedReplay, verify};

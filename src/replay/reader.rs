@@ -13,7 +13,7 @@ use super::format::{
     BLOCK_HEAD_BYTES, CHECKSUM_BYTES, CLAIM_NAME_BYTES_MAX, CLAIMS_MAX, HASH_BYTES, checksum, kind, link,
 };
 use super::header::{Header, ReadHeader};
-use super::limits::{Limit, Limits};
+use super::limits::{LimitKind, Limits};
 use super::runs::Runs;
 use crate::hash::StateHash;
 
@@ -30,7 +30,7 @@ pub enum ReadError {
     /// The file is larger than the reader allows.
     LimitExceeded {
         /// The limit.
-        limit: Limit,
+        limit: LimitKind,
         /// Value in the file.
         value: u64,
         /// Maximum allowed value.
@@ -130,7 +130,7 @@ impl<'a> Reader<'a> {
     /// # Errors
     /// [`ReadError`] when the header is malformed or exceeds `limits`.
     pub fn open(file: &'a [u8], limits: &Limits) -> Result<Self, ReadError> {
-        Limit::FileBytes.check(file.len() as u64, limits.file_bytes)?;
+        LimitKind::FileBytes.check(file.len() as u64, limits.file_bytes)?;
         let ReadHeader { header, start, inputs_digest, chain, length } = Header::read(file, limits)?;
         Ok(Reader {
             file,
@@ -207,7 +207,7 @@ impl<'a> Reader<'a> {
         if !matches!(kind, kind::INPUTS | kind::TRAILER) {
             return Err(ReadError::Malformed { offset: start + 4, flaw: Flaw::BlockKind { kind } });
         }
-        Limit::BlockBytes.check(length, self.limits.block_bytes)?;
+        LimitKind::BlockBytes.check(length, self.limits.block_bytes)?;
         let Ok(length) = usize::try_from(length) else {
             return Ok(None);
         };
@@ -234,7 +234,7 @@ impl<'a> Reader<'a> {
         let runs = Runs::new(encoded, block.payload_offset);
         let ticks = self.count_ticks(runs.clone(), block.payload_offset)?;
         let total = self.ticks + u64::from(ticks);
-        Limit::Ticks.check(total, self.limits.ticks)?;
+        LimitKind::Ticks.check(total, self.limits.ticks)?;
 
         self.ticks = total;
         self.inputs_digest = link(self.inputs_digest, encoded);

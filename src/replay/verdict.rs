@@ -4,7 +4,7 @@ use alloc::string::String;
 use core::fmt;
 
 use super::flaw::Flaw;
-use super::limits::Limit;
+use super::limits::LimitKind;
 use super::reader::ReadError;
 use crate::hash::StateHash;
 
@@ -51,7 +51,7 @@ pub enum Verdict {
     /// The file is larger, or costs more computing, than the verifier allows.
     LimitExceeded {
         /// The limit.
-        limit: Limit,
+        limit: LimitKind,
         /// Value in the file, or a lower bound of it.
         value: u64,
         /// Maximum allowed value.

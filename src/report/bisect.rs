@@ -4,9 +4,9 @@ use alloc::format;
 
 use super::compare::{CompareError, compare_worlds, survey};
 use super::comparison::Comparison;
-use super::duel;
 use super::evidence::Evidence;
-use super::rerun::{self, Effort};
+use super::replay_comparison;
+use super::replayed::{self, Effort};
 use crate::lockstep::Game;
 use crate::replay::Limits;
 
@@ -33,9 +33,9 @@ pub fn bisect<G: Game>(
     }
     let (known, mut found) = survey::<G>(a, b, limits)?;
     if found.setup.is_empty() && found.input.is_none() {
-        rerun::run::<G>(&known, limits, Effort::Bounded, &mut found)?;
+        replayed::run::<G>(&known, limits, Effort::Bounded, &mut found)?;
     } else {
-        duel::run::<G>(&known, limits, &mut found)?;
+        replay_comparison::run::<G>(&known, limits, &mut found)?;
     }
     if let (Some(last), Some(first)) = (found.last_equal, found.first_different)
         && last + 1 < first

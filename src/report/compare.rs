@@ -3,11 +3,11 @@
 use alloc::vec::Vec;
 use core::fmt;
 
-use super::comparison::{Comparison, Course, InputDifference, Side};
+use super::candidate;
+use super::comparison::{Comparison, InputDifference, Side, Trajectory};
 use super::desync::DesyncReport;
-use super::evidence::{Evidence, Known};
-use super::rerun::{self, Effort};
-use super::suspect;
+use super::evidence::{Evidence, SideEvidence};
+use super::replayed::{self, Effort};
 use crate::codec;
 use crate::inspect::{Difference, InspectError, differences, fields};
 use crate::lockstep::{Game, decode_inputs};
@@ -72,13 +72,13 @@ pub fn compare<G: Game>(a: &Evidence, b: &Evidence, limits: &Limits) -> Result<C
         found.first_different = Some(0);
         return Ok(found);
     }
-    rerun::run::<G>(&known, limits, Effort::Thorough, &mut found)?;
+    replayed::run::<G>(&known, limits, Effort::Thorough, &mut found)?;
     Ok(found)
 }
 
 pub(super) fn compare_worlds(a: &World, b: &World) -> Result<Comparison, CompareError> {
     let found = differences(&fields(&a.save())?, &fields(&b.save())?);
-    Ok(Comparison { things: suspect::things(found), ..Comparison::new() })
+    Ok(Comparison { subjects: candidate::subjects(found), ..Comparison::new() })
 }
 
 /// Collects the data of both sides (of the running engine, if there is no B) and the differences that need no
@@ -87,13 +87,13 @@ pub(super) fn survey<'a, G: Game>(
     a: &'a Evidence,
     b: Option<&'a Evidence>,
     limits: &Limits,
-) -> Result<([Known<'a>; 2], Comparison), CompareError> {
+) -> Result<([SideEvidence<'a>; 2], Comparison), CompareError> {
     let known_a = known::<G>(a, Side::A, limits)?;
     let known_b = b.map_or_else(|| Ok(known_a.of_rerun()), |b| known::<G>(b, Side::B, limits))?;
     let known = [known_a, known_b];
     let mut found = Comparison::new();
-    found.courses =
-        [0, 1].map(|side: usize| Course { seats: known[side].seats.to_vec(), ..Course::default() });
+    found.trajectories =
+        [0, 1].map(|side: usize| Trajectory { seats: known[side].seats.to_vec(), ..Trajectory::default() });
     let report = [Some(a), b].into_iter().flatten().find_map(|evidence| match evidence {
         Evidence::Report(report) if !report.hashes().iter().all(Option::is_none) => Some(report),
         _ => None,
@@ -114,14 +114,14 @@ fn known<'a, G: Game>(
     evidence: &'a Evidence,
     side: Side,
     limits: &Limits,
-) -> Result<Known<'a>, CompareError> {
+) -> Result<SideEvidence<'a>, CompareError> {
     let known = match evidence {
         Evidence::World(_) => return Err(CompareError::Kinds),
         Evidence::Report(report) => {
             check_rules::<G>(report).map_err(|why| CompareError::Unverifiable { side, why })?;
-            Known::of_report(report, limits)
+            SideEvidence::of_report(report, limits)
         }
-        Evidence::Replay(bytes) => Known::of_replay(bytes, limits),
+        Evidence::Replay(bytes) => SideEvidence::of_replay(bytes, limits),
     };
     known.map_err(|error| unreadable(side, error))
 }
@@ -144,7 +144,7 @@ fn check_rules<G: Game>(report: &DesyncReport) -> Result<(), Mismatch> {
 
 /// The differences between the setups of two replays.
 fn setup_differences<G: Game>(
-    known: &[Known<'_>; 2],
+    known: &[SideEvidence<'_>; 2],
     limits: &Limits,
 ) -> Result<Vec<Difference>, CompareError> {
     let mut setups = Vec::new();
@@ -169,7 +169,7 @@ fn setup_differences<G: Game>(
 
 /// The first tick and seat whose inputs differ between two replays.
 fn input_difference<G: Game>(
-    known: &[Known<'_>; 2],
+    known: &[SideEvidence<'_>; 2],
     limits: &Limits,
 ) -> Result<Option<InputDifference>, CompareError> {
     let open = |side: Side| {

@@ -55,13 +55,13 @@ pub enum Blame {
 
 /// Comparison of one side with the rerun of the inputs.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Course {
+pub struct Trajectory {
     /// The seats that this side plays, according to its report.
     pub seats: Vec<u32>,
     /// The last tick before this side diverges, or of all, at which its state is known to equal the rerun.
     pub equal_until: Option<u64>,
     /// The first tick at which its state is known to differ from the rerun.
-    pub departs: Option<u64>,
+    pub diverges: Option<u64>,
 }
 
 /// The first input that differs between two replays.
@@ -78,7 +78,7 @@ pub struct InputDifference {
 /// A subject of comparison that exists on one side only or differs between two states: a body, a contact, an entry of
 /// any map, or a section without entries.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Thing {
+pub struct Subject {
     /// Path of the subject, such as `world.bodies.body 12v1`.
     pub path: String,
     /// Section that contains the subject, such as `world.bodies`.
@@ -113,21 +113,21 @@ pub struct Comparison {
     /// The first input that differs. [`compare`](super::compare) compares states up to its tick.
     pub input: Option<InputDifference>,
     /// Comparisons of A and B with the rerun.
-    pub courses: [Course; 2],
+    pub trajectories: [Trajectory; 2],
     /// Number of ticks simulated in the rerun.
     pub rerun: Option<u64>,
     /// The side that diverged.
     pub blame: Blame,
-    /// The tick at which `things` were compared: the first different tick at which both states are available.
+    /// The tick at which `subjects` were compared: the first different tick at which both states are available.
     pub tick: Option<u64>,
     /// The subjects that differ. The origin of the differences is first, if it is known, then the bodies whose motion
     /// differs most.
-    pub things: Vec<Thing>,
+    pub subjects: Vec<Subject>,
     /// The stage of the tick that led to `first_different` at which the states diverged.
     pub stage: Option<Stage>,
     /// If the states diverged before the step of the world: the differences at the start of the step. B is the diverged
     /// side, A the rerun.
-    pub began: Vec<Thing>,
+    pub began: Vec<Subject>,
     /// A single bit flip that explains all differences.
     pub explanation: Option<Explanation>,
     /// The checkpoint for which a report was written.
@@ -145,11 +145,11 @@ impl Comparison {
             first_different: None,
             setup: Vec::new(),
             input: None,
-            courses: Default::default(),
+            trajectories: Default::default(),
             rerun: None,
             blame: Blame::Unknown,
             tick: None,
-            things: Vec::new(),
+            subjects: Vec::new(),
             stage: None,
             began: Vec::new(),
             explanation: None,
@@ -165,17 +165,17 @@ impl Comparison {
         self.setup.is_empty()
             && self.input.is_none()
             && self.first_different.is_none()
-            && self.things.is_empty()
-            && self.courses.iter().all(|course| course.departs.is_none())
+            && self.subjects.is_empty()
+            && self.trajectories.iter().all(|trajectory| trajectory.diverges.is_none())
     }
 
     /// The sections that contain differences, in order.
     #[must_use]
     pub fn sections(&self) -> Vec<&str> {
         let mut sections: Vec<&str> = Vec::new();
-        for thing in &self.things {
-            if !sections.contains(&thing.section.as_str()) {
-                sections.push(&thing.section);
+        for subject in &self.subjects {
+            if !sections.contains(&subject.section.as_str()) {
+                sections.push(&subject.section);
             }
         }
         sections

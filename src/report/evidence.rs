@@ -84,7 +84,7 @@ impl Said {
 
 /// The data of one side about the trajectory of a game.
 #[derive(Default)]
-pub(super) struct Known<'a> {
+pub(super) struct SideEvidence<'a> {
     pub(super) seats: &'a [u32],
     /// State hashes by tick.
     pub(super) states: BTreeMap<u64, StateHash>,
@@ -101,9 +101,9 @@ pub(super) struct Known<'a> {
     pub(super) ticks: u64,
 }
 
-impl<'a> Known<'a> {
+impl<'a> SideEvidence<'a> {
     pub(super) fn of_report(report: &'a DesyncReport, limits: &Limits) -> Result<Self, ReadError> {
-        let mut known = Known::of_replay(report.replay(), limits)?;
+        let mut known = SideEvidence::of_replay(report.replay(), limits)?;
         known.seats = report.seats();
         known.states.extend(report.history().iter().copied());
         known.saves = report.saves().iter().map(|(tick, save)| (*tick, save.as_slice())).collect();
@@ -113,11 +113,11 @@ impl<'a> Known<'a> {
 
     /// The side of the running engine, which plays the inputs of another side.
     pub(super) fn of_rerun(&self) -> Self {
-        Known { replay: self.replay, ticks: self.ticks, is_rerun: true, ..Known::default() }
+        SideEvidence { replay: self.replay, ticks: self.ticks, is_rerun: true, ..SideEvidence::default() }
     }
 
     pub(super) fn of_replay(replay: &'a [u8], limits: &Limits) -> Result<Self, ReadError> {
-        let mut known = Known { replay, ..Known::default() };
+        let mut known = SideEvidence { replay, ..SideEvidence::default() };
         if replay.is_empty() {
             return Ok(known);
         }

@@ -12,22 +12,22 @@
 
 mod bisect;
 mod bytes;
+mod candidate;
 mod compare;
 mod comparison;
 mod desync;
-mod duel;
 mod evidence;
 mod origin;
 mod phases;
-mod rerun;
+mod replay_comparison;
+mod replayed;
 mod stage;
-mod suspect;
 mod trace;
 
 pub use bisect::bisect;
 pub use bytes::{REPORT_FORMAT_VERSION, REPORT_MAGIC, ReportError, ReportFlaw};
 pub use compare::{CompareError, compare};
-pub use comparison::{Blame, Comparison, Course, Explanation, InputDifference, Side, Thing};
+pub use comparison::{Blame, Comparison, Explanation, InputDifference, Side, Subject, Trajectory};
 pub use desync::{Desync, DesyncReport, Group, SAVES_BYTES_MAX};
 pub use evidence::{Evidence, EvidenceError};
 pub use phases::{PHASE_DIGESTS_MAX, TickPhases};

@@ -3,10 +3,10 @@
 
 use alloc::string::String;
 
+use super::candidate::{self, WrongTick};
 use super::comparison::{Comparison, Explanation};
 use super::phases::TickPhases;
 use super::stage::Stage;
-use super::suspect::{self, WrongTick};
 use crate::inspect::{Difference, InspectError, differences, fields};
 use crate::lockstep::Game;
 
@@ -30,7 +30,7 @@ pub(super) fn find<G: Game>(
     };
     let differences = differences(&fields(&ours.save())?, &fields(&theirs.save())?);
     found.explanation = flipped_bit(wrong, &differences)?;
-    found.began = suspect::things(differences);
+    found.began = candidate::subjects(differences);
     Ok(())
 }
 
@@ -47,7 +47,7 @@ fn flipped_bit<G: Game>(
     let (Some(only), None) = (stored.next(), stored.next()) else {
         return Ok(None);
     };
-    let Some(bit) = suspect::flipped_bit(only) else {
+    let Some(bit) = candidate::flipped_bit(only) else {
         return Ok(None);
     };
     // The path of the world within the game's save is not known here, so the end of the path is compared.

@@ -41,7 +41,7 @@ impl TickPhases {
             return TickPhases::default();
         };
         let before = world.to_bytes();
-        world.note_phases();
+        world.log_phases();
         game.step(inputs);
         let Some(world) = game.world_mut() else {
             return TickPhases::default();
@@ -49,7 +49,7 @@ impl TickPhases {
         let digests = world.phase_digests().iter().take(PHASE_DIGESTS_MAX).map(|noted| noted.digest);
         let digests = digests.collect();
         let start = world.step_start().map(bytes_of).unwrap_or_default();
-        world.ignore_phases();
+        world.stop_logging_phases();
         TickPhases { digests, start: patches(&before, &start), start_length: start.len() as u64 }
     }
 

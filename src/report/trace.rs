@@ -7,7 +7,7 @@ use core::fmt;
 use super::desync::{Desync, DesyncReport};
 use super::phases::TickPhases;
 use crate::lockstep::{Game, History};
-use crate::replay::{CHECKPOINT_INTERVAL, Limits, RecordError, Recorder, Rerun, Step, Verdict};
+use crate::replay::{CHECKPOINT_INTERVAL, Limits, RawReplay, RecordError, Recorder, Step, Verdict};
 
 /// A game that is recorded with the state hash, the save and the phase digests of its last ticks. The result is a
 /// [`DesyncReport`] that names no desync; [`bisect`](super::bisect) compares it with the running engine.
@@ -96,7 +96,7 @@ impl<G: Game> Trace<G> {
         until: u64,
         ticks: u32,
     ) -> Result<DesyncReport, TraceError> {
-        let mut rerun = Rerun::<G>::open(file, limits)?;
+        let mut rerun = RawReplay::<G>::open(file, limits)?;
         let (mut recorder, _) = Recorder::<G>::start(&rerun.setup()?, CHECKPOINT_INTERVAL)?;
         let mut memory = Memory::new(ticks);
         let from = until.min(rerun.ticks()).saturating_sub(ticks.into());

@@ -8,7 +8,7 @@ use crate::fx;
 use crate::lockstep::SandboxSetup;
 use crate::math::{Fx, Vec2};
 use crate::solver::JointDef;
-use crate::world::{Command, Config, Outcome, Place, World};
+use crate::world::{BodyPose, Command, Config, Outcome, World};
 
 /// A setup under construction.
 ///
@@ -77,7 +77,7 @@ impl Builder {
         shapes: &[ShapeDef],
         positions: impl IntoIterator<Item = Vec2<Fx>>,
     ) -> Result<Vec<BodyId>, WorldError> {
-        let places = positions.into_iter().map(|position| Place { position, angle: body.angle }).collect();
+        let places = positions.into_iter().map(|position| BodyPose { position, angle: body.angle }).collect();
         match self.command(Command::SpawnEach { body, shapes: shapes.to_vec(), places })? {
             Outcome::Bodies(ids) => Ok(ids),
             other => unreachable!("expected spawned bodies, got {other:?}"),

@@ -10,7 +10,7 @@ use crate::body::{BodyDef, BodyId, WorldError};
 use crate::fx;
 use crate::lockstep::Sandbox;
 use crate::math::{Angle, Fx, Vec2};
-use crate::world::{Command, Config, Place};
+use crate::world::{BodyPose, Command, Config};
 
 /// Number of columns that exist at a time.
 const COLUMNS: u64 = 40;
@@ -65,7 +65,7 @@ fn announce(column: u32) -> Result<Vec<Command>, WorldError> {
         let x = fx!(-121.875) + fx!(6.25).saturating_mul_int(column.into()) + Fx::from_num(i) / 2;
         let group = i32::try_from(ragdoll + 1).expect("a few hundred");
         for (index, bone) in BONES.iter().enumerate() {
-            let place = |floor: u32| Place {
+            let place = |floor: u32| BodyPose {
                 position: bone.position(Vec2::new(x, Fx::from_num(40 + 45 * floor))),
                 angle: Angle::ZERO,
             };

@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 
 use super::{ALL, Scene};
 use crate::body::{BodyDef, Geometry, Handle, Polygon, ShapeDef};
-use crate::collision::{AxisHint, PosedShape, SatCounters, collide, collide_near};
+use crate::collision::{CachedAxis, PosedShape, SatCounters, collide, collide_near};
 use crate::fx;
 use crate::lockstep::{Game, Sandbox};
 use crate::math::{Length, narrow};
@@ -97,13 +97,13 @@ impl Near {
     fn with_reject_and_axis(
         &self,
         margin: Length,
-        hints: &mut [AxisHint],
+        cached_axes: &mut [CachedAxis],
         counters: &mut SatCounters,
     ) -> usize {
         let count = self.shapes.len();
         let points = self.pairs.iter().map(|&(a, b)| {
-            let hint = &mut hints[a * count + b];
-            collide(&self.shapes[a], &self.shapes[b], margin, hint, counters).points().len()
+            let cached_axis = &mut cached_axes[a * count + b];
+            collide(&self.shapes[a], &self.shapes[b], margin, cached_axis, counters).points().len()
         });
         points.sum()
     }
@@ -112,8 +112,10 @@ impl Near {
     #[inline(never)]
     fn without(&self, margin: Length) -> usize {
         let points = self.pairs.iter().map(|&(a, b)| {
-            let (mut hint, mut counters) = (AxisHint::default(), SatCounters::default());
-            collide_near(&self.shapes[a], &self.shapes[b], margin, &mut hint, &mut counters).points().len()
+            let (mut cached_axis, mut counters) = (CachedAxis::default(), SatCounters::default());
+            collide_near(&self.shapes[a], &self.shapes[b], margin, &mut cached_axis, &mut counters)
+                .points()
+                .len()
         });
         points.sum()
     }
@@ -131,10 +133,10 @@ fn reject_and_axis_spare_a_hundred_polygons_most_searches() {
             Near::of(game.world())
         })
         .collect();
-    let mut hints = alloc::vec![AxisHint::default(); ticks[0].shapes.len().pow(2)];
+    let mut cached_axes = alloc::vec![CachedAxis::default(); ticks[0].shapes.len().pow(2)];
     let mut counters = SatCounters::default();
     let fast: usize =
-        ticks.iter().map(|near| near.with_reject_and_axis(margin, &mut hints, &mut counters)).sum();
+        ticks.iter().map(|near| near.with_reject_and_axis(margin, &mut cached_axes, &mut counters)).sum();
     let plain: usize = ticks.iter().map(|near| near.without(margin)).sum();
     assert_eq!(fast, plain, "the box reject and the cached axis do not change the result");
     let pairs: usize = ticks.iter().map(|near| near.pairs.len()).sum();

@@ -14,7 +14,7 @@ use core::fmt::Debug;
 use super::body::SolverBody;
 use super::context::StepContext;
 use super::limits::Faults;
-use crate::lanes::{Kernel, Lanes, Scalar, Shared, WIDTH, prefetch};
+use crate::simd::{Kernel, Lanes, Scalar, Shared, WIDTH, prefetch};
 
 /// Fewest batches of a job: a smaller one costs more to hand to a thread than to do.
 const BATCHES_PER_JOB: usize = 16;

@@ -4,8 +4,8 @@ use core::cell::Cell;
 
 use super::limits::{Faults, SPEED_MAX};
 use crate::body::Body;
-pub(crate) use crate::lanes::SolverBody;
 use crate::math::{Reciprocal, Shift, Speed, Vec2, round_shift_wide, saturate_wide};
+pub(crate) use crate::simd::SolverBody;
 
 impl SolverBody {
     pub(crate) fn of(body: &Body) -> Self {

@@ -7,8 +7,8 @@ use super::row::RATIO_MAX;
 #[cfg(test)]
 use crate::body::{Arena, BodyId};
 use crate::body::{Body, Pose};
-pub(super) use crate::lanes::GROUND;
 use crate::math::{Angle, Fx, Length, Ratio, Reciprocal, Vec2, round_shift, saturate};
+pub(super) use crate::simd::GROUND;
 
 /// Bodies in the order of their slots, after the ground.
 #[derive(Clone, Debug, Default)]

@@ -5,7 +5,7 @@ use core::cell::Cell;
 use super::body::SolverBody;
 use super::limits::Faults;
 use super::settings::Tuning;
-use crate::lanes::Machine;
+use crate::simd::Machine;
 use crate::threads::Threads;
 
 /// Whether a pass removes position errors or only velocity errors.

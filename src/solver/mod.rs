@@ -7,44 +7,44 @@
 //!
 //! A row removes velocity along one direction (`row`), a point block pins two points together (`point_block`). Contacts
 //! and hinges are solved in batches of eight (`batches`), by code that is written once for any number of lanes
-//! (`lanes`); the rows and points of all other joints are solved one by one.
+//! (`simd`); the rows and points of all other joints are solved one by one.
 
 mod batches;
 mod body;
 mod body_list;
 mod colour;
 mod contact;
+mod contact_velocity;
 mod context;
 mod integrate;
 mod joint;
 mod limits;
 mod pair;
 mod point_block;
-mod push;
 mod row;
 mod settings;
 mod softness;
 
 use alloc::vec::Vec;
 
-pub use crate::lanes::Backend;
-pub(crate) use crate::lanes::Machine;
+pub use crate::simd::Backend;
+pub(crate) use crate::simd::Machine;
 pub(crate) use body::{SolverBody, turn_of};
 use body_list::BodyList;
 use colour::Colouring;
 pub use colour::SolverColour;
-use contact::{ApplyRestitution, Constants, ContactSet, ContactSource, Measure, ObserveApproach, Sweep};
+use contact::{ApplyRestitution, Constants, ContactSet, ContactSource, Measure, ObserveApproach, PointOrder};
 pub(crate) use contact::{Surface, SurfaceSide, WarmStarts};
+use contact_velocity::{ContactVelocities, PushedBody};
 use context::{Pass, StepContext};
-use integrate::{Mover, integrate_displacements, integrate_velocities};
+use integrate::{MovingBody, integrate_displacements, integrate_velocities};
 pub use joint::{
-    Distance, Drive, Joint, JointDef, JointFrame, JointKind, Limit, LinearDrive, Motor, Prismatic, Pull,
+    Distance, Drive, Joint, JointDef, JointFrame, JointKind, JointLimit, LinearDrive, Motor, Prismatic, Pull,
     Revolute, Soft, Spring, Threshold, ThresholdAction, Weld, Wheel,
 };
 use joint::{JointSet, JointSource};
 use limits::Faults;
 pub(crate) use limits::IMPULSE_MAX;
-use push::{PushedBody, Pushes};
 pub(crate) use settings::Tuning;
 pub use settings::{ContactTuning, DISTANCE_MAX, SolverSettings};
 
@@ -65,12 +65,12 @@ const COLD_POINTS: u32 = 256;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Solver {
     list: BodyList,
-    movers: Vec<Mover>,
+    moving: Vec<MovingBody>,
     joints: JointSet,
     /// A single joint, while its reaction is computed.
     reaction: JointSet,
     contacts: ContactSet,
-    pushes: Pushes,
+    contact_velocities: ContactVelocities,
     /// For each contact in the state, whether its shapes have pushed each other in this tick.
     pub(crate) pushed: Vec<bool>,
     colouring: Colouring,
@@ -82,7 +82,7 @@ pub(crate) struct Solver {
 
 /// A contact that the solver has to deal with.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct TouchingPair {
+pub(crate) struct ActiveContact {
     /// The index of the contact in the state.
     pub(crate) contact: u32,
     /// The index of its manifold among those of the tick.
@@ -104,12 +104,12 @@ impl Solver {
         self.faults = 0;
         self.warm_starts = WarmStarts::default();
         self.list.begin(bodies.slot_count());
-        self.movers.clear();
+        self.moving.clear();
         // Bodies are large: each is read once.
         for &slot in slots {
             let body = bodies.at(slot);
             self.list.add(slot, body);
-            self.movers.extend(Mover::prepare(self.list.index_of(slot), body, tuning));
+            self.moving.extend(MovingBody::prepare(self.list.index_of(slot), body, tuning));
         }
     }
 
@@ -144,16 +144,16 @@ impl Solver {
     /// Makes a constraint of every touching pair, in the order in which they are solved.
     pub(crate) fn prepare_contacts(
         &mut self,
-        pairs: &[TouchingPair],
+        pairs: &[ActiveContact],
         manifolds: &[Manifold],
         contacts: &[Contact],
     ) {
-        let Solver { list, movers, joints, colouring, contacts: set, machine, warm_starts, .. } = self;
+        let Solver { list, moving, joints, colouring, contacts: set, machine, warm_starts, .. } = self;
         *warm_starts = set.prepare(&ContactSource { pairs, manifolds, contacts, list }, colouring, *machine);
-        let touched = movers.iter().filter(|mover| colouring.holds(mover.index()));
-        self.pushes.begin(touched.map(|mover| PushedBody {
-            index: mover.index(),
-            shared: mover.is_special() || joints.holds(mover.index()),
+        let touched = moving.iter().filter(|moving| colouring.holds(moving.index()));
+        self.contact_velocities.begin(touched.map(|moving| PushedBody {
+            index: moving.index(),
+            shared: moving.has_extras() || joints.holds(moving.index()),
         }));
     }
 
@@ -166,40 +166,41 @@ impl Solver {
     pub(crate) fn sub_step(&mut self, index: u64, tuning: &Tuning) {
         let iterations = tuning.iterations * if self.is_cold() { COLD_ROUNDS } else { 1 };
         let constants = Constants::new(tuning);
-        let Solver { list, movers, joints, contacts, pushes, machine, threads, faults, .. } = self;
+        let Solver { list, moving, joints, contacts, contact_velocities, machine, threads, faults, .. } =
+            self;
         let context = &StepContext::new(*machine, threads, tuning, &mut list.bodies, faults);
 
         // Integrate velocities.
-        joints.aim(context);
-        pushes.measure(context);
-        integrate_velocities(movers, context);
+        joints.predict_rotations(context);
+        contact_velocities.measure(context);
+        integrate_velocities(moving, context);
 
         // Warm start.
         contacts.run_overflow(ObserveApproach, context);
         contacts.run_coloured(ObserveApproach, context);
         joints.warm_start(context);
-        if !pushes.apply(context) {
+        if !contact_velocities.apply(context) {
             contacts.run_overflow(contact::WarmStart, context);
             contacts.run_coloured(contact::WarmStart, context);
         }
 
         // Solve with bias.
         for iteration in 0..iterations {
-            let solve = contact::Solve { sweep: Sweep::of(index, iteration), constants };
+            let solve = contact::Solve { order: PointOrder::of(index, iteration), constants };
             contacts.run_overflow(solve, context);
-            pushes.exempt(context, || joints.solve(Pass::Bias, context));
+            contact_velocities.exempt(context, || joints.solve(Pass::Bias, context));
             contacts.run_coloured(solve, context);
         }
 
         // Integrate displacements.
-        pushes.exempt(context, || integrate_displacements(movers, context));
+        contact_velocities.exempt(context, || integrate_displacements(moving, context));
         joints.refresh(context);
 
         // Relax: solve without bias.
         for iteration in 0..if tuning.relax { iterations } else { 0 } {
-            let relax = contact::Relax { sweep: Sweep::of(index, iteration), constants };
+            let relax = contact::Relax { order: PointOrder::of(index, iteration), constants };
             contacts.run_overflow(relax, context);
-            pushes.exempt(context, || joints.solve(Pass::Relax, context));
+            contact_velocities.exempt(context, || joints.solve(Pass::Relax, context));
             contacts.run_coloured(relax, context);
         }
         if !tuning.relax {

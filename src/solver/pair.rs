@@ -4,9 +4,9 @@ use core::cell::Cell;
 
 use super::body::SolverBody;
 use super::limits::{Faults, SPEED_MAX};
-pub(super) use crate::lanes::shift;
-use crate::lanes::{Lanes, Motion};
 use crate::math::{Ratio, Unit};
+pub(super) use crate::simd::shift;
+use crate::simd::{Lanes, VelocityW};
 
 pub(super) const UNIT: i32 = shift(Unit::FRAC_NBITS);
 pub(super) const RATIO: i32 = shift(Ratio::FRAC_NBITS);
@@ -15,21 +15,21 @@ pub(super) const RATIO: i32 = shift(Ratio::FRAC_NBITS);
 pub(super) const HALF: i32 = 1 << 30;
 
 /// The velocities of two bodies in each lane. Each kind of constraint defines how impulses change them.
-pub(super) struct Pair<L: Lanes<N>, const N: usize> {
-    pub(super) a: Motion<L::Int>,
-    pub(super) b: Motion<L::Int>,
+pub(super) struct BodyPairW<L: Lanes<N>, const N: usize> {
+    pub(super) a: VelocityW<L::Int>,
+    pub(super) b: VelocityW<L::Int>,
 }
 
-impl<L: Lanes<N>, const N: usize> Pair<L, N> {
+impl<L: Lanes<N>, const N: usize> BodyPairW<L, N> {
     #[inline(always)]
     pub(super) fn load(bodies: &[Cell<SolverBody>], [a, b]: &[[u32; N]; 2]) -> Self {
-        Pair { a: L::velocities(bodies, a), b: L::velocities(bodies, b) }
+        BodyPairW { a: L::velocities(bodies, a), b: L::velocities(bodies, b) }
     }
 
     /// Loads the displacements of two bodies in each lane instead of their velocities.
     #[inline(always)]
     pub(super) fn load_shifts(bodies: &[Cell<SolverBody>], [a, b]: &[[u32; N]; 2]) -> Self {
-        Pair { a: L::shifts(bodies, a), b: L::shifts(bodies, b) }
+        BodyPairW { a: L::shifts(bodies, a), b: L::shifts(bodies, b) }
     }
 
     #[inline(always)]
@@ -74,11 +74,11 @@ pub(super) fn clamp<L: Lanes<N>, const N: usize>(value: L::Int, limit: L::Int) -
 }
 
 #[inline(always)]
-fn most<L: Lanes<N>, const N: usize>(v: Motion<L::Int>) -> L::Int {
+fn most<L: Lanes<N>, const N: usize>(v: VelocityW<L::Int>) -> L::Int {
     L::max(L::max(v.x, v.y), v.turn)
 }
 
 #[inline(always)]
-fn least<L: Lanes<N>, const N: usize>(v: Motion<L::Int>) -> L::Int {
+fn least<L: Lanes<N>, const N: usize>(v: VelocityW<L::Int>) -> L::Int {
     L::min(L::min(v.x, v.y), v.turn)
 }

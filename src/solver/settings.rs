@@ -124,7 +124,7 @@ pub(crate) struct Tuning {
     /// Softness of joints, and of the anchors of hinges that hold a body without any other joint to one that is not
     /// dynamic.
     pub(crate) joint: Softness,
-    pub(crate) mount: Softness,
+    pub(crate) anchored: Softness,
     pub(crate) relax: bool,
     pub(crate) restitution_threshold: Speed,
     pub(crate) speed_max: Speed,
@@ -161,7 +161,7 @@ impl Tuning {
             slop: narrow(slop),
             push_speed: narrow(push_speed),
             joint: joint(joint_hertz),
-            mount: joint(joint_hertz * 2),
+            anchored: joint(joint_hertz * 2),
             relax,
             restitution_threshold: narrow(settings.restitution_threshold),
             speed_max: narrow(settings.speed_limit(tick_rate)),

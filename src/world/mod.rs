@@ -28,10 +28,10 @@ mod timestep;
 mod view;
 
 pub use config::Config;
-pub use edit::{Command, Explosion, Motion, Outcome, Place};
+pub use edit::{BodyField, BodyPose, Command, Explosion, Outcome};
 pub use events::{ContactEvent, Events, HitEvent, JointEvent, MoveEvent, SensorEvent};
 pub use query::{
-    CastHit, Moved, Mover, MoverPlane, MoverState, Probe, Proximity, QueryFilter, RayHit, clip_velocity,
+    CastHit, ClosestPoints, Moved, Mover, MoverPlane, MoverState, Probe, QueryFilter, RayHit, clip_velocity,
     solve_planes,
 };
 pub use snapshot::{PhaseDigest, Section, Snapshot, SnapshotError, Violation, WorldDigest};

@@ -51,7 +51,7 @@ pub(crate) struct State {
     /// Contacts with an active body, sorted by pair.
     pub(crate) contacts: Vec<Contact>,
     /// Contacts without an active body, sorted by pair. A tick does not process them.
-    pub(crate) resting: Resting,
+    pub(crate) sleeping_contacts: Resting,
     /// Whether there were more pairs than [`Config::pair_limit`] at the last pair update.
     pub(crate) pairs_left_out: bool,
     /// Contacts that ended since the last tick because a shape was removed or changed, for the events of the next tick.
@@ -70,7 +70,7 @@ impl State {
             joints: Arena::default(),
             islands: Arena::default(),
             contacts: Vec::new(),
-            resting: Resting::default(),
+            sleeping_contacts: Resting::default(),
             pairs_left_out: false,
             removed_contacts: Vec::new(),
             rng: Rng::new(0),

@@ -1,7 +1,7 @@
 //! Games with a physics world: data that is not part of its state must not affect results.
 
 use lockstep2d::body::{BodyDef, BodyId, Geometry, Polygon, ShapeDef};
-use lockstep2d::check::{Depths, Fault, Options, Phases, Way, check, check_replay};
+use lockstep2d::check::{CheckOptions, Depths, Fault, Phases, Variant, check, check_replay};
 use lockstep2d::fx;
 use lockstep2d::hash::StateHash;
 use lockstep2d::lockstep::{Game, RulesId, SetupError};
@@ -92,19 +92,27 @@ fn inputs() -> Vec<Vec<bool>> {
 
 #[test]
 fn a_good_game_with_a_world_passes() {
-    let options = Options { depths: Depths::Each, phases: Phases::Compared, ..Options::default() };
+    let options = CheckOptions { depths: Depths::Each, phases: Phases::Compared, ..CheckOptions::default() };
     let checked = check::<Pit<NOTHING>>(&(), &inputs(), &options).unwrap();
-    assert!(checked.ways.iter().any(|way| matches!(way, Way::BroadPhase(_))));
-    assert_eq!(checked.ways.iter().any(|way| matches!(way, Way::Threads(_))), cfg!(feature = "parallel"));
-    assert_eq!(checked.ways.len(), options.ways.len(), "expected all variants to be checked");
+    assert!(checked.variants.iter().any(|variant| matches!(variant, Variant::BroadPhase(_))));
+    assert_eq!(
+        checked.variants.iter().any(|variant| matches!(variant, Variant::Threads(_))),
+        cfg!(feature = "parallel")
+    );
+    assert_eq!(checked.variants.len(), options.variants.len(), "expected all variants to be checked");
 }
 
 #[test]
 fn who_reads_what_is_no_state_is_found() {
-    for way in [Way::Reloaded, Way::RolledBack, Way::ClearedScratch] {
-        let error = check::<Pit<CONTACTS>>(&(), &inputs(), &Options::default().only(&[way])).unwrap_err();
+    for variant in [Variant::Reloaded, Variant::RolledBack, Variant::ClearedScratch] {
+        let error =
+            check::<Pit<CONTACTS>>(&(), &inputs(), &CheckOptions::default().only(&[variant])).unwrap_err();
         let failure = error.failure().unwrap();
-        assert_eq!((failure.minimised.way, &failure.minimised.fault), (way, &Fault::Hash), "{failure}");
+        assert_eq!(
+            (failure.minimised.variant, &failure.minimised.fault),
+            (variant, &Fault::Hash),
+            "{failure}"
+        );
         assert_eq!(failure.minimised.differences[0].field().path(), "[1]", "{failure}");
     }
 }
@@ -113,22 +121,22 @@ fn who_reads_what_is_no_state_is_found() {
 /// lost wind matters.
 #[test]
 fn the_body_and_the_field_are_named() {
-    let options = Options::default().only(&[Way::Again, Way::Reloaded]);
+    let options = CheckOptions::default().only(&[Variant::Again, Variant::Reloaded]);
     let error = check::<Pit<WIND>>(&(), &inputs(), &options).unwrap_err();
     let failure = error.failure().unwrap();
-    assert_eq!((failure.finding.way, failure.finding.tick), (Way::Reloaded, 32), "{failure}");
+    assert_eq!((failure.finding.variant, failure.finding.tick), (Variant::Reloaded, 32), "{failure}");
     let paths = failure.finding.differences.iter().map(|difference| difference.field().path());
     assert!({ paths }.any(|path| path == "[0].bodies.body 1v0.velocity.x"), "{failure:?}");
     assert_eq!((failure.ticks, failure.minimised.tick), (2, 2));
-    assert!(check_replay::<Pit<WIND>>(&failure.replay, &Options::default()).is_err());
+    assert!(check_replay::<Pit<WIND>>(&failure.replay, &CheckOptions::default()).is_err());
 }
 
 /// A game that is rolled back to before the kick keeps the wind.
 #[test]
 fn a_rollback_shows_before_it_has_happened() {
-    let error = check::<Pit<WIND>>(&(), &inputs(), &Options::default()).unwrap_err();
+    let error = check::<Pit<WIND>>(&(), &inputs(), &CheckOptions::default()).unwrap_err();
     let failure = error.failure().unwrap();
-    assert_eq!((failure.finding.way, failure.finding.played), (Way::RolledBack, 31), "{failure}");
+    assert_eq!((failure.finding.variant, failure.finding.played), (Variant::RolledBack, 31), "{failure}");
     assert!(failure.finding.tick < 31, "{failure}");
     assert_eq!((failure.ticks, failure.failed), (1, (4, 4)), "{failure}");
 }
@@ -136,7 +144,8 @@ fn a_rollback_shows_before_it_has_happened() {
 /// The wind is lost before the step begins, so no phase of the step differs first.
 #[test]
 fn phases_are_compared() {
-    let options = Options { phases: Phases::Compared, ..Options::default() }.only(&[Way::Reloaded]);
+    let options =
+        CheckOptions { phases: Phases::Compared, ..CheckOptions::default() }.only(&[Variant::Reloaded]);
     let error = check::<Pit<WIND>>(&(), &inputs(), &options).unwrap_err();
     let finding = &error.failure().unwrap().finding;
     assert_eq!((finding.tick, finding.phase), (32, None), "{finding}");

@@ -1,6 +1,6 @@
 //! The sandbox passes the check.
 
-use lockstep2d::check::{Options, Phases, Way, check, random_inputs};
+use lockstep2d::check::{CheckOptions, Phases, Variant, check, random_inputs};
 use lockstep2d::lockstep::{Game, Sandbox, SandboxSetup};
 use lockstep2d::math::Rng;
 use lockstep2d::scenes;
@@ -23,11 +23,11 @@ fn every_scene_passes() {
             game.step(std::slice::from_ref(&commands));
             inputs.push(vec![commands]);
         }
-        let options = Options { phases: Phases::Compared, ..Options::default() };
+        let options = CheckOptions { phases: Phases::Compared, ..CheckOptions::default() };
         let checked = check::<Sandbox>(&setup, &inputs, &options);
         let checked = checked.unwrap_or_else(|error| panic!("{}: {error}", scene.name));
         assert_eq!(checked.hash, game.state_hash(), "{}", scene.name);
-        assert!(checked.ways.contains(&Way::ClearedScratch));
+        assert!(checked.variants.contains(&Variant::ClearedScratch));
         passed += 1;
     }
     assert!(passed > 12, "expected more than 12 small scenes, found {passed}");
@@ -38,6 +38,6 @@ fn random_commands_pass() {
     let mut rng = Rng::new(5);
     for _ in 0..10 {
         let inputs = random_inputs::<Sandbox>(1, 60, &mut rng);
-        check::<Sandbox>(&SandboxSetup::default(), &inputs, &Options::default()).unwrap();
+        check::<Sandbox>(&SandboxSetup::default(), &inputs, &CheckOptions::default()).unwrap();
     }
 }

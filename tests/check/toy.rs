@@ -176,10 +176,10 @@ impl<const MISTAKE: usize> Game for Toy<MISTAKE> {
         for player in 0..2 {
             self.state.cooldown[player] = self.state.cooldown[player].saturating_sub(1);
             let pad = pads.get(player).copied().unwrap_or_default();
-            let way = i64::from(pad & 1) - i64::from(pad >> 1 & 1);
-            self.state.places[player] = (self.state.places[player] + way).clamp(-9, 9);
+            let variant = i64::from(pad & 1) - i64::from(pad >> 1 & 1);
+            self.state.places[player] = (self.state.places[player] + variant).clamp(-9, 9);
             self.total = match Self::has(Mistake::LoadKeepsCache) {
-                true => self.total + way,
+                true => self.total + variant,
                 false => self.state.places.iter().sum(),
             };
             if pad & 4 != 0 {

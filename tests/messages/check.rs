@@ -1,6 +1,6 @@
 //! Messages about the findings of a check.
 
-use lockstep2d::check::{CheckError, Failure, Fault, Finding, Guess, Way};
+use lockstep2d::check::{CheckError, Failure, Fault, Finding, Guess, Variant};
 use lockstep2d::collision::BroadPhaseKind;
 use lockstep2d::inspect::{Difference, differences, fields};
 use lockstep2d::replay::{Flaw, RecordError, Verdict};
@@ -8,8 +8,8 @@ use lockstep2d::world::{Backend, Phase};
 
 use crate::says;
 
-fn finding(way: Way, fault: Fault) -> Finding {
-    Finding { way, fault, tick: 9, played: 9, phase: None, rollback: None, differences: Vec::new() }
+fn finding(variant: Variant, fault: Fault) -> Finding {
+    Finding { variant, fault, tick: 9, played: 9, phase: None, rollback: None, differences: Vec::new() }
 }
 
 /// Returns `count` differing fields.
@@ -19,19 +19,19 @@ fn differing(count: usize) -> Vec<Difference> {
 }
 
 #[test]
-fn ways() {
+fn variants() {
     says([
-        (Way::Again, "played again"),
-        (Way::Asked, "with hash, work, claims and save polled twice"),
-        (Way::Unasked, "with the hash polled only at the end"),
-        (Way::Reloaded, "reloaded from bytes into a new game"),
-        (Way::RolledBack, "rolled back"),
-        (Way::ClearedScratch, "with cleared scratch"),
-        (Way::Backend(Backend::Scalar), "with the backend Scalar"),
-        (Way::BroadPhase(BroadPhaseKind::BruteForce), "with the broad phase BruteForce"),
-        (Way::Threads(3), "on 3 threads"),
-        (Way::Exchanged, "with bytes of another tick swapped into its save"),
-        (Way::Recorded, "recorded and verified"),
+        (Variant::Again, "played again"),
+        (Variant::HashPolled, "with hash, work, claims and save polled twice"),
+        (Variant::HashUnpolled, "with the hash polled only at the end"),
+        (Variant::Reloaded, "reloaded from bytes into a new game"),
+        (Variant::RolledBack, "rolled back"),
+        (Variant::ClearedScratch, "with cleared scratch"),
+        (Variant::Backend(Backend::Scalar), "with the backend Scalar"),
+        (Variant::BroadPhase(BroadPhaseKind::BruteForce), "with the broad phase BruteForce"),
+        (Variant::Threads(3), "on 3 threads"),
+        (Variant::ByteSwapped, "with bytes of another tick swapped into its save"),
+        (Variant::Recorded, "recorded and verified"),
     ]);
 }
 
@@ -61,7 +61,7 @@ fn faults() {
 
 #[test]
 fn a_finding_says_where() {
-    let mut found = finding(Way::RolledBack, Fault::Hash);
+    let mut found = finding(Variant::RolledBack, Fault::Hash);
     (found.rollback, found.phase) = (Some((1, Guess::Held)), Some(Phase::Solve));
     found.differences = differing(2);
     let text = found.to_string();
@@ -77,7 +77,7 @@ fn a_finding_says_where() {
 
 #[test]
 fn a_finding_is_not_endless() {
-    let mut found = finding(Way::Again, Fault::Hash);
+    let mut found = finding(Variant::Again, Fault::Hash);
     let same = "\n    the saves are equal: the difference is in state that is not saved\nusually a HashMap";
     assert!(found.to_string().contains(same), "{found}");
     found.differences = differing(1000);
@@ -89,31 +89,32 @@ fn a_finding_is_not_endless() {
 /// Each fault has its own hint.
 #[test]
 fn what_it_usually_is() {
-    let too_much = Verdict::LimitExceeded { limit: lockstep2d::replay::Limit::TickWork, value: 2, max: 1 };
+    let too_much =
+        Verdict::LimitExceeded { limit: lockstep2d::replay::LimitKind::TickWork, value: 2, max: 1 };
     let all = [
-        (Way::Again, Fault::Hash, "a HashMap or HashSet that is iterated"),
-        (Way::Asked, Fault::Answers { of: "save" }, "state that changes when it is read"),
-        (Way::Unasked, Fault::Hash, "state that changes when it is read"),
-        (Way::Exchanged, Fault::Unhashed, "a field that `state_hash` leaves out"),
-        (Way::Reloaded, Fault::Encoding, "a HashMap or HashSet in the save"),
+        (Variant::Again, Fault::Hash, "a HashMap or HashSet that is iterated"),
+        (Variant::HashPolled, Fault::Answers { of: "save" }, "state that changes when it is read"),
+        (Variant::HashUnpolled, Fault::Hash, "state that changes when it is read"),
+        (Variant::ByteSwapped, Fault::Unhashed, "a field that `state_hash` leaves out"),
+        (Variant::Reloaded, Fault::Encoding, "a HashMap or HashSet in the save"),
         (
-            Way::Reloaded,
+            Variant::Reloaded,
             Fault::Unreadable { why: String::new() },
             "a Serialize and a Deserialize that do not match",
         ),
-        (Way::Reloaded, Fault::Hash, "a field that is missing from `Save`"),
-        (Way::RolledBack, Fault::Hash, "a cache or a field that `load` does not restore"),
-        (Way::Recorded, Fault::Verdict(too_much), "`work` returns more than the limits allow"),
+        (Variant::Reloaded, Fault::Hash, "a field that is missing from `Save`"),
+        (Variant::RolledBack, Fault::Hash, "a cache or a field that `load` does not restore"),
+        (Variant::Recorded, Fault::Verdict(too_much), "`work` returns more than the limits allow"),
     ];
-    for (way, fault, expected) in all {
-        let hint = finding(way, fault.clone()).hint();
-        assert!(hint.starts_with(expected), "{way}, {fault}: {hint}");
+    for (variant, fault, expected) in all {
+        let hint = finding(variant, fault.clone()).hint();
+        assert!(hint.starts_with(expected), "{variant}, {fault}: {hint}");
     }
 }
 
 #[test]
 fn failures() {
-    let found = finding(Way::Again, Fault::Hash);
+    let found = finding(Variant::Again, Fault::Hash);
     let mut failure = Failure {
         finding: found.clone(),
         minimised: found.clone(),

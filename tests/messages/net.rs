@@ -5,7 +5,7 @@ use std::thread::sleep;
 use std::time::Duration;
 
 use ggrs::GgrsError;
-use lockstep2d::net::{DriverError, Mode, NetError, TermsDifference, TermsMismatch, Transport, Udp};
+use lockstep2d::net::{DriverError, HandshakeDifference, HandshakeMismatch, Mode, NetError, Transport, Udp};
 use lockstep2d::replay::RecordError;
 
 use crate::says;
@@ -21,8 +21,11 @@ fn drivers() {
 
 #[test]
 fn peers() {
-    let different =
-        |what, ours: &str, theirs: &str| TermsDifference { what, ours: ours.into(), theirs: theirs.into() };
+    let different = |what, ours: &str, theirs: &str| HandshakeDifference {
+        what,
+        ours: ours.into(),
+        theirs: theirs.into(),
+    };
     let differences = vec![different("semantics", "3", "2"), different("players", "4", "2")];
     let too_far = GgrsError::SpectatorTooFarBehind.to_string();
     assert_eq!(NetError::from(GgrsError::SpectatorTooFarBehind).to_string(), too_far);
@@ -30,7 +33,7 @@ fn peers() {
         (NetError::from(RecordError::TickRate), "a tick rate of zero"),
         (NetError::from(DriverError::NoState { tick: 12 }), "the state after 12 ticks is not kept"),
         (
-            NetError::Terms(TermsMismatch { differences }),
+            NetError::HandshakeParameters(HandshakeMismatch { differences }),
             "the peers have different handshake parameters: semantics 3 here and 2 there, players 4 here and 2 there",
         ),
         (NetError::Full, "all seats are taken"),

@@ -4,8 +4,8 @@ use lockstep2d::codec::DecodeError;
 use lockstep2d::hash::StateHash;
 use lockstep2d::lockstep::InputError;
 use lockstep2d::replay::{
-    ClaimDifference, Flaw, KeyframesError, KeyframesFlaw, Limit, Mismatch, ReadError, RecordError, SeekError,
-    Verdict,
+    ClaimDifference, Flaw, KeyframesError, KeyframesFlaw, LimitKind, Mismatch, ReadError, RecordError,
+    SeekError, Verdict,
 };
 
 use crate::says;
@@ -70,7 +70,7 @@ fn reading() {
             "at byte 40: the block ends in the middle of a field",
         ),
         (
-            ReadError::LimitExceeded { limit: Limit::Players, value: 9, max: 8 },
+            ReadError::LimitExceeded { limit: LimitKind::Players, value: 9, max: 8 },
             "9 players, at most 8 are allowed",
         ),
         (ReadError::OtherFormat { version: 7 }, "version 7 of the file format"),
@@ -81,15 +81,18 @@ fn reading() {
 fn limits() {
     let exceeded = |limit| Verdict::LimitExceeded { limit, value: 7, max: 6 };
     says([
-        (exceeded(Limit::FileBytes), "limit exceeded: 7 bytes of the file, at most 6 are allowed"),
-        (exceeded(Limit::SetupBytes), "limit exceeded: 7 bytes of the setup, at most 6 are allowed"),
-        (exceeded(Limit::Players), "limit exceeded: 7 players, at most 6 are allowed"),
-        (exceeded(Limit::BlockBytes), "limit exceeded: 7 bytes of a block, at most 6 are allowed"),
-        (exceeded(Limit::BlockTicks), "limit exceeded: 7 ticks between checkpoints, at most 6 are allowed"),
-        (exceeded(Limit::Ticks), "limit exceeded: 7 ticks, at most 6 are allowed"),
-        (exceeded(Limit::Bodies), "limit exceeded: 7 bodies, at most 6 are allowed"),
-        (exceeded(Limit::TickWork), "limit exceeded: 7 work units in one tick, at most 6 are allowed"),
-        (exceeded(Limit::TotalWork), "limit exceeded: 7 work units, at most 6 are allowed"),
+        (exceeded(LimitKind::FileBytes), "limit exceeded: 7 bytes of the file, at most 6 are allowed"),
+        (exceeded(LimitKind::SetupBytes), "limit exceeded: 7 bytes of the setup, at most 6 are allowed"),
+        (exceeded(LimitKind::Players), "limit exceeded: 7 players, at most 6 are allowed"),
+        (exceeded(LimitKind::BlockBytes), "limit exceeded: 7 bytes of a block, at most 6 are allowed"),
+        (
+            exceeded(LimitKind::BlockTicks),
+            "limit exceeded: 7 ticks between checkpoints, at most 6 are allowed",
+        ),
+        (exceeded(LimitKind::Ticks), "limit exceeded: 7 ticks, at most 6 are allowed"),
+        (exceeded(LimitKind::Bodies), "limit exceeded: 7 bodies, at most 6 are allowed"),
+        (exceeded(LimitKind::TickWork), "limit exceeded: 7 work units in one tick, at most 6 are allowed"),
+        (exceeded(LimitKind::TotalWork), "limit exceeded: 7 work units, at most 6 are allowed"),
     ]);
 }
 

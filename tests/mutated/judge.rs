@@ -19,14 +19,14 @@ const SMALL: usize = 6000;
 const LARGE_ONE_IN: u32 = 50;
 /// Decoded content of a replay, with its verdict.
 #[derive(PartialEq, Eq)]
-struct Course {
+struct Trajectory {
     setup: Vec<u8>,
     inputs: Vec<Vec<u8>>,
     verdict: Verdict,
 }
 
-impl Course {
-    fn of(file: &[u8], verdict: Verdict) -> Course {
+impl Trajectory {
+    fn of(file: &[u8], verdict: Verdict) -> Trajectory {
         let limits = Limits::default();
         let setup = Reader::open(file, &limits).unwrap().header().setup.to_vec();
         let mut ticks = TickInputs::open(file, &limits).unwrap();
@@ -34,7 +34,7 @@ impl Course {
         while let Some(run) = ticks.next_tick().unwrap() {
             inputs.push(run.encoded.to_vec());
         }
-        Course { setup, inputs, verdict }
+        Trajectory { setup, inputs, verdict }
     }
 }
 
@@ -120,14 +120,14 @@ pub(crate) fn mutated(rng: &mut Rng, originals: &[Vec<u8>]) -> Vec<u8> {
 pub(crate) fn check_replays<G: Game>(originals: &[Vec<u8>], few: u64) {
     let limits = Limits::default();
     let verdicts = originals.iter().map(|file| (file, verify::<G>(file, &limits)));
-    let courses: Vec<_> = verdicts.map(|(file, verdict)| Course::of(file, verdict)).collect();
+    let courses: Vec<_> = verdicts.map(|(file, verdict)| Trajectory::of(file, verdict)).collect();
     let (mut rng, mut figures) = (Rng::new(1), Figures::default());
     for number in 0..files_wanted(few) {
         let file = mutated(&mut rng, originals);
         let name = |verdict: &Verdict| verdict.name().to_string();
         let verdict = figures.count(&file, || verify::<G>(&file, &limits), name);
         if verdict.is_match() {
-            let course = Course::of(&file, verdict);
+            let course = Trajectory::of(&file, verdict);
             assert!(courses.contains(&course), "file {number} is accepted, but differs from every original");
         }
     }

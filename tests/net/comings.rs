@@ -1,6 +1,6 @@
 //! Late joins, rejoins, spectators, and joins that are refused.
 
-use lockstep2d::net::{Event, NetError, Options, Peer, Weather};
+use lockstep2d::net::{Event, LinkConditions, NetError, NetOptions, Peer};
 use lockstep2d::replay::Verdict;
 
 use super::matches::{MODES, STORM, verdict};
@@ -15,8 +15,8 @@ fn joins(table: &Table, at: usize, seat: u32) -> Option<u64> {
     })
 }
 
-fn check_late(options: fn() -> Options, weather: Weather, seed: u64) {
-    let mut table = Table::of(3, options(), weather, seed);
+fn check_late(options: fn() -> NetOptions, conditions: LinkConditions, seed: u64) {
+    let mut table = Table::of(3, options(), conditions, seed);
     assert!(table.play(40, |table| table.all_confirmed(200)), "{}", table.describe());
     table.sit(table.guest(9, options()));
     assert!(
@@ -47,20 +47,20 @@ fn check_late(options: fn() -> Options, weather: Weather, seed: u64) {
 
 #[test]
 fn a_peer_joins_late_and_has_the_same_states() {
-    let weathers = [(Weather::default(), 11), (STORM, 12)];
+    let weathers = [(LinkConditions::default(), 11), (STORM, 12)];
     let cases =
-        MODES.into_iter().flat_map(|options| weathers.map(|(weather, seed)| (options, weather, seed)));
-    sweep::at_once(cases, |(options, weather, seed)| check_late(options, weather, seed));
+        MODES.into_iter().flat_map(|options| weathers.map(|(conditions, seed)| (options, conditions, seed)));
+    sweep::at_once(cases, |(options, conditions, seed)| check_late(options, conditions, seed));
 }
 
 #[test]
 fn a_peer_comes_back_to_its_seat() {
-    let mut table = Table::of(3, Options::rollback(), Weather::default(), 13);
+    let mut table = Table::of(3, NetOptions::rollback(), LinkConditions::default(), 13);
     assert!(table.play(40, |table| table.all_confirmed(60)));
     table.kill(1).finish(0).unwrap();
     assert!(table.play(20, |table| table.peers[0].as_ref().unwrap().seats() == [0, 2]));
     let again =
-        Peer::join(&Setup::default(), Options::rollback(), table.network.port(1), 0, Some(1)).unwrap();
+        Peer::join(&Setup::default(), NetOptions::rollback(), table.network.port(1), 0, Some(1)).unwrap();
     table.peers[1] = Some(again);
     let back = table.play(20, |table| table.peers[0].as_ref().unwrap().seats() == [0, 1, 2]);
     assert!(back, "{}", table.describe());
@@ -71,13 +71,13 @@ fn a_peer_comes_back_to_its_seat() {
 
 #[test]
 fn a_new_host_admits_players() {
-    let mut table = Table::of(3, Options::rollback(), Weather::default(), 14);
+    let mut table = Table::of(3, NetOptions::rollback(), LinkConditions::default(), 14);
     assert!(table.play(40, |table| table.all_confirmed(60)));
     table.kill(0).finish(0).unwrap();
     assert!(table.play(20, |table| table.peers[2].as_ref().unwrap().seats() == [1, 2]));
     // The contact is not the host, so it redirects the joining peer to the host.
     let port = table.network.port(7);
-    let late = Peer::join(&Setup::default(), Options::rollback(), port, 2, None).unwrap();
+    let late = Peer::join(&Setup::default(), NetOptions::rollback(), port, 2, None).unwrap();
     table.sit(late);
     let seated = table.play(20, |table| table.peers[1].as_ref().unwrap().seats() == [0, 1, 2]);
     assert!(seated, "{}", table.describe());
@@ -104,34 +104,40 @@ fn a_spectator_sees_the_same() {
 
 #[test]
 fn who_plays_something_else_is_told_what() {
-    let cases: [(Setup, Options, &str); 4] = [
-        (Setup { seed: 2, ..Setup::default() }, Options::lockstep(), "setup"),
-        (Setup { tick_rate: 30, ..Setup::default() }, Options::lockstep(), "tick rate 30 here and 60 there"),
-        (Setup { players: 2, ..Setup::default() }, Options::lockstep(), "seats 2 here and 4 there"),
-        (Setup::default(), Options::rollback(), "mode rollback by up to 8 ticks here and lockstep there"),
+    let cases: [(Setup, NetOptions, &str); 4] = [
+        (Setup { seed: 2, ..Setup::default() }, NetOptions::lockstep(), "setup"),
+        (
+            Setup { tick_rate: 30, ..Setup::default() },
+            NetOptions::lockstep(),
+            "tick rate 30 here and 60 there",
+        ),
+        (Setup { players: 2, ..Setup::default() }, NetOptions::lockstep(), "seats 2 here and 4 there"),
+        (Setup::default(), NetOptions::rollback(), "mode rollback by up to 8 ticks here and lockstep there"),
     ];
     for (setup, options, what) in cases {
-        let mut table = Table::of(1, Options::lockstep(), Weather::default(), 16);
+        let mut table = Table::of(1, NetOptions::lockstep(), LinkConditions::default(), 16);
         let port = table.network.port(1);
         table.sit(Peer::join(&setup, options, port, 0, None).unwrap());
         assert!(table.play(5, |table| table.errors[1].is_some()), "{}", table.describe());
-        let Some(NetError::Terms(mismatch)) = &table.errors[1] else { panic!("{}", table.describe()) };
+        let Some(NetError::HandshakeParameters(mismatch)) = &table.errors[1] else {
+            panic!("{}", table.describe())
+        };
         assert!(mismatch.to_string().contains(what), "{mismatch}");
     }
 }
 
 #[test]
 fn there_are_only_so_many_seats() {
-    let mut table = Table::of(4, Options::rollback(), Weather::default(), 17);
+    let mut table = Table::of(4, NetOptions::rollback(), LinkConditions::default(), 17);
     assert!(table.play(20, |table| table.all_confirmed(10)));
-    table.sit(table.guest(5, Options::rollback()));
+    table.sit(table.guest(5, NetOptions::rollback()));
     assert!(table.play(5, |table| table.errors[4] == Some(NetError::Full)), "{}", table.describe());
 }
 
 #[test]
 fn nobody_waits_for_ever() {
-    let table = Table::new(Weather::default(), 18);
+    let table = Table::new(LinkConditions::default(), 18);
     let mut table = table;
-    table.sit(table.guest(1, Options::rollback()));
+    table.sit(table.guest(1, NetOptions::rollback()));
     assert!(table.play(20, |table| table.errors[0] == Some(NetError::NoAnswer)), "{}", table.describe());
 }

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use lockstep2d::math::Rng;
-use lockstep2d::net::{Event, NetError, Options, Peer, Weather};
+use lockstep2d::net::{Event, LinkConditions, NetError, NetOptions, Peer};
 use lockstep2d::replay::Verdict;
 
 use super::matches::{MODES, verdict};
@@ -22,10 +22,10 @@ fn pass(table: &mut Table, milliseconds: u64) {
 
 #[test]
 fn two_who_want_the_last_seat() {
-    let mut table = Table::of(3, Options::rollback(), Weather::default(), 21);
+    let mut table = Table::of(3, NetOptions::rollback(), LinkConditions::default(), 21);
     assert!(table.play(40, |table| table.all_confirmed(60)));
-    table.sit(table.guest(8, Options::rollback()));
-    table.sit(table.guest(9, Options::rollback()));
+    table.sit(table.guest(8, NetOptions::rollback()));
+    table.sit(table.guest(9, NetOptions::rollback()));
     let full = |table: &mut Table| table.errors[3..].contains(&Some(NetError::Full));
     assert!(table.play(10, full), "{}", table.describe());
     let seated = |table: &mut Table| of(table, 0).seats() == [0, 1, 2, 3];
@@ -34,10 +34,10 @@ fn two_who_want_the_last_seat() {
 
 #[test]
 fn a_peer_that_dies_comes_back_at_once_from_the_same_address() {
-    let mut table = Table::of(3, Options::rollback(), Weather::default(), 22);
+    let mut table = Table::of(3, NetOptions::rollback(), LinkConditions::default(), 22);
     assert!(table.play(40, |table| table.all_confirmed(60)));
     drop(table.kill(1));
-    table.peers[1] = Some(table.guest(1, Options::rollback()));
+    table.peers[1] = Some(table.guest(1, NetOptions::rollback()));
     table.events[1].clear();
     let back = table.play(20, |table| of(table, 1).seat().is_some());
     assert!(back, "{}", table.describe());
@@ -48,7 +48,7 @@ fn a_peer_that_dies_comes_back_at_once_from_the_same_address() {
 #[test]
 fn a_peer_that_dies_while_the_others_agree_on_another_splits_nobody() {
     sweep::at_once(MODES, |options| {
-        let mut table = Table::of(4, options(), Weather::default(), 23);
+        let mut table = Table::of(4, options(), LinkConditions::default(), 23);
         assert!(table.play(40, |table| table.all_confirmed(60)));
         table.kill(3);
         pass(&mut table, 1500);
@@ -67,9 +67,9 @@ fn a_peer_that_dies_while_the_others_agree_on_another_splits_nobody() {
 
 #[test]
 fn more_players_are_not_waited_for_than_there_are_seats() {
-    let mut table = Table::new(Weather::default(), 24);
+    let mut table = Table::new(LinkConditions::default(), 24);
     let setup = Setup { players: 2, ..Setup::default() };
-    let options = Options::rollback().start_with(9);
+    let options = NetOptions::rollback().start_with(9);
     table.sit(Peer::host(&setup, options, table.network.port(0)).unwrap());
     table.sit(Peer::join(&setup, options, table.network.port(1), 0, None).unwrap());
     assert!(table.play(10, |table| table.all_confirmed(60)), "{}", table.describe());
@@ -77,10 +77,10 @@ fn more_players_are_not_waited_for_than_there_are_seats() {
 
 #[test]
 fn a_spectator_that_was_silent_is_told() {
-    let mut table = Table::of(2, Options::rollback(), Weather::default(), 25);
+    let mut table = Table::of(2, NetOptions::rollback(), LinkConditions::default(), 25);
     assert!(table.play(40, |table| table.all_confirmed(60)));
     let port = table.network.port(8);
-    table.sit(Peer::watch(&Setup::default(), Options::rollback(), port, 1).unwrap());
+    table.sit(Peer::watch(&Setup::default(), NetOptions::rollback(), port, 1).unwrap());
     assert!(table.play(20, |table| of(table, 2).tick() > 60));
     let sleeper = table.kill(2);
     pass(&mut table, 5000);
@@ -91,8 +91,8 @@ fn a_spectator_that_was_silent_is_told() {
 
 #[test]
 fn a_lost_packet_does_not_hold_up_lockstep_for_long() {
-    let loss = Weather { latency: Duration::from_millis(20), loss: 20, ..Weather::default() };
-    let mut table = Table::of(4, Options::lockstep(), loss, 26);
+    let loss = LinkConditions { latency: Duration::from_millis(20), loss: 20, ..LinkConditions::default() };
+    let mut table = Table::of(4, NetOptions::lockstep(), loss, 26);
     assert!(table.play(20, |table| table.all_confirmed(10)), "{}", table.describe());
     let start = of(&table, 0).confirmed();
     pass(&mut table, 5000);
@@ -105,14 +105,14 @@ fn a_lost_packet_does_not_hold_up_lockstep_for_long() {
 fn anything(seed: u64) {
     let mut rng = Rng::new(seed);
     let options = MODES[usize::from(seed.is_multiple_of(2))]();
-    let bad = Weather {
+    let bad = LinkConditions {
         latency: Duration::from_millis(100),
         jitter: Duration::from_millis(30),
         loss: 20,
         doubled: 10,
     };
-    let weather = if seed % 4 < 2 { Weather::default() } else { bad };
-    let mut table = Table::of(4, options, weather, seed);
+    let conditions = if seed % 4 < 2 { LinkConditions::default() } else { bad };
+    let mut table = Table::of(4, options, conditions, seed);
     assert!(table.play(40, |table| table.all_confirmed(30)), "{seed}: {}", table.describe());
     let mut log = Vec::new();
     for _ in 0..8 {

@@ -2,10 +2,10 @@
 //! field.
 
 use lockstep2d::math::Rng;
-use lockstep2d::net::{Divergence, Event, Mode, Options, Peer, Weather};
+use lockstep2d::net::{Divergence, Event, LinkConditions, Mode, NetOptions, Peer};
 use lockstep2d::replay::Limits;
 use lockstep2d::report::{Blame, DesyncReport, Evidence, Side, compare};
-use lockstep2d::world::Motion;
+use lockstep2d::world::BodyField;
 
 use super::matches::MODES;
 use super::pushers::{FAULT, Fault, Pushers, Setup};
@@ -19,19 +19,21 @@ fn found(table: &Table, at: usize) -> Option<Divergence> {
     })
 }
 
-fn check(options: Options, seed: u64) {
+fn check(options: NetOptions, seed: u64) {
     let mut rng = Rng::new(seed);
     let fault = Fault {
         tick: 40 + u64::from(rng.below(40)),
         disc: usize::try_from(rng.below(12)).unwrap(),
-        motion: Motion::ALL[usize::try_from(rng.below(3)).unwrap()],
+        motion: BodyField::ALL[usize::try_from(rng.below(3)).unwrap()],
         bit: rng.below(24),
     };
     let players = 2 + rng.below(2);
     let faulty = rng.below(players);
     let options = options.start_with(players);
-    let mut table =
-        Table::new(Weather { latency: std::time::Duration::from_millis(20), ..Weather::default() }, seed);
+    let mut table = Table::new(
+        LinkConditions { latency: std::time::Duration::from_millis(20), ..LinkConditions::default() },
+        seed,
+    );
     for address in 0..players {
         FAULT.set((address == faulty).then_some(fault));
         let port = table.network.port(address);
@@ -72,11 +74,11 @@ fn check(options: Options, seed: u64) {
     assert_eq!(told.blame, Blame::Side(Side::A), "{what}");
     assert_eq!(told.first_different, Some(fault.tick), "{what}");
     let seat = table.peers[faulty as usize].as_ref().unwrap().seat().unwrap();
-    assert_eq!(told.courses[0].seats, [seat], "{what}");
-    assert_eq!(told.things.len(), 1, "{what}");
-    let differences = &told.things[0].differences;
+    assert_eq!(told.trajectories[0].seats, [seat], "{what}");
+    assert_eq!(told.subjects.len(), 1, "{what}");
+    let differences = &told.subjects[0].differences;
     // A fault in the spin shows up as two fields: its raw bits, and the angular velocity derived from them.
-    let derived = usize::from(fault.motion == Motion::Spin);
+    let derived = usize::from(fault.motion == BodyField::Spin);
     assert_eq!(
         (differences.len(), differences[0].field().name()),
         (1 + derived, fault.motion.name()),

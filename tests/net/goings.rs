@@ -1,6 +1,6 @@
 //! Peers that vanish, leave, or are disconnected.
 
-use lockstep2d::net::{Event, NetError, Weather};
+use lockstep2d::net::{Event, LinkConditions, NetError};
 use lockstep2d::replay::{Limits, Part, Reader, Verdict};
 
 use super::matches::{MODES, STORM, verdict};
@@ -16,9 +16,9 @@ fn left_at(events: &[Event], gone: u32) -> Option<u64> {
     })
 }
 
-fn check_goings(weather: Weather, gone: usize, seed: u64) {
+fn check_goings(conditions: LinkConditions, gone: usize, seed: u64) {
     sweep::at_once(MODES, |options| {
-        let mut table = Table::of(4, options(), weather, seed);
+        let mut table = Table::of(4, options(), conditions, seed);
         assert!(table.play(40, |table| table.all_confirmed(60)), "{}", table.describe());
         // The peer vanishes; its last messages have not reached all other peers.
         table.kill(gone);
@@ -55,18 +55,18 @@ fn inputs_of(replay: &[u8], seat: usize) -> Vec<u8> {
 
 #[test]
 fn the_others_go_on_without_a_peer_that_vanishes_and_say_the_same_tick() {
-    let cases = [(Weather::default(), 3, 3), (STORM, 2, 4)];
-    sweep::at_once(cases, |(weather, gone, seed)| check_goings(weather, gone, seed));
+    let cases = [(LinkConditions::default(), 3, 3), (STORM, 2, 4)];
+    sweep::at_once(cases, |(conditions, gone, seed)| check_goings(conditions, gone, seed));
 }
 
 #[test]
 fn nobody_needs_the_host() {
-    check_goings(Weather::default(), 0, 5);
+    check_goings(LinkConditions::default(), 0, 5);
 }
 
 #[test]
 fn a_peer_that_leaves_is_not_waited_for() {
-    let mut table = Table::of(3, MODES[1](), Weather::default(), 6);
+    let mut table = Table::of(3, MODES[1](), LinkConditions::default(), 6);
     assert!(table.play(40, |table| table.all_confirmed(60)));
     table.kill(1).finish(60).unwrap();
     // The departure message is faster than the timeout.
@@ -77,7 +77,7 @@ fn a_peer_that_leaves_is_not_waited_for() {
 
 #[test]
 fn a_peer_that_was_silent_for_too_long_is_told() {
-    let mut table = Table::of(3, MODES[0](), Weather::default(), 7);
+    let mut table = Table::of(3, MODES[0](), LinkConditions::default(), 7);
     assert!(table.play(40, |table| table.all_confirmed(60)));
     let sleeper = table.kill(1);
     assert!(table.play(20, |table| left_at(&table.events[0], 1).is_some()));

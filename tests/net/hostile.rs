@@ -5,7 +5,7 @@ use std::time::Duration;
 use lockstep2d::codec;
 use lockstep2d::hash::StateHash;
 use lockstep2d::lockstep::Game;
-use lockstep2d::net::{DriverError, NetError, Network, Options, Peer, Port, Transport, Weather};
+use lockstep2d::net::{DriverError, LinkConditions, NetError, NetOptions, Network, Peer, Port, Transport};
 use serde::{Serialize, de::DeserializeOwned};
 
 use super::pushers::{Pushers, Setup};
@@ -39,10 +39,10 @@ fn receive<T: DeserializeOwned>(port: &mut Port, is: impl Fn(&T) -> bool) -> T {
 fn nobody_begins_at_the_end_of_time() {
     // Regression: adding to a tick near the limit overflowed.
     for tick in [u64::MAX, u64::MAX - 3, 1 << 63] {
-        let network = Network::new(Weather::default(), 1);
+        let network = Network::new(LinkConditions::default(), 1);
         let setup = Setup::default();
         let mut peer =
-            Peer::<Pushers, _, _>::join(&setup, Options::rollback(), network.port(1), 0, None).unwrap();
+            Peer::<Pushers, _, _>::join(&setup, NetOptions::rollback(), network.port(1), 0, None).unwrap();
         peer.update(Duration::ZERO).unwrap();
         let (_, nonce) = receive::<(u32, u64)>(&mut network.port(0), |_| true);
         let game = Pushers::new(&setup).unwrap();
@@ -59,7 +59,7 @@ fn nobody_begins_at_the_end_of_time() {
 #[test]
 fn what_is_in_the_replay_is_not_taken_back() {
     // Regression: the states were rolled back, but the replay was not.
-    let mut table = Table::of(2, Options::rollback(), Weather::default(), 1);
+    let mut table = Table::of(2, NetOptions::rollback(), LinkConditions::default(), 1);
     assert!(table.play(40, |table| table.all_confirmed(100)), "{}", table.describe());
     drop(table.kill(1));
     table.play(1, |_| true);

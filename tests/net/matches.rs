@@ -2,24 +2,28 @@
 
 use std::time::Duration;
 
-use lockstep2d::net::{Event, Options, Weather};
+use lockstep2d::net::{Event, LinkConditions, NetOptions};
 use lockstep2d::replay::{Limits, Verdict, verify};
 
 use super::pushers::Pushers;
 use super::sweep;
 use super::table::Table;
 
-pub(crate) const MODES: [fn() -> Options; 2] = [Options::lockstep, Options::rollback];
+pub(crate) const MODES: [fn() -> NetOptions; 2] = [NetOptions::lockstep, NetOptions::rollback];
 
-pub(crate) const STORM: Weather =
-    Weather { latency: Duration::from_millis(70), jitter: Duration::from_millis(60), loss: 20, doubled: 10 };
+pub(crate) const STORM: LinkConditions = LinkConditions {
+    latency: Duration::from_millis(70),
+    jitter: Duration::from_millis(60),
+    loss: 20,
+    doubled: 10,
+};
 
 pub(crate) fn verdict(replay: &[u8]) -> Verdict {
     verify::<Pushers>(replay, &Limits::default())
 }
 
-fn check_match(options: Options, weather: Weather, seed: u64, ticks: u64) {
-    let mut table = Table::of(4, options, weather, seed);
+fn check_match(options: NetOptions, conditions: LinkConditions, seed: u64, ticks: u64) {
+    let mut table = Table::of(4, options, conditions, seed);
     let done = table.play(60 + ticks / 10, |table| table.all_confirmed(ticks));
     assert!(done, "{options:?}: {}", table.describe());
     for events in &table.events {
@@ -33,13 +37,13 @@ fn check_match(options: Options, weather: Weather, seed: u64, ticks: u64) {
 
 #[test]
 fn four_peers_play_the_same_in_calm_weather() {
-    sweep::at_once(MODES, |options| check_match(options(), Weather::default(), 1, 200));
+    sweep::at_once(MODES, |options| check_match(options(), LinkConditions::default(), 1, 200));
 }
 
 /// GGRS reads the clock, so matches run in real time; many run in parallel.
 #[test]
 fn fifty_matches_in_a_storm_end_alike() {
-    let tempest = Weather { latency: Duration::from_millis(100), ..STORM };
+    let tempest = LinkConditions { latency: Duration::from_millis(100), ..STORM };
     let seeds = sweep::sample(0..50, 7);
     for seeds in seeds.chunks(25) {
         sweep::at_once(seeds, |&seed| {

@@ -3,7 +3,7 @@
 use std::thread;
 use std::time::Duration;
 
-use lockstep2d::net::{Event, Mode, Options, Peer, Weather};
+use lockstep2d::net::{Event, LinkConditions, Mode, NetOptions, Peer};
 use lockstep2d::replay::Verdict;
 
 use super::matches::{MODES, STORM, verdict};
@@ -12,8 +12,8 @@ use super::sweep;
 use super::table::Table;
 
 /// Creates a match in which each peer has its own options.
-fn open(setup: &Setup, options: &[Options], weather: Weather, seed: u64) -> Table {
-    let mut table = Table::new(weather, seed);
+fn open(setup: &Setup, options: &[NetOptions], conditions: LinkConditions, seed: u64) -> Table {
+    let mut table = Table::new(conditions, seed);
     for (address, options) in (0..).zip(options) {
         let port = table.network.port(address);
         let options = options.start_with(setup.players);
@@ -55,7 +55,7 @@ fn any_tick_rate() {
             for (seed, options) in (33..).zip(MODES) {
                 let setup = Setup { tick_rate, players: 2, ..Setup::default() };
                 scope.spawn(move || {
-                    check(open(&setup, &[options(); 2], Weather::default(), seed), ticks, |_| ())
+                    check(open(&setup, &[options(); 2], LinkConditions::default(), seed), ticks, |_| ())
                 });
             }
         }
@@ -67,17 +67,17 @@ fn any_window_and_delay() {
     thread::scope(|scope| {
         for window in [0, 1, 32, 255] {
             for delays in [[0, 0], [0, 15], [15, 1], [255, 0]] {
-                let options = move |input_delay| Options {
+                let options = move |input_delay| NetOptions {
                     mode: Mode::Rollback { window },
                     input_delay,
-                    ..Options::rollback()
+                    ..NetOptions::rollback()
                 };
                 let setup = Setup { players: 2, ..Setup::default() };
                 scope.spawn(move || check(open(&setup, &delays.map(options), STORM, 35), 150, |_| ()));
             }
         }
         for delays in [[0, 0], [0, 15]] {
-            let options = |input_delay| Options { input_delay, ..Options::lockstep() };
+            let options = |input_delay| NetOptions { input_delay, ..NetOptions::lockstep() };
             let setup = Setup { players: 2, ..Setup::default() };
             scope.spawn(move || check(open(&setup, &delays.map(options), STORM, 36), 60, |_| ()));
         }
@@ -88,7 +88,7 @@ fn any_window_and_delay() {
 fn who_looks_rarely_plays_all_the_same() {
     sweep::at_once((37..).zip(MODES), |(seed, options)| {
         let setup = Setup { players: 2, ..Setup::default() };
-        let table = open(&setup, &[options(); 2], Weather::default(), seed);
+        let table = open(&setup, &[options(); 2], LinkConditions::default(), seed);
         check(table, 100, |table| table.now += Duration::from_millis(100));
     });
 }
@@ -97,7 +97,7 @@ fn who_looks_rarely_plays_all_the_same() {
 fn a_clock_that_jumps_is_survived() {
     sweep::at_once((39..).zip(MODES), |(seed, options)| {
         let setup = Setup { players: 2, ..Setup::default() };
-        let table = open(&setup, &[options(); 2], Weather::default(), seed);
+        let table = open(&setup, &[options(); 2], LinkConditions::default(), seed);
         let mut jumped = false;
         check(table, 200, |table| {
             if !jumped && table.all_confirmed(60) {
@@ -111,7 +111,7 @@ fn a_clock_that_jumps_is_survived() {
 #[test]
 fn who_plays_alone_is_joined() {
     sweep::at_once((41..).zip(MODES), |(seed, options)| {
-        let mut table = Table::of(1, options(), Weather::default(), seed);
+        let mut table = Table::of(1, options(), LinkConditions::default(), seed);
         assert!(table.play(10, |table| table.all_confirmed(100)), "{}", table.describe());
         table.sit(table.guest(5, options()));
         let tick = 300;
@@ -123,16 +123,16 @@ fn who_plays_alone_is_joined() {
 
 #[test]
 fn two_matches_do_not_mix() {
-    let mut table = Table::of(3, Options::rollback(), Weather::default(), 43);
+    let mut table = Table::of(3, NetOptions::rollback(), LinkConditions::default(), 43);
     assert!(table.play(20, |table| table.all_confirmed(60)));
     // A second match at the same addresses, which still receives packets of the first one.
-    let late = Weather { latency: Duration::from_millis(400), ..Weather::default() };
-    table.network.set_weather(late);
+    let late = LinkConditions { latency: Duration::from_millis(400), ..LinkConditions::default() };
+    table.network.set_conditions(late);
     table.play(1, |_| false);
-    table.network.set_weather(Weather::default());
+    table.network.set_conditions(LinkConditions::default());
     table.peers.clear();
     let setup = Setup::default();
-    let options = Options::rollback().start_with(3);
+    let options = NetOptions::rollback().start_with(3);
     for address in 0..3 {
         let port = table.network.port(address);
         table.peers.push(Some(match address {

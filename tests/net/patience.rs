@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use lockstep2d::net::{Event, Options, Peer, Weather};
+use lockstep2d::net::{Event, LinkConditions, NetOptions, Peer};
 use lockstep2d::replay::Verdict;
 
 use super::matches::{MODES, verdict};
@@ -14,12 +14,12 @@ use super::table::Table;
 #[test]
 fn a_hole_in_the_network_is_no_end() {
     sweep::at_once(MODES, |options| {
-        let mut table = Table::of(3, options(), Weather::default(), 31);
+        let mut table = Table::of(3, options(), LinkConditions::default(), 31);
         assert!(table.play(40, |table| table.all_confirmed(60)), "{}", table.describe());
         for millis in [300, 1400] {
-            table.network.set_weather(Weather { loss: 100, ..Weather::default() });
+            table.network.set_conditions(LinkConditions { loss: 100, ..LinkConditions::default() });
             table.play_for(Duration::from_millis(millis));
-            table.network.set_weather(Weather::default());
+            table.network.set_conditions(LinkConditions::default());
             table.play_for(Duration::from_millis(500));
         }
         let tick = table.peers[0].as_ref().unwrap().tick() + 60;
@@ -36,9 +36,9 @@ fn a_hole_in_the_network_is_no_end() {
 #[test]
 fn who_answers_slowly_is_not_silent() {
     sweep::at_once(MODES, |options| {
-        let options = Options { timeout: Duration::from_millis(600), ..options() };
-        let weather = Weather { latency: Duration::from_millis(300), ..Weather::default() };
-        let mut table = Table::of(3, options, weather, 33);
+        let options = NetOptions { timeout: Duration::from_millis(600), ..options() };
+        let conditions = LinkConditions { latency: Duration::from_millis(300), ..LinkConditions::default() };
+        let mut table = Table::of(3, options, conditions, 33);
         assert!(table.play(40, |table| table.all_confirmed(60)), "{}", table.describe());
         let left = |event: &Event| matches!(event, Event::Left { .. });
         assert!(!table.events.iter().flatten().any(left), "{}", table.describe());
@@ -48,8 +48,8 @@ fn who_answers_slowly_is_not_silent() {
 /// A player leaves and rejoins repeatedly, always in the same seat.
 #[test]
 fn a_player_comes_and_goes_ten_times() {
-    let options = Options::rollback();
-    let mut table = Table::of(3, options, Weather::default(), 32);
+    let options = NetOptions::rollback();
+    let mut table = Table::of(3, options, LinkConditions::default(), 32);
     assert!(table.play(40, |table| table.all_confirmed(30)));
     for time in 0..10 {
         table.kill(2).finish(0).unwrap();

@@ -7,7 +7,7 @@ use lockstep2d::fx;
 use lockstep2d::hash::StateHash;
 use lockstep2d::lockstep::{Game, RulesId, SetupError};
 use lockstep2d::math::{Fx, Rng, Vec2};
-use lockstep2d::world::{Config, Motion, Snapshot, World};
+use lockstep2d::world::{BodyField, Config, Snapshot, World};
 use serde::{Deserialize, Serialize};
 
 /// Initial conditions of a game.
@@ -36,7 +36,7 @@ pub(crate) struct Pushers {
 pub(crate) struct Fault {
     pub(crate) tick: u64,
     pub(crate) disc: usize,
-    pub(crate) motion: Motion,
+    pub(crate) motion: BodyField,
     pub(crate) bit: u32,
 }
 

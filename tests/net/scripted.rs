@@ -83,7 +83,7 @@ impl<'a> Script<'a> {
         self.played.truncate(frame as usize);
         self.played.push(inputs.clone());
         // A peer sends its own hash; all peers have the same hash here.
-        let wire = |(input, status)| (Wire { echo: driver.local_input(input).echo, input }, status);
+        let wire = |(input, status)| (Wire { checksum: driver.local_input(input).checksum, input }, status);
         GgrsRequest::AdvanceFrame { inputs: inputs.into_iter().map(wire).collect() }
     }
 

@@ -4,7 +4,7 @@
 use std::time::{Duration, Instant};
 
 use lockstep2d::hash::StateHash;
-use lockstep2d::net::{Event, NetError, Network, Options, Peer, Port, Weather};
+use lockstep2d::net::{Event, LinkConditions, NetError, NetOptions, Network, Peer, Port};
 
 use super::pushers::{Pushers, Setup, bot};
 
@@ -25,8 +25,8 @@ pub(crate) struct Table {
 const TURN_MAX: Duration = Duration::from_millis(20);
 
 impl Table {
-    pub(crate) fn new(weather: Weather, seed: u64) -> Self {
-        let network = Network::new(weather, seed);
+    pub(crate) fn new(conditions: LinkConditions, seed: u64) -> Self {
+        let network = Network::new(conditions, seed);
         Table {
             network,
             peers: vec![],
@@ -39,8 +39,8 @@ impl Table {
     }
 
     /// Creates a host and `count - 1` guests; peer `n` has the address `n`.
-    pub(crate) fn of(count: u32, options: Options, weather: Weather, seed: u64) -> Self {
-        let mut table = Table::new(weather, seed);
+    pub(crate) fn of(count: u32, options: NetOptions, conditions: LinkConditions, seed: u64) -> Self {
+        let mut table = Table::new(conditions, seed);
         let setup = Setup::default();
         let options = options.start_with(count);
         table.sit(Peer::host(&setup, options, table.network.port(0)).unwrap());
@@ -50,7 +50,7 @@ impl Table {
         table
     }
 
-    pub(crate) fn guest(&self, address: u32, options: Options) -> Player {
+    pub(crate) fn guest(&self, address: u32, options: NetOptions) -> Player {
         Peer::join(&Setup::default(), options, self.network.port(address), 0, None).unwrap()
     }
 

@@ -10,7 +10,7 @@ use lockstep2d::body::{Polygon, ShapeId};
 use lockstep2d::collision::BroadPhaseKind;
 use lockstep2d::fx;
 use lockstep2d::math::{Aabb, Fx, Rng, Vec2, fx_mul};
-use lockstep2d::world::{CastHit, Probe, Proximity, QueryFilter, RayHit, World};
+use lockstep2d::world::{CastHit, ClosestPoints, Probe, QueryFilter, RayHit, World};
 use oracle::{Solid, TOLERANCE, along, seen};
 
 /// A query with its parameters.
@@ -29,7 +29,7 @@ enum Answer {
     Ray { first: Option<RayHit>, all: Vec<RayHit>, any: bool },
     Cast(Option<CastHit>),
     Shapes(Vec<ShapeId>),
-    Closest(Option<(ShapeId, Proximity)>),
+    Closest(Option<(ShapeId, ClosestPoints)>),
 }
 
 impl Query {

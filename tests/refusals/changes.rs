@@ -4,7 +4,7 @@ use lockstep2d::body::{BodyDef, BodyKind, BodySettings, MassSource, ShapeDef, Wo
 use lockstep2d::fx;
 use lockstep2d::math::{Angle, Fx, Vec2};
 use lockstep2d::solver::{JointDef, JointKind, Revolute};
-use lockstep2d::world::{Command, Config, Explosion, Place, World};
+use lockstep2d::world::{BodyPose, Command, Config, Explosion, World};
 
 use super::{Stage, ball};
 
@@ -164,7 +164,7 @@ fn changes_to_joints_out_of_range_are_refused() {
 fn one_of_many_refuses_all() {
     let mut stage = Stage::new();
     let (floor, lift, ball, gone) = (stage.floor, stage.lift, stage.ball, stage.gone);
-    let place = |x| Place { position: Vec2::new(x, fx!(5)), angle: Angle::ZERO };
+    let place = |x| BodyPose { position: Vec2::new(x, fx!(5)), angle: Angle::ZERO };
     let each = |shape, places| Command::SpawnEach { body: BodyDef::dynamic(), shapes: vec![shape], places };
     stage.refuses(each(self::ball(), vec![place(fx!(0)), place(Fx::MAX)]), far);
     stage.refuses(each(self::ball().density(fx!(0)), vec![place(fx!(0)), place(fx!(3))]), weightless);

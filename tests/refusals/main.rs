@@ -9,7 +9,7 @@ use lockstep2d::body::{
 use lockstep2d::fx;
 use lockstep2d::math::{Angle, Fx, Vec2};
 use lockstep2d::solver::{
-    ContactTuning, Distance, JointDef, JointKind, Limit, Motor, Prismatic, Revolute, SolverSettings,
+    ContactTuning, Distance, JointDef, JointKind, JointLimit, Motor, Prismatic, Revolute, SolverSettings,
     Threshold, Weld, Wheel,
 };
 use lockstep2d::world::{Command, Config, World};
@@ -188,7 +188,7 @@ fn what_a_body_cannot_do_is_refused() {
 
 fn refuses_impossible_joints(stage: &mut Stage) {
     let (one, two) = (fx!(1), fx!(2));
-    let pushes = Distance { spring_force: Some(Limit { lower: one, upper: two }), ..Distance::new() };
+    let pushes = Distance { spring_force: Some(JointLimit { lower: one, upper: two }), ..Distance::new() };
     let kinds: [(JointKind, &str); 12] = [
         (Revolute::new().limit(two, one).into(), "limit"),
         (Revolute::new().spring(fx!(0), one, one).into(), "spring"),

@@ -2,7 +2,7 @@
 
 use lockstep2d::hash::StateHash;
 use lockstep2d::lockstep::Game;
-use lockstep2d::replay::{Flaw, Limits, Playback, Recording, Step, Verdict};
+use lockstep2d::replay::{Flaw, Limits, Recording, Step, Verdict, VerifiedReplay};
 
 use crate::counter::{Counter, add, inputs_at, setup};
 use crate::{record, verdict};
@@ -83,7 +83,7 @@ fn what_is_not_a_replay_is_malformed() {
 #[test]
 fn a_replay_can_be_stopped_at_any_tick() {
     let file = record(35, 10, inputs_at);
-    let mut playback = Playback::<Counter>::open(&file, &Limits::default()).unwrap();
+    let mut playback = VerifiedReplay::<Counter>::open(&file, &Limits::default()).unwrap();
     assert_eq!(playback.ticks(), 35);
     for tick in 0..=35 {
         assert_eq!(playback.tick(), tick);
@@ -93,7 +93,7 @@ fn a_replay_can_be_stopped_at_any_tick() {
     }
     assert!(playback.conclude().is_match());
 
-    let mut playback = Playback::<Counter>::open(&file, &Limits::default()).unwrap();
+    let mut playback = VerifiedReplay::<Counter>::open(&file, &Limits::default()).unwrap();
     for _ in 0..34 {
         playback.step().unwrap();
     }

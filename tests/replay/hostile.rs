@@ -2,7 +2,9 @@
 //! refused with the right flaw.
 
 use lockstep2d::hash::StateHash;
-use lockstep2d::replay::{ClaimDifference, FORMAT_VERSION, Flaw, Limits, Mismatch, Playback, Step, Verdict};
+use lockstep2d::replay::{
+    ClaimDifference, FORMAT_VERSION, Flaw, Limits, Mismatch, Step, Verdict, VerifiedReplay,
+};
 
 use crate::counter::{Counter, inputs_at};
 use crate::forge::{CHAIN, Forged, INPUTS, KEYFRAME, TRAILER, forge};
@@ -269,7 +271,7 @@ fn a_file_of_another_program_is_unverifiable() {
 #[test]
 fn a_verdict_is_final() {
     let file = forge(&original(), |forged| forged.payload(1)[2] ^= 1);
-    let mut playback = Playback::<Counter>::open(&file, &Limits::default()).unwrap();
+    let mut playback = VerifiedReplay::<Counter>::open(&file, &Limits::default()).unwrap();
     let diverged = Verdict::Diverged { last_equal: Some(10), first_different: 20 };
     for tick in 1..20 {
         assert_eq!(playback.step(), Ok(Step::Ticked), "tick {tick}");

@@ -4,7 +4,7 @@
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
-use lockstep2d::replay::{Limit, Limits, Verdict, verify};
+use lockstep2d::replay::{LimitKind, Limits, Verdict, verify};
 
 use crate::counter::{Counter, add, inputs_at};
 use crate::forge::{Forged, forge};
@@ -15,7 +15,7 @@ fn verdict(file: &[u8], limits: &Limits) -> Verdict {
 }
 
 /// Expects the file to match when the limit equals the need, and to exceed a limit that is one lower.
-fn assert_exact(file: &[u8], limit: Limit, needed: u64, set: impl Fn(&mut Limits, u64)) {
+fn assert_exact(file: &[u8], limit: LimitKind, needed: u64, set: impl Fn(&mut Limits, u64)) {
     let mut limits = Limits::default();
     set(&mut limits, needed);
     assert!(verdict(file, &limits).is_match(), "{}: {}", limit.name(), verdict(file, &limits));
@@ -30,15 +30,15 @@ fn each_limit_is_exact() {
     // 35 ticks of |-3| + |1| + 1 units.
     let file = record(35, 10, |_| add(-3, 1));
     let length = file.len() as u64;
-    assert_exact(&file, Limit::FileBytes, length, |limits, max| limits.file_bytes = max);
-    assert_exact(&file, Limit::SetupBytes, 13, |limits, max| limits.setup_bytes = narrow(max));
-    assert_exact(&file, Limit::Players, 2, |limits, max| limits.players = narrow(max));
-    assert_exact(&file, Limit::BlockTicks, 10, |limits, max| limits.block_ticks = narrow(max));
-    assert_exact(&file, Limit::Ticks, 35, |limits, max| limits.ticks = max);
-    assert_exact(&file, Limit::TickWork, 5, |limits, max| limits.tick_work = max);
-    assert_exact(&file, Limit::TotalWork, 175, |limits, max| limits.total_work = max);
+    assert_exact(&file, LimitKind::FileBytes, length, |limits, max| limits.file_bytes = max);
+    assert_exact(&file, LimitKind::SetupBytes, 13, |limits, max| limits.setup_bytes = narrow(max));
+    assert_exact(&file, LimitKind::Players, 2, |limits, max| limits.players = narrow(max));
+    assert_exact(&file, LimitKind::BlockTicks, 10, |limits, max| limits.block_ticks = narrow(max));
+    assert_exact(&file, LimitKind::Ticks, 35, |limits, max| limits.ticks = max);
+    assert_exact(&file, LimitKind::TickWork, 5, |limits, max| limits.tick_work = max);
+    assert_exact(&file, LimitKind::TotalWork, 175, |limits, max| limits.total_work = max);
     let trailer = 24 + 16 + 1 + 13 + 12;
-    assert_exact(&file, Limit::BlockBytes, trailer, |limits, max| limits.block_bytes = narrow(max));
+    assert_exact(&file, LimitKind::BlockBytes, trailer, |limits, max| limits.block_bytes = narrow(max));
 }
 
 #[test]
@@ -49,11 +49,11 @@ fn limits_come_before_the_rest_of_the_file() {
     let mut cut = file[..head].to_vec();
     cut.extend([0xff, 0xff, 0xff, 0xff, 1]);
     let (value, max) = (u64::from(u32::MAX), u64::from(Limits::default().block_bytes));
-    let limit = Limit::BlockBytes;
+    let limit = LimitKind::BlockBytes;
     assert_eq!(verdict(&cut, &Limits::default()), Verdict::LimitExceeded { limit, value, max });
     let mut huge_setup = file[..40].to_vec();
     huge_setup[36..40].fill(0xff);
-    let (limit, max) = (Limit::SetupBytes, u64::from(Limits::default().setup_bytes));
+    let (limit, max) = (LimitKind::SetupBytes, u64::from(Limits::default().setup_bytes));
     assert_eq!(verdict(&huge_setup, &Limits::default()), Verdict::LimitExceeded { limit, value, max });
 }
 

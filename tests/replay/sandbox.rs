@@ -6,7 +6,7 @@ use lockstep2d::lockstep::{Game, Sandbox, SandboxSetup};
 use lockstep2d::math::{Angle, Fx, Vec2};
 use lockstep2d::replay::{Limits, Recording, verify};
 use lockstep2d::solver::{JointDef, Revolute};
-use lockstep2d::world::{Command, Config, Explosion, Place, World};
+use lockstep2d::world::{BodyPose, Command, Config, Explosion, World};
 
 fn ball() -> ShapeDef {
     ShapeDef::new(Geometry::circle(fx!(0.5)).unwrap())
@@ -17,7 +17,7 @@ fn setup() -> SandboxSetup {
         Command::Spawn { body: BodyDef::fixed(), shapes: vec![ball()] },
         Command::Spawn { body: BodyDef::kinematic().position((fx!(5), fx!(0))), shapes: vec![ball()] },
     ];
-    let places = (0..6).map(|x| Place { position: Vec2::new(Fx::from(x), fx!(2)), angle: Angle::ZERO });
+    let places = (0..6).map(|x| BodyPose { position: Vec2::new(Fx::from(x), fx!(2)), angle: Angle::ZERO });
     commands.push(Command::SpawnEach {
         body: BodyDef::dynamic(),
         shapes: vec![ball()],
@@ -41,7 +41,7 @@ fn commands(world: &World, body: BodyId, value: Fx) -> Vec<Command> {
         Command::SpawnEach {
             body: BodyDef::fixed(),
             shapes: vec![ball().sensor()],
-            places: vec![Place { position: vector, angle }],
+            places: vec![BodyPose { position: vector, angle }],
         },
         Command::AddShape { body, shape: ball().offset((value, fx!(0))) },
         Command::AddJoint { joint },
@@ -104,7 +104,7 @@ fn every_command_can_be_recorded_and_verified() {
 #[test]
 fn many_bodies_in_one_command_are_work() {
     let mut recording = Recording::<Sandbox>::start(&setup(), 3).unwrap();
-    let places = vec![Place { position: Vec2::ZERO, angle: Angle::ZERO }; 20_000];
+    let places = vec![BodyPose { position: Vec2::ZERO, angle: Angle::ZERO }; 20_000];
     let body = BodyDef { settings: BodySettings::default(), ..BodyDef::fixed() };
     recording.step(&[vec![Command::SpawnEach { body, shapes: vec![ball()], places }]]).unwrap();
     let file = recording.finish().unwrap();

@@ -6,8 +6,8 @@ use lockstep2d::hash::StateHash;
 use lockstep2d::lockstep::{Game, RulesId, Sandbox, SetupError};
 use lockstep2d::math::Rng;
 use lockstep2d::replay::{
-    KEYFRAMES_MAGIC, KeyframesError, KeyframesFlaw, Limit, Limits, Playback, Recording, SeekError, Step,
-    Timeline, TimelineOptions, Verdict,
+    KEYFRAMES_MAGIC, KeyframesError, KeyframesFlaw, LimitKind, Limits, Recording, SeekError, Step, Timeline,
+    TimelineOptions, Verdict, VerifiedReplay,
 };
 use lockstep2d::scenes;
 
@@ -22,7 +22,7 @@ fn open<'a, G: Game>(file: &'a [u8], interval: u32, bytes: usize) -> Timeline<'a
 
 /// Returns the state hash of every tick of a straight playback.
 fn hashes<G: Game>(file: &[u8]) -> Vec<StateHash> {
-    let mut playback = Playback::<G>::open(file, &Limits::default()).unwrap();
+    let mut playback = VerifiedReplay::<G>::open(file, &Limits::default()).unwrap();
     let mut hashes = vec![playback.game().state_hash()];
     while playback.step().unwrap() == Step::Ticked {
         hashes.push(playback.game().state_hash());
@@ -190,7 +190,7 @@ fn limits_hold_on_the_way_and_repeated_ticks_count_once() {
     let file = record(100, 10, |tick| add(if tick == 70 { 100 } else { 1 }, 1));
     let limits = Limits { tick_work: 50, ..Limits::default() };
     let mut timeline = Timeline::<Counter>::open(&file, &TimelineOptions::default(), &limits).unwrap();
-    let exceeded = Verdict::LimitExceeded { limit: Limit::TickWork, value: 102, max: 50 };
+    let exceeded = Verdict::LimitExceeded { limit: LimitKind::TickWork, value: 102, max: 50 };
     assert_eq!(timeline.seek(100), Err(SeekError::Replay(exceeded)));
     timeline.seek(69).unwrap();
     // Three units a tick.
@@ -407,7 +407,7 @@ fn a_game_that_does_not_save_all_of_itself_is_found_out() {
 #[test]
 fn inputs_of_a_playback_are_those_of_the_tick() {
     let file = record(35, 10, inputs_at);
-    let mut playback = Playback::<Counter>::open(&file, &Limits::default()).unwrap();
+    let mut playback = VerifiedReplay::<Counter>::open(&file, &Limits::default()).unwrap();
     assert_eq!(playback.inputs(), &[] as &[Input]);
     for tick in 0..35 {
         playback.step().unwrap();

@@ -12,7 +12,7 @@ use lockstep2d::lockstep::{Game, RulesId, Sandbox, SandboxSetup, SetupError};
 use lockstep2d::math::Rng;
 use lockstep2d::replay::{Limits, Recording, verify};
 use lockstep2d::report::{Comparison, Evidence, Stage, Trace, bisect};
-use lockstep2d::world::{Command, Motion, World};
+use lockstep2d::world::{BodyField, Command, World};
 
 use crate::sweep;
 use crate::yard::{BODIES, Flip, PLAYERS, When, Yard, YardSave, inputs_at};
@@ -94,7 +94,7 @@ fn inputs(tick: u64) -> Vec<u8> {
 fn random_flip(rng: &mut Rng, seed: u64) -> (Flip, String) {
     let mut below = |n: u32| rng.next_u32() % n;
     loop {
-        let motion = Motion::ALL[below(6) as usize];
+        let motion = BodyField::ALL[below(6) as usize];
         let flip = Flip {
             tick: 1 + u64::from(below(LENGTH - 60)),
             when: if below(2) == 0 { When::Before } else { When::After },
@@ -132,7 +132,7 @@ fn culprit(found: &Comparison) -> (String, String) {
     if let Some(told) = &found.explanation {
         return (told.path.clone(), told.differences[0].field().name().into());
     }
-    let thing = found.things.first().expect("something differs");
+    let thing = found.subjects.first().expect("something differs");
     (thing.path.clone(), thing.differences[0].field().name().into())
 }
 
@@ -161,7 +161,7 @@ fn a_flipped_bit_is_found_in_its_trace_for_less_than_three_verifications() {
     });
     // Every kind of motion, before and after the step.
     let drawn = drawn.into_inner().unwrap();
-    assert_eq!(drawn.len(), Motion::ALL.len() + 2, "only {drawn:?}");
+    assert_eq!(drawn.len(), BodyField::ALL.len() + 2, "only {drawn:?}");
     let worst = worst.into_inner();
     println!("at most {worst} steps, verification takes {TICKS}");
     assert!(worst < 3 * TICKS, "expected less than three verifications of {TICKS} ticks, took {worst} steps");

@@ -7,7 +7,7 @@ use lockstep2d::lockstep::Game;
 use lockstep2d::math::Rng;
 use lockstep2d::replay::Limits;
 use lockstep2d::report::{Blame, Comparison, DesyncReport, Evidence, Side, compare};
-use lockstep2d::world::Motion;
+use lockstep2d::world::BodyField;
 
 use crate::sweep;
 use crate::yard::{BODIES, Flip, Peer, When, Yard};
@@ -49,7 +49,7 @@ fn random_flip(rng: &mut Rng, when: When) -> Flip {
         tick: 30 + u64::from(rng.next_u32() % 60),
         when,
         body: rng.next_u32() as usize % BODIES,
-        motion: Motion::ALL[rng.next_u32() as usize % 2],
+        motion: BodyField::ALL[rng.next_u32() as usize % 2],
         bit: rng.next_u32() % 30,
     }
 }
@@ -88,20 +88,20 @@ fn cases(seed: u64, count: u32, when: When, stride: u32) -> u32 {
         assert_eq!(found.last_equal, Some(flip.tick - 1), "{what}");
         let blamed = Side::BOTH[usize::from(told % 2 == 1)];
         assert_eq!(found.blame, Blame::Side(blamed), "{what}");
-        assert_eq!(found.courses[blamed.index()].seats, [u32::try_from(faulty).unwrap()], "{what}");
+        assert_eq!(found.trajectories[blamed.index()].seats, [u32::try_from(faulty).unwrap()], "{what}");
         assert_eq!(found.tick, Some(flip.tick), "{what}");
-        let first = &found.things[0];
+        let first = &found.subjects[0];
         assert_eq!((first.path.as_str(), first.section.as_str()), (body.as_str(), "world.bodies"), "{what}");
         let difference = match when {
             When::After => {
-                assert_eq!((found.things.len(), first.differences.len()), (1, 1), "{what}");
+                assert_eq!((found.subjects.len(), first.differences.len()), (1, 1), "{what}");
                 assert_eq!(found.explanation, None, "{what}");
                 assert_eq!(flipped_bits(&first.differences[0]), 1, "{what}");
                 &first.differences[0]
             }
             // The flip affected only its own body, so no explanation is needed.
             When::Before if found.explanation.is_none() => {
-                assert_eq!((found.things.len(), first.differences.len()), (1, 1), "{what}");
+                assert_eq!((found.subjects.len(), first.differences.len()), (1, 1), "{what}");
                 &first.differences[0]
             }
             // The step may have restored the flipped field and changed other fields.
@@ -114,7 +114,7 @@ fn cases(seed: u64, count: u32, when: When, stride: u32) -> u32 {
         };
         assert_eq!(difference.field().thing(), Some(body.as_str()), "{what}");
         assert_eq!(difference.field().name(), flip.motion.name(), "{what}");
-        largest = largest.max(found.things.len());
+        largest = largest.max(found.subjects.len());
         let seats: Vec<&[u32]> = found.groups.iter().map(|group| group.seats.as_slice()).collect();
         let faulty = u32::try_from(faulty).unwrap();
         let others: Vec<u32> = (0..3).filter(|seat| *seat != faulty).collect();
@@ -165,20 +165,20 @@ fn peers_that_agree_are_equal() {
 /// A replay has checkpoints only: the tick is known to one checkpoint interval, and the fields are unknown.
 #[test]
 fn replays_tell_who_departed_between_which_checkpoints() {
-    let flip = Flip { tick: 60, when: When::After, body: 9, motion: Motion::VelocityY, bit: 12 };
+    let flip = Flip { tick: 60, when: When::After, body: 9, motion: BodyField::VelocityY, bit: 12 };
     let mut peers = [None, Some(flip)].map(|flip| Peer::new(3, flip));
     (0..110).for_each(|_| peers.iter_mut().for_each(Peer::advance));
     let replays = [0, 1].map(|peer: usize| Evidence::Replay(peers[peer].replay()));
     let found = compared(&replays[0], &replays[1]);
     assert_eq!((found.last_equal, found.first_different), (Some(50), Some(75)));
     assert_eq!(found.blame, Blame::Side(Side::B));
-    assert!(found.things.is_empty() && !found.notes.is_empty());
+    assert!(found.subjects.is_empty() && !found.notes.is_empty());
 
     // With the report of the diverged peer, the tick and the field are known.
     let report = peers[1].report(1, 75, Vec::new());
     let found = compared(&replays[0], &evidence(&report));
     assert_eq!((found.first_different, found.blame), (Some(60), Blame::Side(Side::B)));
-    assert_eq!(found.things.len(), 1, "{:?}", found.things);
+    assert_eq!(found.subjects.len(), 1, "{:?}", found.subjects);
 
     // With the report of the correct peer, only the correct states are known.
     let report = peers[0].report(0, 75, Vec::new());
@@ -222,13 +222,13 @@ fn worlds_are_compared_field_by_field() {
     let bytes = peer.game.world.to_bytes();
     let same = Evidence::read(bytes, &Limits::default()).unwrap();
     assert!(compared(&a, &same).is_equal());
-    let flip = Flip { tick: 0, when: When::After, body: 20, motion: Motion::Spin, bit: 3 };
+    let flip = Flip { tick: 0, when: When::After, body: 20, motion: BodyField::Spin, bit: 3 };
     let body = flip.apply(&mut peer.game).unwrap();
     let b = Evidence::World(Box::new(peer.game.world));
     let found = compared(&a, &b);
-    assert_eq!(format!("world.{}", found.things[0].path), body);
+    assert_eq!(format!("world.{}", found.subjects[0].path), body);
     let names: Vec<&str> =
-        found.things[0].differences.iter().map(|difference| difference.field().name()).collect();
+        found.subjects[0].differences.iter().map(|difference| difference.field().name()).collect();
     assert_eq!(names, ["spin", "angular_velocity"]);
     assert!(compare::<Yard>(&a, &Evidence::Replay(Vec::new()), &Limits::default()).is_err());
 }

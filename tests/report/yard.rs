@@ -7,7 +7,7 @@ use lockstep2d::lockstep::{Game, History, RulesId, SetupError};
 use lockstep2d::math::{Fx, Rng, Vec2};
 use lockstep2d::replay::Recorder;
 use lockstep2d::report::{Desync, DesyncReport};
-use lockstep2d::world::{Config, Motion, Snapshot, World};
+use lockstep2d::world::{BodyField, Config, Snapshot, World};
 use serde::{Deserialize, Serialize};
 
 pub(crate) const PLAYERS: u32 = 3;
@@ -121,7 +121,7 @@ pub(crate) struct Flip {
     pub(crate) when: When,
     /// Index among the dynamic bodies.
     pub(crate) body: usize,
-    pub(crate) motion: Motion,
+    pub(crate) motion: BodyField,
     pub(crate) bit: u32,
 }
 

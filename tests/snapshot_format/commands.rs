@@ -12,7 +12,7 @@ use lockstep2d::solver::{
     ContactTuning, Distance, JointDef, JointKind, Motor, Prismatic, Revolute, SolverSettings, Threshold,
     ThresholdAction, Weld, Wheel,
 };
-use lockstep2d::world::{Command, Config, Explosion, Place, World};
+use lockstep2d::world::{BodyPose, Command, Config, Explosion, World};
 
 /// Expected bytes, written field by field as in the tables of the document.
 #[derive(Clone, Default)]
@@ -216,7 +216,7 @@ fn cases(handles: &Handles) -> Vec<(Command, Written)> {
             Command::SpawnEach {
                 body: def,
                 shapes: vec![polygon],
-                places: vec![Place { position: vector, angle }],
+                places: vec![BodyPose { position: vector, angle }],
             },
             w().u32(1).then(def_bytes).then(shapes()).u64(1).fx(&[2, -1]).u32(9),
         ),

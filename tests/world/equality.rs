@@ -11,7 +11,7 @@ use super::sweep;
 
 /// A treatment of a world between its ticks that must not affect results.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Way {
+enum Variant {
     BruteForce,
     SweepAndPrune,
     /// Clears all caches before every tick and after every command.
@@ -22,25 +22,26 @@ enum Way {
     RolledBack,
 }
 
-const OTHERS: [Way; 5] = [Way::BruteForce, Way::SweepAndPrune, Way::Cleared, Way::Bytes, Way::RolledBack];
+const OTHERS: [Variant; 5] =
+    [Variant::BruteForce, Variant::SweepAndPrune, Variant::Cleared, Variant::Bytes, Variant::RolledBack];
 
-impl Way {
+impl Variant {
     fn begin(self, world: &World) -> World {
         let mut world = world.clone();
         match self {
-            Way::BruteForce => world.set_broad_phase(BroadPhaseKind::BruteForce),
-            Way::SweepAndPrune => world.set_broad_phase(BroadPhaseKind::SweepAndPrune),
+            Variant::BruteForce => world.set_broad_phase(BroadPhaseKind::BruteForce),
+            Variant::SweepAndPrune => world.set_broad_phase(BroadPhaseKind::SweepAndPrune),
             _ => {}
         }
         world
     }
 
-    fn disturb(self, world: &mut World, churn: &Churn) {
+    fn perturb(self, world: &mut World, churn: &Churn) {
         match self {
-            Way::BruteForce | Way::SweepAndPrune => {}
-            Way::Cleared => world.clear_scratch(),
-            Way::Bytes => *world = World::from_bytes(&world.to_bytes()).expect("its own bytes"),
-            Way::RolledBack => {
+            Variant::BruteForce | Variant::SweepAndPrune => {}
+            Variant::Cleared => world.clear_scratch(),
+            Variant::Bytes => *world = World::from_bytes(&world.to_bytes()).expect("its own bytes"),
+            Variant::RolledBack => {
                 let saved = world.save();
                 let mut astray = churn.clone();
                 for _ in 0..3 {
@@ -56,7 +57,7 @@ impl Way {
 
     fn execute(self, world: &mut World, command: &Command) {
         let _refused_as_by_the_first_world = world.execute(command);
-        if self == Way::Cleared {
+        if self == Variant::Cleared {
             world.clear_scratch();
         }
     }
@@ -127,25 +128,25 @@ impl Seen {
 fn churn(seed: u64, ticks: u32, seen: &mut Seen) {
     let mut churn = Churn::new(seed);
     let mut first = churn.world();
-    let mut others = OTHERS.map(|way| (way, way.begin(&first)));
+    let mut others = OTHERS.map(|variant| (variant, variant.begin(&first)));
     let mut open = Open::default();
     for tick in 0..ticks {
-        for (way, world) in &mut others {
-            way.disturb(world, &churn);
+        for (variant, world) in &mut others {
+            variant.perturb(world, &churn);
         }
         for command in churn.commands(&first) {
             execute_checked(&mut first, &command);
-            others.iter_mut().for_each(|(way, world)| way.execute(world, &command));
+            others.iter_mut().for_each(|(variant, world)| variant.execute(world, &command));
         }
         let sleepers = |world: &World| world.bodies().filter(|(_, body)| body.is_asleep()).count();
         let before = sleepers(&first);
         first.step();
         assert_eq!(first.validate(), Ok(()), "seed {seed}, tick {tick}");
-        for (way, world) in &mut others {
+        for (variant, world) in &mut others {
             world.step();
             let differing = first.digest().differing(&world.digest());
-            assert!(differing.is_empty(), "seed {seed}, tick {tick}, {way:?}: {differing:?} differ");
-            assert_eq!(first.events(), world.events(), "seed {seed}, tick {tick}, {way:?}");
+            assert!(differing.is_empty(), "seed {seed}, tick {tick}, {variant:?}: {differing:?} differ");
+            assert_eq!(first.events(), world.events(), "seed {seed}, tick {tick}, {variant:?}");
         }
         let events = first.events();
         open.follow(events);

@@ -11,7 +11,7 @@ use std::rc::Rc;
 use std::sync::Mutex;
 use std::time::Duration;
 
-use lockstep2d::net::{Event, Mode, Options, PACKET_BYTES_MAX, Peer, Transport};
+use lockstep2d::net::{Event, Mode, NetOptions, PACKET_BYTES_MAX, Peer, Transport};
 use lockstep2d::replay::{Limits, verify};
 use lockstep2d::report::DesyncReport;
 
@@ -94,7 +94,7 @@ pub fn run(bytes: &[u8]) -> &'static str {
 
 impl Stage {
     fn new() -> Self {
-        let options = Options { mode: Mode::Rollback { window: 8 }, ..Options::rollback() };
+        let options = NetOptions { mode: Mode::Rollback { window: 8 }, ..NetOptions::rollback() };
         let posts: Vec<Post> = (0..PEERS).map(|_| Post::default()).collect();
         let host = |at: usize| Peer::host(&(), options, posts[at].clone());
         let join = |at: usize, contact| Peer::join(&(), options, posts[at].clone(), contact, None);
@@ -135,7 +135,7 @@ impl Stage {
     fn deliver(&mut self, from: usize, arrives: impl Fn(u32) -> bool) {
         let said = std::mem::take(&mut self.peers[from].1.0.borrow_mut().outgoing);
         for (to, packet) in said {
-            self.known.hear(from as u32, to, &packet);
+            self.known.receive(from as u32, to, &packet);
             if arrives(to)
                 && let Some((_, post)) = self.peers.get(to as usize)
             {

@@ -4,7 +4,7 @@ use std::sync::LazyLock;
 
 use lockstep2d::body::{BodyDef, Geometry, ShapeDef};
 use lockstep2d::lockstep::{Game, Sandbox, SandboxSetup};
-use lockstep2d::replay::{Limits, Reader, Recording, Rerun, Step, Verdict, verify};
+use lockstep2d::replay::{Limits, Reader, Recording, RawReplay, Step, Verdict, verify};
 use lockstep2d::world::{Command, Config};
 use lockstep2d::{codec, fx};
 
@@ -83,7 +83,7 @@ fn again<G: Game>(file: &[u8]) -> Vec<u8> {
     let reader = Reader::open(file, &LIMITS).expect("a match");
     let setup: G::Setup = codec::decode(reader.header().setup).expect("a match");
     let mut recording = Recording::<G>::start(&setup, reader.header().checkpoint_interval).expect("a match");
-    let mut rerun = Rerun::<G>::open(file, &LIMITS).expect("a match");
+    let mut rerun = RawReplay::<G>::open(file, &LIMITS).expect("a match");
     while rerun.step().expect("a match") == Step::Ticked {
         recording.step(rerun.inputs()).expect("a match");
     }

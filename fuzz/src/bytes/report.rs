@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 use lockstep2d::lockstep::{Game, History, Sandbox};
 use lockstep2d::replay::Recorder;
 use lockstep2d::report::{Blame, Desync, DesyncReport, Evidence, Side, compare};
-use lockstep2d::world::Motion;
+use lockstep2d::world::BodyField;
 
 use super::attempt;
 use super::replay::{LIMITS, ball};
@@ -29,7 +29,7 @@ static ORIGINALS: LazyLock<Vec<Vec<u8>>> = LazyLock::new(|| {
                 && tick == 2
                 && let Some(body) = { world.bodies().map(|(id, _)| id).nth(1) }
             {
-                world.flip_bit(body, Motion::ALL[0], 20).expect("the body exists");
+                world.flip_bit(body, BodyField::ALL[0], 20).expect("the body exists");
             }
         })
     };

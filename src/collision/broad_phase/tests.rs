@@ -34,15 +34,15 @@ fn random_box(rng: &mut Rng, world: i64) -> Aabb {
 /// Half the world size in units of the last place: 8 m, 2^30 m, and the whole number range.
 const WORLDS: [i64; 3] = [8 << 32, 1 << 62, i64::MAX];
 
-fn random_kin(rng: &mut Rng, count: u32) -> Kin {
+fn random_class(rng: &mut Rng, count: u32) -> CollisionClass {
     let group = -i32::try_from(rng.below(count + 1)).expect("few");
-    Filter { group, ..Filter::default() }.kin()
+    Filter { group, ..Filter::default() }.collision_class()
 }
 
 /// Boxes by slot, and the three broad phase kinds, which must contain the same boxes.
 struct Crowd {
     boxes: Vec<Option<Aabb>>,
-    kin: Vec<Kin>,
+    collision_class: Vec<CollisionClass>,
     kinds: Vec<BroadPhase>,
 }
 
@@ -50,7 +50,7 @@ impl Crowd {
     fn new(slots: usize) -> Self {
         Crowd {
             boxes: vec![None; slots],
-            kin: vec![Kin::NONE; slots],
+            collision_class: vec![CollisionClass::NONE; slots],
             kinds: KINDS.map(BroadPhase::new).into(),
         }
     }
@@ -75,19 +75,21 @@ impl Crowd {
         self.kinds.iter_mut().for_each(|kind| kind.set_many(many));
     }
 
-    fn set_kin(&mut self, slot: usize, kin: Kin) {
-        self.kin[slot] = kin;
-        self.kinds.iter_mut().for_each(|kind| kind.set_kin(u32::try_from(slot).expect("few"), kin));
+    fn set_collision_class(&mut self, slot: usize, collision_class: CollisionClass) {
+        self.collision_class[slot] = collision_class;
+        self.kinds
+            .iter_mut()
+            .for_each(|kind| kind.set_collision_class(u32::try_from(slot).expect("few"), collision_class));
     }
 
     fn remove(&mut self, slot: usize) {
-        (self.boxes[slot], self.kin[slot]) = (None, Kin::NONE);
+        (self.boxes[slot], self.collision_class[slot]) = (None, CollisionClass::NONE);
         self.kinds.iter_mut().for_each(|kind| kind.remove(u32::try_from(slot).expect("few")));
     }
 
     fn refill(&mut self) {
         let boxes: Vec<_> = self.occupied().collect();
-        self.kin.fill(Kin::NONE);
+        self.collision_class.fill(CollisionClass::NONE);
         self.kinds.iter_mut().for_each(|kind| kind.refill(boxes.iter().copied()));
     }
 
@@ -132,9 +134,9 @@ fn all_kinds_find_the_same_pairs_while_boxes_move() {
                     crowd.set(slot, fat.translated(random_vector(&mut rng, 1 << 32)));
                 }
                 // Few class changes in most rounds, nearly all slots in some.
-                (8, Some(_)) => crowd.set_kin(slot, random_kin(&mut rng, 3)),
+                (8, Some(_)) => crowd.set_collision_class(slot, random_class(&mut rng, 3)),
                 (9..19, Some(_)) if round % 10 == 0 => {
-                    crowd.set_kin(slot, random_kin(&mut rng, 1 + u32::from(round > 150)));
+                    crowd.set_collision_class(slot, random_class(&mut rng, 1 + u32::from(round > 150)));
                 }
                 _ => {}
             }
@@ -160,7 +162,9 @@ fn all_kinds_find_the_same_pairs_while_boxes_move() {
         }
         let accept = |(a, b): Pair| {
             assert!(a < b);
-            (a + b) % 7 != 0 && crowd.kin[a as usize].common(crowd.kin[b as usize]) == Kin::NONE
+            (a + b) % 7 != 0
+                && crowd.collision_class[a as usize].common(crowd.collision_class[b as usize])
+                    == CollisionClass::NONE
         };
         let limit = if round % 3 == 0 { 10 } else { 1000 };
         for moved in [Moved::All, Moved::Slots(&moved), Moved::Slots(&[])] {

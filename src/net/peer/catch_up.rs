@@ -93,8 +93,8 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
         let mut packets = Vec::new();
         match &joining.stage {
             Stage::Asking => {
-                let terms = self.terms.clone();
-                packets.push(Packet::Hello { nonce, terms, seat: joining.seat, watch: joining.watch });
+                let parameters = self.parameters.clone();
+                packets.push(Packet::Hello { nonce, parameters, seat: joining.seat, watch: joining.watch });
             }
             Stage::Loading { missing, .. } => {
                 let piece = |piece: &usize| Packet::WantState { nonce, offset: (piece * PIECE_BYTES) as u64 };
@@ -112,7 +112,7 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
         }
         let contact = joining.contact.clone();
         for packet in packets {
-            self.say(&packet, &contact);
+            self.send(&packet, &contact);
         }
     }
 
@@ -144,8 +144,8 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
 
     fn refusal(&self, why: Refused) -> NetError {
         match why {
-            Refused::Terms(theirs) => match self.terms.agree(&theirs) {
-                Err(mismatch) => NetError::Terms(mismatch),
+            Refused::HandshakeParameters(theirs) => match self.parameters.agree(&theirs) {
+                Err(mismatch) => NetError::HandshakeParameters(mismatch),
                 Ok(()) => NetError::Refused { why: "terms".to_string() },
             },
             Refused::Full => NetError::Full,
@@ -234,8 +234,8 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
 
     /// Plays queued ticks: up to the limit per update when catching up, and in real time as a spectator.
     fn follow(&mut self) -> Result<(), NetError> {
-        let period = Duration::from_secs(1) / self.terms.tick_rate;
-        let until = self.next.as_ref().map_or(u64::MAX, |next| next.roster.base);
+        let period = Duration::from_secs(1) / self.parameters.tick_rate;
+        let until = self.next.as_ref().map_or(u64::MAX, |next| next.membership.base);
         for _ in 0..self.options.catch_up.max(1) {
             let Some(joining) = &mut self.catch_up else { return Ok(()) };
             let Stage::Following { queue, .. } = &mut joining.stage else { return Ok(()) };

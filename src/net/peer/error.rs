@@ -6,7 +6,7 @@ use core::fmt;
 use ggrs::GgrsError;
 
 use crate::net::error::DriverError;
-use crate::net::terms::TermsMismatch;
+use crate::net::handshake::HandshakeMismatch;
 use crate::replay::RecordError;
 
 /// Reason why a peer cannot continue.
@@ -19,7 +19,7 @@ pub enum NetError {
     /// GGRS returned an error.
     Ggrs(GgrsError),
     /// The handshake parameters of the other peers differ.
-    Terms(TermsMismatch),
+    HandshakeParameters(HandshakeMismatch),
     /// There is no free seat.
     Full,
     /// The state after catching up differs from that of the other peers.
@@ -49,7 +49,7 @@ impl fmt::Display for NetError {
             NetError::Record(error) => error.fmt(f),
             NetError::Driver(error) => error.fmt(f),
             NetError::Ggrs(error) => error.fmt(f),
-            NetError::Terms(mismatch) => mismatch.fmt(f),
+            NetError::HandshakeParameters(mismatch) => mismatch.fmt(f),
             NetError::Full => write!(f, "all seats are taken"),
             NetError::Diverged { tick } => {
                 write!(f, "the state after tick {tick} differs from that of the other peers")

@@ -9,9 +9,9 @@ use super::{NetError, Peer};
 use crate::codec;
 use crate::hash::StateHash;
 use crate::lockstep::EncodedInputs;
+use crate::net::handshake::HandshakeParameters;
 use crate::net::packet::{Nonce, Packet, Refused};
 use crate::net::session::{Session, seat_bit};
-use crate::net::terms::Terms;
 use crate::net::transport::{PACKET_BYTES_AIM, Transport};
 use crate::net::wire::{Address, NetGame};
 
@@ -40,35 +40,45 @@ pub(super) struct Joiner<A> {
 }
 
 impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
-    pub(super) fn greet(&mut self, from: &A, nonce: Nonce, terms: &Terms, seat: Option<u32>, watch: bool) {
+    pub(super) fn greet(
+        &mut self,
+        from: &A,
+        nonce: Nonce,
+        parameters: &HandshakeParameters,
+        seat: Option<u32>,
+        watch: bool,
+    ) {
         // A player that asks for a seat has reconnected before its disconnection was noticed. It gets its seat after
         // the timeout.
-        let plays = |session: &Session<G, A>| session.roster.seat_of(from).is_some();
+        let plays = |session: &Session<G, A>| session.membership.seat_of(from).is_some();
         if self.catch_up.is_some() || self.session.as_ref().is_some_and(plays) {
             return;
         }
-        if let Err(_mismatch) = self.terms.agree(terms) {
-            return self.say(&Packet::Refused { nonce, why: Refused::Terms(self.terms.clone()) }, from);
+        if let Err(_mismatch) = self.parameters.agree(parameters) {
+            return self.send(
+                &Packet::Refused { nonce, why: Refused::HandshakeParameters(self.parameters.clone()) },
+                from,
+            );
         }
         // Only the leader decides about requests to play.
         if !watch
             && let Some(session) = &self.session
-            && !session.roster.leads()
-            && let Some((_, leader)) = session.roster.others.first()
+            && !session.membership.leads()
+            && let Some((_, leader)) = session.membership.others.first()
         {
             let packet = Packet::Redirect { nonce, to: leader.clone() };
-            return self.say(&packet, from);
+            return self.send(&packet, from);
         }
         let joiner = match self.joiners.iter().position(|known| known.nonce == nonce) {
             Some(known) => known,
             None => match self.invite(from, nonce, seat, watch) {
                 Ok(()) => self.joiners.len() - 1,
-                Err(why) => return self.say(&Packet::Refused { nonce, why }, from),
+                Err(why) => return self.send(&Packet::Refused { nonce, why }, from),
             },
         };
         let Joiner { tick, hash, state, .. } = &self.joiners[joiner];
         let welcome = Packet::Welcome { nonce, tick: *tick, hash: *hash, length: state.len() as u64 };
-        self.say(&welcome, from);
+        self.send(&welcome, from);
     }
 
     fn invite(&mut self, from: &A, nonce: Nonce, wanted: Option<u32>, watch: bool) -> Result<(), Refused> {
@@ -98,15 +108,16 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
 
     /// The free seats, as bits.
     pub(super) fn free_seats(&self) -> u64 {
-        let seats = (0..self.terms.players).fold(0, |mask, seat| mask | seat_bit(seat));
-        let taken = self.next.as_ref().or(self.session.as_ref()).map_or(1, |session| session.roster.mask());
+        let seats = (0..self.parameters.players).fold(0, |mask, seat| mask | seat_bit(seat));
+        let taken =
+            self.next.as_ref().or(self.session.as_ref()).map_or(1, |session| session.membership.mask());
         seats & !taken
     }
 
     /// Whether the peer with this address plays, or is about to.
     fn is_seated(&self, address: &A) -> bool {
         let sessions = [&self.session, &self.next].into_iter().flatten();
-        sessions.into_iter().any(|session| session.roster.seat_of(address).is_some())
+        sessions.into_iter().any(|session| session.membership.seat_of(address).is_some())
     }
 
     fn joiner(&mut self, from: &A, nonce: Nonce) -> Option<&mut Joiner<A>> {
@@ -123,7 +134,7 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
         let Ok(start) = usize::try_from(offset) else { return };
         let end = start.saturating_add(PIECE_BYTES).min(state.len());
         let Some(piece) = state.get(start..end) else { return };
-        self.say(&Packet::State { nonce, offset, bytes: piece.to_vec() }, from);
+        self.send(&Packet::State { nonce, offset, bytes: piece.to_vec() }, from);
     }
 
     pub(super) fn give_inputs(&mut self, from: &A, nonce: Nonce, tick: u64) {
@@ -132,7 +143,7 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
         // Once all peers have entered a session, the ticks before it are final. A peer that is about to enter needs all
         // of them.
         let entered = self.session.as_ref().filter(|session| !watch || session.is_established());
-        let base = entered.map_or(0, |session| session.roster.base);
+        let base = entered.map_or(0, |session| session.membership.base);
         let committed = self.driver.committed().max(base);
         if tick < committed && self.driver.inputs_of(tick).is_none() {
             return self.say_forgotten(from, nonce);
@@ -141,7 +152,7 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
         for _ in 0..PACKETS_AT_ONCE {
             let ticks = self.inputs_between(from_tick, committed);
             let next = from_tick + ticks.len() as u64;
-            self.say(&Packet::Inputs { nonce, from: from_tick, ticks, committed }, from);
+            self.send(&Packet::Inputs { nonce, from: from_tick, ticks, committed }, from);
             if next >= committed {
                 return;
             }
@@ -165,7 +176,10 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
     }
 
     fn say_forgotten(&mut self, to: &A, nonce: Nonce) {
-        self.say(&Packet::Refused { nonce, why: Refused::Other("silent or behind for too long".into()) }, to);
+        self.send(
+            &Packet::Refused { nonce, why: Refused::Other("silent or behind for too long".into()) },
+            to,
+        );
     }
 
     /// Tells joining and watching peers that this peer leaves.
@@ -176,7 +190,7 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
         };
         let packets: Vec<_> = self.joiners.iter().map(packet).collect();
         for (to, packet) in packets {
-            self.say(&packet, &to);
+            self.send(&packet, &to);
         }
     }
 
@@ -188,10 +202,10 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
         match ours {
             _ if late && !joiner.watch => {
                 joiner.ready = false;
-                self.say(&Packet::Refused { nonce, why: Refused::Full }, from);
+                self.send(&Packet::Refused { nonce, why: Refused::Full }, from);
             }
             Some(ours) if ours == hash => joiner.ready = !joiner.watch,
-            Some(_) => self.say(&Packet::Refused { nonce, why: Refused::Diverged { tick } }, from),
+            Some(_) => self.send(&Packet::Refused { nonce, why: Refused::Diverged { tick } }, from),
             // The tick is too old to compare: the peer is not up to date.
             None => {}
         }
@@ -204,14 +218,14 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
         self.joiners.retain(|joiner| now <= joiner.heard + patience);
         // A peer that has entered the session sends no more requests.
         if let Some(session) = self.session.as_ref().filter(|session| session.is_established()) {
-            let plays = |joiner: &Joiner<A>| session.roster.seat_of(&joiner.address).is_some();
+            let plays = |joiner: &Joiner<A>| session.membership.seat_of(&joiner.address).is_some();
             self.joiners.retain(|joiner| !plays(joiner));
         }
         let idle = self.next.is_none() && self.leaving.is_none() && self.catch_up.is_none();
         let ready = self.joiners.iter().filter(|joiner| joiner.ready).count();
         let wanted = match &self.session {
             None => usize::try_from(self.options.start_with.saturating_sub(1)).unwrap_or(usize::MAX),
-            Some(session) if session.roster.leads() && session.is_established() => 1,
+            Some(session) if session.membership.leads() && session.is_established() => 1,
             Some(_) => usize::MAX,
         };
         if idle && ready >= wanted && (ready > 0 || self.session.is_none()) {
@@ -225,6 +239,6 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
 impl<G: NetGame, A: Address> Session<G, A> {
     /// Addresses of the other players, to which a proposed session is sent.
     pub(super) fn addresses(&self) -> Vec<A> {
-        self.roster.others.iter().map(|(_, address)| address.clone()).collect()
+        self.membership.others.iter().map(|(_, address)| address.clone()).collect()
     }
 }

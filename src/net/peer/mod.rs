@@ -1,10 +1,10 @@
 //! [`Peer`]: one participant of a match, from the handshake to the finished replay.
 
 mod catch_up;
+mod departure;
 mod error;
 mod joiners;
-mod leaving;
-mod planning;
+mod proposal;
 
 use alloc::collections::VecDeque;
 use alloc::vec::Vec;
@@ -14,15 +14,15 @@ use std::hash::{BuildHasher, RandomState};
 pub use error::NetError;
 
 use catch_up::CatchUp;
+use departure::{AgreedDeparture, DepartureAgreement};
 use joiners::Joiner;
-use leaving::{Leaving, Settled};
-use planning::Planned;
+use proposal::ProposedSession;
 
 use super::driver::{Divergence, Driver};
-use super::options::Options;
+use super::handshake::HandshakeParameters;
+use super::options::NetOptions;
 use super::packet::{Nonce, Packet, SessionId};
 use super::session::{Session, SessionEvent};
-use super::terms::Terms;
 use super::transport::Transport;
 use super::wire::{Address, NetGame};
 use crate::codec;
@@ -73,8 +73,8 @@ pub enum Event {
 /// the next lowest seat takes over, so no single player is required.
 pub struct Peer<G: NetGame, A: Address, T: Transport<A>> {
     transport: T,
-    options: Options,
-    terms: Terms,
+    options: NetOptions,
+    parameters: HandshakeParameters,
     /// Canonical bytes of the setup.
     setup: Vec<u8>,
     driver: Driver<G>,
@@ -84,18 +84,18 @@ pub struct Peer<G: NetGame, A: Address, T: Transport<A>> {
     /// State of a peer that has no seat yet, or a spectator.
     catch_up: Option<CatchUp<A>>,
     /// Initial session id of a host that has no session yet.
-    root: Option<SessionId>,
+    initial_session_id: Option<SessionId>,
     session: Option<Session<G, A>>,
     /// Time at which the session was entered, or, while not all peers have entered it, of the last answer: with high
     /// packet loss this takes long.
     awaited_since: Duration,
     /// The agreed session that has not been entered yet.
     next: Option<Session<G, A>>,
-    planned: Option<Planned<A>>,
+    proposed: Option<ProposedSession<A>>,
     /// The previous session, while other peers may still be in it.
     past: Option<Session<G, A>>,
-    leaving: Option<Leaving>,
-    settled: Option<Settled>,
+    leaving: Option<DepartureAgreement>,
+    settled: Option<AgreedDeparture>,
     /// The last session that was agreed upon but is not played.
     abandoned: Option<SessionId>,
     joiners: Vec<Joiner<A>>,
@@ -103,13 +103,13 @@ pub struct Peer<G: NetGame, A: Address, T: Transport<A>> {
 }
 
 impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
-    /// Opens a match and waits for [`Options::start_with`] players.
+    /// Opens a match and waits for [`NetOptions::start_with`] players.
     ///
     /// # Errors
     /// [`NetError`] when the setup cannot start a game.
-    pub fn host(setup: &G::Setup, options: Options, transport: T) -> Result<Self, NetError> {
+    pub fn host(setup: &G::Setup, options: NetOptions, transport: T) -> Result<Self, NetError> {
         let mut peer = Self::new(setup, options, transport)?;
-        peer.root = Some(SessionId(random()));
+        peer.initial_session_id = Some(SessionId(random()));
         Ok(peer)
     }
 
@@ -119,7 +119,7 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
     /// [`NetError`] when the setup cannot start a game.
     pub fn join(
         setup: &G::Setup,
-        options: Options,
+        options: NetOptions,
         transport: T,
         contact: A,
         seat: Option<u32>,
@@ -133,34 +133,34 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
     ///
     /// # Errors
     /// [`NetError`] when the setup cannot start a game.
-    pub fn watch(setup: &G::Setup, options: Options, transport: T, contact: A) -> Result<Self, NetError> {
+    pub fn watch(setup: &G::Setup, options: NetOptions, transport: T, contact: A) -> Result<Self, NetError> {
         let mut peer = Self::new(setup, options, transport)?;
         peer.catch_up = Some(CatchUp::watch(contact, Nonce(random())));
         Ok(peer)
     }
 
-    fn new(setup: &G::Setup, options: Options, transport: T) -> Result<Self, NetError> {
+    fn new(setup: &G::Setup, options: NetOptions, transport: T) -> Result<Self, NetError> {
         let mut driver = Driver::start(setup, options.checkpoint_interval)?;
         driver.remember(options.memory());
         if options.window() == 0 {
             driver = driver.with_echo(options.check_interval.into());
         }
-        let terms = Terms::of(driver.game(), setup, &options);
-        let options = options.start_with(options.start_with.min(terms.players));
+        let parameters = HandshakeParameters::of(driver.game(), setup, &options);
+        let options = options.start_with(options.start_with.min(parameters.players));
         Ok(Peer {
             transport,
             options,
-            terms,
+            parameters,
             setup: codec::encode(setup),
             driver,
             now: Duration::ZERO,
             next_tick: Duration::ZERO,
             catch_up: None,
-            root: None,
+            initial_session_id: None,
             session: None,
             awaited_since: Duration::ZERO,
             next: None,
-            planned: None,
+            proposed: None,
             past: None,
             leaving: None,
             settled: None,
@@ -197,12 +197,14 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
                 // A session with departed players reads no more messages: they would pile up.
                 let current = self.session.as_mut().filter(|_| self.leaving.is_none());
                 let mut sessions = current.into_iter().chain(&mut self.next).chain(&mut self.past);
-                let of = sessions.find(|known| known.roster.session == session);
+                let of = sessions.find(|known| known.membership.session == session);
                 if let Some(session) = of {
                     session.receive(from, &message);
                 }
             }
-            Packet::Hello { nonce, terms, seat, watch } => self.greet(from, nonce, &terms, seat, watch),
+            Packet::Hello { nonce, parameters, seat, watch } => {
+                self.greet(from, nonce, &parameters, seat, watch)
+            }
             Packet::WantState { nonce, offset } => self.give_state(from, nonce, offset),
             Packet::WantInputs { nonce, from: tick } => self.give_inputs(from, nonce, tick),
             Packet::Ready { nonce, tick, hash } => self.take_ready(from, nonce, tick, hash),
@@ -239,7 +241,7 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
 
     fn send_sessions(&mut self) {
         for session in [&mut self.past, &mut self.next, &mut self.session].into_iter().flatten() {
-            let id = session.roster.session;
+            let id = session.membership.session;
             for (to, message) in session.send(self.now) {
                 let packet: Packet<A> = Packet::Session { session: id, message };
                 self.transport.send(&packet.encode(), &to);
@@ -254,13 +256,13 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
                 SessionEvent::Lost(seat) => self.begin_leaving(super::session::seat_bit(seat)),
                 SessionEvent::Interrupted(seat) => self.events.push_back(Event::Interrupted { seat }),
                 SessionEvent::Resumed(seat) => self.events.push_back(Event::Resumed { seat }),
-                SessionEvent::Said(seat, echo) => self.driver.hear(seat, echo),
+                SessionEvent::Said(seat, checksum) => self.driver.receive(seat, checksum),
             }
         }
         self.events.extend(self.driver.take_divergences().into_iter().map(Event::Diverged));
     }
 
-    fn say(&mut self, packet: &Packet<A>, to: &A) {
+    fn send(&mut self, packet: &Packet<A>, to: &A) {
         self.transport.send(&packet.encode(), to);
     }
 
@@ -290,7 +292,7 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
         let before = self.driver.tick();
         let events = session.advance(&mut self.driver, input)?;
         let played = self.driver.tick() > before;
-        let period = Duration::from_secs(1) / self.terms.tick_rate;
+        let period = Duration::from_secs(1) / self.parameters.tick_rate;
         let stretched = period + period * session.ahead().min(8) / 32;
         let wait = if played { stretched } else { period / 8 };
         self.next_tick = (self.next_tick + wait).max(self.now.saturating_sub(8 * period));
@@ -342,13 +344,13 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
     /// The seat of this peer, once it has one.
     #[must_use]
     pub fn seat(&self) -> Option<u32> {
-        self.session.as_ref().map(|session| session.roster.seat)
+        self.session.as_ref().map(|session| session.membership.seat)
     }
 
     /// The seats that have players, in ascending order.
     #[must_use]
     pub fn seats(&self) -> Vec<u32> {
-        self.session.as_ref().map(|session| session.roster.seats()).unwrap_or_default()
+        self.session.as_ref().map(|session| session.membership.seats()).unwrap_or_default()
     }
 
     /// The transport.

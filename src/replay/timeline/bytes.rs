@@ -7,7 +7,7 @@ use core::fmt;
 use serde::de::Visitor;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use super::super::rerun::Place;
+use super::super::raw_replay::ReplayPosition;
 use super::keyframes::{Keyframe, Keyframes};
 use crate::codec::DecodeError;
 use crate::hash::{Envelope, EnvelopeError, StateHash};
@@ -209,7 +209,7 @@ pub(super) fn decode<G: Game>(replay: &[u8], bytes: &[u8]) -> Result<Body, Keyfr
 
 /// Assigns the keyframes to their positions in a replay of `ticks` ticks that begins at `start`.
 pub(super) fn place<'a>(
-    start: &Place<'a>,
+    start: &ReplayPosition<'a>,
     ticks: u64,
     body: Body,
 ) -> Result<Vec<Keyframe<'a>>, KeyframesError> {

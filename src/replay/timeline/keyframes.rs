@@ -3,12 +3,12 @@
 use alloc::collections::BTreeMap;
 use alloc::vec::Vec;
 
-use super::super::rerun::Place;
+use super::super::raw_replay::ReplayPosition;
 
 /// A saved state with its position in the replay.
 #[derive(Clone, Debug)]
 pub(super) struct Keyframe<'a> {
-    pub(super) place: Place<'a>,
+    pub(super) place: ReplayPosition<'a>,
     /// Canonical bytes of the game's save.
     pub(super) save: Vec<u8>,
 }

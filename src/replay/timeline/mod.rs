@@ -28,8 +28,8 @@ pub use bytes::{
 use self::keyframes::{Keyframe, Keyframes};
 use self::trail::Trail;
 use super::limits::Limits;
-use super::playback::{Playback, Step};
 use super::verdict::Verdict;
+use super::verified_replay::{Step, VerifiedReplay};
 use crate::codec;
 use crate::lockstep::Game;
 use crate::world::World;
@@ -118,7 +118,7 @@ impl core::error::Error for SeekError {}
 /// ```
 pub struct Timeline<'a, G: Game> {
     file: &'a [u8],
-    playback: Playback<'a, G>,
+    playback: VerifiedReplay<'a, G>,
     keyframes: Keyframes<'a>,
     trail: Trail<'a, G::Save>,
     played: u64,
@@ -134,7 +134,7 @@ impl<'a, G: Game> Timeline<'a, G> {
     /// The [`Verdict`] when nothing can be played: the file is malformed, exceeds a limit, belongs to another game, or
     /// its setup leads to another start state.
     pub fn open(file: &'a [u8], options: &TimelineOptions, limits: &Limits) -> Result<Self, Verdict> {
-        let playback = Playback::<G>::open(file, limits)?;
+        let playback = VerifiedReplay::<G>::open(file, limits)?;
         let place = playback.place().clone();
         let block_ticks = u64::from(place.inputs.reader().header().checkpoint_interval).max(1);
         let interval = u64::from(options.interval).max(1);

@@ -2,11 +2,11 @@
 
 use alloc::collections::BTreeMap;
 
-use super::super::rerun::Place;
+use super::super::raw_replay::ReplayPosition;
 
 /// Saves by tick. The latest are removed first, because they are of no use to further steps backwards.
 pub(super) struct Trail<'a, S> {
-    saves: BTreeMap<u64, (Place<'a>, S)>,
+    saves: BTreeMap<u64, (ReplayPosition<'a>, S)>,
 }
 
 impl<S> Default for Trail<'_, S> {
@@ -17,12 +17,12 @@ impl<S> Default for Trail<'_, S> {
 
 impl<'a, S> Trail<'a, S> {
     /// The last save at or before a tick.
-    pub(super) fn latest(&self, tick: u64) -> Option<&(Place<'a>, S)> {
+    pub(super) fn latest(&self, tick: u64) -> Option<&(ReplayPosition<'a>, S)> {
         self.saves.range(..=tick).next_back().map(|(_, kept)| kept)
     }
 
     /// Inserts a save and removes others, latest first, until at most `length` are left.
-    pub(super) fn keep(&mut self, place: Place<'a>, save: S, length: u64) {
+    pub(super) fn keep(&mut self, place: ReplayPosition<'a>, save: S, length: u64) {
         let tick = place.tick;
         self.saves.insert(tick, (place, save));
         let is_full = |count: usize| u64::try_from(count).is_ok_and(|count| count > length);

@@ -1,6 +1,6 @@
 //! Batches of contacts: `N` at a time, as a structure of arrays.
 
-use crate::lanes::{Ints, Lanes};
+use crate::simd::{Ints, Lanes};
 
 /// `N` contacts of which no two change the same body, for one tick. Lanes without a contact have no gains, and their
 /// bodies are the ground.
@@ -19,10 +19,10 @@ pub(in crate::solver) struct Batch<const N: usize> {
     /// Number of points that have a contact in any lane. Points beyond it are stale and never read.
     pub(super) count: usize,
     /// Whether any surface in the batch bounces, moves or resists rolling: then the batch has a
-    /// [`super::special::Special`] as well.
-    pub(super) special: bool,
-    /// Whether its rows and its surfaces are within the bounds of [`super::care::Calm`] contacts.
-    pub(super) calm: bool,
+    /// [`super::extras::ContactExtras`] as well.
+    pub(super) extras: bool,
+    /// Whether its rows and its surfaces are within the bounds of [`super::overflow_policy::Unchecked`] contacts.
+    pub(super) unchecked: bool,
     /// For each point, a bit for each lane in which the shapes have pushed each other in this tick.
     pub(super) pushed: [u32; 2],
     pub(super) points: [Point<N>; 2],
@@ -41,7 +41,7 @@ pub(super) struct Point<const N: usize> {
     /// Separation at the present positions.
     pub(super) separation: Ints<N>,
     /// Friction limit per unit of the normal impulse: `mu Dt / Dn`.
-    pub(super) grip: Ints<N>,
+    pub(super) friction_ratio: Ints<N>,
     pub(super) normal_lambda: Ints<N>,
 }
 
@@ -66,7 +66,7 @@ impl<const N: usize> Point<N> {
         normal: Row::NONE,
         first_separation: Ints::ZERO,
         separation: Ints::ZERO,
-        grip: Ints::ZERO,
+        friction_ratio: Ints::ZERO,
         normal_lambda: Ints::ZERO,
     };
 }
@@ -80,8 +80,8 @@ impl<const N: usize> Batch<N> {
         n_y: Ints::ZERO,
         immovable: Ints::ZERO,
         count: 0,
-        special: false,
-        calm: false,
+        extras: false,
+        unchecked: false,
         pushed: [0; 2],
         points: [Point::NONE; 2],
         tangent: Row::NONE,
@@ -93,7 +93,7 @@ impl<const N: usize> Batch<N> {
     pub(super) fn begin(&mut self) {
         self.bodies = Self::NONE.bodies;
         self.changed = Self::NONE.changed;
-        (self.count, self.special, self.pushed) = (0, false, [0; 2]);
+        (self.count, self.extras, self.pushed) = (0, false, [0; 2]);
     }
 
     /// The normal and the tangent.

@@ -2,7 +2,7 @@
 
 use super::super::settings::Tuning;
 use super::super::softness::Softness;
-use super::care::calm_at;
+use super::overflow_policy::unchecked_at;
 use crate::math::{Rate, Shift};
 
 /// Settings in the formats of the lanes.
@@ -22,8 +22,8 @@ pub(in crate::solver) struct Constants {
     pub(super) soft: Softness,
     /// Softness against a body that impulses do not move.
     pub(super) stiff: Softness,
-    /// Whether the bounds of [`super::care::Calm`] hold for these settings.
-    pub(super) calm: bool,
+    /// Whether the bounds of [`super::overflow_policy::Unchecked`] hold for these settings.
+    pub(super) unchecked: bool,
 }
 
 impl Constants {
@@ -39,7 +39,7 @@ impl Constants {
             restitution_threshold: tuning.restitution_threshold.to_bits(),
             soft: tuning.contact,
             stiff: tuning.contact_immovable,
-            calm: calm_at([rate, tuning.contact.bias_rate, tuning.contact_immovable.bias_rate]),
+            unchecked: unchecked_at([rate, tuning.contact.bias_rate, tuning.contact_immovable.bias_rate]),
         }
     }
 }

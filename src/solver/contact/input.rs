@@ -1,18 +1,18 @@
 //! Gathers the inputs of a contact's rows from the narrow phase, the state and the body list.
 
-use super::super::TouchingPair;
+use super::super::ActiveContact;
 use super::super::body_list::{BodyList, GROUND};
 use super::super::colour::{Node, Size};
 use super::super::row::MassFractions;
 use super::WarmStarts;
 use crate::collision::{Contact, Manifold, PointImpulse};
-use crate::lanes::{Quad, prefetch};
 use crate::math::Length;
+use crate::simd::{Quad, prefetch};
 
 /// The contacts of a tick, before they are put into batches.
 #[derive(Clone, Copy)]
 pub(in crate::solver) struct ContactSource<'a> {
-    pub(in crate::solver) pairs: &'a [TouchingPair],
+    pub(in crate::solver) pairs: &'a [ActiveContact],
     pub(in crate::solver) manifolds: &'a [Manifold],
     /// The contacts of the state, with the impulses of the last tick.
     pub(in crate::solver) contacts: &'a [Contact],
@@ -29,7 +29,7 @@ pub(super) struct Input {
     pub(super) features: [u16; 2],
     pub(super) count: u8,
     /// Whether it needs more than rows along the normal and the tangent.
-    pub(super) special: bool,
+    pub(super) extras: bool,
     /// The normal, and the mass fractions of A and B.
     pub(super) shares: Quad,
     /// `1 / k` of A and B: their mantissas, and their exponents.
@@ -52,7 +52,7 @@ impl Input {
         contact: 0,
         features: [0; 2],
         count: 0,
-        special: false,
+        extras: false,
         shares: Quad([0; 4]),
         gyrations: Quad([0; 4]),
         to_origin: Quad([0; 4]),
@@ -65,7 +65,7 @@ impl Input {
 impl ContactSource<'_> {
     /// A touching pair as it is coloured.
     #[inline]
-    pub(super) fn node(&self, pair: &TouchingPair) -> Node {
+    pub(super) fn node(&self, pair: &ActiveContact) -> Node {
         let (a, b) = pair.shapes;
         let size =
             if self.manifolds[pair.manifold as usize].count() == 1 { Size::Small } else { Size::Large };
@@ -82,7 +82,7 @@ impl ContactSource<'_> {
 
     /// Gathers what the rows of a touching pair are computed from.
     #[inline(always)]
-    pub(super) fn gather(&self, pair: &TouchingPair, warm: &mut WarmStarts) -> Input {
+    pub(super) fn gather(&self, pair: &ActiveContact, warm: &mut WarmStarts) -> Input {
         let manifold = &self.manifolds[pair.manifold as usize];
         let bodies = self.bodies_of(pair);
         let [a, b] = bodies.map(|index| self.list.facts(index));
@@ -99,7 +99,7 @@ impl ContactSource<'_> {
             contact: pair.contact,
             features: [first.feature.0, second.feature.0],
             count: manifold.count(),
-            special: pair.surface.is_special(),
+            extras: pair.surface.has_extras(),
             shares: Quad([n.x.to_bits(), n.y.to_bits(), fractions.a.to_bits(), fractions.b.to_bits()]),
             gyrations: Quad([inverse_a.0, inverse_b.0, inverse_a.1, inverse_b.1]),
             to_origin: Quad([to_a.x, to_a.y, to_b.x, to_b.y].map(Length::to_bits)),
@@ -117,7 +117,7 @@ impl ContactSource<'_> {
     }
 
     #[inline(always)]
-    fn bodies_of(&self, pair: &TouchingPair) -> [u32; 2] {
+    fn bodies_of(&self, pair: &ActiveContact) -> [u32; 2] {
         [self.list.index_of(pair.bodies.0), self.list.index_of(pair.bodies.1)]
     }
 
@@ -168,12 +168,12 @@ mod tests {
         let mut list = BodyList::default();
         list.fill(&bodies, &[0, 1]);
         let surface = Surface {
-            friction: crate::math::Grip::ZERO,
+            friction: crate::math::FrictionRatio::ZERO,
             restitution: Unit::ZERO,
             surface_speed: Speed::ZERO,
             rolling_resistance: Fx::ZERO,
         };
-        let pair = TouchingPair { contact: 0, manifold: 0, shapes: (0, 1), bodies: (0, 1), surface };
+        let pair = ActiveContact { contact: 0, manifold: 0, shapes: (0, 1), bodies: (0, 1), surface };
         let source = ContactSource {
             pairs: &[pair],
             manifolds: &[Manifold::new(Vec2::Y)],

@@ -11,15 +11,16 @@
 //!
 //! Each operation on a batch has a file of its own: `warm_start`, `solve` (which has
 //! the equation above), `relax` and `restitution`. `prepare` fills the batches of a tick and `rows` computes their
-//! rows; `store` returns the impulses to the state. `care` has the two ways to keep numbers within their formats.
+//! rows; `store` returns the impulses to the state. `policy` has the two ways to keep numbers within their formats.
 //!
 //! Differences of two velocities fit because each velocity is below 512 m/s; a sum that may not fit saturates. Lanes
 //! without a contact have gains of 0, so that nothing in them matters.
 
 mod batch;
-mod care;
 mod constants;
+mod extras;
 mod input;
+mod overflow_policy;
 mod pair;
 mod prepare;
 mod relax;
@@ -27,7 +28,6 @@ mod restitution;
 mod rolling;
 mod rows;
 mod solve;
-mod special;
 mod store;
 mod surface;
 mod warm_start;
@@ -36,11 +36,11 @@ use super::batches::{BatchKind, BatchList};
 use crate::math::Speed;
 use batch::Batch;
 pub(super) use constants::Constants;
+use extras::ContactExtras;
 pub(super) use input::ContactSource;
 pub(super) use relax::{Measure, Relax};
 pub(super) use restitution::{ApplyRestitution, ObserveApproach};
-pub(super) use solve::{Solve, Sweep};
-use special::Special;
+pub(super) use solve::{PointOrder, Solve};
 use store::Records;
 pub(crate) use surface::{Surface, SurfaceSide};
 pub(super) use warm_start::WarmStart;
@@ -58,7 +58,7 @@ pub(super) enum Contacts {}
 impl BatchKind for Contacts {
     type Batch<const N: usize> = Batch<N>;
     type Record<const N: usize> = Records<N>;
-    type Extra<const N: usize> = Special<N>;
+    type Extra<const N: usize> = ContactExtras<N>;
 
     #[inline(always)]
     fn bodies<const N: usize>(batch: &Batch<N>) -> &[[u32; N]; 2] {
@@ -67,7 +67,7 @@ impl BatchKind for Contacts {
 
     #[inline(always)]
     fn has_extra<const N: usize>(batch: &Batch<N>) -> bool {
-        batch.special
+        batch.extras
     }
 }
 

@@ -1,29 +1,34 @@
 //! Relative velocities along a row, and the velocity changes of its impulses.
 
-use super::super::pair::Pair;
+use super::super::pair::BodyPairW;
 use super::batch::Row;
-use super::care::Care;
-use crate::lanes::{Ints, Lanes, Motion};
+use super::overflow_policy::OverflowPolicy;
+use crate::simd::{Ints, Lanes, VelocityW};
 
-impl<L: Lanes<N>, const N: usize> Pair<L, N> {
+impl<L: Lanes<N>, const N: usize> BodyPairW<L, N> {
     /// `J v` as a speed.
     #[inline(always)]
-    pub(super) fn velocity(&self, n: [L::Int; 2], row: &Row<N>, care: &mut impl Care<L, N>) -> L::Int {
-        care.speed(along::<L, N>(&self.a, &self.b, n, row))
+    pub(super) fn velocity(
+        &self,
+        n: [L::Int; 2],
+        row: &Row<N>,
+        policy: &mut impl OverflowPolicy<L, N>,
+    ) -> L::Int {
+        policy.speed(along::<L, N>(&self.a, &self.b, n, row))
     }
 
     /// Changes the velocities by impulses below 512 m/s, so that no sum overflows. `SHIFT` is the number of fraction bits
     /// that a product of a gain and an impulse has more than a speed.
     #[inline(always)]
     pub(super) fn change<const SHIFT: i32>(&mut self, row: &Row<N>, d: L::Int) {
-        let Motion { x, y, turn } = self.a;
-        let a = Motion {
+        let VelocityW { x, y, turn } = self.a;
+        let a = VelocityW {
             x: L::sub(x, part::<L, N, SHIFT>(&row.a[0], d)),
             y: L::sub(y, part::<L, N, SHIFT>(&row.a[1], d)),
             turn: L::sub(turn, part::<L, N, SHIFT>(&row.a[2], d)),
         };
-        let Motion { x, y, turn } = self.b;
-        let b = Motion {
+        let VelocityW { x, y, turn } = self.b;
+        let b = VelocityW {
             x: L::add(x, part::<L, N, SHIFT>(&row.b[0], d)),
             y: L::add(y, part::<L, N, SHIFT>(&row.b[1], d)),
             turn: L::add(turn, part::<L, N, SHIFT>(&row.b[2], d)),
@@ -41,8 +46,8 @@ fn part<L: Lanes<N>, const N: usize, const SHIFT: i32>(gain: &Ints<N>, d: L::Int
 /// `n.(b - a) + eB uB - eA uA`, with 24 more fraction bits than its arguments.
 #[inline(always)]
 pub(super) fn along<L: Lanes<N>, const N: usize>(
-    a: &Motion<L::Int>,
-    b: &Motion<L::Int>,
+    a: &VelocityW<L::Int>,
+    b: &VelocityW<L::Int>,
     [x, y]: [L::Int; 2],
     row: &Row<N>,
 ) -> L::Wide {

@@ -3,14 +3,14 @@
 use super::super::batches::Batches;
 use super::super::colour::Colouring;
 use super::batch::Batch;
-use super::care::Calm;
+use super::extras::ContactExtras;
 use super::input::{ContactSource, Input};
+use super::overflow_policy::Unchecked;
 use super::rows;
-use super::special::Special;
 use super::store::Records;
 use super::{ContactSet, Contacts, WarmStarts};
-use crate::lanes::{Kernel, Lanes, Machine, Scalar, prefetch};
 use crate::math::Unit;
+use crate::simd::{Kernel, Lanes, Machine, Scalar, prefetch};
 
 /// Prefetch distances in batches: first the touching pairs, then what they refer to.
 const PAIRS_AHEAD: usize = 4;
@@ -92,7 +92,7 @@ impl<const N: usize> Batches<Contacts, N> {
         let mut inputs = [Input::NONE; N];
         for (lane, (input, &index)) in inputs.iter_mut().zip(indices).enumerate() {
             *input = source.gather(&source.pairs[index as usize], warm_starts);
-            batch.special |= input.special;
+            batch.extras |= input.extras;
             batch.count = batch.count.max(input.count.into());
             for side in 0..2 {
                 batch.bodies[side][lane] = input.bodies[side];
@@ -102,14 +102,14 @@ impl<const N: usize> Batches<Contacts, N> {
         }
         rows::fill::<L, N>(&inputs, batch, &mut records.inverses);
         let mut extra = None;
-        if batch.special {
-            let extra = extra.insert(Special::NONE);
+        if batch.extras {
+            let extra = extra.insert(ContactExtras::NONE);
             for (lane, &index) in indices.iter().enumerate() {
                 let inverses = [0, 1].map(|point| Unit::from_bits(records.inverses.normals[point].0[lane]));
                 extra.fill(lane, source, index as usize, inverses);
             }
         }
-        batch.calm = Calm::<L, N>::suits(batch, extra.as_ref());
+        batch.unchecked = Unchecked::<L, N>::suits(batch, extra.as_ref());
         extras.extend(extra);
     }
 }

@@ -8,25 +8,25 @@ use core::cell::Cell;
 use super::super::batches::{BatchParts, Operation};
 use super::super::body::SolverBody;
 use super::super::context::Pass;
-use super::super::pair::Pair;
+use super::super::pair::BodyPairW;
 use super::batch::Batch;
-use super::care::{Care, Careful};
+use super::overflow_policy::{OverflowPolicy, Saturating};
 use super::pair::along;
-use super::solve::{self, Sweep};
+use super::solve::{self, PointOrder};
 use super::{Constants, Contacts};
-use crate::lanes::Lanes;
+use crate::simd::Lanes;
 
 /// One iteration without bias, at the separations that it measures.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::solver) struct Relax {
-    pub(in crate::solver) sweep: Sweep,
+    pub(in crate::solver) order: PointOrder,
     pub(in crate::solver) constants: Constants,
 }
 
 impl Operation<Contacts> for Relax {
     #[inline(always)]
     fn apply<L: Lanes<N>, const N: usize>(self, parts: BatchParts<'_, Contacts, N>) {
-        let settings = solve::Settings { pass: Pass::Relax, sweep: self.sweep, constants: &self.constants };
+        let settings = solve::Settings { pass: Pass::Relax, order: self.order, constants: &self.constants };
         solve::solve::<L, N>(parts, settings);
     }
 }
@@ -39,7 +39,7 @@ impl Operation<Contacts> for Measure {
     #[inline(always)]
     fn apply<L: Lanes<N>, const N: usize>(self, parts: BatchParts<'_, Contacts, N>) {
         // Nothing in it counts as a fault.
-        measure::<L, N>(parts.batch, parts.bodies, &mut Careful(&mut 0));
+        measure::<L, N>(parts.batch, parts.bodies, &mut Saturating(&mut 0));
     }
 }
 
@@ -48,14 +48,14 @@ impl Operation<Contacts> for Measure {
 pub(super) fn measure<L: Lanes<N>, const N: usize>(
     batch: &mut Batch<N>,
     bodies: &[Cell<SolverBody>],
-    care: &mut impl Care<L, N>,
+    policy: &mut impl OverflowPolicy<L, N>,
 ) {
     let (n, _) = batch.directions::<L>();
-    let shifts = Pair::<L, N>::load_shifts(bodies, &batch.bodies);
-    care.see(&shifts);
+    let shifts = BodyPairW::<L, N>::load_shifts(bodies, &batch.bodies);
+    policy.see(&shifts);
     for point in &mut batch.points[..batch.count] {
         let first = L::load(&point.first_separation);
         let change = along::<L, N>(&shifts.a, &shifts.b, n, &point.normal);
-        L::store(care.moved(first, change), &mut point.separation);
+        L::store(policy.moved(first, change), &mut point.separation);
     }
 }

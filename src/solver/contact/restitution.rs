@@ -9,11 +9,11 @@
 
 use super::super::batches::{BatchParts, Operation};
 use super::super::limits::IMPULSE_MAX;
-use super::super::pair::{Pair, UNIT};
-use super::care::{Care, Careful};
-use super::special::Special;
+use super::super::pair::{BodyPairW, UNIT};
+use super::extras::ContactExtras;
+use super::overflow_policy::{OverflowPolicy, Saturating};
 use super::{Constants, Contacts};
-use crate::lanes::Lanes;
+use crate::simd::Lanes;
 
 /// Iterations in which two points that bounce are solved against each other. After one, the first point leaves too
 /// fast: a tall box dropped flat gained a third of its energy, and spun. An iteration takes away at least 3/4 of the
@@ -27,13 +27,13 @@ pub(in crate::solver) struct ObserveApproach;
 impl Operation<Contacts> for ObserveApproach {
     #[inline(always)]
     fn apply<L: Lanes<N>, const N: usize>(self, parts: BatchParts<'_, Contacts, N>) {
-        let BatchParts { batch, extra: Some(special), bodies, faults, .. } = parts else { return };
-        let care = &mut Careful(faults);
-        let pair = Pair::<L, N>::load(bodies, &batch.bodies);
+        let BatchParts { batch, extra: Some(extras), bodies, faults, .. } = parts else { return };
+        let policy = &mut Saturating(faults);
+        let pair = BodyPairW::<L, N>::load(bodies, &batch.bodies);
         let (n, _) = batch.directions::<L>();
-        let Special { approach, pushed, .. } = special;
+        let ContactExtras { approach, pushed, .. } = extras;
         for ((point, approach), pushed) in batch.points[..batch.count].iter().zip(approach).zip(pushed) {
-            let vn = pair.velocity(n, &point.normal, care);
+            let vn = pair.velocity(n, &point.normal, policy);
             let pushed = L::negative(L::load(pushed));
             L::store(L::select(pushed, L::load(approach), vn), approach);
         }
@@ -49,27 +49,27 @@ pub(in crate::solver) struct ApplyRestitution {
 impl Operation<Contacts> for ApplyRestitution {
     #[inline(always)]
     fn apply<L: Lanes<N>, const N: usize>(self, parts: BatchParts<'_, Contacts, N>) {
-        let BatchParts { batch, extra: Some(special), bodies, faults, .. } = parts else { return };
-        let care = &mut Careful(faults);
-        let restitution = L::load(&special.restitution);
+        let BatchParts { batch, extra: Some(extras), bodies, faults, .. } = parts else { return };
+        let policy = &mut Saturating(faults);
+        let restitution = L::load(&extras.restitution);
         let (n, _) = batch.directions::<L>();
         let constants = &self.constants;
-        let masks = [bounces::<L, N>(special, 0, constants), bounces::<L, N>(special, 1, constants)];
+        let masks = [bounces::<L, N>(extras, 0, constants), bounces::<L, N>(extras, 1, constants)];
         if !L::any(L::either(masks[0], masks[1])) {
             return;
         }
-        let mut pair = Pair::<L, N>::load(bodies, &batch.bodies);
+        let mut pair = BodyPairW::<L, N>::load(bodies, &batch.bodies);
         for _ in 0..if batch.count == 2 { RESTITUTION_ITERATIONS } else { 1 } {
             for (i, &mask) in masks.iter().enumerate().take(batch.count) {
                 let point = &mut batch.points[i];
-                let bounce = L::mul(restitution, L::load(&special.approach[i]));
+                let bounce = L::mul(restitution, L::load(&extras.approach[i]));
                 let bounce = L::narrow::<UNIT>(bounce);
-                let error = L::add_saturating(pair.velocity(n, &point.normal, care), bounce);
+                let error = L::add_saturating(pair.velocity(n, &point.normal, policy), bounce);
                 let old = L::load(&point.normal_lambda);
                 let wanted = L::max(L::sub_saturating(old, error), L::splat(0));
                 let new = L::select(mask, L::min(wanted, L::splat(IMPULSE_MAX.to_bits())), old);
                 L::store(new, &mut point.normal_lambda);
-                care.apply(&mut pair, &point.normal, L::sub(new, old));
+                policy.apply(&mut pair, &point.normal, L::sub(new, old));
             }
         }
         pair.store(bodies, &batch.changed);
@@ -78,9 +78,13 @@ impl Operation<Contacts> for ApplyRestitution {
 
 /// Where a point approached fast enough, and was pushed.
 #[inline(always)]
-fn bounces<L: Lanes<N>, const N: usize>(special: &Special<N>, i: usize, constants: &Constants) -> L::Mask {
+fn bounces<L: Lanes<N>, const N: usize>(
+    extras: &ContactExtras<N>,
+    i: usize,
+    constants: &Constants,
+) -> L::Mask {
     let threshold = L::splat(1 - constants.restitution_threshold);
-    let fast = L::greater(threshold, L::load(&special.approach[i]));
-    let pushed = L::negative(L::load(&special.pushed[i]));
-    L::both(L::both(fast, pushed), L::greater(L::load(&special.restitution), L::splat(0)))
+    let fast = L::greater(threshold, L::load(&extras.approach[i]));
+    let pushed = L::negative(L::load(&extras.pushed[i]));
+    L::both(L::both(fast, pushed), L::greater(L::load(&extras.restitution), L::splat(0)))
 }

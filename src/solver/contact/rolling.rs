@@ -10,38 +10,42 @@
 //! |L / D| s <= R sum Ln / Dn
 //! ```
 
-use super::super::TouchingPair;
+use super::super::ActiveContact;
 use super::super::body_list::BodyList;
-use super::super::pair::{Pair, clamp};
+use super::super::pair::{BodyPairW, clamp};
 use super::super::row::{Denominator, MassFractions, Row as ScalarRow, impulse_of, lambda_of};
 use super::TANGENT_MAX;
 use super::batch::Row;
-use super::care::Care;
-use super::rows::grip;
-use crate::lanes::{Ints, Lanes};
+use super::overflow_policy::OverflowPolicy;
+use super::rows::friction_ratio;
 use crate::math::{Speed, Unit, fx_div, round_shift_wide, saturate_wide};
+use crate::simd::{Ints, Lanes};
 
 /// The rolling rows of a batch.
 #[derive(Clone, Debug)]
 pub(super) struct RollingRows<const N: usize> {
     pub(super) row: Row<N>,
     /// Limit per unit of a point's normal impulse: `R D / (s Dn)`.
-    pub(super) grips: [Ints<N>; 2],
+    pub(super) friction_ratios: [Ints<N>; 2],
     pub(super) lambda: Ints<N>,
     denominators: [Denominator; N],
 }
 
 impl<const N: usize> RollingRows<N> {
     /// Rows of a batch in which no lane has rolling resistance.
-    pub(super) const NONE: Self =
-        RollingRows { row: Row::NONE, grips: [Ints::ZERO; 2], lambda: Ints::ZERO, denominators: [0; N] };
+    pub(super) const NONE: Self = RollingRows {
+        row: Row::NONE,
+        friction_ratios: [Ints::ZERO; 2],
+        lambda: Ints::ZERO,
+        denominators: [0; N],
+    };
 
     /// Makes the row of a contact. `inverse_normals` are the reciprocals of its points' denominators; that of a missing
     /// point does not matter.
     pub(super) fn fill(
         &mut self,
         lane: usize,
-        pair: &TouchingPair,
+        pair: &ActiveContact,
         carried: Speed,
         list: &BodyList,
         inverse_normals: [Unit; 2],
@@ -54,9 +58,9 @@ impl<const N: usize> RollingRows<N> {
         let (e, f) = row.turning_parts();
         (self.row.e_a.0[lane], self.row.e_b.0[lane]) = (e[0].to_bits(), e[1].to_bits());
         (self.row.a[2].0[lane], self.row.b[2].0[lane]) = (f[0].to_bits(), f[1].to_bits());
-        for (grips, inverse) in self.grips.iter_mut().zip(inverse_normals) {
+        for (friction_ratios, inverse) in self.friction_ratios.iter_mut().zip(inverse_normals) {
             let ratio = round_shift_wide(i128::from(denominator) * i128::from(inverse.to_bits()), 30);
-            grips.0[lane] = grip(length, saturate_wide(ratio)).to_bits();
+            friction_ratios.0[lane] = friction_ratio(length, saturate_wide(ratio)).to_bits();
         }
         self.lambda.0[lane] = lambda_of(carried, denominator).clamp(-TANGENT_MAX, TANGENT_MAX).to_bits();
         self.denominators[lane] = denominator;
@@ -67,14 +71,14 @@ impl<const N: usize> RollingRows<N> {
     pub(super) fn solve<L: Lanes<N>>(
         &mut self,
         limit: L::Int,
-        pair: &mut Pair<L, N>,
-        care: &mut impl Care<L, N>,
+        pair: &mut BodyPairW<L, N>,
+        policy: &mut impl OverflowPolicy<L, N>,
     ) {
-        let vn = pair.velocity([L::splat(0), L::splat(0)], &self.row, care);
+        let vn = pair.velocity([L::splat(0), L::splat(0)], &self.row, policy);
         let old = L::load(&self.lambda);
         let new = clamp::<L, N>(L::sub_saturating(old, vn), limit);
         L::store(new, &mut self.lambda);
-        care.apply(pair, &self.row, L::sub(new, old));
+        policy.apply(pair, &self.row, L::sub(new, old));
     }
 
     /// The impulse of a lane that the next tick starts from.

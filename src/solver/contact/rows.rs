@@ -15,8 +15,10 @@ use super::super::row::RATIO_MAX;
 use super::TANGENT_MAX;
 use super::batch::{Batch, Row};
 use super::input::Input;
-use crate::lanes::{Ints, Lanes, Quad};
-use crate::math::{Fx, Grip, Length, Ratio, Shift, Step, narrow, round_shift_wide, saturate, saturate_wide};
+use crate::math::{
+    FrictionRatio, Fx, Length, Ratio, Shift, Step, narrow, round_shift_wide, saturate, saturate_wide,
+};
+use crate::simd::{Ints, Lanes, Quad};
 
 /// From the format of a unit vector to that of a lever ratio.
 const UNIT_TO_RATIO: i32 = UNIT - RATIO;
@@ -24,7 +26,7 @@ const STEP_TO_SHIFT: i32 = shift(Step::FRAC_NBITS - Shift::FRAC_NBITS);
 
 /// One body of each contact.
 #[derive(Clone, Copy)]
-struct End<L: Lanes<N>, const N: usize> {
+struct ContactSide<L: Lanes<N>, const N: usize> {
     fraction: L::Int,
     /// From the centre of mass to the origin of the manifold.
     to_origin: [L::Int; 2],
@@ -58,8 +60,8 @@ pub(super) fn fill<L: Lanes<N>, const N: usize>(
     let [mantissa_a, mantissa_b, shift_a, shift_b] = columns::<L, N>(inputs, |input| &input.gyrations);
     let [ax, ay, bx, by] = columns::<L, N>(inputs, |input| &input.to_origin);
     let ends = [
-        End::<L, N>::new(fraction_a, [ax, ay], mantissa_a, shift_a),
-        End::<L, N>::new(fraction_b, [bx, by], mantissa_b, shift_b),
+        ContactSide::<L, N>::new(fraction_a, [ax, ay], mantissa_a, shift_a),
+        ContactSide::<L, N>::new(fraction_b, [bx, by], mantissa_b, shift_b),
     ];
     let [x0, y0, x1, y1] = columns::<L, N>(inputs, |input| &input.anchors);
     let [normal_0, normal_1, carried, _] = columns::<L, N>(inputs, |input| &input.carried);
@@ -84,7 +86,7 @@ pub(super) fn fill<L: Lanes<N>, const N: usize>(
         L::store(separation, &mut point.separation);
         let normal = fill_row::<L, N>(&mut point.normal, n, &ends, anchor, inverses);
         let ratio = ratio::<L, N>(&tangent, L::load(inverses));
-        L::store(product::<L, N>(friction, &ratio), &mut point.grip);
+        L::store(product::<L, N>(friction, &ratio), &mut point.friction_ratio);
         let normal_lambda = product::<L, N>(carried, &normal);
         let normal_lambda = L::min(L::max(normal_lambda, L::splat(0)), L::splat(IMPULSE_MAX.to_bits()));
         L::store(normal_lambda, &mut point.normal_lambda);
@@ -108,14 +110,14 @@ fn columns<L: Lanes<N>, const N: usize>(inputs: &[Input; N], quad: impl Fn(&Inpu
     L::transposed(rows)
 }
 
-impl<L: Lanes<N>, const N: usize> End<L, N> {
+impl<L: Lanes<N>, const N: usize> ContactSide<L, N> {
     /// `mantissa` and `exponent` are those of `1 / k`.
     #[inline(always)]
     fn new(fraction: L::Int, to_origin: [L::Int; 2], mantissa: L::Int, exponent: L::Int) -> Self {
         const DIFFERENCE: i32 = shift(Ratio::FRAC_NBITS - Length::FRAC_NBITS);
         // Only a body that does not turn has a smaller exponent, and then the mantissa is 0.
         let shift = L::max(L::sub(exponent, L::splat(DIFFERENCE)), L::splat(1));
-        End { fraction, to_origin, mantissa, shift }
+        ContactSide { fraction, to_origin, mantissa, shift }
     }
 
     /// The lever ratios of impulses along `n` at the anchors.
@@ -151,7 +153,7 @@ impl<L: Lanes<N>, const N: usize> End<L, N> {
 fn fill_row<L: Lanes<N>, const N: usize>(
     row: &mut Row<N>,
     n: [L::Int; 2],
-    ends: &[End<L, N>; 2],
+    ends: &[ContactSide<L, N>; 2],
     anchor: [L::Int; 2],
     inverses: &mut Ints<N>,
 ) -> Long<L, N> {
@@ -211,7 +213,7 @@ fn ratio<L: Lanes<N>, const N: usize>(tangent: &Long<L, N>, normal_inverse: L::I
 }
 
 /// `mu r`, with `r = Dt / Dn` with 30 fraction bits, saturated.
-pub(super) fn grip(friction: Fx, ratio: i64) -> Grip {
+pub(super) fn friction_ratio(friction: Fx, ratio: i64) -> FrictionRatio {
     let friction = i128::from(narrow::<fixed::types::extra::U20>(friction).to_bits());
-    Grip::from_bits(saturate(saturate_wide(round_shift_wide(friction * i128::from(ratio), 30))))
+    FrictionRatio::from_bits(saturate(saturate_wide(round_shift_wide(friction * i128::from(ratio), 30))))
 }

@@ -15,14 +15,14 @@ use core::cell::Cell;
 use super::super::batches::{BatchParts, Operation};
 use super::super::body::SolverBody;
 use super::super::context::Pass;
-use super::super::pair::{Pair, UNIT, beyond, clamp, shift};
+use super::super::pair::{BodyPairW, UNIT, beyond, clamp, shift};
 use super::batch::{Batch, Point};
-use super::care::{Calm, Care, Careful};
+use super::extras::ContactExtras;
+use super::overflow_policy::{OverflowPolicy, Saturating, Unchecked};
 use super::relax::measure;
-use super::special::Special;
 use super::{Constants, Contacts, TANGENT_MAX};
-use crate::lanes::{Ints, Lanes};
 use crate::math::{Rate, Shift, Speed, Unit};
+use crate::simd::{Ints, Lanes};
 
 /// Largest number of rounds in which the two points of a contact are solved against each other. At an impact a single
 /// round turns the body: ten boxes that fall on each other from 5 or 10 mm then sway by 12 mm, and with up to four
@@ -35,29 +35,29 @@ const SETTLED: Speed = Speed::lit("0.005");
 /// Which of a contact's two points is solved first. It alternates: the point that is solved first turns the body a
 /// little, and always the same way it makes a stack of ten boxes sway by 4.7 mm while it settles instead of 0.05 mm.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::solver) enum Sweep {
+pub(in crate::solver) enum PointOrder {
     Forward,
     Backward,
 }
 
-impl Sweep {
+impl PointOrder {
     /// The order in an iteration of a sub-step: successive sub-steps differ, and so do successive iterations.
     pub(in crate::solver) const fn of(sub_step: u64, iteration: u32) -> Self {
-        if sub_step % 2 == iteration as u64 % 2 { Sweep::Forward } else { Sweep::Backward }
+        if sub_step % 2 == iteration as u64 % 2 { PointOrder::Forward } else { PointOrder::Backward }
     }
 }
 
 /// One iteration with bias, at the separations that the last relax pass has measured.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::solver) struct Solve {
-    pub(in crate::solver) sweep: Sweep,
+    pub(in crate::solver) order: PointOrder,
     pub(in crate::solver) constants: Constants,
 }
 
 impl Operation<Contacts> for Solve {
     #[inline(always)]
     fn apply<L: Lanes<N>, const N: usize>(self, parts: BatchParts<'_, Contacts, N>) {
-        let settings = Settings { pass: Pass::Bias, sweep: self.sweep, constants: &self.constants };
+        let settings = Settings { pass: Pass::Bias, order: self.order, constants: &self.constants };
         solve::<L, N>(parts, settings);
     }
 }
@@ -66,27 +66,27 @@ impl Operation<Contacts> for Solve {
 #[derive(Clone, Copy)]
 pub(super) struct Settings<'a> {
     pub(super) pass: Pass,
-    pub(super) sweep: Sweep,
+    pub(super) order: PointOrder,
     pub(super) constants: &'a Constants,
 }
 
 /// Iterates without a check of any sum if the batch is calm, and again with all checks if it turns out not to be.
 #[inline(always)]
 pub(super) fn solve<L: Lanes<N>, const N: usize>(parts: BatchParts<'_, Contacts, N>, settings: Settings<'_>) {
-    let BatchParts { batch, extra: mut special, bodies, faults, .. } = parts;
-    if batch.calm && settings.constants.calm {
-        let mut calm = Calm::<L, N>::new();
-        let solved = iterate(batch, None, settings, bodies, &mut calm);
-        if calm.held() {
-            solved.store(batch, special, bodies);
+    let BatchParts { batch, extra: mut extras, bodies, faults, .. } = parts;
+    if batch.unchecked && settings.constants.unchecked {
+        let mut unchecked = Unchecked::<L, N>::new();
+        let solved = iterate(batch, None, settings, bodies, &mut unchecked);
+        if unchecked.held() {
+            solved.store(batch, extras, bodies);
             return;
         }
         // A batch that is not calm now will hardly be calm later in the tick.
-        batch.calm = false;
+        batch.unchecked = false;
     }
-    let careful = &mut Careful(faults);
-    let solved: Solved<L, N> = iterate(batch, special.as_deref_mut(), settings, bodies, careful);
-    solved.store(batch, special, bodies);
+    let careful = &mut Saturating(faults);
+    let solved: Solved<L, N> = iterate(batch, extras.as_deref_mut(), settings, bodies, careful);
+    solved.store(batch, extras, bodies);
 }
 
 /// The result of an iteration, before it is stored.
@@ -96,58 +96,59 @@ struct Solved<L: Lanes<N>, const N: usize> {
     /// The impulses of the points, in that order.
     normal_lambdas: [L::Int; 2],
     tangent_lambda: L::Int,
-    pair: Pair<L, N>,
+    pair: BodyPairW<L, N>,
 }
 
-/// One iteration. `special` is left out of batches that are calm.
+/// One iteration. `extras` is left out of batches that are calm.
 #[inline(always)]
-fn iterate<L: Lanes<N>, C: Care<L, N>, const N: usize>(
+fn iterate<L: Lanes<N>, C: OverflowPolicy<L, N>, const N: usize>(
     batch: &mut Batch<N>,
-    special: Option<&mut Special<N>>,
+    extras: Option<&mut ContactExtras<N>>,
     settings: Settings<'_>,
     bodies: &[Cell<SolverBody>],
-    care: &mut C,
+    policy: &mut C,
 ) -> Solved<L, N> {
     if settings.pass == Pass::Relax {
-        measure(batch, bodies, care);
+        measure(batch, bodies, policy);
     }
-    let mut pair = Pair::<L, N>::load(bodies, &batch.bodies);
-    care.see(&pair);
+    let mut pair = BodyPairW::<L, N>::load(bodies, &batch.bodies);
+    policy.see(&pair);
     let (n, t) = batch.directions::<L>();
-    let places = match (settings.sweep, batch.count) {
-        (Sweep::Backward, 2) => [1, 0],
+    let places = match (settings.order, batch.count) {
+        (PointOrder::Backward, 2) => [1, 0],
         _ => [0, 1],
     };
     let points = [&batch.points[places[0]], &batch.points[places[1]]];
     let normals = Normals::<L, N>::new(batch, settings, n);
     let normal_lambdas = if batch.count == 2 {
-        normals.solve_both(points, &mut pair, care)
+        normals.solve_both(points, &mut pair, policy)
     } else {
-        [normals.solve_one(points[0], &mut pair, care), L::splat(0)]
+        [normals.solve_one(points[0], &mut pair, policy), L::splat(0)]
     };
     let mut surface_speed = L::splat(0);
-    if let Some(special) = special {
-        surface_speed = L::load(&special.surface_speed);
-        if special.rolls {
-            let grips = [&special.rolling.grips[places[0]], &special.rolling.grips[places[1]]];
-            let limit = limit::<L, C, N>(grips, normal_lambdas);
-            special.rolling.solve(limit, &mut pair, care);
+    if let Some(extras) = extras {
+        surface_speed = L::load(&extras.surface_speed);
+        if extras.rolls {
+            let friction_ratios =
+                [&extras.rolling.friction_ratios[places[0]], &extras.rolling.friction_ratios[places[1]]];
+            let limit = limit::<L, C, N>(friction_ratios, normal_lambdas);
+            extras.rolling.solve(limit, &mut pair, policy);
         }
     }
     // Coulomb friction: an impulse against sliding, at most as large as the normal impulses allow.
-    let vt = C::add(pair.velocity(t, &batch.tangent, care), surface_speed);
-    let limit = limit::<L, C, N>([&points[0].grip, &points[1].grip], normal_lambdas);
+    let vt = C::add(pair.velocity(t, &batch.tangent, policy), surface_speed);
+    let limit = limit::<L, C, N>([&points[0].friction_ratio, &points[1].friction_ratio], normal_lambdas);
     let old = L::load(&batch.tangent_lambda);
-    care.see_impulse(old);
+    policy.see_impulse(old);
     let tangent_lambda = clamp::<L, N>(C::sub(old, vt), limit);
-    care.apply(&mut pair, &batch.tangent, L::sub(tangent_lambda, old));
+    policy.apply(&mut pair, &batch.tangent, L::sub(tangent_lambda, old));
     Solved { places, normal_lambdas, tangent_lambda, pair }
 }
 
 impl<L: Lanes<N>, const N: usize> Solved<L, N> {
     /// Stores the impulses in the batch, and the velocities in its bodies.
     #[inline(always)]
-    fn store(self, batch: &mut Batch<N>, special: Option<&mut Special<N>>, bodies: &[Cell<SolverBody>]) {
+    fn store(self, batch: &mut Batch<N>, extras: Option<&mut ContactExtras<N>>, bodies: &[Cell<SolverBody>]) {
         let Solved { places, normal_lambdas, tangent_lambda, pair } = self;
         batch.push::<L>(places[0], normal_lambdas[0]);
         if batch.count == 2 {
@@ -155,8 +156,8 @@ impl<L: Lanes<N>, const N: usize> Solved<L, N> {
         }
         L::store(tangent_lambda, &mut batch.tangent_lambda);
         pair.store(bodies, &batch.changed);
-        if let Some(special) = special {
-            special.remember_pushes::<L>(batch);
+        if let Some(extras) = extras {
+            extras.remember_pushes::<L>(batch);
         }
     }
 }
@@ -195,26 +196,31 @@ impl<L: Lanes<N>, const N: usize> Normals<L, N> {
 
     /// Solves a point for the first time. Returns its impulse.
     #[inline(always)]
-    fn solve_one<C: Care<L, N>>(&self, point: &Point<N>, pair: &mut Pair<L, N>, care: &mut C) -> L::Int {
+    fn solve_one<C: OverflowPolicy<L, N>>(
+        &self,
+        point: &Point<N>,
+        pair: &mut BodyPairW<L, N>,
+        policy: &mut C,
+    ) -> L::Int {
         let old = L::load(&point.normal_lambda);
-        care.see_impulse(old);
-        care.see_separation(L::load(&point.separation));
-        let new = self.wanted(point, old, pair, care);
-        care.apply(pair, &point.normal, L::sub(new, old));
+        policy.see_impulse(old);
+        policy.see_separation(L::load(&point.separation));
+        let new = self.wanted(point, old, pair, policy);
+        policy.apply(pair, &point.normal, L::sub(new, old));
         new
     }
 
     /// Solves two points against each other, until the second leaves the first alone. Returns their impulses.
     #[inline(always)]
-    fn solve_both<C: Care<L, N>>(
+    fn solve_both<C: OverflowPolicy<L, N>>(
         &self,
         [first, second]: [&Point<N>; 2],
-        pair: &mut Pair<L, N>,
-        care: &mut C,
+        pair: &mut BodyPairW<L, N>,
+        policy: &mut C,
     ) -> [L::Int; 2] {
-        let one = self.solve_one(first, pair, care);
+        let one = self.solve_one(first, pair, policy);
         let old = L::load(&second.normal_lambda);
-        let two = self.solve_one(second, pair, care);
+        let two = self.solve_one(second, pair, policy);
         let mut lambdas = [one, two];
         let settled = L::splat(SETTLED.to_bits() - 1);
         let mut unsettled = beyond::<L, N>(L::sub(two, old), settled);
@@ -222,14 +228,14 @@ impl<L: Lanes<N>, const N: usize> Normals<L, N> {
             if !L::any(unsettled) {
                 break;
             }
-            let wanted = self.wanted(first, lambdas[0], pair, care);
+            let wanted = self.wanted(first, lambdas[0], pair, policy);
             let new = L::select(unsettled, wanted, lambdas[0]);
-            care.apply(pair, &first.normal, L::sub(new, lambdas[0]));
+            policy.apply(pair, &first.normal, L::sub(new, lambdas[0]));
             lambdas[0] = new;
-            let wanted = self.wanted(second, lambdas[1], pair, care);
+            let wanted = self.wanted(second, lambdas[1], pair, policy);
             let new = L::select(unsettled, wanted, lambdas[1]);
             let d = L::sub(new, lambdas[1]);
-            care.apply(pair, &second.normal, d);
+            policy.apply(pair, &second.normal, d);
             lambdas[1] = new;
             unsettled = L::both(unsettled, beyond::<L, N>(d, settled));
         }
@@ -238,14 +244,14 @@ impl<L: Lanes<N>, const N: usize> Normals<L, N> {
 
     /// The contact equation: the accumulated impulse that a point should have.
     #[inline(always)]
-    fn wanted<C: Care<L, N>>(
+    fn wanted<C: OverflowPolicy<L, N>>(
         &self,
         point: &Point<N>,
         old: L::Int,
-        pair: &Pair<L, N>,
-        care: &mut C,
+        pair: &BodyPairW<L, N>,
+        policy: &mut C,
     ) -> L::Int {
-        let vn = pair.velocity(self.n, &point.normal, care);
+        let vn = pair.velocity(self.n, &point.normal, policy);
         let separation = L::load(&point.separation);
         let gap = L::greater(separation, L::splat(0));
         match self.pass {
@@ -254,14 +260,14 @@ impl<L: Lanes<N>, const N: usize> Normals<L, N> {
                 let mass_scale = L::select(gap, L::splat(Unit::ONE.to_bits()), self.mass_scale);
                 let impulse_scale = L::select(gap, L::splat(0), self.impulse_scale);
                 let wide = L::add_wide(L::mul(mass_scale, error), L::mul(impulse_scale, old));
-                care.impulse(L::max(C::sub(old, L::narrow::<UNIT>(wide)), L::splat(0)))
+                policy.impulse(L::max(C::sub(old, L::narrow::<UNIT>(wide)), L::splat(0)))
             }
             // A gap that the bias pass has not closed is left to the next sub-step: to slow an approach down before
             // it arrives, and to bounce there, would make a ball rebound from above the floor.
             Pass::Relax => {
                 let speed = L::select(gap, self.speed_of::<C>(separation, self.rate), L::splat(0));
                 let untouched = L::both(gap, L::greater(L::splat(1), old));
-                let wanted = care.impulse(L::max(C::sub(old, C::add(vn, speed)), L::splat(0)));
+                let wanted = policy.impulse(L::max(C::sub(old, C::add(vn, speed)), L::splat(0)));
                 L::select(untouched, old, wanted)
             }
         }
@@ -270,14 +276,14 @@ impl<L: Lanes<N>, const N: usize> Normals<L, N> {
     /// The velocity that a separation calls for: a gap may close within this sub-step, but not more; an overlap is
     /// pushed out slowly.
     #[inline(always)]
-    fn bias<C: Care<L, N>>(&self, separation: L::Int, gap: L::Mask) -> L::Int {
+    fn bias<C: OverflowPolicy<L, N>>(&self, separation: L::Int, gap: L::Mask) -> L::Int {
         let overlap = L::min(C::add(separation, self.slop), L::splat(0));
         let distance = L::select(gap, separation, overlap);
         L::max(self.speed_of::<C>(distance, L::select(gap, self.rate, self.bias_rate)), self.push_speed)
     }
 
     #[inline(always)]
-    fn speed_of<C: Care<L, N>>(&self, distance: L::Int, rate: L::Int) -> L::Int {
+    fn speed_of<C: OverflowPolicy<L, N>>(&self, distance: L::Int, rate: L::Int) -> L::Int {
         const EXTRA: i32 = shift(Shift::FRAC_NBITS + Rate::FRAC_NBITS - Speed::FRAC_NBITS);
         L::narrow::<EXTRA>(L::mul(C::clamp(distance, self.separation_max), rate))
     }
@@ -285,12 +291,12 @@ impl<L: Lanes<N>, const N: usize> Normals<L, N> {
 
 /// The largest impulse of a row that the normal impulses of both points limit.
 #[inline(always)]
-fn limit<L: Lanes<N>, C: Care<L, N>, const N: usize>(
-    grips: [&Ints<N>; 2],
+fn limit<L: Lanes<N>, C: OverflowPolicy<L, N>, const N: usize>(
+    friction_ratios: [&Ints<N>; 2],
     normal_lambdas: [L::Int; 2],
 ) -> L::Int {
-    let first = L::mul(L::load(grips[0]), normal_lambdas[0]);
-    let second = L::mul(L::load(grips[1]), normal_lambdas[1]);
+    let first = L::mul(L::load(friction_ratios[0]), normal_lambdas[0]);
+    let second = L::mul(L::load(friction_ratios[1]), normal_lambdas[1]);
     L::min(C::limit(L::add_wide(first, second)), L::splat(TANGENT_MAX.to_bits()))
 }
 

@@ -5,13 +5,13 @@ use alloc::vec::Vec;
 use super::super::batches::Batches;
 use super::super::pair::{UNIT, clamp};
 use super::batch::Batch;
-use super::care::GRIP;
 use super::input::Input;
+use super::overflow_policy::FRICTION_RATIO;
 use super::rows::Inverses;
 use super::{ContactSet, Contacts};
 use crate::collision::{Contact, PointImpulse};
-use crate::lanes::{Ints, Kernel, Lanes, Machine, Scalar, prefetch};
 use crate::math::Speed;
+use crate::simd::{Ints, Kernel, Lanes, Machine, Scalar, prefetch};
 
 /// Prefetch distance in batches: in the order of colours, contacts are random accesses.
 const CONTACTS_AHEAD: usize = 2;
@@ -77,10 +77,10 @@ fn shares_of_friction<L: Lanes<N>, const N: usize>(batch: &Batch<N>) -> [L::Int;
         return [whole, L::splat(0)];
     }
     let [first, second] = &batch.points;
-    let first = L::mul(L::load(&first.grip), L::load(&first.normal_lambda));
-    let second = L::mul(L::load(&second.grip), L::load(&second.normal_lambda));
-    let (first, _) = L::narrow_saturating::<GRIP>(first);
-    let (second, _) = L::narrow_saturating::<GRIP>(second);
+    let first = L::mul(L::load(&first.friction_ratio), L::load(&first.normal_lambda));
+    let second = L::mul(L::load(&second.friction_ratio), L::load(&second.normal_lambda));
+    let (first, _) = L::narrow_saturating::<FRICTION_RATIO>(first);
+    let (second, _) = L::narrow_saturating::<FRICTION_RATIO>(second);
     let half = clamp::<L, N>(L::narrow::<1>(L::mul(whole, L::splat(1))), first);
     let rest = clamp::<L, N>(L::sub(whole, half), second);
     [L::sub(whole, rest), rest]
@@ -117,7 +117,7 @@ impl<const N: usize> Kernel<N> for Store<'_, N> {
             for (_, index, _) in records.get(number + CONTACTS_AHEAD).into_iter().flat_map(Records::lanes) {
                 prefetch(&contacts[index]);
             }
-            let special = if batch.special { extras.next() } else { None };
+            let extras = if batch.extras { extras.next() } else { None };
             let impulses = record.impulses::<L>(batch);
             for (lane, index, count) in record.lanes() {
                 let point = |i: usize| {
@@ -129,7 +129,7 @@ impl<const N: usize> Kernel<N> for Store<'_, N> {
                     }
                 };
                 let second = if count > 1 { point(1) } else { PointImpulse::default() };
-                let rolling = special.map_or(Speed::ZERO, |special| special.rolling.impulse(lane));
+                let rolling = extras.map_or(Speed::ZERO, |extras| extras.rolling.impulse(lane));
                 contacts[index].remember([point(0), second], count, rolling);
                 pushed[index] =
                     batch.pushed[0] >> lane & 1 != 0 || count > 1 && batch.pushed[1] >> lane & 1 != 0;
@@ -141,8 +141,8 @@ impl<const N: usize> Kernel<N> for Store<'_, N> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lanes::Scalar;
     use crate::math::Rng;
+    use crate::simd::Scalar;
 
     /// The shares of both points add up to the impulse along the tangent. Each is at most what its friction allows, and
     /// half of the impulse where both points can have that much.
@@ -154,7 +154,7 @@ mod tests {
             let limits = [0, 1].map(|i| {
                 let limit = i64::from(rng.below(1000));
                 // A grip of 1.
-                batch.points[i].grip.0[0] = 1 << 20;
+                batch.points[i].friction_ratio.0[0] = 1 << 20;
                 batch.points[i].normal_lambda.0[0] = i32::try_from(limit).expect("below 1000");
                 limit
             });

@@ -1,12 +1,12 @@
 //! The surface of a contact: how the materials of two shapes combine.
 
 use crate::body::Material;
-use crate::math::{Fx, Grip, Speed, Unit, fx_mul, narrow};
+use crate::math::{FrictionRatio, Fx, Speed, Unit, fx_mul, narrow};
 
 /// The common surface of two shapes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Surface {
-    pub(crate) friction: Grip,
+    pub(crate) friction: FrictionRatio,
     pub(crate) restitution: Unit,
     /// Relative speed of the two surfaces by themselves, in m/s.
     pub(crate) surface_speed: Speed,
@@ -35,7 +35,7 @@ impl Surface {
     }
 
     /// Whether a contact needs more than rows along the normal and the tangent.
-    pub(super) fn is_special(&self) -> bool {
+    pub(super) fn has_extras(&self) -> bool {
         self.restitution.is_positive()
             || self.surface_speed != Speed::ZERO
             || self.rolling_resistance.is_positive()

@@ -7,12 +7,12 @@ use core::cell::Cell;
 
 use super::super::batches::{BatchParts, Operation};
 use super::super::body::SolverBody;
-use super::super::pair::Pair;
+use super::super::pair::BodyPairW;
 use super::Contacts;
 use super::batch::Batch;
-use super::care::{Calm, Care, Careful};
-use super::special::Special;
-use crate::lanes::Lanes;
+use super::extras::ContactExtras;
+use super::overflow_policy::{OverflowPolicy, Saturating, Unchecked};
+use crate::simd::Lanes;
 
 /// Applies the accumulated impulses of all rows.
 #[derive(Clone, Copy, Debug)]
@@ -22,18 +22,18 @@ impl Operation<Contacts> for WarmStart {
     #[inline(always)]
     fn apply<L: Lanes<N>, const N: usize>(self, parts: BatchParts<'_, Contacts, N>) {
         let BatchParts { batch, extra, bodies, faults, .. } = parts;
-        if batch.calm {
-            let mut calm = Calm::<L, N>::new();
-            let pair = warm_started(batch, bodies, &mut calm);
-            if calm.held() {
+        if batch.unchecked {
+            let mut unchecked = Unchecked::<L, N>::new();
+            let pair = warm_started(batch, bodies, &mut unchecked);
+            if unchecked.held() {
                 pair.store(bodies, &batch.changed);
                 return;
             }
         }
-        let care = &mut Careful(faults);
-        let mut pair: Pair<L, N> = warm_started(batch, bodies, care);
-        if let Some(Special { rolls: true, rolling, .. }) = extra {
-            care.apply(&mut pair, &rolling.row, L::load(&rolling.lambda));
+        let policy = &mut Saturating(faults);
+        let mut pair: BodyPairW<L, N> = warm_started(batch, bodies, policy);
+        if let Some(ContactExtras { rolls: true, rolling, .. }) = extra {
+            policy.apply(&mut pair, &rolling.row, L::load(&rolling.lambda));
         }
         pair.store(bodies, &batch.changed);
     }
@@ -44,13 +44,13 @@ impl Operation<Contacts> for WarmStart {
 fn warm_started<L: Lanes<N>, const N: usize>(
     batch: &Batch<N>,
     bodies: &[Cell<SolverBody>],
-    care: &mut impl Care<L, N>,
-) -> Pair<L, N> {
-    let mut pair = Pair::<L, N>::load(bodies, &batch.bodies);
-    care.see(&pair);
+    policy: &mut impl OverflowPolicy<L, N>,
+) -> BodyPairW<L, N> {
+    let mut pair = BodyPairW::<L, N>::load(bodies, &batch.bodies);
+    policy.see(&pair);
     for point in &batch.points[..batch.count] {
-        care.apply_again(&mut pair, &point.normal, L::load(&point.normal_lambda));
+        policy.apply_again(&mut pair, &point.normal, L::load(&point.normal_lambda));
     }
-    care.apply_again(&mut pair, &batch.tangent, L::load(&batch.tangent_lambda));
+    policy.apply_again(&mut pair, &batch.tangent, L::load(&batch.tangent_lambda));
     pair
 }

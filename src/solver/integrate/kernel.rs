@@ -6,20 +6,20 @@ use super::super::body::SolverBody;
 use super::super::limits::Faults;
 use super::super::pair::{UNIT, beyond};
 use super::sub_step::SubStep;
-use super::{Mover, SHIFT_MAX};
-use crate::lanes::{Kernel, Lanes, Motion};
+use super::{MovingBody, SHIFT_MAX};
 use crate::math::{Speed, Unit};
+use crate::simd::{Kernel, Lanes, VelocityW};
 
 /// Integrates velocities.
 pub(super) struct Velocities<'a> {
-    pub(super) movers: &'a [Mover],
+    pub(super) moving: &'a [MovingBody],
     pub(super) bodies: &'a [Cell<SolverBody>],
     pub(super) speed_max: Speed,
 }
 
 /// Integrates displacements.
 pub(super) struct Displacements<'a> {
-    pub(super) movers: &'a [Mover],
+    pub(super) moving: &'a [MovingBody],
     pub(super) bodies: &'a [Cell<SolverBody>],
     pub(super) sub_step: SubStep,
     pub(super) faults: &'a mut Faults,
@@ -28,13 +28,13 @@ pub(super) struct Displacements<'a> {
 impl<const N: usize> Kernel<N> for Velocities<'_> {
     #[inline(always)]
     fn run<L: Lanes<N>>(self) {
-        let Velocities { movers, bodies, speed_max } = self;
+        let Velocities { moving, bodies, speed_max } = self;
         let limits = SpeedLimits { on_axis: on_axis(speed_max), turning: speed_max.to_bits() };
-        for movers in movers.chunks(N) {
+        for moving in moving.chunks(N) {
             let is_done =
-                movers.first_chunk().is_some_and(|movers| velocities::<L, N>(movers, bodies, limits));
+                moving.first_chunk().is_some_and(|moving| velocities::<L, N>(moving, bodies, limits));
             if !is_done {
-                one_by_one(movers, bodies, |mover, body| mover.integrate_velocity(body, speed_max));
+                one_by_one(moving, bodies, |moving, body| moving.integrate_velocity(body, speed_max));
             }
         }
     }
@@ -43,13 +43,13 @@ impl<const N: usize> Kernel<N> for Velocities<'_> {
 impl<const N: usize> Kernel<N> for Displacements<'_> {
     #[inline(always)]
     fn run<L: Lanes<N>>(self) {
-        let Displacements { movers, bodies, sub_step, faults } = self;
-        for movers in movers.chunks(N) {
+        let Displacements { moving, bodies, sub_step, faults } = self;
+        for moving in moving.chunks(N) {
             let is_done =
-                movers.first_chunk().is_some_and(|movers| displacements::<L, N>(movers, bodies, sub_step));
+                moving.first_chunk().is_some_and(|moving| displacements::<L, N>(moving, bodies, sub_step));
             if !is_done {
-                one_by_one(movers, bodies, |mover, body| {
-                    mover.integrate_displacement(body, sub_step, faults);
+                one_by_one(moving, bodies, |moving, body| {
+                    moving.integrate_displacement(body, sub_step, faults);
                 });
             }
         }
@@ -58,14 +58,14 @@ impl<const N: usize> Kernel<N> for Displacements<'_> {
 
 #[cold]
 fn one_by_one(
-    movers: &[Mover],
+    moving: &[MovingBody],
     bodies: &[Cell<SolverBody>],
-    mut integrate: impl FnMut(&Mover, &mut SolverBody),
+    mut integrate: impl FnMut(&MovingBody, &mut SolverBody),
 ) {
-    for mover in movers {
-        let place = &bodies[mover.index as usize];
+    for moving in moving {
+        let place = &bodies[moving.index as usize];
         let mut body = place.get();
-        integrate(mover, &mut body);
+        integrate(moving, &mut body);
         place.set(body);
     }
 }
@@ -89,23 +89,23 @@ fn on_axis(speed_max: Speed) -> i32 {
 /// locked axis, or may be above a limit.
 #[inline(always)]
 fn velocities<L: Lanes<N>, const N: usize>(
-    movers: &[Mover; N],
+    moving: &[MovingBody; N],
     bodies: &[Cell<SolverBody>],
     limits: SpeedLimits,
 ) -> bool {
-    let [step_x, step_y, step_turn, _] = L::transposed(movers.each_ref().map(|mover| &mover.step));
-    let [linear, angular, special, _] = L::transposed(movers.each_ref().map(|mover| &mover.factors));
-    let at = movers.each_ref().map(|mover| mover.index);
-    let Motion { x, y, turn } = L::velocities(bodies, &at);
+    let [step_x, step_y, step_turn, _] = L::transposed(moving.each_ref().map(|moving| &moving.step));
+    let [linear, angular, extras, _] = L::transposed(moving.each_ref().map(|moving| &moving.factors));
+    let at = moving.each_ref().map(|moving| moving.index);
+    let VelocityW { x, y, turn } = L::velocities(bodies, &at);
     let [x, y] = [L::add_saturating(x, step_x), L::add_saturating(y, step_y)];
     let turn = L::add_saturating(turn, step_turn);
     let (on_axis, turning) = (L::splat(limits.on_axis), L::splat(limits.turning));
     let fast = L::either(beyond::<L, N>(x, on_axis), beyond::<L, N>(y, on_axis));
-    let unusual = L::either(L::negative(special), L::either(fast, beyond::<L, N>(turn, turning)));
+    let unusual = L::either(L::negative(extras), L::either(fast, beyond::<L, N>(turn, turning)));
     if L::any(unusual) {
         return false;
     }
-    let mut velocities = Motion { x, y, turn };
+    let mut velocities = VelocityW { x, y, turn };
     if L::any(L::greater(L::splat(Unit::ONE.to_bits()), L::min(linear, angular))) {
         velocities.x = towards_rest::<L, N>(x, linear);
         velocities.y = towards_rest::<L, N>(y, linear);
@@ -129,21 +129,21 @@ fn towards_rest<L: Lanes<N>, const N: usize>(speed: L::Int, factor: L::Int) -> L
 /// locked axis, or would move too far in the tick.
 #[inline(always)]
 fn displacements<L: Lanes<N>, const N: usize>(
-    movers: &[Mover; N],
+    moving: &[MovingBody; N],
     bodies: &[Cell<SolverBody>],
     sub_step: SubStep,
 ) -> bool {
-    let at = movers.each_ref().map(|mover| mover.index);
+    let at = moving.each_ref().map(|moving| moving.index);
     let (speeds, shifts) = (L::velocities(bodies, &at), L::shifts(bodies, &at));
     let advance = |sum, speed| L::add_saturating(sum, sub_step.distances::<L, N>(speed));
     let (x, y) = (advance(shifts.x, speeds.x), advance(shifts.y, speeds.y));
     let turn = advance(shifts.turn, speeds.turn);
     let limit = L::splat(SHIFT_MAX.to_bits());
     let far = L::either(beyond::<L, N>(x, limit), beyond::<L, N>(y, limit));
-    let is_special = movers.iter().any(Mover::is_special);
-    if is_special || L::any(L::either(far, beyond::<L, N>(turn, limit))) {
+    let has_extras = moving.iter().any(MovingBody::has_extras);
+    if has_extras || L::any(L::either(far, beyond::<L, N>(turn, limit))) {
         return false;
     }
-    L::set_shifts(bodies, &at, Motion { x, y, turn });
+    L::set_shifts(bodies, &at, VelocityW { x, y, turn });
     true
 }

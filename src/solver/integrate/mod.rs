@@ -13,8 +13,8 @@ use super::context::StepContext;
 use super::limits::Faults;
 use super::settings::Tuning;
 use crate::body::{Body, BodyKind, BodySettings, MotionLocks};
-use crate::lanes::Quad;
 use crate::math::{Fx, Shift, Speed, Unit, Vec2, fx_div, fx_mul, narrow, saturate};
+use crate::simd::Quad;
 use sub_step::SubStep;
 
 /// Largest displacement of a body in a tick along each axis, in metres.
@@ -22,7 +22,7 @@ const SHIFT_MAX: Shift = Shift::lit("15.999");
 
 /// A body that moves, and what changes its velocity in every sub-step of the tick.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Mover {
+pub(super) struct MovingBody {
     /// Velocity change by gravity and applied force along x and y, and by applied torque.
     step: Quad,
     /// Damping factors of the velocity and of the spin, `1 / (1 + h c)`: the implicit step, stable for any rate `c`.
@@ -33,13 +33,13 @@ pub(super) struct Mover {
     locks: MotionLocks,
 }
 
-impl Mover {
+impl MovingBody {
     pub(super) fn prepare(index: u32, body: &Body, tuning: &Tuning) -> Option<Self> {
         match body.kind() {
             BodyKind::Fixed => None,
             BodyKind::Kinematic => {
                 let factors = Quad([Unit::ONE.to_bits(), Unit::ONE.to_bits(), -1, 0]);
-                Some(Mover {
+                Some(MovingBody {
                     step: Quad::default(),
                     factors,
                     index,
@@ -61,7 +61,7 @@ impl Mover {
         let step: Vec2<Speed> = gravity_step + force_step;
         let factor = |damping| damping_factor(damping, tuning.rate).to_bits();
         let is_held = i32::from(locks.x || locks.y);
-        Mover {
+        MovingBody {
             step: Quad([step.x.to_bits(), step.y.to_bits(), spin_step.to_bits(), 0]),
             factors: Quad([factor(linear_damping), factor(angular_damping), -is_held, 0]),
             index,
@@ -77,9 +77,9 @@ impl Mover {
 
     /// Whether the body is not dynamic or has a locked axis.
     #[inline(always)]
-    pub(super) fn is_special(&self) -> bool {
-        let Quad([_, _, special, _]) = self.factors;
-        special < 0
+    pub(super) fn has_extras(&self) -> bool {
+        let Quad([_, _, extras, _]) = self.factors;
+        extras < 0
     }
 
     /// `v' = (v + h F / m) / (1 + h c)`, within the world's speed limit.
@@ -131,17 +131,17 @@ impl Mover {
 }
 
 /// Integrates the velocities of all bodies that move.
-pub(super) fn integrate_velocities(movers: &[Mover], context: &StepContext<'_>) {
+pub(super) fn integrate_velocities(moving: &[MovingBody], context: &StepContext<'_>) {
     let &StepContext { machine, bodies, tuning, .. } = context;
-    machine.run(kernel::Velocities { movers, bodies, speed_max: tuning.speed_max });
+    machine.run(kernel::Velocities { moving, bodies, speed_max: tuning.speed_max });
 }
 
 /// Integrates displacements from the new velocities.
-pub(super) fn integrate_displacements(movers: &[Mover], context: &StepContext<'_>) {
+pub(super) fn integrate_displacements(moving: &[MovingBody], context: &StepContext<'_>) {
     let &StepContext { machine, bodies, tuning, .. } = context;
     let mut faults = 0;
     let sub_step = SubStep::of(tuning.rate);
-    machine.run(kernel::Displacements { movers, bodies, sub_step, faults: &mut faults });
+    machine.run(kernel::Displacements { moving, bodies, sub_step, faults: &mut faults });
     context.add_faults(faults);
 }
 

@@ -1,7 +1,7 @@
 //! The distance that a speed covers in a sub-step.
 
-use crate::lanes::Lanes;
 use crate::math::{Shift, Speed};
+use crate::simd::Lanes;
 
 /// `1 / rate` seconds: no time step is ever rounded.
 #[derive(Clone, Copy)]
@@ -67,8 +67,8 @@ impl SubStep {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lanes::Scalar;
     use crate::math::Rng;
+    use crate::simd::Scalar;
     use std::vec::Vec;
 
     #[test]

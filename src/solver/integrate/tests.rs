@@ -5,8 +5,8 @@ use std::vec::Vec;
 use super::super::settings::SolverSettings;
 use super::*;
 use crate::fx;
-use crate::lanes::{Backend, Machine};
 use crate::math::Rng;
+use crate::simd::{Backend, Machine};
 use crate::threads::Threads;
 
 fn random_speed(rng: &mut Rng, size: Fx) -> Speed {
@@ -14,7 +14,7 @@ fn random_speed(rng: &mut Rng, size: Fx) -> Speed {
 }
 
 /// Mostly a dynamic body without locks.
-fn random_mover(index: u32, rng: &mut Rng) -> Mover {
+fn random_mover(index: u32, rng: &mut Rng) -> MovingBody {
     let one_in = |rng: &mut Rng, count| rng.below(count) == 0;
     let step = [0; 3].map(|_| random_speed(rng, fx!(1)).to_bits());
     let mut factor = || match rng.below(4) {
@@ -24,10 +24,10 @@ fn random_mover(index: u32, rng: &mut Rng) -> Mover {
     let factors = [factor(), factor()].map(|factor| i32::try_from(factor).expect("at most 1"));
     let dynamic = !one_in(rng, 40);
     let locks = MotionLocks { x: one_in(rng, 40), y: one_in(rng, 40), rotation: false };
-    let special = -i32::from(!dynamic || locks.x || locks.y);
-    Mover {
+    let extras = -i32::from(!dynamic || locks.x || locks.y);
+    MovingBody {
         step: Quad([step[0], step[1], step[2], 0]),
-        factors: Quad([factors[0], factors[1], special, 0]),
+        factors: Quad([factors[0], factors[1], extras, 0]),
         index,
         dynamic,
         locks,
@@ -56,14 +56,14 @@ fn every_machine_integrates_as_one_body_at_a_time() {
         let settings = SolverSettings { sub_steps: [1, 4, 16][round % 3], ..SolverSettings::default() };
         let tuning = Tuning::new(&settings, Vec2::ZERO, [60, 75, 250][round / 3 % 3]);
         let count = 1 + rng.below(20);
-        let movers: Vec<_> = (1..=count).map(|index| random_mover(index, &mut rng)).collect();
-        unusual += movers.iter().filter(|mover| mover.is_special()).count();
+        let moving: Vec<_> = (1..=count).map(|index| random_mover(index, &mut rng)).collect();
+        unusual += moving.iter().filter(|moving| moving.has_extras()).count();
         let bodies: Vec<_> = (0..=count).map(|_| random_body(&mut rng)).collect();
         let (mut alone, mut faults) = (bodies.clone(), 0);
-        for mover in &movers {
-            let body = &mut alone[mover.index as usize];
-            mover.integrate_velocity(body, tuning.speed_max);
-            mover.integrate_displacement(body, SubStep::of(tuning.rate), &mut faults);
+        for moving in &moving {
+            let body = &mut alone[moving.index as usize];
+            moving.integrate_velocity(body, tuning.speed_max);
+            moving.integrate_displacement(body, SubStep::of(tuning.rate), &mut faults);
         }
         all_faults += faults;
         let numbers = |body: &SolverBody| (body.velocity, body.spin, body.shift, body.turn);
@@ -72,10 +72,10 @@ fn every_machine_integrates_as_one_body_at_a_time() {
             let (mut wide, mut wide_faults) = (bodies.clone(), 0);
             let threads = Threads::default();
             let context = StepContext::new(machine, &threads, &tuning, &mut wide, &mut wide_faults);
-            integrate_velocities(&movers, &context);
-            integrate_displacements(&movers, &context);
+            integrate_velocities(&moving, &context);
+            integrate_displacements(&moving, &context);
             assert_eq!(wide_faults, faults);
-            assert!(wide.iter().map(numbers).eq(alone.iter().map(numbers)), "{backend:?}: {movers:?}");
+            assert!(wide.iter().map(numbers).eq(alone.iter().map(numbers)), "{backend:?}: {moving:?}");
         }
     }
     assert!(unusual > 1000 && all_faults > 100, "{unusual} special bodies, {all_faults} faults");
@@ -86,20 +86,20 @@ fn a_damped_speed_is_rounded_towards_rest_in_lanes_too() {
     let tuning = Tuning::new(&SolverSettings::default(), Vec2::ZERO, 60);
     let factors = [0, 1, 1 << 29, (1 << 30) - 1, 1 << 30];
     for (factor, speed) in factors.into_iter().flat_map(|factor| (-9..10).map(move |speed| (factor, speed))) {
-        let mover = |index| Mover {
+        let moving = |index| MovingBody {
             step: Quad::default(),
             factors: Quad([factor, factor, 0, 0]),
             index,
             dynamic: true,
             locks: MotionLocks::default(),
         };
-        let movers: Vec<_> = (1..=8).map(mover).collect();
+        let moving: Vec<_> = (1..=8).map(moving).collect();
         let speed = Speed::from_bits(speed);
         let body = SolverBody { velocity: Vec2::new(speed, -speed), spin: speed, ..SolverBody::default() };
         let mut bodies = [body; 9];
         let (threads, mut faults) = (Threads::default(), 0);
         let context = StepContext::new(Machine::default(), &threads, &tuning, &mut bodies, &mut faults);
-        integrate_velocities(&movers, &context);
+        integrate_velocities(&moving, &context);
         let expected = towards_rest(speed, Unit::from_bits(factor));
         let found = bodies.last().expect("nine");
         assert_eq!((found.velocity, found.spin), (Vec2::new(expected, -expected), expected));

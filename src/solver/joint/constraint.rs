@@ -7,33 +7,33 @@ use super::super::body_list::{BodyList, GROUND};
 use super::super::colour::Colouring;
 use super::super::context::{Pass, StepContext};
 use super::super::settings::Tuning;
-use super::basis::{Basis, Definitions, Known};
+use super::cache_key::{CacheKey, Definitions, Validity};
 use super::def::JointKind;
-use super::hinge::{AngleParts, End, Expired, HingeSet, Poses, Turning, node};
+use super::hinge::{AngleParts, Dirty, HingeBody, HingeSet, Poses, Turning, node};
 use super::list::JointList;
-use super::place::{Ends, Turned};
+use super::pose::{BodyRotation, Ends};
 use super::rotations::Rotations;
 use super::state::Joint;
 use crate::body::{Arena, Body, BodyId, JointId};
-use crate::lanes::{Machine, Quad};
 use crate::math::{Fx, Unit, Vec2, fx_mul, mul, widen};
+use crate::simd::{Machine, Quad};
 use crate::threads::Threads;
 
 /// All joints, for one tick.
 #[derive(Clone, Debug, Default)]
 pub(in crate::solver) struct JointSet {
-    basis: Basis,
+    cache_key: CacheKey,
     /// The slots of bodies with joints that are not among the bodies of the tick.
     anchors: Vec<u32>,
     /// For each body of the tick, its place in `bodies`, from 1; 0 if it has no joint.
     places: Vec<u32>,
     /// The properties of bodies that the arrangement of their joints depends on.
-    bodies: Vec<End>,
+    bodies: Vec<HingeBody>,
     /// The rotation coefficients of `bodies`. They are kept from tick to tick, and apart from `bodies` because every
     /// sub-step reads them.
     turning: Vec<Turning>,
     /// For each body of the tick.
-    turned: Vec<Turned>,
+    body_rotations: Vec<BodyRotation>,
     quads: Vec<Quad>,
     /// For each joint in the order of the state, what it is solved as.
     entries: Vec<Entry>,
@@ -72,12 +72,12 @@ fn hinge_parts(kind: &JointKind) -> Option<AngleParts> {
 impl JointSet {
     fn clear(&mut self) {
         let JointSet {
-            basis: _,
+            cache_key: _,
             anchors,
             places,
             bodies,
             turning,
-            turned,
+            body_rotations,
             quads,
             entries,
             hinges,
@@ -88,7 +88,7 @@ impl JointSet {
         places.clear();
         bodies.clear();
         turning.clear();
-        turned.clear();
+        body_rotations.clear();
         quads.clear();
         entries.clear();
         hinges.clear();
@@ -106,13 +106,13 @@ impl JointSet {
         let &JointSource { joints, slots, bodies, tuning } = source;
         let definitions =
             Definitions { joints: joints.revision(), bodies: bodies.revision(), tuning: *tuning };
-        match self.basis.renew(definitions, joints.returns(), slots, list.slots()) {
-            Known::All => self.resume(bodies, list),
-            Known::Arrangement => {
+        match self.cache_key.renew(definitions, joints.returns(), slots, list.slots()) {
+            Validity::All => self.resume(bodies, list),
+            Validity::Arrangement => {
                 self.hinges.reload(joints);
                 self.resume(bodies, list);
             }
-            Known::Nothing => {
+            Validity::Nothing => {
                 self.clear();
                 self.arrange(source, list, colouring);
                 self.sort(colouring);
@@ -148,7 +148,7 @@ impl JointSet {
                 None => Entry::Other(slot),
             });
         }
-        self.turned.resize(list.len(), Turned::default());
+        self.body_rotations.resize(list.len(), BodyRotation::default());
         self.quads.resize(list.len(), Quad::default());
     }
 
@@ -163,7 +163,7 @@ impl JointSet {
         }
         let place = &mut self.places[index as usize];
         if *place == 0 {
-            let end = End::new(index, bodies.at(slot), rate);
+            let end = HingeBody::new(index, bodies.at(slot), rate);
             self.turning.push(end.turning);
             self.bodies.push(end);
             *place = u32::try_from(self.bodies.len()).expect("fewer than 2^32 bodies");
@@ -175,7 +175,7 @@ impl JointSet {
     fn sort(&mut self, colouring: &mut Colouring) {
         let JointSet { entries, hinges, others, places, bodies, .. } = self;
         let is_alone = |index: u32| bodies[places[index as usize] as usize - 1].joints == 1;
-        colouring.sort(self.turned.len());
+        colouring.sort(self.body_rotations.len());
         let input_of = |&index: &u32| match entries[index as usize] {
             Entry::Hinge(input) => Some(input),
             Entry::Other(_) => None,
@@ -211,17 +211,17 @@ impl JointSet {
     pub(in crate::solver) fn refresh(&mut self, context: &StepContext<'_>) {
         let &StepContext { machine, bodies, tuning, .. } = context;
         let mut any_turned = false;
-        let JointSet { turning, turned, quads, .. } = self;
-        machine.run(Rotations { turning, bodies, turned, quads, any: &mut any_turned });
-        self.hinges.expire(if any_turned { Expired::Everything } else { Expired::Gaps });
-        self.list.refresh(bodies, &self.turned, tuning);
+        let JointSet { turning, body_rotations, quads, .. } = self;
+        machine.run(Rotations { turning, bodies, body_rotations, quads, any: &mut any_turned });
+        self.hinges.expire(if any_turned { Dirty::Everything } else { Dirty::Gaps });
+        self.list.refresh(bodies, &self.body_rotations, tuning);
     }
 
     /// Predicts the rotations in the coming sub-step from the velocities that the last one has left.
-    pub(in crate::solver) fn aim(&mut self, context: &StepContext<'_>) {
+    pub(in crate::solver) fn predict_rotations(&mut self, context: &StepContext<'_>) {
         let &StepContext { bodies, tuning, .. } = context;
         let JointSet { turning, quads, hinges, places, .. } = self;
-        let mut aim = |body: &Turning, stretch: Stretch| {
+        let mut predict = |body: &Turning, stretch: Stretch| {
             let spin = bodies[body.index as usize].get().spin;
             let turn = body.ahead_of(spin).clamp(-TURN_MAX, TURN_MAX);
             let (across, squared): (Unit, Unit) = (mul(stretch.half, turn), mul(turn, turn));
@@ -229,31 +229,31 @@ impl JointSet {
             let Quad(numbers) = &mut quads[body.index as usize];
             [numbers[2], numbers[3]] = [across.to_bits(), along.to_bits()];
         };
-        let [joint, mount] = [tuning.joint, tuning.mount].map(|softness| {
+        let [joint, anchored] = [tuning.joint, tuning.anchored].map(|softness| {
             let stretch = softness.stretch();
             Stretch { half: stretch / 2, sixth: stretch / 6 }
         });
-        turning.iter().for_each(|body| aim(body, joint));
+        turning.iter().for_each(|body| predict(body, joint));
         for index in hinges.mounted() {
-            aim(&turning[places[index as usize] as usize - 1], mount);
+            predict(&turning[places[index as usize] as usize - 1], anchored);
         }
     }
 
     pub(in crate::solver) fn warm_start(&mut self, context: &StepContext<'_>) {
         self.list.warm_start(context);
-        self.hinges.warm_start(Poses { quads: &self.quads, turned: &self.turned }, context);
+        self.hinges.warm_start(Poses { quads: &self.quads, body_rotations: &self.body_rotations }, context);
     }
 
     /// One iteration over all joints.
     pub(in crate::solver) fn solve(&mut self, pass: Pass, context: &StepContext<'_>) {
         self.list.solve(pass, context);
-        self.hinges.solve(pass, Poses { quads: &self.quads, turned: &self.turned }, context);
+        self.hinges.solve(pass, Poses { quads: &self.quads, body_rotations: &self.body_rotations }, context);
     }
 
     /// Stores impulses and angles for the next tick.
     pub(in crate::solver) fn store(&mut self, joints: &mut Arena<Joint, JointId>) {
-        self.hinges.store(joints, &self.turned);
-        self.list.store(joints, &self.turned);
+        self.hinges.store(joints, &self.body_rotations);
+        self.list.store(joints, &self.body_rotations);
     }
 
     /// The force and the torque about B's anchor that a joint has last exerted on B: `P / h`, from the velocities that
@@ -268,9 +268,9 @@ impl JointSet {
         self.clear();
         // Index 0 is the ground's.
         let indices = [1, 2];
-        let ends = [End::new(indices[0], a, tuning.rate), End::new(indices[1], b, tuning.rate)];
+        let ends = [HingeBody::new(indices[0], a, tuning.rate), HingeBody::new(indices[1], b, tuning.rate)];
         self.turning.extend(ends.map(|end| end.turning));
-        self.turned.resize(self.turned.len().max(3), Turned::default());
+        self.body_rotations.resize(self.body_rotations.len().max(3), BodyRotation::default());
         self.quads.resize(self.quads.len().max(3), Quad::default());
         match hinge_parts(&joint.def.kind) {
             Some(parts) => {
@@ -282,7 +282,7 @@ impl JointSet {
         let (threads, mut bodies, mut faults) = (Threads::default(), [SolverBody::default(); 3], 0);
         let context = StepContext::new(Machine::default(), &threads, tuning, &mut bodies, &mut faults);
         self.refresh(&context);
-        let place = Ends::prepare(joint, indices, [a, b]).place(context.bodies, &self.turned);
+        let place = Ends::prepare(joint, indices, [a, b]).place(context.bodies, &self.body_rotations);
         self.warm_start(&context);
         // The velocity of the lighter body has more significant bits.
         let (body, moved, arm) = if a.is_dynamic() && (!b.is_dynamic() || a.mass() < b.mass()) {

@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::options::{Drive, Limit, Spring, check, check_options, is_sane, option_builders};
+use super::options::{Drive, JointLimit, Spring, check, check_options, is_sane, option_builders};
 use super::parts::{Direction, Parts, slot};
 use crate::body::WorldError;
 use crate::fx;
@@ -15,14 +15,14 @@ pub struct Distance {
     /// Length in metres that is held rigidly, at least 0.001.
     pub rod: Option<Fx>,
     /// Range of the length in metres, 0 or more.
-    pub limit: Option<Limit>,
+    pub limit: Option<JointLimit>,
     /// Motor along the line: its speed in m/s is positive apart, its limit is a force in N.
     pub motor: Option<Drive>,
     /// Spring with a length in metres, 0 or more.
     pub spring: Option<Spring>,
     /// Least and largest force of the spring in N, positive apart: with `lower` 0 it only pushes, with `upper` 0 it
     /// only pulls.
-    pub spring_force: Option<Limit>,
+    pub spring_force: Option<JointLimit>,
 }
 
 /// Shortest rod in metres: a shorter one has no direction.
@@ -49,13 +49,13 @@ impl Distance {
 
     option_builders! {
         /// Sets the range of the length in metres.
-        limit(lower, upper) => Limit { lower, upper };
+        limit(lower, upper) => JointLimit { lower, upper };
         /// Sets a speed in m/s, positive apart, and the largest force in N.
         motor(speed, max_force) => Drive { speed, max: max_force };
         /// Sets a spring with a frequency in Hz and a length in metres.
         spring(hertz, damping_ratio, length) => Spring { hertz, damping_ratio, target: length };
         /// Sets the least and the largest force of the spring in N, positive apart.
-        spring_force(lower, upper) => Limit { lower, upper };
+        spring_force(lower, upper) => JointLimit { lower, upper };
     }
 
     pub(super) fn validate(&self) -> Result<(), WorldError> {
@@ -70,7 +70,7 @@ impl Distance {
     }
 
     pub(super) fn prepare(&self, parts: &mut Parts<'_>) {
-        let force = self.spring_force.unwrap_or(Limit { lower: Fx::MIN, upper: Fx::MAX });
+        let force = self.spring_force.unwrap_or(JointLimit { lower: Fx::MIN, upper: Fx::MAX });
         parts.spring_within(Direction::Apart, self.spring, force);
         parts.drive(Direction::Apart, self.motor);
         parts.limit(Direction::Apart, self.limit);

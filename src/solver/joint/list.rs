@@ -11,8 +11,8 @@ use super::super::context::{Pass, StepContext};
 use super::super::settings::Tuning;
 use super::def::JointKind;
 use super::parts::Parts;
-use super::place::{Ends, Turned};
 use super::point::JointPoint;
+use super::pose::{BodyRotation, Ends};
 use super::row::JointRow;
 use super::state::{Joint, JointImpulses};
 use crate::body::{Arena, Body, JointId};
@@ -104,14 +104,19 @@ impl JointList {
     }
 
     /// Computes arms, gains and gaps at the present pose.
-    pub(super) fn refresh(&mut self, bodies: &[Cell<SolverBody>], turned: &[Turned], tuning: &Tuning) {
+    pub(super) fn refresh(
+        &mut self,
+        bodies: &[Cell<SolverBody>],
+        body_rotations: &[BodyRotation],
+        tuning: &Tuning,
+    ) {
         for (joint, (_, rows, points)) in self.walk_joints() {
-            let place = joint.ends.place(bodies, turned);
+            let place = joint.ends.place(bodies, body_rotations);
             for point in points {
                 point.refresh(&place);
             }
             for row in rows {
-                row.refresh(&joint.ends.measure(row.direction, &place, turned), tuning);
+                row.refresh(&joint.ends.measure(row.direction, &place, body_rotations), tuning);
             }
         }
     }
@@ -139,10 +144,10 @@ impl JointList {
     }
 
     /// Stores impulses and angles for the next tick.
-    pub(super) fn store(&mut self, joints: &mut Arena<Joint, JointId>, turned: &[Turned]) {
+    pub(super) fn store(&mut self, joints: &mut Arena<Joint, JointId>, body_rotations: &[BodyRotation]) {
         for (constraint, (_, rows, points)) in self.walk_joints() {
             let joint = joints.at_mut(constraint.slot);
-            joint.turns = constraint.ends.turns(turned);
+            joint.turns = constraint.ends.turns(body_rotations);
             joint.impulses = JointImpulses::default();
             for row in rows {
                 joint.impulses.0[usize::from(row.slot)] = row.lambda;

@@ -5,7 +5,7 @@
 //! the most frequent and are solved in batches (`hinge`). Within a joint the order is that of Box2D v3: springs, motors
 //! and limits first, and the rigid parts last.
 
-mod basis;
+mod cache_key;
 mod constraint;
 mod def;
 mod distance;
@@ -14,8 +14,8 @@ mod list;
 mod motor;
 mod options;
 mod parts;
-mod place;
 mod point;
+mod pose;
 mod prismatic;
 mod revolute;
 mod rotations;
@@ -28,7 +28,7 @@ pub(super) use constraint::{JointSet, JointSource};
 pub use def::{JointDef, JointFrame, JointKind, Threshold, ThresholdAction};
 pub use distance::Distance;
 pub use motor::{LinearDrive, Motor, Pull};
-pub use options::{Drive, Limit, Soft, Spring};
+pub use options::{Drive, JointLimit, Soft, Spring};
 pub use prismatic::Prismatic;
 pub use revolute::Revolute;
 pub use state::Joint;

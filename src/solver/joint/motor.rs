@@ -4,7 +4,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::options::{Drive, Limit, Soft, check, is_sane, option_builders};
+use super::options::{Drive, JointLimit, Soft, check, is_sane, option_builders};
 use super::parts::{Direction, Parts, slot};
 use crate::body::WorldError;
 use crate::math::{Fx, Vec2};
@@ -83,7 +83,7 @@ impl Motor {
 
     pub(super) fn prepare(&self, parts: &mut Parts<'_>) {
         if let Some(Pull { soft, max }) = self.angular_spring {
-            let range = Limit { lower: max.saturating_neg(), upper: max };
+            let range = JointLimit { lower: max.saturating_neg(), upper: max };
             parts.spring_within(Direction::Angle, Some(soft.towards(Fx::ZERO)), range);
         }
         parts.drive(Direction::Angle, self.angular);

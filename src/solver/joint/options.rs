@@ -17,7 +17,7 @@ const DAMPING_RATIO_MAX: Fx = fx!(100);
 /// A limit is as stiff as joints are: a steady acceleration `a` against it exceeds it by `a / (2 pi f)^2`, with the
 /// [joint stiffness](crate::solver::SolverSettings::joint_hertz) `f`, at most a quarter of the sub-step rate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Limit {
+pub struct JointLimit {
     /// The lower end.
     pub lower: Fx,
     /// The upper end.
@@ -80,11 +80,11 @@ pub(super) use option_builders;
 
 /// Checks the options that most joints have, or names the first that is out of range.
 pub(super) fn check_options(
-    limit: Option<Limit>,
+    limit: Option<JointLimit>,
     motor: Option<Drive>,
     spring: Option<Spring>,
 ) -> Result<(), WorldError> {
-    Limit::check(limit)?;
+    JointLimit::check(limit)?;
     Drive::check(motor)?;
     Spring::check(spring)
 }
@@ -99,9 +99,10 @@ pub(super) fn is_sane(value: Fx) -> bool {
     (-SIZE_MAX..=SIZE_MAX).contains(&value)
 }
 
-impl Limit {
+impl JointLimit {
     pub(super) fn check(limit: Option<Self>) -> Result<(), WorldError> {
-        let valid = |limit: Limit| limit.lower <= limit.upper && is_sane(limit.lower) && is_sane(limit.upper);
+        let valid =
+            |limit: JointLimit| limit.lower <= limit.upper && is_sane(limit.lower) && is_sane(limit.upper);
         check(limit.is_none_or(valid), "limit")
     }
 }

@@ -3,7 +3,7 @@
 use alloc::vec::Vec;
 
 use super::super::softness::Softness;
-use super::options::{Drive, Limit, Soft, Spring};
+use super::options::{Drive, JointLimit, Soft, Spring};
 use super::point::{JointPoint, PointTask};
 use super::row::{JointRow, RowTask};
 use super::state::JointImpulses;
@@ -49,11 +49,11 @@ pub(super) struct Parts<'a> {
 impl Parts<'_> {
     /// Adds a spring, if there is one.
     pub(super) fn spring(&mut self, direction: Direction, spring: Option<Spring>) {
-        self.spring_within(direction, spring, Limit { lower: Fx::MIN, upper: Fx::MAX });
+        self.spring_within(direction, spring, JointLimit { lower: Fx::MIN, upper: Fx::MAX });
     }
 
     /// Adds a spring with a least and a largest force or torque, if there is one.
-    pub(super) fn spring_within(&mut self, direction: Direction, spring: Option<Spring>, force: Limit) {
+    pub(super) fn spring_within(&mut self, direction: Direction, spring: Option<Spring>, force: JointLimit) {
         if let Some(Spring { hertz, damping_ratio, target }) = spring {
             let softness = Softness::spring(hertz, damping_ratio, self.rate);
             let (lower, upper) = (self.impulse(force.lower), self.impulse(force.upper));
@@ -70,8 +70,8 @@ impl Parts<'_> {
     }
 
     /// Adds a lower and an upper limit, if there is one.
-    pub(super) fn limit(&mut self, direction: Direction, limit: Option<Limit>) {
-        if let Some(Limit { lower, upper }) = limit {
+    pub(super) fn limit(&mut self, direction: Direction, limit: Option<JointLimit>) {
+        if let Some(JointLimit { lower, upper }) = limit {
             self.row(slot::LIMIT, direction, RowTask::Lower { bound: lower });
             self.row(slot::LIMIT + 1, direction, RowTask::Upper { bound: upper });
         }

@@ -6,7 +6,7 @@ use super::super::context::Pass;
 use super::super::limits::{Faults, clamp_warm_start};
 use super::super::point_block::{PointBlock, PointGoal};
 use super::super::softness::Softness;
-use super::place::Place;
+use super::pose::JointPose;
 use crate::math::{Speed, Vec2};
 
 /// The function of a point.
@@ -39,7 +39,7 @@ impl JointPoint {
 
     /// Computes arms, gains and gap at the present pose.
     #[inline]
-    pub(super) fn refresh(&mut self, place: &Place) {
+    pub(super) fn refresh(&mut self, place: &JointPose) {
         self.block = PointBlock::new(place.lever_a, place.lever_b, place.fractions);
         self.bias = match &self.task {
             PointTask::Spring { softness, .. } => {

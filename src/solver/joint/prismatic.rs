@@ -7,7 +7,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::options::{Drive, Limit, Spring, check_options, option_builders};
+use super::options::{Drive, JointLimit, Spring, check_options, option_builders};
 use super::parts::{Direction, Parts, slot};
 use crate::body::WorldError;
 use crate::math::Fx;
@@ -19,7 +19,7 @@ use crate::math::Fx;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Prismatic {
     /// Range of the translation in metres.
-    pub limit: Option<Limit>,
+    pub limit: Option<JointLimit>,
     /// Motor along the axis: speed in m/s, limit in N.
     pub motor: Option<Drive>,
     /// Spring with a target translation in metres.
@@ -35,7 +35,7 @@ impl Prismatic {
 
     option_builders! {
         /// Sets the range of the translation in metres.
-        limit(lower, upper) => Limit { lower, upper };
+        limit(lower, upper) => JointLimit { lower, upper };
         /// Sets a target speed in m/s, and the largest force in N.
         motor(speed, max_force) => Drive { speed, max: max_force };
         /// Sets a spring with a frequency in Hz and a target translation in metres.

@@ -7,7 +7,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::hinge::AngleParts;
-use super::options::{Drive, Limit, Spring, check_options, option_builders};
+use super::options::{Drive, JointLimit, Spring, check_options, option_builders};
 use crate::body::WorldError;
 use crate::math::Fx;
 
@@ -23,7 +23,7 @@ use crate::math::Fx;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Revolute {
     /// Range of the angle in radians.
-    pub limit: Option<Limit>,
+    pub limit: Option<JointLimit>,
     /// Motor on the angle: angular velocity in rad/s, limit in N m.
     pub motor: Option<Drive>,
     /// Spring with a target angle in radians.
@@ -39,7 +39,7 @@ impl Revolute {
 
     option_builders! {
         /// Sets the range of the angle in radians.
-        limit(lower, upper) => Limit { lower, upper };
+        limit(lower, upper) => JointLimit { lower, upper };
         /// Sets a target angular velocity in rad/s, and the largest torque in N m.
         motor(speed, max_torque) => Drive { speed, max: max_torque };
         /// Sets a spring with a frequency in Hz and a target angle in radians.

@@ -4,9 +4,9 @@ use core::cell::Cell;
 
 use super::super::body::SolverBody;
 use super::hinge::Turning;
-use super::place::Turned;
-use crate::lanes::{Kernel, Lanes, Quad};
+use super::pose::BodyRotation;
 use crate::math::{Angle, Fx, Rot};
+use crate::simd::{Kernel, Lanes, Quad};
 
 /// Number of bodies in a loop.
 const BLOCK: usize = 32;
@@ -16,7 +16,7 @@ pub(super) struct Rotations<'a> {
     pub(super) turning: &'a [Turning],
     /// These three are indexed by bodies.
     pub(super) bodies: &'a [Cell<SolverBody>],
-    pub(super) turned: &'a mut [Turned],
+    pub(super) body_rotations: &'a mut [BodyRotation],
     pub(super) quads: &'a mut [Quad],
     /// Set if the angle of any body has changed.
     pub(super) any: &'a mut bool,
@@ -25,20 +25,20 @@ pub(super) struct Rotations<'a> {
 impl<const N: usize> Kernel<N> for Rotations<'_> {
     #[inline(always)]
     fn run<L: Lanes<N>>(self) {
-        let Rotations { turning, bodies, turned, quads, any } = self;
+        let Rotations { turning, bodies, body_rotations, quads, any } = self;
         for block in turning.chunks(BLOCK) {
             let mut angles = [Angle::ZERO; BLOCK];
             for (angle, body) in angles.iter_mut().zip(block) {
                 let at = body.index as usize;
                 let turns = body.turns_of(bodies[at].get().turn);
-                turned[at].turns = turns;
+                body_rotations[at].turns = turns;
                 *angle = body.angle + Angle::from_turns(Fx::from_bits(turns));
-                *any |= turned[at].angle != *angle;
+                *any |= body_rotations[at].angle != *angle;
             }
             let rotations = Rot::from_angles(&angles);
             for ((body, angle), rotation) in block.iter().zip(angles).zip(rotations) {
                 let at = body.index as usize;
-                (turned[at].angle, turned[at].rotation) = (angle, rotation);
+                (body_rotations[at].angle, body_rotations[at].rotation) = (angle, rotation);
                 quads[at] = Quad([rotation.cos.to_bits(), rotation.sin.to_bits(), 0, 0]);
             }
         }

@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::options::{Drive, Limit, Spring, check_options, option_builders};
+use super::options::{Drive, JointLimit, Spring, check_options, option_builders};
 use super::parts::{Direction, Parts, slot};
 use crate::body::WorldError;
 use crate::math::Fx;
@@ -12,7 +12,7 @@ use crate::math::Fx;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Wheel {
     /// Range of the translation in metres.
-    pub limit: Option<Limit>,
+    pub limit: Option<JointLimit>,
     /// Motor on the angle: angular velocity in rad/s, limit in N m.
     pub motor: Option<Drive>,
     /// The suspension: a spring with a target translation in metres.
@@ -28,7 +28,7 @@ impl Wheel {
 
     option_builders! {
         /// Sets the range of the translation in metres.
-        limit(lower, upper) => Limit { lower, upper };
+        limit(lower, upper) => JointLimit { lower, upper };
         /// Sets a target angular velocity in rad/s, and the largest torque in N m.
         motor(speed, max_torque) => Drive { speed, max: max_torque };
         /// Sets a spring with a frequency in Hz and a target translation in metres.

@@ -12,7 +12,7 @@ pub(crate) struct Changes {
     /// The caches are new: every pair may have changed.
     everything: bool,
     /// A resting contact may have an active body again, or may have ended.
-    resting: bool,
+    sleeping_contacts: bool,
     /// Filters, sensors, kinds or joints have changed: pairs may not be allowed to collide any more.
     rules: bool,
     /// Slots of shapes with a new fat box, or whose body has become active or inactive. May repeat.
@@ -30,7 +30,7 @@ impl Changes {
 
     /// Whether a pair update has anything to do.
     pub(crate) fn any(&self) -> bool {
-        self.everything || self.resting || self.rules || !self.shapes.is_empty()
+        self.everything || self.sleeping_contacts || self.rules || !self.shapes.is_empty()
     }
 
     /// Whether the caches are new.
@@ -40,7 +40,7 @@ impl Changes {
 
     /// Whether resting contacts have to be checked.
     pub(crate) fn concerns_resting(&self) -> bool {
-        self.everything || self.resting
+        self.everything || self.sleeping_contacts
     }
 
     /// Whether it has to be checked if pairs may still collide.
@@ -60,7 +60,7 @@ impl Changes {
 
     /// Records that resting contacts may have ended or may have an active body again.
     pub(crate) fn resting_changed(&mut self) {
-        self.resting = true;
+        self.sleeping_contacts = true;
     }
 
     /// Records that filters, sensors, kinds or joints have changed.
@@ -105,21 +105,21 @@ impl Changes {
         for &slot in &self.shapes {
             self.last_boxes[slot as usize] = boxes.fat(slot);
         }
-        (self.everything, self.resting, self.rules) = (false, false, false);
+        (self.everything, self.sleeping_contacts, self.rules) = (false, false, false);
         self.shapes.clear();
     }
 
     /// Copies the record into that of a snapshot, without the boxes of the last pair update.
     pub(crate) fn save_into(&self, saved: &mut Self) {
-        let Changes { everything, resting, rules, shapes, last_boxes: _ } = self;
-        (saved.everything, saved.resting, saved.rules) = (*everything, *resting, *rules);
+        let Changes { everything, sleeping_contacts, rules, shapes, last_boxes: _ } = self;
+        (saved.everything, saved.sleeping_contacts, saved.rules) = (*everything, *sleeping_contacts, *rules);
         saved.shapes.clone_from(shapes);
     }
 
     /// Takes the record over from a snapshot whose state has just been restored.
     pub(crate) fn restore(&mut self, saved: &Self, boxes: &BroadPhase, slot_count: usize) {
-        let Changes { everything, resting, rules, shapes, last_boxes } = self;
-        (*everything, *resting, *rules) = (saved.everything, saved.resting, saved.rules);
+        let Changes { everything, sleeping_contacts, rules, shapes, last_boxes } = self;
+        (*everything, *sleeping_contacts, *rules) = (saved.everything, saved.sleeping_contacts, saved.rules);
         shapes.clone_from(&saved.shapes);
         last_boxes.clear();
         last_boxes.extend((0u32..).take(slot_count).map(|slot| boxes.fat(slot)));

@@ -3,8 +3,8 @@
 use alloc::vec::Vec;
 
 use super::motion::ClosingBound;
-use crate::collision::{AxisHint, BoxPairs, Contact, Manifold, SatCounters};
-use crate::solver::TouchingPair;
+use crate::collision::{BoxPairs, CachedAxis, Contact, Manifold, SatCounters};
+use crate::solver::ActiveContact;
 use crate::world::events::HitEvent;
 
 /// Cache of the narrow phase. Manifolds and axes are indexed by a contact's place in the state, and so become invalid
@@ -17,9 +17,9 @@ pub(crate) struct ContactCache {
     parts: Vec<NarrowPhaseOutput>,
     /// For each contact of the state, the axis that separated its shapes in the last tick. May be shorter or longer
     /// than the list of contacts: the missing ones have no axis.
-    axes: Vec<AxisHint>,
+    axes: Vec<CachedAxis>,
     /// The touching pairs of the tick before, sorted by pair: most of them still touch, with the same surface.
-    touched: Vec<TouchingPair>,
+    touched: Vec<ActiveContact>,
     /// Whether surfaces may differ from those of the last tick.
     surfaces_changed: bool,
 }
@@ -27,11 +27,11 @@ pub(crate) struct ContactCache {
 /// The buffers of one narrow phase.
 pub(crate) struct NarrowPhaseBuffers<'a> {
     /// For each contact, the axis that separated its shapes in the last tick.
-    pub(crate) axes: &'a mut [AxisHint],
+    pub(crate) axes: &'a mut [CachedAxis],
     /// An empty output for each job.
     pub(crate) parts: &'a mut [NarrowPhaseOutput],
     /// The touching pairs of the tick before whose surfaces are still valid, sorted by pair.
-    pub(crate) touched: &'a [TouchingPair],
+    pub(crate) touched: &'a [ActiveContact],
 }
 
 /// Output of the narrow phase, or of one of its jobs, in the order of contacts.
@@ -44,9 +44,9 @@ pub(crate) struct NarrowPhaseOutput {
     /// The contacts among these that have a sensor.
     pub(crate) sensors: Vec<u32>,
     /// The contacts among these that the solver has to solve.
-    pub(crate) touching: Vec<TouchingPair>,
+    pub(crate) touching: Vec<ActiveContact>,
     /// Fast approaches, which become hit events if the shapes push each other in this tick.
-    pub(crate) approaches: Vec<Approach>,
+    pub(crate) approaches: Vec<PendingHit>,
     pub(crate) sat: SatCounters,
     /// Buffer: contacts of the current block whose shapes may meet.
     pub(crate) near: Vec<NearPair>,
@@ -66,7 +66,7 @@ pub(crate) struct NearPair {
 
 /// A contact whose shapes approach fast enough for a hit event.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Approach {
+pub(crate) struct PendingHit {
     /// Index in the state.
     pub(crate) contact: u32,
     pub(crate) event: HitEvent,
@@ -101,20 +101,20 @@ impl ContactCache {
 
     /// Drops the cached surfaces of pairs for which `is_removed` holds: another shape may get the same slot before the
     /// next tick.
-    pub(crate) fn remove_surfaces(&mut self, is_removed: impl Fn(&TouchingPair) -> bool) {
+    pub(crate) fn remove_surfaces(&mut self, is_removed: impl Fn(&ActiveContact) -> bool) {
         self.output.touching.retain(|pair| !is_removed(pair));
     }
 
     /// The separating axis of each of `count` contacts, for an operation that reorders the contacts.
-    pub(crate) fn axes(&mut self, count: usize) -> &mut Vec<AxisHint> {
-        self.axes.resize(count, AxisHint::default());
+    pub(crate) fn axes(&mut self, count: usize) -> &mut Vec<CachedAxis> {
+        self.axes.resize(count, CachedAxis::default());
         &mut self.axes
     }
 
     /// Starts a narrow phase over `contact_count` contacts with at least one job.
     pub(crate) fn begin(&mut self, contact_count: usize, job_count: usize) -> NarrowPhaseBuffers<'_> {
         let ContactCache { output, parts, axes, touched, surfaces_changed } = self;
-        axes.resize(contact_count, AxisHint::default());
+        axes.resize(contact_count, CachedAxis::default());
         core::mem::swap(&mut output.touching, touched);
         if core::mem::take(surfaces_changed) {
             touched.clear();
@@ -141,7 +141,7 @@ impl ContactCache {
         removed: &mut Vec<Contact>,
         stays: impl Fn(&Contact) -> bool,
     ) {
-        self.axes.resize(contacts.len(), AxisHint::default());
+        self.axes.resize(contacts.len(), CachedAxis::default());
         let NarrowPhaseOutput { manifolds, contacts: indices, .. } = &mut self.output;
         let (mut kept, mut next, mut kept_manifolds) = (0, 0, 0);
         for index in 0..contacts.len() {
@@ -187,12 +187,12 @@ impl NarrowPhaseOutput {
     fn append(&mut self, next: &NarrowPhaseOutput) {
         let first = self.next_manifold();
         let touching = next.touching.iter();
-        self.touching.extend(touching.map(|pair| TouchingPair { manifold: first + pair.manifold, ..*pair }));
+        self.touching.extend(touching.map(|pair| ActiveContact { manifold: first + pair.manifold, ..*pair }));
         self.manifolds.extend_from_slice(&next.manifolds);
         self.contacts.extend_from_slice(&next.contacts);
         self.sensors.extend_from_slice(&next.sensors);
         self.approaches.extend_from_slice(&next.approaches);
-        self.sat.hint_hits += next.sat.hint_hits;
+        self.sat.cached_axis_hits += next.sat.cached_axis_hits;
         self.sat.searches += next.sat.searches;
     }
 

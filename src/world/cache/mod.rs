@@ -26,10 +26,10 @@ mod union_find;
 
 pub(crate) use awake::{AwakeSet, is_awake};
 pub(crate) use changes::Changes;
-pub(crate) use contacts::{Approach, ContactCache, NarrowPhaseBuffers, NarrowPhaseOutput, NearPair};
+pub(crate) use contacts::{ContactCache, NarrowPhaseBuffers, NarrowPhaseOutput, NearPair, PendingHit};
 pub(crate) use joint_links::JointLinks;
 pub(crate) use motion::{
-    ClosingBound, Margins, MotionCache, PASSAGE_MIN, PredictedMotion, ShapeMotion, Travel,
+    ClosingBound, GHOST_TRAVEL_MIN, Margins, MotionCache, PredictedMotion, ShapeMotion, Travel,
 };
 pub(crate) use pairs::{MergedContacts, NonCollidingPairs, PairCache, merge_sorted};
 pub(crate) use poses::{Extents, Poses};

@@ -8,8 +8,8 @@ use alloc::vec::Vec;
 use crate::body::{Body, Geometry, Handle, Shape};
 use crate::collision::{PosedShape, arm_of, margin_for, may_meet};
 use crate::fx;
-use crate::lanes::prefetch;
 use crate::math::{Aabb, Fx, Length, Reciprocal, Speed, Step, Vec2, fx_mul, narrow, saturate, widen};
+use crate::simd::prefetch;
 use crate::world::config::Config;
 use fixed::FixedI32;
 use fixed::types::extra::{U16, U24};
@@ -176,7 +176,7 @@ pub(crate) struct ClosingBound {
 }
 
 /// Shapes that approach each other by less than this in a tick, in metres, do not pass by each other.
-pub(crate) const PASSAGE_MIN: Step = Step::lit("0.0001");
+pub(crate) const GHOST_TRAVEL_MIN: Step = Step::lit("0.0001");
 
 impl ClosingBound {
     #[inline]
@@ -188,7 +188,7 @@ impl ClosingBound {
     /// Whether the shapes approach each other so fast that they may pass by each other.
     #[inline]
     pub(crate) fn is_fast(self) -> bool {
-        self.distance > PASSAGE_MIN
+        self.distance > GHOST_TRAVEL_MIN
     }
 
     /// Whether the shapes are so near that they may meet within the tick.

@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 
 use super::changes::Changes;
 use crate::body::{BodyKind, Handle};
-use crate::collision::{AxisHint, Contact, Pair};
+use crate::collision::{CachedAxis, Contact, Pair};
 use crate::world::state::State;
 
 /// Cache of the pair update.
@@ -37,7 +37,7 @@ pub(crate) struct PairBuffers {
     /// Contacts to add to the active ones.
     pub(crate) fresh: Vec<Contact>,
     /// Contacts to add to the resting ones.
-    pub(crate) resting: Vec<Contact>,
+    pub(crate) sleeping_contacts: Vec<Contact>,
     pub(crate) merged: MergedContacts,
 }
 
@@ -45,7 +45,7 @@ pub(crate) struct PairBuffers {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct MergedContacts {
     pub(crate) contacts: Vec<Contact>,
-    pub(crate) axes: Vec<AxisHint>,
+    pub(crate) axes: Vec<CachedAxis>,
 }
 
 impl MergedContacts {
@@ -56,7 +56,7 @@ impl MergedContacts {
 
     pub(crate) fn push(&mut self, contact: Contact) {
         self.contacts.push(contact);
-        self.axes.push(AxisHint::default());
+        self.axes.push(CachedAxis::default());
     }
 }
 

@@ -7,8 +7,8 @@ use super::motion::MotionCache;
 use crate::body::{Body, Geometry, Handle};
 use crate::collision::{PosedShape, SmallBoxes};
 use crate::fx;
-use crate::lanes::prefetch;
 use crate::math::{Aabb, Fx, Vec2};
+use crate::simd::prefetch;
 use crate::world::state::State;
 
 /// Shapes in world axes, by shape slot. A cache of the state.

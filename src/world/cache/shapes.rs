@@ -37,7 +37,7 @@ impl ShapeCache {
         let enabled = || state.shapes.iter().filter(|(_, shape)| body_of(shape).enabled);
         cache.broad_phase.refill(enabled().map(boxes));
         for (id, shape) in enabled() {
-            cache.broad_phase.set_kin(id.slot(), shape.filter().kin());
+            cache.broad_phase.set_collision_class(id.slot(), shape.filter().collision_class());
         }
         let is_fixed = |shape: &Shape| body_of(shape).kind() == BodyKind::Fixed;
         cache.fixed.refill(enabled().filter(|(_, shape)| is_fixed(shape)).map(boxes));
@@ -131,7 +131,7 @@ impl ShapeCache {
             let shape = state.shapes.at(id.slot());
             let fat = shape.fat;
             self.broad_phase.set(id.slot(), fat);
-            self.broad_phase.set_kin(id.slot(), shape.filter().kin());
+            self.broad_phase.set_collision_class(id.slot(), shape.filter().collision_class());
             match body.kind() {
                 BodyKind::Fixed => self.fixed.set(id.slot(), fat),
                 BodyKind::Kinematic | BodyKind::Dynamic => self.fixed.remove(id.slot()),
@@ -193,7 +193,7 @@ impl ShapeCache {
                 None => broad_phase.remove(slot),
             }
             if let Some(shape) = shape {
-                broad_phase.set_kin(slot, shape.filter().kin());
+                broad_phase.set_collision_class(slot, shape.filter().collision_class());
             }
             match shape {
                 Some(shape) if state.body_of(slot).kind() == BodyKind::Fixed => fixed.set(slot, shape.fat),

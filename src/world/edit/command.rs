@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 
 use serde::{Deserialize, Serialize};
 
-use super::{Explosion, Place};
+use super::{BodyPose, Explosion};
 use crate::body::{
     BodyDef, BodyId, BodyKind, BodySettings, JointId, MassSource, ShapeDef, ShapeId, WorldError,
 };
@@ -29,7 +29,7 @@ pub enum Command {
         /// Definitions of the shapes of each body.
         shapes: Vec<ShapeDef>,
         /// Position and rotation of each body.
-        places: Vec<Place>,
+        places: Vec<BodyPose>,
     },
     /// Calls [`World::despawn`].
     Despawn {

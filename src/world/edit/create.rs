@@ -18,7 +18,7 @@ use crate::world::state::{Island, State};
 
 /// Position and rotation of a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Place {
+pub struct BodyPose {
     /// Position of the body's origin in the world, in metres.
     pub position: Vec2<Fx>,
     /// Rotation of the body.
@@ -71,7 +71,7 @@ impl World {
         &mut self,
         body: &BodyDef,
         shapes: &[ShapeDef],
-        places: &[Place],
+        places: &[BodyPose],
     ) -> Result<Vec<BodyId>, WorldError> {
         let config = self.state.config;
         check_room(self.state.bodies.len(), places.len(), config.body_limit, "bodies")?;

@@ -12,7 +12,7 @@
 use alloc::vec::Vec;
 
 use crate::body::{BodyId, Shape, WorldError, check_position};
-use crate::collision::{Core, contains_point, distance};
+use crate::collision::{SupportShape, contains_point, distance};
 use crate::fx;
 use crate::math::{Fx, Unit, Vec2, fx_div, fx_mul};
 use crate::world::World;
@@ -50,7 +50,7 @@ impl World {
         {
             return Ok(());
         }
-        let core = Core::of(self.scratch.shapes.poses().at(slot), explosion.centre);
+        let core = SupportShape::of(self.scratch.shapes.poses().at(slot), explosion.centre);
         match explosion.on(&core) {
             Some(Push { impulse, point }) => self.push_body(body, impulse, point),
             None => Ok(()),
@@ -116,8 +116,8 @@ impl Explosion {
     }
 
     /// The impulse on a shape that is given about the explosion's centre; `None` if it is out of reach.
-    fn on(&self, shape: &Core) -> Option<Push> {
-        let found = distance(shape, &Core::point(Vec2::ZERO));
+    fn on(&self, shape: &SupportShape) -> Option<Push> {
+        let found = distance(shape, &SupportShape::point(Vec2::ZERO));
         let strength = self.at_distance(found.distance);
         if strength == Fx::ZERO {
             return None;

@@ -7,7 +7,7 @@ use crate::world::movement::move_body;
 
 /// A number of a body's velocity or pose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Motion {
+pub enum BodyField {
     /// The horizontal velocity of its centre of mass.
     VelocityX,
     /// The vertical velocity of its centre of mass.
@@ -22,24 +22,30 @@ pub enum Motion {
     Angle,
 }
 
-impl Motion {
+impl BodyField {
     /// All fields, speeds first.
-    pub const ALL: [Motion; 6] =
-        [Motion::VelocityX, Motion::VelocityY, Motion::Spin, Motion::CentreX, Motion::CentreY, Motion::Angle];
+    pub const ALL: [BodyField; 6] = [
+        BodyField::VelocityX,
+        BodyField::VelocityY,
+        BodyField::Spin,
+        BodyField::CentreX,
+        BodyField::CentreY,
+        BodyField::Angle,
+    ];
 
     /// The three speeds.
-    pub const SPEEDS: [Motion; 3] = [Motion::VelocityX, Motion::VelocityY, Motion::Spin];
+    pub const SPEEDS: [BodyField; 3] = [BodyField::VelocityX, BodyField::VelocityY, BodyField::Spin];
 
     /// Returns the name of the field in the readable form of a snapshot.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
-            Motion::VelocityX => "velocity.x",
-            Motion::VelocityY => "velocity.y",
-            Motion::Spin => "spin",
-            Motion::CentreX => "centre_of_mass.x",
-            Motion::CentreY => "centre_of_mass.y",
-            Motion::Angle => "angle",
+            BodyField::VelocityX => "velocity.x",
+            BodyField::VelocityY => "velocity.y",
+            BodyField::Spin => "spin",
+            BodyField::CentreX => "centre_of_mass.x",
+            BodyField::CentreY => "centre_of_mass.y",
+            BodyField::Angle => "angle",
         }
     }
 
@@ -47,7 +53,7 @@ impl Motion {
     #[must_use]
     pub fn bits(self) -> u32 {
         match self {
-            Motion::CentreX | Motion::CentreY => 64,
+            BodyField::CentreX | BodyField::CentreY => 64,
             _ => 32,
         }
     }
@@ -56,18 +62,18 @@ impl Motion {
 impl World {
     /// Flips one bit of a number of an awake dynamic body, as failing memory would. Used to test the detection of
     /// divergence. The lowest bit of a speed counts 2^-21 m/s, that of a coordinate 2^-32 m, that of the angle 2^-32
-    /// turns; see [`Motion::bits`].
+    /// turns; see [`BodyField::bits`].
     ///
     /// # Errors
     /// [`WorldError`] if the handle is stale, the body is disabled, asleep or not dynamic, the bit does not exist, the
     /// axis is locked, or the result is out of range. The world is then unchanged.
-    pub fn flip_bit(&mut self, id: BodyId, motion: Motion, bit: u32) -> Result<(), WorldError> {
+    pub fn flip_bit(&mut self, id: BodyId, motion: BodyField, bit: u32) -> Result<(), WorldError> {
         let body = self.state.get().bodies.get(id).ok_or(WorldError::StaleBody(id))?;
         let locks = body.settings.locks;
         let locked = match motion {
-            Motion::VelocityX | Motion::CentreX => locks.x,
-            Motion::VelocityY | Motion::CentreY => locks.y,
-            Motion::Spin | Motion::Angle => locks.rotation,
+            BodyField::VelocityX | BodyField::CentreX => locks.x,
+            BodyField::VelocityY | BodyField::CentreY => locks.y,
+            BodyField::Spin | BodyField::Angle => locks.rotation,
         };
         let is_free = body.is_dynamic() && !body.is_asleep() && body.is_enabled() && !locked;
         if !is_free || bit >= motion.bits() {
@@ -75,21 +81,23 @@ impl World {
         }
         let mut pose = Pose { centre: body.centre, angle: body.angle };
         match motion {
-            Motion::VelocityX | Motion::VelocityY | Motion::Spin => return self.flip_speed(id, motion, bit),
-            Motion::CentreX => pose.centre.x = flipped_place(pose.centre.x, bit)?,
-            Motion::CentreY => pose.centre.y = flipped_place(pose.centre.y, bit)?,
-            Motion::Angle => pose.angle = Angle::from_bits(pose.angle.to_bits() ^ 1 << bit),
+            BodyField::VelocityX | BodyField::VelocityY | BodyField::Spin => {
+                return self.flip_speed(id, motion, bit);
+            }
+            BodyField::CentreX => pose.centre.x = flipped_place(pose.centre.x, bit)?,
+            BodyField::CentreY => pose.centre.y = flipped_place(pose.centre.y, bit)?,
+            BodyField::Angle => pose.angle = Angle::from_bits(pose.angle.to_bits() ^ 1 << bit),
         }
         let World { state, scratch, .. } = self;
         move_body(state, scratch, id.slot(), pose);
         Ok(())
     }
 
-    fn flip_speed(&mut self, id: BodyId, motion: Motion, bit: u32) -> Result<(), WorldError> {
+    fn flip_speed(&mut self, id: BodyId, motion: BodyField, bit: u32) -> Result<(), WorldError> {
         let body = self.state.bodies.at_mut(id.slot());
         let number = match motion {
-            Motion::VelocityX => &mut body.velocity.x,
-            Motion::VelocityY => &mut body.velocity.y,
+            BodyField::VelocityX => &mut body.velocity.x,
+            BodyField::VelocityY => &mut body.velocity.y,
             _ => &mut body.spin,
         };
         let flipped = Speed::from_bits(number.to_bits() ^ 1 << bit);

@@ -9,9 +9,9 @@ mod forces;
 mod setters;
 
 pub use command::{Command, Outcome};
-pub use create::Place;
+pub use create::BodyPose;
 pub use explosion::Explosion;
-pub use fault::Motion;
+pub use fault::BodyField;
 
 use super::World;
 use super::derived::fat_box;

@@ -13,7 +13,7 @@ pub(crate) fn put_to_sleep(state: &mut State, scratch: &mut Scratch, slot: u32) 
     scratch.awake.refresh(state);
     unite_connected(state, scratch);
     // Bodies that were woken since the last tick still have their contacts there.
-    unite_touching(state, &mut scratch.union, &state.resting);
+    unite_touching(state, &mut scratch.union, &state.sleeping_contacts);
     let Scratch { awake, union, .. } = &mut *scratch;
     let root = union.root(slot);
     for &other in awake.bodies() {
@@ -77,19 +77,19 @@ pub(crate) fn sleep_calm_sets(state: &mut State, scratch: &mut Scratch) {
         scratch.awake.invalidate();
         // Fat boxes may have parted since the last pair update.
         scratch.pairs.changes.resting_changed();
-        rest_contacts(state, scratch);
+        put_contacts_to_sleep(state, scratch);
     }
 }
 
 /// Moves the contacts without an active body to the resting ones, and drops their manifolds.
-fn rest_contacts(state: &mut State, scratch: &mut Scratch) {
+fn put_contacts_to_sleep(state: &mut State, scratch: &mut Scratch) {
     let buffers = &mut scratch.pairs.buffers;
-    buffers.resting.clear();
+    buffers.sleeping_contacts.clear();
     let mut contacts = core::mem::take(&mut state.contacts);
-    scratch.contacts.split_off(&mut contacts, &mut buffers.resting, |contact| {
+    scratch.contacts.split_off(&mut contacts, &mut buffers.sleeping_contacts, |contact| {
         let (a, b) = state.bodies_of(contact.shapes);
         a.is_active() || b.is_active()
     });
     state.contacts = contacts;
-    merge_sorted(&mut state.resting, &buffers.resting, &mut buffers.merged.contacts);
+    merge_sorted(&mut state.sleeping_contacts, &buffers.sleeping_contacts, &mut buffers.merged.contacts);
 }

@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 
 use super::{Probe, QueryFilter, SLACK};
 use crate::body::ShapeId;
-use crate::collision::{Core, Fraction, ShapeHit, cast_ray, cast_shape};
+use crate::collision::{Fraction, ShapeHit, SupportShape, cast_ray, cast_shape};
 use crate::fx;
 use crate::math::{Aabb, Fx, Unit, Vec2, saturate};
 use crate::world::World;
@@ -46,8 +46,8 @@ impl World {
     /// let mut world = World::default();
     /// let wall = ShapeDef::new(Polygon::rectangle(fx!(1), fx!(1))?);
     /// world.spawn(&BodyDef::fixed().position((fx!(5), fx!(0))), &[wall])?;
-    /// let (eye, sight) = (Vec2::new(fx!(0), fx!(0)), Vec2::new(fx!(8), fx!(0)));
-    /// let hit = world.cast_ray(eye, sight, Default::default()).expect("a wall");
+    /// let (eye, view) = (Vec2::new(fx!(0), fx!(0)), Vec2::new(fx!(8), fx!(0)));
+    /// let hit = world.cast_ray(eye, view, Default::default()).expect("a wall");
     /// assert_eq!((hit.fraction, hit.point.x), (fx!(0.5), fx!(4)));
     /// # Ok::<(), lockstep2d::body::WorldError>(())
     /// ```
@@ -108,11 +108,11 @@ impl World {
         probe: &Probe,
         translation: Vec2<Fx>,
         filter: QueryFilter,
-        accept: impl Fn(ShapeId, Vec2<Unit>, [&Core; 2]) -> bool,
+        accept: impl Fn(ShapeId, Vec2<Unit>, [&SupportShape; 2]) -> bool,
     ) -> Option<CastHit> {
         let posed = probe.posed();
         let origin = probe.position();
-        let moving = Core::of(&posed, origin);
+        let moving = SupportShape::of(&posed, origin);
         let middle = origin + moving.middle();
         let area = posed.bounds.expanded(fx!(0.001));
         let mut closest: Option<Ordered<CastHit>> = None;
@@ -122,7 +122,7 @@ impl World {
             let Some(shape) = self.seen(slot, filter).filter(|_| posed.is_solid_from(middle)) else {
                 return interest;
             };
-            let other = Core::of(posed, origin);
+            let other = SupportShape::of(posed, origin);
             let found = cast_shape(&other, &moving, translation)
                 .filter(|hit| accept(shape, hit.normal, [&other, &moving]));
             if let Some(ShapeHit { fraction, order, travelled, point, normal }) = found {
@@ -150,7 +150,7 @@ impl World {
         self.scratch.shapes.broad_phase().each_along(area, translation, |slot| {
             let posed = self.scratch.shapes.poses().at(slot);
             if let Some(shape) = self.seen(slot, filter).filter(|_| posed.is_solid_from(origin)) {
-                let core = Core::of(posed, origin);
+                let core = SupportShape::of(posed, origin);
                 if let Some(hit) = cast_ray(&core, Vec2::ZERO, translation) {
                     let (fraction, point, normal) = (hit.fraction, origin + hit.point, hit.normal);
                     let (order, hit) = (hit.order, RayHit { shape, fraction, point, normal });

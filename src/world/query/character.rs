@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 use super::mover_planes::{MoverPlane, clipped, solve_planes};
 use super::{Probe, QueryFilter};
 use crate::body::{Geometry, GeometryError, ShapeId, Sides};
-use crate::collision::{Core, SKIN, distance};
+use crate::collision::{SKIN, SupportShape, distance};
 use crate::fx;
 use crate::math::{Angle, Fx, Rot, Unit, Vec2, fx_div};
 use crate::world::World;
@@ -321,7 +321,7 @@ impl Walk<'_> {
 
     /// Casts the character along a translation. Returns the displacement up to the first hit, and the surface there.
     fn cast(&self, translation: Vec2<Fx>) -> Option<(Vec2<Fx>, MoverPlane)> {
-        let stops = |shape, normal, [other, own]: [&Core; 2]| {
+        let stops = |shape, normal, [other, own]: [&SupportShape; 2]| {
             !self.passes(shape, normal, distance(other, own).distance < Fx::ZERO)
         };
         let hit = self.world.first_along(&self.probe, translation, self.filter, stops)?;

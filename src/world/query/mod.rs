@@ -14,7 +14,7 @@ mod probe;
 pub use cast::{CastHit, RayHit};
 pub use character::{Moved, Mover, MoverState};
 pub use mover_planes::{MoverPlane, clip_velocity, solve_planes};
-pub use overlap::Proximity;
+pub use overlap::ClosestPoints;
 pub use probe::Probe;
 
 use super::World;

@@ -14,10 +14,10 @@ use alloc::vec::Vec;
 
 use serde::{Deserialize, Serialize};
 
-use super::overlap::{Proximity, proximity};
+use super::overlap::{ClosestPoints, proximity};
 use super::{Probe, QueryFilter};
 use crate::body::ShapeId;
-use crate::collision::Core;
+use crate::collision::SupportShape;
 use crate::fx;
 use crate::math::{Fx, Unit, Vec2, fx_div};
 use crate::world::World;
@@ -73,15 +73,15 @@ impl World {
     pub fn collide_mover(&self, probe: &Probe, within: Fx, filter: QueryFilter) -> Vec<MoverPlane> {
         let posed = probe.posed();
         let origin = probe.position();
-        let core = Core::of(&posed, origin);
+        let core = SupportShape::of(&posed, origin);
         let middle = origin + core.middle();
         let mut planes: Vec<MoverPlane> = Vec::new();
         if within < Fx::ZERO {
             return planes;
         }
         self.each_overlapping(posed.bounds.expanded(within), filter, |shape, other| {
-            let Proximity { distance, normal, point_a, .. } =
-                proximity(&Core::of(other, origin), &core, origin);
+            let ClosestPoints { distance, normal, point_a, .. } =
+                proximity(&SupportShape::of(other, origin), &core, origin);
             if distance <= within && other.is_solid_from(middle) {
                 let (separation, point) = (distance, point_a);
                 let (push_limit, push) = (Fx::MAX, Fx::ZERO);

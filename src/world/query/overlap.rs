@@ -5,13 +5,13 @@ use core::ops::ControlFlow;
 
 use super::{Probe, QueryFilter, SLACK};
 use crate::body::{Handle, ShapeId};
-use crate::collision::{Core, PosedShape, contains_point, distance, overlap};
+use crate::collision::{PosedShape, SupportShape, contains_point, distance, overlap};
 use crate::math::{Aabb, Fx, Unit, Vec2};
 use crate::world::World;
 
 /// The nearest points of two shapes, or of a shape and a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Proximity {
+pub struct ClosestPoints {
     /// Distance between the surfaces in metres. If the shapes overlap it is negative: the displacement that separates
     /// them.
     pub distance: Fx,
@@ -34,8 +34,8 @@ impl World {
         let origin = area.centre();
         let (lower, upper) = (area.lower - origin, area.upper - origin);
         let corners = [lower, Vec2::new(upper.x, lower.y), upper, Vec2::new(lower.x, upper.y)];
-        let core = Core::from_points(corners, Fx::ZERO);
-        self.overlapping(area, filter, |posed| overlap(&Core::of(posed, origin), &core))
+        let core = SupportShape::from_points(corners, Fx::ZERO);
+        self.overlapping(area, filter, |posed| overlap(&SupportShape::of(posed, origin), &core))
     }
 
     /// Returns every shape that overlaps a probe, borders included.
@@ -43,8 +43,8 @@ impl World {
     pub fn overlap_shape(&self, probe: &Probe, filter: QueryFilter) -> Vec<ShapeId> {
         let posed = probe.posed();
         let origin = probe.position();
-        let core = Core::of(&posed, origin);
-        self.overlapping(posed.bounds, filter, |other| overlap(&Core::of(other, origin), &core))
+        let core = SupportShape::of(&posed, origin);
+        self.overlapping(posed.bounds, filter, |other| overlap(&SupportShape::of(other, origin), &core))
     }
 
     /// Returns every shape that contains a point in the world, in metres, borders included.
@@ -53,7 +53,7 @@ impl World {
     #[doc(alias = "pick")]
     pub fn overlap_point(&self, point: Vec2<Fx>, filter: QueryFilter) -> Vec<ShapeId> {
         self.overlapping(Aabb::new(point, point), filter, |posed| {
-            contains_point(&Core::of(posed, point), Vec2::ZERO)
+            contains_point(&SupportShape::of(posed, point), Vec2::ZERO)
         })
     }
 
@@ -62,18 +62,23 @@ impl World {
     /// every shape.
     #[must_use]
     #[doc(alias = "nearest")]
-    pub fn closest(&self, point: Vec2<Fx>, within: Fx, filter: QueryFilter) -> Option<(ShapeId, Proximity)> {
+    pub fn closest(
+        &self,
+        point: Vec2<Fx>,
+        within: Fx,
+        filter: QueryFilter,
+    ) -> Option<(ShapeId, ClosestPoints)> {
         if within < Fx::ZERO {
             return None;
         }
-        let here = Core::point(Vec2::ZERO);
-        let mut closest: Option<(ShapeId, Proximity)> = None;
+        let here = SupportShape::point(Vec2::ZERO);
+        let mut closest: Option<(ShapeId, ClosestPoints)> = None;
         self.scratch.shapes.broad_phase().each_near(point, within.saturating_add(SLACK), |slot| {
             if let Some(shape) = self.seen(slot, filter) {
-                let other = Core::of(self.scratch.shapes.poses().at(slot), point);
+                let other = SupportShape::of(self.scratch.shapes.poses().at(slot), point);
                 let found = proximity(&here, &other, point);
                 let is_nearer =
-                    |best: &(ShapeId, Proximity)| (found.distance, shape) < (best.1.distance, best.0);
+                    |best: &(ShapeId, ClosestPoints)| (found.distance, shape) < (best.1.distance, best.0);
                 if found.distance <= within && closest.as_ref().is_none_or(is_nearer) {
                     closest = Some((shape, found));
                 }
@@ -87,22 +92,22 @@ impl World {
     /// Returns the distance between two shapes and their nearest points. `None` if one of them was removed or is
     /// disabled.
     #[must_use]
-    pub fn distance(&self, a: ShapeId, b: ShapeId) -> Option<Proximity> {
+    pub fn distance(&self, a: ShapeId, b: ShapeId) -> Option<ClosestPoints> {
         (self.is_present(a) && self.is_present(b)).then_some(())?;
         let poses = self.scratch.shapes.poses();
         let (posed_a, posed_b) = (poses.at(a.slot()), poses.at(b.slot()));
         let origin = posed_a.centre;
-        Some(proximity(&Core::of(posed_a, origin), &Core::of(posed_b, origin), origin))
+        Some(proximity(&SupportShape::of(posed_a, origin), &SupportShape::of(posed_b, origin), origin))
     }
 
     /// Returns the distance between a probe and a shape and their nearest points, that of the probe first. `None` if
     /// the shape was removed or is disabled.
     #[must_use]
-    pub fn probe_distance(&self, probe: &Probe, shape: ShapeId) -> Option<Proximity> {
+    pub fn probe_distance(&self, probe: &Probe, shape: ShapeId) -> Option<ClosestPoints> {
         self.is_present(shape).then_some(())?;
         let origin = probe.position();
-        let other = Core::of(self.scratch.shapes.poses().at(shape.slot()), origin);
-        Some(proximity(&Core::of(&probe.posed(), origin), &other, origin))
+        let other = SupportShape::of(self.scratch.shapes.poses().at(shape.slot()), origin);
+        Some(proximity(&SupportShape::of(&probe.posed(), origin), &other, origin))
     }
 
     /// Returns the shapes near an area for which `overlaps` holds, in slot order.
@@ -139,9 +144,9 @@ impl World {
 }
 
 /// The nearest points in the world of two shapes that are given about an origin.
-pub(super) fn proximity(a: &Core, b: &Core, origin: Vec2<Fx>) -> Proximity {
+pub(super) fn proximity(a: &SupportShape, b: &SupportShape, origin: Vec2<Fx>) -> ClosestPoints {
     let found = distance(a, b);
-    Proximity {
+    ClosestPoints {
         distance: found.distance,
         point_a: origin + found.point_a,
         point_b: origin + found.point_b,

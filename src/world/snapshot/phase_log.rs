@@ -17,7 +17,7 @@ pub struct PhaseDigest {
     pub digest: StateHash,
 }
 
-/// What a world has recorded since [`World::note_phases`](crate::world::World::note_phases).
+/// What a world has recorded since [`World::log_phases`](crate::world::World::note_phases).
 #[derive(Clone, Debug, Default)]
 pub(crate) struct PhaseLog {
     pub(crate) digests: Vec<PhaseDigest>,

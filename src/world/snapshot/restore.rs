@@ -50,7 +50,8 @@ impl World {
 
 /// Replaces a state by that of a snapshot, and lists the slots that differ.
 pub(super) fn restore_state(state: &mut State, snapshot: &Snapshot, stale: &mut Stale) {
-    let Snapshot { rest, bodies, shapes, joints, islands, resting, packed, digest: _, changes: _ } = snapshot;
+    let Snapshot { rest, bodies, shapes, joints, islands, sleeping_contacts, packed, digest: _, changes: _ } =
+        snapshot;
     let Rest { config, tick, faults, pairs_left_out, removed_contacts, rng } = rest;
     let Packed { bodies: packed_bodies, joints: packed_joints, contacts: heads, impulses } = packed;
     let PackedBodies { bodies: motions, boxes } = packed_bodies;
@@ -69,7 +70,7 @@ pub(super) fn restore_state(state: &mut State, snapshot: &Snapshot, stale: &mut 
     bodies::unpack_boxes(&mut state.shapes, &state.bodies, boxes, |slot, fat| stale.boxes.push((slot, fat)));
     constraints::unpack_joints(&mut state.joints, packed_joints);
     constraints::unpack_contacts(&mut state.contacts, heads, impulses);
-    state.resting.restore(resting);
+    state.sleeping_contacts.restore(sleeping_contacts);
 }
 
 /// Updates the caches of a restored state.

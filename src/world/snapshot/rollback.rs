@@ -6,7 +6,7 @@ use alloc::vec::Vec;
 use super::bodies::{PackedBodies, lasting_body, lasting_shape};
 use super::constraints::{lasting_joint, pack_contacts, pack_joints};
 use super::digest::{Section, WorldDigest};
-use super::resting::PackedContacts;
+use super::sleeping_contacts::PackedContacts;
 use crate::body::{Body, Shape, SharedArena};
 use crate::hash::StateHash;
 use crate::math::Rng;
@@ -26,7 +26,7 @@ pub struct Snapshot {
     pub(super) shapes: SharedArena<Shape>,
     pub(super) joints: SharedArena<Joint>,
     pub(super) islands: SharedArena<Island>,
-    pub(super) resting: Arc<PackedContacts>,
+    pub(super) sleeping_contacts: Arc<PackedContacts>,
     pub(super) packed: Packed,
     /// Digest of all fields above.
     pub(super) digest: WorldDigest,
@@ -62,7 +62,7 @@ impl PartialEq for Snapshot {
             && self.packed == other.packed
             && (&self.bodies, &self.shapes) == (&other.bodies, &other.shapes)
             && (&self.joints, &self.islands) == (&other.joints, &other.islands)
-            && self.resting == other.resting
+            && self.sleeping_contacts == other.sleeping_contacts
     }
 }
 
@@ -89,7 +89,7 @@ impl Snapshot {
             shapes: _,
             joints: _,
             islands: _,
-            resting: _,
+            sleeping_contacts: _,
             packed,
             digest: _,
             changes,
@@ -108,7 +108,7 @@ impl Snapshot {
             shapes: SharedArena::default(),
             joints: SharedArena::default(),
             islands: SharedArena::default(),
-            resting: Arc::default(),
+            sleeping_contacts: Arc::default(),
             packed: Packed::default(),
             digest: WorldDigest::NONE,
             changes: Changes::default(),
@@ -133,7 +133,7 @@ impl Snapshot {
             joints,
             islands,
             contacts,
-            resting,
+            sleeping_contacts,
             pairs_left_out: _,
             removed_contacts: _,
             rng: _,
@@ -152,21 +152,30 @@ impl Snapshot {
         let joints = StateHash::of_bytes(packed_joints);
         pack_contacts(contacts, heads, impulses);
         let [contacts, impulses] = [StateHash::of_bytes(heads), StateHash::of_bytes(impulses)];
-        self.resting = resting.share();
+        self.sleeping_contacts = sleeping_contacts.share();
         changes.save_into(&mut self.changes);
         self.digest = self.digest_with(&Packed { bodies, joints, contacts, impulses });
     }
 
     /// The digest of the snapshot, given the digests of its packed buffers.
     fn digest_with(&self, packed: &Packed<StateHash>) -> WorldDigest {
-        let Snapshot { rest, bodies, shapes, joints, islands, resting, packed: _, digest: _, changes: _ } =
-            self;
+        let Snapshot {
+            rest,
+            bodies,
+            shapes,
+            joints,
+            islands,
+            sleeping_contacts,
+            packed: _,
+            digest: _,
+            changes: _,
+        } = self;
         let Rest { config, tick, faults, pairs_left_out, removed_contacts, rng } = rest;
         fn of(shared: impl Iterator<Item = StateHash>, packed: StateHash) -> StateHash {
             StateHash::of_digests(shared.chain([packed]))
         }
         let ended = StateHash::of(&(pairs_left_out, removed_contacts));
-        let contacts = [ended, resting.digest, packed.contacts].into_iter();
+        let contacts = [ended, sleeping_contacts.digest, packed.contacts].into_iter();
         WorldDigest {
             sections: [
                 (Section::World, StateHash::of(&(config, tick, faults))),

@@ -83,7 +83,7 @@ fn contacts_of_every_kind_come_back() {
             1 => contact.remember([points[0], PointImpulse::default()], 1, rolling),
             _ => contact.remember(points, 2, rolling),
         }
-        if slot % 2 == 0 { &mut state.contacts } else { &mut *state.resting }.push(contact);
+        if slot % 2 == 0 { &mut state.contacts } else { &mut *state.sleeping_contacts }.push(contact);
     }
     there_and_back(&mut world);
 }

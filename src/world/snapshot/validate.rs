@@ -68,11 +68,11 @@ impl State {
         check_islands(state)?;
         check_joints(state)?;
         check_contacts(state, &state.contacts)?;
-        check_contacts(state, &state.resting)?;
-        let resting = |contact: &Contact| {
-            state.resting.binary_search_by_key(&contact.shapes, |other| other.shapes).is_ok()
+        check_contacts(state, &state.sleeping_contacts)?;
+        let sleeping_contacts = |contact: &Contact| {
+            state.sleeping_contacts.binary_search_by_key(&contact.shapes, |other| other.shapes).is_ok()
         };
-        check(!state.contacts.iter().any(resting), || "a contact is both active and resting".into())
+        check(!state.contacts.iter().any(sleeping_contacts), || "a contact is both active and resting".into())
     }
 }
 

@@ -6,7 +6,7 @@
 //! the contact exists from the start. It loses the rest of its displacement in this tick.
 
 use crate::body::{Body, BodyKind, Continuous, Handle, Pose, WORLD_EXTENT_MAX};
-use crate::collision::{Core, Sweep, TimeOfImpact, time_of_impact};
+use crate::collision::{SupportShape, Sweep, TimeOfImpact, time_of_impact};
 use crate::fx;
 use crate::math::{Aabb, Angle, Fx, Rot, Vec2, fx_mul};
 use crate::world::cache::{Scratch, SweptBody};
@@ -100,7 +100,7 @@ fn first_impact(state: &State, scratch: &Scratch, swept: &SweptBody) -> Option<I
             if is_solid && stops(body, obstacle) && may_stop(state, scratch, id.slot(), other) {
                 let (there, movement) = obstacle_of(state, scratch, other);
                 let &mut (core, target) = core_and_target.get_or_insert_with(|| {
-                    let core = Core::of(posed, body.centre);
+                    let core = SupportShape::of(posed, body.centre);
                     // A quarter of the depth at which its centre would be on the surface, and at most 5 mm.
                     (core, -(core.inner_radius() / 4).min(fx!(0.005)))
                 });
@@ -120,9 +120,9 @@ fn first_impact(state: &State, scratch: &Scratch, swept: &SweptBody) -> Option<I
 }
 
 /// A shape about its body's centre as it was at the start of the tick, and the movement of that body within the tick.
-fn obstacle_of(state: &State, scratch: &Scratch, shape: u32) -> (Core, Sweep) {
+fn obstacle_of(state: &State, scratch: &Scratch, shape: u32) -> (SupportShape, Sweep) {
     let body = state.body_of(shape);
-    let core = Core::of(scratch.shapes.poses().at(shape), body.centre);
+    let core = SupportShape::of(scratch.shapes.poses().at(shape), body.centre);
     let stands = (core, Sweep::fixed(body.centre));
     if body.kind() == BodyKind::Fixed {
         return stands;

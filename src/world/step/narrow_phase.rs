@@ -4,12 +4,12 @@
 use core::ops::Range;
 
 use super::speculative::{Side, SpeculativePair, approach};
-use crate::collision::{AxisHint, Contact, Manifold, Pair, SatCounters, collide, collide_near};
-use crate::lanes::Machine;
+use crate::collision::{CachedAxis, Contact, Manifold, Pair, SatCounters, collide, collide_near};
 use crate::math::{Length, Step, saturate, widen};
-use crate::solver::{Surface, SurfaceSide, TouchingPair};
+use crate::simd::Machine;
+use crate::solver::{ActiveContact, Surface, SurfaceSide};
 use crate::world::cache::{
-    Approach, ClosingBound, Margins, MotionCache, NarrowPhaseBuffers, NarrowPhaseOutput, NearPair, Poses,
+    ClosingBound, Margins, MotionCache, NarrowPhaseBuffers, NarrowPhaseOutput, NearPair, PendingHit, Poses,
     Scratch,
 };
 use crate::world::events::{ContactEvent, HitEvent};
@@ -50,7 +50,7 @@ struct NarrowPhase<'a> {
     state: &'a State,
     poses: &'a Poses,
     /// The touching pairs of the last tick, sorted by pair.
-    touched: &'a [TouchingPair],
+    touched: &'a [ActiveContact],
     margins: Margins,
     machine: Machine,
 }
@@ -59,7 +59,7 @@ struct NarrowPhase<'a> {
 struct Job<'a> {
     contacts: &'a mut [Contact],
     /// For each of the contacts, the axis that separated its shapes in the last tick.
-    axes: &'a mut [AxisHint],
+    axes: &'a mut [CachedAxis],
     /// Index of the first of the contacts in the state.
     first: u32,
 }
@@ -116,9 +116,9 @@ impl NarrowPhase<'_> {
     fn find_touching<'t>(
         &self,
         job: &mut Job<'_>,
-        mut touched: &'t [TouchingPair],
+        mut touched: &'t [ActiveContact],
         output: &mut NarrowPhaseOutput,
-    ) -> &'t [TouchingPair] {
+    ) -> &'t [ActiveContact] {
         let NarrowPhase { state, poses, margins, .. } = self;
         let NarrowPhaseOutput { near, boxes, contacts, sensors, manifolds, touching, approaches, sat } =
             output;
@@ -156,7 +156,7 @@ impl NarrowPhase<'_> {
                 Some(touched) if touched.shapes == contact.shapes => touched.surface,
                 _ => surface_of(state, poses, contact.shapes),
             };
-            touching.push(TouchingPair {
+            touching.push(ActiveContact {
                 contact: index,
                 manifold: place,
                 shapes: contact.shapes,
@@ -177,7 +177,7 @@ pub(super) fn will_touch(state: &State, poses: &Poses, shapes: Pair) -> bool {
     let closing = ClosingBound::of(&margins, a, b);
     let pair = SpeculativePair { margins: &margins, a, b, closing };
     closing.may_meet(a, b) && {
-        let (mut axis, mut counters) = (AxisHint::default(), SatCounters::default());
+        let (mut axis, mut counters) = (CachedAxis::default(), SatCounters::default());
         let mut manifold = manifold_of(poses, &pair, shapes, &mut axis, &mut counters);
         keep_reachable(state, poses, &pair, &mut contact, &mut manifold);
         !manifold.points().is_empty()
@@ -190,7 +190,7 @@ fn manifold_of(
     poses: &Poses,
     pair: &SpeculativePair,
     (a, b): Pair,
-    axis: &mut AxisHint,
+    axis: &mut CachedAxis,
     counters: &mut SatCounters,
 ) -> Manifold {
     let (posed_a, posed_b) = (poses.at(a), poses.at(b));
@@ -247,7 +247,7 @@ fn fast_approach(
     index: u32,
     contact: &Contact,
     manifold: &Manifold,
-) -> Option<Approach> {
+) -> Option<PendingHit> {
     let body_motion = |shape: u32| motion.motion(motion.shape(shape));
     let (a, b) = contact.shapes;
     let closing_at = approach(body_motion(a), body_motion(b), manifold);
@@ -261,5 +261,5 @@ fn fast_approach(
     let point = manifold.origin + point.anchor.widen();
     let ContactEvent { shape_a, shape_b } = state.contact_event(contact);
     let event = HitEvent { shape_a, shape_b, point, normal: manifold.normal, approach_speed };
-    Some(Approach { contact: index, event })
+    Some(PendingHit { contact: index, event })
 }

@@ -1,7 +1,7 @@
 //! Pair update: brings the contacts of the state in line with the fat boxes.
 //!
 //! A contact exists for every pair of shapes whose fat boxes overlap and which may collide. The active ones, with at
-//! least one active body, are in `State::contacts`; the others are in `State::resting` until something moves. The
+//! least one active body, are in `State::contacts`; the others are in `State::sleeping_contacts` until something moves. The
 //! result is a function of the state: [`Changes`](crate::world::cache::Changes) only says where to look for
 //! differences.
 
@@ -32,11 +32,11 @@ pub(super) fn update_pairs(state: &mut State, scratch: &mut Scratch) {
 fn activate_resting(state: &mut State, scratch: &mut Scratch) {
     let pairs = &mut scratch.pairs;
     pairs.buffers.fresh.clear();
-    if state.resting.is_empty() || !pairs.changes.concerns_resting() {
+    if state.sleeping_contacts.is_empty() || !pairs.changes.concerns_resting() {
         return;
     }
-    let mut resting = core::mem::take(&mut state.resting);
-    resting.retain(|contact| {
+    let mut sleeping_contacts = core::mem::take(&mut state.sleeping_contacts);
+    sleeping_contacts.retain(|contact| {
         let (a, b) = contact.shapes;
         let (body_a, body_b) = state.bodies_of(contact.shapes);
         let overlaps = state.shapes.at(a).fat.overlaps(state.shapes.at(b).fat);
@@ -49,7 +49,7 @@ fn activate_resting(state: &mut State, scratch: &mut Scratch) {
         }
         is_near && !is_active
     });
-    state.resting = resting;
+    state.sleeping_contacts = sleeping_contacts;
 }
 
 /// Adds a contact to the fresh ones for every pair that may be new. Returns whether pairs were left out at the limit.
@@ -120,9 +120,9 @@ fn merge_contacts(state: &mut State, scratch: &mut Scratch) {
     let Scratch { shapes, pairs, contacts: cache, .. } = scratch;
     let axes = cache.axes(state.contacts.len());
     let (changes, non_colliding, ended) = (&pairs.changes, &pairs.non_colliding, &mut pairs.ended);
-    let (merged, resting) = (&mut pairs.buffers.merged, &mut pairs.buffers.resting);
+    let (merged, sleeping_contacts) = (&mut pairs.buffers.merged, &mut pairs.buffers.sleeping_contacts);
     merged.clear();
-    resting.clear();
+    sleeping_contacts.clear();
     let contacts = &state.contacts;
     let mut fresh = pairs.buffers.fresh.iter().peekable();
     let mut copied = 0;
@@ -142,7 +142,7 @@ fn merge_contacts(state: &mut State, scratch: &mut Scratch) {
         let removed = match PairChange::of(contact.shapes, state, shapes, changes, non_colliding) {
             PairChange::Stays => continue,
             PairChange::Ends => &mut *ended,
-            PairChange::Rests => &mut *resting,
+            PairChange::Rests => &mut *sleeping_contacts,
         };
         removed.push(*contact);
         copy(merged, index, index + 1);
@@ -151,8 +151,8 @@ fn merge_contacts(state: &mut State, scratch: &mut Scratch) {
     fresh.for_each(|fresh| merged.push(*fresh));
     core::mem::swap(&mut state.contacts, &mut merged.contacts);
     core::mem::swap(axes, &mut merged.axes);
-    if !resting.is_empty() {
-        merge_sorted(&mut state.resting, resting, &mut merged.contacts);
+    if !sleeping_contacts.is_empty() {
+        merge_sorted(&mut state.sleeping_contacts, sleeping_contacts, &mut merged.contacts);
     }
 }
 

@@ -13,24 +13,24 @@ use crate::world::stats::Phase;
 impl World {
     /// Starts to record a digest after every phase of every tick. A tick then takes several times as long. Clears what
     /// was recorded before. No result depends on it.
-    pub fn note_phases(&mut self) {
+    pub fn log_phases(&mut self) {
         self.phases = Some(PhaseLog::default());
     }
 
-    /// Ends the recording that [`World::note_phases`] has started, and clears it.
-    pub fn ignore_phases(&mut self) {
+    /// Ends the recording that [`World::log_phases`] has started, and clears it.
+    pub fn stop_logging_phases(&mut self) {
         self.phases = None;
     }
 
-    /// Returns the digests of every tick since [`World::note_phases`], in order: eight for each tick, the first of
+    /// Returns the digests of every tick since [`World::log_phases`], in order: eight for each tick, the first of
     /// which is that of the beginning of the tick. Empty if nothing is recorded.
     ///
     /// ```
     /// # use lockstep2d::world::{Phase, World};
     /// let mut world = World::default();
-    /// world.note_phases();
+    /// world.log_phases();
     /// world.step();
-    /// let phases: Vec<_> = world.phase_digests().iter().map(|noted| noted.phase).collect();
+    /// let phases: Vec<_> = world.phase_digests().iter().map(|log| log.phase).collect();
     /// assert_eq!(phases.len(), 8);
     /// assert_eq!(phases[..2], [None, Some(Phase::BroadPhase)]);
     /// ```
@@ -39,7 +39,7 @@ impl World {
         self.phases.as_ref().map_or(&[], |log| &log.digests)
     }
 
-    /// Returns the state at the start of the last tick since [`World::note_phases`]: that at the end of the tick
+    /// Returns the state at the start of the last tick since [`World::log_phases`]: that at the end of the tick
     /// before, with all edits since. `None` before the first tick, and if nothing is recorded.
     #[must_use]
     pub fn step_start(&self) -> Option<&Snapshot> {

@@ -35,7 +35,7 @@ pub(super) fn count(state: &mut State, scratch: &mut Scratch) {
         points: solver.warm_starts.points,
         points_kept: solver.warm_starts.kept,
         points_lost: solver.warm_starts.lost,
-        axis_hits: found.sat.hint_hits,
+        axis_hits: found.sat.cached_axis_hits,
         axis_searches: found.sat.searches,
         impacts: stats.impacts,
         faults,

@@ -1,10 +1,10 @@
 //! Speculative contacts: which contact points bodies can reach within the tick at their velocities at its start.
 
 use crate::body::{Body, Shape};
-use crate::collision::{Manifold, ManifoldPoint, OneWay, Passage, PosedShape, pass_by};
+use crate::collision::{GhostFilter, Manifold, ManifoldPoint, OneWay, PosedShape, is_ghost};
 use crate::math::{Length, Rot, Step, Unit, Vec2, convert, saturate, widen};
 use crate::world::cache::{
-    ClosingBound, Margins, MotionCache, PASSAGE_MIN, PredictedMotion, ShapeMotion, Travel,
+    ClosingBound, GHOST_TRAVEL_MIN, Margins, MotionCache, PredictedMotion, ShapeMotion, Travel,
 };
 use fixed::FixedI32;
 use fixed::types::extra::{LeEqU32, U27};
@@ -124,7 +124,7 @@ impl SpeculativePair<'_> {
             is_reached
         });
         let fastest = Step::from_bits(saturate(fastest));
-        if fastest > PASSAGE_MIN && self.passes_by(motions, posed(), manifold.normal, fastest) {
+        if fastest > GHOST_TRAVEL_MIN && self.is_ghost_collision(motions, posed(), manifold.normal, fastest) {
             *manifold = Manifold::NONE;
         }
     }
@@ -139,7 +139,7 @@ impl SpeculativePair<'_> {
 
     /// Whether the shapes pass by each other, with the slack, although a contact point closes by `closing` metres in
     /// the tick.
-    fn passes_by(
+    fn is_ghost_collision(
         &self,
         [motion_a, motion_b]: [&PredictedMotion; 2],
         [posed_a, posed_b]: [&PosedShape; 2],
@@ -148,8 +148,8 @@ impl SpeculativePair<'_> {
     ) -> bool {
         let shift = motion_b.shift_at(posed_b.centre) - motion_a.shift_at(posed_a.centre);
         let turn = convert(self.a.turn.saturating_add(self.b.turn));
-        let passage =
-            Passage::new(shift.convert(), turn, convert(self.slack()), convert(closing / 8), normal);
-        pass_by(posed_a, posed_b, &passage)
+        let filter =
+            GhostFilter::new(shift.convert(), turn, convert(self.slack()), convert(closing / 8), normal);
+        is_ghost(posed_a, posed_b, &filter)
     }
 }

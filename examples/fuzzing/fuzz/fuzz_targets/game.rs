@@ -10,7 +10,7 @@ const SETUP: <MyGame as Game>::Setup = 7;
 const PLAYERS: u32 = 2;
 
 use libfuzzer_sys::fuzz_target;
-use lockstep2d::check::{CheckError, Options, check, inputs_from_bytes};
+use lockstep2d::check::{CheckError, CheckOptions, check, inputs_from_bytes};
 use lockstep2d::lockstep::Game;
 
 /// Longer logs are slower and rarely find more.
@@ -19,7 +19,7 @@ const TICKS_MAX: usize = 300;
 fuzz_target!(|bytes: &[u8]| {
     let mut inputs = inputs_from_bytes::<MyGame>(PLAYERS, bytes);
     inputs.truncate(TICKS_MAX);
-    match check::<MyGame>(&SETUP, &inputs, &Options::default()) {
+    match check::<MyGame>(&SETUP, &inputs, &CheckOptions::default()) {
         Ok(_) => {}
         Err(CheckError::Failed(failure)) => {
             let name = "failure.replay";

@@ -3,17 +3,21 @@
 use super::super::super::row::MassFractions;
 use super::*;
 use crate::fx;
-use crate::lanes::{Backend, Kernel, Machine, Scalar, WIDTH};
 use crate::math::{Reciprocal, Rng, Rot, Speed, Unit, Vec2};
+use crate::simd::{Backend, Kernel, Machine, Scalar, WIDTH};
 use std::vec::Vec;
 
 #[test]
 fn grip_is_friction_times_the_ratio_of_denominators() {
     let one = 1i64 << 30;
-    assert_eq!(grip(fx!(0.5), one), Grip::lit("0.5"));
-    assert_eq!(grip(fx!(0.5), 4 * one), Grip::lit("2"));
-    assert_eq!(grip(fx!(0.5), one / 4), Grip::lit("0.125"));
-    assert_eq!(grip(fx!(16), 16130 * one), Grip::MAX, "the grip saturates and does not wrap");
+    assert_eq!(friction_ratio(fx!(0.5), one), FrictionRatio::lit("0.5"));
+    assert_eq!(friction_ratio(fx!(0.5), 4 * one), FrictionRatio::lit("2"));
+    assert_eq!(friction_ratio(fx!(0.5), one / 4), FrictionRatio::lit("0.125"));
+    assert_eq!(
+        friction_ratio(fx!(16), 16130 * one),
+        FrictionRatio::MAX,
+        "the grip saturates and does not wrap"
+    );
 }
 
 struct FillRows<'a, const N: usize> {
@@ -153,7 +157,10 @@ fn check<const N: usize>(input: &Input, lane: usize, made: &Made<N>) {
         let normal = naive_row(input, anchor(input, &[i]), [x, y]);
         check_row(&point.normal, &inverses.normals[i], &normal);
         let ratio = rounded(tangent.denominator * i128::from(normal.inverse), 30);
-        assert_eq!(point.grip.0[lane], limited(rounded(i128::from(friction) * ratio, 30), i32::MAX));
+        assert_eq!(
+            point.friction_ratio.0[lane],
+            limited(rounded(i128::from(friction) * ratio, 30), i32::MAX)
+        );
         assert_eq!(point.normal_lambda.0[lane], lambda(i, &normal, IMPULSE_MAX).max(0));
     }
 }

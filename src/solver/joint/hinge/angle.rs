@@ -7,14 +7,14 @@
 
 use super::super::super::context::Pass;
 use super::super::super::limits::Faults;
-use super::super::super::pair::{Pair, RATIO, UNIT, clamp};
+use super::super::super::pair::{BodyPairW, RATIO, UNIT, clamp};
 use super::super::super::softness::Softness;
 use super::super::parts::slot;
-use super::super::place::Turned;
+use super::super::pose::BodyRotation;
 use super::super::state::JointImpulses;
 use super::angle_input::AngleInput;
-use crate::lanes::{Ints, Lanes};
 use crate::math::{Fx, Speed, Unit, round_shift_wide, saturate, saturate_wide};
+use crate::simd::{Ints, Lanes};
 
 /// The rows of a batch. Lanes without a row have no gains, or bounds of 0.
 #[derive(Clone, Debug)]
@@ -151,9 +151,14 @@ impl<const N: usize> AngleRows<N> {
     }
 
     /// Computes positions at the present pose. `turns` are the angles of the joints at the start of the tick.
-    pub(super) fn refresh(&mut self, turns: &[i64; N], [a, b]: &[[u32; N]; 2], turned: &[Turned]) {
+    pub(super) fn refresh(
+        &mut self,
+        turns: &[i64; N],
+        [a, b]: &[[u32; N]; 2],
+        body_rotations: &[BodyRotation],
+    ) {
         for lane in 0..N {
-            let (a, b) = (&turned[a[lane] as usize], &turned[b[lane] as usize]);
+            let (a, b) = (&body_rotations[a[lane] as usize], &body_rotations[b[lane] as usize]);
             let position = turns[lane].wrapping_add(b.turns).wrapping_sub(a.turns);
             if self.has_spring {
                 let stretch = position.saturating_sub(self.targets[lane]);
@@ -175,7 +180,7 @@ impl<const N: usize> AngleRows<N> {
     }
 
     #[inline(always)]
-    pub(super) fn warm_start<L: Lanes<N>>(&self, pair: &mut Pair<L, N>, faults: &mut Faults) {
+    pub(super) fn warm_start<L: Lanes<N>>(&self, pair: &mut BodyPairW<L, N>, faults: &mut Faults) {
         if self.has_spring {
             pair.turn(&self.f, L::load(&self.spring.lambda), faults);
         }
@@ -194,7 +199,7 @@ impl<const N: usize> AngleRows<N> {
         &mut self,
         pass: Pass,
         softness: &Softness,
-        pair: &mut Pair<L, N>,
+        pair: &mut BodyPairW<L, N>,
         faults: &mut Faults,
     ) {
         if self.has_spring && (pass == Pass::Bias || self.holds) {
@@ -216,7 +221,7 @@ impl<const N: usize> AngleRows<N> {
 
     /// Solves springs in the bias pass only, and rows that hold the angle in both passes.
     #[inline(always)]
-    fn solve_spring<L: Lanes<N>>(&mut self, pass: Pass, pair: &mut Pair<L, N>, faults: &mut Faults) {
+    fn solve_spring<L: Lanes<N>>(&mut self, pass: Pass, pair: &mut BodyPairW<L, N>, faults: &mut Faults) {
         let SpringRow { lambda, max, mass_scale, impulse_scale, push, holds } = &mut self.spring;
         let (old, max) = (L::load(lambda), L::load(max));
         let held = L::negative(L::load(holds));
@@ -242,7 +247,7 @@ impl<const N: usize> AngleRows<N> {
         side: usize,
         pass: Pass,
         softness: &Softness,
-        pair: &mut Pair<L, N>,
+        pair: &mut BodyPairW<L, N>,
         faults: &mut Faults,
     ) {
         let zero = L::splat(0);
@@ -293,7 +298,7 @@ fn softened<L: Lanes<N>, const N: usize>(
 fn velocity<L: Lanes<N>, const N: usize>(
     e: &[Ints<N>; 2],
     max: L::Int,
-    pair: &Pair<L, N>,
+    pair: &BodyPairW<L, N>,
     faults: &mut Faults,
 ) -> L::Int {
     let a = L::mul(L::load(&e[0]), pair.a.turn);

@@ -8,11 +8,11 @@ use alloc::vec::Vec;
 use super::super::super::row::{MassFractions, Row};
 use super::super::super::settings::Tuning;
 use super::super::super::softness::Softness;
-use super::super::options::{Drive, Limit, Spring};
+use super::super::options::{Drive, JointLimit, Spring};
 use super::super::parts::{impulse, slot};
 use super::super::row::lambda_of;
 use super::super::state::{JointImpulses, turns_of};
-use super::input::End;
+use super::input::HingeBody;
 use crate::math::{Fx, Ratio, Reciprocal, Speed, TAU, Unit, fx_mul, narrow};
 
 /// Largest impulse of a row on the angle. The difference of two fits the format.
@@ -25,7 +25,7 @@ pub(in super::super) struct AngleParts {
     /// Whether the angle is held at 0, instead of by a spring.
     pub(in super::super) held: bool,
     pub(in super::super) drive: Option<Drive>,
-    pub(in super::super) limit: Option<Limit>,
+    pub(in super::super) limit: Option<JointLimit>,
 }
 
 impl AngleParts {
@@ -52,16 +52,16 @@ impl Memo {
     fn softness(&mut self, hertz: Fx, damping_ratio: Fx, rate: u32) -> Softness {
         let wanted = (hertz, damping_ratio, rate);
         match self.spring {
-            Some((known, softness)) if known == wanted => softness,
+            Some((cached, softness)) if cached == wanted => softness,
             _ => self.spring.insert((wanted, Softness::spring(hertz, damping_ratio, rate))).1,
         }
     }
 
-    fn angular(&mut self, wanted: Joined) -> Angular {
+    fn angular(&mut self, wanted: AngularKey) -> Angular {
         self.angulars.resize(1 << Self::ANGULARS_BITS, None);
         let place = &mut self.angulars[wanted.hash()];
         match *place {
-            Some(known) if known.joined == wanted => known,
+            Some(cached) if cached.key == wanted => cached,
             _ => *place.insert(Angular::new(wanted)),
         }
     }
@@ -69,7 +69,7 @@ impl Memo {
 
 /// All that a row on the angle between two bodies depends on.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Joined {
+struct AngularKey {
     /// `1 / k` and mass of each body.
     bodies: [(Reciprocal, Fx); 2],
     /// Largest torque of the motor between them.
@@ -78,7 +78,7 @@ struct Joined {
     rate: u32,
 }
 
-impl Joined {
+impl AngularKey {
     fn hash(&self) -> usize {
         let parts = self.bodies.iter().flat_map(|(inverse, mass)| [inverse.parts().0.into(), mass.to_bits()]);
         let hash = parts.fold(0u64, |hash, part| {
@@ -91,7 +91,7 @@ impl Joined {
 /// The row on the angle between two bodies, and the largest impulses on it.
 #[derive(Clone, Copy, Debug)]
 struct Angular {
-    joined: Joined,
+    key: AngularKey,
     e: [Ratio; 2],
     f: [Unit; 2],
     s: Fx,
@@ -102,14 +102,14 @@ struct Angular {
 }
 
 impl Angular {
-    fn new(joined: Joined) -> Self {
-        let Joined { bodies: [(a, mass_a), (b, mass_b)], torque, rate } = joined;
+    fn new(key: AngularKey) -> Self {
+        let AngularKey { bodies: [(a, mass_a), (b, mass_b)], torque, rate } = key;
         let (row, denominator, s) = Row::angular(a, b, MassFractions::of_masses(mass_a, mass_b));
         let (e, f) = row.turning_parts();
         let s = Fx::from(s);
         let max = if denominator == 0 { Speed::ZERO } else { ANGLE_MAX };
         let drive_max = lambda_of(impulse(torque, (mass_a, mass_b), rate), denominator, s).min(max);
-        Angular { joined, e, f, s, max, drive_max }
+        Angular { key, e, f, s, max, drive_max }
     }
 }
 
@@ -162,12 +162,12 @@ pub(super) struct LimitInput {
 impl AngleInput {
     pub(in super::super) fn new(
         parts: &AngleParts,
-        ends: [&End; 2],
+        ends: [&HingeBody; 2],
         impulses: &JointImpulses,
         memo: &mut Memo,
         tuning: &Tuning,
     ) -> Self {
-        let Angular { joined: _, e, f, s, max, drive_max } = memo.angular(Joined {
+        let Angular { key: _, e, f, s, max, drive_max } = memo.angular(AngularKey {
             bodies: ends.map(|end| (end.inverse_gyration, end.mass)),
             torque: parts.drive.map_or(Fx::ZERO, |drive| drive.max),
             rate: tuning.rate,
@@ -195,7 +195,7 @@ impl AngleInput {
                 lambda: lambda(slot::DRIVE).clamp(-drive_max, drive_max),
             }
         });
-        let limit = parts.limit.map(|Limit { lower, upper }| LimitInput {
+        let limit = parts.limit.map(|JointLimit { lower, upper }| LimitInput {
             lower: turns_of(lower),
             upper: turns_of(upper),
             closed: stiffness(&tuning.joint),

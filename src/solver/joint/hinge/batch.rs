@@ -1,7 +1,7 @@
 //! Batches of hinges: `N` at a time, as a structure of arrays.
 
-use crate::lanes::Ints;
 use crate::math::Angle;
+use crate::simd::Ints;
 
 /// `N` hinges of which no two change the same body, for one tick. Lanes without a hinge have no gains, and their bodies
 /// are the ground.

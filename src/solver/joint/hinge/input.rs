@@ -11,7 +11,7 @@ use crate::math::{Angle, Fx, Length, Ratio, Reciprocal, Shift, Speed, Unit, Vec2
 
 /// The properties of a body that its joints depend on.
 #[derive(Clone, Copy, Debug)]
-pub(in super::super) struct End {
+pub(in super::super) struct HingeBody {
     pub(in super::super) turning: Turning,
     pub(in super::super) inverse_gyration: Reciprocal,
     /// 0 if no impulse moves it.
@@ -34,12 +34,12 @@ pub(in super::super) struct Turning {
     ahead: Fx,
 }
 
-impl End {
+impl HingeBody {
     pub(in super::super) fn new(index: u32, body: &Body, rate: u32) -> Self {
         /// `2^32 / 2^26 / (2 pi)`.
         const TURNS: Fx = crate::fx!(10.18591635788);
         let inverse = body.mass.inverse_gyration;
-        End {
+        HingeBody {
             turning: Turning {
                 index,
                 angle: body.angle(),
@@ -81,7 +81,7 @@ fn product(number: i32, factor: Fx) -> i64 {
 }
 
 /// A joint between two bodies as it is coloured.
-pub(in super::super) fn node(key: u32, a: &End, b: &End) -> Node {
+pub(in super::super) fn node(key: u32, a: &HingeBody, b: &HingeBody) -> Node {
     Node::new(key.into(), [a.changed(), b.changed()], Size::Large)
 }
 
@@ -108,7 +108,12 @@ pub(in super::super) struct Input {
 }
 
 impl Input {
-    pub(in super::super) fn new(slot: u32, joint: &Joint, [a, b]: [&End; 2], angle: Option<u32>) -> Self {
+    pub(in super::super) fn new(
+        slot: u32,
+        joint: &Joint,
+        [a, b]: [&HingeBody; 2],
+        angle: Option<u32>,
+    ) -> Self {
         let arms = [(&joint.def.frame_a, a), (&joint.def.frame_b, b)]
             .map(|(frame, end)| arm(frame.anchor - end.local_centre));
         let lambda = joint.impulses.point(slot::HOLD);

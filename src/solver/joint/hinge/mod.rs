@@ -22,14 +22,14 @@ use core::mem;
 
 use super::super::batches::{BatchKind, BatchList};
 use super::super::context::{Pass, StepContext};
-use super::place::Turned;
-use crate::lanes::Quad;
+use super::pose::BodyRotation;
+use crate::simd::Quad;
 use angle::AngleRows;
 pub(super) use angle_input::AngleParts;
 use angle_input::{AngleInput, Memo};
 use batch::{Batch, Records};
 use input::Input;
-pub(super) use input::{End, Turning, node};
+pub(super) use input::{HingeBody, Turning, node};
 use refresh::{Refresh, Stiffness};
 use solve::{Relax, Solve};
 use warm_start::WarmStart;
@@ -60,7 +60,7 @@ pub(super) struct Poses<'a> {
     /// Cosine and sine of the rotation, and the terms by which a lever ratio that is averaged over the predicted
     /// rotation moves across itself and along itself.
     pub(super) quads: &'a [Quad],
-    pub(super) turned: &'a [Turned],
+    pub(super) body_rotations: &'a [BodyRotation],
 }
 
 /// The hinges of a tick.
@@ -72,14 +72,14 @@ pub(super) struct HingeSet {
     memo: Memo,
     hinges: BatchList<Hinges>,
     /// Hinges that hold a body which has no other joint to one that no impulse moves. Their points are stiffer.
-    mounts: BatchList<Hinges>,
+    anchored: BatchList<Hinges>,
     /// Which parts of the batches no longer match the poses of the bodies.
-    expired: Expired,
+    dirty: Dirty,
 }
 
 /// The parts of a batch that moved bodies invalidate.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Expired {
+pub(super) enum Dirty {
     #[default]
     Nothing,
     /// No body has turned, so that lever ratios and gains are still right.
@@ -90,15 +90,15 @@ pub(super) enum Expired {
 impl HingeSet {
     /// Invalidates parts of the batches, because bodies have moved. The next operation refreshes them batch by batch,
     /// so that a batch is fetched from memory once for both.
-    pub(super) fn expire(&mut self, what: Expired) {
-        self.expired = self.expired.max(what);
+    pub(super) fn expire(&mut self, what: Dirty) {
+        self.dirty = self.dirty.max(what);
     }
 
     pub(super) fn warm_start(&mut self, poses: Poses<'_>, context: &StepContext<'_>) {
         let [refresh, refresh_mounts] = self.refreshes(poses, context);
         self.hinges.run_overflow(WarmStart { refresh }, context);
         self.hinges.run_coloured(WarmStart { refresh }, context);
-        self.mounts.run_coloured(WarmStart { refresh: refresh_mounts }, context);
+        self.anchored.run_coloured(WarmStart { refresh: refresh_mounts }, context);
     }
 
     pub(super) fn solve(&mut self, pass: Pass, poses: Poses<'_>, context: &StepContext<'_>) {
@@ -107,22 +107,22 @@ impl HingeSet {
             Pass::Bias => {
                 self.hinges.run_overflow(Solve { refresh }, context);
                 self.hinges.run_coloured(Solve { refresh }, context);
-                self.mounts.run_coloured(Solve { refresh: refresh_mounts }, context);
+                self.anchored.run_coloured(Solve { refresh: refresh_mounts }, context);
             }
             Pass::Relax => {
                 self.hinges.run_overflow(Relax { refresh }, context);
                 self.hinges.run_coloured(Relax { refresh }, context);
-                self.mounts.run_coloured(Relax { refresh: refresh_mounts }, context);
+                self.anchored.run_coloured(Relax { refresh: refresh_mounts }, context);
             }
         }
     }
 
     /// The refresh that the next operation has to do, for ordinary hinges and for mounts.
     fn refreshes<'a>(&mut self, poses: Poses<'a>, context: &StepContext<'_>) -> [Refresh<'a>; 2] {
-        let (expired, tuning) = (mem::take(&mut self.expired), context.tuning);
-        [tuning.joint, tuning.mount].map(|points| {
+        let (dirty, tuning) = (mem::take(&mut self.dirty), context.tuning);
+        [tuning.joint, tuning.anchored].map(|points| {
             let stiffness = Stiffness { points, limits: tuning.joint };
-            Refresh { expired, stiffness, poses }
+            Refresh { dirty, stiffness, poses }
         })
     }
 }

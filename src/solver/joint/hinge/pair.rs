@@ -1,14 +1,14 @@
 //! The velocity changes by impulses of hinges.
 
 use super::super::super::limits::Faults;
-use super::super::super::pair::{HALF, Pair, UNIT, beyond, clamp};
+use super::super::super::pair::{BodyPairW, HALF, UNIT, beyond, clamp};
 use super::batch::Batch;
-use crate::lanes::{Ints, Lanes, Motion};
+use crate::simd::{Ints, Lanes, VelocityW};
 
 /// Largest impulse, 362 m/s, of which two along different axes change no velocity by 512 m/s or more.
 const PLAIN_MAX: i32 = 362 << 21;
 
-impl<L: Lanes<N>, const N: usize> Pair<L, N> {
+impl<L: Lanes<N>, const N: usize> BodyPairW<L, N> {
     /// Changes the velocities by impulses `d` of at most 512 at a point.
     #[inline(always)]
     pub(super) fn apply_at_point(&mut self, batch: &Batch<N>, d: [L::Int; 2], faults: &mut Faults) {
@@ -20,23 +20,23 @@ impl<L: Lanes<N>, const N: usize> Pair<L, N> {
         if L::any(large) {
             self.apply_saturating(a, b);
         } else {
-            let Motion { x, y, turn } = self.a;
-            self.a = Motion { x: L::sub(x, a.x), y: L::sub(y, a.y), turn: L::sub(turn, a.turn) };
-            let Motion { x, y, turn } = self.b;
-            self.b = Motion { x: L::add(x, b.x), y: L::add(y, b.y), turn: L::add(turn, b.turn) };
+            let VelocityW { x, y, turn } = self.a;
+            self.a = VelocityW { x: L::sub(x, a.x), y: L::sub(y, a.y), turn: L::sub(turn, a.turn) };
+            let VelocityW { x, y, turn } = self.b;
+            self.b = VelocityW { x: L::add(x, b.x), y: L::add(y, b.y), turn: L::add(turn, b.turn) };
         }
         self.keep_in_range(faults);
     }
 
     /// Changes of up to 512 m/s on both axes may add up to 768 m/s.
     #[cold]
-    fn apply_saturating(&mut self, a: Motion<L::Int>, b: Motion<L::Int>) {
-        let Motion { x, y, turn } = self.a;
+    fn apply_saturating(&mut self, a: VelocityW<L::Int>, b: VelocityW<L::Int>) {
+        let VelocityW { x, y, turn } = self.a;
         let sub = L::sub_saturating;
-        self.a = Motion { x: sub(x, a.x), y: sub(y, a.y), turn: sub(turn, a.turn) };
-        let Motion { x, y, turn } = self.b;
+        self.a = VelocityW { x: sub(x, a.x), y: sub(y, a.y), turn: sub(turn, a.turn) };
+        let VelocityW { x, y, turn } = self.b;
         let add = L::add_saturating;
-        self.b = Motion { x: add(x, b.x), y: add(y, b.y), turn: add(turn, b.turn) };
+        self.b = VelocityW { x: add(x, b.x), y: add(y, b.y), turn: add(turn, b.turn) };
     }
 
     /// Changes the spins by impulses on the angle, of less than 1024.
@@ -73,8 +73,8 @@ fn changes<L: Lanes<N>, const N: usize>(
     g: &[Ints<N>; 3],
     f: &[Ints<N>; 2],
     d: [L::Int; 2],
-) -> Motion<L::Int> {
-    Motion {
+) -> VelocityW<L::Int> {
+    VelocityW {
         x: dot::<L, N>([&g[0], &g[1]], d),
         y: dot::<L, N>([&g[1], &g[2]], d),
         turn: dot::<L, N>([&f[0], &f[1]], d),

@@ -4,23 +4,23 @@ use super::super::super::batches::Batches;
 use super::super::super::body_list::GROUND;
 use super::super::super::settings::Tuning;
 use super::super::parts::slot;
-use super::super::place::Turned;
+use super::super::pose::BodyRotation;
 use super::super::state::{Joint, JointImpulses, nearest_turns};
 use super::angle::AngleRows;
 use super::batch::{Batch, Records, Shape};
-use super::{AngleInput, AngleParts, End, Expired, HingeSet, Hinges, Input};
+use super::{AngleInput, AngleParts, Dirty, HingeBody, HingeSet, Hinges, Input};
 use crate::body::{Arena, JointId, Pose};
 use crate::math::{Fx, Length, Speed, Unit, Vec2};
 
 impl HingeSet {
     pub(in super::super) fn clear(&mut self) {
-        let HingeSet { inputs, angles, memo: _, hinges, mounts, expired } = self;
-        *expired = Expired::Everything;
+        let HingeSet { inputs, angles, memo: _, hinges, anchored, dirty } = self;
+        *dirty = Dirty::Everything;
         inputs.clear();
         angles.clear();
         hinges.overflow.clear();
         hinges.coloured.clear();
-        mounts.coloured.clear();
+        anchored.coloured.clear();
     }
 
     /// Adds a hinge, and returns the index of its input.
@@ -28,7 +28,7 @@ impl HingeSet {
         &mut self,
         slot: u32,
         joint: &Joint,
-        ends: [&End; 2],
+        ends: [&HingeBody; 2],
         parts: &AngleParts,
         tuning: &Tuning,
     ) -> u32 {
@@ -59,21 +59,21 @@ impl HingeSet {
         indices: impl Iterator<Item = u32> + Clone,
         is_alone: impl Fn(u32) -> bool,
     ) {
-        let HingeSet { inputs, angles, hinges, mounts, .. } = self;
+        let HingeSet { inputs, angles, hinges, anchored, .. } = self;
         for has_angle in [false, true] {
             let indices =
                 indices.clone().filter(|&index| inputs[index as usize].angle.is_some() == has_angle);
-            let is_mount = |&index: &u32| inputs[index as usize].mounted().is_some_and(&is_alone);
-            hinges.coloured.push(inputs, angles, indices.clone().filter(|index| !is_mount(index)));
-            mounts.coloured.push(inputs, angles, indices.filter(is_mount));
+            let is_anchored = |&index: &u32| inputs[index as usize].mounted().is_some_and(&is_alone);
+            hinges.coloured.push(inputs, angles, indices.clone().filter(|index| !is_anchored(index)));
+            anchored.coloured.push(inputs, angles, indices.filter(is_anchored));
         }
         hinges.coloured.end_colour();
-        mounts.coloured.end_colour();
+        anchored.coloured.end_colour();
     }
 
     /// The indices of the bodies that mounts hold.
     pub(in super::super) fn mounted(&self) -> impl Iterator<Item = u32> {
-        let Batches { batches, records, .. } = &self.mounts.coloured;
+        let Batches { batches, records, .. } = &self.anchored.coloured;
         batches.iter().zip(records).flat_map(|(Batch { changed: [a, b], .. }, records)| {
             a.iter().zip(b).take(records.len).map(|(&a, &b)| if a == GROUND { b } else { a })
         })
@@ -83,21 +83,25 @@ impl HingeSet {
     pub(in super::super) fn reload(&mut self, joints: &Arena<Joint, JointId>) {
         self.hinges.overflow.reload(joints);
         self.hinges.coloured.reload(joints);
-        self.mounts.coloured.reload(joints);
+        self.anchored.coloured.reload(joints);
     }
 
     /// Continues with the hinges of the last tick, with the bodies at their present poses.
     pub(in super::super) fn resume(&mut self, poses: &[Pose]) {
         self.hinges.overflow.resume(poses);
         self.hinges.coloured.resume(poses);
-        self.mounts.coloured.resume(poses);
+        self.anchored.coloured.resume(poses);
     }
 
     /// Stores impulses and angles for the next tick.
-    pub(in super::super) fn store(&mut self, joints: &mut Arena<Joint, JointId>, turned: &[Turned]) {
-        self.hinges.overflow.store(joints, turned);
-        self.hinges.coloured.store(joints, turned);
-        self.mounts.coloured.store(joints, turned);
+    pub(in super::super) fn store(
+        &mut self,
+        joints: &mut Arena<Joint, JointId>,
+        body_rotations: &[BodyRotation],
+    ) {
+        self.hinges.overflow.store(joints, body_rotations);
+        self.hinges.coloured.store(joints, body_rotations);
+        self.anchored.coloured.store(joints, body_rotations);
     }
 }
 
@@ -157,13 +161,14 @@ impl<const N: usize> Batches<Hinges, N> {
         }
     }
 
-    fn store(&mut self, joints: &mut Arena<Joint, JointId>, turned: &[Turned]) {
+    fn store(&mut self, joints: &mut Arena<Joint, JointId>, body_rotations: &[BodyRotation]) {
         let mut extras = self.extras.iter();
         for (batch, records) in self.batches.iter().zip(&mut self.records) {
             let rows = if batch.has_angle { extras.next() } else { None };
             for lane in 0..records.len {
                 let joint = joints.at_mut(records.slots[lane]);
-                let [a, b] = [0, 1].map(|side: usize| turned[batch.bodies[side][lane] as usize].turns);
+                let [a, b] =
+                    [0, 1].map(|side: usize| body_rotations[batch.bodies[side][lane] as usize].turns);
                 records.turns[lane] = records.turns[lane].wrapping_add(b).wrapping_sub(a);
                 joint.turns = records.turns[lane];
                 let [spring, drive, lower, upper] = rows.map_or([Speed::ZERO; 4], |rows| rows.impulses(lane));

@@ -17,9 +17,9 @@ use super::super::super::pair::{RATIO, UNIT, shift};
 use super::super::super::softness::Softness;
 use super::angle::AngleRows;
 use super::batch::{Batch, Records, Shape};
-use super::{Expired, Poses};
-use crate::lanes::{Ints, Lanes};
+use super::{Dirty, Poses};
 use crate::math::{Length, Rate, Shift, Speed, Step, Unit};
+use crate::simd::{Ints, Lanes};
 
 /// The softness of the rows of a batch.
 #[derive(Clone, Copy)]
@@ -31,7 +31,7 @@ pub(super) struct Stiffness {
 /// Brings batches to the present pose, as far as they have expired.
 #[derive(Clone, Copy)]
 pub(super) struct Refresh<'a> {
-    pub(super) expired: Expired,
+    pub(super) dirty: Dirty,
     pub(super) stiffness: Stiffness,
     pub(super) poses: Poses<'a>,
 }
@@ -45,15 +45,15 @@ impl Refresh<'_> {
         angle: Option<&mut AngleRows<N>>,
         bodies: &[Cell<SolverBody>],
     ) {
-        if self.expired >= Expired::Gaps {
+        if self.dirty >= Dirty::Gaps {
             let Refresh { stiffness, poses, .. } = self;
             let quads = [L::quads(poses.quads, &batch.bodies[0]), L::quads(poses.quads, &batch.bodies[1])];
             refresh_gaps::<L, N>(batch, &records.shape, &quads, bodies, &stiffness.points);
-            if self.expired == Expired::Everything {
+            if self.dirty == Dirty::Everything {
                 refresh_gains::<L, N>(batch, &records.shape, &quads);
             }
             if let Some(rows) = angle {
-                rows.refresh(&records.turns, &batch.bodies, poses.turned);
+                rows.refresh(&records.turns, &batch.bodies, poses.body_rotations);
             }
         }
     }
@@ -86,8 +86,8 @@ fn refresh_gains<L: Lanes<N>, const N: usize>(
     quads: &[[L::Int; 4]; 2],
 ) {
     let e = [
-        turned::<L, N>(&mut batch.e[0], &quads[0], &shape.ratios[0]),
-        turned::<L, N>(&mut batch.e[1], &quads[1], &shape.ratios[1]),
+        body_rotations::<L, N>(&mut batch.e[0], &quads[0], &shape.ratios[0]),
+        body_rotations::<L, N>(&mut batch.e[1], &quads[1], &shape.ratios[1]),
     ];
     let fractions = [L::load(&shape.fractions[0]), L::load(&shape.fractions[1])];
     let g = inverse::<L, N>(e, fractions);
@@ -106,16 +106,16 @@ fn rotated<L: Lanes<N>, const N: usize>(quads: &[L::Int; 4], v: &[Ints<N>; 2]) -
 
 /// Lever ratios in world axes.
 #[inline(always)]
-fn turned<L: Lanes<N>, const N: usize>(
+fn body_rotations<L: Lanes<N>, const N: usize>(
     e: &mut [Ints<N>; 2],
     quads: &[L::Int; 4],
     ratios: &[Ints<N>; 2],
 ) -> [L::Int; 2] {
     let [x, y] = rotated::<L, N>(quads, ratios);
-    let turned = [L::narrow::<UNIT>(x), L::narrow::<UNIT>(y)];
-    L::store(turned[0], &mut e[0]);
-    L::store(turned[1], &mut e[1]);
-    turned
+    let body_rotations = [L::narrow::<UNIT>(x), L::narrow::<UNIT>(y)];
+    L::store(body_rotations[0], &mut e[0]);
+    L::store(body_rotations[1], &mut e[1]);
+    body_rotations
 }
 
 /// The velocity that closes a gap, reversed. `gap` is the one at the start of the tick, with 52 fraction bits and

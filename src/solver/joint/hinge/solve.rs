@@ -10,13 +10,13 @@
 use super::super::super::batches::{BatchParts, Operation};
 use super::super::super::context::Pass;
 use super::super::super::limits::{Faults, IMPULSE_MAX, STEP_MAX};
-use super::super::super::pair::{Pair, RATIO, UNIT, beyond, clamp};
+use super::super::super::pair::{BodyPairW, RATIO, UNIT, beyond, clamp};
 use super::super::super::softness::Softness;
 use super::Hinges;
 use super::batch::Batch;
 use super::refresh::Refresh;
-use crate::lanes::{Ints, Lanes, Motion};
 use crate::math::Unit;
+use crate::simd::{Ints, Lanes, VelocityW};
 
 /// One iteration with bias.
 #[derive(Clone, Copy)]
@@ -50,7 +50,7 @@ fn solve<L: Lanes<N>, const N: usize>(pass: Pass, refresh: &Refresh<'_>, parts: 
     refresh.refresh::<L, N>(batch, record, angle.as_deref_mut(), bodies);
     // Copies, so that the compiler sees that writing to the batch does not change them.
     let (stiffness, quads) = (refresh.stiffness, refresh.poses.quads);
-    let mut pair = Pair::<L, N>::load(bodies, &batch.bodies);
+    let mut pair = BodyPairW::<L, N>::load(bodies, &batch.bodies);
     if let Some(rows) = angle {
         rows.solve(pass, &stiffness.limits, &mut pair, faults);
     }
@@ -64,7 +64,7 @@ fn solve<L: Lanes<N>, const N: usize>(pass: Pass, refresh: &Refresh<'_>, parts: 
             [L::load(&batch.e[1][0]), L::load(&batch.e[1][1])],
         ),
     };
-    let Pair { a, b } = &pair;
+    let BodyPairW { a, b } = &pair;
     let linear = [L::sub(b.x, a.x), L::sub(b.y, a.y)];
     let vr = [
         velocity::<L, N>(linear[0], e_a[0], e_b[0], &pair, faults),
@@ -129,10 +129,10 @@ fn velocity<L: Lanes<N>, const N: usize>(
     linear: L::Int,
     e_a: L::Int,
     e_b: L::Int,
-    pair: &Pair<L, N>,
+    pair: &BodyPairW<L, N>,
     faults: &mut Faults,
 ) -> L::Int {
-    let Pair { a: Motion { turn: turn_a, .. }, b: Motion { turn: turn_b, .. } } = *pair;
+    let BodyPairW { a: VelocityW { turn: turn_a, .. }, b: VelocityW { turn: turn_b, .. } } = *pair;
     let angular = L::sub_wide(L::mul(e_b, turn_b), L::mul(e_a, turn_a));
     let wide = L::add_wide(L::mul(linear, L::splat(1 << RATIO)), angular);
     let (vr, out) = L::narrow_saturating::<RATIO>(wide);

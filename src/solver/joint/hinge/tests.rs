@@ -16,8 +16,8 @@ use super::angle_input::{DriveInput, LimitInput, SpringInput};
 use super::input::ratios;
 use super::*;
 use crate::fx;
-use crate::lanes::{Backend, Machine};
 use crate::math::{Angle, Fx, Length, Reciprocal, Rng, Rot, Shift, Speed, Unit, Vec2, narrow};
+use crate::simd::{Backend, Machine};
 use crate::threads::Threads;
 
 /// Eight hinges, each between two bodies of its own, in some pose.
@@ -26,7 +26,7 @@ struct Setting {
     hinges: HingeSet,
     bodies: Vec<SolverBody>,
     quads: Vec<Quad>,
-    turned: Vec<Turned>,
+    body_rotations: Vec<BodyRotation>,
     ends: Vec<[Lever; 2]>,
     fractions: Vec<MassFractions>,
 }
@@ -48,7 +48,7 @@ const EXTREME: Sizes = Sizes { arm: fx!(500), speed: fx!(511), gap: fx!(2000) };
 /// Mounts are as stiff as other hinges here, so that both can be compared.
 fn tuning() -> Tuning {
     let tuning = Tuning::new(&SolverSettings::default(), Vec2::new(fx!(0), fx!(-10)), 60);
-    Tuning { mount: tuning.joint, ..tuning }
+    Tuning { anchored: tuning.joint, ..tuning }
 }
 
 fn random_speed(rng: &mut Rng, size: Fx) -> Speed {
@@ -70,7 +70,7 @@ impl Setting {
             hinges: HingeSet::default(),
             bodies: vec![SolverBody::default()],
             quads: vec![Quad::default()],
-            turned: vec![Turned::default()],
+            body_rotations: vec![BodyRotation::default()],
             ends: Vec::new(),
             fractions: Vec::new(),
         };
@@ -99,10 +99,10 @@ impl Setting {
             let ahead = [rng.range(fx!(-0.2), fx!(0.2)), rng.range(fx!(0), fx!(0.02))];
             let [across, along] = ahead.map(|part| narrow::<fixed::types::extra::U30>(part).to_bits());
             self.quads.push(Quad([rotation.cos.to_bits(), rotation.sin.to_bits(), across, along]));
-            self.turned.push(Turned {
+            self.body_rotations.push(BodyRotation {
                 rotation,
                 turns: i64::from(rng.next_u32()) - (1 << 31),
-                ..Turned::default()
+                ..BodyRotation::default()
             });
         }
         let gap = Vec2::new(rng.range(-sizes.gap, sizes.gap), rng.range(-sizes.gap, sizes.gap));
@@ -134,11 +134,13 @@ impl Setting {
     /// Solves two sub-steps. Returns the faults.
     fn solve(&mut self, machine: Machine) -> Faults {
         let (tuning, threads, mut faults) = (tuning(), Threads::default(), 0);
-        let Setting { hinges, bodies, quads, turned, .. } = self;
-        let (poses, context) =
-            (Poses { quads, turned }, StepContext::new(machine, &threads, &tuning, bodies, &mut faults));
+        let Setting { hinges, bodies, quads, body_rotations, .. } = self;
+        let (poses, context) = (
+            Poses { quads, body_rotations },
+            StepContext::new(machine, &threads, &tuning, bodies, &mut faults),
+        );
         for _ in 0..2 {
-            hinges.expire(Expired::Everything);
+            hinges.expire(Dirty::Everything);
             hinges.warm_start(poses, &context);
             hinges.solve(Pass::Bias, poses, &context);
             hinges.solve(Pass::Relax, poses, &context);
@@ -149,9 +151,9 @@ impl Setting {
     /// Solves one iteration of a relax pass. Returns the faults.
     fn relax(&mut self) -> Faults {
         let (tuning, threads, mut faults) = (tuning(), Threads::default(), 0);
-        let Setting { hinges, bodies, quads, turned, .. } = self;
+        let Setting { hinges, bodies, quads, body_rotations, .. } = self;
         let context = StepContext::new(Machine::default(), &threads, &tuning, bodies, &mut faults);
-        hinges.solve(Pass::Relax, Poses { quads, turned }, &context);
+        hinges.solve(Pass::Relax, Poses { quads, body_rotations }, &context);
         faults
     }
 
@@ -160,7 +162,7 @@ impl Setting {
         let mut all = Vec::new();
         self.hinges.hinges.overflow.collect(&mut all);
         self.hinges.hinges.coloured.collect(&mut all);
-        self.hinges.mounts.coloured.collect(&mut all);
+        self.hinges.anchored.coloured.collect(&mut all);
         all.sort();
         all
     }
@@ -254,7 +256,7 @@ fn a_point_is_solved_as_by_the_scalar_block() {
         }
         let before = setting.bodies.clone();
         setting.hinges.push_colour(0..8, |_| false);
-        setting.hinges.expire(Expired::Everything);
+        setting.hinges.expire(Dirty::Everything);
         let mut faults = setting.relax();
         let Setting { bodies, ends, fractions, .. } = &setting;
         for (i, (&[a, b], &fractions)) in ends.iter().zip(fractions.iter()).enumerate() {

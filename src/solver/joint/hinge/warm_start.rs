@@ -2,10 +2,10 @@
 
 use super::super::super::batches::{BatchParts, Operation};
 use super::super::super::limits::STEP_MAX;
-use super::super::super::pair::{Pair, beyond, clamp};
+use super::super::super::pair::{BodyPairW, beyond, clamp};
 use super::Hinges;
 use super::refresh::Refresh;
-use crate::lanes::Lanes;
+use crate::simd::Lanes;
 
 #[derive(Clone, Copy)]
 pub(super) struct WarmStart<'a> {
@@ -17,7 +17,7 @@ impl Operation<Hinges> for WarmStart<'_> {
     fn apply<L: Lanes<N>, const N: usize>(self, parts: BatchParts<'_, Hinges, N>) {
         let BatchParts { batch, record, extra: mut angle, bodies, faults } = parts;
         self.refresh.refresh::<L, N>(batch, record, angle.as_deref_mut(), bodies);
-        let mut pair = Pair::<L, N>::load(bodies, &batch.bodies);
+        let mut pair = BodyPairW::<L, N>::load(bodies, &batch.bodies);
         if let Some(rows) = angle {
             rows.warm_start(&mut pair, faults);
         }

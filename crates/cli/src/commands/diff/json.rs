@@ -1,0 +1,82 @@
+//! A comparison as a JSON document.
+
+use std::path::Path;
+
+use lockstep2d::inspect::{Difference, Value};
+use lockstep2d::report::{Blame, Comparison, Group, Side, Subject, Trajectory};
+use serde_json::{Value as Json, json};
+
+pub(super) fn document([a, b]: [&Path; 2], found: &Comparison) -> String {
+    let thing = |thing: &Subject| json!({"path": thing.path, "section": thing.section, "fields": fields(&thing.differences)});
+    let subjects: Vec<Json> = found.subjects.iter().map(thing).collect();
+    let began: Vec<Json> = found.began.iter().map(thing).collect();
+    let input = found
+        .input
+        .as_ref()
+        .map(|input| json!({"tick": input.tick, "seat": input.seat, "fields": fields(&input.differences)}));
+    let explanation = found.explanation.as_ref().map(
+        |one| json!({"tick": one.tick, "path": one.path, "bit": one.bit, "fields": fields(&one.differences)}),
+    );
+    let group = |group: &Group| json!({"hash": group.hash.to_string(), "seats": group.seats});
+    let groups: Vec<Json> = found.groups.iter().map(group).collect();
+    let document = json!({
+        "equal": found.is_equal(),
+        "last_equal": found.last_equal,
+        "first_different": found.first_different,
+        "blame": blame(found.blame),
+        "rerun": found.rerun,
+        "a": side(a, &found.trajectories[0]),
+        "b": side(b, &found.trajectories[1]),
+        "checkpoint": found.checkpoint,
+        "groups": groups,
+        "setup": fields(&found.setup),
+        "input": input,
+        "explanation": explanation,
+        "stage": found.stage.map(|stage| stage.name()),
+        "tick": found.tick,
+        "began": began,
+        "things": subjects,
+        "notes": found.notes,
+    });
+    document.to_string()
+}
+
+fn side(file: &Path, course: &Trajectory) -> Json {
+    json!({
+        "file": file.display().to_string(),
+        "seats": course.seats,
+        "equal_until": course.equal_until,
+        "diverges": course.diverges,
+    })
+}
+
+fn blame(blame: Blame) -> &'static str {
+    match blame {
+        Blame::Nobody => "nobody",
+        Blame::Side(Side::A) => "a",
+        Blame::Side(Side::B) => "b",
+        Blame::Both => "both",
+        Blame::Unknown => "unknown",
+    }
+}
+
+/// Differing fields, each with both values.
+pub(in crate::commands) fn fields(differences: &[Difference]) -> Vec<Json> {
+    let field = |difference: &Difference| {
+        json!({
+            "path": difference.field().path(),
+            "name": difference.field().name(),
+            "a": value(difference.a.as_ref()),
+            "b": value(difference.b.as_ref()),
+        })
+    };
+    differences.iter().map(field).collect()
+}
+
+/// A value as readable text and, for a number, its bits as text, since they may exceed the range of JSON numbers.
+fn value(value: Option<&Value>) -> Json {
+    value.map_or(
+        Json::Null,
+        |value| json!({"text": value.to_string(), "bits": value.bits().map(|bits| bits.to_string())}),
+    )
+}

@@ -1,0 +1,131 @@
+//! `inspect`: describes a file without playing it, and lists the fields of a state.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use lockstep2d::codec;
+use lockstep2d::inspect::fields;
+use lockstep2d::lockstep::Game;
+use lockstep2d::replay::VerifiedReplay;
+use lockstep2d::report::{DesyncReport, Evidence, EvidenceError};
+
+use crate::context::{CommandResult, Context};
+use crate::error::CommandError;
+use crate::files;
+
+mod replay;
+mod report;
+mod state;
+mod world;
+
+use state::State;
+
+/// Describe a replay, a snapshot of a world or a report of a divergence
+#[derive(Args, Debug)]
+#[command(
+    after_help = "Without --tick nothing is played, so files of other games and other versions of the engine can be \
+                        described, too. For a damaged replay, the intact part is described. Tick t is the state after \
+                        t ticks; 0 is the start. A snapshot, or a save written by `seek`, has one state, which any of \
+                        --tick, --body and --path selects.\n\nExit code: 0 when the file is intact, even if it is an \
+                        incomplete replay, 1 when a replay is damaged or cannot be played up to the tick, 2 for wrong \
+                        usage, or a file of another kind or that cannot be read."
+)]
+pub(crate) struct Arguments {
+    /// The file
+    file: PathBuf,
+    /// List all fields of the state after N ticks
+    #[arg(long, value_name = "N")]
+    tick: Option<u64>,
+    /// List only the fields of this body, such as 12v1 or 12
+    #[arg(long, value_name = "ID")]
+    body: Option<String>,
+    /// List only fields whose path starts with this, such as world.bodies
+    #[arg(long, value_name = "PREFIX", conflicts_with = "body")]
+    path: Option<String>,
+    /// Most fields of a setup to show
+    #[arg(long, value_name = "N", default_value_t = 20)]
+    fields: usize,
+    /// Print everything as one JSON document
+    #[arg(long)]
+    json: bool,
+}
+
+pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) -> CommandResult {
+    let bytes = context.load(&arguments.file)?;
+    let path = || arguments.file.clone();
+    match Evidence::read(bytes.clone(), context.limits()) {
+        Ok(Evidence::Replay(bytes)) if arguments.wants_state() => {
+            state_of_replay(&bytes, arguments, context)?.print(arguments, &mut context.console)
+        }
+        Ok(Evidence::Report(report)) if arguments.wants_state() => {
+            state_of_report(&report, arguments, context)?.print(arguments, &mut context.console)
+        }
+        Ok(Evidence::World(world)) if arguments.wants_state() => {
+            let fields = fields(&world.save())?;
+            State { tick: Some(world.tick()), hash: Some(world.state_hash()), fields }
+                .print(arguments, &mut context.console)
+        }
+        Ok(Evidence::Replay(bytes)) => replay::print(&bytes, arguments, context),
+        Ok(Evidence::Report(report)) => report::print(&report, arguments, context),
+        Ok(Evidence::World(world)) => world::print(&world, bytes.len(), arguments, &mut context.console),
+        Err(error @ EvidenceError::Unknown) => match codec::decode::<G::Save>(&bytes) {
+            Ok(save) if codec::encode(&save) == bytes => {
+                State { tick: None, hash: None, fields: fields(&save)? }
+                    .print(arguments, &mut context.console)
+            }
+            _ => Err(CommandError::Evidence { path: path(), error }),
+        },
+        Err(error) => Err(CommandError::Evidence { path: path(), error }),
+    }
+}
+
+impl Arguments {
+    fn wants_state(&self) -> bool {
+        self.tick.is_some() || self.body.is_some() || self.path.is_some()
+    }
+}
+
+/// The state after the requested tick, by default at the start.
+fn state_of_replay<G: Game>(
+    bytes: &[u8],
+    arguments: &Arguments,
+    context: &Context<'_, G>,
+) -> Result<State, CommandError> {
+    let refused = CommandError::replay(&arguments.file);
+    let mut playback = VerifiedReplay::<G>::open(bytes, context.limits()).map_err(&refused)?;
+    let (tick, ticks) = (arguments.tick.unwrap_or(0), playback.ticks());
+    if tick > ticks {
+        return Err(CommandError::NoSuchTick { path: arguments.file.clone(), tick, ticks });
+    }
+    while playback.tick() < tick {
+        playback.step().map_err(&refused)?;
+    }
+    let fields = fields(&playback.game().save())?;
+    Ok(State { tick: Some(tick), hash: Some(playback.game().state_hash()), fields })
+}
+
+/// The state of a tick as the report's peer had it, which may differ from what its replay leads to. Without a save of
+/// that tick, the state is computed from the replay.
+fn state_of_report<G: Game>(
+    report: &DesyncReport,
+    arguments: &Arguments,
+    context: &Context<'_, G>,
+) -> Result<State, CommandError> {
+    let tick = arguments.tick.unwrap_or(report.tick());
+    let saved = report.saves().iter().find(|(saved, _)| *saved == tick);
+    let Some((_, save)) = saved else {
+        if report.replay().is_empty() {
+            return Err(CommandError::NothingThere { what: format!("state of tick {tick}") });
+        }
+        return state_of_replay(report.replay(), arguments, context);
+    };
+    let save: G::Save =
+        codec::decode(save).map_err(|error| CommandError::State { why: error.to_string() })?;
+    let known = report.history().iter().find(|(known, _)| *known == tick);
+    Ok(State { tick: Some(tick), hash: known.map(|(_, hash)| *hash), fields: fields(&save)? })
+}
+
+/// Text from an untrusted file, escaped for a terminal.
+fn shown(text: &str) -> String {
+    files::Shown(Path::new(text)).to_string()
+}

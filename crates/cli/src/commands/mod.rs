@@ -1,0 +1,65 @@
+//! The commands, one file each: `Arguments` describes what a command takes, `run` does it, and a row of [`table`] lists
+//! it.
+
+mod bisect;
+mod diff;
+mod export;
+mod fork;
+mod inspect;
+mod record;
+mod scenes;
+mod seek;
+mod stats;
+mod stress_saves;
+mod trace;
+mod trim;
+mod verify;
+
+use clap::{ArgMatches, Args, Command};
+use lockstep2d::lockstep::Game;
+
+use crate::context::{CommandResult, Context};
+
+/// A command: its name, help and arguments as clap has them, and what it does.
+pub(crate) struct Row<G: Game> {
+    pub(crate) command: Command,
+    pub(crate) run: fn(&ArgMatches, &mut Context<'_, G>) -> CommandResult,
+}
+
+/// The rows of commands, each given as its name and its module.
+macro_rules! rows {
+    ($($name:literal => $module:ident),+ $(,)?) => {
+        vec![$(Row {
+            command: $module::Arguments::augment_args(Command::new($name)),
+            run: |matches, context| $module::run(&arguments(matches), context),
+        }),+]
+    };
+}
+
+/// The commands of a game's tool, in the order in which the help lists them.
+pub(crate) fn table<G: Game>(has_scenes: bool) -> Vec<Row<G>> {
+    let mut table = rows![
+        "verify" => verify,
+        "diff" => diff,
+        "bisect" => bisect,
+        "trace" => trace,
+        "stress-saves" => stress_saves,
+        "inspect" => inspect,
+        "seek" => seek,
+        "fork" => fork,
+        "trim" => trim,
+        "stats" => stats,
+        "export" => export,
+    ];
+    if has_scenes {
+        table.extend(rows![
+            "scenes" => scenes,
+            "record" => record,
+        ]);
+    }
+    table
+}
+
+fn arguments<A: Args>(matches: &ArgMatches) -> A {
+    A::from_arg_matches(matches).expect("clap matched what this type describes")
+}

@@ -1,0 +1,60 @@
+//! The command-line tools for replays as a library: a game gets them for its own rules with one line in `main`.
+//!
+//! ```no_run
+//! # mod my_game {
+//! #     use lockstep2d::{hash::StateHash, lockstep::{Game, RulesId, SetupError}};
+//! #     pub struct MyGame;
+//! #     impl Game for MyGame {
+//! #         type Setup = ();
+//! #         type Input = ();
+//! #         type Save = ();
+//! #         const RULES: RulesId = RulesId { name: "my game", version: 1 };
+//! #         fn new(_: &()) -> Result<Self, SetupError> { Ok(MyGame) }
+//! #         fn players(&self) -> u32 { 1 }
+//! #         fn tick_rate(&self) -> u32 { 60 }
+//! #         fn step(&mut self, _: &[()]) {}
+//! #         fn state_hash(&self) -> StateHash { StateHash(0) }
+//! #         fn save(&self) {}
+//! #         fn load(&mut self, _: &()) {}
+//! #         fn work(&self, _: &[()]) -> u64 { 1 }
+//! #     }
+//! # }
+//! # use my_game::MyGame;
+//! fn main() -> std::process::ExitCode {
+//!     lockstep2d_cli::run::<MyGame>()
+//! }
+//! ```
+//!
+//! This gives `verify`, `diff`, `bisect`, `trace`, `stress-saves`, `inspect`, `seek`, `fork`, `trim`, `stats` and `export`.
+//! [`Tool::with_scenes`] adds `scenes` and `record`; [`Tool::with_view`] sets how pictures show the game.
+
+mod commands;
+mod console;
+mod context;
+mod counts;
+mod draft;
+mod energy;
+mod error;
+mod exit;
+mod figures;
+mod files;
+mod rewriting;
+mod sandbox;
+mod scenes;
+mod tool;
+mod walk;
+
+use std::process::ExitCode;
+
+use lockstep2d::lockstep::Game;
+
+pub use exit::Exit;
+pub use sandbox::SandboxScenes;
+pub use scenes::{Catalogue, Scene, SceneInfo, Script};
+pub use tool::Tool;
+
+/// Runs the tools of a game without scenes and with the default view, with the arguments of this process.
+#[must_use]
+pub fn run<G: Game>() -> ExitCode {
+    Tool::<G>::new().run()
+}

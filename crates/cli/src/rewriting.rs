@@ -1,0 +1,94 @@
+//! [`Copy`]: a replay that is recorded again from the beginning of another one. Shared by `fork` and `trim`.
+
+use std::path::Path;
+
+use lockstep2d::codec;
+use lockstep2d::hash::StateHash;
+use lockstep2d::lockstep::Game;
+use lockstep2d::replay::{Limits, Reader, RecordError, Recorder, Step, Verdict, VerifiedReplay, verify};
+
+use crate::error::CommandError;
+
+/// A game that was played up to some tick of a replay, and the recorder of its new replay.
+pub(crate) struct Copy<G: Game> {
+    game: G,
+    recorder: Recorder<G>,
+}
+
+/// Why a replay cannot be copied.
+pub(crate) enum CopyError {
+    /// The replay can be played for `ticks` ticks, and no further.
+    Replay { ticks: u64, verdict: Verdict },
+    /// Its setup or inputs cannot be recorded.
+    Record(RecordError),
+}
+
+impl<G: Game> Copy<G> {
+    /// Plays the first `ticks` ticks of a replay, or all if it has fewer, and records them again.
+    pub(crate) fn new(file: &[u8], ticks: u64, limits: &Limits) -> Result<Self, CopyError> {
+        let unplayable = |verdict| CopyError::Replay { ticks: 0, verdict };
+        let mut playback = VerifiedReplay::<G>::open(file, limits).map_err(unplayable)?;
+        let reader = Reader::open(file, limits).map_err(|error| unplayable(error.into()))?;
+        let header = reader.header();
+        let setup = codec::decode(header.setup).map_err(|_| CopyError::Record(RecordError::Setup))?;
+        let (mut recorder, _) =
+            Recorder::<G>::start(&setup, header.checkpoint_interval).map_err(CopyError::Record)?;
+        while recorder.ticks() < ticks {
+            match playback.step() {
+                Ok(Step::Ticked) => {}
+                Ok(Step::Ended) => break,
+                Err(verdict) => {
+                    let ticks = match verdict {
+                        Verdict::Diverged { last_equal, .. } => last_equal.unwrap_or(0),
+                        _ => recorder.ticks(),
+                    };
+                    return Err(CopyError::Replay { ticks, verdict });
+                }
+            }
+            recorder.record(playback.inputs()).map_err(CopyError::Record)?;
+            if recorder.is_checkpoint_due() {
+                recorder.checkpoint(playback.game().state_hash());
+            }
+        }
+        Ok(Copy { game: playback.into_game(), recorder })
+    }
+
+    /// Number of recorded ticks.
+    pub(crate) fn ticks(&self) -> u64 {
+        self.recorder.ticks()
+    }
+
+    /// The number of players.
+    pub(crate) fn players(&self) -> u32 {
+        self.game.players()
+    }
+
+    /// Records and plays one more tick.
+    pub(crate) fn step(&mut self, inputs: &[G::Input]) -> Result<(), RecordError> {
+        self.game.step(self.recorder.record(inputs)?);
+        if self.recorder.is_checkpoint_due() {
+            self.recorder.checkpoint(self.game.state_hash());
+        }
+        Ok(())
+    }
+
+    /// Completes and verifies the replay. Returns its bytes and the hash of its last state. `output` is the path that
+    /// errors name.
+    pub(crate) fn finish(self, output: &Path, limits: &Limits) -> Result<(Vec<u8>, StateHash), CommandError> {
+        let bytes = self.recorder.finish(&self.game)?;
+        match verify::<G>(&bytes, limits) {
+            Verdict::Match { hash, .. } => Ok((bytes, hash)),
+            verdict => Err(CommandError::Replay { path: output.to_path_buf(), verdict }),
+        }
+    }
+}
+
+impl CopyError {
+    /// The error of a command that needs the copy of the replay at `path`.
+    pub(crate) fn of_file(self, path: &Path) -> CommandError {
+        match self {
+            CopyError::Replay { verdict, .. } => CommandError::Replay { path: path.to_path_buf(), verdict },
+            CopyError::Record(error) => CommandError::Record(error),
+        }
+    }
+}

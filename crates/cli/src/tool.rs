@@ -1,0 +1,156 @@
+//! [`Tool`]: the commands of a game, and their dispatch.
+
+use std::ffi::OsString;
+use std::io::{IsTerminal, Write};
+use std::process::ExitCode;
+
+use clap::{ArgMatches, Command};
+use lockstep2d::draw::View;
+use lockstep2d::lockstep::Game;
+use lockstep2d::replay::Limits;
+
+use crate::commands::{Row, table};
+use crate::console::Console;
+use crate::context::{CommandResult, Context};
+use crate::exit::Exit;
+use crate::scenes::Catalogue;
+
+/// The command-line tools of a game.
+///
+/// ```text
+/// Tool::<MyGame>::new().with_scenes(MyScenes).with_view(view_of_my_game).run()
+/// ```
+pub struct Tool<G: Game> {
+    pub(crate) limits: Limits,
+    pub(crate) catalogue: Option<Box<dyn Catalogue<G>>>,
+    pub(crate) view: Option<fn(&G) -> View>,
+    /// Commands that the game has added.
+    own: Vec<(Command, OwnCommand)>,
+}
+
+/// Runs a command that the game has added.
+type OwnCommand = fn(&ArgMatches) -> Exit;
+
+impl<G: Game> Default for Tool<G> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<G: Game> Tool<G> {
+    /// The commands that every game has: `verify`, `diff`, `bisect`, `trace`, `stress-saves`, `inspect`, `seek`, `fork`,
+    /// `trim`, `stats` and `export`.
+    #[must_use]
+    pub fn new() -> Self {
+        Tool { limits: Limits::default(), catalogue: None, view: None, own: Vec::new() }
+    }
+
+    /// Sets the limits of what a replay may cost.
+    #[must_use]
+    pub fn with_limits(self, limits: Limits) -> Self {
+        Tool { limits, ..self }
+    }
+
+    /// Adds the commands `scenes` and `record`.
+    #[must_use]
+    pub fn with_scenes(self, catalogue: impl Catalogue<G> + 'static) -> Self {
+        Tool { catalogue: Some(Box::new(catalogue)), ..self }
+    }
+
+    /// Sets the default view of `export` on the game's world ([`Game::world_mut`]): window, layers, size and title.
+    /// Arguments of the command override it. Without it, [`View::default`] applies.
+    #[must_use]
+    pub fn with_view(self, view: fn(&G) -> View) -> Self {
+        Tool { view: Some(view), ..self }
+    }
+
+    /// Adds a command of the game's own. `run` gets its arguments and prints its own output.
+    #[must_use]
+    pub fn with_command(mut self, command: Command, run: fn(&ArgMatches) -> Exit) -> Self {
+        self.own.push((command, run));
+        self
+    }
+
+    /// Runs the command that the arguments of this process select, with colours on terminals.
+    #[must_use]
+    pub fn run(&self) -> ExitCode {
+        // The streams stay unlocked: a game that prints or panics on another thread would deadlock.
+        let (mut out, mut err) = (anstream::stdout(), anstream::stderr());
+        let is_terminal = std::io::stderr().is_terminal();
+        let console = Console { out: &mut out, err: &mut err, is_terminal };
+        self.run_on(std::env::args_os(), console).into()
+    }
+
+    /// Runs the command that `arguments` select, the first of which is the program's name. Results go to `out`,
+    /// messages to `err`, both with ANSI colours.
+    pub fn run_with<A>(
+        &self,
+        arguments: impl IntoIterator<Item = A>,
+        out: &mut dyn Write,
+        err: &mut dyn Write,
+    ) -> Exit
+    where
+        A: Into<OsString> + Clone,
+    {
+        self.run_on(arguments, Console { out, err, is_terminal: false })
+    }
+
+    fn run_on<'a, A>(&'a self, arguments: impl IntoIterator<Item = A>, mut console: Console<'a>) -> Exit
+    where
+        A: Into<OsString> + Clone,
+    {
+        let table = table(self.catalogue.is_some());
+        let matches = match self.command(&table).try_get_matches_from(arguments) {
+            Ok(matches) => matches,
+            Err(usage) => return explain(&usage, &mut console),
+        };
+        let mut context = Context { tool: self, console };
+        match self.dispatch(&matches, &table, &mut context) {
+            Ok(exit) => exit,
+            Err(error) => {
+                if !error.is_reader_gone() {
+                    context.console.error(&error);
+                }
+                error.exit()
+            }
+        }
+    }
+
+    fn command(&self, table: &[Row<G>]) -> Command {
+        let rules = G::RULES;
+        let engine = lockstep2d::SEMANTICS;
+        Command::new(rules.name)
+            .about(format!("Tools for the replays of {}", rules.name))
+            .version(format!("rules version {}, engine semantics {engine}", rules.version))
+            .subcommand_required(true)
+            .arg_required_else_help(true)
+            .subcommands(table.iter().map(|row| &row.command))
+            .subcommands(self.own.iter().map(|(own, _)| own))
+    }
+
+    fn dispatch(
+        &self,
+        matches: &ArgMatches,
+        table: &[Row<G>],
+        context: &mut Context<'_, G>,
+    ) -> CommandResult {
+        let Some((name, of_command)) = matches.subcommand() else { return Ok(Exit::Trouble) };
+        if let Some((_, run)) = self.own.iter().find(|(own, _)| own.get_name() == name) {
+            return Ok(run(of_command));
+        }
+        let row = table.iter().find(|row| row.command.get_name() == name);
+        (row.expect("clap matched a command of the table").run)(of_command, context)
+    }
+}
+
+/// Prints the requested help or version, or the error in the arguments.
+fn explain(usage: &clap::Error, console: &mut Console<'_>) -> Exit {
+    let text = usage.render();
+    if usage.use_stderr() {
+        console.note(text.ansi().to_string().trim_end());
+        Exit::Trouble
+    } else {
+        let written = write!(console.out, "{}", text.ansi());
+        if written.is_ok() { Exit::Success } else { Exit::Trouble }
+    }
+}

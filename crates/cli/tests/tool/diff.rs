@@ -1,0 +1,121 @@
+//! `diff`: the first difference, the side that diverged, and the exit code.
+
+use lockstep2d::lockstep::{Game, History};
+use lockstep2d::replay::Recorder;
+use lockstep2d::report::{Desync, DesyncReport};
+use lockstep2d_cli::Exit;
+use serde_json::{Value, json};
+
+use crate::counter::{Counter, inputs_at, setup};
+use crate::{Folder, replay, run};
+
+/// The report of the peer on `seat`. If `wrong` is given, the peer's sum is off by one from that tick on.
+fn report(seat: u32, wrong: Option<u64>) -> DesyncReport {
+    let (mut recorder, mut game) = Recorder::<Counter>::start(&setup(), 10).unwrap();
+    let mut history = History::new(&game);
+    history.push(0, game.save(), game.state_hash());
+    for tick in 1..=35 {
+        let inputs = recorder.record(&inputs_at(tick - 1)).unwrap().to_vec();
+        game.step(&inputs);
+        game.sum += i64::from(wrong == Some(tick));
+        recorder.checkpoint(game.state_hash());
+        history.push(tick, game.save(), game.state_hash());
+    }
+    let found = Desync { players: 2, tick: 30, known: 35, seats: vec![seat], hashes: Vec::new() };
+    DesyncReport::new(&found, &history, recorder.so_far(game.state_hash()))
+}
+
+fn json_of(a: &str, b: &str) -> (Value, Exit) {
+    let outcome = run(&["diff", "--json", a, b]);
+    (serde_json::from_str(&outcome.out).unwrap(), outcome.exit)
+}
+
+#[test]
+fn reports_name_the_tick_the_peer_and_the_field() {
+    let folder = Folder::new("diff-reports");
+    let a = folder.write("a", &report(0, None).to_bytes());
+    let b = folder.write("b", &report(1, Some(24)).to_bytes());
+    let outcome = run(&["diff", &a, &b]);
+    let expected = format!(
+        "A: {a} (seat 0)\n\
+         B: {b} (seat 1)\n\
+         different at tick 24, equal at tick 23\n\
+         played again up to tick 35: B diverged (seat 1) at tick 24\n\
+         states after tick 24: 1 thing differs in sum\n  sum\n    sum: 3 | 4\n"
+    );
+    assert_eq!((outcome.out.as_str(), outcome.exit), (expected.as_str(), Exit::NoMatch));
+    assert_eq!(outcome.err, "");
+
+    let (found, exit) = json_of(&b, &a);
+    assert_eq!(exit, Exit::NoMatch);
+    assert_eq!(found["blame"], "a");
+    assert_eq!((&found["first_different"], &found["last_equal"]), (&json!(24), &json!(23)));
+    assert_eq!(found["a"], json!({"file": b, "seats": [1], "equal_until": 23, "diverges": 24}));
+    let field = json!({
+        "path": "sum", "name": "sum",
+        "a": {"text": "4", "bits": "4"}, "b": {"text": "3", "bits": "3"},
+    });
+    assert_eq!(found["things"], json!([{"path": "sum", "section": "sum", "fields": [field]}]));
+}
+
+#[test]
+fn what_is_equal_is_success() {
+    let folder = Folder::new("diff-equal");
+    let a = folder.write("a", &report(0, None).to_bytes());
+    let b = folder.write("b", &replay(35));
+    let outcome = run(&["diff", &a, &b]);
+    assert!(outcome.out.contains("\nequal up to tick 35\n"), "{}", outcome.out);
+    assert_eq!(outcome.exit, Exit::Success);
+    let (found, exit) = json_of(&b, &b);
+    assert_eq!((&found["equal"], &found["blame"], exit), (&json!(true), &json!("nobody"), Exit::Success));
+}
+
+#[test]
+fn other_inputs_are_named() {
+    let folder = Folder::new("diff-inputs");
+    let (mut recorder, _) = Recorder::<Counter>::start(&setup(), 60).unwrap();
+    let mut game = Counter::new(&setup()).unwrap();
+    for tick in 0..20 {
+        let mut inputs = inputs_at(tick);
+        inputs[1].wink ^= tick == 12;
+        game.step(recorder.record(&inputs).unwrap());
+    }
+    let a = folder.write("a", &recorder.finish(&game).unwrap());
+    let b = folder.write("b", &replay(20));
+    let (found, exit) = json_of(&a, &b);
+    assert_eq!((&found["input"]["tick"], &found["input"]["seat"]), (&json!(12), &json!(1)));
+    assert_eq!(found["input"]["fields"][0]["name"], "wink");
+    assert_eq!((exit, &found["first_different"]), (Exit::NoMatch, &Value::Null));
+}
+
+#[test]
+fn what_cannot_be_compared_is_trouble() {
+    let folder = Folder::new("diff-trouble");
+    let good = folder.write("good", &replay(5));
+    let bad = folder.write("bad", b"neither");
+    let world = folder.write("world", &lockstep2d::world::World::default().to_bytes());
+    let cut = folder.write("cut", &report(0, None).to_bytes()[..200]);
+    for (other, why) in [
+        (bad, "neither a report nor a replay nor a snapshot"),
+        (world, "a snapshot can only be compared with another snapshot"),
+        (cut, "a damaged report"),
+        (folder.path("missing"), "cannot read"),
+    ] {
+        let outcome = run(&["diff", &good, &other]);
+        assert_eq!((outcome.exit, outcome.out.as_str()), (Exit::Trouble, ""), "{other}");
+        assert!(outcome.err.contains(why), "{}", outcome.err);
+    }
+}
+
+#[test]
+fn snapshots_are_compared_whatever_the_game() {
+    let folder = Folder::new("diff-worlds");
+    let mut world = lockstep2d::world::World::default();
+    let a = folder.write("a", &world.to_bytes());
+    world.step();
+    let b = folder.write("b", &world.to_bytes());
+    let outcome = run(&["diff", &a, &b]);
+    assert!(outcome.out.ends_with("1 thing differs in tick\n  tick\n    tick: 0 | 1\n"), "{}", outcome.out);
+    assert_eq!(outcome.exit, Exit::NoMatch);
+    assert_eq!(run(&["diff", &a, &a]).exit, Exit::Success);
+}

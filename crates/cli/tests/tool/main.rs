@@ -1,0 +1,134 @@
+//! End-to-end tests of the command-line tools, run for the test game `Counter` and for the sandbox: arguments in;
+//! files, output and exit codes out.
+#![expect(clippy::unwrap_used, reason = "a failure in a helper fails the test")]
+
+#[path = "../../../../tests/replay/counter.rs"]
+mod counter;
+#[path = "../../../../tests/common/sweep.rs"]
+mod sweep;
+
+mod batch;
+mod binary;
+mod bisect;
+mod cache;
+mod diff;
+mod docs;
+mod export;
+mod export_files;
+mod export_plot;
+mod fork;
+mod hostile;
+mod inspect;
+mod record;
+mod seek;
+mod stats;
+mod stress_saves;
+mod trim;
+mod verify;
+#[cfg(unix)]
+mod verify_any;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use lockstep2d::lockstep::{Game, Sandbox};
+use lockstep2d::replay::Recording;
+use lockstep2d_cli::{Catalogue, Exit, Scene, SceneInfo, Tool};
+
+use counter::{Counter, Setup, inputs_at, setup};
+
+/// The exit and the output of a command.
+struct Outcome {
+    exit: Exit,
+    out: String,
+    err: String,
+}
+
+/// Runs the tools of the counter, with output that is not a terminal.
+fn run(arguments: &[&str]) -> Outcome {
+    run_tool(&Tool::new().with_scenes(Scenes), arguments)
+}
+
+/// Runs the tools of the sandbox.
+fn run_sandbox(arguments: &[&str]) -> Outcome {
+    run_tool_of(&Tool::<Sandbox>::new(), arguments)
+}
+
+fn run_tool(tool: &Tool<Counter>, arguments: &[&str]) -> Outcome {
+    run_tool_of(tool, arguments)
+}
+
+/// Runs the tools of any game.
+fn run_tool_of<G: Game>(tool: &Tool<G>, arguments: &[&str]) -> Outcome {
+    let (mut out, mut err) = (anstream::StripStream::new(Vec::new()), anstream::StripStream::new(Vec::new()));
+    let arguments = ["counter"].into_iter().chain(arguments.iter().copied());
+    let exit = tool.run_with(arguments, &mut out, &mut err);
+    let text = |bytes| String::from_utf8(bytes).unwrap();
+    Outcome { exit, out: text(out.into_inner()), err: text(err.into_inner()) }
+}
+
+/// The scenes of the counter.
+struct Scenes;
+
+impl Catalogue<Counter> for Scenes {
+    fn scenes(&self) -> Vec<SceneInfo> {
+        vec![
+            SceneInfo { name: "waves", about: "the sum goes up and down", ticks: 100 },
+            SceneInfo { name: "bad", about: "cannot start", ticks: 1 },
+        ]
+    }
+
+    fn open(&self, name: &str, seed: u64) -> Option<Scene<Counter>> {
+        let label = seed.to_string();
+        let setup = match name {
+            "waves" => Setup { label, ..setup() },
+            "bad" => Setup { start: 2000, label },
+            _ => return None,
+        };
+        Some(Scene { setup, ticks: 100, script: Box::new(|tick, _| inputs_at(tick).to_vec()) })
+    }
+}
+
+/// A complete replay of the counter, with a checkpoint every 10 ticks.
+fn replay(ticks: u64) -> Vec<u8> {
+    let mut recording = Recording::<Counter>::start(&setup(), 10).unwrap();
+    for tick in 0..ticks {
+        recording.step(&inputs_at(tick)).unwrap();
+    }
+    recording.finish().unwrap()
+}
+
+/// One of the replays of this repository.
+fn golden(scene: &str) -> String {
+    format!("{}/../../replays/{scene}.replay", env!("CARGO_MANIFEST_DIR"))
+}
+
+/// A temporary folder for one test. It is deleted when the value is dropped.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(test: &str) -> Self {
+        let path = std::env::temp_dir().join(format!("lockstep2d-{}-{test}", std::process::id()));
+        fs::create_dir_all(&path).unwrap();
+        Folder(path)
+    }
+
+    /// The path of an entry of the folder.
+    fn path(&self, name: &str) -> String {
+        self.0.join(name).to_str().unwrap().to_string()
+    }
+
+    /// Writes a file in the folder, creates its parent folders, and returns its path.
+    fn write(&self, name: &str, bytes: &[u8]) -> String {
+        let path = self.path(name);
+        fs::create_dir_all(Path::new(&path).parent().unwrap()).unwrap();
+        fs::write(&path, bytes).unwrap();
+        path
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}

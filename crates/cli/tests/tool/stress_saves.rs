@@ -1,0 +1,162 @@
+//! `stress-saves`: a correct game passes, and for a game with an incomplete save the tick of the first difference is reported.
+
+use std::fs;
+
+use lockstep2d::hash::StateHash;
+use lockstep2d::lockstep::{Game, RulesId, Sandbox, SetupError};
+use lockstep2d::replay::Recording;
+use lockstep2d_cli::{Exit, Tool};
+use serde_json::Value as Json;
+
+use super::{Folder, Outcome, run, run_tool_of};
+
+/// A game that counts ticks, bonuses and points, and leaves its bonuses out of its save.
+struct Forgetful {
+    tick: u64,
+    bonus: u64,
+    points: u64,
+}
+
+impl Game for Forgetful {
+    type Setup = ();
+    type Input = u8;
+    type Save = (u64, u64);
+
+    const RULES: RulesId = RulesId { name: "forgetful", version: 1 };
+
+    fn new(_: &()) -> Result<Self, SetupError> {
+        Ok(Forgetful { tick: 0, bonus: 0, points: 0 })
+    }
+
+    fn players(&self) -> u32 {
+        1
+    }
+
+    fn tick_rate(&self) -> u32 {
+        60
+    }
+
+    fn step(&mut self, inputs: &[u8]) {
+        self.tick += 1;
+        if inputs == [1] {
+            self.bonus += 1;
+        }
+        if inputs == [2] {
+            self.points += self.bonus;
+        }
+    }
+
+    fn state_hash(&self) -> StateHash {
+        StateHash::of(&self.save())
+    }
+
+    fn save(&self) -> (u64, u64) {
+        (self.tick, self.points)
+    }
+
+    fn load(&mut self, save: &(u64, u64)) {
+        (self.tick, self.points) = *save;
+    }
+
+    fn work(&self, _: &[u8]) -> u64 {
+        1
+    }
+}
+
+/// The replay of a game whose player gets a bonus in tick 20 and scores with it in tick 71.
+fn forgetful() -> Vec<u8> {
+    let mut recording = Recording::<Forgetful>::start(&(), 10).unwrap();
+    for tick in 1..=90 {
+        let input = match tick {
+            20 => 1,
+            71 => 2,
+            _ => 0,
+        };
+        recording.step(&[input]).unwrap();
+    }
+    recording.finish().unwrap()
+}
+
+fn stress_saves(folder: &Folder, file: &[u8], more: &[&str]) -> Outcome {
+    let path = folder.write("a.replay", file);
+    run_tool_of(&Tool::<Forgetful>::new(), &[&["stress-saves", &path], more].concat())
+}
+
+#[test]
+fn a_good_game_holds() {
+    let folder = Folder::new("stress-good");
+    let path = folder.write("a.replay", &super::replay(100));
+    for more in [&[][..], &["--rollback"], &["--all"], &["--from", "40"], &["--to", "60"]] {
+        let done = run(&[&["stress-saves", &path], more].concat());
+        assert_eq!((done.exit, done.err.as_str()), (Exit::Success, ""), "{more:?}: {}", done.out);
+        assert!(done.out.contains("holds"), "{}", done.out);
+    }
+    let done = run(&["stress-saves", &path, "--json", "--from", "30", "--to", "80"]);
+    let document: Json = serde_json::from_str(&done.out).unwrap();
+    assert_eq!(
+        (&document["holds"], &document["from"], &document["ticks"]),
+        (&true.into(), &30.into(), &80.into())
+    );
+}
+
+#[test]
+fn the_tick_of_a_fault_is_said() {
+    let folder = Folder::new("stress-bad");
+    let done = stress_saves(&folder, &forgetful(), &[]);
+    assert_eq!(done.exit, Exit::NoMatch, "{}", done.err);
+    assert!(done.out.contains("after tick 71") && done.out.contains("[1]: 1 | 0"), "{}", done.out);
+
+    let done = stress_saves(&folder, &forgetful(), &["--json"]);
+    let document: Json = serde_json::from_str(&done.out).unwrap();
+    let failure = &document["failure"];
+    assert_eq!((&document["holds"], &failure["tick"]), (&false.into(), &71.into()));
+    assert_eq!(
+        (&failure["fields"][0]["path"], &failure["fields"][0]["b"]["text"]),
+        (&"[1]".into(), &"0".into())
+    );
+    assert_eq!(document["minimised"], Json::Null);
+
+    // No difference up to tick 70, nor if comparing starts at tick 71, after the bonus.
+    for more in [["--to", "70"], ["--from", "71"]] {
+        assert_eq!(stress_saves(&folder, &forgetful(), &more).exit, Exit::Success, "{more:?}");
+    }
+    let done = stress_saves(&folder, &forgetful(), &["--from", "21", "--rollback"]);
+    assert!(done.out.contains("after tick 71"), "{}", done.out);
+}
+
+#[test]
+fn a_short_replay_that_fails_is_written() {
+    let folder = Folder::new("stress-short");
+    let short = folder.0.join("short.replay");
+    let done = stress_saves(&folder, &forgetful(), &["-o", short.to_str().unwrap()]);
+    assert!(done.out.contains("2 ticks that fail 4 times out of 4"), "{}", done.out);
+    let done = stress_saves(&folder, &fs::read(&short).unwrap(), &[]);
+    assert_eq!(done.exit, Exit::NoMatch);
+    assert!(done.out.contains("after tick 2"), "{}", done.out);
+}
+
+#[test]
+fn what_cannot_be_played_is_refused() {
+    let folder = Folder::new("stress-none");
+    let path = folder.write("a.replay", &super::replay(20));
+    let done = run(&["stress-saves", &path, "--from", "21"]);
+    assert_eq!(done.exit, Exit::Trouble);
+    assert!(done.err.contains("has 20 ticks, there is no tick 21"), "{}", done.err);
+    assert_eq!(run(&["stress-saves", &path, "--to", "21"]).exit, Exit::Trouble);
+    assert_eq!(run(&["stress-saves", "nowhere.replay"]).exit, Exit::Trouble);
+    // A replay of another game, and a file that is no replay.
+    assert_eq!(stress_saves(&folder, &super::replay(20), &[]).exit, Exit::NoMatch);
+    assert_eq!(stress_saves(&folder, b"no replay", &[]).exit, Exit::NoMatch);
+}
+
+#[test]
+fn goldens_of_the_sandbox_hold() {
+    let tool = Tool::<Sandbox>::new();
+    for name in ["box_stack", "spawning", "ragdoll", "chain"] {
+        let path = format!("{}/../../replays/{name}.replay", env!("CARGO_MANIFEST_DIR"));
+        for range in [&["--to", "20"][..], &["--from", "30", "--to", "45", "--rollback"]] {
+            let done = run_tool_of(&tool, &[&["stress-saves", &path], range].concat());
+            assert_eq!(done.exit, Exit::Success, "{name}: {}{}", done.out, done.err);
+        }
+    }
+}

@@ -1,0 +1,134 @@
+//! [`Inspector`]: panel with all fields of the selected body, its contacts and joints.
+
+use lockstep2d::body::{BodyId, ShapeId};
+use lockstep2d::inspect::{Value, fields};
+use lockstep2d::math::{Vec2, widen};
+use lockstep2d::world::{QueryFilter, World};
+use lockstep2d_render::{CELL_HEIGHT, Camera, DrawList, width_of};
+
+use super::theme;
+
+/// Width of the panel, in characters.
+const COLUMNS: usize = 58;
+/// Largest distance from a click to the body that it selects, in pixels.
+const REACH: f32 = 6.0;
+
+/// Selected body and scroll position.
+#[derive(Debug, Default)]
+pub(super) struct Inspector {
+    pub(super) body: Option<BodyId>,
+    /// Number of lines scrolled off the top of the panel.
+    scrolled: usize,
+}
+
+/// Returns the body at a screen position, or else the closest one within [`REACH`]. Where several bodies overlap, the
+/// one in the last slot, because it is painted on top.
+pub(super) fn body_at(world: &World, camera: &Camera, at: [f32; 2]) -> Option<BodyId> {
+    let point = camera.point(at);
+    let beside = {
+        let [x, y] = at;
+        let edge = camera.point([x + REACH, y]) - camera.point([x, y]);
+        edge.x
+    };
+    let filter = QueryFilter::default();
+    let hit = world.overlap_point(point, filter).into_iter().max();
+    let near = || world.closest(point, beside, filter).map(|(shape, _)| shape);
+    let body = |shape: ShapeId| world.shape(shape).map(|shape| shape.body());
+    hit.or_else(near).and_then(body)
+}
+
+impl Inspector {
+    pub(super) fn select(&mut self, body: Option<BodyId>) {
+        if self.body != body {
+            *self = Inspector { body, scrolled: 0 };
+        }
+    }
+
+    /// Upper left corner and size of the panel, in pixels; `None` if no body is selected.
+    pub(super) fn area(&self, [width, height]: [f32; 2]) -> Option<([f32; 2], [f32; 2])> {
+        let wide = width_of("x", 1.0) * COLUMNS as f32;
+        self.body.map(|_| ([(width - wide - 12.0).max(0.0), 12.0], [wide, (height - 90.0).max(CELL_HEIGHT)]))
+    }
+
+    /// Returns whether a screen position is on the panel.
+    pub(super) fn holds(&self, at: [f32; 2], size: [f32; 2]) -> bool {
+        self.area(size).is_some_and(|([x, y], [width, height])| {
+            (x..x + width).contains(&at[0]) && (y..y + height).contains(&at[1])
+        })
+    }
+
+    pub(super) fn scroll(&mut self, notches: f32) {
+        let lines = (notches.abs() * 3.0).ceil() as usize;
+        self.scrolled = match notches > 0.0 {
+            true => self.scrolled.saturating_sub(lines),
+            false => self.scrolled.saturating_add(lines),
+        };
+    }
+
+    pub(super) fn draw(&mut self, list: &mut DrawList, world: &World, size: [f32; 2]) {
+        let (Some(id), Some((corner, [width, height]))) = (self.body, self.area(size)) else { return };
+        let lines = describe(world, id);
+        let rows = (height / CELL_HEIGHT) as usize;
+        self.scrolled = self.scrolled.min(lines.len().saturating_sub(rows));
+        let shown = lines.iter().skip(self.scrolled).take(rows);
+        theme::panel(list, corner, [width, CELL_HEIGHT * shown.len() as f32]);
+        for (row, (name, value)) in shown.enumerate() {
+            let y = corner[1] + row as f32 * CELL_HEIGHT;
+            let colour = if value.is_empty() { theme::ACCENT } else { theme::FAINT };
+            list.text([corner[0], y], 1.0, colour, clipped(name, COLUMNS));
+            let left = name.chars().count() + 1;
+            let value = clipped(value, COLUMNS.saturating_sub(left));
+            list.text([corner[0] + width_of("x", 1.0) * left as f32, y], 1.0, theme::INK, value);
+        }
+    }
+}
+
+/// Lists every field of a body and of its shapes, then its contacts and joints. Each line is a name and a value; a line
+/// with an empty value is a heading.
+pub(super) fn describe(world: &World, id: BodyId) -> Vec<(String, String)> {
+    let Some(body) = world.body(id) else {
+        return vec![(format!("body {id} does not exist at this tick"), String::new())];
+    };
+    let mut lines = vec![(format!("body {id}"), String::new())];
+    add_fields(&mut lines, body);
+    // The fields contain the scaled angular velocity (a speed at the radius of gyration), not the angular velocity
+    // itself.
+    let bits = body.angular_velocity().to_bits().into();
+    lines.push(("angular_velocity".into(), Value::Fixed { bits, fraction_bits: Some(32) }.to_string()));
+    for &shape in body.shapes() {
+        lines.push((format!("shape {shape}"), String::new()));
+        world.shape(shape).into_iter().for_each(|shape| add_fields(&mut lines, shape));
+    }
+    let of_body = |shape: ShapeId| world.shape(shape).is_some_and(|shape| shape.body() == id);
+    for contact in world.contacts().filter(|contact| of_body(contact.shape_a) || of_body(contact.shape_b)) {
+        lines.push((format!("contact of shapes {} and {}", contact.shape_a, contact.shape_b), String::new()));
+        for (point, force) in contact.forces() {
+            let millimetres = widen(point.separation).saturating_mul_int(1000);
+            let (normal, friction) = (force.normal, force.friction);
+            let value = format!("{millimetres:.3} mm apart, {normal:.2} N, {friction:.2} N friction");
+            lines.push(("point".into(), value));
+        }
+    }
+    for (joint, known) in
+        world.joints().filter(|(_, joint)| joint.def().bodies().0 == id || joint.def().bodies().1 == id)
+    {
+        lines.push((format!("joint {joint}"), String::new()));
+        if let Some(error) = world.joint_error(joint) {
+            lines.push(("error".into(), format!("{:.3} mm", error.saturating_mul_int(1000))));
+        }
+        if let Some((Vec2 { x, y }, torque)) = world.joint_force(joint) {
+            lines.push(("force".into(), format!("({x:.2}, {y:.2}) N, {torque:.2} N m")));
+        }
+        add_fields(&mut lines, known);
+    }
+    lines
+}
+
+fn add_fields(lines: &mut Vec<(String, String)>, value: &impl serde::Serialize) {
+    let found = fields(value).unwrap_or_default();
+    lines.extend(found.iter().map(|field| (field.path().to_string(), field.value.to_string())));
+}
+
+fn clipped(text: &str, columns: usize) -> String {
+    text.chars().take(columns).collect()
+}

@@ -1,0 +1,274 @@
+//! [`App`]: the viewer's state, between input events and the draw list.
+
+mod compare;
+mod hand;
+mod help;
+mod input;
+mod inspector;
+mod layers;
+mod player;
+mod screen;
+mod theme;
+mod timeline;
+mod view;
+
+use std::fmt;
+use std::time::Duration;
+
+use lockstep2d::draw::Layers;
+use lockstep2d::hash::StateHash;
+use lockstep2d::scenes::{self, Scene};
+use lockstep2d_render::DrawList;
+
+pub use layers::LAYER_KEYS;
+
+use crate::live::Live;
+use crate::source::{OpenError, Source, open};
+use compare::Comparison;
+use hand::Hand;
+use input::Pointer;
+use inspector::Inspector;
+use layers::LayerList;
+use player::Player;
+use view::View;
+
+/// The viewer: handles [`Event`](crate::Event)s, advances with elapsed time, and draws into a [`DrawList`].
+///
+/// ```
+/// use std::time::Duration;
+/// use lockstep2d_viewer::{App, Event, Key};
+///
+/// let mut app = App::default();
+/// app.show_scene("pyramid", 0);
+/// app.handle(Event::Resized([800.0, 600.0]));
+/// app.advance(Duration::from_secs(1));
+/// app.handle(Event::Pressed(Key::Space));
+/// assert!(app.draw().items().len() > 100, "at least one item for each body");
+/// assert!(app.report().to_string().starts_with("pyramid"));
+/// ```
+pub struct App {
+    source: Option<Box<dyn Source>>,
+    comparison: Option<Comparison>,
+    /// Name and contents of the shown file, kept to open the file again for a comparison.
+    file: Option<(String, &'static [u8])>,
+    /// Message about the last error or the last save.
+    message: Option<String>,
+    player: Player,
+    view: View,
+    layers: Layers,
+    /// Layer list as last drawn, for hit tests; `None` if it was not drawn.
+    layer_list: Option<LayerList>,
+    inspector: Inspector,
+    hand: Hand,
+    pointer: Pointer,
+    help: bool,
+    size: [f32; 2],
+    list: DrawList,
+    requests: Vec<Request>,
+}
+
+/// Request to the host of the app, which has access to files.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Request {
+    /// Write a file.
+    Save {
+        /// File name.
+        name: String,
+        /// Contents of the file.
+        bytes: Vec<u8>,
+    },
+}
+
+/// Description of what is shown, for a line of text beside the picture and for tests.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Report {
+    /// Name of the source; "nothing" if there is no source.
+    pub name: String,
+    /// The current tick.
+    pub tick: u64,
+    /// The last tick; `None` if the source has no end.
+    pub ticks: Option<u64>,
+    /// Hash of the state at the current tick; `None` if there is no source.
+    pub hash: Option<StateHash>,
+    /// Verdict of a replay, errors and other messages.
+    pub status: String,
+}
+
+impl fmt::Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} · tick {}", self.name, self.tick)?;
+        self.ticks.map_or(Ok(()), |ticks| write!(f, " of {ticks}"))?;
+        self.hash.map_or(Ok(()), |hash| write!(f, " · {hash}"))?;
+        write!(f, " · {}", self.status)
+    }
+}
+
+impl Default for App {
+    /// App without a source.
+    fn default() -> Self {
+        App {
+            source: None,
+            comparison: None,
+            file: None,
+            message: None,
+            player: Player::default(),
+            view: View::default(),
+            layers: layers::AT_FIRST,
+            layer_list: None,
+            inspector: Inspector::default(),
+            hand: Hand::default(),
+            pointer: Pointer::default(),
+            help: false,
+            size: [960.0, 720.0],
+            list: DrawList::default(),
+            requests: Vec::new(),
+        }
+    }
+}
+
+impl App {
+    /// Shows a source from its start, and resets the view, the selection and the player.
+    pub fn show(&mut self, source: Box<dyn Source>) {
+        self.source = Some(source);
+        (self.comparison, self.file, self.message) = (None, None, None);
+        (self.player, self.view) = (Player::default(), View::default());
+        (self.inspector, self.hand, self.pointer) = <_>::default();
+    }
+
+    /// Shows a file: a replay, a divergence report or a snapshot.
+    ///
+    /// # Errors
+    /// [`OpenError`], which is also shown as a message. The previous source then stays.
+    pub fn show_file(&mut self, name: &str, bytes: Vec<u8>) -> Result<(), OpenError> {
+        // A source borrows its file for `'static`: the bytes stay allocated until the program ends.
+        let bytes: &'static [u8] = bytes.leak();
+        let source = self.noted(name, open(name, bytes))?;
+        self.show(source);
+        self.file = Some((name.into(), bytes));
+        Ok(())
+    }
+
+    /// Shows a second file over the current one, at the same ticks, and searches for the first difference. Without a
+    /// current file, the file is shown alone.
+    ///
+    /// # Errors
+    /// [`OpenError`], which is also shown as a message. The previous source then stays.
+    pub fn compare_with(&mut self, name: &str, bytes: Vec<u8>) -> Result<(), OpenError> {
+        let Some((first, first_bytes)) = self.file.clone() else { return self.show_file(name, bytes) };
+        let bytes: &'static [u8] = bytes.leak();
+        let other = self.noted(name, open(name, bytes))?;
+        let mut scouts = [open(&first, first_bytes)?, open(name, bytes)?];
+        self.message = None;
+        // A snapshot may start at a later tick than a replay.
+        let start = scouts.iter().map(|scout| scout.first()).max().unwrap_or(0);
+        for scout in &mut scouts {
+            if let Err(error) = scout.seek(start) {
+                self.message = Some(format!("{}: {error}", scout.name()));
+            }
+        }
+        self.comparison = Some(Comparison::new(other, scouts));
+        self.follow_with_other();
+        Ok(())
+    }
+
+    /// Shows a live scene, in which the user can act. Returns `false` if there is no scene of this name.
+    pub fn show_scene(&mut self, name: &str, seed: u64) -> bool {
+        let Some(scene) = Scene::find(name) else { return false };
+        match Live::scene(scene, seed) {
+            Ok(live) => self.show(Box::new(live)),
+            Err(error) => self.message = Some(format!("{name}: {error}")),
+        }
+        true
+    }
+
+    /// Advances by elapsed real time: plays the source and continues background work.
+    pub fn advance(&mut self, time: Duration) {
+        let Some(source) = &mut self.source else { return };
+        source.think();
+        if let Err(error) = self.player.advance(time, source.as_mut()) {
+            self.message = Some(error.to_string());
+        }
+        if let Some(comparison) = &mut self.comparison {
+            comparison.other.think();
+            comparison.think();
+        }
+        self.follow_with_other();
+    }
+
+    /// Draws the current state and returns the draw list.
+    pub fn draw(&mut self) -> &DrawList {
+        screen::draw(self);
+        &self.list
+    }
+
+    /// Describes what is shown.
+    #[must_use]
+    pub fn report(&self) -> Report {
+        let Some(source) = &self.source else {
+            let status = self.message.clone().unwrap_or_else(|| "drop a replay here".into());
+            return Report { name: "nothing".into(), tick: 0, ticks: None, hash: None, status };
+        };
+        Report {
+            name: source.name().into(),
+            tick: source.tick(),
+            ticks: source.ticks(),
+            hash: Some(source.hash()),
+            // The message stands alone: beside an error about another file, the verdict of the shown file would seem to
+            // be about that other file.
+            status: self.message.clone().unwrap_or_else(|| self.remarks().join(" · ")),
+        }
+    }
+
+    /// Takes the requests made since the last call.
+    pub fn take_requests(&mut self) -> Vec<Request> {
+        std::mem::take(&mut self.requests)
+    }
+
+    /// Shows a message, such as an error while saving a file.
+    pub fn tell(&mut self, message: String) {
+        self.message = Some(message);
+    }
+
+    /// Status of the source, status of the comparison and the current message, without empty ones.
+    fn remarks(&self) -> Vec<String> {
+        let source = self.source.as_ref().map(|source| source.status());
+        let comparison = self.comparison.as_ref().map(Comparison::status);
+        let all = [source, comparison, self.message.clone()];
+        all.into_iter().flatten().filter(|remark| !remark.is_empty()).collect()
+    }
+
+    /// Shows the error, if there is one, as a message about the file `name`.
+    fn noted<T>(&mut self, name: &str, result: Result<T, OpenError>) -> Result<T, OpenError> {
+        result.inspect_err(|error| self.message = Some(format!("{name}: {error}")))
+    }
+
+    fn follow_with_other(&mut self) {
+        let (Some(source), Some(comparison)) = (&self.source, &mut self.comparison) else { return };
+        let end = comparison.other.ticks().unwrap_or(u64::MAX);
+        if let Err(error) = comparison.other.seek(source.tick().min(end)) {
+            self.message = Some(format!("{}: {error}", comparison.other.name()));
+        }
+    }
+
+    /// Shows the scene `by` places further in the list, which wraps around.
+    fn show_neighbour(&mut self, by: usize) {
+        let name = self.source.as_ref().map_or("", |source| source.name());
+        let here = scenes::ALL.iter().position(|scene| scene.name == name).unwrap_or(0);
+        let next = scenes::ALL[(here + by) % scenes::ALL.len()].name;
+        self.show_scene(next, 0);
+    }
+
+    /// Requests that the recording of the source is saved as a replay; shows a message if the source records nothing.
+    pub fn save(&mut self) {
+        let Some(source) = &mut self.source else { return };
+        let name = format!("{}.replay", source.name());
+        match source.save_replay() {
+            None => self.message = Some("nothing to save: this source is not recorded".into()),
+            Some(Ok(bytes)) => {
+                self.message = Some(format!("{name}: {} ticks saved", source.recorded()));
+                self.requests.push(Request::Save { name, bytes });
+            }
+            Some(Err(error)) => self.message = Some(error.to_string()),
+        }
+    }
+}

@@ -1,0 +1,231 @@
+//! [`Recording`]: a game that is recorded while it is played, and can be continued differently from any recorded tick.
+
+mod history;
+
+use std::fmt;
+
+use lockstep2d::hash::StateHash;
+use lockstep2d::lockstep::{EncodedInputs, Game, InputError, InputLog};
+use lockstep2d::replay::{CHECKPOINT_INTERVAL, Limits, RecordError, Recorder};
+
+use history::History;
+
+/// Interval between saves, in ticks.
+const SAVE_INTERVAL: u64 = 4;
+/// Memory budget of the saves, in bytes.
+const SAVES_BYTES: usize = 256 << 20;
+
+/// Game and the recording of all its inputs. *Tick t* is the state after *t* ticks.
+///
+/// Every tick up to the last recorded one can be sought. [`Recording::replay_tick`] plays on with the recorded inputs.
+/// [`Recording::play`] plays on with new inputs and drops the recorded ones that follow.
+pub(crate) struct Recording<G: Game> {
+    game: G,
+    tick: u64,
+    /// Recorder before the first tick, for recording the remaining ticks again after a cut.
+    blank: Recorder<G>,
+    /// Recorder that has recorded all ticks of the log.
+    recorder: Recorder<G>,
+    log: InputLog<G::Input>,
+    /// State hashes of all checkpoints given to the recorder.
+    checkpoints: Vec<StateHash>,
+    /// Cumulative work units up to each tick.
+    work: Vec<u64>,
+    history: History<G::Save>,
+    /// Returns the unshared memory of a save, in bytes.
+    weigh: fn(&G::Save) -> usize,
+    /// State after the last recorded tick, while the game is at an earlier tick.
+    end: Option<G::Save>,
+}
+
+/// Error of a tape.
+#[derive(Debug, PartialEq, Eq)]
+pub(crate) enum RecordingError {
+    /// The tick has not been recorded.
+    NoSuchTick { tick: u64, ticks: u64 },
+    /// The inputs cost more work in a tick than the default limits of a verifier allow.
+    TooMuch,
+    /// The inputs cannot be recorded.
+    Record(RecordError),
+    /// The input log refuses the inputs.
+    Log(InputError),
+    /// Playing a recorded tick again gave another hash: saving and loading this game loses state.
+    Forgetful { tick: u64 },
+}
+
+impl<G: Game> Recording<G> {
+    /// Starts a game. `weigh` returns the memory that a save does not share with other saves, in bytes.
+    pub(crate) fn start(setup: &G::Setup, weigh: fn(&G::Save) -> usize) -> Result<Self, RecordError> {
+        let (recorder, game) = Recorder::<G>::start(setup, CHECKPOINT_INTERVAL)?;
+        Ok(Recording {
+            tick: 0,
+            blank: recorder.clone(),
+            recorder,
+            log: InputLog::new(game.players()),
+            checkpoints: Vec::new(),
+            work: Vec::new(),
+            history: History::new(game.save(), SAVES_BYTES),
+            weigh,
+            end: None,
+            game,
+        })
+    }
+
+    /// Returns the game at the current tick.
+    pub(crate) fn game(&self) -> &G {
+        &self.game
+    }
+
+    /// The current tick.
+    pub(crate) fn tick(&self) -> u64 {
+        self.tick
+    }
+
+    /// Number of recorded ticks.
+    pub(crate) fn ticks(&self) -> u64 {
+        self.log.ticks()
+    }
+
+    /// Returns whether the current tick is the last recorded one.
+    pub(crate) fn is_at_end(&self) -> bool {
+        self.tick == self.ticks()
+    }
+
+    /// Work units of all recorded ticks, as a verifier counts them.
+    pub(crate) fn work(&self) -> u64 {
+        self.work.last().copied().unwrap_or(0)
+    }
+
+    /// Plays and records the next tick. If it is already recorded, it and all later ticks are dropped first.
+    pub(crate) fn play(&mut self, inputs: &[G::Input]) -> Result<(), RecordingError> {
+        let work = self.game.work(inputs);
+        if work > Limits::default().tick_work {
+            return Err(RecordingError::TooMuch);
+        }
+        if !self.is_at_end() {
+            self.cut()?;
+        }
+        let inputs = EncodedInputs::new(inputs, self.game.players())
+            .map_err(|error| RecordingError::Record(RecordError::Inputs(error)))?;
+        self.recorder.record_encoded(&inputs).map_err(RecordingError::Record)?;
+        let inputs = self.log.push_encoded(&inputs).map_err(RecordingError::Log)?;
+        self.work.push(self.work.last().map_or(work, |before| before.saturating_add(work)));
+        self.game.step(inputs);
+        self.tick += 1;
+        if self.recorder.is_checkpoint_due() {
+            let hash = self.game.state_hash();
+            self.recorder.checkpoint(hash);
+            self.checkpoints.push(hash);
+        }
+        self.keep_save(self.tick);
+        Ok(())
+    }
+
+    /// Plays the next tick with its recorded inputs.
+    pub(crate) fn replay_tick(&mut self) -> Result<(), RecordingError> {
+        self.replay_towards(self.tick + 1)
+    }
+
+    /// Seeks to a recorded tick.
+    pub(crate) fn seek(&mut self, tick: u64) -> Result<(), RecordingError> {
+        if tick > self.ticks() {
+            return Err(RecordingError::NoSuchTick { tick, ticks: self.ticks() });
+        }
+        // Starts from an earlier tick, so that derived data outside the state, such as contact points and events, is
+        // available.
+        let latest = self.history.latest(tick.saturating_sub(1));
+        let elsewhere = latest.filter(|(from, _)| !(*from..=tick).contains(&self.tick));
+        if let Some((from, save)) = elsewhere.map(|(from, save)| (from, save.clone())) {
+            if self.is_at_end() {
+                self.end = Some(self.game.save());
+            }
+            self.game.load(&save);
+            self.tick = from;
+        }
+        while self.tick < tick {
+            self.replay_towards(tick)?;
+        }
+        Ok(())
+    }
+
+    /// Returns a replay file of all recorded ticks, whatever the current tick is.
+    pub(crate) fn to_replay(&self) -> Result<Vec<u8>, RecordError>
+    where
+        G: Clone,
+    {
+        let recorder = self.recorder.clone();
+        let Some(end) = &self.end else { return recorder.finish(&self.game) };
+        let mut game = self.game.clone();
+        game.load(end);
+        recorder.finish(&game)
+    }
+
+    fn replay_towards(&mut self, target: u64) -> Result<(), RecordingError> {
+        let (tick, ticks) = (self.tick + 1, self.ticks());
+        let inputs = self.log.get(self.tick).ok_or(RecordingError::NoSuchTick { tick, ticks })?;
+        self.game.step(inputs);
+        self.tick = tick;
+        if tick.is_multiple_of(CHECKPOINT_INTERVAL.into()) {
+            let index = usize::try_from(tick / u64::from(CHECKPOINT_INTERVAL) - 1).unwrap_or(usize::MAX);
+            if self.checkpoints.get(index) != Some(&self.game.state_hash()) {
+                return Err(RecordingError::Forgetful { tick });
+            }
+        }
+        if self.is_at_end() {
+            self.end = None;
+        }
+        self.keep_save(target);
+        Ok(())
+    }
+
+    fn keep_save(&mut self, here: u64) {
+        if self.tick.is_multiple_of(SAVE_INTERVAL) && !self.history.has(self.tick) {
+            let save = self.game.save();
+            let bytes = (self.weigh)(&save);
+            self.history.keep(self.tick, save, bytes, here);
+        }
+    }
+
+    /// Drops all recorded ticks after the current one.
+    fn cut(&mut self) -> Result<(), RecordingError> {
+        let mut recorder = self.blank.clone();
+        let mut checkpoints = self.checkpoints.iter();
+        for tick in 0..self.tick {
+            if let Some(inputs) = self.log.get_encoded(tick) {
+                recorder.record_encoded(inputs).map_err(RecordingError::Record)?;
+            }
+            if recorder.is_checkpoint_due()
+                && let Some(hash) = checkpoints.next()
+            {
+                recorder.checkpoint(*hash);
+            }
+        }
+        let blocks = self.checkpoints.len() - checkpoints.len();
+        self.checkpoints.truncate(blocks);
+        self.recorder = recorder;
+        self.log.truncate(self.tick);
+        self.work.truncate(usize::try_from(self.tick).unwrap_or(usize::MAX));
+        self.history.truncate(self.tick);
+        self.end = None;
+        Ok(())
+    }
+}
+
+impl fmt::Display for RecordingError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            RecordingError::NoSuchTick { tick, ticks } => {
+                write!(f, "tick {tick} is not recorded: there are {ticks} ticks")
+            }
+            RecordingError::TooMuch => write!(f, "the tick costs more work than a replay may contain"),
+            RecordingError::Record(error) => error.fmt(f),
+            RecordingError::Log(error) => error.fmt(f),
+            RecordingError::Forgetful { tick } => {
+                write!(
+                    f,
+                    "tick {tick} has another hash when it is played again: saving and loading this game loses state"
+                )
+            }
+        }
+    }
+}

@@ -1,0 +1,121 @@
+//! [`Source`]: something that the viewer can show.
+
+mod open;
+mod replay;
+mod snapshot;
+
+pub use open::{OpenError, open};
+pub use replay::Replay;
+pub use snapshot::Snapshot;
+
+use std::fmt;
+use std::time::Duration;
+
+use lockstep2d::hash::StateHash;
+use lockstep2d::world::World;
+use lockstep2d_render::{Camera, DrawList};
+
+use crate::event::Event;
+use crate::live::Playground;
+
+/// Something that has a world at every tick: a replay, a snapshot or a live game.
+///
+/// *Tick t* is the state after *t* ticks.
+pub trait Source {
+    /// Name for display: of the file or the scene.
+    fn name(&self) -> &str;
+
+    /// World at the current tick.
+    fn world(&mut self) -> &World;
+
+    /// Hash of the whole state at the current tick.
+    fn hash(&self) -> StateHash;
+
+    /// The current tick.
+    fn tick(&self) -> u64;
+
+    /// The first tick that can be sought.
+    fn first(&self) -> u64 {
+        0
+    }
+
+    /// The last tick that can be sought; `None` if the source has no end.
+    fn ticks(&self) -> Option<u64>;
+
+    /// The last tick on the timeline: for a source without an end, the last tick played so far.
+    fn recorded(&self) -> u64 {
+        self.ticks().unwrap_or_else(|| self.tick())
+    }
+
+    /// Ticks per second.
+    fn tick_rate(&self) -> u32;
+
+    /// Seeks to a tick.
+    ///
+    /// # Errors
+    /// [`SourceError`] if the tick cannot be reached; the source is then at the last tick that it could reach.
+    fn seek(&mut self, tick: u64) -> Result<(), SourceError>;
+
+    /// Status text, such as the verdict of a replay or the scores of a match; may be empty.
+    fn status(&self) -> String {
+        String::new()
+    }
+
+    /// Returns the interface for user actions, if the source is a live sandbox.
+    fn playground(&mut self) -> Option<&mut dyn Playground> {
+        None
+    }
+
+    /// Handles an input event before the viewer does. Returns `true` if the source consumed the event, such as a key
+    /// of a game's player.
+    fn handle(&mut self, _event: &Event) -> bool {
+        false
+    }
+
+    /// Advances a source that runs by its own clock, such as a network match. Returns `true` if the source does; then
+    /// the viewer does not play it, and it cannot be paused.
+    ///
+    /// # Errors
+    /// [`SourceError`] if the source cannot continue.
+    fn advance(&mut self, _time: Duration) -> Result<bool, SourceError> {
+        Ok(false)
+    }
+
+    /// Draws the game's own graphics on top of the world: scores, colours of players.
+    fn decorate(&mut self, _list: &mut DrawList, _camera: &Camera) {}
+
+    /// Returns a replay file of everything so far; `None` if the source is not recorded.
+    ///
+    /// # Errors
+    /// [`SourceError`] if no replay can be made.
+    fn save_replay(&mut self) -> Option<Result<Vec<u8>, SourceError>> {
+        None
+    }
+
+    /// Does a small amount of background work, such as verifying a replay. Returns `true` while work remains.
+    fn think(&mut self) -> bool {
+        false
+    }
+}
+
+/// Error of a source, as a message for the user.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SourceError(
+    /// The message.
+    pub String,
+);
+
+impl SourceError {
+    /// Takes over the message of another error.
+    pub(crate) fn of(error: impl fmt::Display) -> Self {
+        SourceError(error.to_string())
+    }
+}
+
+impl fmt::Display for SourceError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for SourceError {}

@@ -1,0 +1,129 @@
+//! [`Replay`]: a replay file as a source.
+
+use lockstep2d::hash::StateHash;
+use lockstep2d::lockstep::Game;
+use lockstep2d::replay::{Limits, Step, Timeline, TimelineOptions, Verdict, VerifiedReplay};
+use lockstep2d::world::World;
+use lockstep2d_render::{Camera, DrawList};
+
+use super::{Source, SourceError};
+
+/// Interval between keyframes, in ticks. Seeking backwards replays fewer ticks than this: half a second in large
+/// scenes.
+const INTERVAL: u32 = 60;
+
+/// Amount that is verified per frame, in work units: a few milliseconds.
+const THINK_WORK: u64 = 100_000;
+
+/// Replay of a game that has a world. It is verified in the background while it is shown.
+pub struct Replay<G: Game> {
+    name: String,
+    timeline: Timeline<'static, G>,
+    /// The verifier; `None` once there is a verdict.
+    check: Option<Box<VerifiedReplay<'static, G>>>,
+    verdict: Option<Verdict>,
+    /// Empty world, shown for a game without a world.
+    nothing: World,
+    decorate: Decorate<G>,
+}
+
+/// Draws a game's own graphics on top of the world.
+type Decorate<G> = fn(&G, &mut DrawList, &Camera);
+
+impl<G: Game> Replay<G> {
+    /// Opens a replay.
+    ///
+    /// # Errors
+    /// The [`Verdict`] if no tick of it can be played.
+    pub fn open(name: &str, bytes: &'static [u8], limits: &Limits) -> Result<Self, Verdict> {
+        let options = TimelineOptions { interval: INTERVAL, ..TimelineOptions::default() };
+        let timeline = Timeline::open(bytes, &options, limits)?;
+        let check = Some(Box::new(VerifiedReplay::open(bytes, limits)?));
+        Ok(Replay {
+            name: name.into(),
+            timeline,
+            check,
+            verdict: None,
+            nothing: World::default(),
+            decorate: |_, _, _| {},
+        })
+    }
+
+    /// Sets the function that draws on top of the world: scores, colours of players.
+    #[must_use]
+    pub fn decorated(self, decorate: Decorate<G>) -> Self {
+        Replay { decorate, ..self }
+    }
+
+    /// Returns the game at the current tick.
+    #[must_use]
+    pub fn game(&self) -> &G {
+        self.timeline.game()
+    }
+
+    fn go(&mut self, tick: u64) -> Result<(), SourceError> {
+        if tick == self.timeline.tick() {
+            return Ok(());
+        }
+        // Steps from the tick before, so that derived data outside the state, such as contact points, is available.
+        let Some(before) = tick.checked_sub(1) else {
+            return self.timeline.seek(tick).map_err(SourceError::of);
+        };
+        self.timeline.seek(before).map_err(SourceError::of)?;
+        self.timeline.step().map(drop).map_err(SourceError::of)
+    }
+}
+
+impl<G: Game> Source for Replay<G> {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn world(&mut self) -> &World {
+        self.timeline.world().unwrap_or(&self.nothing)
+    }
+
+    fn hash(&self) -> StateHash {
+        self.timeline.game().state_hash()
+    }
+
+    fn tick(&self) -> u64 {
+        self.timeline.tick()
+    }
+
+    fn ticks(&self) -> Option<u64> {
+        Some(self.timeline.ticks())
+    }
+
+    fn tick_rate(&self) -> u32 {
+        self.timeline.game().tick_rate()
+    }
+
+    fn seek(&mut self, tick: u64) -> Result<(), SourceError> {
+        self.go(tick.min(self.timeline.ticks()))
+    }
+
+    fn decorate(&mut self, list: &mut DrawList, camera: &Camera) {
+        (self.decorate)(self.timeline.game(), list, camera);
+    }
+
+    fn status(&self) -> String {
+        match (&self.verdict, &self.check) {
+            (Some(verdict), _) => verdict.to_string(),
+            (None, Some(check)) => format!("verifying: tick {} of {}", check.tick(), check.ticks()),
+            (None, None) => String::new(),
+        }
+    }
+
+    fn think(&mut self) -> bool {
+        let Some(check) = &mut self.check else { return false };
+        let enough = check.work().saturating_add(THINK_WORK);
+        while check.work() < enough {
+            if !matches!(check.step(), Ok(Step::Ticked)) {
+                self.verdict = self.check.take().map(|check| check.conclude());
+                return false;
+            }
+        }
+        true
+    }
+}

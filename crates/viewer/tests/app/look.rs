@@ -1,0 +1,134 @@
+//! The screen shows layers, the fields of a selected body, the followed body and the help.
+
+use lockstep2d::draw::Layers;
+use lockstep2d_render::DrawList;
+use lockstep2d_viewer::{App, Button, Event, Key};
+
+use super::common::{SIZE, app_of, click, frames, layer, press, replay, texts, wait_for};
+
+fn app() -> App {
+    let mut app = app_of(replay("ragdoll", 200, |_, _| vec![]));
+    press(&mut app, Key::PageDown);
+    press(&mut app, Key::PageDown);
+    wait_for(&mut app, 120);
+    app
+}
+
+fn size_of(list: &DrawList) -> usize {
+    list.items().len() + list.texts().len()
+}
+
+#[test]
+fn every_layer_adds_something_and_takes_it_away_again() {
+    let mut app = app();
+    // Zoom in far enough for labels to be drawn.
+    app.handle(Event::Moved(SIZE.map(|side| side / 2.0)));
+    app.handle(Event::Wheel(3.0));
+    for (name, shown) in (Layers { outlines: true, joints: true, ..Layers::NONE }).named() {
+        let before = app.draw().clone();
+        press(&mut app, layer(name));
+        let after = app.draw().clone();
+        match shown {
+            true => assert!(size_of(&after) < size_of(&before), "{name}"),
+            false => assert!(size_of(&after) > size_of(&before), "{name}"),
+        }
+        press(&mut app, layer(name));
+        assert!(*app.draw() == before, "{name}");
+    }
+}
+
+#[test]
+fn a_click_in_the_list_of_layers_switches_one() {
+    let mut app = app();
+    let line = app.draw().texts().iter().find(|text| text.text.ends_with("velocities")).unwrap().clone();
+    assert!(!line.text.contains('*'));
+    click(&mut app, [line.at[0] + 20.0, line.at[1] + 8.0]);
+    assert!(texts(&mut app).iter().any(|text| text.contains('*') && text.ends_with("velocities")));
+}
+
+#[test]
+fn a_click_on_a_body_shows_all_its_fields_as_decimals_and_bits() {
+    let file = replay("box_stack", 100, |_, _| vec![]);
+    let mut app = app_of(file.clone());
+    // The id labels give the positions of the bodies.
+    press(&mut app, layer("ids"));
+    frames(&mut app, 1);
+    let labels: Vec<_> =
+        app.draw().texts().iter().filter(|text| text.text.ends_with("v0")).cloned().collect();
+    assert!(labels.len() > 5, "{labels:?}");
+    let label = &labels[4];
+    // A label is to the right of the centre of mass and above it.
+    click(&mut app, [label.at[0] - 3.0, label.at[1] + 14.0]);
+    let lines = texts(&mut app);
+    assert!(lines.contains(&format!("body {}", label.text)), "{lines:?}");
+    let playback =
+        lockstep2d::replay::VerifiedReplay::<lockstep2d::lockstep::Sandbox>::open(&file, &Default::default());
+    let playback = playback.unwrap();
+    let mut bodies = playback.game().world().bodies();
+    let (_, body) = bodies.find(|(id, _)| id.to_string() == label.text).unwrap();
+    let y = body.centre_of_mass().y.to_bits();
+    assert!(lines.iter().any(|line| line.ends_with(&format!("(bits {y})"))), "{y}: {lines:?}");
+    press(&mut app, Key::Escape);
+    assert!(!texts(&mut app).contains(&format!("body {}", label.text)));
+}
+
+#[test]
+fn the_camera_follows_a_body_and_lets_go() {
+    let mut app = app_of(replay("free_fall", 120, |_, _| vec![]));
+    press(&mut app, layer("ids"));
+    press(&mut app, layer("centres_of_mass"));
+    app.draw();
+    let label = app.draw().texts().iter().rfind(|text| text.text.ends_with("v0")).unwrap().clone();
+    click(&mut app, [label.at[0] - 3.0, label.at[1] + 14.0]);
+    assert!(texts(&mut app).contains(&format!("body {}", label.text)), "{:?} {:?}", label, texts(&mut app));
+    press(&mut app, Key::Character('f'));
+    for _ in 0..3 {
+        press(&mut app, Key::PageDown);
+        frames(&mut app, 3);
+        let shown = app.draw().texts().iter().find(|text| text.text == label.text).unwrap().clone();
+        let [x, y] = [shown.at[0] - 3.0, shown.at[1] + 14.0];
+        assert!((x - SIZE[0] / 2.0).abs() < 1.0 && (y - SIZE[1] / 2.0).abs() < 1.0, "{x} {y}");
+    }
+    press(&mut app, Key::Character('r'));
+    app.draw();
+    press(&mut app, Key::Left);
+    frames(&mut app, 2);
+    let shown = app.draw().texts().iter().find(|text| text.text == label.text).unwrap().clone();
+    assert!(
+        (shown.at[1] + 14.0 - SIZE[1] / 2.0).abs() > 1.0,
+        "after a reset the camera should not follow the body"
+    );
+}
+
+#[test]
+fn dragging_pans_and_the_wheel_zooms_about_the_pointer() {
+    let mut app = app();
+    press(&mut app, layer("ids"));
+    let middle = |at: [f32; 2]| (at[0] - 500.0).hypot(at[1] - 350.0);
+    let labels = app.draw().texts().iter().filter(|text| text.text.ends_with("v0") && middle(text.at) > 10.0);
+    let label = labels.min_by(|a, b| middle(a.at).total_cmp(&middle(b.at))).unwrap().text.clone();
+    let place = |app: &mut App| {
+        let at = app.draw().texts().iter().find(|text| text.text == label).unwrap().at;
+        // Position of the labelled body.
+        [at[0] - 3.0, at[1] + 14.0]
+    };
+    let far = place(&mut app);
+    app.handle(Event::Moved([500.0, 350.0]));
+    app.handle(Event::Wheel(1.0));
+    let before = place(&mut app);
+    let factor = (before[0] - 500.0) / (far[0] - 500.0);
+    assert!((factor - 1.2).abs() < 0.01, "{far:?} -> {before:?}");
+    app.handle(Event::Down(Button::Middle));
+    app.handle(Event::Moved([530.0, 310.0]));
+    app.handle(Event::Up(Button::Middle));
+    let after = place(&mut app);
+    assert!((after[0] - before[0] - 30.0).abs() < 0.1 && (after[1] - before[1] + 40.0).abs() < 0.1);
+}
+
+#[test]
+fn help_is_there_when_asked_for() {
+    let mut app = app();
+    assert!(!texts(&mut app).iter().any(|line| line.contains("play, pause")));
+    press(&mut app, Key::Character('h'));
+    assert!(texts(&mut app).iter().any(|line| line.contains("play, pause")));
+}

@@ -1,0 +1,169 @@
+//! Matches between processes, over UDP on the loopback interface: all peers end in the same state, and their replays
+//! verify.
+
+#![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
+
+#[path = "../../../tests/common/sweep.rs"]
+mod sweep;
+
+use std::fs;
+use std::net::UdpSocket;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Output, Stdio};
+use std::thread;
+use std::time::Duration;
+
+use lockstep2d::replay::{Limits, Part, Reader, Verdict, verify};
+use lockstep2d_shove::{Pad, Shove};
+
+/// Disconnect timeout in seconds, long enough for a process that gets no CPU time on a busy machine.
+const TIMEOUT: &str = "8";
+
+/// Temporary folder of a test, removed on drop.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(name: &str) -> Self {
+        let folder = std::env::temp_dir().join(format!("shove-play-{}-{name}", std::process::id()));
+        fs::create_dir_all(&folder).unwrap();
+        Folder(folder)
+    }
+
+    fn file(&self, name: impl AsRef<Path>) -> PathBuf {
+        self.0.join(name)
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+/// Returns an address with a free port.
+fn free_address() -> String {
+    UdpSocket::bind("127.0.0.1:0").unwrap().local_addr().unwrap().to_string()
+}
+
+fn play(arguments: &[&str], replay: &Path) -> Child {
+    Command::new(env!("CARGO_BIN_EXE_shove"))
+        .args(["play", "--json", "--seed", "5", "--timeout", TIMEOUT])
+        .args(arguments)
+        .arg("--output")
+        .arg(replay)
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap()
+}
+
+fn text(output: &Output) -> String {
+    format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr))
+}
+
+fn hash_of(output: &Output) -> String {
+    let line: serde_json::Value =
+        serde_json::from_slice(&output.stdout).unwrap_or_else(|_| panic!("{}", text(output)));
+    line["hash"].as_str().unwrap_or_else(|| panic!("{}", text(output))).to_owned()
+}
+
+/// Starts a host and three joining players of a match.
+fn four(folder: &Folder, modes: &[&str], ticks: &str) -> Vec<Child> {
+    let address = free_address();
+    let common = [modes, &["--players", "4", "--ticks", ticks]].concat();
+    let mut children = vec![play(&[&["--host", &address], &common[..]].concat(), &folder.file("0"))];
+    for at in ["1", "2", "3"] {
+        children.push(play(&[&["--join", &address], &common[..]].concat(), &folder.file(at)));
+    }
+    children
+}
+
+/// Returns the pads of each tick of a replay, which may be truncated.
+fn pads(replay: &[u8]) -> Vec<Vec<u8>> {
+    let mut pads = Vec::new();
+    let mut reader = Reader::open(replay, &Limits::default()).unwrap();
+    while let Some(Part::Inputs(block)) = reader.next_part().unwrap() {
+        let mut runs = block.runs();
+        while let Some(run) = runs.next_run().unwrap() {
+            pads.extend(std::iter::repeat_n(run.encoded.to_vec(), run.ticks as usize));
+        }
+    }
+    pads
+}
+
+/// Waits until a replay that is being written has this number of ticks.
+fn wait_for_ticks(replay: &Path, ticks: usize) {
+    let has_them =
+        |replay: Vec<u8>| Reader::open(&replay, &Limits::default()).is_ok() && pads(&replay).len() >= ticks;
+    let done = (0..1200).any(|_| {
+        thread::sleep(Duration::from_millis(100));
+        fs::read(replay).is_ok_and(has_them)
+    });
+    assert!(done, "the replay should have {ticks} ticks within two minutes");
+}
+
+#[test]
+fn four_processes_end_alike_and_their_replays_verify() {
+    sweep::at_once([("lockstep", &["--lockstep"][..]), ("rollback", &[])], |(name, modes)| {
+        let folder = Folder::new(name);
+        let outputs: Vec<_> =
+            four(&folder, modes, "600").into_iter().map(|child| child.wait_with_output().unwrap()).collect();
+        for output in &outputs {
+            assert!(output.status.success(), "{name}: {}", text(output));
+            assert_eq!(hash_of(output), hash_of(&outputs[0]));
+        }
+        let replays: Vec<_> = ["0", "1", "2", "3"].map(|at| fs::read(folder.file(at)).unwrap()).into();
+        for replay in &replays {
+            let verdict = verify::<Shove>(replay, &Limits::default());
+            let Verdict::Match { ticks: 600, hash } = verdict else { panic!("{name}: {verdict}") };
+            assert_eq!(hash.to_string(), hash_of(&outputs[0]));
+            assert_eq!(pads(replay), pads(&replays[0]));
+        }
+    });
+}
+
+#[test]
+fn a_killed_process_leaves_a_valid_replay_and_the_others_agree_when() {
+    sweep::at_once([("kill-lockstep", &["--lockstep"][..]), ("kill-rollback", &[])], |(name, modes)| {
+        let folder = Folder::new(name);
+        let mut children = four(&folder, modes, "900");
+        wait_for_ticks(&folder.file("2"), 120);
+        let mut killed = children.remove(2);
+        killed.kill().unwrap();
+        killed.wait().unwrap();
+        let cut = fs::read(folder.file("2")).unwrap();
+        let outputs: Vec<_> = children.into_iter().map(|child| child.wait_with_output().unwrap()).collect();
+        for output in &outputs {
+            assert!(output.status.success(), "{name}: {}", text(output));
+            assert_eq!(hash_of(output), hash_of(&outputs[0]));
+        }
+        let verdict = verify::<Shove>(&cut, &Limits::default());
+        let Verdict::Incomplete { .. } = verdict else { panic!("{name}: {verdict}") };
+        let replays: Vec<_> = ["0", "1", "3"].map(|at| fs::read(folder.file(at)).unwrap()).into();
+        let all = pads(&replays[0]);
+        for replay in &replays {
+            let verdict = verify::<Shove>(replay, &Limits::default());
+            assert!(matches!(verdict, Verdict::Match { ticks: 900, .. }), "{name}: {verdict}");
+            assert_eq!(pads(replay), all);
+        }
+        // The replay of the killed process is a prefix of the others' replays.
+        let seen = pads(&cut);
+        assert!(seen.len() >= 120 && all.starts_with(&seen), "{name}: {} ticks", seen.len());
+        let absent = lockstep2d::codec::encode(&Pad::ABSENT)[0];
+        let last = all.last().unwrap();
+        assert_eq!(last.iter().filter(|pad| **pad == absent).count(), 1, "{name}: {last:?}");
+    });
+}
+
+#[test]
+fn another_seed_is_another_match() {
+    let folder = Folder::new("terms");
+    let address = free_address();
+    let mut host = play(&["--host", &address], &folder.file("0"));
+    let guest = play(&["--join", &address, "--seats", "2"], &folder.file("1"));
+    let output = guest.wait_with_output().unwrap();
+    host.kill().unwrap();
+    host.wait().unwrap();
+    assert_eq!(output.status.code(), Some(2), "{}", text(&output));
+    assert!(text(&output).contains("number of seats 2 here and 4 there"), "{}", text(&output));
+}

@@ -1,0 +1,197 @@
+//! [`ByteSwaps`]: tests whether the hash covers all state that influences future ticks.
+//!
+//! One byte or a run of bytes in a save is replaced by the bytes of a save of another tick. If the state loaded from
+//! the changed save has the hash of the original, then its future must be the same, too.
+
+use alloc::boxed::Box;
+use alloc::collections::VecDeque;
+use alloc::vec::Vec;
+use core::ops::Range;
+
+use super::checker::another;
+use super::finding::{Fault, Finding};
+use super::options::Variant;
+use super::replica::Now;
+use crate::codec;
+use crate::hash::StateHash;
+use crate::lockstep::Game;
+
+/// Interval in ticks between kept saves, in addition to some at the start.
+const INTERVAL: u64 = 16;
+/// Number of ticks for which the futures are compared.
+const FUTURE: usize = 48;
+/// Maximum number of saves of other ticks to take bytes from.
+const DONORS_MAX: usize = 6;
+/// Maximum number of exchanges tried with one save.
+const TRIES_MAX: usize = 32;
+
+/// Saves of some ticks, and the inputs that followed.
+pub(super) struct ByteSwaps<G: Game> {
+    moments: VecDeque<Moment<G>>,
+    donors: VecDeque<Vec<u8>>,
+}
+
+struct Moment<G: Game> {
+    tick: u64,
+    bytes: Vec<u8>,
+    hash: StateHash,
+    /// The inputs of the ticks after it.
+    inputs: Vec<Vec<G::Input>>,
+}
+
+impl<G: Game> Default for ByteSwaps<G> {
+    fn default() -> Self {
+        ByteSwaps { moments: VecDeque::new(), donors: VecDeque::new() }
+    }
+}
+
+impl<G: Game> ByteSwaps<G> {
+    /// Records the state after a tick.
+    pub(super) fn perturb(
+        &mut self,
+        game: &G,
+        now: &Now<'_, G>,
+        steps: &mut u64,
+    ) -> Result<(), Box<Finding>> {
+        self.moments.iter_mut().for_each(|moment| moment.inputs.push(now.inputs.to_vec()));
+        let interval = INTERVAL.max(now.options.every);
+        if now.tick.is_multiple_of(interval) || now.tick.is_power_of_two() && now.tick < interval {
+            let bytes = codec::encode(&game.save());
+            self.add_donor(&bytes);
+            self.moments.push_back(Moment { tick: now.tick, bytes, hash: now.hash, inputs: Vec::new() });
+        }
+        while self.moments.front().is_some_and(|moment| moment.inputs.len() >= FUTURE) {
+            if let Some(moment) = self.moments.pop_front() {
+                self.examine(&moment, now, steps)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Examines the remaining saves, with the ticks that followed them.
+    pub(super) fn finish(&mut self, game: &G, now: &Now<'_, G>, steps: &mut u64) -> Result<(), Box<Finding>> {
+        self.add_donor(&codec::encode(&game.save()));
+        core::mem::take(&mut self.moments).iter().try_for_each(|moment| self.examine(moment, now, steps))
+    }
+
+    fn add_donor(&mut self, bytes: &[u8]) {
+        if self.donors.len() >= DONORS_MAX {
+            self.donors.pop_front();
+        }
+        self.donors.push_back(bytes.to_vec());
+    }
+
+    fn examine(&self, moment: &Moment<G>, now: &Now<'_, G>, steps: &mut u64) -> Result<(), Box<Finding>> {
+        // The bytes of the physics world are left out: the world's own hash covers all of them.
+        let world = world_in::<G>(moment, now)?;
+        let byte_swaps = self.donors.iter().flat_map(|donor| byte_swaps(&moment.bytes, donor));
+        let mut byte_swaps: Vec<_> = byte_swaps.filter(|(range, _)| !overlap(range, &world)).collect();
+        byte_swaps.sort_by(|a, b| (a.0.start, a.0.end, &a.1).cmp(&(b.0.start, b.0.end, &b.1)));
+        byte_swaps.dedup();
+        // If there are more exchanges than are tried, each save starts at a different one.
+        let turn = usize::try_from(moment.tick).unwrap_or(0).wrapping_mul(7) % byte_swaps.len().max(1);
+        byte_swaps.rotate_left(turn);
+        for (range, replacement) in byte_swaps.into_iter().take(TRIES_MAX) {
+            let mut bytes = moment.bytes.clone();
+            bytes[range].copy_from_slice(&replacement);
+            if let Some((after, a, b)) = self.futures_differ(moment, &bytes, now, steps)? {
+                let finding = Finding::new(Variant::ByteSwapped, Fault::Unhashed, moment.tick + after);
+                return Err(Box::new(Finding { played: now.tick, ..finding.with_saves(&a, &b) }));
+            }
+        }
+        Ok(())
+    }
+
+    /// The number of ticks after which two states with the same hash have different hashes, and their saves before
+    /// these ticks.
+    #[expect(clippy::type_complexity, reason = "it is taken apart at once")]
+    fn futures_differ(
+        &self,
+        moment: &Moment<G>,
+        changed: &[u8],
+        now: &Now<'_, G>,
+        steps: &mut u64,
+    ) -> Result<Option<(u64, G::Save, G::Save)>, Box<Finding>> {
+        let Some((mut b, saved_b)) = loaded::<G>(changed, now)? else {
+            return Ok(None);
+        };
+        // If `load` corrects the changed bytes, they do not influence the future.
+        if b.state_hash() != moment.hash || codec::encode(&b.save()) != changed {
+            return Ok(None);
+        }
+        let Some((mut a, saved_a)) = loaded::<G>(&moment.bytes, now)? else {
+            return Ok(None);
+        };
+        for (inputs, after) in moment.inputs.iter().zip(1..) {
+            a.step(inputs);
+            b.step(inputs);
+            *steps += 2;
+            if a.state_hash() != b.state_hash() {
+                return Ok(Some((after, saved_a, saved_b)));
+            }
+        }
+        Ok(None)
+    }
+}
+
+/// Loads a save into a new game, if the bytes are the canonical encoding of a save.
+fn loaded<G: Game>(bytes: &[u8], now: &Now<'_, G>) -> Result<Option<(G, G::Save)>, Box<Finding>> {
+    let Ok(save) = codec::decode::<G::Save>(bytes) else {
+        return Ok(None);
+    };
+    if codec::encode(&save) != bytes {
+        return Ok(None);
+    }
+    let mut game = another::<G>(now.setup, Variant::ByteSwapped, now.tick)?;
+    game.load(&save);
+    Ok(Some((game, save)))
+}
+
+/// Range of the bytes of the physics world in a save; empty if there is none.
+fn world_in<G: Game>(moment: &Moment<G>, now: &Now<'_, G>) -> Result<Range<usize>, Box<Finding>> {
+    let Some((mut game, _)) = loaded::<G>(&moment.bytes, now)? else {
+        return Ok(0..0);
+    };
+    let Some(world) = game.world_mut().map(|world| codec::encode(&world.save())) else {
+        return Ok(0..0);
+    };
+    let start = moment.bytes.windows(world.len()).position(|bytes| bytes == world);
+    Ok(start.map_or(0..0, |start| start..start + world.len()))
+}
+
+fn overlap(a: &Range<usize>, b: &Range<usize>) -> bool {
+    a.start < b.end && b.start < a.end
+}
+
+/// The possible exchanges with a save of the same length: every single byte that differs and every run of such bytes.
+fn byte_swaps(bytes: &[u8], donor: &[u8]) -> Vec<(Range<usize>, Vec<u8>)> {
+    let mut found = Vec::new();
+    if bytes.len() != donor.len() {
+        return found;
+    }
+    let mut run: Option<usize> = None;
+    for at in 0..=bytes.len() {
+        let differs = at < bytes.len() && bytes[at] != donor[at];
+        if differs {
+            found.push((at..at + 1, donor[at..at + 1].to_vec()));
+            run.get_or_insert(at);
+        } else if let Some(start) = run.take().filter(|start| at - start > 1) {
+            found.push((start..at, donor[start..at].to_vec()));
+        }
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bytes_and_runs_are_exchanged() {
+        let found = byte_swaps(&[1, 2, 3, 4, 5, 6], &[1, 9, 8, 4, 5, 7]);
+        let expected: [(Range<usize>, &[u8]); 4] =
+            [(1..2, &[9]), (2..3, &[8]), (1..3, &[9, 8]), (5..6, &[7])];
+        assert_eq!(found, expected.map(|(range, bytes)| (range, bytes.to_vec())));
+        assert!(byte_swaps(&[1], &[1, 2]).is_empty());
+    }
+}

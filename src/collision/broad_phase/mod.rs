@@ -1,0 +1,283 @@
+//! Broad phase: pairs of overlapping fat AABBs. The result is a function of the boxes alone: every implementation
+//! returns the same pairs in sorted order, so the data structure is a cache and not part of the state.
+
+mod box_list;
+mod search;
+mod sweep_and_prune;
+mod tree;
+
+use alloc::vec::Vec;
+use core::ops::ControlFlow;
+
+use crate::body::CollisionClass;
+use crate::collision::contact::Pair;
+use crate::math::{Aabb, Fx, Unit, Vec2};
+use box_list::BoxList;
+use search::{Along, Near, Overlap, Search};
+use sweep_and_prune::SweepAndPrune;
+use tree::Tree;
+
+#[cfg(test)]
+mod tests;
+
+/// Data structure of the broad phase, for overlapping pairs in a tick and for queries. The choice changes the speed,
+/// never the result.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum BroadPhaseKind {
+    /// Dynamic AABB tree: the cost grows with the number of moving boxes, and queries are fast.
+    #[default]
+    Tree,
+    /// Incremental sweep and prune: fast if most boxes move by small distances. Queries visit every box.
+    SweepAndPrune,
+    /// Tests every pair of boxes: the test oracle of the other kinds.
+    BruteForce,
+}
+
+/// Boxes whose pairs are requested.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Moved<'a> {
+    /// Pairs of all boxes.
+    All,
+    /// Pairs with at least one box in these slots, which may repeat or be vacant.
+    Slots(&'a [u32]),
+}
+
+/// The boxes, in the data structure of the chosen kind.
+#[derive(Clone, Debug)]
+pub(crate) struct BroadPhase {
+    structure: Structure,
+    /// Boxes by slot, stored contiguously for the frequent lookups within a tick.
+    boxes: Vec<Aabb>,
+    moved: MovedSet,
+}
+
+#[derive(Clone, Debug)]
+enum Structure {
+    Tree(Tree),
+    SweepAndPrune(SweepAndPrune),
+    BruteForce(BoxList),
+}
+
+impl BroadPhase {
+    pub(crate) fn new(kind: BroadPhaseKind) -> Self {
+        let structure = match kind {
+            BroadPhaseKind::Tree => Structure::Tree(Tree::default()),
+            BroadPhaseKind::SweepAndPrune => Structure::SweepAndPrune(SweepAndPrune::default()),
+            BroadPhaseKind::BruteForce => Structure::BruteForce(BoxList::default()),
+        };
+        BroadPhase { structure, boxes: Vec::new(), moved: MovedSet::default() }
+    }
+
+    pub(crate) fn kind(&self) -> BroadPhaseKind {
+        match self.structure {
+            Structure::Tree(_) => BroadPhaseKind::Tree,
+            Structure::SweepAndPrune(_) => BroadPhaseKind::SweepAndPrune,
+            Structure::BruteForce(_) => BroadPhaseKind::BruteForce,
+        }
+    }
+
+    /// Box of a slot; [`Aabb::NOWHERE`] if there is none.
+    pub(crate) fn fat(&self, slot: u32) -> Aabb {
+        self.boxes.get(slot as usize).copied().unwrap_or(Aabb::NOWHERE)
+    }
+
+    fn remember(&mut self, slot: u32, fat: Aabb) {
+        if self.boxes.len() <= slot as usize {
+            self.boxes.resize(slot as usize + 1, Aabb::NOWHERE);
+        }
+        self.boxes[slot as usize] = fat;
+    }
+
+    /// Inserts or moves the box of a slot.
+    pub(crate) fn set(&mut self, slot: u32, fat: Aabb) {
+        self.remember(slot, fat);
+        match &mut self.structure {
+            Structure::Tree(tree) => tree.set(slot, fat),
+            Structure::SweepAndPrune(sweep) => sweep.set(slot, fat),
+            Structure::BruteForce(boxes) => boxes.set(slot, fat),
+        }
+    }
+
+    /// Sets the collision class of a slot that has a box. Pairs within one class never collide, and may be left out of
+    /// the results. A new box has no class.
+    pub(crate) fn set_collision_class(&mut self, slot: u32, collision_class: CollisionClass) {
+        if let Structure::Tree(tree) = &mut self.structure {
+            tree.set_collision_class(slot, collision_class);
+        }
+    }
+
+    /// Moves the boxes of many slots.
+    pub(crate) fn set_many(&mut self, boxes: &[(u32, Aabb)]) {
+        boxes.iter().for_each(|&(slot, fat)| self.remember(slot, fat));
+        let boxes = boxes.iter().copied();
+        match &mut self.structure {
+            Structure::Tree(tree) => tree.set_many(boxes),
+            Structure::SweepAndPrune(sweep) => boxes.for_each(|(slot, fat)| sweep.set(slot, fat)),
+            Structure::BruteForce(list) => boxes.for_each(|(slot, fat)| list.set(slot, fat)),
+        }
+    }
+
+    /// Removes the box of a slot, if there is one.
+    pub(crate) fn remove(&mut self, slot: u32) {
+        if let Some(fat) = self.boxes.get_mut(slot as usize) {
+            *fat = Aabb::NOWHERE;
+        }
+        match &mut self.structure {
+            Structure::Tree(tree) => tree.remove(slot),
+            Structure::SweepAndPrune(sweep) => sweep.remove(slot),
+            Structure::BruteForce(boxes) => boxes.remove(slot),
+        }
+    }
+
+    /// Replaces all boxes, without collision classes; cheaper than setting each. If a slot repeats, its last box is
+    /// kept.
+    pub(crate) fn refill(&mut self, boxes: impl IntoIterator<Item = (u32, Aabb)>) {
+        *self = BroadPhase::new(self.kind());
+        let boxes = boxes.into_iter();
+        if let Structure::Tree(_) = self.structure {
+            boxes.for_each(|(slot, fat)| self.remember(slot, fat));
+            let present = (0..).zip(&self.boxes).filter(|(_, fat)| **fat != Aabb::NOWHERE);
+            let mut tree = Tree::default();
+            tree.refill(present.map(|(slot, fat)| (slot, *fat)));
+            self.structure = Structure::Tree(tree);
+        } else {
+            boxes.for_each(|(slot, fat)| self.set(slot, fat));
+        }
+    }
+
+    /// Finds all overlapping pairs with at least one moved box that `accept` returns true for, sorted. If there are
+    /// more than `limit`, keeps the smallest and returns true. `accept` must reject every pair within one collision
+    /// class.
+    pub(crate) fn pairs(
+        &mut self,
+        moved: Moved<'_>,
+        accept: impl Fn(Pair) -> bool,
+        limit: usize,
+        pairs: &mut Vec<Pair>,
+    ) -> bool {
+        pairs.clear();
+        let mut smallest = SmallestPairs { pairs, limit, overflowed: false };
+        let mut found = |pair: Pair| {
+            if accept(pair) {
+                smallest.push(pair);
+            }
+        };
+        let BroadPhase { structure, moved: set, .. } = self;
+        match moved {
+            Moved::All => match structure {
+                Structure::Tree(tree) => tree.each_pair(found),
+                Structure::SweepAndPrune(sweep) => sweep.each_pair(found),
+                Structure::BruteForce(boxes) => boxes.each_pair(found),
+            },
+            Moved::Slots(slots) => {
+                set.replace(slots);
+                let found_moved = |(a, b): Pair| {
+                    if set.has(a) || set.has(b) {
+                        found((a, b));
+                    }
+                };
+                match structure {
+                    // Marking more than half of a tree costs more than it saves.
+                    Structure::Tree(tree) if set.slots.len() < tree.len() / 2 => {
+                        tree.each_pair_of(&set.slots, found);
+                    }
+                    Structure::Tree(tree) => tree.each_pair(found_moved),
+                    Structure::SweepAndPrune(sweep) => sweep.each_pair(found_moved),
+                    Structure::BruteForce(boxes) => boxes.each_pair(found_moved),
+                }
+            }
+        }
+        smallest.finish()
+    }
+
+    /// Boxes of the inner nodes of the tree, each with its depth. Empty for the other kinds.
+    pub(crate) fn inner_boxes(&self) -> Vec<(Aabb, u32)> {
+        match &self.structure {
+            Structure::Tree(tree) => tree.inner_boxes(),
+            Structure::SweepAndPrune(_) | Structure::BruteForce(_) => Vec::new(),
+        }
+    }
+
+    /// Whether a slot was in the set of the last [`BroadPhase::pairs`] call with [`Moved::Slots`].
+    pub(crate) fn has_moved(&self, slot: u32) -> bool {
+        self.moved.has(slot)
+    }
+
+    /// Calls `visit` with every slot whose box overlaps the area, in no particular order, until `visit` breaks.
+    pub(crate) fn each_overlap(&self, area: Aabb, visit: impl FnMut(u32) -> ControlFlow<()>) {
+        self.search(Overlap { area, visit });
+    }
+
+    /// Calls `visit` with every slot whose box the area touches while it moves along the translation. Nearer boxes tend
+    /// to come first, and a box that the area just misses may be included. `visit` returns the largest fraction of the
+    /// translation that is still of interest; 0 ends the search.
+    pub(crate) fn each_along(&self, area: Aabb, translation: Vec2<Fx>, visit: impl FnMut(u32) -> Unit) {
+        self.search(Along::new(area, translation, visit));
+    }
+
+    /// Calls `visit` with every slot whose box is within the radius of the point. Nearer boxes tend to come first.
+    /// `visit` returns the radius that is still of interest; a negative radius ends the search.
+    pub(crate) fn each_near(&self, point: Vec2<Fx>, radius: Fx, visit: impl FnMut(u32) -> Fx) {
+        self.search(Near { point, radius, visit });
+    }
+
+    fn search(&self, mut search: impl Search) {
+        let _ended_early = match &self.structure {
+            Structure::Tree(tree) => tree.search(&mut search),
+            Structure::SweepAndPrune(sweep) => sweep.boxes().search(&mut search),
+            Structure::BruteForce(boxes) => boxes.search(&mut search),
+        };
+    }
+}
+
+/// A set of slots, as a list without duplicates and as marks.
+#[derive(Clone, Debug, Default)]
+struct MovedSet {
+    slots: Vec<u32>,
+    marks: Vec<bool>,
+}
+
+impl MovedSet {
+    fn replace(&mut self, slots: &[u32]) {
+        for &slot in &self.slots {
+            self.marks[slot as usize] = false;
+        }
+        self.slots.clear();
+        let end = slots.iter().max().map_or(0, |&last| last as usize + 1);
+        self.marks.resize(end.max(self.marks.len()), false);
+        let MovedSet { slots: list, marks } = self;
+        list.extend(slots.iter().filter(|&&slot| !core::mem::replace(&mut marks[slot as usize], true)));
+    }
+
+    fn has(&self, slot: u32) -> bool {
+        self.marks.get(slot as usize).is_some_and(|&mark| mark)
+    }
+}
+
+/// Keeps the smallest pairs in bounded memory; the result does not depend on the order in which pairs are found.
+struct SmallestPairs<'a> {
+    pairs: &'a mut Vec<Pair>,
+    limit: usize,
+    overflowed: bool,
+}
+
+impl SmallestPairs<'_> {
+    fn push(&mut self, pair: Pair) {
+        self.pairs.push(pair);
+        // Trims at twice the limit, so that the cost of a sort is amortized over as many pushes.
+        if self.pairs.len() >= self.limit.saturating_mul(2).max(64) {
+            self.trim();
+        }
+    }
+
+    fn trim(&mut self) {
+        self.pairs.sort_unstable();
+        self.overflowed |= self.pairs.len() > self.limit;
+        self.pairs.truncate(self.limit);
+    }
+
+    fn finish(mut self) -> bool {
+        self.trim();
+        self.overflowed
+    }
+}

@@ -1,0 +1,404 @@
+//! Dynamic AABB tree. Every box is a leaf, and an inner node has the box around its two children, so that a search
+//! skips every subtree whose box it does not reach.
+//!
+//! The cost of a tree is the sum of its perimeters, to which the number of visits of a random search is proportional
+//! (J. Goldsmith, J. Salmon, 1987). A new leaf descends greedily to the place that adds the least cost. On the way back
+//! up, a child is exchanged with a child of its sibling if that reduces the perimeters, as in Box2D v3. Neither step
+//! bounds the height, and nested boxes would make a chain. The heights of siblings therefore differ by at most
+//! [`IMBALANCE_MAX`]: a relaxed AVL tree (G. Adelson-Velsky, E. Landis, 1962), in which an insertion or a removal
+//! changes heights by one, and one exchange on each level restores the balance.
+//!
+//! A box that moves a little only enlarges its ancestors. If many boxes move at once, the tree is refitted from the
+//! leaves up, or rebuilt: see `rebuild.rs`.
+
+use alloc::vec::Vec;
+use core::ops::ControlFlow;
+
+use super::search::Search;
+use crate::body::CollisionClass;
+use crate::math::Aabb;
+use pairs::Meetings;
+use rebuild::Rebuilt;
+
+mod pairs;
+mod rebuild;
+#[cfg(test)]
+mod tests;
+
+/// Index that stands for no node.
+const NONE: u32 = u32::MAX;
+
+/// Largest difference of the heights of two siblings: large enough for a long ground to stay near the root, where the
+/// perimeters favour it. With 4, finding the pairs of 10 000 boxes on some such grounds takes several times as long.
+const IMBALANCE_MAX: u8 = 16;
+
+/// Stack size of a search: one waiting node per level, plus one. Enough for 2^31 boxes, as a test proves.
+const STACK_LEN: usize = 192;
+
+/// AABB tree over slots: a cache, not part of the state.
+#[derive(Clone, Debug)]
+pub(crate) struct Tree {
+    nodes: Vec<Node>,
+    root: u32,
+    /// First vacant node. The `parent` of a vacant node is the next vacant one.
+    vacant: u32,
+    /// Leaf of each slot, or [`NONE`].
+    leaves: Vec<u32>,
+    len: u32,
+    /// Stacks for the traversal of the tree against itself.
+    meetings: Meetings,
+    /// Number of leaves relinked or removed since the last rebuild. While it is 0, every node is in use and stored
+    /// before its children.
+    relinked: u32,
+    /// Number of leaves that left their neighbourhood since the last rebuild without being relinked.
+    strays: u32,
+    rebuilt: Rebuilt,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Node {
+    aabb: Aabb,
+    parent: u32,
+    /// Height above the leaves; 0 for a leaf.
+    height: u8,
+    /// Collision class of a leaf, or the common class of all leaves below.
+    collision_class: CollisionClass,
+    /// Whether the pairs of this leaf, or of a leaf below, are currently requested.
+    marked: bool,
+    /// Children; for a leaf, its slot and [`NONE`].
+    children: [u32; 2],
+}
+
+impl Default for Tree {
+    fn default() -> Self {
+        Tree {
+            nodes: Vec::new(),
+            root: NONE,
+            vacant: NONE,
+            leaves: Vec::new(),
+            len: 0,
+            meetings: Meetings::default(),
+            relinked: 0,
+            strays: 0,
+            rebuilt: Rebuilt::default(),
+        }
+    }
+}
+
+impl Tree {
+    pub(crate) fn len(&self) -> usize {
+        self.len as usize
+    }
+
+    /// Inserts or moves a box.
+    pub(crate) fn set(&mut self, slot: u32, fat: Aabb) {
+        match self.leaf_of(slot) {
+            Some(leaf) if self.at(leaf).aabb == fat => {}
+            Some(leaf) if self.stays_near(leaf, fat) => self.enlarge(leaf, fat),
+            // A few leaves may stay where they do not belong: the tree keeps its order for the next refit.
+            Some(leaf) if self.strays < self.len / 8 => {
+                self.strays += 1;
+                self.enlarge(leaf, fat);
+            }
+            Some(leaf) => {
+                self.unlink(leaf);
+                self.at_mut(leaf).aabb = fat;
+                self.link(leaf);
+            }
+            None => {
+                let leaf = self.allocate(Node::leaf(slot, fat));
+                self.leaves.resize(self.leaves.len().max(slot as usize + 1), NONE);
+                self.leaves[slot as usize] = leaf;
+                self.len += 1;
+                self.link(leaf);
+            }
+        }
+    }
+
+    /// Sets the collision class of a slot that has a box. The tree keeps its structure.
+    pub(crate) fn set_collision_class(&mut self, slot: u32, collision_class: CollisionClass) {
+        if let Some(leaf) =
+            self.leaf_of(slot).filter(|&leaf| self.at(leaf).collision_class != collision_class)
+        {
+            self.at_mut(leaf).collision_class = collision_class;
+            let mut at = self.at(leaf).parent;
+            while at != NONE {
+                let before = self.at(at).collision_class;
+                self.refit(at);
+                if self.at(at).collision_class == before {
+                    break;
+                }
+                at = self.at(at).parent;
+            }
+        }
+    }
+
+    pub(crate) fn remove(&mut self, slot: u32) {
+        if let Some(leaf) = self.leaf_of(slot) {
+            self.unlink(leaf);
+            self.free(leaf);
+            self.leaves[slot as usize] = NONE;
+            self.len -= 1;
+        }
+    }
+
+    pub(crate) fn search(&self, search: &mut impl Search) -> ControlFlow<()> {
+        let mut stack = [self.root; STACK_LEN];
+        let mut waiting = usize::from(self.root != NONE);
+        while waiting > 0 {
+            waiting -= 1;
+            let node = self.at(stack[waiting]);
+            if !search.reaches(node.aabb) {
+                continue;
+            }
+            let [a, b] = node.children;
+            if node.is_leaf() {
+                search.visit(a)?;
+            } else {
+                let a_first = search.prefers(self.at(a).aabb, self.at(b).aabb);
+                (stack[waiting], stack[waiting + 1]) = if a_first { (b, a) } else { (a, b) };
+                waiting += 2;
+            }
+        }
+        ControlFlow::Continue(())
+    }
+
+    /// Boxes of inner nodes, each with its depth, parents first.
+    pub(crate) fn inner_boxes(&self) -> Vec<(Aabb, u32)> {
+        let mut boxes = Vec::new();
+        let mut waiting = Vec::from_iter((self.root != NONE).then_some((self.root, 0)));
+        while let Some((index, depth)) = waiting.pop() {
+            let node = self.at(index);
+            if !node.is_leaf() {
+                boxes.push((node.aabb, depth));
+                waiting.extend(node.children.iter().rev().map(|&child| (child, depth + 1)));
+            }
+        }
+        boxes
+    }
+
+    /// Sets the box of a leaf in place. Ancestors only grow: they shrink in the next refit or rebuild.
+    fn enlarge(&mut self, leaf: u32, fat: Aabb) {
+        self.at_mut(leaf).aabb = fat;
+        let mut at = self.at(leaf).parent;
+        while at != NONE && !self.at(at).aabb.contains(fat) {
+            let node = self.at_mut(at);
+            node.aabb = node.aabb.union(fat);
+            at = node.parent;
+        }
+    }
+
+    /// Inserts a leaf into the tree.
+    fn link(&mut self, leaf: u32) {
+        self.relinked = self.relinked.saturating_add(1);
+        if self.root == NONE {
+            self.root = leaf;
+            return;
+        }
+        let sibling = self.best_sibling(self.at(leaf).aabb);
+        let grandparent = self.at(sibling).parent;
+        let parent = self.allocate(Node { children: [sibling, leaf], ..*self.at(sibling) });
+        self.replace_child(grandparent, sibling, parent);
+        self.at_mut(sibling).parent = parent;
+        self.at_mut(leaf).parent = parent;
+        self.repair(parent);
+    }
+
+    /// Removes a leaf from the tree: its sibling replaces their parent.
+    fn unlink(&mut self, leaf: u32) {
+        self.relinked = self.relinked.saturating_add(1);
+        let parent = self.at(leaf).parent;
+        if parent == NONE {
+            self.root = NONE;
+            return;
+        }
+        let Node { children: [a, b], parent: grandparent, .. } = *self.at(parent);
+        let sibling = if a == leaf { b } else { a };
+        self.replace_child(grandparent, parent, sibling);
+        self.at_mut(sibling).parent = grandparent;
+        self.at_mut(leaf).parent = NONE;
+        self.free(parent);
+        self.repair(grandparent);
+    }
+
+    /// Best sibling for a new leaf: the node that adds the least perimeter, counting a new parent around both and the
+    /// growth of the ancestors. Descends to the child with the smaller bound while that bound is better, and until the
+    /// node is low enough to be a leaf's sibling.
+    fn best_sibling(&self, fat: Aabb) -> u32 {
+        let own = perimeter(fat);
+        let mut at = self.root;
+        let mut grown = 0_u64;
+        let mut around = perimeter(self.at(at).aabb.union(fat));
+        let (mut best, mut best_cost) = (at, around);
+        while !self.at(at).is_leaf() {
+            grown = grown.saturating_add(around - perimeter(self.at(at).aabb));
+            let options = self.at(at).children.map(|child| {
+                let node = self.at(child);
+                let around = perimeter(node.aabb.union(fat));
+                let cost = grown.saturating_add(around);
+                // Any deeper sibling adds at least the leaf itself and the growth of the child.
+                let bound = cost.saturating_sub(perimeter(node.aabb).saturating_sub(own));
+                (if node.is_leaf() { cost } else { bound }, node.height, child, around)
+            });
+            // Ties go to the lower child, so that coincident boxes make a bushy tree and not a chain.
+            let (bound, _, child, child_around) = options[0].min(options[1]);
+            if bound > best_cost && self.at(best).height <= IMBALANCE_MAX {
+                break;
+            }
+            (at, around) = (child, child_around);
+            let cost = grown.saturating_add(around);
+            if cost <= best_cost || self.at(best).height > IMBALANCE_MAX {
+                (best, best_cost) = (at, cost);
+            }
+        }
+        best
+    }
+
+    /// Whether a leaf may stay in place with a new box: no ancestor above a small neighbourhood grows.
+    fn stays_near(&self, leaf: u32, fat: Aabb) -> bool {
+        let parent_of = |&at: &u32| Some(self.at(at).parent).filter(|&parent| parent != NONE);
+        // With a lower level most moved boxes would be reinserted; with a higher one the tree would degrade.
+        let neighbourhood = core::iter::successors(Some(leaf), parent_of).nth(4);
+        neighbourhood.is_some_and(|at| self.at(at).aabb.contains(fat))
+    }
+
+    /// Updates boxes, heights and collision classes from a node upwards, until a node does not change.
+    fn repair(&mut self, mut at: u32) {
+        while at != NONE {
+            let Node { aabb, height, collision_class, parent, .. } = *self.at(at);
+            self.refit(at);
+            self.balance(at);
+            self.tighten(at, height);
+            let node = self.at(at);
+            if (node.aabb, node.height, node.collision_class) == (aabb, height, collision_class) {
+                break;
+            }
+            at = parent;
+        }
+    }
+
+    /// Computes box, height and collision class of an inner node from its children.
+    fn refit(&mut self, at: u32) {
+        let [a, b] = self.at(at).children.map(|child| *self.at(child));
+        let node = self.at_mut(at);
+        node.aabb = a.aabb.union(b.aabb);
+        node.height = 1 + a.height.max(b.height);
+        node.collision_class = a.collision_class.common(b.collision_class);
+    }
+
+    /// Restores the balance of a node: if one child is too high, its higher child is exchanged with the other child.
+    fn balance(&mut self, at: u32) {
+        let [a, b] = self.at(at).children;
+        let (low, high) = if self.at(a).height < self.at(b).height { (a, b) } else { (b, a) };
+        if self.at(high).height - self.at(low).height > IMBALANCE_MAX {
+            let [c, d] = self.at(high).children;
+            let up = if self.at(c).height > self.at(d).height { c } else { d };
+            self.swap_if_balanced(at, low, high, up);
+        }
+    }
+
+    /// Exchanges a child with a child of its sibling if that shrinks the sibling; the box of the node itself stays the
+    /// same. The height may differ by one from before, which the ancestors can compensate.
+    fn tighten(&mut self, at: u32, height_before: u8) {
+        let [a, b] = self.at(at).children;
+        let (mut best_gain, mut best) = (0, None);
+        for (child, sibling) in [(a, b), (b, a)] {
+            if self.at(sibling).is_leaf() {
+                continue;
+            }
+            let [c, d] = self.at(sibling).children;
+            for (up, stays) in [(c, d), (d, c)] {
+                let smaller = self.at(child).aabb.union(self.at(stays).aabb);
+                let gain = perimeter(self.at(sibling).aabb).saturating_sub(perimeter(smaller));
+                if gain > best_gain && self.stays_balanced([up, child, stays], height_before) {
+                    (best_gain, best) = (gain, Some((child, sibling, up)));
+                }
+            }
+        }
+        if let Some((child, sibling, up)) = best {
+            self.swap_if_balanced(at, child, sibling, up);
+        }
+    }
+
+    /// Whether a node may have the first of three nodes as a child and the other two as grandchildren.
+    fn stays_balanced(&self, three: [u32; 3], height_before: u8) -> bool {
+        let [up, a, b] = three.map(|index| self.at(index).height);
+        let sibling = 1 + a.max(b);
+        let height = 1 + up.max(sibling);
+        a.abs_diff(b) <= IMBALANCE_MAX
+            && up.abs_diff(sibling) <= IMBALANCE_MAX
+            && height.abs_diff(height_before) <= 1
+    }
+
+    /// Exchanges a child of a node with a child of its sibling.
+    fn swap_if_balanced(&mut self, at: u32, child: u32, sibling: u32, up: u32) {
+        self.replace_child(at, child, up);
+        self.replace_child(sibling, up, child);
+        self.at_mut(up).parent = at;
+        self.at_mut(child).parent = sibling;
+        self.refit(sibling);
+        self.refit(at);
+    }
+
+    /// Replaces a child of a node, or the root. The caller sets the parent of the new child.
+    fn replace_child(&mut self, parent: u32, old: u32, new: u32) {
+        if parent == NONE {
+            self.root = new;
+        } else {
+            let [first, second] = &mut self.at_mut(parent).children;
+            *(if *first == old { first } else { second }) = new;
+        }
+    }
+
+    fn leaf_of(&self, slot: u32) -> Option<u32> {
+        self.leaves.get(slot as usize).copied().filter(|&leaf| leaf != NONE)
+    }
+
+    fn at(&self, index: u32) -> &Node {
+        &self.nodes[index as usize]
+    }
+
+    fn at_mut(&mut self, index: u32) -> &mut Node {
+        &mut self.nodes[index as usize]
+    }
+
+    fn allocate(&mut self, node: Node) -> u32 {
+        let index = self.vacant;
+        if index == NONE {
+            self.nodes.push(node);
+            return u32::try_from(self.nodes.len() - 1).expect("fewer than 2^31 shapes");
+        }
+        self.vacant = self.at(index).parent;
+        *self.at_mut(index) = node;
+        index
+    }
+
+    fn free(&mut self, index: u32) {
+        self.at_mut(index).parent = self.vacant;
+        self.vacant = index;
+    }
+}
+
+impl Node {
+    fn leaf(slot: u32, aabb: Aabb) -> Self {
+        Node {
+            aabb,
+            parent: NONE,
+            height: 0,
+            collision_class: CollisionClass::NONE,
+            marked: false,
+            children: [slot, NONE],
+        }
+    }
+
+    fn is_leaf(&self) -> bool {
+        self.height == 0
+    }
+}
+
+/// Half the perimeter in units of 2^-30 m: the sum for two of the widest boxes still fits 64 bits.
+fn perimeter(aabb: Aabb) -> u64 {
+    let Aabb { lower, upper } = aabb;
+    (upper.x.to_bits().abs_diff(lower.x.to_bits()) >> 2)
+        + (upper.y.to_bits().abs_diff(lower.y.to_bits()) >> 2)
+}

@@ -1,0 +1,214 @@
+//! Box against box, eight pairs at a time with SIMD: in most worlds most shapes are boxes. Each pair gets bit for bit
+//! the manifold that [`hull_hull`](super::hull_hull) computes. The few pairs whose nearest features are two corners are
+//! left to the scalar path.
+
+mod kernel;
+#[cfg(test)]
+mod tests;
+
+use alloc::vec::Vec;
+use core::ops::Deref;
+
+use crate::collision::contact::Pair;
+use crate::collision::manifold::{Feature, Manifold, ManifoldPoint};
+use crate::collision::shape::posed::{Faces, PosedShape};
+use crate::fx;
+use crate::math::{Fx, Length, Rot, Step, Unit, Vec2};
+use crate::simd::{Ints, Machine, Quad, WIDTH, prefetch};
+
+/// Largest distance in metres of the two centres along either axis for the SIMD path. No corner of one box is then more
+/// than `5 sqrt(2) + 2 * 3 < 14` m from a corner of the other, which fits a `Step` (16 m).
+const DISTANCE_MAX: Fx = fx!(5);
+
+/// Largest speculative margin in metres of a pair for the SIMD path.
+const MARGIN_MAX: Length = Length::lit("2");
+
+/// Compact copies of the boxes that the SIMD path takes, indexed by shape slot. Each copy takes half a cache line,
+/// where a [`PosedShape`] takes four lines.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct SmallBoxes {
+    /// Faces in world axes, by slot; zeros for a shape that is not a small box.
+    turned: Vec<Turned>,
+    /// Faces in the frame of the body, by slot, for boxes whose centre is their body's centre of mass.
+    centred: Vec<Option<Faces>>,
+}
+
+/// First two vertices and normals of a box; the other two are their opposites. Aligned, so that no entry straddles two
+/// cache lines.
+#[derive(Clone, Copy, Debug, Default)]
+#[repr(align(32))]
+struct Turned([Quad; 2]);
+
+impl SmallBoxes {
+    /// Resizes the arrays for a number of slots.
+    pub(crate) fn resize(&mut self, slot_count: usize) {
+        self.turned.resize(slot_count, Turned::default());
+        self.centred.resize(slot_count, None);
+    }
+
+    /// Stores a shape that is posed for the first time or was redefined. `centred` is [`PosedShape::as_centred_box`].
+    pub(crate) fn place(&mut self, slot: u32, shape: &PosedShape, centred: Option<Faces>) {
+        self.centred[slot as usize] = centred;
+        self.renew(slot, shape);
+    }
+
+    /// Updates a shape that has been rotated.
+    #[inline]
+    pub(crate) fn renew(&mut self, slot: u32, shape: &PosedShape) {
+        if let Some(faces) = shape.as_small_box() {
+            self.set(slot, &faces);
+        }
+    }
+
+    /// Rotates a centred box and returns its faces. Returns `None` for any other shape, which stays unchanged.
+    #[inline(always)]
+    pub(crate) fn turn(&mut self, slot: u32, rotation: &impl Deref<Target = Rot>) -> Option<Faces> {
+        let faces = self.centred[slot as usize].as_ref()?.rotated(**rotation);
+        self.set(slot, &faces);
+        Some(faces)
+    }
+
+    #[inline(always)]
+    fn set(&mut self, slot: u32, Faces { vertices: [v0, v1], normals: [n0, n1] }: &Faces) {
+        self.turned[slot as usize] = Turned([
+            Quad([v0.x, v0.y, v1.x, v1.y].map(Length::to_bits)),
+            Quad([n0.x, n0.y, n1.x, n1.y].map(Unit::to_bits)),
+        ]);
+    }
+
+    /// Prefetches a box.
+    #[inline]
+    pub(crate) fn prefetch(&self, slot: u32) {
+        prefetch(&self.turned[slot as usize]);
+    }
+}
+
+/// Pairs of small boxes, and their manifolds.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct BoxPairs {
+    count: usize,
+    batches: Vec<Batch>,
+}
+
+/// Up to eight pairs. Unused lanes contain the boxes of the first pair.
+#[derive(Clone, Debug)]
+struct Batch {
+    /// Slots of the two boxes of each pair.
+    at: [[u32; WIDTH]; 2],
+    /// Vectors from the centres of A to those of B.
+    d: [Ints<WIDTH>; 2],
+    radius: [Ints<WIDTH>; 2],
+    margin: Ints<WIDTH>,
+    found: Manifolds,
+}
+
+/// Manifolds of eight pairs.
+#[derive(Clone, Debug)]
+struct Manifolds {
+    /// Bit mask of the pairs that are left to the scalar path.
+    open: u32,
+    normal: [Ints<WIDTH>; 2],
+    /// Number of points of each pair.
+    count: Ints<WIDTH>,
+    /// Contact points. Points beyond a pair's count are zero.
+    points: [Points; 2],
+}
+
+/// One contact point of each pair: anchor (x, y), separation and feature.
+#[derive(Clone, Debug)]
+struct Points([Ints<WIDTH>; 4]);
+
+impl BoxPairs {
+    /// Removes all pairs.
+    pub(crate) fn clear(&mut self) {
+        self.count = 0;
+    }
+
+    /// Adds a pair of small boxes by slot, with the vector from the centre of the first to that of the second. Returns
+    /// the index of the pair, or `None` if the pair is out of the range of the SIMD path.
+    #[inline]
+    pub(crate) fn push(
+        &mut self,
+        (a, b): Pair,
+        d: Vec2<Fx>,
+        radii: [Length; 2],
+        margin: Length,
+    ) -> Option<usize> {
+        if d.x.saturating_abs().max(d.y.saturating_abs()) > DISTANCE_MAX || margin > MARGIN_MAX {
+            return None;
+        }
+        let (place, lane) = (self.count, self.count % WIDTH);
+        if place / WIDTH == self.batches.len() {
+            self.batches.push(Batch::EMPTY);
+        }
+        let batch = &mut self.batches[place / WIDTH];
+        if lane == 0 {
+            // Slots of an earlier tick may no longer exist.
+            batch.at = [[a; WIDTH], [b; WIDTH]];
+        }
+        let d: Vec2<Length> = d.narrow();
+        for side in 0..2 {
+            batch.at[side][lane] = [a, b][side];
+            batch.radius[side].0[lane] = radii[side].to_bits();
+        }
+        (batch.d[0].0[lane], batch.d[1].0[lane]) = (d.x.to_bits(), d.y.to_bits());
+        batch.margin.0[lane] = margin.to_bits();
+        self.count += 1;
+        Some(place)
+    }
+
+    /// Computes the manifolds of all pairs.
+    pub(crate) fn collide(&mut self, machine: Machine, boxes: &SmallBoxes) {
+        let batches = &mut self.batches[..self.count.div_ceil(WIDTH)];
+        if !batches.is_empty() {
+            machine.run(kernel::Collide { batches, boxes: &boxes.turned });
+        }
+    }
+
+    /// Appends the manifold of a pair, with the centre of its first box as the origin. Returns false, without
+    /// appending, if the pair is left to the scalar path.
+    #[inline(always)]
+    pub(crate) fn append_to(&self, manifolds: &mut Vec<Manifold>, place: usize, origin: Vec2<Fx>) -> bool {
+        let (found, lane) = (&self.batches[place / WIDTH].found, place % WIDTH);
+        let is_closed = found.open >> lane & 1 == 0;
+        if is_closed {
+            manifolds.push(found.manifold(lane, origin));
+        }
+        is_closed
+    }
+}
+
+impl Batch {
+    const EMPTY: Self = Batch {
+        at: [[0; WIDTH]; 2],
+        d: [Ints::ZERO; 2],
+        radius: [Ints::ZERO; 2],
+        margin: Ints::ZERO,
+        found: Manifolds {
+            open: 0,
+            normal: [Ints::ZERO; 2],
+            count: Ints::ZERO,
+            points: [Points([Ints::ZERO; 4]), Points([Ints::ZERO; 4])],
+        },
+    };
+}
+
+impl Manifolds {
+    #[inline(always)]
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "at most 2 points of 4 corners"
+    )]
+    fn manifold(&self, lane: usize, origin: Vec2<Fx>) -> Manifold {
+        let at = |ints: &Ints<WIDTH>| ints.0[lane];
+        let point = |Points([x, y, separation, feature]): &Points| ManifoldPoint {
+            anchor: Vec2::new(Length::from_bits(at(x)), Length::from_bits(at(y))),
+            separation: Step::from_bits(at(separation)),
+            feature: Feature(at(feature) as u16),
+        };
+        let normal = Vec2::new(Unit::from_bits(at(&self.normal[0])), Unit::from_bits(at(&self.normal[1])));
+        let [first, second] = &self.points;
+        Manifold::of_points(normal, origin, [point(first), point(second)], at(&self.count) as u8)
+    }
+}

@@ -1,0 +1,129 @@
+//! Ghost-collision filter: finds a direction in which two shapes stay apart while they move past each other.
+//!
+//! A contact is a plane that is fixed for a tick. The corner of the next block of a flush floor gives such a plane too,
+//! and it would stop a shape that slides along, although the shape would slide over the block. Along a fixed axis `m`
+//! the separation of two shapes that do not rotate is linear in time,
+//!
+//! ```text
+//! s(t) = s(0) + m.v t
+//! ```
+//!
+//! so an axis that separates the shapes at the start and at the end of a tick separates them throughout (D. Eberly,
+//! "Intersection of Convex Objects: The Method of Separating Axes", 2001, for moving objects). The axes tried are the
+//! face normals of both shapes.
+
+use super::circle_hull::{distance_along, step_bits};
+use super::hull_hull::{FACE_BITS, face_separation};
+use super::segment;
+use crate::collision::shape::posed::{Hull, Outline, PosedShape};
+use crate::math::{Fx, Length, Step, Unit, Vec2, round_shift};
+
+/// Cosine between a face normal and the contact normal above which the contact is on that face; allows for rounding
+/// only.
+const SAME: Unit = Unit::lit("0.999999");
+/// Cosine above which a face counts as parallel to a contact that is on a face: 25 degrees.
+const OWN: Unit = Unit::lit("0.9");
+
+/// Relative motion of two shapes in a tick, and the tolerances of the filter.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct GhostFilter {
+    /// Displacement of B relative to A, in metres.
+    pub(crate) shift: Vec2<Length>,
+    /// Largest displacement of a point by rotation.
+    pub(crate) turn: Length,
+    /// Overlap that may be left to the next tick.
+    pub(crate) slack: Length,
+    /// Largest approach along the axis: a shape that falls onto a face does not pass it.
+    pub(crate) approach: Length,
+    /// Contact normal, with either sign.
+    pub(crate) normal: Vec2<Unit>,
+    /// Faces whose normals have a larger cosine with the contact normal are the contact's own. A shape does not pass by
+    /// the face on which it lies, whatever its rotation; a corner contact has no own face.
+    own: Unit,
+}
+
+impl GhostFilter {
+    /// Creates the filter input for a contact with a normal.
+    pub(crate) fn new(
+        shift: Vec2<Length>,
+        turn: Length,
+        slack: Length,
+        approach: Length,
+        normal: Vec2<Unit>,
+    ) -> Self {
+        GhostFilter { shift, turn, slack, approach, normal, own: Unit::ONE }
+    }
+}
+
+/// Absolute value of the cosine between two unit vectors.
+fn cosine(a: Vec2<Unit>, b: Vec2<Unit>) -> Unit {
+    let cosine: Unit = a.dot(b);
+    cosine.saturating_abs()
+}
+
+/// Whether a face of one of the shapes separates them throughout the motion, up to the slack.
+pub(crate) fn is_ghost(a: &PosedShape, b: &PosedShape, filter: &GhostFilter) -> bool {
+    let (mut room_a, mut room_b) = (None, None);
+    let (Some(hull_a), Some(hull_b)) = (hull_about(a, b, &mut room_a), hull_about(b, a, &mut room_b)) else {
+        return false;
+    };
+    let mut faces = [hull_a, hull_b].into_iter().flat_map(|hull| &hull.normals()[..hull.faces()]);
+    let on_face = faces.any(|face| cosine(*face, filter.normal) > SAME);
+    let filter = &GhostFilter { own: if on_face { OWN } else { Unit::ONE }, ..*filter };
+    let d = (origin(b, a) - origin(a, b)).narrow();
+    let back = GhostFilter { shift: -filter.shift, ..*filter };
+    some_face_parts(hull_a, hull_b, d, filter) || some_face_parts(hull_b, hull_a, -d, &back)
+}
+
+/// Origin of the coordinates of [`hull_about`]: a segment's own centre may be far away.
+fn origin(shape: &PosedShape, other: &PosedShape) -> Vec2<Fx> {
+    match shape.outline {
+        Outline::Circle { .. } | Outline::Polygon(_) => shape.centre,
+        Outline::Segment { .. } | Outline::Link(_) => other.centre,
+    }
+}
+
+/// Outline of a shape as a hull. `room` provides storage if the outline is not a hull already.
+fn hull_about<'a>(shape: &'a PosedShape, other: &PosedShape, room: &'a mut Option<Hull>) -> Option<&'a Hull> {
+    let from_other = shape.centre - other.centre;
+    *room = match &shape.outline {
+        Outline::Polygon(hull) => return Some(hull),
+        Outline::Circle { radius } => Some(Hull::point(*radius)),
+        Outline::Segment { a, b } => segment::near_hull(from_other + *a, from_other + *b),
+        Outline::Link(link) => segment::near_hull(from_other + link.a, from_other + link.b),
+    };
+    room.as_ref()
+}
+
+/// Whether a face of `a` separates the hulls. `d` is the vector from the centre of A to that of B.
+fn some_face_parts(a: &Hull, b: &Hull, d: Vec2<Length>, filter: &GhostFilter) -> bool {
+    let radii = step_bits(a.radius) + step_bits(b.radius);
+    // The test that rejects most faces comes first.
+    (0..a.faces()).any(|edge| {
+        let normal = a.normals()[edge];
+        let moved = distance_along(normal, filter.shift);
+        if -moved > step_bits(filter.approach) || cosine(normal, filter.normal) > filter.own {
+            return false;
+        }
+        let before = round_shift(face_separation(a, edge, b, d), FACE_BITS - Step::FRAC_NBITS) - radii;
+        let after = before + moved - step_bits(filter.turn);
+        let nearest = before.min(after);
+        if nearest < -step_bits(filter.slack) {
+            return false;
+        }
+        // If an outline is thin along this axis, the slack must not exceed a quarter of its width.
+        let widths = [a, b].map(|hull| width(hull, normal) / 4).into_iter().filter(|&width| width > 0);
+        nearest >= -widths.fold(step_bits(filter.slack), i64::min)
+    })
+}
+
+/// Width of an outline along an axis, in units of `Step`: 0 for a line perpendicular to the axis.
+fn width(hull: &Hull, n: Vec2<Unit>) -> i64 {
+    let along = |&vertex: &Vec2<Length>| distance_along(n, vertex);
+    let (lower, upper) = hull
+        .vertices()
+        .iter()
+        .map(along)
+        .fold((i64::MAX, i64::MIN), |(lower, upper), at| (lower.min(at), upper.max(at)));
+    upper - lower + 2 * step_bits(hull.radius)
+}

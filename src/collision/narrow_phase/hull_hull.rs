@@ -1,0 +1,235 @@
+//! Contact of two convex outlines: the separating axis test over the face normals of both, then clipping of the
+//! incident edge against the reference face (D. Gregorius, "Robust Contact Creation", GDC 2015).
+//!
+//! In two dimensions the axis of least overlap of two convex polygons is always a face normal. If the polygons do not
+//! overlap, the closest features may be two corners, which no face normal detects. That case has its own normal, so
+//! that a box falling past the corner of another box does not catch on it.
+
+mod clip;
+
+pub(in crate::collision) use clip::{CLIP_BITS, FINER, clip};
+
+use crate::collision::manifold::Manifold;
+use crate::collision::shape::posed::{BoxFaces, Hull};
+use crate::math::{Length, Step, Unit, Vec2};
+
+/// Margin in metres by which B's best face must beat A's to become the reference face. 0.5 mm prevents the choice from
+/// flickering between two equal faces: accumulated impulses survive a flicker, since features do not depend on the
+/// choice, but anchors would jump. The same distance separates disjoint polygons from touching ones.
+pub(in crate::collision) const TOLERANCE: Step = Step::lit("0.0005");
+
+/// Fraction bits of the product of a length and a unit vector, such as the separation from a face.
+pub(in crate::collision) const FACE_BITS: u32 = Unit::FRAC_NBITS + Length::FRAC_NBITS;
+
+/// [`TOLERANCE`] with [`FACE_BITS`] fraction bits.
+pub(in crate::collision) const TOLERANCE_WIDE: i64 = (TOLERANCE.to_bits() as i64) << 25;
+
+/// Cached separating axis: the face that separated a pair in the last tick, if any. Testing it first changes no result,
+/// since any axis with a gap beyond the margin proves that there is no contact.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) enum CachedAxis {
+    #[default]
+    None,
+    OfA(u8),
+    OfB(u8),
+}
+
+/// Counts of separating axis tests that the cached axis avoided, and of full searches.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct SatCounters {
+    pub(crate) cached_axis_hits: u32,
+    pub(crate) searches: u32,
+}
+
+#[derive(Clone, Copy)]
+pub(in crate::collision) struct Face {
+    pub(in crate::collision) edge: usize,
+    /// Separation of the other outline's vertices from the face, without radii, with 52 fraction bits.
+    pub(in crate::collision) separation: i64,
+}
+
+/// Contact of two hulls. `d` is the vector from the centre of A to the centre of B.
+pub(crate) fn collide(
+    a: &Hull,
+    b: &Hull,
+    d: Vec2<Length>,
+    margin: Length,
+    cached_axis: &mut CachedAxis,
+    counters: &mut SatCounters,
+) -> Manifold {
+    let radii = a.radius.saturating_add(b.radius);
+    let reach = i64::from(margin.saturating_add(radii).to_bits()) << 30;
+    let from_cache = match *cached_axis {
+        // The SIMD path has no cached axes; ignoring them here too keeps the counters equal on both paths.
+        _ if a.is_small_box() && b.is_small_box() => i64::MIN,
+        CachedAxis::OfA(edge) if usize::from(edge) < a.vertices().len() => {
+            face_separation(a, edge.into(), b, d)
+        }
+        CachedAxis::OfB(edge) if usize::from(edge) < b.vertices().len() => {
+            face_separation(b, edge.into(), a, -d)
+        }
+        _ => i64::MIN,
+    };
+    if from_cache > reach {
+        counters.cached_axis_hits += 1;
+        return Manifold::NONE;
+    }
+    counters.searches += 1;
+    let face_a = best_face(a, b, d);
+    if face_a.separation > reach {
+        *cached_axis = CachedAxis::OfA(small(face_a.edge));
+        return Manifold::NONE;
+    }
+    let face_b = best_face(b, a, -d);
+    if face_b.separation > reach {
+        *cached_axis = CachedAxis::OfB(small(face_b.edge));
+        return Manifold::NONE;
+    }
+    *cached_axis = CachedAxis::None;
+    let apart = are_apart(a, b, d, face_a, face_b);
+    // Separate outlines need the true best face, which is next to the nearest corner.
+    let preference = if apart { 0 } else { TOLERANCE_WIDE };
+    if face_b.separation > face_a.separation + preference {
+        let mut manifold = clip(b, a, -d, face_b, apart, margin);
+        manifold.swap();
+        manifold.translate(d);
+        manifold
+    } else {
+        clip(a, b, d, face_a, apart, margin)
+    }
+}
+
+/// Whether two outlines without their radii are disjoint, given the best face of each.
+#[inline]
+pub(in crate::collision) fn are_apart(
+    a: &Hull,
+    b: &Hull,
+    d: Vec2<Length>,
+    face_a: Face,
+    face_b: Face,
+) -> bool {
+    face_a.separation.max(face_b.separation) > TOLERANCE_WIDE
+        || (a.is_line() && beyond_an_end(a, b, d))
+        || (b.is_line() && beyond_an_end(b, a, -d))
+}
+
+/// Whether `b` lies beyond an end of `a`, which is a two-sided outline and has no face there. For two capsules end to
+/// end no face shows that they are apart.
+fn beyond_an_end(a: &Hull, b: &Hull, d: Vec2<Length>) -> bool {
+    let &[start, end] = a.vertices() else { return false };
+    let t = a.normals()[0].perp();
+    let (x, y) = (i64::from(t.x.to_bits()), i64::from(t.y.to_bits()));
+    let along = |v: Vec2<Length>| x * i64::from(v.x.to_bits()) + y * i64::from(v.y.to_bits());
+    let of_b = |from: Vec2<Length>| b.vertices().iter().map(move |&vertex| along(vertex) + along(d - from));
+    of_b(start).all(|along| along < -TOLERANCE_WIDE) || of_b(end).all(|along| along > TOLERANCE_WIDE)
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "at most 8 edges")]
+fn small(edge: usize) -> u8 {
+    edge as u8
+}
+
+/// Face of `a` with the largest separation from `b`; the first one in case of a tie.
+#[inline(always)]
+pub(in crate::collision) fn best_face(a: &Hull, b: &Hull, d: Vec2<Length>) -> Face {
+    // Fast path: most shapes are boxes.
+    match (a.as_box(), b.as_box()) {
+        (Some(a), Some((others, _))) => furthest_of_box(a, others, d),
+        _ => furthest(a, b, d),
+    }
+}
+
+/// Face of a hull with the largest separation from a point; the first one in case of a tie.
+#[inline]
+pub(in crate::collision) fn face_before(hull: &Hull, point: Vec2<Length>) -> Face {
+    match hull.as_box() {
+        Some(faces) => furthest_of_box(faces, &[Vec2::ZERO; 2], point),
+        None => furthest_over(hull, |_| 0, point),
+    }
+}
+
+#[inline(never)]
+fn furthest(a: &Hull, b: &Hull, d: Vec2<Length>) -> Face {
+    // A loop of constant length is unrolled.
+    let others = b.vertices();
+    match others.len() {
+        2 => furthest_from::<2>(a, others, d),
+        3 => furthest_from::<3>(a, others, d),
+        4 => furthest_from::<4>(a, others, d),
+        5 => furthest_from::<5>(a, others, d),
+        6 => furthest_from::<6>(a, others, d),
+        _ => furthest_over(a, |n| support(n, others), d),
+    }
+}
+
+fn furthest_from<const N: usize>(a: &Hull, others: &[Vec2<Length>], d: Vec2<Length>) -> Face {
+    match others.first_chunk::<N>() {
+        Some(others) => furthest_over(a, |n| support(n, others), d),
+        None => Face { edge: 0, separation: i64::MIN },
+    }
+}
+
+#[inline]
+fn furthest_over(a: &Hull, support: impl Fn(Vec2<Unit>) -> i64, d: Vec2<Length>) -> Face {
+    let mut best = Face { edge: 0, separation: i64::MIN };
+    for (edge, (&vertex, &n)) in a.vertices().iter().zip(a.normals()).enumerate() {
+        let separation = support(n) + product(n, d) - product(n, vertex);
+        if separation > best.separation {
+            best = Face { edge, separation };
+        }
+    }
+    best
+}
+
+/// [`furthest`] for two boxes: the largest and smallest `n . v` over the vertices of a box differ only in sign, and so
+/// do the distances of its opposite faces from its centre.
+#[inline(always)]
+fn furthest_of_box((vertices, normals): BoxFaces, others: &[Vec2<Length>; 2], d: Vec2<Length>) -> Face {
+    let further_of_opposite = |edge: usize, n: Vec2<Unit>, vertex: Vec2<Length>| {
+        let along = product(n, d);
+        let separation = along.abs() - product(n, vertex) - half_extent(n, others);
+        Face { edge: if along >= 0 { edge } else { edge + 2 }, separation }
+    };
+    let a = further_of_opposite(0, normals[0], vertices[0]);
+    let b = further_of_opposite(1, normals[1], vertices[1]);
+    // In case of a tie the lower edge index wins.
+    if (b.separation, a.edge) > (a.separation, b.edge) { b } else { a }
+}
+
+/// Largest `n . v` over the vertices of a box, given by its first two; the smallest is the negative.
+#[inline(always)]
+fn half_extent(n: Vec2<Unit>, &[a, b]: &[Vec2<Length>; 2]) -> i64 {
+    product(n, a).abs().max(product(n, b).abs())
+}
+
+/// `n . v` with 52 fraction bits.
+#[inline]
+fn product(n: Vec2<Unit>, v: Vec2<Length>) -> i64 {
+    i64::from(n.x.to_bits()) * i64::from(v.x.to_bits()) + i64::from(n.y.to_bits()) * i64::from(v.y.to_bits())
+}
+
+/// Support of at least one vertex against a direction: `min n . v`, with 52 fraction bits.
+#[inline]
+fn support(n: Vec2<Unit>, vertices: &[Vec2<Length>]) -> i64 {
+    vertices.iter().fold(i64::MAX, |least, &vertex| least.min(product(n, vertex)))
+}
+
+/// Smallest distance of the vertices of `b` from a face of `a`, with 52 fraction bits.
+pub(in crate::collision) fn face_separation(a: &Hull, edge: usize, b: &Hull, d: Vec2<Length>) -> i64 {
+    plane_separation(a.normals()[edge], a.vertices()[edge], b, d)
+}
+
+/// Smallest distance of the vertices of `b` from the line through a point with normal `n`, with 52 fraction bits.
+#[inline]
+pub(in crate::collision) fn plane_separation(
+    n: Vec2<Unit>,
+    point: Vec2<Length>,
+    b: &Hull,
+    d: Vec2<Length>,
+) -> i64 {
+    let reach = match b.as_box() {
+        Some((others, _)) => -half_extent(n, others),
+        None => support(n, b.vertices()),
+    };
+    reach + product(n, d) - product(n, point)
+}

@@ -1,0 +1,256 @@
+//! Clipping of the incident edge of one outline against the reference face of another.
+//!
+//! Everything is computed in the frame of the face: the position of a vertex along the face, and its height above the
+//! face. A contact point is half-way between the surfaces, at the clipped position:
+//!
+//! ```text
+//! anchor = v1 + t along + n (above + rA - rB) / 2,    separation = above - rA - rB
+//! ```
+
+use super::{FACE_BITS, Face, TOLERANCE};
+use crate::collision::manifold::{Feature, Manifold, ManifoldPoint};
+use crate::collision::narrow_phase::circle_hull::step_bits;
+use crate::collision::shape::posed::Hull;
+use crate::math::{Length, Step, Unit, Vec2, round_shift, saturate};
+
+/// Number of fraction bits of a step beyond those of a length.
+pub(in crate::collision) const FINER: u32 = Step::FRAC_NBITS - Length::FRAC_NBITS;
+
+/// Fraction bits of the clip fraction: edges are at most 570 m long, and the product of an edge and the fraction has 63
+/// bits.
+pub(in crate::collision) const CLIP_BITS: u32 = 26;
+
+/// End of an edge relative to the start of the reference edge, in unsaturated units of `Length` and `Step`.
+#[derive(Clone, Copy)]
+struct ClipPoint {
+    vertex: usize,
+    along: i64,
+    above: i64,
+}
+
+/// Clips the incident edge of `b` against a face of `a`. Anchors are relative to the centre of `a`.
+pub(in crate::collision) fn clip(
+    a: &Hull,
+    b: &Hull,
+    d: Vec2<Length>,
+    face: Face,
+    apart: bool,
+    margin: Length,
+) -> Manifold {
+    let next = a.next(face.edge);
+    let (normal, v1) = (a.normal(face.edge), a.vertex(face.edge));
+    let (first, last) = (
+        ClipPoint { vertex: face.edge, along: 0, above: 0 },
+        ClipPoint { vertex: next, along: along(normal, between(v1, a.vertex(next))), above: 0 },
+    );
+    // Both outlines run counter-clockwise, so the incident edge runs against the reference edge: its second vertex is
+    // the lower end.
+    let to_b = between(v1, d);
+    let end_of_b = |vertex: usize| {
+        let position = b.vertex(vertex);
+        let p = (to_b.0 + i64::from(position.x.to_bits()), to_b.1 + i64::from(position.y.to_bits()));
+        ClipPoint { vertex, along: along(normal, p), above: above(normal, p) }
+    };
+    let edge_of_b = |edge: usize| (end_of_b(edge), end_of_b(b.next(edge)));
+    let mut incident = incident_edge(b, normal);
+    let (mut upper, mut lower) = edge_of_b(incident);
+    // On an outline with small bends the edge most opposed to the face may lie beside the face, with a neighbouring
+    // edge in front of it. For separate outlines the nearest corner is an end of the most opposed edge, so no neighbour
+    // is tried.
+    let neighbours = if apart { 0 } else { b.faces() };
+    for _ in 0..neighbours {
+        let neighbour = if upper.along < first.along {
+            b.previous(incident)
+        } else if lower.along > last.along {
+            b.next(incident)
+        } else {
+            break;
+        };
+        if !bends_little(b, incident, neighbour) || dot(b.normal(neighbour), normal) >= 0 {
+            break;
+        }
+        incident = neighbour;
+        (upper, lower) = edge_of_b(incident);
+    }
+
+    let context = Clip { a, b, d, face: face.edge, margin };
+    let corners = if apart { nearest_corners(first, last, upper, lower) } else { None };
+    if upper.along < first.along || lower.along > last.along {
+        // Deeply overlapping outlines may have no incident edge beside the face. Their deepest corner still pushes them
+        // apart.
+        let (end_a, end_b) = if upper.along < first.along { (first, upper) } else { (last, lower) };
+        return match corners {
+            Some((vertex_a, vertex_b)) => context.corner(&Gap::between(&context, vertex_a, vertex_b)),
+            None => context.face([(end_a.vertex, end_b)]),
+        };
+    }
+    let low = if lower.along < first.along { clipped(lower, upper, first.along) } else { lower };
+    let high = if upper.along > last.along { clipped(upper, lower, last.along) } else { upper };
+    if let Some((vertex_a, vertex_b)) = corners {
+        // Rounded edges that are nearly parallel are nearest at corners too, but rest on both ends: there the corners
+        // are no nearer than the clipped edge, and no further than the face.
+        let gap = Gap::between(&context, vertex_a, vertex_b);
+        let distance = step_bits(gap.distance);
+        let nearer = low.above.min(high.above);
+        let spread = (nearer - distance).max(distance - (face.separation >> 25));
+        if spread > i64::from(TOLERANCE.to_bits()) {
+            return context.corner(&gap);
+        }
+    }
+    context.face([(first.vertex, low), (last.vertex, high)])
+}
+
+/// The two corners that are nearest to each other, if they are the nearest features of two separate edges: each corner
+/// lies beyond the end of the other edge.
+fn nearest_corners(
+    first: ClipPoint,
+    last: ClipPoint,
+    upper: ClipPoint,
+    lower: ClipPoint,
+) -> Option<(ClipPoint, ClipPoint)> {
+    let beyond_incident = |a: ClipPoint, b: ClipPoint, other: ClipPoint| {
+        let from_b = |end: ClipPoint| (end.along - b.along, (end.above - b.above) >> FINER);
+        let (outward, edge) = (from_b(a), from_b(other));
+        // Points of a pair differ by less than 512 m, so each product has at most 62 bits.
+        outward.0 * edge.0 + outward.1 * edge.1 < 0
+    };
+    [(upper, lower), (lower, upper)].into_iter().find_map(|(b, other)| {
+        if b.along < first.along && beyond_incident(first, b, other) {
+            Some((first, b))
+        } else if b.along > last.along && beyond_incident(last, b, other) {
+            Some((last, b))
+        } else {
+            None
+        }
+    })
+}
+
+/// Edge whose normal is most opposed to `normal`; the first one in case of a tie.
+#[inline]
+fn incident_edge(b: &Hull, normal: Vec2<Unit>) -> usize {
+    let cosine = |n: Vec2<Unit>| dot(n, normal);
+    let nearer = |a: (usize, i64), b: (usize, i64)| if b.1 < a.1 { b } else { a };
+    if let Some((_, &[n0, n1])) = b.as_box() {
+        let (cosine_0, cosine_1) = (cosine(n0), cosine(n1));
+        let edge_0 = if cosine_0 <= 0 { 0 } else { 2 };
+        let edge_1 = if cosine_1 <= 0 { 1 } else { 3 };
+        return nearer((edge_0, -cosine_0.abs()), (edge_1, -cosine_1.abs())).0;
+    }
+    b.normals().iter().map(|&n| cosine(n)).enumerate().reduce(nearer).map_or(0, |(edge, _)| edge)
+}
+
+/// Whether an outline turns by less than an eighth of a turn from an edge to its neighbour. If it turns by more, and
+/// the edge lies beside the reference face by more than a millimetre, the neighbour's face wins the separating axis
+/// test.
+fn bends_little(b: &Hull, edge: usize, neighbour: usize) -> bool {
+    const COS_EIGHTH: i64 = (Unit::lit("0.70711").to_bits() as i64) << Unit::FRAC_NBITS;
+    dot(b.normal(edge), b.normal(neighbour)) > COS_EIGHTH
+}
+
+/// `a . b` with 60 fraction bits.
+#[inline]
+fn dot(a: Vec2<Unit>, b: Vec2<Unit>) -> i64 {
+    i64::from(a.x.to_bits()) * i64::from(b.x.to_bits()) + i64::from(a.y.to_bits()) * i64::from(b.y.to_bits())
+}
+
+/// Vector from one position to another, in units of `Length`: one bit more than a `Length` can store.
+#[inline]
+fn between(from: Vec2<Length>, to: Vec2<Length>) -> (i64, i64) {
+    let apart = |from: Length, to: Length| i64::from(to.to_bits()) - i64::from(from.to_bits());
+    (apart(from.x, to.x), apart(from.y, to.y))
+}
+
+/// Position along the face with a normal, in units of `Length`: `t . p`, for `t` the normal rotated by a quarter turn.
+#[inline]
+fn along(n: Vec2<Unit>, p: (i64, i64)) -> i64 {
+    round_shift(i64::from(n.x.to_bits()) * p.1 - i64::from(n.y.to_bits()) * p.0, Unit::FRAC_NBITS)
+}
+
+/// Height above the face with a normal, in units of `Step`: `n . p`.
+#[inline]
+fn above(n: Vec2<Unit>, p: (i64, i64)) -> i64 {
+    let above = i64::from(n.x.to_bits()) * p.0 + i64::from(n.y.to_bits()) * p.1;
+    round_shift(above, FACE_BITS - Step::FRAC_NBITS)
+}
+
+/// Moves an end along its edge to a limit, which lies between it and the other end.
+#[inline]
+fn clipped(end: ClipPoint, other: ClipPoint, limit: i64) -> ClipPoint {
+    let fraction = ((limit - end.along) << CLIP_BITS) / (other.along - end.along);
+    ClipPoint {
+        along: limit,
+        above: end.above + round_shift((other.above - end.above) * fraction, CLIP_BITS),
+        ..end
+    }
+}
+
+struct Clip<'a> {
+    a: &'a Hull,
+    b: &'a Hull,
+    /// Vector from the centre of A to the centre of B.
+    d: Vec2<Length>,
+    face: usize,
+    margin: Length,
+}
+
+/// Gap between two corners.
+struct Gap {
+    vertices: (usize, usize),
+    normal: Vec2<Unit>,
+    distance: Length,
+}
+
+impl Gap {
+    fn between(clip: &Clip, a: ClipPoint, b: ClipPoint) -> Self {
+        let d = clip.b.vertex(b.vertex) + clip.d - clip.a.vertex(a.vertex);
+        let (normal, distance) =
+            d.normalized_with_length().unwrap_or((clip.a.normal(clip.face), Length::ZERO));
+        Gap { vertices: (a.vertex, b.vertex), normal, distance }
+    }
+}
+
+impl Clip<'_> {
+    /// Contact points of clipped incident ends, each with the vertex of A that it is paired with.
+    #[inline(always)]
+    fn face<const N: usize>(&self, ends: [(usize, ClipPoint); N]) -> Manifold {
+        let (normal, start) = (self.a.normal(self.face), self.a.vertex(self.face));
+        let mut manifold = Manifold::new(normal);
+        for (vertex, end) in ends {
+            self.push(&mut manifold, start, (vertex, end));
+        }
+        manifold
+    }
+
+    /// Contact point between two corners, along the line that joins them.
+    fn corner(&self, gap: &Gap) -> Manifold {
+        let mut manifold = Manifold::new(gap.normal);
+        let end = ClipPoint { vertex: gap.vertices.1, along: 0, above: step_bits(gap.distance) };
+        self.push(&mut manifold, self.a.vertex(gap.vertices.0), (gap.vertices.0, end));
+        manifold
+    }
+
+    /// Adds the contact point at an end of B, given relative to a point on A's outline without radii, if it is within
+    /// the margin.
+    #[inline(always)]
+    fn push(&self, manifold: &mut Manifold, start: Vec2<Length>, (vertex, end): (usize, ClipPoint)) {
+        let (radius_a, radius_b) = (step_bits(self.a.radius), step_bits(self.b.radius));
+        let separation = end.above - (radius_a + radius_b);
+        if separation > step_bits(self.margin) {
+            return;
+        }
+        // A's surface is at `radius_a` above its outline, and B's at `above - radius_b`.
+        let middle = round_shift(end.above + radius_a - radius_b, FINER + 1);
+        let (x, y) = (i64::from(manifold.normal.x.to_bits()), i64::from(manifold.normal.y.to_bits()));
+        let moved = |from: Length, by: i64| {
+            Length::from_bits(saturate(i64::from(from.to_bits()) + round_shift(by, Unit::FRAC_NBITS)))
+        };
+        let anchor =
+            Vec2::new(moved(start.x, x * middle - y * end.along), moved(start.y, y * middle + x * end.along));
+        let separation = Step::from_bits(saturate(separation));
+        manifold.push(ManifoldPoint {
+            anchor,
+            separation,
+            feature: Feature::of_vertices(vertex, end.vertex),
+        });
+    }
+}

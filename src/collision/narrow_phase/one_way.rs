@@ -1,0 +1,68 @@
+//! One-way platforms: decides whether a shape in contact passes through.
+//!
+//! Let `p` be the pass direction, `m` the contact normal from the platform to the other shape, and `s` the separation
+//! of the two along `p`. The other shape
+//!
+//! ```text
+//! continues to pass  if it was passing, overlaps, and s < -slack
+//! else is stopped    if m.p >= 1/2: it is on the side that `p` points to
+//! else passes
+//! ```
+//!
+//! A decision therefore persists during an overlap: a shape that turns round half-way falls back, and a shape that has
+//! come through is supported as soon as it is out. The slack lets a shape slide from one platform to the next.
+
+use crate::collision::manifold::Manifold;
+use crate::collision::shape::posed::{Outline, PosedShape};
+use crate::math::{Fx, Unit, Vec2, widen};
+
+/// A one-way platform with its pass direction in world axes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct OneWay<'a> {
+    pub(crate) shape: &'a PosedShape,
+    pub(crate) direction: Vec2<Unit>,
+}
+
+impl OneWay<'_> {
+    /// Whether `other` passes. The manifold's normal points from the platform to `other`.
+    pub(crate) fn lets_pass(
+        &self,
+        other: &PosedShape,
+        manifold: &Manifold,
+        was_passing: bool,
+        slack: Fx,
+    ) -> bool {
+        let points = manifold.points();
+        if points.is_empty() {
+            return false;
+        }
+        let overlaps = points.iter().any(|point| point.separation <= 0);
+        if was_passing && overlaps && self.separation_from(other) < -slack {
+            return true;
+        }
+        let upright: Unit = manifold.normal.dot(self.direction);
+        upright < Unit::lit("0.5")
+    }
+
+    /// Separation of the other shape from this one along the pass direction; negative until the other is fully through.
+    fn separation_from(&self, other: &PosedShape) -> Fx {
+        let direction = self.direction.widen();
+        let between = (other.centre - self.shape.centre).dot(direction);
+        between
+            .saturating_sub(reach(&other.outline, -direction))
+            .saturating_sub(reach(&self.shape.outline, direction))
+    }
+}
+
+/// Extent of an outline from its centre along a direction.
+fn reach(outline: &Outline, direction: Vec2<Fx>) -> Fx {
+    match outline {
+        Outline::Circle { radius } => widen(*radius),
+        Outline::Segment { a, b } => a.dot(direction).max(b.dot(direction)),
+        Outline::Link(link) => link.a.dot(direction).max(link.b.dot(direction)),
+        Outline::Polygon(hull) => {
+            let furthest = hull.vertices().iter().map(|vertex| vertex.widen().dot(direction)).max();
+            furthest.unwrap_or(Fx::ZERO).saturating_add(widen(hull.radius))
+        }
+    }
+}

@@ -1,0 +1,83 @@
+//! Segments, which may be as long as the world. Before it meets a shape, a segment is clipped in 64 bits to a window
+//! around that shape, and becomes a two-sided outline in 32-bit coordinates relative to the shape's centre.
+
+use crate::collision::shape::posed::Hull;
+use crate::fx;
+use crate::math::{Fx, Vec2, div_round, saturate_wide};
+
+/// Half the side of the window in metres. It exceeds any shape's extent of 170 m with the margin of a fast shape, and
+/// is small enough that coordinates relative to the shape's centre, and the edge itself, fit `Length`.
+const WINDOW: Fx = fx!(200);
+
+/// Outline of the segment from `a` to `b`, both relative to the other shape's centre; `None` if it misses the window.
+pub(crate) fn near_hull(a: Vec2<Fx>, b: Vec2<Fx>) -> Option<Hull> {
+    let direction = (b - a).normalized()?;
+    let (p, q) = clipped_to_window(a, b)?;
+    Some(Hull::segment(p.narrow(), q.narrow(), direction))
+}
+
+/// Part of a segment inside the window.
+pub(crate) fn clipped_to_window(a: Vec2<Fx>, b: Vec2<Fx>) -> Option<(Vec2<Fx>, Vec2<Fx>)> {
+    clip(a, b, WINDOW)
+}
+
+/// Part of a segment inside a square about the origin; `None` if there is none.
+pub(in crate::collision) fn clip(a: Vec2<Fx>, b: Vec2<Fx>, half_side: Fx) -> Option<(Vec2<Fx>, Vec2<Fx>)> {
+    let (mut p, mut q) = (a, b);
+    for sign in [1, -1] {
+        for axis in [|v: Vec2<Fx>| v.x, |v: Vec2<Fx>| v.y] {
+            (p, q) = clip_to_half_plane(p, q, |v| {
+                i128::from(axis(v).to_bits()) * sign - i128::from(half_side.to_bits())
+            })?;
+        }
+    }
+    Some((p, q))
+}
+
+/// Part of a segment where `outside` is not positive. `outside` must be linear.
+fn clip_to_half_plane(
+    p: Vec2<Fx>,
+    q: Vec2<Fx>,
+    outside: impl Fn(Vec2<Fx>) -> i128,
+) -> Option<(Vec2<Fx>, Vec2<Fx>)> {
+    let (at_p, at_q) = (outside(p), outside(q));
+    match (at_p > 0, at_q > 0) {
+        (true, true) => None,
+        (true, false) => Some((crossing(p, q, at_p, at_q), q)),
+        (false, true) => Some((p, crossing(q, p, at_q, at_p))),
+        (false, false) => Some((p, q)),
+    }
+}
+
+/// Point at which a linear function crosses zero on the segment from `p` to `q`, with `at_p > 0 >= at_q`.
+fn crossing(p: Vec2<Fx>, q: Vec2<Fx>, at_p: i128, at_q: i128) -> Vec2<Fx> {
+    // Coordinates, and differences within the world, are below 2^63: the product has at most 127 bits.
+    let part = |p: Fx, q: Fx| {
+        let moved = div_round((i128::from(q.to_bits()) - i128::from(p.to_bits())) * at_p, at_p - at_q);
+        Fx::from_bits(saturate_wide(i128::from(p.to_bits()) + moved))
+    };
+    Vec2::new(part(p.x, q.x), part(p.y, q.y))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Length;
+
+    #[test]
+    fn a_long_segment_is_cut_on_its_own_line() {
+        let a = Vec2::new(fx!(-1000000000), fx!(-500000000));
+        let b = Vec2::new(fx!(1000000000), fx!(500000000));
+        let hull = near_hull(a, b).unwrap();
+        let expected = [Vec2::new(-200, -100), Vec2::new(200, 100)]
+            .map(|v| Vec2::new(Length::from_num(v.x), Length::from_num(v.y)));
+        assert_eq!(hull.vertices(), expected);
+    }
+
+    #[test]
+    fn a_short_segment_is_kept_and_a_distant_one_dropped() {
+        let near = near_hull(Vec2::new(fx!(1), fx!(2)), Vec2::new(fx!(3), fx!(2))).unwrap();
+        assert_eq!(near.vertices()[1].x, Length::from_num(3));
+        assert!(near_hull(Vec2::new(fx!(-900), fx!(201)), Vec2::new(fx!(900), fx!(201))).is_none());
+    }
+}

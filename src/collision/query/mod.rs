@@ -1,0 +1,11 @@
+//! Exact geometry of two shapes, for queries and continuous collision.
+
+mod distance;
+mod ray;
+mod shape_cast;
+mod time_of_impact;
+
+pub(crate) use distance::{distance, overlap};
+pub(crate) use ray::{cast_ray, contains_point};
+pub(crate) use shape_cast::{SKIN, ShapeHit, cast_shape};
+pub(crate) use time_of_impact::{Sweep, TimeOfImpact, time_of_impact};

@@ -1,0 +1,261 @@
+//! Shape cast: how far a shape can move without rotating until it touches another. B moved by `t v` touches A if the
+//! ray `t v` from the origin meets the Minkowski difference `A - B`, whose outline consists of the edges of both in
+//! order of their angle. A shape cast is therefore an exact ray cast without iteration.
+//!
+//! A moving shape stops at a distance of [`SKIN`] before contact. Its next move starts there, and must not be stopped
+//! by a surface that it slides along or leaves: if it starts within the skin, or overlapping, only a movement against
+//! the normal is a hit. A movement without a hit never comes deeper than where it began, since along the normal the
+//! separation of convex shapes does not shrink.
+
+use super::distance::distance;
+use super::ray::{approach, entry};
+use crate::body::POLYGON_VERTICES_MAX;
+use crate::collision::shape::support::{Fraction, Grid, SupportShape, cross, from_grid, to_grid};
+use crate::fx;
+use crate::math::{Fx, Unit, Vec2};
+
+/// Distance in metres that a moving shape keeps from others.
+pub(crate) const SKIN: Fx = fx!(0.0001);
+
+/// Distance beyond the skin within which a shape is still in contact: more than the rounding error of a hit, 0.2 µm.
+const TOLERANCE: Fx = fx!(0.000002);
+
+/// Right shift that gives the tolerance for sliding: an approach of 2^-24 m per metre of movement, plus 2^-24 m, counts
+/// as a rounding error.
+const SLIDING: u32 = 24;
+
+/// Hit of a moving shape on another.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct ShapeHit {
+    /// Fraction of the translation, 0 to 1, rounded down to 2^-32.
+    pub(crate) fraction: Fx,
+    /// The fraction with more bits, enough to order two hits.
+    pub(crate) order: Fraction,
+    /// Displacement up to the hit: exact, where the fraction of a long translation is not.
+    pub(crate) travelled: Vec2<Fx>,
+    /// Nearest point on the surface of A, relative to the origin of the cores.
+    pub(crate) point: Vec2<Fx>,
+    /// Unit vector from A to B.
+    pub(crate) normal: Vec2<Unit>,
+}
+
+/// Casts B along `translation` until it is within [`SKIN`] of A; `None` if it never is. If B starts within the skin or
+/// overlapping, the fraction is 0 if B moves against the normal, which is the shortest way out; otherwise there is no
+/// hit.
+pub(crate) fn cast_shape(a: &SupportShape, b: &SupportShape, translation: Vec2<Fx>) -> Option<ShapeHit> {
+    let translation = to_grid(translation);
+    let start = distance(a, b);
+    if start.distance <= SKIN + TOLERANCE {
+        let reach = translation.x.abs().max(translation.y.abs());
+        let sliding = (reach >> SLIDING) + (Grid::ONE >> SLIDING);
+        let touches = approach(start.normal, translation) > sliding;
+        let (point, normal) = (start.point_a, start.normal);
+        let (fraction, order, travelled) = (Fx::ZERO, Fraction::ZERO, Vec2::ZERO);
+        return touches.then_some(ShapeHit { fraction, order, travelled, point, normal });
+    }
+    let radius = a.radius + b.radius + to_grid(Vec2::new(SKIN, SKIN)).x;
+    let (points, count) = difference(a.points(), b.points());
+    let (fraction, _) = entry(&points[..count], radius, Vec2::ZERO, translation)?;
+    let travelled = fraction.of(translation);
+    let hit = distance(a, &b.moved(travelled));
+    Some(ShapeHit {
+        fraction: fraction.to_fx(),
+        order: fraction,
+        travelled: from_grid(travelled),
+        point: hit.point_a,
+        normal: hit.normal,
+    })
+}
+
+/// Minkowski difference `A - B` of two outlines, counter-clockwise: the edges of A and of `-B` (the reversed edges of
+/// B), merged by angle, starting from the lowest vertex.
+fn difference(a: &[Vec2<Grid>], b: &[Vec2<Grid>]) -> ([Vec2<Grid>; 2 * POLYGON_VERTICES_MAX], usize) {
+    let lowest = |points: &[Vec2<Grid>], sign: i64| {
+        let key = |i: &usize| (points[*i].y * sign, points[*i].x * sign);
+        (0..points.len()).min_by_key(key).unwrap_or(0)
+    };
+    let (first_a, first_b) = (lowest(a, 1), lowest(b, -1));
+    let edge = |points: &[Vec2<Grid>], i: usize| points[(i + 1) % points.len()] - points[i % points.len()];
+    let edges_of = |points: &[Vec2<Grid>]| if points.len() == 1 { 0 } else { points.len() };
+    let (edges_a, edges_b) = (edges_of(a), edges_of(b));
+
+    let mut merged = [Vec2::ZERO; 2 * POLYGON_VERTICES_MAX];
+    let (mut i, mut j, mut count) = (0, 0, 0);
+    let mut at = a[first_a] - b[first_b];
+    while i < edges_a || j < edges_b {
+        merged[count] = at;
+        count += 1;
+        let (next_a, next_b) = (edge(a, first_a + i), -edge(b, first_b + j));
+        let (use_a, use_b) = match (i < edges_a, j < edges_b) {
+            (true, true) => (!is_before(next_b, next_a), !is_before(next_a, next_b)),
+            only => only,
+        };
+        if use_a {
+            at += next_a;
+            i += 1;
+        }
+        if use_b {
+            at += next_b;
+            j += 1;
+        }
+    }
+    if count == 0 {
+        merged[0] = at;
+    }
+    (merged, count.max(1))
+}
+
+/// Whether the angle of `u`, from 0 to below a full turn, is less than that of `v`.
+fn is_before(u: Vec2<Grid>, v: Vec2<Grid>) -> bool {
+    let lower_half = |v: Vec2<Grid>| v.y < 0 || (v.y == 0 && v.x < 0);
+    match (lower_half(u), lower_half(v)) {
+        (false, true) => true,
+        (true, false) => false,
+        _ => cross(u, v) > 0,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    //! Tests against repeated advances by the distance, which never pass a contact.
+
+    use super::*;
+    use crate::collision::shape::support::samples;
+    use crate::math::{Rng, fx_div, fx_mul};
+
+    /// Distance that B moves in steps of its distance from A, within a micrometre of the skin. `Err` if undecided.
+    fn stepped(a: &SupportShape, b: &SupportShape, translation: Vec2<Fx>) -> Result<Option<Fx>, ()> {
+        let length = translation.length();
+        samples::march(length, |way| {
+            let moved = b.moved(to_grid(translation.scale(fx_div(way, length).unwrap())));
+            distance(a, &moved).distance - SKIN
+        })
+    }
+
+    #[test]
+    fn shapes_stop_where_steps_of_their_distance_end() {
+        let mut rng = Rng::new(1);
+        let (mut hits, mut misses, mut grazing) = (0, 0, 0);
+        for _ in 0..20_000 {
+            let (a, b) = (samples::core(&mut rng), samples::placed(&mut rng, fx!(4)));
+            if distance(&a, &b).distance <= SKIN + TOLERANCE {
+                continue;
+            }
+            let translation = samples::vector(&mut rng, fx!(8));
+            match (stepped(&a, &b, translation), cast_shape(&a, &b, translation)) {
+                (Ok(None), None) => misses += 1,
+                (Ok(Some(way)), Some(hit)) => {
+                    hits += 1;
+                    let found = fx_mul(hit.fraction, translation.length());
+                    let steep = -translation.normalized().unwrap().widen().dot(hit.normal.widen());
+                    let error = fx_mul((found - way).abs(), steep);
+                    assert!(error < fx!(0.000001), "{found} {way} {steep} {a:?} {b:?}");
+                    let gap = distance(&a, &b.moved(to_grid(hit.travelled))).distance - SKIN;
+                    assert!(gap.abs() < fx!(0.0000001), "{gap} {hit:?} {a:?} {b:?}");
+                }
+                (Err(()), _) => grazing += 1,
+                (stepped, found) => panic!("{stepped:?} {found:?} {a:?} {b:?} {translation:?}"),
+            }
+        }
+        assert!(hits > 1_500 && misses > 8_000 && grazing < 500, "{hits} {misses} {grazing}");
+    }
+
+    /// From where a shape was stopped it leaves and slides freely, and does not advance further.
+    #[test]
+    fn a_stopped_shape_leaves_and_slides_but_does_not_go_on() {
+        let mut rng = Rng::new(2);
+        let mut stopped = 0;
+        for _ in 0..20_000 {
+            let (a, b) = (samples::core(&mut rng), samples::placed(&mut rng, fx!(4)));
+            let translation = samples::vector(&mut rng, fx!(8));
+            let Some(hit) = cast_shape(&a, &b, translation) else { continue };
+            stopped += 1;
+            let b = b.moved(to_grid(hit.travelled));
+            let normal = hit.normal.widen();
+            let into = normal.scale(normal.dot(translation));
+            assert_eq!(cast_shape(&a, &b, -translation), None, "{hit:?} {a:?} {b:?}");
+            assert_eq!(cast_shape(&a, &b, translation - into), None, "{hit:?} {a:?} {b:?}");
+            if into.length() > fx!(0.0001) {
+                let again =
+                    cast_shape(&a, &b, translation).expect("a second cast should hit the same obstacle");
+                assert_eq!(again.fraction, Fx::ZERO, "{hit:?} {a:?} {b:?}");
+            }
+        }
+        assert!(stopped > 2_000, "expected over 2000 hits, got {stopped}");
+    }
+
+    /// A movement from contact without a hit does not deepen the overlap.
+    #[test]
+    fn movement_that_starts_in_contact_never_deepens_it() {
+        let mut rng = Rng::new(3);
+        let mut free = 0;
+        for _ in 0..20_000 {
+            let (a, b) = (samples::core(&mut rng), samples::placed(&mut rng, fx!(0.6)));
+            let start = distance(&a, &b).distance;
+            let translation = samples::vector(&mut rng, fx!(2));
+            if start > SKIN || cast_shape(&a, &b, translation).is_some() {
+                continue;
+            }
+            free += 1;
+            for i in 1..=16_i64 {
+                let moved = b.moved(to_grid(translation.scale(Fx::from_num(i) / 16)));
+                let gap = distance(&a, &moved).distance;
+                assert!(
+                    gap >= start - fx!(0.000001),
+                    "the gap should not shrink from {start} to {gap}: {a:?} {b:?} {translation:?}"
+                );
+            }
+        }
+        assert!(free > 2_000, "expected over 2000 movements without a hit, got {free}");
+    }
+
+    #[test]
+    fn large_shapes_stop_at_the_skin_and_leave_it() {
+        let mut rng = Rng::new(5);
+        let mut hits = 0;
+        for _ in 0..10_000 {
+            let start = to_grid(samples::vector(&mut rng, fx!(300)));
+            let (a, b) = (samples::large(&mut rng), samples::large(&mut rng).moved(start));
+            let translation = samples::vector(&mut rng, fx!(300));
+            let Some(hit) = cast_shape(&a, &b, translation).filter(|hit| hit.fraction > 0) else { continue };
+            hits += 1;
+            let b = b.moved(to_grid(hit.travelled));
+            let gap = distance(&a, &b).distance - SKIN;
+            assert!(gap.abs() < fx!(0.000001), "{gap} {hit:?} {a:?} {b:?}");
+            assert_eq!(cast_shape(&a, &b, -translation), None, "{hit:?} {a:?} {b:?}");
+        }
+        assert!(hits > 500, "expected over 500 hits, got {hits}");
+    }
+
+    #[test]
+    fn nothing_overflows_at_the_edge_of_the_world() {
+        for p in samples::extremes() {
+            for q in samples::extremes() {
+                for start in samples::extremes() {
+                    for translation in samples::extremes() {
+                        let ball = SupportShape::disc(start, fx!(110));
+                        cast_shape(&SupportShape::from_points([p, q], fx!(110)), &ball, translation);
+                        cast_shape(&ball, &SupportShape::from_points([p, q], Fx::MAX), translation);
+                        let line = SupportShape::from_points([start, p], Fx::ZERO);
+                        cast_shape(&line, &SupportShape::from_points([p, q], fx!(0)), translation);
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_cast_across_the_world_stops_at_the_skin() {
+        let mut rng = Rng::new(4);
+        let mut hits = 0;
+        for _ in 0..5_000 {
+            let far = samples::vector(&mut rng, fx!(1073741823));
+            let (a, b) = (samples::core(&mut rng), samples::core(&mut rng).moved(to_grid(far)));
+            let Some(hit) = cast_shape(&a, &b, -far) else { continue };
+            hits += 1;
+            let gap = distance(&a, &b.moved(to_grid(hit.travelled))).distance - SKIN;
+            assert!(gap.abs() < fx!(0.0000003), "{gap} {hit:?} {a:?} {b:?}");
+        }
+        assert!(hits > 3_000, "expected over 3000 hits, got {hits}");
+    }
+}

@@ -1,0 +1,60 @@
+//! A link of a chain with its neighbours, and which side of the chain a point is on.
+
+use crate::body::Sides;
+use crate::math::{Fx, Orientation, Vec2, orientation};
+
+/// A link in world axes, relative to the centre of its own shape or of the shape that it meets.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Link {
+    pub(crate) a: Vec2<Fx>,
+    pub(crate) b: Vec2<Fx>,
+    pub(crate) before: Option<Vec2<Fx>>,
+    pub(crate) after: Option<Vec2<Fx>>,
+    pub(crate) sides: Sides,
+}
+
+impl Link {
+    pub(crate) fn mapped(self, map: impl Fn(Vec2<Fx>) -> Vec2<Fx>) -> Self {
+        let Link { a, b, before, after, sides } = self;
+        Link { a: map(a), b: map(b), before: before.map(&map), after: after.map(&map), sides }
+    }
+
+    pub(crate) fn reversed(self) -> Self {
+        let Link { a, b, before, after, sides } = self;
+        Link { a: b, b: a, before: after, after: before, sides }
+    }
+
+    /// Whether the link is solid for a shape whose centre is at `place`: always, or only on the right if one-sided.
+    pub(crate) fn is_solid_from(&self, place: Vec2<Fx>) -> bool {
+        self.sides == Sides::Both || self.has_on_right(place)
+    }
+
+    /// Whether a point is on the right of the chain, as far as this link and its neighbours can tell.
+    pub(crate) fn has_on_right(&self, place: Vec2<Fx>) -> bool {
+        let Link { a, b, before, after, .. } = *self;
+        let own = right_of(a, b, place);
+        let direction = b - a;
+        // Only signs matter, and a saturated product keeps its sign.
+        let (corner, neighbour) = if (place - a).dot(direction) < 0 {
+            (before.map(|before| [before, a, b]), before.map(|before| (before, a)))
+        } else if (place - b).dot(direction) > 0 {
+            (after.map(|after| [a, b, after]), after.map(|after| (b, after)))
+        } else {
+            (None, None)
+        };
+        let (Some([p, q, r]), Some((from, to))) = (corner, neighbour) else { return own };
+        let other = right_of(from, to, place);
+        if orientation(p, q, r) == Orientation::CounterClockwise {
+            return own || other;
+        }
+        // Beyond the neighbour's own extent its line says nothing about the chain.
+        let stretch = to - from;
+        let beside = (place - from).dot(stretch) >= 0 && (place - to).dot(stretch) <= 0;
+        own && (other || !beside)
+    }
+}
+
+/// Whether a point is on the right of the line from `a` to `b`, or on it: exact.
+fn right_of(a: Vec2<Fx>, b: Vec2<Fx>, place: Vec2<Fx>) -> bool {
+    orientation(a, b, place) != Orientation::CounterClockwise
+}

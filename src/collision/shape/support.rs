@@ -1,0 +1,393 @@
+//! Support shape for queries: a convex *core* of 1 to 8 points, widened by a radius.
+//!
+//! A circle is one point with a radius, a segment two points without a radius, a capsule two points with a radius, and
+//! a polygon its vertices, with a radius if it is rounded.
+//!
+//! Points are on a grid of 2^-28 m (3.7 nm). The grid is coarser than world coordinates so that the sign of every
+//! product of two differences is exact in 128 bits, for points anywhere in the world: coordinates have at most 2^60
+//! units, differences of differences 2^62, and a sum of two products 2^125.
+
+use fixed::FixedI64;
+use fixed::types::extra::U28;
+
+use super::posed::{Outline, PosedShape};
+use crate::body::POLYGON_VERTICES_MAX;
+use crate::collision::shape::link::Link;
+use crate::fx;
+use crate::math::{Fx, Rot, Unit, Vec2, div_round, round_shift, round_shift_wide, saturate_wide};
+
+/// A coordinate in metres with 28 fraction bits.
+pub(crate) type Grid = FixedI64<U28>;
+
+/// Largest radius of a core in metres, larger than that of any shape. Products of this radius and a cross product of
+/// world coordinates fit 128 bits.
+pub(crate) const RADIUS_MAX: Fx = fx!(512);
+
+/// Number of fraction bits of a world coordinate beyond those of the grid.
+const FINER: u32 = Fx::FRAC_NBITS - Grid::FRAC_NBITS;
+
+/// All points within `radius` of the convex hull of up to 8 points.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SupportShape {
+    count: usize,
+    points: [Vec2<Grid>; POLYGON_VERTICES_MAX],
+    pub(crate) radius: Grid,
+}
+
+impl SupportShape {
+    /// Creates the core of a shape in world axes relative to `origin`. A query needs two cores with the same origin; an
+    /// origin near both is best.
+    pub(crate) fn of(shape: &PosedShape, origin: Vec2<Fx>) -> Self {
+        let place = |offset| place(shape.centre, offset, origin);
+        match &shape.outline {
+            Outline::Circle { radius } => {
+                SupportShape::from_grid_points([place(Vec2::ZERO)], (*radius).into())
+            }
+            Outline::Segment { a, b } | Outline::Link(Link { a, b, .. }) => {
+                SupportShape::from_grid_points([place(*a), place(*b)], Fx::ZERO)
+            }
+            Outline::Polygon(hull) => {
+                let vertices = hull.vertices().iter().map(|vertex| place(vertex.widen()));
+                SupportShape::from_grid_points(vertices, hull.radius.into())
+            }
+        }
+    }
+
+    /// Creates a core of a single point, for queries such as the distance from a point.
+    pub(crate) fn point(at: Vec2<Fx>) -> Self {
+        SupportShape::disc(at, Fx::ZERO)
+    }
+
+    pub(crate) fn disc(centre: Vec2<Fx>, radius: Fx) -> Self {
+        SupportShape::from_points([centre], radius)
+    }
+
+    /// Creates a core from the vertices of a convex outline, counter-clockwise: 1 to 8; further vertices are ignored.
+    /// The radius is clamped to 0 to [`RADIUS_MAX`].
+    pub(crate) fn from_points(points: impl IntoIterator<Item = Vec2<Fx>>, radius: Fx) -> Self {
+        SupportShape::from_grid_points(points.into_iter().map(to_grid), radius)
+    }
+
+    fn from_grid_points(points: impl IntoIterator<Item = Vec2<Grid>>, radius: Fx) -> Self {
+        let radius = Grid::from_bits(round_shift(radius.clamp(Fx::ZERO, RADIUS_MAX).to_bits(), FINER));
+        let mut core = SupportShape { count: 0, points: [Vec2::ZERO; POLYGON_VERTICES_MAX], radius };
+        for (slot, point) in core.points.iter_mut().zip(points) {
+            *slot = point;
+            core.count += 1;
+        }
+        core
+    }
+
+    pub(crate) fn points(&self) -> &[Vec2<Grid>] {
+        &self.points[..self.count]
+    }
+
+    /// Returns the core translated by a vector.
+    pub(crate) fn moved(&self, by: Vec2<Grid>) -> Self {
+        self.mapped(|point| point + by)
+    }
+
+    /// Returns the core rotated about its origin.
+    pub(crate) fn rotated(&self, rotation: Rot) -> Self {
+        self.mapped(|point| from_raw(rotation.apply_wide(raw(point))))
+    }
+
+    fn mapped(mut self, map: impl Fn(Vec2<Grid>) -> Vec2<Grid>) -> Self {
+        for point in &mut self.points[..self.count] {
+            *point = map(*point);
+        }
+        self
+    }
+
+    /// Largest distance of a point of the hull from the origin, without the radius.
+    pub(crate) fn reach(&self) -> Grid {
+        // The longest vector also has the largest rounded length, so one square root is enough.
+        let furthest = self.points().iter().max_by_key(|&&point| dot(point, point));
+        furthest.map_or(Grid::ZERO, |&point| length(point))
+    }
+
+    /// Mean of the vertices, a point inside the hull.
+    pub(crate) fn middle(&self) -> Vec2<Fx> {
+        from_grid(self.mean())
+    }
+
+    fn mean(&self) -> Vec2<Grid> {
+        let points = self.points();
+        let count = i64::try_from(points.len()).unwrap_or(1);
+        // Each term is divided before the sum: the sum of 8 coordinates may exceed the grid's range.
+        points.iter().fold(Vec2::ZERO, |sum, &point| sum + Vec2::new(point.x / count, point.y / count))
+    }
+
+    /// Extent of the shape along a direction, in metres.
+    pub(crate) fn extent(&self, direction: Vec2<Unit>) -> Fx {
+        let along = self.points().iter().map(|&point| along(direction, point));
+        let (least, most) = along.fold((Grid::MAX, Grid::MIN), |(a, b), x| (a.min(x), b.max(x)));
+        to_fx(most.saturating_sub(least).saturating_add(self.radius + self.radius))
+    }
+
+    /// Radius of a disc inside the shape, centred on the mean of the vertices; 0 for a segment.
+    pub(crate) fn inner_radius(&self) -> Fx {
+        let points = self.points();
+        let mean = self.mean();
+        let inside = |(p, q): (Vec2<Grid>, Vec2<Grid>)| {
+            let edge = q - p;
+            Some(height(cross(edge, mean - p), scaled_along(direction(edge)?, edge)))
+        };
+        let inside = edges(points).filter_map(inside).min().unwrap_or(Grid::ZERO);
+        to_fx(self.radius + inside.max(Grid::ZERO))
+    }
+}
+
+/// Edges of an outline, counter-clockwise. Two points have one edge in each direction; a single point has none.
+pub(in crate::collision) fn edges(points: &[Vec2<Grid>]) -> impl Iterator<Item = (Vec2<Grid>, Vec2<Grid>)> {
+    let next = points.iter().cycle().skip(1);
+    points.iter().zip(next).filter(|_| points.len() > 1).map(|(&p, &q)| (p, q))
+}
+
+/// `centre + offset - origin`, rounded to nearest on the grid. Only the result saturates, whatever the origin.
+fn place(centre: Vec2<Fx>, offset: Vec2<Fx>, origin: Vec2<Fx>) -> Vec2<Grid> {
+    let component = |centre: Fx, offset: Fx, origin: Fx| {
+        let sum = i128::from(centre.to_bits()) + i128::from(offset.to_bits()) - i128::from(origin.to_bits());
+        Grid::from_bits(saturate_wide(round_shift_wide(sum, FINER)))
+    };
+    Vec2::new(component(centre.x, offset.x, origin.x), component(centre.y, offset.y, origin.y))
+}
+
+/// Converts a world vector to the grid, rounded to nearest.
+pub(crate) fn to_grid(v: Vec2<Fx>) -> Vec2<Grid> {
+    let component = |x: Fx| Grid::from_bits(round_shift(x.to_bits(), FINER));
+    Vec2::new(component(v.x), component(v.y))
+}
+
+/// Converts a grid vector to a world vector: exact, saturated.
+pub(crate) fn from_grid(v: Vec2<Grid>) -> Vec2<Fx> {
+    Vec2::new(to_fx(v.x), to_fx(v.y))
+}
+
+/// Converts a grid length to a world length: exact, saturated.
+pub(crate) fn to_fx(x: Grid) -> Fx {
+    Fx::from_bits(saturate_wide(i128::from(x.to_bits()) << FINER))
+}
+
+/// Reinterprets the bits as a world vector, for operations that do not depend on the unit.
+fn raw(v: Vec2<Grid>) -> Vec2<Fx> {
+    Vec2::new(Fx::from_bits(v.x.to_bits()), Fx::from_bits(v.y.to_bits()))
+}
+
+fn from_raw(v: Vec2<Fx>) -> Vec2<Grid> {
+    Vec2::new(Grid::from_bits(v.x.to_bits()), Grid::from_bits(v.y.to_bits()))
+}
+
+/// `a . b`, exact, in units of 2^-56 m².
+pub(in crate::collision) fn dot(a: Vec2<Grid>, b: Vec2<Grid>) -> i128 {
+    product(a.x, b.x) + product(a.y, b.y)
+}
+
+/// `a x b`, exact, in units of 2^-56 m².
+pub(in crate::collision) fn cross(a: Vec2<Grid>, b: Vec2<Grid>) -> i128 {
+    product(a.x, b.y) - product(a.y, b.x)
+}
+
+fn product(a: Grid, b: Grid) -> i128 {
+    i128::from(a.to_bits()) * i128::from(b.to_bits())
+}
+
+/// Length of a vector, rounded to nearest.
+pub(in crate::collision) fn length(v: Vec2<Grid>) -> Grid {
+    Grid::from_bits(raw(v).length().to_bits())
+}
+
+/// Unit vector in the direction of a vector; `None` for zero.
+pub(in crate::collision) fn direction(v: Vec2<Grid>) -> Option<Vec2<Unit>> {
+    raw(v).normalized()
+}
+
+/// `n . v` for a unit vector, rounded to nearest.
+pub(in crate::collision) fn along(n: Vec2<Unit>, v: Vec2<Grid>) -> Grid {
+    Grid::from_bits(saturate_wide(round_shift_wide(scaled_along(n, v), Unit::FRAC_NBITS)))
+}
+
+/// `n . v` in units of 2^-58 m. If `n` is the direction of `v`, this is its length, with a relative error of 1.5e-9.
+pub(in crate::collision) fn scaled_along(n: Vec2<Unit>, v: Vec2<Grid>) -> i128 {
+    let product = |n: Unit, x: Grid| i128::from(n.to_bits()) * i128::from(x.to_bits());
+    product(n.x, v.x) + product(n.y, v.y)
+}
+
+/// `n s`, rounded to nearest.
+pub(in crate::collision) fn scaled(n: Vec2<Unit>, s: Grid) -> Vec2<Grid> {
+    let part = |n: Unit| {
+        let product = i128::from(n.to_bits()) * i128::from(s.to_bits());
+        Grid::from_bits(saturate_wide(round_shift_wide(product, Unit::FRAC_NBITS)))
+    };
+    Vec2::new(part(n.x), part(n.y))
+}
+
+/// `cross / scaled_length`: the distance of a point from a line, from the cross product with a vector along the line
+/// and the length of that vector, as computed by [`scaled_along`].
+pub(in crate::collision) fn height(cross: i128, scaled_length: i128) -> Grid {
+    // Beyond 2^97 the height exceeds any distance of interest from the vector, and losing a few bits is harmless.
+    let bits = if cross.unsigned_abs() >> 97 == 0 {
+        div_round(cross << Unit::FRAC_NBITS, scaled_length)
+    } else {
+        div_round(cross, (scaled_length >> Unit::FRAC_NBITS).max(1))
+    };
+    Grid::from_bits(saturate_wide(bits))
+}
+
+/// A fraction from 0 to 1 in units of 2^-62: fine enough to locate a point on a line across the world.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct Fraction(i64);
+
+impl Fraction {
+    pub(crate) const ZERO: Self = Fraction(0);
+    const FRAC_NBITS: u32 = 62;
+    const ONE: i64 = 1 << Self::FRAC_NBITS;
+
+    /// `numerator / denominator`, rounded down, for `0 <= numerator <= denominator != 0`.
+    pub(in crate::collision) fn ratio(numerator: i128, denominator: i128) -> Self {
+        let excess = (i128::BITS - denominator.leading_zeros()).saturating_sub(u64::BITS);
+        let quotient = ((numerator >> excess) << Self::FRAC_NBITS) / (denominator >> excess).max(1);
+        Fraction(saturate_wide(quotient).clamp(0, Self::ONE))
+    }
+
+    /// Returns `v` times the fraction, rounded to nearest.
+    pub(in crate::collision) fn of(self, v: Vec2<Grid>) -> Vec2<Grid> {
+        let part = |x: Grid| {
+            let product = i128::from(x.to_bits()) * i128::from(self.0);
+            Grid::from_bits(saturate_wide(round_shift_wide(product, Self::FRAC_NBITS)))
+        };
+        Vec2::new(part(v.x), part(v.y))
+    }
+
+    /// Converts to 32 fraction bits, rounded down.
+    pub(in crate::collision) fn to_fx(self) -> Fx {
+        Fx::from_bits(self.0 >> (Self::FRAC_NBITS - Fx::FRAC_NBITS))
+    }
+}
+
+#[cfg(test)]
+pub(in crate::collision) mod samples {
+    //! Random cores for the tests of queries.
+
+    use super::*;
+    use crate::body::Polygon;
+    use crate::math::Rng;
+    use alloc::vec::Vec;
+
+    pub(in crate::collision) fn vector(rng: &mut Rng, size: Fx) -> Vec2<Fx> {
+        Vec2::new(rng.range(-size, size), rng.range(-size, size))
+    }
+
+    /// A random point, segment, capsule, disc or polygon, with or without a radius, about its own centre.
+    pub(in crate::collision) fn core(rng: &mut Rng) -> SupportShape {
+        loop {
+            let points: Vec<_> = (0..7).map(|_| vector(rng, fx!(1))).collect();
+            let radius = if rng.chance(1, 2) { Fx::ZERO } else { rng.range(fx!(0.01), fx!(0.4)) };
+            let count = rng.below(5);
+            match count {
+                0 => return SupportShape::disc(points[0], radius),
+                1 => return SupportShape::from_points([points[0], points[1]], radius),
+                _ => {}
+            }
+            let polygon = match count {
+                2 => Polygon::rectangle(radius + fx!(0.1), fx!(0.3)),
+                3 => Polygon::hull(&points[..3]),
+                _ => Polygon::hull(&points),
+            };
+            if let Ok(polygon) = polygon {
+                let turn = Rot::from_angle(rng.angle());
+                let vertices = polygon.vertices().iter().map(|vertex| vertex.widen());
+                return SupportShape::from_points(vertices, radius).rotated(turn);
+            }
+        }
+    }
+
+    /// A random core of the largest shape size: up to 110 m from the centre.
+    pub(in crate::collision) fn large(rng: &mut Rng) -> SupportShape {
+        let core = core(rng);
+        let points: Vec<_> = world_points(&core).into_iter().map(|point| point.scale(fx!(75))).collect();
+        SupportShape::from_points(points, to_fx(core.radius) * 75)
+    }
+
+    /// A random core with a random offset.
+    pub(in crate::collision) fn placed(rng: &mut Rng, spread: Fx) -> SupportShape {
+        core(rng).moved(to_grid(vector(rng, spread)))
+    }
+
+    /// Sphere tracing: the distance in metres along a path of `length` metres at which it reaches a surface, within
+    /// 2e-7 m; `None` if it does not. `gap_at` returns the distance from the surface at a position on the path. A path
+    /// that passes within 2e-6 m of the surface without reaching it is undecided, an error.
+    pub(in crate::collision) fn march(
+        length: Fx,
+        mut gap_at: impl FnMut(Fx) -> Fx,
+    ) -> Result<Option<Fx>, ()> {
+        let (mut travelled, mut nearest) = (Fx::ZERO, Fx::MAX);
+        for _ in 0..2000 {
+            let gap = gap_at(travelled);
+            nearest = nearest.min(gap);
+            if gap < fx!(0.0000002) {
+                return Ok(Some(travelled));
+            }
+            travelled += gap;
+            if travelled > length {
+                return if nearest < fx!(0.000002) { Err(()) } else { Ok(None) };
+            }
+        }
+        Err(())
+    }
+
+    /// Points whose coordinates are at a bound of the world or of the format.
+    pub(in crate::collision) fn extremes() -> impl Iterator<Item = Vec2<Fx>> {
+        let ends = [Fx::MIN, fx!(-1073741824), fx!(1073741824), Fx::MAX];
+        ends.into_iter().flat_map(move |x| ends.map(|y| Vec2::new(x, y)))
+    }
+
+    /// Points of a core as world vectors.
+    pub(in crate::collision) fn world_points(core: &SupportShape) -> Vec<Vec2<Fx>> {
+        core.points().iter().map(|&point| from_grid(point)).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::body::{Body, BodyDef, Geometry, MassProperties, Polygon, ShapeDef};
+    use crate::math::Angle;
+
+    fn core_of(geometry: Geometry, origin: Vec2<Fx>) -> SupportShape {
+        let def = BodyDef::fixed().position((fx!(1000000003), fx!(-7))).angle(Angle::QUARTER);
+        let body = Body::new(&def, MassProperties::immovable());
+        SupportShape::of(&PosedShape::new(&ShapeDef::new(geometry), &body, body.rotation()), origin)
+    }
+
+    #[test]
+    fn shapes_become_points_and_a_radius() {
+        let origin = Vec2::new(fx!(1000000000), fx!(-7));
+        let point = |x, y| to_grid(Vec2::new(x, y));
+        let disc = core_of(Geometry::circle(fx!(2)).unwrap(), origin);
+        assert_eq!((disc.points(), disc.radius), (&[point(fx!(3), fx!(0))][..], Grid::from_num(2)));
+        let ends = [Vec2::new(fx!(0), fx!(0)), Vec2::new(fx!(4), fx!(0))];
+        let segment = core_of(Geometry::segment(ends[0], ends[1]).unwrap(), origin);
+        assert_eq!(segment.points(), [point(fx!(3), fx!(0)), point(fx!(3), fx!(4))]);
+        let rounded = Polygon::rectangle(fx!(2), fx!(1)).unwrap().rounded(fx!(0.5)).unwrap();
+        let polygon = core_of(rounded.into(), origin);
+        assert_eq!((polygon.points().len(), polygon.radius), (4, Grid::from_num(0.5)));
+        assert_eq!(polygon.points()[0], point(fx!(4), fx!(-2)));
+        assert_eq!(edges(polygon.points()).count(), 4);
+        assert_eq!((edges(segment.points()).count(), edges(disc.points()).count()), (2, 0));
+    }
+
+    #[test]
+    fn fractions_find_points_across_the_world() {
+        let end = to_grid(Vec2::new(fx!(2147483647), fx!(-2147483647)));
+        let near = to_grid(Vec2::new(fx!(1234567.5), fx!(-1234567.5)));
+        let fraction = Fraction::ratio(dot(near, end), dot(end, end));
+        let apart = fraction.of(end) - near;
+        assert!(
+            apart.x.abs().to_bits() <= 1 && apart.y.abs().to_bits() <= 1,
+            "the error should be at most 1 unit, not {apart:?}"
+        );
+        assert_eq!(Fraction::ratio(5, 5).to_fx(), Fx::ONE);
+        assert_eq!(Fraction::ratio(0, 5).of(end), Vec2::ZERO);
+    }
+}

@@ -1,0 +1,173 @@
+//! [`RawReplay`]: a raw replay, which simulates recorded inputs without comparing checkpoints.
+
+use alloc::vec::Vec;
+
+use super::flaw::Flaw;
+use super::limits::{LimitKind, Limits};
+use super::tick_inputs::TickInputs;
+use super::verdict::Verdict;
+use super::verified_replay::{Ending, Step, check_bodies, check_rules, decode_setup, scan, start};
+use crate::lockstep::{Game, decode_inputs};
+use crate::world::World;
+
+/// A raw replay: simulates the inputs of a file. Unlike a [`VerifiedReplay`](super::Playback) it compares nothing, so its
+/// states are those that the running engine computes from these inputs.
+pub struct RawReplay<'a, G: Game> {
+    game: G,
+    limits: Limits,
+    place: ReplayPosition<'a>,
+    /// Bytes that `inputs` were decoded from.
+    encoded: Option<&'a [u8]>,
+    inputs: Vec<G::Input>,
+    /// Number of ticks in the complete blocks of the file.
+    length: u64,
+}
+
+/// Position in a replay: the state of a raw replay without the game.
+#[derive(Clone, Debug)]
+pub(super) struct ReplayPosition<'a> {
+    pub(super) inputs: TickInputs<'a>,
+    pub(super) tick: u64,
+    /// Work units of all ticks up to here.
+    pub(super) work: u64,
+}
+
+impl<'a, G: Game> RawReplay<'a, G> {
+    /// Scans the whole file and starts the game.
+    ///
+    /// # Errors
+    /// The [`Verdict`] when nothing can be played: the file is malformed, exceeds a limit, or belongs to another game.
+    pub fn open(file: &'a [u8], limits: &Limits) -> Result<Self, Verdict> {
+        Self::open_to_end(file, limits).map(|(rerun, _)| rerun)
+    }
+
+    /// Does the same as [`RawReplay::open`] and also returns the end of the file found by the scan.
+    pub(super) fn open_to_end(file: &'a [u8], limits: &Limits) -> Result<(Self, Ending), Verdict> {
+        let inputs = TickInputs::open(file, limits)?;
+        let ending = scan(inputs.reader().clone())?;
+        check_rules::<G>(inputs.reader().header())?;
+        let mut game = start::<G>(inputs.reader().header())?;
+        check_bodies(&mut game, limits)?;
+        let (limits, place) = (limits.clone(), ReplayPosition { inputs, tick: 0, work: 0 });
+        let length = ending.ticks;
+        Ok((RawReplay { game, limits, place, encoded: None, inputs: Vec::new(), length }, ending))
+    }
+
+    /// The game at the current tick.
+    #[must_use]
+    pub fn game(&self) -> &G {
+        &self.game
+    }
+
+    /// The game's physics world at the current tick, if it has one, for inspection.
+    pub fn world(&mut self) -> Option<&World> {
+        self.game.world_mut().map(|world| &*world)
+    }
+
+    /// Returns the game at the current tick.
+    #[must_use]
+    pub fn into_game(self) -> G {
+        self.game
+    }
+
+    /// Number of ticks played.
+    #[must_use]
+    pub fn tick(&self) -> u64 {
+        self.place.tick
+    }
+
+    /// Work units of all ticks played, as counted by [`Game::work`].
+    #[must_use]
+    pub fn work(&self) -> u64 {
+        self.place.work
+    }
+
+    /// The inputs of the last tick played; empty before the first tick.
+    #[must_use]
+    pub fn inputs(&self) -> &[G::Input] {
+        &self.inputs
+    }
+
+    /// Number of ticks in the complete blocks of the file.
+    #[must_use]
+    pub fn ticks(&self) -> u64 {
+        self.length
+    }
+
+    /// Plays one tick.
+    ///
+    /// # Errors
+    /// The [`Verdict`] when the inputs are not valid for this game or exceed a work limit.
+    pub fn step(&mut self) -> Result<Step, Verdict> {
+        if self.read_inputs()? == Step::Ended {
+            return Ok(Step::Ended);
+        }
+        self.play()?;
+        Ok(Step::Ticked)
+    }
+
+    /// Reads the inputs of the next tick. The caller must then play or skip that tick.
+    pub(crate) fn read_inputs(&mut self) -> Result<Step, Verdict> {
+        let Some(run) = self.place.inputs.next_tick()? else {
+            return Ok(Step::Ended);
+        };
+        if self.encoded != Some(run.encoded) {
+            let malformed = |_| Verdict::Malformed { offset: run.offset, flaw: Flaw::Inputs };
+            let players = self.place.inputs.reader().header().players;
+            self.inputs = decode_inputs(run.encoded, players).map_err(malformed)?;
+            self.encoded = Some(run.encoded);
+        }
+        Ok(Step::Ticked)
+    }
+
+    /// Plays the tick whose inputs were read.
+    pub(crate) fn play(&mut self) -> Result<(), Verdict> {
+        self.play_with(G::step)
+    }
+
+    /// Plays the tick whose inputs were read, with a custom `step` function.
+    pub(crate) fn play_with<T>(&mut self, step: impl FnOnce(&mut G, &[G::Input]) -> T) -> Result<T, Verdict> {
+        let work = self.game.work(&self.inputs);
+        LimitKind::TickWork.check(work, self.limits.tick_work)?;
+        self.place.work = self.place.work.saturating_add(work);
+        LimitKind::TotalWork.check(self.place.work, self.limits.total_work)?;
+        let done = step(&mut self.game, &self.inputs);
+        self.place.tick += 1;
+        check_bodies(&mut self.game, &self.limits)?;
+        Ok(done)
+    }
+
+    /// Counts the tick whose inputs were read as played, for a tick that another game with the same state has played.
+    pub(crate) fn skip(&mut self) {
+        self.place.tick += 1;
+    }
+
+    /// Canonical bytes of the inputs that were read last.
+    pub(crate) fn encoded(&self) -> Option<&'a [u8]> {
+        self.encoded
+    }
+
+    /// Mutable access to the game at the current tick, for tools that inspect its world.
+    pub(crate) fn game_mut(&mut self) -> &mut G {
+        &mut self.game
+    }
+
+    /// Decodes the setup that the game was started from.
+    pub(crate) fn setup(&self) -> Result<G::Setup, Verdict> {
+        decode_setup::<G>(self.place.inputs.reader().header())
+    }
+
+    /// The current position in the file.
+    pub(super) fn place(&self) -> &ReplayPosition<'a> {
+        &self.place
+    }
+
+    /// Restores a state and position of this raw replay or of another one of the same file. [`RawReplay::inputs`] is then
+    /// empty.
+    pub(super) fn go(&mut self, save: &G::Save, place: ReplayPosition<'a>) {
+        self.game.load(save);
+        self.place = place;
+        self.encoded = None;
+        self.inputs.clear();
+    }
+}

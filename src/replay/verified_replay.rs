@@ -1,0 +1,262 @@
+//! [`VerifiedReplay`]: a verified replay, simulated tick by tick, and [`verify`], which runs it to its end.
+
+use alloc::collections::BTreeMap;
+use alloc::string::String;
+use alloc::vec::Vec;
+
+use super::flaw::Flaw;
+use super::format::checkpoint_hash;
+use super::header::{Header, offset};
+use super::limits::{LimitKind, Limits};
+use super::raw_replay::{RawReplay, ReplayPosition};
+use super::reader::{Part, ReadError, Reader, Trailer};
+use super::verdict::{ClaimDifference, Mismatch, Verdict};
+use crate::codec;
+use crate::lockstep::Game;
+use crate::world::World;
+
+/// Simulates a replay and returns the verdict on it.
+#[must_use]
+pub fn verify<G: Game>(file: &[u8], limits: &Limits) -> Verdict {
+    let mut playback = match VerifiedReplay::<G>::open(file, limits) {
+        Ok(playback) => playback,
+        Err(verdict) => return verdict,
+    };
+    loop {
+        match playback.step() {
+            Ok(Step::Ticked) => {}
+            Ok(Step::Ended) => return playback.conclude(),
+            Err(verdict) => return verdict,
+        }
+    }
+}
+
+/// Result of a step of a [`VerifiedReplay`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Step {
+    /// The game advanced by one tick.
+    Ticked,
+    /// There are no ticks left.
+    Ended,
+}
+
+/// A verified replay: a [`RawReplay`] whose states are compared with the checkpoints of the file.
+pub struct VerifiedReplay<'a, G: Game> {
+    rerun: RawReplay<'a, G>,
+    ending: Ending,
+    failed: Option<Verdict>,
+}
+
+/// The end of the file, known before the first tick is played.
+#[derive(Clone, Debug)]
+pub(super) struct Ending {
+    pub(super) ticks: u64,
+    trailer: Option<Trailer>,
+}
+
+impl<'a, G: Game> VerifiedReplay<'a, G> {
+    /// Scans the whole file, starts the game and compares the start checkpoint.
+    ///
+    /// # Errors
+    /// The [`Verdict`] when nothing can be played: the file is malformed, exceeds a limit, belongs to another game, or
+    /// its setup leads to another start state.
+    pub fn open(file: &'a [u8], limits: &Limits) -> Result<Self, Verdict> {
+        let (rerun, ending) = RawReplay::<G>::open_to_end(file, limits)?;
+        let reader = rerun.place().inputs.reader();
+        if checkpoint_hash(rerun.game().state_hash(), reader.inputs_digest()) != reader.start() {
+            return Err(Verdict::Diverged { last_equal: None, first_different: 0 });
+        }
+        Ok(VerifiedReplay { rerun, ending, failed: None })
+    }
+
+    /// The game at the current tick.
+    #[must_use]
+    pub fn game(&self) -> &G {
+        self.rerun.game()
+    }
+
+    /// The game's physics world at the current tick, if it has one, for inspection.
+    pub fn world(&mut self) -> Option<&World> {
+        self.rerun.world()
+    }
+
+    /// Returns the game at the current tick.
+    #[must_use]
+    pub fn into_game(self) -> G {
+        self.rerun.into_game()
+    }
+
+    /// Number of ticks played.
+    #[must_use]
+    pub fn tick(&self) -> u64 {
+        self.rerun.tick()
+    }
+
+    /// The inputs of the last tick played; empty before the first tick.
+    #[must_use]
+    pub fn inputs(&self) -> &[G::Input] {
+        self.rerun.inputs()
+    }
+
+    /// Work units of all ticks played, as counted by [`Game::work`].
+    #[must_use]
+    pub fn work(&self) -> u64 {
+        self.rerun.work()
+    }
+
+    /// Number of ticks in the complete blocks of the file.
+    #[must_use]
+    pub fn ticks(&self) -> u64 {
+        self.rerun.ticks()
+    }
+
+    /// The trailer, if the file is complete. Its statements are true only if the verdict is [`Verdict::Match`].
+    #[must_use]
+    pub fn trailer(&self) -> Option<&Trailer> {
+        self.ending.trailer.as_ref()
+    }
+
+    /// Plays one tick and, at the end of a block, compares the checkpoint.
+    ///
+    /// # Errors
+    /// The [`Verdict`] when the inputs are not valid for this game, exceed a work limit, or lead to another state. The
+    /// verdict is final.
+    pub fn step(&mut self) -> Result<Step, Verdict> {
+        if let Some(verdict) = &self.failed {
+            return Err(verdict.clone());
+        }
+        let result = self.try_step();
+        if let Err(verdict) = &result {
+            self.failed = Some(verdict.clone());
+        }
+        result
+    }
+
+    /// Returns the verdict on the file, to be called after all ticks have been played.
+    ///
+    /// Before the end of the file the best verdict is `Incomplete`.
+    #[must_use]
+    pub fn conclude(self) -> Verdict {
+        if let Some(verdict) = self.failed {
+            return verdict;
+        }
+        let (ticks, hash) = (self.tick(), self.game().state_hash());
+        let Some(trailer) = self.ending.trailer.filter(|trailer| trailer.ticks == ticks) else {
+            return Verdict::Incomplete { ticks, hash };
+        };
+        // The last checkpoint already covers this state, so a different final hash is a wrong statement in the trailer
+        // and not a divergence of the game.
+        if trailer.final_hash != hash {
+            let difference = ClaimDifference::FinalHash { claimed: trailer.final_hash, actual: hash };
+            return Verdict::ClaimMismatch { ticks, hash, difference };
+        }
+        match first_difference(trailer.claims, self.rerun.game().claims()) {
+            Some(difference) => Verdict::ClaimMismatch { ticks, hash, difference },
+            None => Verdict::Match { ticks, hash },
+        }
+    }
+
+    fn try_step(&mut self) -> Result<Step, Verdict> {
+        if self.rerun.step()? == Step::Ended {
+            return Ok(Step::Ended);
+        }
+        if self.agrees() {
+            return Ok(Step::Ticked);
+        }
+        let (tick, inputs) = (self.tick(), &self.rerun.place().inputs);
+        let block_ticks = inputs.finished_block().map_or(0, |block| u64::from(block.ticks));
+        // All earlier blocks have been compared.
+        Err(Verdict::Diverged { last_equal: Some(tick - block_ticks), first_different: tick })
+    }
+
+    /// Whether the state matches the checkpoint of this tick; true if the file has none at this tick.
+    pub(super) fn agrees(&self) -> bool {
+        self.rerun.place().inputs.finished_block().is_none_or(|block| {
+            checkpoint_hash(self.game().state_hash(), block.inputs_digest) == block.checkpoint
+        })
+    }
+
+    /// The current position in the file.
+    pub(super) fn place(&self) -> &ReplayPosition<'a> {
+        self.rerun.place()
+    }
+
+    /// Restores an earlier state and position.
+    pub(super) fn go(&mut self, save: &G::Save, place: ReplayPosition<'a>) {
+        self.rerun.go(save, place);
+        self.failed = None;
+    }
+}
+
+/// Reads the file to its end.
+pub(super) fn scan(mut reader: Reader<'_>) -> Result<Ending, ReadError> {
+    loop {
+        match reader.next_part()? {
+            Some(Part::Inputs(_)) => {}
+            Some(Part::Trailer(trailer)) => {
+                return Ok(Ending { ticks: trailer.ticks, trailer: Some(trailer) });
+            }
+            Some(Part::Cut) | None => return Ok(Ending { ticks: reader.ticks(), trailer: None }),
+        }
+    }
+}
+
+pub(super) fn check_rules<G: Game>(header: &Header<'_>) -> Result<(), Verdict> {
+    if header.semantics != crate::SEMANTICS {
+        let why = Mismatch::Semantics { file: header.semantics, here: crate::SEMANTICS };
+        return Err(Verdict::Unverifiable { why });
+    }
+    if header.rules_name != G::RULES.name || header.rules_version != G::RULES.version {
+        let why = Mismatch::Rules {
+            file: (header.rules_name.into(), header.rules_version),
+            here: (G::RULES.name.into(), G::RULES.version),
+        };
+        return Err(Verdict::Unverifiable { why });
+    }
+    Ok(())
+}
+
+/// Checks the number of bodies. A game that exposes no world counts as having none.
+pub(super) fn check_bodies<G: Game>(game: &mut G, limits: &Limits) -> Result<(), ReadError> {
+    let bodies = game.world_mut().map_or(0, |world| world.body_count());
+    LimitKind::Bodies.check(u64::try_from(bodies).unwrap_or(u64::MAX), limits.bodies)
+}
+
+/// Decodes the setup, which must be in canonical encoding.
+pub(super) fn decode_setup<G: Game>(header: &Header<'_>) -> Result<G::Setup, Verdict> {
+    codec::decode(header.setup)
+        .ok()
+        .filter(|setup| codec::encode(setup) == header.setup)
+        .ok_or(Verdict::Malformed { offset: header.setup_offset(), flaw: Flaw::Setup })
+}
+
+/// Creates the game before its first tick and checks that it matches the header.
+pub(super) fn start<G: Game>(header: &Header<'_>) -> Result<G, Verdict> {
+    let malformed = |offset, flaw| Verdict::Malformed { offset, flaw };
+    let setup = decode_setup::<G>(header)?;
+    let game = G::new(&setup)
+        .map_err(|error| malformed(header.setup_offset(), Flaw::SetupRefused { why: error.why }))?;
+    if game.players() != header.players {
+        let flaw = Flaw::PlayersDisagree { header: header.players, game: game.players() };
+        return Err(malformed(offset::PLAYERS, flaw));
+    }
+    if game.tick_rate() != header.tick_rate {
+        let flaw = Flaw::TickRateDisagrees { header: header.tick_rate, game: game.tick_rate() };
+        return Err(malformed(offset::TICK_RATE, flaw));
+    }
+    Ok(game)
+}
+
+/// The first name, in ascending order, whose value differs between the two sides.
+fn first_difference(claimed: Vec<(String, i64)>, actual: Vec<(String, i64)>) -> Option<ClaimDifference> {
+    let claimed: BTreeMap<String, i64> = claimed.into_iter().collect();
+    let actual: BTreeMap<String, i64> = actual.into_iter().collect();
+    let mut names: Vec<&String> = claimed.keys().chain(actual.keys()).collect();
+    names.sort();
+    let name = names.into_iter().find(|name| claimed.get(*name) != actual.get(*name))?;
+    Some(ClaimDifference::Value {
+        name: name.clone(),
+        claimed: claimed.get(name).copied(),
+        actual: actual.get(name).copied(),
+    })
+}

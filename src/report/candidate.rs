@@ -1,0 +1,239 @@
+//! Finds the body in which a difference originated, among many bodies that differ.
+//!
+//! A body with a wrong velocity affects all bodies it touches in the same tick: dozens of bodies differ, and the
+//! largest difference need not be at the origin. The list is therefore sorted by the difference in motion, and then
+//! single bit flips in the last correct state are tried. A flip that leads to exactly the wrong state is the
+//! explanation.
+
+use alloc::collections::BTreeMap;
+use alloc::format;
+use alloc::string::String;
+use alloc::vec::Vec;
+
+use super::comparison::{Comparison, Explanation, Subject};
+use super::evidence::Said;
+use super::phases::TickPhases;
+use super::stage::Stage;
+use crate::inspect::{Difference, InspectError, Value, differences, fields};
+use crate::lockstep::Game;
+use crate::world::BodyField;
+
+/// Maximum work units spent on trying bit flips, if the limits allow as many: about ten seconds.
+pub(super) const WORK_MAX: u64 = 400_000_000;
+/// Minimum work units of a try, because the state is loaded and hashed.
+const TRY_WORK: u64 = 1000;
+
+/// A tick in which one side diverged.
+pub(super) struct WrongTick<G: Game> {
+    /// The last correct tick, and the state after it.
+    pub(super) tick: u64,
+    pub(super) before: G::Save,
+    /// The inputs that led from that state to the wrong one.
+    pub(super) inputs: Vec<G::Input>,
+    /// The wrong state, as a hash stated by the diverged side.
+    pub(super) wrong: Said,
+    /// Phase digests of the wrong tick, if available.
+    pub(super) phases: Option<TickPhases>,
+}
+
+/// Groups differences by section and body, sorted by the difference in motion, largest first.
+pub(super) fn subjects(differences: Vec<Difference>) -> Vec<Subject> {
+    let mut subjects: Vec<Subject> = Vec::new();
+    let mut places = BTreeMap::new();
+    for difference in differences {
+        let field = difference.field();
+        let path = field.thing().unwrap_or(field.section());
+        let at = *places.entry(String::from(path)).or_insert(subjects.len());
+        if at == subjects.len() {
+            let section = field.section().into();
+            subjects.push(Subject { path: path.into(), section, differences: Vec::new() });
+        }
+        subjects[at].differences.push(difference);
+    }
+    subjects.sort_by_key(|subject| core::cmp::Reverse(disturbance(subject)));
+    subjects
+}
+
+/// Difference of a body's motion, in units of the last bit; 0 for anything else.
+fn disturbance(subject: &Subject) -> u128 {
+    let is_motion = |difference: &&Difference| {
+        BodyField::SPEEDS.iter().any(|motion| difference.field().name() == motion.name())
+    };
+    let units = |difference: &Difference| both_bits(difference).map_or(0, |(a, b)| a.abs_diff(b));
+    subject.differences.iter().filter(is_motion).map(units).sum()
+}
+
+/// The bits of two numbers that differ; `None` if one is missing or not a number.
+fn both_bits(difference: &Difference) -> Option<(i128, i128)> {
+    let bits = |value: &Option<Value>| value.as_ref().and_then(|value| value.bits());
+    bits(&difference.a).zip(bits(&difference.b))
+}
+
+/// The bit in which two numbers differ, if there is exactly one.
+pub(super) fn flipped_bit(difference: &Difference) -> Option<u32> {
+    let (a, b) = both_bits(difference)?;
+    let changed = a ^ b;
+    // The sign occupies all bits above the width of the number.
+    let is_sign = changed.leading_ones() + changed.trailing_zeros() == i128::BITS;
+    (changed.count_ones() == 1 || is_sign).then(|| changed.trailing_zeros())
+}
+
+/// Searches for the bit flip that explains all differences, and moves its body and field to the front.
+pub(super) fn explain<G: Game>(
+    wrong: &WrongTick<G>,
+    mut game: G,
+    work: u64,
+    found: &mut Comparison,
+) -> Result<(), InspectError> {
+    let is_known = found.tick == Some(wrong.tick + 1);
+    let mut all = found.subjects.iter().flat_map(|subject| &subject.differences);
+    if let (Some(only), None) = (all.next(), all.next())
+        && is_known
+        && flipped_bit(only).is_some()
+    {
+        // The differences already show the bit.
+        return Ok(());
+    }
+    let candidates = if is_known { candidates(&found.subjects) } else { everybody(&mut game, &wrong.before) };
+    let Some(culprit) = search(wrong, &mut game, candidates, work) else {
+        return Ok(());
+    };
+    let Candidate { path, motion, bit, when, .. } = culprit;
+    if is_known {
+        found.subjects.sort_by_key(|subject| subject.path != path);
+        let first = &mut found.subjects[0].differences;
+        first.sort_by_key(|difference| difference.field().name() != motion.name());
+    }
+    // The state before and after the flip.
+    game.load(&wrong.before);
+    if when == When::After {
+        game.step(&wrong.inputs);
+    }
+    let was = fields(&game.save())?;
+    flip(&mut game, &path, motion, bit);
+    let differences = differences(&was, &fields(&game.save())?);
+    let (tick, stage) = match when {
+        When::Before => (wrong.tick, Stage::BeforeStep),
+        When::After => (wrong.tick + 1, Stage::AfterStep),
+    };
+    let path = differences.first().and_then(|first| first.field().thing()).map_or(path, String::from);
+    found.stage.get_or_insert(stage);
+    found.explanation = Some(Explanation { tick, path, bit, differences });
+    Ok(())
+}
+
+/// Whether a bit may have flipped before or after the tick.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum When {
+    Before,
+    After,
+}
+
+/// A candidate for the flipped bit.
+struct Candidate {
+    path: String,
+    motion: BodyField,
+    bit: u32,
+    when: When,
+    /// Distance of the bit's value from the observed difference, as a base-2 logarithm times 256. Candidates at the
+    /// lowest distance are tried first.
+    distance: u32,
+}
+
+/// All bits of the bodies that differ. Unless the flip causes a strong collision, most of the difference stays in the
+/// number whose bit flipped.
+fn candidates(subjects: &[Subject]) -> Vec<Candidate> {
+    let mut candidates = Vec::new();
+    for subject in subjects.iter().filter(|subject| handle(&subject.path).is_some()) {
+        for motion in BodyField::ALL {
+            let of_motion = |difference: &&Difference| difference.field().name() == motion.name();
+            let difference = subject.differences.iter().find(of_motion).and_then(both_bits);
+            let size = log2(difference.map_or(0, |(a, b)| a.abs_diff(b)));
+            candidates.extend((0..motion.bits()).map(|bit| Candidate {
+                path: subject.path.clone(),
+                motion,
+                bit,
+                when: When::Before,
+                distance: size.map_or(u32::MAX, |size| size.abs_diff(bit << 8)),
+            }));
+        }
+    }
+    candidates.sort_by_key(|candidate| candidate.distance);
+    candidates
+}
+
+/// Base-2 logarithm of a number times 256, with an error of at most 25 units; `None` for 0.
+fn log2(number: u128) -> Option<u32> {
+    let whole = number.checked_ilog2()?;
+    // The bits after the leading one, which interpolate linearly between powers of two.
+    let fraction = number << (127 - whole) << 1 >> 120;
+    Some((whole << 8) + u32::try_from(fraction).unwrap_or(0))
+}
+
+/// All bits of all bodies, before and after the tick.
+fn everybody<G: Game>(game: &mut G, before: &G::Save) -> Vec<Candidate> {
+    game.load(before);
+    let Some(world) = game.world_mut() else {
+        return Vec::new();
+    };
+    let paths: Vec<String> = world.bodies().map(|(id, _)| format!("body {id}")).collect();
+    let mut candidates = Vec::new();
+    for when in [When::After, When::Before] {
+        for path in &paths {
+            for motion in BodyField::ALL {
+                let of_bit = |bit| Candidate { path: path.clone(), motion, bit, when, distance: 0 };
+                candidates.extend((0..motion.bits()).map(of_bit));
+            }
+        }
+    }
+    candidates
+}
+
+/// The first candidate that leads to the wrong state.
+fn search<G: Game>(
+    wrong: &WrongTick<G>,
+    game: &mut G,
+    candidates: Vec<Candidate>,
+    work: u64,
+) -> Option<Candidate> {
+    game.load(&wrong.before);
+    let step_work = game.work(&wrong.inputs).max(TRY_WORK);
+    game.step(&wrong.inputs);
+    let right = game.save();
+    let mut left = work;
+    candidates.into_iter().find(|candidate| {
+        // Cost of loading and hashing a state.
+        let loading = step_work / 2;
+        let price = if candidate.when == When::Before { step_work + loading } else { loading };
+        // A cheaper candidate may still fit into the budget.
+        let Some(rest) = left.checked_sub(price) else {
+            return false;
+        };
+        let Candidate { path, motion, bit, when, .. } = candidate;
+        game.load(if *when == When::Before { &wrong.before } else { &right });
+        if flip(game, path, *motion, *bit).is_none() {
+            return false;
+        }
+        left = rest;
+        if *when == When::Before {
+            game.step(&wrong.inputs);
+        }
+        wrong.wrong.is(game.state_hash())
+    })
+}
+
+/// Slot and generation of a body, from its path.
+fn handle(path: &str) -> Option<(u32, u32)> {
+    let (_, handle) = path.rsplit_once("body ")?;
+    let (slot, generation) = handle.split_once('v')?;
+    Some((slot.parse().ok()?, generation.parse().ok()?))
+}
+
+/// Flips a bit of a body's motion; `None` if the path has no body or the resulting speed is invalid.
+fn flip<G: Game>(game: &mut G, path: &str, motion: BodyField, bit: u32) -> Option<()> {
+    let handle = handle(path)?;
+    let world = game.world_mut()?;
+    let body = world.bodies().map(|(id, _)| id);
+    let body = { body }.find(|id| (id.index(), id.generation()) == handle)?;
+    world.flip_bit(body, motion, bit).ok()
+}

@@ -1,0 +1,107 @@
+//! Comparison of two replays with different setups or inputs, both simulated by the running engine.
+//!
+//! As long as the states and the inputs are equal, one game serves both sides. Only ticks with different inputs cost
+//! more than playing one replay.
+
+use alloc::format;
+
+use super::candidate;
+use super::compare::CompareError;
+use super::comparison::{Comparison, Side};
+use super::evidence::SideEvidence;
+use super::phases::TickPhases;
+use crate::inspect::{differences, fields};
+use crate::lockstep::Game;
+use crate::replay::{Limits, RawReplay, Step, Verdict};
+
+/// Plays both replays until their states differ, and fills in the comparison.
+pub(super) fn run<G: Game>(
+    known: &[SideEvidence<'_>; 2],
+    limits: &Limits,
+    found: &mut Comparison,
+) -> Result<(), CompareError> {
+    let open = |side: Side| {
+        let refused = |verdict| CompareError::Replay { side, verdict };
+        RawReplay::<G>::open(known[side.index()].replay, limits).map_err(refused)
+    };
+    let mut comparison = ReplayComparison { a: open(Side::A)?, b: open(Side::B)?, found };
+    comparison.compare(0)?;
+    while comparison.found.first_different.is_none() {
+        match comparison.step() {
+            Ok(Step::Ticked) => {}
+            Ok(Step::Ended) => break,
+            Err(ReplayComparisonError::Compare(error)) => return Err(error),
+            Err(ReplayComparisonError::Verdict(side, verdict)) => {
+                let tick = comparison.a.tick();
+                comparison.found.notes.push(format!("{side} cannot be played beyond tick {tick}: {verdict}"));
+                break;
+            }
+        }
+    }
+    let played = comparison.a.tick();
+    comparison.found.rerun = Some(played);
+    Ok(())
+}
+
+enum ReplayComparisonError {
+    Compare(CompareError),
+    Verdict(Side, Verdict),
+}
+
+impl From<CompareError> for ReplayComparisonError {
+    fn from(error: CompareError) -> Self {
+        ReplayComparisonError::Compare(error)
+    }
+}
+
+struct ReplayComparison<'f, 'a, G: Game> {
+    a: RawReplay<'a, G>,
+    b: RawReplay<'a, G>,
+    found: &'f mut Comparison,
+}
+
+impl<G: Game> ReplayComparison<'_, '_, G> {
+    /// Plays a tick. The states are equal before it, and A's game serves both sides.
+    fn step(&mut self) -> Result<Step, ReplayComparisonError> {
+        let of = |side| move |verdict| ReplayComparisonError::Verdict(side, verdict);
+        let a = self.a.read_inputs().map_err(of(Side::A))?;
+        let b = self.b.read_inputs().map_err(of(Side::B))?;
+        if (a, b) != (Step::Ticked, Step::Ticked) {
+            return Ok(Step::Ended);
+        }
+        if self.a.encoded() == self.b.encoded() {
+            self.a.play().map_err(of(Side::A))?;
+            self.b.skip();
+            self.found.last_equal = Some(self.a.tick());
+            return Ok(Step::Ticked);
+        }
+        let before = self.a.game().save();
+        self.b.game_mut().load(&before);
+        self.a.play().map_err(of(Side::A))?;
+        self.b.play().map_err(of(Side::B))?;
+        self.compare(self.a.tick())?;
+        if self.found.first_different.is_some() {
+            let (a, b) = (self.a.inputs().to_vec(), self.b.inputs().to_vec());
+            let game = self.a.game_mut();
+            let [a, b] = [a, b].map(|inputs| {
+                game.load(&before);
+                TickPhases::of(game, &inputs)
+            });
+            self.found.stage = a.parting(&b);
+        }
+        Ok(Step::Ticked)
+    }
+
+    /// Compares the states at the current tick.
+    fn compare(&mut self, tick: u64) -> Result<(), CompareError> {
+        let (a, b) = (self.a.game(), self.b.game());
+        if a.state_hash() == b.state_hash() {
+            self.found.last_equal = Some(tick);
+            return Ok(());
+        }
+        self.found.first_different = Some(tick);
+        self.found.tick = Some(tick);
+        self.found.subjects = candidate::subjects(differences(&fields(&a.save())?, &fields(&b.save())?));
+        Ok(())
+    }
+}

@@ -1,0 +1,298 @@
+//! Simulates the inputs of the files again and compares every tick with the hashes of both sides.
+
+use alloc::format;
+use alloc::string::String;
+use alloc::vec::Vec;
+
+use super::candidate::{self, WrongTick};
+use super::compare::CompareError;
+use super::comparison::{Blame, Comparison, Side};
+use super::evidence::SideEvidence;
+use super::origin;
+use super::stage::Stage;
+use crate::codec;
+use crate::inspect::{differences, fields};
+use crate::lockstep::Game;
+use crate::replay::{Limits, RawReplay, Step};
+
+/// Amount of simulation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Effort {
+    /// Plays all ticks that either side knows, and searches for an explanation of a difference up to a fixed limit.
+    Thorough,
+    /// Plays up to the first difference, and limits the search for an explanation such that both together cost less
+    /// than playing all ticks three times.
+    Bounded,
+}
+
+/// Fills in the states, the trajectories and the blame of a comparison.
+pub(super) fn run<G: Game>(
+    known: &[SideEvidence<'_>; 2],
+    limits: &Limits,
+    effort: Effort,
+    found: &mut Comparison,
+) -> Result<(), CompareError> {
+    play::<G>(known, limits, effort, found)?;
+    found.blame = match [found.trajectories[0].diverges, found.trajectories[1].diverges] {
+        _ if found.rerun.is_none() => Blame::Unknown,
+        [None, None] => Blame::Nobody,
+        [Some(_), None] => Blame::Side(Side::A),
+        [None, Some(_)] => Blame::Side(Side::B),
+        [Some(_), Some(_)] => Blame::Both,
+    };
+    Ok(())
+}
+
+fn play<G: Game>(
+    known: &[SideEvidence<'_>; 2],
+    limits: &Limits,
+    effort: Effort,
+    found: &mut Comparison,
+) -> Result<(), CompareError> {
+    // After a different input the states differ, too.
+    let horizon = found.input.as_ref().map_or(u64::MAX, |input| input.tick);
+    compare_directly(known, horizon, found);
+    let side = if known[0].ticks < known[1].ticks { Side::B } else { Side::A };
+    let replay = known[side.index()].replay;
+    if replay.is_empty() {
+        found.notes.push("there are no inputs to simulate again, so the diverged side is unknown".into());
+        if let Some(first) = found.first_different {
+            compare_saves_alone::<G>(known, first, found)?;
+        }
+        return Ok(());
+    }
+    let rerun =
+        RawReplay::<G>::open(replay, limits).map_err(|verdict| CompareError::Replay { side, verdict })?;
+    let until = known[0].last().max(known[1].last()).min(horizon);
+    Beside {
+        known,
+        limits,
+        effort,
+        found,
+        rerun,
+        previous: None,
+        wrong: None,
+        states: None,
+        presumed: None,
+        obstacle: None,
+    }
+    .run(until)
+}
+
+/// Compares the hashes of both sides without simulation, up to the first tick at which they differ.
+fn compare_directly(known: &[SideEvidence<'_>; 2], horizon: u64, found: &mut Comparison) {
+    let mut ticks: Vec<u64> = known.iter().flat_map(|known| known.ticks_known()).collect();
+    ticks.sort_unstable();
+    ticks.dedup();
+    for tick in ticks.into_iter().filter(|tick| *tick <= horizon) {
+        match known[0].same(&known[1], tick) {
+            Some(true) => found.last_equal = Some(tick),
+            Some(false) => {
+                found.first_different = Some(tick);
+                return;
+            }
+            None => {}
+        }
+    }
+}
+
+fn decode<G: Game>(side: Side, tick: u64, bytes: &[u8]) -> Result<G::Save, String> {
+    codec::decode(bytes)
+        .map_err(|error| format!("the state of {side} after tick {tick} cannot be read: {error}"))
+}
+
+fn compare_saves_alone<G: Game>(
+    known: &[SideEvidence<'_>; 2],
+    first: u64,
+    found: &mut Comparison,
+) -> Result<(), CompareError> {
+    let in_both = |tick: &u64| known[1].saves.contains_key(tick);
+    let tick = known[0].saves.range(first..).map(|(tick, _)| *tick).find(in_both);
+    let Some(tick) = tick else {
+        found.notes.push("the files do not contain the states that differ".into());
+        return Ok(());
+    };
+    let state = |side: Side| decode::<G>(side, tick, known[side.index()].saves[&tick]);
+    match (state(Side::A), state(Side::B)) {
+        (Ok(a), Ok(b)) => {
+            found.tick = Some(tick);
+            found.subjects = candidate::subjects(differences(&fields(&a)?, &fields(&b)?));
+        }
+        (Err(obstacle), _) | (_, Err(obstacle)) => found.notes.push(obstacle),
+    }
+    Ok(())
+}
+
+/// The states of both sides after a tick.
+struct States<S> {
+    tick: u64,
+    states: [S; 2],
+    /// The side that states no hash for this tick and is presumed to have had the state of the rerun. A side that has
+    /// diverged does not converge again, so the presumption is right if this side equals the rerun at this tick or
+    /// later.
+    presumed: Option<Side>,
+}
+
+struct Beside<'a, 'k, G: Game> {
+    known: &'a [SideEvidence<'k>; 2],
+    limits: &'a Limits,
+    effort: Effort,
+    found: &'a mut Comparison,
+    rerun: RawReplay<'k, G>,
+    /// State of the rerun before the current tick.
+    previous: Option<G::Save>,
+    /// The tick in which the first diverging side diverged.
+    wrong: Option<WrongTick<G>>,
+    /// The states at the first different tick at which both are available.
+    states: Option<States<G::Save>>,
+    /// The same, if one of the states is only presumed.
+    presumed: Option<States<G::Save>>,
+    /// Reason why the states of an earlier tick could not be used.
+    obstacle: Option<String>,
+}
+
+impl<G: Game> Beside<'_, '_, G> {
+    fn run(mut self, until: u64) -> Result<(), CompareError> {
+        let (direct, equal) = (self.found.first_different, self.found.last_equal.take());
+        loop {
+            self.look(direct);
+            if self.rerun.tick() >= until || self.is_enough() {
+                break;
+            }
+            self.previous = self.wrong.is_none().then(|| self.rerun.game().save());
+            match self.rerun.step() {
+                Ok(Step::Ticked) => {}
+                Ok(Step::Ended) => break,
+                Err(verdict) => {
+                    let tick = self.rerun.tick();
+                    self.found.notes.push(format!("the rerun ends after tick {tick}: {verdict}"));
+                    break;
+                }
+            }
+        }
+        self.found.rerun = Some(self.rerun.tick());
+        // The files may contain more ticks than the replay has inputs for.
+        let equal = equal.filter(|equal| self.found.first_different.is_none_or(|first| *equal < first));
+        self.found.last_equal = self.found.last_equal.max(equal);
+        self.conclude()
+    }
+
+    /// Whether the remaining ticks cannot change the result.
+    fn is_enough(&self) -> bool {
+        let tick = self.rerun.tick();
+        let has_diverged = |side: &usize| self.found.trajectories[*side].diverges.is_some();
+        let has_told = |side: usize| self.known[side].saves.range(tick..).next().is_none();
+        let diverged = [0, 1].into_iter().find(has_diverged);
+        self.effort == Effort::Bounded && diverged.is_some_and(|side| self.states.is_some() || has_told(side))
+    }
+
+    /// Compares the current state of the rerun with the hashes of both sides.
+    fn look(&mut self, direct: Option<u64>) {
+        let (tick, hash) = (self.rerun.tick(), self.rerun.game().state_hash());
+        let had = [0, 1].map(|side: usize| self.known[side].had(tick, hash));
+        for (known, (trajectory, had)) in self.known.iter().zip(self.found.trajectories.iter_mut().zip(had)) {
+            match had {
+                Some(true) if trajectory.diverges.is_none() => trajectory.equal_until = Some(tick),
+                Some(false) if trajectory.diverges.is_none() => {
+                    trajectory.diverges = Some(tick);
+                    let before = self.previous.take();
+                    let wrong = known.said(tick);
+                    let was_right = tick.checked_sub(1).filter(|last| trajectory.equal_until == Some(*last));
+                    if let ((Some(before), Some(wrong)), Some(last)) = ((before, wrong), was_right) {
+                        let inputs = self.rerun.inputs().to_vec();
+                        let phases = known.phases.get(&tick).copied().cloned();
+                        self.wrong = Some(WrongTick { tick: last, before, inputs, wrong, phases });
+                    }
+                }
+                _ => {}
+            }
+        }
+        let differ = had.contains(&Some(false)) && had != [Some(false); 2]
+            || self.known[0].same(&self.known[1], tick) == Some(false);
+        if self.found.first_different.is_none_or(|first| tick < first) && differ {
+            self.found.first_different = Some(tick);
+        }
+        let before_it = self.found.first_different.or(direct).is_none_or(|first| tick < first);
+        let same = had == [Some(true); 2] || self.known[0].same(&self.known[1], tick) == Some(true);
+        if before_it && same {
+            self.found.last_equal = Some(tick);
+        }
+        if !before_it && self.states.is_none() {
+            self.take_states(had);
+        }
+    }
+
+    /// Stores the states of both sides, if both are available at the current tick.
+    fn take_states(&mut self, had: [Option<bool>; 2]) {
+        let tick = self.rerun.tick();
+        let mut states = Vec::new();
+        let mut presumed = None;
+        for (side, had) in Side::BOTH.into_iter().zip(had) {
+            let own = self.known[side.index()].saves.get(&tick);
+            states.push(match (own, had) {
+                (_, Some(true)) => self.rerun.game().save(),
+                (None, None) if presumed.is_none() => {
+                    presumed = Some(side);
+                    self.rerun.game().save()
+                }
+                (None, _) => return,
+                (Some(bytes), _) => match decode::<G>(side, tick, bytes) {
+                    Ok(save) => save,
+                    Err(obstacle) => {
+                        self.obstacle.get_or_insert(obstacle);
+                        return;
+                    }
+                },
+            });
+        }
+        let Ok(states) = states.try_into() else {
+            return;
+        };
+        let states = States { tick, states, presumed };
+        if presumed.is_some() {
+            self.presumed.get_or_insert(states);
+        } else {
+            self.states = Some(states);
+        }
+    }
+
+    fn conclude(self) -> Result<(), CompareError> {
+        let Beside { known, limits, effort, found, rerun, wrong, states, presumed, obstacle, previous: _ } =
+            self;
+        found.notes.extend(obstacle);
+        let trajectories = &found.trajectories;
+        let came_later = |states: &States<G::Save>| {
+            states.presumed.is_some_and(|side| trajectories[side.index()].equal_until >= Some(states.tick))
+        };
+        match presumed.filter(came_later).or(states) {
+            Some(States { tick, states: [a, b], .. }) => {
+                found.tick = Some(tick);
+                found.subjects = candidate::subjects(differences(&fields(&a)?, &fields(&b)?));
+            }
+            None => {
+                if let Some(first) = found.first_different {
+                    compare_saves_alone::<G>(known, first, found)?;
+                }
+            }
+        }
+        let Some(wrong) = wrong else {
+            return Ok(());
+        };
+        let work = match effort {
+            Effort::Thorough => candidate::WORK_MAX,
+            Effort::Bounded => {
+                let whole = rerun.work() / rerun.tick().max(1) * rerun.ticks();
+                whole.saturating_mul(5) / 2 - rerun.work().min(whole)
+            }
+        };
+        let mut game = rerun.into_game();
+        if let Some(theirs) = &wrong.phases {
+            origin::find(&wrong, theirs, &mut game, found)?;
+        }
+        // Otherwise it is already known which bit flipped before the step, or that none did.
+        if found.stage.is_none_or(|stage| stage == Stage::BeforeStep) && found.began.is_empty() {
+            candidate::explain(&wrong, game, work.min(limits.total_work), found)?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,239 @@
+//! SIMD abstraction: the integer operations in which the wide kernels are written.
+//!
+//! A kernel is one generic function over [`Lanes`]; a backend is one implementation of that trait. `Scalar<1>`
+//! processes one row, the others eight rows that share no body, and no lane depends on another. Every backend therefore
+//! gives the same bits, and the scalar backend is the test oracle of the others. Only 32-bit numbers and their 64-bit
+//! products occur, because all processors have the widening multiplication 32 x 32 -> 64 (`vpmuldq`, `smull`,
+//! `i64x2.extmul`).
+
+// Besides the scalar backend, only the vector backends of the target architecture are compiled.
+mod body;
+mod division;
+#[cfg_attr(target_arch = "x86_64", path = "x86.rs")]
+#[cfg_attr(all(target_arch = "aarch64", target_feature = "neon", target_endian = "little"), path = "neon.rs")]
+#[cfg_attr(all(target_arch = "wasm32", target_feature = "simd128"), path = "simd128.rs")]
+mod native;
+mod prefetch;
+mod scalar;
+mod shared;
+#[cfg(test)]
+mod tests;
+
+pub(crate) use body::{GROUND, SolverBody};
+use native::Native;
+pub(crate) use prefetch::prefetch;
+pub(crate) use scalar::Scalar;
+pub(crate) use shared::Shared;
+
+use core::cell::Cell;
+
+/// Number of rows that a wide kernel processes at a time, on every machine.
+pub(crate) const WIDTH: usize = 8;
+
+/// One number for each of `N` rows, aligned for the widest load.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(32))]
+pub(crate) struct Ints<const N: usize>(pub(crate) [i32; N]);
+
+impl<const N: usize> Ints<N> {
+    pub(crate) const ZERO: Self = Ints([0; N]);
+}
+
+/// Converts a number of fraction bits to a shift count.
+#[expect(clippy::cast_possible_wrap, reason = "at most 64")]
+pub(crate) const fn shift(fraction_bits: u32) -> i32 {
+    fraction_bits as i32
+}
+
+/// Four numbers of a body, loaded together.
+#[derive(Clone, Copy, Debug, Default)]
+#[repr(C, align(16))]
+pub(crate) struct Quad(pub(crate) [i32; 4]);
+
+/// Components of a linear and angular velocity or displacement: along x, along y, and rotation.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct VelocityW<T> {
+    pub(crate) x: T,
+    pub(crate) y: T,
+    pub(crate) turn: T,
+}
+
+/// `N` lanes of 32-bit integers. Sums and differences wrap unless they are named otherwise.
+pub(crate) trait Lanes<const N: usize>: Copy {
+    type Int: Copy;
+    /// 64-bit products.
+    type Wide: Copy;
+    /// A boolean per lane.
+    type Mask: Copy;
+
+    fn load(from: &Ints<N>) -> Self::Int;
+    fn store(value: Self::Int, to: &mut Ints<N>);
+    fn splat(value: i32) -> Self::Int;
+
+    fn add(a: Self::Int, b: Self::Int) -> Self::Int;
+    fn sub(a: Self::Int, b: Self::Int) -> Self::Int;
+    fn add_saturating(a: Self::Int, b: Self::Int) -> Self::Int;
+    fn sub_saturating(a: Self::Int, b: Self::Int) -> Self::Int;
+    fn min(a: Self::Int, b: Self::Int) -> Self::Int;
+    fn max(a: Self::Int, b: Self::Int) -> Self::Int;
+    fn or(a: Self::Int, b: Self::Int) -> Self::Int;
+
+    /// `a > b`.
+    fn greater(a: Self::Int, b: Self::Int) -> Self::Mask;
+    fn both(a: Self::Mask, b: Self::Mask) -> Self::Mask;
+    fn either(a: Self::Mask, b: Self::Mask) -> Self::Mask;
+    fn any(mask: Self::Mask) -> bool;
+    /// Bit mask of the lanes, the first lane in the lowest bit.
+    fn bits(mask: Self::Mask) -> u32;
+    /// Number of lanes that are true.
+    fn count(mask: Self::Mask) -> u32;
+    fn select(mask: Self::Mask, yes: Self::Int, no: Self::Int) -> Self::Int;
+    /// -1 in lanes that are true, 0 in the others.
+    fn to_int(mask: Self::Mask) -> Self::Int;
+    /// Whether a number is negative.
+    fn negative(a: Self::Int) -> Self::Mask;
+
+    /// The exact 64-bit product.
+    fn mul(a: Self::Int, b: Self::Int) -> Self::Wide;
+    fn add_wide(a: Self::Wide, b: Self::Wide) -> Self::Wide;
+    fn sub_wide(a: Self::Wide, b: Self::Wide) -> Self::Wide;
+    fn max_wide(a: Self::Wide, b: Self::Wide) -> Self::Wide;
+    fn abs_wide(a: Self::Wide) -> Self::Wide;
+    /// `a > b`.
+    fn greater_wide(a: Self::Wide, b: Self::Wide) -> Self::Mask;
+    /// `a / 2^SHIFT`, rounded to nearest, ties towards +infinity; the result must fit 32 bits. `SHIFT` is 1 to 32.
+    fn narrow<const SHIFT: i32>(a: Self::Wide) -> Self::Int;
+    /// Like [`Lanes::narrow`], but saturated, with a mask of the lanes that saturated. Adding the rounding constant
+    /// must not overflow 64 bits. `SHIFT` is 1 to 31.
+    fn narrow_saturating<const SHIFT: i32>(a: Self::Wide) -> (Self::Int, Self::Mask);
+
+    /// `a / 2^shift` with a shift per lane, rounded to nearest, ties towards +infinity, saturated. `shift` is 1 to 61,
+    /// and the magnitude of `a` is at most 2^62.
+    fn narrow_by(a: Self::Wide, shift: Self::Int) -> Self::Int;
+
+    /// The lowest 32 bits, as a signed number: the remainder that `narrow::<32>` drops.
+    fn low(a: Self::Wide) -> Self::Int;
+
+    /// `a / 2^SHIFT` of non-negative numbers, rounded down. `SHIFT` is 1 to 63.
+    fn shift_down<const SHIFT: i32>(a: Self::Wide) -> Self::Wide;
+
+    /// `1 / d`, both with 30 fraction bits, rounded down. `d` is below 2^46, and clamped to at least 1.
+    #[inline(always)]
+    fn reciprocal(d: Self::Wide) -> Self::Int {
+        let mut quotients = Ints::ZERO;
+        let d = Self::to_array(d);
+        for (quotient, &d) in quotients.0.iter_mut().zip(&d) {
+            *quotient = division::reciprocal(d);
+        }
+        Self::load(&quotients)
+    }
+
+    /// Entries `g11, g12, g22` of `G = K^-1` with 30 fraction bits, from the entries of `K - I` with 46. `K` is the
+    /// matrix of a point constraint, whose determinant is 1 to 2^27.
+    #[inline(always)]
+    fn inverse(entries: [Self::Wide; 3]) -> [Self::Int; 3] {
+        let [xx, xy, yy] =
+            [Self::to_array(entries[0]), Self::to_array(entries[1]), Self::to_array(entries[2])];
+        let mut g = [Ints::ZERO; 3];
+        for lane in 0..N {
+            [g[0].0[lane], g[1].0[lane], g[2].0[lane]] = division::inverse([xx[lane], xy[lane], yy[lane]]);
+        }
+        [Self::load(&g[0]), Self::load(&g[1]), Self::load(&g[2])]
+    }
+
+    fn to_array(a: Self::Wide) -> [i64; N];
+    fn load_wide(from: &[i64; N]) -> Self::Wide;
+
+    /// Gathers the quads at several indices, transposed: the first numbers, the second numbers, and so on.
+    #[inline(always)]
+    fn quads(from: &[Quad], at: &[u32; N]) -> [Self::Int; 4] {
+        // `map` would not be inlined into functions with other target features.
+        let mut rows = [&from[at[0] as usize]; N];
+        for (row, &at) in rows.iter_mut().zip(at) {
+            *row = &from[at as usize];
+        }
+        Self::transposed(rows)
+    }
+    /// Transposes quads: the first number of each row, the second of each row, and so on.
+    fn transposed(rows: [&Quad; N]) -> [Self::Int; 4];
+    /// Gathers the velocities of bodies.
+    fn velocities(bodies: &[Cell<SolverBody>], at: &[u32; N]) -> VelocityW<Self::Int>;
+    /// Gathers the displacements of bodies since the start of the tick.
+    fn shifts(bodies: &[Cell<SolverBody>], at: &[u32; N]) -> VelocityW<Self::Int>;
+    /// Scatters velocities to bodies, except those at [`GROUND`].
+    fn set_velocities(bodies: &[Cell<SolverBody>], at: &[u32; N], velocities: VelocityW<Self::Int>);
+    /// Scatters displacements to bodies, except those at [`GROUND`].
+    fn set_shifts(bodies: &[Cell<SolverBody>], at: &[u32; N], shifts: VelocityW<Self::Int>);
+}
+
+/// A computation that is generic over the lanes.
+pub(crate) trait Kernel<const N: usize> {
+    /// Must be `#[inline(always)]`, as must every function that it calls with lanes: only then is it compiled with the
+    /// target features of the backend.
+    fn run<L: Lanes<N>>(self);
+}
+
+/// A backend that is available on this machine; by default the best one.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Machine(Backend);
+
+impl Machine {
+    /// Returns `None` if the backend is not available on this machine.
+    pub(crate) fn new(backend: Backend) -> Option<Self> {
+        Backend::available().find(|&available| available == backend).map(Machine)
+    }
+
+    pub(crate) const fn backend(self) -> Backend {
+        self.0
+    }
+
+    /// Whether eight lanes are faster than one at a time.
+    pub(crate) fn has_vectors(self) -> bool {
+        self.0 != Backend::Scalar
+    }
+
+    /// Runs a kernel with the backend.
+    #[inline]
+    pub(crate) fn run(self, kernel: impl Kernel<WIDTH>) {
+        match self.0 {
+            Backend::Scalar => kernel.run::<Scalar<WIDTH>>(),
+            backend => Native::run(backend, kernel),
+        }
+    }
+}
+
+/// SIMD backend of the solver. It changes the speed, never the result.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Backend {
+    /// Plain integers, on every machine.
+    Scalar,
+    /// 256-bit vectors, on most x86-64 processors since 2013.
+    Avx2,
+    /// 512-bit vectors, on most x86-64 servers since 2017 and on desktop processors with AVX-512.
+    Avx512,
+    /// 128-bit vectors, on every 64-bit Arm processor.
+    Neon,
+    /// 128-bit vectors of WebAssembly, if compiled with `-C target-feature=+simd128`.
+    Simd128,
+}
+
+impl Backend {
+    /// Every backend that this machine can run, the best one last. Without the feature `std` only backends whose target
+    /// features are enabled at compile time are listed.
+    pub fn available() -> impl Iterator<Item = Backend> {
+        core::iter::once(Backend::Scalar).chain(Native::backends())
+    }
+
+    /// The best backend of this machine.
+    #[must_use]
+    pub fn best() -> Self {
+        Backend::available().last().unwrap_or(Backend::Scalar)
+    }
+}
+
+impl Default for Backend {
+    fn default() -> Self {
+        Backend::best()
+    }
+}

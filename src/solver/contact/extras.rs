@@ -1,0 +1,63 @@
+//! Restitution, moving surfaces and rolling resistance. Few contacts have any of these, and their data lies apart from
+//! the batches, so that the other contacts do not carry it through the caches.
+
+use super::batch::Batch;
+use super::input::ContactSource;
+use super::rolling::RollingRows;
+use crate::math::Unit;
+use crate::simd::{Ints, Lanes};
+
+/// The rest of a batch in which some surface is special.
+#[derive(Clone, Debug)]
+pub(in crate::solver) struct ContactExtras<const N: usize> {
+    pub(super) restitution: Ints<N>,
+    /// For each point, the relative normal velocity when the shapes first pushed each other in this tick.
+    pub(super) approach: [Ints<N>; 2],
+    /// For each point, -1 where the shapes have pushed each other in this tick.
+    pub(super) pushed: [Ints<N>; 2],
+    /// Relative speed of the surfaces by themselves, against the tangent.
+    pub(super) surface_speed: Ints<N>,
+    /// Whether any lane has rolling resistance.
+    pub(super) rolls: bool,
+    pub(super) rolling: RollingRows<N>,
+}
+
+impl<const N: usize> ContactExtras<N> {
+    /// A batch in which no lane is special.
+    pub(super) const NONE: Self = ContactExtras {
+        restitution: Ints::ZERO,
+        approach: [Ints::ZERO; 2],
+        pushed: [Ints::ZERO; 2],
+        surface_speed: Ints::ZERO,
+        rolls: false,
+        rolling: RollingRows::NONE,
+    };
+
+    /// Puts a contact into a lane. `inverse_normals` are the reciprocals of its points' denominators; that of a missing
+    /// point does not matter, as the point has no impulse.
+    pub(super) fn fill(
+        &mut self,
+        lane: usize,
+        source: &ContactSource<'_>,
+        index: usize,
+        inverse_normals: [Unit; 2],
+    ) {
+        let pair = &source.pairs[index];
+        self.restitution.0[lane] = pair.surface.restitution.to_bits();
+        self.surface_speed.0[lane] = pair.surface.surface_speed.to_bits();
+        if pair.surface.rolling_resistance > 0 {
+            self.rolls = true;
+            let carried = source.contacts[pair.contact as usize].rolling;
+            self.rolling.fill(lane, pair, carried, source.list, inverse_normals);
+        }
+    }
+
+    /// Records which points have pushed.
+    #[inline(always)]
+    pub(super) fn remember_pushes<L: Lanes<N>>(&mut self, batch: &Batch<N>) {
+        for (point, pushed) in batch.points[..batch.count].iter().zip(&mut self.pushed) {
+            let pushes = L::to_int(L::greater(L::load(&point.normal_lambda), L::splat(0)));
+            L::store(L::or(L::load(pushed), pushes), pushed);
+        }
+    }
+}

@@ -1,0 +1,292 @@
+//! Overflow policies: how numbers are kept within their formats.
+//!
+//! [`Saturating`] saturates every sum and counts a fault where a clamp changed a number. [`Unchecked`] does neither, and
+//! records whether all numbers were within bounds inside which no sum can overflow and no clamp can act. Nearly all
+//! contacts are within these bounds: nothing in them is fast, deep or pushed hard. A batch is solved by `Unchecked` first,
+//! and again by `Saturating` if a number was out of bounds. Where the result of `Unchecked` is used, both give the same bits:
+//!
+//! ```text
+//! |vx|, |vy|, |u| < 64 at first, |d| < 4 for at most 10 rows       velocities stay below 104, spins below 84
+//! |e| <= 3                                                        |J v| < 2 sqrt(2) 104 + 6 84 < 799
+//! |s| < 1/8 m, rates <= 512 per second                            |bias| <= 64, and below 863 with J v
+//! 0 <= L < 64                                                     |L - w| < 927, where 1024 fit
+//! grips <= 3.5                                                    friction limit < 2 3.5 68 = 476
+//! |dx|, |dy|, |k dtheta|, |s0| < 2 m                              |s| < 20 m, where 32 fit
+//! ```
+
+#[cfg(test)]
+mod tests;
+
+use super::super::limits::{Faults, IMPULSE_MAX};
+use super::super::pair::{BodyPairW, HALF, RATIO, UNIT, beyond, clamp, shift};
+use super::batch::{Batch, Row};
+use super::extras::ContactExtras;
+use crate::math::{FrictionRatio, Rate, Ratio, Shift, Speed};
+use crate::simd::{Lanes, VelocityW};
+
+pub(super) const FRICTION_RATIO: i32 = shift(FrictionRatio::FRAC_NBITS);
+
+/// Largest lever ratio and largest grip of calm contacts.
+const UNCHECKED_RATIO: Ratio = Ratio::lit("3");
+const UNCHECKED_FRICTION_RATIO: FrictionRatio = FrictionRatio::lit("3.5");
+/// Highest rate at which calm separations become speeds.
+const UNCHECKED_RATE: Rate = Rate::lit("512");
+
+/// Bound of speeds and impulses, 64 m/s, and of displacements, 2 m: a power of two.
+const LARGE_BITS: u32 = 6 + Speed::FRAC_NBITS;
+const _: () = assert!(LARGE_BITS == 1 + Shift::FRAC_NBITS);
+/// Bound of changes of an impulse, 4 m/s, and of separations that are pushed, 1/8 m.
+const SMALL_BITS: u32 = 2 + Speed::FRAC_NBITS;
+const _: () = assert!(SMALL_BITS + 3 == Shift::FRAC_NBITS);
+
+/// Whether contacts may be calm in a world whose separations become speeds at these rates.
+pub(super) fn unchecked_at(rates: [Rate; 3]) -> bool {
+    rates.into_iter().all(|rate| rate <= UNCHECKED_RATE)
+}
+
+/// An overflow policy: the treatment of numbers that might overflow.
+pub(super) trait OverflowPolicy<L: Lanes<N>, const N: usize> {
+    /// Checks the velocities that an iteration begins with, or displacements.
+    #[inline(always)]
+    fn see(&mut self, _: &BodyPairW<L, N>) {}
+    /// Checks an accumulated impulse.
+    #[inline(always)]
+    fn see_impulse(&mut self, _: L::Int) {}
+    /// Checks a separation.
+    #[inline(always)]
+    fn see_separation(&mut self, _: L::Int) {}
+    /// `J v` as a speed.
+    fn speed(&mut self, wide: L::Wide) -> L::Int;
+    /// A friction limit.
+    fn limit(wide: L::Wide) -> L::Int;
+    fn add(a: L::Int, b: L::Int) -> L::Int;
+    fn sub(a: L::Int, b: L::Int) -> L::Int;
+    /// A number clamped to a limit on either side.
+    fn clamp(value: L::Int, limit: L::Int) -> L::Int;
+    /// An accumulated impulse along a normal.
+    fn impulse(&mut self, wanted: L::Int) -> L::Int;
+    /// A separation that has changed by `J dx`.
+    fn moved(&mut self, separation: L::Int, wide: L::Wide) -> L::Int;
+    /// Changes velocities by impulses `d`.
+    fn apply(&mut self, pair: &mut BodyPairW<L, N>, row: &Row<N>, d: L::Int);
+    /// Changes velocities by accumulated impulses.
+    fn apply_again(&mut self, pair: &mut BodyPairW<L, N>, row: &Row<N>, lambda: L::Int);
+}
+
+/// Saturates every sum and counts each number that did not fit.
+pub(super) struct Saturating<'a>(pub(super) &'a mut Faults);
+
+impl<L: Lanes<N>, const N: usize> OverflowPolicy<L, N> for Saturating<'_> {
+    #[inline(always)]
+    fn moved(&mut self, separation: L::Int, wide: L::Wide) -> L::Int {
+        L::add_saturating(separation, L::narrow_saturating::<RATIO>(wide).0)
+    }
+
+    #[inline(always)]
+    fn speed(&mut self, wide: L::Wide) -> L::Int {
+        let (vn, out) = L::narrow_saturating::<RATIO>(wide);
+        if L::any(out) {
+            *self.0 += u64::from(L::count(out));
+        }
+        vn
+    }
+
+    #[inline(always)]
+    fn limit(wide: L::Wide) -> L::Int {
+        L::narrow_saturating::<FRICTION_RATIO>(wide).0
+    }
+
+    #[inline(always)]
+    fn add(a: L::Int, b: L::Int) -> L::Int {
+        L::add_saturating(a, b)
+    }
+
+    #[inline(always)]
+    fn sub(a: L::Int, b: L::Int) -> L::Int {
+        L::sub_saturating(a, b)
+    }
+
+    #[inline(always)]
+    fn clamp(value: L::Int, limit: L::Int) -> L::Int {
+        clamp::<L, N>(value, limit)
+    }
+
+    #[inline(always)]
+    fn impulse(&mut self, wanted: L::Int) -> L::Int {
+        let limit = L::splat(IMPULSE_MAX.to_bits());
+        let over = L::greater(wanted, limit);
+        if L::any(over) {
+            *self.0 += u64::from(L::count(over));
+        }
+        L::min(wanted, limit)
+    }
+
+    #[inline(always)]
+    fn apply(&mut self, pair: &mut BodyPairW<L, N>, row: &Row<N>, d: L::Int) {
+        if L::any(L::negative(L::add(d, L::splat(HALF)))) {
+            apply_in_steps(pair, row, d, self.0);
+        } else {
+            pair.change::<UNIT>(row, d);
+            pair.keep_in_range(self.0);
+        }
+    }
+
+    #[inline(always)]
+    fn apply_again(&mut self, pair: &mut BodyPairW<L, N>, row: &Row<N>, lambda: L::Int) {
+        self.apply(pair, row, lambda);
+    }
+}
+
+/// Applies impulses of more than 512 m/s in steps. When a friction limit shrinks or a pushed shape comes free, an
+/// impulse may change by more than a velocity has room for.
+#[cold]
+fn apply_in_steps<L: Lanes<N>, const N: usize>(
+    pair: &mut BodyPairW<L, N>,
+    row: &Row<N>,
+    mut d: L::Int,
+    faults: &mut Faults,
+) {
+    let limit = L::splat(HALF - 1);
+    for _ in 0..3 {
+        let step = clamp::<L, N>(d, limit);
+        pair.change::<UNIT>(row, step);
+        pair.keep_in_range(faults);
+        d = L::sub(d, step);
+    }
+}
+
+/// Checks no sum, and tells at the end whether all numbers were within their bounds.
+pub(super) struct Unchecked<L: Lanes<N>, const N: usize> {
+    /// The bitwise or of all numbers so far that must be within a bound, each with the bound added. The bound is a
+    /// power of two, so that a number within it sets no bit at or above twice the bound.
+    large: L::Int,
+    small: L::Int,
+}
+
+impl<L: Lanes<N>, const N: usize> Unchecked<L, N> {
+    #[inline(always)]
+    pub(super) fn new() -> Self {
+        Unchecked { large: L::splat(0), small: L::splat(0) }
+    }
+
+    #[inline(always)]
+    fn see_large(&mut self, number: L::Int) {
+        self.large = L::or(self.large, L::add(number, L::splat(1 << LARGE_BITS)));
+    }
+
+    #[inline(always)]
+    fn see_small(&mut self, number: L::Int) {
+        self.small = L::or(self.small, L::add(number, L::splat(1 << SMALL_BITS)));
+    }
+
+    /// Whether the rows of a batch and its surfaces are within the bounds.
+    #[inline(always)]
+    pub(super) fn suits(batch: &Batch<N>, extras: Option<&ContactExtras<N>>) -> bool {
+        let ratio = L::splat(UNCHECKED_RATIO.to_bits());
+        let mut wild = long::<L, N>(&batch.tangent, ratio);
+        for point in &batch.points[..batch.count] {
+            wild = L::either(wild, long::<L, N>(&point.normal, ratio));
+            wild = L::either(
+                wild,
+                L::greater(L::load(&point.friction_ratio), L::splat(UNCHECKED_FRICTION_RATIO.to_bits())),
+            );
+        }
+        let drags = extras.is_some_and(|extras| extras.rolls || extras.surface_speed.0 != [0; N]);
+        !(drags || L::any(wild))
+    }
+
+    /// Whether all numbers were within their bounds.
+    #[inline(always)]
+    pub(super) fn held(&self) -> bool {
+        let beyond = |seen: L::Int, bits: u32| {
+            L::either(L::negative(seen), L::greater(seen, L::splat((2 << bits) - 1)))
+        };
+        !L::any(L::either(beyond(self.large, LARGE_BITS), beyond(self.small, SMALL_BITS)))
+    }
+}
+
+/// Where a lever ratio of a row is above a limit.
+#[inline(always)]
+fn long<L: Lanes<N>, const N: usize>(row: &Row<N>, limit: L::Int) -> L::Mask {
+    L::either(beyond::<L, N>(L::load(&row.e_a), limit), beyond::<L, N>(L::load(&row.e_b), limit))
+}
+
+impl<L: Lanes<N>, const N: usize> OverflowPolicy<L, N> for Unchecked<L, N> {
+    #[inline(always)]
+    fn see(&mut self, pair: &BodyPairW<L, N>) {
+        let VelocityW { x, y, turn } = pair.a;
+        self.see_large(x);
+        self.see_large(y);
+        self.see_large(turn);
+        let VelocityW { x, y, turn } = pair.b;
+        self.see_large(x);
+        self.see_large(y);
+        self.see_large(turn);
+    }
+
+    #[inline(always)]
+    fn see_impulse(&mut self, lambda: L::Int) {
+        self.see_large(lambda);
+    }
+
+    #[inline(always)]
+    fn see_separation(&mut self, separation: L::Int) {
+        self.see_small(separation);
+    }
+
+    #[inline(always)]
+    fn moved(&mut self, separation: L::Int, wide: L::Wide) -> L::Int {
+        self.see_large(separation);
+        L::add(separation, L::narrow::<RATIO>(wide))
+    }
+
+    #[inline(always)]
+    fn speed(&mut self, wide: L::Wide) -> L::Int {
+        L::narrow::<RATIO>(wide)
+    }
+
+    #[inline(always)]
+    fn limit(wide: L::Wide) -> L::Int {
+        L::narrow::<FRICTION_RATIO>(wide)
+    }
+
+    #[inline(always)]
+    fn add(a: L::Int, b: L::Int) -> L::Int {
+        L::add(a, b)
+    }
+
+    #[inline(always)]
+    fn sub(a: L::Int, b: L::Int) -> L::Int {
+        L::sub(a, b)
+    }
+
+    #[inline(always)]
+    fn clamp(value: L::Int, _: L::Int) -> L::Int {
+        value
+    }
+
+    #[inline(always)]
+    fn impulse(&mut self, wanted: L::Int) -> L::Int {
+        wanted
+    }
+
+    #[inline(always)]
+    fn apply(&mut self, pair: &mut BodyPairW<L, N>, row: &Row<N>, d: L::Int) {
+        self.see_small(d);
+        change(pair, row, d);
+    }
+
+    #[inline(always)]
+    fn apply_again(&mut self, pair: &mut BodyPairW<L, N>, row: &Row<N>, lambda: L::Int) {
+        self.see_impulse(lambda);
+        change(pair, row, lambda);
+    }
+}
+
+/// Changes velocities by impulses that have bits to spare. Multiplied by four, the result of a product is its upper
+/// half, which spares a shift.
+#[inline(always)]
+fn change<L: Lanes<N>, const N: usize>(pair: &mut BodyPairW<L, N>, row: &Row<N>, d: L::Int) {
+    let twice = L::add(d, d);
+    pair.change::<{ UNIT + 2 }>(row, L::add(twice, twice));
+}

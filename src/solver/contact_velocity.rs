@@ -1,0 +1,195 @@
+//! Warm start of contacts, once for each body: the velocity change that contacts have accumulated is applied at once.
+//!
+//! The rows of contacts do not change within a tick. So the velocity change by the impulses that have accumulated in
+//! them is what contacts have changed of a body's velocity in the sub-step before, from their warm start to its end:
+//!
+//! ```text
+//! push = v - v_free,    v' = v_free' + push
+//! ```
+//!
+//! where `v_free` is the velocity that the body would have without contacts. That is one sum for each body instead of a
+//! pass over the rows of all contacts. Hinges, whose rows turn with their bodies, and locked axes change velocities in
+//! between: their changes are added to `v_free`.
+
+#[cfg(test)]
+mod tests;
+
+use alloc::vec::Vec;
+use core::cell::Cell;
+
+use super::body::SolverBody;
+use super::context::StepContext;
+use super::limits::Faults;
+use super::pair::BodyPairW;
+use crate::simd::{GROUND, Ints, Kernel, Lanes, VelocityW, WIDTH};
+
+/// The velocity changes by contacts of all bodies that they push.
+#[derive(Clone, Debug, Default)]
+pub(super) struct ContactVelocities {
+    groups: Vec<Group<WIDTH>>,
+    /// Whether there has been a sub-step in this tick.
+    known: bool,
+    /// Whether any group is shared.
+    shared: bool,
+}
+
+/// As many bodies as there are lanes.
+#[derive(Clone, Debug)]
+struct Group<const N: usize> {
+    /// The indices of the bodies; the ground in lanes without one.
+    at: [u32; N],
+    /// Whether anything but contacts changes the velocity of any of them between a warm start and the end of a
+    /// sub-step.
+    shared: bool,
+    free: VelocityW<Ints<N>>,
+    push: VelocityW<Ints<N>>,
+}
+
+/// An operation on all bodies in turn.
+#[derive(Clone, Copy, Debug)]
+enum Task {
+    Measure,
+    Apply,
+    /// Subtracts the velocity from `v_free`.
+    Suspend,
+    /// Adds the velocity to `v_free`.
+    Resume,
+}
+
+/// A body that contacts change.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PushedBody {
+    pub(super) index: u32,
+    /// Whether something else changes its velocity while contacts are solved.
+    pub(super) shared: bool,
+}
+
+impl ContactVelocities {
+    /// Starts a tick with the bodies that contacts change.
+    pub(super) fn begin(&mut self, bodies: impl Iterator<Item = PushedBody>) {
+        let ContactVelocities { groups, shared, known } = self;
+        (*shared, *known) = (false, false);
+        groups.clear();
+        for (number, body) in bodies.enumerate() {
+            let lane = number % WIDTH;
+            if lane == 0 {
+                groups.push(Group::NONE);
+            }
+            if let Some(group) = groups.last_mut() {
+                group.at[lane] = body.index;
+                group.shared |= body.shared;
+            }
+            *shared |= body.shared;
+        }
+    }
+
+    /// Finds what contacts have changed in the last sub-step, if there was one in this tick.
+    pub(super) fn measure(&mut self, context: &StepContext<'_>) {
+        if self.known {
+            self.perform(Task::Measure, context);
+        }
+    }
+
+    /// Records the free velocities and applies the pushes of the last sub-step again. Returns whether there was a
+    /// sub-step in this tick: if not, nothing has been pushed.
+    pub(super) fn apply(&mut self, context: &StepContext<'_>) -> bool {
+        let was_known = self.known;
+        if !self.groups.is_empty() {
+            self.perform(Task::Apply, context);
+            self.known = true;
+        }
+        was_known
+    }
+
+    /// Lets something other than contacts change velocities.
+    pub(super) fn exempt(&mut self, context: &StepContext<'_>, change: impl FnOnce()) {
+        if self.shared {
+            self.perform(Task::Suspend, context);
+        }
+        change();
+        if self.shared {
+            self.perform(Task::Resume, context);
+        }
+    }
+
+    fn perform(&mut self, task: Task, context: &StepContext<'_>) {
+        let mut faults = 0;
+        let (groups, bodies, faults_of_run) = (&mut self.groups, context.bodies, &mut faults);
+        context.machine.run(Perform { groups, task, bodies, faults: faults_of_run });
+        context.add_faults(faults);
+    }
+}
+
+impl<const N: usize> Group<N> {
+    const NONE: Self = Group { at: [GROUND; N], shared: false, free: Self::STILL, push: Self::STILL };
+    const STILL: VelocityW<Ints<N>> = VelocityW { x: Ints::ZERO, y: Ints::ZERO, turn: Ints::ZERO };
+}
+
+struct Perform<'a, const N: usize> {
+    groups: &'a mut [Group<N>],
+    task: Task,
+    bodies: &'a [Cell<SolverBody>],
+    faults: &'a mut Faults,
+}
+
+impl<const N: usize> Kernel<N> for Perform<'_, N> {
+    #[inline(always)]
+    fn run<L: Lanes<N>>(self) {
+        let Perform { groups, task, bodies, faults } = self;
+        for Group { at, shared, free, push } in groups {
+            match task {
+                Task::Measure => {
+                    let v = L::velocities(bodies, at);
+                    store::<L, N>(difference::<L, N>(v, load::<L, N>(free)), push);
+                }
+                Task::Apply => {
+                    let v = L::velocities(bodies, at);
+                    store::<L, N>(v, free);
+                    // The free velocity is within the limits already.
+                    let mut pushed = BodyPairW::<L, N> { a: v, b: sum::<L, N>(v, load::<L, N>(push)) };
+                    pushed.keep_in_range(faults);
+                    L::set_velocities(bodies, at, pushed.b);
+                }
+                Task::Suspend if *shared => {
+                    let v = L::velocities(bodies, at);
+                    store::<L, N>(difference::<L, N>(load::<L, N>(free), v), free);
+                }
+                Task::Resume if *shared => {
+                    let v = L::velocities(bodies, at);
+                    store::<L, N>(sum::<L, N>(load::<L, N>(free), v), free);
+                }
+                Task::Suspend | Task::Resume => {}
+            }
+        }
+    }
+}
+
+#[inline(always)]
+fn load<L: Lanes<N>, const N: usize>(from: &VelocityW<Ints<N>>) -> VelocityW<L::Int> {
+    VelocityW { x: L::load(&from.x), y: L::load(&from.y), turn: L::load(&from.turn) }
+}
+
+#[inline(always)]
+fn store<L: Lanes<N>, const N: usize>(v: VelocityW<L::Int>, to: &mut VelocityW<Ints<N>>) {
+    L::store(v.x, &mut to.x);
+    L::store(v.y, &mut to.y);
+    L::store(v.turn, &mut to.turn);
+}
+
+#[inline(always)]
+fn sum<L: Lanes<N>, const N: usize>(a: VelocityW<L::Int>, b: VelocityW<L::Int>) -> VelocityW<L::Int> {
+    VelocityW {
+        x: L::add_saturating(a.x, b.x),
+        y: L::add_saturating(a.y, b.y),
+        turn: L::add_saturating(a.turn, b.turn),
+    }
+}
+
+#[inline(always)]
+fn difference<L: Lanes<N>, const N: usize>(a: VelocityW<L::Int>, b: VelocityW<L::Int>) -> VelocityW<L::Int> {
+    VelocityW {
+        x: L::sub_saturating(a.x, b.x),
+        y: L::sub_saturating(a.y, b.y),
+        turn: L::sub_saturating(a.turn, b.turn),
+    }
+}

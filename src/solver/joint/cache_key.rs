@@ -1,0 +1,61 @@
+//! Cache key of the arrangement of joints for the solver: in most ticks it is that of the tick before.
+
+use alloc::vec::Vec;
+
+use super::super::settings::Tuning;
+
+/// All that the arrangement depends on: which joint is solved as what, in which order and with which masses.
+#[derive(Clone, Debug, Default)]
+pub(super) struct CacheKey {
+    /// `None` before the first tick.
+    definitions: Option<Definitions>,
+    /// Number of times that joints had been restored.
+    returns: u64,
+    /// The slots of the joints and of the bodies of the tick.
+    joints: Vec<u32>,
+    bodies: Vec<u32>,
+}
+
+/// Which parts of the last arrangement are still valid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Validity {
+    /// Everything.
+    All,
+    /// Everything but impulses and angles, which have been restored.
+    Arrangement,
+    Nothing,
+}
+
+/// The revisions of joints and bodies, and the settings.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Definitions {
+    pub(super) joints: u64,
+    pub(super) bodies: u64,
+    pub(super) tuning: Tuning,
+}
+
+impl CacheKey {
+    /// Takes the key of a new tick. Returns what is still valid.
+    pub(super) fn renew(
+        &mut self,
+        definitions: Definitions,
+        returns: u64,
+        joints: &[u32],
+        bodies: &[u32],
+    ) -> Validity {
+        let returned = core::mem::replace(&mut self.returns, returns) != returns;
+        let same = self.definitions == Some(definitions) && self.joints == joints && self.bodies == bodies;
+        if !same {
+            self.definitions = Some(definitions);
+            self.joints.clear();
+            self.joints.extend_from_slice(joints);
+            self.bodies.clear();
+            self.bodies.extend_from_slice(bodies);
+        }
+        match (same, returned) {
+            (true, false) => Validity::All,
+            (true, true) => Validity::Arrangement,
+            (false, _) => Validity::Nothing,
+        }
+    }
+}

@@ -1,0 +1,178 @@
+//! The anchors of a joint at a pose of its bodies, and what its rows measure there.
+
+use core::cell::Cell;
+
+use super::super::body::SolverBody;
+use super::super::row::{Lever, MassFractions, Row};
+use super::def::JointDef;
+use super::parts::Direction;
+use super::row::Measure;
+use super::state::{Joint, radians};
+use crate::body::Body;
+use crate::math::{Angle, Fx, Length, Reciprocal, Rot, Unit, Vec2, round_shift, saturate};
+
+/// The rotation of a body with joints at the last refresh.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct BodyRotation {
+    pub(super) rotation: Rot,
+    /// The angle of the rotation.
+    pub(super) angle: Angle,
+    /// The rotation since the start of the tick, in units of 2^-32 turn.
+    pub(super) turns: i64,
+}
+
+/// The constants of a joint within a tick.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Ends {
+    body_a: u32,
+    body_b: u32,
+    /// Anchors from the centres of mass, in the frames of the bodies.
+    local_a: Vec2<Length>,
+    local_b: Vec2<Length>,
+    inverse_gyration_a: Reciprocal,
+    inverse_gyration_b: Reciprocal,
+    fractions: MassFractions,
+    /// Centre of mass of B from that of A at the start of the tick.
+    between: Vec2<Fx>,
+    /// The x axis of A's frame of the joint, in the frame of A.
+    axis: Vec2<Unit>,
+    /// The angle of the joint at the start of the tick, in units of 2^-32 turn.
+    turns: i64,
+}
+
+impl Ends {
+    /// `indices` are those of the bodies in the body list.
+    pub(super) fn prepare(joint: &Joint, indices: [u32; 2], [a, b]: [&Body; 2]) -> Self {
+        let JointDef { frame_a, frame_b, .. } = &*joint.def;
+        let axis = Rot::from_angle(frame_a.angle);
+        Ends {
+            body_a: indices[0],
+            body_b: indices[1],
+            local_a: (frame_a.anchor - a.local_centre_of_mass()).narrow(),
+            local_b: (frame_b.anchor - b.local_centre_of_mass()).narrow(),
+            inverse_gyration_a: a.mass.inverse_gyration,
+            inverse_gyration_b: b.mass.inverse_gyration,
+            fractions: MassFractions::of(a, b),
+            between: b.centre_of_mass() - a.centre_of_mass(),
+            axis: Vec2::new(axis.cos, axis.sin),
+            turns: joint.turns(a.angle(), b.angle()),
+        }
+    }
+
+    /// The angle of the joint, in units of 2^-32 turn.
+    pub(super) fn turns(&self, body_rotations: &[BodyRotation]) -> i64 {
+        let (a, b) = (&body_rotations[self.body_a as usize], &body_rotations[self.body_b as usize]);
+        self.turns.wrapping_add(b.turns).wrapping_sub(a.turns)
+    }
+
+    /// The anchors at the present pose.
+    #[inline]
+    pub(super) fn place(&self, bodies: &[Cell<SolverBody>], body_rotations: &[BodyRotation]) -> JointPose {
+        let (a, b) = (self.body_a as usize, self.body_b as usize);
+        let arm_a = WideArm::rotated(body_rotations[a].rotation, self.local_a);
+        let arm_b = WideArm::rotated(body_rotations[b].rotation, self.local_b);
+        let moved = (bodies[b].get().shift - bodies[a].get().shift).widen();
+        // The sum is exact until it is rounded once: arms have 52 fraction bits, world coordinates 32.
+        let gap = |between: Fx, moved: Fx, arms: i64| {
+            between.saturating_add(moved).saturating_add(Fx::from_bits(round_shift(arms, 20)))
+        };
+        JointPose {
+            lever_a: Lever { arm: arm_a.narrow(), inverse_gyration: self.inverse_gyration_a },
+            lever_b: Lever { arm: arm_b.narrow(), inverse_gyration: self.inverse_gyration_b },
+            fractions: self.fractions,
+            gap: Vec2::new(
+                gap(self.between.x, moved.x, arm_b.x - arm_a.x),
+                gap(self.between.y, moved.y, arm_b.y - arm_a.y),
+            ),
+        }
+    }
+
+    /// The point at which an impulse does not turn the bodies against each other. If the angle is held too, rows on the
+    /// angle and rows at this point do not disturb each other. With the vector `c` from A's centre to B's, and A's
+    /// share `sA = iA / (iA + iB)` of the inverse inertias, the point is at `-sA c` from B's centre.
+    fn balanced(&self, place: &JointPose, body_rotations: &[BodyRotation]) -> JointPose {
+        let (share_a, _) = self.measure_angle(body_rotations).row.shares();
+        let (arm_a, arm_b) = (place.lever_a.arm.widen(), place.lever_b.arm.widen());
+        let between = arm_a + place.gap - arm_b;
+        let arm = -between.scale(share_a.into());
+        // From the anchor to that point, in B and in A.
+        let (to_b, apart) = (arm - arm_b, Angle::from_turns(Fx::from_bits(self.turns(body_rotations))));
+        let to_a = Rot::from_angle(-apart).apply_wide(to_b);
+        let gap = place.gap + to_b - to_a;
+        JointPose {
+            lever_a: Lever { arm: (between + arm - gap).narrow(), ..place.lever_a },
+            lever_b: Lever { arm: arm.narrow(), ..place.lever_b },
+            gap,
+            ..*place
+        }
+    }
+
+    /// Measures along a direction.
+    pub(super) fn measure(
+        &self,
+        direction: Direction,
+        place: &JointPose,
+        body_rotations: &[BodyRotation],
+    ) -> Measure {
+        match direction {
+            Direction::Angle => self.measure_angle(body_rotations),
+            Direction::Along => self.measure_axis(self.axis, place, body_rotations),
+            Direction::Across => self.measure_axis(self.axis.perp(), place, body_rotations),
+            Direction::AcrossBalanced => {
+                self.measure_axis(self.axis.perp(), &self.balanced(place, body_rotations), body_rotations)
+            }
+            Direction::Apart => {
+                // Anchors that coincide have no direction: any will do.
+                let n = place.gap.normalized().unwrap_or(self.axis);
+                let (row, denominator) = Row::prepare(n, place.lever_a, place.lever_b, place.fractions);
+                Measure { row, denominator, position: place.gap.length(), scale: Fx::ONE }
+            }
+        }
+    }
+
+    /// Measures along an axis of A. The axis turns with A about A's centre, so that A's arm reaches to B's anchor.
+    fn measure_axis(&self, axis: Vec2<Unit>, place: &JointPose, body_rotations: &[BodyRotation]) -> Measure {
+        let n = body_rotations[self.body_a as usize].rotation.apply(axis);
+        let arm = place.lever_a.arm + place.gap.narrow();
+        let (row, denominator) =
+            Row::prepare(n, Lever { arm, ..place.lever_a }, place.lever_b, place.fractions);
+        Measure { row, denominator, position: place.gap.dot(n.widen()), scale: Fx::ONE }
+    }
+
+    fn measure_angle(&self, body_rotations: &[BodyRotation]) -> Measure {
+        let (row, denominator, scale) =
+            Row::angular(self.inverse_gyration_a, self.inverse_gyration_b, self.fractions);
+        Measure { row, denominator, position: radians(self.turns(body_rotations)), scale: scale.into() }
+    }
+}
+
+/// The anchors of a joint at one pose.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct JointPose {
+    pub(super) lever_a: Lever,
+    pub(super) lever_b: Lever,
+    pub(super) fractions: MassFractions,
+    /// From A's anchor to B's.
+    pub(super) gap: Vec2<Fx>,
+}
+
+/// A rotated arm before it is rounded, with 52 fraction bits. The gap is the small difference of two long arms, so that
+/// arms are subtracted before they are rounded.
+#[derive(Clone, Copy)]
+struct WideArm {
+    x: i64,
+    y: i64,
+}
+
+impl WideArm {
+    fn rotated(rotation: Rot, local: Vec2<Length>) -> Self {
+        let (c, s) = (i64::from(rotation.cos.to_bits()), i64::from(rotation.sin.to_bits()));
+        let (x, y) = (i64::from(local.x.to_bits()), i64::from(local.y.to_bits()));
+        WideArm { x: c * x - s * y, y: s * x + c * y }
+    }
+
+    fn narrow(self) -> Vec2<Length> {
+        let narrow = |wide: i64| Length::from_bits(saturate(round_shift(wide, 30)));
+        Vec2::new(narrow(self.x), narrow(self.y))
+    }
+}
