@@ -4,7 +4,7 @@ use anyhow::{Result, bail};
 use lockstep2d::body::{BodyDef, BodyId, Polygon, ShapeDef};
 use lockstep2d::math::{Angle, Fx, Length, Vec2};
 use lockstep2d::solver::JointDef;
-use lockstep2d::world::{Command, Outcome, BodyPose};
+use lockstep2d::world::{BodyPose, Command, Outcome};
 use serde::Serialize;
 
 use crate::box2d::Box2d;

@@ -6,7 +6,7 @@ use lockstep2d::body::{BodyDef, BodyId, BodyKind, Geometry, ShapeDef};
 use lockstep2d::collision::BroadPhaseKind;
 use lockstep2d::fx;
 use lockstep2d::math::{Fx, Rng, Vec2};
-use lockstep2d::world::{Command, BodyPose, World};
+use lockstep2d::world::{BodyPose, Command, World};
 
 use crate::generator::{self, Generator};
 use crate::shapes;
@@ -165,6 +165,9 @@ impl Crowd {
             // Places bodies in rows and columns, so that boxes share bounds.
             position = Vec2::new(self.rng.range(fx!(-4), fx!(4)).round(), position.y.round());
         }
-        BodyPose { position, angle: if self.rng.chance(1, 2) { self.rng.angle() } else { Default::default() } }
+        BodyPose {
+            position,
+            angle: if self.rng.chance(1, 2) { self.rng.angle() } else { Default::default() },
+        }
     }
 }

@@ -7,7 +7,7 @@ use lockstep2d::body::{BodyDef, BodyId, BodyKind, Geometry, ShapeDef};
 use lockstep2d::fx;
 use lockstep2d::math::{Fx, Rng, Vec2, fx_mul};
 use lockstep2d::solver::{ContactTuning, JointDef};
-use lockstep2d::world::{Command, Config, Explosion, BodyPose, World};
+use lockstep2d::world::{BodyPose, Command, Config, Explosion, World};
 
 use crate::generator::{serde_handle::Handle, spawn};
 use crate::shapes::{calm_chain, calm_shape, half_extents};
@@ -231,8 +231,7 @@ fn neighbours(source: &mut Source<'_>, world: &World, body: BodyId) -> Option<Jo
     let between = (here.centre_of_mass() + there.centre_of_mass()).scale(fx!(0.5));
     let anchor = |body: &lockstep2d::body::Body| body.transform().apply_inverse(between);
     let (a, b) = (anchor(here), anchor(there));
-    let mut joint =
-        JointDef::new(body, other, joints::calm_kind(source)).anchor_a(a).anchor_b(b);
+    let mut joint = JointDef::new(body, other, joints::calm_kind(source)).anchor_a(a).anchor_b(b);
     // The rest angle is the current one, so that joints that hold the angle have nothing to correct.
     joint.frame_b.angle = here.angle() - there.angle();
     Some(joints::finish(source, joint))

@@ -6,7 +6,7 @@
 use lockstep2d::body::{BodyDef, BodyId, JointId, ShapeDef, ShapeId, WORLD_EXTENT_MAX};
 use lockstep2d::math::{Fx, Rng, Vec2};
 use lockstep2d::solver::{ContactTuning, JointDef, SolverSettings};
-use lockstep2d::world::{Command, Config, Explosion, BodyPose, World};
+use lockstep2d::world::{BodyPose, Command, Config, Explosion, World};
 use lockstep2d::{codec, fx};
 
 use crate::source::Source;

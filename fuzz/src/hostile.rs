@@ -212,7 +212,9 @@ impl Forger<'_, '_> {
         let nonce = self.nonce();
         match self.source.below(20) {
             0 | 1 => {
-                let Some(parameters) = self.parameters() else { return Packet::Agreed { plan: self.session() } };
+                let Some(parameters) = self.parameters() else {
+                    return Packet::Agreed { plan: self.session() };
+                };
                 let seat = self.source.one_in(2).then(|| self.seat());
                 let nonce = if self.source.one_in(2) { self.number() } else { nonce };
                 Packet::Hello { nonce, parameters, seat, watch: self.source.one_in(2) }

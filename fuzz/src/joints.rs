@@ -4,8 +4,8 @@ use lockstep2d::body::BodyId;
 use lockstep2d::fx;
 use lockstep2d::math::{Fx, Vec2};
 use lockstep2d::solver::{
-    Distance, Drive, JointDef, JointKind, JointLimit, LinearDrive, Motor, Prismatic, Pull, Revolute, Soft, Spring,
-    Threshold, ThresholdAction, Weld, Wheel,
+    Distance, Drive, JointDef, JointKind, JointLimit, LinearDrive, Motor, Prismatic, Pull, Revolute, Soft,
+    Spring, Threshold, ThresholdAction, Weld, Wheel,
 };
 
 use crate::source::Source;

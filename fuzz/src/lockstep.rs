@@ -5,7 +5,7 @@ use std::sync::Mutex;
 
 use lockstep2d::collision::BroadPhaseKind;
 use lockstep2d::hash::StateHash;
-use lockstep2d::world::{Command, Events, BodyField, Snapshot, World};
+use lockstep2d::world::{BodyField, Command, Events, Snapshot, World};
 
 use crate::generator::{self, Generator};
 use crate::source::Source;

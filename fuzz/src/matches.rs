@@ -5,7 +5,7 @@ use std::cell::RefCell;
 use std::rc::Rc;
 use std::time::Duration;
 
-use lockstep2d::net::{Event, Mode, NetError, Network, NetOptions, Peer, Port, Transport, LinkConditions};
+use lockstep2d::net::{Event, LinkConditions, Mode, NetError, NetOptions, Network, Peer, Port, Transport};
 use lockstep2d::replay::{Limits, verify};
 use lockstep2d::report::DesyncReport;
 

@@ -5,7 +5,7 @@ use lockstep2d::hash::StateHash;
 use lockstep2d::lockstep::{Game, History, Sandbox, SandboxSetup};
 use lockstep2d::replay::Recorder;
 use lockstep2d::report::{Blame, Desync, DesyncReport, Evidence, Side, compare};
-use lockstep2d::world::{Command, BodyField};
+use lockstep2d::world::{BodyField, Command};
 use serde::{Deserialize, Serialize};
 
 use crate::forge::{Forged, mutate};

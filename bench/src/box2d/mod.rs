@@ -7,7 +7,7 @@ use boxdd_sys::ffi::*;
 use lockstep2d::body::{BodyDef, BodyId, ShapeDef};
 use lockstep2d::math::{Angle, Fx, Vec2};
 use lockstep2d::solver::{ContactTuning, JointDef};
-use lockstep2d::world::{Config, BodyPose};
+use lockstep2d::world::{BodyPose, Config};
 
 use crate::engine::{BodyState, Builder, Contacts, Counts, Engine, Slots, build};
 use crate::script::Event;

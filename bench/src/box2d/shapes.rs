@@ -5,7 +5,7 @@ use boxdd_sys::ffi::*;
 use lockstep2d::body::{BodyDef, BodyKind, Continuous, Geometry, MassSource, ShapeDef, Sides};
 use lockstep2d::math::{Angle, Fx, Vec2};
 use lockstep2d::solver::{JointDef, JointFrame, JointKind};
-use lockstep2d::world::{Config, BodyPose};
+use lockstep2d::world::{BodyPose, Config};
 
 use crate::engine::{corners, singles};
 

@@ -8,7 +8,7 @@ use bincode::serde::{decode_from_slice, encode_into_std_write};
 use lockstep2d::body::{BodyDef, BodyId, Geometry, ShapeDef};
 use lockstep2d::math::{Angle, Fx, Vec2};
 use lockstep2d::solver::{ContactTuning, JointDef};
-use lockstep2d::world::{Config, BodyPose};
+use lockstep2d::world::{BodyPose, Config};
 use rapier2d::pipeline::PhysicsWorld;
 use rapier2d::prelude::*;
 

@@ -6,7 +6,7 @@ use lockstep2d::body::{
 };
 use lockstep2d::math::{Angle, Fx, Vec2};
 use lockstep2d::solver::{JointDef, JointFrame, JointKind};
-use lockstep2d::world::{Config, BodyPose};
+use lockstep2d::world::{BodyPose, Config};
 use rapier2d::prelude::*;
 
 use crate::engine::{corners, singles};

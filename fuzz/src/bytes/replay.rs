@@ -4,7 +4,7 @@ use std::sync::LazyLock;
 
 use lockstep2d::body::{BodyDef, Geometry, ShapeDef};
 use lockstep2d::lockstep::{Game, Sandbox, SandboxSetup};
-use lockstep2d::replay::{Limits, Reader, Recording, RawReplay, Step, Verdict, verify};
+use lockstep2d::replay::{Limits, RawReplay, Reader, Recording, Step, Verdict, verify};
 use lockstep2d::world::{Command, Config};
 use lockstep2d::{codec, fx};
 

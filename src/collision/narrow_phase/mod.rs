@@ -58,27 +58,7 @@ pub(crate) fn collide(
 }
 
 /// [`collide`] without the early reject; also its test oracle.
-#[inline(always)]
 pub(crate) fn collide_near(
-    a: &PosedShape,
-    b: &PosedShape,
-    margin: Length,
-    cached_axis: &mut CachedAxis,
-    counters: &mut SatCounters,
-) -> Manifold {
-    // Fast path for most pairs.
-    if let (Outline::Polygon(hull_a), Outline::Polygon(hull_b)) = (&a.outline, &b.outline) {
-        let d = (b.centre - a.centre).narrow();
-        let mut manifold = hull_hull::collide(hull_a, hull_b, d, margin, cached_axis, counters);
-        manifold.origin = a.centre;
-        return manifold;
-    }
-    collide_outlines(a, b, margin, cached_axis, counters)
-}
-
-/// [`collide_near`] for all pairs of outlines.
-#[inline(never)]
-fn collide_outlines(
     a: &PosedShape,
     b: &PosedShape,
     margin: Length,
