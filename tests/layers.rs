@@ -56,20 +56,42 @@ const LAYERS: &[(&str, &[&str])] = &[
 
 /// For each module with folders, its folders and which of the module's other folders each may use. `.` are the files that
 /// are in no folder.
-const FOLDERS: &[(&str, &[(&str, &[&str])])] = &[(
-    "world",
-    &[
-        // The state stores resting contacts with their packed form, and the world its caches and its digest.
-        (".", &["cache", "snapshot"]),
-        ("cache", &["."]),
-        ("islands", &[".", "cache"]),
-        ("snapshot", &[".", "cache"]),
-        ("edit", &[".", "cache", "islands"]),
-        ("query", &["."]),
-        ("view", &[".", "cache", "islands"]),
-        ("step", &[".", "cache", "islands", "snapshot"]),
-    ],
-)];
+const FOLDERS: &[(&str, &[(&str, &[&str])])] = &[
+    (
+        "collision",
+        &[
+            (".", &[]),
+            ("shape", &["."]),
+            ("broad_phase", &["."]),
+            ("narrow_phase", &[".", "shape"]),
+            ("query", &[".", "shape", "narrow_phase"]),
+        ],
+    ),
+    (
+        "solver",
+        &[
+            // The solver lists the stages of a sub-step.
+            (".", &["contact", "joint", "integrate"]),
+            ("contact", &["."]),
+            ("joint", &["."]),
+            ("integrate", &["."]),
+        ],
+    ),
+    (
+        "world",
+        &[
+            // The state stores sleeping contacts with their packed form, and the world its caches and its digest.
+            (".", &["cache", "snapshot"]),
+            ("cache", &["."]),
+            ("islands", &[".", "cache"]),
+            ("snapshot", &[".", "cache"]),
+            ("edit", &[".", "cache", "islands"]),
+            ("query", &["."]),
+            ("view", &[".", "cache", "islands"]),
+            ("step", &[".", "cache", "islands", "snapshot"]),
+        ],
+    ),
+];
 
 /// Items of the crate root that are not modules: every module may use them.
 const ROOT: &[&str] = &["fx", "SEMANTICS"];
