@@ -33,8 +33,8 @@ pub(crate) use body::{SolverBody, turn_of};
 use body_list::BodyList;
 use colour::Colouring;
 pub use colour::SolverColour;
+pub(crate) use contact::{ActiveContact, Surface, SurfaceSide, WarmStarts};
 use contact::{ApplyRestitution, Constants, ContactSet, ContactSource, Measure, ObserveApproach, PointOrder};
-pub(crate) use contact::{Surface, SurfaceSide, WarmStarts};
 use contact_velocity::{ContactVelocities, PushedBody};
 use context::{Pass, StepContext};
 use integrate::{MovingBody, integrate_displacements, integrate_velocities};
@@ -49,7 +49,7 @@ pub(crate) use settings::Tuning;
 pub use settings::{ContactTuning, DISTANCE_MAX, SolverSettings};
 
 use crate::body::{Arena, Body, BodyId, JointId};
-use crate::collision::{Contact, Manifold, Pair};
+use crate::collision::{Contact, Manifold};
 use crate::math::{Fx, Vec2};
 use crate::threads::Threads;
 
@@ -78,19 +78,6 @@ pub(crate) struct Solver {
     pub(crate) threads: Threads,
     pub(crate) warm_starts: WarmStarts,
     pub(crate) faults: Faults,
-}
-
-/// A contact that the solver has to deal with.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct ActiveContact {
-    /// The index of the contact in the state.
-    pub(crate) contact: u32,
-    /// The index of its manifold among those of the tick.
-    pub(crate) manifold: u32,
-    /// The slots of the shapes and of their bodies.
-    pub(crate) shapes: Pair,
-    pub(crate) bodies: (u32, u32),
-    pub(crate) surface: Surface,
 }
 
 impl Solver {

@@ -100,9 +100,9 @@ impl BroadPhase {
 
     /// Sets the collision class of a slot that has a box. Pairs within one class never collide, and may be left out of
     /// the results. A new box has no class.
-    pub(crate) fn set_collision_class(&mut self, slot: u32, collision_class: CollisionClass) {
+    pub(crate) fn set_collision_class(&mut self, slot: u32, class: CollisionClass) {
         if let Structure::Tree(tree) = &mut self.structure {
-            tree.set_collision_class(slot, collision_class);
+            tree.set_collision_class(slot, class);
         }
     }
 

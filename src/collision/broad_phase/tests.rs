@@ -42,7 +42,7 @@ fn random_class(rng: &mut Rng, count: u32) -> CollisionClass {
 /// Boxes by slot, and the three broad phase kinds, which must contain the same boxes.
 struct Crowd {
     boxes: Vec<Option<Aabb>>,
-    collision_class: Vec<CollisionClass>,
+    class: Vec<CollisionClass>,
     kinds: Vec<BroadPhase>,
 }
 
@@ -50,7 +50,7 @@ impl Crowd {
     fn new(slots: usize) -> Self {
         Crowd {
             boxes: vec![None; slots],
-            collision_class: vec![CollisionClass::NONE; slots],
+            class: vec![CollisionClass::NONE; slots],
             kinds: KINDS.map(BroadPhase::new).into(),
         }
     }
@@ -75,21 +75,21 @@ impl Crowd {
         self.kinds.iter_mut().for_each(|kind| kind.set_many(many));
     }
 
-    fn set_collision_class(&mut self, slot: usize, collision_class: CollisionClass) {
-        self.collision_class[slot] = collision_class;
+    fn set_collision_class(&mut self, slot: usize, class: CollisionClass) {
+        self.class[slot] = class;
         self.kinds
             .iter_mut()
-            .for_each(|kind| kind.set_collision_class(u32::try_from(slot).expect("few"), collision_class));
+            .for_each(|kind| kind.set_collision_class(u32::try_from(slot).expect("few"), class));
     }
 
     fn remove(&mut self, slot: usize) {
-        (self.boxes[slot], self.collision_class[slot]) = (None, CollisionClass::NONE);
+        (self.boxes[slot], self.class[slot]) = (None, CollisionClass::NONE);
         self.kinds.iter_mut().for_each(|kind| kind.remove(u32::try_from(slot).expect("few")));
     }
 
     fn refill(&mut self) {
         let boxes: Vec<_> = self.occupied().collect();
-        self.collision_class.fill(CollisionClass::NONE);
+        self.class.fill(CollisionClass::NONE);
         self.kinds.iter_mut().for_each(|kind| kind.refill(boxes.iter().copied()));
     }
 
@@ -163,8 +163,7 @@ fn all_kinds_find_the_same_pairs_while_boxes_move() {
         let accept = |(a, b): Pair| {
             assert!(a < b);
             (a + b) % 7 != 0
-                && crowd.collision_class[a as usize].common(crowd.collision_class[b as usize])
-                    == CollisionClass::NONE
+                && crowd.class[a as usize].common(crowd.class[b as usize]) == CollisionClass::NONE
         };
         let limit = if round % 3 == 0 { 10 } else { 1000 };
         for moved in [Moved::All, Moved::Slots(&moved), Moved::Slots(&[])] {

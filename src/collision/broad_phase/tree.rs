@@ -62,7 +62,7 @@ struct Node {
     /// Height above the leaves; 0 for a leaf.
     height: u8,
     /// Collision class of a leaf, or the common class of all leaves below.
-    collision_class: CollisionClass,
+    class: CollisionClass,
     /// Whether the pairs of this leaf, or of a leaf below, are currently requested.
     marked: bool,
     /// Children; for a leaf, its slot and [`NONE`].
@@ -116,16 +116,14 @@ impl Tree {
     }
 
     /// Sets the collision class of a slot that has a box. The tree keeps its structure.
-    pub(crate) fn set_collision_class(&mut self, slot: u32, collision_class: CollisionClass) {
-        if let Some(leaf) =
-            self.leaf_of(slot).filter(|&leaf| self.at(leaf).collision_class != collision_class)
-        {
-            self.at_mut(leaf).collision_class = collision_class;
+    pub(crate) fn set_collision_class(&mut self, slot: u32, class: CollisionClass) {
+        if let Some(leaf) = self.leaf_of(slot).filter(|&leaf| self.at(leaf).class != class) {
+            self.at_mut(leaf).class = class;
             let mut at = self.at(leaf).parent;
             while at != NONE {
-                let before = self.at(at).collision_class;
+                let before = self.at(at).class;
                 self.refit(at);
-                if self.at(at).collision_class == before {
+                if self.at(at).class == before {
                     break;
                 }
                 at = self.at(at).parent;
@@ -265,12 +263,12 @@ impl Tree {
     /// Updates boxes, heights and collision classes from a node upwards, until a node does not change.
     fn repair(&mut self, mut at: u32) {
         while at != NONE {
-            let Node { aabb, height, collision_class, parent, .. } = *self.at(at);
+            let Node { aabb, height, class, parent, .. } = *self.at(at);
             self.refit(at);
             self.balance(at);
             self.tighten(at, height);
             let node = self.at(at);
-            if (node.aabb, node.height, node.collision_class) == (aabb, height, collision_class) {
+            if (node.aabb, node.height, node.class) == (aabb, height, class) {
                 break;
             }
             at = parent;
@@ -283,7 +281,7 @@ impl Tree {
         let node = self.at_mut(at);
         node.aabb = a.aabb.union(b.aabb);
         node.height = 1 + a.height.max(b.height);
-        node.collision_class = a.collision_class.common(b.collision_class);
+        node.class = a.class.common(b.class);
     }
 
     /// Restores the balance of a node: if one child is too high, its higher child is exchanged with the other child.
@@ -385,7 +383,7 @@ impl Node {
             aabb,
             parent: NONE,
             height: 0,
-            collision_class: CollisionClass::NONE,
+            class: CollisionClass::NONE,
             marked: false,
             children: [slot, NONE],
         }

@@ -1,13 +1,25 @@
 //! Gathers the inputs of a contact's rows from the narrow phase, the state and the body list.
 
-use super::super::ActiveContact;
 use super::super::body_list::{BodyList, GROUND};
 use super::super::colour::{Node, Size};
 use super::super::row::MassFractions;
-use super::WarmStarts;
-use crate::collision::{Contact, Manifold, PointImpulse};
+use super::{Surface, WarmStarts};
+use crate::collision::{Contact, Manifold, Pair, PointImpulse};
 use crate::math::Length;
 use crate::simd::{Quad, prefetch};
+
+/// A touching pair that the solver solves.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ActiveContact {
+    /// Index of the contact in the state.
+    pub(crate) contact: u32,
+    /// Index of its manifold among the manifolds of the tick.
+    pub(crate) manifold: u32,
+    /// Slots of the shapes and of their bodies.
+    pub(crate) shapes: Pair,
+    pub(crate) bodies: (u32, u32),
+    pub(crate) surface: Surface,
+}
 
 /// The contacts of a tick, before they are put into batches.
 #[derive(Clone, Copy)]
@@ -148,7 +160,6 @@ fn carried_over(manifold: &Manifold, memory: &Contact, warm: &mut WarmStarts) ->
 
 #[cfg(test)]
 mod tests {
-    use super::super::Surface;
     use super::*;
     use crate::body::{Arena, Body, BodyDef, BodyId, MassProperties, MassSource};
     use crate::fx;

@@ -37,6 +37,7 @@ use crate::math::Speed;
 use batch::Batch;
 pub(super) use constants::Constants;
 use extras::ContactExtras;
+pub(crate) use input::ActiveContact;
 pub(super) use input::ContactSource;
 pub(super) use relax::{Measure, Relax};
 pub(super) use restitution::{ApplyRestitution, ObserveApproach};

@@ -10,14 +10,13 @@
 //! |L / D| s <= R sum Ln / Dn
 //! ```
 
-use super::super::ActiveContact;
 use super::super::body_list::BodyList;
 use super::super::pair::{BodyPairW, clamp};
 use super::super::row::{Denominator, MassFractions, Row as ScalarRow, impulse_of, lambda_of};
-use super::TANGENT_MAX;
 use super::batch::Row;
 use super::overflow_policy::OverflowPolicy;
 use super::rows::friction_ratio;
+use super::{ActiveContact, TANGENT_MAX};
 use crate::math::{Speed, Unit, fx_div, round_shift_wide, saturate_wide};
 use crate::simd::{Ints, Lanes};
 

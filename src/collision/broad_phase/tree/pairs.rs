@@ -106,7 +106,7 @@ impl Tree {
         meetings.waiting.push_wanted([itself(self.root)]);
         while let Some((a, b)) = meetings.waiting.pop() {
             let (node_a, node_b) = (self.at(a), self.at(b));
-            if node_a.collision_class.common(node_b.collision_class) != CollisionClass::NONE {
+            if node_a.class.common(node_b.class) != CollisionClass::NONE {
                 continue;
             }
             if a == b {

@@ -32,7 +32,7 @@ impl Tree {
                 "a box should contain the boxes of its children"
             );
             assert!(!node.marked, "marks should be cleared after use");
-            assert_eq!(node.collision_class, a.collision_class.common(b.collision_class));
+            assert_eq!(node.class, a.class.common(b.class));
             let is_in_order = node.children.iter().all(|&child| child > index);
             assert!(
                 self.relinked > 0 || is_in_order,
@@ -122,7 +122,7 @@ fn it_stays_sound_while_boxes_come_go_and_move() {
             let mut found = Vec::new();
             tree.each_pair_of(&slots, |pair| found.push(pair));
             found.sort_unstable();
-            let class_of = |slot: u32| tree.at(tree.leaves[slot as usize]).collision_class;
+            let class_of = |slot: u32| tree.at(tree.leaves[slot as usize]).class;
             let mut all = tree.pairs_of(&slots);
             all.retain(|&(a, b)| {
                 class_of(a).common(class_of(b)) == CollisionClass::NONE
