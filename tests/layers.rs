@@ -71,9 +71,10 @@ const FOLDERS: &[(&str, &[(&str, &[&str])])] = &[
         "solver",
         &[
             // The solver lists the stages of a sub-step.
-            (".", &["contact", "joint", "integrate"]),
-            ("contact", &["."]),
-            ("joint", &["."]),
+            (".", &["contact", "joint", "integrate", "row"]),
+            ("row", &["."]),
+            ("contact", &[".", "row"]),
+            ("joint", &[".", "row"]),
             ("integrate", &["."]),
         ],
     ),

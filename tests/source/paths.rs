@@ -120,7 +120,9 @@ fn paths_of(tokens: &[Token], place: &[String], is_module: &dyn Fn(&Vec<String>)
             _ => {}
         }
         let inline: Vec<String> = braces.iter().flatten().cloned().collect();
-        let starts = is_name(text(at)) && (at == 0 || text(at - 1) != "::");
+        // A path in a visibility, as in `pub(in crate::world)`, is no use.
+        let in_visibility = at >= 2 && text(at - 1) == "in" && text(at - 2) == "(";
+        let starts = is_name(text(at)) && !in_visibility && (at == 0 || text(at - 1) != "::");
         let is_use = text(at) == "use";
         let is_test = inline.iter().any(|name| name == "tests");
         if is_test || !(is_use || starts && text(at + 1) == "::") {
