@@ -14,7 +14,7 @@ use core::fmt::Debug;
 use super::body::SolverBody;
 use super::context::StepContext;
 use super::limits::Faults;
-use crate::simd::{Kernel, Lanes, Scalar, Shared, WIDTH, prefetch};
+use crate::simd::{Kernel, Lanes, Scalar, Shared, WIDTH};
 
 /// Fewest batches of a job: a smaller one costs more to hand to a thread than to do.
 const BATCHES_PER_JOB: usize = 16;
@@ -27,9 +27,6 @@ pub(super) trait BatchKind: Clone + Debug + 'static {
     type Record<const N: usize>: Clone + Debug + Sync;
     /// The part that only some batches have.
     type Extra<const N: usize>: Clone + Debug + Send;
-
-    /// The indices of the bodies of each lane: those of A and those of B.
-    fn bodies<const N: usize>(batch: &Self::Batch<N>) -> &[[u32; N]; 2];
 
     /// Whether a batch has an extra.
     fn has_extra<const N: usize>(batch: &Self::Batch<N>) -> bool;
@@ -122,9 +119,7 @@ impl<K: BatchKind> BatchList<K> {
             start = end;
             let share = threads.share(colour.len(), BATCHES_PER_JOB);
             let jobs = colour.chunks_mut(share).zip(records.chunks(share)).map(|(batches, records)| {
-                // In most ticks there are no extras, and counting them costs a cache miss for each batch.
-                let has_extra = |batch: &&K::Batch<WIDTH>| K::has_extra(batch);
-                let count = if extras.is_empty() { 0 } else { batches.iter().filter(has_extra).count() };
+                let count = batches.iter().filter(|batch| K::has_extra(batch)).count();
                 let (own, others) = core::mem::take(&mut extras).split_at_mut(count);
                 extras = others;
                 (batches, records, own)
@@ -154,15 +149,8 @@ impl<K: BatchKind, O: Operation<K>, const N: usize> Kernel<N> for Run<'_, K, O, 
     #[inline(always)]
     fn run<L: Lanes<N>>(self) {
         let Run { batches, records, extras, operation, bodies, faults } = self;
-        let (mut extras, mut records) = (extras.iter_mut(), records.iter());
-        let mut rest = batches;
-        while let ([batch, others @ ..], Some(record)) = (rest, records.next()) {
-            rest = others;
-            if let Some(next) = rest.first() {
-                // The bodies of the next batch are read through these indices. The rest of the batch comes in order, as
-                // processors expect: prefetched all at once it takes the room that this batch's bodies need.
-                prefetch(K::bodies(next));
-            }
+        let mut extras = extras.iter_mut();
+        for (batch, record) in batches.iter_mut().zip(records) {
             let extra = if K::has_extra(batch) { extras.next() } else { None };
             operation.apply::<L, N>(BatchParts { batch, record, extra, bodies, faults });
         }

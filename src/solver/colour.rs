@@ -121,8 +121,8 @@ impl Colouring {
         &self.order[..end]
     }
 
-    /// The other constraints, colour by colour and size by size. Empty groups are left out: in a small world most groups
-    /// are empty, and every operation iterates over them.
+    /// The other constraints, colour by colour and size by size. Empty groups are left out: in a small world most
+    /// groups are empty, and every operation iterates over them.
     pub(super) fn colours(&self) -> impl Iterator<Item = &[u32]> {
         let groups = self.ends.windows(2).map(|ends| &self.order[ends[0] as usize..ends[1] as usize]);
         groups.filter(|indices| !indices.is_empty())

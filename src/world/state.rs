@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::config::Config;
 use super::events::ContactEvent;
-use super::snapshot::Resting;
+use super::snapshot::SleepingContacts;
 use crate::body::{Arena, Body, BodyId, Handle, IslandId, JointId, Shape, ShapeId};
 use crate::collision::{Contact, Pair};
 use crate::math::Rng;
@@ -51,7 +51,7 @@ pub(crate) struct State {
     /// Contacts with an active body, sorted by pair.
     pub(crate) contacts: Vec<Contact>,
     /// Contacts without an active body, sorted by pair. A tick does not process them.
-    pub(crate) sleeping_contacts: Resting,
+    pub(crate) sleeping_contacts: SleepingContacts,
     /// Whether there were more pairs than [`Config::pair_limit`] at the last pair update.
     pub(crate) pairs_left_out: bool,
     /// Contacts that ended since the last tick because a shape was removed or changed, for the events of the next tick.
@@ -70,7 +70,7 @@ impl State {
             joints: Arena::default(),
             islands: Arena::default(),
             contacts: Vec::new(),
-            sleeping_contacts: Resting::default(),
+            sleeping_contacts: SleepingContacts::default(),
             pairs_left_out: false,
             removed_contacts: Vec::new(),
             rng: Rng::new(0),

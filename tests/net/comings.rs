@@ -17,7 +17,7 @@ fn joins(table: &Table, at: usize, seat: u32) -> Option<u64> {
 
 fn check_late(options: fn() -> NetOptions, conditions: LinkConditions, seed: u64) {
     let mut table = Table::of(3, options(), conditions, seed);
-    assert!(table.play(40, |table| table.all_confirmed(200)), "{}", table.describe());
+    assert!(table.play(40, |table| table.all_confirmed(sweep::size(200, 80))), "{}", table.describe());
     table.sit(table.guest(9, options()));
     assert!(
         table.play(40, |table| table.peers[3].as_ref().unwrap().seat().is_some()),
@@ -29,7 +29,7 @@ fn check_late(options: fn() -> NetOptions, conditions: LinkConditions, seed: u64
     assert!(all, "{}", table.describe());
     let tick = joins(&table, 0, 3).unwrap();
     assert!((0..4).all(|at| joins(&table, at, 3) == Some(tick)), "{}", table.describe());
-    let end = tick + 100;
+    let end = tick + sweep::size(100, 60);
     let mut compared = 0;
     let ended = table.play(60, |table| {
         let known = table.peers.iter().flatten().map(|peer| peer.confirmed()).min().unwrap();

@@ -28,5 +28,5 @@ pub use digest::{Section, WorldDigest};
 pub use phase_log::PhaseDigest;
 pub(crate) use phase_log::PhaseLog;
 pub use rollback::Snapshot;
-pub(crate) use sleeping_contacts::Resting;
+pub(crate) use sleeping_contacts::SleepingContacts;
 pub use validate::Violation;

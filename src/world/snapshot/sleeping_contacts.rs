@@ -16,7 +16,7 @@ use crate::hash::StateHash;
 /// form.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(transparent)]
-pub(crate) struct Resting {
+pub(crate) struct SleepingContacts {
     contacts: Vec<Contact>,
     #[serde(skip)]
     packed: OnceBox<Arc<PackedContacts>>,
@@ -39,7 +39,7 @@ impl PackedContacts {
     }
 }
 
-impl Resting {
+impl SleepingContacts {
     /// Returns the packed contacts, and packs them if they have changed.
     pub(super) fn share(&self) -> Arc<PackedContacts> {
         let pack = || PackedContacts::of(&self.contacts);
@@ -57,13 +57,13 @@ impl Resting {
     }
 }
 
-impl PartialEq for Resting {
+impl PartialEq for SleepingContacts {
     fn eq(&self, other: &Self) -> bool {
         self.contacts == other.contacts
     }
 }
 
-impl Deref for Resting {
+impl Deref for SleepingContacts {
     type Target = Vec<Contact>;
 
     fn deref(&self) -> &Vec<Contact> {
@@ -71,7 +71,7 @@ impl Deref for Resting {
     }
 }
 
-impl DerefMut for Resting {
+impl DerefMut for SleepingContacts {
     fn deref_mut(&mut self) -> &mut Vec<Contact> {
         self.packed = OnceBox::new();
         &mut self.contacts
