@@ -54,8 +54,8 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("scenes", &["math", "codec", "hash", "body", "collision", "solver", "world", "lockstep"]),
 ];
 
-/// For each module with folders, its folders and which of the module's other folders each may use. `.` are the files that
-/// are in no folder.
+/// For each module with folders, its folders and which of the module's other folders each may use. `.` are the files
+/// that are in no folder.
 const FOLDERS: &[(&str, &[(&str, &[&str])])] = &[
     (
         "collision",

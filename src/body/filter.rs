@@ -55,7 +55,8 @@ impl Filter {
     }
 }
 
-/// Collision class: two shapes of the same class never collide with each other, unless the class is [`CollisionClass::NONE`].
+/// Collision class: two shapes of the same class never collide with each other, unless the class is
+/// [`CollisionClass::NONE`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct CollisionClass(i16);
 

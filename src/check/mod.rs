@@ -2,9 +2,10 @@
 //! does.
 //!
 //! [`check`] takes a [`Game`] and an input log. It plays the log in a reference run, and beside it in every variant
-//! ([`Variant`]) of [`CheckOptions::variants`]: again from the start, encoded and reloaded at every tick, rolled back by 1 to 8
-//! ticks, with caches cleared, on other thread counts and so on. After every tick all variants must have the same hash.
-//! If one differs, the result is a [`Failure`]: the variant, the tick, the fields that differ, and a minimised replay.
+//! ([`Variant`]) of [`CheckOptions::variants`]: again from the start, encoded and reloaded at every tick, rolled back
+//! by 1 to 8 ticks, with caches cleared, on other thread counts and so on. After every tick all variants must have the
+//! same hash. If one differs, the result is a [`Failure`]: the variant, the tick, the fields that differ, and a
+//! minimised replay.
 //!
 //! ```
 //! use lockstep2d::{check::{self, CheckOptions}, lockstep::{Game, Sandbox, SandboxSetup}, math::Rng};
@@ -68,8 +69,8 @@ pub fn check<G: Game>(
     check_log(setup, &log, options)
 }
 
-/// Checks a game with the setup and the inputs of a replay, from [`CheckOptions::from`] to [`CheckOptions::to`]. Its checkpoints
-/// are ignored.
+/// Checks a game with the setup and the inputs of a replay, from [`CheckOptions::from`] to [`CheckOptions::to`]. Its
+/// checkpoints are ignored.
 ///
 /// # Errors
 /// Same as [`check`]; [`CheckError::Replay`] if the file is not a replay of this game or costs more than the limits

@@ -128,8 +128,8 @@ pub struct CheckOptions {
     pub from: u64,
     /// The tick at which the check ends, if the log is longer.
     pub to: u64,
-    /// Number of runs of each shortened log, to measure how often it fails; at least 1. A log that fails randomly, because
-    /// of a `HashMap`, is shortened only while it fails as often as before.
+    /// Number of runs of each shortened log, to measure how often it fails; at least 1. A log that fails randomly,
+    /// because of a `HashMap`, is shortened only while it fails as often as before.
     pub repeats: u32,
     /// Maximum number of ticks simulated to minimise a failing log. With 0 the log is only cut after the failing tick,
     /// and not played again.

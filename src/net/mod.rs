@@ -5,9 +5,9 @@
 //!
 //! - [`Driver`] executes the requests of any GGRS session, and keeps the recent states and the replay. It is all you
 //!   need with your own session and sockets.
-//! - [`Peer`] is a complete participant. It compares [`HandshakeParameters`] in the handshake, admits late joiners, makes all peers
-//!   agree on the tick at which a player left, compares states, and adapts the tick rate. It creates its own GGRS
-//!   sessions.
+//! - [`Peer`] is a complete participant. It compares [`HandshakeParameters`] in the handshake, admits late joiners,
+//!   makes all peers agree on the tick at which a player left, compares states, and adapts the tick rate. It creates
+//!   its own GGRS sessions.
 //! - [`Transport`] carries packets: [`Udp`], a simulated [`Network`] in memory for tests, or your own.
 //!
 //! This module never reads a clock: the time is passed to [`Peer::update`]. GGRS reads the clock for its timeouts.

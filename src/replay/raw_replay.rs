@@ -10,8 +10,8 @@ use super::verified_replay::{Ending, Step, check_bodies, check_rules, decode_set
 use crate::lockstep::{Game, decode_inputs};
 use crate::world::World;
 
-/// A raw replay: simulates the inputs of a file. Unlike a [`VerifiedReplay`](super::Playback) it compares nothing, so its
-/// states are those that the running engine computes from these inputs.
+/// A raw replay: simulates the inputs of a file. Unlike a [`VerifiedReplay`](super::Playback) it compares nothing, so
+/// its states are those that the running engine computes from these inputs.
 pub struct RawReplay<'a, G: Game> {
     game: G,
     limits: Limits,
@@ -162,8 +162,8 @@ impl<'a, G: Game> RawReplay<'a, G> {
         &self.place
     }
 
-    /// Restores a state and position of this raw replay or of another one of the same file. [`RawReplay::inputs`] is then
-    /// empty.
+    /// Restores a state and position of this raw replay or of another one of the same file. [`RawReplay::inputs`] is
+    /// then empty.
     pub(super) fn go(&mut self, save: &G::Save, place: ReplayPosition<'a>) {
         self.game.load(save);
         self.place = place;

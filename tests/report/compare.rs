@@ -60,8 +60,8 @@ fn flipped_bits(difference: &Difference) -> u32 {
     (bits(&difference.a) ^ bits(&difference.b)).count_ones()
 }
 
-/// Cases of a flip in one peer's game, each of them told by the reports of that peer and of another one. Returns how many
-/// flips the solver swallowed without a trace. Of the flips that are drawn, every `stride`th is tried.
+/// Cases of a flip in one peer's game, each of them told by the reports of that peer and of another one. Returns how
+/// many flips the solver swallowed without a trace. Of the flips that are drawn, every `stride`th is tried.
 fn cases(seed: u64, count: u32, when: When, stride: u32) -> u32 {
     let mut rng = Rng::new(seed);
     let mut drawn = 0_u32;

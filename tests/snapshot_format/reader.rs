@@ -300,7 +300,7 @@ impl<'a> Reader<'a> {
 
     fn contacts(&mut self) {
         self.list_of_contacts("contacts");
-        self.list_of_contacts("resting contacts");
+        self.list_of_contacts("sleeping contacts");
         self.u8("pairs were left out");
         for _ in 0..self.count("contacts that ended by removal") {
             self.handle("shape A");

@@ -89,7 +89,8 @@ impl Crate {
     }
 }
 
-/// The module path of a file: `["world", "step"]` for `src/world/step.rs` and `src/world/step/mod.rs`. Empty for the root.
+/// The module path of a file: `["world", "step"]` for `src/world/step.rs` and `src/world/step/mod.rs`. Empty for the
+/// root.
 pub(crate) fn module_of(path: &str) -> Vec<String> {
     let path = path.trim_start_matches("src/").trim_end_matches(".rs");
     let parts = path.split('/').filter(|part| !matches!(*part, "mod" | "lib"));
@@ -158,8 +159,8 @@ fn is_name(text: &str) -> bool {
     text.starts_with(|c: char| c.is_alphabetic() || c == '_')
 }
 
-/// Reads a path or a tree of paths. Adds the names of each path, and the name that it brings into scope. Returns the index of
-/// the token behind it.
+/// Reads a path or a tree of paths. Adds the names of each path, and the name that it brings into scope. Returns the
+/// index of the token behind it.
 fn read_tree(
     tokens: &[Token],
     start: usize,

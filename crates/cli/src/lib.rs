@@ -25,8 +25,8 @@
 //! }
 //! ```
 //!
-//! This gives `verify`, `diff`, `bisect`, `trace`, `stress-saves`, `inspect`, `seek`, `fork`, `trim`, `stats` and `export`.
-//! [`Tool::with_scenes`] adds `scenes` and `record`; [`Tool::with_view`] sets how pictures show the game.
+//! This gives `verify`, `diff`, `bisect`, `trace`, `stress-saves`, `inspect`, `seek`, `fork`, `trim`, `stats` and
+//! `export`. [`Tool::with_scenes`] adds `scenes` and `record`; [`Tool::with_view`] sets how pictures show the game.
 
 mod commands;
 mod console;

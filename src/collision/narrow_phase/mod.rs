@@ -188,8 +188,8 @@ mod tests {
             let margin = narrow(rng.range(fx!(0.005), fx!(0.2)));
             let mut cached_axis = CachedAxis::default();
             let plain = collide_near(&a, &b, margin, &mut cached_axis, &mut SatCounters::default());
-            // `cached_axis` now contains the separating axis, if there is one. In the second round it contains that of another
-            // pair.
+            // `cached_axis` now contains the separating axis, if there is one. In the second round it contains that of
+            // another pair.
             for _ in 0..2 {
                 let found = collide(&a, &b, margin, &mut cached_axis, &mut counters);
                 assert_eq!(found.points(), plain.points());

@@ -7,7 +7,7 @@ use super::rolling::RollingRows;
 use crate::math::Unit;
 use crate::simd::{Ints, Lanes};
 
-/// The rest of a batch in which some surface is special.
+/// The rest of a batch in which some surface has extras.
 #[derive(Clone, Debug)]
 pub(in crate::solver) struct ContactExtras<const N: usize> {
     pub(super) restitution: Ints<N>,
@@ -23,7 +23,7 @@ pub(in crate::solver) struct ContactExtras<const N: usize> {
 }
 
 impl<const N: usize> ContactExtras<N> {
-    /// A batch in which no lane is special.
+    /// A batch in which no lane has extras.
     pub(super) const NONE: Self = ContactExtras {
         restitution: Ints::ZERO,
         approach: [Ints::ZERO; 2],

@@ -1,9 +1,10 @@
 //! Overflow policies: how numbers are kept within their formats.
 //!
-//! [`Saturating`] saturates every sum and counts a fault where a clamp changed a number. [`Unchecked`] does neither, and
-//! records whether all numbers were within bounds inside which no sum can overflow and no clamp can act. Nearly all
-//! contacts are within these bounds: nothing in them is fast, deep or pushed hard. A batch is solved by `Unchecked` first,
-//! and again by `Saturating` if a number was out of bounds. Where the result of `Unchecked` is used, both give the same bits:
+//! [`Saturating`] saturates every sum and counts a fault where a clamp changed a number. [`Unchecked`] does neither,
+//! and records whether all numbers were within bounds inside which no sum can overflow and no clamp can act. Nearly all
+//! contacts are within these bounds: nothing in them is fast, deep or pushed hard. A batch is solved by `Unchecked`
+//! first, and again by `Saturating` if a number was out of bounds. Where the result of `Unchecked` is used, both give
+//! the same bits:
 //!
 //! ```text
 //! |vx|, |vy|, |u| < 64 at first, |d| < 4 for at most 10 rows       velocities stay below 104, spins below 84
@@ -26,10 +27,10 @@ use crate::simd::{Lanes, VelocityW};
 
 pub(super) const FRICTION_RATIO: i32 = shift(FrictionRatio::FRAC_NBITS);
 
-/// Largest lever ratio and largest grip of calm contacts.
+/// Largest lever ratio and largest friction ratio of unchecked contacts.
 const UNCHECKED_RATIO: Ratio = Ratio::lit("3");
 const UNCHECKED_FRICTION_RATIO: FrictionRatio = FrictionRatio::lit("3.5");
-/// Highest rate at which calm separations become speeds.
+/// Highest rate at which separations of unchecked contacts become speeds.
 const UNCHECKED_RATE: Rate = Rate::lit("512");
 
 /// Bound of speeds and impulses, 64 m/s, and of displacements, 2 m: a power of two.
@@ -39,7 +40,7 @@ const _: () = assert!(LARGE_BITS == 1 + Shift::FRAC_NBITS);
 const SMALL_BITS: u32 = 2 + Speed::FRAC_NBITS;
 const _: () = assert!(SMALL_BITS + 3 == Shift::FRAC_NBITS);
 
-/// Whether contacts may be calm in a world whose separations become speeds at these rates.
+/// Whether contacts may be unchecked in a world whose separations become speeds at these rates.
 pub(super) fn unchecked_at(rates: [Rate; 3]) -> bool {
     rates.into_iter().all(|rate| rate <= UNCHECKED_RATE)
 }

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! c = r x n,   e = c / k,   D = aA (1 + eA^2) + aB (1 + eB^2),   g = a / D,   f = g e
-//! grip = mu Dt / Dn,   L = p D
+//! friction ratio = mu Dt / Dn,   L = p D
 //! ```
 
 #[cfg(test)]

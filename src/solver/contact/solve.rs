@@ -6,8 +6,8 @@
 //!              a gap is rigid: massScale = 1, impulseScale = 0
 //! relax pass   w = vn + s / h for a gap that already pushes, vn for an overlap
 //! normal       L' = max(L - w, 0)
-//! friction     |L'| <= sum of grip Ln over the points,   w = vt + surface speed
-//! rolling      the same with the grips of `rolling`
+//! friction     |L'| <= sum of (mu Dt / Dn) Ln over the points,   w = vt + surface speed
+//! rolling      the same with the friction ratios of `rolling`
 //! ```
 
 use core::cell::Cell;
@@ -29,7 +29,7 @@ use crate::simd::{Ints, Lanes};
 /// rounds by 1 mm. Where piles rest the first round is mostly enough: a pyramid of 5050 boxes costs a tenth more.
 const NORMAL_ROUNDS_MAX: u32 = 4;
 
-/// Change of the second point's impulse, in m/s, below which it does not disturb the first point.
+/// Change of the second point's impulse, in m/s, below which it does not affect the first point.
 const SETTLED: Speed = Speed::lit("0.005");
 
 /// Which of a contact's two points is solved first. It alternates: the point that is solved first turns the body a
@@ -70,7 +70,8 @@ pub(super) struct Settings<'a> {
     pub(super) constants: &'a Constants,
 }
 
-/// Iterates without a check of any sum if the batch is calm, and again with all checks if it turns out not to be.
+/// Iterates without a check of any sum if the batch is unchecked, and again with all checks if a number was out of
+/// bounds.
 #[inline(always)]
 pub(super) fn solve<L: Lanes<N>, const N: usize>(parts: BatchParts<'_, Contacts, N>, settings: Settings<'_>) {
     let BatchParts { batch, extra: mut extras, bodies, faults, .. } = parts;
@@ -81,7 +82,7 @@ pub(super) fn solve<L: Lanes<N>, const N: usize>(parts: BatchParts<'_, Contacts,
             solved.store(batch, extras, bodies);
             return;
         }
-        // A batch that is not calm now will hardly be calm later in the tick.
+        // A batch that was out of bounds once is likely to be so again in this tick.
         batch.unchecked = false;
     }
     let careful = &mut Saturating(faults);
@@ -99,7 +100,7 @@ struct Solved<L: Lanes<N>, const N: usize> {
     pair: BodyPairW<L, N>,
 }
 
-/// One iteration. `extras` is left out of batches that are calm.
+/// One iteration. `extras` is left out of unchecked batches.
 #[inline(always)]
 fn iterate<L: Lanes<N>, C: OverflowPolicy<L, N>, const N: usize>(
     batch: &mut Batch<N>,

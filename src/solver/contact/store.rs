@@ -153,7 +153,7 @@ mod tests {
             let mut batch = Batch::<1> { count: 2, ..Batch::NONE };
             let limits = [0, 1].map(|i| {
                 let limit = i64::from(rng.below(1000));
-                // A grip of 1.
+                // A friction ratio of 1.
                 batch.points[i].friction_ratio.0[0] = 1 << 20;
                 batch.points[i].normal_lambda.0[0] = i32::try_from(limit).expect("below 1000");
                 limit

@@ -11,7 +11,7 @@ use crate::math::Aabb;
 pub(crate) struct Changes {
     /// The caches are new: every pair may have changed.
     everything: bool,
-    /// A resting contact may have an active body again, or may have ended.
+    /// A sleeping contact may have an active body again, or may have ended.
     sleeping_contacts: bool,
     /// Filters, sensors, kinds or joints have changed: pairs may not be allowed to collide any more.
     rules: bool,
@@ -38,7 +38,7 @@ impl Changes {
         self.everything
     }
 
-    /// Whether resting contacts have to be checked.
+    /// Whether sleeping contacts have to be checked.
     pub(crate) fn concerns_resting(&self) -> bool {
         self.everything || self.sleeping_contacts
     }
@@ -58,7 +58,7 @@ impl Changes {
         size_of_val(&*self.shapes)
     }
 
-    /// Records that resting contacts may have ended or may have an active body again.
+    /// Records that sleeping contacts may have ended or may have an active body again.
     pub(crate) fn resting_changed(&mut self) {
         self.sleeping_contacts = true;
     }

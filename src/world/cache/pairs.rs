@@ -36,7 +36,7 @@ pub(crate) struct PairBuffers {
     pub(crate) pairs: Vec<Pair>,
     /// Contacts to add to the active ones.
     pub(crate) fresh: Vec<Contact>,
-    /// Contacts to add to the resting ones.
+    /// Contacts to add to the sleeping ones.
     pub(crate) sleeping_contacts: Vec<Contact>,
     pub(crate) merged: MergedContacts,
 }

@@ -81,7 +81,7 @@ pub(crate) fn sleep_calm_sets(state: &mut State, scratch: &mut Scratch) {
     }
 }
 
-/// Moves the contacts without an active body to the resting ones, and drops their manifolds.
+/// Moves the contacts without an active body to the sleeping ones, and drops their manifolds.
 fn put_contacts_to_sleep(state: &mut State, scratch: &mut Scratch) {
     let buffers = &mut scratch.pairs.buffers;
     buffers.sleeping_contacts.clear();

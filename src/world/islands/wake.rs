@@ -7,7 +7,7 @@ use crate::body::{BodyId, BodyKind, Handle, IslandId};
 use crate::world::cache::Scratch;
 use crate::world::state::State;
 
-/// Wakes an island. Its resting contacts become active at the next pair update.
+/// Wakes an island. Its sleeping contacts become active at the next pair update.
 pub(crate) fn wake_island(state: &mut State, scratch: &mut Scratch, island: IslandId) {
     let Some(island) = state.islands.remove(island) else { return };
     for slot in island.bodies {

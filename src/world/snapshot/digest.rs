@@ -21,7 +21,7 @@ pub enum Section {
     Shapes,
     /// Joints, their impulses and their free list.
     Joints,
-    /// Active and resting contacts and their impulses.
+    /// Active and sleeping contacts and their impulses.
     Contacts,
     /// Sleeping islands.
     Islands,

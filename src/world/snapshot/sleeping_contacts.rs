@@ -44,7 +44,7 @@ impl SleepingContacts {
     pub(super) fn share(&self) -> Arc<PackedContacts> {
         let pack = || PackedContacts::of(&self.contacts);
         let packed = self.packed.get_or_init(|| Box::new(Arc::new(pack())));
-        debug_assert_eq!(**packed, pack(), "resting contacts have changed since they were packed");
+        debug_assert_eq!(**packed, pack(), "sleeping contacts have changed since they were packed");
         packed.clone()
     }
 

@@ -1,8 +1,8 @@
 //! Pair update: brings the contacts of the state in line with the fat boxes.
 //!
 //! A contact exists for every pair of shapes whose fat boxes overlap and which may collide. The active ones, with at
-//! least one active body, are in `State::contacts`; the others are in `State::sleeping_contacts` until something moves. The
-//! result is a function of the state: [`Changes`](crate::world::cache::Changes) only says where to look for
+//! least one active body, are in `State::contacts`; the others are in `State::sleeping_contacts` until something moves.
+//! The result is a function of the state: [`Changes`](crate::world::cache::Changes) only says where to look for
 //! differences.
 
 use crate::collision::{Contact, Moved, Pair};
@@ -27,8 +27,8 @@ pub(super) fn update_pairs(state: &mut State, scratch: &mut Scratch) {
     pairs.changes.clear(shapes.broad_phase(), state.shapes.slot_count());
 }
 
-/// Moves the resting contacts that have an active body again to the fresh ones, and ends those whose boxes have parted
-/// or which may not collide any more. A resting contact can end if a kinematic body with a sensor was moved by hand.
+/// Moves the sleeping contacts that have an active body again to the fresh ones, and ends those whose boxes have parted
+/// or which may not collide any more. A sleeping contact can end if a kinematic body with a sensor was moved by hand.
 fn activate_resting(state: &mut State, scratch: &mut Scratch) {
     let pairs = &mut scratch.pairs;
     pairs.buffers.fresh.clear();

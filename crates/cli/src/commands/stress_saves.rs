@@ -1,5 +1,5 @@
-//! `stress-saves`: plays a replay and, at every tick, saves the game to bytes and restores it into a new game that plays on
-//! beside the first one.
+//! `stress-saves`: plays a replay and, at every tick, saves the game to bytes and restores it into a new game that
+//! plays on beside the first one.
 
 use std::fmt;
 use std::path::{Path, PathBuf};

@@ -1,4 +1,5 @@
-//! `stress-saves`: a correct game passes, and for a game with an incomplete save the tick of the first difference is reported.
+//! `stress-saves`: a correct game passes, and for a game with an incomplete save the tick of the first difference is
+//! reported.
 
 use std::fs;
 

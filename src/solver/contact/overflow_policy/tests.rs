@@ -17,7 +17,7 @@ use crate::solver::settings::Tuning;
 use core::cell::Cell;
 use std::vec::Vec;
 
-/// A contact that is within the bounds of calm ones, or just beyond.
+/// A contact that is within the bounds of unchecked contacts, or just beyond.
 fn input(rng: &mut Rng, count: u8) -> Input {
     let n = Rot::from_angle(rng.angle()).apply(Vec2::X);
     let mass = |rng: &mut Rng| if rng.below(5) == 0 { fx!(0) } else { rng.range(fx!(0.1), fx!(20)) };
@@ -162,5 +162,5 @@ fn calm_contacts_end_as_careful_ones() {
             );
         }
     }
-    assert!(unchecked > 2000 && wild > 2000, "{unchecked} were calm and {wild} were not");
+    assert!(unchecked > 2000 && wild > 2000, "{unchecked} were within the bounds and {wild} were not");
 }

@@ -16,7 +16,7 @@ fn grip_is_friction_times_the_ratio_of_denominators() {
     assert_eq!(
         friction_ratio(fx!(16), 16130 * one),
         FrictionRatio::MAX,
-        "the grip saturates and does not wrap"
+        "the friction ratio saturates and does not wrap"
     );
 }
 

@@ -112,7 +112,7 @@ impl HingeSet {
         }
     }
 
-    /// The refresh that the next operation has to do, for ordinary hinges and for mounts.
+    /// The refresh that the next operation has to do, for ordinary and for anchored hinges.
     fn refreshes<'a>(&mut self, poses: Poses<'a>, context: &StepContext<'_>) -> [Refresh<'a>; 2] {
         let (dirty, tuning) = (mem::take(&mut self.dirty), context.tuning);
         [tuning.joint, tuning.anchored].map(|points| {

@@ -53,7 +53,7 @@ impl HingeSet {
     }
 
     /// Adds batches of the hinges of a colour, given by their inputs. Hinges with rows on the angle have batches of
-    /// their own, and so have mounts: `is_alone` tells whether a body, by its index, has only one joint.
+    /// their own, and so have anchored hinges: `is_alone` tells whether a body, by its index, has only one joint.
     pub(in super::super) fn push_colour(
         &mut self,
         indices: impl Iterator<Item = u32> + Clone,
@@ -71,7 +71,7 @@ impl HingeSet {
         anchored.coloured.end_colour();
     }
 
-    /// The indices of the bodies that mounts hold.
+    /// The indices of the bodies of anchored hinges.
     pub(in super::super) fn mounted(&self) -> impl Iterator<Item = u32> {
         let Batches { batches, records, .. } = &self.anchored.coloured;
         batches.iter().zip(records).flat_map(|(Batch { changed: [a, b], .. }, records)| {
