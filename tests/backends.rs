@@ -41,7 +41,7 @@ fn end_of(name: &str, ticks: u64, choose: impl FnOnce(&mut World) -> bool) -> (S
     (game.state_hash().to_string(), *game.world().stats())
 }
 
-/// Runs all scenes in each of several ways, which have to agree with each other and with the file.
+/// Runs all scenes in several ways, whose hashes have to be equal to each other and to those of the file.
 fn all_end_in_their_hashes<Variant: Copy + Debug + Sync>(
     variants: &[Variant],
     choose: fn(&mut World, Variant) -> bool,
@@ -87,4 +87,20 @@ fn every_backend_ends_in_the_same_hashes() {
 #[cfg(feature = "parallel")]
 fn any_number_of_threads_ends_in_the_same_hashes() {
     all_end_in_their_hashes(&[2, 4, 8], World::set_threads);
+}
+
+/// Checks the helpers of all sweeps: every case is checked, the first and the last are in the sample, and a case that
+/// fails makes the sweep fail.
+#[test]
+fn a_sweep_checks_its_ends_and_fails_with_any_case() {
+    let sampled = sweep::sample(0..100, 7);
+    assert!(sampled.starts_with(&[0]) && sampled.ends_with(&[99]), "{sampled:?}");
+    let seen = Mutex::new(Vec::new());
+    sweep::for_each(sampled.clone(), |case| seen.lock().expect("no check fails").push(case));
+    let mut seen = seen.into_inner().expect("no check fails");
+    seen.sort_unstable();
+    assert_eq!(seen, sampled);
+    let fails = |case: i32| assert_ne!(case, 99, "this failure is expected");
+    assert!(std::panic::catch_unwind(|| sweep::for_each(sampled.clone(), fails)).is_err());
+    assert!(std::panic::catch_unwind(|| sweep::at_once(sampled.clone(), fails)).is_err());
 }

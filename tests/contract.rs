@@ -129,7 +129,7 @@ fn scratch_may_be_cleared_before_any_tick() {
 #[test]
 fn the_broad_phase_makes_no_difference() {
     each_scene(|scene, ticks, reference| {
-        // Brute force compares each shape with each: a few ticks of the largest scenes are enough.
+        // Brute force compares each shape with every other, so the largest scenes run for five ticks only.
         let ticks = if shape_count(scene) > 2000 { 5 } else { ticks };
         let brute_force = |tick: u64, game: &mut Sandbox| {
             if tick == 0 {

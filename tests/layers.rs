@@ -27,8 +27,11 @@ mod source;
 use paths::{Crate, module_of, modules};
 use source::{Token, files, tokens};
 
+/// Names, and the other names that each of them may use.
+type Rules = &'static [(&'static str, &'static [&'static str])];
+
 /// Every module of the library with the modules that it may use besides itself.
-const LAYERS: &[(&str, &[&str])] = &[
+const LAYERS: Rules = &[
     ("math", &[]),
     ("codec", &[]),
     ("hash", &["codec"]),
@@ -56,7 +59,7 @@ const LAYERS: &[(&str, &[&str])] = &[
 
 /// For each module with folders, its folders and which of the module's other folders each may use. `.` are the files
 /// that are in no folder.
-const FOLDERS: &[(&str, &[(&str, &[&str])])] = &[
+const FOLDERS: &[(&str, Rules)] = &[
     (
         "collision",
         &[
@@ -142,7 +145,7 @@ fn files_of_different_folders_form_no_circle() {
 /// The canary of the folder rules.
 #[test]
 fn wrong_folders_and_circles_are_found() {
-    let rules: &[(&str, &[&str])] = &[(".", &["b"]), ("a", &["."]), ("b", &["."])];
+    let rules: Rules = &[(".", &["b"]), ("a", &["."]), ("b", &["."])];
     let sources = |files: &[(&str, &str)]| {
         let files: Vec<_> = files.iter().map(|(path, text)| (module_of(path), text.to_string())).collect();
         Crate::new(&files)
@@ -197,7 +200,7 @@ fn folder_of<'a>(place: &'a [String], sources: &Crate) -> &'a str {
 }
 
 /// The paths of a module's files that lead to a folder that they must not use.
-fn wrong_uses(sources: &Crate, module: &str, rules: &[(&str, &[&str])]) -> Vec<String> {
+fn wrong_uses(sources: &Crate, module: &str, rules: Rules) -> Vec<String> {
     let mut wrong = Vec::new();
     for place in sources.modules().filter(|place| place.first().is_some_and(|name| name == module)) {
         let folder = folder_of(place, sources);

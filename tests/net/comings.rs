@@ -24,7 +24,7 @@ fn check_late(options: fn() -> NetOptions, conditions: LinkConditions, seed: u64
         "{}",
         table.describe()
     );
-    // Each of them goes over to the new session in its own time, at the same tick.
+    // Each peer changes to the new session at its own time, but at the same tick.
     let all = table.play(10, |table| (0..4).all(|at| joins(table, at, 3).is_some()));
     assert!(all, "{}", table.describe());
     let tick = joins(&table, 0, 3).unwrap();

@@ -67,6 +67,7 @@ fn keep_awake_on_moving_anchors(state: &mut State, scratch: &Scratch) {
 }
 
 /// Resets the ticks at rest of a body if `ground` is kinematic and has moved in this tick.
+#[inline(always)]
 fn keep_awake_on(state: &mut State, scratch: &Scratch, ground: u32, other: u32) {
     // The velocity in the state is already 0 if the body has reached its target.
     let has_moved = || {
