@@ -125,17 +125,11 @@ impl BoxPairs {
     }
 
     /// Adds a pair of small boxes by slot, with the vector from the centre of the first to that of the second. Returns
-    /// the index of the pair, or `None` if the pair is out of the range of the SIMD path.
+    /// whether the pair is in the range of the SIMD path; if not, it is not added.
     #[inline]
-    pub(crate) fn push(
-        &mut self,
-        (a, b): Pair,
-        d: Vec2<Fx>,
-        radii: [Length; 2],
-        margin: Length,
-    ) -> Option<usize> {
+    pub(crate) fn push(&mut self, (a, b): Pair, d: Vec2<Fx>, radii: [Length; 2], margin: Length) -> bool {
         if d.x.saturating_abs().max(d.y.saturating_abs()) > DISTANCE_MAX || margin > MARGIN_MAX {
-            return None;
+            return false;
         }
         let (place, lane) = (self.count, self.count % WIDTH);
         if place / WIDTH == self.batches.len() {
@@ -154,7 +148,7 @@ impl BoxPairs {
         (batch.d[0].0[lane], batch.d[1].0[lane]) = (d.x.to_bits(), d.y.to_bits());
         batch.margin.0[lane] = margin.to_bits();
         self.count += 1;
-        Some(place)
+        true
     }
 
     /// Computes the manifolds of all pairs.

@@ -2,7 +2,6 @@
 
 use alloc::vec::Vec;
 
-use super::motion::ClosingBound;
 use crate::collision::{BoxPairs, CachedAxis, Contact, Manifold, SatCounters};
 use crate::solver::ActiveContact;
 use crate::world::events::HitEvent;
@@ -48,20 +47,8 @@ pub(crate) struct NarrowPhaseOutput {
     /// Fast approaches, which become hit events if the shapes push each other in this tick.
     pub(crate) approaches: Vec<PendingHit>,
     pub(crate) sat: SatCounters,
-    /// Buffer: contacts of the current block whose shapes may meet.
-    pub(crate) near: Vec<NearPair>,
     /// Buffer: box pairs of the current block.
     pub(crate) boxes: BoxPairs,
-}
-
-/// A contact whose shapes may meet within the tick.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct NearPair {
-    /// Index among the contacts of the job.
-    pub(crate) index: usize,
-    pub(crate) closing: ClosingBound,
-    /// Index among the box pairs of the block, if both shapes are small boxes.
-    pub(crate) box_pair: Option<usize>,
 }
 
 /// A contact whose shapes approach fast enough for a hit event.
@@ -178,7 +165,6 @@ impl NarrowPhaseOutput {
         self.sensors.clear();
         self.touching.clear();
         self.approaches.clear();
-        self.near.clear();
         self.boxes.clear();
         self.sat = SatCounters::default();
     }

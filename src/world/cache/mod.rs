@@ -26,7 +26,7 @@ mod union_find;
 
 pub(crate) use awake::{AwakeSet, is_awake};
 pub(crate) use changes::Changes;
-pub(crate) use contacts::{ContactCache, NarrowPhaseBuffers, NarrowPhaseOutput, NearPair, PendingHit};
+pub(crate) use contacts::{ContactCache, NarrowPhaseBuffers, NarrowPhaseOutput, PendingHit};
 pub(crate) use joint_links::JointLinks;
 pub(crate) use motion::{
     ClosingBound, GHOST_TRAVEL_MIN, Margins, MotionCache, PredictedMotion, ShapeMotion, Travel,

@@ -72,7 +72,9 @@ impl State {
         let sleeping_contacts = |contact: &Contact| {
             state.sleeping_contacts.binary_search_by_key(&contact.shapes, |other| other.shapes).is_ok()
         };
-        check(!state.contacts.iter().any(sleeping_contacts), || "a contact is both active and sleeping".into())
+        check(!state.contacts.iter().any(sleeping_contacts), || {
+            "a contact is both active and sleeping".into()
+        })
     }
 }
 

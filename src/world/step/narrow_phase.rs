@@ -9,8 +9,7 @@ use crate::math::{Length, Step, saturate, widen};
 use crate::simd::Machine;
 use crate::solver::{ActiveContact, Surface, SurfaceSide};
 use crate::world::cache::{
-    ClosingBound, Margins, MotionCache, NarrowPhaseBuffers, NarrowPhaseOutput, NearPair, PendingHit, Poses,
-    Scratch,
+    ClosingBound, Margins, MotionCache, NarrowPhaseBuffers, NarrowPhaseOutput, PendingHit, Poses, Scratch,
 };
 use crate::world::events::{ContactEvent, HitEvent};
 use crate::world::state::State;
@@ -64,24 +63,61 @@ struct Job<'a> {
     first: u32,
 }
 
+/// The contacts of a block whose shapes may meet within the tick, one bit each.
+#[derive(Clone, Copy)]
+struct NearContacts {
+    /// Index of the first contact of the block among those of the job.
+    start: usize,
+    near: u64,
+    /// The near contacts that are pairs of small boxes.
+    box_pairs: u64,
+}
+
+const _: () = assert!(BLOCK <= u64::BITS as usize);
+
+impl NearContacts {
+    #[inline]
+    fn add(&mut self, index: usize, is_box_pair: bool) {
+        let bit = index - self.start;
+        self.near |= 1 << bit;
+        self.box_pairs |= u64::from(is_box_pair) << bit;
+    }
+
+    /// The indices in the job, and whether each contact is a pair of small boxes.
+    #[inline]
+    fn iter(self) -> impl Iterator<Item = (usize, bool)> {
+        let (mut near, NearContacts { start, box_pairs, .. }) = (self.near, self);
+        core::iter::from_fn(move || {
+            let bit = near.trailing_zeros();
+            near &= near.checked_sub(1)?;
+            Some((start + bit as usize, box_pairs >> bit & 1 == 1))
+        })
+    }
+}
+
 impl NarrowPhase<'_> {
     fn run(&self, mut job: Job<'_>, output: &mut NarrowPhaseOutput) {
         let Some(pair) = job.contacts.first().map(|contact| contact.shapes) else { return };
         let mut touched = &self.touched[self.touched.partition_point(|touched| touched.shapes < pair)..];
         for start in (0..job.contacts.len()).step_by(BLOCK) {
             let block = start..job.contacts.len().min(start + BLOCK);
-            self.list_near(&mut job, block, output);
-            touched = self.find_touching(&mut job, touched, output);
+            let near = self.find_near(&mut job, block, output);
+            touched = self.find_touching(&mut job, near, touched, output);
         }
     }
 
-    /// Lists the contacts of a block whose shapes may meet, and collides the pairs of small boxes among them.
-    fn list_near(&self, job: &mut Job<'_>, block: Range<usize>, output: &mut NarrowPhaseOutput) {
+    /// Finds the contacts of a block whose shapes may meet, and collides the pairs of small boxes among them.
+    fn find_near(
+        &self,
+        job: &mut Job<'_>,
+        block: Range<usize>,
+        output: &mut NarrowPhaseOutput,
+    ) -> NearContacts {
         let NarrowPhase { poses, margins, machine, .. } = self;
-        let NarrowPhaseOutput { near, boxes, .. } = output;
+        let boxes = &mut output.boxes;
         let motion = poses.motion();
-        near.clear();
         boxes.clear();
+        let mut near = NearContacts { start: block.start, near: 0, box_pairs: 0 };
         for index in block {
             if let Some(ahead) = job.contacts.get(index + CONTACTS_AHEAD) {
                 motion.prefetch(ahead.shapes.1);
@@ -94,21 +130,20 @@ impl NarrowPhase<'_> {
                 contact.passing = false;
                 continue;
             }
-            let box_pair = if machine.has_vectors() && shape_a.small_box && shape_b.small_box {
+            let is_box_pair = machine.has_vectors() && shape_a.small_box && shape_b.small_box && {
                 let radii = [shape_a.radius, shape_b.radius];
                 boxes.push(contact.shapes, shape_a.offset_to(shape_b), radii, closing.margin)
-            } else {
-                None
             };
-            if box_pair.is_none() {
+            if !is_box_pair {
                 poses.prefetch(contact.shapes.1);
             }
             if closing.is_fast() {
                 motion.prefetch_motions(shape_a, shape_b);
             }
-            near.push(NearPair { index, closing, box_pair });
+            near.add(index, is_box_pair);
         }
         boxes.collide(*machine, poses.boxes());
+        near
     }
 
     /// Completes the manifolds of the near contacts of a block, keeps those that have points, and lists the touching
@@ -116,17 +151,20 @@ impl NarrowPhase<'_> {
     fn find_touching<'t>(
         &self,
         job: &mut Job<'_>,
+        near: NearContacts,
         mut touched: &'t [ActiveContact],
         output: &mut NarrowPhaseOutput,
     ) -> &'t [ActiveContact] {
         let NarrowPhase { state, poses, margins, .. } = self;
-        let NarrowPhaseOutput { near, boxes, contacts, sensors, manifolds, touching, approaches, sat } =
-            output;
+        let NarrowPhaseOutput { boxes, contacts, sensors, manifolds, touching, approaches, sat } = output;
         let motion = poses.motion();
-        for &NearPair { index, closing, box_pair } in near.iter() {
+        let mut box_pairs = 0..;
+        for (index, is_box_pair) in near.iter() {
             let (contact, axis) = (&mut job.contacts[index], &mut job.axes[index]);
             let (shape_a, shape_b) = (motion.shape(contact.shapes.0), motion.shape(contact.shapes.1));
+            let closing = ClosingBound::of(margins, shape_a, shape_b);
             let pair = SpeculativePair { margins, a: shape_a, b: shape_b, closing };
+            let box_pair = if is_box_pair { box_pairs.next() } else { None };
             let is_found = box_pair.is_some_and(|at| boxes.append_to(manifolds, at, shape_a.centre()));
             if is_found {
                 sat.searches += 1;

@@ -84,9 +84,11 @@ fn lanes_find_what_is_found_one_by_one() {
         for backend in Backend::available() {
             let machine = Machine::new(backend).expect("available");
             batch.clear();
+            let mut indices = 0..;
             let places = pairs.iter().zip(&margins).enumerate().map(|(place, ((a, b), &margin))| {
                 let radii = [a, b].map(|shape| narrow(shape.outline.radius()));
-                batch.push(slots_of(place), b.centre - a.centre, radii, margin)
+                let is_added = batch.push(slots_of(place), b.centre - a.centre, radii, margin);
+                if is_added { indices.next() } else { None }
             });
             let places: Vec<_> = places.collect();
             batch.collide(machine, &boxes);
