@@ -16,7 +16,7 @@
 //!           solver
 //!         collision
 //!            body
-//!            lanes
+//!            simd
 //! math, hash, codec, threads, inspect
 //! ```
 

@@ -57,7 +57,7 @@ impl<G: Game> Past<G> {
             let depth = depth.min(u32::try_from(last).unwrap_or(u32::MAX));
             if depth > 0 {
                 *steps += u64::from(depth) * if guess == Guess::Right { 1 } else { 2 };
-                self.roll_back(game, last - depth as usize, (depth, guess), now)?;
+                self.roll_back(game, last - depth as usize, depth, guess, now)?;
             }
         }
         Ok(())
@@ -69,7 +69,8 @@ impl<G: Game> Past<G> {
         &self,
         game: &mut G,
         first: usize,
-        (depth, guess): Rollback,
+        depth: u32,
+        guess: Guess,
         now: &Now<'_, G>,
     ) -> Result<(), Box<Finding>> {
         let start = &self.moments[first];

@@ -20,7 +20,7 @@ pub(crate) struct Contact {
     /// Number of points with accumulated impulses.
     pub(crate) count: u8,
     pub(crate) points: [PointImpulse; 2],
-    /// Accumulated angular impulse of rolling resistance, times `(mA + mB) / s`: see `solver/rolling.rs`.
+    /// Accumulated angular impulse of rolling resistance, times `(mA + mB) / s`: see `solver/contact/rolling.rs`.
     pub(crate) rolling: Speed,
 }
 

@@ -1,4 +1,4 @@
-//! [`Gate`]: validates messages before GGRS reads them. It drops messages on which GGRS would panic, and removes those
+//! [`MessageValidator`]: validates messages before GGRS reads them. It drops messages on which GGRS would panic, and removes those
 //! parts with which a peer could decide alone which player has left.
 //!
 //! GGRS trusts the messages of the peers of a game. All messages of one remote pass through this validator first; those
@@ -61,7 +61,7 @@ const PINGS: usize = 16;
 
 /// State of the message validator for one remote in one session.
 #[derive(Debug)]
-pub(super) struct Gate {
+pub(super) struct MessageValidator {
     players: usize,
     /// The newest frame whose input has been accepted; -1 before the first.
     last_frame: i32,
@@ -71,9 +71,9 @@ pub(super) struct Gate {
     needed: Option<(Duration, Vec<u8>)>,
 }
 
-impl Gate {
+impl MessageValidator {
     pub(super) const fn new(players: usize) -> Self {
-        Gate { players, last_frame: -1, pings: VecDeque::new(), needed: None }
+        MessageValidator { players, last_frame: -1, pings: VecDeque::new(), needed: None }
     }
 
     /// Encodes a message to the remote and records it.
@@ -119,7 +119,7 @@ impl Gate {
     }
 
     fn check_input(&mut self, input: &mut Input, frame: i32) -> Option<()> {
-        // Peers agree on departures in `leaving.rs`, because GGRS could let each peer end a player at another frame.
+        // Peers agree on departures in `departure.rs`, because GGRS could let each peer end a player at another frame.
         input.disconnect_requested = false;
         input.connections.iter_mut().for_each(|connection| connection.disconnected = false);
         let frames = -1..=frame.saturating_add(FRAMES_AHEAD);

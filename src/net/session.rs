@@ -12,7 +12,7 @@ use ggrs::{PlayerType, SessionBuilder};
 
 use super::driver::Driver;
 use super::liveness::Liveness;
-use super::message_validator::Gate;
+use super::message_validator::MessageValidator;
 use super::options::NetOptions;
 use super::packet::SessionId;
 use super::peer::NetError;
@@ -86,7 +86,7 @@ pub(super) struct Session<G: NetGame, A: Address> {
     pub(super) membership: Membership<A>,
     p2p: P2PSession<GgrsConfig<G, A>>,
     mail: Arc<Mutex<Mail<A>>>,
-    validators: BTreeMap<A, Gate>,
+    validators: BTreeMap<A, MessageValidator>,
     liveness: BTreeMap<A, Liveness>,
     timeout: Duration,
     /// Time of the last poll.
@@ -148,7 +148,7 @@ impl<G: NetGame, A: Address> Session<G, A> {
         let p2p = builder.start_p2p_session(Mailbox(mail.clone()))?;
         let others = membership.others.iter().map(|(_, address)| address.clone());
         Ok(Session {
-            validators: others.clone().map(|address| (address, Gate::new(seats.len()))).collect(),
+            validators: others.clone().map(|address| (address, MessageValidator::new(seats.len()))).collect(),
             liveness: others.map(|address| (address, Liveness::default())).collect(),
             timeout: options.timeout,
             polled: Duration::ZERO,
@@ -197,7 +197,7 @@ impl<G: NetGame, A: Address> Session<G, A> {
         let mut events = self.events();
         let passed = now.saturating_sub(self.polled);
         self.polled = now;
-        // Peers that have not answered yet are waited for in `leaving.rs`: with high packet loss the handshake takes
+        // Peers that have not answered yet are waited for in `departure.rs`: with high packet loss the handshake takes
         // long.
         let others = self.membership.others.iter().filter(|(_, address)| self.synchronised.contains(address));
         for (seat, address) in others {

@@ -48,6 +48,8 @@ impl MassFractions {
     /// `a` and `b` are the masses in kg, 0 for a body that no impulse moves.
     pub(crate) fn of_masses(a: Fx, b: Fx) -> Self {
         match (a.is_positive(), b.is_positive()) {
+            // Equal masses need no division.
+            (true, true) if a == b => MassFractions { a: Unit::ONE / 2, b: Unit::ONE / 2 },
             (true, true) => {
                 let (mass_a, mass_b) = (a.to_bits().unsigned_abs(), b.to_bits().unsigned_abs());
                 // Masses are below 2^62. With the sum reduced to 32 bits there is room for 30 fraction bits.

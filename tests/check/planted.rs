@@ -62,7 +62,7 @@ fn a_field_that_the_save_lacks_is_found() {
     assert_eq!(found(&failure), (Variant::Reloaded, &Fault::Loaded));
     // The minimised log has two players who walk up to each other, and one hit.
     assert!((3..=5).contains(&failure.ticks), "{failure}");
-    assert!(failure.to_string().contains("what differs is not saved"), "{failure}");
+    assert!(failure.to_string().contains("the difference is in state that is not saved"), "{failure}");
 }
 
 #[test]

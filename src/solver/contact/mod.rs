@@ -11,7 +11,7 @@
 //!
 //! Each operation on a batch has a file of its own: `warm_start`, `solve` (which has
 //! the equation above), `relax` and `restitution`. `prepare` fills the batches of a tick and `rows` computes their
-//! rows; `store` returns the impulses to the state. `policy` has the two ways to keep numbers within their formats.
+//! rows; `store` returns the impulses to the state. `overflow_policy` has the two ways to keep numbers within their formats.
 //!
 //! Differences of two velocities fit because each velocity is below 512 m/s; a sum that may not fit saturates. Lanes
 //! without a contact have gains of 0, so that nothing in them matters.

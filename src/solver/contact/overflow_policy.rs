@@ -11,7 +11,7 @@
 //! |e| <= 3                                                        |J v| < 2 sqrt(2) 104 + 6 84 < 799
 //! |s| < 1/8 m, rates <= 512 per second                            |bias| <= 64, and below 863 with J v
 //! 0 <= L < 64                                                     |L - w| < 927, where 1024 fit
-//! grips <= 3.5                                                    friction limit < 2 3.5 68 = 476
+//! mu Dt/Dn <= 3.5                                                  friction limit < 2 3.5 68 = 476
 //! |dx|, |dy|, |k dtheta|, |s0| < 2 m                              |s| < 20 m, where 32 fit
 //! ```
 

@@ -1,6 +1,6 @@
 //! Warm start: the impulses that contacts have accumulated so far are applied first.
 //!
-//! Only the first sub-step of a tick does this row by row. In the others `push` applies the sum of what all contacts
+//! Only the first sub-step of a tick does this row by row. In the others `contact_velocity` applies the sum of what all contacts
 //! change, once for each body.
 
 use core::cell::Cell;

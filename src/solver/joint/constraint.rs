@@ -234,7 +234,7 @@ impl JointSet {
             Stretch { half: stretch / 2, sixth: stretch / 6 }
         });
         turning.iter().for_each(|body| predict(body, joint));
-        for index in hinges.mounted() {
+        for index in hinges.anchored_bodies() {
             predict(&turning[places[index as usize] as usize - 1], anchored);
         }
     }

@@ -216,7 +216,7 @@ impl Clip<'_> {
         let (normal, start) = (self.a.normal(self.face), self.a.vertex(self.face));
         let mut manifold = Manifold::new(normal);
         for (vertex, end) in ends {
-            self.push(&mut manifold, start, (vertex, end));
+            self.push(&mut manifold, start, vertex, end);
         }
         manifold
     }
@@ -225,14 +225,14 @@ impl Clip<'_> {
     fn corner(&self, gap: &Gap) -> Manifold {
         let mut manifold = Manifold::new(gap.normal);
         let end = ClipPoint { vertex: gap.vertices.1, along: 0, above: step_bits(gap.distance) };
-        self.push(&mut manifold, self.a.vertex(gap.vertices.0), (gap.vertices.0, end));
+        self.push(&mut manifold, self.a.vertex(gap.vertices.0), gap.vertices.0, end);
         manifold
     }
 
     /// Adds the contact point at an end of B, given relative to a point on A's outline without radii, if it is within
     /// the margin.
     #[inline(always)]
-    fn push(&self, manifold: &mut Manifold, start: Vec2<Length>, (vertex, end): (usize, ClipPoint)) {
+    fn push(&self, manifold: &mut Manifold, start: Vec2<Length>, vertex: usize, end: ClipPoint) {
         let (radius_a, radius_b) = (step_bits(self.a.radius), step_bits(self.b.radius));
         let separation = end.above - (radius_a + radius_b);
         if separation > step_bits(self.margin) {

@@ -133,7 +133,7 @@ impl Input {
     }
 
     /// The index of the body that it holds, if no impulse moves the other body.
-    pub(super) fn mounted(&self) -> Option<u32> {
+    pub(super) fn anchored_body(&self) -> Option<u32> {
         match self.changed {
             [GROUND, body] | [body, GROUND] if body != GROUND => Some(body),
             _ => None,

@@ -90,24 +90,24 @@ impl HingeSet {
     }
 
     pub(super) fn warm_start(&mut self, poses: Poses<'_>, context: &StepContext<'_>) {
-        let [refresh, refresh_mounts] = self.refreshes(poses, context);
+        let [refresh, refresh_anchored] = self.refreshes(poses, context);
         self.hinges.run_overflow(WarmStart { refresh }, context);
         self.hinges.run_coloured(WarmStart { refresh }, context);
-        self.anchored.run_coloured(WarmStart { refresh: refresh_mounts }, context);
+        self.anchored.run_coloured(WarmStart { refresh: refresh_anchored }, context);
     }
 
     pub(super) fn solve(&mut self, pass: Pass, poses: Poses<'_>, context: &StepContext<'_>) {
-        let [refresh, refresh_mounts] = self.refreshes(poses, context);
+        let [refresh, refresh_anchored] = self.refreshes(poses, context);
         match pass {
             Pass::Bias => {
                 self.hinges.run_overflow(Solve { refresh }, context);
                 self.hinges.run_coloured(Solve { refresh }, context);
-                self.anchored.run_coloured(Solve { refresh: refresh_mounts }, context);
+                self.anchored.run_coloured(Solve { refresh: refresh_anchored }, context);
             }
             Pass::Relax => {
                 self.hinges.run_overflow(Relax { refresh }, context);
                 self.hinges.run_coloured(Relax { refresh }, context);
-                self.anchored.run_coloured(Relax { refresh: refresh_mounts }, context);
+                self.anchored.run_coloured(Relax { refresh: refresh_anchored }, context);
             }
         }
     }

@@ -63,7 +63,7 @@ impl HingeSet {
         for has_angle in [false, true] {
             let indices =
                 indices.clone().filter(|&index| inputs[index as usize].angle.is_some() == has_angle);
-            let is_anchored = |&index: &u32| inputs[index as usize].mounted().is_some_and(&is_alone);
+            let is_anchored = |&index: &u32| inputs[index as usize].anchored_bodies().is_some_and(&is_alone);
             hinges.coloured.push(inputs, angles, indices.clone().filter(|index| !is_anchored(index)));
             anchored.coloured.push(inputs, angles, indices.filter(is_anchored));
         }
@@ -72,7 +72,7 @@ impl HingeSet {
     }
 
     /// The indices of the bodies of anchored hinges.
-    pub(in super::super) fn mounted(&self) -> impl Iterator<Item = u32> {
+    pub(in super::super) fn anchored_bodies(&self) -> impl Iterator<Item = u32> {
         let Batches { batches, records, .. } = &self.anchored.coloured;
         batches.iter().zip(records).flat_map(|(Batch { changed: [a, b], .. }, records)| {
             a.iter().zip(b).take(records.len).map(|(&a, &b)| if a == GROUND { b } else { a })

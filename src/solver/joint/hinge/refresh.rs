@@ -86,8 +86,8 @@ fn refresh_gains<L: Lanes<N>, const N: usize>(
     quads: &[[L::Int; 4]; 2],
 ) {
     let e = [
-        body_rotations::<L, N>(&mut batch.e[0], &quads[0], &shape.ratios[0]),
-        body_rotations::<L, N>(&mut batch.e[1], &quads[1], &shape.ratios[1]),
+        rotated_ratios::<L, N>(&mut batch.e[0], &quads[0], &shape.ratios[0]),
+        rotated_ratios::<L, N>(&mut batch.e[1], &quads[1], &shape.ratios[1]),
     ];
     let fractions = [L::load(&shape.fractions[0]), L::load(&shape.fractions[1])];
     let g = inverse::<L, N>(e, fractions);
@@ -106,7 +106,7 @@ fn rotated<L: Lanes<N>, const N: usize>(quads: &[L::Int; 4], v: &[Ints<N>; 2]) -
 
 /// Lever ratios in world axes.
 #[inline(always)]
-fn body_rotations<L: Lanes<N>, const N: usize>(
+fn rotated_ratios<L: Lanes<N>, const N: usize>(
     e: &mut [Ints<N>; 2],
     quads: &[L::Int; 4],
     ratios: &[Ints<N>; 2],
