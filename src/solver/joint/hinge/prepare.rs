@@ -63,7 +63,7 @@ impl HingeSet {
         for has_angle in [false, true] {
             let indices =
                 indices.clone().filter(|&index| inputs[index as usize].angle.is_some() == has_angle);
-            let is_anchored = |&index: &u32| inputs[index as usize].anchored_bodies().is_some_and(&is_alone);
+            let is_anchored = |&index: &u32| inputs[index as usize].anchored_body().is_some_and(&is_alone);
             hinges.coloured.push(inputs, angles, indices.clone().filter(|index| !is_anchored(index)));
             anchored.coloured.push(inputs, angles, indices.filter(is_anchored));
         }
