@@ -19,7 +19,7 @@
 mod tests;
 
 use super::super::limits::{Faults, IMPULSE_MAX};
-use super::super::pair::{BodyPairW, HALF, RATIO, beyond, clamp, shift};
+use super::super::pair::{BodyPairW, HALF, RATIO, UNIT, beyond, clamp, shift};
 use super::batch::{Batch, Row};
 use super::extras::ContactExtras;
 use crate::math::{FrictionRatio, Rate, Ratio, Shift, Speed};
@@ -127,7 +127,7 @@ impl<L: Lanes<N>, const N: usize> OverflowPolicy<L, N> for Saturating<'_> {
         if L::any(L::negative(L::add(d, L::splat(HALF)))) {
             apply_in_steps(pair, row, d, self.0);
         } else {
-            pair.change(row, d);
+            pair.change::<UNIT>(row, d);
             pair.keep_in_range(self.0);
         }
     }
@@ -150,7 +150,7 @@ fn apply_in_steps<L: Lanes<N>, const N: usize>(
     let limit = L::splat(HALF - 1);
     for _ in 0..3 {
         let step = clamp::<L, N>(d, limit);
-        pair.change(row, step);
+        pair.change::<UNIT>(row, step);
         pair.keep_in_range(faults);
         d = L::sub(d, step);
     }
@@ -274,12 +274,20 @@ impl<L: Lanes<N>, const N: usize> OverflowPolicy<L, N> for Unchecked<L, N> {
     #[inline(always)]
     fn apply(&mut self, pair: &mut BodyPairW<L, N>, row: &Row<N>, d: L::Int) {
         self.see_small(d);
-        pair.change(row, d);
+        change(pair, row, d);
     }
 
     #[inline(always)]
     fn apply_again(&mut self, pair: &mut BodyPairW<L, N>, row: &Row<N>, lambda: L::Int) {
         self.see_impulse(lambda);
-        pair.change(row, lambda);
+        change(pair, row, lambda);
     }
+}
+
+/// Changes velocities by impulses that have bits to spare. Multiplied by four, the result of a product is its upper
+/// half, which spares a shift.
+#[inline(always)]
+fn change<L: Lanes<N>, const N: usize>(pair: &mut BodyPairW<L, N>, row: &Row<N>, d: L::Int) {
+    let twice = L::add(d, d);
+    pair.change::<{ UNIT + 2 }>(row, L::add(twice, twice));
 }

@@ -1,6 +1,6 @@
 //! Relative velocities along a row, and the velocity changes of its impulses.
 
-use super::super::pair::{BodyPairW, UNIT};
+use super::super::pair::BodyPairW;
 use super::batch::Row;
 use super::overflow_policy::OverflowPolicy;
 use crate::simd::{Ints, Lanes, VelocityW};
@@ -17,20 +17,21 @@ impl<L: Lanes<N>, const N: usize> BodyPairW<L, N> {
         policy.speed(along::<L, N>(&self.a, &self.b, n, row))
     }
 
-    /// Changes the velocities by impulses below 512 m/s, so that no sum overflows.
+    /// Changes the velocities by impulses below 512 m/s, so that no sum overflows. `SHIFT` is the number of fraction bits
+    /// that a product of a gain and an impulse has more than a speed.
     #[inline(always)]
-    pub(super) fn change(&mut self, row: &Row<N>, d: L::Int) {
+    pub(super) fn change<const SHIFT: i32>(&mut self, row: &Row<N>, d: L::Int) {
         let VelocityW { x, y, turn } = self.a;
         let a = VelocityW {
-            x: L::sub(x, part::<L, N>(&row.a[0], d)),
-            y: L::sub(y, part::<L, N>(&row.a[1], d)),
-            turn: L::sub(turn, part::<L, N>(&row.a[2], d)),
+            x: L::sub(x, part::<L, N, SHIFT>(&row.a[0], d)),
+            y: L::sub(y, part::<L, N, SHIFT>(&row.a[1], d)),
+            turn: L::sub(turn, part::<L, N, SHIFT>(&row.a[2], d)),
         };
         let VelocityW { x, y, turn } = self.b;
         let b = VelocityW {
-            x: L::add(x, part::<L, N>(&row.b[0], d)),
-            y: L::add(y, part::<L, N>(&row.b[1], d)),
-            turn: L::add(turn, part::<L, N>(&row.b[2], d)),
+            x: L::add(x, part::<L, N, SHIFT>(&row.b[0], d)),
+            y: L::add(y, part::<L, N, SHIFT>(&row.b[1], d)),
+            turn: L::add(turn, part::<L, N, SHIFT>(&row.b[2], d)),
         };
         (self.a, self.b) = (a, b);
     }
@@ -38,8 +39,8 @@ impl<L: Lanes<N>, const N: usize> BodyPairW<L, N> {
 
 /// The change by an impulse of one velocity component.
 #[inline(always)]
-fn part<L: Lanes<N>, const N: usize>(gain: &Ints<N>, d: L::Int) -> L::Int {
-    L::narrow::<UNIT>(L::mul(L::load(gain), d))
+fn part<L: Lanes<N>, const N: usize, const SHIFT: i32>(gain: &Ints<N>, d: L::Int) -> L::Int {
+    L::narrow::<SHIFT>(L::mul(L::load(gain), d))
 }
 
 /// `n.(b - a) + eB uB - eA uA`, with 24 more fraction bits than its arguments.

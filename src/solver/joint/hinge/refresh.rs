@@ -112,10 +112,10 @@ fn rotated_ratios<L: Lanes<N>, const N: usize>(
     ratios: &[Ints<N>; 2],
 ) -> [L::Int; 2] {
     let [x, y] = rotated::<L, N>(quads, ratios);
-    let body_rotations = [L::narrow::<UNIT>(x), L::narrow::<UNIT>(y)];
-    L::store(body_rotations[0], &mut e[0]);
-    L::store(body_rotations[1], &mut e[1]);
-    body_rotations
+    let rotated = [L::narrow::<UNIT>(x), L::narrow::<UNIT>(y)];
+    L::store(rotated[0], &mut e[0]);
+    L::store(rotated[1], &mut e[1]);
+    rotated
 }
 
 /// The velocity that closes a gap, reversed. `gap` is the one at the start of the tick, with 52 fraction bits and
