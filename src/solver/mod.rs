@@ -1,6 +1,6 @@
 //! The solver: sequential impulses in sub-steps, in a fixed order.
 //!
-//! [`Solver::sub_step`] lists the stages of a sub-step, those of E. Catto's soft step (Solver2D, `solve_soft_step.c`).
+//! `Solver::sub_step` lists the stages of a sub-step, those of E. Catto's soft step (Solver2D, `solve_soft_step.c`).
 //! Each stage has a file of its own: `integrate` for bodies, `contact_velocity` for the warm start of contacts,
 //! `contact/warm_start`, `contact/solve`, `contact/relax` and `contact/restitution` for contacts, `joint/hinge` for
 //! hinges, and `joint/list` for all other joints.
