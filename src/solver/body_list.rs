@@ -117,12 +117,12 @@ impl BodyList {
         self.index_of(slot)
     }
 
-    /// The slots of the bodies with an index of their own.
+    /// The slots of all bodies except the ground.
     pub(super) fn slots(&self) -> &[u32] {
         &self.slots
     }
 
-    /// The pose of each body at the start of the tick; that of the ground does not matter.
+    /// The pose of each body at the start of the tick. The pose of the ground does not matter.
     pub(super) fn poses(&self) -> &[Pose] {
         &self.poses
     }
