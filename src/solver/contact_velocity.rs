@@ -46,7 +46,7 @@ struct Group<const N: usize> {
     push: VelocityW<Ints<N>>,
 }
 
-/// An operation on all bodies in turn.
+/// An operation on all groups, one after the other.
 #[derive(Clone, Copy, Debug)]
 enum Task {
     Measure,

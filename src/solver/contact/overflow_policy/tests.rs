@@ -162,5 +162,5 @@ fn calm_contacts_end_as_careful_ones() {
             );
         }
     }
-    assert!(unchecked > 2000 && wild > 2000, "{unchecked} were within the bounds and {wild} were not");
+    assert!(unchecked > 2000 && wild > 2000, "{unchecked} trials were within the bounds and {wild} were not");
 }
