@@ -2,8 +2,8 @@
 //! the code, including unit tests, and fails on any path that leads to a higher layer.
 //!
 //! Inside a module that has folders, each folder uses only the folders that are listed for it, and files of different
-//! folders do not depend on each other in a circle. Here tests are left out, and a path through a re-export counts as a
-//! path to the file that defines the item. Calls of methods are not seen, only paths.
+//! folders do not depend on each other in a circle. This test leaves out unit tests, and counts a path through a
+//! re-export as a path to the file that defines the item. It reads only paths: calls of methods are not found.
 //!
 //! ```text
 //!           net
@@ -57,8 +57,8 @@ const LAYERS: Rules = &[
     ("scenes", &["math", "codec", "hash", "body", "collision", "solver", "world", "lockstep"]),
 ];
 
-/// For each module with folders, its folders and which of the module's other folders each may use. `.` are the files
-/// that are in no folder.
+/// For each module with folders: each of its folders, and the other folders of the module that it may use. `.` stands
+/// for the files that are not in a folder.
 const FOLDERS: &[(&str, Rules)] = &[
     (
         "collision",
@@ -73,7 +73,7 @@ const FOLDERS: &[(&str, Rules)] = &[
     (
         "solver",
         &[
-            // The solver lists the stages of a sub-step.
+            // The files of the solver itself list the stages of a sub-step, which are in these folders.
             (".", &["contact", "joint", "integrate", "row"]),
             ("row", &["."]),
             ("contact", &[".", "row"]),
@@ -84,7 +84,7 @@ const FOLDERS: &[(&str, Rules)] = &[
     (
         "world",
         &[
-            // The state stores sleeping contacts with their packed form, and the world its caches and its digest.
+            // The state stores sleeping contacts with their packed form. The world stores its caches and its digest.
             (".", &["cache", "snapshot"]),
             ("cache", &["."]),
             ("islands", &[".", "cache"]),
@@ -142,7 +142,7 @@ fn files_of_different_folders_form_no_circle() {
     assert!(wrong.is_empty(), "files that depend on each other:\n{}", wrong.join("\n"));
 }
 
-/// The canary of the folder rules.
+/// Canary of the folder rules: forbidden paths and circles must be found, and allowed ones must not.
 #[test]
 fn wrong_folders_and_circles_are_found() {
     let rules: Rules = &[(".", &["b"]), ("a", &["."]), ("b", &["."])];
@@ -199,7 +199,7 @@ fn folder_of<'a>(place: &'a [String], sources: &Crate) -> &'a str {
     place.get(1).filter(|name| is_folder(name)).map_or(".", String::as_str)
 }
 
-/// The paths of a module's files that lead to a folder that they must not use.
+/// Returns the paths in a module's files that lead to a folder that the files must not use.
 fn wrong_uses(sources: &Crate, module: &str, rules: Rules) -> Vec<String> {
     let mut wrong = Vec::new();
     for place in sources.modules().filter(|place| place.first().is_some_and(|name| name == module)) {
@@ -221,7 +221,7 @@ fn wrong_uses(sources: &Crate, module: &str, rules: Rules) -> Vec<String> {
     wrong
 }
 
-/// The circles of a module's files that are not within one folder.
+/// Returns the dependency circles of a module's files that are not within one folder.
 fn circles(sources: &Crate, module: &str) -> Vec<String> {
     let circles = sources
         .circles()
@@ -236,7 +236,7 @@ fn circles(sources: &Crate, module: &str) -> Vec<String> {
     circles.filter(spans).map(named).collect()
 }
 
-/// The canary: a forbidden use must be found in every form that a path can have.
+/// Canary of the layers: a forbidden use must be found in every form that a path can have.
 #[test]
 fn wrong_directions_are_found() {
     let found = |place: &[&str], code: &str| {
@@ -274,7 +274,7 @@ fn wrong_directions_are_found() {
     assert_eq!(found(&["toys"], ""), 1, "a module without a layer is an error");
 }
 
-/// Uses of modules that a module must not use, each as `line: what`.
+/// Returns the uses of modules that a module must not use, each as `line: module uses module`.
 fn upward_uses(place: &[String], code: &str) -> Vec<String> {
     let module = place[0].as_str();
     let Some((_, below)) = LAYERS.iter().find(|(name, _)| *name == module) else {

@@ -30,7 +30,7 @@ const BANNED: &[(&str, &str)] = &[
 const FLOATS: &[&str] = &["f32", "f64"];
 const ALLOWED_FLOATS: &[&str] = &["src/draw/", "src/inspect/serializer.rs"];
 
-/// Files that may use `unsafe`: SIMD instructions, prefetch hints, and bodies shared between threads.
+/// Files that may use `unsafe`: SIMD instructions, prefetches, and bodies shared between threads.
 const ALLOWED_UNSAFE: &[&str] = &[
     "src/simd/x86.rs",
     "src/simd/x86/avx2.rs",

@@ -8,8 +8,7 @@ use super::reader::ReadError;
 /// Bounds on the size of a replay and on its computing time.
 ///
 /// The default accepts anything that an ordinary game records in a day and stops a file after some minutes of
-/// computing. A server that knows its game should narrow the limits, for example to a race of ten minutes and two
-/// players.
+/// computing. A server for one game should narrow the limits, for example to a race of ten minutes and two players.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Limits {
     /// Size of the whole file in bytes.

@@ -18,7 +18,7 @@ use crate::replay::{Limits, RawReplay, Step};
 /// Amount of simulation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Effort {
-    /// Plays all ticks that either side knows, and searches for an explanation of a difference up to a fixed limit.
+    /// Plays all ticks for which either side has data. Searches for an explanation of a difference up to a fixed limit.
     Thorough,
     /// Plays up to the first difference, and limits the search for an explanation such that both together cost less
     /// than playing all ticks three times.

@@ -1,6 +1,6 @@
 //! Cache prefetch.
 
-/// Prefetches a value into the cache: a hint without effect on the result. Does nothing on other architectures.
+/// Prefetches a value into the cache, which does not affect any result. Does nothing on other architectures.
 #[cfg(target_arch = "x86_64")]
 #[inline(always)]
 #[expect(unsafe_code, reason = "vendor intrinsics")]

@@ -2,7 +2,7 @@
 //!
 //! Contacts and hinges are solved in batches. No two constraints of a colour change the same body, so that the batches
 //! of a colour may be solved in any order and on several threads. Constraints that fit no colour are the overflow: they
-//! are solved one after the other, by the same code for one lane.
+//! are solved one after the other, by the same code with one lane.
 //!
 //! Each kind of constraint defines the parts of its batches ([`BatchKind`]), and each stage of the solver an operation
 //! on one batch ([`Operation`]).
@@ -16,14 +16,15 @@ use super::context::StepContext;
 use super::limits::Faults;
 use crate::simd::{Kernel, Lanes, Scalar, Shared, WIDTH};
 
-/// Fewest batches of a job: a smaller one costs more to hand to a thread than to do.
+/// Smallest number of batches in a job. Handing a smaller job to a thread costs more than doing it.
 const BATCHES_PER_JOB: usize = 16;
 
-/// A kind of constraint, of which `N` are solved at a time.
+/// A kind of constraint. `N` constraints of the kind are solved at a time.
 pub(super) trait BatchKind: Clone + Debug + 'static {
     /// The part that every operation reads and writes.
     type Batch<const N: usize>: Clone + Debug + Send;
-    /// The part that only some operations read. It lies apart, because passes over large piles are bound by memory.
+    /// The part that only some operations read. It is stored separately, because passes over large piles are
+    /// memory-bound.
     type Record<const N: usize>: Clone + Debug + Sync;
     /// The part that only some batches have.
     type Extra<const N: usize>: Clone + Debug + Send;
@@ -50,9 +51,9 @@ pub(super) struct BatchParts<'a, K: BatchKind, const N: usize> {
 /// All constraints of a kind.
 #[derive(Clone, Debug)]
 pub(super) struct BatchList<K: BatchKind> {
-    /// The constraints that fit no colour, in their own order.
+    /// The overflow: the constraints that fit no colour, in the order in which they are solved.
     pub(super) overflow: Batches<K, 1>,
-    /// The others, colour by colour.
+    /// All other constraints, colour by colour.
     pub(super) coloured: Batches<K, WIDTH>,
 }
 
@@ -62,9 +63,9 @@ pub(super) struct Batches<K: BatchKind, const N: usize> {
     pub(super) batches: Vec<K::Batch<N>>,
     /// One for each batch.
     pub(super) records: Vec<K::Record<N>>,
-    /// In the order of the batches that have one.
+    /// One for each batch that has an extra, in the order of the batches.
     pub(super) extras: Vec<K::Extra<N>>,
-    /// Where the batches of each colour end; the overflow counts as one colour.
+    /// End of each colour's range of batches. The overflow counts as one colour.
     pub(super) colour_ends: Vec<usize>,
 }
 
@@ -89,7 +90,7 @@ impl<K: BatchKind, const N: usize> Batches<K, N> {
         colour_ends.clear();
     }
 
-    /// Ends a colour, if it has any batch.
+    /// Ends the current colour, unless it has no batch.
     pub(super) fn end_colour(&mut self) {
         let end = self.batches.len();
         if self.colour_ends.last().map_or(end > 0, |&last| end > last) {
@@ -99,7 +100,7 @@ impl<K: BatchKind, const N: usize> Batches<K, N> {
 }
 
 impl<K: BatchKind> BatchList<K> {
-    /// Runs an operation over the constraints that fit no colour, one after the other.
+    /// Runs an operation over the overflow, one constraint after the other.
     pub(super) fn run_overflow(&mut self, operation: impl Operation<K>, context: &StepContext<'_>) {
         let Batches { batches, records, extras, .. } = &mut self.overflow;
         let mut faults = 0;
@@ -108,7 +109,7 @@ impl<K: BatchKind> BatchList<K> {
         context.add_faults(faults);
     }
 
-    /// Runs an operation over the other constraints, colour by colour, each on all threads.
+    /// Runs an operation over the coloured constraints, colour by colour. All threads share the batches of a colour.
     pub(super) fn run_coloured(&mut self, operation: impl Operation<K>, context: &StepContext<'_>) {
         let StepContext { machine, threads, .. } = *context;
         let bodies = Shared::within_a_colour(context.bodies);

@@ -1,4 +1,4 @@
-//! Bodies in the solver: how they are copied from the state, and how constraints outside of batches change them.
+//! Bodies in the solver: copying them from the state, and changing the velocities of two of them.
 
 use core::cell::Cell;
 
@@ -12,13 +12,13 @@ impl SolverBody {
         SolverBody { velocity: body.velocity, spin: body.spin, ..Self::default() }
     }
 
-    /// Sets the velocity, every component kept within [`SPEED_MAX`].
+    /// Sets the velocity. Clamps every component to [`SPEED_MAX`].
     #[inline]
     pub(crate) fn set_velocity(&mut self, x: Speed, y: Speed, spin: Speed, faults: &mut Faults) {
         self.velocity = Vec2::new(x, y);
         self.spin = spin;
-        // One branch that is never taken, instead of three clamps. A sum that has saturated may be the smallest number,
-        // whose magnitude does not fit a signed one.
+        // One branch that is almost never taken replaces three clamps. A saturated sum may be the smallest signed
+        // number, whose magnitude only fits an unsigned one.
         let fastest = x.unsigned_abs().max(y.unsigned_abs()).max(spin.unsigned_abs());
         if fastest > SPEED_MAX.unsigned_abs() {
             self.clamp(faults);
@@ -55,8 +55,8 @@ impl SolverBody {
     }
 }
 
-/// The rotation of a body, `dtheta = turn / k`, in units of 2^-32 turns. A small body may spin more than once in a
-/// tick.
+/// The rotation of a body, `dtheta = turn / k`, in units of 2^-32 turns. A small body may rotate by more than a full
+/// turn in a tick.
 pub(crate) fn turn_of(turn: Shift, inverse_gyration: Reciprocal) -> i64 {
     /// `1 / (2 pi)` with 63 fraction bits.
     const INVERSE_TAU: i128 = 1_467_945_251_641_000_613;

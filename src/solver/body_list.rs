@@ -1,4 +1,4 @@
-//! The bodies of a tick: the active ones, and one more that stands for all others, the ground.
+//! The bodies of a tick: the active bodies, and the ground, which stands for all other bodies.
 
 use alloc::vec::Vec;
 
@@ -18,9 +18,9 @@ pub(crate) struct BodyList {
     poses: Vec<Pose>,
     /// The properties of each body that contacts depend on.
     facts: Vec<BodyFacts>,
-    /// For each body slot, the index of its body in `bodies`: 0 if it is not among the bodies of the tick.
+    /// For each body slot, the index of its body in `bodies`, or 0 if the body is not among the bodies of the tick.
     indices: Vec<u32>,
-    /// The slots of the bodies but the ground, in order.
+    /// The slots of all bodies except the ground, in order.
     slots: Vec<u32>,
 }
 
@@ -44,7 +44,7 @@ impl BodyFacts {
         }
     }
 
-    /// From the centre of mass to a position. For bodies that do not turn the result does not matter.
+    /// Vector from the centre of mass to a position. For bodies that do not turn the result does not matter.
     pub(super) fn arm_to(&self, place: Vec2<Fx>) -> Vec2<Length> {
         // Both are within the world, so that the difference fits.
         place.wrapping_sub(self.centre).narrow()
@@ -103,13 +103,13 @@ impl BodyList {
         self.bodies.len()
     }
 
-    /// The index of the body in a slot, from 1; 0 if it is not among the bodies of the tick.
+    /// The index of the body in a slot, 1 or more; 0 if the body is not among the bodies of the tick.
     pub(super) fn index_of(&self, slot: u32) -> u32 {
         self.indices[slot as usize]
     }
 
-    /// The index of a body with a joint. Such a body does not share the ground's index, because joints need its
-    /// rotation.
+    /// The index of a body with a joint. Adds the body if needed: it cannot share the ground's index, because joints
+    /// need its rotation.
     pub(super) fn own_index_of(&mut self, slot: u32, body: &Body) -> u32 {
         if self.index_of(slot) == GROUND {
             self.push(slot, body, SolverBody::default(), BodyFacts::GROUND);
@@ -117,12 +117,12 @@ impl BodyList {
         self.index_of(slot)
     }
 
-    /// The slots of the bodies with an index of their own.
+    /// The slots of all bodies except the ground.
     pub(super) fn slots(&self) -> &[u32] {
         &self.slots
     }
 
-    /// The pose of each body at the start of the tick; that of the ground does not matter.
+    /// The pose of each body at the start of the tick. The pose of the ground does not matter.
     pub(super) fn poses(&self) -> &[Pose] {
         &self.poses
     }

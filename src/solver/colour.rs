@@ -1,15 +1,15 @@
-//! Graph colouring: groups of constraints of which no two change the same body, so that the order inside a group cannot
+//! Graph colouring: no two constraints of a colour change the same body, so that the order within a colour does not
 //! matter. A scalar, a wide and a threaded solver then give the same bits.
 //!
-//! Constraints are coloured greedily in the order of a hash of their shapes or of their joint: in sorted order the
-//! solver always sweeps the same way and a pyramid sways by 0.1 to 0.4 m, in hashed order by 0.006 m.
+//! Constraints are coloured greedily, in the order of a hash of their shapes or of their joint. In sorted order the
+//! solver would always sweep the same way: a pyramid then sways by 0.1 to 0.4 m, in hashed order by 0.006 m.
 
 use alloc::vec::Vec;
 
 use super::body_list::GROUND;
 
-/// Largest number of colours. More colours would be nearly empty: constraints that fit no colour (a drum touched by
-/// hundreds of boxes) are the overflow, a serial list before all colours, in its own order.
+/// Largest number of colours. More colours would be nearly empty. Constraints that fit no colour, such as most contacts
+/// of a drum with hundreds of boxes, are the overflow: they are solved one after the other before all colours.
 const COLOURS_MAX: u8 = 24;
 
 const BUCKETS: usize = 256;
@@ -17,51 +17,52 @@ const BUCKETS: usize = 256;
 /// A constraint to be coloured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Node {
-    /// The bucket in the order in which constraints are coloured.
+    /// Hash bucket. Constraints are coloured bucket by bucket.
     bucket: u8,
     /// Constraints of one colour and one size are solved together.
     size: Size,
-    /// The bodies that the constraint changes: [`GROUND`] instead of a body that it does not change.
+    /// The bodies that the constraint changes. [`GROUND`] replaces a body that it does not change.
     bodies: [u32; 2],
 }
 
 impl Node {
-    /// `key` identifies what the constraint joins.
+    /// Creates a node. `key` identifies the shapes or the joint of the constraint.
     pub(super) fn new(key: u64, bodies: [u32; 2], size: Size) -> Self {
         Node { bucket: bucket_of(key), size, bodies }
     }
 }
 
-/// The amount of work in a constraint: contacts with one point are small.
+/// The amount of work in a constraint. Contacts with one point are small.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Size {
     Large,
     Small,
 }
 
-/// Where a contact is in the order of the solver.
+/// Position of a contact in the order in which the solver solves contacts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SolverColour {
-    /// It is solved together with all other contacts of this colour, which are independent of it. Counted from 0.
+    /// The contact has this colour, counted from 0. It is independent of all other contacts of the colour.
     Group(u8),
-    /// Its bodies have more contacts than there are colours: it is solved by itself, before all groups.
+    /// The contact fits no colour, because its bodies have more contacts than there are colours. It is solved by
+    /// itself, before all colours.
     Overflow,
 }
 
-/// Sorts constraints into colours, and keeps the last order.
+/// Sorts constraints into colours. Keeps the last order, in case the constraints do not change.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Colouring {
     /// The constraints to be sorted.
     nodes: Vec<Node>,
-    /// The constraints that the present order belongs to. In most ticks of a resting world they are the same again.
+    /// The constraints of the current order. In a world at rest they are the same in most ticks.
     ordered: Vec<Node>,
-    /// For each body, the colours of its constraints so far, one bit each.
+    /// For each body, a bit set of the colours that its constraints already have.
     used: Vec<u32>,
     hashed: Vec<u32>,
-    /// For each constraint, its place in the order: see [`place_of`].
+    /// For each constraint, its rank in the order; see [`place_of`].
     places: Vec<u8>,
     order: Vec<u32>,
-    /// For each place, where its constraints end in the order.
+    /// For each rank, the end of its constraints in the order.
     ends: Vec<u32>,
 }
 
@@ -95,7 +96,7 @@ impl Colouring {
             let colour = taken.trailing_ones().min(COLOURS_MAX.into());
             used[a as usize] |= 1 << colour;
             used[b as usize] |= 1 << colour;
-            // Bodies that do not change have no colours.
+            // The ground does not change, so that constraints with it need no different colours.
             used[GROUND as usize] = 0;
             places[index as usize] = place_of(colour, size);
         }
@@ -107,7 +108,7 @@ impl Colouring {
         self.used.get(body as usize).is_some_and(|&colours| colours != 0)
     }
 
-    /// Where a constraint is in the last order, by its index.
+    /// The colour that a constraint had in the last order, by its index.
     pub(super) fn colour_of(&self, node: usize) -> Option<SolverColour> {
         self.places.get(node).map(|&place| match place.checked_sub(1) {
             None => SolverColour::Overflow,
@@ -115,21 +116,21 @@ impl Colouring {
         })
     }
 
-    /// The constraints of the last order that fit no colour, to be solved one after the other.
+    /// The overflow of the last order: constraints that fit no colour and are solved one after the other.
     pub(super) fn overflow(&self) -> &[u32] {
         let end = self.ends.first().map_or(0, |&end| end as usize);
         &self.order[..end]
     }
 
-    /// The other constraints, colour by colour and size by size. Empty groups are left out: in a small world most
-    /// groups are empty, and every operation iterates over them.
+    /// The coloured constraints, in groups of one colour and one size. Empty groups are left out: in a small world most
+    /// groups are empty, and every operation iterates over the groups.
     pub(super) fn colours(&self) -> impl Iterator<Item = &[u32]> {
         let groups = self.ends.windows(2).map(|ends| &self.order[ends[0] as usize..ends[1] as usize]);
         groups.filter(|indices| !indices.is_empty())
     }
 }
 
-/// The place in the order: the overflow comes first, then the large and the small constraints of each colour.
+/// The rank in the order: the overflow comes first, then the large and the small constraints of each colour.
 #[expect(clippy::cast_possible_truncation, reason = "at most COLOURS_MAX")]
 fn place_of(colour: u32, size: Size) -> u8 {
     match colour as u8 {
@@ -143,7 +144,7 @@ fn bucket_of(key: u64) -> u8 {
     (key.wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 56) as u8
 }
 
-/// The indices `0..count`, stably sorted by bucket, and where each bucket ends.
+/// Sorts the indices `0..count` by bucket, stably, and lists the end of each bucket.
 #[expect(clippy::cast_possible_truncation, reason = "constraints are counted in 32 bits")]
 fn counting_sort(count: usize, bucket_of: impl Fn(usize) -> u8, sorted: &mut Vec<u32>, ends: &mut Vec<u32>) {
     ends.clear();

@@ -1,15 +1,16 @@
-//! Warm start of contacts, once for each body: the velocity change that contacts have accumulated is applied at once.
+//! Warm start of contacts, body by body: applies the velocity change by the accumulated impulses of all contacts of a
+//! body at once.
 //!
-//! The rows of contacts do not change within a tick. So the velocity change by the impulses that have accumulated in
-//! them is what contacts have changed of a body's velocity in the sub-step before, from their warm start to its end:
+//! The rows of contacts do not change within a tick. The velocity change by all accumulated impulses is therefore the
+//! one that contacts have caused in the last sub-step, from their warm start to the end of the sub-step:
 //!
 //! ```text
 //! push = v - v_free,    v' = v_free' + push
 //! ```
 //!
-//! where `v_free` is the velocity that the body would have without contacts. That is one sum for each body instead of a
-//! pass over the rows of all contacts. Hinges, whose rows turn with their bodies, and locked axes change velocities in
-//! between: their changes are added to `v_free`.
+//! where `v_free` is the velocity that the body would have without contacts. This takes one sum for each body instead
+//! of a pass over the rows of all contacts. Joints, whose rows turn with their bodies, and locked axes also change
+//! velocities within a sub-step: their changes are added to `v_free`.
 
 #[cfg(test)]
 mod tests;
@@ -23,29 +24,29 @@ use super::limits::Faults;
 use super::pair::BodyPairW;
 use crate::simd::{GROUND, Ints, Kernel, Lanes, VelocityW, WIDTH};
 
-/// The velocity changes by contacts of all bodies that they push.
+/// The velocity changes that contacts have caused, for all bodies with contacts.
 #[derive(Clone, Debug, Default)]
 pub(super) struct ContactVelocities {
     groups: Vec<Group<WIDTH>>,
-    /// Whether there has been a sub-step in this tick.
+    /// Whether the tick has had a sub-step, so that velocity changes can be measured.
     known: bool,
     /// Whether any group is shared.
     shared: bool,
 }
 
-/// As many bodies as there are lanes.
+/// Bodies that are processed together: as many as there are lanes.
 #[derive(Clone, Debug)]
 struct Group<const N: usize> {
-    /// The indices of the bodies; the ground in lanes without one.
+    /// The indices of the bodies. Lanes without a body have the ground.
     at: [u32; N],
-    /// Whether anything but contacts changes the velocity of any of them between a warm start and the end of a
-    /// sub-step.
+    /// Whether something other than contacts changes the velocity of one of these bodies between the warm start and the
+    /// end of a sub-step.
     shared: bool,
     free: VelocityW<Ints<N>>,
     push: VelocityW<Ints<N>>,
 }
 
-/// An operation on all bodies in turn.
+/// An operation on all groups, one after the other.
 #[derive(Clone, Copy, Debug)]
 enum Task {
     Measure,
@@ -56,11 +57,11 @@ enum Task {
     Resume,
 }
 
-/// A body that contacts change.
+/// A body whose velocity contacts change.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PushedBody {
     pub(super) index: u32,
-    /// Whether something else changes its velocity while contacts are solved.
+    /// Whether something other than contacts changes its velocity while contacts are solved.
     pub(super) shared: bool,
 }
 
@@ -83,15 +84,15 @@ impl ContactVelocities {
         }
     }
 
-    /// Finds what contacts have changed in the last sub-step, if there was one in this tick.
+    /// Measures the velocity changes by contacts in the last sub-step, unless this is the first sub-step of the tick.
     pub(super) fn measure(&mut self, context: &StepContext<'_>) {
         if self.known {
             self.perform(Task::Measure, context);
         }
     }
 
-    /// Records the free velocities and applies the pushes of the last sub-step again. Returns whether there was a
-    /// sub-step in this tick: if not, nothing has been pushed.
+    /// Records the free velocities and applies the velocity changes of the last sub-step again. Returns `false` in the
+    /// first sub-step of a tick, which has no changes to apply.
     pub(super) fn apply(&mut self, context: &StepContext<'_>) -> bool {
         let was_known = self.known;
         if !self.groups.is_empty() {
@@ -101,7 +102,7 @@ impl ContactVelocities {
         was_known
     }
 
-    /// Lets something other than contacts change velocities.
+    /// Runs `change`, and excludes its velocity changes from those by contacts.
     pub(super) fn exempt(&mut self, context: &StepContext<'_>, change: impl FnOnce()) {
         if self.shared {
             self.perform(Task::Suspend, context);
@@ -145,7 +146,7 @@ impl<const N: usize> Kernel<N> for Perform<'_, N> {
                 Task::Apply => {
                     let v = L::velocities(bodies, at);
                     store::<L, N>(v, free);
-                    // The free velocity is within the limits already.
+                    // The free velocity is already within the limits.
                     let mut pushed = BodyPairW::<L, N> { a: v, b: sum::<L, N>(v, load::<L, N>(push)) };
                     pushed.keep_in_range(faults);
                     L::set_velocities(bodies, at, pushed.b);

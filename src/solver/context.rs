@@ -1,4 +1,4 @@
-//! The context that every stage of a sub-step is given, as `b2StepContext` of Box2D.
+//! The context of all stages of a sub-step, like `b2StepContext` of Box2D.
 
 use core::cell::Cell;
 
@@ -13,7 +13,7 @@ use crate::threads::Threads;
 pub(super) enum Pass {
     /// Removes position errors by velocity.
     Bias,
-    /// Takes away the velocity that removing position errors has left.
+    /// Removes the velocity that removing position errors has left.
     Relax,
 }
 
@@ -23,13 +23,13 @@ pub(super) struct StepContext<'a> {
     pub(super) machine: Machine,
     pub(super) threads: &'a Threads,
     pub(super) tuning: &'a Tuning,
-    /// By their indices in the body list.
+    /// The bodies of the tick, by their indices in the body list.
     pub(super) bodies: &'a [Cell<SolverBody>],
     faults: &'a Cell<Faults>,
 }
 
 impl<'a> StepContext<'a> {
-    /// The faults of all stages are added to `faults`.
+    /// Creates the context. The faults of all stages are added to `faults`.
     pub(super) fn new(
         machine: Machine,
         threads: &'a Threads,

@@ -1,13 +1,12 @@
 //! The solver: sequential impulses in sub-steps, in a fixed order.
 //!
 //! `Solver::sub_step` lists the stages of a sub-step, those of E. Catto's soft step (Solver2D, `solve_soft_step.c`).
-//! Each stage has a file of its own: `integrate` for bodies, `contact_velocity` for the warm start of contacts,
-//! `contact/warm_start`, `contact/solve`, `contact/relax` and `contact/restitution` for contacts, `joint/hinge` for
-//! hinges, and `joint/list` for all other joints.
+//! Each stage has a file of its own: `integrate` for bodies; `contact_velocity`, `contact/warm_start`, `contact/solve`,
+//! `contact/relax` and `contact/restitution` for contacts; `joint/hinge` for hinges; `joint/list` for all other joints.
 //!
-//! A row removes velocity along one direction (`row`), a point block pins two points together (`point_block`). Contacts
+//! A row removes velocity along one direction (`row`). A point block pins two points together (`point_block`). Contacts
 //! and hinges are solved in batches of eight (`batches`), by code that is written once for any number of lanes
-//! (`simd`); the rows and points of all other joints are solved one by one.
+//! (`simd`). The rows and points of all other joints are solved one by one.
 
 mod batches;
 mod body;
@@ -53,21 +52,21 @@ use crate::collision::{Contact, Manifold};
 use crate::math::{Fx, Vec2};
 use crate::threads::Threads;
 
-/// Factor on the iterations of a tick in which most contact points are new. Without impulses of the last tick, one
-/// iteration in a sub-step leaves piles restless: the 20 x 20 pyramids of 55 boxes move at 0.27 m/s and are 5.8 mm deep
-/// in their first ticks, instead of 0.05 m/s and 1.5 mm.
+/// Factor on the iterations of a tick in which most contact points are new. New points have no impulse for the warm
+/// start, and one iteration in a sub-step is then not enough for piles: in their first ticks the 20 x 20 pyramids of 55
+/// boxes move at 0.27 m/s and overlap by 5.8 mm, instead of 0.05 m/s and 1.5 mm.
 const COLD_ROUNDS: u32 = 4;
-/// Fewest contact points of a tick with more iterations. In worlds with fewer points little rests on other bodies, and
-/// a few new ones are a landing, not a pile.
+/// Smallest number of contact points for which [`COLD_ROUNDS`] applies. In worlds with fewer points few bodies rest on
+/// others, and new points come from a body that lands, not from a pile.
 const COLD_POINTS: u32 = 256;
 
-/// The working memory of the solver. Its contents do not outlive a tick, its allocations do.
+/// The working memory of the solver. Only its allocations are reused in the next tick, not its contents.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Solver {
     list: BodyList,
     moving: Vec<MovingBody>,
     joints: JointSet,
-    /// A single joint, while its reaction is computed.
+    /// Working memory for the reaction of a single joint.
     reaction: JointSet,
     contacts: ContactSet,
     contact_velocities: ContactVelocities,
@@ -92,7 +91,7 @@ impl Solver {
         self.warm_starts = WarmStarts::default();
         self.list.begin(bodies.slot_count());
         self.moving.clear();
-        // Bodies are large: each is read once.
+        // Each body is read only once, because bodies are large.
         for &slot in slots {
             let body = bodies.at(slot);
             self.list.add(slot, body);
@@ -100,12 +99,12 @@ impl Solver {
         }
     }
 
-    /// The body of a slot, as the tick has left it.
+    /// The body of a slot at the end of the sub-steps.
     pub(crate) fn body(&self, slot: u32) -> &SolverBody {
         self.list.body(slot)
     }
 
-    /// Makes a constraint of each of the joints in the given slots, in the order in which they are solved.
+    /// Makes the constraints of the joints in the given slots, in the order in which they are solved.
     pub(crate) fn prepare_joints(
         &mut self,
         joints: &Arena<Joint, JointId>,
@@ -118,7 +117,7 @@ impl Solver {
         set.refresh(&StepContext::new(*machine, threads, tuning, &mut list.bodies, faults));
     }
 
-    /// [`Joint::reaction`] without allocations, once the joints of the tick have been solved.
+    /// [`Joint::reaction`] without allocations, after the joints of the tick have been solved.
     pub(crate) fn reaction(
         &mut self,
         joint: &Joint,
@@ -144,12 +143,12 @@ impl Solver {
         }));
     }
 
-    /// Where the contact of a touching pair was in the order of the last tick.
+    /// The colour of a touching pair's contact in the last tick.
     pub(crate) fn contact_colour(&self, pair: usize) -> Option<SolverColour> {
         self.colouring.colour_of(pair)
     }
 
-    /// One sub-step. `index` counts the sub-steps since the world was made.
+    /// Performs one sub-step. `index` is the number of sub-steps since the world was created.
     pub(crate) fn sub_step(&mut self, index: u64, tuning: &Tuning) {
         let iterations = tuning.iterations * if self.is_cold() { COLD_ROUNDS } else { 1 };
         let constants = Constants::new(tuning);
@@ -202,7 +201,7 @@ impl Solver {
         points >= COLD_POINTS && kept < points / 2
     }
 
-    /// Lets shapes bounce, after the sub-steps of a tick.
+    /// Applies restitution, after the sub-steps of a tick.
     pub(crate) fn apply_restitution(&mut self, tuning: &Tuning) {
         let restitution = ApplyRestitution { constants: Constants::new(tuning) };
         let Solver { list, contacts, machine, threads, faults, .. } = self;

@@ -1,4 +1,4 @@
-//! The bodies of a batch while it is solved, and arithmetic that contacts and hinges share.
+//! The bodies of a batch while the batch is solved, and arithmetic that contacts and hinges share.
 
 use core::cell::Cell;
 
@@ -38,10 +38,10 @@ impl<L: Lanes<N>, const N: usize> BodyPairW<L, N> {
         L::set_velocities(bodies, b, self.b);
     }
 
-    /// Clamps every component to [`SPEED_MAX`], and counts what changes as faults.
+    /// Clamps every component to [`SPEED_MAX`]. Counts each component that changes as a fault.
     #[inline(always)]
     pub(super) fn keep_in_range(&mut self, faults: &mut Faults) {
-        // One branch that is never taken, instead of six clamps.
+        // One branch that is almost never taken replaces six clamps.
         let limit = L::splat(SPEED_MAX.to_bits());
         let most = L::max(most::<L, N>(self.a), most::<L, N>(self.b));
         let least = L::min(least::<L, N>(self.a), least::<L, N>(self.b));

@@ -1,4 +1,4 @@
-//! The point block: pins a point of body A to a point of body B, both directions at once.
+//! The point block: pins a point of body A to a point of body B. Both directions are solved at once.
 //!
 //! In world axes, with `e = (-r_y, r_x) / k` of each body and the mass fractions `a`:
 //!
@@ -14,23 +14,23 @@
 //! vA -= GA d,  uA -= fA.d,  vB += GB d,  uB += fB.d
 //! ```
 //!
-//! `L` is the change of the relative velocity of the anchors by the impulse. `L` is carried over from pose to pose:
-//! the new `G` drops the part of it that no longer acts along the arm. Carrying over the impulse `p = G L`
-//! instead multiplies that part by up to `e^2` (1100 m/s on a rod 40 radii of gyration long). Two scalar rows instead
-//! of the block gain energy in a swinging chain.
+//! `L` is the change of the relative velocity of the anchors by the impulse. `L` is carried over from pose to pose: the
+//! new `G` removes the part of `L` that no longer acts along the arm. Carrying over the impulse `p = G L` instead would
+//! multiply that part by up to `e^2` (1100 m/s on a rod 40 radii of gyration long). Two scalar rows instead of the
+//! block would gain energy in a swinging chain.
 //!
-//! **The bias pass measures along the chord.** Displacements are straight while arms turn, which opens the joint by
-//! about half the square of the rotation. The velocity that closes it is that of the arm averaged over the predicted
-//! rotation `t = h u / k`, to third order
+//! **The bias pass measures along the chord.** Displacements are straight while arms turn. This opens the joint by
+//! about half the square of the rotation. To keep it closed, the velocity is measured with the arm averaged over the
+//! predicted rotation `t = h u / k`, to third order:
 //!
 //! ```text
 //! eM = e + M (t/2 (-e_y, e_x) - t^2/6 e),   M = 1 + 0.6 impulseScale / massScale
 //! vr = vB - vA + eMB uB - eMA uA
 //! ```
 //!
-//! while the impulse still acts along the arm at the start, so that it costs no energy (the position constraint of
-//! RATTLE, H. Andersen 1983). `M` compensates for the softness, which would yield to the centrifugal force. The relax
-//! pass uses the arm at the start. Hinges do all this in batches (`joint/hinge`).
+//! The impulse still acts along the arm at the start, so that it costs no energy (the position constraint of RATTLE,
+//! H. Andersen 1983). `M` compensates for the softness, which would yield to the centrifugal force. The relax pass
+//! measures with the arm at the start. Hinges use the same equations in batches (`joint/hinge`).
 
 use fixed::types::extra::U30;
 
@@ -68,11 +68,11 @@ impl Symmetric<Unit> {
     }
 }
 
-/// The velocity that [`PointBlock::solve_within`] aims at, reversed.
+/// The target velocity of [`PointBlock::solve_within`], reversed.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct PointGoal {
     pub(crate) bias: Vec2<Speed>,
-    /// A part that the softness does not scale.
+    /// The part that the softness does not scale.
     pub(crate) push: Vec2<Speed>,
 }
 
@@ -99,7 +99,7 @@ impl PointBlock {
         };
         let (xx, xy, yy) = (sum(|e| e.x, |e| e.x), sum(|e| e.x, |e| e.y), sum(|e| e.y, |e| e.y));
         let product = |a: Ratio, b: Ratio| i128::from(a.to_bits()) * i128::from(b.to_bits());
-        // 24 fraction bits of `eA x eB` suffice: this term is never the smallest.
+        // 24 fraction bits of `eA x eB` are enough, because this term is never the smallest one.
         let cross = round_shift_wide(product(e_a.x, e_b.y) - product(e_a.y, e_b.x), 24);
         let shares = product_of_fractions(fractions);
         let both = round_shift_wide(cross * cross, 24) * shares;
@@ -114,7 +114,7 @@ impl PointBlock {
     /// Changes the velocities by an impulse `d`.
     #[inline]
     pub(crate) fn apply(&self, d: Vec2<Speed>, a: &mut SolverBody, b: &mut SolverBody, faults: &mut Faults) {
-        // Changes of up to 512 m/s on both axes may add up to 768 m/s: these sums saturate before they are clamped.
+        // Changes of up to 512 m/s on both axes may add up to 768 m/s, so that these sums saturate before the clamp.
         let (v_a, v_b) = (a.velocity - self.g_a.apply(d), b.velocity + self.g_b.apply(d));
         a.set_velocity(v_a.x, v_a.y, a.spin.saturating_sub(self.f_a.dot(d)), faults);
         b.set_velocity(v_b.x, v_b.y, b.spin.saturating_add(self.f_b.dot(d)), faults);
@@ -175,7 +175,7 @@ impl PointBlock {
         self.apply(d, a, b, faults);
     }
 
-    /// `L`, shortened so that `|G L|` is at most `p_max`.
+    /// Shortens `L` so that `|G L|` is at most `p_max`.
     fn shortened(&self, lambda: Vec2<Speed>, p_max: Speed) -> Vec2<Speed> {
         // The mass fractions add up to 1.
         let p = self.g_a.apply(lambda) + self.g_b.apply(lambda);
@@ -245,8 +245,8 @@ mod tests {
     use crate::fx;
     use crate::math::{Fx, Reciprocal, Rng, Rot, narrow};
 
-    /// One update leaves the anchors at rest against each other but for rounding errors of up to 6e-5 m/s. With arms of
-    /// up to 16 radii of gyration on both sides they start at up to 330 m/s.
+    /// One update leaves no relative velocity of the anchors except rounding errors of up to 6e-5 m/s. With arms of up
+    /// to 16 radii of gyration on both sides the anchors start at up to 330 m/s.
     #[test]
     fn an_update_brings_the_anchors_to_rest() {
         let mut rng = Rng::new(8);
@@ -271,7 +271,7 @@ mod tests {
             };
             let (mut a, mut b) = (body(), body());
             let (mut lambda, mut before) = (Vec2::ZERO, Vec2::ZERO);
-            // The second update solves what the first has left.
+            // The second update removes the rounding errors of the first.
             for _ in 0..2 {
                 before = lambda;
                 let (ratios, no_bias) = (block.ratios(), Vec2::ZERO);
@@ -284,7 +284,7 @@ mod tests {
         assert!(worst <= 128, "{worst} units left");
     }
 
-    /// From rest, an impulse changes momentum by no more than its bound, whatever velocity it aims at.
+    /// From rest, an impulse changes momentum by no more than its bound, whatever the target velocity is.
     #[test]
     fn an_impulse_of_limited_length_is_no_longer() {
         let mut rng = Rng::new(9);

@@ -39,13 +39,13 @@ pub(crate) struct MassFractions {
 }
 
 impl MassFractions {
-    /// With masses `M` instead of inverse masses, `mA / (mA + mB)` is `MB / (MA + MB)`.
+    /// The fractions of two bodies. With masses `M` instead of inverse masses, `mA / (mA + mB)` is `MB / (MA + MB)`.
     pub(crate) fn of(a: &Body, b: &Body) -> Self {
         let mass = |body: &Body| if body.is_dynamic() { body.mass() } else { Fx::ZERO };
         Self::of_masses(mass(a), mass(b))
     }
 
-    /// `a` and `b` are the masses in kg, 0 for a body that no impulse moves.
+    /// The fractions for masses in kg: 0 for a body that no impulse moves.
     pub(crate) fn of_masses(a: Fx, b: Fx) -> Self {
         match (a.is_positive(), b.is_positive()) {
             // Equal masses need no division.
@@ -74,7 +74,8 @@ pub(super) fn turning(fraction: Unit, e: Ratio, other: Ratio) -> i64 {
     saturate_wide(round_shift_wide(wide, 48))
 }
 
-/// `f x` for a fraction, a gain or a component of a unit vector `f`: never larger than `x`, so that it needs no clamp.
+/// `f x`, where `f` is a fraction, a gain or a component of a unit vector. Never larger than `x`, so that no clamp is
+/// needed.
 #[inline]
 #[expect(clippy::cast_possible_truncation, reason = "at most the speed itself")]
 fn part(fraction: Unit, speed: Speed) -> Speed {
@@ -82,10 +83,10 @@ fn part(fraction: Unit, speed: Speed) -> Speed {
     Speed::from_bits(round_shift(product, 30) as i32)
 }
 
-/// Where a row or block acts on a body, and how easily the body turns.
+/// The lever of a row or block on a body: where the impulse acts, and how easily the body turns.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Lever {
-    /// From the centre of mass to the point.
+    /// Vector from the centre of mass to the point where the impulse acts.
     pub(crate) arm: Vec2<Length>,
     pub(crate) inverse_gyration: Reciprocal,
 }
@@ -102,8 +103,8 @@ pub(crate) struct Row {
     f_b: Unit,
 }
 
-/// Largest lever ratio. Two of them times the largest spins leave 2^57 of 64 bits for the linear part of
-/// [`Row::along`].
+/// Largest lever ratio. The products of two such ratios with the largest spins leave 2^57 of 64 bits for the linear
+/// part of [`Row::along`].
 pub(super) const RATIO_MAX: Ratio = Ratio::lit("126");
 
 /// `D` of a row, 1 to 15 877, with 30 fraction bits.
@@ -160,9 +161,9 @@ impl Row {
         Speed::from_bits(vn)
     }
 
-    /// `n.d + eB tB - eA tA` in the format of its arguments. The linear part drops 6 bits to the scale of the angular
-    /// part, and the sum is rounded once. Differences have 33 bits, so that their dot product with a unit vector stays
-    /// below 2^63.
+    /// `n.d + eB tB - eA tA` in the format of its arguments. The linear part is shifted by 6 bits to the scale of the
+    /// angular part, and the sum is rounded once. Differences have 33 bits, so that their dot product with a unit
+    /// vector stays below 2^63.
     #[inline]
     fn along(&self, x: i64, y: i64, turn_a: i32, turn_b: i32) -> i64 {
         let linear = i64::from(self.n.x.to_bits()) * x + i64::from(self.n.y.to_bits()) * y;
@@ -207,7 +208,7 @@ impl Row {
         self.accumulate(softness.wanted(vn, bias, *lambda), bounds, lambda, a, b, faults)
     }
 
-    /// Accumulates an impulse in units of [`Speed`], as far as the bounds allow. Returns the change.
+    /// Adds an impulse in units of [`Speed`] to the accumulated one, within the bounds. Returns the change.
     #[inline]
     pub(crate) fn accumulate(
         &self,
@@ -234,8 +235,8 @@ impl Row {
         self.apply_wide(d.to_bits().into(), a, b, faults);
     }
 
-    /// As [`Self::apply`], in units of [`Speed`]: the difference of two accumulated impulses may be twice as large as
-    /// the type can hold.
+    /// Changes the velocities by an impulse in units of [`Speed`]. The difference of two accumulated impulses may be
+    /// twice as large as a [`Speed`] can be.
     #[inline]
     fn apply_wide(&self, d: i64, a: &mut SolverBody, b: &mut SolverBody, faults: &mut Faults) {
         if d.unsigned_abs() <= u64::from(STEP_MAX.to_bits().unsigned_abs()) {
@@ -245,8 +246,8 @@ impl Row {
         }
     }
 
-    /// Applies an impulse of more than 512 m/s in steps: a bound may shrink, and what was pushed may come free, by more
-    /// than a velocity has room for.
+    /// Applies an impulse of more than 512 m/s in steps. When a bound shrinks or a pushed body comes free, the change
+    /// may exceed the range of a velocity.
     #[cold]
     fn apply_in_steps(&self, mut d: i64, a: &mut SolverBody, b: &mut SolverBody, faults: &mut Faults) {
         let limit = i64::from(STEP_MAX.to_bits());
@@ -258,7 +259,8 @@ impl Row {
     }
 }
 
-/// `L = p D` for an accumulated impulse `p = L / D` of an earlier `D`. It is a guess, so that clamping it is no fault.
+/// `L = p D`, where `p = L / D` was computed with an earlier `D`. The result is only an initial guess, so that clamping
+/// it is not a fault.
 pub(crate) fn lambda_of(p: Speed, denominator: Denominator) -> Speed {
     let bits = round_shift_wide(i128::from(p.to_bits()) * i128::from(denominator), 30);
     Speed::from_bits(saturate(saturate_wide(bits))).clamp(-IMPULSE_MAX, IMPULSE_MAX)
@@ -306,7 +308,7 @@ mod tests {
         MassFractions { a, b: Unit::ONE - a }
     }
 
-    /// One update leaves no relative velocity but rounding errors of up to 5 units of [`Speed`], 2.4e-6 m/s.
+    /// One update leaves no relative velocity except rounding errors of up to 5 units of [`Speed`], 2.4e-6 m/s.
     #[test]
     fn an_update_removes_the_relative_velocity() {
         let mut rng = Rng::new(4);

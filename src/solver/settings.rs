@@ -1,4 +1,4 @@
-//! Settings of the solver, and the same in the formats of its stages.
+//! Settings of the solver, as the user sets them and in the number formats of the solver.
 
 use serde::{Deserialize, Serialize};
 
@@ -9,7 +9,7 @@ use crate::math::{Fx, Rate, Speed, Step, Vec2, narrow};
 /// Method by which contacts remove overlap.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum ContactTuning {
-    /// Stiff damped springs, with a relax pass that takes the push-out velocity away again.
+    /// Stiff damped springs, with a relax pass that removes the push-out velocity.
     Soft {
         /// Stiffness in Hz, at most an eighth of the sub-step rate; doubled against bodies that are not dynamic.
         hertz: Fx,
@@ -18,7 +18,8 @@ pub enum ContactTuning {
         /// Largest speed at which overlap is pushed out, in m/s.
         push_speed: Fx,
     },
-    /// A share of the overlap beyond a slop is removed in every sub-step (J. Baumgarte, 1972). Simpler and bouncier.
+    /// Baumgarte stabilisation: every sub-step removes a share of the overlap beyond a slop (J. Baumgarte, 1972).
+    /// Simpler than soft contacts, but bodies bounce more.
     Baumgarte {
         /// Share of the overlap removed in a sub-step, 0 to 1.
         share: Fx,
@@ -41,16 +42,16 @@ pub struct SolverSettings {
     pub iterations: u32,
     /// Method by which contacts remove overlap.
     pub contact: ContactTuning,
-    /// Stiffness of joints in Hz, at most a quarter of the sub-step rate. It is doubled for the anchors of a hinge or
-    /// rigid weld that holds a body without any other joint to a body that is not dynamic: no other joint has to yield
-    /// there.
+    /// Stiffness of joints in Hz, at most a quarter of the sub-step rate. It is doubled for the anchors of an anchored
+    /// hinge or rigid weld: one between a body that is not dynamic and a body without any other joint. No other joint
+    /// has to yield there.
     pub joint_hertz: Fx,
     /// Damping ratio of joints, 0 to 100.
     pub joint_damping_ratio: Fx,
-    /// Approach speed in m/s below which nothing bounces.
+    /// Approach speed in m/s below which restitution is not applied.
     pub restitution_threshold: Fx,
-    /// Speed limit in m/s, at most 400. It also limits the radius of gyration times the angular velocity. Below 27
-    /// ticks per second the limit is lower: [`DISTANCE_MAX`] in a tick.
+    /// Speed limit in m/s, at most 400. It also limits the radius of gyration times the angular velocity. With fewer
+    /// than 27 ticks per second the limit is [`DISTANCE_MAX`] in a tick, which is lower.
     pub speed_max: Fx,
 }
 
@@ -121,8 +122,8 @@ pub(crate) struct Tuning {
     pub(crate) contact_immovable: Softness,
     pub(crate) slop: Step,
     pub(crate) push_speed: Speed,
-    /// Softness of joints, and of the anchors of hinges that hold a body without any other joint to one that is not
-    /// dynamic.
+    /// Softness of joints, and of the anchors of anchored hinges, which hold a body without any other joint to a body
+    /// that is not dynamic.
     pub(crate) joint: Softness,
     pub(crate) anchored: Softness,
     pub(crate) relax: bool,
@@ -170,7 +171,7 @@ impl Tuning {
     }
 }
 
-/// A share in every sub-step as a rate per second.
+/// Converts a share in every sub-step to a rate per second.
 fn fx_rate(share: Fx, rate: u32) -> Fx {
     crate::math::fx_mul(share, Fx::from_num(rate))
 }

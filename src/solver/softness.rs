@@ -1,5 +1,5 @@
-//! Soft constraints: springs and dampers that stay stable at any stiffness (E. Catto, "Soft Constraints", GDC 2011, and
-//! Solver2D), as three numbers.
+//! Soft constraints: springs and dampers that stay stable at any stiffness, given by three coefficients (E. Catto,
+//! "Soft Constraints", GDC 2011, and Solver2D).
 //!
 //! ```text
 //! omega = 2 pi hertz,  a1 = 2 zeta + h omega,  a2 = h omega a1,  a3 = 1 / (1 + a2)
@@ -10,7 +10,7 @@ use super::limits::{Faults, STEP_MAX};
 use crate::fx;
 use crate::math::{Fx, Rate, Speed, TAU, Unit, fx_div, fx_mul, narrow, round_shift, saturate};
 
-/// The coefficients by which a constraint error and an accumulated impulse become an impulse.
+/// The coefficients from which the impulse of a soft constraint is computed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Softness {
     pub(crate) bias_rate: Rate,
@@ -28,7 +28,7 @@ impl Softness {
         Softness { bias_rate, ..Self::RIGID }
     }
 
-    /// A spring of `hertz` and `damping_ratio` that is solved `rate` times per second.
+    /// A spring with frequency `hertz` and `damping_ratio` that is solved `rate` times per second.
     pub(crate) fn spring(hertz: Fx, damping_ratio: Fx, rate: u32) -> Self {
         let omega = fx_mul(TAU, hertz);
         let h_omega = omega / i64::from(rate);
@@ -57,7 +57,7 @@ impl Softness {
         narrow(fx_mul(fx_mul(stretch, self.bias_rate.into()), self.mass_scale.into()))
     }
 
-    /// `-massScale (v + bias) - impulseScale L` in units of [`Speed`]. It may be four times the largest [`Speed`].
+    /// `-massScale (v + bias) - impulseScale L` in units of [`Speed`]. May be up to four times the largest [`Speed`].
     #[inline]
     pub(crate) fn wanted(&self, v: Speed, bias: Speed, lambda: Speed) -> i64 {
         let error = i64::from(v.to_bits()) + i64::from(bias.to_bits());

@@ -69,8 +69,9 @@ impl Default for Config {
 }
 
 impl Config {
-    /// Distance in metres below which shapes begin to touch: a quarter of the speculative distance, beyond which they
-    /// cease to. The difference keeps a wobbling contact from beginning and ending in turn.
+    /// Distance in metres below which shapes begin to touch: a quarter of the speculative distance. They cease to touch
+    /// beyond the speculative distance. The difference keeps a contact that wobbles from beginning and ending
+    /// repeatedly.
     #[must_use]
     pub fn touching_distance(&self) -> Fx {
         self.speculative_distance / 4
@@ -83,7 +84,7 @@ impl Config {
         (half.x.max(half.y) / 16).min(self.fat_margin)
     }
 
-    /// Number of ticks for which a body has to be slow before it may fall asleep: half a second.
+    /// Number of ticks for which a body has to be slow before it may fall asleep: those of half a second.
     #[must_use]
     pub const fn ticks_to_sleep(&self) -> u32 {
         self.tick_rate.div_ceil(2)

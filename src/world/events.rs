@@ -76,15 +76,15 @@ pub struct Events {
     /// Pairs that came within [`super::Config::touching_distance`] or pushed each other in the tick. Sorted by shape A,
     /// then by shape B, like all lists of pairs.
     pub contact_begin: Vec<ContactEvent>,
-    /// Pairs that moved further apart than [`super::Config::speculative_distance`], or of which a shape was removed or
-    /// disabled.
+    /// Pairs that moved further apart than [`super::Config::speculative_distance`], and pairs of which a shape was
+    /// removed or disabled.
     pub contact_end: Vec<ContactEvent>,
     /// Pairs that pushed each other after an approach at [`super::Config::hit_speed`] or faster.
     pub hits: Vec<HitEvent>,
     /// Shapes that began to overlap a sensor. Sorted by sensor, then by visitor.
     pub sensor_begin: Vec<SensorEvent>,
-    /// Shapes that ceased to overlap a sensor, or pairs of which one was removed or disabled. Sorted by sensor, then by
-    /// visitor.
+    /// Shapes that ceased to overlap a sensor, and pairs of which the sensor or the shape was removed or disabled.
+    /// Sorted by sensor, then by visitor.
     pub sensor_end: Vec<SensorEvent>,
     /// Joints above their threshold, in slot order.
     pub joints: Vec<JointEvent>,

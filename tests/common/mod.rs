@@ -1,4 +1,4 @@
-//! Shared by test binaries: the committed hashes.
+//! Access to the committed hashes, shared by test binaries.
 #![allow(dead_code, reason = "each test binary uses only some of these items")]
 
 use std::path::PathBuf;

@@ -86,7 +86,7 @@ fn a_finding_is_not_endless() {
     assert!(lines < 50 && text.contains(&format!("\n    and {} more\n", 1000 - lines)), "{text}");
 }
 
-/// Each fault has its own hint.
+/// Each kind of fault has its own explanation of the usual cause.
 #[test]
 fn what_it_usually_is() {
     let too_much =

@@ -7,7 +7,7 @@ use lockstep2d::world::{Config, World};
 
 use crate::sweep;
 
-/// Everything half a metre high below its centre.
+/// Movers of different shapes. Their lowest points are 0.5 m below their centres, that of the small ball 0.1 m.
 fn movers() -> [(&'static str, ShapeDef); 5] {
     let square =
         |half, radius| Polygon::square(half).and_then(|square| square.rounded(radius)).expect("valid");
@@ -78,7 +78,7 @@ fn everything_slides_over_a_flat_chain_of_1000_links() {
         assert!(fastest < fx!(0.05), "{name} at {speed} m/s: {fastest} m/s up or down");
         let travelled = world.body(body).expect("there").position().x;
         let free = speed * 800 / 60;
-        // Rounded corners that meet the vertices give and take a little: 0.03 % of the way.
+        // Rounded corners that meet the vertices change the distance slightly, by 0.03 %.
         assert!(friction > 0 || (travelled - free).abs() < fx!(0.03), "{name}: {travelled} m");
         assert_eq!(world.faults(), 0);
     });

@@ -89,7 +89,7 @@ fn a_cantilever_of_rigid_welds_hardly_bends() {
         for (id, _) in world.joints() {
             assert!(world.joint_length(id).expect("there") < fx!(0.01));
         }
-        // The wall bears the whole load: 10 N per plank, and its torque.
+        // The wall bears the whole load: 10 N per plank, and the torque of these loads.
         let (first, _) = world.joints().next().expect("there");
         let (force, torque) = world.joint_force(first).expect("there");
         let planks = Fx::from_num(planks);

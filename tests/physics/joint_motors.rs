@@ -8,7 +8,7 @@ use lockstep2d::world::World;
 
 use crate::joint_bench::{Bench, Ground, close, grounds};
 
-/// Whether a joint accelerates a mass or an inertia.
+/// Distinguishes joints that accelerate a mass from joints that accelerate an inertia.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Load {
     Mass,

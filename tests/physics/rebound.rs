@@ -32,7 +32,8 @@ fn rebounds(e: Fx, height: Fx, ticks: u32) -> Vec<Fx> {
     heights
 }
 
-/// The time of impact is known to one tick: the velocity that gravity adds in that tick is lost, `e^2 H 2 g dt / v`.
+/// The time of impact has an error of up to one tick. The velocity that gravity adds in that tick is lost, which lowers
+/// the rebound by up to `e^2 H 2 g dt / v`.
 #[test]
 fn a_rebound_returns_the_square_of_the_restitution() {
     let g = fx!(10);

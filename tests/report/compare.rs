@@ -60,8 +60,8 @@ fn flipped_bits(difference: &Difference) -> u32 {
     (bits(&difference.a) ^ bits(&difference.b)).count_ones()
 }
 
-/// Cases of a flip in one peer's game, each of them told by the reports of that peer and of another one. Returns how
-/// many flips the solver swallowed without a trace. Of the flips that are drawn, every `stride`th is tried.
+/// Compares the reports of a peer whose game had a bit flip and of another peer, in `count` cases. Of the flips that
+/// are drawn, every `stride`th is tried. Returns the number of flips that made no difference to the game.
 fn cases(seed: u64, count: u32, when: When, stride: u32) -> u32 {
     let mut rng = Rng::new(seed);
     let mut drawn = 0_u32;
@@ -132,8 +132,8 @@ fn a_bit_that_flips_after_a_step_is_found() {
     cases(1, count, When::After, stride);
 }
 
-/// Checks flips before a step. All that touches the body differs in the same tick; the bit is found by trying. Some
-/// flips make no difference at all, but fewer than those that make one.
+/// Checks flips before a step. Everything that touches the body then differs in the same tick, so that the comparison
+/// finds the bit by trying. Some flips make no difference, but fewer than those that do.
 fn check_flips_before_a_step(seed: u64) {
     let (count, stride) = sweep::size((50, 1), (10, 5));
     let swallowed = cases(seed, count, When::Before, stride);
@@ -162,7 +162,7 @@ fn peers_that_agree_are_equal() {
     assert!(compared(&replays[0], &replays[1]).is_equal());
 }
 
-/// A replay has checkpoints only: the tick is known to one checkpoint interval, and the fields are unknown.
+/// A replay has only checkpoints, so that the tick is found to within one checkpoint interval, and no fields are found.
 #[test]
 fn replays_tell_who_departed_between_which_checkpoints() {
     let flip = Flip { tick: 60, when: When::After, body: 9, motion: BodyField::VelocityY, bit: 12 };
@@ -174,13 +174,13 @@ fn replays_tell_who_departed_between_which_checkpoints() {
     assert_eq!(found.blame, Blame::Side(Side::B));
     assert!(found.subjects.is_empty() && !found.notes.is_empty());
 
-    // With the report of the diverged peer, the tick and the field are known.
+    // With the report of the diverged peer, the tick and the field are found.
     let report = peers[1].report(1, 75, Vec::new());
     let found = compared(&replays[0], &evidence(&report));
     assert_eq!((found.first_different, found.blame), (Some(60), Blame::Side(Side::B)));
     assert_eq!(found.subjects.len(), 1, "{:?}", found.subjects);
 
-    // With the report of the correct peer, only the correct states are known.
+    // The report of the correct peer contains only the correct states.
     let report = peers[0].report(0, 75, Vec::new());
     let found = compared(&evidence(&report), &replays[1]);
     assert_eq!((found.first_different, found.blame), (Some(75), Blame::Side(Side::B)));

@@ -7,7 +7,7 @@ use crate::source::{Source, Token, tokens};
 /// A path in a source file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct PathUse {
-    /// From the root of the crate: `["world", "cache", "Scratch"]`.
+    /// Names from the root of the crate, as in `["world", "cache", "Scratch"]`.
     pub(crate) path: Vec<String>,
     pub(crate) line: usize,
     /// For `pub use`: the name under which the module re-exports it.
@@ -33,8 +33,9 @@ impl Crate {
         Crate { modules: files.map(read).collect() }
     }
 
-    /// The modules whose files a module's own file depends on, each with the line. A re-export is no dependency of the
-    /// module that has it, unless its own code uses the name: a path through it leads to where the item is defined.
+    /// Returns the modules on whose files a module's own file depends, each with the line. A re-export is only a
+    /// dependency of its module if the module's own code uses the name, because a path through a re-export counts as a
+    /// path to the file that defines the item.
     pub(crate) fn dependencies(&self, place: &[String]) -> Vec<(Vec<String>, usize)> {
         let paths = self.modules[place].iter().filter(|path| path.reexport.is_none() || path.is_used_here);
         let resolved = paths.map(|path| (self.resolve(&path.path, 0), path.line));
@@ -46,7 +47,7 @@ impl Crate {
         self.modules.keys()
     }
 
-    /// The module in whose file the item at a path is defined.
+    /// Returns the module in whose file the item at a path is defined.
     fn resolve(&self, path: &[String], depth: usize) -> Vec<String> {
         assert!(depth < 20, "{path:?} is re-exported in a circle");
         let mut place = Vec::new();
@@ -121,7 +122,7 @@ fn paths_of(tokens: &[Token], place: &[String], is_module: &dyn Fn(&Vec<String>)
             _ => {}
         }
         let inline: Vec<String> = braces.iter().flatten().cloned().collect();
-        // A path in a visibility, as in `pub(in crate::world)`, is no use.
+        // A path in a visibility, as in `pub(in crate::world)`, is not a use.
         let in_visibility = at >= 2 && text(at - 1) == "in" && text(at - 2) == "(";
         let starts = is_name(text(at)) && !in_visibility && (at == 0 || text(at - 1) != "::");
         let is_use = text(at) == "use";
@@ -205,7 +206,7 @@ fn read_tree(
     at
 }
 
-/// A path from the root of the crate, if it leads into it.
+/// Converts a path to one from the root of the crate. `None` if the path leads to another crate.
 fn absolute(
     names: &[String],
     module: &[String],

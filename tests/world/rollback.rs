@@ -191,7 +191,8 @@ fn snapshots_go_to_other_threads() {
     sent(&world);
 }
 
-/// Random numbers drawn and changes to a clone change the hash; a restore brings the saved hash back.
+/// Drawing a random number changes the hash of a world, and so does a change to a clone. A restore brings the saved
+/// hash back.
 #[test]
 fn random_numbers_and_clones_are_hashed_as_they_are() {
     let (mut world, _) = world_with_floor();

@@ -61,7 +61,7 @@ impl<F: FnMut(u32) -> Unit> Along<F> {
         let (lower, upper) = (coarse(self.area.lower), coarse(self.area.upper));
         let (box_lower, box_upper) = (coarse(aabb.lower), coarse(aabb.upper));
         let (dx, dy) = coarse(self.translation);
-        // Rounding down has moved each end, and that of the translation, by less than one unit.
+        // Rounding down has moved each corner, and the end of the translation, by less than one unit.
         let (left, right) = (box_lower.0 - upper.0 - 2, box_upper.0 - lower.0 + 2);
         let (bottom, top) = (box_lower.1 - upper.1 - 2, box_upper.1 - lower.1 + 2);
         let (y_least, y_most) = if dx < 0 { (top, bottom) } else { (bottom, top) };

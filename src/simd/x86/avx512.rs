@@ -174,7 +174,10 @@ impl Lanes<WIDTH> for Avx512 {
     }
 
     #[inline(always)]
-    #[expect(clippy::cast_possible_truncation, reason = "one bit for every second of 16")]
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "the mask has 16 bits, of which every second is used"
+    )]
     fn greater_wide(a: __m512i, b: __m512i) -> __mmask16 {
         // SAFETY: see `Avx512`.
         unsafe { _pdep_u32(_mm512_cmpgt_epi64_mask(a, b).into(), LANES.into()) as __mmask16 }

@@ -2,8 +2,8 @@
 
 use crate::simd::{Ints, Lanes};
 
-/// `N` contacts of which no two change the same body, for one tick. Lanes without a contact have no gains, and their
-/// bodies are the ground.
+/// `N` contacts for one tick, of which no two change the same body. Lanes without a contact have gains of 0, and the
+/// ground as both bodies.
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
 pub(in crate::solver) struct Batch<const N: usize> {
@@ -14,20 +14,20 @@ pub(in crate::solver) struct Batch<const N: usize> {
     /// The normal, from A to B, with the fraction bits of a lever ratio. The tangent is perpendicular to it.
     pub(super) n_x: Ints<N>,
     pub(super) n_y: Ints<N>,
-    /// -1 where no impulse moves one of the bodies: such contacts are stiffer.
+    /// -1 in lanes where no impulse moves one of the bodies. These contacts are stiffer.
     pub(super) immovable: Ints<N>,
     /// Number of points that have a contact in any lane. Points beyond it are stale and never read.
     pub(super) count: usize,
-    /// Whether any surface in the batch bounces, moves or resists rolling: then the batch has a
-    /// [`super::extras::ContactExtras`] as well.
+    /// Whether any surface in the batch bounces, moves or resists rolling. The batch then has a
+    /// [`super::extras::ContactExtras`].
     pub(super) extras: bool,
-    /// Whether its rows and its surfaces are within the bounds of [`super::overflow_policy::Unchecked`] contacts.
+    /// Whether the rows and surfaces of the batch are within the bounds of [`super::overflow_policy::Unchecked`].
     pub(super) unchecked: bool,
-    /// For each point, a bit for each lane in which the shapes have pushed each other in this tick.
+    /// For each point, a bit mask of the lanes in which the shapes have pushed each other in this tick.
     pub(super) pushed: [u32; 2],
     pub(super) points: [Point<N>; 2],
-    /// Friction, half-way between the points. Both points would have the same row, since they lie on one line along the
-    /// tangent.
+    /// The friction row, half-way between the points. Both points would have the same row, because they lie on one line
+    /// along the tangent.
     pub(super) tangent: Row<N>,
     pub(super) tangent_lambda: Ints<N>,
 }
@@ -38,15 +38,15 @@ pub(super) struct Point<const N: usize> {
     pub(super) normal: Row<N>,
     /// Separation at the start of the tick, in the format of a shift.
     pub(super) first_separation: Ints<N>,
-    /// Separation at the present positions.
+    /// Separation at the current positions.
     pub(super) separation: Ints<N>,
     /// Friction limit per unit of the normal impulse: `mu Dt / Dn`.
     pub(super) friction_ratio: Ints<N>,
     pub(super) normal_lambda: Ints<N>,
 }
 
-/// `N` rows: lever ratios, and what an impulse of 1 changes. The linear part of the Jacobian is the direction, which
-/// all rows of a contact along the same direction share.
+/// `N` rows: lever ratios, and the velocity changes by an impulse of 1. The linear part of the Jacobian is the
+/// direction, which all rows of a contact along the same direction share.
 #[derive(Clone, Debug)]
 pub(super) struct Row<const N: usize> {
     pub(super) e_a: Ints<N>,
@@ -88,7 +88,7 @@ impl<const N: usize> Batch<N> {
         tangent_lambda: Ints::ZERO,
     };
 
-    /// Resets what is not overwritten when contacts are put into the batch.
+    /// Resets the fields that filling the batch does not overwrite.
     #[inline(always)]
     pub(super) fn begin(&mut self) {
         self.bodies = Self::NONE.bodies;

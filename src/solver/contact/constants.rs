@@ -1,4 +1,4 @@
-//! The settings of a tick as the operations on contacts use them.
+//! The settings of a tick in the number formats of the operations on contacts.
 
 use super::super::settings::Tuning;
 use super::super::softness::Softness;
@@ -10,13 +10,13 @@ use crate::math::{Rate, Shift};
 pub(in crate::solver) struct Constants {
     /// Sub-steps per second, in the format of [`Rate`].
     pub(super) rate: i32,
-    /// The widest gap or overlap whose speed fits its format.
+    /// Largest gap or overlap for which the speed that removes it in a sub-step fits the format of a speed.
     pub(super) separation_max: i32,
     /// Overlap that is not pushed out.
     pub(super) slop: i32,
     /// Largest speed at which overlap is pushed out.
     pub(super) push_speed: i32,
-    /// Approach speed below which nothing bounces.
+    /// Approach speed below which restitution is not applied.
     pub(super) restitution_threshold: i32,
     /// Softness between two bodies that impulses move.
     pub(super) soft: Softness,

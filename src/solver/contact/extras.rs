@@ -1,5 +1,5 @@
-//! Restitution, moving surfaces and rolling resistance. Few contacts have any of these, and their data lies apart from
-//! the batches, so that the other contacts do not carry it through the caches.
+//! Restitution, moving surfaces and rolling resistance. Few contacts have any of these. Their data is stored separately
+//! from the batches, so that it does not use cache space for all other contacts.
 
 use super::batch::Batch;
 use super::input::ContactSource;
@@ -7,7 +7,7 @@ use super::rolling::RollingRows;
 use crate::math::Unit;
 use crate::simd::{Ints, Lanes};
 
-/// The rest of a batch in which some surface has extras.
+/// Additional data of a batch in which some surface has extras.
 #[derive(Clone, Debug)]
 pub(in crate::solver) struct ContactExtras<const N: usize> {
     pub(super) restitution: Ints<N>,
@@ -33,8 +33,8 @@ impl<const N: usize> ContactExtras<N> {
         rolling: RollingRows::NONE,
     };
 
-    /// Puts a contact into a lane. `inverse_normals` are the reciprocals of its points' denominators; that of a missing
-    /// point does not matter, as the point has no impulse.
+    /// Puts a contact into a lane. `inverse_normals` are the reciprocals of its points' denominators. The one of a
+    /// missing point does not matter, because the point has no impulse.
     pub(super) fn fill(
         &mut self,
         lane: usize,

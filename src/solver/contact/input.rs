@@ -21,7 +21,7 @@ pub(crate) struct ActiveContact {
     pub(crate) surface: Surface,
 }
 
-/// The contacts of a tick, before they are put into batches.
+/// The contacts of a tick, from which batches are filled.
 #[derive(Clone, Copy)]
 pub(in crate::solver) struct ContactSource<'a> {
     pub(in crate::solver) pairs: &'a [ActiveContact],
@@ -31,24 +31,25 @@ pub(in crate::solver) struct ContactSource<'a> {
     pub(in crate::solver) list: &'a BodyList,
 }
 
-/// A lane of a batch that is being filled. The numbers of eight lanes are read as vectors, so they lie in quads.
+/// A lane of a batch that is being filled. The numbers are stored in quads, because those of eight lanes are read as
+/// vectors.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Input {
     pub(super) bodies: [u32; 2],
-    /// The bodies that impulses change; the ground instead of a body that no impulse moves.
+    /// The bodies that impulses change. The ground replaces a body that no impulse moves.
     pub(super) changed: [u32; 2],
     pub(super) contact: u32,
     pub(super) features: [u16; 2],
     pub(super) count: u8,
-    /// Whether it needs more than rows along the normal and the tangent.
+    /// Whether the contact needs more than rows along the normal and the tangent.
     pub(super) extras: bool,
     /// The normal, and the mass fractions of A and B.
     pub(super) shares: Quad,
     /// `1 / k` of A and B: their mantissas, and their exponents.
     pub(super) gyrations: Quad,
-    /// From the centres of mass of A and B to the manifold's origin.
+    /// Vectors from the centres of mass of A and B to the manifold's origin.
     pub(super) to_origin: Quad,
-    /// From the manifold's origin to the two points.
+    /// Vectors from the manifold's origin to the two points.
     pub(super) anchors: Quad,
     /// Impulses of the last tick, `p = L / D`: along the normal of each point, and along the tangent.
     pub(super) carried: Quad,
@@ -75,7 +76,7 @@ impl Input {
 }
 
 impl ContactSource<'_> {
-    /// A touching pair as it is coloured.
+    /// The node of a touching pair for graph colouring.
     #[inline]
     pub(super) fn node(&self, pair: &ActiveContact) -> Node {
         let (a, b) = pair.shapes;
@@ -84,7 +85,7 @@ impl ContactSource<'_> {
         Node::new(u64::from(a) << 32 | u64::from(b), self.changed(self.bodies_of(pair)), size)
     }
 
-    /// Prefetches what [`Self::gather`] reads of a pair: in the order of colours, contacts are random accesses.
+    /// Prefetches the data that [`Self::gather`] reads of a pair. Contacts in the order of colours are random accesses.
     #[inline(always)]
     pub(super) fn prefetch(&self, index: u32) {
         let pair = &self.pairs[index as usize];
@@ -92,7 +93,7 @@ impl ContactSource<'_> {
         prefetch(&self.contacts[pair.contact as usize]);
     }
 
-    /// Gathers what the rows of a touching pair are computed from.
+    /// Gathers the data from which the rows of a touching pair are computed.
     #[inline(always)]
     pub(super) fn gather(&self, pair: &ActiveContact, warm: &mut WarmStarts) -> Input {
         let manifold = &self.manifolds[pair.manifold as usize];
@@ -133,15 +134,15 @@ impl ContactSource<'_> {
         [self.list.index_of(pair.bodies.0), self.list.index_of(pair.bodies.1)]
     }
 
-    /// The bodies that impulses change. A body so heavy that its share of an impulse rounds to nothing counts as
-    /// changed: other contacts change it, so that the colours have to keep them apart.
+    /// The bodies that impulses change. A body counts as changed even if it is so heavy that its share of an impulse
+    /// rounds to 0: other contacts of the body may change it, and must not get the same colour.
     #[inline(always)]
     fn changed(&self, bodies: [u32; 2]) -> [u32; 2] {
         bodies.map(|index| if self.list.facts(index).mass.is_positive() { index } else { GROUND })
     }
 }
 
-/// The impulse that each of the two points starts from: none if its feature was not there in the last tick.
+/// The impulses with which the two points are warm-started: 0 if the feature of a point is new in this tick.
 #[inline]
 fn carried_over(manifold: &Manifold, memory: &Contact, warm: &mut WarmStarts) -> [PointImpulse; 2] {
     let points = manifold.points();
@@ -166,8 +167,8 @@ mod tests {
     use crate::math::{Fx, Speed, Unit, Vec2};
     use alloc::vec::Vec;
 
-    /// The share of an impulse that a very heavy body takes rounds to nothing, but other contacts of the same colour
-    /// must not change the body meanwhile.
+    /// The share of a very heavy body in an impulse rounds to 0, but two contacts of the body must still have different
+    /// colours.
     #[test]
     fn a_body_that_is_too_heavy_to_be_moved_is_still_one_that_changes() {
         let mut bodies: Arena<Body, BodyId> = Arena::default();

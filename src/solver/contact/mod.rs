@@ -9,12 +9,12 @@
 //! vA -= gA d n,  uA -= fA d,  vB += gB d n,  uB += fB d
 //! ```
 //!
-//! Each operation on a batch has a file of its own: `warm_start`, `solve` (which has
-//! the equation above), `relax` and `restitution`. `prepare` fills the batches of a tick and `rows` computes their
-//! rows; `store` returns the impulses to the state. `overflow_policy` has the two ways to keep numbers within their formats.
+//! Each operation on a batch has a file of its own: `warm_start`, `solve` (which has the equation above), `relax` and
+//! `restitution`. `prepare` fills the batches of a tick, `rows` computes their rows, and `store` returns the impulses
+//! to the state. `overflow_policy` has the two ways to keep numbers within their formats.
 //!
-//! Differences of two velocities fit because each velocity is below 512 m/s; a sum that may not fit saturates. Lanes
-//! without a contact have gains of 0, so that nothing in them matters.
+//! Differences of two velocities fit because each velocity is below 512 m/s. A sum that may not fit saturates. Lanes
+//! without a contact have gains of 0, so that their other numbers do not matter.
 
 mod batch;
 mod constants;
@@ -46,7 +46,7 @@ use store::Records;
 pub(crate) use surface::{Surface, SurfaceSide};
 pub(super) use warm_start::WarmStart;
 
-/// The largest impulse of friction and of rolling resistance. The difference of two fits the format.
+/// Largest impulse of friction and of rolling resistance. The difference of two such impulses fits the format.
 const TANGENT_MAX: Speed = Speed::lit("511");
 
 /// All contacts of a tick.
@@ -67,13 +67,13 @@ impl BatchKind for Contacts {
     }
 }
 
-/// Counts of contact points by whether they start from an impulse of the last tick.
+/// Statistics of warm starting: how many contact points continue points of the last tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct WarmStarts {
     /// Points in contact.
     pub(crate) points: u32,
-    /// Points that were there in the last tick.
+    /// Points that already existed in the last tick.
     pub(crate) kept: u32,
-    /// Points with an impulse in the last tick that are gone, although the shapes still touch.
+    /// Points with an impulse in the last tick that no longer exist, although the shapes still touch.
     pub(crate) lost: u32,
 }

@@ -1,17 +1,17 @@
 //! Overflow policies: how numbers are kept within their formats.
 //!
-//! [`Saturating`] saturates every sum and counts a fault where a clamp changed a number. [`Unchecked`] does neither,
-//! and records whether all numbers were within bounds inside which no sum can overflow and no clamp can act. Nearly all
-//! contacts are within these bounds: nothing in them is fast, deep or pushed hard. A batch is solved by `Unchecked`
-//! first, and again by `Saturating` if a number was out of bounds. Where the result of `Unchecked` is used, both give
-//! the same bits:
+//! [`Saturating`] saturates every sum and counts a fault for each number that a clamp changes. [`Unchecked`] does
+//! neither: it records whether all numbers were within bounds in which no sum can overflow and no clamp can act. Nearly
+//! all contacts are within these bounds: they are neither fast nor deep, and their impulses are small. A batch is
+//! solved with `Unchecked` first, and again with `Saturating` if a number was out of bounds. Within the bounds, both
+//! policies give the same bits:
 //!
 //! ```text
 //! |vx|, |vy|, |u| < 64 at first, |d| < 4 for at most 10 rows       velocities stay below 104, spins below 84
 //! |e| <= 3                                                        |J v| < 2 sqrt(2) 104 + 6 84 < 799
 //! |s| < 1/8 m, rates <= 512 per second                            |bias| <= 64, and below 863 with J v
 //! 0 <= L < 64                                                     |L - w| < 927, where 1024 fit
-//! mu Dt/Dn <= 3.5                                                  friction limit < 2 3.5 68 = 476
+//! friction ratios <= 3.5                                          friction limit < 2 3.5 68 = 476
 //! |dx|, |dy|, |k dtheta|, |s0| < 2 m                              |s| < 20 m, where 32 fit
 //! ```
 
@@ -30,24 +30,24 @@ pub(super) const FRICTION_RATIO: i32 = shift(FrictionRatio::FRAC_NBITS);
 /// Largest lever ratio and largest friction ratio of unchecked contacts.
 const UNCHECKED_RATIO: Ratio = Ratio::lit("3");
 const UNCHECKED_FRICTION_RATIO: FrictionRatio = FrictionRatio::lit("3.5");
-/// Highest rate at which separations of unchecked contacts become speeds.
+/// Largest factor between a separation and a speed in unchecked contacts.
 const UNCHECKED_RATE: Rate = Rate::lit("512");
 
 /// Bound of speeds and impulses, 64 m/s, and of displacements, 2 m: a power of two.
 const LARGE_BITS: u32 = 6 + Speed::FRAC_NBITS;
 const _: () = assert!(LARGE_BITS == 1 + Shift::FRAC_NBITS);
-/// Bound of changes of an impulse, 4 m/s, and of separations that are pushed, 1/8 m.
+/// Bound of changes of an impulse, 4 m/s, and of separations in a solve, 1/8 m: a power of two.
 const SMALL_BITS: u32 = 2 + Speed::FRAC_NBITS;
 const _: () = assert!(SMALL_BITS + 3 == Shift::FRAC_NBITS);
 
-/// Whether contacts may be unchecked in a world whose separations become speeds at these rates.
+/// Whether contacts may be unchecked if separations are multiplied by these rates to give speeds.
 pub(super) fn unchecked_at(rates: [Rate; 3]) -> bool {
     rates.into_iter().all(|rate| rate <= UNCHECKED_RATE)
 }
 
 /// An overflow policy: the treatment of numbers that might overflow.
 pub(super) trait OverflowPolicy<L: Lanes<N>, const N: usize> {
-    /// Checks the velocities that an iteration begins with, or displacements.
+    /// Checks displacements, or the velocities at the start of an iteration.
     #[inline(always)]
     fn see(&mut self, _: &BodyPairW<L, N>) {}
     /// Checks an accumulated impulse.
@@ -62,11 +62,11 @@ pub(super) trait OverflowPolicy<L: Lanes<N>, const N: usize> {
     fn limit(wide: L::Wide) -> L::Int;
     fn add(a: L::Int, b: L::Int) -> L::Int;
     fn sub(a: L::Int, b: L::Int) -> L::Int;
-    /// A number clamped to a limit on either side.
+    /// Clamps a number to `-limit..=limit`.
     fn clamp(value: L::Int, limit: L::Int) -> L::Int;
-    /// An accumulated impulse along a normal.
+    /// Clamps an accumulated impulse along a normal.
     fn impulse(&mut self, wanted: L::Int) -> L::Int;
-    /// A separation that has changed by `J dx`.
+    /// The sum of a separation and its change `J dx`.
     fn moved(&mut self, separation: L::Int, wide: L::Wide) -> L::Int;
     /// Changes velocities by impulses `d`.
     fn apply(&mut self, pair: &mut BodyPairW<L, N>, row: &Row<N>, d: L::Int);
@@ -74,7 +74,7 @@ pub(super) trait OverflowPolicy<L: Lanes<N>, const N: usize> {
     fn apply_again(&mut self, pair: &mut BodyPairW<L, N>, row: &Row<N>, lambda: L::Int);
 }
 
-/// Saturates every sum and counts each number that did not fit.
+/// Saturates every sum. Counts each number that did not fit as a fault.
 pub(super) struct Saturating<'a>(pub(super) &'a mut Faults);
 
 impl<L: Lanes<N>, const N: usize> OverflowPolicy<L, N> for Saturating<'_> {
@@ -138,8 +138,8 @@ impl<L: Lanes<N>, const N: usize> OverflowPolicy<L, N> for Saturating<'_> {
     }
 }
 
-/// Applies impulses of more than 512 m/s in steps. When a friction limit shrinks or a pushed shape comes free, an
-/// impulse may change by more than a velocity has room for.
+/// Applies impulses of more than 512 m/s in steps. When a friction limit shrinks or a pushed shape comes free, the
+/// change of an impulse may exceed the range of a velocity.
 #[cold]
 fn apply_in_steps<L: Lanes<N>, const N: usize>(
     pair: &mut BodyPairW<L, N>,
@@ -156,10 +156,10 @@ fn apply_in_steps<L: Lanes<N>, const N: usize>(
     }
 }
 
-/// Checks no sum, and tells at the end whether all numbers were within their bounds.
+/// Does not check sums. Records whether all numbers were within their bounds; see [`Unchecked::held`].
 pub(super) struct Unchecked<L: Lanes<N>, const N: usize> {
-    /// The bitwise or of all numbers so far that must be within a bound, each with the bound added. The bound is a
-    /// power of two, so that a number within it sets no bit at or above twice the bound.
+    /// Bitwise OR of all numbers so far that must be within a bound, with the bound added to each. The bound is a power
+    /// of two, so that a number within it sets no bit at or above twice the bound.
     large: L::Int,
     small: L::Int,
 }
@@ -180,7 +180,7 @@ impl<L: Lanes<N>, const N: usize> Unchecked<L, N> {
         self.small = L::or(self.small, L::add(number, L::splat(1 << SMALL_BITS)));
     }
 
-    /// Whether the rows of a batch and its surfaces are within the bounds.
+    /// Whether the rows and surfaces of a batch are within the bounds.
     #[inline(always)]
     pub(super) fn suits(batch: &Batch<N>, extras: Option<&ContactExtras<N>>) -> bool {
         let ratio = L::splat(UNCHECKED_RATIO.to_bits());
@@ -206,7 +206,7 @@ impl<L: Lanes<N>, const N: usize> Unchecked<L, N> {
     }
 }
 
-/// Where a lever ratio of a row is above a limit.
+/// Mask of the lanes in which a lever ratio of a row is above a limit.
 #[inline(always)]
 fn long<L: Lanes<N>, const N: usize>(row: &Row<N>, limit: L::Int) -> L::Mask {
     L::either(beyond::<L, N>(L::load(&row.e_a), limit), beyond::<L, N>(L::load(&row.e_b), limit))

@@ -37,7 +37,7 @@ impl<L: Lanes<N>, const N: usize> BodyPairW<L, N> {
     }
 }
 
-/// The change by an impulse of one velocity component.
+/// The change of one velocity component by an impulse.
 #[inline(always)]
 fn part<L: Lanes<N>, const N: usize, const SHIFT: i32>(gain: &Ints<N>, d: L::Int) -> L::Int {
     L::narrow::<SHIFT>(L::mul(L::load(gain), d))

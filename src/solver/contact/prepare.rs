@@ -12,12 +12,12 @@ use super::{ContactSet, Contacts, WarmStarts};
 use crate::math::Unit;
 use crate::simd::{Kernel, Lanes, Machine, Scalar, prefetch};
 
-/// Prefetch distances in batches: first the touching pairs, then what they refer to.
+/// Prefetch distances in batches, for the touching pairs and for the data that they refer to.
 const PAIRS_AHEAD: usize = 4;
 const MANIFOLDS_AHEAD: usize = 2;
 
 impl ContactSet {
-    /// Sorts the contacts of a tick into colours and makes their batches. Returns how their impulses were carried over.
+    /// Sorts the contacts of a tick into colours and fills their batches. Returns the statistics of warm starting.
     pub(in crate::solver) fn prepare(
         &mut self,
         source: &ContactSource<'_>,
@@ -71,8 +71,8 @@ impl<'a, I: Iterator<Item = &'a [u32]>, const N: usize> Kernel<N> for Fill<'_, I
 }
 
 impl<const N: usize> Batches<Contacts, N> {
-    /// Makes a batch of up to `N` contacts, in the place of one of the last tick if there is one: what would be
-    /// overwritten is not initialised, because memory is the bottleneck.
+    /// Fills a batch with up to `N` contacts. Reuses a batch of the last tick if there is one, without initialising
+    /// the fields that are overwritten, because the operation is memory-bound.
     #[inline(always)]
     fn fill<L: Lanes<N>>(
         &mut self,

@@ -1,7 +1,7 @@
-//! Relax: the velocity that pushing out has left is taken away again, after displacements have been integrated.
+//! Relax: removes the velocity that pushing out overlap has left, after displacements have been integrated.
 //!
-//! The separations at the new positions, `s = s0 + J dx`, are measured here and kept for the bias pass of the next
-//! sub-step, between which no body moves.
+//! The relax pass also measures the separations at the new positions, `s = s0 + J dx`. The bias pass of the next
+//! sub-step reuses them, because no body moves in between.
 
 use core::cell::Cell;
 
@@ -16,7 +16,7 @@ use super::solve::{self, PointOrder};
 use super::{Constants, Contacts};
 use crate::simd::Lanes;
 
-/// One iteration without bias, at the separations that it measures.
+/// One iteration without bias. Measures the separations first.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::solver) struct Relax {
     pub(in crate::solver) order: PointOrder,
@@ -31,19 +31,19 @@ impl Operation<Contacts> for Relax {
     }
 }
 
-/// Measures the separations where no relax pass does.
+/// Measures the separations, for settings without a relax pass.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::solver) struct Measure;
 
 impl Operation<Contacts> for Measure {
     #[inline(always)]
     fn apply<L: Lanes<N>, const N: usize>(self, parts: BatchParts<'_, Contacts, N>) {
-        // Nothing in it counts as a fault.
+        // Clamping a separation is not a fault.
         measure::<L, N>(parts.batch, parts.bodies, &mut Saturating(&mut 0));
     }
 }
 
-/// Finds the separations at the present positions.
+/// Computes the separations at the current positions.
 #[inline(always)]
 pub(super) fn measure<L: Lanes<N>, const N: usize>(
     batch: &mut Batch<N>,

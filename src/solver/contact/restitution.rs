@@ -1,11 +1,12 @@
-//! Restitution: what approached faster than the threshold and was pushed, leaves with `e` times the speed of approach.
+//! Restitution: a point that approached faster than the threshold and was pushed separates at `e` times the approach
+//! speed.
 //!
 //! ```text
 //! L' = max(L - (vn + e v_approach), 0)          once in a tick, after the sub-steps
 //! ```
 //!
-//! The approach is observed before any warm start. Observed in between, the impulse of one contact looks like an
-//! approach to the next, and balls in a groove bounce for ever.
+//! The approach speed is measured before any contact is warm-started. Otherwise the impulse of one contact would look
+//! like an approach at the next contact, and balls in a groove would bounce for ever.
 
 use super::super::batches::{BatchParts, Operation};
 use super::super::limits::IMPULSE_MAX;
@@ -15,12 +16,12 @@ use super::overflow_policy::{OverflowPolicy, Saturating};
 use super::{Constants, Contacts};
 use crate::simd::Lanes;
 
-/// Iterations in which two points that bounce are solved against each other. After one, the first point leaves too
-/// fast: a tall box dropped flat gained a third of its energy, and spun. An iteration takes away at least 3/4 of the
-/// error for boxes of up to 1 to 3.
+/// Number of iterations in which two points that bounce are solved against each other. With one iteration, the first
+/// point would separate too fast: a tall box that was dropped flat gained a third of its energy, and spun. For boxes
+/// with an aspect ratio of up to 3, an iteration removes at least 3/4 of the error.
 const RESTITUTION_ITERATIONS: u32 = 12;
 
-/// Records the normal velocity of shapes that bounce, until they push each other.
+/// Records the relative normal velocity of shapes with restitution, until the shapes push each other.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::solver) struct ObserveApproach;
 
@@ -40,7 +41,7 @@ impl Operation<Contacts> for ObserveApproach {
     }
 }
 
-/// Lets shapes bounce.
+/// Applies restitution.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::solver) struct ApplyRestitution {
     pub(in crate::solver) constants: Constants,
@@ -76,7 +77,7 @@ impl Operation<Contacts> for ApplyRestitution {
     }
 }
 
-/// Where a point approached fast enough, and was pushed.
+/// Mask of the lanes in which a point approached fast enough and was pushed.
 #[inline(always)]
 fn bounces<L: Lanes<N>, const N: usize>(
     extras: &ContactExtras<N>,

@@ -1,7 +1,7 @@
 //! Rolling resistance of a contact: one angular row, limited by the normal impulses.
 //!
-//! The ground pushes a wheel that deforms back in front of its axle: a torque of at most `R N` against rolling, with a
-//! length `R` and the normal force `N` (the model of Box2D 3). With the scale `s` of
+//! A wheel that deforms is supported by the ground slightly ahead of its axle. This gives a torque against rolling of
+//! at most `R N`, with a length `R` and the normal force `N` (the model of Box2D 3). With the scale `s` of
 //! [`super::super::row::Row::angular`]:
 //!
 //! ```text
@@ -39,8 +39,8 @@ impl<const N: usize> RollingRows<N> {
         denominators: [0; N],
     };
 
-    /// Makes the row of a contact. `inverse_normals` are the reciprocals of its points' denominators; that of a missing
-    /// point does not matter.
+    /// Computes the row of a contact. `inverse_normals` are the reciprocals of its points' denominators. The one of a
+    /// missing point does not matter.
     pub(super) fn fill(
         &mut self,
         lane: usize,
@@ -52,7 +52,7 @@ impl<const N: usize> RollingRows<N> {
         let [a, b] = [pair.bodies.0, pair.bodies.1].map(|slot| list.facts(list.index_of(slot)));
         let fractions = MassFractions::of_masses(a.mass, b.mass);
         let (row, denominator, scale) = ScalarRow::angular(a.inverse_gyration, b.inverse_gyration, fractions);
-        // Without a scale neither body turns.
+        // The scale is 0 if neither body turns.
         let Some(length) = fx_div(pair.surface.rolling_resistance, scale.into()) else { return };
         let (e, f) = row.turning_parts();
         (self.row.e_a.0[lane], self.row.e_b.0[lane]) = (e[0].to_bits(), e[1].to_bits());
@@ -80,7 +80,7 @@ impl<const N: usize> RollingRows<N> {
         policy.apply(pair, &self.row, L::sub(new, old));
     }
 
-    /// The impulse of a lane that the next tick starts from.
+    /// The impulse of a lane, for the warm start in the next tick.
     pub(super) fn impulse(&self, lane: usize) -> Speed {
         impulse_of(Speed::from_bits(self.lambda.0[lane]), self.denominators[lane])
     }

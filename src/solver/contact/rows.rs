@@ -20,7 +20,7 @@ use crate::math::{
 };
 use crate::simd::{Ints, Lanes, Quad};
 
-/// From the format of a unit vector to that of a lever ratio.
+/// Shift from the format of a unit vector to that of a lever ratio.
 const UNIT_TO_RATIO: i32 = UNIT - RATIO;
 const STEP_TO_SHIFT: i32 = shift(Step::FRAC_NBITS - Shift::FRAC_NBITS);
 
@@ -28,7 +28,7 @@ const STEP_TO_SHIFT: i32 = shift(Step::FRAC_NBITS - Shift::FRAC_NBITS);
 #[derive(Clone, Copy)]
 struct ContactSide<L: Lanes<N>, const N: usize> {
     fraction: L::Int,
-    /// From the centre of mass to the origin of the manifold.
+    /// Vector from the centre of mass to the origin of the manifold.
     to_origin: [L::Int; 2],
     /// `1 / k`, and the shift from a product with it to the format of a lever ratio.
     mantissa: L::Int,
@@ -75,7 +75,7 @@ pub(super) fn fill<L: Lanes<N>, const N: usize>(
         _ => [x0, y0],
     };
     let tangent = fill_row::<L, N>(&mut batch.tangent, t, &ends, middle, &mut inverses.tangent);
-    // Impulses carried over are guesses, so that clamping them is no fault.
+    // Impulses of the last tick are only initial guesses, so that clamping them is not a fault.
     let tangent_lambda = product::<L, N>(carried, &tangent);
     L::store(clamp::<L, N>(tangent_lambda, L::splat(TANGENT_MAX.to_bits())), &mut batch.tangent_lambda);
     let given = [([x0, y0], separation_0, normal_0), ([x1, y1], separation_1, normal_1)];
@@ -100,7 +100,8 @@ fn half_way<L: Lanes<N>, const N: usize>(a: L::Int, b: L::Int) -> L::Int {
     L::narrow::<1>(L::add_wide(L::mul(a, one), L::mul(b, one)))
 }
 
-/// Transposes a quad of each contact: the first numbers of all contacts, the second numbers, and so on.
+/// Transposes the quads of all contacts: returns the first numbers of all contacts, then their second numbers, and so
+/// on.
 #[inline(always)]
 fn columns<L: Lanes<N>, const N: usize>(inputs: &[Input; N], quad: impl Fn(&Input) -> &Quad) -> [L::Int; 4] {
     let mut rows = [quad(&inputs[0]); N];
@@ -111,7 +112,7 @@ fn columns<L: Lanes<N>, const N: usize>(inputs: &[Input; N], quad: impl Fn(&Inpu
 }
 
 impl<L: Lanes<N>, const N: usize> ContactSide<L, N> {
-    /// `mantissa` and `exponent` are those of `1 / k`.
+    /// Creates one side of the contacts. `mantissa` and `exponent` are those of `1 / k`.
     #[inline(always)]
     fn new(fraction: L::Int, to_origin: [L::Int; 2], mantissa: L::Int, exponent: L::Int) -> Self {
         const DIFFERENCE: i32 = shift(Ratio::FRAC_NBITS - Length::FRAC_NBITS);
@@ -148,7 +149,7 @@ impl<L: Lanes<N>, const N: usize> ContactSide<L, N> {
     }
 }
 
-/// Computes a row. Returns its denominators.
+/// Computes a row. Returns the denominators of all lanes.
 #[inline(always)]
 fn fill_row<L: Lanes<N>, const N: usize>(
     row: &mut Row<N>,
@@ -178,7 +179,7 @@ fn fill_row<L: Lanes<N>, const N: usize>(
     Long::of(denominators)
 }
 
-/// Numbers from 0 to 2^45 with 30 fraction bits, in two parts because they do not fit a lane.
+/// Numbers from 0 to 2^45 with 30 fraction bits. They are stored in two parts, because they do not fit a lane.
 #[derive(Clone, Copy)]
 struct Long<L: Lanes<N>, const N: usize> {
     whole: L::Int,
@@ -199,8 +200,8 @@ impl<L: Lanes<N>, const N: usize> Long<L, N> {
 #[inline(always)]
 fn product<L: Lanes<N>, const N: usize>(x: L::Int, long: &Long<L, N>) -> L::Int {
     let Long { whole, part } = *long;
-    // The product with the whole part is exact, and both products have the sign of x: if one saturates, so does the
-    // sum.
+    // The product with the whole part is exact. Both products have the sign of x, so that the sum saturates if one of
+    // them does.
     let (whole, _) = L::narrow_saturating::<1>(L::mul(x, L::add(whole, whole)));
     L::add_saturating(whole, L::narrow::<30>(L::mul(x, part)))
 }
@@ -212,7 +213,7 @@ fn ratio<L: Lanes<N>, const N: usize>(tangent: &Long<L, N>, normal_inverse: L::I
     Long::of(L::add_wide(L::mul(normal_inverse, tangent.whole), L::mul(part, L::splat(1))))
 }
 
-/// `mu r`, with `r = Dt / Dn` with 30 fraction bits, saturated.
+/// `mu r`, saturated, where `r = Dt / Dn` has 30 fraction bits.
 pub(super) fn friction_ratio(friction: Fx, ratio: i64) -> FrictionRatio {
     let friction = i128::from(narrow::<fixed::types::extra::U20>(friction).to_bits());
     FrictionRatio::from_bits(saturate(saturate_wide(round_shift_wide(friction * i128::from(ratio), 30))))

@@ -1,10 +1,11 @@
-//! Solve: one iteration over the rows of a batch, the normals first and then what they limit.
+//! Solve: one iteration over the rows of a batch. Normals are solved first, then rolling resistance and friction, which
+//! the normal impulses limit.
 //!
 //! ```text
 //! bias pass    w = massScale (vn + bias(s)) + impulseScale L        bias(s) = s / h            for a gap
 //!                                                                   max(rate (s + slop), -push) for an overlap
 //!              a gap is rigid: massScale = 1, impulseScale = 0
-//! relax pass   w = vn + s / h for a gap that already pushes, vn for an overlap
+//! relax pass   w = vn + s / h for a gap with an impulse, vn for an overlap
 //! normal       L' = max(L - w, 0)
 //! friction     |L'| <= sum of (mu Dt / Dn) Ln over the points,   w = vt + surface speed
 //! rolling      the same with the friction ratios of `rolling`
@@ -24,16 +25,16 @@ use super::{Constants, Contacts, TANGENT_MAX};
 use crate::math::{Rate, Shift, Speed, Unit};
 use crate::simd::{Ints, Lanes};
 
-/// Largest number of rounds in which the two points of a contact are solved against each other. At an impact a single
-/// round turns the body: ten boxes that fall on each other from 5 or 10 mm then sway by 12 mm, and with up to four
-/// rounds by 1 mm. Where piles rest the first round is mostly enough: a pyramid of 5050 boxes costs a tenth more.
+/// Largest number of rounds in which the two points of a contact are solved against each other. At an impact, a single
+/// round would turn the body: ten boxes that fall on each other from 5 or 10 mm then sway by 12 mm, with up to four
+/// rounds by 1 mm. In a pile at rest the first round is usually enough: a pyramid of 5050 boxes costs a tenth more.
 const NORMAL_ROUNDS_MAX: u32 = 4;
 
 /// Change of the second point's impulse, in m/s, below which it does not affect the first point.
 const SETTLED: Speed = Speed::lit("0.005");
 
-/// Which of a contact's two points is solved first. It alternates: the point that is solved first turns the body a
-/// little, and always the same way it makes a stack of ten boxes sway by 4.7 mm while it settles instead of 0.05 mm.
+/// Which of a contact's two points is solved first. The order alternates, because the point that is solved first turns
+/// the body a little. With a fixed order, a stack of ten boxes sways by 4.7 mm while it settles, instead of 0.05 mm.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::solver) enum PointOrder {
     Forward,
@@ -41,13 +42,13 @@ pub(in crate::solver) enum PointOrder {
 }
 
 impl PointOrder {
-    /// The order in an iteration of a sub-step: successive sub-steps differ, and so do successive iterations.
+    /// The order in an iteration of a sub-step. It alternates with every sub-step and with every iteration.
     pub(in crate::solver) const fn of(sub_step: u64, iteration: u32) -> Self {
         if sub_step % 2 == iteration as u64 % 2 { PointOrder::Forward } else { PointOrder::Backward }
     }
 }
 
-/// One iteration with bias, at the separations that the last relax pass has measured.
+/// One iteration with bias. Uses the separations that the last relax pass has measured.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::solver) struct Solve {
     pub(in crate::solver) order: PointOrder,
@@ -62,7 +63,7 @@ impl Operation<Contacts> for Solve {
     }
 }
 
-/// The parameters of an iteration. `pass` is a constant where it is set, so that each pass is compiled by itself.
+/// The parameters of an iteration. Every caller sets `pass` to a constant, so that each pass is compiled separately.
 #[derive(Clone, Copy)]
 pub(super) struct Settings<'a> {
     pub(super) pass: Pass,
@@ -70,8 +71,8 @@ pub(super) struct Settings<'a> {
     pub(super) constants: &'a Constants,
 }
 
-/// Iterates without a check of any sum if the batch is unchecked, and again with all checks if a number was out of
-/// bounds.
+/// Solves an iteration. An unchecked batch is first solved without overflow checks, and again with checks if a number
+/// was out of bounds.
 #[inline(always)]
 pub(super) fn solve<L: Lanes<N>, const N: usize>(parts: BatchParts<'_, Contacts, N>, settings: Settings<'_>) {
     let BatchParts { batch, extra: mut extras, bodies, faults, .. } = parts;
@@ -82,7 +83,7 @@ pub(super) fn solve<L: Lanes<N>, const N: usize>(parts: BatchParts<'_, Contacts,
             solved.store(batch, extras, bodies);
             return;
         }
-        // A batch that was out of bounds once is likely to be so again in this tick.
+        // A batch that was out of bounds once is likely to be out of bounds again in this tick.
         batch.unchecked = false;
     }
     let careful = &mut Saturating(faults);
@@ -92,15 +93,15 @@ pub(super) fn solve<L: Lanes<N>, const N: usize>(parts: BatchParts<'_, Contacts,
 
 /// The result of an iteration, before it is stored.
 struct Solved<L: Lanes<N>, const N: usize> {
-    /// Which point was solved first.
+    /// The points in the order in which they were solved.
     places: [usize; 2],
-    /// The impulses of the points, in that order.
+    /// The impulses of the points, in the same order.
     normal_lambdas: [L::Int; 2],
     tangent_lambda: L::Int,
     pair: BodyPairW<L, N>,
 }
 
-/// One iteration. `extras` is left out of unchecked batches.
+/// Solves one iteration with an overflow policy. `extras` is `None` without overflow checks.
 #[inline(always)]
 fn iterate<L: Lanes<N>, C: OverflowPolicy<L, N>, const N: usize>(
     batch: &mut Batch<N>,
@@ -163,7 +164,7 @@ impl<L: Lanes<N>, const N: usize> Solved<L, N> {
     }
 }
 
-/// The parameters that the normal rows of a batch have in common in a pass.
+/// The parameters that all normal rows of a batch share in a pass.
 struct Normals<L: Lanes<N>, const N: usize> {
     pass: Pass,
     n: [L::Int; 2],
@@ -211,7 +212,7 @@ impl<L: Lanes<N>, const N: usize> Normals<L, N> {
         new
     }
 
-    /// Solves two points against each other, until the second leaves the first alone. Returns their impulses.
+    /// Solves two points against each other, until the second no longer affects the first. Returns their impulses.
     #[inline(always)]
     fn solve_both<C: OverflowPolicy<L, N>>(
         &self,
@@ -263,8 +264,8 @@ impl<L: Lanes<N>, const N: usize> Normals<L, N> {
                 let wide = L::add_wide(L::mul(mass_scale, error), L::mul(impulse_scale, old));
                 policy.impulse(L::max(C::sub(old, L::narrow::<UNIT>(wide)), L::splat(0)))
             }
-            // A gap that the bias pass has not closed is left to the next sub-step: to slow an approach down before
-            // it arrives, and to bounce there, would make a ball rebound from above the floor.
+            // A gap without an impulse is left to the next sub-step. Slowing down the approach before the gap is closed
+            // would make a ball rebound from above the floor.
             Pass::Relax => {
                 let speed = L::select(gap, self.speed_of::<C>(separation, self.rate), L::splat(0));
                 let untouched = L::both(gap, L::greater(L::splat(1), old));
@@ -274,8 +275,8 @@ impl<L: Lanes<N>, const N: usize> Normals<L, N> {
         }
     }
 
-    /// The velocity that a separation calls for: a gap may close within this sub-step, but not more; an overlap is
-    /// pushed out slowly.
+    /// The bias velocity for a separation. A gap may close within this sub-step, but not turn into an overlap. An
+    /// overlap is pushed out slowly.
     #[inline(always)]
     fn bias<C: OverflowPolicy<L, N>>(&self, separation: L::Int, gap: L::Mask) -> L::Int {
         let overlap = L::min(C::add(separation, self.slop), L::splat(0));
@@ -290,7 +291,7 @@ impl<L: Lanes<N>, const N: usize> Normals<L, N> {
     }
 }
 
-/// The largest impulse of a row that the normal impulses of both points limit.
+/// Limit of the impulse of a friction or rolling row: the normal impulses of both points times their friction ratios.
 #[inline(always)]
 fn limit<L: Lanes<N>, C: OverflowPolicy<L, N>, const N: usize>(
     friction_ratios: [&Ints<N>; 2],
@@ -301,7 +302,7 @@ fn limit<L: Lanes<N>, C: OverflowPolicy<L, N>, const N: usize>(
     L::min(C::limit(L::add_wide(first, second)), L::splat(TANGENT_MAX.to_bits()))
 }
 
-/// One number where both bodies move, another where one of them does not.
+/// Selects the first number in lanes where impulses move both bodies, and the second one in all other lanes.
 #[inline(always)]
 fn chosen<L: Lanes<N>, const N: usize>(immovable: L::Mask, soft: i32, stiff: i32) -> L::Int {
     L::select(immovable, L::splat(stiff), L::splat(soft))

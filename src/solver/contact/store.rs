@@ -16,7 +16,7 @@ use crate::simd::{Ints, Kernel, Lanes, Machine, Scalar, prefetch};
 /// Prefetch distance in batches: in the order of colours, contacts are random accesses.
 const CONTACTS_AHEAD: usize = 2;
 
-/// Where the impulses of a batch belong, and how they are converted.
+/// The contacts to which the impulses of a batch belong, and the data for converting the impulses.
 #[derive(Clone, Debug)]
 pub(in crate::solver) struct Records<const N: usize> {
     /// Number of lanes with a contact.
@@ -49,13 +49,13 @@ impl<const N: usize> Records<N> {
         self.features[lane] = input.features;
     }
 
-    /// The lanes with a contact, each with the index of its contact and its number of points.
+    /// Iterates over the lanes with a contact. Gives the lane, the index of the contact and its number of points.
     fn lanes(&self) -> impl Iterator<Item = (usize, usize, u8)> {
         let lanes = self.contacts.iter().zip(&self.counts).take(self.len as usize);
         lanes.enumerate().map(|(lane, (&contact, &count))| (lane, contact as usize, count))
     }
 
-    /// The impulses of each point that the next tick starts from: `p = L / D`, along the normal and along the tangent.
+    /// The impulses of each point for the warm start in the next tick: `p = L / D`, along the normal and the tangent.
     #[inline(always)]
     fn impulses<L: Lanes<N>>(&self, batch: &Batch<N>) -> [[Ints<N>; 2]; 2] {
         let shares = shares_of_friction::<L, N>(batch);
@@ -69,7 +69,7 @@ impl<const N: usize> Records<N> {
     }
 }
 
-/// The share of each point in the impulse along the tangent: one half, as far as the friction of each allows.
+/// The share of each point in the impulse along the tangent: one half, unless the friction limit of a point is lower.
 #[inline(always)]
 fn shares_of_friction<L: Lanes<N>, const N: usize>(batch: &Batch<N>) -> [L::Int; 2] {
     let whole = L::load(&batch.tangent_lambda);
@@ -87,7 +87,7 @@ fn shares_of_friction<L: Lanes<N>, const N: usize>(batch: &Batch<N>) -> [L::Int;
 }
 
 impl ContactSet {
-    /// Stores the impulses for the next tick. `pushed` tells of each contact whether its shapes have pushed each other.
+    /// Stores the impulses for the next tick. Sets `pushed` for each contact whose shapes have pushed each other.
     pub(in crate::solver) fn store(
         &self,
         machine: Machine,
@@ -144,8 +144,8 @@ mod tests {
     use crate::math::Rng;
     use crate::simd::Scalar;
 
-    /// The shares of both points add up to the impulse along the tangent. Each is at most what its friction allows, and
-    /// half of the impulse where both points can have that much.
+    /// The shares of both points add up to the impulse along the tangent. Each share is within the friction limit of
+    /// its point, and is half of the impulse if both limits allow it.
     #[test]
     fn friction_is_shared_out_by_halves_as_far_as_each_point_reaches() {
         let mut rng = Rng::new(31);

@@ -1,9 +1,9 @@
-//! The surface of a contact: how the materials of two shapes combine.
+//! The surface of a contact: the combined materials of two shapes.
 
 use crate::body::Material;
 use crate::math::{FrictionRatio, Fx, Speed, Unit, fx_mul, narrow};
 
-/// The common surface of two shapes.
+/// The combined surface of two shapes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Surface {
     pub(crate) friction: FrictionRatio,
@@ -14,7 +14,7 @@ pub(crate) struct Surface {
     pub(crate) rolling_resistance: Fx,
 }
 
-/// The contribution of a shape to a surface.
+/// The properties of one shape that contribute to a surface.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SurfaceSide<'a> {
     pub(crate) material: &'a Material,

@@ -1,5 +1,5 @@
-//! The velocity change that is applied at once is the one that contacts have made. The tests of `scenes` check the same
-//! for whole worlds with `push_error`.
+//! The velocity change that the warm start applies to a body is the one that contacts have caused. The tests of
+//! `scenes` check the same property for whole worlds with `push_error`.
 
 use std::vec::Vec;
 
@@ -14,7 +14,7 @@ use crate::threads::Threads;
 /// Number of bodies. It is not a multiple of the lanes, so that the last group is not full.
 const COUNT: usize = 21;
 
-/// Calls a method of the account with a context.
+/// Calls a function with a context for the bodies.
 fn with_context<T>(
     machine: Machine,
     bodies: &mut [SolverBody],
@@ -41,7 +41,7 @@ fn change_cells(bodies: &[Cell<SolverBody>], by: &[[Speed; 3]]) {
     }
 }
 
-/// The changes by contacts in a sub-step are applied again in the next one, and no others.
+/// Velocity changes by contacts are applied again in the next sub-step. Other velocity changes are not.
 #[test]
 fn what_contacts_have_changed_is_changed_again() {
     let mut rng = Rng::new(7);
@@ -108,8 +108,8 @@ fn what_is_too_fast_is_a_fault() {
 }
 
 impl Solver {
-    /// Largest difference between the velocity changes that contacts have made in the last sub-step and those by the
-    /// impulses in their rows, in units of a speed, and the largest of the latter.
+    /// Compares the velocity changes that contacts have caused in the last sub-step with those by the accumulated
+    /// impulses in their rows. Returns the largest difference and the largest change by impulses, in units of a speed.
     pub(crate) fn push_error(&mut self, tuning: &Tuning) -> (i32, i32) {
         let Solver { list, contacts, contact_velocities, machine, threads, faults, .. } = self;
         let context = &StepContext::new(*machine, threads, tuning, &mut list.bodies, faults);

@@ -1,4 +1,4 @@
-//! Integrates as many bodies at a time as there are lanes, unless one of them is unusual.
+//! Integrates a group of bodies with SIMD, one in each lane, unless one of them needs special treatment.
 
 use core::cell::Cell;
 
@@ -70,7 +70,7 @@ fn one_by_one(
     }
 }
 
-/// Speeds below which no lane has to be limited.
+/// Speeds up to which no lane has to be limited.
 #[derive(Clone, Copy)]
 struct SpeedLimits {
     /// Limit of each component of the velocity.
@@ -79,7 +79,8 @@ struct SpeedLimits {
     turning: i32,
 }
 
-/// Largest speed along both axes at once that is within the limit: the limit over the square root of 2.
+/// Largest component for which a velocity is within the limit whatever its direction: the limit over the square root
+/// of 2.
 fn on_axis(speed_max: Speed) -> i32 {
     let square = u64::from(speed_max.unsigned_abs().to_bits()).pow(2);
     i32::try_from((square / 2).isqrt()).expect("less than the limit")
@@ -115,12 +116,12 @@ fn velocities<L: Lanes<N>, const N: usize>(
     true
 }
 
-/// A damped speed, rounded towards 0. The speed is not the smallest number, so that its magnitude fits.
+/// A damped speed, rounded towards 0. The speed is never the smallest number, so that its magnitude fits.
 #[inline(always)]
 fn towards_rest<L: Lanes<N>, const N: usize>(speed: L::Int, factor: L::Int) -> L::Int {
     let reversed = L::sub(L::splat(0), speed);
     let size = L::mul(L::max(speed, reversed), factor);
-    // With half a unit less, rounding to nearest rounds down.
+    // Rounding to nearest rounds down after half a unit is subtracted.
     let less = L::narrow::<UNIT>(L::sub_wide(size, L::mul(L::splat(1 << (UNIT - 1)), L::splat(1))));
     L::select(L::negative(speed), L::sub(L::splat(0), less), less)
 }

@@ -1,7 +1,7 @@
 //! Semi-implicit Euler: velocities first, then displacements from the new velocities.
 //!
-//! Eight bodies at a time where all of them are dynamic, free and within all limits (`kernel`), as most bodies are; one
-//! by one elsewhere.
+//! Eight bodies are integrated at a time if all of them are dynamic, have no locked axis and are within all limits
+//! (`kernel`), as most bodies are. All other bodies are integrated one by one.
 
 mod kernel;
 mod sub_step;
@@ -20,13 +20,13 @@ use sub_step::SubStep;
 /// Largest displacement of a body in a tick along each axis, in metres.
 const SHIFT_MAX: Shift = Shift::lit("15.999");
 
-/// A body that moves, and what changes its velocity in every sub-step of the tick.
+/// A body that moves, with the velocity changes that are the same in every sub-step of the tick.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct MovingBody {
     /// Velocity change by gravity and applied force along x and y, and by applied torque.
     step: Quad,
-    /// Damping factors of the velocity and of the spin, `1 / (1 + h c)`: the implicit step, stable for any rate `c`.
-    /// The third number is negative if the body is not dynamic or has a locked axis.
+    /// Damping factors of the velocity and of the spin, `1 / (1 + h c)`. This implicit step is stable for any damping
+    /// rate `c`. The third number is negative if the body is not dynamic or has a locked axis.
     factors: Quad,
     index: u32,
     dynamic: bool,
@@ -119,7 +119,7 @@ impl MovingBody {
     fn integrate_displacement(&self, body: &mut SolverBody, sub_step: SubStep, faults: &mut Faults) {
         self.hold_locked_axes(body);
         let mut advance = |sum: &mut Shift, speed: Speed| {
-            // Each summand is below 32 m, and so is the sum unless impulses exceed the speed limit at less than 32 Hz.
+            // Each summand is below 32 m. So is the sum, unless impulses exceed the speed limit at less than 32 Hz.
             let wanted = sum.saturating_add(sub_step.distance(speed));
             *sum = wanted.clamp(-SHIFT_MAX, SHIFT_MAX);
             *faults += u64::from(*sum != wanted);
@@ -145,7 +145,7 @@ pub(super) fn integrate_displacements(moving: &[MovingBody], context: &StepConte
     context.add_faults(faults);
 }
 
-/// A damped speed, rounded towards 0: rounded to nearest, a body would creep on for ever.
+/// A damped speed, rounded towards 0. With rounding to nearest a body would creep for ever.
 fn towards_rest(speed: Speed, factor: Unit) -> Speed {
     let product = i64::from(speed.to_bits()) * i64::from(factor.to_bits());
     Speed::from_bits(saturate(product / (1 << 30)))
@@ -158,8 +158,8 @@ fn damping_factor(damping: Fx, rate: u32) -> Unit {
     narrow(fx_div(Fx::ONE, Fx::ONE + damping / i64::from(rate)).unwrap_or(Fx::ONE))
 }
 
-/// Shortens a velocity to the limit. The limit is a setting, so that this is no fault. The components are within ±1024
-/// m/s, so that the square fits 64 bits.
+/// Shortens a velocity to the limit. This is not a fault, because the limit is a setting. The components are within
+/// ±1024 m/s, so that the square fits 64 bits.
 fn limit_speed(velocity: &mut Vec2<Speed>, speed_max: Speed) {
     let square = |speed: Speed| i64::from(speed.to_bits()) * i64::from(speed.to_bits());
     if square(velocity.x).saturating_add(square(velocity.y)) <= square(speed_max) {

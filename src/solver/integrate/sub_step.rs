@@ -3,7 +3,7 @@
 use crate::math::{Shift, Speed};
 use crate::simd::Lanes;
 
-/// `1 / rate` seconds: no time step is ever rounded.
+/// A time step of `1 / rate` seconds, which is never rounded.
 #[derive(Clone, Copy)]
 pub(super) struct SubStep {
     /// Twice the rate, `d`.
@@ -16,7 +16,7 @@ pub(super) struct SubStep {
 }
 
 impl SubStep {
-    /// `rate` is the number of sub-steps per second, 60 to 4000.
+    /// Creates the time step for `rate` sub-steps per second, 60 to 4000.
     pub(super) fn of(rate: u32) -> Self {
         let divisor = 2 * u64::from(rate);
         let bits = |number: u64| i32::try_from(number).expect("at least 60 sub-steps in a second");
@@ -39,9 +39,9 @@ impl SubStep {
         reason = "at most 512 m/s in a sixtieth of a second, and the dividend is positive"
     )]
     pub(super) fn distance(&self, speed: Speed) -> Shift {
-        /// Added to every quotient, so that none is negative.
+        /// Offset that keeps every quotient from being negative.
         const BIAS: u64 = 1 << 34;
-        // A distance has 5 more fraction bits than a speed, and one more is for the half that rounds.
+        // A distance has 5 more fraction bits than a speed. The sixth bit is for the half that rounds to nearest.
         let doubled = (i64::from(speed.to_bits()) << 6) + (self.divisor / 2) as i64;
         let dividend = (doubled + (BIAS * self.divisor) as i64) as u64;
         let quotient = ((u128::from(dividend) * u128::from(self.reciprocal)) >> 64) as u64;

@@ -1,15 +1,16 @@
-//! Cache key of the arrangement of joints for the solver: in most ticks it is that of the tick before.
+//! Cache key of the arrangement of joints for the solver. In most ticks the key is the same as in the last tick.
 
 use alloc::vec::Vec;
 
 use super::super::settings::Tuning;
 
-/// All that the arrangement depends on: which joint is solved as what, in which order and with which masses.
+/// Everything that the arrangement of joints depends on. The arrangement is the order in which joints are solved, the
+/// kind of constraint of each joint, and the masses.
 #[derive(Clone, Debug, Default)]
 pub(super) struct CacheKey {
     /// `None` before the first tick.
     definitions: Option<Definitions>,
-    /// Number of times that joints had been restored.
+    /// Number of times that joints have been restored.
     returns: u64,
     /// The slots of the joints and of the bodies of the tick.
     joints: Vec<u32>,
@@ -35,7 +36,7 @@ pub(super) struct Definitions {
 }
 
 impl CacheKey {
-    /// Takes the key of a new tick. Returns what is still valid.
+    /// Replaces the key by that of a new tick. Returns the parts of the arrangement that are still valid.
     pub(super) fn renew(
         &mut self,
         definitions: Definitions,

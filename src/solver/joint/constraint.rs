@@ -1,4 +1,4 @@
-//! All joints of a tick: hinges in batches, and a list of all others.
+//! All joints of a tick: hinges in batches, and a list of all other joints.
 
 use alloc::vec::Vec;
 
@@ -25,20 +25,20 @@ pub(in crate::solver) struct JointSet {
     cache_key: CacheKey,
     /// The slots of bodies with joints that are not among the bodies of the tick.
     anchors: Vec<u32>,
-    /// For each body of the tick, its place in `bodies`, from 1; 0 if it has no joint.
+    /// For each body of the tick, its place in `bodies`, counted from 1; 0 if the body has no joint.
     places: Vec<u32>,
     /// The properties of bodies that the arrangement of their joints depends on.
     bodies: Vec<HingeBody>,
-    /// The rotation coefficients of `bodies`. They are kept from tick to tick, and apart from `bodies` because every
-    /// sub-step reads them.
+    /// The rotation coefficients of `bodies`. They are kept from tick to tick, and are stored separately from `bodies`
+    /// because every sub-step reads them.
     turning: Vec<Turning>,
-    /// For each body of the tick.
+    /// The rotation of each body of the tick.
     body_rotations: Vec<BodyRotation>,
     quads: Vec<Quad>,
-    /// For each joint in the order of the state, what it is solved as.
+    /// For each joint in the order of the state, the constraint as which it is solved.
     entries: Vec<Entry>,
     hinges: HingeSet,
-    /// The slots of the joints that are no hinges, in the order in which they are solved.
+    /// The slots of all joints that are not hinges, in the order in which they are solved.
     others: Vec<u32>,
     list: JointList,
 }
@@ -54,9 +54,9 @@ pub(in crate::solver) struct JointSource<'a> {
 
 #[derive(Clone, Copy, Debug)]
 enum Entry {
-    /// The index of its input.
+    /// A hinge, with the index of its input.
     Hinge(u32),
-    /// The slot of the joint.
+    /// Any other joint, with its slot.
     Other(u32),
 }
 
@@ -96,7 +96,7 @@ impl JointSet {
         list.clear();
     }
 
-    /// Makes a constraint of every joint that is solved, in the order in which they are solved.
+    /// Makes the constraints of all joints that are solved, in the order in which they are solved.
     pub(in crate::solver) fn prepare(
         &mut self,
         source: &JointSource<'_>,
@@ -121,7 +121,7 @@ impl JointSet {
         self.prepare_others(source, list);
     }
 
-    /// Continues with the hinges of the last tick, with the bodies at their present poses.
+    /// Reuses the hinges of the last tick, with the bodies at their current poses.
     fn resume(&mut self, bodies: &Arena<Body, BodyId>, list: &mut BodyList) {
         for &slot in &self.anchors {
             list.own_index_of(slot, bodies.at(slot));
@@ -152,7 +152,8 @@ impl JointSet {
         self.quads.resize(list.len(), Quad::default());
     }
 
-    /// The place of a body in `bodies`: a compact copy of what joints need of it.
+    /// Returns the place of a body in `bodies`, the compact copies of the properties that joints need. Adds the body if
+    /// it is missing.
     fn place_of(&mut self, slot: u32, bodies: &Arena<Body, BodyId>, list: &mut BodyList, rate: u32) -> usize {
         if list.index_of(slot) == GROUND {
             self.anchors.push(slot);
@@ -191,7 +192,7 @@ impl JointSet {
         }));
     }
 
-    /// Lists the joints that are no hinges, with their rows and points.
+    /// Lists the joints that are not hinges, with their rows and points.
     fn prepare_others(&mut self, source: &JointSource<'_>, indices: &BodyList) {
         self.list.clear();
         for &slot in &self.others {
@@ -207,7 +208,7 @@ impl JointSet {
         self.places.get(index as usize).is_some_and(|&place| place != 0)
     }
 
-    /// Computes arms, gains and gaps at the present pose; those of hinges when the next operation comes to them.
+    /// Computes arms, gains and gaps at the current poses. Those of hinges are computed by the next operation on them.
     pub(in crate::solver) fn refresh(&mut self, context: &StepContext<'_>) {
         let &StepContext { machine, bodies, tuning, .. } = context;
         let mut any_turned = false;
@@ -217,7 +218,7 @@ impl JointSet {
         self.list.refresh(bodies, &self.body_rotations, tuning);
     }
 
-    /// Predicts the rotations in the coming sub-step from the velocities that the last one has left.
+    /// Predicts the rotations in the next sub-step from the velocities after the last one.
     pub(in crate::solver) fn predict_rotations(&mut self, context: &StepContext<'_>) {
         let &StepContext { bodies, tuning, .. } = context;
         let JointSet { turning, quads, hinges, places, .. } = self;
@@ -256,9 +257,9 @@ impl JointSet {
         self.list.store(joints, &self.body_rotations);
     }
 
-    /// The force and the torque about B's anchor that a joint has last exerted on B: `P / h`, from the velocities that
-    /// its impulses give to one of the bodies at rest. The set's own constraints are cleared, so that it needs no other
-    /// memory.
+    /// The force and the torque about B's anchor that a joint exerted on B in the last sub-step: `P / h`. The impulse
+    /// `P` is computed from the velocities that the joint's impulses give to one of the bodies at rest. Clears the
+    /// set's own constraints and reuses their memory.
     pub(in crate::solver) fn reaction(
         &mut self,
         joint: &Joint,
@@ -266,7 +267,7 @@ impl JointSet {
         tuning: &Tuning,
     ) -> (Vec2<Fx>, Fx) {
         self.clear();
-        // Index 0 is the ground's.
+        // Index 0 is the ground.
         let indices = [1, 2];
         let ends = [HingeBody::new(indices[0], a, tuning.rate), HingeBody::new(indices[1], b, tuning.rate)];
         self.turning.extend(ends.map(|end| end.turning));
@@ -297,14 +298,14 @@ impl JointSet {
     }
 }
 
-/// The shift of a lever ratio that is averaged over a predicted rotation `t`: `half t` across itself, and `sixth t^2`
-/// along itself.
+/// Coefficients for averaging a lever ratio over a predicted rotation `t`: the ratio changes by `half t` of its length
+/// perpendicular to itself, and by `sixth t^2` of its length along itself.
 #[derive(Clone, Copy)]
 struct Stretch {
     half: Unit,
     sixth: Unit,
 }
 
-/// Largest predicted rotation, in radians. Beyond a quarter of a radian the third order is no better than the second,
-/// and feeds energy to chains that one iteration does not solve.
+/// Largest predicted rotation, in radians. Beyond a quarter of a radian the third order is not better than the second,
+/// and adds energy to chains that one iteration does not solve.
 const TURN_MAX: Unit = Unit::lit("0.25");

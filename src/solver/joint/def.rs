@@ -1,4 +1,4 @@
-//! Joints as a user defines them.
+//! Definitions of joints by the user.
 
 use serde::{Deserialize, Serialize};
 
@@ -71,8 +71,8 @@ pub enum JointKind {
 
 /// The load beyond which a joint is reported or breaks.
 ///
-/// It is compared with the load in the last sub-step of a tick. In the first tick of a joint that has to carry a load
-/// at once, the solver may overestimate the load by a third, because the joint has no impulse yet to start from.
+/// It is compared with the load in the last sub-step of a tick. If a joint carries a load from its first tick on, the
+/// solver may overestimate the load in that tick by a third, because the joint has no impulse for the warm start yet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Threshold {
     /// Largest force in N, 0 or more; `None` for no limit.
@@ -185,7 +185,7 @@ impl JointDef {
         (self.body_a, self.body_b)
     }
 
-    /// The angle of B's frame in A's while neither body is turned.
+    /// The angle of B's joint frame relative to A's while neither body is rotated.
     pub(crate) fn rest_angle(&self) -> Angle {
         self.frame_b.angle - self.frame_a.angle
     }

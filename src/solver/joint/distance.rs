@@ -16,12 +16,12 @@ pub struct Distance {
     pub rod: Option<Fx>,
     /// Range of the length in metres, 0 or more.
     pub limit: Option<JointLimit>,
-    /// Motor along the line: its speed in m/s is positive apart, its limit is a force in N.
+    /// Motor along the line. A positive speed, in m/s, moves the anchors apart. The limit is a force in N.
     pub motor: Option<Drive>,
     /// Spring with a length in metres, 0 or more.
     pub spring: Option<Spring>,
-    /// Least and largest force of the spring in N, positive apart: with `lower` 0 it only pushes, with `upper` 0 it
-    /// only pulls.
+    /// Smallest and largest force of the spring in N. A positive force pushes the anchors apart: with `lower` 0 the
+    /// spring only pushes, with `upper` 0 it only pulls.
     pub spring_force: Option<JointLimit>,
 }
 
@@ -35,7 +35,7 @@ impl Distance {
         Distance { rod: None, limit: None, motor: None, spring: None, spring_force: None }
     }
 
-    /// Holds a length in metres.
+    /// Holds a length in metres rigidly.
     #[must_use]
     pub const fn rod(length: Fx) -> Self {
         Distance { rod: Some(length), ..Self::new() }
@@ -50,11 +50,11 @@ impl Distance {
     option_builders! {
         /// Sets the range of the length in metres.
         limit(lower, upper) => JointLimit { lower, upper };
-        /// Sets a speed in m/s, positive apart, and the largest force in N.
+        /// Sets a speed in m/s, which is positive if the anchors move apart, and the largest force in N.
         motor(speed, max_force) => Drive { speed, max: max_force };
         /// Sets a spring with a frequency in Hz and a length in metres.
         spring(hertz, damping_ratio, length) => Spring { hertz, damping_ratio, target: length };
-        /// Sets the least and the largest force of the spring in N, positive apart.
+        /// Sets the smallest and the largest force of the spring in N. Positive forces push the anchors apart.
         spring_force(lower, upper) => JointLimit { lower, upper };
     }
 

@@ -1,6 +1,5 @@
-//! Joints that are solved one by one, with their rows and points.
-//!
-//! These are all joints but hinges, and they are solved before the hinges.
+//! Joints that are solved one by one, with their rows and points: all joints except hinges. They are solved before the
+//! hinges.
 
 use alloc::vec::Vec;
 
@@ -21,11 +20,11 @@ use crate::body::{Arena, Body, JointId};
 #[derive(Clone, Debug, Default)]
 pub(super) struct JointList {
     joints: Vec<JointConstraint>,
-    /// The part of each joint that every pass needs, so that the passes read little memory.
+    /// The part of each joint that every pass needs. It is stored separately, so that the passes read little memory.
     links: Vec<Link>,
-    /// The rows of all joints in turn.
+    /// The rows of all joints, joint by joint.
     rows: Vec<JointRow>,
-    /// The points of all joints in turn.
+    /// The points of all joints, joint by joint.
     points: Vec<JointPoint>,
 }
 
@@ -73,7 +72,7 @@ impl JointList {
         points.clear();
     }
 
-    /// Adds a joint that is no hinge, with its bodies and their indices.
+    /// Adds a joint that is not a hinge, with its bodies and their indices.
     pub(super) fn push(
         &mut self,
         slot: u32,
@@ -103,7 +102,7 @@ impl JointList {
         self.joints.push(JointConstraint { slot, ends: Ends::prepare(joint, indices, bodies) });
     }
 
-    /// Computes arms, gains and gaps at the present pose.
+    /// Computes arms, gains and gaps at the current pose.
     pub(super) fn refresh(
         &mut self,
         bodies: &[Cell<SolverBody>],
@@ -162,7 +161,7 @@ impl JointList {
         Walk { links: self.links.iter(), rows: &mut self.rows, points: &mut self.points }
     }
 
-    /// As [`Self::walk`], with the constants of the joints.
+    /// Like [`Self::walk`], but also gives the constants of each joint.
     fn walk_joints(&mut self) -> impl Iterator<Item = (&JointConstraint, <Walk<'_> as Iterator>::Item)> {
         let JointList { joints, links, rows, points } = self;
         joints.iter().zip(Walk { links: links.iter(), rows, points })

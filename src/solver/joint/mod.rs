@@ -1,9 +1,9 @@
-//! Joints: what a user defines, what the state stores, and the rows and point blocks that the solver solves.
+//! Joints: their definitions, their state, and the rows and point blocks that the solver solves.
 //!
-//! A kind of joint only lists its parts (`parts`): which row is a spring, a motor, a limit or holds a position, along
-//! which direction, and which points are pinned. Everything else is common to all kinds but hinges, which are by far
-//! the most frequent and are solved in batches (`hinge`). Within a joint the order is that of Box2D v3: springs, motors
-//! and limits first, and the rigid parts last.
+//! A kind of joint only lists its parts (`parts`): rows, each with its function (spring, motor, limit or holding a
+//! position) and its direction, and points, which pull or drive the anchors. Everything else is common to all kinds
+//! except hinges, which are by far the most frequent joints and are solved in batches (`hinge`). Within a joint the
+//! order is that of Box2D v3: springs, motors and limits first, and the rigid parts last.
 
 mod cache_key;
 mod constraint;

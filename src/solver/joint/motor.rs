@@ -1,6 +1,6 @@
-//! The motor joint: motors and springs with limited force on the angle and on the anchors, and nothing rigid.
+//! The motor joint: motors and springs with limited force on the angle and on the anchors. It has no rigid parts.
 //!
-//! A limit of the force in any direction bounds the length of the impulse `p = G L` of a point block.
+//! A limit of the force in any direction is a bound of the length of a point block's impulse `p = G L`.
 
 use serde::{Deserialize, Serialize};
 
@@ -11,8 +11,8 @@ use crate::math::{Fx, Vec2};
 
 /// A motor joint: moves B's frame relative to A's with limited force and torque.
 ///
-/// With a speed of 0 it is friction against A, as on a table seen from above. With springs it pulls the frames onto
-/// each other: it drags B with the pointer, if A is a kinematic or fixed body that follows the pointer.
+/// With a speed of 0 it acts as friction between B and A, as on a table seen from above. With springs it pulls the
+/// frames onto each other: if A is a kinematic or fixed body that follows a pointer, B is dragged by the pointer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Motor {
     /// Drives B's anchor to a velocity relative to A's.

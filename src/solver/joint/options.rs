@@ -6,7 +6,7 @@ use crate::body::WorldError;
 use crate::fx;
 use crate::math::Fx;
 
-/// Largest limit, target or speed of a joint: the solver saturates far below.
+/// Largest limit, target or speed of a joint. The solver saturates at much smaller values.
 const SIZE_MAX: Fx = fx!(1048576);
 /// Largest frequency of a spring in Hz, and largest damping ratio.
 const HERTZ_MAX: Fx = fx!(1000);
@@ -33,12 +33,12 @@ pub struct Drive {
     pub max: Fx,
 }
 
-/// A damped spring with a target. Its frequency is that of two free bodies: a body on a hinge away from its centre of
-/// mass swings more slowly.
+/// A damped spring with a target. The frequency is the one for two free bodies. A body on a hinge away from its centre
+/// of mass swings more slowly.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Spring {
-    /// Undamped frequency in Hz, above 0, up to 1000. Springs above a tenth of the sub-step rate are softer than that,
-    /// because of the time step.
+    /// Undamped frequency in Hz, above 0, up to 1000. Above a tenth of the sub-step rate the effective frequency is
+    /// lower, because of the time step.
     pub hertz: Fx,
     /// Damping ratio, 0 to 100: 1 is critical damping.
     pub damping_ratio: Fx,
@@ -46,7 +46,7 @@ pub struct Spring {
     pub target: Fx,
 }
 
-/// The softness of a joint that does not hold rigidly.
+/// Softness of a joint that is not rigid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Soft {
     /// Undamped frequency in Hz, above 0, up to 1000.
@@ -62,8 +62,8 @@ impl Soft {
     }
 }
 
-/// Builder methods of a joint: each sets the optional field of its own name to the value after the arrow, which is made
-/// of the method's arguments.
+/// Defines builder methods of a joint. Each method sets the optional field of the same name to the value after the
+/// arrow, an expression of the method's arguments.
 macro_rules! option_builders {
     ($($(#[$doc:meta])* $field:ident($($argument:ident),+) => $value:expr;)+) => {
         $(
@@ -78,7 +78,7 @@ macro_rules! option_builders {
 }
 pub(super) use option_builders;
 
-/// Checks the options that most joints have, or names the first that is out of range.
+/// Checks the options that most joints have.
 pub(super) fn check_options(
     limit: Option<JointLimit>,
     motor: Option<Drive>,
@@ -89,7 +89,7 @@ pub(super) fn check_options(
     Spring::check(spring)
 }
 
-/// Returns an error that names `what`, unless it is in range.
+/// Returns an error that names `what`, unless `in_range` holds.
 pub(super) fn check(in_range: bool, what: &'static str) -> Result<(), WorldError> {
     if in_range { Ok(()) } else { Err(WorldError::JointOutOfRange { what }) }
 }

@@ -1,4 +1,4 @@
-//! The rows and points of a joint, as its kind lists them.
+//! The rows and points of a joint. Each kind of joint adds its own to [`Parts`].
 
 use alloc::vec::Vec;
 
@@ -9,11 +9,11 @@ use super::row::{JointRow, RowTask};
 use super::state::JointImpulses;
 use crate::math::{Fx, Vec2, fx_div};
 
-/// The places of impulses in the state of a joint. A point has two slots.
+/// Slots of impulses in the state of a joint. A point uses two slots.
 pub(super) mod slot {
     pub(in super::super) const SPRING: u8 = 0;
     pub(in super::super) const DRIVE: u8 = 1;
-    /// The lower limit; the upper one is in the next slot.
+    /// The lower limit. The upper limit is in the next slot.
     pub(in super::super) const LIMIT: u8 = 2;
     /// The part that holds the joint together: a point, or up to two rows.
     pub(in super::super) const HOLD: u8 = 4;
@@ -28,10 +28,10 @@ pub(super) enum Direction {
     Along,
     /// The position of B's anchor along the y axis of A's frame.
     Across,
-    /// As `Across`, at the point where an impulse does not turn the bodies against each other: for joints that hold the
-    /// angle too.
+    /// Like `Across`, but at the point where an impulse does not rotate the bodies relative to each other. For joints
+    /// that also hold the angle.
     AcrossBalanced,
-    /// The distance of the anchors.
+    /// The distance between the anchors.
     Apart,
 }
 
@@ -52,7 +52,7 @@ impl Parts<'_> {
         self.spring_within(direction, spring, JointLimit { lower: Fx::MIN, upper: Fx::MAX });
     }
 
-    /// Adds a spring with a least and a largest force or torque, if there is one.
+    /// Adds a spring with a smallest and a largest force or torque, if there is one.
     pub(super) fn spring_within(&mut self, direction: Direction, spring: Option<Spring>, force: JointLimit) {
         if let Some(Spring { hertz, damping_ratio, target }) = spring {
             let softness = Softness::spring(hertz, damping_ratio, self.rate);

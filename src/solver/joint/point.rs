@@ -1,5 +1,5 @@
-//! The points of a joint: pulled together by a spring, or driven to a velocity. Joints whose points are pinned are
-//! hinges.
+//! The points of a joint: a spring pulls the anchors together, or a motor drives them to a relative velocity. Joints
+//! whose anchors are pinned rigidly are hinges.
 
 use super::super::body::SolverBody;
 use super::super::context::Pass;
@@ -15,7 +15,7 @@ pub(super) enum PointTask {
     /// Pulls the anchors onto each other, with impulses times `mA + mB` of at most `max`, in the bias pass only, as
     /// spring rows do.
     Spring { softness: Softness, max: Speed },
-    /// Drives their relative velocity to `velocity`, with impulses times `mA + mB` of at most `max`.
+    /// Drives the relative velocity of the anchors to `velocity`, with impulses times `mA + mB` of at most `max`.
     Drive { velocity: Vec2<Speed>, max: Speed },
 }
 
@@ -25,7 +25,7 @@ pub(super) struct JointPoint {
     pub(super) slot: u8,
     task: PointTask,
     pub(super) block: PointBlock,
-    /// The target velocity, reversed; of a spring, the part of its impulse that comes from its stretch.
+    /// Of a motor the target velocity, reversed. Of a spring the part of its impulse that comes from its stretch.
     bias: Vec2<Speed>,
     /// `L`, in world axes.
     pub(super) lambda: Vec2<Speed>,
@@ -37,7 +37,7 @@ impl JointPoint {
         JointPoint { slot, task, block, bias: Vec2::ZERO, lambda }
     }
 
-    /// Computes arms, gains and gap at the present pose.
+    /// Computes arms, gains and gap at the current pose.
     #[inline]
     pub(super) fn refresh(&mut self, place: &JointPose) {
         self.block = PointBlock::new(place.lever_a, place.lever_b, place.fractions);

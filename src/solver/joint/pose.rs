@@ -1,4 +1,4 @@
-//! The anchors of a joint at a pose of its bodies, and what its rows measure there.
+//! The anchors of a joint at the current pose of its bodies, and the positions that its rows measure.
 
 use core::cell::Cell;
 
@@ -32,16 +32,16 @@ pub(super) struct Ends {
     inverse_gyration_a: Reciprocal,
     inverse_gyration_b: Reciprocal,
     fractions: MassFractions,
-    /// Centre of mass of B from that of A at the start of the tick.
+    /// Vector from the centre of mass of A to that of B at the start of the tick.
     between: Vec2<Fx>,
-    /// The x axis of A's frame of the joint, in the frame of A.
+    /// The x axis of the joint's frame on A, in the frame of A.
     axis: Vec2<Unit>,
     /// The angle of the joint at the start of the tick, in units of 2^-32 turn.
     turns: i64,
 }
 
 impl Ends {
-    /// `indices` are those of the bodies in the body list.
+    /// Computes the constants of a joint. `indices` are those of its bodies in the body list.
     pub(super) fn prepare(joint: &Joint, indices: [u32; 2], [a, b]: [&Body; 2]) -> Self {
         let JointDef { frame_a, frame_b, .. } = &*joint.def;
         let axis = Rot::from_angle(frame_a.angle);
@@ -65,14 +65,14 @@ impl Ends {
         self.turns.wrapping_add(b.turns).wrapping_sub(a.turns)
     }
 
-    /// The anchors at the present pose.
+    /// The anchors at the current pose.
     #[inline]
     pub(super) fn place(&self, bodies: &[Cell<SolverBody>], body_rotations: &[BodyRotation]) -> JointPose {
         let (a, b) = (self.body_a as usize, self.body_b as usize);
         let arm_a = WideArm::rotated(body_rotations[a].rotation, self.local_a);
         let arm_b = WideArm::rotated(body_rotations[b].rotation, self.local_b);
         let moved = (bodies[b].get().shift - bodies[a].get().shift).widen();
-        // The sum is exact until it is rounded once: arms have 52 fraction bits, world coordinates 32.
+        // The sum is exact before it is rounded once. Arms have 52 fraction bits, world coordinates 32.
         let gap = |between: Fx, moved: Fx, arms: i64| {
             between.saturating_add(moved).saturating_add(Fx::from_bits(round_shift(arms, 20)))
         };
@@ -87,15 +87,15 @@ impl Ends {
         }
     }
 
-    /// The point at which an impulse does not turn the bodies against each other. If the angle is held too, rows on the
-    /// angle and rows at this point do not disturb each other. With the vector `c` from A's centre to B's, and A's
-    /// share `sA = iA / (iA + iB)` of the inverse inertias, the point is at `-sA c` from B's centre.
+    /// The point at which an impulse does not rotate the bodies relative to each other. If the angle is held as well,
+    /// rows on the angle and rows at this point do not disturb each other. With the vector `c` from A's centre to B's,
+    /// and A's share `sA = iA / (iA + iB)` of the inverse inertias, the point is at `-sA c` from B's centre.
     fn balanced(&self, place: &JointPose, body_rotations: &[BodyRotation]) -> JointPose {
         let (share_a, _) = self.measure_angle(body_rotations).row.shares();
         let (arm_a, arm_b) = (place.lever_a.arm.widen(), place.lever_b.arm.widen());
         let between = arm_a + place.gap - arm_b;
         let arm = -between.scale(share_a.into());
-        // From the anchor to that point, in B and in A.
+        // Vectors from the anchor to that point, for B and for A.
         let (to_b, apart) = (arm - arm_b, Angle::from_turns(Fx::from_bits(self.turns(body_rotations))));
         let to_a = Rot::from_angle(-apart).apply_wide(to_b);
         let gap = place.gap + to_b - to_a;
@@ -122,7 +122,7 @@ impl Ends {
                 self.measure_axis(self.axis.perp(), &self.balanced(place, body_rotations), body_rotations)
             }
             Direction::Apart => {
-                // Anchors that coincide have no direction: any will do.
+                // Anchors that coincide define no direction, so that any direction is valid.
                 let n = place.gap.normalized().unwrap_or(self.axis);
                 let (row, denominator) = Row::prepare(n, place.lever_a, place.lever_b, place.fractions);
                 Measure { row, denominator, position: place.gap.length(), scale: Fx::ONE }
@@ -152,12 +152,12 @@ pub(super) struct JointPose {
     pub(super) lever_a: Lever,
     pub(super) lever_b: Lever,
     pub(super) fractions: MassFractions,
-    /// From A's anchor to B's.
+    /// Vector from A's anchor to B's.
     pub(super) gap: Vec2<Fx>,
 }
 
-/// A rotated arm before it is rounded, with 52 fraction bits. The gap is the small difference of two long arms, so that
-/// arms are subtracted before they are rounded.
+/// A rotated arm with 52 fraction bits, not rounded yet. The gap is a small difference of two long arms, which are
+/// therefore subtracted before rounding.
 #[derive(Clone, Copy)]
 struct WideArm {
     x: i64,

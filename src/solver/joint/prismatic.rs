@@ -1,9 +1,9 @@
-//! The prismatic joint: B slides along A's x axis and does not turn.
+//! The prismatic joint: B slides along A's x axis and does not rotate relative to A.
 //!
 //! With the axis `n` fixed in A and `d` from A's anchor to B's, the rows along the axis have the Jacobian `n.(v_b -
 //! v_a) + (r_b x n) w_b - ((d + r_a) x n) w_a` (E. Catto, Box2D). Two rows hold the joint: one on the angle, and one
-//! across the axis. The latter acts where its impulse does not turn the bodies against each other. At B's anchor the
-//! two rows would disturb each other, and a slider with a mass ratio of 100 would turn three to ten times as far.
+//! across the axis. The latter acts where its impulse does not rotate the bodies relative to each other. At B's anchor
+//! the two rows would disturb each other, and a slider with a mass ratio of 100 would rotate three to ten times as far.
 
 use serde::{Deserialize, Serialize};
 
@@ -12,10 +12,10 @@ use super::parts::{Direction, Parts, slot};
 use crate::body::WorldError;
 use crate::math::Fx;
 
-/// A slider: B's anchor stays on the x axis of A's frame, and B's frame parallel to A's.
+/// A slider: B's anchor stays on the x axis of A's frame, and B's frame stays parallel to A's.
 ///
 /// The translation of the joint is the position of B's anchor along that axis, in metres. It should stay within a
-/// hundred radii of gyration of either body: longer lever arms are cut off.
+/// hundred radii of gyration of either body, because longer lever arms are clamped.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Prismatic {
     /// Range of the translation in metres.

@@ -1,8 +1,8 @@
-//! The revolute joint: a point block whose arms and gains are both refreshed after every displacement.
+//! The revolute joint: a point block whose arms and gains are both updated after every displacement.
 //!
-//! With gains older than their arms, long arms over-correct and explode; with arms that are kept for a tick, a grid of
-//! joints explodes (`docs/DESIGN.md` has the figures). Spring, motor and limits are rows on the angle, with the
-//! Jacobian `w_b - w_a`.
+//! If only the arms were updated, long arms would over-correct and explode. If neither were updated within a tick, a
+//! grid of joints would explode (`docs/DESIGN.md` has the figures). Spring, motor and limits are rows on the angle,
+//! with the Jacobian `w_b - w_a`.
 
 use serde::{Deserialize, Serialize};
 

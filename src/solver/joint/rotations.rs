@@ -1,4 +1,4 @@
-//! Computes the rotations of bodies with joints, many at a time, in plain loops that the compiler vectorises.
+//! Computes the rotations of bodies with joints, in loops over many bodies that the compiler vectorises.
 
 use core::cell::Cell;
 
@@ -11,10 +11,10 @@ use crate::simd::{Kernel, Lanes, Quad};
 /// Number of bodies in a loop.
 const BLOCK: usize = 32;
 
-/// Computes the rotations of bodies at their present poses.
+/// Computes the rotations of bodies at their current poses.
 pub(super) struct Rotations<'a> {
     pub(super) turning: &'a [Turning],
-    /// These three are indexed by bodies.
+    /// This list and the next two are indexed by body.
     pub(super) bodies: &'a [Cell<SolverBody>],
     pub(super) body_rotations: &'a mut [BodyRotation],
     pub(super) quads: &'a mut [Quad],

@@ -14,8 +14,8 @@
 //! `L` is a speed. The impulse is `L / ((mA + mB) D)`, times `s` for an angle.
 //!
 //! **Springs are not solved in the relax pass.** In the bias pass a soft row is the implicit step of a damped spring
-//! from any state: `L' = -massScale (v + biasRate x)`. Solved again after the displacement, the row would take away
-//! another `massScale biasRate h` of the velocity, so that light springs come to rest too early.
+//! from any state: `L' = -massScale (v + biasRate x)`. If the row were solved again after the displacement, it would
+//! remove another `massScale biasRate h` of the velocity, and light springs would come to rest too early.
 
 use super::super::body::SolverBody;
 use super::super::context::Pass;
@@ -41,12 +41,12 @@ pub(super) enum RowTask {
     Hold { target: Fx },
 }
 
-/// A direction at one pose of the bodies.
+/// The row along a direction at one pose of the bodies.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Measure {
     pub(super) row: Row,
     pub(super) denominator: Denominator,
-    /// In m or rad.
+    /// Position along the direction in m or rad.
     pub(super) position: Fx,
     /// Units of the row per unit of the position: 1, or `s` for an angle.
     pub(super) scale: Fx,
@@ -59,7 +59,7 @@ pub(super) struct JointRow {
     pub(super) direction: Direction,
     task: RowTask,
     pub(super) row: Row,
-    /// The target speed, reversed; of a spring, the part of its impulse that comes from its stretch.
+    /// Of a spring the part of its impulse that comes from its stretch. Of any other row the target speed, reversed.
     bias: Speed,
     /// Whether the row is a limit that is not reached.
     open: bool,
@@ -73,7 +73,7 @@ impl JointRow {
         JointRow { slot, direction, task, row: Row::NONE, bias: Speed::ZERO, open: false, bounds, lambda }
     }
 
-    /// Computes Jacobian, gains, bias and bounds at the present pose.
+    /// Computes Jacobian, gains, bias and bounds at the current pose.
     pub(super) fn refresh(&mut self, measure: &Measure, tuning: &Tuning) {
         let Measure { row, denominator, position, scale } = *measure;
         self.row = row;
@@ -103,7 +103,7 @@ impl JointRow {
         }
     }
 
-    /// `gap` is the distance to the limit.
+    /// Computes bias and bounds of a limit. `gap` is the distance to the limit.
     fn refresh_limit(&mut self, gap: Fx, measure: &Measure, tuning: &Tuning) {
         let gap = fx_mul(gap, measure.scale);
         self.open = gap > Fx::ZERO;
@@ -129,11 +129,11 @@ impl JointRow {
         let (softness, bias, push) = match (&self.task, pass) {
             (RowTask::Spring { softness, .. }, Pass::Bias) => (softness, Speed::ZERO, self.bias),
             (RowTask::Spring { .. }, Pass::Relax) => return,
-            // As with contacts, a gap that the bias pass has not closed is left to the next sub-step.
+            // As with contacts, a gap without an impulse is left to the next sub-step.
             (RowTask::Lower { .. } | RowTask::Upper { .. }, Pass::Relax) if self.open && self.lambda == 0 => {
                 return;
             }
-            // A gap so wide that `L` would fall below 0 reduces `L` to 0.
+            // If the gap is so wide that `L` would fall below 0, `L` becomes 0.
             (RowTask::Lower { .. } | RowTask::Upper { .. }, _) if self.open => {
                 (&Softness::RIGID, self.bias.min(self.lambda.saturating_sub(vn)), Speed::ZERO)
             }

@@ -1,4 +1,4 @@
-//! Joints as the state stores them.
+//! Joints in the state of a world.
 
 use alloc::boxed::Box;
 
@@ -13,7 +13,7 @@ use crate::math::{Angle, Fx, Rot, Speed, TAU, Vec2, fx_mul};
 /// A joint in the world.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Joint {
-    /// Boxed, so that the parts that every step changes lie close together: saving them is bound by memory.
+    /// Boxed, so that the parts that every step changes are close together in memory: saving them is memory-bound.
     pub(crate) def: Box<JointDef>,
     pub(crate) impulses: JointImpulses,
     /// The angle of B's frame in A's at the end of the last tick in which the joint was solved, with whole turns, in
@@ -27,7 +27,7 @@ pub struct Joint {
 pub(crate) struct JointImpulses(pub(crate) [Speed; 6]);
 
 impl JointImpulses {
-    /// The impulse of the point that has a slot and the one after it.
+    /// The impulse of the point in a slot and the slot after it.
     pub(super) fn point(&self, slot: u8) -> Vec2<Speed> {
         let slot = usize::from(slot);
         Vec2::new(self.0[slot], self.0[slot + 1])
@@ -63,8 +63,8 @@ impl Joint {
         &self.def
     }
 
-    /// The angle of B's frame in A's in units of 2^-32 turn: of all angles that differ by whole turns, the one nearest
-    /// to the last one.
+    /// The angle of B's frame in A's in units of 2^-32 turn, with the number of whole turns that brings it nearest to
+    /// the last angle.
     pub(crate) fn turns(&self, a: Angle, b: Angle) -> i64 {
         nearest_turns(self.turns, (b - a) + self.def.rest_angle())
     }

@@ -1,8 +1,8 @@
 //! The weld joint: a row on the angle and a point block at the anchors, each rigid or a spring.
 //!
-//! If the point block acted where its impulse does not turn the bodies against each other, as in a prismatic joint, a
-//! plank on a wall would sag a fifth as far. But the anchors of a loaded chain would open four times as wide, and a
-//! weld of 1 cm that carries a hundredfold weight would gain energy.
+//! The point block does not act where its impulse does not rotate the bodies relative to each other, as in a prismatic
+//! joint. A plank on a wall would then sag a fifth as far, but the anchors of a loaded chain would open four times as
+//! wide, and a weld of 1 cm that carries a hundredfold weight would gain energy.
 
 use serde::{Deserialize, Serialize};
 
@@ -22,7 +22,7 @@ pub struct Weld {
 }
 
 impl Weld {
-    /// A weld that is as rigid as joints are.
+    /// A rigid weld, with the stiffness of all joints.
     #[must_use]
     pub const fn rigid() -> Self {
         Weld { linear: None, angular: None }
@@ -40,14 +40,14 @@ impl Weld {
         Soft::check(self.angular)
     }
 
-    /// Its row on the angle, if it is a hinge: if its anchors are rigid.
+    /// The row on the angle, if the weld is a hinge. It is a hinge if its anchors are rigid.
     pub(super) fn angle_parts(&self) -> Option<AngleParts> {
         let spring = self.angular.map(|soft| soft.towards(Fx::ZERO));
         let parts = AngleParts { spring, held: spring.is_none(), drive: None, limit: None };
         self.linear.is_none().then_some(parts)
     }
 
-    /// Adds its parts, if its anchors are soft.
+    /// Adds the parts of the weld, if its anchors are soft.
     pub(super) fn prepare(&self, parts: &mut Parts<'_>) {
         match self.angular {
             Some(soft) => parts.spring(Direction::Angle, Some(soft.towards(Fx::ZERO))),

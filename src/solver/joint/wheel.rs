@@ -1,5 +1,5 @@
-//! The wheel joint: a slider whose B may turn. The motor is on the angle, spring and limits are along the axis, and one
-//! row is across it.
+//! The wheel joint: a slider on which B may rotate. The motor acts on the angle, spring and limits act along the axis,
+//! and one row holds B on the axis.
 
 use serde::{Deserialize, Serialize};
 

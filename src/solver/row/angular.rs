@@ -1,20 +1,20 @@
 //! Rows on the angle between two bodies: `vn = s (w_b - w_a)`, with `e = s / k` and without linear part.
 //!
-//! `s` is a length that each row chooses: the one that makes `D = aA eA^2 + aB eB^2` about 1 keeps every coefficient
-//! small, whatever the masses and radii of gyration:
+//! `s` is a length that may be chosen for each row. The choice that makes `D = aA eA^2 + aB eB^2` about 1 keeps every
+//! coefficient small, whatever the masses and radii of gyration are:
 //!
 //! ```text
 //! s^2 = 1 / (aA / kA^2 + aB / kB^2),  so that  f = a e / D <= sqrt(a) <= 1  and  e <= 1 / sqrt(a)
 //! ```
 //!
-//! `e` is kept to 100: it would be larger only if one body were 10 000 times as heavy as the other and still turned
-//! more easily. An angular impulse `P` is `L = P (mA + mB) D / s`, with inverse masses.
+//! `e` is limited to 100. It would be larger only if one body were 10 000 times as heavy as the other and still turned
+//! more easily. An angular impulse `P` corresponds to `L = P (mA + mB) D / s`, with inverse masses.
 
 use super::{Denominator, MassFractions, RATIO_MAX, Row, turning};
 use crate::math::{Length, Ratio, Reciprocal, Speed, Unit, div_round, mul, saturate, saturate_wide};
 
 impl Row {
-    /// The row between two bodies, its denominator and `s`. Denominator and `s` are 0 when neither body turns.
+    /// Returns the row between two bodies, its denominator and `s`. The last two are 0 if neither body turns.
     pub(crate) fn angular(
         a: Reciprocal,
         b: Reciprocal,
@@ -29,7 +29,7 @@ impl Row {
         let gain = |fraction: Unit, e: Ratio| {
             // 54 fraction bits divided by 30.
             let product = i64::from(fraction.to_bits()) * i64::from(e.to_bits());
-            // A change of velocity may not be larger than `L`: only physically impossible bodies reach this limit.
+            // A velocity change must not be larger than `L`. Only physically impossible bodies reach this limit.
             Unit::from_bits(saturate(quotient(product, denominator.max(1)))).min(Unit::ONE)
         };
         let (f_a, f_b) = (gain(fractions.a, e_a), gain(fractions.b, e_b));
@@ -45,15 +45,15 @@ impl Row {
 /// `2^6 n / d` for numbers that are not negative, rounded to nearest.
 fn quotient(n: i64, d: i64) -> i64 {
     if n < 1 << 56 && d < 1 << 62 {
-        // Here it fits 64 bits.
+        // `2^6 n` fits 64 bits here.
         ((n << 6) + d / 2) / d
     } else {
         saturate_wide(div_round(i128::from(n) << 6, d.into()))
     }
 }
 
-/// `1 / sqrt(aA / kA^2 + aB / kB^2)`, at most a hundred radii of gyration of a body that turns. It only sets the units
-/// of a row, so that it need not be exact.
+/// `1 / sqrt(aA / kA^2 + aB / kB^2)`, at most a hundred times the radius of gyration of a body that turns. It only sets
+/// the units of a row, so that it need not be exact.
 fn angular_scale([a, b]: [Reciprocal; 2], fractions: MassFractions) -> Length {
     // 1 / k has 21 fraction bits, so that the sum has 72.
     let inverse = |inverse_gyration: Reciprocal, fraction: Unit| -> Speed {
@@ -68,8 +68,8 @@ fn angular_scale([a, b]: [Reciprocal; 2], fractions: MassFractions) -> Length {
     if sum == 0 {
         return Length::ZERO;
     }
-    // Normalised to 31 or 32 bits by an even shift, so that the reciprocal has as many bits and its root half as many.
-    // The root is increased by more than its rounding error, so that `f` is not above 1.
+    // The sum is normalised to 31 or 32 bits by an even shift, so that its reciprocal has as many bits and the root of
+    // that half as many. The root is increased by more than its rounding error, so that `f` is not above 1.
     let shift = (i64::from(128 - sum.leading_zeros()) - 31) & !1;
     let top = if shift >= 0 { sum >> shift } else { sum << -shift };
     let root = ((1u64 << 62) / u64::try_from(top).unwrap_or(u64::MAX).max(1)).isqrt();
@@ -90,8 +90,8 @@ mod tests {
     use crate::solver::limits::IMPULSE_MAX;
     use crate::solver::softness::Softness;
 
-    /// Masses from 1:1 to 1:10 000 either way, radii of gyration from 1 cm to 50 m, and bodies that do not turn: one
-    /// update leaves no relative angular velocity, and `mA kA duA = -mB kB duB`.
+    /// One update leaves no relative angular velocity, and `mA kA duA = -mB kB duB`. The mass ratios are 1:1 to
+    /// 1:10 000 either way, the radii of gyration 1 cm to 50 m, and some bodies do not turn.
     #[test]
     fn an_update_removes_the_relative_angular_velocity_and_keeps_momentum() {
         let mut rng = Rng::new(7);

@@ -1,4 +1,4 @@
-//! Where pairs may have begun or ended since the last pair update.
+//! Record of the places where pairs may have begun or ended since the last pair update.
 
 use alloc::vec::Vec;
 
@@ -15,9 +15,9 @@ pub(crate) struct Changes {
     sleeping_contacts: bool,
     /// Filters, sensors, kinds or joints have changed: pairs may not be allowed to collide any more.
     rules: bool,
-    /// Slots of shapes with a new fat box, or whose body has become active or inactive. May repeat.
+    /// Slots of shapes with a new fat box, or whose body has become active or inactive. A slot may be listed twice.
     shapes: Vec<u32>,
-    /// Fat box of each shape at the last pair update: two shapes whose boxes overlapped then are no new pair.
+    /// Fat box of each shape at the last pair update. Two shapes whose boxes overlapped then are not a new pair.
     /// [`Aabb::NOWHERE`] if something other than its box may give the shape new pairs.
     last_boxes: Vec<Aabb>,
 }
@@ -43,17 +43,17 @@ impl Changes {
         self.everything || self.sleeping_contacts
     }
 
-    /// Whether it has to be checked if pairs may still collide.
+    /// Whether all pairs have to be checked again for permission to collide.
     pub(crate) fn concerns_rules(&self) -> bool {
         self.everything || self.rules
     }
 
-    /// Slots of shapes with a new fat box, or whose body has become active or inactive. May repeat.
+    /// Slots of shapes with a new fat box, or whose body has become active or inactive. A slot may be listed twice.
     pub(crate) fn shapes(&self) -> &[u32] {
         &self.shapes
     }
 
-    /// Size in bytes of the list of shapes, which is all that a saved record has outside of its struct.
+    /// Size in bytes of the list of shapes, the only memory of a saved record outside of its struct.
     pub(crate) fn list_bytes(&self) -> usize {
         size_of_val(&*self.shapes)
     }

@@ -1,4 +1,4 @@
-//! What the narrow phase finds and keeps from tick to tick.
+//! Output of the narrow phase, and its data that is kept from tick to tick.
 
 use alloc::vec::Vec;
 
@@ -15,9 +15,9 @@ pub(crate) struct ContactCache {
     /// Output of each job of a narrow phase.
     parts: Vec<NarrowPhaseOutput>,
     /// For each contact of the state, the axis that separated its shapes in the last tick. May be shorter or longer
-    /// than the list of contacts: the missing ones have no axis.
+    /// than the list of contacts: contacts without an entry have no cached axis.
     axes: Vec<CachedAxis>,
-    /// The touching pairs of the tick before, sorted by pair: most of them still touch, with the same surface.
+    /// The touching pairs of the last tick, sorted by pair. Most of them still touch and have the same surface.
     touched: Vec<ActiveContact>,
     /// Whether surfaces may differ from those of the last tick.
     surfaces_changed: bool,
@@ -29,7 +29,7 @@ pub(crate) struct NarrowPhaseBuffers<'a> {
     pub(crate) axes: &'a mut [CachedAxis],
     /// An empty output for each job.
     pub(crate) parts: &'a mut [NarrowPhaseOutput],
-    /// The touching pairs of the tick before whose surfaces are still valid, sorted by pair.
+    /// The touching pairs of the last tick whose surfaces are still valid, sorted by pair.
     pub(crate) touched: &'a [ActiveContact],
 }
 

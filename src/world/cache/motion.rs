@@ -1,7 +1,7 @@
 //! Bounds and predicted motion of bodies and shapes.
 //!
-//! The narrow phase rejects most pairs because their shapes are too far apart to meet within the tick. What that test
-//! needs is computed once per tick and stored side by side, so that the test reads neither bodies nor outlines.
+//! The narrow phase rejects most pairs because their shapes are too far apart to meet within the tick. The data for
+//! that test is computed once per tick and stored contiguously, so that the test reads neither bodies nor outlines.
 
 use alloc::vec::Vec;
 
@@ -79,8 +79,8 @@ pub(crate) struct ShapeMotion {
     shift: Vec2<Travel>,
     /// Bound of the distance by which the body's rotation moves any point of the shape.
     pub(crate) turn: Travel,
-    /// Largest overlap with another shape at which the two may still pass by each other, as far as this shape's size
-    /// decides.
+    /// Largest overlap with another shape at which the two may still pass by each other. The limit of a pair is at most
+    /// that of each of its shapes.
     pub(crate) slack: Step,
     /// Slot of the body.
     pub(crate) body: u32,
@@ -198,12 +198,12 @@ impl ClosingBound {
     }
 }
 
-/// Bounds and predicted motion of all shapes and bodies, by slot. What is not in the awake set does not move.
+/// Bounds and predicted motion of all shapes and bodies, by slot. Bodies that are not in the awake set do not move.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct MotionCache {
     bodies: Vec<PredictedMotion>,
     shapes: Vec<ShapeMotion>,
-    /// Slots with a motion other than none.
+    /// Slots of the bodies that move.
     moving_bodies: Vec<u32>,
     moving_shapes: Vec<u32>,
 }

@@ -1,4 +1,4 @@
-//! What the pair update keeps from tick to tick, and its buffers.
+//! Data that the pair update keeps from tick to tick, and its buffers.
 
 use alloc::vec::Vec;
 
@@ -10,7 +10,7 @@ use crate::world::state::State;
 /// Cache of the pair update.
 #[derive(Clone, Debug)]
 pub(crate) struct PairCache {
-    /// What may have changed the pairs since the last update.
+    /// Record of changes since the last update that may affect pairs.
     pub(crate) changes: Changes,
     pub(crate) non_colliding: NonCollidingPairs,
     /// Result: contacts whose pair has ended since the last tick's events.

@@ -28,8 +28,8 @@ pub(crate) struct Poses {
 pub(crate) struct Extents {
     /// Radius of a disc inside the thinnest solid shape of the body; [`Fx::MAX`] if it has no solid shape.
     pub(crate) core: Fx,
-    /// Largest distance of a point that moves when the body turns. A disc counts by its centre, because turning it does
-    /// not change what it covers.
+    /// Largest distance of a point that moves when the body rotates. Of a disc only the centre counts, because rotation
+    /// does not change the area that the disc covers.
     pub(crate) reach: Fx,
     /// Largest distance of any point.
     pub(crate) radius: Fx,
@@ -76,8 +76,7 @@ impl Poses {
         self.extents[slot as usize] = Extents::of(state, body);
     }
 
-    /// Poses the shapes of a body again after it was translated and not rotated, as most falling and resting bodies
-    /// are.
+    /// Poses the shapes of a body again after it was translated but not rotated, like most falling and resting bodies.
     pub(crate) fn shift_body(&mut self, body: &Body, by: Vec2<Fx>) {
         for &id in body.shapes() {
             let posed =

@@ -1,4 +1,4 @@
-//! What a tick reports, and the buffers of continuous collision.
+//! Events and statistics of a tick, and the buffers of continuous collision.
 
 use alloc::vec::Vec;
 
@@ -21,10 +21,10 @@ impl TickResults {
     }
 }
 
-/// Buffers for continuous collision. Nothing in them outlives a tick.
+/// Buffers for continuous collision. Their contents are only valid within a tick.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Sweeps {
-    /// Poses at the start of the tick of the bodies of the awake set, in its order.
+    /// Poses of the bodies of the awake set at the start of the tick, in the order of the set.
     pub(crate) starts: Vec<Pose>,
     /// Bullets that wait until all other bodies have been moved.
     pub(crate) bullets: Vec<SweptBody>,

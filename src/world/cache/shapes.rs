@@ -1,4 +1,4 @@
-//! Where the shapes of the world are: broad phases and poses, kept together so that neither is forgotten.
+//! Broad phases and poses of all shapes. One owner updates both, so that they cannot become inconsistent.
 
 use alloc::vec::Vec;
 
@@ -78,7 +78,8 @@ impl ShapeCache {
         self.broad_phase.pairs(moved, accept, limit, pairs)
     }
 
-    /// Starts the prediction of motion for a tick: nothing moves until told otherwise. Drops queued fat boxes.
+    /// Starts the prediction of motion for a tick. Until its motion is set, a body does not move. Drops queued fat
+    /// boxes.
     pub(crate) fn begin_prediction(&mut self, body_slots: usize) {
         self.refits.clear();
         self.poses.motion_mut().begin(body_slots);

@@ -198,7 +198,7 @@ pub enum Command {
     },
 }
 
-/// What a command has added.
+/// Handles of the bodies, shapes or joints that a command has added.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Outcome {
     /// Nothing.

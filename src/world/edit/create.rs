@@ -106,7 +106,7 @@ impl World {
         wake_body(&mut self.state, &mut self.scratch, body.slot());
         self.state.bodies.redefine(body.slot()).set_mass(mass);
         let id = self.insert_shape(body, shape);
-        // The centre of mass may have moved, and the positions of the other shapes with it by a rounding.
+        // The centre of mass may have moved, which changes the rounding of the positions of all other shapes.
         self.scratch.update_body(&self.state, body.slot());
         wake_overlapping_shape(&mut self.state, &mut self.scratch, id.slot());
         Ok(id)

@@ -45,7 +45,7 @@ impl World {
         let owner = self.state.bodies.redefine(body.slot());
         owner.shapes.retain(|other| *other != id);
         owner.set_mass(mass);
-        // The centre of mass has moved, and the positions of the other shapes with it by a rounding.
+        // The centre of mass has moved, which changes the rounding of the positions of all other shapes.
         self.scratch.update_body(&self.state, body.slot());
         Ok(())
     }

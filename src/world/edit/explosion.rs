@@ -7,7 +7,7 @@
 //! ```
 //!
 //! This follows Box2D's `b2World_Explode`. A shape at distance `d` gets the impulse at its nearest point. A pressure
-//! wave in two dimensions would decay as `1 / d`; the constant core and the linear falloff are what games ask for.
+//! wave in two dimensions would decay as `1 / d`. The constant core and the linear falloff are common in games.
 
 use alloc::vec::Vec;
 

@@ -5,7 +5,7 @@ use crate::math::{Angle, Fx, Speed};
 use crate::world::World;
 use crate::world::movement::move_body;
 
-/// A number of a body's velocity or pose.
+/// A component of a body's velocity or pose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BodyField {
     /// The horizontal velocity of its centre of mass.

@@ -12,7 +12,7 @@ use crate::world::state::{Island, State};
 pub(crate) fn put_to_sleep(state: &mut State, scratch: &mut Scratch, slot: u32) {
     scratch.awake.refresh(state);
     unite_connected(state, scratch);
-    // Bodies that were woken since the last tick still have their contacts there.
+    // Bodies that were woken since the last tick still have their contacts in the list of sleeping contacts.
     unite_touching(state, &mut scratch.union, &state.sleeping_contacts);
     let Scratch { awake, union, .. } = &mut *scratch;
     let root = union.root(slot);
@@ -59,8 +59,8 @@ pub(crate) fn sleep_calm_sets(state: &mut State, scratch: &mut Scratch) {
         if union.stays_awake(root) {
             continue;
         }
-        // Slots are visited in order and the root is the smallest of its set, so that it has its island before the
-        // others.
+        // Slots are visited in order. The root is the smallest slot of its set, so that it gets its island before all
+        // other bodies of the set.
         let island = match state.bodies.at(root).island {
             Some(island) => island,
             None => state.islands.insert(Island { bodies: Vec::new() }),
@@ -75,7 +75,7 @@ pub(crate) fn sleep_calm_sets(state: &mut State, scratch: &mut Scratch) {
     }
     if any {
         scratch.awake.invalidate();
-        // Fat boxes may have parted since the last pair update.
+        // Fat boxes may have ceased to overlap since the last pair update.
         scratch.pairs.changes.resting_changed();
         put_contacts_to_sleep(state, scratch);
     }

@@ -35,8 +35,8 @@ pub(crate) fn wake_body(state: &mut State, scratch: &mut Scratch, slot: u32) {
     }
 }
 
-/// Wakes a body and every body with a shape whose fat box overlaps one of its own: for a body that is about to change
-/// or has just changed.
+/// Wakes a body and every body with a shape whose fat box overlaps one of its own. To be called before and after a
+/// change of the body.
 pub(crate) fn wake_overlapping(state: &mut State, scratch: &mut Scratch, slot: u32) {
     wake_body(state, scratch, slot);
     for index in 0..state.bodies.at(slot).shapes().len() {

@@ -9,7 +9,7 @@ use crate::fx;
 use crate::math::{Aabb, Fx, Unit, Vec2, saturate};
 use crate::world::World;
 
-/// Where a ray meets a shape.
+/// Hit of a ray on a shape.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RayHit {
     /// The shape.
@@ -22,7 +22,7 @@ pub struct RayHit {
     pub normal: Vec2<Unit>,
 }
 
-/// Where a moving shape meets another shape.
+/// Hit of a moving shape on another shape.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CastHit {
     /// The shape that is met.
@@ -169,7 +169,7 @@ struct Ordered<H> {
     hit: H,
 }
 
-/// Returns the earlier of two hits; of simultaneous ones that on the shape in the smaller slot.
+/// Returns the earlier of two hits. If they are simultaneous, returns the one on the shape in the smaller slot.
 fn earlier<H: Copy>(
     best: Option<Ordered<H>>,
     found: Ordered<H>,

@@ -1,9 +1,9 @@
-//! Queries: where the shapes of a world are, between ticks. A query changes nothing, sees every enabled body at its
-//! current pose, and allocates nothing but its list of results.
+//! Queries: find shapes of a world between ticks. A query changes nothing, sees every enabled body at its current pose,
+//! and allocates nothing except its list of results.
 //!
 //! The order of results is part of the contract. Along a ray or a cast, results are ordered by their exact fraction
-//! before rounding, so that the nearer of two comes first on a ray of any length, and then by slot. All other results
-//! are in slot order.
+//! before rounding, so that the nearer of two hits comes first on a ray of any length, and then by slot. All other
+//! results are in slot order.
 
 mod cast;
 mod character;
@@ -40,7 +40,7 @@ pub struct QueryFilter {
     pub mask: u64,
     /// Whether the query sees sensors.
     pub sensors: bool,
-    /// A body that the query does not see: usually the one that asks.
+    /// A body that the query does not see, usually the one for which the query is made.
     pub except: Option<BodyId>,
 }
 

@@ -1,4 +1,4 @@
-//! Packed bodies and fat boxes: what a tick changes of bodies and shapes.
+//! Packed bodies and fat boxes: the parts of bodies and shapes that a tick changes.
 //!
 //! Each body takes 36 bytes: centre (2 x i64), angle (u32), velocity (2 x i32), spin (i32), rest ticks (u32). A record
 //! follows after all bodies for each body that has a force, sleeps or has a target: the slot (u32), flags for which of
@@ -31,13 +31,13 @@ const BOX_BYTES: usize = 16;
 /// Bodies that are packed before the boxes of their shapes, which need the bodies' centres: few enough to stay in the
 /// cache.
 const BLOCK: usize = 32;
-/// Stands for the first coordinate of a box that follows in full.
+/// Marker in place of the first coordinate of a box that follows in full.
 const NOT_NEAR: i32 = i32::MIN;
 
 type Bodies = Arena<Body, BodyId>;
 type Shapes = Arena<Shape, ShapeId>;
 
-/// A copy of a body without what a tick changes.
+/// A copy of a body without the parts that a tick changes.
 pub(super) fn lasting_body(body: &Body) -> Body {
     let mut body = body.clone();
     set_motion(&mut body, &mut Reader(&[0; BODY_BYTES]).record());
@@ -45,7 +45,7 @@ pub(super) fn lasting_body(body: &Body) -> Body {
     body
 }
 
-/// A copy of a shape without what a tick changes: without its fat box, unless its body is fixed.
+/// A copy of a shape without the part that a tick changes: the fat box, unless the body is fixed.
 pub(super) fn lasting_shape(shape: &Shape, bodies: &Bodies) -> Shape {
     let fat = if is_fixed(shape, bodies) { shape.fat } else { Aabb::default() };
     Shape { fat, ..shape.clone() }
@@ -145,7 +145,7 @@ fn put_place<const N: usize>(record: &mut Record<'_, N>, centre: Vec2<Fx>, angle
     record.put(angle.to_bits());
 }
 
-/// Restores what was packed of the bodies. Calls `moved` with the slot of each body whose pose changes: with its
+/// Restores the packed parts of the bodies. Calls `moved` with the slot of each body whose pose changes: with its
 /// displacement, or with `None` if its rotation changes too.
 pub(super) fn unpack_bodies(bodies: &mut Bodies, bytes: &[u8], mut moved: impl FnMut(u32, Option<Vec2<Fx>>)) {
     let mut reader = Reader(bytes);

@@ -16,17 +16,17 @@ const MAGIC: [u8; 8] = *b"LS2DWRLD";
 const FORMAT: u32 = 2;
 const ENVELOPE: Envelope = Envelope { magic: MAGIC, format: FORMAT };
 
-/// Why bytes were refused as a world.
+/// Reason why bytes were refused as a world.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum SnapshotError {
-    /// They do not start with the magic of a world.
+    /// The bytes do not start with the magic of a world.
     NotASnapshot,
     /// The layout has another version.
     Format {
         /// The version found.
         found: u32,
     },
-    /// They were made by an engine with other semantics and would not continue bit-identically.
+    /// The bytes were made by an engine with other semantics, so that the world would not continue bit-identically.
     Semantics {
         /// The semantics id found.
         found: u32,

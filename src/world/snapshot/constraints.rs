@@ -1,4 +1,4 @@
-//! Packed contacts and joints: what a tick changes of them.
+//! Packed contacts and joints: the parts of them that a tick changes.
 //!
 //! Each contact takes 8 bytes, its head: shape A (30 bits), shape B (29 bits), touching, passing, number of points (2
 //! bits), whether it has impulses. A second buffer has 24 bytes for each contact with impulses: normal and tangential
@@ -88,7 +88,7 @@ fn unpack_contact(mut head: Fields<'_, HEAD_BYTES>, impulses: &mut Reader<'_>) -
     contact
 }
 
-/// A copy of a joint without what a tick changes.
+/// A copy of a joint without the parts that a tick changes.
 pub(super) fn lasting_joint(joint: &Joint) -> Joint {
     Joint::new(*joint.def)
 }
@@ -127,7 +127,7 @@ fn halves(turns: i64) -> [i32; 2] {
     [low_half(turns), low_half(turns >> u32::BITS)]
 }
 
-/// Restores what was packed of the joints.
+/// Restores the packed parts of the joints.
 pub(super) fn unpack_joints(joints: &mut Arena<Joint, JointId>, bytes: &[u8]) {
     let mut reader = Reader(bytes);
     for (_, joint) in joints.iter_mut() {

@@ -27,9 +27,9 @@ impl Snapshot {
     }
 }
 
-/// In a binary format the bytes of [`World::to_bytes`]. In a human-readable format such as JSON a view of the state
-/// with the names of the API, in which bodies and the like are named by their handle, as in `body 12v1`. The view
-/// cannot be read back.
+/// Writes the bytes of [`World::to_bytes`] in a binary format. In a human-readable format such as JSON, writes a view
+/// of the state with the names of the API, in which bodies, shapes, joints and islands are named by their handles, as
+/// in `body 12v1`. The view cannot be read back.
 impl Serialize for Snapshot {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let state = self.state();

@@ -1,10 +1,10 @@
 //! Copies of the state: in memory for rollback, as bytes for files and networks, as digests for comparison, and as a
 //! readable view for reports.
 //!
-//! A snapshot has two parts. What every tick changes (poses, velocities, fat boxes, impulses) is packed into buffers,
-//! whose layout is in the heads of `bodies.rs` and `constraints.rs`. Everything else is copied in pages of 32 slots,
-//! which snapshots share as long as nothing in them changes (`body/arena/pages.rs`). Digests are taken over the same
-//! bytes, so that hashing a saved state costs no more than reading it once.
+//! A snapshot has two parts. Data that every tick changes (poses, velocities, fat boxes, impulses) is packed into
+//! buffers, whose layout is described at the top of `bodies.rs` and `constraints.rs`. All other data is copied in pages
+//! of 32 slots, which snapshots share as long as nothing in them changes (`body/arena/pages.rs`). Digests are taken
+//! over the same bytes, so that hashing a saved state costs no more than reading it once.
 
 mod bodies;
 mod bytes;

@@ -6,7 +6,7 @@ use alloc::vec::Vec;
 pub(super) trait Integer: Copy {
     type Bytes: AsRef<[u8]>;
     fn to_bytes(self) -> Self::Bytes;
-    /// The integer with these bytes, of which there must be as many as it has.
+    /// Returns the integer with these bytes. Their number must be the size of the integer.
     fn of_slice(bytes: &[u8]) -> Self;
 }
 
@@ -59,15 +59,15 @@ impl<'a, const N: usize> Record<'a, N> {
         &self.bytes[..self.len]
     }
 
-    /// Drops what was written after the first `len` bytes.
+    /// Drops all bytes after the first `len`.
     #[inline(always)]
     pub(super) fn truncate(&mut self, len: usize) {
         self.len = self.len.min(len);
     }
 }
 
-/// Replaces the content of a buffer by a record for each of `count` things. With their number known in advance this is
-/// faster than a [`Writer`].
+/// Replaces the content of a buffer by a record for each of `count` things. This is faster than a [`Writer`], because
+/// the number of records is given in advance.
 #[inline(always)]
 pub(super) fn put_records<T, const N: usize>(
     bytes: &mut Vec<u8>,

@@ -12,12 +12,12 @@ use crate::world::stats::Phase;
 pub struct PhaseDigest {
     /// The phase, or `None` for the beginning of the tick.
     pub phase: Option<Phase>,
-    /// Digest of the state and of what later phases read: the manifolds, and the velocities and displacements in the
-    /// solver.
+    /// Digest of the state and of the data that later phases read: the manifolds, and the velocities and displacements
+    /// in the solver.
     pub digest: StateHash,
 }
 
-/// What a world has recorded since [`World::log_phases`](crate::world::World::note_phases).
+/// Recorded digests of a world since [`World::log_phases`](crate::world::World::note_phases).
 #[derive(Clone, Debug, Default)]
 pub(crate) struct PhaseLog {
     pub(crate) digests: Vec<PhaseDigest>,

@@ -17,8 +17,8 @@ use crate::world::state::{Island, Reported, State};
 
 /// A copy of a world's state, for [`World::restore`](crate::world::World::restore).
 ///
-/// It shares what has not changed with the world and with other snapshots, and takes about 50 bytes for each body and
-/// 32 for each contact of its own: see [`Snapshot::rollback_bytes`]. It stores its [`Snapshot::state_hash`].
+/// It shares unchanged data with the world and with other snapshots. Its own memory is about 50 bytes for each body and
+/// 32 bytes for each contact: see [`Snapshot::rollback_bytes`]. It stores its [`Snapshot::state_hash`].
 #[derive(Clone, Debug)]
 pub struct Snapshot {
     pub(super) rest: Rest,
@@ -30,8 +30,8 @@ pub struct Snapshot {
     pub(super) packed: Packed,
     /// Digest of all fields above.
     pub(super) digest: WorldDigest,
-    /// What may have changed the pairs since the last pair update. Not part of the state, but with it the next pair
-    /// update of a restored world need not check every pair.
+    /// Record of changes since the last pair update that may affect pairs. It is not part of the state. With it, the
+    /// next pair update of a restored world need not check every pair.
     pub(super) changes: Changes,
 }
 
@@ -46,7 +46,7 @@ pub(super) struct Rest {
     pub(super) rng: Rng,
 }
 
-/// What every tick changes, each kind of it as bytes or as the digest of these bytes.
+/// The data that every tick changes. Each kind of data is stored as packed bytes, or as the digest of these bytes.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Packed<T = Vec<u8>> {
     pub(super) bodies: PackedBodies<T>,
@@ -80,7 +80,8 @@ impl Snapshot {
         self.digest
     }
 
-    /// Returns the size of the snapshot in memory in bytes, without what it shares with the world and other snapshots.
+    /// Returns the size of the snapshot in memory in bytes, without data that it shares with the world and other
+    /// snapshots.
     #[must_use]
     pub fn rollback_bytes(&self) -> usize {
         let Snapshot {

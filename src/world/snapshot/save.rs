@@ -19,9 +19,9 @@ impl World {
         snapshot
     }
 
-    /// Replaces a snapshot of this or another world by a copy of the state. Costs a few per cent of a tick: what every
-    /// tick changes is copied, everything else is shared and copied only where it has changed since it was last saved
-    /// or hashed. The state hash is computed on the way.
+    /// Replaces a snapshot of this or another world by a copy of the state, and computes its state hash. Costs a few
+    /// per cent of a tick. Data that every tick changes is copied. All other data is shared, and copied only where it
+    /// has changed since it was last saved or hashed.
     ///
     /// ```
     /// # use lockstep2d::world::{Snapshot, World};

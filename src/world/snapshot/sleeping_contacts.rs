@@ -1,4 +1,4 @@
-//! Resting contacts: packed once and shared by all snapshots until the list changes.
+//! Sleeping contacts: packed once and shared by all snapshots until the list changes.
 
 use alloc::boxed::Box;
 use alloc::sync::Arc;
@@ -48,7 +48,7 @@ impl SleepingContacts {
         packed.clone()
     }
 
-    /// Restores the contacts of a snapshot, unless they are the same already.
+    /// Restores the contacts of a snapshot, unless they are already the same.
     pub(super) fn restore(&mut self, packed: &Arc<PackedContacts>) {
         if !self.packed.get().is_some_and(|known| Arc::ptr_eq(known, packed)) {
             unpack_contacts(&mut self.contacts, &packed.heads, &packed.impulses);

@@ -124,7 +124,7 @@ struct VacantSlots {
 /// The vacant slots of an arena.
 #[derive(Serialize)]
 struct Vacant {
-    /// Handles that the next values get, the last first.
+    /// Handles that the next added values get, in reverse order.
     free: Vec<String>,
     /// Number of slots that have no generations left.
     used_up: u32,

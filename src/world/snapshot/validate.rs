@@ -18,7 +18,7 @@ use crate::world::state::State;
 /// A broken invariant.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Violation {
-    /// Which invariant is broken, and where.
+    /// Description of the broken invariant and of the object that breaks it.
     pub what: String,
 }
 

@@ -1,4 +1,4 @@
-//! Contact, sensor and hit events: what the contacts of a tick lead to at its end.
+//! Contact, sensor and hit events, which are reported at the end of a tick.
 
 use crate::collision::{Contact, Manifold};
 use crate::math::{Fx, widen};

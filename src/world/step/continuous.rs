@@ -1,5 +1,5 @@
-//! Continuous collision: fast bodies are swept from their old pose to the one that the solver has computed, and stop
-//! where they first come too deep into a shape that they might otherwise pass through.
+//! Continuous collision: fast bodies are swept from their old pose to the one that the solver has computed. They stop
+//! where they first overlap too deeply with a shape that they might otherwise pass through.
 //!
 //! Speculative contacts already stop most fast bodies. The sweep catches what they cannot predict, such as rotating
 //! rods and speed gained within the tick. A body that is stopped keeps its velocity and goes on in the next tick, when
@@ -16,7 +16,7 @@ use crate::world::state::State;
 /// A body that moves less than this in a tick, in metres, is not swept, however thin it is.
 const SWEPT_MIN: Fx = fx!(0.0005);
 
-/// Returns the sweep of a body if it moves so far that it may pass through something: if some point of it moves further
+/// Returns the sweep of a body if it moves so far that it may pass through a shape: if any of its points moves further
 /// than half of the inner radius of its thinnest shape. `turn` is its rotation in units of 2^-32 turns.
 pub(super) fn swept_body(
     state: &State,
@@ -57,7 +57,7 @@ struct Impact {
     obstacle: u32,
 }
 
-/// The pose of a body after an impact: where the impact happens, and from there along with a kinematic obstacle, which
+/// The pose of a body after an impact. It is the pose at the impact, moved along with a kinematic obstacle, which
 /// continues its own movement. A dynamic obstacle has already been moved by the impact.
 fn pose_after(state: &State, scratch: &Scratch, swept: &SweptBody, impact: Impact) -> Pose {
     let Sweep { start, end, turn } = swept.sweep;
@@ -76,7 +76,7 @@ fn first_impact(state: &State, scratch: &Scratch, swept: &SweptBody) -> Option<I
     let shapes = &scratch.shapes;
     let body = state.bodies.at(swept.slot);
     let is_bullet = is_bullet(body);
-    // Box around everything that the body's shapes cover at its start, at any rotation.
+    // Box around the body's shapes at the start of the sweep, at any rotation.
     let disc = Aabb::new(body.centre, body.centre).expanded(shapes.poses().extents(swept.slot).radius);
     let mut first: Option<Impact> = None;
     for id in body.shapes() {
@@ -85,7 +85,7 @@ fn first_impact(state: &State, scratch: &Scratch, swept: &SweptBody) -> Option<I
             continue;
         }
         let posed = shapes.poses().at(id.slot());
-        // Computed for the first obstacle only: most fast bodies are far from any.
+        // Computed only when a first obstacle is found, because most fast bodies are far from all obstacles.
         let mut core_and_target = None;
         let start = if swept.sweep.turn == 0 { posed.bounds } else { disc };
         let area = start.swept(swept.sweep.end - swept.sweep.start);
@@ -130,7 +130,7 @@ fn obstacle_of(state: &State, scratch: &Scratch, shape: u32) -> (SupportShape, S
     let slot = state.shapes.at(shape).body().slot();
     let Ok(index) = scratch.awake.bodies().binary_search(&slot) else { return stands };
     let start = scratch.sweeps.starts[index];
-    // The shorter way round. An obstacle that turns more than half a turn in a tick is not handled.
+    // The rotation by the shorter way. Obstacles that rotate by more than half a turn in a tick are not handled.
     let turn = (body.angle - start.angle).to_turns().to_bits();
     let core = core.rotated(Rot::from_angle(start.angle - body.angle));
     (core, Sweep { start: start.centre, end: body.centre, turn })

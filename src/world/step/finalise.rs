@@ -1,4 +1,4 @@
-//! Takes the solver's velocities and poses over into the state.
+//! Copies the solver's velocities and poses to the state.
 
 use super::continuous;
 use crate::body::{BodyKind, Pose, WORLD_EXTENT_MAX};
@@ -32,14 +32,14 @@ pub(super) fn finalise_poses(state: &mut State, scratch: &mut Scratch) {
     }
 }
 
-/// Where the solver has moved a body.
+/// The end of a body's motion in the tick, as computed by the solver.
 struct End {
     pose: Pose,
-    /// Rotation in units of 2^-32 turns, which the angle of the pose has lost whole turns of.
+    /// Rotation in units of 2^-32 turns, with whole turns, which the angle of the pose does not contain.
     turn: i64,
 }
 
-/// Takes over the velocity of a body, clears its forces, and returns where it has to be moved.
+/// Copies the velocity of a body from the solver, clears its forces, and returns the pose to which it has to be moved.
 fn finalise_body(state: &mut State, scratch: &mut Scratch, slot: u32) -> End {
     let SolverBody { velocity, spin, shift, turn, .. } = *scratch.solver.body(slot);
     let body = state.bodies.at_mut(slot);

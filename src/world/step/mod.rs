@@ -44,8 +44,8 @@ impl World {
         self.advance(|phase, _| begin(phase));
     }
 
-    /// The algorithm of a tick. `begin` is called at the beginning of each phase with a view of what the phases so far
-    /// have computed.
+    /// The algorithm of a tick. `begin` is called at the beginning of each phase with a view of the results of all
+    /// earlier phases.
     fn advance(&mut self, mut begin: impl FnMut(Phase, PhaseView<'_>)) {
         let World { state, scratch, phases: _ } = self;
         let state = &mut **state;
@@ -57,7 +57,7 @@ impl World {
         refit::refit_boxes(state, scratch);
         pair_update::update_pairs(state, scratch);
         if wake::wake_touched(state, scratch) {
-            // The contacts of the bodies that have woken.
+            // Adds the contacts of the bodies that have woken.
             pair_update::update_pairs(state, scratch);
         }
         scratch.awake.refresh(state);
@@ -93,7 +93,7 @@ impl World {
         begin(Phase::Report, PhaseView::of(state, scratch));
         report::report_moves(state, scratch);
         report::count(state, scratch);
-        // A snapshot from outside may start the count anywhere.
+        // The tick may have any value in a snapshot from outside, so that the count may wrap around.
         state.tick = state.tick.wrapping_add(1);
     }
 }

@@ -44,7 +44,7 @@ pub(super) fn find_manifolds(state: &mut State, scratch: &mut Scratch) {
     state.contacts = contacts;
 }
 
-/// What all jobs read.
+/// Data that all jobs read.
 struct NarrowPhase<'a> {
     state: &'a State,
     poses: &'a Poses,
@@ -238,7 +238,7 @@ fn manifold_of(
     collide_near(posed_a, posed_b, pair.closing.margin, axis, counters)
 }
 
-/// Removes the points of two shapes that pass by each other, or through a one-way shape.
+/// Removes the points of two shapes that pass by each other, or of which one passes through a one-way shape.
 #[inline(always)]
 fn keep_reachable(
     state: &State,

@@ -1,9 +1,9 @@
-//! Pair update: brings the contacts of the state in line with the fat boxes.
+//! Pair update: adds and removes contacts so that they match the overlaps of fat boxes.
 //!
 //! A contact exists for every pair of shapes whose fat boxes overlap and which may collide. The active ones, with at
 //! least one active body, are in `State::contacts`; the others are in `State::sleeping_contacts` until something moves.
-//! The result is a function of the state: [`Changes`](crate::world::cache::Changes) only says where to look for
-//! differences.
+//! The result is a function of the state: [`Changes`](crate::world::cache::Changes) only tells where contacts may have
+//! to be added or removed.
 
 use crate::collision::{Contact, Moved, Pair};
 use crate::world::cache::{Changes, MergedContacts, NonCollidingPairs, Scratch, ShapeCache, merge_sorted};
@@ -11,7 +11,7 @@ use crate::world::state::State;
 
 /// Updates the contacts. Contacts whose pair has ended are added to the `ended` list of the pair cache.
 pub(super) fn update_pairs(state: &mut State, scratch: &mut Scratch) {
-    // Pairs that were left out at the limit enter as soon as there is room, whatever has made it.
+    // Pairs that were left out at the limit are added as soon as there is room, even if nothing else has changed.
     if !(scratch.pairs.changes.any() || state.pairs_left_out) {
         return;
     }
@@ -27,8 +27,8 @@ pub(super) fn update_pairs(state: &mut State, scratch: &mut Scratch) {
     pairs.changes.clear(shapes.broad_phase(), state.shapes.slot_count());
 }
 
-/// Moves the sleeping contacts that have an active body again to the fresh ones, and ends those whose boxes have parted
-/// or which may not collide any more. A sleeping contact can end if a kinematic body with a sensor was moved by hand.
+/// Moves the sleeping contacts that have an active body again to the fresh contacts. Ends sleeping contacts whose boxes
+/// no longer overlap or which may not collide any more, as after a kinematic body with a sensor was moved by hand.
 fn activate_resting(state: &mut State, scratch: &mut Scratch) {
     let pairs = &mut scratch.pairs;
     pairs.buffers.fresh.clear();
@@ -81,7 +81,7 @@ fn find_new(state: &State, scratch: &mut Scratch) -> bool {
 /// What the pair update does with an active contact.
 enum PairChange {
     Stays,
-    /// Its fat boxes have parted, or its shapes may not collide any more.
+    /// Its fat boxes no longer overlap, or its shapes may not collide any more.
     Ends,
     /// Neither of its bodies is active any more.
     Rests,
@@ -114,8 +114,8 @@ impl PairChange {
     }
 }
 
-/// Merges the fresh contacts into the active ones, and removes those that end or rest. Contacts between two such places
-/// are copied as one block together with their cached axes.
+/// Merges the fresh contacts into the active contacts, and removes contacts that end or fall asleep. The contacts
+/// between two changes are copied as one block together with their cached axes.
 fn merge_contacts(state: &mut State, scratch: &mut Scratch) {
     let Scratch { shapes, pairs, contacts: cache, .. } = scratch;
     let axes = cache.axes(state.contacts.len());

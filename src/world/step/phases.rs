@@ -39,8 +39,8 @@ impl World {
         self.phases.as_ref().map_or(&[], |log| &log.digests)
     }
 
-    /// Returns the state at the start of the last tick since [`World::log_phases`]: that at the end of the tick
-    /// before, with all edits since. `None` before the first tick, and if nothing is recorded.
+    /// Returns the state at the start of the last tick since [`World::log_phases`], with all edits before that tick.
+    /// `None` before the first tick, and if nothing is recorded.
     #[must_use]
     pub fn step_start(&self) -> Option<&Snapshot> {
         self.phases.as_ref()?.start.as_ref()
@@ -60,7 +60,7 @@ impl World {
     }
 }
 
-/// What an observer sees between two phases.
+/// View of a world for an observer between two phases.
 pub(super) struct PhaseView<'a> {
     pub(super) state: &'a State,
     pub(super) solver: &'a Solver,
@@ -74,7 +74,7 @@ impl<'a> PhaseView<'a> {
         PhaseView { state, solver, awake, found: contacts.output() }
     }
 
-    /// Digest of the state and of the intermediate results of a phase, without what is left from an earlier tick.
+    /// Digest of the state and of the intermediate results of a phase, without results of an earlier tick.
     fn digest_after(&self, phase: Option<Phase>) -> StateHash {
         let intermediate = match phase {
             Some(Phase::NarrowPhase) => self.manifolds(),

@@ -9,8 +9,8 @@ use crate::world::cache::{Extents, PredictedMotion, Scratch};
 use crate::world::derived::fattened;
 use crate::world::state::State;
 
-/// Largest size of a fat box beyond the swept AABB on each side, in margins. The box of a shape that was fast would
-/// otherwise find pairs for ever.
+/// Largest distance, in margins, between a fat box and the swept AABB on each side. Without this limit, a shape that
+/// was fast would keep a large fat box with many pairs for ever.
 const MARGINS_MAX: i64 = 4;
 
 /// Predicts the motion of all awake bodies and their shapes, and gives every shape that may leave its fat box within
@@ -41,7 +41,8 @@ pub(super) fn refit_boxes(state: &mut State, scratch: &mut Scratch) {
                 cache.queue_refit(id.slot(), fat);
                 pairs.changes.box_changed(id.slot());
                 if !body.is_active() {
-                    // The fat box of a kinematic body that has stopped may leave the shapes that rest on it.
+                    // The new fat box of a kinematic body that has stopped may no longer overlap shapes that rest on
+                    // it.
                     pairs.changes.resting_changed();
                 }
             }

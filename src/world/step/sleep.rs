@@ -1,4 +1,4 @@
-//! Falling asleep: counts for how long bodies have been at rest, and puts islands of sleepy bodies to sleep.
+//! Falling asleep: counts the ticks for which bodies have been at rest, and puts islands of sleepy bodies to sleep.
 
 use crate::body::{Body, BodyKind, Handle};
 use crate::math::{Shift, Speed, Vec2, narrow};

@@ -81,8 +81,8 @@ impl SpeculativePair<'_> {
         self.margins.touching.min(self.a.slack).min(self.b.slack)
     }
 
-    /// Removes the points that the bodies do not reach within the tick at their current velocities. Without this,
-    /// shapes that pass by each other at speed would catch on speculative contacts.
+    /// Removes the points that the bodies do not reach within the tick at their current velocities. Otherwise shapes
+    /// that pass by each other at high speed would collide with speculative contacts.
     #[inline(always)]
     pub(super) fn keep_reachable<'p>(
         &self,
@@ -117,7 +117,7 @@ impl SpeculativePair<'_> {
             }
             let closing = closing_at(point);
             let is_reached = separation <= speculative.max(closing + speculative);
-            // A quarter more, because a gap that just closes acts as well.
+            // The closing distance is increased by a quarter, because a gap that only just closes acts as well.
             if is_reached && closing + closing / 4 > separation {
                 fastest = fastest.max(closing);
             }

@@ -24,7 +24,7 @@ pub struct ContactView<'a> {
     contact: &'a Contact,
 }
 
-/// Leaves out the world.
+/// Formats all fields except the world.
 impl fmt::Debug for ContactView<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("ContactView")
@@ -47,9 +47,9 @@ pub struct ContactForce {
 }
 
 impl World {
-    /// Returns the contacts of the last tick that had points, sorted by pair, as the narrow phase found them at its
-    /// start. Manifolds are not part of the state: after a restore, or after the removal of a shape with contacts,
-    /// there are none until the next tick.
+    /// Returns the contacts of the last tick that had points, sorted by pair, as the narrow phase found them at the
+    /// start of the tick. Manifolds are not part of the state: after a restore, or after the removal of a shape with
+    /// contacts, the result is empty until the next tick.
     #[doc(alias = "manifold")]
     pub fn contacts(&self) -> impl Iterator<Item = ContactView<'_>> {
         let found = self.scratch.contacts.output();

@@ -1,12 +1,11 @@
 //! [`Hand`]: turns user actions into commands.
 //!
 //! A spring joint connects a dragged body to an anchor: a kinematic body without shapes that follows the pointer,
-//! like Box2D's mouse joint. All steps are commands, so that the input log contains them. A command does not tell the
-//! handle of the body that it creates; so the anchor is found by its user data one tick later, and the joint is added
-//! then.
+//! like Box2D's mouse joint. All steps are commands, so that the input log contains them. A command does not
+//! return the handle of the body that it creates. The anchor is therefore found by its user data one tick later, and
+//! the joint is added then.
 //!
-//! After a seek to another tick, the hand no longer knows its anchors. Anchors left in the world are then removed in
-//! the next live tick.
+//! A seek to another tick clears the list of anchors. Anchors left in the world are then removed in the next live tick.
 
 use lockstep2d::body::{Body, BodyDef, BodyId, BodyKind};
 use lockstep2d::fx;
@@ -18,7 +17,7 @@ use super::act::{Act, Aim, Held};
 use super::pick::pick;
 use super::spawn::spawn;
 
-/// Upper half of the user data of anchors and their joints; the lower half is a serial number.
+/// Upper half of the user data of anchors and their joints. The lower half is the number of the grab.
 const MARK: u64 = 0x6861_6e64 << 32;
 /// Frequency of the drag spring, in Hz.
 const HERTZ: Fx = fx!(5);
@@ -34,7 +33,7 @@ const GRIP: Fx = fx!(2.5);
 #[derive(Debug)]
 pub(super) struct Hand {
     hold: Hold,
-    /// Number of grabs so far, used as the serial number of anchors.
+    /// Number of grabs so far, used to number anchors.
     grabs: u32,
     /// Whether the world may contain anchors that are no longer held.
     litter: bool,

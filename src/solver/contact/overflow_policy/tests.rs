@@ -1,4 +1,4 @@
-//! Batches that are solved without checks end with the same bits as with all checks, on every backend.
+//! Solving a batch without checks gives the same bits as solving it with all checks, on every backend.
 
 use super::super::super::batches::{BatchParts, Operation};
 use super::super::super::body::SolverBody;
@@ -17,7 +17,7 @@ use crate::solver::settings::Tuning;
 use core::cell::Cell;
 use std::vec::Vec;
 
-/// A contact that is within the bounds of unchecked contacts, or just beyond.
+/// A random contact that is within the bounds of unchecked contacts, or just beyond them.
 fn input(rng: &mut Rng, count: u8) -> Input {
     let n = Rot::from_angle(rng.angle()).apply(Vec2::X);
     let mass = |rng: &mut Rng| if rng.below(5) == 0 { fx!(0) } else { rng.range(fx!(0.1), fx!(20)) };
@@ -50,7 +50,7 @@ fn input(rng: &mut Rng, count: u8) -> Input {
     }
 }
 
-/// A number in the format of a speed, mostly small and now and then large.
+/// A random number in the format of a speed: usually small, sometimes large.
 fn number(rng: &mut Rng, large: Fx, small: Fx) -> i32 {
     let limit = if rng.below(200) == 0 { large } else { small };
     let speed: Speed = narrow(rng.range(-limit, limit));
@@ -162,5 +162,5 @@ fn calm_contacts_end_as_careful_ones() {
             );
         }
     }
-    assert!(unchecked > 2000 && wild > 2000, "{unchecked} were within the bounds and {wild} were not");
+    assert!(unchecked > 2000 && wild > 2000, "{unchecked} trials were within the bounds and {wild} were not");
 }

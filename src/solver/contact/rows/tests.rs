@@ -1,4 +1,4 @@
-//! The rows of every backend are those of the equations, computed here one number at a time.
+//! Every backend computes the same rows as the equations, which are evaluated here one number at a time.
 
 use super::super::super::row::MassFractions;
 use super::*;
@@ -44,7 +44,7 @@ impl<const N: usize> Kernel<N> for FillRows<'_, N> {
     }
 }
 
-/// A number of a format; its ends are more frequent than by chance.
+/// A random number of a format. The ends of the range are frequent.
 fn any(rng: &mut Rng, limit: i32) -> i32 {
     match rng.below(8) {
         0 => limit,
@@ -93,7 +93,7 @@ fn limited(x: i128, limit: i32) -> i32 {
     i32::try_from(x.clamp(-i128::from(limit), limit.into())).expect("clamped")
 }
 
-/// A row by the equations: lever ratios, gains of A and of B, denominator and its reciprocal.
+/// Reference row from the equations: lever ratios, gains of A and of B, denominator and its reciprocal.
 struct Naive {
     e: [i32; 2],
     gains: [[i32; 3]; 2],
@@ -130,7 +130,7 @@ fn naive_row(input: &Input, anchor: [i32; 2], n: [i32; 2]) -> Naive {
     Naive { e, gains, denominator, inverse }
 }
 
-/// Checks that every number of a lane is the one that the equations define.
+/// Checks that every number of a lane equals the one from the equations.
 fn check<const N: usize>(input: &Input, lane: usize, made: &Made<N>) {
     let Made { batch, inverses } = made;
     let Quad([x, y, fraction_a, fraction_b]) = input.shares;

@@ -16,7 +16,7 @@ use super::angle_input::AngleInput;
 use crate::math::{Fx, Speed, Unit, round_shift_wide, saturate, saturate_wide};
 use crate::simd::{Ints, Lanes};
 
-/// The rows of a batch. Lanes without a row have no gains, or bounds of 0.
+/// The rows of a batch. Lanes without a row have gains of 0 or bounds of 0.
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
 pub(in crate::solver) struct AngleRows<const N: usize> {
@@ -25,11 +25,11 @@ pub(in crate::solver) struct AngleRows<const N: usize> {
     has_spring: bool,
     has_drive: bool,
     has_limit: bool,
-    /// Whether a row holds the angle in any lane: only then spring rows are solved in the relax pass.
+    /// Whether a row holds the angle in any lane. Only then are spring rows solved in the relax pass.
     holds: bool,
     spring: SpringRow<N>,
     drive: DriveRow<N>,
-    /// The lower and the upper limit. The row of the upper one is reversed.
+    /// The lower and the upper limit. The row of the upper limit is reversed.
     limits: [LimitRow<N>; 2],
     limit_max: Ints<N>,
     /// Targets of the springs, in units of 2^-32 turn.
@@ -46,7 +46,7 @@ struct SpringRow<const N: usize> {
     mass_scale: Ints<N>,
     impulse_scale: Ints<N>,
     push: Ints<N>,
-    /// -1 where the row holds the angle and is no spring.
+    /// -1 in lanes where the row holds the angle and is not a spring.
     holds: Ints<N>,
 }
 
@@ -61,7 +61,7 @@ struct DriveRow<const N: usize> {
 struct LimitRow<const N: usize> {
     lambda: Ints<N>,
     push: Ints<N>,
-    /// -1 where the limit is not reached.
+    /// -1 in lanes where the limit is not reached.
     open: Ints<N>,
     bounds: [i64; N],
 }
@@ -132,7 +132,7 @@ impl<const N: usize> AngleRows<N> {
         }
     }
 
-    /// Puts impulses into a lane, each clamped to what its row allows: 0 where there is no row.
+    /// Puts impulses into a lane. Each impulse is clamped to the bounds of its row, which are 0 if there is no row.
     pub(super) fn reload(&mut self, lane: usize, impulses: &JointImpulses) {
         let AngleRows { spring, drive, limits, limit_max, .. } = self;
         let within = |slot: u8, max: i32| impulses.0[usize::from(slot)].to_bits().clamp(-max, max);
@@ -143,14 +143,14 @@ impl<const N: usize> AngleRows<N> {
         }
     }
 
-    /// The impulses in a lane: those of spring, motor, lower and upper limit.
+    /// The impulses in a lane: spring, motor, lower limit, upper limit.
     pub(super) fn impulses(&self, lane: usize) -> [Speed; 4] {
         let [lower, upper] = &self.limits;
         [&self.spring.lambda, &self.drive.lambda, &lower.lambda, &upper.lambda]
             .map(|lambda| Speed::from_bits(lambda.0[lane]))
     }
 
-    /// Computes positions at the present pose. `turns` are the angles of the joints at the start of the tick.
+    /// Computes positions at the current pose. `turns` are the angles of the joints at the start of the tick.
     pub(super) fn refresh(
         &mut self,
         turns: &[i64; N],
@@ -254,7 +254,7 @@ impl<const N: usize> AngleRows<N> {
         let LimitRow { lambda, push, open, .. } = &mut self.limits[side];
         let max = L::load(&self.limit_max);
         let vn = velocity::<L, N>(&self.e, max, pair, faults);
-        // A velocity that has saturated may be the smallest number, whose negative does not fit.
+        // A saturated velocity may be the smallest number, whose negative does not fit.
         let vn = facing::<L, N>(side, L::max(vn, L::splat(-i32::MAX)));
         let (old, push, open) = (L::load(lambda), L::load(push), L::negative(L::load(open)));
         let w = match pass {
@@ -276,7 +276,7 @@ impl<const N: usize> AngleRows<N> {
     }
 }
 
-/// Reverses a number for the upper limit, whose row is reversed.
+/// Negates a number on the side of the upper limit, because the row of that limit is reversed.
 #[inline(always)]
 fn facing<L: Lanes<N>, const N: usize>(side: usize, value: L::Int) -> L::Int {
     if side == 0 { value } else { L::sub(L::splat(0), value) }
@@ -292,8 +292,8 @@ fn softened<L: Lanes<N>, const N: usize>(
     L::narrow::<UNIT>(L::add_wide(L::mul(mass_scale, v), L::mul(impulse_scale, lambda)))
 }
 
-/// Relative velocity of B from A on the angle. It is a fault where the velocity does not fit in a lane with a row: one
-/// whose largest impulse is not 0.
+/// Angular velocity of B relative to A, along the row. A velocity that does not fit counts as a fault in lanes with a
+/// row, which have a largest impulse other than 0.
 #[inline(always)]
 fn velocity<L: Lanes<N>, const N: usize>(
     e: &[Ints<N>; 2],

@@ -1,7 +1,7 @@
 //! Compact copies of the rows on the angle of hinges, from which batches are filled.
 //!
-//! A position `x` on the angle becomes a velocity along the row: `2 pi s x` times a rate, in one product with a
-//! coefficient that is constant within a tick.
+//! The bias velocity for an angle error `x`, `2 pi s x` times a rate, takes one product with a coefficient that is
+//! constant within a tick.
 
 use alloc::vec::Vec;
 
@@ -15,14 +15,14 @@ use super::super::state::{JointImpulses, turns_of};
 use super::input::HingeBody;
 use crate::math::{Fx, Ratio, Reciprocal, Speed, TAU, Unit, fx_mul, narrow};
 
-/// Largest impulse of a row on the angle. The difference of two fits the format.
+/// Largest impulse of a row on the angle. The difference of two such impulses fits the format.
 pub(super) const ANGLE_MAX: Speed = Speed::lit("511");
 
 /// The rows on the angle of a hinge.
 #[derive(Clone, Copy, Debug)]
 pub(in super::super) struct AngleParts {
     pub(in super::super) spring: Option<Spring>,
-    /// Whether the angle is held at 0, instead of by a spring.
+    /// Whether the angle is held rigidly at 0 instead of by a spring.
     pub(in super::super) held: bool,
     pub(in super::super) drive: Option<Drive>,
     pub(in super::super) limit: Option<JointLimit>,
@@ -35,8 +35,9 @@ impl AngleParts {
     }
 }
 
-/// Results for earlier hinges. They take many divisions, and many joints are alike: all links of a chain, each knee of
-/// the ragdolls. A result depends on nothing but the key that it is stored with, so that it never expires.
+/// Cache of results for earlier hinges. A result takes many divisions, and many joints are equal, such as all links of
+/// a chain or the knees of all ragdolls. A result depends only on the key with which it is stored, so that it never
+/// becomes invalid.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Memo {
     /// Hertz, damping ratio and rate of the last spring, and its softness.
@@ -46,7 +47,7 @@ pub(super) struct Memo {
 }
 
 impl Memo {
-    /// Logarithm of the number of rows that are kept: the joints of a few machines.
+    /// Binary logarithm of the number of cached rows, which is enough for the joints of a few machines.
     const ANGULARS_BITS: u32 = 6;
 
     fn softness(&mut self, hertz: Fx, damping_ratio: Fx, rate: u32) -> Softness {
@@ -67,12 +68,12 @@ impl Memo {
     }
 }
 
-/// All that a row on the angle between two bodies depends on.
+/// Cache key: everything that a row on the angle between two bodies depends on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct AngularKey {
     /// `1 / k` and mass of each body.
     bodies: [(Reciprocal, Fx); 2],
-    /// Largest torque of the motor between them.
+    /// Largest torque of the motor between the bodies.
     torque: Fx,
     /// Sub-steps per second.
     rate: u32,
@@ -95,7 +96,7 @@ struct Angular {
     e: [Ratio; 2],
     f: [Unit; 2],
     s: Fx,
-    /// Largest impulse: 0 if neither body turns.
+    /// Largest impulse. 0 if neither body turns.
     max: Speed,
     /// Largest impulse of the motor.
     drive_max: Speed,
@@ -128,11 +129,11 @@ pub(in super::super) struct AngleInput {
 pub(super) struct SpringInput {
     pub(super) mass_scale: Unit,
     pub(super) impulse_scale: Unit,
-    /// In units of 2^-32 turn.
+    /// Target angle in units of 2^-32 turn.
     pub(super) target: i64,
     /// Speed per turn away from the target.
     pub(super) stiffness: Fx,
-    /// 0 if neither body turns.
+    /// Largest impulse. 0 if neither body turns.
     pub(super) max: Speed,
     pub(super) held: bool,
     pub(super) lambda: Speed,
@@ -154,7 +155,7 @@ pub(super) struct LimitInput {
     /// Speed per turn beyond a limit, and per turn before it.
     pub(super) closed: Fx,
     pub(super) open: Fx,
-    /// 0 if neither body turns.
+    /// Largest impulse. 0 if neither body turns.
     pub(super) max: Speed,
     pub(super) lambda: [Speed; 2],
 }

@@ -3,8 +3,8 @@
 use crate::math::Angle;
 use crate::simd::Ints;
 
-/// `N` hinges of which no two change the same body, for one tick. Lanes without a hinge have no gains, and their bodies
-/// are the ground.
+/// `N` hinges for one tick, of which no two change the same body. Lanes without a hinge have gains of 0, and the ground
+/// as both bodies.
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
 pub(in crate::solver) struct Batch<const N: usize> {
@@ -21,7 +21,7 @@ pub(in crate::solver) struct Batch<const N: usize> {
     pub(super) bias: [Ints<N>; 2],
     /// `L`, in world axes.
     pub(super) lambda: [Ints<N>; 2],
-    /// Whether any hinge in the batch has rows on the angle: then the batch has [`super::angle::AngleRows`] as well.
+    /// Whether any hinge in the batch has rows on the angle. The batch then has [`super::angle::AngleRows`].
     pub(super) has_angle: bool,
 }
 
@@ -34,9 +34,9 @@ pub(in crate::solver) struct Records<const N: usize> {
     pub(super) len: usize,
     /// The slots of the joints.
     pub(super) slots: [u32; N],
-    /// The angles of the joints at the start of the tick, and after the tick those at its end, in units of 2^-32 turn.
+    /// The angles of the joints in units of 2^-32 turn: at the start of the tick, or after the tick at its end.
     pub(super) turns: [i64; N],
-    /// The angles of the joints while no body is turned.
+    /// The angles of the joints while no body is rotated.
     pub(super) rest: [Angle; N],
 }
 
@@ -49,7 +49,7 @@ pub(super) struct Shape<const N: usize> {
     pub(super) ratios: [[Ints<N>; 2]; 2],
     /// Mass fractions.
     pub(super) fractions: [Ints<N>; 2],
-    /// Centre of mass of B from that of A at the start of the tick, with 52 fraction bits.
+    /// Vector from the centre of mass of A to that of B at the start of the tick, with 52 fraction bits.
     pub(super) between: [[i64; N]; 2],
 }
 

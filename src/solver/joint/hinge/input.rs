@@ -1,4 +1,4 @@
-//! Compact copies of hinges, from which batches are filled. The state is read once in its own order, and only the
+//! Compact copies of hinges, from which batches are filled. Joints are read once in the order of the state. Only the
 //! copies are read in the order of colours.
 
 use super::super::super::body_list::GROUND;
@@ -14,9 +14,9 @@ use crate::math::{Angle, Fx, Length, Ratio, Reciprocal, Shift, Speed, Unit, Vec2
 pub(in super::super) struct HingeBody {
     pub(in super::super) turning: Turning,
     pub(in super::super) inverse_gyration: Reciprocal,
-    /// 0 if no impulse moves it.
+    /// Mass in kg. 0 if no impulse moves the body.
     pub(in super::super) mass: Fx,
-    /// Number of its joints.
+    /// Number of joints of the body.
     pub(in super::super) joints: u32,
     centre: Vec2<Fx>,
     local_centre: Vec2<Fx>,
@@ -26,11 +26,11 @@ pub(in super::super) struct HingeBody {
 #[derive(Clone, Copy, Debug)]
 pub(in super::super) struct Turning {
     pub(in super::super) index: u32,
-    /// At the start of the tick.
+    /// Angle at the start of the tick.
     pub(in super::super) angle: Angle,
-    /// Units of 2^-32 turn per unit of `k dtheta`.
+    /// Rotation in units of 2^-32 turn per unit of `k dtheta`.
     turns: Fx,
-    /// Radians in a sub-step per m/s of the spin, times 2^9, which is the ratio of the formats.
+    /// Rotation in radians in a sub-step per m/s of the spin, times 2^9, which is the ratio of the formats.
     ahead: Fx,
 }
 
@@ -54,7 +54,7 @@ impl HingeBody {
         }
     }
 
-    /// The index of the body; the ground if no impulse changes the body.
+    /// The index of the body, or that of the ground if no impulse changes the body.
     fn changed(&self) -> u32 {
         if self.mass > 0 { self.turning.index } else { GROUND }
     }
@@ -80,7 +80,7 @@ fn product(number: i32, factor: Fx) -> i64 {
     number * high + round_shift(number * low, 32)
 }
 
-/// A joint between two bodies as it is coloured.
+/// The node of a joint between two bodies for graph colouring.
 pub(in super::super) fn node(key: u32, a: &HingeBody, b: &HingeBody) -> Node {
     Node::new(key.into(), [a.changed(), b.changed()], Size::Large)
 }
@@ -98,11 +98,11 @@ pub(in super::super) struct Input {
     pub(super) arms: [Vec2<Length>; 2],
     pub(super) ratios: [Vec2<Ratio>; 2],
     pub(super) fractions: MassFractions,
-    /// Centre of mass of B from that of A.
+    /// Vector from the centre of mass of A to that of B.
     pub(super) between: Vec2<Fx>,
     /// The angle of the joint, in units of 2^-32 turn.
     pub(super) turns: i64,
-    /// The angle of the joint while neither body is turned.
+    /// The angle of the joint while neither body is rotated.
     pub(super) rest: Angle,
     pub(super) lambda: [i32; 2],
 }
@@ -141,14 +141,14 @@ impl Input {
     }
 }
 
-/// An anchor from the centre of mass. Both are within 128 m of the body's origin, so that the clamp never acts, but the
-/// sums of the gap rely on its bound.
+/// Clamped vector from the centre of mass to an anchor. Both are within 128 m of the body's origin, so that the clamp
+/// never acts, but the sums that compute the gap rely on its bound.
 fn arm(arm: Vec2<Fx>) -> Vec2<Length> {
     const ARM_MAX: Fx = crate::fx!(300);
     Vec2::new(arm.x.clamp(-ARM_MAX, ARM_MAX), arm.y.clamp(-ARM_MAX, ARM_MAX)).narrow()
 }
 
-/// Largest length of a lever ratio: averaged over a predicted rotation it still fits the format.
+/// Largest length of a lever ratio. Its average over a predicted rotation then still fits the format.
 const LENGTH_MAX: Ratio = Ratio::lit("124");
 
 /// `(-r_y, r_x) / k`, no longer than [`LENGTH_MAX`].

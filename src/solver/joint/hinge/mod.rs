@@ -1,9 +1,9 @@
 //! Hinges: joints that pin two points together, with or without rows on the angle, eight at a time.
 //!
 //! Revolute joints and rigid welds are hinges. Each operation on a batch has a file of its own: `refresh` computes
-//! lever ratios, gains and gaps at the present pose, `warm_start` and `solve` change velocities by the point block of
-//! `point_block.rs`, and `angle` does all of this for the rows on the angle. `prepare` fills batches with the hinges of
-//! one colour each and returns their impulses to the state.
+//! lever ratios, gains and gaps at the current pose, `warm_start` and `solve` change velocities by the point block of
+//! `point_block.rs`, and `angle` does all of this for the rows on the angle. `prepare` fills each batch with hinges of
+//! one colour, and returns their impulses to the state.
 
 mod angle;
 mod angle_input;
@@ -52,8 +52,8 @@ impl BatchKind for Hinges {
 /// The rotations of the bodies of a tick, by their indices.
 #[derive(Clone, Copy)]
 pub(super) struct Poses<'a> {
-    /// Cosine and sine of the rotation, and the terms by which a lever ratio that is averaged over the predicted
-    /// rotation moves across itself and along itself.
+    /// Cosine and sine of the rotation, and two factors for averaging a lever ratio over the predicted rotation: its
+    /// relative change perpendicular to itself, and along itself.
     pub(super) quads: &'a [Quad],
     pub(super) body_rotations: &'a [BodyRotation],
 }
@@ -66,9 +66,10 @@ pub(super) struct HingeSet {
     angles: Vec<AngleInput>,
     memo: Memo,
     hinges: BatchList<Hinges>,
-    /// Hinges that hold a body which has no other joint to one that no impulse moves. Their points are stiffer.
+    /// Anchored hinges, whose points are stiffer: they connect a body that has no other joint to a body that no impulse
+    /// moves.
     anchored: BatchList<Hinges>,
-    /// Which parts of the batches no longer match the poses of the bodies.
+    /// The parts of the batches that do not match the current poses of the bodies.
     dirty: Dirty,
 }
 
@@ -77,14 +78,14 @@ pub(super) struct HingeSet {
 pub(super) enum Dirty {
     #[default]
     Nothing,
-    /// No body has turned, so that lever ratios and gains are still right.
+    /// The gaps only: no body has rotated, so that lever ratios and gains are still valid.
     Gaps,
     Everything,
 }
 
 impl HingeSet {
-    /// Invalidates parts of the batches, because bodies have moved. The next operation refreshes them batch by batch,
-    /// so that a batch is fetched from memory once for both.
+    /// Invalidates parts of the batches, because bodies have moved. The next operation refreshes each batch before it
+    /// solves it, so that the batch is fetched from memory only once.
     pub(super) fn expire(&mut self, what: Dirty) {
         self.dirty = self.dirty.max(what);
     }
@@ -112,7 +113,7 @@ impl HingeSet {
         }
     }
 
-    /// The refresh that the next operation has to do, for ordinary and for anchored hinges.
+    /// Returns the refresh that the next operation has to perform, for ordinary and for anchored hinges.
     fn refreshes<'a>(&mut self, poses: Poses<'a>, context: &StepContext<'_>) -> [Refresh<'a>; 2] {
         let (dirty, tuning) = (mem::take(&mut self.dirty), context.tuning);
         [tuning.joint, tuning.anchored].map(|points| {

@@ -1,11 +1,11 @@
-//! The velocity changes by impulses of hinges.
+//! Velocity changes by impulses of hinges.
 
 use super::super::super::limits::Faults;
 use super::super::super::pair::{BodyPairW, HALF, UNIT, beyond, clamp};
 use super::batch::Batch;
 use crate::simd::{Ints, Lanes, VelocityW};
 
-/// Largest impulse, 362 m/s, of which two along different axes change no velocity by 512 m/s or more.
+/// Impulse limit, 362 m/s. Two impulses up to this limit along different axes change a velocity by less than 512 m/s.
 const PLAIN_MAX: i32 = 362 << 21;
 
 impl<L: Lanes<N>, const N: usize> BodyPairW<L, N> {
@@ -28,7 +28,7 @@ impl<L: Lanes<N>, const N: usize> BodyPairW<L, N> {
         self.keep_in_range(faults);
     }
 
-    /// Changes of up to 512 m/s on both axes may add up to 768 m/s.
+    /// Applies larger impulses. Changes of up to 512 m/s on both axes may add up to 768 m/s, so that the sums saturate.
     #[cold]
     fn apply_saturating(&mut self, a: VelocityW<L::Int>, b: VelocityW<L::Int>) {
         let VelocityW { x, y, turn } = self.a;
@@ -56,7 +56,7 @@ impl<L: Lanes<N>, const N: usize> BodyPairW<L, N> {
         self.keep_in_range(faults);
     }
 
-    /// Applies impulses of more than 512 m/s in steps: a motor may reverse, and what was held may come free.
+    /// Applies impulses of more than 512 m/s in steps. They occur when a motor reverses or a held body comes free.
     #[cold]
     fn turn_in_steps(&mut self, f: &[Ints<N>; 2], mut d: L::Int, faults: &mut Faults) {
         for _ in 0..3 {
@@ -67,7 +67,7 @@ impl<L: Lanes<N>, const N: usize> BodyPairW<L, N> {
     }
 }
 
-/// The velocity changes by impulses at a point.
+/// Velocity changes by impulses at a point.
 #[inline(always)]
 fn changes<L: Lanes<N>, const N: usize>(
     g: &[Ints<N>; 3],

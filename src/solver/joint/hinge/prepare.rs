@@ -42,7 +42,7 @@ impl HingeSet {
         count(inputs) - 1
     }
 
-    /// Adds batches of the hinges that fit no colour, given by their inputs.
+    /// Adds batches for the overflow: hinges that fit no colour, given by the indices of their inputs.
     pub(in super::super) fn push_overflow(&mut self, indices: impl Iterator<Item = u32> + Clone) {
         let HingeSet { inputs, angles, hinges, .. } = self;
         for has_angle in [false, true] {
@@ -52,8 +52,8 @@ impl HingeSet {
         }
     }
 
-    /// Adds batches of the hinges of a colour, given by their inputs. Hinges with rows on the angle have batches of
-    /// their own, and so have anchored hinges: `is_alone` tells whether a body, by its index, has only one joint.
+    /// Adds batches for the hinges of a colour, given by the indices of their inputs. Hinges with rows on the angle and
+    /// anchored hinges have separate batches. `is_alone` returns whether the body with an index has only one joint.
     pub(in super::super) fn push_colour(
         &mut self,
         indices: impl Iterator<Item = u32> + Clone,
@@ -79,14 +79,14 @@ impl HingeSet {
         })
     }
 
-    /// Takes the impulses and angles of joints that have been restored, instead of those that the last tick has stored.
+    /// Replaces the impulses and angles of the last tick by those of joints that have been restored.
     pub(in super::super) fn reload(&mut self, joints: &Arena<Joint, JointId>) {
         self.hinges.overflow.reload(joints);
         self.hinges.coloured.reload(joints);
         self.anchored.coloured.reload(joints);
     }
 
-    /// Continues with the hinges of the last tick, with the bodies at their present poses.
+    /// Reuses the hinges of the last tick, with the bodies at their current poses.
     pub(in super::super) fn resume(&mut self, poses: &[Pose]) {
         self.hinges.overflow.resume(poses);
         self.hinges.coloured.resume(poses);
@@ -110,8 +110,8 @@ fn count<T>(parts: &[T]) -> u32 {
 }
 
 impl<const N: usize> Batches<Hinges, N> {
-    /// Adds batches of hinges. No two of `N` successive hinges share a body that impulses change, and either all of
-    /// them have rows on the angle or none has.
+    /// Adds batches of hinges. The caller ensures that no two of `N` successive hinges share a body that impulses
+    /// change, and that either all hinges or none have rows on the angle.
     fn push(&mut self, inputs: &[Input], angle_inputs: &[AngleInput], indices: impl Iterator<Item = u32>) {
         let Batches { batches, records, extras, .. } = self;
         let mut lane = N;
@@ -218,8 +218,8 @@ impl<const N: usize> Shape<N> {
     }
 }
 
-/// A distance between centres with 52 fraction bits. Two arms reach 849 m, so that distances beyond 1024 m may be
-/// clamped: then no sum overflows.
+/// A distance between centres with 52 fraction bits, clamped to 1024 m so that no sum overflows. Two arms reach at most
+/// 849 m, so that larger distances need not be exact.
 fn widened(between: Fx) -> i64 {
     const FARTHEST: Fx = crate::fx!(1024);
     const EXTRA: u32 = Length::FRAC_NBITS + Unit::FRAC_NBITS - Fx::FRAC_NBITS;

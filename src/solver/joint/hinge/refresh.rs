@@ -1,14 +1,14 @@
-//! Refresh: lever ratios, gains and gaps of hinges at the present pose.
+//! Refresh: computes lever ratios, gains and gaps of hinges at the current pose.
 //!
-//! Lever ratios are turned in their body's frame, `e = R e0`, instead of computed anew from the arms: their length does
-//! not change. The products of `K` are exact in two parts of 32 bits before they are rounded,
+//! Lever ratios are rotated from their body's frame, `e = R e0`, instead of computed again from the arms, because their
+//! length does not change. The products of `K` are computed exactly, in two parts of 32 bits, and then rounded:
 //!
 //! ```text
 //! a e = hi 2^32 + lo,    a e e' = hi e' + round(lo e' / 2^32)       (46 fraction bits)
 //! ```
 //!
-//! because rounding `a e` to the format of `e` would cost 7 of its 24 bits. With 46 fraction bits the determinant may
-//! be the difference `K11 K22 - K12^2`: the parts that cancel are exact.
+//! Rounding `a e` to the format of `e` first would cost 7 of its 24 bits. With 46 fraction bits the determinant can be
+//! computed as the difference `K11 K22 - K12^2`, because the parts that cancel are exact.
 
 use core::cell::Cell;
 
@@ -28,7 +28,7 @@ pub(super) struct Stiffness {
     pub(super) limits: Softness,
 }
 
-/// Brings batches to the present pose, as far as they have expired.
+/// Updates the outdated parts of batches to the current pose.
 #[derive(Clone, Copy)]
 pub(super) struct Refresh<'a> {
     pub(super) dirty: Dirty,
@@ -59,7 +59,7 @@ impl Refresh<'_> {
     }
 }
 
-/// Computes gaps at the present pose.
+/// Computes gaps at the current pose.
 #[inline(always)]
 fn refresh_gaps<L: Lanes<N>, const N: usize>(
     batch: &mut Batch<N>,
@@ -78,7 +78,7 @@ fn refresh_gaps<L: Lanes<N>, const N: usize>(
     }
 }
 
-/// Computes lever ratios and gains at the present pose.
+/// Computes lever ratios and gains at the current pose.
 #[inline(always)]
 fn refresh_gains<L: Lanes<N>, const N: usize>(
     batch: &mut Batch<N>,
@@ -96,7 +96,7 @@ fn refresh_gains<L: Lanes<N>, const N: usize>(
     }
 }
 
-/// `R v` of the rotations of quads, with 30 more fraction bits.
+/// `R v` for the rotations `R` in quads, with 30 more fraction bits.
 #[inline(always)]
 fn rotated<L: Lanes<N>, const N: usize>(quads: &[L::Int; 4], v: &[Ints<N>; 2]) -> [L::Wide; 2] {
     let [c, s, ..] = *quads;
@@ -118,8 +118,8 @@ fn rotated_ratios<L: Lanes<N>, const N: usize>(
     rotated
 }
 
-/// The velocity that closes a gap, reversed. `gap` is the one at the start of the tick, with 52 fraction bits and
-/// exact, and `moved` the displacement since; their sum is rounded once.
+/// The velocity that closes a gap, reversed. `gap` is the exact gap at the start of the tick, with 52 fraction bits.
+/// `moved` is the displacement since then. Their sum is rounded once.
 #[inline(always)]
 fn closing<L: Lanes<N>, const N: usize>(gap: L::Wide, moved: L::Int, softness: &Softness) -> L::Int {
     const ARM: u32 = Length::FRAC_NBITS + Unit::FRAC_NBITS;
@@ -129,7 +129,7 @@ fn closing<L: Lanes<N>, const N: usize>(gap: L::Wide, moved: L::Int, softness: &
     L::narrow_saturating::<RATE>(L::mul(gap, L::splat(softness.bias_rate.to_bits()))).0
 }
 
-/// A component `e` of a lever ratio, and `a e` in two parts: without its lowest 32 bits, and these bits.
+/// A component `e` of a lever ratio, and `a e` in two parts: all bits above the lowest 32, and the lowest 32 bits.
 struct Parts<L: Lanes<N>, const N: usize> {
     e: L::Int,
     high: L::Int,
@@ -144,7 +144,7 @@ impl<L: Lanes<N>, const N: usize> Parts<L, N> {
     }
 }
 
-/// An entry of `K - I`: `aA eA eA' + aB eB eB'`, where `a` and `b` have the products with the fractions.
+/// An entry of `K - I`: `aA eA eA' + aB eB eB'`. `a` and `b` contain the products with the mass fractions.
 #[inline(always)]
 fn entry<L: Lanes<N>, const N: usize>(
     a: &Parts<L, N>,

@@ -48,7 +48,7 @@ impl Operation<Hinges> for Relax<'_> {
 fn solve<L: Lanes<N>, const N: usize>(pass: Pass, refresh: &Refresh<'_>, parts: BatchParts<'_, Hinges, N>) {
     let BatchParts { batch, record, extra: mut angle, bodies, faults } = parts;
     refresh.refresh::<L, N>(batch, record, angle.as_deref_mut(), bodies);
-    // Copies, so that the compiler sees that writing to the batch does not change them.
+    // These are copied, so that the compiler sees that writing to the batch does not change them.
     let (stiffness, quads) = (refresh.stiffness, refresh.poses.quads);
     let mut pair = BodyPairW::<L, N>::load(bodies, &batch.bodies);
     if let Some(rows) = angle {
@@ -110,8 +110,8 @@ fn accumulate<L: Lanes<N>, const N: usize>(
     L::sub(new, old)
 }
 
-/// The lever ratios averaged over the predicted rotation, `e + M (t/2 (-e_y, e_x) - t^2/6 e)`. The quads have `M t/2`
-/// and `M t^2/6` of each body.
+/// The lever ratios averaged over the predicted rotation, `e + M (t/2 (-e_y, e_x) - t^2/6 e)`. The quads contain
+/// `M t/2` and `M t^2/6` of each body.
 #[inline(always)]
 fn ratios_ahead<L: Lanes<N>, const N: usize>(
     e: &[Ints<N>; 2],
@@ -123,7 +123,7 @@ fn ratios_ahead<L: Lanes<N>, const N: usize>(
     [L::sub(x, L::narrow::<UNIT>(back_x)), L::sub(y, L::narrow::<UNIT>(back_y))]
 }
 
-/// Relative velocity of B from A along an axis. A lane in which it does not fit is a fault.
+/// Velocity of B relative to A along an axis. Each lane in which it does not fit counts as a fault.
 #[inline(always)]
 fn velocity<L: Lanes<N>, const N: usize>(
     linear: L::Int,

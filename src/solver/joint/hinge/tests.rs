@@ -1,5 +1,5 @@
-//! Batches of hinges give the same bits on every backend as one hinge at a time, and nearly those of the scalar point
-//! block.
+//! Batches of hinges give the same bits on every backend as one hinge at a time, and nearly the same results as the
+//! scalar point block.
 
 use std::vec;
 use std::vec::Vec;
@@ -20,7 +20,7 @@ use crate::math::{Angle, Fx, Length, Reciprocal, Rng, Rot, Shift, Speed, Unit, V
 use crate::simd::{Backend, Machine};
 use crate::threads::Threads;
 
-/// Eight hinges, each between two bodies of its own, in some pose.
+/// Eight hinges in random poses, each between two bodies of its own.
 #[derive(Clone)]
 struct Setting {
     hinges: HingeSet,
@@ -31,7 +31,7 @@ struct Setting {
     fractions: Vec<MassFractions>,
 }
 
-/// The sizes of the numbers of a setting.
+/// The sizes of the random numbers of a setting.
 #[derive(Clone, Copy)]
 struct Sizes {
     /// Size of the arms, in radii of gyration.
@@ -40,12 +40,12 @@ struct Sizes {
     gap: Fx,
 }
 
-/// Sizes that occur.
+/// Sizes that occur in games.
 const COMMON: Sizes = Sizes { arm: fx!(16), speed: fx!(10), gap: fx!(0.1) };
 /// Sizes beyond every clamp.
 const EXTREME: Sizes = Sizes { arm: fx!(500), speed: fx!(511), gap: fx!(2000) };
 
-/// Mounts are as stiff as other hinges here, so that both can be compared.
+/// Settings with which anchored hinges are as stiff as other hinges, so that both can be compared.
 fn tuning() -> Tuning {
     let tuning = Tuning::new(&SolverSettings::default(), Vec2::new(fx!(0), fx!(-10)), 60);
     Tuning { anchored: tuning.joint, ..tuning }
@@ -242,9 +242,9 @@ fn every_machine_solves_as_one_hinge_at_a_time() {
     assert!(faulty > 100, "{faulty} settings reach the clamps");
 }
 
-/// Lever ratios that are turned differ by a unit of 2^-24 from those that are computed anew. With arms of up to 16
-/// radii of gyration on both sides the anchors start at up to 330 m/s, of which one iteration may leave a
-/// hundred-thousandth.
+/// Rotated lever ratios differ by a unit of 2^-24 from lever ratios that are computed again. With arms of up to 16
+/// radii of gyration on both sides the anchors start at up to 330 m/s. One iteration may leave a hundred-thousandth of
+/// that velocity.
 #[test]
 fn a_point_is_solved_as_by_the_scalar_block() {
     let mut rng = Rng::new(2);
@@ -270,7 +270,7 @@ fn a_point_is_solved_as_by_the_scalar_block() {
                 worst = apart.into_iter().fold(worst, i32::max);
             }
         }
-        // A second update solves what the first has left.
+        // A second update removes the rounding errors of the first.
         let first: Vec<_> = setting.impulses();
         faults += setting.relax();
         for ((_, first), (_, second)) in first.iter().zip(setting.impulses()) {

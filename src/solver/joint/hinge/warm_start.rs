@@ -1,4 +1,4 @@
-//! Warm start: the accumulated impulses of hinges are applied first, each clamped to what may be applied at once.
+//! Warm start: applies the accumulated impulses of hinges. Each is clamped to the largest impulse of a warm start.
 
 use super::super::super::batches::{BatchParts, Operation};
 use super::super::super::limits::STEP_MAX;
