@@ -20,7 +20,7 @@ pub(crate) struct Contact {
     /// Number of points with accumulated impulses.
     pub(crate) count: u8,
     pub(crate) points: [PointImpulse; 2],
-    /// Accumulated angular impulse of rolling resistance, times `(mA + mB) / s`: see `solver/rolling.rs`.
+    /// Accumulated angular impulse of rolling resistance, times `(mA + mB) / s`: see `solver/contact/rolling.rs`.
     pub(crate) rolling: Speed,
 }
 
@@ -30,7 +30,7 @@ pub(crate) struct PointImpulse {
     pub(crate) feature: u16,
     /// Normal impulse `p = L / D`, scaled by `mA + mB`, which makes it independent of the lever arms.
     pub(crate) normal: Speed,
-    /// Tangent impulse, scaled alike: this point's share of the total friction of both points.
+    /// Tangent impulse with the same scale: this point's share of the total friction of both points.
     pub(crate) tangent: Speed,
 }
 

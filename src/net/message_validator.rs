@@ -119,7 +119,7 @@ impl Gate {
     }
 
     fn check_input(&mut self, input: &mut Input, frame: i32) -> Option<()> {
-        // Peers agree on departures in `leaving.rs`, because GGRS could let each peer end a player at another frame.
+        // Peers agree on departures in `departure.rs`, because GGRS could let each peer end a player at another frame.
         input.disconnect_requested = false;
         input.connections.iter_mut().for_each(|connection| connection.disconnected = false);
         let frames = -1..=frame.saturating_add(FRAMES_AHEAD);

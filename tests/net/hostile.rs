@@ -1,4 +1,4 @@
-//! Malicious packets with valid checksums. `fuzz/src/packets.rs` sends arbitrary ones.
+//! Malicious packets with valid checksums. `fuzz/src/bytes/packet.rs` sends arbitrary ones.
 
 use std::time::Duration;
 
