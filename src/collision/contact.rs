@@ -30,7 +30,7 @@ pub(crate) struct PointImpulse {
     pub(crate) feature: u16,
     /// Normal impulse `p = L / D`, scaled by `mA + mB`, which makes it independent of the lever arms.
     pub(crate) normal: Speed,
-    /// Tangent impulse, scaled alike: this point's share of the total friction of both points.
+    /// Tangent impulse with the same scale: this point's share of the total friction of both points.
     pub(crate) tangent: Speed,
 }
 

@@ -197,8 +197,7 @@ impl<G: NetGame, A: Address> Session<G, A> {
         let mut events = self.events();
         let passed = now.saturating_sub(self.polled);
         self.polled = now;
-        // Peers that have not answered yet are waited for in `departure.rs`: with high packet loss the handshake takes
-        // long.
+        // `departure.rs` waits for peers that have not answered yet: with high packet loss the handshake takes long.
         let others = self.membership.others.iter().filter(|(_, address)| self.synchronised.contains(address));
         for (seat, address) in others {
             let liveness = self.liveness.get_mut(address);

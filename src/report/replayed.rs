@@ -141,7 +141,7 @@ struct Beside<'a, 'k, G: Game> {
     rerun: RawReplay<'k, G>,
     /// State of the rerun before the current tick.
     previous: Option<G::Save>,
-    /// The tick in which the first diverging side diverged.
+    /// The tick of the first divergence of either side from the rerun.
     wrong: Option<WrongTick<G>>,
     /// The states at the first different tick at which both are available.
     states: Option<States<G::Save>>,

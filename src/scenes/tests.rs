@@ -92,7 +92,7 @@ impl Near {
         Near { shapes: posed.collect(), pairs }
     }
 
-    /// Number of contact points, with the box reject and a cached separating axis for every pair.
+    /// Number of contact points, computed with the box reject and a cached separating axis for every pair.
     #[inline(never)]
     fn with_reject_and_axis(
         &self,
@@ -108,7 +108,7 @@ impl Near {
         points.sum()
     }
 
-    /// Number of contact points without box reject and cached axis.
+    /// Number of contact points, computed without the box reject and without cached axes.
     #[inline(never)]
     fn without(&self, margin: Length) -> usize {
         let points = self.pairs.iter().map(|&(a, b)| {

@@ -102,7 +102,7 @@ fn a_cantilever_of_rigid_welds_hardly_bends() {
 /// upper hinge bears both at 60 Hz. With one rod, it is an anchored hinge with twice that frequency, and yields a
 /// quarter as much.
 #[test]
-fn a_hinge_sags_as_its_stiffness_says_and_a_mount_is_twice_as_stiff() {
+fn a_hinge_sags_as_its_stiffness_says_and_an_anchored_hinge_is_twice_as_stiff() {
     let sag = |rods: i64| {
         let mut bench = Bench::new(Ground::Fixed, fx!(-10), Vec2::new(fx!(9), fx!(0)), fx!(0));
         let mass = MassSource::Given { mass: fx!(1), centre: Vec2::ZERO, gyration: fx!(0.29) };

@@ -84,7 +84,7 @@ fn a_pendulum_swings_with_the_period_of_theory() {
     let body = game.world().bodies().last().expect("a rod").0;
     let pivot_height = fx!(0);
     let lowest = |world: &lockstep2d::world::World| {
-        // Energy above that of hanging at rest, with the centre 0.5 m below the hinge.
+        // Energy relative to the state in which the rod hangs at rest, with its centre 0.5 m below the hinge.
         let rod = world.body(body).expect("still there");
         energy(world) + fx_mul(rod.mass() * 10, fx!(0.5) - pivot_height)
     };

@@ -95,7 +95,7 @@ fn contact_events_may_be_switched_off_and_on() {
     let (mut world, id, told) = landing(floor.events(silent), shape.events(silent));
     assert_eq!(told, 0);
 
-    // Switching events on begins an existing contact; switching them off ends it.
+    // Switching events on reports the begin of an existing contact, and switching them off reports its end.
     let id = shape_of(&world, id);
     world.set_shape(id, &shape).expect("valid");
     run(&mut world, 1);

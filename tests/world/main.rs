@@ -1,6 +1,5 @@
 //! Public behaviour of `World`: sleep, sensors, events, snapshots, and changes at run time. One file per subject.
 
-mod adjust;
 mod churn;
 mod equality;
 mod events;
@@ -9,6 +8,7 @@ mod locks;
 mod phases;
 mod rollback;
 mod sensors;
+mod setters;
 mod sleeping;
 #[path = "../common/sweep.rs"]
 mod sweep;

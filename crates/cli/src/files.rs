@@ -75,7 +75,11 @@ mod tests {
         for (length, expected) in [(0, 0), (99, 99), (100, 100), (101, 101), (5000, 101)] {
             for guess in [0, 10, length, u64::MAX] {
                 let bytes = read_from(io::repeat(7).take(length), guess, 100).unwrap();
-                assert_eq!(bytes.len(), expected, "of {length}, with {guess} expected");
+                assert_eq!(
+                    bytes.len(),
+                    expected,
+                    "read a source of {length} bytes, of which {guess} were announced"
+                );
             }
         }
     }

@@ -133,7 +133,7 @@ fn all_kinds_find_the_same_pairs_while_boxes_move() {
                 (2..8, Some(fat)) => {
                     crowd.set(slot, fat.translated(random_vector(&mut rng, 1 << 32)));
                 }
-                // Few class changes in most rounds, nearly all slots in some.
+                // Most rounds change the class of few slots, some rounds that of nearly all slots.
                 (8, Some(_)) => crowd.set_collision_class(slot, random_class(&mut rng, 3)),
                 (9..19, Some(_)) if round % 10 == 0 => {
                     crowd.set_collision_class(slot, random_class(&mut rng, 1 + u32::from(round > 150)));
@@ -150,7 +150,7 @@ fn all_kinds_find_the_same_pairs_while_boxes_move() {
         if round % 50 == 49 {
             crowd.refill();
         }
-        // From a few of the boxes to all.
+        // The share of moved boxes varies from a few to all.
         let share = rng.below(8);
         let many: Vec<_> = crowd.occupied().filter(|_| rng.below(8) < share).collect();
         let shift = random_vector(&mut rng, 1 << 32);

@@ -95,7 +95,8 @@ impl Tree {
         match self.leaf_of(slot) {
             Some(leaf) if self.at(leaf).aabb == fat => {}
             Some(leaf) if self.stays_near(leaf, fat) => self.enlarge(leaf, fat),
-            // A few leaves may stay where they do not belong: the tree keeps its order for the next refit.
+            // A few leaves may stay in an unsuitable place until the next rebuild, so that nodes stay in order for the
+            // next refit.
             Some(leaf) if self.strays < self.len / 8 => {
                 self.strays += 1;
                 self.enlarge(leaf, fat);

@@ -1,7 +1,7 @@
 //! A circle against a convex outline: a polygon, or a segment or capsule as a two-sided polygon.
 //!
 //! The circle's centre is inside the outline, beside a face, or in the Voronoi region of a corner. If it is inside, the
-//! nearest face pushes it out, so that it is never pushed through.
+//! nearest face pushes the circle out, so that it is not pushed through to the other side.
 
 use super::hull_hull::{self, FACE_BITS, Face};
 use crate::collision::manifold::{Feature, Manifold, ManifoldPoint};

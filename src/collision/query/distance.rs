@@ -251,7 +251,8 @@ mod tests {
         assert!(worst < fx!(0.00000002), "the largest error should be below 20 nm, not {worst} m");
     }
 
-    /// Moved by the depth along the normal the shapes touch; moved by less in any direction they still overlap.
+    /// If one shape is moved by the depth along the normal, the shapes touch. If it is moved by less in any direction,
+    /// they still overlap.
     #[test]
     fn depth_is_the_shortest_way_out() {
         let mut rng = Rng::new(2);

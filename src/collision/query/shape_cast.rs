@@ -160,7 +160,7 @@ mod tests {
         assert!(hits > 1_500 && misses > 8_000 && grazing < 500, "{hits} {misses} {grazing}");
     }
 
-    /// From where a shape was stopped it leaves and slides freely, and does not advance further.
+    /// A shape that was stopped can move away and slide freely from there, but cannot advance further.
     #[test]
     fn a_stopped_shape_leaves_and_slides_but_does_not_go_on() {
         let mut rng = Rng::new(2);

@@ -1,4 +1,4 @@
-//! Shapes in world axes: as the narrow phase collides them, and as queries see them.
+//! Shapes in world axes: representations for the narrow phase and for queries.
 
 pub(in crate::collision) mod link;
 pub(in crate::collision) mod posed;

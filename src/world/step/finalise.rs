@@ -33,14 +33,14 @@ pub(super) fn finalise_poses(state: &mut State, scratch: &mut Scratch) {
 }
 
 /// The end of a body's motion in the tick, as computed by the solver.
-struct End {
+struct FinalPose {
     pose: Pose,
     /// Rotation in units of 2^-32 turns, with whole turns, which the angle of the pose does not contain.
     turn: i64,
 }
 
 /// Copies the velocity of a body from the solver, clears its forces, and returns the pose to which it has to be moved.
-fn finalise_body(state: &mut State, scratch: &mut Scratch, slot: u32) -> End {
+fn finalise_body(state: &mut State, scratch: &mut Scratch, slot: u32) -> FinalPose {
     let SolverBody { velocity, spin, shift, turn, .. } = *scratch.solver.body(slot);
     let body = state.bodies.at_mut(slot);
     body.velocity = velocity;
@@ -55,12 +55,12 @@ fn finalise_body(state: &mut State, scratch: &mut Scratch, slot: u32) -> End {
     let turn = turn_of(turn, body.mass.inverse_gyration);
     if let Some(target) = body.target.take() {
         body.stop();
-        return End { pose: *target, turn };
+        return FinalPose { pose: *target, turn };
     }
     let centre = body.centre + shift.widen();
     let edge = Vec2::new(WORLD_EXTENT_MAX, WORLD_EXTENT_MAX);
     let inside = centre.max(-edge).min(edge);
     scratch.solver.faults += u64::from(inside != centre);
     let angle = body.angle + Angle::from_turns(Fx::from_bits(turn));
-    End { pose: Pose { centre: inside, angle }, turn }
+    FinalPose { pose: Pose { centre: inside, angle }, turn }
 }

@@ -327,7 +327,7 @@ fn clipped<L: Lanes<WIDTH>>(
     L::add(end.above, L::narrow::<CLIP>(way))
 }
 
-/// `past / span` of positive operands. Any value for a lane that is left to the scalar path.
+/// `past / span` for positive operands. The result does not matter in lanes that are left to the scalar path.
 #[inline(always)]
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most 1")]
 fn part(past: i32, span: i32) -> i32 {

@@ -11,7 +11,7 @@ use alloc::vec::Vec;
 
 /// A random box within the size limit of the SIMD path, some with round corners, some slanted; and its half extents.
 fn random_box(rng: &mut Rng) -> (Polygon, Vec2<Fx>) {
-    // In whole multiples of 1/1024 m, so that opposite corners are exactly opposite.
+    // Sizes are whole multiples of 1/1024 m, so that opposite corners are exactly opposite.
     let size_max = [1850, 1850, 500, 250][rng.below(4) as usize];
     let mut size = || i64::from(50 + rng.below(size_max - 50));
     let (width, height) = (size(), size());
