@@ -11,6 +11,10 @@ use crate::math::Fx;
 
 /// A distance joint: a rod, a rope, a spring, or a spring with limits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[doc(alias = "rope")]
+#[doc(alias = "rod")]
+#[doc(alias = "DistanceJoint")]
+#[doc(alias = "RopeJoint")]
 pub struct Distance {
     /// Length in metres that is held rigidly, at least 0.001.
     pub rod: Option<Fx>,

@@ -14,6 +14,10 @@ use crate::math::{Fx, Vec2};
 /// With a speed of 0 it acts as friction between B and A, as on a table seen from above. With springs it pulls the
 /// frames onto each other: if A is a kinematic or fixed body that follows a pointer, B is dragged by the pointer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[doc(alias = "mouse joint")]
+#[doc(alias = "MouseJoint")]
+#[doc(alias = "target joint")]
+#[doc(alias = "MotorJoint")]
 pub struct Motor {
     /// Drives B's anchor to a velocity relative to A's.
     pub linear: Option<LinearDrive>,

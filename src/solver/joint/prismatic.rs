@@ -17,6 +17,9 @@ use crate::math::Fx;
 /// The translation of the joint is the position of B's anchor along that axis, in metres. It should stay within a
 /// hundred radii of gyration of either body, because longer lever arms are clamped.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[doc(alias = "slider")]
+#[doc(alias = "SliderJoint")]
+#[doc(alias = "PrismaticJoint")]
 pub struct Prismatic {
     /// Range of the translation in metres.
     pub limit: Option<JointLimit>,

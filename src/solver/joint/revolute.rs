@@ -21,6 +21,10 @@ use crate::math::Fx;
 /// The angle of the joint is that of B's frame in A's, in radians, counter-clockwise. It counts whole turns, so that a
 /// limit may be wider than one turn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[doc(alias = "hinge")]
+#[doc(alias = "pin joint")]
+#[doc(alias = "HingeJoint")]
+#[doc(alias = "RevoluteJoint")]
 pub struct Revolute {
     /// Range of the angle in radians.
     pub limit: Option<JointLimit>,

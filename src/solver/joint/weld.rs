@@ -14,6 +14,9 @@ use crate::math::Fx;
 
 /// A weld: B's frame stays on A's.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[doc(alias = "fixed joint")]
+#[doc(alias = "FixedJoint")]
+#[doc(alias = "WeldJoint")]
 pub struct Weld {
     /// Softness of the anchors; `None` is rigid.
     pub linear: Option<Soft>,

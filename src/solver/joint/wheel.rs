@@ -10,6 +10,8 @@ use crate::math::Fx;
 
 /// A wheel on its suspension: B's anchor stays on the x axis of A's frame, and B turns freely.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[doc(alias = "suspension")]
+#[doc(alias = "WheelJoint")]
 pub struct Wheel {
     /// Range of the translation in metres.
     pub limit: Option<JointLimit>,
