@@ -169,8 +169,8 @@ fn a_picture_has_an_element_for_each_body_and_style() {
     let picture = svg(&scene(), &view);
     // The four bodies, and the two dynamic ones again as islands.
     assert_eq!(picture.matches("<title>body ").count(), 4 + 2);
-    // Those, plus: boxes of the broad phase, fat boxes, arm, velocity, centres, anchors, gap, normals, points, forces,
-    // friction and the solver's graph colour; then the scale bar.
+    // The bodies, 12 styles (boxes of the broad phase, fat boxes, arm, velocity, centres, anchors, gap, normals,
+    // points, forces, friction and the solver's graph colour), and the scale bar.
     assert_eq!(picture.matches("<path ").count(), 4 + 2 + 12 + 1);
     // The ids of all bodies except the ground, whose centre lies below the picture, and the error of the joint.
     assert_eq!(picture.matches(" dy=\"-3\">").count(), 4 + 1);

@@ -393,7 +393,7 @@ fn a_shape_in_the_slot_of_one_that_slept_has_its_own_surface() {
 
 #[test]
 fn a_circle_in_line_with_a_turned_capsule_is_beyond_its_end() {
-    // At every fourth angle, rounding put the centre between the two sides of the capsule, and the contact was a radius
+    // At one in four angles, rounding put the centre between the two sides of the capsule, and the contact was a radius
     // deep.
     let ends = [fx!(-0.03), fx!(-0.5)].map(|along| Vec2::new(along, along));
     let capsule = Geometry::capsule(ends[0], ends[1], fx!(0.018)).expect("valid");

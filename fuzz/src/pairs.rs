@@ -86,7 +86,7 @@ pub fn run(bytes: &[u8]) -> Option<u64> {
             let other = separation(&swapped);
             assert!(
                 (least - other).abs() <= ERROR,
-                "separation {least} m, but {other} m with exchanged shapes, at {position:?} {angle:?}: {still:?} {moving:?}"
+                "separation {least} m, but {other} m if swapped, at {position:?} {angle:?}: {still:?} {moving:?}"
             );
         } else {
             assert!(least > config.touching_distance() - ERROR, "no contact with the shapes exchanged");

@@ -8,7 +8,7 @@ use super::settings::{BodySettings, Continuous};
 use super::shape::WORLD_EXTENT_MAX;
 use crate::math::{Angle, Fx, Vec2};
 
-/// How a body moves.
+/// Kind of motion of a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[doc(alias = "BodyType")]
 #[doc(alias = "RigidBodyType")]
@@ -36,7 +36,7 @@ pub enum BodyKind {
 #[doc(alias = "RigidBodyDesc")]
 #[doc(alias = "rigid_body")]
 pub struct BodyDef {
-    /// How the body moves.
+    /// Kind of motion.
     pub kind: BodyKind,
     /// Origin in the world, in metres.
     pub position: Vec2<Fx>,

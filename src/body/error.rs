@@ -147,7 +147,7 @@ pub enum WorldError {
     },
     /// The world already holds the largest number of bodies, shapes or joints.
     Full {
-        /// What there are too many of.
+        /// The kind of object of which there are too many.
         what: &'static str,
         /// The largest number.
         limit: u32,

@@ -1,8 +1,8 @@
-//! How long a body has been at rest.
+//! Counter of the ticks for which a body has been at rest.
 
 use serde::{Deserialize, Serialize};
 
-/// How long a body has been at rest, as one number in the state. The kind of the body decides its meaning:
+/// The number in the state that tells for how long a body has been at rest. Its meaning depends on the kind of body:
 ///
 /// | kind | value |
 /// |---|---|

@@ -104,7 +104,7 @@ pub enum Depths {
 /// Whether the phases of the physics step are compared, too.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Phases {
-    /// Only the states between ticks.
+    /// Compares only the states between ticks.
     #[default]
     Ignored,
     /// Compares the world and the inputs of the later phases after each phase. A tick takes several times as long.

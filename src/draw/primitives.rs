@@ -28,7 +28,8 @@ pub fn primitives(world: &World, layers: Layers) -> Vec<Primitive> {
     found
 }
 
-/// Same as [`primitives`] one by one, without storing all of them: a large world has a hundred thousand.
+/// Like [`primitives`], but passes them to `found` one by one: a large world has a hundred thousand, which are not
+/// stored.
 pub fn each_primitive(world: &World, layers: Layers, found: Sink<'_>) {
     if layers.broad_phase {
         for (aabb, _) in world.broad_phase_boxes() {

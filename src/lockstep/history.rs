@@ -38,7 +38,7 @@ const ROLLBACK_TICKS: u32 = 16;
 /// ```
 #[derive(Clone, Debug)]
 pub struct History<G: Game> {
-    /// In ascending order of ticks.
+    /// The entries in ascending order of ticks.
     ticks: VecDeque<Past<G::Save>>,
     length: u64,
 }

@@ -1,5 +1,5 @@
-//! [`MessageValidator`]: validates messages before GGRS reads them. It drops messages on which GGRS would panic, and removes those
-//! parts with which a peer could decide alone which player has left.
+//! [`MessageValidator`]: validates messages before GGRS reads them. It drops messages on which GGRS would panic, and
+//! removes those parts with which a peer could decide alone which player has left.
 //!
 //! GGRS trusts the messages of the peers of a game. All messages of one remote pass through this validator first; those
 //! that GGRS could not have sent are dropped.

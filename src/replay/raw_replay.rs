@@ -10,8 +10,8 @@ use super::verified_replay::{Ending, Step, check_bodies, check_rules, decode_set
 use crate::lockstep::{Game, decode_inputs};
 use crate::world::World;
 
-/// A raw replay: simulates the inputs of a file. Unlike a [`VerifiedReplay`](super::VerifiedReplay) it compares nothing, so
-/// its states are those that the running engine computes from these inputs.
+/// A raw replay: simulates the inputs of a file. Unlike a [`VerifiedReplay`](super::VerifiedReplay) it compares
+/// nothing, so its states are those that the running engine computes from these inputs.
 pub struct RawReplay<'a, G: Game> {
     game: G,
     limits: Limits,

@@ -119,7 +119,7 @@ pub struct Reader<'a> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Next {
     InputsOrTrailer,
-    /// After a block with fewer ticks than the interval.
+    /// Only the trailer may follow, because a block had fewer ticks than the interval.
     Trailer,
     Nothing,
 }

@@ -58,7 +58,7 @@ pub enum Blame {
 pub struct Trajectory {
     /// The seats that this side plays, according to its report.
     pub seats: Vec<u32>,
-    /// The last tick before this side diverges, or of all, at which its state is known to equal the rerun.
+    /// The last tick at which the state of this side is known to equal the rerun, before the side diverges if it does.
     pub equal_until: Option<u64>,
     /// The first tick at which its state is known to differ from the rerun.
     pub diverges: Option<u64>,

@@ -28,7 +28,7 @@ pub(crate) struct BodyList {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct BodyFacts {
     centre: Vec2<Fx>,
-    /// In kg; 0 if no impulse moves the body.
+    /// Mass in kg; 0 if no impulse moves the body.
     pub(super) mass: Fx,
     pub(super) inverse_gyration: Reciprocal,
 }

@@ -62,7 +62,7 @@ impl<L: Lanes<N>, const N: usize> BodyPairW<L, N> {
     }
 }
 
-/// Where the magnitude of a number is above a limit.
+/// Mask of the lanes in which the magnitude of a number is above a limit.
 #[inline(always)]
 pub(super) fn beyond<L: Lanes<N>, const N: usize>(value: L::Int, limit: L::Int) -> L::Mask {
     L::either(L::greater(value, limit), L::greater(L::sub(L::splat(0), limit), value))

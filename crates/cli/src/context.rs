@@ -12,10 +12,10 @@ use crate::files;
 use crate::scenes::Catalogue;
 use crate::tool::Tool;
 
-/// How a command ended, or why it had to stop.
+/// Exit status of a command, or the error that stopped it.
 pub(crate) type CommandResult = Result<Exit, CommandError>;
 
-/// What every command is given besides its arguments: the tool of the game, and where to write.
+/// Context of every command, besides its arguments: the tool of the game, and the console to write to.
 pub(crate) struct Context<'a, G: Game> {
     pub(crate) tool: &'a Tool<G>,
     pub(crate) console: Console<'a>,

@@ -19,7 +19,7 @@ pub trait Catalogue<G: Game> {
 pub struct SceneInfo {
     /// The name.
     pub name: &'static str,
-    /// What it shows, in one line.
+    /// One-line description.
     pub about: &'static str,
     /// The default number of ticks to record.
     pub ticks: u64,

@@ -8,8 +8,7 @@
 //! [`IMBALANCE_MAX`]: a relaxed AVL tree (G. Adelson-Velsky, E. Landis, 1962), in which an insertion or a removal
 //! changes heights by one, and one exchange on each level restores the balance.
 //!
-//! A box that moves a little only enlarges its ancestors. If many boxes move at once, the tree is refitted from the
-//! leaves up, or rebuilt: see `rebuild.rs`.
+//! A box that moves a little only enlarges its ancestors. Moving many boxes refits or rebuilds the tree (`rebuild.rs`).
 
 use alloc::vec::Vec;
 use core::ops::ControlFlow;
@@ -28,8 +27,8 @@ mod tests;
 /// Index that stands for no node.
 const NONE: u32 = u32::MAX;
 
-/// Largest difference of the heights of two siblings: large enough for a long ground to stay near the root, where the
-/// perimeters favour it. With 4, finding the pairs of 10 000 boxes on some such grounds takes several times as long.
+/// Largest difference of the heights of two siblings. A long ground can stay near the root, where the perimeters favour
+/// it. With 4, finding the pairs of 10 000 boxes on some such grounds takes several times as long.
 const IMBALANCE_MAX: u8 = 16;
 
 /// Stack size of a search: one waiting node per level, plus one. Enough for 2^31 boxes, as a test proves.
@@ -95,8 +94,7 @@ impl Tree {
         match self.leaf_of(slot) {
             Some(leaf) if self.at(leaf).aabb == fat => {}
             Some(leaf) if self.stays_near(leaf, fat) => self.enlarge(leaf, fat),
-            // A few leaves may stay in an unsuitable place until the next rebuild, so that nodes stay in order for the
-            // next refit.
+            // A few leaves may be misplaced until the next rebuild: the nodes stay in order for the next refit.
             Some(leaf) if self.strays < self.len / 8 => {
                 self.strays += 1;
                 self.enlarge(leaf, fat);
@@ -220,9 +218,8 @@ impl Tree {
         self.repair(grandparent);
     }
 
-    /// Best sibling for a new leaf: the node that adds the least perimeter, counting a new parent around both and the
-    /// growth of the ancestors. Descends to the child with the smaller bound while that bound is better, and until the
-    /// node is low enough to be a leaf's sibling.
+    /// Best sibling for a new leaf: the one that adds the least perimeter of the new parent and the ancestors. Descends
+    /// to the child with the smaller bound while that bound is better, and until the node is low enough for a leaf.
     fn best_sibling(&self, fat: Aabb) -> u32 {
         let own = perimeter(fat);
         let mut at = self.root;

@@ -1,4 +1,4 @@
-//! Late join: asks for a seat, loads a state, and plays the inputs since then faster than real time.
+//! Late join: requests a seat, loads a state, and plays the inputs since then faster than real time.
 
 use alloc::collections::VecDeque;
 use alloc::string::ToString;
@@ -21,7 +21,7 @@ pub(super) const PIECE_BYTES: usize = 1024;
 const STATE_BYTES_MAX: u64 = 64 << 20;
 /// Number of pieces of a state that are requested at a time.
 const PIECES_AT_ONCE: usize = 32;
-/// Number of ticks behind the final ones at which a peer counts as up to date.
+/// A peer that is at most this number of ticks behind the final ticks counts as up to date.
 const ALMOST: u64 = 4;
 /// Number of ticks that a spectator stays behind, to avoid stutter.
 const WATCH_BEHIND: usize = 12;

@@ -133,7 +133,7 @@ pub(super) struct Body {
     /// Hash of the replay's bytes.
     replay: StateHash,
     pub(super) interval: u64,
-    /// In ascending order of ticks.
+    /// The saves in ascending order of ticks.
     saves: Vec<(u64, Save)>,
 }
 

@@ -284,8 +284,8 @@ impl<L: Lanes<N>, const N: usize> OverflowPolicy<L, N> for Unchecked<L, N> {
     }
 }
 
-/// Changes velocities by impulses that have bits to spare. Multiplied by four, the result of a product is its upper
-/// half, which spares a shift.
+/// Changes velocities by impulses within the bounds. These impulses can be multiplied by four, so that the velocity
+/// change is the upper half of a product, which saves a shift.
 #[inline(always)]
 fn change<L: Lanes<N>, const N: usize>(pair: &mut BodyPairW<L, N>, row: &Row<N>, d: L::Int) {
     let twice = L::add(d, d);

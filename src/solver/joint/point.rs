@@ -25,7 +25,7 @@ pub(super) struct JointPoint {
     pub(super) slot: u8,
     task: PointTask,
     pub(super) block: PointBlock,
-    /// Of a motor the target velocity, reversed. Of a spring the part of its impulse that comes from its stretch.
+    /// For a motor: the target velocity, reversed. For a spring: the part of its impulse that comes from its stretch.
     bias: Vec2<Speed>,
     /// `L`, in world axes.
     pub(super) lambda: Vec2<Speed>,

@@ -59,7 +59,7 @@ pub(super) struct JointRow {
     pub(super) direction: Direction,
     task: RowTask,
     pub(super) row: Row,
-    /// Of a spring the part of its impulse that comes from its stretch. Of any other row the target speed, reversed.
+    /// For a spring: the part of its impulse that comes from its stretch. For other rows: the target speed, reversed.
     bias: Speed,
     /// Whether the row is a limit that is not reached.
     open: bool,

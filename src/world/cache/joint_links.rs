@@ -13,9 +13,9 @@ const NONE: u32 = u32::MAX;
 /// The joints of each body.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct JointLinks {
-    /// By body slot: the slot of its first joint.
+    /// For each body slot, the slot of the body's first joint.
     first: Vec<u32>,
-    /// By joint slot, for each of its two bodies: the slot of that body and of the next joint in that body's list.
+    /// For each joint slot and each of the joint's two bodies: the slots of the body and of the next joint in its list.
     next: Vec<[(u32, u32); 2]>,
 }
 

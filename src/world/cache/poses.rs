@@ -19,7 +19,7 @@ pub(crate) struct Poses {
     motion: MotionCache,
     /// The small boxes among them, in the layout of the SIMD kernel.
     boxes: SmallBoxes,
-    /// By body slot.
+    /// Extents of the shapes of each body, by body slot.
     extents: Vec<Extents>,
 }
 

@@ -7,7 +7,7 @@ use alloc::vec::Vec;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct UnionFind {
     parents: Vec<u32>,
-    /// By root: whether a body of the set has to stay awake.
+    /// For each root, whether a body of the set has to stay awake.
     stays_awake: Vec<bool>,
 }
 

@@ -65,7 +65,7 @@ impl World {
 
 /// The impulse of an explosion on a shape.
 struct Push {
-    /// In N s.
+    /// Impulse in N s.
     impulse: Vec2<Fx>,
     /// Point of application in the world, in metres.
     point: Vec2<Fx>,

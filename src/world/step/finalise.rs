@@ -21,7 +21,7 @@ pub(super) fn finalise_poses(state: &mut State, scratch: &mut Scratch) {
         match continuous::swept_body(state, scratch, slot, end.pose, end.turn) {
             None => move_body(state, scratch, slot, end.pose),
             Some(fast) if continuous::is_bullet(state.bodies.at(slot)) => scratch.sweeps.bullets.push(fast),
-            // Only fixed bodies stop it, so that it need not wait for the other bodies.
+            // Only fixed bodies stop this body, so that it need not wait for all other bodies.
             Some(fast) => continuous::sweep(state, scratch, &fast),
         }
     }

@@ -78,7 +78,7 @@ fn find_new(state: &State, scratch: &mut Scratch) -> bool {
     left_out
 }
 
-/// What the pair update does with an active contact.
+/// Action of the pair update on an active contact.
 enum PairChange {
     Stays,
     /// Its fat boxes no longer overlap, or its shapes may not collide any more.

@@ -10,7 +10,7 @@ use super::act::Aim;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Picked {
     pub(super) body: BodyId,
-    /// In world coordinates, in metres.
+    /// Point of the body in world coordinates, in metres.
     pub(super) point: Vec2<Fx>,
 }
 

@@ -39,7 +39,8 @@ fn random_rounded_hull(rng: &mut Rng, extent: Fx) -> Option<Polygon> {
 }
 
 /// Twice the area and the squared radius of gyration of a rectangle with half extents `a` and `b`, rounded by `r`, all
-/// in units of `unit`. The sum of the rectangle, four rectangles on its sides, and four quarter discs.
+/// in units of `unit`. The shape consists of the rectangle, four rectangles on its sides, and four
+/// quarter discs.
 fn rounded_rectangle(a: i128, b: i128, r: i128, unit: Fx) -> (i128, i128) {
     /// A convergent of pi, correct to 17 digits.
     const PI_NUMERATOR: i128 = 1_068_966_896;

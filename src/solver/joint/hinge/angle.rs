@@ -239,8 +239,8 @@ impl<const N: usize> AngleRows<N> {
         pair.turn(&self.f, L::sub(new, old), faults);
     }
 
-    /// As with contacts, a gap may close within this sub-step, and a gap that the bias pass has not closed is left to
-    /// the next sub-step.
+    /// Solves the limits. As with contacts, a gap may close within this sub-step, and a gap that the bias pass has not
+    /// closed is left to the next sub-step.
     #[inline(always)]
     fn solve_limit<L: Lanes<N>>(
         &mut self,

@@ -149,7 +149,7 @@ pub(super) struct DriveInput {
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LimitInput {
-    /// In units of 2^-32 turn.
+    /// Limits in units of 2^-32 turn.
     pub(super) lower: i64,
     pub(super) upper: i64,
     /// Speed per turn beyond a limit, and per turn before it.

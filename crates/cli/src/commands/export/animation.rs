@@ -81,7 +81,7 @@ impl Frames {
         (0..u64::from(self.count)).map(|frame| self.first + frame * u64::from(self.pace.ticks))
     }
 
-    /// At most `SAMPLES` + 1 of the ticks, the first and the last among them.
+    /// Selects at most `SAMPLES` + 1 ticks, including the first and the last.
     fn samples(&self) -> impl Iterator<Item = u64> {
         let step = (self.last - self.first).div_ceil(SAMPLES).max(1);
         (0..SAMPLES)

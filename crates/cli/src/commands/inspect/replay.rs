@@ -32,7 +32,7 @@ pub(super) fn print<G: Game>(
     Ok(summary.exit())
 }
 
-/// What is known of a replay without playing it.
+/// Properties of a replay that can be determined without playing it.
 pub(super) struct Summary {
     semantics: u32,
     rules: (String, u32),
@@ -55,7 +55,7 @@ struct Bytes {
     setup: u64,
     inputs: u64,
     trailer: u64,
-    /// After the intact part.
+    /// Everything after the intact part.
     rest: u64,
 }
 
