@@ -83,7 +83,7 @@ impl Crowd {
         let mut shape = match source.below(4) {
             0 => shapes::shape(source),
             1 => ShapeDef::new(Geometry::Circle { radius: source.thousandths(2, 3000) }),
-            _ => shapes::calm_shape(source),
+            _ => shapes::ordinary_shape(source),
         };
         // Sensors cost the solver no work.
         shape.sensor = source.one_in(2);

@@ -1,6 +1,6 @@
 //! Generates scenes: settings, and commands for the current state of a world.
 //!
-//! Three of four scenes are ordinary ones ([`crate::calm`]). The others, made here, are wild: everything may be at or
+//! Three of four scenes are ordinary ones ([`crate::ordinary`]). The others, made here, are wild: everything may be at or
 //! beyond its limits. Most bodies are small and close together, so that most of them touch.
 
 use lockstep2d::body::{BodyDef, BodyId, JointId, ShapeDef, ShapeId, WORLD_EXTENT_MAX};
@@ -10,7 +10,7 @@ use lockstep2d::world::{BodyPose, Command, Config, Explosion, World};
 use lockstep2d::{codec, fx};
 
 use crate::source::Source;
-use crate::{calm, joints, settings, shapes};
+use crate::{joints, ordinary, settings, shapes};
 
 /// Generates commands, and keeps handles that have become stale.
 pub struct Generator {
@@ -25,9 +25,9 @@ pub struct Generator {
 
 /// Decides whether the scene is an ordinary one, and its settings, which are mostly valid.
 pub fn config(source: &mut Source<'_>) -> Config {
-    let calm = !source.one_in(4);
-    source.set_calm(calm);
-    if calm { calm::config(source) } else { wild_config(source) }
+    let ordinary = !source.one_in(4);
+    source.set_ordinary(ordinary);
+    if ordinary { ordinary::config(source) } else { wild_config(source) }
 }
 
 fn wild_config(source: &mut Source<'_>) -> Config {
@@ -89,7 +89,7 @@ impl Generator {
         let edge = WORLD_EXTENT_MAX - fx!(3);
         // Bodies are clamped at the edge of the world, which counts as a fault.
         let places = [Fx::ZERO, Fx::ZERO, Fx::ZERO, fx!(1000000000), edge, -edge];
-        let far = source.pick(if source.is_calm() { &places[..4] } else { &places });
+        let far = source.pick(if source.is_ordinary() { &places[..4] } else { &places });
         let middle = Vec2::new(far, if source.one_in(2) { far } else { Fx::ZERO });
         let lulls = source.one_in(2);
         Generator { middle, lulls, bodies: Vec::new(), shapes: Vec::new(), joints: Vec::new() }
@@ -98,8 +98,8 @@ impl Generator {
     /// The commands of the first tick: mostly a floor and a heap of bodies, often with an ordinary pile.
     pub fn setup(&mut self, source: &mut Source<'_>) -> Vec<Command> {
         let mut commands = Vec::new();
-        if source.is_calm() {
-            calm::setup(source, self.middle, &mut commands);
+        if source.is_ordinary() {
+            ordinary::setup(source, self.middle, &mut commands);
             return commands;
         }
         let position = self.middle + Vec2::new(fx!(0), fx!(-1));
@@ -117,7 +117,7 @@ impl Generator {
         }
         self.heap(source, &mut commands);
         if source.below(2) == 0 {
-            calm::pile(source, self.middle, &mut commands);
+            ordinary::pile(source, self.middle, &mut commands);
         }
         commands
     }
@@ -128,10 +128,10 @@ impl Generator {
         if self.lulls && world.tick() % 64 >= 12 {
             return commands;
         }
-        if source.is_calm() {
+        if source.is_ordinary() {
             for _ in 0..source.pick(&[0, 0, 1, 0, 0, 2]) {
                 let body = self.body(source, world);
-                calm::command(source, world, self.middle, body, &mut commands);
+                ordinary::command(source, world, self.middle, body, &mut commands);
             }
             return commands;
         }

@@ -79,7 +79,8 @@ fn soft(source: &mut Source<'_>) -> Option<Soft> {
 }
 
 fn a_soft(source: &mut Source<'_>) -> Soft {
-    let hertz = if source.is_calm() { source.thousandths(500, 10_000) } else { source.mostly(1, 1_000_000) };
+    let hertz =
+        if source.is_ordinary() { source.thousandths(500, 10_000) } else { source.mostly(1, 1_000_000) };
     Soft { hertz, damping_ratio: source.mostly(0, 2000) }
 }
 
@@ -126,7 +127,7 @@ fn motor(source: &mut Source<'_>) -> Motor {
 }
 
 /// A joint kind for neighbouring bodies with anchors at the same point. Each kind holds or moves them gently.
-pub fn calm_kind(source: &mut Source<'_>) -> JointKind {
+pub fn ordinary_kind(source: &mut Source<'_>) -> JointKind {
     let strength = source.thousandths(1000, 20_000);
     let speed = source.thousandths(-3000, 3000);
     let (hertz, damping) = (source.thousandths(500, 6000), source.thousandths(100, 1500));

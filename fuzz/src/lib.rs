@@ -4,7 +4,6 @@
 pub mod allocations;
 pub mod broad_phases;
 pub mod bytes;
-pub mod calm;
 pub mod forge;
 pub mod generator;
 pub mod hostile;
@@ -16,6 +15,7 @@ pub mod matches;
 pub mod maths;
 pub mod memory;
 pub mod mirror;
+pub mod ordinary;
 pub mod pairs;
 pub mod questions;
 pub mod reports;

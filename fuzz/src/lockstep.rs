@@ -40,7 +40,7 @@ pub struct Seen {
     /// Hit events, and events of joints above their threshold.
     pub hits: u64,
     /// Whether the scene is an ordinary one, which should have no faults.
-    pub calm: bool,
+    pub ordinary: bool,
 }
 
 /// A variant that must not change the result.
@@ -151,7 +151,7 @@ fn play(bytes: &[u8], mut meddle: impl FnMut(&mut Variants)) -> Seen {
     }
     check(&variants.plain, &"the last tick");
     seen.faults = variants.plain.faults();
-    seen.calm = source.is_calm();
+    seen.ordinary = source.is_ordinary();
     if let Some(rollback) = rollback {
         rollback.repeat(&mut variants.plain);
     }
@@ -277,7 +277,7 @@ fn check(world: &World, after: &dyn std::fmt::Debug) {
 }
 
 static TOTAL: Mutex<Total> =
-    Mutex::new(Total { runs: 0, long: 0, full: 0, touching: 0, ticks: 0, calm: 0, faulty: [0; 2] });
+    Mutex::new(Total { runs: 0, long: 0, full: 0, touching: 0, ticks: 0, ordinary: 0, faulty: [0; 2] });
 
 /// Sums over the runs of a process.
 struct Total {
@@ -288,8 +288,8 @@ struct Total {
     full: u64,
     touching: u64,
     ticks: u64,
-    calm: u64,
-    /// Runs with faults: wild ones, calm ones.
+    ordinary: u64,
+    /// Runs with faults: wild ones, ordinary ones.
     faulty: [u64; 2],
 }
 
@@ -301,17 +301,17 @@ pub fn count(seen: Seen) {
     total.full += u64::from(seen.is_full());
     total.touching += seen.touching;
     total.ticks += seen.ticks;
-    total.calm += u64::from(seen.calm);
-    total.faulty[usize::from(seen.calm)] += u64::from(seen.faults > 0);
-    let Total { runs, long, full, touching, ticks, calm, faulty } = &*total;
+    total.ordinary += u64::from(seen.ordinary);
+    total.faulty[usize::from(seen.ordinary)] += u64::from(seen.faults > 0);
+    let Total { runs, long, full, touching, ticks, ordinary, faulty } = &*total;
     if runs.is_multiple_of(100) && std::env::var_os("FUZZ_FIGURES").is_some() {
         eprintln!(
-            "{runs} runs, {long} of 60 ticks or more, {full} of them with 10 touching contacts or more: {} ticks and {} touching contacts each; {} of {calm} calm and {} of {} wild ones with faults",
+            "{runs} runs, {long} of 60 ticks or more, {full} of them with 10 touching contacts or more: {} ticks and {} touching contacts each; {} of {ordinary} ordinary and {} of {} wild ones with faults",
             ticks / runs,
             touching / runs,
             faulty[1],
             faulty[0],
-            runs - calm
+            runs - ordinary
         );
     }
 }

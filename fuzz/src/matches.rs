@@ -129,9 +129,9 @@ impl Match {
         });
         for peer in self.peers.iter_mut().flatten() {
             while let Some(event) = peer.next_event() {
-                let calm =
+                let ordinary =
                     matches!(event, Event::Joined { .. } | Event::Interrupted { .. } | Event::Resumed { .. });
-                assert!(calm || self.forges, "without forged packets there must be no {event:?}");
+                assert!(ordinary || self.forges, "without forged packets there must be no {event:?}");
                 if let Event::Diverged(divergence) = event
                     && !self.seen.diverged
                 {

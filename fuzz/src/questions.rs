@@ -50,7 +50,7 @@ pub fn run(bytes: &[u8]) -> u64 {
 }
 
 /// One world with different broad phases: the tree and sweep and prune with their history, and brute force.
-struct HashPolled<'a> {
+struct Questions<'a> {
     world: &'a World,
     sweep: &'a World,
     brute_force: World,
@@ -62,8 +62,13 @@ struct HashPolled<'a> {
 fn ask(source: &mut Source<'_>, world: &World, sweep: &World) -> u64 {
     let mut brute_force = world.clone();
     brute_force.set_broad_phase(BroadPhaseKind::BruteForce);
-    let mut asked =
-        HashPolled { world, sweep, brute_force, filter: QueryFilter::default(), ordinary: source.is_calm() };
+    let mut asked = Questions {
+        world,
+        sweep,
+        brute_force,
+        filter: QueryFilter::default(),
+        ordinary: source.is_ordinary(),
+    };
     let mut answers = 0;
     for _ in 0..1 + source.below(4) {
         asked.filter = filter(source, world);
@@ -92,7 +97,7 @@ fn filter(source: &mut Source<'_>, world: &World) -> QueryFilter {
     filter
 }
 
-impl HashPolled<'_> {
+impl Questions<'_> {
     /// Runs a query on all three worlds and checks that the results are equal.
     fn same<A: PartialEq + std::fmt::Debug>(&self, ask: impl Fn(&World) -> A) -> A {
         let answer = ask(self.world);
@@ -138,7 +143,7 @@ impl HashPolled<'_> {
     }
 
     fn probe(&self, source: &mut Source<'_>) -> Option<Probe> {
-        let shape = if self.ordinary { shapes::calm_shape(source) } else { shapes::shape(source) };
+        let shape = if self.ordinary { shapes::ordinary_shape(source) } else { shapes::shape(source) };
         Some(Probe::new(shape.geometry, self.place(source)).ok()?.turned(source.angle()))
     }
 
@@ -318,7 +323,7 @@ impl HashPolled<'_> {
 
     /// Moves a character for a few ticks.
     fn walks(&self, source: &mut Source<'_>) -> bool {
-        let shape = if self.ordinary { shapes::calm_shape(source) } else { shapes::shape(source) };
+        let shape = if self.ordinary { shapes::ordinary_shape(source) } else { shapes::shape(source) };
         let Ok(mover) = Mover::new(shape.geometry) else { return false };
         let mover = mover.slope_max(source.angle()).step_height(source.mostly(0, 500));
         let mover = mover.snap_distance(source.mostly(0, 500));

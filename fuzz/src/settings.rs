@@ -22,7 +22,7 @@ pub fn settings(source: &mut Source<'_>) -> BodySettings {
 }
 
 /// Typical settings of a game.
-pub fn calm_settings(source: &mut Source<'_>) -> BodySettings {
+pub fn ordinary_settings(source: &mut Source<'_>) -> BodySettings {
     let mut settings = BodySettings::default();
     if source.one_in(4) {
         settings.linear_damping = source.thousandths(0, 1000);
@@ -65,7 +65,7 @@ pub fn mass(source: &mut Source<'_>) -> MassSource {
 }
 
 /// A moderate mass, centred near the origin.
-pub fn calm_mass(source: &mut Source<'_>) -> MassSource {
+pub fn ordinary_mass(source: &mut Source<'_>) -> MassSource {
     if source.one_in(3) {
         return MassSource::Shapes;
     }

@@ -44,13 +44,13 @@ fn role(source: &mut Source<'_>, def: &mut ShapeDef) {
 }
 
 /// A shape of an ordinary scene: 0.2 to 1 m, with similar densities.
-pub fn calm_shape(source: &mut Source<'_>) -> ShapeDef {
+pub fn ordinary_shape(source: &mut Source<'_>) -> ShapeDef {
     let geometry = match source.below(10) {
         8 | 9 => {
             let half = source.thousandths(50, 400);
             let (a, b) = (Vec2::new(-half, Fx::ZERO), Vec2::new(half, Fx::ZERO));
             let radius = source.thousandths(100, 300);
-            return calm_surface(source, Geometry::Capsule { a, b, radius });
+            return ordinary_surface(source, Geometry::Capsule { a, b, radius });
         }
         0..=2 => {
             let half = (source.thousandths(100, 500), source.thousandths(100, 500));
@@ -68,10 +68,10 @@ pub fn calm_shape(source: &mut Source<'_>) -> ShapeDef {
         _ => None,
     };
     let radius = source.thousandths(100, 500);
-    calm_surface(source, geometry.map_or(Geometry::Circle { radius }, Geometry::Polygon))
+    ordinary_surface(source, geometry.map_or(Geometry::Circle { radius }, Geometry::Polygon))
 }
 
-fn calm_surface(source: &mut Source<'_>, geometry: Geometry) -> ShapeDef {
+fn ordinary_surface(source: &mut Source<'_>, geometry: Geometry) -> ShapeDef {
     let mut def = ShapeDef::new(geometry);
     if source.one_in(4) {
         def.density = source.thousandths(500, 2000);
@@ -91,7 +91,7 @@ fn calm_surface(source: &mut Source<'_>, geometry: Geometry) -> ShapeDef {
 }
 
 /// A chain for the ground: links between evenly spaced points, 8 m to either side.
-pub fn calm_chain(source: &mut Source<'_>) -> Vec<ShapeDef> {
+pub fn ordinary_chain(source: &mut Source<'_>) -> Vec<ShapeDef> {
     let stretches = source.pick(&[8, 4, 16, 1, 2]);
     let point = |source: &mut Source<'_>, index: i64| {
         let x = lockstep2d::math::ratio(index * 16, stretches) - lockstep2d::fx!(8);

@@ -7,7 +7,7 @@ use lockstep2d::math::{Angle, Fx, Vec2};
 /// Turns bytes into decisions.
 pub struct Source<'a> {
     bytes: Unstructured<'a>,
-    calm: bool,
+    ordinary: bool,
 }
 
 /// Numbers at or near the limits of formats and parameters.
@@ -42,18 +42,18 @@ impl<'a> Source<'a> {
     /// Creates a source of decisions from bytes.
     #[must_use]
     pub fn new(bytes: &'a [u8]) -> Self {
-        Source { bytes: Unstructured::new(bytes), calm: false }
+        Source { bytes: Unstructured::new(bytes), ordinary: false }
     }
 
     /// Sets whether [`Source::mostly`] avoids limits from now on.
-    pub fn set_calm(&mut self, calm: bool) {
-        self.calm = calm;
+    pub fn set_ordinary(&mut self, ordinary: bool) {
+        self.ordinary = ordinary;
     }
 
     /// Whether [`Source::mostly`] avoids limits.
     #[must_use]
-    pub fn is_calm(&self) -> bool {
-        self.calm
+    pub fn is_ordinary(&self) -> bool {
+        self.ordinary
     }
 
     /// Whether no bytes are left.
@@ -123,9 +123,9 @@ impl<'a> Source<'a> {
         }
     }
 
-    /// Mostly a number from `low` to `high` thousandths, sometimes one near a limit unless the source is calm.
+    /// Mostly a number from `low` to `high` thousandths, sometimes one near a limit unless the source is ordinary.
     pub fn mostly(&mut self, low: i64, high: i64) -> Fx {
-        if !self.calm && self.one_in(24) { self.edge() } else { self.thousandths(low, high) }
+        if !self.ordinary && self.one_in(24) { self.edge() } else { self.thousandths(low, high) }
     }
 
     /// A vector of two [`Source::mostly`] numbers.

@@ -16,7 +16,8 @@ fn random_inputs(count: u64) -> impl Iterator<Item = Vec<u8>> {
 #[test]
 fn scenes_run_the_same_in_every_way_and_touch_a_lot() {
     let (mut touching, mut ticks, mut done, mut refused, mut faulty) = (0, 0, 0, 0, 0);
-    let (mut touched_runs, mut full, mut slept, mut noticed, mut hits, mut calm) = (0, 0, 0, 0, 0, [0; 2]);
+    let (mut touched_runs, mut full, mut slept, mut noticed, mut hits, mut ordinary) =
+        (0, 0, 0, 0, 0, [0; 2]);
     for input in random_inputs(300) {
         let seen = lockstep::run(&input);
         touching += seen.touching;
@@ -27,12 +28,12 @@ fn scenes_run_the_same_in_every_way_and_touch_a_lot() {
         slept += seen.slept;
         noticed += seen.noticed;
         hits += seen.hits;
-        calm[usize::from(seen.calm && seen.faults > 0)] += u64::from(seen.calm);
+        ordinary[usize::from(seen.ordinary && seen.faults > 0)] += u64::from(seen.ordinary);
         touched_runs += u64::from(seen.touching > 100);
         full += u64::from(seen.is_full());
     }
     println!(
-        "{ticks} ticks, {touching} touching, {touched_runs} runs with >100, {full} long ones with >=10 at once, {done} done, {refused} refused, {faulty} runs with faults; calm ones without and with: {calm:?}; {slept} fell asleep, {noticed} noticed, {hits} hits"
+        "{ticks} ticks, {touching} touching, {touched_runs} runs with >100, {full} long ones with >=10 at once, {done} done, {refused} refused, {faulty} runs with faults; ordinary ones without and with: {ordinary:?}; {slept} fell asleep, {noticed} noticed, {hits} hits"
     );
     assert!(
         slept > 100 && noticed > 300 && hits > 300,

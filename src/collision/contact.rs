@@ -71,7 +71,7 @@ impl Contact {
 
     /// Stores the accumulated impulses of up to two points.
     #[inline]
-    pub(crate) fn remember(&mut self, points: [PointImpulse; 2], count: u8, rolling: Speed) {
+    pub(crate) fn store_impulses(&mut self, points: [PointImpulse; 2], count: u8, rolling: Speed) {
         (self.points, self.count, self.rolling) = (points, count, rolling);
     }
 }

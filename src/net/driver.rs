@@ -141,7 +141,7 @@ impl<G: NetGame> Driver<G> {
     }
 
     /// Keeps the states of at least this many ticks. Must be called before the first tick.
-    pub(super) fn remember(&mut self, ticks: u32) {
+    pub(super) fn set_memory(&mut self, ticks: u32) {
         if self.history.capacity() < u64::from(ticks) {
             self.history = History::of_ticks(ticks);
             self.history.push(self.tick, self.game.save(), self.game.state_hash());

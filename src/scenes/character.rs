@@ -69,7 +69,7 @@ fn play(tick: u64, game: &Sandbox) -> Option<Vec<Command>> {
     if JUMPS.contains(&tick) && state.is_on_ground() {
         state.velocity.y = fx!(5);
     }
-    Some(remember(id, world.move_character(&mover, &state, filter).state).into())
+    Some(store_state(id, world.move_character(&mover, &state, filter).state).into())
 }
 
 /// Lowest bit of the body's user data. The other bits are the upward speed, whose lowest bit is insignificant.
@@ -81,7 +81,7 @@ fn recall(body: &Body) -> MoverState {
     MoverState { velocity: Vec2::new(Fx::ZERO, upwards), ..MoverState::at(body.position()) }
 }
 
-fn remember(body: BodyId, state: MoverState) -> [Command; 2] {
+fn store_state(body: BodyId, state: MoverState) -> [Command; 2] {
     let upwards = u64::from_ne_bytes(state.velocity.y.to_ne_bytes());
     let user_data = (upwards & !ON_GROUND) | u64::from(state.is_on_ground());
     [

@@ -134,7 +134,7 @@ impl State {
 
     pub(super) fn alter_shape(&mut self, source: &mut Source<'_>, index: usize) -> Option<()> {
         let shape = self.shapes.get(index)?;
-        let fresh = if source.one_in(2) { shapes::calm_shape(source) } else { shapes::shape(source) };
+        let fresh = if source.one_in(2) { shapes::ordinary_shape(source) } else { shapes::shape(source) };
         match source.below(12) {
             0 => shape.def = fresh,
             1 => shape.def.geometry = shapes::geometry(source),

@@ -128,10 +128,10 @@ impl State {
     }
 
     fn alter_config(&mut self, source: &mut Source<'_>) -> Option<()> {
-        let calm = source.is_calm();
+        let ordinary = source.is_ordinary();
         let limits = self.config;
         self.config = generator::config(source);
-        source.set_calm(calm);
+        source.set_ordinary(ordinary);
         let Config { body_limit, shape_limit, joint_limit, .. } = limits;
         self.config = Config { body_limit, shape_limit, joint_limit, ..self.config };
         self.config.sleeping |= self.islands.values().count() > 0;

@@ -81,7 +81,7 @@ impl BroadPhase {
         self.boxes.get(slot as usize).copied().unwrap_or(Aabb::NOWHERE)
     }
 
-    fn remember(&mut self, slot: u32, fat: Aabb) {
+    fn record_box(&mut self, slot: u32, fat: Aabb) {
         if self.boxes.len() <= slot as usize {
             self.boxes.resize(slot as usize + 1, Aabb::NOWHERE);
         }
@@ -90,7 +90,7 @@ impl BroadPhase {
 
     /// Inserts or moves the box of a slot.
     pub(crate) fn set(&mut self, slot: u32, fat: Aabb) {
-        self.remember(slot, fat);
+        self.record_box(slot, fat);
         match &mut self.structure {
             Structure::Tree(tree) => tree.set(slot, fat),
             Structure::SweepAndPrune(sweep) => sweep.set(slot, fat),
@@ -108,7 +108,7 @@ impl BroadPhase {
 
     /// Moves the boxes of many slots.
     pub(crate) fn set_many(&mut self, boxes: &[(u32, Aabb)]) {
-        boxes.iter().for_each(|&(slot, fat)| self.remember(slot, fat));
+        boxes.iter().for_each(|&(slot, fat)| self.record_box(slot, fat));
         let boxes = boxes.iter().copied();
         match &mut self.structure {
             Structure::Tree(tree) => tree.set_many(boxes),
@@ -135,7 +135,7 @@ impl BroadPhase {
         *self = BroadPhase::new(self.kind());
         let boxes = boxes.into_iter();
         if let Structure::Tree(_) = self.structure {
-            boxes.for_each(|(slot, fat)| self.remember(slot, fat));
+            boxes.for_each(|(slot, fat)| self.record_box(slot, fat));
             let present = (0..).zip(&self.boxes).filter(|(_, fat)| **fat != Aabb::NOWHERE);
             let mut tree = Tree::default();
             tree.refill(present.map(|(slot, fat)| (slot, *fat)));

@@ -213,7 +213,7 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
             return Err(NetError::Diverged { tick });
         }
         let mut driver = Driver::resume(game, tick);
-        driver.remember(self.options.memory());
+        driver.set_memory(self.options.memory());
         if self.options.window() == 0 {
             driver = driver.with_echo(self.options.check_interval.into());
         }

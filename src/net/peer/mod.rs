@@ -141,7 +141,7 @@ impl<G: NetGame, A: Address, T: Transport<A>> Peer<G, A, T> {
 
     fn new(setup: &G::Setup, options: NetOptions, transport: T) -> Result<Self, NetError> {
         let mut driver = Driver::start(setup, options.checkpoint_interval)?;
-        driver.remember(options.memory());
+        driver.set_memory(options.memory());
         if options.window() == 0 {
             driver = driver.with_echo(options.check_interval.into());
         }

@@ -54,7 +54,7 @@ impl<const N: usize> ContactExtras<N> {
 
     /// Records which points have pushed.
     #[inline(always)]
-    pub(super) fn remember_pushes<L: Lanes<N>>(&mut self, batch: &Batch<N>) {
+    pub(super) fn record_pushes<L: Lanes<N>>(&mut self, batch: &Batch<N>) {
         for (point, pushed) in batch.points[..batch.count].iter().zip(&mut self.pushed) {
             let pushes = L::to_int(L::greater(L::load(&point.normal_lambda), L::splat(0)));
             L::store(L::or(L::load(pushed), pushes), pushed);

@@ -159,7 +159,7 @@ impl<L: Lanes<N>, const N: usize> Solved<L, N> {
         L::store(tangent_lambda, &mut batch.tangent_lambda);
         pair.store(bodies, &batch.changed);
         if let Some(extras) = extras {
-            extras.remember_pushes::<L>(batch);
+            extras.record_pushes::<L>(batch);
         }
     }
 }

@@ -130,7 +130,7 @@ impl<const N: usize> Kernel<N> for Store<'_, N> {
                 };
                 let second = if count > 1 { point(1) } else { PointImpulse::default() };
                 let rolling = extras.map_or(Speed::ZERO, |extras| extras.rolling.impulse(lane));
-                contacts[index].remember([point(0), second], count, rolling);
+                contacts[index].store_impulses([point(0), second], count, rolling);
                 pushed[index] =
                     batch.pushed[0] >> lane & 1 != 0 || count > 1 && batch.pushed[1] >> lane & 1 != 0;
             }

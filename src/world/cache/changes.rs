@@ -39,7 +39,7 @@ impl Changes {
     }
 
     /// Whether sleeping contacts have to be checked.
-    pub(crate) fn concerns_resting(&self) -> bool {
+    pub(crate) fn affects_sleeping_contacts(&self) -> bool {
         self.everything || self.sleeping_contacts
     }
 
@@ -59,7 +59,7 @@ impl Changes {
     }
 
     /// Records that sleeping contacts may have ended or may have an active body again.
-    pub(crate) fn resting_changed(&mut self) {
+    pub(crate) fn sleeping_contacts_changed(&mut self) {
         self.sleeping_contacts = true;
     }
 

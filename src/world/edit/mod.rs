@@ -52,6 +52,6 @@ impl World {
             shape.fat = fat_box(&shape.def, body, config);
         }
         self.scratch.update_body(&self.state, slot);
-        self.scratch.pairs.changes.resting_changed();
+        self.scratch.pairs.changes.sleeping_contacts_changed();
     }
 }

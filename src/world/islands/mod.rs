@@ -13,7 +13,7 @@
 mod sleep;
 mod wake;
 
-pub(crate) use sleep::{put_to_sleep, sleep_calm_sets, unite, unite_connected, unite_touching};
+pub(crate) use sleep::{put_sleepy_sets_to_sleep, put_to_sleep, unite, unite_connected, unite_touching};
 pub(crate) use wake::{
     joints_changed, wake_body, wake_island, wake_joined, wake_overlapping, wake_overlapping_shape,
 };

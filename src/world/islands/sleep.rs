@@ -21,7 +21,7 @@ pub(crate) fn put_to_sleep(state: &mut State, scratch: &mut Scratch, slot: u32) 
             union.keep_awake(other);
         }
     }
-    sleep_calm_sets(state, scratch);
+    put_sleepy_sets_to_sleep(state, scratch);
 }
 
 /// Unites the bodies of the awake set that contacts and joints of the last tick connect.
@@ -51,7 +51,7 @@ pub(crate) fn unite(state: &State, union: &mut UnionFind, a: u32, b: u32) {
 }
 
 /// Makes a sleeping island of every set of bodies in the awake set that is not marked to stay awake.
-pub(crate) fn sleep_calm_sets(state: &mut State, scratch: &mut Scratch) {
+pub(crate) fn put_sleepy_sets_to_sleep(state: &mut State, scratch: &mut Scratch) {
     let Scratch { awake, union, .. } = &mut *scratch;
     let mut any = false;
     for &slot in awake.bodies() {
@@ -76,7 +76,7 @@ pub(crate) fn sleep_calm_sets(state: &mut State, scratch: &mut Scratch) {
     if any {
         scratch.awake.invalidate();
         // Fat boxes may have ceased to overlap since the last pair update.
-        scratch.pairs.changes.resting_changed();
+        scratch.pairs.changes.sleeping_contacts_changed();
         put_contacts_to_sleep(state, scratch);
     }
 }

@@ -16,7 +16,7 @@ pub(crate) fn wake_island(state: &mut State, scratch: &mut Scratch, island: Isla
         body.rest_ticks.reset();
         scratch.pairs.changes.body_changed(body);
     }
-    scratch.pairs.changes.resting_changed();
+    scratch.pairs.changes.sleeping_contacts_changed();
     scratch.awake.invalidate();
 }
 
@@ -29,7 +29,7 @@ pub(crate) fn wake_body(state: &mut State, scratch: &mut Scratch, slot: u32) {
         Some(island) => wake_island(state, scratch, island),
         None if body.is_active() && !was_active => {
             scratch.pairs.changes.body_changed(body);
-            scratch.pairs.changes.resting_changed();
+            scratch.pairs.changes.sleeping_contacts_changed();
         }
         None => {}
     }

@@ -80,8 +80,8 @@ fn contacts_of_every_kind_come_back() {
         let points = [point(0xffff, Speed::MAX), point(7, Speed::DELTA)];
         match slot % 3 {
             0 => contact.rolling = rolling,
-            1 => contact.remember([points[0], PointImpulse::default()], 1, rolling),
-            _ => contact.remember(points, 2, rolling),
+            1 => contact.store_impulses([points[0], PointImpulse::default()], 1, rolling),
+            _ => contact.store_impulses(points, 2, rolling),
         }
         if slot % 2 == 0 { &mut state.contacts } else { &mut *state.sleeping_contacts }.push(contact);
     }

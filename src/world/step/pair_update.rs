@@ -16,7 +16,7 @@ pub(super) fn update_pairs(state: &mut State, scratch: &mut Scratch) {
         return;
     }
     scratch.pairs.non_colliding.refresh(state);
-    activate_resting(state, scratch);
+    activate_sleeping_contacts(state, scratch);
     let left_out = find_new(state, scratch);
     merge_contacts(state, scratch);
     keep_to_limit(state, scratch, left_out);
@@ -29,10 +29,10 @@ pub(super) fn update_pairs(state: &mut State, scratch: &mut Scratch) {
 
 /// Moves the sleeping contacts that have an active body again to the fresh contacts. Ends sleeping contacts whose boxes
 /// no longer overlap or which may not collide any more, as after a kinematic body with a sensor was moved by hand.
-fn activate_resting(state: &mut State, scratch: &mut Scratch) {
+fn activate_sleeping_contacts(state: &mut State, scratch: &mut Scratch) {
     let pairs = &mut scratch.pairs;
     pairs.buffers.fresh.clear();
-    if state.sleeping_contacts.is_empty() || !pairs.changes.concerns_resting() {
+    if state.sleeping_contacts.is_empty() || !pairs.changes.affects_sleeping_contacts() {
         return;
     }
     let mut sleeping_contacts = core::mem::take(&mut state.sleeping_contacts);
@@ -98,7 +98,7 @@ impl PairChange {
         let (a, b) = pair;
         let boxes = shapes.broad_phase();
         let rules = changes.concerns_rules();
-        let anywhere = rules || changes.concerns_resting() || state.pairs_left_out;
+        let anywhere = rules || changes.affects_sleeping_contacts() || state.pairs_left_out;
         if !(anywhere || boxes.has_moved(a) || boxes.has_moved(b)) {
             return PairChange::Stays;
         }

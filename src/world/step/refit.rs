@@ -43,7 +43,7 @@ pub(super) fn refit_boxes(state: &mut State, scratch: &mut Scratch) {
                 if !body.is_active() {
                     // The new fat box of a kinematic body that has stopped may no longer overlap shapes that rest on
                     // it.
-                    pairs.changes.resting_changed();
+                    pairs.changes.sleeping_contacts_changed();
                 }
             }
         }

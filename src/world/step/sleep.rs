@@ -4,7 +4,7 @@ use crate::body::{Body, BodyKind, Handle};
 use crate::math::{Shift, Speed, Vec2, narrow};
 use crate::solver::SolverBody;
 use crate::world::cache::Scratch;
-use crate::world::islands::{sleep_calm_sets, unite_connected};
+use crate::world::islands::{put_sleepy_sets_to_sleep, unite_connected};
 use crate::world::state::State;
 
 /// Updates the ticks at rest of all awake bodies, and puts every island to sleep whose bodies have been at rest long
@@ -39,7 +39,7 @@ pub(super) fn fall_asleep(state: &mut State, scratch: &mut Scratch) {
                 union.keep_awake(slot);
             }
         }
-        sleep_calm_sets(state, scratch);
+        put_sleepy_sets_to_sleep(state, scratch);
     }
 }
 

@@ -112,7 +112,7 @@ mod tests {
     }
 
     #[test]
-    fn a_cut_forgets_what_came_after() {
+    fn a_cut_removes_what_came_after() {
         let mut history = History::new(0, 1000);
         (1..=10).for_each(|tick| history.keep(tick * 10, tick, 7, tick));
         history.truncate(50);

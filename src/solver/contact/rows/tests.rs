@@ -8,7 +8,7 @@ use crate::simd::{Backend, Kernel, Machine, Scalar, WIDTH};
 use std::vec::Vec;
 
 #[test]
-fn grip_is_friction_times_the_ratio_of_denominators() {
+fn friction_ratio_is_friction_times_the_ratio_of_denominators() {
     let one = 1i64 << 30;
     assert_eq!(friction_ratio(fx!(0.5), one), FrictionRatio::lit("0.5"));
     assert_eq!(friction_ratio(fx!(0.5), 4 * one), FrictionRatio::lit("2"));

@@ -10,7 +10,7 @@ use lockstep2d::solver::{ContactTuning, JointDef};
 use lockstep2d::world::{BodyPose, Command, Config, Explosion, World};
 
 use crate::generator::{serde_handle::Handle, spawn};
-use crate::shapes::{calm_chain, calm_shape, half_extents};
+use crate::shapes::{half_extents, ordinary_chain, ordinary_shape};
 use crate::source::Source;
 use crate::{joints, settings};
 
@@ -62,7 +62,7 @@ fn ground(source: &mut Source<'_>, middle: Vec2<Fx>, commands: &mut Vec<Command>
     let at = middle + Vec2::new(Fx::ZERO, FLOOR);
     let fixed = BodyDef::fixed().position(at);
     commands.push(match source.below(7) {
-        5 => spawn(fixed, &calm_chain(source)),
+        5 => spawn(fixed, &ordinary_chain(source)),
         6 => spawn(fixed, &belt(source)),
         0 => spawn(fixed, &[line((fx!(-8), fx!(0)), (fx!(8), fx!(0)))]),
         1 => spawn(fixed, &[rectangle((fx!(10), fx!(0.5)), fx!(0), fx!(-0.5))]),
@@ -103,7 +103,7 @@ fn belt(source: &mut Source<'_>) -> [ShapeDef; 3] {
 
 /// Adds equal bodies in rows, next to each other or slightly apart.
 pub(crate) fn pile(source: &mut Source<'_>, middle: Vec2<Fx>, commands: &mut Vec<Command>) {
-    let shape = calm_shape(source);
+    let shape = ordinary_shape(source);
     let count = source.pick(&[12, 8, 16, 14, 10, 12, 20, 28]);
     let columns = source.pick(&[4, 2, 3, 1, 6, 5]);
     let gap = source.pick(&[fx!(0), fx!(0.01), fx!(-0.005), fx!(0.1)]);
@@ -139,10 +139,10 @@ fn chain(source: &mut Source<'_>, middle: Vec2<Fx>, commands: &mut Vec<Command>)
         let spawned = commands.iter().filter(|command| matches!(command, Command::Spawn { .. })).count();
         BodyId::of_bytes(spawned as u64)
     };
-    let shape = calm_shape(source);
+    let shape = ordinary_shape(source);
     let half = half_extents(&shape);
     let start = middle + Vec2::new(source.thousandths(-3000, 0), source.thousandths(0, 3000));
-    let kind = joints::calm_kind(source);
+    let kind = joints::ordinary_kind(source);
     let mut before = None;
     if !source.one_in(4) {
         before = Some((slot(commands), Vec2::ZERO));
@@ -179,13 +179,13 @@ pub fn command(
             let kind =
                 source.pick(&[BodyKind::Dynamic, BodyKind::Dynamic, BodyKind::Dynamic, BodyKind::Kinematic]);
             let mut body = BodyDef::new(kind).position(above).angle(source.angle());
-            body.settings = settings::calm_settings(source);
+            body.settings = settings::ordinary_settings(source);
             let velocity = vector(source, 4000);
-            spawn(body.velocity(velocity), &[calm_shape(source)])
+            spawn(body.velocity(velocity), &[ordinary_shape(source)])
         }
         3 => Command::Despawn { body },
         4 => {
-            let mut shape = calm_shape(source);
+            let mut shape = ordinary_shape(source);
             shape.offset = vector(source, 300);
             Command::AddShape { body, shape }
         }
@@ -231,7 +231,7 @@ fn neighbours(source: &mut Source<'_>, world: &World, body: BodyId) -> Option<Jo
     let between = (here.centre_of_mass() + there.centre_of_mass()).scale(fx!(0.5));
     let anchor = |body: &lockstep2d::body::Body| body.transform().apply_inverse(between);
     let (a, b) = (anchor(here), anchor(there));
-    let mut joint = JointDef::new(body, other, joints::calm_kind(source)).anchor_a(a).anchor_b(b);
+    let mut joint = JointDef::new(body, other, joints::ordinary_kind(source)).anchor_a(a).anchor_b(b);
     // The rest angle is the current one, so that joints that hold the angle have nothing to correct.
     joint.frame_b.angle = here.angle() - there.angle();
     Some(joints::finish(source, joint))
@@ -247,16 +247,16 @@ fn change(source: &mut Source<'_>, world: &World, body: BodyId, commands: &mut V
         1 => Command::Wake { body },
         2 => Command::Disable { body },
         3 | 4 => Command::Enable { body },
-        5 => Command::SetBody { body, settings: settings::calm_settings(source) },
+        5 => Command::SetBody { body, settings: settings::ordinary_settings(source) },
         6 => Command::SetKind { body, kind: settings::kind(source) },
-        7 => Command::SetMass { body, mass: settings::calm_mass(source) },
+        7 => Command::SetMass { body, mass: settings::ordinary_mass(source) },
         8 => Command::SetUserData { body, user_data: source.byte().into() },
         9 | 10 => {
             let offset = Vec2::new(source.thousandths(-100, 100), source.thousandths(-100, 100));
             Command::MoveTo { body, position: here + offset, angle: lockstep2d::math::Angle::ZERO }
         }
         11 => match some_shape {
-            Some(&shape) => Command::SetShape { shape, def: calm_shape(source) },
+            Some(&shape) => Command::SetShape { shape, def: ordinary_shape(source) },
             None => return,
         },
         12 => match some_joint {
@@ -270,7 +270,7 @@ fn change(source: &mut Source<'_>, world: &World, body: BodyId, commands: &mut V
                 angle: lockstep2d::math::Angle::ZERO,
             };
             let places = (0..count).map(place).collect();
-            Command::SpawnEach { body: BodyDef::dynamic(), shapes: vec![calm_shape(source)], places }
+            Command::SpawnEach { body: BodyDef::dynamic(), shapes: vec![ordinary_shape(source)], places }
         }
     });
 }
