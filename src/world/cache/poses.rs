@@ -94,6 +94,9 @@ impl Poses {
                 self.shapes[id.slot() as usize].as_mut().expect("every shape is posed when it is added");
             if let Some(faces) = self.boxes.turn(id.slot(), &rotation) {
                 posed.turn_box(&faces, body.centre);
+            } else if self.motion.shape(id.slot()).disc {
+                // Without reading the definition of the shape, a random access.
+                posed.shift(body.centre.wrapping_sub(posed.centre));
             } else {
                 posed.renew(&state.shapes.at(id.slot()).def, body, &rotation);
                 self.boxes.renew(id.slot(), posed);
