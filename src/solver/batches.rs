@@ -14,7 +14,7 @@ use core::fmt::Debug;
 use super::body::SolverBody;
 use super::context::StepContext;
 use super::limits::Faults;
-use crate::simd::{Kernel, Lanes, Scalar, Shared, WIDTH};
+use crate::simd::{Kernel, Lanes, Scalar, Shared, WIDTH, prefetch};
 
 /// Smallest number of batches in a job. Handing a smaller job to a thread costs more than doing it.
 const BATCHES_PER_JOB: usize = 16;
@@ -28,6 +28,9 @@ pub(super) trait BatchKind: Clone + Debug + 'static {
     type Record<const N: usize>: Clone + Debug + Sync;
     /// The part that only some batches have.
     type Extra<const N: usize>: Clone + Debug + Send;
+
+    /// The indices of the bodies of each lane: those of A and those of B.
+    fn bodies<const N: usize>(batch: &Self::Batch<N>) -> &[[u32; N]; 2];
 
     /// Whether a batch has an extra.
     fn has_extra<const N: usize>(batch: &Self::Batch<N>) -> bool;
@@ -150,8 +153,14 @@ impl<K: BatchKind, O: Operation<K>, const N: usize> Kernel<N> for Run<'_, K, O, 
     #[inline(always)]
     fn run<L: Lanes<N>>(self) {
         let Run { batches, records, extras, operation, bodies, faults } = self;
-        let mut extras = extras.iter_mut();
-        for (batch, record) in batches.iter_mut().zip(records) {
+        let (mut extras, mut records) = (extras.iter_mut(), records.iter());
+        let mut rest = batches;
+        while let ([batch, others @ ..], Some(record)) = (rest, records.next()) {
+            rest = others;
+            if let Some(next) = rest.first() {
+                // The bodies of the next batch are read through these indices.
+                prefetch(K::bodies(next));
+            }
             let extra = if K::has_extra(batch) { extras.next() } else { None };
             operation.apply::<L, N>(BatchParts { batch, record, extra, bodies, faults });
         }

@@ -62,6 +62,11 @@ impl BatchKind for Contacts {
     type Extra<const N: usize> = ContactExtras<N>;
 
     #[inline(always)]
+    fn bodies<const N: usize>(batch: &Batch<N>) -> &[[u32; N]; 2] {
+        &batch.bodies
+    }
+
+    #[inline(always)]
     fn has_extra<const N: usize>(batch: &Batch<N>) -> bool {
         batch.extras
     }

@@ -44,6 +44,11 @@ impl BatchKind for Hinges {
     type Extra<const N: usize> = AngleRows<N>;
 
     #[inline(always)]
+    fn bodies<const N: usize>(batch: &Batch<N>) -> &[[u32; N]; 2] {
+        &batch.bodies
+    }
+
+    #[inline(always)]
     fn has_extra<const N: usize>(batch: &Batch<N>) -> bool {
         batch.has_angle
     }
