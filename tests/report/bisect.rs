@@ -181,7 +181,7 @@ fn a_replay_tells_the_second_and_the_trace_of_that_second_the_rest() {
     let found = bisect::<Sound>(&evidence(replay.clone()), None, &limits).unwrap();
     let (last, first) = (found.last_equal.unwrap(), found.first_different.unwrap());
     assert!(last < flip.tick && flip.tick <= first && first == last + 60, "{found:?}");
-    assert!(found.notes.last().unwrap().contains("their trace"), "{found:?}");
+    assert!(found.notes.last().unwrap().contains("a trace of them"), "{found:?}");
 
     // The faulty program simulates its own replay again.
     let trace = Trace::<Faulty<true>>::of_replay(&replay, &limits, first, 60).unwrap();
