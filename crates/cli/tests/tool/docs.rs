@@ -51,7 +51,7 @@ fn the_documentation_shows_what_is_printed() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let text = std::fs::read_to_string(root.join("docs/REPLAYS.md")).unwrap();
     let folder = Folder::new("docs");
-    for link in ["replays", "shove"] {
+    for link in ["replays", "games"] {
         std::os::unix::fs::symlink(root.join(link).canonicalize().unwrap(), folder.path(link)).unwrap();
     }
     let tool = Path::new(env!("CARGO_BIN_EXE_lockstep2d")).parent().unwrap().display();

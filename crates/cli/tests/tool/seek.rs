@@ -97,7 +97,7 @@ fn wrong_keyframes_are_refused_and_left_alone() {
     damaged[100] ^= 1;
     let damaged = folder.write("damaged", &damaged);
     for (path, why) in [
-        (&keyframes, "keyframes of another replay; delete it"),
+        (&keyframes, "the keyframes belong to another replay; delete it"),
         (&garbage, "this is not a file of keyframes"),
         (&damaged, "the hash does not match"),
         (&folder.path(""), "cannot read"),
