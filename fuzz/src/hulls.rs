@@ -25,7 +25,7 @@ pub fn run(bytes: &[u8]) -> bool {
     let mut others = points.clone();
     Rng::new(source.word()).shuffle(&mut others);
     others.extend_from_slice(&points[..source.below(points.len() + 1)]);
-    // Of several errors only the first is reported, and it may depend on the order, so only hulls are compared.
+    // Only hulls are compared: which of several errors is reported first may depend on the order.
     assert_eq!(
         found.as_ref().ok(),
         Polygon::hull(&others).as_ref().ok(),

@@ -172,7 +172,7 @@ impl JointDef {
         self
     }
 
-    /// The same joint between other bodies.
+    /// Returns this definition with two other bodies.
     #[must_use]
     pub const fn between(mut self, a: BodyId, b: BodyId) -> Self {
         (self.body_a, self.body_b) = (a, b);

@@ -219,7 +219,7 @@ impl World {
     /// Executes a command.
     ///
     /// # Errors
-    /// Those of the method of the same name. The world is then unchanged.
+    /// The errors of the `World` method of the same name. The world is then unchanged.
     pub fn execute(&mut self, command: &Command) -> Result<Outcome, WorldError> {
         match *command {
             Command::Spawn { ref body, ref shapes } => return self.spawn(body, shapes).map(Outcome::Body),

@@ -66,7 +66,7 @@ impl World {
     /// Adds a body with the same definition at every place. Shorter to record than a [`World::spawn`] for each.
     ///
     /// # Errors
-    /// Those of [`World::spawn`]. None of the bodies is added then.
+    /// The errors of [`World::spawn`]. No body is then added.
     pub fn spawn_each(
         &mut self,
         body: &BodyDef,
@@ -129,7 +129,7 @@ impl World {
     /// [`World::add_joint`] for each.
     ///
     /// # Errors
-    /// Those of [`World::add_joint`]. None of the joints is added then.
+    /// The errors of [`World::add_joint`]. No joint is then added.
     pub fn add_joint_each(
         &mut self,
         def: &JointDef,

@@ -210,7 +210,7 @@ impl World {
     /// Replaces the geometry of a shape; see [`World::set_shape`].
     ///
     /// # Errors
-    /// Those of [`World::set_shape`].
+    /// The errors of [`World::set_shape`].
     pub fn set_geometry(&mut self, id: ShapeId, geometry: Geometry) -> Result<(), WorldError> {
         self.change_shape(id, |def| def.geometry = geometry)
     }
@@ -218,7 +218,7 @@ impl World {
     /// Replaces the material of a shape; see [`World::set_shape`].
     ///
     /// # Errors
-    /// Those of [`World::set_shape`].
+    /// The errors of [`World::set_shape`].
     pub fn set_material(&mut self, id: ShapeId, material: Material) -> Result<(), WorldError> {
         self.change_shape(id, |def| def.material = material)
     }
@@ -226,7 +226,7 @@ impl World {
     /// Replaces the collision filter of a shape; see [`World::set_shape`].
     ///
     /// # Errors
-    /// Those of [`World::set_shape`].
+    /// The errors of [`World::set_shape`].
     pub fn set_filter(&mut self, id: ShapeId, filter: Filter) -> Result<(), WorldError> {
         self.change_shape(id, |def| def.filter = filter)
     }

@@ -122,7 +122,7 @@ impl Live {
 
 impl Playground for Live {
     fn act(&mut self, act: Act) {
-        // Of consecutive drag targets only the last matters.
+        // Consecutive drag targets are merged: only the last one has an effect.
         if let (Act::DragTo(_), Some(Act::DragTo(_))) = (act, self.acts.last()) {
             self.acts.pop();
         }
