@@ -45,6 +45,17 @@ pub struct Manifold {
     pub origin: Vec2<Fx>,
     points: [ManifoldPoint; 2],
     count: u8,
+    /// Index of the [`Impact`] of a manifold of the time of impact, counted from 1; 0 for a manifold of the start of the
+    /// tick.
+    pub(crate) impact: u32,
+}
+
+/// How far the bodies move until shapes that are apart at the start of a tick touch. The manifold of such shapes has
+/// the normal, the anchors and the origin of the time of impact, and the separations of the start of the tick.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Impact {
+    /// Displacements of the centres of mass of A and of B in metres.
+    pub(crate) moved: [Vec2<Length>; 2],
 }
 
 impl Manifold {
@@ -55,7 +66,8 @@ impl Manifold {
     pub(crate) const NONE: Self = Self::new(Vec2::Y);
 
     pub(crate) const fn new(normal: Vec2<Unit>) -> Self {
-        Manifold { normal, origin: Vec2::new(Fx::ZERO, Fx::ZERO), points: [Self::NO_POINT; 2], count: 0 }
+        let origin = Vec2::new(Fx::ZERO, Fx::ZERO);
+        Manifold { normal, origin, points: [Self::NO_POINT; 2], count: 0, impact: 0 }
     }
 
     /// Creates a manifold with one point.
@@ -74,7 +86,7 @@ impl Manifold {
         points: [ManifoldPoint; 2],
         count: u8,
     ) -> Self {
-        Manifold { normal, origin, points, count }
+        Manifold { normal, origin, points, count, impact: 0 }
     }
 
     /// Contact points, none to two.
@@ -125,6 +137,19 @@ impl Manifold {
         // The common case, in which all points stay, writes nothing.
         if keeps.iter().filter(|&&kept| kept).count() < self.points().len() {
             self.keep(keeps);
+        }
+    }
+
+    /// Index of the [`Impact`], for a manifold of the time of impact.
+    #[inline]
+    pub(crate) fn impact(&self) -> Option<usize> {
+        self.impact.checked_sub(1).map(|index| index as usize)
+    }
+
+    /// Sets the separation of each point.
+    pub(crate) fn separate(&mut self, separation_of: impl Fn(&ManifoldPoint) -> Step) {
+        for point in &mut self.points[..usize::from(self.count.min(2))] {
+            point.separation = separation_of(point);
         }
     }
 

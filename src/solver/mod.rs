@@ -48,7 +48,7 @@ pub(crate) use settings::Tuning;
 pub use settings::{ContactTuning, DISTANCE_MAX, SolverSettings};
 
 use crate::body::{Arena, Body, BodyId, JointId};
-use crate::collision::{Contact, Manifold};
+use crate::collision::{Contact, Impact, Manifold};
 use crate::math::{Fx, Vec2};
 use crate::threads::Threads;
 
@@ -132,10 +132,11 @@ impl Solver {
         &mut self,
         pairs: &[ActiveContact],
         manifolds: &[Manifold],
+        impacts: &[Impact],
         contacts: &[Contact],
     ) {
         let Solver { list, moving, joints, colouring, contacts: set, machine, warm_starts, .. } = self;
-        *warm_starts = set.prepare(&ContactSource { pairs, manifolds, contacts, list }, colouring, *machine);
+        *warm_starts = set.prepare(&ContactSource { pairs, manifolds, impacts, contacts, list }, colouring, *machine);
         let touched = moving.iter().filter(|moving| colouring.holds(moving.index()));
         self.contact_velocities.begin(touched.map(|moving| PushedBody {
             index: moving.index(),

@@ -4,8 +4,8 @@ use super::super::body_list::{BodyList, GROUND};
 use super::super::colour::{Node, Size};
 use super::super::row::MassFractions;
 use super::{Surface, WarmStarts};
-use crate::collision::{Contact, Manifold, Pair, PointImpulse};
-use crate::math::Length;
+use crate::collision::{Contact, Impact, Manifold, Pair, PointImpulse};
+use crate::math::{Length, Step, convert};
 use crate::simd::{Quad, prefetch};
 
 /// A touching pair that the solver solves.
@@ -26,6 +26,7 @@ pub(crate) struct ActiveContact {
 pub(in crate::solver) struct ContactSource<'a> {
     pub(in crate::solver) pairs: &'a [ActiveContact],
     pub(in crate::solver) manifolds: &'a [Manifold],
+    pub(in crate::solver) impacts: &'a [Impact],
     /// The contacts of the state, with the impulses of the last tick.
     pub(in crate::solver) contacts: &'a [Contact],
     pub(in crate::solver) list: &'a BodyList,
@@ -53,7 +54,8 @@ pub(super) struct Input {
     pub(super) anchors: Quad,
     /// Impulses of the last tick, `p = L / D`: along the normal of each point, and along the tangent.
     pub(super) carried: Quad,
-    /// The separations of the points, in the format of a step, and the friction.
+    /// The separations of the points, in the format of a step, the friction, and the distance of the surfaces half-way
+    /// between the points.
     pub(super) rest: Quad,
 }
 
@@ -102,8 +104,17 @@ impl ContactSource<'_> {
         let fractions = MassFractions::of_masses(a.mass, b.mass);
         let n = manifold.normal;
         let (inverse_a, inverse_b) = (a.inverse_gyration.parts(), b.inverse_gyration.parts());
-        let (to_a, to_b) = (a.arm_to(manifold.origin), b.arm_to(manifold.origin));
         let [first, second] = manifold.both_points();
+        let (mut to_a, mut to_b) = (a.arm_to(manifold.origin), b.arm_to(manifold.origin));
+        let gap = match manifold.count() {
+            2 => (first.separation >> 1) + (second.separation >> 1),
+            _ => first.separation,
+        };
+        let mut gap: Length = convert(gap.max(Step::ZERO));
+        if let Some(&Impact { moved }) = manifold.impact().and_then(|index| self.impacts.get(index)) {
+            (to_a, to_b) = (to_a - moved[0], to_b - moved[1]);
+            gap = Length::ZERO;
+        }
         let [old_first, old_second] = carried_over(manifold, &self.contacts[pair.contact as usize], warm);
         let tangent = old_first.tangent.saturating_add(old_second.tangent);
         Input {
@@ -124,7 +135,7 @@ impl ContactSource<'_> {
                 first.separation.to_bits(),
                 second.separation.to_bits(),
                 pair.surface.friction.to_bits(),
-                0,
+                gap.to_bits(),
             ]),
         }
     }
@@ -189,6 +200,7 @@ mod tests {
         let source = ContactSource {
             pairs: &[pair],
             manifolds: &[Manifold::new(Vec2::Y)],
+            impacts: &[],
             contacts: &[Contact::new((0, 1))],
             list: &list,
         };

@@ -65,7 +65,7 @@ pub(super) fn fill<L: Lanes<N>, const N: usize>(
     ];
     let [x0, y0, x1, y1] = columns::<L, N>(inputs, |input| &input.anchors);
     let [normal_0, normal_1, carried, _] = columns::<L, N>(inputs, |input| &input.carried);
-    let [separation_0, separation_1, friction, _] = columns::<L, N>(inputs, |input| &input.rest);
+    let [separation_0, separation_1, friction, gap] = columns::<L, N>(inputs, |input| &input.rest);
     L::store(n[0], &mut batch.n_x);
     L::store(n[1], &mut batch.n_y);
     let stiff = L::either(L::greater(one, fraction_a), L::greater(one, fraction_b));
@@ -74,7 +74,14 @@ pub(super) fn fill<L: Lanes<N>, const N: usize>(
         2 => [half_way::<L, N>(x0, x1), half_way::<L, N>(y0, y1)],
         _ => [x0, y0],
     };
-    let tangent = fill_row::<L, N>(&mut batch.tangent, t, &ends, middle, &mut inverses.tangent);
+    // The surfaces slide on each other at two places while there is a gap.
+    let half = L::narrow::<1>(L::mul(gap, one));
+    let lift_x = L::narrow::<RATIO>(L::mul(n[0], half));
+    let lift_y = L::narrow::<RATIO>(L::mul(n[1], half));
+    let surface_a = [L::sub(middle[0], lift_x), L::sub(middle[1], lift_y)];
+    let surface_b = [L::add(middle[0], lift_x), L::add(middle[1], lift_y)];
+    let tangent =
+        fill_row::<L, N>(&mut batch.tangent, t, &ends, [surface_a, surface_b], &mut inverses.tangent);
     // Impulses of the last tick are only initial guesses, so that clamping them is not a fault.
     let tangent_lambda = product::<L, N>(carried, &tangent);
     L::store(clamp::<L, N>(tangent_lambda, L::splat(TANGENT_MAX.to_bits())), &mut batch.tangent_lambda);
@@ -84,7 +91,7 @@ pub(super) fn fill<L: Lanes<N>, const N: usize>(
         let separation = L::narrow::<STEP_TO_SHIFT>(L::mul(separation, one));
         L::store(separation, &mut point.first_separation);
         L::store(separation, &mut point.separation);
-        let normal = fill_row::<L, N>(&mut point.normal, n, &ends, anchor, inverses);
+        let normal = fill_row::<L, N>(&mut point.normal, n, &ends, [anchor; 2], inverses);
         let ratio = ratio::<L, N>(&tangent, L::load(inverses));
         L::store(product::<L, N>(friction, &ratio), &mut point.friction_ratio);
         let normal_lambda = product::<L, N>(carried, &normal);
@@ -149,16 +156,16 @@ impl<L: Lanes<N>, const N: usize> ContactSide<L, N> {
     }
 }
 
-/// Computes a row. Returns the denominators of all lanes.
+/// Computes a row, given where its impulses act on A and on B. Returns the denominators of all lanes.
 #[inline(always)]
 fn fill_row<L: Lanes<N>, const N: usize>(
     row: &mut Row<N>,
     n: [L::Int; 2],
     ends: &[ContactSide<L, N>; 2],
-    anchor: [L::Int; 2],
+    anchors: [[L::Int; 2]; 2],
     inverses: &mut Ints<N>,
 ) -> Long<L, N> {
-    let [e_a, e_b] = [ends[0].lever_ratio(anchor, n), ends[1].lever_ratio(anchor, n)];
+    let [e_a, e_b] = [ends[0].lever_ratio(anchors[0], n), ends[1].lever_ratio(anchors[1], n)];
     L::store(e_a, &mut row.e_a);
     L::store(e_b, &mut row.e_b);
     let fractions = [ends[0].fraction, ends[1].fraction];

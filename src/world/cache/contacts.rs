@@ -2,7 +2,7 @@
 
 use alloc::vec::Vec;
 
-use crate::collision::{BoxPairs, CachedAxis, Contact, Manifold, SatCounters};
+use crate::collision::{BoxPairs, CachedAxis, Contact, Impact, Manifold, SatCounters};
 use crate::solver::ActiveContact;
 use crate::world::events::HitEvent;
 
@@ -38,6 +38,8 @@ pub(crate) struct NarrowPhaseBuffers<'a> {
 pub(crate) struct NarrowPhaseOutput {
     /// Manifolds with at least one point.
     pub(crate) manifolds: Vec<Manifold>,
+    /// Displacements until the impact of the manifolds that refer to one.
+    pub(crate) impacts: Vec<Impact>,
     /// For each manifold, the index of its contact in the state.
     pub(crate) contacts: Vec<u32>,
     /// The contacts among these that have a sensor.
@@ -161,6 +163,7 @@ impl NarrowPhaseOutput {
     /// Empties all lists and keeps their memory.
     fn clear(&mut self) {
         self.manifolds.clear();
+        self.impacts.clear();
         self.contacts.clear();
         self.sensors.clear();
         self.touching.clear();
@@ -174,7 +177,14 @@ impl NarrowPhaseOutput {
         let first = self.next_manifold();
         let touching = next.touching.iter();
         self.touching.extend(touching.map(|pair| ActiveContact { manifold: first + pair.manifold, ..*pair }));
+        let impacts = u32::try_from(self.impacts.len()).expect("fewer than 2^32 contacts");
         self.manifolds.extend_from_slice(&next.manifolds);
+        for manifold in &mut self.manifolds[first as usize..] {
+            if manifold.impact > 0 {
+                manifold.impact += impacts;
+            }
+        }
+        self.impacts.extend_from_slice(&next.impacts);
         self.contacts.extend_from_slice(&next.contacts);
         self.sensors.extend_from_slice(&next.sensors);
         self.approaches.extend_from_slice(&next.approaches);

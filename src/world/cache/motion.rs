@@ -8,7 +8,7 @@ use alloc::vec::Vec;
 use crate::body::{Body, Geometry, Handle, Shape};
 use crate::collision::{PosedShape, arm_of, margin_for, may_meet};
 use crate::fx;
-use crate::math::{Aabb, Fx, Length, Reciprocal, Speed, Step, Vec2, fx_mul, narrow, saturate, widen};
+use crate::math::{Aabb, Fx, Length, Reciprocal, Speed, Step, Unit, Vec2, fx_mul, narrow, saturate, widen};
 use crate::simd::prefetch;
 use crate::world::config::Config;
 use fixed::FixedI32;
@@ -37,6 +37,16 @@ impl PredictedMotion {
         let omega = |spin| -> FixedI32<U16> { body.mass.inverse_gyration.times(spin) };
         let turn = if body.spin == 0 { Travel::ZERO } else { per_second.times(omega(body.spin)) };
         PredictedMotion { centre: body.centre, shift, turn }
+    }
+
+    /// Displacement of the centre of mass until a fraction of the tick.
+    pub(crate) fn shift_until(&self, fraction: Unit) -> Vec2<Fx> {
+        self.shift.scale::<_, U24>(fraction).widen()
+    }
+
+    /// The motion of the tick, with the body where it is at a fraction of the tick.
+    pub(crate) fn advanced(&self, fraction: Unit) -> Self {
+        PredictedMotion { centre: self.centre + self.shift_until(fraction), ..*self }
     }
 
     /// Displacement of the point of the body that is at a world point.
@@ -189,6 +199,12 @@ impl ClosingBound {
     #[inline]
     pub(crate) fn is_fast(self) -> bool {
         self.distance > GHOST_TRAVEL_MIN
+    }
+
+    /// Whether the shapes may approach each other by more than a distance.
+    #[inline]
+    pub(crate) fn is_longer_than(self, distance: Step) -> bool {
+        self.distance > distance
     }
 
     /// Whether the shapes are so near that they may meet within the tick.

@@ -3,6 +3,7 @@
 mod contact_events;
 mod continuous;
 mod finalise;
+mod impact;
 mod joint_thresholds;
 mod narrow_phase;
 mod pair_update;
@@ -70,7 +71,7 @@ impl World {
         let found = contacts.output();
         solver.prepare_bodies(&state.bodies, awake.bodies(), &tuning);
         solver.prepare_joints(&state.joints, awake.joints(), &state.bodies, &tuning);
-        solver.prepare_contacts(&found.touching, &found.manifolds, &state.contacts);
+        solver.prepare_contacts(&found.touching, &found.manifolds, &found.impacts, &state.contacts);
 
         begin(Phase::Solve, PhaseView { state, solver, awake, found });
         let first_sub_step = state.tick.wrapping_mul(settings.sub_steps.into());

@@ -156,7 +156,7 @@ impl NarrowPhase<'_> {
         output: &mut NarrowPhaseOutput,
     ) -> &'t [ActiveContact] {
         let NarrowPhase { state, poses, margins, .. } = self;
-        let NarrowPhaseOutput { boxes, contacts, sensors, manifolds, touching, approaches, sat } = output;
+        let NarrowPhaseOutput { boxes, contacts, sensors, manifolds, impacts, touching, approaches, sat } = output;
         let motion = poses.motion();
         let mut box_pairs = 0..;
         for (index, is_box_pair) in near.iter() {
@@ -183,6 +183,13 @@ impl NarrowPhase<'_> {
             if shape_a.sensor || shape_b.sensor {
                 sensors.push(index);
                 continue;
+            }
+            if pair.may_impact(manifold) {
+                let sides = [contact.shapes.0, contact.shapes.1].map(|slot| Side::of(state, poses, slot));
+                if let Some(impact) = pair.move_to_impact(sides, motion, manifold, sat) {
+                    impacts.push(impact);
+                    manifold.impact = u32::try_from(impacts.len()).expect("fewer than 2^32 contacts");
+                }
             }
             if shape_a.hit_events || shape_b.hit_events {
                 approaches.extend(fast_approach(state, motion, index, contact, manifold));
@@ -253,12 +260,8 @@ fn keep_reachable(
     }
     let (a, b) = contact.shapes;
     if pair.a.one_way || pair.b.one_way {
-        let side = |slot: u32| Side {
-            shape: state.shapes.at(slot),
-            body: state.body_of(slot),
-            posed: poses.at(slot),
-        };
-        contact.passing = pair.lets_pass([side(a), side(b)], manifold, was_passing);
+        let sides = [a, b].map(|slot| Side::of(state, poses, slot));
+        contact.passing = pair.lets_pass(sides, manifold, was_passing);
         if contact.passing {
             *manifold = Manifold::NONE;
             return;

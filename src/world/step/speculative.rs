@@ -4,8 +4,9 @@ use crate::body::{Body, Shape};
 use crate::collision::{GhostFilter, Manifold, ManifoldPoint, OneWay, PosedShape, is_ghost};
 use crate::math::{Length, Rot, Step, Unit, Vec2, convert, saturate, widen};
 use crate::world::cache::{
-    ClosingBound, GHOST_TRAVEL_MIN, Margins, MotionCache, PredictedMotion, ShapeMotion, Travel,
+    ClosingBound, GHOST_TRAVEL_MIN, Margins, MotionCache, Poses, PredictedMotion, ShapeMotion, Travel,
 };
+use crate::world::state::State;
 use fixed::FixedI32;
 use fixed::types::extra::{LeEqU32, U27};
 
@@ -67,6 +68,10 @@ pub(super) struct Side<'a> {
 }
 
 impl<'a> Side<'a> {
+    pub(super) fn of(state: &'a State, poses: &'a Poses, slot: u32) -> Self {
+        Side { shape: state.shapes.at(slot), body: state.body_of(slot), posed: poses.at(slot) }
+    }
+
     /// The shape with its direction in world axes, if it is a one-way shape.
     fn one_way(&self) -> Option<OneWay<'a>> {
         let angle = self.shape.one_way()?;

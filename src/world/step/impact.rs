@@ -1,0 +1,128 @@
+//! Contacts at the time of impact: the manifold of shapes that first touch later in the tick.
+//!
+//! A manifold of the start of the tick shows shapes that are still apart. Two balls that fly past each other's centre
+//! turn their common normal until they touch, and a rod turns its ends. Solved with the normal and the lever arms of
+//! the start, such an impact changes the angular momentum and the energy of the bodies. So the shapes are advanced to
+//! the time at which they touch at the velocities of the start, and collided there. The separations are then those of
+//! the start again, along the new rows:
+//!
+//! ```text
+//! s(0) = s(f) + f (approach in the tick)
+//! ```
+//!
+//! The time follows by conservative advancement (B. Mirtich, 1996): the separation along a fixed axis is a lower bound
+//! of the distance.
+
+use super::speculative::{Side, SpeculativePair, approach};
+use crate::collision::{CachedAxis, Impact, Manifold, PosedShape, SatCounters, arm_of, collide_near};
+use crate::math::{Angle, Rot, Step, Unit, mul, round_shift_wide, saturate, saturate_wide, widen};
+use crate::world::cache::{MotionCache, PredictedMotion, Travel};
+
+/// Largest number of times at which the shapes are collided.
+const ROUNDS_MAX: u32 = 4;
+
+/// Largest distance in metres at which shapes count as touching.
+const TOLERANCE: Step = Step::lit("0.001");
+
+/// A shape and the motion of its body in the tick.
+struct MovingShape<'a> {
+    side: Side<'a>,
+    motion: &'a PredictedMotion,
+    disc: bool,
+}
+
+impl MovingShape<'_> {
+    /// The shape at a fraction of the tick.
+    fn at(&self, fraction: Unit) -> PosedShape {
+        let MovingShape { side: Side { shape, body, posed }, motion, disc } = *self;
+        let moved = motion.shift_until(fraction);
+        if motion.turn == 0 || disc {
+            let mut posed = posed.clone();
+            posed.shift(moved);
+            return posed;
+        }
+        let turned: Travel = mul(motion.turn, fraction);
+        let rotation = Rot::from_angle(body.angle() + Angle::from_radians(widen(turned)));
+        let centre = motion.centre + moved + rotation.apply_wide(arm_of(&shape.def, body));
+        PosedShape::of_geometry(shape.geometry(), centre, rotation)
+    }
+}
+
+impl SpeculativePair<'_> {
+    /// Whether the shapes are apart and approach each other by so much that a manifold of the time of impact differs.
+    #[inline]
+    pub(super) fn may_impact(&self, manifold: &Manifold) -> bool {
+        self.closing.is_longer_than(self.margins.touching)
+            && manifold.points().iter().all(|point| point.separation > self.margins.touching)
+    }
+
+    /// Replaces the manifold of the start of the tick by that of the time of impact, if the shapes touch within the
+    /// tick.
+    #[cold]
+    pub(super) fn move_to_impact(
+        &self,
+        sides: [Side<'_>; 2],
+        motion: &MotionCache,
+        manifold: &mut Manifold,
+        counters: &mut SatCounters,
+    ) -> Option<Impact> {
+        let motions = [motion.motion(self.a), motion.motion(self.b)];
+        let shapes = [(self.a, 0), (self.b, 1)].map(|(shape, side)| MovingShape {
+            side: sides[side],
+            motion: motions[side],
+            disc: shape.disc,
+        });
+        let mut time = time_of_touch(&soonest(motions, manifold)?, 0)?;
+        let mut found = None;
+        for _ in 0..ROUNDS_MAX {
+            let fraction = Unit::from_bits(saturate(time));
+            let [a, b] = shapes.each_ref().map(|shape| shape.at(fraction));
+            let at_impact = collide_near(&a, &b, self.closing.margin, &mut CachedAxis::default(), counters);
+            if at_impact.points().is_empty() {
+                break;
+            }
+            let there = motions.map(|motion| motion.advanced(fraction));
+            let next = soonest(there.each_ref(), &at_impact);
+            found = Some((at_impact, fraction, there));
+            let Some(later) = next.filter(|next| next.separation.abs() > TOLERANCE) else { break };
+            match time_of_touch(&later, time) {
+                Some(later) => time = later,
+                None => break,
+            }
+        }
+        let (mut at_impact, fraction, there) = found?;
+        let closing_at = approach(&there[0], &there[1], &at_impact);
+        at_impact.separate(|point| {
+            let closing = i128::from(closing_at(point)) * i128::from(fraction.to_bits());
+            let closed = saturate_wide(round_shift_wide(closing, Unit::FRAC_NBITS));
+            Step::from_bits(saturate(closed.saturating_add(point.separation.to_bits().into())))
+        });
+        *manifold = at_impact;
+        Some(Impact { moved: motions.map(|motion| motion.shift_until(fraction).narrow()) })
+    }
+}
+
+/// A point of a manifold that closes, and by how much in a whole tick.
+struct Closing {
+    separation: Step,
+    distance: i64,
+}
+
+/// The point of a manifold that closes first.
+fn soonest([a, b]: [&PredictedMotion; 2], manifold: &Manifold) -> Option<Closing> {
+    let closing_at = approach(a, b, manifold);
+    let points = manifold.points().iter().map(|point| Closing { separation: point.separation, distance: closing_at(point) });
+    // s1 / d1 < s2 / d2 for positive d.
+    points.filter(|point| point.distance > 0).reduce(|first, point| {
+        let time = |point: &Closing, other: &Closing| i128::from(point.separation.to_bits()) * i128::from(other.distance);
+        if time(&point, &first) < time(&first, &point) { point } else { first }
+    })
+}
+
+/// The fraction of the tick at which a point has closed, in units of [`Unit`], from that at which its separation was
+/// measured. `None` after the end of the tick.
+fn time_of_touch(point: &Closing, from: i64) -> Option<i64> {
+    let rest = (i64::from(point.separation.to_bits()) << Unit::FRAC_NBITS) / point.distance;
+    let time = from.saturating_add(rest);
+    (0..=Unit::ONE.to_bits().into()).contains(&time).then_some(time)
+}
