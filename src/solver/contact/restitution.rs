@@ -11,10 +11,13 @@
 use super::super::batches::{BatchParts, Operation};
 use super::super::limits::IMPULSE_MAX;
 use super::super::pair::{BodyPairW, UNIT};
+use super::batch::Batch;
 use super::extras::ContactExtras;
 use super::overflow_policy::{OverflowPolicy, Saturating};
+use super::rows::Inverses;
 use super::{Constants, Contacts};
-use crate::simd::Lanes;
+use crate::math::{Unit, saturate, saturate_wide};
+use crate::simd::{Ints, Lanes};
 
 /// Number of iterations in which two points that bounce are solved against each other. With one iteration, the first
 /// point would separate too fast: a tall box that was dropped flat gained a third of its energy, and spun. For boxes
@@ -32,10 +35,13 @@ impl Operation<Contacts> for ObserveApproach {
         let policy = &mut Saturating(faults);
         let pair = BodyPairW::<L, N>::load(bodies, &batch.bodies);
         let (n, _) = batch.directions::<L>();
-        let ContactExtras { approach, pushed, .. } = extras;
-        for ((point, approach), pushed) in batch.points[..batch.count].iter().zip(approach).zip(pushed) {
+        let ContactExtras { approach, pushed, total, .. } = extras;
+        for (point, total) in batch.points[..batch.count].iter().zip(total) {
+            L::store(L::add_saturating(L::load(total), L::load(&point.normal_lambda)), total);
+        }
+        let pushed = L::negative(L::or(L::load(&pushed[0]), L::load(&pushed[1])));
+        for (point, approach) in batch.points[..batch.count].iter().zip(approach) {
             let vn = pair.velocity(n, &point.normal, policy);
-            let pushed = L::negative(L::load(pushed));
             L::store(L::select(pushed, L::load(approach), vn), approach);
         }
     }
@@ -50,7 +56,7 @@ pub(in crate::solver) struct ApplyRestitution {
 impl Operation<Contacts> for ApplyRestitution {
     #[inline(always)]
     fn apply<L: Lanes<N>, const N: usize>(self, parts: BatchParts<'_, Contacts, N>) {
-        let BatchParts { batch, extra: Some(extras), bodies, faults, .. } = parts else { return };
+        let BatchParts { batch, record, extra: Some(extras), bodies, faults } = parts else { return };
         let policy = &mut Saturating(faults);
         let restitution = L::load(&extras.restitution);
         let (n, _) = batch.directions::<L>();
@@ -60,21 +66,94 @@ impl Operation<Contacts> for ApplyRestitution {
             return;
         }
         let mut pair = BodyPairW::<L, N>::load(bodies, &batch.bodies);
+        let mut rebound = [Rebound::NONE; 2];
+        for (point, rebound) in batch.points[..batch.count].iter().zip(&mut rebound) {
+            L::store(pair.velocity(n, &point.normal, policy), &mut rebound.before);
+            rebound.lambda = point.normal_lambda;
+        }
         for _ in 0..if batch.count == 2 { RESTITUTION_ITERATIONS } else { 1 } {
             for (i, &mask) in masks.iter().enumerate().take(batch.count) {
-                let point = &mut batch.points[i];
+                let point = &batch.points[i];
                 let bounce = L::mul(restitution, L::load(&extras.approach[i]));
                 let bounce = L::narrow::<UNIT>(bounce);
                 let error = L::add_saturating(pair.velocity(n, &point.normal, policy), bounce);
-                let old = L::load(&point.normal_lambda);
+                let old = L::load(&rebound[i].lambda);
                 let wanted = L::max(L::sub_saturating(old, error), L::splat(0));
                 let new = L::select(mask, L::min(wanted, L::splat(IMPULSE_MAX.to_bits())), old);
-                L::store(new, &mut point.normal_lambda);
+                L::store(new, &mut rebound[i].lambda);
                 policy.apply(&mut pair, &point.normal, L::sub(new, old));
             }
         }
+        for (point, rebound) in batch.points[..batch.count].iter().zip(&mut rebound) {
+            L::store(pair.velocity(n, &point.normal, policy), &mut rebound.after);
+        }
+        let shares = shares_without_gain(batch, extras, &record.inverses, &rebound);
+        let share = L::load(&shares);
+        let all = !L::any(L::greater(L::splat(Unit::ONE.to_bits()), share));
+        if !all {
+            pair = BodyPairW::load(bodies, &batch.bodies);
+        }
+        for (point, rebound) in batch.points[..batch.count].iter_mut().zip(&rebound) {
+            let old = L::load(&point.normal_lambda);
+            let mut new = L::load(&rebound.lambda);
+            if !all {
+                let d = L::narrow::<UNIT>(L::mul(share, L::sub(new, old)));
+                policy.apply(&mut pair, &point.normal, d);
+                new = L::add(old, d);
+            }
+            L::store(new, &mut point.normal_lambda);
+        }
         pair.store(bodies, &batch.changed);
     }
+}
+
+/// The full rebound of a point: its impulse with restitution, and its relative normal velocities before and after.
+#[derive(Clone, Copy)]
+struct Rebound<const N: usize> {
+    lambda: Ints<N>,
+    before: Ints<N>,
+    after: Ints<N>,
+}
+
+impl<const N: usize> Rebound<N> {
+    const NONE: Self = Rebound { lambda: Ints::ZERO, before: Ints::ZERO, after: Ints::ZERO };
+}
+
+/// The share of the rebound of each lane with which the impulses of its points over the tick do no work,
+///
+/// ```text
+/// W = sum P (v+ + v-) / 2 <= 0        P = L / D
+/// ```
+///
+/// Newton's restitution gains energy where the rebound of one point adds to that of another. `W` is convex in the
+/// share, so that a line between no rebound and all of it is above it.
+fn shares_without_gain<const N: usize>(
+    batch: &Batch<N>,
+    extras: &ContactExtras<N>,
+    inverses: &Inverses<N>,
+    rebound: &[Rebound<N>; 2],
+) -> Ints<N> {
+    let wide = |x: i32| i128::from(x);
+    Ints(core::array::from_fn(|lane| {
+        let (mut none, mut all) = (0, 0);
+        for i in 0..batch.count {
+            let Rebound { lambda, before, after } = &rebound[i];
+            let inverse = wide(inverses.normals[i].0[lane]);
+            let tick = wide(extras.total[i].0[lane]);
+            let approach = wide(extras.approach[i].0[lane]);
+            let stop = tick + wide(batch.points[i].normal_lambda.0[lane]);
+            none += inverse * stop * (wide(before.0[lane]) + approach);
+            all += inverse * (tick + wide(lambda.0[lane])) * (wide(after.0[lane]) + approach);
+        }
+        if all <= 0 {
+            Unit::ONE.to_bits()
+        } else if none >= 0 {
+            0
+        } else {
+            // At most 2^97 and shifted by 30 bits.
+            saturate(saturate_wide((-none << Unit::FRAC_NBITS) / (all - none)))
+        }
+    }))
 }
 
 /// Mask of the lanes in which a point approached fast enough and was pushed.
