@@ -103,6 +103,11 @@ impl<K: BatchKind, const N: usize> Batches<K, N> {
 }
 
 impl<K: BatchKind> BatchList<K> {
+    /// Whether any batch has an extra.
+    pub(super) fn has_extras(&self) -> bool {
+        !self.overflow.extras.is_empty() || !self.coloured.extras.is_empty()
+    }
+
     /// Runs an operation over the overflow, one constraint after the other.
     pub(super) fn run_overflow(&mut self, operation: impl Operation<K>, context: &StepContext<'_>) {
         let Batches { batches, records, extras, .. } = &mut self.overflow;

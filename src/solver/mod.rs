@@ -60,6 +60,8 @@ const COLD_ROUNDS: u32 = 4;
 /// others, and new points come from a body that lands, not from a pile.
 const COLD_POINTS: u32 = 256;
 
+const RESTITUTION_PASSES: u32 = 4;
+
 /// The working memory of the solver. Only its allocations are reused in the next tick, not its contents.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Solver {
@@ -140,7 +142,7 @@ impl Solver {
         let touched = moving.iter().filter(|moving| colouring.holds(moving.index()));
         self.contact_velocities.begin(touched.map(|moving| PushedBody {
             index: moving.index(),
-            shared: moving.has_extras() || joints.holds(moving.index()),
+            shared: set.has_extras() || moving.has_extras() || joints.holds(moving.index()),
         }));
     }
 
@@ -163,8 +165,10 @@ impl Solver {
         integrate_velocities(moving, context);
 
         // Warm start.
-        contacts.run_overflow(ObserveApproach, context);
-        contacts.run_coloured(ObserveApproach, context);
+        if contacts.has_extras() {
+            contacts.run_overflow(ObserveApproach, context);
+            contacts.run_coloured(ObserveApproach, context);
+        }
         joints.warm_start(context);
         if !contact_velocities.apply(context) {
             contacts.run_overflow(contact::WarmStart, context);
@@ -194,21 +198,21 @@ impl Solver {
             contacts.run_overflow(Measure, context);
             contacts.run_coloured(Measure, context);
         }
+        if contacts.has_extras() {
+            let restitution = ApplyRestitution { constants };
+            contact_velocities.exempt(context, || {
+                for _ in 0..RESTITUTION_PASSES {
+                    contacts.run_overflow(restitution, context);
+                    contacts.run_coloured(restitution, context);
+                }
+            });
+        }
     }
 
     /// Whether fewer than half of the contact points are warm-started.
     fn is_cold(&self) -> bool {
         let WarmStarts { points, kept, .. } = self.warm_starts;
         points >= COLD_POINTS && kept < points / 2
-    }
-
-    /// Applies restitution, after the sub-steps of a tick.
-    pub(crate) fn apply_restitution(&mut self, tuning: &Tuning) {
-        let restitution = ApplyRestitution { constants: Constants::new(tuning) };
-        let Solver { list, contacts, machine, threads, faults, .. } = self;
-        let context = &StepContext::new(*machine, threads, tuning, &mut list.bodies, faults);
-        contacts.run_overflow(restitution, context);
-        contacts.run_coloured(restitution, context);
     }
 
     /// Stores the impulses for the next tick.

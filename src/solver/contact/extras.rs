@@ -11,12 +11,10 @@ use crate::simd::{Ints, Lanes};
 #[derive(Clone, Debug)]
 pub(in crate::solver) struct ContactExtras<const N: usize> {
     pub(super) restitution: Ints<N>,
-    /// For each point, the relative normal velocity when the shapes first pushed each other in this tick.
+    /// For each point, the relative normal velocity at the start of the sub-step.
     pub(super) approach: [Ints<N>; 2],
-    /// For each point, -1 where the shapes have pushed each other in this tick.
+    /// For each point, -1 where the shapes have pushed each other in this sub-step.
     pub(super) pushed: [Ints<N>; 2],
-    /// For each point, the sum of its impulses in the earlier sub-steps of this tick.
-    pub(super) total: [Ints<N>; 2],
     /// Relative speed of the surfaces by themselves, against the tangent.
     pub(super) surface_speed: Ints<N>,
     /// Whether any lane has rolling resistance.
@@ -30,7 +28,6 @@ impl<const N: usize> ContactExtras<N> {
         restitution: Ints::ZERO,
         approach: [Ints::ZERO; 2],
         pushed: [Ints::ZERO; 2],
-        total: [Ints::ZERO; 2],
         surface_speed: Ints::ZERO,
         rolls: false,
         rolling: RollingRows::NONE,

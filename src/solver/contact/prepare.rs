@@ -104,10 +104,6 @@ impl<const N: usize> Batches<Contacts, N> {
         let mut extra = None;
         if batch.extras {
             let extra = extra.insert(ContactExtras::NONE);
-            // The impulses of the last tick, with which the first sub-step begins, do not count.
-            for (point, total) in batch.points[..batch.count].iter().zip(&mut extra.total) {
-                L::store(L::sub(L::splat(0), L::load(&point.normal_lambda)), total);
-            }
             for (lane, &index) in indices.iter().enumerate() {
                 let inverses = [0, 1].map(|point| Unit::from_bits(records.inverses.normals[point].0[lane]));
                 extra.fill(lane, source, index as usize, inverses);

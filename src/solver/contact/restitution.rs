@@ -35,15 +35,10 @@ impl Operation<Contacts> for ObserveApproach {
         let policy = &mut Saturating(faults);
         let pair = BodyPairW::<L, N>::load(bodies, &batch.bodies);
         let (n, _) = batch.directions::<L>();
-        let ContactExtras { approach, pushed, total, .. } = extras;
-        for (point, total) in batch.points[..batch.count].iter().zip(total) {
-            L::store(L::add_saturating(L::load(total), L::load(&point.normal_lambda)), total);
+        for (point, approach) in batch.points[..batch.count].iter().zip(&mut extras.approach) {
+            L::store(pair.velocity(n, &point.normal, policy), approach);
         }
-        let pushed = L::negative(L::or(L::load(&pushed[0]), L::load(&pushed[1])));
-        for (point, approach) in batch.points[..batch.count].iter().zip(approach) {
-            let vn = pair.velocity(n, &point.normal, policy);
-            L::store(L::select(pushed, L::load(approach), vn), approach);
-        }
+        extras.pushed = [Ints::ZERO; 2];
     }
 }
 
@@ -93,15 +88,11 @@ impl Operation<Contacts> for ApplyRestitution {
         if !all {
             pair = BodyPairW::load(bodies, &batch.bodies);
         }
-        for (point, rebound) in batch.points[..batch.count].iter_mut().zip(&rebound) {
-            let old = L::load(&point.normal_lambda);
-            let mut new = L::load(&rebound.lambda);
+        for (point, rebound) in batch.points[..batch.count].iter().zip(&rebound) {
             if !all {
-                let d = L::narrow::<UNIT>(L::mul(share, L::sub(new, old)));
-                policy.apply(&mut pair, &point.normal, d);
-                new = L::add(old, d);
+                let d = L::sub(L::load(&rebound.lambda), L::load(&point.normal_lambda));
+                policy.apply(&mut pair, &point.normal, L::narrow::<UNIT>(L::mul(share, d)));
             }
-            L::store(new, &mut point.normal_lambda);
         }
         pair.store(bodies, &batch.changed);
     }
@@ -139,11 +130,10 @@ fn shares_without_gain<const N: usize>(
         for i in 0..batch.count {
             let Rebound { lambda, before, after } = &rebound[i];
             let inverse = wide(inverses.normals[i].0[lane]);
-            let tick = wide(extras.total[i].0[lane]);
             let approach = wide(extras.approach[i].0[lane]);
-            let stop = tick + wide(batch.points[i].normal_lambda.0[lane]);
+            let stop = wide(batch.points[i].normal_lambda.0[lane]);
             none += inverse * stop * (wide(before.0[lane]) + approach);
-            all += inverse * (tick + wide(lambda.0[lane])) * (wide(after.0[lane]) + approach);
+            all += inverse * wide(lambda.0[lane]) * (wide(after.0[lane]) + approach);
         }
         if all <= 0 {
             Unit::ONE.to_bits()

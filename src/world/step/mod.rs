@@ -79,7 +79,6 @@ impl World {
             for index in 0..settings.sub_steps {
                 solver.sub_step(first_sub_step.wrapping_add(index.into()), &tuning);
             }
-            solver.apply_restitution(&tuning);
         });
         solver.store_impulses(&mut state.contacts, &mut state.joints);
 
