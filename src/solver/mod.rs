@@ -60,7 +60,7 @@ const COLD_ROUNDS: u32 = 4;
 /// others, and new points come from a body that lands, not from a pile.
 const COLD_POINTS: u32 = 256;
 
-const RESTITUTION_PASSES: u32 = 4;
+const RESTITUTION_PASSES: u32 = 8;
 
 /// The working memory of the solver. Only its allocations are reused in the next tick, not its contents.
 #[derive(Clone, Debug, Default)]

@@ -21,6 +21,12 @@ pub(super) struct BodyPairW<L: Lanes<N>, const N: usize> {
 }
 
 impl<L: Lanes<N>, const N: usize> BodyPairW<L, N> {
+    /// The same velocities. Not `Clone`, whose derived bounds lanes do not meet.
+    #[inline(always)]
+    pub(super) fn copy(&self) -> Self {
+        BodyPairW { a: self.a, b: self.b }
+    }
+
     #[inline(always)]
     pub(super) fn load(bodies: &[Cell<SolverBody>], [a, b]: &[[u32; N]; 2]) -> Self {
         BodyPairW { a: L::velocities(bodies, a), b: L::velocities(bodies, b) }

@@ -15,6 +15,8 @@ pub(in crate::solver) struct ContactExtras<const N: usize> {
     pub(super) approach: [Ints<N>; 2],
     /// For each point, -1 where the shapes have pushed each other in this sub-step.
     pub(super) pushed: [Ints<N>; 2],
+    /// For each point, the impulse of restitution in this sub-step.
+    pub(super) bounce: [Ints<N>; 2],
     /// Relative speed of the surfaces by themselves, against the tangent.
     pub(super) surface_speed: Ints<N>,
     /// Whether any lane has rolling resistance.
@@ -28,6 +30,7 @@ impl<const N: usize> ContactExtras<N> {
         restitution: Ints::ZERO,
         approach: [Ints::ZERO; 2],
         pushed: [Ints::ZERO; 2],
+        bounce: [Ints::ZERO; 2],
         surface_speed: Ints::ZERO,
         rolls: false,
         rolling: RollingRows::NONE,

@@ -39,6 +39,7 @@ impl Operation<Contacts> for ObserveApproach {
             L::store(pair.velocity(n, &point.normal, policy), approach);
         }
         extras.pushed = [Ints::ZERO; 2];
+        extras.bounce = [Ints::ZERO; 2];
     }
 }
 
@@ -62,9 +63,18 @@ impl Operation<Contacts> for ApplyRestitution {
         }
         let mut pair = BodyPairW::<L, N>::load(bodies, &batch.bodies);
         let mut rebound = [Rebound::NONE; 2];
+        for (point, bounce) in batch.points[..batch.count].iter().zip(&extras.bounce) {
+            policy.apply(&mut pair, &point.normal, L::sub(L::splat(0), L::load(bounce)));
+        }
+        let stopped = pair.copy();
         for (point, rebound) in batch.points[..batch.count].iter().zip(&mut rebound) {
             L::store(pair.velocity(n, &point.normal, policy), &mut rebound.before);
-            rebound.lambda = point.normal_lambda;
+            (rebound.old, rebound.new) = (point.normal_lambda, point.normal_lambda);
+        }
+        for (i, point) in batch.points[..batch.count].iter().enumerate() {
+            let bounce = L::load(&extras.bounce[i]);
+            L::store(L::add_saturating(L::load(&point.normal_lambda), bounce), &mut rebound[i].new);
+            policy.apply(&mut pair, &point.normal, bounce);
         }
         for _ in 0..if batch.count == 2 { RESTITUTION_ITERATIONS } else { 1 } {
             for (i, &mask) in masks.iter().enumerate().take(batch.count) {
@@ -72,27 +82,28 @@ impl Operation<Contacts> for ApplyRestitution {
                 let bounce = L::mul(restitution, L::load(&extras.approach[i]));
                 let bounce = L::narrow::<UNIT>(bounce);
                 let error = L::add_saturating(pair.velocity(n, &point.normal, policy), bounce);
-                let old = L::load(&rebound[i].lambda);
+                let old = L::load(&rebound[i].new);
                 let wanted = L::max(L::sub_saturating(old, error), L::splat(0));
                 let new = L::select(mask, L::min(wanted, L::splat(IMPULSE_MAX.to_bits())), old);
-                L::store(new, &mut rebound[i].lambda);
+                L::store(new, &mut rebound[i].new);
                 policy.apply(&mut pair, &point.normal, L::sub(new, old));
             }
         }
         for (point, rebound) in batch.points[..batch.count].iter().zip(&mut rebound) {
             L::store(pair.velocity(n, &point.normal, policy), &mut rebound.after);
         }
-        let shares = shares_without_gain(batch, extras, &record.inverses, &rebound);
-        let share = L::load(&shares);
+        let share = L::load(&shares_without_gain(batch, extras, &record.inverses, &rebound));
         let all = !L::any(L::greater(L::splat(Unit::ONE.to_bits()), share));
         if !all {
-            pair = BodyPairW::load(bodies, &batch.bodies);
+            pair = stopped;
         }
-        for (point, rebound) in batch.points[..batch.count].iter().zip(&rebound) {
+        for (i, (point, rebound)) in batch.points[..batch.count].iter().zip(&rebound).enumerate() {
+            let mut d = L::sub(L::load(&rebound.new), L::load(&rebound.old));
             if !all {
-                let d = L::sub(L::load(&rebound.lambda), L::load(&point.normal_lambda));
-                policy.apply(&mut pair, &point.normal, L::narrow::<UNIT>(L::mul(share, d)));
+                d = L::narrow::<UNIT>(L::mul(share, d));
+                policy.apply(&mut pair, &point.normal, d);
             }
+            L::store(d, &mut extras.bounce[i]);
         }
         pair.store(bodies, &batch.changed);
     }
@@ -101,13 +112,14 @@ impl Operation<Contacts> for ApplyRestitution {
 /// The full rebound of a point: its impulse with restitution, and its relative normal velocities before and after.
 #[derive(Clone, Copy)]
 struct Rebound<const N: usize> {
-    lambda: Ints<N>,
+    old: Ints<N>,
+    new: Ints<N>,
     before: Ints<N>,
     after: Ints<N>,
 }
 
 impl<const N: usize> Rebound<N> {
-    const NONE: Self = Rebound { lambda: Ints::ZERO, before: Ints::ZERO, after: Ints::ZERO };
+    const NONE: Self = Rebound { old: Ints::ZERO, new: Ints::ZERO, before: Ints::ZERO, after: Ints::ZERO };
 }
 
 /// The share of the rebound of each lane with which the impulses of its points over the tick do no work,
@@ -128,12 +140,11 @@ fn shares_without_gain<const N: usize>(
     Ints(core::array::from_fn(|lane| {
         let (mut none, mut all) = (0, 0);
         for i in 0..batch.count {
-            let Rebound { lambda, before, after } = &rebound[i];
+            let Rebound { old, new, before, after } = &rebound[i];
             let inverse = wide(inverses.normals[i].0[lane]);
             let approach = wide(extras.approach[i].0[lane]);
-            let stop = wide(batch.points[i].normal_lambda.0[lane]);
-            none += inverse * stop * (wide(before.0[lane]) + approach);
-            all += inverse * wide(lambda.0[lane]) * (wide(after.0[lane]) + approach);
+            none += inverse * wide(old.0[lane]) * (wide(before.0[lane]) + approach);
+            all += inverse * wide(new.0[lane]) * (wide(after.0[lane]) + approach);
         }
         if all <= 0 {
             Unit::ONE.to_bits()
