@@ -21,6 +21,8 @@ pub(super) struct Node {
     bucket: u8,
     /// Constraints of one colour and one size are solved together.
     size: Size,
+    /// Cold constraints are listed separately.
+    cold: bool,
     /// The bodies that the constraint changes. [`GROUND`] replaces a body that it does not change.
     bodies: [u32; 2],
 }
@@ -28,7 +30,12 @@ pub(super) struct Node {
 impl Node {
     /// Creates a node. `key` identifies the shapes or the joint of the constraint.
     pub(super) fn new(key: u64, bodies: [u32; 2], size: Size) -> Self {
-        Node { bucket: bucket_of(key), size, bodies }
+        Node { bucket: bucket_of(key), size, cold: false, bodies }
+    }
+
+    /// The same node, as a cold one or not.
+    pub(super) fn cold(self, cold: bool) -> Self {
+        Node { cold, ..self }
     }
 }
 
@@ -91,14 +98,14 @@ impl Colouring {
         places.clear();
         places.resize(nodes.len(), 0);
         for &index in hashed.iter() {
-            let Node { bodies: [a, b], size, .. } = nodes[index as usize];
+            let Node { bodies: [a, b], size, cold, .. } = nodes[index as usize];
             let taken = used[a as usize] | used[b as usize];
             let colour = taken.trailing_ones().min(COLOURS_MAX.into());
             used[a as usize] |= 1 << colour;
             used[b as usize] |= 1 << colour;
             // The ground does not change, so that constraints with it need no different colours.
             used[GROUND as usize] = 0;
-            places[index as usize] = place_of(colour, size);
+            places[index as usize] = place_of(colour, size) + if cold { PLACES } else { 0 };
         }
         counting_sort(nodes.len(), |i| places[i], order, ends);
     }
@@ -110,25 +117,35 @@ impl Colouring {
 
     /// The colour that a constraint had in the last order, by its index.
     pub(super) fn colour_of(&self, node: usize) -> Option<SolverColour> {
-        self.places.get(node).map(|&place| match place.checked_sub(1) {
+        self.places.get(node).map(|&place| match (place % PLACES).checked_sub(1) {
             None => SolverColour::Overflow,
             Some(place) => SolverColour::Group(place / 2),
         })
     }
 
     /// The overflow of the last order: constraints that fit no colour and are solved one after the other.
-    pub(super) fn overflow(&self) -> &[u32] {
-        let end = self.ends.first().map_or(0, |&end| end as usize);
-        &self.order[..end]
+    pub(super) fn overflow(&self, cold: bool) -> &[u32] {
+        self.group(if cold { PLACES } else { 0 })
     }
 
     /// The coloured constraints, in groups of one colour and one size. Empty groups are left out: in a small world most
     /// groups are empty, and every operation iterates over the groups.
-    pub(super) fn colours(&self) -> impl Iterator<Item = &[u32]> {
-        let groups = self.ends.windows(2).map(|ends| &self.order[ends[0] as usize..ends[1] as usize]);
+    pub(super) fn colours(&self, cold: bool) -> impl Iterator<Item = &[u32]> {
+        let first = if cold { PLACES } else { 0 };
+        let groups = (first + 1..first + PLACES).map(|place| self.group(place));
         groups.filter(|indices| !indices.is_empty())
     }
+
+    /// The constraints of a rank.
+    fn group(&self, place: u8) -> &[u32] {
+        let place = usize::from(place);
+        let end = |place: usize| self.ends.get(place).map_or(0, |&end| end as usize);
+        &self.order[place.checked_sub(1).map_or(0, end)..end(place)]
+    }
 }
+
+/// Number of ranks of constraints that are not cold, and of cold ones.
+const PLACES: u8 = 1 + 2 * COLOURS_MAX;
 
 /// The rank in the order: the overflow comes first, then the large and the small constraints of each colour.
 #[expect(clippy::cast_possible_truncation, reason = "at most COLOURS_MAX")]
@@ -181,7 +198,7 @@ mod tests {
                     let b = (a + 1 + rng.below(bodies - 1)) % bodies;
                     let fixed = key % 7 == 0;
                     let size = if key % 2 == 0 { Size::Large } else { Size::Small };
-                    Node::new(key, [a + 1, if fixed { GROUND } else { b + 1 }], size)
+                    Node::new(key, [a + 1, if fixed { GROUND } else { b + 1 }], size).cold(key % 5 < 2)
                 })
                 .collect();
             let mut colouring = Colouring::default();
@@ -190,12 +207,18 @@ mod tests {
             let mut seen = colouring.order.clone();
             seen.sort_unstable();
             assert!(seen.iter().copied().eq(0..400));
-            let mut solved = colouring.overflow().to_vec();
+            let mut solved = colouring.overflow(false).to_vec();
             assert!(solved.iter().all(|&i| colouring.places[i as usize] == 0));
-            for indices in colouring.colours() {
+            let groups = colouring.colours(false).chain([colouring.overflow(true)]);
+            for indices in groups.chain(colouring.colours(true)) {
+                if indices.first().is_some_and(|&i| colouring.places[i as usize] == PLACES) {
+                    solved.extend_from_slice(indices);
+                    continue;
+                }
                 let mut bodies = std::collections::BTreeSet::new();
                 for node in indices.iter().map(|&i| nodes[i as usize]) {
-                    assert_eq!(node.size, nodes[indices[0] as usize].size);
+                    let first = nodes[indices[0] as usize];
+                    assert_eq!((node.size, node.cold), (first.size, first.cold));
                     for body in node.bodies.into_iter().filter(|&body| body != GROUND) {
                         assert!(bodies.insert(body), "body {body} twice in a colour");
                     }

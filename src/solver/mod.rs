@@ -52,14 +52,12 @@ use crate::collision::{Contact, Impact, Manifold};
 use crate::math::{Fx, Vec2};
 use crate::threads::Threads;
 
-/// Factor on the iterations of a tick in which most contact points are new. New points have no impulse for the warm
-/// start, and one iteration in a sub-step is then not enough for piles: in their first ticks the 20 x 20 pyramids of 55
-/// boxes move at 0.27 m/s and overlap by 5.8 mm, instead of 0.05 m/s and 1.5 mm.
+/// Factor on the iterations of cold contacts. New contacts have no impulse for the warm start, and one iteration in a
+/// sub-step is then not enough for piles: in their first ticks the 20 x 20 pyramids of 55 boxes move at 0.27 m/s and
+/// overlap by 5.8 mm, instead of 0.05 m/s and 1.5 mm.
 const COLD_ROUNDS: u32 = 4;
-/// Smallest number of contact points for which [`COLD_ROUNDS`] applies. In worlds with fewer points few bodies rest on
-/// others, and new points come from a body that lands, not from a pile.
-const COLD_POINTS: u32 = 256;
 
+/// Number of passes in which contacts that bounce at the same time are solved against each other.
 const RESTITUTION_PASSES: u32 = 8;
 
 /// The working memory of the solver. Only its allocations are reused in the next tick, not its contents.
@@ -153,7 +151,7 @@ impl Solver {
 
     /// Performs one sub-step. `index` is the number of sub-steps since the world was created.
     pub(crate) fn sub_step(&mut self, index: u64, tuning: &Tuning) {
-        let iterations = tuning.iterations * if self.is_cold() { COLD_ROUNDS } else { 1 };
+        let (iterations, cold_iterations) = (tuning.iterations, tuning.iterations * COLD_ROUNDS);
         let constants = Constants::new(tuning);
         let Solver { list, moving, joints, contacts, contact_velocities, machine, threads, faults, .. } =
             self;
@@ -182,17 +180,24 @@ impl Solver {
             contact_velocities.exempt(context, || joints.solve(Pass::Bias, context));
             contacts.run_coloured(solve, context);
         }
+        for iteration in iterations..cold_iterations {
+            contacts.run_cold(contact::Solve { order: PointOrder::of(index, iteration), constants }, context);
+        }
 
         // Integrate displacements.
         contact_velocities.exempt(context, || integrate_displacements(moving, context));
         joints.refresh(context);
 
         // Relax: solve without bias.
-        for iteration in 0..if tuning.relax { iterations } else { 0 } {
+        let (iterations, cold_iterations) = if tuning.relax { (iterations, cold_iterations) } else { (0, 0) };
+        for iteration in 0..iterations {
             let relax = contact::Relax { order: PointOrder::of(index, iteration), constants };
             contacts.run_overflow(relax, context);
             contact_velocities.exempt(context, || joints.solve(Pass::Relax, context));
             contacts.run_coloured(relax, context);
+        }
+        for iteration in iterations..cold_iterations {
+            contacts.run_cold(contact::Relax { order: PointOrder::of(index, iteration), constants }, context);
         }
         if !tuning.relax {
             contacts.run_overflow(Measure, context);
@@ -207,12 +212,6 @@ impl Solver {
                 }
             });
         }
-    }
-
-    /// Whether fewer than half of the contact points are warm-started.
-    fn is_cold(&self) -> bool {
-        let WarmStarts { points, kept, .. } = self.warm_starts;
-        points >= COLD_POINTS && kept < points / 2
     }
 
     /// Stores the impulses for the next tick.

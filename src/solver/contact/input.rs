@@ -4,6 +4,8 @@ use super::super::body_list::{BodyList, GROUND};
 use super::super::colour::{Node, Size};
 use super::super::row::MassFractions;
 use super::{Surface, WarmStarts};
+use alloc::vec::Vec;
+
 use crate::collision::{Contact, Impact, Manifold, Pair, PointImpulse};
 use crate::math::{Length, Step, convert};
 use crate::simd::{Quad, prefetch};
@@ -80,11 +82,25 @@ impl Input {
 impl ContactSource<'_> {
     /// The node of a touching pair for graph colouring.
     #[inline]
-    pub(super) fn node(&self, pair: &ActiveContact) -> Node {
+    pub(super) fn node(&self, pair: &ActiveContact, warm_bodies: &[bool]) -> Node {
         let (a, b) = pair.shapes;
         let size =
             if self.manifolds[pair.manifold as usize].count() == 1 { Size::Small } else { Size::Large };
-        Node::new(u64::from(a) << 32 | u64::from(b), self.changed(self.bodies_of(pair)), size)
+        let bodies = self.changed(self.bodies_of(pair));
+        let cold = bodies.iter().all(|&body| !warm_bodies[body as usize]);
+        Node::new(u64::from(a) << 32 | u64::from(b), bodies, size).cold(cold)
+    }
+
+    /// Finds the bodies that have a contact with an impulse of the last tick, by index.
+    pub(super) fn find_warm_bodies(&self, warm: &mut Vec<bool>) {
+        warm.clear();
+        warm.resize(self.list.len(), false);
+        for pair in self.pairs {
+            if self.contacts[pair.contact as usize].points().iter().any(|point| point.normal.is_positive()) {
+                self.changed(self.bodies_of(pair)).into_iter().for_each(|body| warm[body as usize] = true);
+            }
+        }
+        warm[GROUND as usize] = false;
     }
 
     /// Prefetches the data that [`Self::gather`] reads of a pair. Contacts in the order of colours are random accesses.
@@ -176,7 +192,6 @@ mod tests {
     use crate::body::{Arena, Body, BodyDef, BodyId, MassProperties, MassSource};
     use crate::fx;
     use crate::math::{Fx, Speed, Unit, Vec2};
-    use alloc::vec::Vec;
 
     /// The share of a very heavy body in an impulse rounds to 0, but two contacts of the body must still have different
     /// colours.

@@ -32,7 +32,10 @@ mod store;
 mod surface;
 mod warm_start;
 
-use super::batches::{BatchKind, BatchList};
+use alloc::vec::Vec;
+
+use super::batches::{BatchKind, BatchList, Operation};
+use super::context::StepContext;
 use crate::math::Speed;
 use batch::Batch;
 pub(super) use constants::Constants;
@@ -50,7 +53,41 @@ pub(super) use warm_start::WarmStart;
 const TANGENT_MAX: Speed = Speed::lit("511");
 
 /// All contacts of a tick.
-pub(super) type ContactSet = BatchList<Contacts>;
+///
+/// A contact is cold if neither of its bodies has a contact with an impulse of the last tick. It begins without a guess,
+/// and so do the contacts around it: see [`ContactSet::run_cold`].
+#[derive(Clone, Debug, Default)]
+pub(super) struct ContactSet {
+    warm: BatchList<Contacts>,
+    cold: BatchList<Contacts>,
+    /// For each body of the tick, whether it has a contact with an impulse of the last tick.
+    warm_bodies: Vec<bool>,
+}
+
+impl ContactSet {
+    /// Runs an operation over the contacts that fit no colour, one after the other.
+    pub(super) fn run_overflow(&mut self, operation: impl Operation<Contacts>, context: &StepContext<'_>) {
+        self.warm.run_overflow(operation, context);
+        self.cold.run_overflow(operation, context);
+    }
+
+    /// Runs an operation over all other contacts, colour by colour.
+    pub(super) fn run_coloured(&mut self, operation: impl Operation<Contacts>, context: &StepContext<'_>) {
+        self.warm.run_coloured(operation, context);
+        self.cold.run_coloured(operation, context);
+    }
+
+    /// Runs an operation over the cold contacts.
+    pub(super) fn run_cold(&mut self, operation: impl Operation<Contacts>, context: &StepContext<'_>) {
+        self.cold.run_overflow(operation, context);
+        self.cold.run_coloured(operation, context);
+    }
+
+    /// Whether any surface bounces, moves or resists rolling.
+    pub(super) fn has_extras(&self) -> bool {
+        self.warm.has_extras() || self.cold.has_extras()
+    }
+}
 
 /// The kind of constraint that a contact is.
 #[derive(Clone, Debug)]

@@ -24,16 +24,20 @@ impl ContactSet {
         colouring: &mut Colouring,
         machine: Machine,
     ) -> WarmStarts {
+        let ContactSet { warm, cold, warm_bodies } = self;
+        source.find_warm_bodies(warm_bodies);
         colouring.begin();
-        source.pairs.iter().for_each(|pair| colouring.add(source.node(pair)));
+        source.pairs.iter().for_each(|pair| colouring.add(source.node(pair, warm_bodies)));
         colouring.sort(source.list.len());
-        let mut warm = WarmStarts::default();
-        let warm_starts = &mut warm;
-        let colours = core::iter::once(colouring.overflow());
-        Fill { batches: &mut self.overflow, source, colours, warm_starts }.run::<Scalar<1>>();
-        let colours = colouring.colours();
-        machine.run(Fill { batches: &mut self.coloured, source, colours, warm_starts });
-        warm
+        let mut warm_starts = WarmStarts::default();
+        for (list, is_cold) in [(warm, false), (cold, true)] {
+            let warm_starts = &mut warm_starts;
+            let colours = core::iter::once(colouring.overflow(is_cold));
+            Fill { batches: &mut list.overflow, source, colours, warm_starts }.run::<Scalar<1>>();
+            let colours = colouring.colours(is_cold);
+            machine.run(Fill { batches: &mut list.coloured, source, colours, warm_starts });
+        }
+        warm_starts
     }
 }
 

@@ -96,8 +96,10 @@ impl ContactSet {
     ) {
         pushed.clear();
         pushed.resize(contacts.len(), false);
-        Store { batches: &self.overflow, contacts, pushed }.run::<Scalar<1>>();
-        machine.run(Store { batches: &self.coloured, contacts, pushed });
+        for list in [&self.warm, &self.cold] {
+            Store { batches: &list.overflow, contacts, pushed }.run::<Scalar<1>>();
+            machine.run(Store { batches: &list.coloured, contacts, pushed });
+        }
     }
 }
 

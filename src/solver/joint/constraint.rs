@@ -181,11 +181,11 @@ impl JointSet {
             Entry::Hinge(input) => Some(input),
             Entry::Other(_) => None,
         };
-        hinges.push_overflow(colouring.overflow().iter().filter_map(input_of));
-        for indices in colouring.colours() {
+        hinges.push_overflow(colouring.overflow(false).iter().filter_map(input_of));
+        for indices in colouring.colours(false) {
             hinges.push_colour(indices.iter().filter_map(input_of), is_alone);
         }
-        let order = core::iter::once(colouring.overflow()).chain(colouring.colours()).flatten();
+        let order = core::iter::once(colouring.overflow(false)).chain(colouring.colours(false)).flatten();
         others.extend(order.filter_map(|&index| match entries[index as usize] {
             Entry::Hinge(_) => None,
             Entry::Other(slot) => Some(slot),
