@@ -21,6 +21,9 @@ pub(crate) struct ActiveContact {
     pub(crate) shapes: Pair,
     pub(crate) bodies: (u32, u32),
     pub(crate) surface: Surface,
+    /// Whether the shapes may approach each other so fast that the impulses of the last tick are no guess for those of
+    /// this tick.
+    pub(crate) is_impact: bool,
 }
 
 /// The contacts of a tick, from which batches are filled.
@@ -91,14 +94,20 @@ impl ContactSource<'_> {
         Node::new(u64::from(a) << 32 | u64::from(b), bodies, size).cold(cold)
     }
 
-    /// Finds the bodies that have a contact with an impulse of the last tick, by index.
+    /// Finds the bodies whose contacts have a guess for the warm start, by index: those with an impulse of the last
+    /// tick and without an impact in this tick.
     pub(super) fn find_warm_bodies(&self, warm: &mut Vec<bool>) {
         warm.clear();
         warm.resize(self.list.len(), false);
+        let mut any_impact = false;
         for pair in self.pairs {
+            any_impact |= pair.is_impact;
             if self.contacts[pair.contact as usize].points().iter().any(|point| point.normal.is_positive()) {
                 self.changed(self.bodies_of(pair)).into_iter().for_each(|body| warm[body as usize] = true);
             }
+        }
+        for pair in self.pairs.iter().filter(|pair| any_impact && pair.is_impact) {
+            self.changed(self.bodies_of(pair)).into_iter().for_each(|body| warm[body as usize] = false);
         }
         warm[GROUND as usize] = false;
     }
@@ -211,7 +220,7 @@ mod tests {
             surface_speed: Speed::ZERO,
             rolling_resistance: Fx::ZERO,
         };
-        let pair = ActiveContact { contact: 0, manifold: 0, shapes: (0, 1), bodies: (0, 1), surface };
+        let pair = ActiveContact { contact: 0, manifold: 0, shapes: (0, 1), bodies: (0, 1), surface, is_impact: false };
         let source = ContactSource {
             pairs: &[pair],
             manifolds: &[Manifold::new(Vec2::Y)],

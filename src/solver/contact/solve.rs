@@ -33,6 +33,9 @@ const NORMAL_ROUNDS_MAX: u32 = 4;
 /// Change of the second point's impulse, in m/s, below which it does not affect the first point.
 const SETTLED: Speed = Speed::lit("0.005");
 
+/// Normal velocity below which an overlap is as rigid as a gap. A soft contact would let a part of the approach through.
+const IMPACT_SPEED: Speed = Speed::lit("-1");
+
 /// Which of a contact's two points is solved first. The order alternates, because the point that is solved first turns
 /// the body a little. With a fixed order, a stack of ten boxes sways by 4.7 mm while it settles, instead of 0.05 mm.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -259,8 +262,9 @@ impl<L: Lanes<N>, const N: usize> Normals<L, N> {
         match self.pass {
             Pass::Bias => {
                 let error = C::add(vn, self.bias::<C>(separation, gap));
-                let mass_scale = L::select(gap, L::splat(Unit::ONE.to_bits()), self.mass_scale);
-                let impulse_scale = L::select(gap, L::splat(0), self.impulse_scale);
+                let rigid = L::either(gap, L::greater(L::splat(IMPACT_SPEED.to_bits()), vn));
+                let mass_scale = L::select(rigid, L::splat(Unit::ONE.to_bits()), self.mass_scale);
+                let impulse_scale = L::select(rigid, L::splat(0), self.impulse_scale);
                 let wide = L::add_wide(L::mul(mass_scale, error), L::mul(impulse_scale, old));
                 policy.impulse(L::max(C::sub(old, L::narrow::<UNIT>(wide)), L::splat(0)))
             }

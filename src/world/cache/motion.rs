@@ -165,13 +165,19 @@ fn slack_of(bounds: Aabb) -> Step {
 pub(crate) struct Margins {
     pub(crate) speculative: Length,
     pub(crate) touching: Step,
+    /// Distance by which shapes approach each other in a tick in an impact.
+    pub(crate) impact: Step,
 }
+
+/// Approach speed in m/s from which a contact is an impact.
+const IMPACT_SPEED: Fx = fx!(5);
 
 impl Margins {
     pub(crate) fn of(config: &Config) -> Self {
         Margins {
             speculative: narrow(config.speculative_distance),
             touching: narrow(config.touching_distance()),
+            impact: narrow(IMPACT_SPEED / i64::from(config.tick_rate)),
         }
     }
 }

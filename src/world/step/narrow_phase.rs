@@ -207,6 +207,7 @@ impl NarrowPhase<'_> {
                 shapes: contact.shapes,
                 bodies: (shape_a.body, shape_b.body),
                 surface,
+                is_impact: closing.is_longer_than(margins.impact),
             });
         }
         touched
