@@ -10,7 +10,7 @@ mod shape;
 
 pub use broad_phase::BroadPhaseKind;
 pub(crate) use broad_phase::{BroadPhase, Moved};
-pub(crate) use contact::{Contact, Pair, PointImpulse};
+pub(crate) use contact::{Contact, KeptArms, Pair, PointImpulse};
 pub(crate) use manifold::Impact;
 pub use manifold::{Feature, Manifold, ManifoldPoint};
 pub(crate) use narrow_phase::{

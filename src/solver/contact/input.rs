@@ -6,8 +6,8 @@ use super::super::row::MassFractions;
 use super::{Surface, WarmStarts};
 use alloc::vec::Vec;
 
-use crate::collision::{Contact, Impact, Manifold, Pair, PointImpulse};
-use crate::math::{Length, Step, convert};
+use crate::collision::{Contact, Impact, KeptArms, Manifold, Pair, PointImpulse};
+use crate::math::{Length, Step, Vec2, convert};
 use crate::simd::{Quad, prefetch};
 
 /// A touching pair that the solver solves.
@@ -46,6 +46,7 @@ pub(super) struct Input {
     pub(super) changed: [u32; 2],
     pub(super) contact: u32,
     pub(super) features: [u16; 2],
+    pub(super) arms: KeptArms,
     pub(super) count: u8,
     /// Whether the contact needs more than rows along the normal and the tangent.
     pub(super) extras: bool,
@@ -71,6 +72,7 @@ impl Input {
         changed: [GROUND; 2],
         contact: 0,
         features: [0; 2],
+        arms: KeptArms([0; 6]),
         count: 0,
         extras: false,
         shares: Quad([0; 4]),
@@ -140,20 +142,24 @@ impl ContactSource<'_> {
             (to_a, to_b) = (to_a - moved[0], to_b - moved[1]);
             gap = Length::ZERO;
         }
-        let [old_first, old_second] = carried_over(manifold, &self.contacts[pair.contact as usize], warm);
+        let memory = &self.contacts[pair.contact as usize];
+        let mut anchors = [first.anchor, second.anchor];
+        let arms = keep_arms(manifold, memory, &mut anchors, to_a, &mut to_b);
+        let [old_first, old_second] = carried_over(manifold, memory, warm);
         let tangent = old_first.tangent.saturating_add(old_second.tangent);
         Input {
             bodies,
             changed: self.changed(bodies),
             contact: pair.contact,
             features: [first.feature.0, second.feature.0],
+            arms,
             count: manifold.count(),
             extras: pair.surface.has_extras(),
             shares: Quad([n.x.to_bits(), n.y.to_bits(), fractions.a.to_bits(), fractions.b.to_bits()]),
             gyrations: Quad([inverse_a.0, inverse_b.0, inverse_a.1, inverse_b.1]),
             to_origin: Quad([to_a.x, to_a.y, to_b.x, to_b.y].map(Length::to_bits)),
             anchors: Quad(
-                [first.anchor.x, first.anchor.y, second.anchor.x, second.anchor.y].map(Length::to_bits),
+                [anchors[0].x, anchors[0].y, anchors[1].x, anchors[1].y].map(Length::to_bits),
             ),
             carried: Quad([old_first.normal.to_bits(), old_second.normal.to_bits(), tangent.to_bits(), 0]),
             rest: Quad([
@@ -176,6 +182,31 @@ impl ContactSource<'_> {
     fn changed(&self, bodies: [u32; 2]) -> [u32; 2] {
         bodies.map(|index| if self.list.facts(index).mass.is_positive() { index } else { GROUND })
     }
+}
+
+/// Replaces the anchors, and the vector from B's centre to them, by those with which the arms are as in the last tick, if
+/// the contact has the same points and has hardly moved. Returns the arms to be kept.
+#[inline(always)]
+fn keep_arms(
+    manifold: &Manifold,
+    memory: &Contact,
+    anchors: &mut [Vec2<Length>; 2],
+    to_a: Vec2<Length>,
+    to_b: &mut Vec2<Length>,
+) -> KeptArms {
+    let first = to_a + anchors[0];
+    let second = if manifold.count() > 1 { to_a + anchors[1] } else { Vec2::ZERO };
+    let between = *to_b - to_a;
+    let current = KeptArms::of([first.x, first.y, second.x, second.y, between.x, between.y]);
+    let features = manifold.points().iter().map(|point| point.feature.0);
+    if !memory.points().iter().map(|point| point.feature).eq(features) {
+        return current;
+    }
+    let Some([x_1, y_1, x_2, y_2, x, y]) = memory.arms.differences(current) else { return current };
+    anchors[0] += Vec2::new(x_1, y_1);
+    anchors[1] += Vec2::new(x_2, y_2);
+    *to_b += Vec2::new(x, y);
+    memory.arms
 }
 
 /// The impulses with which the two points are warm-started: 0 if the feature of a point is new in this tick.

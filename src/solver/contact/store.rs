@@ -9,7 +9,7 @@ use super::input::Input;
 use super::overflow_policy::FRICTION_RATIO;
 use super::rows::Inverses;
 use super::{ContactSet, Contacts};
-use crate::collision::{Contact, PointImpulse};
+use crate::collision::{Contact, KeptArms, PointImpulse};
 use crate::math::Speed;
 use crate::simd::{Ints, Kernel, Lanes, Machine, Scalar, prefetch};
 
@@ -26,13 +26,20 @@ pub(in crate::solver) struct Records<const N: usize> {
     /// Number of points of each contact.
     counts: [u8; N],
     features: [[u16; 2]; N],
+    arms: [KeptArms; N],
     /// `1 / D` of the rows.
     pub(super) inverses: Inverses<N>,
 }
 
 impl<const N: usize> Records<N> {
-    pub(super) const NONE: Self =
-        Records { len: 0, contacts: [0; N], counts: [0; N], features: [[0; 2]; N], inverses: Inverses::NONE };
+    pub(super) const NONE: Self = Records {
+        len: 0,
+        contacts: [0; N],
+        counts: [0; N],
+        features: [[0; 2]; N],
+        arms: [KeptArms([0; 6]); N],
+        inverses: Inverses::NONE,
+    };
 
     /// Removes the contacts of an earlier batch.
     #[inline(always)]
@@ -47,6 +54,7 @@ impl<const N: usize> Records<N> {
         self.contacts[lane] = input.contact;
         self.counts[lane] = input.count;
         self.features[lane] = input.features;
+        self.arms[lane] = input.arms;
     }
 
     /// Iterates over the lanes with a contact. Gives the lane, the index of the contact and its number of points.
@@ -132,7 +140,7 @@ impl<const N: usize> Kernel<N> for Store<'_, N> {
                 };
                 let second = if count > 1 { point(1) } else { PointImpulse::default() };
                 let rolling = extras.map_or(Speed::ZERO, |extras| extras.rolling.impulse(lane));
-                contacts[index].store_impulses([point(0), second], count, rolling);
+                contacts[index].store_impulses([point(0), second], count, record.arms[lane], rolling);
                 pushed[index] =
                     batch.pushed[0] >> lane & 1 != 0 || count > 1 && batch.pushed[1] >> lane & 1 != 0;
             }

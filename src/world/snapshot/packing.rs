@@ -26,7 +26,7 @@ macro_rules! integers {
     };
 }
 
-integers!(u8 u16 u32 u64 i32 i64);
+integers!(u8 u16 u32 u64 i16 i32 i64);
 
 /// The low 32 bits.
 #[expect(clippy::cast_possible_truncation, reason = "the caller checks or keeps the high half")]
