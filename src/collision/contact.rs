@@ -45,8 +45,6 @@ pub(crate) struct PointImpulse {
 pub(crate) struct KeptArms(pub(crate) [i16; 6]);
 
 impl KeptArms {
-    /// Largest difference between a kept arm and the current one along an axis, 2 cm.
-    const DIFFERENCE_MAX: u16 = 2621;
     /// Fraction bits of a [`Length`] beyond those of a kept arm.
     const SHIFT: u32 = 5;
 
@@ -57,12 +55,20 @@ impl KeptArms {
         KeptArms(arms.map(|arm| (arm.to_bits() >> Self::SHIFT) as i16))
     }
 
-    /// The differences of these arms from the current ones; `None` if one of them is too large.
+    /// Takes on the current value of each number that has changed by more than a tolerance. Returns the differences of
+    /// the others from their current values.
     #[inline]
-    pub(crate) fn differences(self, current: Self) -> Option<[Length; 6]> {
-        let apart = core::array::from_fn(|i| self.0[i].wrapping_sub(current.0[i]));
-        let near = apart.iter().all(|apart: &i16| apart.unsigned_abs() <= Self::DIFFERENCE_MAX);
-        near.then(|| apart.map(|apart| Length::from_bits(i32::from(apart) << Self::SHIFT)))
+    pub(crate) fn renew(&mut self, current: Self, tolerance: u16) -> [Length; 6] {
+        let mut differences = [Length::ZERO; 6];
+        for ((kept, current), difference) in self.0.iter_mut().zip(current.0).zip(&mut differences) {
+            let apart = kept.wrapping_sub(current);
+            if apart.unsigned_abs() <= tolerance {
+                *difference = Length::from_bits(i32::from(apart) << Self::SHIFT);
+            } else {
+                *kept = current;
+            }
+        }
+        differences
     }
 }
 

@@ -44,6 +44,18 @@ impl BodyFacts {
         }
     }
 
+    /// Largest change of a lever arm that leaves a contact as it was, in units of [`KeptArms`]: between a 32nd and a 16th
+    /// of the radius of gyration. Bodies that are not turned allow any change.
+    pub(super) fn arm_tolerance(&self) -> u16 {
+        let (mantissa, exponent) = self.inverse_gyration.parts();
+        if self.mass.is_positive() && mantissa > 0 {
+            // k is at least 2^(exponent - 31) m.
+            1 << (exponent - 31 + 13).clamp(0, 14)
+        } else {
+            u16::MAX
+        }
+    }
+
     /// Vector from the centre of mass to a position. For bodies that do not turn the result does not matter.
     pub(super) fn arm_to(&self, place: Vec2<Fx>) -> Vec2<Length> {
         // Both are within the world, so that the difference fits.

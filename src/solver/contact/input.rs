@@ -144,7 +144,8 @@ impl ContactSource<'_> {
         }
         let memory = &self.contacts[pair.contact as usize];
         let mut anchors = [first.anchor, second.anchor];
-        let arms = keep_arms(manifold, memory, &mut anchors, to_a, &mut to_b);
+        let tolerance = a.arm_tolerance().min(b.arm_tolerance());
+        let arms = keep_arms(manifold, memory, tolerance, &mut anchors, to_a, &mut to_b);
         let [old_first, old_second] = carried_over(manifold, memory, warm);
         let tangent = old_first.tangent.saturating_add(old_second.tangent);
         Input {
@@ -190,6 +191,7 @@ impl ContactSource<'_> {
 fn keep_arms(
     manifold: &Manifold,
     memory: &Contact,
+    tolerance: u16,
     anchors: &mut [Vec2<Length>; 2],
     to_a: Vec2<Length>,
     to_b: &mut Vec2<Length>,
@@ -202,11 +204,12 @@ fn keep_arms(
     if !memory.points().iter().map(|point| point.feature).eq(features) {
         return current;
     }
-    let Some([x_1, y_1, x_2, y_2, x, y]) = memory.arms.differences(current) else { return current };
+    let mut arms = memory.arms;
+    let [x_1, y_1, x_2, y_2, x, y] = arms.renew(current, tolerance);
     anchors[0] += Vec2::new(x_1, y_1);
     anchors[1] += Vec2::new(x_2, y_2);
     *to_b += Vec2::new(x, y);
-    memory.arms
+    arms
 }
 
 /// The impulses with which the two points are warm-started: 0 if the feature of a point is new in this tick.
