@@ -26,6 +26,22 @@ pub(crate) struct ActiveContact {
     pub(crate) is_impact: bool,
 }
 
+/// What the contacts of a body tell of the coming tick.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Prospect {
+    /// Whether a contact has an impulse of the last tick.
+    warm: bool,
+    /// Whether a contact is an impact.
+    pub(super) impact: bool,
+}
+
+impl Prospect {
+    /// Whether the impulses of the last tick are a guess for those of this tick.
+    fn has_guess(self) -> bool {
+        self.warm && !self.impact
+    }
+}
+
 /// The contacts of a tick, from which batches are filled.
 #[derive(Clone, Copy)]
 pub(in crate::solver) struct ContactSource<'a> {
@@ -47,6 +63,8 @@ pub(super) struct Input {
     pub(super) contact: u32,
     pub(super) features: [u16; 2],
     pub(super) arms: KeptArms,
+    /// Whether one of the bodies has an impact in this tick.
+    pub(super) impact: bool,
     pub(super) count: u8,
     /// Whether the contact needs more than rows along the normal and the tangent.
     pub(super) extras: bool,
@@ -73,6 +91,7 @@ impl Input {
         contact: 0,
         features: [0; 2],
         arms: KeptArms([0; 6]),
+        impact: false,
         count: 0,
         extras: false,
         shares: Quad([0; 4]),
@@ -87,31 +106,29 @@ impl Input {
 impl ContactSource<'_> {
     /// The node of a touching pair for graph colouring.
     #[inline]
-    pub(super) fn node(&self, pair: &ActiveContact, warm_bodies: &[bool]) -> Node {
+    pub(super) fn node(&self, pair: &ActiveContact, prospects: &[Prospect]) -> Node {
         let (a, b) = pair.shapes;
         let size =
             if self.manifolds[pair.manifold as usize].count() == 1 { Size::Small } else { Size::Large };
         let bodies = self.changed(self.bodies_of(pair));
-        let cold = bodies.iter().all(|&body| !warm_bodies[body as usize]);
+        let cold = bodies.iter().all(|&body| !prospects[body as usize].has_guess());
         Node::new(u64::from(a) << 32 | u64::from(b), bodies, size).cold(cold)
     }
 
-    /// Finds the bodies whose contacts have a guess for the warm start, by index: those with an impulse of the last
-    /// tick and without an impact in this tick.
-    pub(super) fn find_warm_bodies(&self, warm: &mut Vec<bool>) {
-        warm.clear();
-        warm.resize(self.list.len(), false);
-        let mut any_impact = false;
+    /// Finds what the contacts of each body tell of the coming tick, by index.
+    pub(super) fn find_prospects(&self, prospects: &mut Vec<Prospect>) {
+        prospects.clear();
+        prospects.resize(self.list.len(), Prospect::default());
         for pair in self.pairs {
-            any_impact |= pair.is_impact;
-            if self.contacts[pair.contact as usize].points().iter().any(|point| point.normal.is_positive()) {
-                self.changed(self.bodies_of(pair)).into_iter().for_each(|body| warm[body as usize] = true);
+            let contact = &self.contacts[pair.contact as usize];
+            let warm = contact.points().iter().any(|point| point.normal.is_positive());
+            for body in self.changed(self.bodies_of(pair)) {
+                let prospect = &mut prospects[body as usize];
+                prospect.warm |= warm;
+                prospect.impact |= pair.is_impact;
             }
         }
-        for pair in self.pairs.iter().filter(|pair| any_impact && pair.is_impact) {
-            self.changed(self.bodies_of(pair)).into_iter().for_each(|body| warm[body as usize] = false);
-        }
-        warm[GROUND as usize] = false;
+        prospects[GROUND as usize] = Prospect::default();
     }
 
     /// Prefetches the data that [`Self::gather`] reads of a pair. Contacts in the order of colours are random accesses.
@@ -124,7 +141,12 @@ impl ContactSource<'_> {
 
     /// Gathers the data from which the rows of a touching pair are computed.
     #[inline(always)]
-    pub(super) fn gather(&self, pair: &ActiveContact, warm: &mut WarmStarts) -> Input {
+    pub(super) fn gather(
+        &self,
+        pair: &ActiveContact,
+        prospects: &[Prospect],
+        warm: &mut WarmStarts,
+    ) -> Input {
         let manifold = &self.manifolds[pair.manifold as usize];
         let bodies = self.bodies_of(pair);
         let [a, b] = bodies.map(|index| self.list.facts(index));
@@ -148,12 +170,14 @@ impl ContactSource<'_> {
         let arms = keep_arms(manifold, memory, tolerance, &mut anchors, to_a, &mut to_b);
         let [old_first, old_second] = carried_over(manifold, memory, warm);
         let tangent = old_first.tangent.saturating_add(old_second.tangent);
+        let changed = self.changed(bodies);
         Input {
             bodies,
-            changed: self.changed(bodies),
+            changed,
             contact: pair.contact,
             features: [first.feature.0, second.feature.0],
             arms,
+            impact: changed.iter().any(|&body| prospects[body as usize].impact),
             count: manifold.count(),
             extras: pair.surface.has_extras(),
             shares: Quad([n.x.to_bits(), n.y.to_bits(), fractions.a.to_bits(), fractions.b.to_bits()]),
@@ -262,7 +286,7 @@ mod tests {
             contacts: &[Contact::new((0, 1))],
             list: &list,
         };
-        let input = source.gather(&pair, &mut WarmStarts::default());
+        let input = source.gather(&pair, &[Prospect::default(); 3], &mut WarmStarts::default());
         assert_eq!(input.shares.0[2], 0);
         let changed: Vec<_> = input.changed.into_iter().filter(|&index| index != GROUND).collect();
         assert_eq!(changed, input.bodies);

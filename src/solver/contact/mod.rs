@@ -42,6 +42,7 @@ pub(super) use constants::Constants;
 use extras::ContactExtras;
 pub(crate) use input::ActiveContact;
 pub(super) use input::ContactSource;
+use input::Prospect;
 pub(super) use relax::{Measure, Relax};
 pub(super) use restitution::{ApplyRestitution, ObserveApproach};
 pub(super) use solve::{PointOrder, Solve};
@@ -54,14 +55,13 @@ const TANGENT_MAX: Speed = Speed::lit("511");
 
 /// All contacts of a tick.
 ///
-/// A contact is cold if neither of its bodies has a contact with an impulse of the last tick. It begins without a guess,
-/// and so do the contacts around it: see [`ContactSet::run_cold`].
+/// A contact is cold if for neither of its bodies the impulses of the last tick are a guess for those of this tick: it
+/// has none, or one of its contacts is an impact. Cold contacts need more iterations.
 #[derive(Clone, Debug, Default)]
 pub(super) struct ContactSet {
     warm: BatchList<Contacts>,
     cold: BatchList<Contacts>,
-    /// For each body of the tick, whether it has a contact with an impulse of the last tick.
-    warm_bodies: Vec<bool>,
+    prospects: Vec<Prospect>,
 }
 
 impl ContactSet {

@@ -4,7 +4,7 @@ use super::super::batches::Batches;
 use super::super::colour::Colouring;
 use super::batch::Batch;
 use super::extras::ContactExtras;
-use super::input::{ContactSource, Input};
+use super::input::{ContactSource, Input, Prospect};
 use super::overflow_policy::Unchecked;
 use super::rows;
 use super::store::Records;
@@ -24,18 +24,18 @@ impl ContactSet {
         colouring: &mut Colouring,
         machine: Machine,
     ) -> WarmStarts {
-        let ContactSet { warm, cold, warm_bodies } = self;
-        source.find_warm_bodies(warm_bodies);
+        let ContactSet { warm, cold, prospects } = self;
+        source.find_prospects(prospects);
         colouring.begin();
-        source.pairs.iter().for_each(|pair| colouring.add(source.node(pair, warm_bodies)));
+        source.pairs.iter().for_each(|pair| colouring.add(source.node(pair, prospects)));
         colouring.sort(source.list.len());
         let mut warm_starts = WarmStarts::default();
         for (list, is_cold) in [(warm, false), (cold, true)] {
             let warm_starts = &mut warm_starts;
             let colours = core::iter::once(colouring.overflow(is_cold));
-            Fill { batches: &mut list.overflow, source, colours, warm_starts }.run::<Scalar<1>>();
+            Fill { batches: &mut list.overflow, source, prospects, colours, warm_starts }.run::<Scalar<1>>();
             let colours = colouring.colours(is_cold);
-            machine.run(Fill { batches: &mut list.coloured, source, colours, warm_starts });
+            machine.run(Fill { batches: &mut list.coloured, source, prospects, colours, warm_starts });
         }
         warm_starts
     }
@@ -45,6 +45,7 @@ impl ContactSet {
 struct Fill<'a, I, const N: usize> {
     batches: &'a mut Batches<Contacts, N>,
     source: &'a ContactSource<'a>,
+    prospects: &'a [Prospect],
     colours: I,
     warm_starts: &'a mut WarmStarts,
 }
@@ -52,7 +53,7 @@ struct Fill<'a, I, const N: usize> {
 impl<'a, I: Iterator<Item = &'a [u32]>, const N: usize> Kernel<N> for Fill<'_, I, N> {
     #[inline(always)]
     fn run<L: Lanes<N>>(self) {
-        let Fill { batches, source, colours, warm_starts } = self;
+        let Fill { batches, source, prospects, colours, warm_starts } = self;
         batches.extras.clear();
         batches.colour_ends.clear();
         let mut count = 0;
@@ -64,7 +65,7 @@ impl<'a, I: Iterator<Item = &'a [u32]>, const N: usize> Kernel<N> for Fill<'_, I
                 for &index in indices.iter().skip((number + MANIFOLDS_AHEAD) * N).take(N) {
                     source.prefetch(index);
                 }
-                batches.fill::<L>(count, source, chunk, warm_starts);
+                batches.fill::<L>(count, source, prospects, chunk, warm_starts);
                 count += 1;
             }
             batches.colour_ends.push(count);
@@ -82,6 +83,7 @@ impl<const N: usize> Batches<Contacts, N> {
         &mut self,
         number: usize,
         source: &ContactSource<'_>,
+        prospects: &[Prospect],
         indices: &[u32],
         warm_starts: &mut WarmStarts,
     ) {
@@ -95,7 +97,7 @@ impl<const N: usize> Batches<Contacts, N> {
         records.begin();
         let mut inputs = [Input::NONE; N];
         for (lane, (input, &index)) in inputs.iter_mut().zip(indices).enumerate() {
-            *input = source.gather(&source.pairs[index as usize], warm_starts);
+            *input = source.gather(&source.pairs[index as usize], prospects, warm_starts);
             batch.extras |= input.extras;
             batch.count = batch.count.max(input.count.into());
             for side in 0..2 {

@@ -9,7 +9,7 @@ use super::input::Input;
 use super::overflow_policy::FRICTION_RATIO;
 use super::rows::Inverses;
 use super::{ContactSet, Contacts};
-use crate::collision::{Contact, KeptArms, PointImpulse};
+use crate::collision::{Contact, Feature, KeptArms, PointImpulse};
 use crate::math::Speed;
 use crate::simd::{Ints, Kernel, Lanes, Machine, Scalar, prefetch};
 
@@ -27,6 +27,8 @@ pub(in crate::solver) struct Records<const N: usize> {
     counts: [u8; N],
     features: [[u16; 2]; N],
     arms: [KeptArms; N],
+    /// Whether the impulses are those of an impact.
+    impacts: [bool; N],
     /// `1 / D` of the rows.
     pub(super) inverses: Inverses<N>,
 }
@@ -38,6 +40,7 @@ impl<const N: usize> Records<N> {
         counts: [0; N],
         features: [[0; 2]; N],
         arms: [KeptArms([0; 6]); N],
+        impacts: [false; N],
         inverses: Inverses::NONE,
     };
 
@@ -55,6 +58,7 @@ impl<const N: usize> Records<N> {
         self.counts[lane] = input.count;
         self.features[lane] = input.features;
         self.arms[lane] = input.arms;
+        self.impacts[lane] = input.impact;
     }
 
     /// Iterates over the lanes with a contact. Gives the lane, the index of the contact and its number of points.
@@ -130,13 +134,15 @@ impl<const N: usize> Kernel<N> for Store<'_, N> {
             let extras = if batch.extras { extras.next() } else { None };
             let impulses = record.impulses::<L>(batch);
             for (lane, index, count) in record.lanes() {
+                let old = record.impacts[lane].then_some(contacts[index]);
                 let point = |i: usize| {
                     let [normal, tangent] = &impulses[i];
-                    PointImpulse {
+                    let impulse = PointImpulse {
                         feature: record.features[lane][i],
                         normal: Speed::from_bits(normal.0[lane]),
                         tangent: Speed::from_bits(tangent.0[lane]),
-                    }
+                    };
+                    old.map_or(impulse, |old| load_of(impulse, &old))
                 };
                 let second = if count > 1 { point(1) } else { PointImpulse::default() };
                 let rolling = extras.map_or(Speed::ZERO, |extras| extras.rolling.impulse(lane));
@@ -145,6 +151,19 @@ impl<const N: usize> Kernel<N> for Store<'_, N> {
                     batch.pushed[0] >> lane & 1 != 0 || count > 1 && batch.pushed[1] >> lane & 1 != 0;
             }
         }
+    }
+}
+
+/// The part of an impulse that is a load, if one of the bodies has had an impact: at most the impulse of the last tick.
+/// The impulse of an impact is no guess for the next tick. In a narrow wedge friction would hold it for ever as a stress
+/// between the walls.
+fn load_of(impulse: PointImpulse, old: &Contact) -> PointImpulse {
+    let load = old.impulse_of(Feature(impulse.feature)).unwrap_or_default();
+    let most = load.tangent.abs();
+    PointImpulse {
+        normal: impulse.normal.min(load.normal),
+        tangent: impulse.tangent.clamp(-most, most),
+        ..impulse
     }
 }
 
