@@ -55,7 +55,7 @@ use crate::threads::Threads;
 /// Factor on the iterations of cold contacts. New contacts have no impulse for the warm start, and one iteration in a
 /// sub-step is then not enough for piles: in their first ticks the 20 x 20 pyramids of 55 boxes move at 0.27 m/s and
 /// overlap by 5.8 mm, instead of 0.05 m/s and 1.5 mm.
-const COLD_ROUNDS: u32 = 4;
+const COLD_ROUNDS: u32 = 8;
 
 /// Number of passes in which contacts that bounce at the same time are solved against each other.
 const RESTITUTION_PASSES: u32 = 8;
