@@ -11,6 +11,7 @@
 mod batches;
 mod body;
 mod body_list;
+mod body_pair;
 mod colour;
 mod contact;
 mod contact_velocity;

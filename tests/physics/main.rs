@@ -13,6 +13,7 @@ mod joint_motors;
 mod joint_springs;
 mod joints;
 mod machines;
+mod momentum;
 mod one_way;
 mod piles;
 mod rebound;
