@@ -204,11 +204,10 @@ impl Solver {
 
     /// Applies restitution, after the sub-steps of a tick.
     pub(crate) fn apply_restitution(&mut self, tuning: &Tuning) {
-        let restitution = ApplyRestitution { constants: Constants::new(tuning) };
         let Solver { list, contacts, machine, threads, faults, .. } = self;
         let context = &StepContext::new(*machine, threads, tuning, &mut list.bodies, faults);
-        contacts.run_overflow(restitution, context);
-        contacts.run_coloured(restitution, context);
+        contacts.run_overflow(ApplyRestitution, context);
+        contacts.run_coloured(ApplyRestitution, context);
     }
 
     /// Stores the impulses for the next tick.

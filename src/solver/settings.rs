@@ -48,7 +48,8 @@ pub struct SolverSettings {
     pub joint_hertz: Fx,
     /// Damping ratio of joints, 0 to 100.
     pub joint_damping_ratio: Fx,
-    /// Approach speed in m/s below which restitution is not applied.
+    /// Approach speed in m/s below which restitution is not applied, 0 to 400, for shapes without a threshold of their
+    /// own ([`Material::restitution_threshold`](crate::body::Material::restitution_threshold)).
     pub restitution_threshold: Fx,
     /// Speed limit in m/s, at most 400. It also limits the radius of gyration times the angular velocity. With fewer
     /// than 27 ticks per second the limit is [`DISTANCE_MAX`] in a tick, which is lower.
@@ -127,7 +128,6 @@ pub(crate) struct Tuning {
     pub(crate) joint: Softness,
     pub(crate) anchored: Softness,
     pub(crate) relax: bool,
-    pub(crate) restitution_threshold: Speed,
     pub(crate) speed_max: Speed,
     /// Velocity change by gravity in a sub-step.
     pub(crate) gravity_step: Vec2<Fx>,
@@ -164,7 +164,6 @@ impl Tuning {
             joint: joint(joint_hertz),
             anchored: joint(joint_hertz * 2),
             relax,
-            restitution_threshold: narrow(settings.restitution_threshold),
             speed_max: narrow(settings.speed_limit(tick_rate)),
             gravity_step: Vec2::new(over_rate(gravity.x), over_rate(gravity.y)),
         }

@@ -182,6 +182,7 @@ mod tests {
         let surface = Surface {
             friction: crate::math::FrictionRatio::ZERO,
             restitution: Unit::ZERO,
+            restitution_threshold: Speed::ZERO,
             surface_speed: Speed::ZERO,
             rolling_resistance: Fx::ZERO,
         };

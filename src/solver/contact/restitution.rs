@@ -1,4 +1,4 @@
-//! Restitution: a point that approached faster than the threshold and was pushed separates at `e` times the approach
+//! Restitution: a point that approached faster than the threshold of its surface and was pushed separates at `e` times the approach
 //! speed.
 //!
 //! ```text
@@ -13,7 +13,7 @@ use super::super::limits::IMPULSE_MAX;
 use super::super::pair::{BodyPairW, UNIT};
 use super::extras::ContactExtras;
 use super::overflow_policy::{OverflowPolicy, Saturating};
-use super::{Constants, Contacts};
+use super::Contacts;
 use crate::simd::Lanes;
 
 /// Number of iterations in which two points that bounce are solved against each other. With one iteration, the first
@@ -43,9 +43,7 @@ impl Operation<Contacts> for ObserveApproach {
 
 /// Applies restitution.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::solver) struct ApplyRestitution {
-    pub(in crate::solver) constants: Constants,
-}
+pub(in crate::solver) struct ApplyRestitution;
 
 impl Operation<Contacts> for ApplyRestitution {
     #[inline(always)]
@@ -54,8 +52,7 @@ impl Operation<Contacts> for ApplyRestitution {
         let policy = &mut Saturating(faults);
         let restitution = L::load(&extras.restitution);
         let (n, _) = batch.directions::<L>();
-        let constants = &self.constants;
-        let masks = [bounces::<L, N>(extras, 0, constants), bounces::<L, N>(extras, 1, constants)];
+        let masks = [bounces::<L, N>(extras, 0), bounces::<L, N>(extras, 1)];
         if !L::any(L::either(masks[0], masks[1])) {
             return;
         }
@@ -79,12 +76,8 @@ impl Operation<Contacts> for ApplyRestitution {
 
 /// Mask of the lanes in which a point approached fast enough and was pushed.
 #[inline(always)]
-fn bounces<L: Lanes<N>, const N: usize>(
-    extras: &ContactExtras<N>,
-    i: usize,
-    constants: &Constants,
-) -> L::Mask {
-    let threshold = L::splat(1 - constants.restitution_threshold);
+fn bounces<L: Lanes<N>, const N: usize>(extras: &ContactExtras<N>, i: usize) -> L::Mask {
+    let threshold = L::sub(L::splat(1), L::load(&extras.restitution_threshold));
     let fast = L::greater(threshold, L::load(&extras.approach[i]));
     let pushed = L::negative(L::load(&extras.pushed[i]));
     L::both(L::both(fast, pushed), L::greater(L::load(&extras.restitution), L::splat(0)))
