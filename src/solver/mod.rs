@@ -45,8 +45,8 @@ pub use joint::{
 use joint::{JointSet, JointSource};
 use limits::Faults;
 pub(crate) use limits::IMPULSE_MAX;
-pub(crate) use settings::Tuning;
 pub use settings::{ContactTuning, DISTANCE_MAX, SolverSettings};
+pub(crate) use settings::{RATE_MAX, SUB_STEPS_MAX, Tuning};
 
 use crate::body::{Arena, Body, BodyId, JointId};
 use crate::collision::{Contact, Manifold};

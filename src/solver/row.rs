@@ -22,10 +22,10 @@
 mod angular;
 
 use super::body::SolverBody;
-use super::body_pair::{BodyPair, Change};
-use super::limits::{Faults, IMPULSE_MAX, STEP_MAX};
 #[cfg(test)]
 use super::body_pair::Remainders;
+use super::body_pair::{BodyPair, Change};
+use super::limits::{Faults, IMPULSE_MAX, STEP_MAX};
 #[cfg(test)]
 use super::softness::Softness;
 use crate::body::Body;
@@ -175,11 +175,8 @@ impl Row {
         let along = |n: Unit, change: i64| {
             saturate_wide(round_shift_wide(i128::from(n.to_bits()) * i128::from(change), 30))
         };
-        let change = |linear: i64, spin: i64| Change {
-            x: along(self.n.x, linear),
-            y: along(self.n.y, linear),
-            spin,
-        };
+        let change =
+            |linear: i64, spin: i64| Change { x: along(self.n.x, linear), y: along(self.n.y, linear), spin };
         bodies.change(change(-times(self.g_a), -times(self.f_a)), change(times(self.g_b), times(self.f_b)));
     }
 

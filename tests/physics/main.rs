@@ -17,6 +17,7 @@ mod momentum;
 mod one_way;
 mod piles;
 mod rebound;
+mod scale;
 mod seams;
 mod slope;
 mod surface;

@@ -11,9 +11,9 @@
 use super::super::batches::{BatchParts, Operation};
 use super::super::limits::IMPULSE_MAX;
 use super::super::pair::{BodyPairW, UNIT};
+use super::Contacts;
 use super::extras::ContactExtras;
 use super::overflow_policy::{OverflowPolicy, Saturating};
-use super::Contacts;
 use crate::simd::Lanes;
 
 /// Number of iterations in which two points that bounce are solved against each other. With one iteration, the first

@@ -48,7 +48,12 @@ struct Link {
 impl Link {
     /// Lets `change` change the velocities of the two bodies.
     #[inline]
-    fn change(&mut self, context: &StepContext<'_>, faults: &mut Faults, change: impl FnOnce(&mut BodyPair<'_>)) {
+    fn change(
+        &mut self,
+        context: &StepContext<'_>,
+        faults: &mut Faults,
+        change: impl FnOnce(&mut BodyPair<'_>),
+    ) {
         let remainders = &mut self.remainders;
         SolverBody::change_pair(context.bodies, self.bodies, |a, b| {
             change(&mut BodyPair { a, b, remainders, faults });
