@@ -154,6 +154,7 @@ fn material(source: &mut Source<'_>) -> Material {
         friction_mixing: source.pick(&rules),
         restitution: source.mostly(0, 1000),
         restitution_mixing: source.pick(&rules),
+        restitution_threshold: if source.one_in(2) { Some(source.mostly(0, 2000)) } else { None },
         rolling_resistance: if source.one_in(2) { source.mostly(0, 1000) } else { Fx::ZERO },
         surface_speed: if source.one_in(2) { source.mostly(-400_000, 400_000) } else { Fx::ZERO },
     }

@@ -53,10 +53,16 @@ pub struct Material {
     pub friction: Fx,
     /// Rule that combines the friction of two shapes.
     pub friction_mixing: Mixing,
-    /// Fraction of the approach speed that is returned by a bounce, 0 to 1.
+    /// Fraction of the approach speed that is returned by a bounce, 0 to 1. Shapes that approach more slowly than
+    /// [`Material::restitution_threshold`] do not bounce: by default that of the world, 1 m/s.
     pub restitution: Fx,
     /// Rule that combines the restitution of two shapes.
     pub restitution_mixing: Mixing,
+    /// Approach speed in m/s below which the shape does not bounce, 0 to 400. `None` is that of the world,
+    /// [`SolverSettings::restitution_threshold`](crate::solver::SolverSettings::restitution_threshold). A pair uses the
+    /// smaller value of its two shapes, so that a ball with a threshold of 0 bounces on everything, however slowly. Such
+    /// a ball may take long to come to rest, and a pile of them does not become still.
+    pub restitution_threshold: Option<Fx>,
     /// Rolling resistance of a round shape, 0 to 1: the offset of the ground reaction ahead of the axle, as a fraction
     /// of the radius. A pair uses the larger value and the larger radius of its two shapes, where the radius is that of
     /// a circle or capsule, or the rounding radius of a polygon. A wheel that rolls freely on level ground loses
@@ -68,14 +74,15 @@ pub struct Material {
 }
 
 impl Default for Material {
-    /// Friction 0.6 with the geometric mean, restitution 0 with the maximum, no rolling resistance, and surface speed
-    /// 0.
+    /// Friction 0.6 with the geometric mean, restitution 0 with the maximum and the threshold of the world, no rolling
+    /// resistance, and surface speed 0.
     fn default() -> Self {
         Material {
             friction: fx!(0.6),
             friction_mixing: Mixing::GeometricMean,
             restitution: Fx::ZERO,
             restitution_mixing: Mixing::Maximum,
+            restitution_threshold: None,
             rolling_resistance: Fx::ZERO,
             surface_speed: Fx::ZERO,
         }
@@ -85,6 +92,9 @@ impl Default for Material {
 impl Material {
     /// Largest friction coefficient.
     pub const FRICTION_MAX: Fx = fx!(16);
+
+    /// Largest restitution threshold in m/s.
+    pub const RESTITUTION_THRESHOLD_MAX: Fx = fx!(400);
 
     /// Largest surface speed in m/s, in either direction.
     pub const SURFACE_SPEED_MAX: Fx = fx!(400);
@@ -97,12 +107,15 @@ impl Material {
             friction_mixing: _,
             restitution,
             restitution_mixing: _,
+            restitution_threshold,
             rolling_resistance,
             surface_speed,
         } = *self;
         let fraction = Fx::ZERO..=Fx::ONE;
         (Fx::ZERO..=Self::FRICTION_MAX).contains(&friction)
             && fraction.contains(&restitution)
+            && restitution_threshold
+                .is_none_or(|speed| (Fx::ZERO..=Self::RESTITUTION_THRESHOLD_MAX).contains(&speed))
             && fraction.contains(&rolling_resistance)
             && (-Self::SURFACE_SPEED_MAX..=Self::SURFACE_SPEED_MAX).contains(&surface_speed)
     }
@@ -117,6 +130,14 @@ impl Material {
     #[must_use]
     pub fn mixed_restitution(&self, other: &Material) -> Fx {
         self.restitution_mixing.max(other.restitution_mixing).mix(self.restitution, other.restitution)
+    }
+
+    /// Combined restitution threshold of two surfaces in a world with the threshold `world`: the smaller one of the
+    /// two, each being that of the world if it is `None`.
+    #[must_use]
+    pub fn mixed_restitution_threshold(&self, other: &Material, world: Fx) -> Fx {
+        let [a, b] = [self, other].map(|material| material.restitution_threshold.unwrap_or(world));
+        a.min(b)
     }
 }
 
@@ -141,5 +162,23 @@ mod tests {
         let average = Material { friction: a, friction_mixing: Mixing::Average, ..Material::default() };
         let maximum = Material { friction: b, friction_mixing: Mixing::Maximum, ..Material::default() };
         assert_eq!(average.mixed_friction(&maximum), b);
+    }
+
+    #[test]
+    fn the_smaller_threshold_applies_and_none_is_that_of_the_world() {
+        let of = |restitution_threshold| Material { restitution_threshold, ..Material::default() };
+        let (none, half, three) = (of(None), of(Some(fx!(0.5))), of(Some(fx!(3))));
+        for (a, b, expected) in [
+            (none, none, fx!(1)),
+            (none, half, fx!(0.5)),
+            (none, three, fx!(1)),
+            (half, three, fx!(0.5)),
+            (three, three, fx!(3)),
+        ] {
+            assert_eq!(a.mixed_restitution_threshold(&b, fx!(1)), expected);
+            assert_eq!(b.mixed_restitution_threshold(&a, fx!(1)), expected);
+        }
+        assert!(of(Some(fx!(400))).is_valid() && of(Some(Fx::ZERO)).is_valid());
+        assert!(!of(Some(fx!(401))).is_valid() && !of(Some(fx!(-0.001))).is_valid());
     }
 }

@@ -109,10 +109,17 @@ impl ShapeDef {
         self
     }
 
-    /// Sets the restitution, 0 to 1.
+    /// Sets the restitution, 0 to 1. It applies to approach speeds above [`Material::restitution_threshold`].
     #[must_use]
     pub fn restitution(mut self, restitution: Fx) -> Self {
         self.material.restitution = restitution;
+        self
+    }
+
+    /// Sets the approach speed in m/s below which the shape does not bounce: see [`Material::restitution_threshold`].
+    #[must_use]
+    pub fn restitution_threshold(mut self, speed: Fx) -> Self {
+        self.material.restitution_threshold = Some(speed);
         self
     }
 

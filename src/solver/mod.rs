@@ -11,6 +11,7 @@
 mod batches;
 mod body;
 mod body_list;
+mod body_pair;
 mod colour;
 mod contact;
 mod contact_velocity;
@@ -33,7 +34,7 @@ use body_list::BodyList;
 use colour::Colouring;
 pub use colour::SolverColour;
 pub(crate) use contact::{ActiveContact, Surface, SurfaceSide, WarmStarts};
-use contact::{ApplyRestitution, Constants, ContactSet, ContactSource, Measure, ObserveApproach, PointOrder};
+use contact::{Constants, ContactSet, ContactSource, Measure, ObserveApproach, PointOrder};
 use contact_velocity::{ContactVelocities, PushedBody};
 use context::{Pass, StepContext};
 use integrate::{MovingBody, integrate_displacements, integrate_velocities};
@@ -44,8 +45,8 @@ pub use joint::{
 use joint::{JointSet, JointSource};
 use limits::Faults;
 pub(crate) use limits::IMPULSE_MAX;
-pub(crate) use settings::Tuning;
 pub use settings::{ContactTuning, DISTANCE_MAX, SolverSettings};
+pub(crate) use settings::{RATE_MAX, SUB_STEPS_MAX, Tuning};
 
 use crate::body::{Arena, Body, BodyId, JointId};
 use crate::collision::{Contact, Impact, Manifold};
@@ -56,9 +57,6 @@ use crate::threads::Threads;
 /// sub-step is then not enough for piles: in their first ticks the 20 x 20 pyramids of 55 boxes move at 0.27 m/s and
 /// overlap by 5.8 mm, instead of 0.05 m/s and 1.5 mm.
 const COLD_ROUNDS: u32 = 8;
-
-/// Number of passes in which contacts that bounce at the same time are solved against each other.
-const RESTITUTION_PASSES: u32 = 8;
 
 /// The working memory of the solver. Only its allocations are reused in the next tick, not its contents.
 #[derive(Clone, Debug, Default)]
@@ -140,7 +138,7 @@ impl Solver {
         let touched = moving.iter().filter(|moving| colouring.holds(moving.index()));
         self.contact_velocities.begin(touched.map(|moving| PushedBody {
             index: moving.index(),
-            shared: set.has_extras() || moving.has_extras() || joints.holds(moving.index()),
+            shared: set.bounces(moving.index()) || moving.has_extras() || joints.holds(moving.index()),
         }));
     }
 
@@ -204,13 +202,7 @@ impl Solver {
             contacts.run_coloured(Measure, context);
         }
         if contacts.has_extras() {
-            let restitution = ApplyRestitution { constants };
-            contact_velocities.exempt(context, || {
-                for _ in 0..RESTITUTION_PASSES {
-                    contacts.run_overflow(restitution, context);
-                    contacts.run_coloured(restitution, context);
-                }
-            });
+            contact_velocities.exempt(context, || contacts.bounce(context));
         }
     }
 

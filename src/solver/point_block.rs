@@ -35,6 +35,9 @@
 use fixed::types::extra::U30;
 
 use super::body::SolverBody;
+#[cfg(test)]
+use super::body_pair::Remainders;
+use super::body_pair::{BodyPair, Change};
 use super::limits::{Faults, IMPULSE_MAX, clamp_warm_start};
 use super::row::{Lever, MassFractions, turning};
 use super::softness::Softness;
@@ -111,13 +114,25 @@ impl PointBlock {
         PointBlock { e_a, e_b, g_a, g_b, f_a: g_a.apply_ratio(e_a), f_b: g_b.apply_ratio(e_b) }
     }
 
+    /// The block of bodies that are moved along a direction through both centres only: `G = n n^T`.
+    pub(crate) fn along(n: Vec2<Unit>, fractions: MassFractions) -> Self {
+        let g = Symmetric { m11: mul(n.x, n.x), m12: mul(n.x, n.y), m22: mul(n.y, n.y) };
+        PointBlock { g_a: g.scale(fractions.a), g_b: g.scale(fractions.b), ..PointBlock::default() }
+    }
+
     /// Changes the velocities by an impulse `d`.
     #[inline]
-    pub(crate) fn apply(&self, d: Vec2<Speed>, a: &mut SolverBody, b: &mut SolverBody, faults: &mut Faults) {
-        // Changes of up to 512 m/s on both axes may add up to 768 m/s, so that these sums saturate before the clamp.
-        let (v_a, v_b) = (a.velocity - self.g_a.apply(d), b.velocity + self.g_b.apply(d));
-        a.set_velocity(v_a.x, v_a.y, a.spin.saturating_sub(self.f_a.dot(d)), faults);
-        b.set_velocity(v_b.x, v_b.y, b.spin.saturating_add(self.f_b.dot(d)), faults);
+    pub(crate) fn apply(&self, d: Vec2<Speed>, bodies: &mut BodyPair<'_>) {
+        // Sums of two products of a gain and an impulse have 51 fraction bits, and with impulses within 512 at most 61
+        // bits.
+        let dot = |x: Unit, y: Unit| {
+            let times = |gain: Unit, d: Speed| i64::from(gain.to_bits()) * i64::from(d.to_bits());
+            times(x, d.x) + times(y, d.y)
+        };
+        let (Symmetric { m11, m12, m22 }, f) = (self.g_a, self.f_a);
+        let a = Change { x: -dot(m11, m12), y: -dot(m12, m22), spin: -dot(f.x, f.y) };
+        let (Symmetric { m11, m12, m22 }, f) = (self.g_b, self.f_b);
+        bodies.change(a, Change { x: dot(m11, m12), y: dot(m12, m22), spin: dot(f.x, f.y) });
     }
 
     /// The lever ratios at this pose.
@@ -145,25 +160,23 @@ impl PointBlock {
         let next = Vec2::new(accumulate(lambda.x, d_x, faults), accumulate(lambda.y, d_y, faults));
         let d = next - *lambda;
         *lambda = next;
-        self.apply(d, a, b, faults);
+        self.apply(d, &mut BodyPair { a, b, remainders: &mut Remainders::default(), faults });
     }
 
     /// Solves the block for one iteration with an impulse of limited length: `|p| <= p_max`, where `p = G L` is the
     /// impulse times `mA + mB`.
     #[inline]
-    #[expect(clippy::too_many_arguments, reason = "the quantities of the equations above")]
     pub(crate) fn solve_within(
         &self,
-        a: &mut SolverBody,
-        b: &mut SolverBody,
+        bodies: &mut BodyPair<'_>,
         goal: PointGoal,
         softness: &Softness,
         p_max: Speed,
         lambda: &mut Vec2<Speed>,
-        faults: &mut Faults,
     ) {
         let PointGoal { bias, push } = goal;
-        let vr = self.velocity(a, b, self.ratios(), faults);
+        let faults = &mut *bodies.faults;
+        let vr = self.velocity(bodies.a, bodies.b, self.ratios(), faults);
         let d_x = softness.impulse(vr.x, bias.x, lambda.x, faults).saturating_sub(push.x);
         let d_y = softness.impulse(vr.y, bias.y, lambda.y, faults).saturating_sub(push.y);
         let next = Vec2::new(accumulate(lambda.x, d_x, faults), accumulate(lambda.y, d_y, faults));
@@ -172,7 +185,7 @@ impl PointBlock {
         clamp_warm_start(&mut d.x, faults);
         clamp_warm_start(&mut d.y, faults);
         *lambda += d;
-        self.apply(d, a, b, faults);
+        self.apply(d, bodies);
     }
 
     /// Shortens `L` so that `|G L|` is at most `p_max`.
@@ -302,10 +315,11 @@ mod tests {
             let bias = Vec2::new(speed(fx!(20)), -speed(fx!(20)));
             let most = speed(fx!(3));
             let (mut a, mut b) = (SolverBody::default(), SolverBody::default());
-            let mut lambda = Vec2::ZERO;
+            let (mut lambda, remainders) = (Vec2::ZERO, &mut Remainders::default());
             for _ in 0..3 {
                 let goal = PointGoal { bias, push: Vec2::ZERO };
-                block.solve_within(&mut a, &mut b, goal, &Softness::RIGID, most, &mut lambda, &mut faults);
+                let bodies = &mut BodyPair { a: &mut a, b: &mut b, remainders, faults: &mut faults };
+                block.solve_within(bodies, goal, &Softness::RIGID, most, &mut lambda);
             }
             // p = (vB - vA) / (aA + aB) for all mass fractions.
             let p = (b.velocity - a.velocity).widen().length();

@@ -22,6 +22,9 @@
 mod angular;
 
 use super::body::SolverBody;
+#[cfg(test)]
+use super::body_pair::Remainders;
+use super::body_pair::{BodyPair, Change};
 use super::limits::{Faults, IMPULSE_MAX, STEP_MAX};
 #[cfg(test)]
 use super::softness::Softness;
@@ -74,15 +77,6 @@ pub(super) fn turning(fraction: Unit, e: Ratio, other: Ratio) -> i64 {
     saturate_wide(round_shift_wide(wide, 48))
 }
 
-/// `f x`, where `f` is a fraction, a gain or a component of a unit vector. Never larger than `x`, so that no clamp is
-/// needed.
-#[inline]
-#[expect(clippy::cast_possible_truncation, reason = "at most the speed itself")]
-fn part(fraction: Unit, speed: Speed) -> Speed {
-    let product = i64::from(fraction.to_bits()) * i64::from(speed.to_bits());
-    Speed::from_bits(round_shift(product, 30) as i32)
-}
-
 /// The lever of a row or block on a body: where the impulse acts, and how easily the body turns.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Lever {
@@ -121,7 +115,8 @@ impl Row {
         let moving = i64::from(fractions.a.to_bits()) + i64::from(fractions.b.to_bits());
         let denominator = moving + turning(fractions.a, e_a, e_a) + turning(fractions.b, e_b, e_b);
         let gain = |fraction: Unit| {
-            Unit::from_bits(saturate((i64::from(fraction.to_bits()) << 30) / denominator.max(1)))
+            let denominator = denominator.max(1);
+            Unit::from_bits(saturate(((i64::from(fraction.to_bits()) << 30) + denominator / 2) / denominator))
         };
         let (g_a, g_b) = (gain(fractions.a), gain(fractions.b));
         (Row { n, e_a, e_b, g_a, g_b, f_a: mul(g_a, e_a), f_b: mul(g_b, e_b) }, denominator)
@@ -174,21 +169,15 @@ impl Row {
 
     /// Changes the velocities by an impulse `d` of at most [`STEP_MAX`].
     #[inline]
-    fn apply_step(&self, d: Speed, a: &mut SolverBody, b: &mut SolverBody, faults: &mut Faults) {
-        let (d_a, d_b) = (part(self.g_a, d), part(self.g_b, d));
-        // Velocities are within 511 and changes within 512: no sum leaves the format.
-        a.set_velocity(
-            a.velocity.x - part(self.n.x, d_a),
-            a.velocity.y - part(self.n.y, d_a),
-            a.spin - part(self.f_a, d),
-            faults,
-        );
-        b.set_velocity(
-            b.velocity.x + part(self.n.x, d_b),
-            b.velocity.y + part(self.n.y, d_b),
-            b.spin + part(self.f_b, d),
-            faults,
-        );
+    fn apply_step(&self, d: Speed, bodies: &mut BodyPair<'_>) {
+        // A gain times an impulse has 51 fraction bits.
+        let times = |gain: Unit| i64::from(gain.to_bits()) * i64::from(d.to_bits());
+        let along = |n: Unit, change: i64| {
+            saturate_wide(round_shift_wide(i128::from(n.to_bits()) * i128::from(change), 30))
+        };
+        let change =
+            |linear: i64, spin: i64| Change { x: along(self.n.x, linear), y: along(self.n.y, linear), spin };
+        bodies.change(change(-times(self.g_a), -times(self.f_a)), change(times(self.g_b), times(self.f_b)));
     }
 
     /// Solves the row for one iteration. `lambda` is the accumulated `L`, kept within `bounds`. Returns the change `d`.
@@ -205,7 +194,8 @@ impl Row {
         faults: &mut Faults,
     ) -> Speed {
         let vn = self.velocity(a, b, faults);
-        self.accumulate(softness.wanted(vn, bias, *lambda), bounds, lambda, a, b, faults)
+        let bodies = &mut BodyPair { a, b, remainders: &mut Remainders::default(), faults };
+        self.accumulate(softness.wanted(vn, bias, *lambda), bounds, lambda, bodies)
     }
 
     /// Adds an impulse in units of [`Speed`] to the accumulated one, within the bounds. Returns the change.
@@ -215,45 +205,43 @@ impl Row {
         d: i64,
         (lo, hi): (Speed, Speed),
         lambda: &mut Speed,
-        a: &mut SolverBody,
-        b: &mut SolverBody,
-        faults: &mut Faults,
+        bodies: &mut BodyPair<'_>,
     ) -> Speed {
         let wanted = i64::from(lambda.to_bits()) + d;
         let bounded = wanted.clamp(lo.to_bits().into(), hi.to_bits().into());
         let within = bounded.clamp(-i64::from(IMPULSE_MAX.to_bits()), IMPULSE_MAX.to_bits().into());
-        *faults += u64::from(within != bounded);
+        *bodies.faults += u64::from(within != bounded);
         let d = within - i64::from(lambda.to_bits());
         *lambda = Speed::from_bits(saturate(within));
-        self.apply_wide(d, a, b, faults);
+        self.apply_wide(d, bodies);
         Speed::from_bits(saturate(d))
     }
 
     /// Changes the velocities by an impulse.
     #[inline]
-    pub(crate) fn apply(&self, d: Speed, a: &mut SolverBody, b: &mut SolverBody, faults: &mut Faults) {
-        self.apply_wide(d.to_bits().into(), a, b, faults);
+    pub(crate) fn apply(&self, d: Speed, bodies: &mut BodyPair<'_>) {
+        self.apply_wide(d.to_bits().into(), bodies);
     }
 
     /// Changes the velocities by an impulse in units of [`Speed`]. The difference of two accumulated impulses may be
     /// twice as large as a [`Speed`] can be.
     #[inline]
-    fn apply_wide(&self, d: i64, a: &mut SolverBody, b: &mut SolverBody, faults: &mut Faults) {
+    fn apply_wide(&self, d: i64, bodies: &mut BodyPair<'_>) {
         if d.unsigned_abs() <= u64::from(STEP_MAX.to_bits().unsigned_abs()) {
-            self.apply_step(Speed::from_bits(saturate(d)), a, b, faults);
+            self.apply_step(Speed::from_bits(saturate(d)), bodies);
         } else {
-            self.apply_in_steps(d, a, b, faults);
+            self.apply_in_steps(d, bodies);
         }
     }
 
     /// Applies an impulse of more than 512 m/s in steps. When a bound shrinks or a pushed body comes free, the change
     /// may exceed the range of a velocity.
     #[cold]
-    fn apply_in_steps(&self, mut d: i64, a: &mut SolverBody, b: &mut SolverBody, faults: &mut Faults) {
+    fn apply_in_steps(&self, mut d: i64, bodies: &mut BodyPair<'_>) {
         let limit = i64::from(STEP_MAX.to_bits());
         while d != 0 {
             let step = d.clamp(-limit, limit);
-            self.apply_step(Speed::from_bits(saturate(step)), a, b, faults);
+            self.apply_step(Speed::from_bits(saturate(step)), bodies);
             d -= step;
         }
     }
@@ -337,7 +325,9 @@ mod tests {
             let fractions = random_fractions(&mut rng);
             let (row, _) = Row::prepare(Vec2::X, a, b, fractions);
             let (mut a, mut b) = (SolverBody::default(), SolverBody::default());
-            row.apply(random_speed(&mut rng, fx!(100)), &mut a, &mut b, &mut 0);
+            let (remainders, faults) = (&mut Remainders::default(), &mut 0);
+            let bodies = &mut BodyPair { a: &mut a, b: &mut b, remainders, faults };
+            row.apply(random_speed(&mut rng, fx!(100)), bodies);
             let (left, right): (Speed, Speed) =
                 (mul(fractions.b, a.velocity.x), mul(fractions.a, b.velocity.x));
             assert!((left + right).to_bits().abs() <= 2, "{left} and {right}");

@@ -11,7 +11,8 @@ use crate::math::{Fx, Rate, Speed, Step, Vec2, narrow};
 pub enum ContactTuning {
     /// Stiff damped springs, with a relax pass that removes the push-out velocity.
     Soft {
-        /// Stiffness in Hz, at most an eighth of the sub-step rate; doubled against bodies that are not dynamic.
+        /// Stiffness in Hz, at most an eighth of the sub-step rate; doubled against bodies that are not dynamic. A
+        /// stack sinks in proportion to `g / hertz^2`: see [`Config`](crate::world::Config) for small bodies.
         hertz: Fx,
         /// Damping ratio, 0 to 100.
         damping_ratio: Fx,
@@ -30,13 +31,20 @@ pub enum ContactTuning {
     },
 }
 
+/// Largest number of sub-steps in a tick.
+pub(crate) const SUB_STEPS_MAX: u32 = 64;
+
+/// Largest number of sub-steps in a second.
+pub(crate) const RATE_MAX: u32 = 4000;
+
 /// Largest displacement of a body in a tick along each axis, in metres.
 pub const DISTANCE_MAX: Fx = fx!(15);
 
 /// Settings of the solver.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SolverSettings {
-    /// Sub-steps in a tick, 1 to 64. Ticks per second times sub-steps is 60 to 4000.
+    /// Sub-steps in a tick, 1 to 64. Ticks per second times sub-steps is 60 to 4000. Small bodies need more of them:
+    /// see [`Config::for_smallest`](crate::world::Config::for_smallest).
     pub sub_steps: u32,
     /// Iterations in a sub-step, 1 to 16. Additional sub-steps improve the result more than additional iterations.
     pub iterations: u32,
@@ -48,7 +56,8 @@ pub struct SolverSettings {
     pub joint_hertz: Fx,
     /// Damping ratio of joints, 0 to 100.
     pub joint_damping_ratio: Fx,
-    /// Approach speed in m/s below which restitution is not applied.
+    /// Approach speed in m/s below which restitution is not applied, 0 to 400, for shapes without a threshold of their
+    /// own ([`Material::restitution_threshold`](crate::body::Material::restitution_threshold)).
     pub restitution_threshold: Fx,
     /// Speed limit in m/s, at most 400. It also limits the radius of gyration times the angular velocity. With fewer
     /// than 27 ticks per second the limit is [`DISTANCE_MAX`] in a tick, which is lower.
@@ -89,8 +98,8 @@ impl SolverSettings {
         let ratio = fx!(0)..=fx!(100);
         let speed = fx!(0)..=fx!(400);
         let checks = [
-            ((1..=64).contains(&sub_steps), "sub_steps"),
-            ((60..=4000).contains(&tick_rate.saturating_mul(sub_steps)), "tick_rate x sub_steps"),
+            ((1..=SUB_STEPS_MAX).contains(&sub_steps), "sub_steps"),
+            ((60..=RATE_MAX).contains(&tick_rate.saturating_mul(sub_steps)), "tick_rate x sub_steps"),
             ((1..=16).contains(&iterations), "iterations"),
             ((fx!(1)..=fx!(1000)).contains(&joint_hertz), "joint_hertz"),
             (ratio.contains(&joint_damping_ratio), "joint_damping_ratio"),
@@ -127,7 +136,6 @@ pub(crate) struct Tuning {
     pub(crate) joint: Softness,
     pub(crate) anchored: Softness,
     pub(crate) relax: bool,
-    pub(crate) restitution_threshold: Speed,
     pub(crate) speed_max: Speed,
     /// Velocity change by gravity in a sub-step.
     pub(crate) gravity_step: Vec2<Fx>,
@@ -164,7 +172,6 @@ impl Tuning {
             joint: joint(joint_hertz),
             anchored: joint(joint_hertz * 2),
             relax,
-            restitution_threshold: narrow(settings.restitution_threshold),
             speed_max: narrow(settings.speed_limit(tick_rate)),
             gravity_step: Vec2::new(over_rate(gravity.x), over_rate(gravity.y)),
         }

@@ -2,16 +2,22 @@
 
 use lockstep2d::body::{BodyDef, Geometry, Polygon, ShapeDef};
 use lockstep2d::fx;
-use lockstep2d::math::{Fx, fx_mul, sqrt};
-use lockstep2d::world::World;
+use lockstep2d::math::{Fx, Vec2, fx_mul, sqrt};
+use lockstep2d::world::{Config, World};
 
 /// Drops a ball of restitution `e` from a height and returns the heights of its rebounds: the highest positions of the
 /// ball's lowest point between two impacts.
 fn rebounds(e: Fx, height: Fx, ticks: u32) -> Vec<Fx> {
+    rebounds_above(e, None, height, ticks)
+}
+
+/// [`rebounds`] of a ball with a restitution threshold.
+fn rebounds_above(e: Fx, threshold: Option<Fx>, height: Fx, ticks: u32) -> Vec<Fx> {
     let mut world = World::default();
     let floor = ShapeDef::new(Polygon::rectangle(fx!(20), fx!(1)).expect("valid"));
     world.spawn(&BodyDef::fixed().position((fx!(0), fx!(-1))), &[floor]).expect("valid");
-    let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).expect("valid")).restitution(e);
+    let mut ball = ShapeDef::new(Geometry::circle(fx!(0.5)).expect("valid")).restitution(e);
+    ball.material.restitution_threshold = threshold;
     let def = BodyDef::dynamic().position((fx!(0), height + fx!(0.5)));
     let ball = world.spawn(&def, &[ball]).expect("valid");
     let (mut heights, mut peak, mut rising) = (Vec::new(), Fx::ZERO, false);
@@ -97,6 +103,92 @@ fn a_box_that_lands_flat_does_not_spin_or_gain_energy() {
             let ideal = fx_mul(fx_mul(e, e), fx!(2));
             assert!(highest <= ideal + fx!(0.001), "e {e}: {highest} m of {ideal} m");
             assert!(highest >= ideal * 9 / 10 - fx!(0.005), "e {e}: {highest} m of {ideal} m");
+        }
+    }
+}
+
+#[test]
+fn the_threshold_of_the_world_is_the_default_of_a_material() {
+    for (e, height) in [(fx!(0.5), fx!(3)), (fx!(0.9), fx!(1))] {
+        assert_eq!(rebounds_above(e, Some(fx!(1)), height, 600), rebounds(e, height, 600));
+    }
+}
+
+/// At or above the threshold a ball bounces, below it does not. A ball and a floor with different thresholds have the
+/// smaller one.
+#[test]
+fn the_smaller_threshold_of_two_shapes_decides_whether_they_bounce() {
+    let speed = fx!(0.5);
+    for (floor, ball, bounces) in [
+        (None, None, false),
+        (None, Some(fx!(0.4)), true),
+        (Some(fx!(0.4)), None, true),
+        (Some(fx!(0)), Some(fx!(3)), true),
+        (Some(fx!(0.6)), Some(fx!(0.7)), false),
+        (Some(fx!(3)), None, false),
+    ] {
+        let after = speed_after_a_bounce(speed, [floor, ball]);
+        if bounces {
+            assert!((after - speed).abs() < fx!(0.001), "{floor:?}, {ball:?}: {after} m/s");
+        } else {
+            assert!(after.abs() < fx!(0.001), "{floor:?}, {ball:?}: {after} m/s");
+        }
+    }
+}
+
+/// The speed of a ball of restitution 1 a second after it has hit a floor without gravity.
+fn speed_after_a_bounce(speed: Fx, thresholds: [Option<Fx>; 2]) -> Fx {
+    let config = Config { gravity: Vec2::ZERO, sleeping: false, ..Config::default() };
+    let mut world = World::new(config).expect("valid");
+    let mut floor = ShapeDef::new(Polygon::rectangle(fx!(20), fx!(1)).expect("valid"));
+    floor.material.restitution_threshold = thresholds[0];
+    world.spawn(&BodyDef::fixed().position((fx!(0), fx!(-1))), &[floor]).expect("valid");
+    let mut ball = ShapeDef::new(Geometry::circle(fx!(0.5)).expect("valid")).restitution(fx!(1));
+    ball.material.restitution_threshold = thresholds[1];
+    let def = BodyDef::dynamic().position((fx!(0), fx!(0.6))).velocity((fx!(0), -speed));
+    let ball = world.spawn(&def, &[ball]).expect("valid");
+    for _ in 0..80 {
+        world.step();
+    }
+    world.body(ball).expect("still there").velocity().y
+}
+
+/// Between two walls without gravity a ball of restitution 1 and threshold 0 keeps its speed for 100 s.
+#[test]
+fn a_slow_ball_with_a_threshold_of_zero_keeps_its_speed() {
+    for speed in [fx!(0.05), fx!(0.1), fx!(0.3), fx!(0.9), fx!(1.1), fx!(2)] {
+        let config = Config { gravity: Vec2::ZERO, sleeping: false, ..Config::default() };
+        let mut world = World::new(config).expect("valid");
+        let wall = ShapeDef::new(Polygon::rectangle(fx!(1), fx!(5)).expect("valid"));
+        for x in [fx!(-1.6), fx!(1.6)] {
+            world.spawn(&BodyDef::fixed().position((x, fx!(0))), &[wall]).expect("valid");
+        }
+        let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).expect("valid"));
+        let ball = ball.restitution(fx!(1)).restitution_threshold(fx!(0));
+        let ball = world.spawn(&BodyDef::dynamic().velocity((speed, fx!(0))), &[ball]).expect("valid");
+        for _ in 0..6000 {
+            world.step();
+        }
+        let left = world.body(ball).expect("still there").velocity().x.abs();
+        assert!((left - speed).abs() < speed / 1000, "{speed} m/s: {left} m/s left");
+    }
+}
+
+/// A ball that falls at 0.3 to 2 m/s bounces. No rebound in 100 s is higher than the one before, and none is lower than
+/// by what the error of the time of impact costs.
+#[test]
+fn slow_falls_bounce_with_a_threshold_of_zero() {
+    for speed in [fx!(0.05), fx!(0.1), fx!(0.3), fx!(0.5), fx!(0.9), fx!(1.1), fx!(2)] {
+        let height = fx_mul(speed, speed) / 20;
+        let mut heights = rebounds_above(fx!(1), Some(fx!(0)), height, 6000);
+        assert!(heights[0] > Fx::ZERO || speed < fx!(0.3), "{speed} m/s: sticks");
+        heights.insert(0, height);
+        for pair in heights.windows(2) {
+            let v = sqrt(fx_mul(fx!(20), pair[0])).expect("positive");
+            let lost = lockstep2d::math::fx_div(fx!(20) / 60, v).unwrap_or(Fx::ONE).min(Fx::ONE);
+            let least = fx_mul(pair[0], Fx::ONE - lost) - fx!(0.005);
+            assert!(pair[1] <= pair[0], "{speed} m/s: {} m after {} m", pair[1], pair[0]);
+            assert!(pair[1] >= least, "{speed} m/s: {} m after {} m", pair[1], pair[0]);
         }
     }
 }

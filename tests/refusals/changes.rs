@@ -123,6 +123,8 @@ fn changes_to_shapes_out_of_range_are_refused() {
     });
     for def in [
         old.rolling_resistance(fx!(1.5)),
+        old.restitution_threshold(fx!(401)),
+        old.restitution_threshold(fx!(-0.5)),
         old.surface_speed(fx!(401)),
         old.surface_speed(Fx::MIN),
         old.friction(fx!(17)),

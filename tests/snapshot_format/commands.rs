@@ -103,6 +103,7 @@ fn polygon() -> (ShapeDef, Written) {
         friction_mixing: Mixing::Minimum,
         restitution: fx!(1),
         restitution_mixing: Mixing::Product,
+        restitution_threshold: Some(fx!(8)),
         rolling_resistance: fx!(0.5),
         surface_speed: fx!(-7),
     };
@@ -115,7 +116,7 @@ fn polygon() -> (ShapeDef, Written) {
         shape.filter(filter).offset((fx!(3), fx!(4))).one_way(Angle::from_bits(11)).sensor().user_data(9);
     let one = 1 << 22;
     let bytes = w().u32(2).u64(3).i32(&[0, 0, 2 * one, 0, 0, 2 * one]).i32(&[one / 2]);
-    let surface = w().fx(&[1]).u32(2).fx(&[2]).u32(3).fx(&[1, -14]);
+    let surface = w().fx(&[1]).u32(2).fx(&[2]).u32(3).u8(1).fx(&[16]).fx(&[1, -14]);
     let bytes = bytes.fx(&[6, 8]).fx(&[2]).then(surface).u64(4).u64(5).i32(&[-6]);
     (shape, bytes.u8(1).u32(11).u8(1).u8(0).u8(1).u8(0).u64(9))
 }

@@ -217,6 +217,7 @@ impl<'a> Reader<'a> {
         self.u32("friction mixing");
         self.fx("restitution");
         self.u32("restitution mixing");
+        self.option("restitution threshold", |reader| reader.fx("value"));
         self.fx("rolling resistance");
         self.fx("surface speed");
         self.u64("filter: category");
@@ -314,7 +315,7 @@ impl<'a> Reader<'a> {
     /// Reads the whole file and returns the byte range of each section of the state.
     pub(crate) fn world(&mut self) -> Vec<(Section, Range<usize>)> {
         self.take(8, "magic, LS2DWRLD", |_| String::new());
-        assert_eq!(self.u32("format version"), 2);
+        assert_eq!(self.u32("format version"), 3);
         assert_eq!(self.u32("semantics id"), lockstep2d::SEMANTICS);
         let length = self.u64("bytes of the state");
         let start = self.at;

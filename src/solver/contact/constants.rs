@@ -16,8 +16,6 @@ pub(in crate::solver) struct Constants {
     pub(super) slop: i32,
     /// Largest speed at which overlap is pushed out.
     pub(super) push_speed: i32,
-    /// Approach speed below which restitution is not applied.
-    pub(super) restitution_threshold: i32,
     /// Softness between two bodies that impulses move.
     pub(super) soft: Softness,
     /// Softness against a body that impulses do not move.
@@ -36,7 +34,6 @@ impl Constants {
             separation_max: widest.min(i64::from(i32::MAX)) as i32,
             slop: crate::math::convert::<_, fixed::types::extra::U26>(tuning.slop).to_bits(),
             push_speed: tuning.push_speed.to_bits(),
-            restitution_threshold: tuning.restitution_threshold.to_bits(),
             soft: tuning.contact,
             stiff: tuning.contact_immovable,
             unchecked: unchecked_at([rate, tuning.contact.bias_rate, tuning.contact_immovable.bias_rate]),

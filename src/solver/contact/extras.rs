@@ -11,6 +11,8 @@ use crate::simd::{Ints, Lanes};
 #[derive(Clone, Debug)]
 pub(in crate::solver) struct ContactExtras<const N: usize> {
     pub(super) restitution: Ints<N>,
+    /// Approach speed below which restitution is not applied.
+    pub(super) restitution_threshold: Ints<N>,
     /// For each point, the relative normal velocity at the start of the sub-step.
     pub(super) approach: [Ints<N>; 2],
     /// For each point, -1 where the shapes have pushed each other in this sub-step.
@@ -28,6 +30,7 @@ impl<const N: usize> ContactExtras<N> {
     /// A batch in which no lane has extras.
     pub(super) const NONE: Self = ContactExtras {
         restitution: Ints::ZERO,
+        restitution_threshold: Ints::ZERO,
         approach: [Ints::ZERO; 2],
         pushed: [Ints::ZERO; 2],
         bounce: [Ints::ZERO; 2],
@@ -47,6 +50,7 @@ impl<const N: usize> ContactExtras<N> {
     ) {
         let pair = &source.pairs[index];
         self.restitution.0[lane] = pair.surface.restitution.to_bits();
+        self.restitution_threshold.0[lane] = pair.surface.restitution_threshold.to_bits();
         self.surface_speed.0[lane] = pair.surface.surface_speed.to_bits();
         if pair.surface.rolling_resistance > 0 {
             self.rolls = true;

@@ -33,6 +33,8 @@ pub(super) struct Prospect {
     warm: bool,
     /// Whether a contact is an impact.
     pub(super) impact: bool,
+    /// Whether a contact has restitution.
+    pub(super) bounces: bool,
 }
 
 impl Prospect {
@@ -126,6 +128,7 @@ impl ContactSource<'_> {
                 let prospect = &mut prospects[body as usize];
                 prospect.warm |= warm;
                 prospect.impact |= pair.is_impact;
+                prospect.bounces |= pair.surface.restitution.is_positive();
             }
         }
         prospects[GROUND as usize] = Prospect::default();
@@ -275,6 +278,7 @@ mod tests {
         let surface = Surface {
             friction: crate::math::FrictionRatio::ZERO,
             restitution: Unit::ZERO,
+            restitution_threshold: Speed::ZERO,
             surface_speed: Speed::ZERO,
             rolling_resistance: Fx::ZERO,
         };

@@ -1,9 +1,11 @@
-//! Restitution: a point that approached faster than the threshold and was pushed separates at `e` times the approach
+//! Restitution: a point that approached faster than the threshold of its surface and was pushed separates at `e` times the approach
 //! speed.
 //!
 //! ```text
-//! L' = max(L - (vn + e v_approach), 0)          once in a tick, after the sub-steps
+//! L' = max(L - (vn + e v_approach), 0)          in the sub-step in which it was pushed, after both passes
 //! ```
+//!
+//! The impulse is not part of the accumulated impulse, which the next sub-step would apply again.
 //!
 //! The approach speed is measured before any contact is warm-started. Otherwise the impulse of one contact would look
 //! like an approach at the next contact, and balls in a groove would bounce for ever.
@@ -11,11 +13,11 @@
 use super::super::batches::{BatchParts, Operation};
 use super::super::limits::IMPULSE_MAX;
 use super::super::pair::{BodyPairW, UNIT};
+use super::Contacts;
 use super::batch::Batch;
 use super::extras::ContactExtras;
 use super::overflow_policy::{OverflowPolicy, Saturating};
 use super::rows::Inverses;
-use super::{Constants, Contacts};
 use crate::math::{Unit, saturate, saturate_wide};
 use crate::simd::{Ints, Lanes};
 
@@ -45,19 +47,19 @@ impl Operation<Contacts> for ObserveApproach {
 
 /// Applies restitution.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::solver) struct ApplyRestitution {
-    pub(in crate::solver) constants: Constants,
-}
+pub(in crate::solver) struct ApplyRestitution;
 
 impl Operation<Contacts> for ApplyRestitution {
     #[inline(always)]
     fn apply<L: Lanes<N>, const N: usize>(self, parts: BatchParts<'_, Contacts, N>) {
         let BatchParts { batch, record, extra: Some(extras), bodies, faults } = parts else { return };
         let policy = &mut Saturating(faults);
+        // Only clamps of impulses count: whether a lane is read here depends on the other lanes.
+        let mut unread = 0;
+        let reader = &mut Saturating(&mut unread);
         let restitution = L::load(&extras.restitution);
         let (n, _) = batch.directions::<L>();
-        let constants = &self.constants;
-        let masks = [bounces::<L, N>(extras, 0, constants), bounces::<L, N>(extras, 1, constants)];
+        let masks = [bounces::<L, N>(extras, 0), bounces::<L, N>(extras, 1)];
         if !L::any(L::either(masks[0], masks[1])) {
             return;
         }
@@ -68,7 +70,7 @@ impl Operation<Contacts> for ApplyRestitution {
         }
         let stopped = pair.copy();
         for (point, rebound) in batch.points[..batch.count].iter().zip(&mut rebound) {
-            L::store(pair.velocity(n, &point.normal, policy), &mut rebound.before);
+            L::store(pair.velocity(n, &point.normal, reader), &mut rebound.before);
             (rebound.old, rebound.new) = (point.normal_lambda, point.normal_lambda);
         }
         for (i, point) in batch.points[..batch.count].iter().enumerate() {
@@ -81,7 +83,7 @@ impl Operation<Contacts> for ApplyRestitution {
                 let point = &batch.points[i];
                 let bounce = L::mul(restitution, L::load(&extras.approach[i]));
                 let bounce = L::narrow::<UNIT>(bounce);
-                let error = L::add_saturating(pair.velocity(n, &point.normal, policy), bounce);
+                let error = L::add_saturating(pair.velocity(n, &point.normal, reader), bounce);
                 let old = L::load(&rebound[i].new);
                 let wanted = L::max(L::sub_saturating(old, error), L::splat(0));
                 let new = L::select(mask, L::min(wanted, L::splat(IMPULSE_MAX.to_bits())), old);
@@ -90,7 +92,7 @@ impl Operation<Contacts> for ApplyRestitution {
             }
         }
         for (point, rebound) in batch.points[..batch.count].iter().zip(&mut rebound) {
-            L::store(pair.velocity(n, &point.normal, policy), &mut rebound.after);
+            L::store(pair.velocity(n, &point.normal, reader), &mut rebound.after);
         }
         let share = L::load(&shares_without_gain(batch, extras, &record.inverses, &rebound));
         let all = !L::any(L::greater(L::splat(Unit::ONE.to_bits()), share));
@@ -159,12 +161,8 @@ fn shares_without_gain<const N: usize>(
 
 /// Mask of the lanes in which a point approached fast enough and was pushed.
 #[inline(always)]
-fn bounces<L: Lanes<N>, const N: usize>(
-    extras: &ContactExtras<N>,
-    i: usize,
-    constants: &Constants,
-) -> L::Mask {
-    let threshold = L::splat(1 - constants.restitution_threshold);
+fn bounces<L: Lanes<N>, const N: usize>(extras: &ContactExtras<N>, i: usize) -> L::Mask {
+    let threshold = L::sub(L::splat(1), L::load(&extras.restitution_threshold));
     let fast = L::greater(threshold, L::load(&extras.approach[i]));
     let pushed = L::negative(L::load(&extras.pushed[i]));
     L::both(L::both(fast, pushed), L::greater(L::load(&extras.restitution), L::splat(0)))

@@ -8,6 +8,8 @@ use crate::math::{FrictionRatio, Fx, Speed, Unit, fx_mul, narrow};
 pub(crate) struct Surface {
     pub(crate) friction: FrictionRatio,
     pub(crate) restitution: Unit,
+    /// Approach speed below which the shapes do not bounce.
+    pub(crate) restitution_threshold: Speed,
     /// Relative speed of the two surfaces by themselves, in m/s.
     pub(crate) surface_speed: Speed,
     /// Largest torque per unit of normal force, in metres.
@@ -23,12 +25,13 @@ pub(crate) struct SurfaceSide<'a> {
 }
 
 impl Surface {
-    /// Mixes the materials of two shapes.
-    pub(crate) fn between(a: SurfaceSide<'_>, b: SurfaceSide<'_>) -> Self {
+    /// Mixes the materials of two shapes, in a world with the restitution threshold `threshold`.
+    pub(crate) fn between(a: SurfaceSide<'_>, b: SurfaceSide<'_>, threshold: Fx) -> Self {
         let resistance = a.material.rolling_resistance.max(b.material.rolling_resistance);
         Surface {
             friction: narrow(a.material.mixed_friction(b.material)),
             restitution: narrow(a.material.mixed_restitution(b.material)),
+            restitution_threshold: narrow(a.material.mixed_restitution_threshold(b.material, threshold)),
             surface_speed: narrow(a.material.surface_speed.saturating_add(b.material.surface_speed)),
             rolling_resistance: fx_mul(resistance, a.radius.max(b.radius)),
         }

@@ -287,7 +287,7 @@ impl JointSet {
         self.warm_start(&context);
         // The velocity of the lighter body has more significant bits.
         let (body, moved, arm) = if a.is_dynamic() && (!b.is_dynamic() || a.mass() < b.mass()) {
-            (a, bodies[1].reversed(), place.lever_a.arm)
+            (a, bodies[1].reversed(), place.reach_of_a().arm)
         } else {
             (b, bodies[2], place.lever_b.arm)
         };

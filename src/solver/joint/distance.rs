@@ -21,6 +21,7 @@ pub struct Distance {
     /// Range of the length in metres, 0 or more.
     pub limit: Option<JointLimit>,
     /// Motor along the line. A positive speed, in m/s, moves the anchors apart. The limit is a force in N.
+    /// It does not drive beyond `rod` or `limit`.
     pub motor: Option<Drive>,
     /// Spring with a length in metres, 0 or more.
     pub spring: Option<Spring>,
@@ -76,7 +77,8 @@ impl Distance {
     pub(super) fn prepare(&self, parts: &mut Parts<'_>) {
         let force = self.spring_force.unwrap_or(JointLimit { lower: Fx::MIN, upper: Fx::MAX });
         parts.spring_within(Direction::Apart, self.spring, force);
-        parts.drive(Direction::Apart, self.motor);
+        let held = self.rod.map(|length| JointLimit { lower: length, upper: length });
+        parts.drive_within(Direction::Apart, self.motor, held.or(self.limit));
         parts.limit(Direction::Apart, self.limit);
         if let Some(length) = self.rod {
             parts.hold(slot::HOLD, Direction::Apart, length);

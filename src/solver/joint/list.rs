@@ -6,7 +6,9 @@ use alloc::vec::Vec;
 use core::cell::Cell;
 
 use super::super::body::SolverBody;
+use super::super::body_pair::{BodyPair, Remainders};
 use super::super::context::{Pass, StepContext};
+use super::super::limits::Faults;
 use super::super::settings::Tuning;
 use super::def::JointKind;
 use super::parts::Parts;
@@ -40,17 +42,34 @@ struct Link {
     bodies: [u32; 2],
     rows: u16,
     points: u16,
+    remainders: Remainders,
+}
+
+impl Link {
+    /// Lets `change` change the velocities of the two bodies.
+    #[inline]
+    fn change(
+        &mut self,
+        context: &StepContext<'_>,
+        faults: &mut Faults,
+        change: impl FnOnce(&mut BodyPair<'_>),
+    ) {
+        let remainders = &mut self.remainders;
+        SolverBody::change_pair(context.bodies, self.bodies, |a, b| {
+            change(&mut BodyPair { a, b, remainders, faults });
+        });
+    }
 }
 
 /// Iterates over joints with their rows and points.
 struct Walk<'a> {
-    links: core::slice::Iter<'a, Link>,
+    links: core::slice::IterMut<'a, Link>,
     rows: &'a mut [JointRow],
     points: &'a mut [JointPoint],
 }
 
 impl<'a> Iterator for Walk<'a> {
-    type Item = (&'a Link, &'a mut [JointRow], &'a mut [JointPoint]);
+    type Item = (&'a mut Link, &'a mut [JointRow], &'a mut [JointPoint]);
 
     #[inline]
     fn next(&mut self) -> Option<Self::Item> {
@@ -98,7 +117,7 @@ impl JointList {
             JointKind::Revolute(_) | JointKind::Filter => {}
         }
         let (rows, points) = (count(&self.rows[rows_before..]), count(&self.points[points_before..]));
-        self.links.push(Link { bodies: indices, rows, points });
+        self.links.push(Link { bodies: indices, rows, points, remainders: Remainders::starting(bodies) });
         self.joints.push(JointConstraint { slot, ends: Ends::prepare(joint, indices, bodies) });
     }
 
@@ -123,9 +142,9 @@ impl JointList {
     pub(super) fn warm_start(&mut self, context: &StepContext<'_>) {
         let mut faults = 0;
         for (link, rows, points) in self.walk() {
-            SolverBody::change_pair(context.bodies, link.bodies, |a, b| {
-                rows.iter_mut().for_each(|row| row.warm_start(a, b, &mut faults));
-                points.iter_mut().for_each(|point| point.warm_start(a, b, &mut faults));
+            link.change(context, &mut faults, |bodies| {
+                rows.iter_mut().for_each(|row| row.warm_start(bodies));
+                points.iter_mut().for_each(|point| point.warm_start(bodies));
             });
         }
         context.add_faults(faults);
@@ -134,9 +153,9 @@ impl JointList {
     pub(super) fn solve(&mut self, pass: Pass, context: &StepContext<'_>) {
         let mut faults = 0;
         for (link, rows, points) in self.walk() {
-            SolverBody::change_pair(context.bodies, link.bodies, |a, b| {
-                rows.iter_mut().for_each(|row| row.solve(pass, context.tuning, a, b, &mut faults));
-                points.iter_mut().for_each(|point| point.solve(pass, a, b, &mut faults));
+            link.change(context, &mut faults, |bodies| {
+                rows.iter_mut().for_each(|row| row.solve(pass, context.tuning, bodies));
+                points.iter_mut().for_each(|point| point.solve(pass, bodies));
             });
         }
         context.add_faults(faults);
@@ -158,13 +177,13 @@ impl JointList {
     }
 
     fn walk(&mut self) -> Walk<'_> {
-        Walk { links: self.links.iter(), rows: &mut self.rows, points: &mut self.points }
+        Walk { links: self.links.iter_mut(), rows: &mut self.rows, points: &mut self.points }
     }
 
     /// Like [`Self::walk`], but also gives the constants of each joint.
     fn walk_joints(&mut self) -> impl Iterator<Item = (&JointConstraint, <Walk<'_> as Iterator>::Item)> {
         let JointList { joints, links, rows, points } = self;
-        joints.iter().zip(Walk { links: links.iter(), rows, points })
+        joints.iter().zip(Walk { links: links.iter_mut(), rows, points })
     }
 }
 

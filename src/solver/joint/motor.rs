@@ -13,17 +13,26 @@ use crate::math::{Fx, Vec2};
 ///
 /// With a speed of 0 it acts as friction between B and A, as on a table seen from above. With springs it pulls the
 /// frames onto each other: if A is a kinematic or fixed body that follows a pointer, B is dragged by the pointer.
+///
+/// Forces act on both bodies at one point, B's anchor, as if A reached there: a force that moves B beside A also turns
+/// A. Momentum and angular momentum of the two bodies are kept. An arm of A that is longer than 88 of its radii of
+/// gyration is shortened, and B's arm reaches to its end. Where neither body reaches the other, forces act along the
+/// line between their centres only.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[doc(alias = "mouse joint")]
 #[doc(alias = "MouseJoint")]
 #[doc(alias = "target joint")]
 #[doc(alias = "MotorJoint")]
 pub struct Motor {
-    /// Drives B's anchor to a velocity relative to A's.
+    /// Drives B's anchor to a velocity relative to A's frame: to the velocity of the point of A, or of its extension,
+    /// at which B's anchor is. That is what
+    /// [`World::joint_velocity`](crate::world::World::joint_velocity) measures. If A rotates, B is driven around with
+    /// it.
     pub linear: Option<LinearDrive>,
     /// Drives B to an angular velocity relative to A in rad/s, with limited torque in N m.
     pub angular: Option<Drive>,
-    /// Pulls the anchors onto each other, with limited force in N.
+    /// Pulls the anchors onto each other, with limited force in N. Its damping acts on the velocity of B's anchor
+    /// relative to A's frame, along the spring and across it.
     pub linear_spring: Option<Pull>,
     /// Turns the frames parallel, with limited torque in N m.
     pub angular_spring: Option<Pull>,
@@ -32,7 +41,8 @@ pub struct Motor {
 /// A motor along both axes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct LinearDrive {
-    /// Target velocity in m/s along the axes of the world, within ±2^20.
+    /// Target velocity of B's anchor relative to A's frame at that place, in m/s along the axes of the world, within
+    /// ±2^20.
     pub velocity: Vec2<Fx>,
     /// Largest force in N, 0 or more; [`Fx::MAX`] is unlimited.
     pub max_force: Fx,

@@ -63,8 +63,19 @@ impl Parts<'_> {
 
     /// Adds a motor, if there is one.
     pub(super) fn drive(&mut self, direction: Direction, drive: Option<Drive>) {
+        self.drive_within(direction, drive, None);
+    }
+
+    /// Adds a motor that does not drive beyond a limit along the same direction, if there is one. A motor of unlimited
+    /// force and a limit that act against each other would add to their impulses in every sub-step.
+    pub(super) fn drive_within(
+        &mut self,
+        direction: Direction,
+        drive: Option<Drive>,
+        limit: Option<JointLimit>,
+    ) {
         if let Some(Drive { speed, max }) = drive {
-            let task = RowTask::Drive { speed, max: self.impulse(max) };
+            let task = RowTask::Drive { speed, max: self.impulse(max), limit };
             self.row(slot::DRIVE, direction, task);
         }
     }

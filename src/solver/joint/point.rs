@@ -1,9 +1,9 @@
 //! The points of a joint: a spring pulls the anchors together, or a motor drives them to a relative velocity. Joints
 //! whose anchors are pinned rigidly are hinges.
 
-use super::super::body::SolverBody;
+use super::super::body_pair::BodyPair;
 use super::super::context::Pass;
-use super::super::limits::{Faults, clamp_warm_start};
+use super::super::limits::clamp_warm_start;
 use super::super::point_block::{PointBlock, PointGoal};
 use super::super::softness::Softness;
 use super::pose::JointPose;
@@ -40,7 +40,7 @@ impl JointPoint {
     /// Computes arms, gains and gap at the current pose.
     #[inline]
     pub(super) fn refresh(&mut self, place: &JointPose) {
-        self.block = PointBlock::new(place.lever_a, place.lever_b, place.fractions);
+        self.block = place.block();
         self.bias = match &self.task {
             PointTask::Spring { softness, .. } => {
                 Vec2::new(softness.push(place.gap.x), softness.push(place.gap.y))
@@ -50,24 +50,24 @@ impl JointPoint {
     }
 
     #[inline]
-    pub(super) fn warm_start(&mut self, a: &mut SolverBody, b: &mut SolverBody, faults: &mut Faults) {
-        clamp_warm_start(&mut self.lambda.x, faults);
-        clamp_warm_start(&mut self.lambda.y, faults);
-        self.block.apply(self.lambda, a, b, faults);
+    pub(super) fn warm_start(&mut self, bodies: &mut BodyPair<'_>) {
+        clamp_warm_start(&mut self.lambda.x, bodies.faults);
+        clamp_warm_start(&mut self.lambda.y, bodies.faults);
+        self.block.apply(self.lambda, bodies);
     }
 
     #[inline]
-    pub(super) fn solve(&mut self, pass: Pass, a: &mut SolverBody, b: &mut SolverBody, faults: &mut Faults) {
+    pub(super) fn solve(&mut self, pass: Pass, bodies: &mut BodyPair<'_>) {
         let lambda = &mut self.lambda;
         match (&self.task, pass) {
             (PointTask::Spring { softness, max }, Pass::Bias) => {
                 let goal = PointGoal { bias: Vec2::ZERO, push: self.bias };
-                self.block.solve_within(a, b, goal, softness, *max, lambda, faults);
+                self.block.solve_within(bodies, goal, softness, *max, lambda);
             }
             (PointTask::Spring { .. }, Pass::Relax) => {}
             (PointTask::Drive { max, .. }, _) => {
                 let goal = PointGoal { bias: self.bias, push: Vec2::ZERO };
-                self.block.solve_within(a, b, goal, &Softness::RIGID, *max, lambda, faults);
+                self.block.solve_within(bodies, goal, &Softness::RIGID, *max, lambda);
             }
         }
     }

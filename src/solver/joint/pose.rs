@@ -3,13 +3,15 @@
 use core::cell::Cell;
 
 use super::super::body::SolverBody;
+use super::super::point_block::PointBlock;
 use super::super::row::{Lever, MassFractions, Row};
 use super::def::JointDef;
 use super::parts::Direction;
 use super::row::Measure;
 use super::state::{Joint, radians};
 use crate::body::Body;
-use crate::math::{Angle, Fx, Length, Reciprocal, Rot, Unit, Vec2, round_shift, saturate};
+use crate::fx;
+use crate::math::{Angle, Fx, Length, Reciprocal, Rot, Unit, Vec2, fx_div, round_shift, saturate};
 
 /// The rotation of a body with joints at the last refresh.
 #[derive(Clone, Copy, Debug, Default)]
@@ -133,9 +135,8 @@ impl Ends {
     /// Measures along an axis of A. The axis turns with A about A's centre, so that A's arm reaches to B's anchor.
     fn measure_axis(&self, axis: Vec2<Unit>, place: &JointPose, body_rotations: &[BodyRotation]) -> Measure {
         let n = body_rotations[self.body_a as usize].rotation.apply(axis);
-        let arm = place.lever_a.arm + place.gap.narrow();
-        let (row, denominator) =
-            Row::prepare(n, Lever { arm, ..place.lever_a }, place.lever_b, place.fractions);
+        let [a, b] = place.levers_at_one_point().unwrap_or([place.reach_of_a(), place.lever_b]);
+        let (row, denominator) = Row::prepare(n, a, b, place.fractions);
         Measure { row, denominator, position: place.gap.dot(n.widen()), scale: Fx::ONE }
     }
 
@@ -154,6 +155,49 @@ pub(super) struct JointPose {
     pub(super) fractions: MassFractions,
     /// Vector from A's anchor to B's.
     pub(super) gap: Vec2<Fx>,
+}
+
+impl JointPose {
+    /// The lever of A that reaches to B's anchor.
+    pub(super) fn reach_of_a(&self) -> Lever {
+        Lever { arm: self.lever_a.arm + self.gap.narrow(), ..self.lever_a }
+    }
+
+    /// The block of a pulled or driven point. Its impulses act at one point of both bodies. Far away bodies on which no
+    /// such point is within reach are moved along the line between their centres only: the effective mass across it is
+    /// less than a ten thousandth of that along it.
+    pub(super) fn block(&self) -> PointBlock {
+        match self.levers_at_one_point() {
+            Some([a, b]) => PointBlock::new(a, b, self.fractions),
+            None => {
+                let between = self.lever_a.arm.widen() + self.gap - self.lever_b.arm.widen();
+                PointBlock::along(between.normalized().unwrap_or(Vec2::X), self.fractions)
+            }
+        }
+    }
+
+    /// The levers of A and B to one point. An impulse that is not along the gap keeps angular momentum only if it acts
+    /// on both bodies at one point. This is B's anchor if it is within reach of A, otherwise the point within reach of
+    /// A that is nearest to it. `None` if that is not within reach of B.
+    fn levers_at_one_point(&self) -> Option<[Lever; 2]> {
+        let a = self.reach_of_a();
+        let longest = longest_ratio(a);
+        if longest <= REACH_MAX || self.fractions.a == Unit::ZERO || self.fractions.b == Unit::ZERO {
+            return Some([a, self.lever_b]);
+        }
+        let arm = a.arm.widen().scale(fx_div(REACH_MAX, longest)?).narrow();
+        let b = Lever { arm: self.lever_b.arm - (a.arm - arm), ..self.lever_b };
+        (longest_ratio(b) <= REACH_MAX).then_some([Lever { arm, ..a }, b])
+    }
+}
+
+/// Largest component of a lever ratio, so that its length is below the largest ratio of a row.
+const REACH_MAX: Fx = fx!(88);
+
+/// The larger component of a lever ratio.
+fn longest_ratio(lever: Lever) -> Fx {
+    let ratio = |x: Length| lever.inverse_gyration.times_wide(x.into()).abs();
+    ratio(lever.arm.x).max(ratio(lever.arm.y))
 }
 
 /// A rotated arm with 52 fraction bits, not rounded yet. The gap is a small difference of two long arms, which are

@@ -23,7 +23,7 @@ use crate::math::Fx;
 pub struct Prismatic {
     /// Range of the translation in metres.
     pub limit: Option<JointLimit>,
-    /// Motor along the axis: speed in m/s, limit in N.
+    /// Motor along the axis: speed in m/s, limit in N. It does not drive beyond the limit.
     pub motor: Option<Drive>,
     /// Spring with a target translation in metres.
     pub spring: Option<Spring>,
@@ -51,7 +51,7 @@ impl Prismatic {
 
     pub(super) fn prepare(&self, parts: &mut Parts<'_>) {
         parts.spring(Direction::Along, self.spring);
-        parts.drive(Direction::Along, self.motor);
+        parts.drive_within(Direction::Along, self.motor, self.limit);
         parts.limit(Direction::Along, self.limit);
         parts.hold(slot::HOLD, Direction::Angle, Fx::ZERO);
         parts.hold(slot::HOLD + 1, Direction::AcrossBalanced, Fx::ZERO);

@@ -6,6 +6,7 @@
 //! ```text
 //! spring   d = -massScale (vn + biasRate (x - target)) - impulseScale L      bias pass only
 //! motor    d = -(vn - speed),  |L| <= F h (mA + mB) D                        (over s: torque)
+//!          speed is limited to what the limits of the joint allow, C / h or biasRate C
 //! limit    d = -massScale (vn + biasRate C) - impulseScale L,  L >= 0        C = x - lower or upper - x
 //!          d = -(vn + C / h)                                                 while C > 0
 //! hold     as a limit that is reached, with L of either sign
@@ -17,12 +18,13 @@
 //! from any state: `L' = -massScale (v + biasRate x)`. If the row were solved again after the displacement, it would
 //! remove another `massScale biasRate h` of the velocity, and light springs would come to rest too early.
 
-use super::super::body::SolverBody;
+use super::super::body_pair::BodyPair;
 use super::super::context::Pass;
-use super::super::limits::{Faults, IMPULSE_MAX};
+use super::super::limits::IMPULSE_MAX;
 use super::super::row::{Denominator, Row};
 use super::super::settings::Tuning;
 use super::super::softness::Softness;
+use super::options::JointLimit;
 use super::parts::Direction;
 use crate::math::{Fx, Speed, fx_div, fx_mul, narrow, saturate_wide};
 
@@ -31,8 +33,8 @@ use crate::math::{Fx, Speed, fx_div, fx_mul, narrow, saturate_wide};
 pub(super) enum RowTask {
     /// Drives the position to a target, with impulses times `mA + mB` within `lower..=upper`.
     Spring { softness: Softness, target: Fx, lower: Fx, upper: Fx },
-    /// Drives the velocity to a speed, with impulses times `mA + mB` of at most `max`.
-    Drive { speed: Fx, max: Fx },
+    /// Drives the velocity to a speed, with impulses times `mA + mB` of at most `max`, and not beyond `limit`.
+    Drive { speed: Fx, max: Fx, limit: Option<JointLimit> },
     /// Keeps the position from falling below a bound.
     Lower { bound: Fx },
     /// Keeps the position from rising above a bound.
@@ -85,8 +87,14 @@ impl JointRow {
                 self.bias = softness.push(metres(position.saturating_sub(target)));
                 self.bounds = (measure.lambda(lower), measure.lambda(upper));
             }
-            RowTask::Drive { speed, max } => {
-                self.bias = -narrow::<fixed::types::extra::U21>(metres(speed)).max(-Speed::MAX);
+            RowTask::Drive { speed, max, limit } => {
+                let within = |JointLimit { lower, upper }: JointLimit| {
+                    let ahead = approach(metres(upper.saturating_sub(position)), tuning);
+                    let behind = approach(metres(position.saturating_sub(lower)), tuning);
+                    metres(speed).min(ahead).max(behind.saturating_neg())
+                };
+                let speed = limit.map_or_else(|| metres(speed), within);
+                self.bias = -narrow::<fixed::types::extra::U21>(speed).max(-Speed::MAX);
                 let max = measure.lambda(max);
                 self.bounds = (-max, max);
             }
@@ -107,25 +115,17 @@ impl JointRow {
     fn refresh_limit(&mut self, gap: Fx, measure: &Measure, tuning: &Tuning) {
         let gap = fx_mul(gap, measure.scale);
         self.open = gap > Fx::ZERO;
-        let rate = if self.open { Fx::from_num(tuning.rate) } else { tuning.joint.bias_rate.into() };
-        self.bias = narrow(fx_mul(gap, rate));
+        self.bias = narrow(approach(gap, tuning));
         self.bounds = (Speed::ZERO, IMPULSE_MAX);
     }
 
-    pub(super) fn warm_start(&mut self, a: &mut SolverBody, b: &mut SolverBody, faults: &mut Faults) {
+    pub(super) fn warm_start(&mut self, bodies: &mut BodyPair<'_>) {
         self.lambda = self.lambda.clamp(self.bounds.0, self.bounds.1);
-        self.row.apply(self.lambda, a, b, faults);
+        self.row.apply(self.lambda, bodies);
     }
 
-    pub(super) fn solve(
-        &mut self,
-        pass: Pass,
-        tuning: &Tuning,
-        a: &mut SolverBody,
-        b: &mut SolverBody,
-        faults: &mut Faults,
-    ) {
-        let vn = self.row.velocity(a, b, faults);
+    pub(super) fn solve(&mut self, pass: Pass, tuning: &Tuning, bodies: &mut BodyPair<'_>) {
+        let vn = self.row.velocity(bodies.a, bodies.b, bodies.faults);
         let (softness, bias, push) = match (&self.task, pass) {
             (RowTask::Spring { softness, .. }, Pass::Bias) => (softness, Speed::ZERO, self.bias),
             (RowTask::Spring { .. }, Pass::Relax) => return,
@@ -142,8 +142,15 @@ impl JointRow {
             (_, Pass::Relax) => (&Softness::RIGID, Speed::ZERO, Speed::ZERO),
         };
         let d = softness.wanted(vn, bias, self.lambda) - i64::from(push.to_bits());
-        self.row.accumulate(d, self.bounds, &mut self.lambda, a, b, faults);
+        self.row.accumulate(d, self.bounds, &mut self.lambda, bodies);
     }
+}
+
+/// The largest speed in m/s at which a limit at a distance of `gap` is approached: the limit is reached after a
+/// sub-step. Beyond the limit the speed is negative: that at which the limit is restored.
+fn approach(gap: Fx, tuning: &Tuning) -> Fx {
+    let rate = if gap > Fx::ZERO { Fx::from_num(tuning.rate) } else { tuning.joint.bias_rate.into() };
+    fx_mul(gap, rate)
 }
 
 impl Measure {

@@ -18,7 +18,8 @@ use crate::math::Fx;
 #[doc(alias = "FixedJoint")]
 #[doc(alias = "WeldJoint")]
 pub struct Weld {
-    /// Softness of the anchors; `None` is rigid.
+    /// Softness of the anchors; `None` is rigid. Forces act on both bodies at B's anchor, so that a soft weld keeps
+    /// angular momentum however far it is stretched.
     pub linear: Option<Soft>,
     /// Softness of the angle; `None` is rigid.
     pub angular: Option<Soft>,

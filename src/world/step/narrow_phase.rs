@@ -278,7 +278,7 @@ fn surface_of(state: &State, poses: &Poses, (a, b): Pair) -> Surface {
         material: state.shapes.at(slot).material(),
         radius: poses.at(slot).outline.radius(),
     };
-    Surface::between(side(a), side(b))
+    Surface::between(side(a), side(b), state.config.solver.restitution_threshold)
 }
 
 /// Returns the hit event that a contact causes if its shapes push each other in this tick: if they approach faster than

@@ -1,0 +1,131 @@
+//! The two bodies of a joint while it is solved.
+//!
+//! A change of velocity is rounded to the resolution of [`Speed`]. Over the thousands of updates of a joint that is at
+//! work all the time, the roundings would add up to a force: a spring and a motor that hold each other would turn the
+//! heavier body by a unit in every sub-step. The part that rounding leaves out is therefore carried over to the next
+//! change by the same joint (error feedback, as in first-order noise shaping), so that the sum of all changes in a tick
+//! is rounded once.
+
+use super::body::SolverBody;
+use super::limits::Faults;
+use crate::body::Body;
+use crate::math::{Speed, saturate};
+
+/// A change of velocity and spin with 51 fraction bits: the product of a gain and an impulse.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Change {
+    pub(crate) x: i64,
+    pub(crate) y: i64,
+    pub(crate) spin: i64,
+}
+
+impl Change {
+    /// Additional fraction bits compared with [`Speed`].
+    const EXTRA: u32 = 30;
+}
+
+/// The part of the changes of a body by one joint that is not yet in its velocity, in units of 2^-51 m/s: at most half
+/// a unit of [`Speed`].
+#[derive(Clone, Copy, Debug, Default)]
+struct Remainder {
+    x: i32,
+    y: i32,
+    spin: i32,
+}
+
+/// The remainders of the two bodies of a joint. They last for one tick.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Remainders {
+    a: Remainder,
+    b: Remainder,
+}
+
+impl Remainders {
+    /// Remainders for a tick. They start at arbitrary numbers, so that the rounding at the end of a tick is not the
+    /// same in every tick of a steady rotation (dither). The numbers follow from the poses, so that they do not change
+    /// while the bodies are at rest.
+    pub(crate) fn starting([a, b]: [&Body; 2]) -> Self {
+        Remainders { a: Remainder::starting(a), b: Remainder::starting(b) }
+    }
+}
+
+/// The bodies of a joint.
+pub(crate) struct BodyPair<'a> {
+    pub(crate) a: &'a mut SolverBody,
+    pub(crate) b: &'a mut SolverBody,
+    pub(crate) remainders: &'a mut Remainders,
+    pub(crate) faults: &'a mut Faults,
+}
+
+impl BodyPair<'_> {
+    /// Adds a change to the velocity of each body.
+    #[inline]
+    pub(crate) fn change(&mut self, a: Change, b: Change) {
+        self.remainders.a.add(a, self.a, self.faults);
+        self.remainders.b.add(b, self.b, self.faults);
+    }
+}
+
+impl Remainder {
+    fn starting(body: &Body) -> Self {
+        // Knuth's multiplicative hash, with the multiplier of his MMIX generator.
+        const MULTIPLIER: i64 = 6_364_136_223_846_793_005;
+        let centre = body.centre_of_mass();
+        let mix = |seed: i64| seed.wrapping_mul(MULTIPLIER);
+        let seed = mix(mix(centre.x.to_bits()).wrapping_add(centre.y.to_bits()));
+        let seed = mix(seed.rotate_left(32).wrapping_add(body.angle().to_bits().into()));
+        // The highest bits are the most random ones; 30 bits are one unit.
+        let next = |round: i64| saturate(mix(seed.wrapping_add(round).rotate_left(32)) >> 34);
+        Remainder { x: next(1), y: next(2), spin: next(3) }
+    }
+
+    #[inline]
+    fn add(&mut self, change: Change, body: &mut SolverBody, faults: &mut Faults) {
+        let x = rounded_sum(body.velocity.x, change.x, &mut self.x);
+        let y = rounded_sum(body.velocity.y, change.y, &mut self.y);
+        let spin = rounded_sum(body.spin, change.spin, &mut self.spin);
+        body.set_velocity(x, y, spin, faults);
+    }
+}
+
+/// A speed after a change, saturated. Adds the remainder to the change and replaces it by the new one.
+#[inline]
+#[expect(clippy::cast_possible_truncation, reason = "the remainder is at most half a unit, 2^29")]
+fn rounded_sum(speed: Speed, change: i64, remainder: &mut i32) -> Speed {
+    let exact = change.saturating_add((*remainder).into());
+    let units = crate::math::round_shift(exact, Change::EXTRA);
+    *remainder = exact.wrapping_sub(units << Change::EXTRA) as i32;
+    Speed::from_bits(saturate(i64::from(speed.to_bits()) + units))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Rng;
+
+    /// However many small changes there are, the velocity is off by half a unit at most.
+    #[test]
+    fn the_sum_of_all_changes_is_rounded_once() {
+        let mut rng = Rng::new(3);
+        for _ in 0..100 {
+            let (mut a, mut b) = (SolverBody::default(), SolverBody::default());
+            let (mut remainders, mut faults) = (Remainders::default(), 0);
+            let (mut sum_a, mut sum_b) = (0, 0);
+            for _ in 0..1000 {
+                let mut any = || i64::from(rng.next_u32()) - (1 << 30);
+                let (change_a, change_b) = (any(), any());
+                (sum_a, sum_b) = (sum_a + change_a, sum_b + change_b);
+                let [to_a, to_b] = [change_a, change_b].map(|x| Change { x, y: -x, spin: x });
+                let pair = (&mut a, &mut b, &mut remainders, &mut faults);
+                BodyPair { a: pair.0, b: pair.1, remainders: pair.2, faults: pair.3 }.change(to_a, to_b);
+            }
+            for (body, sum) in [(a, sum_a), (b, sum_b)] {
+                let off = |speed: Speed, sum: i64| (i64::from(speed.to_bits()) << 30).abs_diff(sum);
+                assert!(off(body.velocity.x, sum) <= 1 << 29);
+                assert!(off(body.velocity.y, -sum) <= 1 << 29);
+                assert!(off(body.spin, sum) <= 1 << 29);
+            }
+            assert_eq!(faults, 0);
+        }
+    }
+}
