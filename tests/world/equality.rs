@@ -183,7 +183,7 @@ fn nothing_that_is_done_to_the_caches_is_seen() {
             "{happened} with {count} seeds, at least {least} with 30 expected"
         );
     };
-    enough(slept, 300);
+    enough(slept, 200);
     enough(woken, 80);
     enough(visits, 400);
     enough(contacts, 1500);

@@ -1,5 +1,5 @@
-//! Restitution: a point that approached faster than the threshold of its surface and was pushed separates at `e` times the approach
-//! speed.
+//! Restitution: a point that approached faster than the threshold of its surface and was pushed separates at `e` times
+//! the approach speed.
 //!
 //! ```text
 //! L' = max(L - (vn + e v_approach), 0)          in the sub-step in which it was pushed, after both passes
@@ -18,7 +18,7 @@ use super::batch::Batch;
 use super::extras::ContactExtras;
 use super::overflow_policy::{OverflowPolicy, Saturating};
 use super::rows::Inverses;
-use crate::math::{Unit, saturate, saturate_wide};
+use crate::math::{Shift, Unit, saturate, saturate_wide};
 use crate::simd::{Ints, Lanes};
 
 /// Number of iterations in which two points that bounce are solved against each other. With one iteration, the first
@@ -26,7 +26,10 @@ use crate::simd::{Ints, Lanes};
 /// with an aspect ratio of up to 3, an iteration removes at least 3/4 of the error.
 const RESTITUTION_ITERATIONS: u32 = 12;
 
-/// Records the relative normal velocity of shapes with restitution, until the shapes push each other.
+/// Gap in metres at which a point bounces together with one that touches.
+const NEAR: Shift = Shift::lit("0.005");
+
+/// Records the relative normal velocity of shapes with restitution at the start of a sub-step.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::solver) struct ObserveApproach;
 
@@ -59,7 +62,7 @@ impl Operation<Contacts> for ApplyRestitution {
         let reader = &mut Saturating(&mut unread);
         let restitution = L::load(&extras.restitution);
         let (n, _) = batch.directions::<L>();
-        let masks = [bounces::<L, N>(extras, 0), bounces::<L, N>(extras, 1)];
+        let masks = [bounces::<L, N>(batch, extras, 0), bounces::<L, N>(batch, extras, 1)];
         if !L::any(L::either(masks[0], masks[1])) {
             return;
         }
@@ -159,11 +162,18 @@ fn shares_without_gain<const N: usize>(
     }))
 }
 
-/// Mask of the lanes in which a point approached fast enough and was pushed.
+/// Mask of the lanes in which a point approached fast enough and was pushed. A point that is as near as [`NEAR`] bounces
+/// together with the other one. Otherwise a box that lands not quite flat would spin.
 #[inline(always)]
-fn bounces<L: Lanes<N>, const N: usize>(extras: &ContactExtras<N>, i: usize) -> L::Mask {
+fn bounces<L: Lanes<N>, const N: usize>(
+    batch: &Batch<N>,
+    extras: &ContactExtras<N>,
+    i: usize,
+) -> L::Mask {
     let threshold = L::sub(L::splat(1), L::load(&extras.restitution_threshold));
     let fast = L::greater(threshold, L::load(&extras.approach[i]));
-    let pushed = L::negative(L::load(&extras.pushed[i]));
+    let near = L::greater(L::splat(NEAR.to_bits()), L::load(&batch.points[i].separation));
+    let other = L::negative(L::load(&extras.pushed[1 - i]));
+    let pushed = L::either(L::negative(L::load(&extras.pushed[i])), L::both(near, other));
     L::both(L::both(fast, pushed), L::greater(L::load(&extras.restitution), L::splat(0)))
 }

@@ -101,6 +101,13 @@ struct Naive {
     inverse: i32,
 }
 
+/// Where the surfaces of A and of B touch the tangent: half the gap before and behind the anchor.
+fn surfaces(input: &Input, anchor: [i32; 2], [x, y]: [i32; 2]) -> [[i32; 2]; 2] {
+    let half = rounded(input.rest.0[3].into(), 1);
+    let lift = [x, y].map(|n| limited(rounded(i128::from(n) * half, 24), i32::MAX));
+    [-1, 1].map(|sign| [0, 1].map(|axis| anchor[axis].wrapping_add(sign * lift[axis])))
+}
+
 /// The anchor of a point, or the mean of two.
 fn anchor(input: &Input, points: &[usize]) -> [i32; 2] {
     [0, 1].map(|axis| {
@@ -109,12 +116,12 @@ fn anchor(input: &Input, points: &[usize]) -> [i32; 2] {
     })
 }
 
-fn naive_row(input: &Input, anchor: [i32; 2], n: [i32; 2]) -> Naive {
+fn naive_row(input: &Input, anchors: [[i32; 2]; 2], n: [i32; 2]) -> Naive {
     let wide = |a: i32| i128::from(a);
     let Quad([_, _, fraction_a, fraction_b]) = input.shares;
     let fractions = [fraction_a, fraction_b];
     let e = [0, 1].map(|side| {
-        let arm = |axis: usize| wide(input.to_origin.0[2 * side + axis].saturating_add(anchor[axis]));
+        let arm = |axis: usize| wide(input.to_origin.0[2 * side + axis].saturating_add(anchors[side][axis]));
         let c = rounded(arm(0) * wide(n[1]) - arm(1) * wide(n[0]), 24);
         let (mantissa, exponent) = (input.gyrations.0[side], input.gyrations.0[2 + side].unsigned_abs());
         limited(rounded(c * wide(mantissa), exponent.saturating_sub(2)), RATIO_MAX.to_bits())
@@ -147,14 +154,14 @@ fn check<const N: usize>(input: &Input, lane: usize, made: &Made<N>) {
         limited(rounded(p * row.denominator, 30), limit.to_bits())
     };
     let half_way = anchor(input, &[0, 1][..batch.count]);
-    let tangent = naive_row(input, half_way, [-y, x]);
+    let tangent = naive_row(input, surfaces(input, half_way, [x, y]), [-y, x]);
     check_row(&batch.tangent, &inverses.tangent, &tangent);
     assert_eq!(batch.tangent_lambda.0[lane], lambda(2, &tangent, TANGENT_MAX));
     let friction = input.rest.0[2];
     for (i, point) in batch.points.iter().enumerate().take(batch.count) {
         let separation = limited(rounded(input.rest.0[i].into(), 1), i32::MAX);
         assert_eq!([point.separation.0[lane], point.first_separation.0[lane]], [separation; 2]);
-        let normal = naive_row(input, anchor(input, &[i]), [x, y]);
+        let normal = naive_row(input, [anchor(input, &[i]); 2], [x, y]);
         check_row(&point.normal, &inverses.normals[i], &normal);
         let ratio = rounded(tangent.denominator * i128::from(normal.inverse), 30);
         assert_eq!(
