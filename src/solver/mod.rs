@@ -134,7 +134,8 @@ impl Solver {
         contacts: &[Contact],
     ) {
         let Solver { list, moving, joints, colouring, contacts: set, machine, warm_starts, .. } = self;
-        *warm_starts = set.prepare(&ContactSource { pairs, manifolds, impacts, contacts, list }, colouring, *machine);
+        *warm_starts =
+            set.prepare(&ContactSource { pairs, manifolds, impacts, contacts, list }, colouring, *machine);
         let touched = moving.iter().filter(|moving| colouring.holds(moving.index()));
         self.contact_velocities.begin(touched.map(|moving| PushedBody {
             index: moving.index(),

@@ -4,8 +4,10 @@
 mod capsule;
 mod chain;
 mod collisions;
+mod columns;
 mod continuous;
 mod free_fall;
+mod impacts;
 mod joint_bench;
 mod joint_holds;
 mod joint_limits;

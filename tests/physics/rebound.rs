@@ -72,7 +72,13 @@ fn no_rebound_is_higher_than_the_one_before() {
         let heights = rebounds(e, fx!(10), 60 * 300);
         assert!(!heights.is_empty(), "e {e}: expected a rebound");
         for (i, pair) in heights.windows(2).enumerate() {
-            assert!(pair[1] <= pair[0] + between_ticks, "e {e}, rebound {}: {} m after {} m", i + 1, pair[1], pair[0]);
+            assert!(
+                pair[1] <= pair[0] + between_ticks,
+                "e {e}, rebound {}: {} m after {} m",
+                i + 1,
+                pair[1],
+                pair[0]
+            );
         }
     }
 }

@@ -3,6 +3,7 @@
 mod churn;
 mod equality;
 mod events;
+mod far;
 mod joint_batches;
 mod locks;
 mod phases;

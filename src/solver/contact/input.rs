@@ -186,9 +186,7 @@ impl ContactSource<'_> {
             shares: Quad([n.x.to_bits(), n.y.to_bits(), fractions.a.to_bits(), fractions.b.to_bits()]),
             gyrations: Quad([inverse_a.0, inverse_b.0, inverse_a.1, inverse_b.1]),
             to_origin: Quad([to_a.x, to_a.y, to_b.x, to_b.y].map(Length::to_bits)),
-            anchors: Quad(
-                [anchors[0].x, anchors[0].y, anchors[1].x, anchors[1].y].map(Length::to_bits),
-            ),
+            anchors: Quad([anchors[0].x, anchors[0].y, anchors[1].x, anchors[1].y].map(Length::to_bits)),
             carried: Quad([old_first.normal.to_bits(), old_second.normal.to_bits(), tangent.to_bits(), 0]),
             rest: Quad([
                 first.separation.to_bits(),
@@ -282,7 +280,14 @@ mod tests {
             surface_speed: Speed::ZERO,
             rolling_resistance: Fx::ZERO,
         };
-        let pair = ActiveContact { contact: 0, manifold: 0, shapes: (0, 1), bodies: (0, 1), surface, is_impact: false };
+        let pair = ActiveContact {
+            contact: 0,
+            manifold: 0,
+            shapes: (0, 1),
+            bodies: (0, 1),
+            surface,
+            is_impact: false,
+        };
         let source = ContactSource {
             pairs: &[pair],
             manifolds: &[Manifold::new(Vec2::Y)],

@@ -165,11 +165,7 @@ fn shares_without_gain<const N: usize>(
 /// Mask of the lanes in which a point approached fast enough and was pushed. A point that is as near as [`NEAR`] bounces
 /// together with the other one. Otherwise a box that lands not quite flat would spin.
 #[inline(always)]
-fn bounces<L: Lanes<N>, const N: usize>(
-    batch: &Batch<N>,
-    extras: &ContactExtras<N>,
-    i: usize,
-) -> L::Mask {
+fn bounces<L: Lanes<N>, const N: usize>(batch: &Batch<N>, extras: &ContactExtras<N>, i: usize) -> L::Mask {
     let threshold = L::sub(L::splat(1), L::load(&extras.restitution_threshold));
     let fast = L::greater(threshold, L::load(&extras.approach[i]));
     let near = L::greater(L::splat(NEAR.to_bits()), L::load(&batch.points[i].separation));

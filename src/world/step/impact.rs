@@ -111,10 +111,15 @@ struct Closing {
 /// The point of a manifold that closes first.
 fn soonest([a, b]: [&PredictedMotion; 2], manifold: &Manifold) -> Option<Closing> {
     let closing_at = approach(a, b, manifold);
-    let points = manifold.points().iter().map(|point| Closing { separation: point.separation, distance: closing_at(point) });
+    let points = manifold
+        .points()
+        .iter()
+        .map(|point| Closing { separation: point.separation, distance: closing_at(point) });
     // s1 / d1 < s2 / d2 for positive d.
     points.filter(|point| point.distance > 0).reduce(|first, point| {
-        let time = |point: &Closing, other: &Closing| i128::from(point.separation.to_bits()) * i128::from(other.distance);
+        let time = |point: &Closing, other: &Closing| {
+            i128::from(point.separation.to_bits()) * i128::from(other.distance)
+        };
         if time(&point, &first) < time(&first, &point) { point } else { first }
     })
 }

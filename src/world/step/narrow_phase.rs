@@ -156,7 +156,8 @@ impl NarrowPhase<'_> {
         output: &mut NarrowPhaseOutput,
     ) -> &'t [ActiveContact] {
         let NarrowPhase { state, poses, margins, .. } = self;
-        let NarrowPhaseOutput { boxes, contacts, sensors, manifolds, impacts, touching, approaches, sat } = output;
+        let NarrowPhaseOutput { boxes, contacts, sensors, manifolds, impacts, touching, approaches, sat } =
+            output;
         let motion = poses.motion();
         let mut box_pairs = 0..;
         for (index, is_box_pair) in near.iter() {

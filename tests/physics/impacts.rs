@@ -1,0 +1,178 @@
+//! Fast bodies meet other bodies: friction, angular momentum and energy of an impact do not depend on how far the
+//! bodies are apart at the start of the tick.
+
+use lockstep2d::body::{BodyDef, BodyId, BodyKind, Geometry, Polygon, ShapeDef};
+use lockstep2d::fx;
+use lockstep2d::math::{Angle, Fx, PI, Vec2, fx_mul};
+use lockstep2d::world::{Config, World};
+
+use crate::sweep;
+
+fn world_with(tick_rate: u32, gravity: Fx) -> World {
+    let gravity = Vec2::new(fx!(0), gravity);
+    World::new(Config { tick_rate, gravity, ..Config::default() }).expect("valid")
+}
+
+fn circle(radius: Fx) -> ShapeDef {
+    ShapeDef::new(Geometry::circle(radius).expect("valid"))
+}
+
+fn rectangle(half_width: Fx, half_height: Fx) -> ShapeDef {
+    ShapeDef::new(Polygon::rectangle(half_width, half_height).expect("valid"))
+}
+
+fn segment(a: Vec2<Fx>, b: Vec2<Fx>) -> ShapeDef {
+    ShapeDef::new(Geometry::segment(a, b).expect("valid"))
+}
+
+/// Kinetic energy of all dynamic bodies, in J.
+fn kinetic(world: &World) -> f64 {
+    let dynamic = world.bodies().filter(|(_, body)| body.kind() == BodyKind::Dynamic);
+    dynamic.map(|(_, body)| body.kinetic_energy().to_num::<f64>()).sum()
+}
+
+/// A disc with spin `w` that lands without sliding afterwards rolls at `r w / 3`: angular momentum about the point of
+/// contact, `m k^2 w = m (k^2 + r^2) w'` with `k^2 = r^2 / 2`.
+#[test]
+fn a_spinning_ball_rolls_at_a_third_of_its_surface_speed() {
+    let speeds = [5, 10, 20, 40, 100, 200].into_iter();
+    let cases =
+        speeds.flat_map(|speed| [60u32, 240].map(|rate| (0..16).map(move |phase| (speed, rate, phase))));
+    sweep::for_each(sweep::sample(cases.flatten(), 7), |(speed, rate, phase): (i32, u32, i32)| {
+        let mut world = world_with(rate, fx!(-10));
+        let floor = segment(Vec2::new(fx!(-100), fx!(0)), Vec2::new(fx!(100), fx!(0)));
+        world.spawn(&BodyDef::fixed(), &[floor]).expect("valid");
+        let speed = Fx::from(speed);
+        let height = fx!(0.5) + speed / 20 + speed * i64::from(phase) / 16 / i64::from(rate);
+        let def = BodyDef::dynamic().position((fx!(0), height)).velocity((fx!(0), -speed));
+        let ball = world.spawn(&def.angular_velocity(fx!(10)), &[circle(fx!(0.5))]).expect("valid");
+        (0..rate).for_each(|_| world.step());
+        let rolls = -world.body(ball).expect("there").velocity().x;
+        let expected = fx!(5) / 3;
+        assert!((rolls - expected).abs() < expected / 50, "{speed} m/s, {rate} Hz, {phase}: {rolls} m/s");
+    });
+}
+
+/// Two balls in free space, one with spin, meet off their centres.
+#[test]
+fn colliding_balls_keep_their_angular_momentum() {
+    let speeds = [5, 10, 20].into_iter();
+    let cases = speeds.flat_map(|speed| [fx!(0.05), fx!(0.3), fx!(0.6)].map(|offset| (speed, offset)));
+    let cases = cases.flat_map(|(speed, offset)| (0..16).map(move |phase| (speed, offset, phase)));
+    sweep::for_each(sweep::sample(cases, 5), |(speed, offset, phase): (i32, Fx, i32)| {
+        let mut world = world_with(60, fx!(0));
+        let speed = Fx::from(speed);
+        let x = fx!(1.5) + speed * i64::from(phase) / 960;
+        let spins =
+            BodyDef::dynamic().position((-x, fx!(0))).velocity((speed, fx!(0))).angular_velocity(fx!(20));
+        world.spawn(&spins, &[circle(fx!(0.5))]).expect("valid");
+        let def = BodyDef::dynamic().position((x, offset)).velocity((-speed, fx!(0)));
+        world.spawn(&def, &[circle(fx!(0.5))]).expect("valid");
+        // The sum, and the sum of absolute values.
+        let momentum = |world: &World| {
+            world.bodies().fold((Fx::ZERO, Fx::ZERO), |(sum, all), (_, body)| {
+                let orbital = fx_mul(body.mass(), body.centre_of_mass().cross(body.velocity()));
+                let spin = fx_mul(body.inertia(), body.angular_velocity());
+                (sum + orbital + spin, all + orbital.abs() + spin.abs())
+            })
+        };
+        let (before, all) = momentum(&world);
+        (0..60).for_each(|_| world.step());
+        let change = (momentum(&world).0 - before).abs();
+        assert!(change <= all / 100, "{speed} m/s, offset {offset}, {phase}: {change} of {all}");
+    });
+}
+
+/// A rod of restitution 1 that hits a floor without friction: an impact gains no energy, and loses nearly none.
+#[test]
+fn a_spinning_rod_gains_no_energy() {
+    for speed in [5, 20, 40] {
+        let cases: Vec<i32> = sweep::sample(0..504, 11);
+        let mut sum = 0.0;
+        for &case in &cases {
+            let mut world = world_with(60, fx!(0));
+            let slippery = |shape: ShapeDef| shape.friction(fx!(0)).restitution(fx!(1));
+            let floor = slippery(rectangle(fx!(100), fx!(1)));
+            world.spawn(&BodyDef::fixed().position((fx!(0), fx!(-1))), &[floor]).expect("valid");
+            let speed = Fx::from(speed);
+            let height = fx!(2) + speed * i64::from(case / 24) / 21 / 60;
+            let def = BodyDef::dynamic().position((fx!(0), height)).velocity((fx!(0), -speed));
+            let def = def.angle(Angle::from_radians(PI * i64::from(case % 24) / 24));
+            let spin = [fx!(5), fx!(-10), fx!(20)][case as usize % 3];
+            world
+                .spawn(&def.angular_velocity(spin), &[slippery(rectangle(fx!(1), fx!(0.1)))])
+                .expect("valid");
+            let before = kinetic(&world);
+            (0..60).for_each(|_| world.step());
+            let ratio = kinetic(&world) / before;
+            assert!(ratio < 1.0005, "{speed} m/s, case {case}: {ratio}");
+            sum += ratio;
+        }
+        let mean = sum / f64::from(u32::try_from(cases.len()).expect("few"));
+        assert!((0.98..=1.0).contains(&mean), "{speed} m/s: {mean} in the mean");
+    }
+}
+
+/// A body in a closed room with restitution 1 never has more energy than at the start, corners included.
+#[test]
+fn a_closed_room_keeps_its_energy() {
+    let shapes = |at: usize| match at {
+        0 => rectangle(fx!(0.5), fx!(0.5)),
+        1 => rectangle(fx!(1), fx!(0.1)),
+        2 => circle(fx!(0.5)),
+        3 => ShapeDef::new(Polygon::regular(6, fx!(0.5)).expect("valid")),
+        4 => ShapeDef::new(Polygon::regular(3, fx!(0.5)).expect("valid")),
+        _ => ShapeDef::new(
+            Geometry::capsule((fx!(-0.6), fx!(0)), (fx!(0.6), fx!(0)), fx!(0.2)).expect("valid"),
+        ),
+    };
+    let cases =
+        (0..6).flat_map(|shape| [60u32, 120].map(|rate| (0..8).map(move |start| (shape, rate, start))));
+    sweep::for_each(sweep::sample(cases.flatten(), 7), |(shape, rate, start): (usize, u32, i32)| {
+        let mut world = world_with(rate, fx!(0));
+        let slippery = |shape: ShapeDef| shape.friction(fx!(0)).restitution(fx!(1));
+        for (x, y, half_width, half_height) in [(0, -6, 7, 1), (0, 6, 7, 1), (-6, 0, 1, 7), (6, 0, 1, 7)] {
+            let def = BodyDef::fixed().position((Fx::from(x), Fx::from(y)));
+            let wall = rectangle(Fx::from(half_width), Fx::from(half_height));
+            world.spawn(&def, &[slippery(wall)]).expect("valid");
+        }
+        let speed = [fx!(5), fx!(10), fx!(20), fx!(40)][start as usize % 4];
+        let direction = lockstep2d::math::Rot::from_angle(Angle::from_radians(fx!(0.3) + Fx::from(start)));
+        let velocity = direction.apply_wide(Vec2::new(speed, fx!(0)));
+        let def = BodyDef::dynamic().position((fx!(0.3), fx!(0.1))).velocity(velocity);
+        let def = def.angular_velocity(Fx::from(5 + start));
+        world.spawn(&def, &[slippery(shapes(shape))]).expect("valid");
+        let before = kinetic(&world);
+        for tick in 0..rate * 60 {
+            world.step();
+            let ratio = kinetic(&world) / before;
+            assert!(ratio <= 1.01, "shape {shape}, {rate} Hz, start {start}, tick {tick}: {ratio}");
+        }
+    });
+}
+
+/// A ball thrown into a wedge of 27 degrees rests between the walls, not in them. With the friction of 0.35, it holds
+/// itself wherever it stops.
+#[test]
+fn a_ball_in_a_wedge_rests_between_the_walls() {
+    let speeds = [5, 20, 40, 100, 200].into_iter();
+    let cases = speeds.flat_map(|speed| (0..16).map(move |phase| (speed, phase)));
+    sweep::for_each(sweep::sample(cases, 3), |(speed, phase): (i32, i32)| {
+        let mut world = world_with(60, fx!(-10));
+        let (left, corner, right) = (Vec2::new(fx!(-4), fx!(8)), Vec2::ZERO, Vec2::new(fx!(0), fx!(8)));
+        world.spawn(&BodyDef::fixed(), &[segment(left, corner), segment(corner, right)]).expect("valid");
+        let speed = Fx::from(speed);
+        let height = fx!(10.75) + speed * i64::from(phase) / 960;
+        let def = BodyDef::dynamic().position((fx!(-0.45), height)).velocity((fx!(0), -speed));
+        let ball: BodyId = world.spawn(&def, &[circle(fx!(0.3)).friction(fx!(0.2))]).expect("valid");
+        for _ in 0..60 * 20 {
+            world.step();
+        }
+        let Vec2 { x, y } = world.body(ball).expect("there").position();
+        // The distances from the walls x = 0 and y = -2 x.
+        let from_left = fx_mul(x * 2 + y, fx!(0.4472135955));
+        let overlap = fx!(0.3) - (-x).min(from_left);
+        assert!(overlap < fx!(0.0105), "{speed} m/s, {phase}: {overlap} m in a wall, at ({x}, {y})");
+        assert!(world.body(ball).expect("there").is_asleep(), "{speed} m/s, {phase}");
+    });
+}
