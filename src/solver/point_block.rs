@@ -162,12 +162,46 @@ impl PointBlock {
         lambda: &mut Vec2<Speed>,
         faults: &mut Faults,
     ) {
+        let d = self.wanted(a, b, goal, softness, *lambda, faults);
+        let next = Vec2::new(accumulate(lambda.x, d.x, faults), accumulate(lambda.y, d.y, faults));
+        let next = self.shortened(next, p_max);
+        let mut d = next - *lambda;
+        clamp_warm_start(&mut d.x, faults);
+        clamp_warm_start(&mut d.y, faults);
+        *lambda += d;
+        self.apply(d, a, b, faults);
+    }
+
+    /// The change of `L` that one iteration wants.
+    #[inline]
+    pub(crate) fn wanted(
+        &self,
+        a: &SolverBody,
+        b: &SolverBody,
+        goal: PointGoal,
+        softness: &Softness,
+        lambda: Vec2<Speed>,
+        faults: &mut Faults,
+    ) -> Vec2<Speed> {
         let PointGoal { bias, push } = goal;
         let vr = self.velocity(a, b, self.ratios(), faults);
-        let d_x = softness.impulse(vr.x, bias.x, lambda.x, faults).saturating_sub(push.x);
-        let d_y = softness.impulse(vr.y, bias.y, lambda.y, faults).saturating_sub(push.y);
-        let next = Vec2::new(accumulate(lambda.x, d_x, faults), accumulate(lambda.y, d_y, faults));
-        let next = self.shortened(next, p_max);
+        Vec2::new(
+            softness.impulse(vr.x, bias.x, lambda.x, faults).saturating_sub(push.x),
+            softness.impulse(vr.y, bias.y, lambda.y, faults).saturating_sub(push.y),
+        )
+    }
+
+    /// Changes `L` and the velocities.
+    #[inline]
+    pub(crate) fn add(
+        &self,
+        d: Vec2<Speed>,
+        lambda: &mut Vec2<Speed>,
+        a: &mut SolverBody,
+        b: &mut SolverBody,
+        faults: &mut Faults,
+    ) {
+        let next = Vec2::new(accumulate(lambda.x, d.x, faults), accumulate(lambda.y, d.y, faults));
         let mut d = next - *lambda;
         clamp_warm_start(&mut d.x, faults);
         clamp_warm_start(&mut d.y, faults);

@@ -27,6 +27,8 @@ pub(super) struct JointPoint {
     pub(super) block: PointBlock,
     /// For a motor: the target velocity, reversed. For a spring: the part of its impulse that comes from its stretch.
     bias: Vec2<Speed>,
+    /// Whether a block computes the impulse.
+    pub(super) is_blocked: bool,
     /// `L`, in world axes.
     pub(super) lambda: Vec2<Speed>,
 }
@@ -34,7 +36,32 @@ pub(super) struct JointPoint {
 impl JointPoint {
     pub(super) fn new(slot: u8, task: PointTask, lambda: Vec2<Speed>) -> Self {
         let block = PointBlock::default();
-        JointPoint { slot, task, block, bias: Vec2::ZERO, lambda }
+        JointPoint { slot, task, block, bias: Vec2::ZERO, is_blocked: false, lambda }
+    }
+
+    /// The softness of a spring whose impulse has no limit.
+    pub(super) fn unlimited_softness(&self) -> Option<&Softness> {
+        match &self.task {
+            PointTask::Spring { softness, max } if *max == Speed::MAX => Some(softness),
+            PointTask::Spring { .. } | PointTask::Drive { .. } => None,
+        }
+    }
+
+    /// The change of the impulse of a spring that the bias pass wants.
+    pub(super) fn wanted(
+        &self,
+        softness: &Softness,
+        a: &SolverBody,
+        b: &SolverBody,
+        faults: &mut Faults,
+    ) -> Vec2<Speed> {
+        let goal = PointGoal { bias: Vec2::ZERO, push: self.bias };
+        self.block.wanted(a, b, goal, softness, self.lambda, faults)
+    }
+
+    /// Changes the impulse and the velocities.
+    pub(super) fn add(&mut self, d: Vec2<Speed>, a: &mut SolverBody, b: &mut SolverBody, faults: &mut Faults) {
+        self.block.add(d, &mut self.lambda, a, b, faults);
     }
 
     /// Computes arms, gains and gap at the current pose.

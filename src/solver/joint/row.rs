@@ -64,19 +64,50 @@ pub(super) struct JointRow {
     /// Whether the row is a limit that is not reached.
     open: bool,
     bounds: (Speed, Speed),
+    denominator: Denominator,
+    /// Whether a block computes the impulse.
+    pub(super) is_blocked: bool,
     pub(super) lambda: Speed,
 }
 
 impl JointRow {
     pub(super) fn new(slot: u8, direction: Direction, task: RowTask, lambda: Speed) -> Self {
         let bounds = (Speed::ZERO, Speed::ZERO);
-        JointRow { slot, direction, task, row: Row::NONE, bias: Speed::ZERO, open: false, bounds, lambda }
+        let (row, bias, denominator) = (Row::NONE, Speed::ZERO, 0);
+        JointRow { slot, direction, task, row, bias, open: false, bounds, denominator, is_blocked: false, lambda }
+    }
+
+    /// Whether the impulse has no limits: the row holds a position, or is a spring of any strength.
+    pub(super) fn is_unlimited(&self) -> bool {
+        match self.task {
+            RowTask::Hold { .. } => true,
+            RowTask::Spring { lower, upper, .. } => lower == Fx::MIN && upper == Fx::MAX,
+            RowTask::Drive { .. } | RowTask::Lower { .. } | RowTask::Upper { .. } => false,
+        }
+    }
+
+    /// Whether the row is a spring, which only the bias pass solves.
+    pub(super) fn is_spring(&self) -> bool {
+        matches!(self.task, RowTask::Spring { .. })
+    }
+
+    /// The denominator at the last refresh.
+    pub(super) fn denominator(&self) -> Denominator {
+        self.denominator
+    }
+
+    /// The softness in the bias pass of a row without limits.
+    pub(super) fn softness<'a>(&'a self, tuning: &'a Tuning) -> &'a Softness {
+        match &self.task {
+            RowTask::Spring { softness, .. } => softness,
+            _ => &tuning.joint,
+        }
     }
 
     /// Computes Jacobian, gains, bias and bounds at the current pose.
     pub(super) fn refresh(&mut self, measure: &Measure, tuning: &Tuning) {
         let Measure { row, denominator, position, scale } = *measure;
-        self.row = row;
+        (self.row, self.denominator) = (row, denominator);
         self.bounds = (-IMPULSE_MAX, IMPULSE_MAX);
         let metres = |x: Fx| fx_mul(x, scale);
         let soft_bias = |gap: Fx| narrow(fx_mul(metres(gap), tuning.joint.bias_rate.into()));
@@ -125,13 +156,32 @@ impl JointRow {
         b: &mut SolverBody,
         faults: &mut Faults,
     ) {
+        if let Some(d) = self.wanted(pass, tuning, a, b, faults) {
+            self.add(d, a, b, faults);
+        }
+    }
+
+    /// Changes the impulse within its bounds, and the velocities.
+    pub(super) fn add(&mut self, d: i64, a: &mut SolverBody, b: &mut SolverBody, faults: &mut Faults) {
+        self.row.accumulate(d, self.bounds, &mut self.lambda, a, b, faults);
+    }
+
+    /// The change of the impulse that a pass wants, in units of [`Speed`]. `None` if the pass leaves out the row.
+    pub(super) fn wanted(
+        &self,
+        pass: Pass,
+        tuning: &Tuning,
+        a: &SolverBody,
+        b: &SolverBody,
+        faults: &mut Faults,
+    ) -> Option<i64> {
         let vn = self.row.velocity(a, b, faults);
         let (softness, bias, push) = match (&self.task, pass) {
             (RowTask::Spring { softness, .. }, Pass::Bias) => (softness, Speed::ZERO, self.bias),
-            (RowTask::Spring { .. }, Pass::Relax) => return,
+            (RowTask::Spring { .. }, Pass::Relax) => return None,
             // As with contacts, a gap without an impulse is left to the next sub-step.
             (RowTask::Lower { .. } | RowTask::Upper { .. }, Pass::Relax) if self.open && self.lambda == 0 => {
-                return;
+                return None;
             }
             // If the gap is so wide that `L` would fall below 0, `L` becomes 0.
             (RowTask::Lower { .. } | RowTask::Upper { .. }, _) if self.open => {
@@ -141,8 +191,7 @@ impl JointRow {
             (_, Pass::Bias) => (&tuning.joint, self.bias, Speed::ZERO),
             (_, Pass::Relax) => (&Softness::RIGID, Speed::ZERO, Speed::ZERO),
         };
-        let d = softness.wanted(vn, bias, self.lambda) - i64::from(push.to_bits());
-        self.row.accumulate(d, self.bounds, &mut self.lambda, a, b, faults);
+        Some(softness.wanted(vn, bias, self.lambda) - i64::from(push.to_bits()))
     }
 }
 

@@ -13,7 +13,8 @@ use super::super::parts::slot;
 use super::super::pose::BodyRotation;
 use super::super::state::JointImpulses;
 use super::angle_input::AngleInput;
-use crate::math::{Fx, Speed, Unit, round_shift_wide, saturate, saturate_wide};
+use super::blocked::BlockedAngle;
+use crate::math::{Fx, Ratio, Speed, Unit, round_shift_wide, saturate, saturate_wide};
 use crate::simd::{Ints, Lanes};
 
 /// The rows of a batch. Lanes without a row have gains of 0 or bounds of 0.
@@ -205,6 +206,18 @@ impl<const N: usize> AngleRows<N> {
         if self.has_spring && (pass == Pass::Bias || self.holds) {
             self.solve_spring(pass, pair, faults);
         }
+        self.solve_loose(pass, softness, pair, faults);
+    }
+
+    /// Solves motors and limits.
+    #[inline(always)]
+    pub(super) fn solve_loose<L: Lanes<N>>(
+        &mut self,
+        pass: Pass,
+        softness: &Softness,
+        pair: &mut BodyPairW<L, N>,
+        faults: &mut Faults,
+    ) {
         if self.has_drive {
             let DriveRow { lambda, max, bias } = &mut self.drive;
             let (old, max) = (L::load(lambda), L::load(max));
@@ -222,21 +235,29 @@ impl<const N: usize> AngleRows<N> {
     /// Solves springs in the bias pass only, and rows that hold the angle in both passes.
     #[inline(always)]
     fn solve_spring<L: Lanes<N>>(&mut self, pass: Pass, pair: &mut BodyPairW<L, N>, faults: &mut Faults) {
-        let SpringRow { lambda, max, mass_scale, impulse_scale, push, holds } = &mut self.spring;
+        let w = self.wanted_of_spring(pass, pair, faults);
+        let SpringRow { lambda, max, .. } = &mut self.spring;
+        let (old, max) = (L::load(lambda), L::load(max));
+        let new = clamp::<L, N>(L::sub_saturating(old, w), max);
+        L::store(new, lambda);
+        pair.turn(&self.f, L::sub(new, old), faults);
+    }
+
+    /// `w` of the springs: the impulse that is to be taken away.
+    #[inline(always)]
+    fn wanted_of_spring<L: Lanes<N>>(&self, pass: Pass, pair: &BodyPairW<L, N>, faults: &mut Faults) -> L::Int {
+        let SpringRow { lambda, max, mass_scale, impulse_scale, push, holds } = &self.spring;
         let (old, max) = (L::load(lambda), L::load(max));
         let held = L::negative(L::load(holds));
         let solved = if pass == Pass::Bias { max } else { L::select(held, max, L::splat(0)) };
         let vn = velocity::<L, N>(&self.e, solved, pair, faults);
-        let w = match pass {
+        match pass {
             Pass::Bias => {
                 let scales = [L::load(mass_scale), L::load(impulse_scale)];
                 L::add_saturating(softened::<L, N>(scales, vn, old), L::load(push))
             }
             Pass::Relax => L::select(held, vn, L::splat(0)),
-        };
-        let new = clamp::<L, N>(L::sub_saturating(old, w), max);
-        L::store(new, lambda);
-        pair.turn(&self.f, L::sub(new, old), faults);
+        }
     }
 
     /// Solves the limits. As with contacts, a gap may close within this sub-step, and a gap that the bias pass has not
@@ -316,4 +337,33 @@ fn speed_of(turns: i64, per_turn: Fx) -> i32 {
     const EXTRA: u32 = 32 + Fx::FRAC_NBITS - Speed::FRAC_NBITS;
     let wide = i128::from(turns) * i128::from(per_turn.to_bits());
     saturate(saturate_wide(round_shift_wide(wide, EXTRA)))
+}
+
+/// The rows of a hinge in a block.
+impl AngleRows<1> {
+    /// The spring, or the row that holds the angle, unless neither body turns.
+    pub(super) fn blocked_row(&self) -> Option<BlockedAngle> {
+        let SpringRow { max, mass_scale, holds, .. } = &self.spring;
+        (self.has_spring && max.0[0] > 0).then(|| BlockedAngle {
+            e: [0, 1].map(|side: usize| Ratio::from_bits(self.e[side].0[0])),
+            mass_scale: Unit::from_bits(mass_scale.0[0]),
+            is_held: holds.0[0] < 0,
+        })
+    }
+
+    /// `w` of that row.
+    pub(super) fn blocked_wanted<L: Lanes<1>>(&self, pass: Pass, pair: &BodyPairW<L, 1>, faults: &mut Faults) -> L::Int {
+        if self.has_spring { self.wanted_of_spring(pass, pair, faults) } else { L::splat(0) }
+    }
+
+    /// Changes the impulse of that row within its limits, and the spins.
+    pub(super) fn blocked_add<L: Lanes<1>>(&mut self, d: i64, pair: &mut BodyPairW<L, 1>, faults: &mut Faults) {
+        if self.has_spring {
+            let SpringRow { lambda: Ints([lambda]), max: Ints([max]), .. } = &mut self.spring;
+            let next = (i64::from(*lambda) + d).clamp(-i64::from(*max), i64::from(*max));
+            let change = saturate(next - i64::from(*lambda));
+            *lambda = saturate(next);
+            pair.turn(&self.f, L::splat(change), faults);
+        }
+    }
 }

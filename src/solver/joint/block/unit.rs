@@ -1,0 +1,192 @@
+//! The parts of a block: a hinge with its row on the angle, or a row or point of another joint.
+
+use core::ops::Range;
+
+use super::super::super::body::SolverBody;
+use super::super::super::body_list::GROUND;
+use super::super::super::context::{Pass, StepContext};
+use super::super::super::limits::{Faults, IMPULSE_MAX};
+use super::super::super::row::{MassFractions, turning};
+use super::super::super::settings::Tuning;
+use super::super::hinge::{HingeSet, Poses};
+use super::super::list::{BlockedPart, JointList, ListPart};
+use super::scaling::{ScaledRow, Scaling, fraction_roots};
+use crate::math::{Ratio, Speed, Unit as Fraction, Vec2, saturate};
+
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Source {
+    /// A hinge, by its number among the hinges in blocks.
+    Hinge(usize),
+    /// A row or point of another joint.
+    Part(ListPart),
+}
+
+/// The softness of a row in the bias pass. Springs are not solved in the relax pass.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct RowSoftness {
+    pub(super) mass_scale: Fraction,
+    pub(super) is_spring: bool,
+}
+
+/// One or two rows that are scaled together, and the row on the angle of a hinge.
+#[derive(Clone, Debug)]
+pub(super) struct Unit {
+    source: Source,
+    /// The index of the first row.
+    pub(super) row: usize,
+    /// The bodies from which velocities are read.
+    source_bodies: [u32; 2],
+    /// The same, with the ground for a body that no impulse changes.
+    bodies: [u32; 2],
+    fractions: MassFractions,
+    roots: [i64; 2],
+    softness: [Option<RowSoftness>; 3],
+    scaling: Scaling,
+    angle_scaling: Scaling,
+}
+
+impl Unit {
+    fn new(
+        source: Source,
+        bodies: [u32; 2],
+        fractions: MassFractions,
+        softness: [Option<RowSoftness>; 3],
+    ) -> Self {
+        let roots = fraction_roots(fractions);
+        let source_bodies = bodies;
+        let bodies = [0, 1].map(|side: usize| if roots[side] == 0 { GROUND } else { bodies[side] });
+        let (scaling, angle_scaling) = (Scaling::default(), Scaling::default());
+        Unit { source, row: 0, source_bodies, bodies, fractions, roots, softness, scaling, angle_scaling }
+    }
+
+    /// A hinge, by its number among the hinges in blocks.
+    pub(super) fn hinge(number: usize, hinges: &HingeSet, tuning: &Tuning) -> Self {
+        let hinge = hinges.blocked_hinge(number);
+        let mass_scale = tuning.joint.mass_scale;
+        let point = Some(RowSoftness { mass_scale, is_spring: false });
+        let angle = hinge
+            .angle
+            .map(|angle| RowSoftness { mass_scale: angle.mass_scale, is_spring: !angle.is_held });
+        Unit::new(Source::Hinge(number), hinge.changed, hinge.fractions, [point, point, angle])
+    }
+
+    /// A row or point of another joint.
+    pub(super) fn part(part: &BlockedPart) -> Self {
+        let &BlockedPart { part, bodies, fractions, mass_scale, is_spring } = part;
+        let row = Some(RowSoftness { mass_scale, is_spring });
+        let softness = match part {
+            ListPart::Row(_) => [row, None, None],
+            ListPart::Point(_) => [row, row, None],
+        };
+        Unit::new(Source::Part(part), bodies, fractions, softness)
+    }
+
+    pub(super) fn rows(&self) -> impl Iterator<Item = RowSoftness> {
+        self.softness.into_iter().flatten()
+    }
+
+    pub(super) fn range(&self) -> Range<usize> {
+        self.row..self.row + self.rows().count()
+    }
+
+    /// Whether an impulse of one unit changes a velocity that the other measures.
+    pub(super) fn touches(&self, other: &Unit) -> bool {
+        self.common_sides(other).iter().any(Option::is_some)
+    }
+
+    /// The sides of both units with a common body.
+    pub(super) fn common_sides(&self, other: &Unit) -> [Option<(usize, usize)>; 2] {
+        [0, 1].map(|side: usize| {
+            let body = self.bodies[side];
+            let at = other.bodies.iter().position(|&other| other == body && body != GROUND);
+            at.map(|other| (side, other))
+        })
+    }
+
+    /// Computes the scaled rows at the current pose.
+    pub(super) fn refresh(&mut self, hinges: &HingeSet, list: &JointList, rows: &mut [ScaledRow]) {
+        let Unit { row, fractions, roots, scaling, angle_scaling, .. } = self;
+        match self.source {
+            Source::Hinge(number) => {
+                let hinge = hinges.blocked_hinge(number);
+                (*scaling, [rows[*row], rows[*row + 1]]) = Scaling::of_point(hinge.e, *fractions, *roots);
+                if let Some(angle) = hinge.angle {
+                    let [e_a, e_b] = angle.e;
+                    let denominator = turning(fractions.a, e_a, e_a) + turning(fractions.b, e_b, e_b);
+                    let none = Vec2::new(Fraction::ZERO, Fraction::ZERO);
+                    (*angle_scaling, rows[*row + 2]) = Scaling::of_row(none, angle.e, denominator, *roots);
+                }
+            }
+            Source::Part(ListPart::Point(at)) => {
+                let (e_a, e_b): (Vec2<Ratio>, Vec2<Ratio>) = list.point(at).block.ratios();
+                (*scaling, [rows[*row], rows[*row + 1]]) = Scaling::of_point([e_a, e_b], *fractions, *roots);
+            }
+            Source::Part(ListPart::Row(at)) => {
+                let part = list.row(at);
+                let (n, e) = part.row.jacobian();
+                (*scaling, rows[*row]) = Scaling::of_row(n, e, part.denominator(), *roots);
+            }
+        }
+    }
+
+    /// The scaled changes that one iteration over each row by itself would make, with 32 fraction bits.
+    pub(super) fn wanted(
+        &self,
+        pass: Pass,
+        hinges: &HingeSet,
+        list: &JointList,
+        poses: Poses<'_>,
+        context: &StepContext<'_>,
+        faults: &mut Faults,
+    ) -> [i64; 3] {
+        let tuning = context.tuning;
+        let [x, y, angle] = match self.source {
+            Source::Hinge(number) => {
+                hinges.blocked_wanted(number, pass, &tuning.joint, poses, context, faults).map(i64::from)
+            }
+            Source::Part(ListPart::Row(at)) => {
+                let [a, b] = self.source_bodies.map(|body| context.bodies[body as usize].get());
+                let wanted = list.row(at).wanted(pass, tuning, &a, &b, faults).unwrap_or(0);
+                let most = i64::from(IMPULSE_MAX.to_bits());
+                [wanted.clamp(-most, most), 0, 0]
+            }
+            Source::Part(ListPart::Point(at)) => match list.point(at).unlimited_softness() {
+                Some(softness) if pass == Pass::Bias => {
+                    let [a, b] = self.source_bodies.map(|body| context.bodies[body as usize].get());
+                    let Vec2 { x, y } = list.point(at).wanted(softness, &a, &b, faults);
+                    [x.to_bits().into(), y.to_bits().into(), 0]
+                }
+                _ => [0; 3],
+            },
+        };
+        let [x, y] = self.scaling.scale([x, y]);
+        [x, y, self.angle_scaling.scale([angle, 0])[0]]
+    }
+
+    /// Changes the impulses by scaled changes, and the velocities.
+    pub(super) fn add(
+        &self,
+        changes: [i64; 3],
+        hinges: &mut HingeSet,
+        list: &mut JointList,
+        context: &StepContext<'_>,
+        faults: &mut Faults,
+    ) {
+        let [x, y] = self.scaling.restore([changes[0], changes[1]]);
+        match self.source {
+            Source::Hinge(number) => {
+                let [angle, _] = self.angle_scaling.restore([changes[2], 0]);
+                hinges.blocked_add(number, [x, y, angle], context, faults);
+            }
+            Source::Part(ListPart::Row(at)) => {
+                let row = list.row_mut(at);
+                SolverBody::change_pair(context.bodies, self.source_bodies, |a, b| row.add(x, a, b, faults));
+            }
+            Source::Part(ListPart::Point(at)) => {
+                let point = list.point_mut(at);
+                let d = Vec2::new(Speed::from_bits(saturate(x)), Speed::from_bits(saturate(y)));
+                SolverBody::change_pair(context.bodies, self.source_bodies, |a, b| point.add(d, a, b, faults));
+            }
+        }
+    }
+}

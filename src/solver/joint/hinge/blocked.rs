@@ -1,0 +1,142 @@
+//! Hinges that belong to a block (`joint/block`): they are refreshed and warm-started like all others, but the block
+//! computes their impulses.
+
+use super::super::super::batches::{BatchParts, Operation};
+use super::super::super::context::{Pass, StepContext};
+use super::super::super::limits::{Faults, IMPULSE_MAX, STEP_MAX};
+use super::super::super::pair::BodyPairW;
+use super::super::super::row::MassFractions;
+use super::super::super::softness::Softness;
+use super::refresh::Refresh;
+use super::solve::{ratios_of, relative_velocity, wanted};
+use super::{Batch, HingeSet, Hinges, Poses};
+use crate::math::{Ratio, Unit, Vec2};
+use crate::simd::{Ints, Lanes, Scalar};
+
+/// A refresh, and the rows that do not belong to the block: motors and limits.
+#[derive(Clone, Copy)]
+struct SolveLoose<'a> {
+    refresh: Refresh<'a>,
+    pass: Pass,
+}
+
+impl Operation<Hinges> for SolveLoose<'_> {
+    #[inline(always)]
+    fn apply<L: Lanes<N>, const N: usize>(self, parts: BatchParts<'_, Hinges, N>) {
+        let BatchParts { batch, record, extra: mut angle, bodies, faults } = parts;
+        self.refresh.refresh::<L, N>(batch, record, angle.as_deref_mut(), bodies);
+        if let Some(rows) = angle {
+            let mut pair = BodyPairW::<L, N>::load(bodies, &batch.bodies);
+            rows.solve_loose(self.pass, &self.refresh.stiffness.limits, &mut pair, faults);
+            pair.store(bodies, &batch.changed);
+        }
+    }
+}
+
+/// What a block needs of a hinge to set up its equations.
+pub(in super::super) struct BlockedHinge {
+    pub(in super::super) changed: [u32; 2],
+    pub(in super::super) fractions: MassFractions,
+    /// Lever ratios of the point.
+    pub(in super::super) e: [Vec2<Ratio>; 2],
+    /// Lever ratios and softness of the row that holds the angle, or of its spring.
+    pub(in super::super) angle: Option<BlockedAngle>,
+}
+
+pub(in super::super) struct BlockedAngle {
+    pub(in super::super) e: [Ratio; 2],
+    pub(in super::super) mass_scale: Unit,
+    /// Whether the row holds the angle and is not a spring.
+    pub(in super::super) is_held: bool,
+}
+
+impl HingeSet {
+    /// Adds a hinge to the hinges in blocks, by the index of its input. Returns its number.
+    pub(in super::super) fn push_blocked(&mut self, index: u32) -> usize {
+        let HingeSet { inputs, angles, blocked, blocked_extras, .. } = self;
+        blocked.overflow.push(inputs, angles, core::iter::once(index));
+        let has_angle = inputs[index as usize].angle.is_some();
+        blocked_extras.push(has_angle.then(|| blocked.overflow.extras.len() - 1));
+        blocked_extras.len() - 1
+    }
+
+    /// Refreshes the hinges in blocks, and solves their motors and limits.
+    pub(super) fn solve_loose(&mut self, pass: Pass, refresh: Refresh<'_>, context: &StepContext<'_>) {
+        if !self.blocked.overflow.batches.is_empty() {
+            self.blocked.run_overflow(SolveLoose { refresh, pass }, context);
+        }
+    }
+
+    /// A hinge in a block, at its last refresh.
+    pub(in super::super) fn blocked_hinge(&self, number: usize) -> BlockedHinge {
+        let batch = &self.blocked.overflow.batches[number];
+        let record = &self.blocked.overflow.records[number];
+        let ratio = |side: usize| {
+            let [x, y] = [0, 1].map(|axis: usize| Ratio::from_bits(batch.e[side][axis].0[0]));
+            Vec2::new(x, y)
+        };
+        let [a, b] = [0, 1].map(|side: usize| Unit::from_bits(record.shape.fractions[side].0[0]));
+        BlockedHinge {
+            changed: [batch.changed[0][0], batch.changed[1][0]],
+            fractions: MassFractions { a, b },
+            e: [ratio(0), ratio(1)],
+            angle: self.blocked_extras[number].and_then(|extra| self.blocked.overflow.extras[extra].blocked_row()),
+        }
+    }
+
+    /// The changes of the impulses that one iteration over each part by itself would make: of the point along x and y,
+    /// and of the row on the angle.
+    pub(in super::super) fn blocked_wanted(
+        &self,
+        number: usize,
+        pass: Pass,
+        softness: &Softness,
+        poses: Poses<'_>,
+        context: &StepContext<'_>,
+        faults: &mut Faults,
+    ) -> [i32; 3] {
+        type L = Scalar<1>;
+        let batch = &self.blocked.overflow.batches[number];
+        let pair = BodyPairW::<L, 1>::load(context.bodies, &batch.bodies);
+        let (e_a, e_b) = ratios_of::<L, 1>(batch, pass, poses.quads);
+        let vr = relative_velocity::<L, 1>(e_a, e_b, &pair, faults);
+        let point = [0, 1].map(|axis: usize| {
+            let [w] = wanted::<L, 1>(batch, axis, vr[axis], pass, softness);
+            w.saturating_neg().clamp(-STEP_MAX.to_bits(), STEP_MAX.to_bits())
+        });
+        let angle = self.blocked_extras[number].map_or(0, |extra| {
+            self.blocked.overflow.extras[extra].blocked_wanted::<L>(pass, &pair, faults)[0].saturating_neg()
+        });
+        [point[0], point[1], angle]
+    }
+
+    /// Changes the impulses of a hinge in a block, and the velocities of its bodies.
+    pub(in super::super) fn blocked_add(
+        &mut self,
+        number: usize,
+        d: [i64; 3],
+        context: &StepContext<'_>,
+        faults: &mut Faults,
+    ) {
+        let HingeSet { blocked, blocked_extras, .. } = self;
+        let batch = &mut blocked.overflow.batches[number];
+        let mut pair = BodyPairW::<Scalar<1>, 1>::load(context.bodies, &batch.bodies);
+        if let Some(extra) = blocked_extras[number] {
+            blocked.overflow.extras[extra].blocked_add::<Scalar<1>>(d[2], &mut pair, faults);
+        }
+        let changes = [0, 1].map(|axis: usize| accumulated(batch, axis, d[axis], faults));
+        pair.apply_at_point(batch, changes, faults);
+        pair.store(context.bodies, &batch.changed);
+    }
+}
+
+/// Accumulates a change of an impulse along an axis within the limits, and returns what remains of it.
+fn accumulated(batch: &mut Batch<1>, axis: usize, d: i64, faults: &mut Faults) -> [i32; 1] {
+    let Ints([lambda]) = &mut batch.lambda[axis];
+    let (step, most) = (i64::from(STEP_MAX.to_bits()), i64::from(IMPULSE_MAX.to_bits()));
+    let next = (i64::from(*lambda) + d.clamp(-step, step)).clamp(-most, most);
+    let change = next - i64::from(*lambda);
+    *faults += u64::from(change != d);
+    *lambda = crate::math::saturate(next);
+    [crate::math::saturate(change)]
+}
