@@ -191,24 +191,6 @@ impl PointBlock {
         )
     }
 
-    /// Changes `L` and the velocities.
-    #[inline]
-    pub(crate) fn add(
-        &self,
-        d: Vec2<Speed>,
-        lambda: &mut Vec2<Speed>,
-        a: &mut SolverBody,
-        b: &mut SolverBody,
-        faults: &mut Faults,
-    ) {
-        let next = Vec2::new(accumulate(lambda.x, d.x, faults), accumulate(lambda.y, d.y, faults));
-        let mut d = next - *lambda;
-        clamp_warm_start(&mut d.x, faults);
-        clamp_warm_start(&mut d.y, faults);
-        *lambda += d;
-        self.apply(d, a, b, faults);
-    }
-
     /// Shortens `L` so that `|G L|` is at most `p_max`.
     fn shortened(&self, lambda: Vec2<Speed>, p_max: Speed) -> Vec2<Speed> {
         // The mass fractions add up to 1.

@@ -154,10 +154,12 @@ impl JointSet {
                 self.sort(colouring);
                 self.prepare_others(source, list);
                 self.arrange_blocks(tuning);
+                self.blocks.take_impulses(&mut self.hinges, &mut self.list);
                 return;
             }
         }
         self.prepare_others(source, list);
+        self.blocks.take_impulses(&mut self.hinges, &mut self.list);
     }
 
     /// Reuses the hinges of the last tick, with the bodies at their current poses.
@@ -305,6 +307,7 @@ impl JointSet {
     pub(in crate::solver) fn warm_start(&mut self, context: &StepContext<'_>) {
         self.list.warm_start(context);
         self.hinges.warm_start(Poses { quads: &self.quads, body_rotations: &self.body_rotations }, context);
+        self.blocks.warm_start(&self.hinges, &self.list, context);
     }
 
     /// One iteration over all joints.
@@ -317,6 +320,7 @@ impl JointSet {
 
     /// Stores impulses and angles for the next tick.
     pub(in crate::solver) fn store(&mut self, joints: &mut Arena<Joint, JointId>) {
+        self.blocks.return_impulses(&mut self.hinges, &mut self.list);
         self.hinges.store(joints, &self.body_rotations);
         self.list.store(joints, &self.body_rotations);
     }

@@ -59,11 +59,6 @@ impl JointPoint {
         self.block.wanted(a, b, goal, softness, self.lambda, faults)
     }
 
-    /// Changes the impulse and the velocities.
-    pub(super) fn add(&mut self, d: Vec2<Speed>, a: &mut SolverBody, b: &mut SolverBody, faults: &mut Faults) {
-        self.block.add(d, &mut self.lambda, a, b, faults);
-    }
-
     /// Computes arms, gains and gap at the current pose.
     #[inline]
     pub(super) fn refresh(&mut self, place: &JointPose) {

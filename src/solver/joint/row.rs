@@ -157,13 +157,8 @@ impl JointRow {
         faults: &mut Faults,
     ) {
         if let Some(d) = self.wanted(pass, tuning, a, b, faults) {
-            self.add(d, a, b, faults);
+            self.row.accumulate(d, self.bounds, &mut self.lambda, a, b, faults);
         }
-    }
-
-    /// Changes the impulse within its bounds, and the velocities.
-    pub(super) fn add(&mut self, d: i64, a: &mut SolverBody, b: &mut SolverBody, faults: &mut Faults) {
-        self.row.accumulate(d, self.bounds, &mut self.lambda, a, b, faults);
     }
 
     /// The change of the impulse that a pass wants, in units of [`Speed`]. `None` if the pass leaves out the row.

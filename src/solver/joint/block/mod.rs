@@ -35,11 +35,11 @@ pub(super) use choice::Candidate;
 use matrix::{Factor, Matrix, ONE};
 use scaling::{ScaledRow, product, root_and_inverse};
 use unit::Unit;
-use crate::math::{Fx, div_round, saturate_wide};
+use crate::math::{Fx, Speed, div_round, round_shift, saturate, saturate_wide};
 
 /// Added to the diagonal in the relax pass, with 30 fraction bits: 2^-14. It leaves this share of the velocity of rows
 /// that no other row disturbs.
-const EXCESS: i64 = 1 << 16;
+const EXCESS: i64 = 1 << 20;
 
 /// All blocks of a tick.
 #[derive(Clone, Debug, Default)]
@@ -63,7 +63,13 @@ struct Block {
     factor: Factor,
     /// The pass for which the factor is.
     factored: Option<Pass>,
-    /// The unknowns.
+    /// `L` of each row, a speed with 32 fraction bits. It may be larger than a joint can store.
+    impulses: Vec<i64>,
+    /// The bodies, and changes of their velocities with 32 fraction bits.
+    bodies: Vec<(u32, [i64; 3])>,
+    /// For each unit, the places of its bodies in `bodies`.
+    places: Vec<[u32; 2]>,
+    /// The unknowns, with 32 fraction bits.
     x: Vec<i64>,
 }
 
@@ -76,13 +82,16 @@ struct Scales {
     inwards: Vec<i64>,
     /// `S Q`, by which the results are multiplied.
     outwards: Vec<i64>,
+    /// `impulseScale`.
+    yields: Vec<i64>,
 }
 
 impl Scales {
-    fn push(&mut self, (scale, inverse): (i64, i64), (mass_root, mass_inverse): (i64, i64)) {
+    fn push(&mut self, (scale, inverse): (i64, i64), (mass_root, mass_inverse): (i64, i64), give: i64) {
         self.scales.push(scale);
         self.inwards.push(product(inverse, mass_inverse));
         self.outwards.push(product(scale, mass_root));
+        self.yields.push(give);
     }
 }
 
@@ -151,22 +160,41 @@ impl Blocks {
         self.is_stale = true;
     }
 
+    /// Takes the impulses of the last tick from the joints, at the start of a tick.
+    pub(super) fn take_impulses(&mut self, hinges: &mut HingeSet, list: &mut JointList) {
+        self.blocks.iter_mut().for_each(|block| block.take_impulses(hinges, list));
+    }
+
+    /// Returns the impulses to the joints, at the end of a tick.
+    pub(super) fn return_impulses(&mut self, hinges: &mut HingeSet, list: &mut JointList) {
+        self.blocks.iter().for_each(|block| block.return_impulses(hinges, list));
+    }
+
+    /// Applies the impulses of the last sub-step.
+    pub(super) fn warm_start(&mut self, hinges: &HingeSet, list: &JointList, context: &StepContext<'_>) {
+        self.refresh(hinges, list);
+        self.blocks.iter_mut().for_each(|block| block.warm_start(context));
+    }
+
+    fn refresh(&mut self, hinges: &HingeSet, list: &JointList) {
+        if core::mem::take(&mut self.is_stale) {
+            self.blocks.iter_mut().for_each(|block| block.refresh(hinges, list));
+        }
+    }
+
     /// Solves all blocks, one after the other.
     pub(super) fn solve(
         &mut self,
         pass: Pass,
-        hinges: &mut HingeSet,
-        list: &mut JointList,
+        hinges: &HingeSet,
+        list: &JointList,
         poses: Poses<'_>,
         context: &StepContext<'_>,
     ) {
+        self.refresh(hinges, list);
         for block in &mut self.blocks {
-            if self.is_stale {
-                block.refresh(hinges, list);
-            }
             block.solve(pass, hinges, list, poses, context);
         }
-        self.is_stale = false;
     }
 }
 
@@ -176,15 +204,16 @@ impl Block {
         unit.row = self.bias.scales.len();
         let mass = root_and_inverse(share);
         for softness in unit.rows() {
-            self.bias.push(root_and_inverse(softness.mass_scale.to_bits().into()), mass);
-            self.relax.push(if softness.is_spring { (0, 0) } else { (ONE, ONE) }, mass);
+            let mass_scale = i64::from(softness.mass_scale.to_bits());
+            self.bias.push(root_and_inverse(mass_scale), mass, ONE - mass_scale);
+            self.relax.push(if softness.is_spring { (0, 0) } else { (ONE, ONE) }, mass, 0);
         }
         self.units.push(unit);
     }
 
     /// Finds the pairs of units with a common body, and the envelope of the matrix.
     fn arrange(&mut self) {
-        let Block { units, pairs, rows, matrix, x, bias, .. } = self;
+        let Block { units, pairs, rows, matrix, x, bias, impulses, bodies, places, .. } = self;
         for (at, unit) in (0..).zip(units.iter()) {
             let mut first = unit.row;
             for (earlier, other) in (0..=at).zip(units.iter()) {
@@ -197,6 +226,17 @@ impl Block {
         }
         rows.resize(bias.scales.len(), ScaledRow::default());
         x.resize(bias.scales.len(), 0);
+        impulses.resize(bias.scales.len(), 0);
+        places.extend(units.iter().map(|unit| {
+            [0, 1].map(|side: usize| unit.moved(side).map_or(0, |(body, _)| {
+                let known = bodies.iter().position(|&(other, _)| other == body);
+                let place = known.unwrap_or_else(|| {
+                    bodies.push((body, [0; 3]));
+                    bodies.len() - 1
+                });
+                u32::try_from(place).expect("a block has a handful of bodies")
+            }))
+        }));
     }
 
     /// Computes the matrix at the current pose.
@@ -212,22 +252,56 @@ impl Block {
             for row in unit.range() {
                 for column in other.range().filter(|&column| column < row) {
                     let parts = sides.iter().flatten().map(|&(side, other)| dot(rows[row][side], rows[column][other]));
-                    matrix.set(row, column, crate::math::round_shift(parts.sum(), 30));
+                    matrix.set(row, column, round_shift(parts.sum(), 30));
                 }
             }
         }
     }
 
+    /// Takes the impulses of the last tick from the joints.
+    fn take_impulses(&mut self, hinges: &mut HingeSet, list: &mut JointList) {
+        for unit in &self.units {
+            let impulses = unit.take_impulses(hinges, list);
+            for (row, impulse) in unit.range().zip(impulses) {
+                self.impulses[row] = i64::from(impulse) << EXTRA_BITS;
+            }
+        }
+    }
+
+    /// Returns the impulses to the joints, for the next tick. What does not fit their format is dropped: the impulses
+    /// are only where the next tick begins.
+    fn return_impulses(&self, hinges: &mut HingeSet, list: &mut JointList) {
+        for unit in &self.units {
+            let mut impulses = [0; 3];
+            for (part, row) in unit.range().enumerate() {
+                let most = unit.impulse_max(part).to_bits();
+                impulses[part] = saturate(round_shift(self.impulses[row], EXTRA_BITS)).clamp(-most, most);
+            }
+            unit.return_impulses(impulses, hinges, list);
+        }
+    }
+
+    fn warm_start(&mut self, context: &StepContext<'_>) {
+        for unit in &self.units {
+            let mut scaled = [0; 3];
+            unit.range().zip(&mut scaled).for_each(|(row, part)| *part = self.impulses[row]);
+            for (row, part) in unit.range().zip(unit.scale(scaled)) {
+                self.x[row] = part;
+            }
+        }
+        self.apply(context);
+    }
+
     fn solve(
         &mut self,
         pass: Pass,
-        hinges: &mut HingeSet,
-        list: &mut JointList,
+        hinges: &HingeSet,
+        list: &JointList,
         poses: Poses<'_>,
         context: &StepContext<'_>,
     ) {
-        let Block { units, bias, relax, matrix, factor, factored, x, .. } = self;
-        let (Scales { scales, inwards, outwards }, excess) = match pass {
+        let Block { units, bias, relax, matrix, factor, factored, x, impulses, .. } = self;
+        let (Scales { scales, inwards, outwards, yields }, excess) = match pass {
             Pass::Bias => (&*bias, 0),
             Pass::Relax => (&*relax, EXCESS),
         };
@@ -237,22 +311,64 @@ impl Block {
         }
         let mut faults = 0;
         for unit in units.iter() {
-            let wanted = unit.wanted(pass, hinges, list, poses, context, &mut faults);
-            for (row, wanted) in unit.range().zip(wanted) {
-                x[row] = product(wanted, inwards[row]);
+            let mut wanted = unit.wanted(pass, hinges, list, poses, context, &mut faults);
+            for (row, wanted) in unit.range().zip(&mut wanted) {
+                *wanted = (*wanted << EXTRA_BITS).saturating_sub(product(impulses[row], yields[row]));
+            }
+            for (row, scaled) in unit.range().zip(unit.scale(wanted)) {
+                x[row] = product(scaled, inwards[row]);
             }
         }
+        context.add_faults(faults);
         factor.solve(matrix, x);
         for unit in units.iter() {
             let mut changes = [0; 3];
             for (row, change) in unit.range().zip(&mut changes) {
-                *change = product(x[row], outwards[row]);
+                x[row] = product(x[row], outwards[row]);
+                *change = x[row];
             }
-            unit.add(changes, hinges, list, context, &mut faults);
+            for (row, change) in unit.range().zip(unit.restore(changes)) {
+                impulses[row] = impulses[row].saturating_add(change);
+            }
+        }
+        self.apply(context);
+    }
+
+    /// Changes the velocities by the scaled impulses in `x`. Each velocity is rounded and clamped once: the impulses on
+    /// a light body between heavy ones are large, and almost cancel.
+    fn apply(&mut self, context: &StepContext<'_>) {
+        let Block { units, rows, bodies, places, x, .. } = self;
+        bodies.iter_mut().for_each(|(_, change)| *change = [0; 3]);
+        for (unit, places) in units.iter().zip(places) {
+            for side in 0..2 {
+                let Some((_, root)) = unit.moved(side) else { continue };
+                let mut sum = [0i64; 3];
+                for row in unit.range() {
+                    for (sum, &entry) in sum.iter_mut().zip(&rows[row][side]) {
+                        *sum = sum.saturating_add(product(x[row], entry.into()));
+                    }
+                }
+                let (_, change) = &mut bodies[places[side] as usize];
+                for (change, sum) in change.iter_mut().zip(sum) {
+                    *change = change.saturating_add(product(sum, root));
+                }
+            }
+        }
+        let mut faults = 0;
+        for &(index, change) in bodies.iter() {
+            let cell = &context.bodies[index as usize];
+            let mut body = cell.get();
+            let [d_x, d_y, d_spin] = change.map(|change| Speed::from_bits(saturate(round_shift(change, EXTRA_BITS))));
+            let (x, y) = (body.velocity.x.saturating_add(d_x), body.velocity.y.saturating_add(d_y));
+            body.set_velocity(x, y, body.spin.saturating_add(d_spin), &mut faults);
+            cell.set(body);
         }
         context.add_faults(faults);
     }
 }
+
+/// Fraction bits of the numbers of a block beyond those of a speed.
+const EXTRA_BITS: u32 = 32 - Speed::FRAC_NBITS;
 
 /// The scalar product of two scaled Jacobians, with 60 fraction bits.
 fn dot(a: [i32; 3], b: [i32; 3]) -> i64 {

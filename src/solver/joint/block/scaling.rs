@@ -10,7 +10,7 @@
 //!
 //! Every entry of `H` is at most 1. Impulses as speeds are scaled by `R^-1` and scaled back by `R`.
 
-use crate::math::{Ratio, Unit, Vec2, round_shift, round_shift_wide, saturate, saturate_wide};
+use crate::math::{Ratio, Unit, Vec2, round_shift_wide, saturate, saturate_wide};
 
 use super::super::super::row::{MassFractions, turning};
 
@@ -74,19 +74,22 @@ impl Scaling {
         (scaling, [side(-1, roots[0], e_a), side(1, roots[1], e_b)])
     }
 
-    /// `R^-1 d` with 32 fraction bits, of a speed with 21.
+    /// `R^-1 d`.
     pub(super) fn scale(&self, d: [i64; 2]) -> [i64; 2] {
-        let [i_11, i_21, i_22] = self.inverse;
-        // An impulse is below 2^31 and an entry of the inverse at most 2^30.
-        [round_shift(i_11 * d[0], 19), round_shift(i_21 * d[0] + i_22 * d[1], 19)]
+        apply(self.inverse, d)
     }
 
-    /// `R d` with 21 fraction bits, of numbers with 32.
+    /// `R d`.
     pub(super) fn restore(&self, d: [i64; 2]) -> [i64; 2] {
-        let [r_11, r_21, r_22] = self.root.map(i128::from);
-        let [x, y] = d.map(i128::from);
-        [r_11 * x, r_21 * x + r_22 * y].map(|wide| saturate_wide(round_shift_wide(wide, 41)))
+        apply(self.root, d)
     }
+}
+
+/// A lower triangle times a vector.
+fn apply(triangle: [i64; 3], d: [i64; 2]) -> [i64; 2] {
+    let [t_11, t_21, t_22] = triangle.map(i128::from);
+    let [x, y] = d.map(i128::from);
+    [t_11 * x, t_21 * x + t_22 * y].map(|wide| saturate_wide(round_shift_wide(wide, 30)))
 }
 
 /// The product of two numbers of which one has 30 fraction bits, in the format of the other.

@@ -2,16 +2,15 @@
 
 use core::ops::Range;
 
-use super::super::super::body::SolverBody;
 use super::super::super::body_list::GROUND;
 use super::super::super::context::{Pass, StepContext};
 use super::super::super::limits::{Faults, IMPULSE_MAX};
 use super::super::super::row::{MassFractions, turning};
 use super::super::super::settings::Tuning;
-use super::super::hinge::{HingeSet, Poses};
+use super::super::hinge::{ANGLE_MAX, HingeSet, Poses};
 use super::super::list::{BlockedPart, JointList, ListPart};
 use super::scaling::{ScaledRow, Scaling, fraction_roots};
-use crate::math::{Ratio, Speed, Unit as Fraction, Vec2, saturate};
+use crate::math::{Ratio, Speed, Unit as Fraction, Vec2};
 
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Source {
@@ -129,7 +128,7 @@ impl Unit {
         }
     }
 
-    /// The scaled changes that one iteration over each row by itself would make, with 32 fraction bits.
+    /// The changes that one iteration over each row by itself would make if its impulse were 0, as speeds.
     pub(super) fn wanted(
         &self,
         pass: Pass,
@@ -140,53 +139,67 @@ impl Unit {
         faults: &mut Faults,
     ) -> [i64; 3] {
         let tuning = context.tuning;
-        let [x, y, angle] = match self.source {
+        let bodies = || self.source_bodies.map(|body| context.bodies[body as usize].get());
+        match self.source {
             Source::Hinge(number) => {
                 hinges.blocked_wanted(number, pass, &tuning.joint, poses, context, faults).map(i64::from)
             }
             Source::Part(ListPart::Row(at)) => {
-                let [a, b] = self.source_bodies.map(|body| context.bodies[body as usize].get());
-                let wanted = list.row(at).wanted(pass, tuning, &a, &b, faults).unwrap_or(0);
-                let most = i64::from(IMPULSE_MAX.to_bits());
-                [wanted.clamp(-most, most), 0, 0]
+                let [a, b] = bodies();
+                [list.row(at).wanted(pass, tuning, &a, &b, faults).unwrap_or(0), 0, 0]
             }
             Source::Part(ListPart::Point(at)) => match list.point(at).unlimited_softness() {
                 Some(softness) if pass == Pass::Bias => {
-                    let [a, b] = self.source_bodies.map(|body| context.bodies[body as usize].get());
+                    let [a, b] = bodies();
                     let Vec2 { x, y } = list.point(at).wanted(softness, &a, &b, faults);
                     [x.to_bits().into(), y.to_bits().into(), 0]
                 }
                 _ => [0; 3],
             },
-        };
+        }
+    }
+
+    /// `R^-1 d` of the rows of the unit.
+    pub(super) fn scale(&self, [x, y, angle]: [i64; 3]) -> [i64; 3] {
         let [x, y] = self.scaling.scale([x, y]);
         [x, y, self.angle_scaling.scale([angle, 0])[0]]
     }
 
-    /// Changes the impulses by scaled changes, and the velocities.
-    pub(super) fn add(
-        &self,
-        changes: [i64; 3],
-        hinges: &mut HingeSet,
-        list: &mut JointList,
-        context: &StepContext<'_>,
-        faults: &mut Faults,
-    ) {
-        let [x, y] = self.scaling.restore([changes[0], changes[1]]);
+    /// `R d` of the rows of the unit.
+    pub(super) fn restore(&self, [x, y, angle]: [i64; 3]) -> [i64; 3] {
+        let [x, y] = self.scaling.restore([x, y]);
+        [x, y, self.angle_scaling.restore([angle, 0])[0]]
+    }
+
+    /// Takes the impulses of the last tick from the joint, as speeds.
+    pub(super) fn take_impulses(&self, hinges: &mut HingeSet, list: &mut JointList) -> [i32; 3] {
         match self.source {
-            Source::Hinge(number) => {
-                let [angle, _] = self.angle_scaling.restore([changes[2], 0]);
-                hinges.blocked_add(number, [x, y, angle], context, faults);
-            }
-            Source::Part(ListPart::Row(at)) => {
-                let row = list.row_mut(at);
-                SolverBody::change_pair(context.bodies, self.source_bodies, |a, b| row.add(x, a, b, faults));
-            }
+            Source::Hinge(number) => hinges.take_impulses(number),
+            Source::Part(ListPart::Row(at)) => [core::mem::take(&mut list.row_mut(at).lambda).to_bits(), 0, 0],
             Source::Part(ListPart::Point(at)) => {
-                let point = list.point_mut(at);
-                let d = Vec2::new(Speed::from_bits(saturate(x)), Speed::from_bits(saturate(y)));
-                SolverBody::change_pair(context.bodies, self.source_bodies, |a, b| point.add(d, a, b, faults));
+                let Vec2 { x, y } = core::mem::take(&mut list.point_mut(at).lambda);
+                [x.to_bits(), y.to_bits(), 0]
             }
         }
+    }
+
+    /// Returns impulses to the joint, for the next tick.
+    pub(super) fn return_impulses(&self, impulses: [i32; 3], hinges: &mut HingeSet, list: &mut JointList) {
+        let [x, y, _] = impulses.map(Speed::from_bits);
+        match self.source {
+            Source::Hinge(number) => hinges.return_impulses(number, impulses),
+            Source::Part(ListPart::Row(at)) => list.row_mut(at).lambda = x,
+            Source::Part(ListPart::Point(at)) => list.point_mut(at).lambda = Vec2::new(x, y),
+        }
+    }
+
+    /// The body of a side and the root of its mass fraction, unless no impulse changes it.
+    pub(super) fn moved(&self, side: usize) -> Option<(u32, i64)> {
+        (self.bodies[side] != GROUND).then_some((self.bodies[side], self.roots[side]))
+    }
+
+    /// The largest impulse of a row that the state can hold.
+    pub(super) fn impulse_max(&self, part: usize) -> Speed {
+        if part == 2 { ANGLE_MAX } else { IMPULSE_MAX }
     }
 }

@@ -356,14 +356,8 @@ impl AngleRows<1> {
         if self.has_spring { self.wanted_of_spring(pass, pair, faults) } else { L::splat(0) }
     }
 
-    /// Changes the impulse of that row within its limits, and the spins.
-    pub(super) fn blocked_add<L: Lanes<1>>(&mut self, d: i64, pair: &mut BodyPairW<L, 1>, faults: &mut Faults) {
-        if self.has_spring {
-            let SpringRow { lambda: Ints([lambda]), max: Ints([max]), .. } = &mut self.spring;
-            let next = (i64::from(*lambda) + d).clamp(-i64::from(*max), i64::from(*max));
-            let change = saturate(next - i64::from(*lambda));
-            *lambda = saturate(next);
-            pair.turn(&self.f, L::splat(change), faults);
-        }
+    /// The impulse of that row.
+    pub(super) fn held_impulse(&mut self) -> &mut i32 {
+        &mut self.spring.lambda.0[0]
     }
 }

@@ -3,15 +3,15 @@
 
 use super::super::super::batches::{BatchParts, Operation};
 use super::super::super::context::{Pass, StepContext};
-use super::super::super::limits::{Faults, IMPULSE_MAX, STEP_MAX};
+use super::super::super::limits::Faults;
 use super::super::super::pair::BodyPairW;
 use super::super::super::row::MassFractions;
 use super::super::super::softness::Softness;
 use super::refresh::Refresh;
 use super::solve::{ratios_of, relative_velocity, wanted};
-use super::{Batch, HingeSet, Hinges, Poses};
+use super::{HingeSet, Hinges, Poses};
 use crate::math::{Ratio, Unit, Vec2};
-use crate::simd::{Ints, Lanes, Scalar};
+use crate::simd::{Lanes, Scalar};
 
 /// A refresh, and the rows that do not belong to the block: motors and limits.
 #[derive(Clone, Copy)]
@@ -84,8 +84,8 @@ impl HingeSet {
         }
     }
 
-    /// The changes of the impulses that one iteration over each part by itself would make: of the point along x and y,
-    /// and of the row on the angle.
+    /// The changes of the impulses that one iteration over each part by itself would make if the impulses were 0, as
+    /// they are after [`Self::take_impulses`].
     pub(in super::super) fn blocked_wanted(
         &self,
         number: usize,
@@ -102,7 +102,7 @@ impl HingeSet {
         let vr = relative_velocity::<L, 1>(e_a, e_b, &pair, faults);
         let point = [0, 1].map(|axis: usize| {
             let [w] = wanted::<L, 1>(batch, axis, vr[axis], pass, softness);
-            w.saturating_neg().clamp(-STEP_MAX.to_bits(), STEP_MAX.to_bits())
+            w.saturating_neg()
         });
         let angle = self.blocked_extras[number].map_or(0, |extra| {
             self.blocked.overflow.extras[extra].blocked_wanted::<L>(pass, &pair, faults)[0].saturating_neg()
@@ -110,33 +110,22 @@ impl HingeSet {
         [point[0], point[1], angle]
     }
 
-    /// Changes the impulses of a hinge in a block, and the velocities of its bodies.
-    pub(in super::super) fn blocked_add(
-        &mut self,
-        number: usize,
-        d: [i64; 3],
-        context: &StepContext<'_>,
-        faults: &mut Faults,
-    ) {
+    /// Takes the impulses of a hinge into its block: of the point along x and y, and of the row on the angle. Those of
+    /// the hinge become 0.
+    pub(in super::super) fn take_impulses(&mut self, number: usize) -> [i32; 3] {
+        let HingeSet { blocked, blocked_extras, .. } = self;
+        let [x, y] = &mut blocked.overflow.batches[number].lambda;
+        let angle = blocked_extras[number].map_or(0, |extra| core::mem::take(blocked.overflow.extras[extra].held_impulse()));
+        [core::mem::take(&mut x.0[0]), core::mem::take(&mut y.0[0]), angle]
+    }
+
+    /// Returns the impulses of a hinge from its block, for the next tick. They are within the limits of its format.
+    pub(in super::super) fn return_impulses(&mut self, number: usize, [x, y, angle]: [i32; 3]) {
         let HingeSet { blocked, blocked_extras, .. } = self;
         let batch = &mut blocked.overflow.batches[number];
-        let mut pair = BodyPairW::<Scalar<1>, 1>::load(context.bodies, &batch.bodies);
+        (batch.lambda[0].0[0], batch.lambda[1].0[0]) = (x, y);
         if let Some(extra) = blocked_extras[number] {
-            blocked.overflow.extras[extra].blocked_add::<Scalar<1>>(d[2], &mut pair, faults);
+            *blocked.overflow.extras[extra].held_impulse() = angle;
         }
-        let changes = [0, 1].map(|axis: usize| accumulated(batch, axis, d[axis], faults));
-        pair.apply_at_point(batch, changes, faults);
-        pair.store(context.bodies, &batch.changed);
     }
-}
-
-/// Accumulates a change of an impulse along an axis within the limits, and returns what remains of it.
-fn accumulated(batch: &mut Batch<1>, axis: usize, d: i64, faults: &mut Faults) -> [i32; 1] {
-    let Ints([lambda]) = &mut batch.lambda[axis];
-    let (step, most) = (i64::from(STEP_MAX.to_bits()), i64::from(IMPULSE_MAX.to_bits()));
-    let next = (i64::from(*lambda) + d.clamp(-step, step)).clamp(-most, most);
-    let change = next - i64::from(*lambda);
-    *faults += u64::from(change != d);
-    *lambda = crate::math::saturate(next);
-    [crate::math::saturate(change)]
 }

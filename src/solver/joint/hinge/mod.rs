@@ -26,7 +26,7 @@ use super::super::context::{Pass, StepContext};
 use super::pose::BodyRotation;
 use crate::simd::Quad;
 use angle::AngleRows;
-pub(super) use angle_input::AngleParts;
+pub(super) use angle_input::{ANGLE_MAX, AngleParts};
 use angle_input::{AngleInput, Memo};
 use batch::{Batch, Records};
 use input::Input;
