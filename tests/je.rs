@@ -15,7 +15,7 @@ fn sweep() {
     for mix in MIXES { for shape in SHAPES { for start in STARTS { for seed in 0..seeds {
         let c = Case { shape, mix, start, seed };
         let name = format!("{mix:?} {shape:?} {start:?} {seed}");
-        if only.split(',').all(|o| name.contains(o)) { cases.push((name, c)); }
+        let neg = std::env::var("NOT").unwrap_or("zzz".into()); if name.contains(&neg) { continue; } if only.split(',').all(|o| name.contains(o)) { cases.push((name, c)); }
     }}}}
     let out = Mutex::new(vec![]);
     let it = Mutex::new(cases.into_iter());

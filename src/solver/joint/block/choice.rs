@@ -20,11 +20,11 @@ use crate::math::{Fx, Unit};
 pub(super) const ROWS_MAX: u32 = 96;
 
 /// Smallest share that makes a body with two hinges crowded, if each of them has it.
-const PAIR_MIN: Unit = Unit::lit("0.85");
+const PAIR_MIN: Unit = Unit::lit("0.6");
 
 /// Smallest sum of the shares of all hinges but the largest that makes a body crowded. 1.5 would be reached by cloth of
 /// discs.
-const SUM_MIN: i64 = (1 << 30) / 10 * 16;
+const SUM_MIN: i64 = (1 << 30) / 100 * 152;
 
 /// What the choice depends on of a joint.
 #[derive(Clone, Copy, Debug)]

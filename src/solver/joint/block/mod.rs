@@ -39,7 +39,7 @@ use crate::math::{Fx, Speed, div_round, round_shift, saturate, saturate_wide};
 
 /// Added to the diagonal in the relax pass, with 30 fraction bits: 2^-14. It leaves this share of the velocity of rows
 /// that no other row disturbs.
-const EXCESS: i64 = 1 << 20;
+const EXCESS: i64 = 1 << 16;
 
 /// All blocks of a tick.
 #[derive(Clone, Debug, Default)]
