@@ -201,7 +201,7 @@ impl Case {
             }
         }
         let frame = rng.angle();
-        let hertz = rng.range(fx!(0.5), fx!(8));
+        let hertz = rng.range(fx!(2), fx!(8));
         let ratio = rng.range(fx!(0.1), fx!(1));
         let mix = match self.mix {
             Mix::Every => pick(rng, &MIXES[..7]),

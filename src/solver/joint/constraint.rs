@@ -13,6 +13,7 @@ use super::cache_key::{CacheKey, Definitions, Validity};
 use super::def::JointKind;
 use super::hinge::{AngleParts, Dirty, HingeBody, HingeSet, Poses, Turning, node, shares};
 use super::list::{BlockedPart, JointList};
+use super::options::JointLimit;
 use super::pose::{BodyRotation, Ends};
 use super::rotations::Rotations;
 use super::state::Joint;
@@ -81,12 +82,16 @@ fn hinge_parts(kind: &JointKind) -> Option<AngleParts> {
 
 /// What the choice of blocks depends on of a joint.
 fn candidate(joint: &Joint, [a, b]: [&HingeBody; 2]) -> Candidate {
+    let limits = |limit: Option<JointLimit>| if limit.is_some() { 2 } else { 0 };
     let (rows, is_hinge) = match &joint.def.kind {
-        JointKind::Revolute(kind) => (2 + u32::from(kind.spring.is_some()), true),
+        JointKind::Revolute(kind) => (2 + u32::from(kind.spring.is_some()) + limits(kind.limit), true),
         JointKind::Weld(_) => (3, false),
-        JointKind::Prismatic(kind) => (2 + u32::from(kind.spring.is_some()), false),
-        JointKind::Wheel(kind) => (1 + u32::from(kind.spring.is_some()), false),
-        JointKind::Distance(kind) => (u32::from(kind.rod.is_some()) + u32::from(kind.spring.is_some()), false),
+        JointKind::Prismatic(kind) => (2 + u32::from(kind.spring.is_some()) + limits(kind.limit), false),
+        JointKind::Wheel(kind) => (1 + u32::from(kind.spring.is_some()) + limits(kind.limit), false),
+        JointKind::Distance(kind) => {
+            let parts = u32::from(kind.rod.is_some()) + u32::from(kind.spring.is_some());
+            (parts + limits(kind.limit), false)
+        },
         JointKind::Motor(_) | JointKind::Filter => (0, false),
     };
     let shares = if is_hinge { shares(joint, [a, b]) } else { [Unit::ZERO; 2] };

@@ -59,7 +59,17 @@ pub(super) struct BlockedPart {
     pub(super) bodies: [u32; 2],
     pub(super) fractions: MassFractions,
     pub(super) mass_scale: Unit,
-    pub(super) is_spring: bool,
+    pub(super) task: BlockedTask,
+}
+
+/// The function of a row in a block.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum BlockedTask {
+    Hold,
+    /// Solved in the bias pass only.
+    Spring,
+    /// Its impulse is never negative.
+    Limit,
 }
 
 /// Iterates over joints with their rows and points.
@@ -193,20 +203,20 @@ impl JointList {
         for (joint, link) in self.joints.iter().zip(&self.links) {
             let (rows, points) = (row..row + usize::from(link.rows), point..point + usize::from(link.points));
             (row, point) = (rows.end, points.end);
-            let part = |part, softness: &Softness, is_spring| BlockedPart {
+            let part = |part, softness: &Softness, task| BlockedPart {
                 part,
                 bodies: link.bodies,
                 fractions: joint.ends.fractions(),
                 mass_scale: softness.mass_scale,
-                is_spring,
+                task,
             };
             for at in rows.filter(|&at| self.rows[at].is_blocked) {
                 let row = &self.rows[at];
-                each(joint.slot, part(ListPart::Row(at), row.softness(tuning), row.is_spring()));
+                each(joint.slot, part(ListPart::Row(at), row.softness(tuning), row.blocked_task()));
             }
             for at in points.filter(|&at| self.points[at].is_blocked) {
                 let Some(softness) = self.points[at].unlimited_softness() else { continue };
-                each(joint.slot, part(ListPart::Point(at), softness, true));
+                each(joint.slot, part(ListPart::Point(at), softness, BlockedTask::Spring));
             }
         }
     }

@@ -23,6 +23,7 @@ use super::super::limits::{Faults, IMPULSE_MAX};
 use super::super::row::{Denominator, Row};
 use super::super::settings::Tuning;
 use super::super::softness::Softness;
+use super::list::BlockedTask;
 use super::parts::Direction;
 use crate::math::{Fx, Speed, fx_div, fx_mul, narrow, saturate_wide};
 
@@ -77,18 +78,45 @@ impl JointRow {
         JointRow { slot, direction, task, row, bias, open: false, bounds, denominator, is_blocked: false, lambda }
     }
 
-    /// Whether the impulse has no limits: the row holds a position, or is a spring of any strength.
+    /// Whether a block may compute the impulse: the row holds a position, is a limit, or a spring of any strength.
     pub(super) fn is_unlimited(&self) -> bool {
         match self.task {
-            RowTask::Hold { .. } => true,
+            RowTask::Hold { .. } | RowTask::Lower { .. } | RowTask::Upper { .. } => true,
             RowTask::Spring { lower, upper, .. } => lower == Fx::MIN && upper == Fx::MAX,
-            RowTask::Drive { .. } | RowTask::Lower { .. } | RowTask::Upper { .. } => false,
+            RowTask::Drive { .. } => false,
         }
     }
 
-    /// Whether the row is a spring, which only the bias pass solves.
-    pub(super) fn is_spring(&self) -> bool {
-        matches!(self.task, RowTask::Spring { .. })
+    /// The function of the row in a block.
+    pub(super) fn blocked_task(&self) -> BlockedTask {
+        match self.task {
+            RowTask::Spring { .. } => BlockedTask::Spring,
+            RowTask::Lower { .. } | RowTask::Upper { .. } => BlockedTask::Limit,
+            RowTask::Hold { .. } | RowTask::Drive { .. } => BlockedTask::Hold,
+        }
+    }
+
+    /// Whether the row is a limit that is not reached.
+    pub(super) fn is_open(&self) -> bool {
+        self.open
+    }
+
+    /// The change of the impulse of a limit that a pass wants if the impulse is 0 and may become negative.
+    pub(super) fn wanted_of_limit(
+        &self,
+        pass: Pass,
+        tuning: &Tuning,
+        a: &SolverBody,
+        b: &SolverBody,
+        faults: &mut Faults,
+    ) -> i64 {
+        let vn = self.row.velocity(a, b, faults);
+        let (softness, bias) = match pass {
+            _ if self.open => (&Softness::RIGID, self.bias),
+            Pass::Bias => (&tuning.joint, self.bias),
+            Pass::Relax => (&Softness::RIGID, Speed::ZERO),
+        };
+        softness.wanted(vn, bias, Speed::ZERO)
     }
 
     /// The denominator at the last refresh.

@@ -29,7 +29,7 @@ use alloc::vec::Vec;
 use super::super::context::{Pass, StepContext};
 use super::super::settings::Tuning;
 use super::hinge::{HingeSet, Poses};
-use super::list::{BlockedPart, JointList};
+use super::list::{BlockedPart, BlockedTask, JointList};
 use choice::Choice;
 pub(super) use choice::Candidate;
 use matrix::{Factor, Matrix, ONE};
@@ -63,15 +63,35 @@ struct Block {
     factor: Factor,
     /// The pass for which the factor is.
     factored: Option<Pass>,
+    limits: Vec<Limit>,
+    /// The scales of the current pass, if the block has limits.
+    current: Scales,
     /// `L` of each row, a speed with 32 fraction bits. It may be larger than a joint can store.
     impulses: Vec<i64>,
     /// The bodies, and changes of their velocities with 32 fraction bits.
     bodies: Vec<(u32, [i64; 3])>,
     /// For each unit, the places of its bodies in `bodies`.
     places: Vec<[u32; 2]>,
+    /// The changes that each row by itself would make.
+    wanted: Vec<i64>,
     /// The unknowns, with 32 fraction bits.
     x: Vec<i64>,
 }
+
+/// A limit in a block.
+#[derive(Clone, Copy, Debug)]
+struct Limit {
+    unit: usize,
+    row: usize,
+    /// `Q` and `1 / Q`.
+    mass: (i64, i64),
+    /// Whether it acts in the current pass.
+    is_active: bool,
+}
+
+/// `S^2` of a limit that is not reached, with 30 fraction bits: 1, less so much that rows that depend on it have a
+/// solution.
+const OPEN_SCALE: i64 = ONE - (1 << 20);
 
 /// Scales of each row, with 30 fraction bits. All are 0 for rows that the pass leaves out.
 #[derive(Clone, Debug, Default)]
@@ -87,11 +107,19 @@ struct Scales {
 }
 
 impl Scales {
-    fn push(&mut self, (scale, inverse): (i64, i64), (mass_root, mass_inverse): (i64, i64), give: i64) {
-        self.scales.push(scale);
-        self.inwards.push(product(inverse, mass_inverse));
-        self.outwards.push(product(scale, mass_root));
-        self.yields.push(give);
+    /// Adds a row with `S` and `1 / S`, and with `Q` and `1 / Q`.
+    fn push(&mut self, scale: (i64, i64), mass: (i64, i64), give: i64) {
+        for numbers in [&mut self.scales, &mut self.inwards, &mut self.outwards, &mut self.yields] {
+            numbers.push(0);
+        }
+        self.set(self.scales.len() - 1, scale, mass, give);
+    }
+
+    fn set(&mut self, row: usize, (scale, inverse): (i64, i64), (mass_root, mass_inverse): (i64, i64), give: i64) {
+        self.scales[row] = scale;
+        self.inwards[row] = product(inverse, mass_inverse);
+        self.outwards[row] = product(scale, mass_root);
+        self.yields[row] = give;
     }
 }
 
@@ -140,7 +168,9 @@ impl Blocks {
             for (joint, number) in joints.iter().zip(&numbers[start..end]) {
                 let share = mass_share(least, mass(joint));
                 match *number {
-                    Ok(number) => block.push(Unit::hinge(number, hinges, tuning), share),
+                    Ok(number) => {
+                        Unit::of_hinge(number, hinges, tuning).for_each(|unit| block.push(unit, share));
+                    }
                     Err(slot) => {
                         let first = parts.partition_point(|&(other, _)| other < slot);
                         let own = parts[first..].iter().take_while(|&&(other, _)| other == slot);
@@ -206,14 +236,17 @@ impl Block {
         for softness in unit.rows() {
             let mass_scale = i64::from(softness.mass_scale.to_bits());
             self.bias.push(root_and_inverse(mass_scale), mass, ONE - mass_scale);
-            self.relax.push(if softness.is_spring { (0, 0) } else { (ONE, ONE) }, mass, 0);
+            self.relax.push(if softness.task == BlockedTask::Spring { (0, 0) } else { (ONE, ONE) }, mass, 0);
+        }
+        if unit.is_limit() {
+            self.limits.push(Limit { unit: self.units.len(), row: unit.row, mass, is_active: false });
         }
         self.units.push(unit);
     }
 
     /// Finds the pairs of units with a common body, and the envelope of the matrix.
     fn arrange(&mut self) {
-        let Block { units, pairs, rows, matrix, x, bias, impulses, bodies, places, .. } = self;
+        let Block { units, pairs, rows, matrix, x, bias, impulses, wanted, bodies, places, .. } = self;
         for (at, unit) in (0..).zip(units.iter()) {
             let mut first = unit.row;
             for (earlier, other) in (0..=at).zip(units.iter()) {
@@ -227,6 +260,7 @@ impl Block {
         rows.resize(bias.scales.len(), ScaledRow::default());
         x.resize(bias.scales.len(), 0);
         impulses.resize(bias.scales.len(), 0);
+        wanted.resize(bias.scales.len(), 0);
         places.extend(units.iter().map(|unit| {
             [0, 1].map(|side: usize| unit.moved(side).map_or(0, |(body, _)| {
                 let known = bodies.iter().position(|&(other, _)| other == body);
@@ -300,35 +334,164 @@ impl Block {
         poses: Poses<'_>,
         context: &StepContext<'_>,
     ) {
-        let Block { units, bias, relax, matrix, factor, factored, x, impulses, .. } = self;
-        let (Scales { scales, inwards, outwards, yields }, excess) = match pass {
-            Pass::Bias => (&*bias, 0),
-            Pass::Relax => (&*relax, EXCESS),
-        };
-        if *factored != Some(pass) {
-            factor.compute(matrix, scales, excess);
-            *factored = Some(pass);
+        if self.limits.is_empty() {
+            self.compute_factor(pass);
+            self.want(pass, hinges, list, poses, context);
+            self.compute_changes(pass);
+        } else {
+            self.solve_with_limits(pass, hinges, list, poses, context);
         }
+        self.accept(context);
+    }
+
+    /// Finds the limits that act, by releasing those that would pull. What is released has no impulse.
+    fn solve_with_limits(
+        &mut self,
+        pass: Pass,
+        hinges: &HingeSet,
+        list: &JointList,
+        poses: Poses<'_>,
+        context: &StepContext<'_>,
+    ) {
+        self.want(pass, hinges, list, poses, context);
+        self.activate(pass, hinges, list);
+        // A limit that was released stays so, so that the loop ends.
+        loop {
+            if self.release(context) {
+                self.want(pass, hinges, list, poses, context);
+            }
+            self.set_current_scales(pass, hinges, list);
+            self.factored = None;
+            self.compute_factor(pass);
+            self.compute_changes(pass);
+            let Block { limits, units, impulses, x, .. } = self;
+            let mut pulls = false;
+            for limit in limits.iter_mut().filter(|limit| limit.is_active) {
+                let [change, ..] = units[limit.unit].restore([x[limit.row], 0, 0]);
+                limit.is_active = impulses[limit.row].saturating_add(change) >= 0;
+                pulls |= !limit.is_active;
+            }
+            if !pulls {
+                return;
+            }
+        }
+    }
+
+    /// Activates the limits that would push if nothing but their own bodies were there.
+    fn activate(&mut self, pass: Pass, hinges: &HingeSet, list: &JointList) {
+        let Block { limits, units, impulses, wanted, .. } = self;
+        for limit in limits.iter_mut() {
+            let (impulse, change) = (impulses[limit.row], wanted[limit.row]);
+            let unit = &units[limit.unit];
+            // As with contacts, a gap without an impulse is left to the next sub-step.
+            let untouched = pass == Pass::Relax && impulse == 0 && unit.is_open(hinges, list);
+            limit.is_active = !untouched && impulse.saturating_add(change) > 0;
+        }
+    }
+
+    /// Takes the impulses of limits that do not act away. Returns whether there were any.
+    fn release(&mut self, context: &StepContext<'_>) -> bool {
+        let Block { limits, units, impulses, x, .. } = self;
+        x.fill(0);
+        let mut any = false;
+        for limit in limits.iter().filter(|limit| !limit.is_active) {
+            let impulse = core::mem::take(&mut impulses[limit.row]);
+            [x[limit.row], ..] = units[limit.unit].scale([impulse.saturating_neg(), 0, 0]);
+            any |= impulse != 0;
+        }
+        if any {
+            self.apply(context);
+        }
+        any
+    }
+
+    /// The scales of a pass for the limits that act.
+    fn set_current_scales(&mut self, pass: Pass, hinges: &HingeSet, list: &JointList) {
+        let Block { limits, units, bias, relax, current, .. } = self;
+        current.clone_from(match pass {
+            Pass::Bias => bias,
+            Pass::Relax => relax,
+        });
+        for limit in limits.iter() {
+            if !limit.is_active {
+                current.set(limit.row, (0, 0), limit.mass, 0);
+            } else if units[limit.unit].is_open(hinges, list) {
+                current.set(limit.row, root_and_inverse(OPEN_SCALE), limit.mass, 0);
+            }
+        }
+    }
+
+    fn scales(&self, pass: Pass) -> &Scales {
+        match pass {
+            _ if !self.limits.is_empty() => &self.current,
+            Pass::Bias => &self.bias,
+            Pass::Relax => &self.relax,
+        }
+    }
+
+    fn compute_factor(&mut self, pass: Pass) {
+        if self.factored != Some(pass) {
+            let excess = match pass {
+                Pass::Bias => 0,
+                Pass::Relax => EXCESS,
+            };
+            let mut factor = core::mem::take(&mut self.factor);
+            factor.compute(&self.matrix, &self.scales(pass).scales, excess);
+            self.factor = factor;
+            self.factored = Some(pass);
+        }
+    }
+
+    /// Computes the changes that each row by itself would make.
+    fn want(
+        &mut self,
+        pass: Pass,
+        hinges: &HingeSet,
+        list: &JointList,
+        poses: Poses<'_>,
+        context: &StepContext<'_>,
+    ) {
+        let Block { units, bias, limits, impulses, wanted, .. } = self;
         let mut faults = 0;
         for unit in units.iter() {
-            let mut wanted = unit.wanted(pass, hinges, list, poses, context, &mut faults);
-            for (row, wanted) in unit.range().zip(&mut wanted) {
-                *wanted = (*wanted << EXTRA_BITS).saturating_sub(product(impulses[row], yields[row]));
+            let changes = unit.wanted(pass, hinges, list, poses, context, &mut faults);
+            for (row, change) in unit.range().zip(changes) {
+                let give = if pass == Pass::Bias { bias.yields[row] } else { 0 };
+                wanted[row] = (change << EXTRA_BITS).saturating_sub(product(impulses[row], give));
             }
+        }
+        for limit in limits.iter().filter(|limit| units[limit.unit].is_open(hinges, list)) {
+            // A limit that is not reached is not soft.
+            if pass == Pass::Bias {
+                wanted[limit.row] = wanted[limit.row].saturating_add(product(impulses[limit.row], bias.yields[limit.row]));
+            }
+        }
+        context.add_faults(faults);
+    }
+
+    /// Solves the equations for the scaled changes of the impulses, `x`.
+    fn compute_changes(&mut self, pass: Pass) {
+        let mut x = core::mem::take(&mut self.x);
+        let Scales { inwards, outwards, .. } = self.scales(pass);
+        for unit in &self.units {
+            let mut wanted = [0; 3];
+            unit.range().zip(&mut wanted).for_each(|(row, part)| *part = self.wanted[row]);
             for (row, scaled) in unit.range().zip(unit.scale(wanted)) {
                 x[row] = product(scaled, inwards[row]);
             }
         }
-        context.add_faults(faults);
-        factor.solve(matrix, x);
-        for unit in units.iter() {
+        self.factor.solve(&self.matrix, &mut x);
+        x.iter_mut().zip(outwards).for_each(|(x, &outward)| *x = product(*x, outward));
+        self.x = x;
+    }
+
+    /// Adds the changes to the impulses and applies them.
+    fn accept(&mut self, context: &StepContext<'_>) {
+        for unit in &self.units {
             let mut changes = [0; 3];
-            for (row, change) in unit.range().zip(&mut changes) {
-                x[row] = product(x[row], outwards[row]);
-                *change = x[row];
-            }
+            unit.range().zip(&mut changes).for_each(|(row, change)| *change = self.x[row]);
             for (row, change) in unit.range().zip(unit.restore(changes)) {
-                impulses[row] = impulses[row].saturating_add(change);
+                self.impulses[row] = self.impulses[row].saturating_add(change);
             }
         }
         self.apply(context);

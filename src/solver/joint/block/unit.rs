@@ -8,7 +8,7 @@ use super::super::super::limits::{Faults, IMPULSE_MAX};
 use super::super::super::row::{MassFractions, turning};
 use super::super::super::settings::Tuning;
 use super::super::hinge::{ANGLE_MAX, HingeSet, Poses};
-use super::super::list::{BlockedPart, JointList, ListPart};
+use super::super::list::{BlockedPart, BlockedTask, JointList, ListPart};
 use super::scaling::{ScaledRow, Scaling, fraction_roots};
 use crate::math::{Ratio, Speed, Unit as Fraction, Vec2};
 
@@ -16,6 +16,8 @@ use crate::math::{Ratio, Speed, Unit as Fraction, Vec2};
 pub(super) enum Source {
     /// A hinge, by its number among the hinges in blocks.
     Hinge(usize),
+    /// A limit of such a hinge: 0 is the lower one.
+    HingeLimit(usize, usize),
     /// A row or point of another joint.
     Part(ListPart),
 }
@@ -24,7 +26,7 @@ pub(super) enum Source {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RowSoftness {
     pub(super) mass_scale: Fraction,
-    pub(super) is_spring: bool,
+    pub(super) task: BlockedTask,
 }
 
 /// One or two rows that are scaled together, and the row on the angle of a hinge.
@@ -58,21 +60,30 @@ impl Unit {
         Unit { source, row: 0, source_bodies, bodies, fractions, roots, softness, scaling, angle_scaling }
     }
 
-    /// A hinge, by its number among the hinges in blocks.
-    pub(super) fn hinge(number: usize, hinges: &HingeSet, tuning: &Tuning) -> Self {
+    /// The units of a hinge, by its number among the hinges in blocks: the hinge, and its limits.
+    pub(super) fn of_hinge(number: usize, hinges: &HingeSet, tuning: &Tuning) -> impl Iterator<Item = Self> {
+        let hinge = hinges.blocked_hinge(number);
+        let row = Some(RowSoftness { mass_scale: tuning.joint.mass_scale, task: BlockedTask::Limit });
+        let limits = (0..if hinge.has_limits { 2 } else { 0 }).map(move |side| {
+            Unit::new(Source::HingeLimit(number, side), hinge.changed, hinge.fractions, [row, None, None])
+        });
+        core::iter::once(Unit::hinge(number, hinges, tuning)).chain(limits)
+    }
+
+    fn hinge(number: usize, hinges: &HingeSet, tuning: &Tuning) -> Self {
         let hinge = hinges.blocked_hinge(number);
         let mass_scale = tuning.joint.mass_scale;
-        let point = Some(RowSoftness { mass_scale, is_spring: false });
+        let point = Some(RowSoftness { mass_scale, task: BlockedTask::Hold });
         let angle = hinge
             .angle
-            .map(|angle| RowSoftness { mass_scale: angle.mass_scale, is_spring: !angle.is_held });
+            .map(|angle| RowSoftness { mass_scale: angle.mass_scale, task: angle.task });
         Unit::new(Source::Hinge(number), hinge.changed, hinge.fractions, [point, point, angle])
     }
 
     /// A row or point of another joint.
     pub(super) fn part(part: &BlockedPart) -> Self {
-        let &BlockedPart { part, bodies, fractions, mass_scale, is_spring } = part;
-        let row = Some(RowSoftness { mass_scale, is_spring });
+        let &BlockedPart { part, bodies, fractions, mass_scale, task } = part;
+        let row = Some(RowSoftness { mass_scale, task });
         let softness = match part {
             ListPart::Row(_) => [row, None, None],
             ListPart::Point(_) => [row, row, None],
@@ -116,6 +127,12 @@ impl Unit {
                     (*angle_scaling, rows[*row + 2]) = Scaling::of_row(none, angle.e, denominator, *roots);
                 }
             }
+            Source::HingeLimit(number, side) => {
+                let e = hinges.blocked_limit(number, side);
+                let denominator = turning(fractions.a, e[0], e[0]) + turning(fractions.b, e[1], e[1]);
+                let none = Vec2::new(Fraction::ZERO, Fraction::ZERO);
+                (*scaling, rows[*row]) = Scaling::of_row(none, e, denominator, *roots);
+            }
             Source::Part(ListPart::Point(at)) => {
                 let (e_a, e_b): (Vec2<Ratio>, Vec2<Ratio>) = list.point(at).block.ratios();
                 (*scaling, [rows[*row], rows[*row + 1]]) = Scaling::of_point([e_a, e_b], *fractions, *roots);
@@ -143,6 +160,14 @@ impl Unit {
         match self.source {
             Source::Hinge(number) => {
                 hinges.blocked_wanted(number, pass, &tuning.joint, poses, context, faults).map(i64::from)
+            }
+            Source::HingeLimit(number, side) => {
+                let softness = &tuning.joint;
+                [hinges.blocked_limit_wanted((number, side), pass, softness, context, faults), 0, 0]
+            }
+            Source::Part(ListPart::Row(at)) if self.is_limit() => {
+                let [a, b] = bodies();
+                [list.row(at).wanted_of_limit(pass, tuning, &a, &b, faults), 0, 0]
             }
             Source::Part(ListPart::Row(at)) => {
                 let [a, b] = bodies();
@@ -175,6 +200,7 @@ impl Unit {
     pub(super) fn take_impulses(&self, hinges: &mut HingeSet, list: &mut JointList) -> [i32; 3] {
         match self.source {
             Source::Hinge(number) => hinges.take_impulses(number),
+            Source::HingeLimit(number, side) => [hinges.take_limit_impulse(number, side), 0, 0],
             Source::Part(ListPart::Row(at)) => [core::mem::take(&mut list.row_mut(at).lambda).to_bits(), 0, 0],
             Source::Part(ListPart::Point(at)) => {
                 let Vec2 { x, y } = core::mem::take(&mut list.point_mut(at).lambda);
@@ -188,6 +214,7 @@ impl Unit {
         let [x, y, _] = impulses.map(Speed::from_bits);
         match self.source {
             Source::Hinge(number) => hinges.return_impulses(number, impulses),
+            Source::HingeLimit(number, side) => hinges.return_limit_impulse(number, side, impulses[0]),
             Source::Part(ListPart::Row(at)) => list.row_mut(at).lambda = x,
             Source::Part(ListPart::Point(at)) => list.point_mut(at).lambda = Vec2::new(x, y),
         }
@@ -200,6 +227,20 @@ impl Unit {
 
     /// The largest impulse of a row that the state can hold.
     pub(super) fn impulse_max(&self, part: usize) -> Speed {
-        if part == 2 { ANGLE_MAX } else { IMPULSE_MAX }
+        if part == 2 || matches!(self.source, Source::HingeLimit(..)) { ANGLE_MAX } else { IMPULSE_MAX }
+    }
+
+    /// Whether the unit is a limit, which has one row.
+    pub(super) fn is_limit(&self) -> bool {
+        self.softness[0].is_some_and(|softness| softness.task == BlockedTask::Limit)
+    }
+
+    /// Whether the unit is a limit that is not reached.
+    pub(super) fn is_open(&self, hinges: &HingeSet, list: &JointList) -> bool {
+        match self.source {
+            Source::HingeLimit(number, side) => hinges.blocked_limit_is_open(number, side),
+            Source::Part(ListPart::Row(at)) => list.row(at).is_open(),
+            Source::Hinge(_) | Source::Part(ListPart::Point(_)) => false,
+        }
     }
 }

@@ -121,7 +121,7 @@ impl HingeSet {
             Pass::Bias => self.hinges.run_overflow(Solve { refresh }, context),
             Pass::Relax => self.hinges.run_overflow(Relax { refresh }, context),
         }
-        self.solve_loose(pass, refresh, context);
+        self.solve_blocked_drives(refresh, context);
         solve_blocks(self);
         match pass {
             Pass::Bias => {
