@@ -312,7 +312,7 @@ impl JointSet {
     pub(in crate::solver) fn warm_start(&mut self, context: &StepContext<'_>) {
         self.list.warm_start(context);
         self.hinges.warm_start(Poses { quads: &self.quads, body_rotations: &self.body_rotations }, context);
-        self.blocks.warm_start(&self.hinges, &self.list, context);
+        self.blocks.start_sub_step();
     }
 
     /// One iteration over all joints.
