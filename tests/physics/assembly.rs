@@ -7,7 +7,9 @@
 use lockstep2d::body::{Body, BodyDef, BodyId, JointId, MassSource};
 use lockstep2d::fx;
 use lockstep2d::math::{Angle, Fx, Rng, Rot, Vec2, fx_div, fx_mul};
-use lockstep2d::solver::{Distance, JointDef, JointKind, LinearDrive, Motor, Prismatic, Revolute, Weld, Wheel};
+use lockstep2d::solver::{
+    Distance, JointDef, JointKind, LinearDrive, Motor, Prismatic, Revolute, Weld, Wheel,
+};
 use lockstep2d::world::{Config, World};
 
 /// What hangs on what.
@@ -55,16 +57,8 @@ pub(crate) enum Start {
 
 pub(crate) const SHAPES: [Shape; 6] =
     [Shape::Star, Shape::Tree, Shape::Chain, Shape::Loop, Shape::Mesh, Shape::Grid];
-pub(crate) const MIXES: [Mix; 8] = [
-    Mix::Weld,
-    Mix::Hinge,
-    Mix::SoftWeld,
-    Mix::Prismatic,
-    Mix::Wheel,
-    Mix::Rod,
-    Mix::Friction,
-    Mix::Every,
-];
+pub(crate) const MIXES: [Mix; 8] =
+    [Mix::Weld, Mix::Hinge, Mix::SoftWeld, Mix::Prismatic, Mix::Wheel, Mix::Rod, Mix::Friction, Mix::Every];
 pub(crate) const STARTS: [Start; 4] = [Start::Hit, Start::Spin, Start::Scatter, Start::Hang];
 
 #[derive(Clone, Copy, Debug)]
@@ -158,7 +152,9 @@ impl Case {
                 let base = match self.shape {
                     Shape::Star if i == 0 => Vec2::ZERO,
                     Shape::Star => {
-                        let turn = Angle::from_degrees(fx_div(fx!(360) * (i as i64), Fx::from_num(n - 1)).expect("some"));
+                        let turn = Angle::from_degrees(
+                            fx_div(fx!(360) * (i as i64), Fx::from_num(n - 1)).expect("some"),
+                        );
                         Rot::from_angle(turn).apply_wide(Vec2::new(rng.range(fx!(0.6), fx!(3)), Fx::ZERO))
                     }
                     Shape::Tree | Shape::Mesh => {
@@ -166,7 +162,9 @@ impl Case {
                     }
                     Shape::Chain => Vec2::new(step, Fx::ZERO),
                     Shape::Loop => {
-                        let turn = Angle::from_degrees(fx_div(fx!(360) * (i as i64), Fx::from_num(n)).expect("some"));
+                        let turn = Angle::from_degrees(
+                            fx_div(fx!(360) * (i as i64), Fx::from_num(n)).expect("some"),
+                        );
                         Rot::from_angle(turn).apply_wide(Vec2::new(Fx::from_num(n) / 6, Fx::ZERO))
                     }
                     Shape::Grid => {
@@ -176,7 +174,7 @@ impl Case {
                         Vec2::new(Fx::from_num(i % w), -Fx::from_num(i / w))
                     }
                 };
-                let off = Vec2::new(rng.range(-spread, spread), rng.range(-spread, spread)) ;
+                let off = Vec2::new(rng.range(-spread, spread), rng.range(-spread, spread));
                 let place = base + off.scale_half();
                 let mass = if uniform { fx!(1) } else { pick(rng, &masses) };
                 Plan { place, mass, gyration: pick(rng, &[fx!(0.1), fx!(0.2), fx!(0.3), fx!(0.5), fx!(1)]) }

@@ -91,13 +91,14 @@ fn candidate(joint: &Joint, [a, b]: [&HingeBody; 2]) -> Candidate {
         JointKind::Distance(kind) => {
             let parts = u32::from(kind.rod.is_some()) + u32::from(kind.spring.is_some());
             (parts + limits(kind.limit), false)
-        },
+        }
         JointKind::Motor(_) | JointKind::Filter => (0, false),
     };
     let shares = if is_hinge { shares(joint, [a, b]) } else { [Unit::ZERO; 2] };
     // The fraction of the lighter body has more significant bits.
     let fractions = MassFractions::of_masses(a.mass, b.mass);
-    let (mass, fraction) = if fractions.a > fractions.b { (a.mass, fractions.a) } else { (b.mass, fractions.b) };
+    let (mass, fraction) =
+        if fractions.a > fractions.b { (a.mass, fractions.a) } else { (b.mass, fractions.b) };
     let reduced_mass = fx_mul(mass, fraction.into());
     Candidate { bodies: [a.changed(), b.changed()], rows, is_hinge, reduced_mass, shares }
 }
@@ -230,7 +231,9 @@ impl JointSet {
         let is_alone = |index: u32| bodies[places[index as usize] as usize - 1].joints == 1;
         colouring.sort(self.body_rotations.len());
         let input_of = |&index: &u32| match entries[index as usize] {
-            Entry::Hinge(input) if !is_blocked.get(index as usize).is_some_and(|&blocked| blocked) => Some(input),
+            Entry::Hinge(input) if !is_blocked.get(index as usize).is_some_and(|&blocked| blocked) => {
+                Some(input)
+            }
             Entry::Hinge(_) | Entry::Other(_) => None,
         };
         hinges.push_overflow(colouring.overflow().iter().filter_map(input_of));
@@ -240,7 +243,9 @@ impl JointSet {
         let order = core::iter::once(colouring.overflow()).chain(colouring.colours()).flatten();
         others.extend(order.filter_map(|&index| match entries[index as usize] {
             Entry::Hinge(_) => None,
-            Entry::Other(slot) => Some((slot, is_blocked.get(index as usize).is_some_and(|&blocked| blocked))),
+            Entry::Other(slot) => {
+                Some((slot, is_blocked.get(index as usize).is_some_and(|&blocked| blocked)))
+            }
         }));
     }
 
@@ -251,7 +256,14 @@ impl JointSet {
             let joint = source.joints.at(slot);
             let slots = <[BodyId; 2]>::from(joint.def.bodies()).map(BodyId::index);
             let bodies = slots.map(|slot| source.bodies.at(slot));
-            self.list.push(slot, joint, slots.map(|slot| indices.index_of(slot)), bodies, source.tuning, is_blocked);
+            self.list.push(
+                slot,
+                joint,
+                slots.map(|slot| indices.index_of(slot)),
+                bodies,
+                source.tuning,
+                is_blocked,
+            );
         }
     }
 

@@ -88,7 +88,8 @@ impl Parts<'_> {
     /// Pulls the anchors onto each other, with a largest force.
     pub(super) fn pull(&mut self, slot: u8, soft: Soft, max_force: Fx) {
         let softness = Softness::spring(soft.hertz, soft.damping_ratio, self.rate);
-        let max = if max_force == Fx::MAX { Speed::MAX } else { crate::math::narrow(self.impulse(max_force)) };
+        let max =
+            if max_force == Fx::MAX { Speed::MAX } else { crate::math::narrow(self.impulse(max_force)) };
         self.point(slot, PointTask::Spring { softness, max });
     }
 

@@ -75,7 +75,18 @@ impl JointRow {
     pub(super) fn new(slot: u8, direction: Direction, task: RowTask, lambda: Speed) -> Self {
         let bounds = (Speed::ZERO, Speed::ZERO);
         let (row, bias, denominator) = (Row::NONE, Speed::ZERO, 0);
-        JointRow { slot, direction, task, row, bias, open: false, bounds, denominator, is_blocked: false, lambda }
+        JointRow {
+            slot,
+            direction,
+            task,
+            row,
+            bias,
+            open: false,
+            bounds,
+            denominator,
+            is_blocked: false,
+            lambda,
+        }
     }
 
     /// Whether a block may compute the impulse: the row holds a position, is a limit, or a spring of any strength.

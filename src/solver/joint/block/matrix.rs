@@ -77,7 +77,8 @@ impl Factor {
             for column in from..row {
                 let (from_column, start_column) = (first[column], starts[column]);
                 let both = from.max(from_column);
-                let upper = &done[start_column + both.min(column) - from_column..start_column + column - from_column];
+                let upper =
+                    &done[start_column + both.min(column) - from_column..start_column + column - from_column];
                 let entry = i64::from(entries[start + column - from]);
                 let scaled = round_shift(entry * scales[row], 30) * scales[column];
                 let rest = scaled - dot(upper, &own[both.min(column) - from..column - from]);
@@ -96,7 +97,8 @@ impl Factor {
         for row in 0..x.len() {
             let (known, rest) = x.split_at_mut(row);
             let own = &entries[starts[row]..starts[row] + row - first[row]];
-            let sum: i128 = own.iter().zip(&known[first[row]..]).map(|(&c, &x)| i128::from(c) * i128::from(x)).sum();
+            let sum: i128 =
+                own.iter().zip(&known[first[row]..]).map(|(&c, &x)| i128::from(c) * i128::from(x)).sum();
             rest[0] = divided((i128::from(rest[0]) << 30) - sum, inverses[row]);
         }
         for row in (0..x.len()).rev() {

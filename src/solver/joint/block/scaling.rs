@@ -40,15 +40,18 @@ impl Scaling {
         let sum = |i: fn(Vec2<Ratio>) -> Ratio, j: fn(Vec2<Ratio>) -> Ratio| {
             turning(fractions.a, i(e_a), j(e_a)) + turning(fractions.b, i(e_b), j(e_b))
         };
-        let (xx, xy, yy) = (moving + sum(|e| e.x, |e| e.x), sum(|e| e.x, |e| e.y), moving + sum(|e| e.y, |e| e.y));
+        let (xx, xy, yy) =
+            (moving + sum(|e| e.x, |e| e.x), sum(|e| e.x, |e| e.y), moving + sum(|e| e.y, |e| e.y));
         let (root_11, inverse_11) = root_and_inverse(xx);
         let root_21 = product(xy, inverse_11);
         let (root_22, inverse_22) = root_and_inverse(yy - product(root_21, root_21));
         let inverse_21 = -product(product(root_21, inverse_11), inverse_22);
         let scaled = |x: i64, y: i64| -> ScaledRow {
             let side = |sign: i64, root: i64, e: Vec2<Ratio>| {
-                let turn = i128::from(x) * i128::from(e.x.to_bits()) + i128::from(y) * i128::from(e.y.to_bits());
-                [x, y, saturate_wide(round_shift_wide(turn, 24))].map(|part| saturate(sign * product(part, root)))
+                let turn =
+                    i128::from(x) * i128::from(e.x.to_bits()) + i128::from(y) * i128::from(e.y.to_bits());
+                [x, y, saturate_wide(round_shift_wide(turn, 24))]
+                    .map(|part| saturate(sign * product(part, root)))
             };
             [side(-1, roots[0], e_a), side(1, roots[1], e_b)]
         };

@@ -74,9 +74,7 @@ impl Unit {
         let hinge = hinges.blocked_hinge(number);
         let mass_scale = tuning.joint.mass_scale;
         let point = Some(RowSoftness { mass_scale, task: BlockedTask::Hold });
-        let angle = hinge
-            .angle
-            .map(|angle| RowSoftness { mass_scale: angle.mass_scale, task: angle.task });
+        let angle = hinge.angle.map(|angle| RowSoftness { mass_scale: angle.mass_scale, task: angle.task });
         Unit::new(Source::Hinge(number), hinge.changed, hinge.fractions, [point, point, angle])
     }
 
@@ -201,7 +199,9 @@ impl Unit {
         match self.source {
             Source::Hinge(number) => hinges.take_impulses(number),
             Source::HingeLimit(number, side) => [hinges.take_limit_impulse(number, side), 0, 0],
-            Source::Part(ListPart::Row(at)) => [core::mem::take(&mut list.row_mut(at).lambda).to_bits(), 0, 0],
+            Source::Part(ListPart::Row(at)) => {
+                [core::mem::take(&mut list.row_mut(at).lambda).to_bits(), 0, 0]
+            }
             Source::Part(ListPart::Point(at)) => {
                 let Vec2 { x, y } = core::mem::take(&mut list.point_mut(at).lambda);
                 [x.to_bits(), y.to_bits(), 0]

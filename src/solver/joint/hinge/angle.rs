@@ -5,17 +5,17 @@
 //! uA -= fA d,  uB += fB d
 //! ```
 
+mod blocked;
+
 use super::super::super::context::Pass;
 use super::super::super::limits::Faults;
 use super::super::super::pair::{BodyPairW, RATIO, UNIT, clamp};
 use super::super::super::softness::Softness;
-use super::super::list::BlockedTask;
 use super::super::parts::slot;
 use super::super::pose::BodyRotation;
 use super::super::state::JointImpulses;
 use super::angle_input::AngleInput;
-use super::blocked::BlockedAngle;
-use crate::math::{Fx, Ratio, Speed, Unit, round_shift, round_shift_wide, saturate, saturate_wide};
+use crate::math::{Fx, Speed, Unit, round_shift_wide, saturate, saturate_wide};
 use crate::simd::{Ints, Lanes};
 
 /// The rows of a batch. Lanes without a row have gains of 0 or bounds of 0.
@@ -252,7 +252,12 @@ impl<const N: usize> AngleRows<N> {
 
     /// `w` of the springs: the impulse that is to be taken away.
     #[inline(always)]
-    fn wanted_of_spring<L: Lanes<N>>(&self, pass: Pass, pair: &BodyPairW<L, N>, faults: &mut Faults) -> L::Int {
+    fn wanted_of_spring<L: Lanes<N>>(
+        &self,
+        pass: Pass,
+        pair: &BodyPairW<L, N>,
+        faults: &mut Faults,
+    ) -> L::Int {
         let SpringRow { lambda, max, mass_scale, impulse_scale, push, holds } = &self.spring;
         let (old, max) = (L::load(lambda), L::load(max));
         let held = L::negative(L::load(holds));
@@ -344,66 +349,4 @@ fn speed_of(turns: i64, per_turn: Fx) -> i32 {
     const EXTRA: u32 = 32 + Fx::FRAC_NBITS - Speed::FRAC_NBITS;
     let wide = i128::from(turns) * i128::from(per_turn.to_bits());
     saturate(saturate_wide(round_shift_wide(wide, EXTRA)))
-}
-
-/// The rows of a hinge in a block.
-impl AngleRows<1> {
-    /// The spring, or the row that holds the angle, unless neither body turns.
-    pub(super) fn blocked_row(&self) -> Option<BlockedAngle> {
-        let SpringRow { max, mass_scale, holds, .. } = &self.spring;
-        (self.has_spring && max.0[0] > 0).then(|| BlockedAngle {
-            e: [0, 1].map(|side: usize| Ratio::from_bits(self.e[side].0[0])),
-            mass_scale: Unit::from_bits(mass_scale.0[0]),
-            task: if holds.0[0] < 0 { BlockedTask::Hold } else { BlockedTask::Spring },
-        })
-    }
-
-    /// `w` of that row.
-    pub(super) fn blocked_wanted<L: Lanes<1>>(&self, pass: Pass, pair: &BodyPairW<L, 1>, faults: &mut Faults) -> L::Int {
-        if self.has_spring { self.wanted_of_spring(pass, pair, faults) } else { L::splat(0) }
-    }
-
-    /// Whether the hinge has limits that impulses change.
-    pub(super) fn has_blocked_limits(&self) -> bool {
-        self.has_limit && self.limit_max.0[0] > 0
-    }
-
-    /// Lever ratios of a limit: 0 is the lower one.
-    pub(super) fn limit_ratios(&self, side: usize) -> [Ratio; 2] {
-        self.e.each_ref().map(|e| Ratio::from_bits(if side == 0 { e.0[0] } else { -e.0[0] }))
-    }
-
-    pub(super) fn limit_is_open(&self, side: usize) -> bool {
-        self.limits[side].open.0[0] < 0
-    }
-
-    /// `w` of a limit whose impulse is 0 and may become negative.
-    pub(super) fn wanted_of_limit<L: Lanes<1>>(
-        &self,
-        side: usize,
-        pass: Pass,
-        softness: &Softness,
-        pair: &BodyPairW<L, 1>,
-        faults: &mut Faults,
-    ) -> i64 {
-        let mut vn = Ints([0]);
-        L::store(velocity::<L, 1>(&self.e, L::load(&self.limit_max), pair, faults), &mut vn);
-        let vn = if side == 0 { i64::from(vn.0[0]) } else { -i64::from(vn.0[0]) };
-        let push = i64::from(self.limits[side].push.0[0]);
-        match pass {
-            _ if self.limit_is_open(side) => vn + push,
-            Pass::Bias => round_shift(i64::from(softness.mass_scale.to_bits()) * vn, Unit::FRAC_NBITS) + push,
-            Pass::Relax => vn,
-        }
-    }
-
-    /// The impulse of a limit.
-    pub(super) fn limit_impulse(&mut self, side: usize) -> &mut i32 {
-        &mut self.limits[side].lambda.0[0]
-    }
-
-    /// The impulse of that row.
-    pub(super) fn held_impulse(&mut self) -> &mut i32 {
-        &mut self.spring.lambda.0[0]
-    }
 }

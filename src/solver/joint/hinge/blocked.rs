@@ -83,7 +83,8 @@ impl HingeSet {
             changed: [batch.changed[0][0], batch.changed[1][0]],
             fractions: MassFractions { a, b },
             e: [ratio(0), ratio(1)],
-            angle: self.blocked_extras[number].and_then(|extra| self.blocked.overflow.extras[extra].blocked_row()),
+            angle: self.blocked_extras[number]
+                .and_then(|extra| self.blocked.overflow.extras[extra].blocked_row()),
         }
     }
 
@@ -162,7 +163,8 @@ impl HingeSet {
     pub(in super::super) fn take_impulses(&mut self, number: usize) -> [i32; 3] {
         let HingeSet { blocked, blocked_extras, .. } = self;
         let [x, y] = &mut blocked.overflow.batches[number].lambda;
-        let angle = blocked_extras[number].map_or(0, |extra| core::mem::take(blocked.overflow.extras[extra].held_impulse()));
+        let angle = blocked_extras[number]
+            .map_or(0, |extra| core::mem::take(blocked.overflow.extras[extra].held_impulse()));
         [core::mem::take(&mut x.0[0]), core::mem::take(&mut y.0[0]), angle]
     }
 

@@ -117,7 +117,12 @@ fn count<T>(parts: &[T]) -> u32 {
 impl<const N: usize> Batches<Hinges, N> {
     /// Adds batches of hinges. The caller ensures that no two of `N` successive hinges share a body that impulses
     /// change, and that either all hinges or none have rows on the angle.
-    pub(super) fn push(&mut self, inputs: &[Input], angle_inputs: &[AngleInput], indices: impl Iterator<Item = u32>) {
+    pub(super) fn push(
+        &mut self,
+        inputs: &[Input],
+        angle_inputs: &[AngleInput],
+        indices: impl Iterator<Item = u32>,
+    ) {
         let Batches { batches, records, extras, .. } = self;
         let mut lane = N;
         for index in indices {
