@@ -25,6 +25,8 @@ mod matrix;
 mod scales;
 mod scaling;
 mod solve;
+#[cfg(test)]
+mod tests;
 mod unit;
 
 use alloc::vec::Vec;
