@@ -174,18 +174,34 @@ impl PointBlock {
         p_max: Speed,
         lambda: &mut Vec2<Speed>,
     ) {
-        let PointGoal { bias, push } = goal;
+        let d = self.wanted(bodies.a, bodies.b, goal, softness, *lambda, bodies.faults);
         let faults = &mut *bodies.faults;
-        let vr = self.velocity(bodies.a, bodies.b, self.ratios(), faults);
-        let d_x = softness.impulse(vr.x, bias.x, lambda.x, faults).saturating_sub(push.x);
-        let d_y = softness.impulse(vr.y, bias.y, lambda.y, faults).saturating_sub(push.y);
-        let next = Vec2::new(accumulate(lambda.x, d_x, faults), accumulate(lambda.y, d_y, faults));
+        let next = Vec2::new(accumulate(lambda.x, d.x, faults), accumulate(lambda.y, d.y, faults));
         let next = self.shortened(next, p_max);
         let mut d = next - *lambda;
         clamp_warm_start(&mut d.x, faults);
         clamp_warm_start(&mut d.y, faults);
         *lambda += d;
         self.apply(d, bodies);
+    }
+
+    /// The change of `L` that one iteration wants.
+    #[inline]
+    pub(crate) fn wanted(
+        &self,
+        a: &SolverBody,
+        b: &SolverBody,
+        goal: PointGoal,
+        softness: &Softness,
+        lambda: Vec2<Speed>,
+        faults: &mut Faults,
+    ) -> Vec2<Speed> {
+        let PointGoal { bias, push } = goal;
+        let vr = self.velocity(a, b, self.ratios(), faults);
+        Vec2::new(
+            softness.impulse(vr.x, bias.x, lambda.x, faults).saturating_sub(push.x),
+            softness.impulse(vr.y, bias.y, lambda.y, faults).saturating_sub(push.y),
+        )
     }
 
     /// Shortens `L` so that `|G L|` is at most `p_max`.

@@ -138,6 +138,11 @@ impl Row {
         ([self.e_a, self.e_b], [self.f_a, self.f_b])
     }
 
+    /// The direction along which the row measures, and its lever ratios of A and B.
+    pub(super) fn jacobian(&self) -> (Vec2<Unit>, [Ratio; 2]) {
+        (self.n, [self.e_a, self.e_b])
+    }
+
     /// The row in the opposite direction.
     pub(crate) fn reversed(&self) -> Self {
         let Row { n, e_a, e_b, g_a, g_b, f_a, f_b } = *self;

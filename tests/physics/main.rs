@@ -1,6 +1,7 @@
 //! Physics against theory. Each file covers one kind of motion and states what theory predicts. The goldens and
 //! `replays/` may change only while these tests pass.
 
+mod assembly;
 mod capsule;
 mod chain;
 mod collisions;
@@ -9,6 +10,7 @@ mod continuous;
 mod free_fall;
 mod impacts;
 mod joint_bench;
+mod joint_energy;
 mod joint_holds;
 mod joint_limits;
 mod joint_motors;

@@ -48,8 +48,8 @@ fn random_joint(rng: &mut Rng) -> JointKind {
     match rng.below(6) {
         0 => Revolute::new().into(),
         1 => Weld::rigid().into(),
-        2 => Prismatic::new(lockstep2d::math::Angle::EIGHTH).into(),
-        3 => Wheel::new(lockstep2d::math::Angle::EIGHTH).into(),
+        2 => Prismatic::new().into(),
+        3 => Wheel::new().into(),
         4 => Distance::rod(fx!(1.5)).into(),
         _ => Motor::new().linear((fx!(1), fx!(0)), fx!(20)).into(),
     }

@@ -6,11 +6,14 @@ use super::super::body::SolverBody;
 use super::super::body_list::{BodyList, GROUND};
 use super::super::colour::Colouring;
 use super::super::context::{Pass, StepContext};
+use super::super::row::MassFractions;
 use super::super::settings::Tuning;
+use super::block::{Blocks, Candidate};
 use super::cache_key::{CacheKey, Definitions, Validity};
 use super::def::JointKind;
-use super::hinge::{AngleParts, Dirty, HingeBody, HingeSet, Poses, Turning, node};
-use super::list::JointList;
+use super::hinge::{AngleParts, Dirty, HingeBody, HingeSet, Poses, Turning, node, shares};
+use super::list::{BlockedPart, JointList};
+use super::options::JointLimit;
 use super::pose::{BodyRotation, Ends};
 use super::rotations::Rotations;
 use super::state::Joint;
@@ -38,9 +41,17 @@ pub(in crate::solver) struct JointSet {
     /// For each joint in the order of the state, the constraint as which it is solved.
     entries: Vec<Entry>,
     hinges: HingeSet,
-    /// The slots of all joints that are not hinges, in the order in which they are solved.
-    others: Vec<u32>,
+    /// The slots of all joints that are not hinges, in the order in which they are solved, and whether they are in a
+    /// block.
+    others: Vec<(u32, bool)>,
     list: JointList,
+    /// For each joint in the order of the state, what the choice of blocks depends on.
+    candidates: Vec<Candidate>,
+    /// For each joint in the order of the state, whether it is solved in a block.
+    is_blocked: Vec<bool>,
+    blocks: Blocks,
+    /// The rows and points in blocks of joints that are not hinges, by slot.
+    parts: Vec<(u32, BlockedPart)>,
 }
 
 /// The joints of a tick, before they are arranged.
@@ -69,6 +80,29 @@ fn hinge_parts(kind: &JointKind) -> Option<AngleParts> {
     }
 }
 
+/// What the choice of blocks depends on of a joint.
+fn candidate(joint: &Joint, [a, b]: [&HingeBody; 2]) -> Candidate {
+    let limits = |limit: Option<JointLimit>| if limit.is_some() { 2 } else { 0 };
+    let (rows, is_hinge) = match &joint.def.kind {
+        JointKind::Revolute(kind) => (2 + u32::from(kind.spring.is_some()) + limits(kind.limit), true),
+        JointKind::Weld(_) => (3, false),
+        JointKind::Prismatic(kind) => (2 + u32::from(kind.spring.is_some()) + limits(kind.limit), false),
+        JointKind::Wheel(kind) => (1 + u32::from(kind.spring.is_some()) + limits(kind.limit), false),
+        JointKind::Distance(kind) => {
+            let parts = u32::from(kind.rod.is_some()) + u32::from(kind.spring.is_some());
+            (parts + limits(kind.limit), false)
+        }
+        JointKind::Motor(_) | JointKind::Filter => (0, false),
+    };
+    let shares = if is_hinge { shares(joint, [a, b]) } else { [Unit::ZERO; 2] };
+    // The fraction of the lighter body has more significant bits.
+    let fractions = MassFractions::of_masses(a.mass, b.mass);
+    let (mass, fraction) =
+        if fractions.a > fractions.b { (a.mass, fractions.a) } else { (b.mass, fractions.b) };
+    let reduced_mass = fx_mul(mass, fraction.into());
+    Candidate { bodies: [a.changed(), b.changed()], rows, is_hinge, reduced_mass, shares }
+}
+
 impl JointSet {
     fn clear(&mut self) {
         let JointSet {
@@ -83,6 +117,10 @@ impl JointSet {
             hinges,
             others,
             list,
+            candidates,
+            is_blocked,
+            blocks,
+            parts,
         } = self;
         anchors.clear();
         places.clear();
@@ -94,6 +132,10 @@ impl JointSet {
         hinges.clear();
         others.clear();
         list.clear();
+        candidates.clear();
+        is_blocked.clear();
+        blocks.clear();
+        parts.clear();
     }
 
     /// Makes the constraints of all joints that are solved, in the order in which they are solved.
@@ -116,9 +158,14 @@ impl JointSet {
                 self.clear();
                 self.arrange(source, list, colouring);
                 self.sort(colouring);
+                self.prepare_others(source, list);
+                self.arrange_blocks(tuning);
+                self.blocks.take_impulses(&mut self.hinges, &mut self.list);
+                return;
             }
         }
         self.prepare_others(source, list);
+        self.blocks.take_impulses(&mut self.hinges, &mut self.list);
     }
 
     /// Reuses the hinges of the last tick, with the bodies at their current poses.
@@ -147,6 +194,12 @@ impl JointSet {
                 Some(parts) => Entry::Hinge(self.hinges.push_input(slot, joint, ends, &parts, tuning)),
                 None => Entry::Other(slot),
             });
+            self.candidates.push(candidate(joint, ends));
+        }
+        self.blocks.choose(&self.candidates, list.len());
+        self.is_blocked.resize(if self.blocks.is_empty() { 0 } else { self.candidates.len() }, false);
+        for &joint in self.blocks.chosen() {
+            self.is_blocked[joint as usize] = true;
         }
         self.body_rotations.resize(list.len(), BodyRotation::default());
         self.quads.resize(list.len(), Quad::default());
@@ -174,12 +227,14 @@ impl JointSet {
 
     /// Sorts the joints into colours.
     fn sort(&mut self, colouring: &mut Colouring) {
-        let JointSet { entries, hinges, others, places, bodies, .. } = self;
+        let JointSet { entries, hinges, others, places, bodies, is_blocked, .. } = self;
         let is_alone = |index: u32| bodies[places[index as usize] as usize - 1].joints == 1;
         colouring.sort(self.body_rotations.len());
         let input_of = |&index: &u32| match entries[index as usize] {
-            Entry::Hinge(input) => Some(input),
-            Entry::Other(_) => None,
+            Entry::Hinge(input) if !is_blocked.get(index as usize).is_some_and(|&blocked| blocked) => {
+                Some(input)
+            }
+            Entry::Hinge(_) | Entry::Other(_) => None,
         };
         hinges.push_overflow(colouring.overflow(false).iter().filter_map(input_of));
         for indices in colouring.colours(false) {
@@ -188,19 +243,44 @@ impl JointSet {
         let order = core::iter::once(colouring.overflow(false)).chain(colouring.colours(false)).flatten();
         others.extend(order.filter_map(|&index| match entries[index as usize] {
             Entry::Hinge(_) => None,
-            Entry::Other(slot) => Some(slot),
+            Entry::Other(slot) => {
+                Some((slot, is_blocked.get(index as usize).is_some_and(|&blocked| blocked)))
+            }
         }));
     }
 
     /// Lists the joints that are not hinges, with their rows and points.
     fn prepare_others(&mut self, source: &JointSource<'_>, indices: &BodyList) {
         self.list.clear();
-        for &slot in &self.others {
+        for &(slot, is_blocked) in &self.others {
             let joint = source.joints.at(slot);
             let slots = <[BodyId; 2]>::from(joint.def.bodies()).map(BodyId::index);
             let bodies = slots.map(|slot| source.bodies.at(slot));
-            self.list.push(slot, joint, slots.map(|slot| indices.index_of(slot)), bodies, source.tuning);
+            self.list.push(
+                slot,
+                joint,
+                slots.map(|slot| indices.index_of(slot)),
+                bodies,
+                source.tuning,
+                is_blocked,
+            );
         }
+    }
+
+    /// Arranges the joints in blocks.
+    fn arrange_blocks(&mut self, tuning: &Tuning) {
+        let JointSet { blocks, hinges, list, parts, entries, candidates, .. } = self;
+        if blocks.is_empty() {
+            return;
+        }
+        list.blocked_parts(tuning, |slot, part| parts.push((slot, part)));
+        parts.sort_by_key(|&(slot, _)| slot);
+        let number = |&joint: &u32| match entries[joint as usize] {
+            Entry::Hinge(input) => Ok(hinges.push_blocked(input)),
+            Entry::Other(slot) => Err(slot),
+        };
+        let numbers: Vec<_> = blocks.chosen().iter().map(number).collect();
+        blocks.arrange(hinges, parts, tuning, candidates, &numbers);
     }
 
     /// Whether a body of the tick has a joint, by its index.
@@ -214,6 +294,7 @@ impl JointSet {
         let mut any_turned = false;
         let JointSet { turning, body_rotations, quads, .. } = self;
         machine.run(Rotations { turning, bodies, body_rotations, quads, any: &mut any_turned });
+        self.blocks.expire();
         self.hinges.expire(if any_turned { Dirty::Everything } else { Dirty::Gaps });
         self.list.refresh(bodies, &self.body_rotations, tuning);
     }
@@ -243,16 +324,20 @@ impl JointSet {
     pub(in crate::solver) fn warm_start(&mut self, context: &StepContext<'_>) {
         self.list.warm_start(context);
         self.hinges.warm_start(Poses { quads: &self.quads, body_rotations: &self.body_rotations }, context);
+        self.blocks.start_sub_step();
     }
 
     /// One iteration over all joints.
     pub(in crate::solver) fn solve(&mut self, pass: Pass, context: &StepContext<'_>) {
-        self.list.solve(pass, context);
-        self.hinges.solve(pass, Poses { quads: &self.quads, body_rotations: &self.body_rotations }, context);
+        let JointSet { list, hinges, blocks, quads, body_rotations, .. } = self;
+        list.solve(pass, context);
+        let poses = Poses { quads, body_rotations };
+        hinges.solve(pass, poses, context, |hinges| blocks.solve(pass, hinges, list, poses, context));
     }
 
     /// Stores impulses and angles for the next tick.
     pub(in crate::solver) fn store(&mut self, joints: &mut Arena<Joint, JointId>) {
+        self.blocks.return_impulses(&mut self.hinges, &mut self.list);
         self.hinges.store(joints, &self.body_rotations);
         self.list.store(joints, &self.body_rotations);
     }
@@ -278,7 +363,7 @@ impl JointSet {
                 let input = self.hinges.push_input(0, joint, ends.each_ref(), &parts, tuning);
                 self.hinges.push_overflow(core::iter::once(input));
             }
-            None => self.list.push(0, joint, indices, [a, b], tuning),
+            None => self.list.push(0, joint, indices, [a, b], tuning, false),
         }
         let (threads, mut bodies, mut faults) = (Threads::default(), [SolverBody::default(); 3], 0);
         let context = StepContext::new(Machine::default(), &threads, tuning, &mut bodies, &mut faults);

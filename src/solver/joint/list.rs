@@ -9,7 +9,9 @@ use super::super::body::SolverBody;
 use super::super::body_pair::{BodyPair, Remainders};
 use super::super::context::{Pass, StepContext};
 use super::super::limits::Faults;
+use super::super::row::MassFractions;
 use super::super::settings::Tuning;
+use super::super::softness::Softness;
 use super::def::JointKind;
 use super::parts::Parts;
 use super::point::JointPoint;
@@ -17,6 +19,7 @@ use super::pose::{BodyRotation, Ends};
 use super::row::JointRow;
 use super::state::{Joint, JointImpulses};
 use crate::body::{Arena, Body, JointId};
+use crate::math::Unit;
 
 /// Joints in the order in which they are solved.
 #[derive(Clone, Debug, Default)]
@@ -61,6 +64,33 @@ impl Link {
     }
 }
 
+/// A row or point of a joint whose impulse a block computes, by its index among those of all joints.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum ListPart {
+    Row(usize),
+    Point(usize),
+}
+
+/// What a block needs of a row or point to set up its equations.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct BlockedPart {
+    pub(super) part: ListPart,
+    pub(super) bodies: [u32; 2],
+    pub(super) fractions: MassFractions,
+    pub(super) mass_scale: Unit,
+    pub(super) task: BlockedTask,
+}
+
+/// The function of a row in a block.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum BlockedTask {
+    Hold,
+    /// Solved in the bias pass only.
+    Spring,
+    /// Its impulse is never negative.
+    Limit,
+}
+
 /// Iterates over joints with their rows and points.
 struct Walk<'a> {
     links: core::slice::IterMut<'a, Link>,
@@ -99,6 +129,7 @@ impl JointList {
         indices: [u32; 2],
         bodies: [&Body; 2],
         tuning: &Tuning,
+        is_blocked: bool,
     ) {
         let (rows_before, points_before) = (self.rows.len(), self.points.len());
         let mut parts = Parts {
@@ -116,7 +147,12 @@ impl JointList {
             JointKind::Motor(kind) => kind.prepare(&mut parts),
             JointKind::Revolute(_) | JointKind::Filter => {}
         }
-        let (rows, points) = (count(&self.rows[rows_before..]), count(&self.points[points_before..]));
+        let (rows, points) = (&mut self.rows[rows_before..], &mut self.points[points_before..]);
+        if is_blocked {
+            rows.iter_mut().for_each(|row| row.is_blocked = row.is_unlimited());
+            points.iter_mut().for_each(|point| point.is_blocked = point.unlimited_softness().is_some());
+        }
+        let (rows, points) = (count(rows), count(points));
         self.links.push(Link { bodies: indices, rows, points, remainders: Remainders::starting(bodies) });
         self.joints.push(JointConstraint { slot, ends: Ends::prepare(joint, indices, bodies) });
     }
@@ -154,8 +190,12 @@ impl JointList {
         let mut faults = 0;
         for (link, rows, points) in self.walk() {
             link.change(context, &mut faults, |bodies| {
-                rows.iter_mut().for_each(|row| row.solve(pass, context.tuning, bodies));
-                points.iter_mut().for_each(|point| point.solve(pass, bodies));
+                for row in rows.iter_mut().filter(|row| !row.is_blocked) {
+                    row.solve(pass, context.tuning, bodies);
+                }
+                for point in points.iter_mut().filter(|point| !point.is_blocked) {
+                    point.solve(pass, bodies);
+                }
             });
         }
         context.add_faults(faults);
@@ -174,6 +214,46 @@ impl JointList {
                 joint.impulses.set_point(point.slot, point.lambda);
             }
         }
+    }
+
+    /// The rows and points in blocks of the joint in a slot. The list is in the order of `slots`.
+    pub(super) fn blocked_parts(&self, tuning: &Tuning, mut each: impl FnMut(u32, BlockedPart)) {
+        let (mut row, mut point) = (0, 0);
+        for (joint, link) in self.joints.iter().zip(&self.links) {
+            let (rows, points) = (row..row + usize::from(link.rows), point..point + usize::from(link.points));
+            (row, point) = (rows.end, points.end);
+            let part = |part, softness: &Softness, task| BlockedPart {
+                part,
+                bodies: link.bodies,
+                fractions: joint.ends.fractions(),
+                mass_scale: softness.mass_scale,
+                task,
+            };
+            for at in rows.filter(|&at| self.rows[at].is_blocked) {
+                let row = &self.rows[at];
+                each(joint.slot, part(ListPart::Row(at), row.softness(tuning), row.blocked_task()));
+            }
+            for at in points.filter(|&at| self.points[at].is_blocked) {
+                let Some(softness) = self.points[at].unlimited_softness() else { continue };
+                each(joint.slot, part(ListPart::Point(at), softness, BlockedTask::Spring));
+            }
+        }
+    }
+
+    pub(super) fn row(&self, at: usize) -> &JointRow {
+        &self.rows[at]
+    }
+
+    pub(super) fn row_mut(&mut self, at: usize) -> &mut JointRow {
+        &mut self.rows[at]
+    }
+
+    pub(super) fn point(&self, at: usize) -> &JointPoint {
+        &self.points[at]
+    }
+
+    pub(super) fn point_mut(&mut self, at: usize) -> &mut JointPoint {
+        &mut self.points[at]
     }
 
     fn walk(&mut self) -> Walk<'_> {

@@ -5,6 +5,7 @@
 //! except hinges, which are by far the most frequent joints and are solved in batches (`hinge`). Within a joint the
 //! order is that of Box2D v3: springs, motors and limits first, and the rigid parts last.
 
+mod block;
 mod cache_key;
 mod constraint;
 mod def;

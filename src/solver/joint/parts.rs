@@ -7,7 +7,7 @@ use super::options::{Drive, JointLimit, Soft, Spring};
 use super::point::{JointPoint, PointTask};
 use super::row::{JointRow, RowTask};
 use super::state::JointImpulses;
-use crate::math::{Fx, Vec2, fx_div};
+use crate::math::{Fx, Speed, Vec2, fx_div};
 
 /// Slots of impulses in the state of a joint. A point uses two slots.
 pub(super) mod slot {
@@ -56,7 +56,10 @@ impl Parts<'_> {
     pub(super) fn spring_within(&mut self, direction: Direction, spring: Option<Spring>, force: JointLimit) {
         if let Some(Spring { hertz, damping_ratio, target }) = spring {
             let softness = Softness::spring(hertz, damping_ratio, self.rate);
-            let (lower, upper) = (self.impulse(force.lower), self.impulse(force.upper));
+            // An unlimited force stays one.
+            let unlimited = force == JointLimit { lower: Fx::MIN, upper: Fx::MAX };
+            let impulse = |force| if unlimited { force } else { self.impulse(force) };
+            let (lower, upper) = (impulse(force.lower), impulse(force.upper));
             self.row(slot::SPRING, direction, RowTask::Spring { softness, target, lower, upper });
         }
     }
@@ -96,7 +99,8 @@ impl Parts<'_> {
     /// Pulls the anchors onto each other, with a largest force.
     pub(super) fn pull(&mut self, slot: u8, soft: Soft, max_force: Fx) {
         let softness = Softness::spring(soft.hertz, soft.damping_ratio, self.rate);
-        let max = crate::math::narrow(self.impulse(max_force));
+        let max =
+            if max_force == Fx::MAX { Speed::MAX } else { crate::math::narrow(self.impulse(max_force)) };
         self.point(slot, PointTask::Spring { softness, max });
     }
 

@@ -1,9 +1,10 @@
 //! The points of a joint: a spring pulls the anchors together, or a motor drives them to a relative velocity. Joints
 //! whose anchors are pinned rigidly are hinges.
 
+use super::super::body::SolverBody;
 use super::super::body_pair::BodyPair;
 use super::super::context::Pass;
-use super::super::limits::clamp_warm_start;
+use super::super::limits::{Faults, clamp_warm_start};
 use super::super::point_block::{PointBlock, PointGoal};
 use super::super::softness::Softness;
 use super::pose::JointPose;
@@ -27,6 +28,8 @@ pub(super) struct JointPoint {
     pub(super) block: PointBlock,
     /// For a motor: the target velocity, reversed. For a spring: the part of its impulse that comes from its stretch.
     bias: Vec2<Speed>,
+    /// Whether a block computes the impulse.
+    pub(super) is_blocked: bool,
     /// `L`, in world axes.
     pub(super) lambda: Vec2<Speed>,
 }
@@ -34,7 +37,27 @@ pub(super) struct JointPoint {
 impl JointPoint {
     pub(super) fn new(slot: u8, task: PointTask, lambda: Vec2<Speed>) -> Self {
         let block = PointBlock::default();
-        JointPoint { slot, task, block, bias: Vec2::ZERO, lambda }
+        JointPoint { slot, task, block, bias: Vec2::ZERO, is_blocked: false, lambda }
+    }
+
+    /// The softness of a spring whose impulse has no limit.
+    pub(super) fn unlimited_softness(&self) -> Option<&Softness> {
+        match &self.task {
+            PointTask::Spring { softness, max } if *max == Speed::MAX => Some(softness),
+            PointTask::Spring { .. } | PointTask::Drive { .. } => None,
+        }
+    }
+
+    /// The change of the impulse of a spring that the bias pass wants.
+    pub(super) fn wanted(
+        &self,
+        softness: &Softness,
+        a: &SolverBody,
+        b: &SolverBody,
+        faults: &mut Faults,
+    ) -> Vec2<Speed> {
+        let goal = PointGoal { bias: Vec2::ZERO, push: self.bias };
+        self.block.wanted(a, b, goal, softness, self.lambda, faults)
     }
 
     /// Computes arms, gains and gap at the current pose.

@@ -61,6 +61,10 @@ impl Ends {
         }
     }
 
+    pub(super) fn fractions(&self) -> MassFractions {
+        self.fractions
+    }
+
     /// The angle of the joint, in units of 2^-32 turn.
     pub(super) fn turns(&self, body_rotations: &[BodyRotation]) -> i64 {
         let (a, b) = (&body_rotations[self.body_a as usize], &body_rotations[self.body_b as usize]);

@@ -18,12 +18,14 @@
 //! from any state: `L' = -massScale (v + biasRate x)`. If the row were solved again after the displacement, it would
 //! remove another `massScale biasRate h` of the velocity, and light springs would come to rest too early.
 
+use super::super::body::SolverBody;
 use super::super::body_pair::BodyPair;
 use super::super::context::Pass;
-use super::super::limits::IMPULSE_MAX;
+use super::super::limits::{Faults, IMPULSE_MAX};
 use super::super::row::{Denominator, Row};
 use super::super::settings::Tuning;
 use super::super::softness::Softness;
+use super::list::BlockedTask;
 use super::options::JointLimit;
 use super::parts::Direction;
 use crate::math::{Fx, Speed, fx_div, fx_mul, narrow, saturate_wide};
@@ -66,19 +68,88 @@ pub(super) struct JointRow {
     /// Whether the row is a limit that is not reached.
     open: bool,
     bounds: (Speed, Speed),
+    denominator: Denominator,
+    /// Whether a block computes the impulse.
+    pub(super) is_blocked: bool,
     pub(super) lambda: Speed,
 }
 
 impl JointRow {
     pub(super) fn new(slot: u8, direction: Direction, task: RowTask, lambda: Speed) -> Self {
         let bounds = (Speed::ZERO, Speed::ZERO);
-        JointRow { slot, direction, task, row: Row::NONE, bias: Speed::ZERO, open: false, bounds, lambda }
+        let (row, bias, denominator) = (Row::NONE, Speed::ZERO, 0);
+        JointRow {
+            slot,
+            direction,
+            task,
+            row,
+            bias,
+            open: false,
+            bounds,
+            denominator,
+            is_blocked: false,
+            lambda,
+        }
+    }
+
+    /// Whether a block may compute the impulse: the row holds a position, is a limit, or a spring of any strength.
+    pub(super) fn is_unlimited(&self) -> bool {
+        match self.task {
+            RowTask::Hold { .. } | RowTask::Lower { .. } | RowTask::Upper { .. } => true,
+            RowTask::Spring { lower, upper, .. } => lower == Fx::MIN && upper == Fx::MAX,
+            RowTask::Drive { .. } => false,
+        }
+    }
+
+    /// The function of the row in a block.
+    pub(super) fn blocked_task(&self) -> BlockedTask {
+        match self.task {
+            RowTask::Spring { .. } => BlockedTask::Spring,
+            RowTask::Lower { .. } | RowTask::Upper { .. } => BlockedTask::Limit,
+            RowTask::Hold { .. } | RowTask::Drive { .. } => BlockedTask::Hold,
+        }
+    }
+
+    /// Whether the row is a limit that is not reached.
+    pub(super) fn is_open(&self) -> bool {
+        self.open
+    }
+
+    /// The change of the impulse of a limit that a pass wants if the impulse is 0 and may become negative.
+    pub(super) fn wanted_of_limit(
+        &self,
+        pass: Pass,
+        tuning: &Tuning,
+        a: &SolverBody,
+        b: &SolverBody,
+        faults: &mut Faults,
+    ) -> i64 {
+        let vn = self.row.velocity(a, b, faults);
+        let (softness, bias) = match pass {
+            _ if self.open => (&Softness::RIGID, self.bias),
+            Pass::Bias => (&tuning.joint, self.bias),
+            Pass::Relax => (&Softness::RIGID, Speed::ZERO),
+        };
+        softness.wanted(vn, bias, Speed::ZERO)
+    }
+
+    /// The denominator at the last refresh.
+    pub(super) fn denominator(&self) -> Denominator {
+        self.denominator
+    }
+
+    /// The softness in the bias pass of a row without limits.
+    pub(super) fn softness<'a>(&'a self, tuning: &'a Tuning) -> &'a Softness {
+        match &self.task {
+            RowTask::Spring { softness, .. } => softness,
+            _ => &tuning.joint,
+        }
     }
 
     /// Computes Jacobian, gains, bias and bounds at the current pose.
     pub(super) fn refresh(&mut self, measure: &Measure, tuning: &Tuning) {
         let Measure { row, denominator, position, scale } = *measure;
-        self.row = row;
+        (self.row, self.denominator) = (row, denominator);
         self.bounds = (-IMPULSE_MAX, IMPULSE_MAX);
         let metres = |x: Fx| fx_mul(x, scale);
         let soft_bias = |gap: Fx| narrow(fx_mul(metres(gap), tuning.joint.bias_rate.into()));
@@ -125,13 +196,27 @@ impl JointRow {
     }
 
     pub(super) fn solve(&mut self, pass: Pass, tuning: &Tuning, bodies: &mut BodyPair<'_>) {
-        let vn = self.row.velocity(bodies.a, bodies.b, bodies.faults);
+        if let Some(d) = self.wanted(pass, tuning, bodies.a, bodies.b, bodies.faults) {
+            self.row.accumulate(d, self.bounds, &mut self.lambda, bodies);
+        }
+    }
+
+    /// The change of the impulse that a pass wants, in units of [`Speed`]. `None` if the pass leaves out the row.
+    pub(super) fn wanted(
+        &self,
+        pass: Pass,
+        tuning: &Tuning,
+        a: &SolverBody,
+        b: &SolverBody,
+        faults: &mut Faults,
+    ) -> Option<i64> {
+        let vn = self.row.velocity(a, b, faults);
         let (softness, bias, push) = match (&self.task, pass) {
             (RowTask::Spring { softness, .. }, Pass::Bias) => (softness, Speed::ZERO, self.bias),
-            (RowTask::Spring { .. }, Pass::Relax) => return,
+            (RowTask::Spring { .. }, Pass::Relax) => return None,
             // As with contacts, a gap without an impulse is left to the next sub-step.
             (RowTask::Lower { .. } | RowTask::Upper { .. }, Pass::Relax) if self.open && self.lambda == 0 => {
-                return;
+                return None;
             }
             // If the gap is so wide that `L` would fall below 0, `L` becomes 0.
             (RowTask::Lower { .. } | RowTask::Upper { .. }, _) if self.open => {
@@ -141,8 +226,7 @@ impl JointRow {
             (_, Pass::Bias) => (&tuning.joint, self.bias, Speed::ZERO),
             (_, Pass::Relax) => (&Softness::RIGID, Speed::ZERO, Speed::ZERO),
         };
-        let d = softness.wanted(vn, bias, self.lambda) - i64::from(push.to_bits());
-        self.row.accumulate(d, self.bounds, &mut self.lambda, bodies);
+        Some(softness.wanted(vn, bias, self.lambda) - i64::from(push.to_bits()))
     }
 }
 

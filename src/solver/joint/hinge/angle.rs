@@ -5,6 +5,8 @@
 //! uA -= fA d,  uB += fB d
 //! ```
 
+mod blocked;
+
 use super::super::super::context::Pass;
 use super::super::super::limits::Faults;
 use super::super::super::pair::{BodyPairW, RATIO, UNIT, clamp};
@@ -205,6 +207,13 @@ impl<const N: usize> AngleRows<N> {
         if self.has_spring && (pass == Pass::Bias || self.holds) {
             self.solve_spring(pass, pair, faults);
         }
+        self.solve_drive(pair, faults);
+        self.solve_limits(pass, softness, pair, faults);
+    }
+
+    /// Solves the motors.
+    #[inline(always)]
+    pub(super) fn solve_drive<L: Lanes<N>>(&mut self, pair: &mut BodyPairW<L, N>, faults: &mut Faults) {
         if self.has_drive {
             let DriveRow { lambda, max, bias } = &mut self.drive;
             let (old, max) = (L::load(lambda), L::load(max));
@@ -213,6 +222,17 @@ impl<const N: usize> AngleRows<N> {
             L::store(new, lambda);
             pair.turn(&self.f, L::sub(new, old), faults);
         }
+    }
+
+    /// Solves the limits.
+    #[inline(always)]
+    fn solve_limits<L: Lanes<N>>(
+        &mut self,
+        pass: Pass,
+        softness: &Softness,
+        pair: &mut BodyPairW<L, N>,
+        faults: &mut Faults,
+    ) {
         if self.has_limit {
             self.solve_limit(0, pass, softness, pair, faults);
             self.solve_limit(1, pass, softness, pair, faults);
@@ -222,21 +242,34 @@ impl<const N: usize> AngleRows<N> {
     /// Solves springs in the bias pass only, and rows that hold the angle in both passes.
     #[inline(always)]
     fn solve_spring<L: Lanes<N>>(&mut self, pass: Pass, pair: &mut BodyPairW<L, N>, faults: &mut Faults) {
-        let SpringRow { lambda, max, mass_scale, impulse_scale, push, holds } = &mut self.spring;
+        let w = self.wanted_of_spring(pass, pair, faults);
+        let SpringRow { lambda, max, .. } = &mut self.spring;
+        let (old, max) = (L::load(lambda), L::load(max));
+        let new = clamp::<L, N>(L::sub_saturating(old, w), max);
+        L::store(new, lambda);
+        pair.turn(&self.f, L::sub(new, old), faults);
+    }
+
+    /// `w` of the springs: the impulse that is to be taken away.
+    #[inline(always)]
+    fn wanted_of_spring<L: Lanes<N>>(
+        &self,
+        pass: Pass,
+        pair: &BodyPairW<L, N>,
+        faults: &mut Faults,
+    ) -> L::Int {
+        let SpringRow { lambda, max, mass_scale, impulse_scale, push, holds } = &self.spring;
         let (old, max) = (L::load(lambda), L::load(max));
         let held = L::negative(L::load(holds));
         let solved = if pass == Pass::Bias { max } else { L::select(held, max, L::splat(0)) };
         let vn = velocity::<L, N>(&self.e, solved, pair, faults);
-        let w = match pass {
+        match pass {
             Pass::Bias => {
                 let scales = [L::load(mass_scale), L::load(impulse_scale)];
                 L::add_saturating(softened::<L, N>(scales, vn, old), L::load(push))
             }
             Pass::Relax => L::select(held, vn, L::splat(0)),
-        };
-        let new = clamp::<L, N>(L::sub_saturating(old, w), max);
-        L::store(new, lambda);
-        pair.turn(&self.f, L::sub(new, old), faults);
+        }
     }
 
     /// Solves the limits. As with contacts, a gap may close within this sub-step, and a gap that the bias pass has not

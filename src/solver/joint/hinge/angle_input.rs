@@ -16,7 +16,7 @@ use super::input::HingeBody;
 use crate::math::{Fx, Ratio, Reciprocal, Speed, TAU, Unit, fx_mul, narrow};
 
 /// Largest impulse of a row on the angle. The difference of two such impulses fits the format.
-pub(super) const ANGLE_MAX: Speed = Speed::lit("511");
+pub(in super::super) const ANGLE_MAX: Speed = Speed::lit("511");
 
 /// The rows on the angle of a hinge.
 #[derive(Clone, Copy, Debug)]

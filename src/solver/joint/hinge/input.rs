@@ -3,7 +3,8 @@
 
 use super::super::super::body_list::GROUND;
 use super::super::super::colour::{Node, Size};
-use super::super::super::row::MassFractions;
+use super::super::super::row::{MassFractions, turning};
+use super::super::def::JointFrame;
 use super::super::parts::slot;
 use super::super::state::Joint;
 use crate::body::Body;
@@ -55,9 +56,23 @@ impl HingeBody {
     }
 
     /// The index of the body, or that of the ground if no impulse changes the body.
-    fn changed(&self) -> u32 {
+    pub(in super::super) fn changed(&self) -> u32 {
         if self.mass > 0 { self.turning.index } else { GROUND }
     }
+}
+
+/// The shares of two bodies in the mobility of the point of a hinge, `a (2 + e^2)`.
+pub(in super::super) fn shares(joint: &Joint, [a, b]: [&HingeBody; 2]) -> [Unit; 2] {
+    let fractions = MassFractions::of_masses(a.mass, b.mass);
+    let mobility = |frame: &JointFrame, body: &HingeBody, fraction: Unit| {
+        let e = ratios(arm(frame.anchor - body.local_centre), body.inverse_gyration);
+        2 * i64::from(fraction.to_bits()) + turning(fraction, e.x, e.x) + turning(fraction, e.y, e.y)
+    };
+    let a = mobility(&joint.def.frame_a, a, fractions.a);
+    let b = mobility(&joint.def.frame_b, b, fractions.b);
+    // A mobility is below 2^46.
+    let share = |own: i64| Unit::from_bits(saturate((own << 15) / ((a + b) >> 15).max(1)));
+    [share(a), share(b)]
 }
 
 impl Turning {

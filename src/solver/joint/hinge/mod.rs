@@ -8,6 +8,7 @@
 mod angle;
 mod angle_input;
 mod batch;
+mod blocked;
 mod input;
 mod pair;
 mod prepare;
@@ -25,11 +26,11 @@ use super::super::context::{Pass, StepContext};
 use super::pose::BodyRotation;
 use crate::simd::Quad;
 use angle::AngleRows;
-pub(super) use angle_input::AngleParts;
+pub(super) use angle_input::{ANGLE_MAX, AngleParts};
 use angle_input::{AngleInput, Memo};
 use batch::{Batch, Records};
 use input::Input;
-pub(super) use input::{HingeBody, Turning, node};
+pub(super) use input::{HingeBody, Turning, node, shares};
 use refresh::{Refresh, Stiffness};
 use solve::{Relax, Solve};
 use warm_start::WarmStart;
@@ -74,6 +75,10 @@ pub(super) struct HingeSet {
     /// Anchored hinges, whose points are stiffer: they connect a body that has no other joint to a body that no impulse
     /// moves.
     anchored: BatchList<Hinges>,
+    /// Hinges in blocks (`joint/block`), in the order of the blocks. They have one lane and one colour.
+    blocked: BatchList<Hinges>,
+    /// For each hinge in a block, the index of its rows on the angle.
+    blocked_extras: Vec<Option<usize>>,
     /// The parts of the batches that do not match the current poses of the bodies.
     dirty: Dirty,
 }
@@ -98,20 +103,32 @@ impl HingeSet {
     pub(super) fn warm_start(&mut self, poses: Poses<'_>, context: &StepContext<'_>) {
         let [refresh, refresh_anchored] = self.refreshes(poses, context);
         self.hinges.run_overflow(WarmStart { refresh }, context);
+        self.blocked.run_overflow(WarmStart { refresh }, context);
         self.hinges.run_coloured(WarmStart { refresh }, context);
         self.anchored.run_coloured(WarmStart { refresh: refresh_anchored }, context);
     }
 
-    pub(super) fn solve(&mut self, pass: Pass, poses: Poses<'_>, context: &StepContext<'_>) {
+    /// One iteration over all hinges. `solve_blocks` solves the hinges in blocks, after the overflow.
+    pub(super) fn solve(
+        &mut self,
+        pass: Pass,
+        poses: Poses<'_>,
+        context: &StepContext<'_>,
+        solve_blocks: impl FnOnce(&mut Self),
+    ) {
         let [refresh, refresh_anchored] = self.refreshes(poses, context);
         match pass {
+            Pass::Bias => self.hinges.run_overflow(Solve { refresh }, context),
+            Pass::Relax => self.hinges.run_overflow(Relax { refresh }, context),
+        }
+        self.solve_blocked_drives(refresh, context);
+        solve_blocks(self);
+        match pass {
             Pass::Bias => {
-                self.hinges.run_overflow(Solve { refresh }, context);
                 self.hinges.run_coloured(Solve { refresh }, context);
                 self.anchored.run_coloured(Solve { refresh: refresh_anchored }, context);
             }
             Pass::Relax => {
-                self.hinges.run_overflow(Relax { refresh }, context);
                 self.hinges.run_coloured(Relax { refresh }, context);
                 self.anchored.run_coloured(Relax { refresh: refresh_anchored }, context);
             }

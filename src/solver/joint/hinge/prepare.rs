@@ -14,13 +14,15 @@ use crate::math::{Fx, Length, Speed, Unit, Vec2};
 
 impl HingeSet {
     pub(in super::super) fn clear(&mut self) {
-        let HingeSet { inputs, angles, memo: _, hinges, anchored, dirty } = self;
+        let HingeSet { inputs, angles, memo: _, hinges, anchored, blocked, blocked_extras, dirty } = self;
         *dirty = Dirty::Everything;
         inputs.clear();
         angles.clear();
         hinges.overflow.clear();
         hinges.coloured.clear();
         anchored.coloured.clear();
+        blocked.overflow.clear();
+        blocked_extras.clear();
     }
 
     /// Adds a hinge, and returns the index of its input.
@@ -84,6 +86,7 @@ impl HingeSet {
         self.hinges.overflow.reload(joints);
         self.hinges.coloured.reload(joints);
         self.anchored.coloured.reload(joints);
+        self.blocked.overflow.reload(joints);
     }
 
     /// Reuses the hinges of the last tick, with the bodies at their current poses.
@@ -91,6 +94,7 @@ impl HingeSet {
         self.hinges.overflow.resume(poses);
         self.hinges.coloured.resume(poses);
         self.anchored.coloured.resume(poses);
+        self.blocked.overflow.resume(poses);
     }
 
     /// Stores impulses and angles for the next tick.
@@ -102,6 +106,7 @@ impl HingeSet {
         self.hinges.overflow.store(joints, body_rotations);
         self.hinges.coloured.store(joints, body_rotations);
         self.anchored.coloured.store(joints, body_rotations);
+        self.blocked.overflow.store(joints, body_rotations);
     }
 }
 
@@ -112,7 +117,12 @@ fn count<T>(parts: &[T]) -> u32 {
 impl<const N: usize> Batches<Hinges, N> {
     /// Adds batches of hinges. The caller ensures that no two of `N` successive hinges share a body that impulses
     /// change, and that either all hinges or none have rows on the angle.
-    fn push(&mut self, inputs: &[Input], angle_inputs: &[AngleInput], indices: impl Iterator<Item = u32>) {
+    pub(super) fn push(
+        &mut self,
+        inputs: &[Input],
+        angle_inputs: &[AngleInput],
+        indices: impl Iterator<Item = u32>,
+    ) {
         let Batches { batches, records, extras, .. } = self;
         let mut lane = N;
         for index in indices {

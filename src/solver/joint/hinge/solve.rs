@@ -16,7 +16,7 @@ use super::Hinges;
 use super::batch::Batch;
 use super::refresh::Refresh;
 use crate::math::Unit;
-use crate::simd::{Ints, Lanes, VelocityW};
+use crate::simd::{Ints, Lanes, Quad, VelocityW};
 
 /// One iteration with bias.
 #[derive(Clone, Copy)]
@@ -54,7 +54,24 @@ fn solve<L: Lanes<N>, const N: usize>(pass: Pass, refresh: &Refresh<'_>, parts: 
     if let Some(rows) = angle {
         rows.solve(pass, &stiffness.limits, &mut pair, faults);
     }
-    let (e_a, e_b) = match pass {
+    let (e_a, e_b) = ratios_of::<L, N>(batch, pass, quads);
+    let vr = relative_velocity::<L, N>(e_a, e_b, &pair, faults);
+    let d = [
+        accumulate::<L, N>(batch, 0, vr[0], pass, &stiffness.points, faults),
+        accumulate::<L, N>(batch, 1, vr[1], pass, &stiffness.points, faults),
+    ];
+    pair.apply_at_point(batch, d, faults);
+    pair.store(bodies, &batch.changed);
+}
+
+/// The lever ratios with which a pass measures velocity.
+#[inline(always)]
+pub(super) fn ratios_of<L: Lanes<N>, const N: usize>(
+    batch: &Batch<N>,
+    pass: Pass,
+    quads: &[Quad],
+) -> ([L::Int; 2], [L::Int; 2]) {
+    match pass {
         Pass::Bias => (
             ratios_ahead::<L, N>(&batch.e[0], &L::quads(quads, &batch.bodies[0])),
             ratios_ahead::<L, N>(&batch.e[1], &L::quads(quads, &batch.bodies[1])),
@@ -63,19 +80,44 @@ fn solve<L: Lanes<N>, const N: usize>(pass: Pass, refresh: &Refresh<'_>, parts: 
             [L::load(&batch.e[0][0]), L::load(&batch.e[0][1])],
             [L::load(&batch.e[1][0]), L::load(&batch.e[1][1])],
         ),
-    };
-    let BodyPairW { a, b } = &pair;
+    }
+}
+
+/// Velocity of B's anchor relative to A's.
+#[inline(always)]
+pub(super) fn relative_velocity<L: Lanes<N>, const N: usize>(
+    e_a: [L::Int; 2],
+    e_b: [L::Int; 2],
+    pair: &BodyPairW<L, N>,
+    faults: &mut Faults,
+) -> [L::Int; 2] {
+    let BodyPairW { a, b } = pair;
     let linear = [L::sub(b.x, a.x), L::sub(b.y, a.y)];
-    let vr = [
-        velocity::<L, N>(linear[0], e_a[0], e_b[0], &pair, faults),
-        velocity::<L, N>(linear[1], e_a[1], e_b[1], &pair, faults),
-    ];
-    let d = [
-        accumulate::<L, N>(batch, 0, vr[0], pass, &stiffness.points, faults),
-        accumulate::<L, N>(batch, 1, vr[1], pass, &stiffness.points, faults),
-    ];
-    pair.apply_at_point(batch, d, faults);
-    pair.store(bodies, &batch.changed);
+    [
+        velocity::<L, N>(linear[0], e_a[0], e_b[0], pair, faults),
+        velocity::<L, N>(linear[1], e_a[1], e_b[1], pair, faults),
+    ]
+}
+
+/// `w`: the impulse along an axis that is to be taken away.
+#[inline(always)]
+pub(super) fn wanted<L: Lanes<N>, const N: usize>(
+    batch: &Batch<N>,
+    axis: usize,
+    vr: L::Int,
+    pass: Pass,
+    softness: &Softness,
+) -> L::Int {
+    match pass {
+        Pass::Relax => vr,
+        Pass::Bias => {
+            let error = L::add_saturating(vr, L::load(&batch.bias[axis]));
+            let scales = [softness.mass_scale, softness.impulse_scale].map(Unit::to_bits);
+            let old = L::load(&batch.lambda[axis]);
+            let wide = L::add_wide(L::mul(L::splat(scales[0]), error), L::mul(L::splat(scales[1]), old));
+            L::narrow::<UNIT>(wide)
+        }
+    }
 }
 
 /// Accumulates the impulse along an axis against a relative velocity, and returns its change.
@@ -89,15 +131,7 @@ fn accumulate<L: Lanes<N>, const N: usize>(
     faults: &mut Faults,
 ) -> L::Int {
     let old = L::load(&batch.lambda[axis]);
-    let w = match pass {
-        Pass::Relax => vr,
-        Pass::Bias => {
-            let error = L::add_saturating(vr, L::load(&batch.bias[axis]));
-            let scales = [softness.mass_scale, softness.impulse_scale].map(Unit::to_bits);
-            let wide = L::add_wide(L::mul(L::splat(scales[0]), error), L::mul(L::splat(scales[1]), old));
-            L::narrow::<UNIT>(wide)
-        }
-    };
+    let w = wanted::<L, N>(batch, axis, vr, pass, softness);
     let step = L::splat(STEP_MAX.to_bits());
     let wanted = L::sub_saturating(old, clamp::<L, N>(w, step));
     let most = L::splat(IMPULSE_MAX.to_bits());

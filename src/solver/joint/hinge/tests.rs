@@ -142,8 +142,8 @@ impl Setting {
         for _ in 0..2 {
             hinges.expire(Dirty::Everything);
             hinges.warm_start(poses, &context);
-            hinges.solve(Pass::Bias, poses, &context);
-            hinges.solve(Pass::Relax, poses, &context);
+            hinges.solve(Pass::Bias, poses, &context, |_| ());
+            hinges.solve(Pass::Relax, poses, &context, |_| ());
         }
         faults
     }
@@ -153,7 +153,7 @@ impl Setting {
         let (tuning, threads, mut faults) = (tuning(), Threads::default(), 0);
         let Setting { hinges, bodies, quads, body_rotations, .. } = self;
         let context = StepContext::new(Machine::default(), &threads, &tuning, bodies, &mut faults);
-        hinges.solve(Pass::Relax, Poses { quads, body_rotations }, &context);
+        hinges.solve(Pass::Relax, Poses { quads, body_rotations }, &context, |_| ());
         faults
     }
 

@@ -1,0 +1,179 @@
+//! The choice of joints that are solved in blocks, and their order.
+//!
+//! One iteration solves a body with one joint exactly, and a chain of like bodies well. It does not at bodies whose
+//! joints disturb each other: there it may even add energy. A body is *crowded* if it has two or more joints and
+//!
+//! - one of them holds more than a point: a weld, a slider, a spring, or
+//! - it is so light, or its arms are so long, that two hinges or the sum of all but one take most of its mobility.
+//!
+//! All joints of a crowded body are solved in a block. Two crowded bodies with a common joint share a block, as long as
+//! it does not grow beyond [`ROWS_MAX`]. The choice depends on the joints of a body alone, so that a joint elsewhere
+//! changes nothing.
+
+use alloc::vec::Vec;
+
+use super::super::super::body_list::GROUND;
+use crate::math::{Fx, Unit};
+
+/// Largest number of rows of a block. The cost of a block without any order, such as a hub, grows with the third power
+/// of its rows: this many cost about as much as 5000 contacts.
+pub(super) const ROWS_MAX: u32 = 96;
+
+/// Smallest share that makes a body with two hinges crowded, if each of them has it.
+const PAIR_MIN: Unit = Unit::lit("0.6");
+
+/// Smallest sum of the shares of all hinges but the largest that makes a body crowded. 1.5 would be reached by cloth of
+/// discs.
+const SUM_MIN: i64 = (1 << 30) / 100 * 152;
+
+/// What the choice depends on of a joint.
+#[derive(Clone, Copy, Debug)]
+pub(in super::super) struct Candidate {
+    /// The indices of its bodies: the ground for a body that no impulse changes.
+    pub(in super::super) bodies: [u32; 2],
+    /// Number of rows that hold the bodies or are springs. A joint without such rows takes no part.
+    pub(in super::super) rows: u32,
+    /// Whether it is a hinge that holds nothing but a point.
+    pub(in super::super) is_hinge: bool,
+    /// `1 / (1 / M + 1 / M')` of the masses of its bodies, in kg.
+    pub(in super::super) reduced_mass: Fx,
+    /// The shares of the bodies in the mobility of the point.
+    pub(in super::super) shares: [Unit; 2],
+}
+
+/// The sums over the joints of a body.
+#[derive(Clone, Copy, Debug, Default)]
+struct Crowd {
+    joints: u32,
+    others: bool,
+    sum: i64,
+    largest: Unit,
+    second: Unit,
+}
+
+impl Crowd {
+    fn add(&mut self, share: Unit, is_hinge: bool) {
+        self.joints += 1;
+        self.others |= !is_hinge;
+        self.sum += i64::from(share.to_bits());
+        self.second = self.second.max(share.min(self.largest));
+        self.largest = self.largest.max(share);
+    }
+
+    fn is_crowded(&self) -> bool {
+        let rest = self.sum - i64::from(self.largest.to_bits());
+        self.joints >= 2 && (self.others || self.second >= PAIR_MIN || rest >= SUM_MIN)
+    }
+}
+
+/// The choice, and its working memory.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Choice {
+    crowds: Vec<Crowd>,
+    /// For each body, the end of its joints in `of_body`; only crowded bodies have any.
+    ends: Vec<u32>,
+    of_body: Vec<u32>,
+    /// For each candidate, whether it is in the order already.
+    taken: Vec<bool>,
+    queue: Vec<u32>,
+    /// The chosen candidates, block by block, in the order in which they are eliminated.
+    pub(super) order: Vec<u32>,
+    /// The end of each block in `order`.
+    pub(super) block_ends: Vec<usize>,
+}
+
+impl Choice {
+    /// Chooses among the joints of a tick. `body_count` is the number of bodies.
+    pub(super) fn choose(&mut self, candidates: &[Candidate], body_count: usize) {
+        self.order.clear();
+        self.block_ends.clear();
+        self.count(candidates, body_count);
+        if !self.crowds.iter().any(Crowd::is_crowded) {
+            return;
+        }
+        self.list(candidates);
+        self.taken.clear();
+        self.taken.resize(candidates.len(), false);
+        for first in 0..candidates.len() {
+            let is_chosen = candidates[first].rows > 0
+                && candidates[first].bodies.iter().any(|&body| self.crowds[body as usize].is_crowded());
+            if !is_chosen || self.taken[first] {
+                continue;
+            }
+            // The first walk finds a joint at the rim of the block; the envelope is narrow from there.
+            let start = index(first);
+            self.walk(candidates, start);
+            let rim = self.queue.last().copied().unwrap_or(start);
+            for &joint in &self.queue {
+                self.taken[joint as usize] = false;
+            }
+            self.walk(candidates, rim);
+            // The reverse of E. Cuthill's and J. McKee's order.
+            self.order.extend(self.queue.iter().rev());
+            self.block_ends.push(self.order.len());
+        }
+    }
+
+    fn count(&mut self, candidates: &[Candidate], body_count: usize) {
+        self.crowds.clear();
+        self.crowds.resize(body_count, Crowd::default());
+        for joint in candidates.iter().filter(|joint| joint.rows > 0) {
+            for (&body, &share) in joint.bodies.iter().zip(&joint.shares) {
+                self.crowds[body as usize].add(share, joint.is_hinge);
+            }
+        }
+        // The ground connects nothing.
+        self.crowds[GROUND as usize] = Crowd::default();
+    }
+
+    /// Lists the joints of each crowded body.
+    fn list(&mut self, candidates: &[Candidate]) {
+        let Choice { crowds, ends, of_body, .. } = self;
+        ends.clear();
+        let mut end = 0;
+        ends.extend(crowds.iter().map(|crowd| {
+            let start = end;
+            end += if crowd.is_crowded() { crowd.joints } else { 0 };
+            start
+        }));
+        of_body.clear();
+        of_body.resize(end as usize, 0);
+        for (joint, candidate) in (0..).zip(candidates).filter(|(_, candidate)| candidate.rows > 0) {
+            for body in candidate.bodies.map(|body| body as usize) {
+                if crowds[body].is_crowded() {
+                    of_body[ends[body] as usize] = joint;
+                    ends[body] += 1;
+                }
+            }
+        }
+    }
+
+    /// Lists the joints that crowded bodies connect with one, breadth first, until a block is full.
+    fn walk(&mut self, candidates: &[Candidate], start: u32) {
+        let Choice { crowds, ends, of_body, taken, queue, .. } = self;
+        queue.clear();
+        queue.push(start);
+        taken[start as usize] = true;
+        let mut rows = candidates[start as usize].rows;
+        let mut at = 0;
+        while at < queue.len() {
+            for body in candidates[queue[at] as usize].bodies.map(|body| body as usize) {
+                let count = if crowds[body].is_crowded() { crowds[body].joints } else { 0 };
+                let end = ends[body] as usize;
+                for &joint in &of_body[end - count as usize..end] {
+                    let more = candidates[joint as usize].rows;
+                    if !taken[joint as usize] && rows + more <= ROWS_MAX {
+                        taken[joint as usize] = true;
+                        rows += more;
+                        queue.push(joint);
+                    }
+                }
+            }
+            at += 1;
+        }
+    }
+}
+
+fn index(at: usize) -> u32 {
+    u32::try_from(at).expect("fewer than 2^32 joints")
+}

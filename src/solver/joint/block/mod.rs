@@ -1,0 +1,289 @@
+//! Blocks: joints that one iteration after the other cannot solve are solved together, exactly.
+//!
+//! Warm-started iterations over joints that meet at one body may diverge: they are a heavy ball with momentum 1 in the
+//! sense of B. Polyak (1964), and joints that disturb each other in a circle make it spiral outwards. `choice.rs` finds
+//! such joints. All their rows without limits, `i`, then get the changes `d` that satisfy the softness of every row at
+//! once, instead of the changes `w` that each row by itself would make:
+//!
+//! ```text
+//! w_i = -massScale_i (v_i + bias_i) - impulseScale_i L_i           as for a single row
+//! A_ij = sum over common bodies of H_i . H_j,  A_ii = 1            `scaling.rs`
+//! S_i = sqrt(massScale_i),   (1 - S^2 + S A S) z = w / S,   d = S z
+//! ```
+//!
+//! Changes are also divided by `Q = sqrt(m_least / m)`, where `m` is the reduced mass of the two bodies, because the
+//! matrix is symmetric only for impulses, not for speeds.
+//!
+//! This is `A d + (impulseScale / massScale) d = w / massScale` with a unit diagonal, whose smallest eigenvalue is at
+//! least the smallest impulse scale, whatever masses and arms are, even if rows depend on each other, as in a loop of
+//! welds. The relax pass, which has no softness, adds [`EXCESS`] to the diagonal instead. The matrix depends on the pose
+//! alone. The impulses and the arithmetic that applies them are those of single rows.
+
+mod choice;
+mod limits;
+mod matrix;
+mod scales;
+mod scaling;
+mod solve;
+#[cfg(test)]
+mod tests;
+mod unit;
+
+use alloc::vec::Vec;
+
+use super::super::context::{Pass, StepContext};
+use super::super::settings::Tuning;
+use super::hinge::{HingeSet, Poses};
+use super::list::{BlockedPart, BlockedTask, JointList};
+use crate::math::{Fx, Speed, round_shift, saturate};
+pub(super) use choice::Candidate;
+use choice::Choice;
+use limits::Limit;
+use matrix::{Factor, Matrix, ONE};
+use scales::{Scales, mass_share};
+use scaling::{ScaledRow, root_and_inverse};
+use unit::Unit;
+
+/// Added to the diagonal in the relax pass, with 30 fraction bits: 2^-14. It leaves this share of the velocity of rows
+/// that no other row disturbs.
+const EXCESS: i64 = 1 << 16;
+
+/// All blocks of a tick.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Blocks {
+    choice: Choice,
+    blocks: Vec<Block>,
+    /// Whether bodies have moved since the matrices were computed.
+    is_stale: bool,
+}
+
+/// Joints that are solved together.
+#[derive(Clone, Debug, Default)]
+struct Block {
+    units: Vec<Unit>,
+    /// Pairs of units with a common body, the later one first. Each unit is also paired with itself.
+    pairs: Vec<(u32, u32)>,
+    rows: Vec<ScaledRow>,
+    bias: Scales,
+    relax: Scales,
+    matrix: Matrix,
+    factor: Factor,
+    /// The pass for which the factor is.
+    factored: Option<Pass>,
+    limits: Vec<Limit>,
+    /// The scales of the current pass, if the block has limits.
+    current: Scales,
+    /// `L` of each row, a speed with 32 fraction bits. It may be larger than a joint can store.
+    impulses: Vec<i64>,
+    /// The bodies, and changes of their velocities with 32 fraction bits.
+    bodies: Vec<(u32, [i64; 3])>,
+    /// For each unit, the places of its bodies in `bodies`.
+    places: Vec<[u32; 2]>,
+    /// The changes that each row by itself would make.
+    wanted: Vec<i64>,
+    /// The unknowns, with 32 fraction bits.
+    x: Vec<i64>,
+}
+
+impl Blocks {
+    pub(super) fn clear(&mut self) {
+        self.blocks.clear();
+        self.choice.order.clear();
+        self.choice.block_ends.clear();
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.choice.order.is_empty()
+    }
+
+    /// Chooses the joints that are solved in blocks.
+    pub(super) fn choose(&mut self, candidates: &[Candidate], body_count: usize) {
+        self.choice.choose(candidates, body_count);
+    }
+
+    /// The chosen joints, by the indices of their candidates.
+    pub(super) fn chosen(&self) -> &[u32] {
+        &self.choice.order
+    }
+
+    /// Arranges the chosen joints. `numbers` has the number of each chosen hinge among the hinges in blocks, and
+    /// the slot of each other joint, by which its parts are sorted.
+    pub(super) fn arrange(
+        &mut self,
+        hinges: &HingeSet,
+        parts: &[(u32, BlockedPart)],
+        tuning: &Tuning,
+        candidates: &[Candidate],
+        numbers: &[Result<usize, u32>],
+    ) {
+        let mut start = 0;
+        for &end in &self.choice.block_ends {
+            let mut block = Block::default();
+            let joints = &self.choice.order[start..end];
+            let mass = |&joint: &u32| candidates[joint as usize].reduced_mass;
+            let least = joints.iter().map(mass).min().unwrap_or(Fx::ONE);
+            for (joint, number) in joints.iter().zip(&numbers[start..end]) {
+                let share = mass_share(least, mass(joint));
+                match *number {
+                    Ok(number) => {
+                        Unit::of_hinge(number, hinges, tuning).for_each(|unit| block.push(unit, share));
+                    }
+                    Err(slot) => {
+                        let first = parts.partition_point(|&(other, _)| other < slot);
+                        let own = parts[first..].iter().take_while(|&&(other, _)| other == slot);
+                        own.for_each(|(_, part)| block.push(Unit::part(part), share));
+                    }
+                }
+            }
+            start = end;
+            block.arrange();
+            self.blocks.push(block);
+        }
+        self.is_stale = true;
+    }
+
+    /// Invalidates the matrices, because bodies have moved.
+    pub(super) fn expire(&mut self) {
+        self.is_stale = true;
+    }
+
+    /// Takes the impulses of the last tick from the joints, at the start of a tick.
+    pub(super) fn take_impulses(&mut self, hinges: &mut HingeSet, list: &mut JointList) {
+        self.blocks.iter_mut().for_each(|block| block.take_impulses(hinges, list));
+    }
+
+    /// Returns the impulses to the joints, at the end of a tick.
+    pub(super) fn return_impulses(&mut self, hinges: &mut HingeSet, list: &mut JointList) {
+        self.blocks.iter().for_each(|block| block.return_impulses(hinges, list));
+    }
+
+    /// Starts a sub-step with impulses of 0. Equations that are solved exactly need no warm start, and softness has the
+    /// same result without. At a light body between heavy ones the impulses are large and cancel, but those of the last
+    /// pose do not cancel at the new one.
+    pub(super) fn start_sub_step(&mut self) {
+        self.blocks.iter_mut().for_each(|block| block.impulses.fill(0));
+    }
+
+    fn refresh(&mut self, hinges: &HingeSet, list: &JointList) {
+        if core::mem::take(&mut self.is_stale) {
+            self.blocks.iter_mut().for_each(|block| block.refresh(hinges, list));
+        }
+    }
+
+    /// Solves all blocks, one after the other.
+    pub(super) fn solve(
+        &mut self,
+        pass: Pass,
+        hinges: &HingeSet,
+        list: &JointList,
+        poses: Poses<'_>,
+        context: &StepContext<'_>,
+    ) {
+        self.refresh(hinges, list);
+        for block in &mut self.blocks {
+            block.solve(pass, hinges, list, poses, context);
+        }
+    }
+}
+
+impl Block {
+    /// Adds a unit. `share` is the smallest reduced mass of the block divided by that of the unit.
+    fn push(&mut self, mut unit: Unit, share: i64) {
+        unit.row = self.bias.scales.len();
+        let mass = root_and_inverse(share);
+        for softness in unit.rows() {
+            let mass_scale = i64::from(softness.mass_scale.to_bits());
+            self.bias.push(root_and_inverse(mass_scale), mass, ONE - mass_scale);
+            self.relax.push(if softness.task == BlockedTask::Spring { (0, 0) } else { (ONE, ONE) }, mass, 0);
+        }
+        if unit.is_limit() {
+            self.limits.push(Limit { unit: self.units.len(), row: unit.row, mass, is_active: false });
+        }
+        self.units.push(unit);
+    }
+
+    /// Finds the pairs of units with a common body, and the envelope of the matrix.
+    fn arrange(&mut self) {
+        let Block { units, pairs, rows, matrix, x, bias, impulses, wanted, bodies, places, .. } = self;
+        for (at, unit) in (0..).zip(units.iter()) {
+            let mut first = unit.row;
+            for (earlier, other) in (0..=at).zip(units.iter()) {
+                if earlier == at || unit.touches(other) {
+                    first = first.min(other.row);
+                    pairs.push((at, earlier));
+                }
+            }
+            unit.rows().for_each(|_| matrix.push_row(first));
+        }
+        rows.resize(bias.scales.len(), ScaledRow::default());
+        x.resize(bias.scales.len(), 0);
+        impulses.resize(bias.scales.len(), 0);
+        wanted.resize(bias.scales.len(), 0);
+        places.extend(units.iter().map(|unit| {
+            [0, 1].map(|side: usize| {
+                unit.moved(side).map_or(0, |(body, _)| {
+                    let known = bodies.iter().position(|&(other, _)| other == body);
+                    let place = known.unwrap_or_else(|| {
+                        bodies.push((body, [0; 3]));
+                        bodies.len() - 1
+                    });
+                    u32::try_from(place).expect("a block has a handful of bodies")
+                })
+            })
+        }));
+    }
+
+    /// Computes the matrix at the current pose.
+    fn refresh(&mut self, hinges: &HingeSet, list: &JointList) {
+        let Block { units, pairs, rows, matrix, factored, .. } = self;
+        *factored = None;
+        for unit in units.iter_mut() {
+            unit.refresh(hinges, list, rows);
+        }
+        for &(later, earlier) in pairs.iter() {
+            let (unit, other) = (&units[later as usize], &units[earlier as usize]);
+            let sides = unit.common_sides(other);
+            for row in unit.range() {
+                for column in other.range().filter(|&column| column < row) {
+                    let parts = sides
+                        .iter()
+                        .flatten()
+                        .map(|&(side, other)| dot(rows[row][side], rows[column][other]));
+                    matrix.set(row, column, round_shift(parts.sum(), 30));
+                }
+            }
+        }
+    }
+
+    /// Takes the impulses of the last tick from the joints.
+    fn take_impulses(&mut self, hinges: &mut HingeSet, list: &mut JointList) {
+        for unit in &self.units {
+            let impulses = unit.take_impulses(hinges, list);
+            for (row, impulse) in unit.range().zip(impulses) {
+                self.impulses[row] = i64::from(impulse) << EXTRA_BITS;
+            }
+        }
+    }
+
+    /// Returns the impulses to the joints, for the next tick. What does not fit their format is dropped: the impulses
+    /// are only where the next tick begins.
+    fn return_impulses(&self, hinges: &mut HingeSet, list: &mut JointList) {
+        for unit in &self.units {
+            let mut impulses = [0; 3];
+            for (part, row) in unit.range().enumerate() {
+                let most = unit.impulse_max(part).to_bits();
+                impulses[part] = saturate(round_shift(self.impulses[row], EXTRA_BITS)).clamp(-most, most);
+            }
+            unit.return_impulses(impulses, hinges, list);
+        }
+    }
+}
+
+/// Fraction bits of the numbers of a block beyond those of a speed.
+const EXTRA_BITS: u32 = 32 - Speed::FRAC_NBITS;
+
+/// The scalar product of two scaled Jacobians, with 60 fraction bits.
+fn dot(a: [i32; 3], b: [i32; 3]) -> i64 {
+    let products = a.into_iter().zip(b).map(|(a, b)| i64::from(a) * i64::from(b));
+    products.sum()
+}

@@ -1,0 +1,114 @@
+//! Scales rows and point blocks so that their own part of the matrix is 1.
+//!
+//! With the Jacobian `J` of a row or point and the mass fractions `a`, `K = sum a J J^T` is the matrix that relates an
+//! impulse (times the sum of the inverse masses) to the change of velocity. With `K = R R^T`, where `R` is a lower
+//! triangle:
+//!
+//! ```text
+//! H = R^-1 sqrt(a) J,    sum H H^T = 1,    A = H H'^T + ...   for each body that two rows share
+//! ```
+//!
+//! Every entry of `H` is at most 1. Impulses as speeds are scaled by `R^-1` and scaled back by `R`.
+
+use crate::math::{Ratio, Unit, Vec2, round_shift_wide, saturate, saturate_wide};
+
+use super::super::super::row::{MassFractions, turning};
+
+/// A scaled row: its Jacobian for each body, along x, along y and about the centre of mass, with 30 fraction bits.
+pub(super) type ScaledRow = [[i32; 3]; 2];
+
+/// `R` and `R^-1`: the entries `11`, `21` and `22`, with 30 fraction bits. A row has only the first.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Scaling {
+    root: [i64; 3],
+    inverse: [i64; 3],
+}
+
+/// The square roots of mass fractions, with 30 fraction bits.
+pub(super) fn fraction_roots(fractions: MassFractions) -> [i64; 2] {
+    [fractions.a, fractions.b].map(|a| (u64::from(a.to_bits().unsigned_abs()) << 30).isqrt().cast_signed())
+}
+
+impl Scaling {
+    /// Scales a point with the lever ratios of both bodies.
+    pub(super) fn of_point(
+        [e_a, e_b]: [Vec2<Ratio>; 2],
+        fractions: MassFractions,
+        roots: [i64; 2],
+    ) -> (Self, [ScaledRow; 2]) {
+        let moving = i64::from(fractions.a.to_bits()) + i64::from(fractions.b.to_bits());
+        let sum = |i: fn(Vec2<Ratio>) -> Ratio, j: fn(Vec2<Ratio>) -> Ratio| {
+            turning(fractions.a, i(e_a), j(e_a)) + turning(fractions.b, i(e_b), j(e_b))
+        };
+        let (xx, xy, yy) =
+            (moving + sum(|e| e.x, |e| e.x), sum(|e| e.x, |e| e.y), moving + sum(|e| e.y, |e| e.y));
+        let (root_11, inverse_11) = root_and_inverse(xx);
+        let root_21 = product(xy, inverse_11);
+        let (root_22, inverse_22) = root_and_inverse(yy - product(root_21, root_21));
+        let inverse_21 = -product(product(root_21, inverse_11), inverse_22);
+        let scaled = |x: i64, y: i64| -> ScaledRow {
+            let side = |sign: i64, root: i64, e: Vec2<Ratio>| {
+                let turn =
+                    i128::from(x) * i128::from(e.x.to_bits()) + i128::from(y) * i128::from(e.y.to_bits());
+                [x, y, saturate_wide(round_shift_wide(turn, 24))]
+                    .map(|part| saturate(sign * product(part, root)))
+            };
+            [side(-1, roots[0], e_a), side(1, roots[1], e_b)]
+        };
+        let scaling =
+            Scaling { root: [root_11, root_21, root_22], inverse: [inverse_11, inverse_21, inverse_22] };
+        (scaling, [scaled(inverse_11, 0), scaled(inverse_21, inverse_22)])
+    }
+
+    /// Scales a row with the direction `n`, the lever ratios of both bodies, and the denominator `D` of the row.
+    pub(super) fn of_row(
+        n: Vec2<Unit>,
+        [e_a, e_b]: [Ratio; 2],
+        denominator: i64,
+        roots: [i64; 2],
+    ) -> (Self, ScaledRow) {
+        let (root, inverse) = root_and_inverse(denominator);
+        let side = |sign: i64, fraction_root: i64, e: Ratio| {
+            let linear = [n.x, n.y].map(|part| i64::from(part.to_bits()));
+            [linear[0], linear[1], i64::from(e.to_bits()) << 6]
+                .map(|part| saturate(sign * product(product(part, inverse), fraction_root)))
+        };
+        let scaling = Scaling { root: [root, 0, 0], inverse: [inverse, 0, 0] };
+        (scaling, [side(-1, roots[0], e_a), side(1, roots[1], e_b)])
+    }
+
+    /// `R^-1 d`.
+    pub(super) fn scale(&self, d: [i64; 2]) -> [i64; 2] {
+        apply(self.inverse, d)
+    }
+
+    /// `R d`.
+    pub(super) fn restore(&self, d: [i64; 2]) -> [i64; 2] {
+        apply(self.root, d)
+    }
+}
+
+/// A lower triangle times a vector.
+fn apply(triangle: [i64; 3], d: [i64; 2]) -> [i64; 2] {
+    let [t_11, t_21, t_22] = triangle.map(i128::from);
+    let [x, y] = d.map(i128::from);
+    [t_11 * x, t_21 * x + t_22 * y].map(|wide| saturate_wide(round_shift_wide(wide, 30)))
+}
+
+/// The product of two numbers of which one has 30 fraction bits, in the format of the other.
+pub(super) fn product(a: i64, b: i64) -> i64 {
+    saturate_wide(round_shift_wide(i128::from(a) * i128::from(b), 30))
+}
+
+/// `sqrt(x)` and `1 / sqrt(x)` of a number with 30 fraction bits, at least 2^-24, in the same format.
+pub(super) fn root_and_inverse(x: i64) -> (i64, i64) {
+    let x = x.max(1 << 6).unsigned_abs();
+    // An even shift fills 63 or 64 bits, so that the root has 32.
+    let shift = x.leading_zeros() & !1;
+    let root = (x << shift).isqrt();
+    // The root has `15 + shift / 2` fraction bits.
+    let (inverse, half) = (u64::MAX / root, shift / 2);
+    let inverse = if half >= 19 { inverse << (half - 19) } else { inverse >> (19 - half) };
+    let root = if half >= 15 { root >> (half - 15) } else { root << (15 - half) };
+    (root.cast_signed(), inverse.cast_signed())
+}

@@ -1,0 +1,108 @@
+//! A factor solves its equations, and the chosen joints are those of crowded bodies.
+
+use std::vec;
+use std::vec::Vec;
+
+use super::choice::{Candidate, Choice, ROWS_MAX};
+use super::matrix::{Factor, Matrix, ONE};
+use super::scaling::root_and_inverse;
+use crate::fx;
+use crate::math::{Rng, Unit};
+
+/// A random matrix with a unit diagonal in a random envelope. The sum of the other entries of each row is below 1, so
+/// that the matrix is positive definite.
+fn random_matrix(rng: &mut Rng, size: usize) -> Matrix {
+    let mut matrix = Matrix::default();
+    for row in 0..size {
+        let first = rng.below(u32::try_from(row + 1).expect("small")) as usize;
+        matrix.push_row(first);
+        for column in first..row {
+            let most = ONE / i64::try_from(2 * size).expect("small");
+            let entry = i64::from(rng.below(u32::try_from(2 * most).expect("small"))) - most;
+            matrix.set(row, column, entry);
+        }
+    }
+    matrix
+}
+
+/// `S A S x + (1 - S^2) x` is the right-hand side, within 2^-20 of its largest entry.
+#[test]
+fn a_factor_solves_its_equations() {
+    let mut rng = Rng::new(21);
+    for size in [1usize, 2, 3, 12, 40] {
+        let matrix = random_matrix(&mut rng, size);
+        let scales: Vec<i64> = (0..size).map(|_| ONE / 2 + i64::from(rng.below(1 << 29))).collect();
+        let right: Vec<i64> = (0..size).map(|_| i64::from(rng.below(1 << 31)) << 4).collect();
+        let (mut factor, mut x) = (Factor::default(), right.clone());
+        factor.compute(&matrix, &scales, 0);
+        factor.solve(&matrix, &mut x);
+        for row in 0..size {
+            let entry = |column: usize| {
+                let (high, low) = (row.max(column), row.min(column));
+                i128::from(matrix.get(high, low)) * i128::from(scales[row]) * i128::from(scales[column])
+            };
+            let others = (0..size).filter(|&column| column != row);
+            let sum: i128 = others.map(|column| (entry(column) >> 60) * i128::from(x[column])).sum();
+            let found = i128::from(x[row]) + (sum >> 30);
+            let off = (found - i128::from(right[row])).unsigned_abs();
+            assert!(off < 1 << 15, "size {size}, row {row}: {off} off");
+        }
+    }
+}
+
+#[test]
+fn roots_and_inverses_are_those_of_theory() {
+    let mut rng = Rng::new(22);
+    for _ in 0..10_000 {
+        let x = i64::try_from(rng.next_u64() >> (20 + rng.below(36))).expect("44 bits").max(1 << 6);
+        let (root, inverse) = root_and_inverse(x);
+        let one = (i128::from(root) * i128::from(inverse)) >> 30;
+        assert!((one - i128::from(ONE)).abs() < 1 << 16, "{x}: {one}");
+        let square = (i128::from(root) * i128::from(root)) >> 30;
+        assert!((square - i128::from(x)).abs() <= 2 + (i128::from(x) >> 14), "{x}: {square}");
+    }
+}
+
+fn hinge(bodies: [u32; 2], share: Unit) -> Candidate {
+    Candidate { bodies, rows: 2, is_hinge: true, reduced_mass: fx!(1), shares: [share; 2] }
+}
+
+fn weld(bodies: [u32; 2]) -> Candidate {
+    Candidate { rows: 3, is_hinge: false, ..hinge(bodies, Unit::ZERO) }
+}
+
+/// The chosen joints, sorted.
+fn chosen(candidates: &[Candidate]) -> Vec<u32> {
+    let mut choice = Choice::default();
+    choice.choose(candidates, 300);
+    choice.order.sort_unstable();
+    choice.order
+}
+
+#[test]
+fn joints_of_crowded_bodies_are_chosen_and_others_are_not() {
+    let half = Unit::lit("0.5");
+    // A single weld, a chain of like hinges, and a body in cloth.
+    assert_eq!(chosen(&[weld([1, 2])]), Vec::<u32>::new());
+    assert_eq!(chosen(&[hinge([1, 2], half), hinge([2, 3], half), hinge([3, 4], half)]), Vec::<u32>::new());
+    assert_eq!(chosen(&[2, 3, 4, 5].map(|limb| hinge([1, limb], half))), Vec::<u32>::new());
+    // Two welds at a body, beside a chain that stays as it is.
+    let mixed = [hinge([7, 8], half), weld([1, 2]), hinge([8, 9], half), weld([2, 3])];
+    assert_eq!(chosen(&mixed), vec![1, 3]);
+    // The ground connects nothing and crowds nothing.
+    assert_eq!(chosen(&[weld([0, 1]), weld([0, 2]), weld([0, 3])]), Vec::<u32>::new());
+}
+
+#[test]
+fn no_block_grows_beyond_its_limit_and_no_joint_is_lost() {
+    let candidates: Vec<Candidate> = (1..200).map(|body| weld([body, body + 1])).collect();
+    let mut choice = Choice::default();
+    choice.choose(&candidates, 300);
+    let mut start = 0;
+    for &end in &choice.block_ends {
+        assert!(3 * (end - start) <= ROWS_MAX as usize, "{} joints in a block", end - start);
+        start = end;
+    }
+    choice.order.sort_unstable();
+    assert!(choice.order.iter().copied().eq(0..199));
+}

@@ -1,0 +1,246 @@
+//! The parts of a block: a hinge with its row on the angle, or a row or point of another joint.
+
+use core::ops::Range;
+
+use super::super::super::body_list::GROUND;
+use super::super::super::context::{Pass, StepContext};
+use super::super::super::limits::{Faults, IMPULSE_MAX};
+use super::super::super::row::{MassFractions, turning};
+use super::super::super::settings::Tuning;
+use super::super::hinge::{ANGLE_MAX, HingeSet, Poses};
+use super::super::list::{BlockedPart, BlockedTask, JointList, ListPart};
+use super::scaling::{ScaledRow, Scaling, fraction_roots};
+use crate::math::{Ratio, Speed, Unit as Fraction, Vec2};
+
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Source {
+    /// A hinge, by its number among the hinges in blocks.
+    Hinge(usize),
+    /// A limit of such a hinge: 0 is the lower one.
+    HingeLimit(usize, usize),
+    /// A row or point of another joint.
+    Part(ListPart),
+}
+
+/// The softness of a row in the bias pass. Springs are not solved in the relax pass.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct RowSoftness {
+    pub(super) mass_scale: Fraction,
+    pub(super) task: BlockedTask,
+}
+
+/// One or two rows that are scaled together, and the row on the angle of a hinge.
+#[derive(Clone, Debug)]
+pub(super) struct Unit {
+    source: Source,
+    /// The index of the first row.
+    pub(super) row: usize,
+    /// The bodies from which velocities are read.
+    source_bodies: [u32; 2],
+    /// The same, with the ground for a body that no impulse changes.
+    bodies: [u32; 2],
+    fractions: MassFractions,
+    roots: [i64; 2],
+    softness: [Option<RowSoftness>; 3],
+    scaling: Scaling,
+    angle_scaling: Scaling,
+}
+
+impl Unit {
+    fn new(
+        source: Source,
+        bodies: [u32; 2],
+        fractions: MassFractions,
+        softness: [Option<RowSoftness>; 3],
+    ) -> Self {
+        let roots = fraction_roots(fractions);
+        let source_bodies = bodies;
+        let bodies = [0, 1].map(|side: usize| if roots[side] == 0 { GROUND } else { bodies[side] });
+        let (scaling, angle_scaling) = (Scaling::default(), Scaling::default());
+        Unit { source, row: 0, source_bodies, bodies, fractions, roots, softness, scaling, angle_scaling }
+    }
+
+    /// The units of a hinge, by its number among the hinges in blocks: the hinge, and its limits.
+    pub(super) fn of_hinge(number: usize, hinges: &HingeSet, tuning: &Tuning) -> impl Iterator<Item = Self> {
+        let hinge = hinges.blocked_hinge(number);
+        let row = Some(RowSoftness { mass_scale: tuning.joint.mass_scale, task: BlockedTask::Limit });
+        let limits = (0..if hinge.has_limits { 2 } else { 0 }).map(move |side| {
+            Unit::new(Source::HingeLimit(number, side), hinge.changed, hinge.fractions, [row, None, None])
+        });
+        core::iter::once(Unit::hinge(number, hinges, tuning)).chain(limits)
+    }
+
+    fn hinge(number: usize, hinges: &HingeSet, tuning: &Tuning) -> Self {
+        let hinge = hinges.blocked_hinge(number);
+        let mass_scale = tuning.joint.mass_scale;
+        let point = Some(RowSoftness { mass_scale, task: BlockedTask::Hold });
+        let angle = hinge.angle.map(|angle| RowSoftness { mass_scale: angle.mass_scale, task: angle.task });
+        Unit::new(Source::Hinge(number), hinge.changed, hinge.fractions, [point, point, angle])
+    }
+
+    /// A row or point of another joint.
+    pub(super) fn part(part: &BlockedPart) -> Self {
+        let &BlockedPart { part, bodies, fractions, mass_scale, task } = part;
+        let row = Some(RowSoftness { mass_scale, task });
+        let softness = match part {
+            ListPart::Row(_) => [row, None, None],
+            ListPart::Point(_) => [row, row, None],
+        };
+        Unit::new(Source::Part(part), bodies, fractions, softness)
+    }
+
+    pub(super) fn rows(&self) -> impl Iterator<Item = RowSoftness> {
+        self.softness.into_iter().flatten()
+    }
+
+    pub(super) fn range(&self) -> Range<usize> {
+        self.row..self.row + self.rows().count()
+    }
+
+    /// Whether an impulse of one unit changes a velocity that the other measures.
+    pub(super) fn touches(&self, other: &Unit) -> bool {
+        self.common_sides(other).iter().any(Option::is_some)
+    }
+
+    /// The sides of both units with a common body.
+    pub(super) fn common_sides(&self, other: &Unit) -> [Option<(usize, usize)>; 2] {
+        [0, 1].map(|side: usize| {
+            let body = self.bodies[side];
+            let at = other.bodies.iter().position(|&other| other == body && body != GROUND);
+            at.map(|other| (side, other))
+        })
+    }
+
+    /// Computes the scaled rows at the current pose.
+    pub(super) fn refresh(&mut self, hinges: &HingeSet, list: &JointList, rows: &mut [ScaledRow]) {
+        let Unit { row, fractions, roots, scaling, angle_scaling, .. } = self;
+        match self.source {
+            Source::Hinge(number) => {
+                let hinge = hinges.blocked_hinge(number);
+                (*scaling, [rows[*row], rows[*row + 1]]) = Scaling::of_point(hinge.e, *fractions, *roots);
+                if let Some(angle) = hinge.angle {
+                    let [e_a, e_b] = angle.e;
+                    let denominator = turning(fractions.a, e_a, e_a) + turning(fractions.b, e_b, e_b);
+                    let none = Vec2::new(Fraction::ZERO, Fraction::ZERO);
+                    (*angle_scaling, rows[*row + 2]) = Scaling::of_row(none, angle.e, denominator, *roots);
+                }
+            }
+            Source::HingeLimit(number, side) => {
+                let e = hinges.blocked_limit(number, side);
+                let denominator = turning(fractions.a, e[0], e[0]) + turning(fractions.b, e[1], e[1]);
+                let none = Vec2::new(Fraction::ZERO, Fraction::ZERO);
+                (*scaling, rows[*row]) = Scaling::of_row(none, e, denominator, *roots);
+            }
+            Source::Part(ListPart::Point(at)) => {
+                let (e_a, e_b): (Vec2<Ratio>, Vec2<Ratio>) = list.point(at).block.ratios();
+                (*scaling, [rows[*row], rows[*row + 1]]) = Scaling::of_point([e_a, e_b], *fractions, *roots);
+            }
+            Source::Part(ListPart::Row(at)) => {
+                let part = list.row(at);
+                let (n, e) = part.row.jacobian();
+                (*scaling, rows[*row]) = Scaling::of_row(n, e, part.denominator(), *roots);
+            }
+        }
+    }
+
+    /// The changes that one iteration over each row by itself would make if its impulse were 0, as speeds.
+    pub(super) fn wanted(
+        &self,
+        pass: Pass,
+        hinges: &HingeSet,
+        list: &JointList,
+        poses: Poses<'_>,
+        context: &StepContext<'_>,
+        faults: &mut Faults,
+    ) -> [i64; 3] {
+        let tuning = context.tuning;
+        let bodies = || self.source_bodies.map(|body| context.bodies[body as usize].get());
+        match self.source {
+            Source::Hinge(number) => {
+                hinges.blocked_wanted(number, pass, &tuning.joint, poses, context, faults).map(i64::from)
+            }
+            Source::HingeLimit(number, side) => {
+                let softness = &tuning.joint;
+                [hinges.blocked_limit_wanted((number, side), pass, softness, context, faults), 0, 0]
+            }
+            Source::Part(ListPart::Row(at)) if self.is_limit() => {
+                let [a, b] = bodies();
+                [list.row(at).wanted_of_limit(pass, tuning, &a, &b, faults), 0, 0]
+            }
+            Source::Part(ListPart::Row(at)) => {
+                let [a, b] = bodies();
+                [list.row(at).wanted(pass, tuning, &a, &b, faults).unwrap_or(0), 0, 0]
+            }
+            Source::Part(ListPart::Point(at)) => match list.point(at).unlimited_softness() {
+                Some(softness) if pass == Pass::Bias => {
+                    let [a, b] = bodies();
+                    let Vec2 { x, y } = list.point(at).wanted(softness, &a, &b, faults);
+                    [x.to_bits().into(), y.to_bits().into(), 0]
+                }
+                _ => [0; 3],
+            },
+        }
+    }
+
+    /// `R^-1 d` of the rows of the unit.
+    pub(super) fn scale(&self, [x, y, angle]: [i64; 3]) -> [i64; 3] {
+        let [x, y] = self.scaling.scale([x, y]);
+        [x, y, self.angle_scaling.scale([angle, 0])[0]]
+    }
+
+    /// `R d` of the rows of the unit.
+    pub(super) fn restore(&self, [x, y, angle]: [i64; 3]) -> [i64; 3] {
+        let [x, y] = self.scaling.restore([x, y]);
+        [x, y, self.angle_scaling.restore([angle, 0])[0]]
+    }
+
+    /// Takes the impulses of the last tick from the joint, as speeds.
+    pub(super) fn take_impulses(&self, hinges: &mut HingeSet, list: &mut JointList) -> [i32; 3] {
+        match self.source {
+            Source::Hinge(number) => hinges.take_impulses(number),
+            Source::HingeLimit(number, side) => [hinges.take_limit_impulse(number, side), 0, 0],
+            Source::Part(ListPart::Row(at)) => {
+                [core::mem::take(&mut list.row_mut(at).lambda).to_bits(), 0, 0]
+            }
+            Source::Part(ListPart::Point(at)) => {
+                let Vec2 { x, y } = core::mem::take(&mut list.point_mut(at).lambda);
+                [x.to_bits(), y.to_bits(), 0]
+            }
+        }
+    }
+
+    /// Returns impulses to the joint, for the next tick.
+    pub(super) fn return_impulses(&self, impulses: [i32; 3], hinges: &mut HingeSet, list: &mut JointList) {
+        let [x, y, _] = impulses.map(Speed::from_bits);
+        match self.source {
+            Source::Hinge(number) => hinges.return_impulses(number, impulses),
+            Source::HingeLimit(number, side) => hinges.return_limit_impulse(number, side, impulses[0]),
+            Source::Part(ListPart::Row(at)) => list.row_mut(at).lambda = x,
+            Source::Part(ListPart::Point(at)) => list.point_mut(at).lambda = Vec2::new(x, y),
+        }
+    }
+
+    /// The body of a side and the root of its mass fraction, unless no impulse changes it.
+    pub(super) fn moved(&self, side: usize) -> Option<(u32, i64)> {
+        (self.bodies[side] != GROUND).then_some((self.bodies[side], self.roots[side]))
+    }
+
+    /// The largest impulse of a row that the state can hold.
+    pub(super) fn impulse_max(&self, part: usize) -> Speed {
+        if part == 2 || matches!(self.source, Source::HingeLimit(..)) { ANGLE_MAX } else { IMPULSE_MAX }
+    }
+
+    /// Whether the unit is a limit, which has one row.
+    pub(super) fn is_limit(&self) -> bool {
+        self.softness[0].is_some_and(|softness| softness.task == BlockedTask::Limit)
+    }
+
+    /// Whether the unit is a limit that is not reached.
+    pub(super) fn is_open(&self, hinges: &HingeSet, list: &JointList) -> bool {
+        match self.source {
+            Source::HingeLimit(number, side) => hinges.blocked_limit_is_open(number, side),
+            Source::Part(ListPart::Row(at)) => list.row(at).is_open(),
+            Source::Hinge(_) | Source::Part(ListPart::Point(_)) => false,
+        }
+    }
+}

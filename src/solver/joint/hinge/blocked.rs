@@ -1,0 +1,180 @@
+//! Hinges that belong to a block (`joint/block`): they are refreshed and warm-started like all others, but the block
+//! computes their impulses.
+
+use super::super::super::batches::{BatchParts, Operation};
+use super::super::super::context::{Pass, StepContext};
+use super::super::super::limits::Faults;
+use super::super::super::pair::BodyPairW;
+use super::super::super::row::MassFractions;
+use super::super::super::softness::Softness;
+use super::super::list::BlockedTask;
+use super::angle::AngleRows;
+use super::refresh::Refresh;
+use super::solve::{ratios_of, relative_velocity, wanted};
+use super::{HingeSet, Hinges, Poses};
+use crate::math::{Ratio, Unit, Vec2};
+use crate::simd::{Lanes, Scalar};
+
+/// A refresh, and the rows that do not belong to the block: motors.
+#[derive(Clone, Copy)]
+struct SolveDrives<'a> {
+    refresh: Refresh<'a>,
+}
+
+impl Operation<Hinges> for SolveDrives<'_> {
+    #[inline(always)]
+    fn apply<L: Lanes<N>, const N: usize>(self, parts: BatchParts<'_, Hinges, N>) {
+        let BatchParts { batch, record, extra: mut angle, bodies, faults } = parts;
+        self.refresh.refresh::<L, N>(batch, record, angle.as_deref_mut(), bodies);
+        if let Some(rows) = angle {
+            let mut pair = BodyPairW::<L, N>::load(bodies, &batch.bodies);
+            rows.solve_drive(&mut pair, faults);
+            pair.store(bodies, &batch.changed);
+        }
+    }
+}
+
+/// What a block needs of a hinge to set up its equations.
+pub(in super::super) struct BlockedHinge {
+    pub(in super::super) changed: [u32; 2],
+    pub(in super::super) fractions: MassFractions,
+    /// Lever ratios of the point.
+    pub(in super::super) e: [Vec2<Ratio>; 2],
+    /// Lever ratios and softness of the row that holds the angle, or of its spring.
+    pub(in super::super) angle: Option<BlockedAngle>,
+    pub(in super::super) has_limits: bool,
+}
+
+pub(in super::super) struct BlockedAngle {
+    pub(in super::super) e: [Ratio; 2],
+    pub(in super::super) mass_scale: Unit,
+    pub(in super::super) task: BlockedTask,
+}
+
+impl HingeSet {
+    /// Adds a hinge to the hinges in blocks, by the index of its input. Returns its number.
+    pub(in super::super) fn push_blocked(&mut self, index: u32) -> usize {
+        let HingeSet { inputs, angles, blocked, blocked_extras, .. } = self;
+        blocked.overflow.push(inputs, angles, core::iter::once(index));
+        let has_angle = inputs[index as usize].angle.is_some();
+        blocked_extras.push(has_angle.then(|| blocked.overflow.extras.len() - 1));
+        blocked_extras.len() - 1
+    }
+
+    /// Refreshes the hinges in blocks, and solves their motors.
+    pub(super) fn solve_blocked_drives(&mut self, refresh: Refresh<'_>, context: &StepContext<'_>) {
+        if !self.blocked.overflow.batches.is_empty() {
+            self.blocked.run_overflow(SolveDrives { refresh }, context);
+        }
+    }
+
+    /// A hinge in a block, at its last refresh.
+    pub(in super::super) fn blocked_hinge(&self, number: usize) -> BlockedHinge {
+        let batch = &self.blocked.overflow.batches[number];
+        let record = &self.blocked.overflow.records[number];
+        let ratio = |side: usize| {
+            let [x, y] = [0, 1].map(|axis: usize| Ratio::from_bits(batch.e[side][axis].0[0]));
+            Vec2::new(x, y)
+        };
+        let [a, b] = [0, 1].map(|side: usize| Unit::from_bits(record.shape.fractions[side].0[0]));
+        let has_limits = self.blocked_rows(number).is_some_and(AngleRows::has_blocked_limits);
+        BlockedHinge {
+            has_limits,
+            changed: [batch.changed[0][0], batch.changed[1][0]],
+            fractions: MassFractions { a, b },
+            e: [ratio(0), ratio(1)],
+            angle: self.blocked_extras[number]
+                .and_then(|extra| self.blocked.overflow.extras[extra].blocked_row()),
+        }
+    }
+
+    /// The changes of the impulses that one iteration over each part by itself would make if the impulses were 0, as
+    /// they are after [`Self::take_impulses`].
+    pub(in super::super) fn blocked_wanted(
+        &self,
+        number: usize,
+        pass: Pass,
+        softness: &Softness,
+        poses: Poses<'_>,
+        context: &StepContext<'_>,
+        faults: &mut Faults,
+    ) -> [i32; 3] {
+        type L = Scalar<1>;
+        let batch = &self.blocked.overflow.batches[number];
+        let pair = BodyPairW::<L, 1>::load(context.bodies, &batch.bodies);
+        let (e_a, e_b) = ratios_of::<L, 1>(batch, pass, poses.quads);
+        let vr = relative_velocity::<L, 1>(e_a, e_b, &pair, faults);
+        let point = [0, 1].map(|axis: usize| {
+            let [w] = wanted::<L, 1>(batch, axis, vr[axis], pass, softness);
+            w.saturating_neg()
+        });
+        let angle = self.blocked_extras[number].map_or(0, |extra| {
+            self.blocked.overflow.extras[extra].blocked_wanted::<L>(pass, &pair, faults)[0].saturating_neg()
+        });
+        [point[0], point[1], angle]
+    }
+
+    /// The rows on the angle of a hinge in a block.
+    fn blocked_rows(&self, number: usize) -> Option<&AngleRows<1>> {
+        self.blocked_extras[number].map(|extra| &self.blocked.overflow.extras[extra])
+    }
+
+    fn blocked_rows_mut(&mut self, number: usize) -> Option<&mut AngleRows<1>> {
+        self.blocked_extras[number].map(|extra| &mut self.blocked.overflow.extras[extra])
+    }
+
+    /// Lever ratios of a limit of a hinge in a block: 0 is the lower one.
+    pub(in super::super) fn blocked_limit(&self, number: usize, side: usize) -> [Ratio; 2] {
+        self.blocked_rows(number).map_or([Ratio::ZERO; 2], |rows| rows.limit_ratios(side))
+    }
+
+    /// Whether a limit is not reached.
+    pub(in super::super) fn blocked_limit_is_open(&self, number: usize, side: usize) -> bool {
+        self.blocked_rows(number).is_none_or(|rows| rows.limit_is_open(side))
+    }
+
+    /// The change of the impulse of a limit that one iteration would make if the impulse were 0.
+    pub(in super::super) fn blocked_limit_wanted(
+        &self,
+        (number, side): (usize, usize),
+        pass: Pass,
+        softness: &Softness,
+        context: &StepContext<'_>,
+        faults: &mut Faults,
+    ) -> i64 {
+        let bodies = &self.blocked.overflow.batches[number].bodies;
+        let pair = BodyPairW::<Scalar<1>, 1>::load(context.bodies, bodies);
+        let rows = self.blocked_rows(number);
+        rows.map_or(0, |rows| -rows.wanted_of_limit(side, pass, softness, &pair, faults))
+    }
+
+    pub(in super::super) fn take_limit_impulse(&mut self, number: usize, side: usize) -> i32 {
+        self.blocked_rows_mut(number).map_or(0, |rows| core::mem::take(rows.limit_impulse(side)))
+    }
+
+    pub(in super::super) fn return_limit_impulse(&mut self, number: usize, side: usize, impulse: i32) {
+        if let Some(rows) = self.blocked_rows_mut(number) {
+            *rows.limit_impulse(side) = impulse;
+        }
+    }
+
+    /// Takes the impulses of a hinge into its block: of the point along x and y, and of the row on the angle. Those of
+    /// the hinge become 0.
+    pub(in super::super) fn take_impulses(&mut self, number: usize) -> [i32; 3] {
+        let HingeSet { blocked, blocked_extras, .. } = self;
+        let [x, y] = &mut blocked.overflow.batches[number].lambda;
+        let angle = blocked_extras[number]
+            .map_or(0, |extra| core::mem::take(blocked.overflow.extras[extra].held_impulse()));
+        [core::mem::take(&mut x.0[0]), core::mem::take(&mut y.0[0]), angle]
+    }
+
+    /// Returns the impulses of a hinge from its block, for the next tick. They are within the limits of its format.
+    pub(in super::super) fn return_impulses(&mut self, number: usize, [x, y, angle]: [i32; 3]) {
+        let HingeSet { blocked, blocked_extras, .. } = self;
+        let batch = &mut blocked.overflow.batches[number];
+        (batch.lambda[0].0[0], batch.lambda[1].0[0]) = (x, y);
+        if let Some(extra) = blocked_extras[number] {
+            *blocked.overflow.extras[extra].held_impulse() = angle;
+        }
+    }
+}
