@@ -29,10 +29,12 @@ pub(crate) struct ActiveContact {
 /// What the contacts of a body tell of the coming tick.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Prospect {
-    /// Whether a contact has an impulse of the last tick.
+    /// Whether a contact had points in the last tick.
     warm: bool,
     /// Whether a contact is an impact.
-    pub(super) impact: bool,
+    impact: bool,
+    /// Number of contacts with bodies that impulses do not move.
+    walls: u32,
     /// Whether a contact has restitution.
     pub(super) bounces: bool,
 }
@@ -40,7 +42,12 @@ pub(super) struct Prospect {
 impl Prospect {
     /// Whether the impulses of the last tick are a guess for those of this tick.
     fn has_guess(self) -> bool {
-        self.warm && !self.impact
+        self.warm && !self.is_wedged()
+    }
+
+    /// Whether an impact may drive the body between two walls. Neither of them gives way.
+    fn is_wedged(self) -> bool {
+        self.impact && self.walls > 1
     }
 }
 
@@ -65,8 +72,8 @@ pub(super) struct Input {
     pub(super) contact: u32,
     pub(super) features: [u16; 2],
     pub(super) arms: KeptArms,
-    /// Whether one of the bodies has an impact in this tick.
-    pub(super) impact: bool,
+    /// Whether one of the bodies is wedged.
+    pub(super) wedged: bool,
     pub(super) count: u8,
     /// Whether the contact needs more than rows along the normal and the tangent.
     pub(super) extras: bool,
@@ -93,7 +100,7 @@ impl Input {
         contact: 0,
         features: [0; 2],
         arms: KeptArms([0; 6]),
-        impact: false,
+        wedged: false,
         count: 0,
         extras: false,
         shares: Quad([0; 4]),
@@ -122,10 +129,12 @@ impl ContactSource<'_> {
         prospects.clear();
         prospects.resize(self.list.len(), Prospect::default());
         for pair in self.pairs {
-            let contact = &self.contacts[pair.contact as usize];
-            let warm = contact.points().iter().any(|point| point.normal.is_positive());
-            for body in self.changed(self.bodies_of(pair)) {
+            let warm = self.contacts[pair.contact as usize].count > 0;
+            let bodies = self.changed(self.bodies_of(pair));
+            let at_wall = bodies.contains(&GROUND);
+            for body in bodies {
                 let prospect = &mut prospects[body as usize];
+                prospect.walls += u32::from(at_wall);
                 prospect.warm |= warm;
                 prospect.impact |= pair.is_impact;
                 prospect.bounces |= pair.surface.restitution.is_positive();
@@ -180,7 +189,7 @@ impl ContactSource<'_> {
             contact: pair.contact,
             features: [first.feature.0, second.feature.0],
             arms,
-            impact: changed.iter().any(|&body| prospects[body as usize].impact),
+            wedged: changed.iter().any(|&body| prospects[body as usize].is_wedged()),
             count: manifold.count(),
             extras: pair.surface.has_extras(),
             shares: Quad([n.x.to_bits(), n.y.to_bits(), fractions.a.to_bits(), fractions.b.to_bits()]),
@@ -221,12 +230,17 @@ fn keep_arms(
     to_a: Vec2<Length>,
     to_b: &mut Vec2<Length>,
 ) -> KeptArms {
+    let count = manifold.count();
     let first = to_a + anchors[0];
-    let second = if manifold.count() > 1 { to_a + anchors[1] } else { Vec2::ZERO };
+    let second = if count > 1 { to_a + anchors[1] } else { Vec2::ZERO };
     let between = *to_b - to_a;
     let current = KeptArms::of([first.x, first.y, second.x, second.y, between.x, between.y]);
-    let features = manifold.points().iter().map(|point| point.feature.0);
-    if !memory.points().iter().map(|point| point.feature).eq(features) {
+    let [a, b] = manifold.both_points();
+    let [old_a, old_b] = &memory.points;
+    let is_same = count == memory.count
+        && a.feature.0 == old_a.feature
+        && (count < 2 || b.feature.0 == old_b.feature);
+    if !is_same {
         return current;
     }
     let mut arms = memory.arms;

@@ -56,7 +56,7 @@ const TANGENT_MAX: Speed = Speed::lit("511");
 
 /// Number of passes in which contacts that bounce at the same time are solved against each other: a body in a corner.
 /// With one pass a box in a closed room gained half of its energy within a minute.
-const RESTITUTION_PASSES: u32 = 8;
+const RESTITUTION_PASSES: u32 = 12;
 
 /// All contacts of a tick.
 ///
@@ -90,9 +90,10 @@ impl ContactSet {
 
     /// Applies restitution, after the passes of a sub-step.
     pub(super) fn bounce(&mut self, context: &StepContext<'_>) {
-        for _ in 0..RESTITUTION_PASSES {
-            self.run_overflow(ApplyRestitution, context);
-            self.run_coloured(ApplyRestitution, context);
+        for pass in 0..RESTITUTION_PASSES {
+            let restitution = ApplyRestitution { again: pass > 0 };
+            self.run_overflow(restitution, context);
+            self.run_coloured(restitution, context);
         }
     }
 

@@ -50,7 +50,14 @@ impl Operation<Contacts> for ObserveApproach {
 
 /// Applies restitution.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::solver) struct ApplyRestitution;
+pub(in crate::solver) struct ApplyRestitution {
+    /// Whether all contacts have bounced in this sub-step. Only elastic ones then bounce again.
+    pub(in crate::solver) again: bool,
+}
+
+/// Restitution above which contacts that bounce at the same time are solved against each other. Below it an impact loses
+/// so much energy that the order of contacts does not matter.
+const ELASTIC: Unit = Unit::lit("0.5");
 
 impl Operation<Contacts> for ApplyRestitution {
     #[inline(always)]
@@ -62,7 +69,13 @@ impl Operation<Contacts> for ApplyRestitution {
         let reader = &mut Saturating(&mut unread);
         let restitution = L::load(&extras.restitution);
         let (n, _) = batch.directions::<L>();
+        let least = if self.again { ELASTIC } else { Unit::ZERO };
+        let takes_part = L::greater(restitution, L::splat(least.to_bits()));
+        if !L::any(takes_part) {
+            return;
+        }
         let masks = [bounces::<L, N>(batch, extras, 0), bounces::<L, N>(batch, extras, 1)];
+        let masks = [L::both(masks[0], takes_part), L::both(masks[1], takes_part)];
         if !L::any(L::either(masks[0], masks[1])) {
             return;
         }
@@ -171,5 +184,5 @@ fn bounces<L: Lanes<N>, const N: usize>(batch: &Batch<N>, extras: &ContactExtras
     let near = L::greater(L::splat(NEAR.to_bits()), L::load(&batch.points[i].separation));
     let other = L::negative(L::load(&extras.pushed[1 - i]));
     let pushed = L::either(L::negative(L::load(&extras.pushed[i])), L::both(near, other));
-    L::both(L::both(fast, pushed), L::greater(L::load(&extras.restitution), L::splat(0)))
+    L::both(fast, pushed)
 }

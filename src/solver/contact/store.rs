@@ -27,8 +27,8 @@ pub(in crate::solver) struct Records<const N: usize> {
     counts: [u8; N],
     features: [[u16; 2]; N],
     arms: [KeptArms; N],
-    /// Whether the impulses are those of an impact.
-    impacts: [bool; N],
+    /// Whether one of the bodies is wedged.
+    wedged: [bool; N],
     /// `1 / D` of the rows.
     pub(super) inverses: Inverses<N>,
 }
@@ -40,7 +40,7 @@ impl<const N: usize> Records<N> {
         counts: [0; N],
         features: [[0; 2]; N],
         arms: [KeptArms([0; 6]); N],
-        impacts: [false; N],
+        wedged: [false; N],
         inverses: Inverses::NONE,
     };
 
@@ -58,7 +58,7 @@ impl<const N: usize> Records<N> {
         self.counts[lane] = input.count;
         self.features[lane] = input.features;
         self.arms[lane] = input.arms;
-        self.impacts[lane] = input.impact;
+        self.wedged[lane] = input.wedged;
     }
 
     /// Iterates over the lanes with a contact. Gives the lane, the index of the contact and its number of points.
@@ -134,7 +134,7 @@ impl<const N: usize> Kernel<N> for Store<'_, N> {
             let extras = if batch.extras { extras.next() } else { None };
             let impulses = record.impulses::<L>(batch);
             for (lane, index, count) in record.lanes() {
-                let old = record.impacts[lane].then_some(contacts[index]);
+                let old = record.wedged[lane].then_some(contacts[index]);
                 let point = |i: usize| {
                     let [normal, tangent] = &impulses[i];
                     let impulse = PointImpulse {
@@ -154,9 +154,8 @@ impl<const N: usize> Kernel<N> for Store<'_, N> {
     }
 }
 
-/// The part of an impulse that is a load, if one of the bodies has had an impact: at most the impulse of the last tick.
-/// The impulse of an impact is no guess for the next tick. In a narrow wedge friction would hold it for ever as a stress
-/// between the walls.
+/// The part of the impulse of a wedged body that is a load: at most the impulse of the last tick. In a narrow wedge
+/// friction would hold the impulse of the impact for ever as a stress between the walls.
 fn load_of(impulse: PointImpulse, old: &Contact) -> PointImpulse {
     let load = old.impulse_of(Feature(impulse.feature)).unwrap_or_default();
     let most = load.tangent.abs();

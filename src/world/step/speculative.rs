@@ -19,7 +19,7 @@ use fixed::types::extra::{LeEqU32, U27};
 ///
 /// where `r` is the arm of the manifold's origin plus the anchor: each point adds `(tA - tB) (anchor x n)`. The result
 /// is in units of `Step` and does not saturate.
-#[inline]
+#[inline(always)]
 pub(super) fn approach(
     a: &PredictedMotion,
     b: &PredictedMotion,
