@@ -3,7 +3,9 @@
 use serde::{Deserialize, Serialize};
 
 use super::manifold::Feature;
-use crate::math::{Length, Speed};
+#[cfg(doc)]
+use crate::math::Length;
+use crate::math::Speed;
 
 /// A pair of shape slots, the smaller one first.
 pub(crate) type Pair = (u32, u32);
@@ -48,25 +50,23 @@ impl KeptArms {
     /// Fraction bits of a [`Length`] beyond those of a kept arm.
     const SHIFT: u32 = 5;
 
-    /// The arms of a contact that has none yet.
+    /// The arms of a contact that has none yet. Lengths beyond their format wrap around, as do their low bits.
     #[expect(clippy::cast_possible_truncation, reason = "the low bits")]
-    #[inline]
-    pub(crate) fn of(arms: [Length; 6]) -> Self {
-        KeptArms(arms.map(|arm| (arm.to_bits() >> Self::SHIFT) as i16))
+    #[inline(always)]
+    pub(crate) fn of(arms: [i32; 6]) -> Self {
+        KeptArms(arms.map(|arm| (arm >> Self::SHIFT) as i16))
     }
 
     /// Takes on the current value of each number that has changed by more than a tolerance. Returns the differences of
-    /// the others from their current values.
-    #[inline]
-    pub(crate) fn renew(&mut self, current: Self, tolerance: u16) -> [Length; 6] {
-        let mut differences = [Length::ZERO; 6];
-        for ((kept, current), difference) in self.0.iter_mut().zip(current.0).zip(&mut differences) {
-            let apart = kept.wrapping_sub(current);
-            if apart.unsigned_abs() <= tolerance {
-                *difference = Length::from_bits(i32::from(apart) << Self::SHIFT);
-            } else {
-                *kept = current;
-            }
+    /// the others from their current values, in units of [`Length`].
+    #[inline(always)]
+    pub(crate) fn renew(&mut self, current: Self, tolerance: u16) -> [i32; 6] {
+        let mut differences = [0; 6];
+        for (i, difference) in differences.iter_mut().enumerate() {
+            let apart = self.0[i].wrapping_sub(current.0[i]);
+            let near = apart.unsigned_abs() <= tolerance;
+            *difference = if near { i32::from(apart) << Self::SHIFT } else { 0 };
+            self.0[i] = if near { self.0[i] } else { current.0[i] };
         }
         differences
     }

@@ -7,7 +7,7 @@ use super::{Surface, WarmStarts};
 use alloc::vec::Vec;
 
 use crate::collision::{Contact, Impact, KeptArms, Manifold, Pair, PointImpulse};
-use crate::math::{Length, Step, Vec2, convert};
+use crate::math::{Length, Step, convert};
 use crate::simd::{Quad, prefetch};
 
 /// A touching pair that the solver solves.
@@ -177,9 +177,11 @@ impl ContactSource<'_> {
             gap = Length::ZERO;
         }
         let memory = &self.contacts[pair.contact as usize];
-        let mut anchors = [first.anchor, second.anchor];
+        let mut anchors =
+            [first.anchor.x, first.anchor.y, second.anchor.x, second.anchor.y].map(Length::to_bits);
+        let mut to_origin = [to_a.x, to_a.y, to_b.x, to_b.y].map(Length::to_bits);
         let tolerance = a.arm_tolerance().min(b.arm_tolerance());
-        let arms = keep_arms(manifold, memory, tolerance, &mut anchors, to_a, &mut to_b);
+        let arms = keep_arms(manifold, memory, tolerance, &mut anchors, &mut to_origin);
         let [old_first, old_second] = carried_over(manifold, memory, warm);
         let tangent = old_first.tangent.saturating_add(old_second.tangent);
         let changed = self.changed(bodies);
@@ -194,8 +196,8 @@ impl ContactSource<'_> {
             extras: pair.surface.has_extras(),
             shares: Quad([n.x.to_bits(), n.y.to_bits(), fractions.a.to_bits(), fractions.b.to_bits()]),
             gyrations: Quad([inverse_a.0, inverse_b.0, inverse_a.1, inverse_b.1]),
-            to_origin: Quad([to_a.x, to_a.y, to_b.x, to_b.y].map(Length::to_bits)),
-            anchors: Quad([anchors[0].x, anchors[0].y, anchors[1].x, anchors[1].y].map(Length::to_bits)),
+            to_origin: Quad(to_origin),
+            anchors: Quad(anchors),
             carried: Quad([old_first.normal.to_bits(), old_second.normal.to_bits(), tangent.to_bits(), 0]),
             rest: Quad([
                 first.separation.to_bits(),
@@ -226,28 +228,26 @@ fn keep_arms(
     manifold: &Manifold,
     memory: &Contact,
     tolerance: u16,
-    anchors: &mut [Vec2<Length>; 2],
-    to_a: Vec2<Length>,
-    to_b: &mut Vec2<Length>,
+    [x_1, y_1, x_2, y_2]: &mut [i32; 4],
+    [a_x, a_y, b_x, b_y]: &mut [i32; 4],
 ) -> KeptArms {
     let count = manifold.count();
-    let first = to_a + anchors[0];
-    let second = if count > 1 { to_a + anchors[1] } else { Vec2::ZERO };
-    let between = *to_b - to_a;
-    let current = KeptArms::of([first.x, first.y, second.x, second.y, between.x, between.y]);
+    let second = if count > 1 { [a_x.wrapping_add(*x_2), a_y.wrapping_add(*y_2)] } else { [0; 2] };
+    let [first_x, first_y] = [a_x.wrapping_add(*x_1), a_y.wrapping_add(*y_1)];
+    let between = [b_x.wrapping_sub(*a_x), b_y.wrapping_sub(*a_y)];
+    let current = KeptArms::of([first_x, first_y, second[0], second[1], between[0], between[1]]);
     let [a, b] = manifold.both_points();
     let [old_a, old_b] = &memory.points;
-    let is_same = count == memory.count
-        && a.feature.0 == old_a.feature
-        && (count < 2 || b.feature.0 == old_b.feature);
+    let is_same =
+        count == memory.count && a.feature.0 == old_a.feature && (count < 2 || b.feature.0 == old_b.feature);
     if !is_same {
         return current;
     }
     let mut arms = memory.arms;
-    let [x_1, y_1, x_2, y_2, x, y] = arms.renew(current, tolerance);
-    anchors[0] += Vec2::new(x_1, y_1);
-    anchors[1] += Vec2::new(x_2, y_2);
-    *to_b += Vec2::new(x, y);
+    let differences = arms.renew(current, tolerance);
+    for (arm, difference) in [x_1, y_1, x_2, y_2, b_x, b_y].into_iter().zip(differences) {
+        *arm = arm.saturating_add(difference);
+    }
     arms
 }
 
