@@ -295,6 +295,7 @@ impl<'a> Reader<'a> {
                 self.fixed("normal impulse", 1, 4, 21);
                 self.fixed("tangential impulse", 1, 4, 21);
             }
+            self.fixed("kept arms", 6, 2, 17);
             self.fixed("impulse against rolling", 1, 4, 21);
         }
     }
