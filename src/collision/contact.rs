@@ -54,7 +54,12 @@ impl KeptArms {
     #[expect(clippy::cast_possible_truncation, reason = "the low bits")]
     #[inline(always)]
     pub(crate) fn of(arms: [i32; 6]) -> Self {
-        KeptArms(arms.map(|arm| (arm >> Self::SHIFT) as i16))
+        // Without closures, which the compiler does not inline into vector code.
+        let mut low = [0; 6];
+        for i in 0..6 {
+            low[i] = (arms[i] >> Self::SHIFT) as i16;
+        }
+        KeptArms(low)
     }
 
     /// Takes on the current value of each number that has changed by more than a tolerance. Returns the differences of
@@ -62,11 +67,11 @@ impl KeptArms {
     #[inline(always)]
     pub(crate) fn renew(&mut self, current: Self, tolerance: u16) -> [i32; 6] {
         let mut differences = [0; 6];
-        for (i, difference) in differences.iter_mut().enumerate() {
+        for i in 0..6 {
             let apart = self.0[i].wrapping_sub(current.0[i]);
-            let near = apart.unsigned_abs() <= tolerance;
-            *difference = if near { i32::from(apart) << Self::SHIFT } else { 0 };
-            self.0[i] = if near { self.0[i] } else { current.0[i] };
+            let apart = if apart.unsigned_abs() <= tolerance { apart } else { 0 };
+            differences[i] = i32::from(apart) << Self::SHIFT;
+            self.0[i] = current.0[i].wrapping_add(apart);
         }
         differences
     }

@@ -32,11 +32,6 @@ impl Node {
     pub(super) fn new(key: u64, bodies: [u32; 2], size: Size) -> Self {
         Node { bucket: bucket_of(key), size, cold: false, bodies }
     }
-
-    /// The same node, as a cold one or not.
-    pub(super) fn cold(self, cold: bool) -> Self {
-        Node { cold, ..self }
-    }
 }
 
 /// The amount of work in a constraint. Contacts with one point are small.
@@ -83,6 +78,11 @@ impl Colouring {
     #[inline]
     pub(super) fn add(&mut self, node: Node) {
         self.nodes.push(node);
+    }
+
+    /// Makes those constraints cold for whose bodies `is_cold` holds.
+    pub(super) fn set_cold(&mut self, is_cold: impl Fn([u32; 2]) -> bool) {
+        self.nodes.iter_mut().for_each(|node| node.cold = is_cold(node.bodies));
     }
 
     /// Sorts the constraints into colours.
@@ -198,11 +198,13 @@ mod tests {
                     let b = (a + 1 + rng.below(bodies - 1)) % bodies;
                     let fixed = key % 7 == 0;
                     let size = if key % 2 == 0 { Size::Large } else { Size::Small };
-                    Node::new(key, [a + 1, if fixed { GROUND } else { b + 1 }], size).cold(key % 5 < 2)
+                    Node::new(key, [a + 1, if fixed { GROUND } else { b + 1 }], size)
                 })
                 .collect();
             let mut colouring = Colouring::default();
             nodes.iter().for_each(|&node| colouring.add(node));
+            colouring.set_cold(|[a, _]| a % 5 < 2);
+            let nodes = colouring.nodes.clone();
             colouring.sort(bodies as usize + 1);
             let mut seen = colouring.order.clone();
             seen.sort_unstable();

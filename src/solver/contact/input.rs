@@ -1,7 +1,7 @@
 //! Gathers the inputs of a contact's rows from the narrow phase, the state and the body list.
 
 use super::super::body_list::{BodyList, GROUND};
-use super::super::colour::{Node, Size};
+use super::super::colour::{Colouring, Node, Size};
 use super::super::row::MassFractions;
 use super::{Surface, WarmStarts};
 use alloc::vec::Vec;
@@ -113,34 +113,29 @@ impl Input {
 }
 
 impl ContactSource<'_> {
-    /// The node of a touching pair for graph colouring.
-    #[inline]
-    pub(super) fn node(&self, pair: &ActiveContact, prospects: &[Prospect]) -> Node {
-        let (a, b) = pair.shapes;
-        let size =
-            if self.manifolds[pair.manifold as usize].count() == 1 { Size::Small } else { Size::Large };
-        let bodies = self.changed(self.bodies_of(pair));
-        let cold = bodies.iter().all(|&body| !prospects[body as usize].has_guess());
-        Node::new(u64::from(a) << 32 | u64::from(b), bodies, size).cold(cold)
-    }
-
-    /// Finds what the contacts of each body tell of the coming tick, by index.
-    pub(super) fn find_prospects(&self, prospects: &mut Vec<Prospect>) {
+    /// Adds a node for each touching pair to the graph that is coloured, and finds what the contacts of each body tell of
+    /// the coming tick.
+    pub(super) fn add_nodes(&self, colouring: &mut Colouring, prospects: &mut Vec<Prospect>) {
         prospects.clear();
         prospects.resize(self.list.len(), Prospect::default());
         for pair in self.pairs {
-            let warm = self.contacts[pair.contact as usize].count > 0;
+            let (a, b) = pair.shapes;
+            let is_small = self.manifolds[pair.manifold as usize].count() == 1;
             let bodies = self.changed(self.bodies_of(pair));
-            let at_wall = bodies.contains(&GROUND);
+            let size = if is_small { Size::Small } else { Size::Large };
+            colouring.add(Node::new(u64::from(a) << 32 | u64::from(b), bodies, size));
+            let warm = self.contacts[pair.contact as usize].count > 0;
+            let walls = u32::from(bodies.contains(&GROUND));
             for body in bodies {
                 let prospect = &mut prospects[body as usize];
-                prospect.walls += u32::from(at_wall);
+                prospect.walls += walls;
                 prospect.warm |= warm;
                 prospect.impact |= pair.is_impact;
                 prospect.bounces |= pair.surface.restitution.is_positive();
             }
         }
         prospects[GROUND as usize] = Prospect::default();
+        colouring.set_cold(|bodies| bodies.iter().all(|&body| !prospects[body as usize].has_guess()));
     }
 
     /// Prefetches the data that [`Self::gather`] reads of a pair. Contacts in the order of colours are random accesses.
@@ -191,7 +186,7 @@ impl ContactSource<'_> {
             contact: pair.contact,
             features: [first.feature.0, second.feature.0],
             arms,
-            wedged: changed.iter().any(|&body| prospects[body as usize].is_wedged()),
+            wedged: prospects[changed[0] as usize].is_wedged() || prospects[changed[1] as usize].is_wedged(),
             count: manifold.count(),
             extras: pair.surface.has_extras(),
             shares: Quad([n.x.to_bits(), n.y.to_bits(), fractions.a.to_bits(), fractions.b.to_bits()]),
@@ -245,9 +240,12 @@ fn keep_arms(
     }
     let mut arms = memory.arms;
     let differences = arms.renew(current, tolerance);
-    for (arm, difference) in [x_1, y_1, x_2, y_2, b_x, b_y].into_iter().zip(differences) {
-        *arm = arm.saturating_add(difference);
-    }
+    *x_1 = x_1.saturating_add(differences[0]);
+    *y_1 = y_1.saturating_add(differences[1]);
+    *x_2 = x_2.saturating_add(differences[2]);
+    *y_2 = y_2.saturating_add(differences[3]);
+    *b_x = b_x.saturating_add(differences[4]);
+    *b_y = b_y.saturating_add(differences[5]);
     arms
 }
 

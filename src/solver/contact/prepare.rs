@@ -25,9 +25,8 @@ impl ContactSet {
         machine: Machine,
     ) -> WarmStarts {
         let ContactSet { warm, cold, prospects } = self;
-        source.find_prospects(prospects);
         colouring.begin();
-        source.pairs.iter().for_each(|pair| colouring.add(source.node(pair, prospects)));
+        source.add_nodes(colouring, prospects);
         colouring.sort(source.list.len());
         let mut warm_starts = WarmStarts::default();
         for (list, is_cold) in [(warm, false), (cold, true)] {

@@ -134,7 +134,7 @@ impl<const N: usize> Kernel<N> for Store<'_, N> {
             let extras = if batch.extras { extras.next() } else { None };
             let impulses = record.impulses::<L>(batch);
             for (lane, index, count) in record.lanes() {
-                let old = record.wedged[lane].then_some(contacts[index]);
+                let old = record.wedged[lane].then(|| contacts[index]);
                 let point = |i: usize| {
                     let [normal, tangent] = &impulses[i];
                     let impulse = PointImpulse {
