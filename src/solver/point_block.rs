@@ -1,20 +1,30 @@
 //! The point block: pins a point of body A to a point of body B. Both directions are solved at once.
 //!
-//! In world axes, with `e = (-r_y, r_x) / k` of each body and the mass fractions `a`:
+//! In world axes, with `e = (-r_y, r_x) / k` of each body, the mass fractions `a`, and `s = massScale`:
 //!
 //! ```text
-//! K   = I + aA eA eA^T + aB eB eB^T
-//! det = 1 + aA |eA|^2 + aB |eB|^2 + aA aB (eA x eB)^2           (no cancellation)
+//! K   = I + s (aA eA eA^T + aB eB eB^T)
+//! det = 1 + s aA |eA|^2 + s aB |eB|^2 + s^2 aA aB (eA x eB)^2   (no cancellation)
 //! G   = K^-1 = [K22 -K12; -K12 K11] / det                       (0 < Gii <= 1, |G12| <= 1/2)
-//! GA  = aA G,  GB = aB G,  fA = aA G eA,  fB = aB G eB          (every entry of f <= 1/2)
+//! p   = G L
 //!
 //! vr  = vB - vA + eB uB - eA uA
-//! d   = clamp(-massScale (vr + bias) - impulseScale L, -512, 512)
+//! d   = clamp(-massScale (vr + bias) - impulseScale p, -512, 512)
 //! L'  = clamp(L + d, -1023, 1023),  d = L' - L
-//! vA -= GA d,  uA -= fA.d,  vB += GB d,  uB += fB.d
+//! vA -= aA G d,  uA -= aA eA.G d,  vB += aB G d,  uB += aB eB.G d
 //! ```
 //!
-//! `L` is the change of the relative velocity of the anchors by the impulse. `L` is carried over from pose to pose: the
+//! `p` is the impulse times `mA + mB`, the inverse masses. For a rigid block, `s = 1`, `L` is the change of the relative
+//! velocity of the anchors by the impulse.
+//!
+//! **A soft block is an isotropic spring.** Without arms it is that of `softness.rs`. With them, `(impulseScale I +
+//! massScale K1) p = -massScale v - push`, where `K1` is `K` of the rigid block, is the implicit step of a spring with
+//! the stiffness `omega^2 m` and the damping `2 zeta omega m` in all directions, `m = 1 / (mA + mB)`. Its force follows
+//! from the potential `omega^2 m |x|^2 / 2`. A spring that yields by `impulseScale L` instead has the stiffness
+//! `omega^2 m K1^-1`, which depends on the directions of the arms: it has no potential, and feeds energy into bodies that
+//! turn.
+//!
+//! `L` is carried over from pose to pose: the
 //! new `G` removes the part of `L` that no longer acts along the arm. Carrying over the impulse `p = G L` instead would
 //! multiply that part by up to `e^2` (1100 m/s on a rod 40 radii of gyration long). Two scalar rows instead of the
 //! block would gain energy in a swinging chain.
@@ -58,17 +68,6 @@ impl Symmetric<Unit> {
             crate::math::mul_add(self.m12, v.x, self.m22, v.y),
         )
     }
-
-    fn apply_ratio(&self, e: Vec2<Ratio>) -> Vec2<Unit> {
-        Vec2::new(
-            crate::math::mul_add(self.m11, e.x, self.m12, e.y),
-            crate::math::mul_add(self.m12, e.x, self.m22, e.y),
-        )
-    }
-
-    fn scale(&self, fraction: Unit) -> Self {
-        Symmetric { m11: mul(self.m11, fraction), m12: mul(self.m12, fraction), m22: mul(self.m22, fraction) }
-    }
 }
 
 /// The target velocity of [`PointBlock::solve_within`], reversed.
@@ -84,55 +83,66 @@ pub(crate) struct PointGoal {
 pub(crate) struct PointBlock {
     e_a: Vec2<Ratio>,
     e_b: Vec2<Ratio>,
-    g_a: Symmetric<Unit>,
-    g_b: Symmetric<Unit>,
-    f_a: Vec2<Unit>,
-    f_b: Vec2<Unit>,
+    a_a: Unit,
+    a_b: Unit,
+    g: Symmetric<Unit>,
 }
 
 impl PointBlock {
-    pub(crate) fn new(a: Lever, b: Lever, fractions: MassFractions) -> Self {
+    /// The block of two levers. `mass_scale` is that of the softness, 1 for a rigid block.
+    pub(crate) fn new(a: Lever, b: Lever, fractions: MassFractions, mass_scale: Unit) -> Self {
         let ratios = |end: Lever| -> Vec2<Ratio> {
             let perp = end.arm.perp();
             Vec2::new(end.inverse_gyration.times(perp.x), end.inverse_gyration.times(perp.y))
         };
         let (e_a, e_b) = (ratios(a), ratios(b));
         let sum = |i: fn(Vec2<Ratio>) -> Ratio, j: fn(Vec2<Ratio>) -> Ratio| {
-            turning(fractions.a, i(e_a), j(e_a)) + turning(fractions.b, i(e_b), j(e_b))
+            scaled(turning(fractions.a, i(e_a), j(e_a)) + turning(fractions.b, i(e_b), j(e_b)), mass_scale)
         };
         let (xx, xy, yy) = (sum(|e| e.x, |e| e.x), sum(|e| e.x, |e| e.y), sum(|e| e.y, |e| e.y));
         let product = |a: Ratio, b: Ratio| i128::from(a.to_bits()) * i128::from(b.to_bits());
         // 24 fraction bits of `eA x eB` are enough, because this term is never the smallest one.
         let cross = round_shift_wide(product(e_a.x, e_b.y) - product(e_a.y, e_b.x), 24);
         let shares = product_of_fractions(fractions);
-        let both = round_shift_wide(cross * cross, 24) * shares;
+        let square = saturate_wide(round_shift_wide(cross * cross, 24));
+        let both = i128::from(scaled(scaled(square, mass_scale), mass_scale)) * shares;
         let one = 1i64 << 30;
         let det = one + xx + yy + saturate_wide(round_shift_wide(both, 24));
         let k = Symmetric { m11: one + xx, m12: xy, m22: one + yy };
-        let g = inverse(&k, det);
-        let (g_a, g_b) = (g.scale(fractions.a), g.scale(fractions.b));
-        PointBlock { e_a, e_b, g_a, g_b, f_a: g_a.apply_ratio(e_a), f_b: g_b.apply_ratio(e_b) }
+        PointBlock { e_a, e_b, a_a: fractions.a, a_b: fractions.b, g: inverse(&k, det) }
     }
 
     /// The block of bodies that are moved along a direction through both centres only: `G = n n^T`.
     pub(crate) fn along(n: Vec2<Unit>, fractions: MassFractions) -> Self {
         let g = Symmetric { m11: mul(n.x, n.x), m12: mul(n.x, n.y), m22: mul(n.y, n.y) };
-        PointBlock { g_a: g.scale(fractions.a), g_b: g.scale(fractions.b), ..PointBlock::default() }
+        PointBlock { a_a: fractions.a, a_b: fractions.b, g, ..PointBlock::default() }
     }
 
-    /// Changes the velocities by an impulse `d`.
+    /// Changes the velocities by a change `d` of `L`.
     #[inline]
     pub(crate) fn apply(&self, d: Vec2<Speed>, bodies: &mut BodyPair<'_>) {
-        // Sums of two products of a gain and an impulse have 51 fraction bits, and with impulses within 512 at most 61
+        // A sum of two products of a gain and an impulse has 51 fraction bits, and with impulses within 512 at most 61
         // bits.
         let dot = |x: Unit, y: Unit| {
             let times = |gain: Unit, d: Speed| i64::from(gain.to_bits()) * i64::from(d.to_bits());
             times(x, d.x) + times(y, d.y)
         };
-        let (Symmetric { m11, m12, m22 }, f) = (self.g_a, self.f_a);
-        let a = Change { x: -dot(m11, m12), y: -dot(m12, m22), spin: -dot(f.x, f.y) };
-        let (Symmetric { m11, m12, m22 }, f) = (self.g_b, self.f_b);
-        bodies.change(a, Change { x: dot(m11, m12), y: dot(m12, m22), spin: dot(f.x, f.y) });
+        let Symmetric { m11, m12, m22 } = self.g;
+        let p = Vec2::new(dot(m11, m12), dot(m12, m22));
+        let change = |a: Unit, e: Vec2<Ratio>| {
+            let (x, y) = (scaled(p.x, a), scaled(p.y, a));
+            let turn = i128::from(e.x.to_bits()) * i128::from(x) + i128::from(e.y.to_bits()) * i128::from(y);
+            Change { x, y, spin: saturate_wide(round_shift_wide(turn, 24)) }
+        };
+        let Change { x, y, spin } = change(self.a_a, self.e_a);
+        bodies.change(Change { x: -x, y: -y, spin: -spin }, change(self.a_b, self.e_b));
+    }
+
+    /// `p = G L`, of an `L` with any number of fraction bits.
+    pub(crate) fn impulse(&self, [x, y]: [i64; 2]) -> [i64; 2] {
+        let Symmetric { m11, m12, m22 } = self.g;
+        let sum = |i: Unit, j: Unit| scaled(x, i).saturating_add(scaled(y, j));
+        [sum(m11, m12), sum(m12, m22)]
     }
 
     /// The lever ratios at this pose.
@@ -140,8 +150,8 @@ impl PointBlock {
         (self.e_a, self.e_b)
     }
 
-    /// Solves the block for one iteration, measuring velocity with the given lever ratios. `lambda` is the accumulated
-    /// `L`.
+    /// Solves a rigid block for one iteration, measuring velocity with the given lever ratios. `lambda` is the
+    /// accumulated `L`.
     #[cfg(test)]
     #[expect(clippy::too_many_arguments, reason = "the quantities of the equations above")]
     pub(crate) fn solve(
@@ -198,16 +208,16 @@ impl PointBlock {
     ) -> Vec2<Speed> {
         let PointGoal { bias, push } = goal;
         let vr = self.velocity(a, b, self.ratios(), faults);
+        let p = self.g.apply(lambda);
         Vec2::new(
-            softness.impulse(vr.x, bias.x, lambda.x, faults).saturating_sub(push.x),
-            softness.impulse(vr.y, bias.y, lambda.y, faults).saturating_sub(push.y),
+            softness.impulse(vr.x, bias.x, p.x, faults).saturating_sub(push.x),
+            softness.impulse(vr.y, bias.y, p.y, faults).saturating_sub(push.y),
         )
     }
 
     /// Shortens `L` so that `|G L|` is at most `p_max`.
     fn shortened(&self, lambda: Vec2<Speed>, p_max: Speed) -> Vec2<Speed> {
-        // The mass fractions add up to 1.
-        let p = self.g_a.apply(lambda) + self.g_b.apply(lambda);
+        let p = self.g.apply(lambda);
         let square = |speed: Speed| u64::from(speed.unsigned_abs().to_bits()).pow(2);
         let length = (square(p.x) + square(p.y)).isqrt();
         let most = u64::from(p_max.unsigned_abs().to_bits());
@@ -243,6 +253,12 @@ impl PointBlock {
         let y = along(e_a.y, e_b.y, b.velocity.y - a.velocity.y, faults);
         Vec2::new(x, y)
     }
+}
+
+/// A number times a fraction, in the format of the number.
+#[inline]
+fn scaled(x: i64, fraction: Unit) -> i64 {
+    saturate_wide(round_shift_wide(i128::from(x) * i128::from(fraction.to_bits()), 30))
 }
 
 /// `aA aB` with 30 fraction bits.
@@ -293,7 +309,7 @@ mod tests {
                 0 => MassFractions { a: Unit::ZERO, b: Unit::ONE },
                 _ => MassFractions { a: share, b: Unit::ONE - share },
             };
-            let block = PointBlock::new(a, b, fractions);
+            let block = PointBlock::new(a, b, fractions, Unit::ONE);
             let mut body = || {
                 let mut speed = || narrow(rng.range(fx!(-10), fx!(10)));
                 SolverBody { velocity: Vec2::new(speed(), speed()), spin: speed(), ..SolverBody::default() }
@@ -326,7 +342,7 @@ mod tests {
             };
             let (a, b) = (lever(), lever());
             let share: Unit = narrow(rng.range(fx!(0), fx!(0.9)));
-            let block = PointBlock::new(a, b, MassFractions { a: share, b: Unit::ONE - share });
+            let block = PointBlock::new(a, b, MassFractions { a: share, b: Unit::ONE - share }, Unit::ONE);
             let mut speed = |most: Fx| -> Speed { narrow(rng.range(Fx::ZERO, most)) };
             let bias = Vec2::new(speed(fx!(20)), -speed(fx!(20)));
             let most = speed(fx!(3));

@@ -193,7 +193,8 @@ impl Block {
         let mass = root_and_inverse(share);
         for softness in unit.rows() {
             let mass_scale = i64::from(softness.mass_scale.to_bits());
-            self.bias.push(root_and_inverse(mass_scale), mass, ONE - mass_scale);
+            let scale = if unit.is_point_spring() { (ONE, ONE) } else { root_and_inverse(mass_scale) };
+            self.bias.push(scale, mass, ONE - mass_scale);
             self.relax.push(if softness.task == BlockedTask::Spring { (0, 0) } else { (ONE, ONE) }, mass, 0);
         }
         if unit.is_limit() {
@@ -210,7 +211,10 @@ impl Block {
             for (earlier, other) in (0..=at).zip(units.iter()) {
                 if earlier == at || unit.touches(other) {
                     first = first.min(other.row);
-                    pairs.push((at, earlier));
+                    // The two rows of a spring do not disturb each other: its scale has diagonalised them.
+                    if earlier != at || !unit.is_point_spring() {
+                        pairs.push((at, earlier));
+                    }
                 }
             }
             unit.rows().for_each(|_| matrix.push_row(first));
