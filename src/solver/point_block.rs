@@ -6,12 +6,13 @@
 //! K   = I + s (aA eA eA^T + aB eB eB^T)
 //! det = 1 + s aA |eA|^2 + s aB |eB|^2 + s^2 aA aB (eA x eB)^2   (no cancellation)
 //! G   = K^-1 = [K22 -K12; -K12 K11] / det                       (0 < Gii <= 1, |G12| <= 1/2)
-//! p   = G L
+//! GA  = aA G,  GB = aB G,  fA = aA G eA,  fB = aB G eB          (every entry of f <= 1/2 if s = 1)
 //!
+//! p   = G L
 //! vr  = vB - vA + eB uB - eA uA
 //! d   = clamp(-massScale (vr + bias) - impulseScale p, -512, 512)
 //! L'  = clamp(L + d, -1023, 1023),  d = L' - L
-//! vA -= aA G d,  uA -= aA eA.G d,  vB += aB G d,  uB += aB eB.G d
+//! vA -= GA d,  uA -= fA.d,  vB += GB d,  uB += fB.d
 //! ```
 //!
 //! `p` is the impulse times `mA + mB`, the inverse masses. For a rigid block, `s = 1`, `L` is the change of the relative
@@ -68,6 +69,19 @@ impl Symmetric<Unit> {
             crate::math::mul_add(self.m12, v.x, self.m22, v.y),
         )
     }
+
+    /// `f`, with 30 fraction bits.
+    fn apply_ratio(&self, e: Vec2<Ratio>) -> Vec2<i64> {
+        let dot = |x: Unit, y: Unit| {
+            let times = |gain: Unit, e: Ratio| i64::from(gain.to_bits()) * i64::from(e.to_bits());
+            round_shift(times(x, e.x) + times(y, e.y), 24)
+        };
+        Vec2::new(dot(self.m11, self.m12), dot(self.m12, self.m22))
+    }
+
+    fn scale(&self, fraction: Unit) -> Self {
+        Symmetric { m11: mul(self.m11, fraction), m12: mul(self.m12, fraction), m22: mul(self.m22, fraction) }
+    }
 }
 
 /// The target velocity of [`PointBlock::solve_within`], reversed.
@@ -83,9 +97,11 @@ pub(crate) struct PointGoal {
 pub(crate) struct PointBlock {
     e_a: Vec2<Ratio>,
     e_b: Vec2<Ratio>,
-    a_a: Unit,
-    a_b: Unit,
-    g: Symmetric<Unit>,
+    g_a: Symmetric<Unit>,
+    g_b: Symmetric<Unit>,
+    /// With 30 fraction bits: a soft block turns light bodies by up to `e`.
+    f_a: Vec2<i64>,
+    f_b: Vec2<i64>,
 }
 
 impl PointBlock {
@@ -109,40 +125,51 @@ impl PointBlock {
         let one = 1i64 << 30;
         let det = one + xx + yy + saturate_wide(round_shift_wide(both, 24));
         let k = Symmetric { m11: one + xx, m12: xy, m22: one + yy };
-        PointBlock { e_a, e_b, a_a: fractions.a, a_b: fractions.b, g: inverse(&k, det) }
+        let g = inverse(&k, det);
+        let (g_a, g_b) = (g.scale(fractions.a), g.scale(fractions.b));
+        PointBlock { e_a, e_b, g_a, g_b, f_a: g_a.apply_ratio(e_a), f_b: g_b.apply_ratio(e_b) }
     }
 
     /// The block of bodies that are moved along a direction through both centres only: `G = n n^T`.
     pub(crate) fn along(n: Vec2<Unit>, fractions: MassFractions) -> Self {
         let g = Symmetric { m11: mul(n.x, n.x), m12: mul(n.x, n.y), m22: mul(n.y, n.y) };
-        PointBlock { a_a: fractions.a, a_b: fractions.b, g, ..PointBlock::default() }
+        PointBlock { g_a: g.scale(fractions.a), g_b: g.scale(fractions.b), ..PointBlock::default() }
     }
 
     /// Changes the velocities by a change `d` of `L`.
     #[inline]
     pub(crate) fn apply(&self, d: Vec2<Speed>, bodies: &mut BodyPair<'_>) {
-        // A sum of two products of a gain and an impulse has 51 fraction bits, and with impulses within 512 at most 61
-        // bits.
+        // Sums of two products of a gain and an impulse have 51 fraction bits, and with gains of at most 1 and impulses
+        // within 512 at most 61 bits.
         let dot = |x: Unit, y: Unit| {
             let times = |gain: Unit, d: Speed| i64::from(gain.to_bits()) * i64::from(d.to_bits());
             times(x, d.x) + times(y, d.y)
         };
-        let Symmetric { m11, m12, m22 } = self.g;
-        let p = Vec2::new(dot(m11, m12), dot(m12, m22));
-        let change = |a: Unit, e: Vec2<Ratio>| {
-            let (x, y) = (scaled(p.x, a), scaled(p.y, a));
-            let turn = i128::from(e.x.to_bits()) * i128::from(x) + i128::from(e.y.to_bits()) * i128::from(y);
-            Change { x, y, spin: saturate_wide(round_shift_wide(turn, 24)) }
+        let turn = |f: Vec2<i64>| {
+            let times = |gain: i64, d: Speed| i128::from(gain) * i128::from(d.to_bits());
+            saturate_wide(times(f.x, d.x) + times(f.y, d.y))
         };
-        let Change { x, y, spin } = change(self.a_a, self.e_a);
-        bodies.change(Change { x: -x, y: -y, spin: -spin }, change(self.a_b, self.e_b));
+        let Symmetric { m11, m12, m22 } = self.g_a;
+        let a = Change { x: -dot(m11, m12), y: -dot(m12, m22), spin: turn(self.f_a).saturating_neg() };
+        let Symmetric { m11, m12, m22 } = self.g_b;
+        bodies.change(a, Change { x: dot(m11, m12), y: dot(m12, m22), spin: turn(self.f_b) });
+    }
+
+    /// `p = G L`.
+    fn impulse(&self, lambda: Vec2<Speed>) -> Vec2<Speed> {
+        // The mass fractions add up to 1.
+        let (a, b) = (self.g_a.apply(lambda), self.g_b.apply(lambda));
+        Vec2::new(a.x.saturating_add(b.x), a.y.saturating_add(b.y))
     }
 
     /// `p = G L`, of an `L` with any number of fraction bits.
-    pub(crate) fn impulse(&self, [x, y]: [i64; 2]) -> [i64; 2] {
-        let Symmetric { m11, m12, m22 } = self.g;
-        let sum = |i: Unit, j: Unit| scaled(x, i).saturating_add(scaled(y, j));
-        [sum(m11, m12), sum(m12, m22)]
+    pub(crate) fn impulse_wide(&self, [x, y]: [i64; 2]) -> [i64; 2] {
+        let sum = |Symmetric { m11, m12, m22 }: Symmetric<Unit>| {
+            let sum = |i: Unit, j: Unit| scaled(x, i).saturating_add(scaled(y, j));
+            [sum(m11, m12), sum(m12, m22)]
+        };
+        let ([a_x, a_y], [b_x, b_y]) = (sum(self.g_a), sum(self.g_b));
+        [a_x.saturating_add(b_x), a_y.saturating_add(b_y)]
     }
 
     /// The lever ratios at this pose.
@@ -208,7 +235,7 @@ impl PointBlock {
     ) -> Vec2<Speed> {
         let PointGoal { bias, push } = goal;
         let vr = self.velocity(a, b, self.ratios(), faults);
-        let p = self.g.apply(lambda);
+        let p = self.impulse(lambda);
         Vec2::new(
             softness.impulse(vr.x, bias.x, p.x, faults).saturating_sub(push.x),
             softness.impulse(vr.y, bias.y, p.y, faults).saturating_sub(push.y),
@@ -217,7 +244,7 @@ impl PointBlock {
 
     /// Shortens `L` so that `|G L|` is at most `p_max`.
     fn shortened(&self, lambda: Vec2<Speed>, p_max: Speed) -> Vec2<Speed> {
-        let p = self.g.apply(lambda);
+        let p = self.impulse(lambda);
         let square = |speed: Speed| u64::from(speed.unsigned_abs().to_bits()).pow(2);
         let length = (square(p.x) + square(p.y)).isqrt();
         let most = u64::from(p_max.unsigned_abs().to_bits());

@@ -193,7 +193,7 @@ impl Unit {
     pub(super) fn yielding(&self, list: &JointList, impulses: [i64; 3]) -> [i64; 3] {
         match self.source {
             Source::Part(ListPart::Point(at)) => {
-                let [x, y] = list.point(at).block.impulse([impulses[0], impulses[1]]);
+                let [x, y] = list.point(at).block.impulse_wide([impulses[0], impulses[1]]);
                 [x, y, 0]
             }
             _ => impulses,
