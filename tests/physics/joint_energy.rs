@@ -38,6 +38,13 @@ fn assemblies_of_hinges_gain_no_energy() {
     never_gain(Mix::Hinge);
 }
 
+/// Welds whose anchors, angles or both are springs. Before, the stiffness between the anchors depended on the directions
+/// of the arms, and 6 of 60 assemblies gained up to 5 times their energy.
+#[test]
+fn assemblies_of_soft_welds_gain_no_energy() {
+    never_gain(Mix::SoftWeld);
+}
+
 #[test]
 fn assemblies_of_sliders_gain_no_energy() {
     never_gain(Mix::Prismatic);
@@ -117,7 +124,7 @@ fn a_star_of_welds_comes_to_rest_on_a_floor() {
 /// Dropping the scratch memory and restoring an earlier state change no bit of a world with blocks.
 #[test]
 fn a_block_forgets_nothing_that_is_not_state() {
-    for mix in [Mix::Weld, Mix::Hinge, Mix::Prismatic, Mix::Every] {
+    for mix in [Mix::Weld, Mix::Hinge, Mix::SoftWeld, Mix::Prismatic, Mix::Every] {
         let build = || Case { shape: Shape::Mesh, mix, start: Start::Hit, seed: 1 }.build().world;
         let (mut whole, mut dropped) = (build(), build());
         for tick in 0..60 {
@@ -128,38 +135,6 @@ fn a_block_forgets_nothing_that_is_not_state() {
             dropped.step();
             whole.step();
             assert_eq!(whole.state_hash(), dropped.state_hash(), "{mix:?}, tick {tick}");
-        }
-    }
-}
-
-#[test]
-#[ignore = "measurement"]
-fn measure() {
-    use crate::assembly::{MIXES, STARTS};
-    let seeds = 10;
-    let only = std::env::var("MIX").ok();
-    for mix in MIXES.into_iter().filter(|mix| only.as_ref().is_none_or(|only| format!("{mix:?}") == *only)) {
-        for start in STARTS {
-            let cases: Vec<_> = SHAPES
-                .into_iter()
-                .flat_map(|shape| (0..seeds).map(move |seed| Case { shape, mix, start, seed }))
-                .collect();
-            let count = std::sync::Mutex::new((0, 0, 0, f64::MIN, vec![]));
-            let n = cases.len();
-            sweep::for_each(cases, |case| {
-                let outcome = case.run(TICKS);
-                let mut count = count.lock().unwrap();
-                count.0 += u32::from(outcome.gain > 0.01);
-                count.1 += u32::from(outcome.gain > 0.5);
-                count.2 += u32::from(outcome.faults > 0);
-                count.3 = count.3.max(outcome.gain);
-                if outcome.gain > 0.01 {
-                    count.4.push(format!("{:?}/{}: {:.3} f{} gap {:.2}", case.shape, case.seed, outcome.gain, outcome.faults, outcome.gap));
-                }
-            });
-            let mut count = count.into_inner().unwrap();
-            count.4.sort();
-            println!("{mix:?} {start:?}: {n} worlds, {} above 1 %, {} above 50 %, {} clamped, worst {:.4}  {}", count.0, count.1, count.2, count.3, count.4.join("; "));
         }
     }
 }
