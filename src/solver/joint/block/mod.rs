@@ -11,12 +11,15 @@
 //! S_i = sqrt(massScale_i),   (1 - S^2 + S A S) z = w / S,   d = S z
 //! ```
 //!
+//! The softness of a spring between two points is part of its scale (`scaling.rs`), so that its `S` is 1.
+//!
 //! Changes are also divided by `Q = sqrt(m_least / m)`, where `m` is the reduced mass of the two bodies, because the
 //! matrix is symmetric only for impulses, not for speeds.
 //!
 //! This is `A d + (impulseScale / massScale) d = w / massScale` with a unit diagonal, whose smallest eigenvalue is at
 //! least the smallest impulse scale, whatever masses and arms are, even if rows depend on each other, as in a loop of
-//! welds. The relax pass, which has no softness, adds [`EXCESS`] to the diagonal instead. The matrix depends on the pose
+//! welds. (Springs between points at long arms may depend on each other more closely; `matrix.rs` bounds the pivots.) The
+//! relax pass, which has no softness, adds [`EXCESS`] to the diagonal instead. The matrix depends on the pose
 //! alone. The impulses and the arithmetic that applies them are those of single rows.
 
 mod choice;
