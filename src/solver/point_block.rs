@@ -1,20 +1,31 @@
 //! The point block: pins a point of body A to a point of body B. Both directions are solved at once.
 //!
-//! In world axes, with `e = (-r_y, r_x) / k` of each body and the mass fractions `a`:
+//! In world axes, with `e = (-r_y, r_x) / k` of each body, the mass fractions `a`, and `s = massScale`:
 //!
 //! ```text
-//! K   = I + aA eA eA^T + aB eB eB^T
-//! det = 1 + aA |eA|^2 + aB |eB|^2 + aA aB (eA x eB)^2           (no cancellation)
+//! K   = I + s (aA eA eA^T + aB eB eB^T)
+//! det = 1 + s aA |eA|^2 + s aB |eB|^2 + s^2 aA aB (eA x eB)^2   (no cancellation)
 //! G   = K^-1 = [K22 -K12; -K12 K11] / det                       (0 < Gii <= 1, |G12| <= 1/2)
-//! GA  = aA G,  GB = aB G,  fA = aA G eA,  fB = aB G eB          (every entry of f <= 1/2)
+//! GA  = aA G,  GB = aB G,  fA = aA G eA,  fB = aB G eB          (every entry of f <= 1/2 if s = 1)
 //!
+//! p   = G L
 //! vr  = vB - vA + eB uB - eA uA
-//! d   = clamp(-massScale (vr + bias) - impulseScale L, -512, 512)
+//! d   = clamp(-massScale (vr + bias) - impulseScale p, -512, 512)
 //! L'  = clamp(L + d, -1023, 1023),  d = L' - L
 //! vA -= GA d,  uA -= fA.d,  vB += GB d,  uB += fB.d
 //! ```
 //!
-//! `L` is the change of the relative velocity of the anchors by the impulse. `L` is carried over from pose to pose: the
+//! `p` is the impulse times `mA + mB`, the inverse masses. For a rigid block, `s = 1`, `L` is the change of the relative
+//! velocity of the anchors by the impulse.
+//!
+//! **A soft block is an isotropic spring.** Without arms it is that of `softness.rs`. With them, `(impulseScale I +
+//! massScale K1) p = -massScale v - push`, where `K1` is `K` of the rigid block, is the implicit step of a spring with
+//! the stiffness `omega^2 m` and the damping `2 zeta omega m` in all directions, `m = 1 / (mA + mB)`. Its force follows
+//! from the potential `omega^2 m |x|^2 / 2`. A spring that yields by `impulseScale L` instead has the stiffness
+//! `omega^2 m K1^-1`, which depends on the directions of the arms: it has no potential, and feeds energy into bodies that
+//! turn.
+//!
+//! `L` is carried over from pose to pose: the
 //! new `G` removes the part of `L` that no longer acts along the arm. Carrying over the impulse `p = G L` instead would
 //! multiply that part by up to `e^2` (1100 m/s on a rod 40 radii of gyration long). Two scalar rows instead of the
 //! block would gain energy in a swinging chain.
@@ -31,6 +42,9 @@
 //! The impulse still acts along the arm at the start, so that it costs no energy (the position constraint of RATTLE,
 //! H. Andersen 1983). `M` compensates for the softness, which would yield to the centrifugal force. The relax pass
 //! measures with the arm at the start. Hinges use the same equations in batches (`joint/hinge`).
+
+#[cfg(test)]
+mod tests;
 
 use fixed::types::extra::U30;
 
@@ -59,11 +73,13 @@ impl Symmetric<Unit> {
         )
     }
 
-    fn apply_ratio(&self, e: Vec2<Ratio>) -> Vec2<Unit> {
-        Vec2::new(
-            crate::math::mul_add(self.m11, e.x, self.m12, e.y),
-            crate::math::mul_add(self.m12, e.x, self.m22, e.y),
-        )
+    /// `f`, with 30 fraction bits.
+    fn apply_ratio(&self, e: Vec2<Ratio>) -> Vec2<i64> {
+        let dot = |x: Unit, y: Unit| {
+            let times = |gain: Unit, e: Ratio| i64::from(gain.to_bits()) * i64::from(e.to_bits());
+            round_shift(times(x, e.x) + times(y, e.y), 24)
+        };
+        Vec2::new(dot(self.m11, self.m12), dot(self.m12, self.m22))
     }
 
     fn scale(&self, fraction: Unit) -> Self {
@@ -86,26 +102,29 @@ pub(crate) struct PointBlock {
     e_b: Vec2<Ratio>,
     g_a: Symmetric<Unit>,
     g_b: Symmetric<Unit>,
-    f_a: Vec2<Unit>,
-    f_b: Vec2<Unit>,
+    /// With 30 fraction bits: a soft block turns light bodies by up to `e`.
+    f_a: Vec2<i64>,
+    f_b: Vec2<i64>,
 }
 
 impl PointBlock {
-    pub(crate) fn new(a: Lever, b: Lever, fractions: MassFractions) -> Self {
+    /// The block of two levers. `mass_scale` is that of the softness, 1 for a rigid block.
+    pub(crate) fn new(a: Lever, b: Lever, fractions: MassFractions, mass_scale: Unit) -> Self {
         let ratios = |end: Lever| -> Vec2<Ratio> {
             let perp = end.arm.perp();
             Vec2::new(end.inverse_gyration.times(perp.x), end.inverse_gyration.times(perp.y))
         };
         let (e_a, e_b) = (ratios(a), ratios(b));
         let sum = |i: fn(Vec2<Ratio>) -> Ratio, j: fn(Vec2<Ratio>) -> Ratio| {
-            turning(fractions.a, i(e_a), j(e_a)) + turning(fractions.b, i(e_b), j(e_b))
+            scaled(turning(fractions.a, i(e_a), j(e_a)) + turning(fractions.b, i(e_b), j(e_b)), mass_scale)
         };
         let (xx, xy, yy) = (sum(|e| e.x, |e| e.x), sum(|e| e.x, |e| e.y), sum(|e| e.y, |e| e.y));
         let product = |a: Ratio, b: Ratio| i128::from(a.to_bits()) * i128::from(b.to_bits());
         // 24 fraction bits of `eA x eB` are enough, because this term is never the smallest one.
         let cross = round_shift_wide(product(e_a.x, e_b.y) - product(e_a.y, e_b.x), 24);
         let shares = product_of_fractions(fractions);
-        let both = round_shift_wide(cross * cross, 24) * shares;
+        let square = saturate_wide(round_shift_wide(cross * cross, 24));
+        let both = i128::from(scaled(scaled(square, mass_scale), mass_scale)) * shares;
         let one = 1i64 << 30;
         let det = one + xx + yy + saturate_wide(round_shift_wide(both, 24));
         let k = Symmetric { m11: one + xx, m12: xy, m22: one + yy };
@@ -120,19 +139,40 @@ impl PointBlock {
         PointBlock { g_a: g.scale(fractions.a), g_b: g.scale(fractions.b), ..PointBlock::default() }
     }
 
-    /// Changes the velocities by an impulse `d`.
+    /// Changes the velocities by a change `d` of `L`.
     #[inline]
     pub(crate) fn apply(&self, d: Vec2<Speed>, bodies: &mut BodyPair<'_>) {
-        // Sums of two products of a gain and an impulse have 51 fraction bits, and with impulses within 512 at most 61
-        // bits.
+        // Sums of two products of a gain and an impulse have 51 fraction bits, and with gains of at most 1 and impulses
+        // within 512 at most 61 bits.
         let dot = |x: Unit, y: Unit| {
             let times = |gain: Unit, d: Speed| i64::from(gain.to_bits()) * i64::from(d.to_bits());
             times(x, d.x) + times(y, d.y)
         };
-        let (Symmetric { m11, m12, m22 }, f) = (self.g_a, self.f_a);
-        let a = Change { x: -dot(m11, m12), y: -dot(m12, m22), spin: -dot(f.x, f.y) };
-        let (Symmetric { m11, m12, m22 }, f) = (self.g_b, self.f_b);
-        bodies.change(a, Change { x: dot(m11, m12), y: dot(m12, m22), spin: dot(f.x, f.y) });
+        let turn = |f: Vec2<i64>| {
+            let times = |gain: i64, d: Speed| i128::from(gain) * i128::from(d.to_bits());
+            saturate_wide(times(f.x, d.x) + times(f.y, d.y))
+        };
+        let Symmetric { m11, m12, m22 } = self.g_a;
+        let a = Change { x: -dot(m11, m12), y: -dot(m12, m22), spin: turn(self.f_a).saturating_neg() };
+        let Symmetric { m11, m12, m22 } = self.g_b;
+        bodies.change(a, Change { x: dot(m11, m12), y: dot(m12, m22), spin: turn(self.f_b) });
+    }
+
+    /// `p = G L`.
+    fn impulse(&self, lambda: Vec2<Speed>) -> Vec2<Speed> {
+        // The mass fractions add up to 1.
+        let (a, b) = (self.g_a.apply(lambda), self.g_b.apply(lambda));
+        Vec2::new(a.x.saturating_add(b.x), a.y.saturating_add(b.y))
+    }
+
+    /// `p = G L`, of an `L` with any number of fraction bits.
+    pub(crate) fn impulse_wide(&self, [x, y]: [i64; 2]) -> [i64; 2] {
+        let sum = |Symmetric { m11, m12, m22 }: Symmetric<Unit>| {
+            let sum = |i: Unit, j: Unit| scaled(x, i).saturating_add(scaled(y, j));
+            [sum(m11, m12), sum(m12, m22)]
+        };
+        let ([a_x, a_y], [b_x, b_y]) = (sum(self.g_a), sum(self.g_b));
+        [a_x.saturating_add(b_x), a_y.saturating_add(b_y)]
     }
 
     /// The lever ratios at this pose.
@@ -140,8 +180,8 @@ impl PointBlock {
         (self.e_a, self.e_b)
     }
 
-    /// Solves the block for one iteration, measuring velocity with the given lever ratios. `lambda` is the accumulated
-    /// `L`.
+    /// Solves a rigid block for one iteration, measuring velocity with the given lever ratios. `lambda` is the
+    /// accumulated `L`.
     #[cfg(test)]
     #[expect(clippy::too_many_arguments, reason = "the quantities of the equations above")]
     pub(crate) fn solve(
@@ -198,16 +238,16 @@ impl PointBlock {
     ) -> Vec2<Speed> {
         let PointGoal { bias, push } = goal;
         let vr = self.velocity(a, b, self.ratios(), faults);
+        let p = self.impulse(lambda);
         Vec2::new(
-            softness.impulse(vr.x, bias.x, lambda.x, faults).saturating_sub(push.x),
-            softness.impulse(vr.y, bias.y, lambda.y, faults).saturating_sub(push.y),
+            softness.impulse(vr.x, bias.x, p.x, faults).saturating_sub(push.x),
+            softness.impulse(vr.y, bias.y, p.y, faults).saturating_sub(push.y),
         )
     }
 
     /// Shortens `L` so that `|G L|` is at most `p_max`.
     fn shortened(&self, lambda: Vec2<Speed>, p_max: Speed) -> Vec2<Speed> {
-        // The mass fractions add up to 1.
-        let p = self.g_a.apply(lambda) + self.g_b.apply(lambda);
+        let p = self.impulse(lambda);
         let square = |speed: Speed| u64::from(speed.unsigned_abs().to_bits()).pow(2);
         let length = (square(p.x) + square(p.y)).isqrt();
         let most = u64::from(p_max.unsigned_abs().to_bits());
@@ -245,6 +285,12 @@ impl PointBlock {
     }
 }
 
+/// A number times a fraction, in the format of the number.
+#[inline]
+fn scaled(x: i64, fraction: Unit) -> i64 {
+    saturate_wide(round_shift_wide(i128::from(x) * i128::from(fraction.to_bits()), 30))
+}
+
 /// `aA aB` with 30 fraction bits.
 fn product_of_fractions(fractions: MassFractions) -> i128 {
     i128::from(mul::<_, _, U30>(fractions.a, fractions.b).to_bits())
@@ -266,81 +312,4 @@ fn inverse(k: &Symmetric<i64>, det: i64) -> Symmetric<Unit> {
     let reciprocal = (1i64 << 62) / (det >> excess);
     let entry = |value: i64| Unit::from_bits(saturate(round_shift((value >> excess) * reciprocal, 32)));
     Symmetric { m11: entry(k.m22), m12: entry(-k.m12), m22: entry(k.m11) }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::fx;
-    use crate::math::{Fx, Reciprocal, Rng, Rot, narrow};
-
-    /// One update leaves no relative velocity of the anchors except rounding errors of up to 6e-5 m/s. With arms of up
-    /// to 16 radii of gyration on both sides the anchors start at up to 330 m/s.
-    #[test]
-    fn an_update_brings_the_anchors_to_rest() {
-        let mut rng = Rng::new(8);
-        let (mut faults, mut worst) = (0, 0);
-        for _ in 0..100_000 {
-            let mut arm = || {
-                let gyration = rng.range(fx!(0.05), fx!(10));
-                let reach = crate::math::fx_mul(gyration, rng.range(fx!(0), fx!(16)));
-                let arm = Rot::from_angle(rng.angle()).apply_wide(Vec2::new(reach, Fx::ZERO)).narrow();
-                Lever { arm, inverse_gyration: Reciprocal::of(gyration) }
-            };
-            let (a, b) = (arm(), arm());
-            let share: Unit = narrow(rng.range(fx!(0), fx!(1)));
-            let fractions = match rng.below(3) {
-                0 => MassFractions { a: Unit::ZERO, b: Unit::ONE },
-                _ => MassFractions { a: share, b: Unit::ONE - share },
-            };
-            let block = PointBlock::new(a, b, fractions);
-            let mut body = || {
-                let mut speed = || narrow(rng.range(fx!(-10), fx!(10)));
-                SolverBody { velocity: Vec2::new(speed(), speed()), spin: speed(), ..SolverBody::default() }
-            };
-            let (mut a, mut b) = (body(), body());
-            let (mut lambda, mut before) = (Vec2::ZERO, Vec2::ZERO);
-            // The second update removes the rounding errors of the first.
-            for _ in 0..2 {
-                before = lambda;
-                let (ratios, no_bias) = (block.ratios(), Vec2::ZERO);
-                block.solve(&mut a, &mut b, ratios, no_bias, &Softness::RIGID, &mut lambda, &mut faults);
-            }
-            let left = lambda - before;
-            worst = worst.max(left.x.to_bits().abs()).max(left.y.to_bits().abs());
-        }
-        assert_eq!(faults, 0);
-        assert!(worst <= 128, "{worst} units left");
-    }
-
-    /// From rest, an impulse changes momentum by no more than its bound, whatever the target velocity is.
-    #[test]
-    fn an_impulse_of_limited_length_is_no_longer() {
-        let mut rng = Rng::new(9);
-        let mut faults = 0;
-        for _ in 0..20_000 {
-            let mut lever = || {
-                let mut side = || rng.range(fx!(-3), fx!(3));
-                let arm = Vec2::new(side(), side()).narrow();
-                Lever { arm, inverse_gyration: Reciprocal::of(rng.range(fx!(0.3), fx!(3))) }
-            };
-            let (a, b) = (lever(), lever());
-            let share: Unit = narrow(rng.range(fx!(0), fx!(0.9)));
-            let block = PointBlock::new(a, b, MassFractions { a: share, b: Unit::ONE - share });
-            let mut speed = |most: Fx| -> Speed { narrow(rng.range(Fx::ZERO, most)) };
-            let bias = Vec2::new(speed(fx!(20)), -speed(fx!(20)));
-            let most = speed(fx!(3));
-            let (mut a, mut b) = (SolverBody::default(), SolverBody::default());
-            let (mut lambda, remainders) = (Vec2::ZERO, &mut Remainders::default());
-            for _ in 0..3 {
-                let goal = PointGoal { bias, push: Vec2::ZERO };
-                let bodies = &mut BodyPair { a: &mut a, b: &mut b, remainders, faults: &mut faults };
-                block.solve_within(bodies, goal, &Softness::RIGID, most, &mut lambda);
-            }
-            // p = (vB - vA) / (aA + aB) for all mass fractions.
-            let p = (b.velocity - a.velocity).widen().length();
-            assert!(p <= Fx::from(most) + fx!(0.00001), "{p} of {most}");
-        }
-        assert_eq!(faults, 0);
-    }
 }

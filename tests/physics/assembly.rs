@@ -358,16 +358,9 @@ impl Assembly {
             JointKind::Revolute(kind) => kind.spring.map_or(0.0, |s| angular(s.hertz, angle)),
             JointKind::Weld(kind) => {
                 let turn = kind.angular.map_or(0.0, |soft| angular(soft.hertz, angle));
-                turn + kind.linear.map_or(0.0, |soft| {
-                    // x^T K^-1 x omega^2 / 2.
-                    let ra = arm(at_a, a);
-                    let xx = im[0] + im[1] + it[0] * ra.1 * ra.1 + it[1] * rb.1 * rb.1;
-                    let yy = im[0] + im[1] + it[0] * ra.0 * ra.0 + it[1] * rb.0 * rb.0;
-                    let xy = -it[0] * ra.0 * ra.1 - it[1] * rb.0 * rb.1;
-                    let det = xx * yy - xy * xy;
-                    let inside = (yy * gap.0 * gap.0 - 2.0 * xy * gap.0 * gap.1 + xx * gap.1 * gap.1) / det;
-                    omega(soft.hertz).powi(2) * inside / 2.0
-                })
+                let mass = 1.0 / (im[0] + im[1]);
+                let square = gap.0 * gap.0 + gap.1 * gap.1;
+                turn + kind.linear.map_or(0.0, |soft| mass * omega(soft.hertz).powi(2) * square / 2.0)
             }
             JointKind::Prismatic(Prismatic { spring: Some(spring), .. })
             | JointKind::Wheel(Wheel { spring: Some(spring), .. }) => {

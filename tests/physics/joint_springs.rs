@@ -1,5 +1,6 @@
-//! Springs follow the implicit integration of a damped oscillator, sub-step by sub-step: `v' = (v - h omega^2 x) / (1 +
-//! 2 zeta h omega + h^2 omega^2)`, `x' = x + h v'`. Only rounding differs.
+//! Springs follow the implicit integration of a damped oscillator, sub-step by sub-step: `v' = (v - K h omega^2 x) / (1 +
+//! K (2 zeta h omega + h^2 omega^2))`, `x' = x + h v'`. Only rounding differs. `K` is 1, except where a spring between
+//! two points also turns the bodies, or where two springs act.
 
 use lockstep2d::body::JointId;
 use lockstep2d::fx;
@@ -15,14 +16,17 @@ struct Oscillator {
     v: Fx,
     hertz: Fx,
     damping_ratio: Fx,
+    /// `K`.
+    mobility: Fx,
 }
 
 impl Oscillator {
     fn tick(&mut self) -> Fx {
         let h_omega = fx_mul(TAU, self.hertz) / RATE;
-        let damping = Fx::ONE + fx_mul(self.damping_ratio * 2, h_omega) + fx_mul(h_omega, h_omega);
+        let soft = fx_mul(self.damping_ratio * 2, h_omega) + fx_mul(h_omega, h_omega);
+        let damping = Fx::ONE + fx_mul(self.mobility, soft);
         for _ in 0..4 {
-            let pull = fx_mul(fx_mul(h_omega, h_omega), self.x) * RATE;
+            let pull = fx_mul(fx_mul(fx_mul(h_omega, h_omega), self.mobility), self.x) * RATE;
             self.v = fx_div(self.v - pull, damping).expect("more than 1");
             self.x += self.v / RATE;
         }
@@ -50,7 +54,7 @@ fn follows(
             let joint = bench.join(JointDef::new(bench.a, bench.b, kind(hertz, damping_ratio)));
             let x = stretch(&bench.world, joint);
             assert!((x.abs() - fx!(0.5)).abs() < fx!(0.0001), "starts at {x}");
-            let mut theory = Oscillator { x, v: fx!(0), hertz, damping_ratio };
+            let mut theory = Oscillator { x, v: fx!(0), hertz, damping_ratio, mobility: fx!(1) };
             let mut worst = fx!(0);
             bench.run(200, |_, world| worst = worst.max((stretch(world, joint) - theory.tick()).abs()));
             assert!(worst < fx!(0.00001), "{ground:?}, {hertz} Hz, ratio {damping_ratio}: {worst} off");
@@ -105,6 +109,62 @@ fn a_motor_pulls_its_frames_together_as_theory_says() {
     let apart = |world: &World, id| world.joint_translation(id).expect("there").y;
     let kind = |hertz, ratio| Motor::new().linear_spring(hertz, ratio, Fx::MAX).into();
     follows(kind, Vec2::new(fx!(0), fx!(0.5)), fx!(0), apart);
+}
+
+/// The frequency of a spring between two points is that of the bodies as points of mass: at the end of an arm `r`, where
+/// the body also turns, it swings `sqrt(1 + m r^2 / (mB k^2))` times as fast, with the reduced mass `m`.
+#[test]
+fn a_point_on_an_arm_swings_faster() {
+    // B has 2 kg and a radius of gyration of 0.5 m.
+    for (ground, reduced) in [(Ground::Fixed, fx!(1)), (Ground::Free(fx!(2)), fx!(0.5))] {
+        for (arm, hertz, ratio) in [
+            (fx!(0.5), fx!(2), fx!(0.1)),
+            (fx!(0.5), fx!(1), fx!(0)),
+            (fx!(1.5), fx!(1), fx!(0.1)),
+            (fx!(1.5), fx!(5), fx!(0.5)),
+            (fx!(8), fx!(0.5), fx!(0)),
+        ] {
+            // So small that B's rotation does not shorten the arm.
+            let x = arm / 100;
+            let mut bench = Bench::new(ground, fx!(0), Vec2::new(arm, x), fx!(0));
+            let kind = Motor::new().linear_spring(hertz, ratio, Fx::MAX);
+            let joint = bench.join(JointDef::new(bench.a, bench.b, kind).anchor_b((-arm, fx!(0))));
+            let mobility = fx!(1) + fx_mul(reduced, fx_mul(arm, arm) * 4);
+            let mut theory = Oscillator { x, v: fx!(0), hertz, damping_ratio: ratio, mobility };
+            let mut worst = fx!(0);
+            bench.run(200, |_, world| {
+                let stretch = world.joint_translation(joint).expect("there").y;
+                worst = worst.max((stretch - theory.tick()).abs());
+            });
+            assert!(worst < x / 1000, "{ground:?}, arm {arm} m, {hertz} Hz, ratio {ratio}: {worst} off");
+        }
+    }
+}
+
+/// Two welds at one body are solved together. Side by side, they are one spring of twice the stiffness and damping.
+#[test]
+fn two_soft_welds_swing_as_one_of_twice_the_stiffness() {
+    for ground in [Ground::Fixed, Ground::Free(fx!(0.7)), Ground::Free(fx!(40))] {
+        for (hertz, ratio) in [(fx!(1), fx!(0.1)), (fx!(2), fx!(0.5)), (fx!(3), fx!(0)), (fx!(8), fx!(1))] {
+            let mut bench = Bench::new(ground, fx!(0), Vec2::new(fx!(0), fx!(0.5)), fx!(0));
+            let joints = [fx!(-0.75), fx!(0.75)].map(|side| {
+                let kind = Weld::rigid().linear(hertz, ratio);
+                let def = JointDef::new(bench.a, bench.b, kind);
+                bench.join(def.anchor_a((side, fx!(0))).anchor_b((side, fx!(0))))
+            });
+            let (x, mobility) = (fx!(0.5), fx!(2));
+            let mut theory = Oscillator { x, v: fx!(0), hertz, damping_ratio: ratio, mobility };
+            let mut worst = fx!(0);
+            bench.run(200, |_, world| {
+                let x = theory.tick();
+                for joint in joints {
+                    let stretch = world.joint_translation(joint).expect("there").y;
+                    worst = worst.max((stretch - x).abs());
+                }
+            });
+            assert!(worst < fx!(0.0001), "{ground:?}, {hertz} Hz, ratio {ratio}: {worst} off");
+        }
+    }
 }
 
 /// An off-centre anchor lets the body rotate as well; at rest the spring has reached its target.

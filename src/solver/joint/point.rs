@@ -8,13 +8,13 @@ use super::super::limits::{Faults, clamp_warm_start};
 use super::super::point_block::{PointBlock, PointGoal};
 use super::super::softness::Softness;
 use super::pose::JointPose;
-use crate::math::{Speed, Vec2};
+use crate::math::{Speed, Unit, Vec2};
 
 /// The function of a point.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum PointTask {
-    /// Pulls the anchors onto each other, with impulses times `mA + mB` of at most `max`, in the bias pass only, as
-    /// spring rows do.
+    /// Pulls the anchors onto each other with the same stiffness in all directions, with impulses times `mA + mB` of at
+    /// most `max`, in the bias pass only, as spring rows do.
     Spring { softness: Softness, max: Speed },
     /// Drives the relative velocity of the anchors to `velocity`, with impulses times `mA + mB` of at most `max`.
     Drive { velocity: Vec2<Speed>, max: Speed },
@@ -63,12 +63,12 @@ impl JointPoint {
     /// Computes arms, gains and gap at the current pose.
     #[inline]
     pub(super) fn refresh(&mut self, place: &JointPose) {
-        self.block = place.block();
-        self.bias = match &self.task {
+        (self.block, self.bias) = match &self.task {
             PointTask::Spring { softness, .. } => {
-                Vec2::new(softness.push(place.gap.x), softness.push(place.gap.y))
+                let push = Vec2::new(softness.push(place.gap.x), softness.push(place.gap.y));
+                (place.block(softness.mass_scale), push)
             }
-            PointTask::Drive { velocity, .. } => -*velocity,
+            PointTask::Drive { velocity, .. } => (place.block(Unit::ONE), -*velocity),
         };
     }
 

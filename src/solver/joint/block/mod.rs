@@ -11,12 +11,15 @@
 //! S_i = sqrt(massScale_i),   (1 - S^2 + S A S) z = w / S,   d = S z
 //! ```
 //!
+//! The softness of a spring between two points is part of its scale (`scaling.rs`), so that its `S` is 1.
+//!
 //! Changes are also divided by `Q = sqrt(m_least / m)`, where `m` is the reduced mass of the two bodies, because the
 //! matrix is symmetric only for impulses, not for speeds.
 //!
 //! This is `A d + (impulseScale / massScale) d = w / massScale` with a unit diagonal, whose smallest eigenvalue is at
 //! least the smallest impulse scale, whatever masses and arms are, even if rows depend on each other, as in a loop of
-//! welds. The relax pass, which has no softness, adds [`EXCESS`] to the diagonal instead. The matrix depends on the pose
+//! welds. (Springs between points at long arms may depend on each other more closely; `matrix.rs` bounds the pivots.) The
+//! relax pass, which has no softness, adds [`EXCESS`] to the diagonal instead. The matrix depends on the pose
 //! alone. The impulses and the arithmetic that applies them are those of single rows.
 
 mod choice;
@@ -193,7 +196,8 @@ impl Block {
         let mass = root_and_inverse(share);
         for softness in unit.rows() {
             let mass_scale = i64::from(softness.mass_scale.to_bits());
-            self.bias.push(root_and_inverse(mass_scale), mass, ONE - mass_scale);
+            let scale = if unit.is_point_spring() { (ONE, ONE) } else { root_and_inverse(mass_scale) };
+            self.bias.push(scale, mass, ONE - mass_scale);
             self.relax.push(if softness.task == BlockedTask::Spring { (0, 0) } else { (ONE, ONE) }, mass, 0);
         }
         if unit.is_limit() {
@@ -210,7 +214,10 @@ impl Block {
             for (earlier, other) in (0..=at).zip(units.iter()) {
                 if earlier == at || unit.touches(other) {
                     first = first.min(other.row);
-                    pairs.push((at, earlier));
+                    // The two rows of a spring do not disturb each other: its scale has diagonalised them.
+                    if earlier != at || !unit.is_point_spring() {
+                        pairs.push((at, earlier));
+                    }
                 }
             }
             unit.rows().for_each(|_| matrix.push_row(first));

@@ -9,10 +9,18 @@
 //! ```
 //!
 //! Every entry of `H` is at most 1. Impulses as speeds are scaled by `R^-1` and scaled back by `R`.
+//!
+//! A spring between two points is isotropic (`point_block.rs`): it yields by `impulseScale p`, not by `impulseScale K p`.
+//! Its softness is therefore part of its scale, and `S = 1` in the equations of the block:
+//!
+//! ```text
+//! impulseScale I + massScale K = R' R'^T,   H = sqrt(massScale a) R'^-1 J,   R = sqrt(massScale) R'
+//! ```
 
 use crate::math::{Ratio, Unit, Vec2, round_shift_wide, saturate, saturate_wide};
 
 use super::super::super::row::{MassFractions, turning};
+use super::matrix::ONE;
 
 /// A scaled row: its Jacobian for each body, along x, along y and about the centre of mass, with 30 fraction bits.
 pub(super) type ScaledRow = [[i32; 3]; 2];
@@ -30,18 +38,44 @@ pub(super) fn fraction_roots(fractions: MassFractions) -> [i64; 2] {
 }
 
 impl Scaling {
-    /// Scales a point with the lever ratios of both bodies.
+    /// Scales a rigid point with the lever ratios of both bodies.
     pub(super) fn of_point(
+        e: [Vec2<Ratio>; 2],
+        fractions: MassFractions,
+        roots: [i64; 2],
+    ) -> (Self, [ScaledRow; 2]) {
+        Self::of_point_with(ONE, e, fractions, roots)
+    }
+
+    /// Scales a spring between two points.
+    pub(super) fn of_spring(
+        mass_scale: Unit,
+        e: [Vec2<Ratio>; 2],
+        fractions: MassFractions,
+        roots: [i64; 2],
+    ) -> (Self, [ScaledRow; 2]) {
+        let mass_scale = i64::from(mass_scale.to_bits());
+        let (factor, inverse_factor) = root_and_inverse(mass_scale);
+        let roots = roots.map(|root| product(root, factor));
+        let (Scaling { root, inverse }, rows) = Self::of_point_with(mass_scale, e, fractions, roots);
+        let root = root.map(|entry| product(entry, factor));
+        (Scaling { root, inverse: inverse.map(|entry| product(entry, inverse_factor)) }, rows)
+    }
+
+    fn of_point_with(
+        mass_scale: i64,
         [e_a, e_b]: [Vec2<Ratio>; 2],
         fractions: MassFractions,
         roots: [i64; 2],
     ) -> (Self, [ScaledRow; 2]) {
         let moving = i64::from(fractions.a.to_bits()) + i64::from(fractions.b.to_bits());
+        let diagonal = ONE - mass_scale + product(moving, mass_scale);
         let sum = |i: fn(Vec2<Ratio>) -> Ratio, j: fn(Vec2<Ratio>) -> Ratio| {
-            turning(fractions.a, i(e_a), j(e_a)) + turning(fractions.b, i(e_b), j(e_b))
+            let sum = turning(fractions.a, i(e_a), j(e_a)) + turning(fractions.b, i(e_b), j(e_b));
+            product(sum, mass_scale)
         };
         let (xx, xy, yy) =
-            (moving + sum(|e| e.x, |e| e.x), sum(|e| e.x, |e| e.y), moving + sum(|e| e.y, |e| e.y));
+            (diagonal + sum(|e| e.x, |e| e.x), sum(|e| e.x, |e| e.y), diagonal + sum(|e| e.y, |e| e.y));
         let (root_11, inverse_11) = root_and_inverse(xx);
         let root_21 = product(xy, inverse_11);
         let (root_22, inverse_22) = root_and_inverse(yy - product(root_21, root_21));

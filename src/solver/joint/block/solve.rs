@@ -61,9 +61,12 @@ impl Block {
         let mut faults = 0;
         for unit in units.iter() {
             let changes = unit.wanted(pass, hinges, list, poses, context, &mut faults);
-            for (row, change) in unit.range().zip(changes) {
+            let mut own = [0; 3];
+            unit.range().zip(&mut own).for_each(|(row, impulse)| *impulse = impulses[row]);
+            let yielding = unit.yielding(list, own);
+            for (row, (change, impulse)) in unit.range().zip(changes.into_iter().zip(yielding)) {
                 let give = if pass == Pass::Bias { bias.yields[row] } else { 0 };
-                wanted[row] = (change << EXTRA_BITS).saturating_sub(product(impulses[row], give));
+                wanted[row] = (change << EXTRA_BITS).saturating_sub(product(impulse, give));
             }
         }
         for limit in limits.iter().filter(|limit| units[limit.unit].is_open(hinges, list)) {

@@ -113,7 +113,7 @@ impl Unit {
 
     /// Computes the scaled rows at the current pose.
     pub(super) fn refresh(&mut self, hinges: &HingeSet, list: &JointList, rows: &mut [ScaledRow]) {
-        let Unit { row, fractions, roots, scaling, angle_scaling, .. } = self;
+        let Unit { row, fractions, roots, softness, scaling, angle_scaling, .. } = self;
         match self.source {
             Source::Hinge(number) => {
                 let hinge = hinges.blocked_hinge(number);
@@ -133,7 +133,9 @@ impl Unit {
             }
             Source::Part(ListPart::Point(at)) => {
                 let (e_a, e_b): (Vec2<Ratio>, Vec2<Ratio>) = list.point(at).block.ratios();
-                (*scaling, [rows[*row], rows[*row + 1]]) = Scaling::of_point([e_a, e_b], *fractions, *roots);
+                let mass_scale = softness[0].map_or(Fraction::ONE, |softness| softness.mass_scale);
+                (*scaling, [rows[*row], rows[*row + 1]]) =
+                    Scaling::of_spring(mass_scale, [e_a, e_b], *fractions, *roots);
             }
             Source::Part(ListPart::Row(at)) => {
                 let part = list.row(at);
@@ -179,6 +181,22 @@ impl Unit {
                 }
                 _ => [0; 3],
             },
+        }
+    }
+
+    /// Whether the unit is a spring between two points, whose softness is part of its scale.
+    pub(super) fn is_point_spring(&self) -> bool {
+        matches!(self.source, Source::Part(ListPart::Point(_)))
+    }
+
+    /// The impulses by which the rows yield, times their impulse scales: `L`, or `p` of a spring between two points.
+    pub(super) fn yielding(&self, list: &JointList, impulses: [i64; 3]) -> [i64; 3] {
+        match self.source {
+            Source::Part(ListPart::Point(at)) => {
+                let [x, y] = list.point(at).block.impulse_wide([impulses[0], impulses[1]]);
+                [x, y, 0]
+            }
+            _ => impulses,
         }
     }
 

@@ -260,7 +260,7 @@ fn a_point_is_solved_as_by_the_scalar_block() {
         let mut faults = setting.relax();
         let Setting { bodies, ends, fractions, .. } = &setting;
         for (i, (&[a, b], &fractions)) in ends.iter().zip(fractions.iter()).enumerate() {
-            let block = PointBlock::new(a, b, fractions);
+            let block = PointBlock::new(a, b, fractions, Unit::ONE);
             let (mut a, mut b) = (before[2 * i + 1], before[2 * i + 2]);
             let (ratios, mut lambda) = (block.ratios(), Vec2::ZERO);
             block.solve(&mut a, &mut b, ratios, Vec2::ZERO, &Softness::RIGID, &mut lambda, &mut faults);

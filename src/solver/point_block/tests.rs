@@ -1,0 +1,121 @@
+//! A rigid block brings its anchors to rest, a soft one is an isotropic spring, and impulses keep their bounds.
+
+use super::*;
+use crate::fx;
+use crate::math::{Fx, Reciprocal, Rng, Rot, narrow};
+
+/// One update leaves no relative velocity of the anchors except rounding errors of up to 6e-5 m/s. With arms of up
+/// to 16 radii of gyration on both sides the anchors start at up to 330 m/s.
+#[test]
+fn an_update_brings_the_anchors_to_rest() {
+    let mut rng = Rng::new(8);
+    let (mut faults, mut worst) = (0, 0);
+    for _ in 0..100_000 {
+        let mut arm = || {
+            let gyration = rng.range(fx!(0.05), fx!(10));
+            let reach = crate::math::fx_mul(gyration, rng.range(fx!(0), fx!(16)));
+            let arm = Rot::from_angle(rng.angle()).apply_wide(Vec2::new(reach, Fx::ZERO)).narrow();
+            Lever { arm, inverse_gyration: Reciprocal::of(gyration) }
+        };
+        let (a, b) = (arm(), arm());
+        let share: Unit = narrow(rng.range(fx!(0), fx!(1)));
+        let fractions = match rng.below(3) {
+            0 => MassFractions { a: Unit::ZERO, b: Unit::ONE },
+            _ => MassFractions { a: share, b: Unit::ONE - share },
+        };
+        let block = PointBlock::new(a, b, fractions, Unit::ONE);
+        let mut body = || {
+            let mut speed = || narrow(rng.range(fx!(-10), fx!(10)));
+            SolverBody { velocity: Vec2::new(speed(), speed()), spin: speed(), ..SolverBody::default() }
+        };
+        let (mut a, mut b) = (body(), body());
+        let (mut lambda, mut before) = (Vec2::ZERO, Vec2::ZERO);
+        // The second update removes the rounding errors of the first.
+        for _ in 0..2 {
+            before = lambda;
+            let (ratios, no_bias) = (block.ratios(), Vec2::ZERO);
+            block.solve(&mut a, &mut b, ratios, no_bias, &Softness::RIGID, &mut lambda, &mut faults);
+        }
+        let left = lambda - before;
+        worst = worst.max(left.x.to_bits().abs()).max(left.y.to_bits().abs());
+    }
+    assert_eq!(faults, 0);
+    assert!(worst <= 128, "{worst} units left");
+}
+
+/// From rest, an impulse changes momentum by no more than its bound, whatever the target velocity is.
+#[test]
+fn an_impulse_of_limited_length_is_no_longer() {
+    let mut rng = Rng::new(9);
+    let mut faults = 0;
+    for _ in 0..20_000 {
+        let mut lever = || {
+            let mut side = || rng.range(fx!(-3), fx!(3));
+            let arm = Vec2::new(side(), side()).narrow();
+            Lever { arm, inverse_gyration: Reciprocal::of(rng.range(fx!(0.3), fx!(3))) }
+        };
+        let (a, b) = (lever(), lever());
+        let share: Unit = narrow(rng.range(fx!(0), fx!(0.9)));
+        let block = PointBlock::new(a, b, MassFractions { a: share, b: Unit::ONE - share }, Unit::ONE);
+        let mut speed = |most: Fx| -> Speed { narrow(rng.range(Fx::ZERO, most)) };
+        let bias = Vec2::new(speed(fx!(20)), -speed(fx!(20)));
+        let most = speed(fx!(3));
+        let (mut a, mut b) = (SolverBody::default(), SolverBody::default());
+        let (mut lambda, remainders) = (Vec2::ZERO, &mut Remainders::default());
+        for _ in 0..3 {
+            let goal = PointGoal { bias, push: Vec2::ZERO };
+            let bodies = &mut BodyPair { a: &mut a, b: &mut b, remainders, faults: &mut faults };
+            block.solve_within(bodies, goal, &Softness::RIGID, most, &mut lambda);
+        }
+        // p = (vB - vA) / (aA + aB) for all mass fractions.
+        let p = (b.velocity - a.velocity).widen().length();
+        assert!(p <= Fx::from(most) + fx!(0.00001), "{p} of {most}");
+    }
+    assert_eq!(faults, 0);
+}
+
+/// A soft block pulls with the stiffness and the damping of its bodies as points of mass in all directions, at the end
+/// of the sub-step: `impulseScale p = -massScale v - push`, however long the arms are.
+#[test]
+fn a_soft_block_is_an_isotropic_spring() {
+    let mut rng = Rng::new(10);
+    let (mut faults, mut worst) = (0, Fx::ZERO);
+    for _ in 0..20_000 {
+        let mut lever = || {
+            let gyration = rng.range(fx!(0.05), fx!(2));
+            let reach = crate::math::fx_mul(gyration, rng.range(fx!(0), fx!(16)));
+            let arm = Rot::from_angle(rng.angle()).apply_wide(Vec2::new(reach, Fx::ZERO)).narrow();
+            Lever { arm, inverse_gyration: Reciprocal::of(gyration) }
+        };
+        let (a, b) = (lever(), lever());
+        let share: Unit = narrow(rng.range(fx!(0), fx!(1)));
+        let fractions = match rng.below(3) {
+            0 => MassFractions { a: Unit::ZERO, b: Unit::ONE },
+            _ => MassFractions { a: share, b: Unit::ONE - share },
+        };
+        let softness = Softness::spring(rng.range(fx!(0.1), fx!(20)), rng.range(fx!(0), fx!(2)), 240);
+        let block = PointBlock::new(a, b, fractions, softness.mass_scale);
+        let mut speed = || narrow(rng.range(fx!(-5), fx!(5)));
+        let mut body =
+            || SolverBody { velocity: Vec2::new(speed(), speed()), spin: speed(), ..SolverBody::default() };
+        let (mut a, mut b) = (body(), body());
+        let push = Vec2::new(speed(), speed());
+        let start = b.velocity - a.velocity;
+        let (mut lambda, remainders) = (Vec2::ZERO, &mut Remainders::default());
+        let bodies = &mut BodyPair { a: &mut a, b: &mut b, remainders, faults: &mut faults };
+        // The second update starts with the impulse of the first, and finds nothing to change but roundings.
+        for _ in 0..2 {
+            let goal = PointGoal { bias: Vec2::ZERO, push };
+            block.solve_within(bodies, goal, &softness, Speed::MAX, &mut lambda);
+        }
+        let p = b.velocity - a.velocity - start;
+        let v = block.velocity(&a, &b, block.ratios(), &mut faults);
+        let off = |p: Speed, v: Speed, push: Speed| {
+            let times = |scale: Unit, x: Speed| crate::math::fx_mul(scale.into(), x.into());
+            (times(softness.impulse_scale, p) + times(softness.mass_scale, v) + Fx::from(push)).abs()
+        };
+        worst = worst.max(off(p.x, v.x, push.x)).max(off(p.y, v.y, push.y));
+    }
+    assert_eq!(faults, 0);
+    assert!(worst < fx!(0.0002), "{worst} m/s off");
+}
