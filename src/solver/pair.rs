@@ -27,6 +27,16 @@ impl<L: Lanes<N>, const N: usize> BodyPairW<L, N> {
         BodyPairW { a: self.a, b: self.b }
     }
 
+    /// Takes on the velocities of another pair in the lanes of a mask.
+    #[inline(always)]
+    pub(super) fn replace(&mut self, mask: L::Mask, other: &Self) {
+        for (to, from) in [(&mut self.a, &other.a), (&mut self.b, &other.b)] {
+            to.x = L::select(mask, from.x, to.x);
+            to.y = L::select(mask, from.y, to.y);
+            to.turn = L::select(mask, from.turn, to.turn);
+        }
+    }
+
     #[inline(always)]
     pub(super) fn load(bodies: &[Cell<SolverBody>], [a, b]: &[[u32; N]; 2]) -> Self {
         BodyPairW { a: L::velocities(bodies, a), b: L::velocities(bodies, b) }

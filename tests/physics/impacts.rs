@@ -109,7 +109,7 @@ fn a_spinning_rod_gains_no_energy() {
             sum += ratio;
         }
         let mean = sum / f64::from(u32::try_from(cases.len()).expect("few"));
-        assert!((0.98..=1.0).contains(&mean), "{speed} m/s: {mean} in the mean");
+        assert!((0.98..1.0001).contains(&mean), "{speed} m/s: {mean} in the mean");
     }
 }
 

@@ -111,18 +111,15 @@ impl Operation<Contacts> for ApplyRestitution {
             L::store(pair.velocity(n, &point.normal, reader), &mut rebound.after);
         }
         let share = L::load(&shares_without_gain(batch, extras, &record.inverses, &rebound));
-        let all = !L::any(L::greater(L::splat(Unit::ONE.to_bits()), share));
-        if !all {
-            pair = stopped;
-        }
+        let limited = L::greater(L::splat(Unit::ONE.to_bits()), share);
+        let mut part = stopped;
         for (i, (point, rebound)) in batch.points[..batch.count].iter().zip(&rebound).enumerate() {
-            let mut d = L::sub(L::load(&rebound.new), L::load(&rebound.old));
-            if !all {
-                d = L::narrow::<UNIT>(L::mul(share, d));
-                policy.apply(&mut pair, &point.normal, d);
-            }
-            L::store(d, &mut extras.bounce[i]);
+            let d = L::sub(L::load(&rebound.new), L::load(&rebound.old));
+            let limited_d = L::narrow::<UNIT>(L::mul(share, d));
+            policy.apply(&mut part, &point.normal, L::select(limited, limited_d, L::splat(0)));
+            L::store(L::select(limited, limited_d, d), &mut extras.bounce[i]);
         }
+        pair.replace(limited, &part);
         pair.store(bodies, &batch.changed);
     }
 }
