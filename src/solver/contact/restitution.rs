@@ -76,13 +76,16 @@ impl Operation<Contacts> for ApplyRestitution {
         }
         let masks = [bounces::<L, N>(batch, extras, 0), bounces::<L, N>(batch, extras, 1)];
         let masks = [L::both(masks[0], takes_part), L::both(masks[1], takes_part)];
-        if !L::any(L::either(masks[0], masks[1])) {
+        // All other lanes keep their bits.
+        let active = L::either(masks[0], masks[1]);
+        if !L::any(active) {
             return;
         }
         let mut pair = BodyPairW::<L, N>::load(bodies, &batch.bodies);
         let mut rebound = [Rebound::NONE; 2];
         for (point, bounce) in batch.points[..batch.count].iter().zip(&extras.bounce) {
-            policy.apply(&mut pair, &point.normal, L::sub(L::splat(0), L::load(bounce)));
+            let back = L::sub(L::splat(0), L::load(bounce));
+            policy.apply(&mut pair, &point.normal, L::select(active, back, L::splat(0)));
         }
         let stopped = pair.copy();
         for (point, rebound) in batch.points[..batch.count].iter().zip(&mut rebound) {
@@ -90,7 +93,7 @@ impl Operation<Contacts> for ApplyRestitution {
             (rebound.old, rebound.new) = (point.normal_lambda, point.normal_lambda);
         }
         for (i, point) in batch.points[..batch.count].iter().enumerate() {
-            let bounce = L::load(&extras.bounce[i]);
+            let bounce = L::select(active, L::load(&extras.bounce[i]), L::splat(0));
             L::store(L::add_saturating(L::load(&point.normal_lambda), bounce), &mut rebound[i].new);
             policy.apply(&mut pair, &point.normal, bounce);
         }
@@ -111,13 +114,14 @@ impl Operation<Contacts> for ApplyRestitution {
             L::store(pair.velocity(n, &point.normal, reader), &mut rebound.after);
         }
         let share = L::load(&shares_without_gain(batch, extras, &record.inverses, &rebound));
-        let limited = L::greater(L::splat(Unit::ONE.to_bits()), share);
+        let limited = L::both(active, L::greater(L::splat(Unit::ONE.to_bits()), share));
         let mut part = stopped;
         for (i, (point, rebound)) in batch.points[..batch.count].iter().zip(&rebound).enumerate() {
             let d = L::sub(L::load(&rebound.new), L::load(&rebound.old));
             let limited_d = L::narrow::<UNIT>(L::mul(share, d));
             policy.apply(&mut part, &point.normal, L::select(limited, limited_d, L::splat(0)));
-            L::store(L::select(limited, limited_d, d), &mut extras.bounce[i]);
+            let bounce = L::select(active, L::select(limited, limited_d, d), L::load(&extras.bounce[i]));
+            L::store(bounce, &mut extras.bounce[i]);
         }
         pair.replace(limited, &part);
         pair.store(bodies, &batch.changed);
