@@ -33,7 +33,8 @@ const NORMAL_ROUNDS_MAX: u32 = 4;
 /// Change of the second point's impulse, in m/s, below which it does not affect the first point.
 const SETTLED: Speed = Speed::lit("0.005");
 
-/// Normal velocity below which an overlap is as rigid as a gap. A soft contact would let a part of the approach through.
+/// Normal velocity below which an overlap with a body that no impulse moves is as rigid as a gap. A soft contact would
+/// let a part of the approach through.
 const IMPACT_SPEED: Speed = Speed::lit("-1");
 
 /// Which of a contact's two points is solved first. The order alternates, because the point that is solved first turns
@@ -178,6 +179,8 @@ struct Normals<L: Lanes<N>, const N: usize> {
     bias_rate: L::Int,
     mass_scale: L::Int,
     impulse_scale: L::Int,
+    /// Normal velocity below which an overlap is rigid.
+    impact_speed: L::Int,
 }
 
 impl<L: Lanes<N>, const N: usize> Normals<L, N> {
@@ -196,6 +199,7 @@ impl<L: Lanes<N>, const N: usize> Normals<L, N> {
             bias_rate: chosen::<L, N>(immovable, soft.bias_rate.to_bits(), stiff.bias_rate.to_bits()),
             mass_scale: chosen::<L, N>(immovable, soft.mass_scale.to_bits(), stiff.mass_scale.to_bits()),
             impulse_scale: chosen::<L, N>(immovable, soft_impulse, stiff_impulse),
+            impact_speed: chosen::<L, N>(immovable, i32::MIN, IMPACT_SPEED.to_bits()),
         }
     }
 
@@ -262,7 +266,7 @@ impl<L: Lanes<N>, const N: usize> Normals<L, N> {
         match self.pass {
             Pass::Bias => {
                 let error = C::add(vn, self.bias::<C>(separation, gap));
-                let rigid = L::either(gap, L::greater(L::splat(IMPACT_SPEED.to_bits()), vn));
+                let rigid = L::either(gap, L::greater(self.impact_speed, vn));
                 let mass_scale = L::select(rigid, L::splat(Unit::ONE.to_bits()), self.mass_scale);
                 let impulse_scale = L::select(rigid, L::splat(0), self.impulse_scale);
                 let wide = L::add_wide(L::mul(mass_scale, error), L::mul(impulse_scale, old));
