@@ -145,7 +145,7 @@ fn claims() {
 #[test]
 fn mismatches_say_what_is_needed() {
     says([
-        (Mismatch::Semantics { file: 2, here: 7 }, "made with engine semantics 2, this program has 7"),
+        (Mismatch::Semantics { file: 2, here: 7 }, "made with engine semantics 2, this program has 8"),
         (
             Mismatch::Rules { file: ("shove".into(), 1), here: ("shove".into(), 4) },
             "made with the rules \"shove\" version 1, this program has \"shove\" version 4",
@@ -201,7 +201,7 @@ fn keyframes() {
     says([
         (KeyframesError::NotKeyframes, "this is not a file of keyframes"),
         (KeyframesError::Format { found: 9 }, "format version 9, this engine reads 1"),
-        (KeyframesError::Semantics { found: 2 }, "made with engine semantics 2, this program has 7"),
+        (KeyframesError::Semantics { found: 2 }, "made with engine semantics 2, this program has 8"),
         (
             KeyframesError::Rules { name: "shove".into(), version: 8 },
             "made with the rules \"shove\" version 8, which are not those of this program",

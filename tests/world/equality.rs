@@ -184,7 +184,7 @@ fn nothing_that_is_done_to_the_caches_is_seen() {
         );
     };
     enough(slept, 200);
-    enough(woken, 80);
+    enough(woken, 60);
     enough(visits, 400);
     enough(contacts, 1500);
     enough(hits, 400);
