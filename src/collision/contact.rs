@@ -67,10 +67,10 @@ impl KeptArms {
     #[inline(always)]
     pub(crate) fn renew(&mut self, current: Self, tolerance: u16) -> [i32; 6] {
         let mut differences = [0; 6];
-        for i in 0..6 {
+        for (i, difference) in differences.iter_mut().enumerate() {
             let apart = self.0[i].wrapping_sub(current.0[i]);
             let apart = if apart.unsigned_abs() <= tolerance { apart } else { 0 };
-            differences[i] = i32::from(apart) << Self::SHIFT;
+            *difference = i32::from(apart) << Self::SHIFT;
             self.0[i] = current.0[i].wrapping_add(apart);
         }
         differences

@@ -2,6 +2,7 @@
 //!
 //! All joints are satisfied at the start, so that the start has no energy in the joints themselves. Masses are within a
 //! factor of 100 of each other, and arms within 16 radii of gyration.
+#![expect(clippy::disallowed_types, reason = "energies are compared with floating point, not simulated")]
 #![expect(clippy::float_arithmetic, reason = "the oracle computes energy in floating point")]
 #![allow(dead_code, reason = "every start and kind is described, the tests use those that hold")]
 
@@ -154,7 +155,8 @@ impl Case {
                     Shape::Star if i == 0 => Vec2::ZERO,
                     Shape::Star => {
                         let turn = Angle::from_degrees(
-                            fx_div(fx!(360) * (i as i64), Fx::from_num(n - 1)).expect("some"),
+                            fx_div(fx!(360) * i64::try_from(i).expect("few"), Fx::from_num(n - 1))
+                                .expect("some"),
                         );
                         Rot::from_angle(turn).apply_wide(Vec2::new(rng.range(fx!(0.6), fx!(3)), Fx::ZERO))
                     }
@@ -164,7 +166,7 @@ impl Case {
                     Shape::Chain => Vec2::new(step, Fx::ZERO),
                     Shape::Loop => {
                         let turn = Angle::from_degrees(
-                            fx_div(fx!(360) * (i as i64), Fx::from_num(n)).expect("some"),
+                            fx_div(fx!(360) * i64::try_from(i).expect("few"), Fx::from_num(n)).expect("some"),
                         );
                         Rot::from_angle(turn).apply_wide(Vec2::new(Fx::from_num(n) / 6, Fx::ZERO))
                     }

@@ -46,7 +46,7 @@ fn a_column_of_a_hundred_boxes_stands() {
     sweep::for_each(sweep::sample(cases.flatten(), 3), |(count, rate, offset): (i32, u32, bool)| {
         let mut world = world_at(rate);
         for i in 0..count {
-            let aside = [fx!(0), fx!(0.01), fx!(-0.005), fx!(0.003)][i as usize % 4];
+            let aside = [fx!(0), fx!(0.01), fx!(-0.005), fx!(0.003)][i.unsigned_abs() as usize % 4];
             let place = Vec2::new(if offset { aside } else { fx!(0) }, Fx::from(i) + fx!(0.5));
             world
                 .spawn(&BodyDef::dynamic().position(place), &[rectangle(fx!(0.5), fx!(0.5))])

@@ -158,8 +158,8 @@ fn shares_without_gain<const N: usize>(
     let wide = |x: i32| i128::from(x);
     Ints(core::array::from_fn(|lane| {
         let (mut none, mut all) = (0, 0);
-        for i in 0..batch.count {
-            let Rebound { old, new, before, after } = &rebound[i];
+        for (i, point) in rebound.iter().enumerate().take(batch.count) {
+            let Rebound { old, new, before, after } = point;
             let inverse = wide(inverses.normals[i].0[lane]);
             let approach = wide(extras.approach[i].0[lane]);
             none += inverse * wide(old.0[lane]) * (wide(before.0[lane]) + approach);
