@@ -145,7 +145,7 @@ fn claims() {
 #[test]
 fn mismatches_say_what_is_needed() {
     says([
-        (Mismatch::Semantics { file: 2, here: 7 }, "made with engine semantics 2, this program has 8"),
+        (Mismatch::Semantics { file: 2, here: 7 }, "made with engine semantics 2, this program has 7"),
         (
             Mismatch::Rules { file: ("shove".into(), 1), here: ("shove".into(), 4) },
             "made with the rules \"shove\" version 1, this program has \"shove\" version 4",
