@@ -60,8 +60,8 @@ pub struct Material {
     pub restitution_mixing: Mixing,
     /// Approach speed in m/s below which the shape does not bounce, 0 to 400. `None` is that of the world,
     /// [`SolverSettings::restitution_threshold`](crate::solver::SolverSettings::restitution_threshold). A pair uses the
-    /// smaller value of its two shapes, so that a ball with a threshold of 0 bounces on everything, however slowly. Such
-    /// a ball may take long to come to rest, and a pile of them does not become still.
+    /// smaller value of its two shapes, so that a ball with a threshold of 0 bounces on everything, however slowly.
+    /// Such a ball may take long to come to rest, and a pile of them does not become still.
     pub restitution_threshold: Option<Fx>,
     /// Rolling resistance of a round shape, 0 to 1: the offset of the ground reaction ahead of the axle, as a fraction
     /// of the radius. A pair uses the larger value and the larger radius of its two shapes, where the radius is that of

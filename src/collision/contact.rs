@@ -38,11 +38,11 @@ pub(crate) struct PointImpulse {
     pub(crate) tangent: Speed,
 }
 
-/// The lever arms of a contact, in world axes: the vectors from A's centre of mass to both points, and from B's centre to
-/// A's. Each number is the low bits of a [`Length`], in units of 2^-17 m.
+/// The lever arms of a contact, in world axes: the vectors from A's centre of mass to both points, and from B's centre
+/// to A's. Each number is the low bits of a [`Length`], in units of 2^-17 m.
 ///
-/// They stay the same while the shapes hardly move against each other. Arms that follow every movement turn a stack that
-/// leans by itself: columns of more than 40 boxes fall. With kept arms those of 100 stand (`docs/DESIGN.md`).
+/// They stay the same while the shapes hardly move against each other. Arms that follow every movement turn a stack
+/// that leans by itself: columns of more than 40 boxes fall. With kept arms those of 100 stand (`docs/DESIGN.md`).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct KeptArms(pub(crate) [i16; 6]);
 

@@ -36,7 +36,8 @@ pub struct ManifoldPoint {
     pub feature: Feature,
 }
 
-/// Contact manifold of shape A and shape B.
+/// Contact manifold of shape A and shape B: that of the start of the tick, or of the time of impact for shapes that
+/// first touch later in the tick. The separations are always those of the start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Manifold {
     /// Unit vector from A to B.
@@ -45,13 +46,13 @@ pub struct Manifold {
     pub origin: Vec2<Fx>,
     points: [ManifoldPoint; 2],
     count: u8,
-    /// Index of the [`Impact`] of a manifold of the time of impact, counted from 1; 0 for a manifold of the start of the
-    /// tick.
+    /// Index of the [`Impact`] of a manifold of the time of impact, counted from 1; 0 for a manifold of the start of
+    /// the tick.
     pub(crate) impact: u32,
 }
 
-/// How far the bodies move until shapes that are apart at the start of a tick touch. The manifold of such shapes has
-/// the normal, the anchors and the origin of the time of impact, and the separations of the start of the tick.
+/// Displacements of two bodies from the start of the tick to the time of impact. The manifold has the normal, the
+/// anchors and the origin of the time of impact, and the separations of the start of the tick.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Impact {
     /// Displacements of the centres of mass of A and of B in metres.

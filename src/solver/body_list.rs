@@ -44,8 +44,8 @@ impl BodyFacts {
         }
     }
 
-    /// Largest change of a lever arm that leaves a contact as it was, in units of [`KeptArms`]: between a 32nd and a 16th
-    /// of the radius of gyration. Bodies that are not turned allow any change.
+    /// Largest change of a lever arm that leaves a contact as it was, in units of [`KeptArms`]: between a 32nd and a
+    /// 16th of the radius of gyration. Bodies that are not turned allow any change.
     pub(super) fn arm_tolerance(&self) -> u16 {
         let (mantissa, exponent) = self.inverse_gyration.parts();
         if self.mass.is_positive() && mantissa > 0 {

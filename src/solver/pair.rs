@@ -21,7 +21,7 @@ pub(super) struct BodyPairW<L: Lanes<N>, const N: usize> {
 }
 
 impl<L: Lanes<N>, const N: usize> BodyPairW<L, N> {
-    /// The same velocities. Not `Clone`, whose derived bounds lanes do not meet.
+    /// A copy of the velocities. A derived `Clone` would require it of the lanes type.
     #[inline(always)]
     pub(super) fn copy(&self) -> Self {
         BodyPairW { a: self.a, b: self.b }

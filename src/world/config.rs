@@ -25,11 +25,12 @@ use crate::solver::{ContactTuning, RATE_MAX, SUB_STEPS_MAX, SolverSettings};
 /// | 1 cm | 37 | 277.5 Hz | 1 mm | 2.4 % |
 /// | 5 mm | 52 | 390 Hz | 1 mm | 2.4 % |
 ///
-/// What counts is gravity per size: boxes of 10 cm under 1 m/s² need what boxes of 1 m need under 10 m/s². Another unit
-/// of length than the metre changes nothing, because gravity changes with it. The smallest body has a radius of gyration
-/// of 2 mm: a square of 5 mm or a ball with a radius of 3 mm, and 10 mg. Speeds in settings are not adapted: a box of 1
-/// cm hardly falls faster than the 0.05 m/s below which bodies [sleep](crate::body::BodySettings::sleep_speed), or the 1
-/// m/s below which they [do not bounce](SolverSettings::restitution_threshold), so that those may be set as well.
+/// The table depends on gravity divided by size: boxes of 10 cm under 1 m/s² need what boxes of 1 m need under 10
+/// m/s². Another unit of length than the metre changes nothing, because gravity changes with it. The smallest body has
+/// a radius of gyration of 2 mm: a square of 5 mm or a ball with a radius of 3 mm, and 10 mg. Speeds in settings are
+/// not adapted: a box of 1 cm hardly falls faster than the 0.05 m/s below which bodies
+/// [sleep](crate::body::BodySettings::sleep_speed), or the 1 m/s below which they [do not
+/// bounce](SolverSettings::restitution_threshold), so that those may be set as well.
 ///
 /// ```
 /// use lockstep2d::{fx, math::Vec2, world::{Config, World}};
@@ -113,9 +114,9 @@ impl Config {
     }
 
     /// Returns these settings with as many sub-steps and as stiff contacts as a stack of 8 boxes of `size` metres needs
-    /// to sink by less than 2.5 % of a box; see [`Config`] for a table. Call it after gravity and the tick rate are set.
-    /// Settings that are sufficient stay as they are. Sub-steps end at 64 in a tick and 4000 in a second: with 60 ticks
-    /// per second and 10 m/s², that is sufficient down to 4 mm.
+    /// to sink by less than 2.5 % of a box; see [`Config`] for a table. Call it after gravity and the tick rate are
+    /// set. Settings that are sufficient stay as they are. Sub-steps end at 64 in a tick and 4000 in a second: with 60
+    /// ticks per second and 10 m/s², that is sufficient down to 4 mm.
     ///
     /// ```
     /// use lockstep2d::{fx, world::{Config, World}};

@@ -38,8 +38,8 @@ fn assemblies_of_hinges_gain_no_energy() {
     never_gain(Mix::Hinge);
 }
 
-/// Welds whose anchors, angles or both are springs. Before, the stiffness between the anchors depended on the directions
-/// of the arms, and 6 of 60 assemblies gained up to 5 times their energy.
+/// Welds whose anchors, angles or both are springs. Before, the stiffness between the anchors depended on the
+/// directions of the arms, and 6 of 60 assemblies gained up to 5 times their energy.
 #[test]
 fn assemblies_of_soft_welds_gain_no_energy() {
     never_gain(Mix::SoftWeld);

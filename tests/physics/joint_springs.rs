@@ -111,8 +111,8 @@ fn a_motor_pulls_its_frames_together_as_theory_says() {
     follows(kind, Vec2::new(fx!(0), fx!(0.5)), fx!(0), apart);
 }
 
-/// The frequency of a spring between two points is that of the bodies as points of mass: at the end of an arm `r`, where
-/// the body also turns, it swings `sqrt(1 + m r^2 / (mB k^2))` times as fast, with the reduced mass `m`.
+/// The frequency of a spring between two points is that of the bodies as points of mass: at the end of an arm `r`,
+/// where the body also turns, it swings `sqrt(1 + m r^2 / (mB k^2))` times as fast, with the reduced mass `m`.
 #[test]
 fn a_point_on_an_arm_swings_faster() {
     // B has 2 kg and a radius of gyration of 0.5 m.

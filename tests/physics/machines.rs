@@ -41,7 +41,6 @@ fn a_ragdoll_falls_asleep_in_one_piece() {
 #[test]
 fn a_bridge_of_50_planks_bears_ten_boxes() {
     let game = play("bridge", 900, |tick, world| {
-        // The boxes land at 16 m/s, and their contacts do not give way.
         assert!(joint_gap(world) <= fx!(0.062), "tick {tick}: gap {} m", joint_gap(world));
         assert!(speed_max(world) <= fx!(16.6), "tick {tick}: {} m/s", speed_max(world));
         assert!(deepest(world) <= fx!(0.22), "tick {tick}: overlap {} m", deepest(world));

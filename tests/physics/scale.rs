@@ -1,7 +1,7 @@
 //! Stacks of boxes of any size are as firm as stacks of boxes of 1 m, with the settings of `Config::for_smallest`.
 //!
-//! A contact yields by `g / omega^2` for each body that it carries, whatever the size is. The table in the documentation
-//! of `Config` lists the settings for each size; these are its rows.
+//! A contact yields by `g / omega^2` for each body that it carries, whatever the size is. The table in the
+//! documentation of `Config` lists the settings for each size; these are its rows.
 
 use lockstep2d::body::{BodyDef, BodyId, Polygon, ShapeDef};
 use lockstep2d::fx;
@@ -58,9 +58,9 @@ fn sink(config: Config, size: Fx) -> Fx {
     fx!(7.5) - floor.place(boxes[7]).y
 }
 
-/// A column of 20 boxes with offsets of 1 % of their size, and a pyramid of 10 rows, come to rest as they are. Small boxes
-/// fall asleep after the same half second as large ones, in which they sway more often: a column of boxes of 1 cm then
-/// leans by 0.11 of a box, one of 1 m by 0.002.
+/// A column of 20 boxes with offsets of 1 % of their size, and a pyramid of 10 rows, come to rest as they are. Small
+/// boxes fall asleep after the same half second as large ones, in which they sway more often: a column of boxes of 1 cm
+/// then leans by 0.11 of a box, one of 1 m by 0.002.
 fn check_piles(config: Config, size: Fx) {
     let mut floor = Floor::new(config, size);
     let mut rng = Rng::new(5);

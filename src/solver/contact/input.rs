@@ -26,7 +26,7 @@ pub(crate) struct ActiveContact {
     pub(crate) is_impact: bool,
 }
 
-/// What the contacts of a body tell of the coming tick.
+/// Properties of a body that follow from all of its contacts: warm start, impacts, restitution.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Prospect {
     /// Whether a contact had points in the last tick.
@@ -113,8 +113,8 @@ impl Input {
 }
 
 impl ContactSource<'_> {
-    /// Adds a node for each touching pair to the graph that is coloured, and finds what the contacts of each body tell of
-    /// the coming tick.
+    /// Adds a node for each touching pair to the graph that is coloured, and collects the properties of each body that
+    /// follow from its contacts.
     pub(super) fn add_nodes(&self, colouring: &mut Colouring, prospects: &mut Vec<Prospect>) {
         prospects.clear();
         prospects.resize(self.list.len(), Prospect::default());
@@ -216,8 +216,8 @@ impl ContactSource<'_> {
     }
 }
 
-/// Replaces the anchors, and the vector from B's centre to them, by those with which the arms are as in the last tick, if
-/// the contact has the same points and has hardly moved. Returns the arms to be kept.
+/// Replaces the anchors, and the vector from B's centre to them, by those with which the arms are as in the last tick,
+/// if the contact has the same points and has hardly moved. Returns the arms to be kept.
 #[inline(always)]
 fn keep_arms(
     manifold: &Manifold,

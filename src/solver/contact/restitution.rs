@@ -55,8 +55,8 @@ pub(in crate::solver) struct ApplyRestitution {
     pub(in crate::solver) again: bool,
 }
 
-/// Restitution above which contacts that bounce at the same time are solved against each other. Below it an impact loses
-/// so much energy that the order of contacts does not matter.
+/// Restitution above which contacts that bounce at the same time are solved against each other. Below it an impact
+/// loses so much energy that the order of contacts does not matter.
 const ELASTIC: Unit = Unit::lit("0.5");
 
 impl Operation<Contacts> for ApplyRestitution {
@@ -176,8 +176,8 @@ fn shares_without_gain<const N: usize>(
     }))
 }
 
-/// Mask of the lanes in which a point approached fast enough and was pushed. A point that is as near as [`NEAR`] bounces
-/// together with the other one. Otherwise a box that lands not quite flat would spin.
+/// Mask of the lanes in which a point approached fast enough and was pushed. A point that is as near as [`NEAR`]
+/// bounces together with the other one. Otherwise a box that lands not quite flat would spin.
 #[inline(always)]
 fn bounces<L: Lanes<N>, const N: usize>(batch: &Batch<N>, extras: &ContactExtras<N>, i: usize) -> L::Mask {
     let threshold = L::sub(L::splat(1), L::load(&extras.restitution_threshold));

@@ -80,7 +80,7 @@ fn hinge_parts(kind: &JointKind) -> Option<AngleParts> {
     }
 }
 
-/// What the choice of blocks depends on of a joint.
+/// The properties of a joint by which blocks are chosen.
 fn candidate(joint: &Joint, [a, b]: [&HingeBody; 2]) -> Candidate {
     let limits = |limit: Option<JointLimit>| if limit.is_some() { 2 } else { 0 };
     let (rows, is_hinge) = match &joint.def.kind {

@@ -71,7 +71,7 @@ pub(super) enum ListPart {
     Point(usize),
 }
 
-/// What a block needs of a row or point to set up its equations.
+/// Bodies, mass fractions and softness of a row or point in a block.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct BlockedPart {
     pub(super) part: ListPart,

@@ -167,9 +167,9 @@ impl JointPose {
         Lever { arm: self.lever_a.arm + self.gap.narrow(), ..self.lever_a }
     }
 
-    /// The block of a pulled or driven point. `mass_scale` is that of the spring, 1 for a motor. Its impulses act at one point of both bodies. Far away bodies on which no
-    /// such point is within reach are moved along the line between their centres only: the effective mass across it is
-    /// less than a ten thousandth of that along it.
+    /// The block of a pulled or driven point. `mass_scale` is that of the spring, 1 for a motor. Its impulses act at
+    /// one point of both bodies. Far away bodies on which no such point is within reach are moved along the line
+    /// between their centres only: the effective mass across it is less than a ten thousandth of that along it.
     pub(super) fn block(&self, mass_scale: Unit) -> PointBlock {
         match self.levers_at_one_point() {
             Some([a, b]) => PointBlock::new(a, b, self.fractions, mass_scale),

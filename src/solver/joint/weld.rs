@@ -18,9 +18,9 @@ use crate::math::Fx;
 #[doc(alias = "FixedJoint")]
 #[doc(alias = "WeldJoint")]
 pub struct Weld {
-    /// Softness of the anchors; `None` is rigid. The frequency is that of the bodies as points of mass, and the stiffness
-    /// the same in all directions ([`Soft`]). Forces act on both bodies at B's anchor, so that a soft weld keeps angular
-    /// momentum however far it is stretched.
+    /// Softness of the anchors; `None` is rigid. The frequency is that of the bodies as points of mass, and the
+    /// stiffness the same in all directions ([`Soft`]). Forces act on both bodies at B's anchor, so that a soft weld
+    /// keeps angular momentum however far it is stretched.
     pub linear: Option<Soft>,
     /// Softness of the angle; `None` is rigid.
     pub angular: Option<Soft>,

@@ -26,7 +26,7 @@ const PAIR_MIN: Unit = Unit::lit("0.6");
 /// discs.
 const SUM_MIN: i64 = (1 << 30) / 100 * 152;
 
-/// What the choice depends on of a joint.
+/// A joint that may be solved in a block, with the properties by which blocks are chosen.
 #[derive(Clone, Copy, Debug)]
 pub(in super::super) struct Candidate {
     /// The indices of its bodies: the ground for a body that no impulse changes.

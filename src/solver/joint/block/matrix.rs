@@ -8,8 +8,8 @@
 //! A = C C^T,   Cij = (Aij - sum Cik Cjk) / Cjj,   Cii = sqrt(Aii - sum Cik^2),   k < j
 //! ```
 //!
-//! Each row is stored from its first entry that is not 0 up to the diagonal. The factor has the same envelope (A. George
-//! and J. Liu, "Computer Solution of Large Sparse Positive Definite Systems", 1981, chapter 4).
+//! Each row is stored from its first entry that is not 0 up to the diagonal. The factor has the same envelope (A.
+//! George and J. Liu, "Computer Solution of Large Sparse Positive Definite Systems", 1981, chapter 4).
 
 use alloc::vec::Vec;
 
@@ -18,8 +18,8 @@ use crate::math::{round_shift, round_shift_wide, saturate, saturate_wide};
 /// 1 as an entry.
 pub(super) const ONE: i64 = 1 << 30;
 
-/// Smallest square of a diagonal entry of a factor, with 60 fraction bits: 2^-16. The relax pass adds four times as much
-/// to the diagonal, so that only rounding errors could lead below it.
+/// Smallest square of a diagonal entry of a factor, with 60 fraction bits: 2^-16. The relax pass adds four times as
+/// much to the diagonal, so that only rounding errors could lead below it.
 const PIVOT_MIN: i64 = 1 << 44;
 
 /// The entries of the matrix below the diagonal, which is 1.

@@ -18,8 +18,8 @@
 //!
 //! This is `A d + (impulseScale / massScale) d = w / massScale` with a unit diagonal, whose smallest eigenvalue is at
 //! least the smallest impulse scale, whatever masses and arms are, even if rows depend on each other, as in a loop of
-//! welds. (Springs between points at long arms may depend on each other more closely; `matrix.rs` bounds the pivots.) The
-//! relax pass, which has no softness, adds [`EXCESS`] to the diagonal instead. The matrix depends on the pose
+//! welds. (Springs between points at long arms may depend on each other more closely; `matrix.rs` bounds the pivots.)
+//! The relax pass, which has no softness, adds [`EXCESS`] to the diagonal instead. The matrix depends on the pose
 //! alone. The impulses and the arithmetic that applies them are those of single rows.
 
 mod choice;

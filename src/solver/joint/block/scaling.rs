@@ -10,8 +10,8 @@
 //!
 //! Every entry of `H` is at most 1. Impulses as speeds are scaled by `R^-1` and scaled back by `R`.
 //!
-//! A spring between two points is isotropic (`point_block.rs`): it yields by `impulseScale p`, not by `impulseScale K p`.
-//! Its softness is therefore part of its scale, and `S = 1` in the equations of the block:
+//! A spring between two points is isotropic (`point_block.rs`): it yields by `impulseScale p`, not by `impulseScale K
+//! p`. Its softness is therefore part of its scale, and `S = 1` in the equations of the block:
 //!
 //! ```text
 //! impulseScale I + massScale K = R' R'^T,   H = sqrt(massScale a) R'^-1 J,   R = sqrt(massScale) R'

@@ -34,7 +34,7 @@ impl Operation<Hinges> for SolveDrives<'_> {
     }
 }
 
-/// What a block needs of a hinge to set up its equations.
+/// Jacobian, mass fractions and softness of a hinge in a block.
 pub(in super::super) struct BlockedHinge {
     pub(in super::super) changed: [u32; 2],
     pub(in super::super) fractions: MassFractions,
