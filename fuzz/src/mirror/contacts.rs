@@ -19,6 +19,7 @@ pub(super) struct Contact {
     passing: bool,
     count: u8,
     points: [Point; 2],
+    arms: [i16; 6],
     rolling: i32,
 }
 
@@ -43,13 +44,14 @@ impl State {
         let (a, b) = (self.shapes.pick(source)? as u32, self.shapes.pick(source)? as u32);
         let contacts = if rests { &mut self.resting } else { &mut self.contacts };
         let at = source.below(contacts.len());
-        match source.below(8) {
+        match source.below(9) {
             0 => {
                 let shapes = (a.min(b), a.max(b));
                 let at = contacts.binary_search_by_key(&shapes, |contact| contact.shapes).err()?;
                 let (touching, passing) = (source.one_in(2), source.one_in(4));
                 let points = Default::default();
-                let contact = Contact { shapes, touching, passing, count: 0, points, rolling: 0 };
+                let contact =
+                    Contact { shapes, touching, passing, count: 0, points, arms: [0; 6], rolling: 0 };
                 contacts.insert(at, contact);
             }
             _ if contacts.is_empty() => return None,
@@ -57,6 +59,12 @@ impl State {
             2 => contacts[at].touching = !contacts[at].touching,
             3 => contacts[at].passing = !contacts[at].passing,
             4 => contacts[at].rolling = speed(source, IMPULSE_MAX),
+            5 => {
+                // Points from the count on have no arms. A change of them there is refused.
+                for arm in &mut contacts[at].arms {
+                    *arm = if source.one_in(2) { source.word() as i16 } else { *arm };
+                }
+            }
             _ => {
                 let contact = &mut contacts[at];
                 contact.count = source.byte() % 3;
@@ -65,6 +73,11 @@ impl State {
                     let feature = if source.one_in(2) { source.word() as u16 } else { source.byte().into() };
                     let normal = source.within(0, IMPULSE_MAX) as i32;
                     *point = Point { feature, normal, tangent: speed(source, IMPULSE_MAX) };
+                }
+                match contact.count {
+                    0 => contact.arms = [0; 6],
+                    1 => contact.arms[2..4].fill(0),
+                    _ => {}
                 }
             }
         }
