@@ -39,43 +39,13 @@ pub(crate) struct PointImpulse {
 }
 
 /// The lever arms of a contact, in world axes: the vectors from A's centre of mass to both points, and from B's centre
-/// to A's. Each number is the low bits of a [`Length`], in units of 2^-17 m.
+/// to A's. Each coordinate is the low 16 bits of a [`Length`](crate::math::Length) in units of 2^-17 m, and each vector
+/// is `x + 2^16 y`, with the signs of both.
 ///
 /// They stay the same while the shapes hardly move against each other. Arms that follow every movement turn a stack
 /// that leans by itself: columns of more than 40 boxes fall. With kept arms those of 100 stand (`docs/DESIGN.md`).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub(crate) struct KeptArms(pub(crate) [i16; 6]);
-
-impl KeptArms {
-    /// Fraction bits of a [`Length`] beyond those of a kept arm.
-    const SHIFT: u32 = 5;
-
-    /// The arms of a contact that has none yet. Lengths beyond their format wrap around, as do their low bits.
-    #[expect(clippy::cast_possible_truncation, reason = "the low bits")]
-    #[inline(always)]
-    pub(crate) fn of(arms: [i32; 6]) -> Self {
-        // Without closures, which the compiler does not inline into vector code.
-        let mut low = [0; 6];
-        for i in 0..6 {
-            low[i] = (arms[i] >> Self::SHIFT) as i16;
-        }
-        KeptArms(low)
-    }
-
-    /// Takes on the current value of each number that has changed by more than a tolerance. Returns the differences of
-    /// the others from their current values, in units of [`Length`].
-    #[inline(always)]
-    pub(crate) fn renew(&mut self, current: Self, tolerance: u16) -> [i32; 6] {
-        let mut differences = [0; 6];
-        for (i, difference) in differences.iter_mut().enumerate() {
-            let apart = self.0[i].wrapping_sub(current.0[i]);
-            let apart = if apart.unsigned_abs() <= tolerance { apart } else { 0 };
-            *difference = i32::from(apart) << Self::SHIFT;
-            self.0[i] = current.0[i].wrapping_add(apart);
-        }
-        differences
-    }
-}
+pub(crate) struct KeptArms(pub(crate) [i32; 3]);
 
 impl Contact {
     pub(crate) fn new(shapes: Pair) -> Self {
@@ -114,15 +84,9 @@ impl Contact {
         self.rolling = Speed::ZERO;
     }
 
-    /// Stores the accumulated impulses of up to two points, and their arms.
+    /// Stores the accumulated impulses of up to two points.
     #[inline]
-    pub(crate) fn store_impulses(
-        &mut self,
-        points: [PointImpulse; 2],
-        count: u8,
-        arms: KeptArms,
-        rolling: Speed,
-    ) {
-        (self.points, self.count, self.arms, self.rolling) = (points, count, arms, rolling);
+    pub(crate) fn store_impulses(&mut self, points: [PointImpulse; 2], count: u8, rolling: Speed) {
+        (self.points, self.count, self.rolling) = (points, count, rolling);
     }
 }

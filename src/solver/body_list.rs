@@ -31,28 +31,29 @@ pub(super) struct BodyFacts {
     /// Mass in kg; 0 if no impulse moves the body.
     pub(super) mass: Fx,
     pub(super) inverse_gyration: Reciprocal,
+    /// Largest change of a lever arm that leaves a contact as it was: see [`arm_tolerance`].
+    pub(super) arm_tolerance: u16,
 }
 
 impl BodyFacts {
-    const GROUND: Self = BodyFacts { centre: Vec2::ZERO, mass: Fx::ZERO, inverse_gyration: Reciprocal::ZERO };
+    const GROUND: Self = BodyFacts {
+        centre: Vec2::ZERO,
+        mass: Fx::ZERO,
+        inverse_gyration: Reciprocal::ZERO,
+        arm_tolerance: ARM_TOLERANCE_MAX,
+    };
 
     fn of(body: &Body) -> Self {
+        let mass = if body.is_dynamic() { body.mass() } else { Fx::ZERO };
         BodyFacts {
             centre: body.centre_of_mass(),
-            mass: if body.is_dynamic() { body.mass() } else { Fx::ZERO },
+            mass,
             inverse_gyration: body.mass.inverse_gyration,
-        }
-    }
-
-    /// Largest change of a lever arm that leaves a contact as it was, in units of [`KeptArms`]: between a 32nd and a
-    /// 16th of the radius of gyration. Bodies that are not turned allow any change.
-    pub(super) fn arm_tolerance(&self) -> u16 {
-        let (mantissa, exponent) = self.inverse_gyration.parts();
-        if self.mass.is_positive() && mantissa > 0 {
-            // k is at least 2^(exponent - 31) m.
-            1 << (exponent - 31 + 13).clamp(0, 14)
-        } else {
-            u16::MAX
+            arm_tolerance: if mass > 0 {
+                arm_tolerance(body.mass.inverse_gyration)
+            } else {
+                ARM_TOLERANCE_MAX
+            },
         }
     }
 
@@ -60,6 +61,18 @@ impl BodyFacts {
     pub(super) fn arm_to(&self, place: Vec2<Fx>) -> Vec2<Length> {
         // Both are within the world, so that the difference fits.
         place.wrapping_sub(self.centre).narrow()
+    }
+}
+
+/// Tolerance of bodies that contacts do not turn: a quarter of the range of a kept arm.
+const ARM_TOLERANCE_MAX: u16 = 1 << 14;
+
+/// Between a 32nd and a 16th of the radius of gyration, in units of 2^-17 m, at most [`ARM_TOLERANCE_MAX`].
+fn arm_tolerance(inverse_gyration: Reciprocal) -> u16 {
+    match inverse_gyration.parts() {
+        (0, _) => ARM_TOLERANCE_MAX,
+        // The radius is at least 2^(exponent - 31) m.
+        (_, exponent) => 1 << (exponent - 31 + 13).clamp(0, 14),
     }
 }
 

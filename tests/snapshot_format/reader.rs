@@ -87,6 +87,15 @@ impl<'a> Reader<'a> {
         });
     }
 
+    /// A lever arm: `x + 2^16 y`.
+    fn arm(&mut self, name: &str) {
+        self.take(4, name, |taken| {
+            let word = i32::from_le_bytes(taken.try_into().expect("4 bytes"));
+            let x = word << 16 >> 16;
+            [x, (word - x) >> 16].map(|axis| decimal(axis.into(), 17)).join(", ")
+        });
+    }
+
     fn fx(&mut self, name: &str) {
         self.fixed(name, 1, 8, 32);
     }
@@ -295,7 +304,9 @@ impl<'a> Reader<'a> {
                 self.fixed("normal impulse", 1, 4, 21);
                 self.fixed("tangential impulse", 1, 4, 21);
             }
-            self.fixed("kept arms", 6, 2, 17);
+            for arm in ["arm of the first point", "arm of the second point", "arm from B to A"] {
+                self.arm(arm);
+            }
             self.fixed("impulse against rolling", 1, 4, 21);
         }
     }

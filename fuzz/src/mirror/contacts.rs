@@ -19,7 +19,7 @@ pub(super) struct Contact {
     passing: bool,
     count: u8,
     points: [Point; 2],
-    arms: [i16; 6],
+    arms: [i32; 3],
     rolling: i32,
 }
 
@@ -51,7 +51,7 @@ impl State {
                 let (touching, passing) = (source.one_in(2), source.one_in(4));
                 let points = Default::default();
                 let contact =
-                    Contact { shapes, touching, passing, count: 0, points, arms: [0; 6], rolling: 0 };
+                    Contact { shapes, touching, passing, count: 0, points, arms: [0; 3], rolling: 0 };
                 contacts.insert(at, contact);
             }
             _ if contacts.is_empty() => return None,
@@ -62,7 +62,7 @@ impl State {
             5 => {
                 // Points from the count on have no arms. A change of them there is refused.
                 for arm in &mut contacts[at].arms {
-                    *arm = if source.one_in(2) { source.word() as i16 } else { *arm };
+                    *arm = if source.one_in(2) { source.word() as i32 } else { *arm };
                 }
             }
             _ => {
@@ -75,8 +75,8 @@ impl State {
                     *point = Point { feature, normal, tangent: speed(source, IMPULSE_MAX) };
                 }
                 match contact.count {
-                    0 => contact.arms = [0; 6],
-                    1 => contact.arms[2..4].fill(0),
+                    0 => contact.arms = [0; 3],
+                    1 => contact.arms[1] = 0,
                     _ => {}
                 }
             }

@@ -3,12 +3,13 @@
 use super::super::body_list::{BodyList, GROUND};
 use super::super::colour::{Colouring, Node, Size};
 use super::super::row::MassFractions;
+use super::arms::last_arms;
 use super::{Surface, WarmStarts};
 use alloc::vec::Vec;
 
-use crate::collision::{Contact, Impact, KeptArms, Manifold, Pair, PointImpulse};
+use crate::collision::{Contact, Impact, Manifold, Pair, PointImpulse};
 use crate::math::{Length, Step, convert};
-use crate::simd::{Quad, prefetch};
+use crate::simd::{Lanes, Quad, prefetch};
 
 /// A touching pair that the solver solves.
 #[derive(Clone, Copy, Debug)]
@@ -26,28 +27,36 @@ pub(crate) struct ActiveContact {
     pub(crate) is_impact: bool,
 }
 
-/// Properties of a body that follow from all of its contacts: warm start, impacts, restitution.
+/// Properties of a body that follow from all of its contacts: flags that each contact sets, and in the bits above them
+/// the number of contacts with bodies that impulses do not move.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Prospect {
-    /// Whether a contact had points in the last tick.
-    warm: bool,
-    /// Whether a contact is an impact.
-    impact: bool,
-    /// Number of contacts with bodies that impulses do not move.
-    walls: u32,
-    /// Whether a contact has restitution.
-    pub(super) bounces: bool,
-}
+pub(super) struct Prospect(u32);
 
 impl Prospect {
+    /// A contact had points in the last tick.
+    const WARM: u32 = 1;
+    /// A contact is an impact.
+    const IMPACT: u32 = 2;
+    /// A contact has restitution.
+    const BOUNCES: u32 = 4;
+    const FLAGS: u32 = 8;
+
+    fn add(&mut self, flags: u32, walls: u32) {
+        self.0 = (self.0 | flags) + walls * Self::FLAGS;
+    }
+
     /// Whether the impulses of the last tick are a guess for those of this tick.
     fn has_guess(self) -> bool {
-        self.warm && !self.is_wedged()
+        self.0 & Self::WARM != 0 && !self.is_wedged()
     }
 
     /// Whether an impact may drive the body between two walls. Neither of them gives way.
     fn is_wedged(self) -> bool {
-        self.impact && self.walls > 1
+        self.0 & Self::IMPACT != 0 && self.0 >= 2 * Self::FLAGS
+    }
+
+    pub(super) fn bounces(self) -> bool {
+        self.0 & Self::BOUNCES != 0
     }
 }
 
@@ -71,7 +80,6 @@ pub(super) struct Input {
     pub(super) changed: [u32; 2],
     pub(super) contact: u32,
     pub(super) features: [u16; 2],
-    pub(super) arms: KeptArms,
     /// Whether one of the bodies is wedged.
     pub(super) wedged: bool,
     pub(super) count: u8,
@@ -85,6 +93,8 @@ pub(super) struct Input {
     pub(super) to_origin: Quad,
     /// Vectors from the manifold's origin to the two points.
     pub(super) anchors: Quad,
+    /// The arms of the last tick: see [`last_arms`].
+    pub(super) last_arms: Quad,
     /// Impulses of the last tick, `p = L / D`: along the normal of each point, and along the tangent.
     pub(super) carried: Quad,
     /// The separations of the points, in the format of a step, the friction, and the distance of the surfaces half-way
@@ -99,7 +109,6 @@ impl Input {
         changed: [GROUND; 2],
         contact: 0,
         features: [0; 2],
-        arms: KeptArms([0; 6]),
         wedged: false,
         count: 0,
         extras: false,
@@ -107,6 +116,7 @@ impl Input {
         gyrations: Quad([0; 4]),
         to_origin: Quad([0; 4]),
         anchors: Quad([0; 4]),
+        last_arms: Quad([0; 4]),
         carried: Quad([0; 4]),
         rest: Quad([0; 4]),
     };
@@ -124,15 +134,12 @@ impl ContactSource<'_> {
             let bodies = self.changed(self.bodies_of(pair));
             let size = if is_small { Size::Small } else { Size::Large };
             colouring.add(Node::new(u64::from(a) << 32 | u64::from(b), bodies, size));
-            let warm = self.contacts[pair.contact as usize].count > 0;
+            let flag = |is_set: bool, flag: u32| if is_set { flag } else { 0 };
+            let flags = flag(self.contacts[pair.contact as usize].count > 0, Prospect::WARM)
+                | flag(pair.is_impact, Prospect::IMPACT)
+                | flag(pair.surface.restitution.is_positive(), Prospect::BOUNCES);
             let walls = u32::from(bodies.contains(&GROUND));
-            for body in bodies {
-                let prospect = &mut prospects[body as usize];
-                prospect.walls += walls;
-                prospect.warm |= warm;
-                prospect.impact |= pair.is_impact;
-                prospect.bounces |= pair.surface.restitution.is_positive();
-            }
+            bodies.into_iter().for_each(|body| prospects[body as usize].add(flags, walls));
         }
         prospects[GROUND as usize] = Prospect::default();
         colouring.set_cold(|bodies| bodies.iter().all(|&body| !prospects[body as usize].has_guess()));
@@ -172,11 +179,6 @@ impl ContactSource<'_> {
             gap = Length::ZERO;
         }
         let memory = &self.contacts[pair.contact as usize];
-        let mut anchors =
-            [first.anchor.x, first.anchor.y, second.anchor.x, second.anchor.y].map(Length::to_bits);
-        let mut to_origin = [to_a.x, to_a.y, to_b.x, to_b.y].map(Length::to_bits);
-        let tolerance = a.arm_tolerance().min(b.arm_tolerance());
-        let arms = keep_arms(manifold, memory, tolerance, &mut anchors, &mut to_origin);
         let [old_first, old_second] = carried_over(manifold, memory, warm);
         let tangent = old_first.tangent.saturating_add(old_second.tangent);
         let changed = self.changed(bodies);
@@ -185,14 +187,19 @@ impl ContactSource<'_> {
             changed,
             contact: pair.contact,
             features: [first.feature.0, second.feature.0],
-            arms,
             wedged: prospects[changed[0] as usize].is_wedged() || prospects[changed[1] as usize].is_wedged(),
             count: manifold.count(),
             extras: pair.surface.has_extras(),
             shares: Quad([n.x.to_bits(), n.y.to_bits(), fractions.a.to_bits(), fractions.b.to_bits()]),
             gyrations: Quad([inverse_a.0, inverse_b.0, inverse_a.1, inverse_b.1]),
-            to_origin: Quad(to_origin),
-            anchors: Quad(anchors),
+            to_origin: Quad([to_a.x.to_bits(), to_a.y.to_bits(), to_b.x.to_bits(), to_b.y.to_bits()]),
+            anchors: Quad([
+                first.anchor.x.to_bits(),
+                first.anchor.y.to_bits(),
+                second.anchor.x.to_bits(),
+                second.anchor.y.to_bits(),
+            ]),
+            last_arms: last_arms(memory, manifold, a.arm_tolerance.min(b.arm_tolerance)),
             carried: Quad([old_first.normal.to_bits(), old_second.normal.to_bits(), tangent.to_bits(), 0]),
             rest: Quad([
                 first.separation.to_bits(),
@@ -216,37 +223,18 @@ impl ContactSource<'_> {
     }
 }
 
-/// Replaces the anchors, and the vector from B's centre to them, by those with which the arms are as in the last tick,
-/// if the contact has the same points and has hardly moved. Returns the arms to be kept.
+/// Transposes the quads of all contacts: returns the first numbers of all contacts, then their second numbers, and so
+/// on.
 #[inline(always)]
-fn keep_arms(
-    manifold: &Manifold,
-    memory: &Contact,
-    tolerance: u16,
-    [x_1, y_1, x_2, y_2]: &mut [i32; 4],
-    [a_x, a_y, b_x, b_y]: &mut [i32; 4],
-) -> KeptArms {
-    let count = manifold.count();
-    let second = if count > 1 { [a_x.wrapping_add(*x_2), a_y.wrapping_add(*y_2)] } else { [0; 2] };
-    let [first_x, first_y] = [a_x.wrapping_add(*x_1), a_y.wrapping_add(*y_1)];
-    let between = [b_x.wrapping_sub(*a_x), b_y.wrapping_sub(*a_y)];
-    let current = KeptArms::of([first_x, first_y, second[0], second[1], between[0], between[1]]);
-    let [a, b] = manifold.both_points();
-    let [old_a, old_b] = &memory.points;
-    let is_same =
-        count == memory.count && a.feature.0 == old_a.feature && (count < 2 || b.feature.0 == old_b.feature);
-    if !is_same {
-        return current;
+pub(super) fn columns<L: Lanes<N>, const N: usize>(
+    inputs: &[Input; N],
+    quad: impl Fn(&Input) -> &Quad,
+) -> [L::Int; 4] {
+    let mut rows = [quad(&inputs[0]); N];
+    for (row, input) in rows.iter_mut().zip(inputs) {
+        *row = quad(input);
     }
-    let mut arms = memory.arms;
-    let differences = arms.renew(current, tolerance);
-    *x_1 = x_1.saturating_add(differences[0]);
-    *y_1 = y_1.saturating_add(differences[1]);
-    *x_2 = x_2.saturating_add(differences[2]);
-    *y_2 = y_2.saturating_add(differences[3]);
-    *b_x = b_x.saturating_add(differences[4]);
-    *b_y = b_y.saturating_add(differences[5]);
-    arms
+    L::transposed(rows)
 }
 
 /// The impulses with which the two points are warm-started: 0 if the feature of a point is new in this tick.

@@ -16,6 +16,7 @@
 //! Differences of two velocities fit because each velocity is below 512 m/s. A sum that may not fit saturates. Lanes
 //! without a contact have gains of 0, so that their other numbers do not matter.
 
+mod arms;
 mod batch;
 mod constants;
 mod extras;
@@ -99,7 +100,7 @@ impl ContactSet {
 
     /// Whether a contact of a body of the tick may bounce, by index.
     pub(super) fn bounces(&self, body: u32) -> bool {
-        self.prospects[body as usize].bounces
+        self.prospects[body as usize].bounces()
     }
 
     /// Whether any surface bounces, moves or resists rolling.

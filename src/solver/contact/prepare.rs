@@ -105,7 +105,7 @@ impl<const N: usize> Batches<Contacts, N> {
             }
             records.take(lane, input);
         }
-        rows::fill::<L, N>(&inputs, batch, &mut records.inverses);
+        rows::fill::<L, N>(&inputs, batch, &mut records.inverses, &mut records.arms);
         let mut extra = None;
         if batch.extras {
             let extra = extra.insert(ContactExtras::NONE);

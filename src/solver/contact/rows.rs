@@ -13,12 +13,13 @@ use super::super::limits::IMPULSE_MAX;
 use super::super::pair::{RATIO, UNIT, clamp, shift};
 use super::super::row::RATIO_MAX;
 use super::TANGENT_MAX;
+use super::arms::{Places, RenewedArms};
 use super::batch::{Batch, Row};
-use super::input::Input;
+use super::input::{Input, columns};
 use crate::math::{
     FrictionRatio, Fx, Length, Ratio, Shift, Step, narrow, round_shift_wide, saturate, saturate_wide,
 };
-use crate::simd::{Ints, Lanes, Quad};
+use crate::simd::{Ints, Lanes};
 
 /// Shift from the format of a unit vector to that of a lever ratio.
 const UNIT_TO_RATIO: i32 = UNIT - RATIO;
@@ -46,12 +47,13 @@ impl<const N: usize> Inverses<N> {
     pub(super) const NONE: Self = Inverses { normals: [Ints::ZERO; 2], tangent: Ints::ZERO };
 }
 
-/// Computes the rows of a batch.
+/// Computes the rows of a batch, and the arms that have changed.
 #[inline(always)]
 pub(super) fn fill<L: Lanes<N>, const N: usize>(
     inputs: &[Input; N],
     batch: &mut Batch<N>,
     inverses: &mut Inverses<N>,
+    arms: &mut RenewedArms<N>,
 ) {
     let one = L::splat(1);
     let [x, y, fraction_a, fraction_b] = columns::<L, N>(inputs, |input| &input.shares);
@@ -59,11 +61,14 @@ pub(super) fn fill<L: Lanes<N>, const N: usize>(
     let t = [L::sub(L::splat(0), n[1]), n[0]];
     let [mantissa_a, mantissa_b, shift_a, shift_b] = columns::<L, N>(inputs, |input| &input.gyrations);
     let [ax, ay, bx, by] = columns::<L, N>(inputs, |input| &input.to_origin);
-    let ends = [
-        ContactSide::<L, N>::new(fraction_a, [ax, ay], mantissa_a, shift_a),
-        ContactSide::<L, N>::new(fraction_b, [bx, by], mantissa_b, shift_b),
-    ];
     let [x0, y0, x1, y1] = columns::<L, N>(inputs, |input| &input.anchors);
+    let mut places = Places::<L, N> { to_origin: [[ax, ay], [bx, by]], anchors: [[x0, y0], [x1, y1]] };
+    places.keep_arms(inputs, batch.count, arms);
+    let Places { to_origin: [to_a, to_b], anchors: [first, second] } = places;
+    let ends = [
+        ContactSide::<L, N>::new(fraction_a, to_a, mantissa_a, shift_a),
+        ContactSide::<L, N>::new(fraction_b, to_b, mantissa_b, shift_b),
+    ];
     let [normal_0, normal_1, carried, _] = columns::<L, N>(inputs, |input| &input.carried);
     let [separation_0, separation_1, friction, gap] = columns::<L, N>(inputs, |input| &input.rest);
     L::store(n[0], &mut batch.n_x);
@@ -71,8 +76,8 @@ pub(super) fn fill<L: Lanes<N>, const N: usize>(
     let stiff = L::either(L::greater(one, fraction_a), L::greater(one, fraction_b));
     L::store(L::to_int(stiff), &mut batch.immovable);
     let middle = match batch.count {
-        2 => [half_way::<L, N>(x0, x1), half_way::<L, N>(y0, y1)],
-        _ => [x0, y0],
+        2 => [half_way::<L, N>(first[0], second[0]), half_way::<L, N>(first[1], second[1])],
+        _ => first,
     };
     // The surfaces slide on each other at two places while there is a gap.
     let half = L::narrow::<1>(L::mul(gap, one));
@@ -85,7 +90,7 @@ pub(super) fn fill<L: Lanes<N>, const N: usize>(
     // Impulses of the last tick are only initial guesses, so that clamping them is not a fault.
     let tangent_lambda = product::<L, N>(carried, &tangent);
     L::store(clamp::<L, N>(tangent_lambda, L::splat(TANGENT_MAX.to_bits())), &mut batch.tangent_lambda);
-    let given = [([x0, y0], separation_0, normal_0), ([x1, y1], separation_1, normal_1)];
+    let given = [(first, separation_0, normal_0), (second, separation_1, normal_1)];
     let points = batch.points.iter_mut().zip(&mut inverses.normals).take(batch.count);
     for ((point, inverses), (anchor, separation, carried)) in points.zip(given) {
         let separation = L::narrow::<STEP_TO_SHIFT>(L::mul(separation, one));
@@ -105,17 +110,6 @@ pub(super) fn fill<L: Lanes<N>, const N: usize>(
 fn half_way<L: Lanes<N>, const N: usize>(a: L::Int, b: L::Int) -> L::Int {
     let one = L::splat(1);
     L::narrow::<1>(L::add_wide(L::mul(a, one), L::mul(b, one)))
-}
-
-/// Transposes the quads of all contacts: returns the first numbers of all contacts, then their second numbers, and so
-/// on.
-#[inline(always)]
-fn columns<L: Lanes<N>, const N: usize>(inputs: &[Input; N], quad: impl Fn(&Input) -> &Quad) -> [L::Int; 4] {
-    let mut rows = [quad(&inputs[0]); N];
-    for (row, input) in rows.iter_mut().zip(inputs) {
-        *row = quad(input);
-    }
-    L::transposed(rows)
 }
 
 impl<L: Lanes<N>, const N: usize> ContactSide<L, N> {

@@ -4,6 +4,7 @@ use alloc::vec::Vec;
 
 use super::super::batches::Batches;
 use super::super::pair::{UNIT, clamp};
+use super::arms::RenewedArms;
 use super::batch::Batch;
 use super::input::Input;
 use super::overflow_policy::FRICTION_RATIO;
@@ -26,7 +27,7 @@ pub(in crate::solver) struct Records<const N: usize> {
     /// Number of points of each contact.
     counts: [u8; N],
     features: [[u16; 2]; N],
-    arms: [KeptArms; N],
+    pub(super) arms: RenewedArms<N>,
     /// Whether one of the bodies is wedged.
     wedged: [bool; N],
     /// `1 / D` of the rows.
@@ -39,7 +40,7 @@ impl<const N: usize> Records<N> {
         contacts: [0; N],
         counts: [0; N],
         features: [[0; 2]; N],
-        arms: [KeptArms([0; 6]); N],
+        arms: RenewedArms::NONE,
         wedged: [false; N],
         inverses: Inverses::NONE,
     };
@@ -57,7 +58,6 @@ impl<const N: usize> Records<N> {
         self.contacts[lane] = input.contact;
         self.counts[lane] = input.count;
         self.features[lane] = input.features;
-        self.arms[lane] = input.arms;
         self.wedged[lane] = input.wedged;
     }
 
@@ -146,7 +146,12 @@ impl<const N: usize> Kernel<N> for Store<'_, N> {
                 };
                 let second = if count > 1 { point(1) } else { PointImpulse::default() };
                 let rolling = extras.map_or(Speed::ZERO, |extras| extras.rolling.impulse(lane));
-                contacts[index].store_impulses([point(0), second], count, record.arms[lane], rolling);
+                contacts[index].store_impulses([point(0), second], count, rolling);
+                if record.arms.lanes >> lane & 1 != 0 {
+                    let [a, b, between] = &record.arms.words;
+                    let second = if count > 1 { b.0[lane] } else { 0 };
+                    contacts[index].arms = KeptArms([a.0[lane], second, between.0[lane]]);
+                }
                 pushed[index] =
                     batch.pushed[0] >> lane & 1 != 0 || count > 1 && batch.pushed[1] >> lane & 1 != 0;
             }

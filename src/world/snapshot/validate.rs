@@ -217,7 +217,7 @@ fn check_contacts(state: &State, contacts: &[Contact]) -> Result<(), Violation> 
         check((-limit..=limit).contains(&contact.rolling), || at("the rolling impulse is out of range"))?;
         let unused_arms = match contact.count {
             0 => &contact.arms.0[..],
-            1 => &contact.arms.0[2..4],
+            1 => &contact.arms.0[1..2],
             _ => &[],
         };
         check(unused_arms.iter().all(|&arm| arm == 0), || at("an arm without a point"))?;

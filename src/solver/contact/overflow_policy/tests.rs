@@ -96,7 +96,8 @@ impl Kernel<WIDTH> for &mut Trial<'_> {
         let count = usize::from(self.inputs[0].count);
         let mut batch = Batch::<WIDTH> { count, ..Batch::NONE };
         let mut record = Records::NONE;
-        fill::<L, WIDTH>(&core::array::from_fn(|lane| self.inputs[lane]), &mut batch, &mut record.inverses);
+        let inputs = core::array::from_fn(|lane| self.inputs[lane]);
+        fill::<L, WIDTH>(&inputs, &mut batch, &mut record.inverses, &mut record.arms);
         for lane in 0..WIDTH {
             let index = u32::try_from(lane).expect("eight");
             (batch.bodies[0][lane], batch.bodies[1][lane]) = (1 + 2 * index, 2 + 2 * index);

@@ -4,7 +4,7 @@ use super::super::super::row::MassFractions;
 use super::*;
 use crate::fx;
 use crate::math::{Reciprocal, Rng, Rot, Speed, Unit, Vec2};
-use crate::simd::{Backend, Kernel, Machine, Scalar, WIDTH};
+use crate::simd::{Backend, Kernel, Machine, Quad, Scalar, WIDTH};
 use std::vec::Vec;
 
 #[test]
@@ -40,7 +40,9 @@ impl<const N: usize> Kernel<N> for FillRows<'_, N> {
     #[inline(always)]
     fn run<L: Lanes<N>>(self) {
         let FillRows { inputs, made } = self;
-        fill::<L, N>(&core::array::from_fn(|lane| inputs[lane]), &mut made.batch, &mut made.inverses);
+        let inputs = core::array::from_fn(|lane| inputs[lane]);
+        let mut arms = RenewedArms::NONE;
+        fill::<L, N>(&inputs, &mut made.batch, &mut made.inverses, &mut arms);
     }
 }
 
