@@ -160,7 +160,8 @@ impl ContactSource<'_> {
         pair: &ActiveContact,
         prospects: &[Prospect],
         warm: &mut WarmStarts,
-    ) -> Input {
+        input: &mut Input,
+    ) {
         let manifold = &self.manifolds[pair.manifold as usize];
         let bodies = self.bodies_of(pair);
         let [a, b] = bodies.map(|index| self.list.facts(index));
@@ -182,7 +183,7 @@ impl ContactSource<'_> {
         let [old_first, old_second] = carried_over(manifold, memory, warm);
         let tangent = old_first.tangent.saturating_add(old_second.tangent);
         let changed = self.changed(bodies);
-        Input {
+        *input = Input {
             bodies,
             changed,
             contact: pair.contact,
@@ -207,7 +208,7 @@ impl ContactSource<'_> {
                 pair.surface.friction.to_bits(),
                 gap.to_bits(),
             ]),
-        }
+        };
     }
 
     #[inline(always)]
@@ -295,7 +296,8 @@ mod tests {
             contacts: &[Contact::new((0, 1))],
             list: &list,
         };
-        let input = source.gather(&pair, &[Prospect::default(); 3], &mut WarmStarts::default());
+        let mut input = Input::NONE;
+        source.gather(&pair, &[Prospect::default(); 3], &mut WarmStarts::default(), &mut input);
         assert_eq!(input.shares.0[2], 0);
         let changed: Vec<_> = input.changed.into_iter().filter(|&index| index != GROUND).collect();
         assert_eq!(changed, input.bodies);

@@ -96,7 +96,7 @@ impl<const N: usize> Batches<Contacts, N> {
         records.begin();
         let mut inputs = [Input::NONE; N];
         for (lane, (input, &index)) in inputs.iter_mut().zip(indices).enumerate() {
-            *input = source.gather(&source.pairs[index as usize], prospects, warm_starts);
+            source.gather(&source.pairs[index as usize], prospects, warm_starts, input);
             batch.extras |= input.extras;
             batch.count = batch.count.max(input.count.into());
             for side in 0..2 {
