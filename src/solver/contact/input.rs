@@ -39,10 +39,18 @@ impl Prospect {
     const IMPACT: u32 = 2;
     /// A contact has restitution.
     const BOUNCES: u32 = 4;
-    const FLAGS: u32 = 8;
+    /// The body has a contact.
+    const CONTACT: u32 = 8;
+    const FLAGS: u32 = 16;
 
     fn add(&mut self, flags: u32, walls: u32) {
-        self.0 = (self.0 | flags) + walls * Self::FLAGS;
+        self.0 = (self.0 | flags | Self::CONTACT) + walls * Self::FLAGS;
+    }
+
+    /// Whether the body has contacts, and for none of them the impulses of the last tick are a guess for those of this
+    /// tick.
+    fn is_cold(self) -> bool {
+        self.0 & Self::CONTACT != 0 && !self.has_guess()
     }
 
     /// Whether the impulses of the last tick are a guess for those of this tick.
@@ -142,7 +150,10 @@ impl ContactSource<'_> {
             bodies.into_iter().for_each(|body| prospects[body as usize].add(flags, walls));
         }
         prospects[GROUND as usize] = Prospect::default();
-        colouring.set_cold(|bodies| bodies.iter().all(|&body| !prospects[body as usize].has_guess()));
+        // In a world at rest no contact is cold.
+        if prospects.iter().any(|prospect| prospect.is_cold()) {
+            colouring.set_cold(|bodies| bodies.iter().all(|&body| !prospects[body as usize].has_guess()));
+        }
     }
 
     /// Prefetches the data that [`Self::gather`] reads of a pair. Contacts in the order of colours are random accesses.
