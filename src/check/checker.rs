@@ -187,11 +187,11 @@ mod tests {
     use crate::world::Phase;
 
     #[test]
-    fn phases_are_noted_if_wanted() {
+    fn phases_are_logged_if_wanted() {
         let mut game = Sandbox::new(&SandboxSetup::default()).expect("an empty world");
         for _ in 0..2 {
-            let noted = step(&mut game, &[vec![]], Phases::Compared);
-            let phases: Vec<_> = noted.iter().map(|noted| noted.phase).collect();
+            let logged = step(&mut game, &[vec![]], Phases::Compared);
+            let phases: Vec<_> = logged.iter().map(|logged| logged.phase).collect();
             assert_eq!((phases.len(), phases[1]), (8, Some(Phase::BroadPhase)));
         }
         let mut ignoring = Sandbox::new(&SandboxSetup::default()).expect("an empty world");

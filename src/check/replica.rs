@@ -71,11 +71,11 @@ impl<G: Game> Replica<G> {
             return Ok(());
         }
         let apart = phases.iter().zip(now.phases).find(|(a, b)| a != b);
-        if let Some((noted, _)) = apart {
+        if let Some((logged, _)) = apart {
             let is_same = self.game.state_hash() == now.hash;
             let fault = if is_same { Fault::Phase } else { Fault::Hash };
             let finding = self.finding(fault, now).with_saves(&now.straight.save(), &self.game.save());
-            return Err(Box::new(Finding { phase: noted.phase, ..finding }));
+            return Err(Box::new(Finding { phase: logged.phase, ..finding }));
         }
         self.compare(now)?;
         self.perturb(now)

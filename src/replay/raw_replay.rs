@@ -38,7 +38,7 @@ impl<'a, G: Game> RawReplay<'a, G> {
     /// # Errors
     /// The [`Verdict`] when nothing can be played: the file is malformed, exceeds a limit, or belongs to another game.
     pub fn open(file: &'a [u8], limits: &Limits) -> Result<Self, Verdict> {
-        Self::open_to_end(file, limits).map(|(rerun, _)| rerun)
+        Self::open_to_end(file, limits).map(|(raw, _)| raw)
     }
 
     /// Does the same as [`RawReplay::open`] and also returns the end of the file found by the scan.

@@ -42,7 +42,7 @@ pub enum Step {
 
 /// A verified replay: a [`RawReplay`] whose states are compared with the checkpoints of the file.
 pub struct VerifiedReplay<'a, G: Game> {
-    rerun: RawReplay<'a, G>,
+    raw: RawReplay<'a, G>,
     ending: Ending,
     failed: Option<Verdict>,
 }
@@ -61,53 +61,53 @@ impl<'a, G: Game> VerifiedReplay<'a, G> {
     /// The [`Verdict`] when nothing can be played: the file is malformed, exceeds a limit, belongs to another game, or
     /// its setup leads to another start state.
     pub fn open(file: &'a [u8], limits: &Limits) -> Result<Self, Verdict> {
-        let (rerun, ending) = RawReplay::<G>::open_to_end(file, limits)?;
-        let reader = rerun.place().inputs.reader();
-        if checkpoint_hash(rerun.game().state_hash(), reader.inputs_digest()) != reader.start() {
+        let (raw, ending) = RawReplay::<G>::open_to_end(file, limits)?;
+        let reader = raw.place().inputs.reader();
+        if checkpoint_hash(raw.game().state_hash(), reader.inputs_digest()) != reader.start() {
             return Err(Verdict::Diverged { last_equal: None, first_different: 0 });
         }
-        Ok(VerifiedReplay { rerun, ending, failed: None })
+        Ok(VerifiedReplay { raw, ending, failed: None })
     }
 
     /// The game at the current tick.
     #[must_use]
     pub fn game(&self) -> &G {
-        self.rerun.game()
+        self.raw.game()
     }
 
     /// The game's physics world at the current tick, if it has one, for inspection.
     pub fn world(&mut self) -> Option<&World> {
-        self.rerun.world()
+        self.raw.world()
     }
 
     /// Returns the game at the current tick.
     #[must_use]
     pub fn into_game(self) -> G {
-        self.rerun.into_game()
+        self.raw.into_game()
     }
 
     /// Number of ticks played.
     #[must_use]
     pub fn tick(&self) -> u64 {
-        self.rerun.tick()
+        self.raw.tick()
     }
 
     /// The inputs of the last tick played; empty before the first tick.
     #[must_use]
     pub fn inputs(&self) -> &[G::Input] {
-        self.rerun.inputs()
+        self.raw.inputs()
     }
 
     /// Work units of all ticks played, as counted by [`Game::work`].
     #[must_use]
     pub fn work(&self) -> u64 {
-        self.rerun.work()
+        self.raw.work()
     }
 
     /// Number of ticks in the complete blocks of the file.
     #[must_use]
     pub fn ticks(&self) -> u64 {
-        self.rerun.ticks()
+        self.raw.ticks()
     }
 
     /// The trailer, if the file is complete. Its statements are true only if the verdict is [`Verdict::Match`].
@@ -150,20 +150,20 @@ impl<'a, G: Game> VerifiedReplay<'a, G> {
             let difference = ClaimDifference::FinalHash { claimed: trailer.final_hash, actual: hash };
             return Verdict::ClaimMismatch { ticks, hash, difference };
         }
-        match first_difference(trailer.claims, self.rerun.game().claims()) {
+        match first_difference(trailer.claims, self.raw.game().claims()) {
             Some(difference) => Verdict::ClaimMismatch { ticks, hash, difference },
             None => Verdict::Match { ticks, hash },
         }
     }
 
     fn try_step(&mut self) -> Result<Step, Verdict> {
-        if self.rerun.step()? == Step::Ended {
+        if self.raw.step()? == Step::Ended {
             return Ok(Step::Ended);
         }
         if self.agrees() {
             return Ok(Step::Ticked);
         }
-        let (tick, inputs) = (self.tick(), &self.rerun.place().inputs);
+        let (tick, inputs) = (self.tick(), &self.raw.place().inputs);
         let block_ticks = inputs.finished_block().map_or(0, |block| u64::from(block.ticks));
         // All earlier blocks have been compared.
         Err(Verdict::Diverged { last_equal: Some(tick - block_ticks), first_different: tick })
@@ -171,19 +171,19 @@ impl<'a, G: Game> VerifiedReplay<'a, G> {
 
     /// Whether the state matches the checkpoint of this tick; true if the file has none at this tick.
     pub(super) fn agrees(&self) -> bool {
-        self.rerun.place().inputs.finished_block().is_none_or(|block| {
+        self.raw.place().inputs.finished_block().is_none_or(|block| {
             checkpoint_hash(self.game().state_hash(), block.inputs_digest) == block.checkpoint
         })
     }
 
     /// The current position in the file.
     pub(super) fn place(&self) -> &ReplayPosition<'a> {
-        self.rerun.place()
+        self.raw.place()
     }
 
     /// Restores an earlier state and position.
     pub(super) fn go(&mut self, save: &G::Save, place: ReplayPosition<'a>) {
-        self.rerun.go(save, place);
+        self.raw.go(save, place);
         self.failed = None;
     }
 }

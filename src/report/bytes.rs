@@ -166,10 +166,10 @@ impl Body {
         if !ascending(&saved) || saved.iter().any(|tick| known.binary_search(tick).is_err()) {
             return Err(ReportFlaw::Saves);
         }
-        let noted: Vec<u64> = phases.iter().map(|(tick, _)| *tick).collect();
+        let logged: Vec<u64> = phases.iter().map(|(tick, _)| *tick).collect();
         let is_known = |tick: &u64| known.binary_search(tick).is_ok();
         let too_many = phases.iter().any(|(_, tick)| tick.digests.len() > PHASE_DIGESTS_MAX);
-        if !ascending(&noted) || !noted.iter().all(is_known) || too_many {
+        if !ascending(&logged) || !logged.iter().all(is_known) || too_many {
             return Err(ReportFlaw::Phases);
         }
         Ok(())

@@ -115,7 +115,7 @@ pub struct Comparison {
     /// Comparisons of A and B with the rerun.
     pub trajectories: [Trajectory; 2],
     /// Number of ticks simulated in the rerun.
-    pub rerun: Option<u64>,
+    pub simulated: Option<u64>,
     /// The side that diverged.
     pub blame: Blame,
     /// The tick at which `subjects` were compared: the first different tick at which both states are available.
@@ -146,7 +146,7 @@ impl Comparison {
             setup: Vec::new(),
             input: None,
             trajectories: Default::default(),
-            rerun: None,
+            simulated: None,
             blame: Blame::Unknown,
             tick: None,
             subjects: Vec::new(),

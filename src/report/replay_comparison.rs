@@ -39,7 +39,7 @@ pub(super) fn run<G: Game>(
         }
     }
     let played = comparison.a.tick();
-    comparison.found.rerun = Some(played);
+    comparison.found.simulated = Some(played);
     Ok(())
 }
 

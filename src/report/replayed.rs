@@ -34,7 +34,7 @@ pub(super) fn run<G: Game>(
 ) -> Result<(), CompareError> {
     play::<G>(known, limits, effort, found)?;
     found.blame = match [found.trajectories[0].diverges, found.trajectories[1].diverges] {
-        _ if found.rerun.is_none() => Blame::Unknown,
+        _ if found.simulated.is_none() => Blame::Unknown,
         [None, None] => Blame::Nobody,
         [Some(_), None] => Blame::Side(Side::A),
         [None, Some(_)] => Blame::Side(Side::B),
@@ -61,7 +61,7 @@ fn play<G: Game>(
         }
         return Ok(());
     }
-    let rerun =
+    let raw =
         RawReplay::<G>::open(replay, limits).map_err(|verdict| CompareError::Replay { side, verdict })?;
     let until = known[0].last().max(known[1].last()).min(horizon);
     Beside {
@@ -69,7 +69,7 @@ fn play<G: Game>(
         limits,
         effort,
         found,
-        rerun,
+        raw,
         previous: None,
         wrong: None,
         states: None,
@@ -138,7 +138,7 @@ struct Beside<'a, 'k, G: Game> {
     limits: &'a Limits,
     effort: Effort,
     found: &'a mut Comparison,
-    rerun: RawReplay<'k, G>,
+    raw: RawReplay<'k, G>,
     /// State of the rerun before the current tick.
     previous: Option<G::Save>,
     /// The tick of the first divergence of either side from the rerun.
@@ -156,21 +156,21 @@ impl<G: Game> Beside<'_, '_, G> {
         let (direct, equal) = (self.found.first_different, self.found.last_equal.take());
         loop {
             self.look(direct);
-            if self.rerun.tick() >= until || self.is_enough() {
+            if self.raw.tick() >= until || self.is_enough() {
                 break;
             }
-            self.previous = self.wrong.is_none().then(|| self.rerun.game().save());
-            match self.rerun.step() {
+            self.previous = self.wrong.is_none().then(|| self.raw.game().save());
+            match self.raw.step() {
                 Ok(Step::Ticked) => {}
                 Ok(Step::Ended) => break,
                 Err(verdict) => {
-                    let tick = self.rerun.tick();
+                    let tick = self.raw.tick();
                     self.found.notes.push(format!("the rerun ends after tick {tick}: {verdict}"));
                     break;
                 }
             }
         }
-        self.found.rerun = Some(self.rerun.tick());
+        self.found.simulated = Some(self.raw.tick());
         // The files may contain more ticks than the replay has inputs for.
         let equal = equal.filter(|equal| self.found.first_different.is_none_or(|first| *equal < first));
         self.found.last_equal = self.found.last_equal.max(equal);
@@ -179,7 +179,7 @@ impl<G: Game> Beside<'_, '_, G> {
 
     /// Whether the remaining ticks cannot change the result.
     fn is_enough(&self) -> bool {
-        let tick = self.rerun.tick();
+        let tick = self.raw.tick();
         let has_diverged = |side: &usize| self.found.trajectories[*side].diverges.is_some();
         let has_told = |side: usize| self.known[side].saves.range(tick..).next().is_none();
         let diverged = [0, 1].into_iter().find(has_diverged);
@@ -188,7 +188,7 @@ impl<G: Game> Beside<'_, '_, G> {
 
     /// Compares the current state of the rerun with the hashes of both sides.
     fn look(&mut self, direct: Option<u64>) {
-        let (tick, hash) = (self.rerun.tick(), self.rerun.game().state_hash());
+        let (tick, hash) = (self.raw.tick(), self.raw.game().state_hash());
         let had = [0, 1].map(|side: usize| self.known[side].had(tick, hash));
         for (known, (trajectory, had)) in self.known.iter().zip(self.found.trajectories.iter_mut().zip(had)) {
             match had {
@@ -199,7 +199,7 @@ impl<G: Game> Beside<'_, '_, G> {
                     let wrong = known.said(tick);
                     let was_right = tick.checked_sub(1).filter(|last| trajectory.equal_until == Some(*last));
                     if let ((Some(before), Some(wrong)), Some(last)) = ((before, wrong), was_right) {
-                        let inputs = self.rerun.inputs().to_vec();
+                        let inputs = self.raw.inputs().to_vec();
                         let phases = known.phases.get(&tick).copied().cloned();
                         self.wrong = Some(WrongTick { tick: last, before, inputs, wrong, phases });
                     }
@@ -224,16 +224,16 @@ impl<G: Game> Beside<'_, '_, G> {
 
     /// Stores the states of both sides, if both are available at the current tick.
     fn take_states(&mut self, had: [Option<bool>; 2]) {
-        let tick = self.rerun.tick();
+        let tick = self.raw.tick();
         let mut states = Vec::new();
         let mut presumed = None;
         for (side, had) in Side::BOTH.into_iter().zip(had) {
             let own = self.known[side.index()].saves.get(&tick);
             states.push(match (own, had) {
-                (_, Some(true)) => self.rerun.game().save(),
+                (_, Some(true)) => self.raw.game().save(),
                 (None, None) if presumed.is_none() => {
                     presumed = Some(side);
-                    self.rerun.game().save()
+                    self.raw.game().save()
                 }
                 (None, _) => return,
                 (Some(bytes), _) => match decode::<G>(side, tick, bytes) {
@@ -257,7 +257,7 @@ impl<G: Game> Beside<'_, '_, G> {
     }
 
     fn conclude(self) -> Result<(), CompareError> {
-        let Beside { known, limits, effort, found, rerun, wrong, states, presumed, obstacle, previous: _ } =
+        let Beside { known, limits, effort, found, raw, wrong, states, presumed, obstacle, previous: _ } =
             self;
         found.notes.extend(obstacle);
         let trajectories = &found.trajectories;
@@ -281,11 +281,11 @@ impl<G: Game> Beside<'_, '_, G> {
         let work = match effort {
             Effort::Thorough => candidate::WORK_MAX,
             Effort::Bounded => {
-                let whole = rerun.work() / rerun.tick().max(1) * rerun.ticks();
-                whole.saturating_mul(5) / 2 - rerun.work().min(whole)
+                let whole = raw.work() / raw.tick().max(1) * raw.ticks();
+                whole.saturating_mul(5) / 2 - raw.work().min(whole)
             }
         };
-        let mut game = rerun.into_game();
+        let mut game = raw.into_game();
         if let Some(theirs) = &wrong.phases {
             origin::find(&wrong, theirs, &mut game, found)?;
         }

@@ -96,31 +96,31 @@ impl<G: Game> Trace<G> {
         until: u64,
         ticks: u32,
     ) -> Result<DesyncReport, TraceError> {
-        let mut rerun = RawReplay::<G>::open(file, limits)?;
-        let (mut recorder, _) = Recorder::<G>::start(&rerun.setup()?, CHECKPOINT_INTERVAL)?;
+        let mut raw = RawReplay::<G>::open(file, limits)?;
+        let (mut recorder, _) = Recorder::<G>::start(&raw.setup()?, CHECKPOINT_INTERVAL)?;
         let mut memory = Memory::new(ticks);
-        let from = until.min(rerun.ticks()).saturating_sub(ticks.into());
+        let from = until.min(raw.ticks()).saturating_sub(ticks.into());
         if from == 0 {
-            memory.push(0, rerun.game(), TickPhases::default());
+            memory.push(0, raw.game(), TickPhases::default());
         }
-        while rerun.tick() < until && rerun.read_inputs()? == Step::Ticked {
-            let tick = rerun.tick() + 1;
-            recorder.record(rerun.inputs())?;
+        while raw.tick() < until && raw.read_inputs()? == Step::Ticked {
+            let tick = raw.tick() + 1;
+            recorder.record(raw.inputs())?;
             let phases = if tick <= from {
-                rerun.play()?;
+                raw.play()?;
                 TickPhases::default()
             } else {
-                rerun.play_with(TickPhases::of)?
+                raw.play_with(TickPhases::of)?
             };
             if tick >= from {
-                memory.push(tick, rerun.game(), phases);
+                memory.push(tick, raw.game(), phases);
             }
             if recorder.is_checkpoint_due() {
-                recorder.checkpoint(rerun.game().state_hash());
+                recorder.checkpoint(raw.game().state_hash());
             }
         }
-        let replay = recorder.so_far(rerun.game().state_hash());
-        Ok(memory.report(rerun.game(), rerun.tick(), replay))
+        let replay = recorder.so_far(raw.game().state_hash());
+        Ok(memory.report(raw.game(), raw.tick(), replay))
     }
 }
 

@@ -157,7 +157,7 @@ fn peers_that_agree_are_equal() {
     let [a, b, _] = peers.map(|peer| peer.report(0, 50, Vec::new()));
     let found = compared(&evidence(&a), &evidence(&b));
     assert!(found.is_equal(), "{found:?}");
-    assert_eq!((found.blame, found.last_equal, found.rerun), (Blame::Nobody, Some(60), Some(60)));
+    assert_eq!((found.blame, found.last_equal, found.simulated), (Blame::Nobody, Some(60), Some(60)));
     let replays = [a, b].map(|report| Evidence::Replay(report.replay().to_vec()));
     assert!(compared(&replays[0], &replays[1]).is_equal());
 }

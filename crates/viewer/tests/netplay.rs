@@ -17,10 +17,10 @@ use lockstep2d_viewer::{Event, Key, Source};
 
 /// Returns the pads of every tick of a replay.
 fn pads(replay: &[u8]) -> Vec<Vec<Pad>> {
-    let mut rerun = RawReplay::<Shove>::open(replay, &Limits::default()).unwrap();
+    let mut raw = RawReplay::<Shove>::open(replay, &Limits::default()).unwrap();
     let mut pads = vec![];
-    while rerun.step().unwrap() == Step::Ticked {
-        pads.push(rerun.inputs().to_vec());
+    while raw.step().unwrap() == Step::Ticked {
+        pads.push(raw.inputs().to_vec());
     }
     pads
 }

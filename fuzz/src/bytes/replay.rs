@@ -83,9 +83,9 @@ fn again<G: Game>(file: &[u8]) -> Vec<u8> {
     let reader = Reader::open(file, &LIMITS).expect("a match");
     let setup: G::Setup = codec::decode(reader.header().setup).expect("a match");
     let mut recording = Recording::<G>::start(&setup, reader.header().checkpoint_interval).expect("a match");
-    let mut rerun = RawReplay::<G>::open(file, &LIMITS).expect("a match");
-    while rerun.step().expect("a match") == Step::Ticked {
-        recording.step(rerun.inputs()).expect("a match");
+    let mut raw = RawReplay::<G>::open(file, &LIMITS).expect("a match");
+    while raw.step().expect("a match") == Step::Ticked {
+        recording.step(raw.inputs()).expect("a match");
     }
     recording.finish().expect("a match")
 }

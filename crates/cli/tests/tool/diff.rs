@@ -41,7 +41,7 @@ fn reports_name_the_tick_the_peer_and_the_field() {
          B: {b} (seat 1)\n\
          different at tick 24, equal at tick 23\n\
          played again up to tick 35: B diverged (seat 1) at tick 24\n\
-         states after tick 24: 1 thing differs in sum\n  sum\n    sum: 3 | 4\n"
+         states after tick 24: 1 subject differs in sum\n  sum\n    sum: 3 | 4\n"
     );
     assert_eq!((outcome.out.as_str(), outcome.exit), (expected.as_str(), Exit::NoMatch));
     assert_eq!(outcome.err, "");
@@ -55,7 +55,7 @@ fn reports_name_the_tick_the_peer_and_the_field() {
         "path": "sum", "name": "sum",
         "a": {"text": "4", "bits": "4"}, "b": {"text": "3", "bits": "3"},
     });
-    assert_eq!(found["things"], json!([{"path": "sum", "section": "sum", "fields": [field]}]));
+    assert_eq!(found["subjects"], json!([{"path": "sum", "section": "sum", "fields": [field]}]));
 }
 
 #[test]
@@ -115,7 +115,7 @@ fn snapshots_are_compared_whatever_the_game() {
     world.step();
     let b = folder.write("b", &world.to_bytes());
     let outcome = run(&["diff", &a, &b]);
-    assert!(outcome.out.ends_with("1 thing differs in tick\n  tick\n    tick: 0 | 1\n"), "{}", outcome.out);
+    assert!(outcome.out.ends_with("1 subject differs in tick\n  tick\n    tick: 0 | 1\n"), "{}", outcome.out);
     assert_eq!(outcome.exit, Exit::NoMatch);
     assert_eq!(run(&["diff", &a, &a]).exit, Exit::Success);
 }

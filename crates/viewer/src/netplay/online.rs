@@ -99,13 +99,12 @@ impl<A: Address, T: Transport<A>> Online<A, T> {
         if self.replay.is_empty() {
             return Err(SourceError("this peer has no replay of the match, or not yet".into()));
         }
-        let mut rerun =
-            RawReplay::<Shove>::open(&self.replay, &Limits::default()).map_err(SourceError::of)?;
-        let setup = *rerun.game().setup();
+        let mut raw = RawReplay::<Shove>::open(&self.replay, &Limits::default()).map_err(SourceError::of)?;
+        let setup = *raw.game().setup();
         let mut recording =
             Recording::<Shove>::start(&setup, CHECKPOINT_INTERVAL).map_err(SourceError::of)?;
-        while rerun.step().map_err(SourceError::of)? == Step::Ticked {
-            recording.step(rerun.inputs()).map_err(SourceError::of)?;
+        while raw.step().map_err(SourceError::of)? == Step::Ticked {
+            recording.step(raw.inputs()).map_err(SourceError::of)?;
         }
         recording.finish().map_err(SourceError::of)
     }

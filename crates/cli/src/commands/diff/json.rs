@@ -24,7 +24,7 @@ pub(super) fn document([a, b]: [&Path; 2], found: &Comparison) -> String {
         "last_equal": found.last_equal,
         "first_different": found.first_different,
         "blame": blame(found.blame),
-        "rerun": found.rerun,
+        "simulated": found.simulated,
         "a": side(a, &found.trajectories[0]),
         "b": side(b, &found.trajectories[1]),
         "checkpoint": found.checkpoint,
@@ -35,7 +35,7 @@ pub(super) fn document([a, b]: [&Path; 2], found: &Comparison) -> String {
         "stage": found.stage.map(|stage| stage.name()),
         "tick": found.tick,
         "began": began,
-        "things": subjects,
+        "subjects": subjects,
         "notes": found.notes,
     });
     document.to_string()

@@ -63,7 +63,7 @@ impl Text<'_> {
                 write!(f, "\nat tick {tick} {} {} {hash}", SeatList(seats), has(seats))?;
             }
         }
-        match (found.rerun, found.blame) {
+        match (found.simulated, found.blame) {
             (None, _) | (_, Blame::Unknown) => {}
             (Some(until), Blame::Nobody) => {
                 write!(f, "\nplayed again up to tick {until}: both kept to the rules")?
@@ -128,7 +128,7 @@ impl Text<'_> {
         sections.sort_unstable();
         sections.dedup();
         let count = subjects.len();
-        let differ = if count == 1 { "thing differs" } else { "things differ" };
+        let differ = if count == 1 { "subject differs" } else { "subjects differ" };
         write!(f, "{count} {differ} in {}", sections.join(", "))?;
         for Subject { path, differences, .. } in subjects.iter().take(self.subjects) {
             write!(f, "\n  {path}")?;
@@ -136,7 +136,7 @@ impl Text<'_> {
         }
         match count.saturating_sub(self.subjects) {
             0 => Ok(()),
-            more => write!(f, "\n  and {more} more (--things {count})"),
+            more => write!(f, "\n  and {more} more (--subjects {count})"),
         }
     }
 }
