@@ -8,7 +8,9 @@
 
 use super::limits::{Faults, STEP_MAX};
 use crate::fx;
-use crate::math::{Fx, Rate, Speed, TAU, Unit, fx_div, fx_mul, narrow, round_shift, saturate};
+use crate::math::{
+    Fx, Rate, Speed, TAU, Unit, div_round, fx_div, fx_mul, narrow, round_shift, saturate, saturate_wide,
+};
 
 /// The coefficients from which the impulse of a soft constraint is computed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,6 +41,18 @@ impl Softness {
         // The scales add up to exactly 1, so that a mean with these weights never exceeds the larger value.
         let impulse_scale = narrow(a3);
         Softness { bias_rate: narrow(bias_rate), mass_scale: Unit::ONE - impulse_scale, impulse_scale }
+    }
+
+    /// The softness of the same spring where it also turns bodies, so that an impulse changes the velocity along it by
+    /// `D` times as much, with 30 fraction bits: `a2` becomes `a2 D`, and `massScale' = massScale D / (impulseScale +
+    /// massScale D)`. Stiffness and damping in N/m and N s/m stay the same.
+    pub(crate) fn at_mobility(&self, denominator: i64) -> Self {
+        let [mass, impulse] = [self.mass_scale, self.impulse_scale].map(|scale| i128::from(scale.to_bits()));
+        let mass = mass * i128::from(denominator);
+        let whole = (impulse << 30) + mass;
+        let mass_scale = if whole > 0 { div_round(mass << 30, whole) } else { 0 };
+        let mass_scale = Unit::from_bits(saturate(saturate_wide(mass_scale)));
+        Softness { mass_scale, impulse_scale: Unit::ONE - mass_scale, ..*self }
     }
 
     /// The factor by which a joint overestimates the predicted rotation, so that its softness yields to only 0.4 of the

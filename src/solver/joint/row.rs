@@ -12,6 +12,11 @@
 //! hold     as a limit that is reached, with L of either sign
 //! ```
 //!
+//! A spring along a line has the stiffness `omega^2 m` and the damping `2 zeta omega m` of the bodies as points of mass,
+//! `m = 1 / (mA + mB)`, at every pose, so that its force follows from a potential. Where it also turns the bodies, its
+//! scales are therefore those of the mobility `D` ([`Softness::at_mobility`]). With the same scales at every pose it would
+//! have the same frequency at every pose, and its stiffness `omega^2 m / D` would change as the arms turn.
+//!
 //! `L` is a speed. The impulse is `L / ((mA + mB) D)`, times `s` for an angle.
 //!
 //! **Springs are not solved in the relax pass.** In the bias pass a soft row is the implicit step of a damped spring
@@ -28,12 +33,13 @@ use super::super::softness::Softness;
 use super::list::BlockedTask;
 use super::options::JointLimit;
 use super::parts::Direction;
-use crate::math::{Fx, Speed, fx_div, fx_mul, narrow, saturate_wide};
+use crate::math::{Fx, Speed, Unit, fx_div, fx_mul, narrow, saturate_wide};
 
 /// The function of a row.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum RowTask {
-    /// Drives the position to a target, with impulses times `mA + mB` within `lower..=upper`.
+    /// Drives the position to a target, with impulses times `mA + mB` within `lower..=upper`. `softness` is that of
+    /// bodies that do not turn.
     Spring { softness: Softness, target: Fx, lower: Fx, upper: Fx },
     /// Drives the velocity to a speed, with impulses times `mA + mB` of at most `max`, and not beyond `limit`.
     Drive { speed: Fx, max: Fx, limit: Option<JointLimit> },
@@ -65,6 +71,8 @@ pub(super) struct JointRow {
     pub(super) row: Row,
     /// For a spring: the part of its impulse that comes from its stretch. For other rows: the target speed, reversed.
     bias: Speed,
+    /// For a spring: its softness at the current pose.
+    softness: Softness,
     /// Whether the row is a limit that is not reached.
     open: bool,
     bounds: (Speed, Speed),
@@ -78,12 +86,17 @@ impl JointRow {
     pub(super) fn new(slot: u8, direction: Direction, task: RowTask, lambda: Speed) -> Self {
         let bounds = (Speed::ZERO, Speed::ZERO);
         let (row, bias, denominator) = (Row::NONE, Speed::ZERO, 0);
+        let softness = match task {
+            RowTask::Spring { softness, .. } => softness,
+            _ => Softness::RIGID,
+        };
         JointRow {
             slot,
             direction,
             task,
             row,
             bias,
+            softness,
             open: false,
             bounds,
             denominator,
@@ -138,12 +151,17 @@ impl JointRow {
         self.denominator
     }
 
-    /// The softness in the bias pass of a row without limits.
+    /// The softness in the bias pass of a row without limits, at the pose of the last refresh.
     pub(super) fn softness<'a>(&'a self, tuning: &'a Tuning) -> &'a Softness {
         match &self.task {
-            RowTask::Spring { softness, .. } => softness,
+            RowTask::Spring { .. } => &self.softness,
             _ => &tuning.joint,
         }
+    }
+
+    /// `massScale` of a spring at the pose of the last refresh.
+    pub(super) fn spring_mass_scale(&self) -> Unit {
+        self.softness.mass_scale
     }
 
     /// Computes Jacobian, gains, bias and bounds at the current pose.
@@ -155,7 +173,12 @@ impl JointRow {
         let soft_bias = |gap: Fx| narrow(fx_mul(metres(gap), tuning.joint.bias_rate.into()));
         match self.task {
             RowTask::Spring { softness, target, lower, upper } => {
-                self.bias = softness.push(metres(position.saturating_sub(target)));
+                self.softness = match self.direction {
+                    // `D` of a row on the angle is about 1 and does not depend on the pose.
+                    Direction::Angle => softness,
+                    _ => softness.at_mobility(denominator),
+                };
+                self.bias = self.softness.push(metres(position.saturating_sub(target)));
                 self.bounds = (measure.lambda(lower), measure.lambda(upper));
             }
             RowTask::Drive { speed, max, limit } => {
@@ -212,7 +235,7 @@ impl JointRow {
     ) -> Option<i64> {
         let vn = self.row.velocity(a, b, faults);
         let (softness, bias, push) = match (&self.task, pass) {
-            (RowTask::Spring { softness, .. }, Pass::Bias) => (softness, Speed::ZERO, self.bias),
+            (RowTask::Spring { .. }, Pass::Bias) => (&self.softness, Speed::ZERO, self.bias),
             (RowTask::Spring { .. }, Pass::Relax) => return None,
             // As with contacts, a gap without an impulse is left to the next sub-step.
             (RowTask::Lower { .. } | RowTask::Upper { .. }, Pass::Relax) if self.open && self.lambda == 0 => {

@@ -248,6 +248,16 @@ impl Unit {
         if part == 2 || matches!(self.source, Source::HingeLimit(..)) { ANGLE_MAX } else { IMPULSE_MAX }
     }
 
+    /// The index of the row, if the unit is a row of a joint that is not a hinge.
+    pub(super) fn list_row(&self) -> Option<usize> {
+        if let Source::Part(ListPart::Row(at)) = self.source { Some(at) } else { None }
+    }
+
+    /// Whether the unit is a spring.
+    pub(super) fn is_spring(&self) -> bool {
+        self.softness[0].is_some_and(|softness| softness.task == BlockedTask::Spring)
+    }
+
     /// Whether the unit is a limit, which has one row.
     pub(super) fn is_limit(&self) -> bool {
         self.softness[0].is_some_and(|softness| softness.task == BlockedTask::Limit)
