@@ -65,6 +65,11 @@ impl Softness {
         narrow(Fx::ONE.saturating_add(give.min(fx!(0.9))))
     }
 
+    /// A sort key.
+    pub(crate) fn to_bits(self) -> [i32; 3] {
+        [self.bias_rate.to_bits(), self.mass_scale.to_bits(), self.impulse_scale.to_bits()]
+    }
+
     /// The part of a spring's impulse that comes from its stretch, reversed: `massScale biasRate x`, about `h omega^2
     /// x`. The bias rate alone times a long stretch would overflow.
     pub(crate) fn push(&self, stretch: Fx) -> Speed {

@@ -28,12 +28,11 @@ use super::super::body_pair::BodyPair;
 use super::super::context::Pass;
 use super::super::limits::{Faults, IMPULSE_MAX};
 use super::super::row::{Denominator, Row};
-use super::super::settings::Tuning;
 use super::super::softness::Softness;
 use super::list::BlockedTask;
 use super::options::JointLimit;
 use super::parts::Direction;
-use crate::math::{Fx, Speed, Unit, fx_div, fx_mul, narrow, saturate_wide};
+use crate::math::{Fx, Speed, fx_div, fx_mul, narrow, saturate_wide};
 
 /// The function of a row.
 #[derive(Clone, Copy, Debug)]
@@ -71,7 +70,7 @@ pub(super) struct JointRow {
     pub(super) row: Row,
     /// For a spring: the part of its impulse that comes from its stretch. For other rows: the target speed, reversed.
     bias: Speed,
-    /// For a spring: its softness at the current pose.
+    /// For a spring: its softness at the current pose. For a limit or a row that holds a position: that of the joint.
     softness: Softness,
     /// Whether the row is a limit that is not reached.
     open: bool,
@@ -83,12 +82,19 @@ pub(super) struct JointRow {
 }
 
 impl JointRow {
-    pub(super) fn new(slot: u8, direction: Direction, task: RowTask, lambda: Speed) -> Self {
+    /// A row of a joint of the given softness.
+    pub(super) fn new(
+        slot: u8,
+        direction: Direction,
+        task: RowTask,
+        softness: Softness,
+        lambda: Speed,
+    ) -> Self {
         let bounds = (Speed::ZERO, Speed::ZERO);
         let (row, bias, denominator) = (Row::NONE, Speed::ZERO, 0);
         let softness = match task {
             RowTask::Spring { softness, .. } => softness,
-            _ => Softness::RIGID,
+            _ => softness,
         };
         JointRow {
             slot,
@@ -132,7 +138,6 @@ impl JointRow {
     pub(super) fn wanted_of_limit(
         &self,
         pass: Pass,
-        tuning: &Tuning,
         a: &SolverBody,
         b: &SolverBody,
         faults: &mut Faults,
@@ -140,7 +145,7 @@ impl JointRow {
         let vn = self.row.velocity(a, b, faults);
         let (softness, bias) = match pass {
             _ if self.open => (&Softness::RIGID, self.bias),
-            Pass::Bias => (&tuning.joint, self.bias),
+            Pass::Bias => (&self.softness, self.bias),
             Pass::Relax => (&Softness::RIGID, Speed::ZERO),
         };
         softness.wanted(vn, bias, Speed::ZERO)
@@ -152,25 +157,18 @@ impl JointRow {
     }
 
     /// The softness in the bias pass of a row without limits, at the pose of the last refresh.
-    pub(super) fn softness<'a>(&'a self, tuning: &'a Tuning) -> &'a Softness {
-        match &self.task {
-            RowTask::Spring { .. } => &self.softness,
-            _ => &tuning.joint,
-        }
-    }
-
-    /// `massScale` of a spring at the pose of the last refresh.
-    pub(super) fn spring_mass_scale(&self) -> Unit {
-        self.softness.mass_scale
+    pub(super) fn softness(&self) -> &Softness {
+        &self.softness
     }
 
     /// Computes Jacobian, gains, bias and bounds at the current pose.
-    pub(super) fn refresh(&mut self, measure: &Measure, tuning: &Tuning) {
+    pub(super) fn refresh(&mut self, measure: &Measure, rate: u32) {
         let Measure { row, denominator, position, scale } = *measure;
         (self.row, self.denominator) = (row, denominator);
         self.bounds = (-IMPULSE_MAX, IMPULSE_MAX);
         let metres = |x: Fx| fx_mul(x, scale);
-        let soft_bias = |gap: Fx| narrow(fx_mul(metres(gap), tuning.joint.bias_rate.into()));
+        let bias_rate = Fx::from(self.softness.bias_rate);
+        let approach = |gap: Fx| approach(gap, bias_rate, rate);
         match self.task {
             RowTask::Spring { softness, target, lower, upper } => {
                 self.softness = match self.direction {
@@ -183,8 +181,8 @@ impl JointRow {
             }
             RowTask::Drive { speed, max, limit } => {
                 let within = |JointLimit { lower, upper }: JointLimit| {
-                    let ahead = approach(metres(upper.saturating_sub(position)), tuning);
-                    let behind = approach(metres(position.saturating_sub(lower)), tuning);
+                    let ahead = approach(metres(upper.saturating_sub(position)));
+                    let behind = approach(metres(position.saturating_sub(lower)));
                     metres(speed).min(ahead).max(behind.saturating_neg())
                 };
                 let speed = limit.map_or_else(|| metres(speed), within);
@@ -192,11 +190,13 @@ impl JointRow {
                 let max = measure.lambda(max);
                 self.bounds = (-max, max);
             }
-            RowTask::Hold { target } => self.bias = soft_bias(position.saturating_sub(target)),
-            RowTask::Lower { bound } => self.refresh_limit(position.saturating_sub(bound), measure, tuning),
+            RowTask::Hold { target } => {
+                self.bias = narrow(fx_mul(metres(position.saturating_sub(target)), bias_rate))
+            }
+            RowTask::Lower { bound } => self.refresh_limit(position.saturating_sub(bound), measure, rate),
             RowTask::Upper { bound } => {
                 self.row = row.reversed();
-                self.refresh_limit(bound.saturating_sub(position), measure, tuning);
+                self.refresh_limit(bound.saturating_sub(position), measure, rate);
             }
         }
         if denominator == 0 {
@@ -206,10 +206,10 @@ impl JointRow {
     }
 
     /// Computes bias and bounds of a limit. `gap` is the distance to the limit.
-    fn refresh_limit(&mut self, gap: Fx, measure: &Measure, tuning: &Tuning) {
+    fn refresh_limit(&mut self, gap: Fx, measure: &Measure, rate: u32) {
         let gap = fx_mul(gap, measure.scale);
         self.open = gap > Fx::ZERO;
-        self.bias = narrow(approach(gap, tuning));
+        self.bias = narrow(approach(gap, self.softness.bias_rate.into(), rate));
         self.bounds = (Speed::ZERO, IMPULSE_MAX);
     }
 
@@ -218,8 +218,8 @@ impl JointRow {
         self.row.apply(self.lambda, bodies);
     }
 
-    pub(super) fn solve(&mut self, pass: Pass, tuning: &Tuning, bodies: &mut BodyPair<'_>) {
-        if let Some(d) = self.wanted(pass, tuning, bodies.a, bodies.b, bodies.faults) {
+    pub(super) fn solve(&mut self, pass: Pass, bodies: &mut BodyPair<'_>) {
+        if let Some(d) = self.wanted(pass, bodies.a, bodies.b, bodies.faults) {
             self.row.accumulate(d, self.bounds, &mut self.lambda, bodies);
         }
     }
@@ -228,7 +228,6 @@ impl JointRow {
     pub(super) fn wanted(
         &self,
         pass: Pass,
-        tuning: &Tuning,
         a: &SolverBody,
         b: &SolverBody,
         faults: &mut Faults,
@@ -246,7 +245,7 @@ impl JointRow {
                 (&Softness::RIGID, self.bias.min(self.lambda.saturating_sub(vn)), Speed::ZERO)
             }
             (RowTask::Drive { .. }, _) => (&Softness::RIGID, self.bias, Speed::ZERO),
-            (_, Pass::Bias) => (&tuning.joint, self.bias, Speed::ZERO),
+            (_, Pass::Bias) => (&self.softness, self.bias, Speed::ZERO),
             (_, Pass::Relax) => (&Softness::RIGID, Speed::ZERO, Speed::ZERO),
         };
         Some(softness.wanted(vn, bias, self.lambda) - i64::from(push.to_bits()))
@@ -254,10 +253,10 @@ impl JointRow {
 }
 
 /// The largest speed in m/s at which a limit at a distance of `gap` is approached: the limit is reached after a
-/// sub-step. Beyond the limit the speed is negative: that at which the limit is restored.
-fn approach(gap: Fx, tuning: &Tuning) -> Fx {
-    let rate = if gap > Fx::ZERO { Fx::from_num(tuning.rate) } else { tuning.joint.bias_rate.into() };
-    fx_mul(gap, rate)
+/// sub-step, of which there are `rate` per second. Beyond the limit the speed is negative: that at which the limit is
+/// restored.
+fn approach(gap: Fx, bias_rate: Fx, rate: u32) -> Fx {
+    fx_mul(gap, if gap > Fx::ZERO { Fx::from_num(rate) } else { bias_rate })
 }
 
 impl Measure {

@@ -35,7 +35,6 @@ mod unit;
 use alloc::vec::Vec;
 
 use super::super::context::{Pass, StepContext};
-use super::super::settings::Tuning;
 use super::hinge::{HingeSet, Poses};
 use super::list::{BlockedPart, BlockedTask, JointList};
 use crate::math::{Fx, Speed, round_shift, saturate};
@@ -127,7 +126,6 @@ impl Blocks {
         &mut self,
         hinges: &HingeSet,
         parts: &[(u32, BlockedPart)],
-        tuning: &Tuning,
         candidates: &[Candidate],
         numbers: &[Result<usize, u32>],
     ) {
@@ -141,7 +139,7 @@ impl Blocks {
                 let share = mass_share(least, mass(joint));
                 match *number {
                     Ok(number) => {
-                        Unit::of_hinge(number, hinges, tuning).for_each(|unit| block.push(unit, share));
+                        Unit::of_hinge(number, hinges).for_each(|unit| block.push(unit, share));
                     }
                     Err(slot) => {
                         let first = parts.partition_point(|&(other, _)| other < slot);
@@ -260,7 +258,7 @@ impl Block {
         let Block { units, pairs, rows, matrix, factored, bias, springs, .. } = self;
         *factored = None;
         for &Spring { at, row, mass } in springs.iter() {
-            let mass_scale = i64::from(list.row(at).spring_mass_scale().to_bits());
+            let mass_scale = i64::from(list.row(at).softness().mass_scale.to_bits());
             bias.set(row, root_and_inverse(mass_scale), mass, ONE - mass_scale);
         }
         for unit in units.iter_mut() {
