@@ -73,8 +73,8 @@ pub(crate) struct Case {
 
 pub(crate) struct Assembly {
     pub(crate) world: World,
-    bodies: Vec<BodyId>,
-    joints: Vec<JointId>,
+    pub(crate) bodies: Vec<BodyId>,
+    pub(crate) joints: Vec<JointId>,
 }
 
 struct Plan {
@@ -83,7 +83,7 @@ struct Plan {
     gyration: Fx,
 }
 
-fn pick<T: Copy>(rng: &mut Rng, items: &[T]) -> T {
+pub(crate) fn pick<T: Copy>(rng: &mut Rng, items: &[T]) -> T {
     items[rng.below(u32::try_from(items.len()).expect("few")) as usize]
 }
 

@@ -141,6 +141,41 @@ fn a_point_on_an_arm_swings_faster() {
     }
 }
 
+/// The same holds for springs along a line: that of a suspension and that of a distance joint.
+#[test]
+fn a_spring_along_a_line_swings_faster_on_an_arm() {
+    for (ground, reduced) in [(Ground::Fixed, fx!(1)), (Ground::Free(fx!(2)), fx!(0.5))] {
+        for (arm, hertz, ratio) in [
+            (fx!(0.5), fx!(2), fx!(0.1)),
+            (fx!(0.5), fx!(1), fx!(0)),
+            (fx!(1.5), fx!(1), fx!(0.1)),
+            (fx!(1.5), fx!(5), fx!(0.5)),
+        ] {
+            // So small that B's rotation does not change the arm.
+            let x = arm / 1000;
+            let long = fx!(2);
+            let mobility = fx!(1) + fx_mul(reduced, fx_mul(arm, arm) * 4);
+            let rest = Distance::new().spring(hertz, ratio, long);
+            let suspension = Wheel::new().spring(hertz, ratio, fx!(0));
+            for (kind, from, start) in
+                [(rest.into(), -long, long), (JointKind::from(suspension), fx!(0), fx!(0))]
+            {
+                let mut bench = Bench::new(ground, fx!(0), Vec2::new(arm, x), fx!(0));
+                // The spring acts along y, on A through A's centre.
+                let def = JointDef::new(bench.a, bench.b, kind).angle_a(Angle::QUARTER);
+                let joint = bench.join(def.anchor_a((fx!(0), from)).anchor_b((-arm, fx!(0))));
+                let mut theory = Oscillator { x, v: fx!(0), hertz, damping_ratio: ratio, mobility };
+                let mut worst = fx!(0);
+                bench.run(200, |_, world| {
+                    let stretch = world.joint_translation(joint).expect("there").x - start;
+                    worst = worst.max((stretch - theory.tick()).abs());
+                });
+                assert!(worst < x / 100, "{kind:?}, {ground:?}, arm {arm} m: {worst} off");
+            }
+        }
+    }
+}
+
 /// Two welds at one body are solved together. Side by side, they are one spring of twice the stiffness and damping.
 #[test]
 fn two_soft_welds_swing_as_one_of_twice_the_stiffness() {
