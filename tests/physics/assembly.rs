@@ -63,7 +63,7 @@ pub(crate) const MIXES: [Mix; 8] =
     [Mix::Weld, Mix::Hinge, Mix::SoftWeld, Mix::Prismatic, Mix::Wheel, Mix::Rod, Mix::Friction, Mix::Every];
 pub(crate) const STARTS: [Start; 4] = [Start::Hit, Start::Spin, Start::Scatter, Start::Hang];
 
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Case {
     pub(crate) shape: Shape,
     pub(crate) mix: Mix,
