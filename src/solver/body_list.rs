@@ -129,8 +129,8 @@ impl BodyList {
         self.index_of(slot)
     }
 
-    /// Adds a body without mass at a far anchor of the fixed body in a slot, and returns its index. [`Self::index_of`] does
-    /// not return it.
+    /// Adds a body without mass at a far anchor of the fixed body in a slot, and returns its index. [`Self::index_of`]
+    /// does not return it.
     pub(super) fn add_far_anchor(&mut self, slot: u32, pose: Pose) -> u32 {
         let index = u32::try_from(self.bodies.len()).expect("fewer than 2^32 bodies");
         self.slots.push(slot);

@@ -50,9 +50,9 @@ pub struct SolverSettings {
     pub iterations: u32,
     /// Method by which contacts remove overlap.
     pub contact: ContactTuning,
-    /// Stiffness in Hz of joints that have no [softness of their own](crate::solver::JointDef::softness), at most a quarter
-    /// of the sub-step rate. It is doubled for the anchors of an anchored hinge or rigid weld: one between a body that is
-    /// not dynamic and a body without any other joint. No other joint has to yield there.
+    /// Stiffness in Hz of joints that have no [softness of their own](crate::solver::JointDef::softness), at most a
+    /// quarter of the sub-step rate. It is doubled for the anchors of an anchored hinge or rigid weld: one between a
+    /// body that is not dynamic and a body without any other joint. No other joint has to yield there.
     pub joint_hertz: Fx,
     /// Damping ratio of joints, 0 to 100.
     pub joint_damping_ratio: Fx,

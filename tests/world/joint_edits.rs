@@ -1,5 +1,6 @@
-//! What a game changes about joints between ticks: kinds of their bodies, switching them off, motors, springs and limits,
-//! their own softness; anchors anywhere on fixed bodies; the force of one part; definitions at a point of the world.
+//! What a game changes about joints between ticks: kinds of their bodies, switching them off, motors, springs and
+//! limits, their own softness; anchors anywhere on fixed bodies; the force of one part; definitions at a point of the
+//! world.
 
 use lockstep2d::body::{BodyDef, BodyId, BodyKind, JointId, MassSource, WorldError};
 use lockstep2d::fx;

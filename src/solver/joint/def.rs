@@ -34,14 +34,14 @@ pub struct JointDef {
     pub frame_b: JointFrame,
     /// Whether the two bodies collide with each other.
     pub collide_connected: bool,
-    /// Whether the joint acts. A disabled joint keeps its handle, exerts nothing, and lets its bodies collide and sleep as
-    /// if it were absent.
+    /// Whether the joint acts. A disabled joint keeps its handle, exerts nothing, and lets its bodies collide and sleep
+    /// as if it were absent.
     pub enabled: bool,
     /// The kind of joint: the relative motion that it allows.
     pub kind: JointKind,
     /// Stiffness and damping of everything that the joint holds rigidly, its limits included; `None` for those of the
-    /// world, [`SolverSettings::joint_hertz`](crate::solver::SolverSettings::joint_hertz). The frequency is limited to a
-    /// quarter of the sub-step rate. Springs and motors have parameters of their own.
+    /// world, [`SolverSettings::joint_hertz`](crate::solver::SolverSettings::joint_hertz). The frequency is limited to
+    /// a quarter of the sub-step rate. Springs and motors have parameters of their own.
     pub softness: Option<Soft>,
     /// The load beyond which the joint is reported or breaks.
     pub threshold: Threshold,
@@ -133,8 +133,8 @@ impl JointFrame {
         x.saturating_abs().max(y.saturating_abs()) > REACH_MAX
     }
 
-    /// The centre of a body and the vector from there to the anchor, in the frame of the body. The centre of a fixed body
-    /// is arbitrary: if the anchor is far from the origin, it is the anchor itself.
+    /// The centre of a body and the vector from there to the anchor, in the frame of the body. The centre of a fixed
+    /// body is arbitrary: if the anchor is far from the origin, it is the anchor itself.
     pub(super) fn centre_and_arm(&self, body: &Body) -> (Vec2<Fx>, Vec2<Fx>) {
         if self.is_far() {
             (self.far_pose(body).centre, Vec2::ZERO)
@@ -204,7 +204,8 @@ impl JointDef {
         self
     }
 
-    /// Sets the stiffness in Hz, above 0 and up to 1000, and the damping ratio, 0 to 100, of what the joint holds rigidly.
+    /// Sets the stiffness in Hz, above 0 and up to 1000, and the damping ratio, 0 to 100, of what the joint holds
+    /// rigidly.
     #[must_use]
     pub const fn softness(mut self, hertz: Fx, damping_ratio: Fx) -> Self {
         self.softness = Some(Soft { hertz, damping_ratio });

@@ -12,10 +12,11 @@
 //! hold     as a limit that is reached, with L of either sign
 //! ```
 //!
-//! A spring along a line has the stiffness `omega^2 m` and the damping `2 zeta omega m` of the bodies as points of mass,
-//! `m = 1 / (mA + mB)`, at every pose, so that its force follows from a potential. Where it also turns the bodies, its
-//! scales are therefore those of the mobility `D` ([`Softness::at_mobility`]). With the same scales at every pose it would
-//! have the same frequency at every pose, and its stiffness `omega^2 m / D` would change as the arms turn.
+//! A spring along a line has the stiffness `omega^2 m` and the damping `2 zeta omega m` of the bodies as points of
+//! mass, `m = 1 / (mA + mB)`, at every pose, so that its force follows from a potential. Where it also turns the
+//! bodies, its scales are therefore those of the mobility `D` ([`Softness::at_mobility`]). With the same scales at
+//! every pose it would have the same frequency at every pose, and its stiffness `omega^2 m / D` would change as the
+//! arms turn.
 //!
 //! `L` is a speed. The impulse is `L / ((mA + mB) D)`, times `s` for an angle.
 //!

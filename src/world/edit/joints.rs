@@ -9,8 +9,8 @@ use crate::world::World;
 use crate::world::islands::{joint_retuned, joints_changed};
 
 impl World {
-    /// The definition of a joint at a point of the world, in metres: both anchors are there, and the angle of the joint is
-    /// 0 at the current poses. Change it as needed and pass it to [`World::add_joint`].
+    /// The definition of a joint at a point of the world, in metres: both anchors are there, and the angle of the joint
+    /// is 0 at the current poses. Change it as needed and pass it to [`World::add_joint`].
     ///
     /// ```
     /// use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, fx, solver::Revolute, world::World};
@@ -104,8 +104,8 @@ impl World {
         })
     }
 
-    /// Takes a joint out of the simulation until [`World::enable_joint`]: it keeps its handle, exerts nothing, and lets its
-    /// bodies collide and sleep as if it were absent. Wakes its bodies, unless it is disabled already.
+    /// Takes a joint out of the simulation until [`World::enable_joint`]: it keeps its handle, exerts nothing, and lets
+    /// its bodies collide and sleep as if it were absent. Wakes its bodies, unless it is disabled already.
     ///
     /// # Errors
     /// [`WorldError::StaleJoint`] if it is not in the world.
@@ -129,8 +129,8 @@ impl World {
         })
     }
 
-    /// Sets the largest force in N or torque in N m of a joint's motor; that of the angular motor of a motor joint. Wakes
-    /// its bodies, unless it is the same.
+    /// Sets the largest force in N or torque in N m of a joint's motor; that of the angular motor of a motor joint.
+    /// Wakes its bodies, unless it is the same.
     ///
     /// # Errors
     /// [`WorldError`] if the handle is stale, the joint has no motor, or the value is negative.
@@ -142,8 +142,8 @@ impl World {
         })
     }
 
-    /// Sets the target velocity of a motor joint in m/s, along the axes of the world. Wakes its bodies, unless it is the
-    /// same.
+    /// Sets the target velocity of a motor joint in m/s, along the axes of the world. Wakes its bodies, unless it is
+    /// the same.
     ///
     /// # Errors
     /// [`WorldError`] if the handle is stale, the joint has no linear motor, or the velocity is out of range.
@@ -175,8 +175,8 @@ impl World {
         })
     }
 
-    /// Sets the range of a joint's angle, translation or length in rad or m; `None` for no limit. Wakes its bodies, unless
-    /// it is the same.
+    /// Sets the range of a joint's angle, translation or length in rad or m; `None` for no limit. Wakes its bodies,
+    /// unless it is the same.
     ///
     /// # Errors
     /// [`WorldError`] if the handle is stale, the kind of joint has no limit, or the range is out of range.

@@ -62,12 +62,12 @@ impl World {
         Ok(())
     }
 
-    /// Makes a body fixed, kinematic or dynamic. A body that becomes fixed stops, any other keeps its velocity. Its joints
-    /// stay, and rest as long as neither of their bodies is dynamic.
+    /// Makes a body fixed, kinematic or dynamic. A body that becomes fixed stops, any other keeps its velocity. Its
+    /// joints stay, and rest as long as neither of their bodies is dynamic.
     ///
     /// # Errors
-    /// [`WorldError`] if the handle is stale, a dynamic body would have no mass, a shape or the anchor of a joint reaches
-    /// too far for a body that moves, or the body rotates too fast for its mass.
+    /// [`WorldError`] if the handle is stale, a dynamic body would have no mass, a shape or the anchor of a joint
+    /// reaches too far for a body that moves, or the body rotates too fast for its mass.
     #[doc(alias = "static")]
     #[doc(alias = "body type")]
     pub fn set_kind(&mut self, id: BodyId, kind: BodyKind) -> Result<(), WorldError> {

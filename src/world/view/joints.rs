@@ -78,8 +78,8 @@ impl World {
         }
     }
 
-    /// Returns the force in N that the joint exerted on B in the last sub-step, and the torque in N m about B's anchor. 0
-    /// while the joint is disabled or rests.
+    /// Returns the force in N that the joint exerted on B in the last sub-step, and the torque in N m about B's anchor.
+    /// 0 while the joint is disabled or rests.
     #[doc(alias = "reaction force")]
     #[must_use]
     pub fn joint_force(&self, id: JointId) -> Option<(Vec2<Fx>, Fx)> {
@@ -89,9 +89,9 @@ impl World {
         Some(joint.reaction(a, b, &tuning))
     }
 
-    /// Returns the part of [`World::joint_force`] that the joint's motor, limits or springs have exerted: for example the
-    /// torque of a motor that lifts a bridge, without the force that holds the hinge together. 0 if the joint has no such
-    /// part.
+    /// Returns the part of [`World::joint_force`] that the joint's motor, limits or springs have exerted: for example
+    /// the torque of a motor that lifts a bridge, without the force that holds the hinge together. 0 if the joint has
+    /// no such part.
     #[doc(alias = "motor torque")]
     #[must_use]
     pub fn joint_part_force(&self, id: JointId, part: JointPart) -> Option<(Vec2<Fx>, Fx)> {

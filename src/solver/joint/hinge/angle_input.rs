@@ -160,7 +160,8 @@ pub(super) struct LimitInput {
 }
 
 impl AngleInput {
-    /// The rows of a hinge, in a world with `rate` sub-steps per second. What it holds rigidly has the softness `rigid`.
+    /// The rows of a hinge, in a world with `rate` sub-steps per second. What it holds rigidly has the softness
+    /// `rigid`.
     pub(in super::super) fn new(
         parts: &AngleParts,
         ends: [&HingeBody; 2],

@@ -167,7 +167,8 @@ impl Input {
         }
     }
 
-    /// The index of the body that it holds, if no impulse moves the other body and the joint has no softness of its own.
+    /// The index of the body that it holds, if no impulse moves the other body and the joint has no softness of its
+    /// own.
     pub(super) fn anchored_body(&self) -> Option<u32> {
         match self.changed {
             _ if self.is_tuned => None,
