@@ -305,6 +305,12 @@ impl Generator {
             def = def.between(a, b);
             if source.one_in(2) {
                 def = joints::finish(source, *old.def());
+                if def.user_data & 16 != 0 {
+                    return match def.enabled {
+                        true => Command::EnableJoint { joint },
+                        false => Command::DisableJoint { joint },
+                    };
+                }
             }
         }
         Command::SetJoint { joint, def }

@@ -16,7 +16,11 @@ pub fn joint(source: &mut Source<'_>, a: BodyId, b: BodyId) -> JointDef {
     let anchor = |source: &mut Source<'_>| match source.below(4) {
         0 => Vec2::ZERO,
         1 | 2 => source.mostly_vec(-800, 800),
-        _ => source.mostly_vec(-128_000, 128_000),
+        _ => {
+            let far = source.mostly_vec(-128_000, 128_000);
+            // Anchors on fixed bodies may be anywhere.
+            if far.x.to_bits() & 1 == 0 { far } else { Vec2::new(far.x.saturating_mul(fx!(9)), far.y) }
+        }
     };
     (def.frame_a.anchor, def.frame_b.anchor) = (anchor(source), anchor(source));
     if source.one_in(3) {
@@ -25,7 +29,7 @@ pub fn joint(source: &mut Source<'_>, a: BodyId, b: BodyId) -> JointDef {
     finish(source, def)
 }
 
-/// Sets the properties that all kinds share: thresholds, and whether the bodies collide.
+/// Sets the properties that all kinds share: thresholds, softness, and whether the joint acts and the bodies collide.
 pub fn finish(source: &mut Source<'_>, mut def: JointDef) -> JointDef {
     def.collide_connected = source.one_in(2);
     if source.one_in(4) {
@@ -35,6 +39,8 @@ pub fn finish(source: &mut Source<'_>, mut def: JointDef) -> JointDef {
     }
     if source.one_in(8) {
         def.user_data = source.word();
+        def.enabled = def.user_data & 3 != 0;
+        def.softness = (def.user_data & 12 == 0).then(|| a_soft(source));
     }
     def
 }

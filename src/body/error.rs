@@ -131,10 +131,15 @@ pub enum WorldError {
     },
     /// A joint connects a body to itself.
     JointToItself(BodyId),
-    /// Neither body of a joint is dynamic, so the joint could move nothing.
-    JointWithoutDynamicBody,
     /// The bodies of an existing joint cannot be changed.
     JointOfOtherBodies(JointId),
+    /// A joint has no such part.
+    JointWithout {
+        /// The joint.
+        joint: JointId,
+        /// Name of the part.
+        what: &'static str,
+    },
     /// A property of a joint is out of range.
     JointOutOfRange {
         /// Name of the property.
@@ -197,8 +202,8 @@ impl fmt::Display for WorldError {
                 write!(f, "gravity scale is within ±1000, not {value}")
             }
             WorldError::JointToItself(id) => write!(f, "a joint cannot connect body {id} to itself"),
-            WorldError::JointWithoutDynamicBody => write!(f, "neither body of the joint is dynamic"),
             WorldError::JointOfOtherBodies(id) => write!(f, "the bodies of joint {id} cannot be changed"),
+            WorldError::JointWithout { joint, what } => write!(f, "joint {joint} has no {what}"),
             WorldError::JointOutOfRange { what } => write!(f, "the {what} of a joint is out of range"),
             WorldError::Setting { name } => write!(f, "the world setting `{name}` is out of range"),
             WorldError::Full { what, limit } => write!(f, "the world already holds {limit} {what}"),

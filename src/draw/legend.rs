@@ -27,7 +27,8 @@ impl Legend {
         let overlaps =
             world.contacts().flat_map(|contact| contact.manifold.points()).map(|point| -point.separation);
         let overlap = millimetres(overlaps.max().map_or(Fx::ZERO, widen));
-        let gaps = world.joints().filter_map(|(id, _)| world.joint_anchors(id)).map(|(a, b)| a.distance(b));
+        let enabled = world.joints().filter(|(_, joint)| joint.def().enabled);
+        let gaps = enabled.filter_map(|(id, _)| world.joint_anchors(id)).map(|(a, b)| a.distance(b));
         let gap = millimetres(gaps.max().unwrap_or_default());
         let (tick, bodies, contacts) = (world.tick(), world.body_count(), world.contacts().count());
         let faults = world.faults();

@@ -31,7 +31,7 @@ pub struct Layers {
     pub contact_forces: bool,
     /// Contact points in the colours of the groups in which the solver processes them.
     pub solver_colours: bool,
-    /// Joint anchors, the gaps between them, and lines to the bodies that they connect.
+    /// Anchors of enabled joints, the gaps between them, and lines to the bodies that they connect.
     pub joints: bool,
     /// Sizes of the joint gaps, as text.
     pub joint_errors: bool,

@@ -50,7 +50,7 @@ pub fn each_primitive(world: &World, layers: Layers, found: Sink<'_>) {
         }
     }
     if layers.joints || layers.joint_errors {
-        for (id, _) in world.joints() {
+        for (id, _) in world.joints().filter(|(_, joint)| joint.def().enabled) {
             add_joint(world, id, layers, found);
         }
     }

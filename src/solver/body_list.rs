@@ -142,6 +142,17 @@ impl BodyList {
         self.index_of(slot)
     }
 
+    /// Adds a body without mass at a far anchor of the fixed body in a slot, and returns its index. [`Self::index_of`]
+    /// does not return it.
+    pub(super) fn add_far_anchor(&mut self, slot: u32, pose: Pose) -> u32 {
+        let index = u32::try_from(self.bodies.len()).expect("fewer than 2^32 bodies");
+        self.slots.push(slot);
+        self.bodies.push(SolverBody::default());
+        self.poses.push(pose);
+        self.facts.push(BodyFacts::GROUND);
+        index
+    }
+
     /// The slots of all bodies except the ground.
     pub(super) fn slots(&self) -> &[u32] {
         &self.slots

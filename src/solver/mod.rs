@@ -39,8 +39,8 @@ use contact_velocity::{ContactVelocities, PushedBody};
 use context::{Pass, StepContext};
 use integrate::{MovingBody, integrate_displacements, integrate_velocities};
 pub use joint::{
-    Distance, Drive, Joint, JointDef, JointFrame, JointKind, JointLimit, LinearDrive, Motor, Prismatic, Pull,
-    Revolute, Soft, Spring, Threshold, ThresholdAction, Weld, Wheel,
+    Distance, Drive, Joint, JointDef, JointFrame, JointKind, JointLimit, JointPart, LinearDrive, Motor,
+    Prismatic, Pull, Revolute, Soft, Spring, Threshold, ThresholdAction, Weld, Wheel,
 };
 use joint::{JointSet, JointSource};
 use limits::Faults;

@@ -50,9 +50,9 @@ pub struct SolverSettings {
     pub iterations: u32,
     /// Method by which contacts remove overlap.
     pub contact: ContactTuning,
-    /// Stiffness of joints in Hz, at most a quarter of the sub-step rate. It is doubled for the anchors of an anchored
-    /// hinge or rigid weld: one between a body that is not dynamic and a body without any other joint. No other joint
-    /// has to yield there.
+    /// Stiffness in Hz of joints that have no [softness of their own](crate::solver::JointDef::softness), at most a
+    /// quarter of the sub-step rate. It is doubled for the anchors of an anchored hinge or rigid weld: one between a
+    /// body that is not dynamic and a body without any other joint. No other joint has to yield there.
     pub joint_hertz: Fx,
     /// Damping ratio of joints, 0 to 100.
     pub joint_damping_ratio: Fx,
@@ -157,7 +157,7 @@ impl Tuning {
                 (rigid, rigid, slop, push_speed, false)
             }
         };
-        let joint_hertz = at_most(settings.joint_hertz, 4);
+        let joint_hertz = settings.joint_hertz.min(joint_hertz_max(rate));
         let joint = |hertz| Softness::spring(hertz, settings.joint_damping_ratio, rate);
         let over_rate = |g: Fx| {
             Fx::from_bits(crate::math::saturate_wide(crate::math::div_round(g.to_bits().into(), rate.into())))
@@ -176,6 +176,18 @@ impl Tuning {
             gravity_step: Vec2::new(over_rate(gravity.x), over_rate(gravity.y)),
         }
     }
+}
+
+impl Tuning {
+    /// The softness of a joint with its own stiffness in Hz and damping ratio.
+    pub(crate) fn own_softness(&self, hertz: Fx, damping_ratio: Fx) -> Softness {
+        Softness::spring(hertz.min(joint_hertz_max(self.rate)), damping_ratio, self.rate)
+    }
+}
+
+/// Largest stiffness of joints in Hz, for a number of sub-steps per second.
+fn joint_hertz_max(rate: u32) -> Fx {
+    Fx::from_num(rate) / 4
 }
 
 /// Converts a share in every sub-step to a rate per second.

@@ -8,7 +8,9 @@
 
 use super::limits::{Faults, STEP_MAX};
 use crate::fx;
-use crate::math::{Fx, Rate, Speed, TAU, Unit, fx_div, fx_mul, narrow, round_shift, saturate};
+use crate::math::{
+    Fx, Rate, Speed, TAU, Unit, div_round, fx_div, fx_mul, narrow, round_shift, saturate, saturate_wide,
+};
 
 /// The coefficients from which the impulse of a soft constraint is computed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,6 +43,18 @@ impl Softness {
         Softness { bias_rate: narrow(bias_rate), mass_scale: Unit::ONE - impulse_scale, impulse_scale }
     }
 
+    /// The softness of the same spring where it also turns bodies, so that an impulse changes the velocity along it by
+    /// `D` times as much, with 30 fraction bits: `a2` becomes `a2 D`, and `massScale' = massScale D / (impulseScale +
+    /// massScale D)`. Stiffness and damping in N/m and N s/m stay the same.
+    pub(crate) fn at_mobility(&self, denominator: i64) -> Self {
+        let [mass, impulse] = [self.mass_scale, self.impulse_scale].map(|scale| i128::from(scale.to_bits()));
+        let mass = mass * i128::from(denominator);
+        let whole = (impulse << 30) + mass;
+        let mass_scale = if whole > 0 { div_round(mass << 30, whole) } else { 0 };
+        let mass_scale = Unit::from_bits(saturate(saturate_wide(mass_scale)));
+        Softness { mass_scale, impulse_scale: Unit::ONE - mass_scale, ..*self }
+    }
+
     /// The factor by which a joint overestimates the predicted rotation, so that its softness yields to only 0.4 of the
     /// centrifugal force: `1 + 0.6 impulseScale / massScale`, at most 1.9. On a rod with its anchor 40 radii of
     /// gyration away at 20 rad/s, 0.5 leaves a gap of 8.4 mm and 0.6 a gap of 6.9 mm; with 1, chains of free bodies
@@ -49,6 +63,11 @@ impl Softness {
         let (impulse, mass) = (Fx::from(self.impulse_scale), Fx::from(self.mass_scale));
         let give = fx_mul(fx!(0.6), fx_div(impulse, mass).unwrap_or(Fx::ZERO));
         narrow(Fx::ONE.saturating_add(give.min(fx!(0.9))))
+    }
+
+    /// A sort key.
+    pub(crate) fn to_bits(self) -> [i32; 3] {
+        [self.bias_rate.to_bits(), self.mass_scale.to_bits(), self.impulse_scale.to_bits()]
     }
 
     /// The part of a spring's impulse that comes from its stretch, reversed: `massScale biasRate x`, about `h omega^2

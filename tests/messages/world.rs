@@ -44,8 +44,8 @@ fn what_a_handle_names() {
         (WorldError::StaleShape(shape), "shape 7v2 does not exist"),
         (WorldError::StaleJoint(joint), "joint 7v2 does not exist"),
         (WorldError::JointToItself(body), "a joint cannot connect body 7v2 to itself"),
-        (WorldError::JointWithoutDynamicBody, "neither body of the joint is dynamic"),
         (WorldError::JointOfOtherBodies(joint), "the bodies of joint 7v2 cannot be changed"),
+        (WorldError::JointWithout { joint, what: "motor" }, "joint 7v2 has no motor"),
         (WorldError::WrongKind(body), "the kind of body 7v2 does not allow this change"),
     ]);
 }

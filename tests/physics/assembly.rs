@@ -63,7 +63,7 @@ pub(crate) const MIXES: [Mix; 8] =
     [Mix::Weld, Mix::Hinge, Mix::SoftWeld, Mix::Prismatic, Mix::Wheel, Mix::Rod, Mix::Friction, Mix::Every];
 pub(crate) const STARTS: [Start; 4] = [Start::Hit, Start::Spin, Start::Scatter, Start::Hang];
 
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Case {
     pub(crate) shape: Shape,
     pub(crate) mix: Mix,
@@ -73,8 +73,8 @@ pub(crate) struct Case {
 
 pub(crate) struct Assembly {
     pub(crate) world: World,
-    bodies: Vec<BodyId>,
-    joints: Vec<JointId>,
+    pub(crate) bodies: Vec<BodyId>,
+    pub(crate) joints: Vec<JointId>,
 }
 
 struct Plan {
@@ -83,7 +83,7 @@ struct Plan {
     gyration: Fx,
 }
 
-fn pick<T: Copy>(rng: &mut Rng, items: &[T]) -> T {
+pub(crate) fn pick<T: Copy>(rng: &mut Rng, items: &[T]) -> T {
     items[rng.below(u32::try_from(items.len()).expect("few")) as usize]
 }
 
@@ -339,40 +339,26 @@ impl Assembly {
         let inverse = |body: &Body| if body.is_dynamic() { 1.0 / float(body.mass()) } else { 0.0 };
         let turning = |body: &Body| if body.is_dynamic() { 1.0 / float(body.inertia()) } else { 0.0 };
         let (im, it) = ([inverse(a), inverse(b)], [turning(a), turning(b)]);
-        let arm = |at: Vec2<Fx>, body: &Body| {
-            let arm = at - body.centre_of_mass();
-            (float(arm.x), float(arm.y))
-        };
-        let (ra, rb) = (arm(at_b, a), arm(at_b, b));
-        let along = |n: (f64, f64), ra: (f64, f64), rb: (f64, f64)| {
-            let (ca, cb) = (ra.0 * n.1 - ra.1 * n.0, rb.0 * n.1 - rb.1 * n.0);
-            1.0 / (im[0] + im[1] + it[0] * ca * ca + it[1] * cb * cb)
-        };
         let omega = |hertz: Fx| float(hertz) * core::f64::consts::TAU;
         let angular = |hertz: Fx, x: Fx| omega(hertz).powi(2) * float(x).powi(2) / (it[0] + it[1]) / 2.0;
         let angle = self.world.joint_angle(id).unwrap_or(Fx::ZERO);
-        let axis = Rot::from_angle(a.angle() + joint.def().frame_a.angle);
-        let axis = (float(Fx::from(axis.cos)), float(Fx::from(axis.sin)));
         let translation = self.world.joint_translation(id).map_or(0.0, |t| float(t.x));
         let gap = at_b - at_a;
         let gap = (float(gap.x), float(gap.y));
+        let linear = |hertz: Fx, square: f64| omega(hertz).powi(2) * square / (im[0] + im[1]) / 2.0;
         match &joint.def().kind {
             JointKind::Revolute(kind) => kind.spring.map_or(0.0, |s| angular(s.hertz, angle)),
             JointKind::Weld(kind) => {
                 let turn = kind.angular.map_or(0.0, |soft| angular(soft.hertz, angle));
-                let mass = 1.0 / (im[0] + im[1]);
                 let square = gap.0 * gap.0 + gap.1 * gap.1;
-                turn + kind.linear.map_or(0.0, |soft| mass * omega(soft.hertz).powi(2) * square / 2.0)
+                turn + kind.linear.map_or(0.0, |soft| linear(soft.hertz, square))
             }
             JointKind::Prismatic(Prismatic { spring: Some(spring), .. })
             | JointKind::Wheel(Wheel { spring: Some(spring), .. }) => {
-                along(axis, ra, rb) * omega(spring.hertz).powi(2) * translation.powi(2) / 2.0
+                linear(spring.hertz, translation.powi(2))
             }
             JointKind::Distance(Distance { spring: Some(spring), .. }) => {
-                let length = gap.0.hypot(gap.1);
-                let n = (gap.0 / length, gap.1 / length);
-                let x = length - float(spring.target);
-                along(n, arm(at_a, a), rb) * omega(spring.hertz).powi(2) * x * x / 2.0
+                linear(spring.hertz, (gap.0.hypot(gap.1) - float(spring.target)).powi(2))
             }
             _ => 0.0,
         }

@@ -1,6 +1,6 @@
-//! Springs follow the implicit integration of a damped oscillator, sub-step by sub-step: `v' = (v - K h omega^2 x) / (1 +
-//! K (2 zeta h omega + h^2 omega^2))`, `x' = x + h v'`. Only rounding differs. `K` is 1, except where a spring between
-//! two points also turns the bodies, or where two springs act.
+//! Springs follow the implicit integration of a damped oscillator, sub-step by sub-step: `v' = (v - K h omega^2 x) / (1
+//! + K (2 zeta h omega + h^2 omega^2))`, `x' = x + h v'`. Only rounding differs. `K` is 1, except where a spring
+//! between two points also turns the bodies, or where two springs act.
 
 use lockstep2d::body::JointId;
 use lockstep2d::fx;
@@ -137,6 +137,41 @@ fn a_point_on_an_arm_swings_faster() {
                 worst = worst.max((stretch - theory.tick()).abs());
             });
             assert!(worst < x / 1000, "{ground:?}, arm {arm} m, {hertz} Hz, ratio {ratio}: {worst} off");
+        }
+    }
+}
+
+/// The same holds for springs along a line: that of a suspension and that of a distance joint.
+#[test]
+fn a_spring_along_a_line_swings_faster_on_an_arm() {
+    for (ground, reduced) in [(Ground::Fixed, fx!(1)), (Ground::Free(fx!(2)), fx!(0.5))] {
+        for (arm, hertz, ratio) in [
+            (fx!(0.5), fx!(2), fx!(0.1)),
+            (fx!(0.5), fx!(1), fx!(0)),
+            (fx!(1.5), fx!(1), fx!(0.1)),
+            (fx!(1.5), fx!(5), fx!(0.5)),
+        ] {
+            // So small that B's rotation does not change the arm.
+            let x = arm / 1000;
+            let long = fx!(2);
+            let mobility = fx!(1) + fx_mul(reduced, fx_mul(arm, arm) * 4);
+            let rest = Distance::new().spring(hertz, ratio, long);
+            let suspension = Wheel::new().spring(hertz, ratio, fx!(0));
+            for (kind, from, start) in
+                [(rest.into(), -long, long), (JointKind::from(suspension), fx!(0), fx!(0))]
+            {
+                let mut bench = Bench::new(ground, fx!(0), Vec2::new(arm, x), fx!(0));
+                // The spring acts along y, on A through A's centre.
+                let def = JointDef::new(bench.a, bench.b, kind).angle_a(Angle::QUARTER);
+                let joint = bench.join(def.anchor_a((fx!(0), from)).anchor_b((-arm, fx!(0))));
+                let mut theory = Oscillator { x, v: fx!(0), hertz, damping_ratio: ratio, mobility };
+                let mut worst = fx!(0);
+                bench.run(200, |_, world| {
+                    let stretch = world.joint_translation(joint).expect("there").x - start;
+                    worst = worst.max((stretch - theory.tick()).abs());
+                });
+                assert!(worst < x / 100, "{kind:?}, {ground:?}, arm {arm} m: {worst} off");
+            }
         }
     }
 }

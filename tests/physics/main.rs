@@ -24,6 +24,7 @@ mod rebound;
 mod scale;
 mod seams;
 mod slope;
+mod spring_pairs;
 mod surface;
 #[path = "../common/sweep.rs"]
 mod sweep;

@@ -97,9 +97,9 @@ fn kinds_and_masses_that_a_body_cannot_have_are_refused() {
     let wide = stage.world.spawn(&BodyDef::fixed(), &[far_off]).expect("valid");
     let reach = |error: &WorldError| matches!(error, WorldError::OffsetOutOfRange { .. });
     stage.refuses(Command::SetKind { body: wide, kind: BodyKind::Kinematic }, reach);
-    stage.world.add_joint(&JointDef::new(floor, ball, JointKind::Filter)).expect("valid");
-    let alone = |error: &WorldError| matches!(error, WorldError::JointWithoutDynamicBody);
-    stage.refuses(Command::SetKind { body: ball, kind: BodyKind::Kinematic }, alone);
+    let far = JointDef::new(floor, ball, JointKind::Filter).anchor_a((fx!(0), fx!(-129)));
+    stage.world.add_joint(&far).expect("valid");
+    stage.refuses(Command::SetKind { body: floor, kind: BodyKind::Kinematic }, reach);
 
     let given = |mass, x, gyration| MassSource::Given { mass, centre: Vec2::new(x, fx!(0)), gyration };
     let gyration = |error: &WorldError| matches!(error, WorldError::GyrationOutOfRange { .. });
@@ -157,8 +157,16 @@ fn changes_to_joints_out_of_range_are_refused() {
     stage.refuses(Command::SetJoint { joint, def }, |error| {
         matches!(error, WorldError::JointOutOfRange { what: "limit" })
     });
+    for (hertz, damping_ratio) in [(fx!(0), fx!(1)), (fx!(1001), fx!(1)), (fx!(1), fx!(-1))] {
+        stage.refuses(Command::SetJoint { joint, def: old.softness(hertz, damping_ratio) }, |error| {
+            matches!(error, WorldError::JointOutOfRange { what: "softness" })
+        });
+    }
     stage.world.remove_joint(joint).expect("there");
-    stage.refuses(Command::SetJoint { joint, def: old }, |error| matches!(error, WorldError::StaleJoint(_)));
+    let stale = |error: &WorldError| matches!(error, WorldError::StaleJoint(_));
+    stage.refuses(Command::SetJoint { joint, def: old }, stale);
+    stage.refuses(Command::EnableJoint { joint }, stale);
+    stage.refuses(Command::DisableJoint { joint }, stale);
 }
 
 /// A command for many bodies or joints adds none of them if any one is refused.
@@ -175,9 +183,7 @@ fn one_of_many_refuses_all() {
     stage.refuses(join(vec![(floor, ball), (ball, ball)]), |error| {
         matches!(error, WorldError::JointToItself(_))
     });
-    stage.refuses(join(vec![(lift, ball), (floor, lift)]), |error| {
-        matches!(error, WorldError::JointWithoutDynamicBody)
-    });
+    stage.refuses(join(vec![(lift, ball), (lift, gone)]), stale);
 
     let config = Config { body_limit: 3, shape_limit: 4, joint_limit: 1, ..Config::default() };
     let mut world = World::new(config).expect("valid");

@@ -169,13 +169,17 @@ fn what_a_body_cannot_do_is_refused() {
     stage.refuses(Command::AddJoint { joint: JointDef::new(ball, ball, Revolute::new()) }, |error| {
         matches!(error, WorldError::JointToItself(_))
     });
-    stage.refuses(Command::AddJoint { joint: JointDef::new(floor, lift, Revolute::new()) }, |error| {
-        matches!(error, WorldError::JointWithoutDynamicBody)
-    });
-    let long = JointDef::new(floor, ball, Revolute::new()).anchor_a((fx!(300), fx!(0)));
-    stage.refuses(Command::AddJoint { joint: long }, |error| {
-        matches!(error, WorldError::OffsetOutOfRange { .. })
-    });
+    let long = JointDef::new(floor, ball, Revolute::new());
+    let beyond = fx!(1073741825);
+    for joint in [
+        long.anchor_b((fx!(300), fx!(0))),
+        long.between(lift, ball).anchor_a((fx!(0), fx!(-129))),
+        long.anchor_a((beyond, fx!(0))),
+    ] {
+        stage.refuses(Command::AddJoint { joint }, |error| {
+            matches!(error, WorldError::OffsetOutOfRange { .. })
+        });
+    }
     refuses_impossible_joints(&mut stage);
     stage.refuses(Command::SetGravity { gravity: velocity }, |error| {
         matches!(error, WorldError::Setting { .. })

@@ -177,9 +177,10 @@ fn joints(handles: &Handles) -> Vec<(JointDef, Written)> {
         let def =
             JointDef::new(handles.other, handles.body, kind).anchor_a((one, two)).anchor_b((three, two));
         let def = def.angle_a(Angle::from_bits(5)).colliding().threshold(threshold).user_data(12);
+        let def = def.softness(two, one).disabled();
         let frames = w().fx(&[2, 4]).u32(5).fx(&[6, 4]).u32(0);
-        let start = w().u32(0).u32(0).then(id()).then(frames).u8(1);
-        (def, start.then(bytes).some(&[2]).none().u32(1).u64(12))
+        let start = w().u32(0).u32(0).then(id()).then(frames).u8(1).u8(0);
+        (def, start.then(bytes).some(&[4, 2]).some(&[2]).none().u32(1).u64(12))
     };
     kinds.map(of_kind).into()
 }
@@ -252,6 +253,8 @@ fn cases(handles: &Handles) -> Vec<(Command, Written)> {
         (Command::SetShape { shape, def: polygon }, w().u32(24).then(shape_id()).then(polygon_bytes.clone())),
         (Command::SetJoint { joint, def: hinge }, w().u32(25).u32(0).u32(0).then(hinge_bytes)),
         (Command::Explode { explosion }, w().u32(26).fx(&[2, -1]).fx(&[4, 6, 8]).u64(7)),
+        (Command::EnableJoint { joint }, w().u32(27).u32(0).u32(0)),
+        (Command::DisableJoint { joint }, w().u32(28).u32(0).u32(0)),
     ]
 }
 
@@ -269,7 +272,7 @@ fn the_bytes_of_commands_are_those_of_the_document() {
         assert_eq!(encode(&geometry), expected.0, "{geometry:?}");
     }
     let inputs: Vec<Command> = cases.iter().map(|(command, _)| command.clone()).collect();
-    let all = cases.into_iter().fold(w().u64(27), |all, (_, bytes)| all.then(bytes));
+    let all = cases.into_iter().fold(w().u64(29), |all, (_, bytes)| all.then(bytes));
     assert_eq!(encode(&inputs), all.0, "an input of the sandbox");
 }
 

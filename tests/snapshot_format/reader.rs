@@ -252,6 +252,7 @@ impl<'a> Reader<'a> {
             self.u32(&format!("angle in {body}'s frame"));
         }
         self.u8("the bodies collide");
+        self.u8("enabled");
         match self.u32("kind: variant") {
             0 | 1 | 4 => self.limit_motor_spring(),
             2 => {
@@ -272,6 +273,7 @@ impl<'a> Reader<'a> {
             }
             _ => {}
         }
+        self.option("softness", |reader| reader.fx2("hertz, damping ratio"));
         self.option("force threshold", |reader| reader.fx("force"));
         self.option("torque threshold", |reader| reader.fx("torque"));
         self.u32("beyond it");

@@ -48,8 +48,19 @@ fn add_joint(world: &mut World, bodies: &[BodyId], rng: &mut Rng) {
     let (a, b) = (pick(), pick());
     let (Some(body_a), Some(body_b)) = (world.body(a), world.body(b)) else { return };
     let anchor = body_a.transform().apply_inverse(body_b.position());
-    let _refused_without_a_dynamic_body =
-        world.add_joint(&JointDef::new(a, b, random_kind(rng)).anchor_a(anchor));
+    let mut def = JointDef::new(a, b, random_kind(rng)).anchor_a(anchor);
+    if body_a.kind() == BodyKind::Fixed && rng.chance(1, 2) {
+        // Far from the origin of A, which is moved to the other side.
+        let offset = Vec2::new(fx!(1000), fx!(-300));
+        let position = body_a.position() - offset;
+        let angle = body_a.angle();
+        def = def.anchor_a(anchor + offset);
+        world.set_transform(a, position, angle).expect("valid");
+    }
+    if rng.chance(1, 3) {
+        def = def.softness(fx!(10) * i64::from(1 + rng.below(3)), fx!(1));
+    }
+    let _refused_to_itself = world.add_joint(&def);
 }
 
 fn given(rng: &mut Rng) -> MassSource {

@@ -5,6 +5,7 @@ mod equality;
 mod events;
 mod far;
 mod joint_batches;
+mod joint_edits;
 mod locks;
 mod phases;
 mod rollback;

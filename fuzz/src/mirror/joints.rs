@@ -44,7 +44,11 @@ impl State {
         let joint = self.joints.get(index)?;
         match source.below(9) {
             0 | 1 => joint.impulses = [0; 6].map(|_: i32| speed(source, IMPULSE_MAX)),
-            2 => joint.def.frame_a.anchor = vector(pair(source, -REACH_MAX, REACH_MAX)),
+            // Beyond the reach of a moving body in one of eight cases.
+            2 => {
+                let reach = if source.one_in(8) { 1 << 62 } else { REACH_MAX };
+                joint.def.frame_a.anchor = vector(pair(source, -reach, reach));
+            }
             3 => joint.def.frame_b.anchor = vector(pair(source, -REACH_MAX, REACH_MAX)),
             4 => joint.def.frame_a.angle = Angle::from_bits(source.word() as u32),
             5 => joint.def = joints::finish(source, joint.def),

@@ -1,8 +1,9 @@
 //! All joints of a tick: hinges in batches, and a list of all other joints.
 
+mod reaction;
+
 use alloc::vec::Vec;
 
-use super::super::body::SolverBody;
 use super::super::body_list::{BodyList, GROUND};
 use super::super::colour::Colouring;
 use super::super::context::{Pass, StepContext};
@@ -10,24 +11,23 @@ use super::super::row::MassFractions;
 use super::super::settings::Tuning;
 use super::block::{Blocks, Candidate};
 use super::cache_key::{CacheKey, Definitions, Validity};
-use super::def::JointKind;
+use super::def::{JointFrame, JointKind};
 use super::hinge::{AngleParts, Dirty, HingeBody, HingeSet, Poses, Turning, node, shares};
 use super::list::{BlockedPart, JointList};
 use super::options::JointLimit;
-use super::pose::{BodyRotation, Ends};
+use super::pose::BodyRotation;
 use super::rotations::Rotations;
 use super::state::Joint;
 use crate::body::{Arena, Body, BodyId, JointId};
-use crate::math::{Fx, Unit, Vec2, fx_mul, mul, widen};
-use crate::simd::{Machine, Quad};
-use crate::threads::Threads;
+use crate::math::{Unit, fx_mul, mul};
+use crate::simd::Quad;
 
 /// All joints, for one tick.
 #[derive(Clone, Debug, Default)]
 pub(in crate::solver) struct JointSet {
     cache_key: CacheKey,
-    /// The slots of bodies with joints that are not among the bodies of the tick.
-    anchors: Vec<u32>,
+    /// Bodies with joints that are not among the bodies of the tick: their slots, and for a far anchor its frame.
+    anchors: Vec<(u32, Option<JointFrame>)>,
     /// For each body of the tick, its place in `bodies`, counted from 1; 0 if the body has no joint.
     places: Vec<u32>,
     /// The properties of bodies that the arrangement of their joints depends on.
@@ -159,7 +159,7 @@ impl JointSet {
                 self.arrange(source, list, colouring);
                 self.sort(colouring);
                 self.prepare_others(source, list);
-                self.arrange_blocks(tuning);
+                self.arrange_blocks();
                 self.blocks.take_impulses(&mut self.hinges, &mut self.list);
                 return;
             }
@@ -170,8 +170,11 @@ impl JointSet {
 
     /// Reuses the hinges of the last tick, with the bodies at their current poses.
     fn resume(&mut self, bodies: &Arena<Body, BodyId>, list: &mut BodyList) {
-        for &slot in &self.anchors {
-            list.own_index_of(slot, bodies.at(slot));
+        for &(slot, frame) in &self.anchors {
+            match frame {
+                Some(frame) => list.add_far_anchor(slot, frame.far_pose(bodies.at(slot))),
+                None => list.own_index_of(slot, bodies.at(slot)),
+            };
         }
         for body in &mut self.turning {
             body.angle = list.poses()[body.index as usize].angle;
@@ -186,11 +189,15 @@ impl JointSet {
         for &slot in slots {
             let joint = joints.at(slot);
             let (a, b) = joint.def.bodies();
-            let places = [a, b].map(|id| self.place_of(id.index(), bodies, list, tuning.rate));
+            let parts = hinge_parts(&joint.def.kind);
+            let places = [(a, joint.def.frame_a), (b, joint.def.frame_b)].map(|(id, frame)| {
+                let far = Some(frame).filter(|frame| parts.is_some() && frame.is_far());
+                self.place_of((id.index(), far), bodies, list, tuning.rate)
+            });
             places.into_iter().for_each(|place| self.bodies[place].joints += 1);
             let ends = places.map(|place| &self.bodies[place]);
             colouring.add(node(slot, ends[0], ends[1]));
-            self.entries.push(match hinge_parts(&joint.def.kind) {
+            self.entries.push(match parts {
                 Some(parts) => Entry::Hinge(self.hinges.push_input(slot, joint, ends, &parts, tuning)),
                 None => Entry::Other(slot),
             });
@@ -206,18 +213,34 @@ impl JointSet {
     }
 
     /// Returns the place of a body in `bodies`, the compact copies of the properties that joints need. Adds the body if
-    /// it is missing.
-    fn place_of(&mut self, slot: u32, bodies: &Arena<Body, BodyId>, list: &mut BodyList, rate: u32) -> usize {
-        if list.index_of(slot) == GROUND {
-            self.anchors.push(slot);
+    /// it is missing. A far anchor of a hinge is a body of its own, without mass.
+    fn place_of(
+        &mut self,
+        (slot, far): (u32, Option<JointFrame>),
+        bodies: &Arena<Body, BodyId>,
+        list: &mut BodyList,
+        rate: u32,
+    ) -> usize {
+        let body = bodies.at(slot);
+        if far.is_some() || list.index_of(slot) == GROUND {
+            self.anchors.push((slot, far));
         }
-        let index = list.own_index_of(slot, bodies.at(slot));
+        let (index, end) = match far {
+            Some(frame) => {
+                let pose = frame.far_pose(body);
+                let index = list.add_far_anchor(slot, pose);
+                (index, HingeBody::far_anchor(index, pose, &frame))
+            }
+            None => {
+                let index = list.own_index_of(slot, body);
+                (index, HingeBody::new(index, body, rate))
+            }
+        };
         if self.places.len() < list.len() {
             self.places.resize(list.len(), 0);
         }
         let place = &mut self.places[index as usize];
         if *place == 0 {
-            let end = HingeBody::new(index, bodies.at(slot), rate);
             self.turning.push(end.turning);
             self.bodies.push(end);
             *place = u32::try_from(self.bodies.len()).expect("fewer than 2^32 bodies");
@@ -268,19 +291,19 @@ impl JointSet {
     }
 
     /// Arranges the joints in blocks.
-    fn arrange_blocks(&mut self, tuning: &Tuning) {
+    fn arrange_blocks(&mut self) {
         let JointSet { blocks, hinges, list, parts, entries, candidates, .. } = self;
         if blocks.is_empty() {
             return;
         }
-        list.blocked_parts(tuning, |slot, part| parts.push((slot, part)));
+        list.blocked_parts(|slot, part| parts.push((slot, part)));
         parts.sort_by_key(|&(slot, _)| slot);
         let number = |&joint: &u32| match entries[joint as usize] {
             Entry::Hinge(input) => Ok(hinges.push_blocked(input)),
             Entry::Other(slot) => Err(slot),
         };
         let numbers: Vec<_> = blocks.chosen().iter().map(number).collect();
-        blocks.arrange(hinges, parts, tuning, candidates, &numbers);
+        blocks.arrange(hinges, parts, candidates, &numbers);
     }
 
     /// Whether a body of the tick has a joint, by its index.
@@ -340,46 +363,6 @@ impl JointSet {
         self.blocks.return_impulses(&mut self.hinges, &mut self.list);
         self.hinges.store(joints, &self.body_rotations);
         self.list.store(joints, &self.body_rotations);
-    }
-
-    /// The force and the torque about B's anchor that a joint exerted on B in the last sub-step: `P / h`. The impulse
-    /// `P` is computed from the velocities that the joint's impulses give to one of the bodies at rest. Clears the
-    /// set's own constraints and reuses their memory.
-    pub(in crate::solver) fn reaction(
-        &mut self,
-        joint: &Joint,
-        (a, b): (&Body, &Body),
-        tuning: &Tuning,
-    ) -> (Vec2<Fx>, Fx) {
-        self.clear();
-        // Index 0 is the ground.
-        let indices = [1, 2];
-        let ends = [HingeBody::new(indices[0], a, tuning.rate), HingeBody::new(indices[1], b, tuning.rate)];
-        self.turning.extend(ends.map(|end| end.turning));
-        self.body_rotations.resize(self.body_rotations.len().max(3), BodyRotation::default());
-        self.quads.resize(self.quads.len().max(3), Quad::default());
-        match hinge_parts(&joint.def.kind) {
-            Some(parts) => {
-                let input = self.hinges.push_input(0, joint, ends.each_ref(), &parts, tuning);
-                self.hinges.push_overflow(core::iter::once(input));
-            }
-            None => self.list.push(0, joint, indices, [a, b], tuning, false),
-        }
-        let (threads, mut bodies, mut faults) = (Threads::default(), [SolverBody::default(); 3], 0);
-        let context = StepContext::new(Machine::default(), &threads, tuning, &mut bodies, &mut faults);
-        self.refresh(&context);
-        let place = Ends::prepare(joint, indices, [a, b]).place(context.bodies, &self.body_rotations);
-        self.warm_start(&context);
-        // The velocity of the lighter body has more significant bits.
-        let (body, moved, arm) = if a.is_dynamic() && (!b.is_dynamic() || a.mass() < b.mass()) {
-            (a, bodies[1].reversed(), place.reach_of_a().arm)
-        } else {
-            (b, bodies[2], place.lever_b.arm)
-        };
-        let per_second = |speed| fx_mul(widen(speed), body.mass()).saturating_mul_int(tuning.rate.into());
-        let force = Vec2::new(per_second(moved.velocity.x), per_second(moved.velocity.y));
-        let torque = fx_mul(per_second(moved.spin), body.radius_of_gyration());
-        (force, torque.saturating_sub(arm.widen().cross(force)))
     }
 }
 

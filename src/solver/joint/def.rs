@@ -2,8 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::options::{Drive, JointLimit, Soft, Spring};
 use super::{Distance, Motor, Prismatic, Revolute, Weld, Wheel};
-use crate::body::{BodyId, REACH_MAX, WorldError};
+use crate::body::{Body, BodyId, BodyKind, Pose, REACH_MAX, WORLD_EXTENT_MAX, WorldError};
 use crate::math::{Angle, Fx, Vec2};
 
 /// A joint between two bodies.
@@ -33,8 +34,15 @@ pub struct JointDef {
     pub frame_b: JointFrame,
     /// Whether the two bodies collide with each other.
     pub collide_connected: bool,
+    /// Whether the joint acts. A disabled joint keeps its handle, exerts nothing, and lets its bodies collide and sleep
+    /// as if it were absent.
+    pub enabled: bool,
     /// The kind of joint: the relative motion that it allows.
     pub kind: JointKind,
+    /// Stiffness and damping of everything that the joint holds rigidly, its limits included; `None` for those of the
+    /// world, [`SolverSettings::joint_hertz`](crate::solver::SolverSettings::joint_hertz). The frequency is limited to
+    /// a quarter of the sub-step rate. Springs and motors have parameters of their own.
+    pub softness: Option<Soft>,
     /// The load beyond which the joint is reported or breaks.
     pub threshold: Threshold,
     /// A number for the game. The engine does not use it, but it is part of the state and its hash.
@@ -44,7 +52,8 @@ pub struct JointDef {
 /// The frame of a joint on a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct JointFrame {
-    /// Its origin in the body's frame, in metres, within ±128 on each axis.
+    /// Its origin in the body's frame, in metres: within ±128 on each axis, or anywhere in the world (±2^30) on a fixed
+    /// body.
     pub anchor: Vec2<Fx>,
     /// Its rotation in the body's frame. Sliding joints slide along the x axis of A's frame.
     pub angle: Angle,
@@ -107,6 +116,41 @@ impl JointFrame {
     pub const ORIGIN: Self = JointFrame { anchor: Vec2::new(Fx::ZERO, Fx::ZERO), angle: Angle::ZERO };
 }
 
+impl JointFrame {
+    /// Checks the anchor for a body of a kind.
+    fn validate(&self, kind: BodyKind) -> Result<(), WorldError> {
+        let most = if kind == BodyKind::Fixed { WORLD_EXTENT_MAX } else { REACH_MAX };
+        let outside = |value: &Fx| !(-most..=most).contains(value);
+        match [self.anchor.x, self.anchor.y].into_iter().find(outside) {
+            Some(value) => Err(WorldError::OffsetOutOfRange { value }),
+            None => Ok(()),
+        }
+    }
+
+    /// Whether the anchor is farther from the origin than arms can be. Only anchors on fixed bodies are.
+    pub(super) fn is_far(&self) -> bool {
+        let Vec2 { x, y } = self.anchor;
+        x.saturating_abs().max(y.saturating_abs()) > REACH_MAX
+    }
+
+    /// The centre of a body and the vector from there to the anchor, in the frame of the body. The centre of a fixed
+    /// body is arbitrary: if the anchor is far from the origin, it is the anchor itself.
+    pub(super) fn centre_and_arm(&self, body: &Body) -> (Vec2<Fx>, Vec2<Fx>) {
+        if self.is_far() {
+            (self.far_pose(body).centre, Vec2::ZERO)
+        } else {
+            (body.centre_of_mass(), self.anchor - body.local_centre_of_mass())
+        }
+    }
+
+    /// The pose of a fixed body about a far anchor. The anchor is clamped to the range of positions.
+    pub(super) fn far_pose(&self, body: &Body) -> Pose {
+        let place = body.transform().apply(self.anchor);
+        let within = |x: Fx| x.clamp(-WORLD_EXTENT_MAX, WORLD_EXTENT_MAX);
+        Pose { centre: Vec2::new(within(place.x), within(place.y)), angle: body.angle() }
+    }
+}
+
 impl JointDef {
     /// A joint between the origins of two bodies, which then do not collide with each other.
     #[must_use]
@@ -117,7 +161,9 @@ impl JointDef {
             frame_a: JointFrame::ORIGIN,
             frame_b: JointFrame::ORIGIN,
             collide_connected: false,
+            enabled: true,
             kind: kind.into(),
+            softness: None,
             threshold: Threshold::NONE,
             user_data: 0,
         }
@@ -158,6 +204,21 @@ impl JointDef {
         self
     }
 
+    /// Sets the stiffness in Hz, above 0 and up to 1000, and the damping ratio, 0 to 100, of what the joint holds
+    /// rigidly.
+    #[must_use]
+    pub const fn softness(mut self, hertz: Fx, damping_ratio: Fx) -> Self {
+        self.softness = Some(Soft { hertz, damping_ratio });
+        self
+    }
+
+    /// Makes the joint one that is disabled at first: see [`World::enable_joint`](crate::world::World::enable_joint).
+    #[must_use]
+    pub const fn disabled(mut self) -> Self {
+        self.enabled = false;
+        self
+    }
+
     /// Sets the load beyond which the joint is reported or breaks.
     #[must_use]
     pub const fn threshold(mut self, threshold: Threshold) -> Self {
@@ -190,17 +251,15 @@ impl JointDef {
         self.frame_b.angle - self.frame_a.angle
     }
 
-    /// Checks everything that does not depend on the world.
-    pub(crate) fn validate(&self) -> Result<(), WorldError> {
+    /// Checks the definition for bodies of two kinds.
+    pub(crate) fn validate(&self, kinds: [BodyKind; 2]) -> Result<(), WorldError> {
         if self.body_a == self.body_b {
             return Err(WorldError::JointToItself(self.body_a));
         }
-        let (a, b) = (self.frame_a.anchor, self.frame_b.anchor);
-        for value in [a.x, a.y, b.x, b.y] {
-            if !(-REACH_MAX..=REACH_MAX).contains(&value) {
-                return Err(WorldError::OffsetOutOfRange { value });
-            }
+        for (frame, kind) in [self.frame_a, self.frame_b].iter().zip(kinds) {
+            frame.validate(kind)?;
         }
+        Soft::check(self.softness).map_err(|_| WorldError::JointOutOfRange { what: "softness" })?;
         let Threshold { force, torque, action: _ } = self.threshold;
         if [force, torque].into_iter().flatten().any(|most| most < Fx::ZERO) {
             return Err(WorldError::JointOutOfRange { what: "threshold" });
@@ -213,6 +272,42 @@ impl JointDef {
             JointKind::Wheel(kind) => kind.validate(),
             JointKind::Motor(kind) => kind.validate(),
             JointKind::Filter => Ok(()),
+        }
+    }
+}
+
+impl JointKind {
+    /// The motor along or about the joint's one axis.
+    pub(crate) fn motor_mut(&mut self) -> Option<&mut Drive> {
+        match self {
+            JointKind::Revolute(Revolute { motor, .. })
+            | JointKind::Prismatic(Prismatic { motor, .. })
+            | JointKind::Distance(Distance { motor, .. })
+            | JointKind::Wheel(Wheel { motor, .. })
+            | JointKind::Motor(Motor { angular: motor, .. }) => motor.as_mut(),
+            JointKind::Weld(_) | JointKind::Filter => None,
+        }
+    }
+
+    /// The spring that has a target.
+    pub(crate) fn spring_mut(&mut self) -> Option<&mut Spring> {
+        match self {
+            JointKind::Revolute(Revolute { spring, .. })
+            | JointKind::Prismatic(Prismatic { spring, .. })
+            | JointKind::Distance(Distance { spring, .. })
+            | JointKind::Wheel(Wheel { spring, .. }) => spring.as_mut(),
+            JointKind::Weld(_) | JointKind::Motor(_) | JointKind::Filter => None,
+        }
+    }
+
+    /// The limit, if the kind can have one.
+    pub(crate) fn limit_mut(&mut self) -> Option<&mut Option<JointLimit>> {
+        match self {
+            JointKind::Revolute(Revolute { limit, .. })
+            | JointKind::Prismatic(Prismatic { limit, .. })
+            | JointKind::Distance(Distance { limit, .. })
+            | JointKind::Wheel(Wheel { limit, .. }) => Some(limit),
+            JointKind::Weld(_) | JointKind::Motor(_) | JointKind::Filter => None,
         }
     }
 }

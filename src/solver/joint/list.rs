@@ -138,6 +138,7 @@ impl JointList {
             impulses: &joint.impulses,
             masses: (bodies[0].mass(), bodies[1].mass()),
             rate: tuning.rate,
+            softness: joint.softness(tuning),
         };
         match &joint.def.kind {
             JointKind::Prismatic(kind) => kind.prepare(&mut parts),
@@ -170,7 +171,7 @@ impl JointList {
                 point.refresh(&place);
             }
             for row in rows {
-                row.refresh(&joint.ends.measure(row.direction, &place, body_rotations), tuning);
+                row.refresh(&joint.ends.measure(row.direction, &place, body_rotations), tuning.rate);
             }
         }
     }
@@ -191,7 +192,7 @@ impl JointList {
         for (link, rows, points) in self.walk() {
             link.change(context, &mut faults, |bodies| {
                 for row in rows.iter_mut().filter(|row| !row.is_blocked) {
-                    row.solve(pass, context.tuning, bodies);
+                    row.solve(pass, bodies);
                 }
                 for point in points.iter_mut().filter(|point| !point.is_blocked) {
                     point.solve(pass, bodies);
@@ -217,7 +218,7 @@ impl JointList {
     }
 
     /// The rows and points in blocks of the joint in a slot. The list is in the order of `slots`.
-    pub(super) fn blocked_parts(&self, tuning: &Tuning, mut each: impl FnMut(u32, BlockedPart)) {
+    pub(super) fn blocked_parts(&self, mut each: impl FnMut(u32, BlockedPart)) {
         let (mut row, mut point) = (0, 0);
         for (joint, link) in self.joints.iter().zip(&self.links) {
             let (rows, points) = (row..row + usize::from(link.rows), point..point + usize::from(link.points));
@@ -231,7 +232,7 @@ impl JointList {
             };
             for at in rows.filter(|&at| self.rows[at].is_blocked) {
                 let row = &self.rows[at];
-                each(joint.slot, part(ListPart::Row(at), row.softness(tuning), row.blocked_task()));
+                each(joint.slot, part(ListPart::Row(at), row.softness(), row.blocked_task()));
             }
             for at in points.filter(|&at| self.points[at].is_blocked) {
                 let Some(softness) = self.points[at].unlimited_softness() else { continue };

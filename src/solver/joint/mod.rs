@@ -32,6 +32,6 @@ pub use motor::{LinearDrive, Motor, Pull};
 pub use options::{Drive, JointLimit, Soft, Spring};
 pub use prismatic::Prismatic;
 pub use revolute::Revolute;
-pub use state::Joint;
+pub use state::{Joint, JointPart};
 pub use weld::Weld;
 pub use wheel::Wheel;

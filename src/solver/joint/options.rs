@@ -33,8 +33,12 @@ pub struct Drive {
     pub max: Fx,
 }
 
-/// A damped spring with a target. The frequency is the one for two free bodies. A body on a hinge away from its centre
-/// of mass swings more slowly.
+/// A damped spring with a target.
+///
+/// On an angle, the frequency is the one for two free bodies; a body on a hinge away from its centre of mass swings
+/// more slowly. Along a line (sliders, wheels, distance joints), it is the one for the two bodies as points of mass:
+/// the stiffness is `(2 pi hertz)^2 m` N/m at every pose, with `m` as for [`Soft`]. Where the line passes a centre of
+/// mass at a distance, the spring also turns the body, and swings faster.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Spring {
     /// Undamped frequency in Hz, above 0, up to 1000. Above a tenth of the sub-step rate the effective frequency is

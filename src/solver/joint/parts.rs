@@ -44,6 +44,8 @@ pub(super) struct Parts<'a> {
     pub(super) masses: (Fx, Fx),
     /// Sub-steps per second.
     pub(super) rate: u32,
+    /// The softness of rows that hold a position and of limits.
+    pub(super) softness: Softness,
 }
 
 impl Parts<'_> {
@@ -112,7 +114,7 @@ impl Parts<'_> {
 
     fn row(&mut self, slot: u8, direction: Direction, task: RowTask) {
         let lambda = self.impulses.0[usize::from(slot)];
-        self.rows.push(JointRow::new(slot, direction, task, lambda));
+        self.rows.push(JointRow::new(slot, direction, task, self.softness, lambda));
     }
 
     fn point(&mut self, slot: u8, task: PointTask) {

@@ -47,15 +47,16 @@ impl Ends {
     pub(super) fn prepare(joint: &Joint, indices: [u32; 2], [a, b]: [&Body; 2]) -> Self {
         let JointDef { frame_a, frame_b, .. } = &*joint.def;
         let axis = Rot::from_angle(frame_a.angle);
+        let ((centre_a, arm_a), (centre_b, arm_b)) = (frame_a.centre_and_arm(a), frame_b.centre_and_arm(b));
         Ends {
             body_a: indices[0],
             body_b: indices[1],
-            local_a: (frame_a.anchor - a.local_centre_of_mass()).narrow(),
-            local_b: (frame_b.anchor - b.local_centre_of_mass()).narrow(),
+            local_a: arm_a.narrow(),
+            local_b: arm_b.narrow(),
             inverse_gyration_a: a.mass.inverse_gyration,
             inverse_gyration_b: b.mass.inverse_gyration,
             fractions: MassFractions::of(a, b),
-            between: b.centre_of_mass() - a.centre_of_mass(),
+            between: centre_b - centre_a,
             axis: Vec2::new(axis.cos, axis.sin),
             turns: joint.turns(a.angle(), b.angle()),
         }

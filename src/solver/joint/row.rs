@@ -12,6 +12,12 @@
 //! hold     as a limit that is reached, with L of either sign
 //! ```
 //!
+//! A spring along a line has the stiffness `omega^2 m` and the damping `2 zeta omega m` of the bodies as points of
+//! mass, `m = 1 / (mA + mB)`, at every pose, so that its force follows from a potential. Where it also turns the
+//! bodies, its scales are therefore those of the mobility `D` ([`Softness::at_mobility`]). With the same scales at
+//! every pose it would have the same frequency at every pose, and its stiffness `omega^2 m / D` would change as the
+//! arms turn.
+//!
 //! `L` is a speed. The impulse is `L / ((mA + mB) D)`, times `s` for an angle.
 //!
 //! **Springs are not solved in the relax pass.** In the bias pass a soft row is the implicit step of a damped spring
@@ -23,7 +29,6 @@ use super::super::body_pair::BodyPair;
 use super::super::context::Pass;
 use super::super::limits::{Faults, IMPULSE_MAX};
 use super::super::row::{Denominator, Row};
-use super::super::settings::Tuning;
 use super::super::softness::Softness;
 use super::list::BlockedTask;
 use super::options::JointLimit;
@@ -33,7 +38,8 @@ use crate::math::{Fx, Speed, fx_div, fx_mul, narrow, saturate_wide};
 /// The function of a row.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum RowTask {
-    /// Drives the position to a target, with impulses times `mA + mB` within `lower..=upper`.
+    /// Drives the position to a target, with impulses times `mA + mB` within `lower..=upper`. `softness` is that of
+    /// bodies that do not turn.
     Spring { softness: Softness, target: Fx, lower: Fx, upper: Fx },
     /// Drives the velocity to a speed, with impulses times `mA + mB` of at most `max`, and not beyond `limit`.
     Drive { speed: Fx, max: Fx, limit: Option<JointLimit> },
@@ -65,6 +71,8 @@ pub(super) struct JointRow {
     pub(super) row: Row,
     /// For a spring: the part of its impulse that comes from its stretch. For other rows: the target speed, reversed.
     bias: Speed,
+    /// For a spring: its softness at the current pose. For a limit or a row that holds a position: that of the joint.
+    softness: Softness,
     /// Whether the row is a limit that is not reached.
     open: bool,
     bounds: (Speed, Speed),
@@ -75,15 +83,27 @@ pub(super) struct JointRow {
 }
 
 impl JointRow {
-    pub(super) fn new(slot: u8, direction: Direction, task: RowTask, lambda: Speed) -> Self {
+    /// A row of a joint of the given softness.
+    pub(super) fn new(
+        slot: u8,
+        direction: Direction,
+        task: RowTask,
+        softness: Softness,
+        lambda: Speed,
+    ) -> Self {
         let bounds = (Speed::ZERO, Speed::ZERO);
         let (row, bias, denominator) = (Row::NONE, Speed::ZERO, 0);
+        let softness = match task {
+            RowTask::Spring { softness, .. } => softness,
+            _ => softness,
+        };
         JointRow {
             slot,
             direction,
             task,
             row,
             bias,
+            softness,
             open: false,
             bounds,
             denominator,
@@ -119,7 +139,6 @@ impl JointRow {
     pub(super) fn wanted_of_limit(
         &self,
         pass: Pass,
-        tuning: &Tuning,
         a: &SolverBody,
         b: &SolverBody,
         faults: &mut Faults,
@@ -127,7 +146,7 @@ impl JointRow {
         let vn = self.row.velocity(a, b, faults);
         let (softness, bias) = match pass {
             _ if self.open => (&Softness::RIGID, self.bias),
-            Pass::Bias => (&tuning.joint, self.bias),
+            Pass::Bias => (&self.softness, self.bias),
             Pass::Relax => (&Softness::RIGID, Speed::ZERO),
         };
         softness.wanted(vn, bias, Speed::ZERO)
@@ -138,30 +157,33 @@ impl JointRow {
         self.denominator
     }
 
-    /// The softness in the bias pass of a row without limits.
-    pub(super) fn softness<'a>(&'a self, tuning: &'a Tuning) -> &'a Softness {
-        match &self.task {
-            RowTask::Spring { softness, .. } => softness,
-            _ => &tuning.joint,
-        }
+    /// The softness in the bias pass of a row without limits, at the pose of the last refresh.
+    pub(super) fn softness(&self) -> &Softness {
+        &self.softness
     }
 
     /// Computes Jacobian, gains, bias and bounds at the current pose.
-    pub(super) fn refresh(&mut self, measure: &Measure, tuning: &Tuning) {
+    pub(super) fn refresh(&mut self, measure: &Measure, rate: u32) {
         let Measure { row, denominator, position, scale } = *measure;
         (self.row, self.denominator) = (row, denominator);
         self.bounds = (-IMPULSE_MAX, IMPULSE_MAX);
         let metres = |x: Fx| fx_mul(x, scale);
-        let soft_bias = |gap: Fx| narrow(fx_mul(metres(gap), tuning.joint.bias_rate.into()));
+        let bias_rate = Fx::from(self.softness.bias_rate);
+        let approach = |gap: Fx| approach(gap, bias_rate, rate);
         match self.task {
             RowTask::Spring { softness, target, lower, upper } => {
-                self.bias = softness.push(metres(position.saturating_sub(target)));
+                self.softness = match self.direction {
+                    // `D` of a row on the angle is about 1 and does not depend on the pose.
+                    Direction::Angle => softness,
+                    _ => softness.at_mobility(denominator),
+                };
+                self.bias = self.softness.push(metres(position.saturating_sub(target)));
                 self.bounds = (measure.lambda(lower), measure.lambda(upper));
             }
             RowTask::Drive { speed, max, limit } => {
                 let within = |JointLimit { lower, upper }: JointLimit| {
-                    let ahead = approach(metres(upper.saturating_sub(position)), tuning);
-                    let behind = approach(metres(position.saturating_sub(lower)), tuning);
+                    let ahead = approach(metres(upper.saturating_sub(position)));
+                    let behind = approach(metres(position.saturating_sub(lower)));
                     metres(speed).min(ahead).max(behind.saturating_neg())
                 };
                 let speed = limit.map_or_else(|| metres(speed), within);
@@ -169,11 +191,13 @@ impl JointRow {
                 let max = measure.lambda(max);
                 self.bounds = (-max, max);
             }
-            RowTask::Hold { target } => self.bias = soft_bias(position.saturating_sub(target)),
-            RowTask::Lower { bound } => self.refresh_limit(position.saturating_sub(bound), measure, tuning),
+            RowTask::Hold { target } => {
+                self.bias = narrow(fx_mul(metres(position.saturating_sub(target)), bias_rate))
+            }
+            RowTask::Lower { bound } => self.refresh_limit(position.saturating_sub(bound), measure, rate),
             RowTask::Upper { bound } => {
                 self.row = row.reversed();
-                self.refresh_limit(bound.saturating_sub(position), measure, tuning);
+                self.refresh_limit(bound.saturating_sub(position), measure, rate);
             }
         }
         if denominator == 0 {
@@ -183,10 +207,10 @@ impl JointRow {
     }
 
     /// Computes bias and bounds of a limit. `gap` is the distance to the limit.
-    fn refresh_limit(&mut self, gap: Fx, measure: &Measure, tuning: &Tuning) {
+    fn refresh_limit(&mut self, gap: Fx, measure: &Measure, rate: u32) {
         let gap = fx_mul(gap, measure.scale);
         self.open = gap > Fx::ZERO;
-        self.bias = narrow(approach(gap, tuning));
+        self.bias = narrow(approach(gap, self.softness.bias_rate.into(), rate));
         self.bounds = (Speed::ZERO, IMPULSE_MAX);
     }
 
@@ -195,8 +219,8 @@ impl JointRow {
         self.row.apply(self.lambda, bodies);
     }
 
-    pub(super) fn solve(&mut self, pass: Pass, tuning: &Tuning, bodies: &mut BodyPair<'_>) {
-        if let Some(d) = self.wanted(pass, tuning, bodies.a, bodies.b, bodies.faults) {
+    pub(super) fn solve(&mut self, pass: Pass, bodies: &mut BodyPair<'_>) {
+        if let Some(d) = self.wanted(pass, bodies.a, bodies.b, bodies.faults) {
             self.row.accumulate(d, self.bounds, &mut self.lambda, bodies);
         }
     }
@@ -205,14 +229,13 @@ impl JointRow {
     pub(super) fn wanted(
         &self,
         pass: Pass,
-        tuning: &Tuning,
         a: &SolverBody,
         b: &SolverBody,
         faults: &mut Faults,
     ) -> Option<i64> {
         let vn = self.row.velocity(a, b, faults);
         let (softness, bias, push) = match (&self.task, pass) {
-            (RowTask::Spring { softness, .. }, Pass::Bias) => (softness, Speed::ZERO, self.bias),
+            (RowTask::Spring { .. }, Pass::Bias) => (&self.softness, Speed::ZERO, self.bias),
             (RowTask::Spring { .. }, Pass::Relax) => return None,
             // As with contacts, a gap without an impulse is left to the next sub-step.
             (RowTask::Lower { .. } | RowTask::Upper { .. }, Pass::Relax) if self.open && self.lambda == 0 => {
@@ -223,7 +246,7 @@ impl JointRow {
                 (&Softness::RIGID, self.bias.min(self.lambda.saturating_sub(vn)), Speed::ZERO)
             }
             (RowTask::Drive { .. }, _) => (&Softness::RIGID, self.bias, Speed::ZERO),
-            (_, Pass::Bias) => (&tuning.joint, self.bias, Speed::ZERO),
+            (_, Pass::Bias) => (&self.softness, self.bias, Speed::ZERO),
             (_, Pass::Relax) => (&Softness::RIGID, Speed::ZERO, Speed::ZERO),
         };
         Some(softness.wanted(vn, bias, self.lambda) - i64::from(push.to_bits()))
@@ -231,10 +254,10 @@ impl JointRow {
 }
 
 /// The largest speed in m/s at which a limit at a distance of `gap` is approached: the limit is reached after a
-/// sub-step. Beyond the limit the speed is negative: that at which the limit is restored.
-fn approach(gap: Fx, tuning: &Tuning) -> Fx {
-    let rate = if gap > Fx::ZERO { Fx::from_num(tuning.rate) } else { tuning.joint.bias_rate.into() };
-    fx_mul(gap, rate)
+/// sub-step, of which there are `rate` per second. Beyond the limit the speed is negative: that at which the limit is
+/// restored.
+fn approach(gap: Fx, bias_rate: Fx, rate: u32) -> Fx {
+    fx_mul(gap, if gap > Fx::ZERO { Fx::from_num(rate) } else { bias_rate })
 }
 
 impl Measure {

@@ -5,8 +5,10 @@ use alloc::boxed::Box;
 use serde::{Deserialize, Serialize};
 
 use super::super::settings::Tuning;
+use super::super::softness::Softness;
 use super::constraint::JointSet;
 use super::def::{JointDef, JointKind};
+use super::parts::slot;
 use crate::body::Body;
 use crate::math::{Angle, Fx, Rot, Speed, TAU, Vec2, fx_mul};
 
@@ -44,17 +46,28 @@ impl Joint {
         Joint { def: Box::new(def), impulses: JointImpulses::default(), turns: 0 }
     }
 
-    /// Changes the definition. Impulses are kept as long as the kind of joint is the same.
+    /// Changes the definition. Impulses are kept as long as the joint acts and its kind is the same.
     pub(crate) fn redefine(&mut self, def: JointDef) {
-        if core::mem::discriminant(&def.kind) != core::mem::discriminant(&self.def.kind) {
+        let same_kind = core::mem::discriminant(&def.kind) == core::mem::discriminant(&self.def.kind);
+        if !same_kind || !def.enabled {
             self.impulses = JointImpulses::default();
         }
         *self.def = def;
     }
 
+    /// Clears the impulses, because neither body is dynamic any more.
+    pub(crate) fn rest(&mut self) {
+        self.impulses = JointImpulses::default();
+    }
+
     /// Whether the solver has a constraint for the joint.
     pub(crate) fn is_solved(&self) -> bool {
-        self.def.kind != JointKind::Filter
+        self.def.enabled && self.def.kind != JointKind::Filter
+    }
+
+    /// The softness of what the joint holds rigidly.
+    pub(super) fn softness(&self, tuning: &Tuning) -> Softness {
+        self.def.softness.map_or(tuning.joint, |soft| tuning.own_softness(soft.hertz, soft.damping_ratio))
     }
 
     /// The definition, with all later changes.
@@ -82,6 +95,58 @@ impl Joint {
     /// The force in N and the torque in N m about B's anchor that the joint has last exerted on B.
     pub(crate) fn reaction(&self, a: &Body, b: &Body, tuning: &Tuning) -> (Vec2<Fx>, Fx) {
         JointSet::default().reaction(self, (a, b), tuning)
+    }
+
+    /// [`Self::reaction`] of one part of the joint.
+    pub(crate) fn part_reaction(
+        &self,
+        part: JointPart,
+        (a, b): (&Body, &Body),
+        tuning: &Tuning,
+    ) -> (Vec2<Fx>, Fx) {
+        let mut joint = self.clone();
+        let slots = part.slots(&self.def.kind);
+        for (slot, impulse) in joint.impulses.0.iter_mut().enumerate() {
+            if slots >> slot & 1 == 0 {
+                *impulse = Speed::ZERO;
+            }
+        }
+        joint.reaction(a, b, tuning)
+    }
+}
+
+/// A part of a joint whose force can be asked for: see
+/// [`World::joint_part_force`](crate::world::World::joint_part_force).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum JointPart {
+    /// The motor; of a motor joint both motors.
+    Motor,
+    /// The limits.
+    Limit,
+    /// The springs; of a weld what is soft.
+    Spring,
+}
+
+impl JointPart {
+    /// The slots of the part's impulses, as flags.
+    fn slots(self, kind: &JointKind) -> u8 {
+        let flags = |slots: &[u8]| slots.iter().fold(0, |flags, slot| flags | 1 << slot);
+        let point = [slot::HOLD, slot::HOLD + 1];
+        let limits = [slot::LIMIT, slot::LIMIT + 1];
+        match (self, kind) {
+            (JointPart::Spring, JointKind::Weld(weld)) => {
+                let angle = if weld.angular.is_some() { flags(&[slot::SPRING]) } else { 0 };
+                let anchors = if weld.linear.is_some() { flags(&point) } else { 0 };
+                angle | anchors
+            }
+            // The spring between the anchors of a motor joint has the slots of limits.
+            (JointPart::Spring, JointKind::Motor(_)) => flags(&[slot::SPRING]) | flags(&limits),
+            (JointPart::Motor, JointKind::Motor(_)) => flags(&[slot::DRIVE]) | flags(&point),
+            (_, JointKind::Weld(_)) | (JointPart::Limit, JointKind::Motor(_)) => 0,
+            (JointPart::Spring, _) => flags(&[slot::SPRING]),
+            (JointPart::Motor, _) => flags(&[slot::DRIVE]),
+            (JointPart::Limit, _) => flags(&limits),
+        }
     }
 }
 

@@ -5,6 +5,7 @@ use alloc::vec::Vec;
 use super::changes::Changes;
 use crate::body::{BodyKind, Handle};
 use crate::collision::{CachedAxis, Contact, Pair};
+use crate::solver::Joint;
 use crate::world::state::State;
 
 /// Cache of the pair update.
@@ -97,7 +98,8 @@ impl NonCollidingPairs {
         if core::mem::replace(&mut self.is_current, true) {
             return;
         }
-        let keeping_apart = state.joints.iter().filter(|(_, joint)| !joint.def().collide_connected);
+        let keeps_apart = |joint: &Joint| joint.def.enabled && !joint.def.collide_connected;
+        let keeping_apart = state.joints.iter().filter(|(_, joint)| keeps_apart(joint));
         self.pairs.clear();
         self.pairs.extend(keeping_apart.map(|(_, joint)| {
             let (a, b) = joint.def().bodies();

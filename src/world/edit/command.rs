@@ -196,6 +196,16 @@ pub enum Command {
         /// The explosion.
         explosion: Explosion,
     },
+    /// Calls [`World::enable_joint`].
+    EnableJoint {
+        /// The joint.
+        joint: JointId,
+    },
+    /// Calls [`World::disable_joint`].
+    DisableJoint {
+        /// The joint.
+        joint: JointId,
+    },
 }
 
 /// Handles of the bodies, shapes or joints that a command has added.
@@ -255,6 +265,8 @@ impl World {
             Command::SetShape { shape, ref def } => self.set_shape(shape, def),
             Command::SetJoint { joint, ref def } => self.set_joint(joint, def),
             Command::Explode { ref explosion } => self.explode(explosion),
+            Command::EnableJoint { joint } => self.enable_joint(joint),
+            Command::DisableJoint { joint } => self.disable_joint(joint),
         }
         .map(|()| Outcome::Done)
     }

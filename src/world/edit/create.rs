@@ -112,11 +112,10 @@ impl World {
         Ok(id)
     }
 
-    /// Connects two bodies by a joint.
+    /// Connects two bodies by a joint. While neither of them is dynamic, the joint rests.
     ///
     /// # Errors
-    /// [`WorldError`] if a handle is stale, both bodies are the same, neither is dynamic, an anchor is out of range, or
-    /// the world is full.
+    /// [`WorldError`] if a handle is stale, both bodies are the same, a value is out of range, or the world is full.
     #[doc(alias = "create_joint")]
     #[doc(alias = "constraint")]
     pub fn add_joint(&mut self, def: &JointDef) -> Result<JointId, WorldError> {
@@ -143,12 +142,10 @@ impl World {
         Ok(defs().map(|def| self.insert_joint(def)).collect())
     }
 
-    fn check_joint(&self, def: &JointDef) -> Result<(), WorldError> {
-        def.validate()?;
+    pub(super) fn check_joint(&self, def: &JointDef) -> Result<(), WorldError> {
         let (a, b) = def.bodies();
-        let is_dynamic =
-            |id: BodyId| self.state.bodies.get(id).map(Body::is_dynamic).ok_or(WorldError::StaleBody(id));
-        if is_dynamic(a)? | is_dynamic(b)? { Ok(()) } else { Err(WorldError::JointWithoutDynamicBody) }
+        let kind = |id: BodyId| self.state.bodies.get(id).map(Body::kind).ok_or(WorldError::StaleBody(id));
+        def.validate([kind(a)?, kind(b)?])
     }
 
     /// Adds a joint whose definition has been checked.

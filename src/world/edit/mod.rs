@@ -6,6 +6,7 @@ mod destroy;
 mod explosion;
 mod fault;
 mod forces;
+mod joints;
 mod setters;
 
 pub use command::{Command, Outcome};

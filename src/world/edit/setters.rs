@@ -1,19 +1,16 @@
-//! Changing the properties of bodies, shapes, joints and the world.
+//! Changing the properties of bodies, shapes and the world.
 
 use alloc::vec::Vec;
 
 use crate::body::{
-    BodyId, BodyKind, BodySettings, Filter, Geometry, Handle, IslandId, JointId, MassSource, Material,
-    ShapeDef, ShapeId, WorldError,
+    BodyId, BodyKind, BodySettings, Filter, Geometry, Handle, IslandId, MassSource, Material, ShapeDef,
+    ShapeId, WorldError,
 };
 use crate::math::{Fx, Vec2};
-use crate::solver::JointDef;
 use crate::world::World;
 use crate::world::config::check_gravity;
 use crate::world::derived::{mass_of, offset_max};
-use crate::world::islands::{
-    joints_changed, put_to_sleep, wake_body, wake_island, wake_joined, wake_overlapping,
-};
+use crate::world::islands::{put_to_sleep, wake_body, wake_island, wake_joined, wake_overlapping};
 
 impl World {
     /// Replaces the settings of a body: read [`crate::body::Body::settings`], change a copy, and pass it here. Wakes
@@ -65,11 +62,12 @@ impl World {
         Ok(())
     }
 
-    /// Makes a body fixed, kinematic or dynamic. A body that becomes fixed stops, any other keeps its velocity.
+    /// Makes a body fixed, kinematic or dynamic. A body that becomes fixed stops, any other keeps its velocity. Its
+    /// joints stay, and rest as long as neither of their bodies is dynamic.
     ///
     /// # Errors
-    /// [`WorldError`] if the handle is stale, a dynamic body would have no mass, a shape reaches too far for a body
-    /// that moves, the body rotates too fast for its mass, or a joint would be left without a dynamic body.
+    /// [`WorldError`] if the handle is stale, a dynamic body would have no mass, a shape or the anchor of a joint
+    /// reaches too far for a body that moves, or the body rotates too fast for its mass.
     #[doc(alias = "static")]
     #[doc(alias = "body type")]
     pub fn set_kind(&mut self, id: BodyId, kind: BodyKind) -> Result<(), WorldError> {
@@ -79,18 +77,24 @@ impl World {
         }
         let mass = mass_of(kind, *body.mass_source, &body.settings, self.shape_defs(body))?;
         self.check_spin(body, &mass)?;
-        let stays_dynamic = |other: BodyId| match other == id {
-            true => kind == BodyKind::Dynamic,
-            false => self.state.bodies.at(other.slot()).is_dynamic(),
+        let kind_of = |other: BodyId| match other == id {
+            true => kind,
+            false => self.state.bodies.at(other.slot()).kind(),
         };
+        let mut resting = Vec::new();
         for joint in self.scratch.joint_links.of(&self.state, id) {
-            let (a, b) = self.state.joints.at(joint.slot()).def().bodies();
-            if !stays_dynamic(a) && !stays_dynamic(b) {
-                return Err(WorldError::JointWithoutDynamicBody);
+            let def = self.state.joints.at(joint.slot()).def();
+            let kinds = <[BodyId; 2]>::from(def.bodies()).map(kind_of);
+            def.validate(kinds)?;
+            if !kinds.contains(&BodyKind::Dynamic) {
+                resting.push(joint);
             }
         }
         wake_overlapping(&mut self.state, &mut self.scratch, id.slot());
         wake_joined(&mut self.state, &mut self.scratch, id);
+        for joint in resting {
+            self.state.joints.at_mut(joint.slot()).rest();
+        }
         let body = self.state.bodies.redefine(id.slot());
         body.kind = kind;
         body.target = None;
@@ -236,26 +240,6 @@ impl World {
         let mut def = *self.state.shapes.get(id).ok_or(WorldError::StaleShape(id))?.def;
         change(&mut def);
         self.set_shape(id, &def)
-    }
-
-    /// Replaces the definition of a joint except for its bodies: read [`crate::solver::Joint::def`], change a copy, and
-    /// pass it here. Its impulses are kept if it stays of the same kind. Wakes its bodies.
-    ///
-    /// # Errors
-    /// [`WorldError`] if the handle is stale, the bodies are different ones, or a value is out of range.
-    #[doc(alias = "motor")]
-    #[doc(alias = "spring")]
-    #[doc(alias = "limit")]
-    pub fn set_joint(&mut self, id: JointId, def: &JointDef) -> Result<(), WorldError> {
-        let joint = self.state.joints.get_mut(id).ok_or(WorldError::StaleJoint(id))?;
-        def.validate()?;
-        let (a, b) = joint.def.bodies();
-        if (a, b) != def.bodies() {
-            return Err(WorldError::JointOfOtherBodies(id));
-        }
-        joint.redefine(*def);
-        joints_changed(&mut self.state, &mut self.scratch, [a, b]);
-        Ok(())
     }
 
     /// Replaces the world's gravity, in m/s². Wakes everything.

@@ -81,6 +81,14 @@ pub(crate) fn wake_joined(state: &mut State, scratch: &mut Scratch, id: BodyId) 
     }
 }
 
+/// Wakes two bodies after a change of their joint that does not change whether they may collide.
+pub(crate) fn joint_retuned(state: &mut State, scratch: &mut Scratch, bodies: [BodyId; 2]) {
+    for id in bodies {
+        wake_body(state, scratch, id.slot());
+    }
+    scratch.awake.invalidate();
+}
+
 /// Wakes two bodies between which a joint was added, removed or redefined, and lets the next pair update check whether
 /// their shapes may collide.
 pub(crate) fn joints_changed(state: &mut State, scratch: &mut Scratch, bodies: [BodyId; 2]) {

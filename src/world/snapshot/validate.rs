@@ -177,12 +177,12 @@ fn check_islands(state: &State) -> Result<(), Violation> {
 
 fn check_joints(state: &State) -> Result<(), Violation> {
     for (id, joint) in state.joints.iter() {
-        joint.def.validate().map_err(|error| Violation { what: format!("joint {id}: {error}") })?;
         let (a, b) = joint.def.bodies();
-        let dynamic = |body: BodyId| state.bodies.get(body).map(Body::is_dynamic);
-        let held = matches!((dynamic(a), dynamic(b)), (Some(a), Some(b)) if a || b);
-        check(held, || format!("joint {id}: a body is not in the world, or neither body is dynamic"))?;
-        let (body_a, body_b) = (state.bodies.at(a.slot()), state.bodies.at(b.slot()));
+        let (Some(body_a), Some(body_b)) = (state.bodies.get(a), state.bodies.get(b)) else {
+            return Err(Violation { what: format!("joint {id}: a body is not in the world") });
+        };
+        let valid = joint.def.validate([body_a.kind(), body_b.kind()]);
+        valid.map_err(|error| Violation { what: format!("joint {id}: {error}") })?;
         let both = body_a.is_dynamic() && body_b.is_dynamic() && body_a.enabled && body_b.enabled;
         let together = !joint.is_solved() || !both || body_a.island == body_b.island;
         check(together, || format!("joint {id}: one of its bodies sleeps without the other"))?;

@@ -2,7 +2,7 @@
 
 use crate::body::{Body, JointId};
 use crate::math::{Fx, Vec2};
-use crate::solver::{Joint, JointKind, Tuning};
+use crate::solver::{Joint, JointKind, JointPart, Tuning};
 use crate::world::World;
 
 impl World {
@@ -79,6 +79,7 @@ impl World {
     }
 
     /// Returns the force in N that the joint exerted on B in the last sub-step, and the torque in N m about B's anchor.
+    /// 0 while the joint is disabled or rests.
     #[doc(alias = "reaction force")]
     #[must_use]
     pub fn joint_force(&self, id: JointId) -> Option<(Vec2<Fx>, Fx)> {
@@ -86,6 +87,18 @@ impl World {
         let config = &self.state.config;
         let tuning = Tuning::new(&config.solver, config.gravity, config.tick_rate);
         Some(joint.reaction(a, b, &tuning))
+    }
+
+    /// Returns the part of [`World::joint_force`] that the joint's motor, limits or springs have exerted: for example
+    /// the torque of a motor that lifts a bridge, without the force that holds the hinge together. 0 if the joint has
+    /// no such part.
+    #[doc(alias = "motor torque")]
+    #[must_use]
+    pub fn joint_part_force(&self, id: JointId, part: JointPart) -> Option<(Vec2<Fx>, Fx)> {
+        let (joint, a, b) = self.joint_and_bodies(id)?;
+        let config = &self.state.config;
+        let tuning = Tuning::new(&config.solver, config.gravity, config.tick_rate);
+        Some(joint.part_reaction(part, (a, b), &tuning))
     }
 
     fn joint_and_bodies(&self, id: JointId) -> Option<(&Joint, &Body, &Body)> {

@@ -35,7 +35,6 @@ mod unit;
 use alloc::vec::Vec;
 
 use super::super::context::{Pass, StepContext};
-use super::super::settings::Tuning;
 use super::hinge::{HingeSet, Poses};
 use super::list::{BlockedPart, BlockedTask, JointList};
 use crate::math::{Fx, Speed, round_shift, saturate};
@@ -60,6 +59,16 @@ pub(super) struct Blocks {
     is_stale: bool,
 }
 
+/// A spring along a line.
+#[derive(Clone, Copy, Debug)]
+struct Spring {
+    /// Its index among the rows of all joints that are not hinges.
+    at: usize,
+    row: usize,
+    /// `Q` and `1 / Q`.
+    mass: (i64, i64),
+}
+
 /// Joints that are solved together.
 #[derive(Clone, Debug, Default)]
 struct Block {
@@ -74,6 +83,8 @@ struct Block {
     /// The pass for which the factor is.
     factored: Option<Pass>,
     limits: Vec<Limit>,
+    /// Springs whose softness depends on the pose.
+    springs: Vec<Spring>,
     /// The scales of the current pass, if the block has limits.
     current: Scales,
     /// `L` of each row, a speed with 32 fraction bits. It may be larger than a joint can store.
@@ -115,7 +126,6 @@ impl Blocks {
         &mut self,
         hinges: &HingeSet,
         parts: &[(u32, BlockedPart)],
-        tuning: &Tuning,
         candidates: &[Candidate],
         numbers: &[Result<usize, u32>],
     ) {
@@ -129,7 +139,7 @@ impl Blocks {
                 let share = mass_share(least, mass(joint));
                 match *number {
                     Ok(number) => {
-                        Unit::of_hinge(number, hinges, tuning).for_each(|unit| block.push(unit, share));
+                        Unit::of_hinge(number, hinges).for_each(|unit| block.push(unit, share));
                     }
                     Err(slot) => {
                         let first = parts.partition_point(|&(other, _)| other < slot);
@@ -200,6 +210,9 @@ impl Block {
             self.bias.push(scale, mass, ONE - mass_scale);
             self.relax.push(if softness.task == BlockedTask::Spring { (0, 0) } else { (ONE, ONE) }, mass, 0);
         }
+        if let Some(at) = unit.list_row().filter(|_| unit.is_spring()) {
+            self.springs.push(Spring { at, row: unit.row, mass });
+        }
         if unit.is_limit() {
             self.limits.push(Limit { unit: self.units.len(), row: unit.row, mass, is_active: false });
         }
@@ -242,8 +255,12 @@ impl Block {
 
     /// Computes the matrix at the current pose.
     fn refresh(&mut self, hinges: &HingeSet, list: &JointList) {
-        let Block { units, pairs, rows, matrix, factored, .. } = self;
+        let Block { units, pairs, rows, matrix, factored, bias, springs, .. } = self;
         *factored = None;
+        for &Spring { at, row, mass } in springs.iter() {
+            let mass_scale = i64::from(list.row(at).softness().mass_scale.to_bits());
+            bias.set(row, root_and_inverse(mass_scale), mass, ONE - mass_scale);
+        }
         for unit in units.iter_mut() {
             unit.refresh(hinges, list, rows);
         }

@@ -6,7 +6,6 @@ use super::super::super::body_list::GROUND;
 use super::super::super::context::{Pass, StepContext};
 use super::super::super::limits::{Faults, IMPULSE_MAX};
 use super::super::super::row::{MassFractions, turning};
-use super::super::super::settings::Tuning;
 use super::super::hinge::{ANGLE_MAX, HingeSet, Poses};
 use super::super::list::{BlockedPart, BlockedTask, JointList, ListPart};
 use super::scaling::{ScaledRow, Scaling, fraction_roots};
@@ -61,18 +60,18 @@ impl Unit {
     }
 
     /// The units of a hinge, by its number among the hinges in blocks: the hinge, and its limits.
-    pub(super) fn of_hinge(number: usize, hinges: &HingeSet, tuning: &Tuning) -> impl Iterator<Item = Self> {
+    pub(super) fn of_hinge(number: usize, hinges: &HingeSet) -> impl Iterator<Item = Self> {
         let hinge = hinges.blocked_hinge(number);
-        let row = Some(RowSoftness { mass_scale: tuning.joint.mass_scale, task: BlockedTask::Limit });
+        let row = Some(RowSoftness { mass_scale: hinge.softness.mass_scale, task: BlockedTask::Limit });
         let limits = (0..if hinge.has_limits { 2 } else { 0 }).map(move |side| {
             Unit::new(Source::HingeLimit(number, side), hinge.changed, hinge.fractions, [row, None, None])
         });
-        core::iter::once(Unit::hinge(number, hinges, tuning)).chain(limits)
+        core::iter::once(Unit::hinge(number, hinges)).chain(limits)
     }
 
-    fn hinge(number: usize, hinges: &HingeSet, tuning: &Tuning) -> Self {
+    fn hinge(number: usize, hinges: &HingeSet) -> Self {
         let hinge = hinges.blocked_hinge(number);
-        let mass_scale = tuning.joint.mass_scale;
+        let mass_scale = hinge.softness.mass_scale;
         let point = Some(RowSoftness { mass_scale, task: BlockedTask::Hold });
         let angle = hinge.angle.map(|angle| RowSoftness { mass_scale: angle.mass_scale, task: angle.task });
         Unit::new(Source::Hinge(number), hinge.changed, hinge.fractions, [point, point, angle])
@@ -155,23 +154,21 @@ impl Unit {
         context: &StepContext<'_>,
         faults: &mut Faults,
     ) -> [i64; 3] {
-        let tuning = context.tuning;
         let bodies = || self.source_bodies.map(|body| context.bodies[body as usize].get());
         match self.source {
             Source::Hinge(number) => {
-                hinges.blocked_wanted(number, pass, &tuning.joint, poses, context, faults).map(i64::from)
+                hinges.blocked_wanted(number, pass, poses, context, faults).map(i64::from)
             }
             Source::HingeLimit(number, side) => {
-                let softness = &tuning.joint;
-                [hinges.blocked_limit_wanted((number, side), pass, softness, context, faults), 0, 0]
+                [hinges.blocked_limit_wanted((number, side), pass, context, faults), 0, 0]
             }
             Source::Part(ListPart::Row(at)) if self.is_limit() => {
                 let [a, b] = bodies();
-                [list.row(at).wanted_of_limit(pass, tuning, &a, &b, faults), 0, 0]
+                [list.row(at).wanted_of_limit(pass, &a, &b, faults), 0, 0]
             }
             Source::Part(ListPart::Row(at)) => {
                 let [a, b] = bodies();
-                [list.row(at).wanted(pass, tuning, &a, &b, faults).unwrap_or(0), 0, 0]
+                [list.row(at).wanted(pass, &a, &b, faults).unwrap_or(0), 0, 0]
             }
             Source::Part(ListPart::Point(at)) => match list.point(at).unlimited_softness() {
                 Some(softness) if pass == Pass::Bias => {
@@ -246,6 +243,16 @@ impl Unit {
     /// The largest impulse of a row that the state can hold.
     pub(super) fn impulse_max(&self, part: usize) -> Speed {
         if part == 2 || matches!(self.source, Source::HingeLimit(..)) { ANGLE_MAX } else { IMPULSE_MAX }
+    }
+
+    /// The index of the row, if the unit is a row of a joint that is not a hinge.
+    pub(super) fn list_row(&self) -> Option<usize> {
+        if let Source::Part(ListPart::Row(at)) = self.source { Some(at) } else { None }
+    }
+
+    /// Whether the unit is a spring.
+    pub(super) fn is_spring(&self) -> bool {
+        self.softness[0].is_some_and(|softness| softness.task == BlockedTask::Spring)
     }
 
     /// Whether the unit is a limit, which has one row.

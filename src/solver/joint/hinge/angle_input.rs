@@ -6,7 +6,6 @@
 use alloc::vec::Vec;
 
 use super::super::super::row::{MassFractions, Row};
-use super::super::super::settings::Tuning;
 use super::super::super::softness::Softness;
 use super::super::options::{Drive, JointLimit, Spring};
 use super::super::parts::{impulse, slot};
@@ -161,17 +160,19 @@ pub(super) struct LimitInput {
 }
 
 impl AngleInput {
+    /// The rows of a hinge, in a world with `rate` sub-steps per second. What it holds rigidly has the softness
+    /// `rigid`.
     pub(in super::super) fn new(
         parts: &AngleParts,
         ends: [&HingeBody; 2],
         impulses: &JointImpulses,
         memo: &mut Memo,
-        tuning: &Tuning,
+        (rate, rigid): (u32, &Softness),
     ) -> Self {
         let Angular { key: _, e, f, s, max, drive_max } = memo.angular(AngularKey {
             bodies: ends.map(|end| (end.inverse_gyration, end.mass)),
             torque: parts.drive.map_or(Fx::ZERO, |drive| drive.max),
-            rate: tuning.rate,
+            rate,
         });
         let lambda = |slot: u8| impulses.0[usize::from(slot)];
         let per_turn = |rate: Fx| fx_mul(fx_mul(TAU, s), rate);
@@ -186,7 +187,7 @@ impl AngleInput {
             lambda: lambda(slot::SPRING).clamp(-max, max),
         };
         let from_spring = parts.spring.map(|Spring { hertz, damping_ratio, target }| {
-            spring(&memo.softness(hertz, damping_ratio, tuning.rate), target, false)
+            spring(&memo.softness(hertz, damping_ratio, rate), target, false)
         });
         let drive = parts.drive.map(|Drive { speed, max: _ }| {
             let speed: Speed = narrow(fx_mul(speed, s));
@@ -199,12 +200,12 @@ impl AngleInput {
         let limit = parts.limit.map(|JointLimit { lower, upper }| LimitInput {
             lower: turns_of(lower),
             upper: turns_of(upper),
-            closed: stiffness(&tuning.joint),
-            open: per_turn(Fx::from_num(tuning.rate)),
+            closed: stiffness(rigid),
+            open: per_turn(Fx::from_num(rate)),
             max,
             lambda: [0, 1].map(|side| lambda(slot::LIMIT + side).clamp(Speed::ZERO, max)),
         });
-        let held = parts.held.then(|| spring(&tuning.joint, Fx::ZERO, true));
+        let held = parts.held.then(|| spring(rigid, Fx::ZERO, true));
         AngleInput { e, f, spring: from_spring.or(held), drive, limit }
     }
 }

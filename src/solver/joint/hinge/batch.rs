@@ -1,5 +1,6 @@
 //! Batches of hinges: `N` at a time, as a structure of arrays.
 
+use super::super::super::softness::Softness;
 use crate::math::Angle;
 use crate::simd::Ints;
 
@@ -23,6 +24,8 @@ pub(in crate::solver) struct Batch<const N: usize> {
     pub(super) lambda: [Ints<N>; 2],
     /// Whether any hinge in the batch has rows on the angle. The batch then has [`super::angle::AngleRows`].
     pub(super) has_angle: bool,
+    /// Whether the hinges have a softness of their own, all the same: that of the record.
+    pub(super) is_tuned: bool,
 }
 
 /// The constants from which the points of a batch are refreshed, and the joints to which its results belong.
@@ -38,6 +41,8 @@ pub(in crate::solver) struct Records<const N: usize> {
     pub(super) turns: [i64; N],
     /// The angles of the joints while no body is rotated.
     pub(super) rest: [Angle; N],
+    /// The softness of the points and limits of a tuned batch, and of a hinge in a block.
+    pub(super) softness: Softness,
 }
 
 /// The geometry of hinges, which is constant within a tick.
@@ -64,12 +69,19 @@ impl<const N: usize> Batch<N> {
         bias: [Ints::ZERO; 2],
         lambda: [Ints::ZERO; 2],
         has_angle: false,
+        is_tuned: false,
     };
 }
 
 impl<const N: usize> Records<N> {
-    pub(super) const NONE: Self =
-        Records { shape: Shape::NONE, len: 0, slots: [0; N], turns: [0; N], rest: [Angle::ZERO; N] };
+    pub(super) const NONE: Self = Records {
+        shape: Shape::NONE,
+        len: 0,
+        slots: [0; N],
+        turns: [0; N],
+        rest: [Angle::ZERO; N],
+        softness: Softness::RIGID,
+    };
 }
 
 impl<const N: usize> Shape<N> {

@@ -43,6 +43,8 @@ pub(in super::super) struct BlockedHinge {
     /// Lever ratios and softness of the row that holds the angle, or of its spring.
     pub(in super::super) angle: Option<BlockedAngle>,
     pub(in super::super) has_limits: bool,
+    /// The softness of the point and the limits.
+    pub(in super::super) softness: Softness,
 }
 
 pub(in super::super) struct BlockedAngle {
@@ -68,6 +70,11 @@ impl HingeSet {
         }
     }
 
+    /// The softness of the point and the limits of a hinge in a block.
+    fn blocked_softness(&self, number: usize) -> &Softness {
+        &self.blocked.overflow.records[number].softness
+    }
+
     /// A hinge in a block, at its last refresh.
     pub(in super::super) fn blocked_hinge(&self, number: usize) -> BlockedHinge {
         let batch = &self.blocked.overflow.batches[number];
@@ -79,6 +86,7 @@ impl HingeSet {
         let [a, b] = [0, 1].map(|side: usize| Unit::from_bits(record.shape.fractions[side].0[0]));
         let has_limits = self.blocked_rows(number).is_some_and(AngleRows::has_blocked_limits);
         BlockedHinge {
+            softness: *self.blocked_softness(number),
             has_limits,
             changed: [batch.changed[0][0], batch.changed[1][0]],
             fractions: MassFractions { a, b },
@@ -94,13 +102,13 @@ impl HingeSet {
         &self,
         number: usize,
         pass: Pass,
-        softness: &Softness,
         poses: Poses<'_>,
         context: &StepContext<'_>,
         faults: &mut Faults,
     ) -> [i32; 3] {
         type L = Scalar<1>;
         let batch = &self.blocked.overflow.batches[number];
+        let softness = self.blocked_softness(number);
         let pair = BodyPairW::<L, 1>::load(context.bodies, &batch.bodies);
         let (e_a, e_b) = ratios_of::<L, 1>(batch, pass, poses.quads);
         let vr = relative_velocity::<L, 1>(e_a, e_b, &pair, faults);
@@ -138,12 +146,12 @@ impl HingeSet {
         &self,
         (number, side): (usize, usize),
         pass: Pass,
-        softness: &Softness,
         context: &StepContext<'_>,
         faults: &mut Faults,
     ) -> i64 {
         let bodies = &self.blocked.overflow.batches[number].bodies;
         let pair = BodyPairW::<Scalar<1>, 1>::load(context.bodies, bodies);
+        let softness = self.blocked_softness(number);
         let rows = self.blocked_rows(number);
         rows.map_or(0, |rows| -rows.wanted_of_limit(side, pass, softness, &pair, faults))
     }

@@ -4,10 +4,12 @@
 use super::super::super::body_list::GROUND;
 use super::super::super::colour::{Node, Size};
 use super::super::super::row::{MassFractions, turning};
+use super::super::super::settings::Tuning;
+use super::super::super::softness::Softness;
 use super::super::def::JointFrame;
 use super::super::parts::slot;
 use super::super::state::Joint;
-use crate::body::Body;
+use crate::body::{Body, Pose};
 use crate::math::{Angle, Fx, Length, Ratio, Reciprocal, Shift, Speed, Unit, Vec2, round_shift, saturate};
 
 /// The properties of a body that its joints depend on.
@@ -52,6 +54,18 @@ impl HingeBody {
             joints: 0,
             centre: body.centre_of_mass(),
             local_centre: body.local_centre_of_mass(),
+        }
+    }
+
+    /// A fixed body about a far anchor.
+    pub(in super::super) fn far_anchor(index: u32, pose: Pose, frame: &JointFrame) -> Self {
+        HingeBody {
+            turning: Turning { index, angle: pose.angle, turns: Fx::ZERO, ahead: Fx::ZERO },
+            inverse_gyration: Reciprocal::ZERO,
+            mass: Fx::ZERO,
+            joints: 0,
+            centre: pose.centre,
+            local_centre: frame.anchor,
         }
     }
 
@@ -120,6 +134,9 @@ pub(in super::super) struct Input {
     /// The angle of the joint while neither body is rotated.
     pub(super) rest: Angle,
     pub(super) lambda: [i32; 2],
+    /// The softness of what the joint holds rigidly, and whether it is its own instead of that of the world.
+    pub(super) softness: Softness,
+    pub(super) is_tuned: bool,
 }
 
 impl Input {
@@ -128,6 +145,7 @@ impl Input {
         joint: &Joint,
         [a, b]: [&HingeBody; 2],
         angle: Option<u32>,
+        tuning: &Tuning,
     ) -> Self {
         let arms = [(&joint.def.frame_a, a), (&joint.def.frame_b, b)]
             .map(|(frame, end)| arm(frame.anchor - end.local_centre));
@@ -144,12 +162,16 @@ impl Input {
             turns: joint.turns(a.turning.angle, b.turning.angle),
             rest: joint.def.rest_angle(),
             lambda: [lambda.x.to_bits(), lambda.y.to_bits()],
+            softness: joint.softness(tuning),
+            is_tuned: joint.def.softness.is_some(),
         }
     }
 
-    /// The index of the body that it holds, if no impulse moves the other body.
+    /// The index of the body that it holds, if no impulse moves the other body and the joint has no softness of its
+    /// own.
     pub(super) fn anchored_body(&self) -> Option<u32> {
         match self.changed {
+            _ if self.is_tuned => None,
             [GROUND, body] | [body, GROUND] if body != GROUND => Some(body),
             _ => None,
         }

@@ -71,6 +71,8 @@ pub(super) struct HingeSet {
     inputs: Vec<Input>,
     angles: Vec<AngleInput>,
     memo: Memo,
+    /// Working memory: the hinges of a colour that have a softness of their own.
+    tuned: Vec<u32>,
     hinges: BatchList<Hinges>,
     /// Anchored hinges, whose points are stiffer: they connect a body that has no other joint to a body that no impulse
     /// moves.

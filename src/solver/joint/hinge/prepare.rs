@@ -14,7 +14,8 @@ use crate::math::{Fx, Length, Speed, Unit, Vec2};
 
 impl HingeSet {
     pub(in super::super) fn clear(&mut self) {
-        let HingeSet { inputs, angles, memo: _, hinges, anchored, blocked, blocked_extras, dirty } = self;
+        let HingeSet { inputs, angles, memo: _, tuned: _, hinges, anchored, blocked, blocked_extras, dirty } =
+            self;
         *dirty = Dirty::Everything;
         inputs.clear();
         angles.clear();
@@ -36,9 +37,10 @@ impl HingeSet {
     ) -> u32 {
         let HingeSet { inputs, angles, memo, .. } = self;
         let angle = if parts.is_empty() { None } else { Some(count(angles)) };
-        let input = Input::new(slot, joint, ends, angle);
+        let input = Input::new(slot, joint, ends, angle, tuning);
         if angle.is_some() {
-            angles.push(AngleInput::new(parts, ends, &joint.impulses, memo, tuning));
+            let rigid = (tuning.rate, &input.softness);
+            angles.push(AngleInput::new(parts, ends, &joint.impulses, memo, rigid));
         }
         inputs.push(input);
         count(inputs) - 1
@@ -61,13 +63,23 @@ impl HingeSet {
         indices: impl Iterator<Item = u32> + Clone,
         is_alone: impl Fn(u32) -> bool,
     ) {
-        let HingeSet { inputs, angles, hinges, anchored, .. } = self;
+        let HingeSet { inputs, angles, hinges, anchored, tuned, .. } = self;
         for has_angle in [false, true] {
             let indices =
                 indices.clone().filter(|&index| inputs[index as usize].angle.is_some() == has_angle);
             let is_anchored = |&index: &u32| inputs[index as usize].anchored_body().is_some_and(&is_alone);
-            hinges.coloured.push(inputs, angles, indices.clone().filter(|index| !is_anchored(index)));
-            anchored.coloured.push(inputs, angles, indices.filter(is_anchored));
+            let is_tuned = |&index: &u32| inputs[index as usize].is_tuned;
+            let ordinary = indices.clone().filter(|index| !is_anchored(index) && !is_tuned(index));
+            hinges.coloured.push(inputs, angles, ordinary);
+            anchored.coloured.push(inputs, angles, indices.clone().filter(is_anchored));
+            // All hinges of a batch have the same softness.
+            tuned.clear();
+            tuned.extend(indices.filter(is_tuned));
+            let softness = |&index: &u32| inputs[index as usize].softness.to_bits();
+            tuned.sort_by_key(softness);
+            for equal in tuned.chunk_by(|a, b| softness(a) == softness(b)) {
+                hinges.coloured.push(inputs, angles, equal.iter().copied());
+            }
         }
         hinges.coloured.end_colour();
         anchored.coloured.end_colour();
@@ -116,7 +128,7 @@ fn count<T>(parts: &[T]) -> u32 {
 
 impl<const N: usize> Batches<Hinges, N> {
     /// Adds batches of hinges. The caller ensures that no two of `N` successive hinges share a body that impulses
-    /// change, and that either all hinges or none have rows on the angle.
+    /// change, that either all hinges or none have rows on the angle, and that all have the same softness.
     pub(super) fn push(
         &mut self,
         inputs: &[Input],
@@ -129,8 +141,9 @@ impl<const N: usize> Batches<Hinges, N> {
             let input = &inputs[index as usize];
             if lane == N {
                 lane = 0;
-                batches.push(Batch { has_angle: input.angle.is_some(), ..Batch::NONE });
-                records.push(Records::NONE);
+                let (has_angle, is_tuned) = (input.angle.is_some(), input.is_tuned);
+                batches.push(Batch { has_angle, is_tuned, ..Batch::NONE });
+                records.push(Records { softness: input.softness, ..Records::NONE });
                 extras.extend(input.angle.map(|_| AngleRows::NONE));
             }
             let (Some(batch), Some(records)) = (batches.last_mut(), records.last_mut()) else { return };

@@ -37,6 +37,15 @@ pub(super) struct Refresh<'a> {
 }
 
 impl Refresh<'_> {
+    /// The softness of a batch: its own, or that of all batches of its list.
+    #[inline(always)]
+    pub(super) fn stiffness_of<const N: usize>(&self, batch: &Batch<N>, records: &Records<N>) -> Stiffness {
+        match batch.is_tuned {
+            false => self.stiffness,
+            true => Stiffness { points: records.softness, limits: records.softness },
+        }
+    }
+
     #[inline(always)]
     pub(super) fn refresh<L: Lanes<N>, const N: usize>(
         &self,
@@ -46,7 +55,7 @@ impl Refresh<'_> {
         bodies: &[Cell<SolverBody>],
     ) {
         if self.dirty >= Dirty::Gaps {
-            let Refresh { stiffness, poses, .. } = self;
+            let (stiffness, poses) = (self.stiffness_of(batch, records), self.poses);
             let quads = [L::quads(poses.quads, &batch.bodies[0]), L::quads(poses.quads, &batch.bodies[1])];
             refresh_gaps::<L, N>(batch, &records.shape, &quads, bodies, &stiffness.points);
             if self.dirty == Dirty::Everything {

@@ -126,6 +126,8 @@ impl Setting {
             turns: i64::from(rng.next_u32()) - (1 << 31),
             rest: Angle::ZERO,
             lambda: [random_speed(rng, sizes.speed).to_bits(), random_speed(rng, sizes.speed).to_bits()],
+            softness: Softness::RIGID,
+            is_tuned: false,
         });
         self.ends.push([ends[0], ends[1]]);
         self.fractions.push(fractions);

@@ -1,0 +1,63 @@
+//! Forces that joints have exerted.
+
+use super::super::super::body::SolverBody;
+use super::super::super::context::StepContext;
+use super::super::super::settings::Tuning;
+use super::super::def::JointFrame;
+use super::super::hinge::HingeBody;
+use super::super::pose::{BodyRotation, Ends};
+use super::super::state::Joint;
+use super::{JointSet, hinge_parts};
+use crate::body::Body;
+use crate::math::{Fx, Vec2, fx_mul, widen};
+use crate::simd::{Machine, Quad};
+use crate::threads::Threads;
+
+impl JointSet {
+    /// The force and the torque about B's anchor that a joint exerted on B in the last sub-step: `P / h`. The impulse
+    /// `P` is computed from the velocities that the joint's impulses give to one of the bodies at rest. Clears the
+    /// set's own constraints and reuses their memory.
+    pub(in crate::solver) fn reaction(
+        &mut self,
+        joint: &Joint,
+        (a, b): (&Body, &Body),
+        tuning: &Tuning,
+    ) -> (Vec2<Fx>, Fx) {
+        if !joint.is_solved() || !(a.is_dynamic() || b.is_dynamic()) {
+            return (Vec2::ZERO, Fx::ZERO);
+        }
+        self.clear();
+        // Index 0 is the ground.
+        let indices = [1, 2];
+        let end = |index: u32, body: &Body, frame: &JointFrame| match frame.is_far() {
+            true => HingeBody::far_anchor(index, frame.far_pose(body), frame),
+            false => HingeBody::new(index, body, tuning.rate),
+        };
+        let ends = [end(indices[0], a, &joint.def.frame_a), end(indices[1], b, &joint.def.frame_b)];
+        self.turning.extend(ends.map(|end| end.turning));
+        self.body_rotations.resize(self.body_rotations.len().max(3), BodyRotation::default());
+        self.quads.resize(self.quads.len().max(3), Quad::default());
+        match hinge_parts(&joint.def.kind) {
+            Some(parts) => {
+                let input = self.hinges.push_input(0, joint, ends.each_ref(), &parts, tuning);
+                self.hinges.push_overflow(core::iter::once(input));
+            }
+            None => self.list.push(0, joint, indices, [a, b], tuning, false),
+        }
+        let (threads, mut bodies, mut faults) = (Threads::default(), [SolverBody::default(); 3], 0);
+        let context = StepContext::new(Machine::default(), &threads, tuning, &mut bodies, &mut faults);
+        self.refresh(&context);
+        let place = Ends::prepare(joint, indices, [a, b]).place(context.bodies, &self.body_rotations);
+        self.warm_start(&context);
+        // The velocity of the lighter body has more significant bits.
+        let (body, moved, arm) = if a.is_dynamic() && (!b.is_dynamic() || a.mass() < b.mass()) {
+            (a, bodies[1].reversed(), place.reach_of_a().arm)
+        } else {
+            (b, bodies[2], place.lever_b.arm)
+        };
+        let per_second = |speed| fx_mul(widen(speed), body.mass()).saturating_mul_int(tuning.rate.into());
+        let force = Vec2::new(per_second(moved.velocity.x), per_second(moved.velocity.y));
+        let torque = fx_mul(per_second(moved.spin), body.radius_of_gyration());
+        (force, torque.saturating_sub(arm.widen().cross(force)))
+    }
+}

@@ -1,0 +1,201 @@
+//! Changing joints.
+//!
+//! A change that changes nothing does nothing: a machine that sets its motors in every tick falls asleep when it stops.
+
+use crate::body::{BodyId, JointId, WorldError};
+use crate::math::{Angle, Fx, Vec2};
+use crate::solver::{JointDef, JointFrame, JointKind, JointLimit};
+use crate::world::World;
+use crate::world::islands::{joint_retuned, joints_changed};
+
+impl World {
+    /// The definition of a joint at a point of the world, in metres: both anchors are there, and the angle of the joint
+    /// is 0 at the current poses. Change it as needed and pass it to [`World::add_joint`].
+    ///
+    /// ```
+    /// use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, fx, solver::Revolute, world::World};
+    /// let mut world = World::default();
+    /// let plank = ShapeDef::new(Polygon::rectangle(fx!(1), fx!(0.1))?);
+    /// let ground = world.spawn(&BodyDef::fixed(), &[])?;
+    /// let teeter = world.spawn(&BodyDef::dynamic().position((fx!(140), fx!(2))), &[plank])?;
+    /// let hinge = Revolute::new().limit(fx!(-0.3), fx!(0.3));
+    /// let def = world.joint_at(ground, teeter, hinge, (fx!(140), fx!(2)))?;
+    /// world.add_joint(&def)?;
+    /// # Ok::<(), lockstep2d::body::WorldError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`WorldError::StaleBody`] if a body is not in the world.
+    #[doc(alias = "Initialize")]
+    pub fn joint_at(
+        &self,
+        a: BodyId,
+        b: BodyId,
+        kind: impl Into<JointKind>,
+        anchor: impl Into<Vec2<Fx>>,
+    ) -> Result<JointDef, WorldError> {
+        self.joint_along(a, b, kind, anchor, Vec2::new(Fx::ONE, Fx::ZERO))
+    }
+
+    /// Like [`World::joint_at`], with the axis of a slider or wheel as a direction in the world. Its length does not
+    /// matter; the zero vector is the x axis.
+    ///
+    /// # Errors
+    /// [`WorldError::StaleBody`] if a body is not in the world.
+    pub fn joint_along(
+        &self,
+        a: BodyId,
+        b: BodyId,
+        kind: impl Into<JointKind>,
+        anchor: impl Into<Vec2<Fx>>,
+        axis: impl Into<Vec2<Fx>>,
+    ) -> Result<JointDef, WorldError> {
+        let (anchor, axis) = (anchor.into(), Angle::of(axis.into()));
+        let frame = |id: BodyId| -> Result<JointFrame, WorldError> {
+            let body = self.state.bodies.get(id).ok_or(WorldError::StaleBody(id))?;
+            let angle = axis - body.angle();
+            Ok(JointFrame { anchor: body.transform().apply_inverse(anchor), angle })
+        };
+        let (frame_a, frame_b) = (frame(a)?, frame(b)?);
+        Ok(JointDef { frame_a, frame_b, ..JointDef::new(a, b, kind) })
+    }
+
+    /// Replaces the definition of a joint except for its bodies: read [`crate::solver::Joint::def`], change a copy, and
+    /// pass it here. Its impulses are kept if it stays of the same kind. Wakes its bodies, unless the definition is the
+    /// same.
+    ///
+    /// # Errors
+    /// [`WorldError`] if the handle is stale, the bodies are different ones, or a value is out of range.
+    #[doc(alias = "motor")]
+    #[doc(alias = "spring")]
+    #[doc(alias = "limit")]
+    pub fn set_joint(&mut self, id: JointId, def: &JointDef) -> Result<(), WorldError> {
+        let joint = self.state.joints.get(id).ok_or(WorldError::StaleJoint(id))?;
+        let (a, b) = joint.def.bodies();
+        if (a, b) != def.bodies() {
+            return Err(WorldError::JointOfOtherBodies(id));
+        }
+        self.check_joint(def)?;
+        if *joint.def == *def {
+            return Ok(());
+        }
+        let changes_collisions =
+            (joint.def.enabled, joint.def.collide_connected) != (def.enabled, def.collide_connected);
+        if let Some(joint) = self.state.joints.get_mut(id) {
+            joint.redefine(*def);
+        }
+        if changes_collisions {
+            joints_changed(&mut self.state, &mut self.scratch, [a, b]);
+        } else {
+            joint_retuned(&mut self.state, &mut self.scratch, [a, b]);
+        }
+        Ok(())
+    }
+
+    /// Lets a disabled joint act again. Wakes its bodies, unless it is enabled already. It begins without impulses, and
+    /// its angle is the one within half a turn of the last.
+    ///
+    /// # Errors
+    /// [`WorldError::StaleJoint`] if it is not in the world.
+    pub fn enable_joint(&mut self, id: JointId) -> Result<(), WorldError> {
+        self.change_joint(id, |def| {
+            def.enabled = true;
+            Ok(())
+        })
+    }
+
+    /// Takes a joint out of the simulation until [`World::enable_joint`]: it keeps its handle, exerts nothing, and lets
+    /// its bodies collide and sleep as if it were absent. Wakes its bodies, unless it is disabled already.
+    ///
+    /// # Errors
+    /// [`WorldError::StaleJoint`] if it is not in the world.
+    pub fn disable_joint(&mut self, id: JointId) -> Result<(), WorldError> {
+        self.change_joint(id, |def| {
+            def.enabled = false;
+            Ok(())
+        })
+    }
+
+    /// Sets the target speed of a joint's motor in rad/s or m/s; that of the angular motor of a motor joint. Wakes its
+    /// bodies, unless the speed is the same.
+    ///
+    /// # Errors
+    /// [`WorldError`] if the handle is stale, the joint has no motor, or the speed is out of range.
+    pub fn set_joint_motor_speed(&mut self, id: JointId, speed: Fx) -> Result<(), WorldError> {
+        self.change_joint(id, |def| {
+            let motor = def.kind.motor_mut().ok_or(WorldError::JointWithout { joint: id, what: "motor" })?;
+            motor.speed = speed;
+            Ok(())
+        })
+    }
+
+    /// Sets the largest force in N or torque in N m of a joint's motor; that of the angular motor of a motor joint.
+    /// Wakes its bodies, unless it is the same.
+    ///
+    /// # Errors
+    /// [`WorldError`] if the handle is stale, the joint has no motor, or the value is negative.
+    pub fn set_joint_motor_max(&mut self, id: JointId, max: Fx) -> Result<(), WorldError> {
+        self.change_joint(id, |def| {
+            let motor = def.kind.motor_mut().ok_or(WorldError::JointWithout { joint: id, what: "motor" })?;
+            motor.max = max;
+            Ok(())
+        })
+    }
+
+    /// Sets the target velocity of a motor joint in m/s, along the axes of the world. Wakes its bodies, unless it is
+    /// the same.
+    ///
+    /// # Errors
+    /// [`WorldError`] if the handle is stale, the joint has no linear motor, or the velocity is out of range.
+    pub fn set_joint_motor_velocity(
+        &mut self,
+        id: JointId,
+        velocity: impl Into<Vec2<Fx>>,
+    ) -> Result<(), WorldError> {
+        let velocity = velocity.into();
+        self.change_joint(id, |def| {
+            let JointKind::Motor(crate::solver::Motor { linear: Some(linear), .. }) = &mut def.kind else {
+                return Err(WorldError::JointWithout { joint: id, what: "linear motor" });
+            };
+            linear.velocity = velocity;
+            Ok(())
+        })
+    }
+
+    /// Sets the target of a joint's spring in rad or m. Wakes its bodies, unless it is the same.
+    ///
+    /// # Errors
+    /// [`WorldError`] if the handle is stale, the joint has no spring with a target, or the target is out of range.
+    pub fn set_joint_spring_target(&mut self, id: JointId, target: Fx) -> Result<(), WorldError> {
+        self.change_joint(id, |def| {
+            let spring =
+                def.kind.spring_mut().ok_or(WorldError::JointWithout { joint: id, what: "spring" })?;
+            spring.target = target;
+            Ok(())
+        })
+    }
+
+    /// Sets the range of a joint's angle, translation or length in rad or m; `None` for no limit. Wakes its bodies,
+    /// unless it is the same.
+    ///
+    /// # Errors
+    /// [`WorldError`] if the handle is stale, the kind of joint has no limit, or the range is out of range.
+    pub fn set_joint_limit(&mut self, id: JointId, limit: Option<JointLimit>) -> Result<(), WorldError> {
+        self.change_joint(id, |def| {
+            let own = def.kind.limit_mut().ok_or(WorldError::JointWithout { joint: id, what: "limit" })?;
+            *own = limit;
+            Ok(())
+        })
+    }
+
+    /// Replaces the definition of a joint by a changed copy.
+    fn change_joint(
+        &mut self,
+        id: JointId,
+        change: impl FnOnce(&mut JointDef) -> Result<(), WorldError>,
+    ) -> Result<(), WorldError> {
+        let mut def = *self.state.joints.get(id).ok_or(WorldError::StaleJoint(id))?.def;
+        change(&mut def)?;
+        self.set_joint(id, &def)
+    }
+}
