@@ -10,6 +10,7 @@ mod character;
 mod mover_planes;
 mod overlap;
 mod probe;
+mod walk;
 
 pub use cast::{CastHit, RayHit};
 pub use character::{Moved, Mover, MoverState};
@@ -42,16 +43,43 @@ pub struct QueryFilter {
     pub sensors: bool,
     /// A body that the query does not see, usually the one for which the query is made.
     pub except: Option<BodyId>,
+    /// Further bodies that the query does not see, such as those of a vehicle.
+    pub except_also: [Option<BodyId>; Self::EXCEPT_ALSO_MAX],
 }
 
 impl Default for QueryFilter {
     /// Sees everything except sensors.
     fn default() -> Self {
-        QueryFilter { category: u64::MAX, mask: u64::MAX, sensors: false, except: None }
+        QueryFilter {
+            category: u64::MAX,
+            mask: u64::MAX,
+            sensors: false,
+            except: None,
+            except_also: [None; Self::EXCEPT_ALSO_MAX],
+        }
     }
 }
 
 impl QueryFilter {
+    /// Largest number of bodies in [`QueryFilter::except_also`].
+    pub const EXCEPT_ALSO_MAX: usize = 8;
+
+    /// Leaves out all bodies of a list, instead of those of [`QueryFilter::except_also`] so far. `None` if there are
+    /// more than [`QueryFilter::EXCEPT_ALSO_MAX`]: a ragdoll of many bodies is left out by its category.
+    #[must_use]
+    pub fn except_all(mut self, bodies: &[BodyId]) -> Option<Self> {
+        self.except_also = [None; Self::EXCEPT_ALSO_MAX];
+        for (i, &body) in bodies.iter().enumerate() {
+            *self.except_also.get_mut(i)? = Some(body);
+        }
+        Some(self)
+    }
+
+    /// Whether the query leaves out a body.
+    fn leaves_out(&self, body: BodyId) -> bool {
+        self.except == Some(body) || self.except_also.contains(&Some(body))
+    }
+
     /// Leaves out a body.
     #[must_use]
     pub const fn except(mut self, body: BodyId) -> Self {
@@ -71,7 +99,7 @@ impl World {
         let shape = self.state.shapes.at(slot);
         let accepted =
             shape.filter().mask & filter.category != 0 && shape.filter().category & filter.mask != 0;
-        let wanted = (filter.sensors || !shape.is_sensor()) && filter.except != Some(shape.body());
+        let wanted = (filter.sensors || !shape.is_sensor()) && !filter.leaves_out(shape.body());
         (accepted && wanted).then(|| self.state.shapes.handle_at(slot))
     }
 }
