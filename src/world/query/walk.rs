@@ -181,7 +181,7 @@ impl<'a> Walk<'a> {
         let left = clipped(self.stopped_by_steep(self.from.velocity), self.limits(false));
         match (&self.from.ground, ground) {
             (Some(_), Some(_)) => Vec2::new(left.x, left.y.max(Fx::ZERO)),
-            (None, Some(new)) => Vec2::new((left - new.velocity).x, Fx::ZERO),
+            (None, Some(new)) => Vec2::new(taken_along(left.x, new.velocity.x), Fx::ZERO),
             (Some(old), None) => {
                 let belt = along_surface(old.normal, self.belt(old));
                 left + carrier.map_or(old.velocity, |carrier| carrier.velocity + belt)
@@ -380,4 +380,10 @@ impl<'a> Walk<'a> {
         });
         overlaps && (one_sided || leaves.is_some()) || leaves == Some(true)
     }
+}
+
+/// Horizontal velocity relative to ground on which a character lands. The ground takes it along: a character that hung
+/// still in the air stands still on a belt, and one that jumped straight up on a train lands without speed.
+fn taken_along(velocity: Fx, ground: Fx) -> Fx {
+    velocity.saturating_sub(ground).clamp(velocity.min(Fx::ZERO), velocity.max(Fx::ZERO))
 }
