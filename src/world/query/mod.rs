@@ -10,6 +10,9 @@ mod character;
 mod mover_planes;
 mod overlap;
 mod probe;
+mod seam;
+mod single;
+mod turning;
 mod walk;
 
 pub use cast::{CastHit, RayHit};
@@ -17,6 +20,7 @@ pub use character::{Moved, Mover, MoverState};
 pub use mover_planes::{MoverPlane, clip_velocity, solve_planes};
 pub use overlap::ClosestPoints;
 pub use probe::Probe;
+pub use single::{Displacement, ProbeHit, TimeOfImpact};
 
 use super::World;
 use crate::body::{BodyId, Handle, ShapeId};
@@ -45,6 +49,21 @@ pub struct QueryFilter {
     pub except: Option<BodyId>,
     /// Further bodies that the query does not see, such as those of a vehicle.
     pub except_also: [Option<BodyId>; Self::EXCEPT_ALSO_MAX],
+    /// What a ray or a cast does with shapes that it starts inside of.
+    pub initial_overlap: InitialOverlap,
+}
+
+/// What a ray or a cast does with shapes that it starts inside of. Its hits tell whether it does.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum InitialOverlap {
+    /// A ray reports them, at fraction 0. A cast reports those into which it would go deeper, so that a shape that
+    /// overlaps others a little can leave them.
+    #[default]
+    Resist,
+    /// Rays and casts report them, at fraction 0.
+    Report,
+    /// Rays and casts do not see them. That is also the floor into which a resting body has sunk by a millimetre.
+    Ignore,
 }
 
 impl Default for QueryFilter {
@@ -56,6 +75,7 @@ impl Default for QueryFilter {
             sensors: false,
             except: None,
             except_also: [None; Self::EXCEPT_ALSO_MAX],
+            initial_overlap: InitialOverlap::Resist,
         }
     }
 }
@@ -73,6 +93,13 @@ impl QueryFilter {
             *self.except_also.get_mut(i)? = Some(body);
         }
         Some(self)
+    }
+
+    /// Sets what a ray or a cast does with shapes that it starts inside of.
+    #[must_use]
+    pub const fn initial_overlap(mut self, overlap: InitialOverlap) -> Self {
+        self.initial_overlap = overlap;
+        self
     }
 
     /// Whether the query leaves out a body.

@@ -5,7 +5,8 @@ use alloc::vec::Vec;
 
 use super::character::{Mover, MoverState, SLOPE_ROUNDING, in_tick};
 use super::mover_planes::{MoverPlane, along_surface, clipped, solve_planes};
-use super::{Probe, QueryFilter};
+use super::seam::Rest;
+use super::{InitialOverlap, Probe, QueryFilter};
 use crate::body::{BodyId, BodyKind, Geometry, Handle, ShapeId, Sides};
 use crate::collision::{SKIN, SupportShape, distance};
 use crate::fx;
@@ -76,7 +77,7 @@ impl<'a> Walk<'a> {
         Walk {
             world,
             mover,
-            filter,
+            filter: filter.initial_overlap(InitialOverlap::Resist),
             from: *from,
             probe: mover.probe(from.position),
             on_ground: from.is_on_ground(),
@@ -361,7 +362,7 @@ impl<'a> Walk<'a> {
                 && without != self.world.shape(shape).map(|shape| shape.body())
                 && !self.passes(shape, normal, overlapped)
         };
-        let hit = self.world.first_along(&self.probe, translation, self.filter, stops)?;
+        let hit = self.world.first_along(&self.probe, translation, self.filter, Rest::CHARACTER, stops)?;
         Some((hit.travelled, self.world.mover_plane(hit.shape, hit.normal, SKIN, hit.point)))
     }
 
