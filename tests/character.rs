@@ -74,6 +74,35 @@ fn the_character_of_the_scene_enters_nothing() {
     assert!(trace[870].x < fx!(5), "{:?}", trace[870]);
 }
 
+/// The dynamic character keeps its height above all kinds of ground, pushes the crates, and reaches the upper floor.
+#[test]
+fn the_character_on_a_spring_leg_gets_about() {
+    let scene = Scene::find("spring_leg").expect("a scene");
+    let mut game = Sandbox::new(&scene.setup(1)).expect("valid");
+    let ids: Vec<_> = game.world().bodies().map(|(id, _)| id).collect();
+    let crates_at = |game: &Sandbox| game.world().body(ids[3]).expect("there").position().x;
+    let (mut trace, mut pushed) = (vec![], Fx::MIN);
+    for tick in 0..scene.ticks {
+        let commands = scene.commands(tick, &game);
+        game.step(&[commands]);
+        pushed = pushed.max(crates_at(&game));
+        trace.push(game.world().body(ids[0]).expect("there").position());
+    }
+    assert_eq!(game.refused(), 0);
+    // Its centre of mass is 0.1 m above its origin, and 0.9 m above the ground.
+    let rest = trace[25];
+    assert!((rest.y - fx!(0.8)).abs() < fx!(0.005), "at rest above the floor: {rest:?}");
+    let jump = trace[30..60].iter().map(|place| place.y).max().expect("some");
+    // 5.5 m/s rise by 1.5 m, less the leg's last push.
+    assert!((fx!(2.1)..fx!(2.5)).contains(&jump), "{jump}");
+    assert!(pushed > fx!(10.5), "the first crate is pushed: {pushed}");
+    let furthest = trace.iter().max_by_key(|place| place.x).expect("some");
+    assert!(
+        furthest.x > fx!(20) && (furthest.y - fx!(2.8)).abs() < fx!(0.1),
+        "the upper floor: {furthest:?}"
+    );
+}
+
 #[test]
 fn slopes_up_to_the_limit_are_ground_and_steeper_ones_are_walls() {
     for degrees in [10, 30, 44, 45, 46, 60, 80] {

@@ -5,16 +5,22 @@ use lockstep2d::body::{Geometry, Polygon, ShapeId};
 use lockstep2d::collision::BroadPhaseKind;
 use lockstep2d::fx;
 use lockstep2d::math::{Aabb, Fx, Vec2};
-use lockstep2d::world::{Mover, MoverState, Probe, QueryFilter, World, clip_velocity, solve_planes};
+use lockstep2d::world::{
+    CastHit, InitialOverlap, Mover, MoverState, Probe, QueryFilter, World, clip_velocity, solve_planes,
+};
 
 use crate::generator::{self, Generator};
 use crate::shapes;
 use crate::source::Source;
 
+mod singles;
+
 /// Maximum cost of a run, as counted by [`generator::cost`].
 const COST_MAX: u64 = 60_000;
 /// Maximum difference in metres between two ways to compute a point.
 const TOLERANCE: Fx = fx!(0.005);
+/// Largest depth in metres at which a probe rests on a shape, and passes seams.
+const DEPTH_OF_REST: Fx = fx!(0.021);
 
 /// Runs queries in the scene that the bytes describe. Returns the number of results that were not empty.
 ///
@@ -72,7 +78,7 @@ fn ask(source: &mut Source<'_>, world: &World, sweep: &World) -> u64 {
     let mut answers = 0;
     for _ in 0..1 + source.below(4) {
         asked.filter = filter(source, world);
-        answers += u64::from(match source.below(10) {
+        answers += u64::from(match source.below(12) {
             0 | 1 => asked.rays(source),
             2 | 3 => asked.casts(source),
             4 => asked.points(source),
@@ -80,6 +86,8 @@ fn ask(source: &mut Source<'_>, world: &World, sweep: &World) -> u64 {
             6 => asked.probes(source),
             7 => asked.planes(source),
             8 => asked.walks(source),
+            9 => asked.turning_casts(source),
+            10 => asked.singles(source),
             _ => asked.closest(source),
         });
     }
@@ -93,6 +101,13 @@ fn filter(source: &mut Source<'_>, world: &World) -> QueryFilter {
         filter.mask = source.pick(&[u64::MAX, 1, 2, 0]);
         filter.except = world.bodies().nth(source.below(world.body_count())).map(|(id, _)| id);
     }
+    if source.one_in(4) {
+        let bodies = 1 + source.below(QueryFilter::EXCEPT_ALSO_MAX);
+        let bodies: Vec<_> = world.bodies().map(|(id, _)| id).take(bodies).collect();
+        filter = filter.except_all(&bodies).expect("few bodies");
+    }
+    filter.initial_overlap =
+        source.pick(&[InitialOverlap::Resist, InitialOverlap::Report, InitialOverlap::Ignore]);
     filter.sensors = source.one_in(2);
     filter
 }
@@ -111,7 +126,9 @@ impl Questions<'_> {
         self.world.shapes().filter_map(|(id, shape)| {
             let (filter, own) = (self.filter, shape.filter());
             let accepted = own.mask & filter.category != 0 && own.category & filter.mask != 0;
-            let wanted = (filter.sensors || !shape.is_sensor()) && filter.except != Some(shape.body());
+            let body = Some(shape.body());
+            let excepted = filter.except == body || filter.except_also.contains(&body);
+            let wanted = (filter.sensors || !shape.is_sensor()) && !excepted;
             (accepted && wanted && self.is_enabled(id)).then_some(id)
         })
     }
@@ -254,9 +271,11 @@ impl Questions<'_> {
             assert!(!self.ordinary || good, "{hit:?} is {away} m away from the shape");
         }
         if self.ordinary {
-            for (fraction, shape) in
-                self.samples(|step| origin + way.scale(step), |point, shape| self.distance(point, shape))
-            {
+            let away = |fraction, shape| self.distance(origin + way.scale(fraction), shape);
+            let ignored = |shape| {
+                self.filter.initial_overlap == InitialOverlap::Ignore && away(Fx::ZERO, shape) <= TOLERANCE
+            };
+            for (fraction, shape) in self.samples(away).filter(|(_, shape)| !ignored(*shape)) {
                 let hit = hits.iter().find(|hit| hit.shape == shape);
                 assert!(
                     hit.is_some_and(|hit| hit.fraction <= fraction),
@@ -281,24 +300,33 @@ impl Questions<'_> {
         if !self.ordinary {
             return hit.is_some();
         }
-        let at = |step| probe.position() + way.scale(step);
-        let distance = |point, shape| {
-            let there = self.world.probe_distance(&probe.at(point), shape);
+        let distance = |fraction, shape| {
+            let there = self.world.probe_distance(&probe.at(probe.position() + way.scale(fraction)), shape);
             there.expect("the shape exists").distance
         };
+        self.check_cast(hit, distance);
+        hit.is_some()
+    }
+
+    /// Checks that a cast stops where it touches, and that it has passed no shape. `distance` returns the distance of a
+    /// shape at a fraction of the cast.
+    fn check_cast(&self, hit: Option<CastHit>, distance: impl Fn(Fx, ShapeId) -> Fx) {
+        let touched_before = |shape| distance(Fx::ZERO, shape) <= TOLERANCE;
         if let Some(hit) = hit {
-            let away = distance(probe.position() + hit.travelled, hit.shape);
-            let touched_before = distance(probe.position(), hit.shape) <= TOLERANCE;
-            assert!(away.abs() <= TOLERANCE || touched_before, "{hit:?} stops {away} m before the shape");
+            let away = distance(hit.fraction, hit.shape);
+            let good = away.abs() <= TOLERANCE || touched_before(hit.shape);
+            assert!(good, "{hit:?} stops {away} m before the shape");
         }
-        let touched_before = |shape| distance(probe.position(), shape) <= TOLERANCE;
-        for (fraction, shape) in self.samples(at, distance).filter(|(_, shape)| !touched_before(*shape)) {
+        // What a probe rests on may hold it as deep in the next shapes: it passes seams.
+        let rests = self.seen().any(|shape| touched_before(shape));
+        let deeper = if rests { DEPTH_OF_REST } else { Fx::ZERO };
+        let inside = |fraction, shape| distance(fraction, shape).saturating_add(deeper);
+        for (fraction, shape) in self.samples(inside).filter(|(_, shape)| !touched_before(*shape)) {
             assert!(
                 hit.is_some_and(|hit| hit.fraction <= fraction),
                 "{shape} is reached at {fraction}, but the hit is {hit:?}"
             );
         }
-        hit.is_some()
     }
 
     /// Tests the planes found for a mover, and the plane solver with arbitrary push limits and separations.
@@ -342,14 +370,13 @@ impl Questions<'_> {
     /// they may be passable.
     fn samples<'a>(
         &'a self,
-        at: impl Fn(Fx) -> Vec2<Fx> + 'a,
-        distance: impl Fn(Vec2<Fx>, ShapeId) -> Fx + 'a,
+        distance: impl Fn(Fx, ShapeId) -> Fx + 'a,
     ) -> impl Iterator<Item = (Fx, ShapeId)> + 'a {
         let link = |id: ShapeId| {
             self.world.shape(id).is_some_and(|shape| matches!(shape.geometry(), Geometry::Link { .. }))
         };
         self.seen().filter(move |&shape| !link(shape)).flat_map(move |shape| {
-            let inside = |fraction: &Fx| distance(at(*fraction), shape) < -TOLERANCE;
+            let inside = |fraction: &Fx| distance(*fraction, shape) < -TOLERANCE;
             let steps = (0..=16).map(|step| lockstep2d::math::ratio(step, 16));
             steps.filter(inside).map(|fraction| (fraction, shape)).collect::<Vec<_>>()
         })

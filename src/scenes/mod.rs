@@ -10,6 +10,7 @@ mod machines;
 mod piles;
 mod ragdoll;
 mod rain;
+mod spring_leg;
 #[cfg(test)]
 mod tests;
 mod yards;
@@ -103,4 +104,5 @@ pub const ALL: &[Scene] = &[
     ragdoll::RAGDOLL,
     joints::BRIDGE,
     game::GAME,
+    spring_leg::SPRING_LEG,
 ];

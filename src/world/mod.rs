@@ -31,8 +31,8 @@ pub use config::Config;
 pub use edit::{BodyField, BodyPose, Command, Explosion, Outcome};
 pub use events::{ContactEvent, Events, HitEvent, JointEvent, MoveEvent, SensorEvent};
 pub use query::{
-    CastHit, ClosestPoints, Moved, Mover, MoverPlane, MoverState, Probe, QueryFilter, RayHit, clip_velocity,
-    solve_planes,
+    CastHit, ClosestPoints, Displacement, InitialOverlap, Moved, Mover, MoverPlane, MoverState, Probe,
+    ProbeHit, QueryFilter, RayHit, TimeOfImpact, clip_velocity, solve_planes,
 };
 pub use snapshot::{PhaseDigest, Section, Snapshot, SnapshotError, Violation, WorldDigest};
 pub use stats::{Phase, StepStats};

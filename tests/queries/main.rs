@@ -1,9 +1,13 @@
 //! Queries agree with a brute-force oracle, in the documented order and with every broad phase, in a world that changes
 //! randomly, both at the origin and far away.
 
+mod casts;
 mod churn;
 mod extremes;
 mod oracle;
+mod single;
+#[path = "../common/sweep.rs"]
+mod sweep;
 
 use churn::Churn;
 use lockstep2d::body::{Polygon, ShapeId};

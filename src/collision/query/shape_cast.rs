@@ -7,7 +7,7 @@
 //! the normal is a hit. A movement without a hit never comes deeper than where it began, since along the normal the
 //! separation of convex shapes does not shrink.
 
-use super::distance::distance;
+use super::distance::{Distance, distance};
 use super::ray::{approach, entry};
 use crate::body::POLYGON_VERTICES_MAX;
 use crate::collision::shape::support::{Fraction, Grid, SupportShape, cross, from_grid, to_grid};
@@ -18,7 +18,7 @@ use crate::math::{Fx, Unit, Vec2};
 pub(crate) const SKIN: Fx = fx!(0.0001);
 
 /// Distance beyond the skin within which a shape is still in contact: more than the rounding error of a hit, 0.2 µm.
-const TOLERANCE: Fx = fx!(0.000002);
+pub(crate) const TOLERANCE: Fx = fx!(0.000002);
 
 /// Right shift that gives the tolerance for sliding: an approach of 2^-24 m per metre of movement, plus 2^-24 m, counts
 /// as a rounding error.
@@ -39,20 +39,31 @@ pub(crate) struct ShapeHit {
     pub(crate) normal: Vec2<Unit>,
 }
 
+impl ShapeHit {
+    /// The hit of a cast that ends where it starts.
+    pub(crate) fn at_start(start: &Distance) -> Self {
+        let (fraction, order, travelled) = (Fx::ZERO, Fraction::ZERO, Vec2::ZERO);
+        ShapeHit { fraction, order, travelled, point: start.point_a, normal: start.normal }
+    }
+}
+
+/// Whether a translation goes against a normal by more than a rounding error.
+pub(crate) fn goes_against(normal: Vec2<Unit>, translation: Vec2<Fx>) -> bool {
+    let translation = to_grid(translation);
+    let reach = translation.x.abs().max(translation.y.abs());
+    let sliding = (reach >> SLIDING) + (Grid::ONE >> SLIDING);
+    approach(normal, translation) > sliding
+}
+
 /// Casts B along `translation` until it is within [`SKIN`] of A; `None` if it never is. If B starts within the skin or
 /// overlapping, the fraction is 0 if B moves against the normal, which is the shortest way out; otherwise there is no
 /// hit.
 pub(crate) fn cast_shape(a: &SupportShape, b: &SupportShape, translation: Vec2<Fx>) -> Option<ShapeHit> {
-    let translation = to_grid(translation);
     let start = distance(a, b);
     if start.distance <= SKIN + TOLERANCE {
-        let reach = translation.x.abs().max(translation.y.abs());
-        let sliding = (reach >> SLIDING) + (Grid::ONE >> SLIDING);
-        let touches = approach(start.normal, translation) > sliding;
-        let (point, normal) = (start.point_a, start.normal);
-        let (fraction, order, travelled) = (Fx::ZERO, Fraction::ZERO, Vec2::ZERO);
-        return touches.then_some(ShapeHit { fraction, order, travelled, point, normal });
+        return goes_against(start.normal, translation).then(|| ShapeHit::at_start(&start));
     }
+    let translation = to_grid(translation);
     let radius = a.radius + b.radius + to_grid(Vec2::new(SKIN, SKIN)).x;
     let (points, count) = difference(a.points(), b.points());
     let (fraction, _) = entry(&points[..count], radius, Vec2::ZERO, translation)?;

@@ -29,6 +29,9 @@ pub(crate) const TOLERANCE: Fx = fx!(0.00005);
 /// contact.
 const STEPS_MAX: u32 = 48;
 
+/// The same for queries, which are few.
+const QUERY_STEPS_MAX: u32 = 512;
+
 /// Largest rotation in radians of a shape that is not a disc about its body's centre, and largest reach in metres of a
 /// rotating shape. With these limits `theta^2 |r|` fits its type.
 const TURN_MAX: Fx = fx!(1024);
@@ -72,6 +75,17 @@ pub(crate) enum TimeOfImpact {
     Failed { fraction: Fx },
 }
 
+/// What a search does with shapes that start within the target.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum StartPolicy {
+    /// Continuous collision: they may go deeper, but not pass: see [`time_of_impact`].
+    Protect,
+    /// They may slide, roll and separate, but go no more than [`TOLERANCE`] deeper.
+    Resist,
+    /// They hit at once, or overlap.
+    Report,
+}
+
 /// Time at which the surfaces of two shapes first come within `target` metres; a negative target is a depth. The cores
 /// are posed as at the start, each relative to its own body's centre of mass. B is the shape to protect.
 ///
@@ -89,6 +103,16 @@ pub(crate) fn time_of_impact(
     sweep_b: &Sweep,
     target: Fx,
 ) -> TimeOfImpact {
+    first_impact((a, sweep_a), (b, sweep_b), target, StartPolicy::Protect)
+}
+
+/// [`time_of_impact`] with a choice of what to do with shapes that start in contact.
+pub(crate) fn first_impact(
+    (a, sweep_a): (&SupportShape, &Sweep),
+    (b, sweep_b): (&SupportShape, &Sweep),
+    target: Fx,
+    policy: StartPolicy,
+) -> TimeOfImpact {
     let between = sweep_b.start - sweep_a.start;
     let moved = (sweep_b.end - sweep_b.start).length().saturating_add((sweep_a.end - sweep_a.start).length());
     let reach_b = to_fx(b.reach());
@@ -102,14 +126,15 @@ pub(crate) fn time_of_impact(
     }
     let mover_a = SweptShape::new(core_a, reach_a, sweep_a, -between);
     match mover_a.zip(SweptShape::new(*b, reach_b, sweep_b, Vec2::ZERO)) {
-        Some((a, b)) => advance(&a, &b, target),
+        Some((a, b)) => advance(&a, &b, target, policy),
         None => TimeOfImpact::Failed { fraction: Fx::ZERO },
     }
 }
 
-fn advance(a: &SweptShape, b: &SweptShape, mut target: Fx) -> TimeOfImpact {
+fn advance(a: &SweptShape, b: &SweptShape, mut target: Fx, policy: StartPolicy) -> TimeOfImpact {
     let mut fraction = Fx::ZERO;
-    for step in 0..STEPS_MAX {
+    let steps_max = if policy == StartPolicy::Protect { STEPS_MAX } else { QUERY_STEPS_MAX };
+    for step in 0..steps_max {
         let (posed_a, posed_b) = (a.at(fraction), b.at(fraction));
         let Distance { distance, normal, .. } = distance(&posed_a.core, &posed_b.core);
         let close = target.saturating_add(TOLERANCE);
@@ -117,7 +142,13 @@ fn advance(a: &SweptShape, b: &SweptShape, mut target: Fx) -> TimeOfImpact {
             if step > 0 {
                 return TimeOfImpact::Hit { fraction };
             }
-            match target_of_contact(&a.core, &b.core, distance) {
+            let deeper = match policy {
+                StartPolicy::Protect => target_of_contact(&a.core, &b.core, distance),
+                StartPolicy::Resist => Some(distance.saturating_sub(TOLERANCE * 2)),
+                StartPolicy::Report if distance < Fx::ZERO => None,
+                StartPolicy::Report => return TimeOfImpact::Hit { fraction },
+            };
+            match deeper {
                 Some(deeper) => target = target.min(deeper),
                 None => return TimeOfImpact::Overlapped,
             }

@@ -87,6 +87,11 @@ impl SupportShape {
         self.mapped(|point| point + by)
     }
 
+    /// Returns the core translated by a vector in metres.
+    pub(crate) fn translated(&self, by: Vec2<Fx>) -> Self {
+        self.moved(to_grid(by))
+    }
+
     /// Returns the core rotated about its origin.
     pub(crate) fn rotated(&self, rotation: Rot) -> Self {
         self.mapped(|point| from_raw(rotation.apply_wide(raw(point))))
@@ -104,6 +109,11 @@ impl SupportShape {
         // The longest vector also has the largest rounded length, so one square root is enough.
         let furthest = self.points().iter().max_by_key(|&&point| dot(point, point));
         furthest.map_or(Grid::ZERO, |&point| length(point))
+    }
+
+    /// Largest distance of a point of the shape from the origin, in metres.
+    pub(crate) fn reach_with_radius(&self) -> Fx {
+        to_fx(self.reach().saturating_add(self.radius))
     }
 
     /// Mean of the vertices, a point inside the hull.

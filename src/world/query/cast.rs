@@ -2,9 +2,10 @@
 
 use alloc::vec::Vec;
 
-use super::{Probe, QueryFilter, SLACK};
+use super::seam::{Rest, Resting};
+use super::{InitialOverlap, Probe, QueryFilter, SLACK};
 use crate::body::ShapeId;
-use crate::collision::{Fraction, ShapeHit, SupportShape, cast_ray, cast_shape};
+use crate::collision::{Fraction, ShapeHit, SupportShape, cast_ray, cast_shape, distance};
 use crate::fx;
 use crate::math::{Aabb, Fx, Unit, Vec2, saturate};
 use crate::world::World;
@@ -20,6 +21,8 @@ pub struct RayHit {
     pub point: Vec2<Fx>,
     /// Outward normal of the surface. Zero if the ray starts inside the shape.
     pub normal: Vec2<Unit>,
+    /// Whether the ray starts inside the shape.
+    pub starts_inside: bool,
 }
 
 /// Hit of a moving shape on another shape.
@@ -35,6 +38,8 @@ pub struct CastHit {
     pub point: Vec2<Fx>,
     /// Outward normal of that surface.
     pub normal: Vec2<Unit>,
+    /// Whether the probe overlaps the shape at the start.
+    pub starts_inside: bool,
 }
 
 impl World {
@@ -91,13 +96,15 @@ impl World {
     }
 
     /// Returns the first shape that a probe meets as it moves along a translation in metres without rotation. The probe
-    /// stops 0.1 mm before it touches. A shape that it touches at the start stops it only if it moves into that shape.
+    /// stops 0.1 mm before it touches. A shape that it touches at the start stops it only if it moves into that shape,
+    /// and so it slides along floors of chains and flush tiles. [`QueryFilter::initial_overlap`] has other choices for
+    /// shapes that it overlaps at the start. [`World::cast_turning`] also turns the probe.
     /// A chain link that is solid from one side is met only by probes whose middle is on that side.
     #[must_use]
     #[doc(alias = "shapecast")]
     #[doc(alias = "sweep test")]
     pub fn cast_shape(&self, probe: &Probe, translation: Vec2<Fx>, filter: QueryFilter) -> Option<CastHit> {
-        self.first_along(probe, translation, filter, |_, _, _| true)
+        self.first_along(probe, translation, filter, Rest::CAST, |_, _, _| true)
     }
 
     /// Returns the first shape that a probe meets among those for which `accept` holds. `accept` gets the shape, the
@@ -108,6 +115,7 @@ impl World {
         probe: &Probe,
         translation: Vec2<Fx>,
         filter: QueryFilter,
+        rest: Rest,
         accept: impl Fn(ShapeId, Vec2<Unit>, [&SupportShape; 2]) -> bool,
     ) -> Option<CastHit> {
         let posed = probe.posed();
@@ -115,6 +123,7 @@ impl World {
         let moving = SupportShape::of(&posed, origin);
         let middle = origin + moving.middle();
         let area = posed.bounds.expanded(fx!(0.001));
+        let resting = self.resting(probe, translation, filter, rest, &accept);
         let mut closest: Option<Ordered<CastHit>> = None;
         let mut interest = Unit::ONE;
         self.scratch.shapes.broad_phase().each_along(area, translation, |slot| {
@@ -123,10 +132,12 @@ impl World {
                 return interest;
             };
             let other = SupportShape::of(posed, origin);
-            let found = cast_shape(&other, &moving, translation)
+            let found = first_touch([&other, &moving], resting.as_ref(), translation, filter.initial_overlap)
                 .filter(|hit| accept(shape, hit.normal, [&other, &moving]));
             if let Some(ShapeHit { fraction, order, travelled, point, normal }) = found {
-                let hit = CastHit { shape, fraction, travelled, point: origin + point, normal };
+                let starts_inside = fraction == Fx::ZERO && distance(&other, &moving).distance < Fx::ZERO;
+                let point = origin + point;
+                let hit = CastHit { shape, fraction, travelled, point, normal, starts_inside };
                 let best = earlier(closest, Ordered { order, hit }, shape, |best| best.shape);
                 closest = Some(best);
                 interest = rounded_up(best.hit.fraction);
@@ -153,12 +164,36 @@ impl World {
                 let core = SupportShape::of(posed, origin);
                 if let Some(hit) = cast_ray(&core, Vec2::ZERO, translation) {
                     let (fraction, point, normal) = (hit.fraction, origin + hit.point, hit.normal);
-                    let (order, hit) = (hit.order, RayHit { shape, fraction, point, normal });
+                    let starts_inside = normal == Vec2::ZERO;
+                    if starts_inside && filter.initial_overlap == InitialOverlap::Ignore {
+                        return interest;
+                    }
+                    let (order, hit) = (hit.order, RayHit { shape, fraction, point, normal, starts_inside });
                     interest = visit(Ordered { order, hit });
                 }
             }
             interest
         });
+    }
+}
+
+/// The first touch of a moving shape B with a shape A that is not a seam of what B rests on.
+fn first_touch(
+    [a, b]: [&SupportShape; 2],
+    resting: Option<&Resting>,
+    translation: Vec2<Fx>,
+    overlap: InitialOverlap,
+) -> Option<ShapeHit> {
+    if overlap != InitialOverlap::Resist {
+        let start = distance(a, b);
+        if start.distance < Fx::ZERO {
+            return (overlap == InitialOverlap::Report).then(|| ShapeHit::at_start(&start));
+        }
+    }
+    let hit = cast_shape(a, b, translation)?;
+    match resting {
+        Some(resting) => resting.confirm(a, hit),
+        None => Some(hit),
     }
 }
 

@@ -10,12 +10,17 @@ mod character;
 mod mover_planes;
 mod overlap;
 mod probe;
+mod seam;
+mod single;
+mod turning;
+mod walk;
 
 pub use cast::{CastHit, RayHit};
 pub use character::{Moved, Mover, MoverState};
 pub use mover_planes::{MoverPlane, clip_velocity, solve_planes};
 pub use overlap::ClosestPoints;
 pub use probe::Probe;
+pub use single::{Displacement, ProbeHit, TimeOfImpact};
 
 use super::World;
 use crate::body::{BodyId, Handle, ShapeId};
@@ -42,16 +47,66 @@ pub struct QueryFilter {
     pub sensors: bool,
     /// A body that the query does not see, usually the one for which the query is made.
     pub except: Option<BodyId>,
+    /// Further bodies that the query does not see, such as those of a vehicle.
+    pub except_also: [Option<BodyId>; Self::EXCEPT_ALSO_MAX],
+    /// What a ray or a cast does with shapes that it starts inside of.
+    pub initial_overlap: InitialOverlap,
+}
+
+/// What a ray or a cast does with shapes that it starts inside of. Its hits tell whether it does.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum InitialOverlap {
+    /// A ray reports them, at fraction 0. A cast reports those into which it would go deeper, so that a shape that
+    /// overlaps others a little can leave them.
+    #[default]
+    Resist,
+    /// Rays and casts report them, at fraction 0.
+    Report,
+    /// Rays and casts do not see them. That is also the floor into which a resting body has sunk by a millimetre.
+    Ignore,
 }
 
 impl Default for QueryFilter {
     /// Sees everything except sensors.
     fn default() -> Self {
-        QueryFilter { category: u64::MAX, mask: u64::MAX, sensors: false, except: None }
+        QueryFilter {
+            category: u64::MAX,
+            mask: u64::MAX,
+            sensors: false,
+            except: None,
+            except_also: [None; Self::EXCEPT_ALSO_MAX],
+            initial_overlap: InitialOverlap::Resist,
+        }
     }
 }
 
 impl QueryFilter {
+    /// Largest number of bodies in [`QueryFilter::except_also`].
+    pub const EXCEPT_ALSO_MAX: usize = 8;
+
+    /// Leaves out all bodies of a list, instead of those of [`QueryFilter::except_also`] so far. `None` if there are
+    /// more than [`QueryFilter::EXCEPT_ALSO_MAX`]: a ragdoll of many bodies is left out by its category.
+    #[must_use]
+    pub fn except_all(mut self, bodies: &[BodyId]) -> Option<Self> {
+        self.except_also = [None; Self::EXCEPT_ALSO_MAX];
+        for (i, &body) in bodies.iter().enumerate() {
+            *self.except_also.get_mut(i)? = Some(body);
+        }
+        Some(self)
+    }
+
+    /// Sets what a ray or a cast does with shapes that it starts inside of.
+    #[must_use]
+    pub const fn initial_overlap(mut self, overlap: InitialOverlap) -> Self {
+        self.initial_overlap = overlap;
+        self
+    }
+
+    /// Whether the query leaves out a body.
+    fn leaves_out(&self, body: BodyId) -> bool {
+        self.except == Some(body) || self.except_also.contains(&Some(body))
+    }
+
     /// Leaves out a body.
     #[must_use]
     pub const fn except(mut self, body: BodyId) -> Self {
@@ -71,7 +126,7 @@ impl World {
         let shape = self.state.shapes.at(slot);
         let accepted =
             shape.filter().mask & filter.category != 0 && shape.filter().category & filter.mask != 0;
-        let wanted = (filter.sensors || !shape.is_sensor()) && filter.except != Some(shape.body());
+        let wanted = (filter.sensors || !shape.is_sensor()) && !filter.leaves_out(shape.body());
         (accepted && wanted).then(|| self.state.shapes.handle_at(slot))
     }
 }

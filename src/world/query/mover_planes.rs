@@ -16,10 +16,10 @@ use serde::{Deserialize, Serialize};
 
 use super::overlap::{ClosestPoints, proximity};
 use super::{Probe, QueryFilter};
-use crate::body::ShapeId;
+use crate::body::{BodyId, Handle, ShapeId};
 use crate::collision::SupportShape;
 use crate::fx;
-use crate::math::{Fx, Unit, Vec2, fx_div};
+use crate::math::{Angle, Fx, Unit, Vec2, fx_div};
 use crate::world::World;
 
 /// Largest number of rounds in which planes push in turn.
@@ -37,6 +37,16 @@ const PARALLEL: Fx = fx!(0.000001);
 pub struct MoverPlane {
     /// The shape that the surface belongs to.
     pub shape: ShapeId,
+    /// The body of that shape.
+    pub body: BodyId,
+    /// Position of the body's origin at the time of the query, in the world, in metres. Together with `body_angle` it
+    /// tells how far the body has carried the surface since.
+    pub body_position: Vec2<Fx>,
+    /// Rotation of the body at the time of the query.
+    pub body_angle: Angle,
+    /// Velocity of the surface at `point` in m/s: that of the body there, and the surface speed of the shape. A body
+    /// that was moved by [`World::move_to`] has no velocity after the tick.
+    pub velocity: Vec2<Fx>,
     /// Outward normal, towards the mover.
     pub normal: Vec2<Unit>,
     /// Distance of the mover from the surface in metres, negative if they overlap.
@@ -83,14 +93,42 @@ impl World {
             let ClosestPoints { distance, normal, point_a, .. } =
                 proximity(&SupportShape::of(other, origin), &core, origin);
             if distance <= within && other.is_solid_from(middle) {
-                let (separation, point) = (distance, point_a);
-                let (push_limit, push) = (Fx::MAX, Fx::ZERO);
-                planes.push(MoverPlane { shape, normal, separation, point, push_limit, push });
+                planes.push(self.mover_plane(shape, normal, distance, point_a));
             }
         });
         planes.sort_unstable_by_key(|plane| plane.shape);
         planes
     }
+
+    /// A rigid plane on the surface of a shape of the world.
+    pub(super) fn mover_plane(
+        &self,
+        shape: ShapeId,
+        normal: Vec2<Unit>,
+        separation: Fx,
+        point: Vec2<Fx>,
+    ) -> MoverPlane {
+        let body = self.state.body_of(shape.slot());
+        let belt = self.state.shapes.at(shape.slot()).material().surface_speed;
+        let velocity = body.velocity_at(point) + along_surface(normal, belt);
+        MoverPlane {
+            shape,
+            body: self.state.shapes.at(shape.slot()).body(),
+            body_position: body.position(),
+            body_angle: body.angle(),
+            velocity,
+            normal,
+            separation,
+            point,
+            push_limit: Fx::MAX,
+            push: Fx::ZERO,
+        }
+    }
+}
+
+/// A length or speed along a surface, clockwise about its shape: to the right on ground.
+pub(super) fn along_surface(normal: Vec2<Unit>, length: Fx) -> Vec2<Fx> {
+    Vec2::new(normal.y, -normal.x).widen().scale(length)
 }
 
 /// Returns the translation in metres that is nearest to a wanted one and stays outside of all planes. Sets each plane's
@@ -207,12 +245,21 @@ pub(super) fn clipped(v: Vec2<Fx>, normals: impl Iterator<Item = Vec2<Unit>> + C
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::body::Handle;
-    use crate::math::{Angle, Rng, Rot};
+    use crate::math::{Rng, Rot};
 
     fn plane(normal: Vec2<Unit>, separation: Fx) -> MoverPlane {
-        let (shape, point) = (ShapeId::from_parts(0, 0), Vec2::ZERO);
-        MoverPlane { shape, normal, separation, point, push_limit: Fx::MAX, push: Fx::ZERO }
+        MoverPlane {
+            shape: ShapeId::from_parts(0, 0),
+            body: BodyId::from_parts(0, 0),
+            body_position: Vec2::ZERO,
+            body_angle: Angle::ZERO,
+            velocity: Vec2::ZERO,
+            normal,
+            separation,
+            point: Vec2::ZERO,
+            push_limit: Fx::MAX,
+            push: Fx::ZERO,
+        }
     }
 
     /// Oracle: the nearest point outside of all planes is the target, its projection on one plane, or the intersection

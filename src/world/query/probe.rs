@@ -35,6 +35,11 @@ impl Probe {
         Probe { position, geometry, rotation: Rot::IDENTITY }
     }
 
+    /// A probe at the pose of a shape of the world.
+    pub(super) const fn posed_at(geometry: Geometry, position: Vec2<Fx>, rotation: Rot) -> Self {
+        Probe { position, geometry, rotation }
+    }
+
     /// Sets the rotation.
     #[must_use]
     pub fn turned(mut self, angle: Angle) -> Self {

@@ -1,0 +1,110 @@
+//! Casts along a floor of many shapes do not stop at the seams.
+//!
+//! A body at rest lies a little lower than the surface, so that a cast along the floor would meet the side of the next
+//! tile, or the end of the next link of a chain. A cast that starts in contact is therefore confirmed by a second one
+//! from where the shape just rests on what it touches: an obstacle that this one does not meet is a seam.
+//!
+//! Only contacts that the cast leaves or slides along lift the shape. One that it goes against stops it.
+
+use smallvec::SmallVec;
+
+use super::mover_planes::{MoverPlane, solve_planes};
+use super::{Probe, QueryFilter};
+use crate::body::ShapeId;
+use crate::collision::{SKIN, SKIN_TOLERANCE, ShapeHit, SupportShape, cast_shape, distance, goes_against};
+use crate::fx;
+use crate::math::{Fx, Unit, Vec2};
+use crate::world::World;
+
+/// How a shape rests on what it touches.
+#[derive(Clone, Copy)]
+pub(super) struct Rest {
+    /// Distance in metres at which it is cast again. Ledges up to the difference to the gap of the cast, 5 µm, count as
+    /// seams: tiles of a ramp are flush to within a micrometre.
+    gap: Fx,
+    /// Largest distance in metres by which the cast may approach what it slides along, besides.
+    grazing_max: Fx,
+}
+
+impl Rest {
+    pub(super) const CAST: Rest = Rest { gap: fx!(0.000105), grazing_max: fx!(0.00005) };
+
+    /// For casts that turn, whose gap is up to 0.15 mm.
+    pub(super) const TURNING: Rest = Rest { gap: fx!(0.000155), grazing_max: fx!(0.00005) };
+
+    /// For characters, which would come closer to a surface with each move.
+    pub(super) const CHARACTER: Rest = Rest { gap: fx!(0.000105), grazing_max: Fx::ZERO };
+
+    /// Distance in metres by which a cast along a translation may approach what it slides along: 1 µm per metre,
+    /// because directions and the sides of tiles that are turned are parallel to within 0.5 µm per metre.
+    fn grazing(self, translation: Vec2<Fx>) -> Fx {
+        (translation.length() >> 20_u32).min(self.grazing_max)
+    }
+}
+
+/// Depth in metres up to which an overlap counts as a contact.
+const DEPTH_MAX: Fx = fx!(0.02);
+
+/// A cast from where the shape just rests on what it touches.
+pub(super) struct Resting {
+    /// The shape, relative to the position of the probe.
+    shape: SupportShape,
+    /// Displacement in metres to where it rests.
+    pub(super) lift: Vec2<Fx>,
+    pub(super) translation: Vec2<Fx>,
+}
+
+impl Resting {
+    /// Confirms a hit on a shape; `None` if that is a seam. The normal is that of the surface which is met, not of a
+    /// corner below it.
+    pub(super) fn confirm(&self, other: &SupportShape, hit: ShapeHit) -> Option<ShapeHit> {
+        let confirmed = cast_shape(other, &self.shape, self.translation)?;
+        Some(ShapeHit { normal: confirmed.normal, point: confirmed.point, ..hit })
+    }
+}
+
+impl World {
+    /// The cast of a probe along a translation, from where it rests on what it touches. `None` if it touches nothing.
+    pub(super) fn resting(
+        &self,
+        probe: &Probe,
+        translation: Vec2<Fx>,
+        filter: QueryFilter,
+        rest: Rest,
+        accept: impl Fn(ShapeId, Vec2<Unit>, [&SupportShape; 2]) -> bool,
+    ) -> Option<Resting> {
+        let posed = probe.posed();
+        let origin = probe.position();
+        let moving = SupportShape::of(&posed, origin);
+        let middle = origin + moving.middle();
+        let grazing = rest.grazing(translation);
+        let mut planes: SmallVec<[MoverPlane; 8]> = SmallVec::new();
+        self.each_overlapping(posed.bounds.expanded(SKIN + SKIN), filter, |shape, other| {
+            if !other.is_solid_from(middle) {
+                return;
+            }
+            let other = SupportShape::of(other, origin);
+            let start = distance(&other, &moving);
+            let touches = (-DEPTH_MAX..=SKIN + SKIN_TOLERANCE).contains(&start.distance);
+            if touches
+                && (!goes_against(start.normal, translation)
+                    || start.normal.widen().dot(translation) >= -grazing)
+                && accept(shape, start.normal, [&other, &moving])
+            {
+                let separation = start.distance - rest.gap - grazing;
+                planes.push(self.mover_plane(shape, start.normal, separation, origin));
+            }
+        });
+        // The broad phase finds them in no defined order.
+        planes.sort_unstable_by_key(|plane| plane.shape);
+        let out = solve_planes(Vec2::ZERO, &mut planes);
+        // Where the shape rests it may be further from what it meets.
+        let forwards = translation.normalized().unwrap_or(Vec2::ZERO).widen();
+        let beyond = forwards.scale(out.length() * 2);
+        (!planes.is_empty()).then(|| Resting {
+            shape: moving.translated(out),
+            lift: out,
+            translation: translation + beyond,
+        })
+    }
+}

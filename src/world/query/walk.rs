@@ -1,0 +1,390 @@
+//! A character's move in a tick: carried by its ground, pushed out of what has moved over it, walked or thrown along
+//! its velocity, and put down on the ground.
+
+use alloc::vec::Vec;
+
+use super::character::{Mover, MoverState, SLOPE_ROUNDING, in_tick};
+use super::mover_planes::{MoverPlane, along_surface, clipped, solve_planes};
+use super::seam::Rest;
+use super::{InitialOverlap, Probe, QueryFilter};
+use crate::body::{BodyId, BodyKind, Geometry, Handle, ShapeId, Sides};
+use crate::collision::{SKIN, SupportShape, distance};
+use crate::fx;
+use crate::math::{Fx, Rot, Unit, Vec2};
+use crate::world::World;
+
+/// Largest number of deflections in a tick, and of attempts to push a character out of overlaps.
+const TURNS_MAX: u32 = 8;
+
+/// Translations shorter than this, in metres, are dropped.
+const LEFT_OVER: Fx = fx!(0.000001);
+
+/// Distance in metres behind the edge of a step at which there has to be ground.
+const STEP_DEPTH: Fx = fx!(0.02);
+
+/// Largest distance in metres from a surface on which a character stands: the gap of casts and its rounding.
+const STANDING: Fx = fx!(0.000105);
+
+/// Kind of a surface for a character.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Surface {
+    Ground,
+    /// The edge of a step, which the character slides up.
+    Step,
+    /// A slope that is too steep to stand on.
+    Steep,
+    /// A wall or a ceiling.
+    Wall,
+}
+
+/// What a cast of the character does with shapes that overlap it.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Overlaps {
+    /// They stop a cast that goes deeper.
+    Stop,
+    /// All but those of fixed bodies let it pass: they have moved over the character in this tick, as the other
+    /// platforms of a train do, and it is pushed out of them after it has been carried.
+    Pass,
+}
+
+/// A body that has carried the character, and its velocity under the feet in m/s.
+#[derive(Clone, Copy)]
+pub(super) struct Carrier {
+    body: BodyId,
+    velocity: Vec2<Fx>,
+}
+
+/// A move in progress.
+pub(super) struct Walk<'a> {
+    world: &'a World,
+    mover: &'a Mover,
+    filter: QueryFilter,
+    /// The state at the start of the move.
+    from: MoverState,
+    probe: Probe,
+    on_ground: bool,
+    /// Normal of the ground that the character walks along.
+    along: Option<Vec2<Unit>>,
+    /// Height in metres that it has gained by walking along ground.
+    climbed: Fx,
+    /// Upward speed in m/s at which ground has pushed it.
+    lifted: Fx,
+    surfaces: Vec<(Surface, MoverPlane)>,
+}
+
+impl<'a> Walk<'a> {
+    pub(super) fn new(world: &'a World, mover: &'a Mover, from: &MoverState, filter: QueryFilter) -> Self {
+        Walk {
+            world,
+            mover,
+            filter: filter.initial_overlap(InitialOverlap::Resist),
+            from: *from,
+            probe: mover.probe(from.position),
+            on_ground: from.is_on_ground(),
+            along: None,
+            climbed: Fx::ZERO,
+            lifted: Fx::ZERO,
+            surfaces: Vec::new(),
+        }
+    }
+
+    pub(super) fn position(&self) -> Vec2<Fx> {
+        self.probe.position()
+    }
+
+    pub(super) fn met(self) -> Vec<MoverPlane> {
+        self.surfaces.into_iter().map(|(_, plane)| plane).collect()
+    }
+
+    /// Moves the character by the displacement of the point under its feet since its last move, as far as nothing but
+    /// the body of the ground is in the way.
+    pub(super) fn carry(&mut self, ground: &MoverPlane) -> Option<Carrier> {
+        let body = self.world.body(ground.body).filter(|body| body.is_enabled())?;
+        let turned = body.angle() - ground.body_angle;
+        let arm = ground.point - ground.body_position;
+        let arm_now = Rot::from_angle(turned).apply_wide(arm);
+        let by = if turned.to_bits() == 0 {
+            body.position() - ground.body_position
+        } else {
+            body.position() + arm_now - ground.point
+        };
+        if by == Vec2::ZERO {
+            return Some(Carrier { body: ground.body, velocity: body.velocity_at(ground.point) });
+        }
+        let hit = self.cast_among(by, Overlaps::Pass, Some(ground.body));
+        self.advance(hit.map_or(by, |(travelled, _)| travelled));
+        let rate = i64::from(self.world.state.config.tick_rate);
+        let velocity = Vec2::new(by.x.saturating_mul_int(rate), by.y.saturating_mul_int(rate));
+        Some(Carrier { body: ground.body, velocity })
+    }
+
+    /// Moves the character out of shapes that overlap it, as far as nothing is in the way.
+    pub(super) fn push_out(&mut self) {
+        let rate = i64::from(self.world.state.config.tick_rate);
+        for _ in 0..TURNS_MAX {
+            let mut planes = self.world.collide_mover(&self.probe, Fx::ZERO, self.filter);
+            planes
+                .retain(|plane| plane.separation < Fx::ZERO && !self.passes(plane.shape, plane.normal, true));
+            if planes.is_empty() {
+                return;
+            }
+            for plane in &mut planes {
+                if self.mover.is_ground(plane.normal) {
+                    self.on_ground = true;
+                    let speed = plane.separation.saturating_mul_int(-rate);
+                    self.lifted = self.lifted.max(plane.normal.widen().scale(speed).y);
+                }
+                plane.separation = plane.separation.saturating_sub(SKIN);
+            }
+            let out = solve_planes(Vec2::ZERO, &mut planes);
+            let travelled = self.cast(out).map_or(out, |(travelled, _)| travelled);
+            if travelled.length() < LEFT_OVER {
+                return;
+            }
+            self.advance(travelled);
+        }
+    }
+
+    /// Moves the character at its own velocity, and that of a belt: along the ground that it walks on, or freely.
+    pub(super) fn walk(&mut self) {
+        let translation = in_tick(self.world, self.from.velocity);
+        let Some(ground) = self.from.ground else { return self.slide(translation) };
+        let belt = Vec2::new(self.belt(&ground), Fx::ZERO);
+        let belt = in_tick(self.world, belt).x;
+        if self.rises() || !self.mover.is_ground(ground.normal) {
+            return self.slide(translation + along_surface(ground.normal, belt));
+        }
+        let start = self.position().y;
+        self.along = Some(ground.normal);
+        self.slide(along_surface(ground.normal, translation.x.saturating_add(belt)));
+        self.climbed = (self.position().y - start).max(Fx::ZERO);
+    }
+
+    /// Finds the ground below a character that was on ground or has met it, and moves down to it. A character that has
+    /// walked off the ground falls.
+    pub(super) fn ground(&mut self, carrier: Option<Carrier>) -> Option<MoverPlane> {
+        let walked = self.along.is_some();
+        let found = self.find_ground().filter(|plane| !self.leaves(plane));
+        if found.is_none() && walked {
+            self.along = None;
+            self.slide(Vec2::new(Fx::ZERO, in_tick(self.world, self.from.velocity).y));
+        }
+        found.map(|mut plane| {
+            if let Some(carrier) = carrier.filter(|carrier| carrier.body == plane.body) {
+                plane.velocity = carrier.velocity + along_surface(plane.normal, self.belt(&plane));
+            }
+            plane
+        })
+    }
+
+    /// The velocity that the surfaces leave over: relative to the ground if there is one.
+    pub(super) fn velocity_left(&self, ground: Option<&MoverPlane>, carrier: Option<Carrier>) -> Vec2<Fx> {
+        let left = clipped(self.stopped_by_steep(self.from.velocity), self.limits(false));
+        match (&self.from.ground, ground) {
+            (Some(_), Some(_)) => Vec2::new(left.x, left.y.max(Fx::ZERO)),
+            (None, Some(new)) => Vec2::new(taken_along(left.x, new.velocity.x), Fx::ZERO),
+            (Some(old), None) => {
+                let belt = along_surface(old.normal, self.belt(old));
+                left + carrier.map_or(old.velocity, |carrier| carrier.velocity + belt)
+            }
+            (None, None) => left,
+        }
+    }
+
+    /// Whether the character jumps off its ground, or flies upwards.
+    fn rises(&self) -> bool {
+        self.from.velocity.y > Fx::ZERO
+    }
+
+    /// Whether the character moves away from a surface.
+    fn leaves(&self, plane: &MoverPlane) -> bool {
+        let ground = if self.from.is_on_ground() { Fx::ZERO } else { plane.velocity.y.max(self.lifted) };
+        self.from.velocity.y > ground
+    }
+
+    /// Surface speed of the shape of a plane in m/s; 0 if it was removed.
+    fn belt(&self, plane: &MoverPlane) -> Fx {
+        self.world.shape(plane.shape).map_or(Fx::ZERO, |shape| shape.material().surface_speed)
+    }
+
+    /// Moves along a translation, deflected by the surfaces that are met.
+    fn slide(&mut self, translation: Vec2<Fx>) {
+        let mut left = translation;
+        for _ in 0..TURNS_MAX {
+            if left.length() < LEFT_OVER {
+                return;
+            }
+            let Some((travelled, plane)) = self.cast(left) else { return self.advance(left) };
+            self.advance(travelled);
+            left -= travelled;
+            let surface = self.surface(&plane);
+            self.surfaces.push((surface, plane));
+            let n = plane.normal;
+            match surface {
+                Surface::Ground | Surface::Step => {
+                    self.on_ground = true;
+                    if !self.rises() {
+                        // Walking along ground keeps the length of the way, whatever the slope.
+                        let length =
+                            self.along.map_or(left.x, |normal| along_surface(normal, Fx::ONE).dot(left));
+                        left = along_surface(n, length);
+                        self.along = Some(n);
+                    }
+                }
+                // What is left of a walk at a wall is not turned upwards.
+                Surface::Steep | Surface::Wall if self.on_ground && !self.rises() => {
+                    if (n.x < 0) == (left.x > 0) && n.x != 0 {
+                        left = Vec2::new(Fx::ZERO, left.y.min(Fx::ZERO));
+                    }
+                }
+                Surface::Steep | Surface::Wall => {}
+            }
+            left = clipped(self.stopped_by_steep(left), self.limits(true));
+        }
+    }
+
+    /// Removes the horizontal component of a vector that points into a slope that is too steep, so that it is not
+    /// deflected upwards.
+    fn stopped_by_steep(&self, v: Vec2<Fx>) -> Vec2<Fx> {
+        let against = |(surface, plane): &(Surface, MoverPlane)| {
+            *surface == Surface::Steep && (plane.normal.x < 0) != (v.x < 0) && plane.normal.x != 0
+        };
+        if self.surfaces.iter().any(against) { Vec2::new(Fx::ZERO, v.y) } else { v }
+    }
+
+    /// The normals that limit a translation, with ground, or a velocity, without ground. While the character walks only
+    /// the ground that it walks along counts.
+    fn limits(&self, ground_too: bool) -> impl Iterator<Item = Vec2<Unit>> + Clone {
+        let all_ground = ground_too && self.along.is_none();
+        let walls = self.surfaces.iter().flat_map(move |(surface, plane)| {
+            let wall = if plane.normal.x < 0 { -Vec2::X } else { Vec2::X };
+            let (own, upright) = match surface {
+                Surface::Ground | Surface::Step => (all_ground.then_some(plane.normal), None),
+                Surface::Steep => (Some(plane.normal), Some(wall)),
+                Surface::Wall => (Some(plane.normal), None),
+            };
+            own.into_iter().chain(upright)
+        });
+        walls.chain(self.along.filter(|_| ground_too))
+    }
+
+    /// The ground that the character stands on, or that is within reach below it.
+    fn find_ground(&mut self) -> Option<MoverPlane> {
+        if !self.on_ground || self.from.is_on_ground() && self.rises() {
+            return None;
+        }
+        if let Some((Surface::Step, plane)) = self.surfaces.last() {
+            return Some(*plane);
+        }
+        self.standing().or_else(|| self.snap())
+    }
+
+    /// The most level ground that the character touches.
+    fn standing(&self) -> Option<MoverPlane> {
+        let mut planes = self.world.collide_mover(&self.probe, STANDING, self.filter);
+        planes.retain(|plane| !self.passes(plane.shape, plane.normal, plane.separation < Fx::ZERO));
+        let of_kind = |kind| planes.iter().filter(move |plane| self.surface(plane) == kind);
+        let most_level = of_kind(Surface::Ground).max_by_key(|plane| plane.normal.y);
+        most_level.or_else(|| of_kind(Surface::Step).next()).copied()
+    }
+
+    /// Moves down to ground within the snap distance, along whatever is in the way. Ground that has risen under the
+    /// walk may fall again by as much. Without ground the character stays where it is.
+    fn snap(&mut self) -> Option<MoverPlane> {
+        let start = self.probe;
+        let reach = self.mover.snap_max().saturating_add(self.climbed).max(SKIN + SKIN);
+        let mut left = Vec2::new(Fx::ZERO, -reach);
+        let mut normals: Vec<Vec2<Unit>> = Vec::new();
+        for _ in 0..TURNS_MAX {
+            let Some((travelled, plane)) = self.cast(left) else { break };
+            self.advance(travelled);
+            if matches!(self.surface(&plane), Surface::Ground | Surface::Step) {
+                return Some(plane);
+            }
+            normals.push(plane.normal);
+            left = clipped(left - travelled, normals.iter().copied());
+            if left.length() < LEFT_OVER {
+                break;
+            }
+        }
+        self.probe = start;
+        None
+    }
+
+    fn surface(&self, plane: &MoverPlane) -> Surface {
+        if self.mover.is_ground(plane.normal) {
+            Surface::Ground
+        } else if self.on_ground && self.is_step(plane) {
+            Surface::Step
+        } else if plane.normal.y > 0 {
+            Surface::Steep
+        } else {
+            Surface::Wall
+        }
+    }
+
+    /// Whether there is ground just behind a surface, above the feet by at most the step height.
+    fn is_step(&self, plane: &MoverPlane) -> bool {
+        let Vec2 { x, y } = plane.normal;
+        // A ceiling is no step, but the normal of a wall may be rounded downwards.
+        if y < -SLOPE_ROUNDING || x == 0 || self.mover.step_max() == Fx::ZERO {
+            return false;
+        }
+        let feet = self.probe.posed().bounds.lower.y;
+        let onwards = if x < 0 { STEP_DEPTH } else { -STEP_DEPTH };
+        let top = feet.saturating_add(self.mover.step_max());
+        let above = Vec2::new(plane.point.x.saturating_add(onwards), top);
+        let here = Vec2::new(self.position().x, top);
+        if self.world.cast_ray_any(here, above - here, self.filter) {
+            return false;
+        }
+        let down = Vec2::new(Fx::ZERO, SKIN + SKIN - self.mover.step_max());
+        let found = self.world.cast_ray(above, down, self.filter);
+        found.is_some_and(|hit| self.mover.is_ground(hit.normal))
+    }
+
+    /// Casts the character along a translation. Returns the displacement up to the first hit, and the surface there.
+    fn cast(&self, translation: Vec2<Fx>) -> Option<(Vec2<Fx>, MoverPlane)> {
+        self.cast_among(translation, Overlaps::Stop, None)
+    }
+
+    fn cast_among(
+        &self,
+        translation: Vec2<Fx>,
+        overlaps: Overlaps,
+        without: Option<BodyId>,
+    ) -> Option<(Vec2<Fx>, MoverPlane)> {
+        let stops = |shape: ShapeId, normal, [other, own]: [&SupportShape; 2]| {
+            let overlapped = distance(other, own).distance < Fx::ZERO;
+            let body = self.world.state.body_of(shape.slot());
+            let moved_over = overlaps == Overlaps::Pass && overlapped && body.kind() != BodyKind::Fixed;
+            !moved_over
+                && without != self.world.shape(shape).map(|shape| shape.body())
+                && !self.passes(shape, normal, overlapped)
+        };
+        let hit = self.world.first_along(&self.probe, translation, self.filter, Rest::CHARACTER, stops)?;
+        Some((hit.travelled, self.world.mover_plane(hit.shape, hit.normal, SKIN, hit.point)))
+    }
+
+    fn advance(&mut self, by: Vec2<Fx>) {
+        self.probe = self.probe.at(self.probe.position() + by);
+    }
+
+    /// Whether the character passes through a shape that is solid from one side only: it is on the other side, or still
+    /// overlaps the shape.
+    fn passes(&self, id: ShapeId, normal: Vec2<Unit>, overlaps: bool) -> bool {
+        let Some(shape) = self.world.shape(id) else { return true };
+        let one_sided = matches!(shape.geometry(), Geometry::Link { sides: Sides::Right, .. });
+        let leaves = shape.one_way().zip(self.world.body(shape.body())).map(|(direction, body)| {
+            let upright: Unit = Rot::from_angle(body.angle() + direction).apply(Vec2::X).dot(normal);
+            upright < Unit::lit("0.5")
+        });
+        overlaps && (one_sided || leaves.is_some()) || leaves == Some(true)
+    }
+}
+
+/// Horizontal velocity relative to ground on which a character lands. The ground takes it along: a character that hung
+/// still in the air stands still on a belt, and one that jumped straight up on a train lands without speed.
+fn taken_along(velocity: Fx, ground: Fx) -> Fx {
+    velocity.saturating_sub(ground).clamp(velocity.min(Fx::ZERO), velocity.max(Fx::ZERO))
+}

@@ -1,0 +1,197 @@
+//! Shape casts along floors, casts that turn, and casts that start inside of shapes.
+
+use crate::oracle::along;
+use crate::sweep;
+use lockstep2d::body::{BodyDef, Chain, Geometry, Polygon, ShapeDef};
+use lockstep2d::fx;
+use lockstep2d::math::{Angle, Fx, Rng, Rot, Vec2, fx_mul, ratio};
+use lockstep2d::world::{InitialOverlap, Probe, QueryFilter, World};
+
+fn at(x: Fx, y: Fx) -> Vec2<Fx> {
+    Vec2::new(x, y)
+}
+
+/// Shapes with their lowest point at `y = -0.5`.
+fn shapes() -> [Geometry; 4] {
+    let pill = Geometry::capsule(at(fx!(0), fx!(-0.2)), at(fx!(0), fx!(0.4)), fx!(0.3)).expect("valid");
+    let round = Polygon::rectangle(fx!(0.4), fx!(0.4)).and_then(|polygon| polygon.rounded(fx!(0.1)));
+    let square = Polygon::square(fx!(0.5)).expect("valid");
+    [pill, round.expect("valid").into(), square.into(), Geometry::circle(fx!(0.5)).expect("valid")]
+}
+
+/// A floor of 40 tiles or links of 0.5 m, at a slope, from the origin to both sides.
+fn floor(tiles: bool, slope: Angle, world: &mut World) {
+    let turn = Rot::from_angle(slope);
+    if tiles {
+        for i in -20..20 {
+            let place = turn.apply_wide(at(Fx::from_num(i) / 2 + fx!(0.25), fx!(-0.25)));
+            let tile = ShapeDef::new(Polygon::rectangle(fx!(0.25), fx!(0.25)).expect("valid"));
+            world.spawn(&BodyDef::fixed().position(place).angle(slope), &[tile]).expect("valid");
+        }
+    } else {
+        let points: Vec<_> = (-20..=20).map(|i| turn.apply_wide(at(Fx::from_num(i) / 2, fx!(0)))).collect();
+        world.spawn(&BodyDef::fixed(), &Chain::new(&points).links().expect("valid")).expect("valid");
+    }
+}
+
+/// A shape that rests on a floor, up to 5 mm deep in it as bodies do, is not stopped by a seam, but by a wall that is
+/// as high as a step of 1 cm.
+#[test]
+fn casts_along_a_floor_pass_its_seams_and_stop_at_a_ledge() {
+    let mut rng = Rng::new(1);
+    let mut ledges = 0;
+    for case in 0..sweep::size(20_000, 800) {
+        let slope = Angle::from_degrees(rng.range(fx!(-50), fx!(50)));
+        let turn = Rot::from_angle(slope);
+        let mut world = World::default();
+        floor(case % 2 == 0, slope, &mut world);
+        let (height, to) = (rng.range(fx!(-0.005), fx!(0.0001)), rng.range(fx!(-4), fx!(4)));
+        let start = turn.apply_wide(at(rng.range(fx!(-3), fx!(3)), fx!(0.5) + height));
+        let probe = Probe::new(shapes()[case % 4], start).expect("valid").turned(slope);
+        let way = turn.apply_wide(at(to, fx!(0)));
+        let hit = world.cast_shape(&probe, way, QueryFilter::default());
+        assert_eq!(hit, None, "{case}: {height} {to} {slope:?}");
+        let hit = world.cast_turning(&probe, way, fx!(0), QueryFilter::default());
+        assert_eq!(hit, None, "{case}: {height} {to} {slope:?}");
+
+        let ledge = ShapeDef::new(Polygon::rectangle(fx!(0.5), fx!(0.51)).expect("valid"));
+        let side = if to > 0 { fx!(1) } else { fx!(-1) };
+        let place = turn.apply_wide(at(fx_mul(fx!(8.5), side), fx!(-0.5)));
+        world.spawn(&BodyDef::fixed().position(place).angle(slope), &[ledge]).expect("valid");
+        let way = turn.apply_wide(at(fx_mul(fx!(14), side), fx!(0)));
+        let wanted = world.cast_shape(&probe, way, QueryFilter::default()).expect("a ledge");
+        let turning = world.cast_turning(&probe, way, fx!(0), QueryFilter::default()).expect("a ledge");
+        for hit in [wanted, turning] {
+            let end = turn.apply_inverse_wide(start + hit.travelled);
+            let away = fx!(8) - fx_mul(end.x, side);
+            assert!(hit.shape == wanted.shape && away > 0 && away < fx!(0.51), "{case}: {away} {hit:?}");
+            ledges += 1;
+        }
+    }
+    assert!(ledges > 1000);
+}
+
+#[test]
+fn a_cast_says_when_it_starts_inside_or_ignores_it() {
+    let mut world = World::default();
+    let mut add = |x: Fx, half: Fx| {
+        let wall = ShapeDef::new(Polygon::square(half).expect("valid"));
+        world.spawn(&BodyDef::fixed().position((x, fx!(0))), &[wall]).expect("valid")
+    };
+    let (near, far) = (add(fx!(0), fx!(1)), add(fx!(6), fx!(1)));
+    let shape = |body| world.body(body).expect("there").shapes()[0];
+    let (near, far) = (shape(near), shape(far));
+    let filter = |overlap| QueryFilter::default().initial_overlap(overlap);
+    let (resist, report, ignore) =
+        (filter(InitialOverlap::Resist), filter(InitialOverlap::Report), filter(InitialOverlap::Ignore));
+    let probe = Probe::new(Geometry::circle(fx!(0.5)).expect("valid"), at(fx!(1.2), fx!(0))).expect("valid");
+    let way = at(fx!(8), fx!(0));
+    for turns in [fx!(0), fx!(1.5)] {
+        let cast = |way, filter| match turns == 0 {
+            true => world.cast_shape(&probe, way, filter),
+            false => world.cast_turning(&probe, way, turns, filter),
+        };
+        // Out of the near wall and to the far one.
+        let hit = cast(way, resist).expect("the far wall");
+        assert!(hit.shape == far && !hit.starts_inside && (hit.travelled.x - fx!(3.3)).abs() < fx!(0.0002));
+        let hit = cast(way, report).expect("the near wall");
+        assert!(hit.shape == near && hit.starts_inside && hit.fraction == 0 && hit.normal.x == 1);
+        assert_eq!(cast(way, ignore).expect("the far wall").shape, far);
+        // Into the near wall.
+        let hit = cast(-way, resist).expect("the near wall");
+        assert!(hit.shape == near && hit.travelled.length() < fx!(0.0002), "{hit:?}");
+        assert_eq!(cast(-way, ignore), None);
+    }
+    let origin = at(fx!(0.5), fx!(0));
+    for filter in [resist, report] {
+        let hit = world.cast_ray(origin, way, filter).expect("inside");
+        assert!(hit.shape == near && hit.starts_inside && hit.fraction == 0);
+        assert_eq!(world.cast_ray_all(origin, way, filter).len(), 2);
+    }
+    let hit = world.cast_ray(origin, way, ignore).expect("the far wall");
+    assert!(hit.shape == far && !hit.starts_inside);
+    assert!(!world.cast_ray_any(origin, -way, ignore));
+}
+
+#[test]
+fn queries_leave_out_several_bodies() {
+    let mut world = World::default();
+    let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).expect("valid"));
+    let bodies: Vec<_> = (0..10)
+        .map(|i| {
+            world.spawn(&BodyDef::fixed().position((Fx::from_num(i) * 2, fx!(0))), &[ball]).expect("valid")
+        })
+        .collect();
+    let seen = |filter| world.cast_ray_all(at(fx!(-2), fx!(0)), at(fx!(30), fx!(0)), filter).len();
+    for count in 0..=8 {
+        let filter = QueryFilter::default().except_all(&bodies[..count]).expect("at most 8");
+        assert_eq!((seen(filter), seen(filter.except(bodies[9]))), (10 - count, 9 - count));
+    }
+    assert_eq!(QueryFilter::default().except_all(&bodies[..9]), None);
+}
+
+/// A random geometry, not centred on its position.
+pub(crate) fn random_geometry(rng: &mut Rng) -> Geometry {
+    loop {
+        let mut vector = || at(rng.range(fx!(-1), fx!(1)), rng.range(fx!(-1), fx!(1)));
+        let points: Vec<_> = (0..7).map(|_| vector()).collect();
+        let radius = rng.range(fx!(0.02), fx!(0.4));
+        let geometry = match rng.below(5) {
+            0 => Geometry::circle(radius).ok(),
+            1 => Geometry::segment(points[0], points[1]).ok(),
+            2 => Geometry::capsule(points[0], points[1], radius).ok(),
+            3 => Polygon::hull(&points).ok().map(Geometry::from),
+            _ => Polygon::hull(&points[..3]).and_then(|hull| hull.rounded(radius)).ok().map(Geometry::from),
+        };
+        if let Some(geometry) = geometry {
+            return geometry;
+        }
+    }
+}
+
+/// Casts that turn, against small steps: nothing is touched before the hit, and the hit is within the skin.
+#[test]
+fn a_turning_cast_stops_at_the_first_touch_of_small_steps() {
+    let mut rng = Rng::new(5);
+    let (mut hits, mut misses) = (0, 0);
+    for _ in 0..sweep::size(100_000, 2_000) {
+        let mut world = World::default();
+        for _ in 0..4 {
+            let place = (rng.range(fx!(-4), fx!(4)), rng.range(fx!(-4), fx!(4)));
+            let shape = ShapeDef::new(random_geometry(&mut rng));
+            world.spawn(&BodyDef::fixed().position(place).angle(rng.angle()), &[shape]).expect("valid");
+        }
+        let place = at(rng.range(fx!(-4), fx!(4)), rng.range(fx!(-4), fx!(4)));
+        let angle = rng.angle();
+        let probe = Probe::new(random_geometry(&mut rng), place).expect("valid").turned(angle);
+        let way = at(rng.range(fx!(-6), fx!(6)), rng.range(fx!(-6), fx!(6)));
+        let turns = rng.range(fx!(-2), fx!(2));
+        let gap = |fraction: Fx| {
+            let turned = Angle::from_turns(fx_mul(turns, fraction));
+            let there = probe.at(place + way.scale(fraction)).turned(angle + turned);
+            world.shapes().map(|(id, _)| world.probe_distance(&there, id).expect("there").distance).min()
+        };
+        if gap(fx!(0)).expect("shapes") < fx!(0.0002) {
+            continue;
+        }
+        let hit = world.cast_turning(&probe, way, turns, QueryFilter::default());
+        let end = hit.map_or(fx!(1), |hit| hit.fraction);
+        for step in 0..=200 {
+            let fraction = fx_mul(end, ratio(step, 200));
+            let gap = gap(fraction).expect("shapes");
+            assert!(gap > fx!(0.000098), "{gap} at {fraction} of {end}: {hit:?} {probe:?} {way:?} {turns}");
+        }
+        match hit {
+            Some(hit) => {
+                hits += 1;
+                let gap = gap(hit.fraction).expect("shapes");
+                assert!(gap < fx!(0.000152), "{gap} {hit:?}");
+                assert_eq!(hit.travelled, way.scale(hit.fraction));
+                let length = fx_mul(hit.fraction, way.length());
+                assert!((along(place, way, length) - place - hit.travelled).length() < fx!(0.00001));
+            }
+            None => misses += 1,
+        }
+    }
+    assert!(hits > 300 && misses > 100, "{hits} {misses}");
+}
