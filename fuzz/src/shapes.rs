@@ -35,9 +35,9 @@ fn role(source: &mut Source<'_>, def: &mut ShapeDef) {
         0 | 1 => def.events.hit = true,
         2 => {
             let (contact, hit, sensor) = (source.one_in(2), source.one_in(2), source.one_in(2));
-            def.events = EventSwitches { contact, hit, sensor };
+            def.events = EventSwitches { contact, hit, sensor, detect_sensors: source.one_in(2) };
         }
-        3 => def.sensor = true,
+        3 => (def.sensor, def.events.detect_sensors) = (true, source.one_in(2)),
         4 => def.one_way = Some(source.angle()),
         _ => {}
     }

@@ -13,12 +13,14 @@ pub(crate) use broad_phase::{BroadPhase, Moved};
 pub(crate) use contact::{Contact, KeptArms, Pair, PointImpulse};
 pub(crate) use manifold::Impact;
 pub use manifold::{Feature, Manifold, ManifoldPoint};
+#[cfg(test)]
+pub(crate) use narrow_phase::collide;
 pub(crate) use narrow_phase::{
-    BoxPairs, CachedAxis, GhostFilter, OneWay, SatCounters, SmallBoxes, collide, collide_near, is_ghost,
-    margin_for, may_meet,
+    BoxPairs, CachedAxis, GhostFilter, OneWay, SatCounters, SmallBoxes, collide_near, is_ghost, margin_for,
+    may_meet,
 };
 pub(crate) use query::{
-    SKIN, ShapeHit, Sweep, TimeOfImpact, cast_ray, cast_shape, contains_point, distance, overlap,
-    time_of_impact,
+    SKIN, ShapeHit, Sweep, TimeOfImpact, cast_ray, cast_shape, contains_point, distance, first_overlap,
+    overlap, time_of_impact,
 };
 pub(crate) use shape::{Fraction, Link, Outline, PosedShape, SupportShape, arm_of};

@@ -110,7 +110,7 @@ fn polygon() -> (ShapeDef, Written) {
     let filter = Filter { category: 4, mask: 5, group: -6 };
     let corners = [Vec2::new(fx!(0), fx!(0)), Vec2::new(fx!(2), fx!(0)), Vec2::new(fx!(0), fx!(2))];
     let triangle = Polygon::new(&corners).and_then(|polygon| polygon.rounded(fx!(0.5))).expect("a triangle");
-    let events = EventSwitches { contact: false, hit: true, sensor: false };
+    let events = EventSwitches { contact: false, hit: true, sensor: false, detect_sensors: true };
     let shape = ShapeDef { material, events, ..ShapeDef::new(triangle) };
     let shape =
         shape.filter(filter).offset((fx!(3), fx!(4))).one_way(Angle::from_bits(11)).sensor().user_data(9);
@@ -118,7 +118,7 @@ fn polygon() -> (ShapeDef, Written) {
     let bytes = w().u32(2).u64(3).i32(&[0, 0, 2 * one, 0, 0, 2 * one]).i32(&[one / 2]);
     let surface = w().fx(&[1]).u32(2).fx(&[2]).u32(3).u8(1).fx(&[16]).fx(&[1, -14]);
     let bytes = bytes.fx(&[6, 8]).fx(&[2]).then(surface).u64(4).u64(5).i32(&[-6]);
-    (shape, bytes.u8(1).u32(11).u8(1).u8(0).u8(1).u8(0).u64(9))
+    (shape, bytes.u8(1).u32(11).u8(1).u8(0).u8(1).u8(0).u8(1).u64(9))
 }
 
 fn settings() -> (BodySettings, Written) {

@@ -227,7 +227,7 @@ impl<'a> Reader<'a> {
             reader.u32("its direction");
         });
         self.u8("sensor");
-        for name in ["events: contact", "events: hit", "events: sensor"] {
+        for name in ["events: contact", "events: hit", "events: sensor", "events: detect sensors"] {
             self.u8(name);
         }
         self.u64("user data");

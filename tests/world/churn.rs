@@ -225,7 +225,7 @@ impl Churn {
             2 => def.filter.group = [-1, 0, 1][rng.below(3) as usize],
             3 => {
                 let (contact, hit, sensor) = (rng.chance(1, 2), rng.chance(1, 2), rng.chance(1, 2));
-                def.events = EventSwitches { contact, hit, sensor };
+                def.events = EventSwitches { contact, hit, sensor, detect_sensors: rng.chance(1, 2) };
             }
             4 => def.material = Material { restitution: fx!(0.5), ..Material::default() },
             5 => def.geometry = ball(rng.range(fx!(0.1), fx!(0.4))).geometry,

@@ -1,6 +1,7 @@
 //! Public behaviour of `World`: sleep, sensors, events, snapshots, and changes at run time. One file per subject.
 
 mod churn;
+mod crossings;
 mod equality;
 mod events;
 mod far;

@@ -8,4 +8,4 @@ mod time_of_impact;
 pub(crate) use distance::{distance, overlap};
 pub(crate) use ray::{cast_ray, contains_point};
 pub(crate) use shape_cast::{SKIN, ShapeHit, cast_shape};
-pub(crate) use time_of_impact::{Sweep, TimeOfImpact, time_of_impact};
+pub(crate) use time_of_impact::{Sweep, TimeOfImpact, first_overlap, time_of_impact};

@@ -3,8 +3,8 @@
 use alloc::vec::Vec;
 
 use crate::body::{
-    BodyId, BodyKind, BodySettings, Filter, Geometry, Handle, IslandId, JointId, MassSource, Material,
-    ShapeDef, ShapeId, WorldError,
+    BodyId, BodyKind, BodySettings, EventSwitches, Filter, Geometry, Handle, IslandId, JointId, MassSource,
+    Material, ShapeDef, ShapeId, WorldError,
 };
 use crate::math::{Fx, Vec2};
 use crate::solver::JointDef;
@@ -194,7 +194,11 @@ impl World {
         let mass = mass_of(owner.kind(), *owner.mass_source, &owner.settings, with)?;
         self.check_spin(owner, &mass)?;
         // Every reported beginning of a contact needs its end.
-        let changes_events = (shape.def.sensor, shape.def.events.contact) != (def.sensor, def.events.contact);
+        let roles = |def: &ShapeDef| {
+            let EventSwitches { contact, hit: _, sensor, detect_sensors } = def.events;
+            (def.sensor, contact, def.sensor && sensor, def.sensor && detect_sensors)
+        };
+        let changes_events = roles(&shape.def) != roles(def);
         wake_overlapping(&mut self.state, &mut self.scratch, slot);
         if changes_events {
             self.end_contacts(&[id]);
