@@ -145,6 +145,11 @@ pub enum WorldError {
         /// Name of the setting.
         name: &'static str,
     },
+    /// A limit of the world is the same for its whole life.
+    FixedSetting {
+        /// Name of the limit.
+        name: &'static str,
+    },
     /// The world already holds the largest number of bodies, shapes or joints.
     Full {
         /// The kind of object of which there are too many.
@@ -201,6 +206,7 @@ impl fmt::Display for WorldError {
             WorldError::JointOfOtherBodies(id) => write!(f, "the bodies of joint {id} cannot be changed"),
             WorldError::JointOutOfRange { what } => write!(f, "the {what} of a joint is out of range"),
             WorldError::Setting { name } => write!(f, "the world setting `{name}` is out of range"),
+            WorldError::FixedSetting { name } => write!(f, "the world limit `{name}` cannot be changed"),
             WorldError::Full { what, limit } => write!(f, "the world already holds {limit} {what}"),
             WorldError::WrongKind(id) => write!(f, "the kind of body {id} does not allow this change"),
         }

@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::{Game, RulesId, SetupError};
 use crate::body::{BodyId, BodyKind};
 use crate::hash::StateHash;
+use crate::solver::SolverSettings;
 use crate::world::{Command, Config, Snapshot, World};
 
 /// A physics world that one player modifies by commands.
@@ -146,12 +147,17 @@ impl Game for Sandbox {
         let grown =
             count(commands.clone().filter(|command| matches!(command, Command::AddShape { .. })).count());
         let changes = changes.saturating_add(grown.saturating_mul(grown) * 4);
-        let spawned: u64 = commands.map(bodies_added).sum();
+        let spawned: u64 = commands.clone().map(bodies_added).sum();
         let shapes = count(world.shape_count()).saturating_add(added);
         let bodies = count(world.body_count()).saturating_add(spawned);
         let constraints = count(world.pair_count()).saturating_add(count(world.joint_count()));
-        let solver = world.config().solver;
-        let rounds = u64::from(solver.sub_steps) * u64::from(solver.iterations);
+        // Settings that are out of range are refused, and cost nothing.
+        let new_settings = commands.filter_map(|command| match command {
+            Command::SetConfig { config } => config.validate().is_ok().then_some(&config.solver),
+            _ => None,
+        });
+        let rounds = |solver: &SolverSettings| u64::from(solver.sub_steps) * u64::from(solver.iterations);
+        let rounds = new_settings.map(rounds).fold(rounds(&world.config().solver), u64::max);
         // In a heap of overlapping bodies, many contacts find no free place in a SIMD batch.
         let crowded = count(world.pair_count()).saturating_sub(bodies.saturating_mul(PAIRS_PER_BODY));
         let constraints = constraints.saturating_add(crowded.saturating_mul(CROWDED_WORK));
@@ -211,7 +217,10 @@ fn command_work(world: &World, command: &Command) -> u64 {
         Command::SetVelocity { body, .. } | Command::MoveTo { body, .. } if is_kinematic(world, *body) => {
             1 + count(world.joint_count())
         }
-        Command::Sleep { .. } | Command::SetGravity { .. } | Command::Explode { .. } => 1 + everything(),
+        Command::Sleep { .. }
+        | Command::SetGravity { .. }
+        | Command::SetConfig { .. }
+        | Command::Explode { .. } => 1 + everything(),
         _ => 1,
     }
 }

@@ -180,6 +180,21 @@ fn what_a_body_cannot_do_is_refused() {
     stage.refuses(Command::SetGravity { gravity: velocity }, |error| {
         matches!(error, WorldError::Setting { .. })
     });
+    let config = *stage.world.config();
+    for changed in [
+        Config { body_limit: 9, ..config },
+        Config { shape_limit: 9, ..config },
+        Config { joint_limit: 9, ..config },
+        Config { pair_limit: 9, ..config },
+    ] {
+        stage.refuses(Command::SetConfig { config: changed }, |error| {
+            matches!(error, WorldError::FixedSetting { .. })
+        });
+    }
+    let fast = Config { tick_rate: 1001, ..config };
+    stage.refuses(Command::SetConfig { config: fast }, |error| {
+        *error == WorldError::Setting { name: "tick_rate" }
+    });
     let only = stage.world.body(ball).expect("there").shapes()[0];
     stage.refuses(Command::RemoveShape { shape: only }, |error| {
         matches!(error, WorldError::MassOutOfRange { .. })

@@ -53,6 +53,7 @@ fn commands(world: &World, body: BodyId, value: Fx) -> Vec<Command> {
         Command::SetVelocity { body, velocity, angular_velocity: value },
         Command::SetTransform { body, position: position + vector, angle },
         Command::SetGravity { gravity: vector },
+        Command::SetConfig { config: Config { hit_speed: value, ..*world.config() } },
         Command::MoveTo { body, position, angle },
         Command::SetBody { body, settings: BodySettings { linear_damping: value, ..Default::default() } },
         Command::SetMass {

@@ -252,6 +252,7 @@ fn cases(handles: &Handles) -> Vec<(Command, Written)> {
         (Command::SetShape { shape, def: polygon }, w().u32(24).then(shape_id()).then(polygon_bytes.clone())),
         (Command::SetJoint { joint, def: hinge }, w().u32(25).u32(0).u32(0).then(hinge_bytes)),
         (Command::Explode { explosion }, w().u32(26).fx(&[2, -1]).fx(&[4, 6, 8]).u64(7)),
+        (Command::SetConfig { config: settings_of_world().0 }, w().u32(27).then(settings_of_world().1)),
     ]
 }
 
@@ -269,21 +270,27 @@ fn the_bytes_of_commands_are_those_of_the_document() {
         assert_eq!(encode(&geometry), expected.0, "{geometry:?}");
     }
     let inputs: Vec<Command> = cases.iter().map(|(command, _)| command.clone()).collect();
-    let all = cases.into_iter().fold(w().u64(27), |all, (_, bytes)| all.then(bytes));
+    let all = cases.into_iter().fold(w().u64(28), |all, (_, bytes)| all.then(bytes));
     assert_eq!(encode(&inputs), all.0, "an input of the sandbox");
 }
 
-#[test]
-fn the_bytes_of_a_setup_are_those_of_the_document() {
+/// Settings of a world with their bytes.
+fn settings_of_world() -> (Config, Written) {
     let solver = SolverSettings {
         contact: ContactTuning::Baumgarte { share: fx!(0.5), slop: fx!(1), push_speed: fx!(3) },
         ..SolverSettings::default()
     };
     let config = Config { solver, fat_margin: fx!(0.5), speculative_distance: fx!(0.5), ..Config::default() };
     let config = Config { continuous: false, hit_speed: fx!(2), ..config };
-    let setup = SandboxSetup { config, commands: vec![Command::SetGravity { gravity: Vec2::ZERO }] };
     let settings = w().u32(4).u32(1).u32(1).fx(&[1, 2, 6]).fx(&[120, 4, 2, 800]);
     let limits = w().u32(1 << 20).u32(1 << 20).u32(1 << 20).u32(1 << 18);
     let expected = w().u32(60).fx(&[0, -20]).then(settings).fx(&[1, 1]).u8(1).u8(0).fx(&[4]).then(limits);
+    (config, expected)
+}
+
+#[test]
+fn the_bytes_of_a_setup_are_those_of_the_document() {
+    let (config, expected) = settings_of_world();
+    let setup = SandboxSetup { config, commands: vec![Command::SetGravity { gravity: Vec2::ZERO }] };
     assert_eq!(encode(&setup), expected.u64(1).u32(14).fx(&[0, 0]).0);
 }

@@ -11,6 +11,7 @@ mod phases;
 mod rollback;
 mod sensors;
 mod setters;
+mod settings;
 mod sleeping;
 #[path = "../common/sweep.rs"]
 mod sweep;

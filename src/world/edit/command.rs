@@ -10,7 +10,7 @@ use crate::body::{
 };
 use crate::math::{Angle, Fx, Vec2};
 use crate::solver::JointDef;
-use crate::world::World;
+use crate::world::{Config, World};
 
 /// An edit of a world. The method of the same name documents units and errors.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -196,6 +196,11 @@ pub enum Command {
         /// The explosion.
         explosion: Explosion,
     },
+    /// Calls [`World::set_config`].
+    SetConfig {
+        /// The new settings.
+        config: Config,
+    },
 }
 
 /// Handles of the bodies, shapes or joints that a command has added.
@@ -255,6 +260,7 @@ impl World {
             Command::SetShape { shape, ref def } => self.set_shape(shape, def),
             Command::SetJoint { joint, ref def } => self.set_joint(joint, def),
             Command::Explode { ref explosion } => self.explode(explosion),
+            Command::SetConfig { ref config } => self.set_config(config),
         }
         .map(|()| Outcome::Done)
     }

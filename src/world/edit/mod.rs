@@ -7,6 +7,7 @@ mod explosion;
 mod fault;
 mod forces;
 mod setters;
+mod settings;
 
 pub use command::{Command, Outcome};
 pub use create::BodyPose;

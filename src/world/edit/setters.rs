@@ -1,19 +1,14 @@
-//! Changing the properties of bodies, shapes, joints and the world.
-
-use alloc::vec::Vec;
+//! Changing the properties of bodies, shapes and joints.
 
 use crate::body::{
-    BodyId, BodyKind, BodySettings, EventSwitches, Filter, Geometry, Handle, IslandId, JointId, MassSource,
-    Material, ShapeDef, ShapeId, WorldError,
+    BodyId, BodyKind, BodySettings, EventSwitches, Filter, Geometry, Handle, JointId, MassSource, Material,
+    ShapeDef, ShapeId, WorldError,
 };
 use crate::math::{Fx, Vec2};
 use crate::solver::JointDef;
 use crate::world::World;
-use crate::world::config::check_gravity;
 use crate::world::derived::{mass_of, offset_max};
-use crate::world::islands::{
-    joints_changed, put_to_sleep, wake_body, wake_island, wake_joined, wake_overlapping,
-};
+use crate::world::islands::{joints_changed, put_to_sleep, wake_body, wake_joined, wake_overlapping};
 
 impl World {
     /// Replaces the settings of a body: read [`crate::body::Body::settings`], change a copy, and pass it here. Wakes
@@ -259,25 +254,6 @@ impl World {
         }
         joint.redefine(*def);
         joints_changed(&mut self.state, &mut self.scratch, [a, b]);
-        Ok(())
-    }
-
-    /// Replaces the world's gravity, in m/s². Wakes everything.
-    ///
-    /// # Errors
-    /// [`WorldError::Setting`] if a component is not within ±100 000.
-    pub fn set_gravity(&mut self, gravity: Vec2<Fx>) -> Result<(), WorldError> {
-        if !check_gravity(gravity) {
-            return Err(WorldError::Setting { name: "gravity" });
-        }
-        let islands: Vec<IslandId> = self.state.islands.iter().map(|(id, _)| id).collect();
-        for island in islands {
-            wake_island(&mut self.state, &mut self.scratch, island);
-        }
-        for (_, body) in self.state.bodies.iter_mut().filter(|(_, body)| body.is_dynamic()) {
-            body.rest_ticks.reset();
-        }
-        self.state.config.gravity = gravity;
         Ok(())
     }
 }
