@@ -152,7 +152,7 @@ fn material(source: &mut Source<'_>) -> Material {
     Material {
         friction: source.mostly(0, 16_000),
         friction_mixing: source.pick(&rules),
-        restitution: source.mostly(0, 1000),
+        restitution: source.mostly(0, 1500),
         restitution_mixing: source.pick(&rules),
         restitution_threshold: if source.one_in(2) { Some(source.mostly(0, 2000)) } else { None },
         rolling_resistance: if source.one_in(2) { source.mostly(0, 1000) } else { Fx::ZERO },

@@ -105,7 +105,7 @@ pub enum WorldError {
         /// The density in kg/m².
         value: Fx,
     },
-    /// Friction is not within 0 to 16, restitution or rolling resistance is not within 0 to 1, a restitution threshold
+    /// Friction is not within 0 to 16, restitution not within 0 to 1.5, rolling resistance not within 0 to 1, a threshold
     /// is not within 0 to 400 m/s, or a surface speed is not within ±400 m/s.
     MaterialOutOfRange,
     /// The mass of a dynamic body is not within 10 mg to 2^30 kg. It is too small if no shape has both area and
@@ -183,7 +183,7 @@ impl fmt::Display for WorldError {
             WorldError::DensityOutOfRange { value } => write!(f, "density {value} kg/m² is out of range"),
             WorldError::MaterialOutOfRange => write!(
                 f,
-                "friction is 0 to 16, restitution and rolling resistance are 0 to 1, a restitution threshold is 0 to 400 m/s, \
+                "friction is 0 to 16, restitution 0 to 1.5, rolling resistance 0 to 1, a restitution threshold 0 to 400 m/s, \
                  and surface speed is within ±400 m/s"
             ),
             WorldError::MassOutOfRange { value } => {

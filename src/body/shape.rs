@@ -110,7 +110,7 @@ impl ShapeDef {
         self
     }
 
-    /// Sets the restitution, 0 to 1. It applies to approach speeds above [`Material::restitution_threshold`].
+    /// Sets the restitution, 0 to 1.5. It applies to approach speeds above [`Material::restitution_threshold`].
     #[must_use]
     pub fn restitution(mut self, restitution: Fx) -> Self {
         self.material.restitution = restitution;

@@ -67,7 +67,7 @@ fn values_out_of_range() {
         (WorldError::DensityOutOfRange { value }, "density 2.25 kg/m² is out of range"),
         (
             WorldError::MaterialOutOfRange,
-            "friction is 0 to 16, restitution and rolling resistance are 0 to 1, a restitution threshold is 0 to 400 m/s, \
+            "friction is 0 to 16, restitution 0 to 1.5, rolling resistance 0 to 1, a restitution threshold 0 to 400 m/s, \
          and surface speed is within ±400 m/s",
         ),
         (

@@ -106,7 +106,7 @@ fn bodies_out_of_range_are_refused() {
     stage.refuses(spawn(BodyDef::fixed(), ball().offset((Fx::MIN, fx!(0)))), offset);
     let material = |error: &WorldError| matches!(error, WorldError::MaterialOutOfRange);
     stage.refuses(spawn(BodyDef::dynamic(), ball().friction(fx!(-0.1))), material);
-    stage.refuses(spawn(BodyDef::dynamic(), ball().restitution(fx!(1.1))), material);
+    stage.refuses(spawn(BodyDef::dynamic(), ball().restitution(fx!(1.501))), material);
     let damping = |error: &WorldError| matches!(error, WorldError::DampingOutOfRange { .. });
     stage.refuses(spawn(BodyDef::dynamic().linear_damping(fx!(-1)), ball()), damping);
     stage.refuses(spawn(BodyDef::dynamic().angular_damping(fx!(1001)), ball()), damping);

@@ -8,7 +8,9 @@ use crate::math::{Fx, Vec2};
 use crate::solver::JointDef;
 use crate::world::World;
 use crate::world::derived::{mass_of, offset_max};
-use crate::world::islands::{joints_changed, put_to_sleep, wake_body, wake_joined, wake_overlapping};
+use crate::world::islands::{
+    joints_changed, put_to_sleep, wake_body, wake_joined, wake_overlapping, wake_touching,
+};
 
 impl World {
     /// Replaces the settings of a body: read [`crate::body::Body::settings`], change a copy, and pass it here. Wakes
@@ -143,13 +145,19 @@ impl World {
         Ok(())
     }
 
-    /// Wakes a body with all bodies of its island.
+    /// Wakes a body with all bodies of its island. A fixed or kinematic body does not sleep: it wakes the bodies that
+    /// touch it, and those that are joined to it.
     ///
     /// # Errors
     /// [`WorldError::StaleBody`] if it is not in the world.
     pub fn wake(&mut self, id: BodyId) -> Result<(), WorldError> {
-        self.state.bodies.get(id).ok_or(WorldError::StaleBody(id))?;
+        let body = self.state.bodies.get(id).ok_or(WorldError::StaleBody(id))?;
+        let is_dynamic = body.is_dynamic();
         wake_body(&mut self.state, &mut self.scratch, id.slot());
+        if !is_dynamic {
+            wake_touching(&mut self.state, &mut self.scratch, id.slot());
+            wake_joined(&mut self.state, &mut self.scratch, id);
+        }
         Ok(())
     }
 

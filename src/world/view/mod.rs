@@ -4,5 +4,6 @@ mod contacts;
 mod islands;
 mod joints;
 mod neighbours;
+mod work;
 
 pub use contacts::{ContactForce, ContactView, SolverColour};
