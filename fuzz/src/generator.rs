@@ -170,6 +170,7 @@ impl Generator {
             21 => Command::SetBody { body, settings: settings::settings(source) },
             22 => Command::SetKind { body, kind: settings::kind(source) },
             23 => Command::SetMass { body, mass: settings::mass(source) },
+            24 if source.one_in(2) => Command::SetName { body, name: settings::name(source) },
             24 => Command::SetUserData { body, user_data: source.word() },
             25 => Command::Disable { body },
             26 => Command::Enable { body },

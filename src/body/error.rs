@@ -150,6 +150,8 @@ pub enum WorldError {
         /// Name of the limit.
         name: &'static str,
     },
+    /// A name is not 1 to 16 ASCII letters, digits, `-` and `_`.
+    NameInvalid,
     /// The world already holds the largest number of bodies, shapes or joints.
     Full {
         /// The kind of object of which there are too many.
@@ -207,6 +209,7 @@ impl fmt::Display for WorldError {
             WorldError::JointOutOfRange { what } => write!(f, "the {what} of a joint is out of range"),
             WorldError::Setting { name } => write!(f, "the world setting `{name}` is out of range"),
             WorldError::FixedSetting { name } => write!(f, "the world limit `{name}` cannot be changed"),
+            WorldError::NameInvalid => write!(f, "a name is 1 to 16 ASCII letters, digits, `-` and `_`"),
             WorldError::Full { what, limit } => write!(f, "the world already holds {limit} {what}"),
             WorldError::WrongKind(id) => write!(f, "the kind of body {id} does not allow this change"),
         }

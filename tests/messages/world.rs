@@ -83,6 +83,7 @@ fn values_out_of_range() {
         (WorldError::JointOutOfRange { what: "length" }, "the length of a joint is out of range"),
         (WorldError::Setting { name: "tick_rate" }, "the world setting `tick_rate` is out of range"),
         (WorldError::FixedSetting { name: "pair_limit" }, "the world limit `pair_limit` cannot be changed"),
+        (WorldError::NameInvalid, "a name is 1 to 16 ASCII letters, digits, `-` and `_`"),
         (WorldError::Full { what: "bodies", limit: 12 }, "the world already holds 12 bodies"),
     ]);
 }

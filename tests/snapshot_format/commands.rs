@@ -2,7 +2,7 @@
 
 use lockstep2d::body::{
     BodyDef, BodyId, BodyKind, BodySettings, Continuous, EventSwitches, Filter, Geometry, JointId,
-    MassSource, Material, Mixing, MotionLocks, Polygon, ShapeDef, ShapeId, Sides, WorldError,
+    MassSource, Material, Mixing, MotionLocks, Name, Polygon, ShapeDef, ShapeId, Sides, WorldError,
 };
 use lockstep2d::codec::encode;
 use lockstep2d::fx;
@@ -139,8 +139,13 @@ fn body() -> (BodyDef, Written) {
     let (mass, mass_bytes) = mass();
     let def = BodyDef::kinematic().position((fx!(5), fx!(6))).angle(Angle::from_bits(7)).mass(mass);
     let def = def.velocity((fx!(1), fx!(2))).angular_velocity(fx!(3)).asleep().user_data(8);
+    let def = def.name(Name::new("ball").expect("valid"));
     let bytes = w().u32(1).fx(&[10, 12]).u32(7).fx(&[2, 4, 6]).then(mass_bytes).then(settings_bytes);
-    (BodyDef { settings, ..def }, bytes.u8(1).u8(1).u64(8))
+    (BodyDef { settings, ..def }, bytes.u8(1).u8(1).u64(8).u8(1).then(name_bytes()))
+}
+
+fn name_bytes() -> Written {
+    b"ball".iter().chain(&[0; 12]).fold(w(), |bytes, &byte| bytes.u8(byte))
 }
 
 fn mass() -> (MassSource, Written) {
@@ -253,6 +258,7 @@ fn cases(handles: &Handles) -> Vec<(Command, Written)> {
         (Command::SetJoint { joint, def: hinge }, w().u32(25).u32(0).u32(0).then(hinge_bytes)),
         (Command::Explode { explosion }, w().u32(26).fx(&[2, -1]).fx(&[4, 6, 8]).u64(7)),
         (Command::SetConfig { config: settings_of_world().0 }, w().u32(27).then(settings_of_world().1)),
+        (Command::SetName { body, name: Name::new("ball").ok() }, on_body(28).u8(1).then(name_bytes())),
     ]
 }
 
@@ -270,7 +276,7 @@ fn the_bytes_of_commands_are_those_of_the_document() {
         assert_eq!(encode(&geometry), expected.0, "{geometry:?}");
     }
     let inputs: Vec<Command> = cases.iter().map(|(command, _)| command.clone()).collect();
-    let all = cases.into_iter().fold(w().u64(28), |all, (_, bytes)| all.then(bytes));
+    let all = cases.into_iter().fold(w().u64(29), |all, (_, bytes)| all.then(bytes));
     assert_eq!(encode(&inputs), all.0, "an input of the sandbox");
 }
 

@@ -170,6 +170,9 @@ impl<'a> Reader<'a> {
             self.handle("shape");
         }
         self.u64("user data");
+        self.option("has a name", |reader| {
+            reader.take(16, "name", |_| String::new());
+        });
     }
 
     fn settings(&mut self) {

@@ -2,7 +2,7 @@
 
 use lockstep2d::body::{
     BodyDef, BodyId, BodyKind, BodySettings, Continuous, EventSwitches, Filter, JointId, MassSource,
-    Material, MotionLocks, ShapeDef, ShapeId,
+    Material, MotionLocks, Name, ShapeDef, ShapeId,
 };
 use lockstep2d::fx;
 use lockstep2d::math::{Angle, Fx, Rng, Vec2};
@@ -63,7 +63,7 @@ impl Churn {
 
     fn command(&mut self, world: &World) -> Option<Command> {
         let crowded = world.body_count() > 35;
-        let command = match self.rng.below(32) {
+        let command = match self.rng.below(33) {
             0..=4 if !crowded => Command::Spawn { body: self.body(), shapes: self.shapes() },
             5 => Command::Despawn { body: self.any_body(world)? },
             6 => Command::AddShape { body: self.any_body(world)?, shape: self.shape() },
@@ -106,6 +106,7 @@ impl Churn {
                 let shape = self.any_shape(world)?;
                 Command::SetShape { shape, def: self.changed_shape(*world.shape(shape)?.def()) }
             }
+            31 => Command::SetName { body: self.any_body(world)?, name: Name::new("named").ok() },
             30 => Command::SetConfig { config: self.changed_config(*world.config()) },
             _ => Command::Explode { explosion: Explosion::new(self.place(), self.signed(fx!(2))) },
         };

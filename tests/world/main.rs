@@ -7,6 +7,7 @@ mod events;
 mod far;
 mod joint_batches;
 mod locks;
+mod names;
 mod phases;
 mod rollback;
 mod sensors;

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{BodyPose, Explosion};
 use crate::body::{
-    BodyDef, BodyId, BodyKind, BodySettings, JointId, MassSource, ShapeDef, ShapeId, WorldError,
+    BodyDef, BodyId, BodyKind, BodySettings, JointId, MassSource, Name, ShapeDef, ShapeId, WorldError,
 };
 use crate::math::{Angle, Fx, Vec2};
 use crate::solver::JointDef;
@@ -201,6 +201,13 @@ pub enum Command {
         /// The new settings.
         config: Config,
     },
+    /// Calls [`World::set_name`].
+    SetName {
+        /// The body.
+        body: BodyId,
+        /// Its new name.
+        name: Option<Name>,
+    },
 }
 
 /// Handles of the bodies, shapes or joints that a command has added.
@@ -261,6 +268,7 @@ impl World {
             Command::SetJoint { joint, ref def } => self.set_joint(joint, def),
             Command::Explode { ref explosion } => self.explode(explosion),
             Command::SetConfig { ref config } => self.set_config(config),
+            Command::SetName { body, name } => self.set_name(body, name),
         }
         .map(|()| Outcome::Done)
     }

@@ -1,8 +1,10 @@
 //! Changing the properties of bodies, shapes and joints.
 
+use alloc::boxed::Box;
+
 use crate::body::{
     BodyId, BodyKind, BodySettings, EventSwitches, Filter, Geometry, Handle, JointId, MassSource, Material,
-    ShapeDef, ShapeId, WorldError,
+    Name, ShapeDef, ShapeId, WorldError,
 };
 use crate::math::{Fx, Vec2};
 use crate::solver::JointDef;
@@ -40,6 +42,17 @@ impl World {
     /// [`WorldError::StaleBody`] if it is not in the world.
     pub fn set_user_data(&mut self, id: BodyId, user_data: u64) -> Result<(), WorldError> {
         self.state.bodies.get_mut(id).ok_or(WorldError::StaleBody(id))?.user_data = user_data;
+        Ok(())
+    }
+
+    /// Names a body for people who read reports, or takes its name away. No result of the simulation depends on it.
+    ///
+    /// # Errors
+    /// [`WorldError::StaleBody`] if it is not in the world, [`WorldError::NameInvalid`] if the name was decoded from
+    /// bytes and is none.
+    pub fn set_name(&mut self, id: BodyId, name: Option<Name>) -> Result<(), WorldError> {
+        name.map_or(Ok(()), |name| name.validate())?;
+        self.state.bodies.get_mut(id).ok_or(WorldError::StaleBody(id))?.name = name.map(Box::new);
         Ok(())
     }
 
