@@ -33,6 +33,7 @@ pub use geometry::{Geometry, Sides};
 pub use mass::{MassProperties, MassSource};
 pub use material::{Material, Mixing};
 pub use name::Name;
+pub(crate) use name::label;
 pub use polygon::{POLYGON_VERTICES_MAX, Polygon, SHAPE_EXTENT_MAX};
 pub(crate) use rest_ticks::RestTicks;
 pub use settings::{BodySettings, Continuous, MotionLocks};

@@ -1,10 +1,13 @@
 //! Names of bodies, for people who read reports.
 
+use alloc::format;
+use alloc::string::String;
 use core::fmt;
 
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
+use super::arena::BodyId;
 use super::error::WorldError;
 
 /// Largest length of a name in bytes.
@@ -28,6 +31,11 @@ const LENGTH_MAX: usize = 16;
 pub struct Name {
     /// The characters, then zeros.
     bytes: [u8; LENGTH_MAX],
+}
+
+/// The text that names a body: its handle, and its name if it has one, as in `13v0 ball`.
+pub(crate) fn label(id: BodyId, name: Option<Name>) -> String {
+    name.map_or_else(|| format!("{id}"), |name| format!("{id} {name}"))
 }
 
 impl Name {
@@ -87,7 +95,7 @@ impl Serialize for Name {
 impl<'de> Deserialize<'de> for Name {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         if deserializer.is_human_readable() {
-            let text = alloc::string::String::deserialize(deserializer)?;
+            let text = String::deserialize(deserializer)?;
             Name::new(&text).map_err(D::Error::custom)
         } else {
             Ok(Name { bytes: Deserialize::deserialize(deserializer)? })

@@ -7,12 +7,11 @@ use core::fmt::Display;
 
 use serde::{Serialize, Serializer};
 
-use crate::body::{Arena, Body, Handle};
+use crate::body::{Arena, Body, Handle, label};
 use crate::collision::Contact;
 use crate::math::{Fx, Rng};
 use crate::world::config::Config;
 use crate::world::state::{Reported, State};
-use crate::world::view::label;
 
 /// Serialises everything in a state for human readers. Bodies, shapes, joints and islands are named by their handles,
 /// contacts by the handles of their shapes.
@@ -41,7 +40,9 @@ impl Serialize for StateView<'_> {
             tick: *tick,
             faults: *faults,
             bodies: Entries(|| {
-                bodies.iter().map(|(id, body)| (format!("body {}", label(id, body)), BodyView::of(body)))
+                bodies
+                    .iter()
+                    .map(|(id, body)| (format!("body {}", label(id, body.name())), BodyView::of(body)))
             }),
             shapes: Entries(|| shapes.iter().map(|(id, shape)| (format!("shape {id}"), shape))),
             joints: Entries(|| joints.iter().map(|(id, joint)| (format!("joint {id}"), joint))),

@@ -7,4 +7,3 @@ mod neighbours;
 mod work;
 
 pub use contacts::{ContactForce, ContactView, SolverColour};
-pub(crate) use neighbours::label;

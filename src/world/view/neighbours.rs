@@ -1,24 +1,18 @@
 //! Views of the surroundings of one body or shape: its shapes, joints, contacts, and the overlaps of a sensor.
 
-use alloc::format;
 use alloc::string::String;
 use alloc::vec::Vec;
 use core::ops::ControlFlow;
 
 use super::ContactView;
-use crate::body::{Body, BodyId, Handle, JointId, ShapeId};
+use crate::body::{Body, BodyId, Handle, JointId, ShapeId, label};
 use crate::world::World;
-
-/// The handle of a body, and its name if it has one: `13v0` or `13v0 ball`.
-pub(crate) fn label(id: BodyId, body: &Body) -> String {
-    body.name().map_or_else(|| format!("{id}"), |name| format!("{id} {name}"))
-}
 
 impl World {
     /// Returns the text that names a body in reports: its handle, and its name if it has one, as in `13v0 ball`.
     #[must_use]
     pub fn body_label(&self, id: BodyId) -> String {
-        self.body(id).map_or_else(|| format!("{id}"), |body| label(id, body))
+        label(id, self.body(id).and_then(Body::name))
     }
 
     /// Returns the shapes of a body in order of attachment. Empty if the body is not in the world.
