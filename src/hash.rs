@@ -12,8 +12,13 @@ use serde::{Deserialize, Serialize};
 
 pub(crate) use envelope::{Envelope, EnvelopeError};
 
-/// A 128-bit digest, displayed as 32 hexadecimal digits.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+/// A 128-bit digest, shown as 32 hexadecimal digits by `Display` and by `Debug`.
+///
+/// ```
+/// # use lockstep2d::hash::StateHash;
+/// assert_eq!(format!("{:?}", StateHash(0xab)), "000000000000000000000000000000ab");
+/// ```
+#[derive(Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct StateHash(pub u128);
 
 impl StateHash {
@@ -49,6 +54,12 @@ impl StateHash {
     fn bytes(self) -> Vec<u8> {
         let halves = [self.0 as usize, (self.0 >> 64) as usize];
         halves.into_iter().flat_map(usize::to_ne_bytes).collect()
+    }
+}
+
+impl fmt::Debug for StateHash {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
     }
 }
 

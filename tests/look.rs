@@ -160,13 +160,14 @@ fn a_body_with_too_many_contacts_overflows() {
 }
 
 #[test]
-fn sensors_are_not_solved() {
+fn sensors_have_no_contacts() {
     let mut world = empty();
     slab(&mut world);
     let ghost = ShapeDef::new(Geometry::circle(fx!(0.5)).unwrap()).sensor();
     world.spawn(&BodyDef::dynamic().position((fx!(0), fx!(0.4))), &[ghost]).unwrap();
     world.step();
-    assert!(world.contacts().all(|contact| contact.solver_colour().is_none()));
+    assert_eq!(world.events().sensor_begin.len(), 1, "it overlaps the slab");
+    assert_eq!(world.contacts().count(), 0);
 }
 
 #[test]
@@ -201,4 +202,41 @@ fn the_broad_phase_has_boxes_around_all_of_what_they_hold() {
     assert!(boxes.iter().all(|&(inner, _)| root.contains(inner)));
     world.set_broad_phase(BroadPhaseKind::BruteForce);
     assert_eq!(world.broad_phase_boxes(), []);
+}
+
+/// Two squares on a slab, one above the other and joined to it, and one square far away.
+#[test]
+fn the_contacts_and_joints_of_a_body_are_those_of_the_world_that_name_it() {
+    let mut world = empty();
+    slab(&mut world);
+    let [lower, upper, far] =
+        [(fx!(0), fx!(0.5)), (fx!(0), fx!(1.5)), (fx!(9), fx!(900))].map(|(x, y)| square(&mut world, x, y));
+    let weld = JointDef::new(lower, upper, lockstep2d::solver::Weld::rigid());
+    let weld = weld.anchor_a((fx!(0), fx!(1))).colliding();
+    let joints =
+        [weld, JointDef::new(far, upper, JointKind::Filter)].map(|def| world.add_joint(&def).unwrap());
+    run(&mut world, 120);
+    let slab = world.bodies().next().unwrap().0;
+    for body in [slab, lower, upper, far] {
+        let own = |shape: lockstep2d::body::ShapeId| world.shapes_of(body).contains(&shape);
+        let named = world.contacts().filter(|contact| own(contact.shape_a) || own(contact.shape_b));
+        let pairs = |contact: lockstep2d::world::ContactView<'_>| (contact.shape_a, contact.shape_b);
+        let listed: Vec<_> = world.contacts_of(body).map(pairs).collect();
+        assert_eq!(listed, named.map(pairs).collect::<Vec<_>>());
+    }
+    let counts = [slab, lower, upper, far].map(|body| world.contacts_of(body).count());
+    assert_eq!(counts, [1, 2, 1, 0]);
+    // The slab carries both squares.
+    let load: Fx = world
+        .contacts_of(slab)
+        .flat_map(|contact| contact.forces().map(|(_, force)| force.normal).collect::<Vec<_>>())
+        .sum();
+    let weight = (world.body(lower).unwrap().mass() + world.body(upper).unwrap().mass()) * 10;
+    assert!((load - weight).abs() < weight / 50, "{load} N instead of {weight} N");
+    assert_eq!(world.joints_of(lower), joints[..1]);
+    assert_eq!(world.joints_of(upper), joints);
+    assert_eq!(world.joints_of(far), joints[1..]);
+    world.despawn(far).unwrap();
+    assert!(world.joints_of(far).is_empty() && world.shapes_of(far).is_empty());
+    assert_eq!((world.joints_of(upper), world.contacts_of(far).count()), (joints[..1].to_vec(), 0));
 }

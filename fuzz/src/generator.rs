@@ -83,6 +83,13 @@ fn wild_config(source: &mut Source<'_>) -> Config {
     config
 }
 
+/// New settings of a world, mostly with the same limits.
+fn changed_config(source: &mut Source<'_>, world: &World) -> Config {
+    let Config { body_limit, shape_limit, joint_limit, pair_limit, .. } = *world.config();
+    let config = wild_config(source);
+    if source.one_in(12) { config } else { Config { body_limit, shape_limit, joint_limit, pair_limit, ..config } }
+}
+
 impl Generator {
     /// Creates a generator for a new scene.
     pub fn new(source: &mut Source<'_>) -> Self {
@@ -143,7 +150,7 @@ impl Generator {
 
     fn command(&mut self, source: &mut Source<'_>, world: &World, commands: &mut Vec<Command>) {
         let body = self.body(source, world);
-        commands.push(match source.below(36) {
+        commands.push(match source.below(37) {
             0 | 1 => self.spawned(source),
             2 => return self.heap(source, commands),
             3 => Command::Despawn { body },
@@ -163,6 +170,7 @@ impl Generator {
             21 => Command::SetBody { body, settings: settings::settings(source) },
             22 => Command::SetKind { body, kind: settings::kind(source) },
             23 => Command::SetMass { body, mass: settings::mass(source) },
+            24 if source.one_in(2) => Command::SetName { body, name: settings::name(source) },
             24 => Command::SetUserData { body, user_data: source.word() },
             25 => Command::Disable { body },
             26 => Command::Enable { body },
@@ -175,6 +183,7 @@ impl Generator {
             32 => self.altered_joint(source, world),
             33 => Command::Explode { explosion: self.explosion(source) },
             34 => self.spawned_each(source),
+            35 => Command::SetConfig { config: changed_config(source, world) },
             _ => self.joined_each(source, world),
         });
     }

@@ -1,6 +1,6 @@
 //! Generates settings of bodies.
 
-use lockstep2d::body::{BodyKind, BodySettings, Continuous, MassSource, MotionLocks};
+use lockstep2d::body::{BodyKind, BodySettings, Continuous, MassSource, MotionLocks, Name};
 use lockstep2d::fx;
 use lockstep2d::math::{Fx, Vec2};
 
@@ -75,4 +75,9 @@ pub fn ordinary_mass(source: &mut Source<'_>) -> MassSource {
         centre,
         gyration: source.thousandths(150, 600).max(Fx::DELTA),
     }
+}
+
+/// A name, or none.
+pub fn name(source: &mut Source<'_>) -> Option<Name> {
+    Name::new(source.pick(&["a", "ball", "player-1", "sixteen_letters_", ""])).ok()
 }

@@ -35,9 +35,9 @@ fn role(source: &mut Source<'_>, def: &mut ShapeDef) {
         0 | 1 => def.events.hit = true,
         2 => {
             let (contact, hit, sensor) = (source.one_in(2), source.one_in(2), source.one_in(2));
-            def.events = EventSwitches { contact, hit, sensor };
+            def.events = EventSwitches { contact, hit, sensor, detect_sensors: source.one_in(2) };
         }
-        3 => def.sensor = true,
+        3 => (def.sensor, def.events.detect_sensors) = (true, source.one_in(2)),
         4 => def.one_way = Some(source.angle()),
         _ => {}
     }
@@ -152,7 +152,7 @@ fn material(source: &mut Source<'_>) -> Material {
     Material {
         friction: source.mostly(0, 16_000),
         friction_mixing: source.pick(&rules),
-        restitution: source.mostly(0, 1000),
+        restitution: source.mostly(0, 1500),
         restitution_mixing: source.pick(&rules),
         restitution_threshold: if source.one_in(2) { Some(source.mostly(0, 2000)) } else { None },
         rolling_resistance: if source.one_in(2) { source.mostly(0, 1000) } else { Fx::ZERO },

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::arena::{IslandId, ShapeId};
 use super::body_def::{BodyDef, BodyKind};
 use super::mass::{MassProperties, MassSource};
+use super::name::Name;
 use super::rest_ticks::RestTicks;
 use super::settings::BodySettings;
 use super::shape_list::{self, ShapeList};
@@ -58,6 +59,8 @@ pub struct Body {
     #[serde(with = "shape_list")]
     pub(crate) shapes: ShapeList,
     pub(crate) user_data: u64,
+    /// Boxed, because few bodies have one.
+    pub(crate) name: Option<Box<Name>>,
 }
 
 impl Body {
@@ -80,6 +83,7 @@ impl Body {
             target: None,
             shapes: ShapeList::new(),
             user_data: def.user_data,
+            name: def.name.map(Box::new),
         };
         body.set_angular_velocity(def.angular_velocity);
         body.hold_locked_axes();
@@ -233,6 +237,12 @@ impl Body {
     #[must_use]
     pub const fn user_data(&self) -> u64 {
         self.user_data
+    }
+
+    /// Name for reports, set by the game.
+    #[must_use]
+    pub fn name(&self) -> Option<Name> {
+        self.name.as_deref().copied()
     }
 
     pub(crate) fn set_transform(&mut self, position: Vec2<Fx>, angle: Angle) {

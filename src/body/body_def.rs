@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::error::WorldError;
 use super::mass::MassSource;
+use super::name::Name;
 use super::settings::{BodySettings, Continuous};
 use super::shape::WORLD_EXTENT_MAX;
 use crate::math::{Angle, Fx, Vec2};
@@ -56,6 +57,8 @@ pub struct BodyDef {
     pub asleep: bool,
     /// Not used by the engine, but part of the state and its hash.
     pub user_data: u64,
+    /// Name for people who read reports.
+    pub name: Option<Name>,
 }
 
 impl BodyDef {
@@ -73,6 +76,7 @@ impl BodyDef {
             enabled: true,
             asleep: false,
             user_data: 0,
+            name: None,
         }
     }
 
@@ -223,10 +227,18 @@ impl BodyDef {
         self
     }
 
+    /// Names the body, for people who read reports.
+    #[must_use]
+    pub const fn name(mut self, name: Name) -> Self {
+        self.name = Some(name);
+        self
+    }
+
     /// Validates everything but mass and speed, which depend on shapes and on the world.
     pub(crate) fn validate(&self) -> Result<(), WorldError> {
         check_position(self.position)?;
-        self.settings.validate()
+        self.settings.validate()?;
+        self.name.map_or(Ok(()), |name| name.validate())
     }
 }
 

@@ -105,7 +105,7 @@ pub enum WorldError {
         /// The density in kg/m².
         value: Fx,
     },
-    /// Friction is not within 0 to 16, restitution or rolling resistance is not within 0 to 1, a restitution threshold
+    /// Friction is not within 0 to 16, restitution not within 0 to 1.5, rolling resistance not within 0 to 1, a threshold
     /// is not within 0 to 400 m/s, or a surface speed is not within ±400 m/s.
     MaterialOutOfRange,
     /// The mass of a dynamic body is not within 10 mg to 2^30 kg. It is too small if no shape has both area and
@@ -150,6 +150,13 @@ pub enum WorldError {
         /// Name of the setting.
         name: &'static str,
     },
+    /// A limit of the world is the same for its whole life.
+    FixedSetting {
+        /// Name of the limit.
+        name: &'static str,
+    },
+    /// A name is not 1 to 16 ASCII letters, digits, `-` and `_`.
+    NameInvalid,
     /// The world already holds the largest number of bodies, shapes or joints.
     Full {
         /// The kind of object of which there are too many.
@@ -183,7 +190,7 @@ impl fmt::Display for WorldError {
             WorldError::DensityOutOfRange { value } => write!(f, "density {value} kg/m² is out of range"),
             WorldError::MaterialOutOfRange => write!(
                 f,
-                "friction is 0 to 16, restitution and rolling resistance are 0 to 1, a restitution threshold is 0 to 400 m/s, \
+                "friction is 0 to 16, restitution 0 to 1.5, rolling resistance 0 to 1, a restitution threshold 0 to 400 m/s, \
                  and surface speed is within ±400 m/s"
             ),
             WorldError::MassOutOfRange { value } => {
@@ -206,6 +213,8 @@ impl fmt::Display for WorldError {
             WorldError::JointWithout { joint, what } => write!(f, "joint {joint} has no {what}"),
             WorldError::JointOutOfRange { what } => write!(f, "the {what} of a joint is out of range"),
             WorldError::Setting { name } => write!(f, "the world setting `{name}` is out of range"),
+            WorldError::FixedSetting { name } => write!(f, "the world limit `{name}` cannot be changed"),
+            WorldError::NameInvalid => write!(f, "a name is 1 to 16 ASCII letters, digits, `-` and `_`"),
             WorldError::Full { what, limit } => write!(f, "the world already holds {limit} {what}"),
             WorldError::WrongKind(id) => write!(f, "the kind of body {id} does not allow this change"),
         }

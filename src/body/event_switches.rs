@@ -13,11 +13,13 @@ pub struct EventSwitches {
     /// Detection by sensors.
     #[doc(alias = "trigger")]
     pub sensor: bool,
+    /// Whether the shape, if it is a sensor, detects other sensors: those whose `sensor` switch is on.
+    pub detect_sensors: bool,
 }
 
 impl Default for EventSwitches {
-    /// Contact and sensor events enabled, hit events disabled.
+    /// Contact and sensor events enabled; hit events and the detection of other sensors disabled.
     fn default() -> Self {
-        EventSwitches { contact: true, hit: false, sensor: true }
+        EventSwitches { contact: true, hit: false, sensor: true, detect_sensors: false }
     }
 }

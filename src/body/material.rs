@@ -53,7 +53,9 @@ pub struct Material {
     pub friction: Fx,
     /// Rule that combines the friction of two shapes.
     pub friction_mixing: Mixing,
-    /// Fraction of the approach speed that is returned by a bounce, 0 to 1. Shapes that approach more slowly than
+    /// Fraction of the approach speed that is returned by a bounce, 0 to 1.5. Above 1 a bounce adds energy, as that of a
+    /// pinball bumper; a pair has at most 2, whatever its mixing rule. A bounce that would change a
+    /// velocity by more than 511 m/s is clamped, and counts as a fault. Shapes that approach more slowly than
     /// [`Material::restitution_threshold`] do not bounce: by default that of the world, 1 m/s.
     pub restitution: Fx,
     /// Rule that combines the restitution of two shapes.
@@ -93,6 +95,9 @@ impl Material {
     /// Largest friction coefficient.
     pub const FRICTION_MAX: Fx = fx!(16);
 
+    /// Largest restitution.
+    pub const RESTITUTION_MAX: Fx = fx!(1.5);
+
     /// Largest restitution threshold in m/s.
     pub const RESTITUTION_THRESHOLD_MAX: Fx = fx!(400);
 
@@ -113,7 +118,7 @@ impl Material {
         } = *self;
         let fraction = Fx::ZERO..=Fx::ONE;
         (Fx::ZERO..=Self::FRICTION_MAX).contains(&friction)
-            && fraction.contains(&restitution)
+            && (Fx::ZERO..=Self::RESTITUTION_MAX).contains(&restitution)
             && restitution_threshold
                 .is_none_or(|speed| (Fx::ZERO..=Self::RESTITUTION_THRESHOLD_MAX).contains(&speed))
             && fraction.contains(&rolling_resistance)

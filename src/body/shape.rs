@@ -60,8 +60,9 @@ pub struct ShapeDef {
     /// come through except for a quarter of the world's speculative distance, so a shape that turns round half-way
     /// falls back. A pair that passes does not touch.
     pub one_way: Option<Angle>,
-    /// Whether the shape is a sensor, which detects overlaps and generates no contact response. Sensors do not detect
-    /// each other, and sensors of fixed bodies do not detect fixed bodies.
+    /// Whether the shape is a sensor, which detects overlaps and generates no contact response. It detects whatever
+    /// crosses it within a tick as well: see [`SensorEvent`](crate::world::SensorEvent). A sensor detects other sensors
+    /// only with [`EventSwitches::detect_sensors`], and sensors of fixed bodies do not detect fixed bodies.
     #[doc(alias = "trigger")]
     #[doc(alias = "is_trigger")]
     pub sensor: bool,
@@ -109,7 +110,7 @@ impl ShapeDef {
         self
     }
 
-    /// Sets the restitution, 0 to 1. It applies to approach speeds above [`Material::restitution_threshold`].
+    /// Sets the restitution, 0 to 1.5. It applies to approach speeds above [`Material::restitution_threshold`].
     #[must_use]
     pub fn restitution(mut self, restitution: Fx) -> Self {
         self.material.restitution = restitution;
@@ -157,6 +158,14 @@ impl ShapeDef {
     #[doc(alias = "is_trigger")]
     pub fn sensor(mut self) -> Self {
         self.sensor = true;
+        self
+    }
+
+    /// Makes the shape a sensor that detects other sensors as well: see [`EventSwitches::detect_sensors`].
+    #[must_use]
+    pub fn sensor_of_sensors(mut self) -> Self {
+        self.sensor = true;
+        self.events.detect_sensors = true;
         self
     }
 
@@ -278,6 +287,12 @@ impl Shape {
     #[doc(alias = "is_trigger")]
     pub const fn is_sensor(&self) -> bool {
         self.def.sensor
+    }
+
+    /// Whether the shape is a sensor whose switches, and those of another shape, let it detect the other one.
+    pub(crate) fn detects(&self, other: &Shape) -> bool {
+        let (own, seen) = (&*self.def, &*other.def);
+        own.sensor && seen.events.sensor && (!seen.sensor || own.events.detect_sensors)
     }
 
     /// User data, set by the game.

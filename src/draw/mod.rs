@@ -32,6 +32,7 @@
 //! [`World::from_bytes`]: crate::world::World::from_bytes
 
 mod bar;
+mod convert;
 mod fit;
 mod legend;
 mod paint;
@@ -43,6 +44,7 @@ mod svg;
 mod view;
 
 pub use bar::Bar;
+pub use convert::to_f32;
 pub use fit::fit;
 pub use legend::Legend;
 pub use paint::{Fill, PAPER, Paint};

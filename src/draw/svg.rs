@@ -109,7 +109,8 @@ fn sorted_by_style(world: &World, view: &View, screen: &Screen, marks: &Marks) -
         let elements = layers.entry(first.style).or_default();
         match (has_tooltip(first.style), first.subject) {
             (true, Subject::Body(id)) => {
-                push(elements, format_args!("<path d=\"{path}\"><title>body {id}</title></path>\n"));
+                let label = world.body_label(id);
+                push(elements, format_args!("<path d=\"{path}\"><title>body {label}</title></path>\n"));
             }
             _ => elements.push_str(&path),
         }

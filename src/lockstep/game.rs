@@ -89,6 +89,11 @@ pub trait Game: Sized {
         Self::Input::default()
     }
 
+    /// The physics world, if the game has one, for drawing and other readers.
+    fn world(&self) -> Option<&World> {
+        None
+    }
+
     /// The physics world, if the game has one, for inspection tools. A tool modifies the world only in a game that it
     /// created itself.
     fn world_mut(&mut self) -> Option<&mut World> {

@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::{Game, RulesId, SetupError};
 use crate::body::{BodyId, BodyKind};
 use crate::hash::StateHash;
+use crate::solver::SolverSettings;
 use crate::world::{Command, Config, Snapshot, World};
 
 /// A physics world that one player modifies by commands.
@@ -29,13 +30,6 @@ pub struct Sandbox {
 
 /// Maximum work units of a setup's commands: about two seconds. A million bodies of one shape take 12 million.
 const SETUP_WORK_MAX: u64 = 100_000_000;
-
-/// Pairs per body that are assumed to be solved in SIMD batches of eight. A heap that is not forced together has up to
-/// six pairs per body.
-const PAIRS_PER_BODY: u64 = 32;
-
-/// Cost of a pair beyond [`PAIRS_PER_BODY`], in ordinary pairs: measured on a thousand squares at the same position.
-const CROWDED_WORK: u64 = 64;
 
 /// Initial state of a sandbox.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -109,8 +103,14 @@ impl Game for Sandbox {
     }
 
     fn step(&mut self, inputs: &[Vec<Command>]) {
+        let tick_rate = self.world.config().tick_rate;
         for command in inputs.iter().flatten() {
-            if self.world.execute(command).is_err() {
+            // The tick rate of a game is constant; only a setup may change it.
+            let is_constant = match command {
+                Command::SetConfig { config } => config.tick_rate == tick_rate,
+                _ => true,
+            };
+            if !is_constant || self.world.execute(command).is_err() {
                 self.refused = self.refused.saturating_add(1);
             }
         }
@@ -130,6 +130,10 @@ impl Game for Sandbox {
         self.refused = save.refused;
     }
 
+    fn world(&self) -> Option<&World> {
+        Some(&self.world)
+    }
+
     fn world_mut(&mut self) -> Option<&mut World> {
         Some(&mut self.world)
     }
@@ -146,19 +150,15 @@ impl Game for Sandbox {
         let grown =
             count(commands.clone().filter(|command| matches!(command, Command::AddShape { .. })).count());
         let changes = changes.saturating_add(grown.saturating_mul(grown) * 4);
-        let spawned: u64 = commands.map(bodies_added).sum();
-        let shapes = count(world.shape_count()).saturating_add(added);
-        let bodies = count(world.body_count()).saturating_add(spawned);
-        let constraints = count(world.pair_count()).saturating_add(count(world.joint_count()));
-        let solver = world.config().solver;
-        let rounds = u64::from(solver.sub_steps) * u64::from(solver.iterations);
-        // In a heap of overlapping bodies, many contacts find no free place in a SIMD batch.
-        let crowded = count(world.pair_count()).saturating_sub(bodies.saturating_mul(PAIRS_PER_BODY));
-        let constraints = constraints.saturating_add(crowded.saturating_mul(CROWDED_WORK));
-        let solved = bodies.saturating_add(shapes).saturating_add(constraints).saturating_mul(rounds);
-        let compared = shapes.saturating_mul(shapes);
-        let possible_pairs = (compared / 2).min(world.config().pair_limit.into());
-        solved.saturating_add(changes).saturating_add(possible_pairs).saturating_add(compared / 64)
+        let spawned: u64 = commands.clone().map(bodies_added).sum();
+        // Settings that are out of range are refused, and cost nothing.
+        let new_settings = commands.filter_map(|command| match command {
+            Command::SetConfig { config } => config.validate().is_ok().then_some(&config.solver),
+            _ => None,
+        });
+        let rounds = |solver: &SolverSettings| u64::from(solver.sub_steps) * u64::from(solver.iterations);
+        let rounds = new_settings.map(rounds).fold(rounds(&world.config().solver), u64::max);
+        world.work_in_rounds(spawned, added, rounds).saturating_add(changes)
     }
 }
 
@@ -211,7 +211,13 @@ fn command_work(world: &World, command: &Command) -> u64 {
         Command::SetVelocity { body, .. } | Command::MoveTo { body, .. } if is_kinematic(world, *body) => {
             1 + count(world.joint_count())
         }
-        Command::Sleep { .. } | Command::SetGravity { .. } | Command::Explode { .. } => 1 + everything(),
+        Command::Sleep { .. }
+        | Command::SetGravity { .. }
+        | Command::SetConfig { .. }
+        | Command::Explode { .. } => 1 + everything(),
+        Command::Wake { body } if world.body(*body).is_some_and(|body| !body.is_dynamic()) => {
+            1 + everything()
+        }
         _ => 1,
     }
 }

@@ -1,6 +1,6 @@
 //! 2D vectors over any of the formats.
 
-use core::ops::{Add, AddAssign, Neg, Sub, SubAssign};
+use core::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
 
 use fixed::FixedI32;
 use fixed::traits::Fixed;
@@ -88,6 +88,20 @@ impl<T: Fixed> SubAssign for Vec2<T> {
     #[inline]
     fn sub_assign(&mut self, other: Self) {
         *self = *self - other;
+    }
+}
+
+/// [`Vec2::scale`]: rounded to nearest, saturated.
+///
+/// ```
+/// # use lockstep2d::{fx, math::Vec2};
+/// assert_eq!(Vec2::new(fx!(3), fx!(-4)) * fx!(0.5), Vec2::new(fx!(1.5), fx!(-2)));
+/// ```
+impl Mul<Fx> for Vec2<Fx> {
+    type Output = Self;
+    #[inline]
+    fn mul(self, factor: Fx) -> Self {
+        self.scale(factor)
     }
 }
 

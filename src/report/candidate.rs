@@ -176,7 +176,7 @@ fn everybody<G: Game>(game: &mut G, before: &G::Save) -> Vec<Candidate> {
     let Some(world) = game.world_mut() else {
         return Vec::new();
     };
-    let paths: Vec<String> = world.bodies().map(|(id, _)| format!("body {id}")).collect();
+    let paths: Vec<String> = world.bodies().map(|(id, _)| format!("body {}", world.body_label(id))).collect();
     let mut candidates = Vec::new();
     for when in [When::After, When::Before] {
         for path in &paths {
@@ -224,7 +224,9 @@ fn search<G: Game>(
 
 /// Slot and generation of a body, from its path.
 fn handle(path: &str) -> Option<(u32, u32)> {
-    let (_, handle) = path.rsplit_once("body ")?;
+    let (_, label) = path.rsplit_once("body ")?;
+    // A name may follow.
+    let handle = label.split(' ').next()?;
     let (slot, generation) = handle.split_once('v')?;
     Some((slot.parse().ok()?, generation.parse().ok()?))
 }

@@ -7,7 +7,8 @@ use crate::fx;
 use crate::math::{Aabb, Fx, Vec2, fx_div, fx_mul, sqrt};
 use crate::solver::{ContactTuning, RATE_MAX, SUB_STEPS_MAX, SolverSettings};
 
-/// Settings of a world. They do not change after it is created, except for gravity.
+/// Settings of a world. [`World::set_config`](crate::world::World::set_config) changes them at run time, except for the
+/// limits.
 ///
 /// # Small bodies
 ///
@@ -144,6 +145,18 @@ impl Config {
         // That of boxes of 1 m is a fiftieth of their size.
         self.speculative_distance = self.speculative_distance.min((size / 50).max(SPECULATIVE_DISTANCE_MIN));
         self
+    }
+
+    /// The name of the first limit that differs in other settings. Limits bound memory, and are the same for the life of
+    /// a world.
+    pub(crate) fn first_changed_limit(&self, other: &Config) -> Option<&'static str> {
+        let limits = [
+            (self.body_limit, other.body_limit, "body_limit"),
+            (self.shape_limit, other.shape_limit, "shape_limit"),
+            (self.joint_limit, other.joint_limit, "joint_limit"),
+            (self.pair_limit, other.pair_limit, "pair_limit"),
+        ];
+        limits.into_iter().find(|(own, other, _)| own != other).map(|(.., name)| name)
     }
 
     /// Checks every setting.

@@ -29,7 +29,7 @@ mod view;
 
 pub use config::Config;
 pub use edit::{BodyField, BodyPose, Command, Explosion, Outcome};
-pub use events::{ContactEvent, Events, HitEvent, JointEvent, MoveEvent, SensorEvent};
+pub use events::{ContactEvent, Events, HitEvent, JointEvent, MoveEvent, SensorChange, SensorEvent};
 pub use query::{
     CastHit, ClosestPoints, Displacement, InitialOverlap, Moved, Mover, MoverPlane, MoverState, Probe,
     ProbeHit, QueryFilter, RayHit, TimeOfImpact, clip_velocity, solve_planes,

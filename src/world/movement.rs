@@ -32,6 +32,9 @@ fn cover_shapes(state: &mut State, scratch: &mut Scratch, slot: u32) {
             shapes.at_mut(id.slot()).fat = fat;
             scratch.shapes.refit(id.slot(), fat);
             scratch.pairs.changes.box_changed(id.slot());
+            if scratch.shapes.motion().may_have_sensors() {
+                scratch.sweeps.left_boxes.push(id.slot());
+            }
         }
     }
 }

@@ -23,15 +23,16 @@ pub(crate) struct Island {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Reported {
     pub(crate) shapes: ContactEvent,
-    /// Which of the shapes is a sensor, if any.
+    /// Which of the shapes is a sensor that detects the other one, if any.
     pub(crate) sensor: Option<Side>,
 }
 
-/// One of the two shapes of a pair.
+/// One of the two shapes of a pair, or both: two sensors may detect each other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) enum Side {
     A,
     B,
+    Both,
 }
 
 /// Everything that influences the future. Its encoding is derived, so that a new field is part of the hash, of
@@ -95,12 +96,18 @@ impl State {
         self.bodies.at(self.shapes.at(shape).body().slot())
     }
 
-    /// Which shape of a pair is a sensor, if any.
+    /// Which shape of a pair is a sensor that detects the other one, if any shape is a sensor.
     pub(crate) fn sensor_of(&self, (a, b): Pair) -> Option<Side> {
-        match (self.shapes.at(a).is_sensor(), self.shapes.at(b).is_sensor()) {
-            (true, _) => Some(Side::A),
+        let (a, b) = (self.shapes.at(a), self.shapes.at(b));
+        match (a.is_sensor(), b.is_sensor()) {
+            (true, false) => Some(Side::A),
             (false, true) => Some(Side::B),
             (false, false) => None,
+            (true, true) => match (a.detects(b), b.detects(a)) {
+                (true, true) => Some(Side::Both),
+                (false, true) => Some(Side::B),
+                (_, false) => Some(Side::A),
+            },
         }
     }
 

@@ -67,7 +67,7 @@ fn values_out_of_range() {
         (WorldError::DensityOutOfRange { value }, "density 2.25 kg/m² is out of range"),
         (
             WorldError::MaterialOutOfRange,
-            "friction is 0 to 16, restitution and rolling resistance are 0 to 1, a restitution threshold is 0 to 400 m/s, \
+            "friction is 0 to 16, restitution 0 to 1.5, rolling resistance 0 to 1, a restitution threshold 0 to 400 m/s, \
          and surface speed is within ±400 m/s",
         ),
         (
@@ -82,6 +82,8 @@ fn values_out_of_range() {
         (WorldError::GravityScaleOutOfRange { value }, "gravity scale is within ±1000, not 2.25"),
         (WorldError::JointOutOfRange { what: "length" }, "the length of a joint is out of range"),
         (WorldError::Setting { name: "tick_rate" }, "the world setting `tick_rate` is out of range"),
+        (WorldError::FixedSetting { name: "pair_limit" }, "the world limit `pair_limit` cannot be changed"),
+        (WorldError::NameInvalid, "a name is 1 to 16 ASCII letters, digits, `-` and `_`"),
         (WorldError::Full { what: "bodies", limit: 12 }, "the world already holds 12 bodies"),
     ]);
 }

@@ -202,3 +202,47 @@ fn slow_falls_bounce_with_a_threshold_of_zero() {
         }
     }
 }
+
+/// A bumper without gravity: a ball or a flat box leaves it at `e` times its speed, as long as the change of velocity is
+/// below the 511 m/s of an impulse.
+#[test]
+fn a_bumper_returns_more_than_the_speed() {
+    let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).expect("valid"));
+    let square = ShapeDef::new(Polygon::square(fx!(0.5)).expect("valid"));
+    for (shape, e) in [(ball, fx!(1.5)), (ball, fx!(1.2)), (square, fx!(1.5)), (square, fx!(1.01))] {
+        for speed in [fx!(2), fx!(20), fx!(90), fx!(200)] {
+            let mut world = World::new(Config { gravity: Vec2::ZERO, ..Config::default() }).expect("valid");
+            let wall = ShapeDef::new(Polygon::rectangle(fx!(1), fx!(5)).expect("valid")).restitution(e);
+            world.spawn(&BodyDef::fixed().position((fx!(1), fx!(0))), &[wall]).expect("valid");
+            let def = BodyDef::dynamic().position((fx!(-2), fx!(0))).velocity((speed, fx!(0)));
+            let thrown = world.spawn(&def, &[shape]).expect("valid");
+            for _ in 0..180 {
+                world.step();
+            }
+            let left = -world.body(thrown).expect("there").velocity().x;
+            let expected = fx_mul(e, speed);
+            assert!((left - expected).abs() < speed / 1000 + fx!(0.001), "{e} at {speed} m/s: {left}");
+            assert_eq!(world.faults(), 0, "{e} at {speed} m/s");
+            assert_eq!(world.validate(), Ok(()));
+        }
+    }
+}
+
+/// Two bumpers that meet head on at the speed limit: `e` times their approach exceeds the format of speeds. The change
+/// of velocity is clamped, which counts as a fault, and never wraps around.
+#[test]
+fn bumpers_at_the_speed_limit_part() {
+    let mut world = World::new(Config { gravity: Vec2::ZERO, ..Config::default() }).expect("valid");
+    let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).expect("valid")).restitution(fx!(1.5));
+    let [left, right] = [(fx!(-5), fx!(400)), (fx!(5), fx!(-400))].map(|(x, speed)| {
+        let def = BodyDef::dynamic().position((x, fx!(0))).velocity((speed, fx!(0)));
+        world.spawn(&def, &[ball]).expect("valid")
+    });
+    for _ in 0..10 {
+        world.step();
+        assert_eq!(world.validate(), Ok(()));
+    }
+    let speed = |id| world.body(id).expect("there").velocity().x;
+    assert!(speed(left) < fx!(-100) && speed(right) > fx!(100), "{} {}", speed(left), speed(right));
+    assert!(world.faults() > 0);
+}

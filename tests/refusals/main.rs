@@ -106,7 +106,7 @@ fn bodies_out_of_range_are_refused() {
     stage.refuses(spawn(BodyDef::fixed(), ball().offset((Fx::MIN, fx!(0)))), offset);
     let material = |error: &WorldError| matches!(error, WorldError::MaterialOutOfRange);
     stage.refuses(spawn(BodyDef::dynamic(), ball().friction(fx!(-0.1))), material);
-    stage.refuses(spawn(BodyDef::dynamic(), ball().restitution(fx!(1.1))), material);
+    stage.refuses(spawn(BodyDef::dynamic(), ball().restitution(fx!(1.501))), material);
     let damping = |error: &WorldError| matches!(error, WorldError::DampingOutOfRange { .. });
     stage.refuses(spawn(BodyDef::dynamic().linear_damping(fx!(-1)), ball()), damping);
     stage.refuses(spawn(BodyDef::dynamic().angular_damping(fx!(1001)), ball()), damping);
@@ -183,6 +183,21 @@ fn what_a_body_cannot_do_is_refused() {
     refuses_impossible_joints(&mut stage);
     stage.refuses(Command::SetGravity { gravity: velocity }, |error| {
         matches!(error, WorldError::Setting { .. })
+    });
+    let config = *stage.world.config();
+    for changed in [
+        Config { body_limit: 9, ..config },
+        Config { shape_limit: 9, ..config },
+        Config { joint_limit: 9, ..config },
+        Config { pair_limit: 9, ..config },
+    ] {
+        stage.refuses(Command::SetConfig { config: changed }, |error| {
+            matches!(error, WorldError::FixedSetting { .. })
+        });
+    }
+    let fast = Config { tick_rate: 1001, ..config };
+    stage.refuses(Command::SetConfig { config: fast }, |error| {
+        *error == WorldError::Setting { name: "tick_rate" }
     });
     let only = stage.world.body(ball).expect("there").shapes()[0];
     stage.refuses(Command::RemoveShape { shape: only }, |error| {

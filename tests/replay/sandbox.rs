@@ -1,6 +1,8 @@
 //! Sandbox replays: every command can be recorded, whether the world accepts or refuses it, and the replay matches.
 
-use lockstep2d::body::{BodyDef, BodyId, BodyKind, BodySettings, Geometry, MassSource, Polygon, ShapeDef};
+use lockstep2d::body::{
+    BodyDef, BodyId, BodyKind, BodySettings, Geometry, MassSource, Name, Polygon, ShapeDef,
+};
 use lockstep2d::fx;
 use lockstep2d::lockstep::{Game, Sandbox, SandboxSetup};
 use lockstep2d::math::{Angle, Fx, Vec2};
@@ -53,6 +55,8 @@ fn commands(world: &World, body: BodyId, value: Fx) -> Vec<Command> {
         Command::SetVelocity { body, velocity, angular_velocity: value },
         Command::SetTransform { body, position: position + vector, angle },
         Command::SetGravity { gravity: vector },
+        Command::SetName { body, name: Name::new("probe").ok() },
+        Command::SetConfig { config: Config { hit_speed: value, ..*world.config() } },
         Command::MoveTo { body, position, angle },
         Command::SetBody { body, settings: BodySettings { linear_damping: value, ..Default::default() } },
         Command::SetMass {

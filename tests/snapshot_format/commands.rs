@@ -2,7 +2,7 @@
 
 use lockstep2d::body::{
     BodyDef, BodyId, BodyKind, BodySettings, Continuous, EventSwitches, Filter, Geometry, JointId,
-    MassSource, Material, Mixing, MotionLocks, Polygon, ShapeDef, ShapeId, Sides, WorldError,
+    MassSource, Material, Mixing, MotionLocks, Name, Polygon, ShapeDef, ShapeId, Sides, WorldError,
 };
 use lockstep2d::codec::encode;
 use lockstep2d::fx;
@@ -110,7 +110,7 @@ fn polygon() -> (ShapeDef, Written) {
     let filter = Filter { category: 4, mask: 5, group: -6 };
     let corners = [Vec2::new(fx!(0), fx!(0)), Vec2::new(fx!(2), fx!(0)), Vec2::new(fx!(0), fx!(2))];
     let triangle = Polygon::new(&corners).and_then(|polygon| polygon.rounded(fx!(0.5))).expect("a triangle");
-    let events = EventSwitches { contact: false, hit: true, sensor: false };
+    let events = EventSwitches { contact: false, hit: true, sensor: false, detect_sensors: true };
     let shape = ShapeDef { material, events, ..ShapeDef::new(triangle) };
     let shape =
         shape.filter(filter).offset((fx!(3), fx!(4))).one_way(Angle::from_bits(11)).sensor().user_data(9);
@@ -118,7 +118,7 @@ fn polygon() -> (ShapeDef, Written) {
     let bytes = w().u32(2).u64(3).i32(&[0, 0, 2 * one, 0, 0, 2 * one]).i32(&[one / 2]);
     let surface = w().fx(&[1]).u32(2).fx(&[2]).u32(3).u8(1).fx(&[16]).fx(&[1, -14]);
     let bytes = bytes.fx(&[6, 8]).fx(&[2]).then(surface).u64(4).u64(5).i32(&[-6]);
-    (shape, bytes.u8(1).u32(11).u8(1).u8(0).u8(1).u8(0).u64(9))
+    (shape, bytes.u8(1).u32(11).u8(1).u8(0).u8(1).u8(0).u8(1).u64(9))
 }
 
 fn settings() -> (BodySettings, Written) {
@@ -139,8 +139,13 @@ fn body() -> (BodyDef, Written) {
     let (mass, mass_bytes) = mass();
     let def = BodyDef::kinematic().position((fx!(5), fx!(6))).angle(Angle::from_bits(7)).mass(mass);
     let def = def.velocity((fx!(1), fx!(2))).angular_velocity(fx!(3)).asleep().user_data(8);
+    let def = def.name(Name::new("ball").expect("valid"));
     let bytes = w().u32(1).fx(&[10, 12]).u32(7).fx(&[2, 4, 6]).then(mass_bytes).then(settings_bytes);
-    (BodyDef { settings, ..def }, bytes.u8(1).u8(1).u64(8))
+    (BodyDef { settings, ..def }, bytes.u8(1).u8(1).u64(8).u8(1).then(name_bytes()))
+}
+
+fn name_bytes() -> Written {
+    b"ball".iter().chain(&[0; 12]).fold(w(), |bytes, &byte| bytes.u8(byte))
 }
 
 fn mass() -> (MassSource, Written) {
@@ -255,6 +260,8 @@ fn cases(handles: &Handles) -> Vec<(Command, Written)> {
         (Command::Explode { explosion }, w().u32(26).fx(&[2, -1]).fx(&[4, 6, 8]).u64(7)),
         (Command::EnableJoint { joint }, w().u32(27).u32(0).u32(0)),
         (Command::DisableJoint { joint }, w().u32(28).u32(0).u32(0)),
+        (Command::SetConfig { config: settings_of_world().0 }, w().u32(29).then(settings_of_world().1)),
+        (Command::SetName { body, name: Name::new("ball").ok() }, on_body(30).u8(1).then(name_bytes())),
     ]
 }
 
@@ -276,17 +283,23 @@ fn the_bytes_of_commands_are_those_of_the_document() {
     assert_eq!(encode(&inputs), all.0, "an input of the sandbox");
 }
 
-#[test]
-fn the_bytes_of_a_setup_are_those_of_the_document() {
+/// Settings of a world with their bytes.
+fn settings_of_world() -> (Config, Written) {
     let solver = SolverSettings {
         contact: ContactTuning::Baumgarte { share: fx!(0.5), slop: fx!(1), push_speed: fx!(3) },
         ..SolverSettings::default()
     };
     let config = Config { solver, fat_margin: fx!(0.5), speculative_distance: fx!(0.5), ..Config::default() };
     let config = Config { continuous: false, hit_speed: fx!(2), ..config };
-    let setup = SandboxSetup { config, commands: vec![Command::SetGravity { gravity: Vec2::ZERO }] };
     let settings = w().u32(4).u32(1).u32(1).fx(&[1, 2, 6]).fx(&[120, 4, 2, 800]);
     let limits = w().u32(1 << 20).u32(1 << 20).u32(1 << 20).u32(1 << 18);
     let expected = w().u32(60).fx(&[0, -20]).then(settings).fx(&[1, 1]).u8(1).u8(0).fx(&[4]).then(limits);
+    (config, expected)
+}
+
+#[test]
+fn the_bytes_of_a_setup_are_those_of_the_document() {
+    let (config, expected) = settings_of_world();
+    let setup = SandboxSetup { config, commands: vec![Command::SetGravity { gravity: Vec2::ZERO }] };
     assert_eq!(encode(&setup), expected.u64(1).u32(14).fx(&[0, 0]).0);
 }

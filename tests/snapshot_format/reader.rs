@@ -179,6 +179,9 @@ impl<'a> Reader<'a> {
             self.handle("shape");
         }
         self.u64("user data");
+        self.option("has a name", |reader| {
+            reader.take(16, "name", |_| String::new());
+        });
     }
 
     fn settings(&mut self) {
@@ -236,7 +239,7 @@ impl<'a> Reader<'a> {
             reader.u32("its direction");
         });
         self.u8("sensor");
-        for name in ["events: contact", "events: hit", "events: sensor"] {
+        for name in ["events: contact", "events: hit", "events: sensor", "events: detect sensors"] {
             self.u8(name);
         }
         self.u64("user data");

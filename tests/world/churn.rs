@@ -2,7 +2,7 @@
 
 use lockstep2d::body::{
     BodyDef, BodyId, BodyKind, BodySettings, Continuous, EventSwitches, Filter, JointId, MassSource,
-    Material, MotionLocks, ShapeDef, ShapeId,
+    Material, MotionLocks, Name, ShapeDef, ShapeId,
 };
 use lockstep2d::fx;
 use lockstep2d::math::{Angle, Fx, Rng, Vec2};
@@ -63,7 +63,7 @@ impl Churn {
 
     fn command(&mut self, world: &World) -> Option<Command> {
         let crowded = world.body_count() > 35;
-        let command = match self.rng.below(31) {
+        let command = match self.rng.below(33) {
             0..=4 if !crowded => Command::Spawn { body: self.body(), shapes: self.shapes() },
             5 => Command::Despawn { body: self.any_body(world)? },
             6 => Command::AddShape { body: self.any_body(world)?, shape: self.shape() },
@@ -106,9 +106,27 @@ impl Churn {
                 let shape = self.any_shape(world)?;
                 Command::SetShape { shape, def: self.changed_shape(*world.shape(shape)?.def()) }
             }
+            31 => Command::SetName { body: self.any_body(world)?, name: Name::new("named").ok() },
+            30 => Command::SetConfig { config: self.changed_config(*world.config()) },
             _ => Command::Explode { explosion: Explosion::new(self.place(), self.signed(fx!(2))) },
         };
         Some(command)
+    }
+
+    /// Settings with one change.
+    fn changed_config(&mut self, mut config: Config) -> Config {
+        let rng = &mut self.rng;
+        match rng.below(8) {
+            0 => config.tick_rate = if rng.chance(1, 2) { 60 } else { 90 },
+            1 => config.solver.sub_steps = if rng.chance(1, 2) { 4 } else { 6 },
+            2 => config.sleeping = !config.sleeping,
+            3 => config.continuous = !config.continuous,
+            4 => config.solver.restitution_threshold = rng.range(fx!(0), fx!(2)),
+            5 => config.speculative_distance = rng.range(fx!(0.005), fx!(0.05)),
+            6 => config.fat_margin = rng.range(fx!(0.01), fx!(0.2)),
+            _ => config.solver.speed_max = rng.range(fx!(20), fx!(400)),
+        }
+        config
     }
 
     fn velocity(&mut self, world: &World) -> Option<Command> {
@@ -225,7 +243,7 @@ impl Churn {
             2 => def.filter.group = [-1, 0, 1][rng.below(3) as usize],
             3 => {
                 let (contact, hit, sensor) = (rng.chance(1, 2), rng.chance(1, 2), rng.chance(1, 2));
-                def.events = EventSwitches { contact, hit, sensor };
+                def.events = EventSwitches { contact, hit, sensor, detect_sensors: rng.chance(1, 2) };
             }
             4 => def.material = Material { restitution: fx!(0.5), ..Material::default() },
             5 => def.geometry = ball(rng.range(fx!(0.1), fx!(0.4))).geometry,

@@ -1,8 +1,9 @@
 //! Neither the caches nor the choice of broad phase affect results: six worlds receive the same commands, and must have
 //! the same hash and events after every tick.
 
+use lockstep2d::body::ShapeId;
 use lockstep2d::collision::BroadPhaseKind;
-use lockstep2d::world::{Command, ContactEvent, Events, SensorEvent, World};
+use lockstep2d::world::{Command, ContactEvent, Events, SensorChange, World};
 use std::collections::BTreeSet;
 use std::sync::Mutex;
 
@@ -67,7 +68,7 @@ impl Variant {
 #[derive(Default)]
 struct Open {
     contacts: BTreeSet<ContactEvent>,
-    visits: BTreeSet<SensorEvent>,
+    visits: BTreeSet<(ShapeId, ShapeId)>,
 }
 
 impl Open {
@@ -78,21 +79,36 @@ impl Open {
         for event in &events.contact_begin {
             assert!(self.contacts.insert(*event), "{event:?} began twice");
         }
-        for event in &events.sensor_end {
-            assert!(self.visits.remove(event), "{event:?} ended without having begun");
-        }
-        for event in &events.sensor_begin {
-            assert!(self.visits.insert(*event), "{event:?} began twice");
+        for change in events.sensor_changes() {
+            match change {
+                SensorChange::Begin(event) => {
+                    let is_new = self.visits.insert((event.sensor, event.visitor));
+                    assert!(is_new, "{event:?} began twice");
+                }
+                SensorChange::End(event) => {
+                    let is_open = self.visits.remove(&(event.sensor, event.visitor));
+                    assert!(is_open, "{event:?} ended without having begun");
+                }
+            }
         }
     }
 
-    /// Expects that every open contact and overlap is between shapes that exist.
+    /// Expects that every open contact and overlap is between shapes that exist, and that the overlaps are those that
+    /// the world lists and that its shapes have.
     fn check(&self, world: &World) {
         let ends = self.contacts.iter().flat_map(|event| [event.shape_a, event.shape_b]);
-        let ends = ends.chain(self.visits.iter().flat_map(|event| [event.sensor, event.visitor]));
+        let ends = ends.chain(self.visits.iter().flat_map(|event| [event.0, event.1]));
         ends.for_each(|shape| {
             assert!(world.shape(shape).is_some(), "shape {shape} was removed without end events")
         });
+        let listed = world.shapes().flat_map(|(sensor, _)| {
+            world.sensor_overlaps(sensor).into_iter().map(move |visitor| (sensor, visitor))
+        });
+        assert_eq!(listed.collect::<Vec<_>>(), self.visits.iter().copied().collect::<Vec<_>>());
+        for &(sensor, visitor) in &self.visits {
+            let distance = world.distance(sensor, visitor).expect("both are there").distance;
+            assert!(distance <= 0, "{sensor} and {visitor} are {distance} m apart");
+        }
     }
 }
 

@@ -1,16 +1,19 @@
 //! Public behaviour of `World`: sleep, sensors, events, snapshots, and changes at run time. One file per subject.
 
 mod churn;
+mod crossings;
 mod equality;
 mod events;
 mod far;
 mod joint_batches;
 mod joint_edits;
 mod locks;
+mod names;
 mod phases;
 mod rollback;
 mod sensors;
 mod setters;
+mod settings;
 mod sleeping;
 #[path = "../common/sweep.rs"]
 mod sweep;

@@ -1,17 +1,20 @@
 //! Sensors report overlaps and never collide.
 
-use lockstep2d::body::{BodyDef, BodyId, EventSwitches, Filter, ShapeDef};
+use lockstep2d::body::{BodyDef, BodyId, EventSwitches, Filter, ShapeDef, ShapeId};
 use lockstep2d::fx;
 use lockstep2d::math::{Angle, Fx, Vec2};
 use lockstep2d::world::{SensorEvent, World};
 
 use super::{ball, is_asleep, rectangle, run, shape_of, spawn, square, weightless, world_with_floor};
 
+/// A sensor and its visitor.
+type Visit = (ShapeId, ShapeId);
+
 /// Sensor events collected over several ticks.
 #[derive(Debug, Default, PartialEq)]
 struct Log {
-    begun: Vec<SensorEvent>,
-    ended: Vec<SensorEvent>,
+    begun: Vec<Visit>,
+    ended: Vec<Visit>,
 }
 
 impl Log {
@@ -19,8 +22,11 @@ impl Log {
         let mut log = Log::default();
         for _ in 0..ticks {
             run(world, 1);
-            log.begun.extend(&world.events().sensor_begin);
-            log.ended.extend(&world.events().sensor_end);
+            let visits = |events: &[SensorEvent]| -> Vec<Visit> {
+                events.iter().map(|event| (event.sensor, event.visitor)).collect()
+            };
+            log.begun.extend(visits(&world.events().sensor_begin));
+            log.ended.extend(visits(&world.events().sensor_end));
         }
         log
     }
@@ -30,8 +36,8 @@ impl Log {
     }
 }
 
-fn visit(world: &World, sensor: BodyId, visitor: BodyId) -> SensorEvent {
-    SensorEvent { sensor: shape_of(world, sensor), visitor: shape_of(world, visitor) }
+fn visit(world: &World, sensor: BodyId, visitor: BodyId) -> Visit {
+    (shape_of(world, sensor), shape_of(world, visitor))
 }
 
 fn zone() -> ShapeDef {
@@ -124,7 +130,7 @@ fn kinematic_visitors_are_noticed_wherever_they_stop() {
 }
 
 /// Creates a box asleep on the floor inside a sensor.
-fn sleeper_inside() -> (World, BodyId, BodyId, SensorEvent) {
+fn sleeper_inside() -> (World, BodyId, BodyId, Visit) {
     let (mut world, _) = world_with_floor();
     let sensor = spawn(&mut world, BodyDef::kinematic().position((fx!(0), fx!(1.3))), zone());
     let visitor = spawn(&mut world, BodyDef::dynamic().position((fx!(0), fx!(0.5))), square(fx!(0.5)));
@@ -215,7 +221,7 @@ fn filters_and_switches_hide_from_sensors() {
     assert_eq!(noticed(zone().filter(Filter { mask: 1, ..other }), ball(fx!(0.2)).filter(other)), 0);
     assert_eq!(noticed(zone().filter(Filter { mask: 2, ..other }), ball(fx!(0.2)).filter(other)), 1);
     // Contact and hit switches do not affect sensors.
-    let silent = EventSwitches { contact: false, hit: false, sensor: true };
+    let silent = EventSwitches { contact: false, hit: false, ..EventSwitches::default() };
     assert_eq!(noticed(zone().events(silent), ball(fx!(0.2)).events(silent)), 1);
     assert_eq!(noticed(zone(), rectangle(fx!(30), Fx::ONE)), 1, "a visitor larger than the sensor");
 }

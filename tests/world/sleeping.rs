@@ -87,6 +87,28 @@ fn pushing_wakes() {
 }
 
 #[test]
+fn waking_the_ground_wakes_what_touches_it() {
+    wakes(|world, floor, _| world.wake(floor).expect("there"));
+    for ground in [BodyDef::fixed(), BodyDef::kinematic()] {
+        let mut world = World::default();
+        let ground = spawn(&mut world, ground.position((fx!(0), fx!(-1))), super::rectangle(fx!(9), fx!(1)));
+        let on_it = spawn(&mut world, BodyDef::dynamic().position((fx!(0), fx!(0.5))), square(fx!(0.5)));
+        let other = spawn(&mut world, BodyDef::fixed().position((fx!(20), fx!(-1))), square(fx!(1)));
+        let far = spawn(&mut world, BodyDef::dynamic().position((fx!(20), fx!(0.5))), square(fx!(0.5)));
+        let hung = spawn(&mut world, BodyDef::dynamic().position((fx!(-30), fx!(0))), square(fx!(0.5)));
+        let rope = JointDef::new(ground, hung, Revolute::new()).anchor_a((fx!(-30), fx!(1)));
+        world.add_joint(&rope).expect("valid");
+        run(&mut world, 90);
+        assert!([on_it, far, hung].iter().all(|&id| is_asleep(&world, id)));
+        world.wake(ground).expect("there");
+        assert_eq!([on_it, far, hung].map(|id| is_asleep(&world, id)), [false, true, false]);
+        run(&mut world, 90);
+        world.wake(other).expect("there");
+        assert_eq!([on_it, far, hung].map(|id| is_asleep(&world, id)), [true, false, true]);
+    }
+}
+
+#[test]
 fn joining_and_parting_wakes() {
     let world = wakes(|world, floor, [.., top]| {
         world

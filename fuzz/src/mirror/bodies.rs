@@ -27,6 +27,7 @@ pub(super) struct Body {
     target: Option<((i64, i64), u32)>,
     pub(super) shapes: Vec<Handle>,
     user_data: u64,
+    name: Option<[u8; 16]>,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -33,6 +33,7 @@ pub(super) struct Reported {
 enum Side {
     A,
     B,
+    Both,
 }
 
 impl State {
@@ -100,7 +101,7 @@ impl State {
     pub(super) fn alter_removed(&mut self, source: &mut Source<'_>) {
         let a = self.shapes.pick(source).map_or((source.byte().into(), 0), |a| self.shapes.handle(a));
         let b = (source.below(300) as u32, source.within(0, u32::MAX.into()) as u32);
-        let sensor = source.pick(&[None, Some(Side::A), Some(Side::B)]);
+        let sensor = source.pick(&[None, Some(Side::A), Some(Side::B), Some(Side::Both)]);
         self.removed_contacts.push(Reported { shapes: (a, b), sensor });
     }
 }

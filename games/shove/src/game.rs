@@ -161,6 +161,10 @@ impl Game for Shove {
         self.rules.clone_from(&save.rules);
     }
 
+    fn world(&self) -> Option<&World> {
+        Some(&self.world)
+    }
+
     fn world_mut(&mut self) -> Option<&mut World> {
         Some(&mut self.world)
     }

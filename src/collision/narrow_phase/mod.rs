@@ -42,7 +42,8 @@ pub(crate) fn may_meet(a: Aabb, b: Aabb, margin: Length) -> bool {
     a.expanded_nearby(widen(margin).wrapping_add(REJECT_SLACK)).overlaps(b)
 }
 
-/// Contact manifold of two posed shapes whose surfaces are at most `margin` metres apart.
+/// Contact manifold of two posed shapes whose surfaces are at most `margin` metres apart, with the early reject of the
+/// narrow phase.
 pub(crate) fn collide(
     a: &PosedShape,
     b: &PosedShape,
@@ -57,7 +58,7 @@ pub(crate) fn collide(
     }
 }
 
-/// [`collide`] without the early reject; also its test oracle.
+/// Contact manifold of two posed shapes whose surfaces are at most `margin` metres apart.
 pub(crate) fn collide_near(
     a: &PosedShape,
     b: &PosedShape,

@@ -8,4 +8,6 @@ mod time_of_impact;
 pub(crate) use distance::{distance, overlap};
 pub(crate) use ray::{cast_ray, contains_point};
 pub(crate) use shape_cast::{SKIN, ShapeHit, TOLERANCE as SKIN_TOLERANCE, cast_shape, goes_against};
-pub(crate) use time_of_impact::{StartPolicy, Sweep, TimeOfImpact, first_impact, time_of_impact};
+pub(crate) use time_of_impact::{
+    StartPolicy, Sweep, TimeOfImpact, first_impact, first_overlap, time_of_impact,
+};

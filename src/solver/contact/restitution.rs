@@ -101,7 +101,8 @@ impl Operation<Contacts> for ApplyRestitution {
             for (i, &mask) in masks.iter().enumerate().take(batch.count) {
                 let point = &batch.points[i];
                 let bounce = L::mul(restitution, L::load(&extras.approach[i]));
-                let bounce = L::narrow::<UNIT>(bounce);
+                // A restitution above 1 may exceed the format of speeds.
+                let (bounce, _) = L::narrow_saturating::<UNIT>(bounce);
                 let error = L::add_saturating(pair.velocity(n, &point.normal, reader), bounce);
                 let old = L::load(&rebound[i].new);
                 let wanted = L::max(L::sub_saturating(old, error), L::splat(0));
@@ -147,6 +148,8 @@ impl<const N: usize> Rebound<N> {
 /// W = sum P (v+ + v-) / 2 <= 0        P = L / D
 /// ```
 ///
+/// A restitution above 1 is meant to do work, and is not limited.
+///
 /// Newton's restitution gains energy where the rebound of one point adds to that of another. `W` is convex in the
 /// share, so that a line between no rebound and all of it is above it.
 fn shares_without_gain<const N: usize>(
@@ -165,7 +168,7 @@ fn shares_without_gain<const N: usize>(
             none += inverse * wide(old.0[lane]) * (wide(before.0[lane]) + approach);
             all += inverse * wide(new.0[lane]) * (wide(after.0[lane]) + approach);
         }
-        if all <= 0 {
+        if all <= 0 || extras.restitution.0[lane] > Unit::ONE.to_bits() {
             Unit::ONE.to_bits()
         } else if none >= 0 {
             0

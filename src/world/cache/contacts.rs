@@ -42,8 +42,6 @@ pub(crate) struct NarrowPhaseOutput {
     pub(crate) impacts: Vec<Impact>,
     /// For each manifold, the index of its contact in the state.
     pub(crate) contacts: Vec<u32>,
-    /// The contacts among these that have a sensor.
-    pub(crate) sensors: Vec<u32>,
     /// The contacts among these that the solver has to solve.
     pub(crate) touching: Vec<ActiveContact>,
     /// Fast approaches, which become hit events if the shapes push each other in this tick.
@@ -122,6 +120,18 @@ impl ContactCache {
         parts[1..].iter().for_each(|part| output.append(part));
     }
 
+    /// Makes room for a contact without a manifold that is inserted into the list of contacts at `index`.
+    pub(crate) fn insert(&mut self, index: usize) {
+        let NarrowPhaseOutput { contacts, touching, .. } = &mut self.output;
+        let later = contacts.partition_point(|&contact| (contact as usize) < index);
+        contacts[later..].iter_mut().for_each(|contact| *contact += 1);
+        let later = touching.partition_point(|pair| (pair.contact as usize) < index);
+        touching[later..].iter_mut().for_each(|pair| pair.contact += 1);
+        if index < self.axes.len() {
+            self.axes.insert(index, CachedAxis::default());
+        }
+    }
+
     /// Moves the contacts for which `stays` is false from `contacts` to `removed`, with order preserved. Removes their
     /// manifolds and axes.
     pub(crate) fn split_off(
@@ -165,7 +175,6 @@ impl NarrowPhaseOutput {
         self.manifolds.clear();
         self.impacts.clear();
         self.contacts.clear();
-        self.sensors.clear();
         self.touching.clear();
         self.approaches.clear();
         self.boxes.clear();
@@ -186,7 +195,6 @@ impl NarrowPhaseOutput {
         }
         self.impacts.extend_from_slice(&next.impacts);
         self.contacts.extend_from_slice(&next.contacts);
-        self.sensors.extend_from_slice(&next.sensors);
         self.approaches.extend_from_slice(&next.approaches);
         self.sat.cached_axis_hits += next.sat.cached_axis_hits;
         self.sat.searches += next.sat.searches;

@@ -228,6 +228,8 @@ pub(crate) struct MotionCache {
     /// Slots of the bodies that move.
     moving_bodies: Vec<u32>,
     moving_shapes: Vec<u32>,
+    /// Whether there may be a sensor. Never false while there is one.
+    may_have_sensors: bool,
 }
 
 impl MotionCache {
@@ -249,6 +251,7 @@ impl MotionCache {
             self.shapes.resize(slot as usize + 1, ShapeMotion::default());
         }
         self.shapes[slot as usize] = ShapeMotion::at_rest(shape, body, posed);
+        self.may_have_sensors |= shape.is_sensor();
     }
 
     /// Sets the bounds of a shape that has been moved.
@@ -266,6 +269,11 @@ impl MotionCache {
         let shape = &mut self.shapes[slot as usize];
         (shape.shift, shape.turn) = (shift, narrow(turn));
         self.moving_shapes.push(slot);
+    }
+
+    /// Whether the world may have sensors.
+    pub(crate) fn may_have_sensors(&self) -> bool {
+        self.may_have_sensors
     }
 
     /// The shape in an occupied slot.

@@ -122,9 +122,10 @@ impl NonCollidingPairs {
             return false;
         }
         match (shape_a.is_sensor(), shape_b.is_sensor()) {
-            (true, true) => false,
-            (true, false) => shape_b.def.events.sensor && !both_fixed(body_a.kind, body_b.kind),
-            (false, true) => shape_a.def.events.sensor && !both_fixed(body_a.kind, body_b.kind),
+            (true, _) | (_, true) => {
+                let detected = shape_a.detects(shape_b) || shape_b.detects(shape_a);
+                detected && !both_fixed(body_a.kind, body_b.kind)
+            }
             (false, false) => {
                 let can_move = body_a.is_dynamic() || body_b.is_dynamic();
                 can_move && self.pairs.binary_search(&(slot_a.min(slot_b), slot_a.max(slot_b))).is_err()

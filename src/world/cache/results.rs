@@ -28,6 +28,8 @@ pub(crate) struct Sweeps {
     pub(crate) starts: Vec<Pose>,
     /// Bullets that wait until all other bodies have been moved.
     pub(crate) bullets: Vec<SweptBody>,
+    /// Shapes that have left their fat box within the tick, if there may be sensors.
+    pub(crate) left_boxes: Vec<u32>,
 }
 
 /// A fast body that has not been moved yet.

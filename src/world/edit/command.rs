@@ -6,11 +6,11 @@ use serde::{Deserialize, Serialize};
 
 use super::{BodyPose, Explosion};
 use crate::body::{
-    BodyDef, BodyId, BodyKind, BodySettings, JointId, MassSource, ShapeDef, ShapeId, WorldError,
+    BodyDef, BodyId, BodyKind, BodySettings, JointId, MassSource, Name, ShapeDef, ShapeId, WorldError,
 };
 use crate::math::{Angle, Fx, Vec2};
 use crate::solver::JointDef;
-use crate::world::World;
+use crate::world::{Config, World};
 
 /// An edit of a world. The method of the same name documents units and errors.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -206,6 +206,18 @@ pub enum Command {
         /// The joint.
         joint: JointId,
     },
+    /// Calls [`World::set_config`].
+    SetConfig {
+        /// The new settings.
+        config: Config,
+    },
+    /// Calls [`World::set_name`].
+    SetName {
+        /// The body.
+        body: BodyId,
+        /// Its new name.
+        name: Option<Name>,
+    },
 }
 
 /// Handles of the bodies, shapes or joints that a command has added.
@@ -267,6 +279,8 @@ impl World {
             Command::Explode { ref explosion } => self.explode(explosion),
             Command::EnableJoint { joint } => self.enable_joint(joint),
             Command::DisableJoint { joint } => self.disable_joint(joint),
+            Command::SetConfig { ref config } => self.set_config(config),
+            Command::SetName { body, name } => self.set_name(body, name),
         }
         .map(|()| Outcome::Done)
     }

@@ -8,6 +8,7 @@ mod fault;
 mod forces;
 mod joints;
 mod setters;
+mod settings;
 
 pub use command::{Command, Outcome};
 pub use create::BodyPose;

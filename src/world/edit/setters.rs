@@ -1,16 +1,16 @@
-//! Changing the properties of bodies, shapes and the world.
+//! Changing the properties of bodies and shapes.
 
+use alloc::boxed::Box;
 use alloc::vec::Vec;
 
 use crate::body::{
-    BodyId, BodyKind, BodySettings, Filter, Geometry, Handle, IslandId, MassSource, Material, ShapeDef,
-    ShapeId, WorldError,
+    BodyId, BodyKind, BodySettings, EventSwitches, Filter, Geometry, Handle, MassSource, Material, Name,
+    ShapeDef, ShapeId, WorldError,
 };
 use crate::math::{Fx, Vec2};
 use crate::world::World;
-use crate::world::config::check_gravity;
 use crate::world::derived::{mass_of, offset_max};
-use crate::world::islands::{put_to_sleep, wake_body, wake_island, wake_joined, wake_overlapping};
+use crate::world::islands::{put_to_sleep, wake_body, wake_joined, wake_overlapping, wake_touching};
 
 impl World {
     /// Replaces the settings of a body: read [`crate::body::Body::settings`], change a copy, and pass it here. Wakes
@@ -40,6 +40,17 @@ impl World {
     /// [`WorldError::StaleBody`] if it is not in the world.
     pub fn set_user_data(&mut self, id: BodyId, user_data: u64) -> Result<(), WorldError> {
         self.state.bodies.get_mut(id).ok_or(WorldError::StaleBody(id))?.user_data = user_data;
+        Ok(())
+    }
+
+    /// Names a body for people who read reports, or takes its name away. No result of the simulation depends on it.
+    ///
+    /// # Errors
+    /// [`WorldError::StaleBody`] if it is not in the world, [`WorldError::NameInvalid`] if the name was decoded from
+    /// bytes and is none.
+    pub fn set_name(&mut self, id: BodyId, name: Option<Name>) -> Result<(), WorldError> {
+        name.map_or(Ok(()), |name| name.validate())?;
+        self.state.bodies.get_mut(id).ok_or(WorldError::StaleBody(id))?.name = name.map(Box::new);
         Ok(())
     }
 
@@ -152,13 +163,19 @@ impl World {
         Ok(())
     }
 
-    /// Wakes a body with all bodies of its island.
+    /// Wakes a body with all bodies of its island. A fixed or kinematic body does not sleep: it wakes the bodies that
+    /// touch it, and those that are joined to it.
     ///
     /// # Errors
     /// [`WorldError::StaleBody`] if it is not in the world.
     pub fn wake(&mut self, id: BodyId) -> Result<(), WorldError> {
-        self.state.bodies.get(id).ok_or(WorldError::StaleBody(id))?;
+        let body = self.state.bodies.get(id).ok_or(WorldError::StaleBody(id))?;
+        let is_dynamic = body.is_dynamic();
         wake_body(&mut self.state, &mut self.scratch, id.slot());
+        if !is_dynamic {
+            wake_touching(&mut self.state, &mut self.scratch, id.slot());
+            wake_joined(&mut self.state, &mut self.scratch, id);
+        }
         Ok(())
     }
 
@@ -198,7 +215,11 @@ impl World {
         let mass = mass_of(owner.kind(), *owner.mass_source, &owner.settings, with)?;
         self.check_spin(owner, &mass)?;
         // Every reported beginning of a contact needs its end.
-        let changes_events = (shape.def.sensor, shape.def.events.contact) != (def.sensor, def.events.contact);
+        let roles = |def: &ShapeDef| {
+            let EventSwitches { contact, hit: _, sensor, detect_sensors } = def.events;
+            (def.sensor, contact, def.sensor && sensor, def.sensor && detect_sensors)
+        };
+        let changes_events = roles(&shape.def) != roles(def);
         wake_overlapping(&mut self.state, &mut self.scratch, slot);
         if changes_events {
             self.end_contacts(&[id]);
@@ -240,24 +261,5 @@ impl World {
         let mut def = *self.state.shapes.get(id).ok_or(WorldError::StaleShape(id))?.def;
         change(&mut def);
         self.set_shape(id, &def)
-    }
-
-    /// Replaces the world's gravity, in m/s². Wakes everything.
-    ///
-    /// # Errors
-    /// [`WorldError::Setting`] if a component is not within ±100 000.
-    pub fn set_gravity(&mut self, gravity: Vec2<Fx>) -> Result<(), WorldError> {
-        if !check_gravity(gravity) {
-            return Err(WorldError::Setting { name: "gravity" });
-        }
-        let islands: Vec<IslandId> = self.state.islands.iter().map(|(id, _)| id).collect();
-        for island in islands {
-            wake_island(&mut self.state, &mut self.scratch, island);
-        }
-        for (_, body) in self.state.bodies.iter_mut().filter(|(_, body)| body.is_dynamic()) {
-            body.rest_ticks.reset();
-        }
-        self.state.config.gravity = gravity;
-        Ok(())
     }
 }

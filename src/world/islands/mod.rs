@@ -6,7 +6,8 @@
 //! - when a force, impulse, velocity, pose or property of one of its bodies is changed by hand,
 //! - when a joint is added to or removed from one of its bodies,
 //! - when a body or shape whose fat box overlaps one of theirs is moved by hand, changed or removed,
-//! - when gravity changes.
+//! - when gravity or another setting of the world changes on which the balance of forces depends,
+//! - when a fixed or kinematic body that it touches or is joined to is woken by hand.
 //!
 //! Bodies that touch, or are joined to, a moving kinematic body do not become sleepy.
 
@@ -16,5 +17,5 @@ mod wake;
 pub(crate) use sleep::{put_sleepy_sets_to_sleep, put_to_sleep, unite, unite_connected, unite_touching};
 pub(crate) use wake::{
     joint_retuned, joints_changed, wake_body, wake_island, wake_joined, wake_overlapping,
-    wake_overlapping_shape,
+    wake_overlapping_shape, wake_touching,
 };

@@ -4,6 +4,7 @@ use alloc::vec::Vec;
 use core::ops::ControlFlow;
 
 use crate::body::{BodyId, BodyKind, Handle, IslandId};
+use crate::collision::Contact;
 use crate::world::cache::Scratch;
 use crate::world::state::State;
 
@@ -64,6 +65,20 @@ pub(crate) fn wake_overlapping_shape(state: &mut State, scratch: &mut Scratch, s
     // The broad phase visits boxes in no defined order.
     neighbours.sort_unstable();
     for body in neighbours {
+        wake_body(state, scratch, body);
+    }
+}
+
+/// Wakes the sleeping bodies that touch a body.
+pub(crate) fn wake_touching(state: &mut State, scratch: &mut Scratch, slot: u32) {
+    let other_body = |contact: &Contact| {
+        let (a, b) = contact.shapes;
+        let (body_a, body_b) = (state.shapes.at(a).body().slot(), state.shapes.at(b).body().slot());
+        let other = if body_a == slot { Some(body_b) } else { (body_b == slot).then_some(body_a) };
+        other.filter(|_| contact.touching && state.sensor_of(contact.shapes).is_none())
+    };
+    let touching: Vec<u32> = state.sleeping_contacts.iter().filter_map(other_body).collect();
+    for body in touching {
         wake_body(state, scratch, body);
     }
 }

@@ -7,7 +7,7 @@ use core::fmt::Display;
 
 use serde::{Serialize, Serializer};
 
-use crate::body::{Arena, Body, Handle};
+use crate::body::{Arena, Body, Handle, label};
 use crate::collision::Contact;
 use crate::math::{Fx, Rng};
 use crate::world::config::Config;
@@ -39,7 +39,11 @@ impl Serialize for StateView<'_> {
             settings: config,
             tick: *tick,
             faults: *faults,
-            bodies: Entries(|| bodies.iter().map(|(id, body)| (format!("body {id}"), BodyView::of(body)))),
+            bodies: Entries(|| {
+                bodies
+                    .iter()
+                    .map(|(id, body)| (format!("body {}", label(id, body.name())), BodyView::of(body)))
+            }),
             shapes: Entries(|| shapes.iter().map(|(id, shape)| (format!("shape {id}"), shape))),
             joints: Entries(|| joints.iter().map(|(id, joint)| (format!("joint {id}"), joint))),
             contacts: Entries(|| contacts.iter().map(contact)),

@@ -107,6 +107,8 @@ fn check_body(state: &State, id: BodyId, body: &Body) -> Result<(), Violation> {
     // moved.
     let rests = body.kind == BodyKind::Kinematic && body.rest_ticks.has_settled();
     check(!(rests && body.is_moving()), || at("settled with a velocity"))?;
+    let name = body.name().map_or(Ok(()), |name| name.validate());
+    name.map_err(|error| Violation { what: at(&format!("{error}")) })?;
     let locks = body.settings.locks;
     let held = !(locks.x && body.velocity.x != 0 || locks.y && body.velocity.y != 0);
     check(held, || at("a velocity along a locked axis"))?;

@@ -1,10 +1,12 @@
-//! Contact, sensor and hit events, which are reported at the end of a tick.
+//! Contact and hit events, which are reported at the end of a tick, and sensor events whose cause is a change between
+//! ticks. All other sensor events follow when the bodies have been moved (`sensor_events.rs`).
 
+use super::sensor_events::push_sensor_events;
 use crate::collision::{Contact, Manifold};
 use crate::math::{Fx, widen};
 use crate::world::cache::{MotionCache, Scratch};
-use crate::world::events::{ContactEvent, Events, SensorEvent};
-use crate::world::state::{Reported, Side, State};
+use crate::world::events::Events;
+use crate::world::state::{Reported, State};
 
 /// Updates whether each contact touches, and reports the changes as events. A pair touches if it is near at the start
 /// of the tick, or if the solver has pushed it apart within the tick, because a fast bounce may begin and end between
@@ -21,24 +23,19 @@ pub(super) fn report_contacts(state: &mut State, scratch: &mut Scratch) {
     }
     let (near, apart) = (state.config.touching_distance(), state.config.speculative_distance);
     let mut contacts = core::mem::take(&mut state.contacts);
-    let mut sensors = found.sensors.iter().peekable();
     let mut manifolds = found.contacts.iter().zip(&found.manifolds).peekable();
     for (index, contact) in (0u32..).zip(&mut contacts) {
         let manifold = manifolds.next_if(|(contact, _)| **contact == index).map(|(_, manifold)| manifold);
         if manifold.is_none() {
             contact.clear_points();
-            if !contact.touching {
+            if !contact.touching || is_with_sensor(motion, contact) {
                 continue;
             }
         }
         let points = manifold.map_or(&[][..], Manifold::points);
         let separation = points.iter().map(|point| widen(point.separation)).min();
         let within = |distance: Fx| separation.is_some_and(|separation| separation <= distance);
-        let touching = if sensors.next_if_eq(&&index).is_some() {
-            within(Fx::ZERO)
-        } else {
-            solver.pushed[index as usize] || within(if contact.touching { apart } else { near })
-        };
+        let touching = solver.pushed[index as usize] || within(if contact.touching { apart } else { near });
         if touching != contact.touching {
             contact.touching = touching;
             let report = if touching { begin } else { end };
@@ -49,40 +46,37 @@ pub(super) fn report_contacts(state: &mut State, scratch: &mut Scratch) {
     let hits = found.approaches.iter().filter(|hit| solver.pushed[hit.contact as usize]);
     events.hits.extend(hits.map(|hit| hit.event));
     events.contact_end.sort_unstable();
-    events.sensor_begin.sort_unstable();
     events.sensor_end.sort_unstable();
 }
 
-/// [`State::reported`] from the motion cache, without reading the shapes.
+fn is_with_sensor(motion: &MotionCache, contact: &Contact) -> bool {
+    motion.shape(contact.shapes.0).sensor || motion.shape(contact.shapes.1).sensor
+}
+
+/// [`State::reported`]. For solid shapes from the motion cache, without reading the shapes.
 fn reported(state: &State, motion: &MotionCache, contact: &Contact) -> Option<Reported> {
+    if is_with_sensor(motion, contact) {
+        return state.reported(contact);
+    }
     let (a, b) = (motion.shape(contact.shapes.0), motion.shape(contact.shapes.1));
-    let reported = (a.is_reported || b.is_reported).then(|| Reported {
-        shapes: state.contact_event(contact),
-        sensor: if a.sensor { Some(Side::A) } else { b.sensor.then_some(Side::B) },
-    });
+    let reported = (a.is_reported || b.is_reported)
+        .then(|| Reported { shapes: state.contact_event(contact), sensor: None });
     debug_assert_eq!(reported, state.reported(contact));
     reported
 }
 
 fn begin(pair: Option<Reported>, events: &mut Events) {
-    match pair {
-        None => {}
-        Some(Reported { shapes, sensor: None }) => events.contact_begin.push(shapes),
-        Some(Reported { shapes, sensor: Some(side) }) => events.sensor_begin.push(sensor_event(shapes, side)),
-    }
+    // Only solid shapes begin to touch here.
+    events.contact_begin.extend(pair.map(|pair| pair.shapes));
 }
 
 fn end(pair: Option<Reported>, events: &mut Events) {
     match pair {
         None => {}
         Some(Reported { shapes, sensor: None }) => events.contact_end.push(shapes),
-        Some(Reported { shapes, sensor: Some(side) }) => events.sensor_end.push(sensor_event(shapes, side)),
-    }
-}
-
-fn sensor_event(shapes: ContactEvent, sensor: Side) -> SensorEvent {
-    match sensor {
-        Side::A => SensorEvent { sensor: shapes.shape_a, visitor: shapes.shape_b },
-        Side::B => SensorEvent { sensor: shapes.shape_b, visitor: shapes.shape_a },
+        Some(Reported { shapes, sensor: Some(side) }) => {
+            let ids = (shapes.shape_a, shapes.shape_b);
+            push_sensor_events(&mut events.sensor_end, ids, side, Fx::ZERO);
+        }
     }
 }

@@ -13,6 +13,7 @@ pub(super) fn finalise_poses(state: &mut State, scratch: &mut Scratch) {
     scratch.results.stats.impacts = 0;
     scratch.sweeps.starts.clear();
     scratch.sweeps.bullets.clear();
+    scratch.sweeps.left_boxes.clear();
     for index in 0..scratch.awake.bodies().len() {
         let slot = scratch.awake.bodies()[index];
         let body = state.bodies.at(slot);

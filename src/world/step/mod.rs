@@ -10,6 +10,7 @@ mod pair_update;
 mod phases;
 mod refit;
 mod report;
+mod sensor_events;
 mod sleep;
 mod speculative;
 mod wake;
@@ -85,6 +86,7 @@ impl World {
         begin(Phase::Finalise, PhaseView::of(state, scratch));
         contact_events::report_contacts(state, scratch);
         finalise::finalise_poses(state, scratch);
+        sensor_events::report_sensors(state, scratch);
         joint_thresholds::report_joints(state, scratch, &tuning);
 
         begin(Phase::Sleep, PhaseView::of(state, scratch));

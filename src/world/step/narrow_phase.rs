@@ -4,8 +4,8 @@
 use core::ops::Range;
 
 use super::speculative::{Side, SpeculativePair, approach};
-use crate::collision::{CachedAxis, Contact, Manifold, Pair, SatCounters, collide, collide_near};
-use crate::math::{Length, Step, saturate, widen};
+use crate::collision::{CachedAxis, Contact, Manifold, Pair, SatCounters, collide_near};
+use crate::math::{Step, saturate, widen};
 use crate::simd::Machine;
 use crate::solver::{ActiveContact, Surface, SurfaceSide};
 use crate::world::cache::{
@@ -156,13 +156,16 @@ impl NarrowPhase<'_> {
         output: &mut NarrowPhaseOutput,
     ) -> &'t [ActiveContact] {
         let NarrowPhase { state, poses, margins, .. } = self;
-        let NarrowPhaseOutput { boxes, contacts, sensors, manifolds, impacts, touching, approaches, sat } =
-            output;
+        let NarrowPhaseOutput { boxes, contacts, manifolds, impacts, touching, approaches, sat } = output;
         let motion = poses.motion();
         let mut box_pairs = 0..;
         for (index, is_box_pair) in near.iter() {
             let (contact, axis) = (&mut job.contacts[index], &mut job.axes[index]);
             let (shape_a, shape_b) = (motion.shape(contact.shapes.0), motion.shape(contact.shapes.1));
+            if shape_a.sensor || shape_b.sensor {
+                // Sensors have no manifolds: `sensor_events.rs` follows them at the end of the tick.
+                continue;
+            }
             let closing = ClosingBound::of(margins, shape_a, shape_b);
             let pair = SpeculativePair { margins, a: shape_a, b: shape_b, closing };
             let box_pair = if is_box_pair { box_pairs.next() } else { None };
@@ -181,10 +184,6 @@ impl NarrowPhase<'_> {
             }
             let index = job.first + u32::try_from(index).expect("fewer than 2^32 contacts");
             contacts.push(index);
-            if shape_a.sensor || shape_b.sensor {
-                sensors.push(index);
-                continue;
-            }
             if pair.may_impact(manifold) {
                 let sides = [contact.shapes.0, contact.shapes.1].map(|slot| Side::of(state, poses, slot));
                 if let Some(impact) = pair.move_to_impact(sides, motion, manifold, sat) {
@@ -231,7 +230,7 @@ pub(super) fn will_touch(state: &State, poses: &Poses, shapes: Pair) -> bool {
     }
 }
 
-/// The manifold of two shapes that may meet. A sensor has no speculative margin.
+/// The manifold of two solid shapes that may meet.
 #[inline(always)]
 fn manifold_of(
     poses: &Poses,
@@ -241,9 +240,6 @@ fn manifold_of(
     counters: &mut SatCounters,
 ) -> Manifold {
     let (posed_a, posed_b) = (poses.at(a), poses.at(b));
-    if pair.a.sensor || pair.b.sensor {
-        return collide(posed_a, posed_b, Length::ZERO, axis, counters);
-    }
     collide_near(posed_a, posed_b, pair.closing.margin, axis, counters)
 }
 
@@ -257,7 +253,7 @@ fn keep_reachable(
     manifold: &mut Manifold,
 ) {
     let was_passing = core::mem::take(&mut contact.passing);
-    if manifold.points().is_empty() || pair.a.sensor || pair.b.sensor {
+    if manifold.points().is_empty() {
         return;
     }
     let (a, b) = contact.shapes;

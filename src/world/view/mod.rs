@@ -1,7 +1,9 @@
-//! Read-only views of a world for games and tools: contacts, joints and islands.
+//! Read-only views of a world for games and tools: contacts, joints, islands, and the surroundings of a body.
 
 mod contacts;
 mod islands;
 mod joints;
+mod neighbours;
+mod work;
 
 pub use contacts::{ContactForce, ContactView, SolverColour};

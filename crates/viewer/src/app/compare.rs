@@ -75,7 +75,7 @@ impl First {
         let body = differing(a, b).next();
         let field = match body {
             None => "all bodies are equal, other state differs".into(),
-            Some(id) => format!("body {id}: {}", first_field(a.body(id), b.body(id))),
+            Some(id) => format!("body {}: {}", a.body_label(id), first_field(a.body(id), b.body(id))),
         };
         First { tick, body, field }
     }

@@ -89,7 +89,7 @@ pub(super) fn describe(world: &World, id: BodyId) -> Vec<(String, String)> {
     let Some(body) = world.body(id) else {
         return vec![(format!("body {id} does not exist at this tick"), String::new())];
     };
-    let mut lines = vec![(format!("body {id}"), String::new())];
+    let mut lines = vec![(format!("body {}", world.body_label(id)), String::new())];
     add_fields(&mut lines, body);
     // The fields contain the scaled angular velocity (a speed at the radius of gyration), not the angular velocity
     // itself.

@@ -46,7 +46,10 @@ fn is_wanted(field: &Field, arguments: &Arguments) -> bool {
     let is_body = |id: &str| {
         let name = field.thing().and_then(|thing| thing.rsplit('.').next());
         let found = name.and_then(|name| name.strip_prefix("body "));
-        found.is_some_and(|found| found == id || found.split('v').next() == Some(id))
+        // The handle, and the name if the body has one.
+        let mut words = found.into_iter().flat_map(|found| found.split(' '));
+        words.next().is_some_and(|handle| handle == id || handle.split('v').next() == Some(id))
+            || words.next() == Some(id)
     };
     let path = arguments.path.as_deref().unwrap_or("");
     arguments.body.as_deref().is_none_or(is_body) && field.path().starts_with(path)

@@ -1,0 +1,139 @@
+//! Changing the settings of a world at run time.
+
+use alloc::vec::Vec;
+
+use crate::body::{IslandId, WorldError};
+use crate::math::{Fx, Speed, Vec2, div_round, saturate, saturate_wide};
+use crate::solver::{IMPULSE_MAX, SolverSettings};
+use crate::world::World;
+use crate::world::config::{Config, check_gravity};
+use crate::world::islands::wake_island;
+
+impl World {
+    /// Replaces the settings of the world: read [`World::config`], change a copy, and pass it here. The limits of bodies,
+    /// shapes, joints and pairs stay as they are.
+    ///
+    /// Wakes everything if a setting changes on which the balance of forces depends: gravity, the tick rate, sub-steps,
+    /// iterations, the tuning of contacts and joints, and [`Config::sleeping`] when it is switched off. Impulses that
+    /// contacts and joints keep for the next tick are converted to the new length of a sub-step, so that what rests
+    /// stays at rest. Bodies that are faster than a lower speed limit are slowed down by the next tick. A kinematic body
+    /// with a target still reaches it in the next tick, with the velocity that it had been given.
+    ///
+    /// A match over a network and a recording keep the tick rate with which they began.
+    ///
+    /// ```
+    /// use lockstep2d::{fx, world::{Config, World}};
+    /// let mut world = World::default();
+    /// let mut config = *world.config();
+    /// config.solver.restitution_threshold = fx!(0.2);
+    /// config.solver.sub_steps = 8;
+    /// world.set_config(&config)?;
+    /// assert!(world.set_config(&Config { body_limit: 5, ..config }).is_err());
+    /// # Ok::<(), lockstep2d::body::WorldError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`WorldError::Setting`] if a setting is out of range, [`WorldError::FixedSetting`] if a limit differs from that
+    /// of the world.
+    #[doc(alias = "sub_steps")]
+    #[doc(alias = "integration parameters")]
+    pub fn set_config(&mut self, config: &Config) -> Result<(), WorldError> {
+        config.validate()?;
+        let old = self.state.config;
+        if let Some(name) = old.first_changed_limit(config) {
+            return Err(WorldError::FixedSetting { name });
+        }
+        if is_disturbed(&old, config) {
+            self.wake_all();
+        }
+        let rate = |config: &Config| config.tick_rate.saturating_mul(config.solver.sub_steps);
+        self.convert_impulses(rate(&old), rate(config));
+        self.state.config = *config;
+        // The threshold of restitution is part of the surface of a pair.
+        self.scratch.contacts.invalidate_surfaces();
+        Ok(())
+    }
+
+    /// Replaces the world's gravity, in m/s². Wakes everything.
+    ///
+    /// # Errors
+    /// [`WorldError::Setting`] if a component is not within ±100 000.
+    pub fn set_gravity(&mut self, gravity: Vec2<Fx>) -> Result<(), WorldError> {
+        if !check_gravity(gravity) {
+            return Err(WorldError::Setting { name: "gravity" });
+        }
+        self.wake_all();
+        self.state.config.gravity = gravity;
+        Ok(())
+    }
+
+    /// Wakes all bodies, and restarts their counts of ticks at rest.
+    fn wake_all(&mut self) {
+        let islands: Vec<IslandId> = self.state.islands.iter().map(|(id, _)| id).collect();
+        for island in islands {
+            wake_island(&mut self.state, &mut self.scratch, island);
+        }
+        for (_, body) in self.state.bodies.iter_mut().filter(|(_, body)| body.is_dynamic()) {
+            body.rest_ticks.reset();
+        }
+    }
+
+    /// Converts the impulses of sub-steps of one length to those of another, for the same forces: `rate` is the number
+    /// of sub-steps per second.
+    fn convert_impulses(&mut self, old_rate: u32, new_rate: u32) {
+        if old_rate == new_rate {
+            return;
+        }
+        let convert = |impulse: &mut Speed| {
+            let bits = i128::from(impulse.to_bits()) * i128::from(old_rate);
+            let bits = saturate(saturate_wide(div_round(bits, new_rate.into())));
+            *impulse = Speed::from_bits(bits).clamp(-IMPULSE_MAX, IMPULSE_MAX);
+        };
+        let state = &mut *self.state;
+        for contact in state.contacts.iter_mut().chain(state.sleeping_contacts.iter_mut()) {
+            for point in &mut contact.points {
+                convert(&mut point.normal);
+                convert(&mut point.tangent);
+            }
+            convert(&mut contact.rolling);
+        }
+        for (_, joint) in state.joints.iter_mut() {
+            joint.impulses.0.iter_mut().for_each(convert);
+        }
+    }
+}
+
+/// Whether bodies at rest may move with the new settings.
+fn is_disturbed(old: &Config, new: &Config) -> bool {
+    // A new setting does not compile until it is decided whether it wakes.
+    let Config {
+        tick_rate,
+        gravity,
+        solver,
+        speculative_distance: _,
+        fat_margin: _,
+        sleeping,
+        continuous: _,
+        hit_speed: _,
+        body_limit: _,
+        shape_limit: _,
+        joint_limit: _,
+        pair_limit: _,
+    } = *new;
+    let SolverSettings {
+        sub_steps: _,
+        iterations: _,
+        contact: _,
+        joint_hertz: _,
+        joint_damping_ratio: _,
+        restitution_threshold: _,
+        speed_max: _,
+    } = solver;
+    let of_balance = |solver: SolverSettings| {
+        let SolverSettings { restitution_threshold, speed_max, .. } = SolverSettings::default();
+        SolverSettings { restitution_threshold, speed_max, ..solver }
+    };
+    let same =
+        (old.tick_rate, old.gravity, of_balance(old.solver)) == (tick_rate, gravity, of_balance(solver));
+    !same || (old.sleeping && !sleeping)
+}

@@ -1,0 +1,230 @@
+//! Sensor events: which shapes overlap a sensor at the end of the tick, and which have crossed one within it.
+//!
+//! Every pair with a sensor is followed from the poses at the start of the tick to those at its end. The pairs are those
+//! of overlapping fat boxes, which cover the motion that the velocities at the start of the tick predict. A shape that
+//! has left its fat box, because it was deflected or accelerated within the tick, is compared with everything along its
+//! way in addition.
+
+use alloc::vec::Vec;
+use core::ops::ControlFlow;
+
+use crate::body::{BodyKind, ShapeId};
+use crate::collision::{Contact, Pair, SupportShape, Sweep, first_overlap, overlap};
+use crate::math::{Aabb, Angle, Fx, Rot};
+use crate::solver::turn_of;
+use crate::world::cache::Scratch;
+use crate::world::events::{Events, SensorEvent};
+use crate::world::state::{Side, State};
+
+/// Reports the beginnings and ends of overlaps with sensors, once all bodies have been moved.
+pub(super) fn report_sensors(state: &mut State, scratch: &mut Scratch) {
+    if !scratch.shapes.motion().may_have_sensors() {
+        return;
+    }
+    let mut contacts = core::mem::take(&mut state.contacts);
+    for contact in &mut contacts {
+        if is_with_sensor(scratch, contact.shapes) {
+            let visit = Visit::of(state, scratch, contact.shapes, contact.touching);
+            visit.report(state, contact.shapes, &mut scratch.results.events);
+            contact.touching = visit.is_inside;
+        }
+    }
+    state.contacts = contacts;
+    report_unforeseen(state, scratch);
+    let events = &mut scratch.results.events;
+    events.sensor_begin.sort_unstable();
+    events.sensor_end.sort_unstable();
+}
+
+/// Adds the events of an overlap that begins or ends at a fraction of the tick: one for each sensor of the pair that
+/// detects the other shape.
+pub(super) fn push_sensor_events(
+    list: &mut Vec<SensorEvent>,
+    (a, b): (ShapeId, ShapeId),
+    side: Side,
+    fraction: Fx,
+) {
+    if matches!(side, Side::A | Side::Both) {
+        list.push(SensorEvent { fraction, sensor: a, visitor: b });
+    }
+    if matches!(side, Side::B | Side::Both) {
+        list.push(SensorEvent { fraction, sensor: b, visitor: a });
+    }
+}
+
+fn is_with_sensor(scratch: &Scratch, (a, b): Pair) -> bool {
+    let motion = scratch.shapes.motion();
+    motion.shape(a).sensor || motion.shape(b).sensor
+}
+
+/// The overlap of a pair within a tick.
+struct Visit {
+    /// Fraction of the tick at which it began, if it did.
+    begin: Option<Fx>,
+    /// Fraction of the tick at which it ended, if it did.
+    end: Option<Fx>,
+    /// Whether the shapes overlap at the end of the tick.
+    is_inside: bool,
+}
+
+impl Visit {
+    /// Follows a pair that did or did not overlap at the end of the last tick.
+    fn of(state: &State, scratch: &Scratch, pair: Pair, was_inside: bool) -> Self {
+        // A long segment can only belong to a fixed body. The search clips the first shape.
+        let (a, b) = match state.body_of(pair.1).kind() {
+            BodyKind::Fixed => (pair.1, pair.0),
+            BodyKind::Kinematic | BodyKind::Dynamic => pair,
+        };
+        let [moved_a, moved_b] = [a, b].map(|shape| MovedShape::of(state, scratch, shape));
+        if !moved_a.area(scratch).overlaps(moved_b.area(scratch)) {
+            return Visit { begin: None, end: was_inside.then_some(Fx::ZERO), is_inside: false };
+        }
+        let (posed_a, posed_b) = (scratch.shapes.poses().at(a), scratch.shapes.poses().at(b));
+        let origin = posed_b.centre;
+        let is_inside = overlap(&SupportShape::of(posed_a, origin), &SupportShape::of(posed_b, origin));
+        let first = || moved_a.first_overlap(&moved_b, scratch, Direction::Forwards);
+        let last = || moved_a.first_overlap(&moved_b, scratch, Direction::Backwards).map(|f| Fx::ONE - f);
+        let (begin, end) = match (was_inside, is_inside) {
+            (true, true) => (None, None),
+            (false, true) => (Some(first().unwrap_or(Fx::ONE)), None),
+            // Without an overlap on the way one of the bodies was moved by hand before the tick.
+            (true, false) => (None, Some(last().unwrap_or(Fx::ZERO))),
+            (false, false) => {
+                let begin = first();
+                // An end at 0 would be that of a change between ticks, which precedes a beginning.
+                (begin, begin.map(|begin| last().unwrap_or(begin).max(begin).max(Fx::DELTA)))
+            }
+        };
+        Visit { begin, end, is_inside }
+    }
+
+    fn report(&self, state: &State, (a, b): Pair, events: &mut Events) {
+        let Some(side) = state.sensor_of((a, b)) else { return };
+        let ids = (state.shapes.handle_at(a), state.shapes.handle_at(b));
+        if let Some(fraction) = self.begin {
+            push_sensor_events(&mut events.sensor_begin, ids, side, fraction);
+        }
+        if let Some(fraction) = self.end {
+            push_sensor_events(&mut events.sensor_end, ids, side, fraction);
+        }
+    }
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Direction {
+    Forwards,
+    Backwards,
+}
+
+/// A shape, and the motion of its body from the start of the tick to its end.
+struct MovedShape {
+    shape: u32,
+    body: u32,
+    sweep: Sweep,
+}
+
+impl MovedShape {
+    fn of(state: &State, scratch: &Scratch, shape: u32) -> Self {
+        let slot = scratch.shapes.motion().shape(shape).body;
+        let body = state.bodies.at(slot);
+        let sweep = match scratch.awake.bodies().binary_search(&slot) {
+            Err(_) => Sweep::fixed(body.centre),
+            Ok(index) => {
+                let start = scratch.sweeps.starts[index];
+                let solved = turn_of(scratch.solver.body(slot).turn, body.mass.inverse_gyration);
+                // A body that was stopped, or has a target, rotates by the shorter way.
+                let short = (body.angle - start.angle).to_turns().to_bits();
+                let is_complete = Angle::from_turns(Fx::from_bits(solved.wrapping_sub(short))) == Angle::ZERO;
+                let turn = if is_complete { solved } else { short };
+                Sweep { start: start.centre, end: body.centre, turn }
+            }
+        };
+        MovedShape { shape, body: slot, sweep }
+    }
+
+    /// Box around the shape at all times of the tick.
+    fn area(&self, scratch: &Scratch) -> Aabb {
+        let Sweep { start, end, turn } = self.sweep;
+        let at_end = if turn == 0 {
+            scratch.shapes.poses().at(self.shape).bounds
+        } else {
+            Aabb::new(end, end).expanded(scratch.shapes.poses().extents(self.body).radius)
+        };
+        at_end.swept(start - end)
+    }
+
+    /// Fraction of the tick after which two shapes first overlap, from its start or back from its end.
+    fn first_overlap(&self, other: &MovedShape, scratch: &Scratch, direction: Direction) -> Option<Fx> {
+        let (a, sweep_a) = self.sweep_in(scratch, direction);
+        let (b, sweep_b) = other.sweep_in(scratch, direction);
+        first_overlap(&a, &sweep_a, &b, &sweep_b)
+    }
+
+    /// The shape about its body's centre where its motion in a direction of time starts, and that motion.
+    fn sweep_in(&self, scratch: &Scratch, direction: Direction) -> (SupportShape, Sweep) {
+        let Sweep { start, end, turn } = self.sweep;
+        let at_end = SupportShape::of(scratch.shapes.poses().at(self.shape), end);
+        match direction {
+            Direction::Backwards => (at_end, Sweep { start: end, end: start, turn: turn.wrapping_neg() }),
+            Direction::Forwards if turn == 0 => (at_end, self.sweep),
+            Direction::Forwards => {
+                let back = Angle::from_turns(Fx::from_bits(turn.wrapping_neg()));
+                (at_end.rotated(Rot::from_angle(back)), self.sweep)
+            }
+        }
+    }
+}
+
+/// Reports the crossings of shapes that have left their fat box in this tick, with shapes of which they are no pair yet.
+/// If they overlap at the end of the tick, the pair becomes a contact at once.
+fn report_unforeseen(state: &mut State, scratch: &mut Scratch) {
+    if scratch.sweeps.left_boxes.is_empty() {
+        return;
+    }
+    let mut pairs = core::mem::take(&mut scratch.pairs.buffers.pairs);
+    list_unforeseen(state, scratch, &mut pairs);
+    for &pair in &pairs {
+        let visit = Visit::of(state, scratch, pair, false);
+        let is_full = state.contacts.len() >= state.config.pair_limit as usize;
+        if visit.is_inside && is_full {
+            continue;
+        }
+        visit.report(state, pair, &mut scratch.results.events);
+        if !visit.is_inside {
+            continue;
+        }
+        if let Err(at) = state.contacts.binary_search_by_key(&pair, |contact| contact.shapes) {
+            state.contacts.insert(at, Contact { touching: true, ..Contact::new(pair) });
+            scratch.contacts.insert(at);
+        }
+    }
+    scratch.pairs.buffers.pairs = pairs;
+}
+
+/// Lists the pairs with a sensor that are no contacts, of shapes that have left their fat boxes, in order.
+fn list_unforeseen(state: &State, scratch: &Scratch, pairs: &mut Vec<Pair>) {
+    pairs.clear();
+    let left = &scratch.sweeps.left_boxes;
+    let mut consider = |a: u32, b: u32| {
+        let pair = (a.min(b), a.max(b));
+        let is_known = || state.contacts.binary_search_by_key(&pair, |contact| contact.shapes).is_ok();
+        let is_new = a != b && is_with_sensor(scratch, pair) && !is_known();
+        if is_new && scratch.pairs.non_colliding.may_touch(state, pair) {
+            pairs.push(pair);
+        }
+    };
+    for &shape in left {
+        let area = MovedShape::of(state, scratch, shape).area(scratch);
+        scratch.shapes.broad_phase().each_overlap(area, |other| {
+            consider(shape, other);
+            ControlFlow::Continue(())
+        });
+    }
+    // The new fat box of a shape need not cover its way, on which it may have met another such shape.
+    let is_sensor = |shape: &&u32| scratch.shapes.motion().shape(**shape).sensor;
+    for &sensor in left.iter().filter(is_sensor) {
+        left.iter().for_each(|&shape| consider(sensor, shape));
+    }
+    pairs.sort_unstable();
+    pairs.dedup();
+}

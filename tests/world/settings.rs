@@ -1,0 +1,180 @@
+//! Settings of a world that change at run time.
+
+use lockstep2d::body::{BodyDef, BodyId};
+use lockstep2d::fx;
+use lockstep2d::math::{Fx, Vec2};
+use lockstep2d::solver::{ContactTuning, JointDef, Revolute, SolverSettings};
+use lockstep2d::world::{Config, World};
+
+use super::{ball, is_asleep, run, spawn, square, world_with_floor};
+
+/// A stack of boxes on the floor, at rest.
+fn stack(sub_steps: u32) -> (World, Vec<BodyId>) {
+    let (mut world, _) = world_with_floor();
+    set(&mut world, |config| config.solver.sub_steps = sub_steps);
+    let boxes = (0..8).map(|i| {
+        let at = BodyDef::dynamic().position((fx!(0), Fx::from_num(i) + fx!(0.5)));
+        spawn(&mut world, at, square(fx!(0.5)))
+    });
+    let boxes = boxes.collect();
+    run(&mut world, 60);
+    (world, boxes)
+}
+
+fn set(world: &mut World, change: impl Fn(&mut Config)) {
+    let mut config = *world.config();
+    change(&mut config);
+    world.set_config(&config).expect("valid");
+    assert_eq!(*world.config(), config);
+    assert_eq!(world.validate(), Ok(()));
+}
+
+/// Impulses are kept for the next tick, and those of a shorter sub-step are smaller.
+#[test]
+fn a_stack_stays_at_rest_when_the_length_of_sub_steps_changes() {
+    for (from, to, tick_rate) in [(4, 8, 60), (4, 16, 60), (8, 4, 60), (16, 4, 60), (4, 4, 120), (4, 8, 30)] {
+        let (mut world, boxes) = stack(from);
+        let heights = |world: &World| -> Vec<Fx> {
+            boxes.iter().map(|&id| world.body(id).expect("there").position().y).collect()
+        };
+        let before = heights(&world);
+        set(&mut world, |config| (config.solver.sub_steps, config.tick_rate) = (to, tick_rate));
+        for _ in 0..30 {
+            run(&mut world, 1);
+            for (now, then) in heights(&world).iter().zip(&before) {
+                // The contact stiffness of 30 Hz is the same in all, except for the limit of an eighth of the rate.
+                let moved = (*now - *then).abs();
+                assert!(moved < fx!(0.005), "from {from} to {to} at {tick_rate}: moved by {moved}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_world_continues_as_one_that_was_made_with_the_settings() {
+    let settings = |config: &mut Config| {
+        config.gravity = Vec2::new(fx!(1), fx!(-5));
+        config.tick_rate = 50;
+        config.speculative_distance = fx!(0.03);
+        config.fat_margin = fx!(0.2);
+        config.continuous = false;
+        config.hit_speed = fx!(3);
+        config.solver = SolverSettings {
+            sub_steps: 5,
+            iterations: 2,
+            contact: ContactTuning::Soft { hertz: fx!(20), damping_ratio: fx!(5), push_speed: fx!(2) },
+            joint_hertz: fx!(40),
+            joint_damping_ratio: fx!(1),
+            restitution_threshold: fx!(0.5),
+            speed_max: fx!(100),
+        };
+    };
+    let fill = |world: &mut World| {
+        spawn(world, BodyDef::fixed().position((fx!(0), fx!(-1))), super::rectangle(fx!(20), fx!(1)));
+        let mut before = None;
+        for i in 0..6 {
+            let at = BodyDef::dynamic().position((Fx::from_num(i), fx!(3)));
+            let id = spawn(world, at, ball(fx!(0.4)).restitution(fx!(0.5)));
+            if let Some(before) = before {
+                let hinge = JointDef::new(before, id, Revolute::new()).anchor_a((fx!(1), fx!(0)));
+                world.add_joint(&hinge).expect("valid");
+            }
+            before = Some(id);
+        }
+    };
+    let mut config = Config::default();
+    settings(&mut config);
+    let mut made = World::new(config).expect("valid");
+    fill(&mut made);
+    let mut changed = World::default();
+    set(&mut changed, settings);
+    fill(&mut changed);
+    for _ in 0..120 {
+        run(&mut made, 1);
+        run(&mut changed, 1);
+        assert_eq!(made.state_hash(), changed.state_hash());
+    }
+}
+
+/// The surface of a pair, with the threshold of restitution, is cached while the shapes touch.
+#[test]
+fn a_new_threshold_of_restitution_applies_to_shapes_in_contact() {
+    let rebounds = |changed: bool| {
+        let (mut world, _) = world_with_floor();
+        let at = BodyDef::dynamic().position((fx!(0), fx!(0.5)));
+        let resting = spawn(&mut world, at, ball(fx!(0.5)).restitution(fx!(1)));
+        run(&mut world, 10);
+        if changed {
+            set(&mut world, |config| config.solver.restitution_threshold = fx!(0.1));
+        }
+        // Within the tick it hits the floor, which it touches.
+        world.set_velocity(resting, Vec2::new(fx!(0), fx!(-0.7)), fx!(0)).expect("valid");
+        run(&mut world, 1);
+        world.body(resting).expect("there").velocity().y
+    };
+    assert!(rebounds(false) < fx!(0.1), "{}", rebounds(false));
+    assert!(rebounds(true) > fx!(0.5), "{}", rebounds(true));
+}
+
+#[test]
+fn only_what_changes_the_balance_wakes() {
+    let wakes = |change: fn(&mut Config)| {
+        let (mut world, boxes) = stack(4);
+        run(&mut world, 120);
+        assert!(is_asleep(&world, boxes[0]));
+        set(&mut world, change);
+        !is_asleep(&world, boxes[0])
+    };
+    assert!(wakes(|config| config.gravity.x = fx!(1)));
+    assert!(wakes(|config| config.tick_rate = 61));
+    assert!(wakes(|config| config.solver.sub_steps = 5));
+    assert!(wakes(|config| config.solver.iterations = 2));
+    assert!(wakes(|config| config.solver.joint_hertz = fx!(50)));
+    assert!(wakes(|config| {
+        config.solver.contact =
+            ContactTuning::Soft { hertz: fx!(20), damping_ratio: fx!(10), push_speed: fx!(3) };
+    }));
+    assert!(wakes(|config| config.sleeping = false));
+    assert!(!wakes(|_| {}));
+    assert!(!wakes(|config| config.hit_speed = fx!(5)));
+    assert!(!wakes(|config| config.continuous = false));
+    assert!(!wakes(|config| config.fat_margin = fx!(0.2)));
+    assert!(!wakes(|config| config.speculative_distance = fx!(0.03)));
+    assert!(!wakes(|config| config.solver.speed_max = fx!(300)));
+    assert!(!wakes(|config| config.solver.restitution_threshold = fx!(2)));
+}
+
+#[test]
+fn without_sleeping_nothing_falls_asleep_until_it_is_switched_on_again() {
+    let (mut world, boxes) = stack(4);
+    set(&mut world, |config| config.sleeping = false);
+    run(&mut world, 120);
+    assert!(!is_asleep(&world, boxes[0]));
+    set(&mut world, |config| config.sleeping = true);
+    run(&mut world, 120);
+    assert!(is_asleep(&world, boxes[0]));
+}
+
+#[test]
+fn a_lower_speed_limit_slows_down() {
+    let mut world = super::weightless();
+    let fast = spawn(&mut world, BodyDef::dynamic().velocity((fx!(80), fx!(0))), ball(fx!(0.5)));
+    run(&mut world, 1);
+    set(&mut world, |config| config.solver.speed_max = fx!(20));
+    run(&mut world, 1);
+    let speed = world.body(fast).expect("there").velocity().x;
+    assert!((speed - fx!(20)).abs() < fx!(0.001), "{speed}");
+}
+
+/// A restore brings back the settings of the saved world.
+#[test]
+fn settings_are_part_of_a_snapshot() {
+    let (mut world, _) = stack(4);
+    let (before, hash) = (world.save(), world.state_hash());
+    set(&mut world, |config| (config.solver.sub_steps, config.continuous) = (9, false));
+    assert_ne!(world.state_hash(), hash);
+    let changed = World::from_bytes(&world.to_bytes()).expect("its own bytes");
+    assert_eq!(changed.config().solver.sub_steps, 9);
+    world.restore(&before);
+    assert_eq!((world.state_hash(), world.config().solver.sub_steps), (hash, 4));
+}
