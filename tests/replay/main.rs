@@ -6,6 +6,7 @@ mod counter;
 mod forge;
 mod format;
 mod hostile;
+mod keyframes;
 mod limits;
 mod reader;
 mod recorder;
