@@ -90,9 +90,9 @@ pub(crate) fn time_of_impact(
     target: Fx,
 ) -> TimeOfImpact {
     match swept_pair(a, sweep_a, b, sweep_b, target) {
-        SweptPair::Apart => TimeOfImpact::Separated,
-        SweptPair::Near(a, b) => advance(&a, &b, target),
-        SweptPair::TooFast => TimeOfImpact::Failed { fraction: Fx::ZERO },
+        Ok((a, b)) => advance(&a, &b, target),
+        Err(NotSwept::Apart) => TimeOfImpact::Separated,
+        Err(NotSwept::TooFast) => TimeOfImpact::Failed { fraction: Fx::ZERO },
     }
 }
 
@@ -112,7 +112,7 @@ pub(crate) fn first_overlap(
     let is_line = |shape: &SupportShape| shape.radius == 0 && shape.points().len() < 3;
     let (target, overlap) =
         if is_line(a) && is_line(b) { (Fx::ZERO, TOLERANCE) } else { (-TOLERANCE, Fx::ZERO) };
-    let SweptPair::Near(a, b) = swept_pair(a, sweep_a, b, sweep_b, target) else { return None };
+    let (a, b) = swept_pair(a, sweep_a, b, sweep_b, target).ok()?;
     let mut fraction = Fx::ZERO;
     for _ in 0..OVERLAP_STEPS_MAX {
         let (posed_a, posed_b) = (a.at(fraction), b.at(fraction));
@@ -131,33 +131,35 @@ pub(crate) fn first_overlap(
     None
 }
 
-/// Two shapes whose motion is followed.
-enum SweptPair {
+/// Reason why the motion of two shapes is not followed.
+enum NotSwept {
     /// They do not come near each other.
     Apart,
-    Near(SweptShape, SweptShape),
     /// One of them rotates too far.
     TooFast,
 }
 
 /// The moving shapes about B's centre at the start, if they may come within `target` metres.
-fn swept_pair(a: &SupportShape, sweep_a: &Sweep, b: &SupportShape, sweep_b: &Sweep, target: Fx) -> SweptPair {
+fn swept_pair(
+    a: &SupportShape,
+    sweep_a: &Sweep,
+    b: &SupportShape,
+    sweep_b: &Sweep,
+    target: Fx,
+) -> Result<(SweptShape, SweptShape), NotSwept> {
     let between = sweep_b.start - sweep_a.start;
     let moved = (sweep_b.end - sweep_b.start).length().saturating_add((sweep_a.end - sweep_a.start).length());
     let reach_b = to_fx(b.reach());
     let reach = moved.saturating_add(reach_b).saturating_add(radii(a, b)).saturating_add(target);
     let Some(core_a) = near(a, sweep_a, between, reach.saturating_add(Fx::ONE)) else {
-        return SweptPair::Apart;
+        return Err(NotSwept::Apart);
     };
     let reach_a = to_fx(core_a.reach());
     if between.is_longer_than(reach.saturating_add(reach_a)) {
-        return SweptPair::Apart;
+        return Err(NotSwept::Apart);
     }
     let mover_a = SweptShape::new(core_a, reach_a, sweep_a, -between);
-    match mover_a.zip(SweptShape::new(*b, reach_b, sweep_b, Vec2::ZERO)) {
-        Some((a, b)) => SweptPair::Near(a, b),
-        None => SweptPair::TooFast,
-    }
+    mover_a.zip(SweptShape::new(*b, reach_b, sweep_b, Vec2::ZERO)).ok_or(NotSwept::TooFast)
 }
 
 fn advance(a: &SweptShape, b: &SweptShape, mut target: Fx) -> TimeOfImpact {
