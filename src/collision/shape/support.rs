@@ -87,11 +87,6 @@ impl SupportShape {
         self.mapped(|point| point + by)
     }
 
-    /// Returns the core translated by a vector in metres.
-    pub(crate) fn translated(&self, by: Vec2<Fx>) -> Self {
-        self.moved(to_grid(by))
-    }
-
     /// Returns the core rotated about its origin.
     pub(crate) fn rotated(&self, rotation: Rot) -> Self {
         self.mapped(|point| from_raw(rotation.apply_wide(raw(point))))
