@@ -55,7 +55,7 @@ pub mod world;
 
 /// Version of the engine's arithmetic. It changes whenever the same inputs give a different state. Replays and
 /// snapshots store it; a file with another version is rejected, not misread.
-pub const SEMANTICS: u32 = 8;
+pub const SEMANTICS: u32 = 9;
 
 /// Compiles and runs the code of the README.
 #[cfg(doctest)]

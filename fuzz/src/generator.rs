@@ -87,7 +87,11 @@ fn wild_config(source: &mut Source<'_>) -> Config {
 fn changed_config(source: &mut Source<'_>, world: &World) -> Config {
     let Config { body_limit, shape_limit, joint_limit, pair_limit, .. } = *world.config();
     let config = wild_config(source);
-    if source.one_in(12) { config } else { Config { body_limit, shape_limit, joint_limit, pair_limit, ..config } }
+    if source.one_in(12) {
+        config
+    } else {
+        Config { body_limit, shape_limit, joint_limit, pair_limit, ..config }
+    }
 }
 
 impl Generator {
@@ -178,7 +182,7 @@ impl Generator {
             28 | 29 => Command::Sleep { body },
             30 | 31 => {
                 let shape = self.shape(source, world);
-                Command::SetShape { shape, def: altered_shape(source, world, shape) }
+                Command::SetShape { shape, def: shapes::altered(source, world, shape) }
             }
             32 => self.altered_joint(source, world),
             33 => Command::Explode { explosion: self.explosion(source) },
@@ -340,23 +344,6 @@ impl Generator {
         let present: Vec<JointId> = world.joints().map(|(id, _)| id).collect();
         handle(source, &present, &mut self.joints)
     }
-}
-
-/// A shape with one property changed, or all.
-fn altered_shape(source: &mut Source<'_>, world: &World, shape: ShapeId) -> ShapeDef {
-    let fresh = shapes::shape(source);
-    let Some(mut def) = world.shape(shape).map(|shape| *shape.def()) else { return fresh };
-    match source.below(8) {
-        0 => def.geometry = fresh.geometry,
-        1 => def.offset = fresh.offset,
-        2 => def.density = fresh.density,
-        3 => def.material = fresh.material,
-        4 => def.filter = fresh.filter,
-        5 => def.one_way = def.one_way.is_none().then(|| source.angle()),
-        6 => (def.sensor, def.events) = (!def.sensor, fresh.events),
-        _ => def = fresh,
-    }
-    def
 }
 
 pub(crate) fn spawn(body: BodyDef, shapes: &[ShapeDef]) -> Command {

@@ -1,8 +1,11 @@
 //! Generates shapes: mostly 0.1 to 2 m, sometimes at the limits, sometimes beyond them.
 
-use lockstep2d::body::{Chain, EventSwitches, Filter, Geometry, Material, Mixing, Polygon, ShapeDef, Sides};
+use lockstep2d::body::{
+    Chain, EventSwitches, Filter, Geometry, Material, Mixing, Polygon, ShapeDef, ShapeId, Sides,
+};
 use lockstep2d::codec;
 use lockstep2d::math::{Fx, Length, Vec2};
+use lockstep2d::world::World;
 
 use crate::source::Source;
 
@@ -255,4 +258,21 @@ fn stored_polygon(source: &mut Source<'_>) -> Option<Polygon> {
     let vertices: Vec<_> = (0..count).map(|_| Vec2::new(coordinate(source), coordinate(source))).collect();
     let radius = if source.one_in(3) { coordinate(source) } else { Length::ZERO };
     codec::decode(&codec::encode(&(vertices, radius))).ok()
+}
+
+/// A shape with one property changed, or all.
+pub(crate) fn altered(source: &mut Source<'_>, world: &World, shape: ShapeId) -> ShapeDef {
+    let fresh = shape(source);
+    let Some(mut def) = world.shape(shape).map(|shape| *shape.def()) else { return fresh };
+    match source.below(8) {
+        0 => def.geometry = fresh.geometry,
+        1 => def.offset = fresh.offset,
+        2 => def.density = fresh.density,
+        3 => def.material = fresh.material,
+        4 => def.filter = fresh.filter,
+        5 => def.one_way = def.one_way.is_none().then(|| source.angle()),
+        6 => (def.sensor, def.events) = (!def.sensor, fresh.events),
+        _ => def = fresh,
+    }
+    def
 }

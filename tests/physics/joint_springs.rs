@@ -1,6 +1,11 @@
-//! Springs follow the implicit integration of a damped oscillator, sub-step by sub-step: `v' = (v - K h omega^2 x) / (1
-//! + K (2 zeta h omega + h^2 omega^2))`, `x' = x + h v'`. Only rounding differs. `K` is 1, except where a spring
-//! between two points also turns the bodies, or where two springs act.
+//! Springs follow the implicit integration of a damped oscillator, sub-step by sub-step:
+//!
+//! ```text
+//! v' = (v - K h omega^2 x) / (1 + K (2 zeta h omega + h^2 omega^2)),   x' = x + h v'
+//! ```
+//!
+//! Only rounding differs. `K` is 1, except where a spring between two points also turns the bodies, or where two springs
+//! act.
 
 use lockstep2d::body::JointId;
 use lockstep2d::fx;

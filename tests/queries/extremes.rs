@@ -4,7 +4,7 @@ use super::{Query, twins};
 use lockstep2d::body::{BodyDef, Geometry, Polygon, ShapeDef};
 use lockstep2d::fx;
 use lockstep2d::math::{Aabb, Fx, Rng, Vec2};
-use lockstep2d::world::{Probe, QueryFilter, World};
+use lockstep2d::world::{Displacement, Probe, QueryFilter, World};
 
 const FAR: Fx = fx!(1073741824);
 
@@ -62,6 +62,19 @@ fn extreme_queries_do_not_panic() {
             assert_eq!(query.ask(twin, QueryFilter::default()), answer, "{query:?}");
         }
         let _ = world.collide_mover(&probe, translation.x, QueryFilter::default());
+        let _ = world.cast_turning(&probe, translation, number(&mut rng), QueryFilter::default());
+        let other = world.shapes().nth(rng.below(12) as usize).expect("12 shapes").0;
+        let other = world.probe_of(other).expect("enabled");
+        let by = Displacement { translation, turns: number(&mut rng) };
+        let _ = (
+            other.time_of_impact(by, &probe, Displacement::default()),
+            other.manifold(&probe, translation.y),
+        );
+        let _ = (
+            other.cast(translation, &probe),
+            other.cast_ray(point, translation),
+            other.contains_point(point),
+        );
     }
 }
 

@@ -41,7 +41,7 @@ impl Outline {
     }
 
     /// Distance of a point; negative inside.
-    fn distance_to(&self, point: Vec2<Fx>) -> Fx {
+    fn gap_to(&self, point: Vec2<Fx>) -> Fx {
         let nearest = self.edges().map(|(a, b)| closest_point_on_segment(point, a, b).distance(point)).min();
         let nearest = nearest.expect("corners");
         (if self.holds(point) { -nearest } else { nearest }) - self.radius
@@ -121,8 +121,8 @@ fn distances_overlaps_and_manifolds_are_those_of_brute_force() {
                 );
                 let between = found.point_b - found.point_a - found.normal.widen().scale(found.distance);
                 assert!(between.length() < TOLERANCE, "{found:?}");
-                assert!(a.outline().distance_to(found.point_a).abs() < TOLERANCE, "{found:?}");
-                assert!(b.outline().distance_to(found.point_b).abs() < TOLERANCE, "{found:?}");
+                assert!(a.outline().gap_to(found.point_a).abs() < TOLERANCE, "{found:?}");
+                assert!(b.outline().gap_to(found.point_b).abs() < TOLERANCE, "{found:?}");
             }
             None => {
                 over += 1;
@@ -156,7 +156,7 @@ fn rays_and_points_are_those_of_brute_force() {
         let from = origin(case) + vector(fx!(4));
         let translation = origin(case) + vector(fx!(1)) - from;
         let translation = translation.scale(rng.range(fx!(0.3), fx!(2)));
-        let gap = outline.distance_to(from);
+        let gap = outline.gap_to(from);
         assert!(shape.probe.contains_point(from) == (gap <= 0) || gap.abs() < TOLERANCE, "{gap}");
         let hit = shape.probe.cast_ray(from, translation);
         if gap < -TOLERANCE {
@@ -169,7 +169,7 @@ fn rays_and_points_are_those_of_brute_force() {
         let length = translation.length();
         let mut way = Fx::ZERO;
         for _ in 0..300 {
-            let step = outline.distance_to(from + translation.scale(fx_div(way, length).expect("a ray")));
+            let step = outline.gap_to(from + translation.scale(fx_div(way, length).expect("a ray")));
             way += step;
             if step < TOLERANCE || way > length {
                 break;
@@ -178,7 +178,7 @@ fn rays_and_points_are_those_of_brute_force() {
         match hit {
             Some(hit) => {
                 hits += 1;
-                assert!(outline.distance_to(hit.point).abs() < TOLERANCE, "{hit:?}");
+                assert!(outline.gap_to(hit.point).abs() < TOLERANCE, "{hit:?}");
                 assert!(fx_mul(hit.fraction, length) > way - fx!(0.00001), "{hit:?} {way}");
                 let facing = hit.normal.widen().dot(translation);
                 assert!(facing <= fx!(0.000001) && !hit.starts_inside, "{hit:?}");
@@ -186,7 +186,7 @@ fn rays_and_points_are_those_of_brute_force() {
             None => {
                 misses += 1;
                 for step in 0..=100 {
-                    let gap = outline.distance_to(from + translation.scale(ratio(step, 100)));
+                    let gap = outline.gap_to(from + translation.scale(ratio(step, 100)));
                     assert!(gap > -TOLERANCE, "{gap} at {step}");
                 }
             }

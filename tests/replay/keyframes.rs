@@ -3,11 +3,9 @@
 use lockstep2d::codec;
 use lockstep2d::hash::StateHash;
 use lockstep2d::lockstep::{Game, Sandbox};
-use lockstep2d::math::Rng;
-use lockstep2d::replay::{KEYFRAMES_MAGIC, KeyframesError, KeyframesFlaw, SeekError, Timeline};
+use lockstep2d::replay::{KEYFRAMES_MAGIC, KeyframesError, KeyframesFlaw, SeekError};
 
 use crate::counter::{Counter, inputs_at};
-use crate::forge::forge;
 use crate::record;
 use crate::timeline::{at, hashes, open, recorded};
 

@@ -6,8 +6,7 @@ use lockstep2d::hash::StateHash;
 use lockstep2d::lockstep::{Game, RulesId, Sandbox, SetupError};
 use lockstep2d::math::Rng;
 use lockstep2d::replay::{
-    KEYFRAMES_MAGIC, KeyframesError, KeyframesFlaw, LimitKind, Limits, Recording, SeekError, Step, Timeline,
-    TimelineOptions, Verdict, VerifiedReplay,
+    LimitKind, Limits, Recording, SeekError, Step, Timeline, TimelineOptions, Verdict, VerifiedReplay,
 };
 use lockstep2d::scenes;
 

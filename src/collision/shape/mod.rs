@@ -6,4 +6,4 @@ pub(in crate::collision) mod support;
 
 pub(crate) use link::Link;
 pub(crate) use posed::{Outline, PosedShape, arm_of};
-pub(crate) use support::{Fraction, SupportShape};
+pub(crate) use support::{Fraction, SupportShape, to_grid};

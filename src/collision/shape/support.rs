@@ -87,11 +87,6 @@ impl SupportShape {
         self.mapped(|point| point + by)
     }
 
-    /// Returns the core translated by a vector in metres.
-    pub(crate) fn translated(&self, by: Vec2<Fx>) -> Self {
-        self.moved(to_grid(by))
-    }
-
     /// Returns the core rotated about its origin.
     pub(crate) fn rotated(&self, rotation: Rot) -> Self {
         self.mapped(|point| from_raw(rotation.apply_wide(raw(point))))
@@ -276,87 +271,7 @@ impl Fraction {
 }
 
 #[cfg(test)]
-pub(in crate::collision) mod samples {
-    //! Random cores for the tests of queries.
-
-    use super::*;
-    use crate::body::Polygon;
-    use crate::math::Rng;
-    use alloc::vec::Vec;
-
-    pub(in crate::collision) fn vector(rng: &mut Rng, size: Fx) -> Vec2<Fx> {
-        Vec2::new(rng.range(-size, size), rng.range(-size, size))
-    }
-
-    /// A random point, segment, capsule, disc or polygon, with or without a radius, about its own centre.
-    pub(in crate::collision) fn core(rng: &mut Rng) -> SupportShape {
-        loop {
-            let points: Vec<_> = (0..7).map(|_| vector(rng, fx!(1))).collect();
-            let radius = if rng.chance(1, 2) { Fx::ZERO } else { rng.range(fx!(0.01), fx!(0.4)) };
-            let count = rng.below(5);
-            match count {
-                0 => return SupportShape::disc(points[0], radius),
-                1 => return SupportShape::from_points([points[0], points[1]], radius),
-                _ => {}
-            }
-            let polygon = match count {
-                2 => Polygon::rectangle(radius + fx!(0.1), fx!(0.3)),
-                3 => Polygon::hull(&points[..3]),
-                _ => Polygon::hull(&points),
-            };
-            if let Ok(polygon) = polygon {
-                let turn = Rot::from_angle(rng.angle());
-                let vertices = polygon.vertices().iter().map(|vertex| vertex.widen());
-                return SupportShape::from_points(vertices, radius).rotated(turn);
-            }
-        }
-    }
-
-    /// A random core of the largest shape size: up to 110 m from the centre.
-    pub(in crate::collision) fn large(rng: &mut Rng) -> SupportShape {
-        let core = core(rng);
-        let points: Vec<_> = world_points(&core).into_iter().map(|point| point.scale(fx!(75))).collect();
-        SupportShape::from_points(points, to_fx(core.radius) * 75)
-    }
-
-    /// A random core with a random offset.
-    pub(in crate::collision) fn placed(rng: &mut Rng, spread: Fx) -> SupportShape {
-        core(rng).moved(to_grid(vector(rng, spread)))
-    }
-
-    /// Sphere tracing: the distance in metres along a path of `length` metres at which it reaches a surface, within
-    /// 2e-7 m; `None` if it does not. `gap_at` returns the distance from the surface at a position on the path. A path
-    /// that passes within 2e-6 m of the surface without reaching it is undecided, an error.
-    pub(in crate::collision) fn march(
-        length: Fx,
-        mut gap_at: impl FnMut(Fx) -> Fx,
-    ) -> Result<Option<Fx>, ()> {
-        let (mut travelled, mut nearest) = (Fx::ZERO, Fx::MAX);
-        for _ in 0..2000 {
-            let gap = gap_at(travelled);
-            nearest = nearest.min(gap);
-            if gap < fx!(0.0000002) {
-                return Ok(Some(travelled));
-            }
-            travelled += gap;
-            if travelled > length {
-                return if nearest < fx!(0.000002) { Err(()) } else { Ok(None) };
-            }
-        }
-        Err(())
-    }
-
-    /// Points whose coordinates are at a bound of the world or of the format.
-    pub(in crate::collision) fn extremes() -> impl Iterator<Item = Vec2<Fx>> {
-        let ends = [Fx::MIN, fx!(-1073741824), fx!(1073741824), Fx::MAX];
-        ends.into_iter().flat_map(move |x| ends.map(|y| Vec2::new(x, y)))
-    }
-
-    /// Points of a core as world vectors.
-    pub(in crate::collision) fn world_points(core: &SupportShape) -> Vec<Vec2<Fx>> {
-        core.points().iter().map(|&point| from_grid(point)).collect()
-    }
-}
+pub(in crate::collision) mod samples;
 
 #[cfg(test)]
 mod tests {

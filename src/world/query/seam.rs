@@ -11,7 +11,9 @@ use smallvec::SmallVec;
 use super::mover_planes::{MoverPlane, solve_planes};
 use super::{Probe, QueryFilter};
 use crate::body::ShapeId;
-use crate::collision::{SKIN, SKIN_TOLERANCE, ShapeHit, SupportShape, cast_shape, distance, goes_against};
+use crate::collision::{
+    SKIN, SKIN_TOLERANCE, ShapeHit, SupportShape, cast_shape, distance, goes_against, to_grid,
+};
 use crate::fx;
 use crate::math::{Fx, Unit, Vec2};
 use crate::world::World;
@@ -102,7 +104,7 @@ impl World {
         let forwards = translation.normalized().unwrap_or(Vec2::ZERO).widen();
         let beyond = forwards.scale(out.length() * 2);
         (!planes.is_empty()).then(|| Resting {
-            shape: moving.translated(out),
+            shape: moving.moved(to_grid(out)),
             lift: out,
             translation: translation + beyond,
         })

@@ -6,7 +6,7 @@ use super::seam::{Rest, Resting};
 use super::{InitialOverlap, Probe, QueryFilter};
 use crate::body::{Handle, ShapeId};
 use crate::collision::{
-    PosedShape, SKIN, StartPolicy, SupportShape, Sweep, TimeOfImpact, distance, first_impact,
+    PosedShape, SKIN, StartPolicy, SupportShape, Sweep, TimeOfImpact, distance, first_impact, to_grid,
 };
 
 use crate::math::{Aabb, Fx, Unit, Vec2, saturate};
@@ -116,7 +116,7 @@ impl Turning {
         let origin = self.sweep.start;
         let start = distance(&SupportShape::of(other, origin), &self.core);
         let (travelled, turned) = self.sweep.at(fraction);
-        let there = self.core.rotated(turned).translated(travelled);
+        let there = self.core.rotated(turned).moved(to_grid(travelled));
         let touch = proximity(&SupportShape::of(other, origin), &there, origin);
         let starts_inside = fraction == Fx::ZERO && start.distance < Fx::ZERO;
         CastHit { shape, fraction, travelled, point: touch.point_a, normal: touch.normal, starts_inside }

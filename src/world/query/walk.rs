@@ -338,7 +338,8 @@ impl<'a> Walk<'a> {
         if self.world.cast_ray_any(here, above - here, self.filter) {
             return false;
         }
-        let down = Vec2::new(Fx::ZERO, SKIN + SKIN - self.mover.step_max());
+        // An edge that the character only just leaves may be below its feet, by no more than the gap of a cast.
+        let down = Vec2::new(Fx::ZERO, -(SKIN + SKIN) - self.mover.step_max());
         let found = self.world.cast_ray(above, down, self.filter);
         found.is_some_and(|hit| self.mover.is_ground(hit.normal))
     }
