@@ -261,9 +261,9 @@ fn stored_polygon(source: &mut Source<'_>) -> Option<Polygon> {
 }
 
 /// A shape with one property changed, or all.
-pub(crate) fn altered(source: &mut Source<'_>, world: &World, shape: ShapeId) -> ShapeDef {
+pub(crate) fn altered(source: &mut Source<'_>, world: &World, id: ShapeId) -> ShapeDef {
     let fresh = shape(source);
-    let Some(mut def) = world.shape(shape).map(|shape| *shape.def()) else { return fresh };
+    let Some(mut def) = world.shape(id).map(|shape| *shape.def()) else { return fresh };
     match source.below(8) {
         0 => def.geometry = fresh.geometry,
         1 => def.offset = fresh.offset,
