@@ -1,5 +1,7 @@
 //! Rays and shape casts.
 
+use core::cell::LazyCell;
+
 use alloc::vec::Vec;
 
 use super::seam::{Rest, Resting};
@@ -123,7 +125,8 @@ impl World {
         let moving = SupportShape::of(&posed, origin);
         let middle = origin + moving.middle();
         let area = posed.bounds.expanded(fx!(0.001));
-        let resting = self.resting(probe, translation, filter, rest, &accept);
+        // Most casts meet nothing.
+        let resting = LazyCell::new(|| self.resting(probe, translation, filter, rest, &accept));
         let mut closest: Option<Ordered<CastHit>> = None;
         let mut interest = Unit::ONE;
         self.scratch.shapes.broad_phase().each_along(area, translation, |slot| {
@@ -132,8 +135,9 @@ impl World {
                 return interest;
             };
             let other = SupportShape::of(posed, origin);
-            let found = first_touch([&other, &moving], resting.as_ref(), translation, filter.initial_overlap)
-                .filter(|hit| accept(shape, hit.normal, [&other, &moving]));
+            let found =
+                first_touch([&other, &moving], || resting.as_ref(), translation, filter.initial_overlap)
+                    .filter(|hit| accept(shape, hit.normal, [&other, &moving]));
             if let Some(ShapeHit { fraction, order, travelled, point, normal }) = found {
                 let starts_inside = fraction == Fx::ZERO && distance(&other, &moving).distance < Fx::ZERO;
                 let point = origin + point;
@@ -178,9 +182,9 @@ impl World {
 }
 
 /// The first touch of a moving shape B with a shape A that is not a seam of what B rests on.
-fn first_touch(
+fn first_touch<'r>(
     [a, b]: [&SupportShape; 2],
-    resting: Option<&Resting>,
+    resting: impl FnOnce() -> Option<&'r Resting>,
     translation: Vec2<Fx>,
     overlap: InitialOverlap,
 ) -> Option<ShapeHit> {
@@ -191,7 +195,7 @@ fn first_touch(
         }
     }
     let hit = cast_shape(a, b, translation)?;
-    match resting {
+    match resting() {
         Some(resting) => resting.confirm(a, hit),
         None => Some(hit),
     }
