@@ -94,7 +94,11 @@ pub(super) fn explain<G: Game>(
         // The differences already show the bit.
         return Ok(());
     }
-    let candidates = if is_known { candidates(&found.subjects) } else { everybody(&mut game, &wrong.before) };
+    let mut candidates = if is_known { candidates(&found.subjects) } else { Vec::new() };
+    if candidates.is_empty() {
+        // The step may have restored the body, and only the impulses of its contacts differ.
+        candidates = everybody(&mut game, &wrong.before);
+    }
     let Some(culprit) = search(wrong, &mut game, candidates, work) else {
         return Ok(());
     };

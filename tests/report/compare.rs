@@ -91,7 +91,13 @@ fn cases(seed: u64, count: u32, when: When, stride: u32) -> u32 {
         assert_eq!(found.trajectories[blamed.index()].seats, [u32::try_from(faulty).unwrap()], "{what}");
         assert_eq!(found.tick, Some(flip.tick), "{what}");
         let first = &found.subjects[0];
-        assert_eq!((first.path.as_str(), first.section.as_str()), (body.as_str(), "world.bodies"), "{what}");
+        // The step may have restored the body, and changed only contacts.
+        let is_restored = found.subjects.iter().all(|subject| subject.path != body);
+        assert!(!is_restored || when == When::Before, "{what}");
+        if !is_restored {
+            let place = (first.path.as_str(), first.section.as_str());
+            assert_eq!(place, (body.as_str(), "world.bodies"), "{what}");
+        }
         let difference = match when {
             When::After => {
                 assert_eq!((found.subjects.len(), first.differences.len()), (1, 1), "{what}");

@@ -279,7 +279,7 @@ fn the_bytes_of_commands_are_those_of_the_document() {
         assert_eq!(encode(&geometry), expected.0, "{geometry:?}");
     }
     let inputs: Vec<Command> = cases.iter().map(|(command, _)| command.clone()).collect();
-    let all = cases.into_iter().fold(w().u64(29), |all, (_, bytes)| all.then(bytes));
+    let all = cases.into_iter().fold(w().u64(31), |all, (_, bytes)| all.then(bytes));
     assert_eq!(encode(&inputs), all.0, "an input of the sandbox");
 }
 
