@@ -57,6 +57,9 @@ pub mod world;
 /// snapshots store it; a file with another version is rejected, not misread.
 pub const SEMANTICS: u32 = 9;
 
+/// Version of this crate.
+pub const VERSION: &str = env!("CARGO_PKG_VERSION");
+
 /// Compiles and runs the code of the README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

@@ -9,7 +9,7 @@ use lockstep2d::draw::View;
 use lockstep2d::lockstep::Game;
 use lockstep2d::replay::Limits;
 
-use crate::commands::{Row, table};
+use crate::commands::{Row, table, verify};
 use crate::console::Console;
 use crate::context::{CommandResult, Context};
 use crate::exit::Exit;
@@ -118,13 +118,14 @@ impl<G: Game> Tool<G> {
 
     fn command(&self, table: &[Row<G>]) -> Command {
         let rules = G::RULES;
-        let engine = lockstep2d::SEMANTICS;
+        let (engine, semantics) = (lockstep2d::VERSION, lockstep2d::SEMANTICS);
         Command::new(rules.name)
             .about(format!("Tools for the replays of {}", rules.name))
-            .version(format!("rules version {}, engine semantics {engine}", rules.version))
+            .version(format!("rules version {}, engine {engine}, semantics {semantics}", rules.version))
             .subcommand_required(true)
             .arg_required_else_help(true)
             .subcommands(table.iter().map(|row| &row.command))
+            .mut_subcommand("verify", |verify| verify::with_defaults(verify, &self.limits))
             .subcommands(self.own.iter().map(|(own, _)| own))
     }
 

@@ -13,7 +13,7 @@ mod stats;
 mod stress_saves;
 mod trace;
 mod trim;
-mod verify;
+pub(crate) mod verify;
 
 use clap::{ArgMatches, Args, Command};
 use lockstep2d::lockstep::Game;

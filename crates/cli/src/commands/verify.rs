@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::thread;
 use std::time::Duration;
 
-use clap::Args;
+use clap::{Args, Command};
 use lockstep2d::lockstep::Game;
 use lockstep2d::replay::Limits;
 
@@ -91,6 +91,23 @@ impl LimitArguments {
             ..limits.clone()
         }
     }
+}
+
+/// Adds the limits of the tool to the help of the arguments that override them.
+pub(crate) fn with_defaults(command: Command, limits: &Limits) -> Command {
+    let defaults = [
+        ("max_bytes", limits.file_bytes),
+        ("max_ticks", limits.ticks),
+        ("max_bodies", limits.bodies),
+        ("max_tick_work", limits.tick_work),
+        ("max_work", limits.total_work),
+    ];
+    defaults.into_iter().fold(command, |command, (argument, most)| {
+        command.mut_arg(argument, |argument| {
+            let help = argument.get_help().map(ToString::to_string).unwrap_or_default();
+            argument.help(format!("{help} [default: {most}]"))
+        })
+    })
 }
 
 pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) -> CommandResult {

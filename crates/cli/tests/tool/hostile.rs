@@ -3,14 +3,14 @@
 use lockstep2d::body::{BodyDef, Polygon, ShapeDef};
 use lockstep2d::fx;
 use lockstep2d::lockstep::{Game, RulesId, Sandbox, SandboxSetup};
-use lockstep2d::replay::Recording;
+use lockstep2d::replay::{Limits, Recording};
 use lockstep2d::world::Command;
 use lockstep2d_cli::{Exit, Tool};
 use serde_json::{Value, json};
 
 use crate::batch::{fuse, run_bomb};
 use crate::counter::{add, like_its_counter, setup};
-use crate::{Counter, Folder, replay, run, run_tool_of};
+use crate::{Counter, Folder, replay, run, run_tool, run_tool_of};
 
 fn line(out: &str) -> Value {
     serde_json::from_str(out.lines().next().unwrap()).unwrap()
@@ -191,4 +191,13 @@ fn declared_results_are_shown() {
     let outcome = run(&["verify", &file]);
     let line = outcome.out.lines().next().unwrap();
     assert!(line.ends_with("; half 2, sum 5"), "{line}");
+}
+
+#[test]
+fn the_help_of_verify_states_the_limits_of_the_tool() {
+    let limits = Limits { ticks: 12_345, ..Limits::default() };
+    let help = run_tool(&Tool::new().with_limits(limits), &["verify", "--help"]).out;
+    for default in ["Most ticks [default: 12345]", "Most bytes of the file [default: 67108864]"] {
+        assert!(help.contains(default), "{help}");
+    }
 }
