@@ -317,7 +317,7 @@ impl Questions<'_> {
             let good = away.abs() <= TOLERANCE || touched_before(hit.shape);
             assert!(good, "{hit:?} stops {away} m before the shape");
         }
-        // What a probe rests on may hold it as deep in the next shapes: it passes seams.
+        // A cast passes seams, where the probe may be as deep in the next shape as in the one it rests on.
         let rests = self.seen().any(|shape| touched_before(shape));
         let deeper = if rests { DEPTH_OF_REST } else { Fx::ZERO };
         let inside = |fraction, shape| distance(fraction, shape).saturating_add(deeper);

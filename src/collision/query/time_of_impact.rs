@@ -29,7 +29,7 @@ pub(crate) const TOLERANCE: Fx = fx!(0.00005);
 /// contact.
 const STEPS_MAX: u32 = 48;
 
-/// The same for queries, which are few.
+/// Largest number of steps of a query. Queries are few.
 const QUERY_STEPS_MAX: u32 = 512;
 
 /// Largest rotation in radians of a shape that is not a disc about its body's centre, and largest reach in metres of a
@@ -75,7 +75,7 @@ pub(crate) enum TimeOfImpact {
     Failed { fraction: Fx },
 }
 
-/// What a search does with shapes that start within the target.
+/// Treatment of shapes that start within the target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum StartPolicy {
     /// Continuous collision: they may go deeper, but not pass: see [`time_of_impact`].

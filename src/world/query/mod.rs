@@ -49,11 +49,11 @@ pub struct QueryFilter {
     pub except: Option<BodyId>,
     /// Further bodies that the query does not see, such as those of a vehicle.
     pub except_also: [Option<BodyId>; Self::EXCEPT_ALSO_MAX],
-    /// What a ray or a cast does with shapes that it starts inside of.
+    /// Treatment of shapes inside of which a ray or a cast starts.
     pub initial_overlap: InitialOverlap,
 }
 
-/// What a ray or a cast does with shapes that it starts inside of. Its hits tell whether it does.
+/// Treatment of shapes inside of which a ray or a cast starts. Hits say whether it starts inside.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum InitialOverlap {
     /// A ray reports them, at fraction 0. A cast reports those into which it would go deeper, so that a shape that

@@ -37,7 +37,7 @@ enum Surface {
     Wall,
 }
 
-/// What a cast of the character does with shapes that overlap it.
+/// Treatment of shapes that overlap the character, in a cast.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Overlaps {
     /// They stop a cast that goes deeper.
@@ -231,7 +231,7 @@ impl<'a> Walk<'a> {
                         self.along = Some(n);
                     }
                 }
-                // What is left of a walk at a wall is not turned upwards.
+                // A wall does not turn the rest of a walk upwards.
                 Surface::Steep | Surface::Wall if self.on_ground && !self.rises() => {
                     if (n.x < 0) == (left.x > 0) && n.x != 0 {
                         left = Vec2::new(Fx::ZERO, left.y.min(Fx::ZERO));
