@@ -28,7 +28,7 @@ fn world(tick_rate: u32) -> World {
     World::new(Config { tick_rate, ..Config::default() }).expect("valid")
 }
 
-/// What one tick of gravity adds to a velocity.
+/// Change of a velocity by gravity in one tick.
 fn fall(tick_rate: u32) -> Fx {
     fx!(10) / i64::from(tick_rate)
 }

@@ -4,8 +4,8 @@
 //! v' = (v - K h omega^2 x) / (1 + K (2 zeta h omega + h^2 omega^2)),   x' = x + h v'
 //! ```
 //!
-//! Only rounding differs. `K` is 1, except where a spring between two points also turns the bodies, or where two springs
-//! act.
+//! Only rounding differs. `K` is 1, except where a spring between two points also turns the bodies, or where two
+//! springs act.
 
 use lockstep2d::body::JointId;
 use lockstep2d::fx;
@@ -146,7 +146,7 @@ fn a_point_on_an_arm_swings_faster() {
     }
 }
 
-/// The same holds for springs along a line: that of a suspension and that of a distance joint.
+/// Springs along a line, those of suspensions and of distance joints, have the stiffness of two points of mass.
 #[test]
 fn a_spring_along_a_line_swings_faster_on_an_arm() {
     for (ground, reduced) in [(Ground::Fixed, fx!(1)), (Ground::Free(fx!(2)), fx!(0.5))] {

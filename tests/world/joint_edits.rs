@@ -1,4 +1,4 @@
-//! What a game changes about joints between ticks: kinds of their bodies, switching them off, motors, springs and
+//! Changes of joints between ticks: kinds of their bodies, switching them off, motors, springs and
 //! limits, their own softness; anchors anywhere on fixed bodies; the force of one part; definitions at a point of the
 //! world.
 
