@@ -13,7 +13,7 @@ use crate::rapier::Rapier;
 use crate::script::{Event, Script};
 
 /// The engines, in the order of a round.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, clap::ValueEnum)]
 #[serde(rename_all = "lowercase")]
 pub enum Kind {
     /// lockstep2d.
@@ -151,6 +151,9 @@ pub fn build<B: Builder>(builder: &mut B, event: &Event) -> Result<()> {
     }
 }
 
+/// Number of saves that an engine keeps: the start of a rollback frame and its eight ticks.
+pub const SAVES: usize = 9;
+
 /// World in one of the engines.
 pub trait Engine {
     /// Executes a recorded command, with the handles of its recorded outcome.
@@ -171,14 +174,18 @@ pub trait Engine {
     /// Returns the largest distance between the two anchors of a joint, in metres; `None` without joints.
     fn joint_gap(&self) -> Option<f64>;
 
-    /// Saves the world, replacing the previous save.
-    fn save(&mut self);
+    /// Saves the world in a slot, of [`SAVES`], and reuses the memory of the save that it replaces.
+    fn save(&mut self, slot: usize);
 
     /// Size of the saved world as a file, in bytes.
-    fn saved_bytes(&self) -> usize;
+    fn saved_bytes(&self, slot: usize) -> usize;
 
-    /// Restores the saved world.
-    fn restore(&mut self) -> Result<()>;
+    /// Restores the world saved in a slot.
+    fn restore(&mut self, slot: usize) -> Result<()>;
+
+    /// Returns the checksum of a tick that has just been saved in a slot: the hash of the state if the engine has one,
+    /// otherwise the XXH3-128 of the save.
+    fn checksum(&self, slot: usize) -> u128;
 
     /// Returns a hash of all state that influences later steps; `None` if the engine has none.
     fn hash(&self) -> Option<u128>;

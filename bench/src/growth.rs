@@ -148,7 +148,7 @@ fn churn(bodies: u32) -> Result<SandboxSetup, WorldError> {
 
 /// Adds a rotating square drum full of boxes and balls, initially turned by 30 degrees. Its angular velocity gives
 /// the same Froude number at any size.
-fn add_drum(scene: &mut Builder, centre: Vec2<Fx>, bodies: u32) -> Result<(), WorldError> {
+pub fn add_drum(scene: &mut Builder, centre: Vec2<Fx>, bodies: u32) -> Result<(), WorldError> {
     let side = bodies.isqrt().max(2);
     // The drum is large enough for the upright grid of bodies to fit into it when it is turned by 30 degrees.
     let apart = fx!(0.255);

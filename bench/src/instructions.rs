@@ -4,10 +4,11 @@
 use std::process::Command;
 
 use anyhow::{Context, Result, anyhow, ensure};
-use lockstep2d::lockstep::{Game, Sandbox};
 use serde::Serialize;
 
+use crate::engine::Kind;
 use crate::growth::{Plan, World};
+use crate::script::Script;
 use crate::stats::power;
 
 /// Results of a world at every size.
@@ -61,11 +62,11 @@ fn count(world: World, size: u32, steps: u64) -> Result<(usize, f64)> {
 }
 
 /// Builds a world, steps it, and returns its number of dynamic bodies.
-pub fn step(world: World, size: u32, steps: u64) -> Result<usize> {
+pub fn step(world: World, size: u32, steps: u64, kind: Kind) -> Result<usize> {
     let setup = (world.setup)(size).map_err(|error| anyhow!("{} of {size}: {error}", world.name))?;
-    let mut game = Sandbox::new(&setup).map_err(|error| anyhow!("{error}"))?;
-    (0..steps).for_each(|_| game.step(&[]));
-    Ok(game.world().bodies().filter(|(_, body)| body.is_dynamic()).count())
+    let mut engine = kind.build(&Script::of_setup(setup, 0)?, 1)?;
+    (0..steps).for_each(|_| engine.step());
+    Ok(engine.bodies().iter().filter(|body| body.dynamic).count())
 }
 
 /// Formats the results as a table.

@@ -11,12 +11,13 @@ mod ours;
 mod rapier;
 mod rollback;
 mod script;
+mod small;
 mod stats;
 mod table;
 #[cfg(test)]
 mod tests;
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, ensure};
 use clap::Parser;
 use clap::builder::PossibleValuesParser;
 use compare::Plan;
@@ -37,9 +38,17 @@ struct Arguments {
 enum Command {
     /// Measures how the time of a step grows with the number of bodies
     Growth(GrowthArguments),
-    /// Steps one of the worlds of `growth`, which runs this under valgrind to count its instructions
+    /// Measures worlds of the size of games, and their rollback frames
+    Small(SmallArguments),
+    /// Steps one of the worlds of `growth` or `small`, to count its instructions with valgrind
     #[command(hide = true)]
-    Step { world: String, bodies: u32, steps: u64 },
+    Step {
+        world: String,
+        bodies: u32,
+        steps: u64,
+        #[arg(value_enum, default_value_t = engine::Kind::Ours)]
+        engine: engine::Kind,
+    },
     /// Measures the cost of rollback in lockstep2d
     Rollback(RollbackArguments),
 }
@@ -63,6 +72,19 @@ struct GrowthArguments {
     #[arg(long, conflicts_with = "rounds")]
     instructions: bool,
     /// Print lines of JSON instead of a table
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(clap::Args)]
+struct SmallArguments {
+    /// Measure only these worlds, repeated or separated by commas
+    #[arg(long = "world", value_delimiter = ',')]
+    worlds: Vec<String>,
+    /// Runs of each engine, interleaved
+    #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u16).range(1..))]
+    rounds: u16,
+    /// Print lines of JSON instead of tables: one for each world and size, one for each frame, and a summary
     #[arg(long)]
     json: bool,
 }
@@ -104,10 +126,12 @@ fn main() -> Result<()> {
     match &arguments.command {
         None => compare_scenes(&arguments.scenes),
         Some(Command::Growth(arguments)) => measure_growth(arguments),
-        Some(Command::Step { world, bodies, steps }) => {
-            let world = growth::WORLDS.into_iter().find(|known| known.name == world);
-            let world = world.context("the world should be one of the worlds of `growth`")?;
-            println!("{}", instructions::step(world, *bodies, *steps)?);
+        Some(Command::Small(arguments)) => measure_small(arguments),
+        Some(Command::Step { world, bodies, steps, engine }) => {
+            let mut worlds = growth::WORLDS.into_iter().chain(small::all().map(|(world, _)| world));
+            let world = worlds.find(|known| known.name == world);
+            let world = world.context("the world should be one of the worlds of `growth` or `small`")?;
+            println!("{}", instructions::step(world, *bodies, *steps, *engine)?);
             Ok(())
         }
         Some(Command::Rollback(arguments)) => measure_rollback(arguments),
@@ -188,6 +212,40 @@ fn count_instructions(plan: &growth::Plan, json: bool) -> Result<()> {
     }
     progress.finish_and_clear();
     print_growths(&growths, instructions::table, json)
+}
+
+fn measure_small(arguments: &SmallArguments) -> Result<()> {
+    let rounds = usize::from(arguments.rounds);
+    let chosen =
+        |name: &str| arguments.worlds.is_empty() || arguments.worlds.iter().any(|world| world == name);
+    let worlds: Vec<_> = small::all().filter(|(world, _)| chosen(world.name)).collect();
+    let frames: Vec<_> = small::frames().filter(|(world, _)| chosen(world.name)).collect();
+    ensure!(!worlds.is_empty(), "no such world: {}", arguments.worlds.join(", "));
+    let progress = progress(((worlds.len() + frames.len()) * rounds * engine::Kind::ALL.len()) as u64)?;
+    if !arguments.json {
+        println!("{}", small::head());
+    }
+    let mut cells = Vec::new();
+    for (world, size) in worlds {
+        let cell = small::cell(world, size, rounds, &progress)?;
+        let row = if arguments.json { compare::line(&cell)? } else { small::row(&cell) };
+        progress.suspend(|| println!("{row}"));
+        cells.push(cell);
+    }
+    let summary = small::summary(&cells);
+    if !arguments.json {
+        progress.suspend(|| println!("{}\n\n{}", small::summary_rows(&summary), small::frame_head()));
+    }
+    for (world, size) in frames {
+        let frame = small::frame(world, size, rounds, &progress)?;
+        let row = if arguments.json { compare::line(&frame)? } else { small::frame_row(&frame) };
+        progress.suspend(|| println!("{row}"));
+    }
+    progress.finish_and_clear();
+    if arguments.json {
+        println!("{}", compare::line(&summary)?);
+    }
+    Ok(())
 }
 
 fn measure_rollback(arguments: &RollbackArguments) -> Result<()> {

@@ -116,15 +116,15 @@ pub fn end_state(engine: &dyn Engine) -> EndState {
 pub fn keeping(engine: &mut dyn Engine) -> Result<Keeping> {
     let (mut save, mut restore, mut hash) = (Vec::new(), Vec::new(), Vec::new());
     for _ in 0..5 {
-        save.push(timed(|| engine.save()).0);
-        let (ms, restored) = timed(|| engine.restore());
+        save.push(timed(|| engine.save(0)).0);
+        let (ms, restored) = timed(|| engine.restore(0));
         restored?;
         restore.push(ms);
         if let (ms, Some(_)) = timed(|| engine.hash()) {
             hash.push(ms);
         }
     }
-    let bytes = engine.saved_bytes();
+    let bytes = engine.saved_bytes(0);
     Ok(Keeping {
         save_ms: median(&save),
         restore_ms: median(&restore),

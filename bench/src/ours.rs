@@ -4,13 +4,13 @@ use anyhow::{Context, Result, anyhow, ensure};
 use lockstep2d::body::BodyKind;
 use lockstep2d::world::{Config, Snapshot, World};
 
-use crate::engine::{BodyState, Contacts, Counts, Engine, float, floats};
+use crate::engine::{BodyState, Contacts, Counts, Engine, SAVES, float, floats};
 use crate::script::Event;
 
 /// World of lockstep2d.
 pub struct Ours {
     world: World,
-    saved: Option<Snapshot>,
+    saves: [Option<Snapshot>; SAVES],
 }
 
 impl Ours {
@@ -18,7 +18,7 @@ impl Ours {
     pub fn new(config: &Config, threads: usize) -> Result<Self> {
         let mut world = World::new(*config).map_err(|error| anyhow!("{error}"))?;
         ensure!(world.set_threads(threads), "lockstep2d cannot use {threads} threads");
-        Ok(Ours { world, saved: None })
+        Ok(Ours { world, saves: Default::default() })
     }
 }
 
@@ -69,17 +69,24 @@ impl Engine for Ours {
         gaps.max_by(f64::total_cmp)
     }
 
-    fn save(&mut self) {
-        self.saved = Some(self.world.save());
+    fn save(&mut self, slot: usize) {
+        match &mut self.saves[slot] {
+            Some(save) => self.world.save_into(save),
+            empty => *empty = Some(self.world.save()),
+        }
     }
 
-    fn saved_bytes(&self) -> usize {
+    fn saved_bytes(&self, _: usize) -> usize {
         self.world.to_bytes().len()
     }
 
-    fn restore(&mut self) -> Result<()> {
-        self.world.restore(self.saved.as_ref().context("nothing is saved")?);
+    fn restore(&mut self, slot: usize) -> Result<()> {
+        self.world.restore(self.saves[slot].as_ref().context("nothing is saved")?);
         Ok(())
+    }
+
+    fn checksum(&self, _: usize) -> u128 {
+        self.world.state_hash().0
     }
 
     fn hash(&self) -> Option<u128> {

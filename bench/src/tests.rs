@@ -71,9 +71,9 @@ fn every_engine_continues_from_what_it_saved() {
             (0..10).for_each(|_| engine.step());
             engine.bodies().iter().map(|body| body.centre).collect::<Vec<_>>()
         };
-        engine.save();
+        engine.save(0);
         let first = after(&mut *engine);
-        engine.restore().unwrap();
+        engine.restore(0).unwrap();
         assert!(after(&mut *engine) == first, "{}", kind.name());
         let keeping = keeping(&mut *engine).unwrap();
         assert!(keeping.bytes_per_body > 50.0 && keeping.save_ms > 0.0, "{keeping:?}");

@@ -8,8 +8,9 @@ use lockstep2d::body::{BodyDef, BodyId, ShapeDef};
 use lockstep2d::math::{Angle, Fx, Vec2};
 use lockstep2d::solver::{ContactTuning, JointDef};
 use lockstep2d::world::{BodyPose, Config};
+use xxhash_rust::xxh3::xxh3_128;
 
-use crate::engine::{BodyState, Builder, Contacts, Counts, Engine, Slots, build};
+use crate::engine::{BodyState, Builder, Contacts, Counts, Engine, SAVES, Slots, build};
 use crate::script::Event;
 
 /// World of Box2D.
@@ -19,7 +20,7 @@ pub struct Box2d {
     time_step: f32,
     bodies: Slots<b2BodyId>,
     joints: Vec<b2JointId>,
-    saved: Vec<u8>,
+    saves: [Vec<u8>; SAVES],
 }
 
 // SAFETY, for every block below: the world exists from `new` to `drop`, the handles in `bodies` refer to bodies that
@@ -50,8 +51,8 @@ impl Box2d {
             b2CreateWorld(&def)
         };
         let time_step = 1.0 / config.tick_rate as f32;
-        let (bodies, joints, saved) = (Slots::new(), Vec::new(), Vec::new());
-        Ok(Box2d { world, config: *config, time_step, bodies, joints, saved })
+        let (bodies, joints, saves) = (Slots::new(), Vec::new(), Default::default());
+        Ok(Box2d { world, config: *config, time_step, bodies, joints, saves })
     }
 }
 
@@ -183,25 +184,31 @@ impl Engine for Box2d {
         self.joints.iter().filter_map(gap).max_by(f64::total_cmp)
     }
 
-    fn save(&mut self) {
+    fn save(&mut self, slot: usize) {
+        let save = &mut self.saves[slot];
         // SAFETY: see above; the buffer has the length that is passed.
         unsafe {
             let needed = b2World_Snapshot(self.world, std::ptr::null_mut(), 0);
-            self.saved.resize(usize::try_from(needed).unwrap_or(0), 0);
-            b2World_Snapshot(self.world, self.saved.as_mut_ptr(), needed);
+            save.resize(usize::try_from(needed).unwrap_or(0), 0);
+            b2World_Snapshot(self.world, save.as_mut_ptr(), needed);
         }
     }
 
-    fn saved_bytes(&self) -> usize {
-        self.saved.len()
+    fn saved_bytes(&self, slot: usize) -> usize {
+        self.saves[slot].len()
     }
 
-    fn restore(&mut self) -> Result<()> {
-        let length = i32::try_from(self.saved.len())?;
+    fn restore(&mut self, slot: usize) -> Result<()> {
+        let save = &self.saves[slot];
+        let length = i32::try_from(save.len())?;
         // SAFETY: see above; the bytes are a snapshot of this world.
-        let restored = unsafe { b2World_Restore(self.world, self.saved.as_ptr(), length) };
+        let restored = unsafe { b2World_Restore(self.world, save.as_ptr(), length) };
         ensure!(restored, "Box2D refused its own snapshot");
         Ok(())
+    }
+
+    fn checksum(&self, slot: usize) -> u128 {
+        xxh3_128(&self.saves[slot])
     }
 
     fn hash(&self) -> Option<u128> {

@@ -11,8 +11,9 @@ use lockstep2d::solver::{ContactTuning, JointDef};
 use lockstep2d::world::{BodyPose, Config};
 use rapier2d::pipeline::PhysicsWorld;
 use rapier2d::prelude::*;
+use xxhash_rust::xxh3::xxh3_128;
 
-use crate::engine::{BodyState, Builder, Contacts, Counts, Engine, Slots, build};
+use crate::engine::{BodyState, Builder, Contacts, Counts, Engine, SAVES, Slots, build};
 use crate::script::Event;
 
 /// World of rapier2d.
@@ -25,7 +26,7 @@ pub struct Rapier {
     extra_links: usize,
     /// Bodies to put to sleep after the first step, because new contacts in that step wake them.
     to_sleep: Vec<RigidBodyHandle>,
-    saved: Vec<u8>,
+    saves: [Vec<u8>; SAVES],
 }
 
 impl Rapier {
@@ -57,7 +58,7 @@ impl Rapier {
             bodies: Slots::new(),
             extra_links: 0,
             to_sleep: Vec::new(),
-            saved: Vec::new(),
+            saves: Default::default(),
         };
         engine.set_threads()?;
         Ok(engine)
@@ -190,19 +191,23 @@ impl Engine for Rapier {
         self.world.impulse_joints().filter_map(gap).max_by(f64::total_cmp)
     }
 
-    fn save(&mut self) {
-        self.saved.clear();
-        encode_into_std_write(&self.world, &mut self.saved, legacy())
-            .expect("writing to a buffer cannot fail");
+    fn save(&mut self, slot: usize) {
+        let save = &mut self.saves[slot];
+        save.clear();
+        encode_into_std_write(&self.world, save, legacy()).expect("writing to a buffer cannot fail");
     }
 
-    fn saved_bytes(&self) -> usize {
-        self.saved.len()
+    fn saved_bytes(&self, slot: usize) -> usize {
+        self.saves[slot].len()
     }
 
-    fn restore(&mut self) -> Result<()> {
-        (self.world, _) = decode_from_slice(&self.saved, legacy())?;
+    fn restore(&mut self, slot: usize) -> Result<()> {
+        (self.world, _) = decode_from_slice(&self.saves[slot], legacy())?;
         self.set_threads()
+    }
+
+    fn checksum(&self, slot: usize) -> u128 {
+        xxh3_128(&self.saves[slot])
     }
 
     fn hash(&self) -> Option<u128> {
