@@ -111,6 +111,9 @@ impl<K: BatchKind> BatchList<K> {
     /// Runs an operation over the overflow, one constraint after the other.
     pub(super) fn run_overflow(&mut self, operation: impl Operation<K>, context: &StepContext<'_>) {
         let Batches { batches, records, extras, .. } = &mut self.overflow;
+        if batches.is_empty() {
+            return;
+        }
         let mut faults = 0;
         let (bodies, faults_of_run) = (context.bodies, &mut faults);
         Run { batches, records, extras, operation, bodies, faults: faults_of_run }.run::<Scalar<1>>();
@@ -120,8 +123,19 @@ impl<K: BatchKind> BatchList<K> {
     /// Runs an operation over the coloured constraints, colour by colour. All threads share the batches of a colour.
     pub(super) fn run_coloured(&mut self, operation: impl Operation<K>, context: &StepContext<'_>) {
         let StepContext { machine, threads, .. } = *context;
-        let bodies = Shared::within_a_colour(context.bodies);
         let Batches { batches, records, extras, colour_ends } = &mut self.coloured;
+        if batches.is_empty() {
+            return;
+        }
+        if threads.count() == 1 {
+            // The batches are in the order of the colours.
+            let mut faults = 0;
+            let bodies = context.bodies;
+            machine.run(Run { batches, records, extras, operation, bodies, faults: &mut faults });
+            context.add_faults(faults);
+            return;
+        }
+        let bodies = Shared::within_a_colour(context.bodies);
         let (mut start, mut extras) = (0, &mut extras[..]);
         for &end in colour_ends.iter() {
             let (colour, records) = (&mut batches[start..end], &records[start..end]);

@@ -51,6 +51,40 @@ pub enum SolverColour {
     Overflow,
 }
 
+/// The constraints of a colour.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Group<'a> {
+    /// The indices of the constraints, large ones first.
+    pub(super) indices: &'a [u32],
+    /// Number of large constraints.
+    pub(super) large: usize,
+}
+
+impl<'a> Group<'a> {
+    /// A group of constraints of any size, of which each is a batch.
+    pub(super) fn of_singles(indices: &'a [u32]) -> Self {
+        Group { indices, large: 0 }
+    }
+
+    /// Splits into batches of up to `N` constraints. A batch has constraints of one size, or the last large ones and
+    /// small ones if all of them `mix`.
+    pub(super) fn batches<const N: usize>(
+        self,
+        mixes: impl Fn(u32) -> bool,
+    ) -> impl Iterator<Item = &'a [u32]> {
+        let Group { mut indices, mut large } = self;
+        core::iter::from_fn(move || {
+            let full = indices.get(..N.min(indices.len())).filter(|full| !full.is_empty())?;
+            let is_uniform = large == 0 || large >= full.len() || !full.iter().all(|&index| mixes(index));
+            let (batch, rest) =
+                indices.split_at(if large > 0 && is_uniform { large.min(N) } else { full.len() });
+            large = large.saturating_sub(batch.len());
+            indices = rest;
+            Some(batch)
+        })
+    }
+}
+
 /// Sorts constraints into colours. Keeps the last order, in case the constraints do not change.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Colouring {
@@ -66,6 +100,8 @@ pub(super) struct Colouring {
     order: Vec<u32>,
     /// For each rank, the end of its constraints in the order.
     ends: Vec<u32>,
+    /// Number of colours in use.
+    colour_count: u8,
 }
 
 impl Colouring {
@@ -87,13 +123,14 @@ impl Colouring {
 
     /// Sorts the constraints into colours.
     pub(super) fn sort(&mut self, body_slots: usize) {
-        let Colouring { nodes, ordered, used, hashed, places, order, ends } = self;
+        let Colouring { nodes, ordered, used, hashed, places, order, ends, colour_count } = self;
         if ordered == nodes {
             return;
         }
         ordered.clone_from(nodes);
         used.clear();
         used.resize(body_slots, 0);
+        *colour_count = 0;
         counting_sort(nodes.len(), |i| nodes[i].bucket, hashed, ends);
         places.clear();
         places.resize(nodes.len(), 0);
@@ -105,7 +142,9 @@ impl Colouring {
             used[b as usize] |= 1 << colour;
             // The ground does not change, so that constraints with it need no different colours.
             used[GROUND as usize] = 0;
-            places[index as usize] = place_of(colour, size) + if cold { PLACES } else { 0 };
+            let place = place_of(colour, size);
+            *colour_count = (*colour_count).max(place.div_ceil(2));
+            places[index as usize] = place + if cold { PLACES } else { 0 };
         }
         counting_sort(nodes.len(), |i| places[i], order, ends);
     }
@@ -128,19 +167,26 @@ impl Colouring {
         self.group(if cold { PLACES } else { 0 })
     }
 
-    /// The coloured constraints, in groups of one colour and one size. Empty groups are left out: in a small world most
-    /// groups are empty, and every operation iterates over the groups.
-    pub(super) fn colours(&self, cold: bool) -> impl Iterator<Item = &[u32]> {
+    /// The coloured constraints, colour by colour. Empty colours are left out: in a small world most are empty, and
+    /// every operation iterates over the colours.
+    pub(super) fn colours(&self, cold: bool) -> impl Iterator<Item = Group<'_>> {
         let first = if cold { PLACES } else { 0 };
-        let groups = (first + 1..first + PLACES).map(|place| self.group(place));
-        groups.filter(|indices| !indices.is_empty())
+        let groups = (0..self.colour_count).map(move |colour| {
+            let place = first + 2 * colour + 1;
+            let [start, middle, end] = [place - 1, place, place + 1].map(|place| self.end(place));
+            Group { indices: &self.order[start..end], large: middle - start }
+        });
+        groups.filter(|group| !group.indices.is_empty())
     }
 
     /// The constraints of a rank.
     fn group(&self, place: u8) -> &[u32] {
-        let place = usize::from(place);
-        let end = |place: usize| self.ends.get(place).map_or(0, |&end| end as usize);
-        &self.order[place.checked_sub(1).map_or(0, end)..end(place)]
+        &self.order[place.checked_sub(1).map_or(0, |place| self.end(place))..self.end(place)]
+    }
+
+    /// The end of the constraints of a rank in the order.
+    fn end(&self, place: u8) -> usize {
+        self.ends.get(usize::from(place)).map_or(0, |&end| end as usize)
     }
 }
 

@@ -5,6 +5,7 @@ mod box_list;
 mod search;
 mod sweep_and_prune;
 mod tree;
+mod trees;
 
 use alloc::vec::Vec;
 use core::ops::ControlFlow;
@@ -15,7 +16,7 @@ use crate::math::{Aabb, Fx, Unit, Vec2};
 use box_list::BoxList;
 use search::{Along, Near, Overlap, Search};
 use sweep_and_prune::SweepAndPrune;
-use tree::Tree;
+use trees::Trees;
 
 #[cfg(test)]
 mod tests;
@@ -48,12 +49,14 @@ pub(crate) struct BroadPhase {
     structure: Structure,
     /// Boxes by slot, stored contiguously for the frequent lookups within a tick.
     boxes: Vec<Aabb>,
+    /// For each slot, whether its box belongs to a fixed body.
+    fixed: Vec<bool>,
     moved: MovedSet,
 }
 
 #[derive(Clone, Debug)]
 enum Structure {
-    Tree(Tree),
+    Trees(Trees),
     SweepAndPrune(SweepAndPrune),
     BruteForce(BoxList),
 }
@@ -61,16 +64,16 @@ enum Structure {
 impl BroadPhase {
     pub(crate) fn new(kind: BroadPhaseKind) -> Self {
         let structure = match kind {
-            BroadPhaseKind::Tree => Structure::Tree(Tree::default()),
+            BroadPhaseKind::Tree => Structure::Trees(Trees::default()),
             BroadPhaseKind::SweepAndPrune => Structure::SweepAndPrune(SweepAndPrune::default()),
             BroadPhaseKind::BruteForce => Structure::BruteForce(BoxList::default()),
         };
-        BroadPhase { structure, boxes: Vec::new(), moved: MovedSet::default() }
+        BroadPhase { structure, boxes: Vec::new(), fixed: Vec::new(), moved: MovedSet::default() }
     }
 
     pub(crate) fn kind(&self) -> BroadPhaseKind {
         match self.structure {
-            Structure::Tree(_) => BroadPhaseKind::Tree,
+            Structure::Trees(_) => BroadPhaseKind::Tree,
             Structure::SweepAndPrune(_) => BroadPhaseKind::SweepAndPrune,
             Structure::BruteForce(_) => BroadPhaseKind::BruteForce,
         }
@@ -81,18 +84,35 @@ impl BroadPhase {
         self.boxes.get(slot as usize).copied().unwrap_or(Aabb::NOWHERE)
     }
 
+    /// Whether the box of a slot belongs to a fixed body.
+    pub(crate) fn is_fixed(&self, slot: u32) -> bool {
+        self.fixed.get(slot as usize).is_some_and(|&fixed| fixed)
+    }
+
     fn record_box(&mut self, slot: u32, fat: Aabb) {
         if self.boxes.len() <= slot as usize {
             self.boxes.resize(slot as usize + 1, Aabb::NOWHERE);
+            self.fixed.resize(slot as usize + 1, false);
         }
         self.boxes[slot as usize] = fat;
     }
 
-    /// Inserts or moves the box of a slot.
+    /// Inserts or moves the box of a slot. `fixed` tells whether its body is.
+    pub(crate) fn put(&mut self, slot: u32, fat: Aabb, fixed: bool) {
+        self.record_box(slot, fat);
+        self.fixed[slot as usize] = fixed;
+        match &mut self.structure {
+            Structure::Trees(trees) => trees.put(slot, fat, fixed),
+            Structure::SweepAndPrune(sweep) => sweep.set(slot, fat),
+            Structure::BruteForce(boxes) => boxes.set(slot, fat),
+        }
+    }
+
+    /// Moves the box of a slot that has one.
     pub(crate) fn set(&mut self, slot: u32, fat: Aabb) {
         self.record_box(slot, fat);
         match &mut self.structure {
-            Structure::Tree(tree) => tree.set(slot, fat),
+            Structure::Trees(trees) => trees.set(slot, fat),
             Structure::SweepAndPrune(sweep) => sweep.set(slot, fat),
             Structure::BruteForce(boxes) => boxes.set(slot, fat),
         }
@@ -101,19 +121,18 @@ impl BroadPhase {
     /// Sets the collision class of a slot that has a box. Pairs within one class never collide, and may be left out of
     /// the results. A new box has no class.
     pub(crate) fn set_collision_class(&mut self, slot: u32, class: CollisionClass) {
-        if let Structure::Tree(tree) = &mut self.structure {
-            tree.set_collision_class(slot, class);
+        if let Structure::Trees(trees) = &mut self.structure {
+            trees.set_collision_class(slot, class);
         }
     }
 
     /// Moves the boxes of many slots.
     pub(crate) fn set_many(&mut self, boxes: &[(u32, Aabb)]) {
         boxes.iter().for_each(|&(slot, fat)| self.record_box(slot, fat));
-        let boxes = boxes.iter().copied();
         match &mut self.structure {
-            Structure::Tree(tree) => tree.set_many(boxes),
-            Structure::SweepAndPrune(sweep) => boxes.for_each(|(slot, fat)| sweep.set(slot, fat)),
-            Structure::BruteForce(list) => boxes.for_each(|(slot, fat)| list.set(slot, fat)),
+            Structure::Trees(trees) => trees.set_many(boxes),
+            Structure::SweepAndPrune(sweep) => boxes.iter().for_each(|&(slot, fat)| sweep.set(slot, fat)),
+            Structure::BruteForce(list) => boxes.iter().for_each(|&(slot, fat)| list.set(slot, fat)),
         }
     }
 
@@ -123,31 +142,35 @@ impl BroadPhase {
             *fat = Aabb::NOWHERE;
         }
         match &mut self.structure {
-            Structure::Tree(tree) => tree.remove(slot),
+            Structure::Trees(trees) => trees.remove(slot),
             Structure::SweepAndPrune(sweep) => sweep.remove(slot),
             Structure::BruteForce(boxes) => boxes.remove(slot),
         }
     }
 
-    /// Replaces all boxes, without collision classes; cheaper than setting each. If a slot repeats, its last box is
-    /// kept.
-    pub(crate) fn refill(&mut self, boxes: impl IntoIterator<Item = (u32, Aabb)>) {
+    /// Replaces all boxes, without collision classes; cheaper than putting each. Each slot comes with its box, and with
+    /// whether its body is fixed. If a slot repeats, its last box is kept.
+    pub(crate) fn refill(&mut self, boxes: impl IntoIterator<Item = (u32, Aabb, bool)>) {
         *self = BroadPhase::new(self.kind());
         let boxes = boxes.into_iter();
-        if let Structure::Tree(_) = self.structure {
-            boxes.for_each(|(slot, fat)| self.record_box(slot, fat));
-            let present = (0..).zip(&self.boxes).filter(|(_, fat)| **fat != Aabb::NOWHERE);
-            let mut tree = Tree::default();
-            tree.refill(present.map(|(slot, fat)| (slot, *fat)));
-            self.structure = Structure::Tree(tree);
+        if let Structure::Trees(_) = self.structure {
+            for (slot, fat, fixed) in boxes {
+                self.record_box(slot, fat);
+                self.fixed[slot as usize] = fixed;
+            }
+            let mut trees = Trees::default();
+            let all = (0..).zip(self.boxes.iter().zip(&self.fixed));
+            let present = all.filter(|(_, (fat, _))| **fat != Aabb::NOWHERE);
+            trees.refill(present.map(|(slot, (fat, fixed))| (slot, *fat, *fixed)));
+            self.structure = Structure::Trees(trees);
         } else {
-            boxes.for_each(|(slot, fat)| self.set(slot, fat));
+            boxes.for_each(|(slot, fat, fixed)| self.put(slot, fat, fixed));
         }
     }
 
     /// Finds all overlapping pairs with at least one moved box that `accept` returns true for, sorted. If there are
     /// more than `limit`, keeps the smallest and returns true. `accept` must reject every pair within one collision
-    /// class.
+    /// class, and every pair of fixed bodies.
     pub(crate) fn pairs(
         &mut self,
         moved: Moved<'_>,
@@ -165,7 +188,7 @@ impl BroadPhase {
         let BroadPhase { structure, moved: set, .. } = self;
         match moved {
             Moved::All => match structure {
-                Structure::Tree(tree) => tree.each_pair(found),
+                Structure::Trees(trees) => trees.each_pair(found),
                 Structure::SweepAndPrune(sweep) => sweep.each_pair(found),
                 Structure::BruteForce(boxes) => boxes.each_pair(found),
             },
@@ -177,11 +200,11 @@ impl BroadPhase {
                     }
                 };
                 match structure {
-                    // Marking more than half of a tree costs more than it saves.
-                    Structure::Tree(tree) if set.slots.len() < tree.len() / 2 => {
-                        tree.each_pair_of(&set.slots, found);
+                    // Marking more than half of what moves costs more than it saves.
+                    Structure::Trees(trees) if set.slots.len() < trees.moving_len() / 2 => {
+                        trees.each_pair_of(&set.slots, found);
                     }
-                    Structure::Tree(tree) => tree.each_pair(found_moved),
+                    Structure::Trees(trees) => trees.each_pair(found_moved),
                     Structure::SweepAndPrune(sweep) => sweep.each_pair(found_moved),
                     Structure::BruteForce(boxes) => boxes.each_pair(found_moved),
                 }
@@ -190,10 +213,10 @@ impl BroadPhase {
         smallest.finish()
     }
 
-    /// Boxes of the inner nodes of the tree, each with its depth. Empty for the other kinds.
+    /// Boxes of the inner nodes of the trees, each with its depth. Empty for the other kinds.
     pub(crate) fn inner_boxes(&self) -> Vec<(Aabb, u32)> {
         match &self.structure {
-            Structure::Tree(tree) => tree.inner_boxes(),
+            Structure::Trees(trees) => trees.inner_boxes(),
             Structure::SweepAndPrune(_) | Structure::BruteForce(_) => Vec::new(),
         }
     }
@@ -206,6 +229,18 @@ impl BroadPhase {
     /// Calls `visit` with every slot whose box overlaps the area, in no particular order, until `visit` breaks.
     pub(crate) fn each_overlap(&self, area: Aabb, visit: impl FnMut(u32) -> ControlFlow<()>) {
         self.search(Overlap { area, visit });
+    }
+
+    /// Like [`BroadPhase::each_overlap`], for the boxes of fixed bodies.
+    pub(crate) fn each_fixed_overlap(&self, area: Aabb, mut visit: impl FnMut(u32) -> ControlFlow<()>) {
+        if let Structure::Trees(trees) = &self.structure {
+            let _ended_early = trees.search_fixed(&mut Overlap { area, visit });
+            return;
+        }
+        self.each_overlap(
+            area,
+            |slot| if self.is_fixed(slot) { visit(slot) } else { ControlFlow::Continue(()) },
+        );
     }
 
     /// Calls `visit` with every slot whose box the area touches while it moves along the translation. Nearer boxes tend
@@ -223,7 +258,7 @@ impl BroadPhase {
 
     fn search(&self, mut search: impl Search) {
         let _ended_early = match &self.structure {
-            Structure::Tree(tree) => tree.search(&mut search),
+            Structure::Trees(trees) => trees.search(&mut search),
             Structure::SweepAndPrune(sweep) => sweep.boxes().search(&mut search),
             Structure::BruteForce(boxes) => boxes.search(&mut search),
         };

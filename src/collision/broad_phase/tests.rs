@@ -43,6 +43,7 @@ fn random_class(rng: &mut Rng, count: u32) -> CollisionClass {
 struct Crowd {
     boxes: Vec<Option<Aabb>>,
     class: Vec<CollisionClass>,
+    fixed: Vec<bool>,
     kinds: Vec<BroadPhase>,
 }
 
@@ -51,6 +52,7 @@ impl Crowd {
         Crowd {
             boxes: vec![None; slots],
             class: vec![CollisionClass::NONE; slots],
+            fixed: vec![false; slots],
             kinds: KINDS.map(BroadPhase::new).into(),
         }
     }
@@ -59,15 +61,25 @@ impl Crowd {
         let mut crowd = Crowd::new(slots);
         for slot in 0..slots {
             if rng.below(5) > 0 {
-                crowd.set(slot, random_box(rng, world));
+                crowd.put(slot, random_box(rng, world), rng.below(3) == 0);
             }
         }
         crowd
     }
 
     fn set(&mut self, slot: usize, fat: Aabb) {
-        self.boxes[slot] = Some(fat);
-        self.kinds.iter_mut().for_each(|kind| kind.set(u32::try_from(slot).expect("few"), fat));
+        self.put(slot, fat, self.fixed[slot]);
+    }
+
+    fn put(&mut self, slot: usize, fat: Aabb, fixed: bool) {
+        let is_new = self.boxes[slot].is_none() || self.fixed[slot] != fixed;
+        (self.boxes[slot], self.fixed[slot]) = (Some(fat), fixed);
+        for kind in &mut self.kinds {
+            match u32::try_from(slot).expect("few") {
+                slot if is_new => kind.put(slot, fat, fixed),
+                slot => kind.set(slot, fat),
+            }
+        }
     }
 
     fn set_many(&mut self, many: &[(u32, Aabb)]) {
@@ -88,7 +100,8 @@ impl Crowd {
     }
 
     fn refill(&mut self) {
-        let boxes: Vec<_> = self.occupied().collect();
+        let boxes: Vec<_> =
+            self.occupied().map(|(slot, fat)| (slot, fat, self.fixed[slot as usize])).collect();
         self.class.fill(CollisionClass::NONE);
         self.kinds.iter_mut().for_each(|kind| kind.refill(boxes.iter().copied()));
     }
@@ -128,11 +141,12 @@ fn all_kinds_find_the_same_pairs_while_boxes_move() {
                 (1, None) => {
                     let lower = Vec2::new(rng.range(fx!(-9), fx!(9)), rng.range(fx!(-30), fx!(30)));
                     let size = Vec2::new(rng.range(fx!(0), fx!(4)), rng.range(fx!(0), fx!(4)));
-                    crowd.set(slot, Aabb::new(lower, lower + size));
+                    crowd.put(slot, Aabb::new(lower, lower + size), rng.below(3) == 0);
                 }
                 (2..8, Some(fat)) => {
                     crowd.set(slot, fat.translated(random_vector(&mut rng, 1 << 32)));
                 }
+                (19, Some(fat)) if rng.below(4) == 0 => crowd.put(slot, fat, !crowd.fixed[slot]),
                 // Most rounds change the class of few slots, some rounds that of nearly all slots.
                 (8, Some(_)) => crowd.set_collision_class(slot, random_class(&mut rng, 3)),
                 (9..19, Some(_)) if round % 10 == 0 => {
@@ -163,6 +177,7 @@ fn all_kinds_find_the_same_pairs_while_boxes_move() {
         let accept = |(a, b): Pair| {
             assert!(a < b);
             (a + b) % 7 != 0
+                && !(crowd.fixed[a as usize] && crowd.fixed[b as usize])
                 && crowd.class[a as usize].common(crowd.class[b as usize]) == CollisionClass::NONE
         };
         let limit = if round % 3 == 0 { 10 } else { 1000 };
@@ -209,6 +224,15 @@ fn overlaps_are_those_of_every_box() {
                 });
                 found.sort_unstable();
                 assert_eq!(found, expected, "{:?}", kind.kind());
+
+                found.clear();
+                kind.each_fixed_overlap(area, |slot| {
+                    found.push(slot);
+                    ControlFlow::Continue(())
+                });
+                found.sort_unstable();
+                let fixed = expected.iter().copied().filter(|&slot| crowd.fixed[slot as usize]);
+                assert!(fixed.eq(found), "{:?}", kind.kind());
 
                 let mut visits = 0;
                 kind.each_overlap(area, |_| {

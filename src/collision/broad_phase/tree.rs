@@ -16,7 +16,7 @@ use core::ops::ControlFlow;
 use super::search::Search;
 use crate::body::CollisionClass;
 use crate::math::Aabb;
-use pairs::Meetings;
+pub(super) use pairs::Meetings;
 use rebuild::Rebuilt;
 
 mod pairs;
@@ -44,8 +44,6 @@ pub(crate) struct Tree {
     /// Leaf of each slot, or [`NONE`].
     leaves: Vec<u32>,
     len: u32,
-    /// Stacks for the traversal of the tree against itself.
-    meetings: Meetings,
     /// Number of leaves relinked or removed since the last rebuild. While it is 0, every node is in use and stored
     /// before its children.
     relinked: u32,
@@ -55,7 +53,7 @@ pub(crate) struct Tree {
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Node {
+pub(super) struct Node {
     aabb: Aabb,
     parent: u32,
     /// Height above the leaves; 0 for a leaf.
@@ -63,7 +61,7 @@ struct Node {
     /// Collision class of a leaf, or the common class of all leaves below.
     class: CollisionClass,
     /// Whether the pairs of this leaf, or of a leaf below, are currently requested.
-    marked: bool,
+    pub(super) marked: bool,
     /// Children; for a leaf, its slot and [`NONE`].
     children: [u32; 2],
 }
@@ -76,7 +74,6 @@ impl Default for Tree {
             vacant: NONE,
             leaves: Vec::new(),
             len: 0,
-            meetings: Meetings::default(),
             relinked: 0,
             strays: 0,
             rebuilt: Rebuilt::default(),
@@ -112,6 +109,17 @@ impl Tree {
                 self.link(leaf);
             }
         }
+    }
+
+    /// Whether a slot has a box.
+    #[inline]
+    pub(crate) fn has(&self, slot: u32) -> bool {
+        self.leaf_of(slot).is_some()
+    }
+
+    /// The collision class of a slot that has a box.
+    pub(crate) fn collision_class(&self, slot: u32) -> Option<CollisionClass> {
+        self.leaf_of(slot).map(|leaf| self.at(leaf).class)
     }
 
     /// Sets the collision class of a slot that has a box. The tree keeps its structure.

@@ -24,6 +24,10 @@ pub(crate) fn clipped_to_window(a: Vec2<Fx>, b: Vec2<Fx>) -> Option<(Vec2<Fx>, V
 /// Part of a segment inside a square about the origin; `None` if there is none.
 pub(in crate::collision) fn clip(a: Vec2<Fx>, b: Vec2<Fx>, half_side: Fx) -> Option<(Vec2<Fx>, Vec2<Fx>)> {
     let (mut p, mut q) = (a, b);
+    let is_inside = |v: Vec2<Fx>| v.x.unsigned_abs().max(v.y.unsigned_abs()) <= half_side.unsigned_abs();
+    if is_inside(a) && is_inside(b) {
+        return Some((a, b));
+    }
     for sign in [1, -1] {
         for axis in [|v: Vec2<Fx>| v.x, |v: Vec2<Fx>| v.y] {
             (p, q) = clip_to_half_plane(p, q, |v| {

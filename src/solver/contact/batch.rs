@@ -16,6 +16,9 @@ pub(in crate::solver) struct Batch<const N: usize> {
     pub(super) n_y: Ints<N>,
     /// -1 in lanes where no impulse moves one of the bodies. These contacts are stiffer.
     pub(super) immovable: Ints<N>,
+    /// -1 in lanes with two points. In the other lanes of a batch of two points, the second is a copy of the first
+    /// without an impulse.
+    pub(super) both: Ints<N>,
     /// Number of points that have a contact in any lane. Points beyond it are stale and never read.
     pub(super) count: usize,
     /// Whether any surface in the batch bounces, moves or resists rolling. The batch then has a
@@ -79,6 +82,7 @@ impl<const N: usize> Batch<N> {
         n_x: Ints::ZERO,
         n_y: Ints::ZERO,
         immovable: Ints::ZERO,
+        both: Ints::ZERO,
         count: 0,
         extras: false,
         unchecked: false,

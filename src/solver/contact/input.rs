@@ -4,6 +4,7 @@ use super::super::body_list::{BodyList, GROUND};
 use super::super::colour::{Colouring, Node, Size};
 use super::super::row::MassFractions;
 use super::arms::last_arms;
+use super::restitution::ELASTIC;
 use super::{Surface, WarmStarts};
 use alloc::vec::Vec;
 
@@ -103,7 +104,8 @@ pub(super) struct Input {
     pub(super) anchors: Quad,
     /// The arms of the last tick: see [`last_arms`].
     pub(super) last_arms: Quad,
-    /// Impulses of the last tick, `p = L / D`: along the normal of each point, and along the tangent.
+    /// Impulses of the last tick, `p = L / D`: along the normal of each point, and along the tangent. The number of
+    /// points.
     pub(super) carried: Quad,
     /// The separations of the points, in the format of a step, the friction, and the distance of the surfaces half-way
     /// between the points.
@@ -132,8 +134,9 @@ impl Input {
 
 impl ContactSource<'_> {
     /// Adds a node for each touching pair to the graph that is coloured, and collects the properties of each body that
-    /// follow from its contacts.
-    pub(super) fn add_nodes(&self, colouring: &mut Colouring, prospects: &mut Vec<Prospect>) {
+    /// follow from its contacts. Returns whether any contact is elastic.
+    pub(super) fn add_nodes(&self, colouring: &mut Colouring, prospects: &mut Vec<Prospect>) -> bool {
+        let mut elastic = false;
         prospects.clear();
         prospects.resize(self.list.len(), Prospect::default());
         for pair in self.pairs {
@@ -146,6 +149,7 @@ impl ContactSource<'_> {
             let flags = flag(self.contacts[pair.contact as usize].count > 0, Prospect::WARM)
                 | flag(pair.is_impact, Prospect::IMPACT)
                 | flag(pair.surface.restitution.is_positive(), Prospect::BOUNCES);
+            elastic |= pair.surface.restitution > ELASTIC;
             let walls = u32::from(bodies.contains(&GROUND));
             bodies.into_iter().for_each(|body| prospects[body as usize].add(flags, walls));
         }
@@ -154,6 +158,7 @@ impl ContactSource<'_> {
         if prospects.iter().any(|prospect| prospect.is_cold()) {
             colouring.set_cold(|bodies| bodies.iter().all(|&body| !prospects[body as usize].has_guess()));
         }
+        elastic
     }
 
     /// Prefetches the data that [`Self::gather`] reads of a pair. Contacts in the order of colours are random accesses.
@@ -212,7 +217,12 @@ impl ContactSource<'_> {
                 second.anchor.y.to_bits(),
             ]),
             last_arms: last_arms(memory, manifold, a.arm_tolerance.min(b.arm_tolerance)),
-            carried: Quad([old_first.normal.to_bits(), old_second.normal.to_bits(), tangent.to_bits(), 0]),
+            carried: Quad([
+                old_first.normal.to_bits(),
+                old_second.normal.to_bits(),
+                tangent.to_bits(),
+                i32::from(manifold.count()),
+            ]),
             rest: Quad([
                 first.separation.to_bits(),
                 second.separation.to_bits(),

@@ -55,7 +55,7 @@ pub(super) use warm_start::WarmStart;
 /// Largest impulse of friction and of rolling resistance. The difference of two such impulses fits the format.
 const TANGENT_MAX: Speed = Speed::lit("511");
 
-/// Number of passes in which contacts that bounce at the same time are solved against each other: a body in a corner.
+/// Number of passes in which elastic contacts that bounce at the same time are solved against each other: a body in a corner.
 /// With one pass a box in a closed room gained half of its energy within a minute.
 const RESTITUTION_PASSES: u32 = 12;
 
@@ -68,6 +68,8 @@ pub(super) struct ContactSet {
     warm: BatchList<Contacts>,
     cold: BatchList<Contacts>,
     prospects: Vec<Prospect>,
+    /// Whether any contact is elastic.
+    elastic: bool,
 }
 
 impl ContactSet {
@@ -91,7 +93,7 @@ impl ContactSet {
 
     /// Applies restitution, after the passes of a sub-step.
     pub(super) fn bounce(&mut self, context: &StepContext<'_>) {
-        for pass in 0..RESTITUTION_PASSES {
+        for pass in 0..if self.elastic { RESTITUTION_PASSES } else { 1 } {
             let restitution = ApplyRestitution { again: pass > 0 };
             self.run_overflow(restitution, context);
             self.run_coloured(restitution, context);

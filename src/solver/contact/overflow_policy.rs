@@ -47,6 +47,9 @@ pub(super) fn unchecked_at(rates: [Rate; 3]) -> bool {
 
 /// An overflow policy: the treatment of numbers that might overflow.
 pub(super) trait OverflowPolicy<L: Lanes<N>, const N: usize> {
+    /// Counts faults in these lanes only, from now on.
+    #[inline(always)]
+    fn count_faults_in(&mut self, _: L::Mask) {}
     /// Checks displacements, or the velocities at the start of an iteration.
     #[inline(always)]
     fn see(&mut self, _: &BodyPairW<L, N>) {}
@@ -75,9 +78,33 @@ pub(super) trait OverflowPolicy<L: Lanes<N>, const N: usize> {
 }
 
 /// Saturates every sum. Counts each number that did not fit as a fault.
-pub(super) struct Saturating<'a>(pub(super) &'a mut Faults);
+pub(super) struct Saturating<'a, L: Lanes<N>, const N: usize> {
+    faults: &'a mut Faults,
+    /// The lanes whose faults are counted.
+    counted: L::Mask,
+}
 
-impl<L: Lanes<N>, const N: usize> OverflowPolicy<L, N> for Saturating<'_> {
+impl<'a, L: Lanes<N>, const N: usize> Saturating<'a, L, N> {
+    #[inline(always)]
+    pub(super) fn new(faults: &'a mut Faults) -> Self {
+        Saturating { faults, counted: L::greater(L::splat(1), L::splat(0)) }
+    }
+
+    /// Counts the faults among some lanes.
+    #[inline(always)]
+    fn count(&mut self, out: L::Mask) {
+        if L::any(out) {
+            *self.faults += u64::from(L::count(L::both(out, self.counted)));
+        }
+    }
+}
+
+impl<L: Lanes<N>, const N: usize> OverflowPolicy<L, N> for Saturating<'_, L, N> {
+    #[inline(always)]
+    fn count_faults_in(&mut self, lanes: L::Mask) {
+        self.counted = lanes;
+    }
+
     #[inline(always)]
     fn moved(&mut self, separation: L::Int, wide: L::Wide) -> L::Int {
         L::add_saturating(separation, L::narrow_saturating::<RATIO>(wide).0)
@@ -86,9 +113,7 @@ impl<L: Lanes<N>, const N: usize> OverflowPolicy<L, N> for Saturating<'_> {
     #[inline(always)]
     fn speed(&mut self, wide: L::Wide) -> L::Int {
         let (vn, out) = L::narrow_saturating::<RATIO>(wide);
-        if L::any(out) {
-            *self.0 += u64::from(L::count(out));
-        }
+        self.count(out);
         vn
     }
 
@@ -115,20 +140,17 @@ impl<L: Lanes<N>, const N: usize> OverflowPolicy<L, N> for Saturating<'_> {
     #[inline(always)]
     fn impulse(&mut self, wanted: L::Int) -> L::Int {
         let limit = L::splat(IMPULSE_MAX.to_bits());
-        let over = L::greater(wanted, limit);
-        if L::any(over) {
-            *self.0 += u64::from(L::count(over));
-        }
+        self.count(L::greater(wanted, limit));
         L::min(wanted, limit)
     }
 
     #[inline(always)]
     fn apply(&mut self, pair: &mut BodyPairW<L, N>, row: &Row<N>, d: L::Int) {
         if L::any(L::negative(L::add(d, L::splat(HALF)))) {
-            apply_in_steps(pair, row, d, self.0);
+            apply_in_steps(pair, row, d, self.faults);
         } else {
             pair.change::<UNIT>(row, d);
-            pair.keep_in_range(self.0);
+            pair.keep_in_range(self.faults);
         }
     }
 

@@ -1,7 +1,7 @@
 //! Fills batches with the contacts of a tick, in the order in which they are solved.
 
 use super::super::batches::Batches;
-use super::super::colour::Colouring;
+use super::super::colour::{Colouring, Group};
 use super::batch::Batch;
 use super::extras::ContactExtras;
 use super::input::{ContactSource, Input, Prospect};
@@ -24,14 +24,14 @@ impl ContactSet {
         colouring: &mut Colouring,
         machine: Machine,
     ) -> WarmStarts {
-        let ContactSet { warm, cold, prospects } = self;
+        let ContactSet { warm, cold, prospects, elastic } = self;
         colouring.begin();
-        source.add_nodes(colouring, prospects);
+        *elastic = source.add_nodes(colouring, prospects);
         colouring.sort(source.list.len());
         let mut warm_starts = WarmStarts::default();
         for (list, is_cold) in [(warm, false), (cold, true)] {
             let warm_starts = &mut warm_starts;
-            let colours = core::iter::once(colouring.overflow(is_cold));
+            let colours = core::iter::once(Group::of_singles(colouring.overflow(is_cold)));
             Fill { batches: &mut list.overflow, source, prospects, colours, warm_starts }.run::<Scalar<1>>();
             let colours = colouring.colours(is_cold);
             machine.run(Fill { batches: &mut list.coloured, source, prospects, colours, warm_starts });
@@ -49,22 +49,24 @@ struct Fill<'a, I, const N: usize> {
     warm_starts: &'a mut WarmStarts,
 }
 
-impl<'a, I: Iterator<Item = &'a [u32]>, const N: usize> Kernel<N> for Fill<'_, I, N> {
+impl<'a, I: Iterator<Item = Group<'a>>, const N: usize> Kernel<N> for Fill<'_, I, N> {
     #[inline(always)]
     fn run<L: Lanes<N>>(self) {
         let Fill { batches, source, prospects, colours, warm_starts } = self;
         batches.extras.clear();
         batches.colour_ends.clear();
         let mut count = 0;
-        for indices in colours {
-            for (number, chunk) in indices.chunks(N).enumerate() {
-                for &index in indices.iter().skip((number + PAIRS_AHEAD) * N).take(N) {
+        for group in colours {
+            let mut start = 0;
+            for indices in group.batches::<N>(|index| !source.pairs[index as usize].surface.has_extras()) {
+                for &index in group.indices.iter().skip(start + PAIRS_AHEAD * N).take(N) {
                     prefetch(&source.pairs[index as usize]);
                 }
-                for &index in indices.iter().skip((number + MANIFOLDS_AHEAD) * N).take(N) {
+                for &index in group.indices.iter().skip(start + MANIFOLDS_AHEAD * N).take(N) {
                     source.prefetch(index);
                 }
-                batches.fill::<L>(count, source, prospects, chunk, warm_starts);
+                batches.fill::<L>(count, source, prospects, indices, warm_starts);
+                start += indices.len();
                 count += 1;
             }
             batches.colour_ends.push(count);

@@ -39,7 +39,7 @@ impl Operation<Contacts> for Measure {
     #[inline(always)]
     fn apply<L: Lanes<N>, const N: usize>(self, parts: BatchParts<'_, Contacts, N>) {
         // Clamping a separation is not a fault.
-        measure::<L, N>(parts.batch, parts.bodies, &mut Saturating(&mut 0));
+        measure::<L, N>(parts.batch, parts.bodies, &mut Saturating::<L, N>::new(&mut 0));
     }
 }
 

@@ -37,7 +37,7 @@ impl Operation<Contacts> for ObserveApproach {
     #[inline(always)]
     fn apply<L: Lanes<N>, const N: usize>(self, parts: BatchParts<'_, Contacts, N>) {
         let BatchParts { batch, extra: Some(extras), bodies, faults, .. } = parts else { return };
-        let policy = &mut Saturating(faults);
+        let policy = &mut Saturating::<L, N>::new(faults);
         let pair = BodyPairW::<L, N>::load(bodies, &batch.bodies);
         let (n, _) = batch.directions::<L>();
         for (point, approach) in batch.points[..batch.count].iter().zip(&mut extras.approach) {
@@ -57,16 +57,16 @@ pub(in crate::solver) struct ApplyRestitution {
 
 /// Restitution above which contacts that bounce at the same time are solved against each other. Below it an impact
 /// loses so much energy that the order of contacts does not matter.
-const ELASTIC: Unit = Unit::lit("0.5");
+pub(super) const ELASTIC: Unit = Unit::lit("0.5");
 
 impl Operation<Contacts> for ApplyRestitution {
     #[inline(always)]
     fn apply<L: Lanes<N>, const N: usize>(self, parts: BatchParts<'_, Contacts, N>) {
         let BatchParts { batch, record, extra: Some(extras), bodies, faults } = parts else { return };
-        let policy = &mut Saturating(faults);
+        let policy = &mut Saturating::<L, N>::new(faults);
         // Only clamps of impulses count: whether a lane is read here depends on the other lanes.
         let mut unread = 0;
-        let reader = &mut Saturating(&mut unread);
+        let reader = &mut Saturating::<L, N>::new(&mut unread);
         let restitution = L::load(&extras.restitution);
         let (n, _) = batch.directions::<L>();
         let least = if self.again { ELASTIC } else { Unit::ZERO };

@@ -64,13 +64,19 @@ pub(super) fn fill<L: Lanes<N>, const N: usize>(
     let [x0, y0, x1, y1] = columns::<L, N>(inputs, |input| &input.anchors);
     let mut places = Places::<L, N> { to_origin: [[ax, ay], [bx, by]], anchors: [[x0, y0], [x1, y1]] };
     places.keep_arms(inputs, batch.count, arms);
-    let Places { to_origin: [to_a, to_b], anchors: [first, second] } = places;
+    let Places { to_origin: [to_a, to_b], anchors: [first, mut second] } = places;
     let ends = [
         ContactSide::<L, N>::new(fraction_a, to_a, mantissa_a, shift_a),
         ContactSide::<L, N>::new(fraction_b, to_b, mantissa_b, shift_b),
     ];
-    let [normal_0, normal_1, carried, _] = columns::<L, N>(inputs, |input| &input.carried);
-    let [separation_0, separation_1, friction, gap] = columns::<L, N>(inputs, |input| &input.rest);
+    let [normal_0, normal_1, carried, counts] = columns::<L, N>(inputs, |input| &input.carried);
+    let [separation_0, mut separation_1, friction, gap] = columns::<L, N>(inputs, |input| &input.rest);
+    let both = L::greater(counts, one);
+    L::store(L::to_int(both), &mut batch.both);
+    for (second, first) in second.iter_mut().zip(first) {
+        *second = L::select(both, *second, first);
+    }
+    separation_1 = L::select(both, separation_1, separation_0);
     L::store(n[0], &mut batch.n_x);
     L::store(n[1], &mut batch.n_y);
     let stiff = L::either(L::greater(one, fraction_a), L::greater(one, fraction_b));

@@ -90,7 +90,7 @@ pub(super) fn solve<L: Lanes<N>, const N: usize>(parts: BatchParts<'_, Contacts,
         // A batch that was out of bounds once is likely to be out of bounds again in this tick.
         batch.unchecked = false;
     }
-    let careful = &mut Saturating(faults);
+    let careful = &mut Saturating::<L, N>::new(faults);
     let solved: Solved<L, N> = iterate(batch, extras.as_deref_mut(), settings, bodies, careful);
     solved.store(batch, extras, bodies);
 }
@@ -127,9 +127,11 @@ fn iterate<L: Lanes<N>, C: OverflowPolicy<L, N>, const N: usize>(
     let points = [&batch.points[places[0]], &batch.points[places[1]]];
     let normals = Normals::<L, N>::new(batch, settings, n);
     let normal_lambdas = if batch.count == 2 {
-        normals.solve_both(points, &mut pair, policy)
+        let (every, both) = (every::<L, N>(), L::negative(L::load(&batch.both)));
+        let present = if places[0] == 0 { [every, both] } else { [both, every] };
+        normals.solve_both(points, present, &mut pair, policy)
     } else {
-        [normals.solve_one(points[0], &mut pair, policy), L::splat(0)]
+        [normals.solve_one(points[0], every::<L, N>(), &mut pair, policy), L::splat(0)]
     };
     let mut surface_speed = L::splat(0);
     if let Some(extras) = extras {
@@ -203,18 +205,20 @@ impl<L: Lanes<N>, const N: usize> Normals<L, N> {
         }
     }
 
-    /// Solves a point for the first time. Returns its impulse.
+    /// Solves a point for the first time, in the lanes that have it. Returns its impulse.
     #[inline(always)]
     fn solve_one<C: OverflowPolicy<L, N>>(
         &self,
         point: &Point<N>,
+        present: L::Mask,
         pair: &mut BodyPairW<L, N>,
         policy: &mut C,
     ) -> L::Int {
         let old = L::load(&point.normal_lambda);
         policy.see_impulse(old);
         policy.see_separation(L::load(&point.separation));
-        let new = self.wanted(point, old, pair, policy);
+        policy.count_faults_in(present);
+        let new = L::select(present, self.wanted(point, old, pair, policy), old);
         policy.apply(pair, &point.normal, L::sub(new, old));
         new
     }
@@ -224,19 +228,22 @@ impl<L: Lanes<N>, const N: usize> Normals<L, N> {
     fn solve_both<C: OverflowPolicy<L, N>>(
         &self,
         [first, second]: [&Point<N>; 2],
+        present: [L::Mask; 2],
         pair: &mut BodyPairW<L, N>,
         policy: &mut C,
     ) -> [L::Int; 2] {
-        let one = self.solve_one(first, pair, policy);
+        let one = self.solve_one(first, present[0], pair, policy);
         let old = L::load(&second.normal_lambda);
-        let two = self.solve_one(second, pair, policy);
+        let two = self.solve_one(second, present[1], pair, policy);
         let mut lambdas = [one, two];
         let settled = L::splat(SETTLED.to_bits() - 1);
         let mut unsettled = beyond::<L, N>(L::sub(two, old), settled);
+        unsettled = L::both(unsettled, L::both(present[0], present[1]));
         for _ in 1..NORMAL_ROUNDS_MAX {
             if !L::any(unsettled) {
                 break;
             }
+            policy.count_faults_in(unsettled);
             let wanted = self.wanted(first, lambdas[0], pair, policy);
             let new = L::select(unsettled, wanted, lambdas[0]);
             policy.apply(pair, &first.normal, L::sub(new, lambdas[0]));
@@ -248,6 +255,7 @@ impl<L: Lanes<N>, const N: usize> Normals<L, N> {
             lambdas[1] = new;
             unsettled = L::both(unsettled, beyond::<L, N>(d, settled));
         }
+        policy.count_faults_in(every::<L, N>());
         lambdas
     }
 
@@ -308,6 +316,12 @@ fn limit<L: Lanes<N>, C: OverflowPolicy<L, N>, const N: usize>(
     let first = L::mul(L::load(friction_ratios[0]), normal_lambdas[0]);
     let second = L::mul(L::load(friction_ratios[1]), normal_lambdas[1]);
     L::min(C::limit(L::add_wide(first, second)), L::splat(TANGENT_MAX.to_bits()))
+}
+
+/// The mask of all lanes.
+#[inline(always)]
+fn every<L: Lanes<N>, const N: usize>() -> L::Mask {
+    L::greater(L::splat(1), L::splat(0))
 }
 
 /// Selects the first number in lanes where impulses move both bodies, and the second one in all other lanes.

@@ -30,7 +30,7 @@ impl Operation<Contacts> for WarmStart {
                 return;
             }
         }
-        let policy = &mut Saturating(faults);
+        let policy = &mut Saturating::<L, N>::new(faults);
         let mut pair: BodyPairW<L, N> = warm_started(batch, bodies, policy);
         if let Some(ContactExtras { rolls: true, rolling, .. }) = extra {
             policy.apply(&mut pair, &rolling.row, L::load(&rolling.lambda));

@@ -260,10 +260,11 @@ impl JointSet {
             Entry::Hinge(_) | Entry::Other(_) => None,
         };
         hinges.push_overflow(colouring.overflow(false).iter().filter_map(input_of));
-        for indices in colouring.colours(false) {
+        let colours = || colouring.colours(false).map(|group| group.indices);
+        for indices in colours() {
             hinges.push_colour(indices.iter().filter_map(input_of), is_alone);
         }
-        let order = core::iter::once(colouring.overflow(false)).chain(colouring.colours(false)).flatten();
+        let order = core::iter::once(colouring.overflow(false)).chain(colours()).flatten();
         others.extend(order.filter_map(|&index| match entries[index as usize] {
             Entry::Hinge(_) => None,
             Entry::Other(slot) => {
@@ -313,6 +314,9 @@ impl JointSet {
 
     /// Computes arms, gains and gaps at the current poses. Those of hinges are computed by the next operation on them.
     pub(in crate::solver) fn refresh(&mut self, context: &StepContext<'_>) {
+        if self.entries.is_empty() {
+            return;
+        }
         let &StepContext { machine, bodies, tuning, .. } = context;
         let mut any_turned = false;
         let JointSet { turning, body_rotations, quads, .. } = self;
@@ -324,6 +328,9 @@ impl JointSet {
 
     /// Predicts the rotations in the next sub-step from the velocities after the last one.
     pub(in crate::solver) fn predict_rotations(&mut self, context: &StepContext<'_>) {
+        if self.entries.is_empty() {
+            return;
+        }
         let &StepContext { bodies, tuning, .. } = context;
         let JointSet { turning, quads, hinges, places, .. } = self;
         let mut predict = |body: &Turning, stretch: Stretch| {
@@ -345,6 +352,9 @@ impl JointSet {
     }
 
     pub(in crate::solver) fn warm_start(&mut self, context: &StepContext<'_>) {
+        if self.entries.is_empty() {
+            return;
+        }
         self.list.warm_start(context);
         self.hinges.warm_start(Poses { quads: &self.quads, body_rotations: &self.body_rotations }, context);
         self.blocks.start_sub_step();
@@ -352,6 +362,9 @@ impl JointSet {
 
     /// One iteration over all joints.
     pub(in crate::solver) fn solve(&mut self, pass: Pass, context: &StepContext<'_>) {
+        if self.entries.is_empty() {
+            return;
+        }
         let JointSet { list, hinges, blocks, quads, body_rotations, .. } = self;
         list.solve(pass, context);
         let poses = Poses { quads, body_rotations };

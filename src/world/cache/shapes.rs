@@ -1,4 +1,4 @@
-//! Broad phases and poses of all shapes. One owner updates both, so that they cannot become inconsistent.
+//! Broad phase and poses of all shapes. One owner updates both, so that they cannot become inconsistent.
 
 use alloc::vec::Vec;
 
@@ -9,13 +9,11 @@ use crate::collision::{BroadPhase, BroadPhaseKind, Moved, Pair};
 use crate::math::{Aabb, Fx, Vec2};
 use crate::world::state::State;
 
-/// Broad phases and poses of all shapes. A cache of the state.
+/// Broad phase and poses of all shapes. A cache of the state.
 #[derive(Clone, Debug)]
 pub(crate) struct ShapeCache {
     /// Fat boxes of the shapes of all enabled bodies.
     broad_phase: BroadPhase,
-    /// Fat boxes of the shapes of enabled fixed bodies only: most fast bodies are swept against nothing else.
-    fixed: BroadPhase,
     poses: Poses,
     /// Fat boxes that wait for [`ShapeCache::apply_refits`].
     refits: Vec<(u32, Aabb)>,
@@ -23,24 +21,19 @@ pub(crate) struct ShapeCache {
 
 impl ShapeCache {
     pub(crate) fn new(kind: BroadPhaseKind, state: &State) -> Self {
-        let mut cache = ShapeCache {
-            broad_phase: BroadPhase::new(kind),
-            fixed: BroadPhase::new(kind),
-            poses: Poses::default(),
-            refits: Vec::new(),
-        };
+        let mut cache =
+            ShapeCache { broad_phase: BroadPhase::new(kind), poses: Poses::default(), refits: Vec::new() };
         for (id, _) in state.bodies.iter() {
             cache.poses.pose_body(state, id.slot());
         }
-        let boxes = |(id, shape): (ShapeId, &Shape)| (id.slot(), shape.fat);
         let body_of = |shape: &Shape| state.bodies.at(shape.body().slot());
         let enabled = || state.shapes.iter().filter(|(_, shape)| body_of(shape).enabled);
+        let is_fixed = |shape: &Shape| body_of(shape).kind() == BodyKind::Fixed;
+        let boxes = |(id, shape): (ShapeId, &Shape)| (id.slot(), shape.fat, is_fixed(shape));
         cache.broad_phase.refill(enabled().map(boxes));
         for (id, shape) in enabled() {
             cache.broad_phase.set_collision_class(id.slot(), shape.filter().collision_class());
         }
-        let is_fixed = |shape: &Shape| body_of(shape).kind() == BodyKind::Fixed;
-        cache.fixed.refill(enabled().filter(|(_, shape)| is_fixed(shape)).map(boxes));
         cache
     }
 
@@ -48,11 +41,6 @@ impl ShapeCache {
     #[inline]
     pub(crate) fn broad_phase(&self) -> &BroadPhase {
         &self.broad_phase
-    }
-
-    /// The fat boxes of the shapes of enabled fixed bodies.
-    pub(crate) fn fixed_broad_phase(&self) -> &BroadPhase {
-        &self.fixed
     }
 
     /// The shapes in world axes.
@@ -130,20 +118,14 @@ impl ShapeCache {
         let body = state.bodies.at(slot);
         for id in body.shapes().iter().filter(|_| body.enabled) {
             let shape = state.shapes.at(id.slot());
-            let fat = shape.fat;
-            self.broad_phase.set(id.slot(), fat);
+            self.broad_phase.put(id.slot(), shape.fat, body.kind() == BodyKind::Fixed);
             self.broad_phase.set_collision_class(id.slot(), shape.filter().collision_class());
-            match body.kind() {
-                BodyKind::Fixed => self.fixed.set(id.slot(), fat),
-                BodyKind::Kinematic | BodyKind::Dynamic => self.fixed.remove(id.slot()),
-            }
         }
     }
 
-    /// Removes a shape from the broad phases.
+    /// Removes a shape from the broad phase.
     pub(crate) fn remove(&mut self, shape: u32) {
         self.broad_phase.remove(shape);
-        self.fixed.remove(shape);
     }
 
     /// Takes the memory of the queue, for a restore that lists fat boxes in it.
@@ -181,24 +163,23 @@ impl ShapeCache {
         }
     }
 
-    /// Updates the broad phases after a restore. `changed` lists fat boxes that differ, and `redefined` the slots of
+    /// Updates the broad phase after a restore. `changed` lists fat boxes that differ, and `redefined` the slots of
     /// shapes that may have been added or removed, or whose bodies were redefined.
     pub(crate) fn restore_boxes(&mut self, state: &State, changed: Vec<(u32, Aabb)>, redefined: &[u32]) {
         self.refits = changed;
-        let ShapeCache { broad_phase, fixed, refits, .. } = self;
+        let ShapeCache { broad_phase, refits, .. } = self;
         for &slot in redefined {
-            let shape = state.shapes.get_slot(slot).filter(|_| state.body_of(slot).enabled);
-            match shape {
-                Some(shape) if broad_phase.fat(slot) != Aabb::NOWHERE => refits.push((slot, shape.fat)),
-                Some(shape) => broad_phase.set(slot, shape.fat),
+            match state.shapes.get_slot(slot).filter(|_| state.body_of(slot).enabled) {
+                Some(shape) => {
+                    let is_fixed = state.body_of(slot).kind() == BodyKind::Fixed;
+                    if broad_phase.fat(slot) == Aabb::NOWHERE || broad_phase.is_fixed(slot) != is_fixed {
+                        broad_phase.put(slot, shape.fat, is_fixed);
+                    } else {
+                        refits.push((slot, shape.fat));
+                    }
+                    broad_phase.set_collision_class(slot, shape.filter().collision_class());
+                }
                 None => broad_phase.remove(slot),
-            }
-            if let Some(shape) = shape {
-                broad_phase.set_collision_class(slot, shape.filter().collision_class());
-            }
-            match shape {
-                Some(shape) if state.body_of(slot).kind() == BodyKind::Fixed => fixed.set(slot, shape.fat),
-                _ => fixed.remove(slot),
             }
         }
         // The state has fat boxes of disabled bodies, which are in no broad phase.

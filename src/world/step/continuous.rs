@@ -89,8 +89,7 @@ fn first_impact(state: &State, scratch: &Scratch, swept: &SweptBody) -> Option<I
         let mut core_and_target = None;
         let start = if swept.sweep.turn == 0 { posed.bounds } else { disc };
         let area = start.swept(swept.sweep.end - swept.sweep.start);
-        let obstacles = if is_bullet { shapes.broad_phase() } else { shapes.fixed_broad_phase() };
-        obstacles.each_overlap(area, |other| {
+        let visit = |other| {
             let other_shape = motion.shape(other);
             let obstacle = state.bodies.at(other_shape.body);
             // A moving obstacle was somewhere else during the tick: its current bounds do not rule it out.
@@ -114,7 +113,13 @@ fn first_impact(state: &State, scratch: &Scratch, swept: &SweptBody) -> Option<I
                 first = first.into_iter().chain(impact).min();
             }
             core::ops::ControlFlow::Continue(())
-        });
+        };
+        // Other bodies are swept against fixed ones only.
+        if is_bullet {
+            shapes.broad_phase().each_overlap(area, visit);
+        } else {
+            shapes.broad_phase().each_fixed_overlap(area, visit);
+        }
     }
     first
 }

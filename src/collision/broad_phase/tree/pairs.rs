@@ -1,4 +1,4 @@
-//! Pairs of overlapping boxes in a tree.
+//! Pairs of overlapping boxes in a tree, or in two trees.
 
 use alloc::vec::Vec;
 
@@ -12,7 +12,7 @@ const FOUND_MAX: usize = 256;
 /// Branch-free list of pairs. Whether two boxes overlap is nearly random, and a mispredicted branch costs more than an
 /// unnecessary store: a pair is always written, and counted only if it is wanted.
 #[derive(Clone, Debug, Default)]
-pub(super) struct PairList {
+struct PairList {
     pairs: Vec<Pair>,
     len: usize,
 }
@@ -47,17 +47,86 @@ impl PairList {
 
 /// Stack of node pairs to visit, and buffer of slot pairs found.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Meetings {
+pub(in crate::collision::broad_phase) struct Meetings {
     /// Pairs of overlapping nodes of which at least one is an inner node, and inner nodes paired with themselves.
     waiting: PairList,
     found: PairList,
 }
 
 impl Meetings {
-    /// Visits pairs of nodes that overlap and of which at least one is wanted: reports a pair of leaves, and pushes any
-    /// other pair.
+    /// Calls `found` with every pair of overlapping boxes of a tree once, except for most pairs within one collision
+    /// class. Skips pairs of nodes of which neither is wanted.
+    pub(in crate::collision::broad_phase) fn within(
+        &mut self,
+        tree: &Tree,
+        wanted: impl Fn(&Node) -> bool,
+        mut found: impl FnMut(Pair),
+    ) {
+        let itself = |node: u32| {
+            let meets = node != NONE && wanted(tree.at(node)) && !tree.at(node).is_leaf();
+            ((node, node), meets)
+        };
+        self.waiting.push_wanted([itself(tree.root)]);
+        while let Some((a, b)) = self.waiting.pop() {
+            if a != b {
+                self.visit((tree, a), (tree, b), &wanted);
+            } else if tree.at(a).class == CollisionClass::NONE {
+                let [a0, a1] = tree.children_of(a);
+                self.waiting.push_wanted([itself(a0.0), itself(a1.0)]);
+                self.meet([[a0, a1]], &wanted);
+            }
+            self.tell_if_full(&mut found);
+        }
+        self.found.tell(&mut found);
+    }
+
+    /// Like [`Meetings::within`], for pairs of a box of one tree and a box of another.
+    pub(in crate::collision::broad_phase) fn between(
+        &mut self,
+        tree: &Tree,
+        other: &Tree,
+        wanted: impl Fn(&Node) -> bool,
+        mut found: impl FnMut(Pair),
+    ) {
+        if tree.root == NONE || other.root == NONE {
+            return;
+        }
+        self.meet([[(tree.root, tree.at(tree.root)), (other.root, other.at(other.root))]], &wanted);
+        while let Some((a, b)) = self.waiting.pop() {
+            self.visit((tree, a), (other, b), &wanted);
+            self.tell_if_full(&mut found);
+        }
+        self.found.tell(&mut found);
+    }
+
+    /// Visits a pair of overlapping nodes: meets the children of both, or those of one if the other is a leaf.
     #[inline(always)]
-    fn meet<const N: usize>(&mut self, pairs: [[(u32, &Node); 2]; N], wanted: impl Fn(&Node) -> bool) {
+    fn visit(
+        &mut self,
+        (tree_a, a): (&Tree, u32),
+        (tree_b, b): (&Tree, u32),
+        wanted: &impl Fn(&Node) -> bool,
+    ) {
+        let (node_a, node_b) = (tree_a.at(a), tree_b.at(b));
+        if node_a.class.common(node_b.class) != CollisionClass::NONE {
+            return;
+        }
+        if node_a.is_leaf() {
+            let (leaf, [b0, b1]) = ((a, node_a), tree_b.children_of(b));
+            self.meet([[leaf, b0], [leaf, b1]], wanted);
+        } else if node_b.is_leaf() {
+            let ([a0, a1], leaf) = (tree_a.children_of(a), (b, node_b));
+            self.meet([[a0, leaf], [a1, leaf]], wanted);
+        } else {
+            let ([a0, a1], [b0, b1]) = (tree_a.children_of(a), tree_b.children_of(b));
+            self.meet([[a0, b0], [a0, b1], [a1, b0], [a1, b1]], wanted);
+        }
+    }
+
+    /// Lists the pairs of nodes that overlap and of which at least one is wanted: pairs of leaves as found, all others
+    /// as waiting.
+    #[inline(always)]
+    fn meet<const N: usize>(&mut self, pairs: [[(u32, &Node); 2]; N], wanted: &impl Fn(&Node) -> bool) {
         let (mut found, mut waiting) = ([((NONE, NONE), false); N], [((NONE, NONE), false); N]);
         for i in 0..N {
             let [(a, node_a), (b, node_b)] = pairs[i];
@@ -70,23 +139,18 @@ impl Meetings {
         self.found.push_wanted(found);
         self.waiting.push_wanted(waiting);
     }
+
+    #[inline(always)]
+    fn tell_if_full(&mut self, found: &mut impl FnMut(Pair)) {
+        if self.found.len >= FOUND_MAX {
+            self.found.tell(found);
+        }
+    }
 }
 
 impl Tree {
-    /// Calls `found` with every pair of overlapping boxes once, except for most pairs within one collision class.
-    pub(crate) fn each_pair(&mut self, found: impl FnMut(Pair)) {
-        self.meet_itself(|_| true, found);
-    }
-
-    /// Like [`Tree::each_pair`], for pairs with at least one of some slots.
-    pub(crate) fn each_pair_of(&mut self, slots: &[u32], found: impl FnMut(Pair)) {
-        slots.iter().for_each(|&slot| self.mark(slot, true));
-        self.meet_itself(|node| node.marked, found);
-        slots.iter().for_each(|&slot| self.mark(slot, false));
-    }
-
-    /// Sets or clears the mark of a leaf and its ancestors.
-    fn mark(&mut self, slot: u32, marked: bool) {
+    /// Sets or clears the mark of a slot's leaf and its ancestors, if the slot has a box.
+    pub(in crate::collision::broad_phase) fn mark(&mut self, slot: u32, marked: bool) {
         let mut at = self.leaf_of(slot).unwrap_or(NONE);
         while at != NONE && self.at(at).marked != marked {
             self.at_mut(at).marked = marked;
@@ -94,41 +158,9 @@ impl Tree {
         }
     }
 
-    /// Traverses the tree against itself, skipping pairs of nodes of which neither is wanted.
+    /// The children of an inner node.
     #[inline(always)]
-    fn meet_itself(&mut self, wanted: impl Fn(&Node) -> bool, mut found: impl FnMut(Pair)) {
-        let mut meetings = core::mem::take(&mut self.meetings);
-        let itself = |node: u32| {
-            let meets = node != NONE && wanted(self.at(node)) && !self.at(node).is_leaf();
-            ((node, node), meets)
-        };
-        let child = |node: &Node, i: usize| (node.children[i], self.at(node.children[i]));
-        meetings.waiting.push_wanted([itself(self.root)]);
-        while let Some((a, b)) = meetings.waiting.pop() {
-            let (node_a, node_b) = (self.at(a), self.at(b));
-            if node_a.class.common(node_b.class) != CollisionClass::NONE {
-                continue;
-            }
-            if a == b {
-                let [a0, a1] = [child(node_a, 0), child(node_a, 1)];
-                meetings.waiting.push_wanted([itself(a0.0), itself(a1.0)]);
-                meetings.meet([[a0, a1]], &wanted);
-            } else if node_a.is_leaf() {
-                let leaf = (a, node_a);
-                meetings.meet([[leaf, child(node_b, 0)], [leaf, child(node_b, 1)]], &wanted);
-            } else if node_b.is_leaf() {
-                let leaf = (b, node_b);
-                meetings.meet([[child(node_a, 0), leaf], [child(node_a, 1), leaf]], &wanted);
-            } else {
-                let [a0, a1] = [child(node_a, 0), child(node_a, 1)];
-                let [b0, b1] = [child(node_b, 0), child(node_b, 1)];
-                meetings.meet([[a0, b0], [a0, b1], [a1, b0], [a1, b1]], &wanted);
-            }
-            if meetings.found.len >= FOUND_MAX {
-                meetings.found.tell(&mut found);
-            }
-        }
-        meetings.found.tell(&mut found);
-        self.meetings = meetings;
+    fn children_of(&self, node: u32) -> [(u32, &Node); 2] {
+        self.at(node).children.map(|child| (child, self.at(child)))
     }
 }

@@ -100,6 +100,7 @@ fn the_stack_holds_a_search_of_the_highest_tree() {
 fn it_stays_sound_while_boxes_come_go_and_move() {
     let mut rng = Rng::new(1);
     let mut tree = Tree::default();
+    let mut meetings = Meetings::default();
     let mut pairs = 0;
     for round in 0..20_000 {
         let slot = rng.below(100);
@@ -120,7 +121,9 @@ fn it_stays_sound_while_boxes_come_go_and_move() {
         if round % 5 == 0 {
             let slots: Vec<u32> = (0..rng.below(8)).map(|_| rng.below(120)).collect();
             let mut found = Vec::new();
-            tree.each_pair_of(&slots, |pair| found.push(pair));
+            slots.iter().for_each(|&slot| tree.mark(slot, true));
+            meetings.within(&tree, |node| node.marked, |pair| found.push(pair));
+            slots.iter().for_each(|&slot| tree.mark(slot, false));
             found.sort_unstable();
             let class_of = |slot: u32| tree.at(tree.leaves[slot as usize]).class;
             let mut all = tree.pairs_of(&slots);

@@ -152,16 +152,17 @@ impl<const N: usize> AngleRows<N> {
             .map(|lambda| Speed::from_bits(lambda.0[lane]))
     }
 
-    /// Computes positions at the current pose. `turns` are the angles of the joints at the start of the tick.
+    /// Computes positions at the current pose. `turns` are the angles of the joints at the start of the tick, one for
+    /// each lane with a hinge.
     pub(super) fn refresh(
         &mut self,
-        turns: &[i64; N],
+        turns: &[i64],
         [a, b]: &[[u32; N]; 2],
         body_rotations: &[BodyRotation],
     ) {
-        for lane in 0..N {
+        for (lane, turn) in turns.iter().enumerate() {
             let (a, b) = (&body_rotations[a[lane] as usize], &body_rotations[b[lane] as usize]);
-            let position = turns[lane].wrapping_add(b.turns).wrapping_sub(a.turns);
+            let position = turn.wrapping_add(b.turns).wrapping_sub(a.turns);
             if self.has_spring {
                 let stretch = position.saturating_sub(self.targets[lane]);
                 self.spring.push.0[lane] = speed_of(stretch, self.stiffness[lane]);

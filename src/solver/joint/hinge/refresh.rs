@@ -62,7 +62,7 @@ impl Refresh<'_> {
                 refresh_gains::<L, N>(batch, &records.shape, &quads);
             }
             if let Some(rows) = angle {
-                rows.refresh(&records.turns, &batch.bodies, poses.body_rotations);
+                rows.refresh(&records.turns[..records.len], &batch.bodies, poses.body_rotations);
             }
         }
     }
