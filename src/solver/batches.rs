@@ -103,6 +103,11 @@ impl<K: BatchKind, const N: usize> Batches<K, N> {
 }
 
 impl<K: BatchKind> BatchList<K> {
+    /// Whether there are no constraints.
+    pub(super) fn is_empty(&self) -> bool {
+        self.overflow.batches.is_empty() && self.coloured.batches.is_empty()
+    }
+
     /// Whether any batch has an extra.
     pub(super) fn has_extras(&self) -> bool {
         !self.overflow.extras.is_empty() || !self.coloured.extras.is_empty()

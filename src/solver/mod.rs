@@ -150,7 +150,8 @@ impl Solver {
 
     /// Performs one sub-step. `index` is the number of sub-steps since the world was created.
     pub(crate) fn sub_step(&mut self, index: u64, tuning: &Tuning) {
-        let (iterations, cold_iterations) = (tuning.iterations, tuning.iterations * COLD_ROUNDS);
+        let iterations = tuning.iterations;
+        let cold_iterations = if self.contacts.has_cold() { iterations * COLD_ROUNDS } else { 0 };
         let constants = Constants::new(tuning);
         let Solver { list, moving, joints, contacts, contact_velocities, machine, threads, faults, .. } =
             self;

@@ -77,7 +77,7 @@ impl Facing {
             (false, Sides::Right) => return None,
         };
         let (p, q) = clipped_to_window(link.a, link.b)?;
-        let direction = (link.b - link.a).normalized()?;
+        let direction = link.directions.own?;
         let end = |neighbour: Option<Vec2<Unit>>, turn: fn(Vec2<Unit>, Vec2<Unit>) -> Turn| match neighbour {
             // A chain that reverses its direction exactly counts as ending there.
             Some(other) if other != -direction => {
@@ -85,14 +85,12 @@ impl Facing {
             }
             _ => LinkEnd::Free,
         };
-        let before = link.before.and_then(|before| (link.a - before).normalized());
-        let after = link.after.and_then(|after| (after - link.b).normalized());
         Some(Facing {
             hull: Hull::segment(p.narrow(), q.narrow(), direction),
             direction,
             normal: -direction.perp(),
-            start: end(before, turn),
-            end: end(after, |after, own| turn(own, after)),
+            start: end(link.directions.before, turn),
+            end: end(link.directions.after, |after, own| turn(own, after)),
             one_sided: link.sides == Sides::Right,
         })
     }

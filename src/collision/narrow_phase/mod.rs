@@ -136,7 +136,7 @@ fn segment_about(segment: &PosedShape, other: &PosedShape) -> Option<Hull> {
 fn link_facing(link: &PosedShape, other: &PosedShape, place: Vec2<Fx>) -> Option<Facing> {
     let Outline::Link(posed) = link.outline else { return None };
     let from_other = link.centre - other.centre;
-    Facing::new(&posed.mapped(|point| from_other + point), place)
+    Facing::new(&posed.translated(from_other), place)
 }
 
 #[cfg(test)]

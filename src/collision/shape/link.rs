@@ -1,7 +1,7 @@
 //! A link of a chain with its neighbours, and which side of the chain a point is on.
 
 use crate::body::Sides;
-use crate::math::{Fx, Orientation, Vec2, orientation};
+use crate::math::{Fx, Orientation, Unit, Vec2, orientation};
 
 /// A link in world axes, relative to the centre of its own shape or of the shape that it meets.
 #[derive(Clone, Copy, Debug)]
@@ -11,17 +11,44 @@ pub(crate) struct Link {
     pub(crate) before: Option<Vec2<Fx>>,
     pub(crate) after: Option<Vec2<Fx>>,
     pub(crate) sides: Sides,
+    pub(crate) directions: Directions,
+}
+
+/// Directions of a link and of its neighbours, which do not change while the chain is translated. `None` without a
+/// neighbour, or if it has no length.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Directions {
+    pub(crate) before: Option<Vec2<Unit>>,
+    pub(crate) own: Option<Vec2<Unit>>,
+    pub(crate) after: Option<Vec2<Unit>>,
 }
 
 impl Link {
-    pub(crate) fn mapped(self, map: impl Fn(Vec2<Fx>) -> Vec2<Fx>) -> Self {
-        let Link { a, b, before, after, sides } = self;
-        Link { a: map(a), b: map(b), before: before.map(&map), after: after.map(&map), sides }
+    /// Creates the link from `a` to `b` between its neighbours' other ends.
+    pub(crate) fn new([a, b]: [Vec2<Fx>; 2], [before, after]: [Option<Vec2<Fx>>; 2], sides: Sides) -> Self {
+        let directions = Directions {
+            before: before.and_then(|before| (a - before).normalized()),
+            own: (b - a).normalized(),
+            after: after.and_then(|after| (after - b).normalized()),
+        };
+        Link { a, b, before, after, sides, directions }
+    }
+
+    pub(crate) fn translated(self, by: Vec2<Fx>) -> Self {
+        let Link { a, b, before, after, .. } = self;
+        let [before, after] = [before, after].map(|point| point.map(|point| by + point));
+        Link { a: by + a, b: by + b, before, after, ..self }
     }
 
     pub(crate) fn reversed(self) -> Self {
-        let Link { a, b, before, after, sides } = self;
-        Link { a: b, b: a, before: after, after: before, sides }
+        let Link { a, b, before, after, sides, directions } = self;
+        let back = |direction: Option<Vec2<Unit>>| direction.map(|direction| -direction);
+        let directions = Directions {
+            before: back(directions.after),
+            own: back(directions.own),
+            after: back(directions.before),
+        };
+        Link { a: b, b: a, before: after, after: before, sides, directions }
     }
 
     /// Whether the link is solid for a shape whose centre is at `place`: always, or only on the right if one-sided.

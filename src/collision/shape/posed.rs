@@ -348,8 +348,9 @@ impl PosedShape {
                 (Outline::Segment { a, b }, Aabb::new(a.min(b), a.max(b)))
             }
             Geometry::Link { a, b, before, after, sides } => {
-                let link = Link { a: *a, b: *b, before: *before, after: *after, sides: *sides };
-                let link = link.mapped(|point| rotation.apply_wide(point));
+                let posed = |point: Vec2<Fx>| rotation.apply_wide(point);
+                let link =
+                    Link::new([*a, *b].map(posed), [*before, *after].map(|end| end.map(posed)), *sides);
                 (Outline::Link(link), Aabb::new(link.a.min(link.b), link.a.max(link.b)))
             }
             Geometry::Polygon(polygon) => {

@@ -85,6 +85,11 @@ impl ContactSet {
         self.cold.run_coloured(operation, context);
     }
 
+    /// Whether any contact is cold.
+    pub(super) fn has_cold(&self) -> bool {
+        !self.cold.is_empty()
+    }
+
     /// Runs an operation over the cold contacts.
     pub(super) fn run_cold(&mut self, operation: impl Operation<Contacts>, context: &StepContext<'_>) {
         self.cold.run_overflow(operation, context);

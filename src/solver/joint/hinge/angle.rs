@@ -154,12 +154,7 @@ impl<const N: usize> AngleRows<N> {
 
     /// Computes positions at the current pose. `turns` are the angles of the joints at the start of the tick, one for
     /// each lane with a hinge.
-    pub(super) fn refresh(
-        &mut self,
-        turns: &[i64],
-        [a, b]: &[[u32; N]; 2],
-        body_rotations: &[BodyRotation],
-    ) {
+    pub(super) fn refresh(&mut self, turns: &[i64], [a, b]: &[[u32; N]; 2], body_rotations: &[BodyRotation]) {
         for (lane, turn) in turns.iter().enumerate() {
             let (a, b) = (&body_rotations[a[lane] as usize], &body_rotations[b[lane] as usize]);
             let position = turn.wrapping_add(b.turns).wrapping_sub(a.turns);
