@@ -9,7 +9,6 @@ mod clip;
 
 pub(in crate::collision) use clip::{CLIP_BITS, FINER, clip};
 
-use crate::body::POLYGON_VERTICES_MAX;
 use crate::collision::manifold::Manifold;
 use crate::collision::shape::posed::{BoxFaces, Hull};
 use crate::math::{Length, Step, Unit, Vec2};
@@ -159,45 +158,15 @@ fn furthest(a: &Hull, b: &Hull, d: Vec2<Length>) -> Face {
         4 => furthest_from::<4>(a, others, d),
         5 => furthest_from::<5>(a, others, d),
         6 => furthest_from::<6>(a, others, d),
-        7 => furthest_from::<7>(a, others, d),
-        8 => furthest_from::<8>(a, others, d),
-        _ => Face { edge: 0, separation: i64::MIN },
+        _ => furthest_over(a, |n| support(n, others), d),
     }
 }
 
-/// The face that is turned most towards `b` is tested first. Against most other faces the vertex of `b` that is
-/// nearest to it then shows that their separation is no larger.
-#[inline(always)]
 fn furthest_from<const N: usize>(a: &Hull, others: &[Vec2<Length>], d: Vec2<Length>) -> Face {
-    let Some(others) = others.first_chunk::<N>() else { return Face { edge: 0, separation: i64::MIN } };
-    let faces = || a.normals().iter().zip(a.vertices()).enumerate();
-    let mut offsets = [0; POLYGON_VERTICES_MAX];
-    let mut first = 0;
-    for (edge, (&n, &vertex)) in faces() {
-        offsets[edge] = product(n, d) - product(n, vertex);
-        first = if offsets[edge] > offsets[first] { edge } else { first };
+    match others.first_chunk::<N>() {
+        Some(others) => furthest_over(a, |n| support(n, others), d),
+        None => Face { edge: 0, separation: i64::MIN },
     }
-    let (nearest, separation) = nearest_of(a.normal(first), others);
-    let mut best = Face { edge: first, separation: separation + offsets[first] };
-    for (edge, (&n, _)) in faces() {
-        // In case of a tie the lower edge index wins.
-        let is_further = |separation| (separation, best.edge) > (best.separation, edge);
-        if is_further(product(n, nearest) + offsets[edge]) {
-            let separation = support(n, others) + offsets[edge];
-            if is_further(separation) {
-                best = Face { edge, separation };
-            }
-        }
-    }
-    best
-}
-
-/// The vertex that is furthest against a direction, and `n . v` of it.
-#[inline(always)]
-fn nearest_of<const N: usize>(n: Vec2<Unit>, vertices: &[Vec2<Length>; N]) -> (Vec2<Length>, i64) {
-    let farther = |a: (Vec2<Length>, i64), b: (Vec2<Length>, i64)| if b.1 < a.1 { b } else { a };
-    let along = vertices.iter().map(|&vertex| (vertex, product(n, vertex)));
-    along.fold((Vec2::ZERO, i64::MAX), farther)
 }
 
 #[inline]
