@@ -238,12 +238,13 @@ impl<L: Lanes<N>, const N: usize> Normals<L, N> {
         let mut lambdas = [one, two];
         let settled = L::splat(SETTLED.to_bits() - 1);
         let mut unsettled = beyond::<L, N>(L::sub(two, old), settled);
-        unsettled = L::both(unsettled, L::both(present[0], present[1]));
+        let both = L::both(present[0], present[1]);
+        unsettled = L::both(unsettled, both);
+        policy.count_faults_in(both);
         for _ in 1..NORMAL_ROUNDS_MAX {
             if !L::any(unsettled) {
                 break;
             }
-            policy.count_faults_in(unsettled);
             let wanted = self.wanted(first, lambdas[0], pair, policy);
             let new = L::select(unsettled, wanted, lambdas[0]);
             policy.apply(pair, &first.normal, L::sub(new, lambdas[0]));
