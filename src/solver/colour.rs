@@ -233,6 +233,38 @@ mod tests {
     use super::*;
     use crate::math::Rng;
 
+    /// Checks that the constraints of a colour change different bodies, and come in the order of their sizes.
+    fn check(group: &Group<'_>, nodes: &[Node], cold: bool) {
+        let mut bodies = std::collections::BTreeSet::new();
+        for (place, node) in group.indices.iter().map(|&i| nodes[i as usize]).enumerate() {
+            let size = if place < group.large { Size::Large } else { Size::Small };
+            assert_eq!((node.size, node.cold), (size, cold));
+            for body in node.bodies.into_iter().filter(|&body| body != GROUND) {
+                assert!(bodies.insert(body), "body {body} twice in a colour");
+            }
+        }
+    }
+
+    #[test]
+    fn a_batch_has_two_sizes_only_if_all_of_its_constraints_mix() {
+        let indices: Vec<u32> = (0..21).collect();
+        let lens = |large: usize, mixes: &dyn Fn(u32) -> bool| -> Vec<usize> {
+            let batches: Vec<&[u32]> = Group { indices: &indices, large }.batches::<8>(mixes).collect();
+            assert_eq!(batches.concat(), indices);
+            batches.iter().map(|batch| batch.len()).collect()
+        };
+        assert_eq!(lens(10, &|_| true), [8, 8, 5]);
+        assert_eq!(lens(10, &|_| false), [8, 2, 8, 3]);
+        assert_eq!(lens(10, &|index| index != 9), [8, 2, 8, 3]);
+        assert_eq!(lens(10, &|index| index != 15), [8, 2, 8, 3]);
+        assert_eq!(lens(10, &|index| index != 16), [8, 8, 5]);
+        assert_eq!(lens(8, &|_| true), [8, 8, 5]);
+        assert_eq!(lens(0, &|_| false), [8, 8, 5]);
+        assert_eq!(lens(21, &|_| false), [8, 8, 5]);
+        assert_eq!(lens(19, &|_| true), [8, 8, 5]);
+        assert_eq!(lens(19, &|_| false), [8, 8, 3, 2]);
+    }
+
     #[test]
     fn no_colour_holds_a_body_twice_and_nothing_is_lost() {
         let mut rng = Rng::new(11);
@@ -257,21 +289,14 @@ mod tests {
             assert!(seen.iter().copied().eq(0..400));
             let mut solved = colouring.overflow(false).to_vec();
             assert!(solved.iter().all(|&i| colouring.places[i as usize] == 0));
-            let groups = colouring.colours(false).chain([colouring.overflow(true)]);
-            for indices in groups.chain(colouring.colours(true)) {
-                if indices.first().is_some_and(|&i| colouring.places[i as usize] == PLACES) {
-                    solved.extend_from_slice(indices);
-                    continue;
-                }
-                let mut bodies = std::collections::BTreeSet::new();
-                for node in indices.iter().map(|&i| nodes[i as usize]) {
-                    let first = nodes[indices[0] as usize];
-                    assert_eq!((node.size, node.cold), (first.size, first.cold));
-                    for body in node.bodies.into_iter().filter(|&body| body != GROUND) {
-                        assert!(bodies.insert(body), "body {body} twice in a colour");
-                    }
-                }
-                solved.extend_from_slice(indices);
+            for group in colouring.colours(false) {
+                check(&group, &nodes, false);
+                solved.extend_from_slice(group.indices);
+            }
+            solved.extend_from_slice(colouring.overflow(true));
+            for group in colouring.colours(true) {
+                check(&group, &nodes, true);
+                solved.extend_from_slice(group.indices);
             }
             assert_eq!(solved, colouring.order, "the groups follow the order");
             assert!(

@@ -19,6 +19,7 @@ use crate::math::Aabb;
 pub(super) use pairs::Meetings;
 use rebuild::Rebuilt;
 
+mod balance;
 mod pairs;
 mod rebuild;
 #[cfg(test)]
@@ -288,60 +289,6 @@ impl Tree {
         node.aabb = a.aabb.union(b.aabb);
         node.height = 1 + a.height.max(b.height);
         node.class = a.class.common(b.class);
-    }
-
-    /// Restores the balance of a node: if one child is too high, its higher child is exchanged with the other child.
-    fn balance(&mut self, at: u32) {
-        let [a, b] = self.at(at).children;
-        let (low, high) = if self.at(a).height < self.at(b).height { (a, b) } else { (b, a) };
-        if self.at(high).height - self.at(low).height > IMBALANCE_MAX {
-            let [c, d] = self.at(high).children;
-            let up = if self.at(c).height > self.at(d).height { c } else { d };
-            self.swap_if_balanced(at, low, high, up);
-        }
-    }
-
-    /// Exchanges a child with a child of its sibling if that shrinks the sibling; the box of the node itself stays the
-    /// same. The height may differ by one from before, which the ancestors can compensate.
-    fn tighten(&mut self, at: u32, height_before: u8) {
-        let [a, b] = self.at(at).children;
-        let (mut best_gain, mut best) = (0, None);
-        for (child, sibling) in [(a, b), (b, a)] {
-            if self.at(sibling).is_leaf() {
-                continue;
-            }
-            let [c, d] = self.at(sibling).children;
-            for (up, stays) in [(c, d), (d, c)] {
-                let smaller = self.at(child).aabb.union(self.at(stays).aabb);
-                let gain = perimeter(self.at(sibling).aabb).saturating_sub(perimeter(smaller));
-                if gain > best_gain && self.stays_balanced([up, child, stays], height_before) {
-                    (best_gain, best) = (gain, Some((child, sibling, up)));
-                }
-            }
-        }
-        if let Some((child, sibling, up)) = best {
-            self.swap_if_balanced(at, child, sibling, up);
-        }
-    }
-
-    /// Whether a node may have the first of three nodes as a child and the other two as grandchildren.
-    fn stays_balanced(&self, three: [u32; 3], height_before: u8) -> bool {
-        let [up, a, b] = three.map(|index| self.at(index).height);
-        let sibling = 1 + a.max(b);
-        let height = 1 + up.max(sibling);
-        a.abs_diff(b) <= IMBALANCE_MAX
-            && up.abs_diff(sibling) <= IMBALANCE_MAX
-            && height.abs_diff(height_before) <= 1
-    }
-
-    /// Exchanges a child of a node with a child of its sibling.
-    fn swap_if_balanced(&mut self, at: u32, child: u32, sibling: u32, up: u32) {
-        self.replace_child(at, child, up);
-        self.replace_child(sibling, up, child);
-        self.at_mut(up).parent = at;
-        self.at_mut(child).parent = sibling;
-        self.refit(sibling);
-        self.refit(at);
     }
 
     /// Replaces a child of a node, or the root. The caller sets the parent of the new child.
