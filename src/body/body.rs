@@ -332,10 +332,19 @@ impl Body {
     /// Velocity change in one sub-step, of `v` by the applied force and of `u` by the applied torque, at `rate`
     /// sub-steps per second: `dv = F / (m rate)`, `du = torque / (m k rate)`.
     pub(crate) fn acceleration_step(&self, rate: u32) -> (Vec2<Speed>, Speed) {
+        self.step_by(self.force, self.torque, rate)
+    }
+
+    /// [`Self::acceleration_step`] with a force in N and a torque in N m in addition.
+    pub(crate) fn step_with(&self, force: Vec2<Fx>, torque: Fx, rate: u32) -> (Vec2<Speed>, Speed) {
+        self.step_by(self.force + force, self.torque.saturating_add(torque), rate)
+    }
+
+    fn step_by(&self, force: Vec2<Fx>, torque: Fx, rate: u32) -> (Vec2<Speed>, Speed) {
         let dv = |force: Fx| over_mass(force, self.mass.mass, rate);
-        let is_turned = self.torque != Fx::ZERO && self.turns();
-        let du = if is_turned { divide(self.torque, self.mass.gyration) } else { Fx::ZERO };
-        (Vec2::new(dv(self.force.x), dv(self.force.y)), over_mass(du, self.mass.mass, rate))
+        let is_turned = torque != Fx::ZERO && self.turns();
+        let du = if is_turned { divide(torque, self.mass.gyration) } else { Fx::ZERO };
+        (Vec2::new(dv(force.x), dv(force.y)), over_mass(du, self.mass.mass, rate))
     }
 }
 

@@ -129,6 +129,11 @@ pub enum WorldError {
         /// The requested scale.
         value: Fx,
     },
+    /// A property of an area is out of range, or its shape is no sensor or has no inside.
+    AreaOutOfRange {
+        /// Name of the property.
+        what: &'static str,
+    },
     /// A joint connects a body to itself.
     JointToItself(BodyId),
     /// The bodies of an existing joint cannot be changed.
@@ -208,6 +213,9 @@ impl fmt::Display for WorldError {
             WorldError::GravityScaleOutOfRange { value } => {
                 write!(f, "gravity scale is within ±1000, not {value}")
             }
+            WorldError::AreaOutOfRange { what: "sensor" } => write!(f, "only a sensor can be an area"),
+            WorldError::AreaOutOfRange { what: "geometry" } => write!(f, "a line has no inside, so that it cannot be an area"),
+            WorldError::AreaOutOfRange { what } => write!(f, "the {what} of an area is out of range"),
             WorldError::JointToItself(id) => write!(f, "a joint cannot connect body {id} to itself"),
             WorldError::JointOfOtherBodies(id) => write!(f, "the bodies of joint {id} cannot be changed"),
             WorldError::JointWithout { joint, what } => write!(f, "joint {joint} has no {what}"),

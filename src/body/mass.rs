@@ -130,6 +130,11 @@ impl MassProperties {
     }
 }
 
+/// Area of a shape in m²; 0 for lines.
+pub(crate) fn area_of(shape: &ShapeDef) -> Fx {
+    Part::of_shape(&ShapeDef { density: Fx::ONE, ..*shape }).mass
+}
+
 fn check_gyration(gyration: Fx) -> Result<(), WorldError> {
     let inside = GYRATION.contains(&gyration);
     if inside { Ok(()) } else { Err(WorldError::GyrationOutOfRange { value: gyration }) }
