@@ -161,10 +161,16 @@ impl Body {
         self.velocity() + (point - self.centre).perp().scale(self.angular_velocity())
     }
 
-    /// Mass in kg; 0 unless the body is dynamic.
+    /// Mass in kg; 0 unless the body is dynamic, and for a dynamic body without mass
+    /// ([`MassSource::Shapes`](super::MassSource::Shapes)).
     #[must_use]
     pub const fn mass(&self) -> Fx {
         self.mass.mass
+    }
+
+    /// Whether forces and impulses change the body's velocity: it is dynamic and not without mass.
+    pub(crate) fn has_mass(&self) -> bool {
+        self.mass.mass > 0
     }
 
     /// Moment of inertia about the centre of mass in kg m²; 0 unless the body is dynamic.

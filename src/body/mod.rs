@@ -20,8 +20,8 @@ mod shape;
 mod shape_fields;
 mod shape_list;
 
-pub(crate) use arena::{Arena, Handle, SharedArena};
 pub use area::{Area, Attraction, Falloff};
+pub(crate) use arena::{Arena, Handle, SharedArena};
 pub use arena::{BodyId, IslandId, JointId, ShapeId};
 pub use body::Body;
 pub(crate) use body::{Pose, SPEED_MAX};

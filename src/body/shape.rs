@@ -4,8 +4,8 @@ use alloc::boxed::Box;
 
 use serde::{Deserialize, Serialize};
 
-use super::arena::BodyId;
 use super::area::Area;
+use super::arena::BodyId;
 use super::error::WorldError;
 use super::event_switches::EventSwitches;
 use super::filter::Filter;

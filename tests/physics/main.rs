@@ -1,6 +1,7 @@
 //! Physics against theory. Each file covers one kind of motion and states what theory predicts. The goldens and
 //! `replays/` may change only while these tests pass.
 
+mod areas;
 mod assembly;
 mod capsule;
 mod chain;

@@ -185,7 +185,9 @@ mod tests {
         let sea = Ring::of(&square(fx!(50)), &place(fx!(0), fx!(-50), Angle::ZERO));
         let disc = ShapeDef::new(Geometry::circle(fx!(2)).unwrap());
         // acos(1/2) = pi/3, acos(-1/2) = 2 pi / 3
-        for (height, angle, sign) in [(fx!(1), PI / 3, fx!(-1)), (fx!(-1), PI * 2 / 3, fx!(1)), (fx!(0), PI / 2, fx!(0))] {
+        for (height, angle, sign) in
+            [(fx!(1), PI / 3, fx!(-1)), (fx!(-1), PI * 2 / 3, fx!(1)), (fx!(0), PI / 2, fx!(0))]
+        {
             let cut = Ring::of(&disc, &place(fx!(3), height, Angle::ZERO)).inside(&sea).extent().unwrap();
             let expected = (angle + fx_mul(sign, fx!(0.433012701892))) * 4;
             close(cut.size, expected, fx!(0.02));

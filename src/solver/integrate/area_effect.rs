@@ -30,12 +30,7 @@ pub(crate) struct AreaEffect {
 
 impl MovingBody {
     /// A dynamic body in areas.
-    pub(in crate::solver) fn in_areas(
-        index: u32,
-        body: &Body,
-        effect: &AreaEffect,
-        tuning: &Tuning,
-    ) -> Self {
+    pub(in crate::solver) fn in_areas(index: u32, body: &Body, effect: &AreaEffect, tuning: &Tuning) -> Self {
         let AreaEffect { acceleration, angular_acceleration, force, torque, linear_drag, angular_drag } =
             *effect;
         let (mut step, mut spin_step) = body.step_with(force, torque, tuning.rate);

@@ -49,8 +49,13 @@ impl MovingBody {
                     locks: MotionLocks::default(),
                 })
             }
-            BodyKind::Dynamic => {
+            BodyKind::Dynamic if body.has_mass() => {
                 Some(Self::dynamic(index, body.acceleration_step(tuning.rate), &body.settings, tuning))
+            }
+            // Gravity is a force, which does not move a body without mass.
+            BodyKind::Dynamic => {
+                let settings = BodySettings { gravity_scale: Fx::ZERO, ..body.settings };
+                Some(Self::dynamic(index, (Vec2::ZERO, Speed::ZERO), &settings, tuning))
             }
         }
     }

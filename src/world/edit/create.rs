@@ -29,7 +29,7 @@ impl World {
     /// Adds a body with its shapes.
     ///
     /// # Errors
-    /// [`WorldError`] if a value is out of range, a dynamic body has no mass, or the world is full.
+    /// [`WorldError`] if a value is out of range, also the mass of a dynamic body, or the world is full.
     #[doc(alias = "create_body")]
     #[doc(alias = "rigid body")]
     pub fn spawn(&mut self, body: &BodyDef, shapes: &[ShapeDef]) -> Result<BodyId, WorldError> {

@@ -77,7 +77,7 @@ impl World {
     /// joints stay, and rest as long as neither of their bodies is dynamic.
     ///
     /// # Errors
-    /// [`WorldError`] if the handle is stale, a dynamic body would have no mass, a shape or the anchor of a joint
+    /// [`WorldError`] if the handle is stale, the mass of a dynamic body would be out of range, a shape or the anchor of a joint
     /// reaches too far for a body that moves, or the body rotates too fast for its mass.
     #[doc(alias = "static")]
     #[doc(alias = "body type")]
@@ -200,7 +200,7 @@ impl World {
     /// solid shape, or switches its contact events, its contacts end; otherwise they last as long as the shapes touch.
     ///
     /// # Errors
-    /// [`WorldError`] if the handle is stale, a value is out of range, or a dynamic body would be left without mass.
+    /// [`WorldError`] if the handle is stale, or a value is out of range, also the mass of a dynamic body.
     #[doc(alias = "sensor")]
     #[doc(alias = "trigger")]
     pub fn set_shape(&mut self, id: ShapeId, def: &ShapeDef) -> Result<(), WorldError> {

@@ -28,7 +28,7 @@ pub(super) fn apply_areas(state: &mut State, scratch: &mut Scratch, tuning: &Tun
             let is_sensor = scratch.shapes.motion().shape(area).sensor;
             if is_sensor && state.shapes.at(area).acts_on(state.shapes.at(shape)) {
                 let body = state.shapes.at(shape).body().slot();
-                if is_awake(state.bodies.at(body)) {
+                if is_awake(state.bodies.at(body)) && state.bodies.at(body).has_mass() {
                     visitors.push([body, area, shape]);
                 }
             }
@@ -96,11 +96,13 @@ struct Sum<'a> {
 
 impl<'a> Sum<'a> {
     fn new(state: &'a State, body: &'a Body, ahead: Fx) -> Self {
-        let solid = body.shapes().iter().map(|id| state.shapes.at(id.slot())).filter(|shape| !shape.is_sensor());
+        let solid =
+            body.shapes().iter().map(|id| state.shapes.at(id.slot())).filter(|shape| !shape.is_sensor());
         let area: Fx = solid.clone().fold(Fx::ZERO, |sum, shape| sum.saturating_add(area_of(shape.def())));
         let has_area = area > 0;
         let place = place_of(body, Vec2::ZERO, ahead);
-        let length = |shape: &Shape| Ring::of(shape.def(), &place).extent().map_or(Fx::ZERO, |line| line.size);
+        let length =
+            |shape: &Shape| Ring::of(shape.def(), &place).extent().map_or(Fx::ZERO, |line| line.size);
         let size = if has_area { area } else { solid.map(length).fold(Fx::ZERO, Fx::saturating_add) };
         Sum {
             state,
@@ -135,7 +137,11 @@ impl<'a> Sum<'a> {
             let Some(part) = whole.inside(&ring).extent() else { continue };
             let size = match shape.geometry() {
                 Geometry::Segment { .. } | Geometry::Link { .. } => {
-                    if self.has_area { Fx::ZERO } else { part.size }
+                    if self.has_area {
+                        Fx::ZERO
+                    } else {
+                        part.size
+                    }
                 }
                 // A rounded outline is measured as a polygon; what counts is its share of the true area.
                 _ => fx_mul(area_of(shape.def()), fx_div(part.size, all.size).unwrap_or(Fx::ZERO)),

@@ -23,7 +23,7 @@ impl JointSet {
         (a, b): (&Body, &Body),
         tuning: &Tuning,
     ) -> (Vec2<Fx>, Fx) {
-        if !joint.is_solved() || !(a.is_dynamic() || b.is_dynamic()) {
+        if !joint.is_solved() || !(a.has_mass() || b.has_mass()) {
             return (Vec2::ZERO, Fx::ZERO);
         }
         self.clear();
@@ -50,7 +50,7 @@ impl JointSet {
         let place = Ends::prepare(joint, indices, [a, b]).place(context.bodies, &self.body_rotations);
         self.warm_start(&context);
         // The velocity of the lighter body has more significant bits.
-        let (body, moved, arm) = if a.is_dynamic() && (!b.is_dynamic() || a.mass() < b.mass()) {
+        let (body, moved, arm) = if a.has_mass() && (!b.has_mass() || a.mass() < b.mass()) {
             (a, bodies[1].reversed(), place.reach_of_a().arm)
         } else {
             (b, bodies[2], place.lever_b.arm)
