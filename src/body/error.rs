@@ -198,10 +198,7 @@ impl fmt::Display for WorldError {
                  and surface speed is within ±400 m/s"
             ),
             WorldError::MassOutOfRange { value } => {
-                write!(
-                    f,
-                    "a dynamic body's mass is 1e-5 to 2^30 kg, not {value}"
-                )
+                write!(f, "a dynamic body's mass is 1e-5 to 2^30 kg, not {value}")
             }
             WorldError::GyrationOutOfRange { value } => {
                 write!(f, "a dynamic body's radius of gyration is 0.002 to 512 m, not {value}")

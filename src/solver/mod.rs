@@ -40,8 +40,8 @@ use context::{Pass, StepContext};
 pub(crate) use integrate::AreaEffect;
 use integrate::{MovingBody, integrate_displacements, integrate_velocities};
 pub use joint::{
-    Distance, Drive, Joint, JointDef, JointFrame, JointKind, JointLimit, JointPart, LinearDrive, Motor,
-    Prismatic, Pull, Revolute, Soft, Spring, Threshold, ThresholdAction, Weld, Wheel,
+    Distance, Drive, Gear, Joint, JointDef, JointFrame, JointKind, JointLimit, JointPart, LinearDrive, Motor,
+    Prismatic, Pull, Pulley, Rack, Revolute, Soft, Spring, Threshold, ThresholdAction, Weld, Wheel,
 };
 use joint::{JointSet, JointSource};
 use limits::Faults;

@@ -55,7 +55,7 @@ fn square(half: Fx) -> ShapeDef {
 
 #[test]
 fn a_box_of_half_the_density_floats_half_submerged() {
-    let water = Area::fluid(fx!(1)).drag(fx!(2), fx!(2));
+    let water = Area::fluid(fx!(1)).drag(fx!(8), fx!(8));
     for (density, height) in [(fx!(0.5), fx!(0)), (fx!(0.25), fx!(0.1)), (fx!(0.9), fx!(-0.16))] {
         let mut world = world(fx!(-10));
         pool(&mut world, fx!(0), fx!(20), water);

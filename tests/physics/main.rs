@@ -9,6 +9,7 @@ mod collisions;
 mod columns;
 mod continuous;
 mod free_fall;
+mod gears;
 mod impacts;
 mod joint_bench;
 mod joint_energy;
