@@ -208,7 +208,8 @@ impl Churn {
             linear_damping: if rng.chance(1, 4) { rng.range(fx!(0), fx!(2)) } else { Fx::ZERO },
             may_sleep: !rng.chance(1, 12),
             sleep_speed: [fx!(0.05), fx!(0.05), fx!(0.5)][rng.below(3) as usize],
-            continuous: if rng.chance(1, 8) { Continuous::Bullet } else { Continuous::Fixed },
+            continuous: [Continuous::Fixed, Continuous::Bullet, Continuous::Kinematic]
+                [rng.below(9) as usize % 3],
             ..BodySettings::default()
         }
     }
