@@ -8,6 +8,7 @@ use crate::body::{Body, BodyId, BodyKind, JointId};
 use crate::collision::{Link, ManifoldPoint, Outline, PosedShape};
 use crate::fx;
 use crate::math::{Fx, Unit, Vec2, fx_mul, widen};
+use crate::solver::JointKind;
 use crate::world::{ContactView, SolverColour, World};
 
 /// A velocity is drawn as the displacement in this time, in seconds: one metre at 10 m/s, the size of a typical body.
@@ -214,5 +215,12 @@ fn add_joint(world: &World, id: JointId, layers: Layers, found: Sink<'_>) {
         }
         add(Style::JointAnchor, Form::Point(anchor));
     }
-    add(Style::JointGap, Form::Line { from: anchor_a, to: anchor_b });
+    // A rope leads over its wheels.
+    let rope = match &joint.def().kind {
+        JointKind::Pulley(pulley) => alloc::vec![anchor_a, pulley.wheel_a, pulley.wheel_b, anchor_b],
+        _ => alloc::vec![anchor_a, anchor_b],
+    };
+    for ends in rope.windows(2) {
+        add(Style::JointGap, Form::Line { from: ends[0], to: ends[1] });
+    }
 }
