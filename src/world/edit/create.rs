@@ -104,6 +104,7 @@ impl World {
         let mass = mass_of(owner.kind(), *owner.mass_source, &owner.settings, shapes)?;
         self.check_spin(owner, &mass)?;
         wake_body(&mut self.state, &mut self.scratch, body.slot());
+        self.prepare_mass(body, &mass);
         self.state.bodies.redefine(body.slot()).set_mass(mass);
         let id = self.insert_shape(body, shape);
         // The centre of mass may have moved, which changes the rounding of the positions of all other shapes.

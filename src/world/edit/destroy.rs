@@ -41,6 +41,7 @@ impl World {
         let mass = mass_of(owner.kind(), *owner.mass_source, &owner.settings, rest)?;
         self.check_spin(owner, &mass)?;
         wake_overlapping(&mut self.state, &mut self.scratch, body.slot());
+        self.prepare_mass(body, &mass);
         self.delete_shapes(&[id]);
         let owner = self.state.bodies.redefine(body.slot());
         owner.shapes.retain(|other| *other != id);
