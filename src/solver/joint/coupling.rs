@@ -104,7 +104,7 @@ impl JointDef {
             JointKind::Gear(gear) => {
                 let angles = [a.angle() + self.frame_a.angle, b.angle() + self.frame_b.angle];
                 let apart = teeth_apart(&gear, angles, self.gap(a, b)).to_turns();
-                self.frame_a.angle = self.frame_a.angle - Angle::from_turns(apart / i64::from(gear.teeth_a));
+                self.frame_a.angle -= Angle::from_turns(apart / i64::from(gear.teeth_a));
             }
             JointKind::Rack(rack) => {
                 let off = self.rack_position(&rack, a, b, Joint::new(self).turns(a.angle(), b.angle()));

@@ -97,7 +97,7 @@ fn pose_after(state: &State, scratch: &Scratch, swept: &SweptBody, impact: Impac
         let rest = Fx::ONE - impact.fraction;
         if sees_kinematic(body) {
             centre = carried(&obstacle, centre, impact.fraction);
-            angle = angle + Angle::from_wide_turns(obstacle.turn, rest);
+            angle += Angle::from_wide_turns(obstacle.turn, rest);
         } else {
             centre += (obstacle.end - obstacle.start).scale(rest);
         }
