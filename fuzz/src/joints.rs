@@ -4,8 +4,8 @@ use lockstep2d::body::BodyId;
 use lockstep2d::fx;
 use lockstep2d::math::{Fx, Vec2};
 use lockstep2d::solver::{
-    Distance, Drive, JointDef, JointKind, JointLimit, LinearDrive, Motor, Prismatic, Pull, Revolute, Soft,
-    Spring, Threshold, ThresholdAction, Weld, Wheel,
+    Distance, Drive, Gear, JointDef, JointKind, JointLimit, LinearDrive, Motor, Prismatic, Pull, Pulley,
+    Rack, Revolute, Soft, Spring, Threshold, ThresholdAction, Weld, Wheel,
 };
 
 use crate::source::Source;
@@ -47,15 +47,34 @@ pub fn finish(source: &mut Source<'_>, mut def: JointDef) -> JointDef {
 
 /// A joint kind with its parameters, valid or not.
 pub fn kind(source: &mut Source<'_>) -> JointKind {
-    match source.below(9) {
+    match source.below(12) {
         0 | 1 => Revolute { limit: limit(source), motor: drive(source), spring: spring(source) }.into(),
         2 => Prismatic { limit: limit(source), motor: drive(source), spring: spring(source) }.into(),
         3 | 4 => distance(source).into(),
         5 => Weld { linear: soft(source), angular: soft(source) }.into(),
         6 => Wheel { limit: limit(source), motor: drive(source), spring: spring(source) }.into(),
         7 => motor(source).into(),
+        8 => gear(source).into(),
+        9 => Rack::new(source.mostly(-2000, 2000)).into(),
+        10 => pulley(source).into(),
         _ => JointKind::Filter,
     }
+}
+
+fn gear(source: &mut Source<'_>) -> Gear {
+    let teeth = |source: &mut Source<'_>| match source.below(8) {
+        0 => source.word() as i32,
+        1 => source.pick(&[0, 1000, 1001, -1000]),
+        2 => -(source.below(60) as i32),
+        _ => source.below(60) as i32,
+    };
+    Gear::new(teeth(source), teeth(source))
+}
+
+fn pulley(source: &mut Source<'_>) -> Pulley {
+    let wheel = |source: &mut Source<'_>| source.mostly_vec(-4000, 8000);
+    let pulley = Pulley::new(wheel(source), wheel(source), source.mostly(0, 12_000));
+    if source.one_in(2) { pulley } else { pulley.ratio(source.mostly(250, 4000)) }
 }
 
 fn limit(source: &mut Source<'_>) -> Option<JointLimit> {
@@ -137,7 +156,7 @@ pub fn ordinary_kind(source: &mut Source<'_>) -> JointKind {
     let strength = source.thousandths(1000, 20_000);
     let speed = source.thousandths(-3000, 3000);
     let (hertz, damping) = (source.thousandths(500, 6000), source.thousandths(100, 1500));
-    match source.below(12) {
+    match source.below(15) {
         0 | 1 => Revolute::new().into(),
         2 => Revolute::new().limit(fx!(-0.5), fx!(0.7)).into(),
         3 => Revolute::new().motor(speed, strength).into(),
@@ -152,6 +171,9 @@ pub fn ordinary_kind(source: &mut Source<'_>) -> JointKind {
         8 => Weld::rigid().linear(hertz, damping).angular(hertz, damping).into(),
         9 => Distance::rope(fx!(0.6)).into(),
         10 => Distance::new().spring(hertz, damping, fx!(0.4)).into(),
+        11 => Gear::new(1 + source.below(40) as i32, 1 + source.below(40) as i32).into(),
+        12 => Rack::new(source.thousandths(100, 500)).into(),
+        13 => pulley(source).into(),
         _ => Motor::new().linear(Vec2::ZERO, strength).angular(fx!(0), strength).into(),
     }
 }

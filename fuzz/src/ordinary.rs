@@ -3,7 +3,7 @@
 //! examined have joints: a chain spawned across a pile has boxes wedged between its links, so that its joints and
 //! contacts contradict each other.
 
-use lockstep2d::body::{BodyDef, BodyId, BodyKind, Geometry, ShapeDef};
+use lockstep2d::body::{Area, BodyDef, BodyId, BodyKind, Geometry, ShapeDef};
 use lockstep2d::fx;
 use lockstep2d::math::{Fx, Rng, Vec2, fx_mul};
 use lockstep2d::solver::{ContactTuning, JointDef};
@@ -97,8 +97,22 @@ fn belt(source: &mut Source<'_>) -> [ShapeDef; 3] {
     [
         floor.surface_speed(source.thousandths(-3000, 3000)),
         platform.one_way(lockstep2d::math::Angle::from_bits(1 << 30)),
-        rectangle((fx!(3), fx!(2)), fx!(0), fx!(1)).sensor(),
+        pool(source, rectangle((fx!(3), fx!(2)), fx!(0), fx!(1))),
     ]
+}
+
+/// A sensor, half of the time with water or wind in it.
+fn pool(source: &mut Source<'_>, shape: ShapeDef) -> ShapeDef {
+    if source.one_in(2) {
+        return shape.sensor();
+    }
+    let water = Area::fluid(source.thousandths(0, 3000))
+        .drag(source.thousandths(0, 4000), source.thousandths(0, 4000));
+    shape.area(
+        water
+            .flow((source.thousandths(-3000, 3000), fx!(0)))
+            .force((source.thousandths(-2000, 2000), fx!(0))),
+    )
 }
 
 /// Adds equal bodies in rows, next to each other or slightly apart.

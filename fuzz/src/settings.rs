@@ -38,7 +38,7 @@ fn gentle(source: &mut Source<'_>, settings: &mut BodySettings) {
         settings.locks = MotionLocks { x, y, rotation };
     }
     settings.continuous =
-        source.pick(&[Continuous::Fixed, Continuous::Fixed, Continuous::Bullet, Continuous::Off]);
+        source.pick(&[Continuous::Fixed, Continuous::Kinematic, Continuous::Bullet, Continuous::Off]);
     settings.may_sleep = !source.one_in(8);
 }
 

@@ -1,7 +1,8 @@
 //! Generates shapes: mostly 0.1 to 2 m, sometimes at the limits, sometimes beyond them.
 
 use lockstep2d::body::{
-    Chain, EventSwitches, Filter, Geometry, Material, Mixing, Polygon, ShapeDef, ShapeId, Sides,
+    Area, Attraction, Chain, EventSwitches, Falloff, Filter, Geometry, Material, Mixing, Polygon, ShapeDef,
+    ShapeId, Sides,
 };
 use lockstep2d::codec;
 use lockstep2d::math::{Fx, Length, Vec2};
@@ -32,7 +33,33 @@ pub fn shape(source: &mut Source<'_>) -> ShapeDef {
     def
 }
 
-/// Makes a few shapes sensors or one-way, and lets many report hits.
+/// An area: each of its effects in a third of all, mostly moderate, sometimes beyond what is allowed.
+pub fn area(source: &mut Source<'_>) -> Area {
+    let mut area = Area::new();
+    if source.one_in(3) {
+        area.acceleration = source.mostly_vec(-20_000, 20_000);
+    }
+    if source.one_in(3) {
+        let falloff = source.pick(&[Falloff::Constant, Falloff::Inverse, Falloff::InverseSquare]);
+        let acceleration = source.mostly(-20_000, 20_000);
+        area.attraction = Some(Attraction { acceleration, radius: source.mostly(10, 4000), falloff });
+    }
+    if source.one_in(3) {
+        area.force = source.mostly_vec(-20_000, 20_000);
+    }
+    if source.one_in(3) {
+        area.flow = source.mostly_vec(-10_000, 10_000);
+    }
+    if source.one_in(2) {
+        (area.linear_drag, area.angular_drag) = (source.mostly(0, 5000), source.mostly(0, 5000));
+    }
+    if source.one_in(2) {
+        area.density = source.mostly(0, 3000);
+    }
+    area
+}
+
+/// Makes a few shapes sensors, areas or one-way, and lets many report hits.
 fn role(source: &mut Source<'_>, def: &mut ShapeDef) {
     match source.below(12) {
         0 | 1 => def.events.hit = true,
@@ -42,6 +69,7 @@ fn role(source: &mut Source<'_>, def: &mut ShapeDef) {
         }
         3 => (def.sensor, def.events.detect_sensors) = (true, source.one_in(2)),
         4 => def.one_way = Some(source.angle()),
+        5 => *def = def.area(area(source)),
         _ => {}
     }
 }
@@ -272,6 +300,10 @@ pub(crate) fn altered(source: &mut Source<'_>, world: &World, id: ShapeId) -> Sh
         4 => def.filter = fresh.filter,
         5 => def.one_way = def.one_way.is_none().then(|| source.angle()),
         6 => (def.sensor, def.events) = (!def.sensor, fresh.events),
+        7 if source.one_in(2) => {
+            def.sensor = true;
+            def.area = source.one_in(4).then(|| area(source));
+        }
         _ => def = fresh,
     }
     def

@@ -161,10 +161,16 @@ impl Body {
         self.velocity() + (point - self.centre).perp().scale(self.angular_velocity())
     }
 
-    /// Mass in kg; 0 unless the body is dynamic.
+    /// Mass in kg; 0 unless the body is dynamic, and for a dynamic body without mass
+    /// ([`MassSource::Shapes`](super::MassSource::Shapes)).
     #[must_use]
     pub const fn mass(&self) -> Fx {
         self.mass.mass
+    }
+
+    /// Whether forces and impulses change the body's velocity: it is dynamic and not without mass.
+    pub(crate) fn has_mass(&self) -> bool {
+        self.mass.mass > 0
     }
 
     /// Moment of inertia about the centre of mass in kg m²; 0 unless the body is dynamic.
@@ -332,10 +338,19 @@ impl Body {
     /// Velocity change in one sub-step, of `v` by the applied force and of `u` by the applied torque, at `rate`
     /// sub-steps per second: `dv = F / (m rate)`, `du = torque / (m k rate)`.
     pub(crate) fn acceleration_step(&self, rate: u32) -> (Vec2<Speed>, Speed) {
+        self.step_by(self.force, self.torque, rate)
+    }
+
+    /// [`Self::acceleration_step`] with a force in N and a torque in N m in addition.
+    pub(crate) fn step_with(&self, force: Vec2<Fx>, torque: Fx, rate: u32) -> (Vec2<Speed>, Speed) {
+        self.step_by(self.force + force, self.torque.saturating_add(torque), rate)
+    }
+
+    fn step_by(&self, force: Vec2<Fx>, torque: Fx, rate: u32) -> (Vec2<Speed>, Speed) {
         let dv = |force: Fx| over_mass(force, self.mass.mass, rate);
-        let is_turned = self.torque != Fx::ZERO && self.turns();
-        let du = if is_turned { divide(self.torque, self.mass.gyration) } else { Fx::ZERO };
-        (Vec2::new(dv(self.force.x), dv(self.force.y)), over_mass(du, self.mass.mass, rate))
+        let is_turned = torque != Fx::ZERO && self.turns();
+        let du = if is_turned { divide(torque, self.mass.gyration) } else { Fx::ZERO };
+        (Vec2::new(dv(force.x), dv(force.y)), over_mass(du, self.mass.mass, rate))
     }
 }
 

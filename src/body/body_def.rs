@@ -192,6 +192,12 @@ impl BodyDef {
         self.continuous(Continuous::Bullet)
     }
 
+    /// Sweeps the body against kinematic bodies as well as fixed ones: see [`Continuous::Kinematic`].
+    #[must_use]
+    pub const fn swept_against_kinematic(self) -> Self {
+        self.continuous(Continuous::Kinematic)
+    }
+
     /// Prevents the body from falling asleep.
     #[must_use]
     pub const fn never_sleeps(mut self) -> Self {

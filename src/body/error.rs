@@ -108,8 +108,7 @@ pub enum WorldError {
     /// Friction is not within 0 to 16, restitution not within 0 to 1.5, rolling resistance not within 0 to 1, a threshold
     /// is not within 0 to 400 m/s, or a surface speed is not within ±400 m/s.
     MaterialOutOfRange,
-    /// The mass of a dynamic body is not within 10 mg to 2^30 kg. It is too small if no shape has both area and
-    /// density.
+    /// The mass of a dynamic body is not within 10 mg to 2^30 kg. From shapes it may also be 0.
     MassOutOfRange {
         /// The mass in kg.
         value: Fx,
@@ -128,6 +127,11 @@ pub enum WorldError {
     GravityScaleOutOfRange {
         /// The requested scale.
         value: Fx,
+    },
+    /// A property of an area is out of range, or its shape is no sensor or has no inside.
+    AreaOutOfRange {
+        /// Name of the property.
+        what: &'static str,
     },
     /// A joint connects a body to itself.
     JointToItself(BodyId),
@@ -194,10 +198,7 @@ impl fmt::Display for WorldError {
                  and surface speed is within ±400 m/s"
             ),
             WorldError::MassOutOfRange { value } => {
-                write!(
-                    f,
-                    "a dynamic body's mass is 1e-5 to 2^30 kg, not {value}: give a shape area and density"
-                )
+                write!(f, "a dynamic body's mass is 1e-5 to 2^30 kg, not {value}")
             }
             WorldError::GyrationOutOfRange { value } => {
                 write!(f, "a dynamic body's radius of gyration is 0.002 to 512 m, not {value}")
@@ -208,6 +209,11 @@ impl fmt::Display for WorldError {
             WorldError::GravityScaleOutOfRange { value } => {
                 write!(f, "gravity scale is within ±1000, not {value}")
             }
+            WorldError::AreaOutOfRange { what: "sensor" } => write!(f, "only a sensor can be an area"),
+            WorldError::AreaOutOfRange { what: "geometry" } => {
+                write!(f, "a line has no inside, so that it cannot be an area")
+            }
+            WorldError::AreaOutOfRange { what } => write!(f, "the {what} of an area is out of range"),
             WorldError::JointToItself(id) => write!(f, "a joint cannot connect body {id} to itself"),
             WorldError::JointOfOtherBodies(id) => write!(f, "the bodies of joint {id} cannot be changed"),
             WorldError::JointWithout { joint, what } => write!(f, "joint {joint} has no {what}"),

@@ -33,7 +33,9 @@ const GYRATION: core::ops::RangeInclusive<Fx> = fx!(0.002)..=fx!(512);
 /// Source of a dynamic body's mass.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum MassSource {
-    /// Computed from the area and density of the shapes.
+    /// Computed from the area and density of the shapes. If no shape has both, or there is none, the body is without
+    /// mass: it keeps its velocity but for its damping, and neither gravity nor forces, contacts or joints change it.
+    /// Other bodies it pushes as a kinematic body does.
     #[default]
     Shapes,
     /// Given explicitly; the shapes do not matter.
@@ -50,7 +52,7 @@ pub enum MassSource {
 /// Mass, centre of mass and radius of gyration of a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct MassProperties {
-    /// Mass in kg; 0 for a fixed or kinematic body.
+    /// Mass in kg; 0 for a fixed or kinematic body, and for a dynamic one without mass.
     pub(crate) mass: Fx,
     /// Centre of mass in the body's frame.
     pub(crate) centre: Vec2<Fx>,
@@ -61,7 +63,7 @@ pub struct MassProperties {
 }
 
 impl MassProperties {
-    /// Properties of a fixed or kinematic body. Its `k` is arbitrary: 4 m allows a rotation of 100 rad/s within a speed
+    /// Properties of a body that nothing moves: fixed, kinematic, or without mass. Its `k` is arbitrary: 4 m allows a rotation of 100 rad/s within a speed
     /// limit of 400 m/s, and keeps the ratio of the longest lever arm to `k` below 91.
     pub(crate) fn immovable() -> Self {
         Self::new(Fx::ZERO, Vec2::ZERO, fx!(4))
@@ -82,7 +84,13 @@ impl MassProperties {
                 check_gyration(gyration)?;
                 Self::new(mass, centre, gyration)
             }
-            MassSource::Shapes => Self::from_parts(shapes.map(Part::of_shape))?,
+            MassSource::Shapes => {
+                let parts = shapes.map(Part::of_shape);
+                if parts.clone().all(|part| part.mass == 0) {
+                    return Ok(Self::immovable());
+                }
+                Self::from_parts(parts)?
+            }
         };
         if !MASS.contains(&properties.mass) {
             return Err(WorldError::MassOutOfRange { value: properties.mass });
@@ -128,6 +136,11 @@ impl MassProperties {
         check_gyration(gyration)?;
         Ok(Self::new(total, centre, gyration))
     }
+}
+
+/// Area of a shape in m²; 0 for lines.
+pub(crate) fn area_of(shape: &ShapeDef) -> Fx {
+    Part::of_shape(&ShapeDef { density: Fx::ONE, ..*shape }).mass
 }
 
 fn check_gyration(gyration: Fx) -> Result<(), WorldError> {
@@ -285,10 +298,12 @@ mod tests {
     }
 
     #[test]
-    fn weightless_and_overweight_bodies_are_refused() {
+    fn bodies_without_mass_are_immovable_and_overweight_ones_refused() {
         let line = ShapeDef::new(Geometry::segment(Vec2::ZERO, Vec2::new(fx!(1), fx!(0))).unwrap());
-        assert!(matches!(dynamic(&[line]), Err(WorldError::MassOutOfRange { .. })));
-        assert!(matches!(dynamic(&[]), Err(WorldError::MassOutOfRange { .. })));
+        assert_eq!(dynamic(&[line]), Ok(MassProperties::immovable()));
+        assert_eq!(dynamic(&[]), Ok(MassProperties::immovable()));
+        let speck = ShapeDef::new(Geometry::circle(fx!(0.002)).unwrap()).density(fx!(0.01));
+        assert!(matches!(dynamic(&[speck]), Err(WorldError::MassOutOfRange { .. })));
         let lead = ShapeDef::new(Polygon::square(fx!(100)).unwrap()).density(fx!(100000));
         assert!(matches!(dynamic(&[lead]), Err(WorldError::MassOutOfRange { .. })));
     }

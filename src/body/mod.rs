@@ -1,5 +1,6 @@
 //! Bodies, shapes, geometry, materials and filters, addressed by generational handles.
 
+mod area;
 mod arena;
 #[expect(clippy::module_inception, reason = "the file that holds `Body`")]
 mod body;
@@ -16,8 +17,10 @@ mod polygon;
 mod rest_ticks;
 mod settings;
 mod shape;
+mod shape_fields;
 mod shape_list;
 
+pub use area::{Area, Attraction, Falloff};
 pub(crate) use arena::{Arena, Handle, SharedArena};
 pub use arena::{BodyId, IslandId, JointId, ShapeId};
 pub use body::Body;
@@ -30,6 +33,7 @@ pub use event_switches::EventSwitches;
 pub(crate) use filter::CollisionClass;
 pub use filter::Filter;
 pub use geometry::{Geometry, Sides};
+pub(crate) use mass::area_of;
 pub use mass::{MassProperties, MassSource};
 pub use material::{Material, Mixing};
 pub use name::Name;

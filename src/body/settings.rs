@@ -26,11 +26,14 @@ pub struct MotionLocks {
 pub enum Continuous {
     /// None: cheap, for debris.
     Off,
-    /// Fixed bodies. Kinematic bodies are excluded: the bodies that they carry are fast too, and must not be held back.
+    /// Fixed bodies.
     #[default]
     Fixed,
     /// All bodies that are not bullets themselves.
     Bullet,
+    /// Fixed bodies, and kinematic bodies relative to which it is fast: not those that carry it along. Such a body costs
+    /// a little in every tick of a world with kinematic bodies, also while it is slow.
+    Kinematic,
 }
 
 /// Settings of a body. [`crate::world::World::set_body`] changes them later.

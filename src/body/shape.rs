@@ -4,12 +4,14 @@ use alloc::boxed::Box;
 
 use serde::{Deserialize, Serialize};
 
+use super::area::Area;
 use super::arena::BodyId;
 use super::error::WorldError;
 use super::event_switches::EventSwitches;
 use super::filter::Filter;
 use super::geometry::Geometry;
 use super::material::Material;
+use super::shape_fields::ShapeFields;
 use crate::fx;
 use crate::math::{Aabb, Angle, Fx, Vec2};
 
@@ -36,6 +38,7 @@ pub const DENSITY_MAX: Fx = fx!(1048576);
 /// # Ok::<(), lockstep2d::body::GeometryError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(into = "ShapeFields", from = "ShapeFields")]
 #[doc(alias = "Collider")]
 #[doc(alias = "ColliderBuilder")]
 #[doc(alias = "ColliderDesc")]
@@ -66,6 +69,8 @@ pub struct ShapeDef {
     #[doc(alias = "trigger")]
     #[doc(alias = "is_trigger")]
     pub sensor: bool,
+    /// Effect of a sensor on the bodies in it; `None` for a sensor that only detects, and for solid shapes.
+    pub area: Option<Area>,
     /// Events in which the shape takes part.
     pub events: EventSwitches,
     /// Not used by the engine, but part of the state and its hash.
@@ -84,6 +89,7 @@ impl ShapeDef {
             filter: Filter::default(),
             one_way: None,
             sensor: false,
+            area: None,
             events: EventSwitches::default(),
             user_data: 0,
         }
@@ -169,6 +175,14 @@ impl ShapeDef {
         self
     }
 
+    /// Makes the shape a sensor that acts on the bodies in it.
+    #[must_use]
+    pub fn area(mut self, area: Area) -> Self {
+        self.sensor = true;
+        self.area = Some(area);
+        self
+    }
+
     /// Sets the events in which the shape takes part.
     #[must_use]
     pub fn events(mut self, events: EventSwitches) -> Self {
@@ -192,7 +206,8 @@ impl ShapeDef {
             material,
             filter: _,
             one_way: _,
-            sensor: _,
+            sensor,
+            area,
             events: _,
             user_data: _,
         } = self;
@@ -204,7 +219,11 @@ impl ShapeDef {
         if !material.is_valid() {
             return Err(WorldError::MaterialOutOfRange);
         }
-        Ok(())
+        match area {
+            Some(_) if !sensor => Err(WorldError::AreaOutOfRange { what: "sensor" }),
+            Some(area) => area.validate(geometry),
+            None => Ok(()),
+        }
     }
 }
 
@@ -287,6 +306,17 @@ impl Shape {
     #[doc(alias = "is_trigger")]
     pub const fn is_sensor(&self) -> bool {
         self.def.sensor
+    }
+
+    /// Effect of a sensor on the bodies in it.
+    #[must_use]
+    pub const fn area(&self) -> Option<&Area> {
+        self.def.area.as_ref()
+    }
+
+    /// Whether the shape is an area that acts on another shape, if that belongs to a dynamic body.
+    pub(crate) fn acts_on(&self, other: &Shape) -> bool {
+        self.def.area.is_some() && !other.is_sensor() && self.detects(other)
     }
 
     /// Whether the shape is a sensor whose switches, and those of another shape, let it detect the other one.

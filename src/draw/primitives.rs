@@ -8,6 +8,7 @@ use crate::body::{Body, BodyId, BodyKind, JointId};
 use crate::collision::{Link, ManifoldPoint, Outline, PosedShape};
 use crate::fx;
 use crate::math::{Fx, Unit, Vec2, fx_mul, widen};
+use crate::solver::{JointKind, Pulley};
 use crate::world::{ContactView, SolverColour, World};
 
 /// A velocity is drawn as the displacement in this time, in seconds: one metre at 10 m/s, the size of a typical body.
@@ -214,5 +215,15 @@ fn add_joint(world: &World, id: JointId, layers: Layers, found: Sink<'_>) {
         }
         add(Style::JointAnchor, Form::Point(anchor));
     }
-    add(Style::JointGap, Form::Line { from: anchor_a, to: anchor_b });
+    match &joint.def().kind {
+        // A rope leads over its wheels.
+        JointKind::Pulley(Pulley { wheel_a, wheel_b, .. }) => {
+            for (from, to) in [(anchor_a, *wheel_a), (*wheel_a, *wheel_b), (*wheel_b, anchor_b)] {
+                add(Style::JointArm, Form::Line { from, to });
+            }
+        }
+        // The anchors of gears and racks are meant to be apart.
+        JointKind::Gear(_) | JointKind::Rack(_) => {}
+        _ => add(Style::JointGap, Form::Line { from: anchor_a, to: anchor_b }),
+    }
 }

@@ -13,6 +13,7 @@ mod rain;
 mod spring_leg;
 #[cfg(test)]
 mod tests;
+mod waterworks;
 mod yards;
 
 use alloc::vec::Vec;
@@ -105,4 +106,5 @@ pub const ALL: &[Scene] = &[
     joints::BRIDGE,
     game::GAME,
     spring_leg::SPRING_LEG,
+    waterworks::WATERWORKS,
 ];

@@ -37,10 +37,11 @@ pub(crate) use contact::{ActiveContact, Surface, SurfaceSide, WarmStarts};
 use contact::{Constants, ContactSet, ContactSource, Measure, ObserveApproach, PointOrder};
 use contact_velocity::{ContactVelocities, PushedBody};
 use context::{Pass, StepContext};
+pub(crate) use integrate::AreaEffect;
 use integrate::{MovingBody, integrate_displacements, integrate_velocities};
 pub use joint::{
-    Distance, Drive, Joint, JointDef, JointFrame, JointKind, JointLimit, JointPart, LinearDrive, Motor,
-    Prismatic, Pull, Revolute, Soft, Spring, Threshold, ThresholdAction, Weld, Wheel,
+    Distance, Drive, Gear, Joint, JointDef, JointFrame, JointKind, JointLimit, JointPart, LinearDrive, Motor,
+    Prismatic, Pull, Pulley, Rack, Revolute, Soft, Spring, Threshold, ThresholdAction, Weld, Wheel,
 };
 use joint::{JointSet, JointSource};
 use limits::Faults;
@@ -94,6 +95,14 @@ impl Solver {
             let body = bodies.at(slot);
             self.list.add(slot, body);
             self.moving.extend(MovingBody::prepare(self.list.index_of(slot), body, tuning));
+        }
+    }
+
+    /// Lets areas act on the dynamic body in a slot, one of those of the tick.
+    pub(crate) fn apply_areas(&mut self, slot: u32, body: &Body, effect: &AreaEffect, tuning: &Tuning) {
+        let index = self.list.index_of(slot);
+        if let Ok(at) = self.moving.binary_search_by_key(&index, MovingBody::index) {
+            self.moving[at] = MovingBody::in_areas(index, body, effect, tuning);
         }
     }
 

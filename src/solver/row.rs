@@ -20,6 +20,9 @@
 //! clamp that changes a value is counted as a fault.
 
 mod angular;
+mod coupled;
+
+pub(super) use angular::angular_scale;
 
 use super::body::SolverBody;
 #[cfg(test)]
@@ -88,7 +91,10 @@ pub(crate) struct Lever {
 /// The constant part of a row.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Row {
+    /// Direction on A.
     n: Vec2<Unit>,
+    /// Direction on B: the same, except for coupled rows.
+    n_b: Vec2<Unit>,
     e_a: Ratio,
     e_b: Ratio,
     g_a: Unit,
@@ -119,12 +125,13 @@ impl Row {
             Unit::from_bits(saturate(((i64::from(fraction.to_bits()) << 30) + denominator / 2) / denominator))
         };
         let (g_a, g_b) = (gain(fractions.a), gain(fractions.b));
-        (Row { n, e_a, e_b, g_a, g_b, f_a: mul(g_a, e_a), f_b: mul(g_b, e_b) }, denominator)
+        (Row { n, n_b: n, e_a, e_b, g_a, g_b, f_a: mul(g_a, e_a), f_b: mul(g_b, e_b) }, denominator)
     }
 
     /// A row whose impulses change nothing.
     pub(crate) const NONE: Self = Row {
         n: Vec2::new(Unit::ZERO, Unit::ZERO),
+        n_b: Vec2::new(Unit::ZERO, Unit::ZERO),
         e_a: Ratio::ZERO,
         e_b: Ratio::ZERO,
         g_a: Unit::ZERO,
@@ -138,35 +145,36 @@ impl Row {
         ([self.e_a, self.e_b], [self.f_a, self.f_b])
     }
 
-    /// The direction along which the row measures, and its lever ratios of A and B.
-    pub(super) fn jacobian(&self) -> (Vec2<Unit>, [Ratio; 2]) {
-        (self.n, [self.e_a, self.e_b])
+    /// The directions along which the row measures A and B, and its lever ratios.
+    pub(super) fn jacobian(&self) -> ([Vec2<Unit>; 2], [Ratio; 2]) {
+        ([self.n, self.n_b], [self.e_a, self.e_b])
     }
 
     /// The row in the opposite direction.
     pub(crate) fn reversed(&self) -> Self {
-        let Row { n, e_a, e_b, g_a, g_b, f_a, f_b } = *self;
-        Row { n: -n, e_a: -e_a, e_b: -e_b, g_a, g_b, f_a: -f_a, f_b: -f_b }
+        let Row { n, n_b, e_a, e_b, g_a, g_b, f_a, f_b } = *self;
+        Row { n: -n, n_b: -n_b, e_a: -e_a, e_b: -e_b, g_a, g_b, f_a: -f_a, f_b: -f_b }
     }
 
     /// Relative velocity of B from A along the row.
     #[inline]
     pub(crate) fn velocity(&self, a: &SolverBody, b: &SolverBody, faults: &mut Faults) -> Speed {
-        let difference = |a: Speed, b: Speed| i64::from(b.to_bits()) - i64::from(a.to_bits());
-        let x = difference(a.velocity.x, b.velocity.x);
-        let y = difference(a.velocity.y, b.velocity.y);
-        let bits = self.along(x, y, a.spin.to_bits(), b.spin.to_bits());
+        let along = |n: Vec2<Unit>, velocity: Vec2<Speed>| {
+            i64::from(n.x.to_bits()) * i64::from(velocity.x.to_bits())
+                + i64::from(n.y.to_bits()) * i64::from(velocity.y.to_bits())
+        };
+        let linear = along(self.n_b, b.velocity) - along(self.n, a.velocity);
+        let bits = self.along(linear, a.spin.to_bits(), b.spin.to_bits());
         let vn = saturate(bits);
         *faults += u64::from(i64::from(vn) != bits);
         Speed::from_bits(vn)
     }
 
-    /// `n.d + eB tB - eA tA` in the format of its arguments. The linear part is shifted by 6 bits to the scale of the
-    /// angular part, and the sum is rounded once. Differences have 33 bits, so that their dot product with a unit
-    /// vector stays below 2^63.
+    /// `nB.vB - nA.vA + eB tB - eA tA` in the format of speeds. The linear part has 30 bits more; it is shifted by 6 bits
+    /// to the scale of the angular part, and the sum is rounded once. Speeds are below 2^30 units, so that their products
+    /// with vectors of up to 2 stay below 2^62.
     #[inline]
-    fn along(&self, x: i64, y: i64, turn_a: i32, turn_b: i32) -> i64 {
-        let linear = i64::from(self.n.x.to_bits()) * x + i64::from(self.n.y.to_bits()) * y;
+    fn along(&self, linear: i64, turn_a: i32, turn_b: i32) -> i64 {
         let angular = i64::from(self.e_b.to_bits()) * i64::from(turn_b)
             - i64::from(self.e_a.to_bits()) * i64::from(turn_a);
         round_shift(round_shift(linear, 6) + angular, 24)
@@ -180,9 +188,15 @@ impl Row {
         let along = |n: Unit, change: i64| {
             saturate_wide(round_shift_wide(i128::from(n.to_bits()) * i128::from(change), 30))
         };
-        let change =
-            |linear: i64, spin: i64| Change { x: along(self.n.x, linear), y: along(self.n.y, linear), spin };
-        bodies.change(change(-times(self.g_a), -times(self.f_a)), change(times(self.g_b), times(self.f_b)));
+        let change = |n: Vec2<Unit>, linear: i64, spin: i64| Change {
+            x: along(n.x, linear),
+            y: along(n.y, linear),
+            spin,
+        };
+        bodies.change(
+            change(self.n, -times(self.g_a), -times(self.f_a)),
+            change(self.n_b, times(self.g_b), times(self.f_b)),
+        );
     }
 
     /// Solves the row for one iteration. `lambda` is the accumulated `L`, kept within `bounds`. Returns the change `d`.

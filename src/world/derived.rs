@@ -23,7 +23,7 @@ pub(crate) fn offset_max(kind: BodyKind) -> Fx {
 /// Mass properties of a body with the given shapes.
 ///
 /// # Errors
-/// When a dynamic body would have no mass, or a given mass is out of range.
+/// When the mass of a dynamic body, or a given mass, is out of range.
 pub(crate) fn mass_of<'a>(
     kind: BodyKind,
     source: MassSource,

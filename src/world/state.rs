@@ -111,6 +111,12 @@ impl State {
         }
     }
 
+    /// Whether one shape of a pair is an area that acts on the other.
+    pub(crate) fn has_area(&self, (a, b): Pair) -> bool {
+        let (a, b) = (self.shapes.at(a), self.shapes.at(b));
+        a.acts_on(b) || b.acts_on(a)
+    }
+
     /// A contact in the form in which events name it, if its shapes have contact or sensor events.
     pub(crate) fn reported(&self, contact: &Contact) -> Option<Reported> {
         let (a, b) = contact.shapes;

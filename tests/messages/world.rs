@@ -70,16 +70,19 @@ fn values_out_of_range() {
             "friction is 0 to 16, restitution 0 to 1.5, rolling resistance 0 to 1, a restitution threshold 0 to 400 m/s, \
          and surface speed is within ±400 m/s",
         ),
-        (
-            WorldError::MassOutOfRange { value },
-            "a dynamic body's mass is 1e-5 to 2^30 kg, not 2.25: give a shape area and density",
-        ),
+        (WorldError::MassOutOfRange { value }, "a dynamic body's mass is 1e-5 to 2^30 kg, not 2.25"),
         (
             WorldError::GyrationOutOfRange { value },
             "a dynamic body's radius of gyration is 0.002 to 512 m, not 2.25",
         ),
         (WorldError::DampingOutOfRange { value }, "damping is 0 to 1000 per second, not 2.25"),
         (WorldError::GravityScaleOutOfRange { value }, "gravity scale is within ±1000, not 2.25"),
+        (WorldError::AreaOutOfRange { what: "sensor" }, "only a sensor can be an area"),
+        (
+            WorldError::AreaOutOfRange { what: "geometry" },
+            "a line has no inside, so that it cannot be an area",
+        ),
+        (WorldError::AreaOutOfRange { what: "flow" }, "the flow of an area is out of range"),
         (WorldError::JointOutOfRange { what: "length" }, "the length of a joint is out of range"),
         (WorldError::Setting { name: "tick_rate" }, "the world setting `tick_rate` is out of range"),
         (WorldError::FixedSetting { name: "pair_limit" }, "the world limit `pair_limit` cannot be changed"),

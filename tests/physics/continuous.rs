@@ -1,6 +1,6 @@
 //! Continuous collision: fast bodies do not tunnel through thin walls.
 
-use lockstep2d::body::{BodyDef, Geometry, Polygon, ShapeDef};
+use lockstep2d::body::{BodyDef, Continuous, Geometry, Polygon, ShapeDef};
 use lockstep2d::fx;
 use lockstep2d::math::{Angle, Fx, Rng, Rot, Vec2, fx_mul};
 use lockstep2d::world::{Config, World};
@@ -108,4 +108,122 @@ fn a_bullet_does_not_pass_a_plate_that_comes_towards_it() {
             }
         }
     }
+}
+
+/// Balls of 6 cm in the way of a blade of 2 cm that turns by up to half a radian in a tick.
+fn balls_that_pass_a_blade(continuous: Continuous) -> u32 {
+    let mut rng = Rng::new(47);
+    let mut passed = 0;
+    for _ in 0..300 {
+        let mut world = weightless();
+        let blade = ShapeDef::new(Polygon::rectangle(fx!(2), fx!(0.01)).expect("valid"));
+        let spin = rng.range(fx!(5), fx!(30));
+        let rotor =
+            BodyDef::kinematic().angular_velocity(spin).velocity((rng.range(fx!(-20), fx!(20)), fx!(0)));
+        let rotor = world.spawn(&rotor, &[blade]).expect("valid");
+        let ball = ShapeDef::new(Geometry::circle(fx!(0.03)).expect("valid")).restitution(fx!(0.5));
+        let place = Rot::from_angle(rng.angle()).apply_wide(Vec2::new(rng.range(fx!(0.2), fx!(1.7)), fx!(0)));
+        let far = place.y.abs() > fx!(0.05);
+        let velocity = Vec2::new(rng.range(fx!(-60), fx!(60)), rng.range(fx!(-60), fx!(60)));
+        let body = BodyDef::dynamic().position(place).velocity(velocity).continuous(continuous);
+        let body = world.spawn(&body, &[ball]).expect("valid");
+        let across = |world: &World| {
+            let rotor = world.body(rotor).expect("alive");
+            rotor.transform().apply_inverse(world.body(body).expect("alive").position())
+        };
+        let mut last = across(&world);
+        for _ in 0..20 {
+            let turned = fx_mul(spin, fx!(0.0166666));
+            world.step();
+            let now = across(&world);
+            // The blade may have turned far enough to meet the ball with its other half, from the other side.
+            let is_along = now.x.abs() < fx!(1.9) && last.x.abs() < fx!(1.9);
+            let same_half = (now.x > 0) == (last.x > 0) && turned < fx!(0.6);
+            passed += u32::from(far && is_along && same_half && (now.y > 0) != (last.y > 0));
+            last = now;
+        }
+    }
+    passed
+}
+
+#[test]
+fn balls_that_see_kinematic_bodies_do_not_pass_a_blade() {
+    let (blind, seeing) =
+        (balls_that_pass_a_blade(Continuous::Fixed), balls_that_pass_a_blade(Continuous::Kinematic));
+    assert!(blind > 0, "expected some to pass without");
+    assert_eq!(seeing, 0, "{blind} pass without");
+}
+
+/// What rides on a fast platform or a turntable is not held back: it is where it is without the sweep, to the last bit.
+#[test]
+fn what_a_kinematic_body_carries_is_not_held_back() {
+    let mut hashes = Vec::new();
+    for continuous in [Continuous::Fixed, Continuous::Kinematic] {
+        let mut world = World::default();
+        let platform = ShapeDef::new(Polygon::rectangle(fx!(8), fx!(0.2)).expect("valid")).friction(fx!(1));
+        let lift = BodyDef::kinematic().velocity((fx!(40), fx!(10)));
+        world.spawn(&lift, &[platform]).expect("valid");
+        let square = ShapeDef::new(Polygon::square(fx!(0.25)).expect("valid"));
+        let mut bodies = Vec::new();
+        for index in 0..10 {
+            let at = (Fx::from_num(index) - fx!(5), fx!(0.45));
+            let body = BodyDef::dynamic().position(at).velocity((fx!(40), fx!(10))).continuous(continuous);
+            bodies.push(world.spawn(&body, &[square]).expect("valid"));
+        }
+        // A tray that turns by 6 rad/s about a distant point carries a box at 24 m/s.
+        let tray = ShapeDef::new(Polygon::rectangle(fx!(0.6), fx!(0.05)).expect("valid"));
+        let tray = tray.offset((fx!(0), fx!(-4)));
+        let arm = BodyDef::kinematic().position((fx!(0), fx!(100))).angular_velocity(fx!(6));
+        world.spawn(&arm, &[tray]).expect("valid");
+        let body = BodyDef::dynamic().position((fx!(0), fx!(96.3))).velocity((fx!(22.2), fx!(0)));
+        let body = body.angular_velocity(fx!(6)).continuous(continuous);
+        bodies.push(world.spawn(&body, &[square.friction(fx!(4))]).expect("valid"));
+        let mut impacts = 0;
+        for _ in 0..120 {
+            world.step();
+            impacts += world.stats().impacts;
+        }
+        assert_eq!(impacts, 0, "{continuous:?}");
+        hashes
+            .push(bodies.iter().map(|&body| world.body(body).expect("alive").position()).collect::<Vec<_>>());
+    }
+    assert_eq!(hashes[0], hashes[1]);
+}
+
+/// Boxes in a drum that is as fast as the washer's, with thin walls: sweeping against it does not press them together.
+#[test]
+fn boxes_in_a_drum_overlap_no_more_for_seeing_it() {
+    let deepest = |continuous: Continuous| {
+        let mut world = World::default();
+        let wall = |index: u32| {
+            let turn = Angle::from_bits(index << 28);
+            let corner = |angle: Angle, radius: Fx| {
+                Rot::from_angle(angle).apply(Vec2::<lockstep2d::math::Unit>::X).widen().scale(radius)
+            };
+            let next = turn + Angle::from_bits(1 << 28);
+            let corners = [(turn, fx!(4)), (next, fx!(4)), (next, fx!(3.9)), (turn, fx!(3.9))];
+            let corners: Vec<_> = corners.into_iter().map(|(angle, radius)| corner(angle, radius)).collect();
+            ShapeDef::new(Polygon::hull(&corners).expect("valid"))
+        };
+        let drum: Vec<_> = (0..16).map(wall).collect();
+        world.spawn(&BodyDef::kinematic().angular_velocity(fx!(2)), &drum).expect("valid");
+        let square = ShapeDef::new(Polygon::square(fx!(0.15)).expect("valid"));
+        for index in 0..150 {
+            let at =
+                Vec2::new(Fx::from_num(index % 15) / 3 - fx!(2.3), Fx::from_num(index / 15) / 3 - fx!(2));
+            let body = BodyDef::dynamic().position(at).continuous(continuous);
+            world.spawn(&body, &[square]).expect("valid");
+        }
+        let mut depths = Vec::new();
+        for _ in 0..600 {
+            world.step();
+            depths.push(crate::deepest(&world));
+        }
+        let inside = world.bodies().filter(|(_, body)| body.position().length() < fx!(4)).count();
+        assert_eq!(inside, 151, "{continuous:?}: nothing leaves the drum");
+        depths.sort_unstable();
+        depths[depths.len() / 2]
+    };
+    let (blind, seeing) = (deepest(Continuous::Fixed), deepest(Continuous::Kinematic));
+    assert!(seeing < blind + fx!(0.003), "{seeing} m instead of {blind} m");
 }

@@ -1,6 +1,7 @@
 //! Physics against theory. Each file covers one kind of motion and states what theory predicts. The goldens and
 //! `replays/` may change only while these tests pass.
 
+mod areas;
 mod assembly;
 mod capsule;
 mod chain;
@@ -8,6 +9,7 @@ mod collisions;
 mod columns;
 mod continuous;
 mod free_fall;
+mod gears;
 mod impacts;
 mod joint_bench;
 mod joint_energy;

@@ -91,8 +91,9 @@ fn what_a_kind_of_body_cannot_do_is_refused() {
 fn kinds_and_masses_that_a_body_cannot_have_are_refused() {
     let mut stage = Stage::new();
     let (floor, ball) = (stage.floor, stage.ball);
-    let bare = stage.world.spawn(&BodyDef::fixed(), &[]).expect("valid");
-    stage.refuses(Command::SetKind { body: bare, kind: BodyKind::Dynamic }, weightless);
+    let speck = self::ball().density(Fx::DELTA);
+    let speck = stage.world.spawn(&BodyDef::fixed(), &[speck]).expect("valid");
+    stage.refuses(Command::SetKind { body: speck, kind: BodyKind::Dynamic }, weightless);
     let far_off = self::ball().offset((fx!(1000), fx!(0)));
     let wide = stage.world.spawn(&BodyDef::fixed(), &[far_off]).expect("valid");
     let reach = |error: &WorldError| matches!(error, WorldError::OffsetOutOfRange { .. });
@@ -116,7 +117,7 @@ fn changes_to_shapes_out_of_range_are_refused() {
     let shape = stage.world.body(stage.ball).expect("there").shapes()[0];
     let old = *stage.world.shape(shape).expect("there").def();
     let set = |def| Command::SetShape { shape, def };
-    stage.refuses(set(old.density(fx!(0))), weightless);
+    stage.refuses(set(old.density(Fx::DELTA)), weightless);
     stage.refuses(set(old.density(Fx::MIN)), |error| matches!(error, WorldError::DensityOutOfRange { .. }));
     stage.refuses(set(old.offset((fx!(129), fx!(0)))), |error| {
         matches!(error, WorldError::OffsetOutOfRange { .. })
@@ -177,7 +178,7 @@ fn one_of_many_refuses_all() {
     let place = |x| BodyPose { position: Vec2::new(x, fx!(5)), angle: Angle::ZERO };
     let each = |shape, places| Command::SpawnEach { body: BodyDef::dynamic(), shapes: vec![shape], places };
     stage.refuses(each(self::ball(), vec![place(fx!(0)), place(Fx::MAX)]), far);
-    stage.refuses(each(self::ball().density(fx!(0)), vec![place(fx!(0)), place(fx!(3))]), weightless);
+    stage.refuses(each(self::ball().density(Fx::DELTA), vec![place(fx!(0)), place(fx!(3))]), weightless);
     let join = |ends| Command::AddJointEach { joint: JointDef::new(floor, ball, Revolute::new()), ends };
     stage.refuses(join(vec![(floor, ball), (ball, gone)]), stale);
     stage.refuses(join(vec![(floor, ball), (ball, ball)]), |error| {

@@ -1,16 +1,16 @@
 //! The encodings of every command and of its parts are as the tables of `docs/FORMAT.md` specify.
 
 use lockstep2d::body::{
-    BodyDef, BodyId, BodyKind, BodySettings, Continuous, EventSwitches, Filter, Geometry, JointId,
-    MassSource, Material, Mixing, MotionLocks, Name, Polygon, ShapeDef, ShapeId, Sides, WorldError,
+    Area, BodyDef, BodyId, BodyKind, BodySettings, Continuous, EventSwitches, Falloff, Filter, Geometry,
+    JointId, MassSource, Material, Mixing, MotionLocks, Name, Polygon, ShapeDef, ShapeId, Sides, WorldError,
 };
 use lockstep2d::codec::encode;
 use lockstep2d::fx;
 use lockstep2d::lockstep::SandboxSetup;
 use lockstep2d::math::{Angle, Vec2};
 use lockstep2d::solver::{
-    ContactTuning, Distance, JointDef, JointKind, Motor, Prismatic, Revolute, SolverSettings, Threshold,
-    ThresholdAction, Weld, Wheel,
+    ContactTuning, Distance, Gear, JointDef, JointKind, Motor, Prismatic, Pulley, Rack, Revolute,
+    SolverSettings, Threshold, ThresholdAction, Weld, Wheel,
 };
 use lockstep2d::world::{BodyPose, Command, Config, Explosion, World};
 
@@ -98,6 +98,19 @@ fn shape_id() -> Written {
 
 /// A rounded triangle in which no setting has its default.
 fn polygon() -> (ShapeDef, Written) {
+    polygon_with(None, w().u8(1))
+}
+
+/// The same triangle as an area in which every effect is present.
+fn pool() -> (ShapeDef, Written) {
+    let area = Area::fluid(fx!(9)).drag(fx!(7), fx!(8)).flow((fx!(5), fx!(6))).force((fx!(3), fx!(4)));
+    let area = area.acceleration((fx!(1), fx!(2))).attraction(fx!(-1), fx!(2), Falloff::InverseSquare);
+    let bytes = w().u8(3).fx(&[2, 4]).some(&[-2, 4]).u32(2).fx(&[6, 8]).fx(&[10, 12]).fx(&[14, 16]).fx(&[18]);
+    polygon_with(Some(area), bytes)
+}
+
+/// The triangle with the flags of a sensor, and its area.
+fn polygon_with(area: Option<Area>, sensor: Written) -> (ShapeDef, Written) {
     let material = Material {
         friction: fx!(0.5),
         friction_mixing: Mixing::Minimum,
@@ -111,14 +124,14 @@ fn polygon() -> (ShapeDef, Written) {
     let corners = [Vec2::new(fx!(0), fx!(0)), Vec2::new(fx!(2), fx!(0)), Vec2::new(fx!(0), fx!(2))];
     let triangle = Polygon::new(&corners).and_then(|polygon| polygon.rounded(fx!(0.5))).expect("a triangle");
     let events = EventSwitches { contact: false, hit: true, sensor: false, detect_sensors: true };
-    let shape = ShapeDef { material, events, ..ShapeDef::new(triangle) };
+    let shape = ShapeDef { material, events, area, ..ShapeDef::new(triangle) };
     let shape =
         shape.filter(filter).offset((fx!(3), fx!(4))).one_way(Angle::from_bits(11)).sensor().user_data(9);
     let one = 1 << 22;
     let bytes = w().u32(2).u64(3).i32(&[0, 0, 2 * one, 0, 0, 2 * one]).i32(&[one / 2]);
     let surface = w().fx(&[1]).u32(2).fx(&[2]).u32(3).u8(1).fx(&[16]).fx(&[1, -14]);
     let bytes = bytes.fx(&[6, 8]).fx(&[2]).then(surface).u64(4).u64(5).i32(&[-6]);
-    (shape, bytes.u8(1).u32(11).u8(1).u8(0).u8(1).u8(0).u8(1).u64(9))
+    (shape, bytes.u8(1).u32(11).then(sensor).u8(0).u8(1).u8(0).u8(1).u64(9))
 }
 
 fn settings() -> (BodySettings, Written) {
@@ -161,7 +174,7 @@ fn joints(handles: &Handles) -> Vec<(JointDef, Written)> {
     let motor = Motor::new().linear(Vec2::new(one, two), three).angular(one, two);
     let pull = Motor::new().linear_spring(one, two, three).angular_spring(three, two, one);
     let bare = || w().none().none().none();
-    let kinds: [(JointKind, Written); 11] = [
+    let kinds: [(JointKind, Written); 14] = [
         (Revolute::new().into(), w().u32(0).then(bare())),
         (Revolute::new().limit(one, two).into(), w().u32(0).some(&[2, 4]).none().none()),
         (Prismatic::new().motor(one, two).into(), w().u32(1).none().some(&[2, 4]).none()),
@@ -176,6 +189,12 @@ fn joints(handles: &Handles) -> Vec<(JointDef, Written)> {
         (motor.into(), w().u32(5).some(&[2, 4, 6]).some(&[2, 4]).none().none()),
         (pull.into(), w().u32(5).none().none().some(&[2, 4, 6]).some(&[6, 4, 2])),
         (JointKind::Filter, w().u32(6)),
+        (Gear::new(3, -4).into(), w().u32(7).i32(&[3, -4])),
+        (Rack::new(two).into(), w().u32(8).fx(&[4])),
+        (
+            Pulley::new((one, two), (three, one), two).ratio(one).into(),
+            w().u32(9).fx(&[2, 4, 6, 2]).fx(&[4, 2]),
+        ),
     ];
     let threshold = Threshold { force: Some(one), torque: None, action: ThresholdAction::Break };
     let of_kind = |(kind, bytes): (JointKind, Written)| {
@@ -207,6 +226,7 @@ fn cases(handles: &Handles) -> Vec<(Command, Written)> {
     let vector = Vec2::new(fx!(1), fx!(-0.5));
     let angle = Angle::from_bits(9);
     let (polygon, polygon_bytes) = polygon();
+    let (pool, pool_bytes) = pool();
     let (def, def_bytes) = self::body();
     let (settings, settings_bytes) = settings();
     let (mass, mass_bytes) = mass();
@@ -228,7 +248,7 @@ fn cases(handles: &Handles) -> Vec<(Command, Written)> {
             w().u32(1).then(def_bytes).then(shapes()).u64(1).fx(&[2, -1]).u32(9),
         ),
         (Command::Despawn { body }, on_body(2)),
-        (Command::AddShape { body, shape: polygon }, on_body(3).then(polygon_bytes.clone())),
+        (Command::AddShape { body, shape: pool }, on_body(3).then(pool_bytes)),
         (Command::RemoveShape { shape }, w().u32(4).then(shape_id())),
         (Command::AddJoint { joint: hinge }, w().u32(5).then(hinge_bytes.clone())),
         (
@@ -302,4 +322,15 @@ fn the_bytes_of_a_setup_are_those_of_the_document() {
     let (config, expected) = settings_of_world();
     let setup = SandboxSetup { config, commands: vec![Command::SetGravity { gravity: Vec2::ZERO }] };
     assert_eq!(encode(&setup), expected.u64(1).u32(14).fx(&[0, 0]).0);
+}
+
+/// Reports name every value of an area. A shape without one is shown as before.
+#[test]
+fn an_area_is_listed_by_its_names() {
+    let paths = |def: &ShapeDef| -> Vec<String> {
+        let fields = lockstep2d::inspect::fields(def).expect("plain data");
+        fields.iter().map(|field| field.path().to_string()).collect()
+    };
+    assert!(paths(&pool().0).contains(&"sensor.area.density".to_string()));
+    assert!(paths(&polygon().0).contains(&"sensor".to_string()));
 }

@@ -238,13 +238,28 @@ impl<'a> Reader<'a> {
         self.option("one-way", |reader| {
             reader.u32("its direction");
         });
-        self.u8("sensor");
+        self.sensor();
         for name in ["events: contact", "events: hit", "events: sensor", "events: detect sensors"] {
             self.u8(name);
         }
         self.u64("user data");
         self.fx2("fat box: lower corner");
         self.fx2("fat box: upper corner");
+    }
+
+    fn sensor(&mut self) {
+        if self.u8("flags: sensor, area") & 2 == 0 {
+            return;
+        }
+        self.fx2("area: acceleration");
+        self.option("area: attraction", |reader| {
+            reader.fx2("acceleration, radius");
+            reader.u32("falloff");
+        });
+        self.fx2("area: force");
+        self.fx2("area: flow");
+        self.fx2("area: linear drag, angular drag");
+        self.fx("area: density");
     }
 
     fn joint(&mut self) {
@@ -273,6 +288,16 @@ impl<'a> Reader<'a> {
                 for name in ["linear spring", "angular spring"] {
                     self.option(name, |reader| reader.fixed("hertz, damping ratio, largest", 3, 8, 32));
                 }
+            }
+            7 => {
+                self.i32("teeth of A");
+                self.i32("teeth of B");
+            }
+            8 => self.fx("radius"),
+            9 => {
+                self.fx2("wheel of A");
+                self.fx2("wheel of B");
+                self.fx2("length, ratio");
             }
             _ => {}
         }

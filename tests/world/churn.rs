@@ -1,13 +1,14 @@
 //! Generator of random commands for a small and crowded world: commands of every kind, valid and invalid.
 
 use lockstep2d::body::{
-    BodyDef, BodyId, BodyKind, BodySettings, Continuous, EventSwitches, Filter, JointId, MassSource,
+    Area, BodyDef, BodyId, BodyKind, BodySettings, Continuous, EventSwitches, Filter, JointId, MassSource,
     Material, MotionLocks, Name, ShapeDef, ShapeId,
 };
 use lockstep2d::fx;
 use lockstep2d::math::{Angle, Fx, Rng, Vec2};
 use lockstep2d::solver::{
-    Distance, JointDef, JointKind, Motor, Prismatic, Revolute, Threshold, ThresholdAction, Weld, Wheel,
+    Distance, Gear, JointDef, JointKind, Motor, Prismatic, Pulley, Rack, Revolute, Threshold,
+    ThresholdAction, Weld, Wheel,
 };
 use lockstep2d::world::{Command, Config, Explosion, World};
 
@@ -41,7 +42,7 @@ impl Churn {
         world.spawn(&fixed(fx!(0), fx!(-1)), &[rectangle(fx!(7), fx!(1))]).expect("valid");
         world.spawn(&fixed(fx!(-6), fx!(4)), &[rectangle(fx!(0.5), fx!(5))]).expect("valid");
         world.spawn(&fixed(fx!(6), fx!(4)), &[rectangle(fx!(0.5), fx!(5))]).expect("valid");
-        let trigger = rectangle(fx!(2), fx!(1)).sensor();
+        let trigger = rectangle(fx!(2), fx!(1)).area(Area::fluid(fx!(2)).drag(fx!(1), fx!(1)));
         world.spawn(&fixed(fx!(-2), fx!(1)), &[trigger]).expect("valid");
         world.spawn(&BodyDef::kinematic().position((fx!(3), fx!(0.3))), &[square(fx!(0.3))]).expect("valid");
         for _ in 0..15 {
@@ -207,7 +208,8 @@ impl Churn {
             linear_damping: if rng.chance(1, 4) { rng.range(fx!(0), fx!(2)) } else { Fx::ZERO },
             may_sleep: !rng.chance(1, 12),
             sleep_speed: [fx!(0.05), fx!(0.05), fx!(0.5)][rng.below(3) as usize],
-            continuous: if rng.chance(1, 8) { Continuous::Bullet } else { Continuous::Fixed },
+            continuous: [Continuous::Fixed, Continuous::Bullet, Continuous::Kinematic]
+                [rng.below(9) as usize % 3],
             ..BodySettings::default()
         }
     }
@@ -237,8 +239,12 @@ impl Churn {
     /// Returns a shape that differs from `def` in at most one setting.
     fn changed_shape(&mut self, mut def: ShapeDef) -> ShapeDef {
         let rng = &mut self.rng;
-        match rng.below(13) {
-            0 => def.sensor = !def.sensor,
+        match rng.below(14) {
+            0 => (def.sensor, def.area) = (!def.sensor, None),
+            13 => {
+                let wind = Area::new().acceleration((rng.range(fx!(-9), fx!(9)), fx!(5)));
+                def = def.area(wind.drag(rng.range(fx!(0), fx!(4)), fx!(1)));
+            }
             1 => def.filter = Filter { category: 1 << rng.below(2), mask: rng.below(4).into(), group: 0 },
             2 => def.filter.group = [-1, 0, 1][rng.below(3) as usize],
             3 => {
@@ -271,13 +277,16 @@ impl Churn {
 
     fn joint_kind(&mut self) -> JointKind {
         let (speed, most) = (self.signed(fx!(2)), self.rng.range(fx!(0), fx!(20)));
-        match self.rng.below(9) {
+        match self.rng.below(12) {
             0 => Prismatic::new().limit(fx!(-0.5), fx!(0.5)).motor(speed, most).into(),
             1 => Distance::rod(fx!(1)).into(),
             2 => Weld::default().into(),
             3 => Wheel::new().into(),
             4 => Motor::new().into(),
             5 => JointKind::Filter,
+            7 => Gear::new(20, 30).into(),
+            8 => Rack::new(fx!(0.4)).into(),
+            9 => Pulley::new((fx!(-2), fx!(6)), (fx!(2), fx!(6)), fx!(9)).into(),
             6 => Revolute::new().limit(fx!(-0.5), fx!(0.5)).motor(speed, most).into(),
             _ => Revolute::new().into(),
         }

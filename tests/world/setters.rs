@@ -278,7 +278,7 @@ fn values_out_of_range_are_refused() {
     let given = |mass, gyration| MassSource::Given { mass, centre: Vec2::ZERO, gyration };
     stage.refuses(&Command::SetMass { body, mass: given(fx!(0), fx!(1)) }, is_mass);
     stage.refuses(&Command::SetMass { body: floor, mass: given(fx!(0), fx!(1)) }, is_mass);
-    stage.refuses(&Command::SetShape { shape, def: valid.density(fx!(0)) }, is_mass);
+    stage.refuses(&Command::SetShape { shape, def: valid.density(Fx::DELTA) }, is_mass);
     let flat = ShapeDef { geometry: Geometry::Circle { radius: fx!(0) }, ..valid };
     stage.refuses(&Command::SetShape { shape, def: flat }, |error| matches!(error, WorldError::Geometry(_)));
     stage.refuses(&Command::SetShape { shape, def: valid.offset((fx!(200), fx!(0))) }, |error| {
@@ -305,9 +305,9 @@ fn values_out_of_range_are_refused() {
 #[test]
 fn kinds_that_a_body_cannot_have_are_refused() {
     let mut stage = Stage::new(Config::default());
-    let dynamic = BodyKind::Dynamic;
-    let bare = stage.world.spawn(&BodyDef::fixed(), &[]).expect("valid");
-    stage.refuses(&Command::SetKind { body: bare, kind: dynamic }, |error| {
+    let speck = ShapeDef::new(Geometry::circle(fx!(0.01)).expect("valid")).density(fx!(0.001));
+    let speck = spawn(&mut stage.world, BodyDef::fixed(), speck);
+    stage.refuses(&Command::SetKind { body: speck, kind: BodyKind::Dynamic }, |error| {
         matches!(error, WorldError::MassOutOfRange { .. })
     });
     let edge = fx!(1000);

@@ -145,6 +145,7 @@ impl State {
             5 => shape.def.filter = fresh.filter,
             6 => shape.def.one_way = shape.def.one_way.is_none().then(|| source.angle()),
             7 => shape.def.sensor = !shape.def.sensor,
+            8 if source.one_in(2) => shape.def.area = source.one_in(3).then(|| shapes::area(source)),
             8 => shape.def.events = fresh.events,
             9 => shape.def.material.surface_speed = Fx::from_bits(source.within(-(400 << 32), 400 << 32)),
             10 => {

@@ -3,6 +3,7 @@
 //! Eight bodies are integrated at a time if all of them are dynamic, have no locked axis and are within all limits
 //! (`kernel`), as most bodies are. All other bodies are integrated one by one.
 
+mod area_effect;
 mod kernel;
 mod sub_step;
 #[cfg(test)]
@@ -15,6 +16,7 @@ use super::settings::Tuning;
 use crate::body::{Body, BodyKind, BodySettings, MotionLocks};
 use crate::math::{Fx, Shift, Speed, Unit, Vec2, fx_div, fx_mul, narrow, saturate};
 use crate::simd::Quad;
+pub(crate) use area_effect::AreaEffect;
 use sub_step::SubStep;
 
 /// Largest displacement of a body in a tick along each axis, in metres.
@@ -47,13 +49,26 @@ impl MovingBody {
                     locks: MotionLocks::default(),
                 })
             }
-            BodyKind::Dynamic => Some(Self::dynamic(index, body, tuning)),
+            BodyKind::Dynamic if body.has_mass() => {
+                Some(Self::dynamic(index, body.acceleration_step(tuning.rate), &body.settings, tuning))
+            }
+            // Gravity is a force, which does not move a body without mass.
+            BodyKind::Dynamic => {
+                let settings = BodySettings { gravity_scale: Fx::ZERO, ..body.settings };
+                Some(Self::dynamic(index, (Vec2::ZERO, Speed::ZERO), &settings, tuning))
+            }
         }
     }
 
-    fn dynamic(index: u32, body: &Body, tuning: &Tuning) -> Self {
-        let BodySettings { linear_damping, angular_damping, gravity_scale, locks, .. } = *body.settings();
-        let (force_step, spin_step) = body.acceleration_step(tuning.rate);
+    /// A dynamic body with the velocity changes in a sub-step by forces and by torques.
+    #[inline(always)]
+    fn dynamic(
+        index: u32,
+        (force_step, spin_step): (Vec2<Speed>, Speed),
+        settings: &BodySettings,
+        tuning: &Tuning,
+    ) -> Self {
+        let BodySettings { linear_damping, angular_damping, gravity_scale, locks, .. } = *settings;
         let gravity = |step: Fx| {
             if gravity_scale == Fx::ONE { narrow(step) } else { narrow(fx_mul(step, gravity_scale)) }
         };

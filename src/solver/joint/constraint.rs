@@ -92,6 +92,7 @@ fn candidate(joint: &Joint, [a, b]: [&HingeBody; 2]) -> Candidate {
             let parts = u32::from(kind.rod.is_some()) + u32::from(kind.spring.is_some());
             (parts + limits(kind.limit), false)
         }
+        JointKind::Gear(_) | JointKind::Rack(_) | JointKind::Pulley(_) => (1, false),
         JointKind::Motor(_) | JointKind::Filter => (0, false),
     };
     let shares = if is_hinge { shares(joint, [a, b]) } else { [Unit::ZERO; 2] };

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::options::{Drive, JointLimit, Soft, Spring};
-use super::{Distance, Motor, Prismatic, Revolute, Weld, Wheel};
+use super::{Distance, Gear, Motor, Prismatic, Pulley, Rack, Revolute, Weld, Wheel};
 use crate::body::{Body, BodyId, BodyKind, Pose, REACH_MAX, WORLD_EXTENT_MAX, WorldError};
 use crate::math::{Angle, Fx, Vec2};
 
@@ -76,6 +76,12 @@ pub enum JointKind {
     Motor(Motor),
     /// The frames are free. The joint only keeps the bodies from colliding, unless [`JointDef::colliding`].
     Filter,
+    /// The wheels about the anchors turn in a ratio: toothed wheels, a wheel in a ring.
+    Gear(Gear),
+    /// The wheel about A's anchor rolls along B's x axis.
+    Rack(Rack),
+    /// A rope from anchor to anchor over two wheels that are fixed in the world.
+    Pulley(Pulley),
 }
 
 /// The load beyond which a joint is reported or breaks.
@@ -272,6 +278,9 @@ impl JointDef {
             JointKind::Wheel(kind) => kind.validate(),
             JointKind::Motor(kind) => kind.validate(),
             JointKind::Filter => Ok(()),
+            JointKind::Gear(kind) => kind.validate(),
+            JointKind::Rack(kind) => kind.validate(),
+            JointKind::Pulley(kind) => kind.validate(),
         }
     }
 }
@@ -285,7 +294,11 @@ impl JointKind {
             | JointKind::Distance(Distance { motor, .. })
             | JointKind::Wheel(Wheel { motor, .. })
             | JointKind::Motor(Motor { angular: motor, .. }) => motor.as_mut(),
-            JointKind::Weld(_) | JointKind::Filter => None,
+            JointKind::Weld(_)
+            | JointKind::Filter
+            | JointKind::Gear(_)
+            | JointKind::Rack(_)
+            | JointKind::Pulley(_) => None,
         }
     }
 
@@ -296,7 +309,12 @@ impl JointKind {
             | JointKind::Prismatic(Prismatic { spring, .. })
             | JointKind::Distance(Distance { spring, .. })
             | JointKind::Wheel(Wheel { spring, .. }) => spring.as_mut(),
-            JointKind::Weld(_) | JointKind::Motor(_) | JointKind::Filter => None,
+            JointKind::Weld(_)
+            | JointKind::Motor(_)
+            | JointKind::Filter
+            | JointKind::Gear(_)
+            | JointKind::Rack(_)
+            | JointKind::Pulley(_) => None,
         }
     }
 
@@ -307,7 +325,12 @@ impl JointKind {
             | JointKind::Prismatic(Prismatic { limit, .. })
             | JointKind::Distance(Distance { limit, .. })
             | JointKind::Wheel(Wheel { limit, .. }) => Some(limit),
-            JointKind::Weld(_) | JointKind::Motor(_) | JointKind::Filter => None,
+            JointKind::Weld(_)
+            | JointKind::Motor(_)
+            | JointKind::Filter
+            | JointKind::Gear(_)
+            | JointKind::Rack(_)
+            | JointKind::Pulley(_) => None,
         }
     }
 }
@@ -322,4 +345,4 @@ macro_rules! into_kind {
     };
 }
 
-into_kind!(Revolute Prismatic Distance Weld Wheel Motor);
+into_kind!(Revolute Prismatic Distance Weld Wheel Motor Gear Rack Pulley);

@@ -12,8 +12,9 @@ use super::super::limits::Faults;
 use super::super::row::MassFractions;
 use super::super::settings::Tuning;
 use super::super::softness::Softness;
+use super::coupling::Coupling;
 use super::def::JointKind;
-use super::parts::Parts;
+use super::parts::{Direction, Parts};
 use super::point::JointPoint;
 use super::pose::{BodyRotation, Ends};
 use super::row::JointRow;
@@ -31,6 +32,8 @@ pub(super) struct JointList {
     rows: Vec<JointRow>,
     /// The points of all joints, joint by joint.
     points: Vec<JointPoint>,
+    /// Constants of gears, racks and pulleys.
+    couplings: Vec<Coupling>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -114,11 +117,12 @@ impl<'a> Iterator for Walk<'a> {
 
 impl JointList {
     pub(super) fn clear(&mut self) {
-        let JointList { joints, links, rows, points } = self;
+        let JointList { joints, links, rows, points, couplings } = self;
         joints.clear();
         links.clear();
         rows.clear();
         points.clear();
+        couplings.clear();
     }
 
     /// Adds a joint that is not a hinge, with its bodies and their indices.
@@ -139,6 +143,7 @@ impl JointList {
             masses: (bodies[0].mass(), bodies[1].mass()),
             rate: tuning.rate,
             softness: joint.softness(tuning),
+            coupling: u32::try_from(self.couplings.len()).expect("fewer than 2^32 joints"),
         };
         match &joint.def.kind {
             JointKind::Prismatic(kind) => kind.prepare(&mut parts),
@@ -146,8 +151,12 @@ impl JointList {
             JointKind::Weld(kind) => kind.prepare(&mut parts),
             JointKind::Wheel(kind) => kind.prepare(&mut parts),
             JointKind::Motor(kind) => kind.prepare(&mut parts),
+            JointKind::Gear(kind) => kind.prepare(&mut parts),
+            JointKind::Rack(kind) => kind.prepare(&mut parts),
+            JointKind::Pulley(kind) => kind.prepare(&mut parts),
             JointKind::Revolute(_) | JointKind::Filter => {}
         }
+        self.couplings.extend(Coupling::prepare(joint, bodies));
         let (rows, points) = (&mut self.rows[rows_before..], &mut self.points[points_before..]);
         if is_blocked {
             rows.iter_mut().for_each(|row| row.is_blocked = row.is_unlimited());
@@ -165,13 +174,21 @@ impl JointList {
         body_rotations: &[BodyRotation],
         tuning: &Tuning,
     ) {
-        for (joint, (_, rows, points)) in self.walk_joints() {
+        let JointList { joints, links, rows, points, couplings } = self;
+        let walk = Walk { links: links.iter_mut(), rows, points };
+        for (joint, (_, rows, points)) in joints.iter().zip(walk) {
             let place = joint.ends.place(bodies, body_rotations);
             for point in points {
                 point.refresh(&place);
             }
             for row in rows {
-                row.refresh(&joint.ends.measure(row.direction, &place, body_rotations), tuning.rate);
+                let measure = match row.direction {
+                    Direction::Coupled(index) => {
+                        couplings[index as usize].measure(&joint.ends, &place, bodies, body_rotations)
+                    }
+                    direction => joint.ends.measure(direction, &place, body_rotations),
+                };
+                row.refresh(&measure, tuning.rate);
             }
         }
     }
@@ -263,7 +280,7 @@ impl JointList {
 
     /// Like [`Self::walk`], but also gives the constants of each joint.
     fn walk_joints(&mut self) -> impl Iterator<Item = (&JointConstraint, <Walk<'_> as Iterator>::Item)> {
-        let JointList { joints, links, rows, points } = self;
+        let JointList { joints, links, rows, points, .. } = self;
         joints.iter().zip(Walk { links: links.iter_mut(), rows, points })
     }
 }

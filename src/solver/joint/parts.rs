@@ -33,6 +33,8 @@ pub(super) enum Direction {
     AcrossBalanced,
     /// The distance between the anchors.
     Apart,
+    /// What the coupling of the joint with this index measures.
+    Coupled(u32),
 }
 
 /// Collects the parts of one joint.
@@ -46,6 +48,8 @@ pub(super) struct Parts<'a> {
     pub(super) rate: u32,
     /// The softness of rows that hold a position and of limits.
     pub(super) softness: Softness,
+    /// The index of the joint's coupling, if its kind has one.
+    pub(super) coupling: u32,
 }
 
 impl Parts<'_> {
@@ -91,6 +95,11 @@ impl Parts<'_> {
             self.row(slot::LIMIT, direction, RowTask::Lower { bound: lower });
             self.row(slot::LIMIT + 1, direction, RowTask::Upper { bound: upper });
         }
+    }
+
+    /// Adds an upper limit.
+    pub(super) fn upper(&mut self, direction: Direction, bound: Fx) {
+        self.row(slot::LIMIT + 1, direction, RowTask::Upper { bound });
     }
 
     /// Holds a position.

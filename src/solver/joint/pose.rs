@@ -62,6 +62,11 @@ impl Ends {
         }
     }
 
+    /// The indices of the bodies.
+    pub(super) fn bodies(&self) -> [usize; 2] {
+        [self.body_a as usize, self.body_b as usize]
+    }
+
     pub(super) fn fractions(&self) -> MassFractions {
         self.fractions
     }
@@ -114,7 +119,7 @@ impl Ends {
         }
     }
 
-    /// Measures along a direction.
+    /// Measures along a direction. A coupling measures by itself.
     pub(super) fn measure(
         &self,
         direction: Direction,
@@ -133,6 +138,9 @@ impl Ends {
                 let n = place.gap.normalized().unwrap_or(self.axis);
                 let (row, denominator) = Row::prepare(n, place.lever_a, place.lever_b, place.fractions);
                 Measure { row, denominator, position: place.gap.length(), scale: Fx::ONE }
+            }
+            Direction::Coupled(_) => {
+                Measure { row: Row::NONE, denominator: 0, position: Fx::ZERO, scale: Fx::ONE }
             }
         }
     }

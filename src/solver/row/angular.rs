@@ -54,7 +54,7 @@ fn quotient(n: i64, d: i64) -> i64 {
 
 /// `1 / sqrt(aA / kA^2 + aB / kB^2)`, at most a hundred times the radius of gyration of a body that turns. It only sets
 /// the units of a row, so that it need not be exact.
-fn angular_scale([a, b]: [Reciprocal; 2], fractions: MassFractions) -> Length {
+pub(in crate::solver) fn angular_scale([a, b]: [Reciprocal; 2], fractions: MassFractions) -> Length {
     // 1 / k has 21 fraction bits, so that the sum has 72.
     let inverse = |inverse_gyration: Reciprocal, fraction: Unit| -> Speed {
         if fraction == 0 { Speed::ZERO } else { inverse_gyration.times(Unit::ONE) }

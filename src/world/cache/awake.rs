@@ -10,7 +10,7 @@ use crate::world::state::State;
 pub(crate) struct AwakeSet {
     /// Enabled bodies that are kinematic, or dynamic and awake.
     bodies: Vec<u32>,
-    /// Joints with at least one awake dynamic body.
+    /// Joints with at least one awake dynamic body that has mass.
     joints: Vec<u32>,
     /// The joints among them that have a force or torque threshold.
     with_threshold: Vec<u32>,
@@ -55,7 +55,8 @@ impl AwakeSet {
             let (a, b) = joint.def().bodies();
             let (a, b) = (state.bodies.at(a.slot()), state.bodies.at(b.slot()));
             let is_solved = a.enabled && b.enabled && joint.is_solved();
-            (is_solved && (is_awake(a) || is_awake(b))).then_some(id.slot())
+            let moves = |body: &Body| is_awake(body) && body.has_mass();
+            (is_solved && (moves(a) || moves(b))).then_some(id.slot())
         }));
         self.with_threshold.clear();
         let has_threshold = |&&slot: &&u32| state.joints.at(slot).def().threshold.is_set();

@@ -37,6 +37,8 @@ pub(crate) use results::{Sweeps, SweptBody, TickResults};
 pub(crate) use shapes::ShapeCache;
 pub(crate) use union_find::UnionFind;
 
+use alloc::vec::Vec;
+
 use super::state::State;
 use crate::collision::BroadPhaseKind;
 use crate::solver::Solver;
@@ -51,6 +53,8 @@ pub(crate) struct Scratch {
     pub(crate) contacts: ContactCache,
     /// Buffer for finding islands.
     pub(crate) union: UnionFind,
+    /// Buffer for the shapes in areas: slots of the body, the area and the shape.
+    pub(crate) area_visitors: Vec<[u32; 3]>,
     /// Buffers for continuous collision.
     pub(crate) sweeps: Sweeps,
     pub(crate) solver: Solver,
@@ -67,6 +71,7 @@ impl Scratch {
             pairs: PairCache::new(),
             contacts: ContactCache::new(),
             union: UnionFind::default(),
+            area_visitors: Vec::new(),
             sweeps: Sweeps::default(),
             solver: Solver::default(),
             results: TickResults::default(),

@@ -109,8 +109,8 @@ impl NonCollidingPairs {
     }
 
     /// Whether two shapes may ever have a contact. They need different, enabled bodies and filters that accept each
-    /// other. Then either one of them is a sensor that may notice the other, or one body is dynamic and no joint keeps
-    /// the bodies from colliding.
+    /// other. Then either one of them is a sensor that may notice the other, or one body has mass and no joint keeps the
+    /// bodies from colliding.
     pub(crate) fn may_touch(&self, state: &State, (a, b): Pair) -> bool {
         let (shape_a, shape_b) = (state.shapes.at(a), state.shapes.at(b));
         let (slot_a, slot_b) = (shape_a.body().slot(), shape_b.body().slot());
@@ -127,7 +127,7 @@ impl NonCollidingPairs {
                 detected && !both_fixed(body_a.kind, body_b.kind)
             }
             (false, false) => {
-                let can_move = body_a.is_dynamic() || body_b.is_dynamic();
+                let can_move = body_a.has_mass() || body_b.has_mass();
                 can_move && self.pairs.binary_search(&(slot_a.min(slot_b), slot_a.max(slot_b))).is_err()
             }
         }

@@ -29,7 +29,7 @@ impl World {
     /// Adds a body with its shapes.
     ///
     /// # Errors
-    /// [`WorldError`] if a value is out of range, a dynamic body has no mass, or the world is full.
+    /// [`WorldError`] if a value is out of range, also the mass of a dynamic body, or the world is full.
     #[doc(alias = "create_body")]
     #[doc(alias = "rigid body")]
     pub fn spawn(&mut self, body: &BodyDef, shapes: &[ShapeDef]) -> Result<BodyId, WorldError> {
@@ -104,6 +104,7 @@ impl World {
         let mass = mass_of(owner.kind(), *owner.mass_source, &owner.settings, shapes)?;
         self.check_spin(owner, &mass)?;
         wake_body(&mut self.state, &mut self.scratch, body.slot());
+        self.prepare_mass(body, &mass);
         self.state.bodies.redefine(body.slot()).set_mass(mass);
         let id = self.insert_shape(body, shape);
         // The centre of mass may have moved, which changes the rounding of the positions of all other shapes.

@@ -31,7 +31,7 @@ impl World {
     /// Removes a shape. Unless the body's mass was given, it is computed anew from the remaining shapes.
     ///
     /// # Errors
-    /// [`WorldError`] if the handle is stale, or a dynamic body would be left without mass.
+    /// [`WorldError`] if the handle is stale, or the mass of a dynamic body would be out of range.
     pub fn remove_shape(&mut self, id: ShapeId) -> Result<(), WorldError> {
         let shape = self.state.shapes.get(id).ok_or(WorldError::StaleShape(id))?;
         let body = shape.body();
@@ -41,6 +41,7 @@ impl World {
         let mass = mass_of(owner.kind(), *owner.mass_source, &owner.settings, rest)?;
         self.check_spin(owner, &mass)?;
         wake_overlapping(&mut self.state, &mut self.scratch, body.slot());
+        self.prepare_mass(body, &mass);
         self.delete_shapes(&[id]);
         let owner = self.state.bodies.redefine(body.slot());
         owner.shapes.retain(|other| *other != id);

@@ -60,6 +60,18 @@ impl World {
         Ok(JointDef { frame_a, frame_b, ..JointDef::new(a, b, kind) })
     }
 
+    /// The definition of a gear, rack or pulley that holds at the current poses of its bodies: the angle of a gear's frame
+    /// on A is such that the teeth meet, the wheel of a rack is where it has rolled to, and the rope of a pulley is taut.
+    /// Returns definitions of other kinds as they are.
+    ///
+    /// # Errors
+    /// [`WorldError::StaleBody`] if a body is not in the world.
+    pub fn fit_joint(&self, def: &JointDef) -> Result<JointDef, WorldError> {
+        let (a, b) = def.bodies();
+        let body = |id: BodyId| self.state.bodies.get(id).ok_or(WorldError::StaleBody(id));
+        Ok(def.fitted(body(a)?, body(b)?))
+    }
+
     /// Replaces the definition of a joint except for its bodies: read [`crate::solver::Joint::def`], change a copy, and
     /// pass it here. Its impulses are kept if it stays of the same kind. Wakes its bodies, unless the definition is the
     /// same.

@@ -4,8 +4,8 @@ use alloc::boxed::Box;
 use alloc::vec::Vec;
 
 use crate::body::{
-    BodyId, BodyKind, BodySettings, EventSwitches, Filter, Geometry, Handle, MassSource, Material, Name,
-    ShapeDef, ShapeId, WorldError,
+    BodyId, BodyKind, BodySettings, EventSwitches, Filter, Geometry, Handle, MassProperties, MassSource,
+    Material, Name, ShapeDef, ShapeId, WorldError,
 };
 use crate::math::{Fx, Vec2};
 use crate::world::World;
@@ -66,6 +66,7 @@ impl World {
         let mass = mass_of(body.kind(), source, &body.settings, self.shape_defs(body))?;
         self.check_spin(body, &mass)?;
         wake_body(&mut self.state, &mut self.scratch, id.slot());
+        self.prepare_mass(id, &mass);
         let body = self.state.bodies.redefine(id.slot());
         *body.mass_source = source;
         body.set_mass(mass);
@@ -77,7 +78,7 @@ impl World {
     /// joints stay, and rest as long as neither of their bodies is dynamic.
     ///
     /// # Errors
-    /// [`WorldError`] if the handle is stale, a dynamic body would have no mass, a shape or the anchor of a joint
+    /// [`WorldError`] if the handle is stale, the mass of a dynamic body would be out of range, a shape or the anchor of a joint
     /// reaches too far for a body that moves, or the body rotates too fast for its mass.
     #[doc(alias = "static")]
     #[doc(alias = "body type")]
@@ -200,12 +201,12 @@ impl World {
     /// solid shape, or switches its contact events, its contacts end; otherwise they last as long as the shapes touch.
     ///
     /// # Errors
-    /// [`WorldError`] if the handle is stale, a value is out of range, or a dynamic body would be left without mass.
+    /// [`WorldError`] if the handle is stale, or a value is out of range, also the mass of a dynamic body.
     #[doc(alias = "sensor")]
     #[doc(alias = "trigger")]
     pub fn set_shape(&mut self, id: ShapeId, def: &ShapeDef) -> Result<(), WorldError> {
         let shape = self.state.shapes.get(id).ok_or(WorldError::StaleShape(id))?;
-        let slot = shape.body().slot();
+        let (body, slot) = (shape.body(), shape.body().slot());
         let owner = self.state.bodies.at(slot);
         def.validate(offset_max(owner.kind()))?;
         let with = owner
@@ -221,6 +222,7 @@ impl World {
         };
         let changes_events = roles(&shape.def) != roles(def);
         wake_overlapping(&mut self.state, &mut self.scratch, slot);
+        self.prepare_mass(body, &mass);
         if changes_events {
             self.end_contacts(&[id]);
         }
@@ -254,6 +256,16 @@ impl World {
     /// The errors of [`World::set_shape`].
     pub fn set_filter(&mut self, id: ShapeId, filter: Filter) -> Result<(), WorldError> {
         self.change_shape(id, |def| def.filter = filter)
+    }
+
+    /// Lets pairs and joints follow a body that is about to gain its first mass or to lose all of it: two bodies without
+    /// mass have no contact and no joint that acts.
+    pub(super) fn prepare_mass(&mut self, id: BodyId, mass: &MassProperties) {
+        if self.state.bodies.at(id.slot()).has_mass() != (mass.mass > 0) {
+            wake_overlapping(&mut self.state, &mut self.scratch, id.slot());
+            wake_joined(&mut self.state, &mut self.scratch, id);
+            self.scratch.pairs.changes.rules_changed();
+        }
     }
 
     /// Replaces the definition of a shape by a changed copy.

@@ -35,9 +35,12 @@ pub(crate) fn unite_connected(state: &State, scratch: &mut Scratch) {
     unite_touching(state, union, &state.contacts);
 }
 
-/// Unites the bodies of every contact that has points.
+/// Unites the bodies of every contact that has points, and of every area and what is in it: a body in an area of a
+/// moving body is not at rest.
 pub(crate) fn unite_touching(state: &State, union: &mut UnionFind, contacts: &[Contact]) {
-    for contact in contacts.iter().filter(|contact| contact.count > 0) {
+    let connects =
+        |contact: &&Contact| contact.count > 0 || (contact.touching && state.has_area(contact.shapes));
+    for contact in contacts.iter().filter(connects) {
         let (a, b) = contact.shapes;
         unite(state, union, state.shapes.at(a).body().slot(), state.shapes.at(b).body().slot());
     }

@@ -75,7 +75,8 @@ pub(crate) fn wake_touching(state: &mut State, scratch: &mut Scratch, slot: u32)
         let (a, b) = contact.shapes;
         let (body_a, body_b) = (state.shapes.at(a).body().slot(), state.shapes.at(b).body().slot());
         let other = if body_a == slot { Some(body_b) } else { (body_b == slot).then_some(body_a) };
-        other.filter(|_| contact.touching && state.sensor_of(contact.shapes).is_none())
+        let connects = || state.sensor_of(contact.shapes).is_none() || state.has_area(contact.shapes);
+        other.filter(|_| contact.touching && connects())
     };
     let touching: Vec<u32> = state.sleeping_contacts.iter().filter_map(other_body).collect();
     for body in touching {

@@ -186,6 +186,7 @@ fn check_joints(state: &State) -> Result<(), Violation> {
         let valid = joint.def.validate([body_a.kind(), body_b.kind()]);
         valid.map_err(|error| Violation { what: format!("joint {id}: {error}") })?;
         let both = body_a.is_dynamic() && body_b.is_dynamic() && body_a.enabled && body_b.enabled;
+        let both = both && (body_a.has_mass() || body_b.has_mass());
         let together = !joint.is_solved() || !both || body_a.island == body_b.island;
         check(together, || format!("joint {id}: one of its bodies sleeps without the other"))?;
         let limit = crate::solver::IMPULSE_MAX;

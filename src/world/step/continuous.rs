@@ -4,6 +4,10 @@
 //! Speculative contacts already stop most fast bodies. The sweep catches what they cannot predict, such as rotating
 //! rods and speed gained within the tick. A body that is stopped keeps its velocity and goes on in the next tick, when
 //! the contact exists from the start. It loses the rest of its displacement in this tick.
+//!
+//! Bodies with [`Continuous::Kinematic`] are also swept against kinematic bodies, once these have been moved. Whether
+//! such a body is fast is judged relative to each of them, by the displacement from where its material would have taken
+//! it: what lies on a platform or in a drum is not held back. A body that is stopped is carried for the rest of the tick.
 
 use crate::body::{Body, BodyKind, Continuous, Handle, Pose, WORLD_EXTENT_MAX};
 use crate::collision::{SupportShape, Sweep, TimeOfImpact, time_of_impact};
@@ -37,7 +41,31 @@ pub(super) fn swept_body(
         _ => fx_mul(Angle::turns_to_radians(turn).saturating_abs(), extents.reach),
     };
     let is_fast = shift.is_longer_than(limit.saturating_sub(turned));
-    is_fast.then_some(SweptBody { slot, sweep: Sweep { start: body.centre, end: end.centre, turn }, end })
+    let may_be_relative = sees_kinematic(body) && scratch.awake.may_have_kinematic();
+    (is_fast || may_be_relative).then_some(SweptBody {
+        slot,
+        sweep: Sweep { start: body.centre, end: end.centre, turn },
+        end,
+        is_fast,
+    })
+}
+
+/// Whether a body moves so far from where a kinematic body would have taken it that it may pass through a shape of it.
+fn is_fast_relative(scratch: &Scratch, swept: &SweptBody, obstacle: &Sweep) -> bool {
+    let extents = scratch.shapes.poses().extents(swept.slot);
+    let limit = SWEPT_MIN.max(extents.core / 2);
+    let Sweep { start, end, turn } = swept.sweep;
+    let shift = end - carried(obstacle, start, Fx::ZERO);
+    let turned = Angle::turns_to_radians(turn.saturating_sub(obstacle.turn)).saturating_abs();
+    shift.is_longer_than(limit.saturating_sub(fx_mul(turned, extents.reach)))
+}
+
+/// Where a moving body takes a point from a fraction of the tick on until its end.
+fn carried(sweep: &Sweep, point: Vec2<Fx>, fraction: Fx) -> Vec2<Fx> {
+    let (before, turned_before) = sweep.at(fraction);
+    let (after, turned_after) = sweep.at(Fx::ONE);
+    let local = turned_before.apply_inverse_wide(point - sweep.start - before);
+    sweep.start + after + turned_after.apply_wide(local)
 }
 
 /// Moves a fast body along its sweep to the end or to the first impact.
@@ -61,11 +89,18 @@ struct Impact {
 /// continues its own movement. A dynamic obstacle has already been moved by the impact.
 fn pose_after(state: &State, scratch: &Scratch, swept: &SweptBody, impact: Impact) -> Pose {
     let Sweep { start, end, turn } = swept.sweep;
-    let angle = state.bodies.at(swept.slot).angle + Angle::from_wide_turns(turn, impact.fraction);
+    let body = state.bodies.at(swept.slot);
+    let mut angle = body.angle + Angle::from_wide_turns(turn, impact.fraction);
     let mut centre = start + (end - start).scale(impact.fraction);
     if state.body_of(impact.obstacle).kind() == BodyKind::Kinematic {
         let (_, obstacle) = obstacle_of(state, scratch, impact.obstacle);
-        centre += (obstacle.end - obstacle.start).scale(Fx::ONE - impact.fraction);
+        let rest = Fx::ONE - impact.fraction;
+        if sees_kinematic(body) {
+            centre = carried(&obstacle, centre, impact.fraction);
+            angle += Angle::from_wide_turns(obstacle.turn, rest);
+        } else {
+            centre += (obstacle.end - obstacle.start).scale(rest);
+        }
     }
     let edge = Vec2::new(WORLD_EXTENT_MAX, WORLD_EXTENT_MAX);
     Pose { centre: centre.max(-edge).min(edge), angle }
@@ -75,7 +110,7 @@ fn pose_after(state: &State, scratch: &Scratch, swept: &SweptBody, impact: Impac
 fn first_impact(state: &State, scratch: &Scratch, swept: &SweptBody) -> Option<Impact> {
     let shapes = &scratch.shapes;
     let body = state.bodies.at(swept.slot);
-    let is_bullet = is_bullet(body);
+    let sees_moving = is_bullet(body) || sees_kinematic(body);
     // Box around the body's shapes at the start of the sweep, at any rotation.
     let disc = Aabb::new(body.centre, body.centre).expanded(shapes.poses().extents(swept.slot).radius);
     let mut first: Option<Impact> = None;
@@ -94,10 +129,17 @@ fn first_impact(state: &State, scratch: &Scratch, swept: &SweptBody) -> Option<I
             let obstacle = state.bodies.at(other_shape.body);
             // A moving obstacle was somewhere else during the tick: its current bounds do not rule it out.
             let is_near =
-                other_shape.bounds.overlaps(area) || (is_bullet && obstacle.kind() != BodyKind::Fixed);
+                other_shape.bounds.overlaps(area) || (sees_moving && obstacle.kind() != BodyKind::Fixed);
             let is_solid = is_near && shapes.poses().at(other).is_solid_from(posed.centre);
             if is_solid && stops(body, obstacle) && may_stop(state, scratch, id.slot(), other) {
                 let (there, movement) = obstacle_of(state, scratch, other);
+                let is_fast = match obstacle.kind() {
+                    BodyKind::Kinematic if !is_bullet(body) => is_fast_relative(scratch, swept, &movement),
+                    _ => swept.is_fast,
+                };
+                if !is_fast {
+                    return core::ops::ControlFlow::Continue(());
+                }
                 let &mut (core, target) = core_and_target.get_or_insert_with(|| {
                     let core = SupportShape::of(posed, body.centre);
                     // A quarter of the depth at which its centre would be on the surface, and at most 5 mm.
@@ -114,8 +156,8 @@ fn first_impact(state: &State, scratch: &Scratch, swept: &SweptBody) -> Option<I
             }
             core::ops::ControlFlow::Continue(())
         };
-        // Other bodies are swept against fixed ones only.
-        if is_bullet {
+        // Bodies that see no moving obstacle are swept against fixed ones only.
+        if sees_moving {
             shapes.broad_phase().each_overlap(area, visit);
         } else {
             shapes.broad_phase().each_fixed_overlap(area, visit);
@@ -143,7 +185,16 @@ fn obstacle_of(state: &State, scratch: &Scratch, shape: u32) -> (SupportShape, S
 
 /// Whether a body is swept against an obstacle.
 fn stops(body: &Body, obstacle: &Body) -> bool {
-    obstacle.kind() == BodyKind::Fixed || (is_bullet(body) && !is_bullet(obstacle))
+    match obstacle.kind() {
+        BodyKind::Fixed => true,
+        BodyKind::Kinematic if sees_kinematic(body) => true,
+        BodyKind::Kinematic | BodyKind::Dynamic => is_bullet(body) && !is_bullet(obstacle),
+    }
+}
+
+/// Whether a body is swept against kinematic bodies relative to which it is fast.
+pub(super) fn sees_kinematic(body: &Body) -> bool {
+    body.settings.continuous == Continuous::Kinematic
 }
 
 /// Whether a body is swept against moving bodies as well.

@@ -12,6 +12,7 @@ use crate::world::state::State;
 pub(super) fn finalise_poses(state: &mut State, scratch: &mut Scratch) {
     scratch.results.stats.impacts = 0;
     scratch.sweeps.starts.clear();
+    scratch.sweeps.relative.clear();
     scratch.sweeps.bullets.clear();
     scratch.sweeps.left_boxes.clear();
     for index in 0..scratch.awake.bodies().len() {
@@ -22,9 +23,16 @@ pub(super) fn finalise_poses(state: &mut State, scratch: &mut Scratch) {
         match continuous::swept_body(state, scratch, slot, end.pose, end.turn) {
             None => move_body(state, scratch, slot, end.pose),
             Some(fast) if continuous::is_bullet(state.bodies.at(slot)) => scratch.sweeps.bullets.push(fast),
+            Some(fast) if continuous::sees_kinematic(state.bodies.at(slot)) => {
+                scratch.sweeps.relative.push(fast)
+            }
             // Only fixed bodies stop this body, so that it need not wait for all other bodies.
             Some(fast) => continuous::sweep(state, scratch, &fast),
         }
+    }
+    for index in 0..scratch.sweeps.relative.len() {
+        let body = scratch.sweeps.relative[index];
+        continuous::sweep(state, scratch, &body);
     }
     // Bullets are swept in slot order once all other bodies have been moved.
     for index in 0..scratch.sweeps.bullets.len() {

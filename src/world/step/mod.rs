@@ -1,5 +1,6 @@
 //! One tick: [`World::step`] and its stages, one file each.
 
+mod areas;
 mod contact_events;
 mod continuous;
 mod finalise;
@@ -73,8 +74,10 @@ impl World {
         solver.prepare_bodies(&state.bodies, awake.bodies(), &tuning);
         solver.prepare_joints(&state.joints, awake.joints(), &state.bodies, &tuning);
         solver.prepare_contacts(&found.touching, &found.manifolds, &found.impacts, &state.contacts);
+        areas::apply_areas(state, scratch, &tuning);
 
-        begin(Phase::Solve, PhaseView { state, solver, awake, found });
+        begin(Phase::Solve, PhaseView::of(state, scratch));
+        let Scratch { solver, .. } = scratch;
         let first_sub_step = state.tick.wrapping_mul(settings.sub_steps.into());
         solver.threads.clone().install(|| {
             for index in 0..settings.sub_steps {

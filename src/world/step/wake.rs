@@ -2,6 +2,7 @@
 
 use alloc::vec::Vec;
 
+use super::areas;
 use super::narrow_phase::will_touch;
 use crate::collision::{Contact, Moved, Pair};
 use crate::world::cache::Scratch;
@@ -23,7 +24,11 @@ pub(super) fn wake_touched(state: &mut State, scratch: &mut Scratch) -> bool {
             // Another pair of this round may have woken the island already.
             let (a, b) = state.bodies_of(pair);
             let Some(island) = a.island.or(b.island) else { continue };
-            if will_touch(state, scratch.shapes.poses(), pair) {
+            let wakes = match state.sensor_of(pair) {
+                None => will_touch(state, scratch.shapes.poses(), pair),
+                Some(_) => areas::wakes(state, scratch, pair),
+            };
+            if wakes {
                 wake_island(state, scratch, island);
                 any = true;
             }
@@ -34,19 +39,20 @@ pub(super) fn wake_touched(state: &mut State, scratch: &mut Scratch) -> bool {
     any
 }
 
-/// Lists the contacts of solid shapes that have a sleeping body.
+/// Lists the contacts of solid shapes or areas that have a sleeping body.
 fn list_pairs_with_sleepers(state: &State, scratch: &Scratch, pairs: &mut Vec<Pair>) {
     let motion = scratch.shapes.motion();
     let has_sleeper = |contact: &&Contact| {
         let (a, b) = (motion.shape(contact.shapes.0), motion.shape(contact.shapes.1));
         let is_asleep = |body: u32| state.bodies.at(body).is_asleep();
-        !(a.sensor || b.sensor) && (is_asleep(a.body) || is_asleep(b.body))
+        let connects = !(a.sensor || b.sensor) || state.has_area(contact.shapes);
+        connects && (is_asleep(a.body) || is_asleep(b.body))
     };
     pairs.clear();
     pairs.extend(state.contacts.iter().filter(has_sleeper).map(|contact| contact.shapes));
 }
 
-/// Finds the pairs of solid shapes between the bodies that have woken since change number `first_change` and sleeping
+/// Finds the pairs of solid shapes or areas between the bodies that have woken since change number `first_change` and sleeping
 /// bodies.
 fn find_pairs_of_woken(state: &State, scratch: &mut Scratch, first_change: usize, pairs: &mut Vec<Pair>) {
     let Scratch { shapes, pairs: cache, .. } = scratch;
@@ -54,7 +60,7 @@ fn find_pairs_of_woken(state: &State, scratch: &mut Scratch, first_change: usize
     let accept = |pair: Pair| {
         let (a, b) = state.bodies_of(pair);
         a.is_asleep() != b.is_asleep()
-            && state.sensor_of(pair).is_none()
+            && (state.sensor_of(pair).is_none() || state.has_area(pair))
             && cache.non_colliding.may_touch(state, pair)
     };
     shapes.find_pairs(woken, accept, state.config.pair_limit as usize, pairs);

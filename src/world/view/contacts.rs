@@ -93,12 +93,12 @@ impl ContactView<'_> {
         self.world.scratch.solver.contact_colour(place)
     }
 
-    /// The mass that a force between the two bodies accelerates: `mA mB / (mA + mB)` in kg. A body that is not dynamic
-    /// has an infinite mass. 0 if neither body is dynamic.
+    /// The mass that a force between the two bodies accelerates: `mA mB / (mA + mB)` in kg. A body that is not
+    /// dynamic, or has no mass, counts as infinitely heavy. 0 if both do.
     #[must_use]
     pub fn reduced_mass(&self) -> Fx {
         let (a, b) = self.world.state.bodies_of(self.contact.shapes);
-        match (a.is_dynamic(), b.is_dynamic()) {
+        match (a.has_mass(), b.has_mass()) {
             (true, true) => {
                 let (light, heavy) = (a.mass().min(b.mass()), a.mass().max(b.mass()));
                 let ratio = fx_div(light, heavy).unwrap_or_default();

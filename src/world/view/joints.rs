@@ -55,7 +55,8 @@ impl World {
 
     /// Returns the distance in metres by which the anchors violate the joint: the distance of the anchors of a revolute
     /// or weld joint, the offset across the axis of a prismatic or wheel joint, the deviation from the rod or the
-    /// limits of a distance joint. Limits, springs and motors of other kinds do not count. `None` for motor and filter
+    /// limits of a distance joint, the distance of the teeth of a gear or rack along the pitch line, the length by which the
+    /// rope of a pulley is too long. Limits, springs and motors of other kinds do not count. `None` for motor and filter
     /// joints.
     #[doc(alias = "separation")]
     #[must_use]
@@ -73,6 +74,10 @@ impl World {
                     (None, None) => length,
                 };
                 Some(length.saturating_sub(nearest).saturating_abs())
+            }
+            JointKind::Gear(_) | JointKind::Rack(_) | JointKind::Pulley(_) => {
+                let (joint, a, b) = self.joint_and_bodies(id)?;
+                joint.coupling_error(a, b)
             }
             JointKind::Motor(_) | JointKind::Filter => None,
         }

@@ -94,21 +94,21 @@ impl Scaling {
         (scaling, [scaled(inverse_11, 0), scaled(inverse_21, inverse_22)])
     }
 
-    /// Scales a row with the direction `n`, the lever ratios of both bodies, and the denominator `D` of the row.
+    /// Scales a row with the directions `n`, the lever ratios of both bodies, and the denominator `D` of the row.
     pub(super) fn of_row(
-        n: Vec2<Unit>,
+        [n_a, n_b]: [Vec2<Unit>; 2],
         [e_a, e_b]: [Ratio; 2],
         denominator: i64,
         roots: [i64; 2],
     ) -> (Self, ScaledRow) {
         let (root, inverse) = root_and_inverse(denominator);
-        let side = |sign: i64, fraction_root: i64, e: Ratio| {
+        let side = |sign: i64, fraction_root: i64, n: Vec2<Unit>, e: Ratio| {
             let linear = [n.x, n.y].map(|part| i64::from(part.to_bits()));
             [linear[0], linear[1], i64::from(e.to_bits()) << 6]
                 .map(|part| saturate(sign * product(product(part, inverse), fraction_root)))
         };
         let scaling = Scaling { root: [root, 0, 0], inverse: [inverse, 0, 0] };
-        (scaling, [side(-1, roots[0], e_a), side(1, roots[1], e_b)])
+        (scaling, [side(-1, roots[0], n_a, e_a), side(1, roots[1], n_b, e_b)])
     }
 
     /// `R^-1 d`.

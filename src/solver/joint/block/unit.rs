@@ -121,14 +121,15 @@ impl Unit {
                     let [e_a, e_b] = angle.e;
                     let denominator = turning(fractions.a, e_a, e_a) + turning(fractions.b, e_b, e_b);
                     let none = Vec2::new(Fraction::ZERO, Fraction::ZERO);
-                    (*angle_scaling, rows[*row + 2]) = Scaling::of_row(none, angle.e, denominator, *roots);
+                    (*angle_scaling, rows[*row + 2]) =
+                        Scaling::of_row([none; 2], angle.e, denominator, *roots);
                 }
             }
             Source::HingeLimit(number, side) => {
                 let e = hinges.blocked_limit(number, side);
                 let denominator = turning(fractions.a, e[0], e[0]) + turning(fractions.b, e[1], e[1]);
                 let none = Vec2::new(Fraction::ZERO, Fraction::ZERO);
-                (*scaling, rows[*row]) = Scaling::of_row(none, e, denominator, *roots);
+                (*scaling, rows[*row]) = Scaling::of_row([none; 2], e, denominator, *roots);
             }
             Source::Part(ListPart::Point(at)) => {
                 let (e_a, e_b): (Vec2<Ratio>, Vec2<Ratio>) = list.point(at).block.ratios();

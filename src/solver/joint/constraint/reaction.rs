@@ -3,7 +3,8 @@
 use super::super::super::body::SolverBody;
 use super::super::super::context::StepContext;
 use super::super::super::settings::Tuning;
-use super::super::def::JointFrame;
+use super::super::Pulley;
+use super::super::def::{JointFrame, JointKind};
 use super::super::hinge::HingeBody;
 use super::super::pose::{BodyRotation, Ends};
 use super::super::state::Joint;
@@ -23,7 +24,7 @@ impl JointSet {
         (a, b): (&Body, &Body),
         tuning: &Tuning,
     ) -> (Vec2<Fx>, Fx) {
-        if !joint.is_solved() || !(a.is_dynamic() || b.is_dynamic()) {
+        if !joint.is_solved() || !(a.has_mass() || b.has_mass()) {
             return (Vec2::ZERO, Fx::ZERO);
         }
         self.clear();
@@ -49,8 +50,11 @@ impl JointSet {
         self.refresh(&context);
         let place = Ends::prepare(joint, indices, [a, b]).place(context.bodies, &self.body_rotations);
         self.warm_start(&context);
+        if let JointKind::Pulley(pulley) = &joint.def.kind {
+            return pulley_reaction(pulley, joint, (a, b), &bodies, tuning);
+        }
         // The velocity of the lighter body has more significant bits.
-        let (body, moved, arm) = if a.is_dynamic() && (!b.is_dynamic() || a.mass() < b.mass()) {
+        let (body, moved, arm) = if a.has_mass() && (!b.has_mass() || a.mass() < b.mass()) {
             (a, bodies[1].reversed(), place.reach_of_a().arm)
         } else {
             (b, bodies[2], place.lever_b.arm)
@@ -60,4 +64,23 @@ impl JointSet {
         let torque = fx_mul(per_second(moved.spin), body.radius_of_gyration());
         (force, torque.saturating_sub(arm.widen().cross(force)))
     }
+}
+
+/// The force of a rope on B. A rope pulls both bodies, so that the impulse of either gives the tension.
+fn pulley_reaction(
+    pulley: &Pulley,
+    joint: &Joint,
+    (a, b): (&Body, &Body),
+    bodies: &[SolverBody; 3],
+    tuning: &Tuning,
+) -> (Vec2<Fx>, Fx) {
+    let (body, moved, ratio) = match a.has_mass() && (!b.has_mass() || a.mass() < b.mass()) {
+        true => (a, &bodies[1], pulley.ratio),
+        false => (b, &bodies[2], Fx::ONE),
+    };
+    let change = moved.velocity.widen().length();
+    let force = fx_mul(fx_mul(change, body.mass()).saturating_mul_int(tuning.rate.into()), ratio);
+    let to_wheel = pulley.wheel_b - b.transform().apply(joint.def.frame_b.anchor);
+    let direction = to_wheel.normalized().unwrap_or(Vec2::Y);
+    (direction.widen().scale(force), Fx::ZERO)
 }

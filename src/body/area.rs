@@ -1,0 +1,193 @@
+//! Areas: what a sensor does to the bodies in it, as data.
+//!
+//! An area fills its shape with a medium. Two shares say how much of a body is in it: the area of the body's shapes that
+//! is in the shape of the area, in m², and the share of that in all of the body's area. A body without area is measured
+//! by the length of its lines. With the share `s`, the part `A` in the area, its centre of area `c` and the body's mass
+//! `M`:
+//!
+//! ```text
+//! dv/dt = s acceleration + s attraction + A force / M - s linear_drag (v - u) - A density field / M
+//! dw/dt = A (c - x) x (force - density field) / (M k^2)  - s angular_drag (w - w_medium)
+//! ```
+//!
+//! `field` is the acceleration that the medium feels as well: gravity and the accelerations and attractions of all areas
+//! at the body. `u` is the velocity of the medium, `flow` and the velocity of the area's body. The effects of several
+//! areas add up.
+
+use serde::{Deserialize, Serialize};
+
+use super::error::WorldError;
+use super::geometry::Geometry;
+use super::shape::DENSITY_MAX;
+use crate::fx;
+use crate::math::{Fx, Vec2};
+
+/// Largest acceleration of an area in m/s².
+const ACCELERATION_MAX: Fx = fx!(10000);
+/// Largest force of an area in N/m².
+const FORCE_MAX: Fx = fx!(1048576);
+/// Largest flow of an area in m/s.
+const FLOW_MAX: Fx = fx!(400);
+/// Largest drag of an area per second.
+const DRAG_MAX: Fx = fx!(1000);
+/// Range of the radius of an attraction in metres.
+const RADIUS: core::ops::RangeInclusive<Fx> = fx!(0.01)..=fx!(1048576);
+
+/// Effect of a sensor on the bodies in it: wind, water, a field of gravity.
+///
+/// It acts on the solid shapes that the sensor detects, of dynamic bodies. Only the part of a shape that is inside
+/// counts, and rounded outlines are measured as polygons of 32 sides, to 0.4 % of their radius. Directions are those of
+/// the area's body, and the medium moves with that body. The body itself feels nothing: an area is an influence from
+/// outside, like gravity.
+///
+/// ```
+/// use lockstep2d::{body::{Area, BodyDef, Polygon, ShapeDef}, fx, world::World};
+/// let mut world = World::default();
+/// let water = Area::fluid(fx!(1)).drag(fx!(2), fx!(2));
+/// let pool = ShapeDef::new(Polygon::rectangle(fx!(5), fx!(2))?).area(water);
+/// world.spawn(&BodyDef::fixed().position((fx!(0), fx!(-2))), &[pool])?;
+/// let cork = ShapeDef::new(Polygon::square(fx!(0.5))?).density(fx!(0.25));
+/// let cork = world.spawn(&BodyDef::dynamic().position((fx!(0), fx!(1))), &[cork])?;
+/// for _ in 0..600 {
+///     world.step();
+/// }
+/// // A quarter of it is under water.
+/// let height = world.body(cork).expect("still there").position().y;
+/// assert!((height - fx!(0.25)).abs() < fx!(0.01));
+/// # Ok::<(), lockstep2d::body::WorldError>(())
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[doc(alias = "Area2D")]
+#[doc(alias = "effector")]
+#[doc(alias = "buoyancy")]
+#[doc(alias = "wind")]
+pub struct Area {
+    /// Acceleration in m/s², along the axes of the area's body, within ±10 000. It adds to gravity, and does not depend
+    /// on the mass.
+    pub acceleration: Vec2<Fx>,
+    /// Acceleration towards the centre of the shape.
+    pub attraction: Option<Attraction>,
+    /// Force in N on each m² in the area, along the axes of the area's body, within ±2^20: a wind that moves light
+    /// things more than heavy ones.
+    pub force: Vec2<Fx>,
+    /// Velocity of the medium in m/s relative to the area's body, along that body's axes, within ±400 m/s. It acts
+    /// by drag.
+    pub flow: Vec2<Fx>,
+    /// Decay rate per second, 0 to 1000, of the velocity relative to the medium.
+    pub linear_drag: Fx,
+    /// Decay rate per second, 0 to 1000, of the angular velocity relative to the area's body.
+    pub angular_drag: Fx,
+    /// Mass per area of the medium in kg/m², 0 to 2^20: bodies of a smaller density float in it. Buoyancy acts against
+    /// gravity and the accelerations of areas, at the centre of the part that is in the area.
+    pub density: Fx,
+}
+
+/// Acceleration towards a point, or away from it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[doc(alias = "radial gravity")]
+#[doc(alias = "planet")]
+pub struct Attraction {
+    /// Acceleration in m/s² at the distance `radius`, within ±10 000. A negative one repels.
+    pub acceleration: Fx,
+    /// Distance in metres, 0.01 to 2^20, at which the acceleration is the given one. Nearer it falls evenly to 0, as
+    /// inside a planet.
+    pub radius: Fx,
+    /// How the acceleration falls beyond `radius`.
+    pub falloff: Falloff,
+}
+
+/// How an attraction falls with the distance.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum Falloff {
+    /// Not at all.
+    Constant,
+    /// With the distance.
+    Inverse,
+    /// With the square of the distance, as gravity.
+    InverseSquare,
+}
+
+impl Area {
+    /// An area without any effect.
+    #[must_use]
+    pub fn new() -> Self {
+        Area::default()
+    }
+
+    /// A fluid of a density in kg/m², without drag.
+    #[must_use]
+    pub fn fluid(density: Fx) -> Self {
+        Area { density, ..Area::default() }
+    }
+
+    /// Sets the acceleration in m/s².
+    #[must_use]
+    pub fn acceleration(mut self, acceleration: impl Into<Vec2<Fx>>) -> Self {
+        self.acceleration = acceleration.into();
+        self
+    }
+
+    /// Sets an acceleration in m/s² towards the centre of the shape at a distance of `radius` metres, and how it falls
+    /// beyond.
+    #[must_use]
+    pub fn attraction(mut self, acceleration: Fx, radius: Fx, falloff: Falloff) -> Self {
+        self.attraction = Some(Attraction { acceleration, radius, falloff });
+        self
+    }
+
+    /// Sets the force in N/m².
+    #[must_use]
+    pub fn force(mut self, force: impl Into<Vec2<Fx>>) -> Self {
+        self.force = force.into();
+        self
+    }
+
+    /// Sets the velocity of the medium in m/s.
+    #[must_use]
+    pub fn flow(mut self, flow: impl Into<Vec2<Fx>>) -> Self {
+        self.flow = flow.into();
+        self
+    }
+
+    /// Sets the decay rates of the velocity and of the angular velocity, per second.
+    #[must_use]
+    pub fn drag(mut self, linear: Fx, angular: Fx) -> Self {
+        (self.linear_drag, self.angular_drag) = (linear, angular);
+        self
+    }
+
+    /// Sets the density of the medium in kg/m².
+    #[must_use]
+    pub fn density(mut self, density: Fx) -> Self {
+        self.density = density;
+        self
+    }
+
+    /// Checks the area of a shape with a geometry.
+    pub(crate) fn validate(&self, geometry: &Geometry) -> Result<(), WorldError> {
+        let Area { acceleration, attraction, force, flow, linear_drag, angular_drag, density } = *self;
+        let check = |holds: bool, what: &'static str| match holds {
+            true => Ok(()),
+            false => Err(WorldError::AreaOutOfRange { what }),
+        };
+        let within = |vector: Vec2<Fx>, most: Fx| {
+            [vector.x, vector.y].iter().all(|component| (-most..=most).contains(component))
+        };
+        let has_inside = match geometry {
+            Geometry::Circle { .. } | Geometry::Polygon(_) | Geometry::Capsule { .. } => true,
+            Geometry::Segment { .. } | Geometry::Link { .. } => false,
+        };
+        check(has_inside, "geometry")?;
+        check(within(acceleration, ACCELERATION_MAX), "acceleration")?;
+        check(within(force, FORCE_MAX), "force")?;
+        check(within(flow, FLOW_MAX), "flow")?;
+        check((Fx::ZERO..=DRAG_MAX).contains(&linear_drag), "linear drag")?;
+        check((Fx::ZERO..=DRAG_MAX).contains(&angular_drag), "angular drag")?;
+        check((Fx::ZERO..=DENSITY_MAX).contains(&density), "density")?;
+        let is_valid = |attraction: Attraction| {
+            (-ACCELERATION_MAX..=ACCELERATION_MAX).contains(&attraction.acceleration)
+                && RADIUS.contains(&attraction.radius)
+        };
+        check(attraction.is_none_or(is_valid), "attraction")
+    }
+}

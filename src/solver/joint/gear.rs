@@ -1,0 +1,114 @@
+//! Gears: a pair of toothed wheels, and a wheel on a rack.
+//!
+//! The impulse acts on both bodies at the pitch point, where the wheels roll on each other, along the common tangent.
+//! Momentum and angular momentum are kept, and axles may move: a planet gear on a turning arm is two hinges and a gear.
+//!
+//! With `NA` and `NB` teeth, the angles `a` and `b` of the frames and the angle `p` of the line from A's anchor to B's,
+//!
+//! ```text
+//! C = NA (a - p) + NB (b - p)        in teeth; wheels that turn against each other have teeth of the same sign
+//! ```
+//!
+//! is known up to whole teeth from the pose alone, because whole turns are whole teeth. There is no state that could
+//! drift, and wheels that are forced apart by more than half a tooth skip it, as gears do.
+
+use serde::{Deserialize, Serialize};
+
+use super::options::check;
+use super::parts::{Direction, Parts, slot};
+use crate::body::WorldError;
+use crate::fx;
+use crate::math::Fx;
+
+/// Largest number of teeth of a wheel.
+const TEETH_MAX: i32 = 1000;
+/// Smallest and largest radius of a wheel on a rack, in metres.
+const RADIUS_MIN: Fx = fx!(0.001);
+const RADIUS_MAX: Fx = fx!(128);
+
+/// A gear: two wheels about the anchors, whose teeth mesh. B turns by `-teeth_a / teeth_b` of the turn of A, both seen
+/// from the line between the anchors.
+///
+/// The pitch radii follow from the distance of the anchors, in the ratio of the teeth. Wheels with teeth of the same
+/// sign are beside each other and turn in opposite directions. A wheel with a negative number is a ring around the other
+/// one, and both turn the same way, as two wheels with a belt do.
+///
+/// The gear holds no distance: give each wheel a hinge, to the ground or to a common body. The angles of the frames say
+/// how the teeth meet: [`World::fit_joint`](crate::world::World::fit_joint) sets them to the current poses.
+///
+/// ```
+/// use lockstep2d::{body::{BodyDef, Geometry, ShapeDef}, fx, solver::{Gear, JointDef, Revolute}, world::World};
+/// let mut world = World::default();
+/// let ground = world.spawn(&BodyDef::fixed(), &[])?;
+/// let disc = |radius| Geometry::circle(radius).map(ShapeDef::new);
+/// let small = world.spawn(&BodyDef::dynamic(), &[disc(fx!(1))?])?;
+/// let large = world.spawn(&BodyDef::dynamic().position((fx!(3), fx!(0))), &[disc(fx!(2))?])?;
+/// let crank = Revolute::new().motor(fx!(4), fx!(1000));
+/// world.add_joint(&world.joint_at(ground, small, crank, (fx!(0), fx!(0)))?)?;
+/// world.add_joint(&world.joint_at(ground, large, Revolute::new(), (fx!(3), fx!(0)))?)?;
+/// world.add_joint(&world.fit_joint(&JointDef::new(small, large, Gear::new(20, 40)))?)?;
+/// for _ in 0..60 {
+///     world.step();
+/// }
+/// let speed = world.body(large).expect("still there").angular_velocity();
+/// assert!((speed + fx!(2)).abs() < fx!(0.001));
+/// # Ok::<(), lockstep2d::body::WorldError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[doc(alias = "GearJoint")]
+#[doc(alias = "cog")]
+#[doc(alias = "belt")]
+pub struct Gear {
+    /// Teeth of A's wheel: 1 to 1000, or -1 to -1000 for a ring.
+    pub teeth_a: i32,
+    /// Teeth of B's wheel: 1 to 1000, or -1 to -1000 for a ring.
+    pub teeth_b: i32,
+}
+
+impl Gear {
+    /// A gear with the numbers of teeth of A and B.
+    #[must_use]
+    pub const fn new(teeth_a: i32, teeth_b: i32) -> Self {
+        Gear { teeth_a, teeth_b }
+    }
+
+    pub(super) fn validate(&self) -> Result<(), WorldError> {
+        let is_valid = |teeth: i32| teeth != 0 && (-TEETH_MAX..=TEETH_MAX).contains(&teeth);
+        check(is_valid(self.teeth_a) && is_valid(self.teeth_b), "number of teeth")?;
+        // Two rings cannot be around each other.
+        check(self.teeth_a > 0 || self.teeth_b > 0, "number of teeth")
+    }
+
+    pub(super) fn prepare(&self, parts: &mut Parts<'_>) {
+        parts.hold(slot::HOLD, Direction::Coupled(parts.coupling), Fx::ZERO);
+    }
+}
+
+/// A wheel on a rack: A is a wheel of a radius about its anchor, and rolls along the x axis of B's frame.
+///
+/// The wheel touches its pitch line at the distance `radius` to the right of that axis, below it if the axis points to
+/// the right. The joint holds no distance: give the wheel a hinge and the rack a slider, or the wheel both.
+/// [`World::fit_joint`](crate::world::World::fit_joint) moves B's anchor so that the joint holds at the current poses.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[doc(alias = "pinion")]
+#[doc(alias = "rack and pinion")]
+pub struct Rack {
+    /// Pitch radius of the wheel in metres, 0.001 to 128. Negative for a rack on the other side of the wheel.
+    pub radius: Fx,
+}
+
+impl Rack {
+    /// A wheel of a radius in metres on a rack.
+    #[must_use]
+    pub const fn new(radius: Fx) -> Self {
+        Rack { radius }
+    }
+
+    pub(super) fn validate(&self) -> Result<(), WorldError> {
+        check((RADIUS_MIN..=RADIUS_MAX).contains(&self.radius.saturating_abs()), "radius")
+    }
+
+    pub(super) fn prepare(&self, parts: &mut Parts<'_>) {
+        parts.hold(slot::HOLD, Direction::Coupled(parts.coupling), Fx::ZERO);
+    }
+}

@@ -1,0 +1,67 @@
+//! The pulley: a rope over two wheels that are fixed in the world, with the Jacobian
+//! `nA.(vA + wA x rA) + ratio nB.(vB + wB x rB)`, where `nA` and `nB` point from the wheels to the anchors (Box2D 2.4).
+
+use serde::{Deserialize, Serialize};
+
+use super::options::{check, is_sane};
+use super::parts::{Direction, Parts};
+use crate::body::{WORLD_EXTENT_MAX, WorldError};
+use crate::fx;
+use crate::math::{Fx, Vec2, fx_mul};
+
+/// Smallest and largest ratio.
+const RATIO_MIN: Fx = fx!(0.25);
+const RATIO_MAX: Fx = fx!(4);
+
+/// A pulley: a rope from A's anchor over two wheels to B's anchor. The length on A's side and `ratio` times that on B's
+/// side are together at most `length`.
+///
+/// A rope only pulls. The wheels are points of the world, which bear its force. B's side is pulled with `ratio` times
+/// the force of A's, as by a tackle with as many ropes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[doc(alias = "PulleyJoint")]
+#[doc(alias = "tackle")]
+pub struct Pulley {
+    /// The wheel on A's side, in m in the world, within ±2^30.
+    pub wheel_a: Vec2<Fx>,
+    /// The wheel on B's side.
+    pub wheel_b: Vec2<Fx>,
+    /// Length of the rope in metres, 0 to 2^20, without the part between the wheels.
+    pub length: Fx,
+    /// Number of times that B's side counts, 0.25 to 4.
+    pub ratio: Fx,
+}
+
+impl Pulley {
+    /// A rope of a length in metres over two wheels in the world.
+    #[must_use]
+    pub fn new(wheel_a: impl Into<Vec2<Fx>>, wheel_b: impl Into<Vec2<Fx>>, length: Fx) -> Self {
+        Pulley { wheel_a: wheel_a.into(), wheel_b: wheel_b.into(), length, ratio: Fx::ONE }
+    }
+
+    /// Sets how many times B's side counts.
+    #[must_use]
+    pub const fn ratio(mut self, ratio: Fx) -> Self {
+        self.ratio = ratio;
+        self
+    }
+
+    /// Length in metres of a taut rope with its anchors at two points of the world.
+    pub(super) fn taut_length(&self, on_a: Vec2<Fx>, on_b: Vec2<Fx>) -> Fx {
+        let beside = fx_mul(self.ratio, self.wheel_b.distance(on_b));
+        self.wheel_a.distance(on_a).saturating_add(beside)
+    }
+
+    pub(super) fn validate(&self) -> Result<(), WorldError> {
+        let Pulley { wheel_a, wheel_b, length, ratio } = *self;
+        let range = -WORLD_EXTENT_MAX..=WORLD_EXTENT_MAX;
+        let coordinates = [wheel_a.x, wheel_a.y, wheel_b.x, wheel_b.y];
+        check(coordinates.iter().all(|coordinate| range.contains(coordinate)), "wheel")?;
+        check(length >= Fx::ZERO && is_sane(length), "length")?;
+        check((RATIO_MIN..=RATIO_MAX).contains(&ratio), "ratio")
+    }
+
+    pub(super) fn prepare(&self, parts: &mut Parts<'_>) {
+        parts.upper(Direction::Coupled(parts.coupling), self.length);
+    }
+}

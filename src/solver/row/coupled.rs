@@ -1,0 +1,105 @@
+//! Rows whose directions on A and B differ, or are no unit vectors: gears and pulleys.
+//!
+//! ```text
+//! vn = nB.vB + eB uB - nA.vA - eA uA
+//! D  = aA (nA^2 + eA^2) + aB (nB^2 + eB^2)
+//! ```
+//!
+//! `D` should be about 1, so that gains `a / D` are small. They are at most 2: a smaller `D` is replaced, so that one
+//! update removes only a part of the velocity.
+
+use super::{Denominator, MassFractions, RATIO_MAX, Row, turning};
+use crate::math::{Length, Ratio, Reciprocal, Unit, Vec2, mul, saturate};
+
+impl Row {
+    /// A row with the directions of A and B, at most 2 long, and the arms of both about their centres, in metres.
+    pub(crate) fn coupled(
+        n: [Vec2<Unit>; 2],
+        arms: [Length; 2],
+        inverse_gyrations: [Reciprocal; 2],
+        fractions: MassFractions,
+    ) -> (Row, Denominator) {
+        let ratio = |side: usize| -> Ratio {
+            inverse_gyrations[side]
+                .times::<_, fixed::types::extra::U24>(arms[side])
+                .clamp(-RATIO_MAX, RATIO_MAX)
+        };
+        let (e_a, e_b) = (ratio(0), ratio(1));
+        let linear = |fraction: Unit, n: Vec2<Unit>| {
+            let square: Unit = n.dot(n);
+            // The square of a direction of up to 2 does not fit, but its half does.
+            let half: Unit = Vec2::new(n.x / 2, n.y / 2).dot(n);
+            let square = if half < Unit::ONE / 2 {
+                i64::from(square.to_bits())
+            } else {
+                2 * i64::from(half.to_bits())
+            };
+            crate::math::round_shift(square * i64::from(fraction.to_bits()), 30)
+        };
+        let exact = linear(fractions.a, n[0])
+            + linear(fractions.b, n[1])
+            + turning(fractions.a, e_a, e_a)
+            + turning(fractions.b, e_b, e_b);
+        let least = i64::from(fractions.a.max(fractions.b).to_bits()) * 64 / 127;
+        let denominator = if exact == 0 { 0 } else { exact.max(least) };
+        let gain = |fraction: Unit| {
+            let denominator = denominator.max(1);
+            Unit::from_bits(saturate(((i64::from(fraction.to_bits()) << 30) + denominator / 2) / denominator))
+        };
+        let (g_a, g_b) = match denominator {
+            0 => (Unit::ZERO, Unit::ZERO),
+            _ => (gain(fractions.a), gain(fractions.b)),
+        };
+        let row = Row { n: n[0], n_b: n[1], e_a, e_b, g_a, g_b, f_a: mul(g_a, e_a), f_b: mul(g_b, e_b) };
+        (row, denominator)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::body::SolverBody;
+    use super::super::super::limits::IMPULSE_MAX;
+    use super::super::super::softness::Softness;
+    use super::*;
+    use crate::fx;
+    use crate::math::{Fx, Rng, Rot, Speed, narrow};
+
+    /// One update removes the velocity of any row whose mobility is not too small, and changes velocities in the ratio
+    /// of the masses: `aB dvA nB = -aA dvB nA` along the directions.
+    #[test]
+    fn an_update_removes_the_velocity_along_both_directions() {
+        let mut rng = Rng::new(11);
+        let mut worst = 0;
+        for _ in 0..50_000 {
+            let mut direction = |length: Fx| -> Vec2<Unit> {
+                Rot::from_angle(rng.angle()).apply_wide(Vec2::new(length, fx!(0))).narrow()
+            };
+            let n = [direction(fx!(0.9)), direction(fx!(1.9))];
+            let a: Unit = narrow(rng.range(fx!(0.001), fx!(0.999)));
+            let fractions = MassFractions { a, b: Unit::ONE - a };
+            let arms = [0; 2].map(|_| narrow(rng.range(fx!(-2), fx!(2))));
+            let inverse = [0; 2].map(|_| Reciprocal::of(rng.range(fx!(0.3), fx!(3))));
+            let (row, denominator) = Row::coupled(n, arms, inverse, fractions);
+            assert!(denominator > 0);
+            let mut body = || {
+                let mut speed = || -> Speed { narrow(rng.range(fx!(-20), fx!(20))) };
+                SolverBody { velocity: Vec2::new(speed(), speed()), spin: speed(), ..SolverBody::default() }
+            };
+            let (mut a, mut b) = (body(), body());
+            let (mut lambda, mut faults) = (Speed::ZERO, 0);
+            let bounds = (-IMPULSE_MAX, IMPULSE_MAX);
+            row.solve(&mut a, &mut b, Speed::ZERO, &Softness::RIGID, bounds, &mut lambda, &mut faults);
+            assert_eq!(faults, 0);
+            worst = worst.max(row.velocity(&a, &b, &mut faults).to_bits().abs());
+        }
+        assert!(worst <= 12, "{worst} units left");
+    }
+
+    #[test]
+    fn a_row_that_moves_neither_body_does_nothing() {
+        let none = MassFractions { a: Unit::ZERO, b: Unit::ZERO };
+        let n = [Vec2::X, Vec2::Y];
+        let (row, denominator) = Row::coupled(n, [Length::ONE; 2], [Reciprocal::ZERO; 2], none);
+        assert_eq!((denominator, row.g_a, row.g_b), (0, Unit::ZERO, Unit::ZERO));
+    }
+}

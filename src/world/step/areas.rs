@@ -1,0 +1,227 @@
+//! Areas: what sensors with an [`Area`] do to the bodies in them within the tick.
+//!
+//! Forces are computed once per tick, at the poses that velocities predict for a fraction `(s - 1) / 2 s` of the tick
+//! ahead, with `s` sub-steps: the mean of the poses at which the sub-steps begin. With a force at the pose at the start of
+//! the tick, a spring such as a floating box would gain `h^2 omega^2 (s - 1) / 2 s` of its energy in each tick, because
+//! the sub-steps move it by less than the symplectic Euler method does.
+
+use crate::body::{Area, Attraction, Body, Falloff, Geometry, Handle, Shape, area_of};
+use crate::collision::{Pair, Place, Ring, SupportShape, overlap};
+use crate::math::{Angle, Fx, Rot, Vec2, fx_div, fx_mul};
+use crate::solver::{AreaEffect, Tuning};
+use crate::world::cache::{Scratch, is_awake};
+use crate::world::state::State;
+
+/// A shape that may be in an area: the slots of its body, of the area and of the shape. Their order is that of the sums.
+type Visitor = [u32; 3];
+
+/// Lets every area act on the awake bodies in it, once the solver has their velocities.
+pub(super) fn apply_areas(state: &mut State, scratch: &mut Scratch, tuning: &Tuning) {
+    if !scratch.shapes.motion().may_have_sensors() {
+        return;
+    }
+    let mut visitors = core::mem::take(&mut scratch.area_visitors);
+    visitors.clear();
+    for contact in &state.contacts {
+        let (a, b) = contact.shapes;
+        for (area, shape) in [(a, b), (b, a)] {
+            let is_sensor = scratch.shapes.motion().shape(area).sensor;
+            if is_sensor && state.shapes.at(area).acts_on(state.shapes.at(shape)) {
+                let body = state.shapes.at(shape).body().slot();
+                if is_awake(state.bodies.at(body)) && state.bodies.at(body).has_mass() {
+                    visitors.push([body, area, shape]);
+                }
+            }
+        }
+    }
+    visitors.sort_unstable();
+    let ahead = time_ahead(state);
+    for of_body in visitors.chunk_by(|a, b| a[0] == b[0]) {
+        let [slot, ..] = of_body[0];
+        let body = state.bodies.at(slot);
+        let mut sum = Sum::new(state, body, ahead);
+        of_body.chunk_by(|a, b| a[1] == b[1]).for_each(|shapes| sum.add_area(shapes));
+        let Sum { effect, is_on_moving_ground, .. } = sum.finished();
+        scratch.solver.apply_areas(slot, body, &effect, tuning);
+        if is_on_moving_ground {
+            state.bodies.at_mut(slot).rest_ticks.reset();
+        }
+    }
+    scratch.area_visitors = visitors;
+}
+
+/// Whether an area of an active body overlaps a shape of a sleeping one, on which it acts.
+pub(super) fn wakes(state: &State, scratch: &Scratch, pair: Pair) -> bool {
+    let is_acted_on = |area: u32, shape: u32| {
+        state.shapes.at(area).acts_on(state.shapes.at(shape)) && state.body_of(shape).is_asleep()
+    };
+    let (a, b) = pair;
+    if !is_acted_on(a, b) && !is_acted_on(b, a) {
+        return false;
+    }
+    let (posed_a, posed_b) = (scratch.shapes.poses().at(a), scratch.shapes.poses().at(b));
+    let origin = posed_b.centre;
+    posed_a.bounds.overlaps(posed_b.bounds)
+        && overlap(&SupportShape::of(posed_a, origin), &SupportShape::of(posed_b, origin))
+}
+
+/// The time in seconds for which poses are predicted.
+fn time_ahead(state: &State) -> Fx {
+    let sub_steps = i64::from(state.config.solver.sub_steps);
+    let doubled = 2 * sub_steps * i64::from(state.config.tick_rate);
+    crate::math::ratio(sub_steps - 1, doubled)
+}
+
+/// The sum of the effects of areas on one body.
+struct Sum<'a> {
+    state: &'a State,
+    body: &'a Body,
+    /// The place of the body, as seen from its own centre.
+    place: Place,
+    /// Centre of mass of the body in the world.
+    centre: Vec2<Fx>,
+    ahead: Fx,
+    /// Area of all shapes in m², or the length of all lines if they have no area.
+    size: Fx,
+    has_area: bool,
+    /// Mass in kg of the medium that the body displaces, and the sum of its masses times their places.
+    displaced: Fx,
+    moment: Vec2<Fx>,
+    effect: AreaEffect,
+    /// Acceleration in m/s² that the medium feels as well as the body.
+    field: Vec2<Fx>,
+    /// Whether one of the areas is moved by its kinematic body.
+    is_on_moving_ground: bool,
+}
+
+impl<'a> Sum<'a> {
+    fn new(state: &'a State, body: &'a Body, ahead: Fx) -> Self {
+        let solid =
+            body.shapes().iter().map(|id| state.shapes.at(id.slot())).filter(|shape| !shape.is_sensor());
+        let area: Fx = solid.clone().fold(Fx::ZERO, |sum, shape| sum.saturating_add(area_of(shape.def())));
+        let has_area = area > 0;
+        let place = place_of(body, Vec2::ZERO, ahead);
+        let length =
+            |shape: &Shape| Ring::of(shape.def(), &place).extent().map_or(Fx::ZERO, |line| line.size);
+        let size = if has_area { area } else { solid.map(length).fold(Fx::ZERO, Fx::saturating_add) };
+        Sum {
+            state,
+            body,
+            place,
+            centre: body.centre + body.velocity().scale(ahead),
+            ahead,
+            size,
+            has_area,
+            displaced: Fx::ZERO,
+            moment: Vec2::ZERO,
+            effect: AreaEffect::default(),
+            field: state.config.gravity,
+            is_on_moving_ground: false,
+        }
+    }
+
+    /// Adds the effect of one area on some shapes of the body.
+    fn add_area(&mut self, shapes: &[Visitor]) {
+        let [_, area, _] = shapes[0];
+        let area_shape = self.state.shapes.at(area);
+        let Some(area) = area_shape.area() else { return };
+        let medium = self.state.bodies.at(area_shape.body().slot());
+        let centre = medium.centre + medium.velocity().scale(self.ahead);
+        let place = place_of(medium, centre - self.centre, self.ahead);
+        let ring = Ring::of(area_shape.def(), &place);
+        let mut inside = Fx::ZERO;
+        for &[.., shape] in shapes {
+            let shape = self.state.shapes.at(shape);
+            let whole = Ring::of(shape.def(), &self.place);
+            let Some(all) = whole.extent() else { continue };
+            let Some(part) = whole.inside(&ring).extent() else { continue };
+            let size = match shape.geometry() {
+                Geometry::Segment { .. } | Geometry::Link { .. } => {
+                    if self.has_area {
+                        Fx::ZERO
+                    } else {
+                        part.size
+                    }
+                }
+                // A rounded outline is measured as a polygon; what counts is its share of the true area.
+                _ => fx_mul(area_of(shape.def()), fx_div(part.size, all.size).unwrap_or(Fx::ZERO)),
+            };
+            inside = inside.saturating_add(size);
+            if self.has_area {
+                self.add_forces(area, &place, size, part.centre);
+            }
+        }
+        let share = fx_div(inside, self.size).unwrap_or(Fx::ZERO).min(Fx::ONE);
+        if share > 0 {
+            self.add_share(area, area_shape, medium, &place, share);
+        }
+    }
+
+    /// Adds what acts on a part of the body of `size` m² with its centre at `arm` from the body's.
+    fn add_forces(&mut self, area: &Area, place: &Place, size: Fx, arm: Vec2<Fx>) {
+        let mass = fx_mul(area.density, size);
+        self.displaced = self.displaced.saturating_add(mass);
+        self.moment += arm.scale(mass);
+        let force = place.rotation.apply_wide(area.force).scale(size);
+        self.effect.force += force;
+        self.effect.torque = self.effect.torque.saturating_add(arm.cross(force));
+    }
+
+    /// Adds what acts on the body as a whole, for the share of it that is in the area.
+    fn add_share(&mut self, area: &Area, shape: &Shape, medium: &Body, place: &Place, share: Fx) {
+        let mut field = place.rotation.apply_wide(area.acceleration);
+        if let Some(attraction) = &area.attraction {
+            field += pull(attraction, place.point(shape.offset()));
+        }
+        let field = field.scale(share);
+        self.field += field;
+        let linear_drag = fx_mul(area.linear_drag, share);
+        let angular_drag = fx_mul(area.angular_drag, share);
+        let flow = medium.velocity_at(self.centre) + place.rotation.apply_wide(area.flow);
+        let effect = &mut self.effect;
+        effect.acceleration += field + flow.scale(linear_drag);
+        let turning = if medium.turns() { medium.angular_velocity() } else { Fx::ZERO };
+        let turned = fx_mul(turning, angular_drag);
+        effect.angular_acceleration = effect.angular_acceleration.saturating_add(turned);
+        effect.linear_drag = effect.linear_drag.saturating_add(linear_drag);
+        effect.angular_drag = effect.angular_drag.saturating_add(angular_drag);
+        self.is_on_moving_ground |= !medium.is_dynamic() && medium.is_moving();
+    }
+
+    /// Adds buoyancy, which depends on the field of all areas.
+    fn finished(mut self) -> Self {
+        debug_assert!(is_awake(self.body), "areas act on awake bodies");
+        self.effect.force -= self.field.scale(self.displaced);
+        let torque = self.moment.cross(self.field);
+        self.effect.torque = self.effect.torque.saturating_sub(torque);
+        self
+    }
+}
+
+/// The place of a body whose predicted centre is at `centre`.
+fn place_of(body: &Body, centre: Vec2<Fx>, ahead: Fx) -> Place {
+    let turned = Angle::from_radians(fx_mul(body.angular_velocity(), ahead));
+    Place {
+        centre,
+        rotation: Rot::from_angle(body.angle() + turned),
+        local_centre: body.local_centre_of_mass(),
+    }
+}
+
+/// Acceleration towards a place, as seen from the body.
+fn pull(attraction: &Attraction, to: Vec2<Fx>) -> Vec2<Fx> {
+    let Attraction { acceleration, radius, falloff } = *attraction;
+    let Some((direction, distance)) = to.normalized_with_length() else { return Vec2::ZERO };
+    let over = |a: Fx, b: Fx| fx_div(a, b).unwrap_or(Fx::ZERO);
+    let factor = if distance < radius {
+        over(distance, radius)
+    } else {
+        let ratio = over(radius, distance);
+        match falloff {
+            Falloff::Constant => Fx::ONE,
+            Falloff::Inverse => ratio,
+            Falloff::InverseSquare => fx_mul(ratio, ratio),
+        }
+    };
+    direction.widen().scale(fx_mul(acceleration, factor))
+}
