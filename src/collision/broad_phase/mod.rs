@@ -55,6 +55,7 @@ pub(crate) struct BroadPhase {
 }
 
 #[derive(Clone, Debug)]
+#[expect(clippy::large_enum_variant, reason = "a world has one, and it is hardly ever moved")]
 enum Structure {
     Trees(Trees),
     SweepAndPrune(SweepAndPrune),
