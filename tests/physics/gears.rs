@@ -80,13 +80,14 @@ fn the_ratio_is_kept_under_load() {
             *worst = (*worst).max(world.joint_error(gear).expect("valid"));
         }
         run(&mut world, 0);
-        assert!(worst[0] < fx!(0.008) && worst[1] < fx!(0.002), "{teeth:?}: the teeth are {worst:?} m apart");
+        // Gears yield by a / (2 pi 60 Hz)^2, as all joints do: 4 mm where the brake holds a wheel of 0.3 kg.
+        assert!(worst[0] < fx!(0.008) && worst[1] < fx!(0.006), "{teeth:?}: the teeth are {worst:?} m apart");
         close(omega(&world, a), fx!(9), fx!(0.02));
         let turned = [axle_a, axle_b].map(|axle| world.joint_angle(axle).expect("valid"));
         let apart = turned[0] * i64::from(teeth[0]) + turned[1] * i64::from(teeth[1]);
         assert!(turned[0] > fx!(500));
-        // In teeth, of which none is skipped.
-        close(apart, fx!(0), fx!(0.15));
+        // In radians of a tooth, of which none is skipped.
+        close(apart, fx!(0), fx!(1));
     }
 }
 
