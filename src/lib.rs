@@ -48,6 +48,7 @@ pub mod net;
 pub mod replay;
 pub mod report;
 pub mod scenes;
+pub mod session;
 mod simd;
 pub mod solver;
 mod threads;
