@@ -166,7 +166,7 @@ impl Session {
         if !self.config.has(Fault::KeepComplete) {
             self.progress.complete = self.progress.fin;
         }
-        self.progress.follow(&self.view);
+        self.progress.follow(&self.view, self.play.needed_from().min(self.progress.fin));
         self.play.note_change(self.progress.fin);
         self.lifecycle_after_change(&before);
         self.settle();

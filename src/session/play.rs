@@ -151,6 +151,11 @@ impl Play {
         self.dirty = self.dirty.min(tick);
     }
 
+    /// First tick that may be played again.
+    pub(super) fn needed_from(&self) -> Tick {
+        self.saves.front().copied().unwrap_or(self.used_from).min(self.used_from)
+    }
+
     pub(super) fn last_hash(&self) -> Option<(Tick, u64)> {
         self.hashes.back().copied()
     }

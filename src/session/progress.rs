@@ -20,8 +20,9 @@ pub(super) struct Progress {
     pub(super) fin: Tick,
     /// When a tick last became complete that was not complete before.
     pub(super) moved_at: u64,
-    /// Indices of the spans that do not end before `fin`.
+    /// Indices of the spans that do not end before `live_from`. Earlier ticks are not played again.
     pub(super) live: Vec<usize>,
+    pub(super) live_from: Tick,
     /// Tick of the last clean-up.
     cleaned: Tick,
 }
@@ -32,14 +33,16 @@ const CLEAN_INTERVAL: Tick = 256;
 impl Progress {
     pub(super) fn new(view: &View, tick: Tick) -> Self {
         let mut progress =
-            Progress { complete: tick, ack: tick, fin: tick, moved_at: 0, live: Vec::new(), cleaned: tick };
-        progress.follow(view);
+            Progress { complete: tick, ack: tick, fin: tick, moved_at: 0, live: Vec::new(), live_from: tick, cleaned: tick };
+        progress.follow(view, tick);
         progress
     }
 
-    pub(super) fn follow(&mut self, view: &View) {
+    /// Lists the spans that do not end before a tick.
+    pub(super) fn follow(&mut self, view: &View, tick: Tick) {
         self.live.clear();
-        let live = |(index, span): (usize, &super::view::Span)| (span.until > self.fin).then_some(index);
+        self.live_from = tick;
+        let live = |(index, span): (usize, &super::view::Span)| (span.until > tick).then_some(index);
         self.live.extend(view.spans.iter().enumerate().filter_map(live));
     }
 }
@@ -91,7 +94,7 @@ impl Session {
         self.progress.fin = fin;
         if fin - self.progress.cleaned >= CLEAN_INTERVAL {
             self.progress.cleaned = fin;
-            self.progress.follow(&self.view);
+            self.progress.follow(&self.view, self.play.needed_from().min(fin));
             self.log.forget_before(fin.saturating_sub(self.config.log_ticks));
         }
     }

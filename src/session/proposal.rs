@@ -22,8 +22,10 @@ pub(super) struct Proposal {
     change: Option<Arc<Change>>,
 }
 
-/// Rounds without a decision after which waiting times grow no more.
-const ROUNDS_MAX: u32 = 4;
+/// Rounds without a decision after which waiting times grow no more, and the longest time that they may still grow to,
+/// in microseconds.
+const ROUNDS_MAX: u64 = 4;
+const BALLOT_MAX: u64 = 6_000_000;
 
 impl Session {
     /// Starts a ballot if there is a reason for one.
@@ -37,12 +39,11 @@ impl Session {
         let wanted = self.change_is_wanted();
         let since = if wanted { Some(*self.agreement.wanted_since.get_or_insert(active)) } else { None };
         self.agreement.wanted_since = since;
-        let Agreement { promised, promised_at, round, base_round, .. } = self.agreement;
+        let Agreement { promised, promised_at, round, .. } = self.agreement;
         let free = promised.is_none() || self.config.has(Fault::Duel);
         let waited = free && since.is_some_and(|since| active >= since + rank * ballot / 3);
         let stalled = free && self.is_stalled(rank);
-        let rounds = u64::from((round - base_round).clamp(1, ROUNDS_MAX));
-        let stuck = promised.is_some() && active > promised_at + (ballot + rank * ballot / 5) * rounds;
+        let stuck = promised.is_some() && active > promised_at + self.ballot_time() * (5 + rank) / 5;
         if !(stuck || waited || stalled) || !self.is_connected() {
             return;
         }
@@ -51,6 +52,13 @@ impl Session {
         self.set_promise(own);
         self.agreement.proposal = Some(Proposal { ballot: own, started_at: active, quorum_at: None, change: None });
         self.agreement.not_before = active + self.backoff();
+    }
+
+    /// Time that a ballot gets. It grows with the rounds of the view that led to no decision.
+    fn ballot_time(&self) -> u64 {
+        let ballot = self.config.timing.ballot.max(1);
+        let rounds = u64::from(self.agreement.round.saturating_sub(self.agreement.base_round));
+        ballot * rounds.clamp(1, ROUNDS_MAX.max(BALLOT_MAX / ballot))
     }
 
     /// Whether a voter has been out of contact for the time of patience, and play stands still or does not need it.
@@ -163,7 +171,7 @@ impl Session {
             self.set_accepted(ballot, change);
             return true;
         }
-        if active > proposal.started_at + 2 * self.config.timing.ballot {
+        if active > proposal.started_at + 2 * self.ballot_time() {
             self.agreement.not_before = active + self.backoff();
             self.agreement.promised_at = active;
         } else {

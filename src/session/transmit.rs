@@ -135,7 +135,11 @@ impl Session {
             let first = row.view.saturating_add(1);
             packet.changes(first, self.changes.since(first));
         }
-        packet.runs(self.log.size(), self.progress.live.iter().filter_map(|&span| self.run_for(to, span)));
+        let behind = to.row.as_ref().map_or(0, |row| row.fin) < self.progress.live_from;
+        let all = if behind { 0..self.view.spans.len() } else { 0..0 };
+        let live = if behind { &[] } else { self.progress.live.as_slice() };
+        let spans = all.chain(live.iter().copied());
+        packet.runs(self.log.size(), spans.filter_map(|span| self.run_for(to, span)));
         let foreign = self.foreign_rows(to);
         packet.foreign(foreign.iter().map(|remote| (remote.id, remote.row.as_ref())).filter_map(
             |(id, row)| Some((id, row?)),
