@@ -36,6 +36,8 @@ const LATE_MAX: u64 = 3;
 const CATCH_UP: Tick = 12;
 /// Time between changes of the delay, in microseconds.
 const DELAY_INTERVAL: u64 = 500_000;
+/// Somebody without a seat plays this many ticks behind the final ones.
+const FOLLOW: i64 = 2;
 /// Lateness is measured in 1/256 ticks.
 const PART: i64 = 256;
 
@@ -84,8 +86,9 @@ impl Session {
         self.pace.held = own && slowest.is_some_and(|ahead| ahead > AHEAD_MAX * PART);
         let tick = self.pace.tick_micros;
         let median = ahead.get(ahead.len() / 2).copied().unwrap_or(0);
+        let ahead = if own { median } else { (FOLLOW - i64::from(self.pace.behind)) * PART };
         // A difference of a tick is made up within 32 ticks.
-        let adjust = if own { (median * i64::try_from(tick).unwrap_or(0)) / (PART * 32) } else { 0 };
+        let adjust = ahead * i64::try_from(tick).unwrap_or(0) / (PART * 32);
         let most = i64::try_from(tick / 8).unwrap_or(0);
         let adjust = adjust.clamp(-most / 2, most);
         self.pace.length = tick.saturating_add_signed(adjust);

@@ -216,7 +216,7 @@ impl Session {
     }
 
     /// Whether inputs have to be issued before the next tick.
-    fn issues(&self) -> bool {
+    pub(super) fn issues(&self) -> bool {
         self.own_spans().any(|(index, _)| self.log.next(index) < self.issue_limit())
     }
 

@@ -81,7 +81,10 @@ impl Session {
     fn change_is_wanted(&self) -> bool {
         let (number, ends) = (self.view.number, self.view.end.is_some());
         let voters = self.fresh_rows().any(|(_, row)| row.wants.leave || row.wants.end.is_some() && !ends);
-        let removed = || self.view.voters.iter().any(|voter| self.is_removed(voter.id, voter.key));
+        let removed = || {
+            let some = self.peers.rows(number).any(|(_, _, row)| !row.wants.removals.is_empty());
+            some && self.view.voters.iter().any(|voter| self.is_removed(voter.id, voter.key))
+        };
         voters || removed() || !ends && (self.seat_wants(number).next().is_some() || self.may_begin())
     }
 

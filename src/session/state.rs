@@ -193,7 +193,9 @@ impl Session {
 
     /// Votes for going on without a peer that is missing. It may return. The vote of the tie-holder is enough.
     pub fn go_on_without(&mut self, peer: PeerId) {
-        self.remove(Removal::Without(peer));
+        if self.view.voter(peer).is_some() {
+            self.remove(Removal::Without(peer));
+        }
     }
 
     /// Votes for removing somebody for good. The vote of the tie-holder is enough.

@@ -30,7 +30,7 @@ const SERVED: u64 = 5_000_000;
 /// If somebody lacks more ticks than this of a peer that it hears, others help.
 const HELP_TICKS: Tick = 20;
 /// Longest time between packets in microseconds.
-const INTERVAL_MAX: u64 = 50_000;
+const INTERVAL_MAX: u64 = 100_000;
 /// A hash is in every row with a version that is a multiple of this.
 const HASH_ROWS: u32 = 4;
 
@@ -99,6 +99,10 @@ impl Session {
         let in_large = self.peers.list.len() > 16;
         let early = self.outbox.urgent && !in_large;
         if now < self.outbox.next_at && !early {
+            return;
+        }
+        // New inputs are about to be issued, unless the game does not advance: they go with this packet.
+        if !early && self.is_due(now) && self.issues() && now < self.outbox.next_at.saturating_add(interval) {
             return;
         }
         self.outbox.urgent = false;

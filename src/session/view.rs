@@ -145,7 +145,8 @@ impl View {
 
     /// Weight of the voters in a set: a bit for each index.
     pub(super) fn weight_of(&self, set: u64) -> u32 {
-        bits(set).filter_map(|index| self.voters.get(usize::from(index))).map(|voter| self.weight(voter)).sum()
+        let members = self.voters.iter().enumerate().filter(|(index, _)| has_bit(set, *index));
+        members.map(|(_, voter)| self.weight(voter)).sum()
     }
 
     /// Whether a set of voters is a quorum: more than half of the weight. There are no ties.
@@ -225,6 +226,11 @@ pub(super) const fn has_bit(set: u64, index: usize) -> bool {
 }
 
 /// The members of a set, in ascending order.
-pub(super) fn bits(set: u64) -> impl Iterator<Item = u8> {
-    (0..64_u8).filter(move |&index| has_bit(set, usize::from(index)))
+pub(super) fn bits(mut set: u64) -> impl Iterator<Item = u8> {
+    core::iter::from_fn(move || {
+        let [lowest, ..] = set.trailing_zeros().to_le_bytes();
+        let some = set != 0;
+        set &= set.wrapping_sub(1);
+        some.then_some(lowest)
+    })
 }

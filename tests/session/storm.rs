@@ -170,7 +170,9 @@ impl Match {
             seat += if seats == 3 { 2 } else { 1 };
         }
         let mut config = Config::new(seed, (seat + joiners).min(64) as u8);
-        config.tick_micros = 50_000;
+        let tick = rng.pick(&[50, 100, 100]);
+        sim.look = tick * MS;
+        config.tick_micros = tick as u32 * 1000;
         config.timing = timing(storm, &mut rng);
         config.fault = fault;
         config.guess = rng.pick(&[0, 0, 3, 8]);
@@ -371,8 +373,10 @@ impl Match {
     /// Whether all that are alive have their seats in the newest view. Nothing if no quorum of it is alive and connected.
     fn all_seated(&self) -> Option<bool> {
         let alive = self.alive();
-        let view = self.sim.newest_view();
         let first = *alive.first()?;
+        // A view that only the dead have installed is not known to anybody.
+        let views = alive.iter().map(|&index| self.sim.peers[index].session.view());
+        let view = views.max_by_key(|view| view.number)?;
         let reach = self.sim.reach(first);
         if alive.iter().any(|&index| reach >> index & 1 == 0) {
             return None;
@@ -430,7 +434,6 @@ impl Match {
             let fin = self.sim.peers[index].session.confirmed();
             if fin < before[index] + 2 {
                 let what = self.describe();
-                if std::env::var("DEBUG").is_ok() { for p in &self.sim.peers { println!("{:?}", p.session); } }
                 self.sim.fail(format!("L2 {index} does not move from {}: {what}", before[index]));
             }
         }
