@@ -39,13 +39,21 @@ pub(super) struct Agreement {
 const STEPS_MAX: usize = 64;
 
 impl Session {
-    /// Takes all steps of the agreement that are possible now.
+    /// Takes all steps of the agreement that packets make possible.
     pub(super) fn agree(&mut self) {
         for _ in 0..STEPS_MAX {
             if !self.agreement_step() {
                 return;
             }
         }
+    }
+
+    /// Takes the steps that time makes possible.
+    pub(super) fn agree_in_time(&mut self) {
+        if self.view.voter(self.me).is_some() && self.agreement.proposal.is_none() {
+            self.begin_ballot();
+        }
+        self.agree();
     }
 
     /// Takes a step. Returns whether another one may be possible.
@@ -61,11 +69,7 @@ impl Session {
         if self.accept() {
             return true;
         }
-        if self.agreement.proposal.is_some() {
-            return self.conduct_ballot();
-        }
-        self.begin_ballot();
-        false
+        self.agreement.proposal.is_some() && self.conduct_ballot()
     }
 
     /// A change that a quorum has accepted in one ballot.

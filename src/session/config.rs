@@ -201,8 +201,6 @@ pub enum Fault {
     AcceptBlind,
     /// Who leaves does not wait for the others.
     HastyLeave,
-    /// An input may be issued twice.
-    IssueTwice,
     /// Wrong guesses are not corrected.
     NoRollback,
 }

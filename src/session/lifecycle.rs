@@ -112,12 +112,12 @@ impl Session {
         if self.progress.fin >= stop && !self.lifecycle.left {
             let since = *self.lifecycle.since.get_or_insert(self.clock.active);
             let acknowledged = || self.all_voters(|row| row.ack >= stop);
-            let hasty = self.config.has(Fault::LocalEnd) || self.config.has(Fault::HastyLeave);
-            return if self.lingered(since, hasty || acknowledged()) { Status::Closed } else { Status::Finished { ticks: stop } };
+            let own = self.config.has(Fault::LocalEnd);
+            return if self.lingered(since, own || acknowledged()) { Status::Closed } else { Status::Finished { ticks: stop } };
         }
         if self.lifecycle.left || self.wants.leave && !votes {
             let since = *self.lifecycle.since.get_or_insert(self.clock.active);
-            let known = !self.lifecycle.left || self.all_voters(|_| true) || self.config.has(Fault::HastyLeave);
+            let known = !self.lifecycle.left || self.all_voters(|_| true);
             return if self.lingered(since, known) { Status::Closed } else { Status::Left };
         }
         if self.wants.leave {
@@ -140,7 +140,8 @@ impl Session {
     /// Whether a peer that is done may stop answering: the others know all they need, or it has waited long enough.
     fn lingered(&self, since: u64, known: bool) -> bool {
         let timing = &self.config.timing;
-        let waited = |period: u64| self.clock.active > since.saturating_add(period);
+        let hasty = self.config.has(Fault::HastyLeave);
+        let waited = |period: u64| hasty || self.clock.active > since.saturating_add(period);
         waited(timing.linger) && known || waited(timing.linger_max)
     }
 

@@ -40,5 +40,5 @@ pub use id::{Key, NEVER, PeerId, Tick};
 pub use link::Link;
 pub use packet::PACKET_BYTES_MAX;
 pub use play::{InputStatus, Request, TickInputs};
-pub use state::{InputSize, Role, Session};
+pub use state::{InputSize, Role, Session, Statistics};
 pub use view::{SEATS_MAX, SPANS_MAX, Span, View, Voter};

@@ -120,6 +120,7 @@ pub(super) struct Play {
     dirty: Tick,
     pub(super) requests: VecDeque<Request>,
     hashes: VecDeque<(Tick, u64)>,
+    /// Tick of the last hash that was asked for.
     checked: Tick,
     seats: usize,
     /// Ticks that were played again.
@@ -354,12 +355,12 @@ impl Session {
         }
         play.confirmed = confirmed;
         let interval = Tick::from(self.config.check_interval);
-        for &tick in play.saves.iter().filter(|&&save| save <= confirmed && save > play.checked) {
-            if tick.is_multiple_of(interval) {
+        for &tick in play.saves.iter().filter(|&&save| save <= confirmed) {
+            if tick > play.checked && tick.is_multiple_of(interval) {
                 play.requests.push_back(Request::Checksum { tick });
+                play.checked = tick;
             }
         }
-        play.checked = confirmed;
         while play.saves.get(1).is_some_and(|&next| next <= confirmed) {
             play.saves.pop_front();
             if let Some(&tick) = play.saves.front() {

@@ -116,7 +116,7 @@ impl Session {
         }
         self.settle();
         self.update_wants();
-        self.agree();
+        self.agree_in_time();
         self.resolve();
         self.steer();
         self.update_status();

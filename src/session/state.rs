@@ -48,6 +48,19 @@ impl fmt::Display for InputSize {
 
 impl core::error::Error for InputSize {}
 
+/// Figures of a session.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Statistics {
+    /// Ticks that were played again, because inputs had been guessed wrongly or a view changed.
+    pub replayed: u64,
+    /// Most ticks that were played again at a time.
+    pub replayed_max: Tick,
+    /// Bytes of inputs that are kept.
+    pub input_bytes: usize,
+    /// Number of peers that are known, this one included.
+    pub peers: usize,
+}
+
 /// The part of one peer in a match.
 ///
 /// In a loop: pass every packet that arrives to [`receive`](Session::receive), call [`update`](Session::update), call
@@ -315,9 +328,14 @@ impl Session {
         self.progress.live.iter().find_map(missing).map(|span| span.owner)
     }
 
-    /// Number of bytes of inputs that are kept, and of known peers.
+    /// What the session has done so far.
     #[must_use]
-    pub fn memory(&self) -> (usize, usize) {
-        (self.log.bytes(), self.peers.list.len())
+    pub fn statistics(&self) -> Statistics {
+        Statistics {
+            replayed: self.play.replayed,
+            replayed_max: self.play.replayed_max,
+            input_bytes: self.log.bytes(),
+            peers: self.peers.list.len(),
+        }
     }
 }

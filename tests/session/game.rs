@@ -25,11 +25,13 @@ pub(crate) struct Game {
     saved: Vec<(Tick, u64)>,
     /// Number of ticks that were simulated, again or for the first time.
     pub(crate) simulated: u64,
+    /// The tick in which this game makes a mistake.
+    pub(crate) mistake: Option<Tick>,
 }
 
 impl Game {
     pub(crate) fn new() -> Self {
-        Game { states: vec![START], saved: Vec::new(), simulated: 0 }
+        Game { states: vec![START], saved: Vec::new(), simulated: 0, mistake: None }
     }
 
     /// Fulfils all requests. Fails with a message on one that cannot be fulfilled.
@@ -51,7 +53,8 @@ impl Game {
                     if self.states.len() != tick as usize + 1 {
                         return Err(format!("tick {tick} after {} ticks", self.states.len() - 1));
                     }
-                    self.states.push(mix_inputs(self.state(tick)?, &inputs));
+                    let state = mix_inputs(self.state(tick)?, &inputs);
+                    self.states.push(state ^ u64::from(self.mistake == Some(tick)));
                     self.simulated += 1;
                 }
                 Request::Checksum { tick } => {
@@ -67,6 +70,10 @@ impl Game {
 
     fn state(&self, tick: Tick) -> Result<u64, String> {
         self.states.get(tick as usize).copied().ok_or(format!("state {tick} is not played"))
+    }
+
+    pub(crate) fn is_broken(&self) -> bool {
+        self.mistake.is_some()
     }
 
     /// Number of states that are kept for rollbacks.

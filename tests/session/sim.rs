@@ -42,6 +42,8 @@ impl Rng {
 pub(crate) struct Way {
     pub(crate) exists: bool,
     pub(crate) latency: Us,
+    /// Largest addition to the latency.
+    pub(crate) jitter: Us,
     pub(crate) loss: u64,
     /// Packets that are sent before this time are lost.
     pub(crate) cut_until: Us,
@@ -62,7 +64,15 @@ pub(crate) struct Peer {
     pub(crate) skew: u64,
     pub(crate) queue: Vec<Vec<u8>>,
     pub(crate) lost_seats: u32,
+    /// Whether its game does not advance.
+    pub(crate) in_menu: bool,
+    /// Whom it was said to wait for, and whether that peer was heard.
+    pub(crate) waiting: Vec<(PeerId, bool)>,
+    pub(crate) desyncs: u32,
+    bytes: u64,
     pub(crate) finished: Option<(Tick, u64)>,
+    /// When the newest view was installed.
+    view_at: Us,
     seen_view: u32,
     seen_final: Tick,
     seen_confirmed: Tick,
@@ -111,7 +121,7 @@ pub(crate) fn key(index: usize) -> Key {
 
 impl Sim {
     pub(crate) fn new(seed: u64, count: usize) -> Self {
-        let way = Way { exists: true, latency: 0, loss: 0, cut_until: 0 };
+        let way = Way { exists: true, latency: 0, jitter: 0, loss: 0, cut_until: 0 };
         Sim {
             now: 0,
             rng: Rng(seed | 1),
@@ -151,7 +161,12 @@ impl Sim {
             skew,
             queue: Vec::new(),
             lost_seats: 0,
+            in_menu: false,
+            waiting: Vec::new(),
+            desyncs: 0,
+            bytes: 0,
             finished: None,
+            view_at: 0,
             seen_view: first.number,
             seen_final: 0,
             seen_confirmed: 0,
@@ -243,7 +258,7 @@ impl Sim {
         }
         peer.session.update(local);
         let mut turns = 0;
-        while peer.session.is_due(local) && turns < 8 {
+        while !peer.in_menu && peer.session.is_due(local) && turns < 8 {
             turns += 1;
             let seats = peer.session.seats().count_ones() as u64;
             let input: Vec<u8> = (0..seats).map(|seat| (mix(peer.input, seat) % 5) as u8).collect();
@@ -265,6 +280,7 @@ impl Sim {
         self.send(index);
         if self.peers[index].session.status().is_closed() {
             self.peers[index].on = false;
+            self.check_goodbye(index);
             return;
         }
         let peer = &self.peers[index];
@@ -277,6 +293,7 @@ impl Sim {
             let Some(to) = (0..self.peers.len()).find(|&index| id(index) == to) else { continue };
             self.sent += 1;
             self.bytes += bytes.len() as u64;
+            self.peers[from].bytes += bytes.len() as u64;
             let way = self.ways[from][to];
             let lost = !way.exists || self.now < way.cut_until || self.rng.percent(way.loss);
             if lost {
@@ -290,7 +307,7 @@ impl Sim {
     }
 
     fn carry(&mut self, to: usize, bytes: Vec<u8>, way: Way) {
-        let mut at = self.now + way.latency + self.rng.range(0, way.latency / 4 + 1);
+        let mut at = self.now + way.latency + self.rng.range(0, way.jitter);
         if self.late > 0 && self.rng.percent(self.late) {
             at += self.rng.range(0, 2500) * MS;
         }
@@ -318,6 +335,9 @@ impl Sim {
     fn check_events(&mut self, index: usize) {
         while let Some(event) = self.peers[index].session.next_event() {
             match event {
+                Event::Desync { .. } if self.peers[index].game.is_broken() => {}
+                Event::Desync { peer, .. } if self.is_broken(peer) => self.peers[index].desyncs += 1,
+                Event::Waiting { peer, heard } => self.peers[index].waiting.push((peer, heard)),
                 Event::Desync { peer, tick, .. } => self.fail(format!("S1 {index} and {peer} differ at tick {tick}")),
                 Event::Conflict { peer, tick } if !self.expects_conflicts => {
                     self.fail(format!("S6 two inputs of {peer} for tick {tick}"));
@@ -325,6 +345,27 @@ impl Sim {
                 Event::Status(Status::Dropped) => self.peers[index].lost_seats += 1,
                 _ => {}
             }
+        }
+    }
+
+    fn is_broken(&self, peer: PeerId) -> bool {
+        (0..self.peers.len()).any(|index| id(index) == peer && self.peers[index].game.is_broken())
+    }
+
+    /// Somebody who has left stops answering only when all others know it, or after a long time.
+    fn check_goodbye(&mut self, index: usize) {
+        let leaver = &self.peers[index];
+        let view = leaver.session.view();
+        let left = leaver.leaves && view.voter(id(index)).is_none() && leaver.finished.is_none();
+        if !left || self.now > leaver.view_at + 11 * S {
+            return;
+        }
+        let ignorant = (0..self.peers.len()).find(|&other| {
+            let peer = &self.peers[other];
+            peer.on && view.voter(id(other)).is_some() && peer.session.view().number < view.number
+        });
+        if let Some(other) = ignorant {
+            self.fail(format!("L4 {index} is gone before {other} knows that it left"));
         }
     }
 
@@ -356,6 +397,7 @@ impl Sim {
                 }
             }
         }
+        self.peers[index].view_at = self.now;
         self.peers[index].seen_view = self.peers[index].session.view().number;
     }
 
@@ -408,12 +450,18 @@ impl Sim {
             .find(|&tick| peer.game.states.get(tick as usize) != self.history.get(tick as usize));
         let kept = peer.game.kept();
         self.peers[index].seen_confirmed = confirmed;
-        if let Some(tick) = wrong {
+        let broken = self.peers[index].game.is_broken();
+        if let Some(tick) = wrong.filter(|_| !broken) {
             self.fail(format!("S1 the game of {index} has another state before tick {tick}"));
         }
         if kept > 140 {
             self.fail(format!("memory: {kept} states"));
         }
+    }
+
+    /// Bytes that a peer has sent.
+    pub(crate) fn bytes_from(&self, index: usize) -> u64 {
+        self.peers[index].bytes
     }
 
     /// Whether all peers that are on can reach each other, over others if need be.

@@ -1,7 +1,7 @@
-//! Random matches: a seed gives the peers, the links, and what goes wrong when. All links heal after 30 s; then all that
+//! Random matches: a seed gives the peers, the links, and what goes wrong when. All links heal after 20 s; then all that
 //! are alive have to play and to finish.
 
-use lockstep2d::session::{Config, Fault, Role, Timing, View};
+use lockstep2d::session::{Config, Role, Timing, View};
 
 use super::game::mix;
 use super::sim::{MS, Rng, S, Sim, Us, Way, id, key};
@@ -95,7 +95,13 @@ pub(crate) struct Figures {
     pub(crate) no_quorum: u64,
 }
 
-const HEAL: Us = 30 * S;
+const HEAL: Us = 20 * S;
+/// Time in which all have to be seated after that, and time after which all must have moved.
+const SEATED: Us = 12 * S;
+const MOVED: Us = 3 * S;
+
+/// An event that is planned for this time happens when all else has been checked.
+const LATE: Us = 100 * S;
 
 struct Match {
     sim: Sim,
@@ -105,9 +111,9 @@ struct Match {
     total: usize,
 }
 
-/// Plays the match of a seed, with a planted fault or without. Returns the first violation.
-pub(crate) fn play(seed: u64, fault: Option<Fault>) -> (Option<String>, Figures) {
-    let mut game = Match::new(seed, fault);
+/// Plays the match of a seed, with a change of the configuration. Returns the first violation.
+pub(crate) fn play(seed: u64, configure: impl Fn(&mut Config)) -> (Option<String>, Figures) {
+    let mut game = Match::new(seed, configure);
     let mut figures = Figures::default();
     game.play(&mut figures);
     let sim = &game.sim;
@@ -134,9 +140,9 @@ fn timing(storm: bool, rng: &mut Rng) -> Timing {
 }
 
 impl Match {
-    fn new(seed: u64, fault: Option<Fault>) -> Self {
+    fn new(seed: u64, configure: impl Fn(&mut Config)) -> Self {
         let mut rng = Rng(mix(seed, 77) | 1);
-        (0..8).for_each(|_| drop(rng.next()));
+        (0..8).for_each(|_| _ = rng.next());
         let class = CLASSES[(seed % 10) as usize];
         let storm = class.is_storm();
         let players = rng.range(2, 8) as usize;
@@ -154,7 +160,8 @@ impl Match {
         for from in 0..total {
             for to in 0..total {
                 let latency = (base + rng.range(0, 60)) * MS;
-                sim.ways[from][to] = Way { exists: true, latency, loss: rng.range(0, lossy), cut_until: 0 };
+                let jitter = latency / 4;
+                sim.ways[from][to] = Way { exists: true, latency, jitter, loss: rng.range(0, lossy), cut_until: 0 };
             }
         }
         if rng.percent(30) && total > 2 {
@@ -174,7 +181,7 @@ impl Match {
         sim.look = tick * MS;
         config.tick_micros = tick as u32 * 1000;
         config.timing = timing(storm, &mut rng);
-        config.fault = fault;
+        configure(&mut config);
         config.guess = rng.pick(&[0, 0, 3, 8]);
         config.save_interval = rng.pick(&[1, 1, 4, 8]);
         config.check_interval = 8;
@@ -198,35 +205,56 @@ impl Match {
     fn play(&mut self, figures: &mut Figures) {
         let mut events = self.plan();
         events.sort_unstable();
-        let mut next = 0;
-        let mut fin_at_heal = Vec::new();
-        for (stage, till) in [HEAL, 42 * S, 45 * S, 80 * S].into_iter().enumerate() {
-            while let Some(&(at, trouble, duration, random)) = events.get(next).filter(|event| event.0 <= till) {
-                next += 1;
-                self.sim.run(at);
-                if self.sim.failure.is_some() {
-                    return;
-                }
-                let until = if at < HEAL { (at + duration).min(HEAL) } else { at + duration };
-                self.cause(trouble, until, random);
-            }
-            if stage == 1 {
-                self.heal(figures, till);
-            }
-            self.sim.run(till);
-            if self.sim.failure.is_some() {
+        let (before, after): (Vec<_>, Vec<_>) = events.into_iter().partition(|event| event.0 <= HEAL);
+        for (at, trouble, duration, random) in before {
+            if !self.run(at) {
                 return;
             }
-            match stage {
-                1 => {
-                    fin_at_heal = self.sim.peers.iter().map(|peer| peer.session.final_tick()).collect();
-                    self.check_healed(figures);
-                }
-                2 => self.check_moves(&fin_at_heal),
-                3 => self.check_finished(),
-                _ => {}
+            self.cause(trouble, (at + duration).min(HEAL), random);
+        }
+        if !self.run(HEAL) {
+            return;
+        }
+        self.heal(figures);
+        self.check_healed(figures);
+        let now = self.sim.now;
+        let finals: Vec<u32> = self.sim.peers.iter().map(|peer| peer.session.confirmed()).collect();
+        // Somebody may have crashed just before: that takes the time of patience and a change.
+        for wait in [MOVED, 2 * MOVED] {
+            if !self.run(now + wait) {
+                return;
+            }
+            if self.stands_still(&finals).is_none() {
+                break;
             }
         }
+        if let Some(index) = self.stands_still(&finals) {
+            let what = self.describe();
+            self.sim.fail(format!("L2 {index} does not move from {}: {what}", finals[index]));
+        }
+        // The rest of the plan is the end.
+        let shift = self.sim.now;
+        for (at, trouble, _, random) in after {
+            if !self.run(shift + at - LATE) {
+                return;
+            }
+            self.cause(trouble, 0, random);
+        }
+        for _ in 0..30 {
+            let now = self.sim.now;
+            if !self.run(now + S) {
+                return;
+            }
+            if self.sim.peers.iter().all(|peer| !peer.on) {
+                break;
+            }
+        }
+        self.check_finished();
+    }
+
+    fn run(&mut self, until: Us) -> bool {
+        self.sim.run(until);
+        self.sim.failure.is_none()
     }
 
     fn plan(&mut self) -> Vec<(Us, Trouble, Us, u64)> {
@@ -244,14 +272,14 @@ impl Match {
                 _ => rng.pick(&[300, 1500, 2500, 4000, 8000]) + rng.range(0, 900),
             };
             let last = !short && rng.percent(40);
-            let second = if short { 3 + 5 * number } else if last { 26 } else { rng.range(2, 20) };
-            let duration = if last && rng.percent(60) { 5000 } else { duration };
+            let second = if short { 2 + 3 * number } else if last { 17 } else { rng.range(2, 14) };
+            let duration = if last && rng.percent(60) { 3000 } else { duration };
             events.push((second * S + rng.range(0, 999) * MS, kind, duration * MS, rng.next()));
         }
         for joiner in self.players..self.total {
-            events.push((rng.range(2, 20) * S, Trouble::Join(joiner), 0, 0));
+            events.push((rng.range(2, 14) * S, Trouble::Join(joiner), 0, 0));
         }
-        let end = if self.class.ends_early() { rng.range(5, 28) * S + rng.range(0, 999) * MS } else { 50 * S };
+        let end = if self.class.ends_early() { rng.range(4, 18) * S + rng.range(0, 999) * MS } else { LATE };
         events.push((end, Trouble::End, 0, rng.next()));
         if rng.percent(30) {
             events.push((end + rng.range(0, 300) * MS, Trouble::End, 0, rng.next()));
@@ -345,7 +373,7 @@ impl Match {
     }
 
     /// Lets storms subside, and measures how long it takes until all are seated.
-    fn heal(&mut self, figures: &mut Figures, till: Us) {
+    fn heal(&mut self, figures: &mut Figures) {
         if self.class.is_storm() {
             self.sim.late = 0;
             self.sim.assassin = 0;
@@ -354,9 +382,12 @@ impl Match {
             }
         }
         let mut at = HEAL;
-        while at < till && !self.class.ends_early() && self.all_seated() == Some(false) {
+        let settling = |game: &Self| game.all_seated() == Some(false) || game.all_seated().is_none() && game.sim.now < HEAL + S;
+        while at < HEAL + SEATED && !self.class.ends_early() && settling(self) {
             at += 50 * MS;
-            self.sim.run(at);
+            if !self.run(at) {
+                return;
+            }
         }
         figures.healed = at - HEAL;
     }
@@ -426,17 +457,12 @@ impl Match {
         (0..self.total).map(line).collect::<Vec<_>>().join(" | ")
     }
 
-    fn check_moves(&mut self, before: &[u32]) {
+    /// Somebody who should have played some ticks since then, and has not.
+    fn stands_still(&self, before: &[u32]) -> Option<usize> {
         if self.class.ends_early() || self.all_seated() != Some(true) {
-            return;
+            return None;
         }
-        for index in self.alive() {
-            let fin = self.sim.peers[index].session.confirmed();
-            if fin < before[index] + 2 {
-                let what = self.describe();
-                self.sim.fail(format!("L2 {index} does not move from {}: {what}", before[index]));
-            }
-        }
+        self.alive().into_iter().find(|&index| self.sim.peers[index].session.confirmed() < before[index] + 2)
     }
 
     fn check_finished(&mut self) {
@@ -444,9 +470,12 @@ impl Match {
         if ends.windows(2).any(|pair| pair[0] != pair[1]) {
             self.sim.fail(format!("S4 ends differ: {ends:?}"));
         }
-        let view = self.sim.newest_view().clone();
-        let able = (0..self.total).filter(|&index| self.sim.peers[index].on || self.sim.peers[index].finished.is_some());
-        if view.end.is_none() || !view.is_quorum(Sim::voters_among(&view, able)) {
+        let able = |&index: &usize| self.sim.peers[index].on || self.sim.peers[index].finished.is_some();
+        let able = (0..self.total).filter(able);
+        let views = able.clone().map(|index| self.sim.peers[index].session.view());
+        let Some(view) = views.max_by_key(|view| view.number).cloned() else { return };
+        let quorum = view.is_quorum(Sim::voters_among(&view, able));
+        if view.end.is_none() || !quorum {
             return;
         }
         for index in self.alive() {
