@@ -17,7 +17,7 @@
 //!         collision
 //!            body
 //!            simd
-//! math, hash, codec, threads, inspect
+//! math, hash, codec, threads, inspect, session
 //! ```
 
 #[path = "source/paths.rs"]
@@ -36,6 +36,7 @@ const LAYERS: Rules = &[
     ("codec", &[]),
     ("hash", &["codec"]),
     ("threads", &[]),
+    ("session", &[]),
     ("inspect", &["math"]),
     ("simd", &["math"]),
     ("body", &["math", "codec", "hash"]),

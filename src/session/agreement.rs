@@ -200,7 +200,8 @@ impl Session {
     /// Whether rows of a quorum are fresh.
     pub(super) fn is_connected(&self) -> bool {
         let (fresh, active) = (self.config.timing.fresh, self.clock.active);
-        let set = self.peers.voters_that(|remote| remote.id == self.me || within(remote.fresh, fresh, active));
+        let set =
+            self.peers.voters_that(|remote| remote.id == self.me || within(remote.fresh, fresh, active));
         self.is_quorum(set)
     }
 

@@ -146,7 +146,10 @@ impl Config {
             ("delay_max", self.delay_max <= DELAY_MAX),
             ("history", self.history >= 16),
             ("save_interval", self.save_interval >= 1 && self.save_interval <= self.history / 2),
-            ("check_interval", self.check_interval >= 1 && self.check_interval % self.save_interval.max(1) == 0),
+            (
+                "check_interval",
+                self.check_interval >= 1 && self.check_interval % self.save_interval.max(1) == 0,
+            ),
             ("log_ticks", self.log_ticks >= u32::from(self.history)),
         ];
         match ranges.into_iter().find(|(_, right)| !right) {

@@ -78,9 +78,7 @@ impl InputLog {
     /// The inputs for the ticks `from <= tick < until`, if all of them are here.
     pub(super) fn range(&self, span: usize, from: Tick, until: Tick) -> Option<&[u8]> {
         let log = self.spans.get(span)?;
-        let at = |tick: Tick| {
-            usize::try_from(tick.checked_sub(log.first)?).ok()?.checked_mul(self.size)
-        };
+        let at = |tick: Tick| usize::try_from(tick.checked_sub(log.first)?).ok()?.checked_mul(self.size);
         log.bytes.get(at(from)?..at(until)?)
     }
 

@@ -53,9 +53,12 @@ impl Session {
         if is {
             self.lifecycle.dropped = false;
         } else if was {
-            self.lifecycle.kicked = self.peers.list.iter().filter_map(|remote| remote.row.as_ref()).any(|row| {
-                row.wants.removals.contains(&Removal::Kick(self.key))
-            });
+            self.lifecycle.kicked = self
+                .peers
+                .list
+                .iter()
+                .filter_map(|remote| remote.row.as_ref())
+                .any(|row| row.wants.removals.contains(&Removal::Kick(self.key)));
             self.lifecycle.left = self.wants.leave;
             self.lifecycle.dropped = !self.wants.leave;
             self.lifecycle.since = None;
@@ -113,7 +116,11 @@ impl Session {
             let since = *self.lifecycle.since.get_or_insert(self.clock.active);
             let acknowledged = || self.all_voters(|row| row.ack >= stop);
             let own = self.config.has(Fault::LocalEnd);
-            return if self.lingered(since, own || acknowledged()) { Status::Closed } else { Status::Finished { ticks: stop } };
+            return if self.lingered(since, own || acknowledged()) {
+                Status::Closed
+            } else {
+                Status::Finished { ticks: stop }
+            };
         }
         if self.lifecycle.left || self.wants.leave && !votes {
             let since = *self.lifecycle.since.get_or_insert(self.clock.active);

@@ -74,7 +74,11 @@ pub(super) fn checksum(match_tag: u64, body: &[u8]) -> [u8; 4] {
 /// The body of a packet whose checksum is right.
 pub(super) fn open(match_tag: u64, bytes: &[u8]) -> Decoded<&[u8]> {
     let (sum, body) = bytes.split_first_chunk::<4>().ok_or(Malformed)?;
-    if bytes.len() <= PACKET_BYTES_MAX && checksum(match_tag, body) == *sum { Ok(body) } else { Err(Malformed) }
+    if bytes.len() <= PACKET_BYTES_MAX && checksum(match_tag, body) == *sum {
+        Ok(body)
+    } else {
+        Err(Malformed)
+    }
 }
 
 /// Composes a packet part by part, in the order of the methods, and never beyond [`PACKET_BYTES_MAX`].
@@ -202,8 +206,14 @@ impl Packet {
         let echo = if has(flag::ECHO) { Some(reader.u16()?) } else { None };
         let header = Header { sender, sequence, sent, echo };
         let row = Row::read(reader)?;
-        let mut packet =
-            Packet { header, row, changes: (0, Vec::new()), runs: Vec::new(), inputs: Vec::new(), foreign: Vec::new() };
+        let mut packet = Packet {
+            header,
+            row,
+            changes: (0, Vec::new()),
+            runs: Vec::new(),
+            inputs: Vec::new(),
+            foreign: Vec::new(),
+        };
         if has(flag::CHANGES) {
             packet.changes.0 = reader.var()?;
             let count = section_count(reader, CHANGES_MAX)?;

@@ -190,7 +190,8 @@ impl Session {
                 continue;
             }
             inputs.guessed |= bit(usize::from(span.seat));
-            if let Some(last) = self.log.next(index).checked_sub(1).and_then(|last| self.log.get(index, last)) {
+            if let Some(last) = self.log.next(index).checked_sub(1).and_then(|last| self.log.get(index, last))
+            {
                 inputs.set(span.seat, last);
             }
         }
@@ -222,7 +223,8 @@ impl Session {
     }
 
     fn own_spans(&self) -> impl Iterator<Item = (usize, u8)> {
-        let spans = self.view.spans.iter().enumerate().filter(|(_, span)| span.owner == self.me && span.is_open());
+        let spans =
+            self.view.spans.iter().enumerate().filter(|(_, span)| span.owner == self.me && span.is_open());
         spans.map(|(index, span)| (index, span.seat))
     }
 
@@ -309,16 +311,20 @@ impl Session {
     }
 
     fn differs_in_guesses_only(used: &TickInputs, known: &TickInputs) -> bool {
-        let seats = used.bytes.chunks_exact(used.size.max(1)).zip(known.bytes.chunks_exact(known.size.max(1)));
+        let seats =
+            used.bytes.chunks_exact(used.size.max(1)).zip(known.bytes.chunks_exact(known.size.max(1)));
         used.absent == known.absent
-            && seats.enumerate().all(|(seat, (used, known_input))| used == known_input || has_bit(known.guessed, seat))
+            && seats
+                .enumerate()
+                .all(|(seat, (used, known_input))| used == known_input || has_bit(known.guessed, seat))
     }
 
     /// Goes back to the last saved state at or before a tick, and plays from there with the inputs known now.
     fn rewind(&mut self, tick: Tick) {
         let limit = self.play_limit().max(self.progress.fin.min(self.play.played));
         let target = self.play.played.min(limit);
-        while self.play.saves.len() > 1 && self.play.saves.back().is_some_and(|&save| save > tick.min(target)) {
+        while self.play.saves.len() > 1 && self.play.saves.back().is_some_and(|&save| save > tick.min(target))
+        {
             self.play.saves.pop_back();
         }
         let Some(&save) = self.play.saves.back() else { return };
@@ -336,7 +342,9 @@ impl Session {
     fn play_tick(&mut self) {
         let tick = self.play.played;
         let interval = Tick::from(self.config.save_interval);
-        if (tick.is_multiple_of(interval) || self.play.saves.is_empty()) && self.play.saves.back() != Some(&tick) {
+        if (tick.is_multiple_of(interval) || self.play.saves.is_empty())
+            && self.play.saves.back() != Some(&tick)
+        {
             self.play.saves.push_back(tick);
             self.play.requests.push_back(Request::Save { tick });
         }

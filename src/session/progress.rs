@@ -32,8 +32,15 @@ const CLEAN_INTERVAL: Tick = 256;
 
 impl Progress {
     pub(super) fn new(view: &View, tick: Tick) -> Self {
-        let mut progress =
-            Progress { complete: tick, ack: tick, fin: tick, moved_at: 0, live: Vec::new(), live_from: tick, cleaned: tick };
+        let mut progress = Progress {
+            complete: tick,
+            ack: tick,
+            fin: tick,
+            moved_at: 0,
+            live: Vec::new(),
+            live_from: tick,
+            cleaned: tick,
+        };
         progress.follow(view, tick);
         progress
     }

@@ -22,8 +22,8 @@ pub(super) struct Proposal {
     change: Option<Arc<Change>>,
 }
 
-/// Rounds without a decision after which waiting times grow no more, and the longest time that they may still grow to,
-/// in microseconds.
+/// Waiting times grow with the rounds that led to no decision: at first in proportion, up to this factor; beyond it only
+/// if they are shorter than `BALLOT_MAX` microseconds, and faster.
 const ROUNDS_MAX: u64 = 4;
 const BALLOT_MAX: u64 = 6_000_000;
 
@@ -50,7 +50,8 @@ impl Session {
         self.agreement.round = round.saturating_add(1);
         let own = Ballot { round: self.agreement.round, proposer: self.me };
         self.set_promise(own);
-        self.agreement.proposal = Some(Proposal { ballot: own, started_at: active, quorum_at: None, change: None });
+        self.agreement.proposal =
+            Some(Proposal { ballot: own, started_at: active, quorum_at: None, change: None });
         self.agreement.not_before = active + self.backoff();
     }
 
@@ -58,7 +59,8 @@ impl Session {
     fn ballot_time(&self) -> u64 {
         let ballot = self.config.timing.ballot.max(1);
         let rounds = u64::from(self.agreement.round.saturating_sub(self.agreement.base_round));
-        ballot * rounds.clamp(1, ROUNDS_MAX.max(BALLOT_MAX / ballot))
+        let factor = if rounds <= ROUNDS_MAX { rounds.max(1) } else { rounds * rounds / ROUNDS_MAX };
+        (ballot * factor).min((ballot * ROUNDS_MAX).max(BALLOT_MAX))
     }
 
     /// Whether a voter has been out of contact for the time of patience, and play stands still or does not need it.
@@ -90,7 +92,8 @@ impl Session {
 
     /// Whether the match has not begun although enough seats are taken.
     fn may_begin(&self) -> bool {
-        !self.view.begun && (!self.view.free_seats() & self.config.seat_set()).count_ones() >= self.first_seats()
+        !self.view.begun
+            && (!self.view.free_seats() & self.config.seat_set()).count_ones() >= self.first_seats()
     }
 
     fn first_seats(&self) -> u32 {
@@ -101,7 +104,8 @@ impl Session {
     fn fresh_rows(&self) -> impl Iterator<Item = (&Remote, &Row)> {
         let (fresh, active) = (self.config.timing.fresh, self.clock.active);
         let rows = self.peers.rows(self.view.number);
-        rows.filter(move |(_, remote, _)| within(remote.fresh, fresh, active)).map(|(_, remote, row)| (remote, row))
+        rows.filter(move |(_, remote, _)| within(remote.fresh, fresh, active))
+            .map(|(_, remote, row)| (remote, row))
     }
 
     /// Peers without a vote that want seats and may have some.
@@ -193,7 +197,8 @@ impl Session {
     fn choose_change(&self, ballot: Ballot) -> Arc<Change> {
         let promisers = self.promisers(ballot);
         let rows = || self.peers.rows(self.view.number).filter(|(index, _, _)| has_bit(promisers, *index));
-        let accepted = rows().filter_map(|(_, _, row)| row.accepted.as_ref()).max_by_key(|(ballot, _)| *ballot);
+        let accepted =
+            rows().filter_map(|(_, _, row)| row.accepted.as_ref()).max_by_key(|(ballot, _)| *ballot);
         if let Some((_, change)) = accepted.filter(|_| !self.config.has(Fault::ForgetAccepted)) {
             return Arc::clone(change);
         }
@@ -207,7 +212,9 @@ impl Session {
     fn new_change(&self, promisers: u64, cut: Tick) -> Change {
         let mut leaves = self.leaving(promisers);
         let mut end = self.view.end;
-        let keeps = |leaves: u64| self.view.voters.iter().enumerate().filter(move |(index, _)| !has_bit(leaves, *index));
+        let keeps = |leaves: u64| {
+            self.view.voters.iter().enumerate().filter(move |(index, _)| !has_bit(leaves, *index))
+        };
         if keeps(leaves).next().is_none() {
             // The last voter leaves: the match is over.
             end = end.or(Some(cut));
@@ -243,13 +250,16 @@ impl Session {
                 || remote.key.is_some_and(|key| self.is_removed(remote.id, key))
         };
         let voters = self.peers.voters();
-        voters.filter(|(index, remote)| gone(*index, remote) || leaves(remote)).fold(0, |set, (index, _)| set | bit(index))
+        voters
+            .filter(|(index, remote)| gone(*index, remote) || leaves(remote))
+            .fold(0, |set, (index, _)| set | bit(index))
     }
 
     fn joins(&self, leaves: u64) -> Vec<Join> {
         let mut joins: Vec<Join> = Vec::new();
         let mut taken = 0;
-        let staying = self.view.voters.len().saturating_sub(usize::try_from(leaves.count_ones()).unwrap_or(0));
+        let staying =
+            self.view.voters.len().saturating_sub(usize::try_from(leaves.count_ones()).unwrap_or(0));
         for (id, key, count) in self.seat_wants(self.view.number) {
             let full = joins.len() == JOINS_MAX
                 || staying + joins.len() >= SEATS_MAX

@@ -136,7 +136,14 @@ impl Session {
     ///
     /// # Errors
     /// A parameter that is out of its range.
-    pub fn new(config: Config, me: PeerId, key: Key, role: Role, first: View, seed: u64) -> Result<Self, ConfigError> {
+    pub fn new(
+        config: Config,
+        me: PeerId,
+        key: Key,
+        role: Role,
+        first: View,
+        seed: u64,
+    ) -> Result<Self, ConfigError> {
         config.validate()?;
         let mut log = InputLog::new(config.input_bytes);
         log.follow(&first.spans);

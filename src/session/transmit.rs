@@ -85,7 +85,9 @@ impl Session {
         row.hash = hash;
         row.have.clear();
         for &index in &self.progress.live {
-            let (Ok(number), Some(span)) = (u16::try_from(index), self.view.spans.get(index)) else { continue };
+            let (Ok(number), Some(span)) = (u16::try_from(index), self.view.spans.get(index)) else {
+                continue;
+            };
             if span.until > fin {
                 row.have.push((number, self.log.next(index).max(fin)));
             }
@@ -145,9 +147,12 @@ impl Session {
         let spans = all.chain(live.iter().copied());
         packet.runs(self.log.size(), spans.filter_map(|span| self.run_for(to, span)));
         let foreign = self.foreign_rows(to);
-        packet.foreign(foreign.iter().map(|remote| (remote.id, remote.row.as_ref())).filter_map(
-            |(id, row)| Some((id, row?)),
-        ));
+        packet.foreign(
+            foreign
+                .iter()
+                .map(|remote| (remote.id, remote.row.as_ref()))
+                .filter_map(|(id, row)| Some((id, row?))),
+        );
         let bytes = packet.finish(self.config.match_tag);
         let id = to.id;
         if let Some(to) = self.peers.list.get_mut(place) {

@@ -44,8 +44,11 @@ impl Game {
                     self.saved.push((tick, state));
                 }
                 Request::Load { tick } => {
-                    let &(_, state) =
-                        self.saved.iter().find(|(saved, _)| *saved == tick).ok_or(format!("no state {tick}"))?;
+                    let &(_, state) = self
+                        .saved
+                        .iter()
+                        .find(|(saved, _)| *saved == tick)
+                        .ok_or(format!("no state {tick}"))?;
                     self.states.truncate(tick as usize);
                     self.states.push(state);
                 }

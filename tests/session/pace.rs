@@ -31,7 +31,8 @@ pub(crate) fn way(latency: Us) -> Way {
 
 /// Ticks that all have played, in each of some seconds after a start of 5 s, in hundredths of a tick per second.
 pub(crate) fn pace(sim: &mut Sim, seconds: u64) -> u64 {
-    let played = |sim: &Sim| sim.peers.iter().map(|peer| u64::from(peer.session.confirmed())).min().unwrap_or(0);
+    let played =
+        |sim: &Sim| sim.peers.iter().map(|peer| u64::from(peer.session.confirmed())).min().unwrap_or(0);
     sim.run(5 * S);
     let before = played(sim);
     sim.run((5 + seconds) * S);
@@ -52,7 +53,11 @@ fn lockstep_plays_at_full_speed_at_any_latency() {
             let pace = pace(&mut sim, 20);
             assert!(pace >= 5950, "{latency} us: {pace} hundredths of a tick per second");
             for peer in &sim.peers {
-                assert!(peer.session.delay() <= documented_delay(latency), "{latency} us: {}", peer.session.delay());
+                assert!(
+                    peer.session.delay() <= documented_delay(latency),
+                    "{latency} us: {}",
+                    peer.session.delay()
+                );
             }
         }
     }
@@ -62,7 +67,8 @@ fn lockstep_plays_at_full_speed_at_any_latency() {
 fn a_fixed_delay_of_the_latency_and_a_tick_is_enough() {
     for latency in [20, 60, 150].map(|latency| latency * MS) {
         let delay = documented_delay(latency);
-        let mut sim = players(2, way(latency), |config| (config.delay_min, config.delay_max) = (delay, delay));
+        let mut sim =
+            players(2, way(latency), |config| (config.delay_min, config.delay_max) = (delay, delay));
         let pace = pace(&mut sim, 20);
         assert!(pace >= 5950, "{latency} us: {pace} hundredths of a tick per second");
     }

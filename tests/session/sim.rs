@@ -71,6 +71,8 @@ pub(crate) struct Peer {
     pub(crate) desyncs: u32,
     bytes: u64,
     pub(crate) finished: Option<(Tick, u64)>,
+    /// Whether it was a voter when it asked to leave.
+    was_leaving: bool,
     /// When the newest view was installed.
     view_at: Us,
     seen_view: u32,
@@ -147,7 +149,8 @@ impl Sim {
     pub(crate) fn add(&mut self, config: Config, role: Role, first: &View, skew: u64) -> usize {
         let index = self.peers.len();
         let seed = self.rng.next();
-        let session = Session::new(config, id(index), key(index), role, first.clone(), seed).expect("a valid config");
+        let session =
+            Session::new(config, id(index), key(index), role, first.clone(), seed).expect("a valid config");
         self.views.entry(first.number).or_insert_with(|| first.clone());
         self.peers.push(Peer {
             session,
@@ -166,6 +169,7 @@ impl Sim {
             desyncs: 0,
             bytes: 0,
             finished: None,
+            was_leaving: false,
             view_at: 0,
             seen_view: first.number,
             seen_final: 0,
@@ -338,10 +342,13 @@ impl Sim {
                 Event::Desync { .. } if self.peers[index].game.is_broken() => {}
                 Event::Desync { peer, .. } if self.is_broken(peer) => self.peers[index].desyncs += 1,
                 Event::Waiting { peer, heard } => self.peers[index].waiting.push((peer, heard)),
-                Event::Desync { peer, tick, .. } => self.fail(format!("S1 {index} and {peer} differ at tick {tick}")),
+                Event::Desync { peer, tick, .. } => {
+                    self.fail(format!("S1 {index} and {peer} differ at tick {tick}"))
+                }
                 Event::Conflict { peer, tick } if !self.expects_conflicts => {
                     self.fail(format!("S6 two inputs of {peer} for tick {tick}"));
                 }
+                Event::Status(Status::Leaving) => self.peers[index].was_leaving = true,
                 Event::Status(Status::Dropped) => self.peers[index].lost_seats += 1,
                 _ => {}
             }
@@ -356,7 +363,7 @@ impl Sim {
     fn check_goodbye(&mut self, index: usize) {
         let leaver = &self.peers[index];
         let view = leaver.session.view();
-        let left = leaver.leaves && view.voter(id(index)).is_none() && leaver.finished.is_none();
+        let left = leaver.was_leaving && view.voter(id(index)).is_none() && leaver.finished.is_none();
         if !left || self.now > leaver.view_at + 11 * S {
             return;
         }
@@ -403,12 +410,15 @@ impl Sim {
 
     /// A quorum of the view before holds all ticks before the cut.
     fn check_cut_is_held(&mut self, view: &View) {
-        let Some(before) = view.number.checked_sub(1).and_then(|number| self.views.get(&number)) else { return };
+        let Some(before) = view.number.checked_sub(1).and_then(|number| self.views.get(&number)) else {
+            return;
+        };
         let holds = |(_, voter): &(usize, &lockstep2d::session::Voter)| {
             let peer = (0..self.peers.len()).find(|&index| id(index) == voter.id);
             peer.is_some_and(|peer| self.peers[peer].session.complete_tick() >= view.cut)
         };
-        let holders = before.voters.iter().enumerate().filter(holds).fold(0, |set, (index, _)| set | 1 << index);
+        let holders =
+            before.voters.iter().enumerate().filter(holds).fold(0, |set, (index, _)| set | 1 << index);
         if !before.is_quorum(holders) {
             let what = format!("S7 view {}: ticks before {} not held by a quorum", view.number, view.cut);
             self.fail(what);
@@ -470,7 +480,8 @@ impl Sim {
         for _ in 0..self.peers.len() {
             for (a, ways) in self.ways.iter().enumerate() {
                 for (b, way) in ways.iter().enumerate() {
-                    let both = self.peers.get(a).is_some_and(|a| a.on) && self.peers.get(b).is_some_and(|b| b.on);
+                    let both =
+                        self.peers.get(a).is_some_and(|a| a.on) && self.peers.get(b).is_some_and(|b| b.on);
                     if both && way.exists && seen >> a & 1 == 1 {
                         seen |= 1 << b;
                     }

@@ -114,7 +114,9 @@ fn all_finish_at_the_same_tick_also_whoever_asked_for_another_one() {
     sim.peers[2].session.end_at(520);
     sim.run(20 * S);
     let ends: Vec<_> = sim.peers.iter().map(|peer| peer.finished).collect();
-    assert!(ends.iter().all(|end| end.is_some_and(|(ticks, _)| ticks == 500 || ticks == 520) && *end == ends[0]));
+    assert!(
+        ends.iter().all(|end| end.is_some_and(|(ticks, _)| ticks == 500 || ticks == 520) && *end == ends[0])
+    );
     assert!(sim.peers.iter().all(|peer| peer.session.status() == Status::Closed && !peer.on));
     assert_eq!(sim.failure, None);
 }
@@ -135,7 +137,12 @@ fn spectators_watch_through_one_another() {
     sim.run(15 * S);
     for index in 2..count {
         assert_eq!(status(&sim, index), Status::Watching);
-        assert!(played(&sim, index) + 60 > played(&sim, 0), "{index}: {} of {}", played(&sim, index), played(&sim, 0));
+        assert!(
+            played(&sim, index) + 60 > played(&sim, 0),
+            "{index}: {} of {}",
+            played(&sim, index),
+            played(&sim, 0)
+        );
     }
     assert_eq!(sim.failure, None);
 }

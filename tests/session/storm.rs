@@ -66,8 +66,8 @@ impl Class {
                 &[Halves, Quarters, DeafOrMute, Crash, Stall, Leave, Links, DeafOrMute, Halves, Delay, GoOn]
             }
             Class::Storm | Class::StormWithEnd => &[
-                Halves, Quarters, DeafOrMute, Stall, Links, DeafOrMute, Halves, Quarters, DeafOrMute, Stall, Links,
-                DeafOrMute, Halves, Halves, Crash, Quarters, DeafOrMute, Halves, Leave,
+                Halves, Quarters, DeafOrMute, Stall, Links, DeafOrMute, Halves, Quarters, DeafOrMute, Stall,
+                Links, DeafOrMute, Halves, Halves, Crash, Quarters, DeafOrMute, Halves, Leave,
             ],
         }
     }
@@ -161,7 +161,8 @@ impl Match {
             for to in 0..total {
                 let latency = (base + rng.range(0, 60)) * MS;
                 let jitter = latency / 4;
-                sim.ways[from][to] = Way { exists: true, latency, jitter, loss: rng.range(0, lossy), cut_until: 0 };
+                sim.ways[from][to] =
+                    Way { exists: true, latency, jitter, loss: rng.range(0, lossy), cut_until: 0 };
             }
         }
         if rng.percent(30) && total > 2 {
@@ -272,7 +273,13 @@ impl Match {
                 _ => rng.pick(&[300, 1500, 2500, 4000, 8000]) + rng.range(0, 900),
             };
             let last = !short && rng.percent(40);
-            let second = if short { 2 + 3 * number } else if last { 17 } else { rng.range(2, 14) };
+            let second = if short {
+                2 + 3 * number
+            } else if last {
+                17
+            } else {
+                rng.range(2, 14)
+            };
             let duration = if last && rng.percent(60) { 3000 } else { duration };
             events.push((second * S + rng.range(0, 999) * MS, kind, duration * MS, rng.next()));
         }
@@ -382,7 +389,9 @@ impl Match {
             }
         }
         let mut at = HEAL;
-        let settling = |game: &Self| game.all_seated() == Some(false) || game.all_seated().is_none() && game.sim.now < HEAL + S;
+        let settling = |game: &Self| {
+            game.all_seated() == Some(false) || game.all_seated().is_none() && game.sim.now < HEAL + S
+        };
         while at < HEAL + SEATED && !self.class.ends_early() && settling(self) {
             at += 50 * MS;
             if !self.run(at) {
@@ -480,7 +489,10 @@ impl Match {
         }
         for index in self.alive() {
             let peer = &self.sim.peers[index];
-            let reached = Sim::voters_among(&view, (0..self.total).filter(|&other| self.sim.reach(index) >> other & 1 == 1));
+            let reached = Sim::voters_among(
+                &view,
+                (0..self.total).filter(|&other| self.sim.reach(index) >> other & 1 == 1),
+            );
             let should = view.voter(id(index)).is_some() && view.is_quorum(reached);
             if should && peer.finished.is_none() {
                 let what = self.describe();
