@@ -28,6 +28,11 @@ impl<'a> Reader<'a> {
         Ok(taken)
     }
 
+    /// Everything that is left.
+    pub(super) fn rest(&mut self) -> &'a [u8] {
+        core::mem::take(&mut self.rest)
+    }
+
     fn array<const N: usize>(&mut self) -> Decoded<[u8; N]> {
         let (taken, rest) = self.rest.split_first_chunk::<N>().ok_or(Malformed)?;
         self.rest = rest;

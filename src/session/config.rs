@@ -148,7 +148,7 @@ impl Config {
             ("save_interval", self.save_interval >= 1 && self.save_interval <= self.history / 2),
             (
                 "check_interval",
-                self.check_interval >= 1 && self.check_interval % self.save_interval.max(1) == 0,
+                self.check_interval >= 1 && self.check_interval.is_multiple_of(self.save_interval.max(1)),
             ),
             ("log_ticks", self.log_ticks >= u32::from(self.history)),
         ];

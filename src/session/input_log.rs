@@ -65,11 +65,6 @@ impl InputLog {
         self.spans.get(span).map_or(0, |log| log.next)
     }
 
-    /// First tick whose input is kept.
-    pub(super) fn first(&self, span: usize) -> Tick {
-        self.spans.get(span).map_or(0, |log| log.first)
-    }
-
     /// The input for a tick.
     pub(super) fn get(&self, span: usize, tick: Tick) -> Option<&[u8]> {
         self.range(span, tick, tick.checked_add(1)?)

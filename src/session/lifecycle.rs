@@ -52,6 +52,9 @@ impl Session {
         let (was, is) = (before.voter(self.me).is_some(), self.view.voter(self.me).is_some());
         if is {
             self.lifecycle.dropped = false;
+            if !was {
+                self.hurry();
+            }
         } else if was {
             self.lifecycle.kicked = self
                 .peers

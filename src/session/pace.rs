@@ -7,7 +7,7 @@
 use alloc::vec::Vec;
 
 use super::config::Config;
-use super::id::Tick;
+use super::id::{PeerId, Tick};
 use super::peers::within;
 use super::state::Session;
 
@@ -26,6 +26,8 @@ pub(super) struct Pace {
     held: bool,
     /// Number of ticks that may be made up at once.
     behind: Tick,
+    /// Whether this peer has just got a seat, and plays all ticks that are complete at once.
+    hurries: bool,
 }
 
 /// Ticks by which nobody runs ahead of the slowest.
@@ -52,19 +54,21 @@ impl Pace {
             delay_at: 0,
             held: false,
             behind: 0,
+            hurries: false,
         }
     }
 
     pub(super) fn is_time(&self, now: u64) -> bool {
         let due = self.next_at.is_none_or(|at| now >= at);
-        self.behind >= CATCH_UP || due && !self.held
+        self.behind >= CATCH_UP || self.hurries && self.behind > 0 || due && !self.held
     }
 
     /// Notes that a tick was played.
     pub(super) fn played(&mut self, now: u64) {
         let at = self.next_at.unwrap_or(now);
         let oldest = now.saturating_sub(LATE_MAX * self.tick_micros);
-        if self.behind < CATCH_UP || now >= at {
+        let at_once = self.behind >= CATCH_UP || self.hurries && self.behind > 0;
+        if !at_once || now >= at {
             self.next_at = Some(at.max(oldest) + self.length);
         }
         self.behind = self.behind.saturating_sub(1);
@@ -94,6 +98,7 @@ impl Session {
         self.pace.length = tick.saturating_add_signed(adjust);
         let lead = if own { self.progress.complete } else { self.progress.fin };
         self.pace.behind = lead.saturating_sub(self.play.played);
+        self.pace.hurries &= self.pace.behind > 0;
         self.adapt_delay();
     }
 
@@ -106,7 +111,7 @@ impl Session {
             .peers
             .voters()
             .filter(|(_, remote)| remote.id != self.me && within(remote.fresh, fresh, active))
-            .filter(|(_, remote)| self.view.seats_of(remote.id) != 0)
+            .filter(|(_, remote)| self.plays_at(remote.id, self.play.played))
             .filter_map(|(_, remote)| {
                 let row = remote.row.as_ref()?;
                 let age = active.saturating_sub(remote.fresh?).min(4 * tick) + remote.link.round_trip / 2;
@@ -118,19 +123,44 @@ impl Session {
         ahead
     }
 
+    /// Whether a peer plays a seat at a tick.
+    fn plays_at(&self, id: PeerId, tick: Tick) -> bool {
+        self.view.spans.iter().any(|span| span.owner == id && span.is_open() && span.from <= tick)
+    }
+
     /// Part of the current tick that has passed, in 1/256.
     fn phase(&self) -> i64 {
         let left = self.pace.next_at.unwrap_or(0).saturating_sub(self.clock.now).min(self.pace.tick_micros);
         i64::try_from((self.pace.tick_micros - left) * 256 / self.pace.tick_micros.max(1)).unwrap_or(0)
     }
 
-    /// The delay follows the slowest way to another peer: half a round trip, its jitter, and the interval of sending.
+    /// Catches up with those who play, after this peer got a seat. Its first inputs have to arrive in time.
+    pub(super) fn hurry(&mut self) {
+        self.pace.hurries = true;
+        self.pace.delay = self.delay_aim();
+        self.pace.delay_at = self.clock.now;
+    }
+
     fn adapt_delay(&mut self) {
-        let (least, most) = (self.config.delay_min, self.config.delay_max);
         let now = self.clock.now;
+        // Inputs have to arrive in time when somebody else begins to play, too.
+        let played = self.play.played;
+        if self.view.spans.iter().any(|span| span.is_open() && span.from > played) {
+            self.pace.delay = self.pace.delay.max(self.delay_aim());
+        }
         if now < self.pace.delay_at.saturating_add(DELAY_INTERVAL) {
             return;
         }
+        let aim = self.delay_aim();
+        if aim != self.pace.delay {
+            self.pace.delay_at = now;
+            self.pace.delay = if aim > self.pace.delay { self.pace.delay + 1 } else { self.pace.delay - 1 };
+        }
+    }
+
+    /// The delay follows the slowest way to another peer: half a round trip, its jitter, and the interval of sending.
+    fn delay_aim(&self) -> u16 {
+        let (least, most) = (self.config.delay_min, self.config.delay_max);
         let tick = self.pace.tick_micros.max(1);
         let (fresh, active) = (self.config.timing.fresh, self.clock.active);
         let players = self.peers.voters().filter(|(_, remote)| {
@@ -139,10 +169,6 @@ impl Session {
         let latency = players.map(|(_, remote)| remote.link.round_trip / 2 + 2 * remote.link.jitter).max();
         let needed = latency.unwrap_or(0).div_ceil(tick) + u64::from(latency.is_some());
         let needed = u16::try_from(needed).unwrap_or(most).saturating_sub(self.config.guess);
-        let aim = needed.clamp(least, most);
-        if aim != self.pace.delay {
-            self.pace.delay_at = now;
-            self.pace.delay = if aim > self.pace.delay { self.pace.delay + 1 } else { self.pace.delay - 1 };
-        }
+        needed.clamp(least, most)
     }
 }

@@ -110,11 +110,6 @@ impl Composer {
         Composer { bytes, flags }
     }
 
-    /// Number of bytes that are left.
-    pub(super) fn room(&self) -> usize {
-        PACKET_BYTES_MAX.saturating_sub(self.bytes.len() + RESERVE)
-    }
-
     /// Appends a section with as many parts as fit; `write` appends one. A section without parts is left out.
     fn section<T>(
         &mut self,

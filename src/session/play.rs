@@ -219,7 +219,7 @@ impl Session {
 
     /// Whether inputs have to be issued before the next tick.
     pub(super) fn issues(&self) -> bool {
-        self.own_spans().any(|(index, _)| self.log.next(index) < self.issue_limit())
+        self.own_spans().any(|(index, _)| self.log.next(index) < self.issue_limit(index))
     }
 
     fn own_spans(&self) -> impl Iterator<Item = (usize, u8)> {
@@ -228,13 +228,15 @@ impl Session {
         spans.map(|(index, span)| (index, span.seat))
     }
 
-    /// First tick for which no input is issued yet.
-    fn issue_limit(&self) -> Tick {
+    /// First tick of an own span for which no input is issued yet. Those of the first ticks are issued at once, so that
+    /// the others need not wait for them.
+    fn issue_limit(&self, span: usize) -> Tick {
         if !self.view.begun {
             return 0;
         }
-        let limit = self.play.played.saturating_add(Tick::from(self.pace.delay)).saturating_add(1);
-        limit.min(self.stop())
+        let from = self.view.spans.get(span).map_or(0, |span| span.from);
+        let now = self.play.played.max(from);
+        now.saturating_add(Tick::from(self.pace.delay)).saturating_add(1).min(self.stop())
     }
 
     /// Issues the inputs of the own seats, in the order of the seats, and plays a tick if that is possible. Call it while
@@ -271,13 +273,13 @@ impl Session {
     }
 
     fn issue(&mut self, inputs: &[u8]) -> bool {
-        let limit = self.issue_limit();
         let own: Vec<(usize, u8)> = self.own_spans().collect();
         let seats = self.seats();
         let mut issued = false;
         for (index, seat) in own {
             let place = bits(seats).position(|other| other == seat).unwrap_or(0);
             let Some(input) = inputs.chunks_exact(self.log.size()).nth(place) else { continue };
+            let limit = self.issue_limit(index);
             while self.log.next(index) < limit {
                 let tick = self.log.next(index);
                 self.log.add(index, tick, input);

@@ -114,14 +114,42 @@ impl Session {
         self.peers.list.iter().filter_map(move |remote| {
             let row = remote.row.as_ref().filter(|row| row.view == number)?;
             let want = row.wants.seats?;
-            let fits = self.seats_for(want.key, want.seats, 0).is_some();
             let may = self.view.voter(remote.id).is_none()
                 && within(remote.fresh, fresh, active)
                 && !remote.faulty
                 && !row.wants.leave
-                && !self.is_removed(remote.id, want.key);
-            (may && fits).then_some((remote.id, want.key, want.seats))
+                && !self.is_removed(remote.id, want.key)
+                && !self
+                    .peers
+                    .voters()
+                    .any(|(_, voter)| voter.key == Some(want.key) && within(voter.fresh, fresh, active));
+            let fits = may && self.seats_for(want.key, want.seats, self.free_after(0)).is_some();
+            fits.then_some((remote.id, want.key, want.seats))
         })
+    }
+
+    /// Bit for each voter that was replaced: another incarnation with its key wants seats, and it is silent.
+    fn replaced(&self) -> u64 {
+        let (fresh, active) = (self.config.timing.fresh, self.clock.active);
+        let number = self.view.number;
+        let wanted = |key: Key| {
+            self.peers.list.iter().any(|remote| {
+                let row = remote.row.as_ref().filter(|row| row.view == number);
+                let wants = row.and_then(|row| row.wants.seats).is_some_and(|want| want.key == key);
+                wants && self.view.voter(remote.id).is_none() && within(remote.fresh, fresh, active)
+            })
+        };
+        let silent = |remote: &Remote| remote.id != self.me && !within(remote.fresh, fresh, active);
+        self.peers.voters_that(|remote| silent(remote) && remote.key.is_some_and(wanted))
+    }
+
+    /// Seats that are free when some voters have left, one bit for each.
+    fn free_after(&self, leaves: u64) -> u64 {
+        let leaves = leaves | self.replaced();
+        let voters = self.view.voters.iter().enumerate();
+        let kept = voters.filter(|(index, _)| !has_bit(leaves, *index)).map(|(_, voter)| voter.id);
+        let taken = kept.fold(0, |set, id| set | self.view.seats_of(id));
+        self.config.seat_set() & !taken
     }
 
     /// Whether the tie-holder or a quorum votes for the removal of a peer.
@@ -143,8 +171,7 @@ impl Session {
     }
 
     /// Free seats for a newcomer: first those that its key had, then those that nobody had, then others.
-    fn seats_for(&self, key: Key, count: u8, taken: u64) -> Option<u64> {
-        let free = self.view.free_seats() & self.config.seat_set() & !taken;
+    fn seats_for(&self, key: Key, count: u8, free: u64) -> Option<u64> {
         let mut own = 0;
         let mut had = 0;
         for span in &self.view.spans {
@@ -210,7 +237,7 @@ impl Session {
     }
 
     fn new_change(&self, promisers: u64, cut: Tick) -> Change {
-        let mut leaves = self.leaving(promisers);
+        let mut leaves = self.leaving(promisers) | self.replaced();
         let mut end = self.view.end;
         let keeps = |leaves: u64| {
             self.view.voters.iter().enumerate().filter(move |(index, _)| !has_bit(leaves, *index))
@@ -232,8 +259,21 @@ impl Session {
         let taken = keeps(leaves).fold(0, |set, (_, voter)| set | self.view.seats_of(voter.id));
         let taken = joins.iter().fold(taken, |set, join| set | join.seats);
         let begun = self.view.begun || taken.count_ones() >= self.first_seats() || end.is_some();
-        let lead = if self.view.begun { Tick::from(self.config.seat_lead) } else { 0 };
+        let lead = if self.view.begun { self.seat_lead(&joins) } else { 0 };
         Change { cut, end, begun, leaves, tie_holder, joins, from: cut.saturating_add(lead) }
+    }
+
+    /// Number of ticks from the cut to the first one of those who join. Until then promises and acceptances have to travel
+    /// to and fro, and the first inputs have to arrive.
+    fn seat_lead(&self, joins: &[Join]) -> Tick {
+        let matters = |remote: &&Remote| {
+            self.view.voter(remote.id).is_some() || joins.iter().any(|join| join.id == remote.id)
+        };
+        let round_trips = self.peers.list.iter().filter(matters).map(|remote| remote.link.round_trip);
+        let ticks = 3 * round_trips.max().unwrap_or(0) / u64::from(self.config.tick_micros.max(1));
+        let lead = Tick::from(self.config.seat_lead);
+        lead.saturating_add(Tick::try_from(ticks).unwrap_or(0))
+            .min(Tick::from(self.config.history / 2).max(lead))
     }
 
     /// Bit for each voter that is no longer one: it wants to leave, is removed, or has neither promised nor been in
@@ -257,7 +297,7 @@ impl Session {
 
     fn joins(&self, leaves: u64) -> Vec<Join> {
         let mut joins: Vec<Join> = Vec::new();
-        let mut taken = 0;
+        let mut free = self.free_after(leaves);
         let staying =
             self.view.voters.len().saturating_sub(usize::try_from(leaves.count_ones()).unwrap_or(0));
         for (id, key, count) in self.seat_wants(self.view.number) {
@@ -267,8 +307,8 @@ impl Session {
             if full {
                 break;
             }
-            if let Some(seats) = self.seats_for(key, count, taken) {
-                taken |= seats;
+            if let Some(seats) = self.seats_for(key, count, free) {
+                free &= !seats;
                 joins.push(Join { id, key, seats });
             }
         }

@@ -176,6 +176,29 @@ impl Session {
         Ok(session)
     }
 
+    /// Follows a match from the state after `tick` ticks on, all of which are final.
+    pub(super) fn resume(
+        config: Config,
+        me: PeerId,
+        key: Key,
+        role: Role,
+        view: View,
+        tick: Tick,
+        seed: u64,
+    ) -> Result<Self, ConfigError> {
+        let mut session = Session::new(config, me, key, role, view, seed)?;
+        session.log.start_at(&session.view.spans, tick);
+        session.progress = Progress::new(&session.view, tick);
+        session.play = Play::new(tick, session.config.seats);
+        session.settle();
+        Ok(session)
+    }
+
+    /// Whether a row of a peer has arrived.
+    pub(super) fn has_row(&self, id: PeerId) -> bool {
+        self.peers.find(id).is_some_and(|remote| remote.row.is_some())
+    }
+
     /// Serves a peer that has no vote: it receives what the match decides and plays. Somebody who joins does this with
     /// those whom it knows, too.
     pub fn attach(&mut self, id: PeerId, key: Option<Key>) {

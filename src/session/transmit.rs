@@ -73,7 +73,7 @@ impl Session {
         let others = others.filter(|remote| within(remote.heard, timing.heard, active));
         let others: Vec<PeerId> = others.map(|remote| remote.id).take(STRANGERS_MAX).collect();
         let connected = self.is_connected();
-        let hash = self.play.last_hash().filter(|_| version % HASH_ROWS == 0);
+        let hash = self.play.last_hash().filter(|_| version.is_multiple_of(HASH_ROWS));
         let (played, paused, fin) = (self.play.played, self.paused, self.progress.fin);
         let Some(row) = self.peers.list.first_mut().and_then(|own| own.row.as_mut()) else { return };
         row.version = version;

@@ -1,10 +1,15 @@
 //! Whole matches of session cores in simulated time, over links that delay, lose, double, reorder and cut.
 
-#![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
+#![expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_lossless,
+    reason = "the numbers of a test are small"
+)]
 
 #[cfg(feature = "__faults")]
 mod faults;
 mod game;
+mod joins;
 mod pace;
 mod sim;
 mod stories;

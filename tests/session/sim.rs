@@ -268,7 +268,8 @@ impl Sim {
             let input: Vec<u8> = (0..seats).map(|seat| (mix(peer.input, seat) % 5) as u8).collect();
             if peer.session.advance(local, &input) == Ok(true) {
                 // Inputs are held for a while.
-                peer.input = if peer.input % 3 == 0 { mix(peer.input, local) } else { peer.input + 1 };
+                peer.input =
+                    if peer.input.is_multiple_of(3) { mix(peer.input, local) } else { peer.input + 1 };
             }
             if let Err(what) = peer.game.fulfil(&mut peer.session) {
                 self.fail(format!("peer {index}: {what}"));
