@@ -219,10 +219,9 @@ impl Endpoint {
     pub fn receive(&mut self, now: u64, from: Address, bytes: &[u8]) {
         let Ok(body) = packet::open(self.config.match_tag, bytes) else { return };
         if is_join_packet(body) {
-            if let Ok((sender, packet)) = JoinPacket::read(body) {
-                if sender != self.me {
-                    self.take(now, from, sender, packet);
-                }
+            match JoinPacket::read(body) {
+                Ok((sender, packet)) if sender != self.me => self.take(now, from, sender, packet),
+                _ => {}
             }
             return;
         }
@@ -238,10 +237,11 @@ impl Endpoint {
                 self.take_hello(now, from, sender, (nonce, key, cookie), &offer);
             }
             JoinPacket::Challenge { nonce, cookie } => {
-                if let Phase::Asking { nonce: own, cookie: known, next_at } = &mut self.phase {
-                    if *own == nonce && *known != cookie {
-                        (*known, *next_at) = (cookie, 0);
-                    }
+                if let Phase::Asking { nonce: own, cookie: known, next_at } = &mut self.phase
+                    && *own == nonce
+                    && *known != cookie
+                {
+                    (*known, *next_at) = (cookie, 0);
                 }
             }
             JoinPacket::Refused { nonce, reason, offer } => {

@@ -36,6 +36,8 @@ mod runs;
 mod siphash;
 mod start_state;
 mod state;
+#[cfg(test)]
+mod tests;
 mod transfer;
 mod transmit;
 mod view;

@@ -60,7 +60,7 @@ impl Session {
         let ballot = self.config.timing.ballot.max(1);
         let rounds = u64::from(self.agreement.round.saturating_sub(self.agreement.base_round));
         let factor = if rounds <= ROUNDS_MAX { rounds.max(1) } else { rounds * rounds / ROUNDS_MAX };
-        (ballot * factor).min((ballot * ROUNDS_MAX).max(BALLOT_MAX))
+        ballot.saturating_mul(factor).min((ballot * ROUNDS_MAX).max(BALLOT_MAX))
     }
 
     /// Whether a voter has been out of contact for the time of patience, and play stands still or does not need it.

@@ -2,12 +2,15 @@
 
 use super::config::Fault;
 use super::event::Event;
-use super::id::PeerId;
+use super::id::{PeerId, Tick};
 use super::input_log::Added;
 use super::packet::{self, Packet};
 use super::peers::PEERS_MAX;
 use super::row::Row;
 use super::state::Session;
+
+/// Inputs further ahead of the complete ticks than this are not kept, so that nobody fills the memory.
+const INPUTS_AHEAD_MAX: Tick = 1024;
 
 impl Session {
     /// Notes the time. Of a long pause of the process only a part counts.
@@ -94,7 +97,9 @@ impl Session {
     fn take_inputs(&mut self, index: usize, start: u32, inputs: &[u8]) {
         let Some(span) = self.view.spans.get(index) else { return };
         let owner = span.owner;
-        if owner == self.me {
+        // Whoever is behind gets the inputs of a few hundred ticks at a time.
+        let far = self.progress.complete.saturating_add(INPUTS_AHEAD_MAX);
+        if owner == self.me || self.log.next(index) > far.max(span.from) {
             return;
         }
         match self.log.add(index, start, inputs) {

@@ -105,6 +105,11 @@ pub(super) struct Clock {
 pub(super) struct Random(u64);
 
 impl Random {
+    #[cfg(test)]
+    pub(super) const fn new(seed: u64) -> Self {
+        Random(seed)
+    }
+
     /// A number below `bound`, or 0.
     pub(super) fn below(&mut self, bound: u64) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);

@@ -189,7 +189,7 @@ impl Session {
         if start >= until || span.owner == receiver.id {
             return None;
         }
-        let helps = || !self.hears(receiver, span.owner) || start + HELP_TICKS < until;
+        let helps = || !self.hears(receiver, span.owner) || start.saturating_add(HELP_TICKS) < until;
         if span.owner != self.me && (self.config.has(Fault::NoRelay) || !helps()) {
             return None;
         }

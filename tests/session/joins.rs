@@ -26,12 +26,15 @@ struct Node {
     last_tick: Us,
 }
 
+/// A packet on its way: when it arrives, its number, sender, receiver and bytes.
+type Datagram = (Us, u64, u8, u8, Vec<u8>);
+
 /// Endpoints that reach each other.
 struct Net {
     now: Us,
     rng: Rng,
     nodes: Vec<Node>,
-    heap: BinaryHeap<Reverse<(Us, u64, u8, u8, Vec<u8>)>>,
+    heap: BinaryHeap<Reverse<Datagram>>,
     sequence: u64,
     latency: Us,
     loss: u64,
