@@ -7,8 +7,8 @@ use super::bytes::{Decoded, Malformed, Reader};
 /// Largest address in bytes.
 pub const ADDRESS_BYTES_MAX: usize = 32;
 
-/// An address of a transport, such as an IP address with a port. The transport has to give one address in one form only:
-/// IPv4 addresses mapped to IPv6 count as others than the IPv4 addresses.
+/// An address of a transport, such as an IP address with a port. The transport has to give one address in one form
+/// only: IPv4 addresses mapped to IPv6 count as others than the IPv4 addresses.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Address {
     length: u8,

@@ -1,11 +1,11 @@
 //! Changes of the view: one instance of single-decree Paxos for each view number, with all of its state in rows.
 //!
-//! A voter that sees a higher ballot promises it and freezes its acknowledgement. The proposer of a ballot that a quorum
-//! promised chooses the change: what the highest ballot among the promisers has accepted, or its own
-//! (`proposal.rs`). A voter accepts a change of the ballot that it promised, or of a higher one, if it holds all ticks
-//! before the cut. A change that a quorum of the old view accepted in one ballot is decided, whoever sees that installs
-//! it. As every final tick was acknowledged by a quorum before its members froze, the cut, the largest frozen
-//! acknowledgement of a quorum, lies at or above every final tick.
+//! A voter that sees a higher ballot promises it and freezes its acknowledgement. The proposer of a ballot that a
+//! quorum promised chooses the change: what the highest ballot among the promisers has accepted, or its own
+//! (`proposal.rs`). A voter accepts a change of the ballot that it promised, or of a higher one, if it holds all
+//! ticks before the cut. A change that a quorum of the old view accepted in one ballot is decided, whoever sees that
+//! installs it. As every final tick was acknowledged by a quorum before its members froze, the cut, the largest
+//! frozen acknowledgement of a quorum, lies at or above every final tick.
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;

@@ -56,7 +56,8 @@ pub(super) enum JoinPacket {
         hash: u64,
         length: u64,
     },
-    /// Chunks before `next` are here, and those after it whose bit is set. Up to `window` chunks from `next` on may be sent.
+    /// Chunks before `next` are here, and those after it whose bit is set. Up to `window` chunks from `next` on may
+    /// be sent.
     Want {
         hash: u64,
         next: u32,

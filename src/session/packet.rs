@@ -65,7 +65,8 @@ pub(super) struct Packet {
     pub(super) foreign: Vec<(PeerId, Row)>,
 }
 
-/// The first bytes of a packet: a checksum that depends on the match, so that packets of other matches are not accepted.
+/// The first bytes of a packet: a checksum that depends on the match, so that packets of other matches are not
+/// accepted.
 pub(super) fn checksum(match_tag: u64, body: &[u8]) -> [u8; 4] {
     let digest = twox_hash::XxHash3_128::oneshot_with_seed(match_tag, body).to_le_bytes();
     [digest[0], digest[1], digest[2], digest[3]]

@@ -6,102 +6,9 @@ use alloc::vec::Vec;
 use super::config::Fault;
 use super::event::Event;
 use super::id::{NEVER, PeerId, Tick};
+use super::request::{Request, TickInputs};
 use super::state::{InputSize, Session};
 use super::view::{bit, bits, has_bit};
-
-/// What is known of the input of a seat.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum InputStatus {
-    /// Issued by the player.
-    Confirmed,
-    /// Not here yet: the player's last known input.
-    Guessed,
-    /// Nobody plays the seat.
-    Absent,
-}
-
-/// The inputs of all seats for a tick.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct TickInputs {
-    bytes: Vec<u8>,
-    size: usize,
-    absent: u64,
-    guessed: u64,
-}
-
-impl TickInputs {
-    /// The input of a seat and what is known of it. Nothing for a seat that does not exist; zeros for an absent player.
-    #[must_use]
-    pub fn seat(&self, seat: u8) -> Option<(&[u8], InputStatus)> {
-        let index = usize::from(seat);
-        let input = self.bytes.chunks_exact(self.size.max(1)).nth(index)?;
-        let status = if has_bit(self.absent, index) {
-            InputStatus::Absent
-        } else if has_bit(self.guessed, index) {
-            InputStatus::Guessed
-        } else {
-            InputStatus::Confirmed
-        };
-        Some((input, status))
-    }
-
-    /// The inputs of all seats, one after another.
-    #[must_use]
-    pub fn bytes(&self) -> &[u8] {
-        &self.bytes
-    }
-
-    /// Bit for each seat that nobody plays.
-    #[must_use]
-    pub fn absent(&self) -> u64 {
-        self.absent
-    }
-
-    /// Bit for each seat whose input is guessed.
-    #[must_use]
-    pub fn guessed(&self) -> u64 {
-        self.guessed
-    }
-
-    fn set(&mut self, seat: u8, input: &[u8]) {
-        let start = usize::from(seat) * self.size;
-        if let Some(place) = self.bytes.get_mut(start..start + self.size) {
-            place.copy_from_slice(input);
-        }
-    }
-}
-
-/// What a session asks the game to do.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Request {
-    /// Keep a copy of the state before this tick. An older copy for the same tick is replaced.
-    Save {
-        /// The tick.
-        tick: Tick,
-    },
-    /// Restore the copy of the state before this tick. Later copies are no longer needed.
-    Load {
-        /// The tick.
-        tick: Tick,
-    },
-    /// Simulate a tick.
-    Advance {
-        /// The tick.
-        tick: Tick,
-        /// The inputs.
-        inputs: TickInputs,
-    },
-    /// Pass the hash of the copy of the state before this tick to [`Session::report_hash`].
-    Checksum {
-        /// The tick.
-        tick: Tick,
-    },
-    /// Copies of states before this tick are no longer needed.
-    Forget {
-        /// The tick.
-        tick: Tick,
-    },
-}
 
 /// Number of own hashes that are kept for comparison.
 const HASHES_MAX: usize = 16;
@@ -239,8 +146,8 @@ impl Session {
         now.saturating_add(Tick::from(self.pace.delay)).saturating_add(1).min(self.stop())
     }
 
-    /// Issues the inputs of the own seats, in the order of the seats, and plays a tick if that is possible. Call it while
-    /// [`is_due`](Session::is_due). Returns whether the inputs were issued: if not, they may be used again.
+    /// Issues the inputs of the own seats, in the order of the seats, and plays a tick if that is possible. Call it
+    /// while [`is_due`](Session::is_due). Returns whether the inputs were issued: if not, they may be used again.
     ///
     /// # Errors
     /// [`InputSize`] when the number of bytes is not that of the own seats. Nothing happens then.

@@ -2,8 +2,8 @@
 //!
 //! A tick is *complete* when all inputs of the view's spans are here, also if nobody plays in it while somebody does
 //! later. It is *acknowledged* when it is complete and no promise stands, and *final* when a quorum of this view
-//! acknowledges it, or when it lies before the view's cut; both only if it is held here. Complete ticks may be taken back
-//! when the view changes; final ones never.
+//! acknowledges it, or when it lies before the view's cut; both only if it is held here. Complete ticks may be taken
+//! back when the view changes; final ones never.
 
 use alloc::vec::Vec;
 

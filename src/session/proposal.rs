@@ -22,8 +22,8 @@ pub(super) struct Proposal {
     change: Option<Arc<Change>>,
 }
 
-/// Waiting times grow with the rounds that led to no decision: at first in proportion, up to this factor; beyond it only
-/// if they are shorter than `BALLOT_MAX` microseconds, and faster.
+/// Waiting times grow with the rounds that led to no decision: at first in proportion, up to this factor; beyond it
+/// only if they are shorter than `BALLOT_MAX` microseconds, and faster.
 const ROUNDS_MAX: u64 = 4;
 const BALLOT_MAX: u64 = 6_000_000;
 
@@ -263,8 +263,8 @@ impl Session {
         Change { cut, end, begun, leaves, tie_holder, joins, from: cut.saturating_add(lead) }
     }
 
-    /// Number of ticks from the cut to the first one of those who join. Until then promises and acceptances have to travel
-    /// to and fro, and the first inputs have to arrive.
+    /// Number of ticks from the cut to the first one of those who join. Until then promises and acceptances have to
+    /// travel to and fro, and the first inputs have to arrive.
     fn seat_lead(&self, joins: &[Join]) -> Tick {
         let matters = |remote: &&Remote| {
             self.view.voter(remote.id).is_some() || joins.iter().any(|join| join.id == remote.id)

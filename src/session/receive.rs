@@ -20,8 +20,8 @@ impl Session {
         self.clock.now = self.clock.now.max(now);
     }
 
-    /// Takes a packet that arrived. Returns its sender, or nothing if it is not a packet of this match from somebody who
-    /// is known.
+    /// Takes a packet that arrived. Returns its sender, or nothing if it is not a packet of this match from somebody
+    /// who is known.
     pub fn receive(&mut self, now: u64, bytes: &[u8]) -> Option<PeerId> {
         self.look(now);
         if self.status().is_closed() {

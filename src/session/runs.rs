@@ -1,8 +1,8 @@
 //! Inputs of consecutive ticks in few bytes: each tick XOR the tick before it, then run-length coded. Inputs that are
 //! held for many ticks become zeros, and zeros take two bytes however many they are.
 //!
-//! The coded form is a list of runs, until all bytes are there. A run starts with a LEB128 number: its length times two,
-//! plus one if it is a run of zeros; otherwise the bytes follow.
+//! The coded form is a list of runs, until all bytes are there. A run starts with a LEB128 number: its length times
+//! two, plus one if it is a run of zeros; otherwise the bytes follow.
 
 use alloc::vec::Vec;
 

@@ -1,4 +1,5 @@
-//! [`StartState`]: what somebody who joins needs besides the inputs since then: the view, addresses, and the game's state.
+//! [`StartState`]: what somebody who joins needs besides the inputs since then: the view, addresses, and the game's
+//! state.
 
 use alloc::vec::Vec;
 

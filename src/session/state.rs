@@ -13,8 +13,9 @@ use super::lifecycle::Lifecycle;
 use super::link::Link;
 use super::pace::Pace;
 use super::peers::Peers;
-use super::play::{Play, Request};
+use super::play::Play;
 use super::progress::Progress;
+use super::request::Request;
 use super::row::{REMOVALS_MAX, Removal, Wants};
 use super::transmit::Outbox;
 use super::view::{Change, View};
@@ -64,8 +65,9 @@ pub struct Statistics {
 /// The part of one peer in a match.
 ///
 /// In a loop: pass every packet that arrives to [`receive`](Session::receive), call [`update`](Session::update), call
-/// [`advance`](Session::advance) while [`is_due`](Session::is_due), and fulfil what [`next_request`](Session::next_request)
-/// returns in order; then send what [`next_packet`](Session::next_packet) returns.
+/// [`advance`](Session::advance) while [`is_due`](Session::is_due), and fulfil what
+/// [`next_request`](Session::next_request) returns in order; then send what [`next_packet`](Session::next_packet)
+/// returns.
 ///
 /// Times are microseconds since any fixed moment and never decrease.
 #[derive(Clone, Debug)]

@@ -81,7 +81,8 @@ fn a_packet_of_eight_players_is_small() {
     assert_eq!(composer.finish(5).len(), 45);
 }
 
-/// Every bit of a packet flipped, every prefix, and random bytes: nothing panics, and what is accepted has one encoding.
+/// Every bit of a packet flipped, every prefix, and random bytes: nothing panics, and what is accepted has one
+/// encoding.
 #[test]
 fn no_bytes_panic() {
     let bytes = packet_bytes();

@@ -1,5 +1,5 @@
-//! States in chunks: [`Upload`] and [`Download`]. The receiver says what it has and how much may be under way; the sender
-//! sends what is missing, and what may have been lost again, at a bounded rate.
+//! States in chunks: [`Upload`] and [`Download`]. The receiver says what it has and how much may be under way; the
+//! sender sends what is missing, and what may have been lost again, at a bounded rate.
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;

@@ -1,5 +1,5 @@
-//! Random matches: a seed gives the peers, the links, and what goes wrong when. All links heal after 20 s; then all that
-//! are alive have to play and to finish.
+//! Random matches: a seed gives the peers, the links, and what goes wrong when. All links heal after 20 s; then all
+//! that are alive have to play and to finish.
 
 use lockstep2d::session::{Config, Role, Timing, View};
 
@@ -410,7 +410,8 @@ impl Match {
         (0..self.total).filter(alive).collect()
     }
 
-    /// Whether all that are alive have their seats in the newest view. Nothing if no quorum of it is alive and connected.
+    /// Whether all that are alive have their seats in the newest view. Nothing if no quorum of it is alive and
+    /// connected.
     fn all_seated(&self) -> Option<bool> {
         let alive = self.alive();
         let first = *alive.first()?;
