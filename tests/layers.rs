@@ -6,7 +6,7 @@
 //! re-export as a path to the file that defines the item. It reads only paths: calls of methods are not found.
 //!
 //! ```text
-//!           net
+//!        net   peer
 //!          report   check
 //! scenes   replay
 //!       \  /
@@ -53,6 +53,22 @@ const LAYERS: Rules = &[
     (
         "check",
         &["math", "codec", "hash", "inspect", "body", "collision", "solver", "world", "lockstep", "replay"],
+    ),
+    (
+        "peer",
+        &[
+            "math",
+            "codec",
+            "hash",
+            "session",
+            "body",
+            "collision",
+            "solver",
+            "world",
+            "lockstep",
+            "replay",
+            "report",
+        ],
     ),
     ("net", &["math", "codec", "hash", "lockstep", "replay", "report"]),
     ("scenes", &["math", "codec", "hash", "body", "collision", "solver", "world", "lockstep"]),

@@ -25,6 +25,12 @@ impl Address {
         Some(address)
     }
 
+    /// An address that reaches nobody.
+    #[must_use]
+    pub const fn nowhere() -> Self {
+        Address { length: 0, bytes: [0; ADDRESS_BYTES_MAX] }
+    }
+
     /// The bytes.
     #[must_use]
     pub fn bytes(&self) -> &[u8] {

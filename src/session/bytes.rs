@@ -55,6 +55,10 @@ impl<'a> Reader<'a> {
         self.array().map(u64::from_le_bytes)
     }
 
+    pub(super) fn u128(&mut self) -> Decoded<u128> {
+        self.array().map(u128::from_le_bytes)
+    }
+
     /// A LEB128 number of at most 64 bits in its shortest form.
     pub(super) fn var64(&mut self) -> Decoded<u64> {
         let mut value = 0_u64;
@@ -97,6 +101,7 @@ pub(super) trait Write {
     fn put_u16(&mut self, value: u16);
     fn put_u32(&mut self, value: u32);
     fn put_u64(&mut self, value: u64);
+    fn put_u128(&mut self, value: u128);
     fn put_var64(&mut self, value: u64);
     /// LEB128.
     fn put_var(&mut self, value: u32) {
@@ -124,6 +129,10 @@ impl Write for Vec<u8> {
     }
 
     fn put_u64(&mut self, value: u64) {
+        self.extend_from_slice(&value.to_le_bytes());
+    }
+
+    fn put_u128(&mut self, value: u128) {
         self.extend_from_slice(&value.to_le_bytes());
     }
 

@@ -96,9 +96,9 @@ pub enum Event {
         /// Number of ticks played.
         tick: Tick,
         /// Hash of this peer.
-        ours: u64,
+        ours: u128,
         /// Hash of the other peer.
-        theirs: u64,
+        theirs: u128,
     },
     /// A peer has issued two inputs for one tick. Its inputs are not accepted any more.
     Conflict {

@@ -26,7 +26,7 @@ pub(super) struct Play {
     /// First tick whose inputs may differ from those that were used.
     dirty: Tick,
     pub(super) requests: VecDeque<Request>,
-    hashes: VecDeque<(Tick, u64)>,
+    hashes: VecDeque<(Tick, u128)>,
     /// Tick of the last hash that was asked for.
     checked: Tick,
     seats: usize,
@@ -64,7 +64,7 @@ impl Play {
         self.saves.front().copied().unwrap_or(self.used_from).min(self.used_from)
     }
 
-    pub(super) fn last_hash(&self) -> Option<(Tick, u64)> {
+    pub(super) fn last_hash(&self) -> Option<(Tick, u128)> {
         self.hashes.back().copied()
     }
 }
@@ -291,12 +291,12 @@ impl Session {
     }
 
     /// Answers [`Request::Checksum`].
-    pub fn report_hash(&mut self, tick: Tick, hash: u64) {
+    pub fn report_hash(&mut self, tick: Tick, hash: u128) {
         if self.play.hashes.len() == HASHES_MAX {
             self.play.hashes.pop_front();
         }
         self.play.hashes.push_back((tick, hash));
-        let others: Vec<(PeerId, u64)> = self
+        let others: Vec<(PeerId, u128)> = self
             .peers
             .list
             .iter()
@@ -311,7 +311,7 @@ impl Session {
     }
 
     /// Compares the hash of another peer with the own one.
-    pub(super) fn compare_hash(&mut self, peer: PeerId, tick: Tick, theirs: u64) {
+    pub(super) fn compare_hash(&mut self, peer: PeerId, tick: Tick, theirs: u128) {
         let own = self.play.hashes.iter().find(|(own, _)| *own == tick);
         let Some(&(_, ours)) = own.filter(|(_, ours)| *ours != theirs) else { return };
         let Some(remote) = self.peers.find_mut(peer).filter(|remote| !remote.faulty) else { return };

@@ -71,7 +71,7 @@ pub(super) struct Row {
     pub(super) accepted: Option<(Ballot, Arc<Change>)>,
     pub(super) wants: Wants,
     /// A final tick and the hash of the state before it.
-    pub(super) hash: Option<(Tick, u64)>,
+    pub(super) hash: Option<(Tick, u128)>,
 }
 
 /// Largest number of peers without a vote in a row.

@@ -39,7 +39,7 @@ fn row() -> Row {
     row.wants.seats = Some(SeatWant { seats: 2, key: Key(77) });
     (row.wants.leave, row.wants.end) = (true, Some(1000));
     row.wants.removals = [Removal::Without(PeerId(5)), Removal::Kick(Key(6))].into();
-    row.hash = Some((496, 0x1234_5678_9abc_def0));
+    row.hash = Some((496, 0x1234_5678_9abc_def0_1234));
     row
 }
 

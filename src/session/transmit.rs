@@ -29,6 +29,8 @@ const PACKETS_MAX: usize = 4096;
 const SERVED: u64 = 5_000_000;
 /// If somebody lacks more ticks than this of a peer that it hears, others help.
 const HELP_TICKS: Tick = 20;
+/// Whoever is lost tries all peers with every row whose version is a multiple of this.
+const TRY_ROWS: u32 = 8;
 /// Longest time between packets in microseconds.
 const INTERVAL_MAX: u64 = 100_000;
 /// A hash is in every row with a version that is a multiple of this.
@@ -121,8 +123,13 @@ impl Session {
         }
     }
 
+    /// Whether packets go to a peer. Somebody who has lost contact, or its seat, tries everybody whom it knows from time to
+    /// time.
     fn is_served(&self, remote: &Remote) -> bool {
-        remote.attached
+        let tries = self.outbox.version.is_multiple_of(TRY_ROWS)
+            && (self.view.voter(self.me).is_none() || !self.is_connected());
+        tries
+            || remote.attached
             || within(remote.heard, SERVED, self.clock.active)
             || self.view.voter(remote.id).is_some()
     }

@@ -72,7 +72,7 @@ impl Row {
         }
         if let Some((tick, hash)) = self.hash {
             bytes.put_near(tick, self.fin);
-            bytes.put_u64(hash);
+            bytes.put_u128(hash);
         }
         self.wants.write(bytes);
     }
@@ -102,7 +102,7 @@ impl Row {
             row.accepted = Some((read_ballot(reader)?, Arc::new(Change::read(reader)?)));
         }
         if has(flag::HASH) {
-            row.hash = Some((reader.near(row.fin)?, reader.u64()?));
+            row.hash = Some((reader.near(row.fin)?, reader.u128()?));
         }
         row.wants.leave = has(flag::LEAVE);
         if has(flag::SEATS) {

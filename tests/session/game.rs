@@ -63,7 +63,7 @@ impl Game {
                 Request::Checksum { tick } => {
                     let state = self.saved.iter().find(|(saved, _)| *saved == tick);
                     let &(_, state) = state.ok_or(format!("no state {tick} to compare"))?;
-                    session.report_hash(tick, state);
+                    session.report_hash(tick, u128::from(state));
                 }
                 Request::Forget { tick } => self.saved.retain(|(saved, _)| *saved >= tick),
             }

@@ -174,7 +174,7 @@ impl Net {
                     }
                     Request::Checksum { tick } => {
                         let &(_, state) = node.saved.iter().find(|(saved, _)| *saved == tick).unwrap();
-                        session.report_hash(tick, state);
+                        session.report_hash(tick, u128::from(state));
                     }
                     Request::Forget { tick } => node.saved.retain(|(saved, _)| *saved >= tick),
                 }
